@@ -1,0 +1,60 @@
+# Build functions shared by every module.
+
+# The flags that orchard's own code must compile cleanly with. -ffp-contract=off: the same bytes out on every machine.
+add_library(orchard_flags INTERFACE)
+target_compile_features(orchard_flags INTERFACE cxx_std_20)
+target_compile_options(orchard_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror -ffp-contract=off)
+if(ORCHARD_SANITIZE)
+  target_compile_options(orchard_flags INTERFACE
+    -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(orchard_flags INTERFACE -fsanitize=address,undefined)
+endif()
+
+# orchard_add_module(name COMPONENT component SOURCES .. [PUBLIC ..] [PRIVATE ..])
+# makes the library orchard::name with its own include root, so that an arrow that is not declared does not compile.
+function(orchard_add_module name)
+  cmake_parse_arguments(ARG "" "COMPONENT" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  set(target orchard_${name})
+  add_library(${target} ${ARG_SOURCES})
+  add_library(orchard::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE $<BUILD_INTERFACE:orchard_flags> ${ARG_PRIVATE})
+  install(TARGETS ${target} EXPORT orchard-${ARG_COMPONENT} COMPONENT ${ARG_COMPONENT}
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT ${ARG_COMPONENT})
+  set_property(GLOBAL APPEND PROPERTY ORCHARD_COMPONENTS ${ARG_COMPONENT})
+endfunction()
+
+# orchard_add_tests(module SOURCES .. [LINK ..]): one executable and one ctest label per module.
+function(orchard_add_tests name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  set(target orchard_${name}_tests)
+  add_executable(${target} ${ARG_SOURCES})
+  target_link_libraries(${target} PRIVATE orchard_flags ${ARG_LINK} GTest::gtest_main)
+  target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/tests)
+  target_compile_definitions(${target} PRIVATE
+    ORCHARD_DATA_DIR="${PROJECT_SOURCE_DIR}/data" ORCHARD_SHARED_MODELS="${PROJECT_SOURCE_DIR}/../shared/models")
+  gtest_discover_tests(${target} TEST_PREFIX "${name}." PROPERTIES LABELS ${name} DISCOVERY_TIMEOUT 60
+    DISCOVERY_MODE PRE_TEST)
+endfunction()
+
+# One export set per component, so that find_package(orchard COMPONENTS runtime) needs nothing else.
+function(orchard_install_package)
+  include(CMakePackageConfigHelpers)
+  set(directory ${CMAKE_INSTALL_LIBDIR}/cmake/orchard)
+  get_property(components GLOBAL PROPERTY ORCHARD_COMPONENTS)
+  list(REMOVE_DUPLICATES components)
+  foreach(component IN LISTS components)
+    install(EXPORT orchard-${component} NAMESPACE orchard:: DESTINATION ${directory} COMPONENT ${component})
+  endforeach()
+  configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/orchardConfig.cmake.in
+    ${PROJECT_BINARY_DIR}/orchardConfig.cmake INSTALL_DESTINATION ${directory})
+  write_basic_package_version_file(${PROJECT_BINARY_DIR}/orchardConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+  install(FILES ${PROJECT_BINARY_DIR}/orchardConfig.cmake ${PROJECT_BINARY_DIR}/orchardConfigVersion.cmake
+    DESTINATION ${directory} COMPONENT runtime)
+endfunction()

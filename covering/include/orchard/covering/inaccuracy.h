@@ -1,0 +1,20 @@
+#pragma once
+#include "orchard/geometry/surface.h"
+
+namespace orchard {
+
+struct Bounds {
+  double lower = 0, upper = 0;  // the truth lies between, always
+};
+
+// Bounds on Hubbard's inaccuracy of a sphere: the largest distance to the surface from a point of the sphere's surface
+// that lies outside the solid, 0 if there is none (dissertation 5.3.2, 5.3.5). Lemma 5.1 holds for convex objects only,
+// so this is a branch and bound over the sphere: the distance is 1-Lipschitz. Lengths in mesh units;
+// upper - lower <= max(tolerance, 1e-6) * R unless the work limit is met. Throws InputError unless surface.solid().
+Bounds inaccuracy(const Surface& surface, const Sphere& sphere, double tolerance);
+
+// An upper bound on the largest distance to the solid from any point of the closed ball: max(0, radius + signed distance
+// of the centre), rounded upward. Holds for every solid, convex or not, since the signed distance is 1-Lipschitz.
+double distance_bound(double signed_distance_of_center, double radius);
+
+}  // namespace orchard

@@ -1,0 +1,17 @@
+#pragma once
+#include <filesystem>
+
+#include "orchard/geometry/mesh.h"
+
+namespace orchard {
+
+// Reads .obj and .ply (ASCII, binary little- and big-endian) with orchard's own readers, .stl and .off through CGAL; by
+// extension, case does not matter. Polygons are triangulated; properties that orchard has no use for are skipped. An
+// .stl file is a bag of triangles, so its identical corners are welded; other formats keep their vertices as they are.
+// Throws InputError naming file, line or byte, fault and remedy. Memory is bounded by the size of the file.
+TriangleMesh read_mesh(const std::filesystem::path& file);
+
+// Writes .obj with 17 significant digits. Throws Error if the file cannot be written.
+void write_obj(const std::filesystem::path& file, const TriangleMesh& mesh);
+
+}  // namespace orchard

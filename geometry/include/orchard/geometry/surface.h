@@ -1,0 +1,72 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "orchard/geometry/clusters.h"
+#include "orchard/geometry/mesh.h"
+#include "orchard/geometry/mesh_check.h"
+
+namespace orchard {
+
+// Which part of a triangle a point lies on. Edge i joins corners i and (i + 1) % 3.
+enum class Feature : std::uint8_t { face, edge0, edge1, edge2, vertex0, vertex1, vertex2 };
+
+struct ClosestPoint {
+  Point position;
+  double distance = 0;  // >= 0
+  Index triangle = kNone;
+  Feature feature = Feature::face;
+};
+
+// One surface, immutable and safe to query from many threads: a mesh with its adjacency, its clusters and a spatial
+// index. Any triangles will do for distances; what has an inside is solid().
+class Surface {
+ public:
+  // O(n log n). Throws InputError if validate(mesh) does.
+  explicit Surface(TriangleMesh mesh);
+  ~Surface();
+  Surface(Surface&&) noexcept;
+  Surface& operator=(Surface&&) noexcept;
+
+  const TriangleMesh& mesh() const;
+  const MeshReport& report() const;
+  bool solid() const { return report().solid(); }
+  const Box& bounding_box() const;
+  const Sphere& bounding_ball() const;  // Ritter's (1990): holds every vertex, a few per cent above minimal
+  double bounding_radius() const { return bounding_ball().radius; }
+
+  std::array<Point, 3> corners(Index triangle) const;
+  const Vector& normal(Index triangle) const;  // unit, outward; zero for a degenerate triangle
+  double area(Index triangle) const;
+  // Triangle on the other side of edge i; kNone at a boundary or where more than two triangles meet.
+  const std::array<Index, 3>& neighbors(Index triangle) const;
+  std::span<const Index> triangles_around(Index vertex) const;  // ascending
+  // The triangles that share a feature: one for a face, two for an edge, the fan for a vertex. Cleared first.
+  void triangles_at(Index triangle, Feature feature, std::vector<Index>& out) const;
+  const Clusters& clusters() const;  // coplanar ones, tolerance::kCoplanarAngle
+
+  // Angle-weighted pseudonormal, unit length (Baerentzen and Aanaes 2005): the sign of (p - closest) . pseudonormal
+  // tells the inside of a closed manifold from its outside at faces, edges and vertices alike.
+  Vector pseudonormal(Index triangle, Feature feature) const;
+
+  // The nearest point of the surface; ties go to the lowest triangle. O(log n) in practice.
+  ClosestPoint closest(const Point& query) const;
+  double distance(const Point& query) const { return closest(query).distance; }
+  // Negative inside. Throws InputError unless solid().
+  double signed_distance(const Point& query) const;
+  double signed_distance(const Point& query, ClosestPoint& nearest) const;
+  bool inside(const Point& query) const { return signed_distance(query) < 0; }
+  // Triangles that touch the closed ball, ascending; `out` is cleared first.
+  void triangles_near(const Sphere& ball, std::vector<Index>& out) const;
+
+ private:
+  struct Data;
+  std::unique_ptr<const Data> data_;
+};
+
+// The point of triangle (a, b, c) nearest to `query` (dissertation 5.3.2, three cases). Works for degenerate triangles.
+ClosestPoint closest_point_of_triangle(const Point& query, const Point& a, const Point& b, const Point& c);
+
+}  // namespace orchard

@@ -1,0 +1,28 @@
+#pragma once
+
+// Every tolerance of the construction pipeline. Unless the name says otherwise, a tolerance is a fraction of the bounding
+// radius R of the mesh, so that scaling a mesh by a power of two scales every result exactly.
+namespace orchard::tolerance {
+
+// Radians between the normals of neighbouring triangles that count as coplanar. Six decimals in a mesh file turn a small
+// triangle's normal by about this much.
+inline constexpr double kCoplanarAngle = 1e-4;
+
+// Two surface points nearer than this are one point: below it the Voronoi vertices between them mean nothing.
+inline constexpr double kCoincidentPoints = 1e-7;
+
+// Two Voronoi vertices nearer than this, and connected, are one medial vertex (dissertation 6.2.1). Round-off leaves
+// degenerate vertices about 1e-9 apart on relaxed points; real neighbours are about a point spacing (1e-2) apart.
+inline constexpr double kCoalesce = 1e-7;
+
+// How far a surface point may lie from the triangle that it names: a few roundings.
+inline constexpr double kOnTriangle = 1e-12;
+
+// What builders leave between a ball and what it must hold, so that the certificate's strict test passes: two balls that
+// fit exactly are tangent, and tangent reads as uncovered.
+inline constexpr double kCoverMargin = 1e-7;
+
+// Width of the bounds on a sphere's inaccuracy: finer than any use of it, coarse enough to be fast.
+inline constexpr double kInaccuracy = 1e-4;
+
+}  // namespace orchard::tolerance

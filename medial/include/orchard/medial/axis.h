@@ -1,0 +1,41 @@
+#pragma once
+#include <vector>
+
+#include "orchard/geometry/mesh.h"
+#include "orchard/geometry/progress.h"
+#include "orchard/geometry/sampling.h"
+#include "orchard/geometry/surface.h"
+#include "orchard/voronoi/diagram.h"
+
+namespace orchard {
+
+// The approximate medial-axis surface of a solid (dissertation 6.2.1): the Voronoi vertices inside it, coincident ones
+// coalesced, and how they hang together.
+struct MedialAxis {
+  std::vector<Point> points;    // surface points: what forming points index
+  std::vector<Vector> normals;  // outward unit pseudonormal of the surface at each point
+
+  std::vector<Point> centers;   // medial vertices
+  std::vector<double> radii;    // distance to the forming points
+  Rows forming_points;          // of each vertex, ascending; four, or more where vertices were coalesced
+  Rows neighbors;               // vertices joined by a Voronoi edge, ascending; symmetric
+
+  // Faces to draw: polygons of the dual of two points, all of whose corners are vertices of the axis, and whose points
+  // do not share a triangle or an edge of the surface.
+  std::vector<std::array<Index, 2>> face_points;
+  Rows faces;                   // vertices in order around each face
+
+  Index size() const { return static_cast<Index>(centers.size()); }
+};
+
+// Precondition: diagram.points equals sampling.points. Throws InputError unless surface.solid().
+MedialAxis medial_axis(const Surface& surface, const SurfaceSampling& sampling, const VoronoiDiagram& diagram,
+                       const Progress& progress = {});
+
+// Numbers the connected components of the vertices' adjacency; returns the component of each vertex.
+std::vector<Index> connected_components(const MedialAxis& axis, Index& count);
+
+// Throws Error unless adjacency is symmetric, indices are in range and every centre lies inside the surface.
+void validate(const MedialAxis& axis, const Surface& surface);
+
+}  // namespace orchard

@@ -1,0 +1,15 @@
+#pragma once
+#include "orchard/geometry/progress.h"
+#include "orchard/spheretree/tree.h"
+
+namespace orchard {
+
+struct OctreeOptions {
+  Index depth = 3;  // levels below the root
+};
+
+// Dissertation 5.2: an octree over the smallest isothetic box, a ball around each octant that meets the surface, and the
+// mesh's bounding ball as root; balls are wider than the octants by tolerance::kCoverMargin. Any surface.
+SphereTree octree(const Surface& surface, const OctreeOptions& options = {}, const Progress& progress = {});
+
+}  // namespace orchard

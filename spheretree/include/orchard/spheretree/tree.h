@@ -1,0 +1,46 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "orchard/covering/boundary_lemma.h"
+#include "orchard/geometry/mesh.h"
+#include "orchard/geometry/surface.h"
+
+namespace orchard {
+
+struct SphereNode {
+  Sphere sphere;
+  Index parent = kNone;
+  Index first_child = kNone;  // children are contiguous and come after their parent
+  Index child_count = 0;      // 0: a leaf
+  Index level = 0;            // 0: the root
+
+  // Filled by measure(); lengths in mesh units.
+  double center_distance = 0;  // signed distance of the centre to the surface, negative inside
+  double distance_bound = 0;   // upper bound on the distance to the solid from any point of the ball
+  double inaccuracy = 0;       // Hubbard's: upper bound, within tolerance::kInaccuracy * R
+};
+
+// Nodes in breadth-first order, the root first. Conservative by the path rule: every point of the surface lies in all
+// balls of at least one root-to-leaf path.
+struct SphereTree {
+  std::vector<SphereNode> nodes;
+  Index branching = 8;  // no node has more children
+  Index depth() const { return nodes.empty() ? 0 : nodes.back().level; }
+};
+
+// Throws Error unless there is one root, the order is breadth-first, children are contiguous and radii positive and
+// finite.
+void validate(const SphereTree& tree);
+
+// The balls of a tree as the boundary lemma takes them, in the order of the nodes.
+std::vector<PathBall> path_balls(const SphereTree& tree);
+
+// Figures of one level, as fractions of the bounding radius.
+struct LevelFigures {
+  Index spheres = 0;
+  double mean_inaccuracy = 0, max_inaccuracy = 0;
+};
+std::vector<LevelFigures> level_figures(const SphereTree& tree, double bounding_radius);
+
+}  // namespace orchard
