@@ -1,0 +1,32 @@
+#include "orchard/geometry/mesh.h"
+
+#include <string>
+
+#include "orchard/geometry/error.h"
+
+namespace orchard {
+
+void validate(const TriangleMesh& mesh) {
+  const std::size_t vertices = mesh.vertices.size();
+  if (mesh.triangles.empty()) throw InputError("mesh has no triangles");
+  // Half-edges, three to a triangle, are numbered by an Index too.
+  if (vertices >= kNone || mesh.triangles.size() > kNone / 3) {
+    throw InputError("mesh is too large: " + std::to_string(vertices) + " vertices and " +
+                     std::to_string(mesh.triangles.size()) + " triangles do not fit 32-bit indices");
+  }
+  for (std::size_t i = 0; i < vertices; ++i) {
+    if (!mesh.vertices[i].allFinite()) {
+      throw InputError("vertex " + std::to_string(i) +
+                       " (counted from 0) has a coordinate that is not a finite number");
+    }
+  }
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    for (const Index corner : mesh.triangles[i]) {
+      if (corner < vertices) continue;
+      throw InputError("triangle " + std::to_string(i) + " names vertex " + std::to_string(corner) +
+                       ", but the mesh has " + std::to_string(vertices) + " vertices (all counted from 0)");
+    }
+  }
+}
+
+}  // namespace orchard

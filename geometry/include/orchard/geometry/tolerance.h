@@ -8,6 +8,14 @@ namespace orchard::tolerance {
 // triangle's normal by about this much.
 inline constexpr double kCoplanarAngle = 1e-4;
 
+// A triangle whose two shorter edges span less than this times the product of their lengths is degenerate: such an area
+// is nothing but the rounding of the cross product, about 5e-16.
+inline constexpr double kNoArea = 1e-15;
+
+// A closed surface that encloses less than this times its area times R is flat: above the rounding of the sum over a
+// hundred million triangles, below any solid's wall.
+inline constexpr double kNoVolume = 1e-12;
+
 // Two surface points nearer than this are one point: below it the Voronoi vertices between them mean nothing.
 inline constexpr double kCoincidentPoints = 1e-7;
 

@@ -1,0 +1,48 @@
+#include "half_edges.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace orchard {
+
+std::vector<EdgeUse> sorted_edge_uses(const TriangleMesh& mesh) {
+  const auto for_each_half_edge = [&](const auto& visit) {
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      const auto& corners = mesh.triangles[t];
+      if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto [low, high] = std::minmax({corners[i], corners[(i + 1) % 3]});
+        visit(EdgeUse{low, high, static_cast<Index>(3 * t + i)});
+      }
+    }
+  };
+  // A counting sort by the low vertex leaves buckets that are tiny in any ordinary mesh.
+  std::vector<std::size_t> ends(mesh.vertices.size() + 1, 0);
+  for_each_half_edge([&](const EdgeUse& use) { ++ends[use.low + 1]; });
+  for (std::size_t i = 1; i < ends.size(); ++i) ends[i] += ends[i - 1];
+  std::vector<EdgeUse> uses(ends.back());
+  for_each_half_edge([&](const EdgeUse& use) { uses[ends[use.low]++] = use; });
+  std::size_t begin = 0;
+  for (std::size_t vertex = 0; vertex < mesh.vertices.size(); ++vertex) {
+    std::sort(uses.begin() + static_cast<std::ptrdiff_t>(begin),
+              uses.begin() + static_cast<std::ptrdiff_t>(ends[vertex]), [](const EdgeUse& a, const EdgeUse& b) {
+                return std::tie(a.high, a.half_edge) < std::tie(b.high, b.half_edge);
+              });
+    begin = ends[vertex];
+  }
+  return uses;
+}
+
+std::vector<std::array<Index, 3>> triangle_neighbors(const TriangleMesh& mesh) {
+  std::vector<std::array<Index, 3>> neighbors(mesh.triangles.size(), {kNone, kNone, kNone});
+  const std::vector<EdgeUse> uses = sorted_edge_uses(mesh);
+  for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
+    if (edge.size() != 2) return;
+    const Index a = edge[0].half_edge, b = edge[1].half_edge;
+    neighbors[a / 3][a % 3] = b / 3;
+    neighbors[b / 3][b % 3] = a / 3;
+  });
+  return neighbors;
+}
+
+}  // namespace orchard
