@@ -1,0 +1,125 @@
+#include "orchard/covering/inaccuracy.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace orchard {
+namespace {
+
+// A spherical triangle on the unit sphere of directions, with an upper bound on the signed distance over its image.
+struct Cell {
+  double upper;
+  std::array<Vector, 3> corners;
+};
+bool less_promising(const Cell& a, const Cell& b) { return a.upper < b.upper; }
+
+// Far more than any sphere of a sensible tree needs; met only by adversarial input, and then the bounds stay valid.
+constexpr int kMostEvaluations = 200'000;
+
+// Best-first branch and bound. Over a cell with middle direction d the signed distance is at most
+//   sd(p) + |q - p|, since it is 1-Lipschitz, and
+//   |q - y| for any point y of the surface, such as the ones nearest to p and to the sphere's centre,
+// both taken at the farthest point q of the cap that the cell's corners span.
+class Search {
+ public:
+  Search(const Surface& surface, const Sphere& sphere, double tolerance)
+      : surface_(surface), sphere_(sphere), tolerance_(tolerance) {}
+
+  Bounds run() {
+    ClosestPoint nearest;
+    const double center_distance = surface_.signed_distance(sphere_.center, nearest);
+    const double everywhere = distance_bound(center_distance, sphere_.radius);
+    if (everywhere <= 0 || sphere_.radius <= 0) return {0, std::max(0.0, everywhere)};
+    anchor_ = nearest.position;
+    upper_everywhere_ = everywhere;
+    for (const auto& face : octahedron()) evaluate(face);
+    while (!cells_.empty() && evaluations_ < kMostEvaluations) {
+      if (cells_.front().upper <= best_ + tolerance_) break;
+      std::pop_heap(cells_.begin(), cells_.end(), less_promising);
+      const Cell cell = cells_.back();
+      cells_.pop_back();
+      split(cell.corners);
+    }
+    const double open = cells_.empty() ? 0 : cells_.front().upper;
+    return {best_, std::min(everywhere, std::max({best_, dropped_, open}))};
+  }
+
+ private:
+  static std::vector<std::array<Vector, 3>> octahedron() {
+    std::vector<std::array<Vector, 3>> faces;
+    for (int sign = 0; sign < 8; ++sign)
+      faces.push_back(
+          {Vector((sign & 1) ? 1 : -1, 0, 0), Vector(0, (sign & 2) ? 1 : -1, 0), Vector(0, 0, (sign & 4) ? 1 : -1)});
+    return faces;
+  }
+
+  void split(const std::array<Vector, 3>& c) {
+    const Vector ab = (c[0] + c[1]).normalized(), bc = (c[1] + c[2]).normalized(), ca = (c[2] + c[0]).normalized();
+    evaluate({c[0], ab, ca});
+    evaluate({c[1], bc, ab});
+    evaluate({c[2], ca, bc});
+    evaluate({ab, bc, ca});
+  }
+
+  void evaluate(const std::array<Vector, 3>& corners) {
+    ++evaluations_;
+    const Vector middle = (corners[0] + corners[1] + corners[2]).normalized();
+    double chord = 0;
+    for (const Vector& corner : corners) chord = std::max(chord, (corner - middle).norm());
+    ClosestPoint nearest;
+    const double value = surface_.signed_distance(sphere_.center + sphere_.radius * middle, nearest);
+    best_ = std::max(best_, value);
+    const double upper = std::min({value + sphere_.radius * chord, farthest(nearest.position, middle, chord),
+                                   farthest(anchor_, middle, chord), upper_everywhere_}) *
+                         (1 + 1e-12);
+    // A cell that cannot matter is dropped, but its bound counts towards the answer's.
+    if (upper <= best_ + 0.5 * tolerance_) {
+      dropped_ = std::max(dropped_, upper);
+    } else {
+      push({upper, corners});
+    }
+  }
+
+  void push(const Cell& cell) {
+    cells_.push_back(cell);
+    std::push_heap(cells_.begin(), cells_.end(), less_promising);
+  }
+
+  // The largest distance from y to a point of the cap around `middle` whose rim is `chord` (on the unit sphere) away.
+  double farthest(const Point& y, const Vector& middle, double chord) const {
+    const Vector to_y = y - sphere_.center;
+    const double length = to_y.norm(), r = sphere_.radius;
+    const double angle =
+        std::atan2(middle.cross(to_y).norm(), middle.dot(to_y)) + 2 * std::asin(std::min(1.0, chord / 2));
+    if (angle >= kPi) return r + length;
+    return std::sqrt(std::max(0.0, r * r + length * length - 2 * r * length * std::cos(angle)));
+  }
+
+  static constexpr double kPi = 3.14159265358979323846;
+  const Surface& surface_;
+  const Sphere sphere_;
+  const double tolerance_;
+  Point anchor_ = Point::Zero();
+  double upper_everywhere_ = 0, best_ = 0, dropped_ = 0;
+  int evaluations_ = 0;
+  std::vector<Cell> cells_;
+};
+
+}  // namespace
+
+Bounds inaccuracy(const Surface& surface, const Sphere& sphere, double tolerance) {
+  const double width = std::max(tolerance, 1e-6) * surface.bounding_radius();
+  return Search(surface, sphere, width).run();
+}
+
+double distance_bound(double signed_distance_of_center, double radius) {
+  const double sum = radius + signed_distance_of_center;
+  if (sum <= 0) return 0;
+  const double rounding = 0x1p-50 * (radius + std::abs(signed_distance_of_center));
+  return std::nextafter(sum + rounding, std::numeric_limits<double>::infinity());
+}
+
+}  // namespace orchard

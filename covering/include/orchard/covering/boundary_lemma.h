@@ -18,21 +18,22 @@ struct PathBall {
 
 // An arc of a ball's circle in the triangle's plane that is not certified to be covered by other path regions.
 struct UncoveredArc {
-  Index ball = kNone;                 // whose boundary it is
-  Point begin, middle, end;           // in space, on the triangle's plane
+  Index ball = kNone;        // whose boundary it is
+  Point begin, middle, end;  // in space, on the triangle's plane
 };
 
 struct TriangleCover {
-  bool covered = false;               // certified: every point of the triangle lies in some path region
-  Point witness = Point::Zero();      // if not: a point that no path region is certified to hold
-  std::vector<UncoveredArc> arcs;     // if not, and any circle meets the triangle
+  bool covered = false;            // certified: every point of the triangle lies in some path region
+  Point witness = Point::Zero();   // if not: a point that no path region is certified to hold
+  std::vector<UncoveredArc> arcs;  // if not, and any circle meets the triangle
 };
 
 // The boundary lemma (dissertation 5.3.3, Appendix B) for the union of path regions, made sound for closed sets: the
-// triangle is covered if (i) one of its interior points lies in a path region and (ii) every circle's arc inside it lies,
-// but for finitely many points, in the interior of path regions of other balls. Needed arcs are rounded outward, covering
-// arcs inward, by a few roundings of the balls' and the triangle's extent, so "covered" is a proof and tangent balls
-// are not covered. Any triangle, degenerate ones included. O(k m) for k balls that cross the triangle and m that meet it.
+// triangle is covered if (i) one of its interior points lies in a path region and (ii) every circle's arc inside it
+// lies, but for finitely many points, in the interior of path regions of other balls. Needed arcs are rounded outward,
+// covering arcs inward, by a few roundings of the balls' and the triangle's extent, so "covered" is a proof and tangent
+// balls are not covered. Any triangle, degenerate ones included. O(k m) for k balls that cross the triangle and m that
+// meet it.
 TriangleCover cover_of_triangle(const std::array<Point, 3>& triangle, std::span<const PathBall> balls);
 
 }  // namespace orchard

@@ -13,8 +13,9 @@ struct Bounds {
 // upper - lower <= max(tolerance, 1e-6) * R unless the work limit is met. Throws InputError unless surface.solid().
 Bounds inaccuracy(const Surface& surface, const Sphere& sphere, double tolerance);
 
-// An upper bound on the largest distance to the solid from any point of the closed ball: max(0, radius + signed distance
-// of the centre), rounded upward. Holds for every solid, convex or not, since the signed distance is 1-Lipschitz.
+// An upper bound on the largest distance to the solid from any point of the closed ball: max(0, radius + signed
+// distance of the centre), rounded upward. Holds for every solid, convex or not, since the signed distance is
+// 1-Lipschitz.
 double distance_bound(double signed_distance_of_center, double radius);
 
 }  // namespace orchard

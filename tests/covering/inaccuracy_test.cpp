@@ -1,0 +1,102 @@
+#include "orchard/covering/inaccuracy.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "orchard/geometry/error.h"
+#include "orchard/geometry/random.h"
+#include "support/shapes.h"
+
+namespace orchard {
+namespace {
+
+constexpr double kTolerance = 1e-3;
+
+Vector random_direction(Random& random) {
+  Vector v;
+  do v = Vector(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+  while (v.squaredNorm() > 1 || v.squaredNorm() < 1e-6);
+  return v.normalized();
+}
+
+TEST(Inaccuracy, OfAConvexSolidIsTheSignedDistancePlusTheRadius) {
+  // Lemma 5.1 is exact here, unless the farthest direction leaves the nearest face: stay near a face's middle.
+  const Surface surface(test::box(Point(-1, -1, -1), Point(1, 1, 1)));
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    Random random(seed, 1);
+    const Sphere sphere{Point(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(0.3, 0.9)),
+                        random.uniform(0.2, 0.8)};
+    const double truth = std::max(0.0, sphere.radius + surface.signed_distance(sphere.center));
+    const Bounds bounds = inaccuracy(surface, sphere, kTolerance);
+    EXPECT_LE(bounds.lower, truth + 1e-12) << "seed " << seed;
+    EXPECT_GE(bounds.upper, truth - 1e-12) << "seed " << seed;
+    EXPECT_LE(bounds.upper - bounds.lower, kTolerance * surface.bounding_radius() + 1e-12) << "seed " << seed;
+  }
+}
+
+TEST(Inaccuracy, BracketsWhatDenseSamplingOfTheSphereFinds) {
+  const std::vector<Surface> surfaces = [] {
+    std::vector<Surface> list;
+    list.emplace_back(test::l_shape());
+    list.emplace_back(test::torus(24, 12));
+    list.emplace_back(test::u_shape(0.4));
+    return list;
+  }();
+  for (const Surface& surface : surfaces) {
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+      Random random(seed, 2);
+      const double size = surface.bounding_radius();
+      const Sphere sphere{surface.bounding_ball().center + size * random.uniform() * random_direction(random),
+                          size * random.uniform(0.02, 0.9)};
+      const Bounds bounds = inaccuracy(surface, sphere, kTolerance);
+      double sampled = 0;
+      for (int i = 0; i < 4000; ++i)
+        sampled = std::max(sampled, surface.signed_distance(sphere.center + sphere.radius * random_direction(random)));
+      EXPECT_GE(bounds.upper, sampled * (1 - 1e-12)) << "seed " << seed;
+      EXPECT_LE(bounds.lower, bounds.upper);
+      EXPECT_LE(bounds.upper - bounds.lower, kTolerance * size + 1e-12) << "seed " << seed;
+      EXPECT_NEAR(bounds.lower, sampled, 0.05 * sphere.radius + kTolerance * size) << "seed " << seed;
+    }
+  }
+}
+
+TEST(Inaccuracy, IsZeroForASphereInsideTheSolid) {
+  const Surface surface(test::box(Point(-1, -1, -1), Point(1, 1, 1)));
+  EXPECT_EQ(inaccuracy(surface, {Point::Zero(), 0.9}, kTolerance).upper, 0);
+}
+
+TEST(Inaccuracy, ScalesWithTheModel) {
+  const TriangleMesh mesh = test::torus(24, 12);
+  const Sphere sphere{Point(0.7, 0.2, 0.1), 0.6};
+  const Bounds at_one = inaccuracy(Surface(mesh), sphere, kTolerance);
+  for (const double scale : {0x1p-20, 0x1p+20}) {
+    const Surface scaled(test::transformed(mesh, scale, Vector::Zero()));
+    const Bounds bounds = inaccuracy(scaled, {scale * sphere.center, scale * sphere.radius}, kTolerance);
+    EXPECT_DOUBLE_EQ(bounds.lower, scale * at_one.lower);
+    EXPECT_DOUBLE_EQ(bounds.upper, scale * at_one.upper);
+  }
+}
+
+TEST(Inaccuracy, RefusesASurfaceWithoutAnInside) {
+  const Surface surface(test::open_box());
+  EXPECT_THROW(inaccuracy(surface, {Point::Zero(), 1}, kTolerance), InputError);
+}
+
+TEST(DistanceBound, IsNeverBelowTheDistanceOfAPointOfTheBall) {
+  const Surface surface(test::u_shape(0.4));
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    Random random(seed, 3);
+    const Sphere ball{Point(random.uniform(-1, 4), random.uniform(-1, 3), random.uniform(-1, 2)),
+                      random.uniform(0.01, 1)};
+    const double bound = distance_bound(surface.signed_distance(ball.center), ball.radius);
+    for (int i = 0; i < 50; ++i) {
+      const Point p = ball.center + ball.radius * random.uniform() * random_direction(random);
+      EXPECT_LE(std::max(0.0, surface.signed_distance(p)), bound) << "seed " << seed;
+    }
+  }
+  EXPECT_EQ(distance_bound(-2, 1), 0);
+}
+
+}  // namespace
+}  // namespace orchard
