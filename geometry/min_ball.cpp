@@ -1,0 +1,46 @@
+#include "orchard/geometry/min_ball.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace orchard {
+namespace {
+
+Index farthest_from(const Point& from, std::span<const Point> points) {
+  Index farthest = 0;
+  double largest = -1;
+  for (Index i = 0; i < points.size(); ++i) {
+    const double squared = (points[i] - from).squaredNorm();
+    if (squared > largest) farthest = i, largest = squared;
+  }
+  return farthest;
+}
+
+}  // namespace
+
+double radius_around(const Point& center, std::span<const Point> points) {
+  double largest = 0;
+  for (const Point& p : points) largest = std::max(largest, (p - center).squaredNorm());
+  // A difference, three squares, two sums and a root: each is off by at most half a unit in the last place.
+  return std::sqrt(largest) * (1 + 4 * std::numeric_limits<double>::epsilon());
+}
+
+Sphere ritter_ball(std::span<const Point> points) {
+  if (points.empty()) return {};
+  const Point& first = points[farthest_from(points[0], points)];
+  const Point& second = points[farthest_from(first, points)];
+  Sphere ball{first + 0.5 * (second - first), 0.5 * (second - first).norm()};
+  for (const Point& p : points) {
+    const Vector offset = p - ball.center;
+    const double distance = offset.norm();
+    if (distance <= ball.radius) continue;
+    const double radius = 0.5 * (ball.radius + distance);
+    ball.center += ((distance - radius) / distance) * offset;
+    ball.radius = radius;
+  }
+  ball.radius = radius_around(ball.center, points);
+  return ball;
+}
+
+}  // namespace orchard

@@ -1,0 +1,175 @@
+#include "orchard/geometry/surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "half_edges.h"
+#include "orchard/geometry/error.h"
+#include "orchard/geometry/min_ball.h"
+#include "orchard/geometry/tolerance.h"
+#include "triangle_tree.h"
+
+namespace orchard {
+namespace {
+
+// Twice the area vector, from the two shortest edges: that is where rounding harms it least. Zero if it is all
+// rounding, by the same measure as check_mesh.
+Vector area_vector(const std::array<Point, 3>& p) {
+  std::array<Vector, 3> edges;  // opposite the corners
+  std::array<double, 3> lengths{};
+  std::size_t apex = 0;  // opposite the longest edge
+  for (std::size_t i = 0; i < 3; ++i) {
+    edges[i] = p[(i + 2) % 3] - p[(i + 1) % 3];
+    lengths[i] = edges[i].norm();
+    if (lengths[i] > lengths[apex]) apex = i;
+  }
+  const std::size_t b = (apex + 1) % 3, c = (apex + 2) % 3;
+  const Vector cross = edges[b].cross(edges[c]);
+  return cross.norm() <= tolerance::kNoArea * lengths[b] * lengths[c] ? Vector::Zero() : cross;
+}
+
+Rows find_triangles_around(const TriangleMesh& mesh) {
+  Rows rows;
+  rows.offsets.assign(mesh.vertices.size() + 1, 0);
+  const auto for_each_corner = [&](const auto& visit) {
+    for (Index t = 0; t < mesh.triangles.size(); ++t) {
+      const auto& [a, b, c] = mesh.triangles[t];
+      visit(a, t);
+      if (b != a) visit(b, t);
+      if (c != a && c != b) visit(c, t);
+    }
+  };
+  for_each_corner([&](Index vertex, Index) { ++rows.offsets[vertex + 1]; });
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) rows.offsets[v + 1] += rows.offsets[v];
+  rows.items.resize(rows.offsets.back());
+  std::vector<Index> next(rows.offsets.begin(), rows.offsets.end() - 1);
+  for_each_corner([&](Index vertex, Index t) { rows.items[next[vertex]++] = t; });
+  return rows;
+}
+
+TriangleMesh validated(TriangleMesh mesh) {
+  validate(mesh);
+  return mesh;
+}
+
+double angle_between(const Vector& a, const Vector& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+
+bool is_edge(Feature feature) { return feature >= Feature::edge0 && feature <= Feature::edge2; }
+std::size_t edge_of(Feature feature) {
+  return static_cast<std::size_t>(feature) - static_cast<std::size_t>(Feature::edge0);
+}
+std::size_t corner_of(Feature feature) {
+  return static_cast<std::size_t>(feature) - static_cast<std::size_t>(Feature::vertex0);
+}
+
+}  // namespace
+
+struct Surface::Data {
+  TriangleMesh mesh;
+  MeshReport report;
+  Box box;
+  Sphere ball;
+  std::vector<Vector> normals;
+  std::vector<double> areas;
+  std::vector<std::array<Index, 3>> neighbors;
+  Rows triangles_around;
+  std::vector<Vector> vertex_normals;  // pseudonormals
+  Clusters clusters;
+  detail::TriangleTree tree;
+
+  explicit Data(TriangleMesh input)
+      : mesh(validated(std::move(input))),
+        report(check_mesh(mesh)),
+        ball(ritter_ball(mesh.vertices)),
+        neighbors(triangle_neighbors(mesh)),
+        triangles_around(find_triangles_around(mesh)),
+        tree(mesh) {
+    for (const Point& p : mesh.vertices) box.extend(p);
+    find_normals();
+    clusters = find_clusters(normals, neighbors, tolerance::kCoplanarAngle);
+  }
+  Data(const Data&) = delete;
+
+  void find_normals() {
+    normals.resize(mesh.triangles.size());
+    areas.resize(mesh.triangles.size());
+    vertex_normals.assign(mesh.vertices.size(), Vector::Zero());
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      const auto& corners = mesh.triangles[t];
+      const std::array<Point, 3> p{mesh.vertices[corners[0]], mesh.vertices[corners[1]], mesh.vertices[corners[2]]};
+      const Vector twice_area = area_vector(p);
+      const double length = twice_area.norm();
+      areas[t] = 0.5 * length;
+      normals[t] = length > 0 ? Vector(twice_area / length) : Vector::Zero();
+      if (length == 0) continue;
+      for (std::size_t i = 0; i < 3; ++i)
+        vertex_normals[corners[i]] += angle_between(p[(i + 1) % 3] - p[i], p[(i + 2) % 3] - p[i]) * normals[t];
+    }
+    for (Vector& normal : vertex_normals) normal.normalize();
+  }
+};
+
+Surface::Surface(TriangleMesh mesh) : data_(std::make_unique<const Data>(std::move(mesh))) {}
+Surface::~Surface() = default;
+Surface::Surface(Surface&&) noexcept = default;
+Surface& Surface::operator=(Surface&&) noexcept = default;
+
+const TriangleMesh& Surface::mesh() const { return data_->mesh; }
+const MeshReport& Surface::report() const { return data_->report; }
+const Box& Surface::bounding_box() const { return data_->box; }
+const Sphere& Surface::bounding_ball() const { return data_->ball; }
+const Vector& Surface::normal(Index triangle) const { return data_->normals[triangle]; }
+double Surface::area(Index triangle) const { return data_->areas[triangle]; }
+const std::array<Index, 3>& Surface::neighbors(Index triangle) const { return data_->neighbors[triangle]; }
+std::span<const Index> Surface::triangles_around(Index vertex) const { return data_->triangles_around[vertex]; }
+const Clusters& Surface::clusters() const { return data_->clusters; }
+
+std::array<Point, 3> Surface::corners(Index triangle) const {
+  const auto& [a, b, c] = data_->mesh.triangles[triangle];
+  return {data_->mesh.vertices[a], data_->mesh.vertices[b], data_->mesh.vertices[c]};
+}
+
+void Surface::triangles_at(Index triangle, Feature feature, std::vector<Index>& out) const {
+  out.clear();
+  if (feature >= Feature::vertex0) {
+    const auto fan = triangles_around(data_->mesh.triangles[triangle][corner_of(feature)]);
+    out.assign(fan.begin(), fan.end());
+    return;
+  }
+  out.push_back(triangle);
+  if (!is_edge(feature)) return;
+  const Index other = neighbors(triangle)[edge_of(feature)];
+  if (other != kNone) out.insert(other < triangle ? out.begin() : out.end(), other);
+}
+
+Vector Surface::pseudonormal(Index triangle, Feature feature) const {
+  if (feature >= Feature::vertex0) return data_->vertex_normals[data_->mesh.triangles[triangle][corner_of(feature)]];
+  const Vector& own = normal(triangle);
+  const Index other = is_edge(feature) ? neighbors(triangle)[edge_of(feature)] : kNone;
+  return other == kNone ? own : Vector((own + normal(other)).normalized());
+}
+
+ClosestPoint Surface::closest(const Point& query) const { return data_->tree.closest(query); }
+
+double Surface::signed_distance(const Point& query) const {
+  ClosestPoint nearest;
+  return signed_distance(query, nearest);
+}
+
+double Surface::signed_distance(const Point& query, ClosestPoint& nearest) const {
+  if (!solid()) throw InputError("the surface has no inside: " + report().faults() + "; repair the mesh first");
+  nearest = closest(query);
+  if (nearest.distance == 0) return 0;
+  // The pseudonormal of a face or edge is perpendicular to it, so a corner serves as well as the closest point, whose
+  // rounding would matter on a mesh far from the origin.
+  const std::size_t anchor = nearest.feature >= Feature::vertex0 ? corner_of(nearest.feature)
+                             : is_edge(nearest.feature)          ? edge_of(nearest.feature)
+                                                                 : 0;
+  const Point& from = data_->mesh.vertices[data_->mesh.triangles[nearest.triangle][anchor]];
+  const double side = (query - from).dot(pseudonormal(nearest.triangle, nearest.feature));
+  return side < 0 ? -nearest.distance : nearest.distance;
+}
+
+void Surface::triangles_near(const Sphere& ball, std::vector<Index>& out) const { data_->tree.near(ball, out); }
+
+}  // namespace orchard

@@ -1,0 +1,205 @@
+#include "triangle_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "triangle_tree_builder.h"
+
+namespace orchard::detail {
+namespace {
+
+constexpr int kStack = 128;  // three entries a level; the builder keeps the tree below 40 levels
+// Everything computed in floats is off by less than kSlack * (distance + size of the mesh): about ten roundings of
+// 6e-8.
+constexpr float kSlack = 2.5e-6f;
+
+// What the squared float distance of a box or triangle may be at most if it matters beside one at float distance d.
+float squared_limit(float d) {
+  const float limit = d * (1 + 4 * kSlack) + 4 * kSlack;
+  return limit * limit;
+}
+
+Float4 broadcast(float x) { return Float4{x, x, x, x}; }
+Float4 min(Float4 a, Float4 b) { return a < b ? a : b; }
+Float4 max(Float4 a, Float4 b) { return a > b ? a : b; }
+Float4 clamp_unit(Float4 x) { return min(max(x, broadcast(0)), broadcast(1)); }
+Float4 dot(const Float4* a, const Float4* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+bool better(const ClosestPoint& a, const ClosestPoint& b) {
+  return a.distance < b.distance || (a.distance == b.distance && a.triangle < b.triangle);
+}
+
+}  // namespace
+
+TriangleTree::TriangleTree(const TriangleMesh& mesh) : mesh_(mesh) {
+  Box box;
+  for (const auto& corners : mesh.triangles)
+    for (const Index v : corners) box.extend(mesh.vertices[v]);
+  center_ = box.min() + 0.5 * (box.max() - box.min());
+  const double size = (box.max() - box.min()).maxCoeff();
+  if (size > 0) scale_ = std::ldexp(1.0, -std::ilogb(size) - 2);  // the diagonal is below 0.87
+  Builder(mesh, center_, scale_, nodes_, leaves_).run();
+}
+
+bool TriangleTree::localize(const Point& point, Query& query) const {
+  const Point local = scale_ * (point - center_);
+  if (!(local.cwiseAbs().maxCoeff() < 1e15)) return false;  // its square would not be a float
+  for (int axis = 0; axis < 3; ++axis) query.p[axis] = broadcast(static_cast<float>(local[axis]));
+  return true;
+}
+
+Float4 TriangleTree::squared_distances(const Query& query, const Node& node) {
+  Float4 d[3];
+  for (int axis = 0; axis < 3; ++axis)
+    d[axis] = max(max(node.lower[axis] - query.p[axis], query.p[axis] - node.upper[axis]), broadcast(0));
+  return dot(d, d);
+}
+
+Float4 TriangleTree::squared_distances(const Query& query, const Leaf& leaf) {
+  const Float4 d[3] = {query.p[0] - leaf.origin[0], query.p[1] - leaf.origin[1], query.p[2] - leaf.origin[2]};
+  const Float4 x = dot(d, leaf.u), y = dot(d, leaf.v), z = dot(d, leaf.n);
+  const Float4 zero = broadcast(0);
+  const Float4 beyond = x - leaf.base, back = leaf.foot - leaf.base;
+
+  const Float4 off_base = x - min(max(x, zero), leaf.base);
+  Float4 squared = off_base * off_base + y * y;
+  const auto to_edge = [&](Float4 px, Float4 ex, Float4 inverse) {
+    const Float4 t = clamp_unit((px * ex + y * leaf.height) * inverse);
+    const Float4 dx = px - t * ex, dy = y - t * leaf.height;
+    return dx * dx + dy * dy;
+  };
+  squared = min(squared, to_edge(x, leaf.foot, leaf.inverse_left));
+  squared = min(squared, to_edge(beyond, back, leaf.inverse_right));
+  const auto within = (y >= zero) & (leaf.height * x >= leaf.foot * y) & (leaf.height * beyond <= back * y);
+  return (within ? zero : squared) + z * z;
+}
+
+// Calls visit(leaf) for every leaf that may hold something within the squared `limit`, near ones first. visit may lower
+// it.
+template <class Visit>
+void TriangleTree::visit_leaves(const Query& query, const float& limit, Visit visit) const {
+  struct Entry {
+    float squared;
+    Index child;
+  };
+  std::array<Entry, kStack> stack;
+  int top = 0;
+  stack[static_cast<std::size_t>(top++)] = {0, 0};
+  while (top > 0) {
+    const Entry entry = stack[static_cast<std::size_t>(--top)];
+    if (entry.squared > limit) continue;
+    if (entry.child >= Builder::kLeaf) {
+      visit(leaves_[entry.child - Builder::kLeaf]);
+      continue;
+    }
+    const Node& node = nodes_[entry.child];
+    const Float4 squared = squared_distances(query, node);
+    const int first = top;
+    for (int k = 0; k < 4; ++k) {
+      if (!(squared[k] <= limit)) continue;
+      int at = top++;
+      for (; at > first && stack[static_cast<std::size_t>(at - 1)].squared < squared[k]; --at)
+        stack[static_cast<std::size_t>(at)] = stack[static_cast<std::size_t>(at - 1)];
+      stack[static_cast<std::size_t>(at)] = {squared[k], node.child[k]};
+    }
+  }
+}
+
+ClosestPoint TriangleTree::measure(const Point& query, Index triangle) const {
+  const auto& [a, b, c] = mesh_.triangles[triangle];
+  ClosestPoint result = closest_point_of_triangle(query, mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]);
+  result.triangle = triangle;
+  return result;
+}
+
+// Triangles whose float distance does not rule them out; measured only when the traversal is over or there is no room.
+class TriangleTree::Candidates {
+ public:
+  Candidates(const TriangleTree& tree, const Point& query) : tree_(tree), query_(query) {
+    best_.distance = std::numeric_limits<double>::infinity();
+  }
+  float limit = std::numeric_limits<float>::max();
+
+  void add(float squared, Index triangle) {
+    if (squared < nearest_) {
+      nearest_ = squared;
+      limit = squared_limit(std::sqrt(squared));
+    }
+    if (count_ == entries_.size()) make_room();
+    entries_[count_++] = {squared, triangle};
+  }
+  const ClosestPoint& best() {
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (entries_[i].squared > limit) continue;
+      const ClosestPoint candidate = tree_.measure(query_, entries_[i].triangle);
+      if (better(candidate, best_)) best_ = candidate;
+    }
+    return best_;
+  }
+
+ private:
+  struct Entry {
+    float squared;
+    Index triangle;
+  };
+  void make_room() {
+    const auto end =
+        std::remove_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.squared > limit; });
+    count_ = static_cast<std::size_t>(end - entries_.begin());
+    if (2 * count_ < entries_.size()) return;
+    best();
+    count_ = 0;
+  }
+  const TriangleTree& tree_;
+  const Point& query_;
+  ClosestPoint best_;
+  float nearest_ = std::numeric_limits<float>::max();
+  std::array<Entry, 64> entries_;
+  std::size_t count_ = 0;
+};
+
+ClosestPoint TriangleTree::closest(const Point& point) const {
+  Candidates candidates(*this, point);
+  Query query;
+  if (localize(point, query)) {
+    visit_leaves(query, candidates.limit, [&](const Leaf& leaf) {
+      const Float4 squared = squared_distances(query, leaf);
+      for (int k = 0; k < 4; ++k)
+        if (squared[k] <= candidates.limit && leaf.triangle[k] != kNone) candidates.add(squared[k], leaf.triangle[k]);
+    });
+  } else {
+    for (Index t = 0; t < mesh_.triangles.size(); ++t) candidates.add(0, t);
+  }
+  return candidates.best();
+}
+
+void TriangleTree::near(const Sphere& ball, std::vector<Index>& out) const {
+  out.clear();
+  const auto add_if_near = [&](Index triangle) {
+    if (measure(ball.center, triangle).distance <= ball.radius) out.push_back(triangle);
+  };
+  Query query;
+  const double radius = scale_ * ball.radius;
+  if (radius < 1e15 && localize(ball.center, query)) {
+    const float limit = squared_limit(static_cast<float>(radius));
+    const float sure = static_cast<float>(radius) * (1 - 4 * kSlack) - 4 * kSlack;
+    const float sure_squared = sure > 0 ? sure * sure : -1.0f;
+    visit_leaves(query, limit, [&](const Leaf& leaf) {
+      const Float4 squared = squared_distances(query, leaf);
+      for (int k = 0; k < 4; ++k) {
+        if (squared[k] > limit || leaf.triangle[k] == kNone) continue;
+        if (squared[k] <= sure_squared)
+          out.push_back(leaf.triangle[k]);
+        else
+          add_if_near(leaf.triangle[k]);
+      }
+    });
+    std::sort(out.begin(), out.end());
+  } else {
+    for (Index t = 0; t < mesh_.triangles.size(); ++t) add_if_near(t);
+  }
+}
+
+}  // namespace orchard::detail

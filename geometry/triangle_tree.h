@@ -1,0 +1,55 @@
+#pragma once
+#include <vector>
+
+#include "orchard/geometry/surface.h"
+
+namespace orchard::detail {
+
+// Four numbers side by side, one for each child of a node or each triangle of a leaf (a GCC and Clang extension).
+using Float4 = float __attribute__((vector_size(16)));
+
+// A four-wide tree of boxes over the triangles of a mesh, for distance queries. Boxes and flattened triangles are
+// floats around the centre of the mesh, scaled to size one; they only sort out which triangles can matter. Those few
+// are then measured by closest_point_of_triangle, so an answer is what a loop over all triangles would give, bit for
+// bit.
+class TriangleTree {
+ public:
+  // Keeps a reference to `mesh`. Precondition: at least one triangle.
+  explicit TriangleTree(const TriangleMesh& mesh);
+
+  ClosestPoint closest(const Point& query) const;
+  void near(const Sphere& ball, std::vector<Index>& out) const;  // ascending; cleared first
+
+ private:
+  struct Node {
+    Float4 lower[3], upper[3];
+    Index child[4];  // into nodes_, or kLeaf + an index into leaves_
+  };
+  // Triangle k has its longest edge on the first axis of a frame (origin, u, v, n): corners (0, 0), (base, 0), (foot,
+  // height).
+  struct Leaf {
+    Float4 origin[3], u[3], v[3], n[3];
+    Float4 base, foot, height, inverse_left, inverse_right;  // of the squared lengths of the edges to the apex
+    Index triangle[4];                                       // kNone: nothing here
+  };
+  struct Query {
+    Float4 p[3];
+  };
+  class Builder;
+  class Candidates;
+
+  bool localize(const Point& point, Query& query) const;
+  static Float4 squared_distances(const Query& query, const Node& node);
+  static Float4 squared_distances(const Query& query, const Leaf& leaf);
+  template <class Visit>
+  void visit_leaves(const Query& query, const float& limit, Visit visit) const;
+  ClosestPoint measure(const Point& query, Index triangle) const;
+
+  const TriangleMesh& mesh_;
+  Point center_ = Point::Zero();
+  double scale_ = 1;  // a power of two
+  std::vector<Node> nodes_;
+  std::vector<Leaf> leaves_;
+};
+
+}  // namespace orchard::detail

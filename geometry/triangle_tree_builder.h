@@ -1,0 +1,47 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "triangle_tree.h"
+
+namespace orchard::detail {
+
+// Builds a TriangleTree top down by the surface-area heuristic. O(n log n).
+class TriangleTree::Builder {
+ public:
+  static constexpr Index kLeaf = 0x80000000u;
+
+  Builder(const TriangleMesh& mesh, const Point& center, double scale, std::vector<Node>& nodes,
+          std::vector<Leaf>& leaves);
+  void run();
+
+ private:
+  using Box3f = Eigen::AlignedBox3f;
+  struct Range {
+    Index begin, end;  // in order_
+    Index size() const { return end - begin; }
+  };
+  struct Split {
+    int axis = -1;
+    int bin = 0;
+    float cost = 0;
+  };
+  Index add_node(Range range, int depth);
+  Index add_leaf(Range range);
+  Index split(Range range, int depth);
+  Split best_split(Range range, const Box3f& centers) const;
+  int bin_of(Index triangle, int axis, const Box3f& centers) const;
+  Box3f bounds(Range range) const;
+  void flatten(Index triangle, Leaf& leaf, int lane) const;
+
+  const TriangleMesh& mesh_;
+  const Point& center_;
+  double scale_;
+  std::vector<Node>& nodes_;
+  std::vector<Leaf>& leaves_;
+  std::vector<Box3f> boxes_;              // of each triangle, rounded outward
+  std::vector<Eigen::Vector3f> centers_;  // of boxes_
+  std::vector<Index> order_;
+};
+
+}  // namespace orchard::detail
