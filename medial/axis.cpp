@@ -1,0 +1,164 @@
+#include "orchard/medial/axis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "coalesce.h"
+#include "interior.h"
+#include "medial_faces.h"
+#include "orchard/geometry/error.h"
+#include "orchard/geometry/tolerance.h"
+
+namespace orchard {
+namespace {
+
+// The medial vertex that each Voronoi vertex became; kNone outside.
+std::vector<Index> number_medial_vertices(const Surface& surface, const VoronoiDiagram& diagram, MedialAxis& axis,
+                                          const Progress& progress) {
+  const std::vector<std::uint8_t> inside = detail::interior_vertices(surface, diagram, progress);
+  std::vector<Index> interior;
+  std::vector<Point> centers;
+  for (Index i = 0; i < inside.size(); ++i) {
+    if (!inside[i]) continue;
+    interior.push_back(i);
+    centers.push_back(diagram.vertices[i].center);
+  }
+  const std::vector<Index> representatives =
+      detail::representatives_of_coincident(centers, tolerance::kCoalesce * surface.bounding_radius());
+  std::vector<Index> medial(diagram.vertices.size(), kNone);
+  for (Index i = 0; i < interior.size(); ++i) {
+    if (representatives[i] == i) {
+      medial[interior[i]] = axis.size();
+      axis.centers.push_back(centers[i]);
+    } else {
+      medial[interior[i]] = medial[interior[representatives[i]]];  // lower, so numbered already
+    }
+  }
+  return medial;
+}
+
+// Rows of the second members of (row, item) pairs, ascending and each once.
+Rows rows_of(std::vector<std::array<Index, 2>> pairs, Index rows) {
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  Rows result;
+  result.items.reserve(pairs.size());
+  auto pair = pairs.begin();
+  for (Index row = 0; row < rows; ++row) {
+    for (; pair != pairs.end() && (*pair)[0] == row; ++pair) result.items.push_back((*pair)[1]);
+    result.close_row();
+  }
+  return result;
+}
+
+void connect(const VoronoiDiagram& diagram, const std::vector<Index>& medial, MedialAxis& axis) {
+  std::vector<std::array<Index, 2>> forming, adjacent;
+  for (Index i = 0; i < medial.size(); ++i) {
+    if (medial[i] == kNone) continue;
+    const VoronoiVertex& vertex = diagram.vertices[i];
+    for (const Index point : vertex.forming_points) forming.push_back({medial[i], point});
+    for (const Index next : vertex.neighbors) {
+      if (next != kNone && medial[next] != kNone && medial[next] != medial[i]) {
+        adjacent.push_back({medial[i], medial[next]});
+      }
+    }
+  }
+  axis.forming_points = rows_of(std::move(forming), axis.size());
+  axis.neighbors = rows_of(std::move(adjacent), axis.size());
+}
+
+// The farthest forming point, not the diagram's radius: coalescing moved centres a little, robust diagrams approximate
+// some, and whoever merges the balls relies on each holding its forming points.
+void measure_radii(MedialAxis& axis) {
+  axis.radii.resize(axis.size());
+  for (Index i = 0; i < axis.size(); ++i) {
+    double squared = 0;
+    for (const Index point : axis.forming_points[i]) {
+      squared = std::max(squared, (axis.points[point] - axis.centers[i]).squaredNorm());
+    }
+    axis.radii[i] = std::sqrt(squared);
+  }
+}
+
+[[noreturn]] void fail(const char* what, Index where) {
+  throw Error("medial axis: " + std::string(what) + " at vertex " + std::to_string(where));
+}
+
+void validate_row(std::span<const Index> row, Index limit, const char* what, Index where) {
+  for (std::size_t k = 0; k < row.size(); ++k) {
+    if (row[k] >= limit || (k > 0 && row[k - 1] >= row[k])) fail(what, where);
+  }
+}
+
+}  // namespace
+
+MedialAxis medial_axis(const Surface& surface, const SurfaceSampling& sampling, const VoronoiDiagram& diagram,
+                       const Progress& progress) {
+  MedialAxis axis;
+  axis.points = sampling.points;
+  axis.normals.reserve(sampling.size());
+  for (Index i = 0; i < sampling.size(); ++i) {
+    axis.normals.push_back(surface.pseudonormal(sampling.triangles[i], sampling.features[i]));
+  }
+  const std::vector<Index> medial = number_medial_vertices(surface, diagram, axis, progress);
+  report_progress(progress, "medial axis", 0.5);
+  connect(diagram, medial, axis);
+  measure_radii(axis);
+  detail::find_medial_faces(surface, sampling, voronoi_faces(diagram), medial, axis);
+  report_progress(progress, "medial axis", 1);
+  return axis;
+}
+
+std::vector<Index> connected_components(const MedialAxis& axis, Index& count) {
+  std::vector<Index> components(axis.size(), kNone);
+  std::vector<Index> open;
+  count = 0;
+  for (Index start = 0; start < axis.size(); ++start) {
+    if (components[start] != kNone) continue;
+    components[start] = count;
+    open.push_back(start);
+    while (!open.empty()) {
+      const Index vertex = open.back();
+      open.pop_back();
+      for (const Index next : axis.neighbors[vertex]) {
+        if (components[next] != kNone) continue;
+        components[next] = count;
+        open.push_back(next);
+      }
+    }
+    ++count;
+  }
+  return components;
+}
+
+void validate(const MedialAxis& axis, const Surface& surface) {
+  const Index size = axis.size();
+  const Index points = static_cast<Index>(axis.points.size());
+  if (axis.normals.size() != points || axis.radii.size() != size || axis.forming_points.size() != size ||
+      axis.neighbors.size() != size || axis.face_points.size() != axis.faces.size()) {
+    throw Error("medial axis: arrays of different lengths");
+  }
+  for (Index i = 0; i < size; ++i) {
+    validate_row(axis.forming_points[i], points, "bad forming points", i);
+    validate_row(axis.neighbors[i], size, "bad neighbours", i);
+    if (axis.forming_points[i].size() < 4) fail("fewer than four forming points", i);
+    for (const Index next : axis.neighbors[i]) {
+      const auto back = axis.neighbors[next];
+      if (next == i || !std::binary_search(back.begin(), back.end(), i)) fail("adjacency is not symmetric", i);
+    }
+    if (!(axis.radii[i] > 0)) fail("no radius", i);
+    if (!surface.inside(axis.centers[i])) fail("centre outside the surface", i);
+  }
+  for (Index face = 0; face < axis.faces.size(); ++face) {
+    if (axis.faces[face].size() < 3) throw Error("medial axis: face " + std::to_string(face) + " has no area");
+    for (const Index corner : axis.faces[face]) {
+      if (corner >= size) throw Error("medial axis: face " + std::to_string(face) + " has a bad corner");
+    }
+    for (const Index point : axis.face_points[face]) {
+      if (point >= points) throw Error("medial axis: face " + std::to_string(face) + " has a bad point");
+    }
+  }
+}
+
+}  // namespace orchard

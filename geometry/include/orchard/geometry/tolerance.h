@@ -23,6 +23,16 @@ inline constexpr double kCoincidentPoints = 1e-7;
 // degenerate vertices about 1e-9 apart on relaxed points; real neighbours are about a point spacing (1e-2) apart.
 inline constexpr double kCoalesce = 1e-7;
 
+// What a step from one vertex to the next takes off a proven distance to the surface: a thousand roundings.
+inline constexpr double kClearance = 1e-12;
+
+// Cosine of the angle between two neighbouring triangles above which the edge between them is no border of anything:
+// 20 degrees, more than a scan's noise, less than a designed edge.
+inline constexpr double kFlatEdgeCosine = 0.94;
+
+// A Voronoi face that meets the surface along less than this only touches it: positions of Voronoi cells are no better.
+inline constexpr double kTouch = 1e-9;
+
 // How far a surface point may lie from the triangle that it names: a few roundings.
 inline constexpr double kOnTriangle = 1e-12;
 

@@ -1,0 +1,82 @@
+#include "coalesce.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+namespace orchard::detail {
+namespace {
+
+using Cell = std::array<std::int64_t, 3>;
+
+Cell cell_of(const Point& point, const Point& origin, double size) {
+  Cell cell{};
+  for (int axis = 0; axis < 3; ++axis) {
+    cell[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(std::floor((point[axis] - origin[axis]) / size));
+  }
+  return cell;
+}
+
+std::uint64_t hash_of(const Cell& cell) {
+  std::uint64_t hash = 0;
+  for (const std::int64_t coordinate : cell) {
+    hash = (hash ^ static_cast<std::uint64_t>(coordinate)) * 0x9e3779b97f4a7c15u;
+    hash ^= hash >> 29;
+  }
+  return hash;
+}
+
+Index root_of(std::vector<Index>& parents, Index item) {
+  while (parents[item] != item) item = parents[item] = parents[parents[item]];
+  return item;
+}
+
+// The lower root wins, so that a root is always the lowest index of its set.
+void unite(std::vector<Index>& parents, Index a, Index b) {
+  a = root_of(parents, a);
+  b = root_of(parents, b);
+  if (a != b) parents[std::max(a, b)] = std::min(a, b);
+}
+
+}  // namespace
+
+std::vector<Index> representatives_of_coincident(std::span<const Point> points, double distance) {
+  std::vector<Index> parents(points.size());
+  for (Index i = 0; i < parents.size(); ++i) parents[i] = i;
+  if (points.empty()) return parents;
+
+  // Cells far wider than the distance: hardly a point has to look beyond its own, and still hardly two share one. A
+  // sorted list of hashes needs no buckets; equal hashes of different cells do no harm, since the distance decides.
+  const double size = 64 * distance;
+  Point origin = points[0];
+  for (const Point& point : points) origin = origin.cwiseMin(point);
+  std::vector<std::pair<std::uint64_t, Index>> entries(points.size());
+  for (Index i = 0; i < points.size(); ++i) entries[i] = {hash_of(cell_of(points[i], origin, size)), i};
+  std::sort(entries.begin(), entries.end());
+
+  const auto unite_if_near = [&](Index a, Index b) {
+    if ((points[a] - points[b]).squaredNorm() <= distance * distance) unite(parents, a, b);
+  };
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    const auto [hash, i] = entries[k];
+    for (std::size_t other = k + 1; other < entries.size() && entries[other].first == hash; ++other) {
+      unite_if_near(i, entries[other].second);
+    }
+    const Cell low = cell_of(points[i] - Vector::Constant(distance), origin, size);
+    const Cell high = cell_of(points[i] + Vector::Constant(distance), origin, size);
+    if (low == high) continue;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Cell cell{corner & 1 ? high[0] : low[0], corner & 2 ? high[1] : low[1], corner & 4 ? high[2] : low[2]};
+      const std::pair<std::uint64_t, Index> first{hash_of(cell), 0};
+      if (first.first == hash) continue;
+      auto entry = std::lower_bound(entries.begin(), entries.end(), first);
+      for (; entry != entries.end() && entry->first == first.first; ++entry) unite_if_near(i, entry->second);
+    }
+  }
+  for (Index i = 0; i < parents.size(); ++i) parents[i] = root_of(parents, i);
+  return parents;
+}
+
+}  // namespace orchard::detail

@@ -1,0 +1,71 @@
+#include "medial_faces.h"
+
+#include <algorithm>
+
+#include "orchard/geometry/tolerance.h"
+
+namespace orchard::detail {
+namespace {
+
+// Whether two points lie so near each other within the surface that the face between them is a wall that stands on the
+// surface, not a sheet that runs along the middle: on one coplanar cluster, or on two triangles that share an edge
+// which is all but flat.
+class SurfaceNeighbors {
+ public:
+  SurfaceNeighbors(const Surface& surface, const SurfaceSampling& sampling) : surface_(surface) {
+    std::vector<Index> around;
+    for (Index point = 0; point < sampling.size(); ++point) {
+      surface.triangles_at(sampling.triangles[point], sampling.features[point], around);
+      triangles_.items.insert(triangles_.items.end(), around.begin(), around.end());
+      triangles_.close_row();
+    }
+  }
+
+  bool operator()(Index a, Index b) const {
+    for (const Index first : triangles_[a]) {
+      for (const Index second : triangles_[b]) {
+        if (first == second || same_cluster(first, second) || joined_flatly(first, second)) return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  bool same_cluster(Index a, Index b) const {
+    return surface_.clusters().of_triangle[a] == surface_.clusters().of_triangle[b];
+  }
+  bool joined_flatly(Index a, Index b) const {
+    const auto& next = surface_.neighbors(a);
+    return std::find(next.begin(), next.end(), b) != next.end() &&
+           surface_.normal(a).dot(surface_.normal(b)) > tolerance::kFlatEdgeCosine;
+  }
+
+  const Surface& surface_;
+  Rows triangles_;  // of each point
+};
+
+}  // namespace
+
+void find_medial_faces(const Surface& surface, const SurfaceSampling& sampling, const VoronoiFaces& voronoi,
+                       const std::vector<Index>& medial, MedialAxis& axis) {
+  const SurfaceNeighbors are_neighbors(surface, sampling);
+  std::vector<Index> corners;
+  for (Index face = 0; face < voronoi.vertices.size(); ++face) {
+    corners.clear();
+    bool interior = true;
+    for (const Index vertex : voronoi.vertices[face]) {
+      const Index corner = medial[vertex];
+      interior = interior && corner != kNone;
+      if (!interior) break;
+      if (corners.empty() || corners.back() != corner) corners.push_back(corner);  // coalesced ones follow each other
+    }
+    while (corners.size() > 1 && corners.back() == corners.front()) corners.pop_back();
+    const auto& [a, b] = voronoi.points[face];
+    if (!interior || corners.size() < 3 || are_neighbors(a, b)) continue;
+    axis.face_points.push_back({a, b});
+    axis.faces.items.insert(axis.faces.items.end(), corners.begin(), corners.end());
+    axis.faces.close_row();
+  }
+}
+
+}  // namespace orchard::detail

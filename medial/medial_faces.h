@@ -1,0 +1,13 @@
+#pragma once
+#include <vector>
+
+#include "orchard/geometry/sampling.h"
+#include "orchard/medial/axis.h"
+
+namespace orchard::detail {
+
+// Fills axis.face_points and axis.faces. medial: for each Voronoi vertex its medial vertex, or kNone.
+void find_medial_faces(const Surface& surface, const SurfaceSampling& sampling, const VoronoiFaces& voronoi,
+                       const std::vector<Index>& medial, MedialAxis& axis);
+
+}  // namespace orchard::detail
