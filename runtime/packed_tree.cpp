@@ -1,0 +1,132 @@
+#include "orchard/runtime/packed_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace orchard::runtime {
+namespace {
+
+// Comparisons are written so that a NaN fails them.
+bool in_range(float value) noexcept { return std::fabs(value) <= kCoordinateLimit; }
+
+const char* node_fault(const SiblingBlock& block, std::uint32_t lane) noexcept {
+  if (!(in_range(block.x[lane]) && in_range(block.y[lane]) && in_range(block.z[lane]))) {
+    return "a node's centre is not finite or out of range";
+  }
+  if (!(block.radius[lane] >= 0 && in_range(block.radius[lane]))) return "a node's radius is negative or out of range";
+  if (!(block.error[lane] >= 0)) return "a node's error bound is negative or not a number";
+  if (!(block.depth[lane] >= -kCoordinateLimit)) return "a node's depth is not a number or out of range";
+  return nullptr;
+}
+
+// Walks the blocks level by level. In breadth-first order the children of the nodes seen so far occupy exactly the
+// blocks up to next_block, so one counter proves that no block is shared, skipped or its own ancestor.
+class StructureCheck {
+ public:
+  explicit StructureCheck(const PackedSphereTree& tree) noexcept : tree_(tree) {}
+
+  const char* fault() noexcept {
+    if (tree_.blocks.empty()) return "there is no root";
+    constexpr std::size_t limit = std::numeric_limits<std::uint32_t>::max();
+    if (tree_.blocks.size() > limit / kBlockWidth) return "there are too many blocks for 32-bit node ids";
+    if (const char* fault = block_fault(0, 1)) return fault;
+    std::size_t level_begin = 0;
+    std::uint32_t levels = 0;
+    while (level_begin < next_block_) {
+      const std::size_t level_end = next_block_;
+      for (std::size_t b = level_begin; b < level_end; ++b) {
+        if (const char* fault = children_fault(tree_.blocks[b])) return fault;
+      }
+      level_begin = level_end;
+      ++levels;
+    }
+    if (next_block_ != tree_.blocks.size()) return "a block has no parent";
+    if (levels != tree_.depth + 1u) return "the depth does not match the nodes";
+    if (nodes_ != tree_.node_count) return "the node count does not match the nodes";
+    return nullptr;
+  }
+
+ private:
+  // `used` lanes hold nodes, the others must be marked empty.
+  const char* block_fault(std::size_t index, std::uint32_t used) noexcept {
+    const SiblingBlock& block = tree_.blocks[index];
+    for (std::uint32_t lane = 0; lane < used; ++lane) {
+      if (const char* fault = node_fault(block, lane)) return fault;
+    }
+    for (std::uint32_t lane = used; lane < kBlockWidth; ++lane) {
+      if (block.radius[lane] != -1) return "a lane beyond the last child is not marked empty";
+    }
+    nodes_ += used;
+    next_block_ = index + 1;
+    return nullptr;
+  }
+
+  const char* children_fault(const SiblingBlock& block) noexcept {
+    for (std::uint32_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
+      const std::uint32_t first = block.first[lane], count = block.count[lane] & ~kLeafBit;
+      if (block.count[lane] & kLeafBit) {
+        if (std::uint64_t{first} + count > tree_.leaf_triangles.size()) return "a leaf lists triangles beyond the end";
+        continue;
+      }
+      if (count == 0 || count > tree_.branching) return "an inner node has no children or more than the branching";
+      if (first != next_block_) return "blocks are not in breadth-first order";
+      const std::uint32_t blocks = block_count(count);
+      if (blocks > tree_.blocks.size() - next_block_) return "a node's children are beyond the end";
+      for (std::uint32_t b = 0; b < blocks; ++b) {
+        if (const char* fault = block_fault(first + b, std::min(kBlockWidth, count - b * kBlockWidth))) return fault;
+      }
+    }
+    return nullptr;
+  }
+
+  const PackedSphereTree& tree_;
+  std::size_t next_block_ = 0;  // the first block that no node seen so far owns
+  std::uint64_t nodes_ = 0;
+};
+
+const char* triangle_fault(const PackedSphereTree& tree) noexcept {
+  for (const auto& vertex : tree.vertices) {
+    if (!(in_range(vertex[0]) && in_range(vertex[1]) && in_range(vertex[2]))) {
+      return "a vertex is not finite or out of range";
+    }
+  }
+  for (const auto& triangle : tree.triangles) {
+    for (const std::uint32_t vertex : triangle) {
+      if (vertex >= tree.vertices.size()) return "a triangle names a vertex that does not exist";
+    }
+  }
+  for (const std::uint32_t triangle : tree.leaf_triangles) {
+    if (triangle >= tree.triangles.size()) return "a leaf names a triangle that does not exist";
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+const char* structure_fault(const PackedSphereTree& tree) noexcept {
+  for (const double coordinate : tree.origin) {
+    if (!std::isfinite(coordinate)) return "the origin is not finite";
+  }
+  if (!(tree.bounding_radius >= 0 && std::isfinite(tree.bounding_radius))) return "the bounding radius is negative";
+  if (!(tree.vertex_error >= 0 && std::isfinite(tree.vertex_error))) return "the vertex error is negative";
+  if (const char* fault = triangle_fault(tree)) return fault;
+  return StructureCheck(tree).fault();
+}
+
+double coordinate_extent(const PackedSphereTree& tree) noexcept {
+  double extent = 0;
+  const auto include = [&extent](double x, double y, double z, double radius) {
+    // The factor covers the rounding of the five operations before it.
+    extent = std::max(extent, (std::sqrt(x * x + y * y + z * z) + radius) * (1 + 1e-15));
+  };
+  for (const SiblingBlock& block : tree.blocks) {
+    for (std::uint32_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
+      include(block.x[lane], block.y[lane], block.z[lane], block.radius[lane]);
+    }
+  }
+  for (const auto& vertex : tree.vertices) include(vertex[0], vertex[1], vertex[2], 0);
+  return extent;
+}
+
+}  // namespace orchard::runtime

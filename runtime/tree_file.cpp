@@ -1,0 +1,270 @@
+#include "orchard/runtime/tree_file.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <type_traits>
+#include <utility>
+
+namespace orchard::runtime {
+namespace {
+
+constexpr std::array<unsigned char, 8> kMagic = {0x89, 'O', 'R', 'C', 'H', '\r', '\n', 0x1a};
+constexpr std::uint32_t kVersion = 1;
+constexpr std::size_t kAlignment = 64;
+constexpr std::size_t kSections = 4;
+constexpr std::size_t kHeaderSize = 192;
+constexpr std::size_t kPreambleSize = 32;  // magic to file size: enough to tell how long the file must be
+
+// Where the fields are: docs/FORMATS.md.
+enum Field : std::size_t {
+  kVersionAt = 8,
+  kHeaderSizeAt = 12,
+  kChecksumAt = 16,
+  kFileSizeAt = 24,
+  kBranchingAt = 32,
+  kDepthAt = 36,
+  kNodeCountAt = 40,
+  kSectionCountAt = 44,
+  kOriginAt = 48,
+  kBoundingRadiusAt = 72,
+  kVertexErrorAt = 80,
+  kTableAt = 88,
+  kTableStride = 24,
+};
+
+constexpr std::uint64_t aligned(std::uint64_t size) noexcept { return (size + kAlignment - 1) & ~(kAlignment - 1); }
+
+template <typename T>
+T from_little_endian(T value) noexcept {
+  if constexpr (std::endian::native == std::endian::big) {
+    auto bytes = std::bit_cast<std::array<std::byte, sizeof(T)>>(value);
+    std::reverse(bytes.begin(), bytes.end());
+    return std::bit_cast<T>(bytes);
+  }
+  return value;
+}
+
+template <typename T>
+T get(const std::byte* file, std::size_t offset) noexcept {
+  T value;
+  std::memcpy(&value, file + offset, sizeof value);
+  return from_little_endian(value);
+}
+
+template <typename T>
+void put(std::byte* file, std::size_t offset, T value) noexcept {
+  value = from_little_endian(value);  // its own inverse
+  std::memcpy(file + offset, &value, sizeof value);
+}
+
+// Every element of every section is made of 32-bit words, so one copy serves them all.
+void copy_words(std::byte* to, const std::byte* from, std::size_t bytes) noexcept {
+  if (bytes == 0) return;
+  std::memcpy(to, from, bytes);
+  if constexpr (std::endian::native == std::endian::big) {
+    for (std::size_t i = 0; i < bytes; i += 4) put(to, i, get<std::uint32_t>(from, i));
+  }
+}
+
+// A step is a bijection of the state for a given word and of the word for a given state: a change within one
+// eight-byte word is always noticed, any other with probability 1 - 2^-64. `size` is a multiple of 8.
+std::uint64_t checksum(const std::byte* file, std::size_t size) noexcept {
+  std::uint64_t state = 0x6f72636861726421u;
+  for (std::size_t i = 0; i < size; i += 8) {
+    if (i == kChecksumAt) continue;
+    state = (state ^ get<std::uint64_t>(file, i)) * 0x9e3779b97f4a7c15u;
+    state ^= state >> 32;
+  }
+  return state;
+}
+
+template <typename Byte>  // std::byte, const where the tree is
+struct Section {
+  std::uint32_t id, element_size;
+  std::uint64_t count;
+  Byte* data;
+};
+
+template <typename Tree>
+auto sections(Tree& tree) noexcept {
+  using Byte = std::conditional_t<std::is_const_v<Tree>, const std::byte, std::byte>;
+  const auto section = [](std::uint32_t id, auto& elements) -> Section<Byte> {
+    using Element = typename std::remove_reference_t<decltype(elements)>::value_type;
+    static_assert(std::is_trivially_copyable_v<Element> && sizeof(Element) % 4 == 0);
+    return {id, sizeof(Element), elements.size(), reinterpret_cast<Byte*>(elements.data())};
+  };
+  return std::array{section(1, tree.blocks), section(2, tree.vertices), section(3, tree.triangles),
+                    section(4, tree.leaf_triangles)};
+}
+
+LoadStatus check_preamble(const std::byte* file, std::size_t size) noexcept {
+  if (std::memcmp(file, kMagic.data(), std::min(size, kMagic.size())) != 0) return LoadStatus::bad_magic;
+  if (size < kPreambleSize) return LoadStatus::truncated;
+  if (get<std::uint32_t>(file, kVersionAt) > kVersion) return LoadStatus::version_newer;
+  return LoadStatus::ok;
+}
+
+LoadStatus check_file(std::span<const std::byte> file) noexcept {
+  if (const LoadStatus status = check_preamble(file.data(), file.size()); status != LoadStatus::ok) return status;
+  const std::byte* const bytes = file.data();
+  const auto file_size = get<std::uint64_t>(bytes, kFileSizeAt);
+  if (file_size > file.size() || file.size() < kHeaderSize) return LoadStatus::truncated;
+  if (file_size < file.size() || file_size % kAlignment != 0) return LoadStatus::invalid_structure;
+  if (checksum(bytes, file.size()) != get<std::uint64_t>(bytes, kChecksumAt)) return LoadStatus::checksum_mismatch;
+  if (get<std::uint32_t>(bytes, kVersionAt) != kVersion) return LoadStatus::invalid_structure;
+  if (get<std::uint32_t>(bytes, kHeaderSizeAt) != kHeaderSize) return LoadStatus::invalid_structure;
+  if (get<std::uint32_t>(bytes, kSectionCountAt) != kSections) return LoadStatus::invalid_structure;
+  return LoadStatus::ok;
+}
+
+// The sections must follow one another in order without gaps and end with the file: one form for one tree, and a sum
+// of sizes that no crafted table can push beyond the file.
+LoadStatus check_table(std::span<const std::byte> file, const std::array<Section<std::byte>, kSections>& expected,
+                       std::array<std::uint64_t, kSections>& counts) noexcept {
+  std::uint64_t end = kHeaderSize;
+  for (std::size_t i = 0; i < kSections; ++i) {
+    const std::size_t at = kTableAt + i * kTableStride;
+    const std::uint32_t size = expected[i].element_size;
+    if (get<std::uint32_t>(file.data(), at) != expected[i].id || get<std::uint32_t>(file.data(), at + 4) != size ||
+        get<std::uint64_t>(file.data(), at + 8) != end) {
+      return LoadStatus::invalid_structure;
+    }
+    counts[i] = get<std::uint64_t>(file.data(), at + 16);
+    if (counts[i] > (file.size() - end) / size) return LoadStatus::invalid_structure;
+    end = aligned(end + counts[i] * size);
+    if (end > file.size()) return LoadStatus::invalid_structure;
+  }
+  return end == file.size() ? LoadStatus::ok : LoadStatus::invalid_structure;
+}
+
+struct Close {
+  void operator()(std::FILE* file) const noexcept { std::fclose(file); }
+};
+
+// Appends what the stream has, up to `size` bytes in all, in pieces: a header that promises more than there is costs
+// at most one piece of memory.
+LoadStatus read_up_to(std::FILE* stream, std::uint64_t size, std::vector<std::byte>& bytes) {
+  constexpr std::uint64_t piece = std::uint64_t{1} << 20;
+  while (bytes.size() < size) {
+    const std::size_t have = bytes.size();
+    const auto wanted = static_cast<std::size_t>(std::min(piece, size - have));
+    bytes.resize(have + wanted);
+    const std::size_t got = std::fread(bytes.data() + have, 1, wanted, stream);
+    bytes.resize(have + got);
+    if (got < wanted) return std::ferror(stream) ? LoadStatus::read_failed : LoadStatus::ok;
+  }
+  return LoadStatus::ok;
+}
+
+}  // namespace
+
+const char* message(LoadStatus status) noexcept {
+  switch (status) {
+    case LoadStatus::ok:
+      return "the tree was loaded";
+    case LoadStatus::cannot_open:
+      return "the file cannot be opened";
+    case LoadStatus::read_failed:
+      return "the file could not be read to its end";
+    case LoadStatus::truncated:
+      return "the file is shorter than its header says: copy or build it again";
+    case LoadStatus::bad_magic:
+      return "this is not an .orchard file";
+    case LoadStatus::version_newer:
+      return "the file was written by a newer version of orchard";
+    case LoadStatus::checksum_mismatch:
+      return "the file was altered after it was written: its checksum does not match";
+    case LoadStatus::invalid_structure:
+      return "the file's contents are not a valid sphere-tree";
+    case LoadStatus::out_of_memory:
+      return "there is not enough memory for the tree";
+  }
+  return "unknown status";
+}
+
+std::vector<std::byte> serialize(const PackedSphereTree& tree) {
+  const auto contents = sections(tree);
+  std::uint64_t size = kHeaderSize;
+  for (const auto& s : contents) size = aligned(size + s.count * s.element_size);
+  std::vector<std::byte> file(size);
+
+  std::memcpy(file.data(), kMagic.data(), kMagic.size());
+  put(file.data(), kVersionAt, kVersion);
+  put(file.data(), kHeaderSizeAt, static_cast<std::uint32_t>(kHeaderSize));
+  put(file.data(), kFileSizeAt, size);
+  put(file.data(), kBranchingAt, tree.branching);
+  put(file.data(), kDepthAt, tree.depth);
+  put(file.data(), kNodeCountAt, tree.node_count);
+  put(file.data(), kSectionCountAt, static_cast<std::uint32_t>(kSections));
+  for (std::size_t i = 0; i < 3; ++i) put(file.data(), kOriginAt + 8 * i, tree.origin[i]);
+  put(file.data(), kBoundingRadiusAt, tree.bounding_radius);
+  put(file.data(), kVertexErrorAt, tree.vertex_error);
+
+  std::uint64_t offset = kHeaderSize;
+  for (std::size_t i = 0; i < kSections; ++i) {
+    const auto& s = contents[i];
+    const std::size_t at = kTableAt + i * kTableStride;
+    put(file.data(), at, s.id);
+    put(file.data(), at + 4, s.element_size);
+    put(file.data(), at + 8, offset);
+    put(file.data(), at + 16, s.count);
+    copy_words(file.data() + offset, s.data, s.count * s.element_size);
+    offset = aligned(offset + s.count * s.element_size);
+  }
+  put(file.data(), kChecksumAt, checksum(file.data(), file.size()));
+  return file;
+}
+
+LoadStatus load(std::span<const std::byte> file, PackedSphereTree& out) noexcept {
+  if (const LoadStatus status = check_file(file); status != LoadStatus::ok) return status;
+  try {
+    PackedSphereTree tree;
+    std::array<std::uint64_t, kSections> counts{};
+    if (const LoadStatus status = check_table(file, sections(tree), counts); status != LoadStatus::ok) return status;
+    tree.blocks.resize(counts[0]);
+    tree.vertices.resize(counts[1]);
+    tree.triangles.resize(counts[2]);
+    tree.leaf_triangles.resize(counts[3]);
+    std::uint64_t offset = kHeaderSize;
+    for (const auto& s : sections(tree)) {
+      copy_words(s.data, file.data() + offset, s.count * s.element_size);
+      offset = aligned(offset + s.count * s.element_size);
+    }
+    tree.branching = get<std::uint32_t>(file.data(), kBranchingAt);
+    tree.depth = get<std::uint32_t>(file.data(), kDepthAt);
+    tree.node_count = get<std::uint32_t>(file.data(), kNodeCountAt);
+    for (std::size_t i = 0; i < 3; ++i) tree.origin[i] = get<double>(file.data(), kOriginAt + 8 * i);
+    tree.bounding_radius = get<double>(file.data(), kBoundingRadiusAt);
+    tree.vertex_error = get<double>(file.data(), kVertexErrorAt);
+    if (structure_fault(tree) != nullptr) return LoadStatus::invalid_structure;
+    out = std::move(tree);
+    return LoadStatus::ok;
+  } catch (const std::bad_alloc&) {
+    return LoadStatus::out_of_memory;
+  }
+}
+
+LoadStatus load_file(const char* path, PackedSphereTree& out) noexcept {
+  const std::unique_ptr<std::FILE, Close> stream(std::fopen(path, "rb"));
+  if (!stream) return LoadStatus::cannot_open;
+  try {
+    std::vector<std::byte> bytes;
+    if (const LoadStatus status = read_up_to(stream.get(), kPreambleSize, bytes); status != LoadStatus::ok)
+      return status;
+    if (const LoadStatus status = check_preamble(bytes.data(), bytes.size()); status != LoadStatus::ok) return status;
+    // One byte more than promised, so that a longer file is noticed.
+    const auto promised = get<std::uint64_t>(bytes.data(), kFileSizeAt);
+    const std::uint64_t wanted = promised < UINT64_MAX ? promised + 1 : promised;
+    if (const LoadStatus status = read_up_to(stream.get(), wanted, bytes); status != LoadStatus::ok) return status;
+    return load(bytes, out);
+  } catch (const std::bad_alloc&) {
+    return LoadStatus::out_of_memory;
+  }
+}
+
+}  // namespace orchard::runtime

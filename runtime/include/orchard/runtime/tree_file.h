@@ -1,0 +1,37 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "orchard/runtime/packed_tree.h"
+
+// The native file of a packed sphere-tree, `.orchard`: byte by byte in docs/FORMATS.md.
+namespace orchard::runtime {
+
+enum class LoadStatus : std::uint8_t {
+  ok,
+  cannot_open,        // the file does not exist or may not be read
+  read_failed,        // the system reported an error while reading
+  truncated,          // shorter than its header says
+  bad_magic,          // not an .orchard file
+  version_newer,      // written by a later version of orchard
+  checksum_mismatch,  // altered after it was written
+  invalid_structure,  // an intact file whose contents are not a tree that a query could walk safely
+  out_of_memory,
+};
+
+// One sentence without a full stop, for people. Never null.
+const char* message(LoadStatus status) noexcept;
+
+// The bytes of a tree; the same tree gives the same bytes on every machine. Throws std::bad_alloc only: this is for the
+// side that builds trees. Precondition: structure_fault(tree) == nullptr.
+std::vector<std::byte> serialize(const PackedSphereTree& tree);
+
+// Reads a tree from any bytes whatever. Unless `ok` is returned, `out` is as it was. Needs no more memory than the file
+// is long; counts are checked against the file's size before anything is allocated. A tree that loads has no
+// structure_fault(), so no query on it leaves its arrays.
+LoadStatus load(std::span<const std::byte> file, PackedSphereTree& out) noexcept;
+LoadStatus load_file(const char* path, PackedSphereTree& out) noexcept;
+
+}  // namespace orchard::runtime

@@ -1,0 +1,63 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "orchard/runtime/packed_tree.h"
+#include "orchard/runtime/pose.h"
+
+// Meshes, trees and slow oracles for the run-time's tests: nothing here uses the construction libraries.
+namespace orchard::runtime::test {
+
+using Vec = std::array<double, 3>;
+
+struct Mesh {
+  std::vector<Vec> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  bool closed = true;  // bounds a solid, oriented outward
+};
+
+Mesh box(const Vec& lower, const Vec& upper);
+Mesh uv_sphere(int around, int across, double radius);
+Mesh torus(int around, int across, double major_radius, double minor_radius);
+Mesh l_shape();                                           // nonconvex, coplanar faces
+Mesh spikes(std::uint64_t seed, int around, int across);  // a sphere whose vertices moved radially: deep dents
+Mesh soup(std::uint64_t seed, int triangles);             // open, self-intersecting, some triangles degenerate
+Mesh scaled(Mesh mesh, double scale);
+
+// Counter-free small generator: the tests need streams, not the library's item numbering.
+class Draw {
+ public:
+  explicit Draw(std::uint64_t seed) : state_(seed) {}
+  std::uint64_t bits();
+  double uniform(double lower, double upper);
+  Vec direction();
+  Pose pose(double distance);  // a random rotation, and a translation of that length
+
+ private:
+  std::uint64_t state_;
+};
+
+struct TreeOptions {
+  std::uint32_t branching = 8;
+  std::uint32_t leaf_triangles = 4;  // split while a node has more
+  std::uint32_t max_depth = 100;
+  Vec origin = {0, 0, 0};
+};
+
+// A conservative tree by median splits: a node's ball holds all of its triangles, so every ancestor of a leaf holds the
+// leaf's triangles. Vertices are rounded to float first (vertex_error is 0: the stored mesh is the mesh); bounds come
+// from brute force, with 1-Lipschitz signed distance: error = max(0, radius + depth).
+PackedSphereTree build_tree(const Mesh& mesh, const TreeOptions& options = {});
+
+// The triangles as the tree stores them, placed in the world.
+using Triangle = std::array<std::array<long double, 3>, 3>;
+std::vector<Triangle> placed_triangles(const PackedSphereTree& tree, const Pose& pose);
+
+bool triangles_intersect(const Triangle& a, const Triangle& b);       // separating axes, long double
+long double triangle_distance(const Triangle& a, const Triangle& b);  // 0 if they intersect
+bool surfaces_intersect(const std::vector<Triangle>& a, const std::vector<Triangle>& b);
+long double surface_distance(const std::vector<Triangle>& a, const std::vector<Triangle>& b);
+long double point_distance(const std::array<long double, 3>& point, const Triangle& triangle);
+
+}  // namespace orchard::runtime::test
