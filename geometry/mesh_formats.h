@@ -1,0 +1,17 @@
+#pragma once
+#include <string>
+#include <string_view>
+
+#include "orchard/geometry/mesh.h"
+
+namespace orchard {
+
+// The readers behind read_mesh(), on a file's bytes. `name` is what messages call the file. Any bytes will do: the
+// result passes validate(), or InputError names the line or byte, the fault and, where there is one, the remedy. Time
+// and memory grow linearly with the bytes (read_stl: n log n).
+TriangleMesh read_obj(std::string_view bytes, const std::string& name);
+TriangleMesh read_ply(std::string_view bytes, const std::string& name);
+TriangleMesh read_stl(std::string_view bytes, const std::string& name);  // welds identical corners
+TriangleMesh read_off(std::string_view bytes, const std::string& name);
+
+}  // namespace orchard

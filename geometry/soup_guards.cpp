@@ -1,0 +1,200 @@
+#include "soup_guards.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <limits>
+#include <optional>
+
+#include "text_scan.h"
+
+namespace orchard {
+namespace {
+
+// The lines of a text, split into words.
+class LineScanner {
+ public:
+  // `comment` starts one that runs to the end of the line; 0 if the format has none.
+  LineScanner(std::string_view bytes, std::size_t at, char comment, const std::string& name)
+      : bytes_(bytes), name_(name), comment_(comment), next_(at) {}
+
+  // Moves to the next line that has a word; false at the end.
+  bool next() {
+    while (next_ < bytes_.size()) {
+      start_ = next_;
+      const std::size_t stop = std::min(bytes_.find_first_of("\r\n", next_), bytes_.size());
+      next_ = stop + 1;
+      std::string_view line = bytes_.substr(start_, stop - start_);
+      if (comment_ != 0) line = line.substr(0, line.find(comment_));
+      at_ = line.data();
+      end_ = line.data() + line.size();
+      skip_blanks();
+      if (at_ != end_) return true;
+    }
+    return false;
+  }
+  std::size_t start() const { return start_; }
+  std::size_t after() const { return std::min(next_, bytes_.size()); }
+  std::size_t left() const { return bytes_.size() - start_; }
+  [[noreturn]] void fail(const std::string& fault) const { fail_at_line(name_, bytes_, start_, fault); }
+
+  // Empty if the line has no more words.
+  std::string_view word() {
+    const char* first = at_;
+    while (at_ != end_ && !is_blank(*at_)) ++at_;
+    const std::string_view result(first, static_cast<std::size_t>(at_ - first));
+    skip_blanks();
+    return result;
+  }
+  std::optional<double> number() {
+    double value = 0;
+    if (!scan_double(at_, end_, value) || !word_ended() || !std::isfinite(value)) return std::nullopt;
+    skip_blanks();
+    return value;
+  }
+  std::optional<std::uint64_t> count() {
+    std::int64_t value = 0;
+    if (!scan_integer(at_, end_, value) || !word_ended() || value < 0) return std::nullopt;
+    skip_blanks();
+    return static_cast<std::uint64_t>(value);
+  }
+  void require_point(const std::string& what) {
+    for (int i = 0; i < 3; ++i) {
+      if (!number()) fail(what + " needs three finite numbers");
+    }
+  }
+
+ private:
+  bool word_ended() const { return at_ == end_ || is_blank(*at_); }
+  void skip_blanks() {
+    while (at_ != end_ && is_blank(*at_)) ++at_;
+  }
+
+  std::string_view bytes_;
+  const std::string& name_;
+  char comment_;
+  std::size_t next_ = 0, start_ = 0;
+  const char* at_ = nullptr;
+  const char* end_ = nullptr;
+};
+
+constexpr std::size_t kStlHeader = 84, kStlTriangle = 50;
+
+std::uint32_t stl_triangle_count(std::string_view bytes) {
+  std::array<unsigned char, 4> raw;
+  std::memcpy(raw.data(), bytes.data() + 80, 4);
+  return raw[0] | raw[1] << 8 | raw[2] << 16 | static_cast<std::uint32_t>(raw[3]) << 24;
+}
+
+void check_binary_stl(std::string_view bytes, const std::string& name) {
+  if (bytes.size() < kStlHeader) {
+    throw InputError(name + ": neither \"solid\" nor the 84 bytes that a binary STL file begins with");
+  }
+  const std::uint64_t triangles = stl_triangle_count(bytes);
+  if (triangles > (bytes.size() - kStlHeader) / kStlTriangle) {
+    fail_at_byte(name, 80,
+                 "promises " + std::to_string(triangles) + " triangles, but the file ends at byte " +
+                     std::to_string(bytes.size()));
+  }
+  for (std::uint64_t t = 0; t < triangles; ++t) {
+    for (std::size_t i = 0; i < 9; ++i) {
+      const std::size_t at = kStlHeader + t * kStlTriangle + 12 + 4 * i;
+      float coordinate;
+      std::memcpy(&coordinate, bytes.data() + at, 4);
+      if (!std::isfinite(coordinate)) fail_at_byte(name, at, "a coordinate that is not a finite number");
+    }
+  }
+}
+
+// The words that open the lines of a facet, in order.
+constexpr std::array<std::string_view, 7> kFacetLines{"facet",  "outer",   "vertex",  "vertex",
+                                                      "vertex", "endloop", "endfacet"};
+
+// Returns the text without the names of its solids: CGAL takes the word "solid" in one for a keyword.
+std::string check_ascii_stl(std::string_view bytes, const std::string& name) {
+  std::string result;
+  LineScanner line(bytes, 0, 0, name);
+  while (line.next()) {
+    const std::string_view keyword = line.word();
+    if (keyword == "solid" || keyword == "endsolid") {
+      (result += keyword) += '\n';
+      continue;
+    }
+    for (std::size_t i = 0; i < kFacetLines.size(); ++i) {
+      if (i > 0 && !line.next()) throw InputError(name + ": the file ends within a facet");
+      const std::string_view word = i == 0 ? keyword : line.word();
+      if (word != kFacetLines[i]) {
+        line.fail("expected \"" + std::string(kFacetLines[i]) + "\" instead of " + quoted(word) +
+                  " (the facets of STL are triangles)");
+      }
+      if (word == "vertex") line.require_point("vertex");
+      result += bytes.substr(line.start(), line.after() - line.start());
+    }
+  }
+  if (!result.ends_with("endsolid\n")) throw InputError(name + ": the file ends without \"endsolid\"");
+  return result;
+}
+
+}  // namespace
+
+std::string checked_stl(std::string_view bytes, const std::string& name) {
+  // Many binary files begin with "solid" too; their length gives them away.
+  const bool exact_length = bytes.size() >= kStlHeader &&
+                            bytes.size() == kStlHeader + kStlTriangle * std::uint64_t{stl_triangle_count(bytes)};
+  LineScanner line(bytes, 0, 0, name);
+  if (!exact_length && line.next() && line.word() == "solid") return check_ascii_stl(bytes, name);
+  check_binary_stl(bytes, name);
+  std::string result(bytes);
+  std::fill_n(result.begin(), 80, '-');  // so that it does not begin with "solid"
+  return result;
+}
+
+std::string checked_off(std::string_view bytes, const std::string& name) {
+  LineScanner line(bytes, 0, '#', name);
+  if (!line.next()) throw InputError(name + ": nothing but comments; this is not an OFF file");
+  const std::string_view keyword = line.word();
+  // Normals, colours and texture coordinates follow a vertex's position and are left out by leaving out the prefix.
+  if (!keyword.ends_with("OFF") || keyword.find_first_not_of("STCN") + 3 != keyword.size()) {
+    line.fail("expected OFF instead of " + quoted(keyword) + "; other dimensions are not supported");
+  }
+  std::string_view first_count;
+  std::optional<std::uint64_t> vertices = line.count();
+  if (!vertices) {
+    first_count = line.word();
+    if (!first_count.empty()) line.fail(quoted(first_count) + " after OFF; only text files are supported");
+    if (!line.next()) line.fail("the file ends after its first line");
+    vertices = line.count();
+  }
+  const std::optional<std::uint64_t> faces = line.count();
+  if (!vertices || !faces) line.fail("expected the numbers of vertices, faces and edges");
+  // "0 0 0" and "3 0 0 0" with their line ends, the last of which may be missing.
+  if (*vertices > line.left() / 6 || *faces > line.left() / 8 + 1) {
+    line.fail("promises " + std::to_string(*vertices) + " vertices and " + std::to_string(*faces) +
+              " faces, but only " + std::to_string(line.left()) + " bytes are left");
+  }
+  std::string result = "OFF\n" + std::to_string(*vertices) + " " + std::to_string(*faces) + " 0\n";
+  result += bytes.substr(line.after());
+  std::replace(result.begin(), result.end(), '\r', '\n');
+  for (std::uint64_t i = 0; i < *vertices; ++i) {
+    if (!line.next())
+      line.fail("the file ends after " + std::to_string(i) + " of " + std::to_string(*vertices) + " vertices");
+    line.require_point("vertex");
+  }
+  for (std::uint64_t i = 0; i < *faces; ++i) {
+    if (!line.next())
+      line.fail("the file ends after " + std::to_string(i) + " of " + std::to_string(*faces) + " faces");
+    const std::optional<std::uint64_t> corners = line.count();
+    if (!corners || *corners < 3) line.fail("a face begins with the number of its corners, 3 or more");
+    for (std::uint64_t j = 0; j < *corners; ++j) {
+      const std::optional<std::uint64_t> vertex = line.count();
+      if (!vertex || *vertex >= *vertices) {
+        line.fail("corner " + std::to_string(j + 1) + " of the face is none of the " + std::to_string(*vertices) +
+                  " vertices, counted from 0");
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace orchard
