@@ -60,7 +60,7 @@ void gather(const Descent& descent, const std::array<Point, 3>& triangle, Near& 
 }
 
 Coverage check(const Surface& surface, std::span<const Index> triangles, std::span<const PathBall> balls,
-               const Progress& progress) {
+               const Progress& progress, const Point& origin) {
   const Descent descent(balls);
   const Index count = static_cast<Index>(triangles.size());
   std::vector<TriangleCover> covers(count);
@@ -72,7 +72,8 @@ Coverage check(const Surface& surface, std::span<const Index> triangles, std::sp
     tbb::parallel_for(tbb::blocked_range<Index>(begin, std::min(count, begin + slice), 16), [&](const auto& range) {
       Near& near = scratch.local();
       for (Index i = range.begin(); i != range.end(); ++i) {
-        const auto corners = surface.corners(triangles[i]);
+        auto corners = surface.corners(triangles[i]);
+        for (Point& corner : corners) corner -= origin;
         gather(descent, corners, near);
         covers[i] = cover_of_triangle(corners, near.balls);
         for (UncoveredArc& arc : covers[i].arcs) arc.ball = near.original[arc.ball];
@@ -87,14 +88,15 @@ Coverage check(const Surface& surface, std::span<const Index> triangles, std::sp
 
 }  // namespace
 
-Coverage surface_coverage(const Surface& surface, std::span<const PathBall> balls, const Progress& progress) {
+Coverage surface_coverage(const Surface& surface, std::span<const PathBall> balls, const Progress& progress,
+                          const Point& origin) {
   std::vector<Index> all(surface.mesh().triangles.size());
   std::iota(all.begin(), all.end(), Index{0});
-  return check(surface, all, balls, progress);
+  return check(surface, all, balls, progress, origin);
 }
 
 Coverage surface_coverage(const Surface& surface, std::span<const Index> triangles, std::span<const PathBall> balls) {
-  return check(surface, triangles, balls, {});
+  return check(surface, triangles, balls, {}, Point::Zero());
 }
 
 }  // namespace orchard

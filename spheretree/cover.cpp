@@ -1,0 +1,137 @@
+#include "orchard/spheretree/cover.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "orchard/covering/coverage.h"
+#include "orchard/geometry/error.h"
+#include "orchard/geometry/tolerance.h"
+
+namespace orchard {
+namespace {
+
+constexpr int kMostRounds = 60;
+
+// What one path should take in: points of an uncovered spot, whose convex hull then lies in the path's region too.
+using Spot = std::vector<Point>;
+
+// Finds the path that takes a spot in for the least growth. Growth counts relative to each ball's radius: a per cent of
+// a large ball near the root costs as much looseness on its level as a per cent of a leaf does on its own.
+class Grower {
+ public:
+  Grower(SphereTree& tree, double margin) : tree_(tree), margin_(margin) {}
+
+  double cost_of_best_path(const Spot& spot) {
+    best_cost_ = std::numeric_limits<double>::infinity();
+    best_leaf_ = kNone;
+    descend(0, 0, spot);
+    return best_cost_;
+  }
+
+  // Grows the path found last so that it holds the spot. Returns the largest growth of a radius.
+  double grow_best_path(const Spot& spot) {
+    double largest = 0;
+    for (Index node = best_leaf_; node != kNone; node = tree_.nodes[node].parent) {
+      double& radius = tree_.nodes[node].sphere.radius;
+      const double wanted = reach(node, spot) + margin_;
+      if (reach(node, spot) <= radius - margin_ / 2) continue;
+      largest = std::max(largest, wanted - radius);
+      radius = std::max(radius, wanted);
+    }
+    return largest;
+  }
+
+ private:
+  double reach(Index node, const Spot& spot) const {
+    double farthest = 0;
+    for (const Point& point : spot) farthest = std::max(farthest, (point - tree_.nodes[node].sphere.center).norm());
+    return farthest;
+  }
+
+  void descend(Index index, double cost_above, const Spot& spot) {
+    const SphereNode& node = tree_.nodes[index];
+    const double growth = std::max(0.0, reach(index, spot) + margin_ - node.sphere.radius);
+    const double cost = cost_above + growth / node.sphere.radius;
+    if (cost >= best_cost_) return;
+    if (node.child_count == 0) {
+      best_cost_ = cost;
+      best_leaf_ = index;
+      return;
+    }
+    for (Index child = node.first_child; child < node.first_child + node.child_count; ++child)
+      descend(child, cost, spot);
+  }
+
+  SphereTree& tree_;
+  const double margin_;
+  double best_cost_ = 0;
+  Index best_leaf_ = kNone;
+};
+
+// The uncovered spots of one triangle, as sets of arcs that meet at their ends. Each arc bulges into its spot, so a
+// spot lies in the hull of its arcs' ends and of the triangle's corners in it; corners come as spots of their own.
+std::vector<Spot> spots_of(const UncoveredTriangle& uncovered, const Surface& surface, double near) {
+  std::vector<Spot> spots;
+  for (const UncoveredArc& arc : uncovered.cover.arcs) {
+    Spot spot{arc.begin, arc.middle, arc.end};
+    for (std::size_t i = spots.size(); i-- > 0;) {
+      const bool joined = std::any_of(spots[i].begin(), spots[i].end(), [&](const Point& p) {
+        return (p - arc.begin).norm() <= near || (p - arc.end).norm() <= near;
+      });
+      if (!joined) continue;
+      spot.insert(spot.end(), spots[i].begin(), spots[i].end());
+      spots.erase(spots.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+    spots.push_back(std::move(spot));
+  }
+  if (spots.empty()) spots.push_back({uncovered.cover.witness});
+  for (const Point& corner : surface.corners(uncovered.triangle)) spots.push_back({corner});
+  return spots;
+}
+
+// One path for the whole spot, or one for each of its points, whichever grows less.
+double take_in(Grower& grower, const Spot& spot) {
+  const double together = grower.cost_of_best_path(spot);
+  if (together == 0) return 0;
+  double apart = 0;
+  for (const Point& point : spot) apart = std::max(apart, grower.cost_of_best_path({point}));
+  double largest = 0;
+  if (together <= 4 * apart) {
+    grower.cost_of_best_path(spot);
+    return grower.grow_best_path(spot);
+  }
+  for (const Point& point : spot)
+    if (grower.cost_of_best_path({point}) > 0) largest = std::max(largest, grower.grow_best_path({point}));
+  return largest;
+}
+
+}  // namespace
+
+CoverReport cover(SphereTree& tree, const Surface& surface, const Progress& progress) {
+  const double radius = surface.bounding_radius();
+  CoverReport report;
+  std::vector<Index> triangles;
+  for (Index i = 0; i < surface.mesh().triangles.size(); ++i) triangles.push_back(i);
+  double margin = tolerance::kCoverMargin * radius;
+  for (; report.rounds < kMostRounds; ++report.rounds) {
+    report_progress(progress, "covering", static_cast<double>(report.rounds) / kMostRounds);
+    const Coverage coverage = surface_coverage(surface, triangles, path_balls(tree));
+    if (coverage.complete()) return report;
+    if (report.rounds == 0) report.triangles_uncovered = static_cast<Index>(coverage.uncovered.size());
+    // Balls only grow, so what is covered stays covered.
+    triangles.clear();
+    Grower grower(tree, margin);
+    for (const UncoveredTriangle& uncovered : coverage.uncovered) {
+      triangles.push_back(uncovered.triangle);
+      for (const Spot& spot : spots_of(uncovered, surface, tolerance::kCoverMargin * radius))
+        report.largest_growth = std::max(report.largest_growth, take_in(grower, spot) / radius);
+    }
+    // Spots shrink with every round; a slowly widening margin ends the last of them.
+    margin *= 1.5;
+  }
+  throw Error("cover: " + std::to_string(triangles.size()) + " triangles are still uncovered after " +
+              std::to_string(kMostRounds) + " rounds");
+}
+
+}  // namespace orchard

@@ -1,0 +1,147 @@
+#include "orchard/spheretree/pack.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "orchard/geometry/error.h"
+
+namespace orchard {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+// The least float that is at least `value`.
+float round_up(double value) {
+  const auto rounded = static_cast<float>(value);
+  return static_cast<double>(rounded) < value ? std::nextafter(rounded, kInfinity) : rounded;
+}
+
+// Slack for the few double roundings of a difference and a norm of lengths up to `size`.
+double slack(double size) { return 0x1p-48 * size; }
+
+class Packer {
+ public:
+  Packer(const SphereTree& tree, const Surface& surface) : tree_(tree), surface_(surface) {
+    if (tree.nodes.empty()) throw Error("pack: the tree has no root");
+    origin_ = surface.bounding_ball().center;
+  }
+
+  runtime::PackedSphereTree run() {
+    for (int axis = 0; axis < 3; ++axis) packed_.origin[static_cast<std::size_t>(axis)] = origin_[axis];
+    packed_.bounding_radius = surface_.bounding_radius();
+    packed_.branching = tree_.branching;
+    packed_.depth = tree_.depth();
+    packed_.node_count = static_cast<std::uint32_t>(tree_.nodes.size());
+    pack_nodes();
+    pack_mesh();
+    list_triangles();
+    return std::move(packed_);
+  }
+
+ private:
+  struct Place {
+    std::uint32_t block, lane;
+  };
+
+  // Nodes are in breadth-first order, so blocks come out in that order too.
+  void pack_nodes() {
+    places_.resize(tree_.nodes.size());
+    places_[0] = {0, 0};
+    packed_.blocks.resize(1);
+    packed_.blocks[0].radius.fill(-1);
+    for (std::size_t i = 0; i < tree_.nodes.size(); ++i) {
+      const SphereNode& node = tree_.nodes[i];
+      pack_node(node, places_[i]);
+      if (node.child_count == 0) continue;
+      const auto block = static_cast<std::uint32_t>(packed_.blocks.size());
+      set_link(places_[i], block, node.child_count);
+      packed_.blocks.resize(block + (node.child_count + runtime::kBlockWidth - 1) / runtime::kBlockWidth);
+      for (std::uint32_t b = block; b < packed_.blocks.size(); ++b) packed_.blocks[b].radius.fill(-1);
+      for (std::uint32_t child = 0; child < node.child_count; ++child)
+        places_[node.first_child + child] = {block + child / runtime::kBlockWidth, child % runtime::kBlockWidth};
+    }
+  }
+
+  void pack_node(const SphereNode& node, Place at) {
+    runtime::SiblingBlock& block = packed_.blocks[at.block];
+    const Vector exact = node.sphere.center - origin_;
+    const Eigen::Vector3f rounded = exact.cast<float>();
+    // How far the packed centre may be from the true one: the float rounding, and the roundings of this very sum.
+    const double moved =
+        (exact - rounded.cast<double>()).norm() * (1 + 0x1p-48) + slack(exact.norm() + node.sphere.radius);
+    block.x[at.lane] = rounded.x();
+    block.y[at.lane] = rounded.y();
+    block.z[at.lane] = rounded.z();
+    block.radius[at.lane] = round_up(node.sphere.radius + moved);
+    const double grown = block.radius[at.lane] - node.sphere.radius + moved;
+    block.depth[at.lane] = round_up(node.center_distance + moved + slack(std::abs(node.center_distance)));
+    block.error[at.lane] = round_up(std::max(0.0, node.distance_bound) + grown);
+  }
+
+  void set_link(Place at, std::uint32_t first, std::uint32_t count) {
+    packed_.blocks[at.block].first[at.lane] = first;
+    packed_.blocks[at.block].count[at.lane] = count;
+  }
+
+  void pack_mesh() {
+    const TriangleMesh& mesh = surface_.mesh();
+    double farthest = 0;
+    for (const Point& vertex : mesh.vertices) {
+      const Vector exact = vertex - origin_;
+      const Eigen::Vector3f rounded = exact.cast<float>();
+      farthest = std::max(farthest, (exact - rounded.cast<double>()).norm() + slack(exact.norm()));
+      packed_.vertices.push_back({rounded.x(), rounded.y(), rounded.z()});
+    }
+    packed_.vertex_error = farthest;
+    packed_.triangles.assign(mesh.triangles.begin(), mesh.triangles.end());
+  }
+
+  // A leaf lists the triangles that touch every ball on its path: all that its path region meets, and few more.
+  void list_triangles() {
+    std::vector<std::vector<Index>> touching(tree_.nodes.size());
+    for (std::size_t i = 0; i < tree_.nodes.size(); ++i) {
+      const SphereNode& node = tree_.nodes[i];
+      const Sphere ball = packed_ball(places_[i]);
+      if (i == 0) {
+        surface_.triangles_near(ball, touching[0]);
+      } else {
+        for (Index triangle : touching[node.parent])
+          if (touches(ball, triangle)) touching[i].push_back(triangle);
+      }
+      if (i > 0 && i + 1 == last_child(node.parent) + 1) touching[node.parent] = {};
+      if (node.child_count > 0) continue;
+      set_link(places_[i], static_cast<std::uint32_t>(packed_.leaf_triangles.size()),
+               runtime::kLeafBit | static_cast<std::uint32_t>(touching[i].size()));
+      packed_.leaf_triangles.insert(packed_.leaf_triangles.end(), touching[i].begin(), touching[i].end());
+    }
+  }
+
+  std::size_t last_child(Index parent) const {
+    return tree_.nodes[parent].first_child + tree_.nodes[parent].child_count - 1;
+  }
+
+  Sphere packed_ball(Place at) const {
+    const runtime::SiblingBlock& block = packed_.blocks[at.block];
+    const Point center = origin_ + Vector(block.x[at.lane], block.y[at.lane], block.z[at.lane]);
+    const double radius = block.radius[at.lane];
+    return {center, radius + slack(radius + center.norm())};
+  }
+
+  bool touches(const Sphere& ball, Index triangle) const {
+    const auto [a, b, c] = surface_.corners(triangle);
+    return closest_point_of_triangle(ball.center, a, b, c).distance <= ball.radius;
+  }
+
+  const SphereTree& tree_;
+  const Surface& surface_;
+  Point origin_;
+  std::vector<Place> places_;
+  runtime::PackedSphereTree packed_;
+};
+
+}  // namespace
+
+runtime::PackedSphereTree pack(const SphereTree& tree, const Surface& surface) { return Packer(tree, surface).run(); }
+
+}  // namespace orchard

@@ -6,13 +6,13 @@ namespace orchard {
 
 struct CoverReport {
   int rounds = 0;
-  Index triangles_uncovered = 0;   // before the first round
-  double largest_growth = 0;       // of a radius, as a fraction of R
+  Index triangles_uncovered = 0;  // before the first round
+  double largest_growth = 0;      // of a radius, as a fraction of R
 };
 
-// Makes a tree conservative by the path rule (dissertation 6.3.2): finds what the boundary lemma cannot certify, and grows
-// the balls of the path that needs to grow least, until every triangle is certified; then drops leaves that cover nothing
-// of their own. Throws Error if the certificate is still incomplete after a fixed number of rounds.
+// Makes a tree conservative by the path rule (dissertation 6.3.2): finds what the boundary lemma cannot certify, and
+// grows the balls of the path that needs to grow least, until every triangle is certified. Throws Error if the
+// certificate is still incomplete after a fixed number of rounds.
 CoverReport cover(SphereTree& tree, const Surface& surface, const Progress& progress = {});
 
 }  // namespace orchard

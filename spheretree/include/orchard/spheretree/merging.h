@@ -11,8 +11,8 @@ struct MergeOptions {
 };
 
 // Dissertation 6.3: the children of each node are the spheres of the medial vertices merged into it, merged pairwise
-// along the medial axis by least cost until `branching` remain. The spheres hold the forming points, not yet the surface
-// between them: cover() makes the tree conservative. Deterministic.
+// along the medial axis by least cost until `branching` remain. The spheres hold the forming points, not yet the
+// surface between them: cover() makes the tree conservative. Deterministic.
 SphereTree merge_tree(const Surface& surface, const MedialAxis& axis, const MergeOptions& options = {},
                       const Progress& progress = {});
 

@@ -8,8 +8,8 @@ struct OctreeOptions {
   Index depth = 3;  // levels below the root
 };
 
-// Dissertation 5.2: an octree over the smallest isothetic box, a ball around each octant that meets the surface, and the
-// mesh's bounding ball as root; balls are wider than the octants by tolerance::kCoverMargin. Any surface.
+// Dissertation 5.2: an octree over the smallest isothetic box, a ball around each octant that meets the surface, and
+// the mesh's bounding ball as root; balls are wider than the octants by tolerance::kCoverMargin. Any surface.
 SphereTree octree(const Surface& surface, const OctreeOptions& options = {}, const Progress& progress = {});
 
 }  // namespace orchard
