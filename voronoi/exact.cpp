@@ -1,0 +1,102 @@
+#include "orchard/voronoi/exact.h"
+
+#include <CGAL/Delaunay_triangulation_3.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Exact_rational.h>
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/Triangulation_cell_base_with_info_3.h>
+#include <CGAL/Triangulation_vertex_base_with_info_3.h>
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+#include "circumcenter.h"
+#include "orchard/geometry/error.h"
+
+namespace orchard {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_3<Index, Kernel>;
+using CellBase =
+    CGAL::Triangulation_cell_base_with_info_3<Index, Kernel, CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
+using Delaunay = CGAL::Delaunay_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<VertexBase, CellBase>>;
+
+// Round-off magnified more than this many times in a circumcentre calls for rational arithmetic.
+constexpr double kWellConditioned = 0x1p10;
+
+// The points without exact duplicates, the lowest index of each kept, each with its index.
+std::vector<std::pair<Kernel::Point_3, Index>> distinct_points(std::span<const Point> points) {
+  std::vector<Index> order(points.size());
+  std::iota(order.begin(), order.end(), Index{0});
+  const auto key = [&](Index i) { return std::tie(points[i].x(), points[i].y(), points[i].z()); };
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
+  order.erase(std::unique(order.begin(), order.end(), [&](Index a, Index b) { return key(a) == key(b); }), order.end());
+  std::sort(order.begin(), order.end());
+  std::vector<std::pair<Kernel::Point_3, Index>> distinct;
+  distinct.reserve(order.size());
+  for (Index i : order) distinct.emplace_back(Kernel::Point_3(points[i].x(), points[i].y(), points[i].z()), i);
+  return distinct;
+}
+
+Point rational_circumcenter(const std::array<Point, 4>& p) {
+  using Rational = CGAL::Simple_cartesian<CGAL::Exact_rational>;
+  const auto exact = [](const Point& q) { return Rational::Point_3(q.x(), q.y(), q.z()); };
+  const auto center = CGAL::circumcenter(exact(p[0]), exact(p[1]), exact(p[2]), exact(p[3]));
+  return {CGAL::to_double(center.x()), CGAL::to_double(center.y()), CGAL::to_double(center.z())};
+}
+
+void place_finite(VoronoiVertex& vertex, std::span<const Point> points) {
+  std::array<Point, 4> p;
+  for (unsigned i = 0; i < 4; ++i) p[i] = points[vertex.forming_points[i]];
+  const auto relative = detail::circumcenter_from_origin(p[0] - p[3], p[1] - p[3], p[2] - p[3]);
+  const bool good = relative.condition < kWellConditioned;
+  vertex.center = good ? Point(p[3] + relative.center) : rational_circumcenter(p);
+  vertex.radius = (vertex.center - p[3]).norm();
+}
+
+void place_at_infinity(VoronoiVertex& vertex, std::span<const Point> points) {
+  std::array<Index, 4> corner = vertex.forming_points;
+  // An odd permutation moves the infinite point from i to the last place; a swap of the others makes it even again.
+  const auto i = static_cast<std::size_t>(std::find(corner.begin(), corner.end(), kInfinitePoint) - corner.begin());
+  if (i != 3) {
+    std::swap(corner[i], corner[3]);
+    std::swap(corner[0], corner[1]);
+  }
+  const Point& a = points[corner[0]];
+  vertex.center = (points[corner[1]] - a).cross(points[corner[2]] - a).normalized();
+  vertex.radius = std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+VoronoiDiagram exact_voronoi(std::span<const Point> points) {
+  const auto distinct = distinct_points(points);
+  Delaunay delaunay(distinct.begin(), distinct.end());
+  if (delaunay.dimension() < 3)
+    throw InputError("the points lie in a plane, so they have no Voronoi vertices: add a point off that plane");
+
+  Index count = 0;
+  for (auto cell : delaunay.all_cell_handles()) cell->info() = count++;
+  VoronoiDiagram diagram;
+  diagram.points.assign(points.begin(), points.end());
+  diagram.vertices.resize(count);
+  for (auto cell : delaunay.all_cell_handles()) {
+    VoronoiVertex& vertex = diagram.vertices[cell->info()];
+    for (int i = 0; i < 4; ++i) {
+      const auto corner = cell->vertex(i);
+      const auto slot = static_cast<unsigned>(i);
+      vertex.forming_points[slot] = delaunay.is_infinite(corner) ? kInfinitePoint : corner->info();
+      vertex.neighbors[slot] = cell->neighbor(i)->info();
+    }
+    if (vertex.at_infinity())
+      place_at_infinity(vertex, points);
+    else
+      place_finite(vertex, points);
+  }
+  return diagram;
+}
+
+}  // namespace orchard
