@@ -26,22 +26,20 @@ using Section = std::vector<Vec2>;
 
 /// A plane with axes: sections are drawn in (x, y), parts grow along normal().
 struct Frame {
-    Vec3 origin;
-    Vec3 x;
-    Vec3 y;
+  Vec3 origin;
+  Vec3 x;
+  Vec3 y;
 
-    [[nodiscard]] Vec3 normal() const { return cross(x, y); }
-    [[nodiscard]] Vec3 at(Vec2 p) const { return origin + x * p.x + y * p.y; }
+  [[nodiscard]] Vec3 normal() const { return cross(x, y); }
+  [[nodiscard]] Vec3 at(Vec2 p) const { return origin + x * p.x + y * p.y; }
 
-    /// The same axes, moved along the normal.
-    [[nodiscard]] Frame ahead(double distance) const {
-        return {origin + normal() * distance, x, y};
-    }
-    [[nodiscard]] Frame moved(Vec3 offset) const { return {origin + offset, x, y}; }
+  /// The same axes, moved along the normal.
+  [[nodiscard]] Frame ahead(double distance) const { return {origin + normal() * distance, x, y}; }
+  [[nodiscard]] Frame moved(Vec3 offset) const { return {origin + offset, x, y}; }
 
-    /// Turned about the line through `pivot` along the unit vector `axis`. When that line lies in
-    /// the plane of the frame, a section and its turned copy are joined by planar quadrilaterals.
-    [[nodiscard]] Frame turned(Vec3 pivot, Vec3 axis, double angle) const;
+  /// Turned about the line through `pivot` along the unit vector `axis`. When that line lies in
+  /// the plane of the frame, a section and its turned copy are joined by planar quadrilaterals.
+  [[nodiscard]] Frame turned(Vec3 pivot, Vec3 axis, double angle) const;
 };
 
 /// Frame at `origin` growing along the unit vector `normal`; its x axis is the part of `hint`

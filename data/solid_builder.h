@@ -24,47 +24,47 @@ using Loop = std::vector<std::size_t>;
 using Openings = std::map<std::size_t, std::vector<Loop>>;
 
 struct TriangleMesh {
-    std::vector<Vec3> points;
-    std::vector<std::array<std::size_t, 3>> triangles;
+  std::vector<Vec3> points;
+  std::vector<std::array<std::size_t, 3>> triangles;
 };
 
 /// Digits after the decimal point of every coordinate of a finished model.
 inline constexpr int kDecimals = 8;
 
 class SolidBuilder {
-public:
-    /// Adds the section's points only; walls and faces come later.
-    Loop add_loop(const Frame& frame, const Section& section);
+ public:
+  /// Adds the section's points only; walls and faces come later.
+  Loop add_loop(const Frame& frame, const Section& section);
 
-    /// Adds the images of `loop`, moved along `direction` until they lie in the plane of `target`.
-    Loop add_projected_loop(const Loop& loop, Vec3 direction, const Frame& target);
+  /// Adds the images of `loop`, moved along `direction` until they lie in the plane of `target`.
+  Loop add_projected_loop(const Loop& loop, Vec3 direction, const Frame& target);
 
-    /// A flat polygon, counter-clockwise seen from outside, with openings of either direction.
-    void add_face(const Loop& outer, const std::vector<Loop>& openings = {});
+  /// A flat polygon, counter-clockwise seen from outside, with openings of either direction.
+  void add_face(const Loop& outer, const std::vector<Loop>& openings = {});
 
-    /// One quadrilateral per side. `from` and `to` have equally many points.
-    void add_walls(const Loop& from, const Loop& to, const Openings& openings = {});
+  /// One quadrilateral per side. `from` and `to` have equally many points.
+  void add_walls(const Loop& from, const Loop& to, const Openings& openings = {});
 
-    /// Triangles from every side of the loop to one new point.
-    void add_tip(const Loop& from, Vec3 tip);
+  /// Triangles from every side of the loop to one new point.
+  void add_tip(const Loop& from, Vec3 tip);
 
-    /// add_loop() and add_walls() in one.
-    Loop grow(const Loop& from, const Frame& frame, const Section& section);
+  /// add_loop() and add_walls() in one.
+  Loop grow(const Loop& from, const Frame& frame, const Section& section);
 
-    /// Frame in the middle of wall `side` between two loops: its x axis runs along the side, its
-    /// y axis towards `to`, its normal outwards.
-    [[nodiscard]] Frame wall_frame(const Loop& from, const Loop& to, std::size_t side) const;
+  /// Frame in the middle of wall `side` between two loops: its x axis runs along the side, its
+  /// y axis towards `to`, its normal outwards.
+  [[nodiscard]] Frame wall_frame(const Loop& from, const Loop& to, std::size_t side) const;
 
-    /// Triangulates every face. Throws std::logic_error when a face is not flat.
-    [[nodiscard]] TriangleMesh triangulated() const;
+  /// Triangulates every face. Throws std::logic_error when a face is not flat.
+  [[nodiscard]] TriangleMesh triangulated() const;
 
-private:
-    struct Face {
-        std::vector<Loop> rings;  // the outer one first
-    };
+ private:
+  struct Face {
+    std::vector<Loop> rings;  // the outer one first
+  };
 
-    std::vector<Vec3> points_;
-    std::vector<Face> faces_;
+  std::vector<Vec3> points_;
+  std::vector<Face> faces_;
 };
 
 }  // namespace orchard::models

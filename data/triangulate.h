@@ -15,7 +15,7 @@ using IndexTriangle = std::array<std::size_t, 3>;
 /// the outer one and the holes, in any order and direction, every point in exactly one ring. The
 /// result is a Delaunay triangulation as far as the boundary allows, so thin triangles are rare.
 /// Choices between near-equal candidates do not depend on the last bits of the coordinates.
-[[nodiscard]] std::vector<IndexTriangle> triangulate_polygon(
-    const std::vector<Vec2>& points, const std::vector<std::vector<std::size_t>>& rings);
+[[nodiscard]] std::vector<IndexTriangle> triangulate_polygon(const std::vector<Vec2>& points,
+                                                             const std::vector<std::vector<std::size_t>>& rings);
 
 }  // namespace orchard::models
