@@ -1,0 +1,136 @@
+#include "orchard/viz/render.h"
+
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <optional>
+
+#include "child_process.h"
+#include "orchard/geometry/atomic_file.h"
+#include "orchard/geometry/error.h"
+
+namespace orchard {
+namespace {
+
+namespace fs = std::filesystem;
+using detail::Clock;
+
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (fs::temp_directory_path() / "orchard-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw Error("cannot make a temporary folder " + name);
+    path_ = name;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+std::string content(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+fs::path find_renderer(const PipelinePicture& picture) {
+  if (!picture.renderer.empty()) return picture.renderer;
+  if (const std::string named = variable("ORCHARD_RENDER"); !named.empty()) return named;
+  std::error_code failure;
+  const fs::path program = fs::read_symlink("/proc/self/exe", failure);
+  const fs::path beside = program.parent_path() / "orchard-render";
+  if (!failure && access(beside.c_str(), X_OK) == 0) return beside;
+  return detail::find_in_path("orchard-render");
+}
+
+// The last line that a program wrote, if any, for a message.
+std::string last_words(const fs::path& log) {
+  std::string text = content(log);
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
+  const std::size_t line = text.rfind('\n');
+  if (line != std::string::npos) text.erase(0, line + 1);
+  return text.empty() ? text : " (" + text + ")";
+}
+
+// Runs orchard-render on one display; the reason why it failed, or nothing.
+std::optional<std::string> run_renderer(const fs::path& renderer, const PipelinePicture& picture,
+                                        const fs::path& folder, const std::string& display) {
+  const fs::path log = folder / "render.log";
+  static constexpr std::array kAxes{"x", "y", "z"};
+  detail::ChildProcess child(
+      {.program = renderer,
+       .arguments = {folder.string(), (folder / "picture.png").string(), std::to_string(picture.width),
+                     std::to_string(picture.height), kAxes.at(static_cast<std::size_t>(picture.up)), picture.title},
+       .display = display,
+       .log = log});
+  const std::optional<int> status = child.wait_until(Clock::now() + picture.timeout);
+  const std::string where = "orchard-render on display " + display;
+  if (!status) return where + " took longer than " + std::to_string(picture.timeout.count()) + " s";
+  if (WIFSIGNALED(*status))
+    return where + " was ended by signal " + std::to_string(WTERMSIG(*status)) + last_words(log);
+  if (WEXITSTATUS(*status) != 0) return where + " failed" + last_words(log);
+  return std::nullopt;
+}
+
+std::optional<std::string> run_on_virtual_display(const fs::path& renderer, const PipelinePicture& picture,
+                                                  const fs::path& folder) {
+  const fs::path xvfb = detail::find_in_path("Xvfb");
+  if (xvfb.empty()) return "Xvfb (package xvfb) is not in PATH";
+  const fs::path log = folder / "xvfb.log";
+  try {
+    const detail::VirtualDisplay display(xvfb, log);
+    return run_renderer(renderer, picture, folder, display.name());
+  } catch (const Error& error) {
+    return error.what() + last_words(log);
+  }
+}
+
+// Where there is a display it is tried first.
+std::optional<std::string> run_somewhere(const fs::path& renderer, const PipelinePicture& picture,
+                                         const fs::path& folder) {
+  std::string reasons = "DISPLAY is not set";
+  if (const std::string display = variable("DISPLAY"); !display.empty()) {
+    const std::optional<std::string> failure = run_renderer(renderer, picture, folder, display);
+    if (!failure) return std::nullopt;
+    reasons = *failure;
+  }
+  const std::optional<std::string> failure = run_on_virtual_display(renderer, picture, folder);
+  if (!failure) return std::nullopt;
+  return reasons + ", and " + *failure;
+}
+
+}  // namespace
+
+PictureStatus draw_pipeline(const fs::path& png, const PipelinePicture& picture) {
+  try {
+    const fs::path renderer = find_renderer(picture);
+    if (renderer.empty()) return {false, "the program orchard-render is neither beside this one nor in PATH"};
+    const TemporaryFolder folder;
+    write_pipeline(folder.path(), picture.values);
+    if (const auto reason = run_somewhere(renderer, picture, folder.path())) return {false, *reason};
+    write_file(png, content(folder.path() / "picture.png"));
+    return {true, {}};
+  } catch (const Error& error) {
+    return {false, error.what()};
+  } catch (const fs::filesystem_error& error) {
+    return {false, error.what()};
+  }
+}
+
+}  // namespace orchard

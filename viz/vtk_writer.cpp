@@ -1,0 +1,252 @@
+#include "orchard/viz/vtk_writer.h"
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkIntArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+#include <vtkXMLPolyDataWriter.h>
+
+#include <system_error>
+
+#include "orchard/geometry/atomic_file.h"
+#include "orchard/geometry/error.h"
+
+namespace orchard {
+namespace {
+
+int as_int(Index index) { return index == kNone ? -1 : static_cast<int>(index); }
+
+// value(i) for i in [0, count) as an array of that name.
+template <typename Array, typename Value>
+vtkSmartPointer<Array> make_array(const char* name, std::size_t count, const Value& value) {
+  auto array = vtkSmartPointer<Array>::New();
+  array->SetName(name);
+  array->SetNumberOfValues(static_cast<vtkIdType>(count));
+  for (std::size_t i = 0; i < count; ++i) array->SetValue(static_cast<vtkIdType>(i), value(i));
+  return array;
+}
+
+template <typename Value>
+void add_ints(vtkFieldData* data, const char* name, std::size_t count, const Value& value) {
+  data->AddArray(make_array<vtkIntArray>(name, count, value));
+}
+
+template <typename Value>
+void add_doubles(vtkFieldData* data, const char* name, std::size_t count, const Value& value) {
+  data->AddArray(make_array<vtkDoubleArray>(name, count, value));
+}
+
+template <typename Position>
+void set_points(vtkPolyData* data, std::size_t count, const Position& position) {
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(static_cast<vtkIdType>(count));
+  for (std::size_t i = 0; i < count; ++i) points->SetPoint(static_cast<vtkIdType>(i), position(i).data());
+  data->SetPoints(points);
+}
+
+void add_cell(vtkCellArray* cells, std::span<const Index> corners) {
+  cells->InsertNextCell(static_cast<int>(corners.size()));
+  for (const Index corner : corners) cells->InsertCellPoint(static_cast<vtkIdType>(corner));
+}
+
+// One vertex cell per point, so that points are drawn without a filter.
+void set_vertex_cells(vtkPolyData* data) {
+  vtkNew<vtkCellArray> cells;
+  for (Index i = 0; i < data->GetNumberOfPoints(); ++i) add_cell(cells, {&i, 1});
+  data->SetVerts(cells);
+}
+
+void write(const std::filesystem::path& vtp, vtkPolyData* data) {
+  vtkNew<vtkXMLPolyDataWriter> writer;
+  writer->SetInputData(data);
+  writer->SetDataModeToAppended();
+  writer->EncodeAppendedDataOff();
+  writer->SetCompressorTypeToZLib();
+  writer->SetByteOrderToLittleEndian();
+  writer->WriteToOutputStringOn();
+  if (writer->Write() != 1) throw Error("cannot encode " + vtp.string());
+  write_file(vtp, writer->GetOutputString());
+}
+
+vtkSmartPointer<vtkPolyData> medial_points(const MedialAxis& axis) {
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  const std::size_t count = axis.centers.size();
+  set_points(data, count, [&](std::size_t i) { return axis.centers[i]; });
+  Index components = 0;
+  const std::vector<Index> component = connected_components(axis, components);
+  vtkPointData* arrays = data->GetPointData();
+  add_doubles(arrays, "radius", count, [&](std::size_t i) { return axis.radii[i]; });
+  add_ints(arrays, "component", count, [&](std::size_t i) { return as_int(component[i]); });
+  add_ints(arrays, "valence", count,
+           [&](std::size_t i) { return static_cast<int>(axis.neighbors[static_cast<Index>(i)].size()); });
+  return data;
+}
+
+vtkSmartPointer<vtkPolyData> with_topology_of(vtkPolyData* points) {
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(points->GetPoints());
+  data->GetPointData()->ShallowCopy(points->GetPointData());
+  return data;
+}
+
+std::string xml_escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += c;
+    }
+  }
+  return result;
+}
+
+// The child of the root that each node descends from, counted from 0.
+std::vector<int> branches(const SphereTree& tree) {
+  std::vector<int> branch(tree.nodes.size(), -1);
+  for (std::size_t i = 1; i < tree.nodes.size(); ++i) {
+    const Index parent = tree.nodes[i].parent;
+    branch[i] = parent == 0 ? static_cast<int>(i - tree.nodes[0].first_child) : branch[parent];
+  }
+  return branch;
+}
+
+}  // namespace
+
+void write_mesh(const std::filesystem::path& vtp, const Surface& surface) {
+  const TriangleMesh& mesh = surface.mesh();
+  vtkNew<vtkPolyData> data;
+  set_points(data, mesh.vertices.size(), [&](std::size_t i) { return mesh.vertices[i]; });
+  vtkNew<vtkCellArray> triangles;
+  for (const auto& triangle : mesh.triangles) add_cell(triangles, triangle);
+  data->SetPolys(triangles);
+  add_ints(data->GetCellData(), "cluster", mesh.triangles.size(),
+           [&](std::size_t i) { return as_int(surface.clusters().of_triangle[i]); });
+  add_doubles(data->GetFieldData(), "bounding_radius", 1, [&](std::size_t) { return surface.bounding_radius(); });
+  write(vtp, data);
+}
+
+void write_points(const std::filesystem::path& vtp, const SurfaceSampling& sampling) {
+  vtkNew<vtkPolyData> data;
+  const std::size_t count = sampling.points.size();
+  set_points(data, count, [&](std::size_t i) { return sampling.points[i]; });
+  set_vertex_cells(data);
+  add_ints(data->GetCellData(), "origin", count, [&](std::size_t i) { return static_cast<int>(sampling.origins[i]); });
+  add_ints(data->GetCellData(), "triangle", count, [&](std::size_t i) { return as_int(sampling.triangles[i]); });
+  write(vtp, data);
+}
+
+void write_medial_axis(const std::filesystem::path& folder, const MedialAxis& axis) {
+  const vtkSmartPointer<vtkPolyData> points = medial_points(axis);
+
+  const vtkSmartPointer<vtkPolyData> vertices = with_topology_of(points);
+  set_vertex_cells(vertices);
+  write(folder / "medial_vertices.vtp", vertices);
+
+  vtkNew<vtkCellArray> lines;
+  for (Index i = 0; i < axis.size(); ++i) {
+    for (const Index j : axis.neighbors[i]) {
+      if (i < j) add_cell(lines, std::array{i, j});
+    }
+  }
+  const vtkSmartPointer<vtkPolyData> edges = with_topology_of(points);
+  edges->SetLines(lines);
+  write(folder / "medial_edges.vtp", edges);
+
+  vtkNew<vtkCellArray> polygons;
+  for (Index i = 0; i < axis.faces.size(); ++i) add_cell(polygons, axis.faces[i]);
+  const vtkSmartPointer<vtkPolyData> faces = with_topology_of(points);
+  faces->SetPolys(polygons);
+  const std::size_t count = axis.face_points.size();
+  add_ints(faces->GetCellData(), "point_a", count, [&](std::size_t i) { return as_int(axis.face_points[i][0]); });
+  add_ints(faces->GetCellData(), "point_b", count, [&](std::size_t i) { return as_int(axis.face_points[i][1]); });
+  write(folder / "medial_faces.vtp", faces);
+}
+
+void write_tree_level(const std::filesystem::path& vtp, const SphereTree& tree, Index level) {
+  std::vector<std::size_t> shown;
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+    const SphereNode& node = tree.nodes[i];
+    if (node.level == level || (node.level < level && node.child_count == 0)) shown.push_back(i);
+  }
+  const std::vector<int> branch = branches(tree);
+  const auto node = [&](std::size_t i) -> const SphereNode& { return tree.nodes[shown[i]]; };
+
+  vtkNew<vtkPolyData> data;
+  set_points(data, shown.size(), [&](std::size_t i) { return node(i).sphere.center; });
+  set_vertex_cells(data);
+  vtkPointData* arrays = data->GetPointData();
+  add_doubles(arrays, "radius", shown.size(), [&](std::size_t i) { return node(i).sphere.radius; });
+  add_doubles(arrays, "error", shown.size(), [&](std::size_t i) { return node(i).distance_bound; });
+  add_doubles(arrays, "inaccuracy", shown.size(), [&](std::size_t i) { return node(i).inaccuracy; });
+  add_ints(arrays, "level", shown.size(), [&](std::size_t i) { return as_int(node(i).level); });
+  add_ints(arrays, "node", shown.size(), [&](std::size_t i) { return static_cast<int>(shown[i]); });
+  add_ints(arrays, "parent", shown.size(), [&](std::size_t i) { return as_int(node(i).parent); });
+  add_ints(arrays, "branch", shown.size(), [&](std::size_t i) { return branch[shown[i]]; });
+  add_ints(arrays, "carried", shown.size(), [&](std::size_t i) { return node(i).level < level ? 1 : 0; });
+  write(vtp, data);
+}
+
+void write_multiblock(const std::filesystem::path& vtm, std::span<const NamedFile> files) {
+  write_file(vtm, [&](std::ostream& out) {
+    out << "<?xml version=\"1.0\"?>\n"
+           "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
+           "  <vtkMultiBlockDataSet>\n";
+    for (std::size_t i = 0; i < files.size(); ++i) {
+      out << "    <DataSet index=\"" << i << "\" name=\"" << xml_escaped(files[i].name) << "\" file=\""
+          << xml_escaped(files[i].file.generic_string()) << "\"/>\n";
+    }
+    out << "  </vtkMultiBlockDataSet>\n</VTKFile>\n";
+  });
+}
+
+std::vector<NamedFile> write_pipeline(const std::filesystem::path& folder, const PipelineValues& values) {
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (failure) throw Error("cannot make the folder " + folder.string() + ": " + failure.message());
+
+  std::vector<NamedFile> files;
+  if (values.surface != nullptr) {
+    write_mesh(folder / "mesh.vtp", *values.surface);
+    files.push_back({"mesh", "mesh.vtp"});
+  }
+  if (values.sampling != nullptr) {
+    write_points(folder / "points.vtp", *values.sampling);
+    files.push_back({"surface points", "points.vtp"});
+  }
+  if (values.axis != nullptr) {
+    write_medial_axis(folder, *values.axis);
+    for (const std::string part : {"vertices", "edges", "faces"}) {
+      files.push_back({"medial " + part, "medial_" + part + ".vtp"});
+    }
+  }
+  if (values.tree != nullptr && !values.tree->nodes.empty()) {
+    for (Index level = 0; level <= values.tree->depth(); ++level) {
+      const std::string name = "tree_level_" + std::to_string(level) + ".vtp";
+      write_tree_level(folder / name, *values.tree, level);
+      files.push_back({"tree level " + std::to_string(level), name});
+    }
+  }
+  write_multiblock(folder / "pipeline.vtm", files);
+  return files;
+}
+
+}  // namespace orchard

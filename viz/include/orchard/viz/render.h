@@ -1,0 +1,37 @@
+#pragma once
+#include <chrono>
+#include <filesystem>
+#include <string>
+
+#include "orchard/viz/vtk_writer.h"
+
+// The pipeline in one picture. Debian's VTK draws only on an X display, even offscreen, and aborts the process where
+// there is none or where its OpenGL is broken. So the drawing is done by a small program of its own, `orchard-render`,
+// on the .vtp files of write_pipeline(): whatever happens to it, the caller gets a status. (Drawing in a forked copy of
+// the caller would be unsafe beside the threads of TBB and Embree.)
+namespace orchard {
+
+enum class UpAxis { x, y, z };
+
+struct PipelinePicture {
+  PipelineValues values;              // what is missing gets no panel: mesh, points, medial axis, three tree levels
+  std::string title;                  // above the panels; may be empty
+  UpAxis up = UpAxis::y;              // the mesh's axis that points up in the picture
+  int width = 0;                      // pixels, 64 to 8192; 0: as wide as the model and its captions need
+  int height = 1120;                  // pixels
+  std::chrono::seconds timeout{120};  // for drawing; a picture takes a few seconds
+  std::filesystem::path renderer;     // empty: $ORCHARD_RENDER, beside the running program, then in PATH
+};
+
+struct PictureStatus {
+  bool made = false;
+  std::string reason;  // why there is no picture, in one line
+  explicit operator bool() const { return made; }
+};
+
+// Draws a .png. Uses the display of $DISPLAY; where that is unset or does not serve, starts Xvfb from PATH for the time
+// of the picture. Never throws for want of a display, a renderer, a writable file or time, never prints, and leaves
+// neither processes nor temporary files behind. Safe to call from several threads.
+PictureStatus draw_pipeline(const std::filesystem::path& png, const PipelinePicture& picture);
+
+}  // namespace orchard

@@ -1,0 +1,60 @@
+#pragma once
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "orchard/geometry/sampling.h"
+#include "orchard/geometry/surface.h"
+#include "orchard/medial/axis.h"
+#include "orchard/spheretree/tree.h"
+
+// The values of the pipeline as ParaView opens them: XML PolyData (.vtp), zlib-compressed, coordinates and lengths as
+// doubles in mesh units, indices as 32-bit integers with -1 for kNone. The same bytes for the same value. Files appear
+// as a whole or not at all; every function throws Error if its file cannot be written, and the file's folder must
+// exist.
+namespace orchard {
+
+// Triangles; cell array `cluster`. Field data `bounding_radius`: what tolerances and figures are fractions of.
+void write_mesh(const std::filesystem::path& vtp, const Surface& surface);
+
+// One vertex per surface point; cell arrays `origin` (0 face, 1 edge, 2 repair) and `triangle`.
+void write_points(const std::filesystem::path& vtp, const SurfaceSampling& sampling);
+
+// Three files in `folder`, each of which can be shown alone; vertices are numbered alike in all of them and carry the
+// point arrays `radius`, `component` and `valence` (number of neighbours).
+//   medial_vertices.vtp  the medial vertices
+//   medial_edges.vtp     a line per pair of neighbours
+//   medial_faces.vtp     the faces; cell arrays `point_a`, `point_b`: the two surface points that a face separates
+void write_medial_axis(const std::filesystem::path& folder, const MedialAxis& axis);
+
+// The spheres of one level as points, for glyphs scaled by `radius`: the nodes of that level and, flagged `carried`,
+// the leaves above it, which stand in for the children they do not have. Point arrays:
+//   radius, error (distance_bound), inaccuracy   lengths, as measure() left them
+//   level, node, parent                          of the node; indices into SphereTree::nodes
+//   branch                                       the child of the root that the node descends from, from 0; -1: the
+//   root carried                                      1 if the node is a leaf of a level above
+// A level below the deepest gives all leaves.
+void write_tree_level(const std::filesystem::path& vtp, const SphereTree& tree, Index level);
+
+struct NamedFile {
+  std::string name;            // shown by ParaView
+  std::filesystem::path file;  // relative to the .vtm
+};
+
+// A .vtm that opens several files at once. The files need not exist yet.
+void write_multiblock(const std::filesystem::path& vtm, std::span<const NamedFile> files);
+
+// What a run of the pipeline made; null: it did not make that.
+struct PipelineValues {
+  const Surface* surface = nullptr;
+  const SurfaceSampling* sampling = nullptr;
+  const MedialAxis* axis = nullptr;
+  const SphereTree* tree = nullptr;
+};
+
+// Writes all of it into `folder`, which is made if need be: mesh.vtp, points.vtp, the medial_*.vtp, tree_level_<n>.vtp
+// for every level, and pipeline.vtm, which opens them. Returns the files in the order of the .vtm.
+std::vector<NamedFile> write_pipeline(const std::filesystem::path& folder, const PipelineValues& values);
+
+}  // namespace orchard

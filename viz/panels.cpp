@@ -1,0 +1,302 @@
+#include "panels.h"
+
+#include <vtkActor.h>
+#include <vtkCellData.h>
+#include <vtkColorTransferFunction.h>
+#include <vtkDataArray.h>
+#include <vtkDoubleArray.h>
+#include <vtkFeatureEdges.h>
+#include <vtkFieldData.h>
+#include <vtkGlyph3D.h>
+#include <vtkLightKit.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+#include <vtkSphereSource.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkXMLPolyDataReader.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+namespace orchard::detail {
+namespace {
+
+using Color = std::array<double, 3>;
+using Data = vtkSmartPointer<vtkPolyData>;
+
+constexpr Color kInk{0.13, 0.16, 0.20};
+constexpr Color kStone{0.80, 0.83, 0.87};
+constexpr double kFeatureAngle = 25;  // degrees
+constexpr int kLevelsShown = 3;
+
+constexpr Color rgb(int hex) { return {((hex >> 16) & 255) / 255.0, ((hex >> 8) & 255) / 255.0, (hex & 255) / 255.0}; }
+// Neighbouring branches must differ, also in brightness.
+constexpr std::array<Color, 8> kBranchColors{rgb(0x4e79a7), rgb(0xf2a13c), rgb(0x6aaa5a), rgb(0xe0605f),
+                                             rgb(0x7cc0bb), rgb(0xf0d060), rgb(0xb083b0), rgb(0xa98467)};
+constexpr std::array<Color, 3> kOriginColors{rgb(0x2f6db3), rgb(0xe8871e), rgb(0xc8233c)};
+
+Data read(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) return nullptr;
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  Data data = reader->GetOutput();
+  return data->GetNumberOfPoints() > 0 ? data : nullptr;
+}
+
+// Values one per point or cell; a file that lacks them is not one of ours.
+vtkDataArray* require_array(vtkDataSetAttributes* data, const char* name, vtkIdType count) {
+  vtkDataArray* array = data->GetArray(name);
+  if (array == nullptr || array->GetNumberOfTuples() != count) {
+    throw std::runtime_error(std::string("a file has no complete array '") + name + "'");
+  }
+  return array;
+}
+
+// 12345 as "12 345".
+std::string grouped(vtkIdType number) {
+  const std::string digits = std::to_string(number);
+  std::string result;
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) result += ' ';
+    result += digits[i];
+  }
+  return result;
+}
+
+std::string counted(vtkIdType number, const std::string& thing) {
+  return grouped(number) + " " + thing + (number == 1 ? "" : "s");
+}
+
+vtkSmartPointer<vtkActor> make_actor(vtkPolyData* data, const Color& color, double opacity = 1) {
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputData(data);
+  mapper->ScalarVisibilityOff();
+  auto actor = vtkSmartPointer<vtkActor>::New();
+  actor->SetMapper(mapper);
+  vtkProperty* property = actor->GetProperty();
+  property->SetColor(color[0], color[1], color[2]);
+  property->SetOpacity(opacity);
+  property->SetAmbient(0.12);
+  property->SetDiffuse(0.88);
+  property->SetSpecular(0.12);
+  property->SetSpecularPower(25);
+  return actor;
+}
+
+vtkSmartPointer<vtkActor> feature_edges(vtkPolyData* mesh, double width, double opacity = 1) {
+  vtkNew<vtkFeatureEdges> edges;
+  edges->SetInputData(mesh);
+  edges->SetFeatureAngle(kFeatureAngle);
+  edges->ColoringOff();
+  edges->Update();
+  auto actor = make_actor(edges->GetOutput(), kInk, opacity);
+  actor->GetProperty()->LightingOff();
+  actor->GetProperty()->SetLineWidth(static_cast<float>(width));
+  return actor;
+}
+
+// Colours per tuple of `data` from a function of the tuple's number.
+template <typename ColorOf>
+void set_colors(vtkDataSetAttributes* data, vtkIdType count, const ColorOf& color_of) {
+  vtkNew<vtkUnsignedCharArray> colors;
+  colors->SetName("color");
+  colors->SetNumberOfComponents(3);
+  colors->SetNumberOfTuples(count);
+  for (vtkIdType i = 0; i < count; ++i) {
+    const Color color = color_of(i);
+    for (int c = 0; c < 3; ++c) {
+      colors->SetTypedComponent(i, c,
+                                static_cast<unsigned char>(std::lround(255 * color[static_cast<std::size_t>(c)])));
+    }
+  }
+  data->SetScalars(colors);
+}
+
+// A sphere of the model's size for each point, coloured by the points' scalars.
+vtkSmartPointer<vtkActor> make_spheres(vtkPolyData* points, int resolution) {
+  vtkNew<vtkSphereSource> sphere;
+  sphere->SetRadius(1);
+  sphere->SetThetaResolution(2 * resolution);
+  sphere->SetPhiResolution(resolution);
+  vtkNew<vtkGlyph3D> glyphs;
+  glyphs->SetInputData(points);
+  glyphs->SetSourceConnection(sphere->GetOutputPort());
+  glyphs->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "radius");
+  glyphs->SetInputArrayToProcess(3, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "color");
+  glyphs->SetScaleModeToScaleByScalar();
+  glyphs->SetColorModeToColorByScalar();
+  glyphs->Update();
+  auto actor = make_actor(glyphs->GetOutput(), kStone);
+  actor->GetMapper()->ScalarVisibilityOn();
+  return actor;
+}
+
+vtkSmartPointer<vtkRenderer> make_renderer(double size) {
+  auto renderer = vtkSmartPointer<vtkRenderer>::New();
+  renderer->SetBackground(1, 1, 1);
+  vtkNew<vtkLightKit> lights;
+  lights->SetKeyLightIntensity(0.95);
+  lights->SetKeyToFillRatio(2.2);
+  lights->SetKeyToHeadRatio(3);
+  lights->AddLightsToRenderer(renderer);
+  renderer->UseSSAOOn();
+  renderer->SetSSAORadius(0.25 * size);
+  renderer->SetSSAOBias(0.01 * size);
+  renderer->SetSSAOKernelSize(96);
+  renderer->SSAOBlurOn();
+  return renderer;
+}
+
+Panel mesh_panel(vtkPolyData* mesh, double size, double line_width) {
+  Panel panel{make_renderer(size), "mesh", counted(mesh->GetNumberOfPolys(), "triangle")};
+  auto faces = make_actor(mesh, kStone);
+  faces->GetProperty()->SetInterpolationToFlat();
+  vtkNew<vtkFeatureEdges> wires;
+  wires->SetInputData(mesh);
+  wires->SetFeatureAngle(0);
+  wires->ManifoldEdgesOn();
+  wires->ColoringOff();
+  wires->Update();
+  auto lines = make_actor(wires->GetOutput(), kInk, 0.35);
+  lines->GetProperty()->LightingOff();
+  lines->GetProperty()->SetLineWidth(static_cast<float>(0.5 * line_width));
+  panel.renderer->AddActor(faces);
+  panel.renderer->AddActor(lines);
+  panel.renderer->AddActor(feature_edges(mesh, 1.2 * line_width));
+  return panel;
+}
+
+Panel points_panel(vtkPolyData* mesh, vtkPolyData* points, double size) {
+  Panel panel{make_renderer(size), "surface points", {}};
+  vtkDataArray* origins = require_array(points->GetCellData(), "origin", points->GetNumberOfPoints());
+  std::array<vtkIdType, 3> counts{};
+  const auto origin_of = [&](vtkIdType i) { return std::clamp(static_cast<int>(origins->GetComponent(i, 0)), 0, 2); };
+  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i) ++counts.at(static_cast<std::size_t>(origin_of(i)));
+  panel.detail = grouped(counts[0]) + " on faces, " + grouped(counts[1]) + " on edges";
+  if (counts[2] > 0) panel.detail += ", " + grouped(counts[2]) + " by repair";
+
+  vtkNew<vtkPolyData> dots;
+  dots->SetPoints(points->GetPoints());
+  set_colors(dots->GetPointData(), points->GetNumberOfPoints(),
+             [&](vtkIdType i) { return kOriginColors.at(static_cast<std::size_t>(origin_of(i))); });
+  vtkNew<vtkDoubleArray> radii;
+  radii->SetName("radius");
+  radii->SetNumberOfValues(points->GetNumberOfPoints());
+  // As large as leaves gaps between evenly spread points.
+  const double spacing = size / std::sqrt(static_cast<double>(points->GetNumberOfPoints()));
+  radii->Fill(std::clamp(0.75 * spacing, 0.006 * size, 0.02 * size));
+  dots->GetPointData()->AddArray(radii);
+  if (mesh != nullptr) panel.renderer->AddActor(make_actor(mesh, {0.93, 0.94, 0.95}));
+  panel.renderer->AddActor(make_spheres(dots, 6));
+  return panel;
+}
+
+Panel axis_panel(vtkPolyData* mesh, vtkPolyData* faces, double size, double line_width) {
+  Panel panel{make_renderer(size), "medial axis", counted(faces->GetNumberOfPoints(), "sphere") + ", colour: radius"};
+  vtkNew<vtkColorTransferFunction> colors;  // viridis, five of its colours
+  double range[2];
+  vtkDataArray* radii = require_array(faces->GetPointData(), "radius", faces->GetNumberOfPoints());
+  radii->GetRange(range);
+  constexpr std::array kViridis{rgb(0x440154), rgb(0x3b528b), rgb(0x21918c), rgb(0x5ec962), rgb(0xfde725)};
+  for (std::size_t i = 0; i < kViridis.size(); ++i) {
+    const double t = static_cast<double>(i) / static_cast<double>(kViridis.size() - 1);
+    colors->AddRGBPoint(range[0] + t * (range[1] - range[0]), kViridis[i][0], kViridis[i][1], kViridis[i][2]);
+  }
+  auto sheet = make_actor(faces, kStone);
+  sheet->GetProperty()->SetAmbient(0.35);
+  sheet->GetProperty()->SetDiffuse(0.65);
+  sheet->GetProperty()->SetSpecular(0);
+  vtkMapper* mapper = sheet->GetMapper();
+  mapper->ScalarVisibilityOn();
+  mapper->SetScalarModeToUsePointFieldData();
+  mapper->SelectColorArray("radius");
+  mapper->SetLookupTable(colors);
+  mapper->UseLookupTableScalarRangeOn();
+  mapper->InterpolateScalarsBeforeMappingOn();
+  panel.renderer->AddActor(sheet);
+  if (mesh != nullptr) {
+    panel.renderer->AddActor(make_actor(mesh, {0.72, 0.78, 0.85}, 0.16));
+    panel.renderer->AddActor(feature_edges(mesh, 0.8 * line_width, 0.5));
+  }
+  return panel;
+}
+
+// Inaccuracies as fractions of R, where they were measured.
+std::string level_figures(vtkPolyData* spheres, double bounding_radius) {
+  std::string text = counted(spheres->GetNumberOfPoints(), "sphere");
+  vtkDataArray* inaccuracy = require_array(spheres->GetPointData(), "inaccuracy", spheres->GetNumberOfPoints());
+  double sum = 0;
+  for (vtkIdType i = 0; i < spheres->GetNumberOfPoints(); ++i) sum += inaccuracy->GetComponent(i, 0);
+  if (sum > 0 && bounding_radius > 0) {
+    char figure[64];
+    std::snprintf(figure, sizeof figure, ", mean inaccuracy %.2g R",
+                  sum / static_cast<double>(spheres->GetNumberOfPoints()) / bounding_radius);
+    text += figure;
+  }
+  return text;
+}
+
+Panel level_panel(vtkPolyData* spheres, int level, double size, double bounding_radius) {
+  Panel panel{make_renderer(size), "sphere-tree, level " + std::to_string(level),
+              level_figures(spheres, bounding_radius)};
+  vtkDataArray* branch = require_array(spheres->GetPointData(), "branch", spheres->GetNumberOfPoints());
+  set_colors(spheres->GetPointData(), spheres->GetNumberOfPoints(), [&](vtkIdType i) {
+    const auto index = static_cast<std::size_t>(std::max(0.0, branch->GetComponent(i, 0)));
+    return kBranchColors.at(index % kBranchColors.size());
+  });
+  const int resolution = spheres->GetNumberOfPoints() <= 64 ? 64 : spheres->GetNumberOfPoints() <= 1000 ? 32 : 12;
+  panel.renderer->AddActor(make_spheres(spheres, resolution));
+  return panel;
+}
+
+void extend(std::vector<Extent>& extents, vtkPolyData* data, const char* radius_array) {
+  vtkDataArray* radii =
+      radius_array == nullptr ? nullptr : require_array(data->GetPointData(), radius_array, data->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i) {
+    Extent extent{{}, radii == nullptr ? 0 : radii->GetComponent(i, 0)};
+    data->GetPoint(i, extent.center.data());
+    extents.push_back(extent);
+  }
+}
+
+}  // namespace
+
+Panels make_panels(const std::filesystem::path& folder, double line_width) {
+  Panels result;
+  const Data mesh = read(folder / "mesh.vtp");
+  const Data points = read(folder / "points.vtp");
+  const Data faces = read(folder / "medial_faces.vtp");
+  std::vector<Data> levels;  // from the root on
+  for (;;) {
+    const Data level = read(folder / ("tree_level_" + std::to_string(levels.size()) + ".vtp"));
+    if (level == nullptr) break;
+    levels.push_back(level);
+  }
+  const int last = static_cast<int>(levels.size()) - 1;
+  const int first = std::min(last, 1);
+
+  double bounding_radius = 0;
+  if (mesh != nullptr) {
+    extend(result.extents, mesh, nullptr);
+    result.size = 0.5 * mesh->GetLength();
+    vtkDataArray* radius = mesh->GetFieldData()->GetArray("bounding_radius");
+    if (radius != nullptr) bounding_radius = radius->GetComponent(0, 0);
+    result.panels.push_back(mesh_panel(mesh, result.size, line_width));
+  } else if (last >= 0) {
+    result.size = 0.5 * levels.back()->GetLength();
+  }
+  if (points != nullptr) result.panels.push_back(points_panel(mesh, points, result.size));
+  if (faces != nullptr) result.panels.push_back(axis_panel(mesh, faces, result.size, line_width));
+  for (int level = std::max(first, 0); level <= std::min(last, kLevelsShown); ++level) {
+    extend(result.extents, levels[static_cast<std::size_t>(level)], "radius");
+    result.panels.push_back(level_panel(levels[static_cast<std::size_t>(level)], level, result.size, bounding_radius));
+  }
+  return result;
+}
+
+}  // namespace orchard::detail

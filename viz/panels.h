@@ -1,0 +1,34 @@
+#pragma once
+#include <vtkPolyData.h>
+#include <vtkRenderer.h>
+#include <vtkSmartPointer.h>
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+// What orchard-render draws: one panel per stage of the pipeline.
+namespace orchard::detail {
+
+// A ball that the camera must keep in view; radius 0 for a point.
+struct Extent {
+  std::array<double, 3> center;
+  double radius;
+};
+
+struct Panel {
+  vtkSmartPointer<vtkRenderer> renderer;  // without a camera
+  std::string caption, detail;            // a name, and figures in smaller print
+};
+
+struct Panels {
+  std::vector<Panel> panels;
+  std::vector<Extent> extents;  // of everything, so that all panels share one camera
+  double size = 1;              // a length of the model's order
+};
+
+// Panels for the files of write_pipeline() that `folder` holds. `line_width`: of the model's edges, in pixels.
+Panels make_panels(const std::filesystem::path& folder, double line_width);
+
+}  // namespace orchard::detail
