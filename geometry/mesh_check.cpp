@@ -1,11 +1,13 @@
 #include "orchard/geometry/mesh_check.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>
 
+#include "half_edge_mesh.h"
 #include "half_edges.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/tolerance.h"
@@ -206,6 +208,7 @@ bool require_solid(TriangleMesh& mesh) {
   if (inside_out) {
     for (auto& corners : mesh.triangles) std::swap(corners[1], corners[2]);
   }
+  assert(agrees(half_edge_mesh(mesh), report));
   return inside_out;
 }
 

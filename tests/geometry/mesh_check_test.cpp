@@ -1,0 +1,393 @@
+#include "orchard/geometry/mesh_check.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+#include <utility>
+
+#include "half_edge_mesh.h"
+#include "half_edges.h"
+#include "orchard/geometry/error.h"
+#include "orchard/geometry/random.h"
+#include "support/shapes.h"
+
+namespace orchard {
+namespace {
+
+using Edge = std::array<Index, 2>;
+using Triangle = std::array<Index, 3>;
+
+struct Solid {
+  const char* name;
+  TriangleMesh mesh;
+  Index components;
+  std::int64_t euler;
+  double area, volume;
+};
+
+std::vector<Solid> solids() {
+  constexpr double pi = std::numbers::pi;
+  return {{"box", test::box(Point(0, 0, 0), Point(1, 2, 3)), 1, 2, 22, 6},
+          {"icosphere", test::icosphere(5, 2), 1, 2, 16 * pi, 32 * pi / 3},
+          {"torus", test::torus(200, 100, 1, 0.25), 1, 0, pi * pi, pi * pi / 8},
+          {"l", test::l_shape(), 1, 2, 14, 3},
+          {"u", test::u_shape(0.5), 1, 2, 23, 5.5},
+          {"two boxes", test::two_boxes(0.5), 2, 4, 12, 2},
+          {"touching boxes with vertices of their own", test::two_boxes(0), 2, 4, 12, 2}};
+}
+
+void append(TriangleMesh& mesh, const TriangleMesh& other) {
+  const Index first = static_cast<Index>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
+  for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + first, b + first, c + first});
+}
+
+TriangleMesh unit_box() { return test::box(Point(0, 0, 0), Point(1, 1, 1)); }
+
+// Two boxes that share the vertices that coincide.
+TriangleMesh joined_boxes(const Vector& offset) {
+  TriangleMesh mesh = unit_box();
+  append(mesh, test::transformed(unit_box(), 1, offset));
+  for (Triangle& triangle : mesh.triangles) {
+    for (Index& corner : triangle) {
+      for (Index other = 0; other < 8; ++other) {
+        if (mesh.vertices[other] == mesh.vertices[corner]) corner = std::min(corner, other);
+      }
+    }
+  }
+  return mesh;
+}
+
+TriangleMesh tetrahedron(const Point& a, const Point& b, const Point& c, const Point& d) {
+  return {{a, b, c, d}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+}
+
+TEST(MeshCheck, MeasuresSolids) {
+  for (const Solid& solid : solids()) {
+    SCOPED_TRACE(solid.name);
+    const MeshReport report = check_mesh(solid.mesh);
+    EXPECT_TRUE(report.solid());
+    EXPECT_EQ(report.faults(), "");
+    EXPECT_EQ(report.components, solid.components);
+    EXPECT_EQ(report.euler_characteristic, solid.euler);
+    EXPECT_NEAR(report.area, solid.area, 0.01 * solid.area);
+    EXPECT_NEAR(report.volume, solid.volume, 0.01 * solid.volume);
+  }
+}
+
+TEST(MeshCheck, AgreesWithTheHalfEdgesOfOpenMesh) {
+  for (const Solid& solid : solids()) {
+    EXPECT_TRUE(agrees(half_edge_mesh(solid.mesh), check_mesh(solid.mesh))) << solid.name;
+  }
+  EXPECT_TRUE(agrees(half_edge_mesh(test::open_box()), check_mesh(test::open_box())));
+}
+
+TEST(MeshCheck, NamesTheFirstBoundaryEdge) {
+  const MeshReport report = check_mesh(test::open_box());
+  EXPECT_FALSE(report.closed());
+  EXPECT_TRUE(report.manifold());
+  EXPECT_EQ(report.boundary_edges, 4u);
+  EXPECT_EQ(report.first_boundary_edge, (Edge{5, 4}));
+  EXPECT_EQ(report.faults(), "4 boundary edges (the first joins vertices 5 and 4)");
+}
+
+TEST(MeshCheck, TellsBoxesThatShareAnEdgeFromBoxesThatShareAVertex) {
+  const MeshReport edge = check_mesh(joined_boxes(Vector(1, 1, 0)));
+  EXPECT_EQ(edge.non_manifold_edges, 1u);
+  EXPECT_EQ(edge.non_manifold_vertices, 0u);
+  EXPECT_EQ(edge.components, 1u);
+  EXPECT_EQ(std::set<Index>(edge.first_non_manifold_edge.begin(), edge.first_non_manifold_edge.end()),
+            (std::set<Index>{3, 7}));
+
+  const MeshReport vertex = check_mesh(joined_boxes(Vector(1, 1, 1)));
+  EXPECT_EQ(vertex.non_manifold_edges, 0u);
+  EXPECT_EQ(vertex.non_manifold_vertices, 1u);
+  EXPECT_EQ(vertex.first_non_manifold_vertex, 7u);
+  EXPECT_EQ(vertex.components, 2u);
+  EXPECT_EQ(vertex.faults(), "1 vertex where parts of the surface touch at a point (vertex 7)");
+}
+
+TEST(MeshCheck, CountsDegenerateTrianglesButNoEdgesOfRepeatedCorners) {
+  TriangleMesh mesh = unit_box();
+  mesh.triangles.push_back({4, 4, 5});
+  const MeshReport report = check_mesh(mesh);
+  EXPECT_TRUE(report.closed() && report.manifold());
+  EXPECT_EQ(report.degenerate_triangles, 1u);
+  EXPECT_EQ(report.first_degenerate_triangle, 12u);
+  EXPECT_EQ(report.euler_characteristic, 2);
+}
+
+TEST(MeshCheck, CallsATriangleDegenerateOnlyIfItsAreaIsNothingButRounding) {
+  const struct {
+    const char* name;
+    Point a, b, c;
+    bool degenerate;
+  } cases[] = {
+      {"collinear", {0, 0, 0}, {1, 1, 1}, {2, 2, 2}, true},
+      {"collinear up to rounding", {0.1, 0.1, 0.3}, {0.2, 0.2, 0.6}, {0.3, 0.3, 0.9}, true},
+      {"coincident corners", {1, 2, 3}, {1, 2, 3}, {4, 5, 7}, true},
+      {"all at one point", {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, true},
+      {"needle", {0, 0, 0}, {1e-12, 0, 0}, {0, 1, 0}, false},
+      {"needle, listed from its tip", {0, 1, 0}, {0, 0, 0}, {1e-12, 0, 0}, false},
+      {"cap", {0, 0, 0}, {1, 0, 0}, {0.5, 1e-12, 0}, false},
+      {"tiny", {0, 0, 0}, {1e-200, 0, 0}, {0, 1e-200, 0}, false},
+      {"huge", {0, 0, 0}, {1e300, 0, 0}, {0, 1e300, 0}, false},
+      {"huge, about the origin", {-1.7e308, 0, 0}, {1.7e308, 0, 0}, {0, 1.7e308, 0}, false},
+      {"far away", {1e6, 1e6, 1e6}, {1e6 + 1e-6, 1e6, 1e6}, {1e6, 1e6 + 1e-6, 1e6}, false},
+  };
+  for (const auto& [name, a, b, c, degenerate] : cases) {
+    const MeshReport report = check_mesh({{a, b, c}, {{0, 1, 2}}});
+    EXPECT_EQ(report.degenerate_triangles, degenerate ? 1u : 0u) << name;
+  }
+}
+
+TEST(MeshCheck, FindsNoVolumeInAFlatBag) {
+  TriangleMesh bag = test::transformed(test::icosphere(3), 1, Vector(10, 20, 30));
+  const Vector direction = Vector(1, 2, 3).normalized();
+  for (Point& vertex : bag.vertices) vertex -= direction * direction.dot(vertex);
+  const MeshReport report = check_mesh(bag);
+  EXPECT_TRUE(report.closed() && report.manifold());
+  EXPECT_EQ(report.volume, 0);
+  EXPECT_FALSE(report.solid());
+  EXPECT_EQ(report.faults(), "it encloses no volume");
+}
+
+TEST(MeshCheck, CountsUnusedVerticesWithoutBlame) {
+  TriangleMesh mesh = unit_box();
+  mesh.vertices.insert(mesh.vertices.begin(), Point(1e30, 0, 0));
+  for (Triangle& triangle : mesh.triangles) {
+    for (Index& corner : triangle) ++corner;
+  }
+  const MeshReport report = check_mesh(mesh);
+  EXPECT_EQ(report.unused_vertices, 1u);
+  EXPECT_TRUE(report.solid());
+  EXPECT_EQ(report.volume, 1);
+}
+
+TEST(MeshCheck, AcceptsACavity) {
+  TriangleMesh mesh = unit_box();
+  append(mesh, test::mirrored(test::box(Point(-0.75, 0.25, 0.25), Point(-0.25, 0.75, 0.75))));
+  const MeshReport report = check_mesh(mesh);
+  EXPECT_TRUE(report.solid());
+  EXPECT_DOUBLE_EQ(report.volume, 1 - 0.125);
+}
+
+TEST(MeshCheck, ScalesExactlyByPowersOfTwo) {
+  TriangleMesh mesh = test::torus(17, 9);
+  mesh.triangles.pop_back();
+  const MeshReport report = check_mesh(mesh);
+  for (const int exponent : {-300, -20, 1, 30, 300}) {
+    const MeshReport scaled = check_mesh(test::transformed(mesh, std::ldexp(1.0, exponent), Vector::Zero()));
+    EXPECT_EQ(scaled.area, std::ldexp(report.area, 2 * exponent)) << exponent;
+    EXPECT_EQ(scaled.volume, std::ldexp(report.volume, 3 * exponent)) << exponent;
+    EXPECT_EQ(scaled.faults(), report.faults()) << exponent;
+  }
+}
+
+TEST(MeshCheck, KeepsTheSignOfAVolumeThatIsTooSmallForADouble) {
+  EXPECT_TRUE(check_mesh(test::transformed(test::l_shape(), 1e-150, Vector::Zero())).solid());
+  EXPECT_LT(check_mesh(test::transformed(test::mirrored(test::l_shape()), 1e-150, Vector::Zero())).volume, 0);
+}
+
+TEST(MeshCheck, MeasuresFarFromTheOrigin) {
+  const MeshReport report = check_mesh(test::transformed(test::l_shape(), 1, Vector(1e6, -1e6, 1e6)));
+  EXPECT_TRUE(report.solid());
+  EXPECT_DOUBLE_EQ(report.volume, 3);
+}
+
+// Everything that MeshReport says about connectivity, by sets and searches that follow the definitions.
+MeshReport brute_force(const TriangleMesh& mesh) {
+  MeshReport report;
+  const Index count = static_cast<Index>(mesh.triangles.size());
+  const auto collapsed = [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; };
+  std::map<std::set<Index>, std::vector<std::pair<Index, Edge>>> edges;
+  std::vector<std::set<Index>> order;  // as first met
+  std::set<Index> used, joined;
+  for (Index t = 0; t < count; ++t) {
+    used.insert(mesh.triangles[t].begin(), mesh.triangles[t].end());
+    if (collapsed(mesh.triangles[t])) continue;
+    ++report.euler_characteristic;
+    joined.insert(mesh.triangles[t].begin(), mesh.triangles[t].end());
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Edge edge{mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3]};
+      auto& uses = edges[{edge[0], edge[1]}];
+      if (uses.empty()) order.push_back({edge[0], edge[1]});
+      uses.push_back({t, edge});
+    }
+  }
+  report.euler_characteristic += static_cast<std::int64_t>(joined.size()) - static_cast<std::int64_t>(edges.size());
+  report.unused_vertices = static_cast<Index>(mesh.vertices.size() - used.size());
+  const auto tally = [](Index& number, Edge& first, const Edge& edge) {
+    if (number++ == 0) first = edge;
+  };
+  for (const auto& key : order) {
+    const auto& uses = edges[key];
+    if (uses.size() == 1) tally(report.boundary_edges, report.first_boundary_edge, uses[0].second);
+    if (uses.size() > 2) tally(report.non_manifold_edges, report.first_non_manifold_edge, uses[0].second);
+    if (uses.size() == 2 && uses[0].second == uses[1].second) {
+      tally(report.misoriented_edges, report.first_misoriented_edge, uses[0].second);
+    }
+  }
+  // Pieces of a set of triangles that edges through `vertex` (any edges for kNone) hold together.
+  const auto pieces = [&](std::set<Index> triangles, Index vertex) {
+    Index number = 0;
+    for (; !triangles.empty(); ++number) {
+      std::vector<Index> stack{*triangles.begin()};
+      triangles.erase(triangles.begin());
+      while (!stack.empty()) {
+        const Index t = stack.back();
+        stack.pop_back();
+        for (const auto& [key, uses] : edges) {
+          if (vertex != kNone && !key.contains(vertex)) continue;
+          if (std::ranges::none_of(uses, [&](const auto& use) { return use.first == t; })) continue;
+          for (const auto& use : uses) {
+            if (triangles.erase(use.first)) stack.push_back(use.first);
+          }
+        }
+      }
+    }
+    return number;
+  };
+  std::set<Index> all;
+  std::map<Index, std::set<Index>> around;
+  for (Index t = 0; t < count; ++t) {
+    if (collapsed(mesh.triangles[t])) continue;
+    all.insert(t);
+    for (const Index corner : mesh.triangles[t]) around[corner].insert(t);
+  }
+  report.components = pieces(all, kNone);
+  for (const auto& [vertex, triangles] : around) {
+    if (pieces(triangles, vertex) > 1 && report.non_manifold_vertices++ == 0) report.first_non_manifold_vertex = vertex;
+  }
+  return report;
+}
+
+TEST(MeshCheck, AgreesWithBruteForceOnRandomTriangles) {
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed, 1);
+    TriangleMesh mesh;
+    const Index vertices = 3 + static_cast<Index>(random.below(8));
+    for (Index i = 0; i < vertices; ++i) {
+      mesh.vertices.emplace_back(random.uniform(), random.uniform(), random.uniform());
+    }
+    for (std::uint64_t i = 1 + random.below(20); i > 0; --i) {
+      Triangle& triangle = mesh.triangles.emplace_back();
+      for (Index& corner : triangle) corner = static_cast<Index>(random.below(vertices));
+    }
+    const MeshReport report = check_mesh(mesh), expected = brute_force(mesh);
+    EXPECT_EQ(report.components, expected.components);
+    EXPECT_EQ(report.euler_characteristic, expected.euler_characteristic);
+    EXPECT_EQ(report.boundary_edges, expected.boundary_edges);
+    EXPECT_EQ(report.first_boundary_edge, expected.first_boundary_edge);
+    EXPECT_EQ(report.non_manifold_edges, expected.non_manifold_edges);
+    EXPECT_EQ(report.first_non_manifold_edge, expected.first_non_manifold_edge);
+    EXPECT_EQ(report.misoriented_edges, expected.misoriented_edges);
+    EXPECT_EQ(report.first_misoriented_edge, expected.first_misoriented_edge);
+    EXPECT_EQ(report.non_manifold_vertices, expected.non_manifold_vertices);
+    EXPECT_EQ(report.first_non_manifold_vertex, expected.first_non_manifold_vertex);
+    EXPECT_EQ(report.unused_vertices, expected.unused_vertices);
+  }
+}
+
+TEST(MeshCheck, FindsNeighboursWhereExactlyTwoTrianglesMeet) {
+  const TriangleMesh mesh = joined_boxes(Vector(1, 1, 0));
+  const auto neighbors = triangle_neighbors(mesh);
+  for (Index t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Edge edge{mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3]};
+      const Index other = neighbors[t][i];
+      if (other == kNone) {
+        EXPECT_EQ((std::set<Index>{edge[0], edge[1]}), (std::set<Index>{3, 7}));
+        continue;
+      }
+      EXPECT_EQ(std::ranges::count(mesh.triangles[other], edge[0]), 1);
+      EXPECT_EQ(std::ranges::count(mesh.triangles[other], edge[1]), 1);
+      EXPECT_EQ(std::ranges::count(neighbors[other], t), 1);
+    }
+  }
+}
+
+TEST(RequireSolid, LeavesASolidAlone) {
+  for (const Solid& solid : solids()) {
+    TriangleMesh mesh = solid.mesh;
+    EXPECT_FALSE(require_solid(mesh)) << solid.name;
+    EXPECT_EQ(mesh.triangles, solid.mesh.triangles) << solid.name;
+  }
+}
+
+TEST(RequireSolid, TurnsAMeshThatIsInsideOut) {
+  for (const Solid& solid : solids()) {
+    TriangleMesh mesh = test::mirrored(solid.mesh);
+    EXPECT_EQ(check_mesh(mesh).faults(), "it is inside out") << solid.name;
+    EXPECT_TRUE(require_solid(mesh)) << solid.name;
+    EXPECT_TRUE(check_mesh(mesh).solid()) << solid.name;
+  }
+}
+
+TEST(RequireSolid, SaysInOneSentenceWhatIsWrong) {
+  TriangleMesh turned = unit_box(), doubled = unit_box(), collapsed = unit_box(), mixed = test::open_box();
+  std::swap(turned.triangles[5][0], turned.triangles[5][1]);
+  doubled.triangles.push_back(doubled.triangles[2]);
+  collapsed.triangles.push_back({0, 1, 1});
+  mixed.triangles.push_back({0, 2, 3});
+  const struct {
+    const char* name;
+    TriangleMesh mesh;
+    const char* message;
+  } cases[] = {
+      {"open", test::open_box(), "4 boundary edges (the first joins vertices 5 and 4)"},
+      {"one triangle turned", turned, "3 edges between triangles of opposite orientation (the first joins vertices"},
+      {"one triangle twice", doubled, "3 non-manifold edges (the first joins vertices"},
+      {"repeated corner", collapsed, "1 degenerate triangle (triangle 12)"},
+      {"shared vertex", joined_boxes(Vector(1, 1, 1)), "1 vertex where parts of the surface touch"},
+      {"open, inside out", test::mirrored(test::open_box()), "4 boundary edges (the first joins vertices 5 and 4)"},
+      {"several faults", mixed, "4 boundary edges (the first joins vertices 5 and 4), 3 non-manifold edges"},
+      {"flat", tetrahedron({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}), "encloses no volume"},
+      {"no triangles", {{Point(0, 0, 0)}, {}}, "no triangles"},
+      {"empty", {}, "no triangles"},
+  };
+  for (const auto& [name, mesh, message] : cases) {
+    TriangleMesh copy = mesh;
+    try {
+      require_solid(copy);
+      ADD_FAILURE() << name << " was accepted";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << name << ": " << error.what();
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+    }
+    EXPECT_EQ(copy.triangles, mesh.triangles) << name;
+  }
+}
+
+TEST(ValidateMesh, NamesTheFirstFault) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  const std::vector<Point> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  const struct {
+    TriangleMesh mesh;
+    const char* message;
+  } cases[] = {
+      {{points, {{0, 1, 3}}}, "triangle 0 names vertex 3, but the mesh has 3 vertices"},
+      {{points, {{0, 1, 2}, {0, kNone, 1}}}, "triangle 1 names vertex 4294967295"},
+      {{{{0, 0, 0}, {0, nan, 0}, {1, 0, 0}}, {{0, 1, 2}}}, "vertex 1 "},
+      {{{{0, 0, 0}, {0, 0, 0}, {1, 0, -inf}}, {{0, 1, 2}}}, "vertex 2 "},
+      {{points, {}}, "no triangles"},
+  };
+  for (const auto& [mesh, message] : cases) {
+    try {
+      validate(mesh);
+      ADD_FAILURE() << message;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_NO_THROW(validate({points, {{0, 1, 2}}}));
+}
+
+}  // namespace
+}  // namespace orchard
