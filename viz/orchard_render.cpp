@@ -1,6 +1,5 @@
-// orchard-render FOLDER PICTURE.png WIDTH HEIGHT UP [TITLE]: draws the files of write_pipeline() in FOLDER, on the
-// display of $DISPLAY. A program of its own because VTK aborts where there is no display (see orchard/viz/render.h).
-#include <vtkAutoInit.h>
+// Draws the files of write_pipeline() on the display of $DISPLAY. A program of its own because VTK aborts where there
+// is none (see orchard/viz/render.h).
 #include <vtkCamera.h>
 #include <vtkImageData.h>
 #include <vtkImageShrink3D.h>
@@ -14,11 +13,14 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <numbers>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "panels.h"
 
@@ -27,14 +29,21 @@ namespace {
 using Eigen::Vector3d;
 using namespace orchard::detail;
 
-constexpr int kOversampling = 2;                      // pixels drawn per pixel kept, along each axis
-constexpr double kAzimuth = 0.62, kElevation = 0.40;  // radians: a three-quarter view from the front right, from above
+constexpr int kOversampling = 2;  // pixels drawn per pixel kept, along each axis
 
 constexpr double kMargin = 1.06;      // around what is drawn
 constexpr double kWidestPanel = 1.6;  // of its height
 
 struct Layout {
   int columns, rows, title_height, panel_width, panel_height, caption_height;
+};
+
+struct Request {
+  std::filesystem::path folder;
+  std::string png, title;
+  int width = 0, height = 1120;
+  char up = 'y';
+  double azimuth = 35, elevation = 23;  // degrees
 };
 
 struct View {
@@ -44,15 +53,17 @@ struct View {
   double depth = 1;              // half of it
 };
 
-View make_view(char up_axis, const std::vector<Extent>& extents) {
-  const int axis = up_axis - 'x';
+View make_view(const Request& request, const std::vector<Extent>& extents) {
+  const int axis = request.up - 'x';
   const Vector3d up = Vector3d::Unit(axis);
   // z up: the front is -y, as CAD has it; y up: the front is z.
   const Vector3d front = axis == 2 ? Vector3d(-Vector3d::UnitY()) : Vector3d(Vector3d::Unit((axis + 1) % 3));
   const Vector3d side = up.cross(front);
+  constexpr double kDegree = std::numbers::pi / 180;
+  const double azimuth = request.azimuth * kDegree, elevation = request.elevation * kDegree;
   View view;
   view.backward =
-      std::cos(kElevation) * (std::cos(kAzimuth) * front + std::sin(kAzimuth) * side) + std::sin(kElevation) * up;
+      std::cos(elevation) * (std::cos(azimuth) * front + std::sin(azimuth) * side) + std::sin(elevation) * up;
   view.right = up.cross(view.backward).normalized();
   view.up = view.backward.cross(view.right);
 
@@ -63,11 +74,11 @@ View make_view(char up_axis, const std::vector<Extent>& extents) {
     box.extend(seen - Vector3d::Constant(extent.radius));
     box.extend(seen + Vector3d::Constant(extent.radius));
   }
-  if (box.isEmpty()) throw std::runtime_error("nothing to draw");
+  if (box.isEmpty() || !(box.sizes().norm() > 0)) throw std::runtime_error("nothing to draw");
   const Vector3d middle = box.center();
   view.center = middle.x() * view.right + middle.y() * view.up + middle.z() * view.backward;
-  view.width = box.sizes().x();
-  view.height = box.sizes().y();
+  view.width = std::max(box.sizes().x(), 0.01 * box.sizes().norm());
+  view.height = std::max(box.sizes().y(), 0.01 * box.sizes().norm());
   view.depth = 0.5 * box.sizes().norm();
   return view;
 }
@@ -85,15 +96,19 @@ void aim(vtkCamera* camera, const View& view, const Layout& layout) {
   camera->SetClippingRange(1.5 * view.depth, 4.5 * view.depth);
 }
 
-// A line of text around (x, y), in smaller print if it would be wider than `width`; all in pixels.
-void add_text(vtkRenderer* renderer, const std::string& text, double x, double y, int pixels, bool bold, double width) {
-  constexpr double kLetter = 0.6;  // width of a letter, of its height: a little too much
-  pixels = std::min(pixels, static_cast<int>(width / kLetter / std::max(1.0, static_cast<double>(text.size()))));
+// The size of print, at most `pixels`, in which `text` is not wider than `width`; all in pixels.
+double fitting(const std::string& text, double pixels, double width) {
+  constexpr double kLetter = 0.54;  // width of a letter, of the size of print: on the safe side
+  return std::min(pixels, width / kLetter / static_cast<double>(std::max<std::size_t>(text.size(), 1)));
+}
+
+// A line of text around (x, y).
+void add_text(vtkRenderer* renderer, const std::string& text, double x, double y, double pixels, bool bold) {
   vtkNew<vtkTextActor> actor;
   actor->SetInput(text.c_str());
   vtkTextProperty* property = actor->GetTextProperty();
   property->SetFontFamilyToArial();
-  property->SetFontSize(pixels);
+  property->SetFontSize(std::max(1, static_cast<int>(pixels)));
   property->SetBold(bold ? 1 : 0);
   property->SetColor(bold ? 0.13 : 0.38, bold ? 0.16 : 0.41, bold ? 0.20 : 0.45);
   property->SetJustificationToCentered();
@@ -148,12 +163,14 @@ Layout make_layout(int width, int height, int panels, bool titled, const View& v
   return layout;
 }
 
-void render(const std::filesystem::path& folder, const char* png, int width, int height, char up,
-            const std::string& title) {
-  Panels content = make_panels(folder, 1.5 * kOversampling);
-  const View view = make_view(up, content.extents);
-  const Layout layout = make_layout(width, height, static_cast<int>(content.panels.size()), !title.empty(), view);
-  if (width == 0) width = layout.panel_width * layout.columns;
+void render(const Request& request) {
+  const int height = request.height;
+  const std::string& title = request.title;
+  Panels content = make_panels(request.folder, 1.5 * kOversampling);
+  const View view = make_view(request, content.extents);
+  const Layout layout =
+      make_layout(request.width, height, static_cast<int>(content.panels.size()), !title.empty(), view);
+  const int width = request.width > 0 ? request.width : layout.panel_width * layout.columns;
 
   vtkNew<vtkImageData> picture;
   picture->SetDimensions(width, height, 1);
@@ -166,50 +183,90 @@ void render(const std::filesystem::path& folder, const char* png, int width, int
   if (layout.title_height > 0) {
     vtkNew<vtkRenderer> renderer;
     renderer->SetBackground(1, 1, 1);
-    add_text(renderer, title, width * kOversampling / 2.0, layout.title_height * kOversampling / 2.0,
-             layout.title_height * kOversampling / 2, true, width * kOversampling);
+    const double line = layout.title_height * kOversampling, span = width * kOversampling;
+    add_text(renderer, title, span / 2, line / 2, fitting(title, 0.5 * line, span), true);
     paste(picture, draw(window, renderer, width, layout.title_height), 0, height - layout.title_height);
+  }
+  const double line = layout.caption_height * kOversampling, span = layout.panel_width * kOversampling;
+  double caption_print = 0.30 * line, detail_print = 0.24 * line;
+  for (const Panel& panel : content.panels) {
+    caption_print = fitting(panel.caption, caption_print, span);
+    detail_print = fitting(panel.detail, detail_print, span);
   }
   const int count = static_cast<int>(content.panels.size());
   for (int i = 0; i < count; ++i) {
     const Panel& panel = content.panels[static_cast<std::size_t>(i)];
     const int row = i / layout.columns, column = i % layout.columns;
     const int in_row = std::min(layout.columns, count - row * layout.columns);
-    const double line = layout.caption_height * kOversampling;
-    const double middle = layout.panel_width * kOversampling / 2.0;
-    add_text(panel.renderer, panel.caption, middle, 0.70 * line, static_cast<int>(0.30 * line), true, 2 * middle);
-    add_text(panel.renderer, panel.detail, middle, 0.28 * line, static_cast<int>(0.24 * line), false, 2 * middle);
+    add_text(panel.renderer, panel.caption, span / 2, 0.70 * line, caption_print, true);
+    add_text(panel.renderer, panel.detail, span / 2, 0.28 * line, detail_print, false);
     aim(panel.renderer->GetActiveCamera(), view, layout);
     const int left = (width - in_row * layout.panel_width) / 2 + column * layout.panel_width;
     const int bottom = height - layout.title_height - (row + 1) * layout.panel_height;
     paste(picture, draw(window, panel.renderer, layout.panel_width, layout.panel_height), left, bottom);
   }
   vtkNew<vtkPNGWriter> writer;
-  writer->SetFileName(png);
+  writer->SetFileName(request.png.c_str());
   writer->SetInputData(picture);
   writer->Write();
-  if (writer->GetErrorCode() != 0) throw std::runtime_error(std::string("cannot write ") + png);
+  if (writer->GetErrorCode() != 0) throw std::runtime_error("cannot write " + request.png);
 }
 
-bool is_size(const char* text, bool or_zero) {
-  const int value = std::atoi(text);
-  return (value >= 64 && value <= 8192) || (or_zero && std::strcmp(text, "0") == 0);
+constexpr const char* kUsage =
+    "usage: orchard-render FOLDER PICTURE.png [options]\n"
+    "Draws the .vtp files that orchard wrote into FOLDER. Needs an X display, for instance by xvfb-run.\n"
+    "  --width N      pixels, 64 to 8192; 0 (default): as wide as the model needs\n"
+    "  --height N     pixels, 64 to 8192 (1120)\n"
+    "  --up x|y|z     the model's axis that points up (y)\n"
+    "  --azimuth A    degrees from the model's front to its right (35)\n"
+    "  --elevation A  degrees above its middle, -80 to 80 (23)\n"
+    "  --title TEXT   above the panels\n";
+
+double number(const std::string& text, double low, double high) {
+  std::size_t used = 0;
+  const double value = std::stod(text, &used);
+  if (used != text.size() || !(value >= low && value <= high)) throw std::out_of_range(text);
+  return value;
+}
+
+// Throws std::logic_error if an argument makes no sense.
+Request parse(const std::vector<std::string>& arguments) {
+  Request request;
+  request.folder = arguments.at(0);
+  request.png = arguments.at(1);
+  for (std::size_t i = 2; i < arguments.size(); i += 2) {
+    const std::string &option = arguments[i], &value = arguments.at(i + 1);
+    if (option == "--width") {
+      request.width = value == "0" ? 0 : static_cast<int>(number(value, 64, 8192));
+    } else if (option == "--height") {
+      request.height = static_cast<int>(number(value, 64, 8192));
+    } else if (option == "--up" && (value == "x" || value == "y" || value == "z")) {
+      request.up = value[0];
+    } else if (option == "--azimuth") {
+      request.azimuth = number(value, -360, 360);
+    } else if (option == "--elevation") {
+      request.elevation = number(value, -80, 80);
+    } else if (option == "--title") {
+      request.title = value;
+    } else {
+      throw std::invalid_argument(option);
+    }
+  }
+  return request;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 6 || argc > 7 || std::strlen(argv[5]) != 1 || std::strchr("xyz", argv[5][0]) == nullptr ||
-      !is_size(argv[3], true) || !is_size(argv[4], false)) {
-    std::fputs(
-        "usage: orchard-render FOLDER PICTURE.png WIDTH HEIGHT x|y|z [TITLE]\n"
-        "Draws the .vtp files that orchard wrote into FOLDER; WIDTH and HEIGHT: 64 to 8192 pixels;\n"
-        "WIDTH 0: as wide as the model needs.\n",
-        stderr);
+  Request request;
+  try {
+    request = parse({argv + 1, argv + argc});
+  } catch (const std::logic_error&) {
+    std::fputs(kUsage, stderr);
     return 2;
   }
   try {
-    render(argv[1], argv[2], std::atoi(argv[3]), std::atoi(argv[4]), argv[5][0], argc == 7 ? argv[6] : "");
+    render(request);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "orchard-render: %s\n", error.what());
     return 1;

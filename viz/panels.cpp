@@ -30,7 +30,7 @@ using Data = vtkSmartPointer<vtkPolyData>;
 
 constexpr Color kInk{0.13, 0.16, 0.20};
 constexpr Color kStone{0.80, 0.83, 0.87};
-constexpr double kFeatureAngle = 25;  // degrees
+constexpr double kFeatureAngle = 40;  // degrees
 constexpr int kLevelsShown = 3;
 
 constexpr Color rgb(int hex) { return {((hex >> 16) & 255) / 255.0, ((hex >> 8) & 255) / 255.0, (hex & 255) / 255.0}; }

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <numbers>
 #include <optional>
 
 #include "child_process.h"
@@ -73,10 +74,13 @@ std::optional<std::string> run_renderer(const fs::path& renderer, const Pipeline
                                         const fs::path& folder, const std::string& display) {
   const fs::path log = folder / "render.log";
   static constexpr std::array kAxes{"x", "y", "z"};
+  constexpr double kDegrees = 180 / std::numbers::pi;
   detail::ChildProcess child(
       {.program = renderer,
-       .arguments = {folder.string(), (folder / "picture.png").string(), std::to_string(picture.width),
-                     std::to_string(picture.height), kAxes.at(static_cast<std::size_t>(picture.up)), picture.title},
+       .arguments = {folder.string(), (folder / "picture.png").string(), "--width", std::to_string(picture.width),
+                     "--height", std::to_string(picture.height), "--up", kAxes.at(static_cast<std::size_t>(picture.up)),
+                     "--azimuth", std::to_string(picture.azimuth * kDegrees), "--elevation",
+                     std::to_string(picture.elevation * kDegrees), "--title", picture.title},
        .display = display,
        .log = log});
   const std::optional<int> status = child.wait_until(Clock::now() + picture.timeout);

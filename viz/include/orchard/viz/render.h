@@ -14,9 +14,11 @@ namespace orchard {
 enum class UpAxis { x, y, z };
 
 struct PipelinePicture {
-  PipelineValues values;              // what is missing gets no panel: mesh, points, medial axis, three tree levels
-  std::string title;                  // above the panels; may be empty
-  UpAxis up = UpAxis::y;              // the mesh's axis that points up in the picture
+  PipelineValues values;  // what is missing gets no panel: mesh, points, medial axis, three tree levels
+  std::string title;      // above the panels; may be empty
+  UpAxis up = UpAxis::y;  // the mesh's axis that points up in the picture
+  // Where the eye is, in radians: from the model's front (z; -y where z is up) towards its right; above its middle.
+  double azimuth = 0.6, elevation = 0.4;
   int width = 0;                      // pixels, 64 to 8192; 0: as wide as the model and its captions need
   int height = 1120;                  // pixels
   std::chrono::seconds timeout{120};  // for drawing; a picture takes a few seconds
