@@ -1,0 +1,120 @@
+#include <fmt/core.h>
+
+#include <fstream>
+
+#include "commands.h"
+#include "console.h"
+#include "orchard/geometry/atomic_file.h"
+#include "orchard/geometry/error.h"
+#include "orchard/geometry/mesh_io.h"
+#include "orchard/runtime/tree_file.h"
+#include "orchard/spheretree/tree_io.h"
+#include "report.h"
+
+#ifdef ORCHARD_HAS_VIZ
+#include "orchard/viz/render.h"
+#include "orchard/viz/vtk_writer.h"
+#endif
+
+namespace orchard::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder))
+    throw InputError(folder.string() + ": cannot be made a folder; choose another with -o");
+  return folder;
+}
+
+std::string_view as_text(const std::vector<std::byte>& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+// Returns the files to tell the user about, each with what it is.
+using Written = std::vector<std::pair<fs::path, std::string>>;
+
+Written write_trees(const BuildCommand& command, const BuildResult& result) {
+  const fs::path stem = command.folder / command.mesh.stem();
+  Written written;
+  const auto write = [&](const char* extension, std::string_view bytes, const char* what) {
+    fs::path file = stem;
+    file += extension;
+    write_file(file, bytes);
+    written.emplace_back(file, what);
+  };
+  write(".orchard", as_text(runtime::serialize(result.packed)), "the sphere-tree for the run-time");
+  write(".sph", to_sph(result.tree), "the sphere-tree as text");
+  return written;
+}
+
+#ifdef ORCHARD_HAS_VIZ
+UpAxis parse_up(const std::string& up) { return up == "x" ? UpAxis::x : up == "z" ? UpAxis::z : UpAxis::y; }
+
+void write_views(const BuildCommand& command, const Surface& surface, const BuildResult& result, Written& written) {
+  const PipelineValues values{.surface = &surface,
+                              .sampling = result.axis ? &result.sampling : nullptr,
+                              .axis = result.axis ? &*result.axis : nullptr,
+                              .tree = &result.tree};
+  if (command.views) {
+    write_pipeline(command.folder, values);
+    written.emplace_back(command.folder / "pipeline.vtm", "open this in ParaView: all views at once");
+  }
+  if (!command.picture) return;
+  fs::path png = command.folder / command.mesh.stem();
+  png += ".png";
+  PipelinePicture picture;
+  picture.values = values;
+  picture.title = command.mesh.stem().string();
+  picture.up = parse_up(command.up);
+  const PictureStatus status = draw_pipeline(png, picture);
+  if (status) {
+    written.emplace_back(png, "the pipeline in one picture");
+  } else {
+    fmt::print(stderr, "orchard: no picture was made: {}\n", status.reason);
+  }
+}
+#else
+void write_views(const BuildCommand& command, const Surface&, const BuildResult&, Written&) {
+  if (command.picture) fmt::print(stderr, "orchard: no picture was made: this program was built without VTK\n");
+}
+#endif
+
+}  // namespace
+
+void build(const BuildCommand& command) {
+  const bool talk = !command.output.quiet && !command.output.json;
+  const Stopwatch reading;
+  TriangleMesh mesh = read_mesh(command.mesh);
+  if (require_solid(mesh) && talk)
+    fmt::print("{}: was inside out; its triangles were turned round\n", command.mesh.string());
+  const Surface surface(std::move(mesh));
+  const double seconds_reading = reading.seconds();
+
+  ProgressBar bar(talk);
+  BuildResult result = run_pipeline(surface, command.options, bar.callback());
+  result.seconds.insert(result.seconds.begin(), {"reading", seconds_reading});
+  bar.clear();
+
+  make_folder(command.folder);
+  const Stopwatch writing;
+  Written written = write_trees(command, result);
+  write_views(command, surface, result, written);
+  result.seconds.emplace_back("writing", writing.seconds());
+  const nlohmann::json report = build_json(surface, command.options, result);
+  fs::path report_file = command.folder / command.mesh.stem();
+  report_file += ".json";
+  write_file(report_file, report.dump(2) + "\n");
+  written.emplace_back(report_file, "this report as JSON");
+
+  if (command.output.json) fmt::print("{}\n", report.dump(2));
+  if (!talk) return;
+  fmt::print("{}: {} triangles, {} clusters, bounding radius {:.6g}\n", command.mesh.string(),
+             surface.mesh().triangles.size(), surface.clusters().count(), surface.bounding_radius());
+  print_build(result, surface.bounding_radius());
+  for (const auto& [file, what] : written) fmt::print("  {}  ({})\n", file.string(), what);
+}
+
+}  // namespace orchard::apps

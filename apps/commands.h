@@ -1,0 +1,39 @@
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "pipeline.h"
+
+// The commands of the program, one file each: parse (main.cpp), call, report. They throw; main() turns that into an
+// exit code and one line on stderr.
+namespace orchard::apps {
+
+struct Output {
+  bool quiet = false;  // no progress, no table
+  bool json = false;   // a JSON report on stdout instead of a table; no progress
+};
+
+struct BuildCommand {
+  std::filesystem::path mesh, folder;
+  BuildOptions options;
+  bool views = true;     // ParaView files, where the program was built with them
+  bool picture = false;  // a .png as well
+  std::string up = "y";  // the mesh's axis that points up in the picture
+  Output output;
+};
+void build(const BuildCommand& command);
+
+struct CollideCommand {
+  std::filesystem::path a, b;
+  std::string pose_a, pose;  // "tx ty tz qw qx qy qz" of a and b; empty: identity
+  Output output;
+};
+void collide(const CollideCommand& command);
+
+struct InspectCommand {
+  std::filesystem::path file;
+  Output output;
+};
+void inspect(const InspectCommand& command);
+
+}  // namespace orchard::apps

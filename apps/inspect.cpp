@@ -1,0 +1,143 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "commands.h"
+#include "orchard/geometry/error.h"
+#include "orchard/geometry/mesh_io.h"
+#include "orchard/runtime/tree_file.h"
+#include "orchard/spheretree/tree_io.h"
+#include "report.h"
+
+namespace orchard::apps {
+namespace {
+
+using nlohmann::json;
+
+std::string lower_extension(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+struct LevelSummary {
+  Index spheres = 0, leaves = 0;
+  double mean_radius = 0, max_radius = 0, max_error = 0;
+  void add(double radius, double error, bool leaf) {
+    ++spheres;
+    leaves += leaf ? 1 : 0;
+    mean_radius += radius;
+    max_radius = std::max(max_radius, radius);
+    max_error = std::max(max_error, error);
+  }
+};
+
+json levels_json(std::vector<LevelSummary>& levels) {
+  json rows = json::array();
+  for (LevelSummary& level : levels) {
+    level.mean_radius /= std::max<Index>(1, level.spheres);
+    rows.push_back({{"spheres", level.spheres},
+                    {"leaves", level.leaves},
+                    {"mean_radius", level.mean_radius},
+                    {"max_radius", level.max_radius},
+                    {"max_error", level.max_error}});
+  }
+  return rows;
+}
+
+LevelSummary& at(std::vector<LevelSummary>& levels, std::size_t level) {
+  if (levels.size() <= level) levels.resize(level + 1);
+  return levels[level];
+}
+
+json inspect_packed(const std::filesystem::path& file) {
+  runtime::PackedSphereTree tree;
+  const auto status = runtime::load_file(file.c_str(), tree);
+  if (status != runtime::LoadStatus::ok) throw InputError(file.string() + ": " + runtime::message(status));
+  struct Place {
+    std::uint32_t block, lane;
+    std::size_t level;
+  };
+  std::vector<LevelSummary> levels;
+  std::vector<Place> places{{0, 0, 0}};
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Place place = places[i];
+    const auto& block = tree.blocks[place.block];
+    const bool leaf = (block.count[place.lane] & runtime::kLeafBit) != 0;
+    at(levels, place.level).add(block.radius[place.lane], block.error[place.lane], leaf);
+    if (leaf) continue;
+    for (std::uint32_t child = 0; child < block.count[place.lane]; ++child)
+      places.push_back(
+          {block.first[place.lane] + child / runtime::kBlockWidth, child % runtime::kBlockWidth, place.level + 1});
+  }
+  return {{"kind", "sphere-tree"},
+          {"nodes", tree.node_count},
+          {"branching", tree.branching},
+          {"depth", tree.depth},
+          {"triangles", tree.triangles.size()},
+          {"bounding_radius", tree.bounding_radius},
+          {"vertex_error", tree.vertex_error},
+          {"origin", tree.origin},
+          {"bytes_per_node", static_cast<double>(tree.blocks.size() * sizeof(runtime::SiblingBlock)) / tree.node_count},
+          {"levels", levels_json(levels)}};
+}
+
+json inspect_sph(const std::filesystem::path& file) {
+  const SphereTree tree = read_sph(file);
+  std::vector<LevelSummary> levels;
+  for (const SphereNode& node : tree.nodes) at(levels, node.level).add(node.sphere.radius, 0, node.child_count == 0);
+  return {{"kind", "sphere-tree"},
+          {"nodes", tree.nodes.size()},
+          {"branching", tree.branching},
+          {"depth", tree.depth()},
+          {"levels", levels_json(levels)}};
+}
+
+json inspect_mesh(const std::filesystem::path& file) {
+  const Surface surface(read_mesh(file));
+  json report = mesh_json(surface);
+  report["kind"] = "mesh";
+  report["faults"] = surface.report().faults();
+  return report;
+}
+
+void print_levels(const json& levels) {
+  fmt::print("level  spheres   leaves  mean radius   max radius    max error\n");
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const json& level = levels[i];
+    fmt::print("{:5} {:8} {:8} {:12.6g} {:12.6g} {:12.6g}\n", i, level["spheres"].get<Index>(),
+               level["leaves"].get<Index>(), level["mean_radius"].get<double>(), level["max_radius"].get<double>(),
+               level["max_error"].get<double>());
+  }
+}
+
+void print(const std::filesystem::path& file, const json& report) {
+  fmt::print("{}: {}\n", file.string(), report["kind"].get<std::string>());
+  for (const auto& [key, value] : report.items()) {
+    if (key == "kind" || key == "levels" || key == "faults") continue;
+    fmt::print("  {:24} {}\n", key, value.dump());
+  }
+  if (report.contains("levels")) print_levels(report["levels"]);
+  if (!report.contains("faults")) return;
+  const auto faults = report["faults"].get<std::string>();
+  fmt::print("{}\n", faults.empty() ? "a solid: closed, manifold, oriented outward" : "not a solid: " + faults);
+}
+
+}  // namespace
+
+void inspect(const InspectCommand& command) {
+  const std::string extension = lower_extension(command.file);
+  const json report = extension == ".orchard" ? inspect_packed(command.file)
+                      : extension == ".sph"   ? inspect_sph(command.file)
+                                              : inspect_mesh(command.file);
+  if (command.output.json) {
+    fmt::print("{}\n", report.dump(2));
+  } else if (!command.output.quiet) {
+    print(command.file, report);
+  }
+}
+
+}  // namespace orchard::apps

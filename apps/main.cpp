@@ -1,0 +1,124 @@
+#include <fmt/core.h>
+#include <tbb/global_control.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <new>
+#include <optional>
+
+#include "commands.h"
+#include "orchard/geometry/error.h"
+
+namespace {
+
+using namespace orchard::apps;
+
+constexpr int kFailed = 1, kBadInput = 2;
+
+// What the user asked for, once parsed.
+struct Request {
+  BuildCommand build;
+  CollideCommand collide;
+  InspectCommand inspect;
+  int threads = 0;  // 0: as many as the machine has
+  std::function<void()> run;
+};
+
+void add_output_flags(CLI::App& command, Output& output) {
+  command.add_flag("--quiet", output.quiet, "Print nothing but errors");
+  command.add_flag("--json", output.json, "Print a JSON report instead of a table");
+}
+
+void add_build(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("build", "Build the sphere-tree of a closed triangle mesh");
+  BuildCommand& build = request.build;
+  command.add_option("mesh", build.mesh, "The mesh: .obj, .ply, .stl or .off")->required();
+  command.add_option("-o,--output", build.folder, "Folder for the tree, the views and the report")->required();
+  command.add_option("--method", build.options.method, "How to build: medial (default) or octree")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Method>{{"medial", Method::medial}, {"octree", Method::octree}}, CLI::ignore_case));
+  command.add_option("--depth", build.options.depth, "Levels below the root")
+      ->check(CLI::Range(1, 10))
+      ->capture_default_str();
+  command.add_option("--branching", build.options.branching, "Children of a sphere at most")
+      ->check(CLI::Range(2, 64))
+      ->capture_default_str();
+  command
+      .add_option("--samples", build.options.samples, "Surface points: more follow the shape better, and take longer")
+      ->check(CLI::Range(20, 10'000'000))
+      ->capture_default_str();
+  command.add_option("--seed", build.options.seed, "Seed of the random points")->capture_default_str();
+  command.add_option("--threads", request.threads, "Threads at most; the result does not depend on it")
+      ->check(CLI::Range(1, 1024));
+  command.add_flag("!--no-views", build.views, "Write no files for ParaView");
+  command.add_flag("--picture", build.picture, "Draw the pipeline to a .png as well");
+  command.add_option("--up", build.up, "The mesh's axis that points up in the picture")
+      ->check(CLI::IsMember({"x", "y", "z"}))
+      ->capture_default_str();
+  add_output_flags(command, build.output);
+  command.footer("Example:\n  orchard build data/lamp.obj -o out/lamp --picture");
+  command.callback([&request] { request.run = [&request] { orchard::apps::build(request.build); }; });
+}
+
+void add_collide(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("collide", "Ask whether two placed trees' objects touch, level by level");
+  CollideCommand& collide = request.collide;
+  command.add_option("a", collide.a, "An .orchard file")->required();
+  command.add_option("b", collide.b, "Another, or the same")->required();
+  command.add_option("--pose", collide.pose, "Where b is: \"tx ty tz qw qx qy qz\", a translation and a quaternion");
+  command.add_option("--pose-a", collide.pose_a, "Where a is, in the same form (default: where it was built)");
+  add_output_flags(command, collide.output);
+  command.footer("Example:\n  orchard collide out/lamp/lamp.orchard out/ship/ship.orchard --pose \"4 0 0 1 0 0 0\"");
+  command.callback([&request] { request.run = [&request] { orchard::apps::collide(request.collide); }; });
+}
+
+void add_inspect(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("inspect", "Say what a mesh or tree file holds and what is wrong with it");
+  InspectCommand& inspect = request.inspect;
+  command.add_option("file", inspect.file, "A mesh (.obj, .ply, .stl, .off) or a tree (.orchard, .sph)")->required();
+  add_output_flags(command, inspect.output);
+  command.footer("Example:\n  orchard inspect data/lamp.obj");
+  command.callback([&request] { request.run = [&request] { orchard::apps::inspect(request.inspect); }; });
+}
+
+int fail(int code, const char* message) {
+  fmt::print(stderr, "orchard: {}\n", message);
+  return code;
+}
+
+int run(const Request& request) {
+  std::optional<tbb::global_control> limit;
+  if (request.threads > 0)
+    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(request.threads));
+  request.run();
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"orchard: from a triangle mesh to its medial axis, its sphere-tree and collision answers"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", ORCHARD_VERSION);
+  app.footer("Example:\n  orchard build data/lamp.obj -o out/lamp\n\"orchard COMMAND --help\" explains a command.");
+  Request request;
+  add_build(app, request);
+  add_collide(app, request);
+  add_inspect(app, request);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kBadInput;
+  }
+  try {
+    return run(request);
+  } catch (const orchard::InputError& error) {
+    return fail(kBadInput, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(kFailed, "out of memory");
+  } catch (const std::exception& error) {
+    return fail(kFailed, error.what());
+  }
+}

@@ -1,0 +1,48 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "orchard/geometry/progress.h"
+#include "orchard/geometry/sampling.h"
+#include "orchard/geometry/surface.h"
+#include "orchard/medial/axis.h"
+#include "orchard/medial/gap_crossing.h"
+#include "orchard/runtime/packed_tree.h"
+#include "orchard/spheretree/cover.h"
+#include "orchard/spheretree/tree.h"
+#include "orchard/voronoi/highest_first.h"
+
+namespace orchard::apps {
+
+enum class Method { medial, octree };
+
+struct BuildOptions {
+  Method method = Method::medial;
+  Index depth = 3;       // levels below the root
+  Index branching = 8;   // children of a node at most; an octree has 8
+  Index samples = 5000;  // surface points: four fifths on faces, one fifth on edges
+  std::uint64_t seed = 1;
+};
+
+// Everything that one run from a mesh to a packed tree made, and how long each stage took.
+struct BuildResult {
+  std::vector<std::pair<std::string, double>> seconds;  // stage, time
+  SurfaceSampling sampling;
+  HighestFirstReport voronoi;
+  Index voronoi_vertices = 0;
+  RepairReport repair;
+  std::optional<MedialAxis> axis;  // not for an octree
+  Index axis_components = 0;
+  SphereTree tree;
+  SphereTree octree;  // of the same depth, to compare with
+  CoverReport cover;
+  runtime::PackedSphereTree packed;
+};
+
+// Throws InputError if the surface or an option does not allow it, and Error if the packed tree fails its certificate:
+// what this returns is conservative.
+BuildResult run_pipeline(const Surface& surface, const BuildOptions& options, const Progress& progress);
+
+}  // namespace orchard::apps
