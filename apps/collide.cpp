@@ -1,0 +1,143 @@
+#include <fmt/core.h>
+
+#include <array>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "orchard/geometry/error.h"
+#include "orchard/runtime/narrow_phase.h"
+#include "orchard/runtime/tree_file.h"
+
+namespace orchard::apps {
+namespace {
+
+using nlohmann::json;
+using runtime::Answer;
+
+runtime::PackedSphereTree load(const std::filesystem::path& file) {
+  runtime::PackedSphereTree tree;
+  const auto status = runtime::load_file(file.c_str(), tree);
+  if (status != runtime::LoadStatus::ok)
+    throw InputError(file.string() + ": " + runtime::message(status) + "; make one with \"orchard build\"");
+  return tree;
+}
+
+// "tx ty tz qw qx qy qz"; a quaternion of any length but zero.
+runtime::Pose parse_pose(const std::string& text, const char* option) {
+  if (text.empty()) return {};
+  const auto fail = [&] {
+    throw InputError(std::string(option) + " \"" + text +
+                     "\": expected seven finite numbers, a translation and a "
+                     "quaternion other than zero: \"tx ty tz qw qx qy qz\"");
+  };
+  std::array<double, 7> v{};
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  const auto skip_blanks = [&] {
+    while (at != end && (*at == ' ' || *at == '\t' || *at == ',')) ++at;
+  };
+  for (double& value : v) {
+    skip_blanks();
+    const auto [next, error] = std::from_chars(at, end, value);
+    if (error != std::errc() || !std::isfinite(value)) fail();
+    at = next;
+  }
+  skip_blanks();
+  if (at != end) fail();
+  const auto pose = runtime::pose_from_quaternion({v[3], v[4], v[5], v[6]}, {v[0], v[1], v[2]});
+  if (!pose) fail();
+  return *pose;
+}
+
+const char* name(Answer answer) {
+  switch (answer) {
+    case Answer::no:
+      return "no";
+    case Answer::maybe:
+      return "maybe";
+    case Answer::yes:
+      return "yes";
+  }
+  return "";
+}
+
+// What is known after one level. Bounds are finite once the roots met.
+json row(const runtime::NarrowPhase& narrow, const std::string& level, double microseconds) {
+  json entry{{"level", level},
+             {"answer", name(narrow.answer())},
+             {"pairs", narrow.pairs()},
+             {"sphere_tests", narrow.pair_tests()},
+             {"triangle_tests", narrow.triangle_tests()},
+             {"lower_bound", narrow.lower_bound()},
+             {"microseconds", microseconds}};
+  entry["separation_bound"] = std::isfinite(narrow.separation_bound()) ? json(narrow.separation_bound()) : json();
+  return entry;
+}
+
+json run(runtime::NarrowPhase& narrow, const runtime::Pose& a, const runtime::Pose& b) {
+  using Clock = std::chrono::steady_clock;
+  const auto timed = [](auto&& step) {
+    const auto begin = Clock::now();
+    step();
+    return std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
+  };
+  // Once unseen, so that the times below are those of a query that a program makes every frame.
+  narrow.start(a, b);
+  while (!narrow.finished()) narrow.refine();
+  json levels = json::array();
+  double microseconds = timed([&] { narrow.start(a, b); });
+  levels.push_back(row(narrow, "0", microseconds));
+  while (!narrow.finished()) {
+    const auto triangle_tests = narrow.triangle_tests();
+    const auto level = narrow.level();
+    microseconds = timed([&] { narrow.refine(); });
+    const bool exact = narrow.triangle_tests() > triangle_tests || narrow.level() == level;
+    levels.push_back(row(narrow, exact ? "exact" : std::to_string(narrow.level()), microseconds));
+  }
+  return levels;
+}
+
+void print_contact(const runtime::Contact& contact, bool exact) {
+  fmt::print("{} at ({:.6g}, {:.6g}, {:.6g})", exact ? "triangles meet" : "nearest spheres meet", contact.center[0],
+             contact.center[1], contact.center[2]);
+  if (exact) fmt::print(": triangle {} of a, {} of b", contact.triangle_a, contact.triangle_b);
+  fmt::print("\n");
+}
+
+void print(const json& levels) {
+  fmt::print("level  answer     pairs  sphere tests  triangle tests  separation at most  microseconds\n");
+  for (const json& level : levels) {
+    const json& bound = level["separation_bound"];
+    fmt::print("{:>5}  {:6} {:9} {:13} {:15} {:>19} {:13.2f}\n", level["level"].get<std::string>(),
+               level["answer"].get<std::string>(), level["pairs"].get<std::size_t>(),
+               level["sphere_tests"].get<std::uint64_t>(), level["triangle_tests"].get<std::uint64_t>(),
+               bound.is_null() ? std::string("-") : fmt::format("{:.6g}", bound.get<double>()),
+               level["microseconds"].get<double>());
+  }
+}
+
+}  // namespace
+
+void collide(const CollideCommand& command) {
+  const runtime::PackedSphereTree a = load(command.a), b = load(command.b);
+  const runtime::Pose pose_a = parse_pose(command.pose_a, "--pose-a"), pose_b = parse_pose(command.pose, "--pose");
+  runtime::NarrowPhase narrow(a, b);
+  const json levels = run(narrow, pose_a, pose_b);
+  if (narrow.out_of_memory()) throw Error("collide: out of memory");
+  if (command.output.json) {
+    const json report{{"answer", name(narrow.answer())}, {"levels", levels}};
+    fmt::print("{}\n", report.dump(2));
+    return;
+  }
+  if (command.output.quiet) {
+    fmt::print("{}\n", name(narrow.answer()));
+    return;
+  }
+  print(levels);
+  if (narrow.answer() != Answer::no) print_contact(narrow.contact(), narrow.answer() == Answer::yes);
+}
+
+}  // namespace orchard::apps

@@ -68,6 +68,7 @@ class Merger {
       if (groups_[best.a].alive && groups_[best.b].alive) merge(best);
     }
     std::erase_if(groups_, [](const Group& group) { return !group.alive; });
+    for (Group& group : groups_) tighten(group);
     return std::move(groups_);
   }
 
@@ -102,29 +103,30 @@ class Merger {
 
   Candidate candidate(Index a, Index b) {
     const std::vector<Index> points = set_union_of(groups_[a].points, groups_[b].points);
-    positions_.clear();
-    for (Index point : points) positions_.push_back(axis_.points[point]);
-    const Sphere sphere = tight_ball(positions_);
+    const Sphere sphere = ritter_ball(positions_of(points));
     return {cost_of(sphere, points), std::min(a, b), std::max(a, b), sphere};
   }
 
-  // Ritter's ball, then its centre drawn towards the farthest point in shrinking steps (Badoiu and Clarkson 2003): a
-  // few passes take most of the 5 % that Ritter's ball is too large.
-  static Sphere tight_ball(const std::vector<Point>& points) {
-    Sphere best = ritter_ball(points);
-    Point center = best.center;
-    for (int pass = 1; pass <= 16; ++pass) {
-      const Point* farthest = &points[0];
-      double reach = -1;
-      for (const Point& point : points) {
-        const double distance = (point - center).squaredNorm();
-        if (distance > reach) reach = distance, farthest = &point;
-      }
-      const double radius = std::sqrt(reach) * (1 + 0x1p-50);
-      if (radius < best.radius) best = {center, radius};
-      center += (*farthest - center) * (0.12 / pass);
+  const std::vector<Point>& positions_of(const std::vector<Index>& points) {
+    positions_.clear();
+    for (Index point : points) positions_.push_back(axis_.points[point]);
+    return positions_;
+  }
+
+  // Draws the centre towards the farthest point in shrinking steps (Badoiu and Clarkson 2003), which takes most of the
+  // 5 % that Ritter's ball is too large. Too slow for every candidate, and worth it for those that stay.
+  void tighten(Group& group) {
+    const std::vector<Point>& points = positions_of(group.points);
+    Point center = group.sphere.center;
+    for (int pass = 1; pass <= 64; ++pass) {
+      const auto farther = [&](const Point& p, const Point& q) {
+        return (p - center).squaredNorm() < (q - center).squaredNorm();
+      };
+      const Point& farthest = *std::max_element(points.begin(), points.end(), farther);
+      const double radius = (farthest - center).norm() * (1 + 0x1p-50);
+      if (radius < group.sphere.radius) group.sphere = {center, radius};
+      center += (farthest - center) * (0.2 / pass);
     }
-    return best;
   }
 
   void consider(Index a, Index b) { queue_.push(candidate(a, b)); }

@@ -1,0 +1,44 @@
+#include "orchard/spheretree/measure.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "orchard/spheretree/octree.h"
+#include "support.h"
+
+namespace orchard {
+namespace {
+
+using namespace test;
+
+TEST(Measure, BoundsTheDistanceOfEveryPointOfTheBall) {
+  const Surface surface(u_shape(0.3));
+  SphereTree tree = octree(surface);
+  measure(tree, surface);
+  Random random(1, 1);
+  for (const SphereNode& node : tree.nodes) {
+    EXPECT_NEAR(node.center_distance, surface.signed_distance(node.sphere.center), 1e-12);
+    EXPECT_LE(node.inaccuracy, node.distance_bound + 1e-12);
+    for (int i = 0; i < 20; ++i) {
+      Vector direction(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+      const Point point = node.sphere.center + node.sphere.radius * direction.normalized();
+      const double distance = std::max(0.0, surface.signed_distance(point));
+      EXPECT_LE(distance, node.distance_bound);
+      EXPECT_LE(distance, node.inaccuracy + 1e-12);
+    }
+  }
+}
+
+TEST(Measure, FallsBackToTheDistanceBoundOnAnOpenSurface) {
+  const Surface surface(open_box());
+  SphereTree tree = octree(surface);
+  measure(tree, surface);
+  for (const SphereNode& node : tree.nodes) {
+    EXPECT_EQ(node.inaccuracy, node.distance_bound);
+    EXPECT_GE(node.distance_bound, node.sphere.radius);
+  }
+}
+
+}  // namespace
+}  // namespace orchard

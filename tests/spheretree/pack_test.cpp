@@ -1,0 +1,124 @@
+#include "orchard/spheretree/pack.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "orchard/geometry/error.h"
+#include "orchard/spheretree/certify.h"
+#include "orchard/spheretree/cover.h"
+#include "orchard/spheretree/measure.h"
+#include "orchard/spheretree/merging.h"
+#include "orchard/spheretree/octree.h"
+#include "support.h"
+
+namespace orchard {
+namespace {
+
+using namespace test;
+
+SphereTree measured(const Surface& surface, Index branching, Index depth) {
+  SphereTree tree = merge_tree(surface, axis_of(surface), {.depth = depth, .branching = branching});
+  cover(tree, surface);
+  measure(tree, surface);
+  return tree;
+}
+
+std::vector<TriangleMesh> meshes() {
+  return {torus(24, 12), l_shape(), transformed(u_shape(0.3), 1, Vector(1e5, 3e5, -2e5)),
+          transformed(torus(16, 8), 1e-6, Vector::Zero())};
+}
+
+TEST(Pack, KeepsEveryBallInsideItsPackedOneAndEveryBoundBelowItsPackedOne) {
+  for (const TriangleMesh& mesh : meshes()) {
+    const Surface surface(mesh);
+    const SphereTree tree = measured(surface, 8, 3);
+    const auto packed = pack(tree, surface);
+    ASSERT_EQ(runtime::structure_fault(packed), nullptr);
+    const auto balls = path_balls(packed);
+    ASSERT_EQ(balls.size(), tree.nodes.size());
+    const Point origin(packed.origin[0], packed.origin[1], packed.origin[2]);
+    for (std::size_t i = 0; i < balls.size(); ++i) {
+      const SphereNode& node = tree.nodes[i];
+      EXPECT_EQ(balls[i].parent, node.parent);
+      EXPECT_EQ(balls[i].leaf, node.child_count == 0);
+      const double moved = (node.sphere.center - origin - balls[i].center).norm();
+      EXPECT_LE(moved + node.sphere.radius, balls[i].radius);
+      EXPECT_NEAR(node.sphere.radius, balls[i].radius, 1e-6 * surface.bounding_radius());
+    }
+    for (const auto& block : packed.blocks)
+      for (std::size_t lane = 0; lane < runtime::kBlockWidth; ++lane) {
+        if (block.radius[lane] < 0) continue;
+        const Point center = origin + Vector(block.x[lane], block.y[lane], block.z[lane]);
+        const double distance = surface.signed_distance(center), slack = 1e-15 * origin.norm();
+        EXPECT_GE(block.depth[lane], distance - slack);
+        EXPECT_GE(block.error[lane], std::max(0.0, distance + block.radius[lane]) - slack);
+      }
+  }
+}
+
+TEST(Pack, PassesItsCertificateForAnyBranching) {
+  const Surface surface(u_shape(0.3));
+  for (const Index branching : {2u, 3u, 8u, 9u, 20u, 64u}) {
+    const auto packed = pack(measured(surface, branching, 2), surface);
+    EXPECT_EQ(runtime::structure_fault(packed), nullptr);
+    EXPECT_TRUE(certify(surface, packed).complete()) << branching;
+  }
+}
+
+TEST(Pack, ListsEachTriangleInEveryLeafThatTouchesIt) {
+  const Surface surface(l_shape());
+  const auto packed = pack(measured(surface, 8, 2), surface);
+  const auto balls = path_balls(packed);
+  const Point origin(packed.origin[0], packed.origin[1], packed.origin[2]);
+  // Leaves in breadth-first order, with their lists.
+  std::vector<std::vector<Index>> lists;
+  for (const auto& block : packed.blocks)
+    for (std::size_t lane = 0; lane < runtime::kBlockWidth; ++lane) {
+      if (block.radius[lane] < 0) continue;
+      lists.emplace_back();
+      if ((block.count[lane] & runtime::kLeafBit) == 0) continue;
+      const std::uint32_t count = block.count[lane] & ~runtime::kLeafBit;
+      for (std::uint32_t k = 0; k < count; ++k) lists.back().push_back(packed.leaf_triangles[block.first[lane] + k]);
+    }
+  ASSERT_EQ(lists.size(), balls.size());
+  for (const Point& point : points_on(surface, 40, 3)) {
+    const Index triangle = surface.closest(point).triangle;
+    for (std::size_t i = 0; i < balls.size(); ++i) {
+      if (!balls[i].leaf) continue;
+      bool inside = true;
+      for (Index n = static_cast<Index>(i); n != kNone; n = balls[n].parent)
+        inside = inside && (point - origin - balls[n].center).norm() < balls[n].radius;
+      if (!inside) continue;
+      std::vector<Index> around;
+      const ClosestPoint at = surface.closest(point);
+      surface.triangles_at(at.triangle, at.feature, around);
+      EXPECT_TRUE(std::find(lists[i].begin(), lists[i].end(), triangle) != lists[i].end());
+    }
+  }
+}
+
+TEST(Certify, RejectsATreeWithAShrunkenOrMovedLeaf) {
+  const Surface surface(torus(24, 12));
+  const auto good = pack(measured(surface, 8, 2), surface);
+  ASSERT_TRUE(certify(surface, good).complete());
+  int rejected = 0;
+  for (std::size_t block = 1; block < good.blocks.size(); ++block) {
+    auto shrunken = good;
+    shrunken.blocks[block].radius[0] *= 0.8f;
+    auto moved = good;
+    moved.blocks[block].x[0] += 0.3f;
+    rejected += !certify(surface, shrunken).complete();
+    rejected += !certify(surface, moved).complete();
+  }
+  EXPECT_EQ(rejected, 2 * static_cast<int>(good.blocks.size() - 1));
+}
+
+TEST(Pack, RefusesATreeWithoutARoot) {
+  const Surface surface(torus(24, 12));
+  EXPECT_THROW(pack(SphereTree{}, surface), Error);
+}
+
+}  // namespace
+}  // namespace orchard
