@@ -1,0 +1,102 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <vector>
+
+#include "../fuzz/reader_entry.h"
+#include "orchard/geometry/random.h"
+
+namespace orchard {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Format {
+  const char* name;
+  TriangleMesh (*reader)(std::string_view, const std::string&);
+};
+
+const Format kFormats[] = {{"obj", read_obj}, {"ply", read_ply}, {"stl", read_stl}, {"off", read_off}};
+
+using Bytes = std::vector<std::uint8_t>;
+
+// In the order of their names.
+std::vector<std::pair<std::string, Bytes>> corpus(const Format& format) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(fs::path(ORCHARD_FUZZ_CORPUS) / format.name)) files.push_back(entry);
+  std::ranges::sort(files);
+  std::vector<std::pair<std::string, Bytes>> result;
+  for (const fs::path& file : files) {
+    std::ifstream stream(file, std::ios::binary);
+    result.emplace_back(file.filename().string(), Bytes(std::istreambuf_iterator<char>(stream), {}));
+  }
+  return result;
+}
+
+TEST(FuzzCorpus, GivesAMeshOrAnInputError) {
+  for (const Format& format : kFormats) {
+    const auto files = corpus(format);
+    EXPECT_GE(files.size(), 5u) << format.name;
+    int accepted = 0;
+    for (const auto& [name, bytes] : files) {
+      EXPECT_NO_THROW(accepted += test::read_bytes(format.reader, bytes.data(), bytes.size())) << format.name << name;
+    }
+    EXPECT_GE(accepted, 2) << format.name;
+  }
+}
+
+TEST(FuzzCorpus, SurvivesBeingCutAnywhere) {
+  for (const Format& format : kFormats) {
+    for (const auto& [name, bytes] : corpus(format)) {
+      for (std::size_t size = 0; size < std::min<std::size_t>(bytes.size(), 2000); ++size) {
+        // A copy, so that the sanitizers see a reader that reads on.
+        const Bytes cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+        ASSERT_NO_THROW(test::read_bytes(format.reader, cut.data(), cut.size()))
+            << format.name << name << " at " << size;
+      }
+    }
+  }
+}
+
+TEST(FuzzCorpus, SurvivesRandomDamage) {
+  for (const Format& format : kFormats) {
+    std::uint64_t item = 0;
+    for (const auto& [name, bytes] : corpus(format)) {
+      for (int trial = 0; trial < 200; ++trial) {
+        Random random(1, 2, item++);
+        Bytes damaged = bytes;
+        for (std::uint64_t edits = 1 + random.below(3); edits > 0 && !damaged.empty(); --edits) {
+          const auto at = damaged.begin() + static_cast<std::ptrdiff_t>(random.below(damaged.size()));
+          switch (random.below(3)) {
+            case 0:
+              *at = static_cast<std::uint8_t>(random.bits());
+              break;
+            case 1:
+              damaged.erase(at);
+              break;
+            default:
+              damaged.insert(at, damaged[random.below(damaged.size())]);
+          }
+        }
+        ASSERT_NO_THROW(test::read_bytes(format.reader, damaged.data(), damaged.size()))
+            << format.name << name << " item " << item - 1;
+      }
+    }
+  }
+}
+
+TEST(FuzzCorpus, SurvivesEveryFormatReadAsEveryOther) {
+  for (const Format& format : kFormats) {
+    for (const Format& other : kFormats) {
+      for (const auto& [name, bytes] : corpus(other)) {
+        EXPECT_NO_THROW(test::read_bytes(format.reader, bytes.data(), bytes.size())) << format.name << name;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace orchard
