@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdlib>
@@ -21,8 +22,7 @@ namespace orchard::detail {
 namespace {
 
 constexpr std::chrono::milliseconds kPollInterval{5};
-constexpr std::chrono::seconds kPatienceAtEnd{2};        // between asking a program to end and killing it
-constexpr std::chrono::seconds kPatienceForDisplay{10};  // Xvfb takes 0.1 s on an idle machine
+constexpr std::chrono::seconds kPatienceAtEnd{2};  // between asking a program to end and killing it
 
 std::vector<std::string> environment_with(const std::string& display) {
   std::vector<std::string> variables;
@@ -142,7 +142,8 @@ std::filesystem::path find_in_path(const std::string& name) {
   return {};
 }
 
-VirtualDisplay::VirtualDisplay(const std::filesystem::path& xvfb, const std::filesystem::path& log) {
+VirtualDisplay::VirtualDisplay(const std::filesystem::path& xvfb, const std::filesystem::path& log,
+                               Clock::duration patience) {
   Pipe pipe;
   // -terminate: should this process be killed, the server follows its last client.
   server_.emplace(
@@ -152,7 +153,7 @@ VirtualDisplay::VirtualDisplay(const std::filesystem::path& xvfb, const std::fil
              .log = log,
              .passed_descriptor = pipe.writing_end()});
   pipe.close_writing_end();
-  const std::string number = read_line(pipe.reading_end(), Clock::now() + kPatienceForDisplay);
+  const std::string number = read_line(pipe.reading_end(), Clock::now() + patience);
   if (number.empty()) throw Error("Xvfb did not start");
   name_ = ":" + number;
 }

@@ -42,8 +42,8 @@ std::filesystem::path find_in_path(const std::string& name);
 // A virtual X server (Xvfb) that lives as long as this value.
 class VirtualDisplay {
  public:
-  // Returns once the server takes connections. Throws Error if it does not within a few seconds.
-  VirtualDisplay(const std::filesystem::path& xvfb, const std::filesystem::path& log);
+  // Returns once the server takes connections. Throws Error if that takes longer than `patience`.
+  VirtualDisplay(const std::filesystem::path& xvfb, const std::filesystem::path& log, Clock::duration patience);
   const std::string& name() const { return name_; }
 
  private:

@@ -21,6 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 using detail::Clock;
 
+constexpr std::chrono::seconds kPatienceForDisplay{10};  // Xvfb takes 0.1 s on an idle machine
+
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -98,7 +100,7 @@ std::optional<std::string> run_on_virtual_display(const fs::path& renderer, cons
   if (xvfb.empty()) return "Xvfb (package xvfb) is not in PATH";
   const fs::path log = folder / "xvfb.log";
   try {
-    const detail::VirtualDisplay display(xvfb, log);
+    const detail::VirtualDisplay display(xvfb, log, kPatienceForDisplay);
     return run_renderer(renderer, picture, folder, display.name());
   } catch (const Error& error) {
     return error.what() + last_words(log);
