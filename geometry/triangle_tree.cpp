@@ -72,7 +72,7 @@ Float4 TriangleTree::squared_distances(const Query& query, const Leaf& leaf) {
   };
   squared = min(squared, to_edge(x, leaf.foot, leaf.inverse_left));
   squared = min(squared, to_edge(beyond, back, leaf.inverse_right));
-  const auto within = (y >= zero) & (leaf.height * x >= leaf.foot * y) & (leaf.height * beyond <= back * y);
+  const auto within = (y > zero) & (leaf.height * x > leaf.foot * y) & (leaf.height * beyond < back * y);
   return (within ? zero : squared) + z * z;
 }
 
