@@ -93,7 +93,12 @@ bool triangles_intersect(const Triangle& a, const Triangle& b) {
   }
   const Point na = cross(ea[0], ea[1]), nb = cross(eb[0], eb[1]);
   if (separated_along(na, a, b) || separated_along(nb, a, b)) return false;
+  const Point offset = minus(b[0], a[0]);  // serves triangles that are segments or points
+  if (separated_along(offset, a, b)) return false;
   for (std::size_t i = 0; i < 3; ++i) {
+    for (const Point& e : {ea[i], eb[i]}) {
+      if (separated_along(cross(e, cross(offset, e)), a, b)) return false;
+    }
     // In-plane axes serve coplanar triangles; between others they are merely valid.
     if (separated_along(cross(na, ea[i]), a, b) || separated_along(cross(nb, eb[i]), a, b)) return false;
     for (const Point& e : eb) {

@@ -1,0 +1,430 @@
+#include "orchard/runtime/narrow_phase.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "support.h"
+
+namespace orchard::runtime {
+namespace {
+
+using namespace orchard::runtime::test;
+
+struct Body {
+  std::string name;
+  PackedSphereTree tree;
+  bool closed;
+};
+
+std::vector<Body> bodies() {
+  const auto make = [](std::string name, const Mesh& mesh, const TreeOptions& options = {}) {
+    return Body{std::move(name), build_tree(mesh, options), mesh.closed};
+  };
+  return {
+      make("box in one node", box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}), {.leaf_triangles = 12}),
+      make("box, one triangle a leaf", box({0, 0, 0}, {1, 2, 0.25}), {.branching = 2, .leaf_triangles = 1}),
+      make("torus", torus(12, 6, 1, 0.3)),
+      make("torus, 13 children", torus(14, 6, 1, 0.3), {.branching = 13, .leaf_triangles = 2}),
+      make("deep binary sphere", uv_sphere(8, 6, 1), {.branching = 2, .leaf_triangles = 1}),
+      make("spikes", spikes(5, 9, 7), {.branching = 5, .leaf_triangles = 2}),
+      make("l-shape off its origin", l_shape(), {.branching = 4, .leaf_triangles = 1, .origin = {1000, -2000, 500}}),
+      make("soup", soup(11, 60), {.branching = 8, .leaf_triangles = 1}),
+      make("cut-off soup", soup(12, 60), {.branching = 3, .leaf_triangles = 1, .max_depth = 2}),
+  };
+}
+
+// Puts the tree's own middle, not its mesh's origin, `offset` away from the world's.
+Pose centered(const PackedSphereTree& tree, Pose pose) {
+  const SiblingBlock& root = tree.blocks[0];
+  const Vec middle = {tree.origin[0] + root.x[0], tree.origin[1] + root.y[0], tree.origin[2] + root.z[0]};
+  const Vec moved = rotate(pose, middle);
+  for (std::size_t i = 0; i < 3; ++i) pose.translation[i] -= moved[i];
+  return pose;
+}
+
+using Placed = std::vector<Triangle>;
+
+bool inside(const std::array<long double, 3>& p, const Placed& solid) {
+  long double angle = 0;
+  for (const Triangle& t : solid) {
+    std::array<std::array<long double, 3>, 3> v{};
+    std::array<long double, 3> length{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) v[i][k] = t[i][k] - p[k];
+      length[i] = std::sqrt(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]);
+    }
+    const auto dot = [&v](std::size_t i, std::size_t j) {
+      return v[i][0] * v[j][0] + v[i][1] * v[j][1] + v[i][2] * v[j][2];
+    };
+    const long double volume = v[0][0] * (v[1][1] * v[2][2] - v[1][2] * v[2][1]) +
+                               v[0][1] * (v[1][2] * v[2][0] - v[1][0] * v[2][2]) +
+                               v[0][2] * (v[1][0] * v[2][1] - v[1][1] * v[2][0]);
+    angle += 2 * std::atan2(volume, length[0] * length[1] * length[2] + dot(0, 1) * length[2] + dot(1, 2) * length[0] +
+                                        dot(2, 0) * length[1]);
+  }
+  return angle > 2 * std::numbers::pi_v<long double>;
+}
+
+struct Truth {
+  bool touch;
+  double surface_gap, solid_gap;
+};
+
+Truth truth_of(const Body& a, const Body& b, const Pose& pose_a, const Pose& pose_b) {
+  const Placed pa = placed_triangles(a.tree, pose_a), pb = placed_triangles(b.tree, pose_b);
+  if (surfaces_intersect(pa, pb)) return {true, 0, 0};
+  const double gap = static_cast<double>(surface_distance(pa, pb));
+  const bool nested = (a.closed && inside(pb[0][0], pa)) || (b.closed && inside(pa[0][0], pb));
+  return {false, gap, nested ? 0 : gap};
+}
+
+// Everything that must hold at every moment of a query, level by level.
+void check_query(const Body& a, const Body& b, const Pose& pose_a, const Pose& pose_b, const Truth& truth) {
+  NarrowPhase query(a.tree, b.tree);
+  const double tolerance = 1e-12 * (1 + std::fabs(pose_a.translation[0]));
+  double bound = std::numeric_limits<double>::infinity();
+  Answer answer = query.start(pose_a, pose_b);
+  for (std::uint32_t level = 0;; ++level) {
+    ASSERT_EQ(query.level(), level);
+    ASSERT_NE(answer, truth.touch ? Answer::no : Answer::yes) << "at level " << level;
+    ASSERT_GE(query.separation_bound(), truth.solid_gap - tolerance);
+    ASSERT_LE(query.separation_bound(), bound);
+    ASSERT_GE(query.lower_bound(), 0);
+    ASSERT_LE(query.lower_bound(), truth.surface_gap + tolerance);
+    ASSERT_EQ(query.pairs() == 0, answer == Answer::no && query.triangle_tests() == 0);
+    bound = query.separation_bound();
+    if (query.finished()) break;
+    ASSERT_EQ(answer, Answer::maybe);
+    answer = query.refine();
+  }
+  ASSERT_EQ(answer, truth.touch ? Answer::yes : Answer::no);
+  ASSERT_EQ(query.lower_bound() > 0, answer == Answer::no && query.triangle_tests() == 0);
+  if (answer == Answer::yes) {
+    ASSERT_EQ(query.separation_bound(), 0);
+    const Contact contact = query.contact();
+    const Triangle ta = placed_triangles(a.tree, pose_a).at(contact.triangle_a);
+    const Triangle tb = placed_triangles(b.tree, pose_b).at(contact.triangle_b);
+    ASSERT_LE(triangle_distance(ta, tb), 1e-12 * (1 + std::fabs(pose_a.translation[0])));
+    const std::array<long double, 3> center = {contact.center[0], contact.center[1], contact.center[2]};
+    ASSERT_LE(point_distance(center, ta), 1e-8);
+    ASSERT_LE(point_distance(center, tb), 1e-8);
+  }
+  const std::uint32_t deepest = std::max(a.tree.depth, b.tree.depth);
+  ASSERT_LE(query.level(), deepest + 1);
+  ASSERT_EQ(query.refine(), answer);  // nothing happens any more
+}
+
+TEST(NarrowPhase, AgreesWithBruteForceAtRandomPoses) {
+  const auto all = bodies();
+  int touching = 0, apart = 0;
+  for (std::uint64_t seed = 0; seed < 1500; ++seed) {
+    SCOPED_TRACE(seed);
+    Draw draw(seed);
+    const Body &a = all[draw.bits() % all.size()], &b = all[draw.bits() % all.size()];
+    SCOPED_TRACE(a.name + " / " + b.name);
+    const double reach = a.tree.bounding_radius + b.tree.bounding_radius;
+    const Pose pose_a = centered(a.tree, draw.pose(5));
+    Pose pose_b = draw.pose(draw.uniform(0, 1.1 * reach));
+    const Vec to = transform(pose_a, {a.tree.origin[0], a.tree.origin[1], a.tree.origin[2]});
+    pose_b = centered(b.tree, pose_b);
+    for (std::size_t i = 0; i < 3; ++i) pose_b.translation[i] += to[i];
+    const Truth truth = truth_of(a, b, pose_a, pose_b);
+    (truth.touch ? touching : apart) += 1;
+    check_query(a, b, pose_a, pose_b, truth);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(touching, 300);
+  EXPECT_GT(apart, 300);
+}
+
+// Approaches until the surfaces just touch, then steps back and forth by less and less.
+TEST(NarrowPhase, AgreesWithBruteForceAroundTheFirstContact) {
+  const auto all = bodies();
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(seed);
+    Draw draw(seed);
+    const Body &a = all[draw.bits() % all.size()], &b = all[draw.bits() % all.size()];
+    SCOPED_TRACE(a.name + " / " + b.name);
+    const double reach = a.tree.bounding_radius + b.tree.bounding_radius;
+    const Pose pose_a = centered(a.tree, draw.pose(0));
+    const Pose turned = centered(b.tree, draw.pose(0));
+    const Vec way = draw.direction();
+    const auto at = [&](double distance) {
+      Pose pose = turned;
+      for (std::size_t i = 0; i < 3; ++i) pose.translation[i] += distance * way[i];
+      return pose;
+    };
+    const Placed pa = placed_triangles(a.tree, pose_a);
+    double far = 1.01 * reach, near = far;
+    while (near > 0 && !surfaces_intersect(pa, placed_triangles(b.tree, at(near)))) far = near, near -= 0.02 * reach;
+    if (near <= 0) continue;
+    while (far - near > 1e-13 * reach) {
+      const double middle = (near + far) / 2;
+      (surfaces_intersect(pa, placed_triangles(b.tree, at(middle))) ? near : far) = middle;
+    }
+    for (const double step : {-1e-2, -1e-4, -1e-6, -1e-8, -1e-10, 1e-10, 1e-8, 1e-6, 1e-4, 1e-3, 1e-2}) {
+      SCOPED_TRACE(step);
+      const Pose pose_b = at(near + step * reach);
+      check_query(a, b, pose_a, pose_b, truth_of(a, b, pose_a, pose_b));
+      if (HasFatalFailure()) return;
+    }
+  }
+}
+
+struct Outcome {
+  Answer answer;
+  std::uint32_t level;
+  std::size_t pairs;
+  std::uint64_t pair_tests, triangle_tests;
+  double upper, lower;
+  Vec center, normal;
+  double radius;
+  std::uint32_t triangle_a, triangle_b;
+  friend bool operator==(const Outcome&, const Outcome&) = default;
+};
+
+Outcome outcome_of(const NarrowPhase& query) {
+  const Contact c = query.contact();
+  return {query.answer(),
+          query.level(),
+          query.pairs(),
+          query.pair_tests(),
+          query.triangle_tests(),
+          query.separation_bound(),
+          query.lower_bound(),
+          c.center,
+          c.normal,
+          c.radius,
+          c.triangle_a,
+          c.triangle_b};
+}
+
+Outcome exchanged(Outcome o) {
+  std::swap(o.triangle_a, o.triangle_b);
+  for (double& x : o.normal) x = -x;
+  return o;
+}
+
+struct Scene {
+  std::size_t a, b;
+  Pose pose_a, pose_b;
+};
+
+Scene random_scene(const std::vector<Body>& all, std::uint64_t seed) {
+  Draw draw(seed);
+  Scene s{draw.bits() % all.size(), draw.bits() % all.size(), {}, {}};
+  const PackedSphereTree &a = all[s.a].tree, &b = all[s.b].tree;
+  s.pose_a = centered(a, draw.pose(0));
+  s.pose_b = centered(b, draw.pose(draw.uniform(0, a.bounding_radius + b.bounding_radius)));
+  return s;
+}
+
+TEST(NarrowPhase, GivesTheSameAnswersAtEveryLevelWhenTheBodiesAreExchanged) {
+  const auto all = bodies(), copies = all;
+  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+    SCOPED_TRACE(seed);
+    const Scene s = random_scene(all, seed);
+    NarrowPhase there(all[s.a].tree, all[s.b].tree), back(copies[s.b].tree, all[s.a].tree);
+    there.start(s.pose_a, s.pose_b);
+    back.start(s.pose_b, s.pose_a);
+    for (;;) {
+      ASSERT_EQ(outcome_of(there), exchanged(outcome_of(back)));
+      if (there.finished()) break;
+      there.refine();
+      back.refine();
+    }
+    ASSERT_TRUE(back.finished());
+  }
+}
+
+TEST(NarrowPhase, EndsTheSameHoweverBudgetsCutIt) {
+  const auto all = bodies();
+  for (std::uint64_t seed = 0; seed < 600; ++seed) {
+    SCOPED_TRACE(seed);
+    const Scene s = random_scene(all, seed);
+    NarrowPhase whole(all[s.a].tree, all[s.b].tree), sliced(all[s.a].tree, all[s.b].tree);
+    whole.start(s.pose_a, s.pose_b);
+    while (!whole.finished()) whole.refine();
+    Draw draw(seed);
+    const std::uint64_t most = std::uint64_t{1} << draw.bits() % 9;
+    sliced.start(s.pose_a, s.pose_b);
+    double bound = sliced.separation_bound();
+    while (!sliced.finished()) {
+      const Budget budget{.pair_tests = 1 + draw.bits() % most};
+      const std::uint64_t spheres = sliced.pair_tests(), triangles = sliced.triangle_tests();
+      ASSERT_EQ(sliced.refine({.pair_tests = 0}), sliced.answer());
+      sliced.refine(budget);
+      const std::uint64_t spent =
+          sliced.pair_tests() - spheres + kTriangleTestCost * (sliced.triangle_tests() - triangles);
+      ASSERT_LT(spent, budget.pair_tests + kTriangleTestCost);
+      ASSERT_TRUE(spent > 0 || sliced.finished());
+      ASSERT_LE(sliced.separation_bound(), bound);
+      bound = sliced.separation_bound();
+    }
+    ASSERT_EQ(outcome_of(whole), outcome_of(sliced));
+  }
+}
+
+TEST(NarrowPhase, StopsSoonAfterItsTimeAndResumes) {
+  const auto all = bodies();
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    const Scene s = random_scene(all, seed);
+    NarrowPhase whole(all[s.a].tree, all[s.b].tree), sliced(all[s.a].tree, all[s.b].tree);
+    whole.start(s.pose_a, s.pose_b);
+    while (!whole.finished()) whole.refine();
+    sliced.start(s.pose_a, s.pose_b);
+    while (!sliced.finished()) {
+      const std::uint64_t before = sliced.pair_tests() + kTriangleTestCost * sliced.triangle_tests();
+      sliced.refine({.time = std::chrono::nanoseconds(0)});
+      const std::uint64_t spent = sliced.pair_tests() + kTriangleTestCost * sliced.triangle_tests() - before;
+      ASSERT_LT(spent, kClockInterval + kTriangleTestCost);
+    }
+    ASSERT_EQ(outcome_of(whole), outcome_of(sliced));
+  }
+}
+
+TEST(NarrowPhase, CanBeUsedAgainAfterAnyInterruption) {
+  const auto all = bodies();
+  NarrowPhase reused(all[2].tree, all[5].tree);
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    Draw draw(seed);
+    const Pose pose_a = draw.pose(0), pose_b = draw.pose(draw.uniform(0, 2));
+    NarrowPhase fresh(all[2].tree, all[5].tree);
+    reused.start(pose_a, pose_b);
+    fresh.start(pose_a, pose_b);
+    for (std::uint64_t steps = draw.bits() % 8; steps > 0; --steps) {
+      const Budget budget{.pair_tests = 1 + draw.bits() % 200};
+      reused.refine(budget);
+      fresh.refine(budget);
+    }
+    ASSERT_EQ(outcome_of(reused), outcome_of(fresh)) << seed;
+  }
+}
+
+// One ball around the origin, without triangles.
+PackedSphereTree lone_ball(float radius) {
+  PackedSphereTree tree = build_tree(Mesh{});
+  tree.blocks[0].radius[0] = tree.blocks[0].error[0] = radius;
+  tree.blocks[0].depth[0] = 0;
+  tree.bounding_radius = double{radius};
+  return tree;
+}
+
+TEST(NarrowPhase, CountsTouchingBallsAsMeeting) {
+  const PackedSphereTree one = lone_ball(1), half = lone_ball(0.5);
+  const std::array<double, 3> ways[] = {{1, 0, 0}, {0, -1, 0}, {0.6, 0, 0.8}, {2 / 3., -2 / 3., 1 / 3.}};
+  for (const auto& way : ways) {
+    const auto at = [&way](double d) { return Pose{.translation = {d * way[0], d * way[1], d * way[2]}}; };
+    NarrowPhase query(one, half);
+    EXPECT_EQ(query.start({}, at(1.5)), Answer::maybe);
+    EXPECT_TRUE(query.finished());  // there is nothing deeper, so "maybe" is final
+    EXPECT_EQ(query.start({}, at(1.5 + 1e-9)), Answer::no);
+    EXPECT_NEAR(query.lower_bound(), 1e-9, 1e-10);
+    EXPECT_EQ(query.start(at(-1e9), at(1e9)), Answer::no);
+    EXPECT_NEAR(query.lower_bound(), 2e9, 10);
+    EXPECT_EQ(query.start({}, at(1e200)), Answer::maybe);  // beyond arithmetic: nothing is claimed
+  }
+}
+
+TEST(NarrowPhase, CountsTouchingChildrenAsMeeting) {
+  // Two balls of radius 1 on the x axis below a root of radius 2, and the same turned by 90 degrees about z.
+  PackedSphereTree pair = lone_ball(2);
+  pair.branching = 2;
+  pair.depth = 1;
+  pair.node_count = 3;
+  pair.blocks[0].first[0] = 1;
+  pair.blocks[0].count[0] = 2;
+  SiblingBlock children = lone_ball(1).blocks[0];
+  children.x = {-1, 1};
+  children.radius[1] = 1;
+  children.count[1] = kLeafBit;
+  pair.blocks.push_back(children);
+  ASSERT_EQ(structure_fault(pair), nullptr);
+  NarrowPhase query(pair, pair);
+  const double touch = 1 + std::sqrt(3.0);  // |(1, 0) - (touch, 1)| = 2
+  const auto quarter = pose_from_quaternion({std::sqrt(0.5), 0, 0, std::sqrt(0.5)}, {touch, 0, 0});
+  EXPECT_EQ(query.start({}, *quarter), Answer::maybe);
+  EXPECT_EQ(query.refine(), Answer::maybe);
+  EXPECT_EQ(query.pairs(), 2u);
+  EXPECT_TRUE(query.finished());
+  Pose apart = *quarter;
+  apart.translation[0] += 1e-4;
+  EXPECT_EQ(query.start({}, apart), Answer::maybe);
+  EXPECT_EQ(query.refine(), Answer::no);
+  EXPECT_GT(query.lower_bound(), 0);
+  EXPECT_LT(query.lower_bound(), 1e-4);
+}
+
+TEST(NarrowPhase, NeverSaysNoForPosesThatAreNotNumbers) {
+  const auto all = bodies();
+  NarrowPhase query(all[2].tree, all[5].tree);
+  Pose broken;
+  broken.rotation[4] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(query.start({}, broken), Answer::maybe);
+  EXPECT_EQ(query.refine(), Answer::maybe);
+  EXPECT_TRUE(query.finished());
+}
+
+TEST(NarrowPhase, FindsContactsThatAreExactInFloats) {
+  const Body cube{"cube", build_tree(box({0, 0, 0}, {1, 1, 1}), {.branching = 3, .leaf_triangles = 1}), true};
+  const struct {
+    const char* name;
+    Vec at;
+    Answer answer;
+  } cases[] = {
+      {"face on face", {1, 0, 0}, Answer::yes},
+      {"face on face, shifted", {0.25, -0.5, -1}, Answer::yes},
+      {"edge on edge", {1, 1, 0}, Answer::yes},
+      {"corner on corner", {-1, 1, 1}, Answer::yes},
+      {"in place", {0, 0, 0}, Answer::yes},
+      {"one bit apart", {1 + 0x1p-52, 0, 0}, Answer::no},
+      {"one bit apart at a corner", {-1, 1, 1 + 0x1p-52}, Answer::no},
+      {"one bit inside", {1 - 0x1p-53, 0, 0}, Answer::yes},
+  };
+  for (const auto& c : cases) {
+    SCOPED_TRACE(c.name);
+    NarrowPhase query(cube.tree, cube.tree);
+    query.start({}, Pose{.translation = c.at});
+    while (!query.finished()) query.refine();
+    EXPECT_EQ(query.answer(), c.answer);
+  }
+}
+
+TEST(NarrowPhase, SaysNoForASolidInsideAnother) {
+  const auto inner = build_tree(box({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1})), outer = build_tree(uv_sphere(16, 12, 1));
+  NarrowPhase query(inner, outer);
+  query.start({}, {});
+  while (!query.finished()) query.refine();
+  EXPECT_EQ(query.answer(), Answer::no);  // the surfaces do not touch
+  EXPECT_LT(query.separation_bound(), 0.9);
+}
+
+TEST(NarrowPhase, ScalesExactlyByPowersOfTwo) {
+  const Mesh a = torus(12, 6, 1, 0.3), b = spikes(5, 9, 7);
+  const auto tree_a = build_tree(a), tree_b = build_tree(b);
+  for (const double scale : {0x1p-20, 0x1p-3, 0x1p10, 0x1p40}) {
+    const auto scaled_a = build_tree(scaled(a, scale)), scaled_b = build_tree(scaled(b, scale));
+    for (std::uint64_t seed = 0; seed < 50; ++seed) {
+      Draw draw(seed);
+      Pose pose_a = draw.pose(0), pose_b = draw.pose(draw.uniform(0.5, 2));
+      NarrowPhase query(tree_a, tree_b);
+      query.start(pose_a, pose_b);
+      while (!query.finished()) query.refine();
+      for (double& x : pose_b.translation) x *= scale;
+      NarrowPhase large(scaled_a, scaled_b);
+      large.start(pose_a, pose_b);
+      while (!large.finished()) large.refine();
+      ASSERT_EQ(query.answer(), large.answer());
+      ASSERT_EQ(query.pair_tests(), large.pair_tests()) << scale << " " << seed;
+      ASSERT_EQ(query.separation_bound() * scale, large.separation_bound());
+      ASSERT_EQ(query.lower_bound() * scale, large.lower_bound());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace orchard::runtime
