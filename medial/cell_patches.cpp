@@ -1,6 +1,7 @@
 #include "cell_patches.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <utility>
 
 namespace orchard::detail {
@@ -20,14 +21,14 @@ class PatchFinder {
     parents_.resize(count);
     for (Index piece = 0; piece < count; ++piece) parents_[piece] = piece;
     joints_.assign(count, 0);
-    corners_.assign(count, 0);
+    joined_.assign(count, 0);
+    inner_vertices_.assign(count, 0);
   }
 
   std::vector<CellPatch> run() {
     join_across_edges();
     count_inner_vertices();
-    std::vector<CellPatch> patches = gather();
-    return patches;
+    return gather();
   }
 
  private:
@@ -49,6 +50,8 @@ class PatchFinder {
           const CellPiece* other = restricted_.piece(next, piece.cell);
           if (other == nullptr || !((piece.edges >> edge & 1u) || (other->edges & back))) continue;
           const Index a = id_of(triangle, &piece), b = id_of(next, other);
+          joined_[a] |= static_cast<std::uint8_t>(1u << edge);
+          joined_[b] |= back;
           ++joints_[a];
           const Index low = std::min(root(a), root(b)), high = std::max(root(a), root(b));
           parents_[high] = low;
@@ -63,7 +66,7 @@ class PatchFinder {
     }
     return mask;
   }
-  // A vertex is inside a cell's patch if every triangle around it says so. Counted at the piece on the first of them.
+  // A vertex is inside a cell's patch if the pieces around it are joined all the way round. Counted at the first piece.
   void count_inner_vertices() {
     for (Index vertex = 0; vertex < surface_.mesh().vertices.size(); ++vertex) {
       const auto around = surface_.triangles_around(vertex);
@@ -71,15 +74,17 @@ class PatchFinder {
       for (const CellPiece& piece : restricted_.pieces(around[0])) {
         const bool inner = std::all_of(around.begin(), around.end(), [&](Index triangle) {
           const CellPiece* other = restricted_.piece(triangle, piece.cell);
-          return other != nullptr && (other->corners >> corner_of(triangle, vertex) & 1u);
+          if (other == nullptr) return false;
+          const std::uint8_t spokes = edges_at(triangle, vertex);
+          return (joined_[id_of(triangle, other)] & spokes) == spokes;
         });
-        if (inner) ++corners_[id_of(around[0], &piece)];
+        if (inner) ++inner_vertices_[id_of(around[0], &piece)];
       }
     }
   }
-  unsigned corner_of(Index triangle, Index vertex) const {
+  std::uint8_t edges_at(Index triangle, Index vertex) const {
     const auto& corners = surface_.mesh().triangles[triangle];
-    return corners[0] == vertex ? 0u : corners[1] == vertex ? 1u : 2u;
+    return corners[0] == vertex ? 0b101 : corners[1] == vertex ? 0b011 : 0b110;
   }
 
   std::vector<CellPatch> gather() {
@@ -106,7 +111,7 @@ class PatchFinder {
       }
       CellPatch& patch = patches.back();
       patch.triangles.push_back(entry.triangle);
-      patch.euler_characteristic += 1 - joints_[entry.piece] + corners_[entry.piece];
+      patch.euler_characteristic += 1 - joints_[entry.piece] + inner_vertices_[entry.piece];
     }
     mark_homes(patches);
     return patches;
@@ -128,9 +133,10 @@ class PatchFinder {
   const Surface& surface_;
   const SurfaceSampling& sampling_;
   const RestrictedVoronoi& restricted_;
-  std::vector<Index> first_;    // piece of each triangle; pieces are numbered triangle by triangle
-  std::vector<Index> parents_;  // of each piece
-  std::vector<int> joints_, corners_;
+  std::vector<Index> first_;                  // piece of each triangle; pieces are numbered triangle by triangle
+  std::vector<Index> parents_;                // of each piece
+  std::vector<std::uint8_t> joined_;          // bit i: to a piece across the triangle's edge i
+  std::vector<int> joints_, inner_vertices_;  // each counted at one piece
 };
 
 }  // namespace

@@ -3,11 +3,11 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "cell_neighbors.h"
-#include "cell_patches.h"
-#include "gap_test.h"
+#include "crossings.h"
 #include "orchard/geometry/tolerance.h"
 #include "orchard/voronoi/exact.h"
 #include "repair_point.h"
@@ -16,19 +16,20 @@
 namespace orchard {
 namespace {
 
-using detail::CellPatch;
-using detail::RepairPoint;
+using detail::Crossing;
 
-// A crossing patch, and what the loop knows about it.
-struct Crossing {
-  Index patch = kNone;
-  std::vector<Index> neighbors;  // cells whose shared face crosses harmfully
-  RepairPoint repair;
-};
-
-// Two new points of one pass keep this share of their gaps' widths between them: what one of them does not mend is seen
-// in the next pass, so that wide gaps get few points.
+// Two new points of one pass keep this share of the wider gap between them: what one of them does not mend is seen in
+// the next pass, so that wide gaps get few points.
 constexpr double kSpread = 0.5;
+
+struct Candidate {
+  Index cell = kNone;
+  std::vector<Index> neighbors;
+  detail::RepairProposal proposal;
+  bool neck = false;
+
+  double gap() const { return proposal.projected ? proposal.projected->distance : proposal.snapped.distance; }
+};
 
 class Repair {
  public:
@@ -45,89 +46,101 @@ class Repair {
   Repaired run() {
     for (int pass = 0; pass < options_.max_passes; ++pass) {
       report_progress(progress_, "gap repair", static_cast<double>(pass) / options_.max_passes);
-      detect();
-      result_.report.passes.push_back(summary_);
-      result_.report.faces_still_crossing = summary_.faces_crossing;
-      if (crossings_.empty()) break;
+      const std::vector<Crossing> crossings = detect();
+      if (crossings.empty()) break;
       const Index before = result_.sampling.size();
-      add_points();
+      add_points(propose(crossings));
       if (result_.sampling.size() == before) break;
       update_diagram(before);
     }
-    final_check();
+    recheck_everything();
     report_progress(progress_, "gap repair", 1);
     return std::move(result_);
   }
 
  private:
-  void detect() {
-    patches_ = detail::find_cell_patches(surface_, result_.sampling, restricted_);
-    std::vector<Crossing> found;
-    for (Index i = 0; i < patches_.size(); ++i) {
-      if (!patches_[i].home) found.push_back({i, {}, {}});
+  // Gaps first: closing them mends most necks.
+  std::vector<Crossing> detect() {
+    std::vector<Crossing> crossings = detail::find_gap_crossings(surface_, result_.sampling, restricted_, options_);
+    if (crossings.empty() && options_.mend_necks) {
+      crossings = detail::find_necks(surface_, result_.sampling, restricted_);
     }
-    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) {
-      found[i].neighbors = detail::harmful_neighbors(surface_, result_.sampling, restricted_, patches_[found[i].patch],
-                                                     options_.joined_radius);
-    });
-    crossings_.clear();
-    std::vector<std::array<Index, 2>> faces;
-    for (Crossing& crossing : found) {
-      if (crossing.neighbors.empty()) continue;
-      const Index cell = patches_[crossing.patch].cell;
-      for (const Index other : crossing.neighbors) faces.push_back({std::min(cell, other), std::max(cell, other)});
-      crossings_.push_back(std::move(crossing));
-    }
-    std::sort(faces.begin(), faces.end());
-    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-    summary_ = {};
-    summary_.faces_tested = static_cast<Index>(neighbors_.items.size() / 2);
-    summary_.faces_crossing = static_cast<Index>(faces.size());
+    RepairPass& pass = result_.report.passes.emplace_back();
+    pass.faces_tested = static_cast<Index>(neighbors_.items.size() / 2);
+    pass.faces_crossing = detail::count_faces(crossings);
+    return crossings;
   }
 
-  void add_points() {
-    tbb::parallel_for(std::size_t{0}, crossings_.size(), [&](std::size_t i) {
-      const CellPatch& patch = patches_[crossings_[i].patch];
-      const auto across = generations_[patch.cell] > 0 ? detail::Across::straight : detail::Across::normal;
-      crossings_[i].repair =
-          detail::propose_repair(surface_, result_.sampling, restricted_, patch, home_of(crossings_[i].patch), across);
+  // Projections before points to snap to, wide gaps before narrow ones, then by cell.
+  std::vector<Candidate> propose(const std::vector<Crossing>& crossings) const {
+    std::vector<Candidate> candidates(crossings.size());
+    tbb::parallel_for(std::size_t{0}, crossings.size(), [&](std::size_t i) {
+      const Crossing& crossing = crossings[i];
+      const Index cell = crossing.patch.cell;
+      const auto across = generations_[cell] > 0 ? detail::Across::straight : detail::Across::normal;
+      candidates[i] = {cell, crossing.neighbors,
+                       detail::propose_repair(surface_, result_.sampling, restricted_, crossing, across),
+                       crossing.neck};
     });
-    std::stable_sort(crossings_.begin(), crossings_.end(), [](const Crossing& a, const Crossing& b) {
-      return a.repair.snapped != b.repair.snapped ? !a.repair.snapped : a.repair.gap > b.repair.gap;
+    std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+      const bool a_projects = a.proposal.projected.has_value(), b_projects = b.proposal.projected.has_value();
+      return a_projects != b_projects ? a_projects : a.gap() > b.gap();
     });
+    return candidates;
+  }
+
+  void add_points(const std::vector<Candidate>& candidates) {
     const Index first_new = result_.sampling.size();
-    for (const Crossing& crossing : crossings_) consider(crossing.repair, first_new);
+    std::vector<std::uint8_t> projected(first_new, 0);  // cells that a projection mends in this pass
+    for (const Candidate& candidate : candidates) {
+      if (near_new_point(candidate, first_new)) continue;
+      RepairPass& pass = result_.report.passes.back();
+      const auto& [projection, snapped] = candidate.proposal;
+      if (projection && add(*projection, candidate.cell)) {
+        projected[candidate.cell] = 1;
+        ++pass.added_by_projection;
+        continue;
+      }
+      // The cell across the face may have found a projection where this one did not; then that is to be tried first.
+      const bool wait = std::any_of(candidate.neighbors.begin(), candidate.neighbors.end(),
+                                    [&](Index other) { return projected[other] != 0; });
+      if (wait) continue;
+      if (add(snapped, candidate.cell)) {
+        ++(candidate.neck ? pass.added_at_necks : pass.added_by_snapping);
+      } else {
+        ++pass.refused_as_coincident;
+      }
+    }
   }
 
-  void consider(const RepairPoint& repair, Index first_new) {
+  bool near_new_point(const Candidate& candidate, Index first_new) const {
+    const Point& position =
+        candidate.proposal.projected ? candidate.proposal.projected->position : candidate.proposal.snapped.position;
+    const double spread = kSpread * candidate.gap();
+    for (Index i = first_new; i < result_.sampling.size(); ++i) {
+      if ((result_.sampling.points[i] - position).squaredNorm() < spread * spread) return true;
+    }
+    return false;
+  }
+
+  // False if the place is taken.
+  bool add(const ClosestPoint& place, Index cell) {
     SurfaceSampling& sampling = result_.sampling;
-    for (Index i = first_new; i < sampling.size(); ++i) {
-      if ((sampling.points[i] - repair.position).norm() < kSpread * repair.gap) return;
-    }
-    const Index nearest = detail::nearest_point(result_.diagram.points, neighbors_, repair.position, repair.cell);
     const double coincident = tolerance::kCoincidentPoints * surface_.bounding_radius();
-    if (!((sampling.points[nearest] - repair.position).norm() > coincident)) {
-      ++result_.report.passes.back().refused_as_coincident;
-      return;
+    const auto taken = [&](const Point& point) { return !((point - place.position).norm() > coincident); };
+    const Index first_new = static_cast<Index>(result_.diagram.points.size());
+    const Index nearest = detail::nearest_point(result_.diagram.points, neighbors_, place.position, cell);
+    if (taken(sampling.points[nearest])) return false;
+    for (Index i = first_new; i < sampling.size(); ++i) {
+      if (taken(sampling.points[i])) return false;
     }
-    sampling.points.push_back(repair.position);
-    sampling.triangles.push_back(repair.triangle);
-    sampling.features.push_back(repair.feature);
+    sampling.points.push_back(place.position);
+    sampling.triangles.push_back(place.triangle);
+    sampling.features.push_back(place.feature);
     sampling.origins.push_back(PointOrigin::repair);
-    generations_.push_back(generations_[repair.cell] + 1);
+    generations_.push_back(generations_[cell] + 1);
     ++result_.report.points_added;
-    ++(repair.snapped ? result_.report.passes.back().added_by_snapping
-                      : result_.report.passes.back().added_by_projection);
-  }
-
-  const CellPatch* home_of(Index patch) const {
-    const Index cell = patches_[patch].cell;
-    Index first = patch;
-    while (first > 0 && patches_[first - 1].cell == cell) --first;
-    for (Index i = first; i < patches_.size() && patches_[i].cell == cell; ++i) {
-      if (patches_[i].home) return &patches_[i];
-    }
-    return nullptr;
+    return true;
   }
 
   void update_diagram(Index first_new) {
@@ -141,10 +154,15 @@ class Repair {
     restricted_.update(result_.diagram.points, neighbors_, changed);
   }
 
-  void final_check() {
+  // From scratch, in case the updates missed something.
+  void recheck_everything() {
     restricted_ = detail::RestrictedVoronoi(surface_, result_.diagram.points, neighbors_);
-    detect();
-    result_.report.faces_still_crossing = summary_.faces_crossing;
+    std::vector<Crossing> crossings = detail::find_gap_crossings(surface_, result_.sampling, restricted_, options_);
+    if (options_.mend_necks) {
+      std::vector<Crossing> necks = detail::find_necks(surface_, result_.sampling, restricted_);
+      std::move(necks.begin(), necks.end(), std::back_inserter(crossings));
+    }
+    result_.report.faces_still_crossing = detail::count_faces(crossings);
   }
 
   const Surface& surface_;
@@ -154,9 +172,6 @@ class Repair {
   std::vector<int> generations_;  // of each point: how many repair points led to it
   Rows neighbors_;
   detail::RestrictedVoronoi restricted_;
-  std::vector<CellPatch> patches_;
-  std::vector<Crossing> crossings_;
-  RepairPass summary_;
 };
 
 }  // namespace

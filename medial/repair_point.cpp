@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "neck_test.h"
 #include "orchard/geometry/tolerance.h"
 
 namespace orchard::detail {
@@ -13,56 +14,60 @@ namespace {
 constexpr int kMaxWalk = 1000;
 // Cosine between the direction of a projection and the surface's normal at its end: 25 degrees.
 constexpr double kAlongNormal = 0.9;
+// Fraction of the bounding radius: a projection farther than this from the surface floats.
+constexpr double kFreeFloating = 1e-10;
 
-ClosestPoint closest_of_patch(const Surface& surface, const RestrictedVoronoi& restricted, const CellPatch& patch,
-                              const Point& query) {
-  ClosestPoint best;
-  best.distance = std::numeric_limits<double>::infinity();
+// `position` as a point of the triangle, with its feature.
+ClosestPoint place_on(const Surface& surface, Index triangle, const Point& position, const Point& from) {
+  const auto [a, b, c] = surface.corners(triangle);
+  ClosestPoint place = closest_point_of_triangle(position, a, b, c);
+  place.triangle = triangle;
+  place.distance = (place.position - from).norm();
+  return place;
+}
+
+ClosestPoint nearest_of_patch(const Surface& surface, const RestrictedVoronoi& restricted, const CellPatch& patch) {
+  const Point& from = restricted.points()[patch.cell];
+  ClosestPoint nearest;
+  nearest.distance = std::numeric_limits<double>::infinity();
   CellPolygon polygon;
   for (const Index triangle : patch.triangles) {
     restricted.polygon(triangle, patch.cell, polygon);
     for (std::size_t i = 2; i < polygon.corners.size(); ++i) {
-      ClosestPoint found =
-          closest_point_of_triangle(query, polygon.corners[0], polygon.corners[i - 1], polygon.corners[i]);
-      if (found.distance < best.distance) {
-        best = found;
-        best.triangle = triangle;
-      }
+      const ClosestPoint found =
+          closest_point_of_triangle(from, polygon.corners[0], polygon.corners[i - 1], polygon.corners[i]);
+      if (!(found.distance < nearest.distance)) continue;
+      nearest = found;
+      nearest.triangle = triangle;
     }
   }
-  const auto [a, b, c] = surface.corners(best.triangle);
-  const Index triangle = best.triangle;
-  const double distance = best.distance;
-  best = closest_point_of_triangle(best.position, a, b, c);  // back onto the triangle, with its feature
-  best.triangle = triangle;
-  best.distance = distance;
-  return best;
+  return place_on(surface, nearest.triangle, nearest.position, from);
 }
 
 class Projector {
  public:
-  Projector(const Surface& surface, const Point& from, const CellPatch* home)
-      : surface_(surface), from_(from), home_(home), slack_(tolerance::kOnTriangle * surface.bounding_radius()) {}
+  Projector(const Surface& surface, const RestrictedVoronoi& restricted, const CellPatch& patch)
+      : surface_(surface), restricted_(restricted), patch_(patch), from_(restricted.points()[patch.cell]) {}
 
-  // `target`, which lies in the plane of the cluster, if the cluster holds it.
+  // `target`, which lies in the plane of the triangle's cluster, if the cluster holds it.
   std::optional<ClosestPoint> within_cluster(const Point& target, Index triangle) const {
-    ClosestPoint found = surface_.closest(target);
-    if (!(found.distance <= 100 * slack_)) return std::nullopt;
+    const ClosestPoint found = surface_.closest(target);
+    if (!(found.distance <= kFreeFloating * surface_.bounding_radius())) return std::nullopt;
     std::vector<Index> around;
     surface_.triangles_at(found.triangle, found.feature, around);
     const auto& cluster = surface_.clusters().of_triangle;
     for (const Index other : around) {
-      if (cluster[other] == cluster[triangle]) return found;
+      if (cluster[other] == cluster[triangle]) return place_on(surface_, found.triangle, found.position, from_);
     }
     return std::nullopt;
   }
 
-  // Downhill on the distance to `target`, over edges that are all but flat.
-  std::optional<ClosestPoint> walk(const Point& target, const ClosestPoint& start) const {
-    ClosestPoint at = nearest_on(start.triangle, target);
+  // Downhill on the distance to `target`, over edges that are all but flat, and not into another of the cell's patches.
+  std::optional<ClosestPoint> walk(const Point& target, Index start) const {
+    ClosestPoint at = nearest_on(start, target);
     std::vector<Index> around;
     for (int step = 0; step < kMaxWalk; ++step) {
-      if (at_home(at.triangle)) return std::nullopt;
+      if (in_other_patch(at.triangle)) return std::nullopt;
       surface_.triangles_at(at.triangle, at.feature, around);
       ClosestPoint best = at;
       for (const Index next : around) {
@@ -76,6 +81,7 @@ class Projector {
     const Vector across = from_ - at.position;
     const double along = std::abs(surface_.pseudonormal(at.triangle, at.feature).dot(across));
     if (!(along > kAlongNormal * across.norm())) return std::nullopt;
+    at.distance = across.norm();
     return at;
   }
 
@@ -86,14 +92,15 @@ class Projector {
     found.triangle = triangle;
     return found;
   }
-  bool at_home(Index triangle) const {
-    return home_ != nullptr && std::binary_search(home_->triangles.begin(), home_->triangles.end(), triangle);
+  bool in_other_patch(Index triangle) const {
+    return restricted_.piece(triangle, patch_.cell) != nullptr &&
+           !std::binary_search(patch_.triangles.begin(), patch_.triangles.end(), triangle);
   }
 
   const Surface& surface_;
+  const RestrictedVoronoi& restricted_;
+  const CellPatch& patch_;
   const Point from_;
-  const CellPatch* home_;
-  double slack_;
 };
 
 // The mirror image of a point with normal `own` in the bisector of its tangent plane and the plane through `other` with
@@ -108,28 +115,32 @@ std::optional<Point> straight_across(const Point& from, const Vector& own, const
 
 }  // namespace
 
-RepairPoint propose_repair(const Surface& surface, const SurfaceSampling& sampling, const RestrictedVoronoi& restricted,
-                           const CellPatch& patch, const CellPatch* home, Across across) {
+RepairProposal propose_repair(const Surface& surface, const SurfaceSampling& sampling,
+                              const RestrictedVoronoi& restricted, const Crossing& crossing, Across across) {
+  const CellPatch& patch = crossing.patch;
   const Point& from = restricted.points()[patch.cell];
-  const ClosestPoint nearest = closest_of_patch(surface, restricted, patch, from);
-  const Vector& normal = surface.normal(nearest.triangle);
-  Point target = from - normal * normal.dot(from - nearest.position);
+  RepairProposal proposal;
+  if (crossing.neck) {
+    const Index neighbor =
+        patch.euler_characteristic == 1 && crossing.neighbors.size() > 0 ? crossing.neighbors[0] : kNone;
+    const auto [position, triangle] = farthest_corner(restricted, patch, neighbor);
+    proposal.snapped = place_on(surface, triangle, position, from);
+    return proposal;
+  }
+  proposal.snapped = nearest_of_patch(surface, restricted, patch);
+  const Vector& normal = surface.normal(proposal.snapped.triangle);
+  Point target = from - normal * normal.dot(from - proposal.snapped.position);
+  Point walk_target = from;
   if (across == Across::straight) {
     const Vector own = surface.pseudonormal(sampling.triangles[patch.cell], sampling.features[patch.cell]);
-    if (const auto mirrored = straight_across(from, own, nearest.position, normal)) target = *mirrored;
+    if (const auto mirrored = straight_across(from, own, proposal.snapped.position, normal)) {
+      target = walk_target = *mirrored;
+    }
   }
-  const Projector projector(surface, from, home);
-  std::optional<ClosestPoint> found = projector.within_cluster(target, nearest.triangle);
-  if (!found) found = projector.walk(across == Across::straight ? target : from, nearest);
-  RepairPoint result;
-  result.cell = patch.cell;
-  result.snapped = !found;
-  const ClosestPoint& chosen = found ? *found : nearest;
-  result.position = chosen.position;
-  result.triangle = chosen.triangle;
-  result.feature = chosen.feature;
-  result.gap = (chosen.position - from).norm();
-  return result;
+  const Projector projector(surface, restricted, patch);
+  proposal.projected = projector.within_cluster(target, proposal.snapped.triangle);
+  if (!proposal.projected) proposal.projected = projector.walk(walk_target, proposal.snapped.triangle);
+  return proposal;
 }
 
 }  // namespace orchard::detail

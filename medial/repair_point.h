@@ -1,27 +1,30 @@
 #pragma once
-#include "cell_patches.h"
+#include <optional>
+
+#include "crossings.h"
 
 namespace orchard::detail {
 
-// A point of the surface proposed for addition, so that cell `cell` no longer reaches a patch.
-struct RepairPoint {
-  Index cell = kNone;
-  Point position = Point::Zero();
-  Index triangle = kNone;
-  Feature feature = Feature::face;
-  bool snapped = false;  // no projection lies on the surface
-  double gap = 0;        // from the cell's point to this one
+// How to look for the place across a gap that faces a point.
+enum class Across : std::uint8_t {
+  normal,    // normal projection onto the cluster that is met first
+  straight,  // mirror image in the bisector of the point's tangent plane and the cluster's: it lies as deep in a V as
+             // the point does, so that the new face is the bisector, and the two sides of a V do not bounce points for
+             // ever
 };
 
-enum class Across : std::uint8_t { normal, straight };
+// Points of the surface that would take the patch away from the cell, the better one first. Distances are from the
+// cell's point.
+struct RepairProposal {
+  std::optional<ClosestPoint> projected;  // the sheet of surface that holds the patch faces the cell's point here
+  ClosestPoint snapped;                   // of the patch: nothing but the cell's point is near it
+};
 
-// Where the point of patch.cell should be repeated on the sheet of surface that holds `patch` (dissertation 6.2.4).
-// Across::normal: its normal projection onto the cluster met first, if that lies within the cluster; on a curved sheet,
-// where clusters are single triangles, the point of the sheet that is nearest by a walk from the patch.
-// Across::straight: its mirror image in the bisector of its own tangent plane and the cluster's, which ends a bounce
-// between the sides of a V. Failing that, the patch's point nearest to the cell's point: no free-floating point is ever
-// proposed, and the cell owns this one, so that no other sample is near.
-RepairPoint propose_repair(const Surface& surface, const SurfaceSampling& sampling, const RestrictedVoronoi& restricted,
-                           const CellPatch& patch, const CellPatch* home, Across across);
+// Dissertation 6.2.4. A projection counts if it lies within the cluster; on a curved sheet, where clusters are single
+// triangles, the point of the sheet nearest to the target is found by a walk from the patch over edges that are all but
+// flat, and counts if the surface faces the cell's point there. So no free-floating point is ever proposed. The point
+// to snap to is the patch's nearest, and for necks the farthest on the border that is at fault.
+RepairProposal propose_repair(const Surface& surface, const SurfaceSampling& sampling,
+                              const RestrictedVoronoi& restricted, const Crossing& crossing, Across across);
 
 }  // namespace orchard::detail

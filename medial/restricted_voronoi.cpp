@@ -72,17 +72,21 @@ CellPiece piece_of(const CellPolygon& polygon, const std::array<Point, 3>& trian
   CellPiece piece;
   piece.cell = cell;
   const std::size_t size = polygon.corners.size();
+  const auto side = [&](std::size_t i) { return polygon.corners[i + 1 == size ? 0 : i + 1] - polygon.corners[i]; };
+  bool last_is_long_border = polygon.labels[size - 1] >= 3 && side(size - 1).squaredNorm() > touch * touch;
   for (std::size_t i = 0; i < size; ++i) {
     for (unsigned corner = 0; corner < 3; ++corner) {
       if (polygon.corners[i] == triangle[corner]) piece.corners |= static_cast<std::uint8_t>(1u << corner);
     }
-    const Point& next = polygon.corners[i + 1 == size ? 0 : i + 1];
-    if (!((next - polygon.corners[i]).squaredNorm() > touch * touch)) continue;
-    if (polygon.labels[i] < 3) {
-      piece.edges |= static_cast<std::uint8_t>(1u << polygon.labels[i]);
-    } else {
-      piece.borders.push_back(polygon.labels[i] - 3);
+    const bool is_long = side(i).squaredNorm() > touch * touch;
+    const Index label = polygon.labels[i];
+    if (is_long && label < 3) piece.edges |= static_cast<std::uint8_t>(1u << label);
+    if (is_long && label >= 3) {
+      const Index other = label - 3, last = polygon.labels[i == 0 ? size - 1 : i - 1] - 3;
+      piece.borders.push_back(other);
+      if (last_is_long_border) piece.junctions.push_back({std::min(last, other), std::max(last, other)});
     }
+    last_is_long_border = is_long && label >= 3;
   }
   std::sort(piece.borders.begin(), piece.borders.end());
   piece.borders.erase(std::unique(piece.borders.begin(), piece.borders.end()), piece.borders.end());

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -21,6 +22,9 @@ struct CellPiece {
   std::uint8_t edges = 0;      // bit i: reaches the triangle's edge i along more than a touch
   std::uint8_t corners = 0;    // bit i: holds the triangle's corner i
   std::vector<Index> borders;  // cells on the other side of its borders within the triangle, ascending
+  // The two other cells, lower first, where two borders meet that are more than a touch: an edge of the diagram crosses
+  // the triangle there.
+  std::vector<std::array<Index, 2>> junctions;
 };
 
 // The Voronoi diagram of points restricted to a surface: every triangle divided among the cells that it lies in. This

@@ -1,8 +1,7 @@
-#include "gap_test.h"
+#include "joined_inside.h"
 
 #include <algorithm>
 #include <unordered_set>
-#include <utility>
 
 namespace orchard::detail {
 namespace {
@@ -42,27 +41,6 @@ bool joined_inside(const Surface& surface, const SurfaceSampling& sampling, cons
     }
   }
   return false;
-}
-
-std::vector<Index> harmful_neighbors(const Surface& surface, const SurfaceSampling& sampling,
-                                     const RestrictedVoronoi& restricted, const CellPatch& patch,
-                                     double joined_radius) {
-  std::vector<std::pair<Index, Index>> crossings;  // other cell, triangle
-  for (const Index triangle : patch.triangles) {
-    for (const Index other : restricted.piece(triangle, patch.cell)->borders) crossings.emplace_back(other, triangle);
-  }
-  std::sort(crossings.begin(), crossings.end());
-  std::vector<Index> harmful, crossed;
-  for (auto first = crossings.begin(); first != crossings.end();) {
-    const Index other = first->first;
-    crossed.clear();
-    for (; first != crossings.end() && first->first == other; ++first) crossed.push_back(first->second);
-    const Point& a = restricted.points()[patch.cell];
-    const Point& b = restricted.points()[other];
-    const Sphere ball{0.5 * (a + b), joined_radius * (a - b).norm()};
-    if (!joined_inside(surface, sampling, ball, crossed, {patch.cell, other})) harmful.push_back(other);
-  }
-  return harmful;
 }
 
 }  // namespace orchard::detail

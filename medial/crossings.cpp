@@ -1,0 +1,154 @@
+#include "crossings.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "joined_inside.h"
+#include "neck_test.h"
+
+namespace orchard::detail {
+namespace {
+
+// What the point of a cell lies on: its clusters, and for the loose definition those that adjoin them.
+class AllowedClusters {
+ public:
+  AllowedClusters(const Surface& surface, const SurfaceSampling& sampling, bool adjoining)
+      : surface_(surface), sampling_(sampling), adjoining_(adjoining) {}
+
+  std::vector<Index> of(Index cell) const {
+    std::vector<Index> around;
+    surface_.triangles_at(sampling_.triangles[cell], sampling_.features[cell], around);
+    std::vector<Index> allowed = clusters_of(around);
+    if (!adjoining_) return allowed;
+    std::vector<Index> near;
+    for (const Index cluster : allowed) {
+      for (const Index triangle : surface_.clusters().triangles[cluster]) {
+        for (const Index vertex : surface_.mesh().triangles[triangle]) {
+          const auto fan = surface_.triangles_around(vertex);
+          near.insert(near.end(), fan.begin(), fan.end());
+        }
+      }
+    }
+    return clusters_of(near);
+  }
+
+ private:
+  std::vector<Index> clusters_of(const std::vector<Index>& triangles) const {
+    std::vector<Index> clusters;
+    for (const Index triangle : triangles) clusters.push_back(surface_.clusters().of_triangle[triangle]);
+    std::sort(clusters.begin(), clusters.end());
+    clusters.erase(std::unique(clusters.begin(), clusters.end()), clusters.end());
+    return clusters;
+  }
+
+  const Surface& surface_;
+  const SurfaceSampling& sampling_;
+  bool adjoining_;
+};
+
+// The definitions of 6.2.4, seen from the cell: a face crosses a cluster where the two cells meet on it, and it may if
+// the cluster is allowed to both. So each cell answers for the clusters it reaches; one patch for each forbidden one.
+std::vector<CellPatch> patches_on_forbidden_clusters(const Surface& surface, const SurfaceSampling& sampling,
+                                                     const std::vector<CellPatch>& patches, bool adjoining) {
+  const AllowedClusters allowed_clusters(surface, sampling, adjoining);
+  std::vector<std::vector<CellPatch>> found(patches.size());
+  tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t i) {
+    const std::vector<Index> allowed = allowed_clusters.of(patches[i].cell);
+    std::vector<std::pair<Index, Index>> forbidden;  // cluster, triangle
+    for (const Index triangle : patches[i].triangles) {
+      const Index cluster = surface.clusters().of_triangle[triangle];
+      if (!std::binary_search(allowed.begin(), allowed.end(), cluster)) forbidden.emplace_back(cluster, triangle);
+    }
+    std::sort(forbidden.begin(), forbidden.end());
+    for (std::size_t k = 0; k < forbidden.size(); ++k) {
+      if (k == 0 || forbidden[k].first != forbidden[k - 1].first) found[i].push_back({patches[i].cell, {}, false, 0});
+      found[i].back().triangles.push_back(forbidden[k].second);
+    }
+  });
+  std::vector<CellPatch> result;
+  for (std::vector<CellPatch>& some : found) std::move(some.begin(), some.end(), std::back_inserter(result));
+  return result;
+}
+
+// The cells beyond the patch's borders whose faces cross harmfully.
+std::vector<Index> harmful_neighbors(const Surface& surface, const SurfaceSampling& sampling,
+                                     const RestrictedVoronoi& restricted, const CellPatch& patch,
+                                     double joined_radius) {
+  std::vector<std::pair<Index, Index>> borders;  // other cell, triangle
+  for (const Index triangle : patch.triangles) {
+    for (const Index other : restricted.piece(triangle, patch.cell)->borders) borders.emplace_back(other, triangle);
+  }
+  std::sort(borders.begin(), borders.end());
+  std::vector<Index> harmful, crossed;
+  for (auto border = borders.begin(); border != borders.end();) {
+    const Index other = border->first;
+    crossed.clear();
+    for (; border != borders.end() && border->first == other; ++border) crossed.push_back(border->second);
+    const Point& a = restricted.points()[patch.cell];
+    const Point& b = restricted.points()[other];
+    const Sphere ball{0.5 * (a + b), joined_radius * (a - b).norm()};
+    if (joined_radius > 0 && joined_inside(surface, sampling, ball, crossed, {patch.cell, other})) continue;
+    harmful.push_back(other);
+  }
+  return harmful;
+}
+
+}  // namespace
+
+std::vector<Crossing> find_gap_crossings(const Surface& surface, const SurfaceSampling& sampling,
+                                         const RestrictedVoronoi& restricted, const RepairOptions& options) {
+  std::vector<CellPatch> patches = find_cell_patches(surface, sampling, restricted);
+  if (options.definition == GapDefinition::connected) {
+    std::erase_if(patches, [](const CellPatch& patch) { return patch.home; });
+  } else {
+    patches = patches_on_forbidden_clusters(surface, sampling, patches, options.definition == GapDefinition::loose);
+  }
+  std::vector<Crossing> crossings(patches.size());
+  std::vector<std::uint8_t> keep(patches.size());
+  tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t i) {
+    Crossing& crossing = crossings[i];
+    crossing.patch = std::move(patches[i]);
+    crossing.neighbors = harmful_neighbors(surface, sampling, restricted, crossing.patch, options.joined_radius);
+    const bool has_border =
+        std::any_of(crossing.patch.triangles.begin(), crossing.patch.triangles.end(),
+                    [&](Index triangle) { return !restricted.piece(triangle, crossing.patch.cell)->borders.empty(); });
+    // A closed component without a point of its own has no border; no face would ever tell of it.
+    keep[i] = !crossing.neighbors.empty() || (options.definition == GapDefinition::connected && !has_border);
+  });
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < crossings.size(); ++i) {
+    if (!keep[i]) continue;
+    if (kept != i) crossings[kept] = std::move(crossings[i]);
+    ++kept;
+  }
+  crossings.resize(kept);
+  return crossings;
+}
+
+std::vector<Crossing> find_necks(const Surface& surface, const SurfaceSampling& sampling,
+                                 const RestrictedVoronoi& restricted) {
+  std::vector<CellPatch> patches = find_cell_patches(surface, sampling, restricted);
+  std::erase_if(patches, [](const CellPatch& patch) { return !patch.home; });
+  std::vector<NeckFault> faults(patches.size());
+  tbb::parallel_for(std::size_t{0}, patches.size(),
+                    [&](std::size_t i) { faults[i] = find_neck(restricted, patches[i]); });
+  std::vector<Crossing> necks;
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    if (faults[i].found) necks.push_back({std::move(patches[i]), std::move(faults[i].neighbors), true});
+  }
+  return necks;
+}
+
+Index count_faces(const std::vector<Crossing>& crossings) {
+  std::vector<std::array<Index, 2>> faces;
+  for (const Crossing& crossing : crossings) {
+    const Index cell = crossing.patch.cell;
+    for (const Index other : crossing.neighbors) faces.push_back({std::min(cell, other), std::max(cell, other)});
+  }
+  std::sort(faces.begin(), faces.end());
+  return static_cast<Index>(std::unique(faces.begin(), faces.end()) - faces.begin());
+}
+
+}  // namespace orchard::detail

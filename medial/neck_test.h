@@ -1,0 +1,23 @@
+#pragma once
+#include <vector>
+
+#include "cell_patches.h"
+
+namespace orchard::detail {
+
+struct NeckFault {
+  bool found = false;
+  std::vector<Index> neighbors;  // cells whose shared face is at fault, ascending
+};
+
+// Whether a cell's part of the surface, though in one piece, is no disk among disks. The cells' borders are a net of
+// disks if every patch is a disk, two patches meet along one arc at most and three in one point at most; then the dual
+// of the net has the surface's topology (Edelsbrunner and Shah 1997), and no part of the solid thinner than the spacing
+// of its samples is lost. `patch` holds its cell's point; neighbours with a lower index are left to their own turn.
+NeckFault find_neck(const RestrictedVoronoi& restricted, const CellPatch& patch);
+
+// The corner of the patch that lies farthest from the cell's point, among those on its border with `neighbor`
+// (anywhere, if kNone), and its triangle. Precondition: there is one.
+std::pair<Point, Index> farthest_corner(const RestrictedVoronoi& restricted, const CellPatch& patch, Index neighbor);
+
+}  // namespace orchard::detail
