@@ -1,9 +1,12 @@
 #include "orchard/spheretree/merging.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <queue>
+#include <unordered_set>
+#include <utility>
 
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/min_ball.h"
@@ -12,16 +15,28 @@
 namespace orchard {
 namespace {
 
+// Directions spread over the sphere by the golden angle: a group's extreme points along them stand for all its points.
+constexpr int kCoreDirections = 40;
+const std::array<Vector, kCoreDirections>& core_directions() {
+  static const std::array<Vector, kCoreDirections> directions = [] {
+    std::array<Vector, kCoreDirections> list;
+    for (int i = 0; i < kCoreDirections; ++i) {
+      const double z = 1 - (2 * i + 1.0) / kCoreDirections, across = std::sqrt(1 - z * z),
+                   angle = 2.399963229728653 * i;
+      list[static_cast<std::size_t>(i)] = Vector(across * std::cos(angle), across * std::sin(angle), z);
+    }
+    return list;
+  }();
+  return directions;
+}
+
 // A set of medial vertices merged into one sphere.
 struct Group {
   Sphere sphere;
-  std::vector<Index> vertices;   // of the medial axis, ascending
-  std::vector<Index> points;     // forming points, ascending: what the sphere holds
-  std::vector<Index> neighbors;  // groups, ascending
-  bool alive = true;
+  std::vector<Index> vertices;  // of the medial axis
 };
 
-// A pair of neighbouring groups, with the sphere that would replace them cached.
+// A pair of groups that some Voronoi edge joins, with the sphere that would replace them cached.
 struct Candidate {
   double cost;
   Index a, b;  // a < b
@@ -35,56 +50,66 @@ struct Dearer {
   }
 };
 
-std::vector<Index> set_union_of(const std::vector<Index>& a, const std::vector<Index>& b) {
-  std::vector<Index> both;
-  both.reserve(a.size() + b.size());
-  std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
-  return both;
-}
-
 // Merges the spheres of a set of medial vertices along the axis until few enough remain (dissertation 6.3.1).
+//
+// Two departures make it fast. A group's cost and sphere come from a core, the extreme points of its forming points;
+// only the groups that remain in the end are fitted to all of them. And candidates are not re-keyed when a group grows:
+// since a larger group costs more to join, an outdated cost is a lower bound, and bringing it up to date when it
+// reaches the queue's head gives the same order.
 class Merger {
  public:
-  Merger(const MedialAxis& axis, const std::vector<Index>& vertices, std::vector<Index>& group_of)
-      : axis_(axis), group_of_(group_of) {
-    groups_.reserve(2 * vertices.size());
-    for (Index i = 0; i < vertices.size(); ++i) group_of_[vertices[i]] = i;
-    for (Index vertex : vertices) add_vertex(vertex);
-    for (Index vertex : vertices) group_of_[vertex] = kNone;
-    alive_ = groups_.size();
+  Merger(const MedialAxis& axis, const std::vector<Index>& vertices, std::vector<Index>& node_of)
+      : axis_(axis), vertices_(vertices) {
+    const auto count = static_cast<Index>(vertices.size());
+    nodes_.reserve(2 * count);
+    for (Index i = 0; i < count; ++i) node_of[vertices[i]] = i;
+    for (Index vertex : vertices) {
+      const auto points = axis.forming_points[vertex];
+      nodes_.push_back({{axis.centers[vertex], axis.radii[vertex]}, {points.begin(), points.end()}, kNone});
+    }
+    for (Index i = 0; i < count; ++i)
+      for (Index neighbor : axis.neighbors[vertices[i]])
+        if (node_of[neighbor] != kNone && i < node_of[neighbor]) edges_.push_back({i, node_of[neighbor]});
+    for (Index vertex : vertices) node_of[vertex] = kNone;
+    alive_ = count;
   }
 
   std::vector<Group> run(std::size_t target) {
-    for (Index a = 0; a < groups_.size() && alive_ > target; ++a)
-      for (Index b : groups_[a].neighbors)
-        if (a < b) consider(a, b);
+    if (alive_ > target)
+      for (const auto& [a, b] : edges_) queue_.push(candidate(a, b));
     while (alive_ > target) {
       if (queue_.empty()) {
-        join_components();
+        merge(cheapest_join_of_components());
         continue;
       }
-      const Candidate best = queue_.top();
+      const Candidate head = queue_.top();
       queue_.pop();
-      if (groups_[best.a].alive && groups_[best.b].alive) merge(best);
+      const Index a = current(head.a), b = current(head.b);
+      if (a == b) continue;
+      if (a == head.a && b == head.b) {
+        merge(head);
+      } else if (keyed_.insert(key(a, b)).second) {
+        queue_.push(candidate(a, b));
+      }
     }
-    std::erase_if(groups_, [](const Group& group) { return !group.alive; });
-    for (Group& group : groups_) tighten(group);
-    return std::move(groups_);
+    return groups();
   }
 
  private:
-  void add_vertex(Index vertex) {
-    Group group;
-    const auto points = axis_.forming_points[vertex];
-    group.points.assign(points.begin(), points.end());
-    group.sphere = {axis_.centers[vertex], 0};
-    for (Index point : points)
-      group.sphere.radius = std::max(group.sphere.radius, (axis_.points[point] - group.sphere.center).norm());
-    group.vertices = {vertex};
-    for (Index neighbor : axis_.neighbors[vertex])
-      if (group_of_[neighbor] != kNone) group.neighbors.push_back(group_of_[neighbor]);
-    std::sort(group.neighbors.begin(), group.neighbors.end());
-    groups_.push_back(std::move(group));
+  // A merged set; `into` is the set that swallowed it, so that indices form a forest.
+  struct Node {
+    Sphere sphere;
+    std::vector<Index> core;  // some of its forming points
+    Index into;
+  };
+
+  static std::uint64_t key(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
+
+  Index current(Index node) {
+    Index root = node;
+    while (nodes_[root].into != kNone) root = nodes_[root].into;
+    while (nodes_[node].into != kNone) node = std::exchange(nodes_[node].into, root);
+    return root;
   }
 
   // The looseness of the sphere around its forming points: how far it stands off the tangent plane at each of them,
@@ -102,7 +127,9 @@ class Merger {
   }
 
   Candidate candidate(Index a, Index b) {
-    const std::vector<Index> points = set_union_of(groups_[a].points, groups_[b].points);
+    std::vector<Index>& points = scratch_;
+    points = nodes_[a].core;
+    points.insert(points.end(), nodes_[b].core.begin(), nodes_[b].core.end());
     const Sphere sphere = ritter_ball(positions_of(points));
     return {cost_of(sphere, points), std::min(a, b), std::max(a, b), sphere};
   }
@@ -113,66 +140,93 @@ class Merger {
     return positions_;
   }
 
-  // Draws the centre towards the farthest point in shrinking steps (Badoiu and Clarkson 2003), which takes most of the
-  // 5 % that Ritter's ball is too large. Too slow for every candidate, and worth it for those that stay.
-  void tighten(Group& group) {
-    const std::vector<Point>& points = positions_of(group.points);
+  void merge(const Candidate& pair) {
+    Node& a = nodes_[pair.a];
+    Node& b = nodes_[pair.b];
+    std::vector<Index> core;
+    std::set_union(a.core.begin(), a.core.end(), b.core.begin(), b.core.end(), std::back_inserter(core));
+    a.core = b.core = {};
+    a.into = b.into = static_cast<Index>(nodes_.size());
+    if (core.size() > kCoreDirections) core = extreme_points(core);
+    nodes_.push_back({pair.sphere, std::move(core), kNone});
+    --alive_;
+  }
+
+  std::vector<Index> extreme_points(const std::vector<Index>& points) {
+    std::vector<Index> extreme;
+    for (const Vector& direction : core_directions()) {
+      Index best = points[0];
+      for (Index point : points)
+        if (direction.dot(axis_.points[point]) > direction.dot(axis_.points[best])) best = point;
+      extreme.push_back(best);
+    }
+    std::sort(extreme.begin(), extreme.end());
+    extreme.erase(std::unique(extreme.begin(), extreme.end()), extreme.end());
+    return extreme;
+  }
+
+  // More components than children: the smallest sphere joins the group that it costs least to join.
+  Candidate cheapest_join_of_components() {
+    Index smallest = kNone;
+    for (Index i = 0; i < nodes_.size(); ++i)
+      if (nodes_[i].into == kNone && (smallest == kNone || nodes_[i].sphere.radius < nodes_[smallest].sphere.radius))
+        smallest = i;
+    Candidate best{std::numeric_limits<double>::infinity(), kNone, kNone, {}};
+    for (Index i = 0; i < nodes_.size(); ++i) {
+      if (i == smallest || nodes_[i].into != kNone) continue;
+      const Candidate pair = candidate(smallest, i);
+      if (Dearer()(best, pair)) best = pair;
+    }
+    return best;
+  }
+
+  std::vector<Group> groups() {
+    std::vector<Index> group_of(nodes_.size(), kNone);
+    std::vector<Group> result;
+    for (Index i = 0; i < vertices_.size(); ++i) {
+      const Index root = current(i);
+      if (group_of[root] == kNone) {
+        group_of[root] = static_cast<Index>(result.size());
+        result.push_back({nodes_[root].sphere, {}});
+      }
+      result[group_of[root]].vertices.push_back(vertices_[i]);
+    }
+    for (Group& group : result) fit(group);
+    return result;
+  }
+
+  // Makes the sphere hold all forming points, with the centre drawn towards the farthest one in shrinking steps (Badoiu
+  // and Clarkson 2003), which takes most of the 5 % that Ritter's ball is too large.
+  void fit(Group& group) {
+    std::vector<Index>& all = scratch_;
+    all.clear();
+    for (Index vertex : group.vertices)
+      all.insert(all.end(), axis_.forming_points[vertex].begin(), axis_.forming_points[vertex].end());
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    const std::vector<Point>& points = positions_of(all);
     Point center = group.sphere.center;
+    group.sphere.radius = std::numeric_limits<double>::infinity();
     for (int pass = 1; pass <= 64; ++pass) {
-      const auto farther = [&](const Point& p, const Point& q) {
+      const auto nearer = [&](const Point& p, const Point& q) {
         return (p - center).squaredNorm() < (q - center).squaredNorm();
       };
-      const Point& farthest = *std::max_element(points.begin(), points.end(), farther);
+      const Point& farthest = *std::max_element(points.begin(), points.end(), nearer);
       const double radius = (farthest - center).norm() * (1 + 0x1p-50);
       if (radius < group.sphere.radius) group.sphere = {center, radius};
+      if (group.vertices.size() == 1) return;  // a medial sphere touches its points as it is
       center += (farthest - center) * (0.2 / pass);
     }
   }
 
-  void consider(Index a, Index b) { queue_.push(candidate(a, b)); }
-
-  void merge(const Candidate& pair) {
-    const auto merged = static_cast<Index>(groups_.size());
-    Group group;
-    group.sphere = pair.sphere;
-    Group& a = groups_[pair.a];
-    Group& b = groups_[pair.b];
-    group.points = set_union_of(a.points, b.points);
-    group.vertices = set_union_of(a.vertices, b.vertices);
-    group.neighbors = set_union_of(a.neighbors, b.neighbors);
-    std::erase_if(group.neighbors, [&](Index other) { return other == pair.a || other == pair.b; });
-    for (Group* old : {&a, &b})
-      *old = Group{.sphere = {}, .vertices = {}, .points = {}, .neighbors = {}, .alive = false};
-    for (Index other : group.neighbors) {
-      auto& row = groups_[other].neighbors;
-      std::erase_if(row, [&](Index x) { return x == pair.a || x == pair.b; });
-      row.push_back(merged);  // the largest index, so the row stays sorted
-    }
-    groups_.push_back(std::move(group));
-    --alive_;
-    for (Index other : groups_[merged].neighbors) consider(other, merged);
-  }
-
-  // More components than children: the group with the fewest points joins the one that it costs least to join.
-  void join_components() {
-    Index smallest = kNone;
-    for (Index i = 0; i < groups_.size(); ++i)
-      if (groups_[i].alive && (smallest == kNone || groups_[i].points.size() < groups_[smallest].points.size()))
-        smallest = i;
-    Candidate best{std::numeric_limits<double>::infinity(), kNone, kNone, {}};
-    for (Index i = 0; i < groups_.size(); ++i) {
-      if (i == smallest || !groups_[i].alive) continue;
-      const Candidate pair = candidate(smallest, i);
-      if (Dearer()(best, pair)) best = pair;
-    }
-    merge(best);
-  }
-
   const MedialAxis& axis_;
-  std::vector<Index>& group_of_;  // scratch over all medial vertices, kNone outside the constructor
-  std::vector<Group> groups_;
+  const std::vector<Index>& vertices_;
+  std::vector<std::array<Index, 2>> edges_;
+  std::vector<Node> nodes_;
   std::size_t alive_ = 0;
   std::priority_queue<Candidate, std::vector<Candidate>, Dearer> queue_;
+  std::unordered_set<std::uint64_t> keyed_;  // pairs that were brought up to date; never iterated
+  std::vector<Index> scratch_;
   std::vector<Point> positions_;
 };
 
@@ -191,20 +245,20 @@ SphereTree merge_tree(const Surface& surface, const MedialAxis& axis, const Merg
   tree.nodes.push_back({.sphere = padded(surface.bounding_ball(), margin)});
   std::vector<std::vector<Index>> members(1);
   for (Index i = 0; i < axis.size(); ++i) members[0].push_back(i);
-  std::vector<Index> group_of(axis.size(), kNone);
+  std::vector<Index> node_of(axis.size(), kNone);  // scratch
   for (Index i = 0; i < tree.nodes.size(); ++i) {
     if (i % 16 == 0)
       report_progress(progress, "merging", static_cast<double>(i) / static_cast<double>(tree.nodes.size() + i));
     // A single medial sphere cannot be split: it stays a leaf.
     if (tree.nodes[i].level == options.depth || members[i].size() < 2) continue;
-    std::vector<Group> groups = Merger(axis, members[i], group_of).run(options.branching);
-    members[i] = {};
+    std::vector<Group> groups = Merger(axis, members[i], node_of).run(options.branching);
     tree.nodes[i].first_child = static_cast<Index>(tree.nodes.size());
     tree.nodes[i].child_count = static_cast<Index>(groups.size());
     for (Group& group : groups) {
       tree.nodes.push_back({.sphere = padded(group.sphere, margin), .parent = i, .level = tree.nodes[i].level + 1});
       members.push_back(std::move(group.vertices));
     }
+    members[i] = {};
   }
   return tree;
 }

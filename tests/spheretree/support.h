@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "orchard/covering/coverage.h"
 #include "orchard/geometry/random.h"
 #include "orchard/geometry/sampling.h"
 #include "orchard/geometry/surface.h"
