@@ -3,6 +3,5 @@
 find_package(Eigen3 CONFIG REQUIRED)
 find_package(OpenMesh CONFIG REQUIRED)
 find_package(TBB CONFIG REQUIRED)
-find_package(embree 3 CONFIG REQUIRED)
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE ON)
 find_package(CGAL CONFIG REQUIRED)
