@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
     }
     switch (query.answer()) {
       case Answer::no:
-        std::printf("%2d: no, at least %.3g apart\n", step, query.lower_bound());
+        std::printf("%2d: no (%.3g apart or more)\n", step, query.lower_bound());
         break;
       case Answer::maybe:
         std::printf("%2d: maybe, at most %.3g apart after level %u\n", step, query.separation_bound(), query.level());

@@ -1,41 +1,9 @@
-// Replaces the global allocation functions to count what a query allocates, and to let it fail.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
-
+#include "allocation.h"
 #include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/tree_file.h"
 #include "support.h"
-
-namespace {
-std::size_t allocations = 0;
-bool failing = false;
-
-void* allocate(std::size_t size, std::size_t alignment) noexcept {
-  ++allocations;
-  if (failing) return nullptr;
-  return std::aligned_alloc(alignment, (size + alignment) / alignment * alignment);
-}
-}  // namespace
-
-void* operator new(std::size_t size) {
-  if (void* memory = allocate(size, 16)) return memory;
-  throw std::bad_alloc();
-}
-void* operator new(std::size_t size, std::align_val_t alignment) {
-  if (void* memory = allocate(size, static_cast<std::size_t>(alignment))) return memory;
-  throw std::bad_alloc();
-}
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return allocate(size, 16); }
-void* operator new[](std::size_t size) { return operator new(size); }
-void* operator new[](std::size_t size, const std::nothrow_t&) noexcept { return allocate(size, 16); }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace orchard::runtime {
 namespace {
@@ -72,9 +40,9 @@ TEST(Memory, WhenItRunsOutLeavesTheAnswerAndTheQueryGoesOnLater) {
   starved.start({}, pose);
   int failures = 0;
   while (!starved.finished()) {
-    failing = true;
+    allocation_fails = true;
     const Answer answer = starved.refine();
-    failing = false;
+    allocation_fails = false;
     if (!starved.out_of_memory()) continue;
     ++failures;
     EXPECT_EQ(answer, Answer::maybe);
@@ -92,9 +60,9 @@ TEST(Memory, WhenItRunsOutLeavesTheAnswerAndTheQueryGoesOnLater) {
 TEST(Memory, WhenItRunsOutIsReportedByLoading) {
   const auto file = serialize(build_tree(torus(16, 8, 1, 0.3)));
   PackedSphereTree tree;
-  failing = true;
+  allocation_fails = true;
   const LoadStatus status = load(file, tree), from_disk = load_file("/dev/zero", tree);
-  failing = false;
+  allocation_fails = false;
   EXPECT_EQ(status, LoadStatus::out_of_memory);
   EXPECT_NE(from_disk, LoadStatus::ok);
   EXPECT_EQ(load(file, tree), LoadStatus::ok);

@@ -1,0 +1,36 @@
+#include "allocation.h"
+
+#include <cstdlib>
+#include <new>
+
+namespace orchard::runtime::test {
+std::size_t allocations = 0;
+bool allocation_fails = false;
+}  // namespace orchard::runtime::test
+
+namespace {
+
+void* allocate(std::size_t size, std::size_t alignment) noexcept {
+  ++orchard::runtime::test::allocations;
+  if (orchard::runtime::test::allocation_fails) return nullptr;
+  return std::aligned_alloc(alignment, (size + alignment) / alignment * alignment);
+}
+}  // namespace
+
+void* operator new(std::size_t size) {
+  if (void* memory = allocate(size, 16)) return memory;
+  throw std::bad_alloc();
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  if (void* memory = allocate(size, static_cast<std::size_t>(alignment))) return memory;
+  throw std::bad_alloc();
+}
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return allocate(size, 16); }
+void* operator new[](std::size_t size) { return operator new(size); }
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept { return allocate(size, 16); }
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+void operator delete[](void* memory) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
