@@ -1,13 +1,15 @@
 #include "panels.h"
 
 #include <vtkActor.h>
+#include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkColorTransferFunction.h>
 #include <vtkDataArray.h>
 #include <vtkDoubleArray.h>
 #include <vtkFeatureEdges.h>
 #include <vtkFieldData.h>
-#include <vtkGlyph3D.h>
+#include <vtkGlyph3DMapper.h>
+#include <vtkIdList.h>
 #include <vtkLightKit.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -31,12 +33,13 @@ using Data = vtkSmartPointer<vtkPolyData>;
 constexpr Color kInk{0.13, 0.16, 0.20};
 constexpr Color kStone{0.80, 0.83, 0.87};
 constexpr double kFeatureAngle = 40;  // degrees
+constexpr double kSeparation = 0.9;   // radians
 constexpr int kLevelsShown = 3;
 
 constexpr Color rgb(int hex) { return {((hex >> 16) & 255) / 255.0, ((hex >> 8) & 255) / 255.0, (hex & 255) / 255.0}; }
 // Neighbouring branches must differ, also in brightness.
 constexpr std::array<Color, 8> kBranchColors{rgb(0x4e79a7), rgb(0xf2a13c), rgb(0x6aaa5a), rgb(0xe0605f),
-                                             rgb(0x7cc0bb), rgb(0xf0d060), rgb(0xb083b0), rgb(0xa98467)};
+                                             rgb(0x7cc0bb), rgb(0xf0d060), rgb(0xb083b0), rgb(0xe8a0b4)};
 constexpr std::array<Color, 3> kOriginColors{rgb(0x2f6db3), rgb(0xe8871e), rgb(0xc8233c)};
 
 Data read(const std::filesystem::path& file) {
@@ -72,10 +75,7 @@ std::string counted(vtkIdType number, const std::string& thing) {
   return grouped(number) + " " + thing + (number == 1 ? "" : "s");
 }
 
-vtkSmartPointer<vtkActor> make_actor(vtkPolyData* data, const Color& color, double opacity = 1) {
-  vtkNew<vtkPolyDataMapper> mapper;
-  mapper->SetInputData(data);
-  mapper->ScalarVisibilityOff();
+vtkSmartPointer<vtkActor> make_actor(vtkMapper* mapper, const Color& color, double opacity = 1) {
   auto actor = vtkSmartPointer<vtkActor>::New();
   actor->SetMapper(mapper);
   vtkProperty* property = actor->GetProperty();
@@ -86,6 +86,13 @@ vtkSmartPointer<vtkActor> make_actor(vtkPolyData* data, const Color& color, doub
   property->SetSpecular(0.12);
   property->SetSpecularPower(25);
   return actor;
+}
+
+vtkSmartPointer<vtkActor> make_actor(vtkPolyData* data, const Color& color, double opacity = 1) {
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputData(data);
+  mapper->ScalarVisibilityOff();
+  return make_actor(mapper, color, opacity);
 }
 
 vtkSmartPointer<vtkActor> feature_edges(vtkPolyData* mesh, double width, double opacity = 1) {
@@ -114,26 +121,27 @@ void set_colors(vtkDataSetAttributes* data, vtkIdType count, const ColorOf& colo
                                 static_cast<unsigned char>(std::lround(255 * color[static_cast<std::size_t>(c)])));
     }
   }
-  data->SetScalars(colors);
+  data->AddArray(colors);
 }
 
-// A sphere of the model's size for each point, coloured by the points' scalars.
-vtkSmartPointer<vtkActor> make_spheres(vtkPolyData* points, int resolution) {
+// A sphere of its `radius` around each point, in the points' `color`. Fine enough to look round, within reason.
+vtkSmartPointer<vtkActor> make_spheres(vtkPolyData* points) {
+  constexpr double kTriangles = 4e6;
+  const auto count = static_cast<double>(points->GetNumberOfPoints());
+  const int resolution = std::clamp(static_cast<int>(std::sqrt(kTriangles / 4 / count)), 5, 64);
   vtkNew<vtkSphereSource> sphere;
   sphere->SetRadius(1);
   sphere->SetThetaResolution(2 * resolution);
   sphere->SetPhiResolution(resolution);
-  vtkNew<vtkGlyph3D> glyphs;
-  glyphs->SetInputData(points);
-  glyphs->SetSourceConnection(sphere->GetOutputPort());
-  glyphs->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "radius");
-  glyphs->SetInputArrayToProcess(3, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "color");
-  glyphs->SetScaleModeToScaleByScalar();
-  glyphs->SetColorModeToColorByScalar();
-  glyphs->Update();
-  auto actor = make_actor(glyphs->GetOutput(), kStone);
-  actor->GetMapper()->ScalarVisibilityOn();
-  return actor;
+  vtkNew<vtkGlyph3DMapper> mapper;
+  mapper->SetInputData(points);
+  mapper->SetSourceConnection(sphere->GetOutputPort());
+  mapper->SetScaleArray("radius");
+  mapper->SetScaleModeToScaleByMagnitude();
+  mapper->OrientOff();
+  mapper->SetScalarModeToUsePointFieldData();
+  mapper->SelectColorArray("color");
+  return make_actor(mapper, kStone);
 }
 
 vtkSmartPointer<vtkRenderer> make_renderer(double size) {
@@ -192,8 +200,26 @@ Panel points_panel(vtkPolyData* mesh, vtkPolyData* points, double size) {
   radii->Fill(std::clamp(0.75 * spacing, 0.006 * size, 0.02 * size));
   dots->GetPointData()->AddArray(radii);
   if (mesh != nullptr) panel.renderer->AddActor(make_actor(mesh, {0.93, 0.94, 0.95}));
-  panel.renderer->AddActor(make_spheres(dots, 6));
+  panel.renderer->AddActor(make_spheres(dots));
   return panel;
+}
+
+// The faces whose surface points are seen at more than kSeparation: without the sheets that run into every shallow
+// edge.
+Data without_shallow_faces(vtkPolyData* faces) {
+  vtkDataArray* separation = require_array(faces->GetCellData(), "separation", faces->GetNumberOfPolys());
+  vtkNew<vtkCellArray> polygons;
+  vtkNew<vtkIdList> corners;
+  for (vtkIdType i = 0; i < faces->GetNumberOfPolys(); ++i) {
+    if (separation->GetComponent(i, 0) < kSeparation) continue;
+    faces->GetPolys()->GetCellAtId(i, corners);
+    polygons->InsertNextCell(corners);
+  }
+  auto result = Data::New();
+  result->SetPoints(faces->GetPoints());
+  result->GetPointData()->ShallowCopy(faces->GetPointData());
+  result->SetPolys(polygons);
+  return result;
 }
 
 Panel axis_panel(vtkPolyData* mesh, vtkPolyData* faces, double size, double line_width) {
@@ -207,7 +233,7 @@ Panel axis_panel(vtkPolyData* mesh, vtkPolyData* faces, double size, double line
     const double t = static_cast<double>(i) / static_cast<double>(kViridis.size() - 1);
     colors->AddRGBPoint(range[0] + t * (range[1] - range[0]), kViridis[i][0], kViridis[i][1], kViridis[i][2]);
   }
-  auto sheet = make_actor(faces, kStone);
+  auto sheet = make_actor(without_shallow_faces(faces), kStone);
   sheet->GetProperty()->SetAmbient(0.35);
   sheet->GetProperty()->SetDiffuse(0.65);
   sheet->GetProperty()->SetSpecular(0);
@@ -249,8 +275,7 @@ Panel level_panel(vtkPolyData* spheres, int level, double size, double bounding_
     const auto index = static_cast<std::size_t>(std::max(0.0, branch->GetComponent(i, 0)));
     return kBranchColors.at(index % kBranchColors.size());
   });
-  const int resolution = spheres->GetNumberOfPoints() <= 64 ? 64 : spheres->GetNumberOfPoints() <= 1000 ? 32 : 12;
-  panel.renderer->AddActor(make_spheres(spheres, resolution));
+  panel.renderer->AddActor(make_spheres(spheres));
   return panel;
 }
 

@@ -10,6 +10,7 @@
 #include <iterator>
 #include <numbers>
 #include <optional>
+#include <regex>
 
 #include "child_process.h"
 #include "orchard/geometry/atomic_file.h"
@@ -62,13 +63,14 @@ fs::path find_renderer(const PipelinePicture& picture) {
   return detail::find_in_path("orchard-render");
 }
 
-// The last line that a program wrote, if any, for a message.
+// The last line that a program wrote, if any, for a message; without the control sequences that VTK colours its log
+// with.
 std::string last_words(const fs::path& log) {
-  std::string text = content(log);
-  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
-  const std::size_t line = text.rfind('\n');
-  if (line != std::string::npos) text.erase(0, line + 1);
-  return text.empty() ? text : " (" + text + ")";
+  const std::string text = std::regex_replace(content(log), std::regex("\\x1b\\[[0-9;]*m"), "");
+  const std::size_t end = text.find_last_not_of(" \n");
+  if (end == std::string::npos) return {};
+  const std::size_t before = text.find_last_of('\n', end);
+  return " (" + text.substr(before + 1, end - before) + ")";
 }
 
 // Runs orchard-render on one display; the reason why it failed, or nothing.

@@ -12,6 +12,7 @@
 #include <vtkSmartPointer.h>
 #include <vtkXMLPolyDataWriter.h>
 
+#include <cmath>
 #include <system_error>
 
 #include "orchard/geometry/atomic_file.h"
@@ -119,6 +120,16 @@ std::string xml_escaped(const std::string& text) {
   return result;
 }
 
+// The angle at which a face's two surface points are seen from its middle.
+double separation(const MedialAxis& axis, Index face) {
+  Point middle = Point::Zero();
+  for (const Index vertex : axis.faces[face]) middle += axis.centers[vertex];
+  middle /= static_cast<double>(axis.faces[face].size());
+  const auto [a, b] = axis.face_points[face];
+  const Vector to_a = axis.points[a] - middle, to_b = axis.points[b] - middle;
+  return std::atan2(to_a.cross(to_b).norm(), to_a.dot(to_b));
+}
+
 // The child of the root that each node descends from, counted from 0.
 std::vector<int> branches(const SphereTree& tree) {
   std::vector<int> branch(tree.nodes.size(), -1);
@@ -178,6 +189,8 @@ void write_medial_axis(const std::filesystem::path& folder, const MedialAxis& ax
   const std::size_t count = axis.face_points.size();
   add_ints(faces->GetCellData(), "point_a", count, [&](std::size_t i) { return as_int(axis.face_points[i][0]); });
   add_ints(faces->GetCellData(), "point_b", count, [&](std::size_t i) { return as_int(axis.face_points[i][1]); });
+  add_doubles(faces->GetCellData(), "separation", count,
+              [&](std::size_t i) { return separation(axis, static_cast<Index>(i)); });
   write(folder / "medial_faces.vtp", faces);
 }
 

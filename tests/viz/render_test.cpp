@@ -152,6 +152,17 @@ TEST_F(DrawPipeline, SurvivesTheAbortOfVtkWithoutADisplay) {
   EXPECT_NE(status.reason.find("was ended by signal"), std::string::npos) << status.reason;
 }
 
+TEST_F(DrawPipeline, SurvivesAServerWithoutOpenGl) {
+  const std::filesystem::path xvfb = detail::find_in_path("Xvfb");
+  if (xvfb.empty()) GTEST_SKIP() << "Xvfb is not in PATH";
+  std::filesystem::rename(script("exec " + xvfb.string() + " \"$@\" -extension GLX"), folder_ / "Xvfb");
+  const Variable path("PATH", folder_.path().c_str());
+  const PictureStatus status = draw_pipeline(png_, picture());
+  EXPECT_FALSE(status);
+  std::puts(status.reason.c_str());
+  EXPECT_NE(status.reason.find("orchard-render on display"), std::string::npos) << status.reason;
+}
+
 TEST_F(DrawPipeline, SaysThatThereIsNothingToDraw) {
   if (no_xvfb()) GTEST_SKIP() << "Xvfb is not in PATH";
   PipelinePicture request = picture();

@@ -16,6 +16,7 @@
 #include <vtkXMLMultiBlockDataReader.h>
 #include <vtkXMLPolyDataReader.h>
 
+#include <cmath>
 #include <set>
 
 #include "values.h"
@@ -132,6 +133,10 @@ TEST(WriteMedialAxis, HasALinePerPairOfNeighboursAndAPolygonPerFace) {
   EXPECT_EQ(cells_of(faces), (std::vector<std::vector<Index>>{{0, 1, 2}}));
   EXPECT_EQ(values(faces->GetCellData(), "point_a"), std::vector<double>{0});
   EXPECT_EQ(values(faces->GetCellData(), "point_b"), std::vector<double>{1});
+  // From (1/6, 1/6, 0) the points (0, 0, 1) and (0, 0, -1).
+  const auto separation = values(faces->GetCellData(), "separation");
+  ASSERT_EQ(separation.size(), 1u);
+  EXPECT_NEAR(separation[0], 2 * std::atan(1 / (std::sqrt(2.0) / 6)), 1e-12);
 }
 
 // The ancestor of a node, or the node itself, that stands for it on a level.
