@@ -12,8 +12,8 @@
 #include <tuple>
 #include <utility>
 
-#include "circumcenter.h"
 #include "orchard/geometry/error.h"
+#include "predicates.h"
 
 namespace orchard {
 namespace {
@@ -51,7 +51,8 @@ Point rational_circumcenter(const std::array<Point, 4>& p) {
 void place_finite(VoronoiVertex& vertex, std::span<const Point> points) {
   std::array<Point, 4> p;
   for (unsigned i = 0; i < 4; ++i) p[i] = points[vertex.forming_points[i]];
-  const auto relative = detail::circumcenter_from_origin(p[0] - p[3], p[1] - p[3], p[2] - p[3]);
+  const auto from = [&](unsigned i) { return detail::LengthedVector(p[i] - p[3]); };
+  const auto relative = detail::circumcenter(from(0), from(1), from(2));
   const bool good = relative.condition < kWellConditioned;
   vertex.center = good ? Point(p[3] + relative.center) : rational_circumcenter(p);
   vertex.radius = (vertex.center - p[3]).norm();

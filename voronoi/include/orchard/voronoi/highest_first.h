@@ -10,16 +10,17 @@ namespace orchard {
 
 // What the insertions had to do.
 struct HighestFirstReport {
-  std::uint64_t certified_insertions = 0;    // every sign on the cavity's border was beyond doubt
-  std::uint64_t constrained_insertions = 0;  // some vertex was marginal: the value-ordered constrained search decided
-  std::uint64_t coplanar_centers = 0;        // circumcentres approximated by a neighbour's position
+  std::uint64_t certified_insertions = 0;        // every sign on the cavity's border was beyond doubt
+  std::uint64_t settled_insertions = 0;          // some vertex was marginal: leaving all such gave a consistent cell
+  std::uint64_t constrained_insertions = 0;      // the value-ordered search under the five constraints decided
+  std::uint64_t coplanar_centers = 0;            // circumcentres approximated by a neighbour's position
   std::vector<std::array<Index, 2>> duplicates;  // (point left out, point it coincides with)
 };
 
 // The Voronoi diagram by incremental insertion with the highest-first deletion search under Inagaki et al.'s five
-// constraints (dissertation 6.2.3): consistent for every input, and as near to Voronoi as rounding allows. Points within
-// tolerance::kCoincidentPoints of the bounding radius of an earlier point form no vertex. Deterministic.
-// Throws InputError for fewer than four points or points that all lie in a plane. About O(n log n) on surface points.
+// constraints (dissertation 6.2.3): consistent for every input, and as near to Voronoi as rounding allows. Points
+// within tolerance::kCoincidentPoints of the bounding radius of an earlier point form no vertex. Deterministic. Throws
+// InputError for fewer than four points or points that all lie in a plane. About O(n log n) on surface points.
 VoronoiDiagram highest_first_voronoi(std::span<const Point> points, const Progress& progress = {},
                                      HighestFirstReport* report = nullptr);
 

@@ -6,7 +6,7 @@
 namespace orchard {
 
 struct VoronoiInaccuracy {
-  double mean = 0, max = 0;     // lengths
+  double mean = 0, max = 0;  // lengths
   std::uint64_t samples = 0;
 };
 

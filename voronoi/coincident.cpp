@@ -1,0 +1,86 @@
+#include "coincident.h"
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace orchard::detail {
+namespace {
+
+using Cell = std::array<std::int64_t, 3>;
+
+std::uint64_t hash(const Cell& cell) {
+  std::uint64_t h = 0;
+  for (const std::int64_t c : cell) {
+    h = (h ^ static_cast<std::uint64_t>(c)) * 0x9e3779b97f4a7c15u;
+    h ^= h >> 29;
+  }
+  return h;
+}
+
+// Cells much wider than the distance, so that most points need to look into one cell only; linear probing. Points of
+// different cells may share a run of slots: comparing them too is harmless.
+class Grid {
+ public:
+  Grid(std::span<const Point> points, double distance)
+      : points_(points), distance_(distance), width_(distance * 1024), slots_(std::bit_ceil(2 * points.size() + 1)) {
+    for (Index& slot : slots_) slot = kNone;
+  }
+
+  // The lowest point within the distance, or kNone after taking the point in.
+  Index find_or_add(Index point) {
+    const Point& p = points_[point];
+    const Vector from_origin = p - points_[0];
+    Cell low, high;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto i = static_cast<std::size_t>(axis);
+      low[i] = static_cast<std::int64_t>(std::floor((from_origin[axis] - distance_) / width_));
+      high[i] = static_cast<std::int64_t>(std::floor((from_origin[axis] + distance_) / width_));
+    }
+    Index found = kNone;
+    for (std::int64_t x = low[0]; x <= high[0]; ++x)
+      for (std::int64_t y = low[1]; y <= high[1]; ++y)
+        for (std::int64_t z = low[2]; z <= high[2]; ++z) found = std::min(found, find({x, y, z}, p));
+    if (found == kNone) add(home(from_origin), point);
+    return found;
+  }
+
+ private:
+  Cell home(const Vector& from_origin) const {
+    Cell cell;
+    for (int axis = 0; axis < 3; ++axis)
+      cell[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(std::floor(from_origin[axis] / width_));
+    return cell;
+  }
+  Index find(const Cell& cell, const Point& p) const {
+    Index found = kNone;
+    for (std::size_t slot = hash(cell) & mask(); slots_[slot] != kNone; slot = (slot + 1) & mask())
+      if ((points_[slots_[slot]] - p).squaredNorm() <= distance_ * distance_) found = std::min(found, slots_[slot]);
+    return found;
+  }
+  void add(const Cell& cell, Index point) {
+    std::size_t slot = hash(cell) & mask();
+    while (slots_[slot] != kNone) slot = (slot + 1) & mask();
+    slots_[slot] = point;
+  }
+  std::size_t mask() const { return slots_.size() - 1; }
+
+  std::span<const Point> points_;
+  double distance_, width_;
+  std::vector<Index> slots_;
+};
+
+}  // namespace
+
+std::vector<std::array<Index, 2>> coincident_points(std::span<const Point> points, double distance) {
+  std::vector<std::array<Index, 2>> pairs;
+  if (points.size() < 2) return pairs;
+  Grid grid(points, distance);
+  for (Index i = 0; i < points.size(); ++i) {
+    const Index same = grid.find_or_add(i);
+    if (same != kNone) pairs.push_back({i, same});
+  }
+  return pairs;
+}
+
+}  // namespace orchard::detail

@@ -1,0 +1,65 @@
+#pragma once
+#include <cstdint>
+#include <queue>
+#include <vector>
+
+#include "cavity.h"
+#include "workspace.h"
+
+namespace orchard::detail {
+
+// How the vertices that a new point deletes are found.
+enum class Search : std::uint8_t {
+  bowyer,         // all that are nearer to the new point, and failing where that is not a ball
+  inagaki,        // breadth-first and ignoring value, under the five constraints
+  highest_first,  // by value, under the five constraints
+};
+
+struct InsertionCounts {
+  std::uint64_t certified = 0;    // every sign was beyond doubt
+  std::uint64_t settled = 0;      // leaving the doubtful vertices alone gave a ball that the new point sees all around
+  std::uint64_t constrained = 0;  // the constrained search decided
+  std::uint64_t coplanar = 0;     // vertices with an approximate position
+};
+
+// Inserts points one by one into the diagram of a workspace.
+class Inserter {
+ public:
+  Inserter(Workspace& workspace, Search search) : workspace_(workspace), search_(search), cavity_(workspace) {}
+
+  // Makes the diagram of four points; false if they are nearly coplanar.
+  bool start(const std::array<Index, 4>& points);
+  void insert(Index point);
+  const InsertionCounts& counts() const { return counts_; }
+
+ private:
+  struct Candidate {
+    double value;
+    Index vertex;
+    bool operator<(const Candidate& other) const {  // the queue releases the greatest
+      return value != other.value ? value < other.value : vertex > other.vertex;
+    }
+  };
+
+  Index locate(const Point& q);
+  Index step_by_orientation(Index v, const Point& q) const;
+  Index highest_of_all(const Point& q) const;
+  Index climb(Index v, const Point& q) const;
+  bool collect_certain(Index start, const Point& q);
+  bool insert_directly(Index start, const Point& q);
+  void search_highest_first(Index start, const Point& q);
+  void delete_and_queue(Index v, const Point& q);
+  void widen_over_flat_facets(const Point& q);
+  void search_breadth_first(Index start, const Point& q);
+  void insert_bowyer(Index start, const Point& q);
+  void finish();
+
+  Workspace& workspace_;
+  Search search_;
+  Cavity cavity_;
+  InsertionCounts counts_;
+  Index last_ = 0;  // where the walk to the next point starts
+  std::vector<Candidate> queue_;
+};
+
+}  // namespace orchard::detail

@@ -1,0 +1,91 @@
+#include "insertion_order.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "orchard/geometry/random.h"
+
+namespace orchard::detail {
+namespace {
+
+constexpr unsigned kBits = 12;  // of each coordinate: 4096 steps across the box
+constexpr unsigned kCurveBits = 3 * kBits;
+constexpr unsigned kRoundShift = 3;  // each round holds about 7/8 of the points that remain
+constexpr unsigned kMaxRound = 15;
+constexpr std::size_t kSmallestRound = 64;
+
+// The position on a Hilbert curve of a cell of the 2^kBits grid, by Skilling's transform (2004).
+std::uint64_t hilbert(std::array<std::uint32_t, 3> x) {
+  for (std::uint32_t bit = 1u << (kBits - 1); bit > 1; bit >>= 1) {
+    const std::uint32_t low = bit - 1;
+    for (std::uint32_t& coordinate : x) {
+      if (coordinate & bit) {
+        x[0] ^= low;
+      } else {
+        const std::uint32_t swap = (x[0] ^ coordinate) & low;
+        x[0] ^= swap;
+        coordinate ^= swap;
+      }
+    }
+  }
+  x[1] ^= x[0];
+  x[2] ^= x[1];
+  std::uint32_t flip = 0;
+  for (std::uint32_t bit = 1u << (kBits - 1); bit > 1; bit >>= 1)
+    if (x[2] & bit) flip ^= bit - 1;
+  std::uint64_t position = 0;
+  for (unsigned bit = kBits; bit-- > 0;)
+    for (const std::uint32_t coordinate : x) position = (position << 1) | (((coordinate ^ flip) >> bit) & 1u);
+  return position;
+}
+
+struct Item {
+  std::uint64_t key;
+  Index point;
+};
+
+// Stable, by the low bits of the key.
+void radix_sort(std::vector<Item>& items, unsigned bits) {
+  constexpr unsigned kDigit = 10;
+  std::vector<Item> other(items.size());
+  std::vector<std::size_t> start(1u << kDigit);
+  for (unsigned shift = 0; shift < bits; shift += kDigit) {
+    std::fill(start.begin(), start.end(), 0);
+    const auto digit = [shift](const Item& item) { return (item.key >> shift) & ((1u << kDigit) - 1); };
+    for (const Item& item : items) ++start[digit(item)];
+    std::size_t sum = 0;
+    for (std::size_t& s : start) sum += std::exchange(s, sum);
+    for (const Item& item : items) other[start[digit(item)]++] = item;
+    items.swap(other);
+  }
+}
+
+}  // namespace
+
+std::vector<Index> insertion_order(std::span<const Point> points, const Box& box) {
+  const double side = box.isEmpty() ? 0 : box.sizes().maxCoeff();
+  const double steps = side > 0 ? ((1u << kBits) - 1) / side : 0;
+  unsigned rounds = 0;
+  for (std::size_t left = points.size(); left > kSmallestRound && rounds < kMaxRound; left >>= kRoundShift) ++rounds;
+
+  std::vector<Item> items(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vector cell = (points[i] - box.min()) * steps;
+    // A point stays in the last round but for one time in eight, and so on downwards.
+    std::uint64_t bits = Random(0, 0x40b3u, i).bits();
+    unsigned round = rounds;
+    for (; round > 0 && (bits & ((1u << kRoundShift) - 1)) == 0; bits >>= kRoundShift) --round;
+    items[i].key = (static_cast<std::uint64_t>(round) << kCurveBits) |
+                   hilbert({static_cast<std::uint32_t>(cell.x()), static_cast<std::uint32_t>(cell.y()),
+                            static_cast<std::uint32_t>(cell.z())});
+    items[i].point = static_cast<Index>(i);
+  }
+  radix_sort(items, kCurveBits + 4);
+  std::vector<Index> order(points.size());
+  std::transform(items.begin(), items.end(), order.begin(), [](const Item& item) { return item.point; });
+  return order;
+}
+
+}  // namespace orchard::detail

@@ -1,0 +1,82 @@
+#include "insertion.h"
+
+namespace orchard::detail {
+
+// A vertex that is nearer to q than to its forming points, or as near to that as can be found. Uphill by power: across
+// the facet between two vertices, the side of q has the greater one, so this is a walk straight to q. Where several
+// vertices share one sphere, the power has a plateau, and the sides of the facets are looked at instead.
+Index Inserter::locate(const Point& q) {
+  Index v = last_;
+  if (workspace_.at_infinity(v)) v = workspace_.vertices[v].neighbors[3];
+  Index came_from = kNone;
+  double here = workspace_.power(v, q);
+  const std::size_t patience = workspace_.vertices.size() + 64;
+  for (std::size_t steps = 0; steps < patience; ++steps) {
+    if (here > workspace_.power_bound(v)) return v;
+    Index next = kNone;
+    for (Index u : workspace_.vertices[v].neighbors) {
+      if (u == came_from) continue;
+      const double power = workspace_.power(u, q), bound = workspace_.power_bound(u);
+      if (power > bound) return u;
+      if (power > here) {
+        if (bound == std::numeric_limits<double>::infinity()) continue;
+        next = u;
+        here = power;
+        break;
+      }
+      if (power != power && workspace_.sign(u, q) == Sign::positive) return u;
+    }
+    if (next == kNone) {
+      next = step_by_orientation(v, q);
+      if (next == kNone || workspace_.sign(next, q) == Sign::positive) return next == kNone ? v : next;
+      if (workspace_.at_infinity(next)) return v;
+      here = workspace_.power(next, q);
+    }
+    came_from = v;
+    v = next;
+  }
+  return highest_of_all(q);
+}
+
+// The neighbour across a facet that certainly parts q from v, or kNone. Not where the walk just came from is not asked:
+// a facet that parts them cannot do so in both directions.
+Index Inserter::step_by_orientation(Index v, const Point& q) const {
+  const VoronoiVertex& vertex = workspace_.vertices[v];
+  const auto corner = [&](unsigned i) { return Vector(workspace_.points[vertex.forming_points[i]] - q); };
+  const Vector a = corner(0), b = corner(1), c = corner(2), d = corner(3);
+  if (volume_sign(b, c, d) == Sign::negative) return vertex.neighbors[0];
+  if (volume_sign(c, a, d) == Sign::negative) return vertex.neighbors[1];
+  if (volume_sign(a, b, d) == Sign::negative) return vertex.neighbors[2];
+  if (volume_sign(a, c, b) == Sign::negative) return vertex.neighbors[3];
+  return kNone;
+}
+
+Index Inserter::highest_of_all(const Point& q) const {
+  Index best = kNone;
+  double best_value = 0;
+  for (Index v = 0; v < workspace_.vertices.size(); ++v) {
+    if (workspace_.is_free(v)) continue;
+    const double value = workspace_.value(v, q);
+    if (best != kNone && !(value > best_value)) continue;
+    best = v;
+    best_value = value;
+  }
+  return best;
+}
+
+// Uphill by value.
+Index Inserter::climb(Index v, const Point& q) const {
+  double here = workspace_.value(v, q);
+  for (Index from = kNone; from != v;) {
+    from = v;
+    for (Index u : workspace_.vertices[from].neighbors) {
+      const double value = workspace_.value(u, q);
+      if (!(value > here) || workspace_.sign(u, q) != Sign::positive) continue;
+      here = value;
+      v = u;
+    }
+  }
+  return v;
+}
+
+}  // namespace orchard::detail

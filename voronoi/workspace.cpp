@@ -1,0 +1,109 @@
+#include "workspace.h"
+
+#include <algorithm>
+
+namespace orchard::detail {
+
+void Workspace::set_scale(const Box& box) {
+  const int exponent = std::ilogb(box.diagonal().norm());
+  noise_ = kInputNoise * std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
+  squared_scale_ = std::ldexp(1.0, 2 * exponent);
+  per_smallest_bound_ = std::ldexp(1.0, 100 - 2 * exponent);
+  for (unsigned i = 0; i + 1 < bounds_.size(); ++i)
+    bounds_[i] = std::ldexp(1.0, 2 * exponent - 100 + 2 * static_cast<int>(i));
+  bounds_.back() = std::numeric_limits<double>::infinity();
+}
+
+// The smallest class whose bound is not below the given one.
+std::uint8_t Workspace::error_class(double bound) const {
+  const double ratio = bound * per_smallest_bound_;
+  if (!(ratio < 0x1p120)) return kUnknownError;
+  if (ratio <= 1) return 0;
+  const auto exponent = static_cast<unsigned>((std::bit_cast<std::uint64_t>(ratio) >> 52) - 1023);
+  return static_cast<std::uint8_t>(exponent / 2 + 1);
+}
+
+bool Workspace::place(VoronoiVertex& vertex, std::uint8_t& error, const Point& new_point, const LengthedVector& a,
+                      const LengthedVector& b, const LengthedVector& c) const {
+  const RelativeCenter relative = circumcenter(a, b, c);
+  // The reciprocal of the smallest height of the tetrahedron's corners at the new point: how far input noise is
+  // magnified.
+  const double per_height = relative.largest_face / std::abs(relative.volume6);
+  if (!relative.reliable() || !(noise_ * per_height < 0.125)) return false;
+  vertex.center = new_point + relative.center;
+  // From the rounded centre, so that the new point at least is on the sphere.
+  vertex.radius = (vertex.center - new_point).squaredNorm();
+  const double r = std::sqrt(vertex.radius);
+  // A centre off by e changes the power of a point about as far as the radius by less than 4 r e; e is kCenterError *
+  // condition * r plus the rounding of the sum above; and the power itself takes some ten roundings of r^2.
+  error =
+      error_class((4 * RelativeCenter::kCenterError * relative.condition + 16 * kRounding + 8 * noise_ * per_height) *
+                      vertex.radius +
+                  8 * kRounding * r * vertex.center.lpNorm<1>());
+  return relative.volume6 > 0;
+}
+
+bool Workspace::place_at_infinity(VoronoiVertex& vertex, std::uint8_t& error, const LengthedVector& a,
+                                  const LengthedVector& b) const {
+  const Vector normal = a.vector.cross(b.vector);
+  const double length = normal.norm();
+  const double condition = a.length * b.length / length;
+  const double per_height = std::max(a.length, b.length) / length;
+  if (!(condition * RelativeCenter::kCenterError < 0.125) || !(noise_ * per_height < 0.125)) return false;
+  vertex.center = normal / length;
+  vertex.radius = std::numeric_limits<double>::quiet_NaN();
+  // Here the class holds the error of a height above the facet, relative to the distance from one of its points.
+  error = error_class(((16 * condition + 16) * kRounding + 4 * noise_ * per_height) * squared_scale_);
+  return true;
+}
+
+void Workspace::adopt(VoronoiVertex& vertex, std::uint8_t& error) const {
+  const auto& corner = vertex.forming_points;
+  const Point& origin = points[corner[0]];
+  const LengthedVector a(points[corner[1]] - origin), b(points[corner[2]] - origin);
+  VoronoiVertex placed = vertex;
+  error = kUnknownError;
+  if (corner[3] == kInfinitePoint) {
+    vertex.radius = std::numeric_limits<double>::quiet_NaN();
+    place_at_infinity(placed, error, a, b);
+  } else {
+    vertex.radius = (vertex.center - origin).squaredNorm();
+    if (!place(placed, error, origin, a, b, LengthedVector(points[corner[3]] - origin))) error = kUnknownError;
+  }
+}
+
+double Workspace::value(Index v, const Point& q) const {
+  const VoronoiVertex& vertex = vertices[v];
+  if (at_infinity(v)) return vertex.center.dot(q - points[vertex.forming_points[0]]);
+  const double squared_distance = (vertex.center - q).squaredNorm();
+  return (vertex.radius - squared_distance) / (std::sqrt(vertex.radius) + std::sqrt(squared_distance));
+}
+
+Sign Workspace::doubtful_sign(Index v, const Point& q, double bound) const {
+  if (at_infinity(v)) return sign_at_infinity(v, q);
+  // With a centre as good as this, the doubt is in the input.
+  if (bound < 0x1p-30 * vertices[v].radius) return Sign::uncertain;
+  return sign_from_points(v, q);
+}
+
+Sign Workspace::sign_from_points(Index v, const Point& q) const {
+  const auto& corner = vertices[v].forming_points;
+  return inside_sphere(points[corner[0]] - q, points[corner[1]] - q, points[corner[2]] - q, points[corner[3]] - q);
+}
+
+Sign Workspace::sign_at_infinity(Index v, const Point& q) const {
+  const VoronoiVertex& vertex = vertices[v];
+  const Vector a = points[vertex.forming_points[0]] - q;
+  const double height = -vertex.center.dot(a);
+  const double bound = a.lpNorm<1>() * (power_bound(v) / squared_scale_) + 2 * noise_;
+  if (height > bound) return Sign::positive;
+  if (height < -bound) return Sign::negative;
+  const Vector b = points[vertex.forming_points[1]] - q, c = points[vertex.forming_points[2]] - q;
+  // In the facet's plane as far as doubles can tell. The spheres that grow towards this end of the unbounded edge all
+  // cut the plane in the facet's circle: q is nearer to the vertex at infinity if it lies inside. Any fourth point off
+  // the plane makes such a sphere.
+  const double size = std::max((b - a).norm(), (c - a).norm());
+  return inside_sphere(a, b, c, a + vertex.center * size);
+}
+
+}  // namespace orchard::detail

@@ -1,0 +1,93 @@
+#pragma once
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "orchard/voronoi/diagram.h"
+#include "predicates.h"
+
+namespace orchard::detail {
+
+// What an insertion knows of a vertex so far.
+enum class Mark : std::uint8_t { unseen, deleted, kept, wanted };
+
+// A diagram under construction. Its vertices differ from the finished ones: `radius` holds the square of the radius,
+// and no number at infinity, where the infinite point always comes last. Freed vertices have no neighbours.
+//
+// Each vertex has a bound on the error of  squared radius - squared distance  when its stored centre is used: rounded
+// up to a power of four and kept in six bits, so that a test costs a distance, a look-up and a comparison.
+class Workspace {
+ public:
+  std::vector<Point> points;
+  std::vector<VoronoiVertex> vertices;
+  std::vector<Index> free_vertices;
+
+  // The lengths that the bounds are made of. Input points count as exact to kInputNoise of the largest coordinate only:
+  // what rounding has put off a plane or a sphere still is on it, or else half of the signs there would be certain and
+  // half in doubt.
+  void set_scale(const Box& box);
+  static constexpr double kInputNoise = 4 * kRounding;
+
+  bool at_infinity(Index v) const { return vertices[v].forming_points[3] == kInfinitePoint; }
+  bool is_free(Index v) const { return vertices[v].neighbors[0] == kNone; }
+  Mark mark(Index v) const { return static_cast<Mark>(state_[v] & 3u); }
+  void set_mark(Index v, Mark mark) { state_[v] = static_cast<std::uint8_t>((state_[v] & ~3u) | unsigned(mark)); }
+
+  // The squared radius minus the squared distance to q by the stored centre; no number at infinity.
+  double power(Index v, const Point& q) const { return vertices[v].radius - (vertices[v].center - q).squaredNorm(); }
+  double power_bound(Index v) const { return bounds_[state_[v] >> 2]; }
+
+  // Whether the vertex is nearer to q than to its forming points. At infinity: whether q lies beyond the hull's facet.
+  Sign sign(Index v, const Point& q) const {
+    const double p = power(v, q), bound = power_bound(v);
+    if (p > bound) return Sign::positive;
+    if (p < -bound) return Sign::negative;
+    return doubtful_sign(v, q, bound);
+  }
+
+  // The dissertation's value of a deletion: distance to the forming points minus distance to q; at infinity the limit
+  // of that along the unbounded edge, which is the distance of q beyond the facet.
+  double value(Index v, const Point& q) const;
+
+  // The vertex for four forming points, one of which is the new point, given the others relative to it in order: a, b,
+  // c with a . (b x c) > 0 where rounding allows. False if they are too near to coplanar for a position: then the
+  // centre is not set.
+  bool place(VoronoiVertex& vertex, std::uint8_t& error_class, const Point& new_point, const LengthedVector& a,
+             const LengthedVector& b, const LengthedVector& c) const;
+  // The same at infinity, beyond the facet of the new point, a and b.
+  bool place_at_infinity(VoronoiVertex& vertex, std::uint8_t& error_class, const LengthedVector& a,
+                         const LengthedVector& b) const;
+  // A length far beyond the points, for vertices whose place is as good as infinite.
+  double far() const { return 1024 * std::sqrt(squared_scale_); }
+  // Recomputes the error class of a finished vertex, and turns its radius into its square.
+  void adopt(VoronoiVertex& vertex, std::uint8_t& error_class) const;
+
+  static constexpr std::uint8_t kUnknownError = 63;
+  void store(Index v, const VoronoiVertex& vertex, std::uint8_t error_class) {
+    vertices[v] = vertex;
+    state_[v] = static_cast<std::uint8_t>(error_class << 2);
+  }
+  void resize(std::size_t count) {
+    vertices.resize(count);
+    state_.resize(count);
+  }
+  void reserve(std::size_t count) {
+    vertices.reserve(count);
+    state_.reserve(count);
+  }
+
+ private:
+  Sign doubtful_sign(Index v, const Point& q, double bound) const;
+  Sign sign_at_infinity(Index v, const Point& q) const;
+  Sign sign_from_points(Index v, const Point& q) const;
+  std::uint8_t error_class(double bound) const;
+
+  std::vector<std::uint8_t> state_;                    // mark, and error class above
+  std::array<double, 64> bounds_{};                    // by error class
+  double squared_scale_ = 1, per_smallest_bound_ = 1;  // powers of two, so that scaled input is treated exactly alike
+  double noise_ = 0;                                   // how far off an input point may be
+};
+
+}  // namespace orchard::detail
