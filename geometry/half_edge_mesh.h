@@ -1,5 +1,13 @@
 #pragma once
+// GCC 12 takes the vectors that OpenMesh leaves uninitialised on purpose for a mistake, if the sanitizers are on.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+#pragma GCC diagnostic pop
+#else
+#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+#endif
 
 #include "orchard/geometry/mesh.h"
 #include "orchard/geometry/mesh_check.h"
