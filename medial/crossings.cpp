@@ -78,7 +78,9 @@ std::vector<Index> harmful_neighbors(const Surface& surface, const SurfaceSampli
                                      double joined_radius) {
   std::vector<std::pair<Index, Index>> borders;  // other cell, triangle
   for (const Index triangle : patch.triangles) {
-    for (const Index other : restricted.piece(triangle, patch.cell)->borders) borders.emplace_back(other, triangle);
+    for (const CellBorder& border : restricted.piece(triangle, patch.cell)->borders) {
+      borders.emplace_back(border.cell, triangle);
+    }
   }
   std::sort(borders.begin(), borders.end());
   std::vector<Index> harmful, crossed;
@@ -133,7 +135,7 @@ std::vector<Crossing> find_necks(const Surface& surface, const SurfaceSampling& 
   std::erase_if(patches, [](const CellPatch& patch) { return !patch.home; });
   std::vector<NeckFault> faults(patches.size());
   tbb::parallel_for(std::size_t{0}, patches.size(),
-                    [&](std::size_t i) { faults[i] = find_neck(restricted, patches[i]); });
+                    [&](std::size_t i) { faults[i] = find_neck(surface, restricted, patches[i]); });
   std::vector<Crossing> necks;
   for (std::size_t i = 0; i < patches.size(); ++i) {
     if (faults[i].found) necks.push_back({std::move(patches[i]), std::move(faults[i].neighbors), true});

@@ -44,16 +44,25 @@ class Repair {
         restricted_(surface, result_.diagram.points, neighbors_) {}
 
   Repaired run() {
-    for (int pass = 0; pass < options_.max_passes; ++pass) {
+    bool rechecked = true;  // the crossings come from scratch, not from updates
+    for (int pass = 0; pass < options_.max_passes;) {
       report_progress(progress_, "gap repair", static_cast<double>(pass) / options_.max_passes);
       const std::vector<Crossing> crossings = detect();
-      if (crossings.empty()) break;
+      if (crossings.empty() && rechecked) break;
+      if (crossings.empty()) {
+        start_over();
+        rechecked = true;
+        continue;
+      }
+      ++pass;
+      rechecked = false;
       const Index before = result_.sampling.size();
       add_points(propose(crossings));
       if (result_.sampling.size() == before) break;
       update_diagram(before);
     }
-    recheck_everything();
+    start_over();
+    count_what_is_left();
     report_progress(progress_, "gap repair", 1);
     return std::move(result_);
   }
@@ -154,9 +163,10 @@ class Repair {
     restricted_.update(result_.diagram.points, neighbors_, changed);
   }
 
-  // From scratch, in case the updates missed something.
-  void recheck_everything() {
-    restricted_ = detail::RestrictedVoronoi(surface_, result_.diagram.points, neighbors_);
+  // The restricted diagram from scratch, in case the updates missed something.
+  void start_over() { restricted_ = detail::RestrictedVoronoi(surface_, result_.diagram.points, neighbors_); }
+
+  void count_what_is_left() {
     std::vector<Crossing> crossings = detail::find_gap_crossings(surface_, result_.sampling, restricted_, options_);
     if (options_.mend_necks) {
       std::vector<Crossing> necks = detail::find_necks(surface_, result_.sampling, restricted_);

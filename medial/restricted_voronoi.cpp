@@ -4,22 +4,25 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "cell_neighbors.h"
+#include "orchard/geometry/random.h"
 #include "orchard/geometry/tolerance.h"
 
 namespace orchard::detail {
 namespace {
 
-// Keeps the part of `polygon` where offset(x) = (x - middle) . direction is at most zero; what it cuts gets `label`.
-void clip(CellPolygon& polygon, const Point& middle, const Vector& direction, Index label, std::vector<double>& offsets,
-          CellPolygon& spare) {
+// Keeps the part of `polygon` where (x - base) . direction <= bound; what it cuts gets `label`.
+void clip(CellPolygon& polygon, const Point& base, const Vector& direction, double bound, Index label,
+          std::vector<double>& offsets, CellPolygon& spare) {
   const std::size_t size = polygon.corners.size();
   offsets.resize(size);
   bool any_outside = false;
   for (std::size_t i = 0; i < size; ++i) {
-    offsets[i] = (polygon.corners[i] - middle).dot(direction);
+    offsets[i] = (polygon.corners[i] - base).dot(direction) - bound;
     any_outside = any_outside || offsets[i] > 0;
   }
   if (!any_outside) return;
@@ -53,43 +56,23 @@ bool narrower_than(const CellPolygon& polygon, double width) {
   return !(area.squaredNorm() > width * width * squared);
 }
 
-void cut_out(const std::array<Point, 3>& triangle, std::span<const Point> points, std::span<const Index> neighbors,
-             Index cell, double touch, CellPolygon& polygon, std::vector<double>& offsets, CellPolygon& spare) {
-  polygon.corners.assign(triangle.begin(), triangle.end());
-  polygon.labels = {0, 1, 2};
-  for (const Index other : neighbors) {
-    const Vector direction = points[other] - points[cell];
-    clip(polygon, points[cell] + 0.5 * direction, direction, other + 3, offsets, spare);
-    if (polygon.corners.empty()) return;
-  }
-  if (narrower_than(polygon, touch)) {
-    polygon.corners.clear();
-    polygon.labels.clear();
-  }
-}
-
-CellPiece piece_of(const CellPolygon& polygon, const std::array<Point, 3>& triangle, Index cell, double touch) {
+CellPiece piece_of(const CellPolygon& polygon, Index cell, double touch) {
   CellPiece piece;
   piece.cell = cell;
   const std::size_t size = polygon.corners.size();
-  const auto side = [&](std::size_t i) { return polygon.corners[i + 1 == size ? 0 : i + 1] - polygon.corners[i]; };
-  bool last_is_long_border = polygon.labels[size - 1] >= 3 && side(size - 1).squaredNorm() > touch * touch;
+  const auto bit = [](Index label) { return static_cast<std::uint8_t>(label < 3 ? 1u << label : 0u); };
   for (std::size_t i = 0; i < size; ++i) {
-    for (unsigned corner = 0; corner < 3; ++corner) {
-      if (polygon.corners[i] == triangle[corner]) piece.corners |= static_cast<std::uint8_t>(1u << corner);
+    const std::size_t next = i + 1 == size ? 0 : i + 1, last = i == 0 ? size - 1 : i - 1;
+    if (!((polygon.corners[next] - polygon.corners[i]).squaredNorm() > touch * touch)) continue;
+    if (polygon.labels[i] < 3) {
+      piece.edges |= bit(polygon.labels[i]);
+    } else {
+      const auto ends = static_cast<std::uint8_t>(bit(polygon.labels[last]) | bit(polygon.labels[next]));
+      piece.borders.push_back({polygon.labels[i] - 3, ends});
     }
-    const bool is_long = side(i).squaredNorm() > touch * touch;
-    const Index label = polygon.labels[i];
-    if (is_long && label < 3) piece.edges |= static_cast<std::uint8_t>(1u << label);
-    if (is_long && label >= 3) {
-      const Index other = label - 3, last = polygon.labels[i == 0 ? size - 1 : i - 1] - 3;
-      piece.borders.push_back(other);
-      if (last_is_long_border) piece.junctions.push_back({std::min(last, other), std::max(last, other)});
-    }
-    last_is_long_border = is_long && label >= 3;
   }
-  std::sort(piece.borders.begin(), piece.borders.end());
-  piece.borders.erase(std::unique(piece.borders.begin(), piece.borders.end()), piece.borders.end());
+  std::sort(piece.borders.begin(), piece.borders.end(),
+            [](const CellBorder& a, const CellBorder& b) { return a.cell < b.cell; });
   return piece;
 }
 
@@ -101,6 +84,38 @@ struct RestrictedVoronoi::Scratch {
   std::vector<Index> open, seen_by;  // seen_by: the triangle that last met each cell
 };
 
+// Leaves scratch.polygon without corners if the cell does no more than touch the triangle.
+void RestrictedVoronoi::cut_out(const std::array<Point, 3>& triangle, Index cell, Scratch& scratch) const {
+  CellPolygon& polygon = scratch.polygon;
+  polygon.corners.assign(triangle.begin(), triangle.end());
+  polygon.labels = {0, 1, 2};
+  for (const Index other : (*neighbors_)[cell]) {
+    const Vector direction = points_[other] - points_[cell];
+    const double bound = 0.5 * (direction.squaredNorm() + weights_[cell] - weights_[other]);
+    clip(polygon, points_[cell], direction, bound, other + 3, scratch.offsets, scratch.spare);
+    if (polygon.corners.empty()) return;
+  }
+  if (narrower_than(polygon, touch_)) {
+    polygon.corners.clear();
+    polygon.labels.clear();
+  }
+}
+
+// In proportion to the distance to the nearest neighbour, so that no face moves farther than the tolerance and no point
+// loses its place. Points that have a weight keep it: their neighbours were cut with it.
+void RestrictedVoronoi::draw_weights() {
+  const double unit = tolerance::kGeneralPosition * surface_->bounding_radius();
+  const Index first = static_cast<Index>(weights_.size());
+  weights_.resize(points_.size());
+  tbb::parallel_for(first, static_cast<Index>(points_.size()), [&](Index point) {
+    double squared = std::numeric_limits<double>::infinity();
+    for (const Index other : (*neighbors_)[point]) {
+      squared = std::min(squared, (points_[other] - points_[point]).squaredNorm());
+    }
+    weights_[point] = (*neighbors_)[point].empty() ? 0 : unit * std::sqrt(squared) * Random(0, 0, point).uniform(-1, 1);
+  });
+}
+
 RestrictedVoronoi::RestrictedVoronoi(const Surface& surface, std::span<const Point> points, const Rows& neighbors)
     : surface_(&surface),
       points_(points),
@@ -108,6 +123,7 @@ RestrictedVoronoi::RestrictedVoronoi(const Surface& surface, std::span<const Poi
       touch_(tolerance::kTouch * surface.bounding_radius()),
       seeds_(surface.mesh().triangles.size(), kNone),
       pieces_(surface.mesh().triangles.size()) {
+  draw_weights();
   divide_all(std::vector<std::uint8_t>(seeds_.size(), 1));
 }
 
@@ -115,6 +131,7 @@ void RestrictedVoronoi::update(std::span<const Point> points, const Rows& neighb
                                const std::vector<std::uint8_t>& changed) {
   points_ = points;
   neighbors_ = &neighbors;
+  draw_weights();
   // A new cell takes its share from cells that are its neighbours afterwards, so those were marked as changed and their
   // triangles hold all of it.
   std::vector<std::uint8_t> dirty(pieces_.size(), 0);
@@ -162,7 +179,7 @@ void RestrictedVoronoi::divide(Index triangle, Scratch& scratch) {
   while (!scratch.open.empty()) {
     const Index cell = scratch.open.back();
     scratch.open.pop_back();
-    cut_out(corners, points_, (*neighbors_)[cell], cell, touch_, scratch.polygon, scratch.offsets, scratch.spare);
+    cut_out(corners, cell, scratch);
     if (scratch.polygon.corners.empty()) {
       // A seed that ties with others for the corner may own nothing else of the triangle; one of its neighbours does.
       if (pieces.empty() && cell == seeds_[triangle]) {
@@ -170,8 +187,8 @@ void RestrictedVoronoi::divide(Index triangle, Scratch& scratch) {
       }
       continue;
     }
-    pieces.push_back(piece_of(scratch.polygon, corners, cell, touch_));
-    for (const Index other : pieces.back().borders) meet(other);
+    pieces.push_back(piece_of(scratch.polygon, cell, touch_));
+    for (const CellBorder& border : pieces.back().borders) meet(border.cell);
   }
   std::sort(pieces.begin(), pieces.end(), [](const CellPiece& a, const CellPiece& b) { return a.cell < b.cell; });
 }
@@ -184,9 +201,9 @@ const CellPiece* RestrictedVoronoi::piece(Index triangle, Index cell) const {
 }
 
 void RestrictedVoronoi::polygon(Index triangle, Index cell, CellPolygon& out) const {
-  std::vector<double> offsets;
-  CellPolygon spare;
-  cut_out(surface_->corners(triangle), points_, (*neighbors_)[cell], cell, touch_, out, offsets, spare);
+  Scratch scratch;
+  cut_out(surface_->corners(triangle), cell, scratch);
+  out = std::move(scratch.polygon);
 }
 
 }  // namespace orchard::detail

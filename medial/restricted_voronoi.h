@@ -16,15 +16,17 @@ struct CellPolygon {
   std::vector<Index> labels;
 };
 
+// Where a piece adjoins another cell within the triangle.
+struct CellBorder {
+  Index cell = kNone;
+  std::uint8_t edges = 0;  // bit i: ends on the triangle's edge i
+};
+
 // Where one Voronoi cell meets one triangle.
 struct CellPiece {
-  Index cell = kNone;          // a point
-  std::uint8_t edges = 0;      // bit i: reaches the triangle's edge i along more than a touch
-  std::uint8_t corners = 0;    // bit i: holds the triangle's corner i
-  std::vector<Index> borders;  // cells on the other side of its borders within the triangle, ascending
-  // The two other cells, lower first, where two borders meet that are more than a touch: an edge of the diagram crosses
-  // the triangle there.
-  std::vector<std::array<Index, 2>> junctions;
+  Index cell = kNone;               // a point
+  std::uint8_t edges = 0;           // bit i: reaches the triangle's edge i along more than a touch
+  std::vector<CellBorder> borders;  // longer than a touch, ascending by cell
 };
 
 // The Voronoi diagram of points restricted to a surface: every triangle divided among the cells that it lies in. This
@@ -49,6 +51,8 @@ class RestrictedVoronoi {
 
  private:
   struct Scratch;
+  void draw_weights();
+  void cut_out(const std::array<Point, 3>& triangle, Index cell, Scratch& scratch) const;
   void find_seeds(const std::vector<std::uint8_t>& dirty);
   void divide(Index triangle, Scratch& scratch);
   void divide_all(const std::vector<std::uint8_t>& dirty);
@@ -57,7 +61,8 @@ class RestrictedVoronoi {
   std::span<const Point> points_;
   const Rows* neighbors_;
   double touch_;
-  std::vector<Index> seeds_;  // for each triangle the point nearest to its first corner
+  std::vector<double> weights_;  // of each point
+  std::vector<Index> seeds_;     // for each triangle the point nearest to its first corner
   std::vector<std::vector<CellPiece>> pieces_;
 };
 

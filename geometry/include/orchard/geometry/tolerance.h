@@ -33,6 +33,10 @@ inline constexpr double kFlatEdgeCosine = 0.94;
 // A Voronoi face that meets the surface along less than this only touches it: positions of Voronoi cells are no better.
 inline constexpr double kTouch = 1e-9;
 
+// How far a Voronoi face is moved, for the question where it meets the surface, to bring symmetric samples into general
+// position: well above kTouch, far below any spacing of points.
+inline constexpr double kGeneralPosition = 1e-8;
+
 // How far a surface point may lie from the triangle that it names: a few roundings.
 inline constexpr double kOnTriangle = 1e-12;
 
