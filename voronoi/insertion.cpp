@@ -71,7 +71,7 @@ bool Inserter::insert_directly(Index start, const Point& q) {
   if (workspace_.sign(start, q) != Sign::positive) return false;
   const bool certain = collect_certain(start, q);
   const bool visible = cavity_.place_vertices();
-  if (!certain && !visible) return false;
+  if (!visible) return false;
   if (!cavity_.link_vertices()) return false;
   if (!certain && !cavity_.is_ball()) return false;
   ++(certain ? counts_.certified : counts_.settled);

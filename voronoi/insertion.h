@@ -41,7 +41,9 @@ class Inserter {
     }
   };
 
-  Index locate(const Point& q);
+  Index locate(const Point& q) const;
+  Index walk(const Point& q) const;
+  Index highest_nearby(Index v, const Point& q) const;
   Index step_by_orientation(Index v, const Point& q) const;
   Index highest_of_all(const Point& q) const;
   Index climb(Index v, const Point& q) const;

@@ -1,11 +1,37 @@
 #include "insertion.h"
 
+#include <algorithm>
+
 namespace orchard::detail {
+namespace {
+
+constexpr std::size_t kNearby = 64;  // vertices in doubt that are searched before all others are
+
+}  // namespace
 
 // A vertex that is nearer to q than to its forming points, or as near to that as can be found. Uphill by power: across
 // the facet between two vertices, the side of q has the greater one, so this is a walk straight to q. Where several
 // vertices share one sphere, the power has a plateau, and the sides of the facets are looked at instead.
-Index Inserter::locate(const Point& q) {
+Index Inserter::locate(const Point& q) const {
+  const Index reached = walk(q);
+  return workspace_.sign(reached, q) == Sign::positive ? reached : highest_nearby(reached, q);
+}
+
+// Breadth-first from where the walk ended, through vertices in doubt; all vertices if that finds none that is certainly
+// nearer to q.
+Index Inserter::highest_nearby(Index v, const Point& q) const {
+  std::vector<Index> reached{v};
+  for (std::size_t i = 0; i < reached.size() && i < kNearby; ++i)
+    for (Index u : workspace_.vertices[reached[i]].neighbors) {
+      if (std::find(reached.begin(), reached.end(), u) != reached.end()) continue;
+      const Sign sign = workspace_.sign(u, q);
+      if (sign == Sign::positive) return u;
+      if (sign == Sign::uncertain || i == 0) reached.push_back(u);
+    }
+  return highest_of_all(q);
+}
+
+Index Inserter::walk(const Point& q) const {
   Index v = last_;
   if (workspace_.at_infinity(v)) v = workspace_.vertices[v].neighbors[3];
   Index came_from = kNone;
@@ -54,12 +80,15 @@ Index Inserter::step_by_orientation(Index v, const Point& q) const {
 Index Inserter::highest_of_all(const Point& q) const {
   Index best = kNone;
   double best_value = 0;
+  Sign best_sign = Sign::negative;
   for (Index v = 0; v < workspace_.vertices.size(); ++v) {
     if (workspace_.is_free(v)) continue;
+    const Sign sign = workspace_.sign(v, q);
     const double value = workspace_.value(v, q);
-    if (best != kNone && !(value > best_value)) continue;
+    if (best != kNone && (sign < best_sign || (sign == best_sign && !(value > best_value)))) continue;
     best = v;
     best_value = value;
+    best_sign = sign;
   }
   return best;
 }

@@ -16,13 +16,15 @@ constexpr double kFarCorner = 10;  // box diagonals
 constexpr Index kBlock = 1024;     // vertices that one sum runs over
 
 struct Sum {
-  double total = 0, max = 0;
+  double total = 0, max = 0, corner_total = 0, corner_max = 0;
   std::uint64_t samples = 0;
 
   void add(const Sum& other) {
     total += other.total;
     max = std::max(max, other.max);
     samples += other.samples;
+    corner_total += other.corner_total;
+    corner_max = std::max(corner_max, other.corner_max);
   }
 };
 
@@ -37,6 +39,8 @@ double excess(const detail::NearestPoint& nearest, const Point& point, const Poi
 Sum inaccuracy_of_corner(const detail::NearestPoint& nearest, const Point& point, const Point& corner) {
   Sum sum{.samples = 3};
   // The balls around the samples through the cell's point lie within each other: if the last is empty, all are.
+  // The corner's own ball is the largest; but it has three more points on it, so round-off decides whether it is empty.
+  sum.corner_total = sum.corner_max = excess(nearest, point, corner, 1);
   for (double fraction : {0.75, 0.5, 0.25}) {
     const double e = excess(nearest, point, corner, fraction);
     if (!(e > 0)) break;
@@ -55,7 +59,7 @@ Sum inaccuracy_of_vertices(const VoronoiDiagram& diagram, const detail::NearestP
     if (vertex.at_infinity()) continue;
     if (!vertex.center.allFinite()) {
       const double infinity = std::numeric_limits<double>::infinity();
-      return {infinity, infinity, sum.samples + 1};
+      return {infinity, infinity, infinity, infinity, sum.samples + 1};
     }
     if (box.exteriorDistance(vertex.center) > limit) continue;
     for (Index p : vertex.forming_points) sum.add(inaccuracy_of_corner(nearest, diagram.points[p], vertex.center));
@@ -78,7 +82,9 @@ VoronoiInaccuracy inaccuracy(const VoronoiDiagram& diagram) {
   });
   Sum sum;
   for (const Sum& block : blocks) sum.add(block);
-  return {sum.samples == 0 ? 0 : sum.total / static_cast<double>(sum.samples), sum.max, sum.samples};
+  if (sum.samples == 0) return {};
+  const auto samples = static_cast<double>(sum.samples);
+  return {sum.total / samples, sum.max, sum.samples, sum.corner_total / (samples / 3), sum.corner_max};
 }
 
 }  // namespace orchard

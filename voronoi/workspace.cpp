@@ -7,6 +7,7 @@ namespace orchard::detail {
 void Workspace::set_scale(const Box& box) {
   const int exponent = std::ilogb(box.diagonal().norm());
   noise_ = kInputNoise * std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
+  good_center_ = std::min(0x1p21 * noise_ / box.diagonal().norm(), 0.125);
   squared_scale_ = std::ldexp(1.0, 2 * exponent);
   per_smallest_bound_ = std::ldexp(1.0, 100 - 2 * exponent);
   for (unsigned i = 0; i + 1 < bounds_.size(); ++i)
@@ -82,7 +83,7 @@ double Workspace::value(Index v, const Point& q) const {
 Sign Workspace::doubtful_sign(Index v, const Point& q, double bound) const {
   if (at_infinity(v)) return sign_at_infinity(v, q);
   // With a centre as good as this, the doubt is in the input.
-  if (bound < 0x1p-30 * vertices[v].radius) return Sign::uncertain;
+  if (bound < good_center_ * vertices[v].radius) return Sign::uncertain;
   return sign_from_points(v, q);
 }
 
@@ -98,12 +99,11 @@ Sign Workspace::sign_at_infinity(Index v, const Point& q) const {
   const double bound = a.lpNorm<1>() * (power_bound(v) / squared_scale_) + 2 * noise_;
   if (height > bound) return Sign::positive;
   if (height < -bound) return Sign::negative;
-  const Vector b = points[vertex.forming_points[1]] - q, c = points[vertex.forming_points[2]] - q;
-  // In the facet's plane as far as doubles can tell. The spheres that grow towards this end of the unbounded edge all
-  // cut the plane in the facet's circle: q is nearer to the vertex at infinity if it lies inside. Any fourth point off
-  // the plane makes such a sphere.
-  const double size = std::max((b - a).norm(), (c - a).norm());
-  return inside_sphere(a, b, c, a + vertex.center * size);
+  // In the facet's plane as far as doubles can tell. The spheres that grow towards this end of the unbounded edge all cut
+  // the plane in the facet's circle: q is nearer to the vertex at infinity if it lies inside. The sphere at the other end
+  // of the edge cuts the plane there too; taking its sign, no facet ends up between a deleted and an undeleted vertex that
+  // is coplanar with q.
+  return sign(vertex.neighbors[3], q);
 }
 
 }  // namespace orchard::detail

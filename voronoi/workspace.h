@@ -88,6 +88,7 @@ class Workspace {
   std::array<double, 64> bounds_{};                    // by error class
   double squared_scale_ = 1, per_smallest_bound_ = 1;  // powers of two, so that scaled input is treated exactly alike
   double noise_ = 0;                                   // how far off an input point may be
+  double good_center_ = 0;                             // an error bound below this many squared radii
 };
 
 }  // namespace orchard::detail
