@@ -32,16 +32,19 @@ using namespace orchard::detail;
 constexpr int kOversampling = 2;  // pixels drawn per pixel kept, along each axis
 
 constexpr double kMargin = 1.06;      // around what is drawn
-constexpr double kWidestPanel = 1.6;  // of its height
+constexpr double kWidestPanel = 1.3;  // of its height
+constexpr int kRowHeight = 560;       // pixels, where no height is asked for
 
 struct Layout {
-  int columns, rows, title_height, panel_width, panel_height, caption_height;
+  int width, height;  // of the picture, in pixels as all of these
+  int columns, rows;
+  int title_height, panel_width, panel_height, caption_height;
 };
 
 struct Request {
   std::filesystem::path folder;
   std::string png, title;
-  int width = 0, height = 1120;
+  int width = 0, height = 0;  // pixels; 0: chosen here
   char up = 'y';
   double azimuth = 35, elevation = 23;  // degrees
 };
@@ -144,33 +147,34 @@ void paste(vtkImageData* picture, vtkImageData* part, int left, int bottom) {
   }
 }
 
-// width 0: as wide as the model needs, and its captions.
-Layout make_layout(int width, int height, int panels, bool titled, const View& view) {
+// Where no width is asked for, as wide as the model needs, and its captions.
+Layout make_layout(const Request& request, int panels, const View& view) {
   Layout layout{};
   layout.columns = panels <= 4 ? panels : (panels + 1) / 2;
   layout.rows = (panels + layout.columns - 1) / layout.columns;
-  layout.title_height = titled ? height / 14 : 0;
-  layout.panel_height = (height - layout.title_height) / layout.rows;
+  layout.height = request.height > 0 ? request.height : kRowHeight * layout.rows;
+  layout.title_height = request.title.empty() ? 0 : layout.height / (7 * layout.rows);
+  layout.panel_height = (layout.height - layout.title_height) / layout.rows;
   layout.caption_height = layout.panel_height / 5;
-  if (width > 0) {
-    layout.panel_width = width / layout.columns;
+  if (request.width > 0) {
+    layout.width = request.width;
+    layout.panel_width = layout.width / layout.columns;
     layout.caption_height = std::min(layout.caption_height, layout.panel_width / 5);
   } else {
     const double needed = (layout.panel_height - layout.caption_height) * view.width / view.height;
     layout.panel_width =
         static_cast<int>(std::clamp(needed, 5.0 * layout.caption_height, kWidestPanel * layout.panel_height));
+    layout.width = layout.panel_width * layout.columns;
   }
   return layout;
 }
 
 void render(const Request& request) {
-  const int height = request.height;
   const std::string& title = request.title;
   Panels content = make_panels(request.folder, 1.5 * kOversampling);
   const View view = make_view(request, content.extents);
-  const Layout layout =
-      make_layout(request.width, height, static_cast<int>(content.panels.size()), !title.empty(), view);
-  const int width = request.width > 0 ? request.width : layout.panel_width * layout.columns;
+  const Layout layout = make_layout(request, static_cast<int>(content.panels.size()), view);
+  const int width = layout.width, height = layout.height;
 
   vtkNew<vtkImageData> picture;
   picture->SetDimensions(width, height, 1);
@@ -216,7 +220,7 @@ constexpr const char* kUsage =
     "usage: orchard-render FOLDER PICTURE.png [options]\n"
     "Draws the .vtp files that orchard wrote into FOLDER. Needs an X display, for instance by xvfb-run.\n"
     "  --width N      pixels, 64 to 8192; 0 (default): as wide as the model needs\n"
-    "  --height N     pixels, 64 to 8192 (1120)\n"
+    "  --height N     pixels, 64 to 8192; 0 (default): 560 for each row of panels\n"
     "  --up x|y|z     the model's axis that points up (y)\n"
     "  --azimuth A    degrees from the model's front to its right (35)\n"
     "  --elevation A  degrees above its middle, -80 to 80 (23)\n"
@@ -239,7 +243,7 @@ Request parse(const std::vector<std::string>& arguments) {
     if (option == "--width") {
       request.width = value == "0" ? 0 : static_cast<int>(number(value, 64, 8192));
     } else if (option == "--height") {
-      request.height = static_cast<int>(number(value, 64, 8192));
+      request.height = value == "0" ? 0 : static_cast<int>(number(value, 64, 8192));
     } else if (option == "--up" && (value == "x" || value == "y" || value == "z")) {
       request.up = value[0];
     } else if (option == "--azimuth") {

@@ -32,8 +32,9 @@ using Data = vtkSmartPointer<vtkPolyData>;
 
 constexpr Color kInk{0.13, 0.16, 0.20};
 constexpr Color kStone{0.80, 0.83, 0.87};
-constexpr double kFeatureAngle = 40;  // degrees
-constexpr double kSeparation = 0.9;   // radians
+constexpr double kFeatureAngle = 40;             // degrees
+constexpr double kSeparation = 0.9;              // radians
+constexpr vtkIdType kTrianglesOutlined = 20000;  // more would turn the mesh black
 constexpr int kLevelsShown = 3;
 
 constexpr Color rgb(int hex) { return {((hex >> 16) & 255) / 255.0, ((hex >> 8) & 255) / 255.0, (hex & 255) / 255.0}; }
@@ -95,13 +96,15 @@ vtkSmartPointer<vtkActor> make_actor(vtkPolyData* data, const Color& color, doub
   return make_actor(mapper, color, opacity);
 }
 
-vtkSmartPointer<vtkActor> feature_edges(vtkPolyData* mesh, double width, double opacity = 1) {
-  vtkNew<vtkFeatureEdges> edges;
-  edges->SetInputData(mesh);
-  edges->SetFeatureAngle(kFeatureAngle);
-  edges->ColoringOff();
-  edges->Update();
-  auto actor = make_actor(edges->GetOutput(), kInk, opacity);
+// Boundary edges and those where the surface turns by more than `angle` degrees; 0: all.
+vtkSmartPointer<vtkActor> edges(vtkPolyData* mesh, double angle, double width, double opacity = 1) {
+  vtkNew<vtkFeatureEdges> filter;
+  filter->SetInputData(mesh);
+  filter->SetFeatureAngle(angle);
+  filter->SetManifoldEdges(angle == 0);
+  filter->ColoringOff();
+  filter->Update();
+  auto actor = make_actor(filter->GetOutput(), kInk, opacity);
   actor->GetProperty()->LightingOff();
   actor->GetProperty()->SetLineWidth(static_cast<float>(width));
   return actor;
@@ -126,7 +129,7 @@ void set_colors(vtkDataSetAttributes* data, vtkIdType count, const ColorOf& colo
 
 // A sphere of its `radius` around each point, in the points' `color`. Fine enough to look round, within reason.
 vtkSmartPointer<vtkActor> make_spheres(vtkPolyData* points) {
-  constexpr double kTriangles = 4e6;
+  constexpr double kTriangles = 1.5e6;
   const auto count = static_cast<double>(points->GetNumberOfPoints());
   const int resolution = std::clamp(static_cast<int>(std::sqrt(kTriangles / 4 / count)), 5, 64);
   vtkNew<vtkSphereSource> sphere;
@@ -150,12 +153,12 @@ vtkSmartPointer<vtkRenderer> make_renderer(double size) {
   vtkNew<vtkLightKit> lights;
   lights->SetKeyLightIntensity(0.95);
   lights->SetKeyToFillRatio(2.2);
-  lights->SetKeyToHeadRatio(3);
+  lights->SetKeyToHeadRatio(2);
   lights->AddLightsToRenderer(renderer);
   renderer->UseSSAOOn();
   renderer->SetSSAORadius(0.25 * size);
   renderer->SetSSAOBias(0.01 * size);
-  renderer->SetSSAOKernelSize(96);
+  renderer->SetSSAOKernelSize(64);
   renderer->SSAOBlurOn();
   return renderer;
 }
@@ -164,18 +167,9 @@ Panel mesh_panel(vtkPolyData* mesh, double size, double line_width) {
   Panel panel{make_renderer(size), "mesh", counted(mesh->GetNumberOfPolys(), "triangle")};
   auto faces = make_actor(mesh, kStone);
   faces->GetProperty()->SetInterpolationToFlat();
-  vtkNew<vtkFeatureEdges> wires;
-  wires->SetInputData(mesh);
-  wires->SetFeatureAngle(0);
-  wires->ManifoldEdgesOn();
-  wires->ColoringOff();
-  wires->Update();
-  auto lines = make_actor(wires->GetOutput(), kInk, 0.35);
-  lines->GetProperty()->LightingOff();
-  lines->GetProperty()->SetLineWidth(static_cast<float>(0.5 * line_width));
   panel.renderer->AddActor(faces);
-  panel.renderer->AddActor(lines);
-  panel.renderer->AddActor(feature_edges(mesh, 1.2 * line_width));
+  panel.renderer->AddActor(edges(mesh, kFeatureAngle, 1.2 * line_width));
+  if (mesh->GetNumberOfPolys() <= kTrianglesOutlined) panel.renderer->AddActor(edges(mesh, 0, 0.5 * line_width, 0.35));
   return panel;
 }
 
@@ -247,7 +241,7 @@ Panel axis_panel(vtkPolyData* mesh, vtkPolyData* faces, double size, double line
   panel.renderer->AddActor(sheet);
   if (mesh != nullptr) {
     panel.renderer->AddActor(make_actor(mesh, {0.72, 0.78, 0.85}, 0.16));
-    panel.renderer->AddActor(feature_edges(mesh, 0.8 * line_width, 0.5));
+    panel.renderer->AddActor(edges(mesh, kFeatureAngle, 0.8 * line_width, 0.5));
   }
   return panel;
 }
@@ -260,7 +254,7 @@ std::string level_figures(vtkPolyData* spheres, double bounding_radius) {
   for (vtkIdType i = 0; i < spheres->GetNumberOfPoints(); ++i) sum += inaccuracy->GetComponent(i, 0);
   if (sum > 0 && bounding_radius > 0) {
     char figure[64];
-    std::snprintf(figure, sizeof figure, ", mean inaccuracy %.2g R",
+    std::snprintf(figure, sizeof figure, ", mean inaccuracy %#.2g R",
                   sum / static_cast<double>(spheres->GetNumberOfPoints()) / bounding_radius);
     text += figure;
   }

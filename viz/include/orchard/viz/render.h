@@ -20,7 +20,7 @@ struct PipelinePicture {
   // Where the eye is, in radians: from the model's front (z; -y where z is up) towards its right; above its middle.
   double azimuth = 0.6, elevation = 0.4;
   int width = 0;                      // pixels, 64 to 8192; 0: as wide as the model and its captions need
-  int height = 1120;                  // pixels
+  int height = 0;                     // likewise; 0: 560 for each row of panels
   std::chrono::seconds timeout{120};  // for drawing; a picture takes a few seconds
   std::filesystem::path renderer;     // empty: $ORCHARD_RENDER, beside the running program, then in PATH
 };

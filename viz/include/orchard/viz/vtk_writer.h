@@ -26,8 +26,8 @@ void write_points(const std::filesystem::path& vtp, const SurfaceSampling& sampl
 //   medial_vertices.vtp  the medial vertices
 //   medial_edges.vtp     a line per pair of neighbours
 //   medial_faces.vtp     the faces; cell arrays `point_a`, `point_b`: the two surface points that a face separates, and
-//                        `separation`: the angle at which they are seen from its middle, in radians. Small angles belong to
-//                        sheets that run into shallow edges and noise: a threshold clears the view.
+//                        `separation`: the angle at which they are seen from its middle, in radians. Small angles
+//                        belong to sheets that run into shallow edges and noise: a threshold clears the view.
 void write_medial_axis(const std::filesystem::path& folder, const MedialAxis& axis);
 
 // The spheres of one level as points, for glyphs scaled by `radius`: the nodes of that level and, flagged `carried`,
