@@ -29,6 +29,16 @@ fs::path make_folder(const fs::path& folder) {
   return folder;
 }
 
+TriangleMesh read_solid(const fs::path& file, bool talk) {
+  TriangleMesh mesh = read_mesh(file);
+  try {
+    if (require_solid(mesh) && talk) fmt::print("{}: was inside out; its triangles were turned round\n", file.string());
+  } catch (const InputError& error) {
+    throw InputError(file.string() + ": " + error.what());
+  }
+  return mesh;
+}
+
 std::string_view as_text(const std::vector<std::byte>& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
@@ -87,10 +97,7 @@ void write_views(const BuildCommand& command, const Surface&, const BuildResult&
 void build(const BuildCommand& command) {
   const bool talk = !command.output.quiet && !command.output.json;
   const Stopwatch reading;
-  TriangleMesh mesh = read_mesh(command.mesh);
-  if (require_solid(mesh) && talk)
-    fmt::print("{}: was inside out; its triangles were turned round\n", command.mesh.string());
-  const Surface surface(std::move(mesh));
+  const Surface surface(read_solid(command.mesh, talk));
   const double seconds_reading = reading.seconds();
 
   ProgressBar bar(talk);

@@ -31,14 +31,18 @@ void add_output_flags(CLI::App& command, Output& output) {
   command.add_flag("--json", output.json, "Print a JSON report instead of a table");
 }
 
+Method method_named(const std::string& name) { return name == "octree" ? Method::octree : Method::medial; }
+
 void add_build(CLI::App& app, Request& request) {
   CLI::App& command = *app.add_subcommand("build", "Build the sphere-tree of a closed triangle mesh");
   BuildCommand& build = request.build;
   command.add_option("mesh", build.mesh, "The mesh: .obj, .ply, .stl or .off")->required();
   command.add_option("-o,--output", build.folder, "Folder for the tree, the views and the report")->required();
-  command.add_option("--method", build.options.method, "How to build: medial (default) or octree")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, Method>{{"medial", Method::medial}, {"octree", Method::octree}}, CLI::ignore_case));
+  command
+      .add_option_function<std::string>(
+          "--method", [&build](const std::string& name) { build.options.method = method_named(name); },
+          "How to build: medial (default) or octree")
+      ->check(CLI::IsMember({"medial", "octree"}));
   command.add_option("--depth", build.options.depth, "Levels below the root")
       ->check(CLI::Range(1, 10))
       ->capture_default_str();
