@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -32,8 +33,28 @@ class CellHash {
     for (const Cell& cell : cells) ++ends_[bucket_of(cell) + 1];
     for (std::size_t b = 0; b < buckets; ++b) ends_[b + 1] += ends_[b];
     for (Index i = 0; i < cells.size(); ++i) entries_[ends_[bucket_of(cells[i])]++] = {cells[i], i};
-    // Now ends_[b] is the end of bucket b, and the end of the one before is its beginning.
+    // Now ends_[b] is the end of bucket b, and the end of the one before is its beginning. A bucket may hold several
+    // cells: bring the items of each together.
+    for (std::size_t b = 0; b < buckets; ++b) {
+      const auto first = entries_.begin() + (b == 0 ? 0 : ends_[b - 1]), last = entries_.begin() + ends_[b];
+      if (std::any_of(first, last, [&](const Entry& e) { return e.cell != first->cell; }))
+        std::stable_sort(first, last, [](const Entry& x, const Entry& y) { return x.cell < y.cell; });
+    }
   }
+  // Where the items of each occupied cell begin among the entries, and the number of entries at the end.
+  std::vector<Index> runs() const {
+    std::vector<Index> starts;
+    for (Index e = 0; e < entries_.size(); ++e)
+      if (e == 0 || entries_[e].cell != entries_[e - 1].cell) starts.push_back(e);
+    starts.push_back(static_cast<Index>(entries_.size()));
+    return starts;
+  }
+  struct Entry {
+    Cell cell;
+    Index item;
+  };
+  const Entry& entry(Index e) const { return entries_[e]; }
+
   template <class Visit>
   void visit(const Cell& cell, const Visit& visit_item) const {
     const std::size_t bucket = bucket_of(cell);
@@ -50,10 +71,6 @@ class CellHash {
   }
 
  private:
-  struct Entry {
-    Cell cell;
-    Index item;
-  };
   static std::int32_t floored(double x) { return static_cast<std::int32_t>(std::floor(x)); }
   std::size_t bucket_of(const Cell& cell) const {
     const auto word = [](std::int32_t i) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(i)); };

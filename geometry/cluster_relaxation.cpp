@@ -7,16 +7,12 @@
 
 #include "boundary_push.h"
 #include "cell_hash.h"
+#include "relaxation_constants.h"
 
 namespace orchard::detail {
 namespace {
 
 using Point2 = Eigen::Vector2d;
-
-constexpr double kRadius = 2.0;       // of repulsion, in mean spacings
-constexpr double kStep = 0.15;        // of a mean spacing, per unit of force
-constexpr double kLongestStep = 0.5;  // in mean spacings
-constexpr std::size_t kGrain = 256;
 
 class ClusterRelaxation {
  public:
@@ -37,7 +33,7 @@ class ClusterRelaxation {
     const auto count = static_cast<double>(members_.size());
     spacing_ = std::sqrt(area / count);
     // A strip narrower than the spacing holds a row of points rather than a field of them.
-    radius_ = kRadius * std::max(spacing_, box.diagonal().norm() / count);
+    radius_ = kRepulsionRadius * std::max(spacing_, box.diagonal().norm() / count);
     make_frame();
     collect_edges();
   }
@@ -46,10 +42,10 @@ class ClusterRelaxation {
     positions_.resize(members_.size());
     cells_.resize(members_.size());
     const CellHash grid = sort_points(points);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, members_.size(), kGrain), [&](const auto& range) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, members_.size(), kRelaxationGrain), [&](const auto& range) {
       const SurfaceWalker walker(surface_);
       for (std::size_t i = range.begin(); i < range.end(); ++i) {
-        const Point2 step = bounded(kStep * spacing_ * force(i, grid));
+        const Point2 step = bounded(kRelaxationStep * spacing_ * force(i, grid));
         walker.walk(points[members_[i]], step.x() * u_ + step.y() * v_,
                     [&](Index, Index to) { return clusters_.of_triangle[to] == cluster_; });
       }

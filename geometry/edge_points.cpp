@@ -14,13 +14,12 @@ struct Edge {
   double length;
 };
 
-std::vector<Edge> boundary_edges(const Surface& surface, const Clusters& clusters) {
+std::vector<Edge> boundary_edges(const Surface& surface, const std::function<bool(Index, Index)>& divided) {
   const TriangleMesh& mesh = surface.mesh();
   const std::vector<EdgeUse> uses = sorted_edge_uses(mesh);
   std::vector<Edge> edges;
   for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
-    const auto cluster = [&](const EdgeUse& use) { return clusters.of_triangle[use.half_edge / 3]; };
-    if (edge.size() == 2 && cluster(edge[0]) == cluster(edge[1])) return;
+    if (edge.size() == 2 && !divided(edge[0].half_edge / 3, edge[1].half_edge / 3)) return;
     const EdgeUse& use = edge.front();
     edges.push_back({use.low, use.high, use.half_edge, (mesh.vertices[use.high] - mesh.vertices[use.low]).norm()});
   });
@@ -99,9 +98,10 @@ void place_on_chain(const TriangleMesh& mesh, const std::vector<Edge>& edges, co
 
 }  // namespace
 
-EdgePlacement place_edge_points(const Surface& surface, const Clusters& clusters, Index count) {
+EdgePlacement place_edge_points(const Surface& surface, const std::function<bool(Index, Index)>& divided, Index count,
+                                double least_spacing) {
   EdgePlacement placement;
-  const std::vector<Edge> edges = boundary_edges(surface, clusters);
+  const std::vector<Edge> edges = boundary_edges(surface, divided);
   const std::vector<Chain> chains = Chains(edges, surface.mesh().vertices.size()).collect();
   std::vector<double> lengths;
   double& total = placement.length;
@@ -112,6 +112,7 @@ EdgePlacement place_edge_points(const Surface& surface, const Clusters& clusters
     total += length;
   }
   if (!(total > 0)) return placement;
+  if (count * least_spacing > total) count = static_cast<Index>(total / least_spacing);
   double sum = 0;
   Index placed = 0;
   for (std::size_t c = 0; c < chains.size(); ++c) {

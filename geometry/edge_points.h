@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <vector>
 
 #include "orchard/geometry/surface.h"
@@ -17,9 +18,11 @@ struct EdgePlacement {
   double length = 0;  // of all the edges that may get points
 };
 
-// Spreads `count` points over the edges between clusters, and over those that do not join two triangles. Edges that
-// meet two by two form chains; a table of partial sums of the chains' lengths decides the share of each chain, and a
-// chain's n points lie at (k + 1/2) / n of its length, so that the gap at a chain's end is half a spacing.
-EdgePlacement place_edge_points(const Surface& surface, const Clusters& clusters, Index count);
+// Spreads at most `count` points over the edges whose two triangles divided(a, b) says are parted, and over those
+// without just two triangles. Edges that meet two by two form chains; a table of partial sums of the chains' lengths
+// decides the share of each chain, and a chain's n points lie at (k + 1/2) / n of its length, so that the gap at a
+// chain's end is half a spacing. No closer than `least_spacing` on average.
+EdgePlacement place_edge_points(const Surface& surface, const std::function<bool(Index, Index)>& divided, Index count,
+                                double least_spacing);
 
 }  // namespace orchard::detail

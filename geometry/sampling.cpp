@@ -7,6 +7,7 @@
 #include "cell_hash.h"
 #include "cluster_relaxation.h"
 #include "edge_points.h"
+#include "neighbor_relaxation.h"
 #include "orchard/geometry/random.h"
 #include "orchard/geometry/tolerance.h"
 
@@ -15,6 +16,8 @@ namespace {
 
 using detail::SurfacePoint;
 
+// Below it the cluster method is less even than Turk's, whatever the mesh.
+constexpr double kFewPointsPerCluster = 8;
 constexpr std::uint64_t kPlacement = 0x706c616365;  // stage of the random numbers
 
 // Turk's (1990) uniform point of a triangle: a point of the parallelogram, folded over the diagonal.
@@ -80,25 +83,92 @@ SurfaceSampling without_coincident(const Surface& surface, const SurfaceSampling
   return kept;
 }
 
+Point position(const Surface& surface, const detail::EdgePoint& point) {
+  const auto p = surface.corners(point.triangle);
+  const auto start = static_cast<std::size_t>(point.edge), end = (start + 1) % 3;
+  return p[start] + point.fraction * (p[end] - p[start]);
+}
+
+Clusters clusters_for(const Surface& surface, const SamplingOptions& options) {
+  if (options.cluster_angle == tolerance::kCoplanarAngle) return surface.clusters();
+  std::vector<Vector> normals;
+  std::vector<std::array<Index, 3>> neighbors;
+  for (Index t = 0; t < surface.mesh().triangles.size(); ++t) {
+    normals.push_back(surface.normal(t));
+    neighbors.push_back(surface.neighbors(t));
+  }
+  return find_clusters(normals, neighbors, options.cluster_angle);
+}
+
+double total_area(const Surface& surface) {
+  double area = 0;
+  for (Index t = 0; t < surface.mesh().triangles.size(); ++t) area += surface.area(t);
+  return area;
+}
+
+Relaxation choose(const Surface& surface, const Clusters& clusters, const SamplingOptions& options) {
+  if (options.relaxation != Relaxation::automatic) return options.relaxation;
+  const double total = total_area(surface);
+  double points = 0;  // in the cluster of a random place
+  for (Index c = 0; c < clusters.count(); ++c) {
+    double area = 0;
+    for (const Index t : clusters.triangles[c]) area += surface.area(t);
+    points += total > 0 ? options.face_points * (area / total) * (area / total) : 0;
+  }
+  return points < kFewPointsPerCluster ? Relaxation::neighbors : Relaxation::clusters;
+}
+
+struct Placed {
+  std::vector<SurfacePoint> faces;
+  std::vector<detail::EdgePoint> edges;
+};
+
+Placed sample_clusters(const Surface& surface, const Clusters& clusters, const SamplingOptions& options,
+                       const Progress& progress) {
+  const auto divided = [&](Index a, Index b) { return clusters.of_triangle[a] != clusters.of_triangle[b]; };
+  const detail::EdgePlacement edges = detail::place_edge_points(surface, divided, options.edge_points, 0);
+  const double line_density = edges.length > 0 ? static_cast<double>(edges.points.size()) / edges.length : 0;
+  Placed placed{place_at_random(surface, clusters, options.face_points, options.seed), edges.points};
+  detail::relax_in_clusters(surface, clusters, line_density, options.iterations, placed.faces, progress);
+  return placed;
+}
+
+Placed sample_by_neighbors(const Surface& surface, const Clusters& clusters, const SamplingOptions& options,
+                           const Progress& progress) {
+  const double straight = std::cos(options.crease_angle);
+  const auto divided = [&](Index a, Index b) { return surface.normal(a).dot(surface.normal(b)) < straight; };
+  const double count = static_cast<double>(options.face_points) + options.edge_points;
+  const double least_spacing = 0.5 * std::sqrt(total_area(surface) / count);
+  Placed placed;
+  placed.edges = detail::place_edge_points(surface, divided, options.edge_points, least_spacing).points;
+  const Index left_over = options.edge_points - static_cast<Index>(placed.edges.size());
+  placed.faces = place_at_random(surface, clusters, options.face_points + left_over, options.seed);
+  detail::FixedPoints fixed;
+  for (const detail::EdgePoint& p : placed.edges) {
+    fixed.positions.push_back(position(surface, p));
+    fixed.normals.push_back(surface.pseudonormal(p.triangle, static_cast<Feature>(1 + p.edge)));
+  }
+  detail::relax_by_neighbors(surface, fixed, options.iterations, placed.faces, progress);
+  return placed;
+}
+
 }  // namespace
+
+Relaxation choose_relaxation(const Surface& surface, const SamplingOptions& options) {
+  if (options.relaxation != Relaxation::automatic) return options.relaxation;
+  return choose(surface, clusters_for(surface, options), options);
+}
 
 SurfaceSampling sample_surface(const Surface& surface, const SamplingOptions& options, const Progress& progress) {
   if (std::uint64_t{options.face_points} + options.edge_points < 4)
     throw InputError("at least four surface points are needed, face and edge points together");
-  const Clusters& clusters = surface.clusters();
-  const detail::EdgePlacement edges = detail::place_edge_points(surface, clusters, options.edge_points);
-  const double line_density = edges.length > 0 ? static_cast<double>(edges.points.size()) / edges.length : 0;
-  std::vector<SurfacePoint> face_points = place_at_random(surface, clusters, options.face_points, options.seed);
-  detail::relax_in_clusters(surface, clusters, line_density, options.iterations, face_points, progress);
-
+  const Clusters clusters = clusters_for(surface, options);
+  const bool by_clusters = choose(surface, clusters, options) == Relaxation::clusters;
+  const auto [faces, edges] = by_clusters ? sample_clusters(surface, clusters, options, progress)
+                                          : sample_by_neighbors(surface, clusters, options, progress);
   SurfaceSampling all;
-  for (const SurfacePoint& p : face_points)
-    add_point(surface, position(surface, p), p.triangle, PointOrigin::face, all);
-  for (const auto& [triangle, edge, fraction] : edges.points) {
-    const auto p = surface.corners(triangle);
-    const auto start = static_cast<std::size_t>(edge), end = (start + 1) % 3;
-    add_point(surface, p[start] + fraction * (p[end] - p[start]), triangle, PointOrigin::edge, all);
-  }
+  for (const SurfacePoint& p : faces) add_point(surface, position(surface, p), p.triangle, PointOrigin::face, all);
+  for (const detail::EdgePoint& p : edges) add_point(surface, position(surface, p), p.triangle, PointOrigin::edge, all);
   return without_coincident(surface, all);
 }
 
