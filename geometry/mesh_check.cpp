@@ -57,8 +57,8 @@ class EdgeTally {
   Index lowest_ = kNone;
 };
 
-// Edges, fans and components.
-void check_connectivity(const TriangleMesh& mesh, MeshReport& report) {
+// Edges, fans and components. Returns the first triangle of each triangle's component.
+std::vector<Index> check_connectivity(const TriangleMesh& mesh, MeshReport& report) {
   const auto start = [&](Index half_edge) { return mesh.triangles[half_edge / 3][half_edge % 3]; };
   const auto next = [](Index half_edge) { return half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1; };
   // Corner i of triangle t goes by the number of the half-edge that starts there. Corners at one vertex belong to one
@@ -99,6 +99,9 @@ void check_connectivity(const TriangleMesh& mesh, MeshReport& report) {
     if (fan_counts[vertex] > 1 && report.non_manifold_vertices++ == 0) report.first_non_manifold_vertex = vertex;
   }
   report.euler_characteristic = joined_vertices - edges + joined_triangles;
+  std::vector<Index> component_of(mesh.triangles.size());
+  for (Index t = 0; t < mesh.triangles.size(); ++t) component_of[t] = components.root(t);
+  return component_of;
 }
 
 // Twice the area vector, from the two shortest edges: that is where rounding harms it least. Zero if it is all
@@ -117,9 +120,32 @@ Vector area_vector(const std::array<Point, 3>& p, double scale) {
   return cross.norm() <= tolerance::kNoArea * lengths[b] * lengths[c] ? Vector::Zero() : cross;
 }
 
+struct Component {
+  Index first_triangle = 0;
+  Box box;
+  double area = 0, volume = 0;  // in the units of check_shape()
+};
+
+// Components that are turned against the mesh as a whole are cavities if they lie inside others. Boxes tell only some
+// that do not, but those for certain. Precondition: closed and oriented.
+void find_inside_out(std::span<const Component> components, double volume, MeshReport& report) {
+  constexpr std::size_t kMostPairs = 10'000'000;  // a fraction of a second; real meshes have far fewer
+  std::vector<const Component*> along, against;
+  for (const Component& component : components) {
+    if (std::abs(component.volume) <= tolerance::kNoVolume * component.area) continue;
+    ((component.volume < 0) == (volume < 0) ? along : against).push_back(&component);
+  }
+  if (along.size() * against.size() > kMostPairs) return;
+  for (const Component* component : against) {
+    if (std::ranges::any_of(along, [&](const Component* other) { return other->box.contains(component->box); }))
+      continue;
+    if (report.inside_out_components++ == 0) report.first_inside_out_triangle = component->first_triangle;
+  }
+}
+
 // Area, volume and degenerate triangles. Lengths are measured from the centre of the bounding box in units of a power
 // of two near its size, so that neither offset nor scale of the mesh harms the sums.
-void check_shape(const TriangleMesh& mesh, MeshReport& report) {
+void check_shape(const TriangleMesh& mesh, std::span<const Index> component_of, MeshReport& report) {
   Box box;
   for (const auto& corners : mesh.triangles) {
     for (const Index vertex : corners) box.extend(mesh.vertices[vertex]);
@@ -129,13 +155,24 @@ void check_shape(const TriangleMesh& mesh, MeshReport& report) {
   const int exponent = size > 0 ? std::clamp(std::ilogb(size), -1000, 1000) : 0;
   const double scale = std::ldexp(1.0, -exponent);
   double area = 0, volume = 0;
+  std::vector<Component> components;
+  std::vector<Index> component_number(mesh.triangles.size(), kNone);  // by first triangle
   for (Index t = 0; t < mesh.triangles.size(); ++t) {
     const auto& [i, j, k] = mesh.triangles[t];
     const std::array<Point, 3> p{mesh.vertices[i], mesh.vertices[j], mesh.vertices[k]};
     const Vector cross = area_vector(p, scale);
     if (cross == Vector::Zero() && report.degenerate_triangles++ == 0) report.first_degenerate_triangle = t;
-    area += cross.norm() / 2;
-    volume += ((p[0] - center) * scale).dot(cross) / 6;
+    const double triangle_area = cross.norm() / 2, cone = ((p[0] - center) * scale).dot(cross) / 6;
+    area += triangle_area;
+    volume += cone;
+    Index& number = component_number[component_of[t]];
+    if (number == kNone) {
+      number = static_cast<Index>(components.size());
+      components.push_back({t, Box(), 0, 0});
+    }
+    components[number].area += triangle_area;
+    components[number].volume += cone;
+    for (const Point& corner : p) components[number].box.extend(corner);
   }
   if (std::abs(volume) <= tolerance::kNoVolume * area) volume = 0;
   report.area = std::ldexp(area, 2 * exponent);
@@ -143,6 +180,8 @@ void check_shape(const TriangleMesh& mesh, MeshReport& report) {
   // A volume too small for a double still has a sign.
   if (report.volume == 0 && volume != 0)
     report.volume = std::copysign(std::numeric_limits<double>::denorm_min(), volume);
+  if (report.closed() && report.manifold() && report.misoriented_edges == 0)
+    find_inside_out(components, volume, report);
 }
 
 std::string number_of(Index count, const std::string& singular, const std::string& plural) {
@@ -176,6 +215,9 @@ std::string MeshReport::faults() const {
       edge_name(misoriented_edges, first_misoriented_edge));
   add(degenerate_triangles, number_of(degenerate_triangles, "degenerate triangle", "degenerate triangles"),
       element_name(degenerate_triangles, "triangle", first_degenerate_triangle));
+  add(inside_out_components,
+      number_of(inside_out_components, "part", "parts") + " of the mesh turned inside out against the rest",
+      element_name(inside_out_components, "at triangle", first_inside_out_triangle));
   // The sign of the volume means something only if nothing else is wrong.
   if (text.empty() && triangles == 0) return "no triangles";
   if (text.empty() && volume < 0) return "it is inside out";
@@ -191,8 +233,8 @@ MeshReport check_mesh(const TriangleMesh& mesh) {
     report.unused_vertices = report.vertices;
     return report;
   }
-  check_connectivity(mesh, report);
-  check_shape(mesh, report);
+  const std::vector<Index> component_of = check_connectivity(mesh, report);
+  check_shape(mesh, component_of, report);
   return report;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <utility>
 
 #include "text_scan.h"
@@ -106,9 +107,7 @@ class HeaderReader {
     if (error != std::errc() || stop != words[2].data() + words[2].size()) {
       fail(quoted(words[2]) + " is not a number of rows");
     }
-    for (const PlyElement& other : header_.elements) {
-      if (other.name == element.name) fail("element " + quoted(words[1]) + " is declared twice");
-    }
+    if (!names_.insert(words[1]).second) fail("element " + quoted(words[1]) + " is declared twice");
     header_.elements.push_back(std::move(element));
   }
 
@@ -138,6 +137,7 @@ class HeaderReader {
   const std::string& name_;
   std::size_t at_ = 0, line_at_ = 0;
   bool lone_returns_ = false;
+  std::set<std::string_view> names_;  // of elements
   PlyHeader header_;
 };
 

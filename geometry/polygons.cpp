@@ -35,6 +35,7 @@ std::size_t best_apex(std::span<const Point> polygon, std::size_t trials) {
   std::size_t best = 0;
   double best_agreement = agreement(polygon, normal, 0);
   for (std::size_t apex = 1; apex < std::min(polygon.size(), trials); ++apex) {
+    if (best_agreement > 1 - kClearlyBetter) break;
     const double candidate = agreement(polygon, normal, apex);
     if (candidate > best_agreement + kClearlyBetter) best = apex, best_agreement = candidate;
   }

@@ -65,6 +65,14 @@ TEST(ReadStl, WeldsIdenticalCornersInBothEncodings) {
   }
 }
 
+TEST(ReadStl, JoinsTheSolidsOfOneFile) {
+  const TriangleMesh box = test::box(Point(0, 0, 0), Point(1, 1, 1)),
+                     other = test::transformed(box, 1, Vector(3, 0, 0));
+  const TriangleMesh mesh = read_stl(ascii_stl(box, "one", "\n") + ascii_stl(other, "two", "\n"), "mesh.stl");
+  EXPECT_EQ(mesh.vertices.size(), 16u);
+  EXPECT_DOUBLE_EQ(check_mesh(mesh).volume, 2);
+}
+
 TEST(ReadStl, NamesTheLineOrByteAndTheFault) {
   const std::string good = ascii_stl(test::l_shape(), "part", "\n"), binary = binary_stl(test::l_shape(), "binary");
   const auto replaced = [&](const std::string& from, const std::string& to) {

@@ -228,6 +228,13 @@ TEST(ReadPly, TakesEveryEndOfLineInTheHeader) {
   }
 }
 
+TEST(ReadPly, ReadsAHeaderOfAHundredThousandElements) {
+  std::string elements;
+  for (int i = 0; i < 100000; ++i) ((elements += "element e") += std::to_string(i)) += " 0\n";
+  const std::string text = header("ascii") + kPoints + "3 0 1 2\n";
+  EXPECT_EQ(read(replaced(text, "element vertex", elements + "element vertex")).triangles.size(), 1u);
+}
+
 TEST(ReadPly, TriangulatesPolygons) {
   EXPECT_EQ(read(header("ascii", "4") + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n").triangles,
             (Triangles{{0, 1, 2}, {0, 2, 3}}));

@@ -16,17 +16,19 @@ struct MeshReport {
   Index misoriented_edges = 0;            // both triangles run along the edge in the same direction
   Index degenerate_triangles = 0;         // a repeated corner or no area
   Index unused_vertices = 0;              // harmless
+  Index inside_out_components = 0;        // turned against the rest, and no cavity: no other component could hold them
   std::array<Index, 2> first_boundary_edge{kNone, kNone}, first_non_manifold_edge{kNone, kNone},
       first_misoriented_edge{kNone, kNone};  // vertices
   Index first_non_manifold_vertex = kNone;
-  Index first_degenerate_triangle = kNone;
+  Index first_degenerate_triangle = kNone, first_inside_out_triangle = kNone;
   double area = 0, volume = 0;  // volume < 0: inside out
 
   bool closed() const { return boundary_edges == 0; }
   bool manifold() const { return non_manifold_edges == 0 && non_manifold_vertices == 0; }
   // Closed, manifold, consistently oriented outward, without degenerate triangles.
   bool solid() const {
-    return closed() && manifold() && misoriented_edges == 0 && degenerate_triangles == 0 && volume > 0;
+    return closed() && manifold() && misoriented_edges == 0 && degenerate_triangles == 0 &&
+           inside_out_components == 0 && volume > 0;
   }
   // One line that says what is wrong and which element is the first such one; empty if solid().
   std::string faults() const;
