@@ -35,6 +35,7 @@ std::vector<std::string> environment_with(const std::string& display) {
 
 std::vector<char*> null_terminated(std::vector<std::string>& strings) {
   std::vector<char*> pointers;
+  pointers.reserve(strings.size() + 1);
   for (std::string& text : strings) pointers.push_back(text.data());
   pointers.push_back(nullptr);
   return pointers;
@@ -135,7 +136,7 @@ std::filesystem::path find_in_path(const std::string& name) {
   std::string_view rest = value == nullptr ? "" : value;
   while (!rest.empty()) {
     const std::size_t end = std::min(rest.find(':'), rest.size());
-    const std::filesystem::path file = std::filesystem::path(rest.substr(0, end)) / name;
+    std::filesystem::path file = std::filesystem::path(rest.substr(0, end)) / name;
     if (end > 0 && access(file.c_str(), X_OK) == 0) return file;
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }

@@ -31,7 +31,7 @@ using Color = std::array<double, 3>;
 using Data = vtkSmartPointer<vtkPolyData>;
 
 constexpr Color kInk{0.13, 0.16, 0.20};
-constexpr Color kStone{0.80, 0.83, 0.87};
+constexpr Color kStone{0.73, 0.77, 0.82};
 constexpr double kFeatureAngle = 40;             // degrees
 constexpr double kSeparation = 0.9;              // radians
 constexpr vtkIdType kTrianglesOutlined = 20000;  // more would turn the mesh black

@@ -58,7 +58,7 @@ fs::path find_renderer(const PipelinePicture& picture) {
   if (const std::string named = variable("ORCHARD_RENDER"); !named.empty()) return named;
   std::error_code failure;
   const fs::path program = fs::read_symlink("/proc/self/exe", failure);
-  const fs::path beside = program.parent_path() / "orchard-render";
+  fs::path beside = program.parent_path() / "orchard-render";
   if (!failure && access(beside.c_str(), X_OK) == 0) return beside;
   return detail::find_in_path("orchard-render");
 }
