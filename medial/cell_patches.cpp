@@ -1,85 +1,95 @@
 #include "cell_patches.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
-#include <cstdint>
+#include <iterator>
+#include <numeric>
+#include <span>
 #include <utility>
 
 namespace orchard::detail {
 namespace {
 
+// Divides the pieces of one cell into patches.
 class PatchFinder {
  public:
-  PatchFinder(const Surface& surface, const SurfaceSampling& sampling, const RestrictedVoronoi& restricted)
-      : surface_(surface), sampling_(sampling), restricted_(restricted) {
-    Index count = 0;
-    const Index triangles = static_cast<Index>(surface.mesh().triangles.size());
-    for (Index triangle = 0; triangle < triangles; ++triangle) {
-      first_.push_back(count);
-      count += static_cast<Index>(restricted.pieces(triangle).size());
-    }
-    first_.push_back(count);
-    parents_.resize(count);
-    for (Index piece = 0; piece < count; ++piece) parents_[piece] = piece;
-    joints_.assign(count, 0);
-    joined_.assign(count, 0);
-    inner_vertices_.assign(count, 0);
+  PatchFinder(const Surface& surface, const RestrictedVoronoi& restricted, Index cell, std::vector<Index> triangles)
+      : surface_(surface), cell_(cell), triangles_(std::move(triangles)) {
+    for (const Index triangle : triangles_) pieces_.push_back(restricted.piece(triangle, cell));
+    parents_.resize(triangles_.size());
+    std::iota(parents_.begin(), parents_.end(), std::size_t{0});
+    euler_.assign(triangles_.size(), 1);
+    joined_.assign(triangles_.size(), 0);
   }
 
   std::vector<CellPatch> run() {
-    join_across_edges();
-    count_inner_vertices();
-    return gather();
+    for (std::size_t i = 0; i < triangles_.size(); ++i) join_across_edges(i);
+    for (std::size_t i = 0; i < triangles_.size(); ++i) count_inner_vertices(i);
+    std::vector<CellPatch> patches;
+    std::vector<std::size_t> patch_of(triangles_.size());
+    for (std::size_t i = 0; i < triangles_.size(); ++i) {
+      const std::size_t first = root(i);  // the lowest of its set
+      if (first == i) {
+        patch_of[i] = patches.size();
+        patches.push_back({cell_, {}, false, 0});
+      }
+      CellPatch& patch = patches[patch_of[first]];
+      patch.triangles.push_back(triangles_[i]);
+      patch.euler_characteristic += euler_[i];
+    }
+    return patches;
   }
 
  private:
-  Index root(Index piece) {
-    while (parents_[piece] != piece) piece = parents_[piece] = parents_[parents_[piece]];
-    return piece;
+  static constexpr std::size_t kNotHere = ~std::size_t{0};
+
+  std::size_t root(std::size_t i) {
+    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
+    return i;
   }
-  Index id_of(Index triangle, const CellPiece* piece) const {
-    return first_[triangle] + static_cast<Index>(piece - restricted_.pieces(triangle).data());
+  std::size_t find(Index triangle) const {
+    const auto found = std::lower_bound(triangles_.begin(), triangles_.end(), triangle);
+    return found != triangles_.end() && *found == triangle ? static_cast<std::size_t>(found - triangles_.begin())
+                                                           : kNotHere;
   }
-  // Joints are counted at the piece with the lower triangle.
-  void join_across_edges() {
-    for (Index triangle = 0; triangle + 1 < first_.size(); ++triangle) {
-      for (unsigned edge = 0; edge < 3; ++edge) {
-        const Index next = surface_.neighbors(triangle)[edge];
-        if (next == kNone || next < triangle) continue;
-        const std::uint8_t back = edge_mask_towards(next, triangle);
-        for (const CellPiece& piece : restricted_.pieces(triangle)) {
-          const CellPiece* other = restricted_.piece(next, piece.cell);
-          if (other == nullptr || !((piece.edges >> edge & 1u) || (other->edges & back))) continue;
-          const Index a = id_of(triangle, &piece), b = id_of(next, other);
-          joined_[a] |= static_cast<std::uint8_t>(1u << edge);
-          joined_[b] |= back;
-          ++joints_[a];
-          const Index low = std::min(root(a), root(b)), high = std::max(root(a), root(b));
-          parents_[high] = low;
-        }
-      }
+
+  // Two pieces share one stretch of an edge at most; it is counted at the first of them.
+  void join_across_edges(std::size_t i) {
+    for (unsigned edge = 0; edge < 3; ++edge) {
+      const Index next = surface_.neighbors(triangles_[i])[edge];
+      if (next == kNone || next < triangles_[i]) continue;
+      const std::size_t k = find(next);
+      if (k == kNotHere) continue;
+      const std::uint8_t here = static_cast<std::uint8_t>(1u << edge), there = edges_towards(next, triangles_[i]);
+      if (!(pieces_[i]->edges & here) && !(pieces_[k]->edges & there)) continue;
+      joined_[i] |= here;
+      joined_[k] |= there;
+      --euler_[i];
+      const std::size_t a = root(i), b = root(k);
+      parents_[std::max(a, b)] = std::min(a, b);
     }
   }
-  std::uint8_t edge_mask_towards(Index triangle, Index neighbor) const {
+  std::uint8_t edges_towards(Index triangle, Index neighbor) const {
     std::uint8_t mask = 0;
     for (unsigned edge = 0; edge < 3; ++edge) {
       if (surface_.neighbors(triangle)[edge] == neighbor) mask |= static_cast<std::uint8_t>(1u << edge);
     }
     return mask;
   }
-  // A vertex is inside a cell's patch if the pieces around it are joined all the way round. Counted at the first piece.
-  void count_inner_vertices() {
-    for (Index vertex = 0; vertex < surface_.mesh().vertices.size(); ++vertex) {
+
+  // A vertex is inside a patch if the pieces around it are joined all the way round. Counted at the first of them.
+  void count_inner_vertices(std::size_t i) {
+    for (const Index vertex : surface_.mesh().triangles[triangles_[i]]) {
       const auto around = surface_.triangles_around(vertex);
-      if (around.empty()) continue;
-      for (const CellPiece& piece : restricted_.pieces(around[0])) {
-        const bool inner = std::all_of(around.begin(), around.end(), [&](Index triangle) {
-          const CellPiece* other = restricted_.piece(triangle, piece.cell);
-          if (other == nullptr) return false;
-          const std::uint8_t spokes = edges_at(triangle, vertex);
-          return (joined_[id_of(triangle, other)] & spokes) == spokes;
-        });
-        if (inner) ++inner_vertices_[id_of(around[0], &piece)];
-      }
+      if (around[0] != triangles_[i]) continue;
+      const bool inner = std::all_of(around.begin(), around.end(), [&](Index triangle) {
+        const std::size_t k = find(triangle);
+        if (k == kNotHere) return false;
+        const std::uint8_t spokes = edges_at(triangle, vertex);
+        return (joined_[k] & spokes) == spokes;
+      });
+      if (inner) ++euler_[i];
     }
   }
   std::uint8_t edges_at(Index triangle, Index vertex) const {
@@ -87,63 +97,52 @@ class PatchFinder {
     return corners[0] == vertex ? 0b101 : corners[1] == vertex ? 0b011 : 0b110;
   }
 
-  std::vector<CellPatch> gather() {
-    struct Entry {
-      Index cell, root, triangle, piece;
-      auto operator<=>(const Entry&) const = default;
-    };
-    std::vector<Entry> entries;
-    entries.reserve(parents_.size());
-    for (Index triangle = 0; triangle + 1 < first_.size(); ++triangle) {
-      for (const CellPiece& piece : restricted_.pieces(triangle)) {
-        const Index id = id_of(triangle, &piece);
-        entries.push_back({piece.cell, root(id), triangle, id});
-      }
-    }
-    std::sort(entries.begin(), entries.end());
-    std::vector<CellPatch> patches;
-    Index last_root = kNone;
-    for (const Entry& entry : entries) {
-      if (patches.empty() || entry.root != last_root || entry.cell != patches.back().cell) {
-        patches.emplace_back();
-        patches.back().cell = entry.cell;
-        last_root = entry.root;
-      }
-      CellPatch& patch = patches.back();
-      patch.triangles.push_back(entry.triangle);
-      patch.euler_characteristic += 1 - joints_[entry.piece] + inner_vertices_[entry.piece];
-    }
-    mark_homes(patches);
-    return patches;
-  }
-  void mark_homes(std::vector<CellPatch>& patches) const {
-    std::vector<Index> around;
-    Index cell = kNone;
-    for (CellPatch& patch : patches) {
-      if (patch.cell != cell) {
-        cell = patch.cell;
-        surface_.triangles_at(sampling_.triangles[cell], sampling_.features[cell], around);
-      }
-      patch.home = std::any_of(around.begin(), around.end(), [&](Index triangle) {
-        return std::binary_search(patch.triangles.begin(), patch.triangles.end(), triangle);
-      });
-    }
-  }
-
   const Surface& surface_;
-  const SurfaceSampling& sampling_;
-  const RestrictedVoronoi& restricted_;
-  std::vector<Index> first_;                  // piece of each triangle; pieces are numbered triangle by triangle
-  std::vector<Index> parents_;                // of each piece
-  std::vector<std::uint8_t> joined_;          // bit i: to a piece across the triangle's edge i
-  std::vector<int> joints_, inner_vertices_;  // each counted at one piece
+  Index cell_;
+  std::vector<Index> triangles_;  // ascending
+  std::vector<const CellPiece*> pieces_;
+  std::vector<std::size_t> parents_;
+  std::vector<int> euler_;            // what each piece adds to its patch's characteristic
+  std::vector<std::uint8_t> joined_;  // bit i: to a piece across the triangle's edge i
 };
+
+void mark_home(const Surface& surface, const SurfaceSampling& sampling, std::vector<CellPatch>& patches) {
+  std::vector<Index> around;
+  for (CellPatch& patch : patches) {
+    surface.triangles_at(sampling.triangles[patch.cell], sampling.features[patch.cell], around);
+    patch.home = std::any_of(around.begin(), around.end(), [&](Index triangle) {
+      return std::binary_search(patch.triangles.begin(), patch.triangles.end(), triangle);
+    });
+  }
+}
 
 }  // namespace
 
+PatchScope PatchScope::everything(const Surface& surface, const SurfaceSampling& sampling) {
+  PatchScope scope;
+  scope.cells.assign(sampling.size(), 1);
+  scope.triangles.resize(surface.mesh().triangles.size());
+  std::iota(scope.triangles.begin(), scope.triangles.end(), Index{0});
+  return scope;
+}
+
 std::vector<CellPatch> find_cell_patches(const Surface& surface, const SurfaceSampling& sampling,
-                                         const RestrictedVoronoi& restricted) {
-  return PatchFinder(surface, sampling, restricted).run();
+                                         const RestrictedVoronoi& restricted, const PatchScope& scope) {
+  std::vector<std::vector<Index>> triangles_of(scope.cells.size());
+  for (const Index triangle : scope.triangles) {
+    for (const CellPiece& piece : restricted.pieces(triangle)) {
+      if (scope.cells[piece.cell]) triangles_of[piece.cell].push_back(triangle);
+    }
+  }
+  std::vector<std::vector<CellPatch>> patches_of(triangles_of.size());
+  tbb::parallel_for(Index{0}, static_cast<Index>(triangles_of.size()), [&](Index cell) {
+    if (triangles_of[cell].empty()) return;
+    patches_of[cell] = PatchFinder(surface, restricted, cell, std::move(triangles_of[cell])).run();
+    mark_home(surface, sampling, patches_of[cell]);
+  });
+  std::vector<CellPatch> patches;
+  for (auto& some : patches_of) std::move(some.begin(), some.end(), std::back_inserter(patches));
+  return patches;
 }
 
 }  // namespace orchard::detail

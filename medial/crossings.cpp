@@ -3,6 +3,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <iterator>
+#include <optional>
 #include <utility>
 
 #include "joined_inside.h"
@@ -97,50 +99,56 @@ std::vector<Index> harmful_neighbors(const Surface& surface, const SurfaceSampli
   return harmful;
 }
 
-}  // namespace
-
-std::vector<Crossing> find_gap_crossings(const Surface& surface, const SurfaceSampling& sampling,
-                                         const RestrictedVoronoi& restricted, const RepairOptions& options) {
-  std::vector<CellPatch> patches = find_cell_patches(surface, sampling, restricted);
-  if (options.definition == GapDefinition::connected) {
-    std::erase_if(patches, [](const CellPatch& patch) { return patch.home; });
-  } else {
-    patches = patches_on_forbidden_clusters(surface, sampling, patches, options.definition == GapDefinition::loose);
-  }
-  std::vector<Crossing> crossings(patches.size());
-  std::vector<std::uint8_t> keep(patches.size());
-  tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t i) {
-    Crossing& crossing = crossings[i];
-    crossing.patch = std::move(patches[i]);
-    crossing.neighbors = harmful_neighbors(surface, sampling, restricted, crossing.patch, options.joined_radius);
-    const bool has_border =
-        std::any_of(crossing.patch.triangles.begin(), crossing.patch.triangles.end(),
-                    [&](Index triangle) { return !restricted.piece(triangle, crossing.patch.cell)->borders.empty(); });
+// Nothing for a patch that is as it should be.
+std::optional<Crossing> gap_crossing(const Surface& surface, const SurfaceSampling& sampling,
+                                     const RestrictedVoronoi& restricted, const CellPatch& patch,
+                                     const RepairOptions& options) {
+  std::vector<Index> harmful = harmful_neighbors(surface, sampling, restricted, patch, options.joined_radius);
+  if (harmful.empty()) {
+    const bool has_border = std::any_of(patch.triangles.begin(), patch.triangles.end(), [&](Index triangle) {
+      return !restricted.piece(triangle, patch.cell)->borders.empty();
+    });
     // A closed component without a point of its own has no border; no face would ever tell of it.
-    keep[i] = !crossing.neighbors.empty() || (options.definition == GapDefinition::connected && !has_border);
-  });
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < crossings.size(); ++i) {
-    if (!keep[i]) continue;
-    if (kept != i) crossings[kept] = std::move(crossings[i]);
-    ++kept;
+    if (has_border || options.definition != GapDefinition::connected) return std::nullopt;
   }
-  crossings.resize(kept);
-  return crossings;
+  return Crossing{patch, std::move(harmful), false};
 }
 
-std::vector<Crossing> find_necks(const Surface& surface, const SurfaceSampling& sampling,
-                                 const RestrictedVoronoi& restricted) {
-  std::vector<CellPatch> patches = find_cell_patches(surface, sampling, restricted);
-  std::erase_if(patches, [](const CellPatch& patch) { return !patch.home; });
-  std::vector<NeckFault> faults(patches.size());
-  tbb::parallel_for(std::size_t{0}, patches.size(),
-                    [&](std::size_t i) { faults[i] = find_neck(surface, restricted, patches[i]); });
-  std::vector<Crossing> necks;
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    if (faults[i].found) necks.push_back({std::move(patches[i]), std::move(faults[i].neighbors), true});
+std::optional<Crossing> neck(const Surface& surface, const RestrictedVoronoi& restricted, const CellPatch& patch) {
+  NeckFault fault = find_neck(surface, restricted, patch);
+  if (!fault.found) return std::nullopt;
+  return Crossing{patch, std::move(fault.neighbors), true};
+}
+
+}  // namespace
+
+std::vector<Crossing> find_crossings(const Surface& surface, const SurfaceSampling& sampling,
+                                     const RestrictedVoronoi& restricted, const PatchScope& scope,
+                                     const RepairOptions& options) {
+  const std::vector<CellPatch> patches = find_cell_patches(surface, sampling, restricted, scope);
+  std::vector<CellPatch> suspects;
+  if (options.definition == GapDefinition::connected) {
+    std::copy_if(patches.begin(), patches.end(), std::back_inserter(suspects),
+                 [](const CellPatch& patch) { return !patch.home; });
+  } else {
+    suspects = patches_on_forbidden_clusters(surface, sampling, patches, options.definition == GapDefinition::loose);
   }
-  return necks;
+  std::vector<std::optional<Crossing>> gaps(suspects.size()), necks(options.mend_necks ? patches.size() : 0);
+  tbb::parallel_for(std::size_t{0}, gaps.size(), [&](std::size_t i) {
+    gaps[i] = gap_crossing(surface, sampling, restricted, suspects[i], options);
+  });
+  tbb::parallel_for(std::size_t{0}, necks.size(), [&](std::size_t i) {
+    if (patches[i].home) necks[i] = neck(surface, restricted, patches[i]);
+  });
+  std::vector<Crossing> crossings;
+  for (auto* some : {&gaps, &necks}) {
+    for (std::optional<Crossing>& crossing : *some) {
+      if (crossing) crossings.push_back(std::move(*crossing));
+    }
+  }
+  std::stable_sort(crossings.begin(), crossings.end(),
+                   [](const Crossing& a, const Crossing& b) { return a.patch.cell < b.patch.cell; });
+  return crossings;
 }
 
 Index count_faces(const std::vector<Crossing>& crossings) {

@@ -13,12 +13,11 @@ struct Crossing {
   bool neck = false;             // the patch holds its point but is no disk among disks (neck_test.h)
 };
 
-// By the given definition, ascending by cell. Parallel.
-std::vector<Crossing> find_gap_crossings(const Surface& surface, const SurfaceSampling& sampling,
-                                         const RestrictedVoronoi& restricted, const RepairOptions& options);
-
-std::vector<Crossing> find_necks(const Surface& surface, const SurfaceSampling& sampling,
-                                 const RestrictedVoronoi& restricted);
+// What is wrong with the cells in scope, ascending by cell: gap crossings by the given definition, and necks if they
+// are to be mended. Parallel.
+std::vector<Crossing> find_crossings(const Surface& surface, const SurfaceSampling& sampling,
+                                     const RestrictedVoronoi& restricted, const PatchScope& scope,
+                                     const RepairOptions& options);
 
 // How many faces are at fault, each counted once.
 Index count_faces(const std::vector<Crossing>& crossings);

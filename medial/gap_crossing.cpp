@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 #include "cell_neighbors.h"
@@ -40,55 +41,71 @@ class Repair {
         progress_(progress),
         result_{std::move(sampling), std::move(diagram), {}},
         generations_(result_.sampling.size(), 0),
-        neighbors_(detail::cell_neighbors(result_.diagram)),
-        restricted_(surface, result_.diagram.points, neighbors_) {}
+        neighbors_(result_.diagram) {}
 
   Repaired run() {
-    bool rechecked = true;  // the crossings come from scratch, not from updates
-    for (int pass = 0; pass < options_.max_passes;) {
+    find_anew();
+    bool anew = true;  // what is known comes from scratch, not from updates
+    for (int pass = 0; pass < options_.max_passes; ++pass) {
       report_progress(progress_, "gap repair", static_cast<double>(pass) / options_.max_passes);
-      const std::vector<Crossing> crossings = detect();
-      if (crossings.empty() && rechecked) break;
-      if (crossings.empty()) {
-        start_over();
-        rechecked = true;
-        continue;
+      if (crossings_.empty() && !anew) {
+        find_anew();
+        anew = true;
       }
-      ++pass;
-      rechecked = false;
+      open_pass();
+      if (crossings_.empty()) break;
       const Index before = result_.sampling.size();
-      add_points(propose(crossings));
+      add_points(propose(what_to_mend()));
       if (result_.sampling.size() == before) break;
-      update_diagram(before);
+      update(before);
+      anew = false;
     }
-    start_over();
-    count_what_is_left();
+    if (!anew) find_anew();
+    result_.report.faces_still_crossing = detail::count_faces(crossings_);
     report_progress(progress_, "gap repair", 1);
     return std::move(result_);
   }
 
  private:
-  // Gaps first: closing them mends most necks.
-  std::vector<Crossing> detect() {
-    std::vector<Crossing> crossings = detail::find_gap_crossings(surface_, result_.sampling, restricted_, options_);
-    if (crossings.empty() && options_.mend_necks) {
-      crossings = detail::find_necks(surface_, result_.sampling, restricted_);
-    }
+  void find_anew() {
+    restricted_.emplace(surface_, result_.diagram.points, neighbors_);
+    crossings_ = detail::find_crossings(surface_, result_.sampling, *restricted_,
+                                        detail::PatchScope::everything(surface_, result_.sampling), options_);
+  }
+
+  void open_pass() {
     RepairPass& pass = result_.report.passes.emplace_back();
-    pass.faces_tested = static_cast<Index>(neighbors_.items.size() / 2);
-    pass.faces_crossing = detail::count_faces(crossings);
-    return crossings;
+    pass.faces_tested = neighbors_.count_faces();
+    pass.faces_crossing = detail::count_faces(crossings_);
+  }
+
+  // Gaps first: closing them mends the necks around them, so those have to wait.
+  std::vector<const Crossing*> what_to_mend() const {
+    std::vector<std::uint8_t> at_gap(result_.sampling.size(), 0);
+    for (const Crossing& crossing : crossings_) {
+      if (crossing.neck) continue;
+      at_gap[crossing.patch.cell] = 1;
+      for (const Index other : crossing.neighbors) at_gap[other] = 1;
+    }
+    std::vector<const Crossing*> chosen;
+    for (const Crossing& crossing : crossings_) {
+      const auto is_at_gap = [&](Index cell) { return at_gap[cell] != 0; };
+      const bool wait = crossing.neck && (is_at_gap(crossing.patch.cell) ||
+                                          std::any_of(crossing.neighbors.begin(), crossing.neighbors.end(), is_at_gap));
+      if (!wait) chosen.push_back(&crossing);
+    }
+    return chosen;
   }
 
   // Projections before points to snap to, wide gaps before narrow ones, then by cell.
-  std::vector<Candidate> propose(const std::vector<Crossing>& crossings) const {
+  std::vector<Candidate> propose(const std::vector<const Crossing*>& crossings) const {
     std::vector<Candidate> candidates(crossings.size());
     tbb::parallel_for(std::size_t{0}, crossings.size(), [&](std::size_t i) {
-      const Crossing& crossing = crossings[i];
+      const Crossing& crossing = *crossings[i];
       const Index cell = crossing.patch.cell;
       const auto across = generations_[cell] > 0 ? detail::Across::straight : detail::Across::normal;
       candidates[i] = {cell, crossing.neighbors,
-                       detail::propose_repair(surface_, result_.sampling, restricted_, crossing, across),
+                       detail::propose_repair(surface_, result_.sampling, *restricted_, crossing, across),
                        crossing.neck};
     });
     std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
@@ -152,27 +169,17 @@ class Repair {
     return true;
   }
 
-  void update_diagram(Index first_new) {
+  // What was wrong with cells that stay as they are is still wrong with them.
+  void update(Index first_new) {
     result_.diagram = exact_voronoi(result_.sampling.points);
-    neighbors_ = detail::cell_neighbors(result_.diagram);
-    std::vector<std::uint8_t> changed(result_.sampling.size(), 0);
-    for (Index point = first_new; point < changed.size(); ++point) {
-      changed[point] = 1;
-      for (const Index other : neighbors_[point]) changed[other] = 1;
-    }
-    restricted_.update(result_.diagram.points, neighbors_, changed);
-  }
-
-  // The restricted diagram from scratch, in case the updates missed something.
-  void start_over() { restricted_ = detail::RestrictedVoronoi(surface_, result_.diagram.points, neighbors_); }
-
-  void count_what_is_left() {
-    std::vector<Crossing> crossings = detail::find_gap_crossings(surface_, result_.sampling, restricted_, options_);
-    if (options_.mend_necks) {
-      std::vector<Crossing> necks = detail::find_necks(surface_, result_.sampling, restricted_);
-      std::move(necks.begin(), necks.end(), std::back_inserter(crossings));
-    }
-    result_.report.faces_still_crossing = detail::count_faces(crossings);
+    detail::PatchScope scope;
+    scope.cells = neighbors_.update(result_.diagram, first_new);
+    scope.triangles = restricted_->update(result_.diagram.points, scope.cells);
+    std::erase_if(crossings_, [&](const Crossing& crossing) { return scope.cells[crossing.patch.cell] != 0; });
+    std::vector<Crossing> found = detail::find_crossings(surface_, result_.sampling, *restricted_, scope, options_);
+    std::move(found.begin(), found.end(), std::back_inserter(crossings_));
+    std::stable_sort(crossings_.begin(), crossings_.end(),
+                     [](const Crossing& a, const Crossing& b) { return a.patch.cell < b.patch.cell; });
   }
 
   const Surface& surface_;
@@ -180,8 +187,9 @@ class Repair {
   const Progress& progress_;
   Repaired result_;
   std::vector<int> generations_;  // of each point: how many repair points led to it
-  Rows neighbors_;
-  detail::RestrictedVoronoi restricted_;
+  detail::CellNeighbors neighbors_;
+  std::optional<detail::RestrictedVoronoi> restricted_;
+  std::vector<Crossing> crossings_;  // known to be left, ascending by cell
 };
 
 }  // namespace

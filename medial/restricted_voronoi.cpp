@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
-#include "cell_neighbors.h"
 #include "orchard/geometry/random.h"
 #include "orchard/geometry/tolerance.h"
 
@@ -116,7 +116,8 @@ void RestrictedVoronoi::draw_weights() {
   });
 }
 
-RestrictedVoronoi::RestrictedVoronoi(const Surface& surface, std::span<const Point> points, const Rows& neighbors)
+RestrictedVoronoi::RestrictedVoronoi(const Surface& surface, std::span<const Point> points,
+                                     const CellNeighbors& neighbors)
     : surface_(&surface),
       points_(points),
       neighbors_(&neighbors),
@@ -124,37 +125,38 @@ RestrictedVoronoi::RestrictedVoronoi(const Surface& surface, std::span<const Poi
       seeds_(surface.mesh().triangles.size(), kNone),
       pieces_(surface.mesh().triangles.size()) {
   draw_weights();
-  divide_all(std::vector<std::uint8_t>(seeds_.size(), 1));
+  std::vector<Index> all(pieces_.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  divide_all(all);
 }
 
-void RestrictedVoronoi::update(std::span<const Point> points, const Rows& neighbors,
-                               const std::vector<std::uint8_t>& changed) {
+std::vector<Index> RestrictedVoronoi::update(std::span<const Point> points, const std::vector<std::uint8_t>& changed) {
   points_ = points;
-  neighbors_ = &neighbors;
   draw_weights();
   // A new cell takes its share from cells that are its neighbours afterwards, so those were marked as changed and their
   // triangles hold all of it.
-  std::vector<std::uint8_t> dirty(pieces_.size(), 0);
-  tbb::parallel_for(std::size_t{0}, pieces_.size(), [&](std::size_t triangle) {
-    for (const CellPiece& piece : pieces_[triangle]) dirty[triangle] |= changed[piece.cell];
-  });
+  std::vector<Index> dirty;
+  for (Index triangle = 0; triangle < pieces_.size(); ++triangle) {
+    const std::vector<CellPiece>& pieces = pieces_[triangle];
+    const bool hit =
+        std::any_of(pieces.begin(), pieces.end(), [&](const CellPiece& piece) { return changed[piece.cell] != 0; });
+    if (hit) dirty.push_back(triangle);
+  }
   divide_all(dirty);
+  return dirty;
 }
 
-void RestrictedVoronoi::divide_all(const std::vector<std::uint8_t>& dirty) {
-  find_seeds(dirty);
+void RestrictedVoronoi::divide_all(std::span<const Index> triangles) {
+  find_seeds(triangles);
   tbb::enumerable_thread_specific<Scratch> scratch;
-  tbb::parallel_for(Index{0}, static_cast<Index>(pieces_.size()), [&](Index triangle) {
-    if (dirty[triangle]) divide(triangle, scratch.local());
-  });
+  tbb::parallel_for(std::size_t{0}, triangles.size(), [&](std::size_t i) { divide(triangles[i], scratch.local()); });
 }
 
 // Serial, each walk starting where a neighbour's ended, so that ties fall the same way whatever the thread count.
-void RestrictedVoronoi::find_seeds(const std::vector<std::uint8_t>& dirty) {
+void RestrictedVoronoi::find_seeds(std::span<const Index> triangles) {
   Index last = 0;
   while (last + 1 < neighbors_->size() && (*neighbors_)[last].empty()) ++last;
-  for (Index triangle = 0; triangle < seeds_.size(); ++triangle) {
-    if (!dirty[triangle]) continue;
+  for (const Index triangle : triangles) {
     Index start = seeds_[triangle];
     for (const Index next : surface_->neighbors(triangle)) {
       if (start == kNone && next != kNone) start = seeds_[next];

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "cell_neighbors.h"
 #include "orchard/geometry/surface.h"
 #include "orchard/voronoi/diagram.h"
 
@@ -36,30 +37,29 @@ struct CellPiece {
 class RestrictedVoronoi {
  public:
   // All references must outlive this object. Parallel; the same for any thread count. O(pieces x neighbours of a cell).
-  RestrictedVoronoi(const Surface& surface, std::span<const Point> points, const Rows& neighbors);
+  RestrictedVoronoi(const Surface& surface, std::span<const Point> points, const CellNeighbors& neighbors);
 
-  // Divides the triangles anew that the cells of `changed` points (ascending) took or may take a part of, for a diagram
-  // with more points than the last one.
-  void update(std::span<const Point> points, const Rows& neighbors, const std::vector<std::uint8_t>& changed);
+  // Divides the triangles anew where a `changed` cell has or may have got a part, after `neighbors` was updated;
+  // returns these triangles, ascending.
+  std::vector<Index> update(std::span<const Point> points, const std::vector<std::uint8_t>& changed);
 
   std::span<const CellPiece> pieces(Index triangle) const { return pieces_[triangle]; }  // ascending by cell
   const CellPiece* piece(Index triangle, Index cell) const;                              // null if there is none
   // The piece's shape. Empty corners if the cell does not meet the triangle in more than a touch.
   void polygon(Index triangle, Index cell, CellPolygon& out) const;
-  const Rows& neighbors() const { return *neighbors_; }
   std::span<const Point> points() const { return points_; }
 
  private:
   struct Scratch;
   void draw_weights();
   void cut_out(const std::array<Point, 3>& triangle, Index cell, Scratch& scratch) const;
-  void find_seeds(const std::vector<std::uint8_t>& dirty);
+  void find_seeds(std::span<const Index> triangles);
   void divide(Index triangle, Scratch& scratch);
-  void divide_all(const std::vector<std::uint8_t>& dirty);
+  void divide_all(std::span<const Index> triangles);
 
   const Surface* surface_;
   std::span<const Point> points_;
-  const Rows* neighbors_;
+  const CellNeighbors* neighbors_;
   double touch_;
   std::vector<double> weights_;  // of each point
   std::vector<Index> seeds_;     // for each triangle the point nearest to its first corner
