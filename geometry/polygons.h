@@ -10,7 +10,7 @@ namespace orchard {
 // split for good by finish().
 class FaceCollector {
  public:
-  // Precondition: at least three corners.
+  // Precondition: at least three corners. Throws InputError if the triangles become too many for 32-bit indices.
   void add(std::span<const Index> corners);
   bool empty() const { return triangles_.empty(); }
   // Each polygon becomes the fan of triangles, around one of its corners, that agrees best with the polygon's normal;
@@ -20,12 +20,12 @@ class FaceCollector {
 
  private:
   static constexpr std::size_t kTrials = 64;
-  struct Polygon {
+  struct Face {
     std::size_t first_triangle;
     Index corners;
   };
   std::vector<std::array<Index, 3>> triangles_;  // polygons: the fan around corner 0
-  std::vector<Polygon> polygons_;                // of four corners or more
+  std::vector<Face> faces_;                      // of four corners or more
 };
 
 }  // namespace orchard
