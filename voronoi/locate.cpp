@@ -44,7 +44,7 @@ Index Inserter::walk(const Point& q) const {
       if (u == came_from) continue;
       const double power = workspace_.power(u, q), bound = workspace_.power_bound(u);
       if (power > bound) return u;
-      if (power > here) {
+      if (power > here + bound) {
         if (bound == std::numeric_limits<double>::infinity()) continue;
         next = u;
         here = power;
