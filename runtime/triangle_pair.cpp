@@ -87,7 +87,7 @@ bool degenerate(const TrianglePoints& t) noexcept {
 // A segment in the plane of a triangle that is not degenerate.
 bool coplanar_meet(const Vec3& p, const Vec3& q, const TrianglePoints& t, Vec3* witness) noexcept {
   std::size_t axis = 0;
-  while (orientation(t[0], t[1], t[2], axis) == 0) ++axis;
+  while (axis < 2 && orientation(t[0], t[1], t[2], axis) == 0) ++axis;
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec3 &a = t[i], &b = t[(i + 1) % 3];
     if (!segments_meet_2d(p, q, a, b, axis)) continue;

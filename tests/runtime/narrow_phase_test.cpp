@@ -359,6 +359,83 @@ TEST(NarrowPhase, CountsTouchingChildrenAsMeeting) {
   EXPECT_LT(query.lower_bound(), 1e-4);
 }
 
+// A large root over balls of all sizes, some blocks of them, without triangles.
+PackedSphereTree scattered_balls(Draw& draw, std::uint32_t count) {
+  PackedSphereTree tree = lone_ball(100);
+  tree.branching = tree.blocks[0].count[0] = count;
+  tree.blocks[0].first[0] = tree.depth = 1;
+  tree.node_count = 1 + count;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (i % kBlockWidth == 0) tree.blocks.emplace_back().radius.fill(-1);
+    SiblingBlock& block = tree.blocks.back();
+    const std::uint32_t lane = i % kBlockWidth;
+    for (auto* coordinate : {&block.x, &block.y, &block.z}) {
+      (*coordinate)[lane] = static_cast<float>(draw.uniform(-10, 10));
+    }
+    block.radius[lane] = static_cast<float>(std::exp2(draw.uniform(-20, 3)));
+    block.count[lane] = kLeafBit;
+  }
+  return tree;
+}
+
+TEST(NarrowPhase, KeepsBallsThatTouchByLessThanFloatsCanTell) {
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    Draw draw(seed);
+    const PackedSphereTree a = scattered_balls(draw, 1), b = scattered_balls(draw, 1);
+    const SiblingBlock &p = a.blocks[1], &q = b.blocks[1];
+    const double reach = double{p.radius[0]} + q.radius[0];
+    const Pose pose_a = draw.pose(3);
+    Pose pose_b = draw.pose(0);
+    // Moves b's ball to where the gap is as wanted.
+    const Vec from = transform(pose_a, {p.x[0], p.y[0], p.z[0]}), to = rotate(pose_b, {q.x[0], q.y[0], q.z[0]});
+    const Vec way = draw.direction();
+    const auto place = [&](double gap) {
+      for (std::size_t i = 0; i < 3; ++i) pose_b.translation[i] = from[i] + (reach + gap) * way[i] - to[i];
+    };
+    NarrowPhase query(a, b);
+    place(-1e-13);
+    query.start(pose_a, pose_b);
+    ASSERT_EQ(query.refine(), Answer::maybe) << seed;
+    place(1e-5);  // within the slack, which the roots' extent of 100 makes some 2e-4
+    query.start(pose_a, pose_b);
+    query.refine();
+    ASSERT_LE(query.lower_bound(), 1e-5) << seed;
+    place(2e-3);
+    query.start(pose_a, pose_b);
+    ASSERT_EQ(query.refine(), Answer::no) << seed;
+    ASSERT_LE(query.lower_bound(), 2e-3) << seed;
+    ASSERT_GT(query.lower_bound(), 1e-3) << seed;
+  }
+}
+
+TEST(NarrowPhase, MeetsExactlyTheBallsThatMeetInLongDoubles) {
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    Draw draw(seed);
+    const auto count = static_cast<std::uint32_t>(1 + draw.bits() % 40);
+    const PackedSphereTree a = scattered_balls(draw, count), b = scattered_balls(draw, 1 + count % 13);
+    const Pose pose = draw.pose(draw.uniform(0, 10));
+    std::size_t meeting = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::uint32_t i = 0; i < a.branching; ++i) {
+      for (std::uint32_t j = 0; j < b.branching; ++j) {
+        const SiblingBlock &p = a.blocks[1 + i / 8], &q = b.blocks[1 + j / 8];
+        const Vec c = transform(pose, {q.x[j % 8], q.y[j % 8], q.z[j % 8]});
+        const double distance = std::hypot(c[0] - p.x[i % 8], c[1] - p.y[i % 8], c[2] - p.z[i % 8]);
+        const double gap = distance - p.radius[i % 8] - q.radius[j % 8];
+        meeting += gap <= 1e-3;
+        ASSERT_FALSE(gap > 0 && gap < 1e-3) << "choose another seed than " << seed;
+        least = std::min(least, gap);
+      }
+    }
+    NarrowPhase query(a, b);
+    query.start({}, pose);
+    query.refine();
+    ASSERT_EQ(query.pairs(), meeting) << seed;
+    ASSERT_EQ(query.pair_tests(), 1 + a.branching * b.branching);
+    ASSERT_LE(query.lower_bound(), std::max(0.0, least));
+  }
+}
+
 TEST(NarrowPhase, NeverSaysNoForPosesThatAreNotNumbers) {
   const auto all = bodies();
   NarrowPhase query(all[2].tree, all[5].tree);
