@@ -114,6 +114,11 @@ std::optional<Crossing> gap_crossing(const Surface& surface, const SurfaceSampli
   return Crossing{patch, std::move(harmful), false};
 }
 
+// A harmless second patch of a cell looks like a neck to its neighbours.
+bool mends_necks(const RepairOptions& options) {
+  return options.mend_necks && options.definition == GapDefinition::connected && !(options.joined_radius > 0);
+}
+
 std::optional<Crossing> neck(const Surface& surface, const RestrictedVoronoi& restricted, const CellPatch& patch) {
   NeckFault fault = find_neck(surface, restricted, patch);
   if (!fault.found) return std::nullopt;
@@ -133,7 +138,7 @@ std::vector<Crossing> find_crossings(const Surface& surface, const SurfaceSampli
   } else {
     suspects = patches_on_forbidden_clusters(surface, sampling, patches, options.definition == GapDefinition::loose);
   }
-  std::vector<std::optional<Crossing>> gaps(suspects.size()), necks(options.mend_necks ? patches.size() : 0);
+  std::vector<std::optional<Crossing>> gaps(suspects.size()), necks(mends_necks(options) ? patches.size() : 0);
   tbb::parallel_for(std::size_t{0}, gaps.size(), [&](std::size_t i) {
     gaps[i] = gap_crossing(surface, sampling, restricted, suspects[i], options);
   });

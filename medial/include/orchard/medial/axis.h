@@ -15,15 +15,15 @@ struct MedialAxis {
   std::vector<Point> points;    // surface points: what forming points index
   std::vector<Vector> normals;  // outward unit pseudonormal of the surface at each point
 
-  std::vector<Point> centers;   // medial vertices
-  std::vector<double> radii;    // distance to the forming points
-  Rows forming_points;          // of each vertex, ascending; four, or more where vertices were coalesced
-  Rows neighbors;               // vertices joined by a Voronoi edge, ascending; symmetric
+  std::vector<Point> centers;  // medial vertices
+  std::vector<double> radii;   // distance to the forming points
+  Rows forming_points;         // of each vertex, ascending; four, or more where vertices were coalesced
+  Rows neighbors;              // vertices joined by a Voronoi edge, ascending; symmetric
 
   // Faces to draw: polygons of the dual of two points, all of whose corners are vertices of the axis, and whose points
   // do not share a triangle or an edge of the surface.
   std::vector<std::array<Index, 2>> face_points;
-  Rows faces;                   // vertices in order around each face
+  Rows faces;  // vertices in order around each face
 
   Index size() const { return static_cast<Index>(centers.size()); }
 };

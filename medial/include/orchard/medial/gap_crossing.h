@@ -13,18 +13,21 @@ namespace orchard {
 enum class GapDefinition : std::uint8_t {
   connected,  // where the cell's own part of the surface joins it to the cell's point: needs no scale, and suits
               // polyhedra and scans alike
-  loose,      // on clusters that hold the cell's point or adjoin one that does (dissertation 6.2.4). Blind to gaps between
-              // clusters that adjoin the same third; flags nearly everything on scans, where each triangle is a cluster
-  strict,     // on clusters that hold the cell's point
+  loose,   // on clusters that hold the cell's point or adjoin one that does (dissertation 6.2.4). Blind to gaps between
+           // clusters that adjoin the same third; flags nearly everything on scans, where each triangle is a cluster
+  strict,  // on clusters that hold the cell's point
 };
 
 struct RepairOptions {
-  int max_passes = 20;         // a bounce between the sides of a V or U ends here at the latest
-  double joined_radius = 0;    // a crossing is harmless, too, if the crossed triangle is joined to both points' triangles
-                               // within the surface inside the ball around the points' middle of this many times their
-                               // distance: 0 mends every crossing, 2 leaves small folds as they are
+  // A bounce between the sides of a V or U ends here at the latest.
+  int max_passes = 20;
+  // A crossing is harmless, too, if the crossed triangle is joined to both points' triangles within the surface, inside
+  // the ball around the points' middle of this many times their distance. 0 mends every crossing; 2 leaves small folds.
+  double joined_radius = 0;
   GapDefinition definition = GapDefinition::connected;
-  bool mend_necks = true;      // where a cell takes in a whole ring of a part thinner than the points' spacing
+  // Also where a cell takes in a whole ring of a part thinner than the points' spacing. Only with the connected
+  // definition and joined_radius 0: harmless crossings look like necks.
+  bool mend_necks = true;
 };
 
 struct RepairPass {
@@ -44,10 +47,10 @@ struct Repaired {
   RepairReport report;
 };
 
-// Dissertation 6.2.4: finds faces of Voronoi cells that cross the surface where they should not, and adds surface points
-// that cut the crossing off, until none is left or max_passes are done. With the default definition, a result without
-// crossings has one disk of surface for each cell, one arc for each two neighbours and one point for each three, so that
-// the Voronoi edges that stay inside hang together as the solid does (Edelsbrunner and Shah 1997).
+// Dissertation 6.2.4: finds faces of Voronoi cells that cross the surface where they should not, and adds surface
+// points that cut the crossing off, until none is left or max_passes are done. With the default definition, a result
+// without crossings has one disk of surface for each cell, one arc for each two neighbours and one point for each
+// three, so that the Voronoi edges that stay inside hang together as the solid does (Edelsbrunner and Shah 1997).
 // Preconditions: diagram.points equals sampling.points, highest_first_voronoi made it. Throws InputError unless
 // surface.solid(). O(n) per pass for all but pathological inputs; parallel, the same for any thread count.
 Repaired repair_gap_crossings(const Surface& surface, SurfaceSampling sampling, VoronoiDiagram diagram,

@@ -1,0 +1,250 @@
+#include "orchard/medial/gap_crossing.h"
+
+#include <tbb/global_control.h>
+
+#include <filesystem>
+#include <string>
+
+#include "orchard/geometry/mesh_io.h"
+#include "orchard/voronoi/highest_first.h"
+#include "outlines.h"
+#include "support.h"
+#include "support/shapes.h"
+
+namespace orchard {
+namespace {
+
+Repaired sampled_and_repaired(const Surface& surface, const SamplingOptions& sampling,
+                              const RepairOptions& options = {}) {
+  SurfaceSampling points = sample_surface(surface, sampling);
+  VoronoiDiagram diagram = highest_first_voronoi(points.points);
+  return repair_gap_crossings(surface, std::move(points), std::move(diagram), options);
+}
+
+// What every repair has to achieve: no crossing left, the axis in as many pieces as the solid and inside it.
+void expect_mended(const Surface& surface, const Repaired& repaired) {
+  validate(repaired.sampling, surface);
+  validate(repaired.diagram);
+  EXPECT_EQ(repaired.report.faces_still_crossing, 0u);
+  EXPECT_EQ(repaired.sampling.points.size(), repaired.diagram.points.size());
+  const MedialAxis axis = medial_axis(surface, repaired.sampling, repaired.diagram);
+  validate(axis, surface);
+  EXPECT_EQ(test::count_components(axis), surface.report().components);
+  EXPECT_LT(test::farthest_outside(surface, axis), 1e-6);
+}
+
+struct Case {
+  std::string name;
+  TriangleMesh mesh;
+  SamplingOptions sampling;
+  double most_added;  // fraction of the points
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
+
+class GapCrossing : public testing::TestWithParam<Case> {};
+
+TEST_P(GapCrossing, IsMendedWithFewPoints) {
+  const Case& c = GetParam();
+  const Surface surface(c.mesh);
+  ASSERT_TRUE(surface.solid()) << surface.report().faults();
+  const Repaired repaired = sampled_and_repaired(surface, c.sampling);
+  EXPECT_GT(repaired.report.passes.front().faces_crossing, 0u) << "the case shows no fault to mend";
+  EXPECT_GT(repaired.report.points_added, 0u);
+  EXPECT_LT(repaired.report.points_added, c.most_added * (repaired.sampling.size() - repaired.report.points_added));
+  expect_mended(surface, repaired);
+}
+
+SamplingOptions points(Index face, Index edge) { return {.face_points = face, .edge_points = edge}; }
+
+std::vector<Case> cases() {
+  using namespace test;
+  return {
+      {"Fig_6_14_ThinBridge", extruded(thin_bridge(0.06), 1), points(700, 250), 0.5},
+      {"Fig_6_14_VeryThinBridge", extruded(thin_bridge(0.004), 1), points(700, 250), 0.5},
+      {"Fig_6_15_Knees", extruded(knees(0.05), 1), points(700, 150), 0.25},
+      {"Fig_6_18_ShortShelf", extruded(short_shelf(0.05), 1), points(500, 150), 0.25},
+      {"Fig_6_19_TwoTeeth", extruded(two_teeth(0.04), 1), points(1000, 200), 0.25},
+      {"Fig_6_21_VNotch", extruded(v_notch(0.15), 1), points(700, 150), 0.25},
+      {"Fig_6_22_UNotch", extruded(u_notch(0.05), 1), points(700, 150), 0.25},
+      {"UShape", u_shape(0.02), points(800, 200), 0.3},
+      {"TwoBoxes", two_boxes(0.01), points(600, 200), 0.5},
+      {"TwoBoxesHairApart", two_boxes(1e-4), points(600, 200), 0.5},
+      {"FarFromTheOrigin", transformed(u_shape(0.02), 1, {1e6, -1e6, 1e6}), points(800, 200), 0.3},
+      {"Tiny", transformed(u_shape(0.02), 1e-6, {0, 0, 0}), points(800, 200), 0.3},
+  };
+}
+
+INSTANTIATE_TEST_SUITE_P(Figures, GapCrossing, testing::ValuesIn(cases()),
+                         [](const auto& named) { return named.param.name; });
+
+TEST(GapRepair, AddsNothingToSolidsThatNeedNothing) {
+  for (TriangleMesh mesh : {test::box({0, 0, 0}, {1, 2, 3}), test::icosphere(3), test::torus(48, 24)}) {
+    const Surface surface(std::move(mesh));
+    const Repaired repaired = sampled_and_repaired(surface, points(1500, 300));
+    EXPECT_EQ(repaired.report.points_added, 0u);
+    EXPECT_EQ(repaired.report.passes.size(), 1u);
+    expect_mended(surface, repaired);
+  }
+}
+
+TEST(GapRepair, FindsAComponentThatNoPointLiesOn) {
+  TriangleMesh mesh = test::box({0, 0, 0}, {1, 1, 1});
+  const TriangleMesh speck = test::box({1.5, 0.5, 0.5}, {1.52, 0.52, 0.52});
+  for (const auto& [a, b, c] : speck.triangles) mesh.triangles.push_back({a + 8, b + 8, c + 8});
+  mesh.vertices.insert(mesh.vertices.end(), speck.vertices.begin(), speck.vertices.end());
+  const Surface surface(std::move(mesh));
+  SurfaceSampling sampling = sample_surface(surface, points(500, 100)), kept;
+  for (Index i = 0; i < sampling.size(); ++i) {
+    if (sampling.points[i].x() > 1.2) continue;
+    kept.points.push_back(sampling.points[i]);
+    kept.triangles.push_back(sampling.triangles[i]);
+    kept.features.push_back(sampling.features[i]);
+    kept.origins.push_back(sampling.origins[i]);
+  }
+  VoronoiDiagram diagram = highest_first_voronoi(kept.points);
+  const Repaired repaired = repair_gap_crossings(surface, std::move(kept), std::move(diagram));
+  EXPECT_GE(repaired.report.points_added, 4u);
+  expect_mended(surface, repaired);
+}
+
+TEST(GapRepair, KeepsTheGivenPointsAndMarksItsOwn) {
+  const Surface surface(test::u_shape(0.02));
+  const SurfaceSampling before = sample_surface(surface, points(800, 200));
+  const Repaired repaired = repair_gap_crossings(surface, before, highest_first_voronoi(before.points));
+  const SurfaceSampling& after = repaired.sampling;
+  ASSERT_EQ(after.size(), before.size() + repaired.report.points_added);
+  for (Index i = 0; i < after.size(); ++i) {
+    if (i < before.size()) {
+      EXPECT_EQ(after.points[i], before.points[i]);
+      EXPECT_EQ(after.origins[i], before.origins[i]);
+    } else {
+      EXPECT_EQ(after.origins[i], PointOrigin::repair);
+    }
+    EXPECT_EQ(after.points[i], repaired.diagram.points[i]);
+  }
+}
+
+TEST(GapRepair, ReportsWhatItDidInEachPass) {
+  const Surface surface(test::u_shape(0.02));
+  const Repaired repaired = sampled_and_repaired(surface, points(800, 200));
+  Index added = 0;
+  for (const RepairPass& pass : repaired.report.passes) {
+    EXPECT_LE(pass.faces_crossing, pass.faces_tested);
+    added += pass.added_by_projection + pass.added_by_snapping + pass.added_at_necks;
+  }
+  EXPECT_EQ(added, repaired.report.points_added);
+  EXPECT_EQ(repaired.report.passes.back().faces_crossing, 0u);
+}
+
+TEST(GapRepair, StopsAfterTheGivenPassesAndCountsWhatIsLeft) {
+  const Surface surface(test::u_shape(0.02));
+  const Repaired untouched = sampled_and_repaired(surface, points(800, 200), {.max_passes = 0});
+  EXPECT_EQ(untouched.report.points_added, 0u);
+  EXPECT_GT(untouched.report.faces_still_crossing, 0u);
+  const Repaired once = sampled_and_repaired(surface, points(800, 200), {.max_passes = 1});
+  EXPECT_EQ(once.report.passes.size(), 1u);
+  EXPECT_LT(once.report.faces_still_crossing, untouched.report.faces_still_crossing);
+}
+
+TEST(GapRepair, LeavesNothingUnderTheLooseDefinitionOfTheDissertation) {
+  const Surface surface(test::extruded(test::knees(0.05), 1));
+  const Repaired repaired = sampled_and_repaired(surface, points(700, 150), {.definition = GapDefinition::loose});
+  EXPECT_GT(repaired.report.points_added, 0u);
+  EXPECT_EQ(repaired.report.faces_still_crossing, 0u);
+}
+
+TEST(GapRepair, EndsUnderTheStrictDefinitionThoughAVBouncesForEver) {
+  const Surface surface(test::extruded(test::knees(0.05), 1));
+  const RepairOptions strict{.max_passes = 6, .definition = GapDefinition::strict};
+  const Repaired repaired = sampled_and_repaired(surface, points(700, 150), strict);
+  EXPECT_LE(repaired.report.passes.size(), 6u);
+  EXPECT_LT(repaired.report.faces_still_crossing, repaired.report.passes.front().faces_crossing);
+}
+
+TEST(GapRepair, StrictFlagsAllThatLooseFlags) {
+  const Surface surface(test::extruded(test::knees(0.05), 1));
+  std::vector<Index> crossing;
+  for (const GapDefinition definition : {GapDefinition::strict, GapDefinition::loose}) {
+    const Repaired repaired =
+        sampled_and_repaired(surface, points(700, 150), {.max_passes = 0, .definition = definition});
+    crossing.push_back(repaired.report.faces_still_crossing);
+  }
+  EXPECT_GE(crossing[0], crossing[1]);
+  EXPECT_GT(crossing[1], 0u);
+}
+
+TEST(GapRepair, ForgivesSmallFoldsWithinTheJoinedRadius) {
+  const Surface surface(test::extruded(test::v_notch(0.15), 1));
+  Index last = kNone;
+  for (const double radius : {0.0, 1.0, 4.0, 1000.0}) {
+    const Repaired repaired = sampled_and_repaired(surface, points(700, 150),
+                                                   {.max_passes = 0, .joined_radius = radius, .mend_necks = false});
+    EXPECT_LE(repaired.report.faces_still_crossing, last);
+    last = repaired.report.faces_still_crossing;
+  }
+  EXPECT_EQ(last, 0u) << "the solid is connected";
+}
+
+TEST(GapRepair, GivesTheSameBytesOnAnyNumberOfThreads) {
+  const Surface surface(test::extruded(test::thin_bridge(0.06), 1));
+  std::vector<Repaired> results;
+  for (const std::size_t threads : {1u, 2u, 7u}) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    results.push_back(sampled_and_repaired(surface, points(700, 250)));
+  }
+  for (std::size_t k = 1; k < results.size(); ++k) {
+    EXPECT_EQ(results[k].sampling.points, results[0].sampling.points);
+    EXPECT_EQ(results[k].sampling.triangles, results[0].sampling.triangles);
+  }
+}
+
+TEST(GapRepair, ScalesWithTheSolidByPowersOfTwo) {
+  const TriangleMesh mesh = test::extruded(test::knees(0.05), 1);
+  const Surface surface(mesh), large(test::transformed(mesh, 8, Vector::Zero()));
+  const Repaired a = sampled_and_repaired(surface, points(500, 100));
+  const Repaired b = sampled_and_repaired(large, points(500, 100));
+  ASSERT_EQ(a.sampling.size(), b.sampling.size());
+  for (Index i = 0; i < a.sampling.size(); ++i) EXPECT_EQ(8 * a.sampling.points[i], b.sampling.points[i]);
+}
+
+TEST(GapRepair, RefusesWhatIsNoSolid) {
+  const Surface surface(test::open_box());
+  EXPECT_THROW(repair_gap_crossings(surface, {}, {}), InputError);
+}
+
+TEST(GapRepair, StopsWhenTheCallerSaysSo) {
+  const Surface surface(test::u_shape(0.02));
+  SurfaceSampling sampling = sample_surface(surface, points(200, 50));
+  VoronoiDiagram diagram = highest_first_voronoi(sampling.points);
+  EXPECT_THROW(repair_gap_crossings(surface, std::move(sampling), std::move(diagram), {},
+                                    [](std::string_view, double) { return false; }),
+               Cancelled);
+}
+
+TEST(GapRepair, MendsTheBundledModels) {
+  for (const char* name : {"faucet", "lamp", "ship"}) {
+    const std::filesystem::path file = std::filesystem::path(ORCHARD_DATA_DIR) / (std::string(name) + ".obj");
+    if (!std::filesystem::exists(file)) continue;
+    SCOPED_TRACE(name);
+    const Surface surface(read_mesh(file));
+    const Repaired repaired = sampled_and_repaired(surface, points(4000, 1000));
+    EXPECT_LT(4 * repaired.report.points_added, repaired.sampling.size() - repaired.report.points_added);
+    expect_mended(surface, repaired);
+  }
+}
+
+TEST(GapRepair, MendsScansAndMachineParts) {
+  for (const char* name : {"clean/spot.obj", "clean/fandisk.obj", "robot/link1.obj", "peer/bunny-1500.obj"}) {
+    const std::filesystem::path file = std::filesystem::path(ORCHARD_SHARED_MODELS) / name;
+    if (!std::filesystem::exists(file)) continue;
+    SCOPED_TRACE(name);
+    const Surface surface(read_mesh(file));
+    const Repaired repaired = sampled_and_repaired(surface, points(1000, 200));
+    EXPECT_LT(4 * repaired.report.points_added, repaired.sampling.size());
+    expect_mended(surface, repaired);
+  }
+}
+
+}  // namespace
+}  // namespace orchard
