@@ -35,7 +35,6 @@ class LineScanner {
     return false;
   }
   std::size_t start() const { return start_; }
-  std::size_t after() const { return std::min(next_, bytes_.size()); }
   std::size_t left() const { return bytes_.size() - start_; }
   [[noreturn]] void fail(const std::string& fault) const { fail_at_line(name_, bytes_, start_, fault); }
 
@@ -59,10 +58,14 @@ class LineScanner {
     skip_blanks();
     return static_cast<std::uint64_t>(value);
   }
-  void require_point(const std::string& what) {
-    for (int i = 0; i < 3; ++i) {
-      if (!number()) fail(what + " needs three finite numbers");
+  std::array<double, 3> point() {
+    std::array<double, 3> result;
+    for (double& coordinate : result) {
+      const std::optional<double> value = number();
+      if (!value) fail("vertex needs three finite numbers");
+      coordinate = *value;
     }
+    return result;
   }
 
  private:
@@ -78,6 +81,18 @@ class LineScanner {
   const char* at_ = nullptr;
   const char* end_ = nullptr;
 };
+
+// In the fewest digits that read back as the same number.
+template <typename Number>
+void append_number(std::string& text, Number value) {
+  std::array<char, 32> digits;
+  text.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+}
+
+void append_point(std::string& text, const std::array<double, 3>& point) {
+  for (const double coordinate : point) append_number(text += ' ', coordinate);
+  text += '\n';
+}
 
 constexpr std::size_t kStlHeader = 84, kStlTriangle = 50;
 
@@ -111,16 +126,15 @@ void check_binary_stl(std::string_view bytes, const std::string& name) {
 constexpr std::array<std::string_view, 7> kFacetLines{"facet",  "outer",   "vertex",  "vertex",
                                                       "vertex", "endloop", "endfacet"};
 
-// Returns the text without the names of its solids: CGAL takes the word "solid" in one for a keyword.
+// Returns one solid of nothing but keywords and numbers: CGAL takes keywords for what they are wherever they turn up,
+// in the name of a solid as well.
 std::string check_ascii_stl(std::string_view bytes, const std::string& name) {
-  std::string result;
-  LineScanner line(bytes, 0, 0, name);
-  while (line.next()) {
+  std::string result = "solid\n";
+  bool ended = false;
+  for (LineScanner line(bytes, 0, 0, name); line.next();) {
     const std::string_view keyword = line.word();
-    if (keyword == "solid" || keyword == "endsolid") {
-      (result += keyword) += '\n';
-      continue;
-    }
+    ended = keyword == "endsolid";
+    if (ended || keyword == "solid") continue;
     for (std::size_t i = 0; i < kFacetLines.size(); ++i) {
       if (i > 0 && !line.next()) throw InputError(name + ": the file ends within a facet");
       const std::string_view word = i == 0 ? keyword : line.word();
@@ -128,12 +142,12 @@ std::string check_ascii_stl(std::string_view bytes, const std::string& name) {
         line.fail("expected \"" + std::string(kFacetLines[i]) + "\" instead of " + quoted(word) +
                   " (the facets of STL are triangles)");
       }
-      if (word == "vertex") line.require_point("vertex");
-      result += bytes.substr(line.start(), line.after() - line.start());
+      result += word;
+      word == "vertex" ? append_point(result, line.point()) : result.push_back('\n');
     }
   }
-  if (!result.ends_with("endsolid\n")) throw InputError(name + ": the file ends without \"endsolid\"");
-  return result;
+  if (!ended) throw InputError(name + ": the file ends without \"endsolid\"");
+  return result += "endsolid\n";
 }
 
 }  // namespace
@@ -174,25 +188,26 @@ std::string checked_off(std::string_view bytes, const std::string& name) {
               " faces, but only " + std::to_string(line.left()) + " bytes are left");
   }
   std::string result = "OFF\n" + std::to_string(*vertices) + " " + std::to_string(*faces) + " 0\n";
-  result += bytes.substr(line.after());
-  std::replace(result.begin(), result.end(), '\r', '\n');
   for (std::uint64_t i = 0; i < *vertices; ++i) {
     if (!line.next())
       line.fail("the file ends after " + std::to_string(i) + " of " + std::to_string(*vertices) + " vertices");
-    line.require_point("vertex");
+    append_point(result, line.point());
   }
   for (std::uint64_t i = 0; i < *faces; ++i) {
     if (!line.next())
       line.fail("the file ends after " + std::to_string(i) + " of " + std::to_string(*faces) + " faces");
     const std::optional<std::uint64_t> corners = line.count();
     if (!corners || *corners < 3) line.fail("a face begins with the number of its corners, 3 or more");
+    append_number(result, *corners);
     for (std::uint64_t j = 0; j < *corners; ++j) {
       const std::optional<std::uint64_t> vertex = line.count();
       if (!vertex || *vertex >= *vertices) {
         line.fail("corner " + std::to_string(j + 1) + " of the face is none of the " + std::to_string(*vertices) +
                   " vertices, counted from 0");
       }
+      append_number(result += ' ', *vertex);
     }
+    result += '\n';
   }
   return result;
 }
