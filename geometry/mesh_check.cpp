@@ -4,9 +4,10 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
+#include "area_vector.h"
+#include "disjoint_sets.h"
 #include "half_edge_mesh.h"
 #include "half_edges.h"
 #include "orchard/geometry/error.h"
@@ -14,23 +15,6 @@
 
 namespace orchard {
 namespace {
-
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parents_(count) { std::iota(parents_.begin(), parents_.end(), Index{0}); }
-  Index root(Index item) {
-    while (parents_[item] != item) item = parents_[item] = parents_[parents_[item]];
-    return item;
-  }
-  // The lowest item of a set is its root.
-  void unite(Index a, Index b) {
-    a = root(a), b = root(b);
-    parents_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<Index> parents_;
-};
 
 bool repeats_a_corner(const std::array<Index, 3>& corners) {
   return corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
@@ -104,22 +88,6 @@ std::vector<Index> check_connectivity(const TriangleMesh& mesh, MeshReport& repo
   return component_of;
 }
 
-// Twice the area vector, from the two shortest edges: that is where rounding harms it least. Zero if it is all
-// rounding.
-Vector area_vector(const std::array<Point, 3>& p, double scale) {
-  std::array<Vector, 3> edges;  // opposite the corners
-  std::array<double, 3> lengths{};
-  std::size_t apex = 0;  // opposite the longest edge
-  for (std::size_t i = 0; i < 3; ++i) {
-    edges[i] = (p[(i + 2) % 3] - p[(i + 1) % 3]) * scale;
-    lengths[i] = edges[i].norm();
-    if (lengths[i] > lengths[apex]) apex = i;
-  }
-  const std::size_t b = (apex + 1) % 3, c = (apex + 2) % 3;
-  const Vector cross = edges[b].cross(edges[c]);
-  return cross.norm() <= tolerance::kNoArea * lengths[b] * lengths[c] ? Vector::Zero() : cross;
-}
-
 struct Component {
   Index first_triangle = 0;
   Box box;
@@ -151,9 +119,8 @@ void check_shape(const TriangleMesh& mesh, std::span<const Index> component_of, 
     for (const Index vertex : corners) box.extend(mesh.vertices[vertex]);
   }
   const Point center = box.min() / 2 + box.max() / 2;
-  const double size = (box.max() / 2 - box.min() / 2).maxCoeff();
-  const int exponent = size > 0 ? std::clamp(std::ilogb(size), -1000, 1000) : 0;
-  const double scale = std::ldexp(1.0, -exponent);
+  const double scale = unit_scale(box);
+  const int exponent = -std::ilogb(scale);
   double area = 0, volume = 0;
   std::vector<Component> components;
   std::vector<Index> component_number(mesh.triangles.size(), kNone);  // by first triangle

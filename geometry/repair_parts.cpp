@@ -1,0 +1,94 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "disjoint_sets.h"
+#include "half_edges.h"
+#include "orchard/geometry/surface.h"
+#include "repair_steps.h"
+
+namespace orchard::detail {
+namespace {
+
+struct Part {
+  std::vector<Index> triangles;  // ascending
+  Box box;
+  bool inside_out = false;
+  Index depth = 0;  // in how many others it lies
+
+  void turn(TriangleMesh& mesh) const {
+    for (const Index t : triangles) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+  }
+};
+
+std::vector<Part> parts_of(const TriangleMesh& mesh) {
+  DisjointSets components(mesh.triangles.size());
+  const std::vector<EdgeUse> uses = sorted_edge_uses(mesh);
+  for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
+    for (const EdgeUse& use : edge) components.unite(edge[0].half_edge / 3, use.half_edge / 3);
+  });
+  std::vector<Part> parts;
+  std::vector<Index> number(mesh.triangles.size(), kNone);
+  for (Index t = 0; t < mesh.triangles.size(); ++t) {
+    Index& at = number[components.root(t)];
+    if (at == kNone) {
+      at = static_cast<Index>(parts.size());
+      parts.emplace_back();
+    }
+    parts[at].triangles.push_back(t);
+    for (const Index vertex : mesh.triangles[t]) parts[at].box.extend(mesh.vertices[vertex]);
+  }
+  return parts;
+}
+
+// The part alone, vertices renumbered.
+TriangleMesh extract(const TriangleMesh& mesh, const Part& part) {
+  TriangleMesh alone;
+  std::vector<Index> old;
+  for (const Index t : part.triangles) old.insert(old.end(), mesh.triangles[t].begin(), mesh.triangles[t].end());
+  std::sort(old.begin(), old.end());
+  old.erase(std::unique(old.begin(), old.end()), old.end());
+  for (const Index vertex : old) alone.vertices.push_back(mesh.vertices[vertex]);
+  const auto renumbered = [&](Index vertex) {
+    return static_cast<Index>(std::lower_bound(old.begin(), old.end(), vertex) - old.begin());
+  };
+  for (const Index t : part.triangles) {
+    const auto& [i, j, k] = mesh.triangles[t];
+    alone.triangles.push_back({renumbered(i), renumbered(j), renumbered(k)});
+  }
+  return alone;
+}
+
+// Every vertex of `inner` is strictly inside. Parts that poke out of each other are no cavities.
+bool holds(const Surface& outer, const TriangleMesh& mesh, const Part& inner) {
+  return std::ranges::all_of(inner.triangles, [&](Index t) {
+    return std::ranges::all_of(mesh.triangles[t], [&](Index vertex) { return outer.inside(mesh.vertices[vertex]); });
+  });
+}
+
+}  // namespace
+
+void orient_parts(TriangleMesh& mesh, MeshRepairReport& report) {
+  std::vector<Part> parts = parts_of(mesh);
+  for (Part& part : parts) {
+    part.inside_out = check_mesh(extract(mesh, part)).volume < 0;
+    if (part.inside_out) part.turn(mesh);
+  }
+  for (const Part& outer : parts) {
+    std::unique_ptr<Surface> surface;
+    for (Part& inner : parts) {
+      if (&inner == &outer || !outer.box.contains(inner.box)) continue;
+      if (!surface) surface = std::make_unique<Surface>(extract(mesh, outer));
+      if (!surface->solid()) break;
+      inner.depth += holds(*surface, mesh, inner) ? 1 : 0;
+    }
+  }
+  for (const Part& part : parts) {
+    const bool cavity = part.depth % 2 == 1;
+    if (cavity) part.turn(mesh);
+    if (cavity && !part.inside_out) ++report.cavities_turned_inward;
+    if (!cavity && part.inside_out) ++report.parts_turned_outward;
+  }
+}
+
+}  // namespace orchard::detail
