@@ -1,7 +1,7 @@
 #pragma once
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,7 +10,11 @@
 
 namespace orchard::detail {
 
-using Cell = std::array<std::int32_t, 3>;
+struct Cell {
+  std::int32_t x = 0, y = 0, z = 0;
+  friend bool operator==(const Cell&, const Cell&) = default;
+  friend auto operator<=>(const Cell&, const Cell&) = default;
+};
 
 // A grid of cubes (squares, for points with z = 0) that stores only what is occupied: Turk's spatial hash. Items of a
 // cell are visited in ascending order, so sums over them do not depend on the hash.
@@ -67,7 +71,7 @@ class CellHash {
     const int depth = dimension == 3 ? 1 : 0;
     for (int z = -depth; z <= depth; ++z)
       for (int y = -1; y <= 1; ++y)
-        for (int x = -1; x <= 1; ++x) visit(Cell{cell[0] + x, cell[1] + y, cell[2] + z}, visit_item);
+        for (int x = -1; x <= 1; ++x) visit(Cell{cell.x + x, cell.y + y, cell.z + z}, visit_item);
   }
 
  private:
@@ -75,7 +79,7 @@ class CellHash {
   std::size_t bucket_of(const Cell& cell) const {
     const auto word = [](std::int32_t i) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(i)); };
     std::uint64_t h =
-        word(cell[0]) * 0x9e3779b97f4a7c15u ^ word(cell[1]) * 0xc2b2ae3d27d4eb4fu ^ word(cell[2]) * 0x165667b19e3779f9u;
+        word(cell.x) * 0x9e3779b97f4a7c15u ^ word(cell.y) * 0xc2b2ae3d27d4eb4fu ^ word(cell.z) * 0x165667b19e3779f9u;
     h ^= h >> 32;
     return static_cast<std::size_t>(h) & mask_;
   }

@@ -38,14 +38,14 @@ class ClusterRelaxation {
     collect_edges();
   }
 
-  void iterate(std::vector<SurfacePoint>& points) {
+  void iterate(std::vector<SurfacePoint>& points, double step_size) {
     positions_.resize(members_.size());
     cells_.resize(members_.size());
     const CellHash grid = sort_points(points);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, members_.size(), kRelaxationGrain), [&](const auto& range) {
       const SurfaceWalker walker(surface_);
       for (std::size_t i = range.begin(); i < range.end(); ++i) {
-        const Point2 step = bounded(kRelaxationStep * spacing_ * force(i, grid));
+        const Point2 step = bounded(step_size * spacing_ * force(i, grid));
         walker.walk(points[members_[i]], step.x() * u_ + step.y() * v_,
                     [&](Index, Index to) { return clusters_.of_triangle[to] == cluster_; });
       }
@@ -169,7 +169,8 @@ void relax_in_clusters(const Surface& surface, const Clusters& clusters, double 
     if (!members[c].empty()) relaxations.emplace_back(surface, clusters, c, std::move(members[c]), line_density, push);
   for (int k = 0; k < iterations; ++k) {
     report_progress(progress, "relaxing surface points", static_cast<double>(k) / iterations);
-    tbb::parallel_for(std::size_t{0}, relaxations.size(), [&](std::size_t c) { relaxations[c].iterate(points); });
+    tbb::parallel_for(std::size_t{0}, relaxations.size(),
+                      [&](std::size_t c) { relaxations[c].iterate(points, relaxation_step(k, iterations)); });
   }
 }
 

@@ -38,7 +38,7 @@ class NeighborRelaxation {
     collect_edges();
   }
 
-  void iterate(std::vector<SurfacePoint>& points) {
+  void iterate(std::vector<SurfacePoint>& points, double step_size) {
     CellHash grid = make_grid();
     parallel_over_points([&](std::size_t i) {
       positions_[i] = position(surface_, points[i]);
@@ -50,12 +50,13 @@ class NeighborRelaxation {
     const std::vector<Index> runs = grid.runs();
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, runs.size() - 1, kRelaxationGrain / 4),
                       [&](const auto& range) {
-                        std::vector<Index> around;
+                        std::vector<Index> around, near;
                         for (std::size_t run = range.begin(); run < range.end(); ++run) {
                           around.clear();
                           grid.visit_block(grid.entry(runs[run]).cell, 3, [&](Index j) { around.push_back(j); });
                           for (Index e = runs[run]; e < runs[run + 1]; ++e)
-                            if (const Index i = grid.entry(e).item; i < count_) move(points[i], i, around);
+                            if (const Index i = grid.entry(e).item; i < count_)
+                              move(points[i], i, around, near, step_size);
                         }
                       });
   }
@@ -100,9 +101,9 @@ class NeighborRelaxation {
       const Vector margin = Vector::Constant(radius_);
       const Cell low = edge_grid_.cell_of(from.cwiseMin(to) - margin);
       const Cell high = edge_grid_.cell_of(from.cwiseMax(to) + margin);
-      for (int z = low[2]; z <= high[2]; ++z)
-        for (int y = low[1]; y <= high[1]; ++y)
-          for (int x = low[0]; x <= high[0]; ++x) own.push_back({x, y, z});
+      for (int z = low.z; z <= high.z; ++z)
+        for (int y = low.y; y <= high.y; ++y)
+          for (int x = low.x; x <= high.x; ++x) own.push_back({x, y, z});
     }
     std::sort(own.begin(), own.end());
     own.erase(std::unique(own.begin(), own.end()), own.end());
@@ -110,49 +111,68 @@ class NeighborRelaxation {
     edge_in_cell_.insert(edge_in_cell_.end(), own.size(), static_cast<Index>(edges_.size() - 1));
   }
 
-  void move(SurfacePoint& point, Index i, std::span<const Index> around) const {
-    Vector step = kRelaxationStep * spacing_ * force(i, around);
+  void move(SurfacePoint& point, Index i, std::span<const Index> around, std::vector<Index>& near,
+            double step_size) const {
+    Vector step = step_size * spacing_ * force(i, around, near);
     const double length = step.norm(), longest = kLongestStep * spacing_;
     if (length > longest) step *= longest / length;
     SurfaceWalker(surface_).walk(point, step, [](Index, Index) { return true; });
   }
 
-  Vector force(Index i, std::span<const Index> around) const {
+  Vector force(Index i, std::span<const Index> around, std::vector<Index>& near) const {
     const Point& p = positions_[i];
-    Vector sum = Vector::Zero();
+    // Collected without a branch: whether a point is near cannot be predicted, and that costs more than the test.
+    near.resize(around.size());
+    std::size_t count = 0;
     for (const Index j : around) {
-      const Vector away = p - positions_[j];
-      const double squared = away.squaredNorm();
-      if (squared < radius_ * radius_ && squared > 0) sum += repulsion(i, j, away, std::sqrt(squared));
+      const double squared = (p - positions_[j]).squaredNorm();
+      near[count] = j;
+      count += static_cast<std::size_t>(squared < radius_ * radius_) & static_cast<std::size_t>(squared > 0);
     }
+    const Plane plane = plane_of(triangles_[i]);
+    Vector sum = Vector::Zero();
+    for (std::size_t k = 0; k < count; ++k) sum += repulsion(p, plane, near[k]);
     edge_grid_.visit(cells_[i], [&](Index entry) { sum += push(edges_[edge_in_cell_[entry]], p, normals_[i]); });
     return sum;
   }
 
-  // In the plane of point i.
-  Vector repulsion(Index i, Index j, const Vector& away, double distance) const {
-    if (triangles_[j] == triangles_[i]) return (1 / distance - 1 / radius_) * away;
-    if (triangles_[j] != kNone) {
-      const auto& neighbors = surface_.neighbors(triangles_[i]);
-      for (std::size_t edge = 0; edge < 3; ++edge)
-        if (neighbors[edge] == triangles_[j]) return repulsion_across(i, j, edge);
+  // The plane of a triangle, with what it takes to turn its neighbours into it.
+  struct Plane {
+    Index triangle;
+    const Vector& normal;
+    const std::array<Index, 3>& neighbors;
+    std::array<Point, 3> corners;
+    std::array<Vector, 3> along, outward;  // of the edges, unit
+  };
+  Plane plane_of(Index triangle) const {
+    Plane plane{triangle, surface_.normal(triangle), surface_.neighbors(triangle), surface_.corners(triangle), {}, {}};
+    for (std::size_t i = 0; i < 3; ++i) {
+      plane.along[i] = (plane.corners[(i + 1) % 3] - plane.corners[i]).normalized();
+      plane.outward[i] = plane.along[i].cross(plane.normal);
     }
-    const Vector& normal = normals_[i];
-    if (normal.dot(normals_[j]) < kFacesAway) return Vector::Zero();
-    const Vector flat = away - away.dot(normal) * normal;
-    const double length = flat.norm();
-    return length > 0 ? Vector(((1 - distance / radius_) / length) * flat) : Vector::Zero();
+    return plane;
   }
-  Vector repulsion_across(Index i, Index j, std::size_t edge) const {
-    const auto p = surface_.corners(triangles_[i]);
-    const Vector along = (p[(edge + 1) % 3] - p[edge]).normalized();
-    const Vector outward = along.cross(normals_[i]);
-    const Vector seen = positions_[j] - p[edge];
-    const double on = seen.dot(along);
-    const Point turned = p[edge] + on * along + (seen - on * along).norm() * outward;
-    const Vector away = positions_[i] - turned;
+
+  // On a point at p, from point j in range, in the plane.
+  Vector repulsion(const Point& p, const Plane& plane, Index j) const {
+    const Vector away = p - positions_[j];
+    const Index triangle = triangles_[j];
+    if (triangle == plane.triangle) return repulsion(away);
+    if (triangle != kNone)
+      for (std::size_t edge = 0; edge < 3; ++edge)
+        if (plane.neighbors[edge] == triangle) return repulsion(p - turned(positions_[j], plane, edge));
+    if (plane.normal.dot(normals_[j]) < kFacesAway) return Vector::Zero();
+    const Vector flat = away - away.dot(plane.normal) * plane.normal;
+    const double length = flat.norm();
+    return length > 0 ? Vector(((1 - away.norm() / radius_) / length) * flat) : Vector::Zero();
+  }
+  Vector repulsion(const Vector& away) const {
     const double distance = away.norm();
     return distance > 0 && distance < radius_ ? Vector((1 / distance - 1 / radius_) * away) : Vector::Zero();
+  }
+  static Point turned(const Point& q, const Plane& plane, std::size_t edge) {
+    const Vector seen = q - plane.corners[edge], on = seen.dot(plane.along[edge]) * plane.along[edge];
+    return plane.corners[edge] + on + (seen - on).norm() * plane.outward[edge];
   }
   Vector push(const Edge& edge, const Point& p, const Vector& normal) const {
     const double on = (p - edge.start).dot(edge.along);
@@ -187,7 +207,7 @@ void relax_by_neighbors(const Surface& surface, const FixedPoints& fixed, int it
   NeighborRelaxation relaxation(surface, fixed, points.size());
   for (int k = 0; k < iterations; ++k) {
     report_progress(progress, "relaxing surface points", static_cast<double>(k) / iterations);
-    relaxation.iterate(points);
+    relaxation.iterate(points, relaxation_step(k, iterations));
   }
 }
 

@@ -35,6 +35,8 @@ std::vector<NamedMesh> meshes() {
             {{0, 1, 2}, {0, 1, 3}, {4, 4, 4}, {1, 2, 0}, {1, 5, 0}, {1, 2, 4}}}}};
 }
 
+constexpr Relaxation kBoth[] = {Relaxation::clusters, Relaxation::neighbors};
+
 bool same_bytes(const SurfaceSampling& a, const SurfaceSampling& b) {
   return a.points.size() == b.points.size() &&
          std::memcmp(a.points.data(), b.points.data(), a.points.size() * sizeof(Point)) == 0 &&
@@ -44,14 +46,18 @@ bool same_bytes(const SurfaceSampling& a, const SurfaceSampling& b) {
 TEST(Sampling, PutsEveryPointOnItsTriangleAndFeature) {
   for (const auto& [name, mesh] : meshes()) {
     const Surface surface(mesh);
-    const SurfaceSampling sampling = sample_surface(surface, {.face_points = 500, .edge_points = 200});
-    EXPECT_NO_THROW(validate(sampling, surface)) << name;
-    EXPECT_GE(sampling.size(), 450u) << name;
-    for (Index i = 0; i < sampling.size(); ++i) {
-      const auto [a, b, c] = surface.corners(sampling.triangles[i]);
-      EXPECT_EQ(closest_point_of_triangle(sampling.points[i], a, b, c).feature, sampling.features[i]) << name;
-      if (sampling.origins[i] == PointOrigin::edge) {
-        EXPECT_NE(sampling.features[i], Feature::face) << name;
+    for (const Relaxation relaxation : kBoth) {
+      const SurfaceSampling sampling =
+          sample_surface(surface, {.face_points = 500, .edge_points = 200, .relaxation = relaxation});
+      EXPECT_NO_THROW(validate(sampling, surface)) << name;
+      EXPECT_GE(sampling.size(), 450u) << name;
+      EXPECT_LE(sampling.size(), 700u) << name;
+      for (Index i = 0; i < sampling.size(); ++i) {
+        const auto [a, b, c] = surface.corners(sampling.triangles[i]);
+        EXPECT_EQ(closest_point_of_triangle(sampling.points[i], a, b, c).feature, sampling.features[i]) << name;
+        if (sampling.origins[i] == PointOrigin::edge) {
+          EXPECT_NE(sampling.features[i], Feature::face) << name;
+        }
       }
     }
   }
@@ -83,28 +89,32 @@ TEST(Sampling, DropsPointsThatCoincide) {
 TEST(Sampling, GivesTheSameBytesForAnyThreadCount) {
   for (const auto& [name, mesh] : meshes()) {
     const Surface surface(mesh);
-    const SamplingOptions options{.face_points = 700, .edge_points = 100};
-    std::vector<SurfaceSampling> results;
-    for (const std::size_t threads : {1u, 2u, 7u}) {
-      const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-      results.push_back(sample_surface(surface, options));
+    for (const Relaxation relaxation : kBoth) {
+      const SamplingOptions options{.face_points = 600, .edge_points = 100, .iterations = 4, .relaxation = relaxation};
+      std::vector<SurfaceSampling> results;
+      for (const std::size_t threads : {1u, 2u, 7u}) {
+        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+        results.push_back(sample_surface(surface, options));
+      }
+      EXPECT_TRUE(same_bytes(results[0], results[1])) << name;
+      EXPECT_TRUE(same_bytes(results[0], results[2])) << name;
+      SamplingOptions other = options;
+      other.seed = 2;
+      EXPECT_FALSE(same_bytes(results[0], sample_surface(surface, other))) << name;
     }
-    EXPECT_TRUE(same_bytes(results[0], results[1])) << name;
-    EXPECT_TRUE(same_bytes(results[0], results[2])) << name;
-    SamplingOptions other = options;
-    other.seed = 2;
-    EXPECT_FALSE(same_bytes(results[0], sample_surface(surface, other))) << name;
   }
 }
 
 TEST(Sampling, ScalesExactlyByPowersOfTwo) {
   for (const auto& [name, mesh] : meshes()) {
     const double scale = std::ldexp(1.0, -20);
-    const SamplingOptions options{.face_points = 200, .edge_points = 50};
-    const SurfaceSampling one = sample_surface(Surface(mesh), options);
-    SurfaceSampling other = sample_surface(Surface(test::transformed(mesh, scale, Vector::Zero())), options);
-    for (Point& p : other.points) p /= scale;
-    EXPECT_TRUE(same_bytes(one, other)) << name;
+    const Surface surface(mesh), scaled(test::transformed(mesh, scale, Vector::Zero()));
+    for (const Relaxation relaxation : kBoth) {
+      const SamplingOptions options{.face_points = 200, .edge_points = 50, .iterations = 5, .relaxation = relaxation};
+      SurfaceSampling other = sample_surface(scaled, options);
+      for (Point& p : other.points) p /= scale;
+      EXPECT_TRUE(same_bytes(sample_surface(surface, options), other)) << name;
+    }
   }
 }
 
@@ -153,6 +163,131 @@ TEST(Sampling, SpacesEdgePointsEvenlyAndOffTheCorners) {
   }
 }
 
+// Whatever is in the way of comparing with the best possible is far below what these bounds tell apart: a random spread
+// has a variation of 0.52, and a good one of 0.05 to 0.1.
+TEST(Sampling, RelaxationInsideClustersEvensOutFlatFaces) {
+  for (const TriangleMesh& mesh :
+       {test::box({0, 0, 0}, {1, 2, 3}), test::l_shape(), test::u_shape(0.2), test::open_box()}) {
+    const Surface surface(mesh);
+    SamplingOptions options{.face_points = 1500, .edge_points = 0, .relaxation = Relaxation::clusters};
+    const Evenness after = evenness(sample_surface(surface, options), surface);
+    options.iterations = 0;
+    const Evenness before = evenness(sample_surface(surface, options), surface);
+    EXPECT_GT(before.variation, 0.45);
+    EXPECT_LT(after.variation, 0.15);
+    EXPECT_GT(after.mean, 1.5 * before.mean);
+    EXPECT_GT(after.least, 0.2);
+  }
+}
+
+TEST(Sampling, RelaxationByNeighborsEvensOutAnySurface) {
+  for (const TriangleMesh& mesh :
+       {test::box({0, 0, 0}, {1, 2, 3}), test::l_shape(), test::open_box(), test::torus(24, 12), test::torus(200, 100),
+        test::icosphere(1), test::icosphere(5)}) {
+    const Surface surface(mesh);
+    SamplingOptions options{.face_points = 1000, .edge_points = 0, .relaxation = Relaxation::neighbors};
+    const Evenness after = evenness(sample_surface(surface, options), surface);
+    options.iterations = 0;
+    const Evenness before = evenness(sample_surface(surface, options), surface);
+    EXPECT_GT(before.variation, 0.3);
+    EXPECT_LT(after.variation, 0.12);
+    EXPECT_GT(after.mean, 1.5 * before.mean);
+    EXPECT_GT(after.least, 0.3);
+  }
+}
+
+TEST(Sampling, RelaxationByNeighborsKeepsTheDensityTheSameEverywhere) {
+  // A sphere in halves, quarters and eighths: as many points on each side of each coordinate plane.
+  const Surface surface(test::icosphere(4));
+  const SurfaceSampling sampling =
+      sample_surface(surface, {.face_points = 4000, .edge_points = 0, .relaxation = Relaxation::neighbors});
+  std::array<int, 8> counts{};
+  for (const Point& p : sampling.points)
+    ++counts[static_cast<std::size_t>((p.x() > 0) + 2 * (p.y() > 0) + 4 * (p.z() > 0))];
+  for (const int count : counts) EXPECT_NEAR(count, 500, 25);
+}
+
+TEST(Sampling, FacePointsKeepAwayFromEdgePoints) {
+  const Surface surface(test::box({0, 0, 0}, {1, 2, 3}));
+  for (const Relaxation relaxation : kBoth) {
+    const SurfaceSampling sampling =
+        sample_surface(surface, {.face_points = 1000, .edge_points = 160, .relaxation = relaxation});
+    EXPECT_GT(std::ranges::count(sampling.origins, PointOrigin::edge), 100);
+    EXPECT_LT(evenness(sampling, surface).variation, 0.15);
+    EXPECT_GT(evenness(sampling, surface).least, 0.25);
+  }
+}
+
+TEST(Sampling, PutsEdgePointsOnCreasesOnlyWhereThereAreNoClusters) {
+  const Surface sphere(test::icosphere(3));
+  const SurfaceSampling smooth =
+      sample_surface(sphere, {.face_points = 300, .edge_points = 100, .relaxation = Relaxation::neighbors});
+  EXPECT_EQ(smooth.size(), 400u);
+  EXPECT_EQ(std::ranges::count(smooth.origins, PointOrigin::edge), 0);
+  const SurfaceSampling creased = sample_surface(
+      sphere, {.face_points = 300, .edge_points = 100, .relaxation = Relaxation::neighbors, .crease_angle = 0.01});
+  EXPECT_GT(std::ranges::count(creased.origins, PointOrigin::edge), 0);
+}
+
+TEST(Sampling, ChoosesTheRelaxationByThePointsPerCluster) {
+  const Surface box(test::box({0, 0, 0}, {1, 2, 3})), sphere(test::icosphere(3));
+  EXPECT_EQ(choose_relaxation(box, {}), Relaxation::clusters);
+  EXPECT_EQ(choose_relaxation(box, {.face_points = 30}), Relaxation::neighbors);
+  EXPECT_EQ(choose_relaxation(sphere, {}), Relaxation::neighbors);
+  EXPECT_EQ(choose_relaxation(sphere, {.face_points = 0}), Relaxation::clusters);
+  EXPECT_EQ(choose_relaxation(sphere, {.cluster_angle = 1}), Relaxation::clusters);
+  EXPECT_EQ(choose_relaxation(box, {.relaxation = Relaxation::neighbors}), Relaxation::neighbors);
+  EXPECT_EQ(choose_relaxation(sphere, {.relaxation = Relaxation::clusters}), Relaxation::clusters);
+}
+
+TEST(Sampling, RelaxesInsideCurvedClusters) {
+  const Surface surface(test::icosphere(4));
+  SamplingOptions options{.face_points = 2000, .edge_points = 0, .cluster_angle = 0.3};
+  const SurfaceSampling sampling = sample_surface(surface, options);
+  EXPECT_NO_THROW(validate(sampling, surface));
+  options.iterations = 0;
+  EXPECT_LT(evenness(sampling, surface).variation, 0.6 * evenness(sample_surface(surface, options), surface).variation);
+}
+
+TEST(Evenness, OfALatticeIsPerfect) {
+  const Surface surface(TriangleMesh{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}});
+  SurfaceSampling lattice;
+  for (int i = 0; i < 8; ++i)
+    for (int j = 0; j < 8; ++j) {
+      lattice.points.emplace_back(0.125 * i, 0.125 * j, 0);
+      lattice.triangles.push_back(i < j ? 1 : 0);
+      lattice.features.push_back(Feature::face);
+      lattice.origins.push_back(PointOrigin::face);
+    }
+  const Evenness even = evenness(lattice, surface);
+  EXPECT_EQ(even.mean, 0.125);
+  EXPECT_EQ(even.least, 1);
+  EXPECT_EQ(even.variation, 0);
+  lattice.points[9].x() += 0.0625;  // now nearer to one of its neighbours, and that one to it
+  EXPECT_LT(evenness(lattice, surface).least, 0.6);
+  EXPECT_GT(evenness(lattice, surface).variation, 0.05);
+}
+
+TEST(Evenness, LooksAtOneSheetOfAThinObjectAtATime) {
+  const Surface surface(test::box({0, 0, 0}, {1, 1, 1e-4}));
+  const SurfaceSampling sampling = sample_surface(surface, {.face_points = 200, .edge_points = 0});
+  EXPECT_GT(evenness(sampling, surface).mean, 0.05);
+}
+
+TEST(Evenness, FindsNeighboursHoweverFar) {
+  const Surface surface(test::box({0, 0, 0}, {1000, 1, 1}));
+  SurfaceSampling pair = sample_surface(surface, {.face_points = 4, .edge_points = 0});
+  for (Index i = 0; i < pair.size(); ++i) {
+    pair.points[i] = surface.corners(0)[0] + Vector(i == 0 ? 0 : 300, 0, 0);
+    pair.triangles[i] = 0;
+    pair.features[i] = Feature::face;
+  }
+  pair.points.resize(2), pair.triangles.resize(2), pair.features.resize(2), pair.origins.resize(2);
+  EXPECT_EQ(evenness(pair, surface).mean, 300);
+  pair.points.resize(1);
+  EXPECT_EQ(evenness(pair, surface).mean, 0);
+}
+
 TEST(Sampling, RefusesFewerThanFourPoints) {
   const Surface surface(test::l_shape());
   EXPECT_THROW((void)sample_surface(surface, {.face_points = 2, .edge_points = 1}), InputError);
@@ -171,8 +306,7 @@ TEST(Sampling, ValidationFindsWhatIsWrong) {
   bad.features.pop_back();
   EXPECT_THROW(validate(bad, surface), Error);
   bad = good;
-  bad.points[7] += Vector(0, 0, 1e-9);
-  bad.points[8] += Vector(1e-9, 1e-9, 0);
+  bad.points[7] += 1e-9 * surface.normal(bad.triangles[7]);
   EXPECT_THROW(validate(bad, surface), Error);
   bad = good;
   bad.triangles[3] = kNone;

@@ -35,7 +35,7 @@ struct SamplingOptions {
   double crease_angle = 0.5;  // radians; where a surface without clusters turns by more is an edge
 };
 
-// Clusters if a random place of the surface lies in a cluster that will get kFewPointsPerCluster face points or more.
+// What `automatic` stands for: clusters if they get 32 face points or more on average, or if there are no face points.
 Relaxation choose_relaxation(const Surface& surface, const SamplingOptions& options);
 
 // Dissertation 6.2.2: area-weighted random points, relaxed, then evenly spaced points on edges.
