@@ -30,6 +30,12 @@ struct CollideCommand {
 };
 void collide(const CollideCommand& command);
 
+struct VerifyCommand {
+  std::filesystem::path tree, mesh;
+  Output output;
+};
+bool verify(const VerifyCommand& command);  // false: something is not proven
+
 struct InspectCommand {
   std::filesystem::path file;
   Output output;

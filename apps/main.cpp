@@ -21,9 +21,11 @@ constexpr int kFailed = 1, kBadInput = 2;
 struct Request {
   BuildCommand build;
   CollideCommand collide;
+  VerifyCommand verify;
   InspectCommand inspect;
   int threads = 0;  // 0: as many as the machine has
   std::function<void()> run;
+  int exit_code = 0;
 };
 
 void add_output_flags(CLI::App& command, Output& output) {
@@ -78,6 +80,21 @@ void add_collide(CLI::App& app, Request& request) {
   command.callback([&request] { request.run = [&request] { orchard::apps::collide(request.collide); }; });
 }
 
+void add_verify(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("verify", "Prove that a tree covers a mesh and that its bounds hold");
+  VerifyCommand& verify = request.verify;
+  command.add_option("tree", verify.tree, "An .orchard file, or an .sph file of any system in the mesh's frame")
+      ->required();
+  command.add_option("mesh", verify.mesh, "The mesh that it was built for")->required();
+  add_output_flags(command, verify.output);
+  command.footer(
+      "Exit code 1 if anything is not proven; each violation is named.\n"
+      "Example:\n  orchard verify out/lamp/lamp.orchard data/lamp.obj");
+  command.callback([&request] {
+    request.run = [&request] { request.exit_code = orchard::apps::verify(request.verify) ? 0 : kFailed; };
+  });
+}
+
 void add_inspect(CLI::App& app, Request& request) {
   CLI::App& command = *app.add_subcommand("inspect", "Say what a mesh or tree file holds and what is wrong with it");
   InspectCommand& inspect = request.inspect;
@@ -92,12 +109,12 @@ int fail(int code, const char* message) {
   return code;
 }
 
-int run(const Request& request) {
+int run(Request& request) {
   std::optional<tbb::global_control> limit;
   if (request.threads > 0)
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(request.threads));
   request.run();
-  return 0;
+  return request.exit_code;
 }
 
 }  // namespace
@@ -110,6 +127,7 @@ int main(int argc, char** argv) {
   Request request;
   add_build(app, request);
   add_collide(app, request);
+  add_verify(app, request);
   add_inspect(app, request);
   try {
     app.parse(argc, argv);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "circle_intervals.h"
 
@@ -254,6 +255,17 @@ class Lemma {
 
 TriangleCover cover_of_triangle(const std::array<Point, 3>& triangle, std::span<const PathBall> balls) {
   return Lemma(triangle, balls).run();
+}
+
+double path_depth(const Point& point, std::span<const PathBall> balls) {
+  std::vector<double> excess(balls.size());
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    excess[i] = (point - balls[i].center).norm() - balls[i].radius;
+    if (balls[i].parent != kNone) excess[i] = std::max(excess[i], excess[balls[i].parent]);
+    if (balls[i].leaf) least = std::min(least, excess[i]);
+  }
+  return least;
 }
 
 }  // namespace orchard

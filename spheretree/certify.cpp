@@ -1,23 +1,21 @@
 #include "orchard/spheretree/certify.h"
 
+#include "packed_nodes.h"
+
 namespace orchard {
 
 std::vector<PathBall> path_balls(const runtime::PackedSphereTree& tree) {
-  // Breadth-first over the blocks: the root's lane first, then each inner node's children.
-  struct Place {
-    Index block, lane, parent;
-  };
-  std::vector<PathBall> balls;
-  std::vector<Place> places{{0, 0, kNone}};
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const auto [block_index, lane, parent] = places[i];
-    const runtime::SiblingBlock& block = tree.blocks[block_index];
-    const bool leaf = (block.count[lane] & runtime::kLeafBit) != 0;
-    balls.push_back({Point(block.x[lane], block.y[lane], block.z[lane]), block.radius[lane], parent, leaf});
-    if (leaf) continue;
-    for (Index child = 0; child < block.count[lane]; ++child)
-      places.push_back(
-          {block.first[lane] + child / runtime::kBlockWidth, child % runtime::kBlockWidth, static_cast<Index>(i)});
+  const std::vector<PackedNode> nodes = packed_nodes(tree);
+  std::vector<PathBall> balls(nodes.size());
+  Index next_child = 1;
+  for (Index i = 0; i < nodes.size(); ++i) {
+    const auto [index, lane] = nodes[i];
+    const runtime::SiblingBlock& block = tree.blocks[index];
+    balls[i].center = Point(block.x[lane], block.y[lane], block.z[lane]);
+    balls[i].radius = block.radius[lane];
+    balls[i].leaf = (block.count[lane] & runtime::kLeafBit) != 0;
+    if (balls[i].leaf) continue;
+    for (Index child = 0; child < block.count[lane]; ++child) balls[next_child++].parent = i;
   }
   return balls;
 }

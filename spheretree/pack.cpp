@@ -67,9 +67,10 @@ class Packer {
     runtime::SiblingBlock& block = packed_.blocks[at.block];
     const Vector exact = node.sphere.center - origin_;
     const Eigen::Vector3f rounded = exact.cast<float>();
-    // How far the packed centre may be from the true one: the float rounding, and the roundings of this very sum.
-    const double moved =
-        (exact - rounded.cast<double>()).norm() * (1 + 0x1p-48) + slack(exact.norm() + node.sphere.radius);
+    // How far the packed centre may be from the true one: the float rounding, the roundings of this very difference,
+    // and those of the sum with the origin by which others get back to the mesh's frame.
+    const double moved = (exact - rounded.cast<double>()).norm() * (1 + 0x1p-48) +
+                         slack(exact.norm() + node.sphere.radius + origin_.norm());
     block.x[at.lane] = rounded.x();
     block.y[at.lane] = rounded.y();
     block.z[at.lane] = rounded.z();

@@ -83,6 +83,43 @@ TEST(Inaccuracy, RefusesASurfaceWithoutAnInside) {
   EXPECT_THROW(inaccuracy(surface, {Point::Zero(), 1}, kTolerance), InputError);
 }
 
+TEST(FarthestFromSolid, BracketsWhatDenseSamplingOfTheBallFinds) {
+  const Surface surface(test::u_shape(0.4));
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    Random random(seed, 4);
+    const double size = surface.bounding_radius();
+    const Sphere ball{surface.bounding_ball().center + size * random.uniform() * random_direction(random),
+                      size * random.uniform(0.02, 0.9)};
+    const Bounds bounds = farthest_from_solid(surface, ball, kTolerance);
+    double sampled = 0;
+    for (int i = 0; i < 4000; ++i) {
+      const Point p = ball.center + ball.radius * std::cbrt(random.uniform()) * random_direction(random);
+      sampled = std::max(sampled, surface.signed_distance(p));
+    }
+    EXPECT_GE(bounds.upper, sampled * (1 - 1e-12)) << "seed " << seed;
+    EXPECT_LE(bounds.upper - bounds.lower, kTolerance * size + 1e-12) << "seed " << seed;
+    EXPECT_NEAR(bounds.lower, sampled, 0.1 * ball.radius + kTolerance * size) << "seed " << seed;
+    EXPECT_LE(bounds.upper, distance_bound(surface.signed_distance(ball.center), ball.radius)) << "seed " << seed;
+    EXPECT_GE(bounds.upper, inaccuracy(surface, ball, kTolerance).lower) << "seed " << seed;
+  }
+}
+
+// The sphere around a hollow runs through the solid, so its inaccuracy is 0; its ball holds the hollow all the same.
+TEST(FarthestFromSolid, CountsTheHollowThatABallFills) {
+  TriangleMesh mesh = test::box(Point(-2, -2, -2), Point(2, 2, 2));
+  const TriangleMesh hollow = test::mirrored(test::box(Point(-1, -1, -1), Point(1, 1, 1)));
+  const auto base = static_cast<Index>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), hollow.vertices.begin(), hollow.vertices.end());
+  for (const auto& t : hollow.triangles) mesh.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+  const Surface surface(mesh);
+  ASSERT_TRUE(surface.solid());
+  const Sphere ball{Point::Zero(), 1.8};
+  EXPECT_EQ(inaccuracy(surface, ball, kTolerance).upper, 0);
+  const Bounds bounds = farthest_from_solid(surface, ball, 1e-4);
+  EXPECT_NEAR(bounds.lower, 1, 1e-3);
+  EXPECT_GE(bounds.upper, 1);
+}
+
 TEST(DistanceBound, IsNeverBelowTheDistanceOfAPointOfTheBall) {
   const Surface surface(test::u_shape(0.4));
   for (std::uint64_t seed = 0; seed < 200; ++seed) {

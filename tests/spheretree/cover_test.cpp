@@ -21,7 +21,7 @@ TEST(Cover, LeavesACoveredTreeAlone) {
 
 TEST(Cover, RepairsRandomlyShrunkenTreesByTheLeastOfGrowth) {
   const Surface surface(u_shape(0.3));
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
     Random random(seed, 1);
     SphereTree tree = octree(surface, {.depth = 3});
     const SphereTree before = tree;

@@ -36,4 +36,8 @@ struct TriangleCover {
 // meet it.
 TriangleCover cover_of_triangle(const std::array<Point, 3>& triangle, std::span<const PathBall> balls);
 
+// How far a point is outside every path region: the least growth of all balls that would put it into one; <= 0 inside,
+// infinite without a leaf.
+double path_depth(const Point& point, std::span<const PathBall> balls);
+
 }  // namespace orchard

@@ -13,6 +13,12 @@ struct Bounds {
 // upper - lower <= max(tolerance, 1e-6) * R unless the work limit is met. Throws InputError unless surface.solid().
 Bounds inaccuracy(const Surface& surface, const Sphere& sphere, double tolerance);
 
+// Bounds on the largest distance to the solid from a point of the closed ball, 0 if the ball lies inside: what the
+// run-time's bound on separation is made of. Unlike the inaccuracy it counts the ball's inside too, which matters where
+// a ball fills a hole or a gap. A branch and bound over cubes; width and errors as for inaccuracy(). The upper bound is
+// never above distance_bound().
+Bounds farthest_from_solid(const Surface& surface, const Sphere& ball, double tolerance);
+
 // An upper bound on the largest distance to the solid from any point of the closed ball: max(0, radius + signed
 // distance of the centre), rounded upward. Holds for every solid, convex or not, since the signed distance is
 // 1-Lipschitz.

@@ -1,0 +1,47 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "orchard/geometry/progress.h"
+#include "orchard/geometry/surface.h"
+#include "orchard/runtime/packed_tree.h"
+
+namespace orchard {
+
+// What a packed tree promises and verify() could not prove.
+struct Violation {
+  enum class Kind : std::uint8_t {
+    uncovered,   // a point of a triangle that no path region of the leaves that list the triangle is certain to hold
+    other_mesh,  // the stored triangles are not the surface's
+    center_distance,  // a stored signed distance of a centre is below the true one
+    distance_bound,   // a point of a ball is farther from the solid than stored
+  };
+  Kind kind = Kind::uncovered;
+  Index node = kNone;  // breadth-first number; kNone if none is to blame
+  Index triangle = kNone;
+  Point point = Point::Zero();  // where, in mesh coordinates
+  double amount = 0;            // by how much: depth outside every path region, or bound missed, in mesh units
+};
+
+struct VerifyOptions {
+  Index most_violations = 100;  // listed; all are counted
+};
+
+struct Verification {
+  std::uint64_t triangles = 0, triangles_uncovered = 0;
+  std::uint64_t nodes = 0, bounds_violated = 0;
+  bool same_mesh = true;
+  double worst_depth = 0;             // of the witnesses, in mesh units
+  std::vector<Violation> violations;  // triangles first, ascending
+  bool ok() const { return same_mesh && triangles_uncovered == 0 && bounds_violated == 0; }
+};
+
+// Proves from the packed floats and the mesh alone that (a) the path rule holds, (b) every stored bound holds, (c)
+// every triangle is covered by the path regions of the leaves that list it, which implies (a). "Not proven" counts as
+// violated. If the surface is not solid, every point counts as outside. Precondition: structure_fault(tree) == nullptr.
+// Parallel; the result does not depend on the thread count.
+Verification verify(const Surface& surface, const runtime::PackedSphereTree& tree, const VerifyOptions& options = {},
+                    const Progress& progress = {});
+
+}  // namespace orchard
