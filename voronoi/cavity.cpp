@@ -6,21 +6,17 @@
 namespace orchard::detail {
 namespace {
 
-// kOthers[i]: the other corners, so that (i, others) is an even permutation. The infinite corner 3 comes last.
-constexpr std::array<std::array<std::uint8_t, 3>, 4> kOthers{{{1, 2, 3}, {2, 0, 3}, {0, 1, 3}, {0, 2, 1}}};
-
-std::uint8_t slot_of(const std::array<Index, 4>& four, Index item) {
-  std::uint8_t slot = 0;
-  while (four[slot] != item) ++slot;
-  return slot;
-}
+// The table for linking up to kFew local points: a sphere with that many corners has 2 * kFew - 4 facets.
+constexpr Index kFew = 64;
+constexpr std::uint32_t kFacetBits = 7;
+constexpr std::uint32_t kFacetMask = (1u << kFacetBits) - 1;
 
 }  // namespace
 
 void Cavity::begin(Index new_point) {
-  for (Index v : deleted_) workspace_.set_mark(v, Mark::unseen);
-  for (Index v : seen_) workspace_.set_mark(v, Mark::unseen);
-  for (const LocalPoint& local : local_points_) set_local(local.point, kNone);
+  for (Index v : deleted_.items()) workspace_.set_mark(v, Mark::unseen);
+  for (Index v : seen_.items()) workspace_.set_mark(v, Mark::unseen);
+  for (const LocalPoint& local : local_points_) known_local(local.point) = kNone;
   deleted_.clear();
   seen_.clear();
   facets_.clear();
@@ -31,32 +27,67 @@ void Cavity::begin(Index new_point) {
   if (local_of_.size() != workspace_.points.size() + 1) local_of_.assign(workspace_.points.size() + 1, kNone);
 }
 
-Index Cavity::local(Index point) {
-  const Index known = known_local(point);
-  if (known != kNone) return known;
+Index Cavity::make_local(Index point) {
   const auto fresh = static_cast<Index>(local_points_.size());
-  set_local(point, fresh);
+  known_local(point) = fresh;
   local_points_.push_back(
       {point == kInfinitePoint ? LengthedVector() : LengthedVector(workspace_.points[point] - position_), point});
   return fresh;
 }
 
-void Cavity::add_facet(Index inside, unsigned i) {
-  const VoronoiVertex& deleted = workspace_.vertices[inside];
-  Facet& facet = facets_.emplace_back();
-  facet.vertex.forming_points = deleted.forming_points;
-  facet.vertex.forming_points[i] = new_point_;
-  facet.slot = static_cast<std::uint8_t>(i);
-  facet.outside = deleted.neighbors[i];
-  facet.back = slot_of(workspace_.vertices[facet.outside].neighbors, inside);
-  facet.vertex.neighbors[i] = facet.outside;
-  for (std::uint8_t k : kOthers[i]) facet.local[k] = local(deleted.forming_points[k]);
+// The time goes into mispredicted branches here if one is not careful: whether a neighbour has been seen, and on which
+// side its sign falls, is as good as random. So every neighbour is tested, and what has been seen is masked out.
+bool Cavity::delete_nearer(Index start) {
+  const Point q = position_;
+  bool certain = true;
+  delete_vertex(start);
+  for (std::size_t i = 0; i < deleted_.size(); ++i) {
+    deleted_.ensure_room();
+    seen_.ensure_room();
+    const std::array<Index, 4> neighbors = workspace_.vertices[deleted_.items()[i]].neighbors;
+    for (const Index u : neighbors) __builtin_prefetch(&workspace_.vertices[u]);
+    for (const Index u : neighbors) {
+      const bool unseen = workspace_.mark(u) == Mark::unseen;
+      const double power = workspace_.power(u, q), bound = workspace_.power_bound(u);
+      bool nearer = power > bound;
+      if (unseen && !(std::abs(power) > bound)) [[unlikely]] {
+        const Sign sign = workspace_.doubtful_sign(u, q, bound);
+        nearer = sign == Sign::positive;
+        certain = certain && sign != Sign::uncertain;
+      }
+      workspace_.add_mark(u, unseen, nearer ? Mark::deleted : Mark::kept);
+      deleted_.push_if(u, unseen & nearer);
+      seen_.push_if(u, unseen & !nearer);
+    }
+  }
+  return certain;
 }
 
-void Cavity::add_all_facets() {
-  for (Index v : deleted_)
+void Cavity::note_facets() {
+  boundary_.clear();
+  for (const Index v : deleted_.items()) {
+    boundary_.ensure_room();
     for (unsigned i = 0; i < 4; ++i)
-      if (workspace_.mark(workspace_.vertices[v].neighbors[i]) != Mark::deleted) add_facet(v, i);
+      boundary_.push_if(4 * v + i, workspace_.mark(workspace_.vertices[v].neighbors[i]) != Mark::deleted);
+  }
+  facets_.resize(boundary_.size());
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    const Index inside = boundary_.items()[f] / 4;
+    const unsigned slot = boundary_.items()[f] % 4;
+    const VoronoiVertex& deleted = workspace_.vertices[inside];
+    const Index outside = deleted.neighbors[slot];
+    const auto& across = workspace_.vertices[outside].neighbors;
+    const int back = (across[1] == inside) + 2 * (across[2] == inside) + 3 * (across[3] == inside);
+    const auto& [a, b, c] = kOthers[slot];
+    const auto& corner = deleted.forming_points;
+    facets_[f] = {inside,
+                  outside,
+                  {local(corner[a]), local(corner[b]), local(corner[c])},
+                  static_cast<std::uint8_t>(slot),
+                  static_cast<std::uint8_t>(back),
+                  0,
+                  false};
+  }
 }
 
 // Deleting a tetrahedron v next to a ball-shaped cavity D keeps it a ball iff v touches D in a disk: in one facet and
@@ -83,14 +114,14 @@ bool Cavity::legal(Index v) const {
 }
 
 void Cavity::delete_legally(Index v) {
-  add_deleted(v);
+  delete_vertex(v);
   for (Index point : workspace_.vertices[v].forming_points) local(point);
   const auto count = static_cast<Index>(local_points_.size());
   if (count <= edge_limit_) return note_edges(v);
   // More points than the table was set up for: twice as many, and everything again.
   edge_limit_ = std::max(EdgeTable::kDense, 2 * count);
   edges_.reset(edge_limit_);
-  for (Index d : deleted_) note_edges(d);
+  for (Index d : deleted_.items()) note_edges(d);
 }
 
 void Cavity::note_edges(Index v) {
@@ -113,15 +144,19 @@ bool Cavity::sees_facet(Index v, unsigned i) const {
 }
 
 bool Cavity::place_vertices() {
+  if (fresh_.size() < facets_.size()) fresh_.resize(facets_.size());
   bool all = true;
-  for (Facet& facet : facets_) {
-    const auto& [i, j, k] = kOthers[facet.slot];
-    const LengthedVector& a = local_points_[facet.local[i]].from_new;
-    const LengthedVector& b = local_points_[facet.local[j]].from_new;
-    facet.placed = facet.vertex.forming_points[k] == kInfinitePoint
-                       ? workspace_.place_at_infinity(facet.vertex, facet.error_class, a, b)
-                       : workspace_.place(facet.vertex, facet.error_class, position_, a, b,
-                                          local_points_[facet.local[k]].from_new);
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    Facet& facet = facets_[f];
+    VoronoiVertex& vertex = fresh_[f];
+    vertex.forming_points = workspace_.vertices[facet.inside].forming_points;
+    const bool at_infinity = vertex.forming_points[kOthers[facet.slot][2]] == kInfinitePoint;
+    vertex.forming_points[facet.slot] = new_point_;
+    const LengthedVector& a = local_points_[facet.local[0]].from_new;
+    const LengthedVector& b = local_points_[facet.local[1]].from_new;
+    const LengthedVector& c = local_points_[facet.local[2]].from_new;
+    facet.placed = at_infinity ? workspace_.place_at_infinity(vertex, facet.error_class, a, b)
+                               : workspace_.place(vertex, facet.error_class, position_, a, b, c);
     all = all && facet.placed;
   }
   return all;
@@ -129,96 +164,139 @@ bool Cavity::place_vertices() {
 
 bool Cavity::link_vertices() {
   if (facets_.size() + 4 != 2 * local_points_.size()) return false;
-  edges_.reset(static_cast<Index>(local_points_.size()));
-  edge_limit_ = 0;
-  slots_.resize(facets_.size());
-  const std::size_t reused = deleted_.size(), recycled = workspace_.free_vertices.size();
-  for (std::size_t f = 0; f < slots_.size(); ++f)
-    slots_[f] = f < reused              ? deleted_[f]
-                : f < reused + recycled ? workspace_.free_vertices[recycled - 1 - (f - reused)]
-                                        : static_cast<Index>(workspace_.vertices.size() + f - reused - recycled);
-  std::size_t links = 0;
-  for (std::size_t f = 0; f < facets_.size(); ++f) {
-    Facet& facet = facets_[f];
-    const auto& other = kOthers[facet.slot];
-    for (unsigned n = 0; n < 3; ++n) {
-      const Index from = facet.local[other[(n + 1) % 3]], to = facet.local[other[(n + 2) % 3]];
-      if (!edges_.insert(from, to, static_cast<Index>(4 * f + other[n]))) return false;
-      // Facets that meet in an edge run along it in opposite directions.
-      const Index mate = edges_.find(to, from);
-      if (mate == kNone) continue;
-      facet.vertex.neighbors[other[n]] = slots_[mate / 4];
-      facets_[mate / 4].vertex.neighbors[mate % 4] = slots_[f];
-      ++links;
+  return local_points_.size() <= kFew ? link_few() : link_many();
+}
+
+// Facets that meet in an edge run along it in opposite directions. Without branches on the way: all edges go into the
+// table, then each looks for its opposite.
+bool Cavity::link_few() {
+  if (link_table_.empty() || ++link_round_ >> (32 - kFacetBits) != 0) {
+    link_table_.assign(kFew * kFew, 0);
+    link_round_ = 1;
+  }
+  const std::uint32_t round = link_round_ << kFacetBits;
+  std::uint32_t* const table = link_table_.data();
+  bool good = true;
+  for (std::uint32_t f = 0; f < facets_.size(); ++f) {
+    const auto& [a, b, c] = facets_[f].local;
+    for (const Index edge : {b * kFew + c, c * kFew + a, a * kFew + b}) {
+      good &= (table[edge] ^ round) > kFacetMask;  // no other facet has it in this direction
+      table[edge] = round | f;
     }
   }
-  return 2 * links == 3 * facets_.size();
+  for (std::uint32_t f = 0; f < facets_.size(); ++f) {
+    const Facet& facet = facets_[f];
+    const auto& [a, b, c] = facet.local;
+    const auto& other = kOthers[facet.slot];
+    auto& neighbors = fresh_[f].neighbors;
+    neighbors[facet.slot] = facet.outside;
+    const std::uint32_t across_a = table[c * kFew + b] ^ round, across_b = table[a * kFew + c] ^ round,
+                        across_c = table[b * kFew + a] ^ round;
+    good &= (across_a | across_b | across_c) <= kFacetMask;
+    neighbors[other[0]] = across_a & kFacetMask;
+    neighbors[other[1]] = across_b & kFacetMask;
+    neighbors[other[2]] = across_c & kFacetMask;
+  }
+  return good;
+}
+
+bool Cavity::link_many() {
+  edges_.reset(static_cast<Index>(local_points_.size()));
+  edge_limit_ = 0;
+  for (std::size_t f = 0; f < facets_.size(); ++f)
+    for (unsigned n = 0; n < 3; ++n)
+      if (!edges_.insert(facets_[f].local[(n + 1) % 3], facets_[f].local[(n + 2) % 3], static_cast<Index>(f)))
+        return false;
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    const Facet& facet = facets_[f];
+    fresh_[f].neighbors[facet.slot] = facet.outside;
+    for (unsigned n = 0; n < 3; ++n) {
+      const Index mate = edges_.find(facet.local[(n + 2) % 3], facet.local[(n + 1) % 3]);
+      if (mate == kNone) return false;
+      fresh_[f].neighbors[kOthers[facet.slot][n]] = mate;
+    }
+  }
+  return true;
 }
 
 bool Cavity::is_ball() {
-  for (Index v : deleted_)
+  for (Index v : deleted_.items())
     for (Index point : workspace_.vertices[v].forming_points)
       if (known_local(point) == kNone) return false;
-  // With the right number of facets for one sphere, several pieces or a piece with a handle would have to touch
-  // themselves; one piece is a sphere.
-  std::vector<Index>& stack = stack_;
-  stack.assign(1, 0);
-  std::size_t reached = 0;
-  std::vector<bool> seen(facets_.size(), false);
-  seen[0] = true;
-  while (!stack.empty()) {
-    const Facet& facet = facets_[stack.back()];
-    stack.pop_back();
-    ++reached;
-    const auto& other = kOthers[facet.slot];
-    for (unsigned n = 0; n < 3; ++n) {
-      const Index next = edges_.find(facet.local[other[(n + 2) % 3]], facet.local[other[(n + 1) % 3]]) / 4;
-      if (seen[next]) continue;
-      seen[next] = true;
-      stack.push_back(next);
+  // Two facets on each edge and the right number of facets for one sphere: several pieces, or a piece with a handle,
+  // would have to touch themselves in points to get there, so one piece is a sphere that does not.
+  reached_.assign(facets_.size(), false);
+  reached_[0] = true;
+  stack_.assign(1, 0);
+  std::size_t count = 0;
+  while (!stack_.empty()) {
+    const Index f = stack_.back();
+    stack_.pop_back();
+    ++count;
+    for (const std::uint8_t k : kOthers[facets_[f].slot]) {
+      const Index next = fresh_[f].neighbors[k];
+      if (reached_[next]) continue;
+      reached_[next] = true;
+      stack_.push_back(next);
     }
   }
-  return reached == facets_.size();
+  return count == facets_.size();
 }
 
 Index Cavity::approximate_unplaced() {
   Index count = 0;
-  for (Facet& facet : facets_) {
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    Facet& facet = facets_[f];
     if (facet.placed) continue;
     ++count;
+    VoronoiVertex& vertex = fresh_[f];
     const VoronoiVertex& outside = workspace_.vertices[facet.outside];
-    const VoronoiVertex& inside = workspace_.vertices[outside.neighbors[facet.back]];
+    const VoronoiVertex& inside = workspace_.vertices[facet.inside];
     facet.error_class = Workspace::kUnknownError;
-    facet.vertex.center = outside.center;
-    if (facet.vertex.forming_points[3] == kInfinitePoint) {
-      facet.vertex.radius = outside.radius;
+    vertex.center = outside.center;
+    if (vertex.forming_points[3] == kInfinitePoint) {
+      vertex.radius = outside.radius;
       continue;
     }
     if (outside.forming_points[3] == kInfinitePoint)
-      facet.vertex.center =
+      vertex.center =
           (inside.forming_points[3] == kInfinitePoint ? position_ : inside.center) + workspace_.far() * outside.center;
-    facet.vertex.radius = (facet.vertex.center - position_).squaredNorm();
+    vertex.radius = (vertex.center - position_).squaredNorm();
   }
   return count;
 }
 
+// Where the new vertices go: the places of the deleted ones first, which are in the cache.
+void Cavity::choose_slots() {
+  const auto reused = deleted_.items().first(std::min(deleted_.size(), facets_.size()));
+  slots_.assign(reused.begin(), reused.end());
+  const auto& free = workspace_.free_vertices;
+  for (std::size_t i = 0; i < free.size() && slots_.size() < facets_.size(); ++i)
+    slots_.push_back(free[free.size() - 1 - i]);
+  for (auto next = static_cast<Index>(workspace_.vertices.size()); slots_.size() < facets_.size(); ++next)
+    slots_.push_back(next);
+}
+
 Index Cavity::replace() {
-  const std::size_t reused = deleted_.size(), recycled = workspace_.free_vertices.size();
-  for (std::size_t f = facets_.size(); f < reused; ++f) {
-    workspace_.store(deleted_[f], VoronoiVertex{}, 0);
-    workspace_.free_vertices.push_back(deleted_[f]);
+  choose_slots();
+  for (std::size_t i = facets_.size(); i < deleted_.size(); ++i) {
+    workspace_.store(deleted_.items()[i], VoronoiVertex{}, 0);
+    workspace_.free_vertices.push_back(deleted_.items()[i]);
   }
-  if (facets_.size() > reused) {
-    const std::size_t more = facets_.size() - reused;
-    workspace_.free_vertices.resize(recycled - std::min(more, recycled));
+  if (facets_.size() > deleted_.size()) {
+    auto& free = workspace_.free_vertices;
+    const std::size_t more = facets_.size() - deleted_.size(), recycled = std::min(more, free.size());
+    free.resize(free.size() - recycled);
     if (more > recycled) workspace_.resize(workspace_.vertices.size() + more - recycled);
   }
   Index last = slots_[0];
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     const Facet& facet = facets_[f];
-    workspace_.store(slots_[f], facet.vertex, facet.error_class);
+    VoronoiVertex& vertex = fresh_[f];
+    for (const std::uint8_t k : kOthers[facet.slot]) vertex.neighbors[k] = slots_[vertex.neighbors[k]];
+    workspace_.store(slots_[f], vertex, facet.error_class);
     workspace_.vertices[facet.outside].neighbors[facet.back] = slots_[f];
-    if (facet.placed && facet.vertex.forming_points[3] != kInfinitePoint) last = slots_[f];
+    if (facet.placed && vertex.forming_points[3] != kInfinitePoint) last = slots_[f];
   }
   deleted_.clear();  // their marks went with them
   return last;

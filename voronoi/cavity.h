@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "edge_table.h"
@@ -12,37 +13,63 @@ namespace orchard::detail {
 // a cavity, its boundary facets, and the tetrahedra from the new point to these facets.
 class Cavity {
  public:
-  // A boundary facet and the new vertex that it makes.
-  struct Facet {
-    VoronoiVertex vertex;        // its forming points are the facet's and, at `slot`, the new one
-    std::array<Index, 4> local;  // of its forming points, into the local points; at `slot` unused
-    Index outside;               // the undeleted vertex across
-    std::uint8_t slot, back;     // outside's neighbour `back` was the deleted vertex
-    std::uint8_t error_class;
-    bool placed;  // false: nearly coplanar forming points
+  // A list to which items can be added without a branch: write at the end, then move the end or not.
+  class List {
+   public:
+    std::span<const Index> items() const { return {room_.data(), count_}; }
+    std::size_t size() const { return count_; }
+    void clear() { count_ = 0; }
+    void push(Index item) {
+      ensure_room();
+      push_if(item, true);
+    }
+    void ensure_room() {
+      if (count_ + 4 > room_.size()) room_.resize(2 * room_.size() + 64);
+    }
+    // Up to four times after ensure_room().
+    void push_if(Index item, bool condition) {
+      room_[count_] = item;
+      count_ += condition;
+    }
+
+   private:
+    std::vector<Index> room_;
+    std::size_t count_ = 0;
   };
+
+  // A boundary facet. It makes a new vertex: the deleted one's forming points but for the new one at `slot`.
+  struct Facet {
+    Index inside, outside;       // the deleted vertex and the undeleted one across
+    std::array<Index, 3> local;  // its corners, into the local points, in the order of kOthers[slot]
+    std::uint8_t slot, back;     // the inside's neighbour `slot` is the outside, whose neighbour `back` is the inside
+    std::uint8_t error_class;    // of the new vertex
+    bool placed;                 // false: nearly coplanar forming points
+  };
+  // kOthers[i]: the other corners, so that (i, others) is an even permutation. The infinite corner 3 comes last.
+  static constexpr std::array<std::array<std::uint8_t, 3>, 4> kOthers{{{1, 2, 3}, {2, 0, 3}, {0, 1, 3}, {0, 2, 1}}};
 
   explicit Cavity(Workspace& workspace) : workspace_(workspace) {}
 
   // Starts anew for a new point: nothing deleted, all marks removed.
   void begin(Index new_point);
 
-  const std::vector<Index>& deleted() const { return deleted_; }
+  std::span<const Index> deleted() const { return deleted_.items(); }
   const std::vector<Facet>& facets() const { return facets_; }
 
-  // Marks a vertex as deleted. Its facets are not noted yet.
-  void add_deleted(Index v) {
+  // Deletes all vertices, connected with the first, whose sign is certainly positive. True if no sign was in doubt.
+  bool delete_nearer(Index start);
+  // Deletes a vertex whatever may come of it.
+  void delete_vertex(Index v) {
     workspace_.set_mark(v, Mark::deleted);
-    deleted_.push_back(v);
+    deleted_.push(v);
   }
   // Marks a vertex as seen but not deleted.
   void add_seen(Index v, Mark mark) {
-    if (workspace_.mark(v) == Mark::unseen) seen_.push_back(v);
+    if (workspace_.mark(v) == Mark::unseen) seen_.push(v);
     workspace_.set_mark(v, mark);
   }
-  // Notes the boundary facet between a deleted vertex and its neighbour i.
-  void add_facet(Index inside, unsigned i);
-  void add_all_facets();
+  // Notes the boundary facets, once all deletions are made.
+  void note_facets();
 
   // The constrained search's view: whether deleting one more vertex keeps Inagaki et al.'s constraints; and deleting
   // it.
@@ -70,21 +97,32 @@ class Cavity {
     Index point;
   };
 
-  Index local(Index point);
-  Index known_local(Index point) const { return local_of_[point == kInfinitePoint ? workspace_.points.size() : point]; }
-  void set_local(Index point, Index local) {
-    local_of_[point == kInfinitePoint ? workspace_.points.size() : point] = local;
+  Index local(Index point) {
+    const Index known = known_local(point);
+    return known != kNone ? known : make_local(point);
   }
+  Index make_local(Index point);
+  // The infinite point, being the highest number, wraps around to the first place.
+  Index& known_local(Index point) { return local_of_[static_cast<Index>(point + 1)]; }
+  Index known_local(Index point) const { return local_of_[static_cast<Index>(point + 1)]; }
+  void choose_slots();
+  bool link_few();
+  bool link_many();
   void note_edges(Index v);
 
   Workspace& workspace_;
   Index new_point_ = kNone;
   Point position_ = Point::Zero();
-  std::vector<Index> deleted_, seen_, slots_, stack_;
+  List deleted_, seen_, boundary_;  // boundary: 4 * deleted vertex + the neighbour across
+  std::vector<Index> slots_, stack_;
   std::vector<Facet> facets_;
+  std::vector<VoronoiVertex> fresh_;      // of each facet; its new neighbours are facets until replace()
+  std::vector<std::uint8_t> reached_;     // by facet
   std::vector<LocalPoint> local_points_;  // the points of the boundary, the one at infinity included
-  std::vector<Index> local_of_;           // of each point and the infinite one: into local_points_ or kNone
+  std::vector<Index> local_of_;           // of the infinite point and each other: into local_points_ or kNone
   EdgeTable edges_;
+  std::vector<std::uint32_t> link_table_;  // for each directed edge between few local points: round and facet
+  std::uint32_t link_round_ = 0;
   Index edge_limit_ = 0;  // local points that the edge table was set up for, in the constrained search
 };
 

@@ -58,7 +58,7 @@ void Inserter::insert(Index point) {
     search_breadth_first(climb(start, q), q);
   }
   ++counts_.constrained;
-  cavity_.add_all_facets();
+  cavity_.note_facets();
   cavity_.place_vertices();
   if (!cavity_.link_vertices()) throw Error("internal: the deleted Voronoi vertices do not form a ball");
   finish();
@@ -69,7 +69,8 @@ void Inserter::insert(Index point) {
 // that always gives a ball that the new point sees all around; here it is checked.
 bool Inserter::insert_directly(Index start, const Point& q) {
   if (workspace_.sign(start, q) != Sign::positive) return false;
-  const bool certain = collect_certain(start, q);
+  const bool certain = cavity_.delete_nearer(start);
+  cavity_.note_facets();
   const bool visible = cavity_.place_vertices();
   if (!visible) return false;
   if (!cavity_.link_vertices()) return false;
@@ -77,31 +78,6 @@ bool Inserter::insert_directly(Index start, const Point& q) {
   ++(certain ? counts_.certified : counts_.settled);
   finish();
   return true;
-}
-
-// Deletes the vertices that are certainly nearer to q and connected. True if no sign was in doubt.
-bool Inserter::collect_certain(Index start, const Point& q) {
-  bool certain = true;
-  cavity_.add_deleted(start);
-  for (std::size_t i = 0; i < cavity_.deleted().size(); ++i) {
-    const Index v = cavity_.deleted()[i];
-    for (unsigned k = 0; k < 4; ++k) {
-      const Index u = workspace_.vertices[v].neighbors[k];
-      Mark mark = workspace_.mark(u);
-      if (mark == Mark::unseen) {
-        const Sign sign = workspace_.sign(u, q);
-        if (sign == Sign::positive) {
-          cavity_.add_deleted(u);
-          mark = Mark::deleted;
-        } else {
-          cavity_.add_seen(u, Mark::kept);
-          certain = certain && sign == Sign::negative;
-        }
-      }
-      if (mark != Mark::deleted) cavity_.add_facet(v, k);
-    }
-  }
-  return certain;
 }
 
 void Inserter::delete_and_queue(Index v, const Point& q) {
@@ -158,15 +134,15 @@ void Inserter::search_breadth_first(Index start, const Point& q) {
 }
 
 void Inserter::insert_bowyer(Index start, const Point& q) {
-  cavity_.add_deleted(start);
+  cavity_.delete_vertex(start);
   for (std::size_t i = 0; i < cavity_.deleted().size(); ++i) {
     const Index v = cavity_.deleted()[i];
     for (unsigned k = 0; k < 4; ++k) {
       const Index u = workspace_.vertices[v].neighbors[k];
-      if (workspace_.mark(u) != Mark::deleted && workspace_.value(u, q) > 0) cavity_.add_deleted(u);
+      if (workspace_.mark(u) != Mark::deleted && workspace_.value(u, q) > 0) cavity_.delete_vertex(u);
     }
   }
-  cavity_.add_all_facets();
+  cavity_.note_facets();
   const bool placed = cavity_.place_vertices();
   if (!cavity_.link_vertices() || !cavity_.is_ball())
     throw Error("Bowyer's algorithm fails: rounding makes the vertices that a point deletes other than one ball");

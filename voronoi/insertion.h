@@ -47,7 +47,6 @@ class Inserter {
   Index step_by_orientation(Index v, const Point& q) const;
   Index highest_of_all(const Point& q) const;
   Index climb(Index v, const Point& q) const;
-  bool collect_certain(Index start, const Point& q);
   bool insert_directly(Index start, const Point& q);
   void search_highest_first(Index start, const Point& q);
   void delete_and_queue(Index v, const Point& q);

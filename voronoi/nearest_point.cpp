@@ -1,5 +1,6 @@
 #include "nearest_point.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <utility>
 
@@ -16,41 +17,50 @@ NearestPoint::NearestPoint(std::span<const Point> points) : points_(points.begin
 }
 
 void NearestPoint::build(Index begin, Index end) {
-  const std::size_t node = nodes_.size();
-  nodes_.push_back({.begin = begin, .end = end});
+  const std::size_t index = nodes_.size();
+  Node node;
+  node.begin = begin;
+  node.end = end;
+  Point mean = Point::Zero();
+  for (Index i = begin; i < end; ++i) mean += points_[i];
+  mean /= std::max<Index>(end - begin, 1);
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (Index i = begin; i < end; ++i) covariance += (points_[i] - mean) * (points_[i] - mean).transpose();
+  node.axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors().transpose();
+  for (Index i = begin; i < end; ++i) node.box.extend(node.axes * points_[i]);
+  nodes_.push_back(node);
   if (end - begin <= kLeafSize) return;
-  Box box;
-  for (Index i = begin; i < end; ++i) box.extend(points_[i]);
-  int axis = 0;
-  box.sizes().maxCoeff(&axis);
+  const Vector axis = node.axes.row(2);  // of the greatest extent
   const Index middle = begin + (end - begin) / 2;
   std::nth_element(points_.begin() + begin, points_.begin() + middle, points_.begin() + end,
-                   [axis](const Point& a, const Point& b) { return a[axis] < b[axis]; });
-  nodes_[node].axis = axis;
-  nodes_[node].split = points_[middle][axis];
+                   [&](const Point& a, const Point& b) { return axis.dot(a) < axis.dot(b); });
   build(begin, middle);
-  nodes_[node].right = static_cast<Index>(nodes_.size());
+  nodes_[index].right = static_cast<Index>(nodes_.size());
   build(middle, end);
 }
 
+// A little less than computed, since rotating rounds.
+double NearestPoint::squared_distance_bound(Index node, const Point& q) const {
+  return nodes_[node].box.squaredExteriorDistance(nodes_[node].axes * q) * (1 - 0x1p-40);
+}
+
 double NearestPoint::squared_distance(const Point& q, double limit) const {
-  Vector offset = Vector::Zero();
-  search(0, q, offset, limit);
+  if (!points_.empty()) search(0, q, limit);
   return limit;
 }
 
-// The offset holds, for each axis, how far q is outside the node's slab (Arya and Mount's incremental distance).
-void NearestPoint::search(Index index, const Point& q, Vector& offset, double& best) const {
+void NearestPoint::search(Index index, const Point& q, double& best) const {
   const Node& node = nodes_[index];
   if (node.right == kNone) {
     for (Index i = node.begin; i < node.end; ++i) best = std::min(best, (points_[i] - q).squaredNorm());
     return;
   }
-  const double beyond = q[node.axis] - node.split;
-  search(beyond < 0 ? index + 1 : node.right, q, offset, best);
-  const double before = std::exchange(offset[node.axis], beyond);
-  if (offset.squaredNorm() < best) search(beyond < 0 ? node.right : index + 1, q, offset, best);
-  offset[node.axis] = before;
+  Index near = index + 1, far = node.right;
+  double near_distance = squared_distance_bound(near, q);
+  double far_distance = squared_distance_bound(far, q);
+  if (far_distance < near_distance) std::swap(near, far), std::swap(near_distance, far_distance);
+  if (near_distance < best) search(near, q, best);
+  if (far_distance < best) search(far, q, best);
 }
 
 }  // namespace orchard::detail

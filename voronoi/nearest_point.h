@@ -6,7 +6,9 @@
 
 namespace orchard::detail {
 
-// A k-d tree over points that finds the nearest one within a ball. Knows nothing of any diagram, so it can judge one.
+// A tree of boxes around points that finds the nearest one within a ball. Knows nothing of any diagram, so it can judge
+// one. The boxes are tight and turned along the points' principal axes: a ball that only touches the surface that the
+// points are on misses nearly all of them, where upright boxes would stick out by their width.
 class NearestPoint {
  public:
   explicit NearestPoint(std::span<const Point> points);
@@ -16,14 +18,15 @@ class NearestPoint {
 
  private:
   struct Node {
-    double split = 0;
-    Index begin = 0, end = 0;  // of a leaf, into points_; an inner node's children follow at left and right
-    Index right = kNone;       // kNone in a leaf; the left child comes right after its parent
-    int axis = 0;
+    Eigen::Matrix3d axes;      // rows
+    Box box;                   // along the axes
+    Index begin = 0, end = 0;  // into points_
+    Index right = kNone;       // the second child, kNone in a leaf; the first comes right after its parent
   };
 
   void build(Index begin, Index end);
-  void search(Index node, const Point& q, Vector& offset, double& best) const;
+  double squared_distance_bound(Index node, const Point& q) const;
+  void search(Index node, const Point& q, double& best) const;
 
   std::vector<Point> points_;
   std::vector<Node> nodes_;

@@ -15,49 +15,6 @@ void Workspace::set_scale(const Box& box) {
   bounds_.back() = std::numeric_limits<double>::infinity();
 }
 
-// The smallest class whose bound is not below the given one.
-std::uint8_t Workspace::error_class(double bound) const {
-  const double ratio = bound * per_smallest_bound_;
-  if (!(ratio < 0x1p120)) return kUnknownError;
-  if (ratio <= 1) return 0;
-  const auto exponent = static_cast<unsigned>((std::bit_cast<std::uint64_t>(ratio) >> 52) - 1023);
-  return static_cast<std::uint8_t>(exponent / 2 + 1);
-}
-
-bool Workspace::place(VoronoiVertex& vertex, std::uint8_t& error, const Point& new_point, const LengthedVector& a,
-                      const LengthedVector& b, const LengthedVector& c) const {
-  const RelativeCenter relative = circumcenter(a, b, c);
-  // The reciprocal of the smallest height of the tetrahedron's corners at the new point: how far input noise is
-  // magnified.
-  const double per_height = relative.largest_face / std::abs(relative.volume6);
-  if (!relative.reliable() || !(noise_ * per_height < 0.125)) return false;
-  vertex.center = new_point + relative.center;
-  // From the rounded centre, so that the new point at least is on the sphere.
-  vertex.radius = (vertex.center - new_point).squaredNorm();
-  const double r = std::sqrt(vertex.radius);
-  // A centre off by e changes the power of a point about as far as the radius by less than 4 r e; e is kCenterError *
-  // condition * r plus the rounding of the sum above; and the power itself takes some ten roundings of r^2.
-  error =
-      error_class((4 * RelativeCenter::kCenterError * relative.condition + 16 * kRounding + 8 * noise_ * per_height) *
-                      vertex.radius +
-                  8 * kRounding * r * vertex.center.lpNorm<1>());
-  return relative.volume6 > 0;
-}
-
-bool Workspace::place_at_infinity(VoronoiVertex& vertex, std::uint8_t& error, const LengthedVector& a,
-                                  const LengthedVector& b) const {
-  const Vector normal = a.vector.cross(b.vector);
-  const double length = normal.norm();
-  const double condition = a.length * b.length / length;
-  const double per_height = std::max(a.length, b.length) / length;
-  if (!(condition * RelativeCenter::kCenterError < 0.125) || !(noise_ * per_height < 0.125)) return false;
-  vertex.center = normal / length;
-  vertex.radius = std::numeric_limits<double>::quiet_NaN();
-  // Here the class holds the error of a height above the facet, relative to the distance from one of its points.
-  error = error_class(((16 * condition + 16) * kRounding + 4 * noise_ * per_height) * squared_scale_);
-  return true;
-}
-
 void Workspace::adopt(VoronoiVertex& vertex, std::uint8_t& error) const {
   const auto& corner = vertex.forming_points;
   const Point& origin = points[corner[0]];
@@ -99,10 +56,10 @@ Sign Workspace::sign_at_infinity(Index v, const Point& q) const {
   const double bound = a.lpNorm<1>() * (power_bound(v) / squared_scale_) + 2 * noise_;
   if (height > bound) return Sign::positive;
   if (height < -bound) return Sign::negative;
-  // In the facet's plane as far as doubles can tell. The spheres that grow towards this end of the unbounded edge all cut
-  // the plane in the facet's circle: q is nearer to the vertex at infinity if it lies inside. The sphere at the other end
-  // of the edge cuts the plane there too; taking its sign, no facet ends up between a deleted and an undeleted vertex that
-  // is coplanar with q.
+  // In the facet's plane as far as doubles can tell. The spheres that grow towards this end of the unbounded edge all
+  // cut the plane in the facet's circle: q is nearer to the vertex at infinity if it lies inside. The sphere at the
+  // other end of the edge cuts the plane there too; taking its sign, no facet ends up between a deleted and an
+  // undeleted vertex that is coplanar with q.
   return sign(vertex.neighbors[3], q);
 }
 

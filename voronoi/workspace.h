@@ -33,6 +33,9 @@ class Workspace {
   bool at_infinity(Index v) const { return vertices[v].forming_points[3] == kInfinitePoint; }
   bool is_free(Index v) const { return vertices[v].neighbors[0] == kNone; }
   Mark mark(Index v) const { return static_cast<Mark>(state_[v] & 3u); }
+  void add_mark(Index v, bool condition, Mark mark) {  // to an unseen one
+    state_[v] = static_cast<std::uint8_t>(state_[v] | (condition ? unsigned(mark) : 0u));
+  }
   void set_mark(Index v, Mark mark) { state_[v] = static_cast<std::uint8_t>((state_[v] & ~3u) | unsigned(mark)); }
 
   // The squared radius minus the squared distance to q by the stored centre; no number at infinity.
@@ -46,6 +49,9 @@ class Workspace {
     if (p < -bound) return Sign::negative;
     return doubtful_sign(v, q, bound);
   }
+
+  // The same where the stored centre does not tell.
+  Sign doubtful_sign(Index v, const Point& q, double bound) const;
 
   // The dissertation's value of a deletion: distance to the forming points minus distance to q; at infinity the limit
   // of that along the unbounded edge, which is the distance of q beyond the facet.
@@ -79,7 +85,6 @@ class Workspace {
   }
 
  private:
-  Sign doubtful_sign(Index v, const Point& q, double bound) const;
   Sign sign_at_infinity(Index v, const Point& q) const;
   Sign sign_from_points(Index v, const Point& q) const;
   std::uint8_t error_class(double bound) const;
@@ -90,5 +95,48 @@ class Workspace {
   double noise_ = 0;                                   // how far off an input point may be
   double good_center_ = 0;                             // an error bound below this many squared radii
 };
+
+// The smallest class whose bound is not below the given one.
+inline std::uint8_t Workspace::error_class(double bound) const {
+  const double ratio = bound * per_smallest_bound_;
+  if (!(ratio < 0x1p120)) return kUnknownError;
+  if (ratio <= 1) return 0;
+  const auto exponent = static_cast<unsigned>((std::bit_cast<std::uint64_t>(ratio) >> 52) - 1023);
+  return static_cast<std::uint8_t>(exponent / 2 + 1);
+}
+
+inline bool Workspace::place(VoronoiVertex& vertex, std::uint8_t& error, const Point& new_point,
+                             const LengthedVector& a, const LengthedVector& b, const LengthedVector& c) const {
+  const RelativeCenter relative = circumcenter(a, b, c);
+  // The reciprocal of the smallest height of the tetrahedron's corners at the new point: how far input noise is
+  // magnified.
+  const double per_height = relative.largest_face / std::abs(relative.volume6);
+  if (!relative.reliable() || !(noise_ * per_height < 0.125)) return false;
+  vertex.center = new_point + relative.center;
+  // From the rounded centre, so that the new point at least is on the sphere.
+  vertex.radius = (vertex.center - new_point).squaredNorm();
+  const double r = std::sqrt(vertex.radius);
+  // A centre off by e changes the power of a point about as far as the radius by less than 4 r e; e is kCenterError *
+  // condition * r plus the rounding of the sum above; and the power itself takes some ten roundings of r^2.
+  error =
+      error_class((4 * RelativeCenter::kCenterError * relative.condition + 16 * kRounding + 8 * noise_ * per_height) *
+                      vertex.radius +
+                  8 * kRounding * r * vertex.center.lpNorm<1>());
+  return relative.volume6 > 0;
+}
+
+inline bool Workspace::place_at_infinity(VoronoiVertex& vertex, std::uint8_t& error, const LengthedVector& a,
+                                         const LengthedVector& b) const {
+  const Vector normal = a.vector.cross(b.vector);
+  const double length = normal.norm();
+  const double condition = a.length * b.length / length;
+  const double per_height = std::max(a.length, b.length) / length;
+  if (!(condition * RelativeCenter::kCenterError < 0.125) || !(noise_ * per_height < 0.125)) return false;
+  vertex.center = normal / length;
+  vertex.radius = std::numeric_limits<double>::quiet_NaN();
+  // Here the class holds the error of a height above the facet, relative to the distance from one of its points.
+  error = error_class(((16 * condition + 16) * kRounding + 4 * noise_ * per_height) * squared_scale_);
+  return true;
+}
 
 }  // namespace orchard::detail
