@@ -15,6 +15,9 @@ namespace {
 // Surface parts whose normals have a smaller product are different sheets. A right-angled edge of many small triangles
 // is well within.
 constexpr double kFacesAway = -0.3;
+// An edge pushes the points of its own sheet only, even where several sheets end at it.
+constexpr double kOwnSheet = 0.5;
+constexpr std::size_t kCellGrain = 64;  // cells a task
 
 class NeighborRelaxation {
  public:
@@ -48,17 +51,14 @@ class NeighborRelaxation {
     });
     grid.build(cells_);
     const std::vector<Index> runs = grid.runs();
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, runs.size() - 1, kRelaxationGrain / 4),
-                      [&](const auto& range) {
-                        std::vector<Index> around, near;
-                        for (std::size_t run = range.begin(); run < range.end(); ++run) {
-                          around.clear();
-                          grid.visit_block(grid.entry(runs[run]).cell, 3, [&](Index j) { around.push_back(j); });
-                          for (Index e = runs[run]; e < runs[run + 1]; ++e)
-                            if (const Index i = grid.entry(e).item; i < count_)
-                              move(points[i], i, around, near, step_size);
-                        }
-                      });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, runs.size() - 1, kCellGrain), [&](const auto& range) {
+      Surroundings around;
+      for (std::size_t run = range.begin(); run < range.end(); ++run) {
+        look_around(grid.entry(runs[run]).cell, grid, around);
+        for (Index e = runs[run]; e < runs[run + 1]; ++e)
+          if (const Index i = grid.entry(e).item; i < count_) move(points[i], i, around, step_size);
+      }
+    });
   }
 
  private:
@@ -66,6 +66,11 @@ class NeighborRelaxation {
     Point start;
     Vector along, normal;
     double length;
+  };
+
+  // What may act on the points of a cell; `near` is room for those of `points` that do act on one of them.
+  struct Surroundings {
+    std::vector<Index> points, edges, near;
   };
 
   template <class Work>
@@ -76,7 +81,7 @@ class NeighborRelaxation {
   }
   CellHash make_grid() const { return {surface_.bounding_box().min(), radius_}; }
 
-  // The edges where a walk ends, in the cells that come within the radius of them.
+  // The edges where a walk ends, in the cells that they pass through or near.
   void collect_edges() {
     edge_grid_ = make_grid();
     std::vector<Cell> cells;
@@ -94,45 +99,50 @@ class NeighborRelaxation {
   void add_cells(std::vector<Cell>& cells) {
     const Edge& edge = edges_.back();
     const int pieces = 1 + static_cast<int>(edge.length / radius_);
-    std::vector<Cell> own;
     for (int k = 0; k < pieces; ++k) {
       const Point from = edge.start + (k * (edge.length / pieces)) * edge.along;
       const Point to = edge.start + ((k + 1) * (edge.length / pieces)) * edge.along;
-      const Vector margin = Vector::Constant(radius_);
-      const Cell low = edge_grid_.cell_of(from.cwiseMin(to) - margin);
-      const Cell high = edge_grid_.cell_of(from.cwiseMax(to) + margin);
+      const Cell low = edge_grid_.cell_of(from.cwiseMin(to)), high = edge_grid_.cell_of(from.cwiseMax(to));
       for (int z = low.z; z <= high.z; ++z)
         for (int y = low.y; y <= high.y; ++y)
-          for (int x = low.x; x <= high.x; ++x) own.push_back({x, y, z});
+          for (int x = low.x; x <= high.x; ++x) {
+            cells.push_back({x, y, z});
+            edge_in_cell_.push_back(static_cast<Index>(edges_.size() - 1));
+          }
     }
-    std::sort(own.begin(), own.end());
-    own.erase(std::unique(own.begin(), own.end()), own.end());
-    cells.insert(cells.end(), own.begin(), own.end());
-    edge_in_cell_.insert(edge_in_cell_.end(), own.size(), static_cast<Index>(edges_.size() - 1));
   }
 
-  void move(SurfacePoint& point, Index i, std::span<const Index> around, std::vector<Index>& near,
-            double step_size) const {
-    Vector step = step_size * spacing_ * force(i, around, near);
+  void look_around(const Cell& cell, const CellHash& grid, Surroundings& out) const {
+    out.points.clear();
+    out.edges.clear();
+    grid.visit_block(cell, 3, [&](Index j) { out.points.push_back(j); });
+    if (edges_.empty()) return;
+    edge_grid_.visit_block(cell, 3, [&](Index entry) { out.edges.push_back(edge_in_cell_[entry]); });
+    std::sort(out.edges.begin(), out.edges.end());
+    out.edges.erase(std::unique(out.edges.begin(), out.edges.end()), out.edges.end());
+  }
+
+  void move(SurfacePoint& point, Index i, Surroundings& around, double step_size) const {
+    Vector step = step_size * spacing_ * force(i, around);
     const double length = step.norm(), longest = kLongestStep * spacing_;
     if (length > longest) step *= longest / length;
     SurfaceWalker(surface_).walk(point, step, [](Index, Index) { return true; });
   }
 
-  Vector force(Index i, std::span<const Index> around, std::vector<Index>& near) const {
+  Vector force(Index i, Surroundings& around) const {
     const Point& p = positions_[i];
     // Collected without a branch: whether a point is near cannot be predicted, and that costs more than the test.
-    near.resize(around.size());
+    around.near.resize(around.points.size());
     std::size_t count = 0;
-    for (const Index j : around) {
+    for (const Index j : around.points) {
       const double squared = (p - positions_[j]).squaredNorm();
-      near[count] = j;
+      around.near[count] = j;
       count += static_cast<std::size_t>(squared < radius_ * radius_) & static_cast<std::size_t>(squared > 0);
     }
     const Plane plane = plane_of(triangles_[i]);
     Vector sum = Vector::Zero();
-    for (std::size_t k = 0; k < count; ++k) sum += repulsion(p, plane, near[k]);
-    edge_grid_.visit(cells_[i], [&](Index entry) { sum += push(edges_[edge_in_cell_[entry]], p, normals_[i]); });
+    for (std::size_t k = 0; k < count; ++k) sum += repulsion(p, plane, around.near[k]);
+    for (const Index edge : around.edges) sum += push(edges_[edge], p, plane.normal);
     return sum;
   }
 
@@ -176,7 +186,7 @@ class NeighborRelaxation {
   }
   Vector push(const Edge& edge, const Point& p, const Vector& normal) const {
     const double on = (p - edge.start).dot(edge.along);
-    if (on < 0 || on > edge.length || normal.dot(edge.normal) < kFacesAway) return Vector::Zero();
+    if (on < 0 || on > edge.length || normal.dot(edge.normal) < kOwnSheet) return Vector::Zero();
     const Vector away = p - edge.start - on * edge.along;
     const double h = away.norm() / radius_;
     const Vector flat = away - away.dot(normal) * normal;

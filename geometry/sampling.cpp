@@ -56,6 +56,7 @@ void add_point(const Surface& surface, const Point& point, Index triangle, Point
 
 // For each point, in order, whether it is farther than `distance` from all that were kept before it.
 std::vector<bool> keep_apart(const Surface& surface, std::span<const Point> points, double distance) {
+  if (!(distance > 0)) return std::vector<bool>(points.size(), true);  // an object without any extent
   detail::CellHash grid(surface.bounding_box().min(), 2 * distance);
   std::vector<detail::Cell> cells;
   for (const Point& p : points) cells.push_back(grid.cell_of(p));

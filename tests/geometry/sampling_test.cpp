@@ -294,6 +294,17 @@ TEST(Sampling, RefusesFewerThanFourPoints) {
   EXPECT_NO_THROW((void)sample_surface(surface, {.face_points = 3, .edge_points = 1}));
 }
 
+TEST(Sampling, GetsAlongWithoutArea) {
+  const Surface needle(TriangleMesh{{{0, 0, 0}, {1, 0, 0}, {3, 0, 0}}, {{0, 1, 2}}});
+  const Surface dot(TriangleMesh{{{1, 2, 3}}, {{0, 0, 0}}});
+  for (const Relaxation relaxation : kBoth) {
+    const SamplingOptions options{.face_points = 20, .edge_points = 20, .relaxation = relaxation};
+    EXPECT_NO_THROW(validate(sample_surface(needle, options), needle));
+    EXPECT_EQ(sample_surface(dot, options).size(), 0u);
+    EXPECT_EQ(evenness(sample_surface(dot, options), dot).mean, 0);
+  }
+}
+
 TEST(Sampling, StopsWhenToldTo) {
   const Surface surface(test::l_shape());
   EXPECT_THROW((void)sample_surface(surface, {}, [](std::string_view, double) { return false; }), Cancelled);
