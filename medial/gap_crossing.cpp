@@ -18,18 +18,20 @@ namespace orchard {
 namespace {
 
 using detail::Crossing;
+using detail::RepairProposal;
 
 // Two new points of one pass keep this share of the wider gap between them: what one of them does not mend is seen in
 // the next pass, so that wide gaps get few points.
 constexpr double kSpread = 0.5;
 
+// Repair points that spawn repair points, across a gap and back again: after so many, the bounce is cut short.
+constexpr int kBounceLength = 3;
+
 struct Candidate {
   Index cell = kNone;
   std::vector<Index> neighbors;
-  detail::RepairProposal proposal;
+  RepairProposal proposal;
   bool neck = false;
-
-  double gap() const { return proposal.projected ? proposal.projected->distance : proposal.snapped.distance; }
 };
 
 class Repair {
@@ -103,14 +105,14 @@ class Repair {
     tbb::parallel_for(std::size_t{0}, crossings.size(), [&](std::size_t i) {
       const Crossing& crossing = *crossings[i];
       const Index cell = crossing.patch.cell;
-      const auto across = generations_[cell] > 0 ? detail::Across::straight : detail::Across::normal;
       candidates[i] = {cell, crossing.neighbors,
-                       detail::propose_repair(surface_, result_.sampling, *restricted_, crossing, across),
+                       detail::propose_repair(surface_, result_.sampling, *restricted_, crossing,
+                                              generations_[cell] >= kBounceLength),
                        crossing.neck};
     });
     std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-      const bool a_projects = a.proposal.projected.has_value(), b_projects = b.proposal.projected.has_value();
-      return a_projects != b_projects ? a_projects : a.gap() > b.gap();
+      const bool a_snaps = a.proposal.facing.empty(), b_snaps = b.proposal.facing.empty();
+      return a_snaps != b_snaps ? b_snaps : a.proposal.gap() > b.proposal.gap();
     });
     return candidates;
   }
@@ -121,8 +123,9 @@ class Repair {
     for (const Candidate& candidate : candidates) {
       if (near_new_point(candidate, first_new)) continue;
       RepairPass& pass = result_.report.passes.back();
-      const auto& [projection, snapped] = candidate.proposal;
-      if (projection && add(*projection, candidate.cell)) {
+      const auto& [facing, snapped] = candidate.proposal;
+      const auto add_place = [&](const ClosestPoint& place) { return add(place, candidate.cell); };
+      if (std::any_of(facing.begin(), facing.end(), add_place)) {
         projected[candidate.cell] = 1;
         ++pass.added_by_projection;
         continue;
@@ -140,9 +143,9 @@ class Repair {
   }
 
   bool near_new_point(const Candidate& candidate, Index first_new) const {
-    const Point& position =
-        candidate.proposal.projected ? candidate.proposal.projected->position : candidate.proposal.snapped.position;
-    const double spread = kSpread * candidate.gap();
+    const RepairProposal& proposal = candidate.proposal;
+    const Point& position = proposal.facing.empty() ? proposal.snapped.position : proposal.facing[0].position;
+    const double spread = kSpread * proposal.gap();
     for (Index i = first_new; i < result_.sampling.size(); ++i) {
       if ((result_.sampling.points[i] - position).squaredNorm() < spread * spread) return true;
     }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "fold_bottom.h"
 #include "neck_test.h"
 #include "orchard/geometry/tolerance.h"
 
@@ -12,6 +13,8 @@ namespace orchard::detail {
 namespace {
 
 constexpr int kMaxWalk = 1000;
+// In gap widths: a V deeper than this has parallel sides for all that matters.
+constexpr double kNearBottom = 4;
 // Cosine between the direction of a projection and the surface's normal at its end: 25 degrees.
 constexpr double kAlongNormal = 0.9;
 // Fraction of the bounding radius: a projection farther than this from the surface floats.
@@ -113,33 +116,49 @@ std::optional<Point> straight_across(const Point& from, const Vector& own, const
   return from - (2 * offset / squared) * direction;
 }
 
+// Of the planes that a sample lies on, the normal of the one that faces a plane with the given normal most.
+Vector facing_normal(const Surface& surface, const SurfaceSampling& sampling, Index cell, const Vector& normal) {
+  std::vector<Index> around;
+  surface.triangles_at(sampling.triangles[cell], sampling.features[cell], around);
+  Vector best = surface.normal(around[0]);
+  for (const Index triangle : around) {
+    if (surface.normal(triangle).dot(normal) < best.dot(normal)) best = surface.normal(triangle);
+  }
+  return best;
+}
+
 }  // namespace
 
 RepairProposal propose_repair(const Surface& surface, const SurfaceSampling& sampling,
-                              const RestrictedVoronoi& restricted, const Crossing& crossing, Across across) {
+                              const RestrictedVoronoi& restricted, const Crossing& crossing, bool bounced) {
   const CellPatch& patch = crossing.patch;
   const Point& from = restricted.points()[patch.cell];
   RepairProposal proposal;
   if (crossing.neck) {
-    const Index neighbor =
-        patch.euler_characteristic == 1 && crossing.neighbors.size() > 0 ? crossing.neighbors[0] : kNone;
-    const auto [position, triangle] = farthest_corner(restricted, patch, neighbor);
+    const bool disk = patch.euler_characteristic == 1 && !crossing.neighbors.empty();
+    const auto [position, triangle] = farthest_corner(restricted, patch, disk ? crossing.neighbors[0] : kNone);
     proposal.snapped = place_on(surface, triangle, position, from);
     return proposal;
   }
   proposal.snapped = nearest_of_patch(surface, restricted, patch);
-  const Vector& normal = surface.normal(proposal.snapped.triangle);
-  Point target = from - normal * normal.dot(from - proposal.snapped.position);
-  Point walk_target = from;
-  if (across == Across::straight) {
-    const Vector own = surface.pseudonormal(sampling.triangles[patch.cell], sampling.features[patch.cell]);
-    if (const auto mirrored = straight_across(from, own, proposal.snapped.position, normal)) {
-      target = walk_target = *mirrored;
-    }
+  const Index met = proposal.snapped.triangle;
+  const auto propose = [&](const std::optional<ClosestPoint>& place) {
+    if (place) proposal.facing.push_back(*place);
+  };
+  if (bounced) {
+    const double reach = kNearBottom * proposal.snapped.distance;
+    propose(bottom_of_fold(surface, sampling, patch.cell, met, reach));
+    if (!proposal.facing.empty() && proposal.facing[0].distance > reach) proposal.facing.clear();
   }
   const Projector projector(surface, restricted, patch);
-  proposal.projected = projector.within_cluster(target, proposal.snapped.triangle);
-  if (!proposal.projected) proposal.projected = projector.walk(walk_target, proposal.snapped.triangle);
+  const Vector& normal = surface.normal(met);
+  const Vector own = facing_normal(surface, sampling, patch.cell, normal);
+  const std::optional<Point> mirrored = straight_across(from, own, proposal.snapped.position, normal);
+  const Point projection = from - normal * normal.dot(from - proposal.snapped.position);
+  if (mirrored) propose(projector.within_cluster(*mirrored, met));
+  if (proposal.facing.empty()) propose(projector.within_cluster(projection, met));
+  if (proposal.facing.empty() && mirrored) propose(projector.walk(*mirrored, met));
+  if (proposal.facing.empty()) propose(projector.walk(from, met));
   return proposal;
 }
 

@@ -1,30 +1,27 @@
 #pragma once
-#include <optional>
+#include <vector>
 
 #include "crossings.h"
 
 namespace orchard::detail {
 
-// How to look for the place across a gap that faces a point.
-enum class Across : std::uint8_t {
-  normal,    // normal projection onto the cluster that is met first
-  straight,  // mirror image in the bisector of the point's tangent plane and the cluster's: it lies as deep in a V as
-             // the point does, so that the new face is the bisector, and the two sides of a V do not bounce points for
-             // ever
-};
-
-// Points of the surface that would take the patch away from the cell, the better one first. Distances are from the
-// cell's point.
+// Points of the surface that would take the patch away from the cell. Distances are from the cell's point.
 struct RepairProposal {
-  std::optional<ClosestPoint> projected;  // the sheet of surface that holds the patch faces the cell's point here
-  ClosestPoint snapped;                   // of the patch: nothing but the cell's point is near it
+  std::vector<ClosestPoint> facing;  // on the sheet of surface that holds the patch; the better one first
+  ClosestPoint snapped;              // of the patch itself: nothing but the cell's point is near it
+
+  double gap() const { return facing.empty() ? snapped.distance : facing[0].distance; }
 };
 
-// Dissertation 6.2.4. A projection counts if it lies within the cluster; on a curved sheet, where clusters are single
+// Dissertation 6.2.4. First straight across: the mirror image of the cell's point in the bisector of its own tangent
+// plane and the plane of the cluster that it meets first. It lies as deep in a V as the point does, so that the new
+// face is the bisector and crosses neither side; between parallel sides it is the normal projection. Then the normal
+// projection itself. Either counts if it lies within the cluster; on a curved sheet, where clusters are single
 // triangles, the point of the sheet nearest to the target is found by a walk from the patch over edges that are all but
 // flat, and counts if the surface faces the cell's point there. So no free-floating point is ever proposed. The point
-// to snap to is the patch's nearest, and for necks the farthest on the border that is at fault.
+// to snap to is the patch's nearest, and for necks the farthest on the border that is at fault. bounced: the point is
+// itself the last of several repair points; then the bottom of the V, if near, comes first.
 RepairProposal propose_repair(const Surface& surface, const SurfaceSampling& sampling,
-                              const RestrictedVoronoi& restricted, const Crossing& crossing, Across across);
+                              const RestrictedVoronoi& restricted, const Crossing& crossing, bool bounced);
 
 }  // namespace orchard::detail
