@@ -4,6 +4,7 @@
 
 #include "commands.h"
 #include "console.h"
+#include "load_solid.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
@@ -29,16 +30,6 @@ fs::path make_folder(const fs::path& folder) {
   return folder;
 }
 
-TriangleMesh read_solid(const fs::path& file, bool talk) {
-  TriangleMesh mesh = read_mesh(file);
-  try {
-    if (require_solid(mesh) && talk) fmt::print("{}: was inside out; its triangles were turned round\n", file.string());
-  } catch (const InputError& error) {
-    throw InputError(file.string() + ": " + error.what());
-  }
-  return mesh;
-}
-
 std::string_view as_text(const std::vector<std::byte>& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
@@ -58,6 +49,13 @@ Written write_trees(const BuildCommand& command, const BuildResult& result) {
   write(".orchard", as_text(runtime::serialize(result.packed)), "the sphere-tree for the run-time");
   write(".sph", to_sph(result.tree), "the sphere-tree as text");
   return written;
+}
+
+void write_wrap(const BuildCommand& command, const TriangleMesh& wrap, Written& written) {
+  fs::path file = command.folder / command.mesh.stem();
+  file += "-wrap.obj";
+  write_obj(file, wrap);
+  written.emplace_back(file, "the wrap, which everything else was built on");
 }
 
 #ifdef ORCHARD_HAS_VIZ
@@ -97,10 +95,14 @@ void write_views(const BuildCommand& command, const Surface&, const BuildResult&
 void build(const BuildCommand& command) {
   const bool talk = !command.output.quiet && !command.output.json;
   const Stopwatch reading;
-  const Surface surface(read_solid(command.mesh, talk));
-  const double seconds_reading = reading.seconds();
-
   ProgressBar bar(talk);
+  const SolidMesh solid = load_solid(command.mesh, command.reading, bar.callback());
+  const Surface& surface = solid.surface;
+  const double seconds_reading = reading.seconds();
+  bar.clear();
+  const double wrap_distance = solid.wrap ? solid.wrap->distance() : 0;
+  if (talk) print_solid(command.mesh, solid);
+
   BuildResult result = run_pipeline(surface, command.options, bar.callback());
   result.seconds.insert(result.seconds.begin(), {"reading", seconds_reading});
   bar.clear();
@@ -108,9 +110,11 @@ void build(const BuildCommand& command) {
   make_folder(command.folder);
   const Stopwatch writing;
   Written written = write_trees(command, result);
+  if (solid.wrap) write_wrap(command, surface.mesh(), written);
   write_views(command, surface, result, written);
   result.seconds.emplace_back("writing", writing.seconds());
-  const nlohmann::json report = build_json(surface, command.options, result);
+  nlohmann::json report = build_json(surface, command.options, result, wrap_distance);
+  add_solid_json(solid, report);
   fs::path report_file = command.folder / command.mesh.stem();
   report_file += ".json";
   write_file(report_file, report.dump(2) + "\n");
@@ -120,7 +124,7 @@ void build(const BuildCommand& command) {
   if (!talk) return;
   fmt::print("{}: {} triangles, {} clusters, bounding radius {:.6g}\n", command.mesh.string(),
              surface.mesh().triangles.size(), surface.clusters().count(), surface.bounding_radius());
-  print_build(result, surface.bounding_radius());
+  print_build(result, surface.bounding_radius(), wrap_distance);
   for (const auto& [file, what] : written) fmt::print("  {}  ({})\n", file.string(), what);
 }
 

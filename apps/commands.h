@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <string>
 
+#include "load_solid.h"
 #include "pipeline.h"
 
 // The commands of the program, one file each: parse (main.cpp), call, report. They throw; main() turns that into an
@@ -15,6 +16,7 @@ struct Output {
 
 struct BuildCommand {
   std::filesystem::path mesh, folder;
+  MeshOptions reading;
   BuildOptions options;
   bool views = true;     // ParaView files, where the program was built with them
   bool picture = false;  // a .png as well

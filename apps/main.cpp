@@ -33,13 +33,29 @@ void add_output_flags(CLI::App& command, Output& output) {
   command.add_flag("--json", output.json, "Print a JSON report instead of a table");
 }
 
+void add_mesh_options(CLI::App& command, MeshOptions& options) {
+  auto* strict =
+      command.add_flag("--strict", options.strict, "Refuse a mesh that is no closed manifold instead of repairing it");
+  command
+      .add_flag("--wrap{" + kDefaultWrap + "}", options.wrap,
+                "Build on a closed skin around the mesh; =OFFSET: about how far outside, in diagonals of its box")
+      ->excludes(strict);
+  command
+      .add_option(
+          "--wrap-alpha", options.wrap_alpha,
+          "Openings narrower than this stay closed, in diagonals; less follows the mesh better, and takes longer")
+      ->check(CLI::Range(1e-4, 0.5))
+      ->capture_default_str();
+}
+
 Method method_named(const std::string& name) { return name == "octree" ? Method::octree : Method::medial; }
 
 void add_build(CLI::App& app, Request& request) {
-  CLI::App& command = *app.add_subcommand("build", "Build the sphere-tree of a closed triangle mesh");
+  CLI::App& command = *app.add_subcommand("build", "Build the sphere-tree of a triangle mesh");
   BuildCommand& build = request.build;
   command.add_option("mesh", build.mesh, "The mesh: .obj, .ply, .stl or .off")->required();
   command.add_option("-o,--output", build.folder, "Folder for the tree, the views and the report")->required();
+  add_mesh_options(command, build.reading);
   command
       .add_option_function<std::string>(
           "--method", [&build](const std::string& name) { build.options.method = method_named(name); },

@@ -21,12 +21,17 @@ json repair_json(const RepairReport& repair) {
       {"passes", passes}, {"points_added", repair.points_added}, {"faces_still_crossing", repair.faces_still_crossing}};
 }
 
-json levels_json(const SphereTree& tree, double bounding_radius) {
+json levels_json(const SphereTree& tree, double bounding_radius, double wrap_distance) {
   json levels = json::array();
-  for (const LevelFigures& level : level_figures(tree, bounding_radius))
-    levels.push_back({{"spheres", level.spheres},
-                      {"mean_inaccuracy_over_radius", level.mean_inaccuracy},
-                      {"max_inaccuracy_over_radius", level.max_inaccuracy}});
+  for (const LevelFigures& level : level_figures(tree, bounding_radius)) {
+    json& row = levels.emplace_back(json{{"spheres", level.spheres},
+                                         {"mean_inaccuracy_over_radius", level.mean_inaccuracy},
+                                         {"max_inaccuracy_over_radius", level.max_inaccuracy}});
+    if (wrap_distance == 0) continue;
+    const double wrap = wrap_distance / bounding_radius;
+    row["mean_inaccuracy_over_radius_including_wrap"] = level.mean_inaccuracy + wrap;
+    row["max_inaccuracy_over_radius_including_wrap"] = level.max_inaccuracy + wrap;
+  }
   return levels;
 }
 
@@ -55,7 +60,7 @@ json mesh_json(const Surface& surface) {
           {"bounding_ball", {ball.center.x(), ball.center.y(), ball.center.z(), ball.radius}}};
 }
 
-json build_json(const Surface& surface, const BuildOptions& options, const BuildResult& result) {
+json build_json(const Surface& surface, const BuildOptions& options, const BuildResult& result, double wrap_distance) {
   const double radius = surface.bounding_radius();
   json report;
   report["mesh"] = mesh_json(surface);
@@ -79,8 +84,8 @@ json build_json(const Surface& surface, const BuildOptions& options, const Build
   report["covering"] = {{"rounds", result.cover.rounds},
                         {"triangles_uncovered_before", result.cover.triangles_uncovered},
                         {"largest_growth_over_radius", result.cover.largest_growth}};
-  report["levels"] = levels_json(result.tree, radius);
-  report["octree_levels"] = levels_json(result.octree, radius);
+  report["levels"] = levels_json(result.tree, radius, wrap_distance);
+  report["octree_levels"] = levels_json(result.octree, radius, wrap_distance);
   report["conservative"] = true;  // run_pipeline throws otherwise
   report["bytes_per_node"] =
       static_cast<double>(packed_bytes(result.packed)) / static_cast<double>(result.packed.node_count);
@@ -88,17 +93,20 @@ json build_json(const Surface& surface, const BuildOptions& options, const Build
   return report;
 }
 
-void print_build(const BuildResult& result, double bounding_radius) {
+void print_build(const BuildResult& result, double bounding_radius, double wrap_distance) {
+  const double wrap = wrap_distance / bounding_radius;
   const auto levels = level_figures(result.tree, bounding_radius);
   const auto octree = level_figures(result.octree, bounding_radius);
-  fmt::print("inaccuracy as a fraction of the bounding radius\n");
+  fmt::print("inaccuracy as a fraction of the bounding radius{}\n",
+             wrap > 0 ? fmt::format(", including {:.5f} from the wrap to the mesh", wrap) : "");
   fmt::print("level  spheres      mean       max | octree:  spheres      mean       max | mean / octree's\n");
   for (std::size_t i = 0; i < levels.size(); ++i) {
-    fmt::print("{:5} {:8} {:9.5f} {:9.5f} |", i, levels[i].spheres, levels[i].mean_inaccuracy,
-               levels[i].max_inaccuracy);
+    fmt::print("{:5} {:8} {:9.5f} {:9.5f} |", i, levels[i].spheres, levels[i].mean_inaccuracy + wrap,
+               levels[i].max_inaccuracy + wrap);
     if (i < octree.size())
-      fmt::print("        {:9} {:9.5f} {:9.5f} | {:15.3f}", octree[i].spheres, octree[i].mean_inaccuracy,
-                 octree[i].max_inaccuracy, levels[i].mean_inaccuracy / octree[i].mean_inaccuracy);
+      fmt::print("        {:9} {:9.5f} {:9.5f} | {:15.3f}", octree[i].spheres, octree[i].mean_inaccuracy + wrap,
+                 octree[i].max_inaccuracy + wrap,
+                 (levels[i].mean_inaccuracy + wrap) / (octree[i].mean_inaccuracy + wrap));
     fmt::print("\n");
   }
   if (result.axis)

@@ -8,7 +8,10 @@
 namespace orchard::apps {
 
 nlohmann::json mesh_json(const Surface& surface);
-nlohmann::json build_json(const Surface& surface, const BuildOptions& options, const BuildResult& result);
-void print_build(const BuildResult& result, double bounding_radius);
+// wrap_distance: how far the surface may be from the mesh that it wraps, in mesh units; 0: no wrap. It is added to the
+// inaccuracies where their name says so.
+nlohmann::json build_json(const Surface& surface, const BuildOptions& options, const BuildResult& result,
+                          double wrap_distance);
+void print_build(const BuildResult& result, double bounding_radius, double wrap_distance);
 
 }  // namespace orchard::apps

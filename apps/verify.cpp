@@ -5,9 +5,9 @@
 
 #include "commands.h"
 #include "console.h"
+#include "load_solid.h"
 #include "orchard/covering/coverage.h"
 #include "orchard/geometry/error.h"
-#include "orchard/geometry/mesh_io.h"
 #include "orchard/runtime/tree_file.h"
 #include "orchard/spheretree/tree_io.h"
 #include "orchard/spheretree/verify.h"
@@ -97,7 +97,7 @@ void print(const Verification& result, double radius, double seconds) {
 }  // namespace
 
 bool verify(const VerifyCommand& command) {
-  TriangleMesh mesh = read_mesh(command.mesh);
+  TriangleMesh mesh = read_repaired(command.mesh);
   const bool text = command.tree.extension() == ".sph";
   const Surface surface(std::move(mesh));
   ProgressBar bar(!command.output.quiet && !command.output.json);

@@ -1,0 +1,113 @@
+#include "load_solid.h"
+
+#include <fmt/core.h>
+
+#include <charconv>
+
+#include "orchard/geometry/error.h"
+#include "orchard/geometry/mesh_io.h"
+
+namespace orchard::apps {
+namespace {
+
+using nlohmann::json;
+
+double parse_offset(const std::string& text) {
+  double offset = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), offset);
+  if (error != std::errc() || end != text.data() + text.size() || !(offset > 0 && offset < 1))
+    throw InputError("--wrap=" + text + ": expected a fraction of the diagonal between 0 and 1, such as " +
+                     kDefaultWrap);
+  return offset;
+}
+
+SolidMesh strict(const std::string& name, TriangleMesh mesh) {
+  Surface surface(std::move(mesh));
+  if (!surface.solid())
+    throw InputError(name + ": not a closed, consistently oriented manifold: " + surface.report().faults() +
+                     "; without --strict, orchard repairs what is safe to repair");
+  return {.surface = std::move(surface), .repair = {.solid = true}, .wrap = {}};
+}
+
+SolidMesh wrapped(TriangleMesh mesh, const WrapOptions& options, const Progress& progress) {
+  report_progress(progress, "wrap", 0);
+  SolidMesh solid{.surface = Surface(wrap_mesh(mesh, options)), .repair = {.solid = true}, .wrap = {}};
+  const Surface input(std::move(mesh));
+  solid.wrap = WrapResult{.options = options,
+                          .to_input = surface_distance(solid.surface, input, {}, progress),
+                          .from_input = surface_distance(input, solid.surface, {}, progress)};
+  return solid;
+}
+
+SolidMesh repaired(const std::string& name, TriangleMesh mesh) {
+  MeshRepairReport repair = repair_mesh(mesh);
+  if (!repair.solid)
+    throw InputError(name + ": no closed manifold, even after repair: " + repair.faults +
+                     " (numbers count from 0); --wrap builds on a closed skin around it instead");
+  return {.surface = Surface(std::move(mesh)), .repair = std::move(repair), .wrap = {}};
+}
+
+json bounds(const SurfaceDistance& distance) { return {distance.lower, distance.upper}; }
+
+}  // namespace
+
+SolidMesh load_solid(const std::filesystem::path& file, const MeshOptions& options, const Progress& progress) {
+  WrapOptions wrap{.alpha = options.wrap_alpha};
+  if (!options.wrap.empty()) wrap.offset = parse_offset(options.wrap);
+  TriangleMesh mesh = read_mesh(file);
+  const std::string name = file.string();
+  if (!options.wrap.empty()) {
+    try {
+      return wrapped(std::move(mesh), wrap, progress);
+    } catch (const InputError& error) {
+      throw InputError(name + ": " + error.what());
+    }
+  }
+  return options.strict ? strict(name, std::move(mesh)) : repaired(name, std::move(mesh));
+}
+
+TriangleMesh read_repaired(const std::filesystem::path& file) {
+  TriangleMesh mesh = read_mesh(file);
+  TriangleMesh repaired = mesh;
+  return repair_mesh(repaired).solid ? repaired : mesh;
+}
+
+void print_solid(const std::filesystem::path& file, const SolidMesh& solid) {
+  for (const std::string& line : solid.repair.lines()) fmt::print("{}: {}\n", file.string(), line);
+  if (!solid.wrap) return;
+  const double radius = solid.surface.bounding_radius();
+  fmt::print(
+      "{}: wrapped, with {} triangles; no point of the wrap is farther than {:.6g} ({:.5f} of the bounding "
+      "radius) from the input, no point of the input farther than {:.6g} from the wrap\n",
+      file.string(), solid.surface.mesh().triangles.size(), solid.wrap->distance(), solid.wrap->distance() / radius,
+      solid.wrap->from_input.upper);
+}
+
+void add_solid_json(const SolidMesh& solid, json& report) {
+  const MeshRepairReport& repair = solid.repair;
+  if (solid.wrap) {
+    report["wrap"] = {{"alpha_over_diagonal", solid.wrap->options.alpha},
+                      {"offset_over_diagonal", solid.wrap->options.offset},
+                      {"wrap_to_input", bounds(solid.wrap->to_input)},
+                      {"input_to_wrap", bounds(solid.wrap->from_input)}};
+    report["wrap_distance"] = solid.wrap->distance();
+    report["wrap_distance_over_radius"] = solid.wrap->distance() / solid.surface.bounding_radius();
+    return;
+  }
+  report["repair"] = {{"vertices_welded", repair.vertices_welded},
+                      {"unused_vertices_dropped", repair.unused_vertices_dropped},
+                      {"degenerate_dropped", repair.degenerate_dropped},
+                      {"neighbors_split", repair.neighbors_split},
+                      {"duplicates_dropped", repair.duplicates_dropped},
+                      {"flipped", repair.flipped},
+                      {"edges_cut", repair.edges_cut},
+                      {"vertices_split", repair.vertices_split},
+                      {"holes_filled", repair.holes_filled},
+                      {"triangles_added", repair.triangles_added},
+                      {"largest_hole", repair.largest_hole},
+                      {"parts_turned_outward", repair.parts_turned_outward},
+                      {"cavities_turned_inward", repair.cavities_turned_inward},
+                      {"lines", repair.lines()}};
+}
+
+}  // namespace orchard::apps

@@ -1,0 +1,48 @@
+#pragma once
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "orchard/geometry/progress.h"
+#include "orchard/geometry/repair.h"
+#include "orchard/geometry/surface.h"
+#include "orchard/geometry/surface_distance.h"
+#include "orchard/geometry/wrap.h"
+
+// What every command that needs a solid does with the mesh that it is given.
+namespace orchard::apps {
+
+struct MeshOptions {
+  bool strict = false;  // as it is or not at all
+  std::string wrap;     // not empty: build on a wrap that lies this far outside, a number of WrapOptions::offset
+  double wrap_alpha = WrapOptions{}.alpha;
+};
+inline const std::string kDefaultWrap = "0.002";
+
+struct WrapResult {
+  WrapOptions options;
+  SurfaceDistance to_input, from_input;  // wrap to input and input to wrap
+  // What the wrap adds, at most, to the distance of anything from the input; in mesh units.
+  double distance() const { return to_input.upper; }
+};
+
+struct SolidMesh {
+  Surface surface;
+  MeshRepairReport repair;         // nothing done if wrapped
+  std::optional<WrapResult> wrap;  // then `surface` is the wrap
+};
+
+// Reads a mesh and makes a solid of it: wraps it if that is asked for, else repairs what is safe to repair. Throws
+// InputError, with the way out, if that gives no solid.
+SolidMesh load_solid(const std::filesystem::path& file, const MeshOptions& options, const Progress& progress = {});
+
+// The mesh that load_solid() gives without options, or as it is in the file if that cannot be repaired.
+TriangleMesh read_repaired(const std::filesystem::path& file);
+
+// A line for each thing done.
+void print_solid(const std::filesystem::path& file, const SolidMesh& solid);
+// Sets "repair" or "wrap" and "wrap_distance".
+void add_solid_json(const SolidMesh& solid, nlohmann::json& report);
+
+}  // namespace orchard::apps
