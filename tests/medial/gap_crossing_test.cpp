@@ -62,7 +62,7 @@ std::vector<Case> cases() {
   return {
       {"Fig_6_14_ThinBridge", extruded(thin_bridge(0.06), 1), points(700, 250), 0.5},
       {"Fig_6_14_VeryThinBridge", extruded(thin_bridge(0.004), 1), points(700, 250), 0.5},
-      {"Fig_6_15_Knees", extruded(knees(0.05), 1), points(700, 150), 0.25},
+      {"Fig_6_15_Knees", extruded(knees(0.02), 1), points(700, 150), 0.25},
       {"Fig_6_18_ShortShelf", extruded(short_shelf(0.05), 1), points(500, 150), 0.25},
       {"Fig_6_19_TwoTeeth", extruded(two_teeth(0.04), 1), points(1000, 200), 0.25},
       {"Fig_6_21_VNotch", extruded(v_notch(0.15), 1), points(700, 150), 0.25},
@@ -148,14 +148,14 @@ TEST(GapRepair, StopsAfterTheGivenPassesAndCountsWhatIsLeft) {
 }
 
 TEST(GapRepair, LeavesNothingUnderTheLooseDefinitionOfTheDissertation) {
-  const Surface surface(test::extruded(test::knees(0.05), 1));
+  const Surface surface(test::extruded(test::knees(0.01), 1));
   const Repaired repaired = sampled_and_repaired(surface, points(700, 150), {.definition = GapDefinition::loose});
   EXPECT_GT(repaired.report.points_added, 0u);
   EXPECT_EQ(repaired.report.faces_still_crossing, 0u);
 }
 
 TEST(GapRepair, EndsUnderTheStrictDefinitionThoughAVBouncesForEver) {
-  const Surface surface(test::extruded(test::knees(0.05), 1));
+  const Surface surface(test::extruded(test::knees(0.01), 1));
   const RepairOptions strict{.max_passes = 6, .definition = GapDefinition::strict};
   const Repaired repaired = sampled_and_repaired(surface, points(700, 150), strict);
   EXPECT_LE(repaired.report.passes.size(), 6u);
@@ -163,7 +163,7 @@ TEST(GapRepair, EndsUnderTheStrictDefinitionThoughAVBouncesForEver) {
 }
 
 TEST(GapRepair, StrictFlagsAllThatLooseFlags) {
-  const Surface surface(test::extruded(test::knees(0.05), 1));
+  const Surface surface(test::extruded(test::knees(0.01), 1));
   std::vector<Index> crossing;
   for (const GapDefinition definition : {GapDefinition::strict, GapDefinition::loose}) {
     const Repaired repaired =
