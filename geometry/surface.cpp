@@ -77,10 +77,10 @@ struct Surface::Data {
   Clusters clusters;
   detail::TriangleTree tree;
 
-  explicit Data(TriangleMesh input)
+  Data(TriangleMesh input, BoundingBall kind)
       : mesh(validated(std::move(input))),
         report(check_mesh(mesh)),
-        ball(ritter_ball(mesh.vertices)),
+        ball(kind == BoundingBall::minimal ? minimal_ball(mesh.vertices) : ritter_ball(mesh.vertices)),
         neighbors(triangle_neighbors(mesh)),
         triangles_around(find_triangles_around(mesh)),
         tree(mesh) {
@@ -109,7 +109,7 @@ struct Surface::Data {
   }
 };
 
-Surface::Surface(TriangleMesh mesh) : data_(std::make_unique<const Data>(std::move(mesh))) {}
+Surface::Surface(TriangleMesh mesh, BoundingBall kind) : data_(std::make_unique<const Data>(std::move(mesh), kind)) {}
 Surface::~Surface() = default;
 Surface::Surface(Surface&&) noexcept = default;
 Surface& Surface::operator=(Surface&&) noexcept = default;

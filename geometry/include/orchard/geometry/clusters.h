@@ -14,8 +14,8 @@ struct Clusters {
   Index count() const { return triangles.size(); }
 };
 
-// Grows each cluster from its lowest triangle across edges, while the normal stays within `angle` (radians) of the first
-// triangle's. normals: unit; neighbors: kNone where there is none.
+// Grows each cluster from its lowest triangle across edges, while the normal stays within `angle` (radians) of the
+// first triangle's. normals: unit; neighbors: kNone where there is none.
 Clusters find_clusters(std::span<const Vector> normals, std::span<const std::array<Index, 3>> neighbors, double angle);
 
 }  // namespace orchard

@@ -11,8 +11,8 @@ namespace orchard {
 // Throws InputError naming file, line or byte, fault and remedy. Memory is bounded by the size of the file.
 TriangleMesh read_mesh(const std::filesystem::path& file);
 
-// Writes .obj; every coordinate in the fewest digits (17 at most) that read back as the same double. Throws Error if the
-// file cannot be written.
+// Writes .obj; every coordinate in the fewest digits (17 at most) that read back as the same double. Throws Error if
+// the file cannot be written.
 void write_obj(const std::filesystem::path& file, const TriangleMesh& mesh);
 
 }  // namespace orchard

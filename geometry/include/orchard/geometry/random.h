@@ -3,8 +3,8 @@
 
 namespace orchard {
 
-// A counter-based generator: item i of a stage draws the same numbers on any thread and in any order. The maps from bits
-// to values are our own, because the standard library's differ between implementations.
+// A counter-based generator: item i of a stage draws the same numbers on any thread and in any order. The maps from
+// bits to values are our own, because the standard library's differ between implementations.
 class Random {
  public:
   Random(std::uint64_t seed, std::uint64_t stage, std::uint64_t item = 0)

@@ -20,12 +20,15 @@ struct ClosestPoint {
   Feature feature = Feature::face;
 };
 
+// Which ball stands for the whole (min_ball.h): it is the root of sphere-trees and the length R of tolerances.
+enum class BoundingBall : std::uint8_t { minimal, ritter };
+
 // One surface, immutable and safe to query from many threads: a mesh with its adjacency, its clusters and a spatial
 // index. Any triangles will do for distances; what has an inside is solid().
 class Surface {
  public:
   // O(n log n). Throws InputError if validate(mesh) does.
-  explicit Surface(TriangleMesh mesh);
+  explicit Surface(TriangleMesh mesh, BoundingBall kind = BoundingBall::minimal);
   ~Surface();
   Surface(Surface&&) noexcept;
   Surface& operator=(Surface&&) noexcept;
@@ -34,7 +37,7 @@ class Surface {
   const MeshReport& report() const;
   bool solid() const { return report().solid(); }
   const Box& bounding_box() const;
-  const Sphere& bounding_ball() const;  // Ritter's (1990): holds every vertex, a few per cent above minimal
+  const Sphere& bounding_ball() const;  // holds every vertex
   double bounding_radius() const { return bounding_ball().radius; }
 
   std::array<Point, 3> corners(Index triangle) const;

@@ -1,11 +1,11 @@
 #pragma once
 
-// Every tolerance of the construction pipeline. Unless the name says otherwise, a tolerance is a fraction of the bounding
-// radius R of the mesh, so that scaling a mesh by a power of two scales every result exactly.
+// Every tolerance of the construction pipeline. Unless the name says otherwise, a tolerance is a fraction of the
+// bounding radius R of the mesh, so that scaling a mesh by a power of two scales every result exactly.
 namespace orchard::tolerance {
 
-// Radians between the normals of neighbouring triangles that count as coplanar. Six decimals in a mesh file turn a small
-// triangle's normal by about this much.
+// Radians between the normals of neighbouring triangles that count as coplanar. Six decimals in a mesh file turn a
+// small triangle's normal by about this much.
 inline constexpr double kCoplanarAngle = 1e-4;
 
 // A triangle whose two shorter edges span less than this times the product of their lengths is degenerate: such an area
@@ -40,8 +40,8 @@ inline constexpr double kGeneralPosition = 1e-8;
 // How far a surface point may lie from the triangle that it names: a few roundings.
 inline constexpr double kOnTriangle = 1e-12;
 
-// What builders leave between a ball and what it must hold, so that the certificate's strict test passes: two balls that
-// fit exactly are tangent, and tangent reads as uncovered.
+// What builders leave between a ball and what it must hold, so that the certificate's strict test passes: two balls
+// that fit exactly are tangent, and tangent reads as uncovered.
 inline constexpr double kCoverMargin = 1e-7;
 
 // Width of the bounds on a sphere's inaccuracy: finer than any use of it, coarse enough to be fast.
