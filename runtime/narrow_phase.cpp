@@ -13,14 +13,17 @@
 //      three products and three sums 4.1 u (|q| + |T_i|): together, with the rounding of T itself, at most
 //      sqrt(3) 5.2 u |q| + 5.2 u |T| <= u (10 E2 + 6 |T|). What double arithmetic and poses that are rigid only to
 //      kRigidTolerance add is exact_error below.
-//  (2) square = |c' - a|^2 (1 + 5.1 u) at most and reach = (r1 + r2 + slack_)(1 - 2 u) at least. If the balls touch,
-//      |c' - a| <= r1 + r2 + sigma, so square <= reach * reach, as computed, holds if slack_ - sigma >= 5.2 u (r1 +
+//  (2) square = |c' - a|^2 (1 + 5.1 u) at most and reach = (r1 + r2 + slack)(1 - 2 u) at least. If the balls touch,
+//      |c' - a| <= r1 + r2 + sigma, so square <= reach * reach, as computed, holds if slack - sigma >= 5.2 u (r1 +
 //      r2).
 //  (3) If the test fails, the true gap |c - a| - r1 - r2 is at least sqrt(square) - reach, evaluated exactly, if
-//      slack_ - sigma >= 4.1 u |c' - a| + 2.1 u (r1 + r2), which includes the rounding of square - reach * reach.
-//  (4) |c - a| <= sqrt(square) + slack_ if slack_ - sigma >= 3 u |c' - a|.
-// With D = |T| + E1 + E2, which bounds every |c' - a| and r1 + r2, slack_ = sigma + 8 u D serves all of them.
+//      slack - sigma >= 4.1 u |c' - a| + 2.1 u (r1 + r2), which includes the rounding of square - reach * reach.
+//  (4) |c - a| <= sqrt(square) + slack if slack - sigma >= 3 u |c' - a|.
+// With D = |T| + E1 + E2, which bounds every |c' - a| and r1 + r2, slack = sigma + 8 u D serves all of them.
 namespace orchard::runtime {
+
+using detail::length;
+
 namespace {
 
 constexpr double kFloatUnit = 0x1p-24;
@@ -50,8 +53,6 @@ bool before(const Pose& a, const Pose& b) noexcept {
   return a.rotation != b.rotation ? a.rotation < b.rotation : a.translation < b.translation;
 }
 
-double length(const std::array<double, 3>& v) noexcept { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
-
 }  // namespace
 
 bool NarrowPhase::PairList::reserve(std::size_t capacity) noexcept {
@@ -65,12 +66,20 @@ bool NarrowPhase::PairList::reserve(std::size_t capacity) noexcept {
   return true;
 }
 
+NarrowPhase::Side NarrowPhase::side_of(const PackedSphereTree& tree) noexcept {
+  auto root = detail::center_of(tree, 0);
+  for (std::size_t i = 0; i < 3; ++i) root[i] += tree.origin[i];
+  return {&tree, root, coordinate_extent(tree)};
+}
+
 NarrowPhase::NarrowPhase(const PackedSphereTree& a, const PackedSphereTree& b) noexcept {
   const int order = compare(a, b);
   arguments_exchanged_ = order > 0;
   ordered_by_pose_ = order == 0;
-  first_ = {&a, coordinate_extent(a), length(a.origin)};
-  second_ = &a == &b ? first_ : Side{&b, coordinate_extent(b), length(b.origin)};
+  first_ = side_of(a);
+  second_ = &a == &b ? first_ : side_of(b);
+  const double sizes = first_.extent + second_.extent + length(a.origin) + length(b.origin);
+  fixed_error_ = kStretch * sizes + a.vertex_error + b.vertex_error;
   if (arguments_exchanged_) std::swap(first_, second_);
 }
 
@@ -78,71 +87,69 @@ bool NarrowPhase::reserve(std::size_t pairs) noexcept {
   return inner_.reserve(pairs) && leaves_.reserve(pairs) && next_.reserve(pairs);
 }
 
-// Returns the part of (1) that is not float rounding.
-double NarrowPhase::set_relative_pose(const Pose& first, const Pose& second) noexcept {
+void NarrowPhase::set_relative_pose(const Pose& first, const Pose& second, double exact_error) noexcept {
   first_pose_ = first;
   // Origins enter here, so that everything below works on the trees' own small coordinates.
-  const auto origin = transform(second, second_.tree->origin);
-  std::array<double, 3> offset{};
-  for (std::size_t i = 0; i < 3; ++i) offset[i] = origin[i] - first.translation[i];
+  auto offset = transform(second, second_.tree->origin);
+  for (std::size_t i = 0; i < 3; ++i) offset[i] -= first.translation[i];
   Pose back = inverse(first);
   back.translation = {0, 0, 0};
   relative_ = compose(back, second);
   relative_.translation = rotate(back, offset);
   for (std::size_t i = 0; i < 3; ++i) relative_.translation[i] -= first_.tree->origin[i];
-  const double sizes = first_.extent + second_.extent + first_.offset + second_.offset;
-  return kStretch * sizes + 1e-14 * (length(first.translation) + length(second.translation)) +
-         first_.tree->vertex_error + second_.tree->vertex_error;
-}
 
-void NarrowPhase::set_float_pose(double exact_error) noexcept {
-  for (std::size_t i = 0; i < 9; ++i) rotation_[i] = static_cast<float>(relative_.rotation[i]);
-  for (std::size_t i = 0; i < 3; ++i) translation_[i] = static_cast<float>(relative_.translation[i]);
+  for (std::size_t i = 0; i < 9; ++i) placement_.rotation[i] = static_cast<float>(relative_.rotation[i]);
+  for (std::size_t i = 0; i < 3; ++i) placement_.translation[i] = static_cast<float>(relative_.translation[i]);
   const double distance = length(relative_.translation);
   const double sigma = exact_error + kFloatUnit * (10 * second_.extent + 6 * distance);
   const double slack = sigma + 8 * kFloatUnit * (distance + first_.extent + second_.extent);
-  slack_ = static_cast<float>(std::max(slack, kLeastSlack) * (1 + 2 * kFloatUnit));
+  placement_.slack = static_cast<float>(std::max(slack, kLeastSlack) * (1 + 2 * kFloatUnit));
 }
 
-Answer NarrowPhase::start(const Pose& a, const Pose& b) noexcept {
-  exchanged_ = ordered_by_pose_ ? before(b, a) : arguments_exchanged_;
-  const double exact_error = exchanged_ ? set_relative_pose(b, a) : set_relative_pose(a, b);
+void NarrowPhase::reset() noexcept {
   inner_.clear();
   leaves_.clear();
   next_.clear();
+  settled_leaves_ = 0;
   cursor_ = {};
+  leaf_best_ = {};
+  triangle_first_ = triangle_second_ = kNoTriangle;
+  finished_ = out_of_memory_ = roots_pending_ = false;
   level_ = 0;
   pair_tests_ = 1;
   triangle_tests_ = 0;
-  settled_leaves_ = 0;
-  out_of_memory_ = roots_pending_ = false;
-  triangle_first_ = triangle_second_ = kNoTriangle;
-  leaf_best_ = level_best_ = best_ = {};
-  separation_bound_ = pruned_gap_ = std::numeric_limits<double>::infinity();
   lower_bound_ = 0;
-  level_excess_.fill(std::numeric_limits<float>::infinity());
-  level_reach_.fill(0);
+  pruned_gap_ = std::numeric_limits<double>::infinity();
+}
 
-  // The roots, in double: bodies that are far apart must not overflow, and most pairs end here.
+Answer NarrowPhase::start(const Pose& a, const Pose& b) noexcept {
+  reset();
+  exchanged_ = ordered_by_pose_ ? before(b, a) : arguments_exchanged_;
+  const Pose &first = exchanged_ ? b : a, &second = exchanged_ ? a : b;
+
+  // The roots, in double and in the world: bodies that are far apart must not overflow, and most pairs end here.
   const SiblingBlock &p = first_.tree->blocks[0], &q = second_.tree->blocks[0];
-  const auto moved = transform(relative_, detail::center_of(*second_.tree, 0));
-  const double distance = length({moved[0] - p.x[0], moved[1] - p.y[0], moved[2] - p.z[0]});
+  const auto c1 = transform(first, first_.root), c2 = transform(second, second_.root);
+  double size = 0;
+  for (std::size_t i = 0; i < 3; ++i) size += std::fabs(first.translation[i]) + std::fabs(second.translation[i]);
+  const double exact_error = fixed_error_ + 1e-14 * size;
+  const double distance = length({c2[0] - c1[0], c2[1] - c1[1], c2[2] - c1[2]});
   const double radii = double{p.radius[0]} + q.radius[0];
-  const double near = distance + exact_error;
-  separation_bound_ = pair_bound(near, radii, double{p.error[0]} + q.error[0], double{p.depth[0]} + q.depth[0]);
+  separation_bound_ =
+      pair_bound(distance + exact_error, radii, double{p.error[0]} + q.error[0], double{p.depth[0]} + q.depth[0]);
   best_ = {separation_bound_, {0, 0}};
   const double gap = distance - radii - exact_error;
-  if (gap > 0) {
+  if (gap > 0 && std::isfinite(gap)) {
     pruned_gap_ = gap;
     finish(Answer::no);
     return answer_;
   }
   answer_ = Answer::maybe;
-  const bool deeper = !detail::is_leaf(*first_.tree, 0) || !detail::is_leaf(*second_.tree, 0) || has_triangles();
-  // Poses that are not finite give no number: nothing is certain then and nothing can be refined.
-  finished_ = !deeper || std::isnan(gap);
   roots_pending_ = true;
-  set_float_pose(exact_error);
+  // Poses that are not finite, or beyond what can be squared: nothing is certain then and nothing can be refined.
+  const bool deeper = !detail::is_leaf(*first_.tree, 0) || !detail::is_leaf(*second_.tree, 0) || has_triangles();
+  finished_ = !deeper || !std::isfinite(gap);
+  set_relative_pose(first, second, exact_error);
   return answer_;
 }
 
@@ -167,6 +174,7 @@ void NarrowPhase::finish(Answer answer) noexcept {
 }
 
 Contact NarrowPhase::contact() const noexcept {
+  if (answer_ == Answer::no) return {};
   const auto [a, b] = best_.pair;
   const auto p = detail::center_of(*first_.tree, a);
   const auto q = transform(relative_, detail::center_of(*second_.tree, b));

@@ -46,21 +46,6 @@ std::optional<Pose> pose_from_quaternion(const std::array<double, 4>& wxyz,
               translation};
 }
 
-std::array<double, 3> rotate(const Pose& pose, const std::array<double, 3>& direction) noexcept {
-  std::array<double, 3> result{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    result[i] = pose.rotation[3 * i] * direction[0] + pose.rotation[3 * i + 1] * direction[1] +
-                pose.rotation[3 * i + 2] * direction[2];
-  }
-  return result;
-}
-
-std::array<double, 3> transform(const Pose& pose, const std::array<double, 3>& point) noexcept {
-  std::array<double, 3> result = rotate(pose, point);
-  for (std::size_t i = 0; i < 3; ++i) result[i] += pose.translation[i];
-  return result;
-}
-
 Pose compose(const Pose& outer, const Pose& inner) noexcept {
   Pose result;
   for (std::size_t i = 0; i < 3; ++i) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 
@@ -8,6 +9,8 @@
 
 // How queries read a packed tree. All of it relies on structure_fault() being nullptr.
 namespace orchard::runtime::detail {
+
+inline double length(const Vec3& v) noexcept { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
 inline const SiblingBlock& block_of(const PackedSphereTree& tree, std::uint32_t node) noexcept {
   return tree.blocks[node / kBlockWidth];

@@ -43,6 +43,7 @@ struct TreeOptions {
   std::uint32_t leaf_triangles = 4;  // split while a node has more
   std::uint32_t max_depth = 100;
   Vec origin = {0, 0, 0};
+  bool bounds = true;  // else all `depth` and `error` are unknown: brute force is slow on large meshes
 };
 
 // A conservative tree by median splits: a node's ball holds all of its triangles, so every ancestor of a leaf holds the

@@ -136,7 +136,7 @@ class Builder {
     block.y[node.lane] = static_cast<float>(center[1]);
     block.z[node.lane] = static_cast<float>(center[2]);
     block.radius[node.lane] = above(radius * (1 + 1e-14));
-    const double depth = signed_distance(center);
+    const double depth = options_.bounds ? signed_distance(center) : std::numeric_limits<double>::infinity();
     block.depth[node.lane] = above(depth + 1e-12 * radius);
     block.error[node.lane] = above(std::max(0.0, double(block.radius[node.lane]) + double(block.depth[node.lane])));
     ++tree_.node_count;

@@ -12,8 +12,27 @@
 namespace orchard::runtime {
 
 namespace detail {
-struct Group;
-}
+
+struct BlockHits;
+struct TriangleBlock;
+
+// The second tree's frame in the first one's, in float, and what to add to a sum of radii for its rounding.
+struct Placement {
+  std::array<float, 9> rotation;
+  std::array<float, 3> translation;
+  float slack;
+};
+
+// What the sphere tests of one level collect.
+struct LevelState {
+  alignas(
+      32) std::array<std::uint32_t, kBlockWidth> least_excess;  // bits of the smallest square - reach^2 > 0, minus 1
+  alignas(32) std::array<float, kBlockWidth> row_radius, lane_radius;  // largest seen
+  float best_inner,
+      best_leaf;  // separation bounds from here on need no look: of pairs with an inner node, of two leaves
+};
+
+}  // namespace detail
 
 enum class Answer : std::uint8_t {
   no,     // the surfaces do not touch: certain
@@ -21,13 +40,13 @@ enum class Answer : std::uint8_t {
   yes     // a triangle of one meets a triangle of the other
 };
 
-// Whichever ends first. A call with pair_tests > 0 always gets somewhere: it overshoots by at most one row of eight
-// sphere tests, or one triangle test (which counts as kTriangleTestCost).
+// Whichever ends first. A call with pair_tests > 0 always gets somewhere: it overshoots by less than a row of eight
+// sphere tests or of four triangle tests, each of which counts as kTriangleTestCost.
 struct Budget {
   std::uint64_t pair_tests = std::numeric_limits<std::uint64_t>::max();
   std::chrono::nanoseconds time = std::chrono::nanoseconds::max();  // steady clock, read once per kClockInterval tests
 };
-inline constexpr std::uint64_t kTriangleTestCost = 16;
+inline constexpr std::uint32_t kTriangleTestCost = 16;
 inline constexpr std::uint64_t kClockInterval = 64;
 
 inline constexpr std::uint32_t kNoTriangle = 0xffffffffu;
@@ -83,14 +102,14 @@ class NarrowPhase {
   double separation_bound() const noexcept { return separation_bound_; }
   // Lower bound on the distance between the surfaces: positive after a "no" that spheres alone decided, 0 otherwise.
   double lower_bound() const noexcept { return lower_bound_; }
-  // The pair with the least separation bound at the last completed level. Meaningless after "no".
+  // The pair with the least separation bound at the last completed level; nothing after "no".
   Contact contact() const noexcept;
 
  private:
   struct Side {
     const PackedSphereTree* tree = nullptr;
-    double extent = 0;  // coordinate_extent()
-    double offset = 0;  // |origin|
+    std::array<double, 3> root{};  // its centre, origin included
+    double extent = 0;             // coordinate_extent()
   };
   struct NodePair {
     std::uint32_t a, b;
@@ -108,7 +127,7 @@ class NarrowPhase {
     std::unique_ptr<NodePair[]> pairs_;
     std::size_t size_ = 0, capacity_ = 0;
   };
-  struct Cursor {  // where the level under way continues
+  struct Cursor {  // where the level under way continues: lanes or second's triangles; rows or first's triangles
     std::size_t pair = 0;
     std::uint32_t outer = 0, inner = 0;
   };
@@ -116,23 +135,21 @@ class NarrowPhase {
     double bound = std::numeric_limits<double>::infinity();
     NodePair pair{0, 0};
   };
-  struct Lanes;
-  struct Row;
   class Meter;
 
-  double set_relative_pose(const Pose& first, const Pose& second) noexcept;
-  void set_float_pose(double exact_error) noexcept;
+  static Side side_of(const PackedSphereTree& tree) noexcept;
+  void reset() noexcept;
+  void set_relative_pose(const Pose& first, const Pose& second, double exact_error) noexcept;
   bool has_triangles() const noexcept;
   void finish(Answer answer) noexcept;
   static double pair_bound(double distance, double radii, double errors, double depths) noexcept;
 
-  void take(NodePair pair, PairList& list) noexcept;
   bool refine_spheres(Meter& meter) noexcept;
   bool refine_triangles(Meter& meter) noexcept;
-  Lanes lanes_of(detail::Group group, std::uint32_t index, bool of_second) const noexcept;
-  Row row_of(std::uint32_t node, bool of_first) const noexcept;
-  void test_row(const Row& row, const Lanes& lanes, bool lanes_are_second) noexcept;
-  void meet(NodePair pair, double square, double radii, double errors, double depths) noexcept;
+  void collect(std::uint32_t row, std::uint32_t lane, const detail::BlockHits& hits, bool lanes_are_second) noexcept;
+  void improve(NodePair pair, double square, bool leaves) noexcept;
+  bool settle(const detail::TriangleBlock& lanes, const detail::TriangleBlock& rows, std::uint32_t candidates) noexcept;
+  void start_level() noexcept;
   void finish_sphere_level() noexcept;
 
   // The pair in a fixed order that does not depend on the order of the arguments: exchanged_ tells.
@@ -140,17 +157,16 @@ class NarrowPhase {
   bool ordered_by_pose_ = false;
   bool arguments_exchanged_ = false;
   bool exchanged_ = false;
+  double fixed_error_ = 0;  // what does not depend on poses of the rounding in double, and the vertices' error
 
   // Second's frame to first's, both relative to the trees' origins; in float for spheres, in double for triangles.
   Pose first_pose_, relative_;
-  std::array<float, 9> rotation_{};
-  std::array<float, 3> translation_{};
-  float slack_ = 0;
+  detail::Placement placement_{};
 
   PairList inner_, leaves_, next_;  // meeting pairs: with an inner node, of two leaves, and of the level under way
   std::size_t settled_leaves_ = 0;
   Cursor cursor_;
-  std::array<float, kBlockWidth> level_excess_{}, level_reach_{};
+  detail::LevelState level_state_{};
   Best level_best_, leaf_best_, best_;
   std::uint32_t triangle_first_ = kNoTriangle, triangle_second_ = kNoTriangle;
   std::array<double, 3> witness_{};

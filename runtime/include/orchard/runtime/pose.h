@@ -26,7 +26,15 @@ std::optional<Pose> pose_from_quaternion(const std::array<double, 4>& wxyz,
 Pose compose(const Pose& outer, const Pose& inner) noexcept;  // outer after inner
 Pose inverse(const Pose& pose) noexcept;
 
-std::array<double, 3> transform(const Pose& pose, const std::array<double, 3>& point) noexcept;
-std::array<double, 3> rotate(const Pose& pose, const std::array<double, 3>& direction) noexcept;
+inline std::array<double, 3> rotate(const Pose& pose, const std::array<double, 3>& v) noexcept {
+  const auto& r = pose.rotation;
+  return {r[0] * v[0] + r[1] * v[1] + r[2] * v[2], r[3] * v[0] + r[4] * v[1] + r[5] * v[2],
+          r[6] * v[0] + r[7] * v[1] + r[8] * v[2]};
+}
+
+inline std::array<double, 3> transform(const Pose& pose, const std::array<double, 3>& point) noexcept {
+  const auto v = rotate(pose, point);
+  return {v[0] + pose.translation[0], v[1] + pose.translation[1], v[2] + pose.translation[2]};
+}
 
 }  // namespace orchard::runtime

@@ -1,0 +1,97 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+// With GCC and Clang several numbers are one value (vector_size), which the compiler maps to what the target has: SSE,
+// AVX, NEON. On Linux with x86-64 GCC compiles a function marked ORCHARD_PER_MACHINE for AVX2 and AVX-512 as well, and
+// the loader picks one. All do the same operations in the same order and none fuses them, so all give the same bits.
+#if defined(__GNUC__)
+#define ORCHARD_VECTORS 1
+#define ORCHARD_INLINE [[gnu::always_inline]] inline
+#define ORCHARD_INLINE_LAMBDA __attribute__((always_inline))
+#pragma GCC diagnostic ignored "-Wpsabi"  // no vector crosses a call
+#else
+#define ORCHARD_INLINE inline
+#define ORCHARD_INLINE_LAMBDA
+#endif
+
+// Not where the whole build is for such a machine anyway, nor with the sanitizer, which is not ready when the loader
+// picks.
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__gnu_linux__) && !defined(__AVX2__) && \
+    !defined(__SANITIZE_ADDRESS__)
+#define ORCHARD_PER_MACHINE __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define ORCHARD_PER_MACHINE
+#endif
+
+namespace orchard::runtime::detail {
+
+// N numbers with the operators that vectors have, one number at a time. Comparisons give all ones or zero.
+template <typename T, std::size_t N>
+struct Plain {
+  using Mask = Plain<std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>, N>;
+  std::array<T, N> v;
+
+  template <typename F>
+  static Plain make(F&& element) noexcept {
+    Plain result;
+    for (std::size_t i = 0; i < N; ++i) result.v[i] = element(i);
+    return result;
+  }
+  template <typename F>
+  static Mask compare(F&& holds) noexcept {
+    return Mask::make([&](std::size_t i) { return holds(i) ? ~typename Mask::Number{} : typename Mask::Number{}; });
+  }
+  using Number = T;
+  T operator[](std::size_t i) const noexcept { return v[i]; }
+  Plain operator-() const noexcept {
+    return make([&](std::size_t i) { return -v[i]; });
+  }
+  friend Plain operator+(const Plain& a, const Plain& b) noexcept {
+    return make([&](std::size_t i) { return a[i] + b[i]; });
+  }
+  friend Plain operator-(const Plain& a, const Plain& b) noexcept {
+    return make([&](std::size_t i) { return a[i] - b[i]; });
+  }
+  friend Plain operator*(const Plain& a, const Plain& b) noexcept {
+    return make([&](std::size_t i) { return a[i] * b[i]; });
+  }
+  friend Plain operator&(const Plain& a, const Plain& b) noexcept {
+    return make([&](std::size_t i) { return a[i] & b[i]; });
+  }
+  friend Plain operator|(const Plain& a, const Plain& b) noexcept {
+    return make([&](std::size_t i) { return a[i] | b[i]; });
+  }
+  friend Mask operator<(const Plain& a, const Plain& b) noexcept {
+    return compare([&](std::size_t i) { return a[i] < b[i]; });
+  }
+  friend Mask operator<=(const Plain& a, const Plain& b) noexcept {
+    return compare([&](std::size_t i) { return a[i] <= b[i]; });
+  }
+};
+
+template <typename Vector, typename Array>
+ORCHARD_INLINE Vector load(const Array& from) noexcept {
+  static_assert(sizeof(Vector) == sizeof(Array));
+  Vector result;
+  std::memcpy(&result, &from, sizeof result);
+  return result;
+}
+
+template <typename Vector, typename Array>
+ORCHARD_INLINE void store(const Vector& from, Array& to) noexcept {
+  static_assert(sizeof(Vector) == sizeof(Array));
+  std::memcpy(&to, &from, sizeof from);
+}
+
+template <typename Vector, typename T>
+ORCHARD_INLINE Vector spread(T value) noexcept {
+  std::array<T, sizeof(Vector) / sizeof(T)> copies;
+  for (T& copy : copies) copy = value;
+  return load<Vector>(copies);
+}
+
+}  // namespace orchard::runtime::detail
