@@ -1,0 +1,85 @@
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Intersections_3/Segment_3_Triangle_3.h>
+#include <CGAL/Intersections_3/Triangle_3_Triangle_3.h>
+#include <CGAL/box_intersection_d.h>
+
+#include <algorithm>
+
+#include "orchard/geometry/self_intersections.h"
+#include "same_place.h"
+
+namespace orchard {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+class Box3 : public CGAL::Box_intersection_d::Box_d<double, 3, CGAL::Box_intersection_d::ID_NONE> {
+ public:
+  Box3(const CGAL::Bbox_3& box, Index triangle) : Box_d(box), triangle_(triangle) {}
+  Index id() const { return triangle_; }
+
+ private:
+  Index triangle_;
+};
+
+class PairTest {
+ public:
+  explicit PairTest(const TriangleMesh& mesh) : mesh_(mesh), place_(first_at_place(mesh)) {}
+
+  bool degenerate(Index t) const { return Kernel().is_degenerate_3_object()(triangle(t)); }
+  CGAL::Bbox_3 box(Index t) const { return triangle(t).bbox(); }
+
+  bool meet(Index a, Index b) const {
+    const auto p = places(a), q = places(b);
+    std::array<std::size_t, 3> at_a{}, at_b{};  // of the shared corners
+    std::size_t shared = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j)
+        if (p[i] == q[j]) at_a[shared] = i, at_b[shared++] = j;
+    if (shared == 0) return CGAL::do_intersect(triangle(a), triangle(b));
+    if (shared == 1) return opposite_edge_meets(a, at_a[0], b) || opposite_edge_meets(b, at_b[0], a);
+    return shared == 2 && folded(a, 3 - at_a[0] - at_a[1], b, 3 - at_b[0] - at_b[1]);
+  }
+
+ private:
+  std::array<Index, 3> places(Index t) const {
+    const auto& [i, j, k] = mesh_.triangles[t];
+    return {place_[i], place_[j], place_[k]};
+  }
+  Kernel::Point_3 corner(Index t, std::size_t i) const {
+    const Point& p = mesh_.vertices[mesh_.triangles[t][i % 3]];
+    return {p.x(), p.y(), p.z()};
+  }
+  Kernel::Triangle_3 triangle(Index t) const { return {corner(t, 0), corner(t, 1), corner(t, 2)}; }
+
+  // Two triangles with one common corner meet elsewhere if and only if the edge opposite that corner in one of them
+  // meets the other one.
+  bool opposite_edge_meets(Index t, std::size_t i, Index other) const {
+    return CGAL::do_intersect(Kernel::Segment_3(corner(t, i + 1), corner(t, i + 2)), triangle(other));
+  }
+  // Two triangles with a common edge meet elsewhere if they lie in one plane, on the same side of it.
+  bool folded(Index a, std::size_t i, Index b, std::size_t j) const {
+    const Kernel::Point_3 p = corner(a, i), u = corner(a, i + 1), v = corner(a, i + 2), q = corner(b, j);
+    return CGAL::coplanar(u, v, p, q) && CGAL::coplanar_orientation(u, v, p, q) == CGAL::POSITIVE;
+  }
+
+  const TriangleMesh& mesh_;
+  std::vector<Index> place_;
+};
+
+}  // namespace
+
+std::vector<std::array<Index, 2>> self_intersections(const TriangleMesh& mesh) {
+  const PairTest test(mesh);
+  std::vector<Box3> boxes;
+  for (Index t = 0; t < mesh.triangles.size(); ++t)
+    if (!test.degenerate(t)) boxes.emplace_back(test.box(t), t);
+  std::vector<std::array<Index, 2>> pairs;
+  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box3& a, const Box3& b) {
+    if (test.meet(a.id(), b.id())) pairs.push_back({std::min(a.id(), b.id()), std::max(a.id(), b.id())});
+  });
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+}  // namespace orchard
