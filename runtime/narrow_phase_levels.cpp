@@ -23,7 +23,7 @@ using detail::TriangleBlock;
 class NarrowPhase::Meter {
  public:
   explicit Meter(const Budget& budget) noexcept : limit_(budget.pair_tests) {
-    if (budget.time != std::chrono::nanoseconds::max()) {
+    if (budget.time < std::chrono::hours(24 * 365)) {  // more is no limit, and would overflow the clock
       next_look_ = kClockInterval;
       deadline_ = std::chrono::steady_clock::now() + budget.time;
     }

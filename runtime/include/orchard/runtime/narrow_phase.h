@@ -23,13 +23,12 @@ struct Placement {
   float slack;
 };
 
-// What the sphere tests of one level collect.
+// What the sphere tests of one level collect: the bits of the smallest square - reach^2 > 0, minus 1; the largest radii
+// seen; and the separation bounds from which on a pair needs no look, for pairs with an inner node and for two leaves.
 struct LevelState {
-  alignas(
-      32) std::array<std::uint32_t, kBlockWidth> least_excess;  // bits of the smallest square - reach^2 > 0, minus 1
-  alignas(32) std::array<float, kBlockWidth> row_radius, lane_radius;  // largest seen
-  float best_inner,
-      best_leaf;  // separation bounds from here on need no look: of pairs with an inner node, of two leaves
+  alignas(32) std::array<std::uint32_t, kBlockWidth> least_excess;
+  alignas(32) std::array<float, kBlockWidth> row_radius, lane_radius;
+  float best_inner, best_leaf;
 };
 
 }  // namespace detail
