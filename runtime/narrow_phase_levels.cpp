@@ -20,6 +20,10 @@ using detail::kTriangleWidth;
 using detail::length;
 using detail::TriangleBlock;
 
+namespace {
+constexpr std::size_t kBlockPairs = std::size_t{kBlockWidth} * kBlockWidth;
+}
+
 class NarrowPhase::Meter {
  public:
   explicit Meter(const Budget& budget) noexcept : limit_(budget.pair_tests) {
@@ -79,7 +83,7 @@ bool NarrowPhase::refine_spheres(Meter& meter) noexcept {
     for (; cursor_.outer < lanes.count; cursor_.outer += kBlockWidth, cursor_.inner = 0) {
       while (cursor_.inner < rows.count) {
         if (meter.exhausted()) return false;
-        if (!next_.room_for(kBlockWidth * kBlockWidth) || !leaves_.room_for(kBlockWidth * kBlockWidth)) {
+        if (!next_.room_for(kBlockPairs) || !leaves_.room_for(kBlockPairs)) {
           return out_of_memory_ = true, false;
         }
         const std::uint32_t row = rows.first + cursor_.inner, lane = lanes.first + cursor_.outer;
@@ -220,8 +224,8 @@ bool NarrowPhase::refine_triangles(Meter& meter) noexcept {
         const bool meet = settle(lanes, others, found);
         // Rows after the one that decides do not count, or the count would depend on how the level was cut.
         const std::uint32_t tested = (meet ? triangle_second_ + 1 : end) - begin;
-        triangle_tests_ += lanes.count * tested;
-        meter.spend(cost * tested);
+        triangle_tests_ += std::uint64_t{lanes.count} * tested;
+        meter.spend(std::uint64_t{cost} * tested);
         cursor_.inner += tested;
         if (!meet) continue;
         triangle_first_ = columns[cursor_.outer + triangle_first_];

@@ -8,7 +8,7 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr float kFar = 3e18f;  // centre of unused lanes: beyond every reach, and its square is finite
+constexpr float kFar = 3e18f;  // centre of unused lanes: keeps them out of least_excess unless bodies are as large
 
 struct PlainKind {
   using Floats = Plain<float, kBlockWidth>;
@@ -120,7 +120,8 @@ ORCHARD_INLINE void test(const BlockPair& pair, const Placement& placement, Leve
     least = Kind::choose(bits < least, bits, least);
   }
   store(least, level.least_excess);
-  hits.meeting = transposed(Kind::low_bytes(met));
+  const std::uint64_t lane_bits = (std::uint64_t{1} << pair.lane_count) - 1;
+  hits.meeting = transposed(Kind::low_bytes(met)) & (lane_bits * 0x0101010101010101u);
   hits.leaves = hits.improving = 0;
   if (hits.meeting == 0) return;
 

@@ -120,6 +120,31 @@ TEST(SphereBlock, FindsTheMeetingPairsTheirKindAndWhichMayImprove) {
   }
 }
 
+// Where bodies are so large that even the place of unused lanes is within reach.
+TEST(SphereBlock, NeverReportsUnusedLanes) {
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    Draw draw(seed);
+    Case c;
+    make(draw, c);
+    for (SiblingBlock* block : {&c.rows, &c.lanes}) {
+      for (std::uint32_t i = 0; i < kBlockWidth; ++i) {
+        for (auto* v : {&block->x, &block->y, &block->z, &block->radius}) {
+          (*v)[i] = (*v)[i] == -1 ? -1 : kCoordinateLimit * static_cast<float>(draw.uniform(0, 1));
+        }
+      }
+    }
+    for (float& t : c.placement.translation) t = 2.5f * kCoordinateLimit;
+    c.placement.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    BlockHits hits;
+    for (const auto test : {test_block, test_block_scalar}) {
+      test(c.pair, c.placement, c.level, hits);
+      const std::uint64_t used = (std::uint64_t{1} << c.pair.lane_count) - 1;
+      ASSERT_EQ(hits.meeting & ~(used * 0x0101010101010101u), 0u) << seed;
+      ASSERT_EQ((hits.leaves | hits.improving) & ~hits.meeting, 0u) << seed;
+    }
+  }
+}
+
 struct Leaf {
   PackedSphereTree tree;
   Ball ball;
