@@ -21,7 +21,7 @@ Repaired sampled_and_repaired(const Surface& surface, const SamplingOptions& sam
   return repair_gap_crossings(surface, std::move(points), std::move(diagram), options);
 }
 
-// What every repair has to achieve: no crossing left, the axis in as many pieces as the solid and inside it.
+// What every repair has to achieve: no crossing left, and an axis inside the solid with its components and its holes.
 void expect_mended(const Surface& surface, const Repaired& repaired) {
   validate(repaired.sampling, surface);
   validate(repaired.diagram);
@@ -31,6 +31,7 @@ void expect_mended(const Surface& surface, const Repaired& repaired) {
   validate(axis, surface);
   EXPECT_EQ(test::count_components(axis), surface.report().components);
   EXPECT_LT(test::farthest_outside(surface, axis), 1e-6);
+  EXPECT_EQ(2 * test::euler_characteristic(surface, repaired.diagram), surface.report().euler_characteristic);
 }
 
 struct Case {
@@ -86,6 +87,24 @@ TEST(GapRepair, AddsNothingToSolidsThatNeedNothing) {
     EXPECT_EQ(repaired.report.passes.size(), 1u);
     expect_mended(surface, repaired);
   }
+}
+
+TEST(GapRepair, FollowsAWireThinnerThanTheSpacing) {
+  TriangleMesh mesh = test::box({0, 0, 0}, {10, 0.02, 0.02});
+  const Surface surface(std::move(mesh));
+  const Repaired repaired = sampled_and_repaired(surface, points(60, 0));
+  Index at_necks = 0;
+  for (const RepairPass& pass : repaired.report.passes) at_necks += pass.added_at_necks;
+  EXPECT_GT(at_necks, 0u);
+  expect_mended(surface, repaired);
+}
+
+TEST(GapRepair, FindsTheHoleOfAThinRing) {
+  const Surface surface(test::torus(48, 12, 1, 0.03));
+  const Repaired repaired = sampled_and_repaired(surface, points(60, 0));
+  EXPECT_GT(repaired.report.points_added, 0u);
+  EXPECT_EQ(surface.report().euler_characteristic, 0);
+  expect_mended(surface, repaired);
 }
 
 TEST(GapRepair, FindsAComponentThatNoPointLiesOn) {
