@@ -10,6 +10,7 @@
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/runtime/tree_file.h"
 #include "orchard/spheretree/tree_io.h"
+#include "output_folder.h"
 #include "report.h"
 
 #ifdef ORCHARD_HAS_VIZ
@@ -22,14 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder))
-    throw InputError(folder.string() + ": cannot be made a folder; choose another with -o");
-  return folder;
-}
-
 std::string_view as_text(const std::vector<std::byte>& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
@@ -38,11 +31,9 @@ std::string_view as_text(const std::vector<std::byte>& bytes) {
 using Written = std::vector<std::pair<fs::path, std::string>>;
 
 Written write_trees(const BuildCommand& command, const BuildResult& result) {
-  const fs::path stem = command.folder / command.mesh.stem();
   Written written;
   const auto write = [&](const char* extension, std::string_view bytes, const char* what) {
-    fs::path file = stem;
-    file += extension;
+    const fs::path file = in_folder(command.folder, command.mesh, extension);
     write_file(file, bytes);
     written.emplace_back(file, what);
   };
@@ -52,8 +43,7 @@ Written write_trees(const BuildCommand& command, const BuildResult& result) {
 }
 
 void write_wrap(const BuildCommand& command, const TriangleMesh& wrap, Written& written) {
-  fs::path file = command.folder / command.mesh.stem();
-  file += "-wrap.obj";
+  const fs::path file = in_folder(command.folder, command.mesh, "-wrap.obj");
   write_obj(file, wrap);
   written.emplace_back(file, "the wrap, which everything else was built on");
 }
@@ -71,8 +61,7 @@ void write_views(const BuildCommand& command, const Surface& surface, const Buil
     written.emplace_back(command.folder / "pipeline.vtm", "open this in ParaView: all views at once");
   }
   if (!command.picture) return;
-  fs::path png = command.folder / command.mesh.stem();
-  png += ".png";
+  const fs::path png = in_folder(command.folder, command.mesh, ".png");
   PipelinePicture picture;
   picture.values = values;
   picture.title = command.mesh.stem().string();
@@ -115,8 +104,7 @@ void build(const BuildCommand& command) {
   result.seconds.emplace_back("writing", writing.seconds());
   nlohmann::json report = build_json(surface, command.options, result, wrap_distance);
   add_solid_json(solid, report);
-  fs::path report_file = command.folder / command.mesh.stem();
-  report_file += ".json";
+  const fs::path report_file = in_folder(command.folder, command.mesh, ".json");
   write_file(report_file, report.dump(2) + "\n");
   written.emplace_back(report_file, "this report as JSON");
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "load_solid.h"
@@ -38,8 +39,23 @@ struct VerifyCommand {
 };
 bool verify(const VerifyCommand& command);  // false: something is not proven
 
+struct SampleCommand {
+  std::filesystem::path mesh, folder;
+  Index samples = 5000;               // in all
+  std::optional<Index> edge_samples;  // of them on edges; a fifth unless it is given
+  int iterations = SamplingOptions{}.iterations;
+  std::uint64_t seed = 1;
+  Relaxation relaxation = Relaxation::automatic;
+  std::optional<double> cluster_degrees;
+  double crease_degrees = 30;
+  bool views = true;  // ParaView files, where the program was built with them
+  Output output;
+};
+void sample(const SampleCommand& command);
+
 struct InspectCommand {
   std::filesystem::path file;
+  bool full = false;  // count self-intersections of large meshes too
   Output output;
 };
 void inspect(const InspectCommand& command);

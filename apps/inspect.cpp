@@ -6,7 +6,9 @@
 
 #include "commands.h"
 #include "orchard/geometry/error.h"
+#include "orchard/geometry/mesh_details.h"
 #include "orchard/geometry/mesh_io.h"
+#include "orchard/geometry/self_intersections.h"
 #include "orchard/runtime/tree_file.h"
 #include "orchard/spheretree/tree_io.h"
 #include "report.h"
@@ -96,12 +98,44 @@ json inspect_sph(const std::filesystem::path& file) {
           {"levels", levels_json(levels)}};
 }
 
-json inspect_mesh(const std::filesystem::path& file) {
-  const Surface surface(read_mesh(file));
+json inspect_mesh(const InspectCommand& command) {
+  const Surface surface(read_mesh(command.file));
+  const MeshDetails details = mesh_details(surface.mesh(), surface.report());
   json report = mesh_json(surface);
   report["kind"] = "mesh";
   report["faults"] = surface.report().faults();
+  report["unused_vertices"] = surface.report().unused_vertices;
+  report["inside_out_components"] = surface.report().inside_out_components;
+  report["boundary_loops"] = details.boundary_loops;
+  report["duplicate_triangles"] = details.duplicate_triangles;
+  report["coincident_vertices"] = details.coincident_vertices;
+  report["genus"] = details.genus ? json(*details.genus) : json();
+  if (command.full || surface.mesh().triangles.size() <= kMostForSelfIntersections)
+    report["self_intersections"] = self_intersections(surface.mesh()).size();
+  TriangleMesh mesh = surface.mesh();
+  const MeshRepairReport repair = repair_mesh(mesh);
+  report["repair"] = to_json(repair);
+  report["repair"]["solid"] = repair.solid;
+  report["repair"]["faults"] = repair.faults;
   return report;
+}
+
+// What a mesh's numbers mean to whoever wants a tree of it.
+void print_verdict(const json& report) {
+  const auto faults = report["faults"].get<std::string>();
+  if (!report.contains("self_intersections")) {
+    fmt::print("not looked for: self-intersections; --full does\n");
+  } else if (const auto pairs = report["self_intersections"].get<std::size_t>(); pairs > 0) {
+    fmt::print("{} of triangles cut or touch each other; --wrap makes one skin of them\n",
+               pairs == 1 ? std::string("1 pair") : fmt::format("{} pairs", pairs));
+  }
+  fmt::print("{}\n", faults.empty() ? "a solid: closed, manifold, oriented outward" : "not a solid: " + faults);
+  const json& repair = report["repair"];
+  for (const json& line : repair["lines"]) fmt::print("repair: {}\n", line.get<std::string>());
+  if (!repair["solid"].get<bool>())
+    fmt::print(
+        "no closed manifold, even after repair: {}; \"orchard build --wrap\" builds on a closed skin around it\n",
+        repair["faults"].get<std::string>());
 }
 
 void print_levels(const json& levels) {
@@ -117,13 +151,11 @@ void print_levels(const json& levels) {
 void print(const std::filesystem::path& file, const json& report) {
   fmt::print("{}: {}\n", file.string(), report["kind"].get<std::string>());
   for (const auto& [key, value] : report.items()) {
-    if (key == "kind" || key == "levels" || key == "faults") continue;
+    if (key == "kind" || key == "levels" || key == "faults" || key == "repair") continue;
     fmt::print("  {:24} {}\n", key, value.dump());
   }
   if (report.contains("levels")) print_levels(report["levels"]);
-  if (!report.contains("faults")) return;
-  const auto faults = report["faults"].get<std::string>();
-  fmt::print("{}\n", faults.empty() ? "a solid: closed, manifold, oriented outward" : "not a solid: " + faults);
+  if (report.contains("faults")) print_verdict(report);
 }
 
 }  // namespace
@@ -132,7 +164,7 @@ void inspect(const InspectCommand& command) {
   const std::string extension = lower_extension(command.file);
   const json report = extension == ".orchard" ? inspect_packed(command.file)
                       : extension == ".sph"   ? inspect_sph(command.file)
-                                              : inspect_mesh(command.file);
+                                              : inspect_mesh(command);
   if (command.output.json) {
     fmt::print("{}\n", report.dump(2));
   } else if (!command.output.quiet) {

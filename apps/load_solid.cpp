@@ -6,6 +6,7 @@
 
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
+#include "orchard/geometry/self_intersections.h"
 
 namespace orchard::apps {
 namespace {
@@ -26,12 +27,13 @@ SolidMesh strict(const std::string& name, TriangleMesh mesh) {
   if (!surface.solid())
     throw InputError(name + ": not a closed, consistently oriented manifold: " + surface.report().faults() +
                      "; without --strict, orchard repairs what is safe to repair");
-  return {.surface = std::move(surface), .repair = {.solid = true}, .wrap = {}};
+  return {.surface = std::move(surface), .repair = {.solid = true}, .wrap = {}, .self_intersections = {}};
 }
 
 SolidMesh wrapped(TriangleMesh mesh, const WrapOptions& options, const Progress& progress) {
   report_progress(progress, "wrap", 0);
-  SolidMesh solid{.surface = Surface(wrap_mesh(mesh, options)), .repair = {.solid = true}, .wrap = {}};
+  SolidMesh solid{
+      .surface = Surface(wrap_mesh(mesh, options)), .repair = {.solid = true}, .wrap = {}, .self_intersections = {}};
   const Surface input(std::move(mesh));
   solid.wrap = WrapResult{.options = options,
                           .to_input = surface_distance(solid.surface, input, {}, progress),
@@ -44,7 +46,7 @@ SolidMesh repaired(const std::string& name, TriangleMesh mesh) {
   if (!repair.solid)
     throw InputError(name + ": no closed manifold, even after repair: " + repair.faults +
                      " (numbers count from 0); --wrap builds on a closed skin around it instead");
-  return {.surface = Surface(std::move(mesh)), .repair = std::move(repair), .wrap = {}};
+  return {.surface = Surface(std::move(mesh)), .repair = std::move(repair), .wrap = {}, .self_intersections = {}};
 }
 
 json bounds(const SurfaceDistance& distance) { return {distance.lower, distance.upper}; }
@@ -63,17 +65,31 @@ SolidMesh load_solid(const std::filesystem::path& file, const MeshOptions& optio
       throw InputError(name + ": " + error.what());
     }
   }
-  return options.strict ? strict(name, std::move(mesh)) : repaired(name, std::move(mesh));
+  SolidMesh solid = options.strict ? strict(name, std::move(mesh)) : repaired(name, std::move(mesh));
+  if (solid.surface.mesh().triangles.size() <= kMostForSelfIntersections)
+    solid.self_intersections = self_intersections(solid.surface.mesh()).size();
+  return solid;
 }
 
-TriangleMesh read_repaired(const std::filesystem::path& file) {
+RepairedMesh read_repaired(const std::filesystem::path& file) {
   TriangleMesh mesh = read_mesh(file);
-  TriangleMesh repaired = mesh;
-  return repair_mesh(repaired).solid ? repaired : mesh;
+  TriangleMesh copy = mesh;
+  MeshRepairReport repair = repair_mesh(copy);
+  if (repair.solid) return {std::move(copy), std::move(repair)};
+  return {std::move(mesh), {.faults = repair.faults}};
+}
+
+void print_repair(const std::filesystem::path& file, const MeshRepairReport& repair) {
+  for (const std::string& line : repair.lines()) fmt::print("{}: {}\n", file.string(), line);
 }
 
 void print_solid(const std::filesystem::path& file, const SolidMesh& solid) {
-  for (const std::string& line : solid.repair.lines()) fmt::print("{}: {}\n", file.string(), line);
+  print_repair(file, solid.repair);
+  if (solid.self_intersections.value_or(0) > 0)
+    fmt::print(
+        "{}: {} pair{} of triangles cut or touch each other, inside and outside are vague there; --wrap makes one "
+        "skin of them\n",
+        file.string(), *solid.self_intersections, *solid.self_intersections == 1 ? "" : "s");
   if (!solid.wrap) return;
   const double radius = solid.surface.bounding_radius();
   fmt::print(
@@ -83,31 +99,35 @@ void print_solid(const std::filesystem::path& file, const SolidMesh& solid) {
       solid.wrap->from_input.upper);
 }
 
+json to_json(const MeshRepairReport& repair) {
+  return {{"vertices_welded", repair.vertices_welded},
+          {"unused_vertices_dropped", repair.unused_vertices_dropped},
+          {"degenerate_dropped", repair.degenerate_dropped},
+          {"neighbors_split", repair.neighbors_split},
+          {"duplicates_dropped", repair.duplicates_dropped},
+          {"flipped", repair.flipped},
+          {"edges_cut", repair.edges_cut},
+          {"vertices_split", repair.vertices_split},
+          {"holes_filled", repair.holes_filled},
+          {"triangles_added", repair.triangles_added},
+          {"largest_hole", repair.largest_hole},
+          {"parts_turned_outward", repair.parts_turned_outward},
+          {"cavities_turned_inward", repair.cavities_turned_inward},
+          {"lines", repair.lines()}};
+}
+
 void add_solid_json(const SolidMesh& solid, json& report) {
-  const MeshRepairReport& repair = solid.repair;
-  if (solid.wrap) {
-    report["wrap"] = {{"alpha_over_diagonal", solid.wrap->options.alpha},
-                      {"offset_over_diagonal", solid.wrap->options.offset},
-                      {"wrap_to_input", bounds(solid.wrap->to_input)},
-                      {"input_to_wrap", bounds(solid.wrap->from_input)}};
-    report["wrap_distance"] = solid.wrap->distance();
-    report["wrap_distance_over_radius"] = solid.wrap->distance() / solid.surface.bounding_radius();
+  if (!solid.wrap) {
+    report["repair"] = to_json(solid.repair);
+    report["self_intersections"] = solid.self_intersections ? json(*solid.self_intersections) : json();
     return;
   }
-  report["repair"] = {{"vertices_welded", repair.vertices_welded},
-                      {"unused_vertices_dropped", repair.unused_vertices_dropped},
-                      {"degenerate_dropped", repair.degenerate_dropped},
-                      {"neighbors_split", repair.neighbors_split},
-                      {"duplicates_dropped", repair.duplicates_dropped},
-                      {"flipped", repair.flipped},
-                      {"edges_cut", repair.edges_cut},
-                      {"vertices_split", repair.vertices_split},
-                      {"holes_filled", repair.holes_filled},
-                      {"triangles_added", repair.triangles_added},
-                      {"largest_hole", repair.largest_hole},
-                      {"parts_turned_outward", repair.parts_turned_outward},
-                      {"cavities_turned_inward", repair.cavities_turned_inward},
-                      {"lines", repair.lines()}};
+  report["wrap"] = {{"alpha_over_diagonal", solid.wrap->options.alpha},
+                    {"offset_over_diagonal", solid.wrap->options.offset},
+                    {"wrap_to_input", bounds(solid.wrap->to_input)},
+                    {"input_to_wrap", bounds(solid.wrap->from_input)}};
+  report["wrap_distance"] = solid.wrap->distance();
+  report["wrap_distance_over_radius"] = solid.wrap->distance() / solid.surface.bounding_radius();
 }
 
 }  // namespace orchard::apps

@@ -31,18 +31,31 @@ struct SolidMesh {
   Surface surface;
   MeshRepairReport repair;         // nothing done if wrapped
   std::optional<WrapResult> wrap;  // then `surface` is the wrap
+  // Pairs of triangles that cut or touch each other: where they do, inside and outside are not well defined. Not
+  // counted for a wrap, which has none, and beyond kMostForSelfIntersections.
+  std::optional<std::size_t> self_intersections;
 };
+
+inline constexpr std::size_t kMostForSelfIntersections = 500'000;  // triangles: a few seconds
 
 // Reads a mesh and makes a solid of it: wraps it if that is asked for, else repairs what is safe to repair. Throws
 // InputError, with the way out, if that gives no solid.
 SolidMesh load_solid(const std::filesystem::path& file, const MeshOptions& options, const Progress& progress = {});
 
-// The mesh that load_solid() gives without options, or as it is in the file if that cannot be repaired.
-TriangleMesh read_repaired(const std::filesystem::path& file);
+struct RepairedMesh {
+  TriangleMesh mesh;
+  MeshRepairReport repair;
+};
+
+// For commands that take any triangles: the mesh that load_solid() gives without options, or as it is in the file if
+// that cannot be repaired; then nothing was done.
+RepairedMesh read_repaired(const std::filesystem::path& file);
 
 // A line for each thing done.
+void print_repair(const std::filesystem::path& file, const MeshRepairReport& repair);
 void print_solid(const std::filesystem::path& file, const SolidMesh& solid);
-// Sets "repair" or "wrap" and "wrap_distance".
+nlohmann::json to_json(const MeshRepairReport& repair);
+// Sets "repair" and "self_intersections", or "wrap" and "wrap_distance".
 void add_solid_json(const SolidMesh& solid, nlohmann::json& report);
 
 }  // namespace orchard::apps

@@ -14,6 +14,7 @@
 namespace {
 
 using namespace orchard::apps;
+using orchard::Relaxation;
 
 constexpr int kFailed = 1, kBadInput = 2;
 
@@ -23,6 +24,7 @@ struct Request {
   CollideCommand collide;
   VerifyCommand verify;
   InspectCommand inspect;
+  SampleCommand sample;
   int threads = 0;  // 0: as many as the machine has
   std::function<void()> run;
   int exit_code = 0;
@@ -111,10 +113,50 @@ void add_verify(CLI::App& app, Request& request) {
   });
 }
 
+Relaxation relaxation_named(const std::string& name) {
+  return name == "clusters"    ? Relaxation::clusters
+         : name == "neighbors" ? Relaxation::neighbors
+                               : Relaxation::automatic;
+}
+
+void add_sample(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("sample", "Spread points evenly over a mesh");
+  SampleCommand& sample = request.sample;
+  command.add_option("mesh", sample.mesh, "The mesh: .obj, .ply, .stl or .off")->required();
+  command.add_option("-o,--output", sample.folder, "Folder for the points")->required();
+  command.add_option("--samples", sample.samples, "Points in all")
+      ->check(CLI::Range(20, 10'000'000))
+      ->capture_default_str();
+  command.add_option("--edge-samples", sample.edge_samples, "Of them on edges (default: a fifth)")
+      ->check(CLI::Range(0, 10'000'000));
+  command.add_option("--iterations", sample.iterations, "Of relaxation")
+      ->check(CLI::Range(0, 10'000))
+      ->capture_default_str();
+  command
+      .add_option_function<std::string>(
+          "--relaxation", [&sample](const std::string& name) { sample.relaxation = relaxation_named(name); },
+          "Points keep apart within coplanar clusters, from neighbors across faces, or as fits the mesh (automatic)")
+      ->check(CLI::IsMember({"automatic", "clusters", "neighbors"}));
+  command
+      .add_option("--cluster-angle", sample.cluster_degrees, "Degrees that a cluster may turn; more makes curved ones")
+      ->check(CLI::Range(0.0, 90.0));
+  command.add_option("--crease-angle", sample.crease_degrees, "Degrees from which a curved mesh has an edge")
+      ->check(CLI::Range(0.0, 180.0))
+      ->capture_default_str();
+  command.add_option("--seed", sample.seed, "Seed of the random points")->capture_default_str();
+  command.add_option("--threads", request.threads, "Threads at most; the result does not depend on it")
+      ->check(CLI::Range(1, 1024));
+  command.add_flag("!--no-views", sample.views, "Write no files for ParaView");
+  add_output_flags(command, sample.output);
+  command.footer("Example:\n  orchard sample data/lamp.obj -o out/lamp --samples 20000");
+  command.callback([&request] { request.run = [&request] { orchard::apps::sample(request.sample); }; });
+}
+
 void add_inspect(CLI::App& app, Request& request) {
   CLI::App& command = *app.add_subcommand("inspect", "Say what a mesh or tree file holds and what is wrong with it");
   InspectCommand& inspect = request.inspect;
   command.add_option("file", inspect.file, "A mesh (.obj, .ply, .stl, .off) or a tree (.orchard, .sph)")->required();
+  command.add_flag("--full", inspect.full, "Look for self-intersections in a mesh of more than 500,000 triangles too");
   add_output_flags(command, inspect.output);
   command.footer("Example:\n  orchard inspect data/lamp.obj");
   command.callback([&request] { request.run = [&request] { orchard::apps::inspect(request.inspect); }; });
@@ -145,6 +187,7 @@ int main(int argc, char** argv) {
   add_collide(app, request);
   add_verify(app, request);
   add_inspect(app, request);
+  add_sample(app, request);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -97,7 +97,7 @@ void print(const Verification& result, double radius, double seconds) {
 }  // namespace
 
 bool verify(const VerifyCommand& command) {
-  TriangleMesh mesh = read_repaired(command.mesh);
+  TriangleMesh mesh = read_repaired(command.mesh).mesh;
   const bool text = command.tree.extension() == ".sph";
   const Surface surface(std::move(mesh));
   ProgressBar bar(!command.output.quiet && !command.output.json);

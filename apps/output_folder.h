@@ -1,0 +1,13 @@
+#pragma once
+#include <filesystem>
+
+namespace orchard::apps {
+
+// Makes the folder if need be. Throws InputError if that cannot be.
+void make_folder(const std::filesystem::path& folder);
+
+// FOLDER/NAME-OF-MODEL + ending.
+std::filesystem::path in_folder(const std::filesystem::path& folder, const std::filesystem::path& model,
+                                const char* ending);
+
+}  // namespace orchard::apps

@@ -1,0 +1,208 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "orchard/geometry/mesh_check.h"
+#include "orchard/geometry/mesh_io.h"
+#include "program.h"
+#include "support/shapes.h"
+
+namespace orchard {
+namespace {
+
+using nlohmann::json;
+using test::Finished;
+using test::Workplace;
+
+// The quick way to a tree.
+std::vector<std::string> build(const std::string& mesh, const std::string& folder,
+                               const std::vector<std::string>& more = {}) {
+  std::vector<std::string> arguments{"build", mesh, "-o", folder, "--method", "octree", "--depth", "2", "--no-views"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+TriangleMesh holed_ball() {
+  TriangleMesh mesh = test::icosphere(2);
+  mesh.triangles.erase(mesh.triangles.begin() + 17);
+  std::swap(mesh.triangles[3][0], mesh.triangles[3][1]);
+  return mesh;
+}
+
+TEST(Build, WritesTheTreeAndItsReport) {
+  const Workplace here;
+  const Finished run = here.run(build(here.add("ball.obj", test::icosphere(2)), (here / "out").string()));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  EXPECT_NE(run.out.find("conservative"), std::string::npos);
+  const auto files = here.files("out");
+  EXPECT_EQ(files.size(), 3u);
+  for (const char* name : {"ball.orchard", "ball.sph", "ball.json"}) EXPECT_TRUE(files.contains(name)) << name;
+  const json report = json::parse(files.at("ball.json"));
+  EXPECT_TRUE(report["conservative"].get<bool>());
+  EXPECT_TRUE(report["repair"]["lines"].empty());
+  EXPECT_FALSE(report.contains("wrap_distance"));
+}
+
+TEST(Build, BuildsAMedialTreeAsTheDefault) {
+  const Workplace here;
+  const std::string mesh = here.add("ball.obj", test::icosphere(2));
+  const Finished run = here.run(
+      {"build", mesh, "-o", (here / "out").string(), "--samples", "300", "--depth", "2", "--json", "--no-views"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  const json report = json::parse(run.out);
+  EXPECT_EQ(report["options"]["method"], "medial");
+  EXPECT_GT(report["medial_axis"]["vertices"].get<int>(), 0);
+}
+
+TEST(Build, PrintsOnlyJsonWithJsonAndNothingWithQuiet) {
+  const Workplace here;
+  const std::string mesh = here.add("holed.obj", holed_ball());
+  const Finished with_json = here.run(build(mesh, (here / "out").string(), {"--json"}));
+  EXPECT_EQ(with_json.exit_code, 0) << with_json.err;
+  EXPECT_EQ(with_json.err, "");
+  EXPECT_EQ(json::parse(with_json.out)["repair"]["holes_filled"], 1);
+  const Finished quiet = here.run(build(mesh, (here / "out").string(), {"--quiet"}));
+  EXPECT_EQ(quiet.exit_code, 0);
+  EXPECT_EQ(quiet.out + quiet.err, "");
+}
+
+TEST(Build, SaysInALineEachWhatItRepaired) {
+  const Workplace here;
+  const std::string mesh = here.add("holed.obj", holed_ball());
+  const Finished run = here.run(build(mesh, (here / "out").string()));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find(mesh + ": turned 1 triangle round"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find(mesh + ": filled 1 hole with 1 triangle"), std::string::npos) << run.out;
+}
+
+TEST(Build, RepairsNothingWhenStrict) {
+  const Workplace here;
+  const Finished refused = here.run(build(here.add("holed.obj", holed_ball()), (here / "out").string(), {"--strict"}));
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_TRUE(test::is_one_line_error(refused.err)) << refused.err;
+  EXPECT_EQ(refused.out, "");
+  EXPECT_TRUE(here.files("out").empty());
+  const Finished accepted = here.run(build(here.add("ball.obj", test::icosphere(2)), (here / "out").string(), {"--strict"}));
+  EXPECT_EQ(accepted.exit_code, 0) << accepted.err;
+}
+
+TEST(Build, OffersAWrapWhereRepairIsNotEnoughAndBuildsOnIt) {
+  const Workplace here;
+  const std::string mesh = here.add("open.obj", test::open_box());
+  const Finished refused = here.run(build(mesh, (here / "out").string()));
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_TRUE(test::is_one_line_error(refused.err)) << refused.err;
+  EXPECT_NE(refused.err.find("--wrap"), std::string::npos) << refused.err;
+  EXPECT_TRUE(here.files("out").empty());
+
+  const Finished wrapped = here.run(build(mesh, (here / "out").string(), {"--wrap=0.01", "--wrap-alpha", "0.1", "--json"}));
+  ASSERT_EQ(wrapped.exit_code, 0) << wrapped.err;
+  const json report = json::parse(wrapped.out);
+  const double distance = report["wrap_distance"], over_radius = report["wrap_distance_over_radius"];
+  EXPECT_GT(distance, 0.005);
+  EXPECT_LT(distance, 0.2);
+  EXPECT_FALSE(report.contains("repair"));
+  for (const char* levels : {"levels", "octree_levels"}) {
+    for (const json& level : report[levels]) {
+      for (const std::string name : {"mean_inaccuracy_over_radius", "max_inaccuracy_over_radius"})
+        EXPECT_DOUBLE_EQ(level[name + "_including_wrap"].get<double>(), level[name].get<double>() + over_radius);
+    }
+  }
+  TriangleMesh wrap = read_mesh(here / "out/open-wrap.obj");
+  EXPECT_TRUE(check_mesh(wrap).solid());
+  EXPECT_EQ(wrap.triangles.size(), report["mesh"]["triangles"].get<std::size_t>());
+  const Finished verified =
+      here.run({"verify", (here / "out/open.orchard").string(), (here / "out/open-wrap.obj").string(), "--quiet"});
+  EXPECT_EQ(verified.exit_code, 0) << verified.err;
+}
+
+TEST(Build, IsVerifiedAgainstTheFileThatWasRepaired) {
+  const Workplace here;
+  const std::string mesh = here.add("holed.obj", holed_ball());
+  ASSERT_EQ(here.run(build(mesh, (here / "out").string())).exit_code, 0);
+  const Finished verified = here.run({"verify", (here / "out/holed.orchard").string(), mesh});
+  EXPECT_EQ(verified.exit_code, 0) << verified.out << verified.err;
+}
+
+TEST(Build, WritesTheSameBytesTwiceAndOnAnyNumberOfThreads) {
+  const Workplace here;
+  const std::string mesh = here.add("holed.obj", holed_ball());
+  const auto trees = [&](const std::string& folder, const std::string& threads) {
+    const Finished run = here.run({"build", mesh, "-o", (here / folder).string(), "--samples", "300", "--depth", "2",
+                              "--no-views", "--threads", threads});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    auto files = here.files(folder);
+    files.erase("holed.json");  // holds times
+    return files;
+  };
+  const auto first = trees("first", "1");
+  EXPECT_EQ(first.size(), 2u);
+  EXPECT_EQ(first, trees("second", "1"));
+  EXPECT_EQ(first, trees("third", "3"));
+}
+
+TEST(Build, RefusesBadInputInOneLineAndLeavesNothingBehind) {
+  const Workplace here;
+  const std::string ball = here.add("ball.obj", test::icosphere(1)), out = (here / "out").string();
+  here.add("file", std::string("in the way"));
+  const struct {
+    const char* name;
+    std::vector<std::string> arguments;
+  } cases[] = {
+      {"no such file", build((here / "missing.obj").string(), out)},
+      {"unknown format", build(here.add("mesh.xyz", std::string("0 0 0\n")), out)},
+      {"empty file", build(here.add("empty.obj", std::string()), out)},
+      {"no faces", build(here.add("points.obj", std::string("v 0 0 0\n")), out)},
+      {"a folder", build(here.add("folder.ply", std::string()), out)},
+      {"garbage", build(here.add("garbage.stl", std::string("\x01\x02garbage\xff")), out)},
+      {"flat", build(here.add("flat.obj", std::string("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")), out)},
+      {"a wrap of a point", build(here.add("dot.obj", std::string("v 0 0 0\nf 1 1 1\n")), out, {"--wrap"})},
+      {"an offset that is no number", build(ball, out, {"--wrap=wide"})},
+      {"an offset of nothing", build(ball, out, {"--wrap=0"})},
+      {"a file where the folder should be", build(ball, (here / "file").string())},
+      {"branching of an octree", build(ball, out, {"--branching", "4"})},
+  };
+  for (const auto& [name, arguments] : cases) {
+    const Finished run = here.run(arguments);
+    EXPECT_EQ(run.exit_code, 2) << name;
+    EXPECT_TRUE(test::is_one_line_error(run.err)) << name << ": " << run.err;
+    EXPECT_EQ(run.out, "") << name;
+    EXPECT_TRUE(here.files("out").empty()) << name;
+  }
+  EXPECT_EQ(here.files(".").at("file"), "in the way");
+}
+
+TEST(Build, ExplainsWrongUse) {
+  const Workplace here;
+  const std::string ball = here.add("ball.obj", test::icosphere(1)), out = (here / "out").string();
+  const std::vector<std::vector<std::string>> cases{{},
+                                                    {"grow"},
+                                                    {"build"},
+                                                    {"build", ball},
+                                                    build(ball, out, {"--depth", "0"}),
+                                                    build(ball, out, {"--colour"}),
+                                                    build(ball, out, {"--strict", "--wrap"})};
+  for (const auto& arguments : cases) {
+    const Finished run = here.run(arguments);
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_NE(run.err, "");
+    EXPECT_TRUE(here.files("out").empty());
+  }
+  EXPECT_EQ(here.run({"--help"}).exit_code, 0);
+  EXPECT_EQ(here.run({"--version"}).exit_code, 0);
+}
+
+TEST(Build, LeavesNoHalfWrittenFileWhereItCannotWrite) {
+  const Workplace here;
+  const std::string ball = here.add("ball.obj", test::icosphere(1));
+  std::filesystem::create_directories(here / "out/ball.sph");  // a folder where a file should go
+  const Finished run = here.run(build(ball, (here / "out").string()));
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_TRUE(test::is_one_line_error(run.err)) << run.err;
+  for (const auto& [name, content] : here.files("out")) EXPECT_EQ(name, "ball.orchard");
+}
+
+}  // namespace
+}  // namespace orchard
