@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -106,14 +107,31 @@ class PatchFinder {
   std::vector<std::uint8_t> joined_;  // bit i: to a piece across the triangle's edge i
 };
 
+double distance_to(const Surface& surface, const CellPatch& patch, const Point& point) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Index triangle : patch.triangles) {
+    const auto [a, b, c] = surface.corners(triangle);
+    nearest = std::min(nearest, closest_point_of_triangle(point, a, b, c).distance);
+  }
+  return nearest;
+}
+
+// `patches`: all of one cell, at least one. A diagram that is not exact may cut the point's own place off by a
+// rounding; then the patch nearest to it counts.
 void mark_home(const Surface& surface, const SurfaceSampling& sampling, std::vector<CellPatch>& patches) {
+  const Index cell = patches[0].cell;
   std::vector<Index> around;
+  surface.triangles_at(sampling.triangles[cell], sampling.features[cell], around);
   for (CellPatch& patch : patches) {
-    surface.triangles_at(sampling.triangles[patch.cell], sampling.features[patch.cell], around);
     patch.home = std::any_of(around.begin(), around.end(), [&](Index triangle) {
       return std::binary_search(patch.triangles.begin(), patch.triangles.end(), triangle);
     });
   }
+  if (std::any_of(patches.begin(), patches.end(), [](const CellPatch& patch) { return patch.home; })) return;
+  const auto nearer = [&](const CellPatch& a, const CellPatch& b) {
+    return distance_to(surface, a, sampling.points[cell]) < distance_to(surface, b, sampling.points[cell]);
+  };
+  std::min_element(patches.begin(), patches.end(), nearer)->home = true;
 }
 
 }  // namespace

@@ -202,6 +202,9 @@ Repaired repair_gap_crossings(const Surface& surface, SurfaceSampling sampling, 
   if (!surface.solid()) {
     throw InputError("gap repair needs a solid: " + surface.report().faults() + "; repair the mesh first");
   }
+  if (diagram.points.size() != sampling.size() || diagram.vertices.empty()) {
+    throw InputError("gap repair needs the Voronoi diagram of the sampling's own points");
+  }
   return Repair(surface, std::move(sampling), std::move(diagram), options, progress).run();
 }
 
