@@ -68,16 +68,23 @@ void finish(Workspace& workspace, std::span<const Index> original_of) {
   }
 }
 
-void insert_all(Inserter& inserter, std::span<const Index> order, std::string_view stage, const Progress& progress) {
-  const std::size_t step = std::max<std::size_t>(order.size() / 64, 1);
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    if (i % step == 0) report_progress(progress, stage, static_cast<double>(i) / static_cast<double>(order.size()));
-    inserter.insert(order[i]);
+// All points of the workspace in order. False if the inserter gives up.
+bool insert_all(Workspace& workspace, Search search, std::string_view stage, const Progress& progress,
+                InsertionCounts& counts) {
+  workspace.clear();
+  Inserter inserter(workspace, search);
+  const std::array<Index, 4> first = spanning_points(workspace.points);
+  if (!inserter.start(first))
+    throw InputError("the points lie in a plane, so they have no Voronoi vertices: add a point off that plane");
+  const std::size_t count = workspace.points.size(), step = std::max<std::size_t>(count / 64, 1);
+  for (Index i = 0; i < count; ++i) {
+    if (i % step == 0) report_progress(progress, stage, static_cast<double>(i) / static_cast<double>(count));
+    if (std::find(first.begin(), first.end(), i) == first.end() && !inserter.insert(i)) return false;
   }
   report_progress(progress, stage, 1);
+  counts = inserter.counts();
+  return true;
 }
-
-constexpr const char* kFlat = "the points lie in a plane, so they have no Voronoi vertices: add a point off that plane";
 
 }  // namespace
 
@@ -100,17 +107,13 @@ VoronoiDiagram build_voronoi(std::span<const Point> points, Search search, std::
   workspace.set_scale(box);
   workspace.points.reserve(points.size());
   for (Index i : original_of) workspace.points.push_back(points[i]);
-  workspace.reserve(points.size() * 7 + 64);
-
-  Inserter inserter(workspace, search);
-  const std::array<Index, 4> first = spanning_points(workspace.points);
-  if (!inserter.start(first)) throw InputError(kFlat);
-  std::vector<Index> order;
-  order.reserve(workspace.points.size());
-  for (Index i = 0; i < workspace.points.size(); ++i)
-    if (std::find(first.begin(), first.end(), i) == first.end()) order.push_back(i);
-  insert_all(inserter, order, stage, progress);
-  report.counts = inserter.counts();
+  // Surfaces have up to about eight vertices a point. Room that is not used is never touched, so it costs no memory.
+  workspace.reserve(points.size() * 10 + 64);
+  if (!insert_all(workspace, search, stage, progress, report.counts)) {
+    workspace.set_exact(true);
+    insert_all(workspace, search, stage, progress, report.counts);
+  }
+  report.exact = workspace.exact();
 
   finish(workspace, original_of);
   VoronoiDiagram diagram;

@@ -10,6 +10,7 @@ namespace orchard::detail {
 
 struct BuildReport {
   InsertionCounts counts;
+  bool exact = false;                            // all signs had to be
   std::vector<std::array<Index, 2>> duplicates;  // (point left out, point it coincides with)
 };
 

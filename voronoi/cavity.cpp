@@ -38,10 +38,14 @@ Index Cavity::make_local(Index point) {
 // The time goes into mispredicted branches here if one is not careful: whether a neighbour has been seen, and on which
 // side its sign falls, is as good as random. So every neighbour is tested, and what has been seen is masked out.
 bool Cavity::delete_nearer(Index start) {
+  delete_vertex(start);
+  return delete_nearer_around(0);
+}
+
+bool Cavity::delete_nearer_around(std::size_t first) {
   const Point q = position_;
   bool certain = true;
-  delete_vertex(start);
-  for (std::size_t i = 0; i < deleted_.size(); ++i) {
+  for (std::size_t i = first; i < deleted_.size(); ++i) {
     deleted_.ensure_room();
     seen_.ensure_room();
     const std::array<Index, 4> neighbors = workspace_.vertices[deleted_.items()[i]].neighbors;
@@ -61,6 +65,16 @@ bool Cavity::delete_nearer(Index start) {
     }
   }
   return certain;
+}
+
+bool Cavity::widen() {
+  const std::size_t before = deleted_.size();
+  for (const Facet& facet : facets_)
+    if (!facet.visible && workspace_.mark(facet.outside) != Mark::deleted &&
+        workspace_.sign(facet.outside, position_) == Sign::uncertain)
+      delete_vertex(facet.outside);
+  delete_nearer_around(before);
+  return deleted_.size() > before;
 }
 
 void Cavity::note_facets() {
@@ -86,7 +100,8 @@ void Cavity::note_facets() {
                   static_cast<std::uint8_t>(slot),
                   static_cast<std::uint8_t>(back),
                   0,
-                  false};
+                  false,
+                  Placing::failed};
   }
 }
 
@@ -133,19 +148,21 @@ void Cavity::note_edges(Index v) {
     }
 }
 
-bool Cavity::sees_facet(Index v, unsigned i) const {
+Sign Cavity::side_of_facet(Index v, unsigned i) const {
   const auto& corner = workspace_.vertices[v].forming_points;
-  const auto from_new = [&](unsigned k) { return Vector(workspace_.points[corner[kOthers[i][k]]] - position_); };
-  if (corner[3] != kInfinitePoint || i == 3)
-    return volume_sign(from_new(0), from_new(1), from_new(2)) == Sign::positive;
-  VoronoiVertex ignored;
-  std::uint8_t error = 0;
-  return workspace_.place_at_infinity(ignored, error, LengthedVector(from_new(0)), LengthedVector(from_new(1)));
+  const auto& [a, b, c] = kOthers[i];
+  const Point& first = workspace_.points[corner[a]];
+  const Point& second = workspace_.points[corner[b]];
+  if (corner[c] != kInfinitePoint) return volume_sign(position_, first, second, workspace_.points[corner[c]]);
+  // A new vertex at infinity cannot be turned over, but it needs a triangle.
+  Vector normal;
+  return sharp_normal(position_, first, second, normal) ? Sign::positive : Sign::uncertain;
 }
 
 bool Cavity::place_vertices() {
   if (fresh_.size() < facets_.size()) fresh_.resize(facets_.size());
-  bool all = true;
+  bool visible = true;
+  worst_ = Placing::good;
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     Facet& facet = facets_[f];
     VoronoiVertex& vertex = fresh_[f];
@@ -155,11 +172,13 @@ bool Cavity::place_vertices() {
     const LengthedVector& a = local_points_[facet.local[0]].from_new;
     const LengthedVector& b = local_points_[facet.local[1]].from_new;
     const LengthedVector& c = local_points_[facet.local[2]].from_new;
-    facet.placed = at_infinity ? workspace_.place_at_infinity(vertex, facet.error_class, a, b)
-                               : workspace_.place(vertex, facet.error_class, position_, a, b, c);
-    all = all && facet.placed;
+    facet.placing = at_infinity ? workspace_.place_at_infinity(vertex, facet.error_class, a, b)
+                                : workspace_.place(vertex, facet.error_class, position_, a, b, c);
+    facet.visible = facet.placing != Placing::failed || side_of_facet(facet.inside, facet.slot) == Sign::positive;
+    visible = visible && facet.visible;
+    worst_ = std::max(worst_, facet.placing);
   }
-  return all;
+  return visible;
 }
 
 bool Cavity::link_vertices() {
@@ -243,27 +262,36 @@ bool Cavity::is_ball() {
   return count == facets_.size();
 }
 
-Index Cavity::approximate_unplaced() {
-  Index count = 0;
+Index Cavity::place_flat_vertices() {
+  Index coplanar = 0;
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     Facet& facet = facets_[f];
-    if (facet.placed) continue;
-    ++count;
+    if (facet.placing == Placing::good) continue;
+    if (facet.placing == Placing::failed) facet.error_class = Workspace::kUnknownError;
     VoronoiVertex& vertex = fresh_[f];
     const VoronoiVertex& outside = workspace_.vertices[facet.outside];
-    const VoronoiVertex& inside = workspace_.vertices[facet.inside];
-    facet.error_class = Workspace::kUnknownError;
-    vertex.center = outside.center;
+    const auto corner = [&](unsigned i) -> const Point& {
+      return workspace_.points[vertex.forming_points[kOthers[facet.slot][i]]];
+    };
     if (vertex.forming_points[3] == kInfinitePoint) {
-      vertex.radius = outside.radius;
+      vertex.radius = std::numeric_limits<double>::quiet_NaN();
+      if (sharp_normal(position_, corner(0), corner(1), vertex.center)) continue;
+      vertex.center = outside.center;
+      ++coplanar;
       continue;
     }
-    if (outside.forming_points[3] == kInfinitePoint)
-      vertex.center =
-          (inside.forming_points[3] == kInfinitePoint ? position_ : inside.center) + workspace_.far() * outside.center;
+    Vector relative;
+    if (sharp_circumcenter(position_, corner(0), corner(1), corner(2), relative)) {
+      vertex.center = position_ + relative;
+    } else if (facet.placing == Placing::failed) {
+      ++coplanar;
+      // The undeleted neighbour's place; if that is at infinity, far away in its direction.
+      const bool bounded = outside.forming_points[3] != kInfinitePoint;
+      vertex.center = bounded ? outside.center : Point(position_ + workspace_.far() * outside.center);
+    }
     vertex.radius = (vertex.center - position_).squaredNorm();
   }
-  return count;
+  return coplanar;
 }
 
 // Where the new vertices go: the places of the deleted ones first, which are in the cache.
@@ -296,7 +324,7 @@ Index Cavity::replace() {
     for (const std::uint8_t k : kOthers[facet.slot]) vertex.neighbors[k] = slots_[vertex.neighbors[k]];
     workspace_.store(slots_[f], vertex, facet.error_class);
     workspace_.vertices[facet.outside].neighbors[facet.back] = slots_[f];
-    if (facet.placed && vertex.forming_points[3] != kInfinitePoint) last = slots_[f];
+    if (facet.placing != Placing::failed && vertex.forming_points[3] != kInfinitePoint) last = slots_[f];
   }
   deleted_.clear();  // their marks went with them
   return last;

@@ -43,7 +43,8 @@ class Cavity {
     std::array<Index, 3> local;  // its corners, into the local points, in the order of kOthers[slot]
     std::uint8_t slot, back;     // the inside's neighbour `slot` is the outside, whose neighbour `back` is the inside
     std::uint8_t error_class;    // of the new vertex
-    bool placed;                 // false: nearly coplanar forming points
+    bool visible;                // from the new point
+    Placing placing;
   };
   // kOthers[i]: the other corners, so that (i, others) is an even permutation. The infinite corner 3 comes last.
   static constexpr std::array<std::array<std::uint8_t, 3>, 4> kOthers{{{1, 2, 3}, {2, 0, 3}, {0, 1, 3}, {0, 2, 1}}};
@@ -68,6 +69,10 @@ class Cavity {
     if (workspace_.mark(v) == Mark::unseen) seen_.push(v);
     workspace_.set_mark(v, mark);
   }
+  // Deletes the vertices in doubt behind boundary facets that the new point does not see, after place_vertices found
+  // some. In exact arithmetic these are nearer to the new point: the boundary of all that are is seen all around. False
+  // if there is none in doubt.
+  bool widen();
   // Notes the boundary facets, once all deletions are made.
   void note_facets();
 
@@ -76,18 +81,22 @@ class Cavity {
   bool legal(Index v) const;
   void delete_legally(Index v);
 
-  // Whether the facet between v and its neighbour i is seen from the new point, so that its new vertex has a position.
-  bool sees_facet(Index v, unsigned i) const;
+  // On which side of the facet between v and its neighbour i the new point is: positive on v's, where the facet can be
+  // part of the boundary.
+  Sign side_of_facet(Index v, unsigned i) const;
 
-  // Places the new vertices. True if all could be placed: every facet is strictly visible from the new point.
+  // Places the new vertices. True if every facet is visible from the new point: all new vertices oriented positively.
   bool place_vertices();
+  // The worst of their placings.
+  Placing worst_placing() const { return worst_; }
   // Joins the new vertices with each other; false unless the boundary is closed, with two facets on each edge and the
   // number of facets that a sphere has.
   bool link_vertices();
   // Whether the boundary is one piece and no point lies within. After link_vertices.
   bool is_ball();
-  // The position for vertices with coplanar forming points; their number.
-  Index approximate_unplaced();
+  // Positions of the vertices that were not placed. The number of those with coplanar forming points, whose position is
+  // an approximation.
+  Index place_flat_vertices();
   // Replaces the deleted vertices by the new ones and removes all marks. The last new vertex that has a position.
   Index replace();
 
@@ -102,6 +111,7 @@ class Cavity {
     return known != kNone ? known : make_local(point);
   }
   Index make_local(Index point);
+  bool delete_nearer_around(std::size_t first);
   // The infinite point, being the highest number, wraps around to the first place.
   Index& known_local(Index point) { return local_of_[static_cast<Index>(point + 1)]; }
   Index known_local(Index point) const { return local_of_[static_cast<Index>(point + 1)]; }
@@ -113,6 +123,7 @@ class Cavity {
   Workspace& workspace_;
   Index new_point_ = kNone;
   Point position_ = Point::Zero();
+  Placing worst_ = Placing::good;
   List deleted_, seen_, boundary_;  // boundary: 4 * deleted vertex + the neighbour across
   std::vector<Index> slots_, stack_;
   std::vector<Facet> facets_;

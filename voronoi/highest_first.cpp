@@ -9,7 +9,9 @@ void copy_report(detail::BuildReport& from, HighestFirstReport* to) {
   if (to == nullptr) return;
   to->certified_insertions = from.counts.certified;
   to->settled_insertions = from.counts.settled;
+  to->exact_insertions = from.counts.exact;
   to->constrained_insertions = from.counts.constrained;
+  to->exact_signs = from.exact;
   to->coplanar_centers = from.counts.coplanar;
   to->duplicates = std::move(from.duplicates);
 }

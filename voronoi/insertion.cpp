@@ -7,6 +7,12 @@
 #include "orchard/geometry/error.h"
 
 namespace orchard::detail {
+namespace {
+
+// How many insertions may need exact signs before all are made with them.
+constexpr std::uint64_t kExactAtMost = 16, kExactOneIn = 256;
+
+}  // namespace
 
 bool Inserter::start(const std::array<Index, 4>& points) {
   std::array<Index, 4> corner = points;
@@ -36,43 +42,56 @@ bool Inserter::start(const std::array<Index, 4>& points) {
       return LengthedVector(workspace_.points[vertex.forming_points[i]] - origin);
     };
     std::uint8_t error = 0;
-    const bool placed = left_out < 4 ? workspace_.place_at_infinity(vertex, error, relative(1), relative(2))
-                                     : workspace_.place(vertex, error, origin, relative(1), relative(2), relative(3));
-    if (!placed) return false;
+    const Placing placing = left_out < 4
+                                ? workspace_.place_at_infinity(vertex, error, relative(1), relative(2))
+                                : workspace_.place(vertex, error, origin, relative(1), relative(2), relative(3));
+    if (placing == Placing::failed) return false;
     workspace_.store(left_out, vertex, error);
   }
   last_ = 4;
   return true;
 }
 
-void Inserter::insert(Index point) {
+bool Inserter::insert(Index point) {
   const Point q = workspace_.points[point];
-  const Index start = locate(q);
+  Index start = locate(q);
   cavity_.begin(point);
-  if (search_ == Search::bowyer) return insert_bowyer(start, q);
-  if (search_ == Search::highest_first) {
-    if (insert_directly(start, q)) return;
-    cavity_.begin(point);
-    search_highest_first(climb(start, q), q);
-  } else {
-    search_breadth_first(climb(start, q), q);
+  if (search_ == Search::bowyer) {
+    insert_bowyer(start, q);
+    return true;
   }
+  if (search_ == Search::highest_first) {
+    if (insert_directly(start, q)) return true;
+    if (!workspace_.exact()) return insert_exactly(point, q);
+    cavity_.begin(point);
+  }
+  if (search_ == Search::inagaki)
+    search_breadth_first(climb(start, q), q);
+  else
+    search_highest_first(start, q);
   ++counts_.constrained;
   cavity_.note_facets();
   cavity_.place_vertices();
   if (!cavity_.link_vertices()) throw Error("internal: the deleted Voronoi vertices do not form a ball");
   finish();
+  return true;
 }
 
 // Without looking at values: right where every sign is certain. A vertex whose sign is in doubt counts as not nearer to
-// the new point, as if each new point were an infinitesimal bit farther away than all before it. In exact arithmetic
-// that always gives a ball that the new point sees all around; here it is checked.
+// the new point, as if each new point were an infinitesimal bit farther away than all before it. With exact signs that
+// always gives a ball that the new point sees all around (the boundary of the union of all cells of the degenerate
+// diagram that are strictly nearer); with others it is checked.
 bool Inserter::insert_directly(Index start, const Point& q) {
   if (workspace_.sign(start, q) != Sign::positive) return false;
-  const bool certain = cavity_.delete_nearer(start);
+  bool certain = cavity_.delete_nearer(start);
   cavity_.note_facets();
-  const bool visible = cavity_.place_vertices();
-  if (!visible) return false;
+  while (!cavity_.place_vertices()) {
+    if (!cavity_.widen()) return false;
+    certain = false;
+    cavity_.note_facets();
+  }
+  // A thin tetrahedron magnifies what went wrong by a rounding behind its facet.
+  if (!workspace_.exact() && cavity_.worst_placing() > (certain ? Placing::thin : Placing::good)) return false;
   if (!cavity_.link_vertices()) return false;
   if (!certain && !cavity_.is_ball()) return false;
   ++(certain ? counts_.certified : counts_.settled);
@@ -80,49 +99,73 @@ bool Inserter::insert_directly(Index start, const Point& q) {
   return true;
 }
 
-void Inserter::delete_and_queue(Index v, const Point& q) {
-  cavity_.delete_legally(v);
-  for (Index u : workspace_.vertices[v].neighbors) {
-    if (workspace_.mark(u) == Mark::unseen)
-      cavity_.add_seen(u, workspace_.sign(u, q) == Sign::positive ? Mark::wanted : Mark::kept);
-    if (workspace_.mark(u) != Mark::wanted) continue;
-    queue_.push_back({workspace_.value(u, q), u});
-    std::push_heap(queue_.begin(), queue_.end());
-  }
+// One insertion with exact signs amid others without.
+bool Inserter::insert_exactly(Index point, const Point& q) {
+  if (counts_.exact >= kExactAtMost + workspace_.points.size() / kExactOneIn) return false;
+  workspace_.set_exact(true);
+  const Index start = locate(q);
+  cavity_.begin(point);
+  bool good = workspace_.sign(start, q) == Sign::positive;
+  const bool certain = good && cavity_.delete_nearer(start);
+  if (good) cavity_.note_facets();
+  good = good && cavity_.place_vertices() && cavity_.worst_placing() <= Placing::thin && cavity_.link_vertices() &&
+         (certain || cavity_.is_ball());
+  workspace_.set_exact(false);
+  if (!good) return false;
+  ++counts_.exact;
+  finish();
+  return true;
 }
 
-// Dissertation 6.2.3. There all illegal vertices return to the queue after each deletion; here those return that
-// neighbour the deleted vertex, as only they can have become legal (see Cavity::legal): the same order at less cost.
+// Dissertation 6.2.3: by value, keeping the five constraints, and one more here: that the new point sees all of the
+// boundary, so that every new vertex is oriented positively and has a position. It starts from the vertex whose
+// tetrahedron holds q, which is deletable by any measure.
+// There all illegal vertices return to the queue after each deletion. Here those return that neighbour the deleted
+// vertex: only they can have become legal, as what makes a vertex illegal stays but for the vertices that it touches
+// (see Cavity::legal). The same order at less cost.
 void Inserter::search_highest_first(Index start, const Point& q) {
   queue_.clear();
-  delete_and_queue(start, q);
+  delete_and_queue(walk_by_orientation(start, q), q);
   while (!queue_.empty()) {
     std::pop_heap(queue_.begin(), queue_.end());
-    const Index v = queue_.back().vertex;
+    const Candidate candidate = queue_.back();
     queue_.pop_back();
-    if (workspace_.mark(v) != Mark::deleted && cavity_.legal(v)) delete_and_queue(v, q);
+    if (workspace_.mark(candidate.vertex) != Mark::deleted && cavity_.legal(candidate.vertex) &&
+        sees_around(candidate, q))
+      delete_and_queue(candidate.vertex, q);
   }
-  widen_over_flat_facets(q);
 }
 
-// Where a facet of the boundary is coplanar with the new point, there is no circumcentre. If the vertex across is in
-// doubt, deleting it is as good as leaving it, and leads to a facet farther away.
-void Inserter::widen_over_flat_facets(const Point& q) {
-  bool changed = true;
-  while (changed) {
-    changed = false;
-    for (std::size_t i = 0; i < cavity_.deleted().size(); ++i) {
-      const Index v = cavity_.deleted()[i];
-      for (unsigned k = 0; k < 4; ++k) {
-        const Index u = workspace_.vertices[v].neighbors[k];
-        if (workspace_.mark(u) == Mark::deleted || cavity_.sees_facet(v, k)) continue;
-        if (workspace_.sign(u, q) == Sign::negative || !cavity_.legal(u)) continue;
-        delete_and_queue(u, q);
-        changed = true;
-      }
-    }
-    queue_.clear();
+void Inserter::want(Index v, double value) {
+  queue_.push_back({value, v});
+  std::push_heap(queue_.begin(), queue_.end());
+}
+
+void Inserter::delete_and_queue(Index v, const Point& q) {
+  cavity_.delete_legally(v);
+  for (unsigned i = 0; i < 4; ++i) {
+    const Index u = workspace_.vertices[v].neighbors[i];
+    if (workspace_.mark(u) == Mark::unseen)
+      cavity_.add_seen(u, workspace_.sign(u, q) == Sign::positive ? Mark::wanted : Mark::kept);
+    if (workspace_.mark(u) == Mark::deleted) continue;
+    // Where q does not see the facet between, no value can be a reason to stop here.
+    if (cavity_.side_of_facet(v, i) != Sign::positive)
+      want(u, std::numeric_limits<double>::infinity());
+    else if (workspace_.mark(u) == Mark::wanted)
+      want(u, workspace_.value(u, q));
   }
+}
+
+// Whether q would see the new boundary facets. If not, and what hides one is in doubt itself, that is wanted as much.
+bool Inserter::sees_around(const Candidate& candidate, const Point& q) {
+  bool sees = true;
+  for (unsigned i = 0; i < 4; ++i) {
+    const Index u = workspace_.vertices[candidate.vertex].neighbors[i];
+    if (workspace_.mark(u) == Mark::deleted || cavity_.side_of_facet(candidate.vertex, i) != Sign::negative) continue;
+    sees = false;
+    if (workspace_.sign(u, q) == Sign::uncertain) want(u, candidate.value);
+  }
+  return sees;
 }
 
 void Inserter::search_breadth_first(Index start, const Point& q) {
@@ -146,13 +189,13 @@ void Inserter::insert_bowyer(Index start, const Point& q) {
   const bool placed = cavity_.place_vertices();
   if (!cavity_.link_vertices() || !cavity_.is_ball())
     throw Error("Bowyer's algorithm fails: rounding makes the vertices that a point deletes other than one ball");
-  if (!placed) throw Error("Bowyer's algorithm fails: four forming points are coplanar");
+  if (!placed) throw Error("Bowyer's algorithm fails: a new vertex has coplanar or wrongly oriented forming points");
   ++counts_.certified;
   finish();
 }
 
 void Inserter::finish() {
-  counts_.coplanar += cavity_.approximate_unplaced();
+  counts_.coplanar += cavity_.place_flat_vertices();
   last_ = cavity_.replace();
 }
 

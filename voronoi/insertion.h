@@ -10,14 +10,16 @@ namespace orchard::detail {
 
 // How the vertices that a new point deletes are found.
 enum class Search : std::uint8_t {
-  bowyer,         // all that are nearer to the new point, and failing where that is not a ball
-  inagaki,        // breadth-first and ignoring value, under the five constraints
-  highest_first,  // by value, under the five constraints
+  bowyer,           // all that are nearer to the new point, and failing where that is not a ball
+  inagaki,          // breadth-first and ignoring value, under the five constraints
+  highest_first,    // by value, under the five constraints
+  always_by_value,  // the same without the short cut for points whose vertices are beyond doubt, to test the search
 };
 
 struct InsertionCounts {
   std::uint64_t certified = 0;    // every sign was beyond doubt
   std::uint64_t settled = 0;      // leaving the doubtful vertices alone gave a ball that the new point sees all around
+  std::uint64_t exact = 0;        // the same, after exact arithmetic had settled the doubts
   std::uint64_t constrained = 0;  // the constrained search decided
   std::uint64_t coplanar = 0;     // vertices with an approximate position
 };
@@ -29,7 +31,10 @@ class Inserter {
 
   // Makes the diagram of four points; false if they are nearly coplanar.
   bool start(const std::array<Index, 4>& points);
-  void insert(Index point);
+  // False, with the diagram as it was, where the signs contradict each other although the workspace does not ask for
+  // exact ones: then the input is near to degenerate, but not so near that rounding could be the reason. To be done
+  // again with exact signs from the start.
+  bool insert(Index point);
   const InsertionCounts& counts() const { return counts_; }
 
  private:
@@ -45,12 +50,15 @@ class Inserter {
   Index walk(const Point& q) const;
   Index highest_nearby(Index v, const Point& q) const;
   Index step_by_orientation(Index v, const Point& q) const;
+  Index walk_by_orientation(Index v, const Point& q) const;
   Index highest_of_all(const Point& q) const;
   Index climb(Index v, const Point& q) const;
   bool insert_directly(Index start, const Point& q);
+  bool insert_exactly(Index point, const Point& q);
   void search_highest_first(Index start, const Point& q);
   void delete_and_queue(Index v, const Point& q);
-  void widen_over_flat_facets(const Point& q);
+  void want(Index v, double value);
+  bool sees_around(const Candidate& candidate, const Point& q);
   void search_breadth_first(Index start, const Point& q);
   void insert_bowyer(Index start, const Point& q);
   void finish();

@@ -68,13 +68,24 @@ Index Inserter::walk(const Point& q) const {
 // a facet that parts them cannot do so in both directions.
 Index Inserter::step_by_orientation(Index v, const Point& q) const {
   const VoronoiVertex& vertex = workspace_.vertices[v];
-  const auto corner = [&](unsigned i) { return Vector(workspace_.points[vertex.forming_points[i]] - q); };
-  const Vector a = corner(0), b = corner(1), c = corner(2), d = corner(3);
-  if (volume_sign(b, c, d) == Sign::negative) return vertex.neighbors[0];
-  if (volume_sign(c, a, d) == Sign::negative) return vertex.neighbors[1];
-  if (volume_sign(a, b, d) == Sign::negative) return vertex.neighbors[2];
-  if (volume_sign(a, c, b) == Sign::negative) return vertex.neighbors[3];
+  for (unsigned i = 0; i < 4; ++i) {
+    const auto& [a, b, c] = Cavity::kOthers[i];
+    const auto corner = [&](unsigned k) -> const Point& { return workspace_.points[vertex.forming_points[k]]; };
+    if (volume_sign(q, corner(a), corner(b), corner(c)) == Sign::negative) return vertex.neighbors[i];
+  }
   return kNone;
+}
+
+// To the vertex whose tetrahedron holds q; at infinity if q is outside.
+Index Inserter::walk_by_orientation(Index v, const Point& q) const {
+  if (workspace_.at_infinity(v) && workspace_.sign(v, q) != Sign::positive) v = workspace_.vertices[v].neighbors[3];
+  const std::size_t patience = workspace_.vertices.size() + 64;
+  for (std::size_t steps = 0; steps < patience && !workspace_.at_infinity(v); ++steps) {
+    const Index next = step_by_orientation(v, q);
+    if (next == kNone) return v;
+    v = next;
+  }
+  return v;
 }
 
 Index Inserter::highest_of_all(const Point& q) const {

@@ -1,13 +1,14 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "orchard/geometry/mesh.h"
 
-// The geometry of an insertion in plain doubles, every result with what is needed to judge it. All points are taken
-// relative to one of them, which keeps the error proportional to the tetrahedron and not to its distance from the
-// origin.
+// The geometry of an insertion in plain doubles, every result with what is needed to judge it, and exactly where that
+// does not suffice. All points are taken relative to one of them, which keeps the error proportional to the tetrahedron
+// and not to its distance from the origin.
 namespace orchard::detail {
 
 // Half a unit in the last place: the relative error of one rounding.
@@ -18,44 +19,37 @@ enum class Sign : int { negative = -1, uncertain = 0, positive = 1 };
 inline Sign sign_of(double value, double bound) {
   return value > bound ? Sign::positive : value < -bound ? Sign::negative : Sign::uncertain;
 }
+inline Sign operator-(Sign sign) { return static_cast<Sign>(-static_cast<int>(sign)); }
 
-// The sign of a . (b x c), beyond the round-off of differences a, b, c of given points: 8 roundings of the sum of the
-// absolute products (3 in the differences, 2 in the minors, 3 in the sum).
-inline Sign volume_sign(const Vector& a, const Vector& b, const Vector& c) {
+// A determinant and a bound on its error.
+struct Determinant {
+  double value, bound;
+  Sign sign() const { return sign_of(value, bound); }
+};
+
+// a . (b x c) for differences a, b, c of given points: 8 roundings of the sum of the absolute products bound the error
+// (3 in the differences, 2 in the minors, 3 in the sum).
+inline Determinant volume(const Vector& a, const Vector& b, const Vector& c) {
   const double yz = b.y() * c.z(), zy = b.z() * c.y(), zx = b.z() * c.x(), xz = b.x() * c.z(), xy = b.x() * c.y(),
                yx = b.y() * c.x();
   const double value = a.x() * (yz - zy) + a.y() * (zx - xz) + a.z() * (xy - yx);
   const double magnitude = std::abs(a.x()) * (std::abs(yz) + std::abs(zy)) +
                            std::abs(a.y()) * (std::abs(zx) + std::abs(xz)) +
                            std::abs(a.z()) * (std::abs(xy) + std::abs(yx));
-  return sign_of(value, 8 * kRounding * magnitude);
+  return {value, 8 * kRounding * magnitude};
 }
 
-// Whether the query lies inside the sphere through four positively oriented points, given relative to the query.
-// The lifted determinant, expanded by the lifts; 16 roundings of the sum of the absolute products bound its error.
-inline Sign inside_sphere(const Vector& a, const Vector& b, const Vector& c, const Vector& d) {
-  struct Minor {
-    double value, magnitude;
-  };
-  const auto minor2 = [](const Vector& u, const Vector& v) {
-    const double p = u.x() * v.y(), q = v.x() * u.y();
-    return Minor{p - q, std::abs(p) + std::abs(q)};
-  };
-  const Minor ab = minor2(a, b), bc = minor2(b, c), cd = minor2(c, d), da = minor2(d, a), ac = minor2(a, c),
-              bd = minor2(b, d);
-  const double az = std::abs(a.z()), bz = std::abs(b.z()), cz = std::abs(c.z()), dz = std::abs(d.z());
-  const double abc = a.z() * bc.value - b.z() * ac.value + c.z() * ab.value;
-  const double bcd = b.z() * cd.value - c.z() * bd.value + d.z() * bc.value;
-  const double cda = c.z() * da.value + d.z() * ac.value + a.z() * cd.value;
-  const double dab = d.z() * ab.value + a.z() * bd.value + b.z() * da.value;
-  const double aa = a.squaredNorm(), bb = b.squaredNorm(), cc = c.squaredNorm(), dd = d.squaredNorm();
-  const double value = (cc * dab - dd * abc) + (aa * bcd - bb * cda);
-  const double magnitude = aa * (bz * cd.magnitude + cz * bd.magnitude + dz * bc.magnitude) +
-                           bb * (cz * da.magnitude + dz * ac.magnitude + az * cd.magnitude) +
-                           cc * (dz * ab.magnitude + az * bd.magnitude + bz * da.magnitude) +
-                           dd * (az * bc.magnitude + bz * ac.magnitude + cz * ab.magnitude);
-  return sign_of(value, 16 * kRounding * magnitude);
-}
+// The sign of (a - q) . ((b - q) x (c - q)), exact: uncertain means zero.
+Sign volume_sign(const Point& q, const Point& a, const Point& b, const Point& c);
+
+// Whether q lies inside the sphere through four positively oriented points; exact likewise.
+Sign inside_sphere(const Point& q, const Point& a, const Point& b, const Point& c, const Point& d);
+
+// The circumcentre of q, a, b and c relative to q in twofold precision. False if they are coplanar even to that.
+bool sharp_circumcenter(const Point& q, const Point& a, const Point& b, const Point& c, Vector& center);
+
+// The unit normal of the triangle q, a, b. False if they are collinear to twofold precision.
+bool sharp_normal(const Point& q, const Point& a, const Point& b, Vector& normal);
 
 // The circumcentre of the origin, a, b and c.
 struct RelativeCenter {

@@ -23,10 +23,11 @@ void Workspace::adopt(VoronoiVertex& vertex, std::uint8_t& error) const {
   error = kUnknownError;
   if (corner[3] == kInfinitePoint) {
     vertex.radius = std::numeric_limits<double>::quiet_NaN();
-    place_at_infinity(placed, error, a, b);
+    if (place_at_infinity(placed, error, a, b) == Placing::failed) error = kUnknownError;
   } else {
     vertex.radius = (vertex.center - origin).squaredNorm();
-    if (!place(placed, error, origin, a, b, LengthedVector(points[corner[3]] - origin))) error = kUnknownError;
+    if (place(placed, error, origin, a, b, LengthedVector(points[corner[3]] - origin)) == Placing::failed)
+      error = kUnknownError;
   }
 }
 
@@ -40,13 +41,13 @@ double Workspace::value(Index v, const Point& q) const {
 Sign Workspace::doubtful_sign(Index v, const Point& q, double bound) const {
   if (at_infinity(v)) return sign_at_infinity(v, q);
   // With a centre as good as this, the doubt is in the input.
-  if (bound < good_center_ * vertices[v].radius) return Sign::uncertain;
+  if (!exact_ && bound < good_center_ * vertices[v].radius) return Sign::uncertain;
   return sign_from_points(v, q);
 }
 
 Sign Workspace::sign_from_points(Index v, const Point& q) const {
   const auto& corner = vertices[v].forming_points;
-  return inside_sphere(points[corner[0]] - q, points[corner[1]] - q, points[corner[2]] - q, points[corner[3]] - q);
+  return inside_sphere(q, points[corner[0]], points[corner[1]], points[corner[2]], points[corner[3]]);
 }
 
 Sign Workspace::sign_at_infinity(Index v, const Point& q) const {
@@ -56,7 +57,12 @@ Sign Workspace::sign_at_infinity(Index v, const Point& q) const {
   const double bound = a.lpNorm<1>() * (power_bound(v) / squared_scale_) + 2 * noise_;
   if (height > bound) return Sign::positive;
   if (height < -bound) return Sign::negative;
-  // In the facet's plane as far as doubles can tell. The spheres that grow towards this end of the unbounded edge all
+  if (exact_) {
+    const auto& corner = vertex.forming_points;
+    const Sign below = volume_sign(q, points[corner[0]], points[corner[1]], points[corner[2]]);
+    if (below != Sign::uncertain) return -below;
+  }
+  // In the facet's plane, as far as the input goes. The spheres that grow towards this end of the unbounded edge all
   // cut the plane in the facet's circle: q is nearer to the vertex at infinity if it lies inside. The sphere at the
   // other end of the edge cuts the plane there too; taking its sign, no facet ends up between a deleted and an
   // undeleted vertex that is coplanar with q.

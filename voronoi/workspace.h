@@ -10,6 +10,13 @@
 
 namespace orchard::detail {
 
+// What placing a vertex came to.
+enum class Placing : std::uint8_t {
+  good,
+  thin,    // the forming points are so near to coplanar that a doubt elsewhere could move the centre far
+  failed,  // no centre worth having, or wrongly oriented
+};
+
 // What an insertion knows of a vertex so far.
 enum class Mark : std::uint8_t { unseen, deleted, kept, wanted };
 
@@ -29,6 +36,10 @@ class Workspace {
   // half in doubt.
   void set_scale(const Box& box);
   static constexpr double kInputNoise = 4 * kRounding;
+  // From now on signs are exact, as if the input had no noise: slower, and slivers appear where rounding has put points
+  // off a plane, but consistent whatever the input. For input that is off by more than rounding but by too little.
+  void set_exact(bool exact) { exact_ = exact; }
+  bool exact() const { return exact_; }
 
   bool at_infinity(Index v) const { return vertices[v].forming_points[3] == kInfinitePoint; }
   bool is_free(Index v) const { return vertices[v].neighbors[0] == kNone; }
@@ -57,14 +68,13 @@ class Workspace {
   // of that along the unbounded edge, which is the distance of q beyond the facet.
   double value(Index v, const Point& q) const;
 
-  // The vertex for four forming points, one of which is the new point, given the others relative to it in order: a, b,
-  // c with a . (b x c) > 0 where rounding allows. False if they are too near to coplanar for a position: then the
-  // centre is not set.
-  bool place(VoronoiVertex& vertex, std::uint8_t& error_class, const Point& new_point, const LengthedVector& a,
-             const LengthedVector& b, const LengthedVector& c) const;
+  // The position of a vertex of the new point and three others a, b, c, given relative to it, where rounding permits a
+  // centre worth having, and the volume a . (b x c) is positive.
+  Placing place(VoronoiVertex& vertex, std::uint8_t& error_class, const Point& new_point, const LengthedVector& a,
+                const LengthedVector& b, const LengthedVector& c) const;
   // The same at infinity, beyond the facet of the new point, a and b.
-  bool place_at_infinity(VoronoiVertex& vertex, std::uint8_t& error_class, const LengthedVector& a,
-                         const LengthedVector& b) const;
+  Placing place_at_infinity(VoronoiVertex& vertex, std::uint8_t& error_class, const LengthedVector& a,
+                            const LengthedVector& b) const;
   // A length far beyond the points, for vertices whose place is as good as infinite.
   double far() const { return 1024 * std::sqrt(squared_scale_); }
   // Recomputes the error class of a finished vertex, and turns its radius into its square.
@@ -79,6 +89,11 @@ class Workspace {
     vertices.resize(count);
     state_.resize(count);
   }
+  void clear() {
+    vertices.clear();
+    state_.clear();
+    free_vertices.clear();
+  }
   void reserve(std::size_t count) {
     vertices.reserve(count);
     state_.reserve(count);
@@ -92,8 +107,10 @@ class Workspace {
   std::vector<std::uint8_t> state_;                    // mark, and error class above
   std::array<double, 64> bounds_{};                    // by error class
   double squared_scale_ = 1, per_smallest_bound_ = 1;  // powers of two, so that scaled input is treated exactly alike
-  double noise_ = 0;                                   // how far off an input point may be
-  double good_center_ = 0;                             // an error bound below this many squared radii
+  static constexpr double kThin = 0x1p-24;  // how far the noise may turn a facet of a good vertex, in radians
+  bool exact_ = false;
+  double noise_ = 0;        // how far off an input point may be
+  double good_center_ = 0;  // an error bound below this many squared radii
 };
 
 // The smallest class whose bound is not below the given one.
@@ -105,38 +122,39 @@ inline std::uint8_t Workspace::error_class(double bound) const {
   return static_cast<std::uint8_t>(exponent / 2 + 1);
 }
 
-inline bool Workspace::place(VoronoiVertex& vertex, std::uint8_t& error, const Point& new_point,
-                             const LengthedVector& a, const LengthedVector& b, const LengthedVector& c) const {
+inline Placing Workspace::place(VoronoiVertex& vertex, std::uint8_t& error, const Point& new_point,
+                                const LengthedVector& a, const LengthedVector& b, const LengthedVector& c) const {
   const RelativeCenter relative = circumcenter(a, b, c);
   // The reciprocal of the smallest height of the tetrahedron's corners at the new point: how far input noise is
   // magnified.
   const double per_height = relative.largest_face / std::abs(relative.volume6);
-  if (!relative.reliable() || !(noise_ * per_height < 0.125)) return false;
+  const double shake = noise_ * per_height;
+  if (!relative.reliable() || !(shake < 0.125)) return Placing::failed;
   vertex.center = new_point + relative.center;
   // From the rounded centre, so that the new point at least is on the sphere.
   vertex.radius = (vertex.center - new_point).squaredNorm();
   const double r = std::sqrt(vertex.radius);
   // A centre off by e changes the power of a point about as far as the radius by less than 4 r e; e is kCenterError *
-  // condition * r plus the rounding of the sum above; and the power itself takes some ten roundings of r^2.
+  // condition * r plus the rounding of the sum above plus what the input's noise does; and the power itself takes some
+  // ten roundings of r^2.
   error =
-      error_class((4 * RelativeCenter::kCenterError * relative.condition + 16 * kRounding + 8 * noise_ * per_height) *
-                      vertex.radius +
+      error_class((4 * RelativeCenter::kCenterError * relative.condition + 16 * kRounding + 8 * shake) * vertex.radius +
                   8 * kRounding * r * vertex.center.lpNorm<1>());
-  return relative.volume6 > 0;
+  return !(relative.volume6 > 0) ? Placing::failed : shake < kThin ? Placing::good : Placing::thin;
 }
 
-inline bool Workspace::place_at_infinity(VoronoiVertex& vertex, std::uint8_t& error, const LengthedVector& a,
-                                         const LengthedVector& b) const {
+inline Placing Workspace::place_at_infinity(VoronoiVertex& vertex, std::uint8_t& error, const LengthedVector& a,
+                                            const LengthedVector& b) const {
   const Vector normal = a.vector.cross(b.vector);
   const double length = normal.norm();
   const double condition = a.length * b.length / length;
-  const double per_height = std::max(a.length, b.length) / length;
-  if (!(condition * RelativeCenter::kCenterError < 0.125) || !(noise_ * per_height < 0.125)) return false;
+  const double shake = noise_ * std::max(a.length, b.length) / length;
+  if (!(condition * RelativeCenter::kCenterError < 0.125) || !(shake < 0.125)) return Placing::failed;
   vertex.center = normal / length;
   vertex.radius = std::numeric_limits<double>::quiet_NaN();
   // Here the class holds the error of a height above the facet, relative to the distance from one of its points.
-  error = error_class(((16 * condition + 16) * kRounding + 4 * noise_ * per_height) * squared_scale_);
-  return true;
+  error = error_class(((16 * condition + 16) * kRounding + 4 * shake) * squared_scale_);
+  return shake < kThin ? Placing::good : Placing::thin;
 }
 
 }  // namespace orchard::detail

@@ -12,7 +12,9 @@ namespace orchard {
 struct HighestFirstReport {
   std::uint64_t certified_insertions = 0;        // every sign on the cavity's border was beyond doubt
   std::uint64_t settled_insertions = 0;          // some vertex was marginal: leaving all such gave a consistent cell
+  std::uint64_t exact_insertions = 0;            // the same, after exact arithmetic had settled doubts
   std::uint64_t constrained_insertions = 0;      // the value-ordered search under the five constraints decided
+  bool exact_signs = false;                      // so many were, that all insertions were made anew with exact signs
   std::uint64_t coplanar_centers = 0;            // circumcentres approximated by a neighbour's position
   std::vector<std::array<Index, 2>> duplicates;  // (point left out, point it coincides with)
 };

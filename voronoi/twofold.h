@@ -1,0 +1,43 @@
+#pragma once
+#include <cmath>
+
+namespace orchard::detail {
+
+// An unevaluated sum of two doubles, the second below half a unit in the last place of the first: about 106 bits.
+struct Twofold {
+  double high = 0, low = 0;
+
+  Twofold() = default;
+  Twofold(double value) : high(value) {}
+  Twofold(double h, double l) : high(h), low(l) {}
+};
+
+// The exact sum (Knuth), difference and product (Dekker, by the fused operation) of two doubles.
+inline Twofold exact_sum(double a, double b) {
+  const double sum = a + b, b_part = sum - a;
+  return {sum, (a - (sum - b_part)) + (b - b_part)};
+}
+inline Twofold exact_difference(double a, double b) { return exact_sum(a, -b); }
+inline Twofold exact_product(double a, double b) {
+  const double product = a * b;
+  return {product, std::fma(a, b, -product)};
+}
+
+inline Twofold operator-(const Twofold& a) { return {-a.high, -a.low}; }
+inline Twofold operator+(const Twofold& a, const Twofold& b) {
+  const Twofold high = exact_sum(a.high, b.high), low = exact_sum(a.low, b.low);
+  const Twofold first = exact_sum(high.high, high.low + low.high);
+  return exact_sum(first.high, first.low + low.low);
+}
+inline Twofold operator-(const Twofold& a, const Twofold& b) { return a + -b; }
+inline Twofold operator*(const Twofold& a, const Twofold& b) {
+  const Twofold p = exact_product(a.high, b.high);
+  return exact_sum(p.high, p.low + (a.high * b.low + a.low * b.high));
+}
+inline Twofold operator/(const Twofold& a, const Twofold& b) {
+  const double first = a.high / b.high;
+  const Twofold rest = a - b * Twofold(first);
+  return exact_sum(first, rest.high / b.high);
+}
+
+}  // namespace orchard::detail
