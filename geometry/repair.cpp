@@ -35,9 +35,9 @@ void close(TriangleMesh& mesh, const RepairMeshOptions& options, MeshRepairRepor
 MeshRepairReport repair_mesh(TriangleMesh& mesh, const RepairMeshOptions& options) {
   validate(mesh);
   MeshRepairReport report;
+  // Parts that repeat or hold each other are no fault to check_mesh().
   const MeshReport before = check_mesh(mesh);
-  // Several components can repeat each other, or be turned wrongly in a way that only orient_parts() sees.
-  if (!before.solid() || (before.components > 1 && detail::repeats_triangles(mesh))) {
+  if (!before.solid()) {
     close(mesh, options, report);
   } else if (before.components > 1) {
     detail::orient_parts(mesh, report);

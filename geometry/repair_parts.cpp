@@ -6,6 +6,7 @@
 #include "half_edges.h"
 #include "orchard/geometry/surface.h"
 #include "repair_steps.h"
+#include "same_place.h"
 
 namespace orchard::detail {
 namespace {
@@ -41,6 +42,30 @@ std::vector<Part> parts_of(const TriangleMesh& mesh) {
   return parts;
 }
 
+// Drops every part whose triangles all lie on those of a part before it, either way round.
+void drop_repeated(TriangleMesh& mesh, MeshRepairReport& report) {
+  const std::vector<Index> first = first_at_place(mesh);
+  TriangleMesh welded{{}, mesh.triangles};
+  for (auto& corners : welded.triangles)
+    for (Index& vertex : corners) vertex = first[vertex];
+  const auto groups = same_corners(welded);
+  if (groups.empty()) return;
+  std::vector<Index> group_of(mesh.triangles.size(), kNone);
+  for (Index g = 0; g < groups.size(); ++g)
+    for (const Index t : groups[g]) group_of[t] = g;
+  std::vector<bool> taken(groups.size(), false);  // by a part that is kept
+  std::vector<bool> drop(mesh.triangles.size(), false);
+  for (const Part& part : parts_of(mesh)) {
+    const bool repeated =
+        std::ranges::all_of(part.triangles, [&](Index t) { return group_of[t] != kNone && taken[group_of[t]]; });
+    for (const Index t : part.triangles) {
+      drop[t] = repeated;
+      if (!repeated && group_of[t] != kNone) taken[group_of[t]] = true;
+    }
+  }
+  report.duplicates_dropped += erase_marked(mesh, drop);
+}
+
 // The part alone, vertices renumbered.
 TriangleMesh extract(const TriangleMesh& mesh, const Part& part) {
   TriangleMesh alone;
@@ -69,6 +94,7 @@ bool holds(const Surface& outer, const TriangleMesh& mesh, const Part& inner) {
 }  // namespace
 
 void orient_parts(TriangleMesh& mesh, MeshRepairReport& report) {
+  drop_repeated(mesh, report);
   std::vector<Part> parts = parts_of(mesh);
   for (Part& part : parts) {
     part.inside_out = check_mesh(extract(mesh, part)).volume < 0;

@@ -40,16 +40,6 @@ std::vector<bool> weldable_vertices(const TriangleMesh& mesh, const std::vector<
   return weldable;
 }
 
-Index erase_marked(TriangleMesh& mesh, const std::vector<bool>& marked) {
-  std::size_t kept = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (!marked[t]) mesh.triangles[kept++] = mesh.triangles[t];
-  }
-  const std::size_t erased = mesh.triangles.size() - kept;
-  mesh.triangles.resize(kept);
-  return static_cast<Index>(erased);
-}
-
 // Corner opposite the longest edge.
 std::size_t apex_of(const TriangleMesh& mesh, const Triangle& t) {
   std::array<double, 3> squared{};
@@ -146,6 +136,16 @@ class FlatTriangles {
 
 }  // namespace
 
+Index erase_marked(TriangleMesh& mesh, const std::vector<bool>& marked) {
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (!marked[t]) mesh.triangles[kept++] = mesh.triangles[t];
+  }
+  const std::size_t erased = mesh.triangles.size() - kept;
+  mesh.triangles.resize(kept);
+  return static_cast<Index>(erased);
+}
+
 void weld_vertices(TriangleMesh& mesh, MeshRepairReport& report) {
   const std::vector<Index> first = first_at_place(mesh);
   const std::vector<bool> weldable = weldable_vertices(mesh, first);
@@ -162,17 +162,6 @@ void weld_vertices(TriangleMesh& mesh, MeshRepairReport& report) {
   for (Triangle& t : mesh.triangles)
     for (Index& vertex : t)
       if (weldable[vertex]) vertex = kept[first[vertex]];
-}
-
-bool repeats_triangles(const TriangleMesh& mesh) {
-  const TriangleMesh welded = all_welded(mesh, first_at_place(mesh));
-  const auto repeats = [&](const std::vector<Index>& group) {
-    const auto turned = [&](Index t) { return canonical(welded.triangles[t]).second; };
-    const auto turned_count = std::count_if(group.begin(), group.end(), turned);
-    return turned_count > 1 || group.size() - static_cast<std::size_t>(turned_count) > 1;
-  };
-  const auto groups = same_corners(welded);
-  return std::any_of(groups.begin(), groups.end(), repeats);
 }
 
 void drop_duplicates(TriangleMesh& mesh, MeshRepairReport& report) {

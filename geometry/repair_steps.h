@@ -10,8 +10,8 @@
 namespace orchard::detail {
 
 // repair_soup.cpp: triangles as a bag.
+Index erase_marked(TriangleMesh& mesh, const std::vector<bool>& marked);  // triangles; returns how many
 void weld_vertices(TriangleMesh& mesh, MeshRepairReport& report);
-bool repeats_triangles(const TriangleMesh& mesh);  // same place, same side out
 void drop_duplicates(TriangleMesh& mesh, MeshRepairReport& report);
 void drop_degenerate(TriangleMesh& mesh, MeshRepairReport& report);
 void drop_unused_vertices(TriangleMesh& mesh, MeshRepairReport& report);
@@ -27,7 +27,8 @@ void fill_holes(TriangleMesh& mesh, const RepairMeshOptions& options, MeshRepair
 // no way to do it.
 std::vector<std::array<Index, 3>> triangulate_polyline(std::span<const Point> polyline);
 
-// repair_parts.cpp. Precondition: closed, manifold, neighbours agree.
+// repair_parts.cpp: drops components that repeat another one, turns the rest. Precondition: closed, manifold,
+// neighbours agree.
 void orient_parts(TriangleMesh& mesh, MeshRepairReport& report);
 
 }  // namespace orchard::detail

@@ -126,7 +126,10 @@ std::vector<Case> repairable() {
        joined({unit_box(), turned(unit_box())}),
        1,
        {.vertices_welded = 8, .duplicates_dropped = 12}},
-      {"all triangles twice", joined({unit_box(), unit_box()}), 1, {.vertices_welded = 8, .duplicates_dropped = 12}},
+      {"all triangles twice",
+       joined({unit_box(), unit_box()}),
+       1,
+       {.unused_vertices_dropped = 8, .duplicates_dropped = 12}},
       {"a vertex near an edge", box_with_t_junction(1e-5), 1, {.holes_filled = 1, .triangles_added = 1}},
       {"a triangle off a bag",
        without(soup(ball), 3),
@@ -333,6 +336,29 @@ TEST(RepairMesh, CutsAnEdgeThatASolidTouchesItselfAlong) {
   EXPECT_TRUE(report.solid) << report.faults;
   EXPECT_EQ(report.edges_cut, 1u);
   EXPECT_NEAR(check_mesh(ring).volume, 8, 1e-9);
+}
+
+TEST(RepairMesh, SurvivesAnyTriangles) {
+  int solids = 0;
+  for (std::uint64_t seed = 0; seed < 3000; ++seed) {
+    Random random(seed, 2);
+    TriangleMesh mesh;
+    const std::uint64_t vertices = 3 + random.below(6), triangles = 1 + random.below(14);
+    // On a grid of 27 places, so that vertices coincide and triangles overlap.
+    const auto coordinate = [&] { return static_cast<double>(random.below(3)); };
+    for (std::uint64_t i = 0; i < vertices; ++i) mesh.vertices.emplace_back(coordinate(), coordinate(), coordinate());
+    const auto vertex = [&] { return static_cast<Index>(random.below(vertices)); };
+    for (std::uint64_t i = 0; i < triangles; ++i) mesh.triangles.push_back({vertex(), vertex(), vertex()});
+    const MeshRepairReport report = repair_mesh(mesh, {.max_hole_diameter = 4});
+    if (!mesh.triangles.empty()) validate(mesh);
+    EXPECT_EQ(report.solid, check_mesh(mesh).solid()) << "seed " << seed;
+    EXPECT_EQ(report.solid, report.faults.empty()) << "seed " << seed;
+    if (!report.solid) continue;
+    ++solids;
+    const MeshRepairReport again = repair_mesh(mesh);
+    EXPECT_TRUE(again.lines().empty()) << "seed " << seed << ": " << again.lines().front();
+  }
+  EXPECT_GT(solids, 100);
 }
 
 TEST(RepairMesh, ScalesExactlyByPowersOfTwo) {
