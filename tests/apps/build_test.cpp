@@ -84,7 +84,8 @@ TEST(Build, RepairsNothingWhenStrict) {
   EXPECT_TRUE(test::is_one_line_error(refused.err)) << refused.err;
   EXPECT_EQ(refused.out, "");
   EXPECT_TRUE(here.files("out").empty());
-  const Finished accepted = here.run(build(here.add("ball.obj", test::icosphere(2)), (here / "out").string(), {"--strict"}));
+  const Finished accepted =
+      here.run(build(here.add("ball.obj", test::icosphere(2)), (here / "out").string(), {"--strict"}));
   EXPECT_EQ(accepted.exit_code, 0) << accepted.err;
 }
 
@@ -97,7 +98,8 @@ TEST(Build, OffersAWrapWhereRepairIsNotEnoughAndBuildsOnIt) {
   EXPECT_NE(refused.err.find("--wrap"), std::string::npos) << refused.err;
   EXPECT_TRUE(here.files("out").empty());
 
-  const Finished wrapped = here.run(build(mesh, (here / "out").string(), {"--wrap=0.01", "--wrap-alpha", "0.1", "--json"}));
+  const Finished wrapped =
+      here.run(build(mesh, (here / "out").string(), {"--wrap=0.01", "--wrap-alpha", "0.1", "--json"}));
   ASSERT_EQ(wrapped.exit_code, 0) << wrapped.err;
   const json report = json::parse(wrapped.out);
   const double distance = report["wrap_distance"], over_radius = report["wrap_distance_over_radius"];
@@ -131,7 +133,7 @@ TEST(Build, WritesTheSameBytesTwiceAndOnAnyNumberOfThreads) {
   const std::string mesh = here.add("holed.obj", holed_ball());
   const auto trees = [&](const std::string& folder, const std::string& threads) {
     const Finished run = here.run({"build", mesh, "-o", (here / folder).string(), "--samples", "300", "--depth", "2",
-                              "--no-views", "--threads", threads});
+                                   "--no-views", "--threads", threads});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     auto files = here.files(folder);
     files.erase("holed.json");  // holds times

@@ -39,8 +39,8 @@ TEST(Sample, SpreadsPointsMoreEvenlyByRelaxing) {
   const Workplace here;
   const std::string mesh = here.add("ball.obj", test::icosphere(3));
   for (const char* relaxation : {"automatic", "neighbors"}) {
-    const Finished run = here.run({"sample", mesh, "-o", (here / "out").string(), "--samples", "2000", "--edge-samples", "0",
-                              "--relaxation", relaxation, "--json", "--no-views"});
+    const Finished run = here.run({"sample", mesh, "-o", (here / "out").string(), "--samples", "2000", "--edge-samples",
+                                   "0", "--relaxation", relaxation, "--json", "--no-views"});
     ASSERT_EQ(run.exit_code, 0) << run.err;
     const json evenness = json::parse(run.out)["evenness"];
     EXPECT_LT(evenness["after"]["deviation_over_mean"].get<double>(),
@@ -63,8 +63,8 @@ TEST(Sample, WritesTheSameBytesForASeedOnAnyNumberOfThreads) {
   const Workplace here;
   const std::string mesh = here.add("torus.obj", test::torus(20, 10));
   const auto points = [&](const std::string& seed, const std::string& threads) {
-    const Finished run = here.run({"sample", mesh, "-o", (here / "out").string(), "--samples", "400", "--quiet", "--seed",
-                              seed, "--threads", threads});
+    const Finished run = here.run({"sample", mesh, "-o", (here / "out").string(), "--samples", "400", "--quiet",
+                                   "--seed", seed, "--threads", threads});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     EXPECT_EQ(run.out + run.err, "");
     return here.files("out").at("torus.xyz");
