@@ -47,8 +47,6 @@ TEST(HighestFirstVoronoi, IsConsistentOnDegeneratePoints) {
     for (const Point& p : points) box.extend(p);
     const double radius = box.diagonal().norm() / 2;
     EXPECT_LT(inaccuracy(diagram).max, 1e-9 * radius) << name;
-    std::printf("max %8.1e mean %8.1e exact %8.1e ", corner_inaccuracy(diagram).max/radius, corner_inaccuracy(diagram).mean/radius, corner_inaccuracy(exact_voronoi(points)).mean/radius);
-    std::printf("%-45s %6zu certified %5lu settled %5lu constrained %5lu coplanar %lu dup %zu\n", name.c_str(), points.size(), report.certified_insertions, report.settled_insertions, report.constrained_insertions, report.coplanar_centers, report.duplicates.size());
   }
 }
 
