@@ -3,6 +3,10 @@
 # whoever links the static library orchard::viz links them too.
 enable_language(C)
 set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)
-find_package(VTK 9.1 CONFIG REQUIRED COMPONENTS CommonCore CommonDataModel CommonExecutionModel FiltersCore
-  FiltersSources IOImage IOXML ImagingCore RenderingCore RenderingFreeType RenderingOpenGL2)
+set(orchard_vtk_components CommonCore CommonDataModel CommonExecutionModel FiltersCore FiltersSources IOImage IOXML
+  ImagingCore RenderingCore RenderingFreeType RenderingOpenGL2)
+if(ORCHARD_BENCH)
+  list(APPEND orchard_vtk_components IOGeometry)  # a rival of the OBJ reader
+endif()
+find_package(VTK 9.1 CONFIG REQUIRED COMPONENTS ${orchard_vtk_components})
 set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL OFF)
