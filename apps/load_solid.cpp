@@ -22,18 +22,20 @@ double parse_offset(const std::string& text) {
   return offset;
 }
 
-SolidMesh strict(const std::string& name, TriangleMesh mesh) {
-  Surface surface(std::move(mesh));
+SolidMesh strict(const std::string& name, TriangleMesh mesh, BoundingBall ball) {
+  Surface surface(std::move(mesh), ball);
   if (!surface.solid())
     throw InputError(name + ": not a closed, consistently oriented manifold: " + surface.report().faults() +
                      "; without --strict, orchard repairs what is safe to repair");
   return {.surface = std::move(surface), .repair = {.solid = true}, .wrap = {}, .self_intersections = {}};
 }
 
-SolidMesh wrapped(TriangleMesh mesh, const WrapOptions& options, const Progress& progress) {
+SolidMesh wrapped(TriangleMesh mesh, const WrapOptions& options, BoundingBall ball, const Progress& progress) {
   report_progress(progress, "wrap", 0);
-  SolidMesh solid{
-      .surface = Surface(wrap_mesh(mesh, options)), .repair = {.solid = true}, .wrap = {}, .self_intersections = {}};
+  SolidMesh solid{.surface = Surface(wrap_mesh(mesh, options), ball),
+                  .repair = {.solid = true},
+                  .wrap = {},
+                  .self_intersections = {}};
   const Surface input(std::move(mesh));
   solid.wrap = WrapResult{.options = options,
                           .to_input = surface_distance(solid.surface, input, {}, progress),
@@ -41,12 +43,12 @@ SolidMesh wrapped(TriangleMesh mesh, const WrapOptions& options, const Progress&
   return solid;
 }
 
-SolidMesh repaired(const std::string& name, TriangleMesh mesh) {
+SolidMesh repaired(const std::string& name, TriangleMesh mesh, BoundingBall ball) {
   MeshRepairReport repair = repair_mesh(mesh);
   if (!repair.solid)
     throw InputError(name + ": no closed manifold, even after repair: " + repair.faults +
                      " (numbers count from 0); --wrap builds on a closed skin around it instead");
-  return {.surface = Surface(std::move(mesh)), .repair = std::move(repair), .wrap = {}, .self_intersections = {}};
+  return {.surface = Surface(std::move(mesh), ball), .repair = std::move(repair), .wrap = {}, .self_intersections = {}};
 }
 
 json bounds(const SurfaceDistance& distance) { return {distance.lower, distance.upper}; }
@@ -60,12 +62,13 @@ SolidMesh load_solid(const std::filesystem::path& file, const MeshOptions& optio
   const std::string name = file.string();
   if (!options.wrap.empty()) {
     try {
-      return wrapped(std::move(mesh), wrap, progress);
+      return wrapped(std::move(mesh), wrap, options.ball, progress);
     } catch (const InputError& error) {
       throw InputError(name + ": " + error.what());
     }
   }
-  SolidMesh solid = options.strict ? strict(name, std::move(mesh)) : repaired(name, std::move(mesh));
+  SolidMesh solid =
+      options.strict ? strict(name, std::move(mesh), options.ball) : repaired(name, std::move(mesh), options.ball);
   if (solid.surface.mesh().triangles.size() <= kMostForSelfIntersections)
     solid.self_intersections = self_intersections(solid.surface.mesh()).size();
   return solid;

@@ -17,6 +17,7 @@ struct MeshOptions {
   bool strict = false;  // as it is or not at all
   std::string wrap;     // not empty: build on a wrap that lies this far outside, a number of WrapOptions::offset
   double wrap_alpha = WrapOptions{}.alpha;
+  BoundingBall ball = BoundingBall::minimal;
 };
 inline const std::string kDefaultWrap = "0.002";
 

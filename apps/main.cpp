@@ -14,6 +14,7 @@
 namespace {
 
 using namespace orchard::apps;
+using orchard::BoundingBall;
 using orchard::Relaxation;
 
 constexpr int kFailed = 1, kBadInput = 2;
@@ -48,6 +49,14 @@ void add_mesh_options(CLI::App& command, MeshOptions& options) {
           "Openings narrower than this stay closed, in diagonals; less follows the mesh better, and takes longer")
       ->check(CLI::Range(1e-4, 0.5))
       ->capture_default_str();
+  command
+      .add_option_function<std::string>(
+          "--root-ball",
+          [&options](const std::string& name) {
+            options.ball = name == "ritter" ? BoundingBall::ritter : BoundingBall::minimal;
+          },
+          "The ball around the whole, the root of the tree: minimal (default), or ritter for that of Ritter's method")
+      ->check(CLI::IsMember({"minimal", "ritter"}));
 }
 
 Method method_named(const std::string& name) { return name == "octree" ? Method::octree : Method::medial; }

@@ -171,5 +171,8 @@ double Surface::signed_distance(const Point& query, ClosestPoint& nearest) const
 }
 
 void Surface::triangles_near(const Sphere& ball, std::vector<Index>& out) const { data_->tree.near(ball, out); }
+void Surface::triangles_overlapping(const std::array<Point, 3>& triangle, std::vector<Index>& out) const {
+  data_->tree.overlapping(triangle, out);
+}
 
 }  // namespace orchard

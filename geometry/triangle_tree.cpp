@@ -107,9 +107,14 @@ void TriangleTree::visit_leaves(const Query& query, const float& limit, Visit vi
   }
 }
 
-ClosestPoint TriangleTree::measure(const Point& query, Index triangle) const {
+std::array<Point, 3> TriangleTree::corners(Index triangle) const {
   const auto& [a, b, c] = mesh_.triangles[triangle];
-  ClosestPoint result = closest_point_of_triangle(query, mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]);
+  return {mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]};
+}
+
+ClosestPoint TriangleTree::measure(const Point& query, Index triangle) const {
+  const auto [a, b, c] = corners(triangle);
+  ClosestPoint result = closest_point_of_triangle(query, a, b, c);
   result.triangle = triangle;
   return result;
 }

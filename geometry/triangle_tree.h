@@ -18,7 +18,8 @@ class TriangleTree {
   explicit TriangleTree(const TriangleMesh& mesh);
 
   ClosestPoint closest(const Point& query) const;
-  void near(const Sphere& ball, std::vector<Index>& out) const;  // ascending; cleared first
+  void near(const Sphere& ball, std::vector<Index>& out) const;                           // ascending; cleared first
+  void overlapping(const std::array<Point, 3>& triangle, std::vector<Index>& out) const;  // ascending; cleared first
 
  private:
   struct Node {
@@ -37,12 +38,14 @@ class TriangleTree {
   };
   class Builder;
   class Candidates;
+  class TriangleQuery;
 
   bool localize(const Point& point, Query& query) const;
   static Float4 squared_distances(const Query& query, const Node& node);
   static Float4 squared_distances(const Query& query, const Leaf& leaf);
   template <class Visit>
   void visit_leaves(const Query& query, const float& limit, Visit visit) const;
+  std::array<Point, 3> corners(Index triangle) const;
   ClosestPoint measure(const Point& query, Index triangle) const;
 
   const TriangleMesh& mesh_;

@@ -2,9 +2,11 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "orchard/geometry/mesh_check.h"
 #include "orchard/geometry/mesh_io.h"
+#include "orchard/geometry/min_ball.h"
 #include "program.h"
 #include "support/shapes.h"
 
@@ -54,6 +56,31 @@ TEST(Build, BuildsAMedialTreeAsTheDefault) {
   const json report = json::parse(run.out);
   EXPECT_EQ(report["options"]["method"], "medial");
   EXPECT_GT(report["medial_axis"]["vertices"].get<int>(), 0);
+}
+
+TEST(Build, TakesTheMinimalBallAsRootUnlessAskedForRittersOne) {
+  const Workplace here;
+  const TriangleMesh solid = test::l_shape();
+  const std::string mesh = here.add("l.obj", solid);
+  const double minimal = minimal_ball(solid.vertices).radius, ritter = ritter_ball(solid.vertices).radius;
+  ASSERT_GT(ritter, 1.001 * minimal);
+  const auto radius = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = build(mesh, (here / "out").string(), {"--json"});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Finished run = here.run(arguments);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    const json report = json::parse(run.out);
+    const double reported = report["mesh"]["bounding_ball"][3].get<double>();
+    std::istringstream tree(here.files("out").at("l.sph"));
+    double root = 0;
+    for (int i = 0; i < 6; ++i) tree >> root;  // "levels branching", then "x y z radius .."
+    EXPECT_NEAR(root, reported, 1e-6 * reported);
+    return reported;
+  };
+  EXPECT_DOUBLE_EQ(radius({}), minimal);
+  EXPECT_DOUBLE_EQ(radius({"--root-ball", "minimal"}), minimal);
+  EXPECT_DOUBLE_EQ(radius({"--root-ball", "ritter"}), ritter);
+  EXPECT_EQ(here.run(build(mesh, (here / "out").string(), {"--root-ball", "box"})).exit_code, 2);
 }
 
 TEST(Build, PrintsOnlyJsonWithJsonAndNothingWithQuiet) {

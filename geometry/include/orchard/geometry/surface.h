@@ -63,6 +63,8 @@ class Surface {
   bool inside(const Point& query) const { return signed_distance(query) < 0; }
   // Triangles that touch the closed ball, ascending; `out` is cleared first.
   void triangles_near(const Sphere& ball, std::vector<Index>& out) const;
+  // Triangles that share a point with the closed triangle, ascending; `out` is cleared first. Exact, as triangles_meet.
+  void triangles_overlapping(const std::array<Point, 3>& triangle, std::vector<Index>& out) const;
 
  private:
   struct Data;
@@ -71,5 +73,9 @@ class Surface {
 
 // The point of triangle (a, b, c) nearest to `query` (dissertation 5.3.2, three cases). Works for degenerate triangles.
 ClosestPoint closest_point_of_triangle(const Point& query, const Point& a, const Point& b, const Point& c);
+
+// Whether two closed triangles share a point: exact for the coordinates given, touching, coplanar and degenerate
+// triangles (segments, points) included.
+bool triangles_meet(const std::array<Point, 3>& a, const std::array<Point, 3>& b);
 
 }  // namespace orchard
