@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "triangle_tree.h"
 #include "triangle_tree_builder.h"
@@ -20,8 +19,8 @@ bool boxes_meet(const Box& box, const std::array<Point, 3>& p) {
 
 }  // namespace
 
-// A triangle in the tree's coordinates: its box, and what it spans along its normal. Any direction makes a valid slab,
-// so a needle's poor normal only makes a poor filter.
+// A triangle in the tree's coordinates: what it spans along the axes, along its normal, and in its plane along the
+// normals of its edges. Any direction makes a valid slab, so a needle's poor normals only make a poor filter.
 class TriangleTree::TriangleQuery {
  public:
   TriangleQuery(const std::array<Point, 3>& corners, const Point& center, double scale) {
@@ -37,37 +36,53 @@ class TriangleTree::TriangleQuery {
       lower_[axis] = broadcast(static_cast<float>(lower) - kSlack - kSlack * static_cast<float>(std::fabs(lower)));
       upper_[axis] = broadcast(static_cast<float>(upper) + kSlack + kSlack * static_cast<float>(std::fabs(upper)));
     }
-    if (reach < kSlabReach) find_slab(p);
+    if (reach > kSlabReach) return;
+    const Vector normal = (p[1] - p[0]).cross(p[2] - p[0]).stableNormalized();
+    add_slab(normal, p);
+    for (std::size_t i = 0; i < 3; ++i) add_slab(normal.cross(p[(i + 1) % 3] - p[i]).stableNormalized(), p);
   }
   bool usable() const { return usable_; }
 
   // For each child, all bits set if it may hold something that meets the triangle.
   auto meets(const Node& node) const {
     auto result = node.lower[0] <= upper_[0];
-    Float4 middle = broadcast(0), reach = broadcast(kSlack);
+    Float4 middle[3], half[3];
     for (int axis = 0; axis < 3; ++axis) {
       result &= (node.lower[axis] <= upper_[axis]) & (node.upper[axis] >= lower_[axis]);
-      middle += normal_[axis] * (0.5f * (node.lower[axis] + node.upper[axis]));
-      reach += (normal_[axis] < 0 ? -normal_[axis] : normal_[axis]) * (0.5f * (node.upper[axis] - node.lower[axis]));
+      middle[axis] = 0.5f * (node.lower[axis] + node.upper[axis]);
+      half[axis] = 0.5f * (node.upper[axis] - node.lower[axis]);
     }
-    return result & (middle - reach <= slab_upper_) & (middle + reach >= slab_lower_);
+    for (std::size_t i = 0; i < slab_count_; ++i) {
+      const Slab& slab = slabs_[i];
+      const Float4 at = dot(slab.direction, middle), reach = dot(slab.size, half);
+      result &= (at - reach <= slab.upper) & (at + reach >= slab.lower);
+    }
+    return result;
   }
 
  private:
-  void find_slab(const std::array<Point, 3>& p) {
-    const Vector normal = (p[1] - p[0]).cross(p[2] - p[0]).stableNormalized();
-    if (!(normal.norm() > 0.5)) return;
-    const auto [lower, upper] = std::minmax({normal.dot(p[0]), normal.dot(p[1]), normal.dot(p[2])});
-    for (int axis = 0; axis < 3; ++axis) normal_[axis] = broadcast(static_cast<float>(normal[axis]));
-    slab_lower_ = broadcast(static_cast<float>(lower) - kSlack);
-    slab_upper_ = broadcast(static_cast<float>(upper) + kSlack);
+  struct Slab {
+    Float4 direction[3], size[3];  // unit; its absolute values
+    Float4 lower, upper;
+  };
+  static Float4 dot(const Float4* a, const Float4* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+  void add_slab(const Vector& direction, const std::array<Point, 3>& p) {
+    if (!(direction.norm() > 0.5)) return;
+    const auto [lower, upper] = std::minmax({direction.dot(p[0]), direction.dot(p[1]), direction.dot(p[2])});
+    Slab& slab = slabs_[slab_count_++];
+    for (int axis = 0; axis < 3; ++axis) {
+      slab.direction[axis] = broadcast(static_cast<float>(direction[axis]));
+      slab.size[axis] = broadcast(static_cast<float>(std::fabs(direction[axis])));
+    }
+    slab.lower = broadcast(static_cast<float>(lower) - kSlack - kSlack * static_cast<float>(std::fabs(lower)));
+    slab.upper = broadcast(static_cast<float>(upper) + kSlack + kSlack * static_cast<float>(std::fabs(upper)));
   }
 
   bool usable_ = false;
   Float4 lower_[3], upper_[3];
-  Float4 normal_[3] = {};
-  Float4 slab_lower_ = broadcast(-std::numeric_limits<float>::max());
-  Float4 slab_upper_ = broadcast(std::numeric_limits<float>::max());
+  std::array<Slab, 4> slabs_;
+  std::size_t slab_count_ = 0;
 };
 
 void TriangleTree::overlapping(const std::array<Point, 3>& triangle, std::vector<Index>& out) const {
