@@ -7,6 +7,7 @@
 #include "orchard/spheretree/merging.h"
 #include "orchard/spheretree/octree.h"
 #include "orchard/spheretree/pack.h"
+#include "orchard/spheretree/redundancy.h"
 
 namespace orchard::apps {
 namespace {
@@ -28,6 +29,9 @@ class Pipeline {
       });
     }
     stage("covering", [&] { result_.cover = cover(result_.tree, surface_, progress_); });
+    stage("redundant spheres", [&] {
+      result_.redundancy = remove_redundant(result_.tree, surface_, Selection::exhaustive, progress_);
+    });
     stage("measuring", [&] {
       measure(result_.tree, surface_, progress_);
       measure(result_.octree, surface_, progress_);

@@ -11,6 +11,7 @@
 #include "orchard/medial/gap_crossing.h"
 #include "orchard/runtime/packed_tree.h"
 #include "orchard/spheretree/cover.h"
+#include "orchard/spheretree/redundancy.h"
 #include "orchard/spheretree/tree.h"
 #include "orchard/voronoi/highest_first.h"
 
@@ -38,6 +39,7 @@ struct BuildResult {
   SphereTree tree;
   SphereTree octree;  // of the same depth, to compare with
   CoverReport cover;
+  RedundancyReport redundancy;
   runtime::PackedSphereTree packed;
 };
 

@@ -84,6 +84,7 @@ json build_json(const Surface& surface, const BuildOptions& options, const Build
   report["covering"] = {{"rounds", result.cover.rounds},
                         {"triangles_uncovered_before", result.cover.triangles_uncovered},
                         {"largest_growth_over_radius", result.cover.largest_growth}};
+  report["redundant_spheres_removed"] = result.redundancy.removed;
   report["levels"] = levels_json(result.tree, radius, wrap_distance);
   report["octree_levels"] = levels_json(result.octree, radius, wrap_distance);
   report["conservative"] = true;  // run_pipeline throws otherwise
@@ -114,6 +115,7 @@ void print_build(const BuildResult& result, double bounding_radius, double wrap_
         "{} surface points ({} by gap repair, {} cell faces still crossing), {} medial vertices in {} component{}\n",
         result.sampling.size(), result.repair.points_added, result.repair.faces_still_crossing, result.axis->size(),
         result.axis_components, result.axis_components == 1 ? "" : "s");
+  fmt::print("{} redundant spheres removed\n", result.redundancy.removed);
   double total = 0;
   fmt::print("seconds:");
   for (const auto& [stage, seconds] : result.seconds) {

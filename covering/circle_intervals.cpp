@@ -20,23 +20,27 @@ void CircleIntervals::subtract(const Arc& arc) {
   if (arc.end > kTwoPi) subtract_interval(0, arc.end - kTwoPi);
 }
 
-void CircleIntervals::subtract(const CircleIntervals& other) {
-  for (const Interval& interval : other.intervals_) subtract_interval(interval.begin, interval.end);
+bool CircleIntervals::subtract(const CircleIntervals& other) {
+  bool changed = false;
+  for (const Interval& interval : other.intervals_) changed |= subtract_interval(interval.begin, interval.end);
+  return changed;
 }
 
 // Pieces without length are dropped: the lemma leaves out finitely many points.
-void CircleIntervals::subtract_interval(double begin, double end) {
+bool CircleIntervals::subtract_interval(double begin, double end) {
+  bool changed = false;
   for (std::size_t i = 0; i < intervals_.size();) {
     const Interval old = intervals_[i];
     if (old.end <= begin || old.begin >= end) {
       ++i;
       continue;
     }
+    changed = true;
     const bool head = old.begin<begin, tail = old.end> end;
     if (head) intervals_[i].end = begin;
     if (head && tail) {
       intervals_.insert(intervals_.begin() + static_cast<std::ptrdiff_t>(i) + 1, {end, old.end});
-      return;
+      return true;
     }
     if (tail) intervals_[i].begin = end;
     if (head || tail) {
@@ -45,6 +49,7 @@ void CircleIntervals::subtract_interval(double begin, double end) {
       intervals_.erase(intervals_.begin() + static_cast<std::ptrdiff_t>(i));
     }
   }
+  return changed;
 }
 
 void CircleIntervals::assign_intersection(const CircleIntervals& other, const Arc& arc) {

@@ -30,11 +30,11 @@ class CircleIntervals {
   std::span<const Interval> intervals() const { return intervals_; }
 
   void subtract(const Arc& arc);
-  void subtract(const CircleIntervals& other);
+  bool subtract(const CircleIntervals& other);  // whether that took anything away
   void assign_intersection(const CircleIntervals& other, const Arc& arc);
 
  private:
-  void subtract_interval(double begin, double end);
+  bool subtract_interval(double begin, double end);
   void append_clipped(const CircleIntervals& other, double begin, double end);
   std::vector<Interval> intervals_;
 };

@@ -1,0 +1,50 @@
+#pragma once
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "disk_tree.h"
+#include "orchard/covering/boundary_lemma.h"
+#include "triangle_plane.h"
+
+namespace orchard::detail {
+
+// What one ball has to do with one triangle: lines 4 and 5 of the dissertation's Figure 5.17, which do not depend on
+// any other ball and so can be kept while others change (5.3.3).
+struct CircleInPlane {
+  Disk disk;
+  CircleIntervals needed;  // of its circle, inside the region; once `clipped`
+  bool clipped = false;
+};
+
+// The boundary lemma for one triangle. `circles` are those of `balls`, projected; what they lack is filled in.
+class LemmaCheck {
+ public:
+  enum class Want { all_arcs, answer };  // answer: stop at the first arc that is not covered
+  LemmaCheck(const TrianglePlane& plane, std::span<const PathBall> balls, std::span<CircleInPlane* const> circles,
+             Want want);
+  TriangleCover run();
+
+ private:
+  bool find_useful(TriangleCover& result);
+  void check_named_point(TriangleCover& result);
+  bool check_circle(Index ball);
+  void subtract_covered(Index ball);
+  void report_arcs(Index ball, TriangleCover& result) const;
+  std::span<const Index> candidates(Index ball);
+  const Disk& disk(Index ball) const { return circles_[ball]->disk; }
+
+  const TrianglePlane& plane_;
+  std::span<const PathBall> balls_;
+  std::span<CircleInPlane* const> circles_;
+  Want want_;
+  std::vector<char> useful_;  // the disk and all above it are certain to be disks, and a leaf hangs on it
+  std::vector<char> rests_on_;
+  std::vector<Index> all_, near_;
+  std::unique_ptr<DiskTree> tree_;  // where there are many
+  CircleIntervals needed_;
+  std::vector<CircleIntervals> covering_;  // of the present circle, by each ball's path region
+  std::vector<Index> made_for_;            // the circle that covering_[i] was made for
+};
+
+}  // namespace orchard::detail

@@ -1,0 +1,170 @@
+#include "orchard/spheretree/redundancy.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "orchard/covering/path_forest.h"
+
+namespace orchard {
+namespace {
+
+// Takes nodes out as long as the path rule stays certified. Only triangles that a path region of a removed leaf touches
+// can become uncovered.
+class Remover {
+ public:
+  Remover(const SphereTree& tree, const Surface& surface) : tree_(tree), surface_(surface), forest_(path_balls(tree)) {
+    list_triangles();
+    leaves_below_.assign(tree.nodes.size(), 0);
+    for (Index i = static_cast<Index>(tree.nodes.size()); i-- > 0;) {
+      if (tree.nodes[i].child_count == 0) leaves_below_[i] = 1;
+      if (i > 0) leaves_below_[tree.nodes[i].parent] += leaves_below_[i];
+    }
+  }
+
+  bool gone(Index node) const { return leaves_below_[node] == 0; }
+
+  // Whether the path rule is certain without the node; then it is gone.
+  bool remove(Index node) {
+    const std::vector<Index> leaves = leaves_of(node);
+    if (leaves.size() == leaves_below_[0]) return false;
+    for (Index leaf : leaves) forest_.ball(leaf).leaf = false;
+    if (!still_covered(leaves)) {
+      for (Index leaf : leaves) forest_.ball(leaf).leaf = true;
+      return false;
+    }
+    for (Index leaf : leaves)
+      for (Index up = leaf; up != kNone; up = tree_.nodes[up].parent) --leaves_below_[up];
+    return true;
+  }
+
+  // The tree of what is left.
+  SphereTree rest() const {
+    SphereTree rest;
+    rest.branching = tree_.branching;
+    std::vector<Index> place(tree_.nodes.size(), kNone);
+    for (Index i = 0; i < tree_.nodes.size(); ++i) {
+      if (gone(i)) continue;
+      SphereNode node = tree_.nodes[i];
+      place[i] = static_cast<Index>(rest.nodes.size());
+      node.first_child = kNone;
+      node.child_count = 0;
+      if (i > 0) {
+        node.parent = place[node.parent];
+        SphereNode& parent = rest.nodes[node.parent];
+        if (parent.child_count++ == 0) parent.first_child = place[i];
+      }
+      rest.nodes.push_back(node);
+    }
+    return rest;
+  }
+
+ private:
+  void list_triangles() {
+    touching_.resize(tree_.nodes.size());
+    for (Index i = 0; i < tree_.nodes.size(); ++i) {
+      const SphereNode& node = tree_.nodes[i];
+      const double limit = node.sphere.radius * (1 + 1e-9);
+      if (i == 0) {
+        surface_.triangles_near({node.sphere.center, limit}, touching_[0]);
+        continue;
+      }
+      for (Index triangle : touching_[node.parent]) {
+        const auto [a, b, c] = surface_.corners(triangle);
+        if (closest_point_of_triangle(node.sphere.center, a, b, c).distance <= limit) touching_[i].push_back(triangle);
+      }
+    }
+  }
+
+  std::vector<Index> leaves_of(Index node) const {
+    std::vector<Index> leaves, open{node};
+    while (!open.empty()) {
+      const Index next = open.back();
+      open.pop_back();
+      if (gone(next)) continue;
+      const SphereNode& n = tree_.nodes[next];
+      if (n.child_count == 0) leaves.push_back(next);
+      for (Index k = 0; k < n.child_count; ++k) open.push_back(n.first_child + k);
+    }
+    return leaves;
+  }
+
+  bool still_covered(const std::vector<Index>& leaves) {
+    std::vector<Index> triangles;
+    for (Index leaf : leaves) triangles.insert(triangles.end(), touching_[leaf].begin(), touching_[leaf].end());
+    std::sort(triangles.begin(), triangles.end());
+    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+    for (Index triangle : triangles) {
+      const auto corners = surface_.corners(triangle);
+      forest_.gather(corners, near_);
+      if (!triangle_covered(corners, near_.balls)) return false;
+    }
+    return true;
+  }
+
+  const SphereTree& tree_;
+  const Surface& surface_;
+  PathForest forest_;
+  std::vector<Index> leaves_below_;           // that are still there
+  std::vector<std::vector<Index>> touching_;  // triangles that touch every ball on a node's path
+  NearBalls near_;
+};
+
+// The nodes of a level that are still there, loosest first.
+std::vector<Index> loosest_first(const SphereTree& tree, const Surface& surface, Index level, const Remover& remover) {
+  std::vector<Index> nodes;
+  std::vector<double> looseness(tree.nodes.size(), 0);
+  for (Index i = 0; i < tree.nodes.size(); ++i) {
+    const SphereNode& node = tree.nodes[i];
+    if (node.level != level || remover.gone(i)) continue;
+    const double out =
+        surface.solid() ? surface.signed_distance(node.sphere.center) : surface.distance(node.sphere.center);
+    looseness[i] = node.sphere.radius + out;
+    nodes.push_back(i);
+  }
+  std::stable_sort(nodes.begin(), nodes.end(), [&](Index a, Index b) { return looseness[a] > looseness[b]; });
+  return nodes;
+}
+
+// What the dissertation's two criteria find on one level; a node that both find rests on its aunts, which are there to
+// stay when their nieces' turn comes.
+std::vector<RedundantNode> redundant_on(const SphereTree& tree, const Surface& surface, Index level,
+                                        RedundancyReport& report) {
+  const auto by_siblings = redundant_nodes(tree, surface, level, Coverers::siblings);
+  const auto by_aunts = redundant_nodes(tree, surface, level, Coverers::aunts);
+  report.by_siblings += static_cast<Index>(by_siblings.size());
+  report.by_aunts += static_cast<Index>(by_aunts.size());
+  std::vector<RedundantNode> all = by_aunts;
+  all.insert(all.end(), by_siblings.begin(), by_siblings.end());
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.node < b.node; });
+  all.erase(std::unique(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.node == b.node; }),
+            all.end());
+  return all;
+}
+
+}  // namespace
+
+RedundancyReport remove_redundant(SphereTree& tree, const Surface& surface, Selection selection,
+                                  const Progress& progress) {
+  RedundancyReport report;
+  const Index depth = tree.depth();
+  const auto before = static_cast<Index>(tree.nodes.size());
+  for (Index level = 1; level <= depth; ++level) {
+    report_progress(progress, "removing redundant spheres", static_cast<double>(level - 1) / depth);
+    Remover remover(tree, surface);
+    if (selection == Selection::exhaustive) {
+      for (Index node : loosest_first(tree, surface, level, remover)) remover.remove(node);
+    } else {
+      const auto redundant = redundant_on(tree, surface, level, report);
+      const auto selected =
+          selection == Selection::independent ? independent_selection(redundant) : acyclic_selection(redundant);
+      report.selected += static_cast<Index>(selected.size());
+      for (Index node : selected)
+        if (!remover.remove(node)) ++report.vetoed;
+    }
+    tree = remover.rest();
+  }
+  report.removed = before - static_cast<Index>(tree.nodes.size());
+  return report;
+}
+
+}  // namespace orchard
