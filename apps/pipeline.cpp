@@ -29,9 +29,8 @@ class Pipeline {
       });
     }
     stage("covering", [&] { result_.cover = cover(result_.tree, surface_, progress_); });
-    stage("redundant spheres", [&] {
-      result_.redundancy = remove_redundant(result_.tree, surface_, Selection::exhaustive, progress_);
-    });
+    stage("redundant spheres",
+          [&] { result_.redundancy = remove_redundant(result_.tree, surface_, Selection::exhaustive, progress_); });
     stage("measuring", [&] {
       measure(result_.tree, surface_, progress_);
       measure(result_.octree, surface_, progress_);
