@@ -6,6 +6,7 @@
 
 #include "coalesce.h"
 #include "interior.h"
+#include "keep_topology.h"
 #include "medial_faces.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/tolerance.h"
@@ -14,9 +15,8 @@ namespace orchard {
 namespace {
 
 // The medial vertex that each Voronoi vertex became; kNone outside.
-std::vector<Index> number_medial_vertices(const Surface& surface, const VoronoiDiagram& diagram, MedialAxis& axis,
-                                          const Progress& progress) {
-  const std::vector<std::uint8_t> inside = detail::interior_vertices(surface, diagram, progress);
+std::vector<Index> number_medial_vertices(const VoronoiDiagram& diagram, const std::vector<std::uint8_t>& inside,
+                                          double coalesce, MedialAxis& axis) {
   std::vector<Index> interior;
   std::vector<Point> centers;
   for (Index i = 0; i < inside.size(); ++i) {
@@ -24,8 +24,7 @@ std::vector<Index> number_medial_vertices(const Surface& surface, const VoronoiD
     interior.push_back(i);
     centers.push_back(diagram.vertices[i].center);
   }
-  const std::vector<Index> representatives =
-      detail::representatives_of_coincident(centers, tolerance::kCoalesce * surface.bounding_radius());
+  const std::vector<Index> representatives = detail::representatives_of_coincident(centers, coalesce);
   std::vector<Index> medial(diagram.vertices.size(), kNone);
   for (Index i = 0; i < interior.size(); ++i) {
     if (representatives[i] == i) {
@@ -91,21 +90,40 @@ void validate_row(std::span<const Index> row, Index limit, const char* what, Ind
   }
 }
 
+void validate_faces(const Rows& faces, const std::vector<std::array<Index, 2>>& face_points, Index vertices,
+                    Index points) {
+  for (Index face = 0; face < faces.size(); ++face) {
+    if (faces[face].size() < 3) throw Error("medial axis: face " + std::to_string(face) + " has no area");
+    for (const Index corner : faces[face]) {
+      if (corner >= vertices) throw Error("medial axis: face " + std::to_string(face) + " has a bad corner");
+    }
+    for (const Index point : face_points[face]) {
+      if (point >= points) throw Error("medial axis: face " + std::to_string(face) + " has a bad point");
+    }
+  }
+}
+
 }  // namespace
 
 MedialAxis medial_axis(const Surface& surface, const SurfaceSampling& sampling, const VoronoiDiagram& diagram,
-                       const Progress& progress) {
+                       const Progress& progress, const AxisOptions& options) {
   MedialAxis axis;
   axis.points = sampling.points;
+  axis.origins = sampling.origins;
   axis.normals.reserve(sampling.size());
   for (Index i = 0; i < sampling.size(); ++i) {
     axis.normals.push_back(surface.pseudonormal(sampling.triangles[i], sampling.features[i]));
   }
-  const std::vector<Index> medial = number_medial_vertices(surface, diagram, axis, progress);
-  report_progress(progress, "medial axis", 0.5);
+  std::vector<std::uint8_t> inside = detail::interior_vertices(surface, diagram, progress);
+  report_progress(progress, "medial axis", 0.3);
+  const VoronoiFaces faces = voronoi_faces(diagram);
+  if (options.keep_topology) axis.left_out = detail::keep_topology(surface, sampling, diagram, faces, inside);
+  const std::vector<Index> medial =
+      number_medial_vertices(diagram, inside, options.coalesce * surface.bounding_radius(), axis);
+  report_progress(progress, "medial axis", 0.6);
   connect(diagram, medial, axis);
   measure_radii(axis);
-  detail::find_medial_faces(surface, sampling, voronoi_faces(diagram), medial, axis);
+  detail::find_medial_faces(surface, sampling, faces, medial, axis);
   report_progress(progress, "medial axis", 1);
   return axis;
 }
@@ -136,7 +154,8 @@ void validate(const MedialAxis& axis, const Surface& surface) {
   const Index size = axis.size();
   const Index points = static_cast<Index>(axis.points.size());
   if (axis.normals.size() != points || axis.radii.size() != size || axis.forming_points.size() != size ||
-      axis.neighbors.size() != size || axis.face_points.size() != axis.faces.size()) {
+      axis.neighbors.size() != size || axis.face_points.size() != axis.faces.size() ||
+      axis.wall_points.size() != axis.walls.size() || axis.origins.size() != points) {
     throw Error("medial axis: arrays of different lengths");
   }
   for (Index i = 0; i < size; ++i) {
@@ -150,15 +169,8 @@ void validate(const MedialAxis& axis, const Surface& surface) {
     if (!(axis.radii[i] > 0)) fail("no radius", i);
     if (!surface.inside(axis.centers[i])) fail("centre outside the surface", i);
   }
-  for (Index face = 0; face < axis.faces.size(); ++face) {
-    if (axis.faces[face].size() < 3) throw Error("medial axis: face " + std::to_string(face) + " has no area");
-    for (const Index corner : axis.faces[face]) {
-      if (corner >= size) throw Error("medial axis: face " + std::to_string(face) + " has a bad corner");
-    }
-    for (const Index point : axis.face_points[face]) {
-      if (point >= points) throw Error("medial axis: face " + std::to_string(face) + " has a bad point");
-    }
-  }
+  validate_faces(axis.faces, axis.face_points, size, points);
+  validate_faces(axis.walls, axis.wall_points, size, points);
 }
 
 }  // namespace orchard

@@ -111,7 +111,7 @@ std::optional<Crossing> gap_crossing(const Surface& surface, const SurfaceSampli
     // A closed component without a point of its own has no border; no face would ever tell of it.
     if (has_border || options.definition != GapDefinition::connected) return std::nullopt;
   }
-  return Crossing{patch, std::move(harmful), false};
+  return Crossing{patch, std::move(harmful), false, false};
 }
 
 // A harmless second patch of a cell looks like a neck to its neighbours.
@@ -122,7 +122,7 @@ bool mends_necks(const RepairOptions& options) {
 std::optional<Crossing> neck(const Surface& surface, const RestrictedVoronoi& restricted, const CellPatch& patch) {
   NeckFault fault = find_neck(surface, restricted, patch);
   if (!fault.found) return std::nullopt;
-  return Crossing{patch, std::move(fault.neighbors), true};
+  return Crossing{patch, std::move(fault.neighbors), true, false};
 }
 
 }  // namespace

@@ -11,6 +11,7 @@ struct Crossing {
   CellPatch patch;
   std::vector<Index> neighbors;  // cells whose face shared with patch.cell is at fault, ascending
   bool neck = false;             // the patch holds its point but is no disk among disks (neck_test.h)
+  bool at_cut = false;           // two parts of the surface cut each other inside the cell: no point keeps them apart
 };
 
 // What is wrong with the cells in scope, ascending by cell: gap crossings by the given definition, and necks if they

@@ -9,6 +9,7 @@
 
 #include "cell_neighbors.h"
 #include "crossings.h"
+#include "orchard/geometry/self_intersections.h"
 #include "orchard/geometry/tolerance.h"
 #include "orchard/voronoi/exact.h"
 #include "repair_point.h"
@@ -43,19 +44,24 @@ class Repair {
         progress_(progress),
         result_{std::move(sampling), std::move(diagram), {}},
         generations_(result_.sampling.size(), 0),
-        neighbors_(result_.diagram) {}
+        neighbors_(result_.diagram),
+        cuts_(self_intersections(surface.mesh())) {
+    const std::size_t count = cuts_.size();
+    for (std::size_t i = 0; i < count; ++i) cuts_.push_back({cuts_[i][1], cuts_[i][0]});
+    std::sort(cuts_.begin(), cuts_.end());
+  }
 
   Repaired run() {
     find_anew();
     bool anew = true;  // what is known comes from scratch, not from updates
     for (int pass = 0; pass < options_.max_passes; ++pass) {
       report_progress(progress_, "gap repair", static_cast<double>(pass) / options_.max_passes);
-      if (crossings_.empty() && !anew) {
+      if (!anything_to_mend() && !anew) {
         find_anew();
         anew = true;
       }
       open_pass();
-      if (crossings_.empty()) break;
+      if (!anything_to_mend()) break;
       const Index before = result_.sampling.size();
       add_points(propose(what_to_mend()));
       if (result_.sampling.size() == before) break;
@@ -64,6 +70,8 @@ class Repair {
     }
     if (!anew) find_anew();
     result_.report.faces_still_crossing = detail::count_faces(crossings_);
+    std::erase_if(crossings_, [](const Crossing& crossing) { return !crossing.at_cut; });
+    result_.report.faces_at_cuts = detail::count_faces(crossings_);
     report_progress(progress_, "gap repair", 1);
     return std::move(result_);
   }
@@ -73,6 +81,25 @@ class Repair {
     restricted_.emplace(surface_, result_.diagram.points, neighbors_);
     crossings_ = detail::find_crossings(surface_, result_.sampling, *restricted_,
                                         detail::PatchScope::everything(surface_, result_.sampling), options_);
+    mark_cuts(crossings_);
+  }
+
+  void mark_cuts(std::vector<Crossing>& crossings) const {
+    for (Crossing& crossing : crossings) {
+      const auto cut_inside = [&](Index triangle) {
+        auto cut = std::lower_bound(cuts_.begin(), cuts_.end(), std::array{triangle, Index{0}});
+        for (; cut != cuts_.end() && (*cut)[0] == triangle; ++cut) {
+          if (restricted_->piece((*cut)[1], crossing.patch.cell) != nullptr) return true;
+        }
+        return false;
+      };
+      const auto& triangles = crossing.patch.triangles;
+      crossing.at_cut = std::any_of(triangles.begin(), triangles.end(), cut_inside);
+    }
+  }
+
+  bool anything_to_mend() const {
+    return !std::all_of(crossings_.begin(), crossings_.end(), [](const Crossing& crossing) { return crossing.at_cut; });
   }
 
   void open_pass() {
@@ -85,13 +112,14 @@ class Repair {
   std::vector<const Crossing*> what_to_mend() const {
     std::vector<std::uint8_t> at_gap(result_.sampling.size(), 0);
     for (const Crossing& crossing : crossings_) {
-      if (crossing.neck) continue;
+      if (crossing.neck || crossing.at_cut) continue;
       at_gap[crossing.patch.cell] = 1;
       for (const Index other : crossing.neighbors) at_gap[other] = 1;
     }
     std::vector<const Crossing*> chosen;
     for (const Crossing& crossing : crossings_) {
       const auto is_at_gap = [&](Index cell) { return at_gap[cell] != 0; };
+      if (crossing.at_cut) continue;
       const bool wait = crossing.neck && (is_at_gap(crossing.patch.cell) ||
                                           std::any_of(crossing.neighbors.begin(), crossing.neighbors.end(), is_at_gap));
       if (!wait) chosen.push_back(&crossing);
@@ -180,6 +208,7 @@ class Repair {
     scope.triangles = restricted_->update(result_.diagram.points, scope.cells);
     std::erase_if(crossings_, [&](const Crossing& crossing) { return scope.cells[crossing.patch.cell] != 0; });
     std::vector<Crossing> found = detail::find_crossings(surface_, result_.sampling, *restricted_, scope, options_);
+    mark_cuts(found);
     std::move(found.begin(), found.end(), std::back_inserter(crossings_));
     std::stable_sort(crossings_.begin(), crossings_.end(),
                      [](const Crossing& a, const Crossing& b) { return a.patch.cell < b.patch.cell; });
@@ -192,7 +221,8 @@ class Repair {
   std::vector<int> generations_;  // of each point: how many repair points led to it
   detail::CellNeighbors neighbors_;
   std::optional<detail::RestrictedVoronoi> restricted_;
-  std::vector<Crossing> crossings_;  // known to be left, ascending by cell
+  std::vector<Crossing> crossings_;         // known to be left, ascending by cell
+  std::vector<std::array<Index, 2>> cuts_;  // triangles that cut each other, both ways round; ascending
 };
 
 }  // namespace

@@ -61,10 +61,12 @@ void find_medial_faces(const Surface& surface, const SurfaceSampling& sampling, 
     }
     while (corners.size() > 1 && corners.back() == corners.front()) corners.pop_back();
     const auto& [a, b] = voronoi.points[face];
-    if (!interior || corners.size() < 3 || are_neighbors(a, b)) continue;
-    axis.face_points.push_back({a, b});
-    axis.faces.items.insert(axis.faces.items.end(), corners.begin(), corners.end());
-    axis.faces.close_row();
+    if (!interior || corners.size() < 3) continue;
+    const bool wall = are_neighbors(a, b);
+    (wall ? axis.wall_points : axis.face_points).push_back({a, b});
+    Rows& faces = wall ? axis.walls : axis.faces;
+    faces.items.insert(faces.items.end(), corners.begin(), corners.end());
+    faces.close_row();
   }
 }
 

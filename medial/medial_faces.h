@@ -6,7 +6,8 @@
 
 namespace orchard::detail {
 
-// Fills axis.face_points and axis.faces. medial: for each Voronoi vertex its medial vertex, or kNone.
+// Fills axis.face_points, axis.faces, axis.wall_points and axis.walls. medial: for each Voronoi vertex its medial
+// vertex, or kNone.
 void find_medial_faces(const Surface& surface, const SurfaceSampling& sampling, const VoronoiFaces& voronoi,
                        const std::vector<Index>& medial, MedialAxis& axis);
 

@@ -61,6 +61,7 @@ inline MedialAxis small_axis() {
   MedialAxis axis;
   axis.points = {{0, 0, 1}, {0, 0, -1}};
   axis.normals = {{0, 0, 1}, {0, 0, -1}};
+  axis.origins = {PointOrigin::face, PointOrigin::repair};
   axis.centers = {{0, 0, 0}, {0.5, 0, 0}, {0, 0.5, 0}, {0.25, 0.25, 0.125}};
   axis.radii = {1, 0.5, 0.25, 0.125};
   for (const auto& row : std::initializer_list<std::vector<Index>>{{1, 2}, {0}, {0}, {}}) {

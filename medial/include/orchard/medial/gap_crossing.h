@@ -39,6 +39,9 @@ struct RepairReport {
   std::vector<RepairPass> passes;
   Index points_added = 0;
   Index faces_still_crossing = 0;  // at the final full recheck
+  // Of them, those where triangles that cut each other meet one cell: nothing is tried there, since sheets that cross
+  // have no gap between them.
+  Index faces_at_cuts = 0;
 };
 
 struct Repaired {

@@ -1,0 +1,133 @@
+#include "orchard/medial/medial_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <unordered_set>
+
+#include "orchard/geometry/error.h"
+
+namespace orchard {
+namespace {
+
+using Edge = std::array<Index, 2>;
+
+template <class Item>
+void sort_and_deduplicate(std::vector<Item>& items) {
+  std::sort(items.begin(), items.end());
+  items.erase(std::unique(items.begin(), items.end()), items.end());
+}
+
+// Cuts the faces of an axis into triangles.
+class Triangulator {
+ public:
+  explicit Triangulator(const MedialAxis& axis) : axis_(axis) {
+    mesh_.centers = axis.centers;
+    mesh_.radii = axis.radii;
+    for (Index i = 0; i < axis.size(); ++i) {
+      for (const Index next : axis.neighbors[i]) {
+        if (i < next) mesh_.edges.push_back({i, next});
+      }
+    }
+    for (const auto& [a, b] : mesh_.edges) joined_.insert(key(a, b));
+  }
+
+  MedialMesh run() {
+    for (Index face = 0; face < axis_.faces.size(); ++face) cut(axis_.faces[face], axis_.face_points[face]);
+    for (Index face = 0; face < axis_.walls.size(); ++face) cut(axis_.walls[face], axis_.wall_points[face]);
+    complete(mesh_);
+    return std::move(mesh_);
+  }
+
+ private:
+  static std::uint64_t key(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
+  bool apex_serves(std::span<const Index> corners, std::size_t apex) const {
+    for (std::size_t k = 2; k + 1 < corners.size(); ++k) {
+      const Index other = corners[(apex + k) % corners.size()];
+      if (other == corners[apex] || joined_.contains(key(corners[apex], other))) return false;
+    }
+    return true;
+  }
+  void cut(std::span<const Index> corners, const Edge& points) {
+    const std::size_t size = corners.size();
+    for (std::size_t apex = 0; apex < size; ++apex) {
+      if (!apex_serves(corners, apex)) continue;
+      for (std::size_t k = 1; k + 1 < size; ++k) {
+        joined_.insert(key(corners[apex], corners[(apex + k) % size]));
+        add(corners[apex], corners[(apex + k) % size], corners[(apex + k + 1) % size]);
+      }
+      return;
+    }
+    const Index middle = add_middle(corners, points);
+    for (std::size_t k = 0; k < size; ++k) add(middle, corners[k], corners[(k + 1) % size]);
+  }
+  Index add_middle(std::span<const Index> corners, const Edge& points) {
+    Point middle = Point::Zero();
+    for (const Index corner : corners) middle += axis_.centers[corner];
+    middle /= static_cast<double>(corners.size());
+    mesh_.centers.push_back(middle);
+    mesh_.radii.push_back((axis_.points[points[0]] - middle).norm());
+    return mesh_.size() - 1;
+  }
+  void add(Index a, Index b, Index c) {
+    std::array<Index, 3> triangle{a, b, c};
+    std::sort(triangle.begin(), triangle.end());
+    if (triangle[0] != triangle[1] && triangle[1] != triangle[2]) mesh_.triangles.push_back(triangle);
+  }
+
+  const MedialAxis& axis_;
+  MedialMesh mesh_;
+  std::unordered_set<std::uint64_t> joined_;  // asked only whether it holds a pair of vertices
+};
+
+[[noreturn]] void fail(const char* kind, std::size_t index, const char* fault) {
+  throw InputError("medial mesh: " + std::string(kind) + " " + std::to_string(index) + " " + fault);
+}
+
+template <std::size_t kCorners>
+void validate_cells(const std::vector<std::array<Index, kCorners>>& cells, Index vertices, const char* kind) {
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    for (std::size_t k = 0; k < kCorners; ++k) {
+      if (cells[i][k] >= vertices) fail(kind, i, "names a vertex that does not exist");
+      if (k > 0 && cells[i][k] <= cells[i][k - 1]) fail(kind, i, "has corners that are not distinct and ascending");
+    }
+    if (i > 0 && !(cells[i - 1] < cells[i])) fail(kind, i, "is repeated or out of order");
+  }
+}
+
+}  // namespace
+
+MedialMesh medial_mesh(const MedialAxis& axis) { return Triangulator(axis).run(); }
+
+void complete(MedialMesh& mesh) {
+  for (auto& corners : mesh.edges) std::sort(corners.begin(), corners.end());
+  for (auto& corners : mesh.triangles) std::sort(corners.begin(), corners.end());
+  for (const auto& [a, b, c] : mesh.triangles) {
+    mesh.edges.push_back({a, b});
+    mesh.edges.push_back({a, c});
+    mesh.edges.push_back({b, c});
+  }
+  sort_and_deduplicate(mesh.edges);
+  sort_and_deduplicate(mesh.triangles);
+}
+
+void validate(const MedialMesh& mesh) {
+  if (mesh.centers.empty()) throw InputError("medial mesh: no vertices");
+  if (mesh.radii.size() != mesh.centers.size()) throw InputError("medial mesh: as many radii as vertices are needed");
+  for (std::size_t i = 0; i < mesh.centers.size(); ++i) {
+    if (!mesh.centers[i].allFinite()) fail("vertex", i, "is not at a finite place");
+    if (!(mesh.radii[i] >= 0) || !std::isfinite(mesh.radii[i])) fail("vertex", i, "has no radius of zero or more");
+  }
+  validate_cells(mesh.edges, mesh.size(), "edge");
+  validate_cells(mesh.triangles, mesh.size(), "triangle");
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& [a, b, c] = mesh.triangles[i];
+    for (const Edge& side : {Edge{a, b}, Edge{a, c}, Edge{b, c}}) {
+      if (!std::binary_search(mesh.edges.begin(), mesh.edges.end(), side))
+        fail("triangle", i, "has no edge of its own");
+    }
+  }
+}
+
+}  // namespace orchard

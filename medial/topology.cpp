@@ -1,0 +1,202 @@
+#include "orchard/medial/topology.h"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <numeric>
+
+#include "orchard/geometry/error.h"
+#include "solid_parts.h"
+
+namespace orchard {
+namespace {
+
+// A complex that is taken apart by elementary collapses, which leave its homotopy type alone.
+class Complex {
+ public:
+  explicit Complex(const MedialMesh& mesh) : mesh_(mesh) {
+    edge_alive_.assign(mesh.edges.size(), 1);
+    triangle_alive_.assign(mesh.triangles.size(), 1);
+    vertex_alive_.assign(mesh.centers.size(), 1);
+    std::vector<std::array<Index, 2>> at_edge, at_vertex;
+    for (Index t = 0; t < mesh.triangles.size(); ++t) {
+      const auto& [a, b, c] = mesh.triangles[t];
+      sides_.push_back({index_of({a, b}), index_of({a, c}), index_of({b, c})});
+      for (const Index side : sides_.back()) at_edge.push_back({side, t});
+    }
+    for (Index e = 0; e < mesh.edges.size(); ++e) {
+      for (const Index vertex : mesh.edges[e]) at_vertex.push_back({vertex, e});
+    }
+    triangles_at_ = rows(at_edge, mesh.edges.size());
+    edges_at_ = rows(at_vertex, mesh.centers.size());
+  }
+
+  Topology run() {
+    collapse_triangles();
+    collapse_edges();
+    Topology result;
+    result.components = count_components();
+    result.cavities = count_cavities();
+    const auto alive = [](const std::vector<std::uint8_t>& cells) { return std::count(cells.begin(), cells.end(), 1); };
+    result.loops =
+        result.components + result.cavities - (alive(vertex_alive_) - alive(edge_alive_) + alive(triangle_alive_));
+    return result;
+  }
+
+ private:
+  Index index_of(const std::array<Index, 2>& edge) const {
+    return static_cast<Index>(std::lower_bound(mesh_.edges.begin(), mesh_.edges.end(), edge) - mesh_.edges.begin());
+  }
+  static Rows rows(std::vector<std::array<Index, 2>>& pairs, std::size_t count) {
+    std::sort(pairs.begin(), pairs.end());
+    Rows result;
+    auto pair = pairs.begin();
+    for (Index row = 0; row < count; ++row) {
+      for (; pair != pairs.end() && (*pair)[0] == row; ++pair) result.items.push_back((*pair)[1]);
+      result.close_row();
+    }
+    return result;
+  }
+  // The only living cell of a row; kNone if there is none, or more than one.
+  static Index only(std::span<const Index> row, const std::vector<std::uint8_t>& alive) {
+    Index found = kNone;
+    for (const Index cell : row) {
+      if (!alive[cell]) continue;
+      if (found != kNone) return kNone;
+      found = cell;
+    }
+    return found;
+  }
+
+  void collapse_triangles() {
+    std::vector<Index> open(mesh_.edges.size());
+    std::iota(open.begin(), open.end(), Index{0});
+    while (!open.empty()) {
+      const Index edge = open.back();
+      open.pop_back();
+      if (!edge_alive_[edge]) continue;
+      const Index triangle = only(triangles_at_[edge], triangle_alive_);
+      if (triangle == kNone) continue;
+      edge_alive_[edge] = triangle_alive_[triangle] = 0;
+      open.insert(open.end(), sides_[triangle].begin(), sides_[triangle].end());
+    }
+  }
+  void collapse_edges() {
+    std::vector<Index> open(mesh_.centers.size());
+    std::iota(open.begin(), open.end(), Index{0});
+    while (!open.empty()) {
+      const Index vertex = open.back();
+      open.pop_back();
+      const Index edge = only(edges_at_[vertex], edge_alive_);
+      if (edge == kNone || has_triangle(edge)) continue;
+      vertex_alive_[vertex] = edge_alive_[edge] = 0;
+      open.insert(open.end(), mesh_.edges[edge].begin(), mesh_.edges[edge].end());
+    }
+  }
+  bool has_triangle(Index edge) const {
+    const auto row = triangles_at_[edge];
+    return std::any_of(row.begin(), row.end(), [&](Index triangle) { return triangle_alive_[triangle] != 0; });
+  }
+
+  static Index root(std::vector<Index>& parents, Index item) {
+    while (parents[item] != item) item = parents[item] = parents[parents[item]];
+    return item;
+  }
+
+  std::int64_t count_components() const {
+    std::vector<Index> parents(mesh_.centers.size());
+    std::iota(parents.begin(), parents.end(), Index{0});
+    std::int64_t count = std::count(vertex_alive_.begin(), vertex_alive_.end(), 1);
+    for (Index e = 0; e < mesh_.edges.size(); ++e) {
+      if (!edge_alive_[e]) continue;
+      const Index a = root(parents, mesh_.edges[e][0]), b = root(parents, mesh_.edges[e][1]);
+      if (a == b) continue;
+      parents[a] = b;
+      --count;
+    }
+    return count;
+  }
+
+  // The dimension of the space of 2-cycles. Where two triangles meet at an edge, a cycle holds both or neither, so the
+  // unknowns are sheets of such triangles, few; the edges where more of them meet give the equations.
+  std::int64_t count_cavities() const {
+    std::vector<Index> sheet(mesh_.triangles.size());
+    std::iota(sheet.begin(), sheet.end(), Index{0});
+    std::vector<std::vector<Index>> equations;
+    std::vector<Index> at;
+    const auto living_at = [&](Index edge) {
+      at.clear();
+      for (const Index triangle : triangles_at_[edge]) {
+        if (triangle_alive_[triangle]) at.push_back(triangle);
+      }
+    };
+    for (Index e = 0; e < mesh_.edges.size(); ++e) {
+      living_at(e);
+      if (at.size() == 2) sheet[root(sheet, at[0])] = root(sheet, at[1]);
+    }
+    for (Index e = 0; e < mesh_.edges.size(); ++e) {
+      living_at(e);
+      if (at.size() < 3) continue;
+      for (Index& triangle : at) triangle = root(sheet, triangle);
+      equations.push_back(odd(at));
+    }
+    std::int64_t sheets = 0;
+    for (Index t = 0; t < sheet.size(); ++t) sheets += triangle_alive_[t] && root(sheet, t) == t ? 1 : 0;
+    return sheets - rank(std::move(equations));
+  }
+  // The items that occur an odd number of times, ascending.
+  static std::vector<Index> odd(std::vector<Index> items) {
+    std::sort(items.begin(), items.end());
+    std::vector<Index> result;
+    for (const Index item : items) {
+      if (!result.empty() && result.back() == item) {
+        result.pop_back();
+      } else {
+        result.push_back(item);
+      }
+    }
+    return result;
+  }
+  static std::int64_t rank(std::vector<std::vector<Index>> equations) {
+    std::sort(equations.begin(), equations.end());
+    equations.erase(std::unique(equations.begin(), equations.end()), equations.end());
+    std::map<Index, std::vector<Index>> by_pivot;
+    for (std::vector<Index>& equation : equations) {
+      while (!equation.empty()) {
+        const auto [found, added] = by_pivot.try_emplace(equation[0], equation);
+        if (added) break;
+        std::vector<Index> sum;
+        std::set_symmetric_difference(equation.begin(), equation.end(), found->second.begin(), found->second.end(),
+                                      std::back_inserter(sum));
+        equation = std::move(sum);
+      }
+    }
+    return static_cast<std::int64_t>(by_pivot.size());
+  }
+
+  const MedialMesh& mesh_;
+  std::vector<std::uint8_t> vertex_alive_, edge_alive_, triangle_alive_;
+  std::vector<std::array<Index, 3>> sides_;  // of each triangle: edges
+  Rows triangles_at_, edges_at_;             // of each edge; of each vertex
+};
+
+}  // namespace
+
+Topology solid_topology(const Surface& surface) {
+  if (!surface.solid()) {
+    throw InputError("the topology of a solid needs a solid: " + surface.report().faults() + "; repair the mesh first");
+  }
+  const detail::SolidParts parts = detail::find_solid_parts(surface);
+  Topology result;
+  std::int64_t euler = 0;
+  for (Index part = 0; part < parts.count(); ++part) {
+    ++(parts.volume[part] > 0 ? result.components : result.cavities);
+    euler += parts.euler_characteristic[part];
+  }
+  result.loops = result.components + result.cavities - euler / 2;
+  return result;
+}
+
+Topology topology(const MedialMesh& mesh) { return Complex(mesh).run(); }
+
+}  // namespace orchard
