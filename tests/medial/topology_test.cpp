@@ -117,7 +117,7 @@ TEST(AxisTopology, SurroundsACavity) {
 }
 
 TEST(AxisTopology, IsKeptWhereGapsWereNotMended) {
-  for (const TriangleMesh& mesh : {test::u_shape(0.02), test::extruded(test::knees(0.01), 1)}) {
+  for (const TriangleMesh& mesh : {test::extruded(test::thin_bridge(0.004), 1), test::two_boxes(0.01)}) {
     const Axis as_found = axis_topology(mesh, false, false);
     EXPECT_NE(as_found.found, as_found.wanted) << "the case shows no fault";
     const Axis kept = axis_topology(mesh, false, true);
