@@ -31,7 +31,7 @@ struct BuildOptions {
 struct BuildResult {
   std::vector<std::pair<std::string, double>> seconds;  // stage, time
   SurfaceSampling sampling;
-  HighestFirstReport voronoi;
+  InsertionReport voronoi;
   Index voronoi_vertices = 0;
   RepairReport repair;
   std::optional<MedialAxis> axis;  // not for an octree

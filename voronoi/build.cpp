@@ -9,9 +9,8 @@
 #include "orchard/geometry/tolerance.h"
 
 namespace orchard::detail {
-namespace {
 
-Box box_of(std::span<const Point> points) {
+Box checked_box(std::span<const Point> points) {
   Box box;
   for (Index i = 0; i < points.size(); ++i) {
     if (!points[i].allFinite())
@@ -21,7 +20,6 @@ Box box_of(std::span<const Point> points) {
   return box;
 }
 
-// Positions in `points` of four points far apart: each the farthest from what those before it span.
 std::array<Index, 4> spanning_points(std::span<const Point> points) {
   const auto farthest = [&](auto&& distance) {
     Index best = 0;
@@ -42,7 +40,16 @@ std::array<Index, 4> spanning_points(std::span<const Point> points) {
   return {a, b, c, d};
 }
 
-// Moves the vertices over the free ones and turns squared radii into radii.
+int affine_dimension(std::span<const Point> points) {
+  if (points.empty()) return 0;
+  const auto [a, b, c, d] = spanning_points(points);
+  const Point &p = points[a], &q = points[b], &r = points[c];
+  if (p == q) return 0;
+  Vector normal;
+  if (!sharp_normal(p, q, r, normal)) return 1;
+  return volume_sign(p, q, r, points[d]) == Sign::uncertain ? 2 : 3;
+}
+
 void finish(Workspace& workspace, std::span<const Index> original_of) {
   auto& vertices = workspace.vertices;
   std::vector<Index>& free = workspace.free_vertices;
@@ -68,58 +75,99 @@ void finish(Workspace& workspace, std::span<const Index> original_of) {
   }
 }
 
-// All points of the workspace in order. False if the inserter gives up.
-bool insert_all(Workspace& workspace, Search search, std::string_view stage, const Progress& progress,
-                InsertionCounts& counts) {
+void add_counts(const InsertionCounts& counts, InsertionReport& report) {
+  report.certified_insertions += counts.certified;
+  report.settled_insertions += counts.settled;
+  report.exact_insertions += counts.exact;
+  report.constrained_insertions += counts.constrained;
+  report.coplanar_centers += counts.coplanar;
+}
+
+namespace {
+
+enum class Outcome { done, flat, failed };
+
+// Room that is not used is never touched, so it costs no memory, but moving to a larger room does. The first eighth of
+// the points, a random sample of all, tells how many vertices there will be.
+void make_room(Workspace& workspace, std::size_t inserted) {
+  const std::size_t count = workspace.points.size();
+  if (inserted == 0) workspace.reserve(2 * count + 64);
+  if (inserted == count / 8) workspace.reserve(std::max(8 * count, 10 * workspace.vertices.size()) + 64);
+}
+
+// All points of the workspace in order. If it fails, `at` is the point and `reason` the inserter's.
+Outcome insert_all(Workspace& workspace, Search search, std::string_view stage, const Progress& progress,
+                   InsertionCounts& counts, Index& at, const char*& reason) {
   workspace.clear();
+  make_room(workspace, 0);
   Inserter inserter(workspace, search);
   const std::array<Index, 4> first = spanning_points(workspace.points);
-  if (!inserter.start(first))
-    throw InputError("the points lie in a plane, so they have no Voronoi vertices: add a point off that plane");
+  if (!inserter.start(first)) return Outcome::flat;
   const std::size_t count = workspace.points.size(), step = std::max<std::size_t>(count / 64, 1);
   for (Index i = 0; i < count; ++i) {
+    make_room(workspace, i);
     if (i % step == 0) report_progress(progress, stage, static_cast<double>(i) / static_cast<double>(count));
-    if (std::find(first.begin(), first.end(), i) == first.end() && !inserter.insert(i)) return false;
+    if (std::find(first.begin(), first.end(), i) != first.end() || inserter.insert(i)) continue;
+    at = i;
+    reason = inserter.failure();
+    return Outcome::failed;
   }
   report_progress(progress, stage, 1);
   counts = inserter.counts();
-  return true;
+  return Outcome::done;
+}
+
+// With exact signs from the start if the inserter asks for them. False if the points are flat.
+bool insert_with_all_means(Workspace& workspace, Search search, std::string_view stage, const Progress& progress,
+                           std::span<const Index> original_of, InsertionReport& report) {
+  InsertionCounts counts;
+  Index at = 0;
+  const char* reason = "";
+  Outcome outcome = insert_all(workspace, search, stage, progress, counts, at, reason);
+  if (outcome == Outcome::failed && search == Search::bowyer)
+    throw Error("Bowyer's algorithm fails at point " + std::to_string(original_of[at]) + ", after " +
+                std::to_string(at) + " of " + std::to_string(original_of.size()) + " points: " + reason);
+  if (outcome == Outcome::failed) {
+    workspace.set_exact(true);
+    outcome = insert_all(workspace, search, stage, progress, counts, at, reason);
+  }
+  add_counts(counts, report);
+  report.exact_signs = workspace.exact();
+  return outcome == Outcome::done;
 }
 
 }  // namespace
 
 VoronoiDiagram build_voronoi(std::span<const Point> points, Search search, std::string_view stage,
-                             const Progress& progress, BuildReport& report) {
-  const Box box = box_of(points);
-  const double radius = points.empty() ? 0 : box.diagonal().norm() / 2;
-  if (radius > 0) report.duplicates = coincident_points(points, tolerance::kCoincidentPoints * radius);
-  if (!(radius > 0) || points.size() - report.duplicates.size() < 4)
-    throw InputError("a Voronoi diagram needs four points or more that do not coincide");
-
-  // The points are worked on in the order of insertion, so that neighbours in space are neighbours in memory.
-  std::vector<Index> original_of = insertion_order(points, box);
-  if (!report.duplicates.empty()) {
-    std::vector<bool> left_out(points.size(), false);
-    for (const auto& pair : report.duplicates) left_out[pair[0]] = true;
-    std::erase_if(original_of, [&](Index i) { return left_out[i]; });
-  }
-  Workspace workspace;
-  workspace.set_scale(box);
-  workspace.points.reserve(points.size());
-  for (Index i : original_of) workspace.points.push_back(points[i]);
-  // Surfaces have up to about eight vertices a point. Room that is not used is never touched, so it costs no memory.
-  workspace.reserve(points.size() * 10 + 64);
-  if (!insert_all(workspace, search, stage, progress, report.counts)) {
-    workspace.set_exact(true);
-    insert_all(workspace, search, stage, progress, report.counts);
-  }
-  report.exact = workspace.exact();
-
-  finish(workspace, original_of);
+                             const Progress& progress, InsertionReport* caller_report) {
+  InsertionReport report;
   VoronoiDiagram diagram;
-  diagram.points = std::move(workspace.points);
+  const Box box = checked_box(points);
+  const double radius = points.empty() ? 0 : box.diagonal().norm() / 2;
+  report.duplicates = coincident_points(points, tolerance::kCoincidentPoints * radius);
+
+  if (points.size() - report.duplicates.size() >= 4) {
+    // The points are worked on in the order of insertion, so that neighbours in space are neighbours in memory.
+    std::vector<Index> original_of = insertion_order(points, box);
+    if (!report.duplicates.empty()) {
+      std::vector<bool> left_out(points.size(), false);
+      for (const auto& pair : report.duplicates) left_out[pair[0]] = true;
+      std::erase_if(original_of, [&](Index i) { return left_out[i]; });
+    }
+    Workspace workspace;
+    workspace.set_scale(box);
+    workspace.points.reserve(points.size());
+    for (Index i : original_of) workspace.points.push_back(points[i]);
+    if (insert_with_all_means(workspace, search, stage, progress, original_of, report)) {
+      report.dimension = 3;
+      finish(workspace, original_of);
+      diagram.vertices = std::move(workspace.vertices);
+    }
+    diagram.points = std::move(workspace.points);
+  }
+  if (diagram.vertices.empty()) report.dimension = std::min(affine_dimension(points), 2);
   diagram.points.assign(points.begin(), points.end());
-  diagram.vertices = std::move(workspace.vertices);
+  if (caller_report != nullptr) *caller_report = std::move(report);
   return diagram;
 }
 

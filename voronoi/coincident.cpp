@@ -44,6 +44,7 @@ class Grid {
     if (found == kNone) add(home(from_origin), point);
     return found;
   }
+  void add(Index point) { add(home(points_[point] - points_[0]), point); }
 
  private:
   Cell home(const Vector& from_origin) const {
@@ -73,10 +74,17 @@ class Grid {
 }  // namespace
 
 std::vector<std::array<Index, 2>> coincident_points(std::span<const Point> points, double distance) {
+  return coincident_points(points, distance, 0, {});
+}
+
+std::vector<std::array<Index, 2>> coincident_points(std::span<const Point> points, double distance, Index first_new,
+                                                    const std::vector<bool>& present) {
   std::vector<std::array<Index, 2>> pairs;
   if (points.size() < 2) return pairs;
   Grid grid(points, distance);
-  for (Index i = 0; i < points.size(); ++i) {
+  for (Index i = 0; i < first_new; ++i)
+    if (present[i]) grid.add(i);
+  for (Index i = first_new; i < points.size(); ++i) {
     const Index same = grid.find_or_add(i);
     if (same != kNone) pairs.push_back({i, same});
   }

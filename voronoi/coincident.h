@@ -11,4 +11,8 @@ namespace orchard::detail {
 // distance. Ascending by the first. Expected O(n) by a hash grid.
 std::vector<std::array<Index, 2>> coincident_points(std::span<const Point> points, double distance);
 
+// The same for the points from `first_new` on; of those before, the ones that `present` names stay without question.
+std::vector<std::array<Index, 2>> coincident_points(std::span<const Point> points, double distance, Index first_new,
+                                                    const std::vector<bool>& present);
+
 }  // namespace orchard::detail

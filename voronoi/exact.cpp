@@ -6,13 +6,15 @@
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Triangulation_cell_base_with_info_3.h>
 #include <CGAL/Triangulation_vertex_base_with_info_3.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <numeric>
 #include <tuple>
 #include <utility>
 
-#include "orchard/geometry/error.h"
+#include "build.h"
 #include "predicates.h"
 
 namespace orchard {
@@ -27,13 +29,36 @@ using Delaunay = CGAL::Delaunay_triangulation_3<Kernel, CGAL::Triangulation_data
 // Round-off magnified more than this many times in a circumcentre calls for rational arithmetic.
 constexpr double kWellConditioned = 0x1p10;
 
-// The points without exact duplicates, the lowest index of each kept, each with its index.
-std::vector<std::pair<Kernel::Point_3, Index>> distinct_points(std::span<const Point> points) {
+constexpr std::size_t kPlacedAtOnce = 1024;  // vertices that a thread takes at a time
+
+// All points by position, identical ones by index.
+std::vector<Index> by_position(std::span<const Point> points) {
   std::vector<Index> order(points.size());
   std::iota(order.begin(), order.end(), Index{0});
   const auto key = [&](Index i) { return std::tie(points[i].x(), points[i].y(), points[i].z()); };
   std::sort(order.begin(), order.end(), [&](Index a, Index b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
-  order.erase(std::unique(order.begin(), order.end(), [&](Index a, Index b) { return key(a) == key(b); }), order.end());
+  return order;
+}
+
+// Pairs (point left out, the lowest one that it is identical to).
+std::vector<std::array<Index, 2>> identical(std::span<const Point> points) {
+  std::vector<std::array<Index, 2>> pairs;
+  Index first = kNone;
+  for (const Index i : by_position(points)) {
+    if (first != kNone && points[i] == points[first])
+      pairs.push_back({i, first});
+    else
+      first = i;
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+// The points without those, each with its index.
+std::vector<std::pair<Kernel::Point_3, Index>> distinct_points(std::span<const Point> points) {
+  std::vector<Index> order = by_position(points);
+  order.erase(std::unique(order.begin(), order.end(), [&](Index a, Index b) { return points[a] == points[b]; }),
+              order.end());
   std::sort(order.begin(), order.end());
   std::vector<std::pair<Kernel::Point_3, Index>> distinct;
   distinct.reserve(order.size());
@@ -73,16 +98,17 @@ void place_at_infinity(VoronoiVertex& vertex, std::span<const Point> points) {
 
 }  // namespace
 
-VoronoiDiagram exact_voronoi(std::span<const Point> points) {
+VoronoiDiagram exact_voronoi(std::span<const Point> points, InsertionReport* report) {
+  detail::checked_box(points);
   const auto distinct = distinct_points(points);
   Delaunay delaunay(distinct.begin(), distinct.end());
-  if (delaunay.dimension() < 3)
-    throw InputError("the points lie in a plane, so they have no Voronoi vertices: add a point off that plane");
+  if (report != nullptr) *report = {.dimension = std::max(delaunay.dimension(), 0), .duplicates = identical(points)};
+  VoronoiDiagram diagram;
+  diagram.points.assign(points.begin(), points.end());
+  if (delaunay.dimension() < 3) return diagram;
 
   Index count = 0;
   for (auto cell : delaunay.all_cell_handles()) cell->info() = count++;
-  VoronoiDiagram diagram;
-  diagram.points.assign(points.begin(), points.end());
   diagram.vertices.resize(count);
   for (auto cell : delaunay.all_cell_handles()) {
     VoronoiVertex& vertex = diagram.vertices[cell->info()];
@@ -92,11 +118,13 @@ VoronoiDiagram exact_voronoi(std::span<const Point> points) {
       vertex.forming_points[slot] = delaunay.is_infinite(corner) ? kInfinitePoint : corner->info();
       vertex.neighbors[slot] = cell->neighbor(i)->info();
     }
-    if (vertex.at_infinity())
-      place_at_infinity(vertex, points);
-    else
-      place_finite(vertex, points);
   }
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kPlacedAtOnce), [&](const auto& range) {
+    for (std::size_t v = range.begin(); v < range.end(); ++v) {
+      VoronoiVertex& vertex = diagram.vertices[v];
+      vertex.at_infinity() ? place_at_infinity(vertex, points) : place_finite(vertex, points);
+    }
+  });
   return diagram;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <string>
 
 #include "orchard/geometry/error.h"
 
@@ -56,10 +55,7 @@ bool Inserter::insert(Index point) {
   const Point q = workspace_.points[point];
   Index start = locate(q);
   cavity_.begin(point);
-  if (search_ == Search::bowyer) {
-    insert_bowyer(start, q);
-    return true;
-  }
+  if (search_ == Search::bowyer) return insert_bowyer(start, q);
   if (search_ == Search::highest_first) {
     if (insert_directly(start, q)) return true;
     if (!workspace_.exact()) return insert_exactly(point, q);
@@ -176,22 +172,25 @@ void Inserter::search_breadth_first(Index start, const Point& q) {
         cavity_.delete_legally(u);
 }
 
-void Inserter::insert_bowyer(Index start, const Point& q) {
+bool Inserter::insert_bowyer(Index start, const Point& q) {
+  const auto fail = [this](const char* reason) {
+    failure_ = reason;
+    return false;
+  };
+  if (!(workspace_.value(start, q) > 0))
+    return fail("no Voronoi vertex is nearer to it than to its forming points, so none can be deleted");
   cavity_.delete_vertex(start);
-  for (std::size_t i = 0; i < cavity_.deleted().size(); ++i) {
-    const Index v = cavity_.deleted()[i];
-    for (unsigned k = 0; k < 4; ++k) {
-      const Index u = workspace_.vertices[v].neighbors[k];
+  for (std::size_t i = 0; i < cavity_.deleted().size(); ++i)
+    for (const Index u : workspace_.vertices[cavity_.deleted()[i]].neighbors)
       if (workspace_.mark(u) != Mark::deleted && workspace_.value(u, q) > 0) cavity_.delete_vertex(u);
-    }
-  }
   cavity_.note_facets();
   const bool placed = cavity_.place_vertices();
   if (!cavity_.link_vertices() || !cavity_.is_ball())
-    throw Error("Bowyer's algorithm fails: rounding makes the vertices that a point deletes other than one ball");
-  if (!placed) throw Error("Bowyer's algorithm fails: a new vertex has coplanar or wrongly oriented forming points");
+    return fail("after rounding, the vertices to delete do not make one simply connected piece");
+  if (!placed) return fail("a new vertex would have coplanar or wrongly oriented forming points");
   ++counts_.certified;
   finish();
+  return true;
 }
 
 void Inserter::finish() {

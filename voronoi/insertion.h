@@ -33,9 +33,10 @@ class Inserter {
   bool start(const std::array<Index, 4>& points);
   // False, with the diagram as it was, where the signs contradict each other although the workspace does not ask for
   // exact ones: then the input is near to degenerate, but not so near that rounding could be the reason. To be done
-  // again with exact signs from the start.
+  // again with exact signs from the start. Bowyer's search returns false where its premises fail.
   bool insert(Index point);
   const InsertionCounts& counts() const { return counts_; }
+  const char* failure() const { return failure_; }  // why insert() returned false
 
  private:
   struct Candidate {
@@ -60,13 +61,14 @@ class Inserter {
   void want(Index v, double value);
   bool sees_around(const Candidate& candidate, const Point& q);
   void search_breadth_first(Index start, const Point& q);
-  void insert_bowyer(Index start, const Point& q);
+  bool insert_bowyer(Index start, const Point& q);
   void finish();
 
   Workspace& workspace_;
   Search search_;
   Cavity cavity_;
   InsertionCounts counts_;
+  const char* failure_ = "";
   Index last_ = 0;  // where the walk to the next point starts
   std::vector<Candidate> queue_;
 };

@@ -1,8 +1,17 @@
 #include "workspace.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <utility>
 
 namespace orchard::detail {
+namespace {
+
+constexpr std::size_t kAdoptedAtOnce = 4096;
+
+}  // namespace
 
 void Workspace::set_scale(const Box& box) {
   const int exponent = std::ilogb(box.diagonal().norm());
@@ -15,20 +24,42 @@ void Workspace::set_scale(const Box& box) {
   bounds_.back() = std::numeric_limits<double>::infinity();
 }
 
-void Workspace::adopt(VoronoiVertex& vertex, std::uint8_t& error) const {
-  const auto& corner = vertex.forming_points;
+void Workspace::adopt(std::vector<VoronoiVertex>&& finished, std::size_t more) {
+  vertices = std::move(finished);
+  free_vertices.clear();
+  reserve(vertices.size() + more);
+  state_.resize(vertices.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, vertices.size(), kAdoptedAtOnce), [&](const auto& range) {
+    for (std::size_t v = range.begin(); v < range.end(); ++v)
+      state_[v] = static_cast<std::uint8_t>(adopt(vertices[v]) << 2);
+  });
+}
+
+// Brings the infinite point to the last place, turns the radius into its square and returns the error class.
+std::uint8_t Workspace::adopt(VoronoiVertex& vertex) const {
+  auto& corner = vertex.forming_points;
+  if (vertex.at_infinity() && corner[3] != kInfinitePoint) {
+    const auto i = static_cast<std::size_t>(std::find(corner.begin(), corner.end(), kInfinitePoint) - corner.begin());
+    // Two swaps leave the orientation.
+    const std::size_t j = i == 0 ? 1 : 0, k = 3 - i - j;
+    for (auto* four : {&corner, &vertex.neighbors}) {
+      std::swap((*four)[i], (*four)[3]);
+      std::swap((*four)[j], (*four)[k]);
+    }
+  }
   const Point& origin = points[corner[0]];
   const LengthedVector a(points[corner[1]] - origin), b(points[corner[2]] - origin);
   VoronoiVertex placed = vertex;
-  error = kUnknownError;
+  std::uint8_t error = kUnknownError;
+  Placing placing = Placing::failed;
   if (corner[3] == kInfinitePoint) {
     vertex.radius = std::numeric_limits<double>::quiet_NaN();
-    if (place_at_infinity(placed, error, a, b) == Placing::failed) error = kUnknownError;
+    placing = place_at_infinity(placed, error, a, b);
   } else {
     vertex.radius = (vertex.center - origin).squaredNorm();
-    if (place(placed, error, origin, a, b, LengthedVector(points[corner[3]] - origin)) == Placing::failed)
-      error = kUnknownError;
+    placing = place(placed, error, origin, a, b, LengthedVector(points[corner[3]] - origin));
   }
+  return placing == Placing::failed ? kUnknownError : error;
 }
 
 double Workspace::value(Index v, const Point& q) const {

@@ -77,8 +77,8 @@ class Workspace {
                             const LengthedVector& b) const;
   // A length far beyond the points, for vertices whose place is as good as infinite.
   double far() const { return 1024 * std::sqrt(squared_scale_); }
-  // Recomputes the error class of a finished vertex, and turns its radius into its square.
-  void adopt(VoronoiVertex& vertex, std::uint8_t& error_class) const;
+  // Takes over the vertices of a finished diagram of `points`, with room for some more. In parallel.
+  void adopt(std::vector<VoronoiVertex>&& finished, std::size_t more);
 
   static constexpr std::uint8_t kUnknownError = 63;
   void store(Index v, const VoronoiVertex& vertex, std::uint8_t error_class) {
@@ -103,6 +103,7 @@ class Workspace {
   Sign sign_at_infinity(Index v, const Point& q) const;
   Sign sign_from_points(Index v, const Point& q) const;
   std::uint8_t error_class(double bound) const;
+  std::uint8_t adopt(VoronoiVertex& vertex) const;
 
   std::vector<std::uint8_t> state_;                    // mark, and error class above
   std::array<double, 64> bounds_{};                    // by error class

@@ -61,7 +61,7 @@ void compare(const char* name, const test::Points& points) {
   const int runs = points.size() > 200000 ? 3 : points.size() > 20000 ? 5 : 15;
   std::vector<Kernel::Point_3> cgal_points;
   for (const Point& p : points) cgal_points.emplace_back(p.x(), p.y(), p.z());
-  HighestFirstReport report;
+  InsertionReport report;
   VoronoiDiagram diagram;
   const double bytes = peak_bytes([&] { highest_first_voronoi(points); });
   double ours = 1e300, cgal = 1e300;

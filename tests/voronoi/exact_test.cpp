@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <set>
 
-#include "orchard/geometry/error.h"
 #include "voronoi/point_sets.h"
 
 namespace orchard {
@@ -103,10 +102,17 @@ TEST(ExactVoronoi, LeavesOutCoincidentPointsButTheFirst) {
   EXPECT_FALSE(rows[8].empty());
 }
 
-TEST(ExactVoronoi, RefusesPointsInAPlane) {
-  EXPECT_THROW(exact_voronoi(test::Points{}), InputError);
-  EXPECT_THROW(exact_voronoi(test::Points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}), InputError);
-  EXPECT_THROW(exact_voronoi(test::Points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}}), InputError);
+TEST(ExactVoronoi, OfPointsInAPlaneHasNoVertices) {
+  const std::vector<std::pair<int, test::Points>> flat{{0, {}},
+                                                       {0, {{1, 2, 3}, {1, 2, 3}}},
+                                                       {1, {{0, 0, 0}, {1, 1, 0}, {3, 3, 0}, {2, 2, 0}, {5, 5, 0}}},
+                                                       {2, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
+                                                       {2, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}}}};
+  for (const auto& [dimension, points] : flat) {
+    InsertionReport report;
+    EXPECT_TRUE(exact_voronoi(points, &report).vertices.empty());
+    EXPECT_EQ(report.dimension, dimension);
+  }
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ TEST(HighestFirstVoronoi, HasExactlyTheFormingPointsOfTheExactDiagram) {
 
 TEST(HighestFirstVoronoi, IsConsistentOnDegeneratePoints) {
   for (const auto& [name, points] : test::degenerate_point_sets()) {
-    HighestFirstReport report;
+    InsertionReport report;
     VoronoiDiagram diagram;
     ASSERT_NO_THROW(diagram = highest_first_voronoi(points, {}, &report)) << name;
     EXPECT_NO_THROW(validate(diagram)) << name;

@@ -1,0 +1,45 @@
+#include "orchard/voronoi/algorithms.h"
+
+#include "orchard/voronoi/bowyer.h"
+#include "orchard/voronoi/exact.h"
+#include "orchard/voronoi/highest_first.h"
+#include "orchard/voronoi/inagaki.h"
+
+namespace orchard {
+
+std::string_view name(VoronoiAlgorithm algorithm) {
+  switch (algorithm) {
+    case VoronoiAlgorithm::bowyer:
+      return "bowyer";
+    case VoronoiAlgorithm::inagaki:
+      return "inagaki";
+    case VoronoiAlgorithm::highest_first:
+      return "highest-first";
+    case VoronoiAlgorithm::exact:
+      break;
+  }
+  return "exact";
+}
+
+std::optional<VoronoiAlgorithm> voronoi_algorithm_named(std::string_view wanted) {
+  for (const VoronoiAlgorithm algorithm : kVoronoiAlgorithms)
+    if (name(algorithm) == wanted) return algorithm;
+  return std::nullopt;
+}
+
+VoronoiDiagram voronoi(std::span<const Point> points, VoronoiAlgorithm algorithm, const Progress& progress,
+                       InsertionReport* report) {
+  switch (algorithm) {
+    case VoronoiAlgorithm::bowyer:
+      return bowyer_voronoi(points, progress, report);
+    case VoronoiAlgorithm::inagaki:
+      return inagaki_voronoi(points, progress, report);
+    case VoronoiAlgorithm::highest_first:
+      return highest_first_voronoi(points, progress, report);
+    case VoronoiAlgorithm::exact:
+      break;
+  }
+  return exact_voronoi(points, report);
+}
+
+}  // namespace orchard
