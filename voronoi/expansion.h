@@ -16,6 +16,12 @@ class Expansion {
     append(exact.high);
   }
 
+  // The nearest double, or one next to it.
+  double value() const {
+    double sum = 0;
+    for (const double term : terms_) sum += term;
+    return sum;
+  }
   int sign() const { return terms_.empty() ? 0 : terms_.back() > 0 ? 1 : -1; }
 
   friend Expansion operator+(const Expansion& a, const Expansion& b) {

@@ -85,26 +85,53 @@ Sign inside_sphere(const Point& q, const Point& a, const Point& b, const Point& 
   return static_cast<Sign>(sharp_inside_sphere<Expansion>(q, a, b, c, d).sign());
 }
 
+namespace {
+
+// The circumcentre of q, a, b, c relative to q as four determinants: x, y and z over twice six times the volume.
+template <class Number>
+struct SharpCenter {
+  SharpVector<Number> numerator;
+  Number volume6;
+
+  static SharpCenter of(const Point& q, const Point& a, const Point& b, const Point& c) {
+    using V = SharpVector<Number>;
+    const V va(a, q), vb(b, q), vc(c, q);
+    const V bc = vb.cross(vc), ca = vc.cross(va), ab = va.cross(vb);
+    const Number aa = va.dot(va), bb = vb.dot(vb), cc = vc.dot(vc);
+    return {{bc.x * aa + ca.x * bb + ab.x * cc, bc.y * aa + ca.y * bb + ab.y * cc, bc.z * aa + ca.z * bb + ab.z * cc},
+            va.dot(bc)};
+  }
+};
+
+}  // namespace
+
 bool sharp_circumcenter(const Point& q, const Point& a, const Point& b, const Point& c, Vector& center) {
-  using V = SharpVector<Twofold>;
-  const V va(a, q), vb(b, q), vc(c, q);
-  const V bc = vb.cross(vc), ca = vc.cross(va), ab = va.cross(vb);
-  const Twofold volume6 = va.dot(bc);
-  if (!(std::abs(volume6.high) > 0x1p20 * kSharper * volume(a - q, b - q, c - q).bound)) return false;
-  const Twofold aa = va.dot(va), bb = vb.dot(vb), cc = vc.dot(vc), twice = volume6 + volume6;
-  center =
-      Vector(((bc.x * aa + ca.x * bb + ab.x * cc) / twice).high, ((bc.y * aa + ca.y * bb + ab.y * cc) / twice).high,
-             ((bc.z * aa + ca.z * bb + ab.z * cc) / twice).high);
+  const auto sharp = SharpCenter<Twofold>::of(q, a, b, c);
+  if (std::abs(sharp.volume6.high) > 0x1p20 * kSharper * volume(a - q, b - q, c - q).bound) {
+    const Twofold twice = sharp.volume6 + sharp.volume6;
+    center =
+        Vector((sharp.numerator.x / twice).high, (sharp.numerator.y / twice).high, (sharp.numerator.z / twice).high);
+  } else {
+    const auto exact = SharpCenter<Expansion>::of(q, a, b, c);
+    center = Vector(exact.numerator.x.value(), exact.numerator.y.value(), exact.numerator.z.value()) /
+             (2 * exact.volume6.value());
+  }
   return center.allFinite();
 }
 
 bool sharp_normal(const Point& q, const Point& a, const Point& b, Vector& normal) {
-  using V = SharpVector<Twofold>;
-  const V cross = V(a, q).cross(V(b, q));
+  using Twice = SharpVector<Twofold>;
+  const Twice cross = Twice(a, q).cross(Twice(b, q));
   normal = Vector(cross.x.high, cross.y.high, cross.z.high);
   // Scaled first: the squares of a needle's area may be too small for a double.
-  const double scale = normal.cwiseAbs().maxCoeff();
-  if (!(scale > 0x1p-90 * (a - q).norm() * (b - q).norm())) return false;
+  double scale = normal.cwiseAbs().maxCoeff();
+  if (!(scale > 0x1p-80 * (a - q).norm() * (b - q).norm())) {
+    using Exact = SharpVector<Expansion>;
+    const Exact exact = Exact(a, q).cross(Exact(b, q));
+    normal = Vector(exact.x.value(), exact.y.value(), exact.z.value());
+    scale = normal.cwiseAbs().maxCoeff();
+    if (!(scale > 0)) return false;
+  }
   normal = (normal / scale).normalized();
   return true;
 }

@@ -45,10 +45,11 @@ Sign volume_sign(const Point& q, const Point& a, const Point& b, const Point& c)
 // Whether q lies inside the sphere through four positively oriented points; exact likewise.
 Sign inside_sphere(const Point& q, const Point& a, const Point& b, const Point& c, const Point& d);
 
-// The circumcentre of q, a, b and c relative to q in twofold precision. False if they are coplanar even to that.
+// The circumcentre of q, a, b and c relative to q, to a few roundings. False if they are coplanar, or so nearly that it
+// overflows.
 bool sharp_circumcenter(const Point& q, const Point& a, const Point& b, const Point& c, Vector& center);
 
-// The unit normal of the triangle q, a, b. False if they are collinear to twofold precision.
+// The unit normal of the triangle q, a, b, to a few roundings. False if they are collinear.
 bool sharp_normal(const Point& q, const Point& a, const Point& b, Vector& normal);
 
 // The circumcentre of the origin, a, b and c.
