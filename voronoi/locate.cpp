@@ -65,15 +65,20 @@ Index Inserter::walk(const Point& q) const {
 }
 
 // The neighbour across a facet that certainly parts q from v, or kNone. Not where the walk just came from is not asked:
-// a facet that parts them cannot do so in both directions.
+// a facet that parts them cannot do so in both directions. Out of the hull only if there is no other way: q may be
+// outside by a rounding, but it is above another facet then.
 Index Inserter::step_by_orientation(Index v, const Point& q) const {
   const VoronoiVertex& vertex = workspace_.vertices[v];
+  Index outside = kNone;
   for (unsigned i = 0; i < 4; ++i) {
     const auto& [a, b, c] = Cavity::kOthers[i];
     const auto corner = [&](unsigned k) -> const Point& { return workspace_.points[vertex.forming_points[k]]; };
-    if (volume_sign(q, corner(a), corner(b), corner(c)) == Sign::negative) return vertex.neighbors[i];
+    if (volume_sign(q, corner(a), corner(b), corner(c)) != Sign::negative) continue;
+    const Index next = vertex.neighbors[i];
+    if (!workspace_.at_infinity(next) || workspace_.sign(next, q) == Sign::positive) return next;
+    outside = next;
   }
-  return kNone;
+  return outside;
 }
 
 // To the vertex whose tetrahedron holds q; at infinity if q is outside.
