@@ -1,0 +1,121 @@
+#include "orchard/runtime/broad_phase.h"
+
+#include <cassert>
+
+#include "method.h"
+
+namespace orchard::runtime {
+
+using detail::kNeverStep;
+using detail::Step;
+
+struct BroadPhase::State {
+  detail::Roster roster;
+  std::unique_ptr<detail::Method> method;
+  std::vector<BodyPair> pairs;
+  Step next = kNeverStep;  // the next step with anything to do
+};
+
+MotionSource values_of(const std::vector<Motion>& values) {
+  return [&values](double, std::span<const BodyId> bodies, std::span<Motion> motions) {
+    for (std::size_t i = 0; i < bodies.size(); ++i) motions[i] = values[bodies[i]];
+  };
+}
+
+BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& options)
+    : state_(std::make_unique<State>(
+          State{detail::Roster(std::move(source), detail::Clock{options.start, options.time_step}), nullptr, {}})) {
+  assert(options.time_step > 0);
+  state_->method = options.method == BroadPhaseMethod::events ? detail::make_events(state_->roster, options)
+                                                              : detail::make_sleeping(state_->roster, options);
+  next_time_ = wake_time_ = std::numeric_limits<double>::infinity();
+  seen_time_ = -next_time_;
+}
+
+BroadPhase::BroadPhase(BroadPhase&&) noexcept = default;
+BroadPhase& BroadPhase::operator=(BroadPhase&&) noexcept = default;
+BroadPhase::~BroadPhase() = default;
+
+// While we slept, the caller's time went on: the change counts from the first step after it.
+void BroadPhase::wake_for_change() {
+  const detail::Clock& clock = state_->roster.clock;
+  const double passed = (seen_time_ - clock.start) / clock.time_step + detail::kStepSlack;
+  const Step first = passed >= 0 ? static_cast<Step>(passed) + 1 : 0;
+  state_->next = std::min(state_->next, first);
+  note_next_step();
+}
+
+void BroadPhase::note_next_step() {
+  const detail::Clock& clock = state_->roster.clock;
+  const bool any = state_->next != kNeverStep;
+  next_time_ = any ? clock.time(state_->next) : std::numeric_limits<double>::infinity();
+  wake_time_ = next_time_ - detail::kStepSlack * clock.time_step;
+}
+
+Advance BroadPhase::process(double t_now, const WorkBudget* budget) {
+  State& state = *state_;
+  const detail::Clock& clock = state.roster.clock;
+  while (t_now >= wake_time_) {
+    const Step now = state.next;
+    detail::Meter meter = budget ? detail::Meter(*budget) : detail::Meter();
+    state.pairs.clear();
+    const detail::StepReport report = state.method->step(now, meter, state.pairs);
+    state.next = report.next;
+    note_next_step();
+    if (!state.pairs.empty() || report.incomplete_from != kNoClass) {
+      seen_time_ = clock.time(now);
+      return {seen_time_, state.pairs, report.incomplete_from};
+    }
+  }
+  seen_time_ = t_now;
+  return {next_time_, {}};
+}
+
+BodyId BroadPhase::add(std::uint8_t importance) {
+  const BodyId body = state_->roster.add(importance);
+  if (body == kNoBody) return body;
+  state_->method->changed(body);
+  wake_for_change();
+  return body;
+}
+
+BodyId BroadPhase::add_static(const Motion& place, std::uint8_t importance) {
+  if (!is_valid(place)) return kNoBody;
+  const BodyId body = state_->roster.add(importance);
+  if (body == kNoBody) return body;
+  state_->roster.set_static(body, place);
+  state_->method->changed(body);
+  wake_for_change();
+  return body;
+}
+
+void BroadPhase::remove(BodyId body) {
+  state_->method->removed(body);
+  state_->roster.remove(body);
+}
+
+void BroadPhase::cancel(BodyId body) {
+  state_->method->changed(body);
+  wake_for_change();
+}
+
+bool BroadPhase::move_static(BodyId body, const Motion& place) {
+  assert(state_->roster.is_static(body));
+  if (!is_valid(place)) return false;
+  state_->roster.set_static(body, place);
+  cancel(body);
+  return true;
+}
+
+void BroadPhase::set_importance(BodyId body, std::uint8_t importance) {
+  state_->roster.set_importance(body, importance);
+}
+
+std::size_t BroadPhase::size() const noexcept { return state_->roster.size(); }
+std::uint64_t BroadPhase::motions_asked() const noexcept { return state_->roster.asked(); }
+std::size_t BroadPhase::memory_bytes() const noexcept {
+  return sizeof(State) + detail::bytes_of(state_->pairs) + state_->roster.memory_bytes() +
+         state_->method->memory_bytes();
+}
+
+}  // namespace orchard::runtime

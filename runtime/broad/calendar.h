@@ -1,0 +1,58 @@
+#pragma once
+#include <array>
+
+#include "roster.h"
+
+namespace orchard::runtime::detail {
+
+inline constexpr Step kCalendarSteps = 1024;  // a power of two
+inline constexpr Step kLongestWindow = kCalendarSteps - 1;
+
+struct PairEvent {
+  BodyPair pair;
+  Step created;  // void once either body has been looked at again after this step
+};
+
+// What is due when, for less than kCalendarSteps steps ahead: bodies to look at again and pairs to test, in a ring of
+// lists indexed by step. A body is due once; a pair may be several times, the older events being void.
+class Calendar {
+ public:
+  void make_room(std::size_t bodies);
+
+  void set_due(BodyId body, Step step) noexcept;  // replaces what was set
+  void clear_due(BodyId body) noexcept;
+  void clear_all_due() noexcept;
+  void add(const PairEvent& event, Step step);
+
+  // Moves everything due at the step to the ends of the vectors.
+  void take(Step step, std::vector<BodyId>& bodies, std::vector<PairEvent>& events);
+  // The first step after `now` that may have something; kNeverStep if there is none.
+  Step next_after(Step now) const noexcept;
+  std::size_t memory_bytes() const noexcept;
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  struct Links {
+    std::uint32_t next = kNone;
+    std::uint32_t previous = kNone;  // or, with kHeadBit, the bucket
+  };
+  struct Node {
+    PairEvent event;
+    std::uint32_t next;
+  };
+  static constexpr std::uint32_t kHeadBit = 0x80000000u;
+
+  static std::size_t bucket_of(Step step) noexcept { return static_cast<std::size_t>(step & (kCalendarSteps - 1)); }
+  void mark(std::size_t bucket) noexcept { busy_[bucket / 64] |= std::uint64_t{1} << (bucket % 64); }
+
+  struct Bucket {
+    std::uint32_t body = kNone, event = kNone;
+  };
+  std::array<Bucket, kCalendarSteps> buckets_{};
+  std::array<std::uint64_t, kCalendarSteps / 64> busy_{};  // a bit per bucket with anything in it, or once had
+  std::vector<Links> links_;
+  std::vector<Node> nodes_;
+  std::uint32_t free_node_ = kNone;
+};
+
+}  // namespace orchard::runtime::detail

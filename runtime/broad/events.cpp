@@ -1,0 +1,317 @@
+#include "events.h"
+
+#include <cassert>
+
+namespace orchard::runtime::detail {
+namespace {
+
+constexpr std::size_t kBlock = 64;          // motions asked for in one go
+constexpr std::size_t kSample = 128;        // bodies that the first plan looks at
+constexpr double kCrowding = 4;             // lines read per entry from which on the cells are too large
+constexpr double kFewPairs = 1e-3;          // per body: too few to say anything about the prediction
+constexpr double kEventResolution = 0.125;  // of a step: no need to know better when a pair can touch
+
+}  // namespace
+
+void Events::make_room() {
+  const std::size_t n = roster_.slots();
+  if (windows_.size() >= n) return;
+  boxes_.resize(n);
+  windows_.resize(n);
+  places_.resize(n, Place::nowhere);
+  pending_.resize(n);
+  calendar_.make_room(n);
+}
+
+void Events::changed(BodyId body) {
+  make_room();
+  if (pending_[body]) return;
+  pending_[body] = 1;
+  changed_.push_back(body);
+  calendar_.clear_due(body);
+}
+
+void Events::removed(BodyId body) {
+  take_away(body);
+  calendar_.clear_due(body);
+  pending_[body] = 0;
+  windows_[body].looked = kNeverStep;  // voids the events; the next look at the slot's next body sets it
+}
+
+void Events::take_away(BodyId body) noexcept {
+  if (places_[body] == Place::grid) grid_.remove(body, boxes_[body]);
+  if (places_[body] == Place::oversized) std::erase(oversized_, body);
+  places_[body] = Place::nowhere;
+}
+
+void Events::collect_due(Step now) {
+  due_.clear();
+  events_.clear();
+  calendar_.take(now, due_, events_);
+  for (const BodyId body : changed_) {
+    if (!pending_[body]) continue;
+    pending_[body] = 0;
+    due_.push_back(body);
+  }
+  changed_.clear();
+}
+
+bool Events::crowded(const GridCounts& counts) const noexcept {
+  return counts.bodies >= roster_.size() &&
+         static_cast<double>(counts.lines_read) > kCrowding * static_cast<double>(counts.entries);
+}
+
+// When most bodies are due it is cheaper to start afresh; it also lets the plan follow the bodies.
+bool Events::worth_a_rebuild() const noexcept {
+  const std::size_t n = roster_.size();
+  if (due_.empty() || n == 0) return false;
+  return 2 * due_.size() >= n || n > 2 * planned_bodies_ || crowded(grid_.counts());
+}
+
+void Events::replan(Step now) {
+  const std::size_t n = roster_.size();
+  const GridCounts counts = grid_.take_counts();
+  if (counts.bodies > 0) {
+    const double seen = static_cast<double>(counts.pairs) / static_cast<double>(counts.bodies);
+    correction_ = std::clamp(correction_ * (seen + kFewPairs) / (plan_.pairs_per_body + kFewPairs), 0.05, 50.0);
+  }
+  if (crowded(counts) && n <= 2 * planned_bodies_) {
+    spacing_ /= 2;  // bodies in clusters: what counts is how dense these are
+  } else if (n > 2 * planned_bodies_ || 2 * n < planned_bodies_) {
+    survey(now);
+  }
+  plan_ = plan_window(means_, n, spacing_, options_.time_step, correction_, options_.window);
+  lattice_ = Lattice(lattice_.origin(), plan_.cell_size);
+  means_ = {};
+}
+
+// How bodies lie and move, from a sample.
+void Events::survey(Step now) {
+  const std::size_t n = roster_.size(), stride = std::max<std::size_t>(1, n / kSample);
+  std::vector<BodyId> sample;
+  for (BodyId body = 0; body < roster_.slots() && sample.size() < kSample; body += static_cast<BodyId>(stride)) {
+    if (roster_.alive(body)) sample.push_back(body);
+  }
+  if (sample.empty()) return;
+  motions_.resize(sample.size());
+  roster_.ask(now, sample, motions_);
+  std::vector<Vec3> centers;
+  means_ = {};
+  for (const Motion& motion : motions_) {
+    means_.add(motion);
+    centers.push_back(motion.position);
+  }
+  lattice_ = Lattice(centers.front(), 1);
+  spacing_ = mean_spacing(centers, n);
+  planned_bodies_ = n;
+  correction_ = 1;
+}
+
+void Events::place_all_anew() {
+  calendar_.clear_all_due();
+  std::fill(places_.begin(), places_.end(), Place::nowhere);
+  oversized_.clear();
+  due_.clear();
+  for (BodyId body = 0; body < roster_.slots(); ++body) {
+    if (roster_.alive(body)) due_.push_back(body);
+  }
+  grid_.reset(plan_.lines);
+}
+
+void Events::place(Step now, BodyId body, const Motion& motion) {
+  means_.add(motion);
+  Window& window = windows_[body];
+  window.looked = now;
+  Step steps = kNeverStep;
+  double duration = 0;
+  if (!roster_.is_static(body)) {
+    // Steps until the bound expires, in equal parts that are not longer than the plan's window.
+    steps = plan_.window;
+    const Step valid = roster_.clock.steps_until_expiry(now, motion.expiry);
+    if (valid < 64 * plan_.window) {
+      const Step parts = (valid + 1 + plan_.window - 1) / plan_.window;
+      steps = (valid + 1 + parts - 1) / parts;
+    }
+    duration = static_cast<double>(steps - 1) * options_.time_step;
+  }
+  places_[body] = Place::grid;
+  for (;;) {
+    const QuantumBox& box = boxes_[body] = lattice_.box(motion, duration);
+    std::uint32_t most = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      most = std::max(most, (box.upper[i] >> kQuantumBits) - (box.lower[i] >> kQuantumBits));
+    }
+    if (most < kMostCellsPerAxis) break;
+    if (duration == 0) {
+      places_[body] = Place::oversized;
+      break;
+    }
+    steps = (steps + 1) / 2;  // faster than the others: look again sooner
+    duration = static_cast<double>(steps - 1) * options_.time_step;
+  }
+  if (steps == kNeverStep) {
+    window.end = kNeverStep;
+  } else {
+    window.end = now + steps;
+    calendar_.set_due(body, window.end);
+  }
+}
+
+// Stops early if the budget is spent; returns how many have been looked at.
+std::size_t Events::look_at(Step now, std::span<const BodyId> bodies, Meter& meter) {
+  motions_.resize(kBlock);
+  std::array<BodyId, kBlock> in_grid;
+  std::size_t done = 0;
+  while (done < bodies.size() && !meter.spent()) {
+    const auto block = bodies.subspan(done, meter.grant(std::min(kBlock, bodies.size() - done)));
+    roster_.ask(now, block, std::span(motions_).first(block.size()));
+    meter.count(block.size());
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < block.size(); ++i) {
+      place(now, block[i], motions_[i]);
+      if (places_[block[i]] == Place::grid) in_grid[count++] = block[i];
+    }
+    grid_.insert(std::span(in_grid).first(count), boxes_, options_.vectors, near_);
+    if (count < block.size() || !oversized_.empty()) meet_oversized(block);
+    done += block.size();
+  }
+  return done;
+}
+
+// Bodies as large as several cells are compared with everything: (their number) x (the number of all) per window.
+void Events::meet_oversized(std::span<const BodyId> bodies) {
+  const auto compare = [&](BodyId body, BodyId other) {
+    if (boxes_[other].meets(boxes_[body])) near_.push_back({std::min(body, other), std::max(body, other)});
+  };
+  for (const BodyId body : bodies) {
+    if (places_[body] != Place::grid) continue;
+    for (const BodyId large : oversized_) compare(body, large);
+  }
+  for (const BodyId body : bodies) {
+    if (places_[body] != Place::oversized) continue;
+    for (BodyId other = 0; other < places_.size(); ++other) {
+      if (places_[other] == Place::grid) compare(body, other);
+    }
+    for (const BodyId large : oversized_) compare(body, large);
+    oversized_.push_back(body);
+  }
+}
+
+bool Events::valid(const PairEvent& event) const noexcept {
+  return windows_[event.pair.a].looked <= event.created && windows_[event.pair.b].looked <= event.created;
+}
+
+// Stops early if the budget is spent; the rest is tested at the next step.
+bool Events::test_all(Step now, Meter& meter) {
+  constexpr std::size_t kPairs = kBlock / 2;
+  motions_.resize(kBlock);
+  std::array<BodyId, kBlock> bodies;
+  std::size_t done = 0;
+  while (done < tests_.size() && !meter.spent()) {
+    const std::size_t count = std::max<std::size_t>(1, meter.grant(2 * std::min(kPairs, tests_.size() - done)) / 2);
+    for (std::size_t i = 0; i < count; ++i) {
+      bodies[2 * i] = tests_[done + i].pair.a;
+      bodies[2 * i + 1] = tests_[done + i].pair.b;
+    }
+    roster_.ask(now, std::span(bodies).first(2 * count), std::span(motions_).first(2 * count));
+    meter.count(2 * count);
+    for (std::size_t i = 0; i < count; ++i) settle(now, tests_[done + i].pair, motions_[2 * i], motions_[2 * i + 1]);
+    done += count;
+  }
+  for (std::size_t i = done; i < tests_.size(); ++i) calendar_.add(tests_[i], now + 1);
+  return done == tests_.size();
+}
+
+// Both motions are of this step: they overlap, or they cannot for a while.
+void Events::settle(Step now, const BodyPair& pair, const Motion& a, const Motion& b) {
+  if (roster_.is_static(pair.a) && roster_.is_static(pair.b)) return;
+  if (spheres_touch(a, b)) {
+    overlaps_.push_back({pair, now});
+    return;
+  }
+  const Clock& clock = roster_.clock;
+  const Step left = std::min(windows_[pair.a].end, windows_[pair.b].end) - now;  // until the next look at one of them
+  if (left <= 1) return;
+  const double seconds = static_cast<double>(std::min(left, kLongestWindow) - 1) * options_.time_step;
+  const double contact = earliest_contact(a, b, seconds, kEventResolution * options_.time_step);
+  const Step safe = std::min(clock.steps_until_expiry(now, a.expiry), clock.steps_until_expiry(now, b.expiry));
+  Step ahead = contact <= seconds ? std::max<Step>(1, clock.steps_before(contact)) : kNeverStep;
+  if (safe < left) ahead = std::min(ahead, safe + 1);
+  if (ahead < left) calendar_.add({pair, now}, now + ahead);
+}
+
+// What an interruption left over is done at the next step.
+void Events::postpone(Step now, std::size_t looked, unsigned from_class) {
+  for (; looked < due_.size(); ++looked) calendar_.set_due(due_[looked], now + 1);
+  for (const PairEvent& event : waiting_) {
+    if (roster_.importance(event.pair) >= from_class) calendar_.add(event, now + 1);
+  }
+  for (const BodyPair& pair : near_) {
+    if (roster_.importance(pair) >= from_class) calendar_.add({pair, now}, now + 1);
+  }
+}
+
+// Class by class: first its bodies, then the pairs with such a body and none that is less important. Returns the class
+// that an interruption left unfinished.
+unsigned Events::look_and_test(Step now, Meter& meter) {
+  const bool one_class = roster_.one_class();
+  if (!one_class) {
+    std::stable_sort(due_.begin(), due_.end(),
+                     [&](BodyId a, BodyId b) { return roster_.importance(a) < roster_.importance(b); });
+  }
+  std::size_t looked = 0;
+  for (unsigned rank = roster_.next_class(0); rank < kNoClass; rank = roster_.next_class(rank + 1)) {
+    std::size_t end = one_class ? due_.size() : looked;
+    while (end < due_.size() && roster_.importance(due_[end]) == rank) ++end;
+    looked += look_at(now, std::span(due_).subspan(looked, end - looked), meter);
+    if (looked < end) {
+      postpone(now, looked, rank);
+      return rank;
+    }
+    const auto ranked = [&](const BodyPair& pair) { return one_class || roster_.importance(pair) == rank; };
+    tests_.clear();
+    for (const PairEvent& event : waiting_) {
+      if (ranked(event.pair) && valid(event)) tests_.push_back(event);
+    }
+    for (const BodyPair& pair : near_) {
+      if (ranked(pair)) tests_.push_back({pair, now});
+    }
+    if (!test_all(now, meter)) {
+      postpone(now, looked, rank + 1);
+      return rank;
+    }
+  }
+  return kNoClass;
+}
+
+StepReport Events::step(Step now, Meter& meter, std::vector<BodyPair>& pairs) {
+  collect_due(now);
+  if (worth_a_rebuild()) {
+    replan(now);
+    place_all_anew();
+  } else {
+    for (const BodyId body : due_) take_away(body);
+  }
+  near_.clear();
+  waiting_.assign(overlaps_.begin(), overlaps_.end());
+  waiting_.insert(waiting_.end(), events_.begin(), events_.end());
+  overlaps_.clear();
+  const unsigned incomplete_from = look_and_test(now, meter);
+
+  std::sort(overlaps_.begin(), overlaps_.end(), [](const PairEvent& a, const PairEvent& b) { return a.pair < b.pair; });
+  for (const PairEvent& event : overlaps_) pairs.push_back(event.pair);
+  return {overlaps_.empty() ? calendar_.next_after(now) : now + 1, incomplete_from};
+}
+
+std::size_t Events::memory_bytes() const noexcept {
+  return sizeof(*this) + bytes_of(boxes_) + bytes_of(windows_) + bytes_of(places_) + bytes_of(pending_) +
+         bytes_of(changed_) + bytes_of(oversized_) + bytes_of(overlaps_) + bytes_of(due_) + bytes_of(events_) +
+         bytes_of(waiting_) + bytes_of(tests_) + bytes_of(near_) + bytes_of(motions_) + grid_.memory_bytes() +
+         calendar_.memory_bytes() - sizeof(calendar_);
+}
+
+std::unique_ptr<Method> make_events(Roster& roster, const BroadPhaseOptions& options) {
+  return std::make_unique<Events>(roster, options);
+}
+
+}  // namespace orchard::runtime::detail

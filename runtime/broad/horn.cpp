@@ -1,0 +1,96 @@
+#include "horn.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace orchard::runtime {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr int kMaxRounds = 100;  // a grazing contact halves the gap per round; stopping early is early, not late
+
+double largest(const Vec3& v) noexcept { return std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])}); }
+
+// Lemma 4.2 for one body of the pair: its sphere stays behind a plane, so that the other one has to cross it.
+double half_space_contact(const Motion& a, const Motion& b, double slack) noexcept {
+  const double length = std::sqrt(dot(a.half_space, a.half_space));
+  if (!(length > 0)) return 0;
+  const Vec3 d = (1 / length) * a.half_space;
+
+  // How much of b's acceleration can point along -d, given its own half-space.
+  double share = 1;
+  const double other = std::sqrt(dot(b.half_space, b.half_space));
+  if (other > 0) {
+    const double cosine = dot(d, b.half_space) / other;
+    if (cosine < 0) share = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+    share = std::min(1.0, share + 1e-7);  // the root of a rounding error
+  }
+  const double gap = dot(b.position - a.position, d) - a.radius - b.radius - slack;
+  const double slope = dot(b.velocity - a.velocity, d) - a.drift - b.drift;
+  return detail::first_closing(gap, slope, share * b.acceleration);
+}
+
+}  // namespace
+
+bool is_valid(const Motion& m) noexcept {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!std::isfinite(m.position[i]) || !std::isfinite(m.velocity[i]) || !std::isfinite(m.half_space[i])) return false;
+  }
+  const auto bound = [](double x) { return std::isfinite(x) && x >= 0; };
+  return bound(m.radius) && bound(m.acceleration) && bound(m.drift) && !std::isnan(m.expiry);
+}
+
+Motion speed_bounded(const Vec3& position, double radius, double largest_speed, double expiry) noexcept {
+  Motion motion;
+  motion.position = position;
+  motion.radius = radius;
+  motion.drift = largest_speed;
+  motion.expiry = expiry;
+  return motion;
+}
+
+namespace detail {
+
+double motion_slack(const Motion& a, const Motion& b, double duration) noexcept {
+  const auto reach = [&](const Motion& m) {
+    return largest(m.position) + m.radius + duration * (largest(m.velocity) + m.drift + duration * m.acceleration / 2);
+  };
+  return kMotionSlack * (reach(a) + reach(b));
+}
+
+double first_closing(double gap, double slope, double acceleration) noexcept {
+  if (!(gap > 0)) return 0;
+  const double root = std::sqrt(slope * slope + 2 * acceleration * gap);
+  if (slope < 0) return 2 * gap / (root - slope);  // no cancellation in either form
+  return acceleration > 0 ? (slope + root) / acceleration : kNever;
+}
+
+double horn_contact(const HornPair& pair, double limit, double resolution) noexcept {
+  double t = 0;
+  for (int round = 0; round < kMaxRounds; ++round) {
+    const Vec3 apart = pair.offset + t * pair.velocity;
+    const double distance = std::sqrt(dot(apart, apart));
+    const double gap = distance - (pair.radius + t * (pair.growth + t * pair.acceleration / 2));
+    if (!(gap > 0)) return t;
+    const double slope = dot(apart, pair.velocity) / distance - (pair.growth + t * pair.acceleration);
+    const double step = first_closing(gap, slope, pair.acceleration);
+    t += step;
+    if (!(t <= limit)) return kNever;
+    if (step <= resolution) break;
+  }
+  return t;
+}
+
+}  // namespace detail
+
+double earliest_contact(const Motion& a, const Motion& b, double limit, double resolution) noexcept {
+  const double slack = detail::motion_slack(a, b, limit);
+  const detail::HornPair pair{b.position - a.position, b.velocity - a.velocity, a.radius + b.radius + slack,
+                              a.drift + b.drift, a.acceleration + b.acceleration};
+  double contact = detail::horn_contact(pair, limit, resolution);
+  if (!(contact <= limit)) return kNever;
+  contact = std::max({contact, half_space_contact(a, b, slack), half_space_contact(b, a, slack)});
+  return contact <= limit ? contact : kNever;
+}
+
+}  // namespace orchard::runtime

@@ -1,0 +1,21 @@
+#pragma once
+#include "orchard/runtime/motion.h"
+
+namespace orchard::runtime::detail {
+
+// Two horns as one: the points meet when |offset + velocity t| <= radius + growth t + acceleration t^2 / 2.
+struct HornPair {
+  Vec3 offset, velocity;
+  double radius, growth, acceleration;
+};
+
+// The first such t in [0, limit], never late and less than `resolution` early; infinity if there is none.
+double horn_contact(const HornPair& pair, double limit, double resolution) noexcept;
+
+// The first t >= 0 with gap + slope t - acceleration t^2 / 2 <= 0; infinity if there is none. acceleration >= 0.
+double first_closing(double gap, double slope, double acceleration) noexcept;
+
+// What to add to a sum of radii for the rounding of everything that follows, and the application's.
+double motion_slack(const Motion& a, const Motion& b, double duration) noexcept;
+
+}  // namespace orchard::runtime::detail

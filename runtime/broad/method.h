@@ -1,0 +1,27 @@
+#pragma once
+#include "roster.h"
+
+namespace orchard::runtime::detail {
+
+struct StepReport {
+  Step next;                            // the next step with anything to do; > the one just processed
+  unsigned incomplete_from = kNoClass;  // as in Advance
+};
+
+// A way to find what happens next. Steps are processed in ascending order; those in between had nothing to do.
+class Method {
+ public:
+  virtual ~Method() = default;
+  // The body is new or its bounds hold no longer; to be asked for at the next step that is processed.
+  virtual void changed(BodyId body) = 0;
+  // Called while the roster still has it.
+  virtual void removed(BodyId body) = 0;
+  // Puts the overlapping pairs into `pairs`, in ascending order.
+  virtual StepReport step(Step now, Meter& meter, std::vector<BodyPair>& pairs) = 0;
+  virtual std::size_t memory_bytes() const noexcept = 0;
+};
+
+std::unique_ptr<Method> make_events(Roster& roster, const BroadPhaseOptions& options);
+std::unique_ptr<Method> make_sleeping(Roster& roster, const BroadPhaseOptions& options);
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,116 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+
+#include "orchard/runtime/broad_phase.h"
+
+namespace orchard::runtime::detail {
+
+using Step = std::int64_t;
+inline constexpr Step kNeverStep = std::numeric_limits<Step>::max();
+
+// Times of steps. Comparing a time with a step's allows for kStepSlack steps of rounding, in the safe direction.
+inline constexpr double kStepSlack = 1e-6;
+
+struct Clock {
+  double start, time_step;
+
+  double time(Step step) const noexcept { return start + static_cast<double>(step) * time_step; }
+  // The number of steps whose time, counted from now, lies before `seconds`; at least 0.
+  Step steps_before(double seconds) const noexcept {
+    const double steps = std::ceil(seconds / time_step - kStepSlack);
+    return steps < 1e15 ? static_cast<Step>(std::max(0.0, steps)) : kNeverStep;
+  }
+  // The last step, counted from `now`, at which a bound that expires at `expiry` holds; at least 0.
+  Step steps_until_expiry(Step now, double expiry) const noexcept {
+    const double steps = std::floor((expiry - time(now)) / time_step + kStepSlack);
+    return steps < 1e15 ? static_cast<Step>(std::max(0.0, steps)) : kNeverStep;
+  }
+};
+
+// Counts work against a budget. Without one it never stops.
+class Meter {
+ public:
+  Meter() = default;
+  explicit Meter(const WorkBudget& budget) : budget_(budget), begin_(std::chrono::steady_clock::now()) {}
+
+  bool limited() const noexcept { return budget_.work != WorkBudget{}.work || budget_.time != WorkBudget{}.time; }
+  void count(std::uint64_t work) noexcept {
+    done_ += work;
+    since_clock_ += work;
+  }
+  // The first unit is always granted.
+  bool spent() noexcept {
+    if (done_ == 0) return false;
+    if (done_ >= budget_.work) return true;
+    if (since_clock_ < kWorkPerClock || budget_.time == WorkBudget{}.time) return late_;
+    since_clock_ = 0;
+    late_ = late_ || std::chrono::steady_clock::now() - begin_ >= budget_.time;
+    return late_;
+  }
+  // How many of `wanted` units may be done before asking again.
+  std::size_t grant(std::size_t wanted) const noexcept {
+    if (!limited()) return wanted;
+    const std::uint64_t left = budget_.work > done_ ? budget_.work - done_ : 1;
+    return std::min({wanted, std::size_t{kWorkPerClock}, static_cast<std::size_t>(left)});
+  }
+
+ private:
+  WorkBudget budget_;
+  std::chrono::steady_clock::time_point begin_{};
+  std::uint64_t done_ = 0, since_clock_ = kWorkPerClock;
+  bool late_ = false;
+};
+
+// Which bodies there are, and where to ask for their motions.
+class Roster {
+ public:
+  Roster(MotionSource source, const Clock& steps) : clock(steps), source_(std::move(source)) {}
+
+  const Clock clock;
+
+  BodyId add(std::uint8_t importance);  // kNoBody: full
+  void remove(BodyId body);
+  void set_static(BodyId body, const Motion& place);
+  void set_importance(BodyId body, std::uint8_t importance) noexcept;
+
+  std::size_t slots() const noexcept { return alive_.size(); }  // ids are below
+  std::size_t size() const noexcept { return size_; }
+  bool alive(BodyId body) const noexcept { return alive_[body]; }
+  bool is_static(BodyId body) const noexcept { return !static_slot_.empty() && static_slot_[body] != kNoSlot; }
+  std::uint8_t importance(BodyId body) const noexcept { return importance_[body]; }
+  unsigned next_class(unsigned from) const noexcept;  // the first class, from `from` on, that has bodies; or kNoClass
+  bool one_class() const noexcept { return next_class(next_class(0) + 1) == kNoClass; }
+  // A pair is as important as the less important of its bodies.
+  std::uint8_t importance(const BodyPair& pair) const noexcept {
+    return std::max(importance_[pair.a], importance_[pair.b]);
+  }
+
+  // motions[i] is that of bodies[i] at the step.
+  void ask(Step step, std::span<const BodyId> bodies, std::span<Motion> motions);
+  std::uint64_t asked() const noexcept { return asked_; }
+  std::size_t memory_bytes() const noexcept;
+
+ private:
+  static constexpr std::uint32_t kNoSlot = 0xffffffffu;
+
+  MotionSource source_;
+  std::vector<std::uint8_t> alive_, importance_;
+  std::vector<std::uint32_t> static_slot_;  // empty until there is a static body
+  std::vector<Motion> static_motions_;
+  std::vector<std::uint32_t> free_slots_;
+  std::vector<BodyId> free_, moving_;
+  std::vector<Motion> answers_;
+  std::size_t size_ = 0;
+  std::uint64_t asked_ = 0;
+  std::array<std::size_t, kNoClass> in_class_{};
+};
+
+template <typename T>
+std::size_t bytes_of(const std::vector<T>& v) noexcept {
+  return v.capacity() * sizeof(T);
+}
+
+}  // namespace orchard::runtime::detail

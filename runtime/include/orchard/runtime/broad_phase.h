@@ -1,0 +1,139 @@
+#pragma once
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "orchard/runtime/motion.h"
+
+namespace orchard::runtime {
+
+using BodyId = std::uint32_t;  // small numbers; the one given back last is used again first
+inline constexpr BodyId kNoBody = 0xffffffffu;
+inline constexpr BodyId kMaxBodies = (1u << 28) - 1;
+
+struct BodyPair {
+  BodyId a, b;  // a < b
+  friend auto operator<=>(const BodyPair&, const BodyPair&) = default;
+};
+
+// Fills motions[i] with what is known of bodies[i] at `time`, the time of a step. A pair of bodies may come up twice.
+using MotionSource = std::function<void(double time, std::span<const BodyId> bodies, std::span<Motion> motions)>;
+
+// For an application that keeps all motions as values, by BodyId, as of the time it calls advance() with. It calls
+// advance() at every step then, which costs nothing while the broad phase sleeps. `values` outlives the broad phase.
+MotionSource values_of(const std::vector<Motion>& values);
+
+// How the next time is found. All give the same pairs at the same steps; they differ in speed.
+enum class BroadPhaseMethod : std::uint8_t {
+  events,      // an event per near pair: the default, and the one that scales
+  all_pairs,   // the others sleep until the earliest two bounds touch (4.3): by comparing all pairs of hypertrapezoids,
+  projection,  // by projecting faces and sweeping (4.2.3)
+  subdivision,  // by 16-way cells in space and time (4.2.4)
+  hybrid,       // by a few cells, projection in each (8.2)
+  quadratic,    // by projection of a cube around every cross section (8.2)
+  horns         // by the parabolic horns themselves (8.2)
+};
+
+// What the sleeping methods rebuild when they wake (4.3); without meaning for `events`.
+enum class Rebuild : std::uint8_t { what_intersected, everything };
+
+struct BroadPhaseOptions {
+  BroadPhaseMethod method = BroadPhaseMethod::events;
+  double time_step = 0.01;  // dt_d: the temporal resolution, in seconds; > 0
+  double start = 0;         // the time of step 0
+  Rebuild rebuild = Rebuild::what_intersected;
+  // `events`: steps between two looks at a body's surroundings; 0 lets the broad phase choose.
+  std::uint32_t window = 0;
+  bool vectors = true;  // false: the portable inner loop. Same answers
+};
+
+// Whichever ends first (8.2). A unit of work is a motion asked for; a call gets through at least one of them. The clock
+// is read once per kWorkPerClock units.
+struct WorkBudget {
+  std::uint64_t work = std::numeric_limits<std::uint64_t>::max();
+  std::chrono::nanoseconds time = std::chrono::nanoseconds::max();
+};
+inline constexpr std::uint64_t kWorkPerClock = 64;
+
+inline constexpr unsigned kNoClass = 256;
+
+struct Advance {
+  double time;                      // of the step that the pairs belong to; without pairs: nothing touches at any step
+                                    // before this one, and there is no need to call again earlier
+  std::span<const BodyPair> pairs;  // in ascending order; valid until the next call of any other member
+  // Interrupted: pairs with a body of this importance class or a higher one may be missing. kNoClass: none is.
+  unsigned incomplete_from = kNoClass;
+};
+
+// Tells which bodies' bounding spheres overlap, and until when nothing can happen, from bounds on their motion
+// (dissertation, chapter 4).
+//
+// Time passes in steps of dt_d = options.time_step; step k is at start + k dt_d. At each step the pairs reported are
+// *exactly* those with spheres_touch() for the motions of that step, provided that the motions have kept their bounds
+// since they were asked for (or cancel() was called). Hence: an overlap that lasts for dt_d or longer contains a step,
+// and is reported at the first one, so less than dt_d after it begins. A shorter one may fall between two steps. Two
+// static bodies are never a pair.
+//
+// Call advance(t_now) once per frame, or more often, or when the time it returned has come:
+//     for (Advance now = world.advance(t); !now.pairs.empty(); now = world.advance(t)) ..     // see Fig. 4.23
+// While pairs overlap, each step reports them.
+//
+// Deterministic: same calls, same motions, same reports in the same order, with vectors or without, whatever a budget
+// cut short in *work* leaves out. Not thread-safe. Throws only std::bad_alloc, and what the source throws.
+class BroadPhase {
+ public:
+  // Without a source there can be static bodies only.
+  explicit BroadPhase(MotionSource source, const BroadPhaseOptions& options = {});
+  BroadPhase(BroadPhase&&) noexcept;
+  BroadPhase& operator=(BroadPhase&&) noexcept;
+  ~BroadPhase();
+
+  // What changes between two calls of advance() takes part from the first step after the time of the last report.
+  // importance: 0 is the highest class. kNoBody if there are kMaxBodies already.
+  BodyId add(std::uint8_t importance = 0);
+  // Never asked for again. Takes the position and the radius; kNoBody if the motion is not valid, too.
+  BodyId add_static(const Motion& place, std::uint8_t importance = 0);
+  void remove(BodyId body);
+  // 4.4: the bounds last given for the body no longer hold from now on; they are asked for again at the next step.
+  void cancel(BodyId body);
+  void teleport(BodyId body) { cancel(body); }                // the source gives the new place from now on
+  bool move_static(BodyId body, const Motion& place);         // false if the motion is not valid
+  void set_importance(BodyId body, std::uint8_t importance);  // from the next step
+
+  // Processes the steps up to t_now that may have something, and stops at the first one that has.
+  Advance advance(double t_now) {
+    if (t_now >= wake_time_) return process(t_now, nullptr);
+    seen_time_ = t_now;
+    return {next_time_, {}};
+  }
+  // The same, within a budget per step: the bodies and pairs of the more important classes come first; what is left
+  // over is done at the next step. `events` only; the other methods ignore the budget.
+  Advance advance(double t_now, const WorkBudget& budget) {
+    if (t_now >= wake_time_) return process(t_now, &budget);
+    seen_time_ = t_now;
+    return {next_time_, {}};
+  }
+
+  double next_time() const noexcept { return next_time_; }  // nothing happens before
+  std::size_t size() const noexcept;                        // bodies
+  std::size_t memory_bytes() const noexcept;                // held on the heap
+  std::uint64_t motions_asked() const noexcept;             // of the source, so far
+
+ private:
+  struct State;
+  Advance process(double t_now, const WorkBudget* budget);
+  void wake_for_change();
+  void note_next_step();
+
+  std::unique_ptr<State> state_;
+  double next_time_ = 0;  // of the next step with anything to do
+  double wake_time_ = 0;  // the same, a rounding error earlier
+  double seen_time_ = 0;  // up to when everything has been reported
+};
+
+}  // namespace orchard::runtime

@@ -1,0 +1,194 @@
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "worlds.h"
+
+namespace orchard::runtime {
+namespace {
+
+constexpr double kStep = 0.01;
+
+constexpr BroadPhaseMethod kMethods[] = {
+    BroadPhaseMethod::events, BroadPhaseMethod::all_pairs, BroadPhaseMethod::projection, BroadPhaseMethod::subdivision,
+    BroadPhaseMethod::hybrid, BroadPhaseMethod::quadratic, BroadPhaseMethod::horns};
+
+// An application that keeps values, moves bodies itself and now and then breaks its own word.
+class Application {
+ public:
+  Application(std::uint64_t seed, const BroadPhaseOptions& options) : draw_(seed), world_(values_of(values_), options) {
+    for (int i = 0; i < 20; ++i) add();
+  }
+
+  // A frame: bodies move, changes happen, and the pairs must be those that touch.
+  void frame(int step) {
+    const double time = kStep * step;
+    for (BodyId i = 0; i < values_.size(); ++i) {
+      Motion& m = values_[i];
+      if (!alive_[i] || fixed_[i]) continue;
+      const Vec3 a = draw_.uniform(0, m.acceleration) * draw_.direction();
+      m.position = m.position + kStep * m.velocity + (kStep * kStep / 2) * a;
+      m.velocity = m.velocity + kStep * a;
+    }
+    const Advance now = world_.advance(time);
+    std::vector<BodyPair> expected;
+    for (BodyId i = 0; i < values_.size(); ++i) {
+      for (BodyId j = i + 1; j < values_.size(); ++j) {
+        if (alive_[i] && alive_[j] && !(fixed_[i] && fixed_[j]) && spheres_touch(values_[i], values_[j])) {
+          expected.push_back({i, j});
+        }
+      }
+    }
+    ASSERT_EQ(std::vector<BodyPair>(now.pairs.begin(), now.pairs.end()), expected) << "step " << step;
+    ASSERT_EQ(now.incomplete_from, kNoClass);
+    change(time);
+  }
+
+ private:
+  Motion random_motion() {
+    Motion m;
+    m.position = draw_.in_ball(15);
+    m.velocity = draw_.uniform(0, 10) * draw_.direction();
+    m.radius = draw_.uniform(0, 1.5);
+    if (draw_.uniform(0, 1) < 0.03) m.radius = 20;  // larger than everything else together
+    m.acceleration = draw_.uniform(0, 10);
+    return m;
+  }
+
+  void add() {
+    const Motion m = random_motion();
+    const bool fixed = draw_.uniform(0, 1) < 0.2;
+    const BodyId body = fixed ? world_.add_static(m) : world_.add(static_cast<std::uint8_t>(draw_.bits() % 3));
+    if (body >= values_.size()) values_.resize(body + 1), alive_.resize(body + 1), fixed_.resize(body + 1);
+    values_[body] = m;
+    alive_[body] = 1;
+    fixed_[body] = fixed;
+  }
+
+  void change(double time) {
+    const double dice = draw_.uniform(0, 1);
+    const BodyId body = static_cast<BodyId>(draw_.bits() % values_.size());
+    if (dice < 0.1) {
+      add();
+    } else if (!alive_[body]) {
+      return;
+    } else if (dice < 0.2) {
+      world_.remove(body);
+      alive_[body] = 0;
+    } else if (dice < 0.4) {  // anywhere, and faster: teleported
+      values_[body] = random_motion();
+      fixed_[body] ? (void)world_.move_static(body, values_[body]) : world_.teleport(body);
+    } else if (dice < 0.5 && !fixed_[body]) {  // a kick
+      values_[body].velocity = 30 * draw_.direction();
+      world_.cancel(body);
+    } else if (dice < 0.6 && !fixed_[body]) {  // announced to last for a while only
+      values_[body].expiry = time + draw_.uniform(0.01, 0.3);
+      world_.cancel(body);
+    }
+    for (BodyId i = 0; i < values_.size(); ++i) {  // renewed in time
+      if (values_[i].expiry < time + 2 * kStep) values_[i].expiry = time + draw_.uniform(0.1, 0.3);
+    }
+  }
+
+  test::Draw draw_;
+  std::vector<Motion> values_;
+  std::vector<char> alive_, fixed_;
+  BroadPhase world_;
+};
+
+class Changes : public testing::TestWithParam<BroadPhaseMethod> {};
+INSTANTIATE_TEST_SUITE_P(BroadPhase, Changes, testing::ValuesIn(kMethods));
+
+TEST_P(Changes, TakePartFromTheNextStep) {
+  for (std::uint64_t seed = 0; seed < (GetParam() == BroadPhaseMethod::events ? 400 : 30); ++seed) {
+    BroadPhaseOptions options{.method = GetParam(), .time_step = kStep};
+    if (seed % 2 == 1) options.rebuild = Rebuild::everything;
+    if (seed % 3 == 1) options.window = static_cast<std::uint32_t>(1 + seed % 30);
+    Application application(seed, options);
+    for (int step = 0; step < 150; ++step) {
+      application.frame(step);
+      if (testing::Test::HasFatalFailure()) FAIL() << "seed " << seed;
+    }
+  }
+}
+
+TEST(BroadPhase, AChangeWhileAsleepCountsFromThePresent) {
+  std::vector<Motion> values(2);
+  values[0].position = {0, 0, 0};
+  values[1].position = {100, 0, 0};
+  values[0].radius = values[1].radius = 1;
+  std::vector<double> asked;
+  const MotionSource inner = values_of(values);
+  const MotionSource source = [&](double time, std::span<const BodyId> bodies, std::span<Motion> motions) {
+    asked.push_back(time);
+    inner(time, bodies, motions);
+  };
+  BroadPhase world(source, {.time_step = kStep});
+  world.add(), world.add();
+  EXPECT_TRUE(world.advance(0).pairs.empty());
+  EXPECT_TRUE(world.advance(0.505).pairs.empty());
+  asked.clear();
+  values[1].position = {1, 0, 0};
+  world.teleport(1);
+  EXPECT_TRUE(world.advance(0.507).pairs.empty());  // no step between
+  const Advance now = world.advance(0.512);
+  ASSERT_EQ(now.pairs.size(), 1u);
+  EXPECT_NEAR(now.time, 0.51, 1e-12);
+  for (const double time : asked) EXPECT_NEAR(time, 0.51, 1e-12);
+}
+
+TEST(BroadPhase, RejectsWhatIsNotAPlace) {
+  BroadPhase world({}, {});
+  Motion bad;
+  bad.radius = -1;
+  EXPECT_EQ(world.add_static(bad), kNoBody);
+  bad.radius = 1;
+  bad.position[1] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(world.add_static(bad), kNoBody);
+  EXPECT_EQ(world.size(), 0u);
+}
+
+TEST(BroadPhase, WithoutBodiesSleepsForEver) {
+  BroadPhase world({}, {});
+  EXPECT_EQ(world.advance(1e9).time, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(world.add_static(Motion{}), 0u);
+  EXPECT_EQ(world.add_static(Motion{}), 1u);
+  EXPECT_TRUE(world.advance(2e9).pairs.empty());  // static bodies are no pair
+}
+
+// 8.2: with too little budget the important pairs are still right, and the report says what may be missing.
+TEST(BroadPhase, InterruptedKeepsTheImportantPairs) {
+  int interrupted = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const test::MovingBodies bodies({.bodies = 200, .ball = 25, .staggered = seed % 2 == 0}, seed);
+    BroadPhase world(bodies.source(), {.time_step = kStep});
+    std::vector<unsigned> importance;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      importance.push_back(i < 20 ? 0 : i < 60 ? 3 : 7);
+      world.add(static_cast<std::uint8_t>(importance.back()));
+    }
+    test::Draw draw(seed);
+    std::map<int, unsigned> complete;
+    for (int step = 0; step < 60; ++step) {
+      const WorkBudget budget{.work = 50 + draw.bits() % 300};
+      const Advance now = world.advance(kStep * step, budget);
+      std::vector<BodyPair> expected, found;
+      const auto counts = [&](const BodyPair& pair) {
+        return std::max(importance[pair.a], importance[pair.b]) < now.incomplete_from;
+      };
+      const auto touching = bodies.touching(kStep * step);
+      std::copy_if(touching.begin(), touching.end(), std::back_inserter(expected), counts);
+      std::copy_if(now.pairs.begin(), now.pairs.end(), std::back_inserter(found), counts);
+      ASSERT_EQ(found, expected) << "seed " << seed << " step " << step;
+      interrupted += now.incomplete_from != kNoClass;
+    }
+    for (int step = 60; step < 63; ++step) world.advance(kStep * step);  // time enough again: all is right
+    const Advance now = world.advance(kStep * 63);
+    EXPECT_EQ(std::vector<BodyPair>(now.pairs.begin(), now.pairs.end()), bodies.touching(kStep * 63)) << seed;
+    EXPECT_EQ(now.incomplete_from, kNoClass);
+  }
+  EXPECT_GT(interrupted, 100);
+}
+
+}  // namespace
+}  // namespace orchard::runtime

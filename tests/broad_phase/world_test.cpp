@@ -1,0 +1,202 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "worlds.h"
+
+namespace orchard::runtime {
+namespace {
+
+using test::MovingBodies;
+using test::WorldShape;
+
+constexpr BroadPhaseMethod kMethods[] = {
+    BroadPhaseMethod::events, BroadPhaseMethod::all_pairs, BroadPhaseMethod::projection, BroadPhaseMethod::subdivision,
+    BroadPhaseMethod::hybrid, BroadPhaseMethod::quadratic, BroadPhaseMethod::horns};
+
+WorldShape random_shape(test::Draw& draw, std::size_t bodies) {
+  WorldShape shape{.bodies = bodies};
+  shape.ball = std::cbrt(static_cast<double>(bodies)) * draw.uniform(1.2, 12);
+  shape.least_radius = draw.uniform(0, 1) < 0.1 ? 0 : draw.uniform(0, 0.5);
+  shape.largest_acceleration = draw.uniform(0, 1) < 0.2 ? 0 : draw.uniform(0, 40);
+  shape.period = draw.uniform(0.1, 0.6);
+  shape.half_spaces = draw.uniform(0, 1) < 0.5 ? 0 : draw.uniform(0, 1);
+  shape.extreme = draw.uniform(0, 1) < 0.5;
+  shape.staggered = draw.uniform(0, 1) < 0.3;
+  return shape;
+}
+
+using Reports = std::map<int, std::vector<BodyPair>>;  // by step
+
+Reports run(const MovingBodies& bodies, const BroadPhaseOptions& options, double end, double frame) {
+  BroadPhase world(bodies.source(), options);
+  for (std::size_t i = 0; i < bodies.size(); ++i) world.add();
+  Reports reports;
+  for (int frames = 0; frames * frame < end + frame; ++frames) {
+    const double t = std::min(frames * frame, end);
+    for (Advance now = world.advance(t); !now.pairs.empty(); now = world.advance(t)) {
+      EXPECT_LE(now.time, t + 1e-9);
+      EXPECT_TRUE(std::is_sorted(now.pairs.begin(), now.pairs.end()));
+      auto& report = reports[static_cast<int>(std::lround((now.time - options.start) / options.time_step))];
+      EXPECT_TRUE(report.empty()) << "a step twice";
+      report.assign(now.pairs.begin(), now.pairs.end());
+    }
+  }
+  return reports;
+}
+
+Reports brute_force(const MovingBodies& bodies, const BroadPhaseOptions& options, double end) {
+  Reports reports;
+  for (int step = 0; options.start + step * options.time_step <= end + 1e-9; ++step) {
+    if (auto pairs = bodies.touching(options.start + step * options.time_step); !pairs.empty()) reports[step] = pairs;
+  }
+  return reports;
+}
+
+class EveryMethod : public testing::TestWithParam<BroadPhaseMethod> {};
+INSTANTIATE_TEST_SUITE_P(BroadPhase, EveryMethod, testing::ValuesIn(kMethods));
+
+TEST_P(EveryMethod, ReportsWhatOverlapsAtEachStep) {
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    test::Draw draw(seed);
+    const std::size_t n = seed % 50 == 49 ? 120 : 2 + seed % 24;
+    const MovingBodies bodies(random_shape(draw, n), seed);
+    BroadPhaseOptions options{.method = GetParam(), .time_step = draw.uniform(0.008, 0.03)};
+    if (seed % 3 == 1) options.rebuild = Rebuild::everything;
+    ASSERT_EQ(run(bodies, options, 1, draw.uniform(0.005, 0.1)), brute_force(bodies, options, 1)) << "seed " << seed;
+  }
+}
+
+TEST(BroadPhase, ReportsWhatOverlapsAtEachStepInThousandsOfWorlds) {
+  for (std::uint64_t seed = 1000; seed < 4000; ++seed) {
+    test::Draw draw(seed);
+    const std::size_t n = seed % 500 == 0 ? 300 : seed % 50 == 0 ? 100 : 2 + seed % 28;
+    const MovingBodies bodies(random_shape(draw, n), seed);
+    BroadPhaseOptions options{.time_step = draw.uniform(0.008, 0.03)};
+    if (seed % 4 == 0) options.window = static_cast<std::uint32_t>(1 + seed % 40);
+    if (seed % 5 == 0) options.vectors = false;
+    ASSERT_EQ(run(bodies, options, 1, draw.uniform(0.005, 0.1)), brute_force(bodies, options, 1)) << "seed " << seed;
+  }
+}
+
+// The promise in the header, checked ten times as finely.
+TEST(BroadPhase, ReportsEveryOverlapThatLastsForATimeStep) {
+  int overlaps = 0;
+  for (std::uint64_t seed = 0; seed < 600; ++seed) {
+    test::Draw draw(seed + 77);
+    const MovingBodies bodies(random_shape(draw, 2 + seed % 20), seed + 77);
+    const BroadPhaseOptions options{.time_step = 0.02};
+    const Reports reports = run(bodies, options, 1, 0.02);
+    std::map<BodyPair, int> since;  // the first fine sample of the overlap under way
+    for (int fine = 0; fine <= 500; ++fine) {
+      const auto pairs = bodies.touching(0.002 * fine);
+      std::erase_if(since, [&](const auto& s) { return !std::binary_search(pairs.begin(), pairs.end(), s.first); });
+      for (const BodyPair& pair : pairs) {
+        const int begin = since.try_emplace(pair, fine).first->second;
+        if (fine - begin != 10) continue;
+        ++overlaps;
+        const int step = (begin + 9) / 10;  // the first one not before it
+        ASSERT_TRUE(reports.count(step)) << seed;
+        ASSERT_TRUE(std::binary_search(reports.at(step).begin(), reports.at(step).end(), pair)) << seed;
+      }
+    }
+  }
+  EXPECT_GT(overlaps, 300);
+}
+
+TEST(BroadPhase, SleepsWhileNothingCanHappen) {
+  const WorldShape shape{.bodies = 2, .ball = 200, .largest_acceleration = 0.1};
+  const MovingBodies bodies(shape, 3);
+  BroadPhase world(bodies.source(), {});
+  world.add(), world.add();
+  const Advance now = world.advance(0);
+  EXPECT_TRUE(now.pairs.empty());
+  EXPECT_GT(now.time, 0.5);
+  const std::uint64_t asked = world.motions_asked();
+  for (double t = 0; t < now.time - 0.01; t += 0.01) EXPECT_EQ(world.advance(t).time, now.time);
+  EXPECT_EQ(world.motions_asked(), asked);
+}
+
+TEST(BroadPhase, PortableAndVectorLoopsDoTheSame) {
+  const WorldShape shape{.bodies = 3000, .ball = 60, .staggered = true};
+  const MovingBodies bodies(shape, 5);
+  const BroadPhaseOptions with{}, without{.vectors = false};
+  const auto transcript = [&](const BroadPhaseOptions& options) {
+    BroadPhase world(bodies.source(), options);
+    for (std::size_t i = 0; i < bodies.size(); ++i) world.add();
+    std::vector<std::uint64_t> log;
+    for (double t = 0; t <= 0.5; t += 0.01) {
+      for (Advance now = world.advance(t); !now.pairs.empty(); now = world.advance(t)) log.push_back(now.pairs.size());
+      log.push_back(world.motions_asked());
+    }
+    return log;
+  };
+  EXPECT_EQ(transcript(with), transcript(without));
+}
+
+TEST(BroadPhase, HandlesAlignedAndDegenerateConfigurations) {
+  std::vector<Motion> values(60);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    Motion& m = values[i];
+    m.position = {0, static_cast<double>(i % 10) * 2, static_cast<double>(i / 10) * 2};  // spheres that just touch
+    m.radius = i % 3 == 0 ? 0 : 1;
+    m.velocity = {1, 0, 0};  // all the same
+  }
+  values[7] = values[5];  // coincident
+  for (const BroadPhaseMethod method : kMethods) {
+    BroadPhase world(values_of(values), {.method = method});
+    for (std::size_t i = 0; i < values.size(); ++i) world.add();
+    std::vector<BodyPair> expected;
+    for (BodyId i = 0; i < values.size(); ++i) {
+      for (BodyId j = i + 1; j < values.size(); ++j) {
+        if (spheres_touch(values[i], values[j])) expected.push_back({i, j});
+      }
+    }
+    for (int step = 0; step < 3; ++step) {
+      const Advance now = world.advance(0.01 * step);
+      ASSERT_EQ(std::vector<BodyPair>(now.pairs.begin(), now.pairs.end()), expected) << static_cast<int>(method);
+    }
+  }
+}
+
+TEST(BroadPhase, HandlesFarOffsetsAndExtremeScales) {
+  for (const double scale : {1e-6, 1.0, 1e6}) {
+    for (const double offset : {0.0, 1e3, 1e9}) {
+      const MovingBodies bodies({.bodies = 40, .ball = 12}, 11);
+      const MotionSource moved = [&](double time, std::span<const BodyId> ids, std::span<Motion> motions) {
+        for (std::size_t i = 0; i < ids.size(); ++i) {
+          Motion m = bodies.motion(ids[i], time);
+          m.position = scale * (m.position + Vec3{offset, -offset, offset});
+          m.velocity = scale * m.velocity;
+          m.radius *= scale, m.acceleration *= scale;
+          motions[i] = m;
+        }
+      };
+      for (const BroadPhaseMethod method : kMethods) {
+        BroadPhase world(moved, {.method = method});
+        for (int i = 0; i < 40; ++i) world.add();
+        std::vector<Motion> motions(40);
+        std::vector<BodyId> ids(40);
+        for (BodyId i = 0; i < 40; ++i) ids[i] = i;
+        for (int step = 0; step < 60; ++step) {
+          const Advance now = world.advance(0.01 * step);
+          moved(0.01 * step, ids, motions);
+          std::vector<BodyPair> expected;
+          for (BodyId i = 0; i < 40; ++i) {
+            for (BodyId j = i + 1; j < 40; ++j) {
+              if (spheres_touch(motions[i], motions[j])) expected.push_back({i, j});
+            }
+          }
+          ASSERT_EQ(std::vector<BodyPair>(now.pairs.begin(), now.pairs.end()), expected)
+              << "method " << static_cast<int>(method) << " scale " << scale << " offset " << offset << " step "
+              << step;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace orchard::runtime

@@ -1,0 +1,64 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "orchard/runtime/broad_phase.h"
+
+// Bodies that move within bounds they announce, for tests and benchmarks.
+namespace orchard::runtime::test {
+
+class Draw {  // splitmix64: a stream of numbers per seed
+ public:
+  explicit Draw(std::uint64_t seed) : state_(seed) {}
+  std::uint64_t bits();
+  double uniform(double lower, double upper);
+  Vec3 direction();
+  Vec3 in_ball(double radius);
+
+ private:
+  std::uint64_t state_;
+};
+
+struct WorldShape {
+  std::size_t bodies = 20;
+  double ball = 10;  // initial positions lie in a ball of that radius
+  double least_radius = 0.5, largest_radius = 1.5;
+  double least_speed = 5, largest_speed = 15;
+  double largest_acceleration = 4;  // each body's M is uniform below, for a period
+  double period = 1;                // M and the half-space change, all bodies' at the same times
+  int forces_per_period = 5;        // changes of acceleration within the bounds
+  double half_spaces = 0;           // the share of bodies that announce one
+  bool extreme = false;             // accelerations of length M, not below
+  bool staggered = false;           // the periods of different bodies start at different times
+  double end = 1;                   // motions are known up to here
+};
+
+// Piecewise constant accelerations: positions are exact at any time, to rounding.
+class MovingBodies {
+ public:
+  MovingBodies(const WorldShape& shape, std::uint64_t seed);
+
+  std::size_t size() const { return bodies_.size(); }
+  Motion motion(BodyId body, double time) const;
+  MotionSource source() const;  // the object outlives it
+  // The pairs that touch, by comparing all.
+  std::vector<BodyPair> touching(double time) const;
+
+ private:
+  struct Force {  // from `begin` on
+    double begin;
+    Vec3 position, velocity, acceleration;
+  };
+  struct Period {
+    double begin, end, bound;
+    Vec3 half_space;
+  };
+  struct Body {
+    double radius;
+    std::vector<Force> forces;
+    std::vector<Period> periods;
+  };
+  std::vector<Body> bodies_;
+};
+
+}  // namespace orchard::runtime::test
