@@ -1,6 +1,156 @@
+#include <algorithm>
+
 #include "method.h"
+#include "orchard/runtime/space_time_bound.h"
+
 namespace orchard::runtime::detail {
-std::unique_ptr<Method> make_sleeping(Roster& roster, const BroadPhaseOptions& options) {
-  return make_events(roster, options);
+namespace {
+
+constexpr Step kLongestSleep = 1000;  // steps: a common end is needed even if no bound expires
+
+// The dissertation's broad phase (Fig. 4.23): sleep until the earliest two bounds touch, rebuild, and look again. While
+// bounds touch it goes on step by step, and reports the pairs whose spheres really overlap.
+class Sleeping final : public Method {
+ public:
+  Sleeping(Roster& roster, const BroadPhaseOptions& options)
+      : roster_(roster), rebuild_all_(options.rebuild == Rebuild::everything), find_(find_options(options.method)) {}
+
+  void changed(BodyId body) override;
+  void removed(BodyId) override { members_changed_ = true; }
+  StepReport step(Step now, Meter& meter, std::vector<BodyPair>& pairs) override;
+  std::size_t memory_bytes() const noexcept override;
+
+ private:
+  struct Known {
+    Motion motion;
+    Step asked = -1;  // the step that the motion is of; -1: to be asked for
+    Step end = 0;     // the first step at which it does not hold
+  };
+
+  static IntersectionOptions find_options(BroadPhaseMethod method);
+  void refresh_members();
+  void ask_for_stale(Step now);
+  Step build(Step now);
+  bool intersecting_are_current(Step now, const Intersections& found);
+
+  Roster& roster_;
+  const bool rebuild_all_;
+  const IntersectionOptions find_;
+  IntersectionFinder finder_;
+  std::vector<Known> known_;  // by body
+  std::vector<BodyId> members_, stale_;
+  std::vector<Motion> motions_;
+  std::vector<SpaceTimeBound> bounds_;  // by place in members_
+  bool members_changed_ = true;
+};
+
+IntersectionOptions Sleeping::find_options(BroadPhaseMethod method) {
+  switch (method) {
+    case BroadPhaseMethod::projection:
+      return {.method = IntersectionMethod::projection};
+    case BroadPhaseMethod::subdivision:
+      return {.method = IntersectionMethod::subdivision};
+    case BroadPhaseMethod::hybrid:
+      return {.method = IntersectionMethod::hybrid};
+    case BroadPhaseMethod::quadratic:
+      return {.method = IntersectionMethod::projection, .shape = BoundShape::quadratic};
+    case BroadPhaseMethod::horns:
+      return {.method = IntersectionMethod::sorted, .shape = BoundShape::horn};
+    default:
+      return {.method = IntersectionMethod::all_pairs};
+  }
 }
+
+void Sleeping::changed(BodyId body) {
+  if (known_.size() < roster_.slots()) known_.resize(roster_.slots());
+  known_[body].asked = -1;
+  members_changed_ = true;
+}
+
+void Sleeping::refresh_members() {
+  if (!members_changed_) return;
+  members_changed_ = false;
+  members_.clear();
+  for (BodyId body = 0; body < roster_.slots(); ++body) {
+    if (roster_.alive(body)) members_.push_back(body);
+  }
+}
+
+void Sleeping::ask_for_stale(Step now) {
+  stale_.clear();
+  for (const BodyId body : members_) {
+    if (known_[body].asked < 0 || known_[body].end <= now) stale_.push_back(body);
+  }
+  motions_.resize(stale_.size());
+  if (!stale_.empty()) roster_.ask(now, stale_, motions_);
+  for (std::size_t i = 0; i < stale_.size(); ++i) {
+    const Step valid = roster_.clock.steps_until_expiry(now, motions_[i].expiry);
+    const bool for_ever = valid == kNeverStep || roster_.is_static(stale_[i]);
+    known_[stale_[i]] = {motions_[i], now, for_ever ? kNeverStep : now + valid + 1};
+  }
+}
+
+// All bounds over the same interval, from now until the first one expires; returns the first step after it.
+Step Sleeping::build(Step now) {
+  Step end = now + kLongestSleep;
+  for (const BodyId body : members_) end = std::min(end, known_[body].end);
+  const double duration = static_cast<double>(end - 1 - now) * roster_.clock.time_step;
+  bounds_.clear();
+  for (const BodyId body : members_) {
+    const double age = static_cast<double>(now - known_[body].asked) * roster_.clock.time_step;
+    bounds_.push_back(make_bound(known_[body].motion, age, duration));
+    bounds_.back().fixed = roster_.is_static(body);
+  }
+  return end;
+}
+
+// Those that touch now have to be of now before anything can be said of the spheres.
+bool Sleeping::intersecting_are_current(Step now, const Intersections& found) {
+  bool current = true;
+  for (const BoundContact& contact : found.initial) {
+    if (contact.time > 0) continue;
+    for (const BodyId body : {members_[contact.a], members_[contact.b]}) {
+      if (known_[body].asked == now || roster_.is_static(body)) continue;
+      known_[body].asked = -1;
+      current = false;
+    }
+  }
+  return current;
+}
+
+StepReport Sleeping::step(Step now, Meter&, std::vector<BodyPair>& pairs) {
+  refresh_members();
+  if (members_.empty()) return {kNeverStep};
+  if (rebuild_all_) {
+    for (const BodyId body : members_) known_[body].asked = -1;
+  }
+  for (;;) {
+    ask_for_stale(now);
+    const Step end = build(now);
+    const double duration = static_cast<double>(end - 1 - now) * roster_.clock.time_step;
+    const Intersections& found = finder_.find(bounds_, duration, find_);
+    if (!intersecting_are_current(now, found)) continue;
+
+    for (const BoundContact& contact : found.initial) {
+      const BodyId a = members_[contact.a], b = members_[contact.b];
+      if (contact.time <= 0 && spheres_touch(known_[a].motion, known_[b].motion)) pairs.push_back({a, b});
+    }
+    const BoundContact& first = found.earliest;
+    if (first.time == kNoContact) return {end};
+    known_[members_[first.a]].asked = known_[members_[first.b]].asked = -1;  // to be rebuilt when we wake
+    return {std::min(end, now + std::max<Step>(1, roster_.clock.steps_before(first.time)))};
+  }
+}
+
+std::size_t Sleeping::memory_bytes() const noexcept {
+  return sizeof(*this) + bytes_of(known_) + bytes_of(members_) + bytes_of(stale_) + bytes_of(motions_) +
+         bytes_of(bounds_) + finder_.memory_bytes();
+}
+
+}  // namespace
+
+std::unique_ptr<Method> make_sleeping(Roster& roster, const BroadPhaseOptions& options) {
+  return std::make_unique<Sleeping>(roster, options);
+}
+
 }  // namespace orchard::runtime::detail

@@ -1,0 +1,10 @@
+#pragma once
+#include "orchard/runtime/space_time_bound.h"
+
+namespace orchard::runtime::test {
+
+// The least t in [0, duration] at which the hypertrapezoids, cut by their planes, have a common point: the linear
+// program in (x, y, z, t), by trying every vertex of its feasible region.
+double least_time(const SpaceTimeBound& a, const SpaceTimeBound& b, double duration);
+
+}  // namespace orchard::runtime::test
