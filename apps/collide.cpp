@@ -91,11 +91,8 @@ json run(runtime::NarrowPhase& narrow, const runtime::Pose& a, const runtime::Po
   double microseconds = timed([&] { narrow.start(a, b); });
   levels.push_back(row(narrow, "0", microseconds));
   while (!narrow.finished()) {
-    const auto triangle_tests = narrow.triangle_tests();
-    const auto level = narrow.level();
     microseconds = timed([&] { narrow.refine(); });
-    const bool exact = narrow.triangle_tests() > triangle_tests || narrow.level() == level;
-    levels.push_back(row(narrow, exact ? "exact" : std::to_string(narrow.level()), microseconds));
+    levels.push_back(row(narrow, narrow.exact() ? "exact" : std::to_string(narrow.level()), microseconds));
   }
   return levels;
 }
@@ -124,9 +121,9 @@ void print(const json& levels) {
 void collide(const CollideCommand& command) {
   const runtime::PackedSphereTree a = load(command.a), b = load(command.b);
   const runtime::Pose pose_a = parse_pose(command.pose_a, "--pose-a"), pose_b = parse_pose(command.pose, "--pose");
-  runtime::NarrowPhase narrow(a, b);
+  constexpr std::size_t room = 1u << 20;  // meeting pairs a level: plenty, 25 MB
+  runtime::NarrowPhase narrow(a, b, room);
   const json levels = run(narrow, pose_a, pose_b);
-  if (narrow.out_of_memory()) throw Error("collide: out of memory");
   if (command.output.json) {
     const json report{{"answer", name(narrow.answer())}, {"levels", levels}};
     fmt::print("{}\n", report.dump(2));

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <new>
 
+#include "patch_block.h"
 #include "tree_nodes.h"
 
 // Rounding. Let c be the true place of a centre of the second tree in the first one's frame, c' the one computed in
@@ -19,7 +20,13 @@
 //  (3) If the test fails, the true gap |c - a| - r1 - r2 is at least sqrt(square) - reach, evaluated exactly, if
 //      slack - sigma >= 4.1 u |c' - a| + 2.1 u (r1 + r2), which includes the rounding of square - reach * reach.
 //  (4) |c - a| <= sqrt(square) + slack if slack - sigma >= 3 u |c' - a|.
-// With D = |T| + E1 + E2, which bounds every |c' - a| and r1 + r2, slack = sigma + 8 u D serves all of them.
+// With D = |T| + E1 + E2, which bounds every |c' - a| and r1 + r2, slack = sigma + 8 u D serves all of them. E2, r2 and
+// what follows are the second tree's times its relative scale; rounding that product costs r2 another u.
+//  (5) Gaps between patches: a moved normal is within 10 u of the true one, and every normal's length within 8.4 u
+//  of 1.
+//      A height over a patch's middle plane is off by at most sigma + 22 u |c' - a|, an extent, which is at most the
+//      sum of the radii, by 35 u of itself but for the square of its sine, which kSineError covers, and the sums by 4
+//      u D: margin = sigma + 96 u D leaves room, also for two moved points and eight roundings of a triangle test.
 namespace orchard::runtime {
 
 using detail::length;
@@ -32,14 +39,17 @@ constexpr double kLeastSlack = 1e-15;
 // A bound is stretched by this, since distances under poses rigid to kRigidTolerance are off by up to 3e-12 of them.
 constexpr double kStretch = 1e-11;
 
+constexpr double kSquareError = 1e-14;     // relative, of the difference of two squares
+constexpr double kLeastOpposition = 1e-6;  // between unit normals: less says nothing about a direction
+
 template <typename Container>
 int compare_bytes(const Container& a, const Container& b) noexcept {
   if (a.size() != b.size()) return a.size() < b.size() ? -1 : 1;
+  if (a.data() == b.data()) return 0;
   return a.empty() ? 0 : std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0]));
 }
 
-int compare(const PackedSphereTree& a, const PackedSphereTree& b) noexcept {
-  if (&a == &b) return 0;
+int compare(const TreeView& a, const TreeView& b) noexcept {
   if (const int c = compare_bytes(a.blocks, b.blocks)) return c;
   if (const int c = compare_bytes(a.triangles, b.triangles)) return c;
   if (const int c = compare_bytes(a.vertices, b.vertices)) return c;
@@ -50,7 +60,8 @@ int compare(const PackedSphereTree& a, const PackedSphereTree& b) noexcept {
 }
 
 bool before(const Pose& a, const Pose& b) noexcept {
-  return a.rotation != b.rotation ? a.rotation < b.rotation : a.translation < b.translation;
+  if (a.rotation != b.rotation) return a.rotation < b.rotation;
+  return a.translation != b.translation ? a.translation < b.translation : a.scale < b.scale;
 }
 
 }  // namespace
@@ -66,44 +77,74 @@ bool NarrowPhase::PairList::reserve(std::size_t capacity) noexcept {
   return true;
 }
 
-NarrowPhase::Side NarrowPhase::side_of(const PackedSphereTree& tree) noexcept {
+NarrowPhase::Side NarrowPhase::side_of(const TreeView& tree) noexcept {
   auto root = detail::center_of(tree, 0);
   for (std::size_t i = 0; i < 3; ++i) root[i] += tree.origin[i];
-  return {&tree, root, coordinate_extent(tree)};
+  const double extent = coordinate_extent(tree);
+  const double error = kStretch * (extent + length(tree.origin)) + tree.vertex_error;
+  const PatchBlock* patches = tree.patches.empty() ? nullptr : &tree.patches[tree.patches.size() > 1 ? 1 : 0];
+  return {tree, root, extent, error, patches};
 }
 
-NarrowPhase::NarrowPhase(const PackedSphereTree& a, const PackedSphereTree& b) noexcept {
+NarrowPhase::NarrowPhase(const TreeView& a, const TreeView& b, std::size_t room) noexcept {
   const int order = compare(a, b);
   arguments_exchanged_ = order > 0;
   ordered_by_pose_ = order == 0;
   first_ = side_of(a);
-  second_ = &a == &b ? first_ : side_of(b);
-  const double sizes = first_.extent + second_.extent + length(a.origin) + length(b.origin);
-  fixed_error_ = kStretch * sizes + a.vertex_error + b.vertex_error;
+  second_ = ordered_by_pose_ ? first_ : side_of(b);
   if (arguments_exchanged_) std::swap(first_, second_);
+  // An expanded pair leaves up to eight in its place, one level deeper in one of the trees.
+  const std::size_t deepest = std::size_t{kBlockWidth} * (a.patch_depth + b.patch_depth + 1) + 1;
+  if (has_triangles()) stack_.reset(new (std::nothrow) PatchPair[deepest]);
+  reserve(std::max(room, std::size_t{1}));
 }
 
 bool NarrowPhase::reserve(std::size_t pairs) noexcept {
+  pairs += std::size_t{kBlockWidth} * kBlockWidth;  // what one pair of blocks may add
   return inner_.reserve(pairs) && leaves_.reserve(pairs) && next_.reserve(pairs);
 }
 
-void NarrowPhase::set_relative_pose(const Pose& first, const Pose& second, double exact_error) noexcept {
-  first_pose_ = first;
-  // Origins enter here, so that everything below works on the trees' own small coordinates.
-  auto offset = transform(second, second_.tree->origin);
+// The second tree's frame in the first one's, both relative to the trees' origins: these enter here, so that everything
+// below works on the trees' own small coordinates.
+Pose NarrowPhase::relative_pose() const noexcept {
+  const Pose &first = first_pose_, &second = second_pose_;
+  const auto& r = first.rotation;
+  const auto& q = second.rotation;
+  const double shrink = 1 / first.scale;
+  Pose relative;
+  relative.scale = second.scale * shrink;
+  auto offset = transform(second, second_.tree.origin);
   for (std::size_t i = 0; i < 3; ++i) offset[i] -= first.translation[i];
-  Pose back = inverse(first);
-  back.translation = {0, 0, 0};
-  relative_ = compose(back, second);
-  relative_.translation = rotate(back, offset);
-  for (std::size_t i = 0; i < 3; ++i) relative_.translation[i] -= first_.tree->origin[i];
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      relative.rotation[3 * i + j] = r[i] * q[j] + r[3 + i] * q[3 + j] + r[6 + i] * q[6 + j];
+    }
+    relative.translation[i] =
+        (r[i] * offset[0] + r[3 + i] * offset[1] + r[6 + i] * offset[2]) * shrink - first_.tree.origin[i];
+  }
+  return relative;
+}
 
-  for (std::size_t i = 0; i < 9; ++i) placement_.rotation[i] = static_cast<float>(relative_.rotation[i]);
+// Not needed where the roots decide.
+void NarrowPhase::place() noexcept {
+  if (placed_) return;
+  placed_ = true;
+  relative_ = relative_pose();
+  const double shrink = 1 / first_pose_.scale, scale = relative_.scale;
+  for (std::size_t i = 0; i < 9; ++i) {
+    placement_.turn[i] = static_cast<float>(relative_.rotation[i]);
+    placement_.rotation[i] = static_cast<float>(relative_.rotation[i] * scale);
+  }
   for (std::size_t i = 0; i < 3; ++i) placement_.translation[i] = static_cast<float>(relative_.translation[i]);
-  const double distance = length(relative_.translation);
-  const double sigma = exact_error + kFloatUnit * (10 * second_.extent + 6 * distance);
-  const double slack = sigma + 8 * kFloatUnit * (distance + first_.extent + second_.extent);
-  placement_.slack = static_cast<float>(std::max(slack, kLeastSlack) * (1 + 2 * kFloatUnit));
+  placement_.scale = static_cast<float>(scale);
+  const double distance = length(relative_.translation), second_extent = second_.extent * scale;
+  const double sigma = exact_error_ * shrink + kFloatUnit * (10 * second_extent + 6 * distance);
+  const double size = distance + first_.extent + second_extent;
+  const auto rounded_up = [](double value) {
+    return static_cast<float>(std::max(value, kLeastSlack) * (1 + 2 * kFloatUnit));
+  };
+  placement_.slack = rounded_up(sigma + 8 * kFloatUnit * size);
+  placement_.margin = rounded_up(2 * sigma + 96 * kFloatUnit * size);
 }
 
 void NarrowPhase::reset() noexcept {
@@ -114,31 +155,59 @@ void NarrowPhase::reset() noexcept {
   cursor_ = {};
   leaf_best_ = {};
   triangle_first_ = triangle_second_ = kNoTriangle;
-  finished_ = out_of_memory_ = roots_pending_ = false;
+  finished_ = out_of_room_ = roots_pending_ = exact_started_ = false;
+  stack_size_ = 0;
+  placed_ = false;
   level_ = 0;
   pair_tests_ = 1;
-  triangle_tests_ = 0;
+  triangle_tests_ = work_ = 0;
   lower_bound_ = 0;
   pruned_gap_ = std::numeric_limits<double>::infinity();
+}
+
+// How far the patches below the roots are apart along the line through the roots' centres, `way`, at least.
+double NarrowPhase::roots_gap(const Pose& first, const Pose& second, const std::array<double, 3>& way,
+                              double distance) const noexcept {
+  const auto reach = [&way, distance](const Side& side, const Pose& pose, double sign) {
+    const auto& r = pose.rotation;
+    std::array<float, 3> direction{};
+    double middle = 0;  // the root's centre, relative to the tree's origin
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double u = (r[i] * way[0] + r[3 + i] * way[1] + r[6 + i] * way[2]) * sign / distance;
+      direction[i] = static_cast<float>(u);
+      middle += u * (side.root[i] - side.tree.origin[i]);
+    }
+    const double rounding = 96 * kFloatUnit * side.extent;
+    return pose.scale * (double{detail::patch_support(*side.patches, direction)} - middle + rounding);
+  };
+  return distance - (reach(first_, first, 1) + reach(second_, second, -1));
 }
 
 Answer NarrowPhase::start(const Pose& a, const Pose& b) noexcept {
   reset();
   exchanged_ = ordered_by_pose_ ? before(b, a) : arguments_exchanged_;
   const Pose &first = exchanged_ ? b : a, &second = exchanged_ ? a : b;
+  first_pose_ = first;
+  second_pose_ = second;
 
   // The roots, in double and in the world: bodies that are far apart must not overflow, and most pairs end here.
-  const SiblingBlock &p = first_.tree->blocks[0], &q = second_.tree->blocks[0];
+  const SiblingBlock &p = first_.tree.blocks[0], &q = second_.tree.blocks[0];
   const auto c1 = transform(first, first_.root), c2 = transform(second, second_.root);
   double size = 0;
   for (std::size_t i = 0; i < 3; ++i) size += std::fabs(first.translation[i]) + std::fabs(second.translation[i]);
-  const double exact_error = fixed_error_ + 1e-14 * size;
-  const double distance = length({c2[0] - c1[0], c2[1] - c1[1], c2[2] - c1[2]});
-  const double radii = double{p.radius[0]} + q.radius[0];
+  exact_error_ = first_.error * first.scale + second_.error * second.scale + 1e-14 * size;
+  const std::array<double, 3> way = {c2[0] - c1[0], c2[1] - c1[1], c2[2] - c1[2]};
+  const double square = way[0] * way[0] + way[1] * way[1] + way[2] * way[2], distance = std::sqrt(square);
+  const auto sum = [&first, &second](float of_first, float of_second) {
+    return first.scale * double{of_first} + second.scale * double{of_second};
+  };
+  const double radii = sum(p.radius[0], q.radius[0]);
   separation_bound_ =
-      pair_bound(distance + exact_error, radii, double{p.error[0]} + q.error[0], double{p.depth[0]} + q.depth[0]);
+      pair_bound(distance + exact_error_, radii, sum(p.error[0], q.error[0]), sum(p.depth[0], q.depth[0]));
   best_ = {separation_bound_, {0, 0}};
-  const double gap = distance - radii - exact_error;
+  const double ball_gap = distance - radii - exact_error_;
+  double gap = ball_gap;
+  if (gap <= 0 && square > 0 && has_triangles()) gap = roots_gap(first, second, way, distance) - exact_error_;
   if (gap > 0 && std::isfinite(gap)) {
     pruned_gap_ = gap;
     finish(Answer::no);
@@ -147,14 +216,14 @@ Answer NarrowPhase::start(const Pose& a, const Pose& b) noexcept {
   answer_ = Answer::maybe;
   roots_pending_ = true;
   // Poses that are not finite, or beyond what can be squared: nothing is certain then and nothing can be refined.
-  const bool deeper = !detail::is_leaf(*first_.tree, 0) || !detail::is_leaf(*second_.tree, 0) || has_triangles();
-  finished_ = !deeper || !std::isfinite(gap);
-  set_relative_pose(first, second, exact_error);
+  const bool deeper = !detail::is_leaf(first_.tree, 0) || !detail::is_leaf(second_.tree, 0) || has_triangles();
+  const double scaled = second_.extent * (second.scale / first.scale);
+  finished_ = !deeper || !std::isfinite(ball_gap) || !(scaled <= 4 * double{kCoordinateLimit});
   return answer_;
 }
 
 bool NarrowPhase::has_triangles() const noexcept {
-  return !first_.tree->triangles.empty() && !second_.tree->triangles.empty();
+  return !first_.tree.patches.empty() && !second_.tree.patches.empty();
 }
 
 // Also right for pairs that do not meet: a point between the balls is within `errors` plus their gap of both solids.
@@ -167,19 +236,21 @@ void NarrowPhase::finish(Answer answer) noexcept {
   answer_ = answer;
   finished_ = true;
   roots_pending_ = false;
-  if (answer == Answer::no) lower_bound_ = triangle_tests_ == 0 ? pruned_gap_ * (1 - kStretch) : 0;
+  if (answer == Answer::no && !exact_started_) lower_bound_ = pruned_gap_ * (1 - kStretch);
   if (answer == Answer::yes) {
-    separation_bound_ = std::min(separation_bound_, first_.tree->vertex_error + second_.tree->vertex_error);
+    const double error = first_.tree.vertex_error + second_.tree.vertex_error * relative_.scale;
+    separation_bound_ = std::min(separation_bound_, error * first_pose_.scale * (1 + kStretch));
   }
 }
 
 Contact NarrowPhase::contact() const noexcept {
   if (answer_ == Answer::no) return {};
   const auto [a, b] = best_.pair;
-  const auto p = detail::center_of(*first_.tree, a);
-  const auto q = transform(relative_, detail::center_of(*second_.tree, b));
-  const double ra = detail::block_of(*first_.tree, a).radius[a % kBlockWidth];
-  const double rb = detail::block_of(*second_.tree, b).radius[b % kBlockWidth];
+  const auto p = detail::center_of(first_.tree, a);
+  const Pose relative = placed_ ? relative_ : relative_pose();
+  const auto q = transform(relative, detail::center_of(second_.tree, b));
+  const double ra = detail::block_of(first_.tree, a).radius[a % kBlockWidth];
+  const double rb = detail::block_of(second_.tree, b).radius[b % kBlockWidth] * relative.scale;
   const std::array<double, 3> way = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
   const double distance = length(way);
 
@@ -198,18 +269,48 @@ Contact NarrowPhase::contact() const noexcept {
   std::array<double, 3> center{}, normal = {1, 0, 0};
   for (std::size_t i = 0; i < 3; ++i) {
     center[i] = p[i] + share * way[i];
-    if (distance > 0) normal[i] = (exchanged_ ? -way[i] : way[i]) / distance;
+    if (distance > 0) normal[i] = way[i] / distance;
   }
   if (answer_ == Answer::yes) {
     center = witness_;
+    if (const auto by_triangles = triangle_normal(); length(by_triangles) > 0) normal = by_triangles;
     contact.radius = 0;
     contact.triangle_a = exchanged_ ? triangle_second_ : triangle_first_;
     contact.triangle_b = exchanged_ ? triangle_first_ : triangle_second_;
   }
-  for (std::size_t i = 0; i < 3; ++i) center[i] += first_.tree->origin[i];
+  for (std::size_t i = 0; i < 3; ++i) center[i] += first_.tree.origin[i];
+  if (exchanged_) {
+    for (double& component : normal) component = 0 - component;
+  }
   contact.center = transform(first_pose_, center);
+  contact.radius *= first_pose_.scale;
   contact.normal = rotate(first_pose_, normal);
   return contact;
+}
+
+// From the first solid to the second one: the first triangle's outward normal less the second one's. Zero if unknown.
+std::array<double, 3> NarrowPhase::triangle_normal() const noexcept {
+  const auto normal_of = [](const detail::TrianglePoints& t) {
+    const auto minus = [](const detail::Vec3& p, const detail::Vec3& q) -> detail::Vec3 {
+      return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+    };
+    const auto u = minus(t[1], t[0]), v = minus(t[2], t[0]);
+    detail::Vec3 n = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+    const double size = length(n);
+    for (double& component : n) component = size > 0 ? component / size : 0;
+    return n;
+  };
+  const auto of_first = normal_of(detail::points_of(first_.tree, triangle_first_));
+  const auto of_second = rotate(relative_, normal_of(detail::points_of(second_.tree, triangle_second_)));
+  std::array<double, 3> way{};
+  for (std::size_t i = 0; i < 3; ++i) way[i] = of_first[i] - of_second[i];
+  const double size = length(way);
+  for (double& component : way) component = size > kLeastOpposition ? component / size : 0;
+  return way;
+}
+
+Verdict NarrowPhase::verdict() const noexcept {
+  return {answer_, separation_bound_, lower_bound_, contact(), level_, work_};
 }
 
 }  // namespace orchard::runtime

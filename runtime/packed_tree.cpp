@@ -7,6 +7,8 @@
 namespace orchard::runtime {
 namespace {
 
+constexpr double kNormalTolerance = 1e-6;  // on the square of a patch's normal, which is rounded to float
+
 // Comparisons are written so that a NaN fails them.
 bool in_range(float value) noexcept { return std::fabs(value) <= kCoordinateLimit; }
 
@@ -24,7 +26,7 @@ const char* node_fault(const SiblingBlock& block, std::uint32_t lane) noexcept {
 // blocks up to next_block, so one counter proves that no block is shared, skipped or its own ancestor.
 class StructureCheck {
  public:
-  explicit StructureCheck(const PackedSphereTree& tree) noexcept : tree_(tree) {}
+  explicit StructureCheck(const TreeView& tree) noexcept : tree_(tree) {}
 
   const char* fault() noexcept {
     if (tree_.blocks.empty()) return "there is no root";
@@ -80,12 +82,12 @@ class StructureCheck {
     return nullptr;
   }
 
-  const PackedSphereTree& tree_;
+  const TreeView& tree_;
   std::size_t next_block_ = 0;  // the first block that no node seen so far owns
   std::uint64_t nodes_ = 0;
 };
 
-const char* triangle_fault(const PackedSphereTree& tree) noexcept {
+const char* triangle_fault(const TreeView& tree) noexcept {
   for (const auto& vertex : tree.vertices) {
     if (!(in_range(vertex[0]) && in_range(vertex[1]) && in_range(vertex[2]))) {
       return "a vertex is not finite or out of range";
@@ -102,19 +104,85 @@ const char* triangle_fault(const PackedSphereTree& tree) noexcept {
   return nullptr;
 }
 
+const char* patch_fault(const PatchBlock& block, std::uint32_t lane) noexcept {
+  for (const auto* values : {&block.x, &block.y, &block.z, &block.radius, &block.height}) {
+    if (!in_range((*values)[lane])) return "a patch is not finite or out of range";
+  }
+  if (!(block.radius[lane] >= 0 && block.height[lane] >= 0)) return "a patch has a negative size";
+  double square = 0;
+  for (const auto* n : {&block.nx, &block.ny, &block.nz}) square += double{(*n)[lane]} * (*n)[lane];
+  return std::fabs(square - 1) <= kNormalTolerance ? nullptr : "a patch's normal is not a unit vector";
+}
+
+const char* triangle_block_fault(const TreeView& tree, const TriangleBlock& block) noexcept {
+  if (block.triangle[0] >= tree.triangles.size()) return "a block of triangles is empty or names one beyond the end";
+  for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
+    const bool used = block.triangle[lane] != kNoTriangle;
+    const std::uint32_t index = block.triangle[used ? lane : 0];
+    if (index >= tree.triangles.size()) return "a block of triangles names one beyond the end";
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto& vertex = tree.vertices[tree.triangles[index][k]];
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (block.corner[k][i][lane] != vertex[i]) return "a block of triangles differs from the triangles";
+      }
+    }
+  }
+  return nullptr;
+}
+
+// Breadth-first order again: every node's child is the next block, of patches or of triangles, that has no parent yet.
+const char* triangle_tree_fault(const TreeView& tree) noexcept {
+  if (tree.triangles.empty())
+    return tree.patches.empty() && tree.triangle_blocks.empty() ? nullptr : "patches of nothing";
+  if (tree.patches.empty()) return "the triangles have no tree: build the file again";
+  if (tree.patches.size() > kNoTriangle / kBlockWidth || tree.triangle_blocks.size() >= kLeafBit) {
+    return "there are too many patches";
+  }
+  std::size_t next_patches = 1, next_triangles = 0, level_end = 1;
+  std::uint32_t level = 0;
+  for (std::size_t b = 0; b < tree.patches.size(); ++b) {
+    if (b == next_patches) return "a block of patches has no parent";
+    if (b == level_end) level_end = next_patches, ++level;
+    const PatchBlock& block = tree.patches[b];
+    bool ended = false;
+    for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
+      if (block.radius[lane] == -1) {
+        if (lane == 0) return "a block of patches is empty";
+        ended = true;
+        continue;
+      }
+      if (ended || (b == 0 && lane > 0)) return "a patch stands behind an empty lane or beside the root";
+      if (const char* fault = patch_fault(block, lane)) return fault;
+      std::size_t& next = block.child[lane] & kLeafBit ? next_triangles : next_patches;
+      if ((block.child[lane] & ~kLeafBit) != next++) return "patches are not in breadth-first order";
+    }
+  }
+  if (next_patches != tree.patches.size() || next_triangles != tree.triangle_blocks.size()) {
+    return "a patch's children are beyond the end";
+  }
+  if (level != tree.patch_depth || level > kPatchDepthLimit) return "the depth does not match the patches";
+  std::size_t triangles = 0;
+  for (const TriangleBlock& block : tree.triangle_blocks) {
+    if (const char* fault = triangle_block_fault(tree, block)) return fault;
+    for (const std::uint32_t t : block.triangle) triangles += t != kNoTriangle;
+  }
+  return triangles == tree.triangles.size() ? nullptr : "the tree of triangles does not hold every triangle once";
+}
+
 }  // namespace
 
-const char* structure_fault(const PackedSphereTree& tree) noexcept {
+const char* structure_fault(const TreeView& tree) noexcept {
   for (const double coordinate : tree.origin) {
     if (!std::isfinite(coordinate)) return "the origin is not finite";
   }
   if (!(tree.bounding_radius >= 0 && std::isfinite(tree.bounding_radius))) return "the bounding radius is negative";
   if (!(tree.vertex_error >= 0 && std::isfinite(tree.vertex_error))) return "the vertex error is negative";
   if (const char* fault = triangle_fault(tree)) return fault;
+  if (const char* fault = triangle_tree_fault(tree)) return fault;
   return StructureCheck(tree).fault();
 }
 
-double coordinate_extent(const PackedSphereTree& tree) noexcept {
+double coordinate_extent(const TreeView& tree) noexcept {
   double extent = 0;
   const auto include = [&extent](double x, double y, double z, double radius) {
     // The factor covers the rounding of the five operations before it.
@@ -126,6 +194,11 @@ double coordinate_extent(const PackedSphereTree& tree) noexcept {
     }
   }
   for (const auto& vertex : tree.vertices) include(vertex[0], vertex[1], vertex[2], 0);
+  for (const PatchBlock& block : tree.patches) {
+    for (std::uint32_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
+      include(block.x[lane], block.y[lane], block.z[lane], block.radius[lane]);
+    }
+  }
   return extent;
 }
 

@@ -7,6 +7,7 @@ namespace orchard::runtime {
 
 bool is_rigid(const Pose& pose) noexcept {
   const auto& r = pose.rotation;
+  if (!(pose.scale > 0 && std::isfinite(pose.scale))) return false;
   for (std::size_t i = 0; i < 3; ++i) {
     if (!std::isfinite(pose.translation[i])) return false;
     for (std::size_t j = 0; j < 3; ++j) {
@@ -55,6 +56,7 @@ Pose compose(const Pose& outer, const Pose& inner) noexcept {
                                    outer.rotation[3 * i + 2] * inner.rotation[6 + j];
     }
   }
+  result.scale = outer.scale * inner.scale;
   result.translation = transform(outer, inner.translation);
   return result;
 }
@@ -64,8 +66,9 @@ Pose inverse(const Pose& pose) noexcept {
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) result.rotation[3 * i + j] = pose.rotation[3 * j + i];
   }
+  result.scale = 1 / pose.scale;
   result.translation = rotate(result, pose.translation);
-  for (double& t : result.translation) t = 0 - t;  // not -t: no negative zero for the identity
+  for (double& t : result.translation) t = 0 - t * result.scale;  // not -t: no negative zero for the identity
   return result;
 }
 

@@ -92,10 +92,12 @@ ORCHARD_INLINE void test(const BlockPair& pair, const Placement& placement, Leve
   const Words index = load<Words>(std::array<std::uint32_t, kBlockWidth>{0, 1, 2, 3, 4, 5, 6, 7});
   const auto used = index < spread<Words>(pair.lane_count);
   c = {Kind::choose(used, c.x, far), Kind::choose(used, c.y, far), Kind::choose(used, c.z, far)};
-  const Floats lane_radius = load<Floats>(lanes.radius);
+  const Floats scale = spread<Floats>(placement.scale), one = spread<Floats>(1.0f);
+  const Floats lane_scale = pair.lanes_are_second ? scale : one, row_scale = pair.lanes_are_second ? one : scale;
+  const Floats lane_radius = load<Floats>(lanes.radius) * lane_scale;
 
   const Centers<Kind> row_centers = centers_of<Kind>(rows, !pair.lanes_are_second, placement);
-  const Floats row_radius = load<Floats>(rows.radius) + spread<Floats>(placement.slack);
+  const Floats row_radius = load<Floats>(rows.radius) * row_scale + spread<Floats>(placement.slack);
   std::array<float, kBlockWidth> row_x, row_y, row_z, row_reach;
   store(row_centers.x, row_x), store(row_centers.y, row_y), store(row_centers.z, row_z), store(row_radius, row_reach);
 
@@ -135,12 +137,14 @@ ORCHARD_INLINE void test(const BlockPair& pair, const Placement& placement, Leve
   const bool only_leaves = (hits.meeting & ~hits.leaves) == 0;
   const float best_mixed = level.best_inner < level.best_leaf ? level.best_leaf : level.best_inner;
   const Floats best = spread<Floats>(only_leaves ? level.best_leaf : hits.leaves == 0 ? level.best_inner : best_mixed);
-  const Floats errors = load<Floats>(lanes.error), depths = load<Floats>(lanes.depth);
+  const Floats errors = load<Floats>(lanes.error) * lane_scale, depths = load<Floats>(lanes.depth) * lane_scale;
+  const float row_factor = pair.lanes_are_second ? 1.0f : placement.scale;
   Words improve = spread<Words>(0u);
   for (std::uint32_t r = pair.row_begin; r < pair.row_end; ++r) {
     if ((hits.meeting >> (8 * r) & 0xff) == 0) continue;
-    const Floats rest = best - (depths + spread<Floats>(rows.depth[r])), square = load<Floats>(hits.square[r]);
-    const Words better = Kind::words(errors + spread<Floats>(rows.error[r]) < best) |
+    const Floats rest = best - (depths + spread<Floats>(rows.depth[r] * row_factor)),
+                 square = load<Floats>(hits.square[r]);
+    const Words better = Kind::words(errors + spread<Floats>(rows.error[r] * row_factor) < best) |
                          (Kind::words(zero < rest) & Kind::words(square < rest * rest));
     improve = improve | (better & spread<Words>(1u << r));
   }

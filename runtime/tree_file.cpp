@@ -14,10 +14,10 @@ namespace orchard::runtime {
 namespace {
 
 constexpr std::array<unsigned char, 8> kMagic = {0x89, 'O', 'R', 'C', 'H', '\r', '\n', 0x1a};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::size_t kAlignment = 64;
-constexpr std::size_t kSections = 4;
-constexpr std::size_t kHeaderSize = 192;
+constexpr std::size_t kSections = 6;
+constexpr std::size_t kHeaderSize = 256;
 constexpr std::size_t kPreambleSize = 32;  // magic to file size: enough to tell how long the file must be
 
 // Where the fields are: docs/FORMATS.md.
@@ -33,7 +33,8 @@ enum Field : std::size_t {
   kOriginAt = 48,
   kBoundingRadiusAt = 72,
   kVertexErrorAt = 80,
-  kTableAt = 88,
+  kPatchDepthAt = 88,
+  kTableAt = 96,
   kTableStride = 24,
 };
 
@@ -83,29 +84,33 @@ std::uint64_t checksum(const std::byte* file, std::size_t size) noexcept {
   return state;
 }
 
-template <typename Byte>  // std::byte, const where the tree is
-struct Section {
-  std::uint32_t id, element_size;
-  std::uint64_t count;
-  Byte* data;
-};
+// In the order of the table; every element is made of 32-bit words.
+constexpr std::array<std::uint32_t, kSections> kElementSizes = {sizeof(SiblingBlock), 12, 12, 4, sizeof(PatchBlock),
+                                                                sizeof(TriangleBlock)};
+
+// Calls visit(section number from 0, array) for every section of a tree or view.
+template <typename Tree, typename Visit>
+void each_section(Tree& tree, Visit&& visit) {
+  visit(0, tree.blocks), visit(1, tree.vertices), visit(2, tree.triangles);
+  visit(3, tree.leaf_triangles), visit(4, tree.patches), visit(5, tree.triangle_blocks);
+}
 
 template <typename Tree>
-auto sections(Tree& tree) noexcept {
-  using Byte = std::conditional_t<std::is_const_v<Tree>, const std::byte, std::byte>;
-  const auto section = [](std::uint32_t id, auto& elements) -> Section<Byte> {
-    using Element = typename std::remove_reference_t<decltype(elements)>::value_type;
-    static_assert(std::is_trivially_copyable_v<Element> && sizeof(Element) % 4 == 0);
-    return {id, sizeof(Element), elements.size(), reinterpret_cast<Byte*>(elements.data())};
-  };
-  return std::array{section(1, tree.blocks), section(2, tree.vertices), section(3, tree.triangles),
-                    section(4, tree.leaf_triangles)};
+void get_header(const std::byte* file, Tree& tree) noexcept {
+  tree.branching = get<std::uint32_t>(file, kBranchingAt);
+  tree.depth = get<std::uint32_t>(file, kDepthAt);
+  tree.node_count = get<std::uint32_t>(file, kNodeCountAt);
+  tree.patch_depth = get<std::uint32_t>(file, kPatchDepthAt);
+  for (std::size_t i = 0; i < 3; ++i) tree.origin[i] = get<double>(file, kOriginAt + 8 * i);
+  tree.bounding_radius = get<double>(file, kBoundingRadiusAt);
+  tree.vertex_error = get<double>(file, kVertexErrorAt);
 }
 
 LoadStatus check_preamble(const std::byte* file, std::size_t size) noexcept {
   if (std::memcmp(file, kMagic.data(), std::min(size, kMagic.size())) != 0) return LoadStatus::bad_magic;
   if (size < kPreambleSize) return LoadStatus::truncated;
-  if (get<std::uint32_t>(file, kVersionAt) > kVersion) return LoadStatus::version_newer;
+  const auto version = get<std::uint32_t>(file, kVersionAt);
+  if (version != kVersion) return version > kVersion ? LoadStatus::version_newer : LoadStatus::version_older;
   return LoadStatus::ok;
 }
 
@@ -116,7 +121,6 @@ LoadStatus check_file(std::span<const std::byte> file) noexcept {
   if (file_size > file.size() || file.size() < kHeaderSize) return LoadStatus::truncated;
   if (file_size < file.size() || file_size % kAlignment != 0) return LoadStatus::invalid_structure;
   if (checksum(bytes, file.size()) != get<std::uint64_t>(bytes, kChecksumAt)) return LoadStatus::checksum_mismatch;
-  if (get<std::uint32_t>(bytes, kVersionAt) != kVersion) return LoadStatus::invalid_structure;
   if (get<std::uint32_t>(bytes, kHeaderSizeAt) != kHeaderSize) return LoadStatus::invalid_structure;
   if (get<std::uint32_t>(bytes, kSectionCountAt) != kSections) return LoadStatus::invalid_structure;
   return LoadStatus::ok;
@@ -124,13 +128,12 @@ LoadStatus check_file(std::span<const std::byte> file) noexcept {
 
 // The sections must follow one another in order without gaps and end with the file: one form for one tree, and a sum
 // of sizes that no crafted table can push beyond the file.
-LoadStatus check_table(std::span<const std::byte> file, const std::array<Section<std::byte>, kSections>& expected,
-                       std::array<std::uint64_t, kSections>& counts) noexcept {
+LoadStatus check_table(std::span<const std::byte> file, std::array<std::uint64_t, kSections>& counts) noexcept {
   std::uint64_t end = kHeaderSize;
   for (std::size_t i = 0; i < kSections; ++i) {
     const std::size_t at = kTableAt + i * kTableStride;
-    const std::uint32_t size = expected[i].element_size;
-    if (get<std::uint32_t>(file.data(), at) != expected[i].id || get<std::uint32_t>(file.data(), at + 4) != size ||
+    const std::uint32_t size = kElementSizes[i];
+    if (get<std::uint32_t>(file.data(), at) != i + 1 || get<std::uint32_t>(file.data(), at + 4) != size ||
         get<std::uint64_t>(file.data(), at + 8) != end) {
       return LoadStatus::invalid_structure;
     }
@@ -177,6 +180,10 @@ const char* message(LoadStatus status) noexcept {
       return "this is not an .orchard file";
     case LoadStatus::version_newer:
       return "the file was written by a newer version of orchard";
+    case LoadStatus::version_older:
+      return "the file was written by an older version of orchard: build it again";
+    case LoadStatus::cannot_map:
+      return "the file cannot be used in place here: load it instead";
     case LoadStatus::checksum_mismatch:
       return "the file was altered after it was written: its checksum does not match";
     case LoadStatus::invalid_structure:
@@ -187,10 +194,17 @@ const char* message(LoadStatus status) noexcept {
   return "unknown status";
 }
 
-std::vector<std::byte> serialize(const PackedSphereTree& tree) {
-  const auto contents = sections(tree);
+std::vector<std::byte> serialize(const TreeView& tree) {
+  std::array<std::uint64_t, kSections> bytes{}, counts{};
+  std::array<const std::byte*, kSections> contents{};
   std::uint64_t size = kHeaderSize;
-  for (const auto& s : contents) size = aligned(size + s.count * s.element_size);
+  each_section(tree, [&](std::size_t i, const auto& elements) {
+    static_assert(sizeof(elements[0]) % 4 == 0);
+    counts[i] = elements.size();
+    bytes[i] = elements.size() * sizeof(elements[0]);
+    contents[i] = reinterpret_cast<const std::byte*>(elements.data());
+    size = aligned(size + bytes[i]);
+  });
   std::vector<std::byte> file(size);
 
   std::memcpy(file.data(), kMagic.data(), kMagic.size());
@@ -204,17 +218,17 @@ std::vector<std::byte> serialize(const PackedSphereTree& tree) {
   for (std::size_t i = 0; i < 3; ++i) put(file.data(), kOriginAt + 8 * i, tree.origin[i]);
   put(file.data(), kBoundingRadiusAt, tree.bounding_radius);
   put(file.data(), kVertexErrorAt, tree.vertex_error);
+  put(file.data(), kPatchDepthAt, tree.patch_depth);
 
   std::uint64_t offset = kHeaderSize;
   for (std::size_t i = 0; i < kSections; ++i) {
-    const auto& s = contents[i];
     const std::size_t at = kTableAt + i * kTableStride;
-    put(file.data(), at, s.id);
-    put(file.data(), at + 4, s.element_size);
+    put(file.data(), at, static_cast<std::uint32_t>(i + 1));
+    put(file.data(), at + 4, kElementSizes[i]);
     put(file.data(), at + 8, offset);
-    put(file.data(), at + 16, s.count);
-    copy_words(file.data() + offset, s.data, s.count * s.element_size);
-    offset = aligned(offset + s.count * s.element_size);
+    put(file.data(), at + 16, counts[i]);
+    copy_words(file.data() + offset, contents[i], bytes[i]);
+    offset = aligned(offset + bytes[i]);
   }
   put(file.data(), kChecksumAt, checksum(file.data(), file.size()));
   return file;
@@ -222,31 +236,46 @@ std::vector<std::byte> serialize(const PackedSphereTree& tree) {
 
 LoadStatus load(std::span<const std::byte> file, PackedSphereTree& out) noexcept {
   if (const LoadStatus status = check_file(file); status != LoadStatus::ok) return status;
+  std::array<std::uint64_t, kSections> counts{};
+  if (const LoadStatus status = check_table(file, counts); status != LoadStatus::ok) return status;
   try {
     PackedSphereTree tree;
-    std::array<std::uint64_t, kSections> counts{};
-    if (const LoadStatus status = check_table(file, sections(tree), counts); status != LoadStatus::ok) return status;
-    tree.blocks.resize(counts[0]);
-    tree.vertices.resize(counts[1]);
-    tree.triangles.resize(counts[2]);
-    tree.leaf_triangles.resize(counts[3]);
     std::uint64_t offset = kHeaderSize;
-    for (const auto& s : sections(tree)) {
-      copy_words(s.data, file.data() + offset, s.count * s.element_size);
-      offset = aligned(offset + s.count * s.element_size);
-    }
-    tree.branching = get<std::uint32_t>(file.data(), kBranchingAt);
-    tree.depth = get<std::uint32_t>(file.data(), kDepthAt);
-    tree.node_count = get<std::uint32_t>(file.data(), kNodeCountAt);
-    for (std::size_t i = 0; i < 3; ++i) tree.origin[i] = get<double>(file.data(), kOriginAt + 8 * i);
-    tree.bounding_radius = get<double>(file.data(), kBoundingRadiusAt);
-    tree.vertex_error = get<double>(file.data(), kVertexErrorAt);
+    each_section(tree, [&](std::size_t i, auto& elements) {
+      elements.resize(counts[i]);
+      const std::uint64_t bytes = counts[i] * kElementSizes[i];
+      copy_words(reinterpret_cast<std::byte*>(elements.data()), file.data() + offset, bytes);
+      offset = aligned(offset + bytes);
+    });
+    get_header(file.data(), tree);
     if (structure_fault(tree) != nullptr) return LoadStatus::invalid_structure;
     out = std::move(tree);
     return LoadStatus::ok;
   } catch (const std::bad_alloc&) {
     return LoadStatus::out_of_memory;
   }
+}
+
+LoadStatus view(std::span<const std::byte> file, TreeView& out) noexcept {
+  if (const LoadStatus status = check_file(file); status != LoadStatus::ok) return status;
+  std::array<std::uint64_t, kSections> counts{};
+  if (const LoadStatus status = check_table(file, counts); status != LoadStatus::ok) return status;
+  if (std::endian::native != std::endian::little ||
+      reinterpret_cast<std::uintptr_t>(file.data()) % kViewAlignment != 0) {
+    return LoadStatus::cannot_map;
+  }
+  TreeView tree;
+  std::uint64_t offset = kHeaderSize;
+  each_section(tree, [&](std::size_t i, auto& elements) {
+    using Element = typename std::remove_reference_t<decltype(elements)>::element_type;
+    // The bytes hold exactly such objects: implicit-lifetime types of 32-bit words, written by serialize().
+    elements = {reinterpret_cast<Element*>(file.data() + offset), static_cast<std::size_t>(counts[i])};
+    offset = aligned(offset + counts[i] * kElementSizes[i]);
+  });
+  get_header(file.data(), tree);
+  if (structure_fault(tree) != nullptr) return LoadStatus::invalid_structure;
+  out = tree;
+  return LoadStatus::ok;
 }
 
 LoadStatus load_file(const char* path, PackedSphereTree& out) noexcept {

@@ -12,15 +12,15 @@ namespace orchard::runtime::detail {
 
 inline double length(const Vec3& v) noexcept { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
-inline const SiblingBlock& block_of(const PackedSphereTree& tree, std::uint32_t node) noexcept {
+inline const SiblingBlock& block_of(const TreeView& tree, std::uint32_t node) noexcept {
   return tree.blocks[node / kBlockWidth];
 }
 
-inline bool is_leaf(const PackedSphereTree& tree, std::uint32_t node) noexcept {
+inline bool is_leaf(const TreeView& tree, std::uint32_t node) noexcept {
   return (block_of(tree, node).count[node % kBlockWidth] & kLeafBit) != 0;
 }
 
-inline Vec3 center_of(const PackedSphereTree& tree, std::uint32_t node) noexcept {
+inline Vec3 center_of(const TreeView& tree, std::uint32_t node) noexcept {
   const SiblingBlock& block = block_of(tree, node);
   const std::uint32_t lane = node % kBlockWidth;
   return {block.x[lane], block.y[lane], block.z[lane]};
@@ -30,19 +30,19 @@ struct Group {  // consecutive nodes: the children of a node, or one leaf
   std::uint32_t first, count;
 };
 
-inline Group group_of(const PackedSphereTree& tree, std::uint32_t node) noexcept {
+inline Group group_of(const TreeView& tree, std::uint32_t node) noexcept {
   if (is_leaf(tree, node)) return {node, 1};
   const SiblingBlock& block = block_of(tree, node);
   return {block.first[node % kBlockWidth] * kBlockWidth, block.count[node % kBlockWidth]};
 }
 
-inline std::span<const std::uint32_t> triangles_of(const PackedSphereTree& tree, std::uint32_t leaf) noexcept {
+inline std::span<const std::uint32_t> triangles_of(const TreeView& tree, std::uint32_t leaf) noexcept {
   const SiblingBlock& block = block_of(tree, leaf);
   const std::uint32_t lane = leaf % kBlockWidth;
-  return std::span(tree.leaf_triangles).subspan(block.first[lane], block.count[lane] & ~kLeafBit);
+  return tree.leaf_triangles.subspan(block.first[lane], block.count[lane] & ~kLeafBit);
 }
 
-inline TrianglePoints points_of(const PackedSphereTree& tree, std::uint32_t triangle) noexcept {
+inline TrianglePoints points_of(const TreeView& tree, std::uint32_t triangle) noexcept {
   TrianglePoints points{};
   for (std::size_t i = 0; i < 3; ++i) {
     const auto& vertex = tree.vertices[tree.triangles[triangle][i]];

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -59,6 +60,9 @@ struct Plain {
   friend Plain operator*(const Plain& a, const Plain& b) noexcept {
     return make([&](std::size_t i) { return a[i] * b[i]; });
   }
+  friend Plain operator/(const Plain& a, const Plain& b) noexcept {
+    return make([&](std::size_t i) { return a[i] / b[i]; });
+  }
   friend Plain operator&(const Plain& a, const Plain& b) noexcept {
     return make([&](std::size_t i) { return a[i] & b[i]; });
   }
@@ -72,6 +76,45 @@ struct Plain {
     return compare([&](std::size_t i) { return a[i] <= b[i]; });
   }
 };
+
+// Eight floats at a time: the kinds that the inner loops are compiled for. Both give the same bits.
+struct PlainFloats {
+  using Floats = Plain<float, 8>;
+  using Mask = Floats::Mask;
+  static Floats choose(const Mask& mask, const Floats& a, const Floats& b) noexcept {
+    return Floats::make([&](std::size_t i) { return mask[i] ? a[i] : b[i]; });
+  }
+  static Floats root(const Floats& a) noexcept {
+    return Floats::make([&](std::size_t i) { return std::sqrt(a[i]); });
+  }
+  static std::uint32_t bits(const Mask& mask) noexcept {
+    std::uint32_t result = 0;
+    for (std::size_t i = 0; i < 8; ++i) result |= (mask[i] & 1u) << i;
+    return result;
+  }
+};
+
+#ifdef ORCHARD_VECTORS
+struct VectorFloats {
+  using Floats __attribute__((vector_size(32))) = float;
+  using Mask __attribute__((vector_size(32))) = std::int32_t;
+  ORCHARD_INLINE static Floats choose(const Mask& mask, const Floats& a, const Floats& b) noexcept {
+    return mask ? a : b;
+  }
+  ORCHARD_INLINE static Floats root(const Floats& a) noexcept {  // one instruction with -fno-math-errno
+    Floats result;
+    for (std::size_t i = 0; i < 8; ++i) result[i] = __builtin_sqrtf(a[i]);
+    return result;
+  }
+  ORCHARD_INLINE static std::uint32_t bits(const Mask& mask) noexcept {
+    using Bytes __attribute__((vector_size(8))) = std::uint8_t;
+    const Bytes narrow = __builtin_convertvector(mask & 1, Bytes);
+    std::uint64_t bytes;
+    std::memcpy(&bytes, &narrow, sizeof bytes);
+    return static_cast<std::uint32_t>((bytes * 0x0102040810204080u) >> 56);
+  }
+};
+#endif
 
 template <typename Vector, typename Array>
 ORCHARD_INLINE Vector load(const Array& from) noexcept {

@@ -36,6 +36,7 @@ class Packer {
     pack_nodes();
     pack_mesh();
     list_triangles();
+    runtime::index_triangles(packed_);
     return std::move(packed_);
   }
 

@@ -50,7 +50,7 @@ constexpr const char* kClasses[] = {"spheres touch", "half-way",          "gap 1
 
 bool touches(NarrowPhase& pair, const Pose& a, const Pose& b) {
   pair.start(a, b);
-  while (!pair.finished()) pair.refine();
+  pair.refine_exactly();
   return pair.answer() == Answer::yes;
 }
 
@@ -170,6 +170,15 @@ int main(int argc, char** argv) {
                 static_cast<double>(tests) * share, static_cast<double>(triangle_tests) * share,
                 sum * 1000 * kPasses * kRepeats / static_cast<double>(tests));
   }
+  tests = triangle_tests = 0;
+  report("exact, directly", queries, measure(queries, [&](const Query& q) {
+           pair.start(q.a, q.b);
+           pair.refine_exactly();
+           tests += pair.pair_tests(), triangle_tests += pair.triangle_tests();
+         }));
+  const double n = kPasses * kRepeats * static_cast<double>(queries.size());
+  std::printf("%-22s %.1f patch tests and %.1f triangle tests a query\n", "", double(tests) / n,
+              double(triangle_tests) / n);
 #ifdef ORCHARD_HAS_FCL
   const orchard::bench::FclPair rival(tree, tree);
   int differ = 0;

@@ -26,6 +26,7 @@ void query(const PackedSphereTree& tree) {
   for (const Pose& pose : poses) {
     pair.start(Pose{}, pose);
     for (int step = 0; step < 8 && !pair.finished(); ++step) pair.refine({.pair_tests = 2000});
+    pair.refine_exactly({.pair_tests = 2000});
     require(pair.separation_bound() >= 0 && pair.lower_bound() >= 0);
     pair.contact();
   }

@@ -93,12 +93,11 @@ TEST(NarrowPhase, EndsTheSameHoweverBudgetsCutIt) {
     double bound = sliced.separation_bound();
     while (!sliced.finished()) {
       const Budget budget{.pair_tests = 1 + draw.bits() % most};
-      const std::uint64_t spheres = sliced.pair_tests(), triangles = sliced.triangle_tests();
+      const std::uint64_t before = sliced.work();
       ASSERT_EQ(sliced.refine({.pair_tests = 0}), sliced.answer());
       sliced.refine(budget);
-      const std::uint64_t spent =
-          sliced.pair_tests() - spheres + kTriangleTestCost * (sliced.triangle_tests() - triangles);
-      ASSERT_LT(spent, budget.pair_tests + 4 * kTriangleTestCost);
+      const std::uint64_t spent = sliced.work() - before;
+      ASSERT_LT(spent, budget.pair_tests + kLeafPairTests * kTriangleTestCost);
       ASSERT_TRUE(spent > 0 || sliced.finished());
       ASSERT_LE(sliced.separation_bound(), bound);
       bound = sliced.separation_bound();
@@ -116,12 +115,49 @@ TEST(NarrowPhase, StopsSoonAfterItsTimeAndResumes) {
     while (!whole.finished()) whole.refine();
     sliced.start(s.pose_a, s.pose_b);
     while (!sliced.finished()) {
-      const std::uint64_t before = sliced.pair_tests() + kTriangleTestCost * sliced.triangle_tests();
+      const std::uint64_t before = sliced.work();
       sliced.refine({.time = std::chrono::nanoseconds(0)});
-      const std::uint64_t spent = sliced.pair_tests() + kTriangleTestCost * sliced.triangle_tests() - before;
-      ASSERT_LT(spent, kClockInterval + 4 * kTriangleTestCost);
+      ASSERT_LT(sliced.work() - before, kClockInterval + kLeafPairTests * kTriangleTestCost);
     }
     ASSERT_EQ(outcome_of(whole), outcome_of(sliced));
+  }
+}
+
+TEST(NarrowPhase, ReplaysATimedRunFromItsCount) {
+  const auto all = bodies();
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    const Scene s = random_scene(all, seed);
+    NarrowPhase timed(all[s.a].tree, all[s.b].tree), replayed(all[s.a].tree, all[s.b].tree);
+    timed.start(s.pose_a, s.pose_b);
+    for (std::uint64_t calls = seed % 9; calls > 0; --calls) {
+      timed.refine({.time = std::chrono::nanoseconds(seed % 3 * 500)});
+    }
+    replayed.start(s.pose_a, s.pose_b);
+    while (replayed.work() < timed.work()) replayed.refine({.pair_tests = timed.work() - replayed.work()});
+    ASSERT_EQ(outcome_of(timed), outcome_of(replayed)) << seed;
+  }
+}
+
+TEST(NarrowPhase, TreatsAScaledInstanceAsTheScaledBody) {
+  const Mesh mesh = spikes(5, 9, 7);
+  const auto tree = build_tree(mesh), other = build_tree(torus(12, 6, 1, 0.3));
+  for (const double scale : {0.25, 0.5, 2.0, 8.0}) {
+    const auto scaled_tree = build_tree(scaled(mesh, scale));
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+      Draw draw(seed);
+      const Pose plain = draw.pose(0), at = draw.pose(draw.uniform(0.5, 1) * (1 + scale));
+      Pose instance = plain;
+      instance.scale = scale;
+      NarrowPhase by_pose(tree, other), by_tree(scaled_tree, other);
+      by_pose.start(instance, at), by_tree.start(plain, at);
+      while (!by_pose.finished()) by_pose.refine();
+      while (!by_tree.finished()) by_tree.refine();
+      ASSERT_EQ(by_pose.answer(), by_tree.answer()) << seed;
+      ASSERT_NEAR(by_pose.separation_bound(), by_tree.separation_bound(), 1e-5 * (1 + scale)) << seed;
+      ASSERT_NEAR(by_pose.lower_bound(), by_tree.lower_bound(), 1e-5 * (1 + scale)) << seed;
+      const Contact p = by_pose.contact(), q = by_tree.contact();
+      ASSERT_NEAR(p.radius, q.radius, 1e-3 * (1 + scale)) << seed;
+    }
   }
 }
 

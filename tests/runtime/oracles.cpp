@@ -77,7 +77,8 @@ std::vector<Triangle> placed_triangles(const PackedSphereTree& tree, const Pose&
       for (std::size_t i = 0; i < 3; ++i) body[i] = Real(tree.vertices[t[corner]][i]) + Real(tree.origin[i]);
       for (std::size_t i = 0; i < 3; ++i) {
         placed[corner][i] = Real(pose.translation[i]);
-        for (std::size_t j = 0; j < 3; ++j) placed[corner][i] += Real(pose.rotation[3 * i + j]) * body[j];
+        for (std::size_t j = 0; j < 3; ++j)
+          placed[corner][i] += Real(pose.scale) * Real(pose.rotation[3 * i + j]) * body[j];
       }
     }
     result.push_back(placed);

@@ -55,6 +55,7 @@ class Builder {
     queue.push_back({0, 0, 0, order_.size(), 0});
     for (std::size_t next = 0; next < queue.size(); ++next) expand(Pending(queue[next]), queue);
     tree_.bounding_radius = double(tree_.blocks[0].radius[0]);
+    index_triangles(tree_);
     return std::move(tree_);
   }
 

@@ -11,6 +11,8 @@
 #include <limits>
 #include <string>
 
+#include "orchard/runtime/mapped_tree.h"
+#include "orchard/runtime/narrow_phase.h"
 #include "support.h"
 
 namespace orchard::runtime {
@@ -18,7 +20,7 @@ namespace {
 
 using namespace orchard::runtime::test;
 
-constexpr std::size_t kChecksumAt = 16, kFileSizeAt = 24, kTableAt = 88, kHeaderSize = 192;
+constexpr std::size_t kChecksumAt = 16, kFileSizeAt = 24, kTableAt = 96, kHeaderSize = 256;
 
 template <typename T>
 T get(const std::vector<std::byte>& file, std::size_t at) {
@@ -50,11 +52,29 @@ PackedSphereTree sample_tree() {
   return build_tree(l_shape(), {.branching = 3, .leaf_triangles = 2, .origin = {1e6, -0.125, 3}});
 }
 
-// `out` must survive every failed load.
+struct Aligned {  // a copy of some bytes where view() wants them, and not a byte more
+  explicit Aligned(std::span<const std::byte> from)
+      : bytes(static_cast<std::byte*>(::operator new (from.size(), std::align_val_t{kViewAlignment}))),
+        size(from.size()) {
+    if (size > 0) std::memcpy(bytes, from.data(), size);
+  }
+  ~Aligned() { ::operator delete (bytes, std::align_val_t{kViewAlignment}); }
+  Aligned(const Aligned&) = delete;
+  std::span<const std::byte> span() const { return {bytes, size}; }
+  std::byte* bytes;
+  std::size_t size;
+};
+
+// `out` must survive every failed load, and a view must agree.
 LoadStatus load_or_keep(std::span<const std::byte> file) {
+  TreeView seen;
+  const Aligned aligned(file);
+  const LoadStatus view_status = view(aligned.span(), seen);
+  EXPECT_TRUE(view_status == LoadStatus::ok ? structure_fault(seen) == nullptr : seen.blocks.empty());
   const PackedSphereTree before = build_tree(box({0, 0, 0}, {1, 1, 1}));
   PackedSphereTree out = before;
   const LoadStatus status = load(file, out);
+  EXPECT_EQ(status, view_status);
   EXPECT_EQ(structure_fault(out), nullptr);
   EXPECT_TRUE(status == LoadStatus::ok || same(before, out));
   return status;
@@ -103,13 +123,13 @@ TEST(TreeFile, PutsEverySectionWhereTheFormatSays) {
   const PackedSphereTree tree = sample_tree();
   auto file = serialize(tree);
   EXPECT_EQ(std::memcmp(file.data(), "\x89ORCH\r\n\x1a", 8), 0);
-  EXPECT_EQ(get<std::uint32_t>(file, 8), 1u);
+  EXPECT_EQ(get<std::uint32_t>(file, 8), 2u);
   EXPECT_EQ(get<std::uint32_t>(file, 12), kHeaderSize);
   EXPECT_EQ(get<std::uint64_t>(file, kFileSizeAt), file.size());
-  const std::size_t counts[] = {tree.blocks.size(), tree.vertices.size(), tree.triangles.size(),
-                                tree.leaf_triangles.size()};
-  const std::uint32_t sizes[] = {256, 12, 12, 4};
-  for (std::size_t i = 0; i < 4; ++i) {
+  const std::size_t counts[] = {tree.blocks.size(),         tree.vertices.size(), tree.triangles.size(),
+                                tree.leaf_triangles.size(), tree.patches.size(),  tree.triangle_blocks.size()};
+  const std::uint32_t sizes[] = {256, 12, 12, 4, 288, 320};
+  for (std::size_t i = 0; i < 6; ++i) {
     const std::size_t at = kTableAt + 24 * i;
     EXPECT_EQ(get<std::uint32_t>(file, at), i + 1);
     EXPECT_EQ(get<std::uint32_t>(file, at + 4), sizes[i]);
@@ -118,6 +138,12 @@ TEST(TreeFile, PutsEverySectionWhereTheFormatSays) {
   }
   EXPECT_EQ(get<float>(file, kHeaderSize), tree.blocks[0].x[0]);
   EXPECT_EQ(get<float>(file, kHeaderSize + 96), tree.blocks[0].radius[0]);
+  EXPECT_EQ(get<std::uint32_t>(file, 88), tree.patch_depth);
+  const auto patches = get<std::uint64_t>(file, kTableAt + 24 * 4 + 8),
+             triangles = get<std::uint64_t>(file, kTableAt + 24 * 5 + 8);
+  EXPECT_EQ(get<float>(file, patches + 192), tree.patches[0].radius[0]);
+  EXPECT_EQ(get<float>(file, triangles + 32), tree.triangle_blocks[0].corner[0][1][0]);
+  EXPECT_EQ(get<std::uint32_t>(file, triangles + 288), tree.triangle_blocks[0].triangle[0]);
   const auto sealed = file;
   seal(file);
   EXPECT_EQ(file, sealed);
@@ -146,15 +172,15 @@ TEST(TreeFile, ReportsEveryAlteredByte) {
   }
 }
 
-TEST(TreeFile, RefusesNewerVersionsAndTrailingBytes) {
+TEST(TreeFile, RefusesOtherVersionsAndTrailingBytes) {
   auto newer = serialize(sample_tree());
-  put(newer, 8, std::uint32_t{2});
+  put(newer, 8, std::uint32_t{3});
   seal(newer);
   EXPECT_EQ(load_or_keep(newer), LoadStatus::version_newer);
   auto older = serialize(sample_tree());
-  put(older, 8, std::uint32_t{0});
+  put(older, 8, std::uint32_t{1});
   seal(older);
-  EXPECT_EQ(load_or_keep(older), LoadStatus::invalid_structure);
+  EXPECT_EQ(load_or_keep(older), LoadStatus::version_older);
   auto longer = serialize(sample_tree());
   longer.resize(longer.size() + 64);
   EXPECT_EQ(load_or_keep(longer), LoadStatus::invalid_structure);
@@ -163,7 +189,7 @@ TEST(TreeFile, RefusesNewerVersionsAndTrailingBytes) {
 TEST(TreeFile, RefusesSealedFilesWithImpossibleTables) {
   const auto file = serialize(sample_tree());
   const std::uint64_t values[] = {0, 1, file.size(), file.size() / 12, 1ull << 32, 1ull << 60, ~0ull, ~0ull / 12};
-  for (std::size_t section = 0; section < 4; ++section) {
+  for (std::size_t section = 0; section < 6; ++section) {
     for (const std::size_t field : {0u, 4u, 8u, 16u}) {
       for (const std::uint64_t value : values) {
         const std::size_t at = kTableAt + 24 * section + field;
@@ -217,6 +243,22 @@ TEST(TreeFile, RefusesSealedFilesWhoseTreesAreNotSafeToWalk) {
        [](auto& t) { t.triangles[1][2] = static_cast<std::uint32_t>(t.vertices.size()); }},
       {"leaf triangle beyond the end",
        [](auto& t) { t.leaf_triangles[2] = static_cast<std::uint32_t>(t.triangles.size()); }},
+      {"no tree of triangles", [](auto& t) { t.patches.clear(), t.triangle_blocks.clear(); }},
+      {"patch not a number", [=](auto& t) { t.patches[1].height[1] = nan; }},
+      {"patch with a negative radius", [](auto& t) { t.patches[1].radius[0] = -2; }},
+      {"second root patch", [](auto& t) { t.patches[0].radius[1] = 1; }},
+      {"patch behind an empty lane", [](auto& t) { t.patches[1].radius[0] = -1; }},
+      {"normal too long", [](auto& t) { t.patches[1].nx[0] += 0.01f; }},
+      {"patch its own child", [](auto& t) { t.patches[0].child[0] = 0; }},
+      {"patch child beyond the end", [](auto& t) { t.patches[1].child[0] = 1u << 20; }},
+      {"triangle block beyond the end", [](auto& t) { t.patches[1].child[0] = kLeafBit | (1u << 20); }},
+      {"shared triangle block", [](auto& t) { t.patches[1].child[1] = t.patches[1].child[0]; }},
+      {"orphan triangle block", [](auto& t) { t.triangle_blocks.push_back(t.triangle_blocks.back()); }},
+      {"wrong patch depth", [](auto& t) { t.patch_depth += 1; }},
+      {"block names no triangle", [](auto& t) { t.triangle_blocks[0].triangle[0] = kNoTriangle; }},
+      {"block names a triangle beyond the end", [](auto& t) { t.triangle_blocks[0].triangle[1] = 1u << 20; }},
+      {"block leaves a triangle out", [](auto& t) { t.triangle_blocks[0].triangle[1] = kNoTriangle; }},
+      {"block moves a corner", [](auto& t) { t.triangle_blocks[0].corner[2][1][1] += 1; }},
       {"leaf range beyond the end", [](auto& t) { t.leaf_triangles.pop_back(); }},
       {"leaf range wraps", [](auto& t) { t.blocks.back().first[0] = ~0u, t.blocks.back().count[0] = ~0u; }},
   };
@@ -273,8 +315,51 @@ TEST(TreeFile, LoadsFromDiskAndNamesWhatFails) {
   EXPECT_TRUE(same(loaded, tree));
 }
 
+TEST(TreeFile, IsUsedInPlaceWithoutACopy) {
+  const PackedSphereTree tree = build_tree(torus(16, 8, 1, 0.3));
+  const auto file = serialize(tree);
+  const Aligned aligned(file);
+  TreeView seen;
+  ASSERT_EQ(view(aligned.span(), seen), LoadStatus::ok);
+  EXPECT_EQ(reinterpret_cast<const std::byte*>(seen.blocks.data()), aligned.bytes + kHeaderSize);
+  EXPECT_EQ(serialize(seen), file);
+
+  const auto path = scratch("mapped.orchard");
+  write(path, file);
+  MappedTree mapped;
+  EXPECT_TRUE(mapped.view().blocks.empty());
+  ASSERT_EQ(mapped.open(path.c_str()), LoadStatus::ok);
+  MappedTree moved = std::move(mapped);
+  EXPECT_EQ(serialize(moved.view()), file);
+  NarrowPhase by_view(moved.view(), seen), by_copy(tree, tree);
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const Pose pose = Draw(seed).pose(1.2);
+    by_view.start({}, pose), by_copy.start({}, pose);
+    while (!by_copy.finished()) by_view.refine(), by_copy.refine();
+    ASSERT_EQ(by_view.answer(), by_copy.answer());
+    ASSERT_EQ(by_view.work(), by_copy.work());
+    ASSERT_EQ(by_view.separation_bound(), by_copy.separation_bound());
+  }
+  write(path, {file.begin(), file.begin() + 100});
+  EXPECT_EQ(moved.open(path.c_str()), LoadStatus::truncated);
+  EXPECT_TRUE(moved.view().blocks.empty());
+  write(path, {});
+  EXPECT_EQ(moved.open(path.c_str()), LoadStatus::truncated);
+  std::filesystem::remove(path);
+  EXPECT_EQ(moved.open(path.c_str()), LoadStatus::cannot_open);
+  EXPECT_EQ(moved.open(std::filesystem::temp_directory_path().c_str()), LoadStatus::read_failed);
+}
+
+TEST(TreeFile, IsNotUsedInPlaceWhereItIsNotAligned) {
+  auto file = serialize(sample_tree());
+  file.insert(file.begin(), 4, std::byte{0});
+  const Aligned shifted(file);
+  TreeView seen;
+  EXPECT_EQ(view(shifted.span().subspan(4), seen), LoadStatus::cannot_map);
+}
+
 TEST(TreeFile, HasAMessageForEveryStatus) {
-  for (int status = 0; status <= static_cast<int>(LoadStatus::out_of_memory); ++status) {
+  for (int status = 0; status <= static_cast<int>(LoadStatus::cannot_map); ++status) {
     EXPECT_STRNE(message(static_cast<LoadStatus>(status)), "unknown status");
   }
 }

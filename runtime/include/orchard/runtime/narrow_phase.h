@@ -14,13 +14,20 @@ namespace orchard::runtime {
 namespace detail {
 
 struct BlockHits;
-struct TriangleBlock;
 
-// The second tree's frame in the first one's, in float, and what to add to a sum of radii for its rounding.
+// The second tree's frame in the first one's, in float, and what covers the rounding.
 struct Placement {
-  std::array<float, 9> rotation;
+  std::array<float, 9> rotation;  // times scale
+  std::array<float, 9> turn;      // without
   std::array<float, 3> translation;
-  float slack;
+  float scale;
+  float slack;   // to add to a sum of radii
+  float margin;  // to take from a gap between patches
+};
+
+// One patch, in the first tree's frame.
+struct Patch {
+  float x, y, z, nx, ny, nz, radius, height;
 };
 
 // What the sphere tests of one level collect: the bits of the smallest square - reach^2 > 0, minus 1; the largest radii
@@ -39,16 +46,16 @@ enum class Answer : std::uint8_t {
   yes     // a triangle of one meets a triangle of the other
 };
 
-// Whichever ends first. A call with pair_tests > 0 always gets somewhere: it overshoots by less than a row of eight
-// sphere tests or of four triangle tests, each of which counts as kTriangleTestCost.
+// Whichever ends first. Work is counted in tests of two spheres or two patches; a test of two triangles counts as
+// kTriangleTestCost. A call with pair_tests > 0 always gets somewhere: it overshoots by less than a row of eight tests
+// or one pair of leaves (kLeafPairTests triangle tests).
 struct Budget {
   std::uint64_t pair_tests = std::numeric_limits<std::uint64_t>::max();
   std::chrono::nanoseconds time = std::chrono::nanoseconds::max();  // steady clock, read once per kClockInterval tests
 };
-inline constexpr std::uint32_t kTriangleTestCost = 16;
-inline constexpr std::uint64_t kClockInterval = 64;
-
-inline constexpr std::uint32_t kNoTriangle = 0xffffffffu;
+inline constexpr std::uint32_t kTriangleTestCost = 2;
+inline constexpr std::uint32_t kLeafPairTests = kBlockWidth * kBlockWidth;
+inline constexpr std::uint64_t kClockInterval = 32;
 
 // Where to apply a response, in world coordinates.
 struct Contact {
@@ -58,42 +65,63 @@ struct Contact {
   std::uint32_t triangle_a = kNoTriangle, triangle_b = kNoTriangle;  // into each tree's triangles; yes only
 };
 
+// Everything known about a pair at one moment.
+struct Verdict {
+  Answer answer = Answer::maybe;
+  double separation_bound = 0;  // certified upper bound on the distance between the solids
+  double lower_bound = 0;       // certified lower bound on the distance between the surfaces, 0 if none is known
+  Contact contact;
+  std::uint32_t level = 0;  // completed levels below the roots
+  std::uint64_t work = 0;   // in the units of Budget::pair_tests, since start()
+};
+
 // One pair of bodies, answered level by level (dissertation 3.2, Fig. 5.4): level 0 tests the roots, each further one
-// the children of the pairs that met; the last one tests the triangles in the leaves that met, exactly.
+// the children of the pairs that met; the last one tests the triangles, exactly, through the trees of triangles.
 //
-// The question is whether the *surfaces* touch. A solid wholly inside another without touching is a "no".
+// The question is whether the *surfaces* touch. A solid wholly inside another without touching is a "no":
+// contains_solid() in shape_query.h answers that one.
 // "No" from spheres is certain for the trees' meshes and for the triangles as stored (they differ by vertex_error).
 // The last level is exact for the stored triangles, with body b's moved into a's frame in double (a relative rounding
 // of about 1e-15 of the coordinates). It exists if both trees have triangles; otherwise "maybe" can be final.
 //
-// Preconditions: structure_fault() of both trees is nullptr, and they outlive this object unchanged; poses are rigid.
-// Trees are only read: any number of objects in any number of threads may share them. One object belongs to one thread.
-// Deterministic: same trees, poses: same answers, counts and bounds, however refine() was cut into pieces by budgets,
-// and, mirrored, when a and b are exchanged.
-// Throws nothing. Memory grows with the number of meeting pairs and is kept for the next query: after a warm-up or
-// reserve() a query allocates nothing. If memory runs out, out_of_memory() becomes true and the answer stays as it was,
-// which is still valid; refine() then tries the same step again.
+// Preconditions: structure_fault() of both trees is nullptr, and what they view outlives this object unchanged; poses
+// satisfy is_rigid(). Trees are only read: any number of objects in any number of threads may share them. One object
+// belongs to one thread.
+// Deterministic: same trees, poses, room: same answers, counts and bounds, however refine() was cut into pieces by
+// budgets, on every machine and for every width of its vectors; and, mirrored, when a and b are exchanged.
+// Throws nothing and allocates nothing after construction and reserve(). A level of spheres with more meeting pairs
+// than there is room for is given up: out_of_room() becomes true and the next step is the last level, which needs none.
 class NarrowPhase {
  public:
-  // O(nodes + vertices) once; build the object once per pair of bodies and reuse it.
-  NarrowPhase(const PackedSphereTree& a, const PackedSphereTree& b) noexcept;
+  static constexpr std::size_t kDefaultRoom = 1u << 13;
 
-  // Room for that many meeting pairs per level. False if there is not enough memory.
+  // Once per pair of bodies: reuse the object. O(nodes + vertices). `room`: meeting pairs per level, 24 bytes each.
+  NarrowPhase(const TreeView& a, const TreeView& b, std::size_t room = kDefaultRoom) noexcept;
+
+  // Room for that many meeting pairs per level. False, and nothing changed, if there is not enough memory.
   bool reserve(std::size_t pairs) noexcept;
 
   Answer start(const Pose& a, const Pose& b) noexcept;
   Answer refine() noexcept { return refine(Budget{}); }  // to the end of the next level
   // To the end of the next level, or of the one under way, or of the budget: resume by calling again.
   Answer refine(const Budget& budget) noexcept;
+  // Leaves the levels of spheres that remain out and goes for the last one: the fastest way to "yes" or "no", without
+  // the bounds on the way. Resume by calling either function again.
+  Answer refine_exactly(const Budget& budget = {}) noexcept;
 
+  Verdict verdict() const noexcept;
   Answer answer() const noexcept { return answer_; }
-  bool finished() const noexcept { return finished_; }  // refine() has nothing left to do
-  bool out_of_memory() const noexcept { return out_of_memory_; }
-  std::uint32_t level() const noexcept { return level_; }  // completed levels below the roots
-  // That met at the last completed level.
+  bool finished() const noexcept { return finished_; }        // refine() has nothing left to do
+  bool out_of_room() const noexcept { return out_of_room_; }  // bounds are looser than they could be
+  bool exact() const noexcept { return exact_started_; }      // the last level has begun
+  std::uint32_t level() const noexcept { return level_; }     // completed levels below the roots
+  // That met at the last completed level of spheres; 0 once the last level has begun.
   std::size_t pairs() const noexcept { return roots_pending_ ? 1 : inner_.size() + settled_leaves_; }
-  std::uint64_t pair_tests() const noexcept { return pair_tests_; }  // of spheres, since start()
+  std::uint64_t pair_tests() const noexcept { return pair_tests_; }  // of spheres and patches, since start()
   std::uint64_t triangle_tests() const noexcept { return triangle_tests_; }
+  // Since start(), as a budget counts it. A query that a time budget cut short stops at the same place again when it is
+  // given this as its budget of tests: a trace of these numbers replays a run exactly.
+  std::uint64_t work() const noexcept { return work_; }
 
   // Certified upper bound on the distance between the two solids, from every pair of spheres that met so far; falls or
   // stays. (For each pair, min(e1 + e2, a1 + |c1 - c2| + a2) with e the error and a the depth of a node; 5.3.5 as
@@ -106,16 +134,18 @@ class NarrowPhase {
 
  private:
   struct Side {
-    const PackedSphereTree* tree = nullptr;
-    std::array<double, 3> root{};  // its centre, origin included
-    double extent = 0;             // coordinate_extent()
+    TreeView tree;
+    std::array<double, 3> root{};         // its centre, origin included
+    double extent = 0;                    // coordinate_extent()
+    double error = 0;                     // of a point, whatever the pose
+    const PatchBlock* patches = nullptr;  // the root's children, or the root; none without triangles
   };
   struct NodePair {
     std::uint32_t a, b;
   };
-  class PairList {  // a vector whose growth can fail without an exception
+  class PairList {  // a vector that does not grow by itself
    public:
-    bool room_for(std::size_t more) noexcept { return capacity_ - size_ >= more || reserve(size_ + more); }
+    bool room_for(std::size_t more) const noexcept { return capacity_ - size_ >= more; }
     bool reserve(std::size_t capacity) noexcept;
     void push(NodePair pair) noexcept { pairs_[size_++] = pair; }
     void clear() noexcept { size_ = 0; }
@@ -126,9 +156,13 @@ class NarrowPhase {
     std::unique_ptr<NodePair[]> pairs_;
     std::size_t size_ = 0, capacity_ = 0;
   };
-  struct Cursor {  // where the level under way continues: lanes or second's triangles; rows or first's triangles
+  struct Cursor {  // where the level under way continues: lanes; rows
     std::size_t pair = 0;
     std::uint32_t outer = 0, inner = 0;
+  };
+  struct PatchPair {  // patches that may meet, the second one moved
+    std::uint32_t a, b;
+    detail::Patch second;
   };
   struct Best {
     double bound = std::numeric_limits<double>::infinity();
@@ -136,18 +170,25 @@ class NarrowPhase {
   };
   class Meter;
 
-  static Side side_of(const PackedSphereTree& tree) noexcept;
+  static Side side_of(const TreeView& tree) noexcept;
   void reset() noexcept;
-  void set_relative_pose(const Pose& first, const Pose& second, double exact_error) noexcept;
+  double roots_gap(const Pose& first, const Pose& second, const std::array<double, 3>& way,
+                   double distance) const noexcept;
+  Pose relative_pose() const noexcept;
+  void place() noexcept;
   bool has_triangles() const noexcept;
   void finish(Answer answer) noexcept;
   static double pair_bound(double distance, double radii, double errors, double depths) noexcept;
 
   bool refine_spheres(Meter& meter) noexcept;
-  bool refine_triangles(Meter& meter) noexcept;
+  void give_up_spheres() noexcept;
+  void start_exact() noexcept;
+  bool refine_patches(Meter& meter) noexcept;
+  void expand(const PatchPair& pair, bool second) noexcept;
+  bool test_triangles(const PatchPair& pair) noexcept;
+  std::array<double, 3> triangle_normal() const noexcept;
   void collect(std::uint32_t row, std::uint32_t lane, const detail::BlockHits& hits, bool lanes_are_second) noexcept;
   void improve(NodePair pair, double square, bool leaves) noexcept;
-  bool settle(const detail::TriangleBlock& lanes, const detail::TriangleBlock& rows, std::uint32_t candidates) noexcept;
   void start_level() noexcept;
   void finish_sphere_level() noexcept;
 
@@ -156,15 +197,20 @@ class NarrowPhase {
   bool ordered_by_pose_ = false;
   bool arguments_exchanged_ = false;
   bool exchanged_ = false;
-  double fixed_error_ = 0;  // what does not depend on poses of the rounding in double, and the vertices' error
 
   // Second's frame to first's, both relative to the trees' origins; in float for spheres, in double for triangles.
-  Pose first_pose_, relative_;
+  // Everything below the roots happens in the first tree's own units.
+  Pose first_pose_, second_pose_, relative_;
+  double exact_error_ = 0;  // of a point's place in double, in the world
+  bool placed_ = false;     // relative_ and placement_ are those of the poses
   detail::Placement placement_{};
 
   PairList inner_, leaves_, next_;  // meeting pairs: with an inner node, of two leaves, and of the level under way
   std::size_t settled_leaves_ = 0;
   Cursor cursor_;
+  std::unique_ptr<PatchPair[]> stack_;  // the last level's, deepest first; room for the trees' depths
+  std::size_t stack_size_ = 0;
+  bool exact_started_ = false;
   detail::LevelState level_state_{};
   Best level_best_, leaf_best_, best_;
   std::uint32_t triangle_first_ = kNoTriangle, triangle_second_ = kNoTriangle;
@@ -173,9 +219,9 @@ class NarrowPhase {
   Answer answer_ = Answer::no;
   bool finished_ = true;
   bool roots_pending_ = false;
-  bool out_of_memory_ = false;
+  bool out_of_room_ = false;
   std::uint32_t level_ = 0;
-  std::uint64_t pair_tests_ = 0, triangle_tests_ = 0;
+  std::uint64_t pair_tests_ = 0, triangle_tests_ = 0, work_ = 0;
   double separation_bound_ = std::numeric_limits<double>::infinity();
   double lower_bound_ = 0;
   double pruned_gap_ = std::numeric_limits<double>::infinity();

@@ -2,6 +2,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace orchard::runtime {
@@ -28,9 +29,34 @@ struct alignas(32) SiblingBlock {
 };
 static_assert(sizeof(SiblingBlock) == 256 && alignof(SiblingBlock) == 32);
 
+// Eight patches side by side: nodes of the tree of triangles below the spheres. A patch is the part of a ball between
+// two parallel planes, the same distance from its centre; every triangle below the node lies in it, in every node above
+// it.
+struct alignas(32) PatchBlock {
+  std::array<float, kBlockWidth> x{}, y{}, z{};     // centre
+  std::array<float, kBlockWidth> nx{}, ny{}, nz{};  // normal of the planes: unit to 1e-6
+  std::array<float, kBlockWidth> radius{};          // of the ball; -1 in lanes that hold no node
+  std::array<float, kBlockWidth> height{};          // |normal * (point - centre)| of every point is at most this
+  std::array<std::uint32_t, kBlockWidth> child{};   // block of the first child; with kLeafBit set, a triangle block
+};
+static_assert(sizeof(PatchBlock) == 288 && alignof(PatchBlock) == 32);
+
+// Up to eight triangles side by side, as the exact level reads them.
+struct alignas(32) TriangleBlock {
+  using Lanes = std::array<float, kBlockWidth>;
+  std::array<std::array<Lanes, 3>, 3> corner{};       // [corner][coordinate]; unused lanes repeat the first one
+  std::array<std::uint32_t, kBlockWidth> triangle{};  // into triangles; kNoTriangle in unused lanes
+};
+static_assert(sizeof(TriangleBlock) == 320 && alignof(TriangleBlock) == 32);
+
+inline constexpr std::uint32_t kNoTriangle = 0xffffffffu;
+inline constexpr std::uint32_t kPatchDepthLimit = 64;  // levels below the root that a tree of triangles may have
+
 // A sphere-tree as it ships: flat arrays of floats around a double origin, every ball rounded outward. Blocks are in
 // breadth-first order; lane 0 of block 0 is the root and the only node of its block. Node id = block * 8 + lane.
 // Every leaf lists the triangles that meet its path region; together the leaves list every triangle.
+// The exact level has a tree of its own over the same triangles (index_triangles() makes it): patches in breadth-first
+// order, lane 0 of block 0 its root, every other block the children of one node.
 struct PackedSphereTree {
   std::array<double, 3> origin{};  // of all float coordinates, in mesh units
   double bounding_radius = 0;      // R of the mesh
@@ -38,19 +64,57 @@ struct PackedSphereTree {
   std::uint32_t branching = 0;     // largest number of children
   std::uint32_t depth = 0;         // levels below the root
   std::uint32_t node_count = 0;    // lanes in use
+  std::uint32_t patch_depth = 0;   // levels below the root of the tree of triangles
   std::vector<SiblingBlock> blocks;
   std::vector<std::array<float, 3>> vertices;           // relative to origin
   std::vector<std::array<std::uint32_t, 3>> triangles;  // into vertices
   std::vector<std::uint32_t> leaf_triangles;            // into triangles
+  std::vector<PatchBlock> patches;
+  std::vector<TriangleBlock> triangle_blocks;
 };
 
+// The same without owning the arrays: what queries work on. The arrays may belong to a PackedSphereTree or to a file
+// that is mapped into memory; they must outlive the view and stay unchanged.
+struct TreeView {
+  std::array<double, 3> origin{};
+  double bounding_radius = 0, vertex_error = 0;
+  std::uint32_t branching = 0, depth = 0, node_count = 0, patch_depth = 0;
+  std::span<const SiblingBlock> blocks;
+  std::span<const std::array<float, 3>> vertices;
+  std::span<const std::array<std::uint32_t, 3>> triangles;
+  std::span<const std::uint32_t> leaf_triangles;
+  std::span<const PatchBlock> patches;
+  std::span<const TriangleBlock> triangle_blocks;
+
+  TreeView() = default;
+  TreeView(const PackedSphereTree& tree) noexcept  // NOLINT: implicit, so that queries take either
+      : origin(tree.origin),
+        bounding_radius(tree.bounding_radius),
+        vertex_error(tree.vertex_error),
+        branching(tree.branching),
+        depth(tree.depth),
+        node_count(tree.node_count),
+        patch_depth(tree.patch_depth),
+        blocks(tree.blocks),
+        vertices(tree.vertices),
+        triangles(tree.triangles),
+        leaf_triangles(tree.leaf_triangles),
+        patches(tree.patches),
+        triangle_blocks(tree.triangle_blocks) {}
+};
+
+// Builds the tree of triangles from `vertices` and `triangles`: to be called once these are complete. Deterministic.
+// Throws std::bad_alloc only. O(n log n). Precondition: indices are in range and coordinates within kCoordinateLimit.
+void index_triangles(PackedSphereTree& tree);
+
 // What is wrong with a tree's structure, or nullptr: indices in range, children after their parent, no block shared,
-// finite coordinates up to kCoordinateLimit, radii >= 0. Everything a query relies on to stay in bounds. `error` and
-// `depth` may be +infinity (unknown). O(nodes + triangles), allocates nothing.
-const char* structure_fault(const PackedSphereTree& tree) noexcept;
+// finite coordinates up to kCoordinateLimit, radii >= 0, a tree of triangles if there are triangles, of which it
+// repeats the corners exactly. Everything a query relies on to stay in bounds. `error` and `depth` may be +infinity
+// (unknown). O(nodes + triangles), allocates nothing.
+const char* structure_fault(const TreeView& tree) noexcept;
 
 // Upper bound on |centre| + radius over the nodes and on |vertex|, relative to the origin: the rounding of a query is a
 // multiple of it. O(nodes + vertices).
-double coordinate_extent(const PackedSphereTree& tree) noexcept;
+double coordinate_extent(const TreeView& tree) noexcept;
 
 }  // namespace orchard::runtime

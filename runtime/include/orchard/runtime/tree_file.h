@@ -16,9 +16,11 @@ enum class LoadStatus : std::uint8_t {
   truncated,          // shorter than its header says
   bad_magic,          // not an .orchard file
   version_newer,      // written by a later version of orchard
+  version_older,      // written by an earlier one
   checksum_mismatch,  // altered after it was written
   invalid_structure,  // an intact file whose contents are not a tree that a query could walk safely
   out_of_memory,
+  cannot_map,  // view() only: the bytes are not aligned, or this machine is big-endian
 };
 
 // One sentence without a full stop, for people. Never null.
@@ -26,12 +28,18 @@ const char* message(LoadStatus status) noexcept;
 
 // The bytes of a tree; the same tree gives the same bytes on every machine. Throws std::bad_alloc only: this is for the
 // side that builds trees. Precondition: structure_fault(tree) == nullptr.
-std::vector<std::byte> serialize(const PackedSphereTree& tree);
+std::vector<std::byte> serialize(const TreeView& tree);
 
 // Reads a tree from any bytes whatever. Unless `ok` is returned, `out` is as it was. Needs no more memory than the file
 // is long; counts are checked against the file's size before anything is allocated. A tree that loads has no
 // structure_fault(), so no query on it leaves its arrays.
 LoadStatus load(std::span<const std::byte> file, PackedSphereTree& out) noexcept;
 LoadStatus load_file(const char* path, PackedSphereTree& out) noexcept;
+
+// The same without a copy: `out` refers to `file`, which must outlive it unchanged. For files mapped into memory (see
+// mapped_tree.h) and for trees linked into a program. The bytes must begin at a multiple of kViewAlignment.
+// Nothing is allocated; everything is checked, in one pass over the bytes.
+inline constexpr std::size_t kViewAlignment = 32;
+LoadStatus view(std::span<const std::byte> file, TreeView& out) noexcept;
 
 }  // namespace orchard::runtime

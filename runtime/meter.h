@@ -1,0 +1,38 @@
+#pragma once
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <limits>
+
+#include "orchard/runtime/narrow_phase.h"
+
+namespace orchard::runtime {
+
+// What one call may still spend.
+class NarrowPhase::Meter {
+ public:
+  explicit Meter(const Budget& budget) noexcept : limit_(budget.pair_tests) {
+    if (budget.time < std::chrono::hours(24 * 365)) {  // more is no limit, and would overflow the clock
+      next_look_ = kClockInterval;
+      deadline_ = std::chrono::steady_clock::now() + budget.time;
+    }
+  }
+  bool exhausted() noexcept { return spent_ >= limit_ || (spent_ >= next_look_ && late()); }
+  // How many rows of so many tests may follow before the next look at the limits: at least one.
+  std::uint32_t rows(std::uint32_t tests) const noexcept {
+    return static_cast<std::uint32_t>(
+        std::min<std::uint64_t>(kBlockWidth, (std::min(limit_, next_look_) - spent_ - 1) / tests + 1));
+  }
+  void spend(std::uint64_t tests) noexcept { spent_ += tests; }
+  std::uint64_t spent() const noexcept { return spent_; }
+
+ private:
+  bool late() noexcept {
+    next_look_ = spent_ + kClockInterval;
+    return std::chrono::steady_clock::now() >= deadline_;
+  }
+  std::uint64_t limit_, spent_ = 0, next_look_ = std::numeric_limits<std::uint64_t>::max();
+  std::chrono::steady_clock::time_point deadline_;
+};
+
+}  // namespace orchard::runtime

@@ -1,0 +1,264 @@
+#include "patch_block.h"
+
+#include <limits>
+
+#include "vector_support.h"
+
+// Rounding. Patches: see Placement::margin in narrow_phase.cpp, (5). Triangles: any fixed vector serves as an axis,
+// so an axis itself needs no accuracy; only the projections do. A projection a . (p - q) of points placed to within
+// sigma is computed to within |a|_1 (2 sigma + 8 u D), which is below |a|_1 margin, with |a|_1 the sum of |components|.
+namespace orchard::runtime::detail {
+namespace {
+
+// Added to the square of a sine before its root: a cosine of two float normals is good to some 50 u, u = 2^-24.
+constexpr float kSineError = 0x1p-17f;
+constexpr float kLeastDistance = 1e-18f;  // keeps a quotient finite; far below every margin
+
+template <typename Kind>
+struct Eight {
+  using Floats = typename Kind::Floats;
+  using Mask = typename Kind::Mask;
+  struct Vectors {
+    Floats x, y, z;
+  };
+
+  ORCHARD_INLINE static Floats all(float value) noexcept { return spread<Floats>(value); }
+  ORCHARD_INLINE static Floats smaller(const Floats& a, const Floats& b) noexcept { return Kind::choose(a < b, a, b); }
+  ORCHARD_INLINE static Floats larger(const Floats& a, const Floats& b) noexcept { return Kind::choose(a < b, b, a); }
+  ORCHARD_INLINE static Floats size(const Floats& a) noexcept { return larger(a, -a); }
+  ORCHARD_INLINE static Floats dot(const Vectors& a, const Vectors& b) noexcept {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+  }
+  ORCHARD_INLINE static Vectors minus(const Vectors& a, const Vectors& b) noexcept {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+  }
+  ORCHARD_INLINE static Vectors cross(const Vectors& a, const Vectors& b) noexcept {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  }
+  ORCHARD_INLINE static Floats one_norm(const Vectors& a) noexcept { return size(a.x) + size(a.y) + size(a.z); }
+  ORCHARD_INLINE static Vectors turn(const std::array<float, 9>& r, const Vectors& v) noexcept {
+    return {all(r[0]) * v.x + all(r[1]) * v.y + all(r[2]) * v.z, all(r[3]) * v.x + all(r[4]) * v.y + all(r[5]) * v.z,
+            all(r[6]) * v.x + all(r[7]) * v.y + all(r[8]) * v.z};
+  }
+  ORCHARD_INLINE static Vectors move(const Placement& p, const Vectors& v) noexcept {
+    const Vectors turned = turn(p.rotation, v);
+    return {turned.x + all(p.translation[0]), turned.y + all(p.translation[1]), turned.z + all(p.translation[2])};
+  }
+  ORCHARD_INLINE static Vectors corner(const TriangleBlock& block, std::size_t k) noexcept {
+    return {load<Floats>(block.corner[k][0]), load<Floats>(block.corner[k][1]), load<Floats>(block.corner[k][2])};
+  }
+};
+
+template <typename Kind>
+ORCHARD_INLINE void find_gaps(const Patch& single, const PatchBlock& lanes, const Placement* placement, float margin,
+                              PatchGaps& result) noexcept {
+  using E = Eight<Kind>;
+  using Floats = typename E::Floats;
+  using Vectors = typename E::Vectors;
+  Vectors c = {load<Floats>(lanes.x), load<Floats>(lanes.y), load<Floats>(lanes.z)};
+  Vectors n = {load<Floats>(lanes.nx), load<Floats>(lanes.ny), load<Floats>(lanes.nz)};
+  Floats r = load<Floats>(lanes.radius), h = load<Floats>(lanes.height);
+  const Floats zero = E::all(0.0f);
+  result.used = Kind::bits(zero <= r);
+  if (placement != nullptr) {
+    c = E::move(*placement, c);
+    n = E::turn(placement->turn, n);
+    r = r * E::all(placement->scale);
+    h = h * E::all(placement->scale);
+  }
+  store(c.x, result.x), store(c.y, result.y), store(c.z, result.z);
+  store(n.x, result.nx), store(n.y, result.ny), store(n.z, result.nz);
+  store(r, result.radius), store(h, result.height);
+
+  // How far each reaches along a unit vector: across the planes, height times the cosine; along them, at most the
+  // radius times the sine. The axes tried: both normals, the line of the centres, and the balls.
+  const Vectors m = {E::all(single.nx), E::all(single.ny), E::all(single.nz)};
+  const Floats s = E::all(single.radius), k = E::all(single.height), slack = E::all(kSineError), one = E::all(1.0f);
+  const Vectors d = E::minus(c, {E::all(single.x), E::all(single.y), E::all(single.z)});
+  const Floats square = E::dot(d, d), along_n = E::size(E::dot(d, n)), along_m = E::size(E::dot(d, m));
+  const Floats cosine = E::size(E::dot(n, m));
+  const Floats sine = Kind::root(E::larger(one - cosine * cosine, zero) + slack);
+  const Floats distance = Kind::root(square);
+  const Floats slope = square * slack;
+  const Floats across_n = Kind::root(E::larger(square - along_n * along_n, zero) + slope);
+  const Floats across_m = Kind::root(E::larger(square - along_m * along_m, zero) + slope);
+  const Floats by_n = along_n - (h + (k * cosine + s * sine));
+  const Floats by_m = along_m - (k + (h * cosine + r * sine));
+  const Floats reach = (h * along_n + r * across_n) + (k * along_m + s * across_m);
+  const Floats by_line = distance - reach / (distance + E::all(kLeastDistance));
+  const Floats by_balls = distance - (r + s);
+  const Floats gap = E::larger(E::larger(by_n, by_m), E::larger(by_line, by_balls)) - E::all(margin);
+  store(gap, result.gap);
+  result.meeting = result.used & Kind::bits(gap <= zero);
+}
+
+template <typename Kind>
+ORCHARD_INLINE float find_support(const PatchBlock& block, const std::array<float, 3>& direction) noexcept {
+  using E = Eight<Kind>;
+  using Floats = typename E::Floats;
+  using Vectors = typename E::Vectors;
+  const Vectors u = {E::all(direction[0]), E::all(direction[1]), E::all(direction[2])};
+  const Vectors c = {load<Floats>(block.x), load<Floats>(block.y), load<Floats>(block.z)};
+  const Vectors n = {load<Floats>(block.nx), load<Floats>(block.ny), load<Floats>(block.nz)};
+  const Floats r = load<Floats>(block.radius), zero = E::all(0.0f);
+  const Floats cosine = E::size(E::dot(n, u));
+  const Floats sine = Kind::root(E::larger(E::all(1.0f) - cosine * cosine, zero) + E::all(kSineError));
+  const Floats reach = E::dot(c, u) + E::smaller(r, load<Floats>(block.height) * cosine + r * sine);
+  std::array<float, kBlockWidth> lanes;
+  store(Kind::choose(zero <= r, reach, E::all(-std::numeric_limits<float>::infinity())), lanes);
+  float most = lanes[0];
+  for (std::size_t i = 1; i < kBlockWidth; ++i) most = most < lanes[i] ? lanes[i] : most;
+  return most;
+}
+
+template <typename Kind>
+struct Extent {
+  typename Kind::Floats low, high;
+};
+
+template <typename Kind>
+ORCHARD_INLINE Extent<Kind> extent(const typename Kind::Floats& a, const typename Kind::Floats& b,
+                                   const typename Kind::Floats& c) noexcept {
+  using E = Eight<Kind>;
+  return {E::smaller(E::smaller(a, b), c), E::larger(E::larger(a, b), c)};
+}
+
+// Triangles that do not reach between the planes of the other leaf's patch.
+template <typename Kind>
+ORCHARD_INLINE std::uint32_t outside(const typename Eight<Kind>::Vectors (&corner)[3], const Patch& patch,
+                                     float margin) noexcept {
+  using E = Eight<Kind>;
+  using Vectors = typename E::Vectors;
+  const Vectors n = {E::all(patch.nx), E::all(patch.ny), E::all(patch.nz)};
+  const Vectors center = {E::all(patch.x), E::all(patch.y), E::all(patch.z)};
+  const auto height = [&](std::size_t k) ORCHARD_INLINE_LAMBDA { return E::dot(n, E::minus(corner[k], center)); };
+  const Extent<Kind> e = extent<Kind>(height(0), height(1), height(2));
+  const auto limit = E::all(patch.height + margin);
+  return Kind::bits((limit < e.low) | (e.high < -limit));
+}
+
+template <typename Kind>
+ORCHARD_INLINE std::uint64_t find_candidates(const LeafPair& pair, const Placement& placement) noexcept {
+  using E = Eight<Kind>;
+  using Floats = typename E::Floats;
+  using Vectors = typename E::Vectors;
+  const Vectors lane[3] = {E::corner(pair.lanes, 0), E::corner(pair.lanes, 1), E::corner(pair.lanes, 2)};
+  const Vectors row[3] = {E::move(placement, E::corner(pair.rows, 0)), E::move(placement, E::corner(pair.rows, 1)),
+                          E::move(placement, E::corner(pair.rows, 2))};
+  // Heights are along normals that are unit to 1e-6, so a margin for patches serves here, too.
+  const std::uint32_t rows = ~outside<Kind>(row, pair.lane_patch, placement.margin) & 0xffu;
+  const std::uint32_t lanes = ~outside<Kind>(lane, pair.row_patch, placement.margin) & 0xffu;
+  if (rows == 0 || lanes == 0) return 0;
+
+  const Floats margin = E::all(placement.margin);
+  const Vectors lane_edge[2] = {E::minus(lane[1], lane[0]), E::minus(lane[2], lane[0])};
+  const Vectors row_edge[2] = {E::minus(row[1], row[0]), E::minus(row[2], row[0])};
+  const Vectors lane_normal = E::cross(lane_edge[0], lane_edge[1]), row_normal = E::cross(row_edge[0], row_edge[1]);
+  // Own corners' heights over the plane through the first one: 0 but for rounding.
+  const auto own_height = [&](const Vectors& normal, const Vectors(&edge)[2]) ORCHARD_INLINE_LAMBDA -> Floats {
+    return E::larger(E::size(E::dot(normal, edge[0])), E::size(E::dot(normal, edge[1]))) + E::one_norm(normal) * margin;
+  };
+  const Floats lane_limit = own_height(lane_normal, lane_edge);
+  std::array<float, kBlockWidth> row_limit, nx, ny, nz, x[3], y[3], z[3];
+  store(own_height(row_normal, row_edge), row_limit);
+  store(row_normal.x, nx), store(row_normal.y, ny), store(row_normal.z, nz);
+  for (std::size_t k = 0; k < 3; ++k) store(row[k].x, x[k]), store(row[k].y, y[k]), store(row[k].z, z[k]);
+
+  std::uint64_t result = 0;
+  for (std::uint32_t r = 0; r < kBlockWidth; ++r) {
+    if ((rows >> r & 1) == 0 || pair.rows.triangle[r] == kNoTriangle) continue;
+    const Vectors p[3] = {{E::all(x[0][r]), E::all(y[0][r]), E::all(z[0][r])},
+                          {E::all(x[1][r]), E::all(y[1][r]), E::all(z[1][r])},
+                          {E::all(x[2][r]), E::all(y[2][r]), E::all(z[2][r])}};
+    const Vectors normal = {E::all(nx[r]), E::all(ny[r]), E::all(nz[r])};
+    const Vectors from[3] = {E::minus(lane[0], p[0]), E::minus(lane[1], p[0]), E::minus(lane[2], p[0])};
+    const Extent<Kind> over_row =
+        extent<Kind>(E::dot(normal, from[0]), E::dot(normal, from[1]), E::dot(normal, from[2]));
+    const Floats limit = E::all(row_limit[r]);
+    std::uint32_t left = lanes & ~Kind::bits((limit < over_row.low) | (over_row.high < -limit));
+    if (left == 0) continue;
+    const Extent<Kind> over_lane =
+        extent<Kind>(-E::dot(lane_normal, from[0]), E::dot(lane_normal, E::minus(p[1], lane[0])),
+                     E::dot(lane_normal, E::minus(p[2], lane[0])));
+    left &= ~Kind::bits((lane_limit < over_lane.low) | (over_lane.high < -lane_limit));
+    if (left == 0) continue;
+    // Edge against edge.
+    const Vectors row_edges[3] = {E::minus(p[1], p[0]), E::minus(p[2], p[1]), E::minus(p[0], p[2])};
+    const Vectors lane_edges[3] = {lane_edge[0], E::minus(lane[2], lane[1]), lane_edge[1]};
+    for (std::size_t i = 0; i < 3 && left != 0; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        const Vectors axis = E::cross(row_edges[i], lane_edges[j]);
+        const auto project = [&](const Vectors& v) ORCHARD_INLINE_LAMBDA { return E::dot(axis, E::minus(v, p[0])); };
+        const Floats zero = E::all(0.0f);
+        const Extent<Kind> of_row = extent<Kind>(zero, project(p[1]), project(p[2]));
+        const Extent<Kind> of_lane = extent<Kind>(E::dot(axis, from[0]), E::dot(axis, from[1]), E::dot(axis, from[2]));
+        const Floats room = E::one_norm(axis) * margin;
+        left &= ~Kind::bits((of_row.high + room < of_lane.low) | (of_lane.high + room < of_row.low));
+      }
+    }
+    result |= std::uint64_t{left} << (8 * r);
+  }
+  for (std::uint32_t l = 1; l < kBlockWidth; ++l) {
+    if (pair.lanes.triangle[l] == kNoTriangle) result &= ~(std::uint64_t{0x0101010101010101u} << l);
+  }
+  return result;
+}
+
+}  // namespace
+
+Patch moved(const Patch& patch, const Placement& p) noexcept {
+  const auto turn = [](const std::array<float, 9>& r, float x, float y, float z) -> std::array<float, 3> {
+    return {r[0] * x + r[1] * y + r[2] * z, r[3] * x + r[4] * y + r[5] * z, r[6] * x + r[7] * y + r[8] * z};
+  };
+  const auto c = turn(p.rotation, patch.x, patch.y, patch.z), n = turn(p.turn, patch.nx, patch.ny, patch.nz);
+  return {c[0] + p.translation[0], c[1] + p.translation[1], c[2] + p.translation[2], n[0], n[1], n[2],
+          patch.radius * p.scale,  patch.height * p.scale};
+}
+
+TrianglePoints points_of(const TriangleBlock& block, std::uint32_t lane) noexcept {
+  TrianglePoints result{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < 3; ++i) result[k][i] = double{block.corner[k][i][lane]};
+  }
+  return result;
+}
+
+TrianglePoints moved_points_of(const TriangleBlock& block, std::uint32_t lane, const Pose& pose) noexcept {
+  TrianglePoints result = points_of(block, lane);
+  for (Vec3& point : result) point = transform(pose, point);
+  return result;
+}
+
+void patch_gaps_scalar(const Patch& single, const PatchBlock& lanes, const Placement* placement, float margin,
+                       PatchGaps& result) noexcept {
+  find_gaps<PlainFloats>(single, lanes, placement, margin, result);
+}
+
+float patch_support_scalar(const PatchBlock& block, const std::array<float, 3>& direction) noexcept {
+  return find_support<PlainFloats>(block, direction);
+}
+
+std::uint64_t triangle_candidates_scalar(const LeafPair& pair, const Placement& placement) noexcept {
+  return find_candidates<PlainFloats>(pair, placement);
+}
+
+#ifdef ORCHARD_VECTORS
+using Widest = VectorFloats;
+#else
+using Widest = PlainFloats;
+#endif
+
+ORCHARD_PER_MACHINE void patch_gaps(const Patch& single, const PatchBlock& lanes, const Placement* placement,
+                                    float margin, PatchGaps& result) noexcept {
+  find_gaps<Widest>(single, lanes, placement, margin, result);
+}
+
+ORCHARD_PER_MACHINE float patch_support(const PatchBlock& block, const std::array<float, 3>& direction) noexcept {
+  return find_support<Widest>(block, direction);
+}
+
+ORCHARD_PER_MACHINE std::uint64_t triangle_candidates(const LeafPair& pair, const Placement& placement) noexcept {
+  return find_candidates<Widest>(pair, placement);
+}
+
+}  // namespace orchard::runtime::detail

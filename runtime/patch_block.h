@@ -1,0 +1,54 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "orchard/runtime/narrow_phase.h"
+#include "orchard/runtime/packed_tree.h"
+#include "orchard/runtime/pose.h"
+#include "triangle_pair.h"
+
+// The inner loops of the exact level and of distances: one patch against eight, and eight triangles against eight.
+// Every function has a twin that does the same, operation for operation, one number at a time: what the tests compare
+// with, and all that some compilers get.
+namespace orchard::runtime::detail {
+
+inline Patch patch_at(const PatchBlock& b, std::uint32_t i) noexcept {
+  return {b.x[i], b.y[i], b.z[i], b.nx[i], b.ny[i], b.nz[i], b.radius[i], b.height[i]};
+}
+
+Patch moved(const Patch& patch, const Placement& placement) noexcept;
+
+// Eight patches as they were tested, in the first tree's frame, and how far each is from the single one.
+struct PatchGaps {
+  using Lanes = std::array<float, kBlockWidth>;
+  alignas(32) Lanes x, y, z, nx, ny, nz, radius, height;
+  alignas(32) Lanes gap;  // certified lower bound on the distance; negative: they may meet, the lower the deeper
+  std::uint32_t used;     // bits: lanes that hold a patch
+  std::uint32_t meeting;  // bits: those with gap <= 0
+
+  Patch patch(std::uint32_t i) const noexcept { return {x[i], y[i], z[i], nx[i], ny[i], nz[i], radius[i], height[i]}; }
+};
+
+// `placement` moves the lanes unless it is null; `margin` (Placement::margin) covers all rounding.
+void patch_gaps(const Patch& single, const PatchBlock& lanes, const Placement* placement, float margin,
+                PatchGaps& result) noexcept;
+void patch_gaps_scalar(const Patch& single, const PatchBlock& lanes, const Placement* placement, float margin,
+                       PatchGaps& result) noexcept;
+
+// The largest of direction . point over the patches, rounding of a few u of the coordinates aside; `direction` is unit.
+float patch_support(const PatchBlock& block, const std::array<float, 3>& direction) noexcept;
+float patch_support_scalar(const PatchBlock& block, const std::array<float, 3>& direction) noexcept;
+
+struct LeafPair {
+  const TriangleBlock &lanes, &rows;  // of the first tree and, to be moved, of the second
+  Patch lane_patch, row_patch;        // around them, both in the first tree's frame
+};
+
+// Bit 8 * row + lane: pairs that may share a point. Never leaves out a pair that does.
+std::uint64_t triangle_candidates(const LeafPair& pair, const Placement& placement) noexcept;
+std::uint64_t triangle_candidates_scalar(const LeafPair& pair, const Placement& placement) noexcept;
+
+TrianglePoints points_of(const TriangleBlock& block, std::uint32_t lane) noexcept;
+TrianglePoints moved_points_of(const TriangleBlock& block, std::uint32_t lane, const Pose& pose) noexcept;
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,285 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "orchard/runtime/packed_tree.h"
+#include "triangle_pair.h"
+
+// The tree of triangles: halved along the widest direction, eight children a node, leaves of up to eight triangles.
+namespace orchard::runtime {
+namespace {
+
+using detail::Vec3;
+
+Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+// A unit vector rounded to float, or the x axis for one that has no direction.
+Vec3 direction(const Vec3& v) {
+  const double largest = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
+  if (!(largest > 0)) return {1, 0, 0};
+  const Vec3 w = {v[0] / largest, v[1] / largest, v[2] / largest};
+  const double length = std::sqrt(dot(w, w));
+  Vec3 result{};
+  for (std::size_t i = 0; i < 3; ++i) result[i] = double{static_cast<float>(w[i] / length)};
+  return result;
+}
+
+float above(double value) {  // at least `value`, rounding of a few operations in double included
+  return std::nextafter(static_cast<float>(value * (1 + 1e-14)), std::numeric_limits<float>::infinity());
+}
+
+// Eigenvectors of a symmetric matrix {xx, yy, zz, xy, xz, yz} by Jacobi rotations, the largest eigenvalue's first.
+std::array<Vec3, 3> axes_of(const std::array<double, 6>& m) {
+  double a[3][3] = {{m[0], m[3], m[4]}, {m[3], m[1], m[5]}, {m[4], m[5], m[2]}};
+  std::array<Vec3, 3> v = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};  // rows
+  constexpr int sweeps = 8;
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    for (std::size_t p = 0; p < 2; ++p) {
+      for (std::size_t q = p + 1; q < 3; ++q) {
+        if (a[p][q] == 0) continue;
+        const double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
+        const double t = (theta >= 0 ? 1 : -1) / (std::fabs(theta) + std::sqrt(theta * theta + 1));
+        if (!std::isfinite(t)) continue;
+        const double c = 1 / std::sqrt(t * t + 1), s = t * c;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const double x = a[k][p], y = a[k][q];
+          a[k][p] = c * x - s * y, a[k][q] = s * x + c * y;
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+          const double x = a[p][k], y = a[q][k];
+          a[p][k] = c * x - s * y, a[q][k] = s * x + c * y;
+          const double vx = v[p][k], vy = v[q][k];
+          v[p][k] = c * vx - s * vy, v[q][k] = s * vx + c * vy;
+        }
+      }
+    }
+  }
+  std::array<std::size_t, 3> order = {0, 1, 2};
+  std::stable_sort(order.begin(), order.end(), [&a](std::size_t i, std::size_t j) { return a[i][i] > a[j][j]; });
+  return {v[order[0]], v[order[1]], v[order[2]]};
+}
+
+struct Range {
+  std::size_t begin, end;
+  std::size_t size() const { return end - begin; }
+};
+
+struct Patch {
+  Vec3 center, normal;
+  double radius, height;
+};
+
+class Builder {
+ public:
+  explicit Builder(PackedSphereTree& tree) : tree_(tree) {
+    order_.resize(tree.triangles.size());
+    for (std::size_t t = 0; t < order_.size(); ++t) {
+      order_[t] = static_cast<std::uint32_t>(t);
+      Vec3 sum{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t i = 0; i < 3; ++i) sum[i] += corner(order_[t], k)[i] / 3;
+      }
+      centroids_.push_back(sum);
+    }
+  }
+
+  void build() {
+    tree_.patches.clear();
+    tree_.triangle_blocks.clear();
+    tree_.patch_depth = 0;
+    if (order_.empty()) return;
+    std::vector<Range> level = {{0, order_.size()}}, next;
+    add_block();
+    place(0, 0, level[0]);
+    std::vector<std::pair<std::size_t, std::uint32_t>> places = {{0, 0}}, next_places;
+    for (; !level.empty(); ++tree_.patch_depth) {
+      next.clear(), next_places.clear();
+      for (std::size_t n = 0; n < level.size(); ++n) expand(level[n], places[n], next, next_places);
+      level.swap(next), places.swap(next_places);
+    }
+    --tree_.patch_depth;
+  }
+
+ private:
+  Vec3 corner(std::uint32_t triangle, std::size_t k) const {
+    const auto& v = tree_.vertices[tree_.triangles[triangle][k]];
+    return {double{v[0]}, double{v[1]}, double{v[2]}};
+  }
+
+  void add_block() { tree_.patches.emplace_back().radius.fill(-1); }
+
+  void expand(const Range& node, const std::pair<std::size_t, std::uint32_t>& at, std::vector<Range>& next,
+              std::vector<std::pair<std::size_t, std::uint32_t>>& next_places) {
+    std::uint32_t& child = tree_.patches[at.first].child[at.second];
+    if (node.size() <= kBlockWidth) {
+      child = kLeafBit | static_cast<std::uint32_t>(tree_.triangle_blocks.size());
+      add_triangles(node);
+      return;
+    }
+    const std::size_t block = tree_.patches.size();
+    child = static_cast<std::uint32_t>(block);
+    const std::vector<Range> parts = split(node);
+    add_block();
+    for (std::uint32_t lane = 0; lane < parts.size(); ++lane) {
+      place(block, lane, parts[lane]);
+      next.push_back(parts[lane]);
+      next_places.emplace_back(block, lane);
+    }
+  }
+
+  void add_triangles(const Range& leaf) {
+    TriangleBlock& block = tree_.triangle_blocks.emplace_back();
+    for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
+      const bool used = lane < leaf.size();
+      const std::uint32_t t = order_[leaf.begin + (used ? lane : 0)];
+      block.triangle[lane] = used ? t : kNoTriangle;
+      for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t i = 0; i < 3; ++i) block.corner[k][i][lane] = tree_.vertices[tree_.triangles[t][k]][i];
+      }
+    }
+  }
+
+  // Halves the widest part until there are eight; what fits a leaf stays whole.
+  std::vector<Range> split(const Range& node) {
+    std::vector<Range> parts = {node};
+    std::vector<double> widths = {1};
+    while (parts.size() < kBlockWidth) {
+      const auto widest = static_cast<std::size_t>(std::max_element(widths.begin(), widths.end()) - widths.begin());
+      if (widths[widest] < 0) break;
+      const Range whole = parts[widest];
+      const std::size_t middle = halve(whole);
+      parts[widest] = {whole.begin, middle};
+      const auto behind = static_cast<std::ptrdiff_t>(widest) + 1;
+      parts.insert(parts.begin() + behind, {middle, whole.end});
+      widths[widest] = width_of(parts[widest]);
+      widths.insert(widths.begin() + behind, width_of(parts[widest + 1]));
+    }
+    return parts;
+  }
+
+  double width_of(const Range& part) const { return part.size() <= kBlockWidth ? -1 : ball_of(part).second; }
+
+  // At a multiple of eight triangles, so that leaves are full.
+  std::size_t halve(const Range& part) {
+    const Vec3 axis = axes_of(covariance(part))[0];
+    const std::size_t middle = part.begin + (part.size() / 2 + kBlockWidth - 1) / kBlockWidth * kBlockWidth;
+    const auto at = [this](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(at(part.begin), at(middle), at(part.end), [this, &axis](std::uint32_t a, std::uint32_t b) {
+      return std::pair(dot(axis, centroids_[a]), a) < std::pair(dot(axis, centroids_[b]), b);
+    });
+    std::sort(at(part.begin), at(middle)), std::sort(at(middle), at(part.end));
+    return middle;
+  }
+
+  // Of the corners, scaled to be free of overflow.
+  std::array<double, 6> covariance(const Range& part) const {
+    const auto [center, radius] = ball_of(part);
+    std::array<double, 6> m{};
+    if (!(radius > 0)) return m;
+    Vec3 mean{};
+    const double share = 1 / (3 * static_cast<double>(part.size()));
+    each_corner(part, [&, &middle = center, &size = radius](const Vec3& p) {
+      for (std::size_t i = 0; i < 3; ++i) mean[i] += (p[i] - middle[i]) / size * share;
+    });
+    each_corner(part, [&, &middle = center, &size = radius](const Vec3& p) {
+      Vec3 d = minus(p, middle);
+      for (std::size_t i = 0; i < 3; ++i) d[i] = d[i] / size - mean[i];
+      m[0] += d[0] * d[0], m[1] += d[1] * d[1], m[2] += d[2] * d[2];
+      m[3] += d[0] * d[1], m[4] += d[0] * d[2], m[5] += d[1] * d[2];
+    });
+    return m;
+  }
+
+  template <typename Visit>
+  void each_corner(const Range& part, Visit&& visit) const {
+    for (std::size_t i = part.begin; i < part.end; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) visit(corner(order_[i], k));
+    }
+  }
+
+  // A small ball (Ritter's): from a long chord, grown to reach every corner.
+  std::pair<Vec3, double> ball_of(const Range& part) const {
+    const auto farthest = [&](const Vec3& from) {
+      Vec3 best = from;
+      double most = -1;
+      each_corner(part, [&](const Vec3& p) {
+        const Vec3 d = minus(p, from);
+        if (dot(d, d) > most) most = dot(d, d), best = p;
+      });
+      return best;
+    };
+    const Vec3 p = farthest(corner(order_[part.begin], 0)), q = farthest(p), chord = minus(q, p);
+    Vec3 center = {(p[0] + q[0]) / 2, (p[1] + q[1]) / 2, (p[2] + q[2]) / 2};
+    double radius = std::sqrt(dot(chord, chord)) / 2;
+    each_corner(part, [&](const Vec3& x) {
+      const Vec3 d = minus(x, center);
+      const double distance = std::sqrt(dot(d, d));
+      if (distance <= radius) return;
+      const double grown = (radius + distance) / 2;
+      for (std::size_t i = 0; i < 3; ++i) center[i] += d[i] * ((grown - radius) / distance);
+      radius = grown;
+    });
+    return {center, radius};
+  }
+
+  // Between the planes across `normal`, centred between them.
+  Patch patch_across(const Range& part, const Vec3& middle, const Vec3& normal) const {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    each_corner(part, [&](const Vec3& p) {
+      const double h = dot(normal, minus(p, middle));
+      low = std::min(low, h), high = std::max(high, h);
+    });
+    Patch patch{middle, normal, 0, 0};
+    for (std::size_t i = 0; i < 3; ++i) {
+      patch.center[i] = double{static_cast<float>(middle[i] + (low + high) / 2 * normal[i])};
+    }
+    each_corner(part, [&](const Vec3& p) {
+      const Vec3 d = minus(p, patch.center);
+      patch.radius = std::max(patch.radius, std::sqrt(dot(d, d)));
+      patch.height = std::max(patch.height, std::fabs(dot(normal, d)));
+    });
+    return patch;
+  }
+
+  // The flatter one of the patch across the corners' thinnest direction and the one along the surface's mean normal.
+  Patch patch_of(const Range& part) const {
+    const Vec3 middle = ball_of(part).first;
+    Vec3 mean{};
+    for (std::size_t i = part.begin; i < part.end; ++i) {
+      const Vec3 a = corner(order_[i], 0), n = cross(minus(corner(order_[i], 1), a), minus(corner(order_[i], 2), a));
+      for (std::size_t k = 0; k < 3; ++k) mean[k] += n[k];
+    }
+    const Patch thin = patch_across(part, middle, direction(axes_of(covariance(part))[2]));
+    const Patch facing = patch_across(part, middle, direction(mean));
+    return facing.height <= thin.height ? facing : thin;
+  }
+
+  void place(std::size_t block_index, std::uint32_t lane, const Range& part) {
+    const Patch patch = patch_of(part);
+    PatchBlock& block = tree_.patches[block_index];
+    block.x[lane] = static_cast<float>(patch.center[0]);
+    block.y[lane] = static_cast<float>(patch.center[1]);
+    block.z[lane] = static_cast<float>(patch.center[2]);
+    block.nx[lane] = static_cast<float>(patch.normal[0]);
+    block.ny[lane] = static_cast<float>(patch.normal[1]);
+    block.nz[lane] = static_cast<float>(patch.normal[2]);
+    block.radius[lane] = above(patch.radius);
+    // What cancels in a height is of the size of the distances from the centre.
+    block.height[lane] = above(patch.height + 1e-15 * patch.radius);
+  }
+
+  PackedSphereTree& tree_;
+  std::vector<std::uint32_t> order_;
+  std::vector<Vec3> centroids_;
+};
+
+}  // namespace
+
+void index_triangles(PackedSphereTree& tree) { Builder(tree).build(); }
+
+}  // namespace orchard::runtime
