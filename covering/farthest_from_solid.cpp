@@ -9,6 +9,7 @@ namespace {
 
 // As for inaccuracy(): the bounds stay valid when it is met.
 constexpr int kMostEvaluations = 200'000;
+constexpr double kFinest = 1e-6;
 
 // A cube, with an upper bound on the signed distance over its part inside the ball.
 struct Cell {
@@ -20,29 +21,56 @@ bool less_promising(const Cell& a, const Cell& b) { return a.upper < b.upper; }
 
 class Search {
  public:
-  Search(const Surface& surface, const Sphere& ball, double tolerance)
-      : surface_(surface), ball_(ball), tolerance_(tolerance) {}
+  Search(const Surface& surface, const Sphere& ball, const DistanceTolerance& tolerance)
+      : surface_(surface), ball_(ball), radius_(surface.bounding_radius()), tolerance_(tolerance) {}
 
   Bounds run() {
-    ClosestPoint nearest;
-    everywhere_ = distance_bound(surface_.signed_distance(ball_.center, nearest), ball_.radius);
-    anchor_ = nearest.position;
-    if (everywhere_ <= 0 || ball_.radius <= 0) return {0, everywhere_};
-    evaluate(ball_.center, ball_.radius);
-    while (!cells_.empty() && evaluations_ < kMostEvaluations && cells_.front().upper > best_ + tolerance_) {
-      std::pop_heap(cells_.begin(), cells_.end(), less_promising);
-      const Cell cell = cells_.back();
-      cells_.pop_back();
-      for (int octant = 0; octant < 8; ++octant) {
-        const Vector step((octant & 1) ? 1 : -1, (octant & 2) ? 1 : -1, (octant & 4) ? 1 : -1);
-        evaluate(cell.center + cell.half / 2 * step, cell.half / 2);
-      }
-    }
-    const double open = cells_.empty() ? 0 : cells_.front().upper;
-    return {best_, std::min(everywhere_, std::max({best_, dropped_, open}))};
+    start();
+    while (open() && cells_.front().upper > best_ + width()) split_most_promising();
+    return bounds();
   }
 
+  // Only as far as it takes to tell whether the limit holds.
+  Bounds run_against(double limit) {
+    limit_ = limit;
+    start();
+    while (open() && cells_.front().upper > limit && best_ <= limit) split_most_promising();
+    return bounds();
+  }
+  const Point& where_lower() const { return at_; }
+
  private:
+  void start() {
+    ClosestPoint nearest;
+    at_ = ball_.center;
+    const double center = surface_.signed_distance(ball_.center, nearest);
+    everywhere_ = distance_bound(center, ball_.radius);
+    best_ = std::max(0.0, center);
+    anchor_ = nearest.position;
+    if (everywhere_ > best_ && everywhere_ > limit_) evaluate(ball_.center, ball_.radius);
+  }
+  bool open() const { return !cells_.empty() && evaluations_ < kMostEvaluations; }
+  Bounds bounds() const {
+    if (evaluations_ == 0) return {best_, everywhere_};
+    const double left = cells_.empty() ? 0 : cells_.front().upper;
+    return {best_, std::min(everywhere_, std::max({best_, dropped_, left}))};
+  }
+
+  void split_most_promising() {
+    std::pop_heap(cells_.begin(), cells_.end(), less_promising);
+    const Cell cell = cells_.back();
+    cells_.pop_back();
+    for (int octant = 0; octant < 8; ++octant) {
+      const Vector step((octant & 1) ? 1 : -1, (octant & 2) ? 1 : -1, (octant & 4) ? 1 : -1);
+      evaluate(cell.center + cell.half / 2 * step, cell.half / 2);
+    }
+  }
+
+  // How far the bounds may be apart, given the lower one.
+  double width() const {
+    return std::max({tolerance_.of_radius * radius_, tolerance_.of_distance * best_, kFinest * radius_});
+  }
+
   void evaluate(const Point& center, double half) {
     // The representative is the cube's centre, drawn into the ball: every point of the part inside the ball is as near
     // to it as to the centre, since drawing points into a convex set brings them no farther from its points.
@@ -53,11 +81,11 @@ class Search {
     ++evaluations_;
     ClosestPoint nearest;
     const double value = surface_.signed_distance(sample, nearest);
-    best_ = std::max(best_, value);
+    if (value > best_) best_ = value, at_ = sample;
     const double upper = std::min({value + reach, farthest(nearest.position, center, half),
                                    farthest(anchor_, center, half), everywhere_}) *
                          (1 + 1e-12);
-    if (upper <= best_ + 0.5 * tolerance_) {
+    if (upper <= limit_ || (limit_ < 0 && upper <= best_ + 0.5 * width())) {
       dropped_ = std::max(dropped_, upper);
       return;
     }
@@ -74,8 +102,10 @@ class Search {
   static constexpr double kHalfDiagonal = 1.7320508075688774;
   const Surface& surface_;
   const Sphere ball_;
-  const double tolerance_;
-  Point anchor_ = Point::Zero();
+  const double radius_;  // R
+  const DistanceTolerance tolerance_;
+  double limit_ = -1;  // < 0: none
+  Point anchor_ = Point::Zero(), at_ = Point::Zero();
   double everywhere_ = 0, best_ = 0, dropped_ = 0;
   int evaluations_ = 0;
   std::vector<Cell> cells_;
@@ -83,8 +113,15 @@ class Search {
 
 }  // namespace
 
-Bounds farthest_from_solid(const Surface& surface, const Sphere& ball, double tolerance) {
-  return Search(surface, ball, std::max(tolerance, 1e-6) * surface.bounding_radius()).run();
+Bounds farthest_from_solid(const Surface& surface, const Sphere& ball, const DistanceTolerance& tolerance) {
+  return Search(surface, ball, tolerance).run();
+}
+
+Bounds farthest_against(const Surface& surface, const Sphere& ball, double limit, Point& at) {
+  Search search(surface, ball, {});
+  const Bounds bounds = search.run_against(std::max(0.0, limit));
+  at = search.where_lower();
+  return bounds;
 }
 
 }  // namespace orchard

@@ -18,6 +18,8 @@ bool less_promising(const Cell& a, const Cell& b) { return a.upper < b.upper; }
 
 // Far more than any sphere of a sensible tree needs; met only by adversarial input, and then the bounds stay valid.
 constexpr int kMostEvaluations = 200'000;
+// Least width of the bounds, as a fraction of R: a thousand roundings of a coordinate in a float.
+constexpr double kFinest = 1e-6;
 
 // Best-first branch and bound. Over a cell with middle direction d the signed distance is at most
 //   sd(p) + |q - p|, since it is 1-Lipschitz, and
@@ -25,8 +27,8 @@ constexpr int kMostEvaluations = 200'000;
 // both taken at the farthest point q of the cap that the cell's corners span.
 class Search {
  public:
-  Search(const Surface& surface, const Sphere& sphere, double tolerance)
-      : surface_(surface), sphere_(sphere), tolerance_(tolerance) {}
+  Search(const Surface& surface, const Sphere& sphere, const DistanceTolerance& tolerance)
+      : surface_(surface), sphere_(sphere), radius_(surface.bounding_radius()), tolerance_(tolerance) {}
 
   Bounds run() {
     ClosestPoint nearest;
@@ -37,7 +39,7 @@ class Search {
     upper_everywhere_ = everywhere;
     for (const auto& face : octahedron()) evaluate(face);
     while (!cells_.empty() && evaluations_ < kMostEvaluations) {
-      if (cells_.front().upper <= best_ + tolerance_) break;
+      if (cells_.front().upper <= best_ + width()) break;
       std::pop_heap(cells_.begin(), cells_.end(), less_promising);
       const Cell cell = cells_.back();
       cells_.pop_back();
@@ -48,6 +50,11 @@ class Search {
   }
 
  private:
+  // How far the bounds may be apart, given the lower one.
+  double width() const {
+    return std::max({tolerance_.of_radius * radius_, tolerance_.of_distance * best_, kFinest * radius_});
+  }
+
   static std::vector<std::array<Vector, 3>> octahedron() {
     std::vector<std::array<Vector, 3>> faces;
     for (int sign = 0; sign < 8; ++sign)
@@ -76,7 +83,7 @@ class Search {
                                    farthest(anchor_, middle, chord), upper_everywhere_}) *
                          (1 + 1e-12);
     // A cell that cannot matter is dropped, but its bound counts towards the answer's.
-    if (upper <= best_ + 0.5 * tolerance_) {
+    if (upper <= best_ + 0.5 * width()) {
       dropped_ = std::max(dropped_, upper);
     } else {
       push({upper, corners});
@@ -101,7 +108,8 @@ class Search {
   static constexpr double kPi = 3.14159265358979323846;
   const Surface& surface_;
   const Sphere sphere_;
-  const double tolerance_;
+  const double radius_;  // R
+  const DistanceTolerance tolerance_;
   Point anchor_ = Point::Zero();
   double upper_everywhere_ = 0, best_ = 0, dropped_ = 0;
   int evaluations_ = 0;
@@ -110,9 +118,8 @@ class Search {
 
 }  // namespace
 
-Bounds inaccuracy(const Surface& surface, const Sphere& sphere, double tolerance) {
-  const double width = std::max(tolerance, 1e-6) * surface.bounding_radius();
-  return Search(surface, sphere, width).run();
+Bounds inaccuracy(const Surface& surface, const Sphere& sphere, const DistanceTolerance& tolerance) {
+  return Search(surface, sphere, tolerance).run();
 }
 
 double distance_bound(double signed_distance_of_center, double radius) {

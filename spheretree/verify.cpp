@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "orchard/covering/inaccuracy.h"
-#include "orchard/geometry/tolerance.h"
 #include "orchard/spheretree/certify.h"
 #include "packed_nodes.h"
 
@@ -135,37 +134,44 @@ class Verifier {
     return worst;
   }
 
+  struct Missed {
+    double center_distance = 0, distance_bound = 0;  // by how much; <= 0: proven
+    Point farthest = Point::Zero();
+  };
+
   void check_bounds(const VerifyOptions& options) {
-    struct Missed {
-      double center_distance = 0, distance_bound = 0;
-    };
     std::vector<Missed> missed(nodes_.size());
-    tbb::parallel_for(std::size_t{0}, nodes_.size(), [&](std::size_t i) {
-      const auto [block_index, lane] = nodes_[i];
-      const runtime::SiblingBlock& block = tree_.blocks[block_index];
-      const Sphere ball{origin_ + balls_[i].center, balls_[i].radius};
-      const double distance = surface_.solid() ? surface_.signed_distance(ball.center) : surface_.distance(ball.center);
-      missed[i].center_distance = distance + rounding_ - block.depth[lane];
-      missed[i].distance_bound = bound_on_distance(ball, distance, block.error[lane]) - block.error[lane];
-    });
+    tbb::parallel_for(std::size_t{0}, nodes_.size(), [&](std::size_t i) { missed[i] = missed_bounds(i); });
     for (Index i = 0; i < nodes_.size(); ++i) {
-      const Point at = origin_ + balls_[i].center;
       if (missed[i].center_distance > 0) {
         ++result_.bounds_violated;
+        const Point at = origin_ + balls_[i].center;
         add(options, {Violation::Kind::center_distance, i, kNone, at, missed[i].center_distance});
       }
       if (missed[i].distance_bound > 0) {
         ++result_.bounds_violated;
-        add(options, {Violation::Kind::distance_bound, i, kNone, at, missed[i].distance_bound});
+        add(options, {Violation::Kind::distance_bound, i, kNone, missed[i].farthest, missed[i].distance_bound});
       }
     }
   }
 
-  // The cheap bound first; only where it does not settle the matter, the search over the ball.
-  double bound_on_distance(const Sphere& ball, double distance, double stored) const {
-    const double cheap = distance_bound(distance + rounding_, ball.radius);
-    if (cheap <= stored || !surface_.solid()) return cheap;
-    return farthest_from_solid(surface_, ball, 0.01 * tolerance::kInaccuracy).upper + rounding_;
+  // The cheap bound by the centre's distance first; only where it does not settle the matter, the search over the ball.
+  Missed missed_bounds(std::size_t i) const {
+    const auto [block_index, lane] = nodes_[i];
+    const runtime::SiblingBlock& block = tree_.blocks[block_index];
+    const Sphere ball{origin_ + balls_[i].center, balls_[i].radius};
+    const double distance = surface_.solid() ? surface_.signed_distance(ball.center) : surface_.distance(ball.center);
+    Missed missed;
+    missed.center_distance = distance + rounding_ - block.depth[lane];
+    missed.farthest = ball.center;
+    const double stored = block.error[lane];
+    double proven = distance_bound(distance + rounding_, ball.radius);
+    if (proven > stored && surface_.solid()) {
+      const Bounds bounds = farthest_against(surface_, ball, stored - rounding_, missed.farthest);
+      proven = bounds.upper + rounding_;
+    }
+    missed.distance_bound = proven - stored;
+    return missed;
   }
 
   const Surface& surface_;

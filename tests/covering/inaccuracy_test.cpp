@@ -28,7 +28,7 @@ TEST(Inaccuracy, OfAConvexSolidIsTheSignedDistancePlusTheRadius) {
     const Sphere sphere{Point(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(0.3, 0.9)),
                         random.uniform(0.2, 0.8)};
     const double truth = std::max(0.0, sphere.radius + surface.signed_distance(sphere.center));
-    const Bounds bounds = inaccuracy(surface, sphere, kTolerance);
+    const Bounds bounds = inaccuracy(surface, sphere, {kTolerance, 0});
     EXPECT_LE(bounds.lower, truth + 1e-12) << "seed " << seed;
     EXPECT_GE(bounds.upper, truth - 1e-12) << "seed " << seed;
     EXPECT_LE(bounds.upper - bounds.lower, kTolerance * surface.bounding_radius() + 1e-12) << "seed " << seed;
@@ -49,7 +49,7 @@ TEST(Inaccuracy, BracketsWhatDenseSamplingOfTheSphereFinds) {
       const double size = surface.bounding_radius();
       const Sphere sphere{surface.bounding_ball().center + size * random.uniform() * random_direction(random),
                           size * random.uniform(0.02, 0.9)};
-      const Bounds bounds = inaccuracy(surface, sphere, kTolerance);
+      const Bounds bounds = inaccuracy(surface, sphere, {kTolerance, 0});
       double sampled = 0;
       for (int i = 0; i < 4000; ++i)
         sampled = std::max(sampled, surface.signed_distance(sphere.center + sphere.radius * random_direction(random)));
@@ -63,16 +63,16 @@ TEST(Inaccuracy, BracketsWhatDenseSamplingOfTheSphereFinds) {
 
 TEST(Inaccuracy, IsZeroForASphereInsideTheSolid) {
   const Surface surface(test::box(Point(-1, -1, -1), Point(1, 1, 1)));
-  EXPECT_EQ(inaccuracy(surface, {Point::Zero(), 0.9}, kTolerance).upper, 0);
+  EXPECT_EQ(inaccuracy(surface, {Point::Zero(), 0.9}, {kTolerance, 0}).upper, 0);
 }
 
 TEST(Inaccuracy, ScalesWithTheModel) {
   const TriangleMesh mesh = test::torus(24, 12);
   const Sphere sphere{Point(0.7, 0.2, 0.1), 0.6};
-  const Bounds at_one = inaccuracy(Surface(mesh), sphere, kTolerance);
+  const Bounds at_one = inaccuracy(Surface(mesh), sphere, {kTolerance, 0});
   for (const double scale : {0x1p-20, 0x1p+20}) {
     const Surface scaled(test::transformed(mesh, scale, Vector::Zero()));
-    const Bounds bounds = inaccuracy(scaled, {scale * sphere.center, scale * sphere.radius}, kTolerance);
+    const Bounds bounds = inaccuracy(scaled, {scale * sphere.center, scale * sphere.radius}, {kTolerance, 0});
     EXPECT_DOUBLE_EQ(bounds.lower, scale * at_one.lower);
     EXPECT_DOUBLE_EQ(bounds.upper, scale * at_one.upper);
   }
@@ -80,7 +80,7 @@ TEST(Inaccuracy, ScalesWithTheModel) {
 
 TEST(Inaccuracy, RefusesASurfaceWithoutAnInside) {
   const Surface surface(test::open_box());
-  EXPECT_THROW(inaccuracy(surface, {Point::Zero(), 1}, kTolerance), InputError);
+  EXPECT_THROW(inaccuracy(surface, {Point::Zero(), 1}, {kTolerance, 0}), InputError);
 }
 
 TEST(FarthestFromSolid, BracketsWhatDenseSamplingOfTheBallFinds) {
@@ -90,7 +90,7 @@ TEST(FarthestFromSolid, BracketsWhatDenseSamplingOfTheBallFinds) {
     const double size = surface.bounding_radius();
     const Sphere ball{surface.bounding_ball().center + size * random.uniform() * random_direction(random),
                       size * random.uniform(0.02, 0.9)};
-    const Bounds bounds = farthest_from_solid(surface, ball, kTolerance);
+    const Bounds bounds = farthest_from_solid(surface, ball, {kTolerance, 0});
     double sampled = 0;
     for (int i = 0; i < 4000; ++i) {
       const Point p = ball.center + ball.radius * std::cbrt(random.uniform()) * random_direction(random);
@@ -100,7 +100,7 @@ TEST(FarthestFromSolid, BracketsWhatDenseSamplingOfTheBallFinds) {
     EXPECT_LE(bounds.upper - bounds.lower, kTolerance * size + 1e-12) << "seed " << seed;
     EXPECT_NEAR(bounds.lower, sampled, 0.1 * ball.radius + kTolerance * size) << "seed " << seed;
     EXPECT_LE(bounds.upper, distance_bound(surface.signed_distance(ball.center), ball.radius)) << "seed " << seed;
-    EXPECT_GE(bounds.upper, inaccuracy(surface, ball, kTolerance).lower) << "seed " << seed;
+    EXPECT_GE(bounds.upper, inaccuracy(surface, ball, {kTolerance, 0}).lower) << "seed " << seed;
   }
 }
 
@@ -114,10 +114,42 @@ TEST(FarthestFromSolid, CountsTheHollowThatABallFills) {
   const Surface surface(mesh);
   ASSERT_TRUE(surface.solid());
   const Sphere ball{Point::Zero(), 1.8};
-  EXPECT_EQ(inaccuracy(surface, ball, kTolerance).upper, 0);
-  const Bounds bounds = farthest_from_solid(surface, ball, 1e-4);
+  EXPECT_EQ(inaccuracy(surface, ball, {kTolerance, 0}).upper, 0);
+  const Bounds bounds = farthest_from_solid(surface, ball, {1e-4, 0});
   EXPECT_NEAR(bounds.lower, 1, 1e-3);
   EXPECT_GE(bounds.upper, 1);
+}
+
+TEST(FarthestFromSolid, KeepsTheToleranceAskedFor) {
+  const Surface surface(test::u_shape(0.4));
+  const double size = surface.bounding_radius();
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    Random random(seed, 5);
+    const Sphere ball{surface.bounding_ball().center + size * random.uniform() * random_direction(random),
+                      size * random.uniform(0.02, 0.9)};
+    for (const Bounds& bounds : {farthest_from_solid(surface, ball), inaccuracy(surface, ball)}) {
+      EXPECT_LE(bounds.upper - bounds.lower, std::max(1e-4 * size, 0.01 * bounds.lower) * (1 + 1e-9));
+      EXPECT_GE(bounds.lower, 0);
+    }
+  }
+}
+
+TEST(FarthestFromSolid, TellsWhetherALimitHolds) {
+  const Surface surface(test::torus(24, 12));
+  const double size = surface.bounding_radius();
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    Random random(seed, 6);
+    const Sphere ball{surface.bounding_ball().center + size * random.uniform() * random_direction(random),
+                      size * random.uniform(0.02, 0.9)};
+    const Bounds bounds = farthest_from_solid(surface, ball, {1e-4, 0});
+    Point at;
+    const double above = bounds.upper + 1e-3 * size, below = bounds.lower - 1e-3 * size;
+    EXPECT_LE(farthest_against(surface, ball, above, at).upper, above) << "seed " << seed;
+    if (below < 0) continue;
+    EXPECT_GT(farthest_against(surface, ball, below, at).lower, below) << "seed " << seed;
+    EXPECT_GT(surface.signed_distance(at), below) << "seed " << seed;
+    EXPECT_LE((at - ball.center).norm(), ball.radius * (1 + 1e-12)) << "seed " << seed;
+  }
 }
 
 TEST(DistanceBound, IsNeverBelowTheDistanceOfAPointOfTheBall) {

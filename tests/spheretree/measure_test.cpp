@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "orchard/covering/inaccuracy.h"
 #include "orchard/spheretree/octree.h"
 #include "support.h"
 
@@ -28,6 +29,20 @@ TEST(Measure, BoundsTheDistanceOfEveryPointOfTheBall) {
       EXPECT_LE(distance, node.inaccuracy + 1e-12);
     }
   }
+}
+
+// Around a gap the ball's centre says little: the search over the ball is what counts.
+TEST(Measure, StoresTheTighterBoundOverTheBall) {
+  const Surface surface(u_shape(0.3));
+  SphereTree tree = octree(surface);
+  measure(tree, surface);
+  int tighter = 0;
+  for (const SphereNode& node : tree.nodes) {
+    const double cheap = distance_bound(node.center_distance, node.sphere.radius);
+    EXPECT_LE(node.distance_bound, cheap);
+    tighter += node.distance_bound < 0.9 * cheap;
+  }
+  EXPECT_GT(tighter, 10);
 }
 
 TEST(Measure, FallsBackToTheDistanceBoundOnAnOpenSurface) {

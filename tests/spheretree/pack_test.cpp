@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "orchard/covering/inaccuracy.h"
 #include "orchard/geometry/error.h"
 #include "orchard/spheretree/certify.h"
 #include "orchard/spheretree/cover.h"
@@ -53,7 +54,9 @@ TEST(Pack, KeepsEveryBallInsideItsPackedOneAndEveryBoundBelowItsPackedOne) {
         const Point center = origin + Vector(block.x[lane], block.y[lane], block.z[lane]);
         const double distance = surface.signed_distance(center), slack = 1e-15 * origin.norm();
         EXPECT_GE(block.depth[lane], distance - slack);
-        EXPECT_GE(block.error[lane], std::max(0.0, distance + block.radius[lane]) - slack);
+        Point at;
+        const double limit = block.error[lane] + slack + 1e-12 * surface.bounding_radius();
+        EXPECT_LE(farthest_against(surface, {center, block.radius[lane]}, limit, at).lower, limit);
       }
   }
 }
