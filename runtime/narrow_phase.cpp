@@ -217,9 +217,15 @@ Answer NarrowPhase::start(const Pose& a, const Pose& b) noexcept {
   roots_pending_ = true;
   // Poses that are not finite, or beyond what can be squared: nothing is certain then and nothing can be refined.
   const bool deeper = !detail::is_leaf(first_.tree, 0) || !detail::is_leaf(second_.tree, 0) || has_triangles();
-  const double scaled = second_.extent * (second.scale / first.scale);
-  finished_ = !deeper || !std::isfinite(ball_gap) || !(scaled <= 4 * double{kCoordinateLimit});
+  finished_ = !deeper || !std::isfinite(ball_gap) || !in_range();
   return answer_;
+}
+
+// Whether floats can hold the square of every distance that the pair's frame may have to.
+bool NarrowPhase::in_range() const noexcept {
+  double size = second_.extent * second_pose_.scale;
+  for (std::size_t i = 0; i < 3; ++i) size += std::fabs(second_pose_.translation[i] - first_pose_.translation[i]);
+  return size <= 4 * double{kCoordinateLimit} * first_pose_.scale;
 }
 
 bool NarrowPhase::has_triangles() const noexcept {

@@ -204,6 +204,55 @@ ORCHARD_INLINE std::uint64_t find_candidates(const LeafPair& pair, const Placeme
   return result;
 }
 
+// Axes are normalised in float, so they are longer than 1 by less than 4 u, and a projection of D is off by less than
+// 12 u D and the points' own errors: twice the margin is plenty.
+template <typename Kind>
+ORCHARD_INLINE void find_triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows,
+                                       const Placement& placement, const std::array<float, 3>& direction,
+                                       TriangleGaps& result) noexcept {
+  using E = Eight<Kind>;
+  using Floats = typename E::Floats;
+  using Vectors = typename E::Vectors;
+  const Vectors lane[3] = {E::corner(lanes, 0), E::corner(lanes, 1), E::corner(lanes, 2)};
+  const Vectors row[3] = {E::move(placement, E::corner(rows, 0)), E::move(placement, E::corner(rows, 1)),
+                          E::move(placement, E::corner(rows, 2))};
+  const auto normalised = [](const Vectors& v) ORCHARD_INLINE_LAMBDA -> Vectors {
+    const Floats size = Kind::root(E::dot(v, v)) + E::all(kLeastDistance);
+    return {v.x / size, v.y / size, v.z / size};
+  };
+  const auto normal_of = [&](const Vectors(&t)[3]) ORCHARD_INLINE_LAMBDA -> Vectors {
+    return normalised(E::cross(E::minus(t[1], t[0]), E::minus(t[2], t[0])));
+  };
+  const auto gap_along = [&](const Vectors& axis, const Vectors(&p)[3]) ORCHARD_INLINE_LAMBDA -> Floats {
+    const auto project = [&](const Vectors& v) ORCHARD_INLINE_LAMBDA { return E::dot(axis, E::minus(v, p[0])); };
+    const Extent<Kind> l = extent<Kind>(project(lane[0]), project(lane[1]), project(lane[2]));
+    const Extent<Kind> r = extent<Kind>(E::all(0.0f), project(p[1]), project(p[2]));
+    return E::larger(l.low - r.high, r.low - l.high);
+  };
+  const Vectors lane_normal = normal_of(lane), row_normal = normal_of(row);
+  const Vectors given = {E::all(direction[0]), E::all(direction[1]), E::all(direction[2])};
+  std::array<float, kBlockWidth> nx, ny, nz, x[3], y[3], z[3];
+  store(row_normal.x, nx), store(row_normal.y, ny), store(row_normal.z, nz);
+  for (std::size_t k = 0; k < 3; ++k) store(row[k].x, x[k]), store(row[k].y, y[k]), store(row[k].z, z[k]);
+  const Floats third = E::all(1.0f / 3), margin = E::all(2 * placement.margin);
+  for (std::uint32_t r = 0; r < kBlockWidth; ++r) {
+    if (rows.triangle[r] == kNoTriangle) break;
+    const Vectors p[3] = {{E::all(x[0][r]), E::all(y[0][r]), E::all(z[0][r])},
+                          {E::all(x[1][r]), E::all(y[1][r]), E::all(z[1][r])},
+                          {E::all(x[2][r]), E::all(y[2][r]), E::all(z[2][r])}};
+    const auto middle = [&](const Floats& a, const Floats& b, const Floats& c)
+                            ORCHARD_INLINE_LAMBDA -> Floats { return (a + b + c) * third; };
+    const Vectors line = normalised(
+        E::minus({middle(lane[0].x, lane[1].x, lane[2].x), middle(lane[0].y, lane[1].y, lane[2].y),
+                  middle(lane[0].z, lane[1].z, lane[2].z)},
+                 {middle(p[0].x, p[1].x, p[2].x), middle(p[0].y, p[1].y, p[2].y), middle(p[0].z, p[1].z, p[2].z)}));
+    const Vectors of_row = {E::all(nx[r]), E::all(ny[r]), E::all(nz[r])};
+    const Floats gap = E::larger(E::larger(gap_along(of_row, p), gap_along(lane_normal, p)),
+                                 E::larger(gap_along(line, p), gap_along(given, p)));
+    store(gap - margin, result.lower[r]);
+  }
+}
+
 }  // namespace
 
 Patch moved(const Patch& patch, const Placement& p) noexcept {
@@ -234,6 +283,11 @@ void patch_gaps_scalar(const Patch& single, const PatchBlock& lanes, const Place
   find_gaps<PlainFloats>(single, lanes, placement, margin, result);
 }
 
+void triangle_gaps_scalar(const TriangleBlock& lanes, const TriangleBlock& rows, const Placement& placement,
+                          const std::array<float, 3>& direction, TriangleGaps& result) noexcept {
+  find_triangle_gaps<PlainFloats>(lanes, rows, placement, direction, result);
+}
+
 float patch_support_scalar(const PatchBlock& block, const std::array<float, 3>& direction) noexcept {
   return find_support<PlainFloats>(block, direction);
 }
@@ -251,6 +305,12 @@ using Widest = PlainFloats;
 ORCHARD_PER_MACHINE void patch_gaps(const Patch& single, const PatchBlock& lanes, const Placement* placement,
                                     float margin, PatchGaps& result) noexcept {
   find_gaps<Widest>(single, lanes, placement, margin, result);
+}
+
+ORCHARD_PER_MACHINE void triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows,
+                                       const Placement& placement, const std::array<float, 3>& direction,
+                                       TriangleGaps& result) noexcept {
+  find_triangle_gaps<Widest>(lanes, rows, placement, direction, result);
 }
 
 ORCHARD_PER_MACHINE float patch_support(const PatchBlock& block, const std::array<float, 3>& direction) noexcept {

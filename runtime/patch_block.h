@@ -48,6 +48,17 @@ struct LeafPair {
 std::uint64_t triangle_candidates(const LeafPair& pair, const Placement& placement) noexcept;
 std::uint64_t triangle_candidates_scalar(const LeafPair& pair, const Placement& placement) noexcept;
 
+// Certified lower bounds on the distances of triangles, below 0 where none is known; unused rows and lanes hold
+// anything.
+struct TriangleGaps {
+  alignas(32) std::array<std::array<float, kBlockWidth>, kBlockWidth> lower;  // [row][lane]
+};
+// `direction`: one more axis to try, of length 1 at most.
+void triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows, const Placement& placement,
+                   const std::array<float, 3>& direction, TriangleGaps& result) noexcept;
+void triangle_gaps_scalar(const TriangleBlock& lanes, const TriangleBlock& rows, const Placement& placement,
+                          const std::array<float, 3>& direction, TriangleGaps& result) noexcept;
+
 TrianglePoints points_of(const TriangleBlock& block, std::uint32_t lane) noexcept;
 TrianglePoints moved_points_of(const TriangleBlock& block, std::uint32_t lane, const Pose& pose) noexcept;
 

@@ -133,6 +133,7 @@ class NarrowPhase {
   Contact contact() const noexcept;
 
  private:
+  friend class DistanceQuery;
   struct Side {
     TreeView tree;
     std::array<double, 3> root{};         // its centre, origin included
@@ -177,6 +178,7 @@ class NarrowPhase {
   Pose relative_pose() const noexcept;
   void place() noexcept;
   bool has_triangles() const noexcept;
+  bool in_range() const noexcept;
   void finish(Answer answer) noexcept;
   static double pair_bound(double distance, double radii, double errors, double depths) noexcept;
 

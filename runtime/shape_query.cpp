@@ -1,0 +1,235 @@
+#include "orchard/runtime/shape_query.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tree_nodes.h"
+#include "triangle_distance.h"
+
+namespace orchard::runtime {
+
+using detail::orientation;
+using detail::TrianglePoints;
+using detail::Vec3;
+
+namespace {
+
+// Patches are left out only beyond this much more than need be, for the rounding of a few operations.
+constexpr double kRounding = 1e-12;
+constexpr int kRays = 16;  // directions tried before contains() adds up angles
+
+Vec3 minus(const Vec3& a, const Vec3& b) noexcept { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+Vec3 plus(const Vec3& a, const Vec3& d, double t) noexcept {
+  return {a[0] + t * d[0], a[1] + t * d[1], a[2] + t * d[2]};
+}
+double dot(const Vec3& a, const Vec3& b) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+struct Segment {
+  Vec3 p, d;  // from p to p + d
+  double square;
+  Segment(const Vec3& from, const Vec3& to) noexcept : p(from), d(minus(to, from)), square(dot(d, d)) {}
+};
+
+// Lower bound on the distance of a patch from a segment.
+double patch_distance(const PatchBlock& block, std::uint32_t lane, const Segment& s) noexcept {
+  const Vec3 c = {block.x[lane], block.y[lane], block.z[lane]}, n = {block.nx[lane], block.ny[lane], block.nz[lane]};
+  const Vec3 to = minus(c, s.p);
+  const double t = s.square > 0 ? std::clamp(dot(to, s.d) / s.square, 0.0, 1.0) : 0;
+  const double by_ball = detail::length(minus(to, plus({0, 0, 0}, s.d, t))) - double{block.radius[lane]};
+  const double begin = -dot(n, to), end = begin + dot(n, s.d);
+  const double nearer = begin * end <= 0 ? 0 : std::min(std::fabs(begin), std::fabs(end));
+  // The normal's length is 1 to within 5e-7.
+  const double by_planes = (nearer - double{block.height[lane]}) * (1 - 1e-6);
+  return std::max(by_ball, by_planes);
+}
+
+// Calls visit(triangle block) for the leaves whose patches are within limit() of the segment, the nearest child first,
+// until it returns false.
+template <typename Limit, typename Visit>
+void walk(const TreeView& tree, const Segment& segment, double rounding, Limit&& limit, Visit&& visit) noexcept {
+  struct Entry {
+    double distance;
+    std::uint32_t child;
+  };
+  std::array<Entry, kBlockWidth*(kPatchDepthLimit + 1) + 1> stack;
+  std::size_t size = 0;
+  const auto push_children = [&](std::uint32_t index) {
+    const PatchBlock& block = tree.patches[index];
+    const std::size_t begin = size;
+    for (std::uint32_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
+      const double distance = patch_distance(block, lane, segment);
+      if (distance > limit() * (1 + kRounding) + rounding) continue;
+      std::size_t at = size++;
+      for (; at > begin && stack[at - 1].distance < distance; --at) stack[at] = stack[at - 1];
+      stack[at] = {distance, block.child[lane]};
+    }
+  };
+  push_children(0);
+  while (size > 0) {
+    const Entry entry = stack[--size];
+    if (entry.distance > limit() * (1 + kRounding) + rounding) continue;
+    if ((entry.child & kLeafBit) == 0) {
+      push_children(entry.child);
+    } else if (!visit(tree.triangle_blocks[entry.child & ~kLeafBit])) {
+      return;
+    }
+  }
+}
+
+TrianglePoints points_of(const TriangleBlock& block, std::uint32_t lane) noexcept {
+  TrianglePoints t{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < 3; ++i) t[k][i] = double{block.corner[k][i][lane]};
+  }
+  return t;
+}
+
+template <typename Visit>
+bool each_triangle(const TriangleBlock& block, Visit&& visit) noexcept {
+  for (std::uint32_t lane = 0; lane < kBlockWidth && block.triangle[lane] != kNoTriangle; ++lane) {
+    if (!visit(points_of(block, lane), block.triangle[lane])) return false;
+  }
+  return true;
+}
+
+struct Frame {  // the body's, with its coordinates relative to the tree's origin
+  explicit Frame(const TreeView& view, const Pose& body) noexcept : tree(view), pose(body), back(inverse(body)) {}
+  Vec3 enter(const Vec3& world) const noexcept { return minus(transform(back, world), tree.origin); }
+  Vec3 leave(const Vec3& local) const noexcept { return transform(pose, plus(local, tree.origin, 1)); }
+  double rounding(const Segment& s) const noexcept {
+    return kRounding * (detail::length(s.p) + detail::length(s.d) + tree.bounding_radius);
+  }
+  const TreeView& tree;
+  const Pose& pose;
+  Pose back;
+};
+
+Vec3 ray_direction(int i) noexcept {  // evenly turned, none along an axis or a diagonal
+  const double z = 1 - (2 * i + 0.87) / kRays, turn = 2.399963 * i + 0.5, r = std::sqrt(1 - z * z);
+  return {r * std::cos(turn), r * std::sin(turn), z};
+}
+
+enum class Crossing { none, one, unclear };
+
+Crossing crossing(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept {
+  const int side_p = orientation(t[0], t[1], t[2], p), side_q = orientation(t[0], t[1], t[2], q);
+  if (side_p * side_q > 0) return Crossing::none;
+  const int a = orientation(p, q, t[0], t[1]), b = orientation(p, q, t[1], t[2]), c = orientation(p, q, t[2], t[0]);
+  const bool mixed = std::max({a, b, c}) > 0 && std::min({a, b, c}) < 0;
+  if (mixed) return Crossing::none;
+  return side_p == 0 || side_q == 0 || a == 0 || b == 0 || c == 0 ? Crossing::unclear : Crossing::one;
+}
+
+double winding_angle(const TreeView& tree, const Vec3& point) noexcept {
+  double sum = 0;
+  for (const TriangleBlock& block : tree.triangle_blocks) {
+    each_triangle(block, [&](const TrianglePoints& t, std::uint32_t) {
+      const Vec3 a = minus(t[0], point), b = minus(t[1], point), c = minus(t[2], point);
+      const double la = detail::length(a), lb = detail::length(b), lc = detail::length(c);
+      const double volume =
+          a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
+      sum += 2 * std::atan2(volume, la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+      return true;
+    });
+  }
+  return sum;
+}
+
+double reach_beyond(const TreeView& tree, const Vec3& point) noexcept {  // from the point to outside of everything
+  const PatchBlock& root = tree.patches[0];
+  return detail::length(minus(point, {root.x[0], root.y[0], root.z[0]})) + 2 * double{root.radius[0]} +
+         kRounding * tree.bounding_radius;
+}
+
+}  // namespace
+
+SurfacePoint nearest_point_to_segment(const TreeView& tree, const Pose& pose, const std::array<double, 3>& p,
+                                      const std::array<double, 3>& q, double limit) noexcept {
+  SurfacePoint best;
+  if (tree.patches.empty()) return best;
+  const Frame frame(tree, pose);
+  const Vec3 from = frame.enter(p), to = frame.enter(q);
+  const Segment segment(from, to);
+  const TrianglePoints shape = {from, to, to};
+  double least = limit / pose.scale;
+  walk(
+      tree, segment, frame.rounding(segment), [&] { return least; },
+      [&](const TriangleBlock& block) {
+        return each_triangle(block, [&](const TrianglePoints& t, std::uint32_t triangle) {
+          detail::NearestPoints near = detail::nearest_points(shape, t);
+          Vec3 common{};
+          if (detail::triangles_intersect(shape, t, &common)) near = {0, common, common};
+          if (near.distance > least || (near.distance == least && best.triangle != kNoTriangle)) return true;
+          least = near.distance;
+          best = {least * pose.scale, near.on_b, triangle};
+          return least > 0;
+        });
+      });
+  if (best.triangle != kNoTriangle) best.point = frame.leave(best.point);
+  return best;
+}
+
+SurfacePoint nearest_point(const TreeView& tree, const Pose& pose, const std::array<double, 3>& center,
+                           double limit) noexcept {
+  return nearest_point_to_segment(tree, pose, center, center, limit);
+}
+
+std::optional<RayHit> cast_ray(const TreeView& tree, const Pose& pose, const std::array<double, 3>& origin,
+                               const std::array<double, 3>& direction, double longest) noexcept {
+  if (tree.patches.empty()) return std::nullopt;
+  const Frame frame(tree, pose);
+  const Vec3 from = frame.enter(origin);
+  Vec3 way = rotate(frame.back, direction);
+  for (double& component : way) component *= frame.back.scale;
+  const double speed = detail::length(way);
+  const double end = speed > 0 ? std::min(longest, reach_beyond(tree, from) / speed) : 0;
+  std::optional<RayHit> best;
+  const Segment whole(from, plus(from, way, end));
+  const TrianglePoints shape = {from, plus(from, way, end), plus(from, way, end)};
+  walk(
+      tree, whole, frame.rounding(whole), [] { return 0.0; },
+      [&](const TriangleBlock& block) {
+        return each_triangle(block, [&](const TrianglePoints& t, std::uint32_t triangle) {
+          Vec3 common{};
+          if (!detail::triangles_intersect(shape, t, &common)) return true;
+          const double along = speed > 0 ? std::clamp(dot(minus(common, from), way) / (speed * speed), 0.0, end) : 0;
+          if (!best || along < best->along) best = RayHit{along, frame.leave(common), triangle};
+          return true;
+        });
+      });
+  return best;
+}
+
+bool contains(const TreeView& solid, const Pose& pose, const std::array<double, 3>& point) noexcept {
+  if (solid.patches.empty()) return false;
+  const Frame frame(solid, pose);
+  const Vec3 p = frame.enter(point);
+  for (int ray = 0; ray < kRays; ++ray) {
+    const Vec3 q = plus(p, ray_direction(ray), reach_beyond(solid, p));
+    const Segment segment(p, q);
+    bool inside = false, clear = true;
+    walk(
+        solid, segment, frame.rounding(segment), [] { return 0.0; },
+        [&](const TriangleBlock& block) {
+          clear = each_triangle(block, [&](const TrianglePoints& t, std::uint32_t) {
+            const Crossing kind = crossing(p, q, t);
+            if (kind == Crossing::one) inside = !inside;
+            return kind != Crossing::unclear;
+          });
+          return clear;
+        });
+    if (clear) return inside;
+  }
+  return std::fabs(winding_angle(solid, p)) > 2 * std::numbers::pi;
+}
+
+bool contains_solid(const TreeView& solid, const Pose& pose, const TreeView& inner, const Pose& inner_pose) noexcept {
+  if (inner.triangles.empty()) return false;
+  const auto& corner = inner.vertices[inner.triangles[0][0]];
+  std::array<double, 3> point{};
+  for (std::size_t i = 0; i < 3; ++i) point[i] = double{corner[i]} + inner.origin[i];
+  return contains(solid, pose, transform(inner_pose, point));
+}
+
+}  // namespace orchard::runtime

@@ -1,0 +1,154 @@
+#include "orchard/runtime/distance.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "allocation.h"
+#include "bodies.h"
+#include "patch_block.h"
+#include "triangle_distance.h"
+
+namespace orchard::runtime {
+namespace {
+
+using namespace orchard::runtime::test;
+
+struct Scene {
+  std::size_t a, b;
+  Pose pose_a, pose_b;
+};
+
+Scene random_scene(const std::vector<Body>& all, std::uint64_t seed, double spread) {
+  Draw draw(seed);
+  Scene s{draw.bits() % all.size(), draw.bits() % all.size(), {}, {}};
+  const PackedSphereTree &a = all[s.a].tree, &b = all[s.b].tree;
+  s.pose_a = centered(a, draw.pose(0));
+  s.pose_b = centered(b, draw.pose(draw.uniform(0, spread) * (a.bounding_radius + b.bounding_radius)));
+  return s;
+}
+
+TEST(Distance, ClosesInOnTheTruthFromBothSides) {
+  const auto all = bodies();
+  int apart = 0;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    SCOPED_TRACE(seed);
+    const Scene s = random_scene(all, seed, 2);
+    const double truth = static_cast<double>(
+        surface_distance(placed_triangles(all[s.a].tree, s.pose_a), placed_triangles(all[s.b].tree, s.pose_b)));
+    const double rounding = 4e-6;  // nearly parallel edges
+    DistanceQuery query(all[s.a].tree, all[s.b].tree);
+    query.start(s.pose_a, s.pose_b, {.relative = seed % 2 == 0 ? 0.01 : 0.0});
+    double lower = query.lower(), upper = query.upper();
+    for (;;) {
+      ASSERT_LE(query.lower(), truth + 1e-12);
+      ASSERT_GE(query.upper(), truth - 1e-12);
+      ASSERT_GE(query.lower(), lower);
+      ASSERT_LE(query.upper(), upper);
+      lower = query.lower(), upper = query.upper();
+      if (query.finished()) break;
+      query.refine({.pair_tests = 1 + seed % 200});
+    }
+    ASSERT_LE(upper, lower * (seed % 2 == 0 ? 1.01 : 1) + rounding * (1 + truth));
+    const auto points = query.points();
+    ASSERT_NEAR(
+        std::hypot(points.on_a[0] - points.on_b[0], points.on_a[1] - points.on_b[1], points.on_a[2] - points.on_b[2]),
+        upper, 1e-7);
+    const auto ta = placed_triangles(all[s.a].tree, s.pose_a).at(points.triangle_a);
+    ASSERT_LE(point_distance({points.on_a[0], points.on_a[1], points.on_a[2]}, ta), 1e-8);
+    apart += truth > 0;
+  }
+  EXPECT_GT(apart, 100);
+}
+
+TEST(Distance, IsTheSameHoweverItIsCutAndWhicheverBodyComesFirst) {
+  const auto all = bodies();
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    const Scene s = random_scene(all, seed, 1.5);
+    DistanceQuery whole(all[s.a].tree, all[s.b].tree), back(all[s.b].tree, all[s.a].tree);
+    whole.start(s.pose_a, s.pose_b), back.start(s.pose_b, s.pose_a);
+    const std::size_t before = allocations;
+    whole.refine();
+    while (!back.finished()) back.refine({.pair_tests = 40});
+    ASSERT_EQ(allocations, before);
+    ASSERT_EQ(whole.lower(), back.lower()) << seed;
+    ASSERT_EQ(whole.upper(), back.upper()) << seed;
+    ASSERT_EQ(whole.work(), back.work()) << seed;
+    ASSERT_EQ(whole.points().on_a, back.points().on_b) << seed;
+    ASSERT_EQ(whole.points().triangle_a, back.points().triangle_b) << seed;
+  }
+}
+
+TEST(Distance, WithoutTrianglesKeepsToTheRoots) {
+  const auto none = build_tree(Mesh{}), cube = build_tree(box({0, 0, 0}, {1, 1, 1}));
+  DistanceQuery query(none, cube);
+  query.start({}, Pose{.translation = {5, 0, 0}});
+  EXPECT_TRUE(query.finished());
+  EXPECT_GT(query.lower(), 3);
+  EXPECT_EQ(query.points().triangle_a, kNoTriangle);
+}
+
+TEST(Distance, OfTouchingBodiesIsZero) {
+  const auto cube = build_tree(box({0, 0, 0}, {1, 1, 1}));
+  DistanceQuery query(cube, cube);
+  query.start({}, Pose{.translation = {0.5, 0.25, 1}});
+  query.refine();
+  EXPECT_TRUE(query.finished());
+  EXPECT_EQ(query.lower(), 0);
+  EXPECT_LT(query.upper(), 1e-9);
+}
+
+TEST(TriangleDistance, AgreesWithBruteForceAlsoForNeedlesAndParallelEdges) {
+  for (std::uint64_t seed = 0; seed < 20000; ++seed) {
+    Draw draw(seed);
+    detail::TrianglePoints a{}, b{};
+    Triangle la{}, lb{};
+    const double thin = std::pow(10, -draw.uniform(0, 9));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec p = draw.direction(), q = draw.direction();
+      a[k] = {p[0], thin * p[1], thin * p[2]};
+      b[k] = {q[0] + 0.5, thin * q[1] + 0.3, draw.bits() % 2 == 0 ? 0 : thin * q[2]};
+      for (std::size_t i = 0; i < 3; ++i) la[k][i] = a[k][i], lb[k][i] = b[k][i];
+    }
+    if (detail::triangles_intersect(a, b, nullptr)) continue;
+    const double truth = static_cast<double>(triangle_distance(la, lb));
+    const double found = detail::nearest_points(a, b).distance;
+    ASSERT_GE(found, truth - 1e-12) << seed;
+    ASSERT_LE(found, truth + detail::kParallelError * (detail::longest_edge(a) + detail::longest_edge(b))) << seed;
+  }
+}
+
+TEST(TriangleGaps, NeverExceedTheDistanceAndAreTheSameWithoutVectors) {
+  int tight = 0;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    Draw draw(seed);
+    const auto a = build_tree(soup(2 * seed, 6), {.leaf_triangles = 8, .bounds = false}),
+               b = build_tree(soup(2 * seed + 1, 7), {.leaf_triangles = 8, .bounds = false});
+    const Pose pose = draw.pose(draw.uniform(0, 4));
+    detail::Placement placement{};
+    for (std::size_t i = 0; i < 9; ++i) placement.rotation[i] = static_cast<float>(pose.rotation[i]);
+    for (std::size_t i = 0; i < 3; ++i) placement.translation[i] = static_cast<float>(pose.translation[i]);
+    placement.margin = 1e-4f;
+    const Vec d = draw.direction();
+    const std::array<float, 3> direction = {static_cast<float>(d[0]), static_cast<float>(d[1]),
+                                            static_cast<float>(d[2])};
+    detail::TriangleGaps gaps{}, plain{};
+    detail::triangle_gaps(a.triangle_blocks[0], b.triangle_blocks[0], placement, direction, gaps);
+    detail::triangle_gaps_scalar(a.triangle_blocks[0], b.triangle_blocks[0], placement, direction, plain);
+    ASSERT_EQ(gaps.lower, plain.lower) << seed;
+    const auto pa = placed_triangles(a, {}), pb = placed_triangles(b, pose);
+    for (std::size_t r = 0; r < 7; ++r) {
+      for (std::size_t l = 0; l < 6; ++l) {
+        const auto truth =
+            triangle_distance(pa[a.triangle_blocks[0].triangle[l]], pb[b.triangle_blocks[0].triangle[r]]);
+        ASSERT_LE(gaps.lower[r][l], truth) << seed;
+        tight += gaps.lower[r][l] > 0.9 * static_cast<double>(truth);
+      }
+    }
+  }
+  EXPECT_GT(tight, 5000);
+}
+
+}  // namespace
+}  // namespace orchard::runtime
