@@ -7,6 +7,7 @@
 #include "orchard/covering/coverage.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/tolerance.h"
+#include "spots.h"
 
 namespace orchard {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 constexpr int kMostRounds = 60;
 
 // What one path should take in: points of an uncovered spot, whose convex hull then lies in the path's region too.
-using Spot = std::vector<Point>;
+using Points = std::vector<Point>;
 
 // Finds the path that takes a spot in for the least growth. Growth counts relative to each ball's radius: a per cent of
 // a large ball near the root costs as much looseness on its level as a per cent of a leaf does on its own.
@@ -22,7 +23,7 @@ class Grower {
  public:
   Grower(SphereTree& tree, double margin) : tree_(tree), margin_(margin) {}
 
-  double cost_of_best_path(const Spot& spot) {
+  double cost_of_best_path(const Points& spot) {
     best_cost_ = std::numeric_limits<double>::infinity();
     best_leaf_ = kNone;
     descend(0, 0, spot);
@@ -30,7 +31,7 @@ class Grower {
   }
 
   // Grows the path found last so that it holds the spot. Returns the largest growth of a radius.
-  double grow_best_path(const Spot& spot) {
+  double grow_best_path(const Points& spot) {
     double largest = 0;
     for (Index node = best_leaf_; node != kNone; node = tree_.nodes[node].parent) {
       double& radius = tree_.nodes[node].sphere.radius;
@@ -43,13 +44,13 @@ class Grower {
   }
 
  private:
-  double reach(Index node, const Spot& spot) const {
+  double reach(Index node, const Points& spot) const {
     double farthest = 0;
     for (const Point& point : spot) farthest = std::max(farthest, (point - tree_.nodes[node].sphere.center).norm());
     return farthest;
   }
 
-  void descend(Index index, double cost_above, const Spot& spot) {
+  void descend(Index index, double cost_above, const Points& spot) {
     const SphereNode& node = tree_.nodes[index];
     const double growth = std::max(0.0, reach(index, spot) + margin_ - node.sphere.radius);
     const double cost = cost_above + growth / node.sphere.radius;
@@ -69,39 +70,20 @@ class Grower {
   Index best_leaf_ = kNone;
 };
 
-// The uncovered spots of one triangle, as sets of arcs that meet at their ends. Each arc bulges into its spot, so a
-// spot lies in the hull of its arcs' ends and of the triangle's corners in it; corners come as spots of their own.
-std::vector<Spot> spots_of(const UncoveredTriangle& uncovered, const Surface& surface, double near) {
-  std::vector<Spot> spots;
-  for (const UncoveredArc& arc : uncovered.cover.arcs) {
-    Spot spot{arc.begin, arc.middle, arc.end};
-    for (std::size_t i = spots.size(); i-- > 0;) {
-      const bool joined = std::any_of(spots[i].begin(), spots[i].end(), [&](const Point& p) {
-        return (p - arc.begin).norm() <= near || (p - arc.end).norm() <= near;
-      });
-      if (!joined) continue;
-      spot.insert(spot.end(), spots[i].begin(), spots[i].end());
-      spots.erase(spots.begin() + static_cast<std::ptrdiff_t>(i));
-    }
-    spots.push_back(std::move(spot));
-  }
-  if (spots.empty()) spots.push_back({uncovered.cover.witness});
-  for (const Point& corner : surface.corners(uncovered.triangle)) spots.push_back({corner});
-  return spots;
-}
-
 // One path for the whole spot, or one for each of its points, whichever grows less.
-double take_in(Grower& grower, const Spot& spot) {
-  const double together = grower.cost_of_best_path(spot);
+double take_in(Grower& grower, const detail::Spot& spot) {
+  Points all = spot.corners;
+  all.push_back(spot.deepest);
+  const double together = grower.cost_of_best_path(all);
   if (together == 0) return 0;
   double apart = 0;
-  for (const Point& point : spot) apart = std::max(apart, grower.cost_of_best_path({point}));
+  for (const Point& point : all) apart = std::max(apart, grower.cost_of_best_path({point}));
   double largest = 0;
   if (together <= 4 * apart) {
-    grower.cost_of_best_path(spot);
-    return grower.grow_best_path(spot);
+    grower.cost_of_best_path(all);
+    return grower.grow_best_path(all);
   }
-  for (const Point& point : spot)
+  for (const Point& point : all)
     if (grower.cost_of_best_path({point}) > 0) largest = std::max(largest, grower.grow_best_path({point}));
   return largest;
 }
@@ -122,10 +104,15 @@ CoverReport cover(SphereTree& tree, const Surface& surface, const Progress& prog
     // Balls only grow, so what is covered stays covered.
     triangles.clear();
     Grower grower(tree, margin);
+    const auto take = [&](const detail::Spot& spot) {
+      report.largest_growth = std::max(report.largest_growth, take_in(grower, spot) / radius);
+    };
+    for (const detail::Spot& spot :
+         detail::find_spots(surface, coverage, path_balls(tree), tolerance::kCoverMargin * radius))
+      take(spot);
     for (const UncoveredTriangle& uncovered : coverage.uncovered) {
       triangles.push_back(uncovered.triangle);
-      for (const Spot& spot : spots_of(uncovered, surface, tolerance::kCoverMargin * radius))
-        report.largest_growth = std::max(report.largest_growth, take_in(grower, spot) / radius);
+      for (const Point& corner : surface.corners(uncovered.triangle)) take({{}, corner, 0});
     }
     // Spots shrink with every round; a slowly widening margin ends the last of them.
     margin *= 1.5;
