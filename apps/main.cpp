@@ -10,6 +10,7 @@
 
 #include "commands.h"
 #include "orchard/geometry/error.h"
+#include "tree_options.h"
 
 namespace {
 
@@ -59,30 +60,13 @@ void add_mesh_options(CLI::App& command, MeshOptions& options) {
       ->check(CLI::IsMember({"minimal", "ritter"}));
 }
 
-Method method_named(const std::string& name) { return name == "octree" ? Method::octree : Method::medial; }
-
 void add_build(CLI::App& app, Request& request) {
   CLI::App& command = *app.add_subcommand("build", "Build the sphere-tree of a triangle mesh");
   BuildCommand& build = request.build;
   command.add_option("mesh", build.mesh, "The mesh: .obj, .ply, .stl or .off")->required();
   command.add_option("-o,--output", build.folder, "Folder for the tree, the views and the report")->required();
   add_mesh_options(command, build.reading);
-  command
-      .add_option_function<std::string>(
-          "--method", [&build](const std::string& name) { build.options.method = method_named(name); },
-          "How to build: medial (default) or octree")
-      ->check(CLI::IsMember({"medial", "octree"}));
-  command.add_option("--depth", build.options.depth, "Levels below the root")
-      ->check(CLI::Range(1, 10))
-      ->capture_default_str();
-  command.add_option("--branching", build.options.branching, "Children of a sphere at most")
-      ->check(CLI::Range(2, 64))
-      ->capture_default_str();
-  command
-      .add_option("--samples", build.options.samples, "Surface points: more follow the shape better, and take longer")
-      ->check(CLI::Range(20, 10'000'000))
-      ->capture_default_str();
-  command.add_option("--seed", build.options.seed, "Seed of the random points")->capture_default_str();
+  add_tree_options(command, build.options);
   command.add_option("--threads", request.threads, "Threads at most; the result does not depend on it")
       ->check(CLI::Range(1, 1024));
   command.add_flag("!--no-views", build.views, "Write no files for ParaView");

@@ -1,5 +1,8 @@
 #include "pipeline.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "console.h"
 #include "orchard/geometry/error.h"
 #include "orchard/spheretree/certify.h"
@@ -12,6 +15,8 @@
 namespace orchard::apps {
 namespace {
 
+constexpr double kSamplesPerLeaf = 20;
+
 class Pipeline {
  public:
   Pipeline(const Surface& surface, const BuildOptions& options, const Progress& progress)
@@ -19,15 +24,8 @@ class Pipeline {
 
   BuildResult run() {
     stage("octree", [&] { result_.octree = octree(surface_, {.depth = options_.depth}, progress_); });
-    if (options_.method == Method::octree) {
-      result_.tree = result_.octree;
-    } else {
-      build_medial_axis();
-      stage("merging", [&] {
-        const MergeOptions merging{.depth = options_.depth, .branching = options_.branching};
-        result_.tree = merge_tree(surface_, *result_.axis, merging, progress_);
-      });
-    }
+    if (options_.method != Method::octree) build_medial_axis();
+    build_tree();
     stage("covering", [&] { result_.cover = cover(result_.tree, surface_, progress_); });
     stage("redundant spheres",
           [&] { result_.redundancy = remove_redundant(result_.tree, surface_, Selection::exhaustive, progress_); });
@@ -48,12 +46,32 @@ class Pipeline {
     result_.seconds.emplace_back(name, watch.seconds());
   }
 
+  void build_tree() {
+    const BuildOptions& o = options_;
+    switch (o.method) {
+      case Method::octree:
+        stage("octree", [&] { result_.tree = octree(surface_, {o.depth, o.refinement}, progress_); });
+        break;
+      case Method::merging:
+        stage("merging", [&] {
+          result_.tree = merge_tree(surface_, *result_.axis, {o.depth, o.branching, o.refinement}, progress_);
+        });
+        break;
+      case Method::tightened:
+        stage("tightening", [&] {
+          const TightenOptions tightening{o.depth, o.branching, o.effort, o.objective, o.refinement, o.seed};
+          result_.tree = tightened_tree(surface_, *result_.axis, tightening, progress_, &result_.tightening);
+        });
+        break;
+    }
+  }
+
   void build_medial_axis() {
     VoronoiDiagram diagram;
+    const Index samples = options_.samples.value_or(samples_needed(options_));
     stage("surface points", [&] {
-      const SamplingOptions sampling{.face_points = options_.samples - options_.samples / 5,
-                                     .edge_points = options_.samples / 5,
-                                     .seed = options_.seed};
+      const SamplingOptions sampling{
+          .face_points = samples - samples / 5, .edge_points = samples / 5, .seed = options_.seed};
       result_.sampling = sample_surface(surface_, sampling, progress_);
     });
     stage("Voronoi diagram",
@@ -87,9 +105,16 @@ class Pipeline {
 
 }  // namespace
 
+Index samples_needed(const BuildOptions& options) {
+  if (options.method != Method::tightened) return 5000;
+  const double leaves = std::pow(static_cast<double>(options.branching), options.depth);
+  const double least = options.effort == Effort::high ? 20'000 : 10'000;
+  return static_cast<Index>(std::clamp(kSamplesPerLeaf * leaves, least, 200'000.0));
+}
+
 BuildResult run_pipeline(const Surface& surface, const BuildOptions& options, const Progress& progress) {
   if (options.method == Method::octree && options.branching != 8)
-    throw InputError("--branching: an octree has 8 children; use --method medial for another number");
+    throw InputError("--branching: an octree has 8 children; use another --method for another number");
   return Pipeline(surface, options, progress).run();
 }
 

@@ -12,20 +12,27 @@
 #include "orchard/runtime/packed_tree.h"
 #include "orchard/spheretree/cover.h"
 #include "orchard/spheretree/redundancy.h"
+#include "orchard/spheretree/tightened.h"
 #include "orchard/spheretree/tree.h"
 #include "orchard/voronoi/highest_first.h"
 
 namespace orchard::apps {
 
-enum class Method { medial, octree };
+enum class Method { tightened, merging, octree };
 
 struct BuildOptions {
-  Method method = Method::medial;
-  Index depth = 3;       // levels below the root
-  Index branching = 8;   // children of a node at most; an octree has 8
-  Index samples = 5000;  // surface points: four fifths on faces, one fifth on edges
+  Method method = Method::tightened;
+  Index depth = 3;      // levels below the root at most
+  Index branching = 8;  // children of a node, see the builders; an octree has 8
+  Effort effort = Effort::standard;
+  Objective objective = Objective::balanced;
+  Refinement refinement;
+  std::optional<Index> samples;  // surface points, four fifths on faces, one fifth on edges; else samples_needed()
   std::uint64_t seed = 1;
 };
+
+// Surface points that a method and its depth need.
+Index samples_needed(const BuildOptions& options);
 
 // Everything that one run from a mesh to a packed tree made, and how long each stage took.
 struct BuildResult {
@@ -38,6 +45,7 @@ struct BuildResult {
   Index axis_components = 0;
   SphereTree tree;
   SphereTree octree;  // of the same depth, to compare with
+  TightenReport tightening;
   CoverReport cover;
   RedundancyReport redundancy;
   runtime::PackedSphereTree packed;

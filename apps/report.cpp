@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "orchard/covering/inaccuracy.h"
+#include "tree_options.h"
 
 namespace orchard::apps {
 namespace {
@@ -64,10 +65,12 @@ json build_json(const Surface& surface, const BuildOptions& options, const Build
   const double radius = surface.bounding_radius();
   json report;
   report["mesh"] = mesh_json(surface);
-  report["options"] = {{"method", options.method == Method::medial ? "medial" : "octree"},
+  report["options"] = {{"method", name(options.method)},
                        {"depth", options.depth},
                        {"branching", options.branching},
-                       {"samples", options.samples},
+                       {"effort", name(options.effort)},
+                       {"objective", name(options.objective)},
+                       {"samples", options.samples.value_or(samples_needed(options))},
                        {"seed", options.seed}};
   if (result.axis) {
     report["surface_points"] = result.sampling.size();

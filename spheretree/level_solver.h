@@ -25,7 +25,7 @@ struct LevelCost {
 };
 
 struct LevelOptions {
-  Index balls = 8;          // at most
+  Index balls = 8;           // at most
   Index most_children = 16;  // balls in a region at most
   LevelCost cost;
   std::uint64_t seed = 1;
@@ -48,8 +48,8 @@ class LevelSolver {
   void search(Index trials, const Progress& progress = {});
   void tighten();  // each ball, loosest first, shrinks to the samples that it alone holds
 
-  // Each spot goes to the ball that it costs least, and its deepest point becomes a sample; with `hold`, points near its
-  // corners too.
+  // Each spot goes to the ball that it costs least, and its deepest point becomes a sample; with `hold`, points near
+  // its corners too.
   void take_in(const std::vector<Spot>& spots, bool hold);
 
   const std::vector<LevelBall>& balls() const { return balls_; }

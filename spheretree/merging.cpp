@@ -251,6 +251,7 @@ SphereTree merge_tree(const Surface& surface, const MedialAxis& axis, const Merg
       report_progress(progress, "merging", static_cast<double>(i) / static_cast<double>(tree.nodes.size() + i));
     // A single medial sphere cannot be split: it stays a leaf.
     if (tree.nodes[i].level == options.depth || members[i].size() < 2) continue;
+    if (!wants_children(options.refinement, surface, tree.nodes[i].sphere)) continue;
     std::vector<Group> groups = Merger(axis, members[i], node_of).run(options.branching);
     tree.nodes[i].first_child = static_cast<Index>(tree.nodes.size());
     tree.nodes[i].child_count = static_cast<Index>(groups.size());

@@ -40,6 +40,7 @@ bool triangle_meets_box(std::array<Point, 3> corners, const Box& box) {
 struct Octant {
   Box box;
   std::vector<Index> triangles;
+  Index node = 0;  // of the tree
 };
 
 Box child_box(const Box& box, int which) {
@@ -56,7 +57,7 @@ Box child_box(const Box& box, int which) {
 std::vector<Octant> occupied_children(const Surface& surface, const Octant& parent) {
   std::vector<Octant> children;
   for (int which = 0; which < 8; ++which) {
-    Octant child{child_box(parent.box, which), {}};
+    Octant child{child_box(parent.box, which), {}, kNone};
     for (Index triangle : parent.triangles)
       if (triangle_meets_box(surface.corners(triangle), child.box)) child.triangles.push_back(triangle);
     if (!child.triangles.empty()) children.push_back(std::move(child));
@@ -72,25 +73,25 @@ SphereTree octree(const Surface& surface, const OctreeOptions& options, const Pr
   tree.branching = 8;
   tree.nodes.push_back({.sphere = surface.bounding_ball()});
   tree.nodes[0].sphere.radius += margin;
-  std::vector<Octant> level{{surface.bounding_box(), {}}};
+  std::vector<Octant> level{{surface.bounding_box(), {}, 0}};
   level[0].triangles.resize(surface.mesh().triangles.size());
   std::iota(level[0].triangles.begin(), level[0].triangles.end(), Index{0});
-  Index first = 0;
   for (Index depth = 1; depth <= options.depth; ++depth) {
     report_progress(progress, "octree", static_cast<double>(depth - 1) / options.depth);
     std::vector<Octant> next;
     for (Index i = 0; i < level.size(); ++i) {
+      SphereNode& parent = tree.nodes[level[i].node];
+      if (!wants_children(options.refinement, surface, parent.sphere)) continue;
       auto children = occupied_children(surface, level[i]);
-      SphereNode& parent = tree.nodes[first + i];
       parent.first_child = static_cast<Index>(tree.nodes.size());
       parent.child_count = static_cast<Index>(children.size());
       for (Octant& child : children) {
         const Sphere ball{child.box.center(), child.box.diagonal().norm() / 2 + margin};
-        tree.nodes.push_back({.sphere = ball, .parent = first + i, .level = depth});
+        child.node = static_cast<Index>(tree.nodes.size());
+        tree.nodes.push_back({.sphere = ball, .parent = level[i].node, .level = depth});
         next.push_back(std::move(child));
       }
     }
-    first += static_cast<Index>(level.size());
     level = std::move(next);
   }
   return tree;

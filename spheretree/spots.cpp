@@ -12,9 +12,8 @@ namespace {
 constexpr int kProbes = 14;  // outward from the middle of an arc, each twice as far as the one before
 
 bool same_spot(const std::vector<Point>& spot, const UncoveredArc& arc, double near) {
-  return std::any_of(spot.begin(), spot.end(), [&](const Point& p) {
-    return (p - arc.begin).norm() <= near || (p - arc.end).norm() <= near;
-  });
+  return std::any_of(spot.begin(), spot.end(),
+                     [&](const Point& p) { return (p - arc.begin).norm() <= near || (p - arc.end).norm() <= near; });
 }
 
 std::vector<std::vector<const UncoveredArc*>> joined_arcs(const TriangleCover& cover, double near) {

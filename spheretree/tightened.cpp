@@ -324,9 +324,8 @@ class Tightener {
         result.branching = std::max(result.branching, result.nodes[at].child_count);
         for (Index child : list) {
           places_[level + 1][child] = static_cast<Index>(result.nodes.size());
-          result.nodes.push_back({.sphere = levels_[level + 1][child].sphere,
-                                  .parent = at,
-                                  .level = static_cast<Index>(level + 1)});
+          result.nodes.push_back(
+              {.sphere = levels_[level + 1][child].sphere, .parent = at, .level = static_cast<Index>(level + 1)});
           next.push_back(child);
         }
       }

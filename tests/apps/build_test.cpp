@@ -54,7 +54,7 @@ TEST(Build, BuildsAMedialTreeAsTheDefault) {
       {"build", mesh, "-o", (here / "out").string(), "--samples", "300", "--depth", "2", "--json", "--no-views"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   const json report = json::parse(run.out);
-  EXPECT_EQ(report["options"]["method"], "medial");
+  EXPECT_EQ(report["options"]["method"], "tightened");
   EXPECT_GT(report["medial_axis"]["vertices"].get<int>(), 0);
 }
 

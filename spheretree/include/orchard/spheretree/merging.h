@@ -1,6 +1,7 @@
 #pragma once
 #include "orchard/geometry/progress.h"
 #include "orchard/medial/axis.h"
+#include "orchard/spheretree/refinement.h"
 #include "orchard/spheretree/tree.h"
 
 namespace orchard {
@@ -8,6 +9,7 @@ namespace orchard {
 struct MergeOptions {
   Index depth = 3;      // levels below the root
   Index branching = 8;  // children of a node at most, 2..64
+  Refinement refinement{};
 };
 
 // Dissertation 6.3: the children of each node are the spheres of the medial vertices merged into it, merged pairwise

@@ -1,11 +1,13 @@
 #pragma once
 #include "orchard/geometry/progress.h"
+#include "orchard/spheretree/refinement.h"
 #include "orchard/spheretree/tree.h"
 
 namespace orchard {
 
 struct OctreeOptions {
-  Index depth = 3;  // levels below the root
+  Index depth = 3;  // levels below the root at most
+  Refinement refinement{};
 };
 
 // Dissertation 5.2: an octree over the smallest isothetic box, a ball around each octant that meets the surface, and

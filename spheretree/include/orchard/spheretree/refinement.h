@@ -2,7 +2,7 @@
 #include <limits>
 #include <vector>
 
-#include "orchard/geometry/mesh.h"
+#include "orchard/geometry/surface.h"
 
 namespace orchard {
 
@@ -25,5 +25,9 @@ struct Refinement {
     return least < std::numeric_limits<double>::infinity() ? least : error;
   }
 };
+
+// Whether a ball's inaccuracy exceeds what is allowed there. If the surface is not solid, its distance bound stands for
+// the inaccuracy.
+bool wants_children(const Refinement& refinement, const Surface& surface, const Sphere& ball);
 
 }  // namespace orchard

@@ -17,7 +17,7 @@ struct TightenOptions {
   Index branching = 8;  // a level has at most this many times the nodes of the one above; 2..64
   Effort effort = Effort::standard;
   Objective objective = Objective::balanced;
-  Refinement refinement;
+  Refinement refinement{};
   std::uint64_t seed = 1;
 };
 
@@ -25,16 +25,16 @@ struct TightenReport {
   struct Level {
     Index balls = 0;
     Index closing_rounds = 0;
-    Index gaps = 0;               // that the samples had left, in the first round
-    double grown = 0;             // by the last resort, cover(): the largest growth, as a fraction of R
+    Index gaps = 0;    // that the samples had left, in the first round
+    double grown = 0;  // by the last resort, cover(): the largest growth, as a fraction of R
     double seconds_search = 0, seconds_closing = 0;
   };
   std::vector<Level> levels;
 };
 
-// The tightest trees: each level is solved as a whole, level_balls = branching^level of them for the whole surface, with
-// every ball free to choose its parent. A parent so has one to twice `branching` children (at most 64), and the load
-// balances itself. Balls are fitted to surface points by max |p - c| + sd(c), improved by Lloyd's iteration and
+// The tightest trees: each level is solved as a whole, level_balls = branching^level of them for the whole surface,
+// with every ball free to choose its parent. A parent so has one to twice `branching` children (at most 64), and the
+// load balances itself. Balls are fitted to surface points by max |p - c| + sd(c), improved by Lloyd's iteration and
 // large-neighbourhood search, and closed with the boundary lemma: what no path region holds is given to the ball that
 // it costs least, until nothing is left. The result is conservative. Deterministic by counted work. Uses the axis's
 // surface points as samples: 20 or more for each ball of the last level. Throws InputError for a branching out of range

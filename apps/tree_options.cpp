@@ -1,0 +1,103 @@
+#include "tree_options.h"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <charconv>
+#include <map>
+#include <string>
+
+#include "orchard/geometry/error.h"
+
+namespace orchard::apps {
+namespace {
+
+const std::map<std::string, Method> kMethods{
+    {"tightened", Method::tightened}, {"merging", Method::merging}, {"octree", Method::octree}};
+const std::map<std::string, Effort> kEfforts{
+    {"low", Effort::low}, {"default", Effort::standard}, {"high", Effort::high}};
+const std::map<std::string, Objective> kObjectives{{"balanced", Objective::balanced},
+                                                   {"maximum", Objective::maximum},
+                                                   {"mean", Objective::mean},
+                                                   {"volume", Objective::volume}};
+
+template <class Value>
+const char* key_of(const std::map<std::string, Value>& names, Value value) {
+  for (const auto& [key, candidate] : names)
+    if (candidate == value) return key.c_str();
+  return "";
+}
+
+template <class Value>
+std::vector<std::string> keys(const std::map<std::string, Value>& names) {
+  std::vector<std::string> list;
+  for (const auto& entry : names) list.push_back(entry.first);
+  return list;
+}
+
+template <class Value>
+CLI::Option* add_choice(CLI::App& command, const char* option, const std::map<std::string, Value>& names, Value& value,
+                        const char* what) {
+  return command
+      .add_option_function<std::string>(
+          option, [&names, &value](const std::string& key) { value = names.at(key); }, what)
+      ->check(CLI::IsMember(keys(names)));
+}
+
+// "x,y,z,r=E".
+Refinement::Region parse_region(const std::string& text) {
+  std::array<double, 5> values{};
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto [next, error] = std::from_chars(at, end, values[i]);
+    const char separator = i == 3 ? '=' : ',';
+    const bool last = i + 1 == values.size();
+    if (error != std::errc() || (last ? next != end : next == end || *next != separator))
+      throw InputError("--region " + text + ": give a ball and the error allowed there as x,y,z,r=E in mesh units");
+    at = next + 1;
+  }
+  if (!(values[3] > 0) || !(values[4] > 0)) throw InputError("--region " + text + ": r and E must be above 0");
+  return {{Point(values[0], values[1], values[2]), values[3]}, values[4]};
+}
+
+}  // namespace
+
+const char* name(Method method) { return key_of(kMethods, method); }
+const char* name(Effort effort) { return key_of(kEfforts, effort); }
+const char* name(Objective objective) { return key_of(kObjectives, objective); }
+
+void add_tree_options(CLI::App& command, BuildOptions& options) {
+  add_choice(command, "--method", kMethods, options.method,
+             "How to build: tightened (default), the tightest; merging along the medial axis; octree");
+  command.add_option("--depth", options.depth, "Levels below the root at most")
+      ->check(CLI::Range(1, 10))
+      ->capture_default_str();
+  command
+      .add_option("--branching", options.branching,
+                  "Children of a sphere at most; tightened: on average, up to twice as many")
+      ->check(CLI::Range(2, 64))
+      ->capture_default_str();
+  add_choice(command, "--effort", kEfforts, options.effort, "tightened: how long to search, about 1 : 2 : 15");
+  add_choice(command, "--objective", kObjectives, options.objective,
+             "tightened: what to keep low, the maximum or mean inaccuracy, the outside volume, or a balance (default)");
+  command
+      .add_option("--error", options.refinement.error,
+                  "No children for a sphere whose inaccuracy is this or less, in mesh units (0: down to --depth)")
+      ->check(CLI::NonNegativeNumber);
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--region",
+          [&options](const std::vector<std::string>& regions) {
+            for (const std::string& region : regions) options.refinement.regions.push_back(parse_region(region));
+          },
+          "x,y,z,r=E: the same, for spheres that meet this ball, in place of --error; may be repeated")
+      ->allow_extra_args(false);
+  command
+      .add_option("--samples", options.samples,
+                  "Surface points: more follow the shape better, and take longer (default: as method and depth need)")
+      ->check(CLI::Range(20, 10'000'000));
+  command.add_option("--seed", options.seed, "Seed of the random choices")->capture_default_str();
+}
+
+}  // namespace orchard::apps

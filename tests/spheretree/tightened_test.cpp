@@ -1,0 +1,179 @@
+#include "orchard/spheretree/tightened.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+
+#include "orchard/geometry/error.h"
+#include "orchard/spheretree/cover.h"
+#include "orchard/spheretree/measure.h"
+#include "orchard/spheretree/merging.h"
+#include "support.h"
+
+namespace orchard {
+namespace {
+
+using namespace test;
+
+struct Shape {
+  const char* name;
+  TriangleMesh mesh;
+};
+
+std::vector<Shape> shapes() {
+  return {{"box", box(Point(0, 0, 0), Point(1, 2, 3))},
+          {"icosphere", icosphere(2)},
+          {"torus", torus(24, 12)},
+          {"L", l_shape()},
+          {"U", u_shape(0.3)},
+          {"two boxes", two_boxes(0.2)},
+          {"far away", transformed(l_shape(), 1, Vector(1e6, -1e6, 1e6))},
+          {"tiny", transformed(torus(16, 8), 1e-6, Vector::Zero())}};
+}
+
+void expect_conservative(const SphereTree& tree, const Surface& surface, const char* name) {
+  ASSERT_NO_THROW(validate(tree)) << name;
+  EXPECT_TRUE(surface_coverage(surface, path_balls(tree)).complete()) << name;
+  for (const Point& point : points_on(surface, 20, 1)) ASSERT_TRUE(has_path(tree, point)) << name;
+}
+
+std::vector<Index> level_counts(const SphereTree& tree) {
+  std::vector<Index> counts(tree.depth() + 1, 0);
+  for (const SphereNode& node : tree.nodes) ++counts[node.level];
+  return counts;
+}
+
+TEST(TightenedTree, IsConservativeOnEveryShape) {
+  for (const Shape& shape : shapes()) {
+    const Surface surface(shape.mesh);
+    const SphereTree tree = tightened_tree(surface, axis_of(surface, 1000), {.depth = 2, .effort = Effort::low});
+    EXPECT_EQ(tree.depth(), 2) << shape.name;
+    expect_conservative(tree, surface, shape.name);
+  }
+}
+
+TEST(TightenedTree, KeepsToTheBudgetOfEachLevelAndOfEachNode) {
+  const Surface surface(u_shape(0.3));
+  const MedialAxis axis = axis_of(surface, 3000);
+  for (const Index branching : {2u, 5u, 8u, 17u}) {
+    const SphereTree tree = tightened_tree(surface, axis, {.depth = 2, .branching = branching, .effort = Effort::low});
+    expect_conservative(tree, surface, "U");
+    const auto counts = level_counts(tree);
+    ASSERT_EQ(counts.size(), 3);
+    EXPECT_LE(counts[1], branching);
+    EXPECT_LE(counts[2], branching * branching);
+    for (const SphereNode& node : tree.nodes) EXPECT_LE(node.child_count, std::min(64u, 2 * branching));
+  }
+}
+
+TEST(TightenedTree, FitsTighterThanMerging) {
+  for (const TriangleMesh& mesh : {torus(32, 16), l_shape(), u_shape(0.3)}) {
+    const Surface surface(mesh);
+    const MedialAxis axis = axis_of(surface, 3000);
+    SphereTree tight = tightened_tree(surface, axis, {.depth = 2, .effort = Effort::low});
+    SphereTree merged = merge_tree(surface, axis, {.depth = 2});
+    cover(merged, surface);
+    measure(tight, surface);
+    measure(merged, surface);
+    const auto ours = level_figures(tight, surface.bounding_radius());
+    const auto theirs = level_figures(merged, surface.bounding_radius());
+    for (std::size_t level = 1; level < ours.size(); ++level) {
+      EXPECT_LT(ours[level].mean_inaccuracy, theirs[level].mean_inaccuracy) << level;
+      EXPECT_LT(ours[level].max_inaccuracy, theirs[level].max_inaccuracy) << level;
+    }
+  }
+}
+
+TEST(TightenedTree, ABallOfABallIsAlmostExact) {
+  const Surface surface(icosphere(3));
+  SphereTree tree = tightened_tree(surface, axis_of(surface, 1000), {.depth = 1, .branching = 2});
+  measure(tree, surface);
+  for (const SphereNode& node : tree.nodes) EXPECT_LT(node.inaccuracy, 0.02 * surface.bounding_radius());
+}
+
+TEST(TightenedTree, RefinesOnlyWhatIsNotAccurateEnough) {
+  const Surface surface(u_shape(0.3));
+  const MedialAxis axis = axis_of(surface, 3000);
+  TightenOptions options{.depth = 3, .effort = Effort::low};
+  options.refinement.error = 0.15 * surface.bounding_radius();
+  SphereTree tree = tightened_tree(surface, axis, options);
+  expect_conservative(tree, surface, "U");
+  measure(tree, surface);
+  Index leaves_above = 0;
+  for (const SphereNode& node : tree.nodes) {
+    leaves_above += node.child_count == 0 && node.level < tree.depth();
+    if (node.child_count == 0) continue;
+    EXPECT_GT(node.sphere.radius + node.center_distance, options.refinement.error);
+  }
+  EXPECT_GT(leaves_above, 0);
+}
+
+TEST(TightenedTree, RefinesARegionMore) {
+  const Surface surface(box(Point(0, 0, 0), Point(10, 1, 1)));
+  const MedialAxis axis = axis_of(surface, 3000);
+  TightenOptions options{.depth = 3, .effort = Effort::low};
+  options.refinement.error = 100;
+  options.refinement.regions.push_back({{Point(10, 0.5, 0.5), 0.5}, 1e-3});
+  const SphereTree tree = tightened_tree(surface, axis, options);
+  expect_conservative(tree, surface, "bar");
+  EXPECT_EQ(tree.depth(), 3);
+  for (const SphereNode& node : tree.nodes) {
+    if (node.child_count == 0) continue;
+    EXPECT_LE((node.sphere.center - Point(10, 0.5, 0.5)).norm(), node.sphere.radius + 0.5);
+  }
+}
+
+TEST(TightenedTree, EveryObjectiveIsConservativeAndLowersWhatItIsFor) {
+  const Surface surface(u_shape(0.3));
+  const MedialAxis axis = axis_of(surface, 3000);
+  const auto figures = [&](Objective objective) {
+    SphereTree tree = tightened_tree(surface, axis, {.depth = 2, .effort = Effort::low, .objective = objective});
+    expect_conservative(tree, surface, "U");
+    measure(tree, surface);
+    return level_figures(tree, surface.bounding_radius())[2];
+  };
+  const LevelFigures maximum = figures(Objective::maximum), mean = figures(Objective::mean);
+  EXPECT_LT(mean.mean_inaccuracy, maximum.mean_inaccuracy * 1.02);
+  EXPECT_LT(maximum.max_inaccuracy, mean.max_inaccuracy * 1.02);
+  figures(Objective::volume);
+}
+
+TEST(TightenedTree, IsTheSameOnOneTwoAndSevenThreads) {
+  const Surface surface(u_shape(0.3));
+  const MedialAxis axis = axis_of(surface, 1000);
+  std::vector<SphereTree> trees;
+  for (const std::size_t threads : {1u, 2u, 7u}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    trees.push_back(tightened_tree(surface, axis, {.depth = 2, .effort = Effort::low}));
+  }
+  EXPECT_TRUE(same_tree(trees[0], trees[1]));
+  EXPECT_TRUE(same_tree(trees[0], trees[2]));
+}
+
+TEST(TightenedTree, AnotherSeedIsAnotherTree) {
+  const Surface surface(u_shape(0.3));
+  const MedialAxis axis = axis_of(surface, 1000);
+  TightenOptions options{.depth = 2, .effort = Effort::low};
+  const SphereTree one = tightened_tree(surface, axis, options);
+  EXPECT_TRUE(same_tree(one, tightened_tree(surface, axis, options)));
+  options.seed = 2;
+  EXPECT_FALSE(same_tree(one, tightened_tree(surface, axis, options)));
+}
+
+TEST(TightenedTree, RefusesABranchingThatIsNoBranching) {
+  const Surface surface(torus(24, 12));
+  const MedialAxis axis = axis_of(surface);
+  EXPECT_THROW(tightened_tree(surface, axis, {.branching = 1}), InputError);
+  EXPECT_THROW(tightened_tree(surface, axis, {.branching = 65}), InputError);
+  EXPECT_THROW(tightened_tree(surface, MedialAxis{}), InputError);
+}
+
+TEST(TightenedTree, StopsWhenCancelled) {
+  const Surface surface(torus(24, 12));
+  const MedialAxis axis = axis_of(surface);
+  EXPECT_THROW(tightened_tree(surface, axis, {}, [](std::string_view, double) { return false; }), Cancelled);
+}
+
+}  // namespace
+}  // namespace orchard
