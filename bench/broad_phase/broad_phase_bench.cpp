@@ -1,0 +1,237 @@
+// The broad phase against a rebuilt spatial hash, sweep and prune, FCL and Bullet on the same moving spheres, in one run:
+//   broad_phase_bench [table|variations|worst] [most bodies]
+// 300 steps of 0.01 s. Times are of detection only, the motion is the application's; of each step the fastest of some
+// runs, summed. All have to report the same pairs at every step.
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <string>
+
+#include "rivals.h"
+#include "spatial_hash.h"
+
+namespace {
+
+using namespace orchard::bench;
+using orchard::runtime::BroadPhase;
+using orchard::runtime::BroadPhaseOptions;
+
+constexpr int kSteps = 300;
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// What two readings of the clock with nothing between them cost.
+double clock_cost() {
+  double least = 1;
+  for (int i = 0; i < 10000; ++i) {
+    const double begin = now();
+    least = std::min(least, now() - begin);
+  }
+  return least;
+}
+
+struct Result {
+  std::vector<double> steps;        // seconds of each step
+  std::vector<std::uint64_t> pairs;  // a checksum of each step's pairs
+  std::size_t memory = 0;
+  std::uint64_t asked = 0;
+  bool whole = true;  // all steps were run
+
+  double total() const {
+    double sum = 0;
+    for (const double s : steps) sum += s;
+    return sum;
+  }
+  double worst(std::size_t from) const {
+    double most = 0;
+    for (std::size_t i = from; i < steps.size(); ++i) most = std::max(most, steps[i]);
+    return most;
+  }
+};
+
+// Order does not matter.
+std::uint64_t checksum(std::span<const BodyPair> pairs) {
+  std::uint64_t sum = pairs.size();
+  for (const BodyPair& p : pairs) {
+    orchard::runtime::test::Draw mixed(std::uint64_t{p.a} << 32 | p.b);
+    sum += mixed.bits();
+  }
+  return sum;
+}
+
+using Make = std::function<std::function<std::span<const BodyPair>(const Scene&)>(Scene&, Result&)>;
+
+Result measure(const SceneShape& shape, int runs, int steps, const Make& make) {
+  static const double overhead = clock_cost();
+  Result best;
+  for (int run = 0; run < runs; ++run) {
+    Scene scene(shape, 7);
+    Result result;
+    const auto find = make(scene, result);
+    for (int step = 0; step < steps; ++step) {
+      const double begin = now();
+      const auto pairs = find(scene);
+      const double seconds = std::max(0.0, now() - begin - overhead);
+      result.steps.push_back(seconds);
+      result.pairs.push_back(checksum(pairs));
+      scene.next_step();
+    }
+    find(scene);  // lets it note its memory
+    if (run == 0) {
+      best = result;
+    } else {
+      for (std::size_t i = 0; i < best.steps.size(); ++i) best.steps[i] = std::min(best.steps[i], result.steps[i]);
+    }
+  }
+  best.whole = steps == kSteps;
+  return best;
+}
+
+Make ours(const BroadPhaseOptions& options) {
+  return [options](Scene& scene, Result& result) {
+    auto world = std::make_shared<BroadPhase>(scene.source(), options);
+    for (std::size_t i = 0; i < scene.size(); ++i) world->add();
+    return [world, &result](const Scene& s) {
+      const auto report = world->advance(s.time());
+      if (result.steps.size() + 1 >= kSteps) result.memory = world->memory_bytes(), result.asked = world->motions_asked();
+      return report.pairs;
+    };
+  };
+}
+
+Make rival(const std::function<std::unique_ptr<Rival>(const Scene&)>& make) {
+  return [make](Scene& scene, Result& result) {
+    std::shared_ptr<Rival> it = make(scene);
+    auto pairs = std::make_shared<std::vector<BodyPair>>();
+    return [it, pairs, &result](const Scene&) {
+      pairs->clear();
+      it->find(*pairs);
+      result.memory = it->memory_bytes();
+      return std::span<const BodyPair>(*pairs);
+    };
+  };
+}
+
+double spacing_of(const SceneShape& shape) {
+  return 200 * std::cbrt(4 * 3.14159265358979 / 3 / (100 * shape.density));
+}
+
+Result hash_result(const SceneShape& shape, int runs, double& cell) {
+  if (cell == 0) {
+    const Scene scene(shape, 7);
+    cell = SpatialHash::best_cell_size(scene.positions(), scene.radii(), spacing_of(shape), {});
+  }
+  return measure(shape, runs, kSteps, rival([cell](const Scene& scene) {
+                   return std::make_unique<SpatialHash>(scene.positions(), scene.radii(), SpatialHash::Options{cell});
+                 }));
+}
+
+bool same(const char* name, const Result& a, const Result& b) {
+  for (std::size_t i = 0; i < std::min(a.pairs.size(), b.pairs.size()); ++i) {
+    if (a.pairs[i] == b.pairs[i]) continue;
+    std::printf("%s reports other pairs at step %zu\n", name, i);
+    return false;
+  }
+  return true;
+}
+
+int runs_for(std::size_t bodies) { return bodies <= 1000 ? 15 : bodies <= 10000 ? 5 : 2; }
+
+int table(std::size_t most) {
+  bool right = true;
+  std::printf("| bodies | density | orchard, ms | spatial hash | sweep and prune | FCL tree | Bullet Dbvt | bytes/body | motions asked |\n");
+  std::printf("|---|---|---|---|---|---|---|---|---|\n");
+  for (std::size_t n = 100; n <= most; n *= 10) {
+    for (const double density : {1.0, 10.0}) {
+      const SceneShape shape{.bodies = n, .density = density};
+      const int runs = runs_for(n);
+      double cell = 0;
+      const Result hash = hash_result(shape, runs, cell), own = measure(shape, runs, kSteps, ours({}));
+      right = same("orchard", own, hash) && right;
+      std::printf("| %zu | %.0f | %.3f | %.3f: %.1f times | ", n, density, 1e3 * own.total(), 1e3 * hash.total(),
+                  hash.total() / own.total());
+      const auto other = [&](const char* name, int steps, const std::function<std::unique_ptr<Rival>(const Scene&)>& make) {
+        const Result r = measure(shape, n <= 1000 ? 3 : 1, steps, rival(make));
+        right = same(name, r, hash) && right;
+        const double total = r.total() * kSteps / steps;
+        std::printf("%s%.1f: %.0f times | ", r.whole ? "" : "about ", 1e3 * total, total / own.total());
+        std::fflush(stdout);
+      };
+      other("sweep and prune", n > 10000 ? 30 : kSteps, [](const Scene& s) { return sweep_and_prune(s.positions(), s.radii()); });
+#ifdef ORCHARD_HAS_FCL
+      other("FCL", n > 10000 ? 30 : kSteps, [](const Scene& s) { return fcl_tree(s.positions(), s.radii()); });
+#else
+      std::printf("- | ");
+#endif
+#ifdef ORCHARD_HAS_BULLET
+      other("Bullet", n > 10000 ? 10 : n > 1000 ? 60 : kSteps, [](const Scene& s) { return bullet_dbvt(s.positions(), s.radii()); });
+#else
+      std::printf("- | ");
+#endif
+      std::printf("%.0f | %.2f per body |\n", static_cast<double>(own.memory) / static_cast<double>(n),
+                  static_cast<double>(own.asked) / static_cast<double>(n));
+    }
+  }
+  return right ? 0 : 1;
+}
+
+int variations(std::size_t most) {
+  struct Case {
+    const char* name;
+    double density, speed, acceleration;
+  };
+  bool right = true;
+  std::printf("| bodies | scene | orchard, ms | spatial hash | worst fixed window of 100 steps |\n|---|---|---|---|---|\n");
+  for (std::size_t n = 1000; n <= most; n *= 10) {
+    for (const Case& c : {Case{"100 times as dense", 100, 1, 1}, Case{"4 times as fast", 1, 4, 1}, Case{"10 times M", 1, 1, 10},
+                          Case{"all three", 100, 4, 10}}) {
+      const SceneShape shape{.bodies = n, .density = c.density, .speed = c.speed, .acceleration = c.acceleration};
+      double cell = 0;
+      const Result hash = hash_result(shape, runs_for(n), cell), own = measure(shape, runs_for(n), kSteps, ours({}));
+      const Result fixed = measure(shape, 1, kSteps, ours({.window = 100}));
+      right = same("orchard", own, hash) && same("fixed window", fixed, hash) && right;
+      std::printf("| %zu | %s | %.3f | %.3f: %.1f times | %.1f times |\n", n, c.name, 1e3 * own.total(), 1e3 * hash.total(),
+                  hash.total() / own.total(), hash.total() / fixed.total());
+      std::fflush(stdout);
+    }
+  }
+  return right ? 0 : 1;
+}
+
+int worst(std::size_t most) {
+  bool right = true;
+  std::printf("| bodies | density | bounds | first step, ms | spatial hash's first | worst later step, ms | spatial hash's worst | total, ms | spatial hash |\n");
+  std::printf("|---|---|---|---|---|---|---|---|---|\n");
+  for (std::size_t n = 100; n <= most; n *= 10) {
+    for (const double density : {1.0, 10.0}) {
+      for (const bool staggered : {false, true}) {
+        const SceneShape shape{.bodies = n, .density = density, .staggered = staggered};
+        double cell = 0;
+        const Result hash = hash_result(shape, runs_for(n), cell), own = measure(shape, runs_for(n), kSteps, ours({}));
+        right = same("orchard", own, hash) && right;
+        std::printf("| %zu | %.0f | %s | %.4f | %.4f: %.2f times | %.4f | %.4f: %.2f times | %.3f | %.3f: %.1f times |\n", n, density,
+                    staggered ? "staggered" : "expire together", 1e3 * own.steps[0], 1e3 * hash.steps[0],
+                    hash.steps[0] / own.steps[0], 1e3 * own.worst(1), 1e3 * hash.worst(1), hash.worst(1) / own.worst(1),
+                    1e3 * own.total(), 1e3 * hash.total(), hash.total() / own.total());
+        std::fflush(stdout);
+      }
+    }
+  }
+  return right ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string what = argc > 1 ? argv[1] : "table";
+  const std::size_t most = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 100000;
+  if (what == "table") return table(most);
+  if (what == "variations") return variations(most);
+  if (what == "worst") return worst(most);
+  std::fprintf(stderr, "usage: broad_phase_bench [table|variations|worst] [most bodies]\n");
+  return 2;
+}
