@@ -5,11 +5,19 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr std::size_t kBlock = 64;          // motions asked for in one go
+constexpr std::size_t kMeansStride = 16;    // of the bodies looked at, every so many count for the plan's means
 constexpr std::size_t kSample = 128;        // bodies that the first plan looks at
 constexpr double kCrowding = 4;             // lines read per entry from which on the cells are too large
 constexpr double kFewPairs = 1e-3;          // per body: too few to say anything about the prediction
 constexpr double kEventResolution = 0.125;  // of a step: no need to know better when a pair can touch
+
+bool cells_fit(const QuantumBox& box) noexcept {
+  bool fit = true;
+  for (std::size_t d = 0; d < 3; ++d) {
+    fit = fit && (box.upper[d] >> kQuantumBits) - (box.lower[d] >> kQuantumBits) < kMostCellsPerAxis;
+  }
+  return fit;
+}
 
 }  // namespace
 
@@ -118,64 +126,87 @@ void Events::place_all_anew() {
   grid_.reset(plan_.lines);
 }
 
-void Events::place(Step now, BodyId body, const Motion& motion) {
-  means_.add(motion);
-  Window& window = windows_[body];
-  window.looked = now;
-  Step steps = kNeverStep;
-  double duration = 0;
-  if (!roster_.is_static(body)) {
-    // Steps until the bound expires, in equal parts that are not longer than the plan's window.
-    steps = plan_.window;
-    const Step valid = roster_.clock.steps_until_expiry(now, motion.expiry);
-    if (valid < 64 * plan_.window) {
-      const Step parts = (valid + 1 + plan_.window - 1) / plan_.window;
-      steps = (valid + 1 + parts - 1) / parts;
-    }
-    duration = static_cast<double>(steps - 1) * options_.time_step;
+// Steps until the next look: until the bound expires, in equal parts that are not longer than the plan's window.
+Step Events::window_of(Step now, const Motion& motion) noexcept {
+  if (now == last_now_ && motion.expiry == last_expiry_) return last_window_;
+  const Step valid = roster_.clock.steps_until_expiry(now, motion.expiry);
+  Step window = plan_.window;
+  if (valid < 64 * plan_.window) {
+    const Step parts = (valid + plan_.window) / plan_.window;
+    window = (valid + parts) / parts;
   }
-  places_[body] = Place::grid;
-  for (;;) {
-    const QuantumBox& box = boxes_[body] = lattice_.box(motion, duration);
-    std::uint32_t most = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      most = std::max(most, (box.upper[i] >> kQuantumBits) - (box.lower[i] >> kQuantumBits));
-    }
-    if (most < kMostCellsPerAxis) break;
-    if (duration == 0) {
-      places_[body] = Place::oversized;
-      break;
-    }
-    steps = (steps + 1) / 2;  // faster than the others: look again sooner
-    duration = static_cast<double>(steps - 1) * options_.time_step;
+  last_now_ = now;
+  last_expiry_ = motion.expiry;
+  return last_window_ = window;
+}
+
+// Makes the boxes of a block of bodies, until the ends of their windows.
+void Events::place(Step now, std::span<const BodyId> bodies) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const bool moves = !roster_.is_static(bodies[i]);
+    const Step steps = moves ? window_of(now, motions_[i]) : 1;
+    motion_block_.set(i, motions_[i], static_cast<double>(steps - 1) * options_.time_step);
+    windows_[bodies[i]] = {now, moves ? now + steps : kNeverStep};
   }
-  if (steps == kNeverStep) {
-    window.end = kNeverStep;
-  } else {
-    window.end = now + steps;
-    calendar_.set_due(body, window.end);
+  for (std::size_t i = 0; i < bodies.size(); i += kMeansStride) means_.add(motions_[i]);
+  lattice_.boxes(motion_block_, box_block_, options_.vectors);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const BodyId body = bodies[i];
+    const QuantumBox& box = boxes_[body] = box_block_.get(i);
+    places_[body] = cells_fit(box) ? Place::grid : Place::oversized;
+    if (places_[body] == Place::oversized) shrink(now, body, i);
+    if (windows_[body].end != kNeverStep) calendar_.set_due(body, windows_[body].end);
   }
+}
+
+// Faster than the others: look at it again sooner, until its box takes few enough cells.
+void Events::shrink(Step now, BodyId body, std::size_t i) {
+  Step steps = windows_[body].end == kNeverStep ? 1 : windows_[body].end - now;
+  MotionBlock one;
+  BoxBlock box;
+  while (steps > 1) {
+    steps = (steps + 1) / 2;
+    one.set(0, motions_[i], static_cast<double>(steps - 1) * options_.time_step);
+    lattice_.boxes(one, box, options_.vectors);
+    boxes_[body] = box.get(0);
+    windows_[body].end = now + steps;
+    if (!cells_fit(boxes_[body])) continue;
+    places_[body] = Place::grid;
+    break;
+  }
+  box_block_.set(i, boxes_[body]);
 }
 
 // Stops early if the budget is spent; returns how many have been looked at.
 std::size_t Events::look_at(Step now, std::span<const BodyId> bodies, Meter& meter) {
   motions_.resize(kBlock);
-  std::array<BodyId, kBlock> in_grid;
   std::size_t done = 0;
   while (done < bodies.size() && !meter.spent()) {
     const auto block = bodies.subspan(done, meter.grant(std::min(kBlock, bodies.size() - done)));
     roster_.ask(now, block, std::span(motions_).first(block.size()));
     meter.count(block.size());
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < block.size(); ++i) {
-      place(now, block[i], motions_[i]);
-      if (places_[block[i]] == Place::grid) in_grid[count++] = block[i];
-    }
-    grid_.insert(std::span(in_grid).first(count), boxes_, options_.vectors, near_);
-    if (count < block.size() || !oversized_.empty()) meet_oversized(block);
+    place(now, block);
+    insert(block);
     done += block.size();
   }
   return done;
+}
+
+void Events::insert(std::span<const BodyId> bodies) {
+  const auto oversized = [&](BodyId body) { return places_[body] == Place::oversized; };
+  if (oversized_.empty() && std::none_of(bodies.begin(), bodies.end(), oversized)) {
+    grid_.insert(bodies, box_block_, boxes_, options_.vectors, near_);
+    return;
+  }
+  std::array<BodyId, kBlock> in_grid;
+  std::size_t count = 0;
+  for (const BodyId body : bodies) {
+    if (oversized(body)) continue;
+    box_block_.set(count, boxes_[body]);
+    in_grid[count++] = body;
+  }
+  grid_.insert(std::span(in_grid).first(count), box_block_, boxes_, options_.vectors, near_);
+  meet_oversized(bodies);
 }
 
 // Bodies as large as several cells are compared with everything: (their number) x (the number of all) per window.

@@ -37,7 +37,10 @@ class Events final : public Method {
 
   unsigned look_and_test(Step now, Meter& meter);
   std::size_t look_at(Step now, std::span<const BodyId> bodies, Meter& meter);
-  void place(Step now, BodyId body, const Motion& motion);
+  Step window_of(Step now, const Motion& motion) noexcept;
+  void place(Step now, std::span<const BodyId> bodies);
+  void shrink(Step now, BodyId body, std::size_t i);
+  void insert(std::span<const BodyId> bodies);
   void meet_oversized(std::span<const BodyId> bodies);
   bool valid(const PairEvent& event) const noexcept;
   bool test_all(Step now, Meter& meter);
@@ -67,6 +70,10 @@ class Events final : public Method {
   std::vector<PairEvent> events_, waiting_, tests_;
   std::vector<BodyPair> near_;
   std::vector<Motion> motions_;
+  MotionBlock motion_block_;
+  BoxBlock box_block_;
+  Step last_now_ = -1, last_window_ = 1;
+  double last_expiry_ = 0;
 };
 
 }  // namespace orchard::runtime::detail

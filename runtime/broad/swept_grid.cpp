@@ -69,29 +69,64 @@ Lattice::Lattice(const Vec3& origin, double cell_size) noexcept : origin_(origin
   margin_ = kRoundingQuanta + 8 * kMotionSlack * (size * per_length_ + kFarQuanta);
 }
 
-QuantumBox Lattice::box(const Motion& motion, double duration) const noexcept {
-  QuantumBox box;
-  const double spread = duration * (motion.drift + duration * motion.acceleration / 2) * per_length_;
-  const double radius = motion.radius * per_length_ + margin_;
-  bool near = spread < kFarQuanta && radius < kFarQuanta;
-  for (std::size_t i = 0; i < 3; ++i) {
-    // The centre's offset along an axis is at most v t + spread(t), which is convex: largest at an end. Likewise below.
-    const double begin = (motion.position[i] - origin_[i]) * per_length_;
-    const double way = motion.velocity[i] * duration * per_length_;
-    near = near && std::fabs(begin) < kFarQuanta && std::fabs(way) < kFarQuanta;
-    const double lower = kMiddle + (begin + std::min(0.0, way - spread) - radius);
-    const double upper = kMiddle + (begin + std::max(0.0, way + spread) + radius);
-    const auto quantum = [](double q) {
-      return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::min(std::max(q, 0.0), double{kLastQuantum})));
-    };
-    box.lower[i] = quantum(lower);
-    box.upper[i] = quantum(upper);
+void MotionBlock::set(std::size_t i, const Motion& motion, double seconds) noexcept {
+  for (std::size_t d = 0; d < 3; ++d) {
+    position[d][i] = motion.position[d];
+    velocity[d][i] = motion.velocity[d];
   }
-  if (!near) {
-    box.lower.fill(0);
-    box.upper.fill(kLastQuantum);
+  radius[i] = motion.radius;
+  acceleration[i] = motion.acceleration;
+  drift[i] = motion.drift;
+  duration[i] = seconds;
+}
+
+QuantumBox BoxBlock::get(std::size_t i) const noexcept {
+  return {{lower[0][i], lower[1][i], lower[2][i]}, {upper[0][i], upper[1][i], upper[2][i]}};
+}
+
+void BoxBlock::set(std::size_t i, const QuantumBox& box) noexcept {
+  for (std::size_t d = 0; d < 3; ++d) {
+    lower[d][i] = box.lower[d];
+    upper[d][i] = box.upper[d];
   }
-  return box;
+}
+
+// The centre's offset along an axis is at most v t + spread(t), which is convex: largest at an end. Likewise below.
+ORCHARD_INLINE void Lattice::make_boxes(const MotionBlock& motions, BoxBlock& boxes) const noexcept {
+  std::array<double, kBlock> spread, radius, far;
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    const double t = motions.duration[i];
+    spread[i] = t * (motions.drift[i] + t * motions.acceleration[i] / 2) * per_length_;
+    radius[i] = motions.radius[i] * per_length_ + margin_;
+    far[i] = std::max(spread[i], radius[i]);
+  }
+  for (std::size_t d = 0; d < 3; ++d) {
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      const double begin = (motions.position[d][i] - origin_[d]) * per_length_;
+      const double way = motions.velocity[d][i] * motions.duration[i] * per_length_;
+      far[i] = std::max(far[i], std::max(std::fabs(begin), std::fabs(way)));
+      const double lower = kMiddle + (begin + std::min(0.0, way - spread[i]) - radius[i]);
+      const double upper = kMiddle + (begin + std::max(0.0, way + spread[i]) + radius[i]);
+      const auto quantum = [](double q) ORCHARD_INLINE_LAMBDA {
+        return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::min(std::max(q, 0.0), double{kLastQuantum})));
+      };
+      boxes.lower[d][i] = quantum(lower);
+      boxes.upper[d][i] = quantum(upper);
+    }
+  }
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    if (far[i] < kFarQuanta) [[likely]] continue;
+    for (std::size_t d = 0; d < 3; ++d) boxes.lower[d][i] = 0, boxes.upper[d][i] = kLastQuantum;
+  }
+}
+
+void Lattice::boxes_plain(const MotionBlock& motions, BoxBlock& boxes) const noexcept { make_boxes(motions, boxes); }
+ORCHARD_PER_MACHINE void Lattice::boxes_vectors(const MotionBlock& motions, BoxBlock& boxes) const noexcept {
+  make_boxes(motions, boxes);
+}
+
+void Lattice::boxes(const MotionBlock& motions, BoxBlock& boxes, bool vectors) const noexcept {
+  vectors ? boxes_vectors(motions, boxes) : boxes_plain(motions, boxes);
 }
 
 void SweptGrid::reset(std::size_t lines) {
@@ -134,60 +169,91 @@ void SweptGrid::append(CellLine& first, std::uint64_t entry) {
 
 struct SweptGrid::Insertion {
   std::span<const BodyId> bodies;
+  const BoxBlock& block;
   std::span<const QuantumBox> boxes;
   std::vector<BodyPair>& pairs;
 };
 
-template <typename Kind>
-ORCHARD_INLINE void SweptGrid::insert_in_cell(const Insertion& insertion, BodyId body,
-                                              const std::array<std::uint32_t, 3>& cell) {
+// Of the entries hit, those whose box really meets the body's, and in this cell first.
+void SweptGrid::report(const Insertion& insertion, const CellLine& line, std::uint32_t hits, BodyId body,
+                       const Cell& cell) {
   const QuantumBox& box = insertion.boxes[body];
-  const Code code = code_of(box, cell);
-  CellLine& first = lines_[line_of(cell)];
+  for (; hits != 0; hits &= hits - 1) {
+    const auto other = static_cast<BodyId>(line.entries[static_cast<std::size_t>(std::countr_zero(hits))] >> kIdShift);
+    const QuantumBox& theirs = insertion.boxes[other];
+    bool here = box.meets(theirs);
+    for (std::size_t i = 0; i < 3; ++i) {
+      here = here && std::max(box.lower[i], theirs.lower[i]) >> kQuantumBits == cell[i];
+    }
+    if (here) insertion.pairs.push_back(body < other ? BodyPair{body, other} : BodyPair{other, body});
+  }
+}
+
+template <typename Kind>
+ORCHARD_INLINE void SweptGrid::insert_in_line(const Insertion& insertion, CellLine& first, std::uint64_t entry,
+                                              std::uint64_t query, const Cell& cell) {
   const CellLine* line = &first;
   for (;;) {
     ++counts_.lines_read;
-    std::uint32_t hits = Kind::meeting(*line, code.query) & ((1u << line->count) - 1);
-    for (; hits != 0; hits &= hits - 1) {
-      const BodyId other =
-          static_cast<BodyId>(line->entries[static_cast<std::size_t>(std::countr_zero(hits))] >> kIdShift);
-      const QuantumBox& theirs = insertion.boxes[other];
-      bool here = box.meets(theirs);
-      for (std::size_t i = 0; i < 3; ++i) {
-        here = here && std::max(box.lower[i], theirs.lower[i]) >> kQuantumBits == cell[i];
-      }
-      if (here) insertion.pairs.push_back(body < other ? BodyPair{body, other} : BodyPair{other, body});
-    }
-    if (line->overflow == 0) break;
+    const std::uint32_t hits = Kind::meeting(*line, query) & ((1u << line->count) - 1);
+    if (hits != 0) report(insertion, *line, hits, static_cast<BodyId>(entry >> kIdShift), cell);
+    if (line->overflow == 0) [[likely]] break;
     line = &overflow_[line->overflow - 1];
   }
-  const std::uint64_t entry = code.entry | std::uint64_t{body} << kIdShift;
   ++counts_.entries;
-  if (first.overflow == 0 && first.count < first.entries.size()) {
+  if (first.count < first.entries.size()) [[likely]] {
     first.entries[first.count++] = entry;
   } else {
     append(first, entry);
   }
 }
 
+// First every body in the cell of its lower corner, then the few that take several cells in the others: a loop without
+// branches that depend on the data, and the rest.
 template <typename Kind>
 ORCHARD_INLINE void SweptGrid::insert_all(const Insertion& insertion) {
-#ifdef ORCHARD_VECTORS
-  for (const BodyId body : insertion.bodies) {  // the lines are all over memory: start loading
-    const QuantumBox& box = insertion.boxes[body];
-    __builtin_prefetch(
-        &lines_[line_of({box.lower[0] >> kQuantumBits, box.lower[1] >> kQuantumBits, box.lower[2] >> kQuantumBits})],
-        1);
+  const BoxBlock& block = insertion.block;
+  const std::size_t count = insertion.bodies.size();
+  std::array<std::uint64_t, kBlock> entry, query;
+  std::array<std::uint32_t, kBlock> line, several;
+  entry.fill(0), query.fill(kGuards), line.fill(0), several.fill(0);
+  for (std::uint32_t d = 0; d < 3; ++d) {
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      const std::uint32_t lower = block.lower[d][i], upper = block.upper[d][i], last = lower | (kQuanta - 1);
+      const std::uint64_t from = lower & (kQuanta - 1), below = upper < last ? last - upper : 0;
+      entry[i] |= from << (kFieldBits * d) | below << (kFieldBits * (d + 3));
+      query[i] |= (kQuanta - 1 - below) << (kFieldBits * d) | (kQuanta - 1 - from) << (kFieldBits * (d + 3));
+      line[i] |= ((lower >> kQuantumBits) & mask_[d]) << shift_[d];
+      several[i] |= (lower ^ upper) >> kQuantumBits;
+    }
   }
+#ifdef ORCHARD_VECTORS
+  for (std::size_t i = 0; i < count; ++i) __builtin_prefetch(&lines_[line[i]], 1);  // they are all over memory
 #endif
-  counts_.bodies += insertion.bodies.size();
-  for (const BodyId body : insertion.bodies) {
-    const QuantumBox& box = insertion.boxes[body];
-    std::array<std::uint32_t, 3> cell, first, last;
-    for (std::size_t i = 0; i < 3; ++i) first[i] = box.lower[i] >> kQuantumBits, last[i] = box.upper[i] >> kQuantumBits;
+  std::array<std::uint32_t, kBlock> rest;
+  std::size_t rests = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Cell cell = {block.lower[0][i] >> kQuantumBits, block.lower[1][i] >> kQuantumBits,
+                       block.lower[2][i] >> kQuantumBits};
+    insert_in_line<Kind>(insertion, lines_[line[i]], entry[i] | std::uint64_t{insertion.bodies[i]} << kIdShift, query[i],
+                         cell);
+    rest[rests] = i;
+    rests += several[i] != 0;
+  }
+  counts_.bodies += count;
+  for (std::size_t k = 0; k < rests; ++k) {
+    const std::uint32_t i = rest[k];
+    const QuantumBox box = block.get(i);
+    Cell cell, first, last;
+    for (std::size_t d = 0; d < 3; ++d) first[d] = box.lower[d] >> kQuantumBits, last[d] = box.upper[d] >> kQuantumBits;
     for (cell[2] = first[2]; cell[2] <= last[2]; ++cell[2]) {
       for (cell[1] = first[1]; cell[1] <= last[1]; ++cell[1]) {
-        for (cell[0] = first[0]; cell[0] <= last[0]; ++cell[0]) insert_in_cell<Kind>(insertion, body, cell);
+        for (cell[0] = first[0]; cell[0] <= last[0]; ++cell[0]) {
+          if (cell == first) continue;
+          const Code code = code_of(box, cell);
+          insert_in_line<Kind>(insertion, lines_[line_of(cell)],
+                               code.entry | std::uint64_t{insertion.bodies[i]} << kIdShift, code.query, cell);
+        }
       }
     }
   }
@@ -201,14 +267,11 @@ ORCHARD_PER_MACHINE void SweptGrid::insert_vectors(const Insertion& insertion) {
 void SweptGrid::insert_vectors(const Insertion& insertion) { insert_all<PlainCompare>(insertion); }
 #endif
 
-void SweptGrid::insert(std::span<const BodyId> bodies, std::span<const QuantumBox> boxes, bool vectors,
-                       std::vector<BodyPair>& pairs) {
-  constexpr std::size_t kBlock = 64;  // bodies whose lines are loaded ahead
+void SweptGrid::insert(std::span<const BodyId> bodies, const BoxBlock& block, std::span<const QuantumBox> boxes,
+                       bool vectors, std::vector<BodyPair>& pairs) {
   const std::size_t before = pairs.size();
-  for (std::size_t done = 0; done < bodies.size(); done += kBlock) {
-    const Insertion insertion{bodies.subspan(done, std::min(kBlock, bodies.size() - done)), boxes, pairs};
-    vectors ? insert_vectors(insertion) : insert_plain(insertion);
-  }
+  const Insertion insertion{bodies, block, boxes, pairs};
+  vectors ? insert_vectors(insertion) : insert_plain(insertion);
   counts_.pairs += pairs.size() - before;
 }
 

@@ -20,6 +20,23 @@ inline constexpr std::uint32_t kQuantumBits = 5, kQuanta = 1u << kQuantumBits;
 inline constexpr std::uint32_t kLastQuantum = 0x7fffffffu;
 inline constexpr std::uint32_t kMostCellsPerAxis = 4;  // that a body's box may take; the grid has at least as many
 
+inline constexpr std::size_t kBlock = 64;  // bodies that are worked on together
+
+// What is asked about a block of bodies, by coordinate, so that the loops over bodies become vector instructions.
+struct MotionBlock {
+  std::array<std::array<double, kBlock>, 3> position{}, velocity{};
+  std::array<double, kBlock> radius{}, acceleration{}, drift{}, duration{};
+
+  void set(std::size_t i, const Motion& motion, double seconds) noexcept;
+};
+
+struct BoxBlock {
+  std::array<std::array<std::uint32_t, kBlock>, 3> lower{}, upper{};
+
+  QuantumBox get(std::size_t i) const noexcept;
+  void set(std::size_t i, const QuantumBox& box) noexcept;
+};
+
 // Where quanta lie in space. Monotone, and outward: boxes that meet in space meet in quanta.
 class Lattice {
  public:
@@ -27,10 +44,14 @@ class Lattice {
   Lattice(const Vec3& origin, double cell_size) noexcept;
 
   const Vec3& origin() const noexcept { return origin_; }
-  // Holds the body's sphere for `duration` seconds from the motion's time.
-  QuantumBox box(const Motion& motion, double duration) const noexcept;
+  // Each box holds its body's sphere for `duration` seconds from the motion's time.
+  void boxes(const MotionBlock& motions, BoxBlock& boxes, bool vectors) const noexcept;
 
  private:
+  void boxes_plain(const MotionBlock& motions, BoxBlock& boxes) const noexcept;
+  void boxes_vectors(const MotionBlock& motions, BoxBlock& boxes) const noexcept;
+  void make_boxes(const MotionBlock& motions, BoxBlock& boxes) const noexcept;
+
   Vec3 origin_{};
   double per_length_ = 1;  // quanta
   double margin_ = 0;      // quanta: rounding here, and kMotionSlack
@@ -57,9 +78,10 @@ class SweptGrid {
   // Empties the grid. At least `lines` lines, rounded up to a power of two.
   void reset(std::size_t lines);
 
-  // Adds bodies[i] with boxes[bodies[i]] and appends the pairs whose boxes meet, of each of them and everything added
-  // before. `boxes` is indexed by body. No box takes more than kMostCellsPerAxis cells along an axis.
-  void insert(std::span<const BodyId> bodies, std::span<const QuantumBox> boxes, bool vectors,
+  // Adds bodies[i] with block's box i, at most kBlock of them, and appends the pairs whose boxes meet, of each of them
+  // and everything added before. `boxes` is by body and has the new ones, too. No box takes more than kMostCellsPerAxis
+  // cells along an axis.
+  void insert(std::span<const BodyId> bodies, const BoxBlock& block, std::span<const QuantumBox> boxes, bool vectors,
               std::vector<BodyPair>& pairs);
   void remove(BodyId body, const QuantumBox& box) noexcept;
 
@@ -70,13 +92,15 @@ class SweptGrid {
 
  private:
   struct Insertion;
-  std::size_t line_of(const std::array<std::uint32_t, 3>& cell) const noexcept;
+  using Cell = std::array<std::uint32_t, 3>;
+  std::size_t line_of(const Cell& cell) const noexcept;
   template <typename Kind>
   void insert_all(const Insertion& insertion);
   void insert_plain(const Insertion& insertion);
   void insert_vectors(const Insertion& insertion);
   template <typename Kind>
-  void insert_in_cell(const Insertion& insertion, BodyId body, const std::array<std::uint32_t, 3>& cell);
+  void insert_in_line(const Insertion& insertion, CellLine& line, std::uint64_t entry, std::uint64_t query, const Cell& cell);
+  void report(const Insertion& insertion, const CellLine& line, std::uint32_t hits, BodyId body, const Cell& cell);
   void append(CellLine& line, std::uint64_t entry);
   void remove_from(CellLine& line, BodyId body) noexcept;
   void free_last(CellLine& line) noexcept;
