@@ -6,7 +6,7 @@ namespace orchard::runtime::detail {
 namespace {
 
 constexpr std::size_t kMeansStride = 16;    // of the bodies looked at, every so many count for the plan's means
-constexpr std::size_t kSample = 128;        // bodies that the first plan looks at
+constexpr std::size_t kSample = 48;         // bodies that the first plan looks at
 constexpr double kCrowding = 4;             // lines read per entry from which on the cells are too large
 constexpr double kFewPairs = 1e-3;          // per body: too few to say anything about the prediction
 constexpr double kEventResolution = 0.125;  // of a step: no need to know better when a pair can touch
@@ -50,6 +50,14 @@ void Events::take_away(BodyId body) noexcept {
   if (places_[body] == Place::grid) grid_.remove(body, boxes_[body]);
   if (places_[body] == Place::oversized) std::erase(oversized_, body);
   places_[body] = Place::nowhere;
+}
+
+void Events::take_away_due() noexcept {
+  constexpr std::size_t kAhead = 12;
+  for (std::size_t i = 0; i < due_.size(); ++i) {
+    if (i + kAhead < due_.size()) grid_.prepare_removal(boxes_[due_[i + kAhead]]);
+    take_away(due_[i]);
+  }
 }
 
 void Events::collect_due(Step now) {
@@ -149,7 +157,7 @@ void Events::place(Step now, std::span<const BodyId> bodies) {
     windows_[bodies[i]] = {now, moves ? now + steps : kNeverStep};
   }
   for (std::size_t i = 0; i < bodies.size(); i += kMeansStride) means_.add(motions_[i]);
-  lattice_.boxes(motion_block_, box_block_, options_.vectors);
+  lattice_.boxes(motion_block_, bodies.size(), box_block_, options_.vectors);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const BodyId body = bodies[i];
     const QuantumBox& box = boxes_[body] = box_block_.get(i);
@@ -167,7 +175,7 @@ void Events::shrink(Step now, BodyId body, std::size_t i) {
   while (steps > 1) {
     steps = (steps + 1) / 2;
     one.set(0, motions_[i], static_cast<double>(steps - 1) * options_.time_step);
-    lattice_.boxes(one, box, options_.vectors);
+    lattice_.boxes(one, 1, box, options_.vectors);
     boxes_[body] = box.get(0);
     windows_[body].end = now + steps;
     if (!cells_fit(boxes_[body])) continue;
@@ -321,7 +329,7 @@ StepReport Events::step(Step now, Meter& meter, std::vector<BodyPair>& pairs) {
     replan(now);
     place_all_anew();
   } else {
-    for (const BodyId body : due_) take_away(body);
+    take_away_due();
   }
   near_.clear();
   waiting_.assign(overlaps_.begin(), overlaps_.end());

@@ -34,6 +34,7 @@ class Events final : public Method {
   void survey(Step now);
   void place_all_anew();
   void take_away(BodyId body) noexcept;
+  void take_away_due() noexcept;
 
   unsigned look_and_test(Step now, Meter& meter);
   std::size_t look_at(Step now, std::span<const BodyId> bodies, Meter& meter);

@@ -69,39 +69,17 @@ Lattice::Lattice(const Vec3& origin, double cell_size) noexcept : origin_(origin
   margin_ = kRoundingQuanta + 8 * kMotionSlack * (size * per_length_ + kFarQuanta);
 }
 
-void MotionBlock::set(std::size_t i, const Motion& motion, double seconds) noexcept {
-  for (std::size_t d = 0; d < 3; ++d) {
-    position[d][i] = motion.position[d];
-    velocity[d][i] = motion.velocity[d];
-  }
-  radius[i] = motion.radius;
-  acceleration[i] = motion.acceleration;
-  drift[i] = motion.drift;
-  duration[i] = seconds;
-}
-
-QuantumBox BoxBlock::get(std::size_t i) const noexcept {
-  return {{lower[0][i], lower[1][i], lower[2][i]}, {upper[0][i], upper[1][i], upper[2][i]}};
-}
-
-void BoxBlock::set(std::size_t i, const QuantumBox& box) noexcept {
-  for (std::size_t d = 0; d < 3; ++d) {
-    lower[d][i] = box.lower[d];
-    upper[d][i] = box.upper[d];
-  }
-}
-
 // The centre's offset along an axis is at most v t + spread(t), which is convex: largest at an end. Likewise below.
-ORCHARD_INLINE void Lattice::make_boxes(const MotionBlock& motions, BoxBlock& boxes) const noexcept {
+ORCHARD_INLINE void Lattice::make_boxes(const MotionBlock& motions, std::size_t lanes, BoxBlock& boxes) const noexcept {
   std::array<double, kBlock> spread, radius, far;
-  for (std::size_t i = 0; i < kBlock; ++i) {
+  for (std::size_t i = 0; i < lanes; ++i) {
     const double t = motions.duration[i];
     spread[i] = t * (motions.drift[i] + t * motions.acceleration[i] / 2) * per_length_;
     radius[i] = motions.radius[i] * per_length_ + margin_;
     far[i] = std::max(spread[i], radius[i]);
   }
   for (std::size_t d = 0; d < 3; ++d) {
-    for (std::size_t i = 0; i < kBlock; ++i) {
+    for (std::size_t i = 0; i < lanes; ++i) {
       const double begin = (motions.position[d][i] - origin_[d]) * per_length_;
       const double way = motions.velocity[d][i] * motions.duration[i] * per_length_;
       far[i] = std::max(far[i], std::max(std::fabs(begin), std::fabs(way)));
@@ -114,19 +92,22 @@ ORCHARD_INLINE void Lattice::make_boxes(const MotionBlock& motions, BoxBlock& bo
       boxes.upper[d][i] = quantum(upper);
     }
   }
-  for (std::size_t i = 0; i < kBlock; ++i) {
+  for (std::size_t i = 0; i < lanes; ++i) {
     if (far[i] < kFarQuanta) [[likely]] continue;
     for (std::size_t d = 0; d < 3; ++d) boxes.lower[d][i] = 0, boxes.upper[d][i] = kLastQuantum;
   }
 }
 
-void Lattice::boxes_plain(const MotionBlock& motions, BoxBlock& boxes) const noexcept { make_boxes(motions, boxes); }
-ORCHARD_PER_MACHINE void Lattice::boxes_vectors(const MotionBlock& motions, BoxBlock& boxes) const noexcept {
-  make_boxes(motions, boxes);
+void Lattice::boxes_plain(const MotionBlock& motions, std::size_t lanes, BoxBlock& boxes) const noexcept {
+  make_boxes(motions, lanes, boxes);
+}
+ORCHARD_PER_MACHINE void Lattice::boxes_vectors(const MotionBlock& motions, std::size_t lanes,
+                                                BoxBlock& boxes) const noexcept {
+  make_boxes(motions, lanes, boxes);
 }
 
-void Lattice::boxes(const MotionBlock& motions, BoxBlock& boxes, bool vectors) const noexcept {
-  vectors ? boxes_vectors(motions, boxes) : boxes_plain(motions, boxes);
+void Lattice::boxes(const MotionBlock& motions, std::size_t count, BoxBlock& boxes, bool vectors) const noexcept {
+  vectors ? boxes_vectors(motions, lanes_for(count), boxes) : boxes_plain(motions, lanes_for(count), boxes);
 }
 
 void SweptGrid::reset(std::size_t lines) {
@@ -216,9 +197,10 @@ ORCHARD_INLINE void SweptGrid::insert_all(const Insertion& insertion) {
   const std::size_t count = insertion.bodies.size();
   std::array<std::uint64_t, kBlock> entry, query;
   std::array<std::uint32_t, kBlock> line, several;
-  entry.fill(0), query.fill(kGuards), line.fill(0), several.fill(0);
+  const std::size_t lanes = lanes_for(count);
+  for (std::size_t i = 0; i < lanes; ++i) entry[i] = 0, query[i] = kGuards, line[i] = 0, several[i] = 0;
   for (std::uint32_t d = 0; d < 3; ++d) {
-    for (std::size_t i = 0; i < kBlock; ++i) {
+    for (std::size_t i = 0; i < lanes; ++i) {
       const std::uint32_t lower = block.lower[d][i], upper = block.upper[d][i], last = lower | (kQuanta - 1);
       const std::uint64_t from = lower & (kQuanta - 1), below = upper < last ? last - upper : 0;
       entry[i] |= from << (kFieldBits * d) | below << (kFieldBits * (d + 3));
@@ -273,6 +255,15 @@ void SweptGrid::insert(std::span<const BodyId> bodies, const BoxBlock& block, st
   const Insertion insertion{bodies, block, boxes, pairs};
   vectors ? insert_vectors(insertion) : insert_plain(insertion);
   counts_.pairs += pairs.size() - before;
+}
+
+void SweptGrid::prepare_removal(const QuantumBox& box) const noexcept {
+#ifdef ORCHARD_VECTORS
+  __builtin_prefetch(&lines_[line_of({box.lower[0] >> kQuantumBits, box.lower[1] >> kQuantumBits,
+                                      box.lower[2] >> kQuantumBits})], 1);
+#else
+  (void)box;
+#endif
 }
 
 void SweptGrid::remove(BodyId body, const QuantumBox& box) noexcept {

@@ -21,20 +21,38 @@ inline constexpr std::uint32_t kLastQuantum = 0x7fffffffu;
 inline constexpr std::uint32_t kMostCellsPerAxis = 4;  // that a body's box may take; the grid has at least as many
 
 inline constexpr std::size_t kBlock = 64;  // bodies that are worked on together
+// Loops over a block go on to a multiple of eight: whole vectors.
+inline std::size_t lanes_for(std::size_t count) noexcept { return (count + 7) & ~std::size_t{7}; }
 
 // What is asked about a block of bodies, by coordinate, so that the loops over bodies become vector instructions.
 struct MotionBlock {
   std::array<std::array<double, kBlock>, 3> position{}, velocity{};
   std::array<double, kBlock> radius{}, acceleration{}, drift{}, duration{};
 
-  void set(std::size_t i, const Motion& motion, double seconds) noexcept;
+  void set(std::size_t i, const Motion& motion, double seconds) noexcept {
+    for (std::size_t d = 0; d < 3; ++d) {
+      position[d][i] = motion.position[d];
+      velocity[d][i] = motion.velocity[d];
+    }
+    radius[i] = motion.radius;
+    acceleration[i] = motion.acceleration;
+    drift[i] = motion.drift;
+    duration[i] = seconds;
+  }
 };
 
 struct BoxBlock {
   std::array<std::array<std::uint32_t, kBlock>, 3> lower{}, upper{};
 
-  QuantumBox get(std::size_t i) const noexcept;
-  void set(std::size_t i, const QuantumBox& box) noexcept;
+  QuantumBox get(std::size_t i) const noexcept {
+    return {{lower[0][i], lower[1][i], lower[2][i]}, {upper[0][i], upper[1][i], upper[2][i]}};
+  }
+  void set(std::size_t i, const QuantumBox& box) noexcept {
+    for (std::size_t d = 0; d < 3; ++d) {
+      lower[d][i] = box.lower[d];
+      upper[d][i] = box.upper[d];
+    }
+  }
 };
 
 // Where quanta lie in space. Monotone, and outward: boxes that meet in space meet in quanta.
@@ -44,13 +62,13 @@ class Lattice {
   Lattice(const Vec3& origin, double cell_size) noexcept;
 
   const Vec3& origin() const noexcept { return origin_; }
-  // Each box holds its body's sphere for `duration` seconds from the motion's time.
-  void boxes(const MotionBlock& motions, BoxBlock& boxes, bool vectors) const noexcept;
+  // Each box holds its body's sphere for `duration` seconds from the motion's time. Of the first `count` bodies.
+  void boxes(const MotionBlock& motions, std::size_t count, BoxBlock& boxes, bool vectors) const noexcept;
 
  private:
-  void boxes_plain(const MotionBlock& motions, BoxBlock& boxes) const noexcept;
-  void boxes_vectors(const MotionBlock& motions, BoxBlock& boxes) const noexcept;
-  void make_boxes(const MotionBlock& motions, BoxBlock& boxes) const noexcept;
+  void boxes_plain(const MotionBlock& motions, std::size_t lanes, BoxBlock& boxes) const noexcept;
+  void boxes_vectors(const MotionBlock& motions, std::size_t lanes, BoxBlock& boxes) const noexcept;
+  void make_boxes(const MotionBlock& motions, std::size_t lanes, BoxBlock& boxes) const noexcept;
 
   Vec3 origin_{};
   double per_length_ = 1;  // quanta
@@ -84,6 +102,7 @@ class SweptGrid {
   void insert(std::span<const BodyId> bodies, const BoxBlock& block, std::span<const QuantumBox> boxes, bool vectors,
               std::vector<BodyPair>& pairs);
   void remove(BodyId body, const QuantumBox& box) noexcept;
+  void prepare_removal(const QuantumBox& box) const noexcept;  // starts loading
 
   std::size_t lines() const noexcept { return lines_.size(); }
   const GridCounts& counts() const noexcept { return counts_; }  // of insertions, since they were taken

@@ -10,7 +10,7 @@ namespace {
 constexpr double kCostOfLook = 600, kCostPerBody = 25, kCostPerCell = 12, kCostPerPair = 120;
 constexpr double kCellPerSpacing = 1.5;  // smaller cells: more of them per body; larger: more bodies in each
 constexpr double kLinesPerVolume = 1.9;  // a ball fills 52 % of its box
-constexpr double kWindowGrowth = 1.2;    // between the windows tried
+constexpr double kWindowGrowth = 1.3;    // between the windows tried
 
 double extent(const MotionMeans& mean, double duration) noexcept {
   const double spread = duration * (mean.drift + duration * mean.acceleration / 2);
@@ -66,7 +66,7 @@ WindowPlan plan_window(const MotionMeans& means, std::size_t bodies, double spac
   const auto consider = [&](Step window) {
     const double length = extent(mean, static_cast<double>(window - 1) * time_step);
     const double cell = std::max(kCellPerSpacing * spacing, length);
-    const double cells = std::pow(1 + length / cell, 3);
+    const double along = 1 + length / cell, cells = along * along * along;
     const double share = cell / spacing, occupancy = cells * share * share * share / 7;
     const double reach = 2 * length / spacing, pairs = correction * reach * reach * reach / 2;
     const double cost = (kCostOfLook / static_cast<double>(bodies) + kCostPerBody +
