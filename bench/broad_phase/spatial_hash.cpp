@@ -28,39 +28,58 @@ std::size_t SpatialHash::memory_bytes() const {
   return buckets_.capacity() * sizeof(Bucket) + entries_.capacity() * sizeof(Entry);
 }
 
+SpatialHash::Range SpatialHash::range_of(BodyId i) const {
+  Range range;
+  for (std::size_t d = 0; d < 3; ++d) {
+    const double x = positions_[i][d] * per_length_ + kMiddle, r = radii_[i] * per_length_;
+    range.first[d] = static_cast<std::uint32_t>(x - r);
+    range.last[d] = static_cast<std::uint32_t>(x + r);
+  }
+  return range;
+}
+
 template <bool Cubes>
-void SpatialHash::find_all(std::vector<BodyPair>& pairs) {
-  ++stamp_;
-  entries_.clear();
-  const auto cell = [&](double x) { return static_cast<std::uint32_t>(x * per_length_ + kMiddle); };
-  for (BodyId i = 0; i < positions_.size(); ++i) {
-    const Vec3& p = positions_[i];
-    const double r = radii_[i];
-    const std::uint32_t x0 = cell(p[0] - r), x1 = cell(p[0] + r), y0 = cell(p[1] - r), y1 = cell(p[1] + r),
-                        z0 = cell(p[2] - r), z1 = cell(p[2] + r);
-    for (std::uint32_t z = z0; z <= z1; ++z) {
-      for (std::uint32_t y = y0; y <= y1; ++y) {
-        for (std::uint32_t x = x0; x <= x1; ++x) {
-          Bucket& bucket = buckets_[hash_of(x, y, z) & mask_];
-          if (bucket.stamp != stamp_) bucket = {stamp_, kNone};
-          for (std::uint32_t e = bucket.entry; e != kNone; e = entries_[e].next) {
-            const BodyId j = entries_[e].body;
-            const Vec3& q = positions_[j];
-            const double reach = r + radii_[j];
-            const double dx = q[0] - p[0], dy = q[1] - p[1], dz = q[2] - p[2];
-            const bool meet = Cubes ? std::fabs(dx) <= reach && std::fabs(dy) <= reach && std::fabs(dz) <= reach
-                                    : dx * dx + dy * dy + dz * dz <= reach * reach;
-            if (!meet) continue;
-            const double s = radii_[j];
-            const bool here = std::max(x0, cell(q[0] - s)) == x && std::max(y0, cell(q[1] - s)) == y &&
-                              std::max(z0, cell(q[2] - s)) == z;
-            if (here && i != j) pairs.push_back({std::min(i, j), std::max(i, j)});
+void SpatialHash::enter(BodyId i, const Range& range, std::vector<BodyPair>& pairs) {
+  const auto& [first, last] = range;
+  const Vec3& p = positions_[i];
+  const double r = radii_[i];
+  for (std::uint32_t z = first[2]; z <= last[2]; ++z) {
+    for (std::uint32_t y = first[1]; y <= last[1]; ++y) {
+      for (std::uint32_t x = first[0]; x <= last[0]; ++x) {
+        Bucket& bucket = buckets_[hash_of(x, y, z) & mask_];
+        if (bucket.stamp != stamp_) bucket = {stamp_, kNone};
+        for (std::uint32_t e = bucket.entry; e != kNone; e = entries_[e].next) {
+          const Entry& q = entries_[e];
+          const double reach = r + q.radius, dx = q.x - p[0], dy = q.y - p[1], dz = q.z - p[2];
+          const bool meet = Cubes ? std::fabs(dx) <= reach && std::fabs(dy) <= reach && std::fabs(dz) <= reach
+                                  : dx * dx + dy * dy + dz * dz <= reach * reach;
+          if (!meet || q.body == i) continue;
+          const Range other = range_of(q.body);
+          if (std::max(first[0], other.first[0]) == x && std::max(first[1], other.first[1]) == y &&
+              std::max(first[2], other.first[2]) == z) {
+            pairs.push_back({std::min(i, q.body), std::max(i, q.body)});
           }
-          entries_.push_back({i, bucket.entry});
-          bucket.entry = static_cast<std::uint32_t>(entries_.size() - 1);
         }
+        entries_.push_back({p[0], p[1], p[2], r, i, bucket.entry});
+        bucket.entry = static_cast<std::uint32_t>(entries_.size() - 1);
       }
     }
+  }
+}
+
+template <bool Cubes>
+void SpatialHash::find_all(std::vector<BodyPair>& pairs) {
+  constexpr std::size_t kAhead = 16;
+  ++stamp_;
+  entries_.clear();
+  std::array<Range, kAhead> ranges;
+  for (std::size_t begin = 0; begin < positions_.size(); begin += kAhead) {
+    const std::size_t count = std::min(kAhead, positions_.size() - begin);
+    for (std::size_t k = 0; k < count; ++k) {
+      ranges[k] = range_of(static_cast<BodyId>(begin + k));
+      __builtin_prefetch(&buckets_[hash_of(ranges[k].first[0], ranges[k].first[1], ranges[k].first[2]) & mask_], 1);
+    }
+    for (std::size_t k = 0; k < count; ++k) enter<Cubes>(static_cast<BodyId>(begin + k), ranges[k], pairs);
   }
 }
 

@@ -4,8 +4,8 @@
 namespace orchard::bench {
 
 // Turk's spatial hash, rebuilt at each step: every body enters the cells that its box overlaps and is compared with what
-// is there. Cells are buckets of a table with a stamp, so that nothing is cleared; a pair counts in the cell of the lower
-// corner of what its boxes have in common. Of spheres, or of isothetic cubes with the radius as half the edge (7.1).
+// is there. Cells are buckets of a table with a stamp, so that nothing is cleared, and are loaded a block of bodies ahead; an
+// entry has its sphere with it. A pair counts in the cell of the lower corner of what its boxes have in common. Of spheres, or of isothetic cubes with the radius as half the edge (7.1).
 class SpatialHash final : public Rival {
  public:
   struct Options {
@@ -27,8 +27,15 @@ class SpatialHash final : public Rival {
     std::uint32_t stamp, entry;
   };
   struct Entry {
+    double x, y, z, radius;
     std::uint32_t body, next;
   };
+  struct Range {
+    std::array<std::uint32_t, 3> first, last;
+  };
+  Range range_of(BodyId body) const;
+  template <bool Cubes>
+  void enter(BodyId body, const Range& range, std::vector<BodyPair>& pairs);
   template <bool Cubes>
   void find_all(std::vector<BodyPair>& pairs);
 

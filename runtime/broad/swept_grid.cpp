@@ -34,6 +34,14 @@ ORCHARD_INLINE Code code_of(const QuantumBox& box, const std::array<std::uint32_
   return code;
 }
 
+ORCHARD_INLINE void prefetch(const CellLine* line) noexcept {
+#ifdef ORCHARD_VECTORS
+  __builtin_prefetch(line, 1);
+#else
+  (void)line;
+#endif
+}
+
 // Bit i: entry i of the line meets the query. Bits from line.count on mean nothing.
 struct PlainCompare {
   static std::uint32_t meeting(const CellLine& line, std::uint64_t query) noexcept {
@@ -155,6 +163,12 @@ struct SweptGrid::Insertion {
   std::vector<BodyPair>& pairs;
 };
 
+struct SweptGrid::Visit {
+  std::size_t line;
+  std::uint64_t entry, query;
+  Cell cell;
+};
+
 // Of the entries hit, those whose box really meets the body's, and in this cell first.
 void SweptGrid::report(const Insertion& insertion, const CellLine& line, std::uint32_t hits, BodyId body,
                        const Cell& cell) {
@@ -209,9 +223,7 @@ ORCHARD_INLINE void SweptGrid::insert_all(const Insertion& insertion) {
       several[i] |= (lower ^ upper) >> kQuantumBits;
     }
   }
-#ifdef ORCHARD_VECTORS
-  for (std::size_t i = 0; i < count; ++i) __builtin_prefetch(&lines_[line[i]], 1);  // they are all over memory
-#endif
+  for (std::size_t i = 0; i < count; ++i) prefetch(&lines_[line[i]]);  // they are all over memory
   std::array<std::uint32_t, kBlock> rest;
   std::size_t rests = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -223,22 +235,34 @@ ORCHARD_INLINE void SweptGrid::insert_all(const Insertion& insertion) {
     rests += several[i] != 0;
   }
   counts_.bodies += count;
+
+  std::array<Visit, kBlock> visits;  // in two rounds as well: load the lines, then use them
+  std::size_t waiting = 0;
+  const auto flush = [&]() ORCHARD_INLINE_LAMBDA {
+    for (std::size_t k = 0; k < waiting; ++k) {
+      insert_in_line<Kind>(insertion, lines_[visits[k].line], visits[k].entry, visits[k].query, visits[k].cell);
+    }
+    waiting = 0;
+  };
   for (std::size_t k = 0; k < rests; ++k) {
     const std::uint32_t i = rest[k];
     const QuantumBox box = block.get(i);
+    const std::uint64_t id = std::uint64_t{insertion.bodies[i]} << kIdShift;
     Cell cell, first, last;
     for (std::size_t d = 0; d < 3; ++d) first[d] = box.lower[d] >> kQuantumBits, last[d] = box.upper[d] >> kQuantumBits;
     for (cell[2] = first[2]; cell[2] <= last[2]; ++cell[2]) {
       for (cell[1] = first[1]; cell[1] <= last[1]; ++cell[1]) {
         for (cell[0] = first[0]; cell[0] <= last[0]; ++cell[0]) {
           if (cell == first) continue;
+          if (waiting == visits.size()) flush();
           const Code code = code_of(box, cell);
-          insert_in_line<Kind>(insertion, lines_[line_of(cell)],
-                               code.entry | std::uint64_t{insertion.bodies[i]} << kIdShift, code.query, cell);
+          visits[waiting] = {line_of(cell), code.entry | id, code.query, cell};
+          prefetch(&lines_[visits[waiting++].line]);
         }
       }
     }
   }
+  flush();
 }
 
 void SweptGrid::insert_plain(const Insertion& insertion) { insert_all<PlainCompare>(insertion); }
@@ -258,12 +282,7 @@ void SweptGrid::insert(std::span<const BodyId> bodies, const BoxBlock& block, st
 }
 
 void SweptGrid::prepare_removal(const QuantumBox& box) const noexcept {
-#ifdef ORCHARD_VECTORS
-  __builtin_prefetch(&lines_[line_of({box.lower[0] >> kQuantumBits, box.lower[1] >> kQuantumBits,
-                                      box.lower[2] >> kQuantumBits})], 1);
-#else
-  (void)box;
-#endif
+  prefetch(&lines_[line_of({box.lower[0] >> kQuantumBits, box.lower[1] >> kQuantumBits, box.lower[2] >> kQuantumBits})]);
 }
 
 void SweptGrid::remove(BodyId body, const QuantumBox& box) noexcept {

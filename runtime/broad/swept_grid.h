@@ -111,6 +111,7 @@ class SweptGrid {
 
  private:
   struct Insertion;
+  struct Visit;
   using Cell = std::array<std::uint32_t, 3>;
   std::size_t line_of(const Cell& cell) const noexcept;
   template <typename Kind>
