@@ -1,4 +1,5 @@
-// The broad phase against a rebuilt spatial hash, sweep and prune, FCL and Bullet on the same moving spheres, in one run:
+// The broad phase against a rebuilt spatial hash, sweep and prune, FCL and Bullet on the same moving spheres, in one
+// run:
 //   broad_phase_bench [table|variations|worst] [most bodies]
 // 300 steps of 0.01 s. Times are of detection only, the motion is the application's; of each step the fastest of some
 // runs, summed. All have to report the same pairs at every step.
@@ -20,9 +21,7 @@ using orchard::runtime::BroadPhaseOptions;
 
 constexpr int kSteps = 300;
 
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 // What two readings of the clock with nothing between them cost.
 double clock_cost() {
@@ -35,7 +34,7 @@ double clock_cost() {
 }
 
 struct Result {
-  std::vector<double> steps;        // seconds of each step
+  std::vector<double> steps;         // seconds of each step
   std::vector<std::uint64_t> pairs;  // a checksum of each step's pairs
   std::size_t memory = 0;
   std::uint64_t asked = 0;
@@ -97,7 +96,8 @@ Make ours(const BroadPhaseOptions& options) {
     for (std::size_t i = 0; i < scene.size(); ++i) world->add();
     return [world, &result](const Scene& s) {
       const auto report = world->advance(s.time());
-      if (result.steps.size() + 1 >= kSteps) result.memory = world->memory_bytes(), result.asked = world->motions_asked();
+      if (result.steps.size() + 1 >= kSteps)
+        result.memory = world->memory_bytes(), result.asked = world->motions_asked();
       return report.pairs;
     };
   };
@@ -116,9 +116,7 @@ Make rival(const std::function<std::unique_ptr<Rival>(const Scene&)>& make) {
   };
 }
 
-double spacing_of(const SceneShape& shape) {
-  return 200 * std::cbrt(4 * 3.14159265358979 / 3 / (100 * shape.density));
-}
+double spacing_of(const SceneShape& shape) { return 200 * std::cbrt(4 * 3.14159265358979 / 3 / (100 * shape.density)); }
 
 Result hash_result(const SceneShape& shape, int runs, double& cell) {
   if (cell == 0) {
@@ -143,7 +141,9 @@ int runs_for(std::size_t bodies) { return bodies <= 1000 ? 15 : bodies <= 10000 
 
 int table(std::size_t most) {
   bool right = true;
-  std::printf("| bodies | density | orchard, ms | spatial hash | sweep and prune | FCL tree | Bullet Dbvt | bytes/body | motions asked |\n");
+  std::printf(
+      "| bodies | density | orchard, ms | spatial hash | sweep and prune | FCL tree | Bullet Dbvt | bytes/body | "
+      "motions asked |\n");
   std::printf("|---|---|---|---|---|---|---|---|---|\n");
   for (std::size_t n = 100; n <= most; n *= 10) {
     for (const double density : {1.0, 10.0}) {
@@ -154,21 +154,27 @@ int table(std::size_t most) {
       right = same("orchard", own, hash) && right;
       std::printf("| %zu | %.0f | %.3f | %.3f: %.1f times | ", n, density, 1e3 * own.total(), 1e3 * hash.total(),
                   hash.total() / own.total());
-      const auto other = [&](const char* name, int steps, const std::function<std::unique_ptr<Rival>(const Scene&)>& make) {
+      const auto other = [&](const char* name, int steps,
+                             const std::function<std::unique_ptr<Rival>(const Scene&)>& make) {
         const Result r = measure(shape, n <= 1000 ? 3 : 1, steps, rival(make));
         right = same(name, r, hash) && right;
         const double total = r.total() * kSteps / steps;
         std::printf("%s%.1f: %.0f times | ", r.whole ? "" : "about ", 1e3 * total, total / own.total());
         std::fflush(stdout);
       };
-      other("sweep and prune", n > 10000 ? 30 : kSteps, [](const Scene& s) { return sweep_and_prune(s.positions(), s.radii()); });
+      other("sweep and prune", n > 10000 ? 30 : kSteps,
+            [](const Scene& s) { return sweep_and_prune(s.positions(), s.radii()); });
 #ifdef ORCHARD_HAS_FCL
       other("FCL", n > 10000 ? 30 : kSteps, [](const Scene& s) { return fcl_tree(s.positions(), s.radii()); });
 #else
       std::printf("- | ");
 #endif
 #ifdef ORCHARD_HAS_BULLET
-      other("Bullet", n > 10000 ? 10 : n > 1000 ? 60 : kSteps, [](const Scene& s) { return bullet_dbvt(s.positions(), s.radii()); });
+      other("Bullet",
+            n > 10000  ? 10
+            : n > 1000 ? 60
+                       : kSteps,
+            [](const Scene& s) { return bullet_dbvt(s.positions(), s.radii()); });
 #else
       std::printf("- | ");
 #endif
@@ -185,17 +191,18 @@ int variations(std::size_t most) {
     double density, speed, acceleration;
   };
   bool right = true;
-  std::printf("| bodies | scene | orchard, ms | spatial hash | worst fixed window of 100 steps |\n|---|---|---|---|---|\n");
+  std::printf(
+      "| bodies | scene | orchard, ms | spatial hash | worst fixed window of 100 steps |\n|---|---|---|---|---|\n");
   for (std::size_t n = 1000; n <= most; n *= 10) {
-    for (const Case& c : {Case{"100 times as dense", 100, 1, 1}, Case{"4 times as fast", 1, 4, 1}, Case{"10 times M", 1, 1, 10},
-                          Case{"all three", 100, 4, 10}}) {
+    for (const Case& c : {Case{"100 times as dense", 100, 1, 1}, Case{"4 times as fast", 1, 4, 1},
+                          Case{"10 times M", 1, 1, 10}, Case{"all three", 100, 4, 10}}) {
       const SceneShape shape{.bodies = n, .density = c.density, .speed = c.speed, .acceleration = c.acceleration};
       double cell = 0;
       const Result hash = hash_result(shape, runs_for(n), cell), own = measure(shape, runs_for(n), kSteps, ours({}));
       const Result fixed = measure(shape, 1, kSteps, ours({.window = 100}));
       right = same("orchard", own, hash) && same("fixed window", fixed, hash) && right;
-      std::printf("| %zu | %s | %.3f | %.3f: %.1f times | %.1f times |\n", n, c.name, 1e3 * own.total(), 1e3 * hash.total(),
-                  hash.total() / own.total(), hash.total() / fixed.total());
+      std::printf("| %zu | %s | %.3f | %.3f: %.1f times | %.1f times |\n", n, c.name, 1e3 * own.total(),
+                  1e3 * hash.total(), hash.total() / own.total(), hash.total() / fixed.total());
       std::fflush(stdout);
     }
   }
@@ -204,7 +211,9 @@ int variations(std::size_t most) {
 
 int worst(std::size_t most) {
   bool right = true;
-  std::printf("| bodies | density | bounds | first step, ms | spatial hash's first | worst later step, ms | spatial hash's worst | total, ms | spatial hash |\n");
+  std::printf(
+      "| bodies | density | bounds | first step, ms | spatial hash's first | worst later step, ms | spatial hash's "
+      "worst | total, ms | spatial hash |\n");
   std::printf("|---|---|---|---|---|---|---|---|---|\n");
   for (std::size_t n = 100; n <= most; n *= 10) {
     for (const double density : {1.0, 10.0}) {
@@ -213,10 +222,11 @@ int worst(std::size_t most) {
         double cell = 0;
         const Result hash = hash_result(shape, runs_for(n), cell), own = measure(shape, runs_for(n), kSteps, ours({}));
         right = same("orchard", own, hash) && right;
-        std::printf("| %zu | %.0f | %s | %.4f | %.4f: %.2f times | %.4f | %.4f: %.2f times | %.3f | %.3f: %.1f times |\n", n, density,
-                    staggered ? "staggered" : "expire together", 1e3 * own.steps[0], 1e3 * hash.steps[0],
-                    hash.steps[0] / own.steps[0], 1e3 * own.worst(1), 1e3 * hash.worst(1), hash.worst(1) / own.worst(1),
-                    1e3 * own.total(), 1e3 * hash.total(), hash.total() / own.total());
+        std::printf(
+            "| %zu | %.0f | %s | %.4f | %.4f: %.2f times | %.4f | %.4f: %.2f times | %.3f | %.3f: %.1f times |\n", n,
+            density, staggered ? "staggered" : "expire together", 1e3 * own.steps[0], 1e3 * hash.steps[0],
+            hash.steps[0] / own.steps[0], 1e3 * own.worst(1), 1e3 * hash.worst(1), hash.worst(1) / own.worst(1),
+            1e3 * own.total(), 1e3 * hash.total(), hash.total() / own.total());
         std::fflush(stdout);
       }
     }

@@ -13,8 +13,8 @@ class BulletDbvt final : public Rival {
     for (BodyId i = 0; i < positions.size(); ++i) {
       btVector3 low, high;
       box(i, low, high);
-      proxies_.push_back(tree_.createProxy(low, high, 0, reinterpret_cast<void*>(static_cast<std::uintptr_t>(i)), 1, 1,
-                                           nullptr));
+      proxies_.push_back(
+          tree_.createProxy(low, high, 0, reinterpret_cast<void*>(static_cast<std::uintptr_t>(i)), 1, 1, nullptr));
     }
   }
   ~BulletDbvt() override {

@@ -12,7 +12,8 @@ Scene::Scene(const SceneShape& shape, std::uint64_t seed)
     radii_.push_back(draw_.uniform(0.5, 1.5));
     drives_.push_back({shape.speed * draw_.uniform(5, 15) * draw_.direction(), {}, 0, 0});
     redraw(i);
-    if (shape.staggered) drives_[i].expiry = static_cast<double>(1 + i % static_cast<std::size_t>(steps_per_second_)) * shape.time_step;
+    if (shape.staggered)
+      drives_[i].expiry = static_cast<double>(1 + i % static_cast<std::size_t>(steps_per_second_)) * shape.time_step;
   }
 }
 

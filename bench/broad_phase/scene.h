@@ -15,9 +15,9 @@ using runtime::operator+;
 using runtime::operator-;
 using runtime::operator*;
 
-// Spheres of radius 0.5 to 1.5 in a ball, 100 in radius 200 at density 1 (dissertation 4.2.5), speeds 5 to 15 at speed 1,
-// accelerations below M, which is uniform in [0, 4] at acceleration 1 for each body; M and the acceleration are drawn anew
-// every second.
+// Spheres of radius 0.5 to 1.5 in a ball, 100 in radius 200 at density 1 (dissertation 4.2.5), speeds 5 to 15 at speed
+// 1, accelerations below M, which is uniform in [0, 4] at acceleration 1 for each body; M and the acceleration are
+// drawn anew every second.
 struct SceneShape {
   std::size_t bodies = 1000;
   double density = 1, speed = 1, acceleration = 1;

@@ -3,9 +3,10 @@
 
 namespace orchard::bench {
 
-// Turk's spatial hash, rebuilt at each step: every body enters the cells that its box overlaps and is compared with what
-// is there. Cells are buckets of a table with a stamp, so that nothing is cleared, and are loaded a block of bodies ahead; an
-// entry has its sphere with it. A pair counts in the cell of the lower corner of what its boxes have in common. Of spheres, or of isothetic cubes with the radius as half the edge (7.1).
+// Turk's spatial hash, rebuilt at each step: every body enters the cells that its box overlaps and is compared with
+// what is there. Cells are buckets of a table with a stamp, so that nothing is cleared, and are loaded a block of
+// bodies ahead; an entry has its sphere with it. A pair counts in the cell of the lower corner of what its boxes have
+// in common. Of spheres, or of isothetic cubes with the radius as half the edge (7.1).
 class SpatialHash final : public Rival {
  public:
   struct Options {

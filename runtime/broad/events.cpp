@@ -8,6 +8,7 @@ namespace {
 constexpr std::size_t kMeansStride = 16;    // of the bodies looked at, every so many count for the plan's means
 constexpr std::size_t kSample = 48;         // bodies that the first plan looks at
 constexpr double kCrowding = 4;             // lines read per entry from which on the cells are too large
+constexpr unsigned kPlansKept = 8;          // a plan that fits is made anew after as many looks at all bodies
 constexpr double kFewPairs = 1e-3;          // per body: too few to say anything about the prediction
 constexpr double kEventResolution = 0.125;  // of a step: no need to know better when a pair can touch
 
@@ -87,15 +88,19 @@ bool Events::worth_a_rebuild() const noexcept {
 void Events::replan(Step now) {
   const std::size_t n = roster_.size();
   const GridCounts counts = grid_.take_counts();
+  double off = 1;  // pairs seen to pairs predicted
   if (counts.bodies > 0) {
     const double seen = static_cast<double>(counts.pairs) / static_cast<double>(counts.bodies);
-    correction_ = std::clamp(correction_ * (seen + kFewPairs) / (plan_.pairs_per_body + kFewPairs), 0.05, 50.0);
+    off = (seen + kFewPairs) / (plan_.pairs_per_body + kFewPairs);
   }
   if (crowded(counts) && n <= 2 * planned_bodies_) {
     spacing_ /= 2;  // bodies in clusters: what counts is how dense these are
   } else if (n > 2 * planned_bodies_ || 2 * n < planned_bodies_) {
     survey(now);
+  } else if (0.5 < off && off < 2 && plans_++ % kPlansKept != 1) {
+    return;
   }
+  correction_ = std::clamp(correction_ * off, 0.05, 50.0);
   plan_ = plan_window(means_, n, spacing_, options_.time_step, correction_, options_.window);
   lattice_ = Lattice(lattice_.origin(), plan_.cell_size);
   means_ = {};
@@ -121,6 +126,7 @@ void Events::survey(Step now) {
   spacing_ = mean_spacing(centers, n);
   planned_bodies_ = n;
   correction_ = 1;
+  plans_ = 0;
 }
 
 void Events::place_all_anew() {
@@ -299,7 +305,8 @@ unsigned Events::look_and_test(Step now, Meter& meter) {
                      [&](BodyId a, BodyId b) { return roster_.importance(a) < roster_.importance(b); });
   }
   std::size_t looked = 0;
-  for (unsigned rank = roster_.next_class(0); rank < kNoClass; rank = roster_.next_class(rank + 1)) {
+  for (unsigned rank = roster_.next_class(0); rank < kNoClass;
+       rank = one_class ? kNoClass : roster_.next_class(rank + 1)) {
     std::size_t end = one_class ? due_.size() : looked;
     while (end < due_.size() && roster_.importance(due_[end]) == rank) ++end;
     looked += look_at(now, std::span(due_).subspan(looked, end - looked), meter);

@@ -65,6 +65,7 @@ class Events final : public Method {
   MotionMeans means_;
   double spacing_ = 0, correction_ = 1;
   std::size_t planned_bodies_ = 0;
+  unsigned plans_ = 0;
 
   // Of the step under way; kept for their memory.
   std::vector<BodyId> due_;

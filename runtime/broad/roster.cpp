@@ -18,7 +18,7 @@ BodyId Roster::add(std::uint8_t importance) {
     alive_[body] = 1;
   }
   importance_[body] = importance;
-  ++in_class_[importance];
+  enter_class(importance);
   ++size_;
   return body;
 }
@@ -31,7 +31,7 @@ void Roster::remove(BodyId body) {
     static_slot_[body] = kNoSlot;
   }
   alive_[body] = 0;
-  --in_class_[importance_[body]];
+  leave_class(importance_[body]);
   --size_;
 }
 
@@ -54,9 +54,9 @@ void Roster::set_static(BodyId body, const Motion& place) {
 }
 
 void Roster::set_importance(BodyId body, std::uint8_t importance) noexcept {
-  --in_class_[importance_[body]];
+  leave_class(importance_[body]);
   importance_[body] = importance;
-  ++in_class_[importance];
+  enter_class(importance);
 }
 
 unsigned Roster::next_class(unsigned from) const noexcept {

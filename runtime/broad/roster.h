@@ -82,7 +82,7 @@ class Roster {
   bool is_static(BodyId body) const noexcept { return !static_slot_.empty() && static_slot_[body] != kNoSlot; }
   std::uint8_t importance(BodyId body) const noexcept { return importance_[body]; }
   unsigned next_class(unsigned from) const noexcept;  // the first class, from `from` on, that has bodies; or kNoClass
-  bool one_class() const noexcept { return next_class(next_class(0) + 1) == kNoClass; }
+  bool one_class() const noexcept { return classes_ <= 1; }
   // A pair is as important as the less important of its bodies.
   std::uint8_t importance(const BodyPair& pair) const noexcept {
     return std::max(importance_[pair.a], importance_[pair.b]);
@@ -105,7 +105,10 @@ class Roster {
   std::vector<Motion> answers_;
   std::size_t size_ = 0;
   std::uint64_t asked_ = 0;
+  void enter_class(std::uint8_t importance) noexcept { classes_ += in_class_[importance]++ == 0; }
+  void leave_class(std::uint8_t importance) noexcept { classes_ -= --in_class_[importance] == 0; }
   std::array<std::size_t, kNoClass> in_class_{};
+  unsigned classes_ = 0;  // that have bodies
 };
 
 template <typename T>

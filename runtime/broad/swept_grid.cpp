@@ -101,7 +101,8 @@ ORCHARD_INLINE void Lattice::make_boxes(const MotionBlock& motions, std::size_t 
     }
   }
   for (std::size_t i = 0; i < lanes; ++i) {
-    if (far[i] < kFarQuanta) [[likely]] continue;
+    if (far[i] < kFarQuanta) [[likely]]
+      continue;
     for (std::size_t d = 0; d < 3; ++d) boxes.lower[d][i] = 0, boxes.upper[d][i] = kLastQuantum;
   }
 }
@@ -192,7 +193,8 @@ ORCHARD_INLINE void SweptGrid::insert_in_line(const Insertion& insertion, CellLi
     ++counts_.lines_read;
     const std::uint32_t hits = Kind::meeting(*line, query) & ((1u << line->count) - 1);
     if (hits != 0) report(insertion, *line, hits, static_cast<BodyId>(entry >> kIdShift), cell);
-    if (line->overflow == 0) [[likely]] break;
+    if (line->overflow == 0) [[likely]]
+      break;
     line = &overflow_[line->overflow - 1];
   }
   ++counts_.entries;
@@ -229,8 +231,8 @@ ORCHARD_INLINE void SweptGrid::insert_all(const Insertion& insertion) {
   for (std::uint32_t i = 0; i < count; ++i) {
     const Cell cell = {block.lower[0][i] >> kQuantumBits, block.lower[1][i] >> kQuantumBits,
                        block.lower[2][i] >> kQuantumBits};
-    insert_in_line<Kind>(insertion, lines_[line[i]], entry[i] | std::uint64_t{insertion.bodies[i]} << kIdShift, query[i],
-                         cell);
+    insert_in_line<Kind>(insertion, lines_[line[i]], entry[i] | std::uint64_t{insertion.bodies[i]} << kIdShift,
+                         query[i], cell);
     rest[rests] = i;
     rests += several[i] != 0;
   }
@@ -282,7 +284,8 @@ void SweptGrid::insert(std::span<const BodyId> bodies, const BoxBlock& block, st
 }
 
 void SweptGrid::prepare_removal(const QuantumBox& box) const noexcept {
-  prefetch(&lines_[line_of({box.lower[0] >> kQuantumBits, box.lower[1] >> kQuantumBits, box.lower[2] >> kQuantumBits})]);
+  prefetch(
+      &lines_[line_of({box.lower[0] >> kQuantumBits, box.lower[1] >> kQuantumBits, box.lower[2] >> kQuantumBits})]);
 }
 
 void SweptGrid::remove(BodyId body, const QuantumBox& box) noexcept {

@@ -119,7 +119,8 @@ class SweptGrid {
   void insert_plain(const Insertion& insertion);
   void insert_vectors(const Insertion& insertion);
   template <typename Kind>
-  void insert_in_line(const Insertion& insertion, CellLine& line, std::uint64_t entry, std::uint64_t query, const Cell& cell);
+  void insert_in_line(const Insertion& insertion, CellLine& line, std::uint64_t entry, std::uint64_t query,
+                      const Cell& cell);
   void report(const Insertion& insertion, const CellLine& line, std::uint32_t hits, BodyId body, const Cell& cell);
   void append(CellLine& line, std::uint64_t entry);
   void remove_from(CellLine& line, BodyId body) noexcept;
