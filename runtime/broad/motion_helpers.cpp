@@ -1,0 +1,78 @@
+#include "orchard/runtime/motion_helpers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace orchard::runtime {
+namespace {
+
+constexpr double kQuarterTurn = std::numbers::pi / 2;
+constexpr double kWorthwhile = 0.5;  // of the horizon: a half-space that ends earlier costs more looks than it saves
+
+double length(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
+
+Motion bounded(const Vec3& position, const Vec3& velocity, double radius, double acceleration, double expiry) noexcept {
+  Motion motion;
+  motion.position = position;
+  motion.velocity = velocity;
+  motion.radius = radius;
+  motion.acceleration = acceleration;
+  motion.expiry = expiry;
+  return motion;
+}
+
+// The acceleration stays on `direction`'s side for `lasting` seconds.
+void keep_to_side(Motion& motion, const Vec3& direction, double lasting, double time, double horizon) noexcept {
+  if (!(lasting >= kWorthwhile * horizon)) return;
+  motion.half_space = -1.0 * direction;
+  motion.expiry = time + std::min(lasting, horizon);
+}
+
+double quarter_turn_time(double angular_speed) noexcept {
+  return angular_speed > 0 ? kQuarterTurn / angular_speed : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+Motion rocket_motion(const Rocket& r, double time, double horizon) noexcept {
+  Motion motion = bounded(r.position, r.velocity, r.radius, r.largest_thrust, time + horizon);
+  keep_to_side(motion, r.axis, quarter_turn_time(r.largest_turning), time, horizon);
+  return motion;
+}
+
+Motion vehicle_motion(const Vehicle& v, double time, double horizon) noexcept {
+  const double centripetal = v.largest_speed * v.largest_speed / v.least_turn_radius;
+  Motion motion = bounded(v.position, v.velocity, v.radius, std::hypot(centripetal, v.largest_drive), time + horizon);
+  if (v.largest_drive == 0 && v.to_center != Vec3{}) {
+    keep_to_side(motion, v.to_center, quarter_turn_time(v.largest_speed / v.least_turn_radius), time, horizon);
+  }
+  return motion;
+}
+
+Motion dragged_motion(const Dragged& d, double time, double horizon) noexcept {
+  // The second difference is a mean of the acceleration over the last two steps, which lie `step` back on average.
+  const double h = d.step;
+  const Vec3 mean = (1 / (h * h)) * (d.position - 2.0 * d.last + d.before_last);
+  const double change = d.largest_jerk * (h + horizon), size = length(mean);
+  const Vec3 velocity = (1 / h) * (d.position - d.last) + (h / 2) * mean;
+  Motion motion = bounded(d.position, velocity, d.radius, size + change, time + horizon);
+  motion.drift = d.largest_jerk * h * h / 2;
+  if (size > change) keep_to_side(motion, mean, horizon, time, horizon);
+  return motion;
+}
+
+Motion spring_motion(const SpringDragged& d, double time, double horizon) noexcept {
+  // e = sqrt(|y'|^2 + k |y - cursor|^2) grows by k * cursor_reach per second at most: damping only takes.
+  const Vec3 pull = d.cursor - d.position;
+  const double stretch = length(pull), feed = d.stiffness * d.cursor_reach;
+  const double e = std::sqrt(dot(d.velocity, d.velocity) + d.stiffness * stretch * stretch) + feed * horizon;
+  const double acceleration = e * std::sqrt(d.stiffness + d.damping * d.damping) + feed;
+  Motion motion = bounded(d.position, d.velocity, d.radius, acceleration, time + horizon);
+  // No faster than e, the object stays behind the cursor so long that the spring outweighs the damper.
+  const double reserve = stretch - d.cursor_reach - d.damping * e / d.stiffness;
+  if (stretch > 0 && e > 0) keep_to_side(motion, pull, reserve / e, time, horizon);
+  return motion;
+}
+
+}  // namespace orchard::runtime
