@@ -1,0 +1,27 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace orchard::bench {
+
+// Plots as small SVG files, for any benchmark. Lines and points may have gaps: values that are not finite, or not
+// positive on a logarithmic axis, are left out.
+struct Series {
+  enum class Kind { points, line, bars };  // bars: x are their left edges, all as wide as the first two are apart
+  std::string name;                        // for the legend; empty: none
+  std::vector<double> x, y;
+  Kind kind = Kind::points;
+};
+
+struct Plot {
+  std::string title, x_label, y_label;
+  bool log_x = false, log_y = false;
+  std::vector<Series> series;
+  std::vector<double> levels;  // y of dashed horizontal lines
+};
+
+// The plots side by side, `columns` in a row. Throws std::runtime_error if the file cannot be written.
+void write_svg(const std::filesystem::path& file, const std::vector<Plot>& plots, int columns = 1);
+
+}  // namespace orchard::bench

@@ -1,0 +1,214 @@
+// Figures 4.16 to 4.20: the time to find the earliest intersection of 100 hypertrapezoids, by projection and by
+// subdivision, and by the methods of section 8.2:  fig_4_16_face_intersections [folder for CSV and SVG] [trials]
+// 200 trials; r in [0.5, 1.5], positions in a ball of radius 200, speeds 5 to 15, M in [0, 4], time from 0 to 1.
+// Aligned with the x axis: positions within 0.1 of the y-z plane, velocities along x; aligned with the x-y plane:
+// positions within 0.1 of the z axis, velocities in the plane; with M = 0 as well. The dissertation does not say which
+// n_b it tried.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "orchard/runtime/space_time_bound.h"
+#include "svg_plot.h"
+#include "worlds.h"
+
+namespace {
+
+using namespace orchard::runtime;
+using orchard::bench::Plot;
+using orchard::bench::Series;
+
+constexpr std::uint32_t kBaseCases[] = {4, 8, 16, 32, 64, 128};
+
+enum class Alignment { none, x_axis, xy_plane };
+
+struct Test {
+  const char* name;
+  const char* figure;
+  Alignment alignment;
+  bool accelerated;
+};
+constexpr Test kTests[] = {{"random", "4.16", Alignment::none, true},
+                           {"aligned with the x axis", "4.17", Alignment::x_axis, true},
+                           {"aligned with the x-y plane", "4.18", Alignment::xy_plane, true},
+                           {"aligned with the x axis, M = 0", "4.19", Alignment::x_axis, false},
+                           {"aligned with the x-y plane, M = 0", "4.20", Alignment::xy_plane, false}};
+
+struct Way {
+  const char* name;
+  IntersectionOptions options;
+};
+
+std::vector<Way> ways() {
+  std::vector<Way> result = {{"projection", {.method = IntersectionMethod::projection}}};
+  for (const std::uint32_t n : kBaseCases) {
+    result.push_back({"subdivision", {.method = IntersectionMethod::subdivision, .base_case = n}});
+  }
+  result.push_back({"hybrid", {.method = IntersectionMethod::hybrid, .base_case = 32}});
+  result.push_back({"quadratic faces", {.method = IntersectionMethod::projection, .shape = BoundShape::quadratic}});
+  result.push_back({"horns", {.method = IntersectionMethod::sorted, .shape = BoundShape::horn}});
+  result.push_back({"all pairs", {.method = IntersectionMethod::all_pairs}});
+  return result;
+}
+
+Motion draw_motion(const Test& test, double ball, test::Draw& draw) {
+  Motion m;
+  m.radius = draw.uniform(0.5, 1.5);
+  m.position = draw.in_ball(ball);
+  const double speed = draw.uniform(5, 15);
+  m.velocity = speed * draw.direction();
+  m.acceleration = test.accelerated ? draw.uniform(0, 4) : 0;
+  if (test.alignment == Alignment::x_axis) {
+    m.position[0] = draw.uniform(-0.1, 0.1);
+    m.velocity = {draw.uniform(0, 1) < 0.5 ? speed : -speed, 0, 0};
+  } else if (test.alignment == Alignment::xy_plane) {
+    m.position = {draw.uniform(-0.1, 0.1), draw.uniform(-0.1, 0.1), draw.uniform(-ball, ball)};
+    const double angle = draw.uniform(0, 6.283185307179586);
+    m.velocity = {speed * std::cos(angle), speed * std::sin(angle), 0};
+  }
+  return m;
+}
+
+// Apart at time 0: those that overlap are drawn again.
+std::vector<SpaceTimeBound> bounds_of(const Test& test, std::size_t count, std::uint64_t seed) {
+  test::Draw draw(seed);
+  const double ball = 200 * std::cbrt(static_cast<double>(count) / 100);
+  std::vector<SpaceTimeBound> bounds;
+  for (std::size_t i = 0; i < count; ++i) bounds.push_back(make_bound(draw_motion(test, ball, draw), 0, 1));
+  IntersectionFinder finder;
+  for (;;) {
+    const auto& initial = finder.find(bounds, 0, {.method = IntersectionMethod::sorted}).initial;
+    if (initial.empty()) return bounds;
+    for (const BoundContact& pair : initial) bounds[pair.b] = make_bound(draw_motion(test, ball, draw), 0, 1);
+  }
+}
+
+struct Timing {
+  double seconds, contact;
+};
+
+Timing time(IntersectionFinder& finder, const std::vector<SpaceTimeBound>& bounds, const IntersectionOptions& options,
+            int rounds) {
+  Timing result{1e300, kNoContact};
+  for (int round = 0; round < rounds; ++round) {
+    const auto begin = std::chrono::steady_clock::now();
+    result.contact = finder.find(bounds, 1, options).earliest.time;
+    result.seconds =
+        std::min(result.seconds, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  }
+  return result;
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values.empty() ? 0 : values[values.size() / 2];
+}
+
+// One figure: a row of the table, and a plot per n_b, or one over n_b where nothing ever meets.
+std::vector<Plot> run(const Test& test, int trials, std::ofstream& csv) {
+  const std::vector<Way> all = ways();
+  std::vector<std::vector<double>> seconds(all.size());
+  std::vector<double> contacts;
+  IntersectionFinder finder;
+  for (int trial = 0; trial < trials; ++trial) {
+    const auto bounds = bounds_of(test, 100, static_cast<std::uint64_t>(trial) + 1);
+    for (std::size_t w = 0; w < all.size(); ++w) {
+      const Timing timing = time(finder, bounds, all[w].options, 3);
+      seconds[w].push_back(timing.seconds);
+      if (w == 0) contacts.push_back(timing.contact);
+      csv << test.figure << ',' << trial << ',' << all[w].name << ',' << all[w].options.base_case << ','
+          << timing.seconds << ',' << timing.contact << '\n';
+    }
+  }
+  std::printf("| %s | %s ", test.figure, test.name);
+  for (const auto& s : seconds) std::printf("| %.0f ", 1e6 * median(s));
+  std::printf("|\n");
+  std::fflush(stdout);
+
+  std::vector<Plot> plots;
+  Series over_base_case;
+  for (std::size_t k = 0; k < std::size(kBaseCases); ++k) {
+    Plot plot{.title = "Fig. " + std::string(test.figure) + ", n_b = " + std::to_string(kBaseCases[k]),
+              .x_label = "time of the earliest intersection",
+              .y_label = "speedup of projection",
+              .log_y = true,
+              .series = {},
+              .levels = {1}};
+    Series points;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const double speedup = seconds[1 + k][i] / seconds[0][i];
+      points.x.push_back(contacts[i]);
+      points.y.push_back(speedup);
+      over_base_case.x.push_back(kBaseCases[k]);
+      over_base_case.y.push_back(speedup);
+    }
+    plot.series = {points};
+    plots.push_back(plot);
+  }
+  if (test.accelerated) return plots;
+  return {Plot{.title = "Fig. " + std::string(test.figure) + ": " + test.name,
+               .x_label = "n_b",
+               .y_label = "speedup of projection",
+               .log_x = true,
+               .log_y = true,
+               .series = {over_base_case},
+               .levels = {1}}};
+}
+
+// The random test with more bodies, at the same density.
+void run_large(std::ofstream& csv) {
+  std::printf(
+      "\n| bodies | projection, ms | subdivision, n_b = 128 | hybrid | quadratic faces | horns "
+      "|\n|---|---|---|---|---|---|\n");
+  const IntersectionOptions options[] = {{.method = IntersectionMethod::projection},
+                                         {.method = IntersectionMethod::subdivision, .base_case = 128},
+                                         {.method = IntersectionMethod::hybrid, .base_case = 32},
+                                         {.method = IntersectionMethod::projection, .shape = BoundShape::quadratic},
+                                         {.method = IntersectionMethod::sorted, .shape = BoundShape::horn}};
+  IntersectionFinder finder;
+  for (const std::size_t count : {1000u, 10000u, 100000u}) {
+    const auto bounds = bounds_of(kTests[0], count, 1);
+    std::printf("| %zu ", count);
+    for (const IntersectionOptions& o : options) {
+      const Timing timing = time(finder, bounds, o, count > 10000 ? 1 : 3);
+      std::printf("| %.2f ", 1e3 * timing.seconds);
+      std::fflush(stdout);
+      csv << "large," << count << ',' << static_cast<int>(o.method) << ',' << o.base_case << ',' << timing.seconds
+          << ',' << timing.contact << '\n';
+    }
+    std::printf("|\n");
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::filesystem::path folder = argc > 1 ? argv[1] : ".";
+  const int trials = argc > 2 ? std::atoi(argv[2]) : 200;
+  std::filesystem::create_directories(folder);
+  std::ofstream csv(folder / "fig_4_16.csv");
+  csv << "figure,trial,method,base_case,seconds,earliest\n";
+  std::printf("| figure | test (%d trials, median microseconds) ", trials);
+  for (const Way& way : ways()) {
+    std::printf("| %s", way.name);
+    std::printf(way.options.method == IntersectionMethod::subdivision ? ", n_b = %u " : " ", way.options.base_case);
+  }
+  std::printf("|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  std::vector<Plot> flat;
+  for (const Test& test : kTests) {
+    const std::vector<Plot> plots = run(test, trials, csv);
+    if (plots.size() > 1) {
+      orchard::bench::write_svg(folder / ("fig_" + std::string(test.figure) + ".svg"), plots, 3);
+    } else {
+      flat.push_back(plots[0]);
+    }
+  }
+  orchard::bench::write_svg(folder / "fig_4.19_4.20.svg", flat, 2);
+  run_large(csv);
+  return 0;
+}
