@@ -44,7 +44,7 @@ class Axis {
   }
   void settle() {
     if (!(low_ <= high_)) low_ = 0, high_ = 1;
-    if (log_) low_ = std::floor(low_ - 1e-9), high_ = std::ceil(high_ + 1e-9);
+    if (log_) low_ = std::floor(low_ + 1e-9), high_ = std::ceil(high_ - 1e-9);
     if (high_ == low_) high_ = low_ + 1;
     if (!log_) {
       const double margin = 0.04 * (high_ - low_);
