@@ -14,4 +14,10 @@ TriangleMesh read_ply(std::string_view bytes, const std::string& name);
 TriangleMesh read_stl(std::string_view bytes, const std::string& name);  // welds identical corners
 TriangleMesh read_off(std::string_view bytes, const std::string& name);
 
+// The readers behind read_points_or_mesh(). The same, but a file without faces gives its vertices alone; only one
+// without either is refused. .xyz has no faces.
+TriangleMesh read_obj_or_points(std::string_view bytes, const std::string& name);
+TriangleMesh read_ply_or_points(std::string_view bytes, const std::string& name);
+TriangleMesh read_xyz(std::string_view bytes, const std::string& name);
+
 }  // namespace orchard

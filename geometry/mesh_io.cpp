@@ -50,6 +50,17 @@ Reader reader_for(const std::filesystem::path& file) {
   throw InputError(file.string() + ": unknown mesh format \"" + extension + "\"; use .obj, .ply, .stl or .off");
 }
 
+Reader point_reader_for(const std::filesystem::path& file) {
+  const std::string extension = lower_case_extension(file);
+  if (extension == ".xyz") return read_xyz;
+  if (extension == ".obj") return read_obj_or_points;
+  if (extension == ".ply") return read_ply_or_points;
+  if (extension == ".stl") return read_stl;
+  if (extension == ".off") return read_off;
+  throw InputError(file.string() + ": unknown format \"" + extension +
+                   "\"; points: .xyz, .ply or .obj; meshes: .obj, .ply, .stl or .off");
+}
+
 // Text that grows in memory and goes to the stream a piece at a time.
 class TextBuffer {
  public:
@@ -86,6 +97,11 @@ class TextBuffer {
 
 TriangleMesh read_mesh(const std::filesystem::path& file) {
   const Reader reader = reader_for(file);
+  return reader(read_bytes(file), file.string());
+}
+
+TriangleMesh read_points_or_mesh(const std::filesystem::path& file) {
+  const Reader reader = point_reader_for(file);
   return reader(read_bytes(file), file.string());
 }
 

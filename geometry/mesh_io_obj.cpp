@@ -16,7 +16,7 @@ class ObjReader {
   ObjReader(std::string_view bytes, const std::string& name)
       : bytes_(bytes), name_(name), at_(bytes.data()), end_(bytes.data() + bytes.size()) {}
 
-  TriangleMesh read() {
+  TriangleMesh read(bool needs_faces) {
     if (const void* zero = bytes_.empty() ? nullptr : std::memchr(bytes_.data(), 0, bytes_.size())) {
       fail_at_byte(name_, offset(static_cast<const char*>(zero)), "a zero byte; this is not an OBJ text file");
     }
@@ -28,7 +28,10 @@ class ObjReader {
                           std::to_string(mesh_.vertices.size()) + " vertices");
       }
     }
-    if (faces_.empty())
+    if (!needs_faces && mesh_.vertices.empty())
+      throw InputError(name_ + ": no vertices (lines that begin with \"v\") in " + std::to_string(bytes_.size()) +
+                       " bytes of OBJ");
+    if (needs_faces && faces_.empty())
       throw InputError(name_ + ": no faces (lines that begin with \"f\") in " + std::to_string(bytes_.size()) +
                        " bytes of OBJ");
     mesh_.triangles = std::move(faces_).finish(mesh_.vertices);
@@ -160,6 +163,10 @@ class ObjReader {
 
 }  // namespace
 
-TriangleMesh read_obj(std::string_view bytes, const std::string& name) { return ObjReader(bytes, name).read(); }
+TriangleMesh read_obj(std::string_view bytes, const std::string& name) { return ObjReader(bytes, name).read(true); }
+
+TriangleMesh read_obj_or_points(std::string_view bytes, const std::string& name) {
+  return ObjReader(bytes, name).read(false);
+}
 
 }  // namespace orchard

@@ -156,12 +156,13 @@ class PlyReader {
   PlyReader(const PlyHeader& header, std::string_view bytes, const std::string& name, Body body)
       : header_(header), bytes_(bytes), name_(name), body_(body) {}
 
-  TriangleMesh read() {
+  TriangleMesh read(bool needs_faces) {
     for (const PlyElement& element : header_.elements) {
       if (element.name == "vertex") vertex_count_ = element.rows;
     }
     for (const PlyElement& element : header_.elements) read_element(element);
-    if (faces_.empty()) throw InputError(name_ + ": no faces in this PLY file");
+    if (needs_faces && faces_.empty()) throw InputError(name_ + ": no faces in this PLY file");
+    if (mesh_.vertices.empty()) throw InputError(name_ + ": no vertices in this PLY file");
     mesh_.triangles = std::move(faces_).finish(mesh_.vertices);
     return std::move(mesh_);
   }
@@ -267,13 +268,21 @@ class PlyReader {
 
 }  // namespace
 
-TriangleMesh read_ply(std::string_view bytes, const std::string& name) {
+namespace {
+
+TriangleMesh read(std::string_view bytes, const std::string& name, bool needs_faces) {
   const PlyHeader header = read_ply_header(bytes, name);
   if (header.encoding == PlyEncoding::ascii) {
-    return PlyReader(header, bytes, name, AsciiBody(bytes, header.body, name)).read();
+    return PlyReader(header, bytes, name, AsciiBody(bytes, header.body, name)).read(needs_faces);
   }
   const std::endian order = header.encoding == PlyEncoding::little_endian ? std::endian::little : std::endian::big;
-  return PlyReader(header, bytes, name, BinaryBody(bytes, header.body, order, name)).read();
+  return PlyReader(header, bytes, name, BinaryBody(bytes, header.body, order, name)).read(needs_faces);
 }
+
+}  // namespace
+
+TriangleMesh read_ply(std::string_view bytes, const std::string& name) { return read(bytes, name, true); }
+
+TriangleMesh read_ply_or_points(std::string_view bytes, const std::string& name) { return read(bytes, name, false); }
 
 }  // namespace orchard

@@ -10,11 +10,10 @@
 
 namespace orchard::test {
 
-// What every reader owes to any bytes at all: a valid mesh no larger than the bytes can make it, or InputError with one
-// line that begins with the file's name. Anything else leaves as another exception. Returns whether there is a mesh.
-inline bool read_bytes(TriangleMesh (*reader)(std::string_view, const std::string&), const std::uint8_t* data,
-                       std::size_t size) {
-  TriangleMesh mesh;
+using Reader = TriangleMesh (*)(std::string_view, const std::string&);
+
+// Reads, and returns whether there is a result. Throws unless a refusal is one line that begins with the file's name.
+inline bool read_or_refuse(Reader reader, const std::uint8_t* data, std::size_t size, TriangleMesh& mesh) {
   try {
     mesh = reader({reinterpret_cast<const char*>(data), size}, "bytes");
   } catch (const InputError& error) {
@@ -24,13 +23,34 @@ inline bool read_bytes(TriangleMesh (*reader)(std::string_view, const std::strin
     }
     return false;
   }
+  if (mesh.vertices.size() > size || mesh.triangles.size() > size) throw std::logic_error("larger than its file");
+  return true;
+}
+
+// What every reader owes to any bytes at all: a valid mesh no larger than the bytes can make it, or InputError with one
+// line that begins with the file's name. Anything else leaves as another exception. Returns whether there is a mesh.
+inline bool read_bytes(Reader reader, const std::uint8_t* data, std::size_t size) {
+  TriangleMesh mesh;
+  if (!read_or_refuse(reader, data, size, mesh)) return false;
   try {
     validate(mesh);
   } catch (const InputError& error) {
     throw std::logic_error("the reader let through what validate() refuses: " + std::string(error.what()));
   }
-  if (mesh.vertices.size() > size || mesh.triangles.size() > size) throw std::logic_error("larger than its file");
   check_mesh(mesh);
+  return true;
+}
+
+// The same for readers that need no faces: one finite point or more.
+inline bool read_point_bytes(Reader reader, const std::uint8_t* data, std::size_t size) {
+  TriangleMesh mesh;
+  if (!read_or_refuse(reader, data, size, mesh)) return false;
+  if (mesh.vertices.empty()) throw std::logic_error("the reader let through a file without points");
+  for (const Point& point : mesh.vertices)
+    if (!point.allFinite()) throw std::logic_error("the reader let through a point that is not finite");
+  for (const auto& corners : mesh.triangles)
+    for (const Index corner : corners)
+      if (corner >= mesh.vertices.size()) throw std::logic_error("the reader let through an index out of range");
   return true;
 }
 

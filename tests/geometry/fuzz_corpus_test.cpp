@@ -14,12 +14,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// How one reader is fed; `name` is its folder of the corpus.
 struct Format {
   const char* name;
-  TriangleMesh (*reader)(std::string_view, const std::string&);
+  test::Reader reader;
+  bool (*read)(test::Reader, const std::uint8_t*, std::size_t) = test::read_bytes;
 };
 
-const Format kFormats[] = {{"obj", read_obj}, {"ply", read_ply}, {"stl", read_stl}, {"off", read_off}};
+const Format kFormats[] = {{"obj", read_obj},
+                           {"ply", read_ply},
+                           {"stl", read_stl},
+                           {"off", read_off},
+                           {"obj", read_obj_or_points, test::read_point_bytes},
+                           {"ply", read_ply_or_points, test::read_point_bytes},
+                           {"xyz", read_xyz, test::read_point_bytes}};
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -42,7 +50,7 @@ TEST(FuzzCorpus, GivesAMeshOrAnInputError) {
     EXPECT_GE(files.size(), 5u) << format.name;
     int accepted = 0;
     for (const auto& [name, bytes] : files) {
-      EXPECT_NO_THROW(accepted += test::read_bytes(format.reader, bytes.data(), bytes.size())) << format.name << name;
+      EXPECT_NO_THROW(accepted += format.read(format.reader, bytes.data(), bytes.size())) << format.name << name;
     }
     EXPECT_GE(accepted, 2) << format.name;
   }
@@ -54,8 +62,7 @@ TEST(FuzzCorpus, SurvivesBeingCutAnywhere) {
       for (std::size_t size = 0; size < std::min<std::size_t>(bytes.size(), 2000); ++size) {
         // A copy, so that the sanitizers see a reader that reads on.
         const Bytes cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
-        ASSERT_NO_THROW(test::read_bytes(format.reader, cut.data(), cut.size()))
-            << format.name << name << " at " << size;
+        ASSERT_NO_THROW(format.read(format.reader, cut.data(), cut.size())) << format.name << name << " at " << size;
       }
     }
   }
@@ -81,7 +88,7 @@ TEST(FuzzCorpus, SurvivesRandomDamage) {
               damaged.insert(at, damaged[random.below(damaged.size())]);
           }
         }
-        ASSERT_NO_THROW(test::read_bytes(format.reader, damaged.data(), damaged.size()))
+        ASSERT_NO_THROW(format.read(format.reader, damaged.data(), damaged.size()))
             << format.name << name << " item " << item - 1;
       }
     }
@@ -92,7 +99,7 @@ TEST(FuzzCorpus, SurvivesEveryFormatReadAsEveryOther) {
   for (const Format& format : kFormats) {
     for (const Format& other : kFormats) {
       for (const auto& [name, bytes] : corpus(other)) {
-        EXPECT_NO_THROW(test::read_bytes(format.reader, bytes.data(), bytes.size())) << format.name << name;
+        EXPECT_NO_THROW(format.read(format.reader, bytes.data(), bytes.size())) << format.name << name;
       }
     }
   }

@@ -11,6 +11,11 @@ namespace orchard {
 // Throws InputError naming file, line or byte, fault and remedy. Memory is bounded by the size of the file.
 TriangleMesh read_mesh(const std::filesystem::path& file);
 
+// The same for files that may hold points alone: .obj without faces, .ply without a face element or with an empty one,
+// and .xyz, which is text with a point a line: three numbers, parted by blanks or commas, then anything; '#' begins a
+// comment. Then the mesh has no triangles.
+TriangleMesh read_points_or_mesh(const std::filesystem::path& file);
+
 // Writes .obj; every coordinate in the fewest digits (17 at most) that read back as the same double. Throws Error if
 // the file cannot be written.
 void write_obj(const std::filesystem::path& file, const TriangleMesh& mesh);
