@@ -6,13 +6,12 @@
 #include <string>
 
 #include "orchard/geometry/error.h"
+#include "orchard/voronoi/views.h"
 
 namespace orchard {
 namespace {
 
 constexpr std::array<std::array<unsigned, 2>, 6> kEdges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
-// kOpposite[e]: the corners that are not on edge e, ordered so that (edge, opposite) is an even permutation.
-constexpr std::array<std::array<unsigned, 2>, 6> kOpposite{{{2, 3}, {3, 1}, {1, 2}, {0, 3}, {2, 0}, {0, 1}}};
 
 unsigned slot_of(const std::array<Index, 4>& four, Index item) {
   return static_cast<unsigned>(std::find(four.begin(), four.end(), item) - four.begin());
@@ -23,30 +22,14 @@ unsigned edge_between(unsigned i, unsigned j) {
   return i == 0 ? j - 1 : i + j;
 }
 
-// One face of the diagram: the edge of a Delaunay tetrahedron that it is dual to.
+// One face of the diagram: the edge of the Delaunay triangulation that it is dual to, and a vertex on it.
 struct Ring {
   Index first_point, second_point, vertex;
-  std::uint8_t edge;  // of that vertex; see kEdges
 };
 
-// Calls visit(vertex, edge) for the vertices around an edge, counter-clockwise seen from the edge's second point when
-// the first vertex's corners are taken in the order (first, second, opposite...).
-template <class Visit>
-void walk_ring(const VoronoiDiagram& diagram, Index start, unsigned edge, Visit&& visit) {
-  const auto& vertices = diagram.vertices;
-  const Index first = vertices[start].forming_points[kEdges[edge][0]];
-  const Index second = vertices[start].forming_points[kEdges[edge][1]];
-  unsigned leave = kOpposite[edge][0], pivot = kOpposite[edge][1];
-  Index at = start;
-  do {
-    const Index pivot_point = vertices[at].forming_points[pivot];
-    visit(at, edge);
-    at = vertices[at].neighbors[leave];
-    const auto& corner = vertices[at].forming_points;
-    leave = slot_of(corner, pivot_point);
-    edge = edge_between(slot_of(corner, first), slot_of(corner, second));
-    pivot = kOpposite[edge][0] == leave ? kOpposite[edge][1] : kOpposite[edge][0];
-  } while (at != start);
+VoronoiFace face_of(const VoronoiDiagram& diagram, const Ring& ring) {
+  const auto& corner = diagram.vertices[ring.vertex].forming_points;
+  return {diagram, ring.vertex, slot_of(corner, ring.first_point), slot_of(corner, ring.second_point)};
 }
 
 // Every edge of the Delaunay triangulation once, those to infinity included, in the order of their first vertex.
@@ -60,9 +43,12 @@ std::vector<Ring> rings(const VoronoiDiagram& diagram) {
     for (unsigned e = 0; e < 6; ++e) {
       if (seen[v] & (1u << e)) continue;
       const auto [low, high] = std::minmax(corner[kEdges[e][0]], corner[kEdges[e][1]]);
-      all.push_back({low, high, v, static_cast<std::uint8_t>(e)});
-      walk_ring(diagram, v, e,
-                [&](Index w, unsigned edge) { seen[w] = static_cast<std::uint8_t>(seen[w] | (1u << edge)); });
+      all.push_back({low, high, v});
+      for (const Index w : face_of(diagram, all.back())) {
+        const auto& other = diagram.vertices[w].forming_points;
+        const unsigned edge = edge_between(slot_of(other, low), slot_of(other, high));
+        seen[w] = static_cast<std::uint8_t>(seen[w] | (1u << edge));
+      }
     }
   }
   return all;
@@ -165,10 +151,7 @@ VoronoiFaces voronoi_faces(const VoronoiDiagram& diagram) {
   faces.vertices.offsets.reserve(all.size() + 1);
   for (const Ring& ring : sorted(all, diagram.points.size())) {
     faces.points.push_back({ring.first_point, ring.second_point});
-    const std::size_t begin = faces.vertices.items.size();
-    walk_ring(diagram, ring.vertex, ring.edge, [&](Index v, unsigned) { faces.vertices.items.push_back(v); });
-    if (diagram.vertices[ring.vertex].forming_points[kEdges[ring.edge][0]] != ring.first_point)
-      std::reverse(faces.vertices.items.begin() + static_cast<std::ptrdiff_t>(begin), faces.vertices.items.end());
+    for (const Index v : face_of(diagram, ring)) faces.vertices.items.push_back(v);
     faces.vertices.close_row();
   }
   return faces;
