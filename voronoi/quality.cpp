@@ -16,6 +16,10 @@ namespace {
 constexpr double kFarCorner = 10;  // box diagonals
 constexpr Index kBlock = 1024;     // vertices that one sum runs over
 
+Index block_count(const VoronoiDiagram& diagram) {
+  return (static_cast<Index>(diagram.vertices.size()) + kBlock - 1) / kBlock;
+}
+
 struct Sum {
   double total = 0, max = 0;
   std::uint64_t samples = 0;
@@ -40,16 +44,20 @@ double excess(const detail::NearestPoint& nearest, const Point& point, const Poi
   return best < own ? std::sqrt(own) - std::sqrt(best) : 0;
 }
 
+// The samples on the way from one forming point of a vertex to it.
+void sample_segment(const VoronoiDiagram& diagram, const detail::NearestPoint& nearest, const VoronoiVertex& vertex,
+                    unsigned slot, Sum& sum) {
+  double e = 1;
+  // The balls around the samples through the cell's point lie within each other: if the last is empty, all are.
+  for (const double fraction : {0.75, 0.5, 0.25}) {
+    if (e > 0) e = excess(nearest, diagram.points[vertex.forming_points[slot]], vertex.center, fraction);
+    sum.add_sample(e);
+  }
+}
+
 void sample_segments(const VoronoiDiagram& diagram, const detail::NearestPoint& nearest, const VoronoiVertex& vertex,
                      Sum& sum) {
-  for (const Index p : vertex.forming_points) {
-    double e = 1;
-    // The balls around the samples through the cell's point lie within each other: if the last is empty, all are.
-    for (const double fraction : {0.75, 0.5, 0.25}) {
-      if (e > 0) e = excess(nearest, diagram.points[p], vertex.center, fraction);
-      sum.add_sample(e);
-    }
-  }
+  for (unsigned slot = 0; slot < 4; ++slot) sample_segment(diagram, nearest, vertex, slot, sum);
 }
 
 void sample_corner(const VoronoiDiagram& diagram, const detail::NearestPoint& nearest, const VoronoiVertex& vertex,
@@ -60,27 +68,45 @@ void sample_corner(const VoronoiDiagram& diagram, const detail::NearestPoint& ne
   for (const double squared : own) sum.add_sample(std::sqrt(squared) - std::sqrt(std::min(best, squared)));
 }
 
+// Which vertices count as corners.
+class Scope {
+ public:
+  explicit Scope(const VoronoiDiagram& diagram) {
+    for (const Point& p : diagram.points) box_.extend(p);
+    limit_ = box_.isEmpty() ? 0 : kFarCorner * box_.diagonal().norm();
+  }
+  bool contains(const VoronoiVertex& vertex) const {
+    return !vertex.at_infinity() && !(box_.exteriorDistance(vertex.center) > limit_);
+  }
+
+ private:
+  Box box_;
+  double limit_ = 0;
+};
+
+// visit(vertex index, block) for every vertex that counts, in parallel over blocks.
+template <class Visit>
+void for_corners(const VoronoiDiagram& diagram, Visit&& visit) {
+  const Scope scope(diagram);
+  const auto count = static_cast<Index>(diagram.vertices.size());
+  tbb::parallel_for(tbb::blocked_range<Index>(0, block_count(diagram), 1), [&](const auto& range) {
+    for (Index block = range.begin(); block < range.end(); ++block)
+      for (Index v = block * kBlock; v < std::min(count, (block + 1) * kBlock); ++v)
+        if (scope.contains(diagram.vertices[v])) visit(v, block);
+  });
+}
+
 template <class Sample>
 VoronoiInaccuracy over_vertices(const VoronoiDiagram& diagram, Sample&& sample) {
   if (diagram.vertices.empty()) return {};
-  Box box;
-  for (const Point& p : diagram.points) box.extend(p);
-  const double limit = kFarCorner * box.diagonal().norm();
   const detail::NearestPoint nearest(diagram.points);
-  const auto count = static_cast<Index>(diagram.vertices.size());
-  std::vector<Sum> blocks((count + kBlock - 1) / kBlock);
-  const auto sum_block = [&](Index block) {
-    for (Index v = block * kBlock; v < std::min(count, (block + 1) * kBlock); ++v) {
-      const VoronoiVertex& vertex = diagram.vertices[v];
-      if (vertex.at_infinity() || box.exteriorDistance(vertex.center) > limit) continue;
-      if (vertex.center.allFinite())
-        sample(diagram, nearest, vertex, blocks[block]);
-      else
-        blocks[block].add_sample(std::numeric_limits<double>::infinity());
-    }
-  };
-  tbb::parallel_for(tbb::blocked_range<Index>(0, static_cast<Index>(blocks.size()), 1), [&](const auto& range) {
-    for (Index block = range.begin(); block < range.end(); ++block) sum_block(block);
+  std::vector<Sum> blocks(block_count(diagram));
+  for_corners(diagram, [&](Index v, Index block) {
+    const VoronoiVertex& vertex = diagram.vertices[v];
+    if (vertex.center.allFinite())
+      sample(diagram, nearest, vertex, blocks[block]);
+    else
+      blocks[block].add_sample(std::numeric_limits<double>::infinity());
   });
   Sum sum;
   for (const Sum& block : blocks) sum.add(block);
@@ -92,5 +118,22 @@ VoronoiInaccuracy over_vertices(const VoronoiDiagram& diagram, Sample&& sample) 
 VoronoiInaccuracy inaccuracy(const VoronoiDiagram& diagram) { return over_vertices(diagram, sample_segments); }
 
 VoronoiInaccuracy corner_inaccuracy(const VoronoiDiagram& diagram) { return over_vertices(diagram, sample_corner); }
+
+std::vector<double> cell_inaccuracies(const VoronoiDiagram& diagram) {
+  const detail::NearestPoint nearest(diagram.points);
+  std::vector<std::array<Sum, 4>> segments(diagram.vertices.size());
+  for_corners(diagram, [&](Index v, Index) {
+    for (unsigned slot = 0; slot < 4; ++slot)
+      sample_segment(diagram, nearest, diagram.vertices[v], slot, segments[v][slot]);
+  });
+  std::vector<Sum> cells(diagram.points.size());
+  for (Index v = 0; v < diagram.vertices.size(); ++v)
+    for (unsigned slot = 0; slot < 4; ++slot)
+      if (segments[v][slot].samples > 0) cells[diagram.vertices[v].forming_points[slot]].add(segments[v][slot]);
+  std::vector<double> means;
+  means.reserve(cells.size());
+  for (const Sum& cell : cells) means.push_back(cell.samples == 0 ? 0 : cell.total / static_cast<double>(cell.samples));
+  return means;
+}
 
 }  // namespace orchard
