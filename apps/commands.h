@@ -2,8 +2,10 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "load_solid.h"
+#include "orchard/voronoi/algorithms.h"
 #include "pipeline.h"
 
 // The commands of the program, one file each: parse (main.cpp), call, report. They throw; main() turns that into an
@@ -52,6 +54,19 @@ struct SampleCommand {
   Output output;
 };
 void sample(const SampleCommand& command);
+// What the command's options come to on a surface.
+SamplingOptions sampling_options(const SampleCommand& command, const Surface& surface);
+
+struct VoronoiCommand {
+  std::filesystem::path input, folder;  // points or a mesh; no folder: write nothing
+  SampleCommand sampling;               // of a mesh; its own mesh, folder and output do not count
+  VoronoiAlgorithm algorithm = VoronoiAlgorithm::highest_first;
+  bool compare = false;      // run all algorithms
+  std::vector<Index> cells;  // to write; empty: all
+  std::vector<double> box;   // that cells are clipped to: x y z of two corners; empty: around the points
+  Output output;
+};
+void voronoi(const VoronoiCommand& command);
 
 struct InspectCommand {
   std::filesystem::path file;

@@ -27,6 +27,7 @@ struct Request {
   VerifyCommand verify;
   InspectCommand inspect;
   SampleCommand sample;
+  VoronoiCommand voronoi;
   int threads = 0;  // 0: as many as the machine has
   std::function<void()> run;
   int exit_code = 0;
@@ -112,11 +113,7 @@ Relaxation relaxation_named(const std::string& name) {
                                : Relaxation::automatic;
 }
 
-void add_sample(CLI::App& app, Request& request) {
-  CLI::App& command = *app.add_subcommand("sample", "Spread points evenly over a mesh");
-  SampleCommand& sample = request.sample;
-  command.add_option("mesh", sample.mesh, "The mesh: .obj, .ply, .stl or .off")->required();
-  command.add_option("-o,--output", sample.folder, "Folder for the points")->required();
+void add_sampling_options(CLI::App& command, SampleCommand& sample) {
   command.add_option("--samples", sample.samples, "Points in all")
       ->check(CLI::Range(20, 10'000'000))
       ->capture_default_str();
@@ -137,12 +134,47 @@ void add_sample(CLI::App& app, Request& request) {
       ->check(CLI::Range(0.0, 180.0))
       ->capture_default_str();
   command.add_option("--seed", sample.seed, "Seed of the random points")->capture_default_str();
+}
+
+void add_sample(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("sample", "Spread points evenly over a mesh");
+  SampleCommand& sample = request.sample;
+  command.add_option("mesh", sample.mesh, "The mesh: .obj, .ply, .stl or .off")->required();
+  command.add_option("-o,--output", sample.folder, "Folder for the points")->required();
+  add_sampling_options(command, sample);
   command.add_option("--threads", request.threads, "Threads at most; the result does not depend on it")
       ->check(CLI::Range(1, 1024));
   command.add_flag("!--no-views", sample.views, "Write no files for ParaView");
   add_output_flags(command, sample.output);
   command.footer("Example:\n  orchard sample data/lamp.obj -o out/lamp --samples 20000");
   command.callback([&request] { request.run = [&request] { orchard::apps::sample(request.sample); }; });
+}
+
+void add_voronoi(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("voronoi", "Build the Voronoi diagram of points and say how good it is");
+  VoronoiCommand& voronoi = request.voronoi;
+  command
+      .add_option("input", voronoi.input,
+                  "Points (.xyz, or .ply or .obj without faces), or a mesh to sample (.obj, .ply, .stl or .off)")
+      ->required();
+  command
+      .add_option_function<std::string>(
+          "--algorithm",
+          [&voronoi](const std::string& name) { voronoi.algorithm = *orchard::voronoi_algorithm_named(name); },
+          "bowyer, inagaki, highest-first (default) or exact")
+      ->check(CLI::IsMember({"bowyer", "inagaki", "highest-first", "exact"}));
+  command.add_flag("--compare", voronoi.compare, "Run all four algorithms on the same points");
+  command.add_option("-o,--output", voronoi.folder, "Folder for the cells, for ParaView, and for the points of a mesh");
+  command.add_option("--cells", voronoi.cells, "Write the cells of these points alone, counted from 0: 3,14,15")
+      ->delimiter(',');
+  command.add_option("--box", voronoi.box, "Clip the cells to this box: x y z of its lower and upper corner")
+      ->expected(6);
+  add_sampling_options(command, voronoi.sampling);
+  command.add_option("--threads", request.threads, "Threads at most; the result does not depend on it")
+      ->check(CLI::Range(1, 1024));
+  add_output_flags(command, voronoi.output);
+  command.footer("Example:\n  orchard voronoi data/faucet.obj --compare -o out/faucet");
+  command.callback([&request] { request.run = [&request] { orchard::apps::voronoi(request.voronoi); }; });
 }
 
 void add_inspect(CLI::App& app, Request& request) {
@@ -181,6 +213,7 @@ int main(int argc, char** argv) {
   add_verify(app, request);
   add_inspect(app, request);
   add_sample(app, request);
+  add_voronoi(app, request);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,7 +1,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <iterator>
 #include <numbers>
 
 #include "commands.h"
@@ -9,6 +8,7 @@
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/sampling.h"
 #include "output_folder.h"
+#include "xyz.h"
 
 #ifdef ORCHARD_HAS_VIZ
 #include "orchard/viz/vtk_writer.h"
@@ -19,12 +19,6 @@ namespace {
 
 using nlohmann::json;
 
-std::string to_xyz(const SurfaceSampling& sampling) {
-  std::string text;
-  for (const Point& p : sampling.points) fmt::format_to(std::back_inserter(text), "{} {} {}\n", p.x(), p.y(), p.z());
-  return text;
-}
-
 json to_json(const Evenness& evenness) {
   return {{"mean_distance", evenness.mean},
           {"least_over_mean", evenness.least},
@@ -32,19 +26,6 @@ json to_json(const Evenness& evenness) {
 }
 
 const char* name(Relaxation relaxation) { return relaxation == Relaxation::clusters ? "clusters" : "neighbors"; }
-
-SamplingOptions options_of(const SampleCommand& command, const Surface& surface) {
-  constexpr double kRadians = std::numbers::pi / 180;
-  SamplingOptions options{.iterations = command.iterations,
-                          .seed = command.seed,
-                          .relaxation = command.relaxation,
-                          .crease_angle = command.crease_degrees * kRadians};
-  options.edge_points = std::min(command.edge_samples.value_or(command.samples / 5), command.samples);
-  options.face_points = command.samples - options.edge_points;
-  if (command.cluster_degrees) options.cluster_angle = *command.cluster_degrees * kRadians;
-  if (options.relaxation == Relaxation::automatic) options.relaxation = choose_relaxation(surface, options);
-  return options;
-}
 
 void print(const SampleCommand& command, const json& report) {
   fmt::print("{}: {} points, {} of them on edges; relaxed {} times ({})\n", command.mesh.string(),
@@ -61,12 +42,25 @@ void print(const SampleCommand& command, const json& report) {
 
 }  // namespace
 
+SamplingOptions sampling_options(const SampleCommand& command, const Surface& surface) {
+  constexpr double kRadians = std::numbers::pi / 180;
+  SamplingOptions options{.iterations = command.iterations,
+                          .seed = command.seed,
+                          .relaxation = command.relaxation,
+                          .crease_angle = command.crease_degrees * kRadians};
+  options.edge_points = std::min(command.edge_samples.value_or(command.samples / 5), command.samples);
+  options.face_points = command.samples - options.edge_points;
+  if (command.cluster_degrees) options.cluster_angle = *command.cluster_degrees * kRadians;
+  if (options.relaxation == Relaxation::automatic) options.relaxation = choose_relaxation(surface, options);
+  return options;
+}
+
 void sample(const SampleCommand& command) {
   const bool talk = !command.output.quiet && !command.output.json;
   RepairedMesh read = read_repaired(command.mesh);
   if (talk) print_repair(command.mesh, read.repair);
   const Surface surface(std::move(read.mesh));
-  SamplingOptions options = options_of(command, surface);
+  SamplingOptions options = sampling_options(command, surface);
 
   ProgressBar bar(talk);
   const Stopwatch watch;
@@ -78,7 +72,7 @@ void sample(const SampleCommand& command) {
 
   make_folder(command.folder);
   const std::filesystem::path xyz = in_folder(command.folder, command.mesh, ".xyz");
-  write_file(xyz, to_xyz(sampling));
+  write_file(xyz, to_xyz(sampling.points));
 #ifdef ORCHARD_HAS_VIZ
   if (command.views) {
     write_points(command.folder / "points.vtp", sampling);

@@ -1,0 +1,213 @@
+#include "orchard/voronoi/algorithms.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "commands.h"
+#include "console.h"
+#include "orchard/geometry/atomic_file.h"
+#include "orchard/geometry/error.h"
+#include "orchard/geometry/mesh_io.h"
+#include "orchard/voronoi/quality.h"
+#include "output_folder.h"
+#include "xyz.h"
+
+#ifdef ORCHARD_HAS_VIZ
+#include "orchard/viz/voronoi_writer.h"
+#endif
+
+namespace orchard::apps {
+namespace {
+
+using nlohmann::json;
+
+struct Input {
+  std::vector<Point> points;
+  std::optional<MeshRepairReport> repair;  // of a mesh, whose surface the points are on
+};
+
+Input read_input(const VoronoiCommand& command, const Progress& progress) {
+  Input input;
+  TriangleMesh mesh = read_points_or_mesh(command.input);
+  if (mesh.triangles.empty()) {
+    input.points = std::move(mesh.vertices);
+    return input;
+  }
+  RepairedMesh read = read_repaired(command.input);
+  const Surface surface(std::move(read.mesh));
+  input.points = sample_surface(surface, sampling_options(command.sampling, surface), progress).points;
+  input.repair = std::move(read.repair);
+  return input;
+}
+
+// One algorithm's diagram of the points, and what the table says about it.
+struct Run {
+  VoronoiAlgorithm algorithm = VoronoiAlgorithm::highest_first;
+  std::string failure = {};  // not empty: the algorithm gave up, and there is no more than this
+  double seconds = 0;
+  VoronoiDiagram diagram = {};
+  InsertionReport report = {};
+  VoronoiInaccuracy inaccuracy = {}, corners = {};
+
+  std::size_t vertices_at_infinity() const {
+    return static_cast<std::size_t>(std::count_if(diagram.vertices.begin(), diagram.vertices.end(),
+                                                  [](const VoronoiVertex& v) { return v.at_infinity(); }));
+  }
+};
+
+Run run(const std::vector<Point>& points, VoronoiAlgorithm algorithm, const Progress& progress) {
+  Run result{.algorithm = algorithm};
+  const Stopwatch watch;
+  result.diagram = orchard::voronoi(points, algorithm, progress, &result.report);
+  result.seconds = watch.seconds();
+  validate(result.diagram);
+  result.inaccuracy = inaccuracy(result.diagram);
+  result.corners = corner_inaccuracy(result.diagram);
+  return result;
+}
+
+// Bowyer's algorithm may fail; a comparison says so and goes on.
+Run run_to_compare(const std::vector<Point>& points, VoronoiAlgorithm algorithm, const Progress& progress) {
+  const Stopwatch watch;
+  try {
+    return run(points, algorithm, progress);
+  } catch (const InputError&) {
+    throw;
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& error) {
+    return {.algorithm = algorithm, .failure = error.what(), .seconds = watch.seconds()};
+  }
+}
+
+std::vector<Run> run_all(const VoronoiCommand& command, const std::vector<Point>& points, const Progress& progress) {
+  std::vector<Run> runs;
+  if (!command.compare)
+    runs.push_back(run(points, command.algorithm, progress));
+  else
+    for (const VoronoiAlgorithm algorithm : kVoronoiAlgorithms)
+      runs.push_back(run_to_compare(points, algorithm, progress));
+  return runs;
+}
+
+json to_json(const VoronoiInaccuracy& inaccuracy) {
+  return {{"mean", inaccuracy.mean}, {"max", inaccuracy.max}, {"samples", inaccuracy.samples}};
+}
+
+json to_json(const Run& run) {
+  json result{{"algorithm", name(run.algorithm)}, {"failures", run.failure.empty() ? 0 : 1}, {"seconds", run.seconds}};
+  if (!run.failure.empty()) {
+    result["failure"] = run.failure;
+    return result;
+  }
+  const InsertionReport& report = run.report;
+  result.update({{"dimension", report.dimension},
+                 {"vertices", run.diagram.vertices.size()},
+                 {"vertices_at_infinity", run.vertices_at_infinity()},
+                 {"inaccuracy", to_json(run.inaccuracy)},
+                 {"corner_inaccuracy", to_json(run.corners)},
+                 {"duplicates", report.duplicates},
+                 {"bytes_per_point", static_cast<double>(run.diagram.vertices.size() * sizeof(VoronoiVertex)) /
+                                             static_cast<double>(run.diagram.points.size()) +
+                                         sizeof(Point)}});
+  if (run.algorithm != VoronoiAlgorithm::exact)
+    result["insertions"] = {{"certified", report.certified_insertions}, {"settled", report.settled_insertions},
+                            {"exact", report.exact_insertions},         {"constrained", report.constrained_insertions},
+                            {"exact_signs", report.exact_signs},        {"coplanar_centers", report.coplanar_centers}};
+  return result;
+}
+
+void print_table(const std::vector<Run>& runs) {
+  fmt::print(
+      "algorithm      vertices  infinite  coplanar  inaccuracy mean         max  at corners  failures  seconds\n");
+  for (const Run& run : runs) {
+    fmt::print("{:<13}", name(run.algorithm));
+    if (run.failure.empty())
+      fmt::print("{:10} {:9} {:9} {:16.3g} {:11.3g} {:11.3g}", run.diagram.vertices.size(), run.vertices_at_infinity(),
+                 run.report.coplanar_centers, run.inaccuracy.mean, run.inaccuracy.max, run.corners.mean);
+    else
+      fmt::print("{:>10} {:>9} {:>9} {:>16} {:>11} {:>11}", "-", "-", "-", "-", "-", "-");
+    fmt::print("  {:8} {:8.3f}\n", run.failure.empty() ? 0 : 1, run.seconds);
+  }
+  for (const Run& run : runs)
+    if (!run.failure.empty()) fmt::print("{}\n", run.failure);
+}
+
+void print_insertions(const Run& run) {
+  const InsertionReport& report = run.report;
+  if (run.algorithm != VoronoiAlgorithm::highest_first || run.diagram.vertices.empty()) return;
+  fmt::print("highest-first insertions: {} certified, {} settled, {} by exact signs, {} by the constrained search{}\n",
+             report.certified_insertions, report.settled_insertions, report.exact_insertions,
+             report.constrained_insertions, report.exact_signs ? "; all with exact signs in the end" : "");
+  if (!report.duplicates.empty())
+    fmt::print("{} points coincide with an earlier one and were left out\n", report.duplicates.size());
+}
+
+void print(const VoronoiCommand& command, const Input& input, const std::vector<Run>& runs) {
+  Box box;
+  for (const Point& p : input.points) box.extend(p);
+  fmt::print("{}: {} points{}, {:.4g} x {:.4g} x {:.4g}\n", command.input.string(), input.points.size(),
+             input.repair ? " sampled" : "", box.sizes().x(), box.sizes().y(), box.sizes().z());
+  print_table(runs);
+  for (const Run& run : runs) print_insertions(run);
+  if (runs.back().failure.empty() && runs.back().report.dimension < 3)
+    fmt::print("The points {}, so they have no Voronoi vertices.\n",
+               std::array{"are one", "lie on a line",
+                          "lie in a plane"}[static_cast<std::size_t>(std::max(runs.back().report.dimension, 0))]);
+}
+
+std::vector<std::filesystem::path> write(const VoronoiCommand& command, const Input& input,
+                                         const std::vector<Run>& runs) {
+  std::vector<std::filesystem::path> files;
+  if (command.folder.empty()) return files;
+  make_folder(command.folder);
+  if (input.repair) {
+    files.push_back(in_folder(command.folder, command.input, ".xyz"));
+    write_file(files.back(), to_xyz(input.points));
+  }
+#ifdef ORCHARD_HAS_VIZ
+  VoronoiCellsView view;
+  if (!command.cells.empty()) view.points = command.cells;
+  if (!command.box.empty()) view.box = Box(Point(command.box.data()), Point(command.box.data() + 3));
+  for (const Run& run : runs) {
+    if (!run.failure.empty()) continue;
+    const std::string ending = fmt::format("-{}.vtu", name(run.algorithm));
+    files.push_back(in_folder(command.folder, command.input, ending.c_str()));
+    write_voronoi_cells(files.back(), run.diagram, view);
+  }
+#else
+  static_cast<void>(runs);
+#endif
+  return files;
+}
+
+void check(const VoronoiCommand& command) {
+  if (!command.box.empty() && !(Box(Point(command.box.data()), Point(command.box.data() + 3)).volume() > 0))
+    throw InputError("--box needs x y z of its lower corner, then of its upper one, with room between them");
+}
+
+}  // namespace
+
+void voronoi(const VoronoiCommand& command) {
+  check(command);
+  const bool talk = !command.output.quiet && !command.output.json;
+  ProgressBar bar(talk);
+  const Input input = read_input(command, bar.callback());
+  const std::vector<Run> runs = run_all(command, input.points, bar.callback());
+  bar.clear();
+  if (talk && input.repair) print_repair(command.input, *input.repair);
+  if (talk) print(command, input, runs);
+  const std::vector<std::filesystem::path> files = write(command, input, runs);
+  if (talk)
+    for (const auto& file : files)
+      fmt::print("  {}  ({})\n", file.string(),
+                 file.extension() == ".xyz" ? "a point a line" : "open this in ParaView");
+  if (!command.output.json) return;
+  json report{{"points", input.points.size()}, {"sampled", input.repair.has_value()}};
+  if (input.repair) report["repair"] = to_json(*input.repair);
+  for (const Run& run : runs) report["algorithms"].push_back(to_json(run));
+  fmt::print("{}\n", report.dump(2));
+}
+
+}  // namespace orchard::apps
