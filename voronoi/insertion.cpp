@@ -8,8 +8,8 @@
 namespace orchard::detail {
 namespace {
 
-// How many insertions may need exact signs before all are made with them.
-constexpr std::uint64_t kExactAtMost = 16, kExactOneIn = 256;
+// How many insertions may need exact signs or the constrained search before all are made anew with exact signs.
+constexpr std::uint64_t kDoubtfulAtMost = 16, kDoubtfulOneIn = 256;
 
 }  // namespace
 
@@ -58,7 +58,7 @@ bool Inserter::insert(Index point) {
   if (search_ == Search::bowyer) return insert_bowyer(start, q);
   if (search_ == Search::highest_first) {
     if (insert_directly(start, q)) return true;
-    if (!workspace_.exact()) return insert_exactly(point, q);
+    if (!workspace_.exact()) return insert_with_doubts(point, q);
     cavity_.begin(point);
   }
   if (search_ == Search::inagaki)
@@ -95,9 +95,24 @@ bool Inserter::insert_directly(Index start, const Point& q) {
   return true;
 }
 
+// Where leaving the doubtful vertices alone gave no ball: exact signs settle the doubts, or else the constrained search
+// decides, as long as it overrules no sign that is certain.
+bool Inserter::insert_with_doubts(Index point, const Point& q) {
+  if (counts_.exact + counts_.constrained >= kDoubtfulAtMost + workspace_.points.size() / kDoubtfulOneIn) return false;
+  if (insert_exactly(point, q)) return true;
+  const Index start = locate(q);
+  cavity_.begin(point);
+  search_highest_first(start, q);
+  if (!respects_certain_signs(q)) return false;
+  cavity_.note_facets();
+  if (!cavity_.place_vertices() || cavity_.worst_placing() > Placing::thin || !cavity_.link_vertices()) return false;
+  ++counts_.constrained;
+  finish();
+  return true;
+}
+
 // One insertion with exact signs amid others without.
 bool Inserter::insert_exactly(Index point, const Point& q) {
-  if (counts_.exact >= kExactAtMost + workspace_.points.size() / kExactOneIn) return false;
   workspace_.set_exact(true);
   const Index start = locate(q);
   cavity_.begin(point);
@@ -110,6 +125,16 @@ bool Inserter::insert_exactly(Index point, const Point& q) {
   if (!good) return false;
   ++counts_.exact;
   finish();
+  return true;
+}
+
+// Whether the search deleted no vertex that is certainly farther and left none that is certainly nearer.
+bool Inserter::respects_certain_signs(const Point& q) const {
+  for (const Index v : cavity_.deleted()) {
+    if (workspace_.sign(v, q) == Sign::negative) return false;
+    for (const Index u : workspace_.vertices[v].neighbors)
+      if (workspace_.mark(u) != Mark::deleted && workspace_.sign(u, q) == Sign::positive) return false;
+  }
   return true;
 }
 

@@ -55,7 +55,9 @@ class Inserter {
   Index highest_of_all(const Point& q) const;
   Index climb(Index v, const Point& q) const;
   bool insert_directly(Index start, const Point& q);
+  bool insert_with_doubts(Index point, const Point& q);
   bool insert_exactly(Index point, const Point& q);
+  bool respects_certain_signs(const Point& q) const;
   void search_highest_first(Index start, const Point& q);
   void delete_and_queue(Index v, const Point& q);
   void want(Index v, double value);
