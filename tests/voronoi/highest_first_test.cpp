@@ -2,29 +2,21 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <limits>
 
 #include "orchard/geometry/error.h"
+#include "orchard/geometry/random.h"
 #include "orchard/voronoi/exact.h"
 #include "orchard/voronoi/quality.h"
 #include "voronoi/point_sets.h"
+#include "voronoi/quadruples.h"
 
 namespace orchard {
 namespace {
 
-using Four = std::array<Index, 4>;
+using test::quadruples;
 
-std::vector<Four> sorted_forming_points(const VoronoiDiagram& diagram) {
-  std::vector<Four> all;
-  for (const VoronoiVertex& vertex : diagram.vertices) {
-    all.push_back(vertex.forming_points);
-    std::sort(all.back().begin(), all.back().end());
-  }
-  std::sort(all.begin(), all.end());
-  return all;
-}
-
-TEST(HighestFirstVoronoi, HasExactlyTheFormingPointsOfTheExactDiagram) {
+TEST(HighestFirstVoronoi, HasExactlyTheFormingPointsOfTheExactDiagramInfiniteOnesIncluded) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const std::size_t n = 10 + 7 * (seed % 40);
     const test::Points points = seed % 4 == 0   ? test::uniform_points(n, seed)
@@ -33,21 +25,133 @@ TEST(HighestFirstVoronoi, HasExactlyTheFormingPointsOfTheExactDiagram) {
                                                 : test::box_face_points(n, seed);
     const VoronoiDiagram diagram = highest_first_voronoi(points);
     ASSERT_NO_THROW(validate(diagram)) << "seed " << seed;
-    ASSERT_EQ(sorted_forming_points(diagram), sorted_forming_points(exact_voronoi(points))) << "seed " << seed;
+    ASSERT_EQ(quadruples(diagram), quadruples(exact_voronoi(points))) << "seed " << seed;
   }
 }
 
-TEST(HighestFirstVoronoi, IsConsistentOnDegeneratePoints) {
+// Consistent, and no sample measurably nearer to a foreign point.
+void expect_good(const std::string& name, const test::Points& points) {
+  InsertionReport report;
+  VoronoiDiagram diagram;
+  ASSERT_NO_THROW(diagram = highest_first_voronoi(points, {}, &report)) << name;
+  ASSERT_EQ(report.dimension, 3) << name;
+  EXPECT_NO_THROW(validate(diagram)) << name;
+  const double radius = test::bounding_radius(points);
+  EXPECT_LT(inaccuracy(diagram).mean, 1e-15 * radius) << name;
+  EXPECT_LT(inaccuracy(diagram).max, 1e-9 * radius) << name;
+  EXPECT_LT(corner_inaccuracy(diagram).mean, 1e-9 * radius) << name;
+}
+
+TEST(HighestFirstVoronoi, IsConsistentAndAccurateOnDegeneratePoints) {
+  for (const auto& [name, points] : test::degenerate_point_sets()) expect_good(name, points);
+}
+
+TEST(HighestFirstVoronoi, IsConsistentAndAccurateOnPointsThatAreOffByLittleMoreThanRounding) {
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    Random random(seed, 11);
+    const double off = std::pow(10.0, random.uniform(-16, -6));
+    const auto shaken = [&](test::Points points) {
+      for (Point& p : points) p += off * Vector(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+      return points;
+    };
+    const std::string name = "seed " + std::to_string(seed);
+    expect_good(name, shaken(test::grid_points(5)));
+    expect_good(name, shaken(test::sphere_points(150, seed)));
+    expect_good(name, shaken(test::cone_ring_points(12, 16)));
+    expect_good(name, shaken(test::relaxed_polyhedron_points(200, seed)));
+  }
+}
+
+TEST(HighestFirstVoronoi, IsConsistentAndAccurateOnConesOfManyRings) {
+  // The generators of the cone are lines that rounding leaves nearly, but not quite, straight.
+  for (const int rings : {50, 80}) {
+    expect_good("upright", test::cone_ring_points(rings, 100));
+    expect_good("turned", test::turned(test::cone_ring_points(rings, 100), 1));
+  }
+}
+
+TEST(HighestFirstVoronoi, OfFlatPointsHasNoVertices) {
+  const Point nan(0, 0, std::numeric_limits<double>::quiet_NaN());
+  const std::vector<std::pair<int, test::Points>> flat{
+      {0, {}},
+      {0, {{1, 2, 3}}},
+      {0, {{1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}}},
+      {1, {{0, 0, 0}, {1, 2, 3}}},
+      {2, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
+      {1, {{0, 0, 0}, {1, 1, 1}, {3, 3, 3}, {2, 2, 2}, {5, 5, 5}}},
+      {2, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}}},
+      {2, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}}}};
+  for (const auto& [dimension, points] : flat) {
+    InsertionReport report;
+    const VoronoiDiagram diagram = highest_first_voronoi(points, {}, &report);
+    EXPECT_EQ(diagram.points, points);
+    EXPECT_TRUE(diagram.vertices.empty());
+    EXPECT_EQ(report.dimension, dimension);
+    EXPECT_NO_THROW(validate(diagram));
+  }
+  test::Points plane = test::uniform_points(200, 1);
+  for (Point& p : plane) p.z() = 0;
+  InsertionReport report;
+  EXPECT_TRUE(highest_first_voronoi(test::turned(plane, 2), {}, &report).vertices.empty());
+  EXPECT_EQ(report.dimension, 2) << "flat up to rounding is flat";
+  EXPECT_THROW(highest_first_voronoi(test::Points{{0, 0, 0}, nan}), InputError);
+}
+
+TEST(HighestFirstVoronoi, OfFourOrFivePointsHasTheFewVerticesThatThereAre) {
+  for (std::uint64_t seed = 0; seed < 50; ++seed)
+    for (const std::size_t n : {4u, 5u}) {
+      const test::Points points = test::uniform_points(n, seed);
+      const VoronoiDiagram diagram = highest_first_voronoi(points);
+      validate(diagram);
+      EXPECT_EQ(quadruples(diagram), quadruples(exact_voronoi(points)));
+    }
+}
+
+TEST(HighestFirstVoronoi, MergesCoincidentPointsAndSaysWhich) {
+  test::Points points = test::bumpy_sphere_points(300, 1);
+  const double near = 0.9e-7 * test::bounding_radius(points), apart = 3e-7 * test::bounding_radius(points);
+  points.push_back(points[7]);
+  points.push_back(points[7] + Vector(near, 0, 0));
+  points.push_back(points[8] + Vector(0, apart, 0));
+  InsertionReport report;
+  const VoronoiDiagram diagram = highest_first_voronoi(points, {}, &report);
+  validate(diagram);
+  EXPECT_EQ(report.duplicates, (std::vector<std::array<Index, 2>>{{300, 7}, {301, 7}}));
+  const Rows cells = vertices_of_points(diagram);
+  EXPECT_TRUE(cells[300].empty());
+  EXPECT_TRUE(cells[301].empty());
+  EXPECT_FALSE(cells[302].empty());
+}
+
+TEST(HighestFirstVoronoi, CountsEveryInsertionOnce) {
   for (const auto& [name, points] : test::degenerate_point_sets()) {
     InsertionReport report;
-    VoronoiDiagram diagram;
-    ASSERT_NO_THROW(diagram = highest_first_voronoi(points, {}, &report)) << name;
-    EXPECT_NO_THROW(validate(diagram)) << name;
-    Box box;
-    for (const Point& p : points) box.extend(p);
-    const double radius = box.diagonal().norm() / 2;
-    EXPECT_LT(inaccuracy(diagram).max, 1e-9 * radius) << name;
+    highest_first_voronoi(points, {}, &report);
+    EXPECT_EQ(report.certified_insertions + report.settled_insertions + report.exact_insertions +
+                  report.constrained_insertions + report.duplicates.size() + 4,
+              points.size())
+        << name;
   }
+}
+
+TEST(HighestFirstVoronoi, ScalesWithItsPointsByPowersOfTwo) {
+  for (const auto& points : {test::relaxed_polyhedron_points(500, 3), test::turned(test::grid_points(6), 2)})
+    for (const double scale : {0x1p-40, 0x1p30}) {
+      const VoronoiDiagram one = highest_first_voronoi(points);
+      const VoronoiDiagram other = highest_first_voronoi(test::moved(points, scale, Vector::Zero()));
+      ASSERT_EQ(one.vertices.size(), other.vertices.size());
+      for (std::size_t v = 0; v < one.vertices.size(); ++v) {
+        ASSERT_EQ(one.vertices[v].forming_points, other.vertices[v].forming_points);
+        if (one.vertices[v].at_infinity()) continue;
+        ASSERT_EQ(Point(scale * one.vertices[v].center), other.vertices[v].center);
+        ASSERT_EQ(scale * one.vertices[v].radius, other.vertices[v].radius);
+      }
+    }
+}
+
+TEST(HighestFirstVoronoi, StopsWhenItsProgressIsDeclined) {
+  const test::Points points = test::uniform_points(2000, 1);
+  EXPECT_THROW(highest_first_voronoi(points, [](std::string_view, double done) { return done < 0.5; }), Cancelled);
 }
 
 }  // namespace

@@ -1,0 +1,118 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "orchard/geometry/error.h"
+#include "orchard/voronoi/algorithms.h"
+#include "orchard/voronoi/exact.h"
+#include "orchard/voronoi/highest_first.h"
+#include "orchard/voronoi/quality.h"
+#include "voronoi/point_sets.h"
+#include "voronoi/quadruples.h"
+
+namespace orchard {
+namespace {
+
+using test::quadruples;
+
+std::span<const Point> first(const test::Points& points, std::size_t n) { return std::span(points).first(n); }
+std::span<const Point> rest(const test::Points& points, std::size_t n) { return std::span(points).subspan(n); }
+
+TEST(InsertPoints, AgreesWithARebuildWhateverMadeTheDiagram) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const test::Points points = seed % 2 == 0 ? test::uniform_points(200, seed) : test::bumpy_sphere_points(200, seed);
+    const auto expected = quadruples(exact_voronoi(points));
+    for (const VoronoiAlgorithm algorithm : {VoronoiAlgorithm::highest_first, VoronoiAlgorithm::exact}) {
+      VoronoiDiagram diagram = voronoi(first(points, 150), algorithm);
+      InsertionReport report;
+      insert_points(diagram, rest(points, 150), &report);
+      validate(diagram);
+      EXPECT_EQ(diagram.points, points);
+      EXPECT_EQ(quadruples(diagram), expected) << name(algorithm) << ", seed " << seed;
+      EXPECT_EQ(report.certified_insertions + report.settled_insertions + report.exact_insertions +
+                    report.constrained_insertions,
+                50u);
+    }
+  }
+}
+
+TEST(InsertPoints, MayBeCalledAgainAndAgain) {
+  const test::Points points = test::torus_points(300, 1);
+  VoronoiDiagram diagram = highest_first_voronoi(first(points, 100));
+  for (std::size_t i = 100; i < points.size(); i += 4) insert_points(diagram, std::span(points).subspan(i, 4));
+  validate(diagram);
+  EXPECT_EQ(quadruples(diagram), quadruples(exact_voronoi(points)));
+  const auto before = quadruples(diagram);
+  insert_points(diagram, {});
+  EXPECT_EQ(quadruples(diagram), before);
+}
+
+TEST(InsertPoints, GivesPositionsAsGoodAsARebuild) {
+  const test::Points points = test::bumpy_sphere_points(400, 2);
+  VoronoiDiagram diagram = highest_first_voronoi(first(points, 300));
+  insert_points(diagram, rest(points, 300));
+  for (const VoronoiVertex& vertex : diagram.vertices) {
+    if (vertex.at_infinity()) {
+      EXPECT_NEAR(vertex.center.norm(), 1, 1e-12);
+      EXPECT_EQ(vertex.radius, std::numeric_limits<double>::infinity());
+      continue;
+    }
+    for (const Index p : vertex.forming_points)
+      EXPECT_NEAR((points[p] - vertex.center).norm(), vertex.radius, 1e-9 * (1 + vertex.radius));
+  }
+}
+
+TEST(InsertPoints, IsConsistentAndAccurateOnDegeneratePoints) {
+  for (const auto& [name, points] : test::degenerate_point_sets())
+    for (const std::size_t part : {points.size() / 2, points.size() - 1}) {
+      VoronoiDiagram diagram = highest_first_voronoi(first(points, part));
+      ASSERT_NO_THROW(insert_points(diagram, rest(points, part))) << name;
+      EXPECT_NO_THROW(validate(diagram)) << name;
+      EXPECT_EQ(diagram.points, points);
+      EXPECT_LT(inaccuracy(diagram).mean, 1e-9 * test::bounding_radius(points)) << name;
+    }
+}
+
+TEST(InsertPoints, LeavesOutWhatIsThereAlready) {
+  const test::Points points = test::uniform_points(100, 3);
+  VoronoiDiagram diagram = highest_first_voronoi(points);
+  const auto before = quadruples(diagram);
+  InsertionReport report;
+  insert_points(diagram, test::Points{points[5], points[9], points[5] + Vector(1e-9, 0, 0)}, &report);
+  validate(diagram);
+  EXPECT_EQ(quadruples(diagram), before);
+  EXPECT_EQ(report.duplicates, (std::vector<std::array<Index, 2>>{{100, 5}, {101, 9}, {102, 5}}));
+}
+
+TEST(InsertPoints, TakesPointsFarOutsideTheDiagram) {
+  test::Points points = test::uniform_points(100, 4);
+  VoronoiDiagram diagram = highest_first_voronoi(points);
+  const test::Points far{{100, 0, 0}, {0, -100, 3}, {-50, 60, 70}, {0.5, 0.5, 1e4}};
+  insert_points(diagram, far);
+  points.insert(points.end(), far.begin(), far.end());
+  validate(diagram);
+  EXPECT_EQ(quadruples(diagram), quadruples(exact_voronoi(points)));
+}
+
+TEST(InsertPoints, MakesADiagramOfFlatPoints) {
+  VoronoiDiagram diagram = highest_first_voronoi(test::Points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  insert_points(diagram, test::Points{{1, 1, 0}});
+  EXPECT_TRUE(diagram.vertices.empty());
+  InsertionReport report;
+  insert_points(diagram, test::Points{{0.2, 0.3, 1}}, &report);
+  validate(diagram);
+  EXPECT_EQ(diagram.points.size(), 5u);
+  EXPECT_EQ(report.dimension, 3);
+  EXPECT_EQ(diagram.vertices.size(), exact_voronoi(diagram.points).vertices.size());
+}
+
+TEST(InsertPoints, LeavesTheDiagramAsItWasOnBadInput) {
+  VoronoiDiagram diagram = highest_first_voronoi(test::uniform_points(50, 5));
+  const VoronoiDiagram before = diagram;
+  EXPECT_THROW(insert_points(diagram, test::Points{{0, 0, std::numeric_limits<double>::infinity()}}), InputError);
+  EXPECT_EQ(diagram.points, before.points);
+  EXPECT_EQ(quadruples(diagram), quadruples(before));
+}
+
+}  // namespace
+}  // namespace orchard

@@ -1,0 +1,76 @@
+#include "predicates.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "orchard/geometry/random.h"
+#include "voronoi/point_sets.h"
+
+namespace orchard::detail {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+Kernel::Point_3 cgal(const Point& p) { return {p.x(), p.y(), p.z()}; }
+
+// Sets of which many fives are cospherical, fours coplanar and threes collinear: exactly, or but for rounding.
+std::vector<test::Points> awkward_sets() {
+  return {test::grid_points(4),
+          test::turned(test::grid_points(4), 1),
+          test::sphere_points(60, 1),
+          test::cone_ring_points(10, 8),
+          test::turned(test::cone_ring_points(10, 8), 2),
+          test::moved(test::turned(test::grid_points(4), 3), 1e-9, Vector(1, 2, 3)),
+          test::moved(test::cone_ring_points(10, 8), 0x1p100, Vector::Zero()),
+          test::moved(test::sphere_points(60, 2), 0x1p-140, Vector::Zero()),
+          test::uniform_points(60, 3)};
+}
+
+TEST(Predicates, HaveTheSignsOfExactArithmetic) {
+  int zero = 0;
+  for (const test::Points& points : awkward_sets())
+    for (std::uint64_t trial = 0; trial < 4000; ++trial) {
+      Random random(1, 12, trial);
+      std::array<Point, 5> p;
+      for (Point& q : p) q = points[random.below(points.size())];
+      const auto volume = CGAL::orientation(cgal(p[0]), cgal(p[1]), cgal(p[2]), cgal(p[3]));
+      ASSERT_EQ(static_cast<int>(volume_sign(p[0], p[1], p[2], p[3])), static_cast<int>(volume));
+      if (volume == CGAL::ZERO) continue;
+      if (volume == CGAL::NEGATIVE) std::swap(p[0], p[1]);
+      const auto inside = CGAL::side_of_oriented_sphere(cgal(p[0]), cgal(p[1]), cgal(p[2]), cgal(p[3]), cgal(p[4]));
+      ASSERT_EQ(static_cast<int>(inside_sphere(p[4], p[0], p[1], p[2], p[3])), static_cast<int>(inside));
+      zero += inside == CGAL::ON_ORIENTED_BOUNDARY;
+    }
+  EXPECT_GT(zero, 1000) << "the sets are not awkward enough";
+}
+
+TEST(SharpNormal, IsRightForThreePointsThatAreStraightButForTheLastRounding) {
+  // Their cross product is below what doubles of twice the precision resolve.
+  const Point a(-0.10000000000000001, 1.2246467991473533e-17, 0.80000000000000004);
+  const Point b(-0.20999999999999999, 2.5717582782094416e-17, 0.58000000000000007);
+  const Point c(-0.22, 2.6942229581241769e-17, 0.56000000000000005);
+  Vector normal;
+  ASSERT_TRUE(sharp_normal(a, b, c, normal));
+  EXPECT_NEAR(normal.norm(), 1, 1e-15);
+  EXPECT_LT(std::abs(normal.dot((b - a).normalized())), 1e-15);
+  EXPECT_FALSE(sharp_normal(Point(0, 0, 0), Point(1, 2, 3), Point(3, 6, 9), normal));
+}
+
+TEST(SharpCircumcenter, IsEquallyFarFromItsPoints) {
+  for (const double height : {1.0, 1e-6, 1e-12, 0x1p-52}) {
+    const Point a(0, 0, 0), b(1, 0, 0), c(0, 1, 0), d(0.3, 0.4, height);
+    Vector center;
+    ASSERT_TRUE(sharp_circumcenter(a, b, c, d, center));
+    EXPECT_EQ(center.x(), 0.5);
+    EXPECT_EQ(center.y(), 0.5);
+    // |d|^2 = 2 center . d
+    EXPECT_NEAR(center.z() * height, (0.25 + height * height - 0.7) / 2, 1e-15);
+  }
+  Vector center;
+  EXPECT_FALSE(sharp_circumcenter(Point(0, 0, 0), Point(1, 0, 0), Point(0, 1, 0), Point(1, 1, 0), center));
+}
+
+}  // namespace
+}  // namespace orchard::detail
