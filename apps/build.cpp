@@ -42,8 +42,10 @@ Written write_trees(const BuildCommand& command, const BuildResult& result) {
   return written;
 }
 
+fs::path wrap_file(const BuildCommand& command) { return in_folder(command.folder, command.mesh, kWrapEnding); }
+
 void write_wrap(const BuildCommand& command, const TriangleMesh& wrap, Written& written) {
-  const fs::path file = in_folder(command.folder, command.mesh, "-wrap.obj");
+  const fs::path file = wrap_file(command);
   write_obj(file, wrap);
   written.emplace_back(file, "the wrap, which everything else was built on");
 }
@@ -99,7 +101,11 @@ void build(const BuildCommand& command) {
   make_folder(command.folder);
   const Stopwatch writing;
   Written written = write_trees(command, result);
-  if (solid.wrap) write_wrap(command, surface.mesh(), written);
+  if (solid.wrap) {
+    write_wrap(command, surface.mesh(), written);
+  } else {
+    fs::remove(wrap_file(command));  // of an earlier run: `verify` would take it for this tree's
+  }
   write_views(command, surface, result, written);
   result.seconds.emplace_back("writing", writing.seconds());
   nlohmann::json report = build_json(surface, command.options, result, wrap_distance);

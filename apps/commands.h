@@ -37,6 +37,7 @@ void collide(const CollideCommand& command);
 
 struct VerifyCommand {
   std::filesystem::path tree, mesh;
+  bool box_centered = false;  // a text tree around the centre of the mesh's bounding box
   Output output;
 };
 bool verify(const VerifyCommand& command);  // false: something is not proven

@@ -98,6 +98,8 @@ void add_verify(CLI::App& app, Request& request) {
   command.add_option("tree", verify.tree, "An .orchard file, or an .sph file of any system in the mesh's frame")
       ->required();
   command.add_option("mesh", verify.mesh, "The mesh that it was built for")->required();
+  command.add_flag("--bbox-centre", verify.box_centered,
+                   "The .sph file's origin is the centre of the mesh's bounding box, as some systems write it");
   add_output_flags(command, verify.output);
   command.footer(
       "Exit code 1 if anything is not proven; each violation is named.\n"

@@ -1,26 +1,33 @@
+#include "orchard/spheretree/verify.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "commands.h"
 #include "console.h"
 #include "load_solid.h"
-#include "orchard/covering/coverage.h"
 #include "orchard/geometry/error.h"
+#include "orchard/geometry/mesh_io.h"
+#include "orchard/geometry/surface_distance.h"
 #include "orchard/runtime/tree_file.h"
 #include "orchard/spheretree/tree_io.h"
-#include "orchard/spheretree/verify.h"
+#include "output_folder.h"
 
 namespace orchard::apps {
 namespace {
 
 using nlohmann::json;
+namespace fs = std::filesystem;
 
 const char* name(Violation::Kind kind) {
   switch (kind) {
     case Violation::Kind::uncovered:
       return "uncovered";
+    case Violation::Kind::unlisted:
+      return "not listed where covered";
     case Violation::Kind::other_mesh:
       return "other mesh";
     case Violation::Kind::center_distance:
@@ -31,35 +38,61 @@ const char* name(Violation::Kind kind) {
   return "";
 }
 
-// A text tree has neither bounds nor lists of triangles: the path rule is all that it promises.
-Verification verify_text_tree(const Surface& surface, const std::filesystem::path& file, const Progress& progress) {
-  const SphereTree tree = read_sph(file);
-  const std::vector<PathBall> balls = path_balls(tree);
-  const Coverage coverage = surface_coverage(surface, balls, progress);
-  Verification result;
-  result.triangles = surface.mesh().triangles.size();
-  result.nodes = tree.nodes.size();
-  result.triangles_uncovered = coverage.uncovered.size();
-  for (const UncoveredTriangle& uncovered : coverage.uncovered) {
-    const TriangleCover& cover = uncovered.cover;
-    const Index ball = cover.arcs.empty() ? kNone : cover.arcs.front().ball;
-    const double depth = path_depth(cover.witness, balls);
-    result.worst_depth = std::max(result.worst_depth, depth);
-    if (result.violations.size() < VerifyOptions{}.most_violations)
-      result.violations.push_back({Violation::Kind::uncovered, ball, uncovered.triangle, cover.witness, depth});
+// What the tree is verified against: the mesh, or the wrap beside the tree that it was built on.
+struct Subject {
+  Surface surface;
+  fs::path wrap;  // empty: the mesh itself
+  SurfaceDistance wrap_to_mesh = {}, mesh_to_wrap = {};
+  double wrap_distance() const { return wrap_to_mesh.upper; }
+};
+
+struct Tree {
+  std::optional<runtime::PackedSphereTree> packed;
+  SphereTree text;  // where it is not packed
+};
+
+Tree read_tree(const fs::path& file) {
+  Tree tree;
+  if (file.extension() == ".sph") {
+    tree.text = read_sph(file);
+    return tree;
   }
-  return result;
-}
-
-Verification verify_packed_tree(const Surface& surface, const std::filesystem::path& file, const Progress& progress) {
-  runtime::PackedSphereTree tree;
-  const auto status = runtime::load_file(file.c_str(), tree);
+  tree.packed.emplace();
+  const auto status = runtime::load_file(file.c_str(), *tree.packed);
   if (status != runtime::LoadStatus::ok) throw InputError(file.string() + ": " + runtime::message(status));
-  return verify(surface, tree, {}, progress);
+  return tree;
 }
 
-json to_json(const Verification& result, double radius) {
-  json violations = json::array();
+bool stores(const runtime::PackedSphereTree& tree, const TriangleMesh& mesh) {
+  return tree.vertices.size() == mesh.vertices.size() && tree.triangles == mesh.triangles;
+}
+
+Subject subject_of(const VerifyCommand& command, const Tree& tree, const Progress& progress) {
+  Subject subject{.surface = Surface(read_repaired(command.mesh).mesh), .wrap = {}};
+  const fs::path wrap = in_folder(command.tree.parent_path(), command.tree, kWrapEnding);
+  std::error_code error;
+  if (!fs::exists(wrap, error) || fs::equivalent(wrap, command.mesh, error)) return subject;
+  if (tree.packed && stores(*tree.packed, subject.surface.mesh())) return subject;
+  Surface skin(read_mesh(wrap));
+  subject.wrap_to_mesh = surface_distance(skin, subject.surface, {}, progress);
+  subject.mesh_to_wrap = surface_distance(subject.surface, skin, {}, progress);
+  subject.surface = std::move(skin);
+  subject.wrap = wrap;
+  return subject;
+}
+
+Verification verify_tree(const Subject& subject, Tree& tree, bool box_centered, const Progress& progress) {
+  if (tree.packed) return verify(subject.surface, *tree.packed, {}, progress);
+  if (box_centered)
+    for (SphereNode& node : tree.text.nodes) node.sphere.center += subject.surface.bounding_box().center();
+  return verify_path_rule(subject.surface, path_balls(tree.text), {}, progress);
+}
+
+json bounds_json(const Bounds& bounds, double unit) { return {bounds.lower / unit, bounds.upper / unit}; }
+
+json to_json(const Verification& result, const Subject& subject) {
+  const double radius = subject.surface.bounding_radius();
+  json violations = json::array(), largest = json::array();
   const auto index = [](Index i) { return i == kNone ? json() : json(i); };
   for (const Violation& v : result.violations)
     violations.push_back({{"kind", name(v.kind)},
@@ -67,29 +100,75 @@ json to_json(const Verification& result, double radius) {
                           {"triangle", index(v.triangle)},
                           {"point", {v.point.x(), v.point.y(), v.point.z()}},
                           {"amount", v.amount}});
-  return {{"ok", result.ok()},
-          {"triangles", result.triangles},
-          {"triangles_uncovered", result.triangles_uncovered},
-          {"worst_depth_over_radius", result.worst_depth / radius},
-          {"nodes", result.nodes},
-          {"bounds_violated", result.bounds_violated},
-          {"same_mesh", result.same_mesh},
-          {"violations", violations}};
+  for (double bound : result.largest_bound) largest.push_back((bound + subject.wrap_distance()) / radius);
+  json report{{"ok", result.ok()},
+              {"only_tangent", result.only_tangent(radius)},
+              {"triangles", result.triangles},
+              {"triangles_uncovered", result.triangles_uncovered},
+              {"triangles_unlisted", result.triangles_unlisted},
+              {"uncovered_share_likely", result.uncovered.likely_area / subject.surface.report().area},
+              {"uncovered_share", bounds_json(result.uncovered.area, subject.surface.report().area)},
+              {"uncovered_depth_over_radius", bounds_json(result.uncovered.depth, radius)},
+              {"uncovered_nodes", result.uncovered_nodes},
+              {"nodes", result.nodes},
+              {"bounds_violated", result.bounds_violated},
+              {"largest_bound_over_radius", largest},
+              {"same_mesh", result.same_mesh},
+              {"violations", violations}};
+  if (!subject.wrap.empty())
+    report["wrap"] = {{"file", subject.wrap.string()},
+                      {"wrap_to_mesh_over_radius", subject.wrap_to_mesh.upper / radius},
+                      {"mesh_to_wrap_over_radius", subject.mesh_to_wrap.upper / radius}};
+  return report;
 }
 
-void print(const Verification& result, double radius, double seconds) {
+void print_violations(const Verification& result) {
   for (const Violation& v : result.violations) {
     fmt::print("{}:", name(v.kind));
     if (v.node != kNone) fmt::print(" node {}", v.node);
     if (v.triangle != kNone) fmt::print(" triangle {}", v.triangle);
     fmt::print(" at ({:.9g}, {:.9g}, {:.9g}) by {:.3g}\n", v.point.x(), v.point.y(), v.point.z(), v.amount);
   }
-  const std::uint64_t all = result.triangles_uncovered + result.bounds_violated;
+  const std::uint64_t all = result.triangles_uncovered + result.triangles_unlisted + result.bounds_violated;
   if (all > result.violations.size()) fmt::print("... and {} more\n", all - result.violations.size());
-  fmt::print("{}: {} nodes, {} bounds violated; {} triangles, {} not proven covered", result.ok() ? "OK" : "NOT PROVEN",
-             result.nodes, result.bounds_violated, result.triangles, result.triangles_uncovered);
-  if (result.triangles_uncovered > 0)
-    fmt::print(", worst depth {:.3g} of the bounding radius", result.worst_depth / radius);
+}
+
+void print_uncovered(const Verification& result, const Surface& surface) {
+  if (result.triangles_uncovered == 0) return;
+  const double radius = surface.bounding_radius();
+  const Bounds &area = result.uncovered.area, &depth = result.uncovered.depth;
+  const auto percent = [&](double part) { return 100 * part / surface.report().area; };
+  if (result.only_tangent(radius)) {
+    fmt::print("spheres meet there without overlapping, which cannot be told from a gap; nodes");
+    for (Index node : result.uncovered_nodes) fmt::print(" {}", node);
+    fmt::print("\n");
+  }
+  fmt::print(
+      "without a path: about {:.4g} % of the area (proven: {:.4g} to {:.4g}), {:.4g} to {:.4g} of the bounding radius "
+      "deep\n",
+      percent(result.uncovered.likely_area), percent(area.lower), percent(area.upper), depth.lower / radius,
+      depth.upper / radius);
+}
+
+void print(const Verification& result, const Subject& subject, double seconds) {
+  const double radius = subject.surface.bounding_radius();
+  print_violations(result);
+  print_uncovered(result, subject.surface);
+  if (!subject.wrap.empty())
+    fmt::print(
+        "against the wrap {}: no point of it is farther than {:.5f} of the bounding radius from the mesh, no point "
+        "of the mesh farther than {:.5f} from it\n",
+        subject.wrap.string(), subject.wrap_to_mesh.upper / radius, subject.mesh_to_wrap.upper / radius);
+  if (!result.largest_bound.empty()) {
+    fmt::print("largest error bound by level, of the bounding radius{}:",
+               subject.wrap.empty() ? "" : ", including the wrap's distance from the mesh");
+    for (double bound : result.largest_bound) fmt::print(" {:.4f}", (bound + subject.wrap_distance()) / radius);
+    fmt::print("\n");
+  }
+  const char* verdict = result.ok() ? "OK" : result.only_tangent(radius) ? "NOT PROVEN, TANGENT" : "NOT PROVEN";
+  fmt::print("{}: {} nodes, {} bounds violated; {} triangles, {} not proven covered", verdict, result.nodes,
+             result.bounds_violated, result.triangles, result.triangles_uncovered);
+  if (result.triangles_unlisted > 0) fmt::print(", {} not listed where they are covered", result.triangles_unlisted);
   if (!result.same_mesh) fmt::print("; the tree was built for another mesh");
   fmt::print("; {:.2f} s\n", seconds);
 }
@@ -97,19 +176,17 @@ void print(const Verification& result, double radius, double seconds) {
 }  // namespace
 
 bool verify(const VerifyCommand& command) {
-  TriangleMesh mesh = read_repaired(command.mesh).mesh;
-  const bool text = command.tree.extension() == ".sph";
-  const Surface surface(std::move(mesh));
   ProgressBar bar(!command.output.quiet && !command.output.json);
+  Tree tree = read_tree(command.tree);
+  const Subject subject = subject_of(command, tree, bar.callback());
   const Stopwatch watch;
-  const Verification result = text ? verify_text_tree(surface, command.tree, bar.callback())
-                                   : verify_packed_tree(surface, command.tree, bar.callback());
+  const Verification result = verify_tree(subject, tree, command.box_centered, bar.callback());
   const double seconds = watch.seconds();
   bar.clear();
   if (command.output.json) {
-    fmt::print("{}\n", to_json(result, surface.bounding_radius()).dump(2));
+    fmt::print("{}\n", to_json(result, subject).dump(2));
   } else if (!command.output.quiet) {
-    print(result, surface.bounding_radius(), seconds);
+    print(result, subject, seconds);
   }
   return result.ok();
 }

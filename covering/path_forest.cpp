@@ -1,6 +1,7 @@
 #include "orchard/covering/path_forest.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace orchard {
@@ -37,6 +38,20 @@ void PathForest::gather(const std::array<Point, 3>& triangle, NearBalls& near) c
   for (Index root : roots_) visit(root, kNone);
   for (Index i = 0; i < near.balls.size(); ++i)
     for (Index child : children_[near.original[i]]) visit(child, i);
+}
+
+double PathForest::depth(const Point& point) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (Index root : roots_) descend(root, point, -std::numeric_limits<double>::infinity(), least);
+  return least;
+}
+
+// A path's excess only grows downwards: what is not below the least found so far can be left out.
+void PathForest::descend(Index ball, const Point& point, double above, double& least) const {
+  const double excess = std::max(above, (point - balls_[ball].center).norm() - balls_[ball].radius);
+  if (excess >= least) return;
+  if (balls_[ball].leaf) least = excess;
+  for (Index child : children_[ball]) descend(child, point, excess, least);
 }
 
 }  // namespace orchard

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "orchard/covering/inaccuracy.h"
+#include "orchard/geometry/tolerance.h"
 #include "orchard/spheretree/certify.h"
 #include "packed_nodes.h"
 
@@ -14,6 +15,66 @@ namespace {
 
 // Roundings of a centre's sum, of a closest-point query and of a few comparisons, per unit of coordinate.
 constexpr double kRounding = 0x1p-49;
+
+void add(const VerifyOptions& options, Verification& result, Violation violation) {
+  if (result.violations.size() < options.most_violations) result.violations.push_back(std::move(violation));
+}
+
+// A triangle that is not proven, and the balls whose boundary its uncovered spots have.
+struct TriangleViolation {
+  bool bad = false;
+  Violation violation;
+  std::vector<Index> nodes;
+};
+
+// Of the points that the lemma names, the one farthest outside all path regions.
+TriangleViolation check_all_paths(const Surface& surface, Index triangle, const PathForest& forest,
+                                  const Point& origin) {
+  auto corners = surface.corners(triangle);
+  for (Point& corner : corners) corner -= origin;
+  NearBalls near;
+  forest.gather(corners, near);
+  const TriangleCover cover = cover_of_triangle(corners, near.balls);
+  TriangleViolation found{true, {Violation::Kind::uncovered, kNone, triangle, cover.witness, 0}, {}};
+  if (cover.covered) found.violation.kind = Violation::Kind::unlisted;
+  if (!cover.covered) found.violation.amount = std::max(0.0, forest.depth(cover.witness));
+  for (const UncoveredArc& arc : cover.arcs) {
+    found.nodes.push_back(near.original[arc.ball]);
+    for (const Point& point : {arc.begin, arc.middle, arc.end}) {
+      const double depth = forest.depth(point);
+      if (depth <= found.violation.amount && found.violation.node != kNone) continue;
+      found.violation.node = near.original[arc.ball];
+      found.violation.point = point;
+      found.violation.amount = std::max(depth, found.violation.amount);
+    }
+  }
+  found.violation.point += origin;
+  return found;
+}
+
+void report_triangles(const Surface& surface, const PathForest& forest, const Point& origin,
+                      const std::vector<TriangleViolation>& found, const VerifyOptions& options, Verification& result) {
+  std::vector<Index> uncovered;
+  for (const TriangleViolation& one : found) {
+    if (!one.bad) continue;
+    add(options, result, one.violation);
+    if (one.violation.kind == Violation::Kind::unlisted) {
+      ++result.triangles_unlisted;
+      continue;
+    }
+    uncovered.push_back(one.violation.triangle);
+    result.uncovered_nodes.insert(result.uncovered_nodes.end(), one.nodes.begin(), one.nodes.end());
+  }
+  std::sort(result.uncovered_nodes.begin(), result.uncovered_nodes.end());
+  result.uncovered_nodes.erase(std::unique(result.uncovered_nodes.begin(), result.uncovered_nodes.end()),
+                               result.uncovered_nodes.end());
+  result.triangles_uncovered = uncovered.size();
+  if (uncovered.empty()) return;
+  UncoveredPartOptions part;
+  part.depth_tolerance.of_radius = 0.01 * tolerance::kTangent;
+  result.uncovered = uncovered_part(surface, uncovered, forest, origin, part);
+  result.uncovered.deepest += origin;
+}
 
 class Verifier {
  public:
@@ -28,22 +89,19 @@ class Verifier {
     result_.nodes = nodes_.size();
     check_mesh(options);
     if (result_.same_mesh) check_triangles(options, progress);
+    find_largest_bounds();
     report_progress(progress, "verifying bounds", 0.5);
     check_bounds(options);
     return std::move(result_);
   }
 
  private:
-  void add(const VerifyOptions& options, Violation violation) {
-    if (result_.violations.size() < options.most_violations) result_.violations.push_back(std::move(violation));
-  }
-
   // The exact level tests the stored triangles: they must be the surface's, and their corners as near as promised.
   void check_mesh(const VerifyOptions& options) {
     const TriangleMesh& mesh = surface_.mesh();
     const auto fail = [&](Index triangle, const Point& at, double amount) {
       result_.same_mesh = false;
-      add(options, {Violation::Kind::other_mesh, kNone, triangle, at, amount});
+      add(options, result_, {Violation::Kind::other_mesh, kNone, triangle, at, amount});
     };
     if (tree_.triangles.size() != mesh.triangles.size() || tree_.vertices.size() != mesh.vertices.size())
       return fail(kNone, origin_, 0);
@@ -62,22 +120,18 @@ class Verifier {
   // For each triangle, the tree of those leaves alone that list it.
   void check_triangles(const VerifyOptions& options, const Progress& progress) {
     const Rows listed = leaves_listing();
-    std::vector<Violation> found(result_.triangles);
-    std::vector<char> bad(result_.triangles, 0);
+    const PathForest forest(balls_);
+    std::vector<TriangleViolation> found(result_.triangles);
     const std::size_t slice = std::max<std::size_t>(1024, result_.triangles / 50 + 1);
     for (std::size_t begin = 0; begin < result_.triangles; begin += slice) {
       report_progress(progress, "verifying cover",
                       0.5 * static_cast<double>(begin) / static_cast<double>(result_.triangles));
       tbb::parallel_for(begin, std::min<std::size_t>(result_.triangles, begin + slice), [&](std::size_t i) {
-        bad[i] = !covered(static_cast<Index>(i), listed[static_cast<Index>(i)], found[i]);
+        const auto triangle = static_cast<Index>(i);
+        if (!covered(triangle, listed[triangle])) found[i] = check_all_paths(surface_, triangle, forest, origin_);
       });
     }
-    for (std::size_t i = 0; i < result_.triangles; ++i) {
-      if (!bad[i]) continue;
-      ++result_.triangles_uncovered;
-      result_.worst_depth = std::max(result_.worst_depth, found[i].amount);
-      add(options, found[i]);
-    }
+    report_triangles(surface_, forest, origin_, found, options, result_);
   }
 
   Rows leaves_listing() const {
@@ -97,7 +151,7 @@ class Verifier {
     return listed;
   }
 
-  bool covered(Index triangle, std::span<const Index> leaves, Violation& violation) const {
+  bool covered(Index triangle, std::span<const Index> leaves) const {
     std::vector<Index> used;
     for (Index leaf : leaves)
       for (Index node = leaf; node != kNone; node = balls_[node].parent) used.push_back(node);
@@ -108,30 +162,23 @@ class Verifier {
       PathBall ball = balls_[node];
       if (ball.parent != kNone)
         ball.parent = static_cast<Index>(std::lower_bound(used.begin(), used.end(), ball.parent) - used.begin());
+      if (ball.leaf) ball.leaf = std::binary_search(leaves.begin(), leaves.end(), node);
       balls.push_back(ball);
     }
     auto corners = surface_.corners(triangle);
     for (Point& corner : corners) corner -= origin_;
-    const TriangleCover cover = cover_of_triangle(corners, balls);
-    if (cover.covered) return true;
-    violation = deepest(cover, balls);
-    violation.triangle = triangle;
-    violation.point += origin_;
-    if (violation.node != kNone) violation.node = used[violation.node];
-    return false;
+    return triangle_covered(corners, balls);
   }
 
-  // Of the points that the lemma names, the one farthest outside all path regions.
-  static Violation deepest(const TriangleCover& cover, std::span<const PathBall> balls) {
-    Violation worst{Violation::Kind::uncovered, kNone, kNone, cover.witness,
-                    std::max(0.0, path_depth(cover.witness, balls))};
-    for (const UncoveredArc& arc : cover.arcs)
-      for (const Point& point : {arc.begin, arc.middle, arc.end}) {
-        const double d = path_depth(point, balls);
-        if (d > worst.amount || worst.node == kNone)
-          worst = {worst.kind, arc.ball, kNone, point, std::max(d, worst.amount)};
-      }
-    return worst;
+  void find_largest_bounds() {
+    std::vector<Index> level(nodes_.size(), 0);
+    result_.largest_bound.assign(tree_.depth + 1, 0);
+    for (Index i = 0; i < nodes_.size(); ++i) {
+      if (balls_[i].parent != kNone) level[i] = level[balls_[i].parent] + 1;
+      const double bound = tree_.blocks[nodes_[i].block].error[nodes_[i].lane];
+      double& largest = result_.largest_bound[std::min<Index>(level[i], tree_.depth)];
+      largest = std::max(largest, bound);
+    }
   }
 
   struct Missed {
@@ -146,11 +193,12 @@ class Verifier {
       if (missed[i].center_distance > 0) {
         ++result_.bounds_violated;
         const Point at = origin_ + balls_[i].center;
-        add(options, {Violation::Kind::center_distance, i, kNone, at, missed[i].center_distance});
+        add(options, result_, {Violation::Kind::center_distance, i, kNone, at, missed[i].center_distance});
       }
       if (missed[i].distance_bound > 0) {
         ++result_.bounds_violated;
-        add(options, {Violation::Kind::distance_bound, i, kNone, missed[i].farthest, missed[i].distance_bound});
+        add(options, result_,
+            {Violation::Kind::distance_bound, i, kNone, missed[i].farthest, missed[i].distance_bound});
       }
     }
   }
@@ -185,9 +233,27 @@ class Verifier {
 
 }  // namespace
 
+bool Verification::only_tangent(double bounding_radius) const {
+  return same_mesh && triangles_unlisted == 0 && bounds_violated == 0 && triangles_uncovered > 0 &&
+         uncovered.depth.upper <= tolerance::kTangent * bounding_radius;
+}
+
 Verification verify(const Surface& surface, const runtime::PackedSphereTree& tree, const VerifyOptions& options,
                     const Progress& progress) {
   return Verifier(surface, tree).run(options, progress);
+}
+
+Verification verify_path_rule(const Surface& surface, std::span<const PathBall> balls, const VerifyOptions& options,
+                              const Progress& progress) {
+  Verification result;
+  result.triangles = surface.mesh().triangles.size();
+  result.nodes = balls.size();
+  const PathForest forest(balls);
+  std::vector<TriangleViolation> found(result.triangles);
+  for (const UncoveredTriangle& one : surface_coverage(surface, balls, progress).uncovered)
+    found[one.triangle] = check_all_paths(surface, one.triangle, forest, Point::Zero());
+  report_triangles(surface, forest, Point::Zero(), found, options, result);
+  return result;
 }
 
 }  // namespace orchard

@@ -5,11 +5,15 @@
 
 #include <functional>
 
+#include "orchard/covering/inaccuracy.h"
+#include "orchard/covering/incremental_cover.h"
+#include "orchard/spheretree/certify.h"
 #include "orchard/spheretree/cover.h"
 #include "orchard/spheretree/measure.h"
 #include "orchard/spheretree/merging.h"
 #include "orchard/spheretree/octree.h"
 #include "orchard/spheretree/pack.h"
+#include "orchard/spheretree/redundancy.h"
 #include "support.h"
 
 namespace orchard {
@@ -91,6 +95,186 @@ TEST(Verify, RejectsEachKindOfDamage) {
   }
 }
 
+// A tree without a node to spare: what is taken from a leaf is missed somewhere.
+PackedSphereTree lean_tree(const Surface& surface) {
+  SphereTree tree = merge_tree(surface, axis_of(surface), {.depth = 2});
+  cover(tree, surface);
+  remove_redundant(tree, surface);
+  measure(tree, surface);
+  return pack(tree, surface);
+}
+
+// The same with every radius as small as the path rule allows, given the others.
+PackedSphereTree tight_tree(const Surface& surface) {
+  SphereTree tree = merge_tree(surface, axis_of(surface), {.depth = 2});
+  cover(tree, surface);
+  remove_redundant(tree, surface);
+  IncrementalCover kept(surface, path_balls(tree));
+  const double finest = 1e-8 * surface.bounding_radius();
+  for (Index i = 0; i < tree.nodes.size(); ++i) {
+    Sphere& sphere = tree.nodes[i].sphere;
+    double low = 0, high = sphere.radius;
+    while (high - low > finest) {
+      const double middle = (low + high) / 2;
+      (kept.try_change(i, {sphere.center, middle}) ? high : low) = middle;
+    }
+    sphere.radius = high;
+  }
+  measure(tree, surface);
+  return pack(tree, surface);
+}
+
+Point center_of(const PackedSphereTree& tree, std::size_t block, std::size_t lane) {
+  const auto& b = tree.blocks[block];
+  return Point(tree.origin[0], tree.origin[1], tree.origin[2]) + Vector(b.x[lane], b.y[lane], b.z[lane]);
+}
+
+void move_center(PackedSphereTree& tree, std::size_t block, std::size_t lane, const Vector& step) {
+  auto& b = tree.blocks[block];
+  b.x[lane] += static_cast<float>(step.x());
+  b.y[lane] += static_cast<float>(step.y());
+  b.z[lane] += static_cast<float>(step.z());
+}
+
+// Calls visit(block, lane) for every node but the root.
+template <class Visit>
+void for_each_child(const PackedSphereTree& tree, Visit visit) {
+  for (std::size_t block = 1; block < tree.blocks.size(); ++block)
+    for (std::size_t lane = 0; lane < runtime::kBlockWidth; ++lane)
+      if (tree.blocks[block].radius[lane] >= 0) visit(block, lane);
+}
+
+// Whether sampling finds nothing wrong with a tree: every point in a path region of a leaf that lists its triangle.
+bool samples_find_nothing(const Surface& surface, const PackedSphereTree& tree) {
+  const auto balls = path_balls(tree);
+  const Point origin(tree.origin[0], tree.origin[1], tree.origin[2]);
+  for (const Point& point : points_on(surface, 40, 3))
+    if (path_depth(point - origin, balls) > 0) return false;
+  return true;
+}
+
+TEST(Verify, RejectsEveryChildThatIsMovedOutwardByATenThousandthOfTheRadius) {
+  for (const TriangleMesh& mesh : {l_shape(), torus(24, 12)}) {
+    const Surface surface(mesh);
+    const PackedSphereTree good = lean_tree(surface);
+    ASSERT_TRUE(verify(surface, good).ok());
+    for_each_child(good, [&](std::size_t block, std::size_t lane) {
+      ClosestPoint nearest;
+      const Point center = center_of(good, block, lane);
+      const double side = surface.signed_distance(center, nearest) < 0 ? 1 : -1;
+      const Vector outward = side * (nearest.position - center).normalized();
+      PackedSphereTree tree = good;
+      move_center(tree, block, lane, 1e-4 * good.bounding_radius * outward);
+      EXPECT_FALSE(verify(surface, tree).ok()) << block << " " << lane;
+    });
+  }
+}
+
+TEST(Verify, RejectsEveryRadiusThatIsShrunkByATenThousandthWhereNoneIsLooser) {
+  const Surface surface(torus(24, 12));
+  const PackedSphereTree good = tight_tree(surface);
+  ASSERT_TRUE(verify(surface, good).ok());
+  for (std::size_t block = 0; block < good.blocks.size(); ++block)
+    for (std::size_t lane = 0; lane < runtime::kBlockWidth; ++lane) {
+      if (good.blocks[block].radius[lane] < 0) continue;
+      PackedSphereTree tree = good;
+      tree.blocks[block].radius[lane] -= static_cast<float>(1e-4 * good.bounding_radius);
+      EXPECT_GT(verify(surface, tree).triangles_uncovered, 0u) << block << " " << lane;
+    }
+}
+
+// A smaller or shifted ball may still do; then sampling must find nothing either.
+TEST(Verify, AcceptsAChangedChildOnlyWhereNothingIsLost) {
+  int rejected = 0, accepted = 0;
+  for (const TriangleMesh& mesh : {l_shape(), torus(24, 12)}) {
+    const Surface surface(mesh);
+    const PackedSphereTree good = lean_tree(surface);
+    const double step = 1e-4 * good.bounding_radius;
+    Random random(1, 21);
+    for_each_child(good, [&](std::size_t block, std::size_t lane) {
+      for (int kind = 0; kind < 3; ++kind) {
+        PackedSphereTree tree = good;
+        const Vector v(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+        float& radius = tree.blocks[block].radius[lane];
+        if (kind == 0) radius -= static_cast<float>(step);
+        if (kind == 1) radius *= 1 - 1e-4f;
+        if (kind == 2) move_center(tree, block, lane, step * v.normalized());
+        const bool ok = verify(surface, tree).ok();
+        ++(ok ? accepted : rejected);
+        EXPECT_TRUE(!ok || samples_find_nothing(surface, tree)) << block << " " << lane << " " << kind;
+      }
+    });
+  }
+  RecordProperty("rejected", rejected);
+  RecordProperty("accepted", accepted);
+  EXPECT_GT(rejected, 20);
+  EXPECT_GT(accepted, 20);
+}
+
+TEST(Verify, RejectsALeafWhoseTrianglesAreDropped) {
+  const Surface surface(l_shape());
+  const PackedSphereTree good = lean_tree(surface);
+  for_each_child(good, [&](std::size_t block, std::size_t lane) {
+    if ((good.blocks[block].count[lane] & runtime::kLeafBit) == 0) return;
+    PackedSphereTree tree = good;
+    tree.blocks[block].count[lane] = runtime::kLeafBit;
+    const Verification result = verify(surface, tree);
+    EXPECT_GT(result.triangles_unlisted, 0u) << block << " " << lane;
+    EXPECT_EQ(result.triangles_uncovered, 0u);
+    // One triangle at a time: some of them must be missed.
+    const std::uint32_t first = good.blocks[block].first[lane],
+                        count = good.blocks[block].count[lane] & ~runtime::kLeafBit;
+    bool missed = false;
+    for (std::uint32_t k = 0; k < count && !missed; ++k) {
+      tree = good;
+      std::swap(tree.leaf_triangles[first + k], tree.leaf_triangles[first + count - 1]);
+      --tree.blocks[block].count[lane];
+      missed = !verify(surface, tree).ok();
+    }
+    EXPECT_TRUE(missed) << block << " " << lane;
+  });
+}
+
+TEST(Verify, RejectsEveryBoundThatIsLowered) {
+  const Surface surface(l_shape());
+  const PackedSphereTree good = lean_tree(surface);
+  const double R = good.bounding_radius;
+  for_each_child(good, [&](std::size_t block, std::size_t lane) {
+    PackedSphereTree tree = good;
+    tree.blocks[block].depth[lane] -= static_cast<float>(1e-4 * R);
+    EXPECT_GT(verify(surface, tree).bounds_violated, 0u);
+    // Bounds over the ball are stored with up to 1.25 % to spare.
+    const Point center = center_of(good, block, lane);
+    const double truth = farthest_from_solid(surface, {center, good.blocks[block].radius[lane]}, {1e-6, 0}).lower;
+    if (truth < 1e-3 * R) return;
+    tree = good;
+    tree.blocks[block].error[lane] = static_cast<float>(truth * (1 - 1e-4));
+    const Verification result = verify(surface, tree);
+    ASSERT_EQ(result.bounds_violated, 1u);
+    EXPECT_EQ(result.violations[0].kind, Violation::Kind::distance_bound);
+    EXPECT_GT(surface.signed_distance(result.violations[0].point), tree.blocks[block].error[lane]);
+  });
+}
+
+TEST(Verify, CallsSpheresThatJustMeetTangent) {
+  // Two balls that meet in the plane between the halves of a box, to the last digit and a little apart.
+  const Surface surface(box(Point(-2, -1, -1), Point(2, 1, 1)));
+  const double radius = std::sqrt(3.0);
+  const auto tree = [&](double gap) {
+    const Point left(-1, 0, 0), right(1, 0, 0);
+    return std::vector<PathBall>{
+        {Point::Zero(), 3, kNone, false}, {left, radius - gap, 0, true}, {right, radius - gap, 0, true}};
+  };
+  EXPECT_TRUE(verify_path_rule(surface, tree(-1e-6)).ok());
+  for (const double gap : {0.0, 1e-9}) {
+    const Verification result = verify_path_rule(surface, tree(gap));
+    EXPECT_FALSE(result.ok());
+    EXPECT_TRUE(result.only_tangent(surface.bounding_radius())) << gap;
+    EXPECT_EQ(result.uncovered_nodes, (std::vector<Index>{1, 2}));
+  }
+  EXPECT_FALSE(verify_path_rule(surface, tree(1e-3)).only_tangent(surface.bounding_radius()));
+}
+
 TEST(Verify, NamesAPointThatHasNoPathAndHowDeepItLies) {
   const Surface surface(torus(24, 12));
   PackedSphereTree tree = packed_tree(surface);
@@ -98,7 +282,9 @@ TEST(Verify, NamesAPointThatHasNoPathAndHowDeepItLies) {
     for (float& r : tree.blocks[b].radius) r *= r > 0 ? 0.9f : 1.0f;
   const Verification result = verify(surface, tree);
   ASSERT_FALSE(result.ok());
-  EXPECT_GT(result.worst_depth, 0);
+  EXPECT_GT(result.uncovered.depth.lower, 0);
+  EXPECT_GT(result.uncovered.area.lower, 0);
+  EXPECT_FALSE(result.only_tangent(surface.bounding_radius()));
   for (const Violation& violation : result.violations) {
     ASSERT_EQ(violation.kind, Violation::Kind::uncovered);
     EXPECT_LT(surface.distance(violation.point), 1e-9);
@@ -126,7 +312,9 @@ TEST(Verify, IsTheSameOnOneTwoAndSevenThreads) {
   }
   for (const Verification& other : results) {
     ASSERT_EQ(other.violations.size(), results[0].violations.size());
-    EXPECT_EQ(other.worst_depth, results[0].worst_depth);
+    EXPECT_EQ(other.uncovered.depth.lower, results[0].uncovered.depth.lower);
+    EXPECT_EQ(other.uncovered.area.upper, results[0].uncovered.area.upper);
+    EXPECT_EQ(other.uncovered_nodes, results[0].uncovered_nodes);
     for (std::size_t i = 0; i < other.violations.size(); ++i) {
       EXPECT_EQ(other.violations[i].triangle, results[0].violations[i].triangle);
       EXPECT_EQ(other.violations[i].point, results[0].violations[i].point);

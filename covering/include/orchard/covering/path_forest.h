@@ -27,7 +27,12 @@ class PathForest {
   // and neither do the path regions below it. `near` is cleared first.
   void gather(const std::array<Point, 3>& triangle, NearBalls& near) const;
 
+  // path_depth() over all balls, without a look at most of them.
+  double depth(const Point& point) const;
+
  private:
+  void descend(Index ball, const Point& point, double above, double& least) const;
+
   std::vector<PathBall> balls_;
   std::vector<Index> roots_;
   Rows children_;

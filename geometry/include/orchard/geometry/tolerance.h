@@ -44,6 +44,10 @@ inline constexpr double kOnTriangle = 1e-12;
 // that fit exactly are tangent, and tangent reads as uncovered.
 inline constexpr double kCoverMargin = 1e-7;
 
+// Spheres that leave a gap no wider than this where they meet are called tangent: text files with six decimals leave
+// about as much between spheres that were computed to touch.
+inline constexpr double kTangent = 1e-7;
+
 // Width of the bounds on a sphere's inaccuracy: finer than any use of it, coarse enough to be fast.
 inline constexpr double kInaccuracy = 1e-4;
 

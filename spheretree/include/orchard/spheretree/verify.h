@@ -1,8 +1,9 @@
 #pragma once
-#include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "orchard/covering/uncovered_part.h"
 #include "orchard/geometry/progress.h"
 #include "orchard/geometry/surface.h"
 #include "orchard/runtime/packed_tree.h"
@@ -12,8 +13,9 @@ namespace orchard {
 // What a packed tree promises and verify() could not prove.
 struct Violation {
   enum class Kind : std::uint8_t {
-    uncovered,   // a point of a triangle that no path region of the leaves that list the triangle is certain to hold
-    other_mesh,  // the stored triangles are not the surface's
+    uncovered,        // a point of a triangle that no path region is certain to hold
+    unlisted,         // the triangle has its paths, but they end in leaves that do not list it
+    other_mesh,       // the stored triangles are not the surface's
     center_distance,  // a stored signed distance of a centre is below the true one
     distance_bound,   // a point of a ball is farther from the solid than stored
   };
@@ -29,12 +31,16 @@ struct VerifyOptions {
 };
 
 struct Verification {
-  std::uint64_t triangles = 0, triangles_uncovered = 0;
+  std::uint64_t triangles = 0, triangles_uncovered = 0, triangles_unlisted = 0;
   std::uint64_t nodes = 0, bounds_violated = 0;
   bool same_mesh = true;
-  double worst_depth = 0;             // of the witnesses, in mesh units
-  std::vector<Violation> violations;  // triangles first, ascending
-  bool ok() const { return same_mesh && triangles_uncovered == 0 && bounds_violated == 0; }
+  UncoveredPart uncovered;             // how much has no path, and how far off the paths are
+  std::vector<Index> uncovered_nodes;  // whose boundary an uncovered spot has, ascending
+  std::vector<double> largest_bound;   // stored distance bound by level, in mesh units; none in a tree without bounds
+  std::vector<Violation> violations;   // triangles first, ascending
+  bool ok() const { return same_mesh && triangles_uncovered == 0 && triangles_unlisted == 0 && bounds_violated == 0; }
+  // Nothing is wrong but that spheres meet without overlapping, which no rounded computation can tell from a gap.
+  bool only_tangent(double bounding_radius) const;
 };
 
 // Proves from the packed floats and the mesh alone that (a) the path rule holds, (b) every stored bound holds, (c)
@@ -43,5 +49,9 @@ struct Verification {
 // Parallel; the result does not depend on the thread count.
 Verification verify(const Surface& surface, const runtime::PackedSphereTree& tree, const VerifyOptions& options = {},
                     const Progress& progress = {});
+
+// Proves the path rule of a tree that promises nothing else: balls without bounds and lists of triangles.
+Verification verify_path_rule(const Surface& surface, std::span<const PathBall> balls,
+                              const VerifyOptions& options = {}, const Progress& progress = {});
 
 }  // namespace orchard

@@ -1,0 +1,153 @@
+#include "orchard/covering/uncovered_part.h"
+
+#include <algorithm>
+#include <queue>
+
+namespace orchard {
+namespace {
+
+struct Cell {
+  std::array<Point, 3> corners;
+  double area, reach;  // reach: of the farthest corner from the middle
+  double depth;        // at the middle
+  Point middle() const { return (corners[0] + corners[1] + corners[2]) / 3; }
+  double deepest() const { return depth + reach; }
+};
+struct Smaller {
+  bool operator()(const Cell& a, const Cell& b) const { return a.area < b.area; }
+};
+struct Shallower {
+  bool operator()(const Cell& a, const Cell& b) const { return a.deepest() < b.deepest(); }
+};
+
+class Measurer {
+ public:
+  Measurer(const PathForest& forest, double radius, const UncoveredPartOptions& options)
+      : forest_(forest), radius_(radius), options_(options) {}
+
+  void add(const std::array<Point, 3>& corners) {
+    const double area = 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
+    classify(corners, area);
+  }
+
+  UncoveredPart run() {
+    while (!open_.empty() && cells_ < options_.most_cells &&
+           open_area_ > std::max(options_.area_tolerance * sure_area_, kNoArea * radius_ * radius_)) {
+      const Cell cell = open_.top();
+      open_.pop();
+      open_area_ -= cell.area;
+      if (cell.area == 0 || cell.reach <= kFinest * radius_) {
+        settled_.push_back(cell);
+        settled_area_ += cell.area;
+        continue;
+      }
+      for_each_quarter(cell, [&](const auto& corners) { classify(corners, cell.area / 4); });
+    }
+    part_.area = {sure_area_, sure_area_ + std::max(0.0, open_area_) + settled_area_};
+    part_.likely_area = sure_area_;
+    for (const Cell& cell : settled_)
+      if (cell.depth > 0 && cell.depth <= cell.reach) part_.likely_area += cell.area;
+    bound_depth();
+    return part_;
+  }
+
+ private:
+  // Cells below this fraction of R stay undecided: the rounding of their corners begins to count.
+  static constexpr double kFinest = 1e-9;
+  // Areas below this fraction of R^2 are not worth telling from nothing.
+  static constexpr double kNoArea = 1e-9;
+
+  template <class Visit>
+  static void for_each_quarter(const Cell& cell, Visit visit) {
+    const auto& [a, b, c] = cell.corners;
+    const Point ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
+    visit(std::array<Point, 3>{a, ab, ca});
+    visit(std::array<Point, 3>{b, bc, ab});
+    visit(std::array<Point, 3>{c, ca, bc});
+    visit(std::array<Point, 3>{ab, bc, ca});
+  }
+
+  // Files the cell under uncovered or undecided, or forgets it if it is covered.
+  void classify(const std::array<Point, 3>& corners, double area) {
+    ++cells_;
+    const Cell cell = make_cell(corners, area);
+    if (cell.deepest() <= 0) return;
+    if (cell.depth > cell.reach) {
+      sure_area_ += area;
+      settled_.push_back(cell);
+      return;
+    }
+    if (covered(corners)) return;
+    open_area_ += area;
+    open_.push(cell);
+  }
+
+  bool covered(const std::array<Point, 3>& corners) {
+    forest_.gather(corners, near_);
+    return triangle_covered(corners, near_.balls);
+  }
+
+  Cell make_cell(const std::array<Point, 3>& corners, double area) {
+    Cell cell{corners, area, 0, 0};
+    const Point middle = cell.middle();
+    for (const Point& corner : corners) cell.reach = std::max(cell.reach, (corner - middle).norm());
+    cell.reach *= 1 + 1e-12;
+    for (const Point& point : {middle, corners[0], corners[1], corners[2]}) {
+      const double depth = forest_.depth(point);
+      if (point == middle) cell.depth = depth;
+      if (depth <= part_.depth.lower) continue;
+      part_.depth.lower = depth;
+      part_.deepest = point;
+    }
+    return cell;
+  }
+
+  // Empties open_.
+  void bound_depth() {
+    std::priority_queue<Cell, std::vector<Cell>, Shallower> cells;
+    for (; !open_.empty(); open_.pop()) {
+      cells.push(open_.top());
+      if (open_.top().depth > 0) part_.likely_area += open_.top().area;
+    }
+    for (const Cell& cell : settled_) cells.push(cell);
+    const auto width = [&] {
+      return std::max(options_.depth_tolerance.of_radius * radius_,
+                      options_.depth_tolerance.of_distance * part_.depth.lower);
+    };
+    for (Index spent = 0; !cells.empty() && spent < options_.most_cells; spent += 4) {
+      const Cell cell = cells.top();
+      if (cell.deepest() <= part_.depth.lower + width()) break;
+      cells.pop();
+      for_each_quarter(cell, [&](const auto& corners) {
+        const Cell quarter = make_cell(corners, cell.area / 4);
+        if (quarter.deepest() > 0 && (quarter.depth > quarter.reach || !covered(corners))) cells.push(quarter);
+      });
+    }
+    part_.depth.upper = cells.empty() ? part_.depth.lower : std::max(part_.depth.lower, cells.top().deepest());
+  }
+
+  const PathForest& forest_;
+  const double radius_;
+  const UncoveredPartOptions& options_;
+  std::priority_queue<Cell, std::vector<Cell>, Smaller> open_;
+  std::vector<Cell> settled_;  // uncovered, or too small to tell
+  double open_area_ = 0, sure_area_ = 0, settled_area_ = 0;
+  Index cells_ = 0;
+  NearBalls near_;
+  UncoveredPart part_;
+};
+
+}  // namespace
+
+UncoveredPart uncovered_part(const Surface& surface, std::span<const Index> triangles, const PathForest& forest,
+                             const Point& origin, const UncoveredPartOptions& options) {
+  Measurer measurer(forest, surface.bounding_radius(), options);
+  for (Index triangle : triangles) {
+    auto corners = surface.corners(triangle);
+    for (Point& corner : corners) corner -= origin;
+    measurer.add(corners);
+  }
+  return measurer.run();
+}
+
+}  // namespace orchard
