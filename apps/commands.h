@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "load_solid.h"
+#include "medial_tuning.h"
 #include "orchard/voronoi/algorithms.h"
 #include "pipeline.h"
 
@@ -68,6 +69,19 @@ struct VoronoiCommand {
   Output output;
 };
 void voronoi(const VoronoiCommand& command);
+
+struct MedialCommand {
+  std::filesystem::path mesh, folder;
+  MeshOptions reading;
+  MedialTuning tuning;
+  std::filesystem::path points;    // not empty: the user's own surface points
+  std::filesystem::path axis;      // not empty: a .ma file to judge; nothing is built
+  bool report = false;             // judge what was built
+  std::vector<std::string> sweep;  // NAME=VALUE,VALUE,..
+  bool views = true;               // ParaView files, where the program was built with them
+  Output output;
+};
+void medial(const MedialCommand& command);
 
 struct InspectCommand {
   std::filesystem::path file;

@@ -17,64 +17,13 @@
 
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
+#include "vtk_data.h"
 
 namespace orchard {
+
+using namespace detail;
+
 namespace {
-
-int as_int(Index index) { return index == kNone ? -1 : static_cast<int>(index); }
-
-// value(i) for i in [0, count) as an array of that name.
-template <typename Array, typename Value>
-vtkSmartPointer<Array> make_array(const char* name, std::size_t count, const Value& value) {
-  auto array = vtkSmartPointer<Array>::New();
-  array->SetName(name);
-  array->SetNumberOfValues(static_cast<vtkIdType>(count));
-  for (std::size_t i = 0; i < count; ++i) array->SetValue(static_cast<vtkIdType>(i), value(i));
-  return array;
-}
-
-template <typename Value>
-void add_ints(vtkFieldData* data, const char* name, std::size_t count, const Value& value) {
-  data->AddArray(make_array<vtkIntArray>(name, count, value));
-}
-
-template <typename Value>
-void add_doubles(vtkFieldData* data, const char* name, std::size_t count, const Value& value) {
-  data->AddArray(make_array<vtkDoubleArray>(name, count, value));
-}
-
-template <typename Position>
-void set_points(vtkPolyData* data, std::size_t count, const Position& position) {
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(static_cast<vtkIdType>(count));
-  for (std::size_t i = 0; i < count; ++i) points->SetPoint(static_cast<vtkIdType>(i), position(i).data());
-  data->SetPoints(points);
-}
-
-void add_cell(vtkCellArray* cells, std::span<const Index> corners) {
-  cells->InsertNextCell(static_cast<int>(corners.size()));
-  for (const Index corner : corners) cells->InsertCellPoint(static_cast<vtkIdType>(corner));
-}
-
-// One vertex cell per point, so that points are drawn without a filter.
-void set_vertex_cells(vtkPolyData* data) {
-  vtkNew<vtkCellArray> cells;
-  for (Index i = 0; i < data->GetNumberOfPoints(); ++i) add_cell(cells, {&i, 1});
-  data->SetVerts(cells);
-}
-
-void write(const std::filesystem::path& vtp, vtkPolyData* data) {
-  vtkNew<vtkXMLPolyDataWriter> writer;
-  writer->SetInputData(data);
-  writer->SetDataModeToAppended();
-  writer->EncodeAppendedDataOff();
-  writer->SetCompressorTypeToZLib();
-  writer->SetByteOrderToLittleEndian();
-  writer->WriteToOutputStringOn();
-  if (writer->Write() != 1) throw Error("cannot encode " + vtp.string());
-  write_file(vtp, writer->GetOutputString());
-}
 
 vtkSmartPointer<vtkPolyData> medial_points(const MedialAxis& axis) {
   auto data = vtkSmartPointer<vtkPolyData>::New();

@@ -1,0 +1,155 @@
+#include <fmt/core.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "commands.h"
+#include "console.h"
+#include "medial_run.h"
+#include "orchard/geometry/atomic_file.h"
+#include "orchard/geometry/error.h"
+#include "output_folder.h"
+#include "report.h"
+
+#ifdef ORCHARD_HAS_VIZ
+#include "orchard/viz/medial_writer.h"
+#include "orchard/viz/vtk_writer.h"
+#endif
+
+namespace orchard::apps {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+using Written = std::vector<std::pair<fs::path, std::string>>;
+
+SegmentOptions segment_options(const MedialCommand& command, const Surface& surface, const MedialBuild& build) {
+  // Below twice the mean spacing of the points, what they show is the points.
+  const double spacing = std::sqrt(surface.report().area / build.sampling.size());
+  return {.touching = 2 * spacing, .angle = command.tuning.segment_degrees * std::numbers::pi / 180};
+}
+
+void write_views(const MedialCommand& command, const Surface& surface, const MedialBuild& build,
+                 const MedialSegments& segments, const SkeletonGraph& skeleton, const MedialMesh& mesh,
+                 Written& written) {
+#ifdef ORCHARD_HAS_VIZ
+  if (!command.views) return;
+  const auto add = [&](const char* name, const char* what) { written.emplace_back(command.folder / name, what); };
+  write_medial_grid(command.folder / "medial.vtu", build.axis, segments);
+  add("medial.vtu", "the axis with radius, angle, segment, component; open it in ParaView");
+  write_medial_axis(command.folder, build.axis);
+  add("medial_faces.vtp", "its faces; medial_edges.vtp, medial_vertices.vtp likewise");
+  write_points(command.folder / "points.vtp", build.sampling);
+  add("points.vtp", "the surface points, and which of them repair added");
+  write_thickness(command.folder / "thickness.vtp", surface, medial_radii_at_surface(surface, mesh));
+  add("thickness.vtp", "the mesh with its local thickness");
+  write_skeleton(command.folder / "skeleton.vtp", build.axis, skeleton);
+  add("skeleton.vtp", "the lines where sheets end and meet");
+#else
+  (void)command, (void)surface, (void)build, (void)segments, (void)skeleton, (void)mesh, (void)written;
+#endif
+}
+
+void finish(const MedialCommand& command, const fs::path& report_file, const json& report, Written written) {
+  write_file(report_file, report.dump(2) + "\n");
+  written.emplace_back(report_file, "this report as JSON");
+  if (command.output.json) fmt::print("{}\n", report.dump(2));
+  if (command.output.quiet || command.output.json) return;
+  for (const auto& [file, what] : written) fmt::print("  {}  ({})\n", file.string(), what);
+}
+
+void judge_file(const MedialCommand& command, const SolidMesh& solid, const Progress& progress, ProgressBar& bar) {
+  const MedialMesh mesh = read_ma(command.axis);
+  const MedialJudgement judgement{
+      .quality = medial_quality(solid.surface, mesh, {.seed = command.tuning.options.sampling.seed}, progress),
+      .stability = {}};
+  bar.clear();
+  json report{{"mesh", mesh_json(solid.surface)}, {"axis", command.axis.string()}, {"quality", to_json(judgement)}};
+  report["vertices"] = mesh.centers.size();
+  report["edges"] = mesh.edges.size();
+  report["triangles"] = mesh.triangles.size();
+  add_solid_json(solid, report);
+  if (!command.output.quiet && !command.output.json) {
+    fmt::print("{}: {} vertices, {} edges, {} triangles\n", command.axis.string(), mesh.centers.size(),
+               mesh.edges.size(), mesh.triangles.size());
+    print(judgement);
+  }
+  finish(command, in_folder(command.folder, command.axis, "-quality.json"), report, {});
+}
+
+void build_axis(const MedialCommand& command, const SolidMesh& solid, const Progress& progress, ProgressBar& bar) {
+  const Surface& surface = solid.surface;
+  const bool talk = !command.output.quiet && !command.output.json;
+  const MedialBuildOptions options = build_options(command.tuning);
+  std::optional<SurfaceSampling> own;
+  double moved = 0;
+  if (!command.points.empty()) {
+    OwnPoints points = read_own_points(command.points, surface);
+    own = std::move(points.sampling);
+    moved = points.farthest_moved;
+  }
+  const MedialBuild build = build_medial_axis(surface, options, progress, std::move(own));
+  const MedialMesh mesh = medial_mesh(build.axis);
+  const MedialSegments segments = medial_segments(build.axis, segment_options(command, surface, build));
+  const SkeletonGraph skeleton = skeleton_graph(build.axis);
+  std::optional<MedialJudgement> judgement;
+  if (command.report) judgement = judge(surface, build, mesh, options, options.sampling.seed, progress);
+  bar.clear();
+
+  Written written;
+  const fs::path ma = in_folder(command.folder, command.mesh, ".ma");
+  write_file(ma, to_ma(mesh));
+  written.emplace_back(ma, "the axis for medial-mesh programs");
+  const fs::path graphml = in_folder(command.folder, command.mesh, ".graphml");
+  write_file(graphml, to_graphml(skeleton, build.axis));
+  written.emplace_back(graphml, "its skeleton graph");
+  write_views(command, surface, build, segments, skeleton, mesh, written);
+
+  json report{{"mesh", mesh_json(surface)},
+              {"build", to_json(build)},
+              {"topology", to_json(topology(mesh))},
+              {"topology_of_solid", to_json(solid_topology(surface))},
+              {"structure", to_json(segments, skeleton)}};
+  if (!command.points.empty()) report["points_moved_at_most"] = moved;
+  if (judgement) report["quality"] = to_json(*judgement);
+  add_solid_json(solid, report);
+  if (talk) {
+    fmt::print("{}: {} triangles\n", command.mesh.string(), surface.mesh().triangles.size());
+    if (!command.points.empty()) fmt::print("points moved onto the mesh by {:.6g} at most\n", moved);
+    print(build);
+    fmt::print("{} segments, skeleton of {} nodes and {} arcs\n", segments.segments.size(), skeleton.nodes.size(),
+               skeleton.arcs.size());
+    if (judgement) print(*judgement);
+  }
+  finish(command, in_folder(command.folder, command.mesh, "-medial.json"), report, std::move(written));
+}
+
+}  // namespace
+
+MedialJudgement judge(const Surface& surface, const MedialBuild& build, const MedialMesh& mesh,
+                      const MedialBuildOptions& options, std::uint64_t seed, const Progress& progress) {
+  return {.quality = medial_quality(surface, mesh, {.seed = seed}, progress),
+          .stability = medial_stability(surface, build, options, {.seed = seed}, progress)};
+}
+
+void medial(const MedialCommand& command) {
+  if (!command.axis.empty() && (!command.points.empty() || !command.sweep.empty()))
+    throw InputError("--axis judges an axis as it is: it takes neither --points nor --sweep");
+  if (!command.points.empty() && !command.sweep.empty()) throw InputError("--points: not with --sweep");
+  ProgressBar bar(!command.output.quiet && !command.output.json);
+  const SolidMesh solid = load_solid(command.mesh, command.reading, bar.callback());
+  bar.clear();
+  if (!command.output.quiet && !command.output.json) print_solid(command.mesh, solid);
+  make_folder(command.folder);
+  if (!command.axis.empty()) {
+    judge_file(command, solid, bar.callback(), bar);
+  } else if (!command.sweep.empty()) {
+    sweep_medial(command, solid.surface, bar.callback());
+    bar.clear();
+  } else {
+    build_axis(command, solid, bar.callback(), bar);
+  }
+}
+
+}  // namespace orchard::apps

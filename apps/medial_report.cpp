@@ -1,0 +1,131 @@
+#include "medial_report.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+namespace orchard::apps {
+namespace {
+
+using nlohmann::json;
+
+json to_json(const Spread& spread) { return {{"max", spread.max}, {"mean", spread.mean}}; }
+
+json to_json(const RepairReport& repair) {
+  json passes = json::array();
+  for (const RepairPass& pass : repair.passes) {
+    passes.push_back({{"faces_tested", pass.faces_tested},
+                      {"faces_crossing", pass.faces_crossing},
+                      {"added_by_projection", pass.added_by_projection},
+                      {"added_by_snapping", pass.added_by_snapping},
+                      {"added_at_necks", pass.added_at_necks},
+                      {"refused_as_coincident", pass.refused_as_coincident}});
+  }
+  return {{"passes", passes},
+          {"points_added", repair.points_added},
+          {"faces_still_crossing", repair.faces_still_crossing},
+          {"faces_at_cuts", repair.faces_at_cuts}};
+}
+
+const char* verdict(const MedialQuality& quality) { return quality.found == quality.wanted ? "right" : "WRONG"; }
+
+void print_line(const char* name, const Spread& spread, double factor, const char* unit) {
+  fmt::print("  {:<22} {:>12.5f} {:>12.5f}  {}\n", name, factor * spread.max, factor * spread.mean, unit);
+}
+
+}  // namespace
+
+json to_json(const Topology& topology) {
+  return {{"components", topology.components},
+          {"loops", topology.loops},
+          {"cavities", topology.cavities},
+          {"euler_characteristic", topology.euler_characteristic()}};
+}
+
+json to_json(const MedialBuild& build) {
+  json seconds = json::object();
+  double whole = 0;
+  for (const auto& [stage, time] : build.seconds) {
+    seconds[stage] = time;
+    whole += time;
+  }
+  seconds["whole"] = whole;
+  const double points = std::max<double>(build.points, 1);
+  return {{"points", build.points},
+          {"points_added_over_points", build.repair.points_added / points},
+          {"gap_repair", to_json(build.repair)},
+          {"voronoi_vertices", build.voronoi_vertices},
+          {"vertices_before_pruning", build.unpruned_vertices},
+          {"vertices_left_out", build.axis.left_out},
+          {"vertices", build.axis.size()},
+          {"faces", build.axis.faces.size()},
+          {"walls", build.axis.walls.size()},
+          {"seconds", seconds}};
+}
+
+json to_json(const MedialJudgement& judgement) {
+  const MedialQuality& q = judgement.quality;
+  return {
+      {"diagonal", q.diagonal},
+      {"coverage_over_diagonal", to_json(q.coverage)},
+      {"protrusion_over_diagonal", to_json(q.protrusion)},
+      {"radius_error_over_diagonal", to_json(q.radius_error)},
+      {"centredness_over_radius", to_json(q.centredness)},
+      {"topology", to_json(q.found)},
+      {"topology_of_solid", to_json(q.wanted)},
+      {"topology_right", q.found == q.wanted},
+      {"outside", {{"vertices", q.outside_vertices}, {"edges", q.outside_edges}, {"triangles", q.outside_triangles}}},
+      {"stability", judgement.stability ? json(*judgement.stability) : json()},
+      {"economy", {{"spheres", q.economy.spheres}, {"uncovered", q.economy.uncovered}}}};
+}
+
+json to_json(const MedialSegments& segments, const SkeletonGraph& skeleton) {
+  json rows = json::array();
+  for (const MedialSegments::Segment& s : segments.segments) {
+    rows.push_back({{"sheet", s.sheet},
+                    {"trunk", s.trunk},
+                    {"cells", s.cells},
+                    {"least_radius", s.least_radius},
+                    {"most_radius", s.most_radius}});
+  }
+  return {{"segments", rows}, {"skeleton_nodes", skeleton.nodes.size()}, {"skeleton_arcs", skeleton.arcs.size()}};
+}
+
+void print(const MedialBuild& build) {
+  for (const auto& [stage, time] : build.seconds) fmt::print("  {:<18} {:>8.2f} s\n", stage, time);
+  const RepairReport& repair = build.repair;
+  if (!repair.passes.empty()) {
+    fmt::print("gap repair  pass  faces tested  crossing  projected  snapped  at necks  refused\n");
+    for (std::size_t i = 0; i < repair.passes.size(); ++i) {
+      const RepairPass& pass = repair.passes[i];
+      fmt::print("{:>16} {:>13} {:>9} {:>10} {:>8} {:>9} {:>8}\n", i + 1, pass.faces_tested, pass.faces_crossing,
+                 pass.added_by_projection, pass.added_by_snapping, pass.added_at_necks, pass.refused_as_coincident);
+    }
+  }
+  fmt::print("{} + {} points ({:.1f} % added), {} faces still crossing", build.points, repair.points_added,
+             100.0 * repair.points_added / std::max<double>(build.points, 1), repair.faces_still_crossing);
+  if (repair.faces_at_cuts > 0) fmt::print(", {} of them where the mesh cuts itself", repair.faces_at_cuts);
+  fmt::print("\n{} medial vertices", build.axis.size());
+  if (build.axis.size() != build.unpruned_vertices) fmt::print(" after pruning {}", build.unpruned_vertices);
+  if (build.axis.left_out > 0) fmt::print(", {} left out to keep the topology", build.axis.left_out);
+  fmt::print(", {} faces\n", build.axis.faces.size());
+}
+
+void print(const MedialJudgement& judgement) {
+  const MedialQuality& q = judgement.quality;
+  fmt::print("quality                           max         mean\n");
+  print_line("coverage error", q.coverage, 100, "% of the diagonal");
+  print_line("protrusion", q.protrusion, 100, "% of the diagonal");
+  print_line("radius error", q.radius_error, 100, "% of the diagonal");
+  print_line("centredness", q.centredness, 1, "of the radius");
+  fmt::print("  {:<22} {} {} {}, solid {} {} {}: {} (components, loops, cavities); Euler characteristic {}\n",
+             "topology", q.found.components, q.found.loops, q.found.cavities, q.wanted.components, q.wanted.loops,
+             q.wanted.cavities, verdict(q), q.found.euler_characteristic());
+  fmt::print("  {:<22} {:.5f} of vertices, {:.5f} of edges, {:.5f} of triangles\n", "outside", q.outside_vertices,
+             q.outside_edges, q.outside_triangles);
+  if (judgement.stability) fmt::print("  {:<22} {:.2f} times the noise\n", "stability", *judgement.stability);
+  fmt::print("  {:<22} {} spheres leave {:.3f} % of the surface farther than 1 % of the diagonal\n", "economy",
+             q.economy.spheres, 100 * q.economy.uncovered);
+}
+
+}  // namespace orchard::apps

@@ -1,0 +1,25 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+
+#include "commands.h"
+#include "medial_report.h"
+
+// The parts of `orchard medial`.
+namespace orchard::apps {
+
+// Points of a text file, three numbers a line, moved to the nearest place of the surface. Throws InputError, which
+// names file and line.
+struct OwnPoints {
+  SurfaceSampling sampling;
+  double farthest_moved = 0;  // mesh units
+};
+OwnPoints read_own_points(const std::filesystem::path& file, const Surface& surface);
+
+MedialJudgement judge(const Surface& surface, const MedialBuild& build, const MedialMesh& mesh,
+                      const MedialBuildOptions& options, std::uint64_t seed, const Progress& progress);
+
+// Every combination of the values of command.sweep, each judged: sweep.csv and a plot for each metric.
+void sweep_medial(const MedialCommand& command, const Surface& surface, const Progress& progress);
+
+}  // namespace orchard::apps

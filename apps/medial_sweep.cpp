@@ -1,0 +1,211 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "medial_run.h"
+#include "orchard/geometry/atomic_file.h"
+#include "orchard/geometry/error.h"
+#include "svg_plot.h"
+
+namespace orchard::apps {
+namespace {
+
+struct Dimension {
+  const TuningFlag* flag = nullptr;
+  std::vector<std::string> values;
+};
+
+std::vector<std::string> split(const std::string& text, char at) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  for (;;) {
+    const std::size_t end = text.find(at, begin);
+    parts.push_back(text.substr(begin, end - begin));
+    if (end == std::string::npos) return parts;
+    begin = end + 1;
+  }
+}
+
+Dimension parse(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) throw InputError("--sweep " + text + ": expected NAME=VALUE,VALUE,..");
+  std::string name = text.substr(0, equals);
+  if (name == "prune") name = "prune-angle";
+  const auto& flags = tuning_flags();
+  const auto flag = std::find_if(flags.begin(), flags.end(), [&](const TuningFlag& f) { return f.name == name; });
+  if (flag == flags.end()) {
+    std::string names;
+    for (const TuningFlag& f : flags) names += (names.empty() ? "" : ", ") + f.name;
+    throw InputError("--sweep: no flag is called " + name + "; there are " + names);
+  }
+  Dimension dimension{.flag = &*flag, .values = split(text.substr(equals + 1), ',')};
+  for (const std::string& value : dimension.values) {
+    if (const std::string fault = flag->fault(value); !fault.empty()) throw InputError(fault);
+  }
+  return dimension;
+}
+
+// What a run gave, by column.
+struct Metric {
+  const char* column;
+  const char* title;
+  double (*get)(const MedialBuild&, const MedialJudgement&);
+};
+
+double whole_seconds(const MedialBuild& build) {
+  double sum = 0;
+  for (const auto& [stage, time] : build.seconds) sum += time;
+  return sum;
+}
+
+using B = MedialBuild;
+using J = MedialJudgement;
+constexpr Metric kMetrics[] = {
+    {"points_added", "Points added by gap repair",
+     [](const B& b, const J&) { return double{1} * b.repair.points_added; }},
+    {"still_crossing", "Faces still crossing",
+     [](const B& b, const J&) { return double{1} * b.repair.faces_still_crossing; }},
+    {"vertices", "Medial vertices", [](const B& b, const J&) { return double{1} * b.axis.size(); }},
+    {"coverage_max", "Coverage error, max (% of the diagonal)",
+     [](const B&, const J& j) { return 100 * j.quality.coverage.max; }},
+    {"coverage_mean", "Coverage error, mean (% of the diagonal)",
+     [](const B&, const J& j) { return 100 * j.quality.coverage.mean; }},
+    {"protrusion_max", "Protrusion, max (% of the diagonal)",
+     [](const B&, const J& j) { return 100 * j.quality.protrusion.max; }},
+    {"protrusion_mean", "Protrusion, mean (% of the diagonal)",
+     [](const B&, const J& j) { return 100 * j.quality.protrusion.mean; }},
+    {"radius_error_max", "Radius error, max (% of the diagonal)",
+     [](const B&, const J& j) { return 100 * j.quality.radius_error.max; }},
+    {"radius_error_mean", "Radius error, mean (% of the diagonal)",
+     [](const B&, const J& j) { return 100 * j.quality.radius_error.mean; }},
+    {"centredness_max", "Centredness, max (of the radius)",
+     [](const B&, const J& j) { return j.quality.centredness.max; }},
+    {"centredness_mean", "Centredness, mean (of the radius)",
+     [](const B&, const J& j) { return j.quality.centredness.mean; }},
+    {"components", "Components", [](const B&, const J& j) { return double(j.quality.found.components); }},
+    {"loops", "Loops", [](const B&, const J& j) { return double(j.quality.found.loops); }},
+    {"cavities", "Cavities", [](const B&, const J& j) { return double(j.quality.found.cavities); }},
+    {"euler_characteristic", "Euler characteristic",
+     [](const B&, const J& j) { return double(j.quality.found.euler_characteristic()); }},
+    {"topology_right", "Topology right (1) or wrong (0)",
+     [](const B&, const J& j) { return j.quality.found == j.quality.wanted ? 1.0 : 0.0; }},
+    {"outside_vertices", "Vertices outside (fraction)",
+     [](const B&, const J& j) { return j.quality.outside_vertices; }},
+    {"outside_edges", "Edge samples outside (fraction)", [](const B&, const J& j) { return j.quality.outside_edges; }},
+    {"outside_triangles", "Face samples outside (fraction)",
+     [](const B&, const J& j) { return j.quality.outside_triangles; }},
+    {"stability", "Stability (times the noise)",
+     [](const B&, const J& j) { return j.stability.value_or(std::nan("")); }},
+    {"economy_spheres", "Economy (spheres for 1 %)",
+     [](const B&, const J& j) { return double{1} * j.quality.economy.spheres; }},
+    {"economy_uncovered", "Economy: surface not reached (fraction)",
+     [](const B&, const J& j) { return j.quality.economy.uncovered; }},
+    {"seconds", "Seconds to build", [](const B& b, const J&) { return whole_seconds(b); }},
+};
+
+struct Run {
+  std::vector<std::size_t> choice;  // of each dimension's values
+  std::vector<double> metrics;
+};
+
+std::string csv_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
+
+std::string to_csv(const std::vector<Dimension>& dimensions, const std::vector<Run>& runs) {
+  std::string text;
+  for (const Dimension& dimension : dimensions) text += dimension.flag->name + ',';
+  for (const Metric& metric : kMetrics)
+    text += metric.column + std::string(&metric == std::end(kMetrics) - 1 ? "\n" : ",");
+  for (const Run& run : runs) {
+    for (std::size_t d = 0; d < dimensions.size(); ++d) text += dimensions[d].values[run.choice[d]] + ',';
+    for (std::size_t m = 0; m < run.metrics.size(); ++m) {
+      text += csv_number(run.metrics[m]) + (m + 1 == run.metrics.size() ? "\n" : ",");
+    }
+  }
+  return text;
+}
+
+// The first dimension runs along x; each combination of the others is a line.
+Plot plot_of(std::size_t metric, const std::string& model, const std::vector<Dimension>& dimensions,
+             const std::vector<Run>& runs) {
+  Plot plot{.title = model + ": " + kMetrics[metric].title,
+            .x_label = dimensions[0].flag->name,
+            .y_label = kMetrics[metric].title,
+            .series = {},
+            .x_names = {},
+            .log_x = dimensions[0].flag->name == "samples" || dimensions[0].flag->name == "coalesce"};
+  const bool names = !dimensions[0].flag->choices.empty();
+  if (names) plot.x_names = dimensions[0].values;
+  std::map<std::string, std::size_t> series_of;
+  for (const Run& run : runs) {
+    std::string name;
+    for (std::size_t d = 1; d < dimensions.size(); ++d) {
+      name += (d > 1 ? ", " : "") + dimensions[d].flag->name + ' ' + dimensions[d].values[run.choice[d]];
+    }
+    const auto [found, added] = series_of.try_emplace(name, plot.series.size());
+    if (added) plot.series.push_back({name, {}});
+    const double x = names ? static_cast<double>(run.choice[0]) : std::stod(dimensions[0].values[run.choice[0]]);
+    plot.series[found->second].points.emplace_back(x, run.metrics[metric]);
+  }
+  for (PlotSeries& series : plot.series) std::sort(series.points.begin(), series.points.end());
+  return plot;
+}
+
+// Counts through all combinations, the last dimension fastest; false after the last one.
+bool next(std::vector<std::size_t>& choice, const std::vector<Dimension>& dimensions) {
+  for (std::size_t d = choice.size(); d-- > 0;) {
+    if (++choice[d] < dimensions[d].values.size()) return true;
+    choice[d] = 0;
+  }
+  return false;
+}
+
+}  // namespace
+
+void sweep_medial(const MedialCommand& command, const Surface& surface, const Progress& progress) {
+  std::vector<Dimension> dimensions;
+  for (const std::string& text : command.sweep) dimensions.push_back(parse(text));
+  std::vector<Run> runs;
+  std::vector<std::size_t> choice(dimensions.size(), 0);
+  do {
+    MedialTuning tuning = command.tuning;
+    for (std::size_t d = 0; d < dimensions.size(); ++d)
+      dimensions[d].flag->set(tuning, dimensions[d].values[choice[d]]);
+    const MedialBuildOptions options = build_options(tuning);
+    const MedialBuild build = build_medial_axis(surface, options, progress);
+    const MedialJudgement judgement =
+        judge(surface, build, medial_mesh(build.axis), options, options.sampling.seed, progress);
+    Run& run = runs.emplace_back();
+    run.choice = choice;
+    for (const Metric& metric : kMetrics) run.metrics.push_back(metric.get(build, judgement));
+  } while (next(choice, dimensions));
+
+  const std::string csv = to_csv(dimensions, runs);
+  write_file(command.folder / "sweep.csv", csv);
+  const std::string model = command.mesh.stem().string();
+  for (std::size_t m = 0; m < std::size(kMetrics); ++m) {
+    write_file(command.folder / fmt::format("sweep-{}.svg", kMetrics[m].column),
+               to_svg(plot_of(m, model, dimensions, runs)));
+  }
+  if (command.output.quiet) return;
+  if (command.output.json) {
+    nlohmann::json rows = nlohmann::json::array();
+    for (const Run& run : runs) {
+      nlohmann::json row;
+      for (std::size_t d = 0; d < dimensions.size(); ++d)
+        row[dimensions[d].flag->name] = dimensions[d].values[run.choice[d]];
+      for (std::size_t m = 0; m < run.metrics.size(); ++m) {
+        row[kMetrics[m].column] = std::isfinite(run.metrics[m]) ? nlohmann::json(run.metrics[m]) : nlohmann::json();
+      }
+      rows.push_back(std::move(row));
+    }
+    fmt::print("{}\n", nlohmann::json{{"runs", rows}}.dump(2));
+    return;
+  }
+  fmt::print("{}  {}  ({} runs, and a plot for each metric beside it)\n", csv, (command.folder / "sweep.csv").string(),
+             runs.size());
+}
+
+}  // namespace orchard::apps

@@ -1,0 +1,138 @@
+#include "medial_tuning.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+#include "orchard/geometry/error.h"
+
+namespace orchard::apps {
+namespace {
+
+constexpr double kRadians = std::numbers::pi / 180;
+
+std::optional<double> number(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+template <class Set>
+TuningFlag real(const char* name, const char* standard, double low, double high, const char* help, Set set) {
+  return {name, help, standard, {},
+          low,  high, false,    [set](MedialTuning& tuning, const std::string& text) {
+            set(tuning, *number(text)); }};
+}
+
+template <class Set>
+TuningFlag whole(const char* name, const char* standard, double low, double high, const char* help, Set set) {
+  TuningFlag flag = real(name, standard, low, high, help, set);
+  flag.whole = true;
+  return flag;
+}
+
+TuningFlag choice(const char* name, std::vector<std::string> choices, const char* help,
+                  std::function<void(MedialTuning&, const std::string&)> set) {
+  return {name, help, choices.front(), choices, 0, 0, false, std::move(set)};
+}
+
+void set_relaxation(MedialTuning& tuning, const std::string& text) {
+  tuning.options.sampling.relaxation = text == "clusters"    ? Relaxation::clusters
+                                       : text == "neighbors" ? Relaxation::neighbors
+                                                             : Relaxation::automatic;
+}
+
+void set_gaps(MedialTuning& tuning, const std::string& text) {
+  tuning.options.mend_gaps = text != "none";
+  tuning.options.repair.definition = text == "loose"    ? GapDefinition::loose
+                                     : text == "strict" ? GapDefinition::strict
+                                                        : GapDefinition::connected;
+}
+
+std::vector<TuningFlag> make_flags() {
+  using T = MedialTuning;
+  std::vector<TuningFlag> flags;
+  flags.push_back(whole("samples", "5000", 20, 1e7, "Surface points: more follow the shape better, and take longer",
+                        [](T& t, double x) { t.samples = static_cast<Index>(x); }));
+  flags.push_back(whole("edge-samples", "a fifth", 0, 1e7,
+                        "Of them along edges: more make sheets reach sharp edges, fewer resolve the faces better",
+                        [](T& t, double x) { t.edge_samples = static_cast<Index>(x); }));
+  flags.push_back(choice("relaxation", {"automatic", "clusters", "neighbors"},
+                         "Points keep apart within flat clusters (designed parts) or across faces (scans)",
+                         set_relaxation));
+  flags.push_back(whole("iterations", "40", 0, 1000, "Of relaxation: more even points give smoother sheets",
+                        [](T& t, double x) { t.options.sampling.iterations = static_cast<int>(x); }));
+  flags.push_back(real("cluster-angle", "0.0057", 0, 90,
+                       "Degrees that a cluster may turn: more treats curved parts as one face without edges",
+                       [](T& t, double x) { t.cluster_degrees = x; }));
+  flags.push_back(real("crease-angle", "28.6", 0, 180, "Degrees from which a scan has an edge that gets edge points",
+                       [](T& t, double x) { t.options.sampling.crease_angle = x * kRadians; }));
+  flags.push_back(whole("seed", "1", 0, 4294967295.0, "Of the random points: another draw of the same density",
+                        [](T& t, double x) { t.options.sampling.seed = static_cast<std::uint64_t>(x); }));
+  flags.push_back(choice(
+      "gaps", {"connected", "loose", "strict", "none"},
+      "What counts as a gap to mend: loose misses some, strict adds most points, none breaks thin parts", set_gaps));
+  flags.push_back(real("joined-radius", "0", 0, 1000,
+                       "Crossings joined within so many point distances are forgiven: fewer points, no guarantee",
+                       [](T& t, double x) { t.options.repair.joined_radius = x; }));
+  flags.push_back(whole("max-passes", "20", 0, 1000, "Of gap repair at most: fewer leave gaps that need more",
+                        [](T& t, double x) { t.options.repair.max_passes = static_cast<int>(x); }));
+  flags.push_back(real("coalesce", "1e-7", 1e-12, 0.01,
+                       "Vertices nearer than this, in bounding radii, become one: more loses detail and may lose loops",
+                       [](T& t, double x) { t.options.axis.coalesce = x; }));
+  flags.push_back(
+      real("prune-angle", "0", 0, 180,
+           "Degrees: cuts spurs whose two contacts are nearer in angle; more loses sheets into shallow edges",
+           [](T& t, double x) { t.prune_degrees = x; }));
+  flags.push_back(real("prune-scale", "1", 1, 10,
+                       "Cuts balls that others hold when all are so many times larger; more loses small features",
+                       [](T& t, double x) { t.options.prune.scale = x; }));
+  flags.push_back(real("segment-angle", "60", 0, 180,
+                       "Degrees: faces with nearer contacts do not divide sheets; more makes fewer segments",
+                       [](T& t, double x) { t.segment_degrees = x; }));
+  flags.push_back(choice("topology", {"keep", "free"},
+                         "Whether vertices may be left out where gaps that cannot be mended spoil the topology",
+                         [](T& t, const std::string& text) { t.keep_topology = text == "keep"; }));
+  return flags;
+}
+
+}  // namespace
+
+MedialBuildOptions build_options(const MedialTuning& tuning) {
+  MedialBuildOptions options = tuning.options;
+  const Index edges = tuning.edge_samples.value_or(tuning.samples / 5);
+  if (edges > tuning.samples) throw InputError("--edge-samples: more than --samples");
+  options.sampling.edge_points = edges;
+  options.sampling.face_points = tuning.samples - edges;
+  if (tuning.cluster_degrees) options.sampling.cluster_angle = *tuning.cluster_degrees * kRadians;
+  options.prune.angle = std::min(tuning.prune_degrees * kRadians, std::numbers::pi);
+  options.axis.keep_topology = tuning.keep_topology;
+  return options;
+}
+
+std::string TuningFlag::range() const {
+  return choices.empty() ? fmt::format("{} to {}", low, high) : fmt::format("{}", fmt::join(choices, ", "));
+}
+
+std::string TuningFlag::fault(const std::string& value) const {
+  bool good = false;
+  if (choices.empty()) {
+    const std::optional<double> x = number(value);
+    good = x && *x >= low && *x <= high && (!whole || *x == std::floor(*x));
+  } else {
+    good = std::find(choices.begin(), choices.end(), value) != choices.end();
+  }
+  if (good) return {};
+  return fmt::format("--{}: {} is not {}{}", name, value, whole ? "a whole number of " : "one of ", range());
+}
+
+const std::vector<TuningFlag>& tuning_flags() {
+  static const std::vector<TuningFlag> flags = make_flags();
+  return flags;
+}
+
+}  // namespace orchard::apps

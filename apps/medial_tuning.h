@@ -1,0 +1,40 @@
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "orchard/medial/build.h"
+
+namespace orchard::apps {
+
+// What a user can tune on the way to a medial axis, in the units of the command line.
+struct MedialTuning {
+  Index samples = 5000;
+  std::optional<Index> edge_samples;  // a fifth unless it is given
+  std::optional<double> cluster_degrees;
+  double prune_degrees = 0, segment_degrees = 60;
+  bool keep_topology = true;
+  MedialBuildOptions options;  // the rest of it
+};
+
+// Everything in one value. Throws InputError if edge samples exceed samples.
+MedialBuildOptions build_options(const MedialTuning& tuning);
+
+// One flag: --name on the command line, name=a,b,c in a sweep.
+struct TuningFlag {
+  std::string name, help;  // help: what it trades
+  std::string standard;    // its value unless it is given
+  std::vector<std::string> choices;
+  double low = 0, high = 0;  // where there are no choices
+  bool whole = false;        // whole numbers only
+  std::function<void(MedialTuning&, const std::string&)> set;
+
+  // Why a value cannot be; empty if it can.
+  std::string fault(const std::string& value) const;
+  std::string range() const;
+};
+
+const std::vector<TuningFlag>& tuning_flags();
+
+}  // namespace orchard::apps

@@ -1,0 +1,85 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <span>
+#include <vector>
+
+#include "orchard/geometry/mesh.h"
+
+namespace orchard::detail {
+
+// A bounding volume hierarchy over families of balls: of item i, the centres lie in boxes[i] and no radius is above
+// radii[i]. So no ball of it comes nearer to a point than the point's distance to the box less the radius.
+class BallTree {
+ public:
+  BallTree(std::vector<Box> boxes, std::vector<double> radii);
+
+  // The least of `best` and value(item) over all items. Precondition: value(item) is at least distance(query, box) less
+  // scale * radius. Items that cannot be the least are not asked. One thread's worth of work; any thread.
+  template <class Value>
+  double least(const Point& query, double best, const Value& value, double scale = 1) const {
+    if (items_.empty()) return best;
+    std::array<std::pair<double, Index>, kDepth> stack;
+    std::size_t size = 0;
+    stack[size++] = {bound(nodes_[0], query, scale), 0};
+    while (size > 0) {
+      const auto [lower, at] = stack[--size];
+      if (!(lower < best)) continue;
+      const Node& node = nodes_[at];
+      if (node.count > 0) {
+        for (Index i = node.first; i < node.first + node.count; ++i) {
+          if (distance(boxes_[i], query) - scale * radii_[i] < best) best = std::min(best, value(items_[i]));
+        }
+        continue;
+      }
+      std::array<std::pair<double, Index>, 2> children{
+          std::pair{bound(nodes_[node.first], query, scale), node.first},
+          std::pair{bound(nodes_[node.first + 1], query, scale), node.first + 1}};
+      if (children[0].first < children[1].first) std::swap(children[0], children[1]);
+      for (const auto& child : children) stack[size++] = child;  // the nearer one is popped first
+    }
+    return best;
+  }
+
+  // Calls visit(item) for every item whose distance to the box less the radius is at most `limit`.
+  template <class Visit>
+  void visit(const Point& query, double limit, const Visit& visit_item) const {
+    if (items_.empty()) return;
+    std::array<Index, kDepth> stack;
+    std::size_t size = 0;
+    stack[size++] = 0;
+    while (size > 0) {
+      const Node& node = nodes_[stack[--size]];
+      if (bound(node, query, 1) > limit) continue;
+      if (node.count == 0) {
+        stack[size++] = node.first;
+        stack[size++] = node.first + 1;
+        continue;
+      }
+      for (Index i = node.first; i < node.first + node.count; ++i) {
+        if (distance(boxes_[i], query) - radii_[i] <= limit) visit_item(items_[i]);
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t kDepth = 128;  // twice the depth of a tree split in the middle, and more
+  struct Node {
+    Box box;
+    double radius = 0;
+    Index first = 0, count = 0;  // of a leaf: items; of an inner node (count 0): its two children
+  };
+
+  static double distance(const Box& box, const Point& query) { return box.exteriorDistance(query); }
+  static double bound(const Node& node, const Point& query, double scale) {
+    return distance(node.box, query) - scale * node.radius;
+  }
+  void build(Index node, Index first, Index count);
+
+  std::vector<Box> boxes_;
+  std::vector<double> radii_;
+  std::vector<Index> items_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace orchard::detail

@@ -1,0 +1,208 @@
+#include "orchard/medial/prune.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <queue>
+#include <utility>
+
+#include "axis_complex.h"
+#include "orchard/geometry/error.h"
+#include "scale_axis.h"
+
+namespace orchard {
+namespace {
+
+double angle_between(const Vector& a, const Vector& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+
+class Pruner {
+ public:
+  Pruner(const MedialAxis& axis, const PruneOptions& options)
+      : axis_(axis),
+        options_(options),
+        complex_(axis),
+        covered_(detail::covered_when_scaled(axis.centers, axis.radii, options.scale)),
+        vertex_alive_(axis.size(), 1),
+        edge_alive_(complex_.edges().size(), 1),
+        face_alive_(complex_.face_count(), 1) {}
+
+  MedialAxis run() {
+    for (Index face = 0; face < complex_.face_count(); ++face) offer_face(face);
+    for (Index edge = 0; edge < edge_alive_.size(); ++edge) offer_edge(edge);
+    while (!queue_.empty()) {
+      const Cell cell = queue_.top().second;
+      queue_.pop();
+      if (cell.is_face) {
+        collapse_face(cell.index);
+      } else {
+        collapse_edge(cell.index);
+      }
+    }
+    return what_is_left();
+  }
+
+ private:
+  struct Cell {
+    bool is_face;
+    Index index;
+    bool operator<(const Cell& other) const {
+      return is_face != other.is_face ? is_face < other.is_face : index > other.index;
+    }
+  };
+
+  static Index only(std::span<const Index> row, const std::vector<std::uint8_t>& alive) {
+    Index found = kNone;
+    for (const Index cell : row) {
+      if (!alive[cell]) continue;
+      if (found != kNone) return kNone;
+      found = cell;
+    }
+    return found;
+  }
+  Index free_side(Index face) const {
+    for (const Index edge : complex_.sides(face)) {
+      if (edge_alive_[edge] && only(complex_.faces_at(edge), face_alive_) == face) return edge;
+    }
+    return kNone;
+  }
+  Index free_end(Index edge) const {
+    for (const Index face : complex_.faces_at(edge)) {
+      if (face_alive_[face]) return kNone;
+    }
+    for (const Index vertex : complex_.edges()[edge]) {
+      if (only(complex_.edges_at(vertex), edge_alive_) == edge) return vertex;
+    }
+    return kNone;
+  }
+
+  void offer_face(Index face) {
+    if (!face_alive_[face] || free_side(face) == kNone) return;
+    const double angle = separation_angle(axis_, complex_.corners(face), complex_.points(face));
+    const auto corners = complex_.corners(face);
+    const bool covered = std::any_of(corners.begin(), corners.end(), [&](Index v) { return covered_[v] != 0; });
+    if (angle < options_.angle || covered) queue_.emplace(-angle, Cell{true, face});
+  }
+  void offer_edge(Index edge) {
+    if (!edge_alive_[edge]) return;
+    const Index end = free_end(edge);
+    if (end == kNone) return;
+    const double angle = edge_angle(edge);
+    if (angle < options_.angle || covered_[end]) queue_.emplace(-angle, Cell{false, edge});
+  }
+  // The widest angle at which two of the points that form the edge are seen from its middle.
+  double edge_angle(Index edge) const {
+    const auto [a, b] = complex_.edges()[edge];
+    std::vector<Index> common;
+    const auto at_a = axis_.forming_points[a], at_b = axis_.forming_points[b];
+    std::set_intersection(at_a.begin(), at_a.end(), at_b.begin(), at_b.end(), std::back_inserter(common));
+    const Point middle = 0.5 * (axis_.centers[a] + axis_.centers[b]);
+    double widest = 0;
+    for (std::size_t i = 0; i < common.size(); ++i) {
+      for (std::size_t k = 0; k < i; ++k) {
+        widest = std::max(widest, angle_between(axis_.points[common[i]] - middle, axis_.points[common[k]] - middle));
+      }
+    }
+    return widest;
+  }
+
+  void collapse_face(Index face) {
+    const Index side = face_alive_[face] ? free_side(face) : kNone;
+    if (side == kNone) return;
+    face_alive_[face] = edge_alive_[side] = 0;
+    for (const Index edge : complex_.sides(face)) {
+      for (const Index other : complex_.faces_at(edge)) offer_face(other);
+    }
+    for (const Index corner : complex_.corners(face)) offer_edges_at(corner);
+  }
+  void collapse_edge(Index edge) {
+    const Index end = edge_alive_[edge] ? free_end(edge) : kNone;
+    if (end == kNone) return;
+    edge_alive_[edge] = vertex_alive_[end] = 0;
+    for (const Index vertex : complex_.edges()[edge]) offer_edges_at(vertex);
+  }
+  void offer_edges_at(Index vertex) {
+    for (const Index edge : complex_.edges_at(vertex)) offer_edge(edge);
+  }
+
+  MedialAxis what_is_left() const {
+    MedialAxis result;
+    result.points = axis_.points;
+    result.normals = axis_.normals;
+    result.origins = axis_.origins;
+    result.left_out = axis_.left_out;
+    std::vector<Index> renumbered(axis_.size(), kNone);
+    for (Index i = 0; i < axis_.size(); ++i) {
+      if (!vertex_alive_[i]) continue;
+      renumbered[i] = result.size();
+      result.centers.push_back(axis_.centers[i]);
+      result.radii.push_back(axis_.radii[i]);
+    }
+    for (Index i = 0; i < axis_.size(); ++i) {
+      if (!vertex_alive_[i]) continue;
+      append(result.forming_points, axis_.forming_points[i]);
+      for (const Index edge : complex_.edges_at(i)) {
+        const auto [a, b] = complex_.edges()[edge];
+        if (edge_alive_[edge]) result.neighbors.items.push_back(renumbered[a == i ? b : a]);
+      }
+      std::sort(result.neighbors.items.begin() + result.neighbors.offsets.back(), result.neighbors.items.end());
+      result.neighbors.close_row();
+    }
+    for (Index face = 0; face < complex_.face_count(); ++face) {
+      if (!face_alive_[face]) continue;
+      const bool wall = face >= axis_.faces.size();
+      Rows& rows = wall ? result.walls : result.faces;
+      for (const Index corner : complex_.corners(face)) rows.items.push_back(renumbered[corner]);
+      rows.close_row();
+      (wall ? result.wall_points : result.face_points).push_back(complex_.points(face));
+    }
+    return result;
+  }
+  static void append(Rows& rows, std::span<const Index> row) {
+    rows.items.insert(rows.items.end(), row.begin(), row.end());
+    rows.close_row();
+  }
+
+  const MedialAxis& axis_;
+  const PruneOptions& options_;
+  detail::AxisComplex complex_;
+  std::vector<std::uint8_t> covered_;
+  std::vector<std::uint8_t> vertex_alive_, edge_alive_, face_alive_;
+  std::priority_queue<std::pair<double, Cell>> queue_;
+};
+
+}  // namespace
+
+double separation_angle(const MedialAxis& axis, std::span<const Index> face, const std::array<Index, 2>& points) {
+  Point middle = Point::Zero();
+  for (const Index vertex : face) middle += axis.centers[vertex];
+  middle /= static_cast<double>(face.size());
+  return angle_between(axis.points[points[0]] - middle, axis.points[points[1]] - middle);
+}
+
+std::vector<double> contact_angles(const MedialAxis& axis) {
+  constexpr std::size_t kEnough = 64;  // of the forming points of a coalesced centre
+  std::vector<double> angles(axis.size(), 0);
+  tbb::parallel_for(Index{0}, axis.size(), [&](Index i) {
+    const auto forming = axis.forming_points[i];
+    const std::size_t count = std::min(forming.size(), kEnough);
+    for (std::size_t a = 0; a < count; ++a) {
+      for (std::size_t b = 0; b < a; ++b) {
+        angles[i] = std::max(angles[i], angle_between(axis.points[forming[a]] - axis.centers[i],
+                                                      axis.points[forming[b]] - axis.centers[i]));
+      }
+    }
+  });
+  return angles;
+}
+
+MedialAxis prune(const MedialAxis& axis, const PruneOptions& options) {
+  if (!(options.angle >= 0 && options.angle <= std::numbers::pi)) throw InputError("prune angle: between 0 and pi");
+  if (!(options.scale >= 1 && std::isfinite(options.scale))) throw InputError("prune scale: at least 1");
+  if (options.angle == 0 && options.scale == 1) return axis;
+  return Pruner(axis, options).run();
+}
+
+}  // namespace orchard

@@ -1,0 +1,92 @@
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "orchard/geometry/random.h"
+#include "orchard/medial/quality.h"
+
+namespace orchard {
+namespace {
+
+constexpr std::uint64_t kNoiseStage = 0x6e6f69;
+constexpr double kHysteresis = 0.1745;  // radians, 10 degrees: a part at the threshold does not count as lost
+
+// Each vertex moved to a random place in a ball around it.
+TriangleMesh with_noise(TriangleMesh mesh, double most, std::uint64_t seed) {
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    Random random(seed, kNoiseStage, i);
+    Vector step;
+    do {
+      step = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+    } while (step.squaredNorm() > 1);
+    mesh.vertices[i] += most * step;
+  }
+  return mesh;
+}
+
+// The points of the build, without those that gap repair added, where the moved mesh has them.
+SurfaceSampling carried_along(const MedialBuild& build, const Surface& from, const Surface& to) {
+  SurfaceSampling sampling = build.sampling;
+  sampling.points.resize(build.points);
+  sampling.triangles.resize(build.points);
+  sampling.features.resize(build.points);
+  sampling.origins.resize(build.points);
+  for (Index i = 0; i < build.points; ++i) {
+    const auto [a, b, c] = from.corners(sampling.triangles[i]);
+    const auto [p, q, r] = to.corners(sampling.triangles[i]);
+    const Vector u = b - a, v = c - a, normal = u.cross(v), place = sampling.points[i] - a;
+    const double beta = v.cross(normal).dot(place) / normal.squaredNorm();
+    const double gamma = normal.cross(u).dot(place) / normal.squaredNorm();
+    sampling.points[i] = p + beta * (q - p) + gamma * (r - p);
+  }
+  return sampling;
+}
+
+struct Part {
+  std::vector<Point> points;  // vertices with a wide enough angle
+  TriangleMesh sheets;        // triangles of such faces, and a flat one for each vertex; the angle a little smaller
+};
+
+Part wide_part(const MedialAxis& axis, double angle) {
+  Part part;
+  const std::vector<double> angles = contact_angles(axis);
+  part.sheets.vertices = axis.centers;
+  for (Index i = 0; i < axis.size(); ++i) {
+    if (angles[i] > angle) part.points.push_back(axis.centers[i]);
+    if (angles[i] > angle - 2 * kHysteresis) part.sheets.triangles.push_back({i, i, i});
+  }
+  for (Index face = 0; face < axis.faces.size(); ++face) {
+    const auto corners = axis.faces[face];
+    const auto wide = [&](Index corner) { return angles[corner] > angle - 2 * kHysteresis; };
+    if (!std::all_of(corners.begin(), corners.end(), wide)) continue;
+    for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
+      part.sheets.triangles.push_back({corners[0], corners[k], corners[k + 1]});
+    }
+  }
+  return part;
+}
+
+double farthest(const std::vector<Point>& points, const TriangleMesh& sheets) {
+  const Surface surface(sheets);
+  std::vector<double> distances(points.size());
+  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) { distances[i] = surface.distance(points[i]); });
+  return distances.empty() ? 0 : *std::max_element(distances.begin(), distances.end());
+}
+
+}  // namespace
+
+std::optional<double> medial_stability(const Surface& surface, const MedialBuild& build,
+                                       const MedialBuildOptions& options, const StabilityOptions& stability,
+                                       const Progress& progress) {
+  const double noise = stability.noise * surface.bounding_box().diagonal().norm();
+  const Surface moved(with_noise(surface.mesh(), noise, stability.seed));
+  if (!moved.solid()) return std::nullopt;
+  const MedialBuild other = build_medial_axis(moved, options, progress, carried_along(build, surface, moved));
+  const Part a = wide_part(build.axis, 2 * stability.object_angle);
+  const Part b = wide_part(other.axis, 2 * stability.object_angle);
+  if (a.points.empty() || b.points.empty()) return std::nullopt;
+  return std::max(farthest(a.points, b.sheets), farthest(b.points, a.sheets)) / noise;
+}
+
+}  // namespace orchard

@@ -1,0 +1,33 @@
+#pragma once
+#include <vector>
+
+#include "ball_tree.h"
+#include "orchard/medial/medial_mesh.h"
+
+namespace orchard::detail {
+
+// The solid that a medial mesh stands for: the union of all balls whose centre and radius are interpolated on its
+// vertices, edges (cones) and triangles (slabs).
+class Reconstruction {
+ public:
+  explicit Reconstruction(const MedialMesh& mesh);
+
+  // The least |query - centre| - radius over all those balls: the distance to the union outside, and minus the depth in
+  // the deepest single ball inside, which is at most the depth in the union. 1-Lipschitz.
+  double distance(const Point& query) const;
+  // The ball of which that is the distance; ties go to the first found.
+  double distance(const Point& query, Sphere& ball) const;
+
+ private:
+  double evaluate(Index item, const Point& query, double best, Sphere& ball) const;
+
+  const MedialMesh* mesh_;
+  std::vector<Index> triangles_, edges_, vertices_;  // those that no larger cell holds; items in this order
+  BallTree tree_;
+};
+
+// The ball of a cell that comes nearest to `query`, for cells of one, two or three vertices.
+Sphere nearest_ball(const Point& query, const Sphere& a, const Sphere& b);
+Sphere nearest_ball(const Point& query, const Sphere& a, const Sphere& b, const Sphere& c);
+
+}  // namespace orchard::detail

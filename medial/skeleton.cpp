@@ -1,0 +1,126 @@
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+#include "axis_complex.h"
+#include "orchard/medial/segments.h"
+
+namespace orchard {
+namespace {
+
+using Kind = SkeletonGraph::Kind;
+
+class Tracer {
+ public:
+  explicit Tracer(const MedialAxis& axis) : axis_(axis), complex_(axis) {
+    lines_.resize(axis.size());
+    for (Index edge = 0; edge < complex_.edges().size(); ++edge) {
+      if (complex_.faces_at(edge).size() == 2) continue;
+      for (const Index vertex : complex_.edges()[edge]) lines_[vertex].push_back(edge);
+    }
+    traced_.assign(complex_.edges().size(), 0);
+  }
+
+  SkeletonGraph run() {
+    for (Index vertex = 0; vertex < axis_.size(); ++vertex) {
+      if (is_node(vertex)) trace_from(vertex);
+    }
+    for (Index vertex = 0; vertex < axis_.size(); ++vertex) trace_from(vertex);  // closed lines
+    std::sort(graph_.nodes.begin(), graph_.nodes.end());
+    graph_.nodes.erase(std::unique(graph_.nodes.begin(), graph_.nodes.end()), graph_.nodes.end());
+    for (SkeletonGraph::Arc& arc : graph_.arcs) {
+      arc.from = number(arc.vertices.front());
+      arc.to = number(arc.vertices.back());
+    }
+    return std::move(graph_);
+  }
+
+ private:
+  Kind kind(Index edge) const {
+    const std::size_t faces = complex_.faces_at(edge).size();
+    return faces == 0 ? Kind::curve : faces == 1 ? Kind::border : Kind::junction;
+  }
+  bool is_node(Index vertex) const {
+    const auto& lines = lines_[vertex];
+    return !lines.empty() && (lines.size() != 2 || kind(lines[0]) != kind(lines[1]));
+  }
+  Index number(Index vertex) const {
+    return static_cast<Index>(std::lower_bound(graph_.nodes.begin(), graph_.nodes.end(), vertex) -
+                              graph_.nodes.begin());
+  }
+
+  void trace_from(Index start) {
+    for (const Index first : lines_[start]) {
+      if (traced_[first]) continue;
+      SkeletonGraph::Arc arc;
+      arc.kind = kind(first);
+      arc.vertices.push_back(start);
+      Index edge = first, vertex = start;
+      for (;;) {
+        traced_[edge] = 1;
+        const auto [a, b] = complex_.edges()[edge];
+        arc.length += (axis_.centers[a] - axis_.centers[b]).norm();
+        vertex = vertex == a ? b : a;
+        arc.vertices.push_back(vertex);
+        if (vertex == start || is_node(vertex)) break;
+        edge = lines_[vertex][0] == edge ? lines_[vertex][1] : lines_[vertex][0];
+      }
+      for (const Index v : arc.vertices) arc.mean_radius += axis_.radii[v] / static_cast<double>(arc.vertices.size());
+      graph_.nodes.push_back(start);
+      graph_.nodes.push_back(vertex);
+      graph_.arcs.push_back(std::move(arc));
+    }
+  }
+
+  const MedialAxis& axis_;
+  detail::AxisComplex complex_;
+  std::vector<std::vector<Index>> lines_;  // edges that are not within a sheet, of each vertex
+  std::vector<std::uint8_t> traced_;
+  SkeletonGraph graph_;
+};
+
+std::string shortest(double value) {
+  char digits[32];
+  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
+}
+
+void add_data(std::string& text, const char* key, const std::string& value) {
+  text += "<data key=\"" + std::string(key) + "\">" + value + "</data>";
+}
+
+}  // namespace
+
+SkeletonGraph skeleton_graph(const MedialAxis& axis) { return Tracer(axis).run(); }
+
+std::string to_graphml(const SkeletonGraph& graph, const MedialAxis& axis) {
+  std::string text =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<graphml xmlns=\"http://graphml.graphdrawing.org/xmlns\">\n";
+  const auto declare = [&](const char* key, const char* of, const char* type) {
+    text += "  <key id=\"" + std::string(key) + "\" for=\"" + of + "\" attr.name=\"" + key + "\" attr.type=\"" + type +
+            "\"/>\n";
+  };
+  for (const char* key : {"x", "y", "z", "radius"}) declare(key, "node", "double");
+  for (const char* key : {"length", "mean_radius"}) declare(key, "edge", "double");
+  declare("kind", "edge", "string");
+  text += "  <graph id=\"skeleton\" edgedefault=\"undirected\">\n";
+  for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
+    const Index vertex = graph.nodes[i];
+    text += "    <node id=\"n" + std::to_string(i) + "\">";
+    add_data(text, "x", shortest(axis.centers[vertex].x()));
+    add_data(text, "y", shortest(axis.centers[vertex].y()));
+    add_data(text, "z", shortest(axis.centers[vertex].z()));
+    add_data(text, "radius", shortest(axis.radii[vertex]));
+    text += "</node>\n";
+  }
+  constexpr const char* kNames[] = {"curve", "border", "junction"};
+  for (const SkeletonGraph::Arc& arc : graph.arcs) {
+    text += "    <edge source=\"n" + std::to_string(arc.from) + "\" target=\"n" + std::to_string(arc.to) + "\">";
+    add_data(text, "length", shortest(arc.length));
+    add_data(text, "mean_radius", shortest(arc.mean_radius));
+    add_data(text, "kind", kNames[static_cast<int>(arc.kind)]);
+    text += "</edge>\n";
+  }
+  return text + "  </graph>\n</graphml>\n";
+}
+
+}  // namespace orchard

@@ -1,0 +1,155 @@
+#include "orchard/viz/medial_writer.h"
+
+#include <vtkCellData.h>
+#include <vtkPointData.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+
+#include <algorithm>
+
+#include "orchard/medial/prune.h"
+#include "vtk_data.h"
+
+namespace orchard {
+
+using namespace detail;
+
+namespace {
+
+struct Cell {
+  std::vector<Index> corners;
+  Index segment = kNone, point_a = kNone, point_b = kNone;
+  bool wall = false;
+  double angle = -1;
+};
+
+void add_faces(const Rows& faces, const std::vector<std::array<Index, 2>>& points, const std::vector<Index>& segments,
+               bool wall, const MedialAxis& axis, std::vector<Cell>& cells) {
+  for (Index face = 0; face < faces.size(); ++face) {
+    const auto corners = faces[face];
+    cells.push_back({.corners = {corners.begin(), corners.end()},
+                     .segment = segments[face],
+                     .point_a = points[face][0],
+                     .point_b = points[face][1],
+                     .wall = wall,
+                     .angle = separation_angle(axis, corners, points[face])});
+  }
+}
+
+std::vector<Cell> cells_of(const MedialAxis& axis, const MedialSegments& segments) {
+  std::vector<Cell> cells;
+  add_faces(axis.faces, axis.face_points, segments.of_face, false, axis, cells);
+  add_faces(axis.walls, axis.wall_points, segments.of_wall, true, axis, cells);
+  std::size_t edge = 0;
+  for (Index i = 0; i < axis.size(); ++i) {
+    for (const Index next : axis.neighbors[i]) {
+      if (next < i) continue;
+      const Index segment = segments.of_edge[edge++];
+      if (segment != kNone) cells.push_back({.corners = {i, next}, .segment = segment});
+    }
+  }
+  return cells;
+}
+
+bool added(const MedialAxis& axis, Index point) { return point != kNone && axis.origins[point] == PointOrigin::repair; }
+
+void add_point_arrays(const MedialAxis& axis, const MedialSegments& segments, const std::vector<Index>& components,
+                      vtkPointData* data) {
+  const std::size_t count = axis.centers.size();
+  const std::vector<double> angles = contact_angles(axis);
+  const auto row = [&](std::size_t i) { return axis.forming_points[static_cast<Index>(i)]; };
+  add_doubles(data, "radius", count, [&](std::size_t i) { return axis.radii[i]; });
+  add_doubles(data, "angle", count, [&](std::size_t i) { return angles[i]; });
+  add_ints(data, "component", count, [&](std::size_t i) { return as_int(components[i]); });
+  add_ints(data, "segment", count, [&](std::size_t i) { return as_int(segments.of_vertex[i]); });
+  add_ints(data, "added", count, [&](std::size_t i) {
+    const auto forming = row(i);
+    return std::any_of(forming.begin(), forming.end(), [&](Index point) { return added(axis, point); }) ? 1 : 0;
+  });
+  add_ints(data, "forming_count", count, [&](std::size_t i) { return static_cast<int>(row(i).size()); });
+  vtkNew<vtkIntArray> forming;
+  forming->SetName("forming_points");
+  forming->SetNumberOfComponents(4);
+  forming->SetNumberOfTuples(static_cast<vtkIdType>(count));
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      forming->SetComponent(static_cast<vtkIdType>(i), static_cast<int>(k), k < row(i).size() ? row(i)[k] : -1.0);
+    }
+  }
+  data->AddArray(forming);
+}
+
+void add_cell_arrays(const MedialAxis& axis, const MedialSegments& segments, const std::vector<Index>& components,
+                     const std::vector<Cell>& cells, vtkCellData* data) {
+  const std::size_t count = cells.size();
+  add_ints(data, "segment", count, [&](std::size_t i) { return as_int(cells[i].segment); });
+  add_ints(data, "sheet", count, [&](std::size_t i) { return segments.segments[cells[i].segment].sheet ? 1 : 0; });
+  add_ints(data, "trunk", count, [&](std::size_t i) { return segments.segments[cells[i].segment].trunk ? 1 : 0; });
+  add_ints(data, "wall", count, [&](std::size_t i) { return cells[i].wall ? 1 : 0; });
+  add_doubles(data, "angle", count, [&](std::size_t i) { return cells[i].angle; });
+  add_ints(data, "point_a", count, [&](std::size_t i) { return as_int(cells[i].point_a); });
+  add_ints(data, "point_b", count, [&](std::size_t i) { return as_int(cells[i].point_b); });
+  add_ints(data, "added", count,
+           [&](std::size_t i) { return added(axis, cells[i].point_a) || added(axis, cells[i].point_b) ? 1 : 0; });
+  add_ints(data, "component", count, [&](std::size_t i) { return as_int(components[cells[i].corners[0]]); });
+}
+
+}  // namespace
+
+void write_medial_grid(const std::filesystem::path& vtu, const MedialAxis& axis, const MedialSegments& segments) {
+  vtkNew<vtkUnstructuredGrid> grid;
+  set_points(grid, axis.centers.size(), [&](std::size_t i) { return axis.centers[i]; });
+  const std::vector<Cell> cells = cells_of(axis, segments);
+  for (const Cell& cell : cells) {
+    std::vector<vtkIdType> corners(cell.corners.begin(), cell.corners.end());
+    grid->InsertNextCell(corners.size() == 2 ? VTK_LINE : VTK_POLYGON, static_cast<vtkIdType>(corners.size()),
+                         corners.data());
+  }
+  Index count = 0;
+  const std::vector<Index> components = connected_components(axis, count);
+  add_point_arrays(axis, segments, components, grid->GetPointData());
+  add_cell_arrays(axis, segments, components, cells, grid->GetCellData());
+  write_with<vtkXMLUnstructuredGridWriter>(vtu, grid.GetPointer());
+}
+
+void write_thickness(const std::filesystem::path& vtp, const Surface& surface, const std::vector<double>& radii) {
+  const TriangleMesh& mesh = surface.mesh();
+  vtkNew<vtkPolyData> data;
+  set_points(data, mesh.vertices.size(), [&](std::size_t i) { return mesh.vertices[i]; });
+  vtkNew<vtkCellArray> triangles;
+  for (const auto& triangle : mesh.triangles) add_cell(triangles, triangle);
+  data->SetPolys(triangles);
+  add_doubles(data->GetPointData(), "medial_radius", radii.size(), [&](std::size_t i) { return radii[i]; });
+  add_doubles(data->GetPointData(), "thickness", radii.size(), [&](std::size_t i) { return 2 * radii[i]; });
+  write(vtp, data);
+}
+
+void write_skeleton(const std::filesystem::path& vtp, const MedialAxis& axis, const SkeletonGraph& graph) {
+  std::vector<Index> vertices;
+  for (const auto& arc : graph.arcs) vertices.insert(vertices.end(), arc.vertices.begin(), arc.vertices.end());
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  vtkNew<vtkPolyData> data;
+  set_points(data, vertices.size(), [&](std::size_t i) { return axis.centers[vertices[i]]; });
+  vtkNew<vtkCellArray> lines;
+  for (const auto& arc : graph.arcs) {
+    std::vector<Index> line;
+    for (const Index vertex : arc.vertices) {
+      line.push_back(static_cast<Index>(std::lower_bound(vertices.begin(), vertices.end(), vertex) - vertices.begin()));
+    }
+    add_cell(lines, line);
+  }
+  data->SetLines(lines);
+  add_doubles(data->GetPointData(), "radius", vertices.size(), [&](std::size_t i) { return axis.radii[vertices[i]]; });
+  add_ints(data->GetPointData(), "vertex", vertices.size(), [&](std::size_t i) { return as_int(vertices[i]); });
+  vtkCellData* cells = data->GetCellData();
+  const std::size_t count = graph.arcs.size();
+  add_ints(cells, "kind", count, [&](std::size_t i) { return static_cast<int>(graph.arcs[i].kind); });
+  add_doubles(cells, "length", count, [&](std::size_t i) { return graph.arcs[i].length; });
+  add_doubles(cells, "mean_radius", count, [&](std::size_t i) { return graph.arcs[i].mean_radius; });
+  add_ints(cells, "from", count, [&](std::size_t i) { return as_int(graph.arcs[i].from); });
+  add_ints(cells, "to", count, [&](std::size_t i) { return as_int(graph.arcs[i].to); });
+  write(vtp, data);
+}
+
+}  // namespace orchard

@@ -1,0 +1,82 @@
+#pragma once
+#include <vtkCellArray.h>
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkIntArray.h>
+#include <vtkNew.h>
+#include <vtkPointSet.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+#include <vtkXMLPolyDataWriter.h>
+
+#include <filesystem>
+#include <span>
+
+#include "orchard/geometry/atomic_file.h"
+#include "orchard/geometry/error.h"
+#include "orchard/geometry/mesh.h"
+
+// What the writers share: values into VTK's containers, and those into files.
+namespace orchard::detail {
+
+inline int as_int(Index index) { return index == kNone ? -1 : static_cast<int>(index); }
+
+// value(i) for i in [0, count) as an array of that name.
+template <typename Array, typename Value>
+vtkSmartPointer<Array> make_array(const char* name, std::size_t count, const Value& value) {
+  auto array = vtkSmartPointer<Array>::New();
+  array->SetName(name);
+  array->SetNumberOfValues(static_cast<vtkIdType>(count));
+  for (std::size_t i = 0; i < count; ++i) array->SetValue(static_cast<vtkIdType>(i), value(i));
+  return array;
+}
+
+template <typename Value>
+void add_ints(vtkFieldData* data, const char* name, std::size_t count, const Value& value) {
+  data->AddArray(make_array<vtkIntArray>(name, count, value));
+}
+
+template <typename Value>
+void add_doubles(vtkFieldData* data, const char* name, std::size_t count, const Value& value) {
+  data->AddArray(make_array<vtkDoubleArray>(name, count, value));
+}
+
+template <typename Position>
+void set_points(vtkPointSet* data, std::size_t count, const Position& position) {
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(static_cast<vtkIdType>(count));
+  for (std::size_t i = 0; i < count; ++i) points->SetPoint(static_cast<vtkIdType>(i), position(i).data());
+  data->SetPoints(points);
+}
+
+inline void add_cell(vtkCellArray* cells, std::span<const Index> corners) {
+  cells->InsertNextCell(static_cast<int>(corners.size()));
+  for (const Index corner : corners) cells->InsertCellPoint(static_cast<vtkIdType>(corner));
+}
+
+// One vertex cell per point, so that points are drawn without a filter.
+inline void set_vertex_cells(vtkPolyData* data) {
+  vtkNew<vtkCellArray> cells;
+  for (Index i = 0; i < data->GetNumberOfPoints(); ++i) add_cell(cells, {&i, 1});
+  data->SetVerts(cells);
+}
+
+// Writer: vtkXMLPolyDataWriter, or the one of another kind of data.
+template <typename Writer, typename Data>
+void write_with(const std::filesystem::path& file, Data* data) {
+  vtkNew<Writer> writer;
+  writer->SetInputData(data);
+  writer->SetDataModeToAppended();
+  writer->EncodeAppendedDataOff();
+  writer->SetCompressorTypeToZLib();
+  writer->SetByteOrderToLittleEndian();
+  writer->WriteToOutputStringOn();
+  if (writer->Write() != 1) throw Error("cannot encode " + file.string());
+  write_file(file, writer->GetOutputString());
+}
+
+inline void write(const std::filesystem::path& vtp, vtkPolyData* data) { write_with<vtkXMLPolyDataWriter>(vtp, data); }
+
+}  // namespace orchard::detail
