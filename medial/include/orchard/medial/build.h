@@ -13,17 +13,17 @@ namespace orchard {
 
 // All that can be tuned on the way from a surface to a medial axis.
 struct MedialBuildOptions {
-  SamplingOptions sampling;
+  SamplingOptions sampling = {};
   bool mend_gaps = true;
-  RepairOptions repair;
+  RepairOptions repair = {};
   AxisOptions axis{.keep_topology = true};
-  PruneOptions prune;
+  PruneOptions prune = {};
 };
 
 struct MedialBuild {
   SurfaceSampling sampling;  // with the points that gap repair added
   Index points = 0;          // before
-  HighestFirstReport voronoi;
+  InsertionReport voronoi;
   Index voronoi_vertices = 0;
   RepairReport repair;
   Index unpruned_vertices = 0;
