@@ -178,64 +178,65 @@ void add_voronoi(CLI::App& app, Request& request) {
   add_output_flags(command, voronoi.output);
   command.footer("Example:\n  orchard voronoi data/faucet.obj --compare -o out/faucet");
   command.callback([&request] { request.run = [&request] { orchard::apps::voronoi(request.voronoi); }; });
-  void add_tuning(CLI::App & command, MedialTuning & tuning) {
-    for (const TuningFlag& flag : tuning_flags()) {
-      command
-          .add_option_function<std::string>(
-              "--" + flag.name, [&tuning, &flag](const std::string& value) { flag.set(tuning, value); },
-              flag.help + " [" + flag.standard + "]")
-          ->check(CLI::Validator([&flag](std::string& value) { return flag.fault(value); }, "{" + flag.range() + "}"))
-          ->group("Tuning");
-    }
-  }
+}
 
-  void add_medial(CLI::App & app, Request & request) {
-    CLI::App& command = *app.add_subcommand("medial", "Build the medial axis of a mesh, or judge one");
-    MedialCommand& medial = request.medial;
-    command.add_option("mesh", medial.mesh, "The mesh: .obj, .ply, .stl or .off")->required();
-    command.add_option("-o,--output", medial.folder, "Folder for the axis and the reports")->required();
-    add_mesh_options(command, medial.reading);
-    command.add_flag("--report", medial.report, "Measure the quality of what was built (docs/medial-quality.md)");
-    command.add_option("--axis", medial.axis, "Build nothing; measure the quality of this .ma file of any system");
-    command.add_option("--points", medial.points, "Your own surface points: a text file, x y z a line");
+void add_tuning(CLI::App& command, MedialTuning& tuning) {
+  for (const TuningFlag& flag : tuning_flags()) {
     command
-        .add_option("--sweep", medial.sweep, "NAME=A,B,..: run with each value of a tuning flag; again for another one")
-        ->allow_extra_args(false);
-    add_tuning(command, medial.tuning);
-    command.add_option("--threads", request.threads, "Threads at most; the result does not depend on it")
-        ->check(CLI::Range(1, 1024));
-    command.add_flag("!--no-views", medial.views, "Write no files for ParaView");
-    add_output_flags(command, medial.output);
-    command.footer(
-        "Examples:\n  orchard medial data/lamp.obj -o out/lamp --report\n"
-        "  orchard medial data/lamp.obj -o out/lamp --axis other.ma\n"
-        "  orchard medial data/lamp.obj -o out/lamp --sweep samples=1000,4000,16000 --sweep prune=0,20,40");
-    command.callback([&request] { request.run = [&request] { orchard::apps::medial(request.medial); }; });
+        .add_option_function<std::string>(
+            "--" + flag.name, [&tuning, &flag](const std::string& value) { flag.set(tuning, value); },
+            flag.help + " [" + flag.standard + "]")
+        ->check(CLI::Validator([&flag](std::string& value) { return flag.fault(value); }, "{" + flag.range() + "}"))
+        ->group("Tuning");
   }
+}
 
-  void add_inspect(CLI::App & app, Request & request) {
-    CLI::App& command = *app.add_subcommand("inspect", "Say what a mesh or tree file holds and what is wrong with it");
-    InspectCommand& inspect = request.inspect;
-    command.add_option("file", inspect.file, "A mesh (.obj, .ply, .stl, .off) or a tree (.orchard, .sph)")->required();
-    command.add_flag("--full", inspect.full,
-                     "Look for self-intersections in a mesh of more than 500,000 triangles too");
-    add_output_flags(command, inspect.output);
-    command.footer("Example:\n  orchard inspect data/lamp.obj");
-    command.callback([&request] { request.run = [&request] { orchard::apps::inspect(request.inspect); }; });
-  }
+void add_medial(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("medial", "Build the medial axis of a mesh, or judge one");
+  MedialCommand& medial = request.medial;
+  command.add_option("mesh", medial.mesh, "The mesh: .obj, .ply, .stl or .off")->required();
+  command.add_option("-o,--output", medial.folder, "Folder for the axis and the reports")->required();
+  add_mesh_options(command, medial.reading);
+  command.add_flag("--report", medial.report, "Measure the quality of what was built (docs/medial-quality.md)");
+  command.add_option("--axis", medial.axis, "Build nothing; measure the quality of this .ma file of any system");
+  command.add_option("--points", medial.points, "Your own surface points: a text file, x y z a line");
+  command
+      .add_option("--sweep", medial.sweep, "NAME=A,B,..: run with each value of a tuning flag; again for another one")
+      ->allow_extra_args(false);
+  add_tuning(command, medial.tuning);
+  command.add_option("--threads", request.threads, "Threads at most; the result does not depend on it")
+      ->check(CLI::Range(1, 1024));
+  command.add_flag("!--no-views", medial.views, "Write no files for ParaView");
+  add_output_flags(command, medial.output);
+  command.footer(
+      "Examples:\n  orchard medial data/lamp.obj -o out/lamp --report\n"
+      "  orchard medial data/lamp.obj -o out/lamp --axis other.ma\n"
+      "  orchard medial data/lamp.obj -o out/lamp --sweep samples=1000,4000,16000 --sweep prune=0,20,40");
+  command.callback([&request] { request.run = [&request] { orchard::apps::medial(request.medial); }; });
+}
 
-  int fail(int code, const char* message) {
-    fmt::print(stderr, "orchard: {}\n", message);
-    return code;
-  }
+void add_inspect(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("inspect", "Say what a mesh or tree file holds and what is wrong with it");
+  InspectCommand& inspect = request.inspect;
+  command.add_option("file", inspect.file, "A mesh (.obj, .ply, .stl, .off) or a tree (.orchard, .sph)")->required();
+  command.add_flag("--full", inspect.full, "Look for self-intersections in a mesh of more than 500,000 triangles too");
+  add_output_flags(command, inspect.output);
+  command.footer("Example:\n  orchard inspect data/lamp.obj");
+  command.callback([&request] { request.run = [&request] { orchard::apps::inspect(request.inspect); }; });
+}
 
-  int run(Request & request) {
-    std::optional<tbb::global_control> limit;
-    if (request.threads > 0)
-      limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(request.threads));
-    request.run();
-    return request.exit_code;
-  }
+int fail(int code, const char* message) {
+  fmt::print(stderr, "orchard: {}\n", message);
+  return code;
+}
+
+int run(Request& request) {
+  std::optional<tbb::global_control> limit;
+  if (request.threads > 0)
+    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(request.threads));
+  request.run();
+  return request.exit_code;
+}
 
 }  // namespace
 
