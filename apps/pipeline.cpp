@@ -17,6 +17,9 @@ namespace {
 
 constexpr double kSamplesPerLeaf = 20;
 
+bool needs_axis(Method method) { return method == Method::tightened || method == Method::merging; }
+bool has_eight_children(Method method) { return !needs_axis(method); }
+
 class Pipeline {
  public:
   Pipeline(const Surface& surface, const BuildOptions& options, const Progress& progress)
@@ -24,11 +27,16 @@ class Pipeline {
 
   BuildResult run() {
     stage("octree", [&] { result_.octree = octree(surface_, {.depth = options_.depth}, progress_); });
-    if (options_.method != Method::octree) build_medial_axis();
+    if (needs_axis(options_.method)) build_medial_axis();
     build_tree();
     stage("covering", [&] { result_.cover = cover(result_.tree, surface_, progress_); });
     stage("redundant spheres",
           [&] { result_.redundancy = remove_redundant(result_.tree, surface_, Selection::exhaustive, progress_); });
+    if (options_.descent > 0)
+      stage("random descent", [&] {
+        const DescentOptions descent{options_.descent, options_.seed};
+        result_.descent = random_descent(result_.tree, surface_, descent, progress_);
+      });
     stage("measuring", [&] {
       measure(result_.tree, surface_, progress_);
       measure(result_.octree, surface_, progress_);
@@ -55,6 +63,16 @@ class Pipeline {
       case Method::merging:
         stage("merging", [&] {
           result_.tree = merge_tree(surface_, *result_.axis, {o.depth, o.branching, o.refinement}, progress_);
+        });
+        break;
+      case Method::annealing:
+        stage("annealing", [&] {
+          AnnealingOptions annealing;
+          annealing.depth = o.depth;
+          annealing.energy = o.energy;
+          annealing.refinement = o.refinement;
+          annealing.seed = o.seed;
+          result_.tree = annealed_tree(surface_, annealing, progress_, &result_.annealing);
         });
         break;
       case Method::tightened:
@@ -113,8 +131,9 @@ Index samples_needed(const BuildOptions& options) {
 }
 
 BuildResult run_pipeline(const Surface& surface, const BuildOptions& options, const Progress& progress) {
-  if (options.method == Method::octree && options.branching != 8)
-    throw InputError("--branching: an octree has 8 children; use another --method for another number");
+  if (has_eight_children(options.method) && options.branching != 8)
+    throw InputError(
+        "--branching: octrees and annealed trees have 8 children; use another --method for another number");
   return Pipeline(surface, options, progress).run();
 }
 

@@ -10,7 +10,9 @@
 #include "orchard/medial/axis.h"
 #include "orchard/medial/gap_crossing.h"
 #include "orchard/runtime/packed_tree.h"
+#include "orchard/spheretree/annealing.h"
 #include "orchard/spheretree/cover.h"
+#include "orchard/spheretree/descent.h"
 #include "orchard/spheretree/redundancy.h"
 #include "orchard/spheretree/tightened.h"
 #include "orchard/spheretree/tree.h"
@@ -18,7 +20,7 @@
 
 namespace orchard::apps {
 
-enum class Method { tightened, merging, octree };
+enum class Method { tightened, merging, annealing, octree };
 
 struct BuildOptions {
   Method method = Method::tightened;
@@ -26,7 +28,9 @@ struct BuildOptions {
   Index branching = 8;  // children of a node, see the builders; an octree has 8
   Effort effort = Effort::standard;
   Objective objective = Objective::balanced;
+  SetEnergy energy = SetEnergy::maximum;
   Refinement refinement;
+  Index descent = 0;             // trials of random descent for each node, after any method
   std::optional<Index> samples;  // surface points, four fifths on faces, one fifth on edges; else samples_needed()
   std::uint64_t seed = 1;
 };
@@ -41,11 +45,13 @@ struct BuildResult {
   InsertionReport voronoi;
   Index voronoi_vertices = 0;
   RepairReport repair;
-  std::optional<MedialAxis> axis;  // not for an octree
+  std::optional<MedialAxis> axis;  // not for an octree or annealing
   Index axis_components = 0;
   SphereTree tree;
   SphereTree octree;  // of the same depth, to compare with
   TightenReport tightening;
+  AnnealingReport annealing;
+  DescentReport descent;
   CoverReport cover;
   RedundancyReport redundancy;
   runtime::PackedSphereTree packed;

@@ -12,8 +12,11 @@
 namespace orchard::apps {
 namespace {
 
-const std::map<std::string, Method> kMethods{
-    {"tightened", Method::tightened}, {"merging", Method::merging}, {"octree", Method::octree}};
+const std::map<std::string, Method> kMethods{{"tightened", Method::tightened},
+                                             {"merging", Method::merging},
+                                             {"annealing", Method::annealing},
+                                             {"octree", Method::octree}};
+const std::map<std::string, SetEnergy> kEnergies{{"maximum", SetEnergy::maximum}, {"sum", SetEnergy::sum}};
 const std::map<std::string, Effort> kEfforts{
     {"low", Effort::low}, {"default", Effort::standard}, {"high", Effort::high}};
 const std::map<std::string, Objective> kObjectives{{"balanced", Objective::balanced},
@@ -68,8 +71,9 @@ const char* name(Effort effort) { return key_of(kEfforts, effort); }
 const char* name(Objective objective) { return key_of(kObjectives, objective); }
 
 void add_tree_options(CLI::App& command, BuildOptions& options) {
-  add_choice(command, "--method", kMethods, options.method,
-             "How to build: tightened (default), the tightest; merging along the medial axis; octree");
+  add_choice(
+      command, "--method", kMethods, options.method,
+      "How to build: tightened (default), the tightest; merging along the medial axis; simulated annealing; octree");
   command.add_option("--depth", options.depth, "Levels below the root at most")
       ->check(CLI::Range(1, 10))
       ->capture_default_str();
@@ -81,6 +85,11 @@ void add_tree_options(CLI::App& command, BuildOptions& options) {
   add_choice(command, "--effort", kEfforts, options.effort, "tightened: how long to search, about 1 : 2 : 15");
   add_choice(command, "--objective", kObjectives, options.objective,
              "tightened: what to keep low, the maximum or mean inaccuracy, the outside volume, or a balance (default)");
+  add_choice(command, "--energy", kEnergies, options.energy,
+             "annealing: what makes a set of siblings loose, its loosest (default) or all together");
+  command.add_option("--descent", options.descent, "Random descent afterwards: trials for each sphere; any method")
+      ->check(CLI::Range(0, 100'000))
+      ->capture_default_str();
   command
       .add_option("--error", options.refinement.error,
                   "No children for a sphere whose inaccuracy is this or less, in mesh units (0: down to --depth)")

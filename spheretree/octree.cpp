@@ -4,69 +4,11 @@
 #include <cmath>
 #include <numeric>
 
+#include "octants.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/tolerance.h"
 
 namespace orchard {
-namespace {
-
-// Rounding slack of the overlap test, relative to the lengths in it: an octant that may touch a triangle counts.
-constexpr double kSlack = 0x1p-44;
-
-// Whether the projections of the triangle (relative to the box's centre) and of the box on `axis` overlap.
-bool overlap_on(const Vector& axis, const std::array<Point, 3>& corners, const Vector& half) {
-  const double a = axis.dot(corners[0]), b = axis.dot(corners[1]), c = axis.dot(corners[2]);
-  double extent = 0;
-  for (const Point& p : corners) extent = std::max(extent, p.cwiseAbs().maxCoeff());
-  const double radius = axis.cwiseAbs().dot(half) + kSlack * axis.cwiseAbs().sum() * (extent + half.sum());
-  return std::min({a, b, c}) <= radius && std::max({a, b, c}) >= -radius;
-}
-
-// Separating axes of a triangle and a box: the box's, the triangle's normal, and the products of their edges.
-bool triangle_meets_box(std::array<Point, 3> corners, const Box& box) {
-  const Point center = box.center();
-  const Vector half = box.sizes() / 2;
-  for (Point& corner : corners) corner -= center;
-  for (int axis = 0; axis < 3; ++axis)
-    if (!overlap_on(Vector::Unit(axis), corners, half)) return false;
-  const std::array<Vector, 3> edges{corners[1] - corners[0], corners[2] - corners[1], corners[0] - corners[2]};
-  if (!overlap_on(edges[0].cross(edges[1]), corners, half)) return false;
-  for (const Vector& edge : edges)
-    for (int axis = 0; axis < 3; ++axis)
-      if (!overlap_on(edge.cross(Vector::Unit(axis)), corners, half)) return false;
-  return true;
-}
-
-struct Octant {
-  Box box;
-  std::vector<Index> triangles;
-  Index node = 0;  // of the tree
-};
-
-Box child_box(const Box& box, int which) {
-  const Point center = box.center();
-  Box child;
-  for (int axis = 0; axis < 3; ++axis) {
-    const bool upper = (which >> axis) & 1;
-    child.min()[axis] = upper ? center[axis] : box.min()[axis];
-    child.max()[axis] = upper ? box.max()[axis] : center[axis];
-  }
-  return child;
-}
-
-std::vector<Octant> occupied_children(const Surface& surface, const Octant& parent) {
-  std::vector<Octant> children;
-  for (int which = 0; which < 8; ++which) {
-    Octant child{child_box(parent.box, which), {}, kNone};
-    for (Index triangle : parent.triangles)
-      if (triangle_meets_box(surface.corners(triangle), child.box)) child.triangles.push_back(triangle);
-    if (!child.triangles.empty()) children.push_back(std::move(child));
-  }
-  return children;
-}
-
-}  // namespace
-
 SphereTree octree(const Surface& surface, const OctreeOptions& options, const Progress& progress) {
   const double margin = tolerance::kCoverMargin * surface.bounding_radius();
   SphereTree tree;

@@ -1,0 +1,82 @@
+#include "orchard/spheretree/descent.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "orchard/covering/incremental_cover.h"
+#include "orchard/geometry/random.h"
+#include "random_direction.h"
+
+namespace orchard {
+namespace {
+
+constexpr std::uint64_t kStage = 300;  // of the random numbers
+// Steps as fractions of the ball's looseness: where they start, how they change, and where a ball has had enough.
+constexpr double kFirstStep = 0.2, kLeastStep = 2e-4;
+constexpr double kLonger = 1.6, kShorter = 0.85;
+
+class Descent {
+ public:
+  Descent(SphereTree& tree, const Surface& surface, const DescentOptions& options)
+      : tree_(tree), surface_(surface), options_(options), cover_(surface, path_balls(tree)) {
+    const std::size_t count = tree.nodes.size();
+    depth_.resize(count);
+    step_.assign(count, kFirstStep);
+    for (std::size_t i = 0; i < count; ++i) depth_[i] = surface.signed_distance(tree.nodes[i].sphere.center);
+  }
+
+  DescentReport run(const Progress& progress) {
+    DescentReport report;
+    report.looseness_before = mean_looseness();
+    for (Index round = 0; round < options_.trials_per_node; ++round) {
+      report_progress(progress, "random descent", static_cast<double>(round) / options_.trials_per_node);
+      for (Index node = 0; node < tree_.nodes.size(); ++node) {
+        if (step_[node] < kLeastStep) continue;
+        ++report.trials;
+        Random random(options_.seed, kStage + round, node);
+        const bool better = try_node(node, random);
+        report.accepted += better;
+        step_[node] = std::min(kFirstStep, step_[node] * (better ? kLonger : kShorter));
+      }
+    }
+    report.looseness_after = mean_looseness();
+    return report;
+  }
+
+ private:
+  double mean_looseness() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < depth_.size(); ++i) sum += tree_.nodes[i].sphere.radius + depth_[i];
+    return sum / static_cast<double>(depth_.size()) / surface_.bounding_radius();
+  }
+
+  bool try_node(Index node, Random& random) {
+    Sphere& ball = tree_.nodes[node].sphere;
+    const double looseness = ball.radius + depth_[node], size = step_[node] * looseness;
+    if (!(looseness > 0)) return false;
+    Sphere next = ball;
+    next.center += random.uniform() * size * random_direction(random);
+    const double depth = surface_.signed_distance(next.center);
+    // Less loose by some part of the step, whatever the centre's move did to the depth.
+    next.radius = looseness - 0.5 * random.uniform() * size - depth;
+    if (!(next.radius > 0) || !cover_.try_change(node, next)) return false;
+    ball = next;
+    depth_[node] = depth;
+    return true;
+  }
+
+  SphereTree& tree_;
+  const Surface& surface_;
+  const DescentOptions& options_;
+  IncrementalCover cover_;
+  std::vector<double> depth_, step_;
+};
+
+}  // namespace
+
+DescentReport random_descent(SphereTree& tree, const Surface& surface, const DescentOptions& options,
+                             const Progress& progress) {
+  return Descent(tree, surface, options).run(progress);
+}
+
+}  // namespace orchard

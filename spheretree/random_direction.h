@@ -1,0 +1,19 @@
+#pragma once
+#include <cmath>
+
+#include "orchard/geometry/mesh.h"
+#include "orchard/geometry/random.h"
+
+namespace orchard {
+
+// A uniform direction: a point of the cube that lies in the unit ball, normalised. No sine or cosine, so that it is the
+// same everywhere.
+inline Vector random_direction(Random& random) {
+  for (;;) {
+    const double x = random.uniform(-1, 1), y = random.uniform(-1, 1), z = random.uniform(-1, 1);
+    const double squared = x * x + y * y + z * z;
+    if (squared <= 1 && squared > 1e-6) return Vector(x, y, z) / std::sqrt(squared);
+  }
+}
+
+}  // namespace orchard

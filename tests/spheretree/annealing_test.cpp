@@ -1,0 +1,123 @@
+#include "orchard/spheretree/annealing.h"
+
+#include <gtest/gtest.h>
+
+#include <tuple>
+
+#include "orchard/geometry/error.h"
+#include "orchard/spheretree/descent.h"
+#include "orchard/spheretree/measure.h"
+#include "orchard/spheretree/octree.h"
+#include "support.h"
+
+namespace orchard {
+namespace {
+
+using namespace test;
+
+void expect_conservative(const SphereTree& tree, const Surface& surface, const char* name) {
+  ASSERT_NO_THROW(validate(tree)) << name;
+  EXPECT_TRUE(surface_coverage(surface, path_balls(tree)).complete()) << name;
+  for (const Point& point : points_on(surface, 20, 1)) ASSERT_TRUE(has_path(tree, point)) << name;
+}
+
+AnnealingOptions quick(Index depth = 2) {
+  AnnealingOptions options;
+  options.depth = depth;
+  options.most_accepted = options.most_rejected = 20;
+  options.iterations_first = 30;
+  options.iterations = 10;
+  return options;
+}
+
+TEST(AnnealedTree, IsConservativeWithEitherEnergy) {
+  const std::vector<std::tuple<const char*, TriangleMesh>> shapes{
+      {"box", box(Point(0, 0, 0), Point(1, 2, 3))}, {"torus", torus(16, 8)}, {"L", l_shape()}, {"U", u_shape(0.3)}};
+  for (const auto& [name, mesh] : shapes) {
+    const Surface surface(mesh);
+    for (const SetEnergy energy : {SetEnergy::sum, SetEnergy::maximum}) {
+      AnnealingOptions options = quick();
+      options.energy = energy;
+      AnnealingReport report;
+      const SphereTree tree = annealed_tree(surface, options, {}, &report);
+      expect_conservative(tree, surface, name);
+      EXPECT_GT(report.accepted, 0) << name;
+      EXPECT_LE(report.accepted + report.uncovering, report.changes) << name;
+      for (const SphereNode& node : tree.nodes) EXPECT_LE(node.child_count, 8) << name;
+    }
+  }
+}
+
+TEST(AnnealedTree, FitsTighterThanTheOctreeThatItStartsFrom) {
+  const Surface surface(torus(24, 12));
+  AnnealingOptions options = quick(1);
+  options.most_accepted = options.most_rejected = 200;
+  options.iterations_first = 60;
+  SphereTree tree = annealed_tree(surface, options);
+  SphereTree start = octree(surface, {.depth = 1});
+  measure(tree, surface);
+  measure(start, surface);
+  EXPECT_LT(level_figures(tree, 1)[1].max_inaccuracy, level_figures(start, 1)[1].max_inaccuracy);
+}
+
+TEST(AnnealedTree, RepeatsItselfForASeedAndChangesWithIt) {
+  const Surface surface(l_shape());
+  AnnealingOptions options = quick();
+  const SphereTree one = annealed_tree(surface, options);
+  EXPECT_TRUE(same_tree(one, annealed_tree(surface, options)));
+  options.seed = 2;
+  EXPECT_FALSE(same_tree(one, annealed_tree(surface, options)));
+}
+
+TEST(AnnealedTree, RefinesOnlyWhatIsNotAccurateEnough) {
+  const Surface surface(l_shape());
+  AnnealingOptions options = quick(3);
+  options.refinement.error = 10 * surface.bounding_radius();
+  EXPECT_EQ(annealed_tree(surface, options).nodes.size(), 1);
+}
+
+TEST(AnnealedTree, RefusesOptionsThatMakeNoSchedule) {
+  const Surface surface(l_shape());
+  AnnealingOptions options;
+  options.cooling = 1;
+  EXPECT_THROW(annealed_tree(surface, options), InputError);
+  options = {};
+  options.least_scale = 2;
+  EXPECT_THROW(annealed_tree(surface, options), InputError);
+  options = {};
+  options.most_rejected = 0;
+  EXPECT_THROW(annealed_tree(surface, options), InputError);
+}
+
+TEST(AnnealedTree, StopsWhenCancelled) {
+  const Surface surface(l_shape());
+  EXPECT_THROW(annealed_tree(surface, quick(), [](std::string_view, double) { return false; }), Cancelled);
+}
+
+TEST(RandomDescent, MakesNoBallLooserAndKeepsThePathRule) {
+  for (const TriangleMesh& mesh : {torus(16, 8), l_shape(), u_shape(0.3)}) {
+    const Surface surface(mesh);
+    SphereTree tree = octree(surface, {.depth = 2});
+    const auto looseness = [&](const SphereNode& node) {
+      return node.sphere.radius + surface.signed_distance(node.sphere.center);
+    };
+    std::vector<double> before;
+    for (const SphereNode& node : tree.nodes) before.push_back(looseness(node));
+    const DescentReport report = random_descent(tree, surface, {.trials_per_node = 40});
+    expect_conservative(tree, surface, "descended");
+    for (std::size_t i = 0; i < before.size(); ++i) EXPECT_LE(looseness(tree.nodes[i]), before[i] * (1 + 1e-12));
+    EXPECT_GT(report.accepted, 0);
+    EXPECT_LT(report.looseness_after, 0.95 * report.looseness_before);
+  }
+}
+
+TEST(RandomDescent, RepeatsItselfForASeed) {
+  const Surface surface(l_shape());
+  SphereTree one = octree(surface, {.depth = 2}), two = one;
+  random_descent(one, surface, {.trials_per_node = 10, .seed = 3});
+  random_descent(two, surface, {.trials_per_node = 10, .seed = 3});
+  EXPECT_TRUE(same_tree(one, two));
+}
+
+}  // namespace
+}  // namespace orchard
