@@ -5,9 +5,7 @@
 
 namespace orchard::runtime::detail {
 
-void Calendar::make_room(std::size_t bodies) {
-  if (links_.size() < bodies) links_.resize(bodies);
-}
+void Calendar::make_room(std::size_t bodies) { grow(links_, bodies); }
 
 void Calendar::set_due(BodyId body, Step step) noexcept {
   clear_due(body);

@@ -5,9 +5,10 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr std::size_t kMeansStride = 16;    // of the bodies looked at, every so many count for the plan's means
-constexpr std::size_t kSample = 48;         // bodies that the first plan looks at
-constexpr double kCrowding = 4;             // lines read per entry from which on the cells are too large
+constexpr std::size_t kMeansStride = 16;  // of the bodies looked at, every so many count for the plan's means
+constexpr std::size_t kSmallSample = 16, kSample = 48;  // bodies that the first plan looks at: of few, and of many
+constexpr double kCrowding = 4;                         // lines read per entry from which on the cells are too large
+constexpr std::size_t kChangesKept = 1024;              // room for as many changes in a step stays allocated
 constexpr unsigned kPlansKept = 8;          // a plan that fits is made anew after as many looks at all bodies
 constexpr double kFewPairs = 1e-3;          // per body: too few to say anything about the prediction
 constexpr double kEventResolution = 0.125;  // of a step: no need to know better when a pair can touch
@@ -25,10 +26,10 @@ bool cells_fit(const QuantumBox& box) noexcept {
 void Events::make_room() {
   const std::size_t n = roster_.slots();
   if (windows_.size() >= n) return;
-  boxes_.resize(n);
-  windows_.resize(n);
-  places_.resize(n, Place::nowhere);
-  pending_.resize(n);
+  grow(boxes_, n);
+  grow(windows_, n);
+  grow(places_, n);
+  grow(pending_, n);
   calendar_.make_room(n);
 }
 
@@ -71,6 +72,7 @@ void Events::collect_due(Step now) {
     due_.push_back(body);
   }
   changed_.clear();
+  if (changed_.capacity() > kChangesKept) changed_.shrink_to_fit();  // not what adding all bodies took
 }
 
 bool Events::crowded(const GridCounts& counts) const noexcept {
@@ -108,9 +110,10 @@ void Events::replan(Step now) {
 
 // How bodies lie and move, from a sample.
 void Events::survey(Step now) {
-  const std::size_t n = roster_.size(), stride = std::max<std::size_t>(1, n / kSample);
+  const std::size_t n = roster_.size(), wanted = std::clamp(n / 8, kSmallSample, kSample);
+  const std::size_t stride = std::max<std::size_t>(1, n / wanted);
   std::vector<BodyId> sample;
-  for (BodyId body = 0; body < roster_.slots() && sample.size() < kSample; body += static_cast<BodyId>(stride)) {
+  for (BodyId body = 0; body < roster_.slots() && sample.size() < wanted; body += static_cast<BodyId>(stride)) {
     if (roster_.alive(body)) sample.push_back(body);
   }
   if (sample.empty()) return;
@@ -133,7 +136,9 @@ void Events::place_all_anew() {
   calendar_.clear_all_due();
   std::fill(places_.begin(), places_.end(), Place::nowhere);
   oversized_.clear();
+  if (due_.capacity() > 2 * roster_.size()) due_ = {};
   due_.clear();
+  due_.reserve(roster_.size());
   for (BodyId body = 0; body < roster_.slots(); ++body) {
     if (roster_.alive(body)) due_.push_back(body);
   }

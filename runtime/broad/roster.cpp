@@ -9,14 +9,14 @@ BodyId Roster::add(std::uint8_t importance) {
   BodyId body;
   if (free_.empty()) {
     body = static_cast<BodyId>(alive_.size());
-    alive_.push_back(1);
-    importance_.push_back(0);
+    grow(alive_, std::size_t{body} + 1);
+    grow(importance_, std::size_t{body} + 1);
     if (!static_slot_.empty()) static_slot_.push_back(kNoSlot);
   } else {
     body = free_.back();
     free_.pop_back();
-    alive_[body] = 1;
   }
+  alive_[body] = 1;
   importance_[body] = importance;
   enter_class(importance);
   ++size_;

@@ -27,19 +27,16 @@ void MotionMeans::add(const Motion& m) noexcept {
   acceleration += m.acceleration;
 }
 
-double mean_spacing(std::span<Vec3> sample, std::size_t bodies) noexcept {
+double mean_spacing(std::span<const Vec3> sample, std::size_t bodies) {
   const std::size_t n = sample.size();
   if (n < 2) return 0;
-  const std::size_t low = n / 8, high = n - 1 - n / 8;
   Vec3 lower{}, upper{};
+  std::vector<double> sorted(n);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto less = [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; };
-    const auto nth = [&](std::size_t k) {
-      std::nth_element(sample.begin(), sample.begin() + static_cast<std::ptrdiff_t>(k), sample.end(), less);
-      return sample[k][axis];
-    };
-    lower[axis] = nth(low);
-    upper[axis] = nth(high);
+    for (std::size_t i = 0; i < n; ++i) sorted[i] = sample[i][axis];
+    std::sort(sorted.begin(), sorted.end());
+    lower[axis] = sorted[n / 8];
+    upper[axis] = sorted[n - 1 - n / 8];
   }
   double volume = 1;
   const double widest = std::max({upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]});

@@ -19,8 +19,8 @@ struct WindowPlan {
 };
 
 // The mean distance from a body to the next: (volume / bodies)^(1/3), of a sample's inner part, so that a few bodies
-// far away do not matter. The sample is reordered.
-double mean_spacing(std::span<Vec3> sample, std::size_t bodies) noexcept;
+// far away do not matter.
+double mean_spacing(std::span<const Vec3> sample, std::size_t bodies);
 
 // The window with the least cost per step: a long one makes more boxes meet, a short one looks at bodies more often.
 // `correction` multiplies the predicted number of pairs; fixed_window 0 leaves the choice.
