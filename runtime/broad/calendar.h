@@ -10,7 +10,8 @@ inline constexpr Step kLongestWindow = kCalendarSteps - 1;
 
 struct PairEvent {
   BodyPair pair;
-  Step created;  // void once either body has been looked at again after this step
+  Step created;    // void once either body has been looked at again after this step
+  Step sure = -1;  // of an overlapping pair: it surely goes on to overlap up to this step
 };
 
 // What is due when, for less than kCalendarSteps steps ahead: bodies to look at again and pairs to test, in a ring of

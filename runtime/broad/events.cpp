@@ -1,6 +1,6 @@
 #include "events.h"
 
-#include <cassert>
+#include "horn.h"
 
 namespace orchard::runtime::detail {
 namespace {
@@ -113,10 +113,10 @@ void Events::survey(Step now) {
   const std::size_t n = roster_.size(), wanted = std::clamp(n / 8, kSmallSample, kSample);
   const std::size_t stride = std::max<std::size_t>(1, n / wanted);
   std::vector<BodyId> sample;
-  for (BodyId body = 0; body < roster_.slots() && sample.size() < wanted; body += static_cast<BodyId>(stride)) {
-    if (roster_.alive(body)) sample.push_back(body);
+  std::size_t seen = 0;
+  for (BodyId body = 0; body < roster_.slots() && sample.size() < wanted; ++body) {
+    if (roster_.alive(body) && seen++ % stride == 0) sample.push_back(body);
   }
-  if (sample.empty()) return;
   motions_.resize(sample.size());
   roster_.ask(now, sample, motions_);
   std::vector<Vec3> centers;
@@ -272,19 +272,20 @@ bool Events::test_all(Step now, Meter& meter) {
   return done == tests_.size();
 }
 
-// Both motions are of this step: they overlap, or they cannot for a while.
+// Both motions are of this step: they overlap, surely for a while, or they cannot for a while.
 void Events::settle(Step now, const BodyPair& pair, const Motion& a, const Motion& b) {
   if (roster_.is_static(pair.a) && roster_.is_static(pair.b)) return;
+  const Clock& clock = roster_.clock;
+  // Until the next look at one of them, or a bound expires.
+  const Step safe = std::min(clock.steps_until_expiry(now, a.expiry), clock.steps_until_expiry(now, b.expiry));
+  const Step left = std::min({windows_[pair.a].end, windows_[pair.b].end, now + kLongestWindow}) - now;
+  const double seconds = static_cast<double>(std::max<Step>(0, std::min(left - 1, safe))) * options_.time_step;
   if (spheres_touch(a, b)) {
-    overlaps_.push_back({pair, now});
+    overlaps_.push_back({pair, now, now + clock.steps_within(overlap_lasts(a, b, seconds))});
     return;
   }
-  const Clock& clock = roster_.clock;
-  const Step left = std::min(windows_[pair.a].end, windows_[pair.b].end) - now;  // until the next look at one of them
   if (left <= 1) return;
-  const double seconds = static_cast<double>(std::min(left, kLongestWindow) - 1) * options_.time_step;
   const double contact = earliest_contact(a, b, seconds, kEventResolution * options_.time_step);
-  const Step safe = std::min(clock.steps_until_expiry(now, a.expiry), clock.steps_until_expiry(now, b.expiry));
   Step ahead = contact <= seconds ? std::max<Step>(1, clock.steps_before(contact)) : kNeverStep;
   if (safe < left) ahead = std::min(ahead, safe + 1);
   if (ahead < left) calendar_.add({pair, now}, now + ahead);
@@ -322,7 +323,7 @@ unsigned Events::look_and_test(Step now, Meter& meter) {
     const auto ranked = [&](const BodyPair& pair) { return one_class || roster_.importance(pair) == rank; };
     tests_.clear();
     for (const PairEvent& event : waiting_) {
-      if (ranked(event.pair) && valid(event)) tests_.push_back(event);
+      if (ranked(event.pair) && valid(event)) (event.sure >= now ? overlaps_ : tests_).push_back(event);
     }
     for (const BodyPair& pair : near_) {
       if (ranked(pair)) tests_.push_back({pair, now});

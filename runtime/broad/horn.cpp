@@ -65,6 +65,13 @@ double first_closing(double gap, double slope, double acceleration) noexcept {
   return acceleration > 0 ? (slope + root) / acceleration : kNever;
 }
 
+double overlap_lasts(const Motion& a, const Motion& b, double limit) noexcept {
+  const Vec3 offset = b.position - a.position, velocity = b.velocity - a.velocity;
+  const double spare = a.radius + b.radius - std::sqrt(dot(offset, offset)) - motion_slack(a, b, limit);
+  const double speed = std::sqrt(dot(velocity, velocity)) + a.drift + b.drift;
+  return std::min(limit, first_closing(spare, -speed, a.acceleration + b.acceleration));
+}
+
 double horn_contact(const HornPair& pair, double limit, double resolution) noexcept {
   double t = 0;
   for (int round = 0; round < kMaxRounds; ++round) {

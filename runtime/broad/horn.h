@@ -15,6 +15,10 @@ double horn_contact(const HornPair& pair, double limit, double resolution) noexc
 // The first t >= 0 with gap + slope t - acceleration t^2 / 2 <= 0; infinity if there is none. acceleration >= 0.
 double first_closing(double gap, double slope, double acceleration) noexcept;
 
+// How long two overlapping spheres surely go on to overlap, at most `limit`: the bounds do not let them get apart
+// sooner.
+double overlap_lasts(const Motion& a, const Motion& b, double limit) noexcept;
+
 // What to add to a sum of radii for the rounding of everything that follows, and the application's.
 double motion_slack(const Motion& a, const Motion& b, double duration) noexcept;
 
