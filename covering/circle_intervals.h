@@ -25,11 +25,13 @@ class CircleIntervals {
     double begin, end;
   };
   void clear() { intervals_.clear(); }
+  void assign(double begin, double end) { intervals_.assign(1, {begin, end}); }  // of another parameter than an angle
   void set_all() { intervals_.assign(1, {0, kTwoPi}); }
   bool empty() const { return intervals_.empty(); }
   std::span<const Interval> intervals() const { return intervals_; }
 
   void subtract(const Arc& arc);
+  bool subtract(double begin, double end) { return subtract_interval(begin, end); }
   bool subtract(const CircleIntervals& other);  // whether that took anything away
   void assign_intersection(const CircleIntervals& other, const Arc& arc);
 
