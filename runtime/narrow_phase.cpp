@@ -40,6 +40,7 @@ constexpr double kLeastSlack = 1e-15;
 constexpr double kStretch = 1e-11;
 
 constexpr double kSquareError = 1e-14;     // relative, of the difference of two squares
+constexpr int kRootDirections = 5;         // tried at most, to part the roots
 constexpr double kLeastOpposition = 1e-6;  // between unit normals: less says nothing about a direction
 
 template <typename Container>
@@ -165,22 +166,62 @@ void NarrowPhase::reset() noexcept {
   pruned_gap_ = std::numeric_limits<double>::infinity();
 }
 
-// How far the patches below the roots are apart along the line through the roots' centres, `way`, at least.
+// How far the patches below the roots are apart, at least: along the line through the roots' centres, `way`, and then
+// along directions that the patches which are in the way suggest (Chung and Wang 1996), as long as these get better.
 double NarrowPhase::roots_gap(const Pose& first, const Pose& second, const std::array<double, 3>& way,
                               double distance) const noexcept {
-  const auto reach = [&way, distance](const Side& side, const Pose& pose, double sign) {
+  struct Support {
+    double most;                  // along the direction, from the root's centre
+    std::array<double, 3> point;  // in the world, from the root's centre: where about
+  };
+  const auto support = [](const Side& side, const Pose& pose, const std::array<double, 3>& u, double sign) -> Support {
     const auto& r = pose.rotation;
     std::array<float, 3> direction{};
-    double middle = 0;  // the root's centre, relative to the tree's origin
+    std::array<double, 3> center{};  // the root's, relative to the tree's origin
+    double middle = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-      const double u = (r[i] * way[0] + r[3 + i] * way[1] + r[6 + i] * way[2]) * sign / distance;
-      direction[i] = static_cast<float>(u);
-      middle += u * (side.root[i] - side.tree.origin[i]);
+      const double component = sign * (r[i] * u[0] + r[3 + i] * u[1] + r[6 + i] * u[2]);
+      direction[i] = static_cast<float>(component);
+      center[i] = side.root[i] - side.tree.origin[i];
+      middle += component * center[i];
     }
+    const auto [most, lane] = detail::patch_support(*side.patches, direction);
+    const std::array<double, 3> local = {side.patches->x[lane] - center[0], side.patches->y[lane] - center[1],
+                                         side.patches->z[lane] - center[2]};
     const double rounding = 96 * kFloatUnit * side.extent;
-    return pose.scale * (double{detail::patch_support(*side.patches, direction)} - middle + rounding);
+    auto point = rotate(pose, local);
+    for (double& x : point) x *= pose.scale;
+    return {pose.scale * (double{most} - middle + rounding), point};
   };
-  return distance - (reach(first_, first, 1) + reach(second_, second, -1));
+  const double shrink = 1 / distance;
+  std::array<double, 3> u = {way[0] * shrink, way[1] * shrink, way[2] * shrink};
+  double best = -std::numeric_limits<double>::infinity(), along = distance;
+  for (int turn = 0; turn < kRootDirections; ++turn) {
+    const Support p = support(first_, first, u, 1), q = support(second_, second, u, -1);
+    const double gap = along - (p.most + q.most);
+    if (gap > 0) return gap * (1 - kStretch);
+    if (gap <= best) break;
+    best = gap;
+    // From the point of the first one to that of the second one; reflecting the direction in it turns these apart.
+    std::array<double, 3> between{};
+    double square = 0, component = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      between[i] = way[i] + q.point[i] - p.point[i];
+      square += between[i] * between[i];
+      component += between[i] * u[i];
+    }
+    if (component >= 0 || !(square > 0)) break;  // the points are in order: only their patches' sizes are in the way
+    const double factor = 2 * component / square;
+    double length_square = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      u[i] -= factor * between[i];
+      length_square += u[i] * u[i];
+    }
+    const double normalise = 1 / std::sqrt(length_square);
+    along = 0;
+    for (std::size_t i = 0; i < 3; ++i) u[i] *= normalise, along += u[i] * way[i];
+  }
+  return best;
 }
 
 Answer NarrowPhase::start(const Pose& a, const Pose& b) noexcept {

@@ -93,7 +93,7 @@ ORCHARD_INLINE void find_gaps(const Patch& single, const PatchBlock& lanes, cons
 }
 
 template <typename Kind>
-ORCHARD_INLINE float find_support(const PatchBlock& block, const std::array<float, 3>& direction) noexcept {
+ORCHARD_INLINE PatchSupport find_support(const PatchBlock& block, const std::array<float, 3>& direction) noexcept {
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
   using Vectors = typename E::Vectors;
@@ -106,9 +106,13 @@ ORCHARD_INLINE float find_support(const PatchBlock& block, const std::array<floa
   const Floats reach = E::dot(c, u) + E::smaller(r, load<Floats>(block.height) * cosine + r * sine);
   std::array<float, kBlockWidth> lanes;
   store(Kind::choose(zero <= r, reach, E::all(-std::numeric_limits<float>::infinity())), lanes);
-  float most = lanes[0];
-  for (std::size_t i = 1; i < kBlockWidth; ++i) most = most < lanes[i] ? lanes[i] : most;
-  return most;
+  PatchSupport half[4];
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    half[i] = lanes[i] < lanes[i + 4] ? PatchSupport{lanes[i + 4], i + 4} : PatchSupport{lanes[i], i};
+  }
+  const PatchSupport p = half[0].most < half[1].most ? half[1] : half[0],
+                     q = half[2].most < half[3].most ? half[3] : half[2];
+  return p.most < q.most ? q : p;
 }
 
 template <typename Kind>
@@ -288,7 +292,7 @@ void triangle_gaps_scalar(const TriangleBlock& lanes, const TriangleBlock& rows,
   find_triangle_gaps<PlainFloats>(lanes, rows, placement, direction, result);
 }
 
-float patch_support_scalar(const PatchBlock& block, const std::array<float, 3>& direction) noexcept {
+PatchSupport patch_support_scalar(const PatchBlock& block, const std::array<float, 3>& direction) noexcept {
   return find_support<PlainFloats>(block, direction);
 }
 
@@ -313,7 +317,8 @@ ORCHARD_PER_MACHINE void triangle_gaps(const TriangleBlock& lanes, const Triangl
   find_triangle_gaps<Widest>(lanes, rows, placement, direction, result);
 }
 
-ORCHARD_PER_MACHINE float patch_support(const PatchBlock& block, const std::array<float, 3>& direction) noexcept {
+ORCHARD_PER_MACHINE PatchSupport patch_support(const PatchBlock& block,
+                                               const std::array<float, 3>& direction) noexcept {
   return find_support<Widest>(block, direction);
 }
 

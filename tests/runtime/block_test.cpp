@@ -242,8 +242,10 @@ TEST(PatchBlock, SupportsEveryPointInEveryDirection) {
     const PackedSphereTree tree = random_triangles(draw, 30);
     const test::Vec d = draw.direction();
     const std::array<float, 3> u = {static_cast<float>(d[0]), static_cast<float>(d[1]), static_cast<float>(d[2])};
-    const float support = patch_support(tree.patches[1], u);
-    ASSERT_EQ(support, patch_support_scalar(tree.patches[1], u));
+    const auto [support, lane] = patch_support(tree.patches[1], u);
+    ASSERT_EQ(support, patch_support_scalar(tree.patches[1], u).most);
+    ASSERT_EQ(lane, patch_support_scalar(tree.patches[1], u).lane);
+    ASSERT_GE(tree.patches[1].radius[lane], 0);
     double most = -1e300;
     for (const auto& v : tree.vertices) most = std::max(most, d[0] * v[0] + d[1] * v[1] + d[2] * v[2]);
     ASSERT_GE(double{support}, most - 96 * 0x1p-24 * 4);

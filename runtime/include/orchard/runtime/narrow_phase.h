@@ -109,6 +109,12 @@ class NarrowPhase {
   // the bounds on the way. Resume by calling either function again.
   Answer refine_exactly(const Budget& budget = {}) noexcept;
 
+  // Whether any spheres meet at that level, depth first and only until two do: the fastest answer of a given accuracy,
+  // "no" (certain) or "maybe", with the separation bound of those two. For after start(); refine() may follow. Budgets
+  // do not interrupt it: it costs as much as the levels of spheres where the answer is "no", and far less where it is
+  // not.
+  Answer probe(std::uint32_t level) noexcept;
+
   Verdict verdict() const noexcept;
   Answer answer() const noexcept { return answer_; }
   bool finished() const noexcept { return finished_; }        // refine() has nothing left to do
@@ -173,6 +179,8 @@ class NarrowPhase {
 
   static Side side_of(const TreeView& tree) noexcept;
   void reset() noexcept;
+  struct Probe;
+  bool probe_below(NodePair pair, std::uint32_t levels, Probe& probe) noexcept;
   double roots_gap(const Pose& first, const Pose& second, const std::array<double, 3>& way,
                    double distance) const noexcept;
   Pose relative_pose() const noexcept;
@@ -189,6 +197,7 @@ class NarrowPhase {
   void expand(const PatchPair& pair, bool second) noexcept;
   bool test_triangles(const PatchPair& pair) noexcept;
   std::array<double, 3> triangle_normal() const noexcept;
+  static NodePair pair_at(std::uint32_t row, std::uint32_t lane, std::uint32_t bit, bool lanes_are_second) noexcept;
   void collect(std::uint32_t row, std::uint32_t lane, const detail::BlockHits& hits, bool lanes_are_second) noexcept;
   void improve(NodePair pair, double square, bool leaves) noexcept;
   void start_level() noexcept;
