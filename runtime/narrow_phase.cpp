@@ -5,7 +5,7 @@
 #include <cstring>
 #include <new>
 
-#include "patch_block.h"
+#include "support_map.h"
 #include "tree_nodes.h"
 
 // Rounding. Let c be the true place of a centre of the second tree in the first one's frame, c' the one computed in
@@ -83,8 +83,7 @@ NarrowPhase::Side NarrowPhase::side_of(const TreeView& tree) noexcept {
   for (std::size_t i = 0; i < 3; ++i) root[i] += tree.origin[i];
   const double extent = coordinate_extent(tree);
   const double error = kStretch * (extent + length(tree.origin)) + tree.vertex_error;
-  const PatchBlock* patches = tree.patches.empty() ? nullptr : &tree.patches[tree.patches.size() > 1 ? 1 : 0];
-  return {tree, root, extent, error, patches};
+  return {tree, root, extent, error};
 }
 
 NarrowPhase::NarrowPhase(const TreeView& a, const TreeView& b, std::size_t room) noexcept {
@@ -166,38 +165,30 @@ void NarrowPhase::reset() noexcept {
   pruned_gap_ = std::numeric_limits<double>::infinity();
 }
 
-// How far the patches below the roots are apart, at least: along the line through the roots' centres, `way`, and then
-// along directions that the patches which are in the way suggest (Chung and Wang 1996), as long as these get better.
+// How far the bodies' convex hulls are apart, at least: along the line through the roots' centres, `way`, and then
+// along directions that what is in the way suggests (Chung and Wang 1996), as long as these get better.
 double NarrowPhase::roots_gap(const Pose& first, const Pose& second, const std::array<double, 3>& way,
                               double distance) const noexcept {
-  struct Support {
-    double most;                  // along the direction, from the root's centre
-    std::array<double, 3> point;  // in the world, from the root's centre: where about
-  };
-  const auto support = [](const Side& side, const Pose& pose, const std::array<double, 3>& u, double sign) -> Support {
+  const auto reach_of = [](const Side& side, const Pose& pose, const std::array<double, 3>& u, double sign) {
     const auto& r = pose.rotation;
-    std::array<float, 3> direction{};
-    std::array<double, 3> center{};  // the root's, relative to the tree's origin
+    std::array<double, 3> direction{}, center{};  // the root's, relative to the tree's origin
     double middle = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-      const double component = sign * (r[i] * u[0] + r[3 + i] * u[1] + r[6 + i] * u[2]);
-      direction[i] = static_cast<float>(component);
+      direction[i] = sign * (r[i] * u[0] + r[3 + i] * u[1] + r[6 + i] * u[2]);
       center[i] = side.root[i] - side.tree.origin[i];
-      middle += component * center[i];
+      middle += direction[i] * center[i];
     }
-    const auto [most, lane] = detail::patch_support(*side.patches, direction);
-    const std::array<double, 3> local = {side.patches->x[lane] - center[0], side.patches->y[lane] - center[1],
-                                         side.patches->z[lane] - center[2]};
-    const double rounding = 96 * kFloatUnit * side.extent;
-    auto point = rotate(pose, local);
-    for (double& x : point) x *= pose.scale;
-    return {pose.scale * (double{most} - middle + rounding), point};
+    detail::Support support = detail::support_along(side.tree.supports, direction);
+    support.most = pose.scale * (support.most - middle + kStretch * side.extent);
+    for (std::size_t i = 0; i < 3; ++i) support.point[i] = pose.scale * (support.point[i] - center[i]);
+    support.point = rotate(pose, support.point);
+    return support;  // from the root's centre
   };
   const double shrink = 1 / distance;
   std::array<double, 3> u = {way[0] * shrink, way[1] * shrink, way[2] * shrink};
   double best = -std::numeric_limits<double>::infinity(), along = distance;
   for (int turn = 0; turn < kRootDirections; ++turn) {
-    const Support p = support(first_, first, u, 1), q = support(second_, second, u, -1);
+    const detail::Support p = reach_of(first_, first, u, 1), q = reach_of(second_, second, u, -1);
     const double gap = along - (p.most + q.most);
     if (gap > 0) return gap * (1 - kStretch);
     if (gap <= best) break;
@@ -210,7 +201,7 @@ double NarrowPhase::roots_gap(const Pose& first, const Pose& second, const std::
       square += between[i] * between[i];
       component += between[i] * u[i];
     }
-    if (component >= 0 || !(square > 0)) break;  // the points are in order: only their patches' sizes are in the way
+    if (component >= 0 || !(square > 0)) break;
     const double factor = 2 * component / square;
     double length_square = 0;
     for (std::size_t i = 0; i < 3; ++i) {

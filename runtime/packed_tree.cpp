@@ -169,6 +169,14 @@ const char* triangle_tree_fault(const TreeView& tree) noexcept {
   return triangles == tree.triangles.size() ? nullptr : "the tree of triangles does not hold every triangle once";
 }
 
+const char* support_fault(const TreeView& tree) noexcept {
+  if (tree.supports.size() != (tree.triangles.empty() ? 0 : kSupportCount)) return "the number of supports is wrong";
+  for (const float support : tree.supports) {
+    if (!(std::fabs(support) <= 4 * kCoordinateLimit)) return "a support is not finite or out of range";
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 const char* structure_fault(const TreeView& tree) noexcept {
@@ -179,6 +187,7 @@ const char* structure_fault(const TreeView& tree) noexcept {
   if (!(tree.vertex_error >= 0 && std::isfinite(tree.vertex_error))) return "the vertex error is negative";
   if (const char* fault = triangle_fault(tree)) return fault;
   if (const char* fault = triangle_tree_fault(tree)) return fault;
+  if (const char* fault = support_fault(tree)) return fault;
   return StructureCheck(tree).fault();
 }
 

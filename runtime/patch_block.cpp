@@ -1,7 +1,5 @@
 #include "patch_block.h"
 
-#include <limits>
-
 #include "vector_support.h"
 
 // Rounding. Patches: see Placement::margin in narrow_phase.cpp, (5). Triangles: any fixed vector serves as an axis,
@@ -90,29 +88,6 @@ ORCHARD_INLINE void find_gaps(const Patch& single, const PatchBlock& lanes, cons
   const Floats gap = E::larger(E::larger(by_n, by_m), E::larger(by_line, by_balls)) - E::all(margin);
   store(gap, result.gap);
   result.meeting = result.used & Kind::bits(gap <= zero);
-}
-
-template <typename Kind>
-ORCHARD_INLINE PatchSupport find_support(const PatchBlock& block, const std::array<float, 3>& direction) noexcept {
-  using E = Eight<Kind>;
-  using Floats = typename E::Floats;
-  using Vectors = typename E::Vectors;
-  const Vectors u = {E::all(direction[0]), E::all(direction[1]), E::all(direction[2])};
-  const Vectors c = {load<Floats>(block.x), load<Floats>(block.y), load<Floats>(block.z)};
-  const Vectors n = {load<Floats>(block.nx), load<Floats>(block.ny), load<Floats>(block.nz)};
-  const Floats r = load<Floats>(block.radius), zero = E::all(0.0f);
-  const Floats cosine = E::size(E::dot(n, u));
-  const Floats sine = Kind::root(E::larger(E::all(1.0f) - cosine * cosine, zero) + E::all(kSineError));
-  const Floats reach = E::dot(c, u) + E::smaller(r, load<Floats>(block.height) * cosine + r * sine);
-  std::array<float, kBlockWidth> lanes;
-  store(Kind::choose(zero <= r, reach, E::all(-std::numeric_limits<float>::infinity())), lanes);
-  PatchSupport half[4];
-  for (std::uint32_t i = 0; i < 4; ++i) {
-    half[i] = lanes[i] < lanes[i + 4] ? PatchSupport{lanes[i + 4], i + 4} : PatchSupport{lanes[i], i};
-  }
-  const PatchSupport p = half[0].most < half[1].most ? half[1] : half[0],
-                     q = half[2].most < half[3].most ? half[3] : half[2];
-  return p.most < q.most ? q : p;
 }
 
 template <typename Kind>
@@ -292,10 +267,6 @@ void triangle_gaps_scalar(const TriangleBlock& lanes, const TriangleBlock& rows,
   find_triangle_gaps<PlainFloats>(lanes, rows, placement, direction, result);
 }
 
-PatchSupport patch_support_scalar(const PatchBlock& block, const std::array<float, 3>& direction) noexcept {
-  return find_support<PlainFloats>(block, direction);
-}
-
 std::uint64_t triangle_candidates_scalar(const LeafPair& pair, const Placement& placement) noexcept {
   return find_candidates<PlainFloats>(pair, placement);
 }
@@ -315,11 +286,6 @@ ORCHARD_PER_MACHINE void triangle_gaps(const TriangleBlock& lanes, const Triangl
                                        const Placement& placement, const std::array<float, 3>& direction,
                                        TriangleGaps& result) noexcept {
   find_triangle_gaps<Widest>(lanes, rows, placement, direction, result);
-}
-
-ORCHARD_PER_MACHINE PatchSupport patch_support(const PatchBlock& block,
-                                               const std::array<float, 3>& direction) noexcept {
-  return find_support<Widest>(block, direction);
 }
 
 ORCHARD_PER_MACHINE std::uint64_t triangle_candidates(const LeafPair& pair, const Placement& placement) noexcept {

@@ -35,15 +35,6 @@ void patch_gaps(const Patch& single, const PatchBlock& lanes, const Placement* p
 void patch_gaps_scalar(const Patch& single, const PatchBlock& lanes, const Placement* placement, float margin,
                        PatchGaps& result) noexcept;
 
-// The largest of direction . point over the patches, rounding of a few u of the coordinates aside, and the patch that
-// has it; `direction` is unit.
-struct PatchSupport {
-  float most;
-  std::uint32_t lane;
-};
-PatchSupport patch_support(const PatchBlock& block, const std::array<float, 3>& direction) noexcept;
-PatchSupport patch_support_scalar(const PatchBlock& block, const std::array<float, 3>& direction) noexcept;
-
 struct LeafPair {
   const TriangleBlock &lanes, &rows;  // of the first tree and, to be moved, of the second
   Patch lane_patch, row_patch;        // around them, both in the first tree's frame

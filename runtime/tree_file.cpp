@@ -16,8 +16,8 @@ namespace {
 constexpr std::array<unsigned char, 8> kMagic = {0x89, 'O', 'R', 'C', 'H', '\r', '\n', 0x1a};
 constexpr std::uint32_t kVersion = 2;
 constexpr std::size_t kAlignment = 64;
-constexpr std::size_t kSections = 6;
-constexpr std::size_t kHeaderSize = 256;
+constexpr std::size_t kSections = 7;
+constexpr std::size_t kHeaderSize = 320;
 constexpr std::size_t kPreambleSize = 32;  // magic to file size: enough to tell how long the file must be
 
 // Where the fields are: docs/FORMATS.md.
@@ -85,14 +85,14 @@ std::uint64_t checksum(const std::byte* file, std::size_t size) noexcept {
 }
 
 // In the order of the table; every element is made of 32-bit words.
-constexpr std::array<std::uint32_t, kSections> kElementSizes = {sizeof(SiblingBlock), 12, 12, 4, sizeof(PatchBlock),
-                                                                sizeof(TriangleBlock)};
+constexpr std::array<std::uint32_t, kSections> kElementSizes = {sizeof(SiblingBlock),  12, 12, 4, sizeof(PatchBlock),
+                                                                sizeof(TriangleBlock), 4};
 
 // Calls visit(section number from 0, array) for every section of a tree or view.
 template <typename Tree, typename Visit>
 void each_section(Tree& tree, Visit&& visit) {
   visit(0, tree.blocks), visit(1, tree.vertices), visit(2, tree.triangles);
-  visit(3, tree.leaf_triangles), visit(4, tree.patches), visit(5, tree.triangle_blocks);
+  visit(3, tree.leaf_triangles), visit(4, tree.patches), visit(5, tree.triangle_blocks), visit(6, tree.supports);
 }
 
 template <typename Tree>

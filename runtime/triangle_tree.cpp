@@ -280,6 +280,26 @@ class Builder {
 
 }  // namespace
 
-void index_triangles(PackedSphereTree& tree) { Builder(tree).build(); }
+void index_triangles(PackedSphereTree& tree) {
+  Builder(tree).build();
+  tree.supports.clear();
+  if (tree.triangles.empty()) return;
+  std::vector<bool> used(tree.vertices.size());
+  for (const auto& triangle : tree.triangles) {
+    for (const std::uint32_t vertex : triangle) used[vertex] = true;
+  }
+  for (std::uint32_t i = 0; i < kSupportCount; ++i) {
+    const Vec3 direction = support_direction(i);
+    double most = -std::numeric_limits<double>::infinity(), largest = 0;
+    for (std::size_t v = 0; v < tree.vertices.size(); ++v) {
+      if (!used[v]) continue;
+      const Vec3 p = {double{tree.vertices[v][0]}, double{tree.vertices[v][1]}, double{tree.vertices[v][2]}};
+      most = std::max(most, dot(direction, p));
+      largest = std::max({largest, std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])});
+    }
+    most += 1e-15 * 3 * largest;  // the sum's rounding
+    tree.supports.push_back(std::nextafter(static_cast<float>(most), std::numeric_limits<float>::infinity()));
+  }
+}
 
 }  // namespace orchard::runtime

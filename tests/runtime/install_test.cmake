@@ -19,7 +19,7 @@ function(must_run)
 endfunction()
 
 # An isolated consumer: orchard_DIR must lie in the prefix, checked below.
-set(configure "${CMAKE_COMMAND}" -G "${GENERATOR}" "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_CXX_FLAGS=${FLAGS}"
+set(configure "${CMAKE_COMMAND}" -G "${GENERATOR}" "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_CXX_FLAGS=${FLAGS}" "-DCMAKE_C_FLAGS=${FLAGS}"
   "-DCMAKE_PREFIX_PATH=${prefix}" -DCMAKE_BUILD_TYPE=Release -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF)
 
 if(STEP STREQUAL "install")
@@ -47,6 +47,14 @@ elseif(STEP STREQUAL "example")
   must_run("${SCRATCH}/example/approach" "${SCRATCH}/torus.orchard")
   if(NOT output MATCHES "0: no .*: yes, triangle")
     message(FATAL_ERROR "the example found no contact:\n${output}")
+  endif()
+  must_run("${SCRATCH}/example/approach_c" "${SCRATCH}/torus.orchard")
+  if(NOT output MATCHES "0: no; at least .*: yes; at least 0 ")
+    message(FATAL_ERROR "the example in C found no contact:\n${output}")
+  endif()
+  run("${SCRATCH}/example/approach_c" "${SOURCE}/CMakeLists.txt")
+  if(NOT result EQUAL 2 OR NOT output MATCHES "not an .orchard file")
+    message(FATAL_ERROR "the example in C took a text for a tree (${result}):\n${output}")
   endif()
   run("${SCRATCH}/example/approach" "${SOURCE}/CMakeLists.txt")
   if(NOT result EQUAL 2 OR NOT output MATCHES "not an .orchard file")

@@ -20,7 +20,7 @@ namespace {
 
 using namespace orchard::runtime::test;
 
-constexpr std::size_t kChecksumAt = 16, kFileSizeAt = 24, kTableAt = 96, kHeaderSize = 256;
+constexpr std::size_t kChecksumAt = 16, kFileSizeAt = 24, kTableAt = 96, kHeaderSize = 320;
 
 template <typename T>
 T get(const std::vector<std::byte>& file, std::size_t at) {
@@ -127,9 +127,10 @@ TEST(TreeFile, PutsEverySectionWhereTheFormatSays) {
   EXPECT_EQ(get<std::uint32_t>(file, 12), kHeaderSize);
   EXPECT_EQ(get<std::uint64_t>(file, kFileSizeAt), file.size());
   const std::size_t counts[] = {tree.blocks.size(),         tree.vertices.size(), tree.triangles.size(),
-                                tree.leaf_triangles.size(), tree.patches.size(),  tree.triangle_blocks.size()};
-  const std::uint32_t sizes[] = {256, 12, 12, 4, 288, 320};
-  for (std::size_t i = 0; i < 6; ++i) {
+                                tree.leaf_triangles.size(), tree.patches.size(),  tree.triangle_blocks.size(),
+                                tree.supports.size()};
+  const std::uint32_t sizes[] = {256, 12, 12, 4, 288, 320, 4};
+  for (std::size_t i = 0; i < 7; ++i) {
     const std::size_t at = kTableAt + 24 * i;
     EXPECT_EQ(get<std::uint32_t>(file, at), i + 1);
     EXPECT_EQ(get<std::uint32_t>(file, at + 4), sizes[i]);
@@ -189,7 +190,7 @@ TEST(TreeFile, RefusesOtherVersionsAndTrailingBytes) {
 TEST(TreeFile, RefusesSealedFilesWithImpossibleTables) {
   const auto file = serialize(sample_tree());
   const std::uint64_t values[] = {0, 1, file.size(), file.size() / 12, 1ull << 32, 1ull << 60, ~0ull, ~0ull / 12};
-  for (std::size_t section = 0; section < 6; ++section) {
+  for (std::size_t section = 0; section < 7; ++section) {
     for (const std::size_t field : {0u, 4u, 8u, 16u}) {
       for (const std::uint64_t value : values) {
         const std::size_t at = kTableAt + 24 * section + field;
@@ -259,6 +260,9 @@ TEST(TreeFile, RefusesSealedFilesWhoseTreesAreNotSafeToWalk) {
       {"block names a triangle beyond the end", [](auto& t) { t.triangle_blocks[0].triangle[1] = 1u << 20; }},
       {"block leaves a triangle out", [](auto& t) { t.triangle_blocks[0].triangle[1] = kNoTriangle; }},
       {"block moves a corner", [](auto& t) { t.triangle_blocks[0].corner[2][1][1] += 1; }},
+      {"no supports", [](auto& t) { t.supports.clear(); }},
+      {"too many supports", [](auto& t) { t.supports.push_back(0); }},
+      {"support not a number", [=](auto& t) { t.supports[100] = nan; }},
       {"leaf range beyond the end", [](auto& t) { t.leaf_triangles.pop_back(); }},
       {"leaf range wraps", [](auto& t) { t.blocks.back().first[0] = ~0u, t.blocks.back().count[0] = ~0u; }},
   };

@@ -142,10 +142,9 @@ class NarrowPhase {
   friend class DistanceQuery;
   struct Side {
     TreeView tree;
-    std::array<double, 3> root{};         // its centre, origin included
-    double extent = 0;                    // coordinate_extent()
-    double error = 0;                     // of a point, whatever the pose
-    const PatchBlock* patches = nullptr;  // the root's children, or the root; none without triangles
+    std::array<double, 3> root{};  // its centre, origin included
+    double extent = 0;             // coordinate_extent()
+    double error = 0;              // of a point, whatever the pose
   };
   struct NodePair {
     std::uint32_t a, b;

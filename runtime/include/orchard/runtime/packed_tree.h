@@ -50,6 +50,8 @@ struct alignas(32) TriangleBlock {
 static_assert(sizeof(TriangleBlock) == 320 && alignof(TriangleBlock) == 32);
 
 inline constexpr std::uint32_t kNoTriangle = 0xffffffffu;
+inline constexpr std::uint32_t kSupportCells = 8;  // along an edge of the cube of directions
+inline constexpr std::uint32_t kSupportCount = 6 * (kSupportCells + 1) * (kSupportCells + 1);
 inline constexpr std::uint32_t kPatchDepthLimit = 64;  // levels below the root that a tree of triangles may have
 
 // A sphere-tree as it ships: flat arrays of floats around a double origin, every ball rounded outward. Blocks are in
@@ -71,7 +73,20 @@ struct PackedSphereTree {
   std::vector<std::uint32_t> leaf_triangles;            // into triangles
   std::vector<PatchBlock> patches;
   std::vector<TriangleBlock> triangle_blocks;
+  // How far the triangles reach: the largest of direction . point, rounded up, for directions on the surface of the
+  // cube of side 2, in the order of support_direction(). kSupportCount of them if there are triangles, or none.
+  std::vector<float> supports;
 };
+
+constexpr std::array<double, 3> support_direction(std::uint32_t index) noexcept {
+  constexpr std::uint32_t side = kSupportCells + 1;
+  const std::uint32_t face = index / (side * side), axis = face / 2;
+  std::array<double, 3> direction{};
+  direction[axis] = face % 2 == 0 ? 1 : -1;
+  direction[(axis + 1) % 3] = 2.0 * (index / side % side) / kSupportCells - 1;
+  direction[(axis + 2) % 3] = 2.0 * (index % side) / kSupportCells - 1;
+  return direction;
+}
 
 // The same without owning the arrays: what queries work on. The arrays may belong to a PackedSphereTree or to a file
 // that is mapped into memory; they must outlive the view and stay unchanged.
@@ -85,6 +100,7 @@ struct TreeView {
   std::span<const std::uint32_t> leaf_triangles;
   std::span<const PatchBlock> patches;
   std::span<const TriangleBlock> triangle_blocks;
+  std::span<const float> supports;
 
   TreeView() = default;
   TreeView(const PackedSphereTree& tree) noexcept  // NOLINT: implicit, so that queries take either
@@ -100,11 +116,13 @@ struct TreeView {
         triangles(tree.triangles),
         leaf_triangles(tree.leaf_triangles),
         patches(tree.patches),
-        triangle_blocks(tree.triangle_blocks) {}
+        triangle_blocks(tree.triangle_blocks),
+        supports(tree.supports) {}
 };
 
-// Builds the tree of triangles from `vertices` and `triangles`: to be called once these are complete. Deterministic.
-// Throws std::bad_alloc only. O(n log n). Precondition: indices are in range and coordinates within kCoordinateLimit.
+// Builds the tree of triangles, and `supports`, from `vertices` and `triangles`: to be called once these are complete.
+// Deterministic. Throws std::bad_alloc only. O(n log n). Precondition: indices are in range and coordinates within
+// kCoordinateLimit.
 void index_triangles(PackedSphereTree& tree);
 
 // What is wrong with a tree's structure, or nullptr: indices in range, children after their parent, no block shared,
