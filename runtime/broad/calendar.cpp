@@ -5,30 +5,29 @@
 
 namespace orchard::runtime::detail {
 
-void Calendar::make_room(std::size_t bodies) { grow(links_, bodies); }
-
-void Calendar::set_due(BodyId body, Step step) noexcept {
-  clear_due(body);
+void Calendar::set_due(BodyId body, Step step) {
   const std::size_t bucket = bucket_of(step);
-  std::uint32_t& head = buckets_[bucket].body;
-  links_[body] = {head, static_cast<std::uint32_t>(bucket) | kHeadBit};
-  if (head != kNone) links_[head].previous = body;
-  head = body;
-  mark(bucket);
+  std::uint32_t& head = buckets_[bucket].bodies;
+  if (head == kNone || lines_[head].count == lines_[head].ids.size()) {
+    std::uint32_t line = free_line_;
+    if (line == kNone) {
+      line = static_cast<std::uint32_t>(lines_.size());
+      grow(lines_, lines_.size() + 1);
+    } else {
+      free_line_ = lines_[line].next;
+    }
+    lines_[line].next = head;
+    lines_[line].count = 0;
+    head = line;
+    mark(bucket);
+  }
+  lines_[head].ids[lines_[head].count++] = body;
 }
 
-void Calendar::clear_due(BodyId body) noexcept {
-  Links& own = links_[body];
-  if (own.previous == kNone) return;
-  std::uint32_t& before = own.previous & kHeadBit ? buckets_[own.previous & ~kHeadBit].body : links_[own.previous].next;
-  before = own.next;
-  if (own.next != kNone) links_[own.next].previous = own.previous;
-  own = Links{};
-}
-
-void Calendar::clear_all_due() noexcept {
-  for (Bucket& bucket : buckets_) bucket.body = kNone;
-  for (Links& links : links_) links = Links{};
+void Calendar::clear_bodies() noexcept {
+  for (Bucket& bucket : buckets_) bucket.bodies = kNone;
+  lines_.clear();
+  free_line_ = kNone;
 }
 
 void Calendar::add(const PairEvent& event, Step step) {
@@ -48,11 +47,13 @@ void Calendar::add(const PairEvent& event, Step step) {
 void Calendar::take(Step step, std::vector<BodyId>& bodies, std::vector<PairEvent>& events) {
   const std::size_t index = bucket_of(step);
   Bucket& bucket = buckets_[index];
-  for (std::uint32_t body = bucket.body; body != kNone;) {
-    bodies.push_back(body);
-    const std::uint32_t next = links_[body].next;
-    links_[body] = Links{};
-    body = next;
+  for (std::uint32_t line = bucket.bodies; line != kNone;) {
+    Bodies& part = lines_[line];
+    bodies.insert(bodies.end(), part.ids.begin(), part.ids.begin() + part.count);
+    const std::uint32_t next = part.next;
+    part.next = free_line_;
+    free_line_ = line;
+    line = next;
   }
   for (std::uint32_t node = bucket.event; node != kNone;) {
     events.push_back(nodes_[node].event);
@@ -78,6 +79,6 @@ Step Calendar::next_after(Step now) const noexcept {
   return kNeverStep;
 }
 
-std::size_t Calendar::memory_bytes() const noexcept { return sizeof(*this) + bytes_of(links_) + bytes_of(nodes_); }
+std::size_t Calendar::memory_bytes() const noexcept { return sizeof(*this) + bytes_of(lines_) + bytes_of(nodes_); }
 
 }  // namespace orchard::runtime::detail

@@ -15,14 +15,11 @@ struct PairEvent {
 };
 
 // What is due when, for less than kCalendarSteps steps ahead: bodies to look at again and pairs to test, in a ring of
-// lists indexed by step. A body is due once; a pair may be several times, the older events being void.
+// lists indexed by step. Nothing is taken out before its time: the caller tells what is void.
 class Calendar {
  public:
-  void make_room(std::size_t bodies);
-
-  void set_due(BodyId body, Step step) noexcept;  // replaces what was set
-  void clear_due(BodyId body) noexcept;
-  void clear_all_due() noexcept;
+  void set_due(BodyId body, Step step);
+  void clear_bodies() noexcept;
   void add(const PairEvent& event, Step step);
 
   // Moves everything due at the step to the ends of the vectors.
@@ -33,27 +30,26 @@ class Calendar {
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffffu;
-  struct Links {
-    std::uint32_t next = kNone;
-    std::uint32_t previous = kNone;  // or, with kHeadBit, the bucket
+  struct alignas(64) Bodies {  // a cache line of a list
+    std::uint32_t next, count;
+    std::array<BodyId, 14> ids;
   };
   struct Node {
     PairEvent event;
     std::uint32_t next;
   };
-  static constexpr std::uint32_t kHeadBit = 0x80000000u;
+  struct Bucket {
+    std::uint32_t bodies = kNone, event = kNone;
+  };
 
   static std::size_t bucket_of(Step step) noexcept { return static_cast<std::size_t>(step & (kCalendarSteps - 1)); }
   void mark(std::size_t bucket) noexcept { busy_[bucket / 64] |= std::uint64_t{1} << (bucket % 64); }
 
-  struct Bucket {
-    std::uint32_t body = kNone, event = kNone;
-  };
   std::array<Bucket, kCalendarSteps> buckets_{};
   std::array<std::uint64_t, kCalendarSteps / 64> busy_{};  // a bit per bucket with anything in it, or once had
-  std::vector<Links> links_;
+  std::vector<Bodies> lines_;
   std::vector<Node> nodes_;
-  std::uint32_t free_node_ = kNone;
+  std::uint32_t free_line_ = kNone, free_node_ = kNone;
 };
 
 }  // namespace orchard::runtime::detail

@@ -5,12 +5,9 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr std::size_t kMeansStride = 16;  // of the bodies looked at, every so many count for the plan's means
-constexpr std::size_t kSmallSample = 16, kSample = 48;  // bodies that the first plan looks at: of few, and of many
-constexpr double kCrowding = 4;                         // lines read per entry from which on the cells are too large
-constexpr std::size_t kChangesKept = 1024;              // room for as many changes in a step stays allocated
-constexpr unsigned kPlansKept = 8;          // a plan that fits is made anew after as many looks at all bodies
-constexpr double kFewPairs = 1e-3;          // per body: too few to say anything about the prediction
+constexpr std::size_t kMeansStride = 16;    // of the bodies looked at, every so many count for the plan's means
+constexpr std::size_t kChangesKept = 1024;  // room for as many changes in a step stays allocated
+constexpr Step kLookDue = -1;               // a window's end while its body waits for a look
 constexpr double kEventResolution = 0.125;  // of a step: no need to know better when a pair can touch
 
 bool cells_fit(const QuantumBox& box) noexcept {
@@ -30,7 +27,6 @@ void Events::make_room() {
   grow(windows_, n);
   grow(places_, n);
   grow(pending_, n);
-  calendar_.make_room(n);
 }
 
 void Events::changed(BodyId body) {
@@ -38,14 +34,12 @@ void Events::changed(BodyId body) {
   if (pending_[body]) return;
   pending_[body] = 1;
   changed_.push_back(body);
-  calendar_.clear_due(body);
 }
 
 void Events::removed(BodyId body) {
   take_away(body);
-  calendar_.clear_due(body);
   pending_[body] = 0;
-  windows_[body].looked = kNeverStep;  // voids the events; the next look at the slot's next body sets it
+  windows_[body] = {kNeverStep, kNeverStep};  // voids the events and the next look, until the slot's next body
 }
 
 void Events::take_away(BodyId body) noexcept {
@@ -54,18 +48,29 @@ void Events::take_away(BodyId body) noexcept {
   places_[body] = Place::nowhere;
 }
 
+// In the order of the calendar bodies are all over memory: what is needed next is loaded ahead.
 void Events::take_away_due() noexcept {
-  constexpr std::size_t kAhead = 12;
+  constexpr std::size_t kBoxAhead = 24, kLineAhead = 12;
   for (std::size_t i = 0; i < due_.size(); ++i) {
-    if (i + kAhead < due_.size()) grid_.prepare_removal(boxes_[due_[i + kAhead]]);
+    if (i + kBoxAhead < due_.size()) prefetch(&boxes_[due_[i + kBoxAhead]]);
+    if (i + kLineAhead < due_.size()) grid_.prepare_removal(boxes_[due_[i + kLineAhead]]);
     take_away(due_[i]);
   }
 }
 
 void Events::collect_due(Step now) {
-  due_.clear();
+  constexpr std::size_t kAhead = 16;
+  entries_.clear();
   events_.clear();
-  calendar_.take(now, due_, events_);
+  due_.clear();
+  calendar_.take(now, entries_, events_);
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (i + kAhead < entries_.size()) prefetch(&windows_[entries_[i + kAhead]]);
+    Window& window = windows_[entries_[i]];
+    if (window.end != now || pending_[entries_[i]]) continue;  // looked at since
+    window.end = kLookDue;
+    due_.push_back(entries_[i]);
+  }
   for (const BodyId body : changed_) {
     if (!pending_[body]) continue;
     pending_[body] = 0;
@@ -75,65 +80,8 @@ void Events::collect_due(Step now) {
   if (changed_.capacity() > kChangesKept) changed_.shrink_to_fit();  // not what adding all bodies took
 }
 
-bool Events::crowded(const GridCounts& counts) const noexcept {
-  return counts.bodies >= roster_.size() &&
-         static_cast<double>(counts.lines_read) > kCrowding * static_cast<double>(counts.entries);
-}
-
-// When most bodies are due it is cheaper to start afresh; it also lets the plan follow the bodies.
-bool Events::worth_a_rebuild() const noexcept {
-  const std::size_t n = roster_.size();
-  if (due_.empty() || n == 0) return false;
-  return 2 * due_.size() >= n || n > 2 * planned_bodies_ || crowded(grid_.counts());
-}
-
-void Events::replan(Step now) {
-  const std::size_t n = roster_.size();
-  const GridCounts counts = grid_.take_counts();
-  double off = 1;  // pairs seen to pairs predicted
-  if (counts.bodies > 0) {
-    const double seen = static_cast<double>(counts.pairs) / static_cast<double>(counts.bodies);
-    off = (seen + kFewPairs) / (plan_.pairs_per_body + kFewPairs);
-  }
-  if (crowded(counts) && n <= 2 * planned_bodies_) {
-    spacing_ /= 2;  // bodies in clusters: what counts is how dense these are
-  } else if (n > 2 * planned_bodies_ || 2 * n < planned_bodies_) {
-    survey(now);
-  } else if (0.5 < off && off < 2 && plans_++ % kPlansKept != 1) {
-    return;
-  }
-  correction_ = std::clamp(correction_ * off, 0.05, 50.0);
-  plan_ = plan_window(means_, n, spacing_, options_.time_step, correction_, options_.window);
-  lattice_ = Lattice(lattice_.origin(), plan_.cell_size);
-  means_ = {};
-}
-
-// How bodies lie and move, from a sample.
-void Events::survey(Step now) {
-  const std::size_t n = roster_.size(), wanted = std::clamp(n / 8, kSmallSample, kSample);
-  const std::size_t stride = std::max<std::size_t>(1, n / wanted);
-  std::vector<BodyId> sample;
-  std::size_t seen = 0;
-  for (BodyId body = 0; body < roster_.slots() && sample.size() < wanted; ++body) {
-    if (roster_.alive(body) && seen++ % stride == 0) sample.push_back(body);
-  }
-  motions_.resize(sample.size());
-  roster_.ask(now, sample, motions_);
-  std::vector<Vec3> centers;
-  means_ = {};
-  for (const Motion& motion : motions_) {
-    means_.add(motion);
-    centers.push_back(motion.position);
-  }
-  lattice_ = Lattice(centers.front(), 1);
-  spacing_ = mean_spacing(centers, n);
-  planned_bodies_ = n;
-  correction_ = 1;
-  plans_ = 0;
-}
-
 void Events::place_all_anew() {
-  calendar_.clear_all_due();
+  calendar_.clear_bodies();
   std::fill(places_.begin(), places_.end(), Place::nowhere);
   oversized_.clear();
   if (due_.capacity() > 2 * roster_.size()) due_ = {};
@@ -293,7 +241,10 @@ void Events::settle(Step now, const BodyPair& pair, const Motion& a, const Motio
 
 // What an interruption left over is done at the next step.
 void Events::postpone(Step now, std::size_t looked, unsigned from_class) {
-  for (; looked < due_.size(); ++looked) calendar_.set_due(due_[looked], now + 1);
+  for (; looked < due_.size(); ++looked) {
+    windows_[due_[looked]].end = now + 1;
+    calendar_.set_due(due_[looked], now + 1);
+  }
   for (const PairEvent& event : waiting_) {
     if (roster_.importance(event.pair) >= from_class) calendar_.add(event, now + 1);
   }
@@ -357,9 +308,9 @@ StepReport Events::step(Step now, Meter& meter, std::vector<BodyPair>& pairs) {
 
 std::size_t Events::memory_bytes() const noexcept {
   return sizeof(*this) + bytes_of(boxes_) + bytes_of(windows_) + bytes_of(places_) + bytes_of(pending_) +
-         bytes_of(changed_) + bytes_of(oversized_) + bytes_of(overlaps_) + bytes_of(due_) + bytes_of(events_) +
-         bytes_of(waiting_) + bytes_of(tests_) + bytes_of(near_) + bytes_of(motions_) + grid_.memory_bytes() +
-         calendar_.memory_bytes() - sizeof(calendar_);
+         bytes_of(changed_) + bytes_of(entries_) + bytes_of(oversized_) + bytes_of(overlaps_) + bytes_of(due_) +
+         bytes_of(events_) + bytes_of(waiting_) + bytes_of(tests_) + bytes_of(near_) + bytes_of(motions_) +
+         grid_.memory_bytes() + calendar_.memory_bytes() - sizeof(calendar_);
 }
 
 std::unique_ptr<Method> make_events(Roster& roster, const BroadPhaseOptions& options) {

@@ -68,7 +68,7 @@ class Events final : public Method {
   unsigned plans_ = 0;
 
   // Of the step under way; kept for their memory.
-  std::vector<BodyId> due_;
+  std::vector<BodyId> entries_, due_;
   std::vector<PairEvent> events_, waiting_, tests_;
   std::vector<BodyPair> near_;
   std::vector<Motion> motions_;

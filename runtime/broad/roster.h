@@ -119,8 +119,18 @@ class Roster {
 template <typename T>
 void grow(std::vector<T>& v, std::size_t size) {
   if (v.size() >= size) return;
-  if (v.capacity() < size) v.reserve(size + size / 8);
+  constexpr std::size_t kLeast = 32;
+  if (v.capacity() < size) v.reserve(std::max(kLeast, size + size / 8));
   v.resize(size);
+}
+
+// Starts loading what will be written soon.
+inline void prefetch(const void* where) noexcept {
+#ifdef __GNUC__
+  __builtin_prefetch(where, 1);
+#else
+  (void)where;
+#endif
 }
 
 template <typename T>

@@ -34,14 +34,6 @@ ORCHARD_INLINE Code code_of(const QuantumBox& box, const std::array<std::uint32_
   return code;
 }
 
-ORCHARD_INLINE void prefetch(const CellLine* line) noexcept {
-#ifdef ORCHARD_VECTORS
-  __builtin_prefetch(line, 1);
-#else
-  (void)line;
-#endif
-}
-
 // Bit i: entry i of the line meets the query. Bits from line.count on mean nothing.
 struct PlainCompare {
   static std::uint32_t meeting(const CellLine& line, std::uint64_t query) noexcept {

@@ -1,0 +1,71 @@
+#include "events.h"
+
+// When to look at all bodies anew, and how long their windows are then.
+namespace orchard::runtime::detail {
+namespace {
+
+constexpr std::size_t kSmallSample = 16, kSample = 48;  // bodies that the first plan looks at: of few, and of many
+constexpr double kCrowding = 4;                         // lines read per entry from which on the cells are too large
+constexpr unsigned kPlansKept = 8;  // a plan that fits is made anew after as many looks at all bodies
+constexpr double kFewPairs = 1e-3;  // per body: too few to say anything about the prediction
+
+}  // namespace
+
+bool Events::crowded(const GridCounts& counts) const noexcept {
+  return counts.bodies >= roster_.size() &&
+         static_cast<double>(counts.lines_read) > kCrowding * static_cast<double>(counts.entries);
+}
+
+// When most bodies are due it is cheaper to start afresh; it also lets the plan follow the bodies.
+bool Events::worth_a_rebuild() const noexcept {
+  const std::size_t n = roster_.size();
+  if (due_.empty() || n == 0) return false;
+  return 2 * due_.size() >= n || n > 2 * planned_bodies_ || crowded(grid_.counts());
+}
+
+void Events::replan(Step now) {
+  const std::size_t n = roster_.size();
+  const GridCounts counts = grid_.take_counts();
+  double off = 1;  // pairs seen to pairs predicted
+  if (counts.bodies > 0) {
+    const double seen = static_cast<double>(counts.pairs) / static_cast<double>(counts.bodies);
+    off = (seen + kFewPairs) / (plan_.pairs_per_body + kFewPairs);
+  }
+  if (crowded(counts) && n <= 2 * planned_bodies_) {
+    spacing_ /= 2;  // bodies in clusters: what counts is how dense these are
+  } else if (n > 2 * planned_bodies_ || 2 * n < planned_bodies_) {
+    survey(now);
+  } else if (0.5 < off && off < 2 && plans_++ % kPlansKept != 1) {
+    return;
+  }
+  correction_ = std::clamp(correction_ * off, 0.05, 50.0);
+  plan_ = plan_window(means_, n, spacing_, options_.time_step, correction_, options_.window);
+  lattice_ = Lattice(lattice_.origin(), plan_.cell_size);
+  means_ = {};
+}
+
+// How bodies lie and move, from a sample.
+void Events::survey(Step now) {
+  const std::size_t n = roster_.size(), wanted = std::clamp(n / 8, kSmallSample, kSample);
+  const std::size_t stride = std::max<std::size_t>(1, n / wanted);
+  std::vector<BodyId> sample;
+  std::size_t seen = 0;
+  for (BodyId body = 0; body < roster_.slots() && sample.size() < wanted; ++body) {
+    if (roster_.alive(body) && seen++ % stride == 0) sample.push_back(body);
+  }
+  motions_.resize(sample.size());
+  roster_.ask(now, sample, motions_);
+  std::vector<Vec3> centers;
+  means_ = {};
+  for (const Motion& motion : motions_) {
+    means_.add(motion);
+    centers.push_back(motion.position);
+  }
+  lattice_ = Lattice(centers.front(), 1);
+  spacing_ = mean_spacing(centers, n);
+  planned_bodies_ = n;
+  correction_ = 1;
+  plans_ = 0;
+}
+
+}  // namespace orchard::runtime::detail
