@@ -149,6 +149,7 @@ void DistanceQuery::report() noexcept {
   const double scale = pair_.first_pose_.scale, error = pair_.exact_error_;
   if (std::isfinite(least)) lower_ = std::max(lower_, least * scale * (1 - kRounding) - error);
   upper_ = std::min(upper_, nearest_ * scale * (1 + kRounding) + error);
+  lower_ = std::min(lower_, upper_);  // they only ever cross in a file whose patches do not hold their triangles
 }
 
 DistanceQuery::Points DistanceQuery::points() const noexcept {

@@ -7,7 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "orchard/runtime/distance.h"
 #include "orchard/runtime/narrow_phase.h"
+#include "orchard/runtime/shape_query.h"
 #include "orchard/runtime/tree_file.h"
 
 namespace {
@@ -18,8 +20,9 @@ void require(bool condition) {
   if (!condition) std::abort();
 }
 
-void query(const PackedSphereTree& tree) {
-  NarrowPhase pair(tree, tree);
+void query(const TreeView& tree) {
+  NarrowPhase pair(tree, tree), probed(tree, tree);
+  DistanceQuery distance(tree, tree);
   const double size = tree.bounding_radius;
   const std::array<Pose, 3> poses = {Pose{}, Pose{.translation = {size, 0, 0}},
                                      *pose_from_quaternion({1, 2, 3, 4}, {0, 0.5 * size, 0})};
@@ -27,9 +30,30 @@ void query(const PackedSphereTree& tree) {
     pair.start(Pose{}, pose);
     for (int step = 0; step < 8 && !pair.finished(); ++step) pair.refine({.pair_tests = 2000});
     pair.refine_exactly({.pair_tests = 2000});
+    probed.start(Pose{}, pose);
+    probed.probe(2);
+    distance.start(Pose{}, pose);
+    for (int step = 0; step < 4 && !distance.finished(); ++step) distance.refine({.pair_tests = 500});
+    require(distance.lower() <= distance.upper());
     require(pair.separation_bound() >= 0 && pair.lower_bound() >= 0);
     pair.contact();
   }
+  const std::array<double, 3> near = tree.origin, far = {tree.origin[0] + size, tree.origin[1], tree.origin[2] - size};
+  nearest_point_to_segment(tree, Pose{}, near, far);
+  cast_ray(tree, Pose{}, far, {-1, 0.1, 1});
+  contains(tree, Pose{}, near);
+}
+
+// The bytes where they are, with nothing behind them that could be read unnoticed.
+void use_in_place(std::span<const std::byte> bytes, bool loads) {
+  void* const copy = std::aligned_alloc(64, bytes.size());
+  require(copy != nullptr);
+  std::memcpy(copy, bytes.data(), bytes.size());
+  TreeView tree;
+  const LoadStatus status = view({static_cast<const std::byte*>(copy), bytes.size()}, tree);
+  require((status == LoadStatus::ok) == loads);
+  if (loads) query(tree);
+  std::free(copy);
 }
 
 void try_to_load(std::span<const std::byte> bytes) {
@@ -42,6 +66,7 @@ void try_to_load(std::span<const std::byte> bytes) {
   PackedSphereTree again;
   require(load(serialize(tree), again) == LoadStatus::ok && serialize(again) == serialize(tree));
   query(tree);
+  use_in_place(bytes, true);
 }
 
 void put_right(std::vector<std::byte>& file) {
