@@ -12,6 +12,7 @@
 #include "orchard/spheretree/tree_io.h"
 #include "output_folder.h"
 #include "report.h"
+#include "sphere_lists.h"
 
 #ifdef ORCHARD_HAS_VIZ
 #include "orchard/viz/render.h"
@@ -39,6 +40,13 @@ Written write_trees(const BuildCommand& command, const BuildResult& result) {
   };
   write(".orchard", as_text(runtime::serialize(result.packed)), "the sphere-tree for the run-time");
   write(".sph", to_sph(result.tree), "the sphere-tree as text");
+  const SphereLists lists = levels_of(result.tree);
+  for (const std::string& format : command.exports) {
+    if (format == "json") write("-spheres.json", to_json(lists).dump(1) + "\n", "the spheres of each level");
+    if (format == "urdf")
+      write(".urdf", to_urdf(lists, command.export_level.value_or(result.tree.depth()), command.mesh.stem().string()),
+            "a level's spheres as a link's collision geometry");
+  }
   return written;
 }
 

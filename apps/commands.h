@@ -22,9 +22,11 @@ struct BuildCommand {
   std::filesystem::path mesh, folder;
   MeshOptions reading;
   BuildOptions options;
-  bool views = true;     // ParaView files, where the program was built with them
-  bool picture = false;  // a .png as well
-  std::string up = "y";  // the mesh's axis that points up in the picture
+  bool views = true;                  // ParaView files, where the program was built with them
+  bool picture = false;               // a .png as well
+  std::vector<std::string> exports;   // sph (always written), json, urdf
+  std::optional<Index> export_level;  // of the urdf; the last one
+  std::string up = "y";               // the mesh's axis that points up in the picture
   Output output;
 };
 void build(const BuildCommand& command);
@@ -82,6 +84,15 @@ struct MedialCommand {
   Output output;
 };
 void medial(const MedialCommand& command);
+
+struct CompareCommand {
+  std::filesystem::path mesh;
+  std::vector<std::filesystem::path> trees;  // .orchard, .sph, or .json lists of spheres
+  MeshOptions reading;
+  std::filesystem::path plot;  // .svg; empty: none
+  Output output;
+};
+void compare(const CompareCommand& command);
 
 struct InspectCommand {
   std::filesystem::path file;

@@ -26,6 +26,7 @@ struct Request {
   CollideCommand collide;
   VerifyCommand verify;
   InspectCommand inspect;
+  CompareCommand compare;
   SampleCommand sample;
   VoronoiCommand voronoi;
   MedialCommand medial;
@@ -73,6 +74,11 @@ void add_build(CLI::App& app, Request& request) {
       ->check(CLI::Range(1, 1024));
   command.add_flag("!--no-views", build.views, "Write no files for ParaView");
   command.add_flag("--picture", build.picture, "Draw the pipeline to a .png as well");
+  command
+      .add_option("--export", build.exports, "More files: json (spheres by level), urdf (a link's collision spheres)")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"sph", "json", "urdf"}));
+  command.add_option("--export-level", build.export_level, "Level of the urdf's spheres (default: the last)");
   command.add_option("--up", build.up, "The mesh's axis that points up in the picture")
       ->check(CLI::IsMember({"x", "y", "z"}))
       ->capture_default_str();
@@ -108,6 +114,22 @@ void add_verify(CLI::App& app, Request& request) {
   command.callback([&request] {
     request.run = [&request] { request.exit_code = orchard::apps::verify(request.verify) ? 0 : kFailed; };
   });
+}
+
+void add_compare(CLI::App& app, Request& request) {
+  CLI::App& command =
+      *app.add_subcommand("compare", "Tell which of several trees fits a mesh tightest, level by level");
+  CompareCommand& compare = request.compare;
+  command.add_option("mesh", compare.mesh, "The mesh: .obj, .ply, .stl or .off")->required();
+  command
+      .add_option("trees", compare.trees,
+                  "Trees in the mesh's frame: .orchard, .sph, or .json lists of spheres by level")
+      ->required();
+  command.add_option("--plot", compare.plot, "Draw the table to this .svg file");
+  add_mesh_options(command, compare.reading);
+  add_output_flags(command, compare.output);
+  command.footer("Example:\n  orchard compare data/lamp.obj out/lamp/lamp.orchard other.sph --plot out/lamp.svg");
+  command.callback([&request] { request.run = [&request] { orchard::apps::compare(request.compare); }; });
 }
 
 Relaxation relaxation_named(const std::string& name) {
@@ -251,6 +273,7 @@ int main(int argc, char** argv) {
   add_verify(app, request);
   add_inspect(app, request);
   add_sample(app, request);
+  add_compare(app, request);
   add_voronoi(app, request);
   add_medial(app, request);
   try {

@@ -2,7 +2,11 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "orchard/covering/inaccuracy.h"
+#include "orchard/spheretree/outside_volume.h"
+#include "sphere_lists.h"
 #include "tree_options.h"
 
 namespace orchard::apps {
@@ -22,17 +26,63 @@ json repair_json(const RepairReport& repair) {
       {"passes", passes}, {"points_added", repair.points_added}, {"faces_still_crossing", repair.faces_still_crossing}};
 }
 
-json levels_json(const SphereTree& tree, double bounding_radius, double wrap_distance) {
+constexpr std::size_t kHistogramBins = 20;
+
+// How many balls have an inaccuracy in each twentieth of the range up to the level's largest.
+json histogram(const SphereTree& tree, Index level, double largest) {
+  std::vector<Index> bins(kHistogramBins, 0);
+  for (const SphereNode& node : tree.nodes) {
+    if (node.level != level) continue;
+    const double part = largest > 0 ? node.inaccuracy / largest : 0;
+    ++bins[std::min(kHistogramBins - 1, static_cast<std::size_t>(part * kHistogramBins))];
+  }
+  return bins;
+}
+
+// With the figures of the octree's levels to compare with, and the volume outside, where they are given.
+json levels_json(const SphereTree& tree, double bounding_radius, double wrap_distance,
+                 const SphereTree* octree = nullptr, const Surface* surface = nullptr) {
   json levels = json::array();
-  for (const LevelFigures& level : level_figures(tree, bounding_radius)) {
+  const auto figures = level_figures(tree, bounding_radius);
+  const auto others = octree ? level_figures(*octree, bounding_radius) : figures;
+  const SphereLists lists = levels_of(tree);
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    const LevelFigures& level = figures[i];
+    const double largest = level.max_inaccuracy * bounding_radius;
     json& row = levels.emplace_back(json{{"spheres", level.spheres},
+                                         {"mean_inaccuracy", level.mean_inaccuracy * bounding_radius},
+                                         {"max_inaccuracy", largest},
                                          {"mean_inaccuracy_over_radius", level.mean_inaccuracy},
-                                         {"max_inaccuracy_over_radius", level.max_inaccuracy}});
+                                         {"max_inaccuracy_over_radius", level.max_inaccuracy},
+                                         {"histogram_up_to_max", histogram(tree, static_cast<Index>(i), largest)}});
+    if (octree && i < others.size() && others[i].mean_inaccuracy > 0) {
+      row["mean_inaccuracy_over_octree"] = level.mean_inaccuracy / others[i].mean_inaccuracy;
+      row["max_inaccuracy_over_octree"] = level.max_inaccuracy / others[i].max_inaccuracy;
+    }
+    if (surface && surface->solid()) {
+      Level all = lists.levels[i];
+      all.insert(all.end(), lists.carried[i].begin(), lists.carried[i].end());
+      const double outside = outside_volume(*surface, all);
+      row["outside_volume"] = outside;
+      row["outside_volume_over_solid"] = outside / surface->report().volume;
+    }
     if (wrap_distance == 0) continue;
     const double wrap = wrap_distance / bounding_radius;
     row["mean_inaccuracy_over_radius_including_wrap"] = level.mean_inaccuracy + wrap;
     row["max_inaccuracy_over_radius_including_wrap"] = level.max_inaccuracy + wrap;
   }
+  return levels;
+}
+
+json tightening_json(const TightenReport& report) {
+  json levels = json::array();
+  for (const TightenReport::Level& level : report.levels)
+    levels.push_back({{"balls", level.balls},
+                      {"gaps_closed", level.gaps},
+                      {"closing_rounds", level.closing_rounds},
+                      {"largest_growth_over_radius", level.grown},
+                      {"seconds_search", level.seconds_search},
+                      {"seconds_closing", level.seconds_closing}});
   return levels;
 }
 
@@ -87,8 +137,19 @@ json build_json(const Surface& surface, const BuildOptions& options, const Build
   report["covering"] = {{"rounds", result.cover.rounds},
                         {"triangles_uncovered_before", result.cover.triangles_uncovered},
                         {"largest_growth_over_radius", result.cover.largest_growth}};
+  if (options.method == Method::tightened) report["tightening"] = tightening_json(result.tightening);
+  if (options.method == Method::annealing)
+    report["annealing"] = {{"changes", result.annealing.changes},
+                           {"refused_as_uncovering", result.annealing.uncovering},
+                           {"accepted", result.annealing.accepted},
+                           {"redundant_spheres_removed", result.annealing.redundant}};
+  if (options.descent > 0)
+    report["random_descent"] = {{"trials", result.descent.trials},
+                                {"accepted", result.descent.accepted},
+                                {"looseness_before_over_radius", result.descent.looseness_before},
+                                {"looseness_after_over_radius", result.descent.looseness_after}};
   report["redundant_spheres_removed"] = result.redundancy.removed;
-  report["levels"] = levels_json(result.tree, radius, wrap_distance);
+  report["levels"] = levels_json(result.tree, radius, wrap_distance, &result.octree, &surface);
   report["octree_levels"] = levels_json(result.octree, radius, wrap_distance);
   report["conservative"] = true;  // run_pipeline throws otherwise
   report["bytes_per_node"] =

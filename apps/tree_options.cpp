@@ -7,8 +7,6 @@
 #include <map>
 #include <string>
 
-#include "orchard/geometry/error.h"
-
 namespace orchard::apps {
 namespace {
 
@@ -57,10 +55,12 @@ Refinement::Region parse_region(const std::string& text) {
     const char separator = i == 3 ? '=' : ',';
     const bool last = i + 1 == values.size();
     if (error != std::errc() || (last ? next != end : next == end || *next != separator))
-      throw InputError("--region " + text + ": give a ball and the error allowed there as x,y,z,r=E in mesh units");
+      throw CLI::ValidationError("--region " + text +
+                                 ": give a ball and the error allowed there as x,y,z,r=E in mesh units");
     at = next + 1;
   }
-  if (!(values[3] > 0) || !(values[4] > 0)) throw InputError("--region " + text + ": r and E must be above 0");
+  if (!(values[3] > 0) || !(values[4] > 0))
+    throw CLI::ValidationError("--region " + text + ": r and E must be above 0");
   return {{Point(values[0], values[1], values[2]), values[3]}, values[4]};
 }
 

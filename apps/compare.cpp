@@ -1,0 +1,150 @@
+#include <fmt/core.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "chart.h"
+#include "commands.h"
+#include "console.h"
+#include "load_solid.h"
+#include "orchard/covering/coverage.h"
+#include "orchard/covering/inaccuracy.h"
+#include "orchard/geometry/atomic_file.h"
+#include "orchard/geometry/error.h"
+#include "orchard/spheretree/outside_volume.h"
+#include "sphere_lists.h"
+
+namespace orchard::apps {
+namespace {
+
+using nlohmann::json;
+
+struct LevelRow {
+  Index spheres = 0, carried = 0;
+  double mean = 0, max = 0;       // inaccuracy, in mesh units
+  double outside = 0;             // volume over the solid's
+  Index triangles_uncovered = 0;  // by the path rule if the file has a tree, else by the level's union
+};
+
+struct Compared {
+  std::string name;
+  std::vector<LevelRow> levels;
+  bool tree = false;
+};
+
+// The balls that a level's cover is judged by: whole paths, or each ball by itself.
+std::vector<PathBall> balls_of_level(const SphereLists& lists, std::size_t level) {
+  std::vector<PathBall> balls;
+  if (lists.tree) {
+    for (const SphereNode& node : lists.tree->nodes)
+      if (node.level <= level)
+        balls.push_back({node.sphere.center, node.sphere.radius, node.parent,
+                         node.child_count == 0 || node.level == static_cast<Index>(level)});
+    return balls;
+  }
+  for (const Level* list : {&lists.levels[level], &lists.carried[level]})
+    for (const Sphere& s : *list) balls.push_back({s.center, s.radius, kNone, true});
+  return balls;
+}
+
+LevelRow measure_level(const Surface& surface, double volume, const SphereLists& lists, std::size_t level) {
+  LevelRow row;
+  const Level& own = lists.levels[level];
+  row.spheres = static_cast<Index>(own.size());
+  row.carried = static_cast<Index>(lists.carried[level].size());
+  std::vector<double> values(own.size());
+  tbb::parallel_for(std::size_t{0}, own.size(), [&](std::size_t i) {
+    values[i] = inaccuracy(surface, own[i], {tolerance::kInaccuracy, 0}).upper;
+  });
+  for (const double value : values) {
+    row.mean += value / static_cast<double>(values.size());
+    row.max = std::max(row.max, value);
+  }
+  Level all = own;
+  all.insert(all.end(), lists.carried[level].begin(), lists.carried[level].end());
+  row.outside = outside_volume(surface, all) / volume;
+  row.triangles_uncovered =
+      static_cast<Index>(surface_coverage(surface, balls_of_level(lists, level)).uncovered.size());
+  return row;
+}
+
+Compared measure_file(const Surface& surface, double volume, const std::filesystem::path& file) {
+  const SphereLists lists = read_spheres(file);
+  Compared compared{file.filename().string(), {}, lists.tree.has_value()};
+  for (std::size_t level = 0; level < lists.levels.size(); ++level)
+    compared.levels.push_back(measure_level(surface, volume, lists, level));
+  return compared;
+}
+
+json to_json(const std::vector<Compared>& all, double radius) {
+  json files = json::array();
+  for (const Compared& compared : all) {
+    json levels = json::array();
+    for (const LevelRow& row : compared.levels)
+      levels.push_back({{"spheres", row.spheres},
+                        {"leaves_carried", row.carried},
+                        {"mean_inaccuracy", row.mean},
+                        {"max_inaccuracy", row.max},
+                        {"mean_inaccuracy_over_radius", row.mean / radius},
+                        {"max_inaccuracy_over_radius", row.max / radius},
+                        {"outside_volume_over_solid", row.outside},
+                        {"triangles_not_proven_covered", row.triangles_uncovered}});
+    files.push_back({{"file", compared.name}, {"tree", compared.tree}, {"levels", levels}});
+  }
+  return {{"bounding_radius", radius}, {"files", files}};
+}
+
+void print(const std::vector<Compared>& all, std::size_t triangles, double radius) {
+  fmt::print("inaccuracy over the bounding radius, outside volume over the solid's; triangles without a path\n");
+  fmt::print("level  spheres      mean       max   outside  uncovered  file\n");
+  std::size_t levels = 0;
+  for (const Compared& compared : all) levels = std::max(levels, compared.levels.size());
+  for (std::size_t level = 0; level < levels; ++level)
+    for (const Compared& compared : all) {
+      if (level >= compared.levels.size()) continue;
+      const LevelRow& row = compared.levels[level];
+      fmt::print("{:5} {:8} {:9.5f} {:9.5f} {:9.4f} {:8.1f} %  {}{}\n", level, row.spheres, row.mean / radius,
+                 row.max / radius, row.outside,
+                 100.0 * static_cast<double>(row.triangles_uncovered) / static_cast<double>(triangles), compared.name,
+                 compared.tree ? "" : " (levels only)");
+    }
+}
+
+std::string chart(const std::vector<Compared>& all, const std::string& title, double radius) {
+  std::vector<ChartPanel> panels{{"mean inaccuracy / R", {}}, {"max inaccuracy / R", {}}, {"outside volume", {}}};
+  for (const Compared& compared : all) {
+    ChartLine mean{compared.name, {}}, max = mean, outside = mean;
+    for (const LevelRow& row : compared.levels) {
+      mean.values.push_back(row.mean / radius);
+      max.values.push_back(row.max / radius);
+      outside.values.push_back(row.outside);
+    }
+    panels[0].lines.push_back(std::move(mean));
+    panels[1].lines.push_back(std::move(max));
+    panels[2].lines.push_back(std::move(outside));
+  }
+  return chart_svg(title, panels);
+}
+
+}  // namespace
+
+void compare(const CompareCommand& command) {
+  ProgressBar bar(!command.output.quiet && !command.output.json);
+  const SolidMesh solid = load_solid(command.mesh, command.reading, bar.callback());
+  const Surface& surface = solid.surface;
+  const double radius = surface.bounding_radius();
+  std::vector<Compared> all;
+  for (const std::filesystem::path& file : command.trees)
+    all.push_back(measure_file(surface, surface.report().volume, file));
+  bar.clear();
+  if (!command.plot.empty()) write_file(command.plot, chart(all, command.mesh.filename().string(), radius));
+  if (command.output.json) {
+    fmt::print("{}\n", to_json(all, radius).dump(2));
+  } else if (!command.output.quiet) {
+    print(all, surface.mesh().triangles.size(), radius);
+    if (!command.plot.empty()) fmt::print("  {}  (the table as a plot)\n", command.plot.string());
+  }
+}
+
+}  // namespace orchard::apps
