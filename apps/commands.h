@@ -76,11 +76,12 @@ struct MedialCommand {
   std::filesystem::path mesh, folder;
   MeshOptions reading;
   MedialTuning tuning;
-  std::filesystem::path points;    // not empty: the user's own surface points
-  std::filesystem::path axis;      // not empty: a .ma file to judge; nothing is built
-  bool report = false;             // judge what was built
-  std::vector<std::string> sweep;  // NAME=VALUE,VALUE,..
-  bool views = true;               // ParaView files, where the program was built with them
+  std::filesystem::path points;     // not empty: the user's own surface points
+  std::filesystem::path axis;       // not empty: a .ma file to judge; nothing is built
+  bool report = false;              // judge what was built
+  Index quality_samples = 100'000;  // surface points of the judgement
+  std::vector<std::string> sweep;   // NAME=VALUE,VALUE,..
+  bool views = true;                // ParaView files, where the program was built with them
   Output output;
 };
 void medial(const MedialCommand& command);

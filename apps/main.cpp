@@ -220,6 +220,11 @@ void add_medial(CLI::App& app, Request& request) {
   command.add_option("-o,--output", medial.folder, "Folder for the axis and the reports")->required();
   add_mesh_options(command, medial.reading);
   command.add_flag("--report", medial.report, "Measure the quality of what was built (docs/medial-quality.md)");
+  command
+      .add_option("--quality-samples", medial.quality_samples,
+                  "Surface points to measure at: fewer are faster and miss more of the largest errors")
+      ->check(CLI::Range(100, 10'000'000))
+      ->capture_default_str();
   command.add_option("--axis", medial.axis, "Build nothing; measure the quality of this .ma file of any system");
   command.add_option("--points", medial.points, "Your own surface points: a text file, x y z a line");
   command

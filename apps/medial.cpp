@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -40,6 +41,7 @@ void write_views(const MedialCommand& command, const Surface& surface, const Med
   add("medial.vtu", "the axis with radius, angle, segment, component; open it in ParaView");
   write_medial_axis(command.folder, build.axis);
   add("medial_faces.vtp", "its faces; medial_edges.vtp, medial_vertices.vtp likewise");
+  write_mesh(command.folder / "mesh.vtp", surface);
   write_points(command.folder / "points.vtp", build.sampling);
   add("points.vtp", "the surface points, and which of them repair added");
   write_thickness(command.folder / "thickness.vtp", surface, medial_radii_at_surface(surface, mesh));
@@ -61,9 +63,8 @@ void finish(const MedialCommand& command, const fs::path& report_file, const jso
 
 void judge_file(const MedialCommand& command, const SolidMesh& solid, const Progress& progress, ProgressBar& bar) {
   const MedialMesh mesh = read_ma(command.axis);
-  const MedialJudgement judgement{
-      .quality = medial_quality(solid.surface, mesh, {.seed = command.tuning.options.sampling.seed}, progress),
-      .stability = {}};
+  const MedialJudgement judgement{.quality = medial_quality(solid.surface, mesh, quality_options(command), progress),
+                                  .stability = {}};
   bar.clear();
   json report{{"mesh", mesh_json(solid.surface)}, {"axis", command.axis.string()}, {"quality", to_json(judgement)}};
   report["vertices"] = mesh.centers.size();
@@ -94,7 +95,7 @@ void build_axis(const MedialCommand& command, const SolidMesh& solid, const Prog
   const MedialSegments segments = medial_segments(build.axis, segment_options(command, surface, build));
   const SkeletonGraph skeleton = skeleton_graph(build.axis);
   std::optional<MedialJudgement> judgement;
-  if (command.report) judgement = judge(surface, build, mesh, options, options.sampling.seed, progress);
+  if (command.report) judgement = judge(command, surface, build, mesh, options, progress);
   bar.clear();
 
   Written written;
@@ -127,10 +128,23 @@ void build_axis(const MedialCommand& command, const SolidMesh& solid, const Prog
 
 }  // namespace
 
-MedialJudgement judge(const Surface& surface, const MedialBuild& build, const MedialMesh& mesh,
-                      const MedialBuildOptions& options, std::uint64_t seed, const Progress& progress) {
-  return {.quality = medial_quality(surface, mesh, {.seed = seed}, progress),
-          .stability = medial_stability(surface, build, options, {.seed = seed}, progress)};
+QualityOptions quality_options(const MedialCommand& command) {
+  QualityOptions options{.seed = command.tuning.options.sampling.seed};
+  const auto scaled = [&](Index standard) {
+    const double share = static_cast<double>(command.quality_samples) / options.surface_samples;
+    return std::max(Index{1}, static_cast<Index>(share * standard));
+  };
+  options.contact_cells = scaled(options.contact_cells);
+  options.economy_candidates = scaled(options.economy_candidates);
+  options.economy_samples = scaled(options.economy_samples);
+  options.surface_samples = command.quality_samples;
+  return options;
+}
+
+MedialJudgement judge(const MedialCommand& command, const Surface& surface, const MedialBuild& build,
+                      const MedialMesh& mesh, const MedialBuildOptions& options, const Progress& progress) {
+  return {.quality = medial_quality(surface, mesh, quality_options(command), progress),
+          .stability = medial_stability(surface, build, options, {.seed = options.sampling.seed}, progress)};
 }
 
 void medial(const MedialCommand& command) {

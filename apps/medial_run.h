@@ -16,8 +16,11 @@ struct OwnPoints {
 };
 OwnPoints read_own_points(const std::filesystem::path& file, const Surface& surface);
 
-MedialJudgement judge(const Surface& surface, const MedialBuild& build, const MedialMesh& mesh,
-                      const MedialBuildOptions& options, std::uint64_t seed, const Progress& progress);
+// What the command asks for: all counts go with --quality-samples.
+QualityOptions quality_options(const MedialCommand& command);
+
+MedialJudgement judge(const MedialCommand& command, const Surface& surface, const MedialBuild& build,
+                      const MedialMesh& mesh, const MedialBuildOptions& options, const Progress& progress);
 
 // Every combination of the values of command.sweep, each judged: sweep.csv and a plot for each metric.
 void sweep_medial(const MedialCommand& command, const Surface& surface, const Progress& progress);

@@ -175,8 +175,7 @@ void sweep_medial(const MedialCommand& command, const Surface& surface, const Pr
       dimensions[d].flag->set(tuning, dimensions[d].values[choice[d]]);
     const MedialBuildOptions options = build_options(tuning);
     const MedialBuild build = build_medial_axis(surface, options, progress);
-    const MedialJudgement judgement =
-        judge(surface, build, medial_mesh(build.axis), options, options.sampling.seed, progress);
+    const MedialJudgement judgement = judge(command, surface, build, medial_mesh(build.axis), options, progress);
     Run& run = runs.emplace_back();
     run.choice = choice;
     for (const Metric& metric : kMetrics) run.metrics.push_back(metric.get(build, judgement));

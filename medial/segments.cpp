@@ -36,31 +36,37 @@ class Segmenter {
   }
 
  private:
+  bool touches(Index vertex) const { return axis_.radii[vertex] <= options_.touching; }
   bool counts(Index face) const {
-    if (face >= axis_.faces.size()) return false;
-    const auto corners = complex_.corners(face);
-    const auto touches = [&](Index corner) { return axis_.radii[corner] <= options_.touching; };
-    return std::none_of(corners.begin(), corners.end(), touches) &&
-           separation_angle(axis_, corners, complex_.points(face)) >= options_.angle;
+    return face < axis_.faces.size() &&
+           separation_angle(axis_, complex_.corners(face), complex_.points(face)) >= options_.angle;
   }
 
+  // Joined across edges that do not touch the surface; but what never gets away from it opens no sheet.
   void number_sheets(Index edges) {
     const Index faces = complex_.face_count();
-    std::vector<std::uint8_t> counted(faces);
+    std::vector<std::uint8_t> counted(faces), opens(faces, 0);
     for (Index face = 0; face < faces; ++face) counted[face] = counts(face) ? 1 : 0;
     std::vector<Index> parents(faces), at;
     std::iota(parents.begin(), parents.end(), Index{0});
     for (Index edge = 0; edge < edges; ++edge) {
+      const auto [a, b] = complex_.edges()[edge];
+      if (touches(a) || touches(b)) continue;
       at.clear();
       for (const Index face : complex_.faces_at(edge)) {
         if (counted[face]) at.push_back(face);
       }
       if (at.size() == 2) unite(parents, at[0], at[1]);
     }
+    for (Index face = 0; face < faces; ++face) {
+      const auto corners = complex_.corners(face);
+      const bool away = std::none_of(corners.begin(), corners.end(), [&](Index corner) { return touches(corner); });
+      if (counted[face] && away) opens[root(parents, face)] = 1;
+    }
     std::vector<Index> number(faces, kNone);
     for (Index face = 0; face < faces; ++face) {
-      if (!counted[face]) continue;
-      const Index first = root(parents, face);
+      const Index first = root(parents, face);  // the lowest, so numbered already
+      if (!counted[face] || !opens[first]) continue;
       number[face] = first == face ? open(true) : number[first];
     }
     hand_out_the_rest(number);

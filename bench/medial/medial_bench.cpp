@@ -1,0 +1,71 @@
+// Seconds and memory of medial axes, and the interior classification against its slow twin. orchard_medial_bench POINTS
+// MESHES..
+#include <sys/resource.h>
+
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <string>
+
+#include "interior.h"
+#include "orchard/geometry/mesh_io.h"
+#include "orchard/geometry/repair.h"
+#include "orchard/medial/build.h"
+#include "orchard/medial/topology.h"
+#include "orchard/voronoi/highest_first.h"
+
+namespace {
+
+using namespace orchard;
+
+double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+void classify(const Surface& surface, const SurfaceSampling& sampling) {
+  const VoronoiDiagram diagram = highest_first_voronoi(sampling.points);
+  double start = processor_seconds();
+  const std::vector<std::uint8_t> inside = detail::interior_vertices(surface, diagram);
+  const double fast = processor_seconds() - start;
+  start = processor_seconds();
+  std::size_t differ = 0;
+  for (std::size_t i = 0; i < inside.size(); ++i) {
+    const VoronoiVertex& vertex = diagram.vertices[i];
+    const bool slow = !vertex.at_infinity() && vertex.center.allFinite() && surface.inside(vertex.center);
+    differ += slow != (inside[i] != 0) ? 1 : 0;
+  }
+  const double slow = processor_seconds() - start;
+  std::printf("  classification: %zu vertices in %.2f s, one by one %.2f s: %.1f times as fast; %zu differ\n",
+              inside.size(), fast, slow, slow / fast, differ);
+}
+
+void run(const std::string& file, Index points) {
+  TriangleMesh mesh = read_mesh(file);
+  repair_mesh(mesh);
+  const Surface surface(std::move(mesh));
+  MedialBuildOptions options;
+  options.sampling.face_points = points - points / 5;
+  options.sampling.edge_points = points / 5;
+  const MedialBuild build = build_medial_axis(surface, options);
+  std::printf("%s: %zu triangles, %u + %u points, %u medial vertices, topology %s\n",
+              std::filesystem::path(file).stem().c_str(), surface.mesh().triangles.size(), build.points,
+              build.repair.points_added, build.axis.size(),
+              topology(medial_mesh(build.axis)) == solid_topology(surface) ? "right" : "wrong");
+  double whole = 0;
+  for (const auto& [stage, seconds] : build.seconds) {
+    std::printf("  %s %.2f s;", stage.c_str(), seconds);
+    whole += seconds;
+  }
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  std::printf(" in all %.2f s; peak %.0f MB\n", whole, static_cast<double>(usage.ru_maxrss) / 1024);
+  classify(surface, build.sampling);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 3) {
+    std::fprintf(stderr, "usage: orchard_medial_bench POINTS MESHES..\n");
+    return 2;
+  }
+  for (int i = 2; i < argc; ++i) run(argv[i], static_cast<Index>(std::stoul(argv[1])));
+}

@@ -1,0 +1,111 @@
+#include "orchard/viz/medial_writer.h"
+
+#include <gtest/gtest.h>
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLPolyDataReader.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
+#include "support/shapes.h"
+#include "values.h"
+
+namespace orchard {
+namespace {
+
+using test::TestFolder;
+
+std::vector<double> values(vtkFieldData* data, const char* name, int component = 0) {
+  std::vector<double> result;
+  vtkDataArray* array = data->GetArray(name);
+  EXPECT_NE(array, nullptr) << name;
+  for (vtkIdType i = 0; array != nullptr && i < array->GetNumberOfTuples(); ++i) {
+    result.push_back(array->GetComponent(i, component));
+  }
+  return result;
+}
+
+// A triangle, a wall beside it, and a tail.
+MedialAxis small_complex() {
+  MedialAxis axis;
+  axis.points = {{0.3, 0.3, 1}, {0.3, 0.3, -1}, {0.6, 0.6, 1}, {0.6, 0.6, -1}};
+  axis.origins = {PointOrigin::face, PointOrigin::face, PointOrigin::edge, PointOrigin::repair};
+  axis.centers = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 2, 0}};
+  axis.radii = {1, 2, 3, 4, 5};
+  for (const auto& row : std::vector<std::vector<Index>>{{1, 2}, {0, 2, 3}, {0, 1, 3}, {1, 2, 4}, {3}}) {
+    axis.neighbors.items.insert(axis.neighbors.items.end(), row.begin(), row.end());
+    axis.neighbors.close_row();
+  }
+  for (const auto& row : std::vector<std::vector<Index>>{{0, 1}, {0, 1, 2}, {0, 1, 2}, {0, 1, 2, 3}, {2, 3}}) {
+    axis.forming_points.items.insert(axis.forming_points.items.end(), row.begin(), row.end());
+    axis.forming_points.close_row();
+  }
+  axis.faces.items = {0, 1, 2};
+  axis.faces.close_row();
+  axis.face_points = {{0, 1}};
+  axis.walls.items = {1, 3, 2};
+  axis.walls.close_row();
+  axis.wall_points = {{2, 3}};
+  return axis;
+}
+
+TEST(MedialGrid, HoldsEveryCellWithItsArrays) {
+  const TestFolder folder;
+  const MedialAxis axis = small_complex();
+  const auto file = folder.path() / "medial.vtu";
+  write_medial_grid(file, axis, medial_segments(axis, {.touching = 0.1}));
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  vtkUnstructuredGrid* grid = reader->GetOutput();
+  EXPECT_EQ(grid->GetNumberOfPoints(), 5);
+  ASSERT_EQ(grid->GetNumberOfCells(), 3);
+  vtkCellData* cells = grid->GetCellData();
+  EXPECT_EQ(values(cells, "wall"), (std::vector<double>{0, 1, 0}));
+  EXPECT_EQ(values(cells, "sheet"), (std::vector<double>{1, 1, 0}));
+  EXPECT_EQ(values(cells, "point_b"), (std::vector<double>{1, 3, -1}));
+  EXPECT_EQ(values(cells, "added"), (std::vector<double>{0, 1, 0}));
+  EXPECT_NEAR(values(cells, "angle")[0], 3.1, 0.1);
+  EXPECT_EQ(values(cells, "angle")[2], -1);
+  EXPECT_EQ(values(cells, "trunk").size(), 3u);
+  vtkPointData* points = grid->GetPointData();
+  EXPECT_EQ(values(points, "radius"), axis.radii);
+  EXPECT_EQ(values(points, "added"), (std::vector<double>{0, 0, 0, 1, 1}));
+  EXPECT_EQ(values(points, "forming_count"), (std::vector<double>{2, 3, 3, 4, 2}));
+  EXPECT_EQ(values(points, "forming_points", 2), (std::vector<double>{-1, 2, 2, 2, -1}));
+  EXPECT_EQ(values(points, "component"), (std::vector<double>{0, 0, 0, 0, 0}));
+  EXPECT_EQ(values(points, "segment").size(), 5u);
+}
+
+vtkSmartPointer<vtkPolyData> read(const std::filesystem::path& file) {
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  return reader->GetOutput();
+}
+
+TEST(Thickness, IsTwiceTheMedialRadius) {
+  const TestFolder folder;
+  const Surface surface(test::box({0, 0, 0}, {1, 1, 1}));
+  write_thickness(folder.path() / "thickness.vtp", surface, {1, 2, 3, 4, 5, 6, 7, 8});
+  const auto data = read(folder.path() / "thickness.vtp");
+  EXPECT_EQ(data->GetNumberOfPolys(), 12);
+  EXPECT_EQ(values(data->GetPointData(), "thickness"), (std::vector<double>{2, 4, 6, 8, 10, 12, 14, 16}));
+}
+
+TEST(SkeletonFile, HasALineForEachArc) {
+  const TestFolder folder;
+  const MedialAxis axis = small_complex();
+  const SkeletonGraph graph = skeleton_graph(axis);
+  write_skeleton(folder.path() / "skeleton.vtp", axis, graph);
+  const auto data = read(folder.path() / "skeleton.vtp");
+  EXPECT_EQ(static_cast<std::size_t>(data->GetNumberOfLines()), graph.arcs.size());
+  EXPECT_EQ(values(data->GetCellData(), "kind").size(), graph.arcs.size());
+  EXPECT_EQ(values(data->GetPointData(), "radius").size(), static_cast<std::size_t>(data->GetNumberOfPoints()));
+}
+
+}  // namespace
+}  // namespace orchard
