@@ -171,48 +171,43 @@ double NarrowPhase::roots_gap(const Pose& first, const Pose& second, const std::
                               double distance) const noexcept {
   const auto reach_of = [](const Side& side, const Pose& pose, const std::array<double, 3>& u, double sign) {
     const auto& r = pose.rotation;
-    std::array<double, 3> direction{}, center{};  // the root's, relative to the tree's origin
-    double middle = 0;
+    std::array<double, 3> direction{};
+    double middle = 0;  // the root's centre, relative to the tree's origin
     for (std::size_t i = 0; i < 3; ++i) {
       direction[i] = sign * (r[i] * u[0] + r[3 + i] * u[1] + r[6 + i] * u[2]);
-      center[i] = side.root[i] - side.tree.origin[i];
-      middle += direction[i] * center[i];
+      middle += direction[i] * (side.root[i] - side.tree.origin[i]);
     }
     detail::Support support = detail::support_along(side.tree.supports, direction);
-    support.most = pose.scale * (support.most - middle + kStretch * side.extent);
-    for (std::size_t i = 0; i < 3; ++i) support.point[i] = pose.scale * (support.point[i] - center[i]);
-    support.point = rotate(pose, support.point);
-    return support;  // from the root's centre
+    support.most = pose.scale * (support.most - middle);
+    return support;  // its reach from the root's centre, in the world; its point in the tree's frame
   };
-  const double shrink = 1 / distance;
-  std::array<double, 3> u = {way[0] * shrink, way[1] * shrink, way[2] * shrink};
-  double best = -std::numeric_limits<double>::infinity(), along = distance;
+  const auto place_of = [](const Side& side, const Pose& pose, detail::Vec3 point) {
+    for (std::size_t i = 0; i < 3; ++i) point[i] = pose.scale * (point[i] - (side.root[i] - side.tree.origin[i]));
+    return rotate(pose, point);  // from the root's centre, in the world
+  };
+  // Reaches are proportional to the direction's length, and reflecting keeps it: `distance` all the way.
+  std::array<double, 3> u = way;
+  double best = -std::numeric_limits<double>::infinity();
   for (int turn = 0; turn < kRootDirections; ++turn) {
     const detail::Support p = reach_of(first_, first, u, 1), q = reach_of(second_, second, u, -1);
-    const double gap = along - (p.most + q.most);
-    if (gap > 0) return gap * (1 - kStretch);
+    const double along = u[0] * way[0] + u[1] * way[1] + u[2] * way[2], gap = along - (p.most + q.most);
+    if (gap > 0) return gap / distance * (1 - kStretch) - kStretch * distance;
     if (gap <= best) break;
     best = gap;
     // From the point of the first one to that of the second one; reflecting the direction in it turns these apart.
+    const detail::Vec3 from = place_of(first_, first, p.point), to = place_of(second_, second, q.point);
     std::array<double, 3> between{};
     double square = 0, component = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-      between[i] = way[i] + q.point[i] - p.point[i];
+      between[i] = way[i] + to[i] - from[i];
       square += between[i] * between[i];
       component += between[i] * u[i];
     }
     if (component >= 0 || !(square > 0)) break;
     const double factor = 2 * component / square;
-    double length_square = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      u[i] -= factor * between[i];
-      length_square += u[i] * u[i];
-    }
-    const double normalise = 1 / std::sqrt(length_square);
-    along = 0;
-    for (std::size_t i = 0; i < 3; ++i) u[i] *= normalise, along += u[i] * way[i];
+    for (std::size_t i = 0; i < 3; ++i) u[i] -= factor * between[i];
   }
-  return best;
+  return best / distance;
 }
 
 Answer NarrowPhase::start(const Pose& a, const Pose& b) noexcept {

@@ -24,7 +24,8 @@ inline Support support_along(std::span<const float> map, const Vec3& u) noexcept
   const std::size_t next = axis == 2 ? 0 : axis + 1, last = axis == 0 ? 2 : axis - 1;
   const double size = std::fabs(u[axis]), sign = u[axis] < 0 ? -1 : 1;
   if (!(size > 0)) return {0, {}};
-  const double slow = u[next] / size, fast = u[last] / size;  // in [-1, 1]
+  const double shrink = 1 / size;
+  const double slow = std::clamp(u[next] * shrink, -1.0, 1.0), fast = std::clamp(u[last] * shrink, -1.0, 1.0);
   const auto cell = [](double t) {
     return std::min<std::size_t>(static_cast<std::size_t>((t + 1) * (kSupportCells / 2)), kSupportCells - 1);
   };
