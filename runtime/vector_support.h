@@ -9,7 +9,8 @@
 // With GCC and Clang several numbers are one value (vector_size), which the compiler maps to what the target has: SSE,
 // AVX, NEON. On Linux with x86-64 GCC compiles a function marked ORCHARD_PER_MACHINE for AVX2 and AVX-512 as well, and
 // the loader picks one. All do the same operations in the same order and none fuses them, so all give the same bits.
-#if defined(__GNUC__)
+// ORCHARD_NO_VECTORS: one number at a time, as other compilers do it.
+#if defined(__GNUC__) && !defined(ORCHARD_NO_VECTORS)
 #define ORCHARD_VECTORS 1
 #define ORCHARD_INLINE [[gnu::always_inline]] inline
 #define ORCHARD_INLINE_LAMBDA __attribute__((always_inline))
@@ -21,8 +22,8 @@
 
 // Not where the whole build is for such a machine anyway, nor with the sanitizer, which is not ready when the loader
 // picks.
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__gnu_linux__) && !defined(__AVX2__) && \
-    !defined(__SANITIZE_ADDRESS__)
+#if defined(ORCHARD_VECTORS) && !defined(__clang__) && defined(__x86_64__) && defined(__gnu_linux__) && \
+    !defined(__AVX2__) && !defined(__SANITIZE_ADDRESS__)
 #define ORCHARD_PER_MACHINE __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else
 #define ORCHARD_PER_MACHINE

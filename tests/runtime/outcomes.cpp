@@ -1,0 +1,63 @@
+// Prints a digest of everything that many queries say, level by level, for each pair of bodies.
+#include <bit>
+#include <cstdint>
+#include <cstdio>
+
+#include "bodies.h"
+#include "orchard/runtime/distance.h"
+#include "orchard/runtime/narrow_phase.h"
+
+namespace {
+
+using namespace orchard::runtime;
+using namespace orchard::runtime::test;
+
+class Digest {
+ public:
+  void add(std::uint64_t word) { state_ = (state_ ^ word) * 0x9e3779b97f4a7c15u, state_ ^= state_ >> 29; }
+  void add(double number) { add(std::bit_cast<std::uint64_t>(number)); }
+  void add(const NarrowPhase& query) {
+    const Verdict v = query.verdict();
+    add(static_cast<std::uint64_t>(v.answer));
+    add(v.separation_bound), add(v.lower_bound), add(v.work), add(query.pair_tests()), add(query.triangle_tests());
+    for (std::size_t i = 0; i < 3; ++i) add(v.contact.center[i]), add(v.contact.normal[i]);
+    add(v.contact.radius), add(std::uint64_t{v.contact.triangle_a}), add(std::uint64_t{v.contact.triangle_b});
+  }
+  std::uint64_t value() const { return state_; }
+
+ private:
+  std::uint64_t state_ = 1;
+};
+
+}  // namespace
+
+int main() {
+  const auto all = bodies();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t j = i; j < all.size(); ++j) {
+      const PackedSphereTree &a = all[i].tree, &b = all[j].tree;
+      NarrowPhase query(a, b);
+      DistanceQuery distance(a, b);
+      Digest digest;
+      for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        Draw draw(seed);
+        Pose pose_a = draw.pose(0), pose_b = draw.pose(draw.uniform(0, 1.2) * (a.bounding_radius + b.bounding_radius));
+        if (seed % 3 == 0) pose_b.scale = draw.uniform(0.5, 2);
+        pose_a = centered(a, pose_a), pose_b = centered(b, pose_b);
+        query.start(pose_a, pose_b);
+        for (digest.add(query); !query.finished(); digest.add(query)) query.refine();
+        query.start(pose_a, pose_b);
+        query.probe(2);
+        digest.add(query);
+        query.refine_exactly();
+        digest.add(query);
+        distance.start(pose_a, pose_b);
+        distance.refine();
+        digest.add(distance.lower()), digest.add(distance.upper()), digest.add(distance.work());
+      }
+      std::printf("%s / %s: %016llx\n", all[i].name.c_str(), all[j].name.c_str(),
+                  static_cast<unsigned long long>(digest.value()));
+    }
+  }
+  return 0;
+}
