@@ -35,6 +35,7 @@ Index Inserter::walk(const Point& q) const {
   Index v = last_;
   if (workspace_.at_infinity(v)) v = workspace_.vertices[v].neighbors[3];
   Index came_from = kNone;
+  workspace_.settle(v);
   double here = workspace_.power(v, q);
   const std::size_t patience = workspace_.vertices.size() + 64;
   for (std::size_t steps = 0; steps < patience; ++steps) {
@@ -42,7 +43,13 @@ Index Inserter::walk(const Point& q) const {
     Index next = kNone;
     for (Index u : workspace_.vertices[v].neighbors) {
       if (u == came_from) continue;
-      const double power = workspace_.power(u, q), bound = workspace_.power_bound(u);
+      double power = workspace_.power(u, q);
+      if (power > 0 && !workspace_.settled(u)) {
+        workspace_.settle(u);
+        power = workspace_.power(u, q);
+      }
+      // On the way, a vertex need not be settled: the walk goes uphill all the same.
+      const double bound = workspace_.settled(u) ? workspace_.power_bound(u) : 0;
       if (power > bound) return u;
       if (power > here + bound) {
         if (bound == std::numeric_limits<double>::infinity()) continue;

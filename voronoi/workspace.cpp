@@ -1,15 +1,23 @@
 #include "workspace.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <utility>
 
 namespace orchard::detail {
 namespace {
 
-constexpr std::size_t kAdoptedAtOnce = 4096;
+void move_infinity_last(VoronoiVertex& vertex) {
+  auto& corner = vertex.forming_points;
+  vertex.radius = std::numeric_limits<double>::quiet_NaN();
+  const auto i = static_cast<std::size_t>(std::find(corner.begin(), corner.end(), kInfinitePoint) - corner.begin());
+  if (i == 3) return;
+  // Two swaps leave the orientation.
+  const std::size_t j = i == 0 ? 1 : 0, k = 3 - i - j;
+  for (auto* four : {&corner, &vertex.neighbors}) {
+    std::swap((*four)[i], (*four)[3]);
+    std::swap((*four)[j], (*four)[k]);
+  }
+}
 
 }  // namespace
 
@@ -28,38 +36,29 @@ void Workspace::adopt(std::vector<VoronoiVertex>&& finished, std::size_t more) {
   vertices = std::move(finished);
   free_vertices.clear();
   reserve(vertices.size() + more);
-  state_.resize(vertices.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, vertices.size(), kAdoptedAtOnce), [&](const auto& range) {
-    for (std::size_t v = range.begin(); v < range.end(); ++v)
-      state_[v] = static_cast<std::uint8_t>(adopt(vertices[v]) << 2);
-  });
+  state_.assign(vertices.size(), kNotSettled << 2);
+  for (VoronoiVertex& vertex : vertices) {
+    vertex.radius *= vertex.radius;
+    if (vertex.at_infinity()) move_infinity_last(vertex);
+  }
 }
 
-// Brings the infinite point to the last place, turns the radius into its square and returns the error class.
-std::uint8_t Workspace::adopt(VoronoiVertex& vertex) const {
-  auto& corner = vertex.forming_points;
-  if (vertex.at_infinity() && corner[3] != kInfinitePoint) {
-    const auto i = static_cast<std::size_t>(std::find(corner.begin(), corner.end(), kInfinitePoint) - corner.begin());
-    // Two swaps leave the orientation.
-    const std::size_t j = i == 0 ? 1 : 0, k = 3 - i - j;
-    for (auto* four : {&corner, &vertex.neighbors}) {
-      std::swap((*four)[i], (*four)[3]);
-      std::swap((*four)[j], (*four)[k]);
-    }
-  }
+void Workspace::find_error_class(Index v) {
+  VoronoiVertex& vertex = vertices[v];
+  const auto& corner = vertex.forming_points;
   const Point& origin = points[corner[0]];
   const LengthedVector a(points[corner[1]] - origin), b(points[corner[2]] - origin);
   VoronoiVertex placed = vertex;
   std::uint8_t error = kUnknownError;
   Placing placing = Placing::failed;
-  if (corner[3] == kInfinitePoint) {
-    vertex.radius = std::numeric_limits<double>::quiet_NaN();
+  if (at_infinity(v)) {
     placing = place_at_infinity(placed, error, a, b);
   } else {
     vertex.radius = (vertex.center - origin).squaredNorm();
     placing = place(placed, error, origin, a, b, LengthedVector(points[corner[3]] - origin));
   }
-  return placing == Placing::failed ? kUnknownError : error;
+  if (placing == Placing::failed) error = kUnknownError;
+  state_[v] = static_cast<std::uint8_t>((error << 2) | (state_[v] & 3u));
 }
 
 double Workspace::value(Index v, const Point& q) const {
@@ -69,7 +68,11 @@ double Workspace::value(Index v, const Point& q) const {
   return (vertex.radius - squared_distance) / (std::sqrt(vertex.radius) + std::sqrt(squared_distance));
 }
 
-Sign Workspace::doubtful_sign(Index v, const Point& q, double bound) const {
+Sign Workspace::doubtful_sign(Index v, const Point& q, double bound) {
+  if (!settled(v)) {
+    find_error_class(v);
+    return sign(v, q);
+  }
   if (at_infinity(v)) return sign_at_infinity(v, q);
   // With a centre as good as this, the doubt is in the input.
   if (!exact_ && bound < good_center_ * vertices[v].radius) return Sign::uncertain;
@@ -81,7 +84,7 @@ Sign Workspace::sign_from_points(Index v, const Point& q) const {
   return inside_sphere(q, points[corner[0]], points[corner[1]], points[corner[2]], points[corner[3]]);
 }
 
-Sign Workspace::sign_at_infinity(Index v, const Point& q) const {
+Sign Workspace::sign_at_infinity(Index v, const Point& q) {
   const VoronoiVertex& vertex = vertices[v];
   const Vector a = points[vertex.forming_points[0]] - q;
   const double height = -vertex.center.dot(a);

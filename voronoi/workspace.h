@@ -54,7 +54,7 @@ class Workspace {
   double power_bound(Index v) const { return bounds_[state_[v] >> 2]; }
 
   // Whether the vertex is nearer to q than to its forming points. At infinity: whether q lies beyond the hull's facet.
-  Sign sign(Index v, const Point& q) const {
+  Sign sign(Index v, const Point& q) {
     const double p = power(v, q), bound = power_bound(v);
     if (p > bound) return Sign::positive;
     if (p < -bound) return Sign::negative;
@@ -62,7 +62,7 @@ class Workspace {
   }
 
   // The same where the stored centre does not tell.
-  Sign doubtful_sign(Index v, const Point& q, double bound) const;
+  Sign doubtful_sign(Index v, const Point& q, double bound);
 
   // The dissertation's value of a deletion: distance to the forming points minus distance to q; at infinity the limit
   // of that along the unbounded edge, which is the distance of q beyond the facet.
@@ -77,10 +77,18 @@ class Workspace {
                             const LengthedVector& b) const;
   // A length far beyond the points, for vertices whose place is as good as infinite.
   double far() const { return 1024 * std::sqrt(squared_scale_); }
-  // Takes over the vertices of a finished diagram of `points`, with room for some more. In parallel.
+  // Takes over the vertices of a finished diagram of `points`, with room for some more. Their error bounds are infinite
+  // until somebody asks: most vertices are never looked at again.
   void adopt(std::vector<VoronoiVertex>&& finished, std::size_t more);
+  // Finds the error bound of an adopted vertex out. To be called before power() and power_bound() are relied on; sign()
+  // does it by itself.
+  void settle(Index v) {
+    if (!settled(v)) [[unlikely]]
+      find_error_class(v);
+  }
+  bool settled(Index v) const { return state_[v] >> 2 != kNotSettled; }
 
-  static constexpr std::uint8_t kUnknownError = 63;
+  static constexpr std::uint8_t kUnknownError = 63, kNotSettled = 62;
   void store(Index v, const VoronoiVertex& vertex, std::uint8_t error_class) {
     vertices[v] = vertex;
     state_[v] = static_cast<std::uint8_t>(error_class << 2);
@@ -100,10 +108,10 @@ class Workspace {
   }
 
  private:
-  Sign sign_at_infinity(Index v, const Point& q) const;
+  Sign sign_at_infinity(Index v, const Point& q);
   Sign sign_from_points(Index v, const Point& q) const;
   std::uint8_t error_class(double bound) const;
-  std::uint8_t adopt(VoronoiVertex& vertex) const;
+  void find_error_class(Index v);
 
   std::vector<std::uint8_t> state_;                    // mark, and error class above
   std::array<double, 64> bounds_{};                    // by error class

@@ -1,21 +1,25 @@
-// Highest-first against CGAL's sequential Delaunay triangulation on the same points in the same run: seconds (the best
-// of several), their ratio, how the insertions were decided, and bytes per point at the peak. voronoi_bench [largest
-// number of points] [part of a set's name]
+// Highest-first against CGAL's sequential Delaunay triangulation on the same points in the same run: seconds of
+// processor time (the best of several), their ratio, growth from the set of a tenth of the size, how the insertions
+// were decided, the inaccuracy, and bytes a point at the peak. Then insertion into a diagram, and the metric on 100,000
+// points. voronoi_bench [largest number of points] [part of a set's name] [folder of the bundled models]
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <ctime>
 #include <functional>
+#include <map>
+#include <string>
 
+#include "orchard/geometry/mesh_io.h"
+#include "orchard/geometry/sampling.h"
 #include "orchard/voronoi/highest_first.h"
 #include "orchard/voronoi/quality.h"
+#include "peak_memory.h"
 #include "voronoi/point_sets.h"
 
 namespace {
@@ -31,53 +35,94 @@ double seconds(const std::function<void()>& run) {
   return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
-// What running in a process of its own adds to the peak of the resident memory.
-double peak_bytes(const std::function<void()>& run) {
-  int channel[2];
-  if (pipe(channel) != 0) return 0;
-  std::fflush(stdout);
-  const pid_t child = fork();
-  if (child == 0) {
-    const auto peak = [] {
-      rusage usage{};
-      getrusage(RUSAGE_SELF, &usage);
-      return static_cast<double>(usage.ru_maxrss) * 1024;
-    };
-    const double before = peak();
-    run();
-    const double bytes = peak() - before;
-    const bool written = write(channel[1], &bytes, sizeof bytes) == sizeof bytes;
-    _exit(written ? 0 : 1);
-  }
-  double bytes = 0;
-  if (read(channel[0], &bytes, sizeof bytes) != sizeof bytes) bytes = 0;
-  waitpid(child, nullptr, 0);
-  close(channel[0]);
-  close(channel[1]);
-  return bytes;
+double wall_seconds(const std::function<void()>& run) {
+  const auto start = std::chrono::steady_clock::now();
+  run();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void compare(const char* name, const test::Points& points) {
-  const int runs = points.size() > 200000 ? 3 : points.size() > 20000 ? 5 : 15;
-  std::vector<Kernel::Point_3> cgal_points;
-  for (const Point& p : points) cgal_points.emplace_back(p.x(), p.y(), p.z());
-  InsertionReport report;
-  VoronoiDiagram diagram;
-  const double bytes = peak_bytes([&] { highest_first_voronoi(points); });
-  double ours = 1e300, cgal = 1e300;
-  for (int i = 0; i < runs; ++i) {  // alternating, so that both meet the same machine
-    ours = std::min(ours, seconds([&] { diagram = highest_first_voronoi(points, {}, &report); }));
-    cgal = std::min(cgal, seconds([&] { Delaunay(cgal_points.begin(), cgal_points.end()); }));
+class Table {
+ public:
+  Table() {
+    std::printf("%-20s %7s %9s %9s %6s %6s %6s  %6s %7s %6s %6s %5s  %8s %6s %6s\n", "set", "points", "orchard s",
+                "CGAL s", "ratio", "kpt/s", "growth", "certif", "settled", "exact", "constr", "anew", "inacc/R",
+                "vert/p", "B/pt");
   }
-  const auto n = static_cast<double>(points.size());
-  const VoronoiInaccuracy quality = points.size() <= 10000 ? inaccuracy(diagram) : VoronoiInaccuracy{};
-  std::printf("%-22s %8zu %9.4f %9.4f %6.2f %8.0f %6.2f %7.2f %7.2f %8.4f %7zu %9.1e %6.0f\n", name, points.size(),
-              ours, cgal, cgal / ours, n / ours / 1000, static_cast<double>(diagram.vertices.size()) / n,
-              100 * static_cast<double>(report.certified_insertions) / n,
-              100 * static_cast<double>(report.settled_insertions) / n,
-              100 * static_cast<double>(report.constrained_insertions) / n,
-              static_cast<std::size_t>(report.coplanar_centers), quality.mean, bytes / n);
-  std::fflush(stdout);
+
+  void add(const std::string& name, const test::Points& points) {
+    const int runs = points.size() > 200000 ? 3 : points.size() > 20000 ? 5 : 15;
+    std::vector<Kernel::Point_3> cgal_points;
+    for (const Point& p : points) cgal_points.emplace_back(p.x(), p.y(), p.z());
+    const double bytes = bench::peak_bytes([&] { highest_first_voronoi(points); });
+    InsertionReport report;
+    VoronoiDiagram diagram;
+    double ours = 1e300, cgal = 1e300;
+    for (int i = 0; i < runs; ++i) {  // alternating, so that both meet the same machine
+      ours = std::min(ours, seconds([&] { diagram = highest_first_voronoi(points, {}, &report); }));
+      cgal = std::min(cgal, seconds([&] { Delaunay(cgal_points.begin(), cgal_points.end()); }));
+    }
+    print(name, points, diagram, report, ours, cgal, bytes);
+  }
+
+ private:
+  void print(const std::string& name, const test::Points& points, const VoronoiDiagram& diagram,
+             const InsertionReport& report, double ours, double cgal, double bytes) {
+    const auto n = static_cast<double>(points.size());
+    const auto percent = [n](std::uint64_t count) { return 100 * static_cast<double>(count) / n; };
+    Box box;
+    for (const Point& p : points) box.extend(p);
+    std::printf("%-20s %7zu %9.4f %9.4f %6.2f %6.0f %6s  %6.2f %7.2f %6.2f %6.3f %5s  %8.1e %6.2f %6.0f\n",
+                name.c_str(), points.size(), ours, cgal, cgal / ours, n / ours / 1000, growth(name, n, ours).c_str(),
+                percent(report.certified_insertions), percent(report.settled_insertions),
+                percent(report.exact_insertions), percent(report.constrained_insertions),
+                report.exact_signs ? "yes" : "no", 2 * inaccuracy(diagram).mean / box.diagonal().norm(),
+                static_cast<double>(diagram.vertices.size()) / n, bytes / n);
+    std::fflush(stdout);
+  }
+
+  // The time over that of the last set of this name, in terms of n log n: 1 if it grows like that.
+  std::string growth(const std::string& name, double n, double time) {
+    const auto last = last_.find(name);
+    char text[16] = "-";
+    if (last != last_.end()) {
+      const auto [m, before] = last->second;
+      std::snprintf(text, sizeof text, "%.2f", time / before / (n * std::log(n) / (m * std::log(m))));
+    }
+    last_[name] = {n, time};
+    return text;
+  }
+
+  std::map<std::string, std::pair<double, double>> last_;
+};
+
+test::Points model_points(const std::string& file, std::size_t n) {
+  const auto all = static_cast<Index>(n), edge = all / 5;
+  return sample_surface(Surface(read_mesh(file)), {.face_points = all - edge, .edge_points = edge}).points;
+}
+
+void insertion(const char* name, const test::Points& points, std::size_t last) {
+  const VoronoiDiagram before = highest_first_voronoi(std::span(points).first(points.size() - last));
+  double best = 1e300, best_wall = 1e300;
+  for (int i = 0; i < 9; ++i) {
+    VoronoiDiagram diagram = before;
+    double cpu = 0;
+    const double wall = wall_seconds(
+        [&] { cpu = seconds([&] { insert_points(diagram, std::span(points).subspan(points.size() - last)); }); });
+    best = std::min(best, cpu);
+    best_wall = std::min(best_wall, wall);
+  }
+  const double whole = seconds([&] { highest_first_voronoi(points); });
+  std::printf(
+      "%-20s %7zu + %4zu points: %5.1f ms of processor time, %5.1f ms; all anew: %5.1f ms, %4.1f times as long\n", name,
+      points.size() - last, last, 1e3 * best, 1e3 * best_wall, 1e3 * whole, whole / best);
+}
+
+void metric(const char* name, const test::Points& points) {
+  const VoronoiDiagram diagram = highest_first_voronoi(points);
+  VoronoiInaccuracy result;
+  const double time = seconds([&] { result = inaccuracy(diagram); });
+  std::printf("%-20s %7zu points: %.2f s of processor time, %llu samples, mean %.1e\n", name, points.size(), time,
+              static_cast<unsigned long long>(result.samples), result.mean);
 }
 
 }  // namespace
@@ -85,18 +130,19 @@ void compare(const char* name, const test::Points& points) {
 int main(int argc, char** argv) {
   const std::size_t largest = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 500000;
   const char* part = argc > 2 ? argv[2] : "";
-  std::printf("%-22s %8s %9s %9s %6s %8s %6s %7s %7s %8s %7s %9s %6s\n", "set", "points", "orchard s", "CGAL s",
-              "ratio", "kpt/s", "vert/p", "certain", "settled", "constr.", "coplan.", "inacc.", "B/pt");
-  const auto set = [&](const char* name, std::size_t n, const std::function<test::Points()>& make) {
-    if (n <= largest && std::strstr(name, part) != nullptr) compare(name, make());
+  const std::string data = argc > 3 ? argv[3] : "data";
+  Table table;
+  const auto set = [&](const std::string& name, std::size_t n, const std::function<test::Points()>& make) {
+    if (n <= largest && name.find(part) != std::string::npos) table.add(name, make());
   };
   for (const std::size_t n : {5000u, 50000u, 500000u}) {
     set("bumpy sphere", n, [&] { return test::bumpy_sphere_points(n, 1); });
-    set("torus", n, [&] { return test::torus_points(n, 1); });
     set("uniform", n, [&] { return test::uniform_points(n, 1); });
     set("relaxed box", n, [&] { return test::relaxed_box_points(n, 1); });
     set("relaxed turned box", n, [&] { return test::relaxed_polyhedron_points(n, 1); });
-    set("random box", n, [&] { return test::box_face_points(n, 1); });
+    for (const char* model : {"lamp", "faucet", "ship"})
+      set(model, n, [&] { return model_points(data + "/" + model + ".obj", n); });
+    set("random torus", n, [&] { return test::torus_points(n, 1); });
   }
   for (const std::size_t n : {5000u, 50000u}) {
     set("sphere", n, [&] { return test::sphere_points(n, 1); });
@@ -114,4 +160,13 @@ int main(int argc, char** argv) {
     set("turned box lattice", static_cast<std::size_t>(6 * side * side),
         [&] { return test::turned(test::box_lattice_points(side), 1); });
   }
+  if (*part != '\0') return 0;
+  std::printf("\ninsert_points\n");
+  insertion("bumpy sphere", test::bumpy_sphere_points(51000, 1), 1000);
+  insertion("uniform", test::uniform_points(51000, 1), 1000);
+  insertion("relaxed turned box", test::relaxed_polyhedron_points(51000, 1), 1000);
+  insertion("faucet", model_points(data + "/faucet.obj", 51000), 1000);
+  std::printf("\ninaccuracy\n");
+  metric("bumpy sphere", test::bumpy_sphere_points(100000, 1));
+  metric("faucet", model_points(data + "/faucet.obj", 100000));
 }
