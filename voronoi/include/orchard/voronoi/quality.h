@@ -18,8 +18,8 @@ struct VoronoiInaccuracy {
 //   Samples: at 1/4, 2/4 and 3/4 of the segment from the cell's point to the corner, so three for each point of each
 //   vertex that counts. The ends do not count: at the corner itself four distances are equal but for round-off.
 // The exact diagram has none, up to round-off of the corners: zero nearly always, since a sample is nearer to its own
-// point by more than that. O(log n) a sample on points of surfaces: 100,000 points take about a second. These run in
-// parallel, with the same result for any number of threads.
+// point by more than that. O(log n) a sample on points of surfaces: 100,000 points take a few seconds of processor
+// time. These run in parallel, with the same result for any number of threads.
 VoronoiInaccuracy inaccuracy(const VoronoiDiagram& diagram);
 
 // The same with the corners themselves as the only samples: a harder test, which the exact diagram passes only up to
