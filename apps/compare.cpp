@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "chart.h"
 #include "commands.h"
 #include "console.h"
 #include "load_solid.h"
@@ -14,6 +13,7 @@
 #include "orchard/geometry/error.h"
 #include "orchard/spheretree/outside_volume.h"
 #include "sphere_lists.h"
+#include "svg_plot.h"
 
 namespace orchard::apps {
 namespace {
@@ -112,19 +112,27 @@ void print(const std::vector<Compared>& all, std::size_t triangles, double radiu
 }
 
 std::string chart(const std::vector<Compared>& all, const std::string& title, double radius) {
-  std::vector<ChartPanel> panels{{"mean inaccuracy / R", {}}, {"max inaccuracy / R", {}}, {"outside volume", {}}};
-  for (const Compared& compared : all) {
-    ChartLine mean{compared.name, {}}, max = mean, outside = mean;
-    for (const LevelRow& row : compared.levels) {
-      mean.values.push_back(row.mean / radius);
-      max.values.push_back(row.max / radius);
-      outside.values.push_back(row.outside);
+  std::vector<plot::Plot> plots;
+  const auto add = [&](const std::string& figure, const auto& value) {
+    plot::Plot& plot = plots.emplace_back();
+    plot.title = title + ": " + figure;
+    plot.x_label = "level";
+    plot.log_y = true;
+    for (const Compared& compared : all) {
+      plot::Series& series = plot.series.emplace_back();
+      series.name = compared.name;
+      series.kind = plot::Series::Kind::line;
+      for (std::size_t level = 0; level < compared.levels.size(); ++level) {
+        if (level >= plot.x_names.size()) plot.x_names.push_back(std::to_string(level));
+        series.x.push_back(static_cast<double>(level));
+        series.y.push_back(value(compared.levels[level]));
+      }
     }
-    panels[0].lines.push_back(std::move(mean));
-    panels[1].lines.push_back(std::move(max));
-    panels[2].lines.push_back(std::move(outside));
-  }
-  return chart_svg(title, panels);
+  };
+  add("mean inaccuracy / R", [&](const LevelRow& row) { return row.mean / radius; });
+  add("max inaccuracy / R", [&](const LevelRow& row) { return row.max / radius; });
+  add("outside volume", [](const LevelRow& row) { return row.outside; });
+  return plot::to_svg(plots, 3);
 }
 
 }  // namespace

@@ -128,29 +128,36 @@ std::string to_csv(const std::vector<Dimension>& dimensions, const std::vector<R
 }
 
 // The first dimension runs along x; each combination of the others is a line.
-Plot plot_of(std::size_t metric, const std::string& model, const std::vector<Dimension>& dimensions,
-             const std::vector<Run>& runs) {
-  Plot plot{.title = model + ": " + kMetrics[metric].title,
-            .x_label = dimensions[0].flag->name,
-            .y_label = kMetrics[metric].title,
-            .series = {},
-            .x_names = {},
-            .log_x = dimensions[0].flag->name == "samples" || dimensions[0].flag->name == "coalesce"};
+plot::Plot plot_of(std::size_t metric, const std::string& model, const std::vector<Dimension>& dimensions,
+                   const std::vector<Run>& runs) {
   const bool names = !dimensions[0].flag->choices.empty();
-  if (names) plot.x_names = dimensions[0].values;
-  std::map<std::string, std::size_t> series_of;
+  std::map<std::string, std::vector<std::pair<double, double>>> lines;
   for (const Run& run : runs) {
     std::string name;
     for (std::size_t d = 1; d < dimensions.size(); ++d) {
       name += (d > 1 ? ", " : "") + dimensions[d].flag->name + ' ' + dimensions[d].values[run.choice[d]];
     }
-    const auto [found, added] = series_of.try_emplace(name, plot.series.size());
-    if (added) plot.series.push_back({name, {}});
     const double x = names ? static_cast<double>(run.choice[0]) : std::stod(dimensions[0].values[run.choice[0]]);
-    plot.series[found->second].points.emplace_back(x, run.metrics[metric]);
+    lines[name].emplace_back(x, run.metrics[metric]);
   }
-  for (PlotSeries& series : plot.series) std::sort(series.points.begin(), series.points.end());
-  return plot;
+  plot::Plot result{.title = model + ": " + kMetrics[metric].title,
+                    .x_label = dimensions[0].flag->name,
+                    .y_label = kMetrics[metric].title,
+                    .log_x = dimensions[0].flag->name == "samples" || dimensions[0].flag->name == "coalesce",
+                    .series = {},
+                    .levels = {0},
+                    .x_names = names ? dimensions[0].values : std::vector<std::string>{}};
+  for (auto& [name, points] : lines) {
+    std::sort(points.begin(), points.end());
+    plot::Series& series = result.series.emplace_back();
+    series.name = name;
+    series.kind = plot::Series::Kind::line;
+    for (const auto& [x, y] : points) {
+      series.x.push_back(x);
+      series.y.push_back(y);
+    }
+  }
+  return result;
 }
 
 // Counts through all combinations, the last dimension fastest; false after the last one.
@@ -186,7 +193,7 @@ void sweep_medial(const MedialCommand& command, const Surface& surface, const Pr
   const std::string model = command.mesh.stem().string();
   for (std::size_t m = 0; m < std::size(kMetrics); ++m) {
     write_file(command.folder / fmt::format("sweep-{}.svg", kMetrics[m].column),
-               to_svg(plot_of(m, model, dimensions, runs)));
+               plot::to_svg({plot_of(m, model, dimensions, runs)}));
   }
   if (command.output.quiet) return;
   if (command.output.json) {

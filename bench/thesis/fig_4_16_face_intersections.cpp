@@ -20,8 +20,8 @@
 namespace {
 
 using namespace orchard::runtime;
-using orchard::bench::Plot;
-using orchard::bench::Series;
+using orchard::plot::Plot;
+using orchard::plot::Series;
 
 constexpr double kDuration = 5;
 constexpr std::uint32_t kBaseCases[] = {4, 8, 16, 32, 64, 128};
@@ -139,7 +139,8 @@ std::vector<Plot> run(const Test& test, int trials, std::ofstream& csv) {
               .y_label = "speedup of projection",
               .log_y = true,
               .series = {},
-              .levels = {1}};
+              .levels = {1},
+              .x_names = {}};
     Series points;
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       const double speedup = seconds[1 + k][i] / seconds[0][i];
@@ -158,7 +159,8 @@ std::vector<Plot> run(const Test& test, int trials, std::ofstream& csv) {
                .log_x = true,
                .log_y = true,
                .series = {over_base_case},
-               .levels = {1}}};
+               .levels = {1},
+               .x_names = {}}};
 }
 
 // The random test with more bodies, at the same density.
@@ -204,12 +206,12 @@ int main(int argc, char** argv) {
   for (const Test& test : kTests) {
     const std::vector<Plot> plots = run(test, trials, csv);
     if (plots.size() > 1) {
-      orchard::bench::write_svg(folder / ("fig_" + std::string(test.figure) + ".svg"), plots, 3);
+      orchard::plot::write_svg(folder / ("fig_" + std::string(test.figure) + ".svg"), plots, 3);
     } else {
       flat.push_back(plots[0]);
     }
   }
-  orchard::bench::write_svg(folder / "fig_4.19_4.20.svg", flat, 2);
+  orchard::plot::write_svg(folder / "fig_4.19_4.20.svg", flat, 2);
   run_large(csv);
   return 0;
 }

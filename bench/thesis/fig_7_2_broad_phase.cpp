@@ -21,6 +21,8 @@
 namespace {
 
 using namespace orchard::bench;
+using orchard::plot::Plot;
+using orchard::plot::Series;
 using orchard::runtime::BroadPhase;
 using orchard::runtime::BroadPhaseMethod;
 using orchard::runtime::BroadPhaseOptions;
@@ -315,7 +317,8 @@ bool run_setting(const Setting& setting, double share, const std::filesystem::pa
               .y_label = "speedup over the spatial hash",
               .log_y = true,
               .series = {},
-              .levels = {1}};
+              .levels = {1},
+              .x_names = {}};
     for (const std::size_t w : {std::size_t{0}, all.size() - 1}) {
       all_series[w].name = all[w].name;
       plot.series.push_back(all_series[w]);
@@ -332,7 +335,8 @@ bool run_setting(const Setting& setting, double share, const std::filesystem::pa
               .log_y = true,
               .series = {histogram("spatial hash", hash_frames, width),
                          histogram("projection", projection_frames, width), histogram("events", event_frames, width)},
-              .levels = {}};
+              .levels = {},
+              .x_names = {}};
   for (Series& bars : frames.series) {
     for (double& count : bars.y) count += 1;
   }

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-namespace orchard::bench {
+// Charts as the text of an SVG file.
+namespace orchard::plot {
 
-// Plots as small SVG files, for any benchmark. Lines and points may have gaps: values that are not finite, or not
-// positive on a logarithmic axis, are left out.
+// Values that are not finite, or not positive on a logarithmic axis, leave a gap.
 struct Series {
   enum class Kind { points, line, bars };  // bars: x are their left edges, all as wide as the first two are apart
   std::string name;                        // for the legend; empty: none
@@ -18,10 +18,14 @@ struct Plot {
   std::string title, x_label, y_label;
   bool log_x = false, log_y = false;
   std::vector<Series> series;
-  std::vector<double> levels;  // y of dashed horizontal lines
+  std::vector<double> levels;        // y of dashed horizontal lines
+  std::vector<std::string> x_names;  // not empty: x counts these
 };
 
-// The plots side by side, `columns` in a row. Throws std::runtime_error if the file cannot be written.
+// The plots side by side, `columns` in a row.
+std::string to_svg(const std::vector<Plot>& plots, int columns = 1);
+
+// Throws std::runtime_error if the file cannot be written.
 void write_svg(const std::filesystem::path& file, const std::vector<Plot>& plots, int columns = 1);
 
-}  // namespace orchard::bench
+}  // namespace orchard::plot

@@ -5,12 +5,15 @@
 #include <cstdio>
 #include <fstream>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 
-namespace orchard::bench {
+namespace orchard::plot {
 namespace {
 
-constexpr double kWidth = 420, kHeight = 300, kLeft = 58, kRight = 12, kTop = 28, kBottom = 42;  // of a plot, in pixels
+constexpr double kWidth = 420, kHeight = 300, kLeft = 58, kRight = 20, kTop = 28, kBottom = 42;  // of a plot, in pixels
+constexpr double kLegendRow = 14;
+constexpr std::size_t kMostMarks = 40;  // on a line
 constexpr const char* kColors[] = {"#1f6fb4", "#d9581c", "#2e8b4f", "#8c4fa8", "#b8860b", "#555555", "#c2417c"};
 
 std::string number(double value) {
@@ -108,14 +111,26 @@ void draw_series(std::ostream& out, const Series& series, const Axis& x, const A
                 "fill-opacity=\"0.5\" fill=\"" + paint + "\"");
     }
   }
-  if (series.kind == Series::Kind::line) out << "\"/>\n";
+  if (series.kind != Series::Kind::line) return;
+  out << "\"/>\n";
+  if (count > kMostMarks) return;
+  for (std::size_t i = 0; i < count; ++i)
+    if (x.shows(series.x[i]) && y.shows(series.y[i]))
+      out << "<circle cx=\"" << x.place(series.x[i]) << "\" cy=\"" << y.place(series.y[i]) << "\" r=\"2.5\" fill=\""
+          << color << "\"/>\n";
 }
 
 void draw_frame(std::ostream& out, const Plot& plot, const Axis& x, const Axis& y) {
   const double bottom = kHeight - kBottom, right = kWidth - kRight;
-  for (const double t : x.ticks()) {
-    line(out, x.place(t), kTop, x.place(t), bottom, "stroke=\"#e4e4e4\"");
-    text(out, x.place(t), bottom + 14, number(t), "text-anchor=\"middle\"");
+  std::vector<double> ticks = x.ticks();
+  if (!plot.x_names.empty()) {
+    ticks.resize(plot.x_names.size());
+    for (std::size_t i = 0; i < ticks.size(); ++i) ticks[i] = static_cast<double>(i);
+  }
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    line(out, x.place(ticks[i]), kTop, x.place(ticks[i]), bottom, "stroke=\"#e4e4e4\"");
+    text(out, x.place(ticks[i]), bottom + 14, plot.x_names.empty() ? number(ticks[i]) : plot.x_names[i],
+         "text-anchor=\"middle\"");
   }
   for (const double t : y.ticks()) {
     line(out, kLeft, y.place(t), right, y.place(t), "stroke=\"#e4e4e4\"");
@@ -143,6 +158,7 @@ void draw(std::ostream& out, const Plot& plot) {
     if (series.kind == Series::Kind::bars && !plot.log_y) y.see(0);
   }
   for (const double level : plot.levels) y.see(level);
+  if (!plot.x_names.empty()) x.see(0), x.see(static_cast<double>(plot.x_names.size() - 1));
   x.settle();
   y.settle();
   draw_frame(out, plot, x, y);
@@ -151,29 +167,41 @@ void draw(std::ostream& out, const Plot& plot) {
     const char* const paint = kColors[color++ % std::size(kColors)];
     draw_series(out, series, x, y, paint);
     if (series.name.empty()) continue;
-    const double row = kTop + 14 + 14 * static_cast<double>(named++);
+    const double row = kHeight + kLegendRow * (static_cast<double>(named++) + 0.5);
     const std::string fill = paint;
-    rectangle(out, kLeft + 8, row - 8, 9, 9, "fill=\"" + fill + "\"");
-    text(out, kLeft + 21, row, series.name, "");
+    rectangle(out, kLeft, row - 8, 9, 9, "fill=\"" + fill + "\"");
+    text(out, kLeft + 15, row, series.name, "");
   }
 }
 
 }  // namespace
 
-void write_svg(const std::filesystem::path& file, const std::vector<Plot>& plots, int columns) {
+std::string to_svg(const std::vector<Plot>& plots, int columns) {
   const int count = static_cast<int>(plots.size()), rows = (count + columns - 1) / columns;
-  std::ofstream out(file);
+  std::ptrdiff_t names = 0;
+  for (const Plot& plot : plots) {
+    names = std::max(names, std::count_if(plot.series.begin(), plot.series.end(),
+                                          [](const Series& series) { return !series.name.empty(); }));
+  }
+  const double height = kHeight + kLegendRow * static_cast<double>(names);
+  std::ostringstream out;
   out << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << kWidth * std::min(columns, count) << "\" height=\""
-      << kHeight * rows
+      << height * rows
       << "\" font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
   for (int i = 0; i < count; ++i) {
-    out << "<g transform=\"translate(" << kWidth * (i % columns) << " " << kHeight * (i / columns) << ")\">\n";
+    out << "<g transform=\"translate(" << kWidth * (i % columns) << " " << height * (i / columns) << ")\">\n";
     draw(out, plots[static_cast<std::size_t>(i)]);
     out << "</g>\n";
   }
   out << "</svg>\n";
+  return out.str();
+}
+
+void write_svg(const std::filesystem::path& file, const std::vector<Plot>& plots, int columns) {
+  std::ofstream out(file);
+  out << to_svg(plots, columns);
   out.close();
   if (!out) throw std::runtime_error(file.string() + ": cannot be written");
 }
 
-}  // namespace orchard::bench
+}  // namespace orchard::plot
