@@ -340,11 +340,12 @@ bool run_setting(const Setting& setting, double share, const std::filesystem::pa
   for (Series& bars : frames.series) {
     for (double& count : bars.y) count += 1;
   }
-  write_svg(folder / ("fig_" + std::string(setting.speedup_figure) + ".svg"),
-            {scatter(std::string("Fig. ") + setting.speedup_figure + ": overall" + cubes, overall),
-             scatter(std::string("Fig. ") + setting.speedup_figure + ": detection only" + cubes, detection),
-             scatter(std::string("Fig. ") + setting.worst_figure + ": worst frame" + cubes, worst), frames},
-            2);
+  orchard::plot::write_svg(
+      folder / ("fig_" + std::string(setting.speedup_figure) + ".svg"),
+      {scatter(std::string("Fig. ") + setting.speedup_figure + ": overall" + cubes, overall),
+       scatter(std::string("Fig. ") + setting.speedup_figure + ": detection only" + cubes, detection),
+       scatter(std::string("Fig. ") + setting.worst_figure + ": worst frame" + cubes, worst), frames},
+      2);
   return right;
 }
 
