@@ -1,0 +1,47 @@
+// How many spheres each way of finding redundancy removes from octrees, merged and annealed trees, as a Markdown table.
+// Usage: orchard_redundancy_table MESH..
+#include <cstdio>
+#include <filesystem>
+
+#include "orchard/geometry/mesh_io.h"
+#include "orchard/spheretree/annealing.h"
+#include "orchard/spheretree/octree.h"
+#include "orchard/spheretree/redundancy.h"
+#include "trees.h"
+
+namespace {
+
+using namespace orchard;
+
+void row(const std::string& mesh, const char* kind, const Surface& surface, const SphereTree& tree, Index earlier) {
+  std::printf("| %s | %s | %zu |", mesh.c_str(), kind, tree.nodes.size() + earlier);
+  for (const Selection selection : {Selection::independent, Selection::acyclic, Selection::exhaustive}) {
+    SphereTree rest = tree;
+    const RedundancyReport report = remove_redundant(rest, surface, selection);
+    if (selection == Selection::independent) std::printf(" %u | %u |", report.by_siblings, report.by_aunts);
+    if (selection == Selection::exhaustive) {
+      std::printf(" %u |\n", report.removed + earlier);
+    } else {
+      std::printf(" %u (%u kept) |", report.removed, report.vetoed);
+    }
+  }
+}
+
+void rows(const char* file) {
+  const Surface surface(read_mesh(file));
+  const std::string name = std::filesystem::path(file).stem().string();
+  row(name, "octree", surface, octree(surface), 0);
+  row(name, "merged", surface, bench::merged_tree(surface), 0);
+  AnnealingReport report;
+  const SphereTree annealed = annealed_tree(surface, {}, {}, &report);
+  row(name, "annealed", surface, annealed, report.redundant);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::puts("| model | tree | spheres | by siblings | by aunts | independent set | cycles broken | whatever can go |");
+  std::puts("|---|---|---:|---:|---:|---:|---:|---:|");
+  for (int i = 1; i < argc; ++i) rows(argv[i]);
+}
