@@ -4,13 +4,14 @@
 #include <cmath>
 
 #include "console.h"
+#include "orchard/covering/inaccuracy.h"
 #include "orchard/geometry/error.h"
-#include "orchard/spheretree/certify.h"
 #include "orchard/spheretree/measure.h"
 #include "orchard/spheretree/merging.h"
 #include "orchard/spheretree/octree.h"
 #include "orchard/spheretree/pack.h"
 #include "orchard/spheretree/redundancy.h"
+#include "orchard/spheretree/verify.h"
 
 namespace orchard::apps {
 namespace {
@@ -36,13 +37,15 @@ class Pipeline {
       stage("random descent", [&] {
         const DescentOptions descent{options_.descent, options_.seed};
         result_.descent = random_descent(result_.tree, surface_, descent, progress_);
+        result_.redundancy.removed +=
+            remove_redundant(result_.tree, surface_, Selection::exhaustive, progress_).removed;
       });
     stage("measuring", [&] {
       measure(result_.tree, surface_, progress_);
       measure(result_.octree, surface_, progress_);
     });
     stage("packing", [&] { result_.packed = pack(result_.tree, surface_); });
-    stage("certifying", [&] { require_certificate(); });
+    stage("verifying", [&] { require_proof(); });
     return std::move(result_);
   }
 
@@ -108,11 +111,23 @@ class Pipeline {
     });
   }
 
-  void require_certificate() const {
-    const Coverage coverage = certify(surface_, result_.packed, progress_);
-    if (coverage.complete()) return;
-    throw Error("the packed tree does not cover the surface: " + std::to_string(coverage.uncovered.size()) +
-                " triangles, the first is " + std::to_string(coverage.uncovered[0].triangle));
+  // What is written has passed `verify`. A bound over a ball that the search found but cannot prove in time gives way
+  // to the one by the centre's distance, which needs no search.
+  void require_proof() {
+    Verification proof = verify(surface_, result_.packed, {.most_violations = kNone}, progress_);
+    for (const Violation& violation : proof.violations) {
+      if (violation.kind != Violation::Kind::distance_bound) continue;
+      SphereNode& node = result_.tree.nodes[violation.node];
+      node.distance_bound = distance_bound(node.center_distance, node.sphere.radius);
+    }
+    if (!proof.ok() && proof.bounds_violated > 0) {
+      result_.packed = pack(result_.tree, surface_);
+      proof = verify(surface_, result_.packed, {}, progress_);
+    }
+    if (proof.ok()) return;
+    throw Error("the packed tree is not proven to be conservative: " + std::to_string(proof.triangles_uncovered) +
+                " triangles uncovered, " + std::to_string(proof.triangles_unlisted) + " not listed, " +
+                std::to_string(proof.bounds_violated) + " bounds missed");
   }
 
   const Surface& surface_;
