@@ -73,7 +73,7 @@ class Grower {
 // One path for the whole spot, or one for each of its points, whichever grows less.
 double take_in(Grower& grower, const detail::Spot& spot) {
   Points all = spot.corners;
-  all.push_back(spot.deepest);
+  if (all.empty()) all.push_back(spot.deepest);
   const double together = grower.cost_of_best_path(all);
   if (together == 0) return 0;
   double apart = 0;
