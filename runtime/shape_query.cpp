@@ -105,9 +105,14 @@ struct Frame {  // the body's, with its coordinates relative to the tree's origi
   Pose back;
 };
 
-Vec3 ray_direction(int i) noexcept {  // evenly turned, none along an axis or a diagonal
-  const double z = 1 - (2 * i + 0.87) / kRays, turn = 2.399963 * i + 0.5, r = std::sqrt(1 - z * z);
-  return {r * std::cos(turn), r * std::sin(turn), z};
+// Unit vectors without a pattern, along no axis or diagonal: the multiples of three irrational numbers, modulo 1.
+Vec3 ray_direction(int i) noexcept {
+  const auto part = [i](double step) {
+    const double x = (i + 1) * step;
+    return x - std::floor(x) - 0.5;
+  };
+  const Vec3 v = {part(0.8191725133961645), part(0.6710436067037893), part(0.5497004779019703)};
+  return plus({0, 0, 0}, v, 1 / detail::length(v));
 }
 
 enum class Crossing { none, one, unclear };

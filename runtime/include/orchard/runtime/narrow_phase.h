@@ -75,8 +75,9 @@ struct Verdict {
   std::uint64_t work = 0;   // in the units of Budget::pair_tests, since start()
 };
 
-// One pair of bodies, answered level by level (dissertation 3.2, Fig. 5.4): level 0 tests the roots, each further one
-// the children of the pairs that met; the last one tests the triangles, exactly, through the trees of triangles.
+// One pair of bodies, answered level by level (dissertation 3.2, Fig. 5.4): level 0 tests the roots (and, if both have
+// triangles, convex hulls around these), each further one the children of the pairs that met; the last one tests the
+// triangles, exactly, through the trees of triangles.
 //
 // The question is whether the *surfaces* touch. A solid wholly inside another without touching is a "no":
 // contains_solid() in shape_query.h answers that one.
