@@ -1,7 +1,8 @@
 // How many spheres each way of finding redundancy removes from octrees, merged and annealed trees, as a Markdown table.
-// Usage: orchard_redundancy_table MESH..
+// Usage: orchard_redundancy_table [--no-annealing] MESH..
 #include <cstdio>
 #include <filesystem>
+#include <string_view>
 
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/spheretree/annealing.h"
@@ -25,17 +26,18 @@ void row(const std::string& mesh, const char* kind, const Surface& surface, cons
       std::printf(" %u (%u kept) |", report.removed, report.vetoed);
     }
   }
+  std::fflush(stdout);
 }
 
-void rows(const char* file) {
+void rows(const char* file, bool annealing) {
   const Surface surface(read_mesh(file));
   const std::string name = std::filesystem::path(file).stem().string();
   row(name, "octree", surface, octree(surface), 0);
   row(name, "merged", surface, bench::merged_tree(surface), 0);
+  if (!annealing) return;
   AnnealingReport report;
   const SphereTree annealed = annealed_tree(surface, {}, {}, &report);
   row(name, "annealed", surface, annealed, report.redundant);
-  std::fflush(stdout);
 }
 
 }  // namespace
@@ -43,5 +45,6 @@ void rows(const char* file) {
 int main(int argc, char** argv) {
   std::puts("| model | tree | spheres | by siblings | by aunts | independent set | cycles broken | whatever can go |");
   std::puts("|---|---|---:|---:|---:|---:|---:|---:|");
-  for (int i = 1; i < argc; ++i) rows(argv[i]);
+  const bool annealing = argc < 2 || std::string_view(argv[1]) != "--no-annealing";
+  for (int i = annealing ? 1 : 2; i < argc; ++i) rows(argv[i], annealing);
 }
