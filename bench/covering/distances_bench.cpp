@@ -11,6 +11,7 @@
 #include "orchard/covering/inaccuracy.h"
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/random.h"
+#include "orchard/geometry/repair.h"
 #include "orchard/geometry/surface.h"
 #include "orchard/geometry/tolerance.h"
 #include "orchard/spheretree/octree.h"
@@ -43,7 +44,9 @@ std::vector<Sphere> spheres_of(const Surface& surface) {
 }
 
 void measure(const char* file) {
-  const Surface surface(read_mesh(file));
+  TriangleMesh mesh = read_mesh(file);
+  repair_mesh(mesh);
+  const Surface surface(std::move(mesh));
   const std::vector<Sphere> spheres = spheres_of(surface);
   const double radius = surface.bounding_radius();
   double widest = 0, sum = 0;

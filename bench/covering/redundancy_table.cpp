@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "orchard/geometry/mesh_io.h"
+#include "orchard/geometry/repair.h"
 #include "orchard/spheretree/annealing.h"
 #include "orchard/spheretree/octree.h"
 #include "orchard/spheretree/redundancy.h"
@@ -30,7 +31,9 @@ void row(const std::string& mesh, const char* kind, const Surface& surface, cons
 }
 
 void rows(const char* file, bool annealing) {
-  const Surface surface(read_mesh(file));
+  TriangleMesh mesh = read_mesh(file);
+  repair_mesh(mesh);
+  const Surface surface(std::move(mesh));
   const std::string name = std::filesystem::path(file).stem().string();
   row(name, "octree", surface, octree(surface), 0);
   row(name, "merged", surface, bench::merged_tree(surface), 0);
