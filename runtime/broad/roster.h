@@ -27,9 +27,9 @@ struct Clock {
   Step steps_within(double seconds) const noexcept {
     return static_cast<Step>(std::max(0.0, seconds / time_step - kStepSlack));
   }
-  // The last step, counted from `now`, at which a bound that expires at `expiry` holds; at least 0.
+  // The last step, counted from `now`, at which a bound that expires at `expiry` surely holds; at least 0.
   Step steps_until_expiry(Step now, double expiry) const noexcept {
-    const double steps = std::floor((expiry - time(now)) / time_step + kStepSlack);
+    const double steps = std::floor((expiry - time(now)) / time_step - kStepSlack);
     return steps < 1e15 ? static_cast<Step>(std::max(0.0, steps)) : kNeverStep;
   }
 };

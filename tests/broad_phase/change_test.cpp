@@ -190,5 +190,38 @@ TEST(BroadPhase, InterruptedKeepsTheImportantPairs) {
   EXPECT_GT(interrupted, 100);
 }
 
+TEST(BroadPhase, WithoutAnyTimeGetsSomewhereAndSaysWhatIsMissing) {
+  const test::MovingBodies bodies({.bodies = 300, .ball = 30}, 1);
+  BroadPhase world(bodies.source(), {.time_step = kStep});
+  for (std::size_t i = 0; i < bodies.size(); ++i) world.add(static_cast<std::uint8_t>(i % 2));
+  std::uint64_t asked = 0;
+  for (int step = 0; step < 50; ++step) {
+    const Advance now = world.advance(kStep * step, WorkBudget{.time = std::chrono::nanoseconds(0)});
+    for (const BodyPair& pair : now.pairs) {
+      ASSERT_TRUE(spheres_touch(bodies.motion(pair.a, now.time), bodies.motion(pair.b, now.time)));
+    }
+    EXPECT_EQ(step > 0 || now.incomplete_from == 0, true);
+    EXPECT_LE(world.motions_asked() - asked, 2 * kWorkPerClock);
+    asked = world.motions_asked();
+  }
+  EXPECT_GT(asked, 50u);
+  world.advance(kStep * 50);
+  const Advance now = world.advance(kStep * 51);
+  EXPECT_EQ(std::vector<BodyPair>(now.pairs.begin(), now.pairs.end()), bodies.touching(kStep * 51));
+}
+
+TEST(BroadPhase, TimeNeverRunsBackwards) {  // a smaller time than before changes nothing
+  std::vector<Motion> values(2);
+  values[1].position = {100, 0, 0};
+  BroadPhase world(values_of(values), {.time_step = kStep});
+  world.add(), world.add();
+  world.advance(1);
+  world.advance(0.5);
+  values[1].position = {0, 0, 0};
+  world.teleport(1);
+  EXPECT_TRUE(world.advance(0.7).pairs.empty());
+  EXPECT_NEAR(world.advance(1.02).time, 1.01, 1e-9);
+}
+
 }  // namespace
 }  // namespace orchard::runtime

@@ -79,7 +79,7 @@ struct Advance {
 // and is reported at the first one, so less than dt_d after it begins. A shorter one may fall between two steps. Two
 // static bodies are never a pair.
 //
-// Call advance(t_now) once per frame, or more often, or when the time it returned has come:
+// Call advance(t_now) once per frame, or more often, or when the time it returned has come, never with a smaller time:
 //     for (Advance now = world.advance(t); !now.pairs.empty(); now = world.advance(t)) ..     // see Fig. 4.23
 // While pairs overlap, each step reports them.
 //
@@ -108,14 +108,14 @@ class BroadPhase {
   // Processes the steps up to t_now that may have something, and stops at the first one that has.
   Advance advance(double t_now) {
     if (t_now >= wake_time_) return process(t_now, nullptr);
-    seen_time_ = t_now;
+    seen_time_ = t_now > seen_time_ ? t_now : seen_time_;
     return {next_time_, {}};
   }
   // The same, within a budget per step: the bodies and pairs of the more important classes come first; what is left
   // over is done at the next step. `events` only; the other methods ignore the budget.
   Advance advance(double t_now, const WorkBudget& budget) {
     if (t_now >= wake_time_) return process(t_now, &budget);
-    seen_time_ = t_now;
+    seen_time_ = t_now > seen_time_ ? t_now : seen_time_;
     return {next_time_, {}};
   }
 
