@@ -106,7 +106,7 @@ int main(int argc, char** argv) {
     for (const auto& [rival, share] : rivals) {
       if (!rival) continue;
       const Count count = compare(tree, *rival, share);
-      std::printf("%s, %zu triangles, %s: %zu poses, %zu touching, %zu answers differ, %zu of them beyond 1e-6 R\n",
+      std::printf("%s: %zu triangles; %s: %zu poses, %zu touching, %zu answers differ, %zu of them beyond 1e-6 R\n",
                   argv[i], tree.triangles.size(), rival->name().c_str(), count.poses, count.touching, count.differ,
                   count.unexplained);
       std::fflush(stdout);
