@@ -31,6 +31,8 @@ class Pipeline {
     if (needs_axis(options_.method)) build_medial_axis();
     build_tree();
     stage("covering", [&] { result_.cover = cover(result_.tree, surface_, progress_); });
+    if (options_.method == Method::merging)
+      stage("shrinking", [&] { shrink_balls(result_.tree, surface_, progress_); });
     stage("redundant spheres",
           [&] { result_.redundancy = remove_redundant(result_.tree, surface_, Selection::exhaustive, progress_); });
     if (options_.descent > 0)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <queue>
+#include <span>
 #include <unordered_set>
 #include <utility>
 
@@ -30,11 +31,28 @@ const std::array<Vector, kCoreDirections>& core_directions() {
   return directions;
 }
 
-// A set of medial vertices merged into one sphere.
+// What a node answers for: medial vertices, or forming points where vertices are too few. Where many points lie on one
+// sphere, as around the axis of a cylinder, they have coalesced into one vertex, which could not be split.
+struct Members {
+  std::vector<Index> items;  // vertices of the axis, or its points
+  bool points = false;
+
+  std::span<const Index> forming_points(const MedialAxis& axis, std::size_t i) const {
+    return points ? std::span(&items[i], 1) : axis.forming_points[items[i]];
+  }
+};
+
+// Members merged into one sphere.
 struct Group {
   Sphere sphere;
-  std::vector<Index> vertices;  // of the medial axis
+  Members members;
 };
+
+constexpr std::size_t kNearPoints = 6;  // neighbours of a point that stand for adjacency where there is none
+// Vertices fewer than the children, with this many forming points for each child, are worth taking apart.
+constexpr std::size_t kPointsPerChild = 4;
+// A sphere as tight as this, as a fraction of R, is left as it is.
+constexpr double kTight = 1e-3;
 
 // A pair of groups that some Voronoi edge joins, with the sphere that would replace them cached.
 struct Candidate {
@@ -50,7 +68,18 @@ struct Dearer {
   }
 };
 
-// Merges the spheres of a set of medial vertices along the axis until few enough remain (dissertation 6.3.1).
+std::vector<Index> points_of(const MedialAxis& axis, const Members& members) {
+  std::vector<Index> all;
+  for (std::size_t i = 0; i < members.items.size(); ++i) {
+    const auto points = members.forming_points(axis, i);
+    all.insert(all.end(), points.begin(), points.end());
+  }
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+// Merges the spheres of a set of members along the axis until few enough remain (dissertation 6.3.1).
 //
 // Two departures make it fast. A group's cost and sphere come from a core, the extreme points of its forming points;
 // only the groups that remain in the end are fitted to all of them. And candidates are not re-keyed when a group grows:
@@ -58,19 +87,21 @@ struct Dearer {
 // reaches the queue's head gives the same order.
 class Merger {
  public:
-  Merger(const MedialAxis& axis, const std::vector<Index>& vertices, std::vector<Index>& node_of)
-      : axis_(axis), vertices_(vertices) {
-    const auto count = static_cast<Index>(vertices.size());
+  Merger(const MedialAxis& axis, const Members& members, std::vector<Index>& node_of) : axis_(axis), members_(members) {
+    const auto count = static_cast<Index>(members.items.size());
     nodes_.reserve(2 * count);
-    for (Index i = 0; i < count; ++i) node_of[vertices[i]] = i;
-    for (Index vertex : vertices) {
-      const auto points = axis.forming_points[vertex];
-      nodes_.push_back({{axis.centers[vertex], axis.radii[vertex]}, {points.begin(), points.end()}, kNone});
+    for (Index i = 0; i < count; ++i) {
+      const auto points = members.forming_points(axis, i);
+      const Index item = members.items[i];
+      const Sphere sphere =
+          members.points ? Sphere{axis.points[item], 0} : Sphere{axis.centers[item], axis.radii[item]};
+      nodes_.push_back({sphere, {points.begin(), points.end()}, kNone});
     }
-    for (Index i = 0; i < count; ++i)
-      for (Index neighbor : axis.neighbors[vertices[i]])
-        if (node_of[neighbor] != kNone && i < node_of[neighbor]) edges_.push_back({i, node_of[neighbor]});
-    for (Index vertex : vertices) node_of[vertex] = kNone;
+    if (members.points) {
+      join_near_points();
+    } else {
+      join_adjacent_vertices(node_of);
+    }
     alive_ = count;
   }
 
@@ -102,6 +133,35 @@ class Merger {
     std::vector<Index> core;  // some of its forming points
     Index into;
   };
+
+  void join_adjacent_vertices(std::vector<Index>& node_of) {
+    const auto count = static_cast<Index>(members_.items.size());
+    for (Index i = 0; i < count; ++i) node_of[members_.items[i]] = i;
+    for (Index i = 0; i < count; ++i)
+      for (Index neighbor : axis_.neighbors[members_.items[i]])
+        if (node_of[neighbor] != kNone && i < node_of[neighbor]) edges_.push_back({i, node_of[neighbor]});
+    for (Index vertex : members_.items) node_of[vertex] = kNone;
+  }
+
+  // O(n^2), for the few points of fewer vertices than a node has children.
+  void join_near_points() {
+    const auto count = static_cast<Index>(members_.items.size());
+    std::vector<std::pair<double, Index>> near;
+    for (Index i = 0; i < count; ++i) {
+      near.clear();
+      for (Index k = 0; k < count; ++k)
+        if (k != i)
+          near.emplace_back((axis_.points[members_.items[k]] - axis_.points[members_.items[i]]).squaredNorm(), k);
+      const auto some = static_cast<std::ptrdiff_t>(std::min(kNearPoints, near.size()));
+      std::partial_sort(near.begin(), near.begin() + some, near.end());
+      for (std::ptrdiff_t k = 0; k < some; ++k) {
+        const Index other = near[static_cast<std::size_t>(k)].second;
+        edges_.push_back({std::min(i, other), std::max(i, other)});
+      }
+    }
+    std::sort(edges_.begin(), edges_.end());
+    edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
+  }
 
   static std::uint64_t key(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
 
@@ -183,13 +243,13 @@ class Merger {
   std::vector<Group> groups() {
     std::vector<Index> group_of(nodes_.size(), kNone);
     std::vector<Group> result;
-    for (Index i = 0; i < vertices_.size(); ++i) {
+    for (Index i = 0; i < members_.items.size(); ++i) {
       const Index root = current(i);
       if (group_of[root] == kNone) {
         group_of[root] = static_cast<Index>(result.size());
-        result.push_back({nodes_[root].sphere, {}});
+        result.push_back({nodes_[root].sphere, {{}, members_.points}});
       }
-      result[group_of[root]].vertices.push_back(vertices_[i]);
+      result[group_of[root]].members.items.push_back(members_.items[i]);
     }
     for (Group& group : result) fit(group);
     return result;
@@ -199,11 +259,7 @@ class Merger {
   // and Clarkson 2003), which takes most of the 5 % that Ritter's ball is too large.
   void fit(Group& group) {
     std::vector<Index>& all = scratch_;
-    all.clear();
-    for (Index vertex : group.vertices)
-      all.insert(all.end(), axis_.forming_points[vertex].begin(), axis_.forming_points[vertex].end());
-    std::sort(all.begin(), all.end());
-    all.erase(std::unique(all.begin(), all.end()), all.end());
+    all = points_of(axis_, group.members);
     const std::vector<Point>& points = positions_of(all);
     Point center = group.sphere.center;
     group.sphere.radius = std::numeric_limits<double>::infinity();
@@ -214,13 +270,13 @@ class Merger {
       const Point& farthest = *std::max_element(points.begin(), points.end(), nearer);
       const double radius = (farthest - center).norm() * (1 + 0x1p-50);
       if (radius < group.sphere.radius) group.sphere = {center, radius};
-      if (group.vertices.size() == 1) return;  // a medial sphere touches its points as it is
+      if (group.members.items.size() == 1) return;  // a medial sphere touches its points as it is
       center += (farthest - center) * (0.2 / pass);
     }
   }
 
   const MedialAxis& axis_;
-  const std::vector<Index>& vertices_;
+  const Members& members_;
   std::vector<std::array<Index, 2>> edges_;
   std::vector<Node> nodes_;
   std::size_t alive_ = 0;
@@ -233,6 +289,16 @@ class Merger {
 // The sphere of a group never has radius 0, not even around a single point.
 Sphere padded(const Sphere& sphere, double margin) { return {sphere.center, sphere.radius + margin}; }
 
+// Takes vertices apart into their points where they are too few for the children of a loose sphere.
+void take_apart(const MedialAxis& axis, const Surface& surface, const Sphere& sphere, Index branching,
+                Members& members) {
+  if (members.points || members.items.size() >= branching) return;
+  std::vector<Index> points = points_of(axis, members);
+  if (points.size() < kPointsPerChild * branching) return;
+  if (sphere.radius + surface.signed_distance(sphere.center) <= kTight * surface.bounding_radius()) return;
+  members = {std::move(points), true};
+}
+
 }  // namespace
 
 SphereTree merge_tree(const Surface& surface, const MedialAxis& axis, const MergeOptions& options,
@@ -243,21 +309,22 @@ SphereTree merge_tree(const Surface& surface, const MedialAxis& axis, const Merg
   SphereTree tree;
   tree.branching = options.branching;
   tree.nodes.push_back({.sphere = padded(surface.bounding_ball(), margin)});
-  std::vector<std::vector<Index>> members(1);
-  for (Index i = 0; i < axis.size(); ++i) members[0].push_back(i);
+  std::vector<Members> members(1);
+  for (Index i = 0; i < axis.size(); ++i) members[0].items.push_back(i);
   std::vector<Index> node_of(axis.size(), kNone);  // scratch
   for (Index i = 0; i < tree.nodes.size(); ++i) {
     if (i % 16 == 0)
       report_progress(progress, "merging", static_cast<double>(i) / static_cast<double>(tree.nodes.size() + i));
-    // A single medial sphere cannot be split: it stays a leaf.
-    if (tree.nodes[i].level == options.depth || members[i].size() < 2) continue;
-    if (!wants_children(options.refinement, surface, tree.nodes[i].sphere)) continue;
+    const SphereNode node = tree.nodes[i];
+    if (node.level == options.depth || !wants_children(options.refinement, surface, node.sphere)) continue;
+    take_apart(axis, surface, node.sphere, options.branching, members[i]);
+    if (members[i].items.size() < 2) continue;  // a single medial sphere or point stays a leaf
     std::vector<Group> groups = Merger(axis, members[i], node_of).run(options.branching);
     tree.nodes[i].first_child = static_cast<Index>(tree.nodes.size());
     tree.nodes[i].child_count = static_cast<Index>(groups.size());
     for (Group& group : groups) {
-      tree.nodes.push_back({.sphere = padded(group.sphere, margin), .parent = i, .level = tree.nodes[i].level + 1});
-      members.push_back(std::move(group.vertices));
+      tree.nodes.push_back({.sphere = padded(group.sphere, margin), .parent = i, .level = node.level + 1});
+      members.push_back(std::move(group.members));
     }
     members[i] = {};
   }

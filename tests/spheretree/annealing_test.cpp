@@ -111,6 +111,20 @@ TEST(RandomDescent, MakesNoBallLooserAndKeepsThePathRule) {
   }
 }
 
+TEST(ShrinkBalls, TakesBackWhatWasGrownTooMuchAndKeepsThePathRule) {
+  for (const TriangleMesh& mesh : {torus(16, 8), l_shape(), u_shape(0.3)}) {
+    const Surface surface(mesh);
+    SphereTree tree = octree(surface, {.depth = 2});
+    const SphereTree before = tree;
+    for (SphereNode& node : tree.nodes) node.sphere.radius *= 1.3;
+    const Index shrunk = shrink_balls(tree, surface);
+    expect_conservative(tree, surface, "shrunk");
+    EXPECT_EQ(shrunk, tree.nodes.size());
+    for (std::size_t i = 0; i < tree.nodes.size(); ++i)
+      EXPECT_LE(tree.nodes[i].sphere.radius, before.nodes[i].sphere.radius * 1.02) << i;
+  }
+}
+
 TEST(RandomDescent, RepeatsItselfForASeed) {
   const Surface surface(l_shape());
   SphereTree one = octree(surface, {.depth = 2}), two = one;
