@@ -27,6 +27,7 @@ void NarrowPhase::start_exact() noexcept {
   inner_.clear();
   leaves_.clear();
   next_.clear();
+  settled_leaves_ = 0;
   roots_pending_ = false;
   stack_[0] = {0, 0, detail::moved(detail::patch_at(second_.tree.patches[0], 0), placement_)};
   stack_size_ = 1;
