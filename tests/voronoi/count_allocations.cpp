@@ -8,11 +8,16 @@ namespace {
 std::atomic<std::size_t> count = 0;
 }
 
-void* operator new(std::size_t size) {
+// All that pair with each other: the sanitizers bring their own of those that are left out.
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   ++count;
-  if (void* room = std::malloc(size)) return room;
+  return std::malloc(size);
+}
+void* operator new(std::size_t size) {
+  if (void* room = operator new(size, std::nothrow)) return room;
   throw std::bad_alloc();
 }
+void operator delete(void* room, const std::nothrow_t&) noexcept { std::free(room); }
 void operator delete(void* room) noexcept { std::free(room); }
 void operator delete(void* room, std::size_t) noexcept { std::free(room); }
 
