@@ -77,6 +77,7 @@ struct MedialCommand {
   MeshOptions reading;
   MedialTuning tuning;
   std::filesystem::path points;     // not empty: the user's own surface points
+  std::filesystem::path diagram;    // not empty: the user's own Voronoi diagram, a .vor file; taken as it is
   std::filesystem::path axis;       // not empty: a .ma file to judge; nothing is built
   bool report = false;              // judge what was built
   Index quality_samples = 100'000;  // surface points of the judgement

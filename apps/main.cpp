@@ -226,7 +226,9 @@ void add_medial(CLI::App& app, Request& request) {
       ->check(CLI::Range(100, 10'000'000))
       ->capture_default_str();
   command.add_option("--axis", medial.axis, "Build nothing; measure the quality of this .ma file of any system");
-  command.add_option("--points", medial.points, "Your own surface points: a text file, x y z a line");
+  command.add_option("--points", medial.points, "Your own surface points: .xyz, .ply or .obj");
+  command.add_option("--diagram", medial.diagram,
+                     "Your own Voronoi diagram of points on the mesh, a .vor file; its gaps are not repaired");
   command
       .add_option("--sweep", medial.sweep, "NAME=A,B,..: run with each value of a tuning flag; again for another one")
       ->allow_extra_args(false);

@@ -83,14 +83,16 @@ void build_axis(const MedialCommand& command, const SolidMesh& solid, const Prog
   const Surface& surface = solid.surface;
   const bool talk = !command.output.quiet && !command.output.json;
   const MedialBuildOptions options = build_options(command.tuning);
-  std::optional<SurfaceSampling> own;
   double moved = 0;
-  if (!command.points.empty()) {
-    OwnPoints points = read_own_points(command.points, surface);
-    own = std::move(points.sampling);
-    moved = points.farthest_moved;
-  }
-  const MedialBuild build = build_medial_axis(surface, options, progress, std::move(own));
+  const auto run = [&] {
+    if (!command.diagram.empty())
+      return build_medial_axis(surface, read_own_diagram(command.diagram, surface), options, progress);
+    if (command.points.empty()) return build_medial_axis(surface, options, progress);
+    OwnPoints own = read_own_points(command.points, surface);
+    moved = own.farthest_moved;
+    return build_medial_axis(surface, options, progress, std::move(own.sampling));
+  };
+  const MedialBuild build = run();
   const MedialMesh mesh = medial_mesh(build.axis);
   const MedialSegments segments = medial_segments(build.axis, segment_options(command, surface, build));
   const SkeletonGraph skeleton = skeleton_graph(build.axis);
@@ -148,9 +150,9 @@ MedialJudgement judge(const MedialCommand& command, const Surface& surface, cons
 }
 
 void medial(const MedialCommand& command) {
-  if (!command.axis.empty() && (!command.points.empty() || !command.sweep.empty()))
-    throw InputError("--axis judges an axis as it is: it takes neither --points nor --sweep");
-  if (!command.points.empty() && !command.sweep.empty()) throw InputError("--points: not with --sweep");
+  const int own_input = !command.axis.empty() + !command.diagram.empty() + !command.points.empty();
+  if (own_input > 1) throw InputError("--axis, --diagram and --points exclude each other");
+  if (own_input > 0 && !command.sweep.empty()) throw InputError("--sweep takes no --axis, --diagram or --points");
   ProgressBar bar(!command.output.quiet && !command.output.json);
   const SolidMesh solid = load_solid(command.mesh, command.reading, bar.callback());
   bar.clear();

@@ -1,47 +1,43 @@
-#include <charconv>
-#include <cmath>
-#include <fstream>
-
 #include "medial_run.h"
 #include "orchard/geometry/error.h"
+#include "orchard/geometry/mesh_io.h"
+#include "orchard/geometry/tolerance.h"
+#include "orchard/voronoi/diagram_io.h"
 
 namespace orchard::apps {
 namespace {
 
-// Reads up to three numbers; how many there are.
-int read_numbers(const std::string& line, Point& point) {
-  const char* at = line.data();
-  const char* const end = at + line.size();
-  for (int axis = 0; axis < 3; ++axis) {
-    while (at != end && (*at == ' ' || *at == '\t' || *at == ',')) ++at;
-    const auto [after, error] = std::from_chars(at, end, point[axis]);
-    if (error != std::errc() || !std::isfinite(point[axis])) return axis;
-    at = after;
+// Where points lie on the surface; moves them there.
+OwnPoints on_surface(std::vector<Point> points, const Surface& surface) {
+  OwnPoints own;
+  own.sampling.points = std::move(points);
+  own.sampling.origins.assign(own.sampling.points.size(), PointOrigin::face);
+  for (Point& point : own.sampling.points) {
+    const ClosestPoint place = surface.closest(point);
+    own.farthest_moved = std::max(own.farthest_moved, place.distance);
+    own.sampling.triangles.push_back(place.triangle);
+    own.sampling.features.push_back(place.feature);
+    point = place.position;
   }
-  return 3;
+  return own;
 }
 
 }  // namespace
 
 OwnPoints read_own_points(const std::filesystem::path& file, const Surface& surface) {
-  std::ifstream in(file);
-  if (!in) throw InputError(file.string() + ": cannot be opened");
-  OwnPoints own;
-  std::string line;
-  for (std::size_t number = 1; std::getline(in, line); ++number) {
-    if (line.find_first_not_of(" \t\r") == std::string::npos || line[0] == '#') continue;
-    Point point;
-    if (read_numbers(line, point) < 3) {
-      throw InputError(file.string() + ", line " + std::to_string(number) + ": expected three numbers, x y z");
-    }
-    const ClosestPoint place = surface.closest(point);
-    own.farthest_moved = std::max(own.farthest_moved, place.distance);
-    own.sampling.points.push_back(place.position);
-    own.sampling.triangles.push_back(place.triangle);
-    own.sampling.features.push_back(place.feature);
-    own.sampling.origins.push_back(PointOrigin::face);
-  }
+  OwnPoints own = on_surface(read_points_or_mesh(file).vertices, surface);
   if (own.sampling.size() < 4) throw InputError(file.string() + ": four points at least are needed");
+  return own;
+}
+
+OwnDiagram read_own_diagram(const std::filesystem::path& file, const Surface& surface) {
+  OwnDiagram own{.diagram = read_vor(file), .sampling = {}};
+  OwnPoints placed = on_surface(own.diagram.points, surface);
+  if (placed.farthest_moved > tolerance::kOnTriangle * surface.bounding_radius())
+    throw InputError(file.string() + ": a point lies " + std::to_string(placed.farthest_moved) +
+                     " off the mesh; the medial axis needs the diagram of points on it");
+  own.sampling = std::move(placed.sampling);
+  own.sampling.points = own.diagram.points;
   return own;
 }
 

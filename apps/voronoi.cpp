@@ -9,6 +9,7 @@
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
+#include "orchard/voronoi/diagram_io.h"
 #include "orchard/voronoi/quality.h"
 #include "output_folder.h"
 #include "xyz.h"
@@ -166,6 +167,11 @@ std::vector<std::filesystem::path> write(const VoronoiCommand& command, const In
     files.push_back(in_folder(command.folder, command.input, ".xyz"));
     write_file(files.back(), to_xyz(input.points));
   }
+  for (const Run& run : runs) {
+    if (!run.failure.empty()) continue;
+    files.push_back(in_folder(command.folder, command.input, fmt::format("-{}.vor", name(run.algorithm)).c_str()));
+    write_file(files.back(), to_vor(run.diagram));
+  }
 #ifdef ORCHARD_HAS_VIZ
   VoronoiCellsView view;
   if (!command.cells.empty()) view.points = command.cells;
@@ -176,8 +182,6 @@ std::vector<std::filesystem::path> write(const VoronoiCommand& command, const In
     files.push_back(in_folder(command.folder, command.input, ending.c_str()));
     write_voronoi_cells(files.back(), run.diagram, view);
   }
-#else
-  static_cast<void>(runs);
 #endif
   return files;
 }
@@ -202,7 +206,9 @@ void voronoi(const VoronoiCommand& command) {
   if (talk)
     for (const auto& file : files)
       fmt::print("  {}  ({})\n", file.string(),
-                 file.extension() == ".xyz" ? "a point a line" : "open this in ParaView");
+                 file.extension() == ".xyz"   ? "a point a line"
+                 : file.extension() == ".vor" ? "the diagram as text"
+                                              : "open this in ParaView");
   if (!command.output.json) return;
   json report{{"points", input.points.size()}, {"sampled", input.repair.has_value()}};
   if (input.repair) report["repair"] = to_json(*input.repair);

@@ -21,13 +21,27 @@ class Stages {
   MedialBuild& build_;
 };
 
+void require_solid(const Surface& surface) {
+  if (!surface.solid())
+    throw InputError("the medial axis needs a solid: " + surface.report().faults() + "; repair the mesh first");
+}
+
+// From build.sampling and its diagram.
+void find_axis(const Surface& surface, const VoronoiDiagram& diagram, const MedialBuildOptions& options,
+               const Progress& progress, MedialBuild& build, Stages& stage) {
+  stage("medial axis", [&] {
+    build.voronoi_vertices = static_cast<Index>(diagram.vertices.size());
+    build.axis = medial_axis(surface, build.sampling, diagram, progress, options.axis);
+    build.unpruned_vertices = build.axis.size();
+  });
+  stage("pruning", [&] { build.axis = prune(build.axis, options.prune); });
+}
+
 }  // namespace
 
 MedialBuild build_medial_axis(const Surface& surface, const MedialBuildOptions& options, const Progress& progress,
                               std::optional<SurfaceSampling> own) {
-  if (!surface.solid()) {
-    throw InputError("the medial axis needs a solid: " + surface.report().faults() + "; repair the mesh first");
-  }
+  require_solid(surface);
   MedialBuild build;
   Stages stage(build);
   VoronoiDiagram diagram;
@@ -45,12 +59,18 @@ MedialBuild build_medial_axis(const Surface& surface, const MedialBuildOptions& 
       diagram = std::move(repaired.diagram);
     });
   }
-  stage("medial axis", [&] {
-    build.voronoi_vertices = static_cast<Index>(diagram.vertices.size());
-    build.axis = medial_axis(surface, build.sampling, diagram, progress, options.axis);
-    build.unpruned_vertices = build.axis.size();
-  });
-  stage("pruning", [&] { build.axis = prune(build.axis, options.prune); });
+  find_axis(surface, diagram, options, progress, build, stage);
+  return build;
+}
+
+MedialBuild build_medial_axis(const Surface& surface, const OwnDiagram& own, const MedialBuildOptions& options,
+                              const Progress& progress) {
+  require_solid(surface);
+  MedialBuild build;
+  Stages stage(build);
+  build.sampling = own.sampling;
+  build.points = build.sampling.size();
+  find_axis(surface, own.diagram, options, progress, build, stage);
   return build;
 }
 

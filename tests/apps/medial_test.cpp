@@ -67,6 +67,33 @@ TEST(Medial, TakesTheUsersPoints) {
   EXPECT_NE(refused.err.find("line 2"), std::string::npos) << refused.err;
 }
 
+TEST(Medial, TakesTheUsersDiagramAsItIs) {
+  const Workplace here;
+  const std::string mesh = here.add("l.obj", test::l_shape());
+  ASSERT_EQ(here.run({"sample", mesh, "-o", (here / "s").string(), "--samples", "400", "--no-views"}).exit_code, 0);
+  const std::string points = (here / "s/l.xyz").string();
+  const Finished made = here.run({"voronoi", points, "--algorithm", "exact", "-o", (here / "v").string(), "--quiet"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const std::string diagram = (here / "v/l-exact.vor").string();
+  const auto axis = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> arguments{"medial", mesh, "-o", (here / "out").string(), "--quiet", "--no-views"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const Finished run = here.run(arguments);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return here.files("out").at("l.ma");
+  };
+  const std::string own = axis({"--diagram", diagram});
+  EXPECT_GT(lines(own), 100u);
+  EXPECT_EQ(own.substr(0, own.find('\n')), axis({"--points", points, "--gaps", "none"}).substr(0, own.find('\n')));
+
+  const std::string other = here.add("b.obj", test::icosphere(1));
+  const Finished off = here.run({"medial", other, "-o", (here / "out").string(), "--diagram", diagram});
+  EXPECT_EQ(off.exit_code, 2);
+  EXPECT_NE(off.err.find("off the mesh"), std::string::npos) << off.err;
+  EXPECT_EQ(
+      here.run({"medial", mesh, "-o", (here / "out").string(), "--diagram", diagram, "--points", points}).exit_code, 2);
+}
+
 TEST(Medial, SweepsAllCombinationsIntoOneTableAndAPlotForEachMetric) {
   const Workplace here;
   const Finished run =

@@ -31,9 +31,19 @@ struct MedialBuild {
   std::vector<std::pair<std::string, double>> seconds;  // of each stage
 };
 
+// A diagram that the caller made, and where its points lie on the surface; the points of both are the same.
+struct OwnDiagram {
+  VoronoiDiagram diagram;
+  SurfaceSampling sampling;
+};
+
 // Points, Voronoi diagram, gap repair, axis, pruning. `own`: the caller's points instead of sampled ones (validate()
 // passes, no two coincide). Throws InputError unless surface.solid(), or if an option is out of range.
 MedialBuild build_medial_axis(const Surface& surface, const MedialBuildOptions& options = {},
                               const Progress& progress = {}, std::optional<SurfaceSampling> own = {});
+
+// Axis and pruning alone: the diagram is taken as it is, its gaps are not repaired.
+MedialBuild build_medial_axis(const Surface& surface, const OwnDiagram& own, const MedialBuildOptions& options = {},
+                              const Progress& progress = {});
 
 }  // namespace orchard
