@@ -159,7 +159,7 @@ double Surface::signed_distance(const Point& query) const {
 double Surface::signed_distance(const Point& query, ClosestPoint& nearest) const {
   if (!solid()) throw InputError("the surface has no inside: " + report().faults() + "; repair the mesh first");
   nearest = closest(query);
-  if (nearest.distance == 0) return 0;
+  if (nearest.distance == 0 || !std::isfinite(nearest.distance)) return nearest.distance;
   // The pseudonormal of a face or edge is perpendicular to it, so a corner serves as well as the closest point, whose
   // rounding would matter on a mesh far from the origin.
   const std::size_t anchor = nearest.feature >= Feature::vertex0 ? corner_of(nearest.feature)

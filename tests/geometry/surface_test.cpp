@@ -233,6 +233,17 @@ TEST(Surface, FindsExactlyTheTrianglesThatTouchAClosedBall) {
   }
 }
 
+TEST(Surface, IsInfinitelyFarFromAQueryThatIsNotFinite) {
+  const Surface surface(test::icosphere(1));
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity}) {
+    const Point query(0, bad, 0);
+    EXPECT_EQ(surface.distance(query), infinity);
+    EXPECT_EQ(surface.signed_distance(query), infinity);
+    EXPECT_FALSE(surface.inside(query));
+  }
+}
+
 TEST(Surface, SignedDistanceAgreesWithTheWindingNumber) {
   for (const auto& [name, mesh] : solids()) {
     for (const double offset : {0.0, 1e6}) {

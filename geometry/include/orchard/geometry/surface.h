@@ -54,7 +54,7 @@ class Surface {
   // tells the inside of a closed manifold from its outside at faces, edges and vertices alike.
   Vector pseudonormal(Index triangle, Feature feature) const;
 
-  // The nearest point of the surface; ties go to the lowest triangle. O(log n) in practice.
+  // The nearest point; ties go to the lowest triangle; infinitely far if the query is not finite. O(log n).
   ClosestPoint closest(const Point& query) const;
   double distance(const Point& query) const { return closest(query).distance; }
   // Negative inside. Throws InputError unless solid().
