@@ -7,10 +7,10 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <string>
 
+#include "measure.h"
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/random.h"
 #include "orchard/geometry/surface.h"
@@ -61,24 +61,6 @@ std::vector<Corners> queries(const Surface& surface, bool stretched) {
   return result;
 }
 
-struct Result {
-  double thousand_per_second = 0;
-  std::vector<std::size_t> counts;
-};
-
-template <class Count>
-Result measure(const std::vector<Corners>& queries, const Count& count) {
-  Result result{0, std::vector<std::size_t>(queries.size())};
-  for (int repeat = 0; repeat < 3; ++repeat) {
-    const auto start = std::chrono::steady_clock::now();
-    for (std::size_t i = 0; i < queries.size(); ++i) result.counts[i] = count(queries[i]);
-    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-    result.thousand_per_second =
-        std::max(result.thousand_per_second, 1e-3 * static_cast<double>(queries.size()) / time.count());
-  }
-  return result;
-}
-
 void run(const std::string& file) {
   const Surface surface(read_mesh(file));
   const CgalTree cgal(surface);
@@ -86,16 +68,16 @@ void run(const std::string& file) {
   std::vector<Index> found;
   for (const bool stretched : {false, true}) {
     const std::vector<Corners> triangles = queries(surface, stretched);
-    const Result ours = measure(triangles, [&](const Corners& query) {
+    const auto ours = measure<std::size_t>(triangles, [&](const Corners& query) {
       surface.triangles_overlapping(query, found);
       return static_cast<std::size_t>(
           std::count_if(found.begin(), found.end(), [&](Index t) { return surface.area(t) > 0; }));
     });
-    const Result theirs = measure(triangles, [&](const Corners& query) { return cgal.count(query); });
+    const auto theirs = measure<std::size_t>(triangles, [&](const Corners& query) { return cgal.count(query); });
     std::size_t hits = 0, differing = 0;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
-      hits += ours.counts[i];
-      differing += ours.counts[i] != theirs.counts[i];
+      hits += ours.answers[i];
+      differing += ours.answers[i] != theirs.answers[i];
     }
     std::printf("  %-10s %6.1f met; orchard %7.1f k/s, CGAL %7.1f k/s: %5.2f times as fast; %zu differ\n",
                 stretched ? "stretched" : "moved", static_cast<double>(hits) / static_cast<double>(triangles.size()),

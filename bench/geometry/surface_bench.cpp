@@ -9,13 +9,13 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <functional>
 #include <limits>
 #include <string>
 
+#include "measure.h"
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/random.h"
 #include "orchard/geometry/surface.h"
@@ -141,42 +141,24 @@ std::vector<Place> places(const Surface& surface, int count) {
   return {in_box, near, around};
 }
 
-struct Result {
-  double thousand_per_second = 0;
-  std::vector<double> distances;
-};
-
-template <class Distance>
-Result measure(const std::vector<Point>& queries, const Distance& distance) {
-  Result result{0, std::vector<double>(queries.size())};
-  for (int repeat = 0; repeat < 3; ++repeat) {
-    const auto start = std::chrono::steady_clock::now();
-    for (std::size_t i = 0; i < queries.size(); ++i) result.distances[i] = distance(queries[i]);
-    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-    result.thousand_per_second =
-        std::max(result.thousand_per_second, 1e-3 * static_cast<double>(queries.size()) / time.count());
-  }
-  return result;
-}
-
 void run(const std::string& file) {
   const Surface surface(read_mesh(file));
   const CgalTree cgal(surface.mesh());
   const EmbreeTree embree(surface);
   std::printf("%s: %zu triangles\n", file.c_str(), surface.mesh().triangles.size());
   for (const auto& [name, queries] : places(surface, 200000)) {
-    const Result ours = measure(queries, [&](const Point& q) { return surface.distance(q); });
+    const auto ours = measure<double>(queries, [&](const Point& q) { return surface.distance(q); });
     std::printf("  %s\n    orchard %8.0f k/s\n", name, ours.thousand_per_second);
-    const auto compare = [&](const char* peer, const Result& theirs) {
+    const auto compare = [&](const char* peer, const Measured<double>& theirs) {
       double worst = 0;
       for (std::size_t i = 0; i < queries.size(); ++i)
-        worst = std::max(worst, std::abs(theirs.distances[i] - ours.distances[i]));
+        worst = std::max(worst, std::abs(theirs.answers[i] - ours.answers[i]));
       std::printf("    %-7s %8.0f k/s, orchard is %5.2f times as fast; answers differ by %.1e R\n", peer,
                   theirs.thousand_per_second, ours.thousand_per_second / theirs.thousand_per_second,
                   worst / surface.bounding_radius());
     };
-    compare("Embree", measure(queries, [&](const Point& q) { return embree.distance(q); }));
-    compare("CGAL", measure(queries, [&](const Point& q) { return cgal.distance(q); }));
+    compare("Embree", measure<double>(queries, [&](const Point& q) { return embree.distance(q); }));
+    compare("CGAL", measure<double>(queries, [&](const Point& q) { return cgal.distance(q); }));
   }
 }
 

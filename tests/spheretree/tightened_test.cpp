@@ -16,28 +16,6 @@ namespace {
 
 using namespace test;
 
-struct Shape {
-  const char* name;
-  TriangleMesh mesh;
-};
-
-std::vector<Shape> shapes() {
-  return {{"box", box(Point(0, 0, 0), Point(1, 2, 3))},
-          {"icosphere", icosphere(2)},
-          {"torus", torus(24, 12)},
-          {"L", l_shape()},
-          {"U", u_shape(0.3)},
-          {"two boxes", two_boxes(0.2)},
-          {"far away", transformed(l_shape(), 1, Vector(1e6, -1e6, 1e6))},
-          {"tiny", transformed(torus(16, 8), 1e-6, Vector::Zero())}};
-}
-
-void expect_conservative(const SphereTree& tree, const Surface& surface, const char* name) {
-  ASSERT_NO_THROW(validate(tree)) << name;
-  EXPECT_TRUE(surface_coverage(surface, path_balls(tree)).complete()) << name;
-  for (const Point& point : points_on(surface, 20, 1)) ASSERT_TRUE(has_path(tree, point)) << name;
-}
-
 std::vector<Index> level_counts(const SphereTree& tree) {
   std::vector<Index> counts(tree.depth() + 1, 0);
   for (const SphereNode& node : tree.nodes) ++counts[node.level];
