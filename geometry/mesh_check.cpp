@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "area_vector.h"
-#include "disjoint_sets.h"
 #include "half_edge_mesh.h"
 #include "half_edges.h"
+#include "orchard/geometry/disjoint_sets.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/tolerance.h"
 

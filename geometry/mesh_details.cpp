@@ -1,7 +1,7 @@
 #include "orchard/geometry/mesh_details.h"
 
-#include "disjoint_sets.h"
 #include "half_edges.h"
+#include "orchard/geometry/disjoint_sets.h"
 #include "same_place.h"
 
 namespace orchard {

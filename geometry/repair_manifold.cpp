@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "area_vector.h"
-#include "disjoint_sets.h"
 #include "half_edges.h"
+#include "orchard/geometry/disjoint_sets.h"
 #include "repair_steps.h"
 
 namespace orchard::detail {

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <memory>
 
-#include "disjoint_sets.h"
 #include "half_edges.h"
+#include "orchard/geometry/disjoint_sets.h"
 #include "orchard/geometry/surface.h"
 #include "repair_steps.h"
 #include "same_place.h"

@@ -2,8 +2,8 @@
 #include <tuple>
 
 #include "area_vector.h"
-#include "disjoint_sets.h"
 #include "half_edges.h"
+#include "orchard/geometry/disjoint_sets.h"
 #include "repair_steps.h"
 #include "same_place.h"
 

@@ -3,24 +3,10 @@
 #include <algorithm>
 #include <string>
 
+#include "incidence.h"
 #include "orchard/geometry/error.h"
 
 namespace orchard::detail {
-namespace {
-
-Rows rows_of(std::vector<std::array<Index, 2>>& pairs, Index count) {
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  Rows result;
-  auto pair = pairs.begin();
-  for (Index row = 0; row < count; ++row) {
-    for (; pair != pairs.end() && (*pair)[0] == row; ++pair) result.items.push_back((*pair)[1]);
-    result.close_row();
-  }
-  return result;
-}
-
-}  // namespace
 
 AxisComplex::AxisComplex(const MedialAxis& axis) : axis_(axis) {
   std::vector<std::array<Index, 2>> at_vertex, at_edge;

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "orchard/geometry/disjoint_sets.h"
+
 namespace orchard::detail {
 namespace {
 
@@ -28,24 +30,11 @@ std::uint64_t hash_of(const Cell& cell) {
   return hash;
 }
 
-Index root_of(std::vector<Index>& parents, Index item) {
-  while (parents[item] != item) item = parents[item] = parents[parents[item]];
-  return item;
-}
-
-// The lower root wins, so that a root is always the lowest index of its set.
-void unite(std::vector<Index>& parents, Index a, Index b) {
-  a = root_of(parents, a);
-  b = root_of(parents, b);
-  if (a != b) parents[std::max(a, b)] = std::min(a, b);
-}
-
 }  // namespace
 
 std::vector<Index> representatives_of_coincident(std::span<const Point> points, double distance) {
-  std::vector<Index> parents(points.size());
-  for (Index i = 0; i < parents.size(); ++i) parents[i] = i;
-  if (points.empty()) return parents;
+  if (points.empty()) return {};
+  DisjointSets sets(points.size());
 
   // Cells far wider than the distance: hardly a point has to look beyond its own, and still hardly two share one. A
   // sorted list of hashes needs no buckets; equal hashes of different cells do no harm, since the distance decides.
@@ -57,7 +46,7 @@ std::vector<Index> representatives_of_coincident(std::span<const Point> points, 
   std::sort(entries.begin(), entries.end());
 
   const auto unite_if_near = [&](Index a, Index b) {
-    if ((points[a] - points[b]).squaredNorm() <= distance * distance) unite(parents, a, b);
+    if ((points[a] - points[b]).squaredNorm() <= distance * distance) sets.unite(a, b);
   };
   for (std::size_t k = 0; k < entries.size(); ++k) {
     const auto [hash, i] = entries[k];
@@ -75,8 +64,9 @@ std::vector<Index> representatives_of_coincident(std::span<const Point> points, 
       for (; entry != entries.end() && entry->first == first.first; ++entry) unite_if_near(i, entry->second);
     }
   }
-  for (Index i = 0; i < parents.size(); ++i) parents[i] = root_of(parents, i);
-  return parents;
+  std::vector<Index> lowest(points.size());
+  for (Index i = 0; i < lowest.size(); ++i) lowest[i] = sets.root(i);
+  return lowest;
 }
 
 }  // namespace orchard::detail

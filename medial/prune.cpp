@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "axis_complex.h"
+#include "incidence.h"
 #include "orchard/geometry/error.h"
 #include "scale_axis.h"
 
@@ -53,18 +54,9 @@ class Pruner {
     }
   };
 
-  static Index only(std::span<const Index> row, const std::vector<std::uint8_t>& alive) {
-    Index found = kNone;
-    for (const Index cell : row) {
-      if (!alive[cell]) continue;
-      if (found != kNone) return kNone;
-      found = cell;
-    }
-    return found;
-  }
   Index free_side(Index face) const {
     for (const Index edge : complex_.sides(face)) {
-      if (edge_alive_[edge] && only(complex_.faces_at(edge), face_alive_) == face) return edge;
+      if (edge_alive_[edge] && detail::only(complex_.faces_at(edge), face_alive_) == face) return edge;
     }
     return kNone;
   }
@@ -73,7 +65,7 @@ class Pruner {
       if (face_alive_[face]) return kNone;
     }
     for (const Index vertex : complex_.edges()[edge]) {
-      if (only(complex_.edges_at(vertex), edge_alive_) == edge) return vertex;
+      if (detail::only(complex_.edges_at(vertex), edge_alive_) == edge) return vertex;
     }
     return kNone;
   }

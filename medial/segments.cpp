@@ -2,24 +2,13 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 #include "axis_complex.h"
+#include "orchard/geometry/disjoint_sets.h"
 #include "orchard/medial/prune.h"
 
 namespace orchard {
 namespace {
-
-Index root(std::vector<Index>& parents, Index item) {
-  while (parents[item] != item) item = parents[item] = parents[parents[item]];
-  return item;
-}
-
-void unite(std::vector<Index>& parents, Index a, Index b) {
-  a = root(parents, a);
-  b = root(parents, b);
-  if (a != b) parents[std::max(a, b)] = std::min(a, b);
-}
 
 class Segmenter {
  public:
@@ -47,8 +36,8 @@ class Segmenter {
     const Index faces = complex_.face_count();
     std::vector<std::uint8_t> counted(faces), opens(faces, 0);
     for (Index face = 0; face < faces; ++face) counted[face] = counts(face) ? 1 : 0;
-    std::vector<Index> parents(faces), at;
-    std::iota(parents.begin(), parents.end(), Index{0});
+    DisjointSets sets(faces);
+    std::vector<Index> at;
     for (Index edge = 0; edge < edges; ++edge) {
       const auto [a, b] = complex_.edges()[edge];
       if (touches(a) || touches(b)) continue;
@@ -56,16 +45,16 @@ class Segmenter {
       for (const Index face : complex_.faces_at(edge)) {
         if (counted[face]) at.push_back(face);
       }
-      if (at.size() == 2) unite(parents, at[0], at[1]);
+      if (at.size() == 2) sets.unite(at[0], at[1]);
     }
     for (Index face = 0; face < faces; ++face) {
       const auto corners = complex_.corners(face);
       const bool away = std::none_of(corners.begin(), corners.end(), [&](Index corner) { return touches(corner); });
-      if (counted[face] && away) opens[root(parents, face)] = 1;
+      if (counted[face] && away) opens[sets.root(face)] = 1;
     }
     std::vector<Index> number(faces, kNone);
     for (Index face = 0; face < faces; ++face) {
-      const Index first = root(parents, face);  // the lowest, so numbered already
+      const Index first = sets.root(face);  // the lowest, so numbered already
       if (!counted[face] || !opens[first]) continue;
       number[face] = first == face ? open(true) : number[first];
     }
@@ -102,16 +91,15 @@ class Segmenter {
 
   // Edges without faces, joined at vertices where exactly two of them meet and nothing else does.
   void number_curves(Index edges) {
-    std::vector<Index> parents(edges);
-    std::iota(parents.begin(), parents.end(), Index{0});
+    DisjointSets sets(edges);
     const auto alone = [&](Index edge) { return complex_.faces_at(edge).empty(); };
     for (Index vertex = 0; vertex < axis_.size(); ++vertex) {
       const auto at = complex_.edges_at(vertex);
-      if (at.size() == 2 && alone(at[0]) && alone(at[1])) unite(parents, at[0], at[1]);
+      if (at.size() == 2 && alone(at[0]) && alone(at[1])) sets.unite(at[0], at[1]);
     }
     for (Index edge = 0; edge < edges; ++edge) {
       if (!alone(edge)) continue;
-      const Index first = root(parents, edge);
+      const Index first = sets.root(edge);
       result_.of_edge[edge] = first == edge ? open(false) : result_.of_edge[first];
       ++result_.segments[result_.of_edge[edge]].cells;
     }

@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 
+#include "incidence.h"
 #include "orchard/geometry/error.h"
 #include "solid_parts.h"
 
@@ -27,8 +28,8 @@ class Complex {
     for (Index e = 0; e < mesh.edges.size(); ++e) {
       for (const Index vertex : mesh.edges[e]) at_vertex.push_back({vertex, e});
     }
-    triangles_at_ = rows(at_edge, mesh.edges.size());
-    edges_at_ = rows(at_vertex, mesh.centers.size());
+    triangles_at_ = detail::rows_of(at_edge, static_cast<Index>(mesh.edges.size()));
+    edges_at_ = detail::rows_of(at_vertex, static_cast<Index>(mesh.centers.size()));
   }
 
   Topology run() {
@@ -47,26 +48,6 @@ class Complex {
   Index index_of(const std::array<Index, 2>& edge) const {
     return static_cast<Index>(std::lower_bound(mesh_.edges.begin(), mesh_.edges.end(), edge) - mesh_.edges.begin());
   }
-  static Rows rows(std::vector<std::array<Index, 2>>& pairs, std::size_t count) {
-    std::sort(pairs.begin(), pairs.end());
-    Rows result;
-    auto pair = pairs.begin();
-    for (Index row = 0; row < count; ++row) {
-      for (; pair != pairs.end() && (*pair)[0] == row; ++pair) result.items.push_back((*pair)[1]);
-      result.close_row();
-    }
-    return result;
-  }
-  // The only living cell of a row; kNone if there is none, or more than one.
-  static Index only(std::span<const Index> row, const std::vector<std::uint8_t>& alive) {
-    Index found = kNone;
-    for (const Index cell : row) {
-      if (!alive[cell]) continue;
-      if (found != kNone) return kNone;
-      found = cell;
-    }
-    return found;
-  }
 
   void collapse_triangles() {
     std::vector<Index> open(mesh_.edges.size());
@@ -75,7 +56,7 @@ class Complex {
       const Index edge = open.back();
       open.pop_back();
       if (!edge_alive_[edge]) continue;
-      const Index triangle = only(triangles_at_[edge], triangle_alive_);
+      const Index triangle = detail::only(triangles_at_[edge], triangle_alive_);
       if (triangle == kNone) continue;
       edge_alive_[edge] = triangle_alive_[triangle] = 0;
       open.insert(open.end(), sides_[triangle].begin(), sides_[triangle].end());
@@ -87,7 +68,7 @@ class Complex {
     while (!open.empty()) {
       const Index vertex = open.back();
       open.pop_back();
-      const Index edge = only(edges_at_[vertex], edge_alive_);
+      const Index edge = detail::only(edges_at_[vertex], edge_alive_);
       if (edge == kNone || has_triangle(edge)) continue;
       vertex_alive_[vertex] = edge_alive_[edge] = 0;
       open.insert(open.end(), mesh_.edges[edge].begin(), mesh_.edges[edge].end());

@@ -7,6 +7,7 @@
 
 namespace orchard {
 
+// Items 0 to count - 1, each a set of its own until it is united with others.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : parents_(count) { std::iota(parents_.begin(), parents_.end(), Index{0}); }
