@@ -166,4 +166,13 @@ Index count_faces(const std::vector<Crossing>& crossings) {
   return static_cast<Index>(std::unique(faces.begin(), faces.end()) - faces.begin());
 }
 
+Index count_cells(const std::vector<Crossing>& crossings) {
+  Index count = 0, last = kNone;  // crossings ascend by cell
+  for (const Crossing& crossing : crossings) {
+    if (crossing.patch.cell != last) ++count;
+    last = crossing.patch.cell;
+  }
+  return count;
+}
+
 }  // namespace orchard::detail

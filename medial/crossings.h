@@ -20,7 +20,8 @@ std::vector<Crossing> find_crossings(const Surface& surface, const SurfaceSampli
                                      const RestrictedVoronoi& restricted, const PatchScope& scope,
                                      const RepairOptions& options);
 
-// How many faces are at fault, each counted once.
+// How many faces are at fault, each counted once; and how many cells.
 Index count_faces(const std::vector<Crossing>& crossings);
+Index count_cells(const std::vector<Crossing>& crossings);
 
 }  // namespace orchard::detail

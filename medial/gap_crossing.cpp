@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "cell_neighbors.h"
 #include "crossings.h"
 #include "orchard/geometry/self_intersections.h"
 #include "orchard/geometry/tolerance.h"
-#include "orchard/voronoi/exact.h"
+#include "orchard/voronoi/highest_first.h"
 #include "repair_point.h"
 #include "restricted_voronoi.h"
 
@@ -23,10 +24,17 @@ using detail::RepairProposal;
 
 // Two new points of one pass keep this share of the wider gap between them: what one of them does not mend is seen in
 // the next pass, so that wide gaps get few points.
-constexpr double kSpread = 0.5;
+constexpr double kSpread = 1;
 
 // Repair points that spawn repair points, across a gap and back again: after so many, the bounce is cut short.
 constexpr int kBounceLength = 3;
+
+// Whether insert_points() made the diagram anew, so that old cells, too, may differ.
+bool made_anew(const InsertionReport& report, std::size_t inserted) {
+  return report.certified_insertions + report.settled_insertions + report.exact_insertions +
+             report.constrained_insertions >
+         inserted;
+}
 
 struct Candidate {
   Index cell = kNone;
@@ -53,22 +61,17 @@ class Repair {
 
   Repaired run() {
     find_anew();
-    bool anew = true;  // what is known comes from scratch, not from updates
     for (int pass = 0; pass < options_.max_passes; ++pass) {
       report_progress(progress_, "gap repair", static_cast<double>(pass) / options_.max_passes);
-      if (!anything_to_mend() && !anew) {
-        find_anew();
-        anew = true;
-      }
+      if (!anything_to_mend() && !anew_) find_anew();
       open_pass();
       if (!anything_to_mend()) break;
       const Index before = result_.sampling.size();
       add_points(propose(what_to_mend()));
       if (result_.sampling.size() == before) break;
       update(before);
-      anew = false;
     }
-    if (!anew) find_anew();
+    if (!anew_) find_anew();
     result_.report.faces_still_crossing = detail::count_faces(crossings_);
     std::erase_if(crossings_, [](const Crossing& crossing) { return !crossing.at_cut; });
     result_.report.faces_at_cuts = detail::count_faces(crossings_);
@@ -78,6 +81,8 @@ class Repair {
 
  private:
   void find_anew() {
+    anew_ = true;
+    cells_tested_ = result_.sampling.size();
     restricted_.emplace(surface_, result_.diagram.points, neighbors_);
     crossings_ = detail::find_crossings(surface_, result_.sampling, *restricted_,
                                         detail::PatchScope::everything(surface_, result_.sampling), options_);
@@ -104,6 +109,8 @@ class Repair {
 
   void open_pass() {
     RepairPass& pass = result_.report.passes.emplace_back();
+    pass.cells_tested = cells_tested_;
+    pass.cells_crossing = detail::count_cells(crossings_);
     pass.faces_tested = neighbors_.count_faces();
     pass.faces_crossing = detail::count_faces(crossings_);
   }
@@ -183,7 +190,8 @@ class Repair {
   // False if the place is taken.
   bool add(const ClosestPoint& place, Index cell) {
     SurfaceSampling& sampling = result_.sampling;
-    const double coincident = tolerance::kCoincidentPoints * surface_.bounding_radius();
+    // At least what insert_points() takes for coincident.
+    const double coincident = tolerance::kCoincidentPoints * surface_.bounding_box().diagonal().norm() / 2;
     const auto taken = [&](const Point& point) { return !((point - place.position).norm() > coincident); };
     const Index first_new = static_cast<Index>(result_.diagram.points.size());
     const Index nearest = detail::nearest_point(result_.diagram.points, neighbors_, place.position, cell);
@@ -202,9 +210,18 @@ class Repair {
 
   // What was wrong with cells that stay as they are is still wrong with them.
   void update(Index first_new) {
-    result_.diagram = exact_voronoi(result_.sampling.points);
+    const auto added = std::span<const Point>(result_.sampling.points).subspan(first_new);
+    InsertionReport inserted;
+    insert_points(result_.diagram, added, &inserted);
+    if (made_anew(inserted, added.size())) {
+      neighbors_ = detail::CellNeighbors(result_.diagram);
+      find_anew();
+      return;
+    }
+    anew_ = false;
     detail::PatchScope scope;
     scope.cells = neighbors_.update(result_.diagram, first_new);
+    cells_tested_ = static_cast<Index>(std::count(scope.cells.begin(), scope.cells.end(), std::uint8_t{1}));
     scope.triangles = restricted_->update(result_.diagram.points, scope.cells);
     std::erase_if(crossings_, [&](const Crossing& crossing) { return scope.cells[crossing.patch.cell] != 0; });
     std::vector<Crossing> found = detail::find_crossings(surface_, result_.sampling, *restricted_, scope, options_);
@@ -222,6 +239,8 @@ class Repair {
   detail::CellNeighbors neighbors_;
   std::optional<detail::RestrictedVoronoi> restricted_;
   std::vector<Crossing> crossings_;         // known to be left, ascending by cell
+  bool anew_ = false;                       // they come from scratch, not from updates
+  Index cells_tested_ = 0;                  // when they were last looked for
   std::vector<std::array<Index, 2>> cuts_;  // triangles that cut each other, both ways round; ascending
 };
 

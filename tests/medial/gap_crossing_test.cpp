@@ -7,6 +7,7 @@
 
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/voronoi/highest_first.h"
+#include "orchard/voronoi/quality.h"
 #include "outlines.h"
 #include "support.h"
 #include "support/shapes.h"
@@ -142,6 +143,7 @@ TEST(GapRepair, KeepsTheGivenPointsAndMarksItsOwn) {
     }
     EXPECT_EQ(after.points[i], repaired.diagram.points[i]);
   }
+  EXPECT_LT(inaccuracy(repaired.diagram).max, 1e-9) << "of points inserted one pass after another";
 }
 
 TEST(GapRepair, ReportsWhatItDidInEachPass) {
@@ -150,6 +152,8 @@ TEST(GapRepair, ReportsWhatItDidInEachPass) {
   Index added = 0;
   for (const RepairPass& pass : repaired.report.passes) {
     EXPECT_LE(pass.faces_crossing, pass.faces_tested);
+    EXPECT_LE(pass.cells_tested, repaired.sampling.size());
+    EXPECT_EQ(pass.cells_crossing > 0, pass.faces_crossing > 0);
     added += pass.added_by_projection + pass.added_by_snapping + pass.added_at_necks;
   }
   EXPECT_EQ(added, repaired.report.points_added);

@@ -31,7 +31,9 @@ struct RepairOptions {
 };
 
 struct RepairPass {
-  Index faces_tested = 0, faces_crossing = 0;
+  // What is known when the pass begins. Cells that no new point touched are not tested again, nor their faces.
+  Index cells_tested = 0, cells_crossing = 0;
+  Index faces_tested = 0, faces_crossing = 0;  // of all cells; each shared one once
   Index added_by_projection = 0, added_by_snapping = 0, added_at_necks = 0, refused_as_coincident = 0;
 };
 
