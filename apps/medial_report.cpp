@@ -9,12 +9,18 @@ namespace {
 
 using nlohmann::json;
 
+json to_json(const MedialStability& stability) {
+  return {{"hausdorff", stability.hausdorff}, {"percentile99", stability.percentile99}, {"mean", stability.mean}};
+}
+
 json to_json(const Spread& spread) { return {{"max", spread.max}, {"mean", spread.mean}}; }
 
 json to_json(const RepairReport& repair) {
   json passes = json::array();
   for (const RepairPass& pass : repair.passes) {
-    passes.push_back({{"faces_tested", pass.faces_tested},
+    passes.push_back({{"cells_tested", pass.cells_tested},
+                      {"cells_crossing", pass.cells_crossing},
+                      {"faces_tested", pass.faces_tested},
                       {"faces_crossing", pass.faces_crossing},
                       {"added_by_projection", pass.added_by_projection},
                       {"added_by_snapping", pass.added_by_snapping},
@@ -75,7 +81,7 @@ json to_json(const MedialJudgement& judgement) {
       {"topology_of_solid", to_json(q.wanted)},
       {"topology_right", q.found == q.wanted},
       {"outside", {{"vertices", q.outside_vertices}, {"edges", q.outside_edges}, {"triangles", q.outside_triangles}}},
-      {"stability", judgement.stability ? json(*judgement.stability) : json()},
+      {"stability", judgement.stability ? to_json(*judgement.stability) : json()},
       {"economy", {{"spheres", q.economy.spheres}, {"uncovered", q.economy.uncovered}}}};
 }
 
@@ -95,11 +101,12 @@ void print(const MedialBuild& build) {
   for (const auto& [stage, time] : build.seconds) fmt::print("  {:<18} {:>8.2f} s\n", stage, time);
   const RepairReport& repair = build.repair;
   if (!repair.passes.empty()) {
-    fmt::print("gap repair  pass  faces tested  crossing  projected  snapped  at necks  refused\n");
+    fmt::print("gap repair  pass  cells tested  crossing  faces crossing  projected  snapped  at necks  refused\n");
     for (std::size_t i = 0; i < repair.passes.size(); ++i) {
       const RepairPass& pass = repair.passes[i];
-      fmt::print("{:>16} {:>13} {:>9} {:>10} {:>8} {:>9} {:>8}\n", i + 1, pass.faces_tested, pass.faces_crossing,
-                 pass.added_by_projection, pass.added_by_snapping, pass.added_at_necks, pass.refused_as_coincident);
+      fmt::print("{:>16} {:>13} {:>9} {:>15} {:>10} {:>8} {:>9} {:>8}\n", i + 1, pass.cells_tested, pass.cells_crossing,
+                 pass.faces_crossing, pass.added_by_projection, pass.added_by_snapping, pass.added_at_necks,
+                 pass.refused_as_coincident);
     }
   }
   fmt::print("{} + {} points ({:.1f} % added), {} faces still crossing", build.points, repair.points_added,
@@ -123,7 +130,10 @@ void print(const MedialJudgement& judgement) {
              q.wanted.cavities, verdict(q), q.found.euler_characteristic());
   fmt::print("  {:<22} {:.5f} of vertices, {:.5f} of edges, {:.5f} of triangles\n", "outside", q.outside_vertices,
              q.outside_edges, q.outside_triangles);
-  if (judgement.stability) fmt::print("  {:<22} {:.2f} times the noise\n", "stability", *judgement.stability);
+  if (const auto& stability = judgement.stability) {
+    fmt::print("  {:<22} {:>12.2f} {:>12.2f}  times the noise; 99 % of vertices within {:.2f}\n", "stability",
+               stability->hausdorff, stability->mean, stability->percentile99);
+  }
   fmt::print("  {:<22} {} spheres leave {:.3f} % of the surface farther than 1 % of the diagonal\n", "economy",
              q.economy.spheres, 100 * q.economy.uncovered);
 }

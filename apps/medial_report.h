@@ -12,7 +12,7 @@ namespace orchard::apps {
 // The metrics of a medial mesh, and for one that was built here its stability.
 struct MedialJudgement {
   MedialQuality quality;
-  std::optional<double> stability;
+  std::optional<MedialStability> stability;
 };
 
 nlohmann::json to_json(const MedialBuild& build);

@@ -80,6 +80,21 @@ void measure_radii(MedialAxis& axis) {
   }
 }
 
+void find_normals(const Surface& surface, const SurfaceSampling& sampling, MedialAxis& axis) {
+  std::vector<Index> around;
+  for (Index i = 0; i < sampling.size(); ++i) {
+    const Vector normal = surface.pseudonormal(sampling.triangles[i], sampling.features[i]);
+    surface.triangles_at(sampling.triangles[i], sampling.features[i], around);
+    double turn = 0;
+    for (const Index triangle : around) {
+      const Vector& own = surface.normal(triangle);
+      turn = std::max(turn, std::atan2(normal.cross(own).norm(), normal.dot(own)));
+    }
+    axis.normals.push_back(normal);
+    axis.turns.push_back(turn);
+  }
+}
+
 [[noreturn]] void fail(const char* what, Index where) {
   throw Error("medial axis: " + std::string(what) + " at vertex " + std::to_string(where));
 }
@@ -110,10 +125,7 @@ MedialAxis medial_axis(const Surface& surface, const SurfaceSampling& sampling, 
   MedialAxis axis;
   axis.points = sampling.points;
   axis.origins = sampling.origins;
-  axis.normals.reserve(sampling.size());
-  for (Index i = 0; i < sampling.size(); ++i) {
-    axis.normals.push_back(surface.pseudonormal(sampling.triangles[i], sampling.features[i]));
-  }
+  find_normals(surface, sampling, axis);
   std::vector<std::uint8_t> inside = detail::interior_vertices(surface, diagram, progress);
   report_progress(progress, "medial axis", 0.3);
   const VoronoiFaces faces = voronoi_faces(diagram);
@@ -153,9 +165,10 @@ std::vector<Index> connected_components(const MedialAxis& axis, Index& count) {
 void validate(const MedialAxis& axis, const Surface& surface) {
   const Index size = axis.size();
   const Index points = static_cast<Index>(axis.points.size());
-  if (axis.normals.size() != points || axis.radii.size() != size || axis.forming_points.size() != size ||
-      axis.neighbors.size() != size || axis.face_points.size() != axis.faces.size() ||
-      axis.wall_points.size() != axis.walls.size() || axis.origins.size() != points) {
+  if (axis.normals.size() != points || axis.turns.size() != points || axis.radii.size() != size ||
+      axis.forming_points.size() != size || axis.neighbors.size() != size ||
+      axis.face_points.size() != axis.faces.size() || axis.wall_points.size() != axis.walls.size() ||
+      axis.origins.size() != points) {
     throw Error("medial axis: arrays of different lengths");
   }
   for (Index i = 0; i < size; ++i) {

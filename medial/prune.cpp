@@ -19,6 +19,15 @@ namespace {
 
 double angle_between(const Vector& a, const Vector& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
+// The angle at which two points are seen from `from`, but no more than the surface's normals there are apart: four
+// points that all but share a circle on the surface may have their Voronoi vertex anywhere above it, even next to it,
+// and are seen widely apart from there though the surface does not turn between them.
+double contact_angle(const MedialAxis& axis, const Point& from, Index p, Index q) {
+  const double seen = angle_between(axis.points[p] - from, axis.points[q] - from);
+  if (axis.turns.empty()) return seen;
+  return std::min(seen, angle_between(axis.normals[p], axis.normals[q]) + axis.turns[p] + axis.turns[q]);
+}
+
 class Pruner {
  public:
   Pruner(const MedialAxis& axis, const PruneOptions& options)
@@ -94,7 +103,7 @@ class Pruner {
     double widest = 0;
     for (std::size_t i = 0; i < common.size(); ++i) {
       for (std::size_t k = 0; k < i; ++k) {
-        widest = std::max(widest, angle_between(axis_.points[common[i]] - middle, axis_.points[common[k]] - middle));
+        widest = std::max(widest, contact_angle(axis_, middle, common[i], common[k]));
       }
     }
     return widest;
@@ -123,6 +132,7 @@ class Pruner {
     MedialAxis result;
     result.points = axis_.points;
     result.normals = axis_.normals;
+    result.turns = axis_.turns;
     result.origins = axis_.origins;
     result.left_out = axis_.left_out;
     std::vector<Index> renumbered(axis_.size(), kNone);
@@ -171,7 +181,7 @@ double separation_angle(const MedialAxis& axis, std::span<const Index> face, con
   Point middle = Point::Zero();
   for (const Index vertex : face) middle += axis.centers[vertex];
   middle /= static_cast<double>(face.size());
-  return angle_between(axis.points[points[0]] - middle, axis.points[points[1]] - middle);
+  return contact_angle(axis, middle, points[0], points[1]);
 }
 
 std::vector<double> contact_angles(const MedialAxis& axis) {
@@ -182,8 +192,7 @@ std::vector<double> contact_angles(const MedialAxis& axis) {
     const std::size_t count = std::min(forming.size(), kEnough);
     for (std::size_t a = 0; a < count; ++a) {
       for (std::size_t b = 0; b < a; ++b) {
-        angles[i] = std::max(angles[i], angle_between(axis.points[forming[a]] - axis.centers[i],
-                                                      axis.points[forming[b]] - axis.centers[i]));
+        angles[i] = std::max(angles[i], contact_angle(axis, axis.centers[i], forming[a], forming[b]));
       }
     }
   });

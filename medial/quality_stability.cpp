@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "orchard/geometry/random.h"
 #include "orchard/medial/quality.h"
@@ -67,18 +68,27 @@ Part wide_part(const MedialAxis& axis, double angle) {
   return part;
 }
 
-double farthest(const std::vector<Point>& points, const TriangleMesh& sheets) {
+void add_distances(const std::vector<Point>& points, const TriangleMesh& sheets, std::vector<double>& all) {
   const Surface surface(sheets);
-  std::vector<double> distances(points.size());
-  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) { distances[i] = surface.distance(points[i]); });
-  return distances.empty() ? 0 : *std::max_element(distances.begin(), distances.end());
+  const std::size_t first = all.size();
+  all.resize(first + points.size());
+  tbb::parallel_for(std::size_t{0}, points.size(),
+                    [&](std::size_t i) { all[first + i] = surface.distance(points[i]); });
+}
+
+MedialStability summary(std::vector<double> distances, double noise) {
+  std::sort(distances.begin(), distances.end());
+  MedialStability result{.hausdorff = distances.back() / noise,
+                         .percentile99 = distances[(distances.size() - 1) * 99 / 100] / noise};
+  for (const double distance : distances) result.mean += distance / noise / static_cast<double>(distances.size());
+  return result;
 }
 
 }  // namespace
 
-std::optional<double> medial_stability(const Surface& surface, const MedialBuild& build,
-                                       const MedialBuildOptions& options, const StabilityOptions& stability,
-                                       const Progress& progress) {
+std::optional<MedialStability> medial_stability(const Surface& surface, const MedialBuild& build,
+                                                const MedialBuildOptions& options, const StabilityOptions& stability,
+                                                const Progress& progress) {
   const double noise = stability.noise * surface.bounding_box().diagonal().norm();
   const Surface moved(with_noise(surface.mesh(), noise, stability.seed));
   if (!moved.solid()) return std::nullopt;
@@ -86,7 +96,10 @@ std::optional<double> medial_stability(const Surface& surface, const MedialBuild
   const Part a = wide_part(build.axis, 2 * stability.object_angle);
   const Part b = wide_part(other.axis, 2 * stability.object_angle);
   if (a.points.empty() || b.points.empty()) return std::nullopt;
-  return std::max(farthest(a.points, b.sheets), farthest(b.points, a.sheets)) / noise;
+  std::vector<double> distances;
+  add_distances(a.points, b.sheets, distances);
+  add_distances(b.points, a.sheets, distances);
+  return summary(std::move(distances), noise);
 }
 
 }  // namespace orchard

@@ -1,8 +1,10 @@
 #include "known_axes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "outlines.h"
 #include "support/shapes.h"
 
 namespace orchard::test {
@@ -82,6 +84,107 @@ KnownAxis known_cylinder(Index sides, double height) {
   }
   complete(axis);
   return known;
+}
+
+namespace {
+
+// The planar axis of the L: a node for each corner of the outline and each place where lines of the axis meet or bend.
+struct PlanarAxis {
+  struct Node {
+    std::array<double, 2> at;
+    double radius;
+  };
+  std::vector<Node> nodes;
+  std::vector<std::array<Index, 2>> lines;
+  std::vector<std::vector<Index>>
+      regions;  // where one side, or the reentrant corner, is nearest: fans from their first
+};
+
+// Mirrors a node at the diagonal y = x.
+PlanarAxis::Node across_diagonal(const PlanarAxis::Node& node) { return {{node.at[1], node.at[0]}, node.radius}; }
+
+PlanarAxis planar_l(Index pieces) {
+  PlanarAxis axis;
+  // One half, below the diagonal. The parabola, equally far from (1, 1) and from y = 0, is y = (1 + (x - 1)^2) / 2; it
+  // meets the diagonal at 2 - sqrt 2.
+  const double meeting = 2 - std::numbers::sqrt2;
+  std::vector<PlanarAxis::Node> half{{{1, 0}, 0}, {{2, 0}, 0}, {{2, 1}, 0}, {{1.5, 0.5}, 0.5}};
+  for (Index i = 0; i < pieces; ++i) {
+    const double x = 1 - i * (1 - meeting) / pieces, y = (1 + (x - 1) * (x - 1)) / 2;
+    half.push_back({{x, y}, y});
+  }
+  const Index size = static_cast<Index>(half.size());
+  axis.nodes = {{{0, 0}, 0}, {{1, 1}, 0}, {{meeting, meeting}, meeting}};
+  axis.lines.push_back({0, 2});
+  for (const bool mirror : {false, true}) {
+    const Index first = static_cast<Index>(axis.nodes.size());
+    for (const auto& node : half) axis.nodes.push_back(mirror ? across_diagonal(node) : node);
+    const Index side = first, outer = first + 1, inner = first + 2, end = first + 3, bend = first + 4;
+    axis.lines.insert(axis.lines.end(), {{end, outer}, {end, inner}, {end, bend}});
+    axis.regions.push_back({outer, inner, end});
+    axis.regions.push_back({1, bend, end, inner});
+    std::vector<Index> below{side, outer, end}, around{1};
+    for (Index k = 4; k < size; ++k) {
+      const Index next = k + 1 < size ? first + k + 1 : 2;
+      axis.lines.push_back({first + k, next});
+      below.push_back(first + k);
+      around.push_back(first + k);
+    }
+    below.insert(below.end(), {2, 0});
+    around.push_back(2);
+    axis.regions.push_back(below);
+    axis.regions.push_back(around);
+  }
+  return axis;
+}
+
+}  // namespace
+
+KnownAxis known_l_shape(Index pieces) {
+  constexpr double height = 2;
+  KnownAxis known{extruded({{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}, height), {}};
+  MedialMesh& axis = known.axis;
+  const PlanarAxis planar = planar_l(pieces);
+  const Index roof = static_cast<Index>(planar.nodes.size());  // the lower roof's vertices come first
+  for (const bool upper : {false, true}) {
+    for (const auto& [at, radius] : planar.nodes) add(axis, {at[0], at[1], upper ? height - radius : radius}, radius);
+    for (const auto& region : planar.regions) {
+      for (std::size_t k = 2; k < region.size(); ++k) {
+        const Index shift = upper ? roof : 0;
+        axis.triangles.push_back({shift + region[0], shift + region[k - 1], shift + region[k]});
+      }
+    }
+  }
+  for (const auto& [a, b] : planar.lines) add_quad(axis, a, b, roof + b, roof + a);
+  complete(axis);
+  return known;
+}
+
+TriangleMesh as_triangles(const MedialMesh& axis) {
+  TriangleMesh mesh{axis.centers, axis.triangles};
+  for (const auto& [a, b] : axis.edges) mesh.triangles.push_back({a, b, b});
+  for (Index i = 0; i < axis.size(); ++i) mesh.triangles.push_back({i, i, i});
+  return mesh;
+}
+
+std::vector<Point> points_on(const MedialMesh& axis, double step) {
+  std::vector<Point> points = axis.centers;
+  const auto parts = [&](const Point& a, const Point& b) { return static_cast<int>(std::ceil((a - b).norm() / step)); };
+  for (const auto& [a, b] : axis.edges) {
+    const int count = parts(axis.centers[a], axis.centers[b]);
+    for (int i = 1; i < count; ++i) {
+      points.push_back(axis.centers[a] + double(i) / count * (axis.centers[b] - axis.centers[a]));
+    }
+  }
+  for (const auto& [i, j, k] : axis.triangles) {
+    const Point &a = axis.centers[i], &b = axis.centers[j], &c = axis.centers[k];
+    const int count = std::max({parts(a, b), parts(a, c), parts(b, c)});
+    for (int u = 1; u < count; ++u) {
+      for (int v = 1; u + v < count; ++v)
+        points.push_back(a + double(u) / count * (b - a) + double(v) / count * (c - a));
+    }
+  }
+  return points;
 }
 
 KnownAxis known_torus(Index around_count, Index across) {

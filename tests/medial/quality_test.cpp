@@ -68,21 +68,20 @@ TEST(MedialQuality, OfTheCircleOfATorusHasItsLoop) {
   EXPECT_EQ(quality.found, quality.wanted);
 }
 
-TEST(MedialQuality, OfABuiltLShapeComesNearerWithMorePoints) {
-  const Surface surface(test::l_shape());
-  double last_coverage = 1, last_radius = 1;
-  for (const Index points : {500u, 2000u, 8000u}) {
-    const MedialBuild build =
-        build_medial_axis(surface, {.sampling = {.face_points = points - points / 5, .edge_points = points / 5}});
-    const MedialQuality quality = medial_quality(surface, medial_mesh(build.axis), kFew);
-    EXPECT_LT(quality.coverage.mean, last_coverage);
-    EXPECT_LT(quality.radius_error.mean, 0.6 * last_radius);  // the radius is off by the square of the spacing
-    EXPECT_EQ(quality.found, quality.wanted);
-    EXPECT_EQ(quality.outside_vertices, 0.0);
-    last_coverage = quality.coverage.mean;
-    last_radius = quality.radius_error.mean;
-  }
-  EXPECT_LT(last_radius, 0.002);
+TEST(MedialQuality, OfTheExactAxisOfAnLShapeIsPerfectUpToItsChords) {
+  const MedialQuality quality = quality_of(test::known_l_shape(32));
+  EXPECT_NEAR(quality.diagonal, std::sqrt(12.0), 1e-12);
+  // Seen from the reentrant edge a chord of a parabola spans 1.4 degrees: its middle is nearer by 0.5 (1 - cos 0.7).
+  const double chord = 4e-5;
+  EXPECT_LT(quality.coverage.max, 1e-9);
+  EXPECT_LT(quality.protrusion.max, chord);
+  EXPECT_GT(quality.protrusion.max, 0);
+  EXPECT_LT(quality.radius_error.max, 1e-12);  // vertices are on the parabola itself
+  EXPECT_LT(quality.centredness.max, 2e-3);
+  EXPECT_EQ(quality.outside_edges, 0.0);
+  EXPECT_EQ(quality.outside_triangles, 0.0);
+  EXPECT_EQ(quality.found, quality.wanted);
+  EXPECT_EQ(quality.found, (Topology{.components = 1, .loops = 0, .cavities = 0}));
 }
 
 // Damage of a known size shows in the metric that stands for it, by that size.
@@ -161,11 +160,16 @@ TEST(MedialStability, IsSmallForAThickPlateAndTheSameEveryTime) {
   const Surface surface(test::box({0, 0, 0}, {1, 2, 3}));
   const MedialBuildOptions options{.sampling = {.face_points = 1600, .edge_points = 400}};
   const MedialBuild build = build_medial_axis(surface, options);
-  const std::optional<double> stability = medial_stability(surface, build, options);
+  const std::optional<MedialStability> stability = medial_stability(surface, build, options);
   ASSERT_TRUE(stability);
-  EXPECT_LT(*stability, 60);
-  EXPECT_GT(*stability, 0.1);
-  EXPECT_EQ(stability, medial_stability(surface, build, options));
+  EXPECT_LT(stability->hausdorff, 20);
+  EXPECT_LE(stability->percentile99, stability->hausdorff);
+  EXPECT_LT(stability->mean, stability->percentile99);
+  EXPECT_LT(stability->mean, 1);
+  EXPECT_GT(stability->mean, 0.01);
+  const std::optional<MedialStability> again = medial_stability(surface, build, options);
+  EXPECT_EQ(stability->hausdorff, again->hausdorff);
+  EXPECT_EQ(stability->mean, again->mean);
 }
 
 TEST(MedialRadiiAtSurface, AreHalfTheThickness) {

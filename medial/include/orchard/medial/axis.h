@@ -13,8 +13,9 @@ namespace orchard {
 // The approximate medial-axis surface of a solid (dissertation 6.2.1): the Voronoi vertices inside it, coincident ones
 // coalesced, and how they hang together.
 struct MedialAxis {
-  std::vector<Point> points;         // surface points: what forming points index
-  std::vector<Vector> normals;       // outward unit pseudonormal of the surface at each point
+  std::vector<Point> points;    // surface points: what forming points index
+  std::vector<Vector> normals;  // outward unit pseudonormal of the surface at each point
+  std::vector<double> turns;    // radians from that to the surface's own normals there: 0 but at edges and vertices
   std::vector<PointOrigin> origins;  // of each point: which of them gap repair added
 
   std::vector<Point> centers;  // medial vertices

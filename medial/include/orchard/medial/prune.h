@@ -21,10 +21,12 @@ struct PruneOptions {
 // that is to go but has nothing free stays. O(n log n). Throws InputError for options out of range.
 MedialAxis prune(const MedialAxis& axis, const PruneOptions& options);
 
-// The angle at which the two points of a face (or wall) are seen from its middle, in radians.
+// The angle at which the two points of a face (or wall) are seen from its middle, in radians; at most that between the
+// surface's normals there, so that Voronoi vertices that slivers of the point set put next to the surface do not pass
+// for places between two walls. An axis without `turns` is judged by the positions alone.
 double separation_angle(const MedialAxis& axis, std::span<const Index> face, const std::array<Index, 2>& points);
 
-// The widest angle at which two forming points of each vertex are seen from it, in radians: twice the object angle.
+// The widest such angle between two forming points of each vertex, seen from it: twice the object angle.
 std::vector<double> contact_angles(const MedialAxis& axis);
 
 }  // namespace orchard

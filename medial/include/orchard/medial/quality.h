@@ -54,12 +54,17 @@ struct StabilityOptions {
   std::uint64_t seed = 1;
 };
 
-// The Hausdorff distance between the medial axis of the mesh and that of the mesh with noise, over the noise, both
-// built with `options`; only what has a larger object angle is compared (with what has one at most 10 degrees smaller).
+// Distances between two axes, from the vertices of each to the other, over the noise.
+struct MedialStability {
+  double hausdorff = 0, percentile99 = 0, mean = 0;
+};
+
+// Of the medial axis of the mesh and that of the mesh with noise, both built with `options`; only what has a larger
+// object angle is compared (with what has one at most 10 degrees smaller).
 // Nothing if the noise makes the mesh no solid, or if an axis has no such part.
-std::optional<double> medial_stability(const Surface& surface, const MedialBuild& build,
-                                       const MedialBuildOptions& options, const StabilityOptions& stability = {},
-                                       const Progress& progress = {});
+std::optional<MedialStability> medial_stability(const Surface& surface, const MedialBuild& build,
+                                                const MedialBuildOptions& options,
+                                                const StabilityOptions& stability = {}, const Progress& progress = {});
 
 // The radius of the largest ball that touches each vertex of the surface's mesh, of those of `mesh`'s vertices: the
 // local thickness, halved. A ball touches if it comes as near as the nearest, up to 0.001 bounding radii.
