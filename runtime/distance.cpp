@@ -31,6 +31,7 @@ DistanceQuery::DistanceQuery(const TreeView& a, const TreeView& b) noexcept : pa
 void DistanceQuery::start(const Pose& a, const Pose& b, const Tolerance& tolerance) noexcept {
   tolerance_ = tolerance;
   pair_.start(a, b);
+  pair_.keep(a, b);  // which start() does not where the roots decide
   lower_ = pair_.lower_bound();
   work_ = 0;
   stack_size_ = 0;

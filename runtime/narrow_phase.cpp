@@ -5,7 +5,6 @@
 #include <cstring>
 #include <new>
 
-#include "support_map.h"
 #include "tree_nodes.h"
 
 // Rounding. Let c be the true place of a centre of the second tree in the first one's frame, c' the one computed in
@@ -36,11 +35,7 @@ namespace {
 constexpr double kFloatUnit = 0x1p-24;
 // Keeps the squares of the smallest reach clear of the numbers that a flush-to-zero mode drops.
 constexpr double kLeastSlack = 1e-15;
-// A bound is stretched by this, since distances under poses rigid to kRigidTolerance are off by up to 3e-12 of them.
-constexpr double kStretch = 1e-11;
 
-constexpr double kSquareError = 1e-14;     // relative, of the difference of two squares
-constexpr int kRootDirections = 5;         // tried at most, to part the roots
 constexpr double kLeastOpposition = 1e-6;  // between unit normals: less says nothing about a direction
 
 template <typename Container>
@@ -60,11 +55,6 @@ int compare(const TreeView& a, const TreeView& b) noexcept {
   return compare_bytes(da, db);
 }
 
-bool before(const Pose& a, const Pose& b) noexcept {
-  if (a.rotation != b.rotation) return a.rotation < b.rotation;
-  return a.translation != b.translation ? a.translation < b.translation : a.scale < b.scale;
-}
-
 }  // namespace
 
 bool NarrowPhase::PairList::reserve(std::size_t capacity) noexcept {
@@ -79,11 +69,15 @@ bool NarrowPhase::PairList::reserve(std::size_t capacity) noexcept {
 }
 
 NarrowPhase::Side NarrowPhase::side_of(const TreeView& tree) noexcept {
-  auto root = detail::center_of(tree, 0);
-  for (std::size_t i = 0; i < 3; ++i) root[i] += tree.origin[i];
-  const double extent = coordinate_extent(tree);
-  const double error = kStretch * (extent + length(tree.origin)) + tree.vertex_error;
-  return {tree, root, extent, error};
+  Side side;
+  side.tree = tree;
+  side.middle = side.root = detail::center_of(tree, 0);
+  for (std::size_t i = 0; i < 3; ++i) side.root[i] += tree.origin[i];
+  const SiblingBlock& block = tree.blocks[0];
+  side.radius = double{block.radius[0]}, side.reach = double{block.error[0]}, side.depth = double{block.depth[0]};
+  side.extent = coordinate_extent(tree);
+  side.error = detail::kStretch * (side.extent + length(tree.origin)) + tree.vertex_error;
+  return side;
 }
 
 NarrowPhase::NarrowPhase(const TreeView& a, const TreeView& b, std::size_t room) noexcept {
@@ -147,107 +141,6 @@ void NarrowPhase::place() noexcept {
   placement_.margin = rounded_up(2 * sigma + 96 * kFloatUnit * size);
 }
 
-void NarrowPhase::reset() noexcept {
-  inner_.clear();
-  leaves_.clear();
-  next_.clear();
-  settled_leaves_ = 0;
-  cursor_ = {};
-  leaf_best_ = {};
-  triangle_first_ = triangle_second_ = kNoTriangle;
-  finished_ = out_of_room_ = roots_pending_ = exact_started_ = false;
-  stack_size_ = 0;
-  placed_ = false;
-  level_ = 0;
-  pair_tests_ = 1;
-  triangle_tests_ = work_ = 0;
-  lower_bound_ = 0;
-  pruned_gap_ = std::numeric_limits<double>::infinity();
-}
-
-// How far the bodies' convex hulls are apart, at least: along the line through the roots' centres, `way`, and then
-// along directions that what is in the way suggests (Chung and Wang 1996), as long as these get better.
-double NarrowPhase::roots_gap(const Pose& first, const Pose& second, const std::array<double, 3>& way,
-                              double distance) const noexcept {
-  const auto reach_of = [](const Side& side, const Pose& pose, const std::array<double, 3>& u, double sign) {
-    const auto& r = pose.rotation;
-    std::array<double, 3> direction{};
-    double middle = 0;  // the root's centre, relative to the tree's origin
-    for (std::size_t i = 0; i < 3; ++i) {
-      direction[i] = sign * (r[i] * u[0] + r[3 + i] * u[1] + r[6 + i] * u[2]);
-      middle += direction[i] * (side.root[i] - side.tree.origin[i]);
-    }
-    detail::Support support = detail::support_along(side.tree.supports, direction);
-    support.most = pose.scale * (support.most - middle);
-    return support;  // its reach from the root's centre, in the world; its point in the tree's frame
-  };
-  const auto place_of = [](const Side& side, const Pose& pose, detail::Vec3 point) {
-    for (std::size_t i = 0; i < 3; ++i) point[i] = pose.scale * (point[i] - (side.root[i] - side.tree.origin[i]));
-    return rotate(pose, point);  // from the root's centre, in the world
-  };
-  // Reaches are proportional to the direction's length, and reflecting keeps it: `distance` all the way.
-  std::array<double, 3> u = way;
-  double best = -std::numeric_limits<double>::infinity();
-  for (int turn = 0; turn < kRootDirections; ++turn) {
-    const detail::Support p = reach_of(first_, first, u, 1), q = reach_of(second_, second, u, -1);
-    const double along = u[0] * way[0] + u[1] * way[1] + u[2] * way[2], gap = along - (p.most + q.most);
-    if (gap > 0) return gap / distance * (1 - kStretch) - kStretch * distance;
-    if (gap <= best) break;
-    best = gap;
-    // From the point of the first one to that of the second one; reflecting the direction in it turns these apart.
-    const detail::Vec3 from = place_of(first_, first, p.point), to = place_of(second_, second, q.point);
-    std::array<double, 3> between{};
-    double square = 0, component = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      between[i] = way[i] + to[i] - from[i];
-      square += between[i] * between[i];
-      component += between[i] * u[i];
-    }
-    if (component >= 0 || !(square > 0)) break;
-    const double factor = 2 * component / square;
-    for (std::size_t i = 0; i < 3; ++i) u[i] -= factor * between[i];
-  }
-  return best / distance;
-}
-
-Answer NarrowPhase::start(const Pose& a, const Pose& b) noexcept {
-  reset();
-  exchanged_ = ordered_by_pose_ ? before(b, a) : arguments_exchanged_;
-  const Pose &first = exchanged_ ? b : a, &second = exchanged_ ? a : b;
-  first_pose_ = first;
-  second_pose_ = second;
-
-  // The roots, in double and in the world: bodies that are far apart must not overflow, and most pairs end here.
-  const SiblingBlock &p = first_.tree.blocks[0], &q = second_.tree.blocks[0];
-  const auto c1 = transform(first, first_.root), c2 = transform(second, second_.root);
-  double size = 0;
-  for (std::size_t i = 0; i < 3; ++i) size += std::fabs(first.translation[i]) + std::fabs(second.translation[i]);
-  exact_error_ = first_.error * first.scale + second_.error * second.scale + 1e-14 * size;
-  const std::array<double, 3> way = {c2[0] - c1[0], c2[1] - c1[1], c2[2] - c1[2]};
-  const double square = way[0] * way[0] + way[1] * way[1] + way[2] * way[2], distance = std::sqrt(square);
-  const auto sum = [&first, &second](float of_first, float of_second) {
-    return first.scale * double{of_first} + second.scale * double{of_second};
-  };
-  const double radii = sum(p.radius[0], q.radius[0]);
-  separation_bound_ =
-      pair_bound(distance + exact_error_, radii, sum(p.error[0], q.error[0]), sum(p.depth[0], q.depth[0]));
-  best_ = {separation_bound_, {0, 0}};
-  const double ball_gap = distance - radii - exact_error_;
-  double gap = ball_gap;
-  if (gap <= 0 && square > 0 && has_triangles()) gap = roots_gap(first, second, way, distance) - exact_error_;
-  if (gap > 0 && std::isfinite(gap)) {
-    pruned_gap_ = gap;
-    finish(Answer::no);
-    return answer_;
-  }
-  answer_ = Answer::maybe;
-  roots_pending_ = true;
-  // Poses that are not finite, or beyond what can be squared: nothing is certain then and nothing can be refined.
-  const bool deeper = !detail::is_leaf(first_.tree, 0) || !detail::is_leaf(second_.tree, 0) || has_triangles();
-  finished_ = !deeper || !std::isfinite(ball_gap) || !in_range();
-  return answer_;
-}
-
 // Whether floats can hold the square of every distance that the pair's frame may have to.
 bool NarrowPhase::in_range() const noexcept {
   double size = second_.extent * second_pose_.scale;
@@ -255,24 +148,14 @@ bool NarrowPhase::in_range() const noexcept {
   return size <= 4 * double{kCoordinateLimit} * first_pose_.scale;
 }
 
-bool NarrowPhase::has_triangles() const noexcept {
-  return !first_.tree.patches.empty() && !second_.tree.patches.empty();
-}
-
-// Also right for pairs that do not meet: a point between the balls is within `errors` plus their gap of both solids.
-double NarrowPhase::pair_bound(double distance, double radii, double errors, double depths) noexcept {
-  const double bound = std::min(errors + std::max(0.0, distance - radii), depths + distance);
-  return std::max(0.0, bound) * (1 + kStretch);
-}
-
 void NarrowPhase::finish(Answer answer) noexcept {
   answer_ = answer;
   finished_ = true;
   roots_pending_ = false;
-  if (answer == Answer::no && !exact_started_) lower_bound_ = pruned_gap_ * (1 - kStretch);
+  if (answer == Answer::no && !exact_started_) lower_bound_ = pruned_gap_ * (1 - detail::kStretch);
   if (answer == Answer::yes) {
     const double error = first_.tree.vertex_error + second_.tree.vertex_error * relative_.scale;
-    separation_bound_ = std::min(separation_bound_, error * first_pose_.scale * (1 + kStretch));
+    separation_bound_ = std::min(separation_bound_, error * first_pose_.scale * (1 + detail::kStretch));
   }
 }
 

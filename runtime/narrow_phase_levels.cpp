@@ -51,8 +51,8 @@ std::uint32_t deepest_of(std::uint64_t bits, const BlockPair& block, const Block
 
 }  // namespace
 
-Answer NarrowPhase::refine(const Budget& budget) noexcept {
-  if (finished_ || budget.pair_tests == 0) return answer_;
+Answer NarrowPhase::refine_level(const Budget& budget) noexcept {
+  if (budget.pair_tests == 0) return answer_;
   if (roots_pending_) {
     place();
     roots_pending_ = false;
@@ -68,8 +68,8 @@ Answer NarrowPhase::refine(const Budget& budget) noexcept {
   return answer_;
 }
 
-Answer NarrowPhase::refine_exactly(const Budget& budget) noexcept {
-  if (finished_ || budget.pair_tests == 0) return answer_;
+Answer NarrowPhase::refine_last(const Budget& budget) noexcept {
+  if (budget.pair_tests == 0) return answer_;
   if (!has_triangles() || !stack_) return refine(budget);
   Meter meter(budget);
   if (!exact_started_) {
@@ -143,9 +143,9 @@ void NarrowPhase::improve(NodePair pair, double square, bool leaves) noexcept {
   const std::uint32_t i = pair.a % kBlockWidth, j = pair.b % kBlockWidth;
   const double slack = placement_.slack;
   const double scale = relative_.scale;
-  const double bound =
-      pair_bound(std::sqrt(square) + slack, double{p.radius[i]} + scale * double{q.radius[j]},
-                 double{p.error[i]} + scale * double{q.error[j]}, double{p.depth[i]} + scale * double{q.depth[j]});
+  const double bound = detail::pair_bound(std::sqrt(square) + slack, double{p.radius[i]} + scale * double{q.radius[j]},
+                                          double{p.error[i]} + scale * double{q.error[j]},
+                                          double{p.depth[i]} + scale * double{q.depth[j]});
   Best& best = leaves ? leaf_best_ : level_best_;
   if (bound >= best.bound) return;
   best = {bound, pair};

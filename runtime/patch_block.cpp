@@ -102,6 +102,21 @@ ORCHARD_INLINE Extent<Kind> extent(const typename Kind::Floats& a, const typenam
   return {E::smaller(E::smaller(a, b), c), E::larger(E::larger(a, b), c)};
 }
 
+template <typename Kind>
+struct Box {
+  typename Eight<Kind>::Vectors low, high;
+};
+
+// Around eight triangles each, grown by `margin`.
+template <typename Kind>
+ORCHARD_INLINE Box<Kind> box_of(const typename Eight<Kind>::Vectors (&corner)[3],
+                                const typename Kind::Floats& margin) noexcept {
+  const Extent<Kind> x = extent<Kind>(corner[0].x, corner[1].x, corner[2].x),
+                     y = extent<Kind>(corner[0].y, corner[1].y, corner[2].y),
+                     z = extent<Kind>(corner[0].z, corner[1].z, corner[2].z);
+  return {{x.low - margin, y.low - margin, z.low - margin}, {x.high + margin, y.high + margin, z.high + margin}};
+}
+
 // Triangles that do not reach between the planes of the other leaf's patch.
 template <typename Kind>
 ORCHARD_INLINE std::uint32_t outside(const typename Eight<Kind>::Vectors (&corner)[3], const Patch& patch,
@@ -130,6 +145,21 @@ ORCHARD_INLINE std::uint64_t find_candidates(const LeafPair& pair, const Placeme
   if (rows == 0 || lanes == 0) return 0;
 
   const Floats margin = E::all(placement.margin);
+  const Box<Kind> lane_box = box_of<Kind>(lane, margin), row_boxes = box_of<Kind>(row, E::all(0.0f));
+  std::array<float, kBlockWidth> low[3], high[3];
+  store(row_boxes.low.x, low[0]), store(row_boxes.low.y, low[1]), store(row_boxes.low.z, low[2]);
+  store(row_boxes.high.x, high[0]), store(row_boxes.high.y, high[1]), store(row_boxes.high.z, high[2]);
+  std::uint32_t near[kBlockWidth], any = 0;
+  for (std::uint32_t r = 0; r < kBlockWidth; ++r) {
+    near[r] = 0;
+    if ((rows >> r & 1) == 0 || pair.rows.triangle[r] == kNoTriangle) continue;
+    near[r] = lanes & ~Kind::bits((lane_box.high.x < E::all(low[0][r])) | (E::all(high[0][r]) < lane_box.low.x) |
+                                  (lane_box.high.y < E::all(low[1][r])) | (E::all(high[1][r]) < lane_box.low.y) |
+                                  (lane_box.high.z < E::all(low[2][r])) | (E::all(high[2][r]) < lane_box.low.z));
+    any |= near[r];
+  }
+  if (any == 0) return 0;
+
   const Vectors lane_edge[2] = {E::minus(lane[1], lane[0]), E::minus(lane[2], lane[0])};
   const Vectors row_edge[2] = {E::minus(row[1], row[0]), E::minus(row[2], row[0])};
   const Vectors lane_normal = E::cross(lane_edge[0], lane_edge[1]), row_normal = E::cross(row_edge[0], row_edge[1]);
@@ -145,7 +175,7 @@ ORCHARD_INLINE std::uint64_t find_candidates(const LeafPair& pair, const Placeme
 
   std::uint64_t result = 0;
   for (std::uint32_t r = 0; r < kBlockWidth; ++r) {
-    if ((rows >> r & 1) == 0 || pair.rows.triangle[r] == kNoTriangle) continue;
+    if (near[r] == 0) continue;
     const Vectors p[3] = {{E::all(x[0][r]), E::all(y[0][r]), E::all(z[0][r])},
                           {E::all(x[1][r]), E::all(y[1][r]), E::all(z[1][r])},
                           {E::all(x[2][r]), E::all(y[2][r]), E::all(z[2][r])}};
@@ -154,7 +184,7 @@ ORCHARD_INLINE std::uint64_t find_candidates(const LeafPair& pair, const Placeme
     const Extent<Kind> over_row =
         extent<Kind>(E::dot(normal, from[0]), E::dot(normal, from[1]), E::dot(normal, from[2]));
     const Floats limit = E::all(row_limit[r]);
-    std::uint32_t left = lanes & ~Kind::bits((limit < over_row.low) | (over_row.high < -limit));
+    std::uint32_t left = near[r] & ~Kind::bits((limit < over_row.low) | (over_row.high < -limit));
     if (left == 0) continue;
     const Extent<Kind> over_lane =
         extent<Kind>(-E::dot(lane_normal, from[0]), E::dot(lane_normal, E::minus(p[1], lane[0])),

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -9,6 +10,16 @@
 
 // How queries read a packed tree. All of it relies on structure_fault() being nullptr.
 namespace orchard::runtime::detail {
+
+// A bound is stretched by this, since distances under poses rigid to kRigidTolerance are off by up to 3e-12 of them.
+inline constexpr double kStretch = 1e-11;
+
+// How far two solids are apart at most, by a pair of their spheres. Also right for spheres that do not meet: a point
+// between them is within `errors` plus their gap of both solids.
+inline double pair_bound(double distance, double radii, double errors, double depths) noexcept {
+  const double bound = std::min(errors + std::max(0.0, distance - radii), depths + distance);
+  return std::max(0.0, bound) * (1 + kStretch);
+}
 
 inline double length(const Vec3& v) noexcept { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 

@@ -105,10 +105,10 @@ class NarrowPhase {
   Answer start(const Pose& a, const Pose& b) noexcept;
   Answer refine() noexcept { return refine(Budget{}); }  // to the end of the next level
   // To the end of the next level, or of the one under way, or of the budget: resume by calling again.
-  Answer refine(const Budget& budget) noexcept;
+  Answer refine(const Budget& budget) noexcept { return finished_ ? answer_ : refine_level(budget); }
   // Leaves the levels of spheres that remain out and goes for the last one: the fastest way to "yes" or "no", without
   // the bounds on the way. Resume by calling either function again.
-  Answer refine_exactly(const Budget& budget = {}) noexcept;
+  Answer refine_exactly(const Budget& budget = {}) noexcept { return finished_ ? answer_ : refine_last(budget); }
 
   // Whether any spheres meet at that level, depth first and only until two do: the fastest answer of a given accuracy,
   // "no" (certain) or "maybe", with the separation bound of those two. For after start(); refine() may follow. Budgets
@@ -142,10 +142,11 @@ class NarrowPhase {
  private:
   friend class DistanceQuery;
   struct Side {
+    std::array<double, 3> root{}, middle{};   // the root's centre, with and without the origin
+    double radius = 0, reach = 0, depth = 0;  // the root's; `reach` is its error
+    double error = 0;                         // of a point, whatever the pose
+    double extent = 0;                        // coordinate_extent()
     TreeView tree;
-    std::array<double, 3> root{};  // its centre, origin included
-    double extent = 0;             // coordinate_extent()
-    double error = 0;              // of a point, whatever the pose
   };
   struct NodePair {
     std::uint32_t a, b;
@@ -178,18 +179,18 @@ class NarrowPhase {
   class Meter;
 
   static Side side_of(const TreeView& tree) noexcept;
-  void reset() noexcept;
+  void keep(const Pose& a, const Pose& b) noexcept;
   struct Probe;
   bool probe_below(NodePair pair, std::uint32_t levels, Probe& probe) noexcept;
-  double roots_gap(const Pose& first, const Pose& second, const std::array<double, 3>& way,
-                   double distance) const noexcept;
+  double hulls_gap(const Pose& first, const Pose& second, const std::array<double, 3>& way) const noexcept;
   Pose relative_pose() const noexcept;
   void place() noexcept;
-  bool has_triangles() const noexcept;
+  bool has_triangles() const noexcept { return !first_.tree.patches.empty() && !second_.tree.patches.empty(); }
   bool in_range() const noexcept;
   void finish(Answer answer) noexcept;
-  static double pair_bound(double distance, double radii, double errors, double depths) noexcept;
 
+  Answer refine_level(const Budget& budget) noexcept;
+  Answer refine_last(const Budget& budget) noexcept;
   bool refine_spheres(Meter& meter) noexcept;
   void give_up_spheres() noexcept;
   void start_exact() noexcept;
