@@ -119,12 +119,6 @@ bool NarrowPhase::refine_spheres(Meter& meter) noexcept {
   return true;
 }
 
-NarrowPhase::NodePair NarrowPhase::pair_at(std::uint32_t row, std::uint32_t lane, std::uint32_t bit,
-                                           bool lanes_are_second) noexcept {
-  const NodePair pair{row + bit / kBlockWidth, lane + bit % kBlockWidth};
-  return lanes_are_second ? pair : NodePair{pair.b, pair.a};
-}
-
 void NarrowPhase::collect(std::uint32_t row, std::uint32_t lane, const BlockHits& hits,
                           bool lanes_are_second) noexcept {
   const auto pair_of = [=](std::uint64_t mask) {

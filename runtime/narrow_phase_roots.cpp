@@ -74,6 +74,8 @@ Answer NarrowPhase::start(const Pose& a, const Pose& b) noexcept {
     return answer_;
   }
   keep(a, b);
+  answer_ = Answer::maybe;
+  roots_pending_ = true;
   // Poses that are not finite, or beyond what can be squared: nothing is certain then and nothing can be refined.
   const bool deeper = !detail::is_leaf(first_.tree, 0) || !detail::is_leaf(second_.tree, 0) || has_triangles();
   finished_ = !deeper || !std::isfinite(ball_gap) || !in_range();
@@ -94,8 +96,6 @@ void NarrowPhase::keep(const Pose& a, const Pose& b) noexcept {
   triangle_first_ = triangle_second_ = kNoTriangle;
   stack_size_ = 0;
   pruned_gap_ = std::numeric_limits<double>::infinity();
-  answer_ = Answer::maybe;
-  roots_pending_ = true;
 }
 
 // Along directions that what is in the way suggests (Chung and Wang 1996), as long as these get better. Times the

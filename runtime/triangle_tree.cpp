@@ -1,22 +1,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "orchard/runtime/packed_tree.h"
-#include "triangle_pair.h"
+#include "principal_axes.h"
 
-// The tree of triangles: halved along the widest direction, eight children a node, leaves of up to eight triangles.
+// The tree of triangles: cut in two along a principal direction, eight children a node, leaves of up to eight
+// triangles.
 namespace orchard::runtime {
 namespace {
 
-using detail::Vec3;
-
-Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+using detail::axes_of, detail::cross, detail::dot, detail::minus, detail::Vec3;
 
 // A unit vector rounded to float, or the x axis for one that has no direction.
 Vec3 direction(const Vec3& v) {
@@ -33,36 +29,8 @@ float above(double value) {  // at least `value`, rounding of a few operations i
   return std::nextafter(static_cast<float>(value * (1 + 1e-14)), std::numeric_limits<float>::infinity());
 }
 
-// Eigenvectors of a symmetric matrix {xx, yy, zz, xy, xz, yz} by Jacobi rotations, the largest eigenvalue's first.
-std::array<Vec3, 3> axes_of(const std::array<double, 6>& m) {
-  double a[3][3] = {{m[0], m[3], m[4]}, {m[3], m[1], m[5]}, {m[4], m[5], m[2]}};
-  std::array<Vec3, 3> v = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};  // rows
-  constexpr int sweeps = 8;
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
-    for (std::size_t p = 0; p < 2; ++p) {
-      for (std::size_t q = p + 1; q < 3; ++q) {
-        if (a[p][q] == 0) continue;
-        const double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
-        const double t = (theta >= 0 ? 1 : -1) / (std::fabs(theta) + std::sqrt(theta * theta + 1));
-        if (!std::isfinite(t)) continue;
-        const double c = 1 / std::sqrt(t * t + 1), s = t * c;
-        for (std::size_t k = 0; k < 3; ++k) {
-          const double x = a[k][p], y = a[k][q];
-          a[k][p] = c * x - s * y, a[k][q] = s * x + c * y;
-        }
-        for (std::size_t k = 0; k < 3; ++k) {
-          const double x = a[p][k], y = a[q][k];
-          a[p][k] = c * x - s * y, a[q][k] = s * x + c * y;
-          const double vx = v[p][k], vy = v[q][k];
-          v[p][k] = c * vx - s * vy, v[q][k] = s * vx + c * vy;
-        }
-      }
-    }
-  }
-  std::array<std::size_t, 3> order = {0, 1, 2};
-  std::stable_sort(order.begin(), order.end(), [&a](std::size_t i, std::size_t j) { return a[i][i] > a[j][j]; });
-  return {v[order[0]], v[order[1]], v[order[2]]};
-}
+// Levels below which parts are halved by number: 31 more are enough for every count, and kPatchDepthLimit is 64.
+constexpr std::uint32_t kCostlyDepth = 32;
 
 struct Range {
   std::size_t begin, end;
@@ -78,6 +46,7 @@ class Builder {
  public:
   explicit Builder(PackedSphereTree& tree) : tree_(tree) {
     order_.resize(tree.triangles.size());
+    extents_.resize(order_.size());
     for (std::size_t t = 0; t < order_.size(); ++t) {
       order_[t] = static_cast<std::uint32_t>(t);
       Vec3 sum{};
@@ -164,16 +133,70 @@ class Builder {
 
   double width_of(const Range& part) const { return part.size() <= kBlockWidth ? -1 : ball_of(part).second; }
 
-  // At a multiple of eight triangles, so that leaves are full.
+  struct Extent {
+    Vec3 low, high;  // along the part's principal axes
+    void add(const Extent& other) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        low[i] = std::min(low[i], other.low[i]), high[i] = std::max(high[i], other.high[i]);
+      }
+    }
+    double area() const {
+      const Vec3 e = minus(high, low);
+      return e[0] * e[1] + e[1] * e[2] + e[2] * e[0];
+    }
+  };
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  static constexpr Extent kNothing = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+
+  Extent extent_of(std::uint32_t triangle, const std::array<Vec3, 3>& axes) const {
+    Extent extent = kNothing;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 p = corner(triangle, k), along = {dot(axes[0], p), dot(axes[1], p), dot(axes[2], p)};
+      extent.add({along, along});
+    }
+    return extent;
+  }
+
+  static std::size_t multiple_of_width(std::size_t count) {
+    return (count + kBlockWidth - 1) / kBlockWidth * kBlockWidth;
+  }
+
+  // Across a principal axis, where the boxes of the two parts, times their triangles, are smallest (MacDonald and Booth
+  // 1990), the more even parts of equal ones; far down in half, which limits the depth. At a multiple of eight
+  // triangles, so that leaves are full.
   std::size_t halve(const Range& part) {
-    const Vec3 axis = axes_of(covariance(part))[0];
-    const std::size_t middle = part.begin + (part.size() / 2 + kBlockWidth - 1) / kBlockWidth * kBlockWidth;
+    const std::array<Vec3, 3> axes = axes_of(covariance(part));
+    const std::size_t size = part.size(), half = multiple_of_width(size / 2);
+    if (tree_.patch_depth >= kCostlyDepth) return sort_along(axes[0], part), part.begin + half;
+    for (std::size_t i = part.begin; i < part.end; ++i) extents_[order_[i]] = extent_of(order_[i], axes);
+    std::tuple<double, std::size_t, std::size_t, std::size_t> best = {kInfinity, 0, 0,
+                                                                      half};  // cost, unevenness, axis, at
+    std::vector<double> behind(size);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      sort_along(axes[axis], part);
+      Extent extent = kNothing;
+      for (std::size_t i = size; i-- > 0;) {
+        extent.add(extents_[order_[part.begin + i]]);
+        behind[i] = extent.area() * static_cast<double>(size - i);
+      }
+      extent = kNothing;
+      for (std::size_t i = 0; i < size; ++i) {
+        if (i > 0 && i % kBlockWidth == 0) {
+          const double cost = extent.area() * static_cast<double>(i) + behind[i];
+          best = std::min(best, {cost, i > half ? i - half : half - i, axis, i});
+        }
+        extent.add(extents_[order_[part.begin + i]]);
+      }
+    }
+    sort_along(axes[std::get<2>(best)], part);
+    return part.begin + std::get<3>(best);
+  }
+
+  void sort_along(const Vec3& axis, const Range& part) {
     const auto at = [this](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
-    std::nth_element(at(part.begin), at(middle), at(part.end), [this, &axis](std::uint32_t a, std::uint32_t b) {
+    std::sort(at(part.begin), at(part.end), [this, &axis](std::uint32_t a, std::uint32_t b) {
       return std::pair(dot(axis, centroids_[a]), a) < std::pair(dot(axis, centroids_[b]), b);
     });
-    std::sort(at(part.begin), at(middle)), std::sort(at(middle), at(part.end));
-    return middle;
   }
 
   // Of the corners, scaled to be free of overflow.
@@ -276,6 +299,7 @@ class Builder {
   PackedSphereTree& tree_;
   std::vector<std::uint32_t> order_;
   std::vector<Vec3> centroids_;
+  std::vector<Extent> extents_;  // of triangles, while their part is halved
 };
 
 }  // namespace

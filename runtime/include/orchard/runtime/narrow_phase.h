@@ -198,7 +198,10 @@ class NarrowPhase {
   void expand(const PatchPair& pair, bool second) noexcept;
   bool test_triangles(const PatchPair& pair) noexcept;
   std::array<double, 3> triangle_normal() const noexcept;
-  static NodePair pair_at(std::uint32_t row, std::uint32_t lane, std::uint32_t bit, bool lanes_are_second) noexcept;
+  static NodePair pair_at(std::uint32_t row, std::uint32_t lane, std::uint32_t bit, bool lanes_are_second) noexcept {
+    const NodePair pair{row + bit / kBlockWidth, lane + bit % kBlockWidth};
+    return lanes_are_second ? pair : NodePair{pair.b, pair.a};
+  }
   void collect(std::uint32_t row, std::uint32_t lane, const detail::BlockHits& hits, bool lanes_are_second) noexcept;
   void improve(NodePair pair, double square, bool leaves) noexcept;
   void start_level() noexcept;
