@@ -20,8 +20,9 @@ class NarrowPhase::Meter {
   bool exhausted() noexcept { return spent_ >= limit_ || (spent_ >= next_look_ && late()); }
   // How many rows of so many tests may follow before the next look at the limits: at least one.
   std::uint32_t rows(std::uint32_t tests) const noexcept {
-    return static_cast<std::uint32_t>(
-        std::min<std::uint64_t>(kBlockWidth, (std::min(limit_, next_look_) - spent_ - 1) / tests + 1));
+    const std::uint64_t left = std::min(limit_, next_look_) - spent_;
+    if (left >= std::uint64_t{kBlockWidth} * kBlockWidth) return kBlockWidth;  // saves a division
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(kBlockWidth, (left - 1) / tests + 1));
   }
   void spend(std::uint64_t tests) noexcept { spent_ += tests; }
   std::uint64_t spent() const noexcept { return spent_; }

@@ -2,13 +2,14 @@
 
 #include <bit>
 #include <cstring>
+#include <limits>
 
 #include "vector_support.h"
 
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr float kFar = 3e18f;  // centre of unused lanes: keeps them out of least_excess unless bodies are as large
+constexpr float kFar = 4e18f;  // x of unused lanes: keeps them out of least_excess unless bodies are as large
 
 struct PlainKind {
   using Floats = Plain<float, kBlockWidth>;
@@ -91,7 +92,7 @@ ORCHARD_INLINE void test(const BlockPair& pair, const Placement& placement, Leve
   Centers<Kind> c = centers_of<Kind>(lanes, pair.lanes_are_second, placement);
   const Words index = load<Words>(std::array<std::uint32_t, kBlockWidth>{0, 1, 2, 3, 4, 5, 6, 7});
   const auto used = index < spread<Words>(pair.lane_count);
-  c = {Kind::choose(used, c.x, far), Kind::choose(used, c.y, far), Kind::choose(used, c.z, far)};
+  c.x = Kind::choose(used, c.x, far);
   const Floats scale = spread<Floats>(placement.scale), one = spread<Floats>(1.0f);
   const Floats lane_scale = pair.lanes_are_second ? scale : one, row_scale = pair.lanes_are_second ? one : scale;
   const Floats lane_radius = load<Floats>(lanes.radius) * lane_scale;
@@ -123,8 +124,10 @@ ORCHARD_INLINE void test(const BlockPair& pair, const Placement& placement, Leve
   }
   store(least, level.least_excess);
   const std::uint64_t lane_bits = (std::uint64_t{1} << pair.lane_count) - 1;
-  hits.meeting = transposed(Kind::low_bytes(met)) & (lane_bits * 0x0101010101010101u);
-  hits.leaves = hits.improving = 0;
+  hits.meeting = hits.leaves = hits.improving = 0;
+  const std::uint64_t met_bytes = Kind::low_bytes(met);
+  if (met_bytes == 0) return;
+  hits.meeting = transposed(met_bytes) & (lane_bits * 0x0101010101010101u);
   if (hits.meeting == 0) return;
 
   const Words sign = spread<Words>(~kLeafBit);
@@ -138,6 +141,8 @@ ORCHARD_INLINE void test(const BlockPair& pair, const Placement& placement, Leve
   const float best_mixed = level.best_inner < level.best_leaf ? level.best_leaf : level.best_inner;
   const Floats best = spread<Floats>(only_leaves ? level.best_leaf : hits.leaves == 0 ? level.best_inner : best_mixed);
   const Floats errors = load<Floats>(lanes.error) * lane_scale, depths = load<Floats>(lanes.depth) * lane_scale;
+  const Floats unknown = spread<Floats>(std::numeric_limits<float>::infinity());
+  if (Kind::low_bytes(Kind::words(errors < best) | Kind::words(depths < unknown)) == 0) return;
   const float row_factor = pair.lanes_are_second ? 1.0f : placement.scale;
   Words improve = spread<Words>(0u);
   for (std::uint32_t r = pair.row_begin; r < pair.row_end; ++r) {
@@ -148,7 +153,8 @@ ORCHARD_INLINE void test(const BlockPair& pair, const Placement& placement, Leve
                          (Kind::words(zero < rest) & Kind::words(square < rest * rest));
     improve = improve | (better & spread<Words>(1u << r));
   }
-  hits.improving = hits.meeting & transposed(Kind::low_bytes(improve));
+  const std::uint64_t improve_bytes = Kind::low_bytes(improve);
+  if (improve_bytes != 0) hits.improving = hits.meeting & transposed(improve_bytes);
 }
 
 }  // namespace
