@@ -10,6 +10,7 @@
 #include "medial_faces.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/tolerance.h"
+#include "outvoted.h"
 
 namespace orchard {
 namespace {
@@ -127,6 +128,7 @@ MedialAxis medial_axis(const Surface& surface, const SurfaceSampling& sampling, 
   axis.origins = sampling.origins;
   find_normals(surface, sampling, axis);
   std::vector<std::uint8_t> inside = detail::interior_vertices(surface, diagram, progress);
+  detail::drop_outvoted(surface, axis.normals, diagram, inside);
   report_progress(progress, "medial axis", 0.3);
   const VoronoiFaces faces = voronoi_faces(diagram);
   if (options.keep_topology) axis.left_out = detail::keep_topology(surface, sampling, diagram, faces, inside);
