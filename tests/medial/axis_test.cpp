@@ -4,6 +4,7 @@
 
 #include "interior.h"
 #include "orchard/geometry/random.h"
+#include "orchard/medial/prune.h"
 #include "orchard/voronoi/exact.h"
 #include "support.h"
 #include "support/shapes.h"
@@ -108,27 +109,21 @@ TEST(MedialAxis, OfCosphericalPointsIsOneVertexThatAllOfThemForm) {
 
 TEST(MedialAxis, OfATorusFollowsTheCoreCircle) {
   const double minor = 0.35;
-  const Surface surface(test::torus(96, 48, 1, minor));
-  const SurfaceSampling sampling = sample_surface(surface, {.face_points = 3000, .edge_points = 0});
+  const Surface surface(test::torus(64, 32, 1, minor));
+  const SurfaceSampling sampling = sample_surface(surface, {.face_points = 1500, .edge_points = 0});
   const MedialAxis axis = axis_of(surface, sampling);
-  const double spacing = covering_radius(surface, sampling);
+  const std::vector<double> angles = contact_angles(axis);
   int wide = 0;
   for (Index i = 0; i < axis.size(); ++i) {
     const Point& c = axis.centers[i];
-    double least_cosine = 1;
-    for (const Index a : axis.forming_points[i]) {
-      for (const Index b : axis.forming_points[i]) {
-        least_cosine = std::min(least_cosine, (axis.points[a] - c).normalized().dot((axis.points[b] - c).normalized()));
-      }
-    }
-    // Slivers of neighbouring points have balls of any size, but a large one holds its points within a small angle.
-    if (least_cosine > 0 || axis.radii[i] < 3 * spacing) continue;
+    // The flat facets have spurs between them; what is seen between walls is not theirs.
+    if (angles[i] < 2) continue;
     ++wide;
     const double from_core = std::hypot(std::hypot(c.x(), c.y()) - 1, c.z());
     EXPECT_LT(from_core, 0.2 * minor) << c.transpose();
     EXPECT_NEAR(axis.radii[i], minor, 0.2 * minor);
   }
-  EXPECT_GT(wide, 1000);
+  EXPECT_GT(wide, 500);
   EXPECT_EQ(test::count_components(axis), 1u);
 }
 
