@@ -97,9 +97,9 @@ void append_point(std::string& text, const std::array<double, 3>& point) {
 constexpr std::size_t kStlHeader = 84, kStlTriangle = 50;
 
 std::uint32_t stl_triangle_count(std::string_view bytes) {
-  std::array<unsigned char, 4> raw;
-  std::memcpy(raw.data(), bytes.data() + 80, 4);
-  return raw[0] | raw[1] << 8 | raw[2] << 16 | static_cast<std::uint32_t>(raw[3]) << 24;
+  std::uint32_t count = 0;
+  for (std::size_t byte = 4; byte-- > 0;) count = count << 8 | static_cast<unsigned char>(bytes[80 + byte]);
+  return count;
 }
 
 void check_binary_stl(std::string_view bytes, const std::string& name) {

@@ -22,6 +22,7 @@ std::optional<std::vector<Index>> coverers_of(const SphereTree& tree, const Surf
                                               const std::vector<Index>& candidates) {
   if (candidates.empty()) return std::nullopt;
   std::vector<PathBall> balls;
+  balls.reserve(candidates.size());
   for (Index i : candidates) balls.push_back({tree.nodes[i].sphere.center, tree.nodes[i].sphere.radius, kNone, true});
   std::vector<Index> triangles;
   surface.triangles_near(tree.nodes[node].sphere, triangles);

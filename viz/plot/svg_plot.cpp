@@ -48,7 +48,7 @@ class Axis {
   void settle() {
     if (!(low_ <= high_)) low_ = 0, high_ = 1;
     if (log_) low_ = std::floor(low_ + 1e-9), high_ = std::ceil(high_ - 1e-9);
-    if (high_ == low_) high_ = low_ + 1;
+    if (high_ == low_) high_ = low_ + std::max(1.0, std::fabs(low_));
     if (!log_) {
       const double margin = 0.04 * (high_ - low_);
       low_ = low_ >= 0 && low_ < 0.3 * high_ ? 0 : low_ - margin;
@@ -62,8 +62,11 @@ class Axis {
         log_ ? std::max(1.0, std::ceil((high_ - low_) / 8)) : std::pow(10, std::floor(std::log10(high_ - low_)));
     if (!log_ && (high_ - low_) / step < 2.5) step /= 5;
     if (!log_ && (high_ - low_) / step < 5) step /= 2;
-    for (double v = std::ceil(low_ / step) * step; v <= high_ + 1e-9 * step; v += step) {
-      result.push_back(log_ ? std::pow(10, v) : std::fabs(v) < 1e-9 * step ? 0 : v);
+    const auto first = static_cast<long>(std::ceil(low_ / step));
+    const auto last = static_cast<long>(std::floor(high_ / step + 1e-9));
+    for (long i = first; i <= last; ++i) {
+      const double v = static_cast<double>(i) * step;
+      result.push_back(log_ ? std::pow(10, v) : v);
     }
     return result;
   }
@@ -189,7 +192,8 @@ std::string to_svg(const std::vector<Plot>& plots, int columns) {
       << height * rows
       << "\" font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
   for (int i = 0; i < count; ++i) {
-    out << "<g transform=\"translate(" << kWidth * (i % columns) << " " << height * (i / columns) << ")\">\n";
+    const int row = i / columns;
+    out << "<g transform=\"translate(" << kWidth * (i % columns) << " " << height * row << ")\">\n";
     draw(out, plots[static_cast<std::size_t>(i)]);
     out << "</g>\n";
   }
