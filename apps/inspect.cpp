@@ -68,12 +68,13 @@ json inspect_packed(const std::filesystem::path& file) {
   for (std::size_t i = 0; i < places.size(); ++i) {
     const Place place = places[i];
     const auto& block = tree.blocks[place.block];
-    const bool leaf = (block.count[place.lane] & runtime::kLeafBit) != 0;
+    const std::uint32_t link = block.link[place.lane];
+    const bool leaf = (link & runtime::kLeafBit) != 0;
     at(levels, place.level).add(block.radius[place.lane], block.error[place.lane], leaf);
     if (leaf) continue;
-    for (std::uint32_t child = 0; child < block.count[place.lane]; ++child)
-      places.push_back(
-          {block.first[place.lane] + child / runtime::kBlockWidth, child % runtime::kBlockWidth, place.level + 1});
+    const auto [first, count] = runtime::children_of(tree.branching, link);
+    for (std::uint32_t child = 0; child < count; ++child)
+      places.push_back({first + child / runtime::kBlockWidth, child % runtime::kBlockWidth, place.level + 1});
   }
   return {{"kind", "sphere-tree"},
           {"nodes", tree.node_count},

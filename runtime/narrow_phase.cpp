@@ -75,6 +75,7 @@ NarrowPhase::Side NarrowPhase::side_of(const TreeView& tree) noexcept {
   for (std::size_t i = 0; i < 3; ++i) side.root[i] += tree.origin[i];
   const SiblingBlock& block = tree.blocks[0];
   side.radius = double{block.radius[0]}, side.reach = double{block.error[0]}, side.depth = double{block.depth[0]};
+  side.bits = link_bits(tree.branching);
   side.extent = coordinate_extent(tree);
   side.error = detail::kStretch * (side.extent + length(tree.origin)) + tree.vertex_error;
   return side;

@@ -90,10 +90,9 @@ bool NarrowPhase::refine_spheres(Meter& meter) noexcept {
     const auto [a, b] = inner_[cursor_.pair];
     // The lanes are the children of b, the rows those of a, or a itself; if b is a leaf, a's children are the lanes.
     const bool lanes_are_second = !is_leaf(second_.tree, b);
-    const TreeView& row_tree = (lanes_are_second ? first_ : second_).tree;
-    const TreeView& lane_tree = (lanes_are_second ? second_ : first_).tree;
-    const Group rows = group_of(row_tree, lanes_are_second ? a : b);
-    const Group lanes = group_of(lane_tree, lanes_are_second ? b : a);
+    const Side &row_side = lanes_are_second ? first_ : second_, &lane_side = lanes_are_second ? second_ : first_;
+    const Group rows = group_of(row_side.tree, row_side.bits, lanes_are_second ? a : b);
+    const Group lanes = group_of(lane_side.tree, lane_side.bits, lanes_are_second ? b : a);
     for (; cursor_.outer < lanes.count; cursor_.outer += kBlockWidth, cursor_.inner = 0) {
       while (cursor_.inner < rows.count) {
         if (meter.exhausted()) return false;
@@ -102,8 +101,8 @@ bool NarrowPhase::refine_spheres(Meter& meter) noexcept {
           return false;
         }
         const std::uint32_t row = rows.first + cursor_.inner, lane = lanes.first + cursor_.outer;
-        BlockPair block{&block_of(row_tree, row), &block_of(lane_tree, lane), row % kBlockWidth, 0, 0,
-                        lanes_are_second};
+        BlockPair block{
+            &block_of(row_side.tree, row), &block_of(lane_side.tree, lane), row % kBlockWidth, 0, 0, lanes_are_second};
         block.lane_count = std::min(kBlockWidth, lanes.count - cursor_.outer);
         block.row_end = std::min(kBlockWidth, block.row_begin + rows.count - cursor_.inner);
         block.row_end = std::min(block.row_end, block.row_begin + meter.rows(block.lane_count));
@@ -204,15 +203,15 @@ Answer NarrowPhase::probe(std::uint32_t level) noexcept {
 // The pair's children, the deepest overlap first. True once two nodes meet that are that many levels down, or leaves.
 bool NarrowPhase::probe_below(NodePair pair, std::uint32_t levels, Probe& probe) noexcept {
   const bool lanes_are_second = !is_leaf(second_.tree, pair.b);
-  const TreeView& row_tree = (lanes_are_second ? first_ : second_).tree;
-  const TreeView& lane_tree = (lanes_are_second ? second_ : first_).tree;
-  const Group rows = group_of(row_tree, lanes_are_second ? pair.a : pair.b);
-  const Group lanes = group_of(lane_tree, lanes_are_second ? pair.b : pair.a);
+  const Side &row_side = lanes_are_second ? first_ : second_, &lane_side = lanes_are_second ? second_ : first_;
+  const Group rows = group_of(row_side.tree, row_side.bits, lanes_are_second ? pair.a : pair.b);
+  const Group lanes = group_of(lane_side.tree, lane_side.bits, lanes_are_second ? pair.b : pair.a);
   BlockHits hits;
   for (std::uint32_t outer = 0; outer < lanes.count; outer += kBlockWidth) {
     for (std::uint32_t inner = 0; inner < rows.count;) {
       const std::uint32_t row = rows.first + inner, lane = lanes.first + outer;
-      BlockPair block{&block_of(row_tree, row), &block_of(lane_tree, lane), row % kBlockWidth, 0, 0, lanes_are_second};
+      BlockPair block{
+          &block_of(row_side.tree, row), &block_of(lane_side.tree, lane), row % kBlockWidth, 0, 0, lanes_are_second};
       block.lane_count = std::min(kBlockWidth, lanes.count - outer);
       block.row_end = std::min(kBlockWidth, block.row_begin + rows.count - inner);
       detail::test_block(block, placement_, probe.seen, hits);

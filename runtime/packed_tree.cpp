@@ -66,12 +66,16 @@ class StructureCheck {
 
   const char* children_fault(const SiblingBlock& block) noexcept {
     for (std::uint32_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
-      const std::uint32_t first = block.first[lane], count = block.count[lane] & ~kLeafBit;
-      if (block.count[lane] & kLeafBit) {
-        if (std::uint64_t{first} + count > tree_.leaf_triangles.size()) return "a leaf lists triangles beyond the end";
+      if (block.link[lane] & kLeafBit) {
+        const std::uint32_t list = block.link[lane] & ~kLeafBit;
+        if (block.link[lane] != kEmptyLeaf && list >= tree_.leaf_triangles.size()) {
+          return "a leaf lists triangles beyond the end";
+        }
         continue;
       }
-      if (count == 0 || count > tree_.branching) return "an inner node has no children or more than the branching";
+      if (tree_.branching == 0 || tree_.branching > kMostBranching) return "the branching is out of range";
+      const auto [first, count] = children_of(tree_.branching, block.link[lane]);
+      if (count > tree_.branching) return "an inner node has more children than the branching";
       if (first != next_block_) return "blocks are not in breadth-first order";
       const std::uint32_t blocks = block_count(count);
       if (blocks > tree_.blocks.size() - next_block_) return "a node's children are beyond the end";
@@ -98,8 +102,12 @@ const char* triangle_fault(const TreeView& tree) noexcept {
       if (vertex >= tree.vertices.size()) return "a triangle names a vertex that does not exist";
     }
   }
+  if (tree.triangles.size() > kLeafBit) return "there are too many triangles";
   for (const std::uint32_t triangle : tree.leaf_triangles) {
-    if (triangle >= tree.triangles.size()) return "a leaf names a triangle that does not exist";
+    if ((triangle & ~kLeafBit) >= tree.triangles.size()) return "a leaf names a triangle that does not exist";
+  }
+  if (!tree.leaf_triangles.empty() && (tree.leaf_triangles.back() & kLeafBit) == 0) {
+    return "the last leaf's list does not end";
   }
   return nullptr;
 }
@@ -189,6 +197,22 @@ const char* structure_fault(const TreeView& tree) noexcept {
   if (const char* fault = triangle_tree_fault(tree)) return fault;
   if (const char* fault = support_fault(tree)) return fault;
   return StructureCheck(tree).fault();
+}
+
+std::span<const std::uint32_t> listed_triangles(const TreeView& tree, std::uint32_t link) noexcept {
+  if (link == kEmptyLeaf) return {};
+  const std::uint32_t begin = link & ~kLeafBit;
+  std::uint32_t end = begin;
+  while ((tree.leaf_triangles[end] & kLeafBit) == 0) ++end;
+  return tree.leaf_triangles.subspan(begin, end + 1 - begin);
+}
+
+std::uint32_t add_list(PackedSphereTree& tree, std::span<const std::uint32_t> triangles) {
+  if (triangles.empty()) return kEmptyLeaf;
+  const std::uint32_t link = kLeafBit | static_cast<std::uint32_t>(tree.leaf_triangles.size());
+  tree.leaf_triangles.insert(tree.leaf_triangles.end(), triangles.begin(), triangles.end());
+  tree.leaf_triangles.back() |= kLeafBit;
+  return link;
 }
 
 double coordinate_extent(const TreeView& tree) noexcept {

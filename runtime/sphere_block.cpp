@@ -132,7 +132,7 @@ ORCHARD_INLINE void test(const BlockPair& pair, const Placement& placement, Leve
 
   const Words sign = spread<Words>(~kLeafBit);
   const auto leaf_bits = [&](const SiblingBlock& block) ORCHARD_INLINE_LAMBDA {
-    return bits_of(Kind::low_bytes(Kind::words(sign < load<Words>(block.count)) & ones));
+    return bits_of(Kind::low_bytes(Kind::words(sign < load<Words>(block.link)) & ones));
   };
   const std::uint64_t row_leaves = leaf_bits(rows), lane_leaves = leaf_bits(lanes);
   hits.leaves = hits.meeting & (flags_of(row_leaves) * lane_leaves);

@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <span>
 
 #include "orchard/runtime/packed_tree.h"
 #include "triangle_pair.h"
@@ -28,7 +27,7 @@ inline const SiblingBlock& block_of(const TreeView& tree, std::uint32_t node) no
 }
 
 inline bool is_leaf(const TreeView& tree, std::uint32_t node) noexcept {
-  return (block_of(tree, node).count[node % kBlockWidth] & kLeafBit) != 0;
+  return (block_of(tree, node).link[node % kBlockWidth] & kLeafBit) != 0;
 }
 
 inline Vec3 center_of(const TreeView& tree, std::uint32_t node) noexcept {
@@ -41,16 +40,12 @@ struct Group {  // consecutive nodes: the children of a node, or one leaf
   std::uint32_t first, count;
 };
 
-inline Group group_of(const TreeView& tree, std::uint32_t node) noexcept {
-  if (is_leaf(tree, node)) return {node, 1};
-  const SiblingBlock& block = block_of(tree, node);
-  return {block.first[node % kBlockWidth] * kBlockWidth, block.count[node % kBlockWidth]};
-}
-
-inline std::span<const std::uint32_t> triangles_of(const TreeView& tree, std::uint32_t leaf) noexcept {
-  const SiblingBlock& block = block_of(tree, leaf);
-  const std::uint32_t lane = leaf % kBlockWidth;
-  return tree.leaf_triangles.subspan(block.first[lane], block.count[lane] & ~kLeafBit);
+// `bits`: link_bits(tree.branching).
+inline Group group_of(const TreeView& tree, int bits, std::uint32_t node) noexcept {
+  const std::uint32_t link = block_of(tree, node).link[node % kBlockWidth];
+  if (link & kLeafBit) return {node, 1};
+  const Children children = linked_children(bits, link);
+  return {children.first * kBlockWidth, children.count};
 }
 
 inline TrianglePoints points_of(const TreeView& tree, std::uint32_t triangle) noexcept {

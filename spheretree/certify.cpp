@@ -13,9 +13,10 @@ std::vector<PathBall> path_balls(const runtime::PackedSphereTree& tree) {
     const runtime::SiblingBlock& block = tree.blocks[index];
     balls[i].center = Point(block.x[lane], block.y[lane], block.z[lane]);
     balls[i].radius = block.radius[lane];
-    balls[i].leaf = (block.count[lane] & runtime::kLeafBit) != 0;
+    balls[i].leaf = (block.link[lane] & runtime::kLeafBit) != 0;
     if (balls[i].leaf) continue;
-    for (Index child = 0; child < block.count[lane]; ++child) balls[next_child++].parent = i;
+    const Index children = runtime::children_of(tree.branching, block.link[lane]).count;
+    for (Index child = 0; child < children; ++child) balls[next_child++].parent = i;
   }
   return balls;
 }

@@ -56,7 +56,8 @@ class Packer {
       pack_node(node, places_[i]);
       if (node.child_count == 0) continue;
       const auto block = static_cast<std::uint32_t>(packed_.blocks.size());
-      set_link(places_[i], block, node.child_count);
+      if (block > runtime::last_linked_block(tree_.branching)) throw Error("pack: the tree is too large to be packed");
+      set_link(places_[i], runtime::inner_link(tree_.branching, {block, node.child_count}));
       packed_.blocks.resize(block + (node.child_count + runtime::kBlockWidth - 1) / runtime::kBlockWidth);
       for (std::uint32_t b = block; b < packed_.blocks.size(); ++b) packed_.blocks[b].radius.fill(-1);
       for (std::uint32_t child = 0; child < node.child_count; ++child)
@@ -81,10 +82,7 @@ class Packer {
     block.error[at.lane] = round_up(std::max(0.0, node.distance_bound) + grown);
   }
 
-  void set_link(Place at, std::uint32_t first, std::uint32_t count) {
-    packed_.blocks[at.block].first[at.lane] = first;
-    packed_.blocks[at.block].count[at.lane] = count;
-  }
+  void set_link(Place at, std::uint32_t link) { packed_.blocks[at.block].link[at.lane] = link; }
 
   void pack_mesh() {
     const TriangleMesh& mesh = surface_.mesh();
@@ -113,9 +111,7 @@ class Packer {
       }
       if (i > 0 && i + 1 == last_child(node.parent) + 1) touching[node.parent] = {};
       if (node.child_count > 0) continue;
-      set_link(places_[i], static_cast<std::uint32_t>(packed_.leaf_triangles.size()),
-               runtime::kLeafBit | static_cast<std::uint32_t>(touching[i].size()));
-      packed_.leaf_triangles.insert(packed_.leaf_triangles.end(), touching[i].begin(), touching[i].end());
+      set_link(places_[i], runtime::add_list(packed_, touching[i]));
     }
   }
 

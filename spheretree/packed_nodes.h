@@ -15,10 +15,11 @@ inline std::vector<PackedNode> packed_nodes(const runtime::PackedSphereTree& tre
   std::vector<PackedNode> nodes{{0, 0}};
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const auto [index, lane] = nodes[i];
-    const runtime::SiblingBlock& block = tree.blocks[index];
-    if ((block.count[lane] & runtime::kLeafBit) != 0) continue;
-    for (Index child = 0; child < block.count[lane]; ++child)
-      nodes.push_back({block.first[lane] + child / runtime::kBlockWidth, child % runtime::kBlockWidth});
+    const std::uint32_t link = tree.blocks[index].link[lane];
+    if ((link & runtime::kLeafBit) != 0) continue;
+    const auto [first, count] = runtime::children_of(tree.branching, link);
+    for (Index child = 0; child < count; ++child)
+      nodes.push_back({first + child / runtime::kBlockWidth, child % runtime::kBlockWidth});
   }
   return nodes;
 }

@@ -139,9 +139,8 @@ class Verifier {
     for (Index node = 0; node < nodes_.size(); ++node) {
       if (!balls_[node].leaf) continue;
       const auto [block, lane] = nodes_[node];
-      const std::uint32_t first = tree_.blocks[block].first[lane];
-      const std::uint32_t count = tree_.blocks[block].count[lane] & ~runtime::kLeafBit;
-      for (std::uint32_t k = 0; k < count; ++k) rows[tree_.leaf_triangles[first + k]].push_back(node);
+      for (const std::uint32_t triangle : runtime::listed_triangles(tree_, tree_.blocks[block].link[lane]))
+        rows[triangle & ~runtime::kLeafBit].push_back(node);
     }
     Rows listed;
     for (const auto& row : rows) {

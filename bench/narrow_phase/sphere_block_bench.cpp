@@ -68,7 +68,7 @@ int main() {
       const auto number = [&draw](double low, double high) { return static_cast<float>(draw.uniform(low, high)); };
       block.x[i] = number(-1, 1), block.y[i] = number(-1, 1), block.z[i] = number(-1, 1);
       block.radius[i] = number(0.1, 0.3), block.error[i] = number(0.1, 0.2), block.depth[i] = number(-0.1, 0.1);
-      block.count[i] = 8;
+      block.link[i] = 8;
     }
   };
   for (auto& block : first) fill(block);

@@ -28,7 +28,7 @@ SiblingBlock random_block(Draw& draw, std::uint32_t used) {
     block.error[i] = static_cast<float>(draw.uniform(0, 1));
     block.depth[i] = static_cast<float>(draw.uniform(-1, 1));
     if (draw.bits() % 8 == 0) block.error[i] = block.depth[i] = std::numeric_limits<float>::infinity();
-    block.count[i] = draw.bits() % 2 == 0 ? kLeafBit : 3;
+    block.link[i] = draw.bits() % 2 == 0 ? kLeafBit : 3;
   }
   return block;
 }
@@ -112,7 +112,7 @@ TEST(SphereBlock, FindsTheMeetingPairsTheirKindAndWhichMayImprove) {
         const double distance = std::hypot(moved[0] - still[0], moved[1] - still[1], moved[2] - still[2]);
         const double reach = ls * double{c.lanes.radius[l]} + rs * double{c.rows.radius[r]} + double{c.placement.slack};
         ASSERT_EQ(meets, distance <= reach) << seed;  // no case is so close that rounding would matter
-        ASSERT_EQ(leaves, meets && (c.lanes.count[l] & c.rows.count[r] & kLeafBit) != 0) << seed;
+        ASSERT_EQ(leaves, meets && (c.lanes.link[l] & c.rows.link[r] & kLeafBit) != 0) << seed;
         if (!meets) least = std::min(least, distance * distance - reach * reach);
         const double best = double{leaves ? c.level.best_leaf : c.level.best_inner};
         const double bound = std::min(ls * double{c.lanes.error[l]} + rs * double{c.rows.error[r]},

@@ -45,12 +45,11 @@ TEST(NarrowPhase, CountsTouchingChildrenAsMeeting) {
   pair.branching = 2;
   pair.depth = 1;
   pair.node_count = 3;
-  pair.blocks[0].first[0] = 1;
-  pair.blocks[0].count[0] = 2;
+  pair.blocks[0].link[0] = inner_link(2, {1, 2});
   SiblingBlock children = lone_ball(1).blocks[0];
   children.x = {-1, 1};
   children.radius[1] = 1;
-  children.count[1] = kLeafBit;
+  children.link[1] = kEmptyLeaf;
   pair.blocks.push_back(children);
   ASSERT_EQ(structure_fault(pair), nullptr);
   NarrowPhase query(pair, pair);
@@ -71,8 +70,9 @@ TEST(NarrowPhase, CountsTouchingChildrenAsMeeting) {
 // A large root over balls of all sizes, some blocks of them, without triangles.
 PackedSphereTree scattered_balls(Draw& draw, std::uint32_t count) {
   PackedSphereTree tree = lone_ball(100);
-  tree.branching = tree.blocks[0].count[0] = count;
-  tree.blocks[0].first[0] = tree.depth = 1;
+  tree.branching = count;
+  tree.depth = 1;
+  tree.blocks[0].link[0] = inner_link(count, {1, count});
   tree.node_count = 1 + count;
   for (std::uint32_t i = 0; i < count; ++i) {
     if (i % kBlockWidth == 0) tree.blocks.emplace_back().radius.fill(-1);
@@ -84,7 +84,7 @@ PackedSphereTree scattered_balls(Draw& draw, std::uint32_t count) {
     block.radius[lane] = static_cast<float>(std::exp2(draw.uniform(-20, 3)));
     block.error[lane] = static_cast<float>(draw.uniform(0, 30));
     block.depth[lane] = static_cast<float>(draw.uniform(-20, 20));
-    block.count[lane] = kLeafBit;
+    block.link[lane] = kEmptyLeaf;
   }
   tree.blocks[0].error[0] = tree.blocks[0].depth[0] = 200;
   return tree;

@@ -32,6 +32,11 @@ struct Box {
   }
 };
 
+struct Inner {
+  std::size_t block, lane;
+  Children children;
+};
+
 struct Pending {  // a node whose children are still to be placed
   std::size_t block, lane, begin, end;
   std::uint32_t level;
@@ -54,6 +59,9 @@ class Builder {
     place({0, 0, 0, order_.size(), 0});
     queue.push_back({0, 0, 0, order_.size(), 0});
     for (std::size_t next = 0; next < queue.size(); ++next) expand(Pending(queue[next]), queue);
+    for (const Inner& node : inner_) {  // now that the branching is known
+      tree_.blocks[node.block].link[node.lane] = inner_link(tree_.branching, node.children);
+    }
     tree_.bounding_radius = double(tree_.blocks[0].radius[0]);
     index_triangles(tree_);
     return std::move(tree_);
@@ -70,16 +78,13 @@ class Builder {
     tree_.depth = std::max(tree_.depth, node.level);
     SiblingBlock& own = tree_.blocks[node.block];
     if (size <= options_.leaf_triangles || node.level >= options_.max_depth) {
-      own.first[node.lane] = static_cast<std::uint32_t>(tree_.leaf_triangles.size());
-      own.count[node.lane] = static_cast<std::uint32_t>(size) | kLeafBit;
-      for (std::size_t i = node.begin; i < node.end; ++i) tree_.leaf_triangles.push_back(order_[i]);
+      own.link[node.lane] = add_list(tree_, std::span(order_).subspan(node.begin, size));
       return;
     }
     const auto parts = split(node.begin, node.end);
     const auto children = static_cast<std::uint32_t>(parts.size() - 1);
     const std::size_t first = tree_.blocks.size();
-    own.first[node.lane] = static_cast<std::uint32_t>(first);
-    own.count[node.lane] = children;
+    inner_.push_back({node.block, node.lane, {static_cast<std::uint32_t>(first), children}});
     tree_.branching = std::max(tree_.branching, children);
     for (std::uint32_t b = 0; b < block_count(children); ++b) tree_.blocks.emplace_back().radius.fill(-1);
     for (std::uint32_t c = 0; c < children; ++c) {
@@ -167,6 +172,7 @@ class Builder {
   TreeOptions options_;
   PackedSphereTree tree_;
   std::vector<std::uint32_t> order_;
+  std::vector<Inner> inner_;
 };
 
 }  // namespace

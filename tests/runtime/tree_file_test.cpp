@@ -112,7 +112,7 @@ TEST(TreeFile, GivesBackTheTreeThatWasSerialized) {
     EXPECT_EQ(loaded.depth, tree.depth);
     EXPECT_EQ(loaded.node_count, tree.node_count);
     ASSERT_EQ(loaded.blocks.size(), tree.blocks.size());
-    EXPECT_EQ(std::memcmp(loaded.blocks.data(), tree.blocks.data(), 256 * tree.blocks.size()), 0);
+    EXPECT_EQ(std::memcmp(loaded.blocks.data(), tree.blocks.data(), 224 * tree.blocks.size()), 0);
     EXPECT_EQ(loaded.vertices, tree.vertices);
     EXPECT_EQ(loaded.triangles, tree.triangles);
     EXPECT_EQ(loaded.leaf_triangles, tree.leaf_triangles);
@@ -123,13 +123,13 @@ TEST(TreeFile, PutsEverySectionWhereTheFormatSays) {
   const PackedSphereTree tree = sample_tree();
   auto file = serialize(tree);
   EXPECT_EQ(std::memcmp(file.data(), "\x89ORCH\r\n\x1a", 8), 0);
-  EXPECT_EQ(get<std::uint32_t>(file, 8), 2u);
+  EXPECT_EQ(get<std::uint32_t>(file, 8), 3u);
   EXPECT_EQ(get<std::uint32_t>(file, 12), kHeaderSize);
   EXPECT_EQ(get<std::uint64_t>(file, kFileSizeAt), file.size());
   const std::size_t counts[] = {tree.blocks.size(),         tree.vertices.size(), tree.triangles.size(),
                                 tree.leaf_triangles.size(), tree.patches.size(),  tree.triangle_blocks.size(),
                                 tree.supports.size()};
-  const std::uint32_t sizes[] = {256, 12, 12, 4, 288, 320, 4};
+  const std::uint32_t sizes[] = {224, 12, 12, 4, 288, 320, 4};
   for (std::size_t i = 0; i < 7; ++i) {
     const std::size_t at = kTableAt + 24 * i;
     EXPECT_EQ(get<std::uint32_t>(file, at), i + 1);
@@ -175,7 +175,7 @@ TEST(TreeFile, ReportsEveryAlteredByte) {
 
 TEST(TreeFile, RefusesOtherVersionsAndTrailingBytes) {
   auto newer = serialize(sample_tree());
-  put(newer, 8, std::uint32_t{3});
+  put(newer, 8, std::uint32_t{4});
   seal(newer);
   EXPECT_EQ(load_or_keep(newer), LoadStatus::version_newer);
   auto older = serialize(sample_tree());
@@ -215,13 +215,16 @@ TEST(TreeFile, RefusesSealedFilesWhoseTreesAreNotSafeToWalk) {
       {"no blocks", [](auto& t) { t.blocks.clear(); }},
       {"root lane empty", [](auto& t) { t.blocks[0].radius[0] = -1; }},
       {"second root", [](auto& t) { t.blocks[0].radius[1] = 1; }},
-      {"child before parent", [](auto& t) { t.blocks[1].first[0] = 0; }},
-      {"shared block", [](auto& t) { t.blocks[1].first[1] = t.blocks[1].first[0]; }},
-      {"child beyond the end", [](auto& t) { t.blocks[0].first[0] = 1u << 30; }},
-      {"too many children", [](auto& t) { t.blocks[0].count[0] = t.branching + 1; }},
-      {"huge child count", [](auto& t) { t.branching = 0x7fffffff, t.blocks[0].count[0] = 0x7fffffff; }},
-      {"no children", [](auto& t) { t.blocks[0].count[0] = 0; }},
-      {"fewer children than lanes", [](auto& t) { t.blocks[0].count[0] -= 1; }},
+      {"child before parent",
+       [](auto& t) {
+         t.blocks[1].link[0] = inner_link(t.branching, {0, 1});
+       }},
+      {"shared block", [](auto& t) { t.blocks[1].link[1] = t.blocks[1].link[0]; }},
+      {"child beyond the end", [](auto& t) { t.blocks[0].link[0] |= 1u << 30; }},
+      {"too many children", [](auto& t) { t.blocks[0].link[0] += 1; }},
+      {"huge child count", [](auto& t) { t.branching = 0x7fffffff, t.blocks[0].link[0] = 0x7fffffff; }},
+      {"no branching", [](auto& t) { t.branching = 0; }},
+      {"fewer children than lanes", [](auto& t) { t.blocks[0].link[0] -= 1; }},
       {"orphan block", [](auto& t) { t.blocks.push_back(t.blocks.back()); }},
       {"wrong depth", [](auto& t) { t.depth += 1; }},
       {"depth wraps", [](auto& t) { t.depth = ~0u; }},
@@ -263,8 +266,9 @@ TEST(TreeFile, RefusesSealedFilesWhoseTreesAreNotSafeToWalk) {
       {"no supports", [](auto& t) { t.supports.clear(); }},
       {"too many supports", [](auto& t) { t.supports.push_back(0); }},
       {"support not a number", [=](auto& t) { t.supports[100] = nan; }},
-      {"leaf range beyond the end", [](auto& t) { t.leaf_triangles.pop_back(); }},
-      {"leaf range wraps", [](auto& t) { t.blocks.back().first[0] = ~0u, t.blocks.back().count[0] = ~0u; }},
+      {"leaf list without an end", [](auto& t) { t.leaf_triangles.back() &= ~kLeafBit; }},
+      {"leaf list beyond the end",
+       [](auto& t) { t.blocks.back().link[0] = kLeafBit | static_cast<std::uint32_t>(t.leaf_triangles.size()); }},
   };
   ASSERT_EQ(structure_fault(sample_tree()), nullptr);
   for (const auto& [name, change] : cases) {

@@ -81,9 +81,9 @@ TEST(Pack, ListsEachTriangleInEveryLeafThatTouchesIt) {
     for (std::size_t lane = 0; lane < runtime::kBlockWidth; ++lane) {
       if (block.radius[lane] < 0) continue;
       lists.emplace_back();
-      if ((block.count[lane] & runtime::kLeafBit) == 0) continue;
-      const std::uint32_t count = block.count[lane] & ~runtime::kLeafBit;
-      for (std::uint32_t k = 0; k < count; ++k) lists.back().push_back(packed.leaf_triangles[block.first[lane] + k]);
+      if ((block.link[lane] & runtime::kLeafBit) == 0) continue;
+      for (const std::uint32_t triangle : runtime::listed_triangles(packed, block.link[lane]))
+        lists.back().push_back(triangle & ~runtime::kLeafBit);
     }
   ASSERT_EQ(lists.size(), balls.size());
   for (const Point& point : points_on(surface, 40, 3)) {

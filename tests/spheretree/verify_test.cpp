@@ -74,14 +74,10 @@ TEST(Verify, RejectsEachKindOfDamage) {
       {"a bound lowered", [&](PackedSphereTree& t) { t.blocks[0].error[0] *= 0.5f; }},
       {"a leaf's triangles dropped",
        [&](PackedSphereTree& t) {
-         for (auto& count : t.blocks.back().count)
-           if (count & runtime::kLeafBit) count = runtime::kLeafBit;
+         for (auto& link : t.blocks.back().link)
+           if (link & runtime::kLeafBit) link = runtime::kEmptyLeaf;
        }},
-      {"children swapped",
-       [&](PackedSphereTree& t) {
-         std::swap(t.blocks[0 + 1].first[0], t.blocks[1].first[1]);
-         std::swap(t.blocks[0 + 1].count[0], t.blocks[1].count[1]);
-       }},
+      {"children swapped", [&](PackedSphereTree& t) { std::swap(t.blocks[1].link[0], t.blocks[1].link[1]); }},
       {"a vertex moved", [&](PackedSphereTree& t) { t.vertices[0][0] += 1e-3f * radius; }},
       {"a triangle exchanged", [&](PackedSphereTree& t) { std::swap(t.triangles[0][0], t.triangles[0][1]); }},
       {"a triangle lost", [&](PackedSphereTree& t) { t.triangles.pop_back(); }},
@@ -215,20 +211,23 @@ TEST(Verify, RejectsALeafWhoseTrianglesAreDropped) {
   const Surface surface(l_shape());
   const PackedSphereTree good = lean_tree(surface);
   for_each_child(good, [&](std::size_t block, std::size_t lane) {
-    if ((good.blocks[block].count[lane] & runtime::kLeafBit) == 0) return;
+    const std::uint32_t link = good.blocks[block].link[lane];
+    if ((link & runtime::kLeafBit) == 0) return;
     PackedSphereTree tree = good;
-    tree.blocks[block].count[lane] = runtime::kLeafBit;
+    tree.blocks[block].link[lane] = runtime::kEmptyLeaf;
     const Verification result = verify(surface, tree);
     EXPECT_GT(result.triangles_unlisted, 0u) << block << " " << lane;
     EXPECT_EQ(result.triangles_uncovered, 0u);
     // One triangle at a time: some of them must be missed.
-    const std::uint32_t first = good.blocks[block].first[lane],
-                        count = good.blocks[block].count[lane] & ~runtime::kLeafBit;
+    std::vector<std::uint32_t> list;
+    for (const std::uint32_t triangle : runtime::listed_triangles(good, link))
+      list.push_back(triangle & ~runtime::kLeafBit);
     bool missed = false;
-    for (std::uint32_t k = 0; k < count && !missed; ++k) {
+    for (std::size_t k = 0; k < list.size() && !missed; ++k) {
       tree = good;
-      std::swap(tree.leaf_triangles[first + k], tree.leaf_triangles[first + count - 1]);
-      --tree.blocks[block].count[lane];
+      auto shorter = list;
+      shorter.erase(shorter.begin() + static_cast<std::ptrdiff_t>(k));
+      tree.blocks[block].link[lane] = runtime::add_list(tree, shorter);
       missed = !verify(surface, tree).ok();
     }
     EXPECT_TRUE(missed) << block << " " << lane;

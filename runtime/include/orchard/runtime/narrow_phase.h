@@ -146,6 +146,7 @@ class NarrowPhase {
     double radius = 0, reach = 0, depth = 0;  // the root's; `reach` is its error
     double error = 0;                         // of a point, whatever the pose
     double extent = 0;                        // coordinate_extent()
+    int bits = 0;                             // link_bits() of the tree
     TreeView tree;
   };
   struct NodePair {

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -17,17 +18,38 @@ constexpr std::uint32_t block_count(std::uint32_t children) noexcept {
   return children / kBlockWidth + (children % kBlockWidth != 0 ? 1u : 0u);
 }
 
-// Eight siblings side by side, so that one vector operation tests them all: 32 bytes a node.
+// Eight siblings side by side, so that one vector operation tests them all: 28 bytes a node.
 // Coordinates are relative to the tree's origin. A node with more than eight children owns consecutive blocks.
 struct alignas(32) SiblingBlock {
-  std::array<float, kBlockWidth> x{}, y{}, z{};    // centre
-  std::array<float, kBlockWidth> radius{};         // rounded outward; -1 in lanes that hold no node
-  std::array<float, kBlockWidth> depth{};          // upper bound on the signed distance of the centre, negative inside
-  std::array<float, kBlockWidth> error{};          // upper bound on the distance to the solid over the closed ball
-  std::array<std::uint32_t, kBlockWidth> first{};  // inner node: block of its first child; leaf: into leaf_triangles
-  std::array<std::uint32_t, kBlockWidth> count{};  // inner node: children; leaf: triangles, with kLeafBit set
+  std::array<float, kBlockWidth> x{}, y{}, z{};   // centre
+  std::array<float, kBlockWidth> radius{};        // rounded outward; -1 in lanes that hold no node
+  std::array<float, kBlockWidth> depth{};         // upper bound on the signed distance of the centre, negative inside
+  std::array<float, kBlockWidth> error{};         // upper bound on the distance to the solid over the closed ball
+  std::array<std::uint32_t, kBlockWidth> link{};  // inner node: inner_link(); leaf: kLeafBit and where its list begins
 };
-static_assert(sizeof(SiblingBlock) == 256 && alignof(SiblingBlock) == 32);
+static_assert(sizeof(SiblingBlock) == 224 && alignof(SiblingBlock) == 32);
+
+struct Children {
+  std::uint32_t first, count;  // block of the first one; how many there are
+};
+
+// An inner node's children in one word without kLeafBit: the lowest link_bits() bits, enough for the tree's branching,
+// are the number of children less 1, the others the first one's block, at most last_linked_block(). Branching is at
+// most kMostBranching.
+inline constexpr std::uint32_t kMostBranching = 1u << 30;
+constexpr int link_bits(std::uint32_t branching) noexcept { return branching > 1 ? std::bit_width(branching - 1) : 0; }
+constexpr std::uint32_t inner_link(std::uint32_t branching, const Children& children) noexcept {
+  return children.first << link_bits(branching) | (children.count - 1);
+}
+constexpr Children linked_children(int bits, std::uint32_t link) noexcept {
+  return {link >> bits, (link & ((1u << bits) - 1)) + 1};
+}
+constexpr Children children_of(std::uint32_t branching, std::uint32_t link) noexcept {
+  return linked_children(link_bits(branching), link);
+}
+constexpr std::uint32_t last_linked_block(std::uint32_t branching) noexcept {
+  return (kLeafBit - 1) >> link_bits(branching);
+}
 
 // Eight patches side by side: nodes of the tree of triangles below the spheres. A patch is the part of a ball between
 // two parallel planes, the same distance from its centre; every triangle below the node lies in it, in every node above
@@ -50,7 +72,8 @@ struct alignas(32) TriangleBlock {
 static_assert(sizeof(TriangleBlock) == 320 && alignof(TriangleBlock) == 32);
 
 inline constexpr std::uint32_t kNoTriangle = 0xffffffffu;
-inline constexpr std::uint32_t kSupportCells = 8;  // along an edge of the cube of directions
+inline constexpr std::uint32_t kEmptyLeaf = 0xffffffffu;  // link of a leaf that lists no triangles
+inline constexpr std::uint32_t kSupportCells = 8;         // along an edge of the cube of directions
 inline constexpr std::uint32_t kSupportCount = 6 * (kSupportCells + 1) * (kSupportCells + 1);
 inline constexpr std::uint32_t kPatchDepthLimit = 64;  // levels below the root that a tree of triangles may have
 
@@ -70,7 +93,7 @@ struct PackedSphereTree {
   std::vector<SiblingBlock> blocks;
   std::vector<std::array<float, 3>> vertices;           // relative to origin
   std::vector<std::array<std::uint32_t, 3>> triangles;  // into vertices
-  std::vector<std::uint32_t> leaf_triangles;            // into triangles
+  std::vector<std::uint32_t> leaf_triangles;            // into triangles; kLeafBit marks the last one of a leaf
   std::vector<PatchBlock> patches;
   std::vector<TriangleBlock> triangle_blocks;
   // How far the triangles reach: the largest of direction . point, rounded up, for directions on the surface of the
@@ -119,6 +142,12 @@ struct TreeView {
         triangle_blocks(tree.triangle_blocks),
         supports(tree.supports) {}
 };
+
+// The entries of leaf_triangles that a leaf lists; the last one has kLeafBit set besides.
+std::span<const std::uint32_t> listed_triangles(const TreeView& tree, std::uint32_t link) noexcept;
+
+// Appends a leaf's list and returns the link to it. Precondition: indices below kLeafBit. Throws std::bad_alloc only.
+std::uint32_t add_list(PackedSphereTree& tree, std::span<const std::uint32_t> triangles);
 
 // Builds the tree of triangles, and `supports`, from `vertices` and `triangles`: to be called once these are complete.
 // Deterministic. Throws std::bad_alloc only. O(n log n). Precondition: indices are in range and coordinates within
