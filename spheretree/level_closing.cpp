@@ -19,14 +19,28 @@ constexpr double kDearer = 8;
 
 }  // namespace
 
-LevelSolver::Taker LevelSolver::cheapest_taker(std::span<const Point> spot) const {
+// The objective is convex in the looseness: a rise is at least the slope times the growth, which spares most balls.
+std::vector<double> LevelSolver::slopes() const {
+  std::vector<double> slopes;
+  for (const LevelBall& ball : balls_) {
+    FittedBall larger = ball;
+    const double step = 1e-6 * options_.cost.unit;
+    larger.radius += step;
+    slopes.push_back((cost(larger) - cost(ball)) / step);
+  }
+  return slopes;
+}
+
+LevelSolver::Taker LevelSolver::cheapest_taker(std::span<const Point> spot, const std::vector<double>& slopes) const {
   Taker best{kNone, std::numeric_limits<double>::infinity()};
   for (Index b = 0; b < balls_.size(); ++b) {
     const LevelBall& ball = balls_[b];
-    if (!std::all_of(spot.begin(), spot.end(), [&](const Point& p) { return in_path(ball.region, p); })) continue;
     FittedBall grown = ball;
     for (const Point& p : spot) grown.radius = std::max(grown.radius, (p - ball.center).norm());
-    const double rise = cost(grown) - cost(ball) + kTie * (grown.radius - ball.radius) / surface_.bounding_radius();
+    const double growth = grown.radius - ball.radius;
+    if (slopes[b] * growth > best.rise * (1 + 1e-3)) continue;
+    if (!std::all_of(spot.begin(), spot.end(), [&](const Point& p) { return in_path(ball.region, p); })) continue;
+    const double rise = (growth > 0 ? cost(grown) - cost(ball) : 0) + kTie * growth / surface_.bounding_radius();
     if (rise < best.rise) best = {b, rise};
   }
   return best;
@@ -47,12 +61,13 @@ void LevelSolver::add_sample(const Point& point, const Point& start) {
 
 void LevelSolver::take_in(const std::vector<Spot>& spots, bool hold) {
   const std::size_t count = spots.size();
+  const std::vector<double> slopes = this->slopes();
   std::vector<Taker> whole(count), deepest_only(count);
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
     std::vector<Point> points = spots[i].corners;
     points.push_back(spots[i].deepest);
-    whole[i] = cheapest_taker(points);
-    deepest_only[i] = cheapest_taker({&spots[i].deepest, 1});
+    whole[i] = cheapest_taker(points, slopes);
+    deepest_only[i] = cheapest_taker({&spots[i].deepest, 1}, slopes);
   });
   std::vector<std::vector<Point>> extra(balls_.size());
   const Index old = samples_.size();

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "level_solver.h"
+#include "level_trial.h"
 
 // The large-neighbourhood search of LevelSolver. The numbers below were tuned on four models of 700 to 2000 triangles;
 // none of them matters much.
@@ -18,11 +18,6 @@ constexpr double kMoveShare = 0.35;  // of trials that move a cheap ball to a de
 constexpr Index kFewForMoves = 8;    // balls, up to which there is no such move
 
 }  // namespace
-
-struct LevelSolver::Trial {
-  std::vector<Index> chosen;
-  std::vector<LevelBall> balls;  // in their place; empty: nothing better
-};
 
 // A ball, loose ones more often, and some neighbours; perhaps also a tight one from anywhere that is to move here, with
 // the neighbours that must stand in for it.
@@ -81,7 +76,8 @@ void LevelSolver::reseed(LevelBall& ball, Index sample, Random& random) const {
 
 // Lloyd's iteration among the trial's balls. False: a sample fits none of their regions, or a ball is left unused.
 bool LevelSolver::share_out(Trial& trial, const std::vector<Index>& freed, int rounds, Random& random) const {
-  std::vector<std::vector<Point>> own(trial.balls.size());
+  std::vector<std::vector<Point>>& own = trial.needs;
+  own.resize(trial.balls.size());
   BallFitter fitter(surface_);
   bool all_used = true;
   for (int round = 1; round <= rounds; ++round) {
@@ -112,7 +108,7 @@ bool LevelSolver::share_out(Trial& trial, const std::vector<Index>& freed, int r
   return all_used;
 }
 
-LevelSolver::Trial LevelSolver::propose(std::uint64_t number) const {
+LevelSolver::Trial LevelSolver::propose(std::uint64_t number, const LevelCover* cover) const {
   Random random(options_.seed, 200 + options_.level, number);
   Trial trial;
   Index moved = kNone;
@@ -137,12 +133,24 @@ LevelSolver::Trial LevelSolver::propose(std::uint64_t number) const {
   double after = 0;
   const bool shared = share_out(trial, freed, kRounds, random);
   for (const LevelBall& ball : trial.balls) after += cost(ball);
-  if (!shared || !(after < before * (1 - 1e-6))) {
+  trial.moved = moved;
+  if (!shared || !(after < before * (1 - 1e-6)) || (cover != nullptr && !close_trial(trial, before, *cover))) {
     trial.balls.clear();
     return trial;
   }
   for (LevelBall& ball : trial.balls) find_members(ball);
   return trial;
+}
+
+// What a trial was judged by are the balls that meet its own, old and new.
+bool LevelSolver::near_any(const Trial& trial, const std::vector<Sphere>& changed) const {
+  const auto meets = [&](const FittedBall& ball) {
+    return std::any_of(changed.begin(), changed.end(), [&](const Sphere& other) {
+      return (other.center - ball.center).norm() <= (other.radius + ball.radius) * (1 + 1e-9);
+    });
+  };
+  return std::any_of(trial.balls.begin(), trial.balls.end(), meets) ||
+         std::any_of(trial.chosen.begin(), trial.chosen.end(), [&](Index b) { return meets(balls_[b]); });
 }
 
 // Puts the trial's balls in place, unless a sample would be lost or a region gets too many, because another trial of
@@ -169,19 +177,31 @@ bool LevelSolver::apply(Trial& trial) {
   return holds;
 }
 
-void LevelSolver::search(Index trials, const Progress& progress) {
+void LevelSolver::search(Index trials, const Progress& progress) { run_trials(trials, nullptr, progress); }
+
+void LevelSolver::run_trials(Index trials, LevelCover* cover, const Progress& progress) {
   if (balls_.size() < 2) return;
   std::vector<Trial> batch(kBatch);
+  std::vector<Sphere> changed;
   std::vector<char> taken(balls_.size());
   for (Index done = 0; done < trials; done += kBatch) {
     report_progress(progress, "searching", static_cast<double>(done) / trials);
-    tbb::parallel_for(Index{0}, kBatch, [&](Index i) { batch[i] = propose(trials_ + i); });
+    tbb::parallel_for(Index{0}, kBatch, [&](Index i) { batch[i] = propose(trials_ + i, cover); });
     trials_ += kBatch;
+    changed.clear();
     std::fill(taken.begin(), taken.end(), 0);
     for (Trial& trial : batch) {
       const bool free = std::none_of(trial.chosen.begin(), trial.chosen.end(), [&](Index b) { return taken[b] != 0; });
-      if (!free || !apply(trial)) continue;
-      for (Index b : trial.chosen) taken[b] = 1;
+      if (trial.balls.empty() || !free || (cover != nullptr && near_any(trial, changed))) continue;
+      std::vector<Sphere> before;
+      for (Index b : trial.chosen) before.push_back({balls_[b].center, balls_[b].radius});
+      if (!apply(trial)) continue;
+      changed.insert(changed.end(), before.begin(), before.end());
+      for (Index b : trial.chosen) {
+        taken[b] = 1;
+        changed.push_back({balls_[b].center, balls_[b].radius});
+        if (cover != nullptr) cover->replace(b, {changed.back(), balls_[b].region});
+      }
     }
   }
 }

@@ -50,9 +50,12 @@ bool LevelSolver::in_region(Index region, Index sample) const {
 }
 
 double LevelSolver::cost(const FittedBall& ball) const {
-  const double R = surface_.bounding_radius();
-  const double loose = std::pow(std::max(0.0, ball.looseness()) / R, options_.cost.power);
-  return options_.cost.size_power == 0 ? loose : loose * std::pow(ball.radius / R, options_.cost.size_power);
+  const LevelCost& by = options_.cost;
+  const double t = std::max(0.0, ball.looseness()) / by.unit;
+  double cost = std::pow(t, by.power);
+  if (by.cap > 0) cost *= 1 + std::pow(t / by.cap, by.cap_power);
+  if (by.size_power > 0) cost *= std::pow(ball.radius / surface_.bounding_radius(), by.size_power);
+  return cost;
 }
 
 double LevelSolver::objective() const {
@@ -120,6 +123,9 @@ void LevelSolver::start() {
   drop_unused();
   for (LevelBall& ball : balls_) find_members(ball);
   recount();
+  if (options_.cost.unit > 0) return;
+  for (const LevelBall& ball : balls_) options_.cost.unit += ball.looseness() / static_cast<double>(balls_.size());
+  if (!(options_.cost.unit > 0)) options_.cost.unit = surface_.bounding_radius();
 }
 
 // The ball that gets least loose by each sample.

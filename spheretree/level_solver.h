@@ -2,26 +2,26 @@
 #include <vector>
 
 #include "ball_fit.h"
+#include "level_cover.h"
+#include "level_samples.h"
 #include "orchard/geometry/progress.h"
 #include "orchard/geometry/random.h"
 #include "spots.h"
 
 namespace orchard::detail {
 
-// Points of the surface that a level's balls must hold, each with a start for the centre of a ball near it.
-struct Samples {
-  std::vector<Point> points, starts;
-  Index size() const { return static_cast<Index>(points.size()); }
-};
-
 struct LevelBall : FittedBall {
   Index region = kNone;        // that the ball answers for a part of
   std::vector<Index> samples;  // inside the ball and its region, ascending
 };
 
-// A level's objective is the sum over its balls of (looseness / R)^power (radius / R)^size_power.
+// A level's objective is the sum over its balls of t^power (1 + (t / cap)^cap_power) (radius / R)^size_power, where t
+// is the looseness as a multiple of `unit`. The cap keeps the largest near the others where the power is low.
 struct LevelCost {
-  double power = 4, size_power = 0;
+  double power = 4;
+  double cap = 0, cap_power = 8;  // cap 0: none
+  double size_power = 0;
+  double unit = 0;  // 0: the mean looseness of the first solution
 };
 
 struct LevelOptions {
@@ -52,8 +52,14 @@ class LevelSolver {
   // its corners too.
   void take_in(const std::vector<Spot>& spots, bool hold);
 
+  // From here on the balls cover the surface, and go on doing so: `cover` holds the same balls.
+  void take_radii(const LevelCover& cover);
+  void refit(LevelCover& cover);                 // each ball, loosest first, to what it alone holds
+  void polish(LevelCover& cover, Index trials);  // search, where what a trial leaves open is closed before it is judged
+
   const std::vector<LevelBall>& balls() const { return balls_; }
   double objective() const;
+  double unit() const { return options_.cost.unit; }  // of the looseness in the objective
 
  private:
   struct Trial;
@@ -78,14 +84,18 @@ class LevelSolver {
   std::vector<Index> held_only_by(const std::vector<Index>& chosen) const;
   void reseed(LevelBall& ball, Index sample, Random& random) const;
   bool share_out(Trial& trial, const std::vector<Index>& freed, int rounds, Random& random) const;
-  Trial propose(std::uint64_t number) const;
+  Trial propose(std::uint64_t number, const LevelCover* cover) const;
+  bool close_trial(Trial& trial, double before, const LevelCover& cover) const;
+  void run_trials(Index trials, LevelCover* cover, const Progress& progress);
+  bool near_any(const Trial& trial, const std::vector<Sphere>& changed) const;
   bool apply(Trial& trial);
 
   struct Taker {
     Index ball = kNone;
     double rise = 0;  // of its cost
   };
-  Taker cheapest_taker(std::span<const Point> spot) const;
+  std::vector<double> slopes() const;
+  Taker cheapest_taker(std::span<const Point> spot, const std::vector<double>& slopes) const;
   void add_sample(const Point& point, const Point& start);
 
   const Surface& surface_;

@@ -8,8 +8,9 @@ namespace orchard {
 
 enum class Effort { low, standard, high };  // about 1 : 2 : 15 in time
 
-// What a level's balls are judged by. balanced: sums of high powers of the inaccuracy, highest at the top; maximum and
-// mean weigh more for the one or the other; volume is the volume outside the object.
+// What a level's balls are judged by, as sums of powers of the inaccuracy. balanced: a high power at the top, low ones
+// below that rise steeply beyond two or three times the mean; maximum and mean weigh more for the one or the other;
+// volume stands for the volume outside the object.
 enum class Objective { balanced, maximum, mean, volume };
 
 struct TightenOptions {
@@ -36,7 +37,8 @@ struct TightenReport {
 // with every ball free to choose its parent. A parent so has one to twice `branching` children (at most 64), and the
 // load balances itself. Balls are fitted to surface points by max |p - c| + sd(c), improved by Lloyd's iteration and
 // large-neighbourhood search, and closed with the boundary lemma: what no path region holds is given to the ball that
-// it costs least, until nothing is left. The result is conservative. Deterministic by counted work. Uses the axis's
+// it costs least, until nothing is left. Then each ball is fitted again to exactly what it alone holds, and the search
+// goes on with nothing uncovered. The result is conservative. Deterministic by counted work. Uses the axis's
 // surface points as samples: 20 or more for each ball of the last level. Throws InputError for a branching out of range
 // or an axis without vertices.
 SphereTree tightened_tree(const Surface& surface, const MedialAxis& axis, const TightenOptions& options = {},

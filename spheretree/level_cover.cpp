@@ -1,0 +1,99 @@
+#include "level_cover.h"
+
+#include <algorithm>
+
+#include "orchard/geometry/tolerance.h"
+
+namespace orchard::detail {
+namespace {
+
+// What is told apart by distance alone may be wrong by a few roundings.
+constexpr double kSurely = 1 + 1e-9;
+
+bool apart(const Sphere& ball, const Point& center, double reach) {
+  const double limit = (ball.radius + reach) * kSurely;
+  return (ball.center - center).squaredNorm() > limit * limit;
+}
+
+}  // namespace
+
+LevelCover::LevelCover(const Surface& surface, std::span<const PathBall> upper, std::vector<Index> region_nodes,
+                       std::vector<RegionBall> balls)
+    : surface_(surface),
+      margin_(tolerance::kCoverMargin * surface.bounding_radius()),
+      upper_(upper),
+      region_nodes_(std::move(region_nodes)),
+      region_of_node_(upper.size(), kNone),
+      balls_(std::move(balls)),
+      in_region_(region_nodes_.size()) {
+  for (Index r = 0; r < region_nodes_.size(); ++r)
+    if (region_nodes_[r] != kNone) region_of_node_[region_nodes_[r]] = r;
+  for (Index b = 0; b < balls_.size(); ++b) in_region_[balls_[b].region].push_back(b);
+}
+
+void LevelCover::replace(Index ball, const RegionBall& by) {
+  if (by.region != balls_[ball].region) {
+    std::erase(in_region_[balls_[ball].region], ball);
+    in_region_[by.region].push_back(ball);
+  }
+  balls_[ball] = by;
+}
+
+bool LevelCover::in_region(Index region, const Point& point) const {
+  if (region_nodes_[region] == kNone) return false;
+  for (Index node = region_nodes_[region]; node != kNone; node = upper_.balls()[node].parent) {
+    const PathBall& ball = upper_.balls()[node];
+    if ((point - ball.center).norm() > ball.radius - margin_) return false;
+  }
+  return true;
+}
+
+// The balls near the part of the triangle in the sphere, parents first.
+void LevelCover::gather(const std::array<Point, 3>& corners, const Sphere& where, const Change& change,
+                        NearBalls& near) const {
+  upper_.gather(corners, near);
+  const Point middle = (corners[0] + corners[1] + corners[2]) / 3;
+  double reach = 0;
+  for (const Point& corner : corners) reach = std::max(reach, (corner - middle).norm());
+  const auto visit = [&](const Sphere& ball, Index parent) {
+    if (apart(ball, where.center, where.radius) || apart(ball, middle, reach)) return;
+    near.balls.push_back({ball.center, ball.radius, parent, true});
+  };
+  for (Index i = 0, count = static_cast<Index>(near.balls.size()); i < count; ++i) {
+    const Index region = region_of_node_[near.original[i]];
+    if (region == kNone) continue;
+    for (Index b : in_region_[region])
+      if (std::find(change.gone.begin(), change.gone.end(), b) == change.gone.end()) visit(balls_[b].sphere, i);
+    for (const RegionBall& ball : change.added)
+      if (ball.region == region) visit(ball.sphere, i);
+  }
+}
+
+void LevelCover::open_arcs(const Sphere& where, const Change& change, Scratch& scratch,
+                           std::vector<OpenArc>& arcs) const {
+  surface_.triangles_near(where, scratch.triangles);
+  for (Index triangle : scratch.triangles) {
+    const auto corners = surface_.corners(triangle);
+    gather(corners, where, change, scratch.near);
+    const TriangleCover cover = cover_of_triangle(corners, where, scratch.near.balls);
+    if (cover.covered) continue;
+    const std::size_t before = arcs.size();
+    for (const UncoveredArc& arc : cover.arcs) arcs.push_back({arc.begin, arc.end});
+    for (const Point& corner : corners) {
+      if ((corner - where.center).norm() > where.radius) continue;
+      if (path_depth(corner, scratch.near.balls) > -margin_) arcs.push_back({corner, corner});
+    }
+    if (arcs.size() == before) arcs.push_back({cover.witness, cover.witness});
+  }
+}
+
+bool LevelCover::covered(const Sphere& where, const Change& change, Scratch& scratch) const {
+  surface_.triangles_near(where, scratch.triangles);
+  return std::all_of(scratch.triangles.begin(), scratch.triangles.end(), [&](Index triangle) {
+    const auto corners = surface_.corners(triangle);
+    gather(corners, where, change, scratch.near);
+    return cover_of_triangle(corners, where, scratch.near.balls).covered;
+  });
+}
+
+}  // namespace orchard::detail

@@ -1,0 +1,61 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "orchard/covering/path_forest.h"
+#include "orchard/geometry/surface.h"
+
+namespace orchard::detail {
+
+// A ball of the level in question and the region that it lies in.
+struct RegionBall {
+  Sphere sphere;
+  Index region = kNone;
+};
+
+// A change that is being tried: some balls are gone, others there instead.
+struct Change {
+  std::span<const Index> gone;
+  std::span<const RegionBall> added;
+};
+
+// The ends of an arc that bounds a piece of surface without a path, or a corner in such a piece twice. In each triangle
+// these arcs bulge into the piece, so its convex hull is that of such points.
+struct OpenArc {
+  Point begin, end;
+};
+
+// Which part of the surface the path regions of a level leave open, exactly, and what changes to a few balls would do
+// to it. Const functions may run in parallel, each with its own scratch.
+class LevelCover {
+ public:
+  struct Scratch {
+    NearBalls near;
+    std::vector<Index> triangles;
+  };
+
+  // `upper`: the tree above the level, with leaves where it has leaves already; region_nodes[r]: the last ball on the
+  // path of region r in it, kNone if the region is not to be used.
+  LevelCover(const Surface& surface, std::span<const PathBall> upper, std::vector<Index> region_nodes,
+             std::vector<RegionBall> balls);
+
+  std::span<const RegionBall> balls() const { return balls_; }
+  void replace(Index ball, const RegionBall& by);
+  bool in_region(Index region, const Point& point) const;
+
+  // What is open inside the closed sphere after the change.
+  void open_arcs(const Sphere& where, const Change& change, Scratch& scratch, std::vector<OpenArc>& arcs) const;
+  bool covered(const Sphere& where, const Change& change, Scratch& scratch) const;
+
+ private:
+  void gather(const std::array<Point, 3>& corners, const Sphere& where, const Change& change, NearBalls& near) const;
+
+  const Surface& surface_;
+  const double margin_;
+  PathForest upper_;
+  std::vector<Index> region_nodes_, region_of_node_;
+  std::vector<RegionBall> balls_;
+  std::vector<std::vector<Index>> in_region_;  // balls
+};
+
+}  // namespace orchard::detail
