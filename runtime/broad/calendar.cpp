@@ -5,23 +5,31 @@
 
 namespace orchard::runtime::detail {
 
-void Calendar::set_due(BodyId body, Step step) {
+void Calendar::set_due(std::span<const BodyId> bodies, Step step) {
   const std::size_t bucket = bucket_of(step);
   std::uint32_t& head = buckets_[bucket].bodies;
-  if (head == kNone || lines_[head].count == lines_[head].ids.size()) {
-    std::uint32_t line = free_line_;
-    if (line == kNone) {
-      line = static_cast<std::uint32_t>(lines_.size());
-      grow(lines_, lines_.size() + 1);
-    } else {
-      free_line_ = lines_[line].next;
-    }
-    lines_[line].next = head;
-    lines_[line].count = 0;
-    head = line;
-    mark(bucket);
+  while (!bodies.empty()) {
+    if (head == kNone || lines_[head].count == lines_[head].ids.size()) add_line(head);
+    Bodies& line = lines_[head];
+    const std::size_t count = std::min(bodies.size(), line.ids.size() - line.count);
+    std::copy_n(bodies.begin(), count, line.ids.begin() + line.count);
+    line.count += static_cast<std::uint32_t>(count);
+    bodies = bodies.subspan(count);
   }
-  lines_[head].ids[lines_[head].count++] = body;
+  mark(bucket);
+}
+
+void Calendar::add_line(std::uint32_t& head) {
+  std::uint32_t line = free_line_;
+  if (line == kNone) {
+    line = static_cast<std::uint32_t>(lines_.size());
+    grow(lines_, lines_.size() + 1);
+  } else {
+    free_line_ = lines_[line].next;
+  }
+  lines_[line].next = head;
+  lines_[line].count = 0;
+  head = line;
 }
 
 void Calendar::clear_bodies() noexcept {

@@ -5,12 +5,12 @@
 
 namespace orchard::runtime::detail {
 
-inline constexpr Step kCalendarSteps = 1024;  // a power of two
+inline constexpr Step kCalendarSteps = 256;  // a power of two
 inline constexpr Step kLongestWindow = kCalendarSteps - 1;
 
 struct PairEvent {
   BodyPair pair;
-  Step created;    // void once either body has been looked at again after this step
+  Step created;    // the round of looks it belongs to: void once either body has been looked at in a later one
   Step sure = -1;  // of an overlapping pair: it surely goes on to overlap up to this step
 };
 
@@ -18,7 +18,7 @@ struct PairEvent {
 // lists indexed by step. Nothing is taken out before its time: the caller tells what is void.
 class Calendar {
  public:
-  void set_due(BodyId body, Step step);
+  void set_due(std::span<const BodyId> bodies, Step step);
   void clear_bodies() noexcept;
   void add(const PairEvent& event, Step step);
 
@@ -42,6 +42,7 @@ class Calendar {
     std::uint32_t bodies = kNone, event = kNone;
   };
 
+  void add_line(std::uint32_t& head);
   static std::size_t bucket_of(Step step) noexcept { return static_cast<std::size_t>(step & (kCalendarSteps - 1)); }
   void mark(std::size_t bucket) noexcept { busy_[bucket / 64] |= std::uint64_t{1} << (bucket % 64); }
 

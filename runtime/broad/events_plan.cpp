@@ -6,8 +6,10 @@ namespace {
 
 constexpr std::size_t kSmallSample = 16, kSample = 48;  // bodies that the first plan looks at: of few, and of many
 constexpr double kCrowding = 4;                         // lines read per entry from which on the cells are too large
-constexpr unsigned kPlansKept = 8;  // a plan that fits is made anew after as many looks at all bodies
-constexpr double kFewPairs = 1e-3;  // per body: too few to say anything about the prediction
+constexpr unsigned kPlansKept = 8;        // a plan that fits is made anew after as many looks at all bodies
+constexpr double kFewPairs = 1e-3;        // per body: too few to say anything about the prediction
+constexpr std::size_t kAskedAhead = 8;    // bodies, to see whether the next bounds are known
+constexpr double kAheadShare = 9.0 / 16;  // of the bodies that are looked at ahead: their pairs are fewer
 
 }  // namespace
 
@@ -66,6 +68,71 @@ void Events::survey(Step now) {
   planned_bodies_ = n;
   correction_ = 1;
   plans_ = 0;
+}
+
+void Events::place_all_anew() {
+  calendar_.clear_bodies();
+  std::fill(places_.begin(), places_.end(), Place::nowhere);
+  oversized_.clear();
+  if (due_.capacity() > 2 * roster_.size()) due_ = {};
+  due_.clear();
+  due_.reserve(roster_.size());
+  for (BodyId body = 0; body < roster_.slots(); ++body) {
+    if (roster_.alive(body)) due_.push_back(body);
+  }
+  voted_ = kNeverStep;
+  votes_ = 0;
+  few_ = roster_.slots() <= BoxList::kMostBodies;
+  if (few_) {
+    list_.reset(roster_.slots());
+    grid_.release();
+    boxes_ = {};
+  } else {
+    list_.release();
+    grid_.reset(plan_.lines);
+    grow(boxes_, roster_.slots());
+  }
+}
+
+// The majority's vote, if there is one: what differs is paired off.
+void Events::vote(Step end, std::size_t bodies) noexcept {
+  if (end == voted_) {
+    votes_ += bodies;
+  } else if (bodies > votes_) {
+    voted_ = end;
+    votes_ = bodies - votes_;
+  } else {
+    votes_ -= bodies;
+  }
+}
+
+// A step ahead of the rush: the present bounds have answered for this step, and hold no longer than that. If the next
+// ones are known already, some bodies are looked at now, with windows that begin at the rush.
+bool Events::prepare(Step now) {
+  const Step from = now + 1;
+  rush_ = kNeverStep;
+  std::array<BodyId, kSample> sample;
+  std::size_t count = 0;
+  const std::size_t stride = std::max<std::size_t>(1, roster_.slots() / kAskedAhead);
+  for (std::size_t body = 0; body < roster_.slots() && count < kAskedAhead; body += stride) {
+    if (roster_.alive(static_cast<BodyId>(body))) sample[count++] = static_cast<BodyId>(body);
+  }
+  motions_.resize(kBlock);
+  roster_.ask(now, std::span(sample).first(count), std::span(motions_).first(count));
+  if (2 * drop_unknown(from, std::span(sample).first(count)) < count) return false;
+
+  rush_ = from;
+  prepared_round_ = ++round_;
+  replan(now);
+  place_all_anew();
+  const auto ahead = static_cast<std::size_t>(kAheadShare * static_cast<double>(due_.size()));
+  Meter unlimited;
+  near_.clear();
+  look_at(now, from, std::span(due_).first(ahead), unlimited);
+  tests_.clear();
+  for (const BodyPair& pair : near_) tests_.push_back({pair, round_});
+  test_all(now, unlimited);
+  return true;
 }
 
 }  // namespace orchard::runtime::detail

@@ -13,6 +13,7 @@ inline constexpr Step kNeverStep = std::numeric_limits<Step>::max();
 
 // Times of steps. Comparing a time with a step's allows for kStepSlack steps of rounding, in the safe direction.
 inline constexpr double kStepSlack = 1e-6;
+inline constexpr double kTimeRounding = 0x1p-50;  // relative: of a few operations on times
 
 struct Clock {
   double start, time_step;
@@ -27,10 +28,13 @@ struct Clock {
   Step steps_within(double seconds) const noexcept {
     return static_cast<Step>(std::max(0.0, seconds / time_step - kStepSlack));
   }
-  // The last step, counted from `now`, at which a bound that expires at `expiry` surely holds; at least 0.
-  Step steps_until_expiry(Step now, double expiry) const noexcept {
-    const double steps = std::floor((expiry - time(now)) / time_step - kStepSlack);
-    return steps < 1e15 ? static_cast<Step>(std::max(0.0, steps)) : kNeverStep;
+  // The last step at which a bound that expires at `expiry` holds. An application that means a step's time gets this
+  // step, although it may have computed the time in another way.
+  Step last_before_expiry(double expiry) const noexcept {
+    const double steps = (expiry - start) / time_step;
+    const double rounding = kTimeRounding * ((std::fabs(expiry) + std::fabs(start)) / time_step + std::fabs(steps));
+    return steps < 1e15 ? static_cast<Step>(std::floor(std::max(-1.0, steps + std::min(rounding, kStepSlack))))
+                        : kNeverStep;
   }
 };
 

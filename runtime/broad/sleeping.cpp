@@ -84,9 +84,9 @@ void Sleeping::ask_for_stale(Step now) {
   motions_.resize(stale_.size());
   if (!stale_.empty()) roster_.ask(now, stale_, motions_);
   for (std::size_t i = 0; i < stale_.size(); ++i) {
-    const Step valid = roster_.clock.steps_until_expiry(now, motions_[i].expiry);
-    const bool for_ever = valid == kNeverStep || roster_.is_static(stale_[i]);
-    known_[stale_[i]] = {motions_[i], now, for_ever ? kNeverStep : now + valid + 1};
+    const Step last = roster_.clock.last_before_expiry(motions_[i].expiry);
+    const bool for_ever = last == kNeverStep || roster_.is_static(stale_[i]);
+    known_[stale_[i]] = {motions_[i], now, for_ever ? kNeverStep : std::max(now, last) + 1};
   }
 }
 

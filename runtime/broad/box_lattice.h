@@ -1,0 +1,82 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "orchard/runtime/motion.h"
+
+namespace orchard::runtime::detail {
+
+// A box in quanta, both ends included. A cell is kQuanta quanta wide.
+struct QuantumBox {
+  std::array<std::uint32_t, 3> lower, upper;
+
+  bool meets(const QuantumBox& other) const noexcept {
+    bool meet = true;
+    for (std::size_t i = 0; i < 3; ++i) meet = meet && lower[i] <= other.upper[i] && other.lower[i] <= upper[i];
+    return meet;
+  }
+};
+inline constexpr std::uint32_t kQuantumBits = 5, kQuanta = 1u << kQuantumBits;
+inline constexpr std::uint32_t kLastQuantum = 0x7fffffffu;
+
+inline constexpr std::size_t kBlock = 32;  // bodies that are worked on together
+// Loops over a block go on to a multiple of eight: whole vectors.
+inline std::size_t lanes_for(std::size_t count) noexcept { return (count + 7) & ~std::size_t{7}; }
+
+// What is asked about a block of bodies, by coordinate, so that the loops over bodies become vector instructions.
+struct MotionBlock {
+  std::array<std::array<double, kBlock>, 3> position, velocity;
+  std::array<double, kBlock> radius, acceleration, drift, duration;
+
+  void set(std::size_t i, const Motion& motion, double seconds) noexcept {
+    for (std::size_t d = 0; d < 3; ++d) {
+      position[d][i] = motion.position[d];
+      velocity[d][i] = motion.velocity[d];
+    }
+    radius[i] = motion.radius;
+    acceleration[i] = motion.acceleration;
+    drift[i] = motion.drift;
+    duration[i] = seconds;
+  }
+  // So that whole vectors are of numbers.
+  void fill_up(std::size_t count) noexcept {
+    for (std::size_t i = count; i < lanes_for(count); ++i) set(i, Motion{}, 0);
+  }
+};
+
+struct BoxBlock {
+  std::array<std::array<std::uint32_t, kBlock>, 3> lower, upper;
+
+  QuantumBox get(std::size_t i) const noexcept {
+    return {{lower[0][i], lower[1][i], lower[2][i]}, {upper[0][i], upper[1][i], upper[2][i]}};
+  }
+  void set(std::size_t i, const QuantumBox& box) noexcept {
+    for (std::size_t d = 0; d < 3; ++d) {
+      lower[d][i] = box.lower[d];
+      upper[d][i] = box.upper[d];
+    }
+  }
+};
+
+// Where quanta lie in space. Monotone, and outward: boxes that meet in space meet in quanta.
+class Lattice {
+ public:
+  Lattice() = default;
+  Lattice(const Vec3& origin, double cell_size) noexcept;
+
+  const Vec3& origin() const noexcept { return origin_; }
+  // Each box holds its body's sphere for `duration` seconds from the motion's time. Of the first `count` bodies; fills
+  // motions and boxes up to whole vectors.
+  void boxes(MotionBlock& motions, std::size_t count, BoxBlock& boxes, bool vectors) const noexcept;
+
+ private:
+  void boxes_plain(const MotionBlock& motions, std::size_t lanes, BoxBlock& boxes) const noexcept;
+  void boxes_vectors(const MotionBlock& motions, std::size_t lanes, BoxBlock& boxes) const noexcept;
+  void make_boxes(const MotionBlock& motions, std::size_t lanes, BoxBlock& boxes) const noexcept;
+
+  Vec3 origin_{};
+  double per_length_ = 1;  // quanta
+  double margin_ = 0;      // quanta: rounding here, and kMotionSlack
+};
+
+}  // namespace orchard::runtime::detail

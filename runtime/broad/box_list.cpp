@@ -1,0 +1,140 @@
+#include "box_list.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "../vector_support.h"
+
+namespace orchard::runtime::detail {
+
+// Sixteen boxes of a Group or a BoxBlock against one box. Quanta are below 2^31: lane i of apart() is negative where
+// box first + i does not meet it.
+struct BoxList::PlainLanes {
+  using Words = std::array<std::uint32_t, kGroup>;
+  static constexpr Words kAllApart = [] {
+    Words words{};
+    words.fill(~0u);
+    return words;
+  }();
+  template <typename Boxes>
+  static Words apart(const Boxes& boxes, std::size_t first, const QuantumBox& box) noexcept {
+    Words words{};
+    for (std::size_t i = 0; i < kGroup; ++i) {
+      for (std::size_t d = 0; d < 3; ++d) {
+        words[i] |= (boxes.upper[d][first + i] - box.lower[d]) | (box.upper[d] - boxes.lower[d][first + i]);
+      }
+    }
+    return words;
+  }
+  static Words both(const Words& a, const Words& b) noexcept {
+    Words words{};
+    for (std::size_t i = 0; i < kGroup; ++i) words[i] = a[i] & b[i];
+    return words;
+  }
+  static std::uint32_t meeting(const Words& apart) noexcept {  // bit i: they meet
+    std::uint32_t bits = 0;
+    for (std::size_t i = 0; i < kGroup; ++i) bits |= (~apart[i] >> 31) << i;
+    return bits;
+  }
+};
+
+#ifdef ORCHARD_VECTORS
+struct BoxList::VectorLanes {
+  using Words __attribute__((vector_size(64))) = std::uint32_t;
+  using Half __attribute__((vector_size(32))) = std::uint64_t;
+  static constexpr Words kAllApart = ~Words{};
+  ORCHARD_INLINE static Words at(const std::uint32_t* from) noexcept {
+    Words result;
+    std::memcpy(&result, from, sizeof result);
+    return result;
+  }
+  template <typename Boxes>
+  ORCHARD_INLINE static Words apart(const Boxes& boxes, std::size_t first, const QuantumBox& box) noexcept {
+    Words words{};
+    for (std::size_t d = 0; d < 3; ++d) {  // numbers are spread
+      words |= at(boxes.upper[d].data() + first) - box.lower[d];
+      words |= box.upper[d] - at(boxes.lower[d].data() + first);
+    }
+    return words;
+  }
+  ORCHARD_INLINE static Words both(const Words& a, const Words& b) noexcept { return a & b; }
+  ORCHARD_INLINE static std::uint32_t meeting(const Words& apart) noexcept {
+    const Words meet = (~apart >> 31) << Words{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    const auto parts = std::bit_cast<std::array<Half, 2>>(meet);
+    const Half sum = parts[0] | parts[1];
+    const std::uint64_t all = (sum[0] | sum[1]) | (sum[2] | sum[3]);
+    return static_cast<std::uint32_t>(all | all >> 32);
+  }
+};
+#endif
+
+void BoxList::reset(std::size_t slots) {
+  groups_.resize((slots + kGroup - 1) / kGroup);
+  filled_ = 0;
+  for (BodyId body = 0; body < this->slots(); ++body) set(body, kNowhere);
+}
+
+void BoxList::set(BodyId body, const QuantumBox& box) noexcept {
+  Group& group = groups_[body / kGroup];
+  for (std::size_t d = 0; d < 3; ++d) {
+    group.lower[d][body % kGroup] = box.lower[d];
+    group.upper[d][body % kGroup] = box.upper[d];
+  }
+}
+
+// Mostly a box meets none: that is found out about all of them together.
+template <typename Lanes>
+ORCHARD_INLINE void BoxList::insert_all(std::span<const BodyId> bodies, const BoxBlock& block,
+                                        std::vector<BodyPair>& pairs) {
+  const auto found = [&](BodyId a, BodyId b) { pairs.push_back(a < b ? BodyPair{a, b} : BodyPair{b, a}); };
+  const std::size_t groups = (filled_ + kGroup - 1) / kGroup;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const QuantumBox box = block.get(i);
+    typename Lanes::Words apart = Lanes::kAllApart;
+    for (std::size_t g = 0; g < groups; ++g) apart = Lanes::both(apart, Lanes::apart(groups_[g], 0, box));
+    // Of the block, those before it: the box itself makes the last part meet always.
+    std::size_t first = 0;
+    for (; first + kGroup <= i; first += kGroup) apart = Lanes::both(apart, Lanes::apart(block, first, box));
+    const std::uint32_t last = Lanes::meeting(Lanes::apart(block, first, box)) & ((1u << (i - first)) - 1);
+    if ((Lanes::meeting(apart) | last) == 0) [[likely]]
+      continue;
+    for (std::size_t g = 0; g < groups; ++g) {
+      for (std::uint32_t hits = Lanes::meeting(Lanes::apart(groups_[g], 0, box)); hits != 0; hits &= hits - 1) {
+        found(bodies[i], static_cast<BodyId>(kGroup * g + static_cast<std::size_t>(std::countr_zero(hits))));
+      }
+    }
+    for (std::size_t part = 0; part <= first; part += kGroup) {
+      std::uint32_t hits = part < first ? Lanes::meeting(Lanes::apart(block, part, box)) : last;
+      for (; hits != 0; hits &= hits - 1) {
+        found(bodies[i], bodies[part + static_cast<std::size_t>(std::countr_zero(hits))]);
+      }
+    }
+  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    set(bodies[i], block.get(i));
+    filled_ = std::max<std::size_t>(filled_, bodies[i] + 1);
+  }
+}
+
+void BoxList::insert_plain(std::span<const BodyId> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs) {
+  insert_all<PlainLanes>(bodies, block, pairs);
+}
+
+#ifdef ORCHARD_VECTORS
+ORCHARD_PER_MACHINE void BoxList::insert_vectors(std::span<const BodyId> bodies, const BoxBlock& block,
+                                                 std::vector<BodyPair>& pairs) {
+  insert_all<VectorLanes>(bodies, block, pairs);
+}
+#else
+void BoxList::insert_vectors(std::span<const BodyId> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs) {
+  insert_all<PlainLanes>(bodies, block, pairs);
+}
+#endif
+
+void BoxList::insert(std::span<const BodyId> bodies, const BoxBlock& block, bool vectors,
+                     std::vector<BodyPair>& pairs) {
+  vectors ? insert_vectors(bodies, block, pairs) : insert_plain(bodies, block, pairs);
+}
+
+}  // namespace orchard::runtime::detail

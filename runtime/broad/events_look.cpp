@@ -1,0 +1,188 @@
+#include "events.h"
+
+// Looking at bodies: motions become boxes, boxes that meet become near pairs.
+namespace orchard::runtime::detail {
+namespace {
+
+constexpr std::size_t kMeansStride = 16;  // of the bodies looked at, every so many count for the plan's means
+constexpr double kLongerWindow = 0.4;     // a window may exceed the plan's by as much of it: one look, not two
+
+// Cells along an axis, less one; 0 if the boxes fit into the grid.
+std::uint32_t excess_cells(const BoxBlock& boxes, std::size_t count) noexcept {
+  std::uint32_t excess = 0;
+  for (std::size_t d = 0; d < 3; ++d) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t more = (boxes.upper[d][i] >> kQuantumBits) - (boxes.lower[d][i] >> kQuantumBits);
+      excess |= more < kMostCellsPerAxis ? 0 : more;
+    }
+  }
+  return excess;
+}
+
+bool cells_fit(const QuantumBox& box) noexcept {
+  bool fit = true;
+  for (std::size_t d = 0; d < 3; ++d) {
+    fit = fit && (box.upper[d] >> kQuantumBits) - (box.lower[d] >> kQuantumBits) < kMostCellsPerAxis;
+  }
+  return fit;
+}
+
+}  // namespace
+
+struct Events::Look {
+  Step now;   // the motions are of this step,
+  Step from;  // and count from this one
+  MotionBlock motions;
+  BoxBlock boxes;
+  SweptGrid::Queue queue;
+};
+
+// The first step at which the bound does not hold or which another look is due at. Until a bound expires windows are
+// equal parts.
+Step Events::window_end(Step from, const Motion& motion) noexcept {
+  if (from == last_from_ && motion.expiry == last_expiry_) return last_end_;
+  const Step last = roster_.clock.last_before_expiry(motion.expiry);
+  Step window = plan_.window;
+  if (last < from + 64 * plan_.window) {
+    const double steps = static_cast<double>(std::max<Step>(0, last - from) + 1);
+    const double longer = options_.window > 0 ? 0 : kLongerWindow;
+    const double parts = std::max(1.0, std::ceil(steps / static_cast<double>(plan_.window) - longer));
+    window = std::min(kLongestWindow - 1, static_cast<Step>(std::ceil(steps / parts)));
+  }
+  last_from_ = from;
+  last_expiry_ = motion.expiry;
+  return last_end_ = from + window;
+}
+
+// Makes the boxes of a block of bodies, until the ends of their windows.
+void Events::place(Look& look, std::span<const BodyId> bodies) {
+  Step common = kNeverStep;  // end
+  bool same = true;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const bool moves = !roster_.is_static(bodies[i]);
+    const Step end = moves ? window_end(look.from, motions_[i]) : kNeverStep;
+    look.motions.set(i, motions_[i], moves ? static_cast<double>(end - 1 - look.now) * options_.time_step : 0);
+    windows_[bodies[i]] = {round_, end};
+    if (i == 0) common = end;
+    same = same && end == common;
+  }
+  for (std::size_t i = 0; i < bodies.size(); i += kMeansStride) means_.add(motions_[i]);
+  lattice_.boxes(look.motions, bodies.size(), look.boxes, options_.vectors);
+  for (const BodyId body : bodies) places_[body] = Place::inside;
+  if (!few_) {
+    for (std::size_t i = 0; i < bodies.size(); ++i) boxes_[bodies[i]] = look.boxes.get(i);
+    if (excess_cells(look.boxes, bodies.size()) != 0) {
+      same = false;
+      for (std::size_t i = 0; i < bodies.size(); ++i) {
+        if (!cells_fit(boxes_[bodies[i]])) shrink(look, bodies[i], i);
+      }
+    }
+  }
+  if (same) {
+    if (common != kNeverStep) calendar_.set_due(bodies, common);
+    vote(common, bodies.size());
+    return;
+  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Step end = windows_[bodies[i]].end;
+    if (end != kNeverStep) calendar_.set_due(bodies.subspan(i, 1), end);
+    vote(end, 1);
+  }
+}
+
+// Faster than the others: look at it again sooner, until its box takes few enough cells.
+void Events::shrink(Look& look, BodyId body, std::size_t i) {
+  Window& window = windows_[body];
+  Step steps = window.end == kNeverStep ? 1 : window.end - look.from;
+  MotionBlock one;
+  BoxBlock box;
+  places_[body] = Place::oversized;
+  while (steps > 1 && places_[body] == Place::oversized) {
+    steps = (steps + 1) / 2;
+    window.end = look.from + steps;
+    one.set(0, motions_[i], static_cast<double>(window.end - 1 - look.now) * options_.time_step);
+    lattice_.boxes(one, 1, box, options_.vectors);
+    boxes_[body] = box.get(0);
+    if (cells_fit(boxes_[body])) places_[body] = Place::inside;
+  }
+  look.boxes.set(i, boxes_[body]);
+}
+
+// Keeps those whose new bounds are known up to `from`, with their motions; returns how many.
+std::size_t Events::drop_unknown(Step from, std::span<BodyId> bodies) noexcept {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (!roster_.is_static(bodies[i]) && roster_.clock.last_before_expiry(motions_[i].expiry) < from) continue;
+    bodies[kept] = bodies[i];
+    motions_[kept++] = motions_[i];
+  }
+  return kept;
+}
+
+// Stops early if the budget is spent; returns how many have been looked at. Where `from` is a later step than now,
+// bodies whose bounds do not reach it are left out.
+std::size_t Events::look_at(Step now, Step from, std::span<const BodyId> bodies, Meter& meter) {
+  motions_.resize(kBlock);
+  Look look;
+  look.now = now;
+  look.from = from;
+  std::array<BodyId, kBlock> known;
+  std::size_t done = 0;
+  while (done < bodies.size() && !meter.spent()) {
+    auto block = bodies.subspan(done, meter.grant(std::min(kBlock, bodies.size() - done)));
+    roster_.ask(now, block, std::span(motions_).first(block.size()));
+    meter.count(block.size());
+    done += block.size();
+    if (from > now) {
+      std::copy(block.begin(), block.end(), known.begin());
+      block = std::span(known).first(drop_unknown(from, std::span(known).first(block.size())));
+      if (block.empty()) continue;
+    }
+    place(look, block);
+    insert(look, block);
+  }
+  if (!few_) grid_.finish(look.queue, boxes_, options_.vectors, near_);
+  return done;
+}
+
+void Events::insert(Look& look, std::span<const BodyId> bodies) {
+  if (few_) {
+    list_.insert(bodies, look.boxes, options_.vectors, near_);
+    return;
+  }
+  const auto oversized = [&](BodyId body) { return places_[body] == Place::oversized; };
+  if (oversized_.empty() && std::none_of(bodies.begin(), bodies.end(), oversized)) {
+    grid_.insert(look.queue, bodies, look.boxes, boxes_, options_.vectors, near_);
+    return;
+  }
+  std::array<BodyId, kBlock> in_grid;
+  std::size_t count = 0;
+  for (const BodyId body : bodies) {
+    if (oversized(body)) continue;
+    look.boxes.set(count, boxes_[body]);
+    in_grid[count++] = body;
+  }
+  grid_.insert(look.queue, std::span(in_grid).first(count), look.boxes, boxes_, options_.vectors, near_);
+  meet_oversized(bodies);
+}
+
+// Bodies as large as several cells are compared with everything: (their number) x (the number of all) per window.
+void Events::meet_oversized(std::span<const BodyId> bodies) {
+  const auto compare = [&](BodyId body, BodyId other) {
+    if (boxes_[other].meets(boxes_[body])) near_.push_back({std::min(body, other), std::max(body, other)});
+  };
+  for (const BodyId body : bodies) {
+    if (places_[body] != Place::inside) continue;
+    for (const BodyId large : oversized_) compare(body, large);
+  }
+  for (const BodyId body : bodies) {
+    if (places_[body] != Place::oversized) continue;
+    for (BodyId other = 0; other < places_.size(); ++other) {
+      if (places_[other] == Place::inside) compare(body, other);
+    }
+    for (const BodyId large : oversized_) compare(body, large);
+    oversized_.push_back(body);
+  }
+}
+
+}  // namespace orchard::runtime::detail
