@@ -27,6 +27,11 @@ struct BoxList::PlainLanes {
     }
     return words;
   }
+  static Words before(const Words& apart, std::size_t end) noexcept {  // those from `end` on are apart
+    Words words = apart;
+    for (std::size_t i = end; i < kGroup; ++i) words[i] = ~0u;
+    return words;
+  }
   static Words both(const Words& a, const Words& b) noexcept {
     Words words{};
     for (std::size_t i = 0; i < kGroup; ++i) words[i] = a[i] & b[i];
@@ -58,6 +63,10 @@ struct BoxList::VectorLanes {
     }
     return words;
   }
+  ORCHARD_INLINE static Words before(const Words& apart, std::size_t end) noexcept {
+    const Words lanes = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    return apart | reinterpret_cast<Words>(lanes >= static_cast<std::uint32_t>(end));
+  }
   ORCHARD_INLINE static Words both(const Words& a, const Words& b) noexcept { return a & b; }
   ORCHARD_INLINE static std::uint32_t meeting(const Words& apart) noexcept {
     const Words meet = (~apart >> 31) << Words{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
@@ -70,9 +79,10 @@ struct BoxList::VectorLanes {
 #endif
 
 void BoxList::reset(std::size_t slots) {
-  groups_.resize((slots + kGroup - 1) / kGroup);
+  Group empty;
+  for (std::size_t d = 0; d < 3; ++d) empty.lower[d].fill(kNowhere.lower[d]), empty.upper[d].fill(kNowhere.upper[d]);
+  groups_.assign((slots + kGroup - 1) / kGroup, empty);
   filled_ = 0;
-  for (BodyId body = 0; body < this->slots(); ++body) set(body, kNowhere);
 }
 
 void BoxList::set(BodyId body, const QuantumBox& box) noexcept {
@@ -93,11 +103,10 @@ ORCHARD_INLINE void BoxList::insert_all(std::span<const BodyId> bodies, const Bo
     const QuantumBox box = block.get(i);
     typename Lanes::Words apart = Lanes::kAllApart;
     for (std::size_t g = 0; g < groups; ++g) apart = Lanes::both(apart, Lanes::apart(groups_[g], 0, box));
-    // Of the block, those before it: the box itself makes the last part meet always.
-    std::size_t first = 0;
+    std::size_t first = 0;  // of the block, those before it
     for (; first + kGroup <= i; first += kGroup) apart = Lanes::both(apart, Lanes::apart(block, first, box));
-    const std::uint32_t last = Lanes::meeting(Lanes::apart(block, first, box)) & ((1u << (i - first)) - 1);
-    if ((Lanes::meeting(apart) | last) == 0) [[likely]]
+    apart = Lanes::both(apart, Lanes::before(Lanes::apart(block, first, box), i - first));
+    if (Lanes::meeting(apart) == 0) [[likely]]
       continue;
     for (std::size_t g = 0; g < groups; ++g) {
       for (std::uint32_t hits = Lanes::meeting(Lanes::apart(groups_[g], 0, box)); hits != 0; hits &= hits - 1) {
@@ -105,8 +114,8 @@ ORCHARD_INLINE void BoxList::insert_all(std::span<const BodyId> bodies, const Bo
       }
     }
     for (std::size_t part = 0; part <= first; part += kGroup) {
-      std::uint32_t hits = part < first ? Lanes::meeting(Lanes::apart(block, part, box)) : last;
-      for (; hits != 0; hits &= hits - 1) {
+      const auto meeting = Lanes::before(Lanes::apart(block, part, box), std::min(kGroup, i - part));
+      for (std::uint32_t hits = Lanes::meeting(meeting); hits != 0; hits &= hits - 1) {
         found(bodies[i], bodies[part + static_cast<std::size_t>(std::countr_zero(hits))]);
       }
     }

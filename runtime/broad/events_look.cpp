@@ -56,19 +56,22 @@ Step Events::window_end(Step from, const Motion& motion) noexcept {
 
 // Makes the boxes of a block of bodies, until the ends of their windows.
 void Events::place(Look& look, std::span<const BodyId> bodies) {
-  Step common = kNeverStep;  // end
+  const bool all_move = !roster_.any_static();
+  const Step common = all_move || !roster_.is_static(bodies[0]) ? window_end(look.from, motions_[0]) : kNeverStep;
   bool same = true;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const bool moves = !roster_.is_static(bodies[i]);
-    const Step end = moves ? window_end(look.from, motions_[i]) : kNeverStep;
-    look.motions.set(i, motions_[i], moves ? static_cast<double>(end - 1 - look.now) * options_.time_step : 0);
+    const Motion& motion = motions_[i];
+    Step end = common;
+    if (motion.expiry != motions_[0].expiry || !all_move) {
+      end = roster_.is_static(bodies[i]) ? kNeverStep : window_end(look.from, motion);
+      same = same && end == common;
+    }
+    look.motions.set(i, motion, end == kNeverStep ? 0 : static_cast<double>(end - 1 - look.now) * options_.time_step);
     windows_[bodies[i]] = {round_, end};
-    if (i == 0) common = end;
-    same = same && end == common;
+    places_[bodies[i]] = Place::inside;
   }
   for (std::size_t i = 0; i < bodies.size(); i += kMeansStride) means_.add(motions_[i]);
   lattice_.boxes(look.motions, bodies.size(), look.boxes, options_.vectors);
-  for (const BodyId body : bodies) places_[body] = Place::inside;
   if (!few_) {
     for (std::size_t i = 0; i < bodies.size(); ++i) boxes_[bodies[i]] = look.boxes.get(i);
     if (excess_cells(look.boxes, bodies.size()) != 0) {
@@ -111,10 +114,18 @@ void Events::shrink(Look& look, BodyId body, std::size_t i) {
 // Keeps those whose new bounds are known up to `from`, with their motions; returns how many.
 std::size_t Events::drop_unknown(Step from, std::span<BodyId> bodies) noexcept {
   std::size_t kept = 0;
+  double known = std::numeric_limits<double>::infinity();  // an expiry that is late enough
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (!roster_.is_static(bodies[i]) && roster_.clock.last_before_expiry(motions_[i].expiry) < from) continue;
-    bodies[kept] = bodies[i];
-    motions_[kept++] = motions_[i];
+    const double expiry = motions_[i].expiry;
+    if (expiry != known && !roster_.is_static(bodies[i])) {
+      if (roster_.clock.last_before_expiry(expiry) < from) continue;
+      known = expiry;
+    }
+    if (kept < i) {
+      bodies[kept] = bodies[i];
+      motions_[kept] = motions_[i];
+    }
+    ++kept;
   }
   return kept;
 }

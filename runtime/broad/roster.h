@@ -88,6 +88,7 @@ class Roster {
   std::size_t size() const noexcept { return size_; }
   bool alive(BodyId body) const noexcept { return alive_[body]; }
   bool is_static(BodyId body) const noexcept { return !static_slot_.empty() && static_slot_[body] != kNoSlot; }
+  bool any_static() const noexcept { return !static_slot_.empty(); }
   std::uint8_t importance(BodyId body) const noexcept { return importance_[body]; }
   unsigned next_class(unsigned from) const noexcept;  // the first class, from `from` on, that has bodies; or kNoClass
   bool one_class() const noexcept { return classes_ <= 1; }

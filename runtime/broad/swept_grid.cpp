@@ -17,14 +17,16 @@ struct Code {
   std::uint64_t entry, query;
 };
 
-// An axis' two fields, of the box from `lower` to `upper` in the cell that begins at `first`.
-ORCHARD_INLINE Code axis_code(std::uint32_t axis, std::uint32_t lower, std::uint32_t upper,
-                              std::uint32_t first) noexcept {
-  const std::uint32_t last = first + (kQuanta - 1);
-  const std::uint64_t from = lower > first ? lower - first : 0;
-  const std::uint64_t below = upper < last ? last - upper : 0;  // from the cell's end downwards
-  return {from << (kFieldBits * axis) | below << (kFieldBits * (axis + 3)),
-          (kQuanta - 1 - below) << (kFieldBits * axis) | (kQuanta - 1 - from) << (kFieldBits * (axis + 3))};
+Code code_of(const QuantumBox& box, const std::array<std::uint32_t, 3>& cell) noexcept {
+  Code code{0, kGuards};
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const std::uint32_t first = cell[i] << kQuantumBits, last = first + (kQuanta - 1);
+    const std::uint64_t lower = box.lower[i] > first ? box.lower[i] - first : 0;
+    const std::uint64_t below = box.upper[i] < last ? last - box.upper[i] : 0;  // from the cell's end downwards
+    code.entry |= lower << (kFieldBits * i) | below << (kFieldBits * (i + 3));
+    code.query |= (kQuanta - 1 - below) << (kFieldBits * i) | (kQuanta - 1 - lower) << (kFieldBits * (i + 3));
+  }
+  return code;
 }
 
 // Bit i: entry i of the line meets the query. Bits from line.count on mean nothing.
@@ -64,141 +66,143 @@ struct SweptGrid::Insertion {
 };
 
 // Of the entries hit, those whose box really meets the body's, and in this cell first.
-void SweptGrid::report(const Insertion& insertion, const CellLine& line, std::uint32_t hits, BodyId body,
-                       const Cell& cell) {
+void SweptGrid::report(const Insertion& insertion, const CellLine& line, std::uint32_t hits, const Visit& visit) {
+  const BodyId body = visit.body();
   const QuantumBox& box = insertion.boxes[body];
   for (; hits != 0; hits &= hits - 1) {
     const auto other = static_cast<BodyId>(line.entries[static_cast<std::size_t>(std::countr_zero(hits))] >> kIdShift);
     const QuantumBox& theirs = insertion.boxes[other];
     bool here = box.meets(theirs);
-    for (std::size_t i = 0; i < 3; ++i) {
-      here = here && std::max(box.lower[i], theirs.lower[i]) >> kQuantumBits == cell[i];
+    for (std::size_t d = 0; d < 3; ++d) {
+      const std::uint32_t cell = (box.lower[d] >> kQuantumBits) + visit.steps[d];
+      here = here && std::max(box.lower[d], theirs.lower[d]) >> kQuantumBits == cell;
     }
     if (here) insertion.pairs.push_back(body < other ? BodyPair{body, other} : BodyPair{other, body});
   }
 }
 
-template <typename Kind, typename CellOf>
-ORCHARD_INLINE void SweptGrid::insert_in_line(const Insertion& insertion, CellLine& first, std::uint64_t entry,
-                                              std::uint64_t query, const CellOf& cell) {
+template <typename Kind>
+ORCHARD_INLINE void SweptGrid::insert_in_line(const Insertion& insertion, const Visit& visit) {
   // Nothing is written before all seven entries have been read together: that would have to wait for the small writes.
-  const std::uint32_t in_use = 0u - static_cast<std::uint32_t>(first.stamp == stamp_);  // a mask: no branch to guess
-  const std::uint32_t count = first.count & in_use, more = first.overflow & in_use;
-  const auto body = static_cast<BodyId>(entry >> kIdShift);
+  CellLine& first = lines_[visit.line];
+  const std::uint32_t count = first.count, more = first.overflow;
   ++counts_.entries;
   ++counts_.lines_read;
-  const std::uint32_t hits = Kind::meeting(first, query) & ((1u << count) - 1);
-  if (hits != 0) report(insertion, first, hits, body, cell());
+  const std::uint32_t hits = Kind::meeting(first, visit.query) & ((1u << count) - 1);
+  if (hits != 0) report(insertion, first, hits, visit);
   if (more == 0 && count < first.entries.size()) [[likely]] {
-    first.entries[count] = entry;
-    first.count = static_cast<std::uint16_t>(count + 1);
-    first.stamp = stamp_;
-    first.overflow = 0;
+    first.entries[count] = visit.entry;
+    first.count = count + 1;
     return;
   }
   for (std::uint32_t next = more; next != 0;) {
     const CellLine& line = overflow_[next - 1];
     ++counts_.lines_read;
-    const std::uint32_t met = Kind::meeting(line, query) & ((1u << line.count) - 1);
-    if (met != 0) report(insertion, line, met, body, cell());
+    const std::uint32_t met = Kind::meeting(line, visit.query) & ((1u << line.count) - 1);
+    if (met != 0) report(insertion, line, met, visit);
     next = line.overflow;
   }
-  append(first, entry);
+  append(first, visit.entry);
 }
 
-// Each body in the cell of its lower corner: a loop without branches that depend on the data.
+// A loop without branches that depend on the data.
 ORCHARD_INLINE void SweptGrid::encode(Batch& batch, std::span<const BodyId> bodies,
                                       const BoxBlock& block) const noexcept {
-  std::array<std::uint64_t, kBlock> entry, query;
-  std::array<std::uint32_t, kBlock> line, several;
   const std::size_t lanes = lanes_for(bodies.size());
-  for (std::size_t i = 0; i < lanes; ++i) entry[i] = 0, query[i] = kGuards, line[i] = 0, several[i] = 0;
+  std::array<std::uint32_t, kBlock> axes;
+  for (std::size_t i = 0; i < lanes; ++i) axes[i] = 0;
   for (std::uint32_t d = 0; d < 3; ++d) {
+    const std::uint32_t low = kFieldBits * d, high = kFieldBits * (d + 3), mask = mask_[d], shift = shift_[d];
+    std::array<std::uint64_t, kBlock> entry, query, next_entry, next_query;
+    std::array<std::uint32_t, kBlock> line, next_line;
     for (std::size_t i = 0; i < lanes; ++i) {
-      const std::uint32_t lower = block.lower[d][i], upper = block.upper[d][i], last = lower | (kQuanta - 1);
-      const std::uint64_t from = lower & (kQuanta - 1), below = upper < last ? last - upper : 0;
-      entry[i] |= from << (kFieldBits * d) | below << (kFieldBits * (d + 3));
-      query[i] |= (kQuanta - 1 - below) << (kFieldBits * d) | (kQuanta - 1 - from) << (kFieldBits * (d + 3));
-      line[i] |= ((lower >> kQuantumBits) & mask_[d]) << shift_[d];
-      several[i] |= (lower ^ upper) >> kQuantumBits;
+      const std::uint32_t lower = block.lower[d][i], upper = block.upper[d][i];
+      const std::uint32_t cell = lower >> kQuantumBits, last = upper >> kQuantumBits;
+      const std::uint64_t from = lower & (kQuanta - 1), to = upper & (kQuanta - 1);
+      const std::uint64_t below = last > cell ? 0 : kQuanta - 1 - to;  // from the cell's end downwards
+      entry[i] = from << low | below << high;
+      query[i] = (kQuanta - 1 - below) << low | (kQuanta - 1 - from) << high;
+      line[i] = (cell & mask) << shift;
+      next_entry[i] = (kQuanta - 1 - to) << high;
+      next_query[i] = to << low | std::uint64_t{kQuanta - 1} << high;
+      next_line[i] = (last & mask) << shift;
+      axes[i] |= (last > cell ? 1u : 0u) << d | (last > cell + 1 ? 8u : 0u);
     }
+    batch.entry[0][d] = entry, batch.query[0][d] = query, batch.line[0][d] = line;
+    batch.entry[1][d] = next_entry, batch.query[1][d] = next_query, batch.line[1][d] = next_line;
   }
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    prefetch(&lines_[line[i]]);  // they are all over memory
-    batch.first[i] = {entry[i] | std::uint64_t{bodies[i]} << kIdShift, query[i], line[i], several[i] != 0};
-  }
+  batch.axes = axes;
   batch.count = bodies.size();
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    batch.bodies[i] = bodies[i];
+    prefetch(&lines_[Batch::sum(batch.line, 0, 0, 0, i)]);  // they are all over memory
+  }
 }
 
 template <typename Kind>
 ORCHARD_INLINE void SweptGrid::flush(const Insertion& insertion) {
   Queue& queue = insertion.queue;
-  for (std::size_t k = 0; k < queue.visits_waiting_; ++k) {
-    const Visit& visit = queue.visits_[k];
-    insert_in_line<Kind>(insertion, lines_[visit.line], visit.entry, visit.query,
-                         [&]() ORCHARD_INLINE_LAMBDA { return visit.cell; });
-  }
+  for (std::size_t k = 0; k < queue.visits_waiting_; ++k) insert_in_line<Kind>(insertion, queue.visits_[k]);
   queue.visits_waiting_ = 0;
 }
 
-// The batch that waited: first every body in its first cell, then the visits left from the batch before; the few
-// bodies that take several cells leave visits to the others.
+// The batch that waited: first every body in its first cell, then the visits left from the batch before; bodies that
+// take several cells leave visits to the others.
 template <typename Kind>
 ORCHARD_INLINE void SweptGrid::insert_waiting(const Insertion& insertion) {
-  Queue& queue = insertion.queue;
-  const Batch& batch = queue.batches_[queue.current_];
+  const Batch& batch = insertion.queue.batches_[insertion.queue.current_];
   std::array<std::uint32_t, kBlock> rest;
   std::size_t rests = 0;
   for (std::uint32_t i = 0; i < batch.count; ++i) {
-    const First& first = batch.first[i];
-    insert_in_line<Kind>(insertion, lines_[first.line], first.entry, first.query, [&]() ORCHARD_INLINE_LAMBDA {
-      const QuantumBox& box = insertion.boxes[first.entry >> kIdShift];
-      return Cell{box.lower[0] >> kQuantumBits, box.lower[1] >> kQuantumBits, box.lower[2] >> kQuantumBits};
-    });
+    insert_in_line<Kind>(insertion, {Batch::sum(batch.entry, 0, 0, 0, i) | std::uint64_t{batch.bodies[i]} << kIdShift,
+                                     Batch::sum(batch.query, 0, 0, 0, i) | kGuards,
+                                     Batch::sum(batch.line, 0, 0, 0, i),
+                                     {0, 0, 0}});
     rest[rests] = i;
-    rests += first.several;
+    rests += batch.axes[i] != 0;
   }
   counts_.bodies += batch.count;
   flush<Kind>(insertion);
+  for (std::size_t k = 0; k < rests; ++k) leave_visits<Kind>(insertion, batch, rest[k]);
+}
 
-  for (std::size_t k = 0; k < rests; ++k) {
-    const auto body = static_cast<BodyId>(batch.first[rest[k]].entry >> kIdShift);
-    leave_visits<Kind>(insertion, body);
+// To all cells of a body's box but the first.
+template <typename Kind>
+ORCHARD_INLINE void SweptGrid::leave_visits(const Insertion& insertion, const Batch& batch, std::uint32_t i) {
+  Queue& queue = insertion.queue;
+  if (queue.visits_waiting_ + kMostVisits > queue.visits_.size()) flush<Kind>(insertion);
+  const std::uint32_t axes = batch.axes[i];
+  if (axes >= 8) {
+    leave_many_visits(queue, batch.bodies[i], insertion.boxes[batch.bodies[i]]);
+    return;
+  }
+  const std::uint64_t id = std::uint64_t{batch.bodies[i]} << kIdShift;
+  for (std::uint32_t corner = axes; corner != 0; corner = (corner - 1) & axes) {
+    const std::uint32_t x = corner & 1, y = corner >> 1 & 1, z = corner >> 2;
+    const std::uint32_t line = Batch::sum(batch.line, x, y, z, i);
+    prefetch(&lines_[line]);
+    queue.visits_[queue.visits_waiting_++] = {
+        Batch::sum(batch.entry, x, y, z, i) | id,
+        Batch::sum(batch.query, x, y, z, i) | kGuards,
+        line,
+        {static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y), static_cast<std::uint8_t>(z)}};
   }
 }
 
-// To all cells of the body's box but the first.
-template <typename Kind>
-ORCHARD_INLINE void SweptGrid::leave_visits(const Insertion& insertion, BodyId body) {
-  Queue& queue = insertion.queue;
-  const QuantumBox& box = insertion.boxes[body];
-  struct Slab {  // of cells, along an axis
-    Code code;
-    std::uint32_t line, cell;
-  };
-  std::array<std::array<Slab, kMostCellsPerAxis>, 3> slabs;
-  std::array<std::uint32_t, 3> count;
-  for (std::uint32_t d = 0; d < 3; ++d) {
-    const std::uint32_t first = box.lower[d] >> kQuantumBits;
-    count[d] = (box.upper[d] >> kQuantumBits) - first + 1;
-    for (std::uint32_t i = 0; i < count[d]; ++i) {
-      const std::uint32_t cell = first + i;
-      slabs[d][i] = {axis_code(d, box.lower[d], box.upper[d], cell << kQuantumBits), (cell & mask_[d]) << shift_[d],
-                     cell};
-    }
+void SweptGrid::leave_many_visits(Queue& queue, BodyId body, const QuantumBox& box) const noexcept {
+  Cell first, count;
+  for (std::size_t d = 0; d < 3; ++d) {
+    first[d] = box.lower[d] >> kQuantumBits;
+    count[d] = (box.upper[d] >> kQuantumBits) - first[d] + 1;
   }
-  const std::uint64_t id = std::uint64_t{body} << kIdShift;
-  for (std::uint32_t z = 0; z < count[2]; ++z) {
-    for (std::uint32_t y = 0; y < count[1]; ++y) {
-      for (std::uint32_t x = z == 0 && y == 0; x < count[0]; ++x) {
-        const Slab &a = slabs[0][x], &b = slabs[1][y], &c = slabs[2][z];
-        if (queue.visits_waiting_ == queue.visits_.size()) flush<Kind>(insertion);
-        const std::uint32_t line = a.line | b.line | c.line;
-        prefetch(&lines_[line]);
-        queue.visits_[queue.visits_waiting_++] = {id | a.code.entry | b.code.entry | c.code.entry,
-                                                  kGuards | a.code.query | b.code.query | c.code.query,
-                                                  line,
-                                                  {a.cell, b.cell, c.cell}};
+  std::array<std::uint8_t, 3> steps;
+  for (steps[2] = 0; steps[2] < count[2]; ++steps[2]) {
+    for (steps[1] = 0; steps[1] < count[1]; ++steps[1]) {
+      for (steps[0] = steps[1] == 0 && steps[2] == 0; steps[0] < count[0]; ++steps[0]) {
+        const Cell cell = {first[0] + steps[0], first[1] + steps[1], first[2] + steps[2]};
+        const Code code = code_of(box, cell);
+        queue.visits_[queue.visits_waiting_++] = {code.entry | std::uint64_t{body} << kIdShift, code.query,
+                                                  line_of(cell), steps};
       }
     }
   }

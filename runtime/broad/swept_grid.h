@@ -12,8 +12,7 @@ inline constexpr std::uint32_t kMostCellsPerAxis = 4;  // that a body's box may 
 // are compared with another box in one go: per coordinate a guard bit above the 5 catches the borrow of a subtraction.
 struct alignas(64) CellLine {
   std::array<std::uint64_t, 7> entries;
-  std::uint16_t count;
-  std::uint16_t stamp;     // of the reset() that it was last used after: empty if that is not the last one
+  std::uint32_t count;
   std::uint32_t overflow;  // 1 + the index of the line with more entries; 0: none
 };
 static_assert(sizeof(CellLine) == 64);
@@ -51,14 +50,16 @@ class SweptGrid {
   std::size_t memory_bytes() const noexcept { return bytes_of(lines_) + bytes_of(overflow_); }
 
  private:
+  static constexpr std::size_t kMostVisits = kMostCellsPerAxis * kMostCellsPerAxis * kMostCellsPerAxis - 1;  // a body's
   struct Insertion;
   using Cell = std::array<std::uint32_t, 3>;
-  struct Visit {
+  struct Visit {  // to one of a body's cells
     std::uint64_t entry, query;
     std::uint32_t line;
-    Cell cell;
+    std::array<std::uint8_t, 3> steps;  // from its first cell
+
+    BodyId body() const noexcept { return static_cast<BodyId>(entry >> kIdShift); }
   };
-  struct First;
   struct Batch;
   std::uint32_t line_of(const Cell& cell) const noexcept {
     return (cell[0] & mask_[0]) << shift_[0] | (cell[1] & mask_[1]) << shift_[1] | (cell[2] & mask_[2]) << shift_[2];
@@ -69,42 +70,48 @@ class SweptGrid {
   template <typename Kind>
   void insert_waiting(const Insertion& insertion);
   template <typename Kind>
-  void leave_visits(const Insertion& insertion, BodyId body);
+  void leave_visits(const Insertion& insertion, const Batch& batch, std::uint32_t i);
   template <typename Kind>
   void flush(const Insertion& insertion);
   void run(const Insertion& insertion, bool vectors);
   void advance_plain(const Insertion& insertion);
   void advance_vectors(const Insertion& insertion);
-  template <typename Kind, typename CellOf>
-  void insert_in_line(const Insertion& insertion, CellLine& line, std::uint64_t entry, std::uint64_t query,
-                      const CellOf& cell);
-  void report(const Insertion& insertion, const CellLine& line, std::uint32_t hits, BodyId body, const Cell& cell);
+  template <typename Kind>
+  void insert_in_line(const Insertion& insertion, const Visit& visit);
+  void report(const Insertion& insertion, const CellLine& line, std::uint32_t hits, const Visit& visit);
+  void leave_many_visits(Queue& queue, BodyId body, const QuantumBox& box) const noexcept;
   void append(CellLine& line, std::uint64_t entry);
   void remove_from(CellLine& line, BodyId body) noexcept;
   void free_last(CellLine& line) noexcept;
 
   std::vector<CellLine> lines_, overflow_;
   std::uint32_t free_overflow_ = 0;  // 1 + index
-  std::uint16_t stamp_ = 0;
   std::array<std::uint32_t, 3> mask_{}, shift_{};
   GridCounts counts_;
 };
 
-struct SweptGrid::First {  // of a body's cells
-  std::uint64_t entry, query;
-  std::uint32_t line, several;  // several: 1 if there are more
-};
-
+// By body of a block, and for each axis by its first cell and the next: the codes, and what it adds to the line's
+// index.
 struct SweptGrid::Batch {
-  std::array<First, kBlock> first;
+  template <typename T>
+  using Sides = std::array<std::array<std::array<T, kBlock>, 3>, 2>;
+  std::array<BodyId, kBlock> bodies;
+  Sides<std::uint64_t> entry, query;
+  Sides<std::uint32_t> line;
+  std::array<std::uint32_t, kBlock> axes;  // bit d: several cells along axis d; bit 3: more than two along one
   std::size_t count = 0;
+
+  template <typename T>
+  static T sum(const Sides<T>& sides, std::size_t x, std::size_t y, std::size_t z, std::size_t i) noexcept {
+    return sides[x][0][i] | sides[y][1][i] | sides[z][2][i];
+  }
 };
 
 class SweptGrid::Queue {
   friend class SweptGrid;
   std::array<Batch, 2> batches_;
   std::size_t current_ = 0;  // the batch that waits
-  std::array<Visit, 2 * kBlock> visits_;
+  std::array<Visit, 2 * kMostVisits> visits_;
   std::size_t visits_waiting_ = 0;
 };
 

@@ -14,10 +14,8 @@ void SweptGrid::reset(std::size_t lines) {
   shift_ = {0, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(x + y)};
   overflow_.clear();
   free_overflow_ = 0;
+  // All lines are written in order: those that have not been used for long come faster this way than one by one later.
   const std::size_t wanted = std::size_t{1} << bits;
-  ++stamp_;  // empties all lines
-  if (lines_.size() == wanted && stamp_ != 0) return;
-  stamp_ = 1;
   if (lines_.capacity() > wanted) lines_ = {};
   lines_.assign(wanted, CellLine{});
 }

@@ -8,7 +8,7 @@ namespace {
 // Costs relative to each other, in nanoseconds of one machine (2023, 2 GHz class). Off by a factor of two, the window
 // is off by less, and the time hardly changes: it is flat around the minimum.
 constexpr double kCostOfLook = 600, kCostPerBody = 25, kCostPerCell = 12, kCostPerPair = 120;
-constexpr double kCellPerSpacing = 1.5;  // smaller cells: more of them per body; larger: more bodies in each
+constexpr double kCellPerSpacing = 1.7;  // smaller cells: more of them per body; larger: more bodies in each
 constexpr double kLinesPerVolume = 1.9;  // a ball fills 52 % of its box
 constexpr double kWindowGrowth = 1.3;    // between the windows tried
 
