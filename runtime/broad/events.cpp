@@ -51,7 +51,10 @@ void Events::take_away_due() noexcept {
 void Events::collect_due(Step now) {
   constexpr std::size_t kAhead = 16;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
-    if (i + kAhead < entries_.size()) prefetch(&windows_[entries_[i + kAhead]]);
+    if (i + kAhead < entries_.size()) {
+      const BodyId body = entries_[i + kAhead];
+      prefetch(&windows_[body]), prefetch(&places_[body]), prefetch(&pending_[body]);
+    }
     Window& window = windows_[entries_[i]];
     if (window.end != now || pending_[entries_[i]]) continue;  // looked at since
     window.end = kLookDue;

@@ -53,15 +53,15 @@ void Roster::set_static(BodyId body, const Motion& place) {
   stored.radius = place.radius;
 }
 
-void Roster::set_importance(BodyId body, std::uint8_t importance) noexcept {
+void Roster::set_importance(BodyId body, std::uint8_t importance) {
   leave_class(importance_[body]);
   importance_[body] = importance;
   enter_class(importance);
 }
 
 unsigned Roster::next_class(unsigned from) const noexcept {
-  while (from < kNoClass && in_class_[from] == 0) ++from;
-  return from < kNoClass ? from : kNoClass;
+  while (from < in_class_.size() && in_class_[from] == 0) ++from;
+  return from < in_class_.size() ? from : kNoClass;
 }
 
 void Roster::ask(Step step, std::span<const BodyId> bodies, std::span<Motion> motions) {
@@ -89,8 +89,8 @@ void Roster::ask(Step step, std::span<const BodyId> bodies, std::span<Motion> mo
 }
 
 std::size_t Roster::memory_bytes() const noexcept {
-  return bytes_of(alive_) + bytes_of(importance_) + bytes_of(static_slot_) + bytes_of(static_motions_) +
-         bytes_of(free_slots_) + bytes_of(free_) + bytes_of(moving_) + bytes_of(answers_);
+  return bytes_of(in_class_) + bytes_of(alive_) + bytes_of(importance_) + bytes_of(static_slot_) +
+         bytes_of(static_motions_) + bytes_of(free_slots_) + bytes_of(free_) + bytes_of(moving_) + bytes_of(answers_);
 }
 
 }  // namespace orchard::runtime::detail

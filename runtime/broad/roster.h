@@ -82,7 +82,7 @@ class Roster {
   BodyId add(std::uint8_t importance);  // kNoBody: full
   void remove(BodyId body);
   void set_static(BodyId body, const Motion& place);
-  void set_importance(BodyId body, std::uint8_t importance) noexcept;
+  void set_importance(BodyId body, std::uint8_t importance);
 
   std::size_t slots() const noexcept { return alive_.size(); }  // ids are below
   std::size_t size() const noexcept { return size_; }
@@ -114,10 +114,13 @@ class Roster {
   std::vector<Motion> answers_;
   std::size_t size_ = 0;
   std::uint64_t asked_ = 0;
-  void enter_class(std::uint8_t importance) noexcept { classes_ += in_class_[importance]++ == 0; }
+  void enter_class(std::uint8_t importance) {
+    if (in_class_.size() <= importance) in_class_.resize(std::size_t{importance} + 1);
+    classes_ += in_class_[importance]++ == 0;
+  }
   void leave_class(std::uint8_t importance) noexcept { classes_ -= --in_class_[importance] == 0; }
-  std::array<std::uint32_t, kNoClass> in_class_{};
-  unsigned classes_ = 0;  // that have bodies
+  std::vector<std::uint32_t> in_class_;  // bodies, by class
+  unsigned classes_ = 0;                 // that have bodies
 };
 
 // Resizes a vector that grows body by body. By an eighth at a time: twice the room would be half the memory.

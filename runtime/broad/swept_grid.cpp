@@ -128,10 +128,11 @@ ORCHARD_INLINE void SweptGrid::encode(Batch& batch, std::span<const BodyId> bodi
       next_line[i] = (last & mask) << shift;
       axes[i] |= (last > cell ? 1u : 0u) << d | (last > cell + 1 ? 8u : 0u);
     }
-    batch.entry[0][d] = entry, batch.query[0][d] = query, batch.line[0][d] = line;
-    batch.entry[1][d] = next_entry, batch.query[1][d] = next_query, batch.line[1][d] = next_line;
+    const auto keep = [&](const auto& from, auto& to) { std::copy_n(from.begin(), lanes, to.begin()); };
+    keep(entry, batch.entry[0][d]), keep(query, batch.query[0][d]), keep(line, batch.line[0][d]);
+    keep(next_entry, batch.entry[1][d]), keep(next_query, batch.query[1][d]), keep(next_line, batch.line[1][d]);
   }
-  batch.axes = axes;
+  std::copy_n(axes.begin(), lanes, batch.axes.begin());
   batch.count = bodies.size();
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     batch.bodies[i] = bodies[i];

@@ -10,7 +10,7 @@ namespace {
 constexpr double kCostOfLook = 600, kCostPerBody = 25, kCostPerCell = 12, kCostPerPair = 120;
 constexpr double kCellPerSpacing = 1.7;  // smaller cells: more of them per body; larger: more bodies in each
 constexpr double kLinesPerVolume = 1.9;  // a ball fills 52 % of its box
-constexpr double kWindowGrowth = 1.3;    // between the windows tried
+constexpr double kWindowGrowth = 1.4;    // between the windows tried
 
 double extent(const MotionMeans& mean, double duration) noexcept {
   const double spread = duration * (mean.drift + duration * mean.acceleration / 2);

@@ -112,7 +112,8 @@ class BroadPhase {
     return {next_time_, {}};
   }
   // The same, within a budget per step: the bodies and pairs of the more important classes come first; what is left
-  // over is done at the next step. `events` only; the other methods ignore the budget.
+  // over is done at the next step. The methods that sleep are interrupted while they ask for motions, not while they
+  // search.
   Advance advance(double t_now, const WorkBudget& budget) {
     if (t_now >= wake_time_) return process(t_now, &budget);
     seen_time_ = t_now > seen_time_ ? t_now : seen_time_;
