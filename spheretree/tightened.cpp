@@ -35,11 +35,11 @@ Work work_for(Effort effort) {
     case Effort::low:
       return {0.25, 2, 0, {1, 1}};
     case Effort::standard:
-      return {1, 8, 1, {2, 1}};
+      return {1, 6, 1, {2, 1}};
     case Effort::high:
-      return {4, 12, 20, {8, 3}};
+      return {3, 10, 24, {8, 3}};
   }
-  return {1, 8, 1, {2, 1}};
+  return {1, 6, 1, {2, 1}};
 }
 constexpr double kPolishShare = 0.1;  // of the trials, in each polishing round
 Index trials_for(Index balls, const Work& work) { return static_cast<Index>(work.trials * (300 + 14.0 * balls)); }
@@ -49,8 +49,8 @@ LevelCost cost_for(Objective objective, Index level, Index depth) {
   switch (objective) {
     case Objective::balanced:
       if (level == 1) return {.power = 8};
-      if (level < depth) return {.power = 2.5, .cap = 2};
-      return {.power = 2, .cap = 3};
+      if (level < depth) return {.power = 3, .cap = 2};
+      return {.power = 2, .cap = 2.5};
     case Objective::maximum:
       return {.power = 10};
     case Objective::mean:

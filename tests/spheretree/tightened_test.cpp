@@ -9,6 +9,7 @@
 #include "orchard/spheretree/cover.h"
 #include "orchard/spheretree/measure.h"
 #include "orchard/spheretree/merging.h"
+#include "orchard/spheretree/redundancy.h"
 #include "support.h"
 
 namespace orchard {
@@ -42,6 +43,41 @@ TEST(TightenedTree, KeepsToTheBudgetOfEachLevelAndOfEachNode) {
     EXPECT_LE(counts[1], branching);
     EXPECT_LE(counts[2], branching * branching);
     for (const SphereNode& node : tree.nodes) EXPECT_LE(node.child_count, std::min(64u, 2 * branching));
+  }
+}
+
+TEST(TightenedTree, GoesAsDeepAsAskedWithAnyBranching) {
+  const Surface surface(torus(24, 12));
+  const MedialAxis axis = axis_of(surface, 1500);
+  for (const auto& [branching, depth] : {std::pair<Index, Index>{2, 6}, {4, 4}, {64, 1}}) {
+    const SphereTree tree =
+        tightened_tree(surface, axis, {.depth = depth, .branching = branching, .effort = Effort::low});
+    expect_conservative(tree, surface, "torus");
+    EXPECT_EQ(tree.depth(), depth);
+    const auto counts = level_counts(tree);
+    Index most = 1;
+    for (std::size_t level = 1; level < counts.size(); ++level) {
+      most *= branching;
+      EXPECT_LE(counts[level], most);
+      EXPECT_GT(counts[level], counts[level - 1]);
+    }
+  }
+}
+
+TEST(TightenedTree, HasNoSphereOfNoSizeAndOnceThinnedNoneThatCanGo) {
+  const Surface surface(u_shape(0.3));
+  SphereTree tree = tightened_tree(surface, axis_of(surface, 3000), {.depth = 2});
+  remove_redundant(tree, surface);
+  for (const SphereNode& node : tree.nodes) EXPECT_GT(node.sphere.radius, 0.01 * surface.bounding_radius());
+  for (Index node = 1; node < tree.nodes.size(); ++node) {
+    // Without its leaves, a node and all below it hold nothing.
+    std::vector<PathBall> balls = path_balls(tree);
+    std::vector<char> gone(balls.size(), 0);
+    for (Index i = node; i < balls.size(); ++i) {
+      gone[i] = i == node || gone[balls[i].parent];
+      if (gone[i]) balls[i].leaf = false;
+    }
+    EXPECT_FALSE(surface_coverage(surface, balls).complete()) << node;
   }
 }
 
@@ -123,7 +159,7 @@ TEST(TightenedTree, IsTheSameOnOneTwoAndSevenThreads) {
   std::vector<SphereTree> trees;
   for (const std::size_t threads : {1u, 2u, 7u}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    trees.push_back(tightened_tree(surface, axis, {.depth = 2, .effort = Effort::low}));
+    trees.push_back(tightened_tree(surface, axis, {.depth = 2, .branching = 5}));
   }
   EXPECT_TRUE(same_tree(trees[0], trees[1]));
   EXPECT_TRUE(same_tree(trees[0], trees[2]));
