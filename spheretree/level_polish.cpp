@@ -14,6 +14,15 @@ constexpr int kEvaluations = 10;
 constexpr int kRounds = 8;            // of closing a trial
 constexpr double kWorthwhile = 1e-4;  // part of a ball's looseness that must go
 
+// What breaks ties between balls that would not get looser at all, as a fraction of growth.
+constexpr double kTie = 1e-12;
+
+std::vector<Point> ends(const std::vector<OpenArc>& arcs) {
+  std::vector<Point> points;
+  for (const OpenArc& arc : arcs) points.insert(points.end(), {arc.begin, arc.end});
+  return points;
+}
+
 }  // namespace
 
 void LevelSolver::take_radii(const LevelCover& cover) {
@@ -33,15 +42,12 @@ void LevelSolver::refit(LevelCover& cover) {
   BallFitter fitter(surface_);
   LevelCover::Scratch scratch;
   std::vector<OpenArc> arcs;
-  std::vector<Point> points;
   for (Index b : order) {
     const RegionBall old = cover.balls()[b];
     arcs.clear();
     cover.open_arcs(old.sphere, {{&b, 1}, {}}, scratch, arcs);
     if (arcs.empty()) continue;
-    points.clear();
-    for (const OpenArc& arc : arcs) points.insert(points.end(), {arc.begin, arc.end});
-    FittedBall fitted = fitter.fit(points, balls_[b].center, kEvaluations);
+    FittedBall fitted = fitter.fit(ends(arcs), balls_[b].center, kEvaluations);
     fitted.radius += margin;
     if (fitted.looseness() > balls_[b].looseness() * (1 - kWorthwhile)) continue;
     const RegionBall fresh{{fitted.center, fitted.radius}, old.region};
@@ -64,86 +70,109 @@ Sphere around(std::span<const LevelBall> all, std::span<const Index> some) {
 
 }  // namespace
 
-// What the trial leaves open goes to those of its balls that it costs least, until nothing is open or nothing gained.
-bool LevelSolver::close_trial(Trial& trial, double before, const LevelCover& cover) const {
-  const double margin = tolerance::kCoverMargin * surface_.bounding_radius();
-  const std::span<const Index> chosen(trial.chosen);
-  const std::size_t count = trial.balls.size();
-  std::vector<Sphere> where;
-  if (trial.moved == kNone) {
-    where.push_back(around(balls_, chosen));
-  } else {
-    where = {around(balls_, chosen.first(trial.moved)), around(balls_, chosen.subspan(trial.moved))};
+// Makes a trial's balls cover what those that they replace covered.
+class LevelSolver::TrialCloser {
+ public:
+  TrialCloser(const LevelSolver& solver, const LevelCover& cover, Trial& trial)
+      : solver_(solver),
+        cover_(cover),
+        trial_(trial),
+        margin_(tolerance::kCoverMargin * solver.surface_.bounding_radius()),
+        fitter_(solver.surface_),
+        added_(trial.balls.size()) {
+    const std::span<const Index> chosen(trial.chosen);
+    const std::size_t here = trial.moved == kNone ? chosen.size() : trial.moved;
+    where_.push_back(around(solver.balls_, chosen.first(here)));
+    if (here < chosen.size()) where_.push_back(around(solver.balls_, chosen.subspan(here)));
+    for (std::size_t i = 0; i < added_.size(); ++i) put(i, trial.balls[i], 1);
   }
-  std::vector<RegionBall> added(count);
-  const auto put = [&](std::size_t i) {
-    added[i] = {{trial.balls[i].center, trial.balls[i].radius}, trial.balls[i].region};
-  };
-  for (std::size_t i = 0; i < count; ++i) {
-    trial.balls[i].radius += margin;
-    put(i);
-  }
-  BallFitter fitter(surface_);
-  LevelCover::Scratch scratch;
-  std::vector<OpenArc> arcs;
-  const auto total = [&] {
+
+  double cost() const {
     double sum = 0;
-    for (const LevelBall& ball : trial.balls) sum += cost(ball);
+    for (const LevelBall& ball : trial_.balls) sum += solver_.cost(ball);
     return sum;
-  };
-  const double most = before * (1 - 1e-6);
-  bool closed = false;
-  for (int round = 0; round < kRounds && !closed; ++round) {
-    arcs.clear();
-    for (const Sphere& sphere : where) cover.open_arcs(sphere, {chosen, added}, scratch, arcs);
-    closed = arcs.empty();
-    if (closed) break;
-    std::vector<char> grown(count, 0);
-    for (const OpenArc& arc : arcs) {
-      double least = std::numeric_limits<double>::infinity();
-      std::size_t taker = kNone;
-      for (std::size_t i = 0; i < count; ++i) {
-        const LevelBall& ball = trial.balls[i];
-        FittedBall larger = ball;
-        larger.radius = std::max({ball.radius, (arc.begin - ball.center).norm(), (arc.end - ball.center).norm()});
-        const double rise = cost(larger) - cost(ball) + 1e-12 * larger.radius / surface_.bounding_radius();
-        if (rise >= least || !cover.in_region(ball.region, arc.begin) || !cover.in_region(ball.region, arc.end))
-          continue;
-        least = rise;
-        taker = i;
+  }
+
+  // What is open goes to those that it costs least, until nothing is, or the cost is not below `most`.
+  bool close(double most) {
+    for (int round = 1; round <= kRounds; ++round) {
+      arcs_.clear();
+      for (const Sphere& sphere : where_) cover_.open_arcs(sphere, {trial_.chosen, added_}, scratch_, arcs_);
+      if (arcs_.empty()) return true;
+      std::vector<char> grown(added_.size(), 0);
+      for (const OpenArc& arc : arcs_) {
+        const std::size_t taker = cheapest_taker(arc);
+        if (taker == kNone) return false;
+        trial_.needs[taker].insert(trial_.needs[taker].end(), {arc.begin, arc.end});
+        grown[taker] = 1;
       }
-      if (taker == kNone) return false;
-      trial.needs[taker].insert(trial.needs[taker].end(), {arc.begin, arc.end});
-      grown[taker] = 1;
+      for (std::size_t i = 0; i < added_.size(); ++i)
+        if (grown[i]) put(i, fitter_.fit(trial_.needs[i], trial_.balls[i].center, kEvaluations), round);
+      if (cost() >= most) return false;
     }
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!grown[i]) continue;
-      static_cast<FittedBall&>(trial.balls[i]) = fitter.fit(trial.needs[i], trial.balls[i].center, kEvaluations);
-      trial.balls[i].radius += margin * (round + 1);
-      put(i);
+    return false;
+  }
+
+  // Each to what it alone holds.
+  void refit() {
+    for (std::size_t i = 0; i < added_.size(); ++i) {
+      std::vector<RegionBall> others = added_;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+      arcs_.clear();
+      cover_.open_arcs(added_[i].sphere, {trial_.chosen, others}, scratch_, arcs_);
+      if (arcs_.empty()) continue;
+      const FittedBall fitted = fitter_.fit(ends(arcs_), trial_.balls[i].center, kEvaluations);
+      if (fitted.looseness() + margin_ <= trial_.balls[i].looseness() * (1 - kWorthwhile)) put(i, fitted, 1);
     }
-    if (total() >= most) return false;
   }
-  if (!closed) return false;
-  std::vector<Point> points;
-  for (std::size_t i = 0; i < count; ++i) {
-    std::vector<RegionBall> others = added;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-    arcs.clear();
-    cover.open_arcs(added[i].sphere, {chosen, others}, scratch, arcs);
-    if (arcs.empty()) continue;
-    points.clear();
-    for (const OpenArc& arc : arcs) points.insert(points.end(), {arc.begin, arc.end});
-    FittedBall fitted = fitter.fit(points, trial.balls[i].center, kEvaluations);
-    fitted.radius += margin;
-    if (fitted.looseness() > trial.balls[i].looseness() * (1 - kWorthwhile)) continue;
-    static_cast<FittedBall&>(trial.balls[i]) = fitted;
-    put(i);
+
+  bool covered() {
+    return std::all_of(where_.begin(), where_.end(), [&](const Sphere& sphere) {
+      return cover_.covered(sphere, {trial_.chosen, added_}, scratch_);
+    });
   }
-  if (total() >= most) return false;
-  return std::all_of(where.begin(), where.end(), [&](const Sphere& sphere) {
-    return cover.covered(sphere, {chosen, added}, scratch);
-  });
+
+ private:
+  void put(std::size_t i, FittedBall ball, int margins) {
+    ball.radius += margins * margin_;
+    static_cast<FittedBall&>(trial_.balls[i]) = ball;
+    added_[i] = {{ball.center, ball.radius}, trial_.balls[i].region};
+  }
+
+  std::size_t cheapest_taker(const OpenArc& arc) const {
+    double least = std::numeric_limits<double>::infinity();
+    std::size_t taker = kNone;
+    for (std::size_t i = 0; i < added_.size(); ++i) {
+      const LevelBall& ball = trial_.balls[i];
+      FittedBall larger = ball;
+      larger.radius = std::max({ball.radius, (arc.begin - ball.center).norm(), (arc.end - ball.center).norm()});
+      const double rise =
+          solver_.cost(larger) - solver_.cost(ball) + kTie * larger.radius / solver_.surface_.bounding_radius();
+      if (rise >= least || !cover_.in_region(ball.region, arc.begin) || !cover_.in_region(ball.region, arc.end))
+        continue;
+      least = rise;
+      taker = i;
+    }
+    return taker;
+  }
+
+  const LevelSolver& solver_;
+  const LevelCover& cover_;
+  Trial& trial_;
+  const double margin_;
+  BallFitter fitter_;
+  std::vector<RegionBall> added_;
+  std::vector<Sphere> where_;  // what may be open
+  LevelCover::Scratch scratch_;
+  std::vector<OpenArc> arcs_;
+};
+
+bool LevelSolver::close_trial(Trial& trial, double before, const LevelCover& cover) const {
+  const double most = before * (1 - 1e-6);
+  TrialCloser closer(*this, cover, trial);
+  if (!closer.close(most)) return false;
+  closer.refit();
+  return closer.cost() < most && closer.covered();
 }
 
 }  // namespace orchard::detail

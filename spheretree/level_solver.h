@@ -63,6 +63,7 @@ class LevelSolver {
 
  private:
   struct Trial;
+  class TrialCloser;
   bool in_path(Index region, const Point& point) const;
   bool in_region(Index region, Index sample) const;
   double key(const FittedBall& ball, Index sample) const {
