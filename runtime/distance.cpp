@@ -64,7 +64,7 @@ void DistanceQuery::refine(const Budget& budget) noexcept {
     const std::uint32_t a = child_of(first, pair.a), b = child_of(second, pair.b);
     if (a & b & kLeafBit) {
       compare_leaves(pair);
-      meter.spend(kLeafPairTests * kTriangleTestCost);
+      meter.spend(std::uint64_t{kLeafPairTests} * kTriangleTestCost);
       continue;
     }
     const float radius = first.patches[pair.a / kBlockWidth].radius[pair.a % kBlockWidth];

@@ -37,7 +37,9 @@ struct Children {
 // are the number of children less 1, the others the first one's block, at most last_linked_block(). Branching is at
 // most kMostBranching.
 inline constexpr std::uint32_t kMostBranching = 1u << 30;
-constexpr int link_bits(std::uint32_t branching) noexcept { return branching > 1 ? std::bit_width(branching - 1) : 0; }
+constexpr int link_bits(std::uint32_t branching) noexcept {
+  return branching > 1 ? static_cast<int>(std::bit_width(branching - 1)) : 0;
+}
 constexpr std::uint32_t inner_link(std::uint32_t branching, const Children& children) noexcept {
   return children.first << link_bits(branching) | (children.count - 1);
 }

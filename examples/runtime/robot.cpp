@@ -1,0 +1,63 @@
+// Does a robot touch itself? An arm of six links, a tree each; pairs that touch at rest, or always do as neighbours,
+// are allowed, all others are not. The arm curls up until two links meet.
+//   robot link.orchard
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "orchard/runtime/collide.h"
+#include "orchard/runtime/tree_file.h"
+
+using namespace orchard::runtime;
+
+namespace {
+
+constexpr std::size_t kLinks = 6;
+
+struct LinkPair {
+  std::size_t a, b;
+  NarrowPhase query;
+};
+
+// Where the links are when all joints turn by the same angle.
+std::vector<Pose> posture(double angle, double length) {
+  const Pose joint = *pose_from_quaternion({std::cos(angle / 2), 0, 0, std::sin(angle / 2)}, {length, 0, 0});
+  std::vector<Pose> poses = {Pose{}};
+  while (poses.size() < kLinks) poses.push_back(compose(poses.back(), joint));
+  return poses;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  PackedSphereTree link;
+  const LoadStatus status = argc == 2 ? load_file(argv[1], link) : LoadStatus::cannot_open;
+  if (status != LoadStatus::ok) {
+    std::fprintf(stderr, "usage: robot link.orchard (%s)\n", message(status));
+    return 2;
+  }
+  const double length = 2.1 * link.bounding_radius;
+  const std::vector<Pose> rest = posture(0, length);
+  std::vector<LinkPair> checked;
+  for (std::size_t a = 0; a < kLinks; ++a) {
+    for (std::size_t b = a + 2; b < kLinks; ++b) {  // neighbours share a joint: allowed
+      LinkPair pair{a, b, NarrowPhase(link, link, 1024)};
+      if (collide(pair.query, rest[a], rest[b]).answer == Answer::no) checked.push_back(std::move(pair));
+    }
+  }
+  std::printf("%zu of %zu pairs of links are checked\n", checked.size(), kLinks * (kLinks - 1) / 2);
+
+  for (double angle = 0; angle < 1.3; angle += 0.01) {
+    const std::vector<Pose> poses = posture(angle, length);
+    for (LinkPair& pair : checked) {
+      const Verdict verdict = collide(pair.query, poses[pair.a], poses[pair.b]);
+      if (verdict.answer != Answer::yes) continue;
+      const auto at = verdict.contact.center;
+      std::printf("with its joints at %.2f rad link %zu touches link %zu at (%.3g, %.3g, %.3g)\n", angle, pair.a,
+                  pair.b, at[0], at[1], at[2]);
+      return angle > 0 ? 0 : 1;
+    }
+  }
+  std::printf("the arm never touches itself\n");
+  return 1;
+}
