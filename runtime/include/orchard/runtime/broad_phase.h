@@ -47,7 +47,7 @@ struct BroadPhaseOptions {
   double time_step = 0.01;  // dt_d: the temporal resolution, in seconds; > 0
   double start = 0;         // the time of step 0
   Rebuild rebuild = Rebuild::what_intersected;
-  // `events`: steps between two looks at a body's surroundings; 0 lets the broad phase choose.
+  // `events`: most steps between two looks at a body's surroundings; 0 lets the broad phase choose.
   std::uint32_t window = 0;
   bool vectors = true;  // false: the portable inner loop. Same answers
 };
@@ -78,6 +78,9 @@ struct Advance {
 // since they were asked for (or cancel() was called). Hence: an overlap that lasts for dt_d or longer contains a step,
 // and is reported at the first one, so less than dt_d after it begins. A shorter one may fall between two steps. Two
 // static bodies are never a pair.
+//
+// A bound that expires at a step's time still holds at this step. Where most bounds expire together and advance() is
+// called when the new ones can be given already, half of the work is done at the step before the one that needs it.
 //
 // Call advance(t_now) once per frame, or more often, or when the time it returned has come, never with a smaller time:
 //     for (Advance now = world.advance(t); !now.pairs.empty(); now = world.advance(t)) ..     // see Fig. 4.23
