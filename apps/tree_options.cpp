@@ -82,7 +82,7 @@ void add_tree_options(CLI::App& command, BuildOptions& options) {
                   "Children of a sphere at most; tightened: on average, up to twice as many")
       ->check(CLI::Range(2, 64))
       ->capture_default_str();
-  add_choice(command, "--effort", kEfforts, options.effort, "tightened: how long to search, about 1 : 3 : 20");
+  add_choice(command, "--effort", kEfforts, options.effort, "tightened: how long to search, about 1 : 2 : 15");
   add_choice(command, "--objective", kObjectives, options.objective,
              "tightened: what to keep low, the maximum or mean inaccuracy, the outside volume, or a balance (default)");
   add_choice(command, "--energy", kEnergies, options.energy,

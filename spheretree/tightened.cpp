@@ -41,6 +41,8 @@ Work work_for(Effort effort) {
   }
   return {1, 6, 1, {2, 1}};
 }
+// The search in closed levels looks at every triangle in reach: of fine meshes it gets less.
+constexpr double kFewTriangles = 4000;
 constexpr double kPolishShare = 0.1;  // of the trials, in each polishing round
 Index trials_for(Index balls, const Work& work) { return static_cast<Index>(work.trials * (300 + 14.0 * balls)); }
 
@@ -56,7 +58,7 @@ LevelCost cost_for(Objective objective, Index level, Index depth) {
     case Objective::mean:
       return {.power = level < depth ? 3.0 : 1.5};
     case Objective::volume:
-      return {.power = 2, .size_power = 2};
+      return {.power = level == 1 ? 2.0 : 3.0, .size_power = 2};
   }
   return {};
 }
@@ -137,9 +139,11 @@ class Tightener {
     solver.search(trials, [&](std::string_view stage, double fraction) { return progress(stage, 0.4 * fraction); });
     solver.tighten();
     const auto middle = std::chrono::steady_clock::now();
+    const double fineness = static_cast<double>(surface_.mesh().triangles.size()) / kFewTriangles;
+    const double closed_trials = work_.closed_trials / std::max(1.0, fineness);
     detail::ClosingOptions closing{
         work_.polishing, static_cast<Index>(kPolishShare * trials),
-        static_cast<Index>(work_.closed_trials * static_cast<double>(solver.balls().size())),
+        static_cast<Index>(closed_trials * static_cast<double>(solver.balls().size())),
         [&](std::string_view stage, double fraction) { return progress(stage, 0.4 + 0.6 * fraction); }};
     detail::close_level(surface_, solver, result.stack, closing, result.report);
     result.objective = solver.objective();

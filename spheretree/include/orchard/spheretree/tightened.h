@@ -6,7 +6,7 @@
 
 namespace orchard {
 
-enum class Effort { low, standard, high };  // about 1 : 3 : 20 in time
+enum class Effort { low, standard, high };  // about 1 : 2 : 15 in time
 
 // What a level's balls are judged by, as sums of powers of the inaccuracy. balanced: a high power at the top, low ones
 // below that rise steeply beyond two or three times the mean; maximum and mean weigh more for the one or the other;
