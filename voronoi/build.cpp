@@ -112,6 +112,7 @@ Outcome insert_all(Workspace& workspace, Search search, std::string_view stage, 
     reason = inserter.failure();
     return Outcome::failed;
   }
+  if (!inserter.insert_deferred()) return Outcome::failed;
   report_progress(progress, stage, 1);
   counts = inserter.counts();
   return Outcome::done;

@@ -175,6 +175,10 @@ bool Cavity::place_vertices() {
     facet.placing = at_infinity ? workspace_.place_at_infinity(vertex, facet.error_class, a, b)
                                 : workspace_.place(vertex, facet.error_class, position_, a, b, c);
     facet.visible = facet.placing != Placing::failed || side_of_facet(facet.inside, facet.slot) == Sign::positive;
+    if ((facet.placing != Placing::good || workspace_.poor(vertex, facet.error_class)) && !at_infinity &&
+        facet.visible && !workspace_.exact() &&
+        workspace_.share_sphere(vertex, facet.error_class, facet.outside, position_))
+      facet.placing = Placing::shared;
     visible = visible && facet.visible;
     worst_ = std::max(worst_, facet.placing);
   }
@@ -266,7 +270,8 @@ Index Cavity::place_flat_vertices() {
   Index coplanar = 0;
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     Facet& facet = facets_[f];
-    if (facet.placing == Placing::good) continue;
+    coplanar += facet.placing == Placing::shared;
+    if (facet.placing <= Placing::shared) continue;
     if (facet.placing == Placing::failed) facet.error_class = Workspace::kUnknownError;
     VoronoiVertex& vertex = fresh_[f];
     const VoronoiVertex& outside = workspace_.vertices[facet.outside];

@@ -27,7 +27,7 @@ bool insert_in_order(Workspace& workspace, std::span<const Index> order, Inserti
   std::size_t next = 0;
   const auto run = [&] {
     while (next < order.size() && inserter.insert(order[next])) ++next;
-    return next == order.size();
+    return next == order.size() && inserter.insert_deferred();
   };
   if (!run()) {
     // With exact signs from here on. An exact diagram of the old points never needs the constrained search then.

@@ -8,8 +8,13 @@
 namespace orchard::detail {
 namespace {
 
-// How many insertions may need exact signs or the constrained search before all are made anew with exact signs.
+// How many insertions may need exact signs or the constrained search, or be deferred, before all are made anew with
+// exact signs.
 constexpr std::uint64_t kDoubtfulAtMost = 16, kDoubtfulOneIn = 256;
+
+// How deep in a vertex's sphere a neighbour's point may lie once deferred points are in, in terms of the points' size.
+// Where that is more, a contradiction came of an earlier mistake.
+constexpr double kDepthAtMost = 0x1p-40;
 
 }  // namespace
 
@@ -52,6 +57,42 @@ bool Inserter::start(const std::array<Index, 4>& points) {
 }
 
 bool Inserter::insert(Index point) {
+  if (insert_now(point)) return true;
+  if (search_ == Search::bowyer || too_doubtful()) return false;
+  deferred_.push_back(point);
+  return true;
+}
+
+bool Inserter::insert_deferred() {
+  if (deferred_.empty()) return true;
+  while (!deferred_.empty())
+    if (std::erase_if(deferred_, [this](Index point) { return insert_now(point); }) == 0) return false;
+  return workspace_.exact() || spheres_are_empty();
+}
+
+// Delaunay's lemma: if no sphere holds the points of the neighbours, none holds any point.
+bool Inserter::spheres_are_empty() const {
+  const double depth = kDepthAtMost * workspace_.scale();
+  for (Index v = 0; v < workspace_.vertices.size(); ++v) {
+    if (workspace_.is_free(v)) continue;
+    for (const Index u : workspace_.vertices[v].neighbors) {
+      const VoronoiVertex& neighbor = workspace_.vertices[u];
+      const auto back = std::find(neighbor.neighbors.begin(), neighbor.neighbors.end(), v) - neighbor.neighbors.begin();
+      const Index across = neighbor.forming_points[static_cast<std::size_t>(back)];
+      if (across == kInfinitePoint) continue;
+      const Point& q = workspace_.points[across];
+      if (workspace_.value(v, q) > depth && workspace_.sign(v, q) == Sign::positive) return false;
+    }
+  }
+  return true;
+}
+
+bool Inserter::too_doubtful() const {
+  return counts_.exact + counts_.constrained + deferred_.size() >=
+         kDoubtfulAtMost + workspace_.points.size() / kDoubtfulOneIn;
+}
+
+bool Inserter::insert_now(Index point) {
   const Point q = workspace_.points[point];
   Index start = locate(q);
   cavity_.begin(point);
@@ -87,7 +128,7 @@ bool Inserter::insert_directly(Index start, const Point& q) {
     cavity_.note_facets();
   }
   // A thin tetrahedron magnifies what went wrong by a rounding behind its facet.
-  if (!workspace_.exact() && cavity_.worst_placing() > (certain ? Placing::thin : Placing::good)) return false;
+  if (!workspace_.exact() && cavity_.worst_placing() > (certain ? Placing::thin : Placing::shared)) return false;
   if (!cavity_.link_vertices()) return false;
   if (!certain && !cavity_.is_ball()) return false;
   ++(certain ? counts_.certified : counts_.settled);
@@ -98,7 +139,7 @@ bool Inserter::insert_directly(Index start, const Point& q) {
 // Where leaving the doubtful vertices alone gave no ball: exact signs settle the doubts, or else the constrained search
 // decides, as long as it overrules no sign that is certain.
 bool Inserter::insert_with_doubts(Index point, const Point& q) {
-  if (counts_.exact + counts_.constrained >= kDoubtfulAtMost + workspace_.points.size() / kDoubtfulOneIn) return false;
+  if (too_doubtful()) return false;
   if (insert_exactly(point, q)) return true;
   const Index start = locate(q);
   cavity_.begin(point);

@@ -31,10 +31,14 @@ class Inserter {
 
   // Makes the diagram of four points; false if they are nearly coplanar.
   bool start(const std::array<Index, 4>& points);
-  // False, with the diagram as it was, where the signs contradict each other although the workspace does not ask for
-  // exact ones: then the input is near to degenerate, but not so near that rounding could be the reason. To be done
-  // again with exact signs from the start. Bowyer's search returns false where its premises fail.
+  // Where the signs contradict each other, although the workspace does not ask for exact ones, the point is kept for
+  // insert_deferred(): its neighbours on the same plane or sphere may well settle the doubt. False, with the diagram as
+  // it was, where too many do: then the input is near to degenerate, but not so near that rounding could be the
+  // reason. To be done again with exact signs from the start. Bowyer's search returns false where its premises fail.
   bool insert(Index point);
+  // To be called at the end; false, as above, if there are points that do not fit even now, or only at the price of
+  // the diagram's accuracy.
+  bool insert_deferred();
   const InsertionCounts& counts() const { return counts_; }
   const char* failure() const { return failure_; }  // why insert() returned false
 
@@ -47,6 +51,9 @@ class Inserter {
     }
   };
 
+  bool insert_now(Index point);
+  bool too_doubtful() const;
+  bool spheres_are_empty() const;
   Index locate(const Point& q) const;
   Index walk(const Point& q) const;
   Index highest_nearby(Index v, const Point& q) const;
@@ -73,6 +80,7 @@ class Inserter {
   const char* failure_ = "";
   Index last_ = 0;  // where the walk to the next point starts
   std::vector<Candidate> queue_;
+  std::vector<Index> deferred_;
 };
 
 }  // namespace orchard::detail

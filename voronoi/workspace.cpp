@@ -58,7 +58,18 @@ void Workspace::find_error_class(Index v) {
     placing = place(placed, error, origin, a, b, LengthedVector(points[corner[3]] - origin));
   }
   if (placing == Placing::failed) error = kUnknownError;
+  if (!at_infinity(v) && poor(vertex, error)) error = std::min(error, error_class(residual(vertex)));
   state_[v] = static_cast<std::uint8_t>((error << 2) | (state_[v] & 3u));
+}
+
+// A bound for a vertex whose own centre is poor, but which has a neighbour's: its forming points are on that sphere up
+// to this.
+double Workspace::residual(const VoronoiVertex& vertex) const {
+  double most = 0;
+  for (const Index p : vertex.forming_points)
+    most = std::max(most, std::abs(vertex.radius - (vertex.center - points[p]).squaredNorm()));
+  const double r = std::sqrt(vertex.radius);
+  return 4 * most + 16 * noise_ * r + 16 * kRounding * (vertex.radius + r * vertex.center.lpNorm<1>());
 }
 
 double Workspace::value(Index v, const Point& q) const {
@@ -77,6 +88,15 @@ Sign Workspace::doubtful_sign(Index v, const Point& q, double bound) {
   // With a centre as good as this, the doubt is in the input.
   if (!exact_ && bound < good_center_ * vertices[v].radius) return Sign::uncertain;
   return sign_from_points(v, q);
+}
+
+bool Workspace::share_sphere(VoronoiVertex& vertex, std::uint8_t& error, Index v, const Point& new_point) const {
+  if (!(std::abs(power(v, new_point)) <= power_bound(v))) return false;  // nor at infinity
+  if (!settled(v) || poor(vertices[v], state_[v] >> 2)) return false;
+  vertex.center = vertices[v].center;
+  vertex.radius = vertices[v].radius;
+  error = state_[v] >> 2;
+  return true;
 }
 
 Sign Workspace::sign_from_points(Index v, const Point& q) const {

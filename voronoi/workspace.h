@@ -13,6 +13,7 @@ namespace orchard::detail {
 // What placing a vertex came to.
 enum class Placing : std::uint8_t {
   good,
+  shared,  // its own centre would be poor, but it is on a neighbour's sphere as far as the input goes: that is taken
   thin,    // the forming points are so near to coplanar that a doubt elsewhere could move the centre far
   failed,  // no centre worth having, or wrongly oriented
 };
@@ -75,8 +76,17 @@ class Workspace {
   // The same at infinity, beyond the facet of the new point, a and b.
   Placing place_at_infinity(VoronoiVertex& vertex, std::uint8_t& error_class, const LengthedVector& a,
                             const LengthedVector& b) const;
+  // Whether the placed vertex, one of these, may be off by more than the input's noise.
+  bool poor(const VoronoiVertex& vertex, std::uint8_t error_class) const {
+    return !(bounds_[error_class] < good_center_ * vertex.radius);
+  }
+  // For a vertex of the new point that forms a facet with v, if that puts it on the sphere of v as far as the input
+  // goes: takes over this very sphere and its error bound, so that all vertices of many points on one sphere have the
+  // same sign for the next. False, and no change, if not.
+  bool share_sphere(VoronoiVertex& vertex, std::uint8_t& error_class, Index v, const Point& new_point) const;
   // A length far beyond the points, for vertices whose place is as good as infinite.
-  double far() const { return 1024 * std::sqrt(squared_scale_); }
+  double far() const { return 1024 * scale(); }
+  double scale() const { return std::sqrt(squared_scale_); }  // the size of the points' box, to a factor of two
   // Takes over the vertices of a finished diagram of `points`, with room for some more. Their error bounds are infinite
   // until somebody asks: most vertices are never looked at again.
   void adopt(std::vector<VoronoiVertex>&& finished, std::size_t more);
@@ -112,6 +122,7 @@ class Workspace {
   Sign sign_from_points(Index v, const Point& q) const;
   std::uint8_t error_class(double bound) const;
   void find_error_class(Index v);
+  double residual(const VoronoiVertex& vertex) const;
 
   std::vector<std::uint8_t> state_;                    // mark, and error class above
   std::array<double, 64> bounds_{};                    // by error class

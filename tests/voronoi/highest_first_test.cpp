@@ -54,11 +54,11 @@ TEST(HighestFirstVoronoi, IsConsistentAndAccurateOnPointsThatAreOffByLittleMoreT
       for (Point& p : points) p += off * Vector(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
       return points;
     };
-    const std::string name = "seed " + std::to_string(seed);
-    expect_good(name, shaken(test::grid_points(5)));
-    expect_good(name, shaken(test::sphere_points(150, seed)));
-    expect_good(name, shaken(test::cone_ring_points(12, 16)));
-    expect_good(name, shaken(test::relaxed_polyhedron_points(200, seed)));
+    const std::string name = "seed " + std::to_string(seed) + ", off by " + std::to_string(std::log10(off));
+    expect_good(name + ", grid", shaken(test::grid_points(5)));
+    expect_good(name + ", sphere", shaken(test::sphere_points(150, seed)));
+    expect_good(name + ", cone", shaken(test::cone_ring_points(12, 16)));
+    expect_good(name + ", polyhedron", shaken(test::relaxed_polyhedron_points(200, seed)));
   }
 }
 
@@ -67,6 +67,27 @@ TEST(HighestFirstVoronoi, IsConsistentAndAccurateOnConesOfManyRings) {
   for (const int rings : {50, 80}) {
     expect_good("upright", test::cone_ring_points(rings, 100));
     expect_good("turned", test::turned(test::cone_ring_points(rings, 100), 1));
+  }
+}
+
+TEST(HighestFirstVoronoi, MeetsContradictionsWhereTheyAreAndDoesNotStartAnew) {
+  const std::vector<std::pair<std::string, test::Points>> sets{
+      {"cone", test::cone_ring_points(60, 80)},
+      {"turned cone", test::turned(test::cone_ring_points(60, 80), 1)},
+      {"sphere", test::sphere_points(5000, 1)}};
+  for (const auto& [name, points] : sets) {
+    InsertionReport report;
+    const VoronoiDiagram diagram = highest_first_voronoi(points, {}, &report);
+    EXPECT_FALSE(report.exact_signs) << name;
+    EXPECT_GT(report.coplanar_centers, 0u) << name << ": else it shows nothing";
+    EXPECT_NO_THROW(validate(diagram)) << name;
+    const double radius = test::bounding_radius(points);
+    EXPECT_LT(inaccuracy(diagram).max, 1e-15 * radius) << name;
+    for (const VoronoiVertex& vertex : diagram.vertices)
+      for (const Index p : vertex.forming_points) {
+        if (vertex.at_infinity() || vertex.radius > 10 * radius) continue;
+        ASSERT_NEAR((points[p] - vertex.center).norm(), vertex.radius, 1e-10 * radius) << name;
+      }
   }
 }
 

@@ -73,6 +73,24 @@ TEST(InsertPoints, IsConsistentAndAccurateOnDegeneratePoints) {
     }
 }
 
+TEST(InsertPoints, LooksAtTheNewPointsOnlyEvenWhereSignsContradict) {
+  const test::Points cone = test::turned(test::cone_ring_points(60, 80), 1);
+  test::Points points;
+  for (const bool late : {false, true})
+    for (std::size_t i = 0; i < cone.size(); ++i)
+      if ((i % 25 == 7) == late) points.push_back(cone[i]);
+  const std::size_t part = points.size() - cone.size() / 25;
+  VoronoiDiagram diagram = highest_first_voronoi(first(points, part));
+  InsertionReport report;
+  insert_points(diagram, rest(points, part), &report);
+  validate(diagram);
+  EXPECT_FALSE(report.exact_signs);
+  EXPECT_EQ(
+      report.certified_insertions + report.settled_insertions + report.exact_insertions + report.constrained_insertions,
+      200u);
+  EXPECT_LT(inaccuracy(diagram).max, 1e-15 * test::bounding_radius(points));
+}
+
 TEST(InsertPoints, LeavesOutWhatIsThereAlready) {
   const test::Points points = test::uniform_points(100, 3);
   VoronoiDiagram diagram = highest_first_voronoi(points);
