@@ -14,7 +14,7 @@ constexpr std::uint64_t kDoubtfulAtMost = 16, kDoubtfulOneIn = 256;
 
 // How deep in a vertex's sphere a neighbour's point may lie once deferred points are in, in terms of the points' size.
 // Where that is more, a contradiction came of an earlier mistake.
-constexpr double kDepthAtMost = 0x1p-40;
+constexpr double kDepthAtMost = 0x1p-33;
 
 }  // namespace
 
