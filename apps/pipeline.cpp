@@ -31,7 +31,7 @@ class Pipeline {
     if (needs_axis(options_.method)) build_medial_axis();
     build_tree();
     stage("covering", [&] { result_.cover = cover(result_.tree, surface_, progress_); });
-    if (options_.method == Method::merging)
+    if (options_.method == Method::merging && options_.closing != MergeClosing::refit)
       stage("shrinking", [&] { shrink_balls(result_.tree, surface_, progress_); });
     stage("redundant spheres",
           [&] { result_.redundancy = remove_redundant(result_.tree, surface_, Selection::exhaustive, progress_); });
@@ -67,7 +67,8 @@ class Pipeline {
         break;
       case Method::merging:
         stage("merging", [&] {
-          result_.tree = merge_tree(surface_, *result_.axis, {o.depth, o.branching, o.refinement}, progress_);
+          result_.tree = merge_tree(surface_, *result_.axis, {o.depth, o.branching, o.refinement, o.closing}, progress_,
+                                    &result_.merging);
         });
         break;
       case Method::annealing:

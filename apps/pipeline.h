@@ -13,6 +13,7 @@
 #include "orchard/spheretree/annealing.h"
 #include "orchard/spheretree/cover.h"
 #include "orchard/spheretree/descent.h"
+#include "orchard/spheretree/merging.h"
 #include "orchard/spheretree/redundancy.h"
 #include "orchard/spheretree/tightened.h"
 #include "orchard/spheretree/tree.h"
@@ -29,6 +30,7 @@ struct BuildOptions {
   Effort effort = Effort::standard;
   Objective objective = Objective::balanced;
   SetEnergy energy = SetEnergy::maximum;
+  MergeClosing closing = MergeClosing::refit;
   Refinement refinement;
   Index descent = 0;             // trials of random descent for each node, after any method
   std::optional<Index> samples;  // surface points, four fifths on faces, one fifth on edges; else samples_needed()
@@ -50,6 +52,7 @@ struct BuildResult {
   SphereTree tree;
   SphereTree octree;  // of the same depth, to compare with
   TightenReport tightening;
+  MergeReport merging;
   AnnealingReport annealing;
   DescentReport descent;
   CoverReport cover;

@@ -86,6 +86,18 @@ json tightening_json(const TightenReport& report) {
   return levels;
 }
 
+json merging_json(const MergeReport& report) {
+  json levels = json::array();
+  for (const MergeReport::Level& level : report.levels)
+    levels.push_back({{"spheres", level.spheres},
+                      {"redundant_spheres_removed", level.removed},
+                      {"loose_spheres_split", level.split},
+                      {"spots_uncovered_before", level.spots},
+                      {"closing_rounds", level.rounds},
+                      {"largest_growth_over_radius", level.growth}});
+  return levels;
+}
+
 std::size_t packed_bytes(const runtime::PackedSphereTree& packed) {
   return packed.blocks.size() * sizeof(runtime::SiblingBlock);
 }
@@ -138,6 +150,8 @@ json build_json(const Surface& surface, const BuildOptions& options, const Build
                         {"triangles_uncovered_before", result.cover.triangles_uncovered},
                         {"largest_growth_over_radius", result.cover.largest_growth}};
   if (options.method == Method::tightened) report["tightening"] = tightening_json(result.tightening);
+  if (options.method == Method::merging && options.closing == MergeClosing::refit)
+    report["merging"] = merging_json(result.merging);
   if (options.method == Method::annealing)
     report["annealing"] = {{"changes", result.annealing.changes},
                            {"refused_as_uncovering", result.annealing.uncovering},

@@ -1,334 +1,404 @@
 #include "orchard/spheretree/merging.h"
 
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <queue>
-#include <span>
-#include <unordered_set>
-#include <utility>
 
+#include "medial_parts.h"
+#include "merge_closing.h"
+#include "merger.h"
 #include "orchard/geometry/error.h"
-#include "orchard/geometry/min_ball.h"
 #include "orchard/geometry/tolerance.h"
+#include "orchard/spheretree/redundancy.h"
+#include "sibling_balance.h"
+#include "sibling_fit.h"
 
 namespace orchard {
 namespace {
 
-// Directions spread over the sphere by the golden angle: a group's extreme points along them stand for all its points.
-constexpr int kCoreDirections = 40;
-const std::array<Vector, kCoreDirections>& core_directions() {
-  static const std::array<Vector, kCoreDirections> directions = [] {
-    std::array<Vector, kCoreDirections> list;
-    for (int i = 0; i < kCoreDirections; ++i) {
-      const double z = 1 - (2 * i + 1.0) / kCoreDirections, across = std::sqrt(1 - z * z),
-                   angle = 2.399963229728653 * i;
-      list[static_cast<std::size_t>(i)] = Vector(across * std::cos(angle), across * std::sin(angle), z);
-    }
-    return list;
-  }();
-  return directions;
-}
+using detail::Family;
+using detail::FittedBall;
+using detail::MergedParts;
+using detail::Parts;
+using detail::PartScratch;
 
-// What a node answers for: medial vertices, or forming points where vertices are too few. Where many points lie on one
-// sphere, as around the axis of a cylinder, they have coalesced into one vertex, which could not be split.
-struct Members {
-  std::vector<Index> items;  // vertices of the axis, or its points
-  bool points = false;
-
-  std::span<const Index> forming_points(const MedialAxis& axis, std::size_t i) const {
-    return points ? std::span(&items[i], 1) : axis.forming_points[items[i]];
-  }
-};
-
-// Members merged into one sphere.
-struct Group {
-  Sphere sphere;
-  Members members;
-};
-
-constexpr std::size_t kNearPoints = 6;  // neighbours of a point that stand for adjacency where there is none
-// Vertices fewer than the children, with this many forming points for each child, are worth taking apart.
-constexpr std::size_t kPointsPerChild = 4;
+// Where fewer vertices than this for each child are left, their points are merged instead: many points on one sphere,
+// as around the axis of a cylinder, are one vertex, which could not be split.
+constexpr std::size_t kVerticesPerChild = 2;
+constexpr std::size_t kPointsPerChild = 2;  // at least, or there are fewer children
 // A sphere as tight as this, as a fraction of R, is left as it is.
 constexpr double kTight = 1e-3;
+// Of the looseness, in the sum over siblings that is to be low; by level. What is loose at the top is loose all the way
+// down.
+constexpr double kPowers[] = {3.5, 3, 3};
+// How many merged spheres, for each one wanted, a fit of siblings starts with.
+constexpr double kStarts[] = {1.5, 1};
+constexpr int kSpendingRounds = 2;
+constexpr double kSplitGain = 0.97;  // a split that leaves more of the looseness is not worth a sphere
 
-// A pair of groups that some Voronoi edge joins, with the sphere that would replace them cached.
-struct Candidate {
-  double cost;
-  Index a, b;  // a < b
+// What a node answers for: surface points that it must hold.
+struct Patch {
+  std::vector<Point> held;
+  std::vector<Index> points;    // of each: of the axis, or kNone for one that a closing added
+  std::vector<Index> vertices;  // of the axis, ascending, where they are not simply those that touch a point
+
+  std::vector<Index> axis_points() const {
+    std::vector<Index> list;
+    std::copy_if(points.begin(), points.end(), std::back_inserter(list), [](Index p) { return p != kNone; });
+    std::sort(list.begin(), list.end());
+    return list;
+  }
+};
+
+struct Child {
   Sphere sphere;
-};
-// The queue's head is the cheapest; ties go to the lowest indices, so that the result is the same everywhere.
-struct Dearer {
-  bool operator()(const Candidate& x, const Candidate& y) const {
-    if (x.cost != y.cost) return x.cost > y.cost;
-    return x.a != y.a ? x.a > y.a : x.b > y.b;
-  }
+  Patch patch;
 };
 
-std::vector<Index> points_of(const MedialAxis& axis, const Members& members) {
-  std::vector<Index> all;
-  for (std::size_t i = 0; i < members.items.size(); ++i) {
-    const auto points = members.forming_points(axis, i);
-    all.insert(all.end(), points.begin(), points.end());
-  }
-  std::sort(all.begin(), all.end());
-  all.erase(std::unique(all.begin(), all.end()), all.end());
-  return all;
-}
-
-// Merges the spheres of a set of members along the axis until few enough remain (dissertation 6.3.1).
-//
-// Two departures make it fast. A group's cost and sphere come from a core, the extreme points of its forming points;
-// only the groups that remain in the end are fitted to all of them. And candidates are not re-keyed when a group grows:
-// since a larger group costs more to join, an outdated cost is a lower bound, and bringing it up to date when it
-// reaches the queue's head gives the same order.
-class Merger {
+class MergeTree {
  public:
-  Merger(const MedialAxis& axis, const Members& members, std::vector<Index>& node_of) : axis_(axis), members_(members) {
-    const auto count = static_cast<Index>(members.items.size());
-    nodes_.reserve(2 * count);
-    for (Index i = 0; i < count; ++i) {
-      const auto points = members.forming_points(axis, i);
-      const Index item = members.items[i];
-      const Sphere sphere =
-          members.points ? Sphere{axis.points[item], 0} : Sphere{axis.centers[item], axis.radii[item]};
-      nodes_.push_back({sphere, {points.begin(), points.end()}, kNone});
-    }
-    if (members.points) {
-      join_near_points();
-    } else {
-      join_adjacent_vertices(node_of);
-    }
-    alive_ = count;
+  MergeTree(const Surface& surface, const MedialAxis& axis, const MergeOptions& options)
+      : surface_(surface),
+        axis_(axis),
+        options_(options),
+        margin_(tolerance::kCoverMargin * surface.bounding_radius()),
+        scratch_([&axis] {
+          return PartScratch{std::vector<Index>(axis.size(), kNone), std::vector<char>(axis.points.size(), 0)};
+        }) {
+    vertices_of_.resize(axis.points.size());
+    for (Index v = 0; v < axis.size(); ++v)
+      for (Index p : axis.forming_points[v]) vertices_of_[p].push_back(v);
   }
 
-  std::vector<Group> run(std::size_t target) {
-    if (alive_ > target)
-      for (const auto& [a, b] : edges_) queue_.push(candidate(a, b));
-    while (alive_ > target) {
-      if (queue_.empty()) {
-        merge(cheapest_join_of_components());
-        continue;
-      }
-      const Candidate head = queue_.top();
-      queue_.pop();
-      const Index a = current(head.a), b = current(head.b);
-      if (a == b) continue;
-      if (a == head.a && b == head.b) {
-        merge(head);
-      } else if (keyed_.insert(key(a, b)).second) {
-        queue_.push(candidate(a, b));
-      }
+  SphereTree run(const Progress& progress, MergeReport& report) {
+    start();
+    for (Index level = 1; level <= options_.depth; ++level) {
+      report_progress(progress, "merging", static_cast<double>(level - 1) / options_.depth);
+      power_ = kPowers[std::min<std::size_t>(level, std::size(kPowers)) - 1];
+      if (!add_level(level)) break;
+      if (options_.closing == MergeClosing::growth) continue;
+      report_progress(progress, "merging", (level - 0.7) / options_.depth);
+      MergeReport::Level& row = report.levels.emplace_back();
+      close(row);
+      for (int round = 0; round < kSpendingRounds && spend_freed_budget(level, row); ++round) close(row);
+      row.spheres = static_cast<Index>(nodes_of(level).size());
     }
-    return groups();
+    return std::move(tree_);
   }
 
  private:
-  // A merged set; `into` is the set that swallowed it, so that indices form a forest.
-  struct Node {
-    Sphere sphere;
-    std::vector<Index> core;  // some of its forming points
-    Index into;
+  void start() {
+    tree_.branching = options_.branching;
+    const Sphere& ball = surface_.bounding_ball();
+    tree_.nodes.push_back({.sphere = {ball.center, ball.radius + margin_}});
+    patches_.resize(1);
+    for (Index i = 0; i < axis_.size(); ++i) patches_[0].vertices.push_back(i);
+    for (Index p = 0; p < axis_.points.size(); ++p)
+      if (!vertices_of_[p].empty()) add_point(p, patches_[0]);
+  }
+
+  void add_point(Index point, Patch& patch) const {
+    patch.points.push_back(point);
+    patch.held.push_back(axis_.points[point]);
+  }
+
+  std::vector<Index> nodes_of(Index level) const {
+    std::vector<Index> nodes;
+    for (Index i = 0; i < tree_.nodes.size(); ++i)
+      if (tree_.nodes[i].level == level) nodes.push_back(i);
+    return nodes;
+  }
+
+  double looseness(const Sphere& ball) const { return ball.radius + surface_.signed_distance(ball.center); }
+
+  // Whether any node of the level above got children.
+  bool add_level(Index level) {
+    const std::vector<Index> parents = nodes_of(level - 1);
+    std::vector<std::vector<Child>> families(parents.size());
+    tbb::parallel_for(std::size_t{0}, parents.size(), [&](std::size_t i) {
+      if (splits(parents[i])) families[i] = children_of(parents[i], options_.branching);
+      if (families[i].size() < 2) families[i].clear();
+    });
+    if (options_.closing == MergeClosing::refit) balance(parents, families);
+    const std::size_t before = tree_.nodes.size();
+    append(level, parents, std::move(families));
+    return tree_.nodes.size() > before;
+  }
+
+  // Looser families get more of the level's spheres than tighter ones.
+  void balance(const std::vector<Index>& parents, std::vector<std::vector<Child>>& families) const {
+    std::vector<Family> loads(families.size());
+    tbb::parallel_for(std::size_t{0}, families.size(), [&](std::size_t i) {
+      loads[i] = {static_cast<Index>(families[i].size()), cost_of(families[i])};
+    });
+    const std::vector<Index> counts = detail::balanced_counts(loads, power_, options_.branching);
+    std::vector<std::vector<Child>> balanced(families.size());
+    std::vector<double> costs(families.size(), 0);
+    tbb::parallel_for(std::size_t{0}, families.size(), [&](std::size_t i) {
+      if (counts[i] != loads[i].spheres) balanced[i] = children_of(parents[i], counts[i]);
+      costs[i] = counts[i] != loads[i].spheres ? cost_of(balanced[i]) : loads[i].cost;
+    });
+    double before = 0, after = 0;
+    for (std::size_t i = 0; i < families.size(); ++i) before += loads[i].cost, after += costs[i];
+    if (after >= before) return;
+    for (std::size_t i = 0; i < families.size(); ++i)
+      if (!balanced[i].empty()) families[i] = std::move(balanced[i]);
+  }
+
+  double cost_of(const std::vector<Child>& family) const {
+    double sum = 0;
+    for (const Child& child : family)
+      sum += std::pow(std::max(0.0, looseness(child.sphere)) / surface_.bounding_radius(), power_);
+    return sum;
+  }
+
+  void append(Index level, const std::vector<Index>& parents, std::vector<std::vector<Child>> families) {
+    for (std::size_t i = 0; i < parents.size(); ++i) {
+      if (families[i].empty()) continue;
+      tree_.nodes[parents[i]].first_child = static_cast<Index>(tree_.nodes.size());
+      tree_.nodes[parents[i]].child_count = static_cast<Index>(families[i].size());
+      tree_.branching = std::max(tree_.branching, tree_.nodes[parents[i]].child_count);
+      for (Child& child : families[i]) {
+        tree_.nodes.push_back({.sphere = child.sphere, .parent = parents[i], .level = level});
+        patches_.push_back(std::move(child.patch));
+      }
+      patches_[parents[i]] = {};
+    }
+  }
+
+  bool splits(Index node) const {
+    const Sphere& ball = tree_.nodes[node].sphere;
+    return patches_[node].held.size() >= 2 && wants_children(options_.refinement, surface_, ball) &&
+           looseness(ball) > kTight * surface_.bounding_radius();
+  }
+
+  std::vector<Child> children_of(Index node, Index most) const {
+    const Patch& patch = patches_[node];
+    const std::vector<Index> points = patch.axis_points();
+    if (points.size() < 2) return {};
+    const std::vector<Index> vertices = patch.vertices.empty() ? touching(points) : patch.vertices;
+    const std::size_t target = std::clamp<std::size_t>(points.size() / kPointsPerChild, 2, most);
+    Parts parts = detail::vertex_parts(axis_, vertices, points, scratch_.local());
+    const bool by_points = parts.spheres.size() < kVerticesPerChild * target;
+    if (by_points) parts = detail::point_parts(axis_, points);
+    if (options_.closing == MergeClosing::refit) return fitted(patch, parts, target);
+    const auto groups = detail::merge_parts(axis_, parts, {&target, 1})[0];
+    return as_merged(parts, groups, by_points ? std::vector<Index>{} : vertices);
+  }
+
+  // The vertices that touch any of the points.
+  std::vector<Index> touching(const std::vector<Index>& points) const {
+    std::vector<Index> vertices;
+    for (Index p : points) vertices.insert(vertices.end(), vertices_of_[p].begin(), vertices_of_[p].end());
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    return vertices;
+  }
+
+  // Each sphere around all points of its parts, which others may have as well.
+  std::vector<Child> as_merged(const Parts& parts, const std::vector<MergedParts>& groups,
+                               const std::vector<Index>& vertices) const {
+    std::vector<Child> children;
+    for (const MergedParts& group : groups) {
+      Child child{group.sphere, {}};
+      std::vector<Index> points;
+      for (Index part : group.parts) {
+        points.insert(points.end(), parts.points[part].begin(), parts.points[part].end());
+        if (!vertices.empty()) child.patch.vertices.push_back(vertices[part]);
+      }
+      std::sort(points.begin(), points.end());
+      points.erase(std::unique(points.begin(), points.end()), points.end());
+      for (Index p : points) add_point(p, child.patch);
+      detail::shrink_around(child.patch.held, child.sphere);
+      child.sphere.radius += margin_;
+      children.push_back(std::move(child));
+    }
+    return children;
+  }
+
+  // From more spheres than wanted as well: which of them are best to do without, their fit tells better than the
+  // merging.
+  std::vector<Child> fitted(const Patch& patch, const Parts& parts, std::size_t wanted) const {
+    std::vector<std::size_t> targets;
+    for (const double more : kStarts) targets.push_back(static_cast<std::size_t>(more * static_cast<double>(wanted)));
+    std::vector<std::vector<FittedBall>> starts;
+    for (const auto& groups : detail::merge_parts(axis_, parts, targets)) {
+      starts.emplace_back();
+      for (const MergedParts& group : groups) starts.back().push_back(start_at(group.sphere.center));
+    }
+    return shared_out(patch, starts, wanted);
+  }
+
+  FittedBall start_at(const Point& center) const { return {center, 0, surface_.signed_distance(center)}; }
+
+  std::vector<Child> shared_out(const Patch& patch, std::span<const std::vector<FittedBall>> starts,
+                                std::size_t wanted) const {
+    const detail::Siblings siblings = detail::fit_siblings(surface_, patch.held, starts, wanted, power_);
+    std::vector<Child> children;
+    for (const FittedBall& ball : siblings.balls) children.push_back({{ball.center, ball.radius + margin_}, {}});
+    for (std::size_t i = 0; i < siblings.owner.size(); ++i) {
+      Patch& own = children[siblings.owner[i]].patch;
+      own.held.push_back(patch.held[i]);
+      own.points.push_back(patch.points[i]);
+    }
+    return children;
+  }
+
+  void close(MergeReport::Level& row) {
+    std::vector<std::vector<Point>> held(patches_.size());
+    for (std::size_t i = 0; i < held.size(); ++i) held[i] = std::move(patches_[i].held);
+    const detail::ClosingReport closed = detail::close_level(tree_, surface_, held, power_);
+    for (std::size_t i = 0; i < held.size(); ++i) {
+      patches_[i].points.resize(held[i].size(), kNone);
+      patches_[i].held = std::move(held[i]);
+    }
+    if (row.rounds == 0) row.spots = closed.spots;
+    row.rounds += closed.rounds;
+    row.growth = std::max(row.growth, closed.growth);
+  }
+
+  // Takes out what the last level can do without and splits its loosest spheres instead, as many as their parents have
+  // room for. Whether anything was split.
+  bool spend_freed_budget(Index level, MergeReport::Level& row) {
+    const Index removed = remove_redundant_nodes(level);
+    row.removed += removed;
+    const std::vector<Index> parents = nodes_of(level - 1);
+    std::vector<std::vector<Child>> families = take_off(level, parents);
+    Index split = 0;
+    fill(families);
+    for (std::size_t i = 0; i < parents.size(); ++i)
+      split += static_cast<Index>(families[i].size()) - tree_.nodes[parents[i]].child_count;
+    row.split += split;
+    append(level, parents, std::move(families));
+    return split > 0;
+  }
+
+  // Points of a node that is gone go to the tightest leaf of those that they have a path to.
+  Index remove_redundant_nodes(Index level) {
+    const std::vector<SphereNode> before = std::move(tree_.nodes);
+    tree_.nodes = before;
+    const Index removed = remove_redundant(tree_, surface_).removed;
+    if (removed == 0) return 0;
+    std::vector<Patch> patches(tree_.nodes.size()), homeless;
+    for (Index i = 0, k = 0; i < before.size(); ++i) {
+      const bool kept = k < tree_.nodes.size() && before[i].level == tree_.nodes[k].level &&
+                        before[i].sphere.center == tree_.nodes[k].sphere.center &&
+                        before[i].sphere.radius == tree_.nodes[k].sphere.radius;
+      if (kept) {
+        patches[k++] = std::move(patches_[i]);
+      } else if (before[i].level == level) {
+        homeless.push_back(std::move(patches_[i]));
+      }
+    }
+    patches_ = std::move(patches);
+    for (const Patch& patch : homeless)
+      for (std::size_t i = 0; i < patch.held.size(); ++i) {
+        Holder best;
+        find_holder(0, patch.held[i], best);
+        if (best.node == kNone) continue;
+        patches_[best.node].held.push_back(patch.held[i]);
+        patches_[best.node].points.push_back(patch.points[i]);
+      }
+    return removed;
+  }
+
+  struct Holder {
+    Index node = kNone;
+    double radius = std::numeric_limits<double>::infinity();
   };
-
-  void join_adjacent_vertices(std::vector<Index>& node_of) {
-    const auto count = static_cast<Index>(members_.items.size());
-    for (Index i = 0; i < count; ++i) node_of[members_.items[i]] = i;
-    for (Index i = 0; i < count; ++i)
-      for (Index neighbor : axis_.neighbors[members_.items[i]])
-        if (node_of[neighbor] != kNone && i < node_of[neighbor]) edges_.push_back({i, node_of[neighbor]});
-    for (Index vertex : members_.items) node_of[vertex] = kNone;
+  void find_holder(Index index, const Point& point, Holder& best) const {
+    const SphereNode& node = tree_.nodes[index];
+    if ((point - node.sphere.center).squaredNorm() > node.sphere.radius * node.sphere.radius) return;
+    if (node.child_count == 0 && node.sphere.radius < best.radius) best = {index, node.sphere.radius};
+    for (Index k = 0; k < node.child_count; ++k) find_holder(node.first_child + k, point, best);
   }
 
-  // O(n^2), for the few points of fewer vertices than a node has children.
-  void join_near_points() {
-    const auto count = static_cast<Index>(members_.items.size());
-    std::vector<std::pair<double, Index>> near;
-    for (Index i = 0; i < count; ++i) {
-      near.clear();
-      for (Index k = 0; k < count; ++k)
-        if (k != i)
-          near.emplace_back((axis_.points[members_.items[k]] - axis_.points[members_.items[i]]).squaredNorm(), k);
-      const auto some = static_cast<std::ptrdiff_t>(std::min(kNearPoints, near.size()));
-      std::partial_sort(near.begin(), near.begin() + some, near.end());
-      for (std::ptrdiff_t k = 0; k < some; ++k) {
-        const Index other = near[static_cast<std::size_t>(k)].second;
-        edges_.push_back({std::min(i, other), std::max(i, other)});
+  // The last level, off the tree.
+  std::vector<std::vector<Child>> take_off(Index level, const std::vector<Index>& parents) {
+    std::vector<std::vector<Child>> families(parents.size());
+    for (std::size_t i = 0; i < parents.size(); ++i) {
+      const SphereNode& parent = tree_.nodes[parents[i]];
+      for (Index k = parent.first_child; k != kNone && k < parent.first_child + parent.child_count; ++k)
+        families[i].push_back({tree_.nodes[k].sphere, std::move(patches_[k])});
+    }
+    std::erase_if(tree_.nodes, [&](const SphereNode& node) { return node.level == level; });
+    patches_.resize(tree_.nodes.size());
+    return families;
+  }
+
+  // Splits the loosest spheres, as long as the level has room.
+  void fill(std::vector<std::vector<Child>>& families) const {
+    struct Place {
+      double loose;
+      std::size_t family, child;
+      bool operator<(const Place& other) const {
+        if (loose != other.loose) return loose < other.loose;
+        return family != other.family ? family > other.family : child > other.child;
+      }
+    };
+    std::priority_queue<Place> loosest;
+    Index room = 0;
+    for (std::size_t i = 0; i < families.size(); ++i) {
+      if (!families[i].empty()) room += options_.branching;
+      for (std::size_t k = 0; k < families[i].size(); ++k) {
+        loosest.push({looseness(families[i][k].sphere), i, k});
+        --room;
       }
     }
-    std::sort(edges_.begin(), edges_.end());
-    edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
-  }
-
-  static std::uint64_t key(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
-
-  Index current(Index node) {
-    Index root = node;
-    while (nodes_[root].into != kNone) root = nodes_[root].into;
-    while (nodes_[node].into != kNone) node = std::exchange(nodes_[node].into, root);
-    return root;
-  }
-
-  // The looseness of the sphere around its forming points: how far it stands off the tangent plane at each of them,
-  // where the line through the point along its normal leaves the sphere (Fig. 6.25). The last term is positive where
-  // the centre lies in front of the surface.
-  double cost_of(const Sphere& sphere, const std::vector<Index>& points) const {
-    double worst = 0;
-    for (Index point : points) {
-      const Vector offset = sphere.center - axis_.points[point];
-      const double height = offset.dot(axis_.normals[point]);
-      const double across = std::max(0.0, offset.squaredNorm() - height * height);
-      worst = std::max(worst, std::sqrt(std::max(0.0, sphere.radius * sphere.radius - across)) + height);
-    }
-    return worst;
-  }
-
-  Candidate candidate(Index a, Index b) {
-    std::vector<Index>& points = scratch_;
-    points = nodes_[a].core;
-    points.insert(points.end(), nodes_[b].core.begin(), nodes_[b].core.end());
-    const Sphere sphere = ritter_ball(positions_of(points));
-    return {cost_of(sphere, points), std::min(a, b), std::max(a, b), sphere};
-  }
-
-  const std::vector<Point>& positions_of(const std::vector<Index>& points) {
-    positions_.clear();
-    for (Index point : points) positions_.push_back(axis_.points[point]);
-    return positions_;
-  }
-
-  void merge(const Candidate& pair) {
-    Node& a = nodes_[pair.a];
-    Node& b = nodes_[pair.b];
-    std::vector<Index> core;
-    std::set_union(a.core.begin(), a.core.end(), b.core.begin(), b.core.end(), std::back_inserter(core));
-    a.core = b.core = {};
-    a.into = b.into = static_cast<Index>(nodes_.size());
-    if (core.size() > kCoreDirections) core = extreme_points(core);
-    nodes_.push_back({pair.sphere, std::move(core), kNone});
-    --alive_;
-  }
-
-  std::vector<Index> extreme_points(const std::vector<Index>& points) {
-    std::vector<Index> extreme;
-    for (const Vector& direction : core_directions()) {
-      Index best = points[0];
-      for (Index point : points)
-        if (direction.dot(axis_.points[point]) > direction.dot(axis_.points[best])) best = point;
-      extreme.push_back(best);
-    }
-    std::sort(extreme.begin(), extreme.end());
-    extreme.erase(std::unique(extreme.begin(), extreme.end()), extreme.end());
-    return extreme;
-  }
-
-  // More components than children: the smallest sphere joins the group that it costs least to join.
-  Candidate cheapest_join_of_components() {
-    Index smallest = kNone;
-    for (Index i = 0; i < nodes_.size(); ++i)
-      if (nodes_[i].into == kNone && (smallest == kNone || nodes_[i].sphere.radius < nodes_[smallest].sphere.radius))
-        smallest = i;
-    Candidate best{std::numeric_limits<double>::infinity(), kNone, kNone, {}};
-    for (Index i = 0; i < nodes_.size(); ++i) {
-      if (i == smallest || nodes_[i].into != kNone) continue;
-      const Candidate pair = candidate(smallest, i);
-      if (Dearer()(best, pair)) best = pair;
-    }
-    return best;
-  }
-
-  std::vector<Group> groups() {
-    std::vector<Index> group_of(nodes_.size(), kNone);
-    std::vector<Group> result;
-    for (Index i = 0; i < members_.items.size(); ++i) {
-      const Index root = current(i);
-      if (group_of[root] == kNone) {
-        group_of[root] = static_cast<Index>(result.size());
-        result.push_back({nodes_[root].sphere, {{}, members_.points}});
-      }
-      result[group_of[root]].members.items.push_back(members_.items[i]);
-    }
-    for (Group& group : result) fit(group);
-    return result;
-  }
-
-  // Makes the sphere hold all forming points, with the centre drawn towards the farthest one in shrinking steps (Badoiu
-  // and Clarkson 2003), which takes most of the 5 % that Ritter's ball is too large.
-  void fit(Group& group) {
-    std::vector<Index>& all = scratch_;
-    all = points_of(axis_, group.members);
-    const std::vector<Point>& points = positions_of(all);
-    Point center = group.sphere.center;
-    group.sphere.radius = std::numeric_limits<double>::infinity();
-    for (int pass = 1; pass <= 64; ++pass) {
-      const auto nearer = [&](const Point& p, const Point& q) {
-        return (p - center).squaredNorm() < (q - center).squaredNorm();
-      };
-      const Point& farthest = *std::max_element(points.begin(), points.end(), nearer);
-      const double radius = (farthest - center).norm() * (1 + 0x1p-50);
-      if (radius < group.sphere.radius) group.sphere = {center, radius};
-      if (group.members.items.size() == 1) return;  // a medial sphere touches its points as it is
-      center += (farthest - center) * (0.2 / pass);
+    const std::size_t most = std::min<std::size_t>(64, 2 * options_.branching);
+    for (; room > 0 && !loosest.empty();) {
+      const Place at = loosest.top();
+      loosest.pop();
+      if (at.loose <= kTight * surface_.bounding_radius()) return;
+      std::vector<Child>& family = families[at.family];
+      if (family.size() >= most) continue;
+      std::vector<Child> two = halves(family[at.child]);
+      if (two.size() < 2) continue;
+      const double first = looseness(two[0].sphere), second = looseness(two[1].sphere);
+      if (std::max(first, second) > kSplitGain * at.loose) continue;
+      family[at.child] = std::move(two[0]);
+      family.push_back(std::move(two[1]));
+      loosest.push({first, at.family, at.child});
+      loosest.push({second, at.family, family.size() - 1});
+      --room;
     }
   }
 
+  std::vector<Child> halves(const Child& child) const {
+    const std::vector<Point>& held = child.patch.held;
+    if (held.size() < 2 * kPointsPerChild) return {};
+    const Point& center = child.sphere.center;
+    const Point& far = *std::max_element(held.begin(), held.end(), [&](const Point& p, const Point& q) {
+      return (p - center).squaredNorm() < (q - center).squaredNorm();
+    });
+    const std::vector<FittedBall> two{start_at(center), start_at(far + 0.3 * (center - far))};
+    return shared_out(child.patch, {&two, 1}, 2);
+  }
+
+  const Surface& surface_;
   const MedialAxis& axis_;
-  const Members& members_;
-  std::vector<std::array<Index, 2>> edges_;
-  std::vector<Node> nodes_;
-  std::size_t alive_ = 0;
-  std::priority_queue<Candidate, std::vector<Candidate>, Dearer> queue_;
-  std::unordered_set<std::uint64_t> keyed_;  // pairs that were brought up to date; never iterated
-  std::vector<Index> scratch_;
-  std::vector<Point> positions_;
+  const MergeOptions& options_;
+  const double margin_;
+  mutable tbb::enumerable_thread_specific<PartScratch> scratch_;
+  std::vector<std::vector<Index>> vertices_of_;  // each point
+  SphereTree tree_;
+  double power_ = kPowers[0];
+  std::vector<Patch> patches_;  // of each node; empty once it has children
 };
-
-// The sphere of a group never has radius 0, not even around a single point.
-Sphere padded(const Sphere& sphere, double margin) { return {sphere.center, sphere.radius + margin}; }
-
-// Takes vertices apart into their points where they are too few for the children of a loose sphere.
-void take_apart(const MedialAxis& axis, const Surface& surface, const Sphere& sphere, Index branching,
-                Members& members) {
-  if (members.points || members.items.size() >= branching) return;
-  std::vector<Index> points = points_of(axis, members);
-  if (points.size() < kPointsPerChild * branching) return;
-  if (sphere.radius + surface.signed_distance(sphere.center) <= kTight * surface.bounding_radius()) return;
-  members = {std::move(points), true};
-}
 
 }  // namespace
 
 SphereTree merge_tree(const Surface& surface, const MedialAxis& axis, const MergeOptions& options,
-                      const Progress& progress) {
+                      const Progress& progress, MergeReport* report) {
   if (options.branching < 2 || options.branching > 64) throw InputError("branching must lie between 2 and 64");
   if (axis.size() == 0) throw InputError("the medial axis has no vertex: sample the surface more densely");
-  const double margin = tolerance::kCoverMargin * surface.bounding_radius();
-  SphereTree tree;
-  tree.branching = options.branching;
-  tree.nodes.push_back({.sphere = padded(surface.bounding_ball(), margin)});
-  std::vector<Members> members(1);
-  for (Index i = 0; i < axis.size(); ++i) members[0].items.push_back(i);
-  std::vector<Index> node_of(axis.size(), kNone);  // scratch
-  for (Index i = 0; i < tree.nodes.size(); ++i) {
-    if (i % 16 == 0)
-      report_progress(progress, "merging", static_cast<double>(i) / static_cast<double>(tree.nodes.size() + i));
-    const SphereNode node = tree.nodes[i];
-    if (node.level == options.depth || !wants_children(options.refinement, surface, node.sphere)) continue;
-    take_apart(axis, surface, node.sphere, options.branching, members[i]);
-    if (members[i].items.size() < 2) continue;  // a single medial sphere or point stays a leaf
-    std::vector<Group> groups = Merger(axis, members[i], node_of).run(options.branching);
-    tree.nodes[i].first_child = static_cast<Index>(tree.nodes.size());
-    tree.nodes[i].child_count = static_cast<Index>(groups.size());
-    for (Group& group : groups) {
-      tree.nodes.push_back({.sphere = padded(group.sphere, margin), .parent = i, .level = node.level + 1});
-      members.push_back(std::move(group.members));
-    }
-    members[i] = {};
-  }
-  return tree;
+  MergeReport unused;
+  return MergeTree(surface, axis, options).run(progress, report ? *report : unused);
 }
 
 }  // namespace orchard

@@ -6,16 +6,36 @@
 
 namespace orchard {
 
+// How merged spheres come to cover the surface between the forming points.
+enum class MergeClosing {
+  refit,   // least growth: siblings share their parent's points out and are fitted to them; what is uncovered then is
+           // one more point for a sphere to hold, and it is fitted again. The result is conservative.
+  growth,  // as in dissertation 6.3.1: spheres stay as merged, for grow_to_cover() or cover() to grow
+};
+
 struct MergeOptions {
   Index depth = 3;      // levels below the root
   Index branching = 8;  // children of a node at most, 2..64
   Refinement refinement{};
+  MergeClosing closing = MergeClosing::refit;
+};
+
+struct MergeReport {
+  struct Level {
+    Index spheres = 0;
+    Index removed = 0, split = 0;  // redundant spheres, and loose ones in their place
+    Index spots = 0;               // that were uncovered in the first round of closing
+    int rounds = 0;                // of closing
+    double growth = 0;             // by cover() at last, the largest, as a fraction of R
+  };
+  std::vector<Level> levels;  // below the root; with MergeClosing::refit
 };
 
 // Dissertation 6.3: the children of each node are the spheres of the medial vertices merged into it, merged pairwise
-// along the medial axis by least cost until `branching` remain. The spheres hold the forming points, not yet the
-// surface between them: cover() makes the tree conservative. Deterministic.
+// along the medial axis by least cost until `branching` remain. Where a node has fewer vertices than it takes, its
+// surface points are merged in their place. Parallel over the nodes of a level; the result does not depend on the
+// thread count. Throws InputError for a branching out of range or an axis without vertices.
 SphereTree merge_tree(const Surface& surface, const MedialAxis& axis, const MergeOptions& options = {},
-                      const Progress& progress = {});
+                      const Progress& progress = {}, MergeReport* report = nullptr);
 
 }  // namespace orchard

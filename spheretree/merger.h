@@ -1,0 +1,32 @@
+#pragma once
+#include <array>
+#include <span>
+#include <vector>
+
+#include "orchard/medial/axis.h"
+
+namespace orchard::detail {
+
+// What merging starts with: medial vertices, or single surface points, with the surface points that each must hold.
+struct Parts {
+  std::vector<Sphere> spheres;
+  std::vector<std::vector<Index>> points;      // of each, ascending, of the axis
+  std::vector<std::array<Index, 2>> adjacent;  // pairs of parts, the lower first
+};
+
+// Parts merged into one sphere.
+struct MergedParts {
+  Sphere sphere;             // holds the points, but for what the group's core left out
+  std::vector<Index> parts;  // ascending
+};
+
+// Merges parts along their adjacency, by least cost, until targets[i] groups remain, for each i in turn (dissertation
+// 6.3.1); where adjacency runs out first, the smallest group joins the one that it costs least to join. Ties go to the
+// lowest indices. Precondition: targets descend.
+std::vector<std::vector<MergedParts>> merge_parts(const MedialAxis& axis, const Parts& parts,
+                                                  std::span<const std::size_t> targets);
+
+// Draws the sphere to about the smallest that holds the points (Badoiu and Clarkson 2003).
+void shrink_around(const std::vector<Point>& points, Sphere& sphere);
+
+}  // namespace orchard::detail
