@@ -2,6 +2,7 @@
 
 #include <fstream>
 
+#include "build_plot.h"
 #include "commands.h"
 #include "console.h"
 #include "load_solid.h"
@@ -115,6 +116,9 @@ void build(const BuildCommand& command) {
     fs::remove(wrap_file(command));  // of an earlier run: `verify` would take it for this tree's
   }
   write_views(command, surface, result, written);
+  const fs::path plot_file = in_folder(command.folder, command.mesh, "-levels.svg");
+  write_file(plot_file, build_plot(result, surface, command.mesh.stem().string()));
+  written.emplace_back(plot_file, "this report as a plot");
   result.seconds.emplace_back("writing", writing.seconds());
   nlohmann::json report = build_json(surface, command.options, result, wrap_distance);
   add_solid_json(solid, report);

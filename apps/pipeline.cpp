@@ -7,7 +7,6 @@
 #include "orchard/covering/inaccuracy.h"
 #include "orchard/geometry/error.h"
 #include "orchard/spheretree/measure.h"
-#include "orchard/spheretree/merging.h"
 #include "orchard/spheretree/octree.h"
 #include "orchard/spheretree/pack.h"
 #include "orchard/spheretree/redundancy.h"
@@ -17,9 +16,26 @@ namespace orchard::apps {
 namespace {
 
 constexpr double kSamplesPerLeaf = 20;
+constexpr double kGrowthFactor = 1.1;  // of dissertation 6.3.2
 
 bool needs_axis(Method method) { return method == Method::tightened || method == Method::merging; }
-bool has_eight_children(Method method) { return !needs_axis(method); }
+
+// The dissertation's schedule, or a share of it.
+AnnealingOptions annealing_options(const BuildOptions& o) {
+  AnnealingOptions annealing;
+  annealing.depth = o.depth;
+  annealing.branching = o.branching;
+  annealing.energy = o.energy;
+  annealing.refinement = o.refinement;
+  annealing.seed = o.seed;
+  if (o.effort == Effort::high) return annealing;
+  const bool low = o.effort == Effort::low;
+  annealing.most_accepted = annealing.most_rejected = low ? 30 : 60;
+  annealing.iterations_first = low ? 40 : 80;
+  annealing.iterations = low ? 20 : 30;
+  annealing.cooling = low ? 0.8 : 0.85;
+  return annealing;
+}
 
 class Pipeline {
  public:
@@ -30,9 +46,11 @@ class Pipeline {
     stage("octree", [&] { result_.octree = octree(surface_, {.depth = options_.depth}, progress_); });
     if (needs_axis(options_.method)) build_medial_axis();
     build_tree();
-    stage("covering", [&] { result_.cover = cover(result_.tree, surface_, progress_); });
-    if (options_.method == Method::merging && options_.closing != MergeClosing::refit)
-      stage("shrinking", [&] { shrink_balls(result_.tree, surface_, progress_); });
+    stage("covering", [&] {
+      const bool grows = options_.method == Method::merging && options_.closing == MergeClosing::growth;
+      result_.cover = grows ? grow_to_cover(result_.tree, surface_, kGrowthFactor, progress_)
+                            : cover(result_.tree, surface_, progress_);
+    });
     stage("redundant spheres",
           [&] { result_.redundancy = remove_redundant(result_.tree, surface_, Selection::exhaustive, progress_); });
     if (options_.descent > 0)
@@ -63,7 +81,7 @@ class Pipeline {
     const BuildOptions& o = options_;
     switch (o.method) {
       case Method::octree:
-        stage("octree", [&] { result_.tree = octree(surface_, {o.depth, o.refinement}, progress_); });
+        stage("octree", [&] { result_.tree = octree(surface_, {o.depth, o.refinement, o.branching}, progress_); });
         break;
       case Method::merging:
         stage("merging", [&] {
@@ -72,14 +90,8 @@ class Pipeline {
         });
         break;
       case Method::annealing:
-        stage("annealing", [&] {
-          AnnealingOptions annealing;
-          annealing.depth = o.depth;
-          annealing.energy = o.energy;
-          annealing.refinement = o.refinement;
-          annealing.seed = o.seed;
-          result_.tree = annealed_tree(surface_, annealing, progress_, &result_.annealing);
-        });
+        stage("annealing",
+              [&] { result_.tree = annealed_tree(surface_, annealing_options(o), progress_, &result_.annealing); });
         break;
       case Method::tightened:
         stage("tightening", [&] {
@@ -149,9 +161,6 @@ Index samples_needed(const BuildOptions& options) {
 }
 
 BuildResult run_pipeline(const Surface& surface, const BuildOptions& options, const Progress& progress) {
-  if (has_eight_children(options.method) && options.branching != 8)
-    throw InputError(
-        "--branching: octrees and annealed trees have 8 children; use another --method for another number");
   return Pipeline(surface, options, progress).run();
 }
 

@@ -54,9 +54,12 @@ json levels_json(const SphereTree& tree, double bounding_radius, double wrap_dis
                                          {"max_inaccuracy", largest},
                                          {"mean_inaccuracy_over_radius", level.mean_inaccuracy},
                                          {"max_inaccuracy_over_radius", level.max_inaccuracy},
-                                         {"histogram_up_to_max", histogram(tree, static_cast<Index>(i), largest)}});
+                                         {"histogram_up_to_max", histogram(tree, static_cast<Index>(i), largest)},
+                                         {"histogram_bin", largest / kHistogramBins},
+                                         {"histogram_bin_over_radius", level.max_inaccuracy / kHistogramBins}});
     if (octree && i < others.size() && others[i].mean_inaccuracy > 0) {
       row["mean_inaccuracy_over_octree"] = level.mean_inaccuracy / others[i].mean_inaccuracy;
+      row["histogram_bin_over_octree_mean"] = level.max_inaccuracy / others[i].mean_inaccuracy / kHistogramBins;
       row["max_inaccuracy_over_octree"] = level.max_inaccuracy / others[i].max_inaccuracy;
     }
     if (surface && surface->solid()) {
@@ -132,6 +135,7 @@ json build_json(const Surface& surface, const BuildOptions& options, const Build
                        {"branching", options.branching},
                        {"effort", name(options.effort)},
                        {"objective", name(options.objective)},
+                       {"closing", options.closing == MergeClosing::refit ? "refit" : "growth"},
                        {"samples", options.samples.value_or(samples_needed(options))},
                        {"seed", options.seed}};
   if (result.axis) {

@@ -22,6 +22,8 @@ const std::map<std::string, Objective> kObjectives{{"balanced", Objective::balan
                                                    {"mean", Objective::mean},
                                                    {"volume", Objective::volume}};
 
+const std::map<std::string, MergeClosing> kClosings{{"refit", MergeClosing::refit}, {"growth", MergeClosing::growth}};
+
 template <class Value>
 const char* key_of(const std::map<std::string, Value>& names, Value value) {
   for (const auto& [key, candidate] : names)
@@ -79,12 +81,17 @@ void add_tree_options(CLI::App& command, BuildOptions& options) {
       ->capture_default_str();
   command
       .add_option("--branching", options.branching,
-                  "Children of a sphere at most; tightened: on average, up to twice as many")
+                  "Children of a sphere at most; tightened and merging: on average, up to twice as many")
       ->check(CLI::Range(2, 64))
       ->capture_default_str();
-  add_choice(command, "--effort", kEfforts, options.effort, "tightened: how long to search, about 1 : 2 : 15");
+  add_choice(
+      command, "--effort", kEfforts, options.effort,
+      "How long to search: tightened, about 1 : 2 : 15; annealing, about 1 : 3 : 17, high as in the dissertation");
   add_choice(command, "--objective", kObjectives, options.objective,
              "tightened: what to keep low, the maximum or mean inaccuracy, the outside volume, or a balance (default)");
+  add_choice(command, "--closing", kClosings, options.closing,
+             "merging: how spheres come to cover what their points miss: fitted again to it (default), or grown by a "
+             "tenth at a time, as in the dissertation");
   add_choice(command, "--energy", kEnergies, options.energy,
              "annealing: what makes a set of siblings loose, its loosest (default) or all together");
   command.add_option("--descent", options.descent, "Random descent afterwards: trials for each sphere; any method")

@@ -1,5 +1,7 @@
 #include "orchard/spheretree/annealing.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -116,7 +118,7 @@ class Annealer {
         margin_(tolerance::kCoverMargin * surface.bounding_radius()) {}
 
   SphereTree run(const Progress& progress) {
-    tree_.branching = 8;
+    tree_.branching = options_.branching;
     tree_.nodes.push_back({.sphere = surface_.bounding_ball()});
     tree_.nodes[0].sphere.radius += margin_;
     for (Index level = 1; level <= options_.depth; ++level) {
@@ -141,7 +143,7 @@ class Annealer {
       const Vector half = Vector::Constant(ball(parent).radius);
       whole.box = Box(ball(parent).center - half, ball(parent).center + half);
     }
-    const auto octants = occupied_children(surface_, whole);
+    const auto octants = occupied_parts(surface_, whole, options_.branching);
     tree_.nodes[parent].first_child = static_cast<Index>(tree_.nodes.size());
     tree_.nodes[parent].child_count = static_cast<Index>(octants.size());
     const Index level = tree_.nodes[parent].level + 1;
@@ -154,26 +156,64 @@ class Annealer {
 
   std::vector<Index> triangles_on_path(Index node) const {
     std::vector<Index> triangles;
-    surface_.triangles_near(ball(node), triangles);
+    // With room for roundings: a triangle too many does no harm.
+    constexpr double kRoom = 1 + 1e-9;
+    surface_.triangles_near({ball(node).center, kRoom * ball(node).radius}, triangles);
     for (Index above = tree_.nodes[node].parent; above != kNone; above = tree_.nodes[above].parent)
       std::erase_if(triangles, [&](Index triangle) {
         const auto [a, b, c] = surface_.corners(triangle);
-        return closest_point_of_triangle(ball(above).center, a, b, c).distance > ball(above).radius;
+        return closest_point_of_triangle(ball(above).center, a, b, c).distance > kRoom * ball(above).radius;
       });
     return triangles;
   }
 
+  // Children of two parents that no triangle meets both of cannot uncover what the others hold: such parents are
+  // annealed at the same time, each with a cover of its own triangles.
   void anneal_level(Index level, const Progress& progress) {
-    IncrementalCover cover(surface_, path_balls(tree_));
     std::vector<Index> parents;
     for (Index node = 0; node < tree_.nodes.size(); ++node)
       if (tree_.nodes[node].level + 1 == level && tree_.nodes[node].child_count > 0) parents.push_back(node);
-    for (std::size_t i = 0; i < parents.size(); ++i) {
-      const double done = static_cast<double>(i) / static_cast<double>(parents.size());
-      report_progress(progress, "annealing", (level - 1 + done) / options_.depth);
-      Schedule(tree_, parents[i], surface_, options_, cover, report_)
-          .run(level == 1 ? options_.iterations_first : options_.iterations);
+    std::vector<std::vector<Index>> triangles(parents.size());
+    tbb::parallel_for(std::size_t{0}, parents.size(),
+                      [&](std::size_t i) { triangles[i] = triangles_on_path(parents[i]); });
+    std::vector<AnnealingReport> reports(parents.size());
+    std::size_t done = 0;
+    for (const std::vector<std::size_t>& group : apart(triangles)) {
+      report_progress(progress, "annealing",
+                      (level - 1 + static_cast<double>(done) / static_cast<double>(parents.size())) / options_.depth);
+      const std::vector<PathBall> balls = path_balls(tree_);
+      tbb::parallel_for(std::size_t{0}, group.size(), [&](std::size_t k) {
+        const std::size_t i = group[k];
+        IncrementalCover cover(surface_, triangles[i], balls);
+        Schedule(tree_, parents[i], surface_, options_, cover, reports[i])
+            .run(level == 1 ? options_.iterations_first : options_.iterations);
+      });
+      done += group.size();
     }
+    for (const AnnealingReport& one : reports) {
+      report_.changes += one.changes;
+      report_.uncovering += one.uncovering;
+      report_.accepted += one.accepted;
+    }
+  }
+
+  // Splits lists of triangles into groups without a triangle in two lists of a group; each list, in order, goes to the
+  // first group that it can.
+  std::vector<std::vector<std::size_t>> apart(const std::vector<std::vector<Index>>& lists) const {
+    std::vector<std::vector<std::size_t>> groups;
+    std::vector<std::vector<char>> taken;  // by each group
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+      std::size_t group = 0;
+      const auto clash = [&](Index triangle) { return taken[group][triangle] != 0; };
+      while (group < groups.size() && std::any_of(lists[i].begin(), lists[i].end(), clash)) ++group;
+      if (group == groups.size()) {
+        groups.emplace_back();
+        taken.emplace_back(surface_.mesh().triangles.size(), 0);
+      }
+      groups[group].push_back(i);
+      for (Index triangle : lists[i]) taken[group][triangle] = 1;
+    }
+    return groups;
   }
 
   const Surface& surface_;
@@ -184,6 +224,7 @@ class Annealer {
 };
 
 void check(const AnnealingOptions& o) {
+  if (o.branching < 2 || o.branching > 64) throw InputError("branching must lie between 2 and 64");
   if (!(o.least_scale > 0) || !(o.least_scale <= o.greatest_scale) || !(o.move >= 0))
     throw InputError("annealing: moves and scales must be positive, the least scale first");
   if (!(o.cooling > 0) || !(o.cooling < 1) || !(o.first_acceptance > 0) || !(o.first_acceptance < 1))

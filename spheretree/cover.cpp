@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "orchard/covering/coverage.h"
 #include "orchard/geometry/error.h"
@@ -118,6 +119,54 @@ CoverReport cover(SphereTree& tree, const Surface& surface, const Progress& prog
     margin *= 1.5;
   }
   throw Error("cover: " + std::to_string(triangles.size()) + " triangles are still uncovered after " +
+              std::to_string(kMostRounds) + " rounds");
+}
+
+namespace {
+
+// The leaf whose path needs to grow least to hold the point.
+Index nearest_leaf(const SphereTree& tree, const Point& point) {
+  Index best = kNone;
+  double least = std::numeric_limits<double>::infinity();
+  for (Index leaf = 0; leaf < tree.nodes.size(); ++leaf) {
+    if (tree.nodes[leaf].child_count > 0) continue;
+    double outside = 0;
+    for (Index up = leaf; up != kNone; up = tree.nodes[up].parent)
+      outside = std::max(outside, (point - tree.nodes[up].sphere.center).norm() - tree.nodes[up].sphere.radius);
+    if (outside < least) least = outside, best = leaf;
+  }
+  return best;
+}
+
+}  // namespace
+
+CoverReport grow_to_cover(SphereTree& tree, const Surface& surface, double factor, const Progress& progress) {
+  if (!(factor > 1)) throw InputError("growth: the factor must be above 1");
+  CoverReport report;
+  std::vector<Index> triangles(surface.mesh().triangles.size());
+  std::iota(triangles.begin(), triangles.end(), Index{0});
+  for (; report.rounds < kMostRounds; ++report.rounds) {
+    report_progress(progress, "growing", static_cast<double>(report.rounds) / kMostRounds);
+    const Coverage coverage = surface_coverage(surface, triangles, path_balls(tree));
+    if (coverage.complete()) return report;
+    if (report.rounds == 0) report.triangles_uncovered = static_cast<Index>(coverage.uncovered.size());
+    std::vector<char> grows(tree.nodes.size(), 0);
+    triangles.clear();
+    for (const UncoveredTriangle& uncovered : coverage.uncovered) {
+      triangles.push_back(uncovered.triangle);
+      for (const UncoveredArc& arc : uncovered.cover.arcs) grows[arc.ball] = 1;
+      if (!uncovered.cover.arcs.empty()) continue;
+      for (Index up = nearest_leaf(tree, uncovered.cover.witness); up != kNone; up = tree.nodes[up].parent)
+        grows[up] = 1;
+    }
+    for (Index i = 0; i < tree.nodes.size(); ++i) {
+      if (!grows[i]) continue;
+      double& radius = tree.nodes[i].sphere.radius;
+      report.largest_growth = std::max(report.largest_growth, (factor - 1) * radius / surface.bounding_radius());
+      radius *= factor;
+    }
+  }
+  throw Error("growing: " + std::to_string(triangles.size()) + " triangles are still uncovered after " +
               std::to_string(kMostRounds) + " rounds");
 }
 

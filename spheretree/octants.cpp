@@ -46,6 +46,40 @@ Box child_box(const Box& box, int which) {
 
 }  // namespace
 
+namespace {
+
+constexpr int kMostHalvings = 8;  // for each box wanted: where one side of a
+                                  // halved box is empty, there is no box more
+
+void keep_if_occupied(const Surface& surface, const Octant& parent, const Box& box, std::vector<Octant>& parts) {
+  Octant part{box, {}, kNone};
+  for (Index triangle : parent.triangles)
+    if (triangle_meets_box(surface.corners(triangle), box)) part.triangles.push_back(triangle);
+  if (!part.triangles.empty()) parts.push_back(std::move(part));
+}
+
+}  // namespace
+
+std::vector<Octant> occupied_parts(const Surface& surface, const Octant& parent, Index count) {
+  if (count == 8) return occupied_children(surface, parent);
+  std::vector<Octant> parts{parent};
+  for (Index halving = 0; parts.size() < count && halving < kMostHalvings * count; ++halving) {
+    const auto largest = std::max_element(parts.begin(), parts.end(), [](const Octant& a, const Octant& b) {
+      return a.box.diagonal().squaredNorm() < b.box.diagonal().squaredNorm();
+    });
+    const Octant whole = std::move(*largest);
+    parts.erase(largest);
+    int axis = 0;
+    whole.box.sizes().maxCoeff(&axis);
+    Box lower = whole.box, upper = whole.box;
+    lower.max()[axis] = upper.min()[axis] = whole.box.center()[axis];
+    keep_if_occupied(surface, whole, lower, parts);
+    keep_if_occupied(surface, whole, upper, parts);
+    if (parts.empty()) break;
+  }
+  return parts;
+}
+
 std::vector<Octant> occupied_children(const Surface& surface, const Octant& parent) {
   std::vector<Octant> children;
   for (int which = 0; which < 8; ++which) {

@@ -15,4 +15,8 @@ struct Octant {
 // The eight boxes of half the size that meet one of the parent's triangles, or may within rounding.
 std::vector<Octant> occupied_children(const Surface& surface, const Octant& parent);
 
+// Any number of boxes: for eight, occupied_children(); else the largest box is halved across its longest side until
+// `count` occupied ones are there.
+std::vector<Octant> occupied_parts(const Surface& surface, const Octant& parent, Index count);
+
 }  // namespace orchard

@@ -10,9 +10,10 @@
 
 namespace orchard {
 SphereTree octree(const Surface& surface, const OctreeOptions& options, const Progress& progress) {
+  if (options.branching < 2 || options.branching > 64) throw InputError("branching must lie between 2 and 64");
   const double margin = tolerance::kCoverMargin * surface.bounding_radius();
   SphereTree tree;
-  tree.branching = 8;
+  tree.branching = options.branching;
   tree.nodes.push_back({.sphere = surface.bounding_ball()});
   tree.nodes[0].sphere.radius += margin;
   std::vector<Octant> level{{surface.bounding_box(), {}, 0}};
@@ -24,7 +25,7 @@ SphereTree octree(const Surface& surface, const OctreeOptions& options, const Pr
     for (Index i = 0; i < level.size(); ++i) {
       SphereNode& parent = tree.nodes[level[i].node];
       if (!wants_children(options.refinement, surface, parent.sphere)) continue;
-      auto children = occupied_children(surface, level[i]);
+      auto children = occupied_parts(surface, level[i], options.branching);
       parent.first_child = static_cast<Index>(tree.nodes.size());
       parent.child_count = static_cast<Index>(children.size());
       for (Octant& child : children) {

@@ -1,6 +1,7 @@
 #include "orchard/spheretree/annealing.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <tuple>
 
@@ -46,6 +47,33 @@ TEST(AnnealedTree, IsConservativeWithEitherEnergy) {
       for (const SphereNode& node : tree.nodes) EXPECT_LE(node.child_count, 8) << name;
     }
   }
+}
+
+TEST(AnnealedTree, TakesAnyBranching) {
+  const Surface surface(u_shape(0.3));
+  for (const Index branching : {2u, 5u, 12u, 64u}) {
+    AnnealingOptions options = quick(branching == 64 ? 1 : 2);
+    options.branching = branching;
+    const SphereTree tree = annealed_tree(surface, options);
+    EXPECT_EQ(tree.branching, branching);
+    expect_conservative(tree, surface, "U");
+  }
+  AnnealingOptions options = quick();
+  for (const Index branching : {1u, 65u}) {
+    options.branching = branching;
+    EXPECT_THROW(annealed_tree(surface, options), InputError);
+  }
+}
+
+TEST(AnnealedTree, IsTheSameOnOneTwoAndSevenThreads) {
+  const Surface surface(torus(24, 12));
+  std::vector<SphereTree> trees;
+  for (const std::size_t threads : {1u, 2u, 7u}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    trees.push_back(annealed_tree(surface, quick()));
+  }
+  EXPECT_TRUE(same_tree(trees[0], trees[1]));
+  EXPECT_TRUE(same_tree(trees[0], trees[2]));
 }
 
 TEST(AnnealedTree, FitsTighterThanTheOctreeThatItStartsFrom) {

@@ -20,7 +20,8 @@ namespace {
 using namespace test;
 
 SphereTree measured(const Surface& surface, Index branching, Index depth) {
-  SphereTree tree = merge_tree(surface, axis_of(surface), {.depth = depth, .branching = branching});
+  SphereTree tree =
+      merge_tree(surface, axis_of(surface), {.depth = depth, .branching = branching, .closing = MergeClosing::growth});
   cover(tree, surface);
   measure(tree, surface);
   return tree;

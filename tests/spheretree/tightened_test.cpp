@@ -87,7 +87,7 @@ TEST(TightenedTree, FitsTighterThanMerging) {
     const Surface surface(mesh);
     const MedialAxis axis = axis_of(surface, 3000);
     SphereTree tight = tightened_tree(surface, axis, {.depth = 2, .effort = Effort::low});
-    SphereTree merged = merge_tree(surface, axis, {.depth = 2});
+    SphereTree merged = merge_tree(surface, axis, {.depth = 2, .closing = MergeClosing::growth});
     cover(merged, surface);
     measure(tight, surface);
     measure(merged, surface);

@@ -10,7 +10,8 @@ enum class SetEnergy { sum, maximum };
 
 // The numbers of dissertation 5.3.1.
 struct AnnealingOptions {
-  Index depth = 3;  // levels below the root at most; each has up to eight children
+  Index depth = 3;      // levels below the root at most
+  Index branching = 8;  // children of a node at most, 2..64
   SetEnergy energy = SetEnergy::maximum;
   double move = 0.035;        // a translation at most, as a fraction of the parent's radius
   double least_scale = 0.95;  // of a radius in one change
@@ -31,11 +32,14 @@ struct AnnealingReport {
 };
 
 // Dissertation 5.3: simulated annealing of the children of each node, top-down. They start as the octree's on the first
-// level, and below as the octants of the cube around their parent (Fig. 5.8), those that meet the surface. A change
+// level, and below as the octants of the cube around their parent (Fig. 5.8), those that meet the surface; with another
+// branching than 8, as that many boxes. A change
 // moves and scales one child; one that breaks the path rule is undone, others pass by the Metropolis criterion. A
 // ball's energy is Lemma 5.1's distance, radius + signed distance of the centre. Redundant spheres go before they get
-// children (5.3.4). The result is conservative. Temperatures go through exp(), so that results are the same for a seed
-// on any number of threads, but perhaps not with another maths library. Throws InputError unless surface.solid().
+// children (5.3.4). The result is conservative.
+// Parallel over those parents of a level that no triangle meets two of, one such group after the other. Temperatures go
+// through exp(), so that results are the same for a seed on any number of threads, but perhaps not with another maths
+// library. Throws InputError unless surface.solid().
 SphereTree annealed_tree(const Surface& surface, const AnnealingOptions& options = {}, const Progress& progress = {},
                          AnnealingReport* report = nullptr);
 

@@ -15,4 +15,9 @@ struct CoverReport {
 // certificate is still incomplete after a fixed number of rounds.
 CoverReport cover(SphereTree& tree, const Surface& surface, const Progress& progress = {});
 
+// The same as dissertation 6.3.2 has it: in every round, the spheres that have an uncovered boundary in some triangle
+// grow by the factor; where a triangle has none, the nearest leaf and what is above it. cover() grows less, since it
+// grows one path for each spot, and only as far as it must.
+CoverReport grow_to_cover(SphereTree& tree, const Surface& surface, double factor = 1.1, const Progress& progress = {});
+
 }  // namespace orchard
