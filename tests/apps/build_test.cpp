@@ -39,8 +39,9 @@ TEST(Build, WritesTheTreeAndItsReport) {
   EXPECT_EQ(run.err, "");
   EXPECT_NE(run.out.find("conservative"), std::string::npos);
   const auto files = here.files("out");
-  EXPECT_EQ(files.size(), 3u);
-  for (const char* name : {"ball.orchard", "ball.sph", "ball.json"}) EXPECT_TRUE(files.contains(name)) << name;
+  EXPECT_EQ(files.size(), 4u);
+  for (const char* name : {"ball.orchard", "ball.sph", "ball.json", "ball-levels.svg"})
+    EXPECT_TRUE(files.contains(name)) << name;
   const json report = json::parse(files.at("ball.json"));
   EXPECT_TRUE(report["conservative"].get<bool>());
   EXPECT_TRUE(report["repair"]["lines"].empty());
@@ -202,7 +203,7 @@ TEST(Build, WritesTheSameBytesTwiceAndOnAnyNumberOfThreads) {
     return files;
   };
   const auto first = trees("first", "1");
-  EXPECT_EQ(first.size(), 2u);
+  EXPECT_EQ(first.size(), 3u);
   EXPECT_EQ(first, trees("second", "1"));
   EXPECT_EQ(first, trees("third", "3"));
 }
