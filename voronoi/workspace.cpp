@@ -91,7 +91,8 @@ Sign Workspace::doubtful_sign(Index v, const Point& q, double bound) {
 }
 
 bool Workspace::share_sphere(VoronoiVertex& vertex, std::uint8_t& error, Index v, const Point& new_point) const {
-  if (!(std::abs(power(v, new_point)) <= power_bound(v))) return false;  // nor at infinity
+  const double sphere = kSphereNoise * noise_ * std::sqrt(vertices[v].radius);
+  if (!(std::abs(power(v, new_point)) <= std::min(sphere, power_bound(v)))) return false;  // nor at infinity
   if (!settled(v) || poor(vertices[v], state_[v] >> 2)) return false;
   vertex.center = vertices[v].center;
   vertex.radius = vertices[v].radius;

@@ -128,6 +128,10 @@ class Workspace {
   std::array<double, 64> bounds_{};                    // by error class
   double squared_scale_ = 1, per_smallest_bound_ = 1;  // powers of two, so that scaled input is treated exactly alike
   static constexpr double kThin = 0x1p-24;  // how far the noise may turn a facet of a good vertex, in radians
+  // How many times the noise a point may be off a sphere that it is taken to be on: the sphere's centre magnifies the
+  // noise of its own points. More, up to the error bound, would make chance a rule where many spheres nearly agree, as
+  // those within a torus do.
+  static constexpr double kSphereNoise = 0x1p12;
   bool exact_ = false;
   double noise_ = 0;        // how far off an input point may be
   double good_center_ = 0;  // an error bound below this many squared radii
