@@ -65,8 +65,14 @@ bool Inserter::insert(Index point) {
 
 bool Inserter::insert_deferred() {
   if (deferred_.empty()) return true;
-  while (!deferred_.empty())
-    if (std::erase_if(deferred_, [this](Index point) { return insert_now(point); }) == 0) return false;
+  while (!deferred_.empty()) {
+    if (std::erase_if(deferred_, [this](Index point) { return insert_now(point); }) > 0) continue;
+    // Nothing else helps: the constrained search may overrule what seems certain, and the test below judges.
+    cavity_.begin(deferred_.back());
+    const Point q = workspace_.points[deferred_.back()];
+    insert_constrained(locate(q), q);
+    deferred_.pop_back();
+  }
   return workspace_.exact() || spheres_are_empty();
 }
 
@@ -102,6 +108,12 @@ bool Inserter::insert_now(Index point) {
     if (!workspace_.exact()) return insert_with_doubts(point, q);
     cavity_.begin(point);
   }
+  insert_constrained(start, q);
+  return true;
+}
+
+// By one of the searches that always find a ball, whatever signs it overrules. To be called after Cavity::begin.
+void Inserter::insert_constrained(Index start, const Point& q) {
   if (search_ == Search::inagaki)
     search_breadth_first(climb(start, q), q);
   else
@@ -111,7 +123,6 @@ bool Inserter::insert_now(Index point) {
   cavity_.place_vertices();
   if (!cavity_.link_vertices()) throw Error("internal: the deleted Voronoi vertices do not form a ball");
   finish();
-  return true;
 }
 
 // Without looking at values: right where every sign is certain. A vertex whose sign is in doubt counts as not nearer to

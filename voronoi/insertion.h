@@ -36,8 +36,8 @@ class Inserter {
   // it was, where too many do: then the input is near to degenerate, but not so near that rounding could be the
   // reason. To be done again with exact signs from the start. Bowyer's search returns false where its premises fail.
   bool insert(Index point);
-  // To be called at the end; false, as above, if there are points that do not fit even now, or only at the price of
-  // the diagram's accuracy.
+  // To be called at the end; false, as above, if there are points that do not fit even now but at the price of the
+  // diagram's accuracy.
   bool insert_deferred();
   const InsertionCounts& counts() const { return counts_; }
   const char* failure() const { return failure_; }  // why insert() returned false
@@ -52,6 +52,7 @@ class Inserter {
   };
 
   bool insert_now(Index point);
+  void insert_constrained(Index start, const Point& q);
   bool too_doubtful() const;
   bool spheres_are_empty() const;
   Index locate(const Point& q) const;
