@@ -12,10 +12,6 @@ namespace {
 // exact signs.
 constexpr std::uint64_t kDoubtfulAtMost = 16, kDoubtfulOneIn = 256;
 
-// How deep in a vertex's sphere a neighbour's point may lie once deferred points are in, in terms of the points' size.
-// Where that is more, a contradiction came of an earlier mistake.
-constexpr double kDepthAtMost = 0x1p-33;
-
 }  // namespace
 
 bool Inserter::start(const std::array<Index, 4>& points) {
@@ -64,30 +60,26 @@ bool Inserter::insert(Index point) {
 }
 
 bool Inserter::insert_deferred() {
-  if (deferred_.empty()) return true;
+  const bool some = !deferred_.empty();
   while (!deferred_.empty()) {
     if (std::erase_if(deferred_, [this](Index point) { return insert_now(point); }) > 0) continue;
-    // Nothing else helps: the constrained search may overrule what seems certain, and the test below judges.
-    cavity_.begin(deferred_.back());
-    const Point q = workspace_.points[deferred_.back()];
-    insert_constrained(locate(q), q);
+    if (!insert_overruling(deferred_.back())) return false;
     deferred_.pop_back();
   }
-  return workspace_.exact() || spheres_are_empty();
+  return workspace_.exact() || search_ != Search::highest_first || spheres_are_empty(!some);
 }
 
-// Delaunay's lemma: if no sphere holds the points of the neighbours, none holds any point.
-bool Inserter::spheres_are_empty() const {
-  const double depth = kDepthAtMost * workspace_.scale();
+// Delaunay's lemma: if no sphere holds the points of the neighbours, and the hull is convex, none holds any point. The
+// spheres at infinity are those of the hull: there mistakes happen without a contradiction, for its facets may be thin.
+bool Inserter::spheres_are_empty(bool of_hull_alone) const {
   for (Index v = 0; v < workspace_.vertices.size(); ++v) {
-    if (workspace_.is_free(v)) continue;
+    if (workspace_.is_free(v) || (of_hull_alone && !workspace_.at_infinity(v))) continue;
     for (const Index u : workspace_.vertices[v].neighbors) {
       const VoronoiVertex& neighbor = workspace_.vertices[u];
       const auto back = std::find(neighbor.neighbors.begin(), neighbor.neighbors.end(), v) - neighbor.neighbors.begin();
       const Index across = neighbor.forming_points[static_cast<std::size_t>(back)];
       if (across == kInfinitePoint) continue;
-      const Point& q = workspace_.points[across];
-      if (workspace_.value(v, q) > depth && workspace_.sign(v, q) == Sign::positive) return false;
+      if (workspace_.well_within(v, workspace_.points[across])) return false;
     }
   }
   return true;
@@ -109,6 +101,19 @@ bool Inserter::insert_now(Index point) {
     cavity_.begin(point);
   }
   insert_constrained(start, q);
+  return true;
+}
+
+// Where nothing else helps: the constrained search may overrule what seems certain, as long as all new vertices are
+// oriented positively; spheres_are_empty() judges then.
+bool Inserter::insert_overruling(Index point) {
+  const Point q = workspace_.points[point];
+  cavity_.begin(point);
+  search_highest_first(locate(q), q);
+  cavity_.note_facets();
+  if (!cavity_.place_vertices() || cavity_.worst_placing() > Placing::thin || !cavity_.link_vertices()) return false;
+  ++counts_.constrained;
+  finish();
   return true;
 }
 

@@ -52,9 +52,10 @@ class Inserter {
   };
 
   bool insert_now(Index point);
+  bool insert_overruling(Index point);
   void insert_constrained(Index start, const Point& q);
   bool too_doubtful() const;
-  bool spheres_are_empty() const;
+  bool spheres_are_empty(bool of_hull_alone) const;
   Index locate(const Point& q) const;
   Index walk(const Point& q) const;
   Index highest_nearby(Index v, const Point& q) const;

@@ -105,11 +105,35 @@ Sign Workspace::sign_from_points(Index v, const Point& q) const {
   return inside_sphere(q, points[corner[0]], points[corner[1]], points[corner[2]], points[corner[3]]);
 }
 
+bool Workspace::well_within(Index v, const Point& q) {
+  const double depth = value(v, q);
+  if (!(depth > 0)) return false;
+  settle(v);
+  if (at_infinity(v)) return beyond_plane(v, q);
+  if (power(v, q) > kWell * power_bound(v)) return true;
+  return depth > kDepth * scale() && sign_from_points(v, q) == Sign::positive;
+}
+
+// A thin facet's own normal tells nothing; whether the four points are coplanar does.
+bool Workspace::beyond_plane(Index v, const Point& q) const {
+  const auto& corner = vertices[v].forming_points;
+  const Vector a = points[corner[0]] - q, b = points[corner[1]] - q, c = points[corner[2]] - q;
+  const double largest_face = std::sqrt(std::max({a.cross(b).squaredNorm(), b.cross(c).squaredNorm(),
+                                                  c.cross(a).squaredNorm(), (b - a).cross(c - a).squaredNorm()}));
+  const Determinant volume6 = volume(a, b, c);
+  return -volume6.value > volume6.bound + kWell * noise_ * largest_face;
+}
+
+// How far the height of a point beyond the facet of a vertex at infinity may be off.
+double Workspace::infinity_bound(Index v, const Vector& from_corner) const {
+  return from_corner.lpNorm<1>() * (power_bound(v) / squared_scale_) + 2 * noise_;
+}
+
 Sign Workspace::sign_at_infinity(Index v, const Point& q) {
   const VoronoiVertex& vertex = vertices[v];
   const Vector a = points[vertex.forming_points[0]] - q;
   const double height = -vertex.center.dot(a);
-  const double bound = a.lpNorm<1>() * (power_bound(v) / squared_scale_) + 2 * noise_;
+  const double bound = infinity_bound(v, a);
   if (height > bound) return Sign::positive;
   if (height < -bound) return Sign::negative;
   if (exact_) {

@@ -65,6 +65,10 @@ class Workspace {
   // The same where the stored centre does not tell.
   Sign doubtful_sign(Index v, const Point& q, double bound);
 
+  // Whether q lies deeper in the vertex's sphere, or farther beyond its facet, than rounding and the input's noise
+  // explain by a wide margin.
+  bool well_within(Index v, const Point& q);
+
   // The dissertation's value of a deletion: distance to the forming points minus distance to q; at infinity the limit
   // of that along the unbounded edge, which is the distance of q beyond the facet.
   double value(Index v, const Point& q) const;
@@ -118,6 +122,8 @@ class Workspace {
   }
 
  private:
+  bool beyond_plane(Index v, const Point& q) const;
+  double infinity_bound(Index v, const Vector& from_corner) const;
   Sign sign_at_infinity(Index v, const Point& q);
   Sign sign_from_points(Index v, const Point& q) const;
   std::uint8_t error_class(double bound) const;
@@ -132,6 +138,8 @@ class Workspace {
   // noise of its own points. More, up to the error bound, would make chance a rule where many spheres nearly agree, as
   // those within a torus do.
   static constexpr double kSphereNoise = 0x1p12;
+  static constexpr double kWell = 4;         // error bounds that make "well within"
+  static constexpr double kDepth = 0x1p-33;  // and where they are wide: how deep a point may lie, in terms of scale()
   bool exact_ = false;
   double noise_ = 0;        // how far off an input point may be
   double good_center_ = 0;  // an error bound below this many squared radii
