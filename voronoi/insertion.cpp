@@ -63,7 +63,7 @@ bool Inserter::insert_deferred() {
   const bool some = !deferred_.empty();
   while (!deferred_.empty()) {
     if (std::erase_if(deferred_, [this](Index point) { return insert_now(point); }) > 0) continue;
-    if (!insert_overruling(deferred_.back())) return false;
+    if (!insert_by_value(deferred_.back(), workspace_.points[deferred_.back()], true)) return false;
     deferred_.pop_back();
   }
   return workspace_.exact() || search_ != Search::highest_first || spheres_are_empty(!some);
@@ -101,19 +101,6 @@ bool Inserter::insert_now(Index point) {
     cavity_.begin(point);
   }
   insert_constrained(start, q);
-  return true;
-}
-
-// Where nothing else helps: the constrained search may overrule what seems certain, as long as all new vertices are
-// oriented positively; spheres_are_empty() judges then.
-bool Inserter::insert_overruling(Index point) {
-  const Point q = workspace_.points[point];
-  cavity_.begin(point);
-  search_highest_first(locate(q), q);
-  cavity_.note_facets();
-  if (!cavity_.place_vertices() || cavity_.worst_placing() > Placing::thin || !cavity_.link_vertices()) return false;
-  ++counts_.constrained;
-  finish();
   return true;
 }
 
@@ -156,11 +143,16 @@ bool Inserter::insert_directly(Index start, const Point& q) {
 // decides, as long as it overrules no sign that is certain.
 bool Inserter::insert_with_doubts(Index point, const Point& q) {
   if (too_doubtful()) return false;
-  if (insert_exactly(point, q)) return true;
+  return insert_exactly(point, q) || insert_by_value(point, q, false);
+}
+
+// By the constrained search if all new vertices are oriented positively. Where nothing else helps it may overrule signs
+// that seem certain; spheres_are_empty() judges then.
+bool Inserter::insert_by_value(Index point, const Point& q, bool may_overrule) {
   const Index start = locate(q);
   cavity_.begin(point);
   search_highest_first(start, q);
-  if (!respects_certain_signs(q)) return false;
+  if (!may_overrule && !respects_certain_signs(q)) return false;
   cavity_.note_facets();
   if (!cavity_.place_vertices() || cavity_.worst_placing() > Placing::thin || !cavity_.link_vertices()) return false;
   ++counts_.constrained;

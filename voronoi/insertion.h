@@ -52,7 +52,7 @@ class Inserter {
   };
 
   bool insert_now(Index point);
-  bool insert_overruling(Index point);
+  bool insert_by_value(Index point, const Point& q, bool may_overrule);
   void insert_constrained(Index start, const Point& q);
   bool too_doubtful() const;
   bool spheres_are_empty(bool of_hull_alone) const;
