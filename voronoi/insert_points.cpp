@@ -21,7 +21,7 @@ std::vector<bool> forming(const VoronoiDiagram& diagram, std::size_t point_count
   return present;
 }
 
-// Inserts the points in the order; false if the signs contradict each other.
+// Inserts the points in the order; false if the signs contradict each other, or the diagram fails its final test.
 bool insert_in_order(Workspace& workspace, std::span<const Index> order, InsertionReport& report) {
   detail::Inserter inserter(workspace, detail::Search::highest_first);
   std::size_t next = 0;
@@ -30,6 +30,7 @@ bool insert_in_order(Workspace& workspace, std::span<const Index> order, Inserti
     return next == order.size() && inserter.insert_deferred();
   };
   if (!run()) {
+    if (next == order.size()) return false;  // what is wrong is in the diagram already
     // With exact signs from here on. An exact diagram of the old points never needs the constrained search then.
     workspace.set_exact(true);
     report.exact_signs = true;
