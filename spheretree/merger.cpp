@@ -49,7 +49,7 @@ class Merger {
  public:
   Merger(const MedialAxis& axis, const Parts& parts)
       : axis_(axis), edges_(parts.adjacent), count_(static_cast<Index>(parts.spheres.size())), alive_(count_) {
-    nodes_.reserve(2 * count_);
+    nodes_.reserve(2 * std::size_t{count_});
     for (Index i = 0; i < count_; ++i) nodes_.push_back({parts.spheres[i], parts.points[i], kNone});
   }
 

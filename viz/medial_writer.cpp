@@ -113,12 +113,8 @@ void write_medial_grid(const std::filesystem::path& vtu, const MedialAxis& axis,
 }
 
 void write_thickness(const std::filesystem::path& vtp, const Surface& surface, const std::vector<double>& radii) {
-  const TriangleMesh& mesh = surface.mesh();
   vtkNew<vtkPolyData> data;
-  set_points(data, mesh.vertices.size(), [&](std::size_t i) { return mesh.vertices[i]; });
-  vtkNew<vtkCellArray> triangles;
-  for (const auto& triangle : mesh.triangles) add_cell(triangles, triangle);
-  data->SetPolys(triangles);
+  set_mesh(data, surface.mesh());
   add_doubles(data->GetPointData(), "medial_radius", radii.size(), [&](std::size_t i) { return radii[i]; });
   add_doubles(data->GetPointData(), "thickness", radii.size(), [&](std::size_t i) { return 2 * radii[i]; });
   write(vtp, data);

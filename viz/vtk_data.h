@@ -56,6 +56,13 @@ inline void add_cell(vtkCellArray* cells, std::span<const Index> corners) {
   for (const Index corner : corners) cells->InsertCellPoint(static_cast<vtkIdType>(corner));
 }
 
+inline void set_mesh(vtkPolyData* data, const TriangleMesh& mesh) {
+  set_points(data, mesh.vertices.size(), [&](std::size_t i) { return mesh.vertices[i]; });
+  vtkNew<vtkCellArray> triangles;
+  for (const auto& triangle : mesh.triangles) add_cell(triangles, triangle);
+  data->SetPolys(triangles);
+}
+
 // One vertex cell per point, so that points are drawn without a filter.
 inline void set_vertex_cells(vtkPolyData* data) {
   vtkNew<vtkCellArray> cells;

@@ -94,10 +94,7 @@ std::vector<int> branches(const SphereTree& tree) {
 void write_mesh(const std::filesystem::path& vtp, const Surface& surface) {
   const TriangleMesh& mesh = surface.mesh();
   vtkNew<vtkPolyData> data;
-  set_points(data, mesh.vertices.size(), [&](std::size_t i) { return mesh.vertices[i]; });
-  vtkNew<vtkCellArray> triangles;
-  for (const auto& triangle : mesh.triangles) add_cell(triangles, triangle);
-  data->SetPolys(triangles);
+  set_mesh(data, mesh);
   add_ints(data->GetCellData(), "cluster", mesh.triangles.size(),
            [&](std::size_t i) { return as_int(surface.clusters().of_triangle[i]); });
   add_doubles(data->GetFieldData(), "bounding_radius", 1, [&](std::size_t) { return surface.bounding_radius(); });

@@ -8,6 +8,7 @@
 
 #include "orchard/covering/boundary_lemma.h"
 #include "orchard/geometry/random.h"
+#include "support/path_rule.h"
 
 namespace orchard::test {
 
@@ -19,17 +20,6 @@ inline Vector random_vector(Random& random, double size = 1) {
 
 inline Triangle random_triangle(Random& random) {
   return {random_vector(random), random_vector(random), random_vector(random)};
-}
-
-// Closed sets, no tolerance: what the certificate promises.
-inline bool in_some_path_region(const Point& point, std::span<const PathBall> balls) {
-  std::vector<char> inside(balls.size(), 0);
-  for (std::size_t i = 0; i < balls.size(); ++i) {
-    inside[i] =
-        (balls[i].parent == kNone || inside[balls[i].parent]) && (point - balls[i].center).norm() <= balls[i].radius;
-    if (inside[i] && balls[i].leaf) return true;
-  }
-  return false;
 }
 
 inline Point point_of(const Triangle& t, double u, double v) {

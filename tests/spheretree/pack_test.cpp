@@ -13,6 +13,7 @@
 #include "orchard/spheretree/merging.h"
 #include "orchard/spheretree/octree.h"
 #include "support.h"
+#include "support/path_rule.h"
 
 namespace orchard {
 namespace {
@@ -103,16 +104,6 @@ TEST(Pack, ListsEachTriangleInEveryLeafThatTouchesIt) {
   }
 }
 
-bool has_path(const std::vector<PathBall>& balls, const Point& point) {
-  std::vector<char> inside(balls.size(), 0);
-  for (std::size_t i = 0; i < balls.size(); ++i) {
-    inside[i] =
-        (balls[i].parent == kNone || inside[balls[i].parent]) && (point - balls[i].center).norm() <= balls[i].radius;
-    if (inside[i] && balls[i].leaf) return true;
-  }
-  return false;
-}
-
 // A damaged tree may still be conservative, where other paths cover: sampling decides what must be rejected.
 TEST(Certify, RejectsEveryDamagedTreeThatLeavesASampleWithoutAPath) {
   const Surface surface(torus(24, 12));
@@ -130,8 +121,8 @@ TEST(Certify, RejectsEveryDamagedTreeThatLeavesASampleWithoutAPath) {
         damaged.blocks[block].x[lane] += 0.3f;
       }
       const auto balls = path_balls(damaged);
-      const bool hole =
-          std::any_of(samples.begin(), samples.end(), [&](const Point& p) { return !has_path(balls, p - origin); });
+      const bool hole = std::any_of(samples.begin(), samples.end(),
+                                    [&](const Point& p) { return !in_some_path_region(p - origin, balls); });
       must_reject += hole;
       if (hole) {
         EXPECT_FALSE(certify(surface, damaged).complete()) << block << ", " << lane;

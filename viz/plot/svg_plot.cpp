@@ -150,6 +150,12 @@ void draw_frame(std::ostream& out, const Plot& plot, const Axis& x, const Axis& 
   out << "</g>\n";
 }
 
+// Where the last bar ends: it is as wide, as drawn, as the first one.
+double end_of_bars(const std::vector<double>& x, bool log) {
+  const double last = x[x.size() - 1], before = x[x.size() - 2];
+  return log ? last * last / before : last + (last - before);
+}
+
 void draw(std::ostream& out, const Plot& plot) {
   Axis x(plot.log_x, kLeft, kWidth - kRight), y(plot.log_y, kHeight - kBottom, kTop);
   for (const Series& series : plot.series) {
@@ -158,7 +164,9 @@ void draw(std::ostream& out, const Plot& plot) {
       x.see(series.x[i]);
       y.see(series.y[i]);
     }
-    if (series.kind == Series::Kind::bars && !plot.log_y) y.see(0);
+    if (series.kind != Series::Kind::bars) continue;
+    if (!plot.log_y) y.see(0);
+    if (series.x.size() > 1) x.see(end_of_bars(series.x, plot.log_x));
   }
   for (const double level : plot.levels) y.see(level);
   if (!plot.x_names.empty()) x.see(0), x.see(static_cast<double>(plot.x_names.size() - 1));
