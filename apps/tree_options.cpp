@@ -34,6 +34,7 @@ const char* key_of(const std::map<std::string, Value>& names, Value value) {
 template <class Value>
 std::vector<std::string> keys(const std::map<std::string, Value>& names) {
   std::vector<std::string> list;
+  list.reserve(names.size());
   for (const auto& entry : names) list.push_back(entry.first);
   return list;
 }

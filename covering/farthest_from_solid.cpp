@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "orchard/covering/inaccuracy.h"
@@ -15,7 +16,8 @@ constexpr double kFinest = 1e-6;
 struct Cell {
   double upper;
   Point center;
-  double half;  // of the side
+  double half;    // of the side
+  Point nearest;  // of the surface, to about the centre
 };
 bool less_promising(const Cell& a, const Cell& b) { return a.upper < b.upper; }
 
@@ -47,7 +49,7 @@ class Search {
     everywhere_ = distance_bound(center, ball_.radius);
     best_ = std::max(0.0, center);
     anchor_ = nearest.position;
-    if (everywhere_ > best_ && everywhere_ > limit_) evaluate(ball_.center, ball_.radius);
+    if (everywhere_ > best_ && everywhere_ > limit_) evaluate(ball_.center, ball_.radius, anchor_);
   }
   bool open() const { return !cells_.empty() && evaluations_ < kMostEvaluations; }
   Bounds bounds() const {
@@ -62,7 +64,7 @@ class Search {
     cells_.pop_back();
     for (int octant = 0; octant < 8; ++octant) {
       const Vector step((octant & 1) ? 1 : -1, (octant & 2) ? 1 : -1, (octant & 4) ? 1 : -1);
-      evaluate(cell.center + cell.half / 2 * step, cell.half / 2);
+      evaluate(cell.center + cell.half / 2 * step, cell.half / 2, cell.nearest);
     }
   }
 
@@ -71,12 +73,15 @@ class Search {
     return std::max({tolerance_.of_radius * radius_, tolerance_.of_distance * best_, kFinest * radius_});
   }
 
-  void evaluate(const Point& center, double half) {
+  // `known`: a point of the surface; often it does.
+  void evaluate(const Point& center, double half, const Point& known) {
     // The representative is the cube's centre, drawn into the ball: every point of the part inside the ball is as near
     // to it as to the centre, since drawing points into a convex set brings them no farther from its points.
     const Vector out = center - ball_.center;
     const double away = out.norm(), reach = half * kHalfDiagonal;
     if (away > ball_.radius + reach) return;
+    const double bound = std::min(farthest(known, center, half), everywhere_) * (1 + 1e-12);
+    if (does_not_matter(bound)) return;
     const Point sample = away > ball_.radius ? Point(ball_.center + out * (ball_.radius / away)) : center;
     ++evaluations_;
     ClosestPoint nearest;
@@ -85,20 +90,42 @@ class Search {
     const double upper = std::min({value + reach, farthest(nearest.position, center, half),
                                    farthest(anchor_, center, half), everywhere_}) *
                          (1 + 1e-12);
-    if (upper <= limit_ || (limit_ < 0 && upper <= best_ + 0.5 * width())) {
-      dropped_ = std::max(dropped_, upper);
-      return;
-    }
-    cells_.push_back({upper, center, half});
+    if (does_not_matter(upper)) return;
+    cells_.push_back({upper, center, half, nearest.position});
     std::push_heap(cells_.begin(), cells_.end(), less_promising);
+  }
+
+  // A cell that cannot matter is dropped, but its bound counts towards the answer's.
+  bool does_not_matter(double upper) {
+    if (upper > limit_ && (limit_ >= 0 || upper > best_ + 0.5 * width())) return false;
+    dropped_ = std::max(dropped_, upper);
+    return true;
   }
 
   // The largest distance from y to a point of both the cube and the ball, or more.
   double farthest(const Point& y, const Point& center, double half) const {
     const Vector corner = (y - center).cwiseAbs() + Vector::Constant(half);
-    return std::min(corner.norm(), (y - ball_.center).norm() + ball_.radius);
+    return std::min({corner.norm(), (y - ball_.center).norm() + ball_.radius, farthest_in_cone(y, center, half)});
   }
 
+  // The same over the part of the ball that a cone around the cube leaves between two spheres. Where the cube lies at
+  // the ball's rim across from y, this is above the truth by the square of the cube's size only.
+  double farthest_in_cone(const Point& y, const Point& center, double half) const {
+    const Vector out = center - ball_.center, to_y = y - ball_.center;
+    const double away = out.norm(), reach = half * kHalfDiagonal, length = to_y.norm();
+    if (away <= reach) return std::numeric_limits<double>::infinity();
+    const double angle = std::atan2(out.cross(to_y).norm(), out.dot(to_y)) + std::asin(reach / away);
+    const double half_chord = std::sin(std::min(angle, kPi) / 2);
+    // The squared distance is convex in the distance from the ball's centre: the ends suffice.
+    const auto squared = [&](double r) {
+      return (r - length) * (r - length) + 4 * r * length * half_chord * half_chord;
+    };
+    const double nearest = away - reach, farthest = std::min(away + reach, ball_.radius);
+    return std::sqrt(std::max(squared(nearest), squared(farthest))) + kRounding * (away + reach + length);
+  }
+
+  static constexpr double kPi = 3.14159265358979323846;
+  static constexpr double kRounding = 1e-13;  // of the lengths in a bound: a few hundred times what they are off by
   static constexpr double kHalfDiagonal = 1.7320508075688774;
   const Surface& surface_;
   const Sphere ball_;

@@ -13,6 +13,7 @@ namespace {
 struct Cell {
   double upper;
   std::array<Vector, 3> corners;
+  Point nearest;  // of the surface, to the middle
 };
 bool less_promising(const Cell& a, const Cell& b) { return a.upper < b.upper; }
 
@@ -37,13 +38,13 @@ class Search {
     if (everywhere <= 0 || sphere_.radius <= 0) return {0, std::max(0.0, everywhere)};
     anchor_ = nearest.position;
     upper_everywhere_ = everywhere;
-    for (const auto& face : octahedron()) evaluate(face);
+    for (const auto& face : octahedron()) evaluate(face, anchor_);
     while (!cells_.empty() && evaluations_ < kMostEvaluations) {
       if (cells_.front().upper <= best_ + width()) break;
       std::pop_heap(cells_.begin(), cells_.end(), less_promising);
       const Cell cell = cells_.back();
       cells_.pop_back();
-      split(cell.corners);
+      split(cell.corners, cell.nearest);
     }
     const double open = cells_.empty() ? 0 : cells_.front().upper;
     return {best_, std::min(everywhere, std::max({best_, dropped_, open}))};
@@ -57,37 +58,42 @@ class Search {
 
   static std::vector<std::array<Vector, 3>> octahedron() {
     std::vector<std::array<Vector, 3>> faces;
+    faces.reserve(8);
     for (int sign = 0; sign < 8; ++sign)
       faces.push_back(
           {Vector((sign & 1) ? 1 : -1, 0, 0), Vector(0, (sign & 2) ? 1 : -1, 0), Vector(0, 0, (sign & 4) ? 1 : -1)});
     return faces;
   }
 
-  void split(const std::array<Vector, 3>& c) {
+  void split(const std::array<Vector, 3>& c, const Point& known) {
     const Vector ab = (c[0] + c[1]).normalized(), bc = (c[1] + c[2]).normalized(), ca = (c[2] + c[0]).normalized();
-    evaluate({c[0], ab, ca});
-    evaluate({c[1], bc, ab});
-    evaluate({c[2], ca, bc});
-    evaluate({ab, bc, ca});
+    evaluate({c[0], ab, ca}, known);
+    evaluate({c[1], bc, ab}, known);
+    evaluate({c[2], ca, bc}, known);
+    evaluate({ab, bc, ca}, known);
   }
 
-  void evaluate(const std::array<Vector, 3>& corners) {
-    ++evaluations_;
+  // `known`: a point of the surface; often it tells that the cell does not matter.
+  void evaluate(const std::array<Vector, 3>& corners, const Point& known) {
     const Vector middle = (corners[0] + corners[1] + corners[2]).normalized();
     double chord = 0;
     for (const Vector& corner : corners) chord = std::max(chord, (corner - middle).norm());
+    if (does_not_matter(std::min(farthest(known, middle, chord), upper_everywhere_) * (1 + 1e-12))) return;
+    ++evaluations_;
     ClosestPoint nearest;
     const double value = surface_.signed_distance(sphere_.center + sphere_.radius * middle, nearest);
     best_ = std::max(best_, value);
     const double upper = std::min({value + sphere_.radius * chord, farthest(nearest.position, middle, chord),
                                    farthest(anchor_, middle, chord), upper_everywhere_}) *
                          (1 + 1e-12);
-    // A cell that cannot matter is dropped, but its bound counts towards the answer's.
-    if (upper <= best_ + 0.5 * width()) {
-      dropped_ = std::max(dropped_, upper);
-    } else {
-      push({upper, corners});
-    }
+    if (!does_not_matter(upper)) push({upper, corners, nearest.position});
+  }
+
+  // A cell that cannot matter is dropped, but its bound counts towards the answer's.
+  bool does_not_matter(double upper) {
+    if (upper > best_ + 0.5 * width()) return false;
+    dropped_ = std::max(dropped_, upper);
+    return true;
   }
 
   void push(const Cell& cell) {

@@ -92,8 +92,8 @@ class Tightener {
   bool build_level(Index level, std::vector<TightenReport::Level>& reports) {
     const auto refined = static_cast<double>(
         std::count_if(stack_.last().begin(), stack_.last().end(), [](const LevelNode& node) { return !node.leaf; }));
-    const auto most = static_cast<double>(samples_.size() / kSamplesPerBall);
-    const double wanted = std::min(most, options_.branching * refined);
+    const std::size_t most = samples_.size() / kSamplesPerBall;
+    const double wanted = std::min(static_cast<double>(most), options_.branching * refined);
     if (refined == 0 || (wanted <= refined && level > 1)) return false;
     detail::LevelOptions level_options;
     level_options.balls = static_cast<Index>(wanted);
