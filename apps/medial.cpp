@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "console.h"
 #include "medial_run.h"
+#include "medial_warning.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
 #include "output_folder.h"
@@ -109,13 +110,17 @@ void build_axis(const MedialCommand& command, const SolidMesh& solid, const Prog
   written.emplace_back(graphml, "its skeleton graph");
   write_views(command, surface, build, segments, skeleton, mesh, written);
 
+  const Topology found = topology(mesh), wanted = solid_topology(surface);
+  const bool mended = options.mend_gaps && command.diagram.empty();
+  const std::string warning = medial_warning(solid, build, found, wanted, mended);
   json report{{"mesh", mesh_json(surface)},
               {"build", to_json(build)},
-              {"topology", to_json(topology(mesh))},
-              {"topology_of_solid", to_json(solid_topology(surface))},
+              {"topology", to_json(found)},
+              {"topology_of_solid", to_json(wanted)},
               {"structure", to_json(segments, skeleton)}};
   if (!command.points.empty()) report["points_moved_at_most"] = moved;
   if (judgement) report["quality"] = to_json(*judgement);
+  if (!warning.empty()) report["warning"] = warning;
   add_solid_json(solid, report);
   if (talk) {
     fmt::print("{}: {} triangles\n", command.mesh.string(), surface.mesh().triangles.size());
@@ -126,6 +131,7 @@ void build_axis(const MedialCommand& command, const SolidMesh& solid, const Prog
     if (judgement) print(*judgement);
   }
   finish(command, in_folder(command.folder, command.mesh, "-medial.json"), report, std::move(written));
+  if (!warning.empty()) fmt::print(stderr, "orchard: warning: {}: {}\n", command.mesh.string(), warning);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "coalesce.h"
+#include "contact_angles.h"
 #include "interior.h"
 #include "keep_topology.h"
 #include "medial_faces.h"
@@ -137,6 +138,7 @@ MedialAxis medial_axis(const Surface& surface, const SurfaceSampling& sampling, 
   report_progress(progress, "medial axis", 0.6);
   connect(diagram, medial, axis);
   measure_radii(axis);
+  detail::find_contact_angles(surface, sampling, axis);
   detail::find_medial_faces(surface, sampling, faces, medial, axis);
   report_progress(progress, "medial axis", 1);
   return axis;
@@ -168,7 +170,7 @@ void validate(const MedialAxis& axis, const Surface& surface) {
   const Index size = axis.size();
   const Index points = static_cast<Index>(axis.points.size());
   if (axis.normals.size() != points || axis.turns.size() != points || axis.radii.size() != size ||
-      axis.forming_points.size() != size || axis.neighbors.size() != size ||
+      axis.angles.size() != size || axis.forming_points.size() != size || axis.neighbors.size() != size ||
       axis.face_points.size() != axis.faces.size() || axis.wall_points.size() != axis.walls.size() ||
       axis.origins.size() != points) {
     throw Error("medial axis: arrays of different lengths");

@@ -1,7 +1,5 @@
 #include "orchard/medial/prune.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -10,23 +8,13 @@
 #include <utility>
 
 #include "axis_complex.h"
+#include "contact_angles.h"
 #include "incidence.h"
 #include "orchard/geometry/error.h"
 #include "scale_axis.h"
 
 namespace orchard {
 namespace {
-
-double angle_between(const Vector& a, const Vector& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
-
-// The angle at which two points are seen from `from`, but no more than the surface's normals there are apart: four
-// points that all but share a circle on the surface may have their Voronoi vertex anywhere above it, even next to it,
-// and are seen widely apart from there though the surface does not turn between them.
-double contact_angle(const MedialAxis& axis, const Point& from, Index p, Index q) {
-  const double seen = angle_between(axis.points[p] - from, axis.points[q] - from);
-  if (axis.turns.empty()) return seen;
-  return std::min(seen, angle_between(axis.normals[p], axis.normals[q]) + axis.turns[p] + axis.turns[q]);
-}
 
 class Pruner {
  public:
@@ -103,10 +91,10 @@ class Pruner {
     double widest = 0;
     for (std::size_t i = 0; i < common.size(); ++i) {
       for (std::size_t k = 0; k < i; ++k) {
-        widest = std::max(widest, contact_angle(axis_, middle, common[i], common[k]));
+        widest = std::max(widest, detail::seen_angle(axis_, middle, common[i], common[k]));
       }
     }
-    return widest;
+    return axis_.angles.empty() ? widest : std::min(widest, std::max(axis_.angles[a], axis_.angles[b]));
   }
 
   void collapse_face(Index face) {
@@ -141,6 +129,7 @@ class Pruner {
       renumbered[i] = result.size();
       result.centers.push_back(axis_.centers[i]);
       result.radii.push_back(axis_.radii[i]);
+      if (!axis_.angles.empty()) result.angles.push_back(axis_.angles[i]);
     }
     for (Index i = 0; i < axis_.size(); ++i) {
       if (!vertex_alive_[i]) continue;
@@ -176,28 +165,6 @@ class Pruner {
 };
 
 }  // namespace
-
-double separation_angle(const MedialAxis& axis, std::span<const Index> face, const std::array<Index, 2>& points) {
-  Point middle = Point::Zero();
-  for (const Index vertex : face) middle += axis.centers[vertex];
-  middle /= static_cast<double>(face.size());
-  return contact_angle(axis, middle, points[0], points[1]);
-}
-
-std::vector<double> contact_angles(const MedialAxis& axis) {
-  constexpr std::size_t kEnough = 64;  // of the forming points of a coalesced centre
-  std::vector<double> angles(axis.size(), 0);
-  tbb::parallel_for(Index{0}, axis.size(), [&](Index i) {
-    const auto forming = axis.forming_points[i];
-    const std::size_t count = std::min(forming.size(), kEnough);
-    for (std::size_t a = 0; a < count; ++a) {
-      for (std::size_t b = 0; b < a; ++b) {
-        angles[i] = std::max(angles[i], contact_angle(axis, axis.centers[i], forming[a], forming[b]));
-      }
-    }
-  });
-  return angles;
-}
 
 MedialAxis prune(const MedialAxis& axis, const PruneOptions& options) {
   if (!(options.angle >= 0 && options.angle <= std::numbers::pi)) throw InputError("prune angle: between 0 and pi");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "orchard/geometry/random.h"
@@ -46,24 +47,65 @@ SurfaceSampling carried_along(const MedialBuild& build, const Surface& from, con
 
 struct Part {
   std::vector<Point> points;  // vertices with a wide enough angle
-  TriangleMesh sheets;        // triangles of such faces, and a flat one for each vertex; the angle a little smaller
+  TriangleMesh sheets;  // what of the axis has one that is a little smaller, flat triangles for edges and vertices
+};
+
+// Cuts the axis where its angle, linear between vertices, is the least that counts: cells may be long, and one with a
+// corner beyond the threshold is not lost with it.
+class SheetCutter {
+ public:
+  SheetCutter(const MedialAxis& axis, const std::vector<double>& angles, double least)
+      : axis_(axis), angles_(angles), least_(least) {
+    sheets_.vertices = axis.centers;
+  }
+
+  TriangleMesh run() {
+    for (Index i = 0; i < axis_.size(); ++i) {
+      if (wide(i)) sheets_.triangles.push_back({i, i, i});
+      for (const Index next : axis_.neighbors[i]) {
+        if (next > i) cut_edge(i, next);
+      }
+    }
+    for (Index face = 0; face < axis_.faces.size(); ++face) cut_face(axis_.faces[face]);
+    return std::move(sheets_);
+  }
+
+ private:
+  bool wide(Index vertex) const { return angles_[vertex] > least_; }
+
+  // The place between a wide and a narrow vertex.
+  Index crossing(Index a, Index b) {
+    const double t = (least_ - angles_[a]) / (angles_[b] - angles_[a]);
+    sheets_.vertices.push_back(axis_.centers[a] + t * (axis_.centers[b] - axis_.centers[a]));
+    return static_cast<Index>(sheets_.vertices.size()) - 1;
+  }
+  void cut_edge(Index a, Index b) {
+    if (!wide(a)) std::swap(a, b);
+    if (!wide(a)) return;
+    const Index end = wide(b) ? b : crossing(a, b);
+    sheets_.triangles.push_back({a, end, end});
+  }
+  void cut_face(std::span<const Index> corners) {
+    std::vector<Index> left;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const Index corner = corners[k], next = corners[(k + 1) % corners.size()];
+      if (wide(corner)) left.push_back(corner);
+      if (wide(corner) != wide(next)) left.push_back(crossing(corner, next));
+    }
+    for (std::size_t k = 1; k + 1 < left.size(); ++k) sheets_.triangles.push_back({left[0], left[k], left[k + 1]});
+  }
+
+  const MedialAxis& axis_;
+  const std::vector<double>& angles_;
+  const double least_;
+  TriangleMesh sheets_;
 };
 
 Part wide_part(const MedialAxis& axis, double angle) {
-  Part part;
   const std::vector<double> angles = contact_angles(axis);
-  part.sheets.vertices = axis.centers;
+  Part part{.points = {}, .sheets = SheetCutter(axis, angles, angle - 2 * kHysteresis).run()};
   for (Index i = 0; i < axis.size(); ++i) {
     if (angles[i] > angle) part.points.push_back(axis.centers[i]);
-    if (angles[i] > angle - 2 * kHysteresis) part.sheets.triangles.push_back({i, i, i});
-  }
-  for (Index face = 0; face < axis.faces.size(); ++face) {
-    const auto corners = axis.faces[face];
-    const auto wide = [&](Index corner) { return angles[corner] > angle - 2 * kHysteresis; };
-    if (!std::all_of(corners.begin(), corners.end(), wide)) continue;
-    for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
-      part.sheets.triangles.push_back({corners[0], corners[k], corners[k + 1]});
-    }
   }
   return part;
 }

@@ -126,6 +126,37 @@ TEST(Medial, GivesTheSameBytesOnAnyNumberOfThreads) {
   EXPECT_EQ(axis("1"), axis("3"));
 }
 
+// Two boxes that cut each other: no gap between their sheets could be mended.
+TriangleMesh crossed_boxes() {
+  TriangleMesh mesh = test::box({0, 0, 0}, {3, 1, 1});
+  const TriangleMesh other = test::box({1.1, -1.2, 0.2}, {1.9, 2.1, 0.8});
+  const Index first = static_cast<Index>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
+  for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + first, b + first, c + first});
+  return mesh;
+}
+
+TEST(Medial, WarnsInOneLineOfAMeshThatCutsItselfAndNamesTheWayOut) {
+  const Workplace here;
+  const std::string mesh = here.add("crossed.obj", crossed_boxes()), out = (here / "out").string();
+  const std::vector<std::string> arguments{"medial", mesh, "-o", out, "--samples", "600", "--no-views", "--quiet"};
+  const Finished run = here.run(arguments);
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(test::is_one_line_error(run.err)) << run.err;
+  EXPECT_NE(run.err.find("cut or touch each other"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("--wrap"), std::string::npos) << run.err;
+  EXPECT_TRUE(json::parse(here.files("out").at("crossed-medial.json")).contains("warning"));
+
+  std::vector<std::string> wrapped = arguments;
+  wrapped.push_back("--wrap");
+  const Finished skin = here.run(wrapped);
+  EXPECT_EQ(skin.exit_code, 0) << skin.err;
+  EXPECT_EQ(skin.err, "");
+  const json report = json::parse(here.files("out").at("crossed-medial.json"));
+  EXPECT_FALSE(report.contains("warning"));
+  EXPECT_EQ(report["topology"], report["topology_of_solid"]);
+}
+
 TEST(Medial, RefusesBadOptionsInOneLine) {
   const Workplace here;
   const std::string mesh = here.add("l.obj", test::l_shape()), out = (here / "out").string();

@@ -20,6 +20,7 @@ struct MedialAxis {
 
   std::vector<Point> centers;  // medial vertices
   std::vector<double> radii;   // distance to the forming points
+  std::vector<double> angles;  // radians between the contacts that are seen farthest apart: twice the object angle
   Rows forming_points;         // of each vertex, ascending; four, or more where vertices were coalesced
   Rows neighbors;              // vertices joined by a Voronoi edge, ascending; symmetric
 

@@ -22,11 +22,12 @@ struct PruneOptions {
 MedialAxis prune(const MedialAxis& axis, const PruneOptions& options);
 
 // The angle at which the two points of a face (or wall) are seen from its middle, in radians; at most that between the
-// surface's normals there, so that Voronoi vertices that slivers of the point set put next to the surface do not pass
-// for places between two walls. An axis without `turns` is judged by the positions alone.
+// surface's normals there, and at most that of the face's widest vertex, so that faces that slivers of the point set
+// put next to the surface do not pass for places between two walls. An axis without `turns` and `angles` is judged by
+// the positions alone.
 double separation_angle(const MedialAxis& axis, std::span<const Index> face, const std::array<Index, 2>& points);
 
-// The widest such angle between two forming points of each vertex, seen from it: twice the object angle.
+// axis.angles; for an axis without them, the widest such angle between two forming points of each vertex, seen from it.
 std::vector<double> contact_angles(const MedialAxis& axis);
 
 }  // namespace orchard
