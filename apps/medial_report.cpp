@@ -29,6 +29,7 @@ json to_json(const RepairReport& repair) {
   }
   return {{"passes", passes},
           {"points_added", repair.points_added},
+          {"points_removed", repair.points_removed},
           {"faces_still_crossing", repair.faces_still_crossing},
           {"faces_at_cuts", repair.faces_at_cuts}};
 }
@@ -57,11 +58,14 @@ json to_json(const MedialBuild& build) {
   }
   seconds["whole"] = whole;
   const double points = std::max<double>(build.points, 1);
+  const double gained = static_cast<double>(build.sampling.size()) - build.points;
   return {{"points", build.points},
-          {"points_added_over_points", build.repair.points_added / points},
+          {"points_added_over_points", gained / points},
           {"gap_repair", to_json(build.repair)},
           {"voronoi_vertices", build.voronoi_vertices},
           {"vertices_before_pruning", build.unpruned_vertices},
+          {"vertices_on_stems", build.axis.stems},
+          {"bridges", build.axis.bridges},
           {"vertices_left_out", build.axis.left_out},
           {"vertices", build.axis.size()},
           {"faces", build.axis.faces.size()},
@@ -109,12 +113,17 @@ void print(const MedialBuild& build) {
                  pass.refused_as_coincident);
     }
   }
-  fmt::print("{} + {} points ({:.1f} % added), {} faces still crossing", build.points, repair.points_added,
-             100.0 * repair.points_added / std::max<double>(build.points, 1), repair.faces_still_crossing);
+  const double gained = static_cast<double>(build.sampling.size()) - build.points;
+  fmt::print("{} + {}", build.points, repair.points_added);
+  if (repair.points_removed > 0) fmt::print(" - {}", repair.points_removed);
+  fmt::print(" points ({:.1f} % added), {} faces still crossing", 100.0 * gained / std::max<double>(build.points, 1),
+             repair.faces_still_crossing);
   if (repair.faces_at_cuts > 0) fmt::print(", {} of them where the mesh cuts itself", repair.faces_at_cuts);
   fmt::print("\n{} medial vertices", build.axis.size());
   if (build.axis.size() != build.unpruned_vertices) fmt::print(" after pruning {}", build.unpruned_vertices);
-  if (build.axis.left_out > 0) fmt::print(", {} left out to keep the topology", build.axis.left_out);
+  if (build.axis.stems > 0) fmt::print(", {} without faces", build.axis.stems);
+  if (build.axis.bridges > 0) fmt::print(", {} edges that bridge the outside", build.axis.bridges);
+  if (build.axis.left_out > 0) fmt::print(", {} left out", build.axis.left_out);
   fmt::print(", {} faces\n", build.axis.faces.size());
 }
 

@@ -65,7 +65,7 @@ using B = MedialBuild;
 using J = MedialJudgement;
 constexpr Metric kMetrics[] = {
     {"points_added", "Points added by gap repair",
-     [](const B& b, const J&) { return double{1} * b.repair.points_added; }},
+     [](const B& b, const J&) { return static_cast<double>(b.sampling.size()) - b.points; }},
     {"still_crossing", "Faces still crossing",
      [](const B& b, const J&) { return double{1} * b.repair.faces_still_crossing; }},
     {"vertices", "Medial vertices", [](const B& b, const J&) { return double{1} * b.axis.size(); }},

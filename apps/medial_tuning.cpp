@@ -81,6 +81,9 @@ std::vector<TuningFlag> make_flags() {
                        [](T& t, double x) { t.options.repair.joined_radius = x; }));
   flags.push_back(whole("max-passes", "20", 0, 1000, "Of gap repair at most: fewer leave gaps that need more",
                         [](T& t, double x) { t.options.repair.max_passes = static_cast<int>(x); }));
+  flags.push_back(choice("thin", {"no", "yes"},
+                         "Whether pairs of facing points that crowd thin parts go again: fewer points, coarser there",
+                         [](T& t, const std::string& text) { t.options.repair.thin = text == "yes"; }));
   flags.push_back(real("coalesce", "1e-7", 1e-12, 0.01,
                        "Vertices nearer than this, in bounding radii, become one: more loses detail and may lose loops",
                        [](T& t, double x) { t.options.axis.coalesce = x; }));

@@ -39,9 +39,11 @@ std::string medial_warning(const SolidMesh& solid, const MedialBuild& build, con
   std::string what;
   if (found != wanted) {
     what = "the axis has " + in_words(found) + ", the solid " + in_words(wanted);
-  } else if (build.axis.left_out > 0) {
-    what = fmt::format("{} vertices were left out to keep the topology, and what they cover with them",
-                       build.axis.left_out);
+  } else if (build.axis.stems + build.axis.bridges + build.axis.left_out > 0) {
+    what = fmt::format(
+        "to keep the topology, {} vertices have no faces, {} edges bridge the outside, {} vertices were "
+        "left out",
+        build.axis.stems, build.axis.bridges, build.axis.left_out);
   } else {
     return {};
   }

@@ -16,13 +16,21 @@
 namespace orchard {
 namespace {
 
-// The medial vertex that each Voronoi vertex became; kNone outside.
+bool is_stem(const std::vector<Index>& stems, Index vertex) { return !stems.empty() && stems[vertex] != kNone; }
+
+// Whether an edge of the diagram is one of the axis (keep_topology.h).
+bool joined(const std::vector<Index>& stems, Index a, Index b) {
+  return (!is_stem(stems, a) && !is_stem(stems, b)) || stems[a] == b || stems[b] == a;
+}
+
+// The medial vertex that each Voronoi vertex became; kNone outside. What hangs on a stem stays for itself: joined to
+// another it might close a loop.
 std::vector<Index> number_medial_vertices(const VoronoiDiagram& diagram, const std::vector<std::uint8_t>& inside,
-                                          double coalesce, MedialAxis& axis) {
+                                          const std::vector<Index>& stems, double coalesce, MedialAxis& axis) {
   std::vector<Index> interior;
   std::vector<Point> centers;
   for (Index i = 0; i < inside.size(); ++i) {
-    if (!inside[i]) continue;
+    if (!inside[i] || is_stem(stems, i)) continue;
     interior.push_back(i);
     centers.push_back(diagram.vertices[i].center);
   }
@@ -35,6 +43,12 @@ std::vector<Index> number_medial_vertices(const VoronoiDiagram& diagram, const s
     } else {
       medial[interior[i]] = medial[interior[representatives[i]]];  // lower, so numbered already
     }
+  }
+  for (Index i = 0; i < inside.size(); ++i) {
+    if (!inside[i] || !is_stem(stems, i)) continue;
+    medial[i] = axis.size();
+    axis.centers.push_back(diagram.vertices[i].center);
+    ++axis.stems;
   }
   return medial;
 }
@@ -53,17 +67,24 @@ Rows rows_of(std::vector<std::array<Index, 2>> pairs, Index rows) {
   return result;
 }
 
-void connect(const VoronoiDiagram& diagram, const std::vector<Index>& medial, MedialAxis& axis) {
+void connect(const VoronoiDiagram& diagram, const std::vector<Index>& medial, const detail::KeptTopology& kept,
+             MedialAxis& axis) {
   std::vector<std::array<Index, 2>> forming, adjacent;
   for (Index i = 0; i < medial.size(); ++i) {
     if (medial[i] == kNone) continue;
     const VoronoiVertex& vertex = diagram.vertices[i];
     for (const Index point : vertex.forming_points) forming.push_back({medial[i], point});
     for (const Index next : vertex.neighbors) {
-      if (next != kNone && medial[next] != kNone && medial[next] != medial[i]) {
+      if (next != kNone && medial[next] != kNone && medial[next] != medial[i] && joined(kept.stems, i, next)) {
         adjacent.push_back({medial[i], medial[next]});
       }
     }
+  }
+  for (const auto& [a, b] : kept.bridges) {
+    if (medial[a] == medial[b]) continue;
+    adjacent.push_back({medial[a], medial[b]});
+    adjacent.push_back({medial[b], medial[a]});
+    ++axis.bridges;
   }
   axis.forming_points = rows_of(std::move(forming), axis.size());
   axis.neighbors = rows_of(std::move(adjacent), axis.size());
@@ -132,14 +153,16 @@ MedialAxis medial_axis(const Surface& surface, const SurfaceSampling& sampling, 
   detail::drop_outvoted(surface, axis.normals, diagram, inside);
   report_progress(progress, "medial axis", 0.3);
   const VoronoiFaces faces = voronoi_faces(diagram);
-  if (options.keep_topology) axis.left_out = detail::keep_topology(surface, sampling, diagram, faces, inside);
+  detail::KeptTopology kept;
+  if (options.keep_topology) kept = detail::keep_topology(surface, sampling, diagram, faces, inside);
+  axis.left_out = kept.left_out;
   const std::vector<Index> medial =
-      number_medial_vertices(diagram, inside, options.coalesce * surface.bounding_radius(), axis);
+      number_medial_vertices(diagram, inside, kept.stems, options.coalesce * surface.bounding_radius(), axis);
   report_progress(progress, "medial axis", 0.6);
-  connect(diagram, medial, axis);
+  connect(diagram, medial, kept, axis);
   measure_radii(axis);
   detail::find_contact_angles(surface, sampling, axis);
-  detail::find_medial_faces(surface, sampling, faces, medial, axis);
+  detail::find_medial_faces(surface, sampling, faces, medial, kept.stems, axis);
   report_progress(progress, "medial axis", 1);
   return axis;
 }

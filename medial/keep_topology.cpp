@@ -1,13 +1,18 @@
 #include "keep_topology.h"
 
 #include <algorithm>
+#include <functional>
 #include <queue>
+#include <tuple>
 #include <utility>
 
 #include "solid_parts.h"
 
 namespace orchard::detail {
 namespace {
+
+// A mesh in more pieces than this is no solid that a bridge or two would mend.
+constexpr int kMostBridges = 1000;
 
 struct Counts {
   std::int64_t components = 0, euler_characteristic = 0;
@@ -68,15 +73,15 @@ class Growth {
     }
   }
 
-  std::vector<std::uint8_t> run(const std::vector<Index>& seeds) {
+  void grow_from(const std::vector<Index>& seeds) {
     for (const Index seed : seeds) take(seed);
     while (!queue_.empty()) {
       const Index vertex = queue_.top().second;
       queue_.pop();
       if (!taken_[vertex] && glued_to_a_tree(vertex)) take(vertex);
     }
-    return std::move(taken_);
   }
+  const std::vector<std::uint8_t>& taken() const { return taken_; }
 
  private:
   // A vertex is asked again whenever something that it shares a face or an edge with is taken.
@@ -146,19 +151,80 @@ std::vector<Index> largest_balls(const SurfaceSampling& sampling, const SolidPar
   return largest;
 }
 
+// Grows `kept` over single edges within `allowed`, the largest balls first; `stems` gets the edge of each.
+void join_by_stems(const VoronoiDiagram& diagram, const std::vector<std::uint8_t>& allowed,
+                   std::vector<std::uint8_t>& kept, std::vector<Index>& stems) {
+  std::priority_queue<std::tuple<double, Index, Index>> queue;  // radius, vertex, stem
+  const auto offer_neighbors = [&](Index vertex) {
+    for (const Index next : diagram.vertices[vertex].neighbors) {
+      if (next != kNone && allowed[next] && !kept[next]) queue.emplace(diagram.vertices[next].radius, next, vertex);
+    }
+  };
+  for (Index vertex = 0; vertex < kept.size(); ++vertex) {
+    if (kept[vertex]) offer_neighbors(vertex);
+  }
+  while (!queue.empty()) {
+    const auto [radius, vertex, stem] = queue.top();
+    queue.pop();
+    if (kept[vertex]) continue;
+    kept[vertex] = 1;
+    stems[vertex] = stem;
+    offer_neighbors(vertex);
+  }
+}
+
+// The shortest way along edges of the diagram from what is kept to what else is allowed: its ends; kNone if none leads.
+std::array<Index, 2> shortest_bridge(const VoronoiDiagram& diagram, const std::vector<std::uint8_t>& allowed,
+                                     const std::vector<std::uint8_t>& kept) {
+  using Step = std::tuple<double, Index, Index>;  // length, vertex, where the way began
+  std::priority_queue<Step, std::vector<Step>, std::greater<>> queue;
+  std::vector<std::uint8_t> reached = kept;
+  const auto leave = [&](Index vertex, Index start, double length) {
+    for (const Index next : diagram.vertices[vertex].neighbors) {
+      if (next == kNone || reached[next] || diagram.vertices[next].at_infinity()) continue;
+      queue.emplace(length + (diagram.vertices[next].center - diagram.vertices[vertex].center).norm(), next, start);
+    }
+  };
+  for (Index vertex = 0; vertex < kept.size(); ++vertex) {
+    if (kept[vertex]) leave(vertex, vertex, 0);
+  }
+  while (!queue.empty()) {
+    const auto [length, vertex, start] = queue.top();
+    queue.pop();
+    if (reached[vertex]) continue;
+    if (allowed[vertex]) return {vertex, start};
+    reached[vertex] = 1;
+    leave(vertex, start, length);
+  }
+  return {kNone, kNone};
+}
+
 }  // namespace
 
-Index keep_topology(const Surface& surface, const SurfaceSampling& sampling, const VoronoiDiagram& diagram,
-                    const VoronoiFaces& faces, std::vector<std::uint8_t>& inside) {
+KeptTopology keep_topology(const Surface& surface, const SurfaceSampling& sampling, const VoronoiDiagram& diagram,
+                           const VoronoiFaces& faces, std::vector<std::uint8_t>& inside) {
   const SolidParts parts = find_solid_parts(surface);
-  if (!parts.all_balls()) return 0;
+  if (!parts.all_balls()) return {};
   const Counts counts = count(diagram, faces, inside);
-  if (counts.components == parts.count() && counts.euler_characteristic == parts.count()) return 0;
-  std::vector<std::uint8_t> kept = Growth(diagram, faces, inside).run(largest_balls(sampling, parts, diagram, inside));
+  if (counts.components == parts.count() && counts.euler_characteristic == parts.count()) return {};
+  KeptTopology result;
+  result.stems.assign(inside.size(), kNone);
+  Growth growth(diagram, faces, inside);
+  growth.grow_from(largest_balls(sampling, parts, diagram, inside));
+  std::vector<std::uint8_t> kept = growth.taken();
+  for (int bridges = 0; bridges < kMostBridges; ++bridges) {
+    join_by_stems(diagram, inside, kept, result.stems);
+    const std::array<Index, 2> bridge = shortest_bridge(diagram, inside, kept);
+    if (bridge[0] == kNone) break;
+    result.bridges.push_back(bridge);
+    growth.grow_from({bridge[0]});
+    for (Index i = 0; i < kept.size(); ++i) kept[i] |= growth.taken()[i];
+  }
   const auto before = std::count(inside.begin(), inside.end(), std::uint8_t{1});
   const auto after = std::count(kept.begin(), kept.end(), std::uint8_t{1});
+  result.left_out = static_cast<Index>(before - after);
   inside = std::move(kept);
-  return static_cast<Index>(before - after);
+  return result;
 }
 
 }  // namespace orchard::detail

@@ -47,7 +47,7 @@ class SurfaceNeighbors {
 }  // namespace
 
 void find_medial_faces(const Surface& surface, const SurfaceSampling& sampling, const VoronoiFaces& voronoi,
-                       const std::vector<Index>& medial, MedialAxis& axis) {
+                       const std::vector<Index>& medial, const std::vector<Index>& stems, MedialAxis& axis) {
   const SurfaceNeighbors are_neighbors(surface, sampling);
   std::vector<Index> corners;
   for (Index face = 0; face < voronoi.vertices.size(); ++face) {
@@ -55,7 +55,7 @@ void find_medial_faces(const Surface& surface, const SurfaceSampling& sampling, 
     bool interior = true;
     for (const Index vertex : voronoi.vertices[face]) {
       const Index corner = medial[vertex];
-      interior = interior && corner != kNone;
+      interior = interior && corner != kNone && (stems.empty() || stems[vertex] == kNone);
       if (!interior) break;
       if (corners.empty() || corners.back() != corner) corners.push_back(corner);  // coalesced ones follow each other
     }

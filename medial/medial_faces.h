@@ -7,8 +7,8 @@
 namespace orchard::detail {
 
 // Fills axis.face_points, axis.faces, axis.wall_points and axis.walls. medial: for each Voronoi vertex its medial
-// vertex, or kNone.
+// vertex, or kNone. stems: of keep_topology(); those vertices have no faces.
 void find_medial_faces(const Surface& surface, const SurfaceSampling& sampling, const VoronoiFaces& voronoi,
-                       const std::vector<Index>& medial, MedialAxis& axis);
+                       const std::vector<Index>& medial, const std::vector<Index>& stems, MedialAxis& axis);
 
 }  // namespace orchard::detail

@@ -122,6 +122,8 @@ class Pruner {
     result.normals = axis_.normals;
     result.turns = axis_.turns;
     result.origins = axis_.origins;
+    result.stems = axis_.stems;
+    result.bridges = axis_.bridges;
     result.left_out = axis_.left_out;
     std::vector<Index> renumbered(axis_.size(), kNone);
     for (Index i = 0; i < axis_.size(); ++i) {

@@ -30,11 +30,12 @@ TriangleMesh with_noise(TriangleMesh mesh, double most, std::uint64_t seed) {
 // The points of the build, without those that gap repair added, where the moved mesh has them.
 SurfaceSampling carried_along(const MedialBuild& build, const Surface& from, const Surface& to) {
   SurfaceSampling sampling = build.sampling;
-  sampling.points.resize(build.points);
-  sampling.triangles.resize(build.points);
-  sampling.features.resize(build.points);
-  sampling.origins.resize(build.points);
-  for (Index i = 0; i < build.points; ++i) {
+  const Index own = build.points - build.repair.points_removed;
+  sampling.points.resize(own);
+  sampling.triangles.resize(own);
+  sampling.features.resize(own);
+  sampling.origins.resize(own);
+  for (Index i = 0; i < own; ++i) {
     const auto [a, b, c] = from.corners(sampling.triangles[i]);
     const auto [p, q, r] = to.corners(sampling.triangles[i]);
     const Vector u = b - a, v = c - a, normal = u.cross(v), place = sampling.points[i] - a;

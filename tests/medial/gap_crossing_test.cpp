@@ -2,6 +2,7 @@
 
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 
@@ -255,6 +256,30 @@ TEST(GapRepair, MendsTheBundledModels) {
     const Repaired repaired = sampled_and_repaired(surface, points(count - count / 5, count / 5));
     EXPECT_LT(4 * repaired.report.points_added, repaired.sampling.size() - repaired.report.points_added);
     expect_mended(surface, repaired);
+  }
+}
+
+TEST(GapRepair, WithThinningNeedsFarFewerPointsForTheSame) {
+  for (const char* name : {"lamp", "ship"}) {
+    const Surface surface(read_mesh(std::filesystem::path(ORCHARD_DATA_DIR) / (std::string(name) + ".obj")));
+    const SurfaceSampling sampling = sample_surface(surface, points(800, 200));
+    const auto repaired = [&](bool thin) {
+      return repair_gap_crossings(surface, sampling, highest_first_voronoi(sampling.points), {.thin = thin});
+    };
+    const Repaired doubled = repaired(false), thinned = repaired(true);
+    SCOPED_TRACE(name);
+    EXPECT_EQ(doubled.report.points_removed, 0u);
+    EXPECT_GT(thinned.report.points_removed, 0u);
+    EXPECT_EQ(thinned.sampling.size(), sampling.size() + thinned.report.points_added - thinned.report.points_removed);
+    EXPECT_LT(4 * (thinned.sampling.size() - sampling.size()), sampling.size());
+    EXPECT_GT(4 * (doubled.sampling.size() - sampling.size()), sampling.size());
+    expect_mended(surface, thinned);
+    // What is left of the sampling's own points comes first, in its order.
+    auto next = sampling.points.begin();
+    for (Index i = 0; i < sampling.size() - thinned.report.points_removed; ++i) {
+      next = std::find(next, sampling.points.end(), thinned.sampling.points[i]);
+      ASSERT_NE(next, sampling.points.end());
+    }
   }
 }
 

@@ -34,7 +34,9 @@ struct MedialAxis {
   std::vector<std::array<Index, 2>> wall_points;
   Rows walls;
 
-  Index left_out = 0;  // interior vertices dropped by AxisOptions::keep_topology
+  // By AxisOptions::keep_topology: vertices that are joined by one edge alone, without faces; edges that are none of
+  // the diagram's; and interior vertices dropped.
+  Index stems = 0, bridges = 0, left_out = 0;
 
   Index size() const { return static_cast<Index>(centers.size()); }
 };
@@ -43,7 +45,8 @@ struct AxisOptions {
   double coalesce = tolerance::kCoalesce;  // Voronoi vertices nearer than this, in bounding radii, become one
   // Where crossings that could not be mended (of a surface that cuts itself, say) leave an axis with other components
   // or another Euler characteristic than the solid, and the solid's components are balls: keep only as many vertices as
-  // can be taken in one after the other, largest balls first, without a change of topology.
+  // can be taken in one after the other, largest balls first, without a change of topology; then the others, by one
+  // edge each.
   bool keep_topology = false;
 };
 

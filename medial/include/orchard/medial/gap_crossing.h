@@ -28,6 +28,10 @@ struct RepairOptions {
   // Also where a cell takes in a whole ring of a part thinner than the points' spacing. Only with the connected
   // definition and joined_radius 0: harmless crossings look like necks.
   bool mend_necks = true;
+  // Where a part is thinner than its points are apart, every point needs one across, which doubles them. Afterwards
+  // take crowded pairs out again, points of the sampling's own among them, and mend what that breaks, as long as it
+  // saves points: fewer for the same topology, but points on edges go, too.
+  bool thin = false;
 };
 
 struct RepairPass {
@@ -39,7 +43,8 @@ struct RepairPass {
 
 struct RepairReport {
   std::vector<RepairPass> passes;
-  Index points_added = 0;
+  Index points_added = 0;          // that are there at the end
+  Index points_removed = 0;        // of the sampling's own, by thinning
   Index faces_still_crossing = 0;  // at the final full recheck
   // Of them, those where triangles that cut each other meet one cell: nothing is tried there, since sheets that cross
   // have no gap between them.
