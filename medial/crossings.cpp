@@ -39,6 +39,7 @@ class AllowedClusters {
  private:
   std::vector<Index> clusters_of(const std::vector<Index>& triangles) const {
     std::vector<Index> clusters;
+    clusters.reserve(triangles.size());
     for (const Index triangle : triangles) clusters.push_back(surface_.clusters().of_triangle[triangle]);
     std::sort(clusters.begin(), clusters.end());
     clusters.erase(std::unique(clusters.begin(), clusters.end()), clusters.end());

@@ -238,7 +238,8 @@ class MergeTree {
 
   std::vector<Child> shared_out(const Patch& patch, std::span<const std::vector<FittedBall>> starts,
                                 std::size_t wanted) const {
-    const detail::Siblings siblings = detail::fit_siblings(surface_, patch.held, starts, wanted, power_);
+    const detail::Siblings siblings =
+        detail::fit_siblings(surface_, patch.held, starts, wanted, power_, tree_.nodes.size() == 1);
     std::vector<Child> children;
     for (const FittedBall& ball : siblings.balls) children.push_back({{ball.center, ball.radius + margin_}, {}});
     for (std::size_t i = 0; i < siblings.owner.size(); ++i) {

@@ -17,8 +17,8 @@ constexpr int kVictims = 7;         // that an exchange tries to do without, the
 
 class Fit {
  public:
-  Fit(const Surface& surface, const std::vector<Point>& points, double power)
-      : points_(points), surface_(surface), power_(power), fitter_(surface) {}
+  Fit(const Surface& surface, const std::vector<Point>& points, double power, bool patient)
+      : points_(points), surface_(surface), power_(power), patient_(patient), fitter_(surface) {}
 
   Siblings run(std::span<const std::vector<FittedBall>> starts, std::size_t wanted) {
     wanted = std::min(wanted, points_.size());
@@ -84,6 +84,7 @@ class Fit {
   // Whether this got better than the best so far; then it is the best.
   bool improve(Siblings& state, int rounds, bool all) {
     bool better = false;
+    double last = kInfinity;
     for (int round = 0; round < rounds; ++round) {
       const std::vector<Index> before = state.owner;
       divide(state);
@@ -93,6 +94,9 @@ class Fit {
         if (state.owner[p] != before[p]) marked[state.owner[p]] = marked[before[p]] = 1;
       fit(state, marked);
       const double now = objective(state);
+      // Rounds gain less and less: what falls too slowly to get there is given up.
+      if (!patient_ && now - best_ > (last - now) * (rounds - 1 - round)) break;
+      last = now;
       if (now >= best_ && best_state_.balls.size() >= state.balls.size()) continue;
       best_ = now;
       best_state_ = state;
@@ -189,6 +193,7 @@ class Fit {
   const std::vector<Point>& points_;
   const Surface& surface_;
   const double power_;
+  const bool patient_;
   BallFitter fitter_;
   std::vector<std::vector<Point>> own_;
   Siblings best_state_;
@@ -198,8 +203,8 @@ class Fit {
 }  // namespace
 
 Siblings fit_siblings(const Surface& surface, const std::vector<Point>& points,
-                      std::span<const std::vector<FittedBall>> starts, std::size_t wanted, double power) {
-  return Fit(surface, points, power).run(starts, wanted);
+                      std::span<const std::vector<FittedBall>> starts, std::size_t wanted, double power, bool patient) {
+  return Fit(surface, points, power, patient).run(starts, wanted);
 }
 
 }  // namespace orchard::detail

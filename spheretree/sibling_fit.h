@@ -16,8 +16,9 @@ struct Siblings {
 // is low. By turns at first, each point to the ball that gets least loose by it; balls that there are too many of go,
 // the cheapest to lose first; then as long as it helps, one ball goes and the loosest of the others becomes two. From
 // each of several sets of balls to start with; the best counts. No ball is left without points, so there may be fewer
-// than wanted. Precondition: there is a point, a set, and a ball in it.
+// than wanted. `patient`: trials that fall too slowly go on as well. Precondition: there is a point, a set, and a ball
+// in it.
 Siblings fit_siblings(const Surface& surface, const std::vector<Point>& points,
-                      std::span<const std::vector<FittedBall>> starts, std::size_t wanted, double power);
+                      std::span<const std::vector<FittedBall>> starts, std::size_t wanted, double power, bool patient);
 
 }  // namespace orchard::detail
