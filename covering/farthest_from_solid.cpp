@@ -26,8 +26,9 @@ class Search {
   Search(const Surface& surface, const Sphere& ball, const DistanceTolerance& tolerance)
       : surface_(surface), ball_(ball), radius_(surface.bounding_radius()), tolerance_(tolerance) {}
 
-  Bounds run() {
+  Bounds run(double at_least) {
     start();
+    best_ = std::max(best_, at_least);
     while (open() && cells_.front().upper > best_ + width()) split_most_promising();
     return bounds();
   }
@@ -140,8 +141,9 @@ class Search {
 
 }  // namespace
 
-Bounds farthest_from_solid(const Surface& surface, const Sphere& ball, const DistanceTolerance& tolerance) {
-  return Search(surface, ball, tolerance).run();
+Bounds farthest_from_solid(const Surface& surface, const Sphere& ball, const DistanceTolerance& tolerance,
+                           double at_least) {
+  return Search(surface, ball, tolerance).run(at_least);
 }
 
 Bounds farthest_against(const Surface& surface, const Sphere& ball, double limit, Point& at) {

@@ -12,10 +12,10 @@ namespace {
 
 // The tighter of the bound by the centre's distance and the searched one. The latter is widened a little: a proof of a
 // bound without room to spare takes far longer than finding it did.
-double bound_over_ball(const Surface& surface, const Sphere& ball, double center_distance) {
+double bound_over_ball(const Surface& surface, const Sphere& ball, double center_distance, double at_least) {
   constexpr double kRoom = 0.25;  // of the search's tolerance
   const DistanceTolerance tolerance;
-  const Bounds found = farthest_from_solid(surface, ball, tolerance);
+  const Bounds found = farthest_from_solid(surface, ball, tolerance, at_least);
   const double width = std::max(tolerance.of_radius * surface.bounding_radius(), tolerance.of_distance * found.lower);
   return std::min(distance_bound(center_distance, ball.radius), found.upper + kRoom * width);
 }
@@ -29,8 +29,9 @@ void measure_node(SphereNode& node, const Surface& surface) {
     return;
   }
   node.center_distance = surface.signed_distance(ball.center);
-  node.distance_bound = bound_over_ball(surface, ball, node.center_distance);
-  node.inaccuracy = inaccuracy(surface, ball, {tolerance::kInaccuracy, 0}).upper;
+  const Bounds on_sphere = inaccuracy(surface, ball, {tolerance::kInaccuracy, 0});
+  node.inaccuracy = on_sphere.upper;
+  node.distance_bound = bound_over_ball(surface, ball, node.center_distance, on_sphere.lower);
 }
 
 }  // namespace

@@ -140,7 +140,7 @@ class MergeTree {
     std::vector<std::vector<Child>> balanced(families.size());
     std::vector<double> costs(families.size(), 0);
     tbb::parallel_for(std::size_t{0}, families.size(), [&](std::size_t i) {
-      if (counts[i] != loads[i].spheres) balanced[i] = children_of(parents[i], counts[i]);
+      if (counts[i] != loads[i].spheres) balanced[i] = resized(patches_[parents[i]], families[i], counts[i]);
       costs[i] = counts[i] != loads[i].spheres ? cost_of(balanced[i]) : loads[i].cost;
     });
     double before = 0, after = 0;
@@ -232,6 +232,13 @@ class MergeTree {
       for (const MergedParts& group : groups) starts.back().push_back(start_at(group.sphere.center));
     }
     return shared_out(patch, starts, wanted);
+  }
+
+  // As many as wanted, from a family of another size.
+  std::vector<Child> resized(const Patch& patch, const std::vector<Child>& family, Index wanted) const {
+    std::vector<FittedBall> start;
+    for (const Child& child : family) start.push_back(start_at(child.sphere.center));
+    return shared_out(patch, {&start, 1}, wanted);
   }
 
   FittedBall start_at(const Point& center) const { return {center, 0, surface_.signed_distance(center)}; }

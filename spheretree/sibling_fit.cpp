@@ -30,9 +30,9 @@ class Fit {
     }
     best_state_ = std::move(best);
     best_ = least;
+    fill_up(wanted);
     exchange();
-    while (best_state_.balls.size() < wanted && split_loosest()) {
-    }
+    fill_up(wanted);  // an exchange may have lost one
     return std::move(best_state_);
   }
 
@@ -122,6 +122,11 @@ class Fit {
         std::max_element(balls.begin(), balls.end(),
                          [](const FittedBall& a, const FittedBall& b) { return a.looseness() < b.looseness(); }) -
         balls.begin());
+  }
+
+  void fill_up(std::size_t wanted) {
+    while (best_state_.balls.size() < wanted && split_loosest()) {
+    }
   }
 
   bool split_loosest() {

@@ -24,8 +24,9 @@ Bounds inaccuracy(const Surface& surface, const Sphere& sphere, const DistanceTo
 // Bounds on the largest distance to the solid from a point of the closed ball, 0 if the ball lies inside: what the
 // run-time's bound on separation is made of. Unlike the inaccuracy it counts the ball's inside too, which matters where
 // a ball fills a hole or a gap. A branch and bound over cubes; width and errors as for inaccuracy(). The upper bound is
-// never above distance_bound().
-Bounds farthest_from_solid(const Surface& surface, const Sphere& ball, const DistanceTolerance& tolerance = {});
+// never above distance_bound(). Faster with a lower bound that is known already, such as the inaccuracy's.
+Bounds farthest_from_solid(const Surface& surface, const Sphere& ball, const DistanceTolerance& tolerance = {},
+                           double at_least = 0);
 
 // The same, only as far as it takes to tell whether the distance is at most `limit`: then upper <= limit; else lower >
 // limit, and `at` is a point of the ball that far away. Where neither holds, the work limit was met.
