@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "../vector_support.h"
 
@@ -12,6 +13,77 @@ constexpr double kMiddle = 1073741824.0;     // the origin's quantum, 2^30
 constexpr double kFarQuanta = 1073741824.0;  // beyond, a box is everything: rounding is no longer under control
 constexpr double kRoundingQuanta = 0x1p-8;   // covers some roundings of numbers below 2^31
 
+// Four bodies' motions by coordinate.
+template <typename Numbers>
+struct MotionColumns {
+  std::array<Numbers, 3> position, velocity;
+  Numbers radius, acceleration, drift;
+};
+
+struct PlainDoubles {
+  using Numbers = Plain<double, 4>;
+  using Columns = MotionColumns<Numbers>;
+  static Numbers choose(const Numbers::Mask& mask, const Numbers& a, const Numbers& b) noexcept {
+    return Numbers::make([&](std::size_t i) { return mask[i] ? a[i] : b[i]; });
+  }
+  static Columns columns(const Motion* m) noexcept {
+    const auto column = [&](auto&& of) { return Numbers::make([&](std::size_t i) { return of(m[i]); }); };
+    Columns result{};
+    for (std::size_t d = 0; d < 3; ++d) {
+      result.position[d] = column([d](const Motion& motion) { return motion.position[d]; });
+      result.velocity[d] = column([d](const Motion& motion) { return motion.velocity[d]; });
+    }
+    result.radius = column([](const Motion& motion) { return motion.radius; });
+    result.acceleration = column([](const Motion& motion) { return motion.acceleration; });
+    result.drift = column([](const Motion& motion) { return motion.drift; });
+    return result;
+  }
+  static void truncate(const Numbers& a, std::uint32_t* to) noexcept {
+    for (std::size_t i = 0; i < 4; ++i) to[i] = static_cast<std::uint32_t>(static_cast<std::int32_t>(a[i]));
+  }
+};
+
+#ifdef ORCHARD_VECTORS
+struct VectorDoubles {
+  using Numbers __attribute__((vector_size(32))) = double;
+  using Mask __attribute__((vector_size(32))) = std::int64_t;
+  using Columns = MotionColumns<Numbers>;
+  ORCHARD_INLINE static Numbers choose(const Mask& mask, const Numbers& a, const Numbers& b) noexcept {
+    return mask ? a : b;
+  }
+  ORCHARD_INLINE static Numbers at(const double* from) noexcept {
+    Numbers result;
+    std::memcpy(&result, from, sizeof result);
+    return result;
+  }
+  // Four numbers of each of four motions, transposed.
+  ORCHARD_INLINE static std::array<Numbers, 4> transposed(const Motion* m, std::size_t first) noexcept {
+    const auto row = [&](std::size_t i)
+                         ORCHARD_INLINE_LAMBDA { return at(reinterpret_cast<const double*>(m + i) + first); };
+    const Numbers a = row(0), b = row(1), c = row(2), d = row(3);
+    const Numbers ab02 = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab13 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    const Numbers cd02 = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd13 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    return {__builtin_shufflevector(ab02, cd02, 0, 1, 4, 5), __builtin_shufflevector(ab13, cd13, 0, 1, 4, 5),
+            __builtin_shufflevector(ab02, cd02, 2, 3, 6, 7), __builtin_shufflevector(ab13, cd13, 2, 3, 6, 7)};
+  }
+  ORCHARD_INLINE static Columns columns(const Motion* m) noexcept {
+    static_assert(offsetof(Motion, velocity) == 24 && offsetof(Motion, radius) == 48 &&
+                  offsetof(Motion, acceleration) == 56);
+    const std::array<Numbers, 4> first = transposed(m, 0), second = transposed(m, 4);
+    return {{first[0], first[1], first[2]},
+            {first[3], second[0], second[1]},
+            second[2],
+            second[3],
+            Numbers{m[0].drift, m[1].drift, m[2].drift, m[3].drift}};
+  }
+  ORCHARD_INLINE static void truncate(const Numbers& a, std::uint32_t* to) noexcept {
+    using Integers __attribute__((vector_size(16))) = std::int32_t;
+    const Integers integers = __builtin_convertvector(a, Integers);
+    std::memcpy(to, &integers, sizeof integers);
+  }
+};
+#endif
+
 }  // namespace
 
 Lattice::Lattice(const Vec3& origin, double cell_size) noexcept : origin_(origin), per_length_(kQuanta / cell_size) {
@@ -21,46 +93,69 @@ Lattice::Lattice(const Vec3& origin, double cell_size) noexcept : origin_(origin
 }
 
 // The centre's offset along an axis is at most v t + spread(t), which is convex: largest at an end. Likewise below.
-ORCHARD_INLINE void Lattice::make_boxes(const MotionBlock& motions, std::size_t lanes, BoxBlock& boxes) const noexcept {
-  std::array<double, kBlock> spread, radius, far;
-  for (std::size_t i = 0; i < lanes; ++i) {
-    const double t = motions.duration[i];
-    spread[i] = t * (motions.drift[i] + t * motions.acceleration[i] / 2) * per_length_;
-    radius[i] = motions.radius[i] * per_length_ + margin_;
-    far[i] = std::max(spread[i], radius[i]);
-  }
+template <typename Kind>
+ORCHARD_INLINE void Lattice::make_four(const Motion* motions, const double* durations, BoxBlock& boxes,
+                                       std::size_t first) const noexcept {
+  using Numbers = typename Kind::Numbers;
+  const auto all = [](double x) ORCHARD_INLINE_LAMBDA { return spread<Numbers>(x); };
+  const auto least = [](const Numbers& a, const Numbers& b) ORCHARD_INLINE_LAMBDA { return Kind::choose(b < a, b, a); };
+  const auto most = [](const Numbers& a, const Numbers& b) ORCHARD_INLINE_LAMBDA { return Kind::choose(a < b, b, a); };
+  const auto size = [&](const Numbers& a) ORCHARD_INLINE_LAMBDA { return most(a, -a); };
+  const typename Kind::Columns of = Kind::columns(motions);
+  const Numbers time = load<Numbers>(*reinterpret_cast<const std::array<double, 4>*>(durations));
+  const Numbers per_length = all(per_length_), zero = all(0);
+  const Numbers wide = time * (of.drift + time * of.acceleration * all(0.5)) * per_length;
+  const Numbers radius = of.radius * per_length + all(margin_);
+  std::array<Numbers, 3> lower, upper;
+  Numbers far = most(wide, radius);
   for (std::size_t d = 0; d < 3; ++d) {
-    for (std::size_t i = 0; i < lanes; ++i) {
-      const double begin = (motions.position[d][i] - origin_[d]) * per_length_;
-      const double way = motions.velocity[d][i] * motions.duration[i] * per_length_;
-      far[i] = std::max(far[i], std::max(std::fabs(begin), std::fabs(way)));
-      const double lower = kMiddle + (begin + std::min(0.0, way - spread[i]) - radius[i]);
-      const double upper = kMiddle + (begin + std::max(0.0, way + spread[i]) + radius[i]);
-      const auto quantum = [](double q) ORCHARD_INLINE_LAMBDA {
-        return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::min(std::max(q, 0.0), double{kLastQuantum})));
-      };
-      boxes.lower[d][i] = quantum(lower);
-      boxes.upper[d][i] = quantum(upper);
-    }
+    const Numbers begin = (of.position[d] - all(origin_[d])) * per_length;
+    const Numbers way = of.velocity[d] * time * per_length;
+    far = most(far, most(size(begin), size(way)));
+    lower[d] = all(kMiddle) + (begin + least(zero, way - wide) - radius);
+    upper[d] = all(kMiddle) + (begin + most(zero, way + wide) + radius);
   }
-  for (std::size_t i = 0; i < lanes; ++i) {
-    if (far[i] < kFarQuanta) [[likely]]
-      continue;
-    for (std::size_t d = 0; d < 3; ++d) boxes.lower[d][i] = 0, boxes.upper[d][i] = kLastQuantum;
+  const auto near = far < all(kFarQuanta);
+  const Numbers last = all(kLastQuantum);
+  for (std::size_t d = 0; d < 3; ++d) {
+    Kind::truncate(Kind::choose(near, least(most(lower[d], zero), last), zero), &boxes.lower[d][first]);
+    Kind::truncate(Kind::choose(near, least(most(upper[d], zero), last), last), &boxes.upper[d][first]);
   }
 }
 
-void Lattice::boxes_plain(const MotionBlock& motions, std::size_t lanes, BoxBlock& boxes) const noexcept {
-  make_boxes(motions, lanes, boxes);
+template <typename Kind>
+ORCHARD_INLINE void Lattice::make_all(std::span<const Motion> motions, std::span<const double> durations,
+                                      BoxBlock& boxes) const noexcept {
+  std::size_t i = 0;
+  for (; i + 4 <= motions.size(); i += 4) make_four<Kind>(&motions[i], &durations[i], boxes, i);
+  if (i == motions.size()) return;
+  std::array<Motion, 4> rest{};
+  std::array<double, 4> rest_durations{};
+  std::copy(motions.begin() + static_cast<std::ptrdiff_t>(i), motions.end(), rest.begin());
+  std::copy_n(durations.begin() + static_cast<std::ptrdiff_t>(i), motions.size() - i, rest_durations.begin());
+  make_four<Kind>(rest.data(), rest_durations.data(), boxes, i);
 }
-ORCHARD_PER_MACHINE void Lattice::boxes_vectors(const MotionBlock& motions, std::size_t lanes,
+
+void Lattice::boxes_plain(std::span<const Motion> motions, std::span<const double> durations,
+                          BoxBlock& boxes) const noexcept {
+  make_all<PlainDoubles>(motions, durations, boxes);
+}
+
+#ifdef ORCHARD_VECTORS
+ORCHARD_PER_MACHINE void Lattice::boxes_vectors(std::span<const Motion> motions, std::span<const double> durations,
                                                 BoxBlock& boxes) const noexcept {
-  make_boxes(motions, lanes, boxes);
+  make_all<VectorDoubles>(motions, durations, boxes);
 }
+#else
+void Lattice::boxes_vectors(std::span<const Motion> motions, std::span<const double> durations,
+                            BoxBlock& boxes) const noexcept {
+  make_all<PlainDoubles>(motions, durations, boxes);
+}
+#endif
 
-void Lattice::boxes(MotionBlock& motions, std::size_t count, BoxBlock& boxes, bool vectors) const noexcept {
-  motions.fill_up(count);
-  vectors ? boxes_vectors(motions, lanes_for(count), boxes) : boxes_plain(motions, lanes_for(count), boxes);
+void Lattice::boxes(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes,
+                    bool vectors) const noexcept {
+  vectors ? boxes_vectors(motions, durations, boxes) : boxes_plain(motions, durations, boxes);
 }
 
 }  // namespace orchard::runtime::detail

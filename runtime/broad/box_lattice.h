@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "orchard/runtime/motion.h"
 
@@ -23,27 +24,7 @@ inline constexpr std::size_t kBlock = 32;  // bodies that are worked on together
 // Loops over a block go on to a multiple of eight: whole vectors.
 inline std::size_t lanes_for(std::size_t count) noexcept { return (count + 7) & ~std::size_t{7}; }
 
-// What is asked about a block of bodies, by coordinate, so that the loops over bodies become vector instructions.
-struct MotionBlock {
-  std::array<std::array<double, kBlock>, 3> position, velocity;
-  std::array<double, kBlock> radius, acceleration, drift, duration;
-
-  void set(std::size_t i, const Motion& motion, double seconds) noexcept {
-    for (std::size_t d = 0; d < 3; ++d) {
-      position[d][i] = motion.position[d];
-      velocity[d][i] = motion.velocity[d];
-    }
-    radius[i] = motion.radius;
-    acceleration[i] = motion.acceleration;
-    drift[i] = motion.drift;
-    duration[i] = seconds;
-  }
-  // So that whole vectors are of numbers.
-  void fill_up(std::size_t count) noexcept {
-    for (std::size_t i = count; i < lanes_for(count); ++i) set(i, Motion{}, 0);
-  }
-};
-
+// By coordinate, so that the loops over bodies become vector instructions.
 struct BoxBlock {
   std::array<std::array<std::uint32_t, kBlock>, 3> lower, upper;
 
@@ -65,14 +46,18 @@ class Lattice {
   Lattice(const Vec3& origin, double cell_size) noexcept;
 
   const Vec3& origin() const noexcept { return origin_; }
-  // Each box holds its body's sphere for `duration` seconds from the motion's time. Of the first `count` bodies; fills
-  // motions and boxes up to whole vectors.
-  void boxes(MotionBlock& motions, std::size_t count, BoxBlock& boxes, bool vectors) const noexcept;
+  // Box i holds body i's sphere for durations[i] seconds from its motion's time; at most kBlock of them.
+  void boxes(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes,
+             bool vectors) const noexcept;
 
  private:
-  void boxes_plain(const MotionBlock& motions, std::size_t lanes, BoxBlock& boxes) const noexcept;
-  void boxes_vectors(const MotionBlock& motions, std::size_t lanes, BoxBlock& boxes) const noexcept;
-  void make_boxes(const MotionBlock& motions, std::size_t lanes, BoxBlock& boxes) const noexcept;
+  template <typename Kind>
+  void make_four(const Motion* motions, const double* durations, BoxBlock& boxes, std::size_t first) const noexcept;
+  template <typename Kind>
+  void make_all(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes) const noexcept;
+  void boxes_plain(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes) const noexcept;
+  void boxes_vectors(std::span<const Motion> motions, std::span<const double> durations,
+                     BoxBlock& boxes) const noexcept;
 
   Vec3 origin_{};
   double per_length_ = 1;  // quanta

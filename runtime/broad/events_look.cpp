@@ -30,9 +30,9 @@ bool cells_fit(const QuantumBox& box) noexcept {
 }  // namespace
 
 struct Events::Look {
-  Step now;   // the motions are of this step,
-  Step from;  // and count from this one
-  MotionBlock motions;
+  Step now;                              // the motions are of this step,
+  Step from;                             // and count from this one
+  std::array<double, kBlock> durations;  // until the ends of the bodies' windows
   BoxBlock boxes;
   SweptGrid::Queue queue;
 };
@@ -56,22 +56,26 @@ Step Events::window_end(Step from, const Motion& motion) noexcept {
 
 // Makes the boxes of a block of bodies, until the ends of their windows.
 void Events::place(Look& look, std::span<const BodyId> bodies) {
-  const bool all_move = !roster_.any_static();
-  const Step common = all_move || !roster_.is_static(bodies[0]) ? window_end(look.from, motions_[0]) : kNeverStep;
-  bool same = true;
+  const auto motions = std::span(std::as_const(motions_)).first(bodies.size());
+  const auto duration = [&](Step end) {
+    return end == kNeverStep ? 0 : static_cast<double>(end - 1 - look.now) * options_.time_step;
+  };
+  const bool first_moves = !roster_.is_static(bodies[0]);
+  const Step common = first_moves ? window_end(look.from, motions[0]) : kNeverStep;
+  bool same = !roster_.any_static();
+  for (const Motion& motion : motions) same = same && motion.expiry == motions[0].expiry;
+  look.durations.fill(duration(common));
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const Motion& motion = motions_[i];
     Step end = common;
-    if (motion.expiry != motions_[0].expiry || !all_move) {
-      end = roster_.is_static(bodies[i]) ? kNeverStep : window_end(look.from, motion);
-      same = same && end == common;
+    if (!same) {
+      end = roster_.is_static(bodies[i]) ? kNeverStep : window_end(look.from, motions[i]);
+      look.durations[i] = duration(end);
     }
-    look.motions.set(i, motion, end == kNeverStep ? 0 : static_cast<double>(end - 1 - look.now) * options_.time_step);
     windows_[bodies[i]] = {round_, end};
     places_[bodies[i]] = Place::inside;
   }
-  for (std::size_t i = 0; i < bodies.size(); i += kMeansStride) means_.add(motions_[i]);
-  lattice_.boxes(look.motions, bodies.size(), look.boxes, options_.vectors);
+  for (std::size_t i = 0; i < bodies.size(); i += kMeansStride) means_.add(motions[i]);
+  lattice_.boxes(motions, std::span(look.durations).first(bodies.size()), look.boxes, options_.vectors);
   if (!few_) {
     for (std::size_t i = 0; i < bodies.size(); ++i) boxes_[bodies[i]] = look.boxes.get(i);
     if (excess_cells(look.boxes, bodies.size()) != 0) {
@@ -97,14 +101,13 @@ void Events::place(Look& look, std::span<const BodyId> bodies) {
 void Events::shrink(Look& look, BodyId body, std::size_t i) {
   Window& window = windows_[body];
   Step steps = window.end == kNeverStep ? 1 : window.end - look.from;
-  MotionBlock one;
   BoxBlock box;
   places_[body] = Place::oversized;
   while (steps > 1 && places_[body] == Place::oversized) {
     steps = (steps + 1) / 2;
     window.end = look.from + steps;
-    one.set(0, motions_[i], static_cast<double>(window.end - 1 - look.now) * options_.time_step);
-    lattice_.boxes(one, 1, box, options_.vectors);
+    const double duration = static_cast<double>(window.end - 1 - look.now) * options_.time_step;
+    lattice_.boxes({&motions_[i], 1}, {&duration, 1}, box, options_.vectors);
     boxes_[body] = box.get(0);
     if (cells_fit(boxes_[body])) places_[body] = Place::inside;
   }
