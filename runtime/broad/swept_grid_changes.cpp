@@ -8,7 +8,8 @@ namespace orchard::runtime::detail {
 
 void SweptGrid::reset(std::size_t lines) {
   constexpr int kFewestBits = 2;  // kMostCellsPerAxis cells
-  const int bits = std::max(3 * kFewestBits, static_cast<int>(std::bit_width(std::max<std::size_t>(lines, 1) - 1)));
+  const auto nearest = static_cast<std::size_t>(std::max(1.0, 0.7 * static_cast<double>(lines)));
+  const int bits = std::max(3 * kFewestBits, static_cast<int>(std::bit_width(nearest)));
   const int x = (bits + 2) / 3, y = (bits + 1) / 3, z = bits / 3;
   mask_ = {(1u << x) - 1, (1u << y) - 1, (1u << z) - 1};
   shift_ = {0, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(x + y)};
