@@ -9,9 +9,8 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr double kMiddle = 1073741824.0;     // the origin's quantum, 2^30
-constexpr double kFarQuanta = 1073741824.0;  // beyond, a box is everything: rounding is no longer under control
-constexpr double kRoundingQuanta = 0x1p-8;   // covers some roundings of numbers below 2^31
+constexpr double kMiddle = 0x1p30;          // the origin's quantum
+constexpr double kRoundingQuanta = 0x1p-8;  // covers some roundings of numbers below 2^32
 
 // Four bodies' motions by coordinate.
 template <typename Numbers>
@@ -22,8 +21,9 @@ struct MotionColumns {
 
 struct PlainDoubles {
   using Numbers = Plain<double, 4>;
+  using Mask = Numbers::Mask;
   using Columns = MotionColumns<Numbers>;
-  static Numbers choose(const Numbers::Mask& mask, const Numbers& a, const Numbers& b) noexcept {
+  static Numbers choose(const Mask& mask, const Numbers& a, const Numbers& b) noexcept {
     return Numbers::make([&](std::size_t i) { return mask[i] ? a[i] : b[i]; });
   }
   static Columns columns(const Motion* m) noexcept {
@@ -89,10 +89,11 @@ struct VectorDoubles {
 Lattice::Lattice(const Vec3& origin, double cell_size) noexcept : origin_(origin), per_length_(kQuanta / cell_size) {
   double size = 0;
   for (const double x : origin) size = std::max(size, std::fabs(x));
-  margin_ = kRoundingQuanta + 8 * kMotionSlack * (size * per_length_ + kFarQuanta);
+  margin_ = kRoundingQuanta + 8 * kMotionSlack * (size * per_length_ + kLastQuantum);
 }
 
-// The centre's offset along an axis is at most v t + spread(t), which is convex: largest at an end. Likewise below.
+// The centre's offset along an axis is at most v t + wide(t), which is convex: largest at an end. Likewise below. A box
+// that does not lie within the lattice is everything: rounding would no longer be under control.
 template <typename Kind>
 ORCHARD_INLINE void Lattice::make_four(const Motion* motions, const double* durations, BoxBlock& boxes,
                                        std::size_t first) const noexcept {
@@ -100,26 +101,23 @@ ORCHARD_INLINE void Lattice::make_four(const Motion* motions, const double* dura
   const auto all = [](double x) ORCHARD_INLINE_LAMBDA { return spread<Numbers>(x); };
   const auto least = [](const Numbers& a, const Numbers& b) ORCHARD_INLINE_LAMBDA { return Kind::choose(b < a, b, a); };
   const auto most = [](const Numbers& a, const Numbers& b) ORCHARD_INLINE_LAMBDA { return Kind::choose(a < b, b, a); };
-  const auto size = [&](const Numbers& a) ORCHARD_INLINE_LAMBDA { return most(a, -a); };
   const typename Kind::Columns of = Kind::columns(motions);
   const Numbers time = load<Numbers>(*reinterpret_cast<const std::array<double, 4>*>(durations));
-  const Numbers per_length = all(per_length_), zero = all(0);
+  const Numbers per_length = all(per_length_), zero = all(0), last = all(kLastQuantum);
   const Numbers wide = time * (of.drift + time * of.acceleration * all(0.5)) * per_length;
   const Numbers radius = of.radius * per_length + all(margin_);
   std::array<Numbers, 3> lower, upper;
-  Numbers far = most(wide, radius);
+  typename Kind::Mask inside = zero <= zero;
   for (std::size_t d = 0; d < 3; ++d) {
-    const Numbers begin = (of.position[d] - all(origin_[d])) * per_length;
+    const Numbers begin = all(kMiddle) + (of.position[d] - all(origin_[d])) * per_length;
     const Numbers way = of.velocity[d] * time * per_length;
-    far = most(far, most(size(begin), size(way)));
-    lower[d] = all(kMiddle) + (begin + least(zero, way - wide) - radius);
-    upper[d] = all(kMiddle) + (begin + most(zero, way + wide) + radius);
+    lower[d] = begin + least(zero, way - wide) - radius;
+    upper[d] = begin + most(zero, way + wide) + radius;
+    inside = inside & (zero <= lower[d]) & (upper[d] <= last);
   }
-  const auto near = far < all(kFarQuanta);
-  const Numbers last = all(kLastQuantum);
   for (std::size_t d = 0; d < 3; ++d) {
-    Kind::truncate(Kind::choose(near, least(most(lower[d], zero), last), zero), &boxes.lower[d][first]);
-    Kind::truncate(Kind::choose(near, least(most(upper[d], zero), last), last), &boxes.upper[d][first]);
+    Kind::truncate(Kind::choose(inside, lower[d], zero), &boxes.lower[d][first]);
+    Kind::truncate(Kind::choose(inside, upper[d], last), &boxes.upper[d][first]);
   }
 }
 

@@ -9,32 +9,27 @@ namespace {
 
 constexpr std::uint32_t kFieldBits = kQuantumBits + 1;
 constexpr std::uint64_t kGuards = 0x820820820u;  // bit 5 of each of six fields
+constexpr std::uint32_t kLargest = 0x1f7dfu;     // three fields, each of them kQuanta - 1
 static_assert(kIdShift == 6 * kFieldBits);
 static_assert(kMaxBodies < (1u << (64 - kIdShift)));
 
-// A clipped box as an entry or as a query: entry's field <= query's field in all six means that they meet.
-struct Code {
-  std::uint64_t entry, query;
-};
+std::uint64_t first_bytes(std::uint32_t count) noexcept { return (std::uint64_t{1} << (8 * count)) - 1; }
 
-Code code_of(const QuantumBox& box, const std::array<std::uint32_t, 3>& cell) noexcept {
-  Code code{0, kGuards};
-  for (std::uint32_t i = 0; i < 3; ++i) {
-    const std::uint32_t first = cell[i] << kQuantumBits, last = first + (kQuanta - 1);
-    const std::uint64_t lower = box.lower[i] > first ? box.lower[i] - first : 0;
-    const std::uint64_t below = box.upper[i] < last ? last - box.upper[i] : 0;  // from the cell's end downwards
-    code.entry |= lower << (kFieldBits * i) | below << (kFieldBits * (i + 3));
-    code.query |= (kQuanta - 1 - below) << (kFieldBits * i) | (kQuanta - 1 - lower) << (kFieldBits * (i + 3));
-  }
-  return code;
+// A box clipped to a cell, in three fields each: how far it begins from the cell's lower end, and ends from its upper
+// end. As an entry or as a query: entry's field <= query's field in all six means that they meet.
+ORCHARD_INLINE std::uint64_t entry_of(std::uint32_t from, std::uint32_t below) noexcept {
+  return std::uint64_t{below} << 3 * kFieldBits | from;
+}
+ORCHARD_INLINE std::uint64_t query_of(std::uint32_t from, std::uint32_t below) noexcept {
+  return entry_of(kLargest - below, kLargest - from) | kGuards;
 }
 
-// Bit i: entry i of the line meets the query. Bits from line.count on mean nothing.
+// Bit 8 i: entry i of the line meets the query. Only the first line.count bytes mean anything.
 struct PlainCompare {
-  static std::uint32_t meeting(const CellLine& line, std::uint64_t query) noexcept {
-    std::uint32_t bits = 0;
+  static std::uint64_t meeting(const CellLine& line, std::uint64_t query) noexcept {
+    std::uint64_t bits = 0;
     for (std::uint32_t i = 0; i < 7; ++i) {
-      bits |= static_cast<std::uint32_t>(((query - line.entries[i]) & kGuards) == kGuards) << i;
+      bits |= std::uint64_t{((query - line.entries[i]) & kGuards) == kGuards} << (8 * i);
     }
     return bits;
   }
@@ -43,14 +38,11 @@ struct PlainCompare {
 #ifdef ORCHARD_VECTORS
 struct VectorCompare {
   using Words __attribute__((vector_size(64))) = std::uint64_t;
-  using Half __attribute__((vector_size(32))) = std::uint64_t;
-  ORCHARD_INLINE static std::uint32_t meeting(const CellLine& line, std::uint64_t query) noexcept {
-    const Words entries = load<Words>(line);                                              // the eighth is the counters
-    const Words hit = reinterpret_cast<Words>(((query - entries) & kGuards) == kGuards);  // numbers are spread
-    const Words bits = hit & Words{1, 2, 4, 8, 16, 32, 64, 0};
-    const auto parts = std::bit_cast<std::array<Half, 2>>(bits);
-    const Half sum = parts[0] | parts[1];
-    return static_cast<std::uint32_t>((sum[0] | sum[1]) | (sum[2] | sum[3]));
+  using Bytes __attribute__((vector_size(8))) = std::uint8_t;
+  ORCHARD_INLINE static std::uint64_t meeting(const CellLine& line, std::uint64_t query) noexcept {
+    const Words entries = load<Words>(line);                    // the eighth is the counters
+    const auto hit = ((query - entries) & kGuards) == kGuards;  // numbers are spread
+    return std::bit_cast<std::uint64_t>(__builtin_convertvector(-hit, Bytes));
   }
 };
 #endif
@@ -66,15 +58,15 @@ struct SweptGrid::Insertion {
 };
 
 // Of the entries hit, those whose box really meets the body's, and in this cell first.
-void SweptGrid::report(const Insertion& insertion, const CellLine& line, std::uint32_t hits, const Visit& visit) {
-  const BodyId body = visit.body();
+void SweptGrid::report(const Insertion& insertion, const CellLine& line, std::uint64_t hits, BodyId body, Steps steps) {
   const QuantumBox& box = insertion.boxes[body];
   for (; hits != 0; hits &= hits - 1) {
-    const auto other = static_cast<BodyId>(line.entries[static_cast<std::size_t>(std::countr_zero(hits))] >> kIdShift);
+    const std::uint64_t entry = line.entries[static_cast<std::size_t>(std::countr_zero(hits)) / 8];
+    const auto other = static_cast<BodyId>(entry >> kIdShift);
     const QuantumBox& theirs = insertion.boxes[other];
     bool here = box.meets(theirs);
     for (std::size_t d = 0; d < 3; ++d) {
-      const std::uint32_t cell = (box.lower[d] >> kQuantumBits) + visit.steps[d];
+      const std::uint32_t cell = (box.lower[d] >> kQuantumBits) + steps[d];
       here = here && std::max(box.lower[d], theirs.lower[d]) >> kQuantumBits == cell;
     }
     if (here) insertion.pairs.push_back(body < other ? BodyPair{body, other} : BodyPair{other, body});
@@ -85,11 +77,10 @@ template <typename Kind>
 ORCHARD_INLINE void SweptGrid::insert_in_line(const Insertion& insertion, const Visit& visit) {
   // Nothing is written before all seven entries have been read together: that would have to wait for the small writes.
   CellLine& first = lines_[visit.line];
+  const auto body = static_cast<BodyId>(visit.entry >> kIdShift);
   const std::uint32_t count = first.count, more = first.overflow;
-  ++counts_.entries;
-  ++counts_.lines_read;
-  const std::uint32_t hits = Kind::meeting(first, visit.query) & ((1u << count) - 1);
-  if (hits != 0) report(insertion, first, hits, visit);
+  const std::uint64_t hits = Kind::meeting(first, visit.query) & first_bytes(count);
+  if (hits != 0) report(insertion, first, hits, body, visit.steps);
   if (more == 0 && count < first.entries.size()) [[likely]] {
     first.entries[count] = visit.entry;
     first.count = count + 1;
@@ -98,45 +89,47 @@ ORCHARD_INLINE void SweptGrid::insert_in_line(const Insertion& insertion, const 
   for (std::uint32_t next = more; next != 0;) {
     const CellLine& line = overflow_[next - 1];
     ++counts_.lines_read;
-    const std::uint32_t met = Kind::meeting(line, visit.query) & ((1u << line.count) - 1);
-    if (met != 0) report(insertion, line, met, visit);
+    const std::uint64_t met = Kind::meeting(line, visit.query) & first_bytes(line.count);
+    if (met != 0) report(insertion, line, met, body, visit.steps);
     next = line.overflow;
   }
   append(first, visit.entry);
 }
 
-// A loop without branches that depend on the data.
+// Loops without branches that depend on the data.
 ORCHARD_INLINE void SweptGrid::encode(Batch& batch, std::span<const BodyId> bodies,
                                       const BoxBlock& block) const noexcept {
+  using Numbers = std::array<std::uint32_t, kBlock>;
   const std::size_t lanes = lanes_for(bodies.size());
-  std::array<std::uint32_t, kBlock> axes;
-  for (std::size_t i = 0; i < lanes; ++i) axes[i] = 0;
+  Numbers all_from{}, all_below{}, all_line{}, axes{};
   for (std::uint32_t d = 0; d < 3; ++d) {
-    const std::uint32_t low = kFieldBits * d, high = kFieldBits * (d + 3), mask = mask_[d], shift = shift_[d];
-    std::array<std::uint64_t, kBlock> entry, query, next_entry, next_query;
-    std::array<std::uint32_t, kBlock> line, next_line;
+    const std::uint32_t field = kFieldBits * d, mask = mask_[d], shift = shift_[d];
+    Numbers from, below, line, next_below, next_line;
     for (std::size_t i = 0; i < lanes; ++i) {
       const std::uint32_t lower = block.lower[d][i], upper = block.upper[d][i];
       const std::uint32_t cell = lower >> kQuantumBits, last = upper >> kQuantumBits;
-      const std::uint64_t from = lower & (kQuanta - 1), to = upper & (kQuanta - 1);
-      const std::uint64_t below = last > cell ? 0 : kQuanta - 1 - to;  // from the cell's end downwards
-      entry[i] = from << low | below << high;
-      query[i] = (kQuanta - 1 - below) << low | (kQuanta - 1 - from) << high;
+      from[i] = (lower & (kQuanta - 1)) << field;
+      next_below[i] = (~upper & (kQuanta - 1)) << field;
+      below[i] = last > cell ? 0 : next_below[i];
       line[i] = (cell & mask) << shift;
-      next_entry[i] = (kQuanta - 1 - to) << high;
-      next_query[i] = to << low | std::uint64_t{kQuanta - 1} << high;
       next_line[i] = (last & mask) << shift;
       axes[i] |= (last > cell ? 1u : 0u) << d | (last > cell + 1 ? 8u : 0u);
+      all_from[i] |= from[i];
+      all_below[i] |= below[i];
+      all_line[i] |= line[i];
     }
-    const auto keep = [&](const auto& from, auto& to) { std::copy_n(from.begin(), lanes, to.begin()); };
-    keep(entry, batch.entry[0][d]), keep(query, batch.query[0][d]), keep(line, batch.line[0][d]);
-    keep(next_entry, batch.entry[1][d]), keep(next_query, batch.query[1][d]), keep(next_line, batch.line[1][d]);
+    batch.from[d] = from;
+    batch.below[0][d] = below, batch.below[1][d] = next_below;
+    batch.lines[0][d] = line, batch.lines[1][d] = next_line;
   }
-  std::copy_n(axes.begin(), lanes, batch.axes.begin());
+  batch.axes = axes;
+  batch.line = all_line;
   batch.count = bodies.size();
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     batch.bodies[i] = bodies[i];
-    prefetch(&lines_[Batch::sum(batch.line, 0, 0, 0, i)]);  // they are all over memory
+    batch.entry[i] = entry_of(all_from[i], all_below[i]) | std::uint64_t{bodies[i]} << kIdShift;
+    batch.query[i] = query_of(all_from[i], all_below[i]);
+    prefetch(&lines_[all_line[i]]);  // they are all over memory
   }
 }
 
@@ -144,6 +137,8 @@ template <typename Kind>
 ORCHARD_INLINE void SweptGrid::flush(const Insertion& insertion) {
   Queue& queue = insertion.queue;
   for (std::size_t k = 0; k < queue.visits_waiting_; ++k) insert_in_line<Kind>(insertion, queue.visits_[k]);
+  counts_.entries += queue.visits_waiting_;
+  counts_.lines_read += queue.visits_waiting_;
   queue.visits_waiting_ = 0;
 }
 
@@ -155,14 +150,13 @@ ORCHARD_INLINE void SweptGrid::insert_waiting(const Insertion& insertion) {
   std::array<std::uint32_t, kBlock> rest;
   std::size_t rests = 0;
   for (std::uint32_t i = 0; i < batch.count; ++i) {
-    insert_in_line<Kind>(insertion, {Batch::sum(batch.entry, 0, 0, 0, i) | std::uint64_t{batch.bodies[i]} << kIdShift,
-                                     Batch::sum(batch.query, 0, 0, 0, i) | kGuards,
-                                     Batch::sum(batch.line, 0, 0, 0, i),
-                                     {0, 0, 0}});
+    insert_in_line<Kind>(insertion, {batch.entry[i], batch.query[i], batch.line[i], {0, 0, 0}});
     rest[rests] = i;
     rests += batch.axes[i] != 0;
   }
   counts_.bodies += batch.count;
+  counts_.entries += batch.count;
+  counts_.lines_read += batch.count;
   flush<Kind>(insertion);
   for (std::size_t k = 0; k < rests; ++k) leave_visits<Kind>(insertion, batch, rest[k]);
 }
@@ -179,14 +173,16 @@ ORCHARD_INLINE void SweptGrid::leave_visits(const Insertion& insertion, const Ba
   }
   const std::uint64_t id = std::uint64_t{batch.bodies[i]} << kIdShift;
   for (std::uint32_t corner = axes; corner != 0; corner = (corner - 1) & axes) {
-    const std::uint32_t x = corner & 1, y = corner >> 1 & 1, z = corner >> 2;
-    const std::uint32_t line = Batch::sum(batch.line, x, y, z, i);
+    const Steps steps = {static_cast<std::uint8_t>(corner & 1), static_cast<std::uint8_t>(corner >> 1 & 1),
+                         static_cast<std::uint8_t>(corner >> 2)};
+    std::uint32_t from = 0, below = 0, line = 0;
+    for (std::size_t d = 0; d < 3; ++d) {
+      if (steps[d] == 0) from |= batch.from[d][i];
+      below |= batch.below[steps[d]][d][i];
+      line |= batch.lines[steps[d]][d][i];
+    }
     prefetch(&lines_[line]);
-    queue.visits_[queue.visits_waiting_++] = {
-        Batch::sum(batch.entry, x, y, z, i) | id,
-        Batch::sum(batch.query, x, y, z, i) | kGuards,
-        line,
-        {static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y), static_cast<std::uint8_t>(z)}};
+    queue.visits_[queue.visits_waiting_++] = {entry_of(from, below) | id, query_of(from, below), line, steps};
   }
 }
 
@@ -196,14 +192,19 @@ void SweptGrid::leave_many_visits(Queue& queue, BodyId body, const QuantumBox& b
     first[d] = box.lower[d] >> kQuantumBits;
     count[d] = (box.upper[d] >> kQuantumBits) - first[d] + 1;
   }
-  std::array<std::uint8_t, 3> steps;
+  Steps steps;
   for (steps[2] = 0; steps[2] < count[2]; ++steps[2]) {
     for (steps[1] = 0; steps[1] < count[1]; ++steps[1]) {
       for (steps[0] = steps[1] == 0 && steps[2] == 0; steps[0] < count[0]; ++steps[0]) {
         const Cell cell = {first[0] + steps[0], first[1] + steps[1], first[2] + steps[2]};
-        const Code code = code_of(box, cell);
-        queue.visits_[queue.visits_waiting_++] = {code.entry | std::uint64_t{body} << kIdShift, code.query,
-                                                  line_of(cell), steps};
+        std::uint32_t from = 0, below = 0;
+        for (std::uint32_t i = 0; i < 3; ++i) {
+          const std::uint32_t begin = cell[i] << kQuantumBits, end = begin + (kQuanta - 1);
+          from |= (box.lower[i] > begin ? box.lower[i] - begin : 0) << kFieldBits * i;
+          below |= (box.upper[i] < end ? end - box.upper[i] : 0) << kFieldBits * i;
+        }
+        queue.visits_[queue.visits_waiting_++] = {entry_of(from, below) | std::uint64_t{body} << kIdShift,
+                                                  query_of(from, below), line_of(cell), steps};
       }
     }
   }

@@ -53,12 +53,11 @@ class SweptGrid {
   static constexpr std::size_t kMostVisits = kMostCellsPerAxis * kMostCellsPerAxis * kMostCellsPerAxis - 1;  // a body's
   struct Insertion;
   using Cell = std::array<std::uint32_t, 3>;
-  struct Visit {  // to one of a body's cells
+  using Steps = std::array<std::uint8_t, 3>;  // from a body's first cell
+  struct Visit {                              // to one of a body's cells
     std::uint64_t entry, query;
     std::uint32_t line;
-    std::array<std::uint8_t, 3> steps;  // from its first cell
-
-    BodyId body() const noexcept { return static_cast<BodyId>(entry >> kIdShift); }
+    Steps steps;
   };
   struct Batch;
   std::uint32_t line_of(const Cell& cell) const noexcept {
@@ -78,7 +77,7 @@ class SweptGrid {
   void advance_vectors(const Insertion& insertion);
   template <typename Kind>
   void insert_in_line(const Insertion& insertion, const Visit& visit);
-  void report(const Insertion& insertion, const CellLine& line, std::uint32_t hits, const Visit& visit);
+  void report(const Insertion& insertion, const CellLine& line, std::uint64_t hits, BodyId body, Steps steps);
   void leave_many_visits(Queue& queue, BodyId body, const QuantumBox& box) const noexcept;
   void append(CellLine& line, std::uint64_t entry);
   void remove_from(CellLine& line, BodyId body) noexcept;
@@ -90,21 +89,20 @@ class SweptGrid {
   GridCounts counts_;
 };
 
-// By body of a block, and for each axis by its first cell and the next: the codes, and what it adds to the line's
-// index.
+// By body of a block: the visit to its first cell, and by axis what the visits to the other cells are put together
+// from.
 struct SweptGrid::Batch {
   template <typename T>
-  using Sides = std::array<std::array<std::array<T, kBlock>, 3>, 2>;
-  std::array<BodyId, kBlock> bodies;
-  Sides<std::uint64_t> entry, query;
-  Sides<std::uint32_t> line;
-  std::array<std::uint32_t, kBlock> axes;  // bit d: several cells along axis d; bit 3: more than two along one
-  std::size_t count = 0;
-
+  using ByBody = std::array<T, kBlock>;
   template <typename T>
-  static T sum(const Sides<T>& sides, std::size_t x, std::size_t y, std::size_t z, std::size_t i) noexcept {
-    return sides[x][0][i] | sides[y][1][i] | sides[z][2][i];
-  }
+  using ByAxis = std::array<ByBody<T>, 3>;
+  ByBody<BodyId> bodies;
+  ByBody<std::uint64_t> entry, query;
+  ByBody<std::uint32_t> line;
+  ByAxis<std::uint32_t> from;                         // the first cell's lower end; 0 for the next one
+  std::array<ByAxis<std::uint32_t>, 2> below, lines;  // of the first cell and the next along the axis
+  ByBody<std::uint32_t> axes;  // bit d: several cells along axis d; bit 3: more than two along one
+  std::size_t count = 0;
 };
 
 class SweptGrid::Queue {
