@@ -69,10 +69,11 @@ void Events::collect_due(Step now) {
   if (changed_.capacity() > kChangesKept) changed_.shrink_to_fit();  // not what adding all bodies took
 }
 
-// All bodies but those that have been looked at for this step and have not changed since.
-void Events::collect_unprepared() {
-  for (BodyId body = 0; body < roster_.slots(); ++body) {
-    if (!roster_.alive(body) || (windows_[body].looked == prepared_round_ && !pending_[body])) continue;
+// What has not been looked at for this step yet is in due_ already; the rest changed since, or was added.
+void Events::complete_due() {
+  std::erase_if(due_, [&](BodyId body) { return !roster_.alive(body) || pending_[body]; });
+  for (const BodyId body : changed_) {
+    if (!pending_[body]) continue;
     take_away(body);
     pending_[body] = 0;
     due_.push_back(body);
@@ -132,14 +133,14 @@ StepReport Events::step(Step now, Meter& meter, std::vector<BodyPair>& pairs) {
   ++round_;
   entries_.clear();
   events_.clear();
-  due_.clear();
   calendar_.take(now, entries_, events_);
   const bool outgrown = few_ && roster_.slots() > list_.slots();
   const bool completing = prepared_round_ >= 0 && !outgrown;
   bool all_anew = completing;
   if (completing) {
-    collect_unprepared();
+    complete_due();
   } else {
+    due_.clear();
     collect_due(now);
     all_anew = outgrown || worth_a_rebuild();
     if (all_anew) {

@@ -35,7 +35,7 @@ class Events final : public Method {
   // events.cpp: a step
   void make_room();
   void collect_due(Step now);
-  void collect_unprepared();
+  void complete_due();
   void take_away(BodyId body) noexcept;
   void take_away_due() noexcept;
   unsigned look_and_test(Step now, Meter& meter);
@@ -52,7 +52,7 @@ class Events final : public Method {
 
   // events_look.cpp: a look at some
   std::size_t look_at(Step now, Step from, std::span<const BodyId> bodies, Meter& meter);
-  std::size_t drop_unknown(Step from, std::span<BodyId> bodies) noexcept;
+  std::size_t known_at(Step from, std::span<BodyId> bodies) noexcept;
   Step window_end(Step from, const Motion& motion) noexcept;
   void place(Look& look, std::span<const BodyId> bodies);
   void shrink(Look& look, BodyId body, std::size_t i);

@@ -114,9 +114,9 @@ void Events::shrink(Look& look, BodyId body, std::size_t i) {
   look.boxes.set(i, boxes_[body]);
 }
 
-// Keeps those whose new bounds are known up to `from`, with their motions; returns how many.
-std::size_t Events::drop_unknown(Step from, std::span<BodyId> bodies) noexcept {
-  std::size_t kept = 0;
+// Moves those whose new bounds are known up to `from`, with their motions, to the front; returns how many.
+std::size_t Events::known_at(Step from, std::span<BodyId> bodies) noexcept {
+  std::size_t front = 0;
   double known = std::numeric_limits<double>::infinity();  // an expiry that is late enough
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const double expiry = motions_[i].expiry;
@@ -124,17 +124,17 @@ std::size_t Events::drop_unknown(Step from, std::span<BodyId> bodies) noexcept {
       if (roster_.clock.last_before_expiry(expiry) < from) continue;
       known = expiry;
     }
-    if (kept < i) {
-      bodies[kept] = bodies[i];
-      motions_[kept] = motions_[i];
+    if (front < i) {
+      std::swap(bodies[front], bodies[i]);
+      motions_[front] = motions_[i];
     }
-    ++kept;
+    ++front;
   }
-  return kept;
+  return front;
 }
 
 // Stops early if the budget is spent; returns how many have been looked at. Where `from` is a later step than now,
-// bodies whose bounds do not reach it are left out.
+// bodies whose bounds do not reach it are left to the next step.
 std::size_t Events::look_at(Step now, Step from, std::span<const BodyId> bodies, Meter& meter) {
   motions_.resize(kBlock);
   Look look;
@@ -149,7 +149,9 @@ std::size_t Events::look_at(Step now, Step from, std::span<const BodyId> bodies,
     done += block.size();
     if (from > now) {
       std::copy(block.begin(), block.end(), known.begin());
-      block = std::span(known).first(drop_unknown(from, std::span(known).first(block.size())));
+      const std::size_t front = known_at(from, std::span(known).first(block.size()));
+      for (std::size_t i = front; i < block.size(); ++i) changed(known[i]);
+      block = std::span(known).first(front);
       if (block.empty()) continue;
     }
     place(look, block);

@@ -6,10 +6,9 @@ namespace {
 
 constexpr std::size_t kSmallSample = 16, kSample = 48;  // bodies that the first plan looks at: of few, and of many
 constexpr double kCrowding = 4;                         // lines read per entry from which on the cells are too large
-constexpr unsigned kPlansKept = 8;        // a plan that fits is made anew after as many looks at all bodies
-constexpr double kFewPairs = 1e-3;        // per body: too few to say anything about the prediction
-constexpr std::size_t kAskedAhead = 8;    // bodies, to see whether the next bounds are known
-constexpr double kAheadShare = 9.0 / 16;  // of the bodies that are looked at ahead: their pairs are fewer
+constexpr unsigned kPlansKept = 8;      // a plan that fits is made anew after as many looks at all bodies
+constexpr double kFewPairs = 1e-3;      // per body: too few to say anything about the prediction
+constexpr std::size_t kAskedAhead = 8;  // bodies, to see whether the next bounds are known
 
 }  // namespace
 
@@ -119,16 +118,17 @@ bool Events::prepare(Step now) {
   }
   motions_.resize(kBlock);
   roster_.ask(now, std::span(sample).first(count), std::span(motions_).first(count));
-  if (2 * drop_unknown(from, std::span(sample).first(count)) < count) return false;
+  if (2 * known_at(from, std::span(sample).first(count)) < count) return false;
 
   rush_ = from;
   prepared_round_ = ++round_;
   replan(now);
   place_all_anew();
-  const auto ahead = static_cast<std::size_t>(kAheadShare * static_cast<double>(due_.size()));
+  const std::size_t ahead = due_.size() / 2;
   Meter unlimited;
   near_.clear();
   look_at(now, from, std::span(due_).first(ahead), unlimited);
+  due_.erase(due_.begin(), due_.begin() + static_cast<std::ptrdiff_t>(ahead));
   tests_.clear();
   for (const BodyPair& pair : near_) tests_.push_back({pair, round_});
   test_all(now, unlimited);
