@@ -8,18 +8,20 @@ namespace orchard::runtime::detail {
 void Calendar::set_due(std::span<const BodyId> bodies, Step step) {
   const std::size_t bucket = bucket_of(step);
   std::uint32_t& head = buckets_[bucket].bodies;
-  while (!bodies.empty()) {
-    if (head == kNone || lines_[head].count == lines_[head].ids.size()) add_line(head);
-    Bodies& line = lines_[head];
-    const std::size_t count = std::min(bodies.size(), line.ids.size() - line.count);
-    std::copy_n(bodies.begin(), count, line.ids.begin() + line.count);
-    line.count += static_cast<std::uint32_t>(count);
-    bodies = bodies.subspan(count);
+  std::size_t done = 0;
+  if (head != kNone) {  // what its last part has room for
+    for (BodyId& id : lines_[head].ids) {
+      if (id == kNoBody && done < bodies.size()) id = bodies[done++];
+    }
+  }
+  for (; done < bodies.size(); done += 3) {
+    const auto at = [&](std::size_t i) { return i < bodies.size() ? bodies[i] : kNoBody; };
+    add_line(head, {at(done), at(done + 1), at(done + 2)});
   }
   mark(bucket);
 }
 
-void Calendar::add_line(std::uint32_t& head) {
+void Calendar::add_line(std::uint32_t& head, const std::array<BodyId, 3>& ids) {
   std::uint32_t line = free_line_;
   if (line == kNone) {
     line = static_cast<std::uint32_t>(lines_.size());
@@ -27,8 +29,7 @@ void Calendar::add_line(std::uint32_t& head) {
   } else {
     free_line_ = lines_[line].next;
   }
-  lines_[line].next = head;
-  lines_[line].count = 0;
+  lines_[line] = {head, ids};
   head = line;
 }
 
@@ -57,7 +58,9 @@ void Calendar::take(Step step, std::vector<BodyId>& bodies, std::vector<PairEven
   Bucket& bucket = buckets_[index];
   for (std::uint32_t line = bucket.bodies; line != kNone;) {
     Bodies& part = lines_[line];
-    bodies.insert(bodies.end(), part.ids.begin(), part.ids.begin() + part.count);
+    for (const BodyId body : part.ids) {
+      if (body != kNoBody) bodies.push_back(body);
+    }
     const std::uint32_t next = part.next;
     part.next = free_line_;
     free_line_ = line;

@@ -30,9 +30,9 @@ class Calendar {
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffffu;
-  struct alignas(64) Bodies {  // a cache line of a list
-    std::uint32_t next, count;
-    std::array<BodyId, 14> ids;
+  struct Bodies {  // a part of a list: short, as a step may have one body only
+    std::uint32_t next;
+    std::array<BodyId, 3> ids;  // kNoBody from the first one that is missing
   };
   struct Node {
     PairEvent event;
@@ -42,7 +42,7 @@ class Calendar {
     std::uint32_t bodies = kNone, event = kNone;
   };
 
-  void add_line(std::uint32_t& head);
+  void add_line(std::uint32_t& head, const std::array<BodyId, 3>& ids);
   static std::size_t bucket_of(Step step) noexcept { return static_cast<std::size_t>(step & (kCalendarSteps - 1)); }
   void mark(std::size_t bucket) noexcept { busy_[bucket / 64] |= std::uint64_t{1} << (bucket % 64); }
 
