@@ -156,6 +156,28 @@ TEST(BroadPhase, SharesTheLooksOfACommonExpiryBetweenTwoSteps) {
   }
 }
 
+// Every other body gives its next bound only at the step after the one at which the last expires.
+TEST(BroadPhase, BodiesThatRenewTheirBoundsLateTakePart) {
+  constexpr double kExactStep = 1.0 / 64, kPeriod = 12 * kExactStep;
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    const test::MovingBodies bodies({.bodies = seed % 2 == 0 ? 400u : 100u, .ball = 30, .period = kPeriod}, seed);
+    const MotionSource inner = bodies.source();
+    const MotionSource source = [&](double time, std::span<const BodyId> ids, std::span<Motion> motions) {
+      inner(time, ids, motions);
+      for (std::size_t i = 0; i < ids.size(); ++i) {
+        if (ids[i] % 2 == 1 && std::fmod(time, kPeriod) == 0) motions[i].expiry = time;
+      }
+    };
+    BroadPhase world(source, {.time_step = kExactStep});
+    for (std::size_t i = 0; i < bodies.size(); ++i) world.add();
+    for (int step = 0; step < 63; ++step) {
+      const Advance now = world.advance(kExactStep * step);
+      ASSERT_EQ(std::vector<BodyPair>(now.pairs.begin(), now.pairs.end()), bodies.touching(kExactStep * step))
+          << "seed " << seed << ", step " << step;
+    }
+  }
+}
+
 TEST(BroadPhase, AChangeWhileAsleepCountsFromThePresent) {
   std::vector<Motion> values(2);
   values[0].position = {0, 0, 0};
