@@ -1,12 +1,13 @@
 // Figures 7.2 to 7.10: isothetic cubes under forces until two collide or 3 seconds have passed, space-time bounds
-// against Turk's spatial hash:  fig_7_2_broad_phase [folder for CSV and SVG] [share of the trials] As published: 30,
-// 100 and 300 cubes in 100, 200 and 100 trials, frames of dt_r = 0.02, dt_d = dt_r / 2 for both, forces in subsequences
-// with known M and d that start and end at the same times for all, 4th-order Runge-Kutta, the hash with as much memory
-// as the space-time bounds used, the first 42 times as dense as the last. Chosen here, as it is not published: half
-// edges 0.5 to 1.5, speeds 5 to 15, M in [0, 4], subsequences of 0.5 s with 5 forces each, balls of radius 38, 107 and
-// 288. Cubes go through the broad phase as their bounding spheres; pairs it reports are compared as cubes.
+// against Turk's spatial hash:
+//   fig_7_2_broad_phase [folder for CSV and SVG] [share of the trials]
+// As published: 30, 100 and 300 cubes in 100, 200 and 100 trials, frames of dt_r = 0.02, dt_d = dt_r / 2 for both,
+// forces in subsequences with known M and d that start and end at the same times for all, 4th-order Runge-Kutta, the
+// hash with as much memory as the space-time bounds used, the first 42 times as dense as the last. Chosen here, as it
+// is not published: half edges 0.5 to 1.5, speeds 5 to 15, M in [0, 4], subsequences of 0.5 s with 5 forces each, balls
+// of radius 38, 107 and 288. Cubes go through the broad phase as their bounding spheres; pairs it reports are compared
+// as cubes.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -15,7 +16,7 @@
 #include <functional>
 #include <string>
 
-#include "spatial_hash.h"
+#include "cubes.h"
 #include "svg_plot.h"
 
 namespace {
@@ -23,185 +24,8 @@ namespace {
 using namespace orchard::bench;
 using orchard::plot::Plot;
 using orchard::plot::Series;
-using orchard::runtime::BroadPhase;
 using orchard::runtime::BroadPhaseMethod;
 using orchard::runtime::BroadPhaseOptions;
-using orchard::runtime::dot;
-
-constexpr double kFrame = 0.02, kDetection = kFrame / 2, kEnd = 3, kPeriod = 0.5;
-constexpr int kForces = 5;
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-// Cubes whose positions come from a differential equation solver, at times that never decrease.
-class Cubes {
- public:
-  Cubes(std::size_t count, double ball, std::uint64_t seed) {
-    orchard::runtime::test::Draw draw(seed);
-    for (std::size_t i = 0; i < count; ++i) {
-      Cube cube{draw.in_ball(ball), draw.uniform(5, 15) * draw.direction(), 0, {}, {}};
-      for (double begin = 0; begin < kEnd + kPeriod; begin += kPeriod) {
-        const Period period{draw.uniform(0, 4), draw.direction()};
-        for (int f = 0; f < kForces; ++f) {
-          const Vec3 force = draw.uniform(0, period.bound) * draw.direction();
-          cube.forces.push_back(dot(force, period.half_space) > 0 ? -1.0 * force : force);
-        }
-        cube.periods.push_back(period);
-      }
-      cubes_.push_back(std::move(cube));
-      halves.push_back(draw.uniform(0.5, 1.5));
-    }
-    positions.resize(count);
-  }
-
-  std::vector<double> halves;   // of the edges
-  std::vector<Vec3> positions;  // as of the last solve_all()
-  double solver_seconds = 0;
-
-  std::size_t size() const { return cubes_.size(); }
-
-  void solve_all(double time) {
-    const double begin = now();
-    for (std::size_t i = 0; i < size(); ++i) positions[i] = solved(i, time).position;
-    solver_seconds += now() - begin;
-  }
-
-  orchard::runtime::MotionSource source() {
-    return [this](double time, std::span<const BodyId> bodies, std::span<Motion> motions) {
-      const double begin = now();
-      for (std::size_t k = 0; k < bodies.size(); ++k) {
-        const Cube& cube = solved(bodies[k], time);
-        const auto p = static_cast<std::size_t>((time + 1e-9) / kPeriod);
-        Motion& m = motions[k];
-        m = Motion{};
-        m.position = cube.position;
-        m.velocity = cube.velocity;
-        m.radius = std::sqrt(3.0) * halves[bodies[k]];
-        m.acceleration = cube.periods[p].bound;
-        m.half_space = cube.periods[p].half_space;
-        m.expiry = static_cast<double>(p + 1) * kPeriod;
-      }
-      solver_seconds += now() - begin;
-    };
-  }
-
-  bool collide(BodyId a, BodyId b, double time) {
-    const double begin = now();
-    const Vec3 apart = solved(a, time).position - solved(b, time).position;
-    solver_seconds += now() - begin;
-    bool meet = true;
-    for (std::size_t d = 0; d < 3; ++d) meet = meet && std::fabs(apart[d]) <= halves[a] + halves[b];
-    return meet;
-  }
-
- private:
-  struct Period {
-    double bound;
-    Vec3 half_space;
-  };
-  struct Cube {
-    Vec3 position, velocity;
-    double time;
-    std::vector<Vec3> forces;
-    std::vector<Period> periods;
-  };
-
-  const Cube& solved(std::size_t i, double time) {
-    Cube& cube = cubes_[i];
-    const double interval = kPeriod / kForces;
-    while (cube.time < time - 1e-12) {
-      const auto f = static_cast<std::size_t>((cube.time + 1e-9) / interval);
-      const double step = std::min({time, static_cast<double>(f + 1) * interval, cube.time + kDetection}) - cube.time;
-      runge_kutta(cube, cube.forces[f], step);
-      cube.time += step;
-    }
-    return cube;
-  }
-
-  static void runge_kutta(Cube& cube, const Vec3& force, double h) {
-    const auto slope = [&](const Vec3& velocity) { return std::pair<Vec3, Vec3>{velocity, force}; };
-    const auto [x1, v1] = slope(cube.velocity);
-    const auto [x2, v2] = slope(cube.velocity + (h / 2) * v1);
-    const auto [x3, v3] = slope(cube.velocity + (h / 2) * v2);
-    const auto [x4, v4] = slope(cube.velocity + h * v3);
-    cube.position = cube.position + (h / 6) * (x1 + 2.0 * x2 + 2.0 * x3 + x4);
-    cube.velocity = cube.velocity + (h / 6) * (v1 + 2.0 * v2 + 2.0 * v3 + v4);
-  }
-
-  std::vector<Cube> cubes_;
-};
-
-struct Run {
-  double overall = 0, detection = 0, collision = kEnd;
-  std::vector<double> frames;  // detection-only seconds of each
-  std::size_t memory = 0;
-
-  double worst() const { return frames.empty() ? 0 : *std::max_element(frames.begin(), frames.end()); }
-};
-
-// Calls detect(frame's time), which returns the time of a collision or a negative number, and takes the times apart.
-Run run(Cubes& cubes, double end, bool stop, const std::function<double(double)>& detect) {
-  Run result;
-  const int frames = static_cast<int>(std::lround(end / kFrame));
-  for (int frame = 0; frame <= frames; ++frame) {
-    const double time = frame * kFrame, solver_before = cubes.solver_seconds, begin = now();
-    const double collision = detect(time);
-    const double middle = now();
-    result.frames.push_back(std::max(0.0, middle - begin - (cubes.solver_seconds - solver_before)));
-    result.detection += result.frames.back();
-    cubes.solve_all(time);  // to draw them
-    result.overall += now() - begin;
-    if (collision >= 0 && stop) {
-      result.collision = collision;
-      break;
-    }
-  }
-  return result;
-}
-
-Run run_bounds(std::size_t count, double ball, std::uint64_t seed, const BroadPhaseOptions& options, double end = kEnd,
-               bool stop = true) {
-  Cubes cubes(count, ball, seed);
-  BroadPhase world(cubes.source(), options);
-  for (std::size_t i = 0; i < count; ++i) world.add();
-  Run result = run(cubes, end, stop, [&](double time) {
-    double first = -1;
-    for (auto report = world.advance(time); !report.pairs.empty(); report = world.advance(time)) {
-      for (const BodyPair& pair : report.pairs) {
-        if (!cubes.collide(pair.a, pair.b, report.time)) continue;
-        if (stop) return report.time;
-        first = first < 0 ? report.time : first;
-      }
-    }
-    return first;
-  });
-  result.memory = world.memory_bytes();
-  return result;
-}
-
-Run run_hash(std::size_t count, double ball, std::uint64_t seed, std::size_t memory, double cell, double end = kEnd,
-             bool stop = true) {
-  Cubes cubes(count, ball, seed);
-  cubes.solve_all(0);
-  cubes.solver_seconds = 0;
-  const std::size_t entries = count * 48;  // what the bodies themselves need
-  SpatialHash::Options options{
-      cell, memory == 0 ? 0 : std::max<std::size_t>(256, memory > entries ? memory - entries : 0), true};
-  SpatialHash hash(cubes.positions, cubes.halves, options);
-  std::vector<BodyPair> pairs;
-  double next = 0;
-  Run result = run(cubes, end, stop, [&](double time) {
-    for (; next <= time + 1e-9; next += kDetection) {
-      cubes.solve_all(next);
-      pairs.clear();
-      hash.find(pairs);
-      if (!pairs.empty() && stop) return next;
-    }
-    return -1.0;
-  });
-  result.memory = hash.memory_bytes();
-  return result;
-}
 
 struct Setting {
   std::size_t cubes;
