@@ -6,6 +6,7 @@
 
 #include "coalesce.h"
 #include "contact_angles.h"
+#include "incidence.h"
 #include "interior.h"
 #include "keep_topology.h"
 #include "medial_faces.h"
@@ -53,20 +54,6 @@ std::vector<Index> number_medial_vertices(const VoronoiDiagram& diagram, const s
   return medial;
 }
 
-// Rows of the second members of (row, item) pairs, ascending and each once.
-Rows rows_of(std::vector<std::array<Index, 2>> pairs, Index rows) {
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  Rows result;
-  result.items.reserve(pairs.size());
-  auto pair = pairs.begin();
-  for (Index row = 0; row < rows; ++row) {
-    for (; pair != pairs.end() && (*pair)[0] == row; ++pair) result.items.push_back((*pair)[1]);
-    result.close_row();
-  }
-  return result;
-}
-
 void connect(const VoronoiDiagram& diagram, const std::vector<Index>& medial, const detail::KeptTopology& kept,
              MedialAxis& axis) {
   std::vector<std::array<Index, 2>> forming, adjacent;
@@ -86,8 +73,8 @@ void connect(const VoronoiDiagram& diagram, const std::vector<Index>& medial, co
     adjacent.push_back({medial[b], medial[a]});
     ++axis.bridges;
   }
-  axis.forming_points = rows_of(std::move(forming), axis.size());
-  axis.neighbors = rows_of(std::move(adjacent), axis.size());
+  axis.forming_points = detail::rows_of(forming, axis.size());
+  axis.neighbors = detail::rows_of(adjacent, axis.size());
 }
 
 // The farthest forming point, not the diagram's radius: coalescing moved centres a little, robust diagrams approximate

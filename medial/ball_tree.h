@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -15,14 +16,16 @@ class BallTree {
   BallTree(std::vector<Box> boxes, std::vector<double> radii);
 
   // The least of `best` and value(item) over all items. Precondition: value(item) is at least distance(query, box) less
-  // scale * radius. Items that cannot be the least are not asked. One thread's worth of work; any thread.
+  // scale * radius. Items that cannot be the least are not asked. Ends once anything is at most `enough`. One thread's
+  // worth of work; any thread.
   template <class Value>
-  double least(const Point& query, double best, const Value& value, double scale = 1) const {
+  double least(const Point& query, double best, const Value& value, double scale = 1,
+               double enough = -std::numeric_limits<double>::infinity()) const {
     if (items_.empty()) return best;
     std::array<std::pair<double, Index>, kDepth> stack;
     std::size_t size = 0;
     stack[size++] = {bound(nodes_[0], query, scale), 0};
-    while (size > 0) {
+    while (size > 0 && best > enough) {
       const auto [lower, at] = stack[--size];
       if (!(lower < best)) continue;
       const Node& node = nodes_[at];
@@ -41,25 +44,29 @@ class BallTree {
     return best;
   }
 
-  // Calls visit(item) for every item whose distance to the box less the radius is at most `limit`.
-  template <class Visit>
-  void visit(const Point& query, double limit, const Visit& visit_item) const {
-    if (items_.empty()) return;
+  // The largest radii[item] of the items that accept(item) and whose distance to the box less the radius is at most
+  // `limit`; `least` if none is larger. Items that cannot be the largest are not asked.
+  template <class Accept>
+  double largest_radius(const Point& query, double limit, double least, const Accept& accept) const {
+    if (items_.empty()) return least;
     std::array<Index, kDepth> stack;
     std::size_t size = 0;
     stack[size++] = 0;
     while (size > 0) {
       const Node& node = nodes_[stack[--size]];
-      if (bound(node, query, 1) > limit) continue;
+      if (!(node.radius > least) || bound(node, query, 1) > limit) continue;
       if (node.count == 0) {
-        stack[size++] = node.first;
-        stack[size++] = node.first + 1;
+        const bool first_larger = nodes_[node.first].radius > nodes_[node.first + 1].radius;
+        stack[size++] = node.first + (first_larger ? 1 : 0);  // the larger one is popped first
+        stack[size++] = node.first + (first_larger ? 0 : 1);
         continue;
       }
       for (Index i = node.first; i < node.first + node.count; ++i) {
-        if (distance(boxes_[i], query) - radii_[i] <= limit) visit_item(items_[i]);
+        const bool may = radii_[i] > least && distance(boxes_[i], query) - radii_[i] <= limit;
+        if (may && accept(items_[i])) least = radii_[i];
       }
     }
+    return least;
   }
 
  private:

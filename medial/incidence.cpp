@@ -4,14 +4,26 @@
 
 namespace orchard::detail {
 
-Rows rows_of(std::vector<std::array<Index, 2>>& pairs, Index count) {
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+Rows rows_of(const std::vector<std::array<Index, 2>>& pairs, Index count) {
+  std::vector<Index> ends(count, 0);  // of the rows, while they are filled; repeated items among them
+  for (const auto& pair : pairs) ++ends[pair[0]];
+  Index sum = 0;
+  for (Index& end : ends) {
+    sum += end;
+    end = sum - end;
+  }
+  std::vector<Index> items(pairs.size());
+  for (const auto& pair : pairs) items[ends[pair[0]]++] = pair[1];
   Rows result;
-  auto pair = pairs.begin();
-  for (Index row = 0; row < count; ++row) {
-    for (; pair != pairs.end() && (*pair)[0] == row; ++pair) result.items.push_back((*pair)[1]);
+  result.offsets.reserve(std::size_t{count} + 1);
+  result.items.reserve(items.size());
+  auto begin = items.begin();
+  for (const Index end : ends) {
+    const auto row_end = items.begin() + end;
+    std::sort(begin, row_end);
+    result.items.insert(result.items.end(), begin, std::unique(begin, row_end));
     result.close_row();
+    begin = row_end;
   }
   return result;
 }

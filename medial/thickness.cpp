@@ -21,11 +21,9 @@ std::vector<double> medial_radii_at_surface(const Surface& surface, const Medial
   std::vector<double> result(vertices.size(), 0);
   tbb::parallel_for(std::size_t{0}, vertices.size(), [&](std::size_t i) {
     const auto distance = [&](Index ball) { return (vertices[i] - mesh.centers[ball]).norm() - mesh.radii[ball]; };
-    const double nearest = tree.least(vertices[i], std::numeric_limits<double>::infinity(), distance);
+    const double nearest = tree.least(vertices[i], std::numeric_limits<double>::infinity(), distance, 1, 0);
     const double touching = std::max(nearest, 0.0) + kTouching * surface.bounding_radius();
-    tree.visit(vertices[i], touching, [&](Index ball) {
-      if (distance(ball) <= touching) result[i] = std::max(result[i], mesh.radii[ball]);
-    });
+    result[i] = tree.largest_radius(vertices[i], touching, 0, [&](Index ball) { return distance(ball) <= touching; });
   });
   return result;
 }
