@@ -98,7 +98,7 @@ std::vector<TuningFlag> make_flags() {
                        "Degrees: faces with nearer contacts do not divide sheets; more makes fewer segments",
                        [](T& t, double x) { t.segment_degrees = x; }));
   flags.push_back(choice("topology", {"keep", "free"},
-                         "Whether vertices may be left out where gaps that cannot be mended spoil the topology",
+                         "Whether single edges may stand for faces where gaps that cannot be mended spoil the topology",
                          [](T& t, const std::string& text) { t.keep_topology = text == "keep"; }));
   return flags;
 }
