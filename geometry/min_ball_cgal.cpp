@@ -42,6 +42,7 @@ Sphere ball_in_doubles(std::span<const Point> points) {
 Point exact_center(const std::vector<Point>& points) {
   using Number = CGAL::Exact_rational;
   std::vector<std::array<Number, 3>> spheres;
+  spheres.reserve(points.size());
   for (const Point& p : points) spheres.push_back({Number(p.x()), Number(p.y()), Number(p.z())});
   MinSphere<Number> min_sphere(spheres.begin(), spheres.end());
   const double root = std::sqrt(CGAL::to_double(min_sphere.discriminant()));
@@ -64,7 +65,7 @@ Point center_of_active_set(std::span<const Point> points) {
   std::vector<Point> active{points[farthest_from(points[0], points)]};
   active.push_back(points[farthest_from(active[0], points)]);
   for (std::size_t round = 0; round < points.size(); ++round) {
-    const Point center = exact_center(active);
+    Point center = exact_center(active);
     const Point& farthest = points[farthest_from(center, points)];
     if ((farthest - center).norm() <= radius_around(center, active) * (1 + kRounding)) return center;
     active.push_back(farthest);

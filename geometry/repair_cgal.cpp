@@ -15,6 +15,7 @@ std::vector<std::array<Index, 3>> triangulate_polyline(std::span<const Point> po
   std::vector<CGAL::Triple<int, int, int>> patch;
   CGAL::Polygon_mesh_processing::triangulate_hole_polyline(points, std::back_inserter(patch));
   std::vector<std::array<Index, 3>> triangles;
+  triangles.reserve(patch.size());
   for (const auto& t : patch)
     triangles.push_back({static_cast<Index>(t.first), static_cast<Index>(t.second), static_cast<Index>(t.third)});
   return triangles;

@@ -103,6 +103,7 @@ class HoleFiller {
     // A lone triangle's hole is its own back.
     if (loop.size() == 3 && is_triangle(loop)) return;
     std::vector<Point> polyline;
+    polyline.reserve(loop.size());
     for (const Index vertex : loop) polyline.push_back(mesh_.vertices[vertex]);
     const auto [diameter, width] = extent(polyline);
     if (diameter > options_.max_hole_diameter * radius_ && width > options_.max_crack_width * radius_) return;

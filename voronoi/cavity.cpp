@@ -194,7 +194,7 @@ bool Cavity::link_vertices() {
 // table, then each looks for its opposite.
 bool Cavity::link_few() {
   if (link_table_.empty() || ++link_round_ >> (32 - kFacetBits) != 0) {
-    link_table_.assign(kFew * kFew, 0);
+    link_table_.assign(std::size_t{kFew} * kFew, 0);
     link_round_ = 1;
   }
   const std::uint32_t round = link_round_ << kFacetBits;

@@ -136,7 +136,7 @@ void check_cell(const VoronoiDiagram& diagram, Index point, std::span<const Inde
       stack.push_back(vertex.neighbors[i]);
     }
   }
-  if (reached != cell.size() || 2 * faces != cell.size() + 4)
+  if (reached != cell.size() || 2 * std::size_t{faces} != cell.size() + 4)
     throw Error("inconsistent Voronoi diagram: the cell of point " + std::to_string(point) +
                 " is not simply connected");
 }

@@ -59,7 +59,7 @@ void Workspace::find_error_class(Index v) {
   }
   if (placing == Placing::failed) error = kUnknownError;
   if (!at_infinity(v) && poor(vertex, error)) error = std::min(error, error_class(residual(vertex)));
-  state_[v] = static_cast<std::uint8_t>((error << 2) | (state_[v] & 3u));
+  state_[v] = static_cast<std::uint8_t>((std::uint32_t{error} << 2) | (state_[v] & 3u));
 }
 
 // A bound for a vertex whose own centre is poor, but which has a neighbour's: its forming points are on that sphere up
