@@ -159,7 +159,10 @@ double Surface::signed_distance(const Point& query) const {
 double Surface::signed_distance(const Point& query, ClosestPoint& nearest) const {
   if (!solid()) throw InputError("the surface has no inside: " + report().faults() + "; repair the mesh first");
   nearest = closest(query);
-  if (nearest.distance == 0 || !std::isfinite(nearest.distance)) return nearest.distance;
+  // From far enough away rounding makes any feature the nearest, and its pseudonormal says nothing; but a solid lies in
+  // its box.
+  const bool may_be_inside = std::isfinite(nearest.distance) && bounding_box().contains(query);
+  if (nearest.distance == 0 || !may_be_inside) return nearest.distance;
   // The pseudonormal of a face or edge is perpendicular to it, so a corner serves as well as the closest point, whose
   // rounding would matter on a mesh far from the origin.
   const std::size_t anchor = nearest.feature >= Feature::vertex0 ? corner_of(nearest.feature)

@@ -244,6 +244,20 @@ TEST(Surface, IsInfinitelyFarFromAQueryThatIsNotFinite) {
   }
 }
 
+TEST(Surface, HasEverythingFarAwayOutside) {
+  for (const auto& [name, mesh] : solids()) {
+    const Surface surface(mesh);
+    for (const double distance : {1e3, 1e12, 1e15, 1e18, 1e25}) {
+      for (std::uint64_t i = 0; i < 200; ++i) {
+        Random random(3, 5, i);
+        const Vector direction(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+        const Point query = surface.bounding_ball().center + distance * surface.bounding_radius() * direction;
+        ASSERT_FALSE(surface.inside(query)) << name << " at " << query.transpose();
+      }
+    }
+  }
+}
+
 TEST(Surface, SignedDistanceAgreesWithTheWindingNumber) {
   for (const auto& [name, mesh] : solids()) {
     for (const double offset : {0.0, 1e6}) {
