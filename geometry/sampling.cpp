@@ -33,6 +33,7 @@ std::vector<SurfacePoint> place_at_random(const Surface& surface, const Clusters
                                           std::uint64_t seed) {
   const std::vector<Index>& order = clusters.triangles.items;
   std::vector<double> sums;
+  sums.reserve(order.size());
   double total = 0;
   for (const Index t : order) sums.push_back(total += surface.area(t));
   std::vector<SurfacePoint> points(total > 0 ? count : 0);
@@ -143,6 +144,7 @@ Placed sample_by_neighbors(const Surface& surface, const Clusters& clusters, con
   const auto candidates = detail::place_edge_points(surface, divided, options.edge_points, spacing).points;
   // Chains that are shorter than the spacing can still bring points close together.
   std::vector<Point> positions;
+  positions.reserve(candidates.size());
   for (const detail::EdgePoint& p : candidates) positions.push_back(position(surface, p));
   const std::vector<bool> kept = keep_apart(surface, positions, 0.6 * spacing);
   Placed placed;

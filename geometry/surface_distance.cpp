@@ -65,7 +65,7 @@ class Search {
   static constexpr std::uint64_t kBetweenReports = 1024;
 
   ClosestPoint probe(const Point& point) {
-    const ClosestPoint closest = to_.closest(point);
+    ClosestPoint closest = to_.closest(point);
     ++evaluations_;
     if (closest.distance > result_.lower) {
       result_.lower = closest.distance;

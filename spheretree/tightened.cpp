@@ -46,12 +46,13 @@ constexpr double kFewTriangles = 4000;
 constexpr double kPolishShare = 0.1;  // of the trials, in each polishing round
 Index trials_for(Index balls, const Work& work) { return static_cast<Index>(work.trials * (300 + 14.0 * balls)); }
 
-// High powers at the top: what is loose there is loose all the way down.
-LevelCost cost_for(Objective objective, Index level, Index depth) {
+// High powers at the top: what is loose there is loose all the way down. The more trials, the lower the sum, at the
+// cost of the largest ball unless the cap is lower too.
+LevelCost cost_for(Objective objective, Index level, Index depth, Effort effort) {
   switch (objective) {
     case Objective::balanced:
       if (level == 1) return {.power = 8};
-      if (level < depth) return {.power = 3, .cap = 2};
+      if (level < depth) return {.power = 3, .cap = effort == Effort::high ? 1.6 : 2.0};
       return {.power = 2, .cap = 2.5};
     case Objective::maximum:
       return {.power = 10};
@@ -98,7 +99,7 @@ class Tightener {
     detail::LevelOptions level_options;
     level_options.balls = static_cast<Index>(wanted);
     level_options.most_children = std::min<Index>(64, 2 * options_.branching);
-    level_options.cost = cost_for(options_.objective, level, options_.depth);
+    level_options.cost = cost_for(options_.objective, level, options_.depth, options_.effort);
     level_options.level = level;
 
     std::optional<Candidate> best;
