@@ -106,7 +106,7 @@ TEST(Redundancy, RemovesMostByTheExhaustiveSelection) {
 
 // A root with two children that hold everything and one in the hole of a torus that touches nothing.
 SphereTree three_in_one(const Surface& surface) {
-  const Sphere ball = surface.bounding_ball();
+  const Sphere& ball = surface.bounding_ball();
   SphereTree tree;
   tree.nodes.push_back({.sphere = {ball.center, 1.1 * ball.radius}, .first_child = 1, .child_count = 3});
   for (const double factor : {1.2, 0.05, 1.3})
