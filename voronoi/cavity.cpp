@@ -176,9 +176,12 @@ bool Cavity::place_vertices() {
                                 : workspace_.place(vertex, facet.error_class, position_, a, b, c);
     facet.visible = facet.placing != Placing::failed || side_of_facet(facet.inside, facet.slot) == Sign::positive;
     if ((facet.placing != Placing::good || workspace_.poor(vertex, facet.error_class)) && !at_infinity &&
-        facet.visible && !workspace_.exact() &&
-        workspace_.share_sphere(vertex, facet.error_class, facet.outside, position_))
-      facet.placing = Placing::shared;
+        facet.visible && !workspace_.exact()) {
+      if (workspace_.share_sphere(vertex, facet.error_class, facet.outside, position_))
+        facet.placing = Placing::shared;
+      else if (facet.placing == Placing::good && workspace_.sign(facet.outside, position_) == Sign::uncertain)
+        facet.placing = Placing::thin;
+    }
     visible = visible && facet.visible;
     worst_ = std::max(worst_, facet.placing);
   }

@@ -87,12 +87,13 @@ constexpr bool kFused = false;
 
 }  // namespace
 
-Sign volume_sign(const Point& q, const Point& a, const Point& b, const Point& c) {
+Sign volume_sign(const Point& q, const Point& a, const Point& b, const Point& c, double indifferent) {
   const Determinant fast = volume(a - q, b - q, c - q);
-  if (fast.sign() != Sign::uncertain) return fast.sign();
-  const Sign sharp =
-      sign_of(kFused ? fused_volume(q, a, b, c) : sharp_volume<Twofold>(q, a, b, c).high, fast.bound * kSharper);
-  if (sharp != Sign::uncertain) return sharp;
+  const Sign sign = sign_of(fast.value, fast.bound + indifferent);
+  if (sign != Sign::uncertain || std::abs(fast.value) + fast.bound < indifferent) return sign;
+  const Sign sharp = sign_of(kFused ? fused_volume(q, a, b, c) : sharp_volume<Twofold>(q, a, b, c).high,
+                             fast.bound * kSharper + indifferent);
+  if (sharp != Sign::uncertain || indifferent > 0) return sharp;
   return static_cast<Sign>(sharp_volume<Expansion>(q, a, b, c).sign());
 }
 

@@ -39,8 +39,9 @@ inline Determinant volume(const Vector& a, const Vector& b, const Vector& c) {
   return {value, 8 * kRounding * magnitude};
 }
 
-// The sign of (a - q) . ((b - q) x (c - q)), exact: uncertain means zero.
-Sign volume_sign(const Point& q, const Point& a, const Point& b, const Point& c);
+// The sign of (a - q) . ((b - q) x (c - q)): uncertain if that is not farther from zero than `indifferent`. Exact for
+// 0; else a value that is as near to +-indifferent as a few dozen roundings of 2^-104 may count as uncertain.
+Sign volume_sign(const Point& q, const Point& a, const Point& b, const Point& c, double indifferent = 0);
 
 // Whether q lies inside the sphere through four positively oriented points; exact likewise.
 Sign inside_sphere(const Point& q, const Point& a, const Point& b, const Point& c, const Point& d);

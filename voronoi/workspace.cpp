@@ -109,19 +109,20 @@ bool Workspace::well_within(Index v, const Point& q) {
   const double depth = value(v, q);
   if (!(depth > 0)) return false;
   settle(v);
-  if (at_infinity(v)) return beyond_plane(v, q);
+  if (at_infinity(v)) return side_of_plane(v, q) == Sign::positive;
   if (power(v, q) > kWell * power_bound(v)) return true;
   return depth > kDepth * scale() && sign_from_points(v, q) == Sign::positive;
 }
 
-// A thin facet's own normal tells nothing; whether the four points are coplanar does.
-bool Workspace::beyond_plane(Index v, const Point& q) const {
+// On which side of the facet's plane q is. A thin facet's own normal tells nothing; whether the four points are
+// coplanar up to the input's noise does.
+Sign Workspace::side_of_plane(Index v, const Point& q) const {
   const auto& corner = vertices[v].forming_points;
-  const Vector a = points[corner[0]] - q, b = points[corner[1]] - q, c = points[corner[2]] - q;
+  const Point &p0 = points[corner[0]], &p1 = points[corner[1]], &p2 = points[corner[2]];
+  const Vector a = p0 - q, b = p1 - q, c = p2 - q;
   const double largest_face = std::sqrt(std::max({a.cross(b).squaredNorm(), b.cross(c).squaredNorm(),
                                                   c.cross(a).squaredNorm(), (b - a).cross(c - a).squaredNorm()}));
-  const Determinant volume6 = volume(a, b, c);
-  return -volume6.value > volume6.bound + kWell * noise_ * largest_face;
+  return -volume_sign(q, p0, p1, p2, kFourPoints * noise_ * largest_face);
 }
 
 // How far the height of a point beyond the facet of a vertex at infinity may be off.
@@ -140,6 +141,9 @@ Sign Workspace::sign_at_infinity(Index v, const Point& q) {
     const auto& corner = vertex.forming_points;
     const Sign below = volume_sign(q, points[corner[0]], points[corner[1]], points[corner[2]]);
     if (below != Sign::uncertain) return -below;
+  } else if (bound > kWide * noise_) {
+    const Sign side = side_of_plane(v, q);
+    if (side != Sign::uncertain) return side;
   }
   // In the facet's plane, as far as the input goes. The spheres that grow towards this end of the unbounded edge all
   // cut the plane in the facet's circle: q is nearer to the vertex at infinity if it lies inside. The sphere at the

@@ -122,7 +122,7 @@ class Workspace {
   }
 
  private:
-  bool beyond_plane(Index v, const Point& q) const;
+  Sign side_of_plane(Index v, const Point& q) const;
   double infinity_bound(Index v, const Vector& from_corner) const;
   Sign sign_at_infinity(Index v, const Point& q);
   Sign sign_from_points(Index v, const Point& q) const;
@@ -138,6 +138,8 @@ class Workspace {
   // noise of its own points. More, up to the error bound, would make chance a rule where many spheres nearly agree, as
   // those within a torus do.
   static constexpr double kSphereNoise = 0x1p12;
+  static constexpr double kFourPoints = 4;   // the noise of four points off a plane, in terms of the largest face
+  static constexpr double kWide = 0x1p8;     // a bound on a height is wide above this many times the noise
   static constexpr double kWell = 4;         // error bounds that make "well within"
   static constexpr double kDepth = 0x1p-33;  // and where they are wide: how deep a point may lie, in terms of scale()
   bool exact_ = false;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <numeric>
 
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/random.h"
@@ -47,7 +48,11 @@ TEST(HighestFirstVoronoi, IsConsistentAndAccurateOnDegeneratePoints) {
 }
 
 TEST(HighestFirstVoronoi, IsConsistentAndAccurateOnPointsThatAreOffByLittleMoreThanRounding) {
-  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+  std::vector<std::uint64_t> seeds(24);
+  std::iota(seeds.begin(), seeds.end(), 0);
+  // Hulls with facets of nearly collinear points on which everything hangs: seeds found among thousands.
+  seeds.insert(seeds.end(), {86, 96, 456, 639, 645, 1259, 1271});
+  for (const std::uint64_t seed : seeds) {
     Random random(seed, 11);
     const double off = std::pow(10.0, random.uniform(-16, -6));
     const auto shaken = [&](test::Points points) {
