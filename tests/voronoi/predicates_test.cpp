@@ -46,6 +46,16 @@ TEST(Predicates, HaveTheSignsOfExactArithmetic) {
   EXPECT_GT(zero, 1000) << "the sets are not awkward enough";
 }
 
+TEST(VolumeSign, IsUncertainWhereTheVolumeIsNotFartherFromZeroThanAsked) {
+  // Four points of a line but for 2^-36: the volume, -2^-72, is far below the rounding of the products.
+  const Point p(0, 0, 0), a(1, 1, 1), b(2, 2, 2 + 0x1p-36), c(3, 3 + 0x1p-36, 3);
+  for (const double indifferent : {0.0, 0x1p-74, 0x1.ffffp-73})
+    EXPECT_EQ(volume_sign(p, a, b, c, indifferent), Sign::negative) << indifferent;
+  for (const double indifferent : {0x1p-72, 0x1p-70, 1.0})
+    EXPECT_EQ(volume_sign(p, a, b, c, indifferent), Sign::uncertain) << indifferent;
+  EXPECT_EQ(volume_sign(p, b, a, c, 0x1p-73), Sign::positive);
+}
+
 TEST(SharpNormal, IsRightForThreePointsThatAreStraightButForTheLastRounding) {
   // Their cross product is below what doubles of twice the precision resolve.
   const Point a(-0.10000000000000001, 1.2246467991473533e-17, 0.80000000000000004);
