@@ -87,12 +87,15 @@ namespace {
 
 enum class Outcome { done, flat, failed };
 
-// Room that is not used is never touched, so it costs no memory, but moving to a larger room does. The first eighth of
-// the points, a random sample of all, tells how many vertices there will be.
+// Room that is not used is never touched, so it costs no memory, but moving to a larger room does: at worst half of the
+// vertices may be there twice without adding to the peak. Of the points, the first eighth and the first half are random
+// samples of all, and tell how many vertices there will be. There are more per point, the more points there are.
 void make_room(Workspace& workspace, std::size_t inserted) {
-  const std::size_t count = workspace.points.size();
+  const std::size_t count = workspace.points.size(), vertices = workspace.vertices.size();
   if (inserted == 0) workspace.reserve(2 * count + 64);
-  if (inserted == count / 8) workspace.reserve(std::max(8 * count, 10 * workspace.vertices.size()) + 64);
+  if (inserted == count / 8) workspace.reserve(std::max(8 * count, 10 * vertices) + 64);
+  if (inserted == count / 2 && 2.1 * static_cast<double>(vertices) > static_cast<double>(workspace.vertices.capacity()))
+    workspace.reserve(5 * (vertices / 2));
 }
 
 // All points of the workspace in order. If it fails, `at` is the point and `reason` the inserter's.

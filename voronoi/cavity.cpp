@@ -269,6 +269,24 @@ bool Cavity::is_ball() {
   return count == facets_.size();
 }
 
+// All spheres through a facet cut its plane in the same circle, and their centres lie on a line. By how much the centre
+// of that through the new point is off that of the neighbour's sphere is the new point's power with respect to this one
+// over twice its height above the facet.
+bool Cavity::doubts_are_harmless() const {
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    const Facet& facet = facets_[f];
+    const double power = workspace_.power(facet.outside, position_);
+    if (!(power > 0) || facet.placing == Placing::shared) continue;  // at infinity neither
+    if (workspace_.harmless(power, fresh_[f], facet.error_class)) continue;
+    const Vector& a = local_points_[facet.local[0]].from_new.vector;
+    const Vector& b = local_points_[facet.local[1]].from_new.vector;
+    const Vector& c = local_points_[facet.local[2]].from_new.vector;
+    const double height = a.dot(b.cross(c)) / (b - a).cross(c - a).norm();
+    if (!(power <= 2 * workspace_.harmless_depth() * height)) return false;
+  }
+  return true;
+}
+
 Index Cavity::place_flat_vertices() {
   Index coplanar = 0;
   for (std::size_t f = 0; f < facets_.size(); ++f) {

@@ -94,6 +94,10 @@ class Cavity {
   bool link_vertices();
   // Whether the boundary is one piece and no point lies within. After link_vertices.
   bool is_ball();
+  // Whether no new vertex is moved, farther than does harm, by the new point's being in the sphere of an undeleted
+  // neighbour. That a doubtful vertex was kept is magnified where the new point is low above the facet. After
+  // place_vertices.
+  bool doubts_are_harmless() const;
   // Positions of the vertices that were not placed. The number of those with coplanar forming points, whose position is
   // an approximation.
   Index place_flat_vertices();

@@ -8,6 +8,9 @@
 namespace orchard::detail {
 namespace {
 
+// How many undetermined vertices the final test looks through; more, and it fails.
+constexpr std::size_t kLookThrough = 32;
+
 // How many insertions may need exact signs or the constrained search, or be deferred, before all are made anew with
 // exact signs.
 constexpr std::uint64_t kDoubtfulAtMost = 16, kDoubtfulOneIn = 256;
@@ -60,29 +63,48 @@ bool Inserter::insert(Index point) {
 }
 
 bool Inserter::insert_deferred() {
-  const bool some = !deferred_.empty();
+  const std::vector<Index> waited = deferred_;
   while (!deferred_.empty()) {
     if (std::erase_if(deferred_, [this](Index point) { return insert_now(point); }) > 0) continue;
     if (!insert_by_value(deferred_.back(), workspace_.points[deferred_.back()], true)) return false;
     deferred_.pop_back();
   }
-  return workspace_.exact() || search_ != Search::highest_first || spheres_are_empty(!some);
+  return workspace_.exact() || search_ != Search::highest_first || spheres_are_empty(waited);
 }
 
-// Delaunay's lemma: if no sphere holds the points of the neighbours, and the hull is convex, none holds any point. The
-// spheres at infinity are those of the hull: there mistakes happen without a contradiction, for its facets may be thin.
-bool Inserter::spheres_are_empty(bool of_hull_alone) const {
+// Delaunay's lemma: if no sphere holds the points of the neighbours, and the hull is convex, none holds any point.
+// Tested where a sign may have been overruled, around the given points, and at infinity, for the hull's facets may be
+// thin and mistakes then happen without a contradiction. Vertices without a determined place say nothing; one looks
+// through them at their neighbours.
+bool Inserter::spheres_are_empty(std::span<const Index> around) {
+  std::vector<bool> suspicious(workspace_.points.size(), false);
+  for (const Index point : around) suspicious[point] = true;
+  const auto is_good = [this](Index v) { return is_empty_around(v) || workspace_.undetermined(v); };
   for (Index v = 0; v < workspace_.vertices.size(); ++v) {
-    if (workspace_.is_free(v) || (of_hull_alone && !workspace_.at_infinity(v))) continue;
-    for (const Index u : workspace_.vertices[v].neighbors) {
-      const VoronoiVertex& neighbor = workspace_.vertices[u];
-      const auto back = std::find(neighbor.neighbors.begin(), neighbor.neighbors.end(), v) - neighbor.neighbors.begin();
-      const Index across = neighbor.forming_points[static_cast<std::size_t>(back)];
-      if (across == kInfinitePoint) continue;
-      if (workspace_.well_within(v, workspace_.points[across])) return false;
-    }
+    if (workspace_.is_free(v) || (around.empty() && !workspace_.at_infinity(v))) continue;
+    const VoronoiVertex& vertex = workspace_.vertices[v];
+    const auto is_suspicious = [&](Index point) { return point != kInfinitePoint && suspicious[point]; };
+    const bool suspect = std::any_of(vertex.forming_points.begin(), vertex.forming_points.end(), is_suspicious);
+    if ((suspect || workspace_.at_infinity(v)) && !is_good(v)) return false;
+    if (suspect && !std::all_of(vertex.neighbors.begin(), vertex.neighbors.end(), is_good)) return false;
   }
   return true;
+}
+
+bool Inserter::is_empty_around(Index v) {
+  around_.assign(1, v);
+  for (std::size_t i = 0; i < around_.size() && i < kLookThrough; ++i)
+    for (const Index u : workspace_.vertices[around_[i]].neighbors) {
+      if (u == v) continue;
+      const VoronoiVertex& neighbor = workspace_.vertices[u];
+      const auto back =
+          std::find(neighbor.neighbors.begin(), neighbor.neighbors.end(), around_[i]) - neighbor.neighbors.begin();
+      const Index across = neighbor.forming_points[static_cast<std::size_t>(back)];
+      if (across != kInfinitePoint && workspace_.well_within(v, workspace_.points[across])) return false;
+      if (workspace_.undetermined(u) && std::find(around_.begin(), around_.end(), u) == around_.end())
+        around_.push_back(u);
+    }
+  return around_.size() <= kLookThrough;
 }
 
 bool Inserter::too_doubtful() const {
@@ -133,7 +155,7 @@ bool Inserter::insert_directly(Index start, const Point& q) {
   // A thin tetrahedron magnifies what went wrong by a rounding behind its facet.
   if (!workspace_.exact() && cavity_.worst_placing() > (certain ? Placing::thin : Placing::shared)) return false;
   if (!cavity_.link_vertices()) return false;
-  if (!certain && !cavity_.is_ball()) return false;
+  if (!certain && !(cavity_.is_ball() && cavity_.doubts_are_harmless())) return false;
   ++(certain ? counts_.certified : counts_.settled);
   finish();
   return true;
@@ -154,7 +176,8 @@ bool Inserter::insert_by_value(Index point, const Point& q, bool may_overrule) {
   search_highest_first(start, q);
   if (!may_overrule && !respects_certain_signs(q)) return false;
   cavity_.note_facets();
-  if (!cavity_.place_vertices() || cavity_.worst_placing() > Placing::thin || !cavity_.link_vertices()) return false;
+  if (!cavity_.place_vertices() || !cavity_.link_vertices()) return false;
+  if (!may_overrule && cavity_.worst_placing() > Placing::thin) return false;
   ++counts_.constrained;
   finish();
   return true;

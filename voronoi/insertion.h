@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <queue>
+#include <span>
 #include <vector>
 
 #include "cavity.h"
@@ -55,7 +56,8 @@ class Inserter {
   bool insert_by_value(Index point, const Point& q, bool may_overrule);
   void insert_constrained(Index start, const Point& q);
   bool too_doubtful() const;
-  bool spheres_are_empty(bool of_hull_alone) const;
+  bool spheres_are_empty(std::span<const Index> around);
+  bool is_empty_around(Index v);
   Index locate(const Point& q) const;
   Index walk(const Point& q) const;
   Index highest_nearby(Index v, const Point& q) const;
@@ -82,7 +84,7 @@ class Inserter {
   const char* failure_ = "";
   Index last_ = 0;  // where the walk to the next point starts
   std::vector<Candidate> queue_;
-  std::vector<Index> deferred_;
+  std::vector<Index> deferred_, around_;
 };
 
 }  // namespace orchard::detail

@@ -43,21 +43,21 @@ void Workspace::adopt(std::vector<VoronoiVertex>&& finished, std::size_t more) {
   }
 }
 
-void Workspace::find_error_class(Index v) {
-  VoronoiVertex& vertex = vertices[v];
-  const auto& corner = vertex.forming_points;
+// A vertex from its forming points alone.
+Placing Workspace::place_again(Index v, VoronoiVertex& placed, std::uint8_t& error) const {
+  const auto& corner = vertices[v].forming_points;
   const Point& origin = points[corner[0]];
   const LengthedVector a(points[corner[1]] - origin), b(points[corner[2]] - origin);
+  return at_infinity(v) ? place_at_infinity(placed, error, a, b)
+                        : place(placed, error, origin, a, b, LengthedVector(points[corner[3]] - origin));
+}
+
+void Workspace::find_error_class(Index v) {
+  VoronoiVertex& vertex = vertices[v];
   VoronoiVertex placed = vertex;
   std::uint8_t error = kUnknownError;
-  Placing placing = Placing::failed;
-  if (at_infinity(v)) {
-    placing = place_at_infinity(placed, error, a, b);
-  } else {
-    vertex.radius = (vertex.center - origin).squaredNorm();
-    placing = place(placed, error, origin, a, b, LengthedVector(points[corner[3]] - origin));
-  }
-  if (placing == Placing::failed) error = kUnknownError;
+  if (!at_infinity(v)) vertex.radius = (vertex.center - points[vertex.forming_points[0]]).squaredNorm();
+  if (place_again(v, placed, error) == Placing::failed) error = kUnknownError;
   if (!at_infinity(v) && poor(vertex, error)) error = std::min(error, error_class(residual(vertex)));
   state_[v] = static_cast<std::uint8_t>((std::uint32_t{error} << 2) | (state_[v] & 3u));
 }
@@ -106,12 +106,25 @@ Sign Workspace::sign_from_points(Index v, const Point& q) const {
 }
 
 bool Workspace::well_within(Index v, const Point& q) {
-  const double depth = value(v, q);
-  if (!(depth > 0)) return false;
+  if (at_infinity(v)) {
+    settle(v);
+    const Vector from_corner = points[vertices[v].forming_points[0]] - q;
+    const bool below = vertices[v].center.dot(from_corner) >= 0;
+    if (below && infinity_bound(v, from_corner) <= kWide * noise_) return false;  // by a normal that can be relied on
+    return side_of_plane(v, q) == Sign::positive;
+  }
+  const double by_centre = power(v, q);
+  if (!(by_centre > 0 && value(v, q) > harmless_depth())) return false;
   settle(v);
-  if (at_infinity(v)) return side_of_plane(v, q) == Sign::positive;
-  if (power(v, q) > kWell * power_bound(v)) return true;
-  return depth > kDepth * scale() && sign_from_points(v, q) == Sign::positive;
+  return by_centre > kWell * power_bound(v) || sign_from_points(v, q) == Sign::positive;
+}
+
+bool Workspace::undetermined(Index v) {
+  settle(v);
+  if (at_infinity(v) || power_bound(v) < std::numeric_limits<double>::infinity()) return false;
+  VoronoiVertex placed;
+  std::uint8_t error = 0;
+  return place_again(v, placed, error) == Placing::failed;
 }
 
 // On which side of the facet's plane q is. A thin facet's own normal tells nothing; whether the four points are

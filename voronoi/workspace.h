@@ -65,9 +65,17 @@ class Workspace {
   // The same where the stored centre does not tell.
   Sign doubtful_sign(Index v, const Point& q, double bound);
 
-  // Whether q lies deeper in the vertex's sphere, or farther beyond its facet, than rounding and the input's noise
-  // explain by a wide margin.
+  // How deep a point in a sphere does no harm.
+  double harmless_depth() const { return kDepth * scale(); }
+  // Whether the error bound of a placed vertex alone, of which input noise over a height is a part (see place()), shows
+  // that power over twice this height is below the harmless depth.
+  bool harmless(double power, const VoronoiVertex& placed, std::uint8_t error_class) const {
+    return power * bounds_[error_class] < 16 * harmless_depth() * placed.radius * noise_;
+  }
+  // Whether q certainly lies in the vertex's sphere, so deep that it matters; or beyond its facet.
   bool well_within(Index v, const Point& q);
+  // Whether the noise of its forming points leaves the vertex without a place: they are all but on one circle.
+  bool undetermined(Index v);
 
   // The dissertation's value of a deletion: distance to the forming points minus distance to q; at infinity the limit
   // of that along the unbounded edge, which is the distance of q beyond the facet.
@@ -128,6 +136,7 @@ class Workspace {
   Sign sign_from_points(Index v, const Point& q) const;
   std::uint8_t error_class(double bound) const;
   void find_error_class(Index v);
+  Placing place_again(Index v, VoronoiVertex& placed, std::uint8_t& error) const;
   double residual(const VoronoiVertex& vertex) const;
 
   std::vector<std::uint8_t> state_;                    // mark, and error class above
@@ -140,8 +149,8 @@ class Workspace {
   static constexpr double kSphereNoise = 0x1p12;
   static constexpr double kFourPoints = 4;   // the noise of four points off a plane, in terms of the largest face
   static constexpr double kWide = 0x1p8;     // a bound on a height is wide above this many times the noise
-  static constexpr double kWell = 4;         // error bounds that make "well within"
-  static constexpr double kDepth = 0x1p-33;  // and where they are wide: how deep a point may lie, in terms of scale()
+  static constexpr double kWell = 4;         // error bounds that make a power certain without more ado
+  static constexpr double kDepth = 0x1p-31;  // harmless_depth() in terms of scale()
   bool exact_ = false;
   double noise_ = 0;        // how far off an input point may be
   double good_center_ = 0;  // an error bound below this many squared radii
