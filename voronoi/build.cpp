@@ -93,7 +93,7 @@ enum class Outcome { done, flat, failed };
 void make_room(Workspace& workspace, std::size_t inserted) {
   const std::size_t count = workspace.points.size(), vertices = workspace.vertices.size();
   if (inserted == 0) workspace.reserve(2 * count + 64);
-  if (inserted == count / 8) workspace.reserve(std::max(8 * count, 10 * vertices) + 64);
+  if (inserted == count / 8) workspace.reserve(std::max(8 * count, 11 * vertices) + 64);
   if (inserted == count / 2 && 2.1 * static_cast<double>(vertices) > static_cast<double>(workspace.vertices.capacity()))
     workspace.reserve(5 * (vertices / 2));
 }

@@ -79,19 +79,21 @@ bool Inserter::insert_deferred() {
 bool Inserter::spheres_are_empty(std::span<const Index> around) {
   std::vector<bool> suspicious(workspace_.points.size(), false);
   for (const Index point : around) suspicious[point] = true;
-  const auto is_good = [this](Index v) { return is_empty_around(v) || workspace_.undetermined(v); };
+  const auto is_good = [&](Index v) { return is_empty_around(v, !around.empty()) || workspace_.undetermined(v); };
   for (Index v = 0; v < workspace_.vertices.size(); ++v) {
     if (workspace_.is_free(v) || (around.empty() && !workspace_.at_infinity(v))) continue;
     const VoronoiVertex& vertex = workspace_.vertices[v];
     const auto is_suspicious = [&](Index point) { return point != kInfinitePoint && suspicious[point]; };
     const bool suspect = std::any_of(vertex.forming_points.begin(), vertex.forming_points.end(), is_suspicious);
-    if ((suspect || workspace_.at_infinity(v)) && !is_good(v)) return false;
+    // What was adopted and never looked at has the new ones for neighbours, if any has changed.
+    const bool of_hull = workspace_.at_infinity(v) && workspace_.settled(v);
+    if ((suspect || of_hull) && !is_good(v)) return false;
     if (suspect && !std::all_of(vertex.neighbors.begin(), vertex.neighbors.end(), is_good)) return false;
   }
   return true;
 }
 
-bool Inserter::is_empty_around(Index v) {
+bool Inserter::is_empty_around(Index v, bool look_through) {
   around_.assign(1, v);
   for (std::size_t i = 0; i < around_.size() && i < kLookThrough; ++i)
     for (const Index u : workspace_.vertices[around_[i]].neighbors) {
@@ -101,7 +103,7 @@ bool Inserter::is_empty_around(Index v) {
           std::find(neighbor.neighbors.begin(), neighbor.neighbors.end(), around_[i]) - neighbor.neighbors.begin();
       const Index across = neighbor.forming_points[static_cast<std::size_t>(back)];
       if (across != kInfinitePoint && workspace_.well_within(v, workspace_.points[across])) return false;
-      if (workspace_.undetermined(u) && std::find(around_.begin(), around_.end(), u) == around_.end())
+      if (look_through && workspace_.undetermined(u) && std::find(around_.begin(), around_.end(), u) == around_.end())
         around_.push_back(u);
     }
   return around_.size() <= kLookThrough;

@@ -57,7 +57,7 @@ class Inserter {
   void insert_constrained(Index start, const Point& q);
   bool too_doubtful() const;
   bool spheres_are_empty(std::span<const Index> around);
-  bool is_empty_around(Index v);
+  bool is_empty_around(Index v, bool look_through);
   Index locate(const Point& q) const;
   Index walk(const Point& q) const;
   Index highest_nearby(Index v, const Point& q) const;
