@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <string>
 
+#include "certificate.h"
 #include "coincident.h"
+#include "frame.h"
 #include "insertion_order.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/tolerance.h"
@@ -50,7 +52,11 @@ int affine_dimension(std::span<const Point> points) {
   return volume_sign(p, q, r, points[d]) == Sign::uncertain ? 2 : 3;
 }
 
-void finish(Workspace& workspace, std::span<const Index> original_of) {
+void set_scale(Workspace& workspace, const Frame& frame, const Box& box) {
+  workspace.set_scale(Box(frame.inward(box.min()), frame.inward(box.max())), frame.rounding());
+}
+
+void finish(Workspace& workspace, const Frame& frame, std::span<const Index> original_of) {
   auto& vertices = workspace.vertices;
   std::vector<Index>& free = workspace.free_vertices;
   std::sort(free.begin(), free.end());
@@ -67,8 +73,12 @@ void finish(Workspace& workspace, std::span<const Index> original_of) {
   free.clear();
   vertices.resize(end);
   for (VoronoiVertex& vertex : vertices) {
-    vertex.radius =
-        vertex.forming_points[3] == kInfinitePoint ? std::numeric_limits<double>::infinity() : std::sqrt(vertex.radius);
+    if (vertex.forming_points[3] == kInfinitePoint) {
+      vertex.radius = std::numeric_limits<double>::infinity();
+    } else {
+      vertex.center = frame.outward(vertex.center);
+      vertex.radius = frame.outward(std::sqrt(vertex.radius));
+    }
     if (original_of.empty()) continue;
     for (Index& point : vertex.forming_points)
       if (point != kInfinitePoint) point = original_of[point];
@@ -106,6 +116,7 @@ Outcome insert_all(Workspace& workspace, Search search, std::string_view stage, 
   Inserter inserter(workspace, search);
   const std::array<Index, 4> first = spanning_points(workspace.points);
   if (!inserter.start(first)) return Outcome::flat;
+  if (workspace.exact()) workspace.forget_noise();
   const std::size_t count = workspace.points.size(), step = std::max<std::size_t>(count / 64, 1);
   for (Index i = 0; i < count; ++i) {
     make_room(workspace, i);
@@ -121,32 +132,43 @@ Outcome insert_all(Workspace& workspace, Search search, std::string_view stage, 
   return Outcome::done;
 }
 
-// With exact signs from the start if the inserter asks for them. False if the points are flat.
+// With exact signs from the start if the inserter asks for them, or the result has no certificate. False if the points
+// are flat.
 bool insert_with_all_means(Workspace& workspace, Search search, std::string_view stage, const Progress& progress,
                            std::span<const Index> original_of, InsertionReport& report) {
   InsertionCounts counts;
   Index at = 0;
   const char* reason = "";
-  Outcome outcome = insert_all(workspace, search, stage, progress, counts, at, reason);
+  Certificate certificate;
+  const auto attempt = [&] {
+    const Outcome outcome = insert_all(workspace, search, stage, progress, counts, at, reason);
+    if (outcome != Outcome::done || search != Search::highest_first) return outcome;
+    certificate = certify(workspace, workspace.points.size());
+    return certificate.holds ? Outcome::done : Outcome::failed;
+  };
+  Outcome outcome = attempt();
   if (outcome == Outcome::failed && search == Search::bowyer)
     throw Error("Bowyer's algorithm fails at point " + std::to_string(original_of[at]) + ", after " +
                 std::to_string(at) + " of " + std::to_string(original_of.size()) + " points: " + reason);
-  if (outcome == Outcome::failed) {
+  if (outcome == Outcome::failed && !workspace.exact()) {
     workspace.set_exact(true);
-    outcome = insert_all(workspace, search, stage, progress, counts, at, reason);
+    outcome = attempt();
   }
+  if (outcome == Outcome::failed) throw Error("internal: a Voronoi diagram made with exact signs is not exact");
   add_counts(counts, report);
   report.exact_signs = workspace.exact();
+  report.certified_depth = certificate.depth;
   return outcome == Outcome::done;
 }
 
 }  // namespace
 
 VoronoiDiagram build_voronoi(std::span<const Point> points, Search search, std::string_view stage,
-                             const Progress& progress, InsertionReport* caller_report) {
+                             const Progress& progress, InsertionReport* caller_report, bool exact) {
   InsertionReport report;
   VoronoiDiagram diagram;
   const Box box = checked_box(points);
+  const Frame frame(box);
   const double radius = points.empty() ? 0 : box.diagonal().norm() / 2;
   report.duplicates = coincident_points(points, tolerance::kCoincidentPoints * radius);
 
@@ -159,17 +181,22 @@ VoronoiDiagram build_voronoi(std::span<const Point> points, Search search, std::
       std::erase_if(original_of, [&](Index i) { return left_out[i]; });
     }
     Workspace workspace;
-    workspace.set_scale(box);
+    set_scale(workspace, frame, box);
+    workspace.set_exact(exact || (search == Search::highest_first && workspace.too_noisy()));
     workspace.points.reserve(points.size());
-    for (Index i : original_of) workspace.points.push_back(points[i]);
+    for (Index i : original_of) workspace.points.push_back(frame.inward(points[i]));
     if (insert_with_all_means(workspace, search, stage, progress, original_of, report)) {
       report.dimension = 3;
-      finish(workspace, original_of);
+      finish(workspace, frame, original_of);
       diagram.vertices = std::move(workspace.vertices);
     }
     diagram.points = std::move(workspace.points);
   }
-  if (diagram.vertices.empty()) report.dimension = std::min(affine_dimension(points), 2);
+  if (diagram.vertices.empty()) {
+    diagram.points.clear();
+    for (const Point& p : points) diagram.points.push_back(frame.inward(p));
+    report.dimension = std::min(affine_dimension(diagram.points), 2);
+  }
   diagram.points.assign(points.begin(), points.end());
   if (caller_report != nullptr) *caller_report = std::move(report);
   return diagram;

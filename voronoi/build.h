@@ -10,9 +10,9 @@
 namespace orchard::detail {
 
 // What the incremental algorithms share: leaving out coincident points, ordering, the first four points, insertion, and
-// turning the workspace into a diagram.
+// turning the workspace into a diagram. With exact signs from the start if asked for.
 VoronoiDiagram build_voronoi(std::span<const Point> points, Search search, std::string_view stage,
-                             const Progress& progress, InsertionReport* report);
+                             const Progress& progress, InsertionReport* report, bool exact = false);
 
 // The box of the points; throws InputError, naming the point, for a coordinate that is not finite.
 Box checked_box(std::span<const Point> points);
@@ -20,12 +20,15 @@ Box checked_box(std::span<const Point> points);
 // Four points far apart: each the farthest from what those before it span.
 std::array<Index, 4> spanning_points(std::span<const Point> points);
 
-// Of what the points span, exactly: 3 if they are found not to lie in a plane.
+// Of what the points of a Frame span, exactly: 3 if they are found not to lie in a plane.
 int affine_dimension(std::span<const Point> points);
 
-// Moves the vertices over the free ones and turns squared radii into radii. Forming points become original_of them,
-// unless that is empty.
-void finish(Workspace& workspace, std::span<const Index> original_of);
+// The lengths of a workspace whose points are those of the box, in the frame.
+void set_scale(Workspace& workspace, const Frame& frame, const Box& box);
+
+// Moves the vertices over the free ones, out of the frame, and turns squared radii into radii. Forming points become
+// original_of them, unless that is empty.
+void finish(Workspace& workspace, const Frame& frame, std::span<const Index> original_of);
 
 void add_counts(const InsertionCounts& counts, InsertionReport& report);
 

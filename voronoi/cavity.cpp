@@ -348,7 +348,7 @@ Index Cavity::replace() {
     const Facet& facet = facets_[f];
     VoronoiVertex& vertex = fresh_[f];
     for (const std::uint8_t k : kOthers[facet.slot]) vertex.neighbors[k] = slots_[vertex.neighbors[k]];
-    workspace_.store(slots_[f], vertex, facet.error_class);
+    workspace_.store(slots_[f], vertex, facet.error_class, facet.placing == Placing::shared);
     workspace_.vertices[facet.outside].neighbors[facet.back] = slots_[f];
     if (facet.placing != Placing::failed && vertex.forming_points[3] != kInfinitePoint) last = slots_[f];
   }

@@ -1,7 +1,9 @@
 #include <utility>
 
 #include "build.h"
+#include "certificate.h"
 #include "coincident.h"
+#include "frame.h"
 #include "insertion_order.h"
 #include "orchard/geometry/tolerance.h"
 #include "orchard/voronoi/highest_first.h"
@@ -21,23 +23,46 @@ std::vector<bool> forming(const VoronoiDiagram& diagram, std::size_t point_count
   return present;
 }
 
-// Inserts the points in the order; false if the signs contradict each other, or the diagram fails its final test.
-bool insert_in_order(Workspace& workspace, std::span<const Index> order, InsertionReport& report) {
+// The points from first_new on without the coincident ones, in an order in which neighbours follow each other.
+std::vector<Index> order_of_new(std::span<const Point> added, Index first_new,
+                                const std::vector<std::array<Index, 2>>& duplicates) {
+  Box box;
+  for (const Point& p : added) box.extend(p);
+  std::vector<Index> order = detail::insertion_order(added, box);
+  for (Index& i : order) i += first_new;
+  std::vector<bool> left_out(first_new + added.size(), false);
+  for (const auto& pair : duplicates) left_out[pair[0]] = true;
+  std::erase_if(order, [&](Index i) { return left_out[i]; });
+  return order;
+}
+
+struct Insertion {
+  std::span<const VoronoiVertex> before;
+  const detail::Frame& frame;
+  std::span<const Index> order;
+  Index first_new;
+};
+
+// Inserts the points into a copy of what was there before; false if that has no certificate in the end. With exact
+// signs, what was there must be exact as well: a diagram that rounding has bent, however little, need not be one into
+// which exact signs fit.
+bool insert_into_copy(Workspace& workspace, const Insertion& insertion, bool exact, InsertionReport& report) {
+  workspace.adopt(insertion.before, insertion.frame, kPerNewPoint * insertion.order.size());
+  workspace.set_exact(exact);
+  if (exact) workspace.forget_noise();
+  const std::size_t before = detail::count_forming(workspace);
+  if (exact && !detail::certify(workspace, before).holds) return false;
   detail::Inserter inserter(workspace, detail::Search::highest_first);
-  std::size_t next = 0;
-  const auto run = [&] {
-    while (next < order.size() && inserter.insert(order[next])) ++next;
-    return next == order.size() && inserter.insert_deferred();
-  };
-  if (!run()) {
-    if (next == order.size()) return false;  // what is wrong is in the diagram already
-    // With exact signs from here on. An exact diagram of the old points never needs the constrained search then.
-    workspace.set_exact(true);
-    report.exact_signs = true;
-    run();
-  }
+  for (const Index point : insertion.order)
+    if (!inserter.insert(point)) return false;
+  if (!inserter.insert_deferred()) return false;
+  const detail::Certificate certificate =
+      detail::certify(workspace, before + insertion.order.size(), insertion.first_new);
+  if (!certificate.holds) return false;
   add_counts(inserter.counts(), report);
-  return !report.exact_signs || inserter.counts().constrained == 0;
+  report.exact_signs = exact;
+  report.certified_depth = certificate.depth;
+  return true;
 }
 
 }  // namespace
@@ -45,37 +70,32 @@ bool insert_in_order(Workspace& workspace, std::span<const Index> order, Inserti
 void insert_points(VoronoiDiagram& diagram, std::span<const Point> added, InsertionReport* caller_report) {
   InsertionReport report;
   report.dimension = 3;
-  const Box added_box = detail::checked_box(added);
-  std::vector<Point> points = std::move(diagram.points);
-  const auto first_new = static_cast<Index>(points.size());
+  const auto first_new = static_cast<Index>(diagram.points.size());
+  std::vector<Point> points = diagram.points;
   points.insert(points.end(), added.begin(), added.end());
-  Box box = added_box;
-  for (Index i = 0; i < first_new; ++i) box.extend(points[i]);
+  const Box box = detail::checked_box(points);
 
-  bool good = !diagram.vertices.empty();
-  if (good) {
+  if (diagram.vertices.empty()) {
+    diagram = highest_first_voronoi(points, {}, &report);
+  } else {
+    const detail::Frame frame(box);
     report.duplicates = detail::coincident_points(points, tolerance::kCoincidentPoints * box.diagonal().norm() / 2,
                                                   first_new, forming(diagram, points.size()));
-    std::vector<Index> order = detail::insertion_order(added, added_box);
-    for (Index& i : order) i += first_new;
-    if (!report.duplicates.empty()) {
-      std::vector<bool> left_out(points.size(), false);
-      for (const auto& pair : report.duplicates) left_out[pair[0]] = true;
-      std::erase_if(order, [&](Index i) { return left_out[i]; });
-    }
+    const std::vector<Index> order = order_of_new(added, first_new, report.duplicates);
+    const Insertion insertion{diagram.vertices, frame, order, first_new};
     Workspace workspace;
-    workspace.set_scale(box);
-    workspace.points = std::move(points);
-    workspace.adopt(std::move(diagram.vertices), kPerNewPoint * order.size());
-    good = insert_in_order(workspace, order, report);
-    detail::finish(workspace, {});
-    diagram.vertices = std::move(workspace.vertices);
-    points = std::move(workspace.points);
+    set_scale(workspace, frame, box);
+    workspace.points.reserve(points.size());
+    for (const Point& p : points) workspace.points.push_back(frame.inward(p));
+    if ((!workspace.too_noisy() && insert_into_copy(workspace, insertion, false, report)) ||
+        insert_into_copy(workspace, insertion, true, report)) {
+      detail::finish(workspace, frame, {});
+      diagram.vertices = std::move(workspace.vertices);
+      diagram.points = std::move(points);
+    } else {
+      diagram = detail::build_voronoi(points, detail::Search::highest_first, "Voronoi diagram", {}, &report, true);
+    }
   }
-  if (good)
-    diagram.points = std::move(points);
-  else
-    diagram = highest_first_voronoi(points, {}, &report);
   if (caller_report != nullptr) *caller_report = std::move(report);
 }
 

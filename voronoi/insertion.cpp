@@ -8,9 +8,6 @@
 namespace orchard::detail {
 namespace {
 
-// How many undetermined vertices the final test looks through; more, and it fails.
-constexpr std::size_t kLookThrough = 32;
-
 // How many insertions may need exact signs or the constrained search, or be deferred, before all are made anew with
 // exact signs.
 constexpr std::uint64_t kDoubtfulAtMost = 16, kDoubtfulOneIn = 256;
@@ -63,50 +60,12 @@ bool Inserter::insert(Index point) {
 }
 
 bool Inserter::insert_deferred() {
-  const std::vector<Index> waited = deferred_;
   while (!deferred_.empty()) {
     if (std::erase_if(deferred_, [this](Index point) { return insert_now(point); }) > 0) continue;
     if (!insert_by_value(deferred_.back(), workspace_.points[deferred_.back()], true)) return false;
     deferred_.pop_back();
   }
-  return workspace_.exact() || search_ != Search::highest_first || spheres_are_empty(waited);
-}
-
-// Delaunay's lemma: if no sphere holds the points of the neighbours, and the hull is convex, none holds any point.
-// Tested where a sign may have been overruled, around the given points, and at infinity, for the hull's facets may be
-// thin and mistakes then happen without a contradiction. Vertices without a determined place say nothing; one looks
-// through them at their neighbours.
-bool Inserter::spheres_are_empty(std::span<const Index> around) {
-  std::vector<bool> suspicious(workspace_.points.size(), false);
-  for (const Index point : around) suspicious[point] = true;
-  const auto is_good = [&](Index v) { return is_empty_around(v, !around.empty()) || workspace_.undetermined(v); };
-  for (Index v = 0; v < workspace_.vertices.size(); ++v) {
-    if (workspace_.is_free(v) || (around.empty() && !workspace_.at_infinity(v))) continue;
-    const VoronoiVertex& vertex = workspace_.vertices[v];
-    const auto is_suspicious = [&](Index point) { return point != kInfinitePoint && suspicious[point]; };
-    const bool suspect = std::any_of(vertex.forming_points.begin(), vertex.forming_points.end(), is_suspicious);
-    // What was adopted and never looked at has the new ones for neighbours, if any has changed.
-    const bool of_hull = workspace_.at_infinity(v) && workspace_.settled(v);
-    if ((suspect || of_hull) && !is_good(v)) return false;
-    if (suspect && !std::all_of(vertex.neighbors.begin(), vertex.neighbors.end(), is_good)) return false;
-  }
   return true;
-}
-
-bool Inserter::is_empty_around(Index v, bool look_through) {
-  around_.assign(1, v);
-  for (std::size_t i = 0; i < around_.size() && i < kLookThrough; ++i)
-    for (const Index u : workspace_.vertices[around_[i]].neighbors) {
-      if (u == v) continue;
-      const VoronoiVertex& neighbor = workspace_.vertices[u];
-      const auto back =
-          std::find(neighbor.neighbors.begin(), neighbor.neighbors.end(), around_[i]) - neighbor.neighbors.begin();
-      const Index across = neighbor.forming_points[static_cast<std::size_t>(back)];
-      if (across != kInfinitePoint && workspace_.well_within(v, workspace_.points[across])) return false;
-      if (look_through && workspace_.undetermined(u) && std::find(around_.begin(), around_.end(), u) == around_.end())
-        around_.push_back(u);
-    }
-  return around_.size() <= kLookThrough;
 }
 
 bool Inserter::too_doubtful() const {
@@ -157,7 +116,7 @@ bool Inserter::insert_directly(Index start, const Point& q) {
   // A thin tetrahedron magnifies what went wrong by a rounding behind its facet.
   if (!workspace_.exact() && cavity_.worst_placing() > (certain ? Placing::thin : Placing::shared)) return false;
   if (!cavity_.link_vertices()) return false;
-  if (!certain && !(cavity_.is_ball() && cavity_.doubts_are_harmless())) return false;
+  if (!certain && !(cavity_.is_ball() && (workspace_.exact() || cavity_.doubts_are_harmless()))) return false;
   ++(certain ? counts_.certified : counts_.settled);
   finish();
   return true;
@@ -171,7 +130,7 @@ bool Inserter::insert_with_doubts(Index point, const Point& q) {
 }
 
 // By the constrained search if all new vertices are oriented positively. Where nothing else helps it may overrule signs
-// that seem certain; spheres_are_empty() judges then.
+// that seem certain; the certificate judges then.
 bool Inserter::insert_by_value(Index point, const Point& q, bool may_overrule) {
   const Index start = locate(q);
   cavity_.begin(point);

@@ -37,8 +37,7 @@ class Inserter {
   // it was, where too many do: then the input is near to degenerate, but not so near that rounding could be the
   // reason. To be done again with exact signs from the start. Bowyer's search returns false where its premises fail.
   bool insert(Index point);
-  // To be called at the end; false, as above, if there are points that do not fit even now but at the price of the
-  // diagram's accuracy.
+  // To be called at the end; false, as above, if there are points that do not fit even now.
   bool insert_deferred();
   const InsertionCounts& counts() const { return counts_; }
   const char* failure() const { return failure_; }  // why insert() returned false
@@ -56,8 +55,6 @@ class Inserter {
   bool insert_by_value(Index point, const Point& q, bool may_overrule);
   void insert_constrained(Index start, const Point& q);
   bool too_doubtful() const;
-  bool spheres_are_empty(std::span<const Index> around);
-  bool is_empty_around(Index v, bool look_through);
   Index locate(const Point& q) const;
   Index walk(const Point& q) const;
   Index highest_nearby(Index v, const Point& q) const;
@@ -84,7 +81,7 @@ class Inserter {
   const char* failure_ = "";
   Index last_ = 0;  // where the walk to the next point starts
   std::vector<Candidate> queue_;
-  std::vector<Index> deferred_, around_;
+  std::vector<Index> deferred_;
 };
 
 }  // namespace orchard::detail

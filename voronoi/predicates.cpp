@@ -1,6 +1,9 @@
 #include "predicates.h"
 
-#include "expansion.h"
+#include <algorithm>
+#include <array>
+
+#include "exact_integer.h"
 #include "twofold.h"
 
 namespace orchard::detail {
@@ -9,18 +12,38 @@ namespace {
 // A few dozen operations of 2^-104 relative error each, in terms of the error bound of the same formula in doubles.
 constexpr double kSharper = 0x1p-48;
 
-// The vector from q to p in Twofold or Expansion arithmetic: exact, the difference of two doubles being two doubles.
+Sign exact_sign(const ExactInteger& number) { return static_cast<Sign>(number.sign()); }
+
+// A vector of Twofold or exact integer coordinates.
 template <class Number>
 struct SharpVector {
   Number x, y, z;
 
-  SharpVector(const Number& a, const Number& b, const Number& c) : x(a), y(b), z(c) {}
-  SharpVector(const Point& p, const Point& q)
-      : x(exact_difference(p.x(), q.x())), y(exact_difference(p.y(), q.y())), z(exact_difference(p.z(), q.z())) {}
-
   SharpVector cross(const SharpVector& o) const { return {y * o.z - z * o.y, z * o.x - x * o.z, x * o.y - y * o.x}; }
   Number dot(const SharpVector& o) const { return x * o.x + y * o.y + z * o.z; }
 };
+
+// The vectors from q to the points: exact, the difference of two doubles being two doubles.
+template <class... Points>
+auto twofold_vectors(const Point& q, const Points&... points) {
+  const auto from_q = [&](const Point& p) {
+    return SharpVector<Twofold>{exact_difference(p.x(), q.x()), exact_difference(p.y(), q.y()),
+                                exact_difference(p.z(), q.z())};
+  };
+  return std::array{from_q(points)...};
+}
+
+// The same in units of a power of two of which all coordinates are multiples.
+template <class... Points>
+auto integer_vectors(const Point& q, const Points&... points) {
+  const int unit = common_unit({&q, &points...});
+  const std::array<ExactInteger, 3> origin{in_units(q.x(), unit), in_units(q.y(), unit), in_units(q.z(), unit)};
+  const auto from_q = [&](const Point& p) {
+    return SharpVector<ExactInteger>{in_units(p.x(), unit) - origin[0], in_units(p.y(), unit) - origin[1],
+                                     in_units(p.z(), unit) - origin[2]};
+  };
+  return std::array{from_q(points)...};
+}
 
 // The lifted determinant of four points relative to the query, expanded by the lifts. Positive for a query inside.
 template <class Number>
@@ -54,17 +77,15 @@ Determinant inside_sphere_fast(const Vector& a, const Vector& b, const Vector& c
 }
 
 template <class Number>
-Number sharp_volume(const Point& q, const Point& a, const Point& b, const Point& c) {
-  using V = SharpVector<Number>;
-  return V(a, q).dot(V(b, q).cross(V(c, q)));
+Number sharp_volume(const std::array<SharpVector<Number>, 3>& v) {
+  return v[0].dot(v[1].cross(v[2]));
 }
 
 template <class Number>
-Number sharp_inside_sphere(const Point& q, const Point& a, const Point& b, const Point& c, const Point& d) {
-  using V = SharpVector<Number>;
-  const V va(a, q), vb(b, q), vc(c, q), vd(d, q);
-  const V ab = va.cross(vb), cd = vc.cross(vd);
-  return lifted(va.dot(va), vb.dot(vb), vc.dot(vc), vd.dot(vd), vb.dot(cd), va.dot(cd), vd.dot(ab), vc.dot(ab));
+Number sharp_inside_sphere(const std::array<SharpVector<Number>, 4>& v) {
+  const auto& [a, b, c, d] = v;
+  const SharpVector<Number> ab = a.cross(b), cd = c.cross(d);
+  return lifted<Number>(a.dot(a), b.dot(b), c.dot(c), d.dot(d), b.dot(cd), a.dot(cd), d.dot(ab), c.dot(ab));
 }
 
 // The same products and sums with the fused operation as one instruction instead of a call: the same results, twice as
@@ -72,11 +93,11 @@ Number sharp_inside_sphere(const Point& q, const Point& a, const Point& b, const
 #if defined(__GNUC__) && defined(__x86_64__)
 [[gnu::target("fma"), gnu::flatten]] double fused_inside_sphere(const Point& q, const Point& a, const Point& b,
                                                                 const Point& c, const Point& d) {
-  return sharp_inside_sphere<Twofold>(q, a, b, c, d).high;
+  return sharp_inside_sphere(twofold_vectors(q, a, b, c, d)).high;
 }
 [[gnu::target("fma"), gnu::flatten]] double fused_volume(const Point& q, const Point& a, const Point& b,
                                                          const Point& c) {
-  return sharp_volume<Twofold>(q, a, b, c).high;
+  return sharp_volume(twofold_vectors(q, a, b, c)).high;
 }
 const bool kFused = __builtin_cpu_supports("fma");
 #else
@@ -91,20 +112,29 @@ Sign volume_sign(const Point& q, const Point& a, const Point& b, const Point& c,
   const Determinant fast = volume(a - q, b - q, c - q);
   const Sign sign = sign_of(fast.value, fast.bound + indifferent);
   if (sign != Sign::uncertain || std::abs(fast.value) + fast.bound < indifferent) return sign;
-  const Sign sharp = sign_of(kFused ? fused_volume(q, a, b, c) : sharp_volume<Twofold>(q, a, b, c).high,
+  const Sign sharp = sign_of(kFused ? fused_volume(q, a, b, c) : sharp_volume(twofold_vectors(q, a, b, c)).high,
                              fast.bound * kSharper + indifferent);
   if (sharp != Sign::uncertain || indifferent > 0) return sharp;
-  return static_cast<Sign>(sharp_volume<Expansion>(q, a, b, c).sign());
+  return exact_sign(sharp_volume(integer_vectors(q, a, b, c)));
+}
+
+Sign same_side_of_line(const Point& a, const Point& b, const Point& p, const Point& q) {
+  const Vector along = b - a, to_p = p - a, to_q = q - a;
+  const double value = along.cross(to_p).dot(along.cross(to_q));
+  const Sign fast = sign_of(value, 32 * kRounding * along.squaredNorm() * to_p.norm() * to_q.norm());
+  if (fast != Sign::uncertain) return fast;
+  const auto [ab, ap, aq] = integer_vectors(a, b, p, q);
+  return exact_sign(ab.cross(ap).dot(ab.cross(aq)));
 }
 
 Sign inside_sphere(const Point& q, const Point& a, const Point& b, const Point& c, const Point& d) {
   const Determinant fast = inside_sphere_fast(a - q, b - q, c - q, d - q);
   if (fast.sign() != Sign::uncertain) return fast.sign();
   const Sign sharp =
-      sign_of(kFused ? fused_inside_sphere(q, a, b, c, d) : sharp_inside_sphere<Twofold>(q, a, b, c, d).high,
+      sign_of(kFused ? fused_inside_sphere(q, a, b, c, d) : sharp_inside_sphere(twofold_vectors(q, a, b, c, d)).high,
               fast.bound * kSharper);
   if (sharp != Sign::uncertain) return sharp;
-  return static_cast<Sign>(sharp_inside_sphere<Expansion>(q, a, b, c, d).sign());
+  return exact_sign(sharp_inside_sphere(integer_vectors(q, a, b, c, d)));
 }
 
 namespace {
@@ -115,44 +145,46 @@ struct SharpCenter {
   SharpVector<Number> numerator;
   Number volume6;
 
-  static SharpCenter of(const Point& q, const Point& a, const Point& b, const Point& c) {
-    using V = SharpVector<Number>;
-    const V va(a, q), vb(b, q), vc(c, q);
-    const V bc = vb.cross(vc), ca = vc.cross(va), ab = va.cross(vb);
-    const Number aa = va.dot(va), bb = vb.dot(vb), cc = vc.dot(vc);
+  static SharpCenter of(const std::array<SharpVector<Number>, 3>& v) {
+    const auto& [a, b, c] = v;
+    const SharpVector<Number> bc = b.cross(c), ca = c.cross(a), ab = a.cross(b);
+    const Number aa = a.dot(a), bb = b.dot(b), cc = c.dot(c);
     return {{bc.x * aa + ca.x * bb + ab.x * cc, bc.y * aa + ca.y * bb + ab.y * cc, bc.z * aa + ca.z * bb + ab.z * cc},
-            va.dot(bc)};
+            a.dot(bc)};
   }
 };
 
 }  // namespace
 
 bool sharp_circumcenter(const Point& q, const Point& a, const Point& b, const Point& c, Vector& center) {
-  const auto sharp = SharpCenter<Twofold>::of(q, a, b, c);
+  const auto sharp = SharpCenter<Twofold>::of(twofold_vectors(q, a, b, c));
   if (std::abs(sharp.volume6.high) > 0x1p20 * kSharper * volume(a - q, b - q, c - q).bound) {
     const Twofold twice = sharp.volume6 + sharp.volume6;
     center =
         Vector((sharp.numerator.x / twice).high, (sharp.numerator.y / twice).high, (sharp.numerator.z / twice).high);
   } else {
-    const auto exact = SharpCenter<Expansion>::of(q, a, b, c);
-    center = Vector(exact.numerator.x.value(), exact.numerator.y.value(), exact.numerator.z.value()) /
-             (2 * exact.volume6.value());
+    const auto exact = SharpCenter<ExactInteger>::of(integer_vectors(q, a, b, c));
+    if (exact.volume6 == 0) return false;
+    const int unit = common_unit({&q, &a, &b, &c}) - 1;  // twice six times the volume
+    center = Vector(quotient(exact.numerator.x, exact.volume6, unit), quotient(exact.numerator.y, exact.volume6, unit),
+                    quotient(exact.numerator.z, exact.volume6, unit));
   }
   return center.allFinite();
 }
 
 bool sharp_normal(const Point& q, const Point& a, const Point& b, Vector& normal) {
-  using Twice = SharpVector<Twofold>;
-  const Twice cross = Twice(a, q).cross(Twice(b, q));
+  const auto [qa, qb] = twofold_vectors(q, a, b);
+  const auto cross = qa.cross(qb);
   normal = Vector(cross.x.high, cross.y.high, cross.z.high);
   // Scaled first: the squares of a needle's area may be too small for a double.
   double scale = normal.cwiseAbs().maxCoeff();
   if (!(scale > 0x1p-80 * (a - q).norm() * (b - q).norm())) {
-    using Exact = SharpVector<Expansion>;
-    const Exact exact = Exact(a, q).cross(Exact(b, q));
-    normal = Vector(exact.x.value(), exact.y.value(), exact.z.value());
-    scale = normal.cwiseAbs().maxCoeff();
-    if (!(scale > 0)) return false;
+    const auto [exact_a, exact_b] = integer_vectors(q, a, b);
+    const auto exact = exact_a.cross(exact_b);
+    const ExactInteger largest = std::max({abs(exact.x), abs(exact.y), abs(exact.z)});
+    if (largest == 0) return false;
+    normal = Vector(quotient(exact.x, largest, 0), quotient(exact.y, largest, 0), quotient(exact.z, largest, 0));
+    scale = 1;
   }
   normal = (normal / scale).normalized();
   return true;

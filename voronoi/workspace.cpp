@@ -21,9 +21,9 @@ void move_infinity_last(VoronoiVertex& vertex) {
 
 }  // namespace
 
-void Workspace::set_scale(const Box& box) {
+void Workspace::set_scale(const Box& box, double rounding) {
   const int exponent = std::ilogb(box.diagonal().norm());
-  noise_ = kInputNoise * std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
+  noise_ = kInputNoise * rounding;
   good_center_ = std::min(0x1p21 * noise_ / box.diagonal().norm(), 0.125);
   squared_scale_ = std::ldexp(1.0, 2 * exponent);
   per_smallest_bound_ = std::ldexp(1.0, 100 - 2 * exponent);
@@ -32,14 +32,19 @@ void Workspace::set_scale(const Box& box) {
   bounds_.back() = std::numeric_limits<double>::infinity();
 }
 
-void Workspace::adopt(std::vector<VoronoiVertex>&& finished, std::size_t more) {
-  vertices = std::move(finished);
-  free_vertices.clear();
-  reserve(vertices.size() + more);
-  state_.assign(vertices.size(), kNotSettled << 2);
-  for (VoronoiVertex& vertex : vertices) {
-    vertex.radius *= vertex.radius;
-    if (vertex.at_infinity()) move_infinity_last(vertex);
+void Workspace::adopt(std::span<const VoronoiVertex> finished, const Frame& frame, std::size_t more) {
+  clear();
+  reserve(finished.size() + more);
+  state_.assign(finished.size(), kNotSettled << 2);
+  for (const VoronoiVertex& old : finished) {
+    VoronoiVertex& vertex = vertices.emplace_back(old);
+    if (vertex.at_infinity()) {
+      move_infinity_last(vertex);
+      continue;
+    }
+    vertex.center = frame.inward(old.center);
+    const double radius = frame.inward(old.radius);
+    vertex.radius = radius * radius;
   }
 }
 
@@ -52,14 +57,32 @@ Placing Workspace::place_again(Index v, VoronoiVertex& placed, std::uint8_t& err
                         : place(placed, error, origin, a, b, LengthedVector(points[corner[3]] - origin));
 }
 
+// Whether the centre that it has is that of its forming points, as far as doubles can tell.
+bool Workspace::has_own_center(Index v) const {
+  const VoronoiVertex& vertex = vertices[v];
+  const auto corner = [&](unsigned i) -> const Point& { return points[vertex.forming_points[i]]; };
+  Vector center;
+  return sharp_circumcenter(corner(0), corner(1), corner(2), corner(3), center) &&
+         (corner(0) + center - vertex.center).norm() <= kSameCenter * (center.norm() + scale());
+}
+
 void Workspace::find_error_class(Index v) {
   VoronoiVertex& vertex = vertices[v];
   VoronoiVertex placed = vertex;
   std::uint8_t error = kUnknownError;
-  if (!at_infinity(v)) vertex.radius = (vertex.center - points[vertex.forming_points[0]]).squaredNorm();
-  if (place_again(v, placed, error) == Placing::failed) error = kUnknownError;
-  if (!at_infinity(v) && poor(vertex, error)) error = std::min(error, error_class(residual(vertex)));
-  state_[v] = static_cast<std::uint8_t>((std::uint32_t{error} << 2) | (state_[v] & 3u));
+  const bool found = place_again(v, placed, error) != Placing::failed;
+  bool shared = false;
+  if (at_infinity(v)) {
+    if (found) vertex.center = placed.center;
+  } else if (found && (exact_ || !poor(placed, error))) {
+    vertex = placed;
+  } else if (!exact_) {
+    // It may have a neighbour's sphere.
+    vertex.radius = (vertex.center - points[vertex.forming_points[0]]).squaredNorm();
+    error = error_class(residual(vertex));
+    shared = !has_own_center(v);
+  }
+  set_error_class(v, error, shared, state_[v] & 3u);
 }
 
 // A bound for a vertex whose own centre is poor, but which has a neighbour's: its forming points are on that sphere up
@@ -93,38 +116,16 @@ Sign Workspace::doubtful_sign(Index v, const Point& q, double bound) {
 bool Workspace::share_sphere(VoronoiVertex& vertex, std::uint8_t& error, Index v, const Point& new_point) const {
   const double sphere = kSphereNoise * noise_ * std::sqrt(vertices[v].radius);
   if (!(std::abs(power(v, new_point)) <= std::min(sphere, power_bound(v)))) return false;  // nor at infinity
-  if (!settled(v) || poor(vertices[v], state_[v] >> 2)) return false;
+  if (!settled(v) || poor(vertices[v], error_class_of(v))) return false;
   vertex.center = vertices[v].center;
   vertex.radius = vertices[v].radius;
-  error = state_[v] >> 2;
+  error = error_class_of(v);
   return true;
 }
 
 Sign Workspace::sign_from_points(Index v, const Point& q) const {
   const auto& corner = vertices[v].forming_points;
   return inside_sphere(q, points[corner[0]], points[corner[1]], points[corner[2]], points[corner[3]]);
-}
-
-bool Workspace::well_within(Index v, const Point& q) {
-  if (at_infinity(v)) {
-    settle(v);
-    const Vector from_corner = points[vertices[v].forming_points[0]] - q;
-    const bool below = vertices[v].center.dot(from_corner) >= 0;
-    if (below && infinity_bound(v, from_corner) <= kWide * noise_) return false;  // by a normal that can be relied on
-    return side_of_plane(v, q) == Sign::positive;
-  }
-  const double by_centre = power(v, q);
-  if (!(by_centre > 0 && value(v, q) > harmless_depth())) return false;
-  settle(v);
-  return by_centre > kWell * power_bound(v) || sign_from_points(v, q) == Sign::positive;
-}
-
-bool Workspace::undetermined(Index v) {
-  settle(v);
-  if (at_infinity(v) || power_bound(v) < std::numeric_limits<double>::infinity()) return false;
-  VoronoiVertex placed;
-  std::uint8_t error = 0;
-  return place_again(v, placed, error) == Placing::failed;
 }
 
 // On which side of the facet's plane q is. A thin facet's own normal tells nothing; whether the four points are

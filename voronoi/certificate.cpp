@@ -1,0 +1,217 @@
+#include "certificate.h"
+
+#include <algorithm>
+
+#include "cavity.h"
+#include "orchard/geometry/tolerance.h"
+
+namespace orchard::detail {
+namespace {
+
+// The part of the depth that a single facet may take up. What takes more is wrong, not rounded.
+constexpr double kFacet = 1.0 / 64;
+
+// The part of the depth that a point may take up in the mean, where there are many: a straight line meets few of them.
+constexpr double kMean = 1.0 / 1024;
+
+// The part of the depth that may lie between the sphere that a vertex was given and its own.
+constexpr double kGiven = 1.0 / 4;
+
+// Of a squared size: far more than any stored sphere is off, where all that matters is to look at a few vertices more.
+constexpr double kAbout = 0x1p-20;
+
+class Certifier {
+ public:
+  Certifier(Workspace& workspace, Index first_new) : workspace_(workspace), first_new_(first_new) {
+    Box box;
+    for (const Point& p : workspace.points) box.extend(p);
+    diameter_ = box.diagonal().norm();
+    at_most_ = tolerance::kVoronoiDepth * diameter_ / 2;
+  }
+
+  Certificate run() {
+    for (Index v = 0; v < workspace_.vertices.size(); ++v)
+      if (!workspace_.is_free(v) && is_new(v) && !(is_oriented(v) && are_facets_good(v))) return {};
+    const double count = static_cast<double>(workspace_.points.size());
+    if (depth_ > (1 - kGiven) * at_most_ * std::max(1.0, kMean * count)) return {};
+    if (fattest_ != kNone && !covers_once()) return {};
+    return {true, 2 * (depth_ + given_) / diameter_};
+  }
+
+ private:
+  const Point& corner(Index v, unsigned i) const { return workspace_.points[workspace_.vertices[v].forming_points[i]]; }
+  unsigned slot_of(Index v, Index neighbor) const {
+    const auto& neighbors = workspace_.vertices[v].neighbors;
+    return neighbors[0] == neighbor ? 0 : neighbors[1] == neighbor ? 1 : neighbors[2] == neighbor ? 2 : 3;
+  }
+
+  bool is_new(Index v) const {
+    const auto& p = workspace_.vertices[v].forming_points;
+    const auto from = [this](Index point) { return point >= first_new_ && point != kInfinitePoint; };
+    return first_new_ == 0 || from(p[0]) || from(p[1]) || from(p[2]) || from(p[3]);
+  }
+
+  // And whether the sphere that it was given is its own, nearly.
+  bool is_oriented(Index v) {
+    const Point &p0 = corner(v, 0), &p1 = corner(v, 1), &p2 = corner(v, 2);
+    if (workspace_.at_infinity(v)) {
+      Vector normal;
+      return sharp_normal(p0, p1, p2, normal);
+    }
+    const Point& p3 = corner(v, 3);
+    const Determinant det = volume(p0 - p3, p1 - p3, p2 - p3);
+    if (det.sign() == Sign::positive ||
+        (det.sign() == Sign::uncertain && volume_sign(p3, p0, p1, p2) != Sign::negative))
+      return false;
+    if (-det.value > largest_volume_) largest_volume_ = -det.value, fattest_ = v;
+    workspace_.settle(v);
+    const double apart = from_own_sphere(v);
+    given_ = std::max(given_, apart);
+    return apart <= kGiven * at_most_;
+  }
+
+  // How far the sphere that a vertex was given is from that of its forming points, at most.
+  double from_own_sphere(Index v) const {
+    if (!workspace_.shares_sphere(v)) return 0;
+    Vector center;
+    if (!sharp_circumcenter(corner(v, 0), corner(v, 1), corner(v, 2), corner(v, 3), center)) return diameter_;
+    // Both go through a point, so twice the distance of the centres is the most.
+    return 2 * (corner(v, 0) + center - workspace_.vertices[v].center).norm();
+  }
+
+  bool are_facets_good(Index v) {
+    const bool outside = workspace_.at_infinity(v);
+    for (unsigned i = 0; i < 4; ++i) {
+      const Index u = workspace_.vertices[v].neighbors[i];
+      if (u < v && is_new(u)) continue;                    // seen from there
+      if (outside != workspace_.at_infinity(u)) continue;  // a facet of the hull: its edges will be looked at
+      if (!(outside ? is_hull_convex(v, i) : do_spheres_agree(v, i, u))) return false;
+    }
+    return true;
+  }
+
+  bool add(double depth) {
+    if (!(depth <= kFacet * at_most_)) return false;
+    depth_ += depth;
+    return true;
+  }
+
+  // Across the facet between v and its neighbour i, u.
+  bool do_spheres_agree(Index v, unsigned i, Index u) {
+    workspace_.settle(u);
+    const Point& across = corner(u, slot_of(u, v));
+    const bool own = !workspace_.shares_sphere(v) && !workspace_.shares_sphere(u);
+    if (own && (workspace_.power(v, across) < -workspace_.power_bound(v) ||
+                workspace_.power(u, corner(v, i)) < -workspace_.power_bound(u)))
+      return true;
+    if (!workspace_.exact()) {
+      const auto& [a, b, c] = Cavity::kOthers[i];
+      const Point& origin = corner(v, a);
+      const Vector normal = (corner(v, b) - origin).cross(corner(v, c) - origin).normalized();
+      const double side = normal.dot(corner(v, i) - origin) > 0 ? -1 : 1;
+      if (add(depth_lost(v, u, origin, side * normal, Vector::Zero(), 0))) return true;
+    }
+    if (inside_sphere(across, corner(v, 0), corner(v, 1), corner(v, 2), corner(v, 3)) == Sign::positive) return false;
+    // In terms of the vertices' own spheres there is no doubt.
+    if (!own) depth_ += from_own_sphere(v) + from_own_sphere(u);
+    return true;
+  }
+
+  // The depth that may be lost from v to u, for points beyond the plane through the origin, the normal pointing to
+  // them, if u is on that side, or, if `up` is not zero, less than `height` above the plane that it is normal to.
+  double depth_lost(Index v, Index u, const Point& origin, const Vector& normal, const Vector& up,
+                    double height) const {
+    const VoronoiVertex &from = workspace_.vertices[v], &to = workspace_.vertices[u];
+    const Vector step = to.center - from.center;
+    if (step == Vector::Zero()) return 0;
+    const double radius = std::sqrt(from.radius), reach = std::min(2 * radius, diameter_);
+    const double along = normal.dot(step), above = up.dot(step);
+    const double sideways = (step - along * normal - above * up).norm();
+    const double lost = workspace_.power(v, origin) - workspace_.power(u, origin);
+    return (std::max(lost, 0.0) + 2 * reach * (std::max(-along, 0.0) + sideways) + 2 * std::abs(above) * height) /
+           radius;
+  }
+
+  // At the edge of the hull between the facets of v and its neighbour i: around the edge, from the one to the other,
+  // all points must be below the facet of v. The first one that is not, by a rounding, must be opposite to the facet,
+  // and so must be all that follow, or else the vertices there go around the edge more than once.
+  bool is_hull_convex(Index v, unsigned i) {
+    const unsigned j = (i + 1) % 3, k = (i + 2) % 3;
+    const Point &b = corner(v, j), &c = corner(v, k);
+    bool flat = false;
+    Index behind = workspace_.vertices[v].forming_points[i];
+    for (Index t = workspace_.vertices[v].neighbors[3], from = v; !workspace_.at_infinity(t);) {
+      const VoronoiVertex& vertex = workspace_.vertices[t];
+      const unsigned apex = slot_of(t, from);
+      const Point& p = corner(t, apex);
+      const Sign below = volume_sign(p, corner(v, 0), corner(v, 1), corner(v, 2));
+      if (below == Sign::positive) {
+        if (flat) return false;
+      } else {
+        flat = true;
+        if (same_side_of_line(b, c, corner(v, i), p) != Sign::negative) return false;
+        if (below == Sign::negative && (workspace_.exact() || !is_dent_shallow(v, i, p, b, c))) return false;
+      }
+      const auto next = std::find(vertex.forming_points.begin(), vertex.forming_points.end(), behind);
+      behind = vertex.forming_points[apex];
+      from = t;
+      t = vertex.neighbors[static_cast<std::size_t>(next - vertex.forming_points.begin())];
+    }
+    return true;
+  }
+
+  // Where p is above the facet of v, beyond the edge from b to c: the hull's other points may be above the facet by as
+  // much at the same angle. In the dent, the spheres below the two facets meet in the edge.
+  bool is_dent_shallow(Index v, unsigned i, const Point& p, const Point& b, const Point& c) {
+    Vector normal;
+    if (!sharp_normal(corner(v, 0), corner(v, 1), corner(v, 2), normal)) return false;
+    const Vector along = (c - b).normalized(), from_edge = (p - b) - along.dot(p - b) * along;
+    const double rise = diameter_ * std::abs(normal.dot(from_edge)) / from_edge.norm();
+    Vector away = normal.cross(along);
+    if (away.dot(corner(v, i) - b) > 0) away = -away;
+    const Index u = workspace_.vertices[v].neighbors[i];
+    return add(rise + depth_lost(workspace_.vertices[v].neighbors[3], workspace_.vertices[u].neighbors[3], b, away,
+                                 normal, rise));
+  }
+
+  // Whether a point in the fattest of the tetrahedra looked at is in no other. All being oriented positively, there are
+  // then nowhere two on top of each other.
+  bool covers_once() const {
+    const auto inner = [&](unsigned i) { return corner(fattest_, i); };
+    const Point g = (inner(0) + inner(1) + inner(2) + inner(3)) / 4;
+    for (Index v = 0; v < workspace_.vertices.size(); ++v) {
+      if (workspace_.is_free(v) || workspace_.at_infinity(v) || v == fattest_) continue;
+      const double about = kAbout * (workspace_.vertices[v].radius + diameter_ * diameter_);
+      if (workspace_.power(v, g) > -about && !is_outside(v, g)) return false;
+    }
+    return true;
+  }
+  bool is_outside(Index v, const Point& q) const {
+    for (unsigned i = 0; i < 4; ++i) {
+      const auto& [a, b, c] = Cavity::kOthers[i];
+      if (volume_sign(q, corner(v, a), corner(v, b), corner(v, c)) == Sign::negative) return true;
+    }
+    return false;
+  }
+
+  Workspace& workspace_;
+  Index first_new_, fattest_ = kNone;
+  double diameter_ = 0, at_most_ = 0, depth_ = 0, given_ = 0, largest_volume_ = 0;
+};
+
+}  // namespace
+
+std::size_t count_forming(const Workspace& workspace) {
+  std::vector<bool> forming(workspace.points.size(), false);
+  for (const VoronoiVertex& vertex : workspace.vertices)
+    for (const Index point : vertex.forming_points)
+      if (point != kInfinitePoint) forming[point] = true;
+  return static_cast<std::size_t>(std::count(forming.begin(), forming.end(), true));
+}
+
+Certificate certify(Workspace& workspace, std::size_t points, Index first_new) {
+  if (count_forming(workspace) != points) return {};
+  return Certifier(workspace, first_new).run();
+}
+
+}  // namespace orchard::detail

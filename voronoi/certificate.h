@@ -1,0 +1,39 @@
+#pragma once
+#include "workspace.h"
+
+namespace orchard::detail {
+
+// What a look at a whole diagram proves of it.
+struct Certificate {
+  bool holds = false;
+  double depth = 0;  // over the bounding radius: no point lies deeper in a vertex's sphere or farther beyond the hull
+};
+
+// Delaunay's lemma, with a margin: if all vertices are oriented positively, the hull is convex, and the sphere of no
+// vertex holds the point that a neighbour has instead of a shared one, no sphere holds any point. For from a vertex v
+// towards a point q, across one facet after the other, the power of q with respect to the spheres only grows, up to
+// that of a sphere with q on it, 0. Here a facet may take something off: if the spheres on its two sides contradict
+// each other by a rounding, the power of q may shrink by some 2 r d there, r being the radius of v's sphere, and q is
+// then up to d deep in it. The certificate bounds d for every facet and adds these bounds up over all facets, more than
+// any straight line meets. With exact signs, nothing is taken off anywhere. Likewise for the planes of the hull's
+// facets.
+//
+// It holds if no facet takes off more than a 64th of tolerance::kVoronoiDepth, and all of them together no more than
+// it, or, for more than 1024 points, than a 1024th of it for each point: rounding is to be told from what is wrong, and
+// a line meets few of many facets. What is proven is `depth`.
+//
+// That no two tetrahedra lie on top of each other follows from their orientation, if around each edge of the hull they
+// turn by 180 degrees at most, and one point is in one of them only.
+//
+// A vertex whose own sphere rounding leaves open counts with the sphere that it has been given, a neighbour's, on which
+// its forming points are as far as the input goes (see Workspace::share_sphere).
+//
+// Only facets of vertices that a point from first_new on forms are looked at: the others are as they were. Doubles
+// settle most of them: one distance each. O(1) a vertex.
+// `points`: how many form vertices if none was lost.
+Certificate certify(Workspace& workspace, std::size_t points, Index first_new = 0);
+
+// How many points form vertices.
+std::size_t count_forming(const Workspace& workspace);
+
+}  // namespace orchard::detail
