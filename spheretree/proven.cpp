@@ -8,16 +8,16 @@
 namespace orchard {
 namespace {
 
-// A little above bound + amount: verify() finds the same again.
-double raised(double bound, double amount) {
-  return std::nextafter(bound + amount * (1 + 0x1p-20), SphereNode::kUnknown);
+// By what verify() missed, and more than the rounding to float that the packed bound already has.
+double raised(double bound, double amount, double bounding_radius) {
+  return bound + amount + 0x1p-22 * (std::abs(bound) + amount + bounding_radius);
 }
 
-void weaken(SphereNode& node, const Violation& violation) {
+void weaken(SphereNode& node, const Violation& violation, double bounding_radius) {
   if (violation.kind == Violation::Kind::center_distance) {
-    node.center_distance = raised(node.center_distance, violation.amount);
+    node.center_distance = raised(node.center_distance, violation.amount, bounding_radius);
   } else {
-    node.distance_bound = std::max(raised(node.distance_bound, violation.amount),
+    node.distance_bound = std::max(raised(std::max(0.0, node.distance_bound), violation.amount, bounding_radius),
                                    distance_bound(node.center_distance, node.sphere.radius));
   }
 }
@@ -35,7 +35,7 @@ ProvenTree pack_proven(SphereTree& tree, const Surface& surface, const Progress&
   for (const Violation& violation : result.proof.violations) {  // of a node's, the centre's comes first
     if (violation.kind != Violation::Kind::center_distance && violation.kind != Violation::Kind::distance_bound)
       continue;
-    weaken(tree.nodes[violation.node], violation);
+    weaken(tree.nodes[violation.node], violation, surface.bounding_radius());
     if (result.weakened.empty() || result.weakened.back() != violation.node) result.weakened.push_back(violation.node);
   }
   prove();

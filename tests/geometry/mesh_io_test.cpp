@@ -103,7 +103,8 @@ TEST_F(MeshIo, ReadsBackExactlyWhatItWrote) {
       mesh.triangles.push_back({corner(), corner(), corner()});
     }
     write_obj(folder_ / "mesh.obj", mesh);
-    const TriangleMesh read = read_mesh(folder_ / "mesh.obj");
+    // Not read_mesh(), which refuses sizes that nothing works with.
+    const TriangleMesh read = read_points_or_mesh(folder_ / "mesh.obj");
     EXPECT_EQ(read.vertices, mesh.vertices) << seed;
     EXPECT_EQ(read.triangles, mesh.triangles) << seed;
   }
