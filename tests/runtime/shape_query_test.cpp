@@ -150,10 +150,10 @@ TEST(ShapeQuery, CountsAsInsideWhatIsSurroundedTwiceButNotWhatIsSurroundedInside
     for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + first, b + first, c + first});
     return mesh;
   };
-  Mesh inside_out = box({5, 5, 5}, {6, 6, 6});
+  Mesh inside_out = box({4.5, 4.5, 4.5}, {6.5, 6.5, 6.5});
   for (auto& triangle : inside_out.triangles) std::swap(triangle[0], triangle[1]);
   const auto tree =
-      build_tree(joined(joined(box({0, 0, 0}, {2, 2, 2}), box({1, 1, 1}, {4, 3, 3})), inside_out), {.bounds = false});
+      build_tree(joined(joined(box({0, 0, 0}, {3, 3, 3}), box({1, 1, 1}, {4, 4, 3.5})), inside_out), {.bounds = false});
   int twice = 0, wrong_way = 0;
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     Draw draw(seed + 900);
@@ -163,7 +163,7 @@ TEST(ShapeQuery, CountsAsInsideWhatIsSurroundedTwiceButNotWhatIsSurroundedInside
     const auto in = [&p](double lower, const Vec& upper) {
       return p[0] > lower && p[1] > lower && p[2] > lower && p[0] < upper[0] && p[1] < upper[1] && p[2] < upper[2];
     };
-    const int winding = in(0, {2, 2, 2}) + in(1, {4, 3, 3}) - in(5, {6, 6, 6});
+    const int winding = in(0, {3, 3, 3}) + in(1, {4, 4, 3.5}) - in(4.5, {6.5, 6.5, 6.5});
     ASSERT_EQ(contains(tree, {}, p), winding > 0) << seed;
     twice += winding == 2, wrong_way += winding < 0;
   }
