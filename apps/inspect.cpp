@@ -8,7 +8,6 @@
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_details.h"
 #include "orchard/geometry/mesh_io.h"
-#include "orchard/geometry/self_intersections.h"
 #include "orchard/runtime/tree_file.h"
 #include "orchard/spheretree/tree_io.h"
 #include "report.h"
@@ -112,7 +111,7 @@ json inspect_mesh(const InspectCommand& command) {
   report["coincident_vertices"] = details.coincident_vertices;
   report["genus"] = details.genus ? json(*details.genus) : json();
   if (command.full || surface.mesh().triangles.size() <= kMostForSelfIntersections)
-    report["self_intersections"] = self_intersections(surface.mesh()).size();
+    report["self_intersections"] = surface.self_intersections().size();
   TriangleMesh mesh = surface.mesh();
   const MeshRepairReport repair = repair_mesh(mesh);
   report["repair"] = to_json(repair);

@@ -6,7 +6,6 @@
 
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
-#include "orchard/geometry/self_intersections.h"
 
 namespace orchard::apps {
 namespace {
@@ -70,7 +69,7 @@ SolidMesh load_solid(const std::filesystem::path& file, const MeshOptions& optio
   SolidMesh solid =
       options.strict ? strict(name, std::move(mesh), options.ball) : repaired(name, std::move(mesh), options.ball);
   if (solid.surface.mesh().triangles.size() <= kMostForSelfIntersections)
-    solid.self_intersections = self_intersections(solid.surface.mesh()).size();
+    solid.self_intersections = solid.surface.self_intersections().size();
   return solid;
 }
 
@@ -90,7 +89,7 @@ void print_solid(const std::filesystem::path& file, const SolidMesh& solid) {
   print_repair(file, solid.repair);
   if (solid.self_intersections.value_or(0) > 0)
     fmt::print(
-        "{}: {} pair{} of triangles cut or touch each other, inside and outside are vague there; --wrap makes one "
+        "{}: {} pair{} of triangles cut or touch each other; inside is what the surface winds around; --wrap makes one "
         "skin of them\n",
         file.string(), *solid.self_intersections, *solid.self_intersections == 1 ? "" : "s");
   if (!solid.wrap) return;

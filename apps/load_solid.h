@@ -32,8 +32,8 @@ struct SolidMesh {
   Surface surface;
   MeshRepairReport repair;         // nothing done if wrapped
   std::optional<WrapResult> wrap;  // then `surface` is the wrap
-  // Pairs of triangles that cut or touch each other: where they do, inside and outside are not well defined. Not
-  // counted for a wrap, which has none, and beyond kMostForSelfIntersections.
+  // Pairs of triangles that cut or touch each other: parts of the surface lie inside there, or stick out inside out.
+  // Not counted for a wrap, which has none, and beyond kMostForSelfIntersections.
   std::optional<std::size_t> self_intersections;
 };
 

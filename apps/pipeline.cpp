@@ -4,13 +4,11 @@
 #include <cmath>
 
 #include "console.h"
-#include "orchard/covering/inaccuracy.h"
 #include "orchard/geometry/error.h"
 #include "orchard/spheretree/measure.h"
 #include "orchard/spheretree/octree.h"
-#include "orchard/spheretree/pack.h"
+#include "orchard/spheretree/proven.h"
 #include "orchard/spheretree/redundancy.h"
-#include "orchard/spheretree/verify.h"
 
 namespace orchard::apps {
 namespace {
@@ -64,8 +62,7 @@ class Pipeline {
       measure(result_.tree, surface_, progress_);
       measure(result_.octree, surface_, progress_);
     });
-    stage("packing", [&] { result_.packed = pack(result_.tree, surface_); });
-    stage("verifying", [&] { require_proof(); });
+    stage("packing and verifying", [&] { require_proof(); });
     return std::move(result_);
   }
 
@@ -126,23 +123,16 @@ class Pipeline {
     });
   }
 
-  // What is written has passed `verify`. A bound over a ball that the search found but cannot prove in time gives way
-  // to the one by the centre's distance, which needs no search.
+  // What is written has passed `verify`.
   void require_proof() {
-    Verification proof = verify(surface_, result_.packed, {.most_violations = kNone}, progress_);
-    for (const Violation& violation : proof.violations) {
-      if (violation.kind != Violation::Kind::distance_bound) continue;
-      SphereNode& node = result_.tree.nodes[violation.node];
-      node.distance_bound = distance_bound(node.center_distance, node.sphere.radius);
-    }
-    if (!proof.ok() && proof.bounds_violated > 0) {
-      result_.packed = pack(result_.tree, surface_);
-      proof = verify(surface_, result_.packed, {}, progress_);
-    }
-    if (proof.ok()) return;
-    throw Error("the packed tree is not proven to be conservative: " + std::to_string(proof.triangles_uncovered) +
-                " triangles uncovered, " + std::to_string(proof.triangles_unlisted) + " not listed, " +
-                std::to_string(proof.bounds_violated) + " bounds missed");
+    ProvenTree proven = pack_proven(result_.tree, surface_, progress_);
+    const Verification& proof = proven.proof;
+    if (!proof.ok())
+      throw Error("the packed tree is not proven to be conservative: " + std::to_string(proof.triangles_uncovered) +
+                  " triangles uncovered, " + std::to_string(proof.triangles_unlisted) + " not listed, " +
+                  std::to_string(proof.bounds_violated) + " bounds missed");
+    result_.packed = std::move(proven.packed);
+    result_.bounds_weakened = static_cast<Index>(proven.weakened.size());
   }
 
   const Surface& surface_;

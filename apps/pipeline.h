@@ -58,6 +58,7 @@ struct BuildResult {
   CoverReport cover;
   RedundancyReport redundancy;
   runtime::PackedSphereTree packed;
+  Index bounds_weakened = 0;  // nodes with a bound that is weaker than measured, since only that is proven
 };
 
 // Throws InputError if the surface or an option does not allow it, and Error if the packed tree fails its certificate:

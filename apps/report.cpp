@@ -170,6 +170,7 @@ json build_json(const Surface& surface, const BuildOptions& options, const Build
   report["levels"] = levels_json(result.tree, radius, wrap_distance, &result.octree, &surface);
   report["octree_levels"] = levels_json(result.octree, radius, wrap_distance);
   report["conservative"] = true;  // run_pipeline throws otherwise
+  report["nodes_with_weakened_bounds"] = result.bounds_weakened;
   report["bytes_per_node"] =
       static_cast<double>(packed_bytes(result.packed)) / static_cast<double>(result.packed.node_count);
   for (const auto& [stage, seconds] : result.seconds) report["seconds"][stage] = seconds;
@@ -205,6 +206,11 @@ void print_build(const BuildResult& result, double bounding_radius, double wrap_
     total += seconds;
   }
   fmt::print(" in all {:.2f}\n", total);
+  if (result.bounds_weakened > 0)
+    fmt::print(
+        "{} of {} nodes have a bound that could not be proven as tight as it was measured; a weaker one that is proven "
+        "is stored\n",
+        result.bounds_weakened, result.packed.node_count);
   fmt::print("conservative: every point of the surface is certified to lie in all spheres of a root-to-leaf path\n");
 }
 

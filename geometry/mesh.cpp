@@ -1,10 +1,36 @@
 #include "orchard/geometry/mesh.h"
 
+#include <charconv>
 #include <string>
 
 #include "orchard/geometry/error.h"
 
 namespace orchard {
+namespace {
+
+std::string text_of(double value) {
+  char digits[32];
+  return {digits, std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 6).ptr};
+}
+
+}  // namespace
+
+void require_usable_size(const TriangleMesh& mesh) {
+  Box box;
+  for (const auto& corners : mesh.triangles)
+    for (const Index vertex : corners) box.extend(mesh.vertices[vertex]);
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const double largest = mesh.vertices[i].cwiseAbs().maxCoeff();
+    if (largest <= kLargestCoordinate) continue;
+    throw InputError("vertex " + std::to_string(i) + " (counted from 0) has a coordinate of size " + text_of(largest) +
+                     ", beyond the limit of " + text_of(kLargestCoordinate) +
+                     "; scale the mesh down, or use a larger unit");
+  }
+  const double extent = box.sizes().maxCoeff();
+  if (extent > 0 && extent < kLeastExtent)
+    throw InputError("the mesh is only " + text_of(extent) + " long, below the limit of " + text_of(kLeastExtent) +
+                     "; scale the mesh up, or use a smaller unit");
+}
 
 void validate(const TriangleMesh& mesh) {
   const std::size_t vertices = mesh.vertices.size();

@@ -97,7 +97,13 @@ class TextBuffer {
 
 TriangleMesh read_mesh(const std::filesystem::path& file) {
   const Reader reader = reader_for(file);
-  return reader(read_bytes(file), file.string());
+  TriangleMesh mesh = reader(read_bytes(file), file.string());
+  try {
+    require_usable_size(mesh);
+  } catch (const InputError& error) {
+    throw InputError(file.string() + ": " + error.what());
+  }
+  return mesh;
 }
 
 TriangleMesh read_points_or_mesh(const std::filesystem::path& file) {

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 #include "half_edges.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/min_ball.h"
+#include "orchard/geometry/self_intersections.h"
 #include "orchard/geometry/tolerance.h"
+#include "sheets.h"
 #include "triangle_tree.h"
 
 namespace orchard {
@@ -90,6 +93,16 @@ struct Surface::Data {
   }
   Data(const Data&) = delete;
 
+  // Many surfaces are never asked for either.
+  const std::vector<std::array<Index, 2>>& self_intersections() const {
+    std::call_once(cuts_found_, [&] { cuts_ = orchard::self_intersections(mesh); });
+    return cuts_;
+  }
+  const detail::Sheets& sheets() const {
+    std::call_once(sheets_found_, [&] { sheets_.emplace(mesh, tree, self_intersections()); });
+    return *sheets_;
+  }
+
   void find_normals() {
     normals.resize(mesh.triangles.size());
     areas.resize(mesh.triangles.size());
@@ -107,6 +120,11 @@ struct Surface::Data {
     }
     for (Vector& normal : vertex_normals) normal.normalize();
   }
+
+ private:
+  mutable std::once_flag cuts_found_, sheets_found_;
+  mutable std::vector<std::array<Index, 2>> cuts_;
+  mutable std::optional<detail::Sheets> sheets_;
 };
 
 Surface::Surface(TriangleMesh mesh, BoundingBall kind) : data_(std::make_unique<const Data>(std::move(mesh), kind)) {}
@@ -157,21 +175,24 @@ double Surface::signed_distance(const Point& query) const {
 }
 
 double Surface::signed_distance(const Point& query, ClosestPoint& nearest) const {
-  if (!solid()) throw InputError("the surface has no inside: " + report().faults() + "; repair the mesh first");
-  nearest = closest(query);
-  // From far enough away rounding makes any feature the nearest, and its pseudonormal says nothing; but a solid lies in
-  // its box.
-  const bool may_be_inside = std::isfinite(nearest.distance) && bounding_box().contains(query);
-  if (nearest.distance == 0 || !may_be_inside) return nearest.distance;
-  // The pseudonormal of a face or edge is perpendicular to it, so a corner serves as well as the closest point, whose
-  // rounding would matter on a mesh far from the origin.
-  const std::size_t anchor = nearest.feature >= Feature::vertex0 ? corner_of(nearest.feature)
-                             : is_edge(nearest.feature)          ? edge_of(nearest.feature)
-                                                                 : 0;
-  const Point& from = data_->mesh.vertices[data_->mesh.triangles[nearest.triangle][anchor]];
-  const double side = (query - from).dot(pseudonormal(nearest.triangle, nearest.feature));
-  return side < 0 ? -nearest.distance : nearest.distance;
+  require_inside();
+  detail::NearestTriangles triangles;
+  nearest = data_->tree.closest(query, triangles);
+  if (nearest.distance == 0 || !std::isfinite(nearest.distance) || !bounding_box().contains(query))
+    return nearest.distance;
+  return data_->sheets().inside(query, triangles) ? -nearest.distance : nearest.distance;
 }
+
+int Surface::winding_number(const Point& query) const {
+  require_inside();
+  return bounding_box().contains(query) ? data_->tree.winding_number(query) : 0;
+}
+
+void Surface::require_inside() const {
+  if (!solid()) throw InputError("the surface has no inside: " + report().faults() + "; repair the mesh first");
+}
+
+const std::vector<std::array<Index, 2>>& Surface::self_intersections() const { return data_->self_intersections(); }
 
 void Surface::triangles_near(const Sphere& ball, std::vector<Index>& out) const { data_->tree.near(ball, out); }
 void Surface::triangles_overlapping(const std::array<Point, 3>& triangle, std::vector<Index>& out) const {

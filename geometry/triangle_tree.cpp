@@ -135,6 +135,15 @@ class TriangleTree::Candidates {
     if (count_ == entries_.size()) make_room();
     entries_[count_++] = {squared, triangle};
   }
+  void list(NearestTriangles& nearest) const {
+    nearest.count = 0;
+    nearest.complete = !measured_some_;
+    for (std::size_t i = 0; i < count_ && nearest.complete; ++i) {
+      if (entries_[i].squared > limit) continue;
+      nearest.complete = nearest.count < nearest.triangles.size();
+      if (nearest.complete) nearest.triangles[nearest.count++] = entries_[i].triangle;
+    }
+  }
   const ClosestPoint& best() {
     for (std::size_t i = 0; i < count_; ++i) {
       if (entries_[i].squared > limit) continue;
@@ -155,6 +164,7 @@ class TriangleTree::Candidates {
     count_ = static_cast<std::size_t>(end - entries_.begin());
     if (2 * count_ < entries_.size()) return;
     best();
+    measured_some_ = true;
     count_ = 0;
   }
   const TriangleTree& tree_;
@@ -163,10 +173,10 @@ class TriangleTree::Candidates {
   float nearest_ = std::numeric_limits<float>::max();
   std::array<Entry, 64> entries_;
   std::size_t count_ = 0;
+  bool measured_some_ = false;  // and forgot them
 };
 
-ClosestPoint TriangleTree::closest(const Point& point) const {
-  Candidates candidates(*this, point);
+void TriangleTree::find_candidates(const Point& point, Candidates& candidates) const {
   Query query;
   if (localize(point, query)) {
     visit_leaves(query, candidates.limit, [&](const Leaf& leaf) {
@@ -177,6 +187,18 @@ ClosestPoint TriangleTree::closest(const Point& point) const {
   } else {
     for (Index t = 0; t < mesh_.triangles.size(); ++t) candidates.add(0, t);
   }
+}
+
+ClosestPoint TriangleTree::closest(const Point& point) const {
+  Candidates candidates(*this, point);
+  find_candidates(point, candidates);
+  return candidates.best();
+}
+
+ClosestPoint TriangleTree::closest(const Point& point, NearestTriangles& nearest) const {
+  Candidates candidates(*this, point);
+  find_candidates(point, candidates);
+  candidates.list(nearest);
   return candidates.best();
 }
 

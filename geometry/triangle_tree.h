@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <vector>
 
 #include "orchard/geometry/surface.h"
@@ -7,6 +8,14 @@ namespace orchard::detail {
 
 // Four numbers side by side, one for each child of a node or each triangle of a leaf (a GCC and Clang extension).
 using Float4 = float __attribute__((vector_size(16)));
+
+// Every triangle that may hold the surface's point nearest to a query, and a few more: those that floats cannot tell
+// apart.
+struct NearestTriangles {
+  std::array<Index, 16> triangles;
+  std::size_t count = 0;
+  bool complete = false;  // there was room for all
+};
 
 // A four-wide tree of boxes over the triangles of a mesh, for distance queries. Boxes and flattened triangles are
 // floats around the centre of the mesh, scaled to size one; they only sort out which triangles can matter. Those few
@@ -18,6 +27,10 @@ class TriangleTree {
   explicit TriangleTree(const TriangleMesh& mesh);
 
   ClosestPoint closest(const Point& query) const;
+  ClosestPoint closest(const Point& query, NearestTriangles& nearest) const;
+  // How often the surface winds around the query: exact if the mesh is closed and consistently oriented and the query
+  // is not on it. Precondition: the query lies in the mesh's box.
+  int winding_number(const Point& query) const;
   void near(const Sphere& ball, std::vector<Index>& out) const;                           // ascending; cleared first
   void overlapping(const std::array<Point, 3>& triangle, std::vector<Index>& out) const;  // ascending; cleared first
 
@@ -39,10 +52,12 @@ class TriangleTree {
   class Builder;
   class Candidates;
   class TriangleQuery;
+  class Ray;
 
   bool localize(const Point& point, Query& query) const;
   static Float4 squared_distances(const Query& query, const Node& node);
   static Float4 squared_distances(const Query& query, const Leaf& leaf);
+  void find_candidates(const Point& point, Candidates& candidates) const;
   template <class Visit>
   void visit_leaves(const Query& query, const float& limit, Visit visit) const;
   std::array<Point, 3> corners(Index triangle) const;

@@ -12,7 +12,6 @@
 #include "medial_faces.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/tolerance.h"
-#include "outvoted.h"
 
 namespace orchard {
 namespace {
@@ -137,7 +136,6 @@ MedialAxis medial_axis(const Surface& surface, const SurfaceSampling& sampling, 
   axis.origins = sampling.origins;
   find_normals(surface, sampling, axis);
   std::vector<std::uint8_t> inside = detail::interior_vertices(surface, diagram, progress);
-  detail::drop_outvoted(surface, axis.normals, diagram, inside);
   report_progress(progress, "medial axis", 0.3);
   const VoronoiFaces faces = voronoi_faces(diagram);
   detail::KeptTopology kept;

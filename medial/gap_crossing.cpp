@@ -11,7 +11,6 @@
 
 #include "cell_neighbors.h"
 #include "crossings.h"
-#include "orchard/geometry/self_intersections.h"
 #include "orchard/geometry/tolerance.h"
 #include "orchard/voronoi/highest_first.h"
 #include "repair_point.h"
@@ -55,7 +54,7 @@ class Repair {
         result_{std::move(sampling), std::move(diagram), {}},
         generations_(result_.sampling.size(), 0),
         neighbors_(result_.diagram),
-        cuts_(self_intersections(surface.mesh())) {
+        cuts_(surface.self_intersections()) {
     const std::size_t count = cuts_.size();
     for (std::size_t i = 0; i < count; ++i) cuts_.push_back({cuts_[i][1], cuts_[i][0]});
     std::sort(cuts_.begin(), cuts_.end());

@@ -115,7 +115,7 @@ Vec3 ray_direction(int i) noexcept {
   return plus({0, 0, 0}, v, 1 / detail::length(v));
 }
 
-enum class Crossing { none, one, unclear };
+enum class Crossing { none, leaving, entering, unclear };
 
 Crossing crossing(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept {
   const int side_p = orientation(t[0], t[1], t[2], p), side_q = orientation(t[0], t[1], t[2], q);
@@ -123,7 +123,8 @@ Crossing crossing(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcep
   const int a = orientation(p, q, t[0], t[1]), b = orientation(p, q, t[1], t[2]), c = orientation(p, q, t[2], t[0]);
   const bool mixed = std::max({a, b, c}) > 0 && std::min({a, b, c}) < 0;
   if (mixed) return Crossing::none;
-  return side_p == 0 || side_q == 0 || a == 0 || b == 0 || c == 0 ? Crossing::unclear : Crossing::one;
+  if (side_p == 0 || side_q == 0 || a == 0 || b == 0 || c == 0) return Crossing::unclear;
+  return side_p > 0 ? Crossing::leaving : Crossing::entering;
 }
 
 double winding_angle(const TreeView& tree, const Vec3& point) noexcept {
@@ -213,20 +214,21 @@ bool contains(const TreeView& solid, const Pose& pose, const std::array<double, 
   for (int ray = 0; ray < kRays; ++ray) {
     const Vec3 q = plus(p, ray_direction(ray), reach_beyond(solid, p));
     const Segment segment(p, q);
-    bool inside = false, clear = true;
+    int winding = 0;
+    bool clear = true;
     walk(
         solid, segment, frame.rounding(segment), [] { return 0.0; },
         [&](const TriangleBlock& block) {
           clear = each_triangle(block, [&](const TrianglePoints& t, std::uint32_t) {
             const Crossing kind = crossing(p, q, t);
-            if (kind == Crossing::one) inside = !inside;
+            winding += (kind == Crossing::leaving) - (kind == Crossing::entering);
             return kind != Crossing::unclear;
           });
           return clear;
         });
-    if (clear) return inside;
+    if (clear) return winding > 0;
   }
-  return std::fabs(winding_angle(solid, p)) > 2 * std::numbers::pi;
+  return winding_angle(solid, p) > 2 * std::numbers::pi;
 }
 
 bool contains_solid(const TreeView& solid, const Pose& pose, const TreeView& inner, const Pose& inner_pose) noexcept {

@@ -9,6 +9,9 @@
 namespace orchard {
 namespace {
 
+// A mesh that may be read has room to spare: balls of a tree are not hundreds of times as large as the mesh.
+static_assert(500 * kLargestCoordinate <= double{runtime::kCoordinateLimit});
+
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // The least float that is at least `value`.
@@ -68,6 +71,8 @@ class Packer {
   void pack_node(const SphereNode& node, Place at) {
     runtime::SiblingBlock& block = packed_.blocks[at.block];
     const Vector exact = node.sphere.center - origin_;
+    if (!(exact.cwiseAbs().maxCoeff() + node.sphere.radius < double{runtime::kCoordinateLimit} / 2))
+      throw Error("pack: a ball lies beyond the largest coordinate that a packed tree may have; scale the mesh down");
     const Eigen::Vector3f rounded = exact.cast<float>();
     // How far the packed centre may be from the true one: the float rounding, the roundings of this very difference,
     // and those of the sum with the origin by which others get back to the mesh's frame.

@@ -70,6 +70,24 @@ TEST_F(MeshIo, DoesNotWaitForADevice) {
   test::expect_input_error([&] { read_mesh(folder_ / "zero.obj"); }, {"not a regular file"});
 }
 
+// One limit, here: what is larger made trees that no reader took.
+TEST_F(MeshIo, RefusesMeshesOfASizeThatNothingWorksWith) {
+  const auto written = [&](const std::string& name, double scale, double offset = 0) {
+    const fs::path file = folder_ / name;
+    write_obj(file, test::transformed(test::box({-1, -1, -1}, {1, 1, 1}), scale, Vector::Constant(offset)));
+    return file;
+  };
+  EXPECT_NO_THROW(read_mesh(written("largest.obj", kLargestCoordinate)));
+  EXPECT_NO_THROW(read_mesh(written("least.obj", kLeastExtent / 2)));
+  for (const auto& [scale, offset] :
+       {std::pair{1.001 * kLargestCoordinate, 0.0}, {1e20, 0.0}, {1.0, -1e16}, {1e300, 0.0}})
+    test::expect_input_error([&] { (void)read_mesh(written("large.obj", scale, offset)); },
+                             {"large.obj", "vertex 0", "limit of 1e+15", "scale the mesh down"});
+  for (const double scale : {0.499 * kLeastExtent, 1e-20, 1e-300})
+    test::expect_input_error([&] { (void)read_mesh(written("small.obj", scale)); },
+                             {"small.obj", "limit of 1e-12", "scale the mesh up"});
+}
+
 TEST_F(MeshIo, ReadsBackExactlyWhatItWrote) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     Random random(seed, 1);
@@ -85,7 +103,8 @@ TEST_F(MeshIo, ReadsBackExactlyWhatItWrote) {
       mesh.triangles.push_back({corner(), corner(), corner()});
     }
     write_obj(folder_ / "mesh.obj", mesh);
-    const TriangleMesh read = read_mesh(folder_ / "mesh.obj");
+    // Not read_mesh(), which refuses sizes that nothing works with.
+    const TriangleMesh read = read_points_or_mesh(folder_ / "mesh.obj");
     EXPECT_EQ(read.vertices, mesh.vertices) << seed;
     EXPECT_EQ(read.triangles, mesh.triangles) << seed;
   }

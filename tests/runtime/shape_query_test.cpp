@@ -141,6 +141,36 @@ TEST(ShapeQuery, KnowsInsideFromOutsideEvenStraightBelowCornersAndEdges) {
   EXPECT_GT(inside, 50);
 }
 
+// As everywhere in orchard: what the surface winds around once or oftener. Parity would leave the overlap out, and
+// count what the surface surrounds the wrong way round.
+TEST(ShapeQuery, CountsAsInsideWhatIsSurroundedTwiceButNotWhatIsSurroundedInsideOut) {
+  const auto joined = [](Mesh mesh, const Mesh& other) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
+    for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + first, b + first, c + first});
+    return mesh;
+  };
+  Mesh inside_out = box({4.5, 4.5, 4.5}, {6.5, 6.5, 6.5});
+  for (auto& triangle : inside_out.triangles) std::swap(triangle[0], triangle[1]);
+  const auto tree =
+      build_tree(joined(joined(box({0, 0, 0}, {3, 3, 3}), box({1, 1, 1}, {4, 4, 3.5})), inside_out), {.bounds = false});
+  int twice = 0, wrong_way = 0;
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    Draw draw(seed + 900);
+    const bool corners = seed % 4 == 0;  // where many rays meet edges
+    Vec p{};
+    for (double& x : p) x = corners ? std::floor(draw.uniform(0, 14)) / 2 + 0.25 : draw.uniform(-0.5, 6.5);
+    const auto in = [&p](double lower, const Vec& upper) {
+      return p[0] > lower && p[1] > lower && p[2] > lower && p[0] < upper[0] && p[1] < upper[1] && p[2] < upper[2];
+    };
+    const int winding = in(0, {3, 3, 3}) + in(1, {4, 4, 3.5}) - in(4.5, {6.5, 6.5, 6.5});
+    ASSERT_EQ(contains(tree, {}, p), winding > 0) << seed;
+    twice += winding == 2, wrong_way += winding < 0;
+  }
+  EXPECT_GT(twice, 5);
+  EXPECT_GT(wrong_way, 5);
+}
+
 TEST(ShapeQuery, SeesASolidInsideAnother) {
   const auto inner = build_tree(box({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1})), outer = build_tree(uv_sphere(16, 12, 1));
   EXPECT_TRUE(contains_solid(outer, {}, inner, {}));

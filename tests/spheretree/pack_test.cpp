@@ -4,14 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "orchard/covering/inaccuracy.h"
 #include "orchard/geometry/error.h"
+#include "orchard/runtime/narrow_phase.h"
+#include "orchard/runtime/tree_file.h"
 #include "orchard/spheretree/certify.h"
 #include "orchard/spheretree/cover.h"
 #include "orchard/spheretree/measure.h"
 #include "orchard/spheretree/merging.h"
 #include "orchard/spheretree/octree.h"
+#include "orchard/spheretree/verify.h"
 #include "support.h"
 #include "support/path_rule.h"
 
@@ -101,6 +105,64 @@ TEST(Pack, ListsEachTriangleInEveryLeafThatTouchesIt) {
       surface.triangles_at(at.triangle, at.feature, around);
       EXPECT_TRUE(std::find(lists[i].begin(), lists[i].end(), triangle) != lists[i].end());
     }
+  }
+}
+
+// Nothing is promised that was not measured: a bound of 0 said that surfaces .3 apart touch.
+TEST(Pack, LeavesBoundsInfiniteThatWereNotMeasured) {
+  const Surface surface(torus(24, 12));
+  SphereTree tree = octree(surface, {.depth = 2});
+  cover(tree, surface);
+  const auto packed = pack(tree, surface);
+  for (const auto& block : packed.blocks)
+    for (std::size_t lane = 0; lane < runtime::kBlockWidth; ++lane) {
+      if (block.radius[lane] < 0) continue;
+      EXPECT_EQ(block.error[lane], std::numeric_limits<float>::infinity());
+      EXPECT_EQ(block.depth[lane], std::numeric_limits<float>::infinity());
+    }
+  EXPECT_TRUE(verify(surface, packed).ok());
+
+  runtime::PackedSphereTree loaded;
+  ASSERT_EQ(runtime::load(runtime::serialize(packed), loaded), runtime::LoadStatus::ok);
+  runtime::NarrowPhase query(loaded, loaded);
+  runtime::Pose beside;
+  beside.rotation = {1, 0, 0, 0, 0, -1, 0, 1, 0};  // links of a chain, .3 between the two
+  beside.translation = {1, 0, 0};
+  query.start({}, beside);
+  int open = 0;
+  for (; query.answer() == runtime::Answer::maybe && !query.finished(); query.refine(), ++open)
+    EXPECT_EQ(query.separation_bound(), std::numeric_limits<double>::infinity());
+  EXPECT_GT(open, 0);
+  EXPECT_EQ(query.answer(), runtime::Answer::no);
+
+  measure(tree, surface);
+  const auto measured = pack(tree, surface);
+  runtime::NarrowPhase known(measured, measured);
+  for (known.start({}, beside); !known.finished(); known.refine()) EXPECT_GE(known.separation_bound(), 0.3);
+  EXPECT_LT(known.separation_bound(), 10);
+}
+
+TEST(Pack, RefusesABallThatNoReaderWouldTake) {
+  const Surface surface(torus(24, 12));
+  SphereTree tree = octree(surface, {.depth = 1});
+  tree.nodes[1].sphere.radius = 1e20;
+  EXPECT_THROW(pack(tree, surface), Error);
+}
+
+// The largest and the smallest meshes that are read make trees that load.
+TEST(Pack, MakesTreesThatLoadOfEveryMeshThatIsRead) {
+  TriangleMesh shape = torus(16, 8);
+  double largest = 0;
+  for (const Point& p : shape.vertices) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+  for (const double scale : {kLargestCoordinate / largest, 0.51 * kLeastExtent / largest, 1.0}) {
+    TriangleMesh mesh = transformed(shape, scale, Vector::Zero());
+    for (Point& p : mesh.vertices) p = p.cwiseMin(kLargestCoordinate).cwiseMax(-kLargestCoordinate);
+    ASSERT_NO_THROW(require_usable_size(mesh));
+    const Surface surface(mesh);
+    const auto packed = pack(measured(surface, 8, 2), surface);
+    runtime::PackedSphereTree loaded;
+    ASSERT_EQ(runtime::load(runtime::serialize(packed), loaded), runtime::LoadStatus::ok) << scale;
+    EXPECT_TRUE(verify(surface, loaded).ok()) << scale;
   }
 }
 

@@ -50,17 +50,26 @@ class Surface {
   void triangles_at(Index triangle, Feature feature, std::vector<Index>& out) const;
   const Clusters& clusters() const;  // coplanar ones, tolerance::kCoplanarAngle
 
-  // Angle-weighted pseudonormal, unit length (Baerentzen and Aanaes 2005): the sign of (p - closest) . pseudonormal
-  // tells the inside of a closed manifold from its outside at faces, edges and vertices alike.
+  // Angle-weighted pseudonormal, unit length (Baerentzen and Aanaes 2005): where the surface faces. What is inside it
+  // does not decide, since next to a surface that cuts itself it may point either way.
   Vector pseudonormal(Index triangle, Feature feature) const;
 
   // The nearest point; ties go to the lowest triangle; infinitely far if the query is not finite. O(log n).
   ClosestPoint closest(const Point& query) const;
   double distance(const Point& query) const { return closest(query).distance; }
-  // Negative inside. Throws InputError unless solid().
+  // Inside is, for all of orchard, where the winding number is above 1/2: places that the surface surrounds, however
+  // often, and in whatever way it cuts itself. The solid is the surface and its inside. Negative inside, and
+  // 1-Lipschitz; the sign is exact, the distance but for a few roundings of the coordinates. About the cost of
+  // closest(); the first call also finds the self-intersections. Throws InputError unless solid().
   double signed_distance(const Point& query) const;
   double signed_distance(const Point& query, ClosestPoint& nearest) const;
   bool inside(const Point& query) const { return signed_distance(query) < 0; }
+  // How often the surface winds around the query, counter-clockwise seen from outside: exact unless the query is on the
+  // surface, where it is that of some place beside the query. By signed crossings of a ray; a few log n. Throws
+  // InputError unless solid().
+  int winding_number(const Point& query) const;
+  // Those of the mesh (self_intersections.h), found at the first call.
+  const std::vector<std::array<Index, 2>>& self_intersections() const;
   // Triangles that touch the closed ball, ascending; `out` is cleared first.
   void triangles_near(const Sphere& ball, std::vector<Index>& out) const;
   // Triangles that share a point with the closed triangle, ascending; `out` is cleared first. Exact, as triangles_meet.
@@ -68,6 +77,7 @@ class Surface {
 
  private:
   struct Data;
+  void require_inside() const;
   std::unique_ptr<const Data> data_;
 };
 

@@ -68,7 +68,7 @@ struct Contact {
 // Everything known about a pair at one moment.
 struct Verdict {
   Answer answer = Answer::maybe;
-  double separation_bound = 0;  // certified upper bound on the distance between the solids
+  double separation_bound = 0;  // certified upper bound on the distance between the solids; infinite while unknown
   double lower_bound = 0;       // certified lower bound on the distance between the surfaces, 0 if none is known
   Contact contact;
   std::uint32_t level = 0;  // completed levels below the roots

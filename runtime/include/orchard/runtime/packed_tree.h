@@ -158,8 +158,8 @@ void index_triangles(PackedSphereTree& tree);
 
 // What is wrong with a tree's structure, or nullptr: indices in range, children after their parent, no block shared,
 // finite coordinates up to kCoordinateLimit, radii >= 0, a tree of triangles if there are triangles, of which it
-// repeats the corners exactly. Everything a query relies on to stay in bounds. `error` and `depth` may be +infinity
-// (unknown). O(nodes + triangles), allocates nothing.
+// repeats the corners exactly. Everything a query relies on to stay in bounds. `error` and `depth` may be +infinity:
+// unknown, and then a bound on separation that needs them is infinite. O(nodes + triangles), allocates nothing.
 const char* structure_fault(const TreeView& tree) noexcept;
 
 // Upper bound on |centre| + radius over the nodes and on |vertex|, relative to the origin: the rounding of a query is a

@@ -41,8 +41,9 @@ std::optional<RayHit> cast_ray(const TreeView& tree, const Pose& pose, const std
                                const std::array<double, 3>& direction,
                                double longest = std::numeric_limits<double>::infinity()) noexcept;
 
-// Whether a point is inside the solid that the triangles bound (they must be closed): by crossings of a ray, exactly;
-// by winding number where sixteen rays all meet an edge. Points of the surface may count either way.
+// Whether a point is inside the solid that the triangles bound (they must be closed and oriented outward): where they
+// wind around it at least once, as everywhere in orchard. By signed crossings of a ray, exactly; by the sum of the
+// triangles' angles where sixteen rays all meet an edge. Points of the surface may count either way.
 bool contains(const TreeView& solid, const Pose& pose, const std::array<double, 3>& point) noexcept;
 
 // The question that NarrowPhase leaves open: whether `inner` lies wholly inside `solid`. Precondition: their surfaces

@@ -6,8 +6,10 @@
 namespace orchard {
 
 // The tree as the run-time takes it: float nodes around a double origin, radii and bounds rounded outward so that every
-// packed ball holds the ball it came from, and for each leaf the triangles that meet its path region.
-// Precondition: measure() filled the bounds.
+// packed ball holds the ball it came from, and for each leaf the triangles that meet its path region. Bounds that
+// measure() did not fill are packed as unknown, +infinity, and so is every bound on separation that rests on them.
+// Throws Error if the tree has no root, is too large, or has a ball that is out of the run-time's range, which no ball
+// near a mesh of a usable size is (mesh.h).
 runtime::PackedSphereTree pack(const SphereTree& tree, const Surface& surface);
 
 }  // namespace orchard

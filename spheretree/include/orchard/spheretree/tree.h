@@ -1,4 +1,5 @@
 #pragma once
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -15,10 +16,13 @@ struct SphereNode {
   Index child_count = 0;      // 0: a leaf
   Index level = 0;            // 0: the root
 
-  // Filled by measure(); lengths in mesh units.
-  double center_distance = 0;  // signed distance of the centre to the surface, negative inside
-  double distance_bound = 0;   // upper bound on the distance to the solid from any point of the ball
-  double inaccuracy = 0;       // Hubbard's: upper bound, within tolerance::kInaccuracy * R
+  // Filled by measure(); lengths in mesh units. Infinite while unknown, so that what is packed without them promises
+  // nothing about how far anything is.
+  double center_distance = kUnknown;  // signed distance of the centre to the surface, negative inside
+  double distance_bound = kUnknown;   // upper bound on the distance to the solid from any point of the ball
+  double inaccuracy = kUnknown;       // Hubbard's: upper bound, within tolerance::kInaccuracy * R
+
+  static constexpr double kUnknown = std::numeric_limits<double>::infinity();
 };
 
 // Nodes in breadth-first order, the root first. Conservative by the path rule: every point of the surface lies in all
