@@ -151,7 +151,7 @@ class Workspace {
   std::vector<std::uint16_t> state_;                   // mark, error class above, kShared
   std::array<double, 64> bounds_{};                    // by error class
   double squared_scale_ = 1, per_smallest_bound_ = 1;  // powers of two, so that scaled input is treated exactly alike
-  static constexpr double kThin = 0x1p-24;  // how far the noise may turn a facet of a good vertex, in radians
+  static constexpr double kThin = 0x1p-24;           // how far the noise may turn a facet of a good vertex, in radians
   static constexpr double kSharpCondition = 0x1p12;  // with exact signs: where a centre calls for sharper arithmetic
   // How many times the noise a point may be off a sphere that it is taken to be on: the sphere's centre magnifies the
   // noise of its own points. More, up to the error bound, would make chance a rule where many spheres nearly agree, as
