@@ -1,5 +1,6 @@
 #include "patch_block.h"
 
+#include "machine.h"
 #include "vector_support.h"
 
 // Rounding. Patches: see Placement::margin in narrow_phase.cpp, (5). Triangles: any fixed vector serves as an axis,
@@ -308,19 +309,18 @@ using Widest = VectorFloats;
 using Widest = PlainFloats;
 #endif
 
-ORCHARD_PER_MACHINE void patch_gaps(const Patch& single, const PatchBlock& lanes, const Placement* placement,
-                                    float margin, PatchGaps& result) noexcept {
-  find_gaps<Widest>(single, lanes, placement, margin, result);
+void patch_gaps(const Patch& single, const PatchBlock& lanes, const Placement* placement, float margin,
+                PatchGaps& result) noexcept {
+  PerMachine<find_gaps<Widest>>::call(single, lanes, placement, margin, result);
 }
 
-ORCHARD_PER_MACHINE void triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows,
-                                       const Placement& placement, const std::array<float, 3>& direction,
-                                       TriangleGaps& result) noexcept {
-  find_triangle_gaps<Widest>(lanes, rows, placement, direction, result);
+void triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows, const Placement& placement,
+                   const std::array<float, 3>& direction, TriangleGaps& result) noexcept {
+  PerMachine<find_triangle_gaps<Widest>>::call(lanes, rows, placement, direction, result);
 }
 
-ORCHARD_PER_MACHINE std::uint64_t triangle_candidates(const LeafPair& pair, const Placement& placement) noexcept {
-  return find_candidates<Widest>(pair, placement);
+std::uint64_t triangle_candidates(const LeafPair& pair, const Placement& placement) noexcept {
+  return PerMachine<find_candidates<Widest>>::call(pair, placement);
 }
 
 }  // namespace orchard::runtime::detail
