@@ -11,8 +11,13 @@
 namespace orchard::runtime::test {
 
 inline Pose rounded_to_float(Pose pose) {
-  for (double& x : pose.rotation) x = double{static_cast<float>(x)};
-  for (double& x : pose.translation) x = double{static_cast<float>(x)};
+  // Through memory: GCC 12 with -O2 leaves a conversion to float and back out where it makes vectors of such lines.
+  const auto round = [](double& x) {
+    const volatile float rounded = static_cast<float>(x);
+    x = double{rounded};
+  };
+  for (double& x : pose.rotation) round(x);
+  for (double& x : pose.translation) round(x);
   return pose;
 }
 
