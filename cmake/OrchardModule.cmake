@@ -10,6 +10,13 @@ if(ORCHARD_SANITIZE)
     -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(orchard_flags INTERFACE -fsanitize=address,undefined)
 endif()
+if(ORCHARD_SANITIZE_THREADS)
+  if(ORCHARD_SANITIZE)
+    message(FATAL_ERROR "ORCHARD_SANITIZE and ORCHARD_SANITIZE_THREADS exclude each other: choose one")
+  endif()
+  target_compile_options(orchard_flags INTERFACE -fsanitize=thread -fno-omit-frame-pointer)
+  target_link_options(orchard_flags INTERFACE -fsanitize=thread)
+endif()
 
 # orchard_add_module(name COMPONENT component SOURCES .. [PUBLIC ..] [PRIVATE ..])
 # makes the library orchard::name with its own include root, so that an arrow that is not declared does not compile.

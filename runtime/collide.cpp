@@ -32,6 +32,15 @@ class Purse {
   std::chrono::steady_clock::time_point deadline_;
 };
 
+// Each may be off by kRigidTolerance, and together by more. What is not rigid stays so, and will be refused.
+Pose placed(const Pose& body, const Pose& local) noexcept {
+  const Pose pose = compose(body, local);
+  if (is_rigid(body) && is_rigid(local)) return is_rigid(pose) ? pose : made_rigid(pose).value_or(pose);
+  Pose nothing;  // two wrongs, mirrors for one, can make a right
+  nothing.rotation = {};
+  return nothing;
+}
+
 }  // namespace
 
 Verdict collide(NarrowPhase& pair, const Pose& a, const Pose& b, const Budget& budget) noexcept {
@@ -78,6 +87,7 @@ ArticulatedPair::ArticulatedPair(std::span<const Part> a, std::span<const Part> 
     : round_(std::span<NarrowPhase>()) {
   for (const Part& part : a) locals_a_.push_back(part.local);
   for (const Part& part : b) locals_b_.push_back(part.local);
+  placed_b_.resize(b.size());
   pairs_.reserve(a.size() * b.size());
   for (const Part& of_a : a) {
     for (const Part& of_b : b) pairs_.emplace_back(of_a.tree, of_b.tree, room);
@@ -85,11 +95,10 @@ ArticulatedPair::ArticulatedPair(std::span<const Part> a, std::span<const Part> 
 }
 
 Answer ArticulatedPair::start(const Pose& a, const Pose& b) noexcept {
+  for (std::size_t j = 0; j < locals_b_.size(); ++j) placed_b_[j] = placed(b, locals_b_[j]);
   for (std::size_t i = 0; i < locals_a_.size(); ++i) {
-    const Pose pose_a = compose(a, locals_a_[i]);
-    for (std::size_t j = 0; j < locals_b_.size(); ++j) {
-      pairs_[i * locals_b_.size() + j].start(pose_a, compose(b, locals_b_[j]));
-    }
+    const Pose pose_a = placed(a, locals_a_[i]);
+    for (std::size_t j = 0; j < locals_b_.size(); ++j) pairs_[i * locals_b_.size() + j].start(pose_a, placed_b_[j]);
   }
   round_ = RoundRobin(pairs_);
   const Answer now = answer();

@@ -39,8 +39,7 @@ void DistanceQuery::start(const Pose& a, const Pose& b, const Tolerance& toleran
   direction_ = {};
   triangle_first_ = triangle_second_ = kNoTriangle;
   upper_ = std::numeric_limits<double>::infinity();
-  // A "maybe" that cannot be refined is one whose poses are out of range.
-  finished_ = !stack_ || (pair_.answer() == Answer::maybe && pair_.finished()) || !pair_.in_range();
+  finished_ = !stack_ || pair_.refused() || !pair_.in_range();
   if (finished_) return;
   pair_.place();
   const TreeView& second = pair_.second_.tree;

@@ -1,7 +1,8 @@
 #pragma once
 #include <array>
 
-// Signs of determinants of double coordinates, exact unless a product of three coordinate differences underflows.
+// Signs of determinants of double coordinates. Exact if these are multiples of 2^-357, as all are that are 0 or at
+// least 2^-305, and at most 1e100: no product of three differences, and no part of one, then underflows or overflows.
 // The usual case costs one evaluation in double; close ones are repeated with twice the digits, ties in full.
 namespace orchard::runtime::detail {
 

@@ -35,6 +35,7 @@ namespace {
 constexpr double kFloatUnit = 0x1p-24;
 // Keeps the squares of the smallest reach clear of the numbers that a flush-to-zero mode drops.
 constexpr double kLeastSlack = 1e-15;
+constexpr double kLeastSize = 1e-18;  // below it Placement::unit stays as it is: margins are far larger
 
 constexpr double kLeastOpposition = 1e-6;  // between unit normals: less says nothing about a direction
 
@@ -88,6 +89,7 @@ NarrowPhase::NarrowPhase(const TreeView& a, const TreeView& b, std::size_t room)
   first_ = side_of(a);
   second_ = ordered_by_pose_ ? first_ : side_of(b);
   if (arguments_exchanged_) std::swap(first_, second_);
+  for (std::size_t i = 0; i < 3; ++i) roots_[i] = {first_.root[i], second_.root[i]};
   // An expanded pair leaves up to eight in its place, one level deeper in one of the trees.
   const std::size_t deepest = std::size_t{kBlockWidth} * (a.patch_depth + b.patch_depth + 1) + 1;
   if (has_triangles()) stack_.reset(new (std::nothrow) PatchPair[deepest]);
@@ -106,16 +108,19 @@ Pose NarrowPhase::relative_pose() const noexcept {
   const auto& r = first.rotation;
   const auto& q = second.rotation;
   const double shrink = 1 / first.scale;
+  // What is below this is no more than rounding, and without it no product of three coordinates underflows:
+  // exact_sign.h.
+  const auto settled = [](double value, double least) { return std::fabs(value) < least ? 0.0 : value; };
   Pose relative;
   relative.scale = second.scale * shrink;
   auto offset = transform(second, second_.tree.origin);
   for (std::size_t i = 0; i < 3; ++i) offset[i] -= first.translation[i];
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
-      relative.rotation[3 * i + j] = r[i] * q[j] + r[3 + i] * q[3 + j] + r[6 + i] * q[6 + j];
+      relative.rotation[3 * i + j] = settled(r[i] * q[j] + r[3 + i] * q[3 + j] + r[6 + i] * q[6 + j], 0x1p-60);
     }
-    relative.translation[i] =
-        (r[i] * offset[0] + r[3 + i] * offset[1] + r[6 + i] * offset[2]) * shrink - first_.tree.origin[i];
+    relative.translation[i] = settled(
+        (r[i] * offset[0] + r[3 + i] * offset[1] + r[6 + i] * offset[2]) * shrink - first_.tree.origin[i], 0x1p-305);
   }
   return relative;
 }
@@ -140,12 +145,24 @@ void NarrowPhase::place() noexcept {
   };
   placement_.slack = rounded_up(sigma + 8 * kFloatUnit * size);
   placement_.margin = rounded_up(2 * sigma + 96 * kFloatUnit * size);
+  const int exponent = 1 + std::ilogb(std::max(size, kLeastSize));
+  placement_.unit = static_cast<float>(std::ldexp(1, -exponent));
+  placement_.whole = static_cast<float>(std::ldexp(1, exponent));
 }
 
-// Whether floats can hold the square of every distance that the pair's frame may have to.
+// Whether floats can hold the square of every distance in the pair's frame, and doubles the exact level's products.
+// With T and the second extent, origins and errors included, at most 4 L and the first extent below 2.8 L, L =
+// kCoordinateLimit, no float sum of squares or of products of two lengths exceeds 120 L^2, a third of the largest
+// float.
 bool NarrowPhase::in_range() const noexcept {
-  double size = second_.extent * second_pose_.scale;
-  for (std::size_t i = 0; i < 3; ++i) size += std::fabs(second_pose_.translation[i] - first_pose_.translation[i]);
+  const double relative = second_pose_.scale / first_pose_.scale;
+  if (!(relative >= 1 / kMostRelativeScale && relative <= kMostRelativeScale)) return false;
+  double size = second_.extent * second_pose_.scale + exact_error_;
+  for (std::size_t i = 0; i < 3; ++i) {
+    size += std::fabs(second_pose_.translation[i] - first_pose_.translation[i]) +
+            std::fabs(second_.tree.origin[i]) * second_pose_.scale +
+            std::fabs(first_.tree.origin[i]) * first_pose_.scale;
+  }
   return size <= 4 * double{kCoordinateLimit} * first_pose_.scale;
 }
 
@@ -161,7 +178,7 @@ void NarrowPhase::finish(Answer answer) noexcept {
 }
 
 Contact NarrowPhase::contact() const noexcept {
-  if (answer_ == Answer::no) return {};
+  if (answer_ == Answer::no || refused_) return {};
   const auto [a, b] = best_.pair;
   const auto p = detail::center_of(first_.tree, a);
   const Pose relative = placed_ ? relative_ : relative_pose();

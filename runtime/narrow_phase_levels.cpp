@@ -70,7 +70,7 @@ Answer NarrowPhase::refine_level(const Budget& budget) noexcept {
 
 Answer NarrowPhase::refine_last(const Budget& budget) noexcept {
   if (budget.pair_tests == 0) return answer_;
-  if (!has_triangles() || !stack_) return refine(budget);
+  if (!has_last_level()) return refine(budget);
   Meter meter(budget);
   if (!exact_started_) {
     start_exact();
@@ -169,7 +169,7 @@ void NarrowPhase::finish_sphere_level() noexcept {
   start_level();
   if (pairs() == 0) {
     finish(Answer::no);
-  } else if (inner_.size() == 0 && !(has_triangles() && stack_)) {
+  } else if (inner_.size() == 0 && !has_last_level()) {
     finish(Answer::maybe);
   }
 }
@@ -240,7 +240,7 @@ void NarrowPhase::give_up_spheres() noexcept {
   inner_.clear();
   next_.clear();
   best_ = level_best_.bound < best_.bound ? level_best_ : best_;
-  if (!(has_triangles() && stack_)) finish(Answer::maybe);
+  if (!has_last_level()) finish(Answer::maybe);
 }
 
 }  // namespace orchard::runtime

@@ -1,6 +1,8 @@
 #include <cmath>
+#include <limits>
 
 #include "orchard/runtime/narrow_phase.h"
+#include "rigid_pair.h"
 #include "support_map.h"
 #include "tree_nodes.h"
 
@@ -13,7 +15,8 @@ using detail::Vec3;
 
 namespace {
 
-constexpr int kRootDirections = 5;  // tried at most, to part the hulls
+constexpr double kLeastError = 1e-150;  // of a length: covers the underflow of its square
+constexpr int kRootDirections = 5;      // tried at most, to part the hulls
 
 bool before(const Pose& a, const Pose& b) noexcept {
   if (a.rotation != b.rotation) return a.rotation < b.rotation;
@@ -41,16 +44,25 @@ Answer NarrowPhase::start(const Pose& a, const Pose& b) noexcept {
   pair_tests_ = 1;
   triangle_tests_ = work_ = 0;
   lower_bound_ = 0;
-  out_of_room_ = exact_started_ = false;
+  out_of_room_ = exact_started_ = refused_ = false;
 
+  // Nothing below holds otherwise, and the hulls' tables have no place for directions that are no directions.
   const Pose &first = arguments_exchanged_ ? b : a, &second = arguments_exchanged_ ? a : b;
-  const Vec3 way = minus(transform(second, second_.root), transform(first, first_.root));
+  const detail::PoseLanes poses(first, second);
+  if (!poses.rotate()) return refuse(a, b);
+  const auto lanes = [](const std::array<double, 2>& pair) { return detail::Two{pair[0], pair[1]}; };
+  const detail::Two roots[3] = {lanes(roots_[0]), lanes(roots_[1]), lanes(roots_[2])};
+  Vec3 way{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const detail::Two place = poses.placed(i, roots);
+    way[i] = place[1] - place[0];
+  }
   const double square = dot(way, way), distance = std::sqrt(square);
   const auto sum = [&first, &second](double of_first, double of_second) {
     return first.scale * of_first + second.scale * of_second;
   };
-  exact_error_ =
-      sum(first_.error, second_.error) + 1e-14 * (sum_of_sizes(first.translation) + sum_of_sizes(second.translation));
+  exact_error_ = sum(first_.error, second_.error) +
+                 1e-14 * (sum_of_sizes(first.translation) + sum_of_sizes(second.translation)) + kLeastError;
   const double radii = sum(first_.radius, second_.radius);
   separation_bound_ = detail::pair_bound(distance + exact_error_, radii, sum(first_.reach, second_.reach),
                                          sum(first_.depth, second_.depth));
@@ -74,12 +86,20 @@ Answer NarrowPhase::start(const Pose& a, const Pose& b) noexcept {
     return answer_;
   }
   keep(a, b);
+  if (!std::isfinite(ball_gap) || !in_range()) return refuse(a, b);
   answer_ = Answer::maybe;
   roots_pending_ = true;
-  // Poses that are not finite, or beyond what can be squared: nothing is certain then and nothing can be refined.
-  const bool deeper = !detail::is_leaf(first_.tree, 0) || !detail::is_leaf(second_.tree, 0) || has_triangles();
-  finished_ = !deeper || !std::isfinite(ball_gap) || !in_range();
+  finished_ = detail::is_leaf(first_.tree, 0) && detail::is_leaf(second_.tree, 0) && !has_last_level();
   return answer_;
+}
+
+// Poses that name no place, or one beyond what floats can hold: nothing is certain then and nothing can be refined.
+Answer NarrowPhase::refuse(const Pose& a, const Pose& b) noexcept {
+  keep(a, b);
+  refused_ = finished_ = true;
+  roots_pending_ = false;
+  separation_bound_ = std::numeric_limits<double>::infinity();
+  return answer_ = Answer::maybe;
 }
 
 // What deeper levels need.

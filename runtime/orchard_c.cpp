@@ -30,6 +30,14 @@ rt::Pose pose_of(const orchard_pose& from) noexcept {
   return pose;
 }
 
+int given(const std::optional<rt::Pose>& from, orchard_pose* to) noexcept {
+  if (!from) return 0;
+  std::copy_n(from->rotation.begin(), 9, to->rotation);
+  std::copy_n(from->translation.begin(), 3, to->translation);
+  to->scale = from->scale;
+  return 1;
+}
+
 std::array<double, 3> vector_of(const double* v) noexcept { return {v[0], v[1], v[2]}; }
 
 rt::Budget budget_of(const orchard_budget& from) noexcept {
@@ -53,6 +61,7 @@ orchard_verdict verdict_of(const rt::NarrowPhase& pair) noexcept {
   result.triangle_b = v.contact.triangle_b;
   result.level = v.level;
   result.finished = pair.finished();
+  result.refused = pair.refused();
   result.work = v.work;
   return result;
 }
@@ -69,6 +78,26 @@ orchard_tree* opened(orchard_tree* tree, rt::LoadStatus status, const char** err
 extern "C" {
 
 orchard_pose orchard_identity(void) { return {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}, 1}; }
+
+int orchard_is_rigid(const orchard_pose* pose) { return rt::is_rigid(pose_of(*pose)); }
+
+int orchard_make_rigid(orchard_pose* pose) { return given(rt::made_rigid(pose_of(*pose)), pose); }
+
+int orchard_pose_from_matrix(const float rotation[9], const float translation[3], float scale, orchard_pose* pose) {
+  std::array<float, 9> r{};
+  std::array<float, 3> t{};
+  std::copy_n(rotation, 9, r.begin());
+  std::copy_n(translation, 3, t.begin());
+  return given(rt::pose_from_matrix(r, t, scale), pose);
+}
+
+orchard_tree* orchard_tree_read(const char* path, const char** error) {
+  auto* const tree = new (std::nothrow) orchard_tree;
+  if (tree == nullptr) return opened(nullptr, rt::LoadStatus::out_of_memory, error);
+  const rt::LoadStatus status = rt::load_file(path, tree->loaded);
+  tree->view = tree->loaded;
+  return opened(tree, status, error);
+}
 
 orchard_tree* orchard_tree_open(const char* path, const char** error) {
   auto* const tree = new (std::nothrow) orchard_tree;
@@ -128,19 +157,24 @@ orchard_distance orchard_measure(orchard_pair* pair, const orchard_pose* a, cons
 
 int orchard_capsule_touches(const orchard_tree* tree, const orchard_pose* pose, const double p[3], const double q[3],
                             double radius) {
-  return rt::nearest_point_to_segment(tree->view, pose_of(*pose), vector_of(p), vector_of(q), radius).triangle !=
-         rt::kNoTriangle;
+  const rt::SurfacePoint near =
+      rt::nearest_point_to_segment(tree->view, pose_of(*pose), vector_of(p), vector_of(q), radius);
+  if (near.triangle != rt::kNoTriangle) return 1;
+  return near.distance == 0 ? -1 : 0;
 }
 
 int orchard_contains(const orchard_tree* tree, const orchard_pose* pose, const double point[3]) {
-  return rt::contains(tree->view, pose_of(*pose), vector_of(point));
+  const rt::Pose placed = pose_of(*pose);
+  if (!rt::can_ask(tree->view, placed, vector_of(point))) return -1;
+  return rt::contains(tree->view, placed, vector_of(point));
 }
 
 int orchard_cast_ray(const orchard_tree* tree, const orchard_pose* pose, const double origin[3],
                      const double direction[3], double longest, double* along) {
   const auto hit = rt::cast_ray(tree->view, pose_of(*pose), vector_of(origin), vector_of(direction), longest);
   if (hit && along != nullptr) *along = hit->along;
-  return hit.has_value();
+  if (!hit) return 0;
+  return hit->triangle == rt::kNoTriangle ? -1 : 1;
 }
 
 }  // extern "C"

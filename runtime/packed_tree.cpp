@@ -12,6 +12,9 @@ constexpr double kNormalTolerance = 1e-6;  // on the square of a patch's normal,
 // Comparisons are written so that a NaN fails them.
 bool in_range(float value) noexcept { return std::fabs(value) <= kCoordinateLimit; }
 
+// Sums of three coordinates and distances between them.
+bool is_length(double value) noexcept { return value >= 0 && value <= 4 * double{kCoordinateLimit}; }
+
 const char* node_fault(const SiblingBlock& block, std::uint32_t lane) noexcept {
   if (!(in_range(block.x[lane]) && in_range(block.y[lane]) && in_range(block.z[lane]))) {
     return "a node's centre is not finite or out of range";
@@ -180,7 +183,7 @@ const char* triangle_tree_fault(const TreeView& tree) noexcept {
 const char* support_fault(const TreeView& tree) noexcept {
   if (tree.supports.size() != (tree.triangles.empty() ? 0 : kSupportCount)) return "the number of supports is wrong";
   for (const float support : tree.supports) {
-    if (!(std::fabs(support) <= 4 * kCoordinateLimit)) return "a support is not finite or out of range";
+    if (!is_length(std::fabs(double{support}))) return "a support is not finite or out of range";
   }
   return nullptr;
 }
@@ -189,10 +192,10 @@ const char* support_fault(const TreeView& tree) noexcept {
 
 const char* structure_fault(const TreeView& tree) noexcept {
   for (const double coordinate : tree.origin) {
-    if (!std::isfinite(coordinate)) return "the origin is not finite";
+    if (!(std::fabs(coordinate) <= double{kCoordinateLimit})) return "the origin is not finite or out of range";
   }
-  if (!(tree.bounding_radius >= 0 && std::isfinite(tree.bounding_radius))) return "the bounding radius is negative";
-  if (!(tree.vertex_error >= 0 && std::isfinite(tree.vertex_error))) return "the vertex error is negative";
+  if (!is_length(tree.bounding_radius)) return "the bounding radius is negative or out of range";
+  if (!is_length(tree.vertex_error)) return "the vertex error is negative or out of range";
   if (const char* fault = triangle_fault(tree)) return fault;
   if (const char* fault = triangle_tree_fault(tree)) return fault;
   if (const char* fault = support_fault(tree)) return fault;

@@ -1,17 +1,23 @@
 #include "patch_block.h"
 
+#include "machine.h"
 #include "vector_support.h"
 
 // Rounding. Patches: see Placement::margin in narrow_phase.cpp, (5). Triangles: any fixed vector serves as an axis,
 // so an axis itself needs no accuracy; only the projections do. Along a coordinate, points placed to within sigma that
 // are more than the margin apart are apart. A projection a . (p - q) of points placed to within sigma is computed to
 // within |a|_1 (2 sigma + 8 u D), which is below |a|_1 margin, with |a|_1 the sum of |components|.
+// Such projections are of the third degree, or of the fourth: coordinates of 1e13 would overflow and those of 1e-13
+// underflow. So triangles are first multiplied by a power of two (Placement::unit) that makes every coordinate at most
+// 1 and changes no digit. What then underflows, or is dropped by a flush-to-zero mode, is at most 2^-126 an operation:
+// below 2^-120 a projection, which kLeastRoom covers.
 namespace orchard::runtime::detail {
 namespace {
 
 // Added to the square of a sine before its root: a cosine of two float normals is good to some 50 u, u = 2^-24.
 constexpr float kSineError = 0x1p-17f;
 constexpr float kLeastDistance = 1e-18f;  // keeps a quotient finite; far below every margin
+constexpr float kLeastRoom = 0x1p-110f;   // to add to the room along an axis, in units of Placement::whole
 
 template <typename Kind>
 struct Eight {
@@ -35,6 +41,9 @@ struct Eight {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
   }
   ORCHARD_INLINE static Floats one_norm(const Vectors& a) noexcept { return size(a.x) + size(a.y) + size(a.z); }
+  ORCHARD_INLINE static Vectors times(const Vectors& v, const Floats& s) noexcept {
+    return {v.x * s, v.y * s, v.z * s};
+  }
   ORCHARD_INLINE static Vectors turn(const std::array<float, 9>& r, const Vectors& v) noexcept {
     return {all(r[0]) * v.x + all(r[1]) * v.y + all(r[2]) * v.z, all(r[3]) * v.x + all(r[4]) * v.y + all(r[5]) * v.z,
             all(r[6]) * v.x + all(r[7]) * v.y + all(r[8]) * v.z};
@@ -137,16 +146,15 @@ ORCHARD_INLINE std::uint64_t find_candidates(const LeafPair& pair, const Placeme
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
   using Vectors = typename E::Vectors;
-  const Vectors lane[3] = {E::corner(pair.lanes, 0), E::corner(pair.lanes, 1), E::corner(pair.lanes, 2)};
-  const Vectors row[3] = {E::move(placement, E::corner(pair.rows, 0)), E::move(placement, E::corner(pair.rows, 1)),
-                          E::move(placement, E::corner(pair.rows, 2))};
+  Vectors lane[3] = {E::corner(pair.lanes, 0), E::corner(pair.lanes, 1), E::corner(pair.lanes, 2)};
+  Vectors row[3] = {E::move(placement, E::corner(pair.rows, 0)), E::move(placement, E::corner(pair.rows, 1)),
+                    E::move(placement, E::corner(pair.rows, 2))};
   // Heights are along normals that are unit to 1e-6, so a margin for patches serves here, too.
   const std::uint32_t rows = ~outside<Kind>(row, pair.lane_patch, placement.margin) & 0xffu;
   const std::uint32_t lanes = ~outside<Kind>(lane, pair.row_patch, placement.margin) & 0xffu;
   if (rows == 0 || lanes == 0) return 0;
 
-  const Floats margin = E::all(placement.margin);
-  const Box<Kind> lane_box = box_of<Kind>(lane, margin), row_boxes = box_of<Kind>(row, E::all(0.0f));
+  const Box<Kind> lane_box = box_of<Kind>(lane, E::all(placement.margin)), row_boxes = box_of<Kind>(row, E::all(0.0f));
   std::array<float, kBlockWidth> low[3], high[3];
   store(row_boxes.low.x, low[0]), store(row_boxes.low.y, low[1]), store(row_boxes.low.z, low[2]);
   store(row_boxes.high.x, high[0]), store(row_boxes.high.y, high[1]), store(row_boxes.high.z, high[2]);
@@ -161,12 +169,16 @@ ORCHARD_INLINE std::uint64_t find_candidates(const LeafPair& pair, const Placeme
   }
   if (any == 0) return 0;
 
+  const Floats unit = E::all(placement.unit), margin = E::all(placement.margin * placement.unit);
+  const Floats least = E::all(kLeastRoom);
+  for (std::size_t k = 0; k < 3; ++k) lane[k] = E::times(lane[k], unit), row[k] = E::times(row[k], unit);
   const Vectors lane_edge[2] = {E::minus(lane[1], lane[0]), E::minus(lane[2], lane[0])};
   const Vectors row_edge[2] = {E::minus(row[1], row[0]), E::minus(row[2], row[0])};
   const Vectors lane_normal = E::cross(lane_edge[0], lane_edge[1]), row_normal = E::cross(row_edge[0], row_edge[1]);
   // Own corners' heights over the plane through the first one: 0 but for rounding.
   const auto own_height = [&](const Vectors& normal, const Vectors(&edge)[2]) ORCHARD_INLINE_LAMBDA -> Floats {
-    return E::larger(E::size(E::dot(normal, edge[0])), E::size(E::dot(normal, edge[1]))) + E::one_norm(normal) * margin;
+    return E::larger(E::size(E::dot(normal, edge[0])), E::size(E::dot(normal, edge[1]))) +
+           (E::one_norm(normal) * margin + least);
   };
   const Floats lane_limit = own_height(lane_normal, lane_edge);
   std::array<float, kBlockWidth> row_limit, nx, ny, nz, x[3], y[3], z[3];
@@ -202,7 +214,7 @@ ORCHARD_INLINE std::uint64_t find_candidates(const LeafPair& pair, const Placeme
         const Floats zero = E::all(0.0f);
         const Extent<Kind> of_row = extent<Kind>(zero, project(p[1]), project(p[2]));
         const Extent<Kind> of_lane = extent<Kind>(E::dot(axis, from[0]), E::dot(axis, from[1]), E::dot(axis, from[2]));
-        const Floats room = E::one_norm(axis) * margin;
+        const Floats room = E::one_norm(axis) * margin + least;
         left &= ~Kind::bits((of_row.high + room < of_lane.low) | (of_lane.high + room < of_row.low));
       }
     }
@@ -223,9 +235,14 @@ ORCHARD_INLINE void find_triangle_gaps(const TriangleBlock& lanes, const Triangl
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
   using Vectors = typename E::Vectors;
-  const Vectors lane[3] = {E::corner(lanes, 0), E::corner(lanes, 1), E::corner(lanes, 2)};
-  const Vectors row[3] = {E::move(placement, E::corner(rows, 0)), E::move(placement, E::corner(rows, 1)),
-                          E::move(placement, E::corner(rows, 2))};
+  const Floats unit = E::all(placement.unit), whole = E::all(placement.whole);
+  const auto lane_corner = [&](std::size_t k)
+                               ORCHARD_INLINE_LAMBDA -> Vectors { return E::times(E::corner(lanes, k), unit); };
+  const auto row_corner = [&](std::size_t k) ORCHARD_INLINE_LAMBDA -> Vectors {
+    return E::times(E::move(placement, E::corner(rows, k)), unit);
+  };
+  const Vectors lane[3] = {lane_corner(0), lane_corner(1), lane_corner(2)};
+  const Vectors row[3] = {row_corner(0), row_corner(1), row_corner(2)};
   const auto normalised = [](const Vectors& v) ORCHARD_INLINE_LAMBDA -> Vectors {
     const Floats size = Kind::root(E::dot(v, v)) + E::all(kLeastDistance);
     return {v.x / size, v.y / size, v.z / size};
@@ -244,7 +261,7 @@ ORCHARD_INLINE void find_triangle_gaps(const TriangleBlock& lanes, const Triangl
   std::array<float, kBlockWidth> nx, ny, nz, x[3], y[3], z[3];
   store(row_normal.x, nx), store(row_normal.y, ny), store(row_normal.z, nz);
   for (std::size_t k = 0; k < 3; ++k) store(row[k].x, x[k]), store(row[k].y, y[k]), store(row[k].z, z[k]);
-  const Floats third = E::all(1.0f / 3), margin = E::all(2 * placement.margin);
+  const Floats third = E::all(1.0f / 3), margin = E::all(2 * placement.margin * placement.unit);
   for (std::uint32_t r = 0; r < kBlockWidth; ++r) {
     if (rows.triangle[r] == kNoTriangle) break;
     const Vectors p[3] = {{E::all(x[0][r]), E::all(y[0][r]), E::all(z[0][r])},
@@ -259,7 +276,7 @@ ORCHARD_INLINE void find_triangle_gaps(const TriangleBlock& lanes, const Triangl
     const Vectors of_row = {E::all(nx[r]), E::all(ny[r]), E::all(nz[r])};
     const Floats gap = E::larger(E::larger(gap_along(of_row, p), gap_along(lane_normal, p)),
                                  E::larger(gap_along(line, p), gap_along(given, p)));
-    store(gap - margin, result.lower[r]);
+    store((gap - margin) * whole, result.lower[r]);
   }
 }
 
@@ -308,19 +325,18 @@ using Widest = VectorFloats;
 using Widest = PlainFloats;
 #endif
 
-ORCHARD_PER_MACHINE void patch_gaps(const Patch& single, const PatchBlock& lanes, const Placement* placement,
-                                    float margin, PatchGaps& result) noexcept {
-  find_gaps<Widest>(single, lanes, placement, margin, result);
+void patch_gaps(const Patch& single, const PatchBlock& lanes, const Placement* placement, float margin,
+                PatchGaps& result) noexcept {
+  PerMachine<find_gaps<Widest>>::call(single, lanes, placement, margin, result);
 }
 
-ORCHARD_PER_MACHINE void triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows,
-                                       const Placement& placement, const std::array<float, 3>& direction,
-                                       TriangleGaps& result) noexcept {
-  find_triangle_gaps<Widest>(lanes, rows, placement, direction, result);
+void triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows, const Placement& placement,
+                   const std::array<float, 3>& direction, TriangleGaps& result) noexcept {
+  PerMachine<find_triangle_gaps<Widest>>::call(lanes, rows, placement, direction, result);
 }
 
-ORCHARD_PER_MACHINE std::uint64_t triangle_candidates(const LeafPair& pair, const Placement& placement) noexcept {
-  return find_candidates<Widest>(pair, placement);
+std::uint64_t triangle_candidates(const LeafPair& pair, const Placement& placement) noexcept {
+  return PerMachine<find_candidates<Widest>>::call(pair, placement);
 }
 
 }  // namespace orchard::runtime::detail

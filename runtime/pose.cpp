@@ -3,21 +3,62 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rigid_pair.h"
+
 namespace orchard::runtime {
 
-bool is_rigid(const Pose& pose) noexcept {
-  const auto& r = pose.rotation;
-  if (!(pose.scale > 0 && std::isfinite(pose.scale))) return false;
+namespace {
+
+constexpr int kMostRepairs = 8;  // each squares the defect, 1e-3 at first
+
+double defect_of(const std::array<double, 9>& rotation) noexcept {
+  return detail::rotation_defect<double>([&rotation](std::size_t i) { return rotation[i]; });
+}
+
+// One step of Newton and Schulz towards the nearest orthogonal matrix: X (3 I - X^T X) / 2.
+std::array<double, 9> nearer_rotation(const std::array<double, 9>& x) noexcept {
+  std::array<double, 9> factor{}, result{};
   for (std::size_t i = 0; i < 3; ++i) {
-    if (!std::isfinite(pose.translation[i])) return false;
     for (std::size_t j = 0; j < 3; ++j) {
-      const double product = r[i] * r[j] + r[3 + i] * r[3 + j] + r[6 + i] * r[6 + j];
-      if (!(std::fabs(product - (i == j ? 1.0 : 0.0)) <= kRigidTolerance)) return false;
+      const double product = x[i] * x[j] + x[3 + i] * x[3 + j] + x[6 + i] * x[6 + j];
+      factor[3 * i + j] = ((i == j ? 3.0 : 0.0) - product) / 2;
     }
   }
-  const double determinant =
-      r[0] * (r[4] * r[8] - r[5] * r[7]) - r[1] * (r[3] * r[8] - r[5] * r[6]) + r[2] * (r[3] * r[7] - r[4] * r[6]);
-  return determinant > 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      for (std::size_t k = 0; k < 3; ++k) result[3 * i + j] += x[3 * i + k] * factor[3 * k + j];
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+bool is_rigid(const Pose& pose) noexcept {
+  for (const double t : pose.translation) {
+    if (!std::isfinite(t)) return false;
+  }
+  return detail::rotates(pose);
+}
+
+std::optional<Pose> made_rigid(const Pose& pose) noexcept {
+  Pose result = pose;
+  if (!(defect_of(pose.rotation) <= kRepairTolerance * kRepairTolerance)) return std::nullopt;
+  constexpr double enough = 1e-15;
+  for (int i = 0; i < kMostRepairs && defect_of(result.rotation) > enough * enough; ++i) {
+    result.rotation = nearer_rotation(result.rotation);
+  }
+  if (!is_rigid(result)) return std::nullopt;
+  return result;
+}
+
+std::optional<Pose> pose_from_matrix(const std::array<float, 9>& rotation, const std::array<float, 3>& translation,
+                                     float scale) noexcept {
+  Pose pose;
+  std::copy(rotation.begin(), rotation.end(), pose.rotation.begin());
+  std::copy(translation.begin(), translation.end(), pose.translation.begin());
+  pose.scale = double{scale};
+  return made_rigid(pose);
 }
 
 std::optional<Pose> pose_from_quaternion(const std::array<double, 4>& wxyz,

@@ -17,6 +17,8 @@ namespace {
 
 // Patches are left out only beyond this much more than need be, for the rounding of a few operations.
 constexpr double kRounding = 1e-12;
+// Below this a coordinate is no more than rounding, and without it no product of three underflows: exact_sign.h.
+constexpr double kLeastCoordinate = 0x1p-305;
 constexpr int kRays = 16;  // directions tried before contains() adds up angles
 
 Vec3 minus(const Vec3& a, const Vec3& b) noexcept { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
@@ -93,9 +95,18 @@ bool each_triangle(const TriangleBlock& block, Visit&& visit) noexcept {
   return true;
 }
 
+Vec3 settled(Vec3 v) noexcept {
+  for (double& x : v) x = std::fabs(x) < kLeastCoordinate ? 0 : x;
+  return v;
+}
+
+bool within_reach(const Vec3& v) noexcept {  // false for what is not a number
+  return std::fabs(v[0]) <= kFarthest && std::fabs(v[1]) <= kFarthest && std::fabs(v[2]) <= kFarthest;
+}
+
 struct Frame {  // the body's, with its coordinates relative to the tree's origin
   explicit Frame(const TreeView& view, const Pose& body) noexcept : tree(view), pose(body), back(inverse(body)) {}
-  Vec3 enter(const Vec3& world) const noexcept { return minus(transform(back, world), tree.origin); }
+  Vec3 enter(const Vec3& world) const noexcept { return settled(minus(transform(back, world), tree.origin)); }
   Vec3 leave(const Vec3& local) const noexcept { return transform(pose, plus(local, tree.origin, 1)); }
   double rounding(const Segment& s) const noexcept {
     return kRounding * (detail::length(s.p) + detail::length(s.d) + tree.bounding_radius);
@@ -103,6 +114,31 @@ struct Frame {  // the body's, with its coordinates relative to the tree's origi
   const TreeView& tree;
   const Pose& pose;
   Pose back;
+};
+
+// A ray in the body's frame, by steps of about one unit: directions of every length are as good as unit vectors.
+struct Course {
+  Course(const Frame& frame, const Vec3& direction) noexcept : scale(frame.pose.scale) {
+    const double largest = std::max({std::fabs(direction[0]), std::fabs(direction[1]), std::fabs(direction[2])});
+    power = largest > 0 && std::isfinite(largest) ? std::ilogb(largest) : 0;
+    Vec3 way{};
+    for (std::size_t i = 0; i < 3; ++i) way[i] = std::ldexp(direction[i], -power);
+    step = rotate(frame.back, way);
+    speed = detail::length(step);
+  }
+  // A factor of the direction in steps, and back.
+  double steps(double along) const noexcept {
+    if (!std::isfinite(along)) return along;
+    int p = 0, q = 0;
+    const double ratio = std::frexp(along, &p) / std::frexp(scale, &q);
+    return std::ldexp(ratio, p - q + power);
+  }
+  double along(double steps) const noexcept { return std::ldexp(steps * scale, -power); }
+  double steps_to(const Vec3& place) const noexcept { return speed > 0 ? dot(place, step) / (speed * speed) : 0; }
+
+  double scale, speed = 0;
+  int power = 0;
+  Vec3 step{};
 };
 
 // Unit vectors without a pattern, along no axis or diagonal: the multiples of three irrational numbers, modulo 1.
@@ -150,12 +186,19 @@ double reach_beyond(const TreeView& tree, const Vec3& point) noexcept {  // from
 
 }  // namespace
 
+bool can_ask(const TreeView& tree, const Pose& pose, const std::array<double, 3>& place) noexcept {
+  return is_rigid(pose) && within_reach(Frame(tree, pose).enter(place));
+}
+
 SurfacePoint nearest_point_to_segment(const TreeView& tree, const Pose& pose, const std::array<double, 3>& p,
                                       const std::array<double, 3>& q, double limit) noexcept {
   SurfacePoint best;
   if (tree.patches.empty()) return best;
+  const SurfacePoint unknown{0, {}, kNoTriangle};
+  if (!is_rigid(pose) || std::isnan(limit)) return unknown;
   const Frame frame(tree, pose);
   const Vec3 from = frame.enter(p), to = frame.enter(q);
+  if (!within_reach(from) || !within_reach(to)) return unknown;
   const Segment segment(from, to);
   const TrianglePoints shape = {from, to, to};
   double least = limit / pose.scale;
@@ -184,22 +227,26 @@ SurfacePoint nearest_point(const TreeView& tree, const Pose& pose, const std::ar
 std::optional<RayHit> cast_ray(const TreeView& tree, const Pose& pose, const std::array<double, 3>& origin,
                                const std::array<double, 3>& direction, double longest) noexcept {
   if (tree.patches.empty()) return std::nullopt;
+  const RayHit unknown{0, origin, kNoTriangle};
+  if (!is_rigid(pose) || std::isnan(longest)) return unknown;
   const Frame frame(tree, pose);
   const Vec3 from = frame.enter(origin);
-  Vec3 way = rotate(frame.back, direction);
-  for (double& component : way) component *= frame.back.scale;
-  const double speed = detail::length(way);
-  const double end = speed > 0 ? std::min(longest, reach_beyond(tree, from) / speed) : 0;
+  const Course course(frame, direction);
+  if (!within_reach(from) || !std::isfinite(course.speed)) return unknown;
+  if (longest < 0) return std::nullopt;
+  const double end = course.speed > 0 ? std::min(course.steps(longest), reach_beyond(tree, from) / course.speed) : 0;
+  const Vec3 to = settled(plus(from, course.step, end));
   std::optional<RayHit> best;
-  const Segment whole(from, plus(from, way, end));
-  const TrianglePoints shape = {from, plus(from, way, end), plus(from, way, end)};
+  const Segment whole(from, to);
+  const TrianglePoints shape = {from, to, to};
   walk(
       tree, whole, frame.rounding(whole), [] { return 0.0; },
       [&](const TriangleBlock& block) {
         return each_triangle(block, [&](const TrianglePoints& t, std::uint32_t triangle) {
           Vec3 common{};
           if (!detail::triangles_intersect(shape, t, &common)) return true;
-          const double along = speed > 0 ? std::clamp(dot(minus(common, from), way) / (speed * speed), 0.0, end) : 0;
+          const double steps = std::clamp(course.steps_to(minus(common, from)), 0.0, end);
+          const double along = std::min(course.along(steps), longest);
           if (!best || along < best->along) best = RayHit{along, frame.leave(common), triangle};
           return true;
         });
@@ -209,10 +256,12 @@ std::optional<RayHit> cast_ray(const TreeView& tree, const Pose& pose, const std
 
 bool contains(const TreeView& solid, const Pose& pose, const std::array<double, 3>& point) noexcept {
   if (solid.patches.empty()) return false;
+  if (!is_rigid(pose)) return true;
   const Frame frame(solid, pose);
   const Vec3 p = frame.enter(point);
+  if (!within_reach(p)) return true;
   for (int ray = 0; ray < kRays; ++ray) {
-    const Vec3 q = plus(p, ray_direction(ray), reach_beyond(solid, p));
+    const Vec3 q = settled(plus(p, ray_direction(ray), reach_beyond(solid, p)));
     const Segment segment(p, q);
     int winding = 0;
     bool clear = true;
@@ -233,6 +282,7 @@ bool contains(const TreeView& solid, const Pose& pose, const std::array<double, 
 
 bool contains_solid(const TreeView& solid, const Pose& pose, const TreeView& inner, const Pose& inner_pose) noexcept {
   if (inner.triangles.empty()) return false;
+  if (!is_rigid(inner_pose)) return true;
   const auto& corner = inner.vertices[inner.triangles[0][0]];
   std::array<double, 3> point{};
   for (std::size_t i = 0; i < 3; ++i) point[i] = double{corner[i]} + inner.origin[i];

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <limits>
 
+#include "machine.h"
 #include "vector_support.h"
 
 namespace orchard::runtime::detail {
@@ -164,14 +165,13 @@ void test_block_scalar(const BlockPair& pair, const Placement& placement, LevelS
 }
 
 #ifdef ORCHARD_VECTORS
-ORCHARD_PER_MACHINE void test_block(const BlockPair& pair, const Placement& placement, LevelState& level,
-                                    BlockHits& hits) noexcept {
-  test<VectorKind>(pair, placement, level, hits);
-}
+using Widest = VectorKind;
 #else
-void test_block(const BlockPair& pair, const Placement& placement, LevelState& level, BlockHits& hits) noexcept {
-  test<PlainKind>(pair, placement, level, hits);
-}
+using Widest = PlainKind;
 #endif
+
+void test_block(const BlockPair& pair, const Placement& placement, LevelState& level, BlockHits& hits) noexcept {
+  PerMachine<test<Widest>>::call(pair, placement, level, hits);
+}
 
 }  // namespace orchard::runtime::detail

@@ -34,9 +34,11 @@ enum Field : std::size_t {
   kBoundingRadiusAt = 72,
   kVertexErrorAt = 80,
   kPatchDepthAt = 88,
+  kReservedAt = 92,
   kTableAt = 96,
   kTableStride = 24,
 };
+constexpr std::size_t kTableEnd = kTableAt + kSections * kTableStride;
 
 constexpr std::uint64_t aligned(std::uint64_t size) noexcept { return (size + kAlignment - 1) & ~(kAlignment - 1); }
 
@@ -107,6 +109,7 @@ void get_header(const std::byte* file, Tree& tree) noexcept {
 }
 
 LoadStatus check_preamble(const std::byte* file, std::size_t size) noexcept {
+  if (size == 0) return LoadStatus::truncated;  // and `file` may be null
   if (std::memcmp(file, kMagic.data(), std::min(size, kMagic.size())) != 0) return LoadStatus::bad_magic;
   if (size < kPreambleSize) return LoadStatus::truncated;
   const auto version = get<std::uint32_t>(file, kVersionAt);
@@ -126,8 +129,13 @@ LoadStatus check_file(std::span<const std::byte> file) noexcept {
   return LoadStatus::ok;
 }
 
-// The sections must follow one another in order without gaps and end with the file: one form for one tree, and a sum
-// of sizes that no crafted table can push beyond the file.
+bool all_zero(std::span<const std::byte> file, std::uint64_t begin, std::uint64_t end) noexcept {
+  const auto bytes = file.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin));
+  return std::all_of(bytes.begin(), bytes.end(), [](std::byte b) { return b == std::byte{0}; });
+}
+
+// The sections must follow one another in order without gaps and end with the file, and what belongs to none is zero:
+// one form for one tree, and a sum of sizes that no crafted table can push beyond the file.
 LoadStatus check_table(std::span<const std::byte> file, std::array<std::uint64_t, kSections>& counts) noexcept {
   std::uint64_t end = kHeaderSize;
   for (std::size_t i = 0; i < kSections; ++i) {
@@ -139,8 +147,12 @@ LoadStatus check_table(std::span<const std::byte> file, std::array<std::uint64_t
     }
     counts[i] = get<std::uint64_t>(file.data(), at + 16);
     if (counts[i] > (file.size() - end) / size) return LoadStatus::invalid_structure;
-    end = aligned(end + counts[i] * size);
-    if (end > file.size()) return LoadStatus::invalid_structure;
+    const std::uint64_t used = end + counts[i] * size;
+    end = aligned(used);
+    if (end > file.size() || !all_zero(file, used, end)) return LoadStatus::invalid_structure;
+  }
+  if (!all_zero(file, kReservedAt, kTableAt) || !all_zero(file, kTableEnd, kHeaderSize)) {
+    return LoadStatus::invalid_structure;
   }
   return end == file.size() ? LoadStatus::ok : LoadStatus::invalid_structure;
 }

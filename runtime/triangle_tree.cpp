@@ -14,6 +14,13 @@ namespace {
 
 using detail::axes_of, detail::cross, detail::dot, detail::minus, detail::Vec3;
 
+// To a float and back, through memory: where GCC 12 makes vectors of several such lines (-O2 and above) it leaves both
+// conversions out, and a patch would be measured from another centre than the one that is stored.
+double rounded(double value) {
+  const volatile float stored = static_cast<float>(value);
+  return double{stored};
+}
+
 // A unit vector rounded to float, or the x axis for one that has no direction.
 Vec3 direction(const Vec3& v) {
   const double largest = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
@@ -21,7 +28,7 @@ Vec3 direction(const Vec3& v) {
   const Vec3 w = {v[0] / largest, v[1] / largest, v[2] / largest};
   const double length = std::sqrt(dot(w, w));
   Vec3 result{};
-  for (std::size_t i = 0; i < 3; ++i) result[i] = double{static_cast<float>(w[i] / length)};
+  for (std::size_t i = 0; i < 3; ++i) result[i] = rounded(w[i] / length);
   return result;
 }
 
@@ -259,7 +266,7 @@ class Builder {
     });
     Patch patch{middle, normal, 0, 0};
     for (std::size_t i = 0; i < 3; ++i) {
-      patch.center[i] = double{static_cast<float>(middle[i] + (low + high) / 2 * normal[i])};
+      patch.center[i] = rounded(middle[i] + (low + high) / 2 * normal[i]);
     }
     each_corner(part, [&](const Vec3& p) {
       const Vec3 d = minus(p, patch.center);

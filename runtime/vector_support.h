@@ -7,8 +7,7 @@
 #include <type_traits>
 
 // With GCC and Clang several numbers are one value (vector_size), which the compiler maps to what the target has: SSE,
-// AVX, NEON. On Linux with x86-64 GCC compiles a function marked ORCHARD_PER_MACHINE for AVX2 and AVX-512 as well, and
-// the loader picks one. All do the same operations in the same order and none fuses them, so all give the same bits.
+// AVX, NEON. For x86-64 the inner loops are compiled for AVX2 and AVX-512 as well: machine.h.
 // ORCHARD_NO_VECTORS: one number at a time, as other compilers do it.
 #if defined(__GNUC__) && !defined(ORCHARD_NO_VECTORS)
 #define ORCHARD_VECTORS 1
@@ -18,15 +17,6 @@
 #else
 #define ORCHARD_INLINE inline
 #define ORCHARD_INLINE_LAMBDA
-#endif
-
-// Not where the whole build is for such a machine anyway, nor with the sanitizer, which is not ready when the loader
-// picks.
-#if defined(ORCHARD_VECTORS) && !defined(__clang__) && defined(__x86_64__) && defined(__gnu_linux__) && \
-    !defined(__AVX2__) && !defined(__SANITIZE_ADDRESS__)
-#define ORCHARD_PER_MACHINE __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define ORCHARD_PER_MACHINE
 #endif
 
 namespace orchard::runtime::detail {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "../machine.h"
 #include "../vector_support.h"
 
 namespace orchard::runtime::detail {
@@ -140,9 +141,9 @@ void Lattice::boxes_plain(std::span<const Motion> motions, std::span<const doubl
 }
 
 #ifdef ORCHARD_VECTORS
-ORCHARD_PER_MACHINE void Lattice::boxes_vectors(std::span<const Motion> motions, std::span<const double> durations,
-                                                BoxBlock& boxes) const noexcept {
-  make_all<VectorDoubles>(motions, durations, boxes);
+void Lattice::boxes_vectors(std::span<const Motion> motions, std::span<const double> durations,
+                            BoxBlock& boxes) const noexcept {
+  detail::per_machine([&]() ORCHARD_INLINE_LAMBDA { make_all<VectorDoubles>(motions, durations, boxes); });
 }
 #else
 void Lattice::boxes_vectors(std::span<const Motion> motions, std::span<const double> durations,

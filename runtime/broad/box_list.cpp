@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstring>
 
+#include "../machine.h"
 #include "../vector_support.h"
 
 namespace orchard::runtime::detail {
@@ -131,9 +132,8 @@ void BoxList::insert_plain(std::span<const BodyId> bodies, const BoxBlock& block
 }
 
 #ifdef ORCHARD_VECTORS
-ORCHARD_PER_MACHINE void BoxList::insert_vectors(std::span<const BodyId> bodies, const BoxBlock& block,
-                                                 std::vector<BodyPair>& pairs) {
-  insert_all<VectorLanes>(bodies, block, pairs);
+void BoxList::insert_vectors(std::span<const BodyId> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs) {
+  detail::per_machine([&]() ORCHARD_INLINE_LAMBDA { insert_all<VectorLanes>(bodies, block, pairs); });
 }
 #else
 void BoxList::insert_vectors(std::span<const BodyId> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs) {

@@ -2,6 +2,7 @@
 
 #include <bit>
 
+#include "../machine.h"
 #include "../vector_support.h"
 
 namespace orchard::runtime::detail {
@@ -227,7 +228,9 @@ ORCHARD_INLINE void SweptGrid::advance(const Insertion& insertion) {
 void SweptGrid::advance_plain(const Insertion& insertion) { advance<PlainCompare>(insertion); }
 
 #ifdef ORCHARD_VECTORS
-ORCHARD_PER_MACHINE void SweptGrid::advance_vectors(const Insertion& insertion) { advance<VectorCompare>(insertion); }
+void SweptGrid::advance_vectors(const Insertion& insertion) {
+  detail::per_machine([&]() ORCHARD_INLINE_LAMBDA { advance<VectorCompare>(insertion); });
+}
 #else
 void SweptGrid::advance_vectors(const Insertion& insertion) { advance<PlainCompare>(insertion); }
 #endif

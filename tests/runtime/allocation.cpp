@@ -4,8 +4,8 @@
 #include <new>
 
 namespace orchard::runtime::test {
-std::size_t allocations = 0;
-bool allocation_fails = false;
+std::atomic<std::size_t> allocations = 0;
+std::atomic<bool> allocation_fails = false;
 }  // namespace orchard::runtime::test
 
 namespace {

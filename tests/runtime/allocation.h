@@ -1,10 +1,11 @@
 #pragma once
+#include <atomic>
 #include <cstddef>
 
 // The test program's global allocation functions count their calls and fail on request.
 namespace orchard::runtime::test {
 
-extern std::size_t allocations;
-extern bool allocation_fails;
+extern std::atomic<std::size_t> allocations;  // tests have threads
+extern std::atomic<bool> allocation_fails;
 
 }  // namespace orchard::runtime::test

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "machine.h"
 #include "patch_block.h"
 #include "sphere_block.h"
 #include "support.h"
@@ -16,6 +17,17 @@ namespace orchard::runtime::detail {
 namespace {
 
 using test::Draw;
+
+// Runs `check` with the inner loops of every machine that this one can be.
+template <typename Check>
+void on_every_machine(const Check& check) {
+  for (Machine m = Machine::base; m <= best_machine(); m = static_cast<Machine>(static_cast<int>(m) + 1)) {
+    SCOPED_TRACE(static_cast<int>(m));
+    use_machine(m);
+    check();
+  }
+  use_machine(best_machine());
+}
 
 SiblingBlock random_block(Draw& draw, std::uint32_t used) {
   SiblingBlock block;
@@ -69,18 +81,23 @@ TEST(SphereBlock, GivesTheSameBitsWithAndWithoutVectors) {
     Case c;
     make(draw, c);
     LevelState plain_level = c.level;
-    BlockHits hits, plain_hits;
-    test_block(c.pair, c.placement, c.level, hits);
+    BlockHits plain_hits;
     test_block_scalar(c.pair, c.placement, plain_level, plain_hits);
-    ASSERT_EQ(hits.meeting, plain_hits.meeting) << seed;
-    ASSERT_EQ(hits.leaves, plain_hits.leaves) << seed;
-    ASSERT_EQ(hits.improving, plain_hits.improving) << seed;
-    for (std::uint32_t r = c.pair.row_begin; r < c.pair.row_end; ++r) {
-      ASSERT_EQ(std::memcmp(&hits.square[r], &plain_hits.square[r], sizeof hits.square[r]), 0) << seed;
-    }
-    ASSERT_EQ(c.level.least_excess, plain_level.least_excess) << seed;
-    ASSERT_EQ(c.level.row_radius, plain_level.row_radius) << seed;
-    ASSERT_EQ(c.level.lane_radius, plain_level.lane_radius) << seed;
+    on_every_machine([&] {
+      LevelState level = c.level;
+      BlockHits hits;
+      test_block(c.pair, c.placement, level, hits);
+      ASSERT_EQ(hits.meeting, plain_hits.meeting) << seed;
+      ASSERT_EQ(hits.leaves, plain_hits.leaves) << seed;
+      ASSERT_EQ(hits.improving, plain_hits.improving) << seed;
+      for (std::uint32_t r = c.pair.row_begin; r < c.pair.row_end; ++r) {
+        ASSERT_EQ(std::memcmp(&hits.square[r], &plain_hits.square[r], sizeof hits.square[r]), 0) << seed;
+      }
+      ASSERT_EQ(level.least_excess, plain_level.least_excess) << seed;
+      ASSERT_EQ(level.row_radius, plain_level.row_radius) << seed;
+      ASSERT_EQ(level.lane_radius, plain_level.lane_radius) << seed;
+    });
+    if (HasFatalFailure()) return;
   }
 }
 
@@ -213,15 +230,18 @@ TEST(PatchBlock, GivesTheSameBitsWithAndWithoutVectorsAndNeverAGapAboveTheDistan
     const Placement placement = placement_of(pose, 10);
     const Patch single = patch_at(a.patches[0], 0);
     PatchGaps gaps, plain, still, plain_still;
-    patch_gaps(single, b.patches[1], &placement, placement.margin, gaps);
     patch_gaps_scalar(single, b.patches[1], &placement, placement.margin, plain);
-    patch_gaps(single, b.patches[1], nullptr, placement.margin, still);
     patch_gaps_scalar(single, b.patches[1], nullptr, placement.margin, plain_still);
-    constexpr std::size_t lanes = offsetof(PatchGaps, used);
-    ASSERT_EQ(std::memcmp(&gaps, &plain, lanes), 0) << seed;
-    ASSERT_EQ(std::memcmp(&still, &plain_still, lanes), 0) << seed;
-    ASSERT_EQ(std::pair(gaps.used, gaps.meeting), std::pair(plain.used, plain.meeting));
-    ASSERT_EQ(std::pair(still.used, still.meeting), std::pair(plain_still.used, plain_still.meeting));
+    on_every_machine([&] {
+      patch_gaps(single, b.patches[1], &placement, placement.margin, gaps);
+      patch_gaps(single, b.patches[1], nullptr, placement.margin, still);
+      constexpr std::size_t lanes = offsetof(PatchGaps, used);
+      ASSERT_EQ(std::memcmp(&gaps, &plain, lanes), 0) << seed;
+      ASSERT_EQ(std::memcmp(&still, &plain_still, lanes), 0) << seed;
+      ASSERT_EQ(std::pair(gaps.used, gaps.meeting), std::pair(plain.used, plain.meeting));
+      ASSERT_EQ(std::pair(still.used, still.meeting), std::pair(plain_still.used, plain_still.meeting));
+    });
+    if (HasFatalFailure()) return;
     const auto placed = test::placed_triangles(b, pose), others = test::placed_triangles(a, Pose{});
     for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
       ASSERT_EQ(gaps.used >> lane & 1, b.patches[1].radius[lane] >= 0 ? 1u : 0u);
@@ -269,8 +289,9 @@ TEST(TriangleBlock, KeepsEveryPairThatMeetsAndGivesTheSameWithoutVectors) {
     const Placement placement = placement_of(pose, 10);
     const TriangleBlock &lanes = a.triangle_blocks[0], &rows = b.triangle_blocks[0];
     const LeafPair pair{lanes, rows, patch_at(a.patches[0], 0), moved(patch_at(b.patches[0], 0), placement)};
-    const std::uint64_t found = triangle_candidates(pair, placement);
-    ASSERT_EQ(found, triangle_candidates_scalar(pair, placement)) << seed;
+    const std::uint64_t found = triangle_candidates_scalar(pair, placement);
+    on_every_machine([&] { ASSERT_EQ(triangle_candidates(pair, placement), found) << seed; });
+    if (HasFatalFailure()) return;
     for (std::uint32_t r = 0; r < kBlockWidth; ++r) {
       for (std::uint32_t l = 0; l < kBlockWidth; ++l) {
         const bool candidate = found >> (8 * r + l) & 1;

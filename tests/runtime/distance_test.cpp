@@ -7,6 +7,7 @@
 
 #include "allocation.h"
 #include "bodies.h"
+#include "machine.h"
 #include "patch_block.h"
 #include "triangle_distance.h"
 
@@ -134,9 +135,13 @@ TEST(TriangleGaps, NeverExceedTheDistanceAndAreTheSameWithoutVectors) {
     const std::array<float, 3> direction = {static_cast<float>(d[0]), static_cast<float>(d[1]),
                                             static_cast<float>(d[2])};
     detail::TriangleGaps gaps{}, plain{};
-    detail::triangle_gaps(a.triangle_blocks[0], b.triangle_blocks[0], placement, direction, gaps);
     detail::triangle_gaps_scalar(a.triangle_blocks[0], b.triangle_blocks[0], placement, direction, plain);
-    ASSERT_EQ(gaps.lower, plain.lower) << seed;
+    for (const detail::Machine m : {detail::Machine::base, detail::Machine::avx2, detail::Machine::avx512}) {
+      if (m > detail::best_machine()) break;
+      detail::use_machine(m);
+      detail::triangle_gaps(a.triangle_blocks[0], b.triangle_blocks[0], placement, direction, gaps);
+      ASSERT_EQ(gaps.lower, plain.lower) << seed;
+    }
     const auto pa = placed_triangles(a, {}), pb = placed_triangles(b, pose);
     for (std::size_t r = 0; r < 7; ++r) {
       for (std::size_t l = 0; l < 6; ++l) {

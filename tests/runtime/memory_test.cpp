@@ -1,7 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "allocation.h"
-#include "orchard/runtime/narrow_phase.h"
+#include "orchard/runtime/collide.h"
+#include "orchard/runtime/distance.h"
 #include "orchard/runtime/tree_file.h"
 #include "support.h"
 
@@ -52,6 +53,25 @@ TEST(Memory, WhenThereIsNoneQueriesStayValid) {
   EXPECT_TRUE(query.finished());
   EXPECT_TRUE(query.out_of_room());
   EXPECT_EQ(query.answer(), Answer::maybe);
+}
+
+// Two roots that are leaves, room for their pair, but none for the last level's stack.
+TEST(Memory, WithoutAStackForTheTrianglesTwoLeavesStayUndecided) {
+  const auto tree = build_tree(box({0, 0, 0}, {1, 1, 1}), {.leaf_triangles = 12});
+  allocation_fails = true;
+  NarrowPhase query(tree, tree);
+  DistanceQuery distance(tree, tree);
+  allocation_fails = false;
+  ASSERT_TRUE(query.reserve(64));
+  for (const bool exactly : {false, true}) {
+    query.start({}, Pose{.translation = {0.5, 0.5, 0.5}});
+    EXPECT_EQ(exactly ? query.refine_exactly() : query.refine(), Answer::maybe);
+    EXPECT_TRUE(query.finished());
+    EXPECT_EQ(query.start({}, Pose{.translation = {5, 0, 0}}), Answer::no);
+  }
+  EXPECT_EQ(collide(query, {}, Pose{.translation = {1, 0, 0}}, {.pair_tests = 10}).answer, Answer::maybe);
+  distance.start({}, {});
+  EXPECT_TRUE(distance.finished());
 }
 
 TEST(Memory, WhenItRunsOutIsReportedByLoading) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "support.h"
+#include "improper_poses.h"
 
 namespace orchard::runtime {
 namespace {
@@ -61,6 +61,78 @@ TEST(Pose, ComposesAndInverts) {
   }
   EXPECT_EQ(inverse(Pose{}), Pose{});
   EXPECT_FALSE(std::signbit(inverse(Pose{}).translation[0]));
+}
+
+TEST(Pose, IsRigidForNothingElseThatAProgramMayHandOver) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Draw draw(seed);
+    const Pose proper = draw.pose(3);
+    ASSERT_TRUE(is_rigid(proper));
+    for (const auto& [name, pose] : improper_poses(proper)) {
+      ASSERT_FALSE(is_rigid(pose)) << name << " " << seed;
+    }
+  }
+}
+
+// The nearest rotation Q to a matrix X is the one for which Q^T X is symmetric and positive (Higham 1986).
+void expect_nearest(const Pose& found, const Pose& matrix) {
+  const auto &q = found.rotation, &x = matrix.rotation;
+  const auto entry = [&](std::size_t i, std::size_t j) {
+    return q[i] * x[j] + q[3 + i] * x[3 + j] + q[6 + i] * x[6 + j];
+  };
+  for (std::size_t i = 0; i < 3; ++i) {
+    ASSERT_GT(entry(i, i), 0.9);
+    for (std::size_t j = 0; j < 3; ++j) ASSERT_NEAR(entry(i, j), entry(j, i), 4e-15);
+  }
+  ASSERT_TRUE(is_rigid(found));
+  ASSERT_EQ(found.translation, matrix.translation);
+  ASSERT_EQ(found.scale, matrix.scale);
+}
+
+TEST(Pose, OfFloatsIsMadeRigidByTheNearestRotation) {
+  int not_rigid = 0;
+  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+    SCOPED_TRACE(seed);
+    Draw draw(seed);
+    const Pose truth = draw.pose(3), given = rounded_to_float(truth);
+    not_rigid += !is_rigid(given);
+    std::array<float, 9> rotation{};
+    std::array<float, 3> translation{};
+    for (std::size_t i = 0; i < 9; ++i) rotation[i] = static_cast<float>(truth.rotation[i]);
+    for (std::size_t i = 0; i < 3; ++i) translation[i] = static_cast<float>(truth.translation[i]);
+    const auto pose = pose_from_matrix(rotation, translation, 2.5f), again = made_rigid(given);
+    ASSERT_TRUE(pose && again);
+    ASSERT_EQ(pose->rotation, again->rotation);
+    Pose scaled = given;
+    scaled.scale = 2.5;
+    expect_nearest(*pose, scaled);
+    for (std::size_t i = 0; i < 9; ++i) ASSERT_NEAR(pose->rotation[i], truth.rotation[i], 1.2e-7);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(not_rigid, 990);
+}
+
+TEST(Pose, IsMadeRigidUpToAThousandthAndNoFarther) {
+  int made = 0, refused = 0;
+  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+    Draw draw(seed);
+    Pose pose = draw.pose(3);
+    const double size = std::pow(10, draw.uniform(-14, 0));
+    for (double& x : pose.rotation) x += draw.uniform(-size, size);
+    const auto found = made_rigid(pose);
+    (found ? made : refused) += 1;
+    ASSERT_TRUE(found || size > 2e-4) << seed;
+    ASSERT_TRUE(!found || size < 1e-2) << seed;
+    if (found) expect_nearest(*found, pose);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(made, 600);
+  EXPECT_GT(refused, 100);
+  const Pose proper = Draw(1).pose(3);
+  for (const auto& [name, pose] : improper_poses(proper)) {
+    const bool only_rounded = name == "floats" || name == "a little shear" || name == "a scaled matrix";
+    ASSERT_EQ(made_rigid(pose).has_value(), only_rounded) << name;
+  }
 }
 
 TEST(Pose, IsRigidOnlyForProperRotations) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdio>
 #include <cstring>
@@ -77,6 +78,10 @@ LoadStatus load_or_keep(std::span<const std::byte> file) {
   EXPECT_EQ(status, view_status);
   EXPECT_EQ(structure_fault(out), nullptr);
   EXPECT_TRUE(status == LoadStatus::ok || same(before, out));
+  if (status == LoadStatus::ok) {  // one tree, one form
+    EXPECT_TRUE(std::ranges::equal(serialize(out), file));
+    EXPECT_TRUE(std::ranges::equal(serialize(seen), file));
+  }
   return status;
 }
 
@@ -240,6 +245,9 @@ TEST(TreeFile, RefusesSealedFilesWhoseTreesAreNotSafeToWalk) {
       {"depth not a number", [=](auto& t) { t.blocks[1].depth[0] = nan; }},
       {"empty lane not marked", [=](auto& t) { t.blocks[1].radius[7] = nan; }},
       {"origin not a number", [](auto& t) { t.origin[2] = std::numeric_limits<double>::quiet_NaN(); }},
+      {"origin out of range", [](auto& t) { t.origin[1] = -1.001e18; }},
+      {"bounding radius out of range", [](auto& t) { t.bounding_radius = 5e18; }},
+      {"vertex error out of range", [](auto& t) { t.vertex_error = 5e18; }},
       {"bounding radius infinite", [](auto& t) { t.bounding_radius = std::numeric_limits<double>::infinity(); }},
       {"vertex error below zero", [](auto& t) { t.vertex_error = -1; }},
       {"vertex not a number", [=](auto& t) { t.vertices[1][2] = nan; }},
@@ -295,6 +303,52 @@ TEST(TreeFile, AcceptsUnknownBoundsAndNothingElseAfterRandomDamage) {
     seal(damaged);
     load_or_keep(damaged);  // checks that whatever loads has no structure fault
   }
+}
+
+TEST(TreeFile, RefusesWhateverIsNotZeroWhereNothingBelongs) {
+  const auto file = serialize(sample_tree());
+  std::vector<bool> meant(file.size());
+  const auto mark = [&meant](std::size_t begin, std::size_t size) {
+    std::fill_n(meant.begin() + std::ptrdiff_t(begin), size, true);
+  };
+  mark(0, 92), mark(96, 7 * 24);
+  const std::size_t sizes[] = {224, 12, 12, 4, 288, 320, 4};
+  for (std::size_t i = 0; i < 7; ++i) {
+    const std::size_t at = kTableAt + 24 * i;
+    mark(get<std::uint64_t>(file, at + 8), get<std::uint64_t>(file, at + 16) * sizes[i]);
+  }
+  int reserved = 0;
+  for (std::size_t at = 0; at < file.size(); ++at) {
+    if (meant[at]) continue;
+    ++reserved;
+    for (const int value : {1, 0x80, 0xff}) {
+      auto altered = file;
+      altered[at] = std::byte(value);
+      seal(altered);
+      ASSERT_EQ(load_or_keep(altered), LoadStatus::invalid_structure) << at;
+    }
+  }
+  EXPECT_GT(reserved, 4 + 56);
+}
+
+TEST(TreeFile, IsTruncatedWhereThereIsNothingAtAll) {
+  PackedSphereTree tree;
+  TreeView seen;
+  EXPECT_EQ(load({}, tree), LoadStatus::truncated);
+  EXPECT_EQ(view({}, seen), LoadStatus::truncated);
+}
+
+// Every byte in turn, so that whatever loads is known to have been written so.
+TEST(TreeFile, GivesBackTheBytesOfEveryMutantThatLoads) {
+  const auto file = serialize(build_tree(box({0, 0, 0}, {1, 1, 1}), {.leaf_triangles = 100, .bounds = false}));
+  int loaded = 0;
+  for (std::size_t at = 32; at < file.size(); ++at) {
+    auto altered = file;
+    altered[at] ^= std::byte(at % 8 < 4 ? 1 : 0x80);
+    seal(altered);
+    loaded += load_or_keep(altered) == LoadStatus::ok;
+  }
+  EXPECT_GT(loaded, 300);
 }
 
 TEST(TreeFile, LoadsFromDiskAndNamesWhatFails) {

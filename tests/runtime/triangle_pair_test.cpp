@@ -5,56 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
-#include "support.h"
+#include "lattice.h"
 
 namespace orchard::runtime::detail {
 namespace {
 
 using test::Draw;
-
-__extension__ using Wide = __int128;
-using Lattice = std::array<std::int64_t, 3>;
-using WideVec = std::array<Wide, 3>;
-using LatticeTriangle = std::array<Lattice, 3>;
-
-WideVec minus(const Lattice& a, const Lattice& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-WideVec cross(const WideVec& a, const WideVec& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-bool separated(const WideVec& axis, const LatticeTriangle& a, const LatticeTriangle& b) {
-  const auto range = [&axis](const LatticeTriangle& t) {
-    std::array<Wide, 3> d{};
-    for (std::size_t i = 0; i < 3; ++i) d[i] = axis[0] * t[i][0] + axis[1] * t[i][1] + axis[2] * t[i][2];
-    return std::pair(*std::min_element(d.begin(), d.end()), *std::max_element(d.begin(), d.end()));
-  };
-  const auto [a_low, a_high] = range(a);
-  const auto [b_low, b_high] = range(b);
-  return a_high < b_low || b_high < a_low;
-}
-
-// Integer arithmetic throughout. The axes are the facet normals of the triangles' Minkowski difference, whatever its
-// dimension: cross products of edges, those again across an edge, and for flat cases the offset of two corners.
-bool oracle(const LatticeTriangle& a, const LatticeTriangle& b) {
-  std::vector<WideVec> edges = {minus(b[0], a[0])};
-  for (std::size_t i = 0; i < 3; ++i) {
-    edges.push_back(minus(a[(i + 1) % 3], a[i]));
-    edges.push_back(minus(b[(i + 1) % 3], b[i]));
-  }
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    if (separated(edges[i], a, b)) return false;
-    for (std::size_t j = i + 1; j < edges.size(); ++j) {
-      const WideVec normal = cross(edges[i], edges[j]);
-      if (separated(normal, a, b)) return false;
-      for (const WideVec& edge : edges) {
-        if (separated(cross(normal, edge), a, b)) return false;
-      }
-    }
-  }
-  return true;
-}
+using test::Lattice;
+using test::lattice_triangles_meet;
+using test::LatticeTriangle;
 
 TrianglePoints points(const LatticeTriangle& t, double unit) {
   TrianglePoints result{};
@@ -65,7 +25,7 @@ TrianglePoints points(const LatticeTriangle& t, double unit) {
 }
 
 void expect_matches(const LatticeTriangle& a, const LatticeTriangle& b, double unit) {
-  const bool expected = oracle(a, b);
+  const bool expected = lattice_triangles_meet(a, b);
   TrianglePoints pa = points(a, unit), pb = points(b, unit);
   for (int order = 0; order < 3; ++order) {
     Vec3 witness{};
@@ -140,7 +100,7 @@ TEST(TrianglePair, DecidesNamedCases) {
   };
   for (const Case& c : cases) {
     SCOPED_TRACE(c.name);
-    ASSERT_EQ(oracle(c.a, c.b), c.meet);
+    ASSERT_EQ(lattice_triangles_meet(c.a, c.b), c.meet);
     for (const double unit : {1.0, 0.1, 0x1p-60, 1e15}) expect_matches(c.a, c.b, unit);
   }
 }

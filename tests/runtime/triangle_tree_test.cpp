@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <vector>
+
 #include "orchard/runtime/packed_tree.h"
 #include "support.h"
 
@@ -31,6 +34,43 @@ TEST(TriangleTree, IsHalvedByNumberWhereCheapCutsWouldMakeItTooDeep) {
   EXPECT_GT(tree.patch_depth, 32u);  // or this is not the input that it is meant to be
   EXPECT_LE(tree.patch_depth, kPatchDepthLimit);
   EXPECT_EQ(structure_fault(tree), nullptr);
+}
+
+void add_triangles_below(const PackedSphereTree& tree, std::uint32_t child, std::vector<std::uint32_t>& triangles) {
+  if (child & kLeafBit) {
+    for (const std::uint32_t t : tree.triangle_blocks[child & ~kLeafBit].triangle) {
+      if (t != kNoTriangle) triangles.push_back(t);
+    }
+    return;
+  }
+  const PatchBlock& block = tree.patches[child];
+  for (std::size_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
+    add_triangles_below(tree, block.child[lane], triangles);
+  }
+}
+
+// Without any tolerance: rays and capsules allow patches no more than the rounding of doubles.
+TEST(TriangleTree, HoldsEveryTriangleInEveryPatchAboveItAsStored) {
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    const PackedSphereTree tree = build_tree(seed % 2 == 0 ? spikes(seed, 12, 9) : soup(seed, 80), {.bounds = false});
+    for (std::size_t b = 0; b < tree.patches.size(); ++b) {
+      const PatchBlock& p = tree.patches[b];
+      for (std::size_t lane = 0; lane < kBlockWidth && p.radius[lane] >= 0; ++lane) {
+        std::vector<std::uint32_t> triangles;
+        add_triangles_below(tree, p.child[lane], triangles);
+        for (const std::uint32_t t : triangles) {
+          for (const std::uint32_t v : tree.triangles[t]) {
+            using Real = long double;
+            const Real x = Real{tree.vertices[v][0]} - p.x[lane], y = Real{tree.vertices[v][1]} - p.y[lane],
+                       z = Real{tree.vertices[v][2]} - p.z[lane];
+            ASSERT_LE(std::sqrt(x * x + y * y + z * z), p.radius[lane]) << seed << " block " << b;
+            ASSERT_LE(std::fabs(p.nx[lane] * x + p.ny[lane] * y + p.nz[lane] * z), p.height[lane])
+                << seed << " block " << b;
+          }
+        }
+      }
+    }
+  }
 }
 
 }  // namespace

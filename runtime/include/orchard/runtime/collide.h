@@ -43,7 +43,8 @@ struct Part {
 };
 
 // Two bodies of several trees each: every part of one against every part of the other. The bodies touch iff two parts
-// do. Parts may move between queries: set_local().
+// do; one without parts touches nothing. Parts may move between queries: set_local(). Poses are of bodies and of parts;
+// what is composed of two that are rigid is made so again.
 class ArticulatedPair {
  public:
   // Throws std::bad_alloc only. `room`: of each pair of parts, see NarrowPhase.
@@ -58,14 +59,15 @@ class ArticulatedPair {
   // "No" if every pair of parts says so, "yes" if one does. Bounds: the least ones; the contact: that of the pair that
   // says yes, or that with the least separation bound, and the parts it is of.
   Verdict verdict() const noexcept;
-  std::size_t contact_part_a() const noexcept { return decisive() / locals_b_.size(); }
-  std::size_t contact_part_b() const noexcept { return decisive() % locals_b_.size(); }
+  // 0 where a body has no parts.
+  std::size_t contact_part_a() const noexcept { return pairs_.empty() ? 0 : decisive() / locals_b_.size(); }
+  std::size_t contact_part_b() const noexcept { return pairs_.empty() ? 0 : decisive() % locals_b_.size(); }
 
  private:
   std::size_t decisive() const noexcept;
   Answer answer() const noexcept;
 
-  std::vector<Pose> locals_a_, locals_b_;
+  std::vector<Pose> locals_a_, locals_b_, placed_b_;
   std::vector<NarrowPhase> pairs_;  // row by row: part of a, part of b
   RoundRobin round_;
   bool finished_ = true;

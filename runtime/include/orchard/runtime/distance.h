@@ -17,7 +17,8 @@ namespace orchard::runtime {
 //   while (!query.finished()) query.refine({.pair_tests = 1000});   // or refine() at once
 //
 // Preconditions, threads, determinism, allocation (none after construction): as for NarrowPhase. Without triangles, or
-// without memory for them, finished() is true at once and the bounds are those of the roots.
+// without memory for them, finished() is true at once and the bounds are those of the roots; for poses that NarrowPhase
+// refuses they are 0 and infinity.
 class DistanceQuery {
  public:
   struct Tolerance {

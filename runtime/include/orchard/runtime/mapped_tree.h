@@ -8,8 +8,10 @@
 namespace orchard::runtime {
 
 // A tree used in place in a file that the system maps into memory (POSIX; elsewhere, and on big-endian machines, the
-// file is read instead). Pages are shared between processes. The file must not be written to meanwhile: replace it by
-// renaming another one over it, as orchard does.
+// file is read instead). Pages are shared between processes. The file must stay as it is meanwhile: whoever cuts it
+// short makes the program receive SIGBUS at the next query, and whoever writes into it makes queries leave their
+// arrays. Replace it by renaming another one over it, as orchard does; where others may write to it, use load_file(),
+// which copies it into memory.
 class MappedTree {
  public:
   MappedTree() = default;

@@ -1,15 +1,9 @@
 #pragma once
-#include <array>
 #include <limits>
 
+#include "orchard/runtime/vec3.h"
+
 namespace orchard::runtime {
-
-using Vec3 = std::array<double, 3>;
-
-inline Vec3 operator+(const Vec3& a, const Vec3& b) noexcept { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-inline Vec3 operator-(const Vec3& a, const Vec3& b) noexcept { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-inline Vec3 operator*(double s, const Vec3& a) noexcept { return {s * a[0], s * a[1], s * a[2]}; }
-inline double dot(const Vec3& a, const Vec3& b) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 // What is known of a body at time t0 and for a while after (dissertation 4.1, 4.4): for t0 <= t <= expiry the centre y
 // of its bounding sphere has |y''(t)| <= acceleration, and y''(t) . half_space <= 0 unless half_space is zero. Then

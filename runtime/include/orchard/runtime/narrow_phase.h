@@ -21,8 +21,10 @@ struct Placement {
   std::array<float, 9> turn;      // without
   std::array<float, 3> translation;
   float scale;
-  float slack;   // to add to a sum of radii
-  float margin;  // to take from a gap between patches
+  float slack;      // to add to a sum of radii
+  float margin;     // to take from a gap between patches
+  float unit = 1;   // a power of two: times this, every coordinate of the pair's frame is at most 1
+  float whole = 1;  // 1 / unit
 };
 
 // One patch, in the first tree's frame.
@@ -85,13 +87,14 @@ struct Verdict {
 // The last level is exact for the stored triangles, with body b's moved into a's frame in double (a relative rounding
 // of about 1e-15 of the coordinates). It exists if both trees have triangles; otherwise "maybe" can be final.
 //
-// Preconditions: structure_fault() of both trees is nullptr, and what they view outlives this object unchanged; poses
-// satisfy is_rigid(). Trees are only read: any number of objects in any number of threads may share them. One object
-// belongs to one thread.
-// Deterministic: same trees, poses, room: same answers, counts and bounds, however refine() was cut into pieces by
-// budgets, on every machine and for every width of its vectors; and, mirrored, when a and b are exchanged.
-// Throws nothing and allocates nothing after construction and reserve(). A level of spheres with more meeting pairs
-// than there is room for is given up: out_of_room() becomes true and the next step is the last level, which needs none.
+// Preconditions: structure_fault() of both trees is nullptr, and what they view outlives this object unchanged. Poses
+// that do not satisfy is_rigid() are refused (see refused()). Trees are only read: any number of objects in any number
+// of threads may share them. One object belongs to one thread. Deterministic: same trees, poses, room: same answers,
+// counts and bounds, however refine() was cut into pieces by budgets, on every machine and for every width of its
+// vectors; and, mirrored, when a and b are exchanged. Throws nothing and allocates nothing after construction and
+// reserve(). A level of spheres with more meeting pairs than there is room for is given up: out_of_room() becomes true
+// and the next step is the last level, which needs none but its stack's.
+// Without memory for that, "maybe" can be final, too.
 class NarrowPhase {
  public:
   static constexpr std::size_t kDefaultRoom = 1u << 13;
@@ -118,7 +121,11 @@ class NarrowPhase {
 
   Verdict verdict() const noexcept;
   Answer answer() const noexcept { return answer_; }
-  bool finished() const noexcept { return finished_; }        // refine() has nothing left to do
+  bool finished() const noexcept { return finished_; }  // refine() has nothing left to do
+  // The poses given to start() cannot be answered for: one is not rigid, or the bodies meet at a place or in a size
+  // that floats cannot hold (bodies scaled beyond 4 kCoordinateLimit of the other's units, or by more than
+  // kMostRelativeScale of each other). The answer is then "maybe", finished, with the bounds 0 and infinity.
+  bool refused() const noexcept { return refused_; }
   bool out_of_room() const noexcept { return out_of_room_; }  // bounds are looser than they could be
   bool exact() const noexcept { return exact_started_; }      // the last level has begun
   std::uint32_t level() const noexcept { return level_; }     // completed levels below the roots
@@ -181,12 +188,14 @@ class NarrowPhase {
 
   static Side side_of(const TreeView& tree) noexcept;
   void keep(const Pose& a, const Pose& b) noexcept;
+  Answer refuse(const Pose& a, const Pose& b) noexcept;
   struct Probe;
   bool probe_below(NodePair pair, std::uint32_t levels, Probe& probe) noexcept;
   double hulls_gap(const Pose& first, const Pose& second, const std::array<double, 3>& way) const noexcept;
   Pose relative_pose() const noexcept;
   void place() noexcept;
   bool has_triangles() const noexcept { return !first_.tree.patches.empty() && !second_.tree.patches.empty(); }
+  bool has_last_level() const noexcept { return has_triangles() && stack_; }  // memory for its stack, too
   bool in_range() const noexcept;
   void finish(Answer answer) noexcept;
 
@@ -210,6 +219,7 @@ class NarrowPhase {
 
   // The pair in a fixed order that does not depend on the order of the arguments: exchanged_ tells.
   Side first_, second_;
+  std::array<std::array<double, 2>, 3> roots_{};  // of both, coordinate by coordinate
   bool ordered_by_pose_ = false;
   bool arguments_exchanged_ = false;
   bool exchanged_ = false;
@@ -236,6 +246,7 @@ class NarrowPhase {
   bool finished_ = true;
   bool roots_pending_ = false;
   bool out_of_room_ = false;
+  bool refused_ = false;
   std::uint32_t level_ = 0;
   std::uint64_t pair_tests_ = 0, triangle_tests_ = 0, work_ = 0;
   double separation_bound_ = std::numeric_limits<double>::infinity();

@@ -10,8 +10,11 @@ namespace orchard::runtime {
 
 inline constexpr std::uint32_t kBlockWidth = 8;
 inline constexpr std::uint32_t kLeafBit = 0x80000000u;
-inline constexpr float kCoordinateLimit =
-    1e18f;  // largest |coordinate| and radius: squared distances stay finite in float
+
+// The range of a tree: |coordinate| and radius of everything in it, and |coordinate| of its origin, are at most this.
+// No float of a query overflows then; what is larger is refused by structure_fault(), and so by every reader. There is
+// no lower end: queries are right for every size down to 0.
+inline constexpr float kCoordinateLimit = 1e18f;
 
 // Blocks that `children` siblings take.
 constexpr std::uint32_t block_count(std::uint32_t children) noexcept {
@@ -157,9 +160,10 @@ std::uint32_t add_list(PackedSphereTree& tree, std::span<const std::uint32_t> tr
 void index_triangles(PackedSphereTree& tree);
 
 // What is wrong with a tree's structure, or nullptr: indices in range, children after their parent, no block shared,
-// finite coordinates up to kCoordinateLimit, radii >= 0, a tree of triangles if there are triangles, of which it
-// repeats the corners exactly. Everything a query relies on to stay in bounds. `error` and `depth` may be +infinity:
-// unknown, and then a bound on separation that needs them is infinite. O(nodes + triangles), allocates nothing.
+// coordinates up to kCoordinateLimit, lengths four times that, radii >= 0, a tree of triangles if there are triangles,
+// of which it repeats the corners exactly. Everything a query relies on to stay in bounds. `error` and `depth` may be
+// +infinity: unknown, and then a bound on separation that needs them is infinite. O(nodes + triangles), allocates
+// nothing.
 const char* structure_fault(const TreeView& tree) noexcept;
 
 // Upper bound on |centre| + radius over the nodes and on |vertex|, relative to the origin: the rounding of a query is a

@@ -5,10 +5,10 @@
 namespace orchard::runtime {
 
 // Where an instance of a body is: world = scale * rotation * body + translation. Rotation is row-major.
-// Precondition of every query: `rotation` is a proper rotation to within kRigidTolerance and `scale` is positive and
-// finite (is_rigid()). Scales that differ between axes, shear and mirroring are not supported: radii would be wrong,
-// and so would a "no". A matrix integrated over many frames must be normalised by the caller, e.g. through a
-// quaternion.
+// Every query asks is_rigid() first, and of a pose that is not (zeros, a mirror, shear, scales that differ between
+// axes, what is not a number, and also a rotation whose entries were rounded to float) it says that nothing is known:
+// "maybe" without bounds, or what each function names. Radii would be wrong otherwise, and so would a "no". Rotations
+// kept in floats, or integrated over many frames, are made rigid by made_rigid() or pose_from_matrix() first.
 struct Pose {
   std::array<double, 9> rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   std::array<double, 3> translation = {0, 0, 0};
@@ -17,9 +17,24 @@ struct Pose {
   friend bool operator==(const Pose&, const Pose&) = default;
 };
 
-inline constexpr double kRigidTolerance = 1e-12;  // on every entry of rotation^T * rotation - identity
+// With rows a, b, c of the rotation: on the root of the sum of the squares of |a|^2 - 1, |b|^2 - 1, a . b and the
+// components of c - a x b.
+inline constexpr double kRigidTolerance = 1e-12;
+inline constexpr double kScaleLimit = 1e100;          // a scale is between 1 / kScaleLimit and kScaleLimit
+inline constexpr double kMostRelativeScale = 0x1p44;  // of one body of a pair to the other
+inline constexpr double kRepairTolerance = 1e-3;      // as kRigidTolerance, of what made_rigid() repairs
 
-bool is_rigid(const Pose& pose) noexcept;  // but for its scale; false for entries that are not finite, too
+// Whether queries can answer for a pose: a proper rotation to within kRigidTolerance, a scale within its limits,
+// nothing that is not finite. Some ten nanoseconds; queries do it themselves.
+bool is_rigid(const Pose& pose) noexcept;
+
+// The rotation nearest to pose.rotation, with the same translation and scale, so that is_rigid() holds: for matrices of
+// floats, and products of many. It moves no point of a body of radius R farther than rounding had moved it already:
+// some 1e-7 R for floats. Nothing if the matrix is farther than kRepairTolerance from a proper rotation, or if anything
+// else is wrong. Costs some 100 ns.
+std::optional<Pose> made_rigid(const Pose& pose) noexcept;
+std::optional<Pose> pose_from_matrix(const std::array<float, 9>& rotation, const std::array<float, 3>& translation,
+                                     float scale = 1) noexcept;
 
 // From a quaternion (w, x, y, z) of any length; nothing if it is zero or anything is not finite.
 std::optional<Pose> pose_from_quaternion(const std::array<double, 4>& wxyz,
