@@ -17,7 +17,7 @@ struct BroadPhase::State {
 };
 
 MotionSource values_of(const std::vector<Motion>& values) {
-  return [&values](double, std::span<const BodyId> bodies, std::span<Motion> motions) {
+  return [&values](double, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
     for (std::size_t i = 0; i < bodies.size(); ++i) motions[i] = values[bodies[i]];
   };
 }
@@ -71,44 +71,54 @@ Advance BroadPhase::process(double t_now, const WorkBudget* budget) {
   return {next_time_, {}};
 }
 
-BodyId BroadPhase::add(std::uint8_t importance) {
-  const BodyId body = state_->roster.add(importance);
-  if (body == kNoBody) return body;
+BodyId BroadPhase::id_of(BodyIndex index) const noexcept {
+  const detail::Roster& roster = state_->roster;
+  return index < roster.slots() && roster.alive(index) ? roster.id_of(index) : kNoBody;
+}
+
+BodyId BroadPhase::take_in(BodyIndex body) {
   state_->method->changed(body);
   wake_for_change();
-  return body;
+  return state_->roster.id_of(body);
+}
+
+BodyId BroadPhase::add(std::uint8_t importance) {
+  const BodyIndex body = state_->roster.add(importance);
+  return body == kNoIndex ? kNoBody : take_in(body);
 }
 
 BodyId BroadPhase::add_static(const Motion& place, std::uint8_t importance) {
   if (!is_valid(place)) return kNoBody;
-  const BodyId body = state_->roster.add(importance);
-  if (body == kNoBody) return body;
+  const BodyIndex body = state_->roster.add(importance);
+  if (body == kNoIndex) return kNoBody;
   state_->roster.set_static(body, place);
-  state_->method->changed(body);
-  wake_for_change();
-  return body;
+  return take_in(body);
 }
 
-void BroadPhase::remove(BodyId body) {
-  state_->method->removed(body);
-  state_->roster.remove(body);
-}
-
-void BroadPhase::cancel(BodyId body) {
-  state_->method->changed(body);
-  wake_for_change();
-}
-
-bool BroadPhase::move_static(BodyId body, const Motion& place) {
-  assert(state_->roster.is_static(body));
-  if (!is_valid(place)) return false;
-  state_->roster.set_static(body, place);
-  cancel(body);
+bool BroadPhase::remove(BodyId body) {
+  if (!contains(body)) return false;
+  state_->method->removed(body.index);
+  state_->roster.remove(body.index);
   return true;
 }
 
-void BroadPhase::set_importance(BodyId body, std::uint8_t importance) {
-  state_->roster.set_importance(body, importance);
+bool BroadPhase::cancel(BodyId body) {
+  if (!contains(body)) return false;
+  state_->method->changed(body.index);
+  wake_for_change();
+  return true;
+}
+
+bool BroadPhase::move_static(BodyId body, const Motion& place) {
+  if (!contains(body) || !state_->roster.is_static(body.index) || !is_valid(place)) return false;
+  state_->roster.set_static(body.index, place);
+  return cancel(body);
+}
+
+bool BroadPhase::set_importance(BodyId body, std::uint8_t importance) {
+  if (!contains(body)) return false;
+  state_->roster.set_importance(body.index, importance);
+  return true;
 }
 
 std::size_t BroadPhase::size() const noexcept { return state_->roster.size(); }

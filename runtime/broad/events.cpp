@@ -16,20 +16,20 @@ void Events::make_room() {
   grow(pending_, n);
 }
 
-void Events::changed(BodyId body) {
+void Events::changed(BodyIndex body) {
   make_room();
   if (pending_[body]) return;
   pending_[body] = 1;
   changed_.push_back(body);
 }
 
-void Events::removed(BodyId body) {
+void Events::removed(BodyIndex body) {
   take_away(body);
   pending_[body] = 0;
   windows_[body] = {kNeverStep, kNeverStep};  // voids the events and the next look, until the slot's next body
 }
 
-void Events::take_away(BodyId body) noexcept {
+void Events::take_away(BodyIndex body) noexcept {
   if (places_[body] == Place::inside) few_ ? list_.remove(body) : grid_.remove(body, boxes_[body]);
   if (places_[body] == Place::oversized) std::erase(oversized_, body);
   places_[body] = Place::nowhere;
@@ -52,7 +52,7 @@ void Events::collect_due(Step now) {
   constexpr std::size_t kAhead = 16;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     if (i + kAhead < entries_.size()) {
-      const BodyId body = entries_[i + kAhead];
+      const BodyIndex body = entries_[i + kAhead];
       prefetch(&windows_[body]), prefetch(&places_[body]), prefetch(&pending_[body]);
     }
     Window& window = windows_[entries_[i]];
@@ -60,7 +60,7 @@ void Events::collect_due(Step now) {
     window.end = kLookDue;
     due_.push_back(entries_[i]);
   }
-  for (const BodyId body : changed_) {
+  for (const BodyIndex body : changed_) {
     if (!pending_[body]) continue;
     pending_[body] = 0;
     due_.push_back(body);
@@ -71,8 +71,8 @@ void Events::collect_due(Step now) {
 
 // What has not been looked at for this step yet is in due_ already; the rest changed since, or was added.
 void Events::complete_due() {
-  std::erase_if(due_, [&](BodyId body) { return !roster_.alive(body) || pending_[body]; });
-  for (const BodyId body : changed_) {
+  std::erase_if(due_, [&](BodyIndex body) { return !roster_.alive(body) || pending_[body]; });
+  for (const BodyIndex body : changed_) {
     if (!pending_[body]) continue;
     take_away(body);
     pending_[body] = 0;
@@ -101,7 +101,7 @@ unsigned Events::look_and_test(Step now, Meter& meter) {
   const bool one_class = roster_.one_class();
   if (!one_class) {
     std::stable_sort(due_.begin(), due_.end(),
-                     [&](BodyId a, BodyId b) { return roster_.importance(a) < roster_.importance(b); });
+                     [&](BodyIndex a, BodyIndex b) { return roster_.importance(a) < roster_.importance(b); });
   }
   std::size_t looked = 0;
   for (unsigned rank = roster_.next_class(0); rank < kNoClass;

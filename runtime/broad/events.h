@@ -18,8 +18,8 @@ class Events final : public Method {
  public:
   Events(Roster& roster, const BroadPhaseOptions& options) : roster_(roster), options_(options) {}
 
-  void changed(BodyId body) override;
-  void removed(BodyId body) override;
+  void changed(BodyIndex body) override;
+  void removed(BodyIndex body) override;
   StepReport step(Step now, Meter& meter, std::vector<BodyPair>& pairs) override;
   std::size_t memory_bytes() const noexcept override;
 
@@ -36,7 +36,7 @@ class Events final : public Method {
   void make_room();
   void collect_due(Step now);
   void complete_due();
-  void take_away(BodyId body) noexcept;
+  void take_away(BodyIndex body) noexcept;
   void take_away_due() noexcept;
   unsigned look_and_test(Step now, Meter& meter);
   void postpone(Step now, std::size_t looked, unsigned from_class);
@@ -51,13 +51,13 @@ class Events final : public Method {
   void vote(Step end, std::size_t bodies) noexcept;
 
   // events_look.cpp: a look at some
-  std::size_t look_at(Step now, Step from, std::span<const BodyId> bodies, Meter& meter);
-  std::size_t known_at(Step from, std::span<BodyId> bodies) noexcept;
+  std::size_t look_at(Step now, Step from, std::span<const BodyIndex> bodies, Meter& meter);
+  std::size_t known_at(Step from, std::span<BodyIndex> bodies) noexcept;
   Step window_end(Step from, const Motion& motion) noexcept;
-  void place(Look& look, std::span<const BodyId> bodies);
-  void shrink(Look& look, BodyId body, std::size_t i);
-  void insert(Look& look, std::span<const BodyId> bodies);
-  void meet_oversized(std::span<const BodyId> bodies);
+  void place(Look& look, std::span<const BodyIndex> bodies);
+  void shrink(Look& look, BodyIndex body, std::size_t i);
+  void insert(Look& look, std::span<const BodyIndex> bodies);
+  void meet_oversized(std::span<const BodyIndex> bodies);
 
   // events_pairs.cpp
   bool valid(const PairEvent& event) const noexcept;
@@ -71,7 +71,7 @@ class Events final : public Method {
   std::vector<Place> places_;
   std::vector<std::uint8_t> pending_;  // changed since the last step
   std::vector<QuantumBox> boxes_;      // of those in the grid
-  std::vector<BodyId> changed_, oversized_;
+  std::vector<BodyIndex> changed_, oversized_;
   bool few_ = true;  // bodies: they are in the list, not in the grid
   BoxList list_;
   SweptGrid grid_;
@@ -92,7 +92,7 @@ class Events final : public Method {
   std::size_t votes_ = 0;
 
   // Of the step under way; kept for their memory.
-  std::vector<BodyId> entries_, due_;
+  std::vector<BodyIndex> entries_, due_;
   std::vector<PairEvent> events_, waiting_, tests_;
   std::vector<BodyPair> near_;
   std::vector<Motion> motions_;

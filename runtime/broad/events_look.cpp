@@ -55,7 +55,7 @@ Step Events::window_end(Step from, const Motion& motion) noexcept {
 }
 
 // Makes the boxes of a block of bodies, until the ends of their windows.
-void Events::place(Look& look, std::span<const BodyId> bodies) {
+void Events::place(Look& look, std::span<const BodyIndex> bodies) {
   const auto motions = std::span(std::as_const(motions_)).first(bodies.size());
   const auto duration = [&](Step end) {
     return end == kNeverStep ? 0 : static_cast<double>(end - 1 - look.now) * options_.time_step;
@@ -98,7 +98,7 @@ void Events::place(Look& look, std::span<const BodyId> bodies) {
 }
 
 // Faster than the others: look at it again sooner, until its box takes few enough cells.
-void Events::shrink(Look& look, BodyId body, std::size_t i) {
+void Events::shrink(Look& look, BodyIndex body, std::size_t i) {
   Window& window = windows_[body];
   Step steps = window.end == kNeverStep ? 1 : window.end - look.from;
   BoxBlock box;
@@ -115,7 +115,7 @@ void Events::shrink(Look& look, BodyId body, std::size_t i) {
 }
 
 // Moves those whose new bounds are known up to `from`, with their motions, to the front; returns how many.
-std::size_t Events::known_at(Step from, std::span<BodyId> bodies) noexcept {
+std::size_t Events::known_at(Step from, std::span<BodyIndex> bodies) noexcept {
   std::size_t front = 0;
   double known = std::numeric_limits<double>::infinity();  // an expiry that is late enough
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -135,12 +135,12 @@ std::size_t Events::known_at(Step from, std::span<BodyId> bodies) noexcept {
 
 // Stops early if the budget is spent; returns how many have been looked at. Where `from` is a later step than now,
 // bodies whose bounds do not reach it are left to the next step.
-std::size_t Events::look_at(Step now, Step from, std::span<const BodyId> bodies, Meter& meter) {
+std::size_t Events::look_at(Step now, Step from, std::span<const BodyIndex> bodies, Meter& meter) {
   motions_.resize(kBlock);
   Look look;
   look.now = now;
   look.from = from;
-  std::array<BodyId, kBlock> known;
+  std::array<BodyIndex, kBlock> known;
   std::size_t done = 0;
   while (done < bodies.size() && !meter.spent()) {
     auto block = bodies.subspan(done, meter.grant(std::min(kBlock, bodies.size() - done)));
@@ -161,19 +161,19 @@ std::size_t Events::look_at(Step now, Step from, std::span<const BodyId> bodies,
   return done;
 }
 
-void Events::insert(Look& look, std::span<const BodyId> bodies) {
+void Events::insert(Look& look, std::span<const BodyIndex> bodies) {
   if (few_) {
     list_.insert(bodies, look.boxes, options_.vectors, near_);
     return;
   }
-  const auto oversized = [&](BodyId body) { return places_[body] == Place::oversized; };
+  const auto oversized = [&](BodyIndex body) { return places_[body] == Place::oversized; };
   if (oversized_.empty() && std::none_of(bodies.begin(), bodies.end(), oversized)) {
     grid_.insert(look.queue, bodies, look.boxes, boxes_, options_.vectors, near_);
     return;
   }
-  std::array<BodyId, kBlock> in_grid;
+  std::array<BodyIndex, kBlock> in_grid;
   std::size_t count = 0;
-  for (const BodyId body : bodies) {
+  for (const BodyIndex body : bodies) {
     if (oversized(body)) continue;
     look.boxes.set(count, boxes_[body]);
     in_grid[count++] = body;
@@ -183,20 +183,20 @@ void Events::insert(Look& look, std::span<const BodyId> bodies) {
 }
 
 // Bodies as large as several cells are compared with everything: (their number) x (the number of all) per window.
-void Events::meet_oversized(std::span<const BodyId> bodies) {
-  const auto compare = [&](BodyId body, BodyId other) {
+void Events::meet_oversized(std::span<const BodyIndex> bodies) {
+  const auto compare = [&](BodyIndex body, BodyIndex other) {
     if (boxes_[other].meets(boxes_[body])) near_.push_back({std::min(body, other), std::max(body, other)});
   };
-  for (const BodyId body : bodies) {
+  for (const BodyIndex body : bodies) {
     if (places_[body] != Place::inside) continue;
-    for (const BodyId large : oversized_) compare(body, large);
+    for (const BodyIndex large : oversized_) compare(body, large);
   }
-  for (const BodyId body : bodies) {
+  for (const BodyIndex body : bodies) {
     if (places_[body] != Place::oversized) continue;
-    for (BodyId other = 0; other < places_.size(); ++other) {
+    for (BodyIndex other = 0; other < places_.size(); ++other) {
       if (places_[other] == Place::inside) compare(body, other);
     }
-    for (const BodyId large : oversized_) compare(body, large);
+    for (const BodyIndex large : oversized_) compare(body, large);
     oversized_.push_back(body);
   }
 }

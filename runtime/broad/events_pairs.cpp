@@ -17,7 +17,7 @@ bool Events::valid(const PairEvent& event) const noexcept {
 bool Events::test_all(Step now, Meter& meter) {
   constexpr std::size_t kPairs = kBlock / 2;
   motions_.resize(kBlock);
-  std::array<BodyId, kBlock> bodies;
+  std::array<BodyIndex, kBlock> bodies;
   std::size_t done = 0;
   while (done < tests_.size() && !meter.spent()) {
     const std::size_t count = std::max<std::size_t>(1, meter.grant(2 * std::min(kPairs, tests_.size() - done)) / 2);

@@ -49,9 +49,9 @@ void Events::replan(Step now) {
 void Events::survey(Step now) {
   const std::size_t n = roster_.size(), wanted = std::clamp(n / 8, kSmallSample, kSample);
   const std::size_t stride = std::max<std::size_t>(1, n / wanted);
-  std::vector<BodyId> sample;
+  std::vector<BodyIndex> sample;
   std::size_t seen = 0;
-  for (BodyId body = 0; body < roster_.slots() && sample.size() < wanted; ++body) {
+  for (BodyIndex body = 0; body < roster_.slots() && sample.size() < wanted; ++body) {
     if (roster_.alive(body) && seen++ % stride == 0) sample.push_back(body);
   }
   motions_.resize(sample.size());
@@ -76,7 +76,7 @@ void Events::place_all_anew() {
   if (due_.capacity() > 2 * roster_.size()) due_ = {};
   due_.clear();
   due_.reserve(roster_.size());
-  for (BodyId body = 0; body < roster_.slots(); ++body) {
+  for (BodyIndex body = 0; body < roster_.slots(); ++body) {
     if (roster_.alive(body)) due_.push_back(body);
   }
   voted_ = kNeverStep;
@@ -110,11 +110,11 @@ void Events::vote(Step end, std::size_t bodies) noexcept {
 bool Events::prepare(Step now) {
   const Step from = now + 1;
   rush_ = kNeverStep;
-  std::array<BodyId, kSample> sample;
+  std::array<BodyIndex, kSample> sample;
   std::size_t count = 0;
   const std::size_t stride = std::max<std::size_t>(1, roster_.slots() / kAskedAhead);
   for (std::size_t body = 0; body < roster_.slots() && count < kAskedAhead; body += stride) {
-    if (roster_.alive(static_cast<BodyId>(body))) sample[count++] = static_cast<BodyId>(body);
+    if (roster_.alive(static_cast<BodyIndex>(body))) sample[count++] = static_cast<BodyIndex>(body);
   }
   motions_.resize(kBlock);
   roster_.ask(now, std::span(sample).first(count), std::span(motions_).first(count));

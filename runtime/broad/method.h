@@ -13,9 +13,9 @@ class Method {
  public:
   virtual ~Method() = default;
   // The body is new or its bounds hold no longer; to be asked for at the next step that is processed.
-  virtual void changed(BodyId body) = 0;
+  virtual void changed(BodyIndex body) = 0;
   // Called while the roster still has it.
-  virtual void removed(BodyId body) = 0;
+  virtual void removed(BodyIndex body) = 0;
   // Puts the overlapping pairs into `pairs`, in ascending order.
   virtual StepReport step(Step now, Meter& meter, std::vector<BodyPair>& pairs) = 0;
   virtual std::size_t memory_bytes() const noexcept = 0;

@@ -16,8 +16,8 @@ class Sleeping final : public Method {
   Sleeping(Roster& roster, const BroadPhaseOptions& options)
       : roster_(roster), rebuild_all_(options.rebuild == Rebuild::everything), find_(find_options(options.method)) {}
 
-  void changed(BodyId body) override;
-  void removed(BodyId) override { members_changed_ = true; }
+  void changed(BodyIndex body) override;
+  void removed(BodyIndex) override { members_changed_ = true; }
   StepReport step(Step now, Meter& meter, std::vector<BodyPair>& pairs) override;
   std::size_t memory_bytes() const noexcept override;
 
@@ -39,9 +39,9 @@ class Sleeping final : public Method {
   const IntersectionOptions find_;
   IntersectionFinder finder_;
   std::vector<Known> known_;  // by body
-  std::vector<BodyId> members_, stale_;
+  std::vector<BodyIndex> members_, stale_;
   std::vector<Motion> motions_;
-  std::vector<BodyId> present_;         // the members whose class takes part in this step
+  std::vector<BodyIndex> present_;      // the members whose class takes part in this step
   std::vector<SpaceTimeBound> bounds_;  // by place in present_
   bool members_changed_ = true;
 };
@@ -63,7 +63,7 @@ IntersectionOptions Sleeping::find_options(BroadPhaseMethod method) {
   }
 }
 
-void Sleeping::changed(BodyId body) {
+void Sleeping::changed(BodyIndex body) {
   if (known_.size() < roster_.slots()) known_.resize(roster_.slots());
   known_[body].asked = -1;
   members_changed_ = true;
@@ -73,7 +73,7 @@ void Sleeping::refresh_members() {
   if (!members_changed_) return;
   members_changed_ = false;
   members_.clear();
-  for (BodyId body = 0; body < roster_.slots(); ++body) {
+  for (BodyIndex body = 0; body < roster_.slots(); ++body) {
     if (roster_.alive(body)) members_.push_back(body);
   }
 }
@@ -81,12 +81,12 @@ void Sleeping::refresh_members() {
 // The more important first. Returns the class from which on some could not be asked for.
 unsigned Sleeping::ask_for_stale(Step now, Meter& meter) {
   stale_.clear();
-  for (const BodyId body : members_) {
+  for (const BodyIndex body : members_) {
     if (known_[body].asked < 0 || known_[body].end <= now) stale_.push_back(body);
   }
   if (!roster_.one_class()) {
     std::stable_sort(stale_.begin(), stale_.end(),
-                     [&](BodyId a, BodyId b) { return roster_.importance(a) < roster_.importance(b); });
+                     [&](BodyIndex a, BodyIndex b) { return roster_.importance(a) < roster_.importance(b); });
   }
   motions_.resize(stale_.size());
   std::size_t done = 0;
@@ -108,14 +108,14 @@ unsigned Sleeping::ask_for_stale(Step now, Meter& meter) {
 // step after it.
 Step Sleeping::build(Step now, unsigned below) {
   present_.clear();
-  for (const BodyId body : members_) {
+  for (const BodyIndex body : members_) {
     if (roster_.importance(body) < below) present_.push_back(body);
   }
   Step end = now + kLongestSleep;
-  for (const BodyId body : present_) end = std::min(end, known_[body].end);
+  for (const BodyIndex body : present_) end = std::min(end, known_[body].end);
   const double duration = static_cast<double>(end - 1 - now) * roster_.clock.time_step;
   bounds_.clear();
-  for (const BodyId body : present_) {
+  for (const BodyIndex body : present_) {
     const double age = static_cast<double>(now - known_[body].asked) * roster_.clock.time_step;
     bounds_.push_back(make_bound(known_[body].motion, age, duration));
     bounds_.back().fixed = roster_.is_static(body);
@@ -128,7 +128,7 @@ bool Sleeping::intersecting_are_current(Step now, const Intersections& found) {
   bool current = true;
   for (const BoundContact& contact : found.initial) {
     if (contact.time > 0) continue;
-    for (const BodyId body : {present_[contact.a], present_[contact.b]}) {
+    for (const BodyIndex body : {present_[contact.a], present_[contact.b]}) {
       if (known_[body].asked == now || roster_.is_static(body)) continue;
       known_[body].asked = -1;
       current = false;
@@ -141,7 +141,7 @@ StepReport Sleeping::step(Step now, Meter& meter, std::vector<BodyPair>& pairs) 
   refresh_members();
   if (members_.empty()) return {kNeverStep};
   if (rebuild_all_) {
-    for (const BodyId body : members_) known_[body].asked = -1;
+    for (const BodyIndex body : members_) known_[body].asked = -1;
   }
   unsigned below = kNoClass;
   for (;;) {
@@ -152,7 +152,7 @@ StepReport Sleeping::step(Step now, Meter& meter, std::vector<BodyPair>& pairs) 
     if (!intersecting_are_current(now, found)) continue;
 
     for (const BoundContact& contact : found.initial) {
-      const BodyId a = present_[contact.a], b = present_[contact.b];
+      const BodyIndex a = present_[contact.a], b = present_[contact.b];
       if (contact.time <= 0 && spheres_touch(known_[a].motion, known_[b].motion)) pairs.push_back({a, b});
     }
     if (below < kNoClass) return {now + 1, below};

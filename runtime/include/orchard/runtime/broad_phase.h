@@ -12,19 +12,29 @@
 
 namespace orchard::runtime {
 
-using BodyId = std::uint32_t;  // small numbers; the one given back last is used again first
-inline constexpr BodyId kNoBody = 0xffffffffu;
-inline constexpr BodyId kMaxBodies = (1u << 28) - 1;
+// Where a body's values lie in the application's arrays: small numbers; the one given back last is used again first.
+using BodyIndex = std::uint32_t;
+inline constexpr BodyIndex kNoIndex = 0xffffffffu;
+inline constexpr BodyIndex kMaxBodies = (1u << 28) - 1;
+
+// A body, and no other: an index that is used again comes with another generation. So what still names a body that was
+// removed is refused, and never meant for its successor.
+struct BodyId {
+  BodyIndex index = kNoIndex;
+  std::uint32_t generation = 0;
+  friend bool operator==(const BodyId&, const BodyId&) = default;
+};
+inline constexpr BodyId kNoBody{};
 
 struct BodyPair {
-  BodyId a, b;  // a < b
+  BodyIndex a, b;  // a < b
   friend auto operator<=>(const BodyPair&, const BodyPair&) = default;
 };
 
 // Fills motions[i] with what is known of bodies[i] at `time`, the time of a step. A pair of bodies may come up twice.
-using MotionSource = std::function<void(double time, std::span<const BodyId> bodies, std::span<Motion> motions)>;
+using MotionSource = std::function<void(double time, std::span<const BodyIndex> bodies, std::span<Motion> motions)>;
 
-// For an application that keeps all motions as values, by BodyId, as of the time it calls advance() with. It calls
+// For an application that keeps all motions as values, by BodyIndex, as of the time it calls advance() with. It calls
 // advance() at every step then, which costs nothing while the broad phase sleeps. `values` outlives the broad phase.
 MotionSource values_of(const std::vector<Motion>& values);
 
@@ -101,12 +111,16 @@ class BroadPhase {
   BodyId add(std::uint8_t importance = 0);
   // Never asked for again. Takes the position and the radius; kNoBody if the motion is not valid, too.
   BodyId add_static(const Motion& place, std::uint8_t importance = 0);
-  void remove(BodyId body);
+  // The following change nothing and return false if there is no such body (any more).
+  bool remove(BodyId body);
   // 4.4: the bounds last given for the body no longer hold from now on; they are asked for again at the next step.
-  void cancel(BodyId body);
-  void teleport(BodyId body) { cancel(body); }                // the source gives the new place from now on
-  bool move_static(BodyId body, const Motion& place);         // false if the motion is not valid
-  void set_importance(BodyId body, std::uint8_t importance);  // from the next step
+  bool cancel(BodyId body);
+  bool teleport(BodyId body) { return cancel(body); }         // the source gives the new place from now on
+  bool move_static(BodyId body, const Motion& place);         // false, too, if it is not static or the motion not valid
+  bool set_importance(BodyId body, std::uint8_t importance);  // from the next step
+
+  BodyId id_of(BodyIndex index) const noexcept;  // of the body that has the index now; kNoBody: none
+  bool contains(BodyId body) const noexcept { return body != kNoBody && id_of(body.index) == body; }
 
   // Processes the steps up to t_now that may have something, and stops at the first one that has.
   Advance advance(double t_now) {
@@ -131,6 +145,7 @@ class BroadPhase {
  private:
   struct State;
   Advance process(double t_now, const WorkBudget* budget);
+  BodyId take_in(BodyIndex body);
   void wake_for_change();
   void note_next_step();
 
