@@ -39,6 +39,14 @@ void Calendar::clear_bodies() noexcept {
   free_line_ = kNone;
 }
 
+void Calendar::clear() noexcept {
+  buckets_.fill({});
+  busy_.fill(0);
+  lines_.clear();
+  nodes_.clear();
+  free_line_ = free_node_ = kNone;
+}
+
 void Calendar::add(const PairEvent& event, Step step) {
   const std::size_t bucket = bucket_of(step);
   std::uint32_t node = free_node_;

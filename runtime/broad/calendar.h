@@ -20,6 +20,7 @@ class Calendar {
  public:
   void set_due(std::span<const BodyIndex> bodies, Step step);
   void clear_bodies() noexcept;
+  void clear() noexcept;  // of everything
   void add(const PairEvent& event, Step step);
 
   // Moves everything due at the step to the ends of the vectors.

@@ -129,7 +129,21 @@ unsigned Events::look_and_test(Step now, Meter& meter) {
   return kNoClass;
 }
 
+// Nothing is left to plan for, nor to wake up for.
+void Events::forget_all() noexcept {
+  calendar_.clear();
+  overlaps_.clear();
+  changed_.clear();
+  due_.clear();
+  prepared_round_ = -1;
+  rush_ = kNeverStep;
+}
+
 StepReport Events::step(Step now, Meter& meter, std::vector<BodyPair>& pairs) {
+  if (roster_.size() == 0) {
+    forget_all();
+    return {kNeverStep};
+  }
   ++round_;
   entries_.clear();
   events_.clear();

@@ -34,6 +34,7 @@ class Events final : public Method {
 
   // events.cpp: a step
   void make_room();
+  void forget_all() noexcept;
   void collect_due(Step now);
   void complete_due();
   void take_away(BodyIndex body) noexcept;
