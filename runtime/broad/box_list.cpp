@@ -79,10 +79,16 @@ struct BoxList::VectorLanes {
 #endif
 
 void BoxList::reset(std::size_t slots) {
+  groups_.clear();
+  filled_ = 0;
+  grow(slots);
+}
+
+void BoxList::grow(std::size_t slots) {
+  if (slots <= this->slots()) return;
   Group empty;
   for (std::size_t d = 0; d < 3; ++d) empty.lower[d].fill(kNowhere.lower[d]), empty.upper[d].fill(kNowhere.upper[d]);
-  groups_.assign((slots + kGroup - 1) / kGroup, empty);
-  filled_ = 0;
+  groups_.resize((slots + kGroup - 1) / kGroup, empty);
 }
 
 void BoxList::set(BodyIndex body, const QuantumBox& box) noexcept {

@@ -11,6 +11,7 @@ class BoxList {
   static constexpr std::size_t kMostBodies = 192;
 
   void reset(std::size_t slots);  // empties the list; bodies are below
+  void grow(std::size_t slots);   // keeps what is in it
   void release() { groups_ = {}; }
   // Adds bodies[i] with block's box i and appends the pairs whose boxes meet, of each of them and everything in before.
   void insert(std::span<const BodyIndex> bodies, const BoxBlock& block, bool vectors, std::vector<BodyPair>& pairs);

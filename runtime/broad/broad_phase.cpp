@@ -64,7 +64,7 @@ Advance BroadPhase::process(double t_now, const WorkBudget* budget) {
     note_next_step();
     if (!state.pairs.empty() || report.incomplete_from != kNoClass) {
       seen_time_ = clock.time(now);
-      return {seen_time_, state.pairs, report.incomplete_from};
+      return {seen_time_, state.pairs, report.incomplete_from, report.left_over};
     }
   }
   seen_time_ = t_now;
@@ -118,6 +118,7 @@ bool BroadPhase::move_static(BodyId body, const Motion& place) {
 bool BroadPhase::set_importance(BodyId body, std::uint8_t importance) {
   if (!contains(body)) return false;
   state_->roster.set_importance(body.index, importance);
+  state_->method->reclassified(body.index);
   return true;
 }
 

@@ -133,19 +133,16 @@ std::size_t Events::known_at(Step from, std::span<BodyIndex> bodies) noexcept {
   return front;
 }
 
-// Stops early if the budget is spent; returns how many have been looked at. Where `from` is a later step than now,
-// bodies whose bounds do not reach it are left to the next step.
-std::size_t Events::look_at(Step now, Step from, std::span<const BodyIndex> bodies, Meter& meter) {
+// Where `from` is a later step than now, bodies whose bounds do not reach it are left to the next step.
+void Events::look_at(Step now, Step from, std::span<const BodyIndex> bodies) {
   motions_.resize(kBlock);
   Look look;
   look.now = now;
   look.from = from;
   std::array<BodyIndex, kBlock> known;
-  std::size_t done = 0;
-  while (done < bodies.size() && !meter.spent()) {
-    auto block = bodies.subspan(done, meter.grant(std::min(kBlock, bodies.size() - done)));
+  for (std::size_t done = 0; done < bodies.size();) {
+    auto block = bodies.subspan(done, std::min(kBlock, bodies.size() - done));
     roster_.ask(now, block, std::span(motions_).first(block.size()));
-    meter.count(block.size());
     done += block.size();
     if (from > now) {
       std::copy(block.begin(), block.end(), known.begin());
@@ -158,7 +155,6 @@ std::size_t Events::look_at(Step now, Step from, std::span<const BodyIndex> bodi
     insert(look, block);
   }
   if (!few_) grid_.finish(look.queue, boxes_, options_.vectors, near_);
-  return done;
 }
 
 void Events::insert(Look& look, std::span<const BodyIndex> bodies) {

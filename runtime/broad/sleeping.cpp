@@ -18,6 +18,7 @@ class Sleeping final : public Method {
 
   void changed(BodyIndex body) override;
   void removed(BodyIndex) override { members_changed_ = true; }
+  void reclassified(BodyIndex) override {}
   StepReport step(Step now, Meter& meter, std::vector<BodyPair>& pairs) override;
   std::size_t memory_bytes() const noexcept override;
 

@@ -78,6 +78,7 @@ struct Advance {
   std::span<const BodyPair> pairs;  // in ascending order; valid until the next call of any other member
   // Interrupted: pairs with a body of this importance class or a higher one may be missing. kNoClass: none is.
   unsigned incomplete_from = kNoClass;
+  std::size_t left_over = 0;  // bodies and pairs that could not be asked for within the budget; 0: nothing is missing
 };
 
 // Tells which bodies' bounding spheres overlap, and until when nothing can happen, from bounds on their motion
