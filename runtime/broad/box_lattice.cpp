@@ -17,6 +17,7 @@ template <typename Numbers>
 struct MotionColumns {
   std::array<Numbers, 3> position, velocity;
   Numbers radius, acceleration, drift;
+  std::array<Numbers, 3> half_space;
 };
 
 struct PlainDoubles {
@@ -32,12 +33,14 @@ struct PlainDoubles {
     for (std::size_t d = 0; d < 3; ++d) {
       result.position[d] = column([d](const Motion& motion) { return motion.position[d]; });
       result.velocity[d] = column([d](const Motion& motion) { return motion.velocity[d]; });
+      result.half_space[d] = column([d](const Motion& motion) { return motion.half_space[d]; });
     }
     result.radius = column([](const Motion& motion) { return motion.radius; });
     result.acceleration = column([](const Motion& motion) { return motion.acceleration; });
     result.drift = column([](const Motion& motion) { return motion.drift; });
     return result;
   }
+  static bool all(const Mask& mask) noexcept { return (mask[0] & mask[1] & mask[2] & mask[3]) != 0; }
   static void truncate(const Numbers& a, std::uint32_t* to) noexcept {
     for (std::size_t i = 0; i < 4; ++i) to[i] = static_cast<std::uint32_t>(static_cast<std::int32_t>(a[i]));
   }
@@ -68,14 +71,13 @@ struct VectorDoubles {
   }
   ORCHARD_INLINE static Columns columns(const Motion* m) noexcept {
     static_assert(offsetof(Motion, velocity) == 24 && offsetof(Motion, radius) == 48 &&
-                  offsetof(Motion, acceleration) == 56);
-    const std::array<Numbers, 4> first = transposed(m, 0), second = transposed(m, 4);
-    return {{first[0], first[1], first[2]},
-            {first[3], second[0], second[1]},
-            second[2],
-            second[3],
-            Numbers{m[0].drift, m[1].drift, m[2].drift, m[3].drift}};
+                  offsetof(Motion, acceleration) == 56 && offsetof(Motion, drift) == 64 &&
+                  offsetof(Motion, half_space) == 72);
+    const std::array<Numbers, 4> first = transposed(m, 0), second = transposed(m, 4), third = transposed(m, 8);
+    return {{first[0], first[1], first[2]}, {first[3], second[0], second[1]}, second[2], second[3], third[0],
+            {third[1], third[2], third[3]}};
   }
+  ORCHARD_INLINE static bool all(const Mask& mask) noexcept { return (mask[0] & mask[1] & mask[2] & mask[3]) != 0; }
   ORCHARD_INLINE static void truncate(const Numbers& a, std::uint32_t* to) noexcept {
     using Integers __attribute__((vector_size(16))) = std::int32_t;
     const Integers integers = __builtin_convertvector(a, Integers);
@@ -94,9 +96,10 @@ Lattice::Lattice(const Vec3& origin, double cell_size) noexcept : origin_(origin
 
 // The centre's offset along an axis is at most v t + wide(t), which is convex: largest at an end. Likewise below. A box
 // that does not lie within the lattice is everything: rounding would no longer be under control.
+// The result tells where a motion is surely valid: NaN fails every comparison.
 template <typename Kind>
-ORCHARD_INLINE void Lattice::make_four(const Motion* motions, const double* durations, BoxBlock& boxes,
-                                       std::size_t first) const noexcept {
+ORCHARD_INLINE typename Kind::Mask Lattice::make_four(const Motion* motions, const double* durations, BoxBlock& boxes,
+                                                      std::size_t first) const noexcept {
   using Numbers = typename Kind::Numbers;
   const auto all = [](double x) ORCHARD_INLINE_LAMBDA { return spread<Numbers>(x); };
   const auto least = [](const Numbers& a, const Numbers& b) ORCHARD_INLINE_LAMBDA { return Kind::choose(b < a, b, a); };
@@ -119,41 +122,48 @@ ORCHARD_INLINE void Lattice::make_four(const Motion* motions, const double* dura
     Kind::truncate(Kind::choose(inside, lower[d], zero), &boxes.lower[d][first]);
     Kind::truncate(Kind::choose(inside, upper[d], last), &boxes.upper[d][first]);
   }
+  Numbers sizes = of.radius + of.acceleration + of.drift;
+  for (std::size_t d = 0; d < 3; ++d) {
+    for (const Numbers& x : {of.position[d], of.velocity[d], of.half_space[d]}) sizes = sizes + most(x, zero - x);
+  }
+  return inside & (zero <= of.radius) & (zero <= of.acceleration) & (zero <= of.drift) & (sizes <= all(kLargestNumber));
 }
 
 template <typename Kind>
-ORCHARD_INLINE void Lattice::make_all(std::span<const Motion> motions, std::span<const double> durations,
+ORCHARD_INLINE bool Lattice::make_all(std::span<const Motion> motions, std::span<const double> durations,
                                       BoxBlock& boxes) const noexcept {
   std::size_t i = 0;
-  for (; i + 4 <= motions.size(); i += 4) make_four<Kind>(&motions[i], &durations[i], boxes, i);
-  if (i == motions.size()) return;
+  typename Kind::Mask valid = spread<typename Kind::Numbers>(0.0) <= spread<typename Kind::Numbers>(0.0);
+  for (; i + 4 <= motions.size(); i += 4) valid = valid & make_four<Kind>(&motions[i], &durations[i], boxes, i);
+  if (i == motions.size()) return Kind::all(valid);
   std::array<Motion, 4> rest{};
   std::array<double, 4> rest_durations{};
   std::copy(motions.begin() + static_cast<std::ptrdiff_t>(i), motions.end(), rest.begin());
   std::copy_n(durations.begin() + static_cast<std::ptrdiff_t>(i), motions.size() - i, rest_durations.begin());
-  make_four<Kind>(rest.data(), rest_durations.data(), boxes, i);
+  for (std::size_t k = motions.size() - i; k < rest.size(); ++k) rest[k].position = origin_;  // nothing there
+  return Kind::all(valid & make_four<Kind>(rest.data(), rest_durations.data(), boxes, i));
 }
 
-void Lattice::boxes_plain(std::span<const Motion> motions, std::span<const double> durations,
+bool Lattice::boxes_plain(std::span<const Motion> motions, std::span<const double> durations,
                           BoxBlock& boxes) const noexcept {
-  make_all<PlainDoubles>(motions, durations, boxes);
+  return make_all<PlainDoubles>(motions, durations, boxes);
 }
 
 #ifdef ORCHARD_VECTORS
-ORCHARD_PER_MACHINE void Lattice::boxes_vectors(std::span<const Motion> motions, std::span<const double> durations,
+ORCHARD_PER_MACHINE bool Lattice::boxes_vectors(std::span<const Motion> motions, std::span<const double> durations,
                                                 BoxBlock& boxes) const noexcept {
-  make_all<VectorDoubles>(motions, durations, boxes);
+  return make_all<VectorDoubles>(motions, durations, boxes);
 }
 #else
-void Lattice::boxes_vectors(std::span<const Motion> motions, std::span<const double> durations,
+bool Lattice::boxes_vectors(std::span<const Motion> motions, std::span<const double> durations,
                             BoxBlock& boxes) const noexcept {
-  make_all<PlainDoubles>(motions, durations, boxes);
+  return make_all<PlainDoubles>(motions, durations, boxes);
 }
 #endif
 
-void Lattice::boxes(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes,
+bool Lattice::boxes(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes,
                     bool vectors) const noexcept {
-  vectors ? boxes_vectors(motions, durations, boxes) : boxes_plain(motions, durations, boxes);
+  return vectors ? boxes_vectors(motions, durations, boxes) : boxes_plain(motions, durations, boxes);
 }
 
 }  // namespace orchard::runtime::detail

@@ -1,6 +1,7 @@
 #include "orchard/runtime/broad_phase.h"
 
-#include <cassert>
+#include <algorithm>
+#include <cmath>
 
 #include "method.h"
 
@@ -22,10 +23,18 @@ MotionSource values_of(const std::vector<Motion>& values) {
   };
 }
 
-BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& options)
-    : state_(std::make_unique<State>(
-          State{detail::Roster(std::move(source), detail::Clock{options.start, options.time_step}), nullptr, {}})) {
-  assert(options.time_step > 0);
+bool is_valid(const BroadPhaseOptions& options) noexcept {
+  constexpr double kLeastStep = 1e-20, kLargestStep = 1e20;
+  const double step = options.time_step;
+  return kLeastStep <= step && step <= kLargestStep && std::fabs(options.start) <= kMostSteps * step;  // none is NaN
+}
+
+BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& wanted) {
+  const bool valid = is_valid(wanted);
+  const BroadPhaseOptions options = valid ? wanted : BroadPhaseOptions{};
+  state_ = std::make_unique<State>(
+      State{detail::Roster(std::move(source), detail::Clock{options.start, options.time_step}), nullptr, {}});
+  largest_time_ = valid ? kMostSteps * options.time_step : -1;
   state_->method = options.method == BroadPhaseMethod::events ? detail::make_events(state_->roster, options)
                                                               : detail::make_sleeping(state_->roster, options);
   next_time_ = wake_time_ = std::numeric_limits<double>::infinity();
@@ -53,7 +62,19 @@ void BroadPhase::note_next_step() {
 }
 
 Advance BroadPhase::process(double t_now, const WorkBudget* budget) {
+  if (!(std::fabs(t_now) <= largest_time_)) {
+    Advance refused{next_time_, {}};
+    refused.time_refused = true;
+    return refused;
+  }
   State& state = *state_;
+  std::vector<BodyIndex>& bodies_refused = state.roster.refused();
+  bodies_refused.clear();
+  const auto refused = [&]() -> std::span<const BodyIndex> {
+    std::sort(bodies_refused.begin(), bodies_refused.end());
+    bodies_refused.erase(std::unique(bodies_refused.begin(), bodies_refused.end()), bodies_refused.end());
+    return bodies_refused;
+  };
   const detail::Clock& clock = state.roster.clock;
   while (t_now >= wake_time_) {
     const Step now = state.next;
@@ -64,11 +85,11 @@ Advance BroadPhase::process(double t_now, const WorkBudget* budget) {
     note_next_step();
     if (!state.pairs.empty() || report.incomplete_from != kNoClass) {
       seen_time_ = clock.time(now);
-      return {seen_time_, state.pairs, report.incomplete_from, report.left_over};
+      return {seen_time_, state.pairs, report.incomplete_from, report.left_over, refused()};
     }
   }
-  seen_time_ = t_now;
-  return {next_time_, {}};
+  seen_time_ = std::max(seen_time_, t_now);
+  return {next_time_, {}, kNoClass, 0, refused()};
 }
 
 BodyId BroadPhase::id_of(BodyIndex index) const noexcept {
@@ -83,12 +104,13 @@ BodyId BroadPhase::take_in(BodyIndex body) {
 }
 
 BodyId BroadPhase::add(std::uint8_t importance) {
+  if (!valid() || !state_->roster.has_source()) return kNoBody;
   const BodyIndex body = state_->roster.add(importance);
   return body == kNoIndex ? kNoBody : take_in(body);
 }
 
 BodyId BroadPhase::add_static(const Motion& place, std::uint8_t importance) {
-  if (!is_valid(place)) return kNoBody;
+  if (!valid() || !is_valid(place)) return kNoBody;
   const BodyIndex body = state_->roster.add(importance);
   if (body == kNoIndex) return kNoBody;
   state_->roster.set_static(body, place);

@@ -177,7 +177,8 @@ std::size_t Events::memory_bytes() const noexcept {
   return sizeof(*this) + bytes_of(boxes_) + bytes_of(windows_) + bytes_of(places_) + bytes_of(pending_) +
          bytes_of(changed_) + bytes_of(entries_) + bytes_of(oversized_) + bytes_of(overlaps_) + bytes_of(due_) +
          bytes_of(events_) + bytes_of(waiting_) + bytes_of(tests_) + bytes_of(near_) + bytes_of(motions_) +
-         bytes_of(surveyed_) + backlog_.memory_bytes() + list_.memory_bytes() + grid_.memory_bytes() + calendar_.memory_bytes() - sizeof(calendar_);
+         bytes_of(surveyed_) + backlog_.memory_bytes() + list_.memory_bytes() + grid_.memory_bytes() +
+         calendar_.memory_bytes() - sizeof(calendar_);
 }
 
 std::unique_ptr<Method> make_events(Roster& roster, const BroadPhaseOptions& options) {

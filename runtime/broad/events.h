@@ -70,7 +70,10 @@ class Events final : public Method {
   void look_at(Step now, Step from, std::span<const BodyIndex> bodies);
   std::size_t known_at(Step from, std::span<BodyIndex> bodies) noexcept;
   Step window_end(Step from, const Motion& motion) noexcept;
-  void place(Look& look, std::span<const BodyIndex> bodies);
+  std::size_t refuse_invalid(std::span<BodyIndex> bodies);
+  void refuse(BodyIndex body);
+  bool place(Look& look, std::span<const BodyIndex> bodies);
+  bool place_in_grid(Look& look, std::span<const BodyIndex> bodies);
   void shrink(Look& look, BodyIndex body, std::size_t i);
   void insert(Look& look, std::span<const BodyIndex> bodies);
   void meet_oversized(std::span<const BodyIndex> bodies);

@@ -32,6 +32,7 @@ bool cells_fit(const QuantumBox& box) noexcept {
 struct Events::Look {
   Step now;                              // the motions are of this step,
   Step from;                             // and count from this one
+  std::array<Step, kBlock> ends;         // of the bodies' windows
   std::array<double, kBlock> durations;  // until the ends of the bodies' windows
   BoxBlock boxes;
   SweptGrid::Queue queue;
@@ -54,8 +55,9 @@ Step Events::window_end(Step from, const Motion& motion) noexcept {
   return last_end_ = from + window;
 }
 
-// Makes the boxes of a block of bodies, until the ends of their windows.
-void Events::place(Look& look, std::span<const BodyIndex> bodies) {
+// Makes the boxes of a block of bodies, until the ends of their windows. Does nothing and returns false if a motion is
+// not valid.
+bool Events::place(Look& look, std::span<const BodyIndex> bodies) {
   const auto motions = std::span(std::as_const(motions_)).first(bodies.size());
   const auto duration = [&](Step end) {
     return end == kNeverStep ? 0 : static_cast<double>(end - 1 - look.now) * options_.time_step;
@@ -65,36 +67,45 @@ void Events::place(Look& look, std::span<const BodyIndex> bodies) {
   bool same = !roster_.any_static();
   for (const Motion& motion : motions) same = same && motion.expiry == motions[0].expiry;
   look.durations.fill(duration(common));
+  look.ends.fill(common);
+  bool valid = true;
+  for (std::size_t i = 0; !same && i < bodies.size(); ++i) {
+    look.ends[i] = roster_.is_static(bodies[i]) ? kNeverStep : window_end(look.from, motions[i]);
+    look.durations[i] = duration(look.ends[i]);
+    valid = valid && !std::isnan(motions[i].expiry);
+  }
+  const auto durations = std::span(look.durations).first(bodies.size());
+  valid = lattice_.boxes(motions, durations, look.boxes, options_.vectors) && valid;
+  const auto is_one = [](const Motion& motion) { return is_valid(motion); };
+  if (!valid && !std::all_of(motions.begin(), motions.end(), is_one)) return false;
+
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    Step end = common;
-    if (!same) {
-      end = roster_.is_static(bodies[i]) ? kNeverStep : window_end(look.from, motions[i]);
-      look.durations[i] = duration(end);
-    }
-    windows_[bodies[i]] = {round_, end};
+    windows_[bodies[i]] = {round_, look.ends[i]};
     places_[bodies[i]] = Place::inside;
   }
   for (std::size_t i = 0; i < bodies.size(); i += kMeansStride) means_.add(motions[i]);
-  lattice_.boxes(motions, std::span(look.durations).first(bodies.size()), look.boxes, options_.vectors);
-  if (!few_) {
-    for (std::size_t i = 0; i < bodies.size(); ++i) boxes_[bodies[i]] = look.boxes.get(i);
-    if (excess_cells(look.boxes, bodies.size()) != 0) {
-      same = false;
-      for (std::size_t i = 0; i < bodies.size(); ++i) {
-        if (!cells_fit(boxes_[bodies[i]])) shrink(look, bodies[i], i);
-      }
-    }
-  }
+  if (!few_ && !place_in_grid(look, bodies)) same = false;
   if (same) {
     if (common != kNeverStep) calendar_.set_due(bodies, common);
     vote(common, bodies.size());
-    return;
+    return true;
   }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Step end = windows_[bodies[i]].end;
     if (end != kNeverStep) calendar_.set_due(bodies.subspan(i, 1), end);
     vote(end, 1);
   }
+  return true;
+}
+
+// False if a window had to be cut short.
+bool Events::place_in_grid(Look& look, std::span<const BodyIndex> bodies) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) boxes_[bodies[i]] = look.boxes.get(i);
+  if (excess_cells(look.boxes, bodies.size()) == 0) return true;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (!cells_fit(boxes_[bodies[i]])) shrink(look, bodies[i], i);
+  }
+  return false;
 }
 
 // Faster than the others: look at it again sooner, until its box takes few enough cells.
@@ -133,6 +144,28 @@ std::size_t Events::known_at(Step from, std::span<BodyIndex> bodies) noexcept {
   return front;
 }
 
+// Moves those whose motions are valid, with these, to the front; returns how many.
+std::size_t Events::refuse_invalid(std::span<BodyIndex> bodies) {
+  std::size_t front = 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (!is_valid(motions_[i])) {
+      refuse(bodies[i]);
+      continue;
+    }
+    bodies[front] = bodies[i];
+    motions_[front++] = motions_[i];
+  }
+  return front;
+}
+
+// Its motion is not valid: it is in no pair until it has been asked again.
+void Events::refuse(BodyIndex body) {
+  roster_.refuse(body);
+  take_away(body);
+  windows_[body] = {kNeverStep, kLookDue};
+  changed(body);
+}
+
 // Where `from` is a later step than now, bodies whose bounds do not reach it are left to the next step.
 void Events::look_at(Step now, Step from, std::span<const BodyIndex> bodies) {
   motions_.resize(kBlock);
@@ -151,7 +184,12 @@ void Events::look_at(Step now, Step from, std::span<const BodyIndex> bodies) {
       block = std::span(known).first(front);
       if (block.empty()) continue;
     }
-    place(look, block);
+    if (!place(look, block)) {
+      if (block.data() != known.data()) std::copy(block.begin(), block.end(), known.begin());
+      block = std::span(known).first(refuse_invalid(std::span(known).first(block.size())));
+      if (block.empty()) continue;
+      place(look, block);
+    }
     insert(look, block);
   }
   if (!few_) grid_.finish(look.queue, boxes_, options_.vectors, near_);

@@ -23,7 +23,13 @@ void Events::test(Step now, std::span<const PairEvent> pairs) {
       bodies[2 * i + 1] = pairs[i].pair.b;
     }
     roster_.ask(now, std::span(bodies).first(2 * count), std::span(motions_).first(2 * count));
-    for (std::size_t i = 0; i < count; ++i) settle(now, pairs[i].pair, motions_[2 * i], motions_[2 * i + 1]);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Motion &a = motions_[2 * i], &b = motions_[2 * i + 1];
+      const bool valid_a = is_valid(a), valid_b = is_valid(b);
+      if (!valid_a) refuse(pairs[i].pair.a);
+      if (!valid_b) refuse(pairs[i].pair.b);
+      if (valid_a && valid_b) settle(now, pairs[i].pair, a, b);
+    }
     pairs = pairs.subspan(count);
   }
 }

@@ -72,6 +72,7 @@ bool Events::survey(Step now, Meter& meter) {
   std::vector<Vec3> centers;
   means_ = {};
   for (const Motion& motion : surveyed_) {
+    if (!is_valid(motion)) continue;
     means_.add(motion);
     centers.push_back(motion.position);
   }

@@ -33,10 +33,11 @@ double half_space_contact(const Motion& a, const Motion& b, double slack) noexce
 }  // namespace
 
 bool is_valid(const Motion& m) noexcept {
+  const auto in_range = [](double x) { return std::fabs(x) <= kLargestNumber; };  // false for NaN
   for (std::size_t i = 0; i < 3; ++i) {
-    if (!std::isfinite(m.position[i]) || !std::isfinite(m.velocity[i]) || !std::isfinite(m.half_space[i])) return false;
+    if (!in_range(m.position[i]) || !in_range(m.velocity[i]) || !in_range(m.half_space[i])) return false;
   }
-  const auto bound = [](double x) { return std::isfinite(x) && x >= 0; };
+  const auto bound = [&](double x) { return in_range(x) && x >= 0; };
   return bound(m.radius) && bound(m.acceleration) && bound(m.drift) && !std::isnan(m.expiry);
 }
 

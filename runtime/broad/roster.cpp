@@ -90,7 +90,8 @@ void Roster::ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion>
 
 std::size_t Roster::memory_bytes() const noexcept {
   return bytes_of(in_class_) + bytes_of(generations_) + bytes_of(importance_) + bytes_of(static_slot_) +
-         bytes_of(static_motions_) + bytes_of(free_slots_) + bytes_of(free_) + bytes_of(moving_) + bytes_of(answers_);
+         bytes_of(static_motions_) + bytes_of(free_slots_) + bytes_of(free_) + bytes_of(moving_) + bytes_of(refused_) +
+         bytes_of(answers_);
 }
 
 }  // namespace orchard::runtime::detail

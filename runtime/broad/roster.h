@@ -58,11 +58,12 @@ class Meter {
     late_ = late_ || std::chrono::steady_clock::now() - begin_ >= budget_.time;
     return late_;
   }
+  // Units that may still be done; at least 1.
+  std::uint64_t left() const noexcept { return budget_.work > done_ ? budget_.work - done_ : 1; }
   // How many of `wanted` units may be done before asking again.
   std::size_t grant(std::size_t wanted) const noexcept {
     if (!limited()) return wanted;
-    const std::uint64_t left = budget_.work > done_ ? budget_.work - done_ : 1;
-    return std::min({wanted, std::size_t{kWorkPerClock}, static_cast<std::size_t>(left)});
+    return std::min({wanted, std::size_t{kWorkPerClock}, static_cast<std::size_t>(left())});
   }
 
  private:
@@ -100,6 +101,10 @@ class Roster {
 
   // motions[i] is that of bodies[i] at the step.
   void ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions);
+  // Bodies whose motions were not valid when they were asked for, in the course of a call of advance().
+  void refuse(BodyIndex body) { refused_.push_back(body); }
+  std::vector<BodyIndex>& refused() noexcept { return refused_; }
+  bool has_source() const noexcept { return static_cast<bool>(source_); }
   std::uint64_t asked() const noexcept { return asked_; }
   std::size_t memory_bytes() const noexcept;
 
@@ -112,7 +117,7 @@ class Roster {
   std::vector<std::uint32_t> static_slot_;  // empty until there is a static body
   std::vector<Motion> static_motions_;
   std::vector<std::uint32_t> free_slots_;
-  std::vector<BodyIndex> free_, moving_;
+  std::vector<BodyIndex> free_, moving_, refused_;
   std::vector<Motion> answers_;
   std::size_t size_ = 0;
   std::uint64_t asked_ = 0;

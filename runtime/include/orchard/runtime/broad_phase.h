@@ -1,5 +1,6 @@
 #pragma once
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -31,7 +32,9 @@ struct BodyPair {
   friend auto operator<=>(const BodyPair&, const BodyPair&) = default;
 };
 
-// Fills motions[i] with what is known of bodies[i] at `time`, the time of a step. A pair of bodies may come up twice.
+// Fills motions[i] with what is known of bodies[i] at `time`, the time of a step. A body may come up twice.
+// A motion that is not valid (NaN, infinite, a negative radius, ..: see is_valid() in motion.h) is refused: the body is
+// in no pair, is asked again at the next step, and is named in Advance::refused.
 using MotionSource = std::function<void(double time, std::span<const BodyIndex> bodies, std::span<Motion> motions)>;
 
 // For an application that keeps all motions as values, by BodyIndex, as of the time it calls advance() with. It calls
@@ -62,6 +65,14 @@ struct BroadPhaseOptions {
   bool vectors = true;  // false: the portable inner loop. Same answers
 };
 
+// Times are at most so many time steps before and after 0 (348 years at a step of 0.01 seconds): beyond, rounding would
+// blur the steps.
+inline constexpr double kMostSteps = 0x1p40;
+
+// time_step is from 1e-20 to 1e20 and start is a time: not NaN, not infinite, within kMostSteps time steps. A
+// BroadPhase with other options refuses all bodies and all times.
+bool is_valid(const BroadPhaseOptions& options) noexcept;
+
 // Whichever ends first (8.2). A unit of work is a motion asked for; a call gets through at least one of them. The clock
 // is read once per kWorkPerClock units.
 struct WorkBudget {
@@ -79,6 +90,10 @@ struct Advance {
   // Interrupted: pairs with a body of this importance class or a higher one may be missing. kNoClass: none is.
   unsigned incomplete_from = kNoClass;
   std::size_t left_over = 0;  // bodies and pairs that could not be asked for within the budget; 0: nothing is missing
+  // Bodies whose motions were not valid at one of the steps that this call processed: they were in no pair there. In
+  // ascending order; valid as long as the pairs.
+  std::span<const BodyIndex> refused{};
+  bool time_refused = false;  // t_now is NaN, infinite or too far away (kMostSteps): nothing was done
 };
 
 // Tells which bodies' bounding spheres overlap, and until when nothing can happen, from bounds on their motion
@@ -108,7 +123,7 @@ class BroadPhase {
   ~BroadPhase();
 
   // What changes between two calls of advance() takes part from the first step after the time of the last report.
-  // importance: 0 is the highest class. kNoBody if there are kMaxBodies already.
+  // importance: 0 is the highest class. kNoBody if there are kMaxBodies already, or no source.
   BodyId add(std::uint8_t importance = 0);
   // Never asked for again. Takes the position and the radius; kNoBody if the motion is not valid, too.
   BodyId add_static(const Motion& place, std::uint8_t importance = 0);
@@ -123,9 +138,10 @@ class BroadPhase {
   BodyId id_of(BodyIndex index) const noexcept;  // of the body that has the index now; kNoBody: none
   bool contains(BodyId body) const noexcept { return body != kNoBody && id_of(body.index) == body; }
 
-  // Processes the steps up to t_now that may have something, and stops at the first one that has.
+  // Processes the steps up to t_now that may have something, and stops at the first one that has. A long time ahead
+  // takes a long time: a body is looked at every 254 steps at least.
   Advance advance(double t_now) {
-    if (t_now >= wake_time_) return process(t_now, nullptr);
+    if (!sleeps_until(t_now)) return process(t_now, nullptr);
     seen_time_ = t_now > seen_time_ ? t_now : seen_time_;
     return {next_time_, {}};
   }
@@ -133,27 +149,30 @@ class BroadPhase {
   // over is done at the next step. The methods that sleep are interrupted while they ask for motions, not while they
   // search.
   Advance advance(double t_now, const WorkBudget& budget) {
-    if (t_now >= wake_time_) return process(t_now, &budget);
+    if (!sleeps_until(t_now)) return process(t_now, &budget);
     seen_time_ = t_now > seen_time_ ? t_now : seen_time_;
     return {next_time_, {}};
   }
 
-  double next_time() const noexcept { return next_time_; }  // nothing happens before
-  std::size_t size() const noexcept;                        // bodies
-  std::size_t memory_bytes() const noexcept;                // held on the heap
-  std::uint64_t motions_asked() const noexcept;             // of the source, so far
+  bool valid() const noexcept { return largest_time_ >= 0; }  // the options are
+  double next_time() const noexcept { return next_time_; }    // nothing happens before
+  std::size_t size() const noexcept;                          // bodies
+  std::size_t memory_bytes() const noexcept;                  // held on the heap
+  std::uint64_t motions_asked() const noexcept;               // of the source, so far
 
  private:
   struct State;
   Advance process(double t_now, const WorkBudget* budget);
   BodyId take_in(BodyIndex body);
+  bool sleeps_until(double t) const noexcept { return t < wake_time_ && std::fabs(t) <= largest_time_; }
   void wake_for_change();
   void note_next_step();
 
   std::unique_ptr<State> state_;
-  double next_time_ = 0;  // of the next step with anything to do
-  double wake_time_ = 0;  // the same, a rounding error earlier
-  double seen_time_ = 0;  // up to when everything has been reported
+  double next_time_ = 0;      // of the next step with anything to do
+  double wake_time_ = 0;      // the same, a rounding error earlier
+  double largest_time_ = -1;  // in size; below 0: no time is accepted
+  double seen_time_ = 0;      // up to when everything has been reported
 };
 
 }  // namespace orchard::runtime

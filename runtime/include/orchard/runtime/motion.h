@@ -31,7 +31,12 @@ struct Motion {
 // Of positions, relative to the largest coordinate that a pair has while its bounds hold.
 inline constexpr double kMotionSlack = 1e-12;
 
-// Finite, not negative where that has no sense, expiry not NaN. Every function that takes a Motion requires it.
+// No number of a motion, and no time step, is larger: squares and products stay finite.
+inline constexpr double kLargestNumber = 1e100;
+
+// All numbers finite and at most kLargestNumber in size (expiry: any time, infinity too, but not NaN); radius,
+// acceleration and drift not negative. Every function that takes a Motion requires it, but for BroadPhase, which refuses
+// the others.
 bool is_valid(const Motion& motion) noexcept;
 
 // 8.2: only the speed is bounded. The bound is the ball that the body can reach.
