@@ -7,6 +7,7 @@ namespace orchard::runtime {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kLeastLength = 1e-150;  // squares of less vanish: spheres_touch() takes it for 0
 constexpr int kMaxRounds = 100;  // a grazing contact halves the gap per round; stopping early is early, not late
 
 double largest(const Vec3& v) noexcept { return std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])}); }
@@ -56,7 +57,7 @@ double motion_slack(const Motion& a, const Motion& b, double duration) noexcept 
   const auto reach = [&](const Motion& m) {
     return largest(m.position) + m.radius + duration * (largest(m.velocity) + m.drift + duration * m.acceleration / 2);
   };
-  return kMotionSlack * (reach(a) + reach(b));
+  return kMotionSlack * (reach(a) + reach(b)) + kLeastLength;
 }
 
 double first_closing(double gap, double slope, double acceleration) noexcept {
