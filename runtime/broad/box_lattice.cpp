@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "../vector_support.h"
+#include "horn.h"
 
 namespace orchard::runtime::detail {
 namespace {
@@ -88,10 +89,12 @@ struct VectorDoubles {
 
 }  // namespace
 
-Lattice::Lattice(const Vec3& origin, double cell_size) noexcept : origin_(origin), per_length_(kQuanta / cell_size) {
+Lattice::Lattice(const Vec3& origin, double cell_size, double slack) noexcept
+    : origin_(origin), per_length_(kQuanta / cell_size) {
   double size = 0;
   for (const double x : origin) size = std::max(size, std::fabs(x));
-  margin_ = kRoundingQuanta + 8 * kMotionSlack * (size * per_length_ + kLastQuantum);
+  margin_ =
+      kRoundingQuanta + 8 * kMotionSlack * (size * per_length_ + kLastQuantum) + (slack + kLeastLength) * per_length_;
 }
 
 // The centre's offset along an axis is at most v t + wide(t), which is convex: largest at an end. Likewise below. A box

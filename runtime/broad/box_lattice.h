@@ -43,7 +43,8 @@ struct BoxBlock {
 class Lattice {
  public:
   Lattice() = default;
-  Lattice(const Vec3& origin, double cell_size) noexcept;
+  // slack: what positions may be wrong by
+  Lattice(const Vec3& origin, double cell_size, double slack) noexcept;
 
   const Vec3& origin() const noexcept { return origin_; }
   // Box i holds body i's sphere for durations[i] seconds from its motion's time; at most kBlock of them. False if a

@@ -26,7 +26,9 @@ MotionSource values_of(const std::vector<Motion>& values) {
 bool is_valid(const BroadPhaseOptions& options) noexcept {
   constexpr double kLeastStep = 1e-20, kLargestStep = 1e20;
   const double step = options.time_step;
-  return kLeastStep <= step && step <= kLargestStep && std::fabs(options.start) <= kMostSteps * step;  // none is NaN
+  const double slack = options.position_slack;
+  return 0 <= slack && slack <= kLargestNumber && kLeastStep <= step && step <= kLargestStep &&
+         std::fabs(options.start) <= kMostSteps * step;  // none is NaN
 }
 
 BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& wanted) {

@@ -44,6 +44,7 @@ Step Events::known_until(BodyIndex body, Step now) const noexcept {
 void Events::settle(Step now, const BodyPair& pair, const Motion& a, const Motion& b) {
   if (roster_.is_static(pair.a) && roster_.is_static(pair.b)) return;
   const Clock& clock = roster_.clock;
+  const double slack = 4 * options_.position_slack;  // of two bodies, now and later
   // Until the next look at one of them, or a bound expires.
   const Step safe = std::min(clock.last_before_expiry(a.expiry), clock.last_before_expiry(b.expiry)) - now;
   const Step left = std::min({known_until(pair.a, now), known_until(pair.b, now), now + kLongestWindow}) - now;
@@ -52,12 +53,12 @@ void Events::settle(Step now, const BodyPair& pair, const Motion& a, const Motio
     if (prepared_round_ == round_) {  // reported already
       calendar_.add({pair, round_}, now + 1);
     } else {
-      overlaps_.push_back({pair, round_, now + clock.steps_within(overlap_lasts(a, b, seconds))});
+      overlaps_.push_back({pair, round_, now + clock.steps_within(overlap_lasts(a, b, seconds, slack))});
     }
     return;
   }
   if (left <= 1) return;
-  const double contact = earliest_contact(a, b, seconds, kEventResolution * options_.time_step);
+  const double contact = earliest_contact(a, b, seconds, kEventResolution * options_.time_step, slack);
   Step ahead = contact <= seconds ? std::max<Step>(1, clock.steps_before(contact)) : kNeverStep;
   if (safe < left) ahead = std::min(ahead, std::max<Step>(0, safe) + 1);
   if (ahead < left) calendar_.add({pair, round_}, now + ahead);

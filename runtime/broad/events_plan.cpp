@@ -43,7 +43,7 @@ bool Events::replan(Step now, Meter& meter) {
   }
   correction_ = std::clamp(correction_ * off, 0.05, 50.0);
   plan_ = plan_window(means_, n, spacing_, options_.time_step, correction_, options_.window);
-  lattice_ = Lattice(lattice_.origin(), plan_.cell_size);
+  lattice_ = Lattice(lattice_.origin(), plan_.cell_size, 2 * options_.position_slack);
   means_ = {};
   return true;
 }
@@ -77,7 +77,7 @@ bool Events::survey(Step now, Meter& meter) {
     centers.push_back(motion.position);
   }
   surveyed_.clear();
-  lattice_ = Lattice(centers.empty() ? Vec3{} : centers.front(), 1);
+  lattice_ = Lattice(centers.empty() ? Vec3{} : centers.front(), 1, 0);
   spacing_ = mean_spacing(centers, n);
   planned_bodies_ = n;
   correction_ = 1;

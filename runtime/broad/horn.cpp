@@ -7,7 +7,6 @@ namespace orchard::runtime {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kLeastLength = 1e-150;  // squares of less vanish: spheres_touch() takes it for 0
 constexpr int kMaxRounds = 100;  // a grazing contact halves the gap per round; stopping early is early, not late
 
 double largest(const Vec3& v) noexcept { return std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])}); }
@@ -67,9 +66,9 @@ double first_closing(double gap, double slope, double acceleration) noexcept {
   return acceleration > 0 ? (slope + root) / acceleration : kNever;
 }
 
-double overlap_lasts(const Motion& a, const Motion& b, double limit) noexcept {
+double overlap_lasts(const Motion& a, const Motion& b, double limit, double slack) noexcept {
   const Vec3 offset = b.position - a.position, velocity = b.velocity - a.velocity;
-  const double spare = a.radius + b.radius - std::sqrt(dot(offset, offset)) - motion_slack(a, b, limit);
+  const double spare = a.radius + b.radius - std::sqrt(dot(offset, offset)) - motion_slack(a, b, limit) - slack;
   const double speed = std::sqrt(dot(velocity, velocity)) + a.drift + b.drift;
   return std::min(limit, first_closing(spare, -speed, a.acceleration + b.acceleration));
 }
@@ -92,8 +91,8 @@ double horn_contact(const HornPair& pair, double limit, double resolution) noexc
 
 }  // namespace detail
 
-double earliest_contact(const Motion& a, const Motion& b, double limit, double resolution) noexcept {
-  const double slack = detail::motion_slack(a, b, limit);
+double earliest_contact(const Motion& a, const Motion& b, double limit, double resolution, double more) noexcept {
+  const double slack = detail::motion_slack(a, b, limit) + more;
   const detail::HornPair pair{b.position - a.position, b.velocity - a.velocity, a.radius + b.radius + slack,
                               a.drift + b.drift, a.acceleration + b.acceleration};
   double contact = detail::horn_contact(pair, limit, resolution);

@@ -27,7 +27,10 @@ IntersectionOptions find_options(BroadPhaseMethod method) {
 }  // namespace
 
 Sleeping::Sleeping(Roster& roster, const BroadPhaseOptions& options)
-    : roster_(roster), rebuild_all_(options.rebuild == Rebuild::everything), find_(find_options(options.method)) {}
+    : roster_(roster),
+      rebuild_all_(options.rebuild == Rebuild::everything),
+      slack_(2 * options.position_slack),  // now, and at the start of the bound
+      find_(find_options(options.method)) {}
 
 void Sleeping::changed(BodyIndex body) {
   if (known_.size() < roster_.slots()) known_.resize(roster_.slots());
@@ -73,7 +76,7 @@ void Sleeping::find(Step now) {
   bounds_.clear();
   for (const BodyIndex body : present_) {
     const double age = static_cast<double>(now - known_[body].asked) * roster_.clock.time_step;
-    bounds_.push_back(make_bound(known_[body].motion, age, duration));
+    bounds_.push_back(make_bound(known_[body].motion, age, duration, slack_));
     bounds_.back().fixed = roster_.is_static(body);
   }
   found_ = &finder_.find(bounds_, duration, find_);

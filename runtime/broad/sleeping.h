@@ -50,6 +50,7 @@ class Sleeping final : public Method {
 
   Roster& roster_;
   const bool rebuild_all_;
+  const double slack_;  // of a body's bound
   const IntersectionOptions find_;
   IntersectionFinder finder_;
   std::vector<Known> known_;  // by body

@@ -63,14 +63,17 @@ struct BroadPhaseOptions {
   // `events`: most steps between two looks at a body's surroundings; 0 lets the broad phase choose.
   std::uint32_t window = 0;
   bool vectors = true;  // false: the portable inner loop. Same answers
+  // How far each position that the source gives may lie from one for which the bounds hold: for positions rounded to
+  // float float_slack() in motion_helpers.h. A length; it costs what radii larger by twice as much would.
+  double position_slack = 0;
 };
 
 // Times are at most so many time steps before and after 0 (348 years at a step of 0.01 seconds): beyond, rounding would
 // blur the steps.
 inline constexpr double kMostSteps = 0x1p40;
 
-// time_step is from 1e-20 to 1e20 and start is a time: not NaN, not infinite, within kMostSteps time steps. A
-// BroadPhase with other options refuses all bodies and all times.
+// time_step is from 1e-20 to 1e20, position_slack from 0 to kLargestNumber, and start is a time: not NaN, not infinite,
+// within kMostSteps time steps. A BroadPhase with other options refuses all bodies and all times.
 bool is_valid(const BroadPhaseOptions& options) noexcept;
 
 // Whichever ends first (8.2). A unit of work is a motion asked for; a call gets through at least one of them. The clock
