@@ -67,7 +67,6 @@ bool Events::place(Look& look, std::span<const BodyIndex> bodies) {
   bool same = !roster_.any_static();
   for (const Motion& motion : motions) same = same && motion.expiry == motions[0].expiry;
   look.durations.fill(duration(common));
-  look.ends.fill(common);
   bool valid = true;
   for (std::size_t i = 0; !same && i < bodies.size(); ++i) {
     look.ends[i] = roster_.is_static(bodies[i]) ? kNeverStep : window_end(look.from, motions[i]);
@@ -80,7 +79,7 @@ bool Events::place(Look& look, std::span<const BodyIndex> bodies) {
   if (!valid && !std::all_of(motions.begin(), motions.end(), is_one)) return false;
 
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    windows_[bodies[i]] = {round_, look.ends[i]};
+    windows_[bodies[i]] = {round_, same ? common : look.ends[i]};
     places_[bodies[i]] = Place::inside;
   }
   for (std::size_t i = 0; i < bodies.size(); i += kMeansStride) means_.add(motions[i]);
