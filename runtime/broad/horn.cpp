@@ -33,11 +33,16 @@ double half_space_contact(const Motion& a, const Motion& b, double slack) noexce
 }  // namespace
 
 bool is_valid(const Motion& m) noexcept {
-  const auto in_range = [](double x) { return std::fabs(x) <= kLargestNumber; };  // false for NaN
+  // Without branches, and mostly enough: NaN stays in a sum and fails the comparison.
+  const double squares = dot(m.position, m.position) + dot(m.velocity, m.velocity) + dot(m.half_space, m.half_space) +
+                         (m.radius * m.radius + m.acceleration * m.acceleration + m.drift * m.drift);
+  const bool in_range = squares <= kLargestNumber * kLargestNumber, signs = m.radius >= 0 && m.acceleration >= 0;
+  if (in_range && signs && m.drift >= 0 && !std::isnan(m.expiry)) return true;
+  const auto fits = [](double x) { return std::fabs(x) <= kLargestNumber; };
   for (std::size_t i = 0; i < 3; ++i) {
-    if (!in_range(m.position[i]) || !in_range(m.velocity[i]) || !in_range(m.half_space[i])) return false;
+    if (!fits(m.position[i]) || !fits(m.velocity[i]) || !fits(m.half_space[i])) return false;
   }
-  const auto bound = [&](double x) { return in_range(x) && x >= 0; };
+  const auto bound = [&](double x) { return fits(x) && x >= 0; };
   return bound(m.radius) && bound(m.acceleration) && bound(m.drift) && !std::isnan(m.expiry);
 }
 

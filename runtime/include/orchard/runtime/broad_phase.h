@@ -76,8 +76,9 @@ inline constexpr double kMostSteps = 0x1p40;
 // within kMostSteps time steps. A BroadPhase with other options refuses all bodies and all times.
 bool is_valid(const BroadPhaseOptions& options) noexcept;
 
-// Whichever ends first (8.2). A unit of work is a motion asked for; a call gets through at least one of them. The clock
-// is read once per kWorkPerClock units.
+// Whichever ends first (8.2). A unit of work is a motion asked for; a call gets through at least one of them. A pair's
+// test takes two and is not split, so a step may ask for one more than `work`. The clock is read once per kWorkPerClock
+// units.
 struct WorkBudget {
   std::uint64_t work = std::numeric_limits<std::uint64_t>::max();
   std::chrono::nanoseconds time = std::chrono::nanoseconds::max();
@@ -149,8 +150,9 @@ class BroadPhase {
     return {next_time_, {}};
   }
   // The same, within a budget per step: the bodies and pairs of the more important classes come first; what is left
-  // over is done at the next step. The methods that sleep are interrupted while they ask for motions, not while they
-  // search.
+  // over is resumed at the next step. Any budget gets to every body and pair of a class in time, unless a more
+  // important class takes it all. Each pair reported was tested at this step. The methods that sleep are interrupted
+  // while they ask for motions, not while they search.
   Advance advance(double t_now, const WorkBudget& budget) {
     if (!sleeps_until(t_now)) return process(t_now, &budget);
     seen_time_ = t_now > seen_time_ ? t_now : seen_time_;
