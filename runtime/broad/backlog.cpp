@@ -74,7 +74,7 @@ std::size_t Backlog::size() const noexcept {
 }
 
 std::size_t Backlog::memory_bytes() const noexcept {
-  std::size_t bytes = bytes_of(ranks_) + bytes_of(links_);
+  std::size_t bytes = ranks_.size() * sizeof(Rank) + bytes_of(links_);
   for (const Rank& rank : ranks_) bytes += rank.found.memory_bytes() + rank.due.memory_bytes();
   return bytes;
 }

@@ -1,4 +1,6 @@
 #pragma once
+#include <deque>
+
 #include "calendar.h"
 
 namespace orchard::runtime::detail {
@@ -62,7 +64,7 @@ class Backlog {
     bool waits = false;
   };
 
-  std::vector<Rank> ranks_;
+  std::deque<Rank> ranks_;   // stay where they are when others come
   std::vector<Link> links_;  // by body; empty until a body waits
 };
 

@@ -100,6 +100,7 @@ void Events::step_in_full(Step now, bool completing) {
       replan(now, unlimited);
       place_all_anew();
     } else {
+      make_room_for_boxes();
       take_away_due();
     }
   }
