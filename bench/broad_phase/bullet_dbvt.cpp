@@ -10,7 +10,7 @@ class BulletDbvt final : public Rival {
  public:
   BulletDbvt(const std::vector<Vec3>& positions, const std::vector<double>& radii)
       : positions_(positions), radii_(radii) {
-    for (BodyId i = 0; i < positions.size(); ++i) {
+    for (BodyIndex i = 0; i < positions.size(); ++i) {
       btVector3 low, high;
       box(i, low, high);
       proxies_.push_back(
@@ -22,7 +22,7 @@ class BulletDbvt final : public Rival {
   }
 
   void find(std::vector<BodyPair>& pairs) override {
-    for (BodyId i = 0; i < proxies_.size(); ++i) {
+    for (BodyIndex i = 0; i < proxies_.size(); ++i) {
       btVector3 low, high;
       box(i, low, high);
       tree_.setAabb(proxies_[i], low, high, nullptr);
@@ -30,8 +30,8 @@ class BulletDbvt final : public Rival {
     tree_.calculateOverlappingPairs(nullptr);
     btBroadphasePairArray& near = tree_.getOverlappingPairCache()->getOverlappingPairArray();
     for (int k = 0; k < near.size(); ++k) {
-      const auto i = static_cast<BodyId>(reinterpret_cast<std::uintptr_t>(near[k].m_pProxy0->m_clientObject));
-      const auto j = static_cast<BodyId>(reinterpret_cast<std::uintptr_t>(near[k].m_pProxy1->m_clientObject));
+      const auto i = static_cast<BodyIndex>(reinterpret_cast<std::uintptr_t>(near[k].m_pProxy0->m_clientObject));
+      const auto j = static_cast<BodyIndex>(reinterpret_cast<std::uintptr_t>(near[k].m_pProxy1->m_clientObject));
       const Vec3 apart = runtime::operator-(positions_[j], positions_[i]);
       const double reach = radii_[i] + radii_[j];
       if (runtime::dot(apart, apart) <= reach * reach) pairs.push_back({std::min(i, j), std::max(i, j)});
@@ -39,7 +39,7 @@ class BulletDbvt final : public Rival {
   }
 
  private:
-  void box(BodyId i, btVector3& low, btVector3& high) const {
+  void box(BodyIndex i, btVector3& low, btVector3& high) const {
     const auto at = [&](double side) {
       return btVector3(static_cast<btScalar>(positions_[i][0] + side * radii_[i]),
                        static_cast<btScalar>(positions_[i][1] + side * radii_[i]),

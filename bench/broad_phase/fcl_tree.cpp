@@ -10,7 +10,7 @@ namespace {
 class FclTree final : public Rival {
  public:
   FclTree(const std::vector<Vec3>& positions, const std::vector<double>& radii) : positions_(positions), radii_(radii) {
-    for (BodyId i = 0; i < positions.size(); ++i) {
+    for (BodyIndex i = 0; i < positions.size(); ++i) {
       objects_.push_back(std::make_unique<fcl::CollisionObjectd>(std::make_shared<fcl::Sphered>(radii[i])));
       objects_.back()->setUserData(reinterpret_cast<void*>(static_cast<std::uintptr_t>(i)));
     }
@@ -27,8 +27,8 @@ class FclTree final : public Rival {
     Found found{this, &pairs};
     manager_.collide(&found, [](fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* data) {
       const Found& f = *static_cast<Found*>(data);
-      const auto i = static_cast<BodyId>(reinterpret_cast<std::uintptr_t>(a->getUserData()));
-      const auto j = static_cast<BodyId>(reinterpret_cast<std::uintptr_t>(b->getUserData()));
+      const auto i = static_cast<BodyIndex>(reinterpret_cast<std::uintptr_t>(a->getUserData()));
+      const auto j = static_cast<BodyIndex>(reinterpret_cast<std::uintptr_t>(b->getUserData()));
       const Vec3 apart = runtime::operator-(f.tree->positions_[j], f.tree->positions_[i]);
       const double reach = f.tree->radii_[i] + f.tree->radii_[j];
       if (runtime::dot(apart, apart) <= reach * reach) f.pairs->push_back({std::min(i, j), std::max(i, j)});
@@ -42,7 +42,7 @@ class FclTree final : public Rival {
     std::vector<BodyPair>* pairs;
   };
   void move() {
-    for (BodyId i = 0; i < positions_.size(); ++i) {
+    for (BodyIndex i = 0; i < positions_.size(); ++i) {
       const Vec3& p = positions_[i];
       objects_[i]->setTranslation({p[0], p[1], p[2]});
       objects_[i]->computeAABB();

@@ -38,9 +38,9 @@ void Scene::next_step() {
 }
 
 runtime::MotionSource Scene::source() const {
-  return [this](double, std::span<const BodyId> bodies, std::span<Motion> motions) {
+  return [this](double, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
     for (std::size_t k = 0; k < bodies.size(); ++k) {
-      const BodyId i = bodies[k];
+      const BodyIndex i = bodies[k];
       const Drive& drive = drives_[i];
       Motion& motion = motions[k];
       motion.position = positions_[i];

@@ -7,7 +7,7 @@
 
 namespace orchard::bench {
 
-using runtime::BodyId;
+using runtime::BodyIndex;
 using runtime::BodyPair;
 using runtime::Motion;
 using runtime::Vec3;

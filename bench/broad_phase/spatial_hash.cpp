@@ -28,7 +28,7 @@ std::size_t SpatialHash::memory_bytes() const {
   return buckets_.capacity() * sizeof(Bucket) + entries_.capacity() * sizeof(Entry);
 }
 
-SpatialHash::Range SpatialHash::range_of(BodyId i) const {
+SpatialHash::Range SpatialHash::range_of(BodyIndex i) const {
   Range range;
   for (std::size_t d = 0; d < 3; ++d) {
     const double x = positions_[i][d] * per_length_ + kMiddle, r = radii_[i] * per_length_;
@@ -39,7 +39,7 @@ SpatialHash::Range SpatialHash::range_of(BodyId i) const {
 }
 
 template <bool Cubes>
-void SpatialHash::enter(BodyId i, const Range& range, std::vector<BodyPair>& pairs) {
+void SpatialHash::enter(BodyIndex i, const Range& range, std::vector<BodyPair>& pairs) {
   const auto& [first, last] = range;
   const Vec3& p = positions_[i];
   const double r = radii_[i];
@@ -76,10 +76,10 @@ void SpatialHash::find_all(std::vector<BodyPair>& pairs) {
   for (std::size_t begin = 0; begin < positions_.size(); begin += kAhead) {
     const std::size_t count = std::min(kAhead, positions_.size() - begin);
     for (std::size_t k = 0; k < count; ++k) {
-      ranges[k] = range_of(static_cast<BodyId>(begin + k));
+      ranges[k] = range_of(static_cast<BodyIndex>(begin + k));
       __builtin_prefetch(&buckets_[hash_of(ranges[k].first[0], ranges[k].first[1], ranges[k].first[2]) & mask_], 1);
     }
-    for (std::size_t k = 0; k < count; ++k) enter<Cubes>(static_cast<BodyId>(begin + k), ranges[k], pairs);
+    for (std::size_t k = 0; k < count; ++k) enter<Cubes>(static_cast<BodyIndex>(begin + k), ranges[k], pairs);
   }
 }
 

@@ -34,9 +34,9 @@ class SpatialHash final : public Rival {
   struct Range {
     std::array<std::uint32_t, 3> first, last;
   };
-  Range range_of(BodyId body) const;
+  Range range_of(BodyIndex body) const;
   template <bool Cubes>
-  void enter(BodyId body, const Range& range, std::vector<BodyPair>& pairs);
+  void enter(BodyIndex body, const Range& range, std::vector<BodyPair>& pairs);
   template <bool Cubes>
   void find_all(std::vector<BodyPair>& pairs);
 

@@ -14,7 +14,7 @@ class SweepAndPrune final : public Rival {
       for (std::size_t d = 0; d < 3; ++d) low[d] = std::min(low[d], p[d]), high[d] = std::max(high[d], p[d]);
     }
     for (std::size_t d = 1; d < 3; ++d) axis_ = high[d] - low[d] > high[axis_] - low[axis_] ? d : axis_;
-    for (BodyId i = 0; i < positions.size(); ++i) order_.push_back({0, i});
+    for (BodyIndex i = 0; i < positions.size(); ++i) order_.push_back({0, i});
     refresh();
     std::sort(order_.begin(), order_.end(), [](const Item& a, const Item& b) { return a.lower < b.lower; });
   }
@@ -29,11 +29,11 @@ class SweepAndPrune final : public Rival {
     }
     const std::size_t u = (axis_ + 1) % 3, v = (axis_ + 2) % 3;
     for (std::size_t k = 0; k < order_.size(); ++k) {
-      const BodyId i = order_[k].body;
+      const BodyIndex i = order_[k].body;
       const Vec3& p = positions_[i];
       const double upper = p[axis_] + radii_[i];
       for (std::size_t m = k + 1; m < order_.size() && order_[m].lower <= upper; ++m) {
-        const BodyId j = order_[m].body;
+        const BodyIndex j = order_[m].body;
         const Vec3& q = positions_[j];
         const double reach = radii_[i] + radii_[j], dy = q[u] - p[u], dz = q[v] - p[v];
         if (std::fabs(dy) > reach || std::fabs(dz) > reach) continue;
@@ -46,7 +46,7 @@ class SweepAndPrune final : public Rival {
  private:
   struct Item {
     double lower;
-    BodyId body;
+    BodyIndex body;
   };
   void refresh() {
     for (Item& item : order_) item.lower = positions_[item.body][axis_] - radii_[item.body];

@@ -51,7 +51,7 @@ void Cubes::solve_all(double time) {
 }
 
 runtime::MotionSource Cubes::source() {
-  return [this](double time, std::span<const BodyId> bodies, std::span<Motion> motions) {
+  return [this](double time, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
     const double begin = now();
     for (std::size_t k = 0; k < bodies.size(); ++k) {
       const Cube& cube = solved(bodies[k], time);
@@ -69,7 +69,7 @@ runtime::MotionSource Cubes::source() {
   };
 }
 
-bool Cubes::collide(BodyId a, BodyId b, double time) {
+bool Cubes::collide(BodyIndex a, BodyIndex b, double time) {
   const double begin = now();
   const Vec3 apart = solved(a, time).position - solved(b, time).position;
   solver_seconds += now() - begin;

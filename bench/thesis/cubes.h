@@ -20,7 +20,7 @@ class Cubes {
   std::size_t size() const { return cubes_.size(); }
   void solve_all(double time);
   runtime::MotionSource source();
-  bool collide(BodyId a, BodyId b, double time);
+  bool collide(BodyIndex a, BodyIndex b, double time);
 
  private:
   struct Period {

@@ -10,7 +10,7 @@
 using namespace orchard::runtime;
 
 int main() {
-  // Kept by the application, by body, as of the present frame: what is known of each body's motion.
+  // Kept by the application, by BodyIndex, as of the present frame: what is known of each body's motion.
   std::vector<Motion> motions;
   BroadPhase world(values_of(motions), {.time_step = 0.02});
 
@@ -37,10 +37,10 @@ int main() {
   for (int frame = 0; frame < frames; ++frame) {
     const double time = frame * dt;
     // The ship's bounds are given anew whenever the broad phase asks: they start from its present place.
-    motions[ship] = rocket_motion(rocket, time, 2);
+    motions[ship.index] = rocket_motion(rocket, time, 2);
     const Advance now = world.advance(time);
     for (const BodyPair& pair : now.pairs) {
-      if (pair.a != ship) continue;
+      if (pair.a != ship.index) continue;
       if (hits++ == 0) std::printf("%.2f s: the ship's sphere meets asteroid %u's\n", now.time, pair.b);
     }
     for (Motion& motion : motions) motion.position = motion.position + dt * motion.velocity;

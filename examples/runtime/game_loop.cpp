@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
   const double radius = coordinate_extent(tree) + std::sqrt(dot(tree.origin, tree.origin)), wall = 6 * radius;
 
   std::vector<Body> bodies;
-  std::vector<Motion> motions;  // by BodyId: steady flight between two bounces
+  std::vector<Motion> motions;  // by BodyIndex: steady flight between two bounces
   BroadPhase world(values_of(motions), {.time_step = 0.02});
   for (int i = 0; i < 27; ++i) {
     bodies.push_back({{std::sin(i), std::cos(i), 0.5}, 1.0 * i});
@@ -73,14 +73,16 @@ int main(int argc, char** argv) {
       if (approach >= 0) continue;  // already on their way apart
       ++bounces;
       a.velocity = a.velocity + approach * normal, b.velocity = b.velocity - approach * normal;
-      world.cancel(now.pairs[k].a), world.cancel(now.pairs[k].b);  // what was said about their motion is void
+      for (const BodyIndex i : {now.pairs[k].a, now.pairs[k].b}) {
+        world.cancel(world.id_of(i));  // what was said about its motion is void
+      }
     }
     for (std::size_t i = 0; i < motions.size(); ++i) {
       Motion& motion = motions[i];
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if (motion.position[axis] * motion.velocity[axis] <= 0 || std::fabs(motion.position[axis]) < wall) continue;
         motion.velocity[axis] *= -1;
-        world.cancel(static_cast<BodyId>(i));
+        world.cancel(world.id_of(static_cast<BodyIndex>(i)));
       }
       motion.position = motion.position + dt * motion.velocity;
     }

@@ -7,9 +7,9 @@
 
 namespace orchard::runtime {
 
-SpaceTimeBound make_bound(const Motion& motion, double age, double duration) noexcept {
+SpaceTimeBound make_bound(const Motion& motion, double age, double duration, double more) noexcept {
   SpaceTimeBound bound;
-  const double slack = detail::motion_slack(motion, motion, age + duration);
+  const double slack = detail::motion_slack(motion, motion, age + duration) + more;
   bound.center = motion.position + age * motion.velocity;
   bound.velocity = motion.velocity;
   bound.bend = motion.acceleration / 2;

@@ -6,6 +6,7 @@
 
 #include "../machine.h"
 #include "../vector_support.h"
+#include "horn.h"
 
 namespace orchard::runtime::detail {
 namespace {
@@ -18,6 +19,7 @@ template <typename Numbers>
 struct MotionColumns {
   std::array<Numbers, 3> position, velocity;
   Numbers radius, acceleration, drift;
+  Numbers rest;  // sums of the squares of drifts and half-spaces, of all four bodies, in any order
 };
 
 struct PlainDoubles {
@@ -37,8 +39,10 @@ struct PlainDoubles {
     result.radius = column([](const Motion& motion) { return motion.radius; });
     result.acceleration = column([](const Motion& motion) { return motion.acceleration; });
     result.drift = column([](const Motion& motion) { return motion.drift; });
+    result.rest = column([](const Motion& of) { return of.drift * of.drift + dot(of.half_space, of.half_space); });
     return result;
   }
+  static bool all(const Mask& mask) noexcept { return (mask[0] & mask[1] & mask[2] & mask[3]) != 0; }
   static void truncate(const Numbers& a, std::uint32_t* to) noexcept {
     for (std::size_t i = 0; i < 4; ++i) to[i] = static_cast<std::uint32_t>(static_cast<std::int32_t>(a[i]));
   }
@@ -69,14 +73,19 @@ struct VectorDoubles {
   }
   ORCHARD_INLINE static Columns columns(const Motion* m) noexcept {
     static_assert(offsetof(Motion, velocity) == 24 && offsetof(Motion, radius) == 48 &&
-                  offsetof(Motion, acceleration) == 56);
+                  offsetof(Motion, acceleration) == 56 && offsetof(Motion, drift) == 64 &&
+                  offsetof(Motion, half_space) == 72);
     const std::array<Numbers, 4> first = transposed(m, 0), second = transposed(m, 4);
+    const auto squares = [&](std::size_t i)
+                             ORCHARD_INLINE_LAMBDA { return at(&m[i].drift) * at(&m[i].drift); };  // and half-space
     return {{first[0], first[1], first[2]},
             {first[3], second[0], second[1]},
             second[2],
             second[3],
-            Numbers{m[0].drift, m[1].drift, m[2].drift, m[3].drift}};
+            Numbers{m[0].drift, m[1].drift, m[2].drift, m[3].drift},
+            (squares(0) + squares(1)) + (squares(2) + squares(3))};
   }
+  ORCHARD_INLINE static bool all(const Mask& mask) noexcept { return (mask[0] & mask[1] & mask[2] & mask[3]) != 0; }
   ORCHARD_INLINE static void truncate(const Numbers& a, std::uint32_t* to) noexcept {
     using Integers __attribute__((vector_size(16))) = std::int32_t;
     const Integers integers = __builtin_convertvector(a, Integers);
@@ -87,17 +96,32 @@ struct VectorDoubles {
 
 }  // namespace
 
-Lattice::Lattice(const Vec3& origin, double cell_size) noexcept : origin_(origin), per_length_(kQuanta / cell_size) {
+Lattice::Lattice(const Vec3& origin, double cell_size, double slack) noexcept
+    : origin_(origin), per_length_(kQuanta / cell_size) {
   double size = 0;
   for (const double x : origin) size = std::max(size, std::fabs(x));
-  margin_ = kRoundingQuanta + 8 * kMotionSlack * (size * per_length_ + kLastQuantum);
+  margin_ =
+      kRoundingQuanta + 8 * kMotionSlack * (size * per_length_ + kLastQuantum) + (slack + kLeastLength) * per_length_;
 }
 
 // The centre's offset along an axis is at most v t + wide(t), which is convex: largest at an end. Likewise below. A box
 // that does not lie within the lattice is everything: rounding would no longer be under control.
+// What tells whether all motions are valid, put together from those of each four: NaN stays in the sum.
+template <typename Kind>
+struct Lattice::Validity {
+  typename Kind::Mask inside = spread<typename Kind::Numbers>(0.0) <= spread<typename Kind::Numbers>(0.0);
+  typename Kind::Numbers squares = spread<typename Kind::Numbers>(0.0);  // of velocities, accelerations and so on
+  typename Kind::Numbers least = spread<typename Kind::Numbers>(0.0);    // of what must not be negative
+
+  ORCHARD_INLINE bool all() const noexcept {
+    const auto largest = spread<typename Kind::Numbers>(kLargestNumber * kLargestNumber);
+    return Kind::all(inside & (squares <= largest) & (spread<typename Kind::Numbers>(0.0) <= least));
+  }
+};
+
 template <typename Kind>
 ORCHARD_INLINE void Lattice::make_four(const Motion* motions, const double* durations, BoxBlock& boxes,
-                                       std::size_t first) const noexcept {
+                                       std::size_t first, Validity<Kind>& valid) const noexcept {
   using Numbers = typename Kind::Numbers;
   const auto all = [](double x) ORCHARD_INLINE_LAMBDA { return spread<Numbers>(x); };
   const auto least = [](const Numbers& a, const Numbers& b) ORCHARD_INLINE_LAMBDA { return Kind::choose(b < a, b, a); };
@@ -120,41 +144,51 @@ ORCHARD_INLINE void Lattice::make_four(const Motion* motions, const double* dura
     Kind::truncate(Kind::choose(inside, lower[d], zero), &boxes.lower[d][first]);
     Kind::truncate(Kind::choose(inside, upper[d], last), &boxes.upper[d][first]);
   }
+  const auto square = [](const Numbers& x) ORCHARD_INLINE_LAMBDA { return x * x; };
+  valid.inside = valid.inside & inside;
+  valid.least = least(least(valid.least, of.radius), least(of.acceleration, of.drift));
+  valid.squares = valid.squares + ((of.rest + square(of.acceleration)) +
+                                   (square(of.velocity[0]) + square(of.velocity[1])) + square(of.velocity[2]));
 }
 
 template <typename Kind>
-ORCHARD_INLINE void Lattice::make_all(std::span<const Motion> motions, std::span<const double> durations,
+ORCHARD_INLINE bool Lattice::make_all(std::span<const Motion> motions, std::span<const double> durations,
                                       BoxBlock& boxes) const noexcept {
   std::size_t i = 0;
-  for (; i + 4 <= motions.size(); i += 4) make_four<Kind>(&motions[i], &durations[i], boxes, i);
-  if (i == motions.size()) return;
+  Validity<Kind> valid;
+  for (; i + 4 <= motions.size(); i += 4) make_four<Kind>(&motions[i], &durations[i], boxes, i, valid);
+  if (i == motions.size()) return valid.all();
   std::array<Motion, 4> rest{};
   std::array<double, 4> rest_durations{};
   std::copy(motions.begin() + static_cast<std::ptrdiff_t>(i), motions.end(), rest.begin());
   std::copy_n(durations.begin() + static_cast<std::ptrdiff_t>(i), motions.size() - i, rest_durations.begin());
-  make_four<Kind>(rest.data(), rest_durations.data(), boxes, i);
+  for (std::size_t k = motions.size() - i; k < rest.size(); ++k) rest[k].position = origin_;  // nothing there
+  make_four<Kind>(rest.data(), rest_durations.data(), boxes, i, valid);
+  return valid.all();
 }
 
-void Lattice::boxes_plain(std::span<const Motion> motions, std::span<const double> durations,
+bool Lattice::boxes_plain(std::span<const Motion> motions, std::span<const double> durations,
                           BoxBlock& boxes) const noexcept {
-  make_all<PlainDoubles>(motions, durations, boxes);
+  return make_all<PlainDoubles>(motions, durations, boxes);
 }
 
 #ifdef ORCHARD_VECTORS
-void Lattice::boxes_vectors(std::span<const Motion> motions, std::span<const double> durations,
+bool Lattice::boxes_vectors(std::span<const Motion> motions, std::span<const double> durations,
                             BoxBlock& boxes) const noexcept {
-  detail::per_machine([&]() ORCHARD_INLINE_LAMBDA { make_all<VectorDoubles>(motions, durations, boxes); });
+  bool good = false;
+  detail::per_machine([&]() ORCHARD_INLINE_LAMBDA { good = make_all<VectorDoubles>(motions, durations, boxes); });
+  return good;
 }
 #else
-void Lattice::boxes_vectors(std::span<const Motion> motions, std::span<const double> durations,
+bool Lattice::boxes_vectors(std::span<const Motion> motions, std::span<const double> durations,
                             BoxBlock& boxes) const noexcept {
-  make_all<PlainDoubles>(motions, durations, boxes);
+  return make_all<PlainDoubles>(motions, durations, boxes);
 }
 #endif
 
-void Lattice::boxes(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes,
+bool Lattice::boxes(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes,
                     bool vectors) const noexcept {
-  vectors ? boxes_vectors(motions, durations, boxes) : boxes_plain(motions, durations, boxes);
+  return vectors ? boxes_vectors(motions, durations, boxes) : boxes_plain(motions, durations, boxes);
 }
 
 }  // namespace orchard::runtime::detail

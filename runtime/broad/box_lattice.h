@@ -43,20 +43,25 @@ struct BoxBlock {
 class Lattice {
  public:
   Lattice() = default;
-  Lattice(const Vec3& origin, double cell_size) noexcept;
+  // slack: what positions may be wrong by
+  Lattice(const Vec3& origin, double cell_size, double slack) noexcept;
 
   const Vec3& origin() const noexcept { return origin_; }
-  // Box i holds body i's sphere for durations[i] seconds from its motion's time; at most kBlock of them.
-  void boxes(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes,
+  // Box i holds body i's sphere for durations[i] seconds from its motion's time; at most kBlock of them. False if a
+  // motion may not be valid, which costs next to nothing to tell here; its expiry is not looked at.
+  bool boxes(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes,
              bool vectors) const noexcept;
 
  private:
   template <typename Kind>
-  void make_four(const Motion* motions, const double* durations, BoxBlock& boxes, std::size_t first) const noexcept;
+  struct Validity;
   template <typename Kind>
-  void make_all(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes) const noexcept;
-  void boxes_plain(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes) const noexcept;
-  void boxes_vectors(std::span<const Motion> motions, std::span<const double> durations,
+  void make_four(const Motion* motions, const double* durations, BoxBlock& boxes, std::size_t first,
+                 Validity<Kind>& valid) const noexcept;
+  template <typename Kind>
+  bool make_all(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes) const noexcept;
+  bool boxes_plain(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes) const noexcept;
+  bool boxes_vectors(std::span<const Motion> motions, std::span<const double> durations,
                      BoxBlock& boxes) const noexcept;
 
   Vec3 origin_{};

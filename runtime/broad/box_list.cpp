@@ -80,13 +80,19 @@ struct BoxList::VectorLanes {
 #endif
 
 void BoxList::reset(std::size_t slots) {
-  Group empty;
-  for (std::size_t d = 0; d < 3; ++d) empty.lower[d].fill(kNowhere.lower[d]), empty.upper[d].fill(kNowhere.upper[d]);
-  groups_.assign((slots + kGroup - 1) / kGroup, empty);
+  groups_.clear();
   filled_ = 0;
+  grow(slots);
 }
 
-void BoxList::set(BodyId body, const QuantumBox& box) noexcept {
+void BoxList::grow(std::size_t slots) {
+  if (slots <= this->slots()) return;
+  Group empty;
+  for (std::size_t d = 0; d < 3; ++d) empty.lower[d].fill(kNowhere.lower[d]), empty.upper[d].fill(kNowhere.upper[d]);
+  groups_.resize((slots + kGroup - 1) / kGroup, empty);
+}
+
+void BoxList::set(BodyIndex body, const QuantumBox& box) noexcept {
   Group& group = groups_[body / kGroup];
   for (std::size_t d = 0; d < 3; ++d) {
     group.lower[d][body % kGroup] = box.lower[d];
@@ -96,9 +102,9 @@ void BoxList::set(BodyId body, const QuantumBox& box) noexcept {
 
 // Mostly a box meets none: that is found out about all of them together.
 template <typename Lanes>
-ORCHARD_INLINE void BoxList::insert_all(std::span<const BodyId> bodies, const BoxBlock& block,
+ORCHARD_INLINE void BoxList::insert_all(std::span<const BodyIndex> bodies, const BoxBlock& block,
                                         std::vector<BodyPair>& pairs) {
-  const auto found = [&](BodyId a, BodyId b) { pairs.push_back(a < b ? BodyPair{a, b} : BodyPair{b, a}); };
+  const auto found = [&](BodyIndex a, BodyIndex b) { pairs.push_back(a < b ? BodyPair{a, b} : BodyPair{b, a}); };
   const std::size_t groups = (filled_ + kGroup - 1) / kGroup;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const QuantumBox box = block.get(i);
@@ -111,7 +117,7 @@ ORCHARD_INLINE void BoxList::insert_all(std::span<const BodyId> bodies, const Bo
       continue;
     for (std::size_t g = 0; g < groups; ++g) {
       for (std::uint32_t hits = Lanes::meeting(Lanes::apart(groups_[g], 0, box)); hits != 0; hits &= hits - 1) {
-        found(bodies[i], static_cast<BodyId>(kGroup * g + static_cast<std::size_t>(std::countr_zero(hits))));
+        found(bodies[i], static_cast<BodyIndex>(kGroup * g + static_cast<std::size_t>(std::countr_zero(hits))));
       }
     }
     for (std::size_t part = 0; part <= first; part += kGroup) {
@@ -127,21 +133,21 @@ ORCHARD_INLINE void BoxList::insert_all(std::span<const BodyId> bodies, const Bo
   }
 }
 
-void BoxList::insert_plain(std::span<const BodyId> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs) {
+void BoxList::insert_plain(std::span<const BodyIndex> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs) {
   insert_all<PlainLanes>(bodies, block, pairs);
 }
 
 #ifdef ORCHARD_VECTORS
-void BoxList::insert_vectors(std::span<const BodyId> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs) {
+void BoxList::insert_vectors(std::span<const BodyIndex> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs) {
   detail::per_machine([&]() ORCHARD_INLINE_LAMBDA { insert_all<VectorLanes>(bodies, block, pairs); });
 }
 #else
-void BoxList::insert_vectors(std::span<const BodyId> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs) {
+void BoxList::insert_vectors(std::span<const BodyIndex> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs) {
   insert_all<PlainLanes>(bodies, block, pairs);
 }
 #endif
 
-void BoxList::insert(std::span<const BodyId> bodies, const BoxBlock& block, bool vectors,
+void BoxList::insert(std::span<const BodyIndex> bodies, const BoxBlock& block, bool vectors,
                      std::vector<BodyPair>& pairs) {
   vectors ? insert_vectors(bodies, block, pairs) : insert_plain(bodies, block, pairs);
 }

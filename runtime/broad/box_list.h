@@ -11,10 +11,11 @@ class BoxList {
   static constexpr std::size_t kMostBodies = 192;
 
   void reset(std::size_t slots);  // empties the list; bodies are below
+  void grow(std::size_t slots);   // keeps what is in it
   void release() { groups_ = {}; }
   // Adds bodies[i] with block's box i and appends the pairs whose boxes meet, of each of them and everything in before.
-  void insert(std::span<const BodyId> bodies, const BoxBlock& block, bool vectors, std::vector<BodyPair>& pairs);
-  void remove(BodyId body) noexcept { set(body, kNowhere); }
+  void insert(std::span<const BodyIndex> bodies, const BoxBlock& block, bool vectors, std::vector<BodyPair>& pairs);
+  void remove(BodyIndex body) noexcept { set(body, kNowhere); }
   std::size_t slots() const noexcept { return kGroup * groups_.size(); }
   std::size_t memory_bytes() const noexcept { return bytes_of(groups_); }
 
@@ -28,11 +29,11 @@ class BoxList {
   struct PlainLanes;
   struct VectorLanes;
 
-  void set(BodyId body, const QuantumBox& box) noexcept;
+  void set(BodyIndex body, const QuantumBox& box) noexcept;
   template <typename Lanes>
-  void insert_all(std::span<const BodyId> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs);
-  void insert_plain(std::span<const BodyId> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs);
-  void insert_vectors(std::span<const BodyId> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs);
+  void insert_all(std::span<const BodyIndex> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs);
+  void insert_plain(std::span<const BodyIndex> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs);
+  void insert_vectors(std::span<const BodyIndex> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs);
 
   std::vector<Group> groups_;
   std::size_t filled_ = 0;  // bodies are below

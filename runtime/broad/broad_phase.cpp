@@ -1,6 +1,7 @@
 #include "orchard/runtime/broad_phase.h"
 
-#include <cassert>
+#include <algorithm>
+#include <cmath>
 
 #include "method.h"
 
@@ -17,15 +18,25 @@ struct BroadPhase::State {
 };
 
 MotionSource values_of(const std::vector<Motion>& values) {
-  return [&values](double, std::span<const BodyId> bodies, std::span<Motion> motions) {
+  return [&values](double, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
     for (std::size_t i = 0; i < bodies.size(); ++i) motions[i] = values[bodies[i]];
   };
 }
 
-BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& options)
-    : state_(std::make_unique<State>(
-          State{detail::Roster(std::move(source), detail::Clock{options.start, options.time_step}), nullptr, {}})) {
-  assert(options.time_step > 0);
+bool is_valid(const BroadPhaseOptions& options) noexcept {
+  constexpr double kLeastStep = 1e-20, kLargestStep = 1e20;
+  const double step = options.time_step;
+  const double slack = options.position_slack;
+  return 0 <= slack && slack <= kLargestNumber && kLeastStep <= step && step <= kLargestStep &&
+         std::fabs(options.start) <= kMostSteps * step;  // none is NaN
+}
+
+BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& wanted) {
+  const bool valid = is_valid(wanted);
+  const BroadPhaseOptions options = valid ? wanted : BroadPhaseOptions{};
+  state_ = std::make_unique<State>(
+      State{detail::Roster(std::move(source), detail::Clock{options.start, options.time_step}), nullptr, {}});
+  largest_time_ = valid ? kMostSteps * options.time_step : -1;
   state_->method = options.method == BroadPhaseMethod::events ? detail::make_events(state_->roster, options)
                                                               : detail::make_sleeping(state_->roster, options);
   next_time_ = wake_time_ = std::numeric_limits<double>::infinity();
@@ -53,7 +64,19 @@ void BroadPhase::note_next_step() {
 }
 
 Advance BroadPhase::process(double t_now, const WorkBudget* budget) {
+  if (!(std::fabs(t_now) <= largest_time_)) {
+    Advance refused{next_time_, {}};
+    refused.time_refused = true;
+    return refused;
+  }
   State& state = *state_;
+  std::vector<BodyIndex>& bodies_refused = state.roster.refused();
+  bodies_refused.clear();
+  const auto refused = [&]() -> std::span<const BodyIndex> {
+    std::sort(bodies_refused.begin(), bodies_refused.end());
+    bodies_refused.erase(std::unique(bodies_refused.begin(), bodies_refused.end()), bodies_refused.end());
+    return bodies_refused;
+  };
   const detail::Clock& clock = state.roster.clock;
   while (t_now >= wake_time_) {
     const Step now = state.next;
@@ -64,51 +87,63 @@ Advance BroadPhase::process(double t_now, const WorkBudget* budget) {
     note_next_step();
     if (!state.pairs.empty() || report.incomplete_from != kNoClass) {
       seen_time_ = clock.time(now);
-      return {seen_time_, state.pairs, report.incomplete_from};
+      return {seen_time_, state.pairs, report.incomplete_from, report.left_over, refused()};
     }
   }
-  seen_time_ = t_now;
-  return {next_time_, {}};
+  seen_time_ = std::max(seen_time_, t_now);
+  return {next_time_, {}, kNoClass, 0, refused()};
+}
+
+BodyId BroadPhase::id_of(BodyIndex index) const noexcept {
+  const detail::Roster& roster = state_->roster;
+  return index < roster.slots() && roster.alive(index) ? roster.id_of(index) : kNoBody;
+}
+
+BodyId BroadPhase::take_in(BodyIndex body) {
+  state_->method->changed(body);
+  wake_for_change();
+  return state_->roster.id_of(body);
 }
 
 BodyId BroadPhase::add(std::uint8_t importance) {
-  const BodyId body = state_->roster.add(importance);
-  if (body == kNoBody) return body;
-  state_->method->changed(body);
-  wake_for_change();
-  return body;
+  if (!valid() || !state_->roster.has_source()) return kNoBody;
+  const BodyIndex body = state_->roster.add(importance);
+  return body == kNoIndex ? kNoBody : take_in(body);
 }
 
 BodyId BroadPhase::add_static(const Motion& place, std::uint8_t importance) {
-  if (!is_valid(place)) return kNoBody;
-  const BodyId body = state_->roster.add(importance);
-  if (body == kNoBody) return body;
+  if (!valid() || !is_valid(place)) return kNoBody;
+  const BodyIndex body = state_->roster.add(importance);
+  if (body == kNoIndex) return kNoBody;
   state_->roster.set_static(body, place);
-  state_->method->changed(body);
-  wake_for_change();
-  return body;
+  return take_in(body);
 }
 
-void BroadPhase::remove(BodyId body) {
-  state_->method->removed(body);
-  state_->roster.remove(body);
-}
-
-void BroadPhase::cancel(BodyId body) {
-  state_->method->changed(body);
-  wake_for_change();
-}
-
-bool BroadPhase::move_static(BodyId body, const Motion& place) {
-  assert(state_->roster.is_static(body));
-  if (!is_valid(place)) return false;
-  state_->roster.set_static(body, place);
-  cancel(body);
+bool BroadPhase::remove(BodyId body) {
+  if (!contains(body)) return false;
+  state_->method->removed(body.index);
+  state_->roster.remove(body.index);
   return true;
 }
 
-void BroadPhase::set_importance(BodyId body, std::uint8_t importance) {
-  state_->roster.set_importance(body, importance);
+bool BroadPhase::cancel(BodyId body) {
+  if (!contains(body)) return false;
+  state_->method->changed(body.index);
+  wake_for_change();
+  return true;
+}
+
+bool BroadPhase::move_static(BodyId body, const Motion& place) {
+  if (!contains(body) || !state_->roster.is_static(body.index) || !is_valid(place)) return false;
+  state_->roster.set_static(body.index, place);
+  return cancel(body);
+}
+
+bool BroadPhase::set_importance(BodyId body, std::uint8_t importance) {
+  if (!contains(body)) return false;
+  state_->roster.set_importance(body.index, importance);
+  state_->method->reclassified(body.index);
+  return true;
 }
 
 std::size_t BroadPhase::size() const noexcept { return state_->roster.size(); }

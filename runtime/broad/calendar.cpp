@@ -5,23 +5,23 @@
 
 namespace orchard::runtime::detail {
 
-void Calendar::set_due(std::span<const BodyId> bodies, Step step) {
+void Calendar::set_due(std::span<const BodyIndex> bodies, Step step) {
   const std::size_t bucket = bucket_of(step);
   std::uint32_t& head = buckets_[bucket].bodies;
   std::size_t done = 0;
   if (head != kNone) {  // what its last part has room for
-    for (BodyId& id : lines_[head].ids) {
-      if (id == kNoBody && done < bodies.size()) id = bodies[done++];
+    for (BodyIndex& id : lines_[head].ids) {
+      if (id == kNoIndex && done < bodies.size()) id = bodies[done++];
     }
   }
   for (; done < bodies.size(); done += 3) {
-    const auto at = [&](std::size_t i) { return i < bodies.size() ? bodies[i] : kNoBody; };
+    const auto at = [&](std::size_t i) { return i < bodies.size() ? bodies[i] : kNoIndex; };
     add_line(head, {at(done), at(done + 1), at(done + 2)});
   }
   mark(bucket);
 }
 
-void Calendar::add_line(std::uint32_t& head, const std::array<BodyId, 3>& ids) {
+void Calendar::add_line(std::uint32_t& head, const std::array<BodyIndex, 3>& ids) {
   std::uint32_t line = free_line_;
   if (line == kNone) {
     line = static_cast<std::uint32_t>(lines_.size());
@@ -39,6 +39,14 @@ void Calendar::clear_bodies() noexcept {
   free_line_ = kNone;
 }
 
+void Calendar::clear() noexcept {
+  buckets_.fill({});
+  busy_.fill(0);
+  lines_.clear();
+  nodes_.clear();
+  free_line_ = free_node_ = kNone;
+}
+
 void Calendar::add(const PairEvent& event, Step step) {
   const std::size_t bucket = bucket_of(step);
   std::uint32_t node = free_node_;
@@ -53,13 +61,13 @@ void Calendar::add(const PairEvent& event, Step step) {
   mark(bucket);
 }
 
-void Calendar::take(Step step, std::vector<BodyId>& bodies, std::vector<PairEvent>& events) {
+void Calendar::take(Step step, std::vector<BodyIndex>& bodies, std::vector<PairEvent>& events) {
   const std::size_t index = bucket_of(step);
   Bucket& bucket = buckets_[index];
   for (std::uint32_t line = bucket.bodies; line != kNone;) {
     Bodies& part = lines_[line];
-    for (const BodyId body : part.ids) {
-      if (body != kNoBody) bodies.push_back(body);
+    for (const BodyIndex body : part.ids) {
+      if (body != kNoIndex) bodies.push_back(body);
     }
     const std::uint32_t next = part.next;
     part.next = free_line_;

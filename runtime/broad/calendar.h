@@ -18,12 +18,13 @@ struct PairEvent {
 // lists indexed by step. Nothing is taken out before its time: the caller tells what is void.
 class Calendar {
  public:
-  void set_due(std::span<const BodyId> bodies, Step step);
+  void set_due(std::span<const BodyIndex> bodies, Step step);
   void clear_bodies() noexcept;
+  void clear() noexcept;  // of everything
   void add(const PairEvent& event, Step step);
 
   // Moves everything due at the step to the ends of the vectors.
-  void take(Step step, std::vector<BodyId>& bodies, std::vector<PairEvent>& events);
+  void take(Step step, std::vector<BodyIndex>& bodies, std::vector<PairEvent>& events);
   // The first step after `now` that may have something; kNeverStep if there is none.
   Step next_after(Step now) const noexcept;
   std::size_t memory_bytes() const noexcept;
@@ -32,7 +33,7 @@ class Calendar {
   static constexpr std::uint32_t kNone = 0xffffffffu;
   struct Bodies {  // a part of a list: short, as a step may have one body only
     std::uint32_t next;
-    std::array<BodyId, 3> ids;  // kNoBody from the first one that is missing
+    std::array<BodyIndex, 3> ids;  // kNoIndex from the first one that is missing
   };
   struct Node {
     PairEvent event;
@@ -42,7 +43,7 @@ class Calendar {
     std::uint32_t bodies = kNone, event = kNone;
   };
 
-  void add_line(std::uint32_t& head, const std::array<BodyId, 3>& ids);
+  void add_line(std::uint32_t& head, const std::array<BodyIndex, 3>& ids);
   static std::size_t bucket_of(Step step) noexcept { return static_cast<std::size_t>(step & (kCalendarSteps - 1)); }
   void mark(std::size_t bucket) noexcept { busy_[bucket / 64] |= std::uint64_t{1} << (bucket % 64); }
 

@@ -1,6 +1,6 @@
 #pragma once
+#include "backlog.h"
 #include "box_list.h"
-#include "calendar.h"
 #include "method.h"
 #include "swept_grid.h"
 #include "window_plan.h"
@@ -18,8 +18,9 @@ class Events final : public Method {
  public:
   Events(Roster& roster, const BroadPhaseOptions& options) : roster_(roster), options_(options) {}
 
-  void changed(BodyId body) override;
-  void removed(BodyId body) override;
+  void changed(BodyIndex body) override;
+  void removed(BodyIndex body) override;
+  void reclassified(BodyIndex body) override;
   StepReport step(Step now, Meter& meter, std::vector<BodyPair>& pairs) override;
   std::size_t memory_bytes() const noexcept override;
 
@@ -31,37 +32,56 @@ class Events final : public Method {
   };
   struct Look;
   static constexpr std::size_t kFewestInRush = 32;  // bodies that are worth a step more
+  static constexpr std::size_t kTestsAtOnce = kBlock / 2;
+  static constexpr Step kLookDue = -1;  // a window's end while its body waits for a look
 
   // events.cpp: a step
   void make_room();
+  void forget_all() noexcept;
   void collect_due(Step now);
   void complete_due();
-  void take_away(BodyId body) noexcept;
+  void take_away(BodyIndex body) noexcept;
   void take_away_due() noexcept;
-  unsigned look_and_test(Step now, Meter& meter);
-  void postpone(Step now, std::size_t looked, unsigned from_class);
+  void make_room_for_boxes();
+  bool outgrown() const noexcept { return few_ && roster_.slots() > BoxList::kMostBodies; }
+  void step_in_full(Step now, bool completing);
+  void report(std::vector<BodyPair>& pairs);
+
+  // events_budget.cpp: a step within a budget
+  void postpone(BodyIndex body);
+  void sort_pairs_again();
+  void join_backlog(Step now);
+  bool worth_a_rebuild_within(Step now, std::size_t due) const noexcept;
+  unsigned step_within(Step now, Meter& meter);
+  bool work_through(Step now, unsigned importance, Meter& meter);
+  std::size_t look_at_waiting(Step now, unsigned importance, std::size_t most, Meter& meter);
+  std::size_t test_waiting(Step now, PairQueue& queue, bool found, std::size_t most, Meter& meter);
 
   // events_plan.cpp: looks at all bodies
   bool crowded(const GridCounts& counts) const noexcept;
-  bool worth_a_rebuild() const noexcept;
-  void replan(Step now);
-  void survey(Step now);
+  bool worth_a_rebuild(std::size_t due) const noexcept;
+  bool replan(Step now, Meter& meter);
+  bool survey(Step now, Meter& meter);
   void place_all_anew();
   bool prepare(Step now);
   void vote(Step end, std::size_t bodies) noexcept;
 
   // events_look.cpp: a look at some
-  std::size_t look_at(Step now, Step from, std::span<const BodyId> bodies, Meter& meter);
-  std::size_t known_at(Step from, std::span<BodyId> bodies) noexcept;
+  void look_at(Step now, Step from, std::span<const BodyIndex> bodies);
+  std::size_t known_at(Step from, std::span<BodyIndex> bodies) noexcept;
   Step window_end(Step from, const Motion& motion) noexcept;
-  void place(Look& look, std::span<const BodyId> bodies);
-  void shrink(Look& look, BodyId body, std::size_t i);
-  void insert(Look& look, std::span<const BodyId> bodies);
-  void meet_oversized(std::span<const BodyId> bodies);
+  std::size_t refuse_invalid(std::span<BodyIndex> bodies);
+  void refuse(BodyIndex body);
+  bool place(Look& look, std::span<const BodyIndex> bodies);
+  bool place_in_grid(Look& look, std::span<const BodyIndex> bodies);
+  void shrink(Look& look, BodyIndex body, std::size_t i);
+  void insert(Look& look, std::span<const BodyIndex> bodies);
+  void meet_oversized(std::span<const BodyIndex> bodies);
 
   // events_pairs.cpp
   bool valid(const PairEvent& event) const noexcept;
-  bool test_all(Step now, Meter& meter);
+  Step known_until(BodyIndex body, Step now) const noexcept;
+  void test(Step now, std::span<const PairEvent> pairs);
   void settle(Step now, const BodyPair& pair, const Motion& a, const Motion& b);
 
   Roster& roster_;
@@ -71,19 +91,24 @@ class Events final : public Method {
   std::vector<Place> places_;
   std::vector<std::uint8_t> pending_;  // changed since the last step
   std::vector<QuantumBox> boxes_;      // of those in the grid
-  std::vector<BodyId> changed_, oversized_;
+  std::vector<BodyIndex> changed_, oversized_;
   bool few_ = true;  // bodies: they are in the list, not in the grid
   BoxList list_;
   SweptGrid grid_;
   Lattice lattice_;
   Calendar calendar_;
   std::vector<PairEvent> overlaps_;  // in ascending order of pairs
+  Backlog backlog_;                  // what budgets have left over
+  bool reclassified_ = false;        // some body, since the last step within a budget
+  Step interrupted_at_ = kNeverStep / -2;
 
   WindowPlan plan_;
   MotionMeans means_;
   double spacing_ = 0, correction_ = 1;
   std::size_t planned_bodies_ = 0;
   unsigned plans_ = 0;
+  std::vector<Motion> surveyed_;  // the sample of a survey under way
+  BodyIndex survey_next_ = 0;
 
   Step round_ = 0;            // of looks
   Step prepared_round_ = -1;  // of those done ahead for the next step; -1: none
@@ -92,7 +117,7 @@ class Events final : public Method {
   std::size_t votes_ = 0;
 
   // Of the step under way; kept for their memory.
-  std::vector<BodyId> entries_, due_;
+  std::vector<BodyIndex> entries_, due_;
   std::vector<PairEvent> events_, waiting_, tests_;
   std::vector<BodyPair> near_;
   std::vector<Motion> motions_;

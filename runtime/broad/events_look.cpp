@@ -32,6 +32,7 @@ bool cells_fit(const QuantumBox& box) noexcept {
 struct Events::Look {
   Step now;                              // the motions are of this step,
   Step from;                             // and count from this one
+  std::array<Step, kBlock> ends;         // of the bodies' windows
   std::array<double, kBlock> durations;  // until the ends of the bodies' windows
   BoxBlock boxes;
   SweptGrid::Queue queue;
@@ -54,8 +55,9 @@ Step Events::window_end(Step from, const Motion& motion) noexcept {
   return last_end_ = from + window;
 }
 
-// Makes the boxes of a block of bodies, until the ends of their windows.
-void Events::place(Look& look, std::span<const BodyId> bodies) {
+// Makes the boxes of a block of bodies, until the ends of their windows. Does nothing and returns false if a motion is
+// not valid.
+bool Events::place(Look& look, std::span<const BodyIndex> bodies) {
   const auto motions = std::span(std::as_const(motions_)).first(bodies.size());
   const auto duration = [&](Step end) {
     return end == kNeverStep ? 0 : static_cast<double>(end - 1 - look.now) * options_.time_step;
@@ -65,40 +67,48 @@ void Events::place(Look& look, std::span<const BodyId> bodies) {
   bool same = !roster_.any_static();
   for (const Motion& motion : motions) same = same && motion.expiry == motions[0].expiry;
   look.durations.fill(duration(common));
+  bool valid = true;
+  for (std::size_t i = 0; !same && i < bodies.size(); ++i) {
+    look.ends[i] = roster_.is_static(bodies[i]) ? kNeverStep : window_end(look.from, motions[i]);
+    look.durations[i] = duration(look.ends[i]);
+    valid = valid && !std::isnan(motions[i].expiry);
+  }
+  const auto durations = std::span(look.durations).first(bodies.size());
+  valid = lattice_.boxes(motions, durations, look.boxes, options_.vectors) && valid;
+  const auto is_one = [](const Motion& motion) { return is_valid(motion); };
+  if (!valid && !std::all_of(motions.begin(), motions.end(), is_one)) return false;
+
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    Step end = common;
-    if (!same) {
-      end = roster_.is_static(bodies[i]) ? kNeverStep : window_end(look.from, motions[i]);
-      look.durations[i] = duration(end);
-    }
-    windows_[bodies[i]] = {round_, end};
+    windows_[bodies[i]] = {round_, same ? common : look.ends[i]};
     places_[bodies[i]] = Place::inside;
   }
   for (std::size_t i = 0; i < bodies.size(); i += kMeansStride) means_.add(motions[i]);
-  lattice_.boxes(motions, std::span(look.durations).first(bodies.size()), look.boxes, options_.vectors);
-  if (!few_) {
-    for (std::size_t i = 0; i < bodies.size(); ++i) boxes_[bodies[i]] = look.boxes.get(i);
-    if (excess_cells(look.boxes, bodies.size()) != 0) {
-      same = false;
-      for (std::size_t i = 0; i < bodies.size(); ++i) {
-        if (!cells_fit(boxes_[bodies[i]])) shrink(look, bodies[i], i);
-      }
-    }
-  }
+  if (!few_ && !place_in_grid(look, bodies)) same = false;
   if (same) {
     if (common != kNeverStep) calendar_.set_due(bodies, common);
     vote(common, bodies.size());
-    return;
+    return true;
   }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Step end = windows_[bodies[i]].end;
     if (end != kNeverStep) calendar_.set_due(bodies.subspan(i, 1), end);
     vote(end, 1);
   }
+  return true;
+}
+
+// False if a window had to be cut short.
+bool Events::place_in_grid(Look& look, std::span<const BodyIndex> bodies) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) boxes_[bodies[i]] = look.boxes.get(i);
+  if (excess_cells(look.boxes, bodies.size()) == 0) return true;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (!cells_fit(boxes_[bodies[i]])) shrink(look, bodies[i], i);
+  }
+  return false;
 }
 
 // Faster than the others: look at it again sooner, until its box takes few enough cells.
-void Events::shrink(Look& look, BodyId body, std::size_t i) {
+void Events::shrink(Look& look, BodyIndex body, std::size_t i) {
   Window& window = windows_[body];
   Step steps = window.end == kNeverStep ? 1 : window.end - look.from;
   BoxBlock box;
@@ -115,7 +125,7 @@ void Events::shrink(Look& look, BodyId body, std::size_t i) {
 }
 
 // Moves those whose new bounds are known up to `from`, with their motions, to the front; returns how many.
-std::size_t Events::known_at(Step from, std::span<BodyId> bodies) noexcept {
+std::size_t Events::known_at(Step from, std::span<BodyIndex> bodies) noexcept {
   std::size_t front = 0;
   double known = std::numeric_limits<double>::infinity();  // an expiry that is late enough
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -133,19 +143,38 @@ std::size_t Events::known_at(Step from, std::span<BodyId> bodies) noexcept {
   return front;
 }
 
-// Stops early if the budget is spent; returns how many have been looked at. Where `from` is a later step than now,
-// bodies whose bounds do not reach it are left to the next step.
-std::size_t Events::look_at(Step now, Step from, std::span<const BodyId> bodies, Meter& meter) {
+// Moves those whose motions are valid, with these, to the front; returns how many.
+std::size_t Events::refuse_invalid(std::span<BodyIndex> bodies) {
+  std::size_t front = 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (!is_valid(motions_[i])) {
+      refuse(bodies[i]);
+      continue;
+    }
+    bodies[front] = bodies[i];
+    motions_[front++] = motions_[i];
+  }
+  return front;
+}
+
+// Its motion is not valid: it is in no pair until it has been asked again.
+void Events::refuse(BodyIndex body) {
+  roster_.refuse(body);
+  take_away(body);
+  windows_[body] = {kNeverStep, kLookDue};
+  changed(body);
+}
+
+// Where `from` is a later step than now, bodies whose bounds do not reach it are left to the next step.
+void Events::look_at(Step now, Step from, std::span<const BodyIndex> bodies) {
   motions_.resize(kBlock);
   Look look;
   look.now = now;
   look.from = from;
-  std::array<BodyId, kBlock> known;
-  std::size_t done = 0;
-  while (done < bodies.size() && !meter.spent()) {
-    auto block = bodies.subspan(done, meter.grant(std::min(kBlock, bodies.size() - done)));
+  std::array<BodyIndex, kBlock> known;
+  for (std::size_t done = 0; done < bodies.size();) {
+    auto block = bodies.subspan(done, std::min(kBlock, bodies.size() - done));
     roster_.ask(now, block, std::span(motions_).first(block.size()));
-    meter.count(block.size());
     done += block.size();
     if (from > now) {
       std::copy(block.begin(), block.end(), known.begin());
@@ -154,26 +183,30 @@ std::size_t Events::look_at(Step now, Step from, std::span<const BodyId> bodies,
       block = std::span(known).first(front);
       if (block.empty()) continue;
     }
-    place(look, block);
+    if (!place(look, block)) {
+      if (block.data() != known.data()) std::copy(block.begin(), block.end(), known.begin());
+      block = std::span(known).first(refuse_invalid(std::span(known).first(block.size())));
+      if (block.empty()) continue;
+      place(look, block);
+    }
     insert(look, block);
   }
   if (!few_) grid_.finish(look.queue, boxes_, options_.vectors, near_);
-  return done;
 }
 
-void Events::insert(Look& look, std::span<const BodyId> bodies) {
+void Events::insert(Look& look, std::span<const BodyIndex> bodies) {
   if (few_) {
     list_.insert(bodies, look.boxes, options_.vectors, near_);
     return;
   }
-  const auto oversized = [&](BodyId body) { return places_[body] == Place::oversized; };
+  const auto oversized = [&](BodyIndex body) { return places_[body] == Place::oversized; };
   if (oversized_.empty() && std::none_of(bodies.begin(), bodies.end(), oversized)) {
     grid_.insert(look.queue, bodies, look.boxes, boxes_, options_.vectors, near_);
     return;
   }
-  std::array<BodyId, kBlock> in_grid;
+  std::array<BodyIndex, kBlock> in_grid;
   std::size_t count = 0;
-  for (const BodyId body : bodies) {
+  for (const BodyIndex body : bodies) {
     if (oversized(body)) continue;
     look.boxes.set(count, boxes_[body]);
     in_grid[count++] = body;
@@ -183,20 +216,20 @@ void Events::insert(Look& look, std::span<const BodyId> bodies) {
 }
 
 // Bodies as large as several cells are compared with everything: (their number) x (the number of all) per window.
-void Events::meet_oversized(std::span<const BodyId> bodies) {
-  const auto compare = [&](BodyId body, BodyId other) {
+void Events::meet_oversized(std::span<const BodyIndex> bodies) {
+  const auto compare = [&](BodyIndex body, BodyIndex other) {
     if (boxes_[other].meets(boxes_[body])) near_.push_back({std::min(body, other), std::max(body, other)});
   };
-  for (const BodyId body : bodies) {
+  for (const BodyIndex body : bodies) {
     if (places_[body] != Place::inside) continue;
-    for (const BodyId large : oversized_) compare(body, large);
+    for (const BodyIndex large : oversized_) compare(body, large);
   }
-  for (const BodyId body : bodies) {
+  for (const BodyIndex body : bodies) {
     if (places_[body] != Place::oversized) continue;
-    for (BodyId other = 0; other < places_.size(); ++other) {
+    for (BodyIndex other = 0; other < places_.size(); ++other) {
       if (places_[other] == Place::inside) compare(body, other);
     }
-    for (const BodyId large : oversized_) compare(body, large);
+    for (const BodyIndex large : oversized_) compare(body, large);
     oversized_.push_back(body);
   }
 }

@@ -18,55 +18,71 @@ bool Events::crowded(const GridCounts& counts) const noexcept {
 }
 
 // When most bodies are due it is cheaper to start afresh; it also lets the plan follow the bodies.
-bool Events::worth_a_rebuild() const noexcept {
+bool Events::worth_a_rebuild(std::size_t due) const noexcept {
   const std::size_t n = roster_.size();
-  if (due_.empty() || n == 0) return false;
-  return 2 * due_.size() >= n || n > 2 * planned_bodies_ || crowded(grid_.counts());
+  if (due == 0 || n == 0) return false;
+  return 2 * due >= n || n > 2 * planned_bodies_ || crowded(grid_.counts());
 }
 
-void Events::replan(Step now) {
+// False if a budget ended the survey before it was complete: it goes on at the next call.
+bool Events::replan(Step now, Meter& meter) {
   const std::size_t n = roster_.size();
+  const bool too_crowded = crowded(grid_.counts()) && n <= 2 * planned_bodies_;
+  const bool other_number = n > 2 * planned_bodies_ || 2 * n < planned_bodies_;
+  if (!too_crowded && other_number && !survey(now, meter)) return false;
   const GridCounts counts = grid_.take_counts();
   double off = 1;  // pairs seen to pairs predicted
   if (counts.bodies > 0) {
     const double seen = static_cast<double>(counts.pairs) / static_cast<double>(counts.bodies);
     off = (seen + kFewPairs) / (plan_.pairs_per_body + kFewPairs);
   }
-  if (crowded(counts) && n <= 2 * planned_bodies_) {
+  if (too_crowded) {
     spacing_ /= 2;  // bodies in clusters: what counts is how dense these are
-  } else if (n > 2 * planned_bodies_ || 2 * n < planned_bodies_) {
-    survey(now);
-  } else if (0.5 < off && off < 2 && plans_++ % kPlansKept != 1) {
-    return;
+  } else if (!other_number && 0.5 < off && off < 2 && plans_++ % kPlansKept != 1) {
+    return true;
   }
   correction_ = std::clamp(correction_ * off, 0.05, 50.0);
   plan_ = plan_window(means_, n, spacing_, options_.time_step, correction_, options_.window);
-  lattice_ = Lattice(lattice_.origin(), plan_.cell_size);
+  lattice_ = Lattice(lattice_.origin(), plan_.cell_size, 2 * options_.position_slack);
   means_ = {};
+  return true;
 }
 
-// How bodies lie and move, from a sample.
-void Events::survey(Step now) {
+// How bodies lie and move, from a sample. What a budget interrupts goes on with the bodies after those seen.
+bool Events::survey(Step now, Meter& meter) {
   const std::size_t n = roster_.size(), wanted = std::clamp(n / 8, kSmallSample, kSample);
   const std::size_t stride = std::max<std::size_t>(1, n / wanted);
-  std::vector<BodyId> sample;
+  if (surveyed_.empty()) survey_next_ = 0;
+  std::vector<BodyIndex> sample;
   std::size_t seen = 0;
-  for (BodyId body = 0; body < roster_.slots() && sample.size() < wanted; ++body) {
-    if (roster_.alive(body) && seen++ % stride == 0) sample.push_back(body);
+  for (; survey_next_ < roster_.slots() && surveyed_.size() + sample.size() < wanted; ++survey_next_) {
+    if (roster_.alive(survey_next_) && seen++ % stride == 0) sample.push_back(survey_next_);
   }
-  motions_.resize(sample.size());
-  roster_.ask(now, sample, motions_);
+  while (!sample.empty()) {
+    if (meter.spent()) {
+      survey_next_ = sample.front();
+      return false;
+    }
+    const std::size_t count = meter.grant(sample.size());
+    surveyed_.resize(surveyed_.size() + count);
+    roster_.ask(now, std::span(sample).first(count), std::span(surveyed_).last(count));
+    meter.count(count);
+    sample.erase(sample.begin(), sample.begin() + static_cast<std::ptrdiff_t>(count));
+  }
   std::vector<Vec3> centers;
   means_ = {};
-  for (const Motion& motion : motions_) {
+  for (const Motion& motion : surveyed_) {
+    if (!is_valid(motion)) continue;
     means_.add(motion);
     centers.push_back(motion.position);
   }
-  lattice_ = Lattice(centers.front(), 1);
+  surveyed_.clear();
+  lattice_ = Lattice(centers.empty() ? Vec3{} : centers.front(), 1, 0);
   spacing_ = mean_spacing(centers, n);
   planned_bodies_ = n;
   correction_ = 1;
   plans_ = 0;
+  return true;
 }
 
 void Events::place_all_anew() {
@@ -76,7 +92,7 @@ void Events::place_all_anew() {
   if (due_.capacity() > 2 * roster_.size()) due_ = {};
   due_.clear();
   due_.reserve(roster_.size());
-  for (BodyId body = 0; body < roster_.slots(); ++body) {
+  for (BodyIndex body = 0; body < roster_.slots(); ++body) {
     if (roster_.alive(body)) due_.push_back(body);
   }
   voted_ = kNeverStep;
@@ -110,11 +126,11 @@ void Events::vote(Step end, std::size_t bodies) noexcept {
 bool Events::prepare(Step now) {
   const Step from = now + 1;
   rush_ = kNeverStep;
-  std::array<BodyId, kSample> sample;
+  std::array<BodyIndex, kSample> sample;
   std::size_t count = 0;
   const std::size_t stride = std::max<std::size_t>(1, roster_.slots() / kAskedAhead);
   for (std::size_t body = 0; body < roster_.slots() && count < kAskedAhead; body += stride) {
-    if (roster_.alive(static_cast<BodyId>(body))) sample[count++] = static_cast<BodyId>(body);
+    if (roster_.alive(static_cast<BodyIndex>(body))) sample[count++] = static_cast<BodyIndex>(body);
   }
   motions_.resize(kBlock);
   roster_.ask(now, std::span(sample).first(count), std::span(motions_).first(count));
@@ -122,16 +138,16 @@ bool Events::prepare(Step now) {
 
   rush_ = from;
   prepared_round_ = ++round_;
-  replan(now);
+  Meter unlimited;
+  replan(now, unlimited);
   place_all_anew();
   const std::size_t ahead = due_.size() / 2;
-  Meter unlimited;
   near_.clear();
-  look_at(now, from, std::span(due_).first(ahead), unlimited);
+  look_at(now, from, std::span(due_).first(ahead));
   due_.erase(due_.begin(), due_.begin() + static_cast<std::ptrdiff_t>(ahead));
   tests_.clear();
   for (const BodyPair& pair : near_) tests_.push_back({pair, round_});
-  test_all(now, unlimited);
+  test(now, tests_);
   return true;
 }
 

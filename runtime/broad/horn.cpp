@@ -33,10 +33,16 @@ double half_space_contact(const Motion& a, const Motion& b, double slack) noexce
 }  // namespace
 
 bool is_valid(const Motion& m) noexcept {
+  // Without branches, and mostly enough: NaN stays in a sum and fails the comparison.
+  const double squares = dot(m.position, m.position) + dot(m.velocity, m.velocity) + dot(m.half_space, m.half_space) +
+                         (m.radius * m.radius + m.acceleration * m.acceleration + m.drift * m.drift);
+  const bool in_range = squares <= kLargestNumber * kLargestNumber, signs = m.radius >= 0 && m.acceleration >= 0;
+  if (in_range && signs && m.drift >= 0 && !std::isnan(m.expiry)) return true;
+  const auto fits = [](double x) { return std::fabs(x) <= kLargestNumber; };
   for (std::size_t i = 0; i < 3; ++i) {
-    if (!std::isfinite(m.position[i]) || !std::isfinite(m.velocity[i]) || !std::isfinite(m.half_space[i])) return false;
+    if (!fits(m.position[i]) || !fits(m.velocity[i]) || !fits(m.half_space[i])) return false;
   }
-  const auto bound = [](double x) { return std::isfinite(x) && x >= 0; };
+  const auto bound = [&](double x) { return fits(x) && x >= 0; };
   return bound(m.radius) && bound(m.acceleration) && bound(m.drift) && !std::isnan(m.expiry);
 }
 
@@ -55,7 +61,7 @@ double motion_slack(const Motion& a, const Motion& b, double duration) noexcept 
   const auto reach = [&](const Motion& m) {
     return largest(m.position) + m.radius + duration * (largest(m.velocity) + m.drift + duration * m.acceleration / 2);
   };
-  return kMotionSlack * (reach(a) + reach(b));
+  return kMotionSlack * (reach(a) + reach(b)) + kLeastLength;
 }
 
 double first_closing(double gap, double slope, double acceleration) noexcept {
@@ -65,9 +71,9 @@ double first_closing(double gap, double slope, double acceleration) noexcept {
   return acceleration > 0 ? (slope + root) / acceleration : kNever;
 }
 
-double overlap_lasts(const Motion& a, const Motion& b, double limit) noexcept {
+double overlap_lasts(const Motion& a, const Motion& b, double limit, double slack) noexcept {
   const Vec3 offset = b.position - a.position, velocity = b.velocity - a.velocity;
-  const double spare = a.radius + b.radius - std::sqrt(dot(offset, offset)) - motion_slack(a, b, limit);
+  const double spare = a.radius + b.radius - std::sqrt(dot(offset, offset)) - motion_slack(a, b, limit) - slack;
   const double speed = std::sqrt(dot(velocity, velocity)) + a.drift + b.drift;
   return std::min(limit, first_closing(spare, -speed, a.acceleration + b.acceleration));
 }
@@ -90,8 +96,8 @@ double horn_contact(const HornPair& pair, double limit, double resolution) noexc
 
 }  // namespace detail
 
-double earliest_contact(const Motion& a, const Motion& b, double limit, double resolution) noexcept {
-  const double slack = detail::motion_slack(a, b, limit);
+double earliest_contact(const Motion& a, const Motion& b, double limit, double resolution, double more) noexcept {
+  const double slack = detail::motion_slack(a, b, limit) + more;
   const detail::HornPair pair{b.position - a.position, b.velocity - a.velocity, a.radius + b.radius + slack,
                               a.drift + b.drift, a.acceleration + b.acceleration};
   double contact = detail::horn_contact(pair, limit, resolution);

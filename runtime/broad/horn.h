@@ -16,8 +16,11 @@ double horn_contact(const HornPair& pair, double limit, double resolution) noexc
 double first_closing(double gap, double slope, double acceleration) noexcept;
 
 // How long two overlapping spheres surely go on to overlap, at most `limit`: the bounds do not let them get apart
-// sooner.
-double overlap_lasts(const Motion& a, const Motion& b, double limit) noexcept;
+// sooner. `slack` as of earliest_contact().
+double overlap_lasts(const Motion& a, const Motion& b, double limit, double slack) noexcept;
+
+// Squares of less vanish: spheres_touch() takes it for 0.
+inline constexpr double kLeastLength = 1e-150;
 
 // What to add to a sum of radii for the rounding of everything that follows, and the application's.
 double motion_slack(const Motion& a, const Motion& b, double duration) noexcept;

@@ -6,6 +6,7 @@ namespace orchard::runtime::detail {
 struct StepReport {
   Step next;                            // the next step with anything to do; > the one just processed
   unsigned incomplete_from = kNoClass;  // as in Advance
+  std::size_t left_over = 0;
 };
 
 // A way to find what happens next. Steps are processed in ascending order; those in between had nothing to do.
@@ -13,9 +14,10 @@ class Method {
  public:
   virtual ~Method() = default;
   // The body is new or its bounds hold no longer; to be asked for at the next step that is processed.
-  virtual void changed(BodyId body) = 0;
+  virtual void changed(BodyIndex body) = 0;
   // Called while the roster still has it.
-  virtual void removed(BodyId body) = 0;
+  virtual void removed(BodyIndex body) = 0;
+  virtual void reclassified(BodyIndex body) = 0;  // the roster has its new importance
   // Puts the overlapping pairs into `pairs`, in ascending order.
   virtual StepReport step(Step now, Meter& meter, std::vector<BodyPair>& pairs) = 0;
   virtual std::size_t memory_bytes() const noexcept = 0;

@@ -75,4 +75,49 @@ Motion spring_motion(const SpringDragged& d, double time, double horizon) noexce
   return motion;
 }
 
+namespace {
+
+constexpr double kFloatUnit = 0x1p-24;    // half of a float's last place, relative
+constexpr double kLeastFloat = 0x1p-150;  // the same of the smallest floats, absolute
+constexpr double kRoundings = 9;          // of a change: eight, and their products
+const double kDiagonal = std::sqrt(3.0);  // of a cube of edge 1
+constexpr double kOutward = 1 + 0x1p-50;  // for the roundings here
+
+// c of the proof in the header: how much of M dt^2 a step may add to a position beyond dt v.
+double own_share(Integrator integrator) noexcept {
+  switch (integrator) {
+    case Integrator::explicit_euler:
+      return 0;
+    case Integrator::velocity_verlet:
+    case Integrator::position_verlet:
+    case Integrator::midpoint:
+    case Integrator::heun:
+    case Integrator::runge_kutta_4:
+      return 0.5;
+    default:
+      return 1;
+  }
+}
+
+}  // namespace
+
+double drift_of(Integrator integrator, double dt, double largest_acceleration, Sampling sampling) noexcept {
+  const double c = own_share(integrator), share = sampling == Sampling::between ? c + 1 : std::max(0.0, c - 0.5);
+  return share * largest_acceleration * dt * kOutward;
+}
+
+double float_slack(double largest_coordinate) noexcept {
+  return kDiagonal * (kFloatUnit * largest_coordinate + kLeastFloat) * kOutward;
+}
+
+Motion kept_in_float(const Motion& motion, double dt, double largest_coordinate, double largest_speed) noexcept {
+  const double position = kFloatUnit * (largest_coordinate + kRoundings * dt * largest_speed) + kLeastFloat;
+  const double velocity = kFloatUnit * (largest_speed + kRoundings * dt * motion.acceleration) + kLeastFloat;
+  Motion result = motion;
+  result.drift += kDiagonal * position / dt * kOutward;
+  result.acceleration += kDiagonal * velocity / dt * kOutward;
+  result.half_space = {};
+  return result;
+}
+
 }  // namespace orchard::runtime

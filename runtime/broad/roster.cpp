@@ -4,38 +4,38 @@
 
 namespace orchard::runtime::detail {
 
-BodyId Roster::add(std::uint8_t importance) {
-  if (size_ >= kMaxBodies) return kNoBody;
-  BodyId body;
+BodyIndex Roster::add(std::uint8_t importance) {
+  if (free_.empty() && slots() >= kMaxBodies) return kNoIndex;
+  BodyIndex body;
   if (free_.empty()) {
-    body = static_cast<BodyId>(alive_.size());
-    grow(alive_, std::size_t{body} + 1);
+    body = static_cast<BodyIndex>(generations_.size());
+    grow(generations_, std::size_t{body} + 1);
     grow(importance_, std::size_t{body} + 1);
     if (!static_slot_.empty()) static_slot_.push_back(kNoSlot);
   } else {
     body = free_.back();
     free_.pop_back();
   }
-  alive_[body] = 1;
+  ++generations_[body];
   importance_[body] = importance;
   enter_class(importance);
   ++size_;
   return body;
 }
 
-void Roster::remove(BodyId body) {
-  assert(body < slots() && alive_[body]);
-  free_.push_back(body);
+void Roster::remove(BodyIndex body) {
+  assert(body < slots() && alive(body));
+  // An index whose generations are used up is not used again.
+  if (++generations_[body] != 0) free_.push_back(body);
   if (is_static(body)) {
     free_slots_.push_back(static_slot_[body]);
     static_slot_[body] = kNoSlot;
   }
-  alive_[body] = 0;
   leave_class(importance_[body]);
   --size_;
 }
 
-void Roster::set_static(BodyId body, const Motion& place) {
+void Roster::set_static(BodyIndex body, const Motion& place) {
   if (static_slot_.empty()) static_slot_.assign(slots(), kNoSlot);
   std::uint32_t& slot = static_slot_[body];
   if (slot == kNoSlot) {
@@ -53,7 +53,7 @@ void Roster::set_static(BodyId body, const Motion& place) {
   stored.radius = place.radius;
 }
 
-void Roster::set_importance(BodyId body, std::uint8_t importance) {
+void Roster::set_importance(BodyIndex body, std::uint8_t importance) {
   leave_class(importance_[body]);
   importance_[body] = importance;
   enter_class(importance);
@@ -64,7 +64,7 @@ unsigned Roster::next_class(unsigned from) const noexcept {
   return from < in_class_.size() ? from : kNoClass;
 }
 
-void Roster::ask(Step step, std::span<const BodyId> bodies, std::span<Motion> motions) {
+void Roster::ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
   assert(bodies.size() == motions.size());
   asked_ += bodies.size();
   if (static_slot_.empty()) {
@@ -89,8 +89,9 @@ void Roster::ask(Step step, std::span<const BodyId> bodies, std::span<Motion> mo
 }
 
 std::size_t Roster::memory_bytes() const noexcept {
-  return bytes_of(in_class_) + bytes_of(alive_) + bytes_of(importance_) + bytes_of(static_slot_) +
-         bytes_of(static_motions_) + bytes_of(free_slots_) + bytes_of(free_) + bytes_of(moving_) + bytes_of(answers_);
+  return bytes_of(in_class_) + bytes_of(generations_) + bytes_of(importance_) + bytes_of(static_slot_) +
+         bytes_of(static_motions_) + bytes_of(free_slots_) + bytes_of(free_) + bytes_of(moving_) + bytes_of(refused_) +
+         bytes_of(answers_);
 }
 
 }  // namespace orchard::runtime::detail

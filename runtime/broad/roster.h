@@ -58,11 +58,12 @@ class Meter {
     late_ = late_ || std::chrono::steady_clock::now() - begin_ >= budget_.time;
     return late_;
   }
+  // Units that may still be done; at least 1.
+  std::uint64_t left() const noexcept { return budget_.work > done_ ? budget_.work - done_ : 1; }
   // How many of `wanted` units may be done before asking again.
   std::size_t grant(std::size_t wanted) const noexcept {
     if (!limited()) return wanted;
-    const std::uint64_t left = budget_.work > done_ ? budget_.work - done_ : 1;
-    return std::min({wanted, std::size_t{kWorkPerClock}, static_cast<std::size_t>(left)});
+    return std::min({wanted, std::size_t{kWorkPerClock}, static_cast<std::size_t>(left())});
   }
 
  private:
@@ -79,17 +80,18 @@ class Roster {
 
   const Clock clock;
 
-  BodyId add(std::uint8_t importance);  // kNoBody: full
-  void remove(BodyId body);
-  void set_static(BodyId body, const Motion& place);
-  void set_importance(BodyId body, std::uint8_t importance);
+  BodyIndex add(std::uint8_t importance);  // kNoIndex: full
+  void remove(BodyIndex body);
+  BodyId id_of(BodyIndex body) const noexcept { return {body, generations_[body]}; }
+  void set_static(BodyIndex body, const Motion& place);
+  void set_importance(BodyIndex body, std::uint8_t importance);
 
-  std::size_t slots() const noexcept { return alive_.size(); }  // ids are below
+  std::size_t slots() const noexcept { return generations_.size(); }  // indices are below
   std::size_t size() const noexcept { return size_; }
-  bool alive(BodyId body) const noexcept { return alive_[body]; }
-  bool is_static(BodyId body) const noexcept { return !static_slot_.empty() && static_slot_[body] != kNoSlot; }
+  bool alive(BodyIndex body) const noexcept { return generations_[body] % 2 != 0; }
+  bool is_static(BodyIndex body) const noexcept { return !static_slot_.empty() && static_slot_[body] != kNoSlot; }
   bool any_static() const noexcept { return !static_slot_.empty(); }
-  std::uint8_t importance(BodyId body) const noexcept { return importance_[body]; }
+  std::uint8_t importance(BodyIndex body) const noexcept { return importance_[body]; }
   unsigned next_class(unsigned from) const noexcept;  // the first class, from `from` on, that has bodies; or kNoClass
   bool one_class() const noexcept { return classes_ <= 1; }
   // A pair is as important as the less important of its bodies.
@@ -98,7 +100,11 @@ class Roster {
   }
 
   // motions[i] is that of bodies[i] at the step.
-  void ask(Step step, std::span<const BodyId> bodies, std::span<Motion> motions);
+  void ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions);
+  // Bodies whose motions were not valid when they were asked for, in the course of a call of advance().
+  void refuse(BodyIndex body) { refused_.push_back(body); }
+  std::vector<BodyIndex>& refused() noexcept { return refused_; }
+  bool has_source() const noexcept { return static_cast<bool>(source_); }
   std::uint64_t asked() const noexcept { return asked_; }
   std::size_t memory_bytes() const noexcept;
 
@@ -106,11 +112,12 @@ class Roster {
   static constexpr std::uint32_t kNoSlot = 0xffffffffu;
 
   MotionSource source_;
-  std::vector<std::uint8_t> alive_, importance_;
+  std::vector<std::uint32_t> generations_;  // by body; odd while there is one: each body has an odd number of its own
+  std::vector<std::uint8_t> importance_;
   std::vector<std::uint32_t> static_slot_;  // empty until there is a static body
   std::vector<Motion> static_motions_;
   std::vector<std::uint32_t> free_slots_;
-  std::vector<BodyId> free_, moving_;
+  std::vector<BodyIndex> free_, moving_, refused_;
   std::vector<Motion> answers_;
   std::size_t size_ = 0;
   std::uint64_t asked_ = 0;

@@ -52,18 +52,19 @@ struct VectorCompare {
 
 struct SweptGrid::Insertion {
   Queue& queue;
-  std::span<const BodyId> bodies;  // none: the last ones get in
+  std::span<const BodyIndex> bodies;  // none: the last ones get in
   const BoxBlock* block;
   std::span<const QuantumBox> boxes;
   std::vector<BodyPair>& pairs;
 };
 
 // Of the entries hit, those whose box really meets the body's, and in this cell first.
-void SweptGrid::report(const Insertion& insertion, const CellLine& line, std::uint64_t hits, BodyId body, Steps steps) {
+void SweptGrid::report(const Insertion& insertion, const CellLine& line, std::uint64_t hits, BodyIndex body,
+                       Steps steps) {
   const QuantumBox& box = insertion.boxes[body];
   for (; hits != 0; hits &= hits - 1) {
     const std::uint64_t entry = line.entries[static_cast<std::size_t>(std::countr_zero(hits)) / 8];
-    const auto other = static_cast<BodyId>(entry >> kIdShift);
+    const auto other = static_cast<BodyIndex>(entry >> kIdShift);
     const QuantumBox& theirs = insertion.boxes[other];
     bool here = box.meets(theirs);
     for (std::size_t d = 0; d < 3; ++d) {
@@ -78,7 +79,7 @@ template <typename Kind>
 ORCHARD_INLINE void SweptGrid::insert_in_line(const Insertion& insertion, const Visit& visit) {
   // Nothing is written before all seven entries have been read together: that would have to wait for the small writes.
   CellLine& first = lines_[visit.line];
-  const auto body = static_cast<BodyId>(visit.entry >> kIdShift);
+  const auto body = static_cast<BodyIndex>(visit.entry >> kIdShift);
   const std::uint32_t count = first.count, more = first.overflow;
   const std::uint64_t hits = Kind::meeting(first, visit.query) & first_bytes(count);
   if (hits != 0) report(insertion, first, hits, body, visit.steps);
@@ -98,7 +99,7 @@ ORCHARD_INLINE void SweptGrid::insert_in_line(const Insertion& insertion, const 
 }
 
 // Loops without branches that depend on the data.
-ORCHARD_INLINE void SweptGrid::encode(Batch& batch, std::span<const BodyId> bodies,
+ORCHARD_INLINE void SweptGrid::encode(Batch& batch, std::span<const BodyIndex> bodies,
                                       const BoxBlock& block) const noexcept {
   using Numbers = std::array<std::uint32_t, kBlock>;
   const std::size_t lanes = lanes_for(bodies.size());
@@ -187,7 +188,7 @@ ORCHARD_INLINE void SweptGrid::leave_visits(const Insertion& insertion, const Ba
   }
 }
 
-void SweptGrid::leave_many_visits(Queue& queue, BodyId body, const QuantumBox& box) const noexcept {
+void SweptGrid::leave_many_visits(Queue& queue, BodyIndex body, const QuantumBox& box) const noexcept {
   Cell first, count;
   for (std::size_t d = 0; d < 3; ++d) {
     first[d] = box.lower[d] >> kQuantumBits;
@@ -241,7 +242,7 @@ void SweptGrid::run(const Insertion& insertion, bool vectors) {
   counts_.pairs += insertion.pairs.size() - before;
 }
 
-void SweptGrid::insert(Queue& queue, std::span<const BodyId> bodies, const BoxBlock& block,
+void SweptGrid::insert(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock& block,
                        std::span<const QuantumBox> boxes, bool vectors, std::vector<BodyPair>& pairs) {
   run({queue, bodies, &block, boxes, pairs}, vectors);
 }

@@ -38,10 +38,10 @@ class SweptGrid {
   // Adds bodies[i] with block's box i, at most kBlock of them, and appends the pairs whose boxes meet, of each body in
   // the grid with every other. `boxes` is by body and has the new ones, too. No box takes more than kMostCellsPerAxis
   // cells along an axis. Only finish() makes sure that all pairs have been found.
-  void insert(Queue& queue, std::span<const BodyId> bodies, const BoxBlock& block, std::span<const QuantumBox> boxes,
+  void insert(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const QuantumBox> boxes,
               bool vectors, std::vector<BodyPair>& pairs);
   void finish(Queue& queue, std::span<const QuantumBox> boxes, bool vectors, std::vector<BodyPair>& pairs);
-  void remove(BodyId body, const QuantumBox& box) noexcept;
+  void remove(BodyIndex body, const QuantumBox& box) noexcept;
   void prepare_removal(const QuantumBox& box) const noexcept;  // starts loading
 
   std::size_t lines() const noexcept { return lines_.size(); }
@@ -63,7 +63,7 @@ class SweptGrid {
   std::uint32_t line_of(const Cell& cell) const noexcept {
     return (cell[0] & mask_[0]) << shift_[0] | (cell[1] & mask_[1]) << shift_[1] | (cell[2] & mask_[2]) << shift_[2];
   }
-  void encode(Batch& batch, std::span<const BodyId> bodies, const BoxBlock& block) const noexcept;
+  void encode(Batch& batch, std::span<const BodyIndex> bodies, const BoxBlock& block) const noexcept;
   template <typename Kind>
   void advance(const Insertion& insertion);
   template <typename Kind>
@@ -77,10 +77,10 @@ class SweptGrid {
   void advance_vectors(const Insertion& insertion);
   template <typename Kind>
   void insert_in_line(const Insertion& insertion, const Visit& visit);
-  void report(const Insertion& insertion, const CellLine& line, std::uint64_t hits, BodyId body, Steps steps);
-  void leave_many_visits(Queue& queue, BodyId body, const QuantumBox& box) const noexcept;
+  void report(const Insertion& insertion, const CellLine& line, std::uint64_t hits, BodyIndex body, Steps steps);
+  void leave_many_visits(Queue& queue, BodyIndex body, const QuantumBox& box) const noexcept;
   void append(CellLine& line, std::uint64_t entry);
-  void remove_from(CellLine& line, BodyId body) noexcept;
+  void remove_from(CellLine& line, BodyIndex body) noexcept;
   void free_last(CellLine& line) noexcept;
 
   std::vector<CellLine> lines_, overflow_;
@@ -96,7 +96,7 @@ struct SweptGrid::Batch {
   using ByBody = std::array<T, kBlock>;
   template <typename T>
   using ByAxis = std::array<ByBody<T>, 3>;
-  ByBody<BodyId> bodies;
+  ByBody<BodyIndex> bodies;
   ByBody<std::uint64_t> entry, query;
   ByBody<std::uint32_t> line;
   ByAxis<std::uint32_t> from;                         // the first cell's lower end; 0 for the next one

@@ -53,7 +53,7 @@ void SweptGrid::prepare_removal(const QuantumBox& box) const noexcept {
       &lines_[line_of({box.lower[0] >> kQuantumBits, box.lower[1] >> kQuantumBits, box.lower[2] >> kQuantumBits})]);
 }
 
-void SweptGrid::remove(BodyId body, const QuantumBox& box) noexcept {
+void SweptGrid::remove(BodyIndex body, const QuantumBox& box) noexcept {
   Cell cell;
   for (cell[2] = box.lower[2] >> kQuantumBits; cell[2] <= box.upper[2] >> kQuantumBits; ++cell[2]) {
     for (cell[1] = box.lower[1] >> kQuantumBits; cell[1] <= box.upper[1] >> kQuantumBits; ++cell[1]) {
@@ -65,7 +65,7 @@ void SweptGrid::remove(BodyId body, const QuantumBox& box) noexcept {
 }
 
 // The last entry of the chain takes the place.
-void SweptGrid::remove_from(CellLine& first, BodyId body) noexcept {
+void SweptGrid::remove_from(CellLine& first, BodyIndex body) noexcept {
   CellLine *line = &first, *found = nullptr, *before_last = nullptr;
   std::uint32_t index = 0;
   for (;;) {

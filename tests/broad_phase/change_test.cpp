@@ -26,7 +26,7 @@ class Application {
   // A frame: bodies move, changes happen, and the pairs must be those that touch.
   void frame(int step) {
     const double time = kStep * step;
-    for (BodyId i = 0; i < values_.size(); ++i) {
+    for (BodyIndex i = 0; i < values_.size(); ++i) {
       Motion& m = values_[i];
       if (!alive_[i] || fixed_[i]) continue;
       const Vec3 a = draw_.uniform(0, m.acceleration) * draw_.direction();
@@ -36,8 +36,8 @@ class Application {
     if (period_ > 0 && step % period_ == 0) renew(kStep * (step + period_));
     const Advance now = world_.advance(time);
     std::vector<BodyPair> expected;
-    for (BodyId i = 0; i < values_.size(); ++i) {
-      for (BodyId j = i + 1; j < values_.size(); ++j) {
+    for (BodyIndex i = 0; i < values_.size(); ++i) {
+      for (BodyIndex j = i + 1; j < values_.size(); ++j) {
         if (alive_[i] && alive_[j] && !(fixed_[i] && fixed_[j]) && spheres_touch(values_[i], values_[j])) {
           expected.push_back({i, j});
         }
@@ -64,8 +64,12 @@ class Application {
   void add() {
     const Motion m = random_motion();
     const bool fixed = draw_.uniform(0, 1) < 0.2;
-    const BodyId body = fixed ? world_.add_static(m) : world_.add(static_cast<std::uint8_t>(draw_.bits() % 3));
-    if (body >= values_.size()) values_.resize(body + 1), alive_.resize(body + 1), fixed_.resize(body + 1);
+    const BodyId id = fixed ? world_.add_static(m) : world_.add(static_cast<std::uint8_t>(draw_.bits() % 3));
+    const BodyIndex body = id.index;
+    if (body >= values_.size()) {
+      values_.resize(body + 1), alive_.resize(body + 1), fixed_.resize(body + 1), ids_.resize(body + 1);
+    }
+    ids_[body] = id;
     values_[body] = m;
     alive_[body] = 1;
     fixed_[body] = fixed;
@@ -81,25 +85,25 @@ class Application {
 
   void change(double time) {
     const double dice = draw_.uniform(0, 1);
-    const BodyId body = static_cast<BodyId>(draw_.bits() % values_.size());
+    const BodyIndex body = static_cast<BodyIndex>(draw_.bits() % values_.size());
     if (dice < 0.1) {
       add();
     } else if (!alive_[body]) {
       return;
     } else if (dice < 0.2) {
-      world_.remove(body);
+      world_.remove(ids_[body]);
       alive_[body] = 0;
     } else if (dice < 0.4) {  // anywhere, and faster: teleported
       values_[body] = random_motion();
-      fixed_[body] ? (void)world_.move_static(body, values_[body]) : world_.teleport(body);
+      fixed_[body] ? world_.move_static(ids_[body], values_[body]) : world_.teleport(ids_[body]);
     } else if (dice < 0.5 && !fixed_[body]) {  // a kick
       values_[body].velocity = 30 * draw_.direction();
-      world_.cancel(body);
+      world_.cancel(ids_[body]);
     } else if (dice < 0.6 && !fixed_[body] && period_ == 0) {  // announced to last for a while only
       values_[body].expiry = time + draw_.uniform(0.01, 0.3);
-      world_.cancel(body);
+      world_.cancel(ids_[body]);
     }
-    for (BodyId i = 0; i < values_.size() && period_ == 0; ++i) {  // renewed in time
+    for (BodyIndex i = 0; i < values_.size() && period_ == 0; ++i) {  // renewed in time
       if (values_[i].expiry < time + 2 * kStep) values_[i].expiry = time + draw_.uniform(0.1, 0.3);
     }
   }
@@ -109,6 +113,7 @@ class Application {
   int period_;
   std::vector<Motion> values_;
   std::vector<char> alive_, fixed_;
+  std::vector<BodyId> ids_;
   BroadPhase world_;
 };
 
@@ -162,7 +167,7 @@ TEST(BroadPhase, BodiesThatRenewTheirBoundsLateTakePart) {
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     const test::MovingBodies bodies({.bodies = seed % 2 == 0 ? 400u : 100u, .ball = 30, .period = kPeriod}, seed);
     const MotionSource inner = bodies.source();
-    const MotionSource source = [&](double time, std::span<const BodyId> ids, std::span<Motion> motions) {
+    const MotionSource source = [&](double time, std::span<const BodyIndex> ids, std::span<Motion> motions) {
       inner(time, ids, motions);
       for (std::size_t i = 0; i < ids.size(); ++i) {
         if (ids[i] % 2 == 1 && std::fmod(time, kPeriod) == 0) motions[i].expiry = time;
@@ -185,7 +190,7 @@ TEST(BroadPhase, AChangeWhileAsleepCountsFromThePresent) {
   values[0].radius = values[1].radius = 1;
   std::vector<double> asked;
   const MotionSource inner = values_of(values);
-  const MotionSource source = [&](double time, std::span<const BodyId> bodies, std::span<Motion> motions) {
+  const MotionSource source = [&](double time, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
     asked.push_back(time);
     inner(time, bodies, motions);
   };
@@ -195,7 +200,7 @@ TEST(BroadPhase, AChangeWhileAsleepCountsFromThePresent) {
   EXPECT_TRUE(world.advance(0.505).pairs.empty());
   asked.clear();
   values[1].position = {1, 0, 0};
-  world.teleport(1);
+  world.teleport(world.id_of(1));
   EXPECT_TRUE(world.advance(0.507).pairs.empty());  // no step between
   const Advance now = world.advance(0.512);
   ASSERT_EQ(now.pairs.size(), 1u);
@@ -217,8 +222,8 @@ TEST(BroadPhase, RejectsWhatIsNotAPlace) {
 TEST(BroadPhase, WithoutBodiesSleepsForEver) {
   BroadPhase world({}, {});
   EXPECT_EQ(world.advance(1e9).time, std::numeric_limits<double>::infinity());
-  EXPECT_EQ(world.add_static(Motion{}), 0u);
-  EXPECT_EQ(world.add_static(Motion{}), 1u);
+  EXPECT_EQ(world.add_static(Motion{}).index, 0u);
+  EXPECT_EQ(world.add_static(Motion{}).index, 1u);
   EXPECT_TRUE(world.advance(2e9).pairs.empty());  // static bodies are no pair
 }
 
@@ -284,7 +289,7 @@ TEST(BroadPhase, TimeNeverRunsBackwards) {  // a smaller time than before change
   world.advance(1);
   world.advance(0.5);
   values[1].position = {0, 0, 0};
-  world.teleport(1);
+  world.teleport(world.id_of(1));
   EXPECT_TRUE(world.advance(0.7).pairs.empty());
   EXPECT_NEAR(world.advance(1.02).time, 1.01, 1e-9);
 }

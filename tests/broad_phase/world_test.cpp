@@ -149,8 +149,8 @@ TEST(BroadPhase, HandlesAlignedAndDegenerateConfigurations) {
     BroadPhase world(values_of(values), {.method = method});
     for (std::size_t i = 0; i < values.size(); ++i) world.add();
     std::vector<BodyPair> expected;
-    for (BodyId i = 0; i < values.size(); ++i) {
-      for (BodyId j = i + 1; j < values.size(); ++j) {
+    for (BodyIndex i = 0; i < values.size(); ++i) {
+      for (BodyIndex j = i + 1; j < values.size(); ++j) {
         if (spheres_touch(values[i], values[j])) expected.push_back({i, j});
       }
     }
@@ -165,7 +165,7 @@ TEST(BroadPhase, HandlesFarOffsetsAndExtremeScales) {
   for (const double scale : {1e-6, 1.0, 1e6}) {
     for (const double offset : {0.0, 1e3, 1e9}) {
       const MovingBodies bodies({.bodies = 40, .ball = 12}, 11);
-      const MotionSource moved = [&](double time, std::span<const BodyId> ids, std::span<Motion> motions) {
+      const MotionSource moved = [&](double time, std::span<const BodyIndex> ids, std::span<Motion> motions) {
         for (std::size_t i = 0; i < ids.size(); ++i) {
           Motion m = bodies.motion(ids[i], time);
           m.position = scale * (m.position + Vec3{offset, -offset, offset});
@@ -178,14 +178,14 @@ TEST(BroadPhase, HandlesFarOffsetsAndExtremeScales) {
         BroadPhase world(moved, {.method = method});
         for (int i = 0; i < 40; ++i) world.add();
         std::vector<Motion> motions(40);
-        std::vector<BodyId> ids(40);
-        for (BodyId i = 0; i < 40; ++i) ids[i] = i;
+        std::vector<BodyIndex> ids(40);
+        for (BodyIndex i = 0; i < 40; ++i) ids[i] = i;
         for (int step = 0; step < 60; ++step) {
           const Advance now = world.advance(0.01 * step);
           moved(0.01 * step, ids, motions);
           std::vector<BodyPair> expected;
-          for (BodyId i = 0; i < 40; ++i) {
-            for (BodyId j = i + 1; j < 40; ++j) {
+          for (BodyIndex i = 0; i < 40; ++i) {
+            for (BodyIndex j = i + 1; j < 40; ++j) {
               if (spheres_touch(motions[i], motions[j])) expected.push_back({i, j});
             }
           }
@@ -201,16 +201,16 @@ TEST(BroadPhase, HandlesFarOffsetsAndExtremeScales) {
 // What a source gives at each step has to be what is reported, by comparing all.
 void expect_right(const MotionSource& source, std::size_t n, const BroadPhaseOptions& options, int steps) {
   BroadPhase world(source, options);
-  std::vector<BodyId> ids(n);
-  for (BodyId& id : ids) id = world.add();
+  std::vector<BodyIndex> ids(n);
+  for (BodyIndex& id : ids) id = world.add().index;
   std::vector<Motion> motions(n);
   for (int step = 0; step < steps; ++step) {
     const double time = options.time_step * step;
     const Advance now = world.advance(time);
     source(time, ids, motions);
     std::vector<BodyPair> expected;
-    for (BodyId i = 0; i < n; ++i) {
-      for (BodyId j = i + 1; j < n; ++j) {
+    for (BodyIndex i = 0; i < n; ++i) {
+      for (BodyIndex j = i + 1; j < n; ++j) {
         if (spheres_touch(motions[i], motions[j])) expected.push_back({i, j});
       }
     }
@@ -231,7 +231,7 @@ TEST(BroadPhase, WorksFromSpeedBoundsAlone) {  // 8.2: bodies that turn at will,
         path.push_back(path.back() + (kStep * draw.uniform(0, kSpeed)) * draw.direction());
       }
     }
-    const MotionSource source = [&](double time, std::span<const BodyId> bodies, std::span<Motion> motions) {
+    const MotionSource source = [&](double time, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
       const auto step = static_cast<std::size_t>(std::lround(time / kStep));
       for (std::size_t i = 0; i < bodies.size(); ++i) {
         motions[i] = speed_bounded(paths[bodies[i]][step], 0.7, kSpeed, std::numeric_limits<double>::infinity());
@@ -254,7 +254,7 @@ TEST(BroadPhase, HandlesClustersStragglersAndAllSizes) {
       homes[i] = i % 3 == 0 ? Vec3{} : i % 3 == 1 ? Vec3{1e4, 0, 0} : draw.in_ball(1e5);
       sizes[i] = std::pow(10, draw.uniform(-3, seed % 2 == 0 ? 0 : 3));  // from points to larger than the clusters
     }
-    const MotionSource source = [&](double time, std::span<const BodyId> bodies, std::span<Motion> motions) {
+    const MotionSource source = [&](double time, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
       for (std::size_t i = 0; i < bodies.size(); ++i) {
         motions[i] = near.motion(bodies[i], time);
         motions[i].position = motions[i].position + homes[bodies[i]];

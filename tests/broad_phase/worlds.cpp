@@ -50,7 +50,7 @@ MovingBodies::MovingBodies(const WorldShape& shape, std::uint64_t seed) {
   }
 }
 
-Motion MovingBodies::motion(BodyId id, double time) const {
+Motion MovingBodies::motion(BodyIndex id, double time) const {
   const Body& body = bodies_[id];
   const auto after = [&](const auto& part) { return time < part.begin; };
   const auto force = std::find_if(body.forces.begin() + 1, body.forces.end(), after) - 1;
@@ -67,17 +67,17 @@ Motion MovingBodies::motion(BodyId id, double time) const {
 }
 
 MotionSource MovingBodies::source() const {
-  return [this](double time, std::span<const BodyId> bodies, std::span<Motion> motions) {
+  return [this](double time, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
     for (std::size_t i = 0; i < bodies.size(); ++i) motions[i] = motion(bodies[i], time);
   };
 }
 
 std::vector<BodyPair> MovingBodies::touching(double time) const {
   std::vector<Motion> motions;
-  for (BodyId i = 0; i < size(); ++i) motions.push_back(motion(i, time));
+  for (BodyIndex i = 0; i < size(); ++i) motions.push_back(motion(i, time));
   std::vector<BodyPair> pairs;
-  for (BodyId i = 0; i < size(); ++i) {
-    for (BodyId j = i + 1; j < size(); ++j) {
+  for (BodyIndex i = 0; i < size(); ++i) {
+    for (BodyIndex j = i + 1; j < size(); ++j) {
       if (spheres_touch(motions[i], motions[j])) pairs.push_back({i, j});
     }
   }

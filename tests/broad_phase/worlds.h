@@ -39,7 +39,7 @@ class MovingBodies {
   MovingBodies(const WorldShape& shape, std::uint64_t seed);
 
   std::size_t size() const { return bodies_.size(); }
-  Motion motion(BodyId body, double time) const;
+  Motion motion(BodyIndex body, double time) const;
   MotionSource source() const;  // the object outlives it
   // The pairs that touch, by comparing all.
   std::vector<BodyPair> touching(double time) const;

@@ -1,5 +1,6 @@
 #pragma once
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -12,19 +13,31 @@
 
 namespace orchard::runtime {
 
-using BodyId = std::uint32_t;  // small numbers; the one given back last is used again first
-inline constexpr BodyId kNoBody = 0xffffffffu;
-inline constexpr BodyId kMaxBodies = (1u << 28) - 1;
+// Where a body's values lie in the application's arrays: small numbers; the one given back last is used again first.
+using BodyIndex = std::uint32_t;
+inline constexpr BodyIndex kNoIndex = 0xffffffffu;
+inline constexpr BodyIndex kMaxBodies = (1u << 28) - 1;
+
+// A body, and no other: an index that is used again comes with another generation. So what still names a body that was
+// removed is refused, and never meant for its successor.
+struct BodyId {
+  BodyIndex index = kNoIndex;
+  std::uint32_t generation = 0;
+  friend bool operator==(const BodyId&, const BodyId&) = default;
+};
+inline constexpr BodyId kNoBody{};
 
 struct BodyPair {
-  BodyId a, b;  // a < b
+  BodyIndex a, b;  // a < b
   friend auto operator<=>(const BodyPair&, const BodyPair&) = default;
 };
 
-// Fills motions[i] with what is known of bodies[i] at `time`, the time of a step. A pair of bodies may come up twice.
-using MotionSource = std::function<void(double time, std::span<const BodyId> bodies, std::span<Motion> motions)>;
+// Fills motions[i] with what is known of bodies[i] at `time`, the time of a step. A body may come up twice.
+// A motion that is not valid (NaN, infinite, a negative radius, ..: see is_valid() in motion.h) is refused: the body is
+// in no pair, is asked again at the next step, and is named in Advance::refused.
+using MotionSource = std::function<void(double time, std::span<const BodyIndex> bodies, std::span<Motion> motions)>;
 
-// For an application that keeps all motions as values, by BodyId, as of the time it calls advance() with. It calls
+// For an application that keeps all motions as values, by BodyIndex, as of the time it calls advance() with. It calls
 // advance() at every step then, which costs nothing while the broad phase sleeps. `values` outlives the broad phase.
 MotionSource values_of(const std::vector<Motion>& values);
 
@@ -50,10 +63,22 @@ struct BroadPhaseOptions {
   // `events`: most steps between two looks at a body's surroundings; 0 lets the broad phase choose.
   std::uint32_t window = 0;
   bool vectors = true;  // false: the portable inner loop. Same answers
+  // How far each position that the source gives may lie from one for which the bounds hold: for positions rounded to
+  // float float_slack() in motion_helpers.h. A length; it costs what radii larger by twice as much would.
+  double position_slack = 0;
 };
 
-// Whichever ends first (8.2). A unit of work is a motion asked for; a call gets through at least one of them. The clock
-// is read once per kWorkPerClock units.
+// Times are at most so many time steps before and after 0 (348 years at a step of 0.01 seconds): beyond, rounding would
+// blur the steps.
+inline constexpr double kMostSteps = 0x1p40;
+
+// time_step is from 1e-20 to 1e20, position_slack from 0 to kLargestNumber, and start is a time: not NaN, not infinite,
+// within kMostSteps time steps. A BroadPhase with other options refuses all bodies and all times.
+bool is_valid(const BroadPhaseOptions& options) noexcept;
+
+// Whichever ends first (8.2). A unit of work is a motion asked for; a call gets through at least one of them. A pair's
+// test takes two and is not split, so a step may ask for one more than `work`. The clock is read once per kWorkPerClock
+// units.
 struct WorkBudget {
   std::uint64_t work = std::numeric_limits<std::uint64_t>::max();
   std::chrono::nanoseconds time = std::chrono::nanoseconds::max();
@@ -68,6 +93,11 @@ struct Advance {
   std::span<const BodyPair> pairs;  // in ascending order; valid until the next call of any other member
   // Interrupted: pairs with a body of this importance class or a higher one may be missing. kNoClass: none is.
   unsigned incomplete_from = kNoClass;
+  std::size_t left_over = 0;  // bodies and pairs that could not be asked for within the budget; 0: nothing is missing
+  // Bodies whose motions were not valid at one of the steps that this call processed: they were in no pair there. In
+  // ascending order; valid as long as the pairs.
+  std::span<const BodyIndex> refused{};
+  bool time_refused = false;  // t_now is NaN, infinite or too far away (kMostSteps): nothing was done
 };
 
 // Tells which bodies' bounding spheres overlap, and until when nothing can happen, from bounds on their motion
@@ -97,47 +127,57 @@ class BroadPhase {
   ~BroadPhase();
 
   // What changes between two calls of advance() takes part from the first step after the time of the last report.
-  // importance: 0 is the highest class. kNoBody if there are kMaxBodies already.
+  // importance: 0 is the highest class. kNoBody if there are kMaxBodies already, or no source.
   BodyId add(std::uint8_t importance = 0);
   // Never asked for again. Takes the position and the radius; kNoBody if the motion is not valid, too.
   BodyId add_static(const Motion& place, std::uint8_t importance = 0);
-  void remove(BodyId body);
+  // The following change nothing and return false if there is no such body (any more).
+  bool remove(BodyId body);
   // 4.4: the bounds last given for the body no longer hold from now on; they are asked for again at the next step.
-  void cancel(BodyId body);
-  void teleport(BodyId body) { cancel(body); }                // the source gives the new place from now on
-  bool move_static(BodyId body, const Motion& place);         // false if the motion is not valid
-  void set_importance(BodyId body, std::uint8_t importance);  // from the next step
+  bool cancel(BodyId body);
+  bool teleport(BodyId body) { return cancel(body); }         // the source gives the new place from now on
+  bool move_static(BodyId body, const Motion& place);         // false, too, if it is not static or the motion not valid
+  bool set_importance(BodyId body, std::uint8_t importance);  // from the next step
 
-  // Processes the steps up to t_now that may have something, and stops at the first one that has.
+  BodyId id_of(BodyIndex index) const noexcept;  // of the body that has the index now; kNoBody: none
+  bool contains(BodyId body) const noexcept { return body != kNoBody && id_of(body.index) == body; }
+
+  // Processes the steps up to t_now that may have something, and stops at the first one that has. A long time ahead
+  // takes a long time: a body is looked at every 254 steps at least.
   Advance advance(double t_now) {
-    if (t_now >= wake_time_) return process(t_now, nullptr);
+    if (!sleeps_until(t_now)) return process(t_now, nullptr);
     seen_time_ = t_now > seen_time_ ? t_now : seen_time_;
     return {next_time_, {}};
   }
   // The same, within a budget per step: the bodies and pairs of the more important classes come first; what is left
-  // over is done at the next step. The methods that sleep are interrupted while they ask for motions, not while they
-  // search.
+  // over is resumed at the next step. Any budget gets to every body and pair of a class in time, unless a more
+  // important class takes it all. Each pair reported was tested at this step. The methods that sleep are interrupted
+  // while they ask for motions, not while they search.
   Advance advance(double t_now, const WorkBudget& budget) {
-    if (t_now >= wake_time_) return process(t_now, &budget);
+    if (!sleeps_until(t_now)) return process(t_now, &budget);
     seen_time_ = t_now > seen_time_ ? t_now : seen_time_;
     return {next_time_, {}};
   }
 
-  double next_time() const noexcept { return next_time_; }  // nothing happens before
-  std::size_t size() const noexcept;                        // bodies
-  std::size_t memory_bytes() const noexcept;                // held on the heap
-  std::uint64_t motions_asked() const noexcept;             // of the source, so far
+  bool valid() const noexcept { return largest_time_ >= 0; }  // the options are
+  double next_time() const noexcept { return next_time_; }    // nothing happens before
+  std::size_t size() const noexcept;                          // bodies
+  std::size_t memory_bytes() const noexcept;                  // held on the heap
+  std::uint64_t motions_asked() const noexcept;               // of the source, so far
 
  private:
   struct State;
   Advance process(double t_now, const WorkBudget* budget);
+  BodyId take_in(BodyIndex body);
+  bool sleeps_until(double t) const noexcept { return t < wake_time_ && std::fabs(t) <= largest_time_; }
   void wake_for_change();
   void note_next_step();
 
   std::unique_ptr<State> state_;
-  double next_time_ = 0;  // of the next step with anything to do
-  double wake_time_ = 0;  // the same, a rounding error earlier
-  double seen_time_ = 0;  // up to when everything has been reported
+  double next_time_ = 0;      // of the next step with anything to do
+  double wake_time_ = 0;      // the same, a rounding error earlier
+  double largest_time_ = -1;  // in size; below 0: no time is accepted
+  double seen_time_ = 0;      // up to when everything has been reported
 };
 
 }  // namespace orchard::runtime

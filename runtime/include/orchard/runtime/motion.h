@@ -25,7 +25,12 @@ struct Motion {
 // Of positions, relative to the largest coordinate that a pair has while its bounds hold.
 inline constexpr double kMotionSlack = 1e-12;
 
-// Finite, not negative where that has no sense, expiry not NaN. Every function that takes a Motion requires it.
+// No number of a motion, and no time step, is larger: squares and products stay finite.
+inline constexpr double kLargestNumber = 1e100;
+
+// All numbers finite and at most kLargestNumber in size (expiry: any time, infinity too, but not NaN); radius,
+// acceleration and drift not negative. Every function that takes a Motion requires it, but for BroadPhase, which
+// refuses the others.
 bool is_valid(const Motion& motion) noexcept;
 
 // 8.2: only the speed is bounded. The bound is the ball that the body can reach.
@@ -43,6 +48,7 @@ inline bool spheres_touch(const Motion& a, const Motion& b) noexcept {
 // Direct contact of two parabolic horns (8.2), each tightened by its half-space. Exact for the horns to `resolution`
 // seconds, and never late: the result is at most the true time.
 // Each round replaces the distance by its tangent, which lies below it, and solves a quadratic: two or three suffice.
-double earliest_contact(const Motion& a, const Motion& b, double limit, double resolution) noexcept;
+// `slack` is added to the radii: what the positions may be wrong by, all together.
+double earliest_contact(const Motion& a, const Motion& b, double limit, double resolution, double slack = 0) noexcept;
 
 }  // namespace orchard::runtime

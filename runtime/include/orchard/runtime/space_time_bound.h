@@ -35,8 +35,8 @@ struct SpaceTimeBound {
 };
 
 // From a motion of `age` seconds ago; it holds until the end of the interval. A bound that started earlier is chopped
-// off at the new start (4.3).
-SpaceTimeBound make_bound(const Motion& motion, double age, double duration) noexcept;
+// off at the new start (4.3). `slack` is added to the radius: what the position may be wrong by.
+SpaceTimeBound make_bound(const Motion& motion, double age, double duration, double slack = 0) noexcept;
 
 enum class BoundShape : std::uint8_t { hypertrapezoid, quadratic, horn };
 

@@ -1,0 +1,68 @@
+#pragma once
+#include "method.h"
+#include "orchard/runtime/space_time_bound.h"
+
+namespace orchard::runtime::detail {
+
+// The dissertation's broad phase (Fig. 4.23): sleep until the earliest two bounds touch, rebuild, and look again. While
+// bounds touch it goes on step by step, and reports the pairs whose spheres really overlap.
+class Sleeping final : public Method {
+ public:
+  Sleeping(Roster& roster, const BroadPhaseOptions& options);
+
+  void changed(BodyIndex body) override;
+  void removed(BodyIndex) override { members_changed_ = true; }
+  void reclassified(BodyIndex) override {}
+  StepReport step(Step now, Meter& meter, std::vector<BodyPair>& pairs) override;
+  std::size_t memory_bytes() const noexcept override;
+
+ private:
+  struct Known {
+    Motion motion;
+    Step asked = -1;  // the step that the motion is of; -1: to be asked for
+    Step end = 0;     // the first step at which it does not hold
+    bool valid = true;
+  };
+  // Whose turn it is in a class, when a budget does not suffice for all.
+  struct Turn {
+    BodyIndex body = kNoIndex;             // asked for last
+    BodyPair pair = {kNoIndex, kNoIndex};  // asked for last
+    std::int64_t lead = 0;                 // units of work that new bounds are ahead of pairs
+  };
+
+  void refresh_members();
+  bool stale(BodyIndex body, Step now) const noexcept { return known_[body].asked < 0 || known_[body].end <= now; }
+  bool current(BodyIndex body, Step now) const noexcept { return known_[body].asked == now || roster_.is_static(body); }
+  void ask(Step now, std::span<const BodyIndex> bodies);
+  void find(Step now);
+  bool intersecting_are_current(Step now);
+  void report(Step now, std::vector<BodyPair>& pairs) const;
+  StepReport sleep(Step now);
+
+  // sleeping_budget.cpp
+  StepReport step_within(Step now, Meter& meter, std::vector<BodyPair>& pairs);
+  bool work_through(Step now, unsigned importance, Meter& meter);
+  void collect_stale(Step now, unsigned importance);
+  void collect_pairs(Step now, unsigned importance);
+  void ask_in_turn(Step now, Turn& turn, std::uint64_t most, Meter& meter);
+  void test_in_turn(Step now, Turn& turn, std::uint64_t most, Meter& meter);
+  std::size_t left_over(Step now) const noexcept;
+
+  Roster& roster_;
+  const bool rebuild_all_;
+  const double slack_;  // of a body's bound
+  const IntersectionOptions find_;
+  IntersectionFinder finder_;
+  std::vector<Known> known_;  // by body
+  std::vector<BodyIndex> members_, stale_;
+  std::vector<Motion> motions_;
+  std::vector<BodyPair> pairs_;         // that touch, as far as is known, but are not all of now
+  std::vector<Turn> turns_;             // by class
+  std::vector<BodyIndex> present_;      // the members whose bounds hold
+  std::vector<SpaceTimeBound> bounds_;  // by place in present_
+  const Intersections* found_ = nullptr;
+  Step end_ = 0;  // the first step at which not all the bounds hold
+  bool members_changed_ = true;
+};
+
+}  // namespace orchard::runtime::detail
