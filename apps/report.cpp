@@ -205,7 +205,6 @@ void print_build(const BuildResult& result, double bounding_radius, double wrap_
     total += seconds;
   }
   fmt::print(" in all {:.2f}\n", total);
-  fmt::print("conservative: every point of the surface is certified to lie in all spheres of a root-to-leaf path\n");
 }
 
 }  // namespace orchard::apps
