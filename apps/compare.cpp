@@ -154,6 +154,8 @@ void compare(const CompareCommand& command) {
   const std::vector<SphereLists> lists = check_and_read(command);
   ProgressBar bar(!command.output.quiet && !command.output.json);
   const SolidMesh solid = load_solid(command.mesh, command.reading, bar.callback());
+  bar.clear();
+  if (!command.output.quiet && !command.output.json) print_solid(command.mesh, solid);
   const Surface& surface = solid.surface;
   const double radius = surface.bounding_radius();
   std::vector<Compared> all;
@@ -164,7 +166,9 @@ void compare(const CompareCommand& command) {
     write_file(command.plot, chart(all, command.mesh.filename().string(), radius));
   }
   if (command.output.json) {
-    fmt::print("{}\n", to_json(all, radius).dump(2));
+    json report = to_json(all, radius);
+    add_solid_json(solid, report);
+    fmt::print("{}\n", report.dump(2));
   } else if (!command.output.quiet) {
     print(all, surface.mesh().triangles.size(), radius);
     if (!command.plot.empty()) fmt::print("  {}  (the table as a plot)\n", command.plot.string());

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include <atomic>
+#include <cstdio>
 
 #include "orchard/geometry/error.h"
 
@@ -23,20 +24,27 @@ void write_text(const char* text) {
   [[maybe_unused]] const auto written = write(STDERR_FILENO, text, std::strlen(text));
 }
 
+// Nothing but what a signal handler may do.
+[[noreturn]] void end(int number) {
+  if (number != SIGPIPE) {  // which is how "orchard .. | head" ends
+    if (on_terminal) write_text("\r                                                                      \r");
+    write_text("orchard: interrupted\n");
+  }
+  _exit(128 + number);
+}
+
 extern "C" void on_signal(int number) {
   received = number;
   // Whoever changes the state first wins: either nothing has been made yet, or its maker clears it away.
   State expected = State::idle;
-  if (!state.compare_exchange_strong(expected, State::ending)) return;
-  say_interrupted();
-  _exit(exit_code_of_interrupt());
+  if (state.compare_exchange_strong(expected, State::ending)) end(number);
 }
 
 }  // namespace
 
 void catch_interrupts() {
   on_terminal = isatty(STDERR_FILENO) == 1;
-  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
     struct sigaction action {};
     if (sigaction(number, nullptr, &action) != 0 || action.sa_handler == SIG_IGN) continue;
     action = {};
@@ -55,20 +63,17 @@ Progress cancelled_by_interrupts() {
   return [](std::string_view, double) { return received == 0; };
 }
 
-int exit_code_of_interrupt() { return received == 0 ? 0 : 128 + received; }
-
-// Nothing but what a signal handler may do.
-void say_interrupted() {
-  if (on_terminal) write_text("\r                                                                      \r");
-  write_text("orchard: interrupted\n");
-}
-
 Writing::Writing() {
   State expected = State::idle;
   if (state.compare_exchange_strong(expected, State::writing)) return;
   for (;;) pause();  // the program is ending in another thread
 }
 
-Writing::~Writing() { state = State::idle; }
+Writing::~Writing() {
+  state = State::idle;
+  if (received == 0) return;
+  std::fflush(stdout);
+  end(received);
+}
 
 }  // namespace orchard::apps

@@ -285,6 +285,7 @@ int run(Request& request) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  catch_interrupts();
   occupy_standard_streams();
   CLI::App app{"orchard: from a triangle mesh to its medial axis, its sphere-tree and collision answers", "orchard"};
   app.require_subcommand(1);
@@ -308,10 +309,7 @@ int main(int argc, char** argv) {
     return fail(kBadInput, in_one_line(app, error));
   }
   try {
-    catch_interrupts();
-    const int code = printed(run(request));
-    if (exit_code_of_interrupt() == 0) return code;
-  } catch (const orchard::Cancelled&) {
+    return printed(run(request));
   } catch (const orchard::InputError& error) {
     return fail(kBadInput, error.what());
   } catch (const std::bad_alloc&) {
@@ -319,6 +317,4 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     return fail(kFailed, error.what());
   }
-  say_interrupted();
-  return exit_code_of_interrupt();
 }

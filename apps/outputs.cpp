@@ -123,6 +123,7 @@ void Outputs::commit() {
     fs::rename(staging_ / name, folder_ / name, error);
     if (error) throw Error((folder_ / name).string() + ": cannot be replaced: " + error.message());
   }
+  fs::remove(staging_);
 }
 
 void Outputs::print() const {

@@ -11,6 +11,7 @@
 namespace orchard {
 namespace {
 
+using test::Finished;
 using test::Running;
 using test::Workplace;
 
@@ -20,12 +21,6 @@ std::string content(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
-
-std::size_t entries(const fs::path& folder) {
-  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
-}
-
-bool lives(pid_t pid) { return kill(pid, 0) == 0; }
 
 // A build of a minute and more.
 std::vector<std::string> long_build(const std::string& mesh, const std::string& folder) {
@@ -49,6 +44,12 @@ TEST(Interrupt, EndsABuildAtOnceWith130AndLeavesNothing) {
 }
 
 #ifdef ORCHARD_HAS_VIZ
+
+std::size_t entries(const fs::path& folder) {
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+bool lives(pid_t pid) { return kill(pid, 0) == 0; }
 
 // A stand-in for the renderer that says that it has started, and then waits.
 struct Picturing {
@@ -109,26 +110,38 @@ TEST(Interrupt, LeavesTheFilesOfAnEarlierRunAsTheyWere) {
   EXPECT_EQ(entries(picturing.out), before.size());
 }
 
+TEST(Interrupt, OfWhatReadsTheOutputLeavesNoHiddenFolder) {
+  const Workplace here;
+  const std::string mesh = here.add("ball.obj", test::icosphere(1));
+  const Finished run =
+      here.run({"build", mesh, "-o", (here / "out").string(), "--method", "octree", "--depth", "1"}, "&1 | true");
+  EXPECT_EQ(run.exit_code, 0);  // that of `true`
+  for (const auto& entry : fs::directory_iterator(here / "out")) {
+    EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path();
+  }
+}
+
 // Whenever the signal comes, there is all of the run or none of it. The renderer is the real one where it can draw.
 TEST(Interrupt, AtAnyMomentLeavesAllOrNothing) {
   const Picturing picturing;
+  const auto begin = std::chrono::steady_clock::now();
   ASSERT_EQ(picturing.here.run(picturing.arguments()).exit_code, 0);
-  std::size_t whole = picturing.here.files("out").size();
+  const auto duration = std::chrono::steady_clock::now() - begin;
+  const std::size_t whole = picturing.here.files("out").size();
   fs::remove_all(picturing.out);
   int interrupted = 0;
-  for (int delay = 0; delay < 400; delay += 50) {
-    SCOPED_TRACE(delay);
+  constexpr int kMoments = 8;
+  for (int moment = 1; moment <= kMoments; ++moment) {
+    SCOPED_TRACE(moment);
     Running program(picturing.arguments(), {"TMPDIR=" + picturing.temporary.string()}, picturing.here / "err");
-    std::this_thread::sleep_for(std::chrono::milliseconds(delay + 10));
+    std::this_thread::sleep_for(duration * moment / kMoments);
     program.send_to_group(SIGINT);
     const int code = program.wait();
-    if (code != 0 && code != 130) {
-      EXPECT_LT(delay, 50) << "ended before it could catch signals, which takes some milliseconds";
-    }
-    interrupted += code == 130 ? 1 : 0;
+    EXPECT_TRUE(program.ended());
+    interrupted += code == 130 ? 1 : 0;  // 0: it was too late; -1: too early, the program had not begun
     EXPECT_EQ(entries(picturing.temporary), 0u);
     if (fs::exists(picturing.out)) {
-      EXPECT_EQ(entries(picturing.out), whole) << "no half, no hidden folder";
+      EXPECT_EQ(entries(picturing.out), whole) << "half of it, or a hidden folder";
     }
     fs::remove_all(picturing.out);
   }
