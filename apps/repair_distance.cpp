@@ -69,11 +69,13 @@ RepairDistance repair_distance(const TriangleMesh& input, const Surface& repaire
 
 std::string in_words(const RepairDistance& distance, double bounding_radius) {
   if (distance.upper() == 0) return "it lies where the input does";
-  return fmt::format(
-      "no point of it is farther than {:.6g} ({:.3g} of the bounding radius) from the input, no point of the input "
-      "farther than {:.6g} ({:.3g}) from it",
-      distance.to_input.upper, distance.to_input.upper / bounding_radius, distance.from_input.upper,
-      distance.from_input.upper / bounding_radius);
+  const auto length = [&](double value) {
+    return fmt::format("{:.6g} ({:.3g} of the bounding radius)", value, value / bounding_radius);
+  };
+  const double to = distance.to_input.upper, from = distance.from_input.upper;
+  return (to == 0 ? "it lies on the input, " : "no point of it is farther than " + length(to) + " from the input, ") +
+         (from == 0 ? "which lies on it as a whole"
+                    : "no point of the input farther than " + length(from) + " from it");
 }
 
 void add_json(const RepairDistance& distance, double bounding_radius, nlohmann::json& repair) {
