@@ -64,6 +64,7 @@ void check_file(const fs::path& file, std::span<const fs::path> inputs) {
 std::string named(const fs::path& model, const std::string& ending) { return model.stem().string() + ending; }
 
 void check_outputs(const fs::path& folder, std::span<const std::string> names, std::span<const fs::path> inputs) {
+  if (folder.empty()) throw InputError("-o: the folder's name is empty; \".\" is the one that you are in");
   const Writing writing;
   std::error_code error;
   const std::vector<fs::path> made = make_folders(folder, error);

@@ -126,6 +126,13 @@ TEST(Outputs, ThatCannotBeWrittenAreRefusedBeforeTheMeshIsRead) {
   EXPECT_FALSE(fs::exists(here / "file/below"));
 }
 
+TEST(Outputs, FolderWithoutANameIsRefused) {
+  const Workplace here;
+  const Finished run = here.run({"build", here.add("l.obj", test::l_shape()), "-o", ""});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_TRUE(test::is_one_line_error(run.err)) << run.err;
+}
+
 TEST(Outputs, FolderIsNotMadeForAMeshThatCannotBeUsed) {
   const Workplace here;
   const std::string garbage = here.add("garbage.obj", std::string("f 1 2 3\n"));
