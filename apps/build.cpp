@@ -41,6 +41,7 @@ std::vector<std::string> names_of(const BuildCommand& command) {
   for (Index level = 0; level <= command.options.depth; ++level)
     endings.push_back("-build-level-" + std::to_string(level) + ".vtp");
   std::vector<std::string> names;
+  names.reserve(endings.size());
   for (const std::string& ending : endings) names.push_back(named(command.mesh, ending));
   return names;
 }

@@ -53,9 +53,11 @@ std::string unknown_option(const CLI::App& app, const CLI::App& command, int beg
   for (int i = begin; i < argc && std::string_view(argv[i]) != "--"; ++i) {
     const std::string typed = argv[i], word = typed.substr(0, typed.find('='));
     if (!word.starts_with("--") || std::find(options.begin(), options.end(), word) != options.end()) continue;
+    std::string message = app.get_name();
+    if (!name.empty()) message += " " + name;
+    message += " has no option " + word;
     const std::string meant = suggestion(word, options);
-    return app.get_name() + (name.empty() ? "" : " " + name) + " has no option " + word +
-           (meant.empty() ? "; see " + help_of(app, name) : meant);
+    return message += meant.empty() ? "; see " + help_of(app, name) : meant;
   }
   return {};
 }

@@ -243,6 +243,7 @@ TEST(StandardOutput, ThatCannotBeWrittenIsAFailure) {
   for (const std::string where : {"/dev/full", "&-"}) {
     for (const std::vector<std::string>& command : commands) {
       for (const bool with_json : {true, false}) {
+        if (!with_json && where == "&-") continue;
         std::vector<std::string> arguments = command;
         if (with_json) arguments.emplace_back("--json");
         const Finished run = models.here.run(arguments, where);

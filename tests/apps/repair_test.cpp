@@ -145,7 +145,7 @@ bool same(const TriangleMesh& a, const TriangleMesh& b) {
 // CI's seeds; more with ORCHARD_REPAIR_SEEDS=first,count.
 std::pair<std::uint64_t, std::uint64_t> seeds() {
   const char* text = std::getenv("ORCHARD_REPAIR_SEEDS");
-  if (text == nullptr) return {1, 20};
+  if (text == nullptr) return {1, 12};
   char* end = nullptr;
   const std::uint64_t first = std::strtoull(text, &end, 10);
   return {first, std::strtoull(end + 1, nullptr, 10)};
