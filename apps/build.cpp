@@ -1,17 +1,19 @@
 #include <fmt/core.h>
 
-#include <fstream>
+#include <algorithm>
+#include <array>
 
 #include "build_plot.h"
 #include "commands.h"
 #include "console.h"
+#include "input_file.h"
 #include "load_solid.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/runtime/tree_file.h"
 #include "orchard/spheretree/tree_io.h"
-#include "output_folder.h"
+#include "outputs.h"
 #include "report.h"
 #include "sphere_lists.h"
 
@@ -29,15 +31,38 @@ std::string_view as_text(const std::vector<std::byte>& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-// Returns the files to tell the user about, each with what it is.
-using Written = std::vector<std::pair<fs::path, std::string>>;
+// Every name that the command may write to.
+std::vector<std::string> names_of(const BuildCommand& command) {
+  std::vector<std::string> endings{".orchard", ".sph", ".json", "-levels.svg", "-build.vtm", ".png"};
+  for (const std::string& format : command.exports) endings.push_back(format == "urdf" ? ".urdf" : "-spheres.json");
+  endings.emplace_back(command.reading.wrap.empty() ? kRepairedEnding : kWrapEnding);
+  for (const char* view : {"mesh", "points", "medial-vertices", "medial-edges", "medial-faces"})
+    endings.push_back("-build-" + std::string(view) + ".vtp");
+  for (Index level = 0; level <= command.options.depth; ++level)
+    endings.push_back("-build-level-" + std::to_string(level) + ".vtp");
+  std::vector<std::string> names;
+  names.reserve(endings.size());
+  for (const std::string& ending : endings) names.push_back(named(command.mesh, ending));
+  return names;
+}
 
-Written write_trees(const BuildCommand& command, const BuildResult& result) {
-  Written written;
-  const auto write = [&](const char* extension, std::string_view bytes, const char* what) {
-    const fs::path file = in_folder(command.folder, command.mesh, extension);
-    write_file(file, bytes);
-    written.emplace_back(file, what);
+// What can be refused before anything is built.
+void check(const BuildCommand& command) {
+  check_input(command.mesh);
+  if (command.export_level) {
+    const auto& exports = command.exports;
+    if (std::find(exports.begin(), exports.end(), "urdf") == exports.end())
+      throw InputError("--export-level: only a urdf has one level's spheres; add --export urdf");
+    if (*command.export_level > command.options.depth)
+      throw InputError(fmt::format("--export-level {}: with --depth {} the tree has levels 0 to {}",
+                                   *command.export_level, command.options.depth, command.options.depth));
+  }
+  check_outputs(command.folder, names_of(command), std::array{command.mesh});
+}
+
+void write_trees(const BuildCommand& command, const BuildResult& result, Outputs& outputs) {
+  const auto write = [&](const char* ending, std::string_view bytes, const char* what) {
+    write_file(outputs.add(named(command.mesh, ending), what), bytes);
   };
   write(".orchard", as_text(runtime::serialize(result.packed)), "the sphere-tree for the run-time");
   write(".sph", to_sph(result.tree), "the sphere-tree as text");
@@ -48,44 +73,49 @@ Written write_trees(const BuildCommand& command, const BuildResult& result) {
       write(".urdf", to_urdf(lists, command.export_level.value_or(result.tree.depth()), command.mesh.stem().string()),
             "a level's spheres as a link's collision geometry");
   }
-  return written;
 }
 
-fs::path wrap_file(const BuildCommand& command) { return in_folder(command.folder, command.mesh, kWrapEnding); }
+// The mesh that everything else was built on, where that is not the file's.
+const char* ending_of(const SolidMesh& solid) {
+  return solid.wrap ? kWrapEnding : solid.repair.changed() ? kRepairedEnding : nullptr;
+}
 
-void write_wrap(const BuildCommand& command, const TriangleMesh& wrap, Written& written) {
-  const fs::path file = wrap_file(command);
-  write_obj(file, wrap);
-  written.emplace_back(file, "the wrap, which everything else was built on");
+void write_solid(const BuildCommand& command, const SolidMesh& solid, Outputs& outputs) {
+  if (const char* ending = ending_of(solid))
+    write_obj(outputs.add(named(command.mesh, ending), std::string(solid.wrap ? "the wrap" : "the repaired mesh") +
+                                                           ", which everything else was built on"),
+              solid.surface.mesh());
 }
 
 #ifdef ORCHARD_HAS_VIZ
 UpAxis parse_up(const std::string& up) { return up == "x" ? UpAxis::x : up == "z" ? UpAxis::z : UpAxis::y; }
 
-void write_views(const BuildCommand& command, const Surface& surface, const BuildResult& result, Written& written) {
+void write_views(const BuildCommand& command, const Surface& surface, const BuildResult& result, Outputs& outputs) {
   const PipelineValues values{.surface = &surface,
                               .sampling = result.axis ? &result.sampling : nullptr,
                               .axis = result.axis ? &*result.axis : nullptr,
                               .tree = &result.tree};
   if (command.views) {
-    write_pipeline(command.folder, values);
-    written.emplace_back(command.folder / "pipeline.vtm", "open this in ParaView: all views at once");
+    const fs::path vtm = outputs.add(named(command.mesh, "-build.vtm"), "open this in ParaView: all views at once");
+    write_pipeline(fs::path(vtm).replace_extension(), values);
   }
   if (!command.picture) return;
-  const fs::path png = in_folder(command.folder, command.mesh, ".png");
   PipelinePicture picture;
   picture.values = values;
   picture.title = command.mesh.stem().string();
   picture.up = parse_up(command.up);
-  const PictureStatus status = draw_pipeline(png, picture);
+  picture.progress = cancelled_by_interrupts();
+  const std::string name = named(command.mesh, ".png");
+  const PictureStatus status = draw_pipeline(outputs.staged(name), picture);
+  throw_if_interrupted();  // on a terminal the renderer is interrupted too
   if (status) {
-    written.emplace_back(png, "the pipeline in one picture");
+    outputs.add(name, "the pipeline in one picture");
   } else {
     fmt::print(stderr, "orchard: no picture was made: {}\n", status.reason);
   }
 }
 #else
-void write_views(const BuildCommand& command, const Surface&, const BuildResult&, Written&) {
+void write_views(const BuildCommand& command, const Surface&, const BuildResult&, Outputs&) {
   if (command.picture) fmt::print(stderr, "orchard: no picture was made: this program was built without VTK\n");
 }
 #endif
@@ -93,6 +123,7 @@ void write_views(const BuildCommand& command, const Surface&, const BuildResult&
 }  // namespace
 
 void build(const BuildCommand& command) {
+  check(command);
   const bool talk = !command.output.quiet && !command.output.json;
   const Stopwatch reading;
   ProgressBar bar(talk);
@@ -107,31 +138,30 @@ void build(const BuildCommand& command) {
   result.seconds.insert(result.seconds.begin(), {"reading", seconds_reading});
   bar.clear();
 
-  make_folder(command.folder);
-  const Stopwatch writing;
-  Written written = write_trees(command, result);
-  if (solid.wrap) {
-    write_wrap(command, surface.mesh(), written);
-  } else {
-    fs::remove(wrap_file(command));  // of an earlier run: `verify` would take it for this tree's
-  }
-  write_views(command, surface, result, written);
-  const fs::path plot_file = in_folder(command.folder, command.mesh, "-levels.svg");
-  write_file(plot_file, build_plot(result, surface, command.mesh.stem().string()));
-  written.emplace_back(plot_file, "this report as a plot");
-  result.seconds.emplace_back("writing", writing.seconds());
   nlohmann::json report = build_json(surface, command.options, result, wrap_distance);
   add_solid_json(solid, report);
-  const fs::path report_file = in_folder(command.folder, command.mesh, ".json");
-  write_file(report_file, report.dump(2) + "\n");
-  written.emplace_back(report_file, "this report as JSON");
+  const char* const ending = ending_of(solid);
+  report["certified_mesh"] = ending ? nlohmann::json(named(command.mesh, ending)) : nlohmann::json();
+  const std::string plot = build_plot(result, surface, command.mesh.stem().string());
+
+  Outputs outputs(command.folder);
+  const Stopwatch writing;
+  write_trees(command, result, outputs);
+  write_solid(command, solid, outputs);
+  write_views(command, surface, result, outputs);
+  write_file(outputs.add(named(command.mesh, "-levels.svg"), "this report as a plot"), plot);
+  result.seconds.emplace_back("writing", writing.seconds());
+  report["seconds"]["writing"] = writing.seconds();
+  write_file(outputs.add(named(command.mesh, ".json"), "this report as JSON"), report.dump(2) + "\n");
+  outputs.commit();
 
   if (command.output.json) fmt::print("{}\n", report.dump(2));
   if (!talk) return;
   fmt::print("{}: {} triangles, {} clusters, bounding radius {:.6g}\n", command.mesh.string(),
              surface.mesh().triangles.size(), surface.clusters().count(), surface.bounding_radius());
   print_build(result, surface.bounding_radius(), wrap_distance);
-  for (const auto& [file, what] : written) fmt::print("  {}  ({})\n", file.string(), what);
+  outputs.print();
+  fmt::print("{}\n", certificate(solid, outputs.place_of(named(command.mesh, ending ? ending : ""))));
 }
 
 }  // namespace orchard::apps

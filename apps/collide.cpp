@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "input_file.h"
 #include "orchard/geometry/error.h"
 #include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/tree_file.h"
@@ -119,6 +120,8 @@ void print(const json& levels) {
 }  // namespace
 
 void collide(const CollideCommand& command) {
+  check_input(command.a);
+  check_input(command.b);
   const runtime::PackedSphereTree a = load(command.a), b = load(command.b);
   const runtime::Pose pose_a = parse_pose(command.pose_a, "--pose-a"), pose_b = parse_pose(command.pose, "--pose");
   constexpr std::size_t room = 1u << 20;  // meeting pairs a level: plenty, 25 MB

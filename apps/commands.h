@@ -58,6 +58,8 @@ struct SampleCommand {
   Output output;
 };
 void sample(const SampleCommand& command);
+// Throws InputError if they contradict each other.
+void check_sampling(const SampleCommand& command);
 // What the command's options come to on a surface.
 SamplingOptions sampling_options(const SampleCommand& command, const Surface& surface);
 

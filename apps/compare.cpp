@@ -6,12 +6,14 @@
 
 #include "commands.h"
 #include "console.h"
+#include "input_file.h"
 #include "load_solid.h"
 #include "orchard/covering/coverage.h"
 #include "orchard/covering/inaccuracy.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
 #include "orchard/spheretree/outside_volume.h"
+#include "outputs.h"
 #include "sphere_lists.h"
 #include "svg_plot.h"
 
@@ -69,12 +71,23 @@ LevelRow measure_level(const Surface& surface, double volume, const SphereLists&
   return row;
 }
 
-Compared measure_file(const Surface& surface, double volume, const std::filesystem::path& file) {
-  const SphereLists lists = read_spheres(file);
+Compared measure_lists(const Surface& surface, const std::filesystem::path& file, const SphereLists& lists) {
   Compared compared{file.filename().string(), {}, lists.tree.has_value()};
   for (std::size_t level = 0; level < lists.levels.size(); ++level)
-    compared.levels.push_back(measure_level(surface, volume, lists, level));
+    compared.levels.push_back(measure_level(surface, surface.report().volume, lists, level));
   return compared;
+}
+
+// What can be refused before anything is measured.
+std::vector<SphereLists> check_and_read(const CompareCommand& command) {
+  check_input(command.mesh);
+  for (const std::filesystem::path& file : command.trees) check_input(file);
+  std::vector<std::filesystem::path> inputs = command.trees;
+  inputs.push_back(command.mesh);
+  if (!command.plot.empty()) check_output(command.plot, inputs);
+  std::vector<SphereLists> all;
+  for (const std::filesystem::path& file : command.trees) all.push_back(read_spheres(file));
+  return all;
 }
 
 json to_json(const std::vector<Compared>& all, double radius) {
@@ -138,17 +151,24 @@ std::string chart(const std::vector<Compared>& all, const std::string& title, do
 }  // namespace
 
 void compare(const CompareCommand& command) {
+  const std::vector<SphereLists> lists = check_and_read(command);
   ProgressBar bar(!command.output.quiet && !command.output.json);
   const SolidMesh solid = load_solid(command.mesh, command.reading, bar.callback());
+  bar.clear();
+  if (!command.output.quiet && !command.output.json) print_solid(command.mesh, solid);
   const Surface& surface = solid.surface;
   const double radius = surface.bounding_radius();
   std::vector<Compared> all;
-  for (const std::filesystem::path& file : command.trees)
-    all.push_back(measure_file(surface, surface.report().volume, file));
+  for (std::size_t i = 0; i < lists.size(); ++i) all.push_back(measure_lists(surface, command.trees[i], lists[i]));
   bar.clear();
-  if (!command.plot.empty()) write_file(command.plot, chart(all, command.mesh.filename().string(), radius));
+  if (!command.plot.empty()) {
+    const Writing writing;
+    write_file(command.plot, chart(all, command.mesh.filename().string(), radius));
+  }
   if (command.output.json) {
-    fmt::print("{}\n", to_json(all, radius).dump(2));
+    json report = to_json(all, radius);
+    add_solid_json(solid, report);
+    fmt::print("{}\n", report.dump(2));
   } else if (!command.output.quiet) {
     print(all, surface.mesh().triangles.size(), radius);
     if (!command.plot.empty()) fmt::print("  {}  (the table as a plot)\n", command.plot.string());

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "commands.h"
+#include "input_file.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_details.h"
 #include "orchard/geometry/mesh_io.h"
@@ -114,10 +115,19 @@ json inspect_mesh(const InspectCommand& command) {
     report["self_intersections"] = surface.self_intersections().size();
   TriangleMesh mesh = surface.mesh();
   const MeshRepairReport repair = repair_mesh(mesh);
-  report["repair"] = to_json(repair);
+  RepairDistance distance;
+  if (repair.solid && repair.changed()) distance = repair_distance(surface.mesh(), Surface(std::move(mesh)));
+  report["repair"] = to_json(repair, distance, surface.bounding_radius());
   report["repair"]["solid"] = repair.solid;
   report["repair"]["faults"] = repair.faults;
   return report;
+}
+
+RepairDistance distance_of(const json& repair) {
+  const auto bounds = [&](const char* key) {
+    return SurfaceDistance{.lower = repair[key][0].get<double>(), .upper = repair[key][1].get<double>()};
+  };
+  return {.to_input = bounds("repaired_to_input"), .from_input = bounds("input_to_repaired")};
 }
 
 // What a mesh's numbers mean to whoever wants a tree of it.
@@ -132,6 +142,9 @@ void print_verdict(const json& report) {
   fmt::print("{}\n", faults.empty() ? "a solid: closed, manifold, oriented outward" : "not a solid: " + faults);
   const json& repair = report["repair"];
   for (const json& line : repair["lines"]) fmt::print("repair: {}\n", line.get<std::string>());
+  if (repair["solid"].get<bool>() && !repair["lines"].empty())
+    fmt::print("repair makes a solid of it: {}\n",
+               in_words(distance_of(repair), report["bounding_ball"][3].get<double>()));
   if (!repair["solid"].get<bool>())
     fmt::print(
         "no closed manifold, even after repair: {}; \"orchard build --wrap\" builds on a closed skin around it\n",
@@ -161,6 +174,7 @@ void print(const std::filesystem::path& file, const json& report) {
 }  // namespace
 
 void inspect(const InspectCommand& command) {
+  check_input(command.file);
   const std::string extension = lower_extension(command.file);
   const json report = extension == ".orchard" ? inspect_packed(command.file)
                       : extension == ".sph"   ? inspect_sph(command.file)

@@ -26,13 +26,18 @@ SolidMesh strict(const std::string& name, TriangleMesh mesh, BoundingBall ball) 
   if (!surface.solid())
     throw InputError(name + ": not a closed, consistently oriented manifold: " + surface.report().faults() +
                      "; without --strict, orchard repairs what is safe to repair");
-  return {.surface = std::move(surface), .repair = {.solid = true}, .wrap = {}, .self_intersections = {}};
+  return {.surface = std::move(surface),
+          .repair = {.solid = true},
+          .repair_distance = {},
+          .wrap = {},
+          .self_intersections = {}};
 }
 
 SolidMesh wrapped(TriangleMesh mesh, const WrapOptions& options, BoundingBall ball, const Progress& progress) {
   report_progress(progress, "wrap", 0);
   SolidMesh solid{.surface = Surface(wrap_mesh(mesh, options), ball),
                   .repair = {.solid = true},
+                  .repair_distance = {},
                   .wrap = {},
                   .self_intersections = {}};
   const Surface input(std::move(mesh));
@@ -42,12 +47,24 @@ SolidMesh wrapped(TriangleMesh mesh, const WrapOptions& options, BoundingBall ba
   return solid;
 }
 
-SolidMesh repaired(const std::string& name, TriangleMesh mesh, BoundingBall ball) {
+// Without a number there is nothing to say how they are counted.
+std::string with_note_on_numbers(const std::string& faults) {
+  return faults.find_first_of("0123456789") == std::string::npos ? faults : faults + " (numbers count from 0)";
+}
+
+SolidMesh repaired(const std::string& name, TriangleMesh mesh, BoundingBall ball, const Progress& progress) {
+  TriangleMesh input = mesh;
   MeshRepairReport repair = repair_mesh(mesh);
   if (!repair.solid)
-    throw InputError(name + ": no closed manifold, even after repair: " + repair.faults +
-                     " (numbers count from 0); --wrap builds on a closed skin around it instead");
-  return {.surface = Surface(std::move(mesh), ball), .repair = std::move(repair), .wrap = {}, .self_intersections = {}};
+    throw InputError(name + ": no closed manifold, even after repair: " + with_note_on_numbers(repair.faults) +
+                     "; --wrap builds on a closed skin around it instead");
+  SolidMesh solid{.surface = Surface(std::move(mesh), ball),
+                  .repair = std::move(repair),
+                  .repair_distance = {},
+                  .wrap = {},
+                  .self_intersections = {}};
+  if (solid.repair.changed()) solid.repair_distance = repair_distance(input, solid.surface, progress);
+  return solid;
 }
 
 json bounds(const SurfaceDistance& distance) { return {distance.lower, distance.upper}; }
@@ -66,8 +83,8 @@ SolidMesh load_solid(const std::filesystem::path& file, const MeshOptions& optio
       throw InputError(name + ": " + error.what());
     }
   }
-  SolidMesh solid =
-      options.strict ? strict(name, std::move(mesh), options.ball) : repaired(name, std::move(mesh), options.ball);
+  SolidMesh solid = options.strict ? strict(name, std::move(mesh), options.ball)
+                                   : repaired(name, std::move(mesh), options.ball, progress);
   if (solid.surface.mesh().triangles.size() <= kMostForSelfIntersections)
     solid.self_intersections = solid.surface.self_intersections().size();
   return solid;
@@ -77,16 +94,20 @@ RepairedMesh read_repaired(const std::filesystem::path& file) {
   TriangleMesh mesh = read_mesh(file);
   TriangleMesh copy = mesh;
   MeshRepairReport repair = repair_mesh(copy);
-  if (repair.solid) return {std::move(copy), std::move(repair)};
-  return {std::move(mesh), {.faults = repair.faults}};
+  if (!repair.solid) return {.mesh = std::move(mesh), .repair = {.faults = repair.faults}, .distance = {}};
+  RepairDistance distance;
+  if (repair.changed()) distance = repair_distance(mesh, Surface(copy));
+  return {.mesh = std::move(copy), .repair = std::move(repair), .distance = distance};
 }
 
-void print_repair(const std::filesystem::path& file, const MeshRepairReport& repair) {
+void print_repair(const std::filesystem::path& file, const MeshRepairReport& repair, const RepairDistance& distance,
+                  double bounding_radius) {
   for (const std::string& line : repair.lines()) fmt::print("{}: {}\n", file.string(), line);
+  if (repair.changed()) fmt::print("{}: repaired: {}\n", file.string(), in_words(distance, bounding_radius));
 }
 
 void print_solid(const std::filesystem::path& file, const SolidMesh& solid) {
-  print_repair(file, solid.repair);
+  print_repair(file, solid.repair, solid.repair_distance, solid.surface.bounding_radius());
   if (solid.self_intersections.value_or(0) > 0)
     fmt::print(
         "{}: {} pair{} of triangles cut or touch each other; inside is what the surface winds around; --wrap makes one "
@@ -101,26 +122,46 @@ void print_solid(const std::filesystem::path& file, const SolidMesh& solid) {
       solid.wrap->from_input.upper);
 }
 
-json to_json(const MeshRepairReport& repair) {
-  return {{"vertices_welded", repair.vertices_welded},
-          {"unused_vertices_dropped", repair.unused_vertices_dropped},
-          {"degenerate_dropped", repair.degenerate_dropped},
-          {"neighbors_split", repair.neighbors_split},
-          {"duplicates_dropped", repair.duplicates_dropped},
-          {"flipped", repair.flipped},
-          {"edges_cut", repair.edges_cut},
-          {"vertices_split", repair.vertices_split},
-          {"holes_filled", repair.holes_filled},
-          {"triangles_added", repair.triangles_added},
-          {"largest_hole", repair.largest_hole},
-          {"parts_turned_outward", repair.parts_turned_outward},
-          {"cavities_turned_inward", repair.cavities_turned_inward},
-          {"lines", repair.lines()}};
+std::string certificate(const SolidMesh& solid, const std::filesystem::path& written) {
+  const double radius = solid.surface.bounding_radius();
+  std::string subject = "the surface", distance;
+  if (solid.wrap) {
+    subject = "the wrap, " + written.string() + ",";
+    distance = fmt::format(
+        "; no point of the wrap is farther than {:.6g} ({:.5f} of the bounding radius) from the mesh, no point of the "
+        "mesh farther than {:.6g} ({:.5f}) from the wrap",
+        solid.wrap->to_input.upper, solid.wrap->to_input.upper / radius, solid.wrap->from_input.upper,
+        solid.wrap->from_input.upper / radius);
+  } else if (solid.repair.changed()) {
+    subject = "the repaired mesh, " + written.string() + ",";
+    distance = "; " + in_words(solid.repair_distance, radius);
+  }
+  return "conservative: every point of " + subject + " is certified to lie in all spheres of a root-to-leaf path" +
+         distance;
+}
+
+json to_json(const MeshRepairReport& repair, const RepairDistance& distance, double bounding_radius) {
+  json report{{"vertices_welded", repair.vertices_welded},
+              {"unused_vertices_dropped", repair.unused_vertices_dropped},
+              {"degenerate_dropped", repair.degenerate_dropped},
+              {"neighbors_split", repair.neighbors_split},
+              {"duplicates_dropped", repair.duplicates_dropped},
+              {"flipped", repair.flipped},
+              {"edges_cut", repair.edges_cut},
+              {"vertices_split", repair.vertices_split},
+              {"holes_filled", repair.holes_filled},
+              {"triangles_added", repair.triangles_added},
+              {"largest_hole", repair.largest_hole},
+              {"parts_turned_outward", repair.parts_turned_outward},
+              {"cavities_turned_inward", repair.cavities_turned_inward},
+              {"lines", repair.lines()}};
+  add_json(distance, bounding_radius, report);
+  return report;
 }
 
 void add_solid_json(const SolidMesh& solid, json& report) {
   if (!solid.wrap) {
-    report["repair"] = to_json(solid.repair);
+    report["repair"] = to_json(solid.repair, solid.repair_distance, solid.surface.bounding_radius());
     report["self_intersections"] = solid.self_intersections ? json(*solid.self_intersections) : json();
     return;
   }

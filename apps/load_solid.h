@@ -9,6 +9,7 @@
 #include "orchard/geometry/surface.h"
 #include "orchard/geometry/surface_distance.h"
 #include "orchard/geometry/wrap.h"
+#include "repair_distance.h"
 
 // What every command that needs a solid does with the mesh that it is given.
 namespace orchard::apps {
@@ -31,6 +32,7 @@ struct WrapResult {
 struct SolidMesh {
   Surface surface;
   MeshRepairReport repair;         // nothing done if wrapped
+  RepairDistance repair_distance;  // likewise
   std::optional<WrapResult> wrap;  // then `surface` is the wrap
   // Pairs of triangles that cut or touch each other: parts of the surface lie inside there, or stick out inside out.
   // Not counted for a wrap, which has none, and beyond kMostForSelfIntersections.
@@ -46,16 +48,21 @@ SolidMesh load_solid(const std::filesystem::path& file, const MeshOptions& optio
 struct RepairedMesh {
   TriangleMesh mesh;
   MeshRepairReport repair;
+  RepairDistance distance;
 };
 
 // For commands that take any triangles: the mesh that load_solid() gives without options, or as it is in the file if
 // that cannot be repaired; then nothing was done.
 RepairedMesh read_repaired(const std::filesystem::path& file);
 
-// A line for each thing done.
-void print_repair(const std::filesystem::path& file, const MeshRepairReport& repair);
+// A line for each thing done, and one for how far it moved the surface.
+void print_repair(const std::filesystem::path& file, const MeshRepairReport& repair, const RepairDistance& distance,
+                  double bounding_radius);
 void print_solid(const std::filesystem::path& file, const SolidMesh& solid);
-nlohmann::json to_json(const MeshRepairReport& repair);
+// What a certificate of the solid is about, where it is written to, and how far that is from the input: the line that a
+// build ends with.
+std::string certificate(const SolidMesh& solid, const std::filesystem::path& written);
+nlohmann::json to_json(const MeshRepairReport& repair, const RepairDistance& distance, double bounding_radius);
 // Sets "repair" and "self_intersections", or "wrap" and "wrap_distance".
 void add_solid_json(const SolidMesh& solid, nlohmann::json& report);
 

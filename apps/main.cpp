@@ -2,15 +2,21 @@
 #include <tbb/global_control.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <functional>
 #include <new>
 #include <optional>
 
 #include "commands.h"
+#include "interrupt.h"
 #include "orchard/geometry/error.h"
+#include "standard_streams.h"
 #include "tree_options.h"
+#include "usage_error.h"
 
 namespace {
 
@@ -254,9 +260,18 @@ void add_inspect(CLI::App& app, Request& request) {
   command.callback([&request] { request.run = [&request] { orchard::apps::inspect(request.inspect); }; });
 }
 
-int fail(int code, const char* message) {
+// In one line, whatever a file may be called.
+int fail(int code, std::string message) {
+  std::replace(message.begin(), message.end(), '\n', ' ');
   fmt::print(stderr, "orchard: {}\n", message);
   return code;
+}
+
+// What was printed has arrived, or the program has failed.
+int printed(int code) {
+  if (flush_standard_output()) return code;
+  const std::string reason = errno != 0 ? std::strerror(errno) : "it could not be written to";
+  return code != 0 ? code : fail(kFailed, "standard output: " + reason);
 }
 
 int run(Request& request) {
@@ -270,7 +285,9 @@ int run(Request& request) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"orchard: from a triangle mesh to its medial axis, its sphere-tree and collision answers"};
+  catch_interrupts();
+  occupy_standard_streams();
+  CLI::App app{"orchard: from a triangle mesh to its medial axis, its sphere-tree and collision answers", "orchard"};
   app.require_subcommand(1);
   app.set_version_flag("--version", ORCHARD_VERSION);
   app.footer("Example:\n  orchard build data/lamp.obj -o out/lamp\n\"orchard COMMAND --help\" explains a command.");
@@ -283,13 +300,16 @@ int main(int argc, char** argv) {
   add_compare(app, request);
   add_voronoi(app, request);
   add_medial(app, request);
+  if (const std::string fault = unknown_word(app, argc, argv); !fault.empty()) return fail(kBadInput, fault);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    return printed(app.exit(asked));
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kBadInput;
+    return fail(kBadInput, in_one_line(app, error));
   }
   try {
-    return run(request);
+    return printed(run(request));
   } catch (const orchard::InputError& error) {
     return fail(kBadInput, error.what());
   } catch (const std::bad_alloc&) {

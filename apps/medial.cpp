@@ -6,11 +6,12 @@
 
 #include "commands.h"
 #include "console.h"
+#include "input_file.h"
 #include "medial_run.h"
 #include "medial_warning.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
-#include "output_folder.h"
+#include "outputs.h"
 #include "report.h"
 
 #ifdef ORCHARD_HAS_VIZ
@@ -24,42 +25,71 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-using Written = std::vector<std::pair<fs::path, std::string>>;
-
 SegmentOptions segment_options(const MedialCommand& command, const Surface& surface, const MedialBuild& build) {
   // Below twice the mean spacing of the points, what they show is the points.
   const double spacing = std::sqrt(surface.report().area / build.sampling.size());
   return {.touching = 2 * spacing, .angle = command.tuning.segment_degrees * std::numbers::pi / 180};
 }
 
+// Every name that the command may write to.
+std::vector<std::string> names_of(const MedialCommand& command) {
+  if (!command.axis.empty()) return {named(command.axis, "-quality.json")};
+  if (!command.sweep.empty()) return sweep_names(command);
+  std::vector<std::string> names;
+  for (const char* ending :
+       {".ma", ".graphml", "-medial.json", "-medial.vtu", "-medial.vtm", "-medial-vertices.vtp", "-medial-edges.vtp",
+        "-medial-faces.vtp", "-medial-mesh.vtp", "-medial-points.vtp", "-medial-thickness.vtp", "-medial-skeleton.vtp"})
+    names.push_back(named(command.mesh, ending));
+  return names;
+}
+
+// What can be refused before anything is built.
+void check(const MedialCommand& command) {
+  const int own_input = !command.axis.empty() + !command.diagram.empty() + !command.points.empty();
+  if (own_input > 1) throw InputError("--axis, --diagram and --points exclude each other");
+  if (own_input > 0 && !command.sweep.empty()) throw InputError("--sweep takes no --axis, --diagram or --points");
+  check_sweep(command);  // without a sweep, that of the one combination that there is
+  std::vector<fs::path> inputs{command.mesh};
+  for (const fs::path& file : {command.axis, command.diagram, command.points})
+    if (!file.empty()) inputs.push_back(file);
+  for (const fs::path& file : inputs) check_input(file);
+  check_outputs(command.folder, names_of(command), inputs);
+}
+
 void write_views(const MedialCommand& command, const Surface& surface, const MedialBuild& build,
                  const MedialSegments& segments, const SkeletonGraph& skeleton, const MedialMesh& mesh,
-                 Written& written) {
+                 Outputs& outputs) {
 #ifdef ORCHARD_HAS_VIZ
   if (!command.views) return;
-  const auto add = [&](const char* name, const char* what) { written.emplace_back(command.folder / name, what); };
-  write_medial_grid(command.folder / "medial.vtu", build.axis, segments);
-  add("medial.vtu", "the axis with radius, angle, segment, component; open it in ParaView");
-  write_medial_axis(command.folder, build.axis);
-  add("medial_faces.vtp", "its faces; medial_edges.vtp, medial_vertices.vtp likewise");
-  write_mesh(command.folder / "mesh.vtp", surface);
-  write_points(command.folder / "points.vtp", build.sampling);
-  add("points.vtp", "the surface points, and which of them repair added");
-  write_thickness(command.folder / "thickness.vtp", surface, medial_radii_at_surface(surface, mesh));
-  add("thickness.vtp", "the mesh with its local thickness");
-  write_skeleton(command.folder / "skeleton.vtp", build.axis, skeleton);
-  add("skeleton.vtp", "the lines where sheets end and meet");
+  std::vector<NamedFile> shown;
+  const auto add = [&](const std::string& ending, const char* block, const char* what = "") {
+    const std::string name = named(command.mesh, "-medial" + ending);
+    if (*block != '\0') shown.push_back({block, name});
+    return outputs.add(name, what);
+  };
+  write_medial_grid(add(".vtu", "", "the axis with radius, angle, segment, component; open it in ParaView"), build.axis,
+                    segments);
+  write_mesh(add("-mesh.vtp", "mesh"), surface);
+  write_points(add("-points.vtp", "surface points", "the surface points, and which of them repair added"),
+               build.sampling);
+  add("-vertices.vtp", "medial vertices");
+  add("-edges.vtp", "medial edges");
+  add("-faces.vtp", "medial faces", "its faces; edges and vertices likewise");
+  write_medial_axis(outputs.staged(named(command.mesh, "-medial")), build.axis);
+  write_thickness(add("-thickness.vtp", "", "the mesh with its local thickness"), surface,
+                  medial_radii_at_surface(surface, mesh));
+  write_skeleton(add("-skeleton.vtp", "skeleton", "the lines where sheets end and meet"), build.axis, skeleton);
+  write_multiblock(add(".vtm", "", "open this in ParaView: mesh, points, axis and skeleton at once"), shown);
 #else
-  (void)command, (void)surface, (void)build, (void)segments, (void)skeleton, (void)mesh, (void)written;
+  (void)command, (void)surface, (void)build, (void)segments, (void)skeleton, (void)mesh, (void)outputs;
 #endif
 }
 
-void finish(const MedialCommand& command, const fs::path& report_file, const json& report, Written written) {
-  write_file(report_file, report.dump(2) + "\n");
-  written.emplace_back(report_file, "this report as JSON");
+void finish(const MedialCommand& command, const std::string& report_name, const json& report, Outputs& outputs) {
+  write_file(outputs.add(report_name, "this report as JSON"), report.dump(2) + "\n");
+  outputs.commit();
   if (command.output.json) fmt::print("{}\n", report.dump(2));
-  if (command.output.quiet || command.output.json) return;
-  for (const auto& [file, what] : written) fmt::print("  {}  ({})\n", file.string(), what);
+  if (!command.output.quiet && !command.output.json) outputs.print();
 }
 
 void judge_file(const MedialCommand& command, const SolidMesh& solid, const Progress& progress, ProgressBar& bar) {
@@ -77,7 +107,8 @@ void judge_file(const MedialCommand& command, const SolidMesh& solid, const Prog
                mesh.edges.size(), mesh.triangles.size());
     print(judgement);
   }
-  finish(command, in_folder(command.folder, command.axis, "-quality.json"), report, {});
+  Outputs outputs(command.folder);
+  finish(command, named(command.axis, "-quality.json"), report, outputs);
 }
 
 void build_axis(const MedialCommand& command, const SolidMesh& solid, const Progress& progress, ProgressBar& bar) {
@@ -101,18 +132,13 @@ void build_axis(const MedialCommand& command, const SolidMesh& solid, const Prog
   if (command.report) judgement = judge(command, surface, build, mesh, options, progress);
   bar.clear();
 
-  Written written;
-  const fs::path ma = in_folder(command.folder, command.mesh, ".ma");
-  write_file(ma, to_ma(mesh));
-  written.emplace_back(ma, "the axis for medial-mesh programs");
-  const fs::path graphml = in_folder(command.folder, command.mesh, ".graphml");
-  write_file(graphml, to_graphml(skeleton, build.axis));
-  written.emplace_back(graphml, "its skeleton graph");
-  write_views(command, surface, build, segments, skeleton, mesh, written);
-
   const Topology found = topology(mesh), wanted = solid_topology(surface);
-  const bool mended = options.mend_gaps && command.diagram.empty();
-  const std::string warning = medial_warning(solid, build, found, wanted, mended);
+  const std::string warning = medial_warning(solid, build,
+                                             {.found = found,
+                                              .wanted = wanted,
+                                              .mended = options.mend_gaps,
+                                              .own_points = !command.points.empty(),
+                                              .own_diagram = !command.diagram.empty()});
   json report{{"mesh", mesh_json(surface)},
               {"build", to_json(build)},
               {"topology", to_json(found)},
@@ -130,7 +156,11 @@ void build_axis(const MedialCommand& command, const SolidMesh& solid, const Prog
                skeleton.arcs.size());
     if (judgement) print(*judgement);
   }
-  finish(command, in_folder(command.folder, command.mesh, "-medial.json"), report, std::move(written));
+  Outputs outputs(command.folder);
+  write_file(outputs.add(named(command.mesh, ".ma"), "the axis for medial-mesh programs"), to_ma(mesh));
+  write_file(outputs.add(named(command.mesh, ".graphml"), "its skeleton graph"), to_graphml(skeleton, build.axis));
+  write_views(command, surface, build, segments, skeleton, mesh, outputs);
+  finish(command, named(command.mesh, "-medial.json"), report, outputs);
   if (!warning.empty()) fmt::print(stderr, "orchard: warning: {}: {}\n", command.mesh.string(), warning);
 }
 
@@ -156,14 +186,11 @@ MedialJudgement judge(const MedialCommand& command, const Surface& surface, cons
 }
 
 void medial(const MedialCommand& command) {
-  const int own_input = !command.axis.empty() + !command.diagram.empty() + !command.points.empty();
-  if (own_input > 1) throw InputError("--axis, --diagram and --points exclude each other");
-  if (own_input > 0 && !command.sweep.empty()) throw InputError("--sweep takes no --axis, --diagram or --points");
+  check(command);
   ProgressBar bar(!command.output.quiet && !command.output.json);
   const SolidMesh solid = load_solid(command.mesh, command.reading, bar.callback());
   bar.clear();
   if (!command.output.quiet && !command.output.json) print_solid(command.mesh, solid);
-  make_folder(command.folder);
   if (!command.axis.empty()) {
     judge_file(command, solid, bar.callback(), bar);
   } else if (!command.sweep.empty()) {

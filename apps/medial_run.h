@@ -1,6 +1,8 @@
 #pragma once
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "commands.h"
 #include "medial_report.h"
@@ -25,7 +27,11 @@ QualityOptions quality_options(const MedialCommand& command);
 MedialJudgement judge(const MedialCommand& command, const Surface& surface, const MedialBuild& build,
                       const MedialMesh& mesh, const MedialBuildOptions& options, const Progress& progress);
 
-// Every combination of the values of command.sweep, each judged: sweep.csv and a plot for each metric.
+// Throws InputError if a combination of the values of command.sweep cannot be run.
+void check_sweep(const MedialCommand& command);
+// The files of a sweep.
+std::vector<std::string> sweep_names(const MedialCommand& command);
+// Every combination of the values of command.sweep, each judged: MODEL-sweep.csv and a plot for each metric.
 void sweep_medial(const MedialCommand& command, const Surface& surface, const Progress& progress);
 
 }  // namespace orchard::apps

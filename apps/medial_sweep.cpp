@@ -8,6 +8,7 @@
 #include "medial_run.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
+#include "outputs.h"
 #include "svg_plot.h"
 
 namespace orchard::apps {
@@ -43,7 +44,8 @@ Dimension parse(const std::string& text) {
   }
   Dimension dimension{.flag = &*flag, .values = split(text.substr(equals + 1), ',')};
   for (const std::string& value : dimension.values) {
-    if (const std::string fault = flag->fault(value); !fault.empty()) throw InputError(fault);
+    if (const std::string fault = flag->fault(value); !fault.empty())
+      throw InputError("--sweep " + name + ": " + fault);
   }
   return dimension;
 }
@@ -173,18 +175,47 @@ bool next(std::vector<std::size_t>& choice, const std::vector<Dimension>& dimens
   return false;
 }
 
-}  // namespace
-
-void sweep_medial(const MedialCommand& command, const Surface& surface, const Progress& progress) {
+std::vector<Dimension> dimensions_of(const MedialCommand& command) {
   std::vector<Dimension> dimensions;
   for (const std::string& text : command.sweep) dimensions.push_back(parse(text));
+  return dimensions;
+}
+
+MedialBuildOptions options_of(const MedialCommand& command, const std::vector<Dimension>& dimensions,
+                              const std::vector<std::size_t>& choice) {
+  MedialTuning tuning = command.tuning;
+  for (std::size_t d = 0; d < dimensions.size(); ++d) dimensions[d].flag->set(tuning, dimensions[d].values[choice[d]]);
+  return build_options(tuning);
+}
+
+std::string csv_name(const MedialCommand& command) { return named(command.mesh, "-sweep.csv"); }
+
+std::string plot_name(const MedialCommand& command, const Metric& metric) {
+  return named(command.mesh, fmt::format("-sweep-{}.svg", metric.column));
+}
+
+}  // namespace
+
+void check_sweep(const MedialCommand& command) {
+  const std::vector<Dimension> dimensions = dimensions_of(command);
+  std::vector<std::size_t> choice(dimensions.size(), 0);
+  do {
+    options_of(command, dimensions, choice);
+  } while (next(choice, dimensions));
+}
+
+std::vector<std::string> sweep_names(const MedialCommand& command) {
+  std::vector<std::string> names{csv_name(command)};
+  for (const Metric& metric : kMetrics) names.push_back(plot_name(command, metric));
+  return names;
+}
+
+void sweep_medial(const MedialCommand& command, const Surface& surface, const Progress& progress) {
+  const std::vector<Dimension> dimensions = dimensions_of(command);
   std::vector<Run> runs;
   std::vector<std::size_t> choice(dimensions.size(), 0);
   do {
-    MedialTuning tuning = command.tuning;
-    for (std::size_t d = 0; d < dimensions.size(); ++d)
-      dimensions[d].flag->set(tuning, dimensions[d].values[choice[d]]);
-    const MedialBuildOptions options = build_options(tuning);
+    const MedialBuildOptions options = options_of(command, dimensions, choice);
     const MedialBuild build = build_medial_axis(surface, options, progress);
     const MedialJudgement judgement = judge(command, surface, build, medial_mesh(build.axis), options, progress);
     Run& run = runs.emplace_back();
@@ -193,12 +224,12 @@ void sweep_medial(const MedialCommand& command, const Surface& surface, const Pr
   } while (next(choice, dimensions));
 
   const std::string csv = to_csv(dimensions, runs);
-  write_file(command.folder / "sweep.csv", csv);
+  Outputs outputs(command.folder);
+  write_file(outputs.add(csv_name(command)), csv);
   const std::string model = command.mesh.stem().string();
-  for (std::size_t m = 0; m < std::size(kMetrics); ++m) {
-    write_file(command.folder / fmt::format("sweep-{}.svg", kMetrics[m].column),
-               plot::to_svg({plot_of(m, model, dimensions, runs)}));
-  }
+  for (std::size_t m = 0; m < std::size(kMetrics); ++m)
+    write_file(outputs.add(plot_name(command, kMetrics[m])), plot::to_svg({plot_of(m, model, dimensions, runs)}));
+  outputs.commit();
   if (command.output.quiet) return;
   if (command.output.json) {
     nlohmann::json rows = nlohmann::json::array();
@@ -214,8 +245,8 @@ void sweep_medial(const MedialCommand& command, const Surface& surface, const Pr
     fmt::print("{}\n", nlohmann::json{{"runs", rows}}.dump(2));
     return;
   }
-  fmt::print("{}  {}  ({} runs, and a plot for each metric beside it)\n", csv, (command.folder / "sweep.csv").string(),
-             runs.size());
+  fmt::print("{}  {}  ({} runs, and a plot for each metric beside it)\n", csv,
+             outputs.place_of(csv_name(command)).string(), runs.size());
 }
 
 }  // namespace orchard::apps

@@ -130,7 +130,11 @@ std::string TuningFlag::fault(const std::string& value) const {
     good = std::find(choices.begin(), choices.end(), value) != choices.end();
   }
   if (good) return {};
-  return fmt::format("--{}: {} is not {}{}", name, value, whole ? "a whole number of " : "one of ", range());
+  return fmt::format("{} is not {}{}", value,
+                     !choices.empty() ? "one of "
+                     : whole          ? "a whole number from "
+                                      : "a number from ",
+                     range());
 }
 
 const std::vector<TuningFlag>& tuning_flags() {

@@ -30,7 +30,7 @@ struct TuningFlag {
   bool whole = false;        // whole numbers only
   std::function<void(MedialTuning&, const std::string&)> set;
 
-  // Why a value cannot be; empty if it can.
+  // Why a value cannot be, without the flag's name; empty if it can.
   std::string fault(const std::string& value) const;
   std::string range() const;
 };

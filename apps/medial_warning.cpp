@@ -14,31 +14,34 @@ std::string in_words(const Topology& topology) {
          ", " + counted(topology.cavities, "cavity", "cavities");
 }
 
-std::string cause(const SolidMesh& solid, const MedialBuild& build, const Topology& wanted, bool mended) {
+std::string cause(const SolidMesh& solid, const MedialBuild& build, const MedialFindings& findings) {
   const std::size_t cuts = solid.self_intersections.value_or(0);
   if (cuts > 0) {
     std::string text =
         counted(static_cast<std::int64_t>(cuts), "pair", "pairs") + " of triangles cut or touch each other";
-    if (wanted.cavities > 0) {
-      text += ", " + counted(wanted.cavities, "part is inside out", "parts are inside out");
+    if (findings.wanted.cavities > 0) {
+      text += ", " + counted(findings.wanted.cavities, "part is inside out", "parts are inside out");
     }
     return text + "; --wrap builds on one skin around them all";
   }
-  if (!mended) return "gaps were not mended (--gaps connected does)";
-  if (build.repair.faces_still_crossing > 0) {
-    return counted(build.repair.faces_still_crossing, "face still crosses", "faces still cross") +
-           " gaps; give more --samples or --max-passes";
+  if (findings.own_diagram) {
+    return "gaps cannot be mended in a diagram that is given; give its points with --points, or more of them";
   }
-  return "give more --samples, or --wrap";
+  if (!findings.mended) return "gaps were not mended (--gaps connected does)";
+  const std::string more = findings.own_points ? "more points" : "more --samples";
+  if (build.repair.faces_still_crossing > 0) {
+    return counted(build.repair.faces_still_crossing, "face still crosses", "faces still cross") + " gaps; give " +
+           more + " or --max-passes";
+  }
+  return "give " + more + (solid.wrap ? "" : ", or --wrap");
 }
 
 }  // namespace
 
-std::string medial_warning(const SolidMesh& solid, const MedialBuild& build, const Topology& found,
-                           const Topology& wanted, bool mended) {
+std::string medial_warning(const SolidMesh& solid, const MedialBuild& build, const MedialFindings& findings) {
   std::string what;
-  if (found != wanted) {
-    what = "the axis has " + in_words(found) + ", the solid " + in_words(wanted);
+  if (findings.found != findings.wanted) {
+    what = "the axis has " + in_words(findings.found) + ", the solid " + in_words(findings.wanted);
   } else if (build.axis.stems + build.axis.bridges + build.axis.left_out > 0) {
     what = fmt::format(
         "to keep the topology, {} vertices have no faces, {} edges bridge the outside, {} vertices were "
@@ -47,7 +50,7 @@ std::string medial_warning(const SolidMesh& solid, const MedialBuild& build, con
   } else {
     return {};
   }
-  return what + ": " + cause(solid, build, wanted, mended);
+  return what + ": " + cause(solid, build, findings);
 }
 
 }  // namespace orchard::apps

@@ -7,9 +7,15 @@
 
 namespace orchard::apps {
 
-// What is wrong with an axis that was built, why, and what to do about it, in a line; empty if nothing is: another
-// topology than the solid's, or parts left out to keep it.
-std::string medial_warning(const SolidMesh& solid, const MedialBuild& build, const Topology& found,
-                           const Topology& wanted, bool mended);
+struct MedialFindings {
+  Topology found, wanted;    // of the axis and of the solid
+  bool mended = true;        // gaps were looked for
+  bool own_points = false;   // the points are the user's
+  bool own_diagram = false;  // the diagram is, in which no gap can be mended
+};
+
+// What is wrong with an axis that was built, why, and what to do about it, in a line that names nothing that cannot
+// help or has been done; empty if nothing is wrong: another topology than the solid's, or parts left out to keep it.
+std::string medial_warning(const SolidMesh& solid, const MedialBuild& build, const MedialFindings& findings);
 
 }  // namespace orchard::apps

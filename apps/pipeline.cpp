@@ -41,7 +41,7 @@ class Pipeline {
       : surface_(surface), options_(options), progress_(progress) {}
 
   BuildResult run() {
-    stage("octree", [&] { result_.octree = octree(surface_, {.depth = options_.depth}, progress_); });
+    stage("octree to compare with", [&] { result_.octree = octree(surface_, {.depth = options_.depth}, progress_); });
     if (needs_axis(options_.method)) build_medial_axis();
     build_tree();
     stage("covering", [&] {

@@ -211,7 +211,6 @@ void print_build(const BuildResult& result, double bounding_radius, double wrap_
         "{} of {} nodes have a bound that could not be proven as tight as it was measured; a weaker one that is proven "
         "is stored\n",
         result.bounds_weakened, result.packed.node_count);
-  fmt::print("conservative: every point of the surface is certified to lie in all spheres of a root-to-leaf path\n");
 }
 
 }  // namespace orchard::apps

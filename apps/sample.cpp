@@ -1,13 +1,16 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 
 #include "commands.h"
 #include "console.h"
+#include "input_file.h"
 #include "orchard/geometry/atomic_file.h"
+#include "orchard/geometry/error.h"
 #include "orchard/geometry/sampling.h"
-#include "output_folder.h"
+#include "outputs.h"
 #include "xyz.h"
 
 #ifdef ORCHARD_HAS_VIZ
@@ -42,13 +45,17 @@ void print(const SampleCommand& command, const json& report) {
 
 }  // namespace
 
+void check_sampling(const SampleCommand& command) {
+  if (command.edge_samples.value_or(0) > command.samples) throw InputError("--edge-samples: more than --samples");
+}
+
 SamplingOptions sampling_options(const SampleCommand& command, const Surface& surface) {
   constexpr double kRadians = std::numbers::pi / 180;
   SamplingOptions options{.iterations = command.iterations,
                           .seed = command.seed,
                           .relaxation = command.relaxation,
                           .crease_angle = command.crease_degrees * kRadians};
-  options.edge_points = std::min(command.edge_samples.value_or(command.samples / 5), command.samples);
+  options.edge_points = command.edge_samples.value_or(command.samples / 5);
   options.face_points = command.samples - options.edge_points;
   if (command.cluster_degrees) options.cluster_angle = *command.cluster_degrees * kRadians;
   if (options.relaxation == Relaxation::automatic) options.relaxation = choose_relaxation(surface, options);
@@ -56,10 +63,15 @@ SamplingOptions sampling_options(const SampleCommand& command, const Surface& su
 }
 
 void sample(const SampleCommand& command) {
+  const std::string xyz = named(command.mesh, ".xyz"), points = named(command.mesh, "-sample-points.vtp"),
+                    mesh = named(command.mesh, "-sample-mesh.vtp");
+  check_input(command.mesh);
+  check_sampling(command);
+  check_outputs(command.folder, std::array{xyz, points, mesh}, std::array{command.mesh});
   const bool talk = !command.output.quiet && !command.output.json;
   RepairedMesh read = read_repaired(command.mesh);
-  if (talk) print_repair(command.mesh, read.repair);
   const Surface surface(std::move(read.mesh));
+  if (talk) print_repair(command.mesh, read.repair, read.distance, surface.bounding_radius());
   SamplingOptions options = sampling_options(command, surface);
 
   ProgressBar bar(talk);
@@ -70,32 +82,32 @@ void sample(const SampleCommand& command) {
   const SurfaceSampling unrelaxed = sample_surface(surface, options, bar.callback());
   bar.clear();
 
-  make_folder(command.folder);
-  const std::filesystem::path xyz = in_folder(command.folder, command.mesh, ".xyz");
-  write_file(xyz, to_xyz(sampling.points));
+  json evenness_json{{"before", to_json(evenness(unrelaxed, surface))},
+                     {"after", to_json(evenness(sampling, surface))}};
+
+  Outputs outputs(command.folder);
+  write_file(outputs.add(xyz, "a point a line"), to_xyz(sampling.points));
 #ifdef ORCHARD_HAS_VIZ
   if (command.views) {
-    write_points(command.folder / "points.vtp", sampling);
-    write_mesh(command.folder / "mesh.vtp", surface);
+    write_points(outputs.add(points, "open this in ParaView"), sampling);
+    write_mesh(outputs.add(mesh), surface);
   }
 #endif
+  outputs.commit();
   const auto edge_points = std::count(sampling.origins.begin(), sampling.origins.end(), PointOrigin::edge);
   json report{{"points", sampling.size()},
               {"edge_points", edge_points},
               {"relaxation", name(options.relaxation)},
               {"iterations", command.iterations},
               {"seed", command.seed},
-              {"evenness",
-               {{"before", to_json(evenness(unrelaxed, surface))}, {"after", to_json(evenness(sampling, surface))}}},
-              {"repair", to_json(read.repair)},
+              {"evenness", std::move(evenness_json)},
+              {"repair", to_json(read.repair, read.distance, surface.bounding_radius())},
               {"seconds", seconds}};
   if (command.output.json) fmt::print("{}\n", report.dump(2));
   if (!talk) return;
   print(command, report);
-  fmt::print("{:.2f} s\n  {}  (a point a line)\n", seconds, xyz.string());
-#ifdef ORCHARD_HAS_VIZ
-  if (command.views) fmt::print("  {}  (open this in ParaView)\n", (command.folder / "points.vtp").string());
-#endif
+  fmt::print("{:.2f} s\n", seconds);
+  outputs.print();
 }
 
 }  // namespace orchard::apps

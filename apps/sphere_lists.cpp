@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -103,8 +104,7 @@ json to_json(const SphereLists& lists) {
 }
 
 std::string to_urdf(const SphereLists& lists, std::size_t level, const std::string& link) {
-  if (level >= lists.levels.size())
-    throw InputError("--export-level: the tree has levels 0 to " + std::to_string(lists.levels.size() - 1));
+  level = std::min(level, lists.levels.size() - 1);
   std::string escaped;
   for (const char c : link) escaped += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
   std::string text = fmt::format("<?xml version=\"1.0\"?>\n<robot name=\"{0}\">\n  <link name=\"{0}\">\n", escaped);

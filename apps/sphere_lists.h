@@ -25,7 +25,7 @@ SphereLists levels_of(const SphereTree& tree);
 SphereLists read_spheres(const std::filesystem::path& file);
 
 nlohmann::json to_json(const SphereLists& lists);
-// One link with the spheres of a level as its collision geometry. Throws InputError if there is no such level.
+// One link with the spheres of a level as its collision geometry; below the deepest level stand all leaves.
 std::string to_urdf(const SphereLists& lists, std::size_t level, const std::string& link);
 
 }  // namespace orchard::apps

@@ -8,13 +8,14 @@
 
 #include "commands.h"
 #include "console.h"
+#include "input_file.h"
 #include "load_solid.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/surface_distance.h"
 #include "orchard/runtime/tree_file.h"
 #include "orchard/spheretree/tree_io.h"
-#include "output_folder.h"
+#include "outputs.h"
 
 namespace orchard::apps {
 namespace {
@@ -38,10 +39,13 @@ const char* name(Violation::Kind kind) {
   return "";
 }
 
-// What the tree is verified against: the mesh, or the wrap beside the tree that it was built on.
+// What the tree is verified against: the mesh, repaired as `build` does it, or the wrap beside the tree that it was
+// built on.
 struct Subject {
   Surface surface;
-  fs::path wrap;  // empty: the mesh itself
+  MeshRepairReport repair = {};  // of the mesh, where it is verified against that
+  RepairDistance repair_distance = {};
+  fs::path wrap = {};  // empty: the mesh itself
   SurfaceDistance wrap_to_mesh = {}, mesh_to_wrap = {};
   double wrap_distance() const { return wrap_to_mesh.upper; }
 };
@@ -67,16 +71,35 @@ bool stores(const runtime::PackedSphereTree& tree, const TriangleMesh& mesh) {
   return tree.vertices.size() == mesh.vertices.size() && tree.triangles == mesh.triangles;
 }
 
+// Whether the tree was built on the mesh in `wrap`, which may be of another run or another program. Of a text tree, the
+// packed one beside it knows.
+bool built_on(const fs::path& wrap, const VerifyCommand& command, const Tree& tree, const TriangleMesh& mesh) {
+  std::error_code ignored;
+  if (!fs::exists(wrap, ignored) || fs::equivalent(wrap, command.mesh, ignored)) return false;
+  runtime::PackedSphereTree beside;
+  const runtime::PackedSphereTree* packed = tree.packed ? &*tree.packed : nullptr;
+  const fs::path file = fs::path(command.tree).replace_extension(".orchard");
+  if (packed == nullptr && runtime::load_file(file.c_str(), beside) == runtime::LoadStatus::ok) packed = &beside;
+  if (packed == nullptr) return true;  // there is nothing else to go by
+  if (stores(*packed, mesh)) return false;
+  try {
+    return stores(*packed, read_mesh(wrap));
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
 Subject subject_of(const VerifyCommand& command, const Tree& tree, const Progress& progress) {
-  Subject subject{.surface = Surface(read_repaired(command.mesh).mesh), .wrap = {}};
-  const fs::path wrap = in_folder(command.tree.parent_path(), command.tree, kWrapEnding);
-  std::error_code error;
-  if (!fs::exists(wrap, error) || fs::equivalent(wrap, command.mesh, error)) return subject;
-  if (tree.packed && stores(*tree.packed, subject.surface.mesh())) return subject;
+  RepairedMesh read = read_repaired(command.mesh);
+  Subject subject{
+      .surface = Surface(std::move(read.mesh)), .repair = std::move(read.repair), .repair_distance = read.distance};
+  const fs::path wrap = command.tree.parent_path() / named(command.tree, kWrapEnding);
+  if (!built_on(wrap, command, tree, subject.surface.mesh())) return subject;
   Surface skin(read_mesh(wrap));
   subject.wrap_to_mesh = surface_distance(skin, subject.surface, {}, progress);
   subject.mesh_to_wrap = surface_distance(subject.surface, skin, {}, progress);
   subject.surface = std::move(skin);
+  subject.repair = {};
   subject.wrap = wrap;
   return subject;
 }
@@ -119,6 +142,7 @@ json to_json(const Verification& result, const Subject& subject) {
     report["wrap"] = {{"file", subject.wrap.string()},
                       {"wrap_to_mesh_over_radius", subject.wrap_to_mesh.upper / radius},
                       {"mesh_to_wrap_over_radius", subject.mesh_to_wrap.upper / radius}};
+  if (subject.repair.changed()) report["repair"] = to_json(subject.repair, subject.repair_distance, radius);
   return report;
 }
 
@@ -159,6 +183,8 @@ void print(const Verification& result, const Subject& subject, double seconds) {
         "against the wrap {}: no point of it is farther than {:.5f} of the bounding radius from the mesh, no point "
         "of the mesh farther than {:.5f} from it\n",
         subject.wrap.string(), subject.wrap_to_mesh.upper / radius, subject.mesh_to_wrap.upper / radius);
+  if (subject.repair.changed())
+    fmt::print("against the repaired mesh: {}\n", in_words(subject.repair_distance, radius));
   if (!result.largest_bound.empty()) {
     fmt::print("largest error bound by level, of the bounding radius{}:",
                subject.wrap.empty() ? "" : ", including the wrap's distance from the mesh");
@@ -176,6 +202,8 @@ void print(const Verification& result, const Subject& subject, double seconds) {
 }  // namespace
 
 bool verify(const VerifyCommand& command) {
+  check_input(command.tree);
+  check_input(command.mesh);
   ProgressBar bar(!command.output.quiet && !command.output.json);
   Tree tree = read_tree(command.tree);
   const Subject subject = subject_of(command, tree, bar.callback());

@@ -3,15 +3,18 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
+#include <optional>
 
 #include "commands.h"
 #include "console.h"
+#include "input_file.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/voronoi/diagram_io.h"
 #include "orchard/voronoi/quality.h"
-#include "output_folder.h"
+#include "outputs.h"
 #include "xyz.h"
 
 #ifdef ORCHARD_HAS_VIZ
@@ -25,7 +28,10 @@ using nlohmann::json;
 
 struct Input {
   std::vector<Point> points;
-  std::optional<MeshRepairReport> repair;  // of a mesh, whose surface the points are on
+  // Of a mesh, whose surface the points are on.
+  std::optional<MeshRepairReport> repair;
+  RepairDistance distance;
+  double bounding_radius = 0;
 };
 
 Input read_input(const VoronoiCommand& command, const Progress& progress) {
@@ -39,6 +45,8 @@ Input read_input(const VoronoiCommand& command, const Progress& progress) {
   const Surface surface(std::move(read.mesh));
   input.points = sample_surface(surface, sampling_options(command.sampling, surface), progress).points;
   input.repair = std::move(read.repair);
+  input.distance = read.distance;
+  input.bounding_radius = surface.bounding_radius();
   return input;
 }
 
@@ -158,19 +166,17 @@ void print(const VoronoiCommand& command, const Input& input, const std::vector<
                           "lie in a plane"}[static_cast<std::size_t>(std::max(runs.back().report.dimension, 0))]);
 }
 
-std::vector<std::filesystem::path> write(const VoronoiCommand& command, const Input& input,
-                                         const std::vector<Run>& runs) {
-  std::vector<std::filesystem::path> files;
-  if (command.folder.empty()) return files;
-  make_folder(command.folder);
-  if (input.repair) {
-    files.push_back(in_folder(command.folder, command.input, ".xyz"));
-    write_file(files.back(), to_xyz(input.points));
-  }
+std::string points_name(const VoronoiCommand& command) { return named(command.input, "-voronoi.xyz"); }
+
+std::string diagram_name(const VoronoiCommand& command, VoronoiAlgorithm algorithm, const char* extension) {
+  return named(command.input, fmt::format("-{}{}", name(algorithm), extension));
+}
+
+void write(const VoronoiCommand& command, const Input& input, const std::vector<Run>& runs, Outputs& outputs) {
+  if (input.repair) write_file(outputs.add(points_name(command), "a point a line"), to_xyz(input.points));
   for (const Run& run : runs) {
     if (!run.failure.empty()) continue;
-    files.push_back(in_folder(command.folder, command.input, fmt::format("-{}.vor", name(run.algorithm)).c_str()));
-    write_file(files.back(), to_vor(run.diagram));
+    write_file(outputs.add(diagram_name(command, run.algorithm, ".vor"), "the diagram as text"), to_vor(run.diagram));
   }
 #ifdef ORCHARD_HAS_VIZ
   VoronoiCellsView view;
@@ -178,17 +184,31 @@ std::vector<std::filesystem::path> write(const VoronoiCommand& command, const In
   if (!command.box.empty()) view.box = Box(Point(command.box.data()), Point(command.box.data() + 3));
   for (const Run& run : runs) {
     if (!run.failure.empty()) continue;
-    const std::string ending = fmt::format("-{}.vtu", name(run.algorithm));
-    files.push_back(in_folder(command.folder, command.input, ending.c_str()));
-    write_voronoi_cells(files.back(), run.diagram, view);
+    write_voronoi_cells(outputs.add(diagram_name(command, run.algorithm, ".vtu"), "open this in ParaView"), run.diagram,
+                        view);
   }
 #endif
-  return files;
+  outputs.commit();
 }
 
+// What can be refused before anything is built.
 void check(const VoronoiCommand& command) {
   if (!command.box.empty() && !(Box(Point(command.box.data()), Point(command.box.data() + 3)).volume() > 0))
     throw InputError("--box needs x y z of its lower corner, then of its upper one, with room between them");
+  check_input(command.input);
+  check_sampling(command.sampling);
+  if (command.folder.empty()) return;
+  std::vector<std::string> names{points_name(command)};
+  for (const VoronoiAlgorithm algorithm : kVoronoiAlgorithms)
+    if (command.compare || algorithm == command.algorithm)
+      for (const char* extension : {".vor", ".vtu"}) names.push_back(diagram_name(command, algorithm, extension));
+  check_outputs(command.folder, names, std::array{command.input});
+}
+
+void check_cells(const VoronoiCommand& command, const Input& input) {
+  for (const Index cell : command.cells)
+    if (cell >= input.points.size())
+      throw InputError(fmt::format("--cells {}: there are {} points, counted from 0", cell, input.points.size()));
 }
 
 }  // namespace
@@ -198,20 +218,20 @@ void voronoi(const VoronoiCommand& command) {
   const bool talk = !command.output.quiet && !command.output.json;
   ProgressBar bar(talk);
   const Input input = read_input(command, bar.callback());
+  check_cells(command, input);
   const std::vector<Run> runs = run_all(command, input.points, bar.callback());
   bar.clear();
-  if (talk && input.repair) print_repair(command.input, *input.repair);
+  if (talk && input.repair) print_repair(command.input, *input.repair, input.distance, input.bounding_radius);
   if (talk) print(command, input, runs);
-  const std::vector<std::filesystem::path> files = write(command, input, runs);
-  if (talk)
-    for (const auto& file : files)
-      fmt::print("  {}  ({})\n", file.string(),
-                 file.extension() == ".xyz"   ? "a point a line"
-                 : file.extension() == ".vor" ? "the diagram as text"
-                                              : "open this in ParaView");
+  std::optional<Outputs> outputs;
+  if (!command.folder.empty()) {
+    outputs.emplace(command.folder);
+    write(command, input, runs, *outputs);
+    if (talk) outputs->print();
+  }
   if (!command.output.json) return;
   json report{{"points", input.points.size()}, {"sampled", input.repair.has_value()}};
-  if (input.repair) report["repair"] = to_json(*input.repair);
+  if (input.repair) report["repair"] = to_json(*input.repair, input.distance, input.bounding_radius);
   for (const Run& run : runs) report["algorithms"].push_back(to_json(run));
   fmt::print("{}\n", report.dump(2));
 }

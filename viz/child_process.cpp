@@ -82,14 +82,14 @@ class Pipe {
 };
 
 // One line without its end; what came until then if the other side closes or the deadline passes.
-std::string read_line(int descriptor, Clock::time_point deadline) {
+std::string read_line(int descriptor, Clock::time_point deadline, const Progress& progress) {
   std::string line;
   for (;;) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-    if (left <= 0) return line;
+    report_progress(progress, "display", 0);
+    if (Clock::now() >= deadline) return line;
     pollfd request{descriptor, POLLIN, 0};
-    const int ready = poll(&request, 1, static_cast<int>(left));
-    if (ready < 0 && errno == EINTR) continue;
+    const int ready = poll(&request, 1, static_cast<int>(kPollInterval.count()));
+    if (ready == 0 || (ready < 0 && errno == EINTR)) continue;
     char c = 0;
     if (ready <= 0 || read(descriptor, &c, 1) != 1 || c == '\n') return line;
     line += c;
@@ -116,8 +116,9 @@ ChildProcess::~ChildProcess() {
   wait_until(Clock::time_point::max());
 }
 
-std::optional<int> ChildProcess::wait_until(Clock::time_point deadline) {
+std::optional<int> ChildProcess::wait_until(Clock::time_point deadline, const Progress& progress) {
   while (!ended_) {
+    report_progress(progress, "picture", 0);
     int status = 0;
     const pid_t result = waitpid(pid_, &status, WNOHANG);
     if (result == pid_ || (result < 0 && errno == ECHILD)) {  // ECHILD: the host ignores SIGCHLD, so nobody knows how
@@ -144,7 +145,7 @@ std::filesystem::path find_in_path(const std::string& name) {
 }
 
 VirtualDisplay::VirtualDisplay(const std::filesystem::path& xvfb, const std::filesystem::path& log,
-                               Clock::duration patience) {
+                               Clock::duration patience, const Progress& progress) {
   Pipe pipe;
   // -terminate: should this process be killed, the server follows its last client.
   server_.emplace(
@@ -154,7 +155,7 @@ VirtualDisplay::VirtualDisplay(const std::filesystem::path& xvfb, const std::fil
              .log = log,
              .passed_descriptor = pipe.writing_end()});
   pipe.close_writing_end();
-  const std::string number = read_line(pipe.reading_end(), Clock::now() + patience);
+  const std::string number = read_line(pipe.reading_end(), Clock::now() + patience, progress);
   if (number.empty()) throw Error("Xvfb did not start");
   name_ = ":" + number;
 }

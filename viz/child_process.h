@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "orchard/geometry/progress.h"
+
 // Other programs, run with deadlines (POSIX).
 namespace orchard::detail {
 
@@ -28,8 +30,9 @@ class ChildProcess {
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  // How it ended, as waitpid() has it; nothing while it still runs at the deadline.
-  std::optional<int> wait_until(Clock::time_point deadline);
+  // How it ended, as waitpid() has it; nothing while it still runs at the deadline. Throws Cancelled if `progress`,
+  // which is asked every few milliseconds, wants no more.
+  std::optional<int> wait_until(Clock::time_point deadline, const Progress& progress = {});
 
  private:
   pid_t pid_ = -1;
@@ -42,8 +45,10 @@ std::filesystem::path find_in_path(const std::string& name);
 // A virtual X server (Xvfb) that lives as long as this value.
 class VirtualDisplay {
  public:
-  // Returns once the server takes connections. Throws Error if that takes longer than `patience`.
-  VirtualDisplay(const std::filesystem::path& xvfb, const std::filesystem::path& log, Clock::duration patience);
+  // Returns once the server takes connections. Throws Error if that takes longer than `patience`, and Cancelled as
+  // wait_until() does.
+  VirtualDisplay(const std::filesystem::path& xvfb, const std::filesystem::path& log, Clock::duration patience,
+                 const Progress& progress = {});
   const std::string& name() const { return name_; }
 
  private:

@@ -42,7 +42,7 @@ struct Layout {
 };
 
 struct Request {
-  std::filesystem::path folder;
+  std::filesystem::path vtm;
   std::string png, title;
   int width = 0, height = 0;  // pixels; 0: chosen here
   char up = 'y';
@@ -171,7 +171,7 @@ Layout make_layout(const Request& request, int panels, const View& view) {
 
 void render(const Request& request) {
   const std::string& title = request.title;
-  Panels content = make_panels(request.folder, 1.5 * kOversampling);
+  Panels content = make_panels(request.vtm, 1.5 * kOversampling);
   const View view = make_view(request, content.extents);
   const Layout layout = make_layout(request, static_cast<int>(content.panels.size()), view);
   const int width = layout.width, height = layout.height;
@@ -217,8 +217,9 @@ void render(const Request& request) {
 }
 
 constexpr const char* kUsage =
-    "usage: orchard-render FOLDER PICTURE.png [options]\n"
-    "Draws the .vtp files that orchard wrote into FOLDER. Needs an X display, for instance by xvfb-run.\n"
+    "usage: orchard-render VIEWS.vtm PICTURE.png [options]\n"
+    "Draws what \"orchard build\" or \"orchard medial\" wrote for ParaView. Needs an X display, for instance by "
+    "xvfb-run.\n"
     "  --width N      pixels, 64 to 8192; 0 (default): as wide as the model needs\n"
     "  --height N     pixels, 64 to 8192; 0 (default): 560 for each row of panels\n"
     "  --up x|y|z     the model's axis that points up (y)\n"
@@ -236,7 +237,7 @@ double number(const std::string& text, double low, double high) {
 // Throws std::logic_error if an argument makes no sense.
 Request parse(const std::vector<std::string>& arguments) {
   Request request;
-  request.folder = arguments.at(0);
+  request.vtm = arguments.at(0);
   request.png = arguments.at(1);
   for (std::size_t i = 2; i < arguments.size(); i += 2) {
     const std::string &option = arguments[i], &value = arguments.at(i + 1);

@@ -4,24 +4,28 @@
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkColorTransferFunction.h>
+#include <vtkCompositeDataSet.h>
 #include <vtkDataArray.h>
 #include <vtkDoubleArray.h>
 #include <vtkFeatureEdges.h>
 #include <vtkFieldData.h>
 #include <vtkGlyph3DMapper.h>
 #include <vtkIdList.h>
+#include <vtkInformation.h>
 #include <vtkLightKit.h>
+#include <vtkMultiBlockDataSet.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkSphereSource.h>
 #include <vtkUnsignedCharArray.h>
-#include <vtkXMLPolyDataReader.h>
+#include <vtkXMLMultiBlockDataReader.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <stdexcept>
 
 namespace orchard::detail {
@@ -33,7 +37,7 @@ using Data = vtkSmartPointer<vtkPolyData>;
 constexpr Color kInk{0.13, 0.16, 0.20};
 constexpr Color kStone{0.73, 0.77, 0.82};
 constexpr double kFeatureAngle = 40;             // degrees
-constexpr double kSeparation = 0.9;              // radians
+constexpr double kLeastAngle = 0.9;              // radians
 constexpr vtkIdType kTrianglesOutlined = 20000;  // more would turn the mesh black
 constexpr int kLevelsShown = 3;
 
@@ -43,14 +47,30 @@ constexpr std::array<Color, 8> kBranchColors{rgb(0x4e79a7), rgb(0xf2a13c), rgb(0
                                              rgb(0x7cc0bb), rgb(0xf0d060), rgb(0xb083b0), rgb(0xe8a0b4)};
 constexpr std::array<Color, 3> kOriginColors{rgb(0x2f6db3), rgb(0xe8871e), rgb(0xc8233c)};
 
-Data read(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file)) return nullptr;
-  vtkNew<vtkXMLPolyDataReader> reader;
-  reader->SetFileName(file.c_str());
-  reader->Update();
-  Data data = reader->GetOutput();
-  return data->GetNumberOfPoints() > 0 ? data : nullptr;
-}
+// The blocks of a .vtm by their names, but for empty ones and those that are no PolyData.
+class Blocks {
+ public:
+  explicit Blocks(const std::filesystem::path& vtm) {
+    if (!std::filesystem::exists(vtm)) throw std::runtime_error("there is no file " + vtm.string());
+    vtkNew<vtkXMLMultiBlockDataReader> reader;
+    reader->SetFileName(vtm.c_str());
+    reader->Update();
+    auto* all = vtkMultiBlockDataSet::SafeDownCast(reader->GetOutput());
+    for (unsigned i = 0; all != nullptr && i < all->GetNumberOfBlocks(); ++i) {
+      auto* data = vtkPolyData::SafeDownCast(all->GetBlock(i));
+      const char* name = all->HasMetaData(i) != 0 ? all->GetMetaData(i)->Get(vtkCompositeDataSet::NAME()) : nullptr;
+      if (data != nullptr && name != nullptr && data->GetNumberOfPoints() > 0) blocks_.emplace(name, data);
+    }
+  }
+
+  Data operator[](const std::string& name) const {
+    const auto block = blocks_.find(name);
+    return block == blocks_.end() ? nullptr : block->second;
+  }
+
+ private:
+  std::map<std::string, Data> blocks_;
+};
 
 // Values one per point or cell; a file that lacks them is not one of ours.
 vtkDataArray* require_array(vtkDataSetAttributes* data, const char* name, vtkIdType count) {
@@ -198,14 +218,14 @@ Panel points_panel(vtkPolyData* mesh, vtkPolyData* points, double size) {
   return panel;
 }
 
-// The faces whose surface points are seen at more than kSeparation: without the sheets that run into every shallow
+// The faces whose surface points are seen at more than kLeastAngle: without the sheets that run into every shallow
 // edge.
 Data without_shallow_faces(vtkPolyData* faces) {
-  vtkDataArray* separation = require_array(faces->GetCellData(), "separation", faces->GetNumberOfPolys());
+  vtkDataArray* angles = require_array(faces->GetCellData(), "angle", faces->GetNumberOfPolys());
   vtkNew<vtkCellArray> polygons;
   vtkNew<vtkIdList> corners;
   for (vtkIdType i = 0; i < faces->GetNumberOfPolys(); ++i) {
-    if (separation->GetComponent(i, 0) < kSeparation) continue;
+    if (angles->GetComponent(i, 0) < kLeastAngle) continue;
     faces->GetPolys()->GetCellAtId(i, corners);
     polygons->InsertNextCell(corners);
   }
@@ -285,14 +305,13 @@ void extend(std::vector<Extent>& extents, vtkPolyData* data, const char* radius_
 
 }  // namespace
 
-Panels make_panels(const std::filesystem::path& folder, double line_width) {
+Panels make_panels(const std::filesystem::path& vtm, double line_width) {
   Panels result;
-  const Data mesh = read(folder / "mesh.vtp");
-  const Data points = read(folder / "points.vtp");
-  const Data faces = read(folder / "medial_faces.vtp");
+  const Blocks blocks(vtm);
+  const Data mesh = blocks["mesh"], points = blocks["surface points"], faces = blocks["medial faces"];
   std::vector<Data> levels;  // from the root on
   for (;;) {
-    const Data level = read(folder / ("tree_level_" + std::to_string(levels.size()) + ".vtp"));
+    const Data level = blocks["tree level " + std::to_string(levels.size())];
     if (level == nullptr) break;
     levels.push_back(level);
   }

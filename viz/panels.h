@@ -28,7 +28,8 @@ struct Panels {
   double size = 1;              // a length of the model's order
 };
 
-// Panels for the files of write_pipeline() that `folder` holds. `line_width`: of the model's edges, in pixels.
-Panels make_panels(const std::filesystem::path& folder, double line_width);
+// Panels for the files that a .vtm of write_pipeline() opens, by the names that it gives them. `line_width`: of the
+// model's edges, in pixels. Throws std::runtime_error if the .vtm cannot be read.
+Panels make_panels(const std::filesystem::path& vtm, double line_width);
 
 }  // namespace orchard::detail

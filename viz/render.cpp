@@ -23,6 +23,7 @@ namespace fs = std::filesystem;
 using detail::Clock;
 
 constexpr std::chrono::seconds kPatienceForDisplay{10};  // Xvfb takes 0.1 s on an idle machine
+constexpr const char* kPrefix = "picture";               // of what is drawn, in the temporary folder
 
 class TemporaryFolder {
  public:
@@ -81,13 +82,14 @@ std::optional<std::string> run_renderer(const fs::path& renderer, const Pipeline
   constexpr double kDegrees = 180 / std::numbers::pi;
   detail::ChildProcess child(
       {.program = renderer,
-       .arguments = {folder.string(), (folder / "picture.png").string(), "--width", std::to_string(picture.width),
-                     "--height", std::to_string(picture.height), "--up", kAxes.at(static_cast<std::size_t>(picture.up)),
-                     "--azimuth", std::to_string(picture.azimuth * kDegrees), "--elevation",
+       .arguments = {(folder / kPrefix).string() + ".vtm", (folder / "picture.png").string(), "--width",
+                     std::to_string(picture.width), "--height", std::to_string(picture.height), "--up",
+                     kAxes.at(static_cast<std::size_t>(picture.up)), "--azimuth",
+                     std::to_string(picture.azimuth * kDegrees), "--elevation",
                      std::to_string(picture.elevation * kDegrees), "--title", picture.title},
        .display = display,
        .log = log});
-  const std::optional<int> status = child.wait_until(Clock::now() + picture.timeout);
+  const std::optional<int> status = child.wait_until(Clock::now() + picture.timeout, picture.progress);
   const std::string where = "orchard-render on display " + display;
   if (!status) return where + " took longer than " + std::to_string(picture.timeout.count()) + " s";
   if (WIFSIGNALED(*status))
@@ -102,8 +104,10 @@ std::optional<std::string> run_on_virtual_display(const fs::path& renderer, cons
   if (xvfb.empty()) return "Xvfb (package xvfb) is not in PATH";
   const fs::path log = folder / "xvfb.log";
   try {
-    const detail::VirtualDisplay display(xvfb, log, kPatienceForDisplay);
+    const detail::VirtualDisplay display(xvfb, log, kPatienceForDisplay, picture.progress);
     return run_renderer(renderer, picture, folder, display.name());
+  } catch (const Cancelled&) {
+    throw;
   } catch (const Error& error) {
     return error.what() + last_words(log);
   }
@@ -130,10 +134,13 @@ PictureStatus draw_pipeline(const fs::path& png, const PipelinePicture& picture)
     const fs::path renderer = find_renderer(picture);
     if (renderer.empty()) return {false, "the program orchard-render is neither beside this one nor in PATH"};
     const TemporaryFolder folder;
-    write_pipeline(folder.path(), picture.values);
+    write_pipeline(folder.path() / kPrefix, picture.values);
+    report_progress(picture.progress, "picture", 0);
     if (const auto reason = run_somewhere(renderer, picture, folder.path())) return {false, *reason};
     write_file(png, content(folder.path() / "picture.png"));
     return {true, {}};
+  } catch (const Cancelled&) {
+    throw;
   } catch (const Error& error) {
     return {false, error.what()};
   } catch (const fs::filesystem_error& error) {

@@ -12,11 +12,8 @@
 #include <vtkSmartPointer.h>
 #include <vtkXMLPolyDataWriter.h>
 
-#include <cmath>
-#include <system_error>
-
 #include "orchard/geometry/atomic_file.h"
-#include "orchard/geometry/error.h"
+#include "orchard/medial/prune.h"
 #include "vtk_data.h"
 
 namespace orchard {
@@ -69,16 +66,6 @@ std::string xml_escaped(const std::string& text) {
   return result;
 }
 
-// The angle at which a face's two surface points are seen from its middle.
-double separation(const MedialAxis& axis, Index face) {
-  Point middle = Point::Zero();
-  for (const Index vertex : axis.faces[face]) middle += axis.centers[vertex];
-  middle /= static_cast<double>(axis.faces[face].size());
-  const auto [a, b] = axis.face_points[face];
-  const Vector to_a = axis.points[a] - middle, to_b = axis.points[b] - middle;
-  return std::atan2(to_a.cross(to_b).norm(), to_a.dot(to_b));
-}
-
 // The child of the root that each node descends from, counted from 0.
 std::vector<int> branches(const SphereTree& tree) {
   std::vector<int> branch(tree.nodes.size(), -1);
@@ -111,12 +98,17 @@ void write_points(const std::filesystem::path& vtp, const SurfaceSampling& sampl
   write(vtp, data);
 }
 
-void write_medial_axis(const std::filesystem::path& folder, const MedialAxis& axis) {
+std::filesystem::path with_ending(const std::filesystem::path& prefix, const std::string& ending) {
+  std::filesystem::path file = prefix;
+  return file += ending;
+}
+
+void write_medial_axis(const std::filesystem::path& prefix, const MedialAxis& axis) {
   const vtkSmartPointer<vtkPolyData> points = medial_points(axis);
 
   const vtkSmartPointer<vtkPolyData> vertices = with_topology_of(points);
   set_vertex_cells(vertices);
-  write(folder / "medial_vertices.vtp", vertices);
+  write(with_ending(prefix, "-vertices.vtp"), vertices);
 
   vtkNew<vtkCellArray> lines;
   for (Index i = 0; i < axis.size(); ++i) {
@@ -126,7 +118,7 @@ void write_medial_axis(const std::filesystem::path& folder, const MedialAxis& ax
   }
   const vtkSmartPointer<vtkPolyData> edges = with_topology_of(points);
   edges->SetLines(lines);
-  write(folder / "medial_edges.vtp", edges);
+  write(with_ending(prefix, "-edges.vtp"), edges);
 
   vtkNew<vtkCellArray> polygons;
   for (Index i = 0; i < axis.faces.size(); ++i) add_cell(polygons, axis.faces[i]);
@@ -135,9 +127,10 @@ void write_medial_axis(const std::filesystem::path& folder, const MedialAxis& ax
   const std::size_t count = axis.face_points.size();
   add_ints(faces->GetCellData(), "point_a", count, [&](std::size_t i) { return as_int(axis.face_points[i][0]); });
   add_ints(faces->GetCellData(), "point_b", count, [&](std::size_t i) { return as_int(axis.face_points[i][1]); });
-  add_doubles(faces->GetCellData(), "separation", count,
-              [&](std::size_t i) { return separation(axis, static_cast<Index>(i)); });
-  write(folder / "medial_faces.vtp", faces);
+  add_doubles(faces->GetCellData(), "angle", count, [&](std::size_t i) {
+    return separation_angle(axis, axis.faces[static_cast<Index>(i)], axis.face_points[i]);
+  });
+  write(with_ending(prefix, "-faces.vtp"), faces);
 }
 
 void write_tree_level(const std::filesystem::path& vtp, const SphereTree& tree, Index level) {
@@ -177,34 +170,26 @@ void write_multiblock(const std::filesystem::path& vtm, std::span<const NamedFil
   });
 }
 
-std::vector<NamedFile> write_pipeline(const std::filesystem::path& folder, const PipelineValues& values) {
-  std::error_code failure;
-  std::filesystem::create_directories(folder, failure);
-  if (failure) throw Error("cannot make the folder " + folder.string() + ": " + failure.message());
-
+std::vector<NamedFile> write_pipeline(const std::filesystem::path& prefix, const PipelineValues& values) {
   std::vector<NamedFile> files;
-  if (values.surface != nullptr) {
-    write_mesh(folder / "mesh.vtp", *values.surface);
-    files.push_back({"mesh", "mesh.vtp"});
-  }
-  if (values.sampling != nullptr) {
-    write_points(folder / "points.vtp", *values.sampling);
-    files.push_back({"surface points", "points.vtp"});
-  }
+  const auto add = [&](const std::string& name, const std::string& ending) {
+    const std::filesystem::path file = with_ending(prefix, ending);
+    files.push_back({name, file.filename()});
+    return file;
+  };
+  if (values.surface != nullptr) write_mesh(add("mesh", "-mesh.vtp"), *values.surface);
+  if (values.sampling != nullptr) write_points(add("surface points", "-points.vtp"), *values.sampling);
   if (values.axis != nullptr) {
-    write_medial_axis(folder, *values.axis);
-    for (const std::string part : {"vertices", "edges", "faces"}) {
-      files.push_back({"medial " + part, "medial_" + part + ".vtp"});
-    }
+    write_medial_axis(with_ending(prefix, "-medial"), *values.axis);
+    for (const std::string part : {"vertices", "edges", "faces"}) add("medial " + part, "-medial-" + part + ".vtp");
   }
   if (values.tree != nullptr && !values.tree->nodes.empty()) {
     for (Index level = 0; level <= values.tree->depth(); ++level) {
-      const std::string name = "tree_level_" + std::to_string(level) + ".vtp";
-      write_tree_level(folder / name, *values.tree, level);
-      files.push_back({"tree level " + std::to_string(level), name});
+      const std::string number = std::to_string(level);
+      write_tree_level(add("tree level " + number, "-level-" + number + ".vtp"), *values.tree, level);
     }
   }
-  write_multiblock(folder / "pipeline.vtm", files);
+  write_multiblock(with_ending(prefix, ".vtm"), files);
   return files;
 }
 

@@ -102,13 +102,13 @@ TEST(Medial, SweepsAllCombinationsIntoOneTableAndAPlotForEachMetric) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.out, "");
   const auto files = here.files("out");
-  const std::string& csv = files.at("sweep.csv");
+  const std::string& csv = files.at("l-sweep.csv");
   EXPECT_EQ(lines(csv), 7u);
   EXPECT_EQ(csv.substr(0, 20), "samples,prune-angle,");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), ','),
             7 * std::count(csv.begin(), csv.begin() + static_cast<std::ptrdiff_t>(csv.find('\n')), ','));
   for (const char* metric : {"coverage_max", "protrusion_mean", "stability_max", "economy_spheres", "seconds"}) {
-    const std::string& svg = files.at("sweep-" + std::string(metric) + ".svg");
+    const std::string& svg = files.at("l-sweep-" + std::string(metric) + ".svg");
     EXPECT_NE(svg.find("</svg>"), std::string::npos);
     EXPECT_NE(svg.find("prune-angle 30"), std::string::npos);
   }

@@ -1,13 +1,18 @@
 #include "program.h"
 
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <thread>
 
 #include "orchard/geometry/mesh_io.h"
 
@@ -55,11 +60,12 @@ std::string Workplace::add(const std::string& name, const std::string& text) con
   return (folder_ / name).string();
 }
 
-Finished Workplace::run(const std::vector<std::string>& arguments) const {
+Finished Workplace::run(const std::vector<std::string>& arguments, const std::string& out_to) const {
   std::string command = quoted(ORCHARD_PROGRAM);
   for (const std::string& argument : arguments) (command += ' ') += quoted(argument);
   const std::string out = (folder_ / "stdout").string(), err = (folder_ / "stderr").string();
-  const int status = std::system(command.append(" >").append(quoted(out)).append(" 2>").append(quoted(err)).c_str());
+  command.append(" >").append(out_to.empty() ? quoted(out) : out_to).append(" 2>").append(quoted(err));
+  const int status = std::system(command.c_str());
   Finished finished{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
   std::filesystem::remove(out);
   std::filesystem::remove(err);
@@ -73,6 +79,77 @@ std::map<std::string, std::string> Workplace::files(const std::string& folder) c
     if (entry.is_regular_file()) files[entry.path().filename().string()] = read(entry.path());
   }
   return files;
+}
+
+namespace {
+
+constexpr std::chrono::seconds kPatience{30};
+constexpr std::chrono::milliseconds kPoll{2};
+
+template <class Condition>
+bool wait_for(const Condition& condition) {
+  for (const auto end = std::chrono::steady_clock::now() + kPatience; std::chrono::steady_clock::now() < end;) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(kPoll);
+  }
+  return condition();
+}
+
+}  // namespace
+
+Running::Running(const std::vector<std::string>& arguments, const std::vector<std::string>& variables,
+                 const std::filesystem::path& err) {
+  std::vector<std::string> words{ORCHARD_PROGRAM}, all = variables;
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const std::string text = *variable, name = text.substr(0, text.find('=') + 1);
+    if (std::none_of(variables.begin(), variables.end(), [&](const std::string& v) { return v.starts_with(name); }))
+      all.push_back(text);
+  }
+  std::vector<char*> argv, envp;
+  for (std::string& word : words) argv.push_back(word.data());
+  for (std::string& variable : all) envp.push_back(variable.data());
+  argv.push_back(nullptr);
+  envp.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  // Signals that the test's own parent ignores would stay ignored.
+  sigset_t defaults;
+  sigemptyset(&defaults);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&defaults, number);
+  posix_spawnattr_setsigdefault(&attributes, &defaults);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
+  const int failure = posix_spawn(&pid_, ORCHARD_PROGRAM, &actions, &attributes, argv.data(), envp.data());
+  posix_spawn_file_actions_destroy(&actions);
+  posix_spawnattr_destroy(&attributes);
+  if (failure != 0) throw std::runtime_error("the program cannot be started");
+}
+
+Running::~Running() {
+  kill(-pid_, SIGKILL);
+  if (!status_) waitpid(pid_, nullptr, 0);
+}
+
+void Running::send(int signal) const { kill(pid_, signal); }
+void Running::send_to_group(int signal) const { kill(-pid_, signal); }
+
+bool Running::ended() {
+  int status = 0;
+  if (!status_ && waitpid(pid_, &status, WNOHANG) == pid_) status_ = status;
+  return status_.has_value();
+}
+
+int Running::wait() {
+  if (!wait_for([&] { return ended(); }) || !WIFEXITED(*status_)) return -1;
+  return WEXITSTATUS(*status_);
+}
+
+bool appears(const std::filesystem::path& file) {
+  return wait_for([&] { return std::filesystem::exists(file); });
 }
 
 bool is_one_line_error(const std::string& err) {

@@ -1,6 +1,9 @@
 #pragma once
+#include <sys/types.h>
+
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,12 +28,38 @@ class Workplace {
   std::filesystem::path operator/(const std::string& name) const { return folder_ / name; }
   std::string add(const std::string& name, const TriangleMesh& mesh) const;  // an .obj; returns its path
   std::string add(const std::string& name, const std::string& text) const;
-  Finished run(const std::vector<std::string>& arguments) const;
+  // With `out` for standard output, as a shell takes it ("/dev/full", or "&-": closed); empty: returned.
+  Finished run(const std::vector<std::string>& arguments, const std::string& out = {}) const;
   std::map<std::string, std::string> files(const std::string& folder) const;  // name, content; empty if there is none
 
  private:
   std::filesystem::path folder_;
 };
+
+// The program in a process group of its own, as a shell starts it, with its errors in a file.
+class Running {
+ public:
+  // variables: "NAME=VALUE", beside those of the test.
+  Running(const std::vector<std::string>& arguments, const std::vector<std::string>& variables,
+          const std::filesystem::path& err);
+  ~Running();  // kills the group
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+  pid_t pid() const { return pid_; }
+  void send(int signal) const;           // to the program alone
+  void send_to_group(int signal) const;  // as a terminal does
+  // The exit code, or -1 if a signal ended it or it still runs after half a minute.
+  int wait();
+  bool ended();  // without waiting
+
+ private:
+  pid_t pid_ = -1;
+  std::optional<int> status_;
+};
+
+// Waits until there is such a file, half a minute at most; whether there is.
+bool appears(const std::filesystem::path& file);
 
 // One line "orchard: ..." and nothing else.
 bool is_one_line_error(const std::string& err);

@@ -101,7 +101,7 @@ TEST(Voronoi, WritesTheSameFilesOnAnyNumberOfThreads) {
     return here.files("out");
   };
   const auto one = files("1");
-  EXPECT_TRUE(one.contains("torus.xyz"));
+  EXPECT_TRUE(one.contains("torus-voronoi.xyz"));
   EXPECT_EQ(one, files("3"));
 }
 

@@ -10,6 +10,8 @@
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
+#include "orchard/medial/build.h"
+#include "orchard/viz/vtk_writer.h"
 #include "support/shapes.h"
 #include "values.h"
 
@@ -26,6 +28,13 @@ std::vector<double> values(vtkFieldData* data, const char* name, int component =
     result.push_back(array->GetComponent(i, component));
   }
   return result;
+}
+
+vtkSmartPointer<vtkPolyData> read(const std::filesystem::path& file) {
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  return reader->GetOutput();
 }
 
 // A triangle, a wall beside it, and a tail.
@@ -80,11 +89,25 @@ TEST(MedialGrid, HoldsEveryCellWithItsArrays) {
   EXPECT_EQ(values(points, "segment").size(), 5u);
 }
 
-vtkSmartPointer<vtkPolyData> read(const std::filesystem::path& file) {
-  vtkNew<vtkXMLPolyDataReader> reader;
-  reader->SetFileName(file.c_str());
-  reader->Update();
-  return reader->GetOutput();
+// Of an axis whose faces have contacts and normals, which the angle must take into account.
+TEST(MedialGrid, AndTheFilesByPartsGiveAFaceTheSameAngle) {
+  const TestFolder folder;
+  for (const TriangleMesh& mesh : {test::l_shape(), test::torus(16, 10), test::u_shape(0.1)}) {
+    MedialBuildOptions options;
+    options.sampling.face_points = 400;
+    options.sampling.edge_points = 100;
+    const MedialAxis axis = build_medial_axis(Surface(mesh), options).axis;
+    ASSERT_FALSE(axis.angles.empty());
+    write_medial_grid(folder.path() / "axis.vtu", axis, medial_segments(axis, {.touching = 0.1}));
+    write_medial_axis(folder.path() / "axis", axis);
+    vtkNew<vtkXMLUnstructuredGridReader> reader;
+    reader->SetFileName((folder.path() / "axis.vtu").c_str());
+    reader->Update();
+    std::vector<double> in_grid = values(reader->GetOutput()->GetCellData(), "angle");
+    ASSERT_GE(in_grid.size(), axis.faces.size());
+    in_grid.resize(axis.faces.size());  // walls and lines follow
+    EXPECT_EQ(values(read(folder.path() / "axis-faces.vtp")->GetCellData(), "angle"), in_grid);
+  }
 }
 
 TEST(Thickness, IsTwiceTheMedialRadius) {

@@ -180,6 +180,25 @@ TEST_F(DrawPipeline, EndsARendererThatHangs) {
   EXPECT_NE(status.reason.find("took longer than 0 s"), std::string::npos) << status.reason;
 }
 
+TEST_F(DrawPipeline, EndsTheRendererWhenItIsCancelled) {
+  const Variable display("DISPLAY", ":64999"), path("PATH", "");
+  PipelinePicture request = picture();
+  request.renderer = script("exec /bin/sleep 1000");
+  int asked = 0;
+  request.progress = [&](std::string_view, double) { return ++asked < 20; };
+  EXPECT_THROW(draw_pipeline(png_, request), Cancelled);
+  EXPECT_FALSE(std::filesystem::exists(png_));
+}
+
+TEST_F(DrawPipeline, EndsTheWaitForADisplayWhenItIsCancelled) {
+  std::filesystem::rename(script("exec /bin/sleep 1000"), folder_ / "Xvfb");
+  const Variable path("PATH", folder_.path().c_str());
+  PipelinePicture request = picture();
+  int asked = 0;
+  request.progress = [&](std::string_view, double) { return ++asked < 20; };
+  EXPECT_THROW(draw_pipeline(png_, request), Cancelled);
+}
+
 TEST_F(DrawPipeline, PassesOnTheLastWordsOfARendererThatFails) {
   const Variable display("DISPLAY", ":64999"), path("PATH", "");
   PipelinePicture request = picture();
@@ -192,7 +211,7 @@ TEST_F(DrawPipeline, SaysThatTheRendererOrTheFolderIsMissing) {
   PipelinePicture request = picture();
   request.renderer = folder_ / "nothing";
   EXPECT_NE(draw_pipeline(png_, request).reason.find("nothing"), std::string::npos);
-  request.renderer = script("echo picture > $2");
+  request.renderer = script("[ -f \"$1\" ] && echo picture > $2");
   EXPECT_TRUE(draw_pipeline(png_, request));
   EXPECT_FALSE(draw_pipeline(folder_ / "none/picture.png", request));
 }

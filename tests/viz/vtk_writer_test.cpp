@@ -110,8 +110,8 @@ TEST(WritePoints, KeepsOriginAndTriangleOfEveryPoint) {
 TEST(WriteMedialAxis, MakesThreeFilesThatNumberTheVerticesAlike) {
   const TestFolder folder;
   const MedialAxis axis = test::small_axis();
-  write_medial_axis(folder.path(), axis);
-  for (const char* name : {"medial_vertices.vtp", "medial_edges.vtp", "medial_faces.vtp"}) {
+  write_medial_axis(folder / "axis", axis);
+  for (const char* name : {"axis-vertices.vtp", "axis-edges.vtp", "axis-faces.vtp"}) {
     SCOPED_TRACE(name);
     const auto data = read(folder / name);
     EXPECT_EQ(points_of(data), axis.centers);
@@ -122,21 +122,21 @@ TEST(WriteMedialAxis, MakesThreeFilesThatNumberTheVerticesAlike) {
     EXPECT_EQ(component[0], component[2]);
     EXPECT_NE(component[0], component[3]);
   }
-  EXPECT_EQ(read(folder / "medial_vertices.vtp")->GetNumberOfVerts(), 4);
+  EXPECT_EQ(read(folder / "axis-vertices.vtp")->GetNumberOfVerts(), 4);
 }
 
 TEST(WriteMedialAxis, HasALinePerPairOfNeighboursAndAPolygonPerFace) {
   const TestFolder folder;
-  write_medial_axis(folder.path(), test::small_axis());
-  EXPECT_EQ(cells_of(read(folder / "medial_edges.vtp")), (std::vector<std::vector<Index>>{{0, 1}, {0, 2}}));
-  const auto faces = read(folder / "medial_faces.vtp");
+  write_medial_axis(folder / "axis", test::small_axis());
+  EXPECT_EQ(cells_of(read(folder / "axis-edges.vtp")), (std::vector<std::vector<Index>>{{0, 1}, {0, 2}}));
+  const auto faces = read(folder / "axis-faces.vtp");
   EXPECT_EQ(cells_of(faces), (std::vector<std::vector<Index>>{{0, 1, 2}}));
   EXPECT_EQ(values(faces->GetCellData(), "point_a"), std::vector<double>{0});
   EXPECT_EQ(values(faces->GetCellData(), "point_b"), std::vector<double>{1});
   // From (1/6, 1/6, 0) the points (0, 0, 1) and (0, 0, -1).
-  const auto separation = values(faces->GetCellData(), "separation");
-  ASSERT_EQ(separation.size(), 1u);
-  EXPECT_NEAR(separation[0], 2 * std::atan(1 / (std::sqrt(2.0) / 6)), 1e-12);
+  const auto angle = values(faces->GetCellData(), "angle");
+  ASSERT_EQ(angle.size(), 1u);
+  EXPECT_NEAR(angle[0], 2 * std::atan(1 / (std::sqrt(2.0) / 6)), 1e-12);
 }
 
 // The ancestor of a node, or the node itself, that stands for it on a level.
@@ -203,8 +203,8 @@ TEST(Writers, MakeReadableFilesOfEmptyValues) {
   const TestFolder folder;
   write_points(folder / "points.vtp", {});
   write_tree_level(folder / "level.vtp", {}, 0);
-  write_medial_axis(folder.path(), {});
-  for (const char* name : {"points.vtp", "level.vtp", "medial_vertices.vtp", "medial_edges.vtp", "medial_faces.vtp"}) {
+  write_medial_axis(folder / "axis", {});
+  for (const char* name : {"points.vtp", "level.vtp", "axis-vertices.vtp", "axis-edges.vtp", "axis-faces.vtp"}) {
     EXPECT_EQ(read(folder / name)->GetNumberOfPoints(), 0) << name;
   }
 }
@@ -214,7 +214,7 @@ TEST(Writers, ThrowAndLeaveNothingWhereTheFolderIsMissing) {
   const Surface surface(test::box({0, 0, 0}, {1, 1, 1}));
   EXPECT_THROW(write_mesh(folder / "none/mesh.vtp", surface), Error);
   EXPECT_THROW(write_points(folder / "none/points.vtp", {}), Error);
-  EXPECT_THROW(write_medial_axis(folder / "none", {}), Error);
+  EXPECT_THROW(write_medial_axis(folder / "none/axis", {}), Error);
   EXPECT_THROW(write_tree_level(folder / "none/level.vtp", {}, 0), Error);
   EXPECT_THROW(write_multiblock(folder / "none/all.vtm", {}), Error);
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
@@ -250,22 +250,37 @@ struct AllValues {
 TEST(WritePipeline, WritesWhatThereIsAndListsIt) {
   const TestFolder folder;
   const AllValues all;
-  const auto files = write_pipeline(folder / "new/folder", all.pointers());
+  const auto files = write_pipeline(folder / "l.v2-build", all.pointers());
   ASSERT_EQ(files.size(), 5u + all.tree.depth() + 1);
   for (const NamedFile& file : files) {
-    EXPECT_TRUE(std::filesystem::exists(folder / "new/folder" / file.file)) << file.file;
+    EXPECT_TRUE(std::filesystem::exists(folder / file.file.string())) << file.file;
+    EXPECT_TRUE(file.file.string().starts_with("l.v2-build-")) << file.file;
   }
-  EXPECT_TRUE(std::filesystem::exists(folder / "new/folder/pipeline.vtm"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "l.v2-build.vtm"));
 
   const auto fewer = write_pipeline(folder / "octree", {.surface = &all.surface, .tree = &all.tree});
   EXPECT_EQ(fewer.size(), 1u + all.tree.depth() + 1);
-  EXPECT_FALSE(std::filesystem::exists(folder / "octree/points.vtp"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "octree-points.vtp"));
   EXPECT_TRUE(write_pipeline(folder / "nothing", {}).empty());
+}
+
+TEST(WritePipeline, KeepsTwoRunsInAFolderApart) {
+  const TestFolder folder;
+  const AllValues all;
+  write_pipeline(folder / "a", all.pointers());
+  const std::string before = test::bytes_of(folder / "a-mesh.vtp");
+  const Surface other(test::icosphere(1));
+  write_pipeline(folder / "b", {.surface = &other});
+  EXPECT_EQ(test::bytes_of(folder / "a-mesh.vtp"), before);
+  EXPECT_NE(test::bytes_of(folder / "b-mesh.vtp"), before);
 }
 
 TEST(WritePipeline, WritesTheSameBytesForTheSameValues) {
   const TestFolder folder;
-  for (const char* name : {"first", "second"}) write_pipeline(folder / name, AllValues().pointers());
+  for (const char* name : {"first", "second"}) {
+    std::filesystem::create_directory(folder / name);
+    write_pipeline(folder / name / "l", AllValues().pointers());
+  }
   for (const auto& entry : std::filesystem::directory_iterator(folder / "first")) {
     const std::string bytes = test::bytes_of(entry.path());
     EXPECT_FALSE(bytes.empty()) << entry.path();

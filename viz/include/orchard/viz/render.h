@@ -3,11 +3,12 @@
 #include <filesystem>
 #include <string>
 
+#include "orchard/geometry/progress.h"
 #include "orchard/viz/vtk_writer.h"
 
 // The pipeline in one picture. Debian's VTK draws only on an X display, even offscreen, and aborts the process where
 // there is none or where its OpenGL is broken. So the drawing is done by a small program of its own, `orchard-render`,
-// on the .vtp files of write_pipeline(): whatever happens to it, the caller gets a status. (Drawing in a forked copy of
+// on the files of write_pipeline(): whatever happens to it, the caller gets a status. (Drawing in a forked copy of
 // the caller would be unsafe beside the threads of TBB and Embree.)
 namespace orchard {
 
@@ -23,6 +24,7 @@ struct PipelinePicture {
   int height = 0;                     // likewise; 0: 560 for each row of panels
   std::chrono::seconds timeout{120};  // for drawing; a picture takes a few seconds
   std::filesystem::path renderer;     // empty: $ORCHARD_RENDER, beside the running program, then in PATH
+  Progress progress;                  // asked every few milliseconds, without a fraction worth showing
 };
 
 struct PictureStatus {
@@ -33,7 +35,8 @@ struct PictureStatus {
 
 // Draws a .png. Uses the display of $DISPLAY; where that is unset or does not serve, starts Xvfb from PATH for the time
 // of the picture. Never throws for want of a display, a renderer, a writable file or time, never prints, and leaves
-// neither processes nor temporary files behind. Safe to call from several threads.
+// neither processes nor temporary files behind; not when it throws Cancelled either, which is all that it throws. Safe
+// to call from several threads.
 PictureStatus draw_pipeline(const std::filesystem::path& png, const PipelinePicture& picture);
 
 }  // namespace orchard

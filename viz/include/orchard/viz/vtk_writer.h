@@ -21,21 +21,25 @@ void write_mesh(const std::filesystem::path& vtp, const Surface& surface);
 // One vertex per surface point; cell arrays `origin` (0 face, 1 edge, 2 repair) and `triangle`.
 void write_points(const std::filesystem::path& vtp, const SurfaceSampling& sampling);
 
-// Three files in `folder`, each of which can be shown alone; vertices are numbered alike in all of them and carry the
-// point arrays `radius`, `component` and `valence` (number of neighbours).
-//   medial_vertices.vtp  the medial vertices
-//   medial_edges.vtp     a line per pair of neighbours
-//   medial_faces.vtp     the faces; cell arrays `point_a`, `point_b`: the two surface points that a face separates, and
-//                        `separation`: the angle at which they are seen from its middle, in radians. Small angles
-//                        belong to sheets that run into shallow edges and noise: a threshold clears the view.
-void write_medial_axis(const std::filesystem::path& folder, const MedialAxis& axis);
+// A name that several files begin with: "out/lamp-build" and "-mesh.vtp" make "out/lamp-build-mesh.vtp".
+std::filesystem::path with_ending(const std::filesystem::path& prefix, const std::string& ending);
+
+// Three files, each of which can be shown alone; vertices are numbered alike in all of them and carry the point arrays
+// `radius`, `component` and `valence` (number of neighbours).
+//   PREFIX-vertices.vtp  the medial vertices
+//   PREFIX-edges.vtp     a line per pair of neighbours
+//   PREFIX-faces.vtp     the faces; cell arrays `point_a`, `point_b`: the two surface points that a face separates, and
+//                        `angle`: separation_angle(), in radians, as in write_medial_grid(). Small angles belong to
+//                        sheets that run into shallow edges and noise: a threshold clears the view.
+void write_medial_axis(const std::filesystem::path& prefix, const MedialAxis& axis);
 
 // The spheres of one level as points, for glyphs scaled by `radius`: the nodes of that level and, flagged `carried`,
 // the leaves above it, which stand in for the children they do not have. Point arrays:
 //   radius, error (distance_bound), inaccuracy   lengths, as measure() left them
 //   level, node, parent                          of the node; indices into SphereTree::nodes
-//   branch                                       the child of the root that the node descends from, from 0; -1: the
-//   root carried                                      1 if the node is a leaf of a level above
+//   branch                                       the child of the root that the node descends from, counted from 0; -1
+//                                                for the root itself
+//   carried                                      1 if the node is a leaf of a level above, else 0
 // A level below the deepest gives all leaves.
 void write_tree_level(const std::filesystem::path& vtp, const SphereTree& tree, Index level);
 
@@ -55,8 +59,9 @@ struct PipelineValues {
   const SphereTree* tree = nullptr;
 };
 
-// Writes all of it into `folder`, which is made if need be: mesh.vtp, points.vtp, the medial_*.vtp, tree_level_<n>.vtp
-// for every level, and pipeline.vtm, which opens them. Returns the files in the order of the .vtm.
-std::vector<NamedFile> write_pipeline(const std::filesystem::path& folder, const PipelineValues& values);
+// Writes all of it: PREFIX-mesh.vtp, PREFIX-points.vtp, PREFIX-medial-{vertices,edges,faces}.vtp, PREFIX-level-<n>.vtp
+// for every level, and PREFIX.vtm, which opens them. Returns the files in the order of the .vtm, which names them
+// "mesh", "surface points", "medial vertices", "medial edges", "medial faces", "tree level <n>".
+std::vector<NamedFile> write_pipeline(const std::filesystem::path& prefix, const PipelineValues& values);
 
 }  // namespace orchard

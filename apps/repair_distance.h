@@ -1,0 +1,28 @@
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "orchard/geometry/progress.h"
+#include "orchard/geometry/surface_distance.h"
+
+namespace orchard::apps {
+
+// How far a repaired mesh and the one that was read are apart, as proven bounds in mesh units: what was certified for
+// one holds for the other up to that.
+struct RepairDistance {
+  SurfaceDistance to_input, from_input;  // repaired to input, input to repaired; both 0 where no triangle changed
+
+  double upper() const;  // of the two-sided Hausdorff distance
+};
+
+// Triangles with the same three corners in both meshes are no distance apart, so only the others are searched:
+// O(n log n) for the rest. Precondition: validate(input) passes.
+RepairDistance repair_distance(const TriangleMesh& input, const Surface& repaired, const Progress& progress = {});
+
+// "no point of it is farther than .. from the input, no point of the input farther than .. from it".
+std::string in_words(const RepairDistance& distance, double bounding_radius);
+
+// The two distances as [lower, upper], and `distance`, the upper bound of both.
+void add_json(const RepairDistance& distance, double bounding_radius, nlohmann::json& repair);
+
+}  // namespace orchard::apps
