@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# What tools/install-packages, tools/configure and tools/demo do on machines of all kinds: each function named Like.This is a
+# What tools/install-packages, tools/configure, tools/demo and tools/paraview do on machines of all kinds: each function named Like.This is a
 # test, run on a machine that fake_machine plays. Usage: packages_test.sh SOURCE TEST; without TEST it lists them.
 set -euo pipefail
+unset DISPLAY
 source=$1
 here=$(cd "$(dirname "$0")" && pwd)
 
@@ -36,6 +37,8 @@ set_up() {
   done
   cp -r "$source/tools" "$FAKE/orchard/tools"
   for name in "${plain[@]}" libglew-dev libgl-dev default-jdk libmpi; do package "$name"; done
+  package paraview
+  printf '/usr/lib/here/libvtkCommonCore-pv5.so\n/usr/share/doc/paraview\n' > "$FAKE/files/paraview"
   package libvtk9.1 "Source: vtk9" "Depends: libmpi"
   package vtk9 "Depends: libvtk9.1 (= 9.1-5)"
   package python3-vtk9 "Source: vtk9" "Depends: libvtk9.1 (= 9.1-5)"
@@ -45,6 +48,7 @@ set_up() {
   package python3-paraview "Conflicts: python3-vtk9"
   echo /usr/lib/here/cmake/vtk-9.1/vtk-config.cmake > "$FAKE/files/libvtk9-dev"
   echo /usr/lib/python3/vtk.py > "$FAKE/files/python3-vtk9"
+  printf '/usr/bin/pvpython\n/usr/lib/python3/dist-packages/paraview/simple.py\n' > "$FAKE/files/python3-paraview"
   printf '/usr\n/usr/bin\n/usr/bin/env\n' > "$FAKE/files/libvtk9.1"  # something that is at its place on any machine
 }
 run() { (cd / && PATH=$FAKE/bin "$FAKE/orchard/tools/$1" "${@:2}" > "$FAKE/output" 2>&1); }
@@ -184,6 +188,35 @@ Demo.MakesTreesWithoutVtk() {
   expect "run demo"
   expect "logged 'orchard build data/ship.obj -o out/ship' && ! logged --picture && ! logged orchard_render"
   expect "! said 'Open in ParaView'"
+}
+
+ParaView.ThatIsNotThereIsSaid() {
+  expect "! run paraview pvbatch --version"
+  expect "said 'apt-get install --no-install-recommends paraview'"
+}
+ParaView.RunsItsPythonBesideVtk() {
+  install paraview libvtk9-dev python3-vtk9
+  for program in pvbatch xvfb-run; do ln -s "$here/fake_machine" "$FAKE/bin/$program"; done
+  expect "run paraview pvbatch script.py 'with blanks'"
+  folder=$FAKE/orchard/build/paraview
+  expect "logged '$folder/usr/bin/pvbatch script.py with blanks with $folder/usr/lib/python3/dist-packages'"
+  expect "[ -L '$folder/usr/lib/here/libvtkCommonCore-pv5.so' ] && [ -f '$folder/usr/bin/pvpython' ]"
+  expect "installed python3-vtk9 && ! installed python3-paraview && nothing_was_removed && ! logged 'apt-get install'"
+  : > "$FAKE/log"
+  expect "run paraview pvbatch again.py"
+  expect "logged again.py && ! logged apt-get"
+}
+ParaView.RunsItsOwnPythonWhereThatIsInstalled() {
+  install paraview python3-paraview
+  for program in pvpython xvfb-run; do ln -s "$here/fake_machine" "$FAKE/bin/$program"; done
+  expect "run paraview pvpython script.py"
+  expect "logged 'pvpython script.py with nothing' && ! logged apt-get"
+}
+ParaView.ThatCannotBeHadSaysSo() {
+  install paraview
+  touch "$FAKE/offline"
+  expect "! run paraview pvpython script.py"
+  expect "said 'cannot be downloaded'"
 }
 
 if [ $# -eq 1 ]; then
