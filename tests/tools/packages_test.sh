@@ -2,7 +2,7 @@
 # What tools/install-packages, tools/configure, tools/demo and tools/paraview do on machines of all kinds: each function named Like.This is a
 # test, run on a machine that fake_machine plays. Usage: packages_test.sh SOURCE TEST; without TEST it lists them.
 set -euo pipefail
-unset DISPLAY
+export DISPLAY=:0
 source=$1
 here=$(cd "$(dirname "$0")" && pwd)
 
@@ -32,7 +32,7 @@ set_up() {
   : > "$FAKE/log"; : > "$FAKE/installed"; : > "$FAKE/output"
   echo 0 > "$FAKE/user"
   for program in apt-get apt-cache dpkg-query dpkg id sudo cmake; do ln -s "$here/fake_machine" "$FAKE/bin/$program"; done
-  for program in awk bash basename cat cp dirname env find grep ln mkdir mv nproc rm sed sort tee touch tr; do
+  for program in awk bash basename cat cp dirname env find grep ln mkdir mv nproc rm sed sleep sort tee touch tr; do
     ln -s "$(command -v $program)" "$FAKE/bin/$program"
   done
   cp -r "$source/tools" "$FAKE/orchard/tools"
@@ -196,10 +196,10 @@ ParaView.ThatIsNotThereIsSaid() {
 }
 ParaView.RunsItsPythonBesideVtk() {
   install paraview libvtk9-dev python3-vtk9
-  for program in pvbatch xvfb-run; do ln -s "$here/fake_machine" "$FAKE/bin/$program"; done
+  ln -s "$here/fake_machine" "$FAKE/bin/pvbatch"
   expect "run paraview pvbatch script.py 'with blanks'"
   folder=$FAKE/orchard/build/paraview
-  expect "logged '$folder/usr/bin/pvbatch script.py with blanks with $folder/usr/lib/python3/dist-packages'"
+  expect "logged '$folder/usr/bin/pvbatch script.py with blanks with $folder/usr/lib/python3/dist-packages on :0'"
   expect "[ -L '$folder/usr/lib/here/libvtkCommonCore-pv5.so' ] && [ -f '$folder/usr/bin/pvpython' ]"
   expect "installed python3-vtk9 && ! installed python3-paraview && nothing_was_removed && ! logged 'apt-get install'"
   : > "$FAKE/log"
@@ -208,9 +208,27 @@ ParaView.RunsItsPythonBesideVtk() {
 }
 ParaView.RunsItsOwnPythonWhereThatIsInstalled() {
   install paraview python3-paraview
-  for program in pvpython xvfb-run; do ln -s "$here/fake_machine" "$FAKE/bin/$program"; done
+  ln -s "$here/fake_machine" "$FAKE/bin/pvpython"
   expect "run paraview pvpython script.py"
   expect "logged 'pvpython script.py with nothing' && ! logged apt-get"
+}
+ParaView.RunsOnAVirtualDisplayWhereThereIsNone() {
+  install paraview python3-paraview
+  unset DISPLAY
+  ln -s "$here/fake_machine" "$FAKE/bin/pvbatch"
+  expect "! run paraview pvbatch script.py"
+  expect "said 'no Xvfb'"
+  ln -s "$here/fake_machine" "$FAKE/bin/Xvfb"
+  expect "run paraview pvbatch script.py"
+  expect "logged 'script.py with nothing on :47'"
+  status=0
+  run paraview pvbatch fails.py || status=$?
+  expect "[ $status = 7 ]"
+  for ((i = 0; i < 100; ++i)); do
+    if [ "$(grep -c 'Xvfb ended' "$FAKE/log")" = 2 ]; then break; fi
+    sleep 0.1
+  done
+  expect "[ $(grep -c 'Xvfb ended' "$FAKE/log") = 2 ]"
 }
 ParaView.ThatCannotBeHadSaysSo() {
   install paraview
