@@ -51,6 +51,7 @@ TEST(ViewFiles, HoldTheirDataWhereEveryParaViewFindsIt) {
 TEST(ViewFiles, OfVoronoiCellsToo) {
   const test::TestFolder folder;
   std::vector<Point> points;
+  points.reserve(60);
   Random random(2, 1);
   for (int i = 0; i < 60; ++i) points.emplace_back(random.uniform(), random.uniform(), random.uniform());
   write_voronoi_cells(folder / "cells.vtu", highest_first_voronoi(points));
