@@ -34,6 +34,8 @@ class LineScanner {
     }
     return false;
   }
+  // Whether a word follows, on this line or, moving there, on a later one.
+  bool more() { return at_ != end_ || next(); }
   std::size_t start() const { return start_; }
   std::size_t left() const { return bytes_.size() - start_; }
   [[noreturn]] void fail(const std::string& fault) const { fail_at_line(name_, bytes_, start_, fault); }
@@ -46,15 +48,18 @@ class LineScanner {
     skip_blanks();
     return result;
   }
+  // Of the next word; the line stays where it is if there is none or it is no such number.
   std::optional<double> number() {
     double value = 0;
-    if (!scan_double(at_, end_, value) || !word_ended() || !std::isfinite(value)) return std::nullopt;
+    const char* first = at_;
+    if (!scan_double(at_, end_, value) || !word_ended() || !std::isfinite(value)) return no_number(first);
     skip_blanks();
     return value;
   }
   std::optional<std::uint64_t> count() {
     std::int64_t value = 0;
-    if (!scan_integer(at_, end_, value) || !word_ended() || value < 0) return std::nullopt;
+    const char* first = at_;
+    if (!scan_integer(at_, end_, value) || !word_ended() || value < 0) return no_number(first);
     skip_blanks();
     return static_cast<std::uint64_t>(value);
   }
@@ -70,6 +75,10 @@ class LineScanner {
 
  private:
   bool word_ended() const { return at_ == end_ || is_blank(*at_); }
+  std::nullopt_t no_number(const char* first) {
+    at_ = first;
+    return std::nullopt;
+  }
   void skip_blanks() {
     while (at_ != end_ && is_blank(*at_)) ++at_;
   }
@@ -164,52 +173,109 @@ std::string checked_stl(std::string_view bytes, const std::string& name) {
   return result;
 }
 
-std::string checked_off(std::string_view bytes, const std::string& name) {
-  LineScanner line(bytes, 0, '#', name);
-  if (!line.next()) throw InputError(name + ": nothing but comments; this is not an OFF file");
-  const std::string_view keyword = line.word();
-  // Normals, colours and texture coordinates follow a vertex's position and are left out by leaving out the prefix.
-  if (!keyword.ends_with("OFF") || keyword.find_first_not_of("STCN") + 3 != keyword.size()) {
-    line.fail("expected OFF instead of " + quoted(keyword) + "; other dimensions are not supported");
-  }
-  std::string_view first_count;
-  std::optional<std::uint64_t> vertices = line.count();
-  if (!vertices) {
-    first_count = line.word();
-    if (!first_count.empty()) line.fail(quoted(first_count) + " after OFF; only text files are supported");
-    if (!line.next()) line.fail("the file ends after its first line");
-    vertices = line.count();
-  }
-  const std::optional<std::uint64_t> faces = line.count();
-  if (!vertices || !faces) line.fail("expected the numbers of vertices, faces and edges");
-  // "0 0 0" and "3 0 0 0" with their line ends, the last of which may be missing.
-  if (*vertices > line.left() / 6 || *faces > line.left() / 8 + 1) {
-    line.fail("promises " + std::to_string(*vertices) + " vertices and " + std::to_string(*faces) +
-              " faces, but only " + std::to_string(line.left()) + " bytes are left");
-  }
-  std::string result = "OFF\n" + std::to_string(*vertices) + " " + std::to_string(*faces) + " 0\n";
-  for (std::uint64_t i = 0; i < *vertices; ++i) {
-    if (!line.next())
-      line.fail("the file ends after " + std::to_string(i) + " of " + std::to_string(*vertices) + " vertices");
-    append_point(result, line.point());
-  }
-  for (std::uint64_t i = 0; i < *faces; ++i) {
-    if (!line.next())
-      line.fail("the file ends after " + std::to_string(i) + " of " + std::to_string(*faces) + " faces");
-    const std::optional<std::uint64_t> corners = line.count();
-    if (!corners || *corners < 3) line.fail("a face begins with the number of its corners, 3 or more");
-    append_number(result, *corners);
-    for (std::uint64_t j = 0; j < *corners; ++j) {
-      const std::optional<std::uint64_t> vertex = line.count();
-      if (!vertex || *vertex >= *vertices) {
-        line.fail("corner " + std::to_string(j + 1) + " of the face is none of the " + std::to_string(*vertices) +
-                  " vertices, counted from 0");
-      }
-      append_number(result += ' ', *vertex);
+namespace {
+
+class OffChecker {
+ public:
+  OffChecker(std::string_view bytes, const std::string& name)
+      : bytes_(bytes), name_(name), line_(bytes, bytes.starts_with("\xef\xbb\xbf") ? 3 : 0, '#', name) {}
+
+  std::string run() {
+    read_counts();
+    result_ = "OFF\n" + std::to_string(vertices_) + " " + std::to_string(faces_) + " 0\n";
+    for (std::uint64_t i = 0; i < vertices_; ++i) {
+      if (!line_.next()) fail_at_end(i, vertices_, "vertices");
+      append_point(result_, line_.point());
     }
-    result += '\n';
+    for (std::uint64_t i = 0; i < faces_; ++i) {
+      if (!line_.next()) fail_at_end(i, faces_, "faces");
+      read_face();
+    }
+    return std::move(result_);
   }
-  return result;
-}
+
+ private:
+  [[noreturn]] void fail_at_end(std::uint64_t found, std::uint64_t promised, const char* what) const {
+    std::string fault = "the file ends after " + std::to_string(found) + " of " + std::to_string(promised) + " " + what;
+    if (first_continued_ > 0) {
+      const std::size_t at = line_number(bytes_, first_continued_);
+      fault += "; the face of line " + std::to_string(at) + " has too few corners there and took the next lines' words";
+    }
+    line_.fail(fault);
+  }
+
+  // "OFF", which may be missing, and the numbers of vertices and faces after it, with or without a blank or on the next
+  // line.
+  void read_counts() {
+    if (!line_.next()) throw InputError(name_ + ": nothing but comments; this is not an OFF file");
+    std::optional<std::uint64_t> vertices = line_.count();
+    if (!vertices) {
+      vertices = count_after(line_.word());
+      if (!vertices) vertices = line_.count();
+    }
+    if (!vertices) {
+      const std::string_view other = line_.word();
+      if (!other.empty()) line_.fail(quoted(other) + " after OFF; only text files are supported");
+      if (!line_.next()) line_.fail("the file ends after its first line");
+      vertices = line_.count();
+    }
+    const std::optional<std::uint64_t> faces = line_.count();
+    if (!vertices || !faces) line_.fail("expected the numbers of vertices, faces and edges");
+    // "0 0 0" and "3 0 0 0" with their line ends, the last of which may be missing.
+    if (*vertices > line_.left() / 6 || *faces > line_.left() / 8 + 1) {
+      line_.fail("promises " + std::to_string(*vertices) + " vertices and " + std::to_string(*faces) +
+                 " faces, but only " + std::to_string(line_.left()) + " bytes are left");
+    }
+    vertices_ = *vertices;
+    faces_ = *faces;
+  }
+
+  // The number that the keyword runs into, as in "OFF8 6 12"; nothing if it does not.
+  std::optional<std::uint64_t> count_after(std::string_view keyword) const {
+    // Normals, colours and texture coordinates follow a vertex's position and are left out by leaving out the prefix.
+    const std::size_t prefix = std::min(keyword.find_first_not_of("STCN"), keyword.size());
+    const std::string_view number = keyword.substr(std::min(prefix + 3, keyword.size()));
+    std::int64_t count = 0;
+    const char* at = number.data();
+    const bool good =
+        number.empty() || (scan_integer(at, number.data() + number.size(), count) && at == number.end() && count >= 0);
+    if (!keyword.substr(prefix).starts_with("OFF") || !good) {
+      line_.fail("expected OFF instead of " + quoted(keyword) + "; other dimensions are not supported");
+    }
+    if (number.empty()) return std::nullopt;
+    return static_cast<std::uint64_t>(count);
+  }
+
+  // A face goes on over as many lines as its corners need; what follows them on the last one is its colour.
+  void read_face() {
+    const std::size_t start = line_.start();
+    const std::optional<std::uint64_t> corners = line_.count();
+    if (!corners || *corners < 3) line_.fail("a face begins with the number of its corners, 3 or more");
+    append_number(result_, *corners);
+    for (std::uint64_t j = 0; j < *corners; ++j) {
+      const bool found = line_.more();
+      if (first_continued_ == 0 && line_.start() != start) first_continued_ = start;
+      const std::optional<std::uint64_t> vertex = found ? line_.count() : std::nullopt;
+      if (!vertex || *vertex >= vertices_) {
+        if (!found) line_.fail("the file ends before corner " + std::to_string(j + 1) + " of the face");
+        line_.fail("corner " + std::to_string(j + 1) + " of the face is none of the " + std::to_string(vertices_) +
+                   " vertices, counted from 0");
+      }
+      append_number(result_ += ' ', *vertex);
+    }
+    result_ += '\n';
+  }
+
+  std::string_view bytes_;
+  const std::string& name_;
+  LineScanner line_;
+  std::uint64_t vertices_ = 0, faces_ = 0;
+  std::size_t first_continued_ = 0;  // where the first face begins that is not on one line; 0 if there is none
+  std::string result_;
+};
+
+}  // namespace
+
+std::string checked_off(std::string_view bytes, const std::string& name) { return OffChecker(bytes, name).run(); }
 
 }  // namespace orchard

@@ -1,23 +1,58 @@
-#include "orchard/geometry/text_lines.h"
-#include "orchard/medial/medial_mesh.h"
+#include <algorithm>
+#include <numeric>
+
+#include "ma_text.h"
+#include "orchard/geometry/error.h"
 
 namespace orchard {
 namespace {
 
+template <std::size_t kCorners>
+using Cells = std::vector<std::array<Index, kCorners>>;
+
+// Sorts cells, and of those that are repeated keeps the first that is not deleted, or else the first.
+template <std::size_t kCorners>
+void sort_and_deduplicate(Cells<kCorners>& cells, std::vector<CellFlags>& flags) {
+  std::vector<Index> order(cells.size());
+  std::iota(order.begin(), order.end(), Index{0});
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+    return cells[a] != cells[b] ? cells[a] < cells[b] : flags[a].deleted < flags[b].deleted;
+  });
+  Cells<kCorners> sorted;
+  std::vector<CellFlags> sorted_flags;
+  for (const Index i : order) {
+    if (!sorted.empty() && sorted.back() == cells[i]) continue;
+    sorted.push_back(cells[i]);
+    sorted_flags.push_back(flags[i]);
+  }
+  cells = std::move(sorted);
+  flags = std::move(sorted_flags);
+}
+
 class MaReader {
  public:
-  explicit MaReader(const std::filesystem::path& file) : lines_(file) {}
+  explicit MaReader(TextLines lines) : lines_(std::move(lines)) {}
 
-  MedialMesh run() {
+  FlaggedMedialMesh run() {
     if (!lines_.next()) lines_.fail("is empty; a .ma file starts with its numbers of vertices, edges and faces");
     vertices_ = lines_.index();
     const Index edges = lines_.index(), faces = lines_.index();
     if (vertices_ == 0) lines_.fail("promises no vertices");
     for (Index i = 0; i < vertices_; ++i) read_vertex();
-    for (Index i = 0; i < edges; ++i) mesh_.edges.push_back(corners<2>("e"));
-    for (Index i = 0; i < faces; ++i) mesh_.triangles.push_back(corners<3>("f"));
-    complete(mesh_);
-    return std::move(mesh_);
+    if (std::all_of(flagged_.vertices.begin(), flagged_.vertices.end(),
+                    [](const CellFlags& own) { return own.deleted; }))
+      lines_.fail("every vertex is flagged as deleted; nothing is left of this medial mesh");
+    for (Index i = 0; i < edges; ++i) {
+      flagged_.mesh.edges.push_back(corners<2>("e"));
+      flagged_.edges.push_back(flags_with_type());
+    }
+    for (Index i = 0; i < faces; ++i) {
+      flagged_.mesh.triangles.push_back(corners<3>("f"));
+      flagged_.triangles.push_back(flag_without_type());
+    }
+    complete_with_flags();
+    if (!any_flags_) flagged_.vertices.clear(), flagged_.edges.clear(), flagged_.triangles.clear();
+    return std::move(flagged_);
   }
 
  private:
@@ -25,8 +60,9 @@ class MaReader {
     lines_.expect("v");
     const double x = lines_.real(), y = lines_.real(), z = lines_.real(), radius = lines_.real();
     if (radius < 0) lines_.fail("a negative radius");
-    mesh_.centers.emplace_back(x, y, z);
-    mesh_.radii.push_back(radius);
+    flagged_.mesh.centers.emplace_back(x, y, z);
+    flagged_.mesh.radii.push_back(radius);
+    flagged_.vertices.push_back(flags_with_type());
   }
   template <std::size_t kCorners>
   std::array<Index, kCorners> corners(std::string_view kind) {
@@ -39,38 +75,135 @@ class MaReader {
         if (result[before] == result[k]) lines_.fail("a vertex number twice");
       }
     }
+    std::sort(result.begin(), result.end());
     return result;
+  }
+  // "type", "type deleted" or none; anything else at the end of a line is not meant for us.
+  CellFlags flags_with_type() {
+    std::array<std::int64_t, 2> numbers{};
+    const std::size_t count = lines_.whole_numbers_to_the_end(numbers);
+    if (count == 0) return {};
+    if (numbers[0] != static_cast<int>(numbers[0])) lines_.fail("a type that is beyond 32-bit numbers");
+    return {static_cast<int>(numbers[0]), deleted(numbers[1])};
+  }
+  CellFlags flag_without_type() {
+    std::array<std::int64_t, 1> number{};
+    if (lines_.whole_numbers_to_the_end(number) == 0) return {};
+    return {0, deleted(number[0])};
+  }
+  bool deleted(std::int64_t flag) {
+    if (flag != 0 && flag != 1) lines_.fail("a flag \"deleted\" that is neither 0 nor 1");
+    any_flags_ = true;
+    return flag == 1;
+  }
+
+  void complete_with_flags() {
+    MedialMesh& mesh = flagged_.mesh;
+    sort_and_deduplicate(mesh.edges, flagged_.edges);
+    sort_and_deduplicate(mesh.triangles, flagged_.triangles);
+    // What is missing is there for the sake of its triangles: deleted if all of these are.
+    const std::size_t listed = mesh.edges.size();
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+      const auto& [a, b, c] = mesh.triangles[i];
+      for (const std::array<Index, 2>& side : {std::array{a, b}, std::array{a, c}, std::array{b, c}}) {
+        if (std::binary_search(mesh.edges.begin(), mesh.edges.begin() + static_cast<std::ptrdiff_t>(listed), side))
+          continue;
+        mesh.edges.push_back(side);
+        flagged_.edges.push_back({0, flagged_.triangles[i].deleted});
+      }
+    }
+    sort_and_deduplicate(mesh.edges, flagged_.edges);
   }
 
   TextLines lines_;
   Index vertices_ = 0;
-  MedialMesh mesh_;
+  bool any_flags_ = false;
+  FlaggedMedialMesh flagged_;
 };
+
+// Whether a cell counts as far as its own flag goes.
+bool kept(const std::vector<CellFlags>& flags, std::size_t i) { return flags.empty() || !flags[i].deleted; }
+
+bool any_deleted(const std::vector<CellFlags>& flags) {
+  return std::any_of(flags.begin(), flags.end(), [](const CellFlags& cell) { return cell.deleted; });
+}
+
+void append_flag(std::string& text, int value) { text += ' ' + std::to_string(value); }
 
 }  // namespace
 
-std::string to_ma(const MedialMesh& mesh) {
+FlaggedMedialMesh detail::parse_ma(TextLines lines) { return MaReader(std::move(lines)).run(); }
+
+MedialMesh without_deleted(const FlaggedMedialMesh& flagged) {
+  const MedialMesh& all = flagged.mesh;
+  MedialMesh mesh;
+  std::vector<Index> number(all.centers.size(), kNone);
+  for (std::size_t i = 0; i < all.centers.size(); ++i) {
+    if (!kept(flagged.vertices, i)) continue;
+    number[i] = mesh.size();
+    mesh.centers.push_back(all.centers[i]);
+    mesh.radii.push_back(all.radii[i]);
+  }
+  if (mesh.centers.empty()) throw InputError("medial mesh: every vertex is deleted");
+  Cells<2> deleted;
+  for (std::size_t i = 0; i < all.edges.size(); ++i) {
+    const auto& [a, b] = all.edges[i];
+    if (!kept(flagged.edges, i)) {
+      deleted.push_back(all.edges[i]);
+    } else if (number[a] != kNone && number[b] != kNone) {
+      mesh.edges.push_back({number[a], number[b]});
+    }
+  }
+  const auto is_deleted = [&](Index a, Index b) {
+    return std::binary_search(deleted.begin(), deleted.end(), std::array{a, b});
+  };
+  for (std::size_t i = 0; i < all.triangles.size(); ++i) {
+    const auto& [a, b, c] = all.triangles[i];
+    if (!kept(flagged.triangles, i) || number[a] == kNone || number[b] == kNone || number[c] == kNone) continue;
+    if (is_deleted(a, b) || is_deleted(a, c) || is_deleted(b, c)) continue;
+    mesh.triangles.push_back({number[a], number[b], number[c]});
+  }
+  return mesh;
+}
+
+std::string to_ma(const FlaggedMedialMesh& flagged) {
+  const MedialMesh& mesh = flagged.mesh;
+  const bool flags = !flagged.vertices.empty() || !flagged.edges.empty() || !flagged.triangles.empty();
+  const bool edges_deleted = any_deleted(flagged.edges), triangles_deleted = any_deleted(flagged.triangles);
+  const auto of = [](const std::vector<CellFlags>& cells, std::size_t i) {
+    return cells.empty() ? CellFlags() : cells[i];
+  };
   std::string text = std::to_string(mesh.centers.size()) + ' ' + std::to_string(mesh.edges.size()) + ' ' +
                      std::to_string(mesh.triangles.size()) + '\n';
   for (std::size_t i = 0; i < mesh.centers.size(); ++i) {
     text += 'v';
     for (int axis = 0; axis < 3; ++axis) append_number(text, mesh.centers[i][axis]);
     append_number(text, mesh.radii[i]);
+    const CellFlags own = of(flagged.vertices, i);
+    if (flags) append_flag(text, own.type), append_flag(text, own.deleted);
     text += '\n';
   }
-  for (const auto& [a, b] : mesh.edges) {
+  for (std::size_t i = 0; i < mesh.edges.size(); ++i) {
     text += 'e';
-    append_number(text, a), append_number(text, b);
+    for (const Index corner : mesh.edges[i]) append_number(text, corner);
+    const CellFlags own = of(flagged.edges, i);
+    if (flags) append_flag(text, own.type);
+    if (edges_deleted) append_flag(text, own.deleted);
     text += '\n';
   }
-  for (const auto& [a, b, c] : mesh.triangles) {
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     text += 'f';
-    append_number(text, a), append_number(text, b), append_number(text, c);
+    for (const Index corner : mesh.triangles[i]) append_number(text, corner);
+    if (triangles_deleted) append_flag(text, of(flagged.triangles, i).deleted);
     text += '\n';
   }
   return text;
 }
 
-MedialMesh read_ma(const std::filesystem::path& file) { return MaReader(file).run(); }
+std::string to_ma(const MedialMesh& mesh) { return to_ma(FlaggedMedialMesh{mesh, {}, {}, {}}); }
+
+FlaggedMedialMesh read_flagged_ma(const std::filesystem::path& file) { return detail::parse_ma(TextLines(file)); }
+
+MedialMesh read_ma(const std::filesystem::path& file) { return without_deleted(read_flagged_ma(file)); }
 
 }  // namespace orchard

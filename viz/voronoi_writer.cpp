@@ -19,6 +19,7 @@
 #include "orchard/geometry/error.h"
 #include "orchard/voronoi/cell_polyhedron.h"
 #include "orchard/voronoi/quality.h"
+#include "vtk_data.h"
 
 namespace orchard {
 namespace {
@@ -72,10 +73,7 @@ class CellGrid {
     for (vtkIntArray* array : {point_.Get(), faces_.Get(), at_box_.Get()}) grid_->GetCellData()->AddArray(array);
     vtkNew<vtkXMLUnstructuredGridWriter> writer;
     writer->SetInputData(grid_);
-    writer->SetDataModeToAppended();
-    writer->EncodeAppendedDataOff();
-    writer->SetCompressorTypeToZLib();
-    writer->SetByteOrderToLittleEndian();
+    detail::set_encoding(writer);
     writer->WriteToOutputStringOn();
     return writer->Write() == 1 ? writer->GetOutputString() : std::string();
   }

@@ -1,11 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 
 #include "expect_input_error.h"
 #include "mesh_formats.h"
 #include "orchard/geometry/mesh_check.h"
+#include "orchard/geometry/random.h"
 #include "support/shapes.h"
 
 namespace orchard {
@@ -123,11 +125,49 @@ TEST(ReadOff, TakesEveryHeaderAndSkipsColours) {
       "NOFF\n4 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n1 1 0 0 0 1\n0 1 0 0 0 1\n4 0 1 2 3\n",
       "STCNOFF\n4 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n1 1 0 0 0 1\n0 1 0 0 0 1\n4 0 1 2 3\nleft over\n",
       "OFF\n4 1 0\n\t0 +0 0e0\n1. 0 0\n 1 1 0\n0 1 0 # here\n\t4 0 1 2 3\n",
+      "OFF4 1 0\n" + points + "4 0 1 2 3\n",
+      "COFF4 1 0\n" + points + "4 0 1 2 3\n",
+      "4 1 0\n" + points + "4 0 1 2 3\n",
+      "\xef\xbb\xbfOFF\n4 1 0\n" + points + "4 0 1 2 3\n",
+      "OFF\n4 1 0\n" + points + "4\n0 1\n\n2 # two\n# three\n3 255 0 0\n",
+      "OFF\r\n4 1 0\r\n0 0 0\r\n1 0 0\r\n1 1 0\r\n0 1 0\r\n4 0 1\r\n2 3",
   };
   for (const std::string& file : files) {
     const TriangleMesh mesh = read_off(file, "mesh.off");
     EXPECT_EQ(mesh.vertices, (std::vector<Point>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}})) << file;
     EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {0, 2, 3}})) << file;
+  }
+}
+
+// Polygons of a convex outline, their corners broken into lines at random.
+TEST(ReadOff, ReadsFacesOverAnyNumberOfLines) {
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    Random random(seed, 1);
+    std::string points, whole, broken;
+    const Index vertices = 3 + static_cast<Index>(random.below(40)), faces = 1 + static_cast<Index>(random.below(9));
+    for (Index i = 0; i < vertices; ++i) {
+      const double angle = 6.28 * i / vertices;
+      points += std::to_string(std::cos(angle)) + " " + std::to_string(std::sin(angle)) + " 0\n";
+    }
+    for (Index i = 0; i < faces; ++i) {
+      const Index corners = 3 + static_cast<Index>(random.below(vertices - 2));
+      const Index first = static_cast<Index>(random.below(vertices));
+      whole += std::to_string(corners);
+      broken += std::to_string(corners);
+      for (Index j = 0; j < corners; ++j) {
+        static constexpr std::array kGaps{" ", "\n", "\r\n  ", " # comment\n", "\n\n\t", "\t"};
+        const std::string corner = std::to_string((first + j) % vertices);
+        whole += " " + corner;
+        broken += kGaps.at(random.below(kGaps.size())) + corner;
+      }
+      const std::string colour = random.below(2) == 0 ? "" : " 0.5 0.5 1";
+      whole += colour + "\n";
+      broken += colour + "\n";
+    }
+    const std::string start = "OFF\n" + std::to_string(vertices) + " " + std::to_string(faces) + " 0\n" + points;
+    const TriangleMesh expected = read_off(start + whole, "mesh.off"), mesh = read_off(start + broken, "mesh.off");
+    ASSERT_EQ(mesh.vertices, expected.vertices) << "seed " << seed;
+    ASSERT_EQ(mesh.triangles, expected.triangles) << "seed " << seed << "\n" << broken;
   }
 }
 
@@ -156,7 +196,13 @@ TEST(ReadOff, NamesTheLineAndTheFault) {
       {start + points, {"line 5", "0 of 1 faces"}},
       {start + points + "2 0 1\n", {"line 6", "3 or more"}},
       {start + points + "-3 0 1 2\n", {"line 6", "3 or more"}},
-      {start + points + "3 0 1\n", {"line 6", "corner 3"}},
+      {start + points + "3 0 1\n", {"line 6", "ends before corner 3"}},
+      {start + points + "3 0\n1\nx\n", {"line 8", "corner 3"}},
+      {"OFF\n3 2 0\n" + points + "3 0 1\n3 2 1 0\n", {"line 7", "corner 3"}},
+      {"OFF\n3 3 0\n" + points + "3 0 1\n2 1 0 2\n3 0 1 2\n", {"line 8", "2 of 3 faces", "the face of line 6"}},
+      {"OFFx 3 1 0\n" + points, {"line 1", "\"OFFx\""}},
+      {"OFF-3 1 0\n" + points, {"line 1", "\"OFF-3\""}},
+      {"3\n1\n", {"line 1", "numbers of vertices, faces"}},
       {start + points + "3 0 1 3\n", {"line 6", "corner 3", "3 vertices"}},
       {start + points + "3 0 -1 2\n", {"line 6", "corner 2"}},
       {start + points + "3 0 1.5 2\n", {"line 6", "corner 2"}},

@@ -1,12 +1,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
+#include <set>
 
 #include "expect_input_error.h"
 #include "mesh_formats.h"
+#include "orchard/geometry/mesh_check.h"
+#include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/random.h"
 #include "ply_header.h"
 
@@ -16,6 +21,10 @@ namespace {
 using Triangles = std::vector<std::array<Index, 3>>;
 
 TriangleMesh read(std::string_view bytes) { return read_ply(bytes, "mesh.ply"); }
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
 
 const PlyType kTypes[] = {PlyType::int8,  PlyType::uint8,  PlyType::int16,   PlyType::uint16,
                           PlyType::int32, PlyType::uint32, PlyType::float32, PlyType::float64};
@@ -76,12 +85,14 @@ const char* const kEncodings[] = {"ascii", "binary_little_endian", "binary_big_e
 // A random file: property order, types, further properties and elements differ with the seed.
 class RandomPly {
  public:
-  RandomPly(std::uint64_t seed, PlyEncoding encoding) : random_(seed, 1), header_("ply\nformat "), body_(encoding) {
+  // `strips`: the faces are in strips of triangles.
+  RandomPly(std::uint64_t seed, PlyEncoding encoding, bool strips = false)
+      : random_(seed, 1), header_("ply\nformat "), body_(encoding) {
     header_ += std::string(kEncodings[static_cast<std::size_t>(encoding)]) + " 1.0\ncomment seed\n";
     const bool faces_first = random_.below(4) == 0;
     for (int part = 0; part < 2; ++part) {
       if (random_.below(2)) add_extra_element("extra" + std::to_string(part));
-      (part == 0) == faces_first ? add_faces() : add_vertices();
+      (part == 0) != faces_first ? add_vertices() : strips ? add_strips() : add_faces();
     }
     header_ += "obj_info hand-made\nend_header\n";
   }
@@ -167,6 +178,49 @@ class RandomPly {
     }
   }
 
+  // As a picture of a strip has it: corners alternate between its two rims, and each triangle lies between three that
+  // follow one another.
+  void add_strips() {
+    const std::uint64_t rows = random_.below(4);
+    header_ += "element tristrips " + std::to_string(rows) + "\n";
+    static constexpr std::array kLengths{PlyType::uint8, PlyType::int16, PlyType::int32};
+    static constexpr std::array kSigned{PlyType::int8, PlyType::int16, PlyType::int32, PlyType::float64};
+    const auto layout = columns({{kSigned.at(random_.below(4)), true, kLengths.at(random_.below(3)),
+                                  random_.below(2) ? "vertex_indices" : "vertex_index"}});
+    for (std::uint64_t row = 0; row < rows; ++row) {
+      for (const Column& column : layout) {
+        if (!column.name.starts_with("vertex")) {
+          put_unneeded(column);
+          continue;
+        }
+        const std::vector<int> list = random_strips();
+        body_.put(column.length_type, static_cast<double>(list.size()));
+        for (const int item : list) body_.put(column.type, item);
+      }
+      body_.end_row();
+    }
+  }
+  std::vector<int> random_strips() {
+    std::vector<int> list;
+    for (std::uint64_t strips = random_.below(6); strips > 0; --strips) {
+      std::vector<int> strip;
+      for (std::uint64_t corners = random_.below(12); corners > 0; --corners) {
+        strip.push_back(random_.below(5) == 0 && !strip.empty() ? strip.back()
+                                                                : static_cast<int>(random_.below(kVertices)));
+      }
+      for (std::size_t i = 0; i + 2 < strip.size(); ++i) {
+        std::array<int, 3> corners{strip[i], strip[i + 1], strip[i + 2]};
+        if (i % 2 == 1) std::swap(corners[0], corners[1]);
+        if (std::set<int>(corners.begin(), corners.end()).size() < 3) continue;
+        mesh_.triangles.push_back(
+            {static_cast<Index>(corners[0]), static_cast<Index>(corners[1]), static_cast<Index>(corners[2])});
+      }
+      list.insert(list.end(), strip.begin(), strip.end());
+      if (strips > 1 || random_.below(2) == 0) list.push_back(-1);
+    }
+    return list;
+  }
+
   Random random_;
   std::string header_;
   Body body_;
@@ -184,6 +238,59 @@ TEST(ReadPly, ReadsAnyTypesAndOrderInEveryEncoding) {
   }
 }
 
+TEST(ReadPly, ReadsStripsOfTrianglesInEveryEncoding) {
+  std::size_t triangles = 0;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    for (const PlyEncoding encoding : {PlyEncoding::ascii, PlyEncoding::little_endian, PlyEncoding::big_endian}) {
+      const RandomPly file(seed, encoding, true);
+      const TriangleMesh mesh = read_ply_or_points(file.bytes(), "mesh.ply");
+      ASSERT_EQ(mesh.vertices, file.mesh().vertices) << "seed " << seed << "\n" << file.bytes().substr(0, 600);
+      ASSERT_EQ(mesh.triangles, file.mesh().triangles) << "seed " << seed << "\n" << file.bytes();
+      triangles += mesh.triangles.size();
+    }
+  }
+  EXPECT_GT(triangles, 1000u);
+}
+
+TEST(ReadPly, TurnsStripsSoThatAllTrianglesFaceTheSameWay) {
+  const std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+  // A tetrahedron in one strip.
+  const TriangleMesh mesh = read(text + "6 1 0 2 3 1 0\n");
+  EXPECT_EQ(mesh.triangles, (Triangles{{1, 0, 2}, {2, 0, 3}, {2, 3, 1}, {1, 3, 0}}));
+  EXPECT_TRUE(check_mesh(mesh).solid()) << check_mesh(mesh).faults();
+  // Three of its triangles in two strips.
+  EXPECT_EQ(read(text + "8 0 2 1 3 -1 2 0 3\n").triangles, (Triangles{{0, 2, 1}, {1, 2, 3}, {2, 0, 3}}));
+}
+
+TEST(ReadPly, ReadsAScanInStrips) {
+  const std::filesystem::path file = std::filesystem::path(ORCHARD_SHARED_MODELS) / "dirty/igea.ply";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "the shared models are not here";
+  const TriangleMesh mesh = read_mesh(file);
+  EXPECT_EQ(mesh.vertices.size(), 134345u);
+  EXPECT_EQ(mesh.triangles.size(), 268686u);
+  const MeshReport report = check_mesh(mesh);
+  EXPECT_TRUE(report.solid()) << report.faults();
+  EXPECT_NEAR(report.volume, 0.00027852446, 1e-10);  // summed over the strips by another program
+}
+
+TEST(ReadPly, NamesTheLineOrByteOfAFaultInAStrip) {
+  const auto text = [](const std::string& row) {
+    return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+           "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n" +
+           row;
+  };
+  EXPECT_EQ(read(text("3 0 1 2\n")).triangles.size(), 1u);
+  test::expect_input_error([&] { read(text("3 0 1 3\n")); }, {"mesh.ply, line 13", "strip of triangles", "vertex 3"});
+  test::expect_input_error([&] { read(text("3 0 1 -2\n")); }, {"mesh.ply, line 13", "vertex -2"});
+  test::expect_input_error([&] { read(text("9 0 1 2\n")); }, {"mesh.ply, line 13", "9 items"});
+  test::expect_input_error([&] { read(text("2 0 1\n")); }, {"no faces"});
+  test::expect_input_error([&] { read(text("4 0 1 -1 2\n")); }, {"no faces"});
+  test::expect_input_error([&] { read(replaced(text("3 0 1 2\n"), "vertex_indices", "corners")); },
+                           {"line 7", "no list"});
+}
+
 TEST(ReadPly, RefusesARandomFileCutShort) {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     const std::string bytes = RandomPly(seed, PlyEncoding::little_endian).bytes();
@@ -198,10 +305,6 @@ std::string header(const std::string& encoding, const std::string& vertices = "3
          "\nproperty list uchar int vertex_indices\nend_header\n";
 }
 constexpr const char* kPoints = "0 0 0\n1 0 0\n0 1 0\n";
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  return text.replace(text.find(from), from.size(), to);
-}
 
 TEST(ReadPly, TakesEveryEndOfLineInTheHeader) {
   const std::string text = header("ascii") + kPoints + "3 0 1 2\n";

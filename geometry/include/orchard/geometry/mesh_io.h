@@ -6,8 +6,9 @@
 namespace orchard {
 
 // Reads .obj and .ply (ASCII, binary little- and big-endian) with orchard's own readers, .stl and .off through CGAL; by
-// extension, case does not matter. Polygons are triangulated; properties that orchard has no use for are skipped. An
-// .stl file is a bag of triangles, so its identical corners are welded; other formats keep their vertices as they are.
+// extension, case does not matter. Polygons and strips of triangles (PLY's element "tristrips") become triangles;
+// properties that orchard has no use for are skipped. An .stl file is a bag of triangles, so its identical corners are
+// welded; other formats keep their vertices as they are. A face of an .off file may go on over several lines.
 // Throws InputError naming file, line or byte, fault and remedy, also for meshes whose size is out of range
 // (require_usable_size() in mesh.h). Memory is bounded by the size of the file.
 TriangleMesh read_mesh(const std::filesystem::path& file);

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -10,7 +11,7 @@ namespace orchard {
 
 // Reads small text formats line by line. Blank lines and lines that start with '#' are skipped, and so is what is left
 // on a line when the next one is asked for. Everything that cannot be read throws InputError, which names file and
-// line.
+// line. A copy, or what a value is moved to, reads on by itself from where the other was.
 class TextLines {
  public:
   explicit TextLines(const std::filesystem::path& file);
@@ -21,15 +22,20 @@ class TextLines {
   Index index();                       // a whole number, 0 or more
   std::int64_t whole();
   double real();  // finite
+  // What is left of the line, if it is nothing but whole numbers and no more of them than `numbers` has room for: how
+  // many they are. Otherwise 0, and the line stays where it is.
+  std::size_t whole_numbers_to_the_end(std::span<std::int64_t> numbers);
   [[noreturn]] void fail(const std::string& fault) const;
 
  private:
+  std::string_view line() const { return std::string_view(text_).substr(at_, line_end_ - at_); }
   void skip_space();
   template <class Number>
   Number number(const char* what);
 
   std::string name_, text_;
-  std::string_view rest_, line_;
+  // Places in text_ rather than views of it, which would stay with the text of the value that a copy was made of.
+  std::size_t next_ = 0, at_ = 0, line_end_ = 0;  // where the next line begins; what is left of this one
   std::size_t line_number_ = 0;
 };
 

@@ -31,11 +31,32 @@ void complete(MedialMesh& mesh);
 // coordinates finite and radii finite and not negative, and there is a vertex.
 void validate(const MedialMesh& mesh);
 
-// The .ma format: a line "nv ne nf", then lines "v x y z r", "e i j" and "f i j k", counted from 0 (docs/FORMATS.md).
-// Numbers are the shortest that read back the same.
+// What a .ma file of MATFP (Wang et al. 2022) says about a cell.
+struct CellFlags {
+  int type = 0;          // of an edge: 1 internal, 2 external feature, 0 neither; of a vertex: the kind of its ball
+  bool deleted = false;  // there so that others keep their numbers; it does not count
+  bool operator==(const CellFlags&) const = default;
+};
+
+// A .ma file as it is, deleted cells included. Flags belong to the cells of `mesh` one by one, or there are none.
+struct FlaggedMedialMesh {
+  MedialMesh mesh;
+  std::vector<CellFlags> vertices, edges, triangles;
+};
+
+// The cells that count, vertices numbered anew in their order: those that are not deleted, nor part of whose boundary
+// is. Precondition: vectors of flags are empty or as long as their cells. Throws InputError if no vertex is left.
+MedialMesh without_deleted(const FlaggedMedialMesh& flagged);
+
+// The .ma format: a line "nv ne nf", then lines "v x y z r", "e i j" and "f i j k", counted from 0, each of which may
+// end with flags (docs/FORMATS.md). Numbers are the shortest that read back the same. Flags are written where there are
+// any, in the columns that MATFP reads; the column of deleted edges or triangles only if one is.
 std::string to_ma(const MedialMesh& mesh);
-// Lines that start with '#' and text after what is needed on a line are skipped. The result is complete and valid.
+std::string to_ma(const FlaggedMedialMesh& flagged);
+// Lines that start with '#' and text after what is needed on a line, unless it is flags, are skipped. The result is
+// complete (edges that only deleted triangles have are deleted) and valid; read_ma() gives the cells that count alone.
 // Throws InputError, which names file and line.
 MedialMesh read_ma(const std::filesystem::path& file);
+FlaggedMedialMesh read_flagged_ma(const std::filesystem::path& file);
 
 }  // namespace orchard
