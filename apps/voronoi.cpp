@@ -92,11 +92,15 @@ Run run_to_compare(const std::vector<Point>& points, VoronoiAlgorithm algorithm,
 
 std::vector<Run> run_all(const VoronoiCommand& command, const std::vector<Point>& points, const Progress& progress) {
   std::vector<Run> runs;
-  if (!command.compare)
-    runs.push_back(run(points, command.algorithm, progress));
-  else
-    for (const VoronoiAlgorithm algorithm : kVoronoiAlgorithms)
-      runs.push_back(run_to_compare(points, algorithm, progress));
+  try {
+    if (!command.compare)
+      runs.push_back(run(points, command.algorithm, progress));
+    else
+      for (const VoronoiAlgorithm algorithm : kVoronoiAlgorithms)
+        runs.push_back(run_to_compare(points, algorithm, progress));
+  } catch (const InputError& error) {
+    throw InputError(command.input.string() + ": " + error.what());
+  }
   return runs;
 }
 
@@ -124,6 +128,7 @@ json to_json(const Run& run) {
     result["insertions"] = {{"certified", report.certified_insertions}, {"settled", report.settled_insertions},
                             {"exact", report.exact_insertions},         {"constrained", report.constrained_insertions},
                             {"exact_signs", report.exact_signs},        {"coplanar_centers", report.coplanar_centers}};
+  if (run.algorithm == VoronoiAlgorithm::highest_first) result["certified_depth_over_radius"] = report.certified_depth;
   return result;
 }
 
@@ -149,6 +154,9 @@ void print_insertions(const Run& run) {
   fmt::print("highest-first insertions: {} certified, {} settled, {} by exact signs, {} by the constrained search{}\n",
              report.certified_insertions, report.settled_insertions, report.exact_insertions,
              report.constrained_insertions, report.exact_signs ? "; all with exact signs in the end" : "");
+  fmt::print(
+      "certified: no point is deeper than {:.2g} of the bounding radius in a sphere, or farther beyond the hull\n",
+      report.certified_depth);
   if (!report.duplicates.empty())
     fmt::print("{} points coincide with an earlier one and were left out\n", report.duplicates.size());
 }

@@ -14,7 +14,8 @@ namespace orchard::detail {
 VoronoiDiagram build_voronoi(std::span<const Point> points, Search search, std::string_view stage,
                              const Progress& progress, InsertionReport* report, bool exact = false);
 
-// The box of the points; throws InputError, naming the point, for a coordinate that is not finite.
+// The box of the points; throws InputError, naming the point, for a coordinate that is not finite or beyond
+// Frame::kLargest, or if the points are not all one and yet nearer to each other than Frame::kSmallest.
 Box checked_box(std::span<const Point> points);
 
 // Four points far apart: each the farthest from what those before it span.

@@ -11,10 +11,10 @@ namespace orchard::detail {
 // taken off, which doubles do without rounding; along others nothing is.
 class Frame {
  public:
-  // For finite points of this box. Throws InputError if a coordinate is above kLargest, or the box is neither a point
-  // nor larger than kSmallest.
+  // For points of this box, which is that of a single point or of sizes within the limits: see checked_box().
   explicit Frame(const Box& box);
 
+  // Of a coordinate, and of the longest side of the box. What users do with a diagram has room to spare then.
   static constexpr double kLargest = 1e100, kSmallest = 1e-100;
 
   // Coordinates in the frame are below 4, and multiples of 2^-200: of what is smaller than 2^-148, the rest is dropped.

@@ -38,6 +38,27 @@ TEST(Voronoi, ComparesTheAlgorithmsOnAMesh) {
   EXPECT_EQ(insertions["certified"].get<int>() + insertions["settled"].get<int>() + insertions["exact"].get<int>() +
                 insertions["constrained"].get<int>() + 4,
             report["points"].get<int>());
+  EXPECT_LE(highest_first["certified_depth_over_radius"].get<double>(), 1e-9);
+}
+
+TEST(Voronoi, RefusesSizesThatItCannotWorkWithAndSaysWhichPointItIs) {
+  const Workplace here;
+  const auto cube = [](const std::string& exponent) {
+    std::string rows;
+    for (const char c : kCube) rows += c == '1' ? c + exponent : std::string(1, c);
+    return rows;
+  };
+  for (const char* good : {"e99", "e-99", "e30", "e-30"}) {
+    const Finished run = here.run({"voronoi", here.add("good.xyz", cube(good)), "--json"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_GT(json::parse(run.out)["algorithms"][0]["vertices"].get<int>(), 10) << good;
+  }
+  const Finished large = here.run({"voronoi", here.add("large.xyz", cube("e120")), "--json"});
+  EXPECT_EQ(large.exit_code, 2);
+  EXPECT_NE(large.err.find("large.xyz: point 1 has a coordinate beyond 1e100"), std::string::npos) << large.err;
+  const Finished small = here.run({"voronoi", here.add("small.xyz", cube("e-120")), "--json"});
+  EXPECT_EQ(small.exit_code, 2);
+  EXPECT_NE(small.err.find("small.xyz: the points are less than 1e-100 apart"), std::string::npos) << small.err;
 }
 
 TEST(Voronoi, PrintsATable) {

@@ -8,19 +8,23 @@
 namespace orchard {
 
 // The Voronoi diagram by incremental insertion with the highest-first deletion search under Inagaki et al.'s five
-// constraints (dissertation 6.2.3): consistent for every input, and as near to Voronoi as rounding allows. Points
-// within tolerance::kCoincidentPoints of the bounding radius of an earlier point form no vertex. Points that all lie in
-// a plane, up to rounding, or are fewer than four have a diagram without vertices; report->dimension tells.
-// Deterministic. Throws InputError for coordinates that are not finite. About O(n log n) on surface points; at the peak
-// 65 bytes a vertex and 32 a point beside the caller's points.
+// constraints (dissertation 6.2.3): consistent for every input, and certified to be right: no point is deeper in a
+// sphere, or farther beyond a facet of the hull, than report->certified_depth, which is at most
+// tolerance::kVoronoiDepth of the bounding radius for up to 1024 points (a thousandth of that for each point more).
+// Points within tolerance::kCoincidentPoints of the bounding radius of an earlier point form no vertex. Points that all
+// lie in a plane, up to rounding, or are fewer than four have a diagram without vertices; report->dimension tells.
+// Deterministic. Throws InputError for coordinates that are not finite or beyond 1e100, or if all points lie within
+// 1e-100 and are not one. About O(n log n) on surface points; at the peak 66 bytes a vertex and 32 a point beside the
+// caller's points.
 VoronoiDiagram highest_first_voronoi(std::span<const Point> points, const Progress& progress = {},
                                      InsertionReport* report = nullptr);
 
 // Adds points to a diagram that any of the algorithms made; new ones are numbered after those there are. A rebuild
 // agrees up to rounding. Old vertices may be renumbered. The report speaks of the new points, or of all of them if the
-// diagram had no vertices or had to be made anew, which costs as much as the first time: where the old points called
-// for exact signs and the new ones contradict them. Else O(n) with a small constant, plus about O(k log k) for k new
-// points. Throws InputError for coordinates that are not finite, with the diagram as it was.
+// diagram had no vertices or had to be made anew, which costs as much as the first time: where the new points
+// contradict the old ones, and these are not exactly Voronoi. Else O(n) with a small constant, plus about O(k log k)
+// for k new points. The certificate is of what is new: an old vertex that was wrong stays wrong. Throws InputError as
+// above; whatever is thrown, the diagram is as it was.
 void insert_points(VoronoiDiagram& diagram, std::span<const Point> points, InsertionReport* report = nullptr);
 
 }  // namespace orchard
