@@ -17,6 +17,9 @@ constexpr double kMean = 1.0 / 1024;
 // The part of the depth that may lie between the sphere that a vertex was given and its own.
 constexpr double kGiven = 1.0 / 4;
 
+// Vertices that are held against all points one by one; where there are more, exact signs are cheaper.
+constexpr std::size_t kMostSuspects = 512;
+
 // Of a squared size: far more than any stored sphere is off, where all that matters is to look at a few vertices more.
 constexpr double kAbout = 0x1p-20;
 
@@ -35,6 +38,7 @@ class Certifier {
     const double count = static_cast<double>(workspace_.points.size());
     if (depth_ > (1 - kGiven) * at_most_ * std::max(1.0, kMean * count)) return {};
     if (fattest_ != kNone && !covers_once()) return {};
+    if (!are_suspects_innocent()) return {};
     return {true, 2 * (depth_ + given_) / diameter_};
   }
 
@@ -170,8 +174,40 @@ class Certifier {
     Vector away = normal.cross(along);
     if (away.dot(corner(v, i) - b) > 0) away = -away;
     const Index u = workspace_.vertices[v].neighbors[i];
-    return add(rise + depth_lost(workspace_.vertices[v].neighbors[3], workspace_.vertices[u].neighbors[3], b, away,
-                                 normal, rise));
+    const Index below = workspace_.vertices[v].neighbors[3], next = workspace_.vertices[u].neighbors[3];
+    if (!add(rise + depth_lost(below, next, b, away, normal, rise)))
+      suspects_.insert(suspects_.end(), {v, u, below, next});
+    return suspects_.size() <= kMostSuspects;
+  }
+
+  // All points, against the planes and the spheres at edges of the hull so short or facets so thin that bounds from
+  // next to them, carried across the whole set, say nothing.
+  bool are_suspects_innocent() {
+    std::sort(suspects_.begin(), suspects_.end());
+    suspects_.erase(std::unique(suspects_.begin(), suspects_.end()), suspects_.end());
+    return std::all_of(suspects_.begin(), suspects_.end(), [this](Index v) {
+      return add(workspace_.at_infinity(v) ? farthest_beyond(v) : deepest_within(v));
+    });
+  }
+  double farthest_beyond(Index v) const {
+    Vector normal;
+    if (!sharp_normal(corner(v, 0), corner(v, 1), corner(v, 2), normal)) return diameter_;
+    double farthest = 0;
+    for (const Point& p : workspace_.points) farthest = std::max(farthest, normal.dot(p - corner(v, 0)));
+    return farthest;
+  }
+  // In terms of a sphere no larger than the points' own.
+  double deepest_within(Index v) const {
+    const Point &p0 = corner(v, 0), &p1 = corner(v, 1), &p2 = corner(v, 2), &p3 = corner(v, 3);
+    Vector center;
+    if (!sharp_circumcenter(p0, p1, p2, p3, center)) return diameter_;
+    double power = 0;
+    for (const Point& p : workspace_.points) {
+      const Vector from_p0 = p - p0;
+      const double by_center = 2 * center.dot(from_p0) - from_p0.squaredNorm();
+      if (by_center > power && inside_sphere(p, p0, p1, p2, p3) == Sign::positive) power = by_center;
+    }
+    return power / std::min(center.norm(), diameter_ / 2);
   }
 
   // Whether a point in the fattest of the tetrahedra looked at is in no other. All being oriented positively, there are
@@ -197,6 +233,7 @@ class Certifier {
   Workspace& workspace_;
   Index first_new_, fattest_ = kNone;
   double diameter_ = 0, at_most_ = 0, depth_ = 0, given_ = 0, largest_volume_ = 0;
+  std::vector<Index> suspects_;
 };
 
 }  // namespace

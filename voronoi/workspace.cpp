@@ -75,7 +75,12 @@ void Workspace::find_error_class(Index v) {
   if (at_infinity(v)) {
     if (found) vertex.center = placed.center;
   } else if (found && (exact_ || !poor(placed, error))) {
-    vertex = placed;
+    // What it has is kept where it is as good: only what is new changes.
+    const double off = (vertex.center - placed.center).norm() * std::sqrt(placed.radius);
+    if (4 * off <= bounds_[error])
+      vertex.radius = (vertex.center - points[vertex.forming_points[0]]).squaredNorm();
+    else
+      vertex = placed;
   } else if (!exact_) {
     // It may have a neighbour's sphere.
     vertex.radius = (vertex.center - points[vertex.forming_points[0]]).squaredNorm();
