@@ -101,14 +101,14 @@ TEST(HighestFirstVoronoi, MeetsContradictionsWhereTheyAreAndDoesNotStartAnew) {
 }
 
 TEST(HighestFirstVoronoi, IsExactWhereRoundingLeavesSpheresOpen) {
-  for (const test::Points& points : {test::cone_ring_points(60, 80), test::turned(test::cone_ring_points(60, 80), 1),
-                                     test::sphere_points(3000, 1)}) {
+  for (const test::Points& points : {test::turned(test::cone_ring_points(60, 80), 1), test::sphere_points(2000, 4)}) {
     InsertionReport report;
     const VoronoiDiagram diagram = highest_first_voronoi(points, {}, &report);
     EXPECT_TRUE(report.exact_signs);
     EXPECT_EQ(report.certified_depth, 0);
     EXPECT_EQ(report.constrained_insertions, 0u);
     EXPECT_NO_THROW(validate(diagram));
+    if (points.size() > 3000) continue;  // the judge holds all points against all spheres
     const test::Judgement judgement = test::judge(diagram);
     EXPECT_LT(judgement.deepest, 1e-11);
     EXPECT_LT(judgement.beyond, 1e-11);

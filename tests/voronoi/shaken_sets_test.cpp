@@ -49,7 +49,7 @@ void expect_right_in_pieces(const std::string& name, const test::Points& points,
 }
 
 TEST(ShakenSets, HaveRightDiagramsAtOnceAndInPieces) {
-  unsigned long long first = 0, count = 300;
+  unsigned long long first = 0, count = 120;
   if (const char* asked = std::getenv("ORCHARD_SHAKEN_SETS")) {
     ASSERT_EQ(std::sscanf(asked, "%llu:%llu", &first, &count), 2) << "ORCHARD_SHAKEN_SETS=FIRST:COUNT";
   }
