@@ -20,12 +20,17 @@ constexpr double kGiven = 1.0 / 4;
 // Vertices that are held against all points one by one; where there are more, exact signs are cheaper.
 constexpr std::size_t kMostSuspects = 512;
 
+// Heights of points above facets of the hull that are looked at, and above how much more closely.
+constexpr std::size_t kMostHeights = std::size_t{1} << 21;
+constexpr double kFar = 0x1p-33;
+
 // Of a squared size: far more than any stored sphere is off, where all that matters is to look at a few vertices more.
 constexpr double kAbout = 0x1p-20;
 
 class Certifier {
  public:
-  Certifier(Workspace& workspace, Index first_new) : workspace_(workspace), first_new_(first_new) {
+  Certifier(Workspace& workspace, const std::vector<bool>& forming, Index first_new)
+      : workspace_(workspace), forming_(forming), first_new_(first_new) {
     Box box;
     for (const Point& p : workspace.points) box.extend(p);
     diameter_ = box.diagonal().norm();
@@ -33,12 +38,13 @@ class Certifier {
   }
 
   Certificate run() {
+    note_hull();
     for (Index v = 0; v < workspace_.vertices.size(); ++v)
       if (!workspace_.is_free(v) && is_new(v) && !(is_oriented(v) && are_facets_good(v))) return {};
     const double count = static_cast<double>(workspace_.points.size());
     if (depth_ > (1 - kGiven) * at_most_ * std::max(1.0, kMean * count)) return {};
     if (fattest_ != kNone && !covers_once()) return {};
-    if (!are_suspects_innocent()) return {};
+    if (!are_suspects_innocent() || !is_hull_around_all()) return {};
     return {true, 2 * (depth_ + given_) / diameter_};
   }
 
@@ -180,6 +186,33 @@ class Certifier {
     return suspects_.size() <= kMostSuspects;
   }
 
+  // The hull may be convex at every edge and yet go around a vertex twice. Held against all points where they are few,
+  // else against some of them.
+  bool is_hull_around_all() const {
+    const std::size_t step = 1 + facets_.size() * hull_points_.size() / kMostHeights;
+    for (const Index v : facets_) {
+      const Vector normal = (corner(v, 1) - corner(v, 0)).cross(corner(v, 2) - corner(v, 0));
+      const double far = kFar * normal.norm() * diameter_, at = normal.dot(corner(v, 0)) + far;
+      for (std::size_t i = v % step; i < hull_points_.size(); i += step) {
+        const Point& p = workspace_.points[hull_points_[i]];
+        if (normal.dot(p) > at && volume_sign(p, corner(v, 0), corner(v, 1), corner(v, 2)) == Sign::negative &&
+            farthest_beyond(v) > at_most_)
+          return false;
+      }
+    }
+    return true;
+  }
+  void note_hull() {
+    std::vector<bool> seen(workspace_.points.size(), false);
+    for (Index v = 0; v < workspace_.vertices.size(); ++v) {
+      if (workspace_.is_free(v) || !workspace_.at_infinity(v)) continue;
+      facets_.push_back(v);
+      for (unsigned i = 0; i < 3; ++i)
+        if (const Index p = workspace_.vertices[v].forming_points[i]; !seen[p])
+          seen[p] = true, hull_points_.push_back(p);
+    }
+  }
+
   // All points, against the planes and the spheres at edges of the hull so short or facets so thin that bounds from
   // next to them, carried across the whole set, say nothing.
   bool are_suspects_innocent() {
@@ -193,7 +226,7 @@ class Certifier {
     Vector normal;
     if (!sharp_normal(corner(v, 0), corner(v, 1), corner(v, 2), normal)) return diameter_;
     double farthest = 0;
-    for (const Point& p : workspace_.points) farthest = std::max(farthest, normal.dot(p - corner(v, 0)));
+    for (const Index p : hull_points_) farthest = std::max(farthest, normal.dot(workspace_.points[p] - corner(v, 0)));
     return farthest;
   }
   // In terms of a sphere no larger than the points' own.
@@ -202,7 +235,9 @@ class Certifier {
     Vector center;
     if (!sharp_circumcenter(p0, p1, p2, p3, center)) return diameter_;
     double power = 0;
-    for (const Point& p : workspace_.points) {
+    for (Index i = 0; i < workspace_.points.size(); ++i) {
+      const Point& p = workspace_.points[i];
+      if (!forming_[i]) continue;
       const Vector from_p0 = p - p0;
       const double by_center = 2 * center.dot(from_p0) - from_p0.squaredNorm();
       if (by_center > power && inside_sphere(p, p0, p1, p2, p3) == Sign::positive) power = by_center;
@@ -231,24 +266,36 @@ class Certifier {
   }
 
   Workspace& workspace_;
+  const std::vector<bool>& forming_;
   Index first_new_, fattest_ = kNone;
   double diameter_ = 0, at_most_ = 0, depth_ = 0, given_ = 0, largest_volume_ = 0;
+  std::vector<Index> facets_, hull_points_;  // of the hull
   std::vector<Index> suspects_;
 };
 
 }  // namespace
 
-std::size_t count_forming(const Workspace& workspace) {
+namespace {
+
+std::vector<bool> forming_points(const Workspace& workspace) {
   std::vector<bool> forming(workspace.points.size(), false);
   for (const VoronoiVertex& vertex : workspace.vertices)
     for (const Index point : vertex.forming_points)
       if (point != kInfinitePoint) forming[point] = true;
+  return forming;
+}
+std::size_t count(const std::vector<bool>& forming) {
   return static_cast<std::size_t>(std::count(forming.begin(), forming.end(), true));
 }
 
+}  // namespace
+
+std::size_t count_forming(const Workspace& workspace) { return count(forming_points(workspace)); }
+
 Certificate certify(Workspace& workspace, std::size_t points, Index first_new) {
-  if (count_forming(workspace) != points) return {};
-  return Certifier(workspace, first_new).run();
+  const std::vector<bool> forming = forming_points(workspace);
+  if (count(forming) != points) return {};
+  return Certifier(workspace, forming, first_new).run();
 }
 
 }  // namespace orchard::detail
