@@ -17,12 +17,15 @@ constexpr double kMean = 1.0 / 1024;
 // The part of the depth that may lie between the sphere that a vertex was given and its own.
 constexpr double kGiven = 1.0 / 4;
 
+// The part of the depth that may lie between a vertex's sphere and its own by the bound of its error; where that is
+// more, its own is found.
+constexpr double kTold = 1.0 / 64;
+
+// The angle by which the normal of a facet may be off before it is found with more digits.
+constexpr double kBlurred = 0x1p-44;
+
 // Vertices that are held against all points one by one; where there are more, exact signs are cheaper.
 constexpr std::size_t kMostSuspects = 512;
-
-// Heights of points above facets of the hull that are looked at, and above how much more closely.
-constexpr std::size_t kMostHeights = std::size_t{1} << 21;
-constexpr double kFar = 0x1p-33;
 
 // Of a squared size: far more than any stored sphere is off, where all that matters is to look at a few vertices more.
 constexpr double kAbout = 0x1p-20;
@@ -38,13 +41,13 @@ class Certifier {
   }
 
   Certificate run() {
-    note_hull();
-    for (Index v = 0; v < workspace_.vertices.size(); ++v)
-      if (!workspace_.is_free(v) && is_new(v) && !(is_oriented(v) && are_facets_good(v))) return {};
+    for (const auto good : {&Certifier::is_oriented, &Certifier::are_facets_good})
+      for (Index v = 0; v < workspace_.vertices.size(); ++v)
+        if (!workspace_.is_free(v) && is_new(v) && !(this->*good)(v)) return {};
     const double count = static_cast<double>(workspace_.points.size());
     if (depth_ > (1 - kGiven) * at_most_ * std::max(1.0, kMean * count)) return {};
     if (fattest_ != kNone && !covers_once()) return {};
-    if (!are_suspects_innocent() || !is_hull_around_all()) return {};
+    if (!are_suspects_innocent()) return {};
     return {true, 2 * (depth_ + given_) / diameter_};
   }
 
@@ -61,7 +64,7 @@ class Certifier {
     return first_new_ == 0 || from(p[0]) || from(p[1]) || from(p[2]) || from(p[3]);
   }
 
-  // And whether the sphere that it was given is its own, nearly.
+  // And whether the sphere that it was given is its own, nearly. What doubles could not place well is placed anew.
   bool is_oriented(Index v) {
     const Point &p0 = corner(v, 0), &p1 = corner(v, 1), &p2 = corner(v, 2);
     if (workspace_.at_infinity(v)) {
@@ -75,18 +78,26 @@ class Certifier {
       return false;
     if (-det.value > largest_volume_) largest_volume_ = -det.value, fattest_ = v;
     workspace_.settle(v);
-    const double apart = from_own_sphere(v);
+    double apart = from_own_sphere(v);
+    if (apart > kTold * at_most_ && !workspace_.shares_sphere(v)) {
+      workspace_.place_sharply(v);
+      apart = from_own_sphere(v);
+    }
     given_ = std::max(given_, apart);
     return apart <= kGiven * at_most_;
   }
 
-  // How far the sphere that a vertex was given is from that of its forming points, at most.
+  // How far the sphere that a vertex was given is from that of its forming points, at most, where points may be.
   double from_own_sphere(Index v) const {
-    if (!workspace_.shares_sphere(v)) return 0;
+    if (workspace_.exact()) return 0;
+    const VoronoiVertex& vertex = workspace_.vertices[v];
+    const double told = workspace_.power_bound(v) / std::sqrt(vertex.radius);
+    if (!workspace_.shares_sphere(v) && told <= kTold * at_most_) return told;
     Vector center;
     if (!sharp_circumcenter(corner(v, 0), corner(v, 1), corner(v, 2), corner(v, 3), center)) return diameter_;
-    // Both go through a point, so twice the distance of the centres is the most.
-    return 2 * (corner(v, 0) + center - workspace_.vertices[v].center).norm();
+    // Both go through a point: at a distance d from it, powers differ by 2 d times the distance of the centres.
+    const double apart = (corner(v, 0) + center - vertex.center).norm(), radius = center.norm();
+    return apart <= radius / 2 ? 4 * apart * std::min(2.0, diameter_ / radius) : diameter_;
   }
 
   bool are_facets_good(Index v) {
@@ -116,10 +127,9 @@ class Certifier {
       return true;
     if (!workspace_.exact()) {
       const auto& [a, b, c] = Cavity::kOthers[i];
-      const Point& origin = corner(v, a);
-      const Vector normal = (corner(v, b) - origin).cross(corner(v, c) - origin).normalized();
-      const double side = normal.dot(corner(v, i) - origin) > 0 ? -1 : 1;
-      if (add(depth_lost(v, u, origin, side * normal, Vector::Zero(), 0))) return true;
+      Vector away;
+      const double blur = normal(corner(v, a), corner(v, b), corner(v, c), away);
+      if (add(depth_lost(v, u, corner(v, a), away, blur, Vector::Zero(), 0))) return true;
     }
     if (inside_sphere(across, corner(v, 0), corner(v, 1), corner(v, 2), corner(v, 3)) == Sign::positive) return false;
     // In terms of the vertices' own spheres there is no doubt.
@@ -127,17 +137,36 @@ class Certifier {
     return true;
   }
 
-  // The depth that may be lost from v to u, for points beyond the plane through the origin, the normal pointing to
-  // them, if u is on that side, or, if `up` is not zero, less than `height` above the plane that it is normal to.
-  double depth_lost(Index v, Index u, const Point& origin, const Vector& normal, const Vector& up,
+  // The unit normal of a facet, and by what angle it may be off.
+  static double normal(const Point& a, const Point& b, const Point& c, Vector& result) {
+    const Vector ab = b - a, ac = c - a;
+    result = ab.cross(ac);
+    const double blur = 8 * kRounding * ab.norm() * ac.norm() / result.norm();
+    if (!(blur < kBlurred)) return sharp_normal(a, b, c, result) ? 8 * kRounding : 1;
+    result.normalize();
+    return blur;
+  }
+
+  // The power of q with respect to the sphere of v, through its first point, to some roundings of the sphere's radius
+  // times the distance of points, however large the sphere is.
+  double near_power(Index v, const Point& q) const {
+    const Vector from_corner = q - corner(v, 0);
+    return from_corner.dot(2 * (workspace_.vertices[v].center - corner(v, 0)) - from_corner);
+  }
+
+  // The depth that may be lost from v to u, for points beyond the plane through the origin, the normal, which may be
+  // off by the angle `blur`, pointing to them, if u is on that side, or, if `up` is not zero, less than `height` above
+  // the plane that it is normal to.
+  double depth_lost(Index v, Index u, const Point& origin, const Vector& normal, double blur, const Vector& up,
                     double height) const {
     const VoronoiVertex &from = workspace_.vertices[v], &to = workspace_.vertices[u];
     const Vector step = to.center - from.center;
     if (step == Vector::Zero()) return 0;
     const double radius = std::sqrt(from.radius), reach = std::min(2 * radius, diameter_);
-    const double along = normal.dot(step), above = up.dot(step);
-    const double sideways = (step - along * normal - above * up).norm();
-    const double lost = workspace_.power(v, origin) - workspace_.power(u, origin);
+    const double along = normal.dot(step), above = up.dot(step), length = step.norm();
+    const double sideways = (step - along * normal - above * up).norm() + (2 * blur + 8 * kRounding) * length;
+    const double lost = near_power(v, origin) - near_power(u, origin) +
+                        16 * kRounding * (radius + std::sqrt(to.radius) + diameter_) * diameter_;
     return (std::max(lost, 0.0) + 2 * reach * (std::max(-along, 0.0) + sideways) + 2 * std::abs(above) * height) /
            radius;
   }
@@ -181,46 +210,29 @@ class Certifier {
     if (away.dot(corner(v, i) - b) > 0) away = -away;
     const Index u = workspace_.vertices[v].neighbors[i];
     const Index below = workspace_.vertices[v].neighbors[3], next = workspace_.vertices[u].neighbors[3];
-    if (!add(rise + depth_lost(below, next, b, away, normal, rise)))
+    if (!add(rise + depth_lost(below, next, b, away, 16 * kRounding, normal, rise)))
       suspects_.insert(suspects_.end(), {v, u, below, next});
     return suspects_.size() <= kMostSuspects;
-  }
-
-  // The hull may be convex at every edge and yet go around a vertex twice. Held against all points where they are few,
-  // else against some of them.
-  bool is_hull_around_all() const {
-    const std::size_t step = 1 + facets_.size() * hull_points_.size() / kMostHeights;
-    for (const Index v : facets_) {
-      const Vector normal = (corner(v, 1) - corner(v, 0)).cross(corner(v, 2) - corner(v, 0));
-      const double far = kFar * normal.norm() * diameter_, at = normal.dot(corner(v, 0)) + far;
-      for (std::size_t i = v % step; i < hull_points_.size(); i += step) {
-        const Point& p = workspace_.points[hull_points_[i]];
-        if (normal.dot(p) > at && volume_sign(p, corner(v, 0), corner(v, 1), corner(v, 2)) == Sign::negative &&
-            farthest_beyond(v) > at_most_)
-          return false;
-      }
-    }
-    return true;
-  }
-  void note_hull() {
-    std::vector<bool> seen(workspace_.points.size(), false);
-    for (Index v = 0; v < workspace_.vertices.size(); ++v) {
-      if (workspace_.is_free(v) || !workspace_.at_infinity(v)) continue;
-      facets_.push_back(v);
-      for (unsigned i = 0; i < 3; ++i)
-        if (const Index p = workspace_.vertices[v].forming_points[i]; !seen[p])
-          seen[p] = true, hull_points_.push_back(p);
-    }
   }
 
   // All points, against the planes and the spheres at edges of the hull so short or facets so thin that bounds from
   // next to them, carried across the whole set, say nothing.
   bool are_suspects_innocent() {
+    if (suspects_.empty()) return true;
+    note_hull_points();
     std::sort(suspects_.begin(), suspects_.end());
     suspects_.erase(std::unique(suspects_.begin(), suspects_.end()), suspects_.end());
     return std::all_of(suspects_.begin(), suspects_.end(), [this](Index v) {
       return add(workspace_.at_infinity(v) ? farthest_beyond(v) : deepest_within(v));
     });
+  }
+  void note_hull_points() {
+    std::vector<bool> on_hull(workspace_.points.size(), false);
+    for (Index v = 0; v < workspace_.vertices.size(); ++v)
+      if (!workspace_.is_free(v) && workspace_.at_infinity(v))
+        for (unsigned i = 0; i < 3; ++i) on_hull[workspace_.vertices[v].forming_points[i]] = true;
+    for (Index p = 0; p < on_hull.size(); ++p)
+      if (on_hull[p]) hull_points_.push_back(p);
   }
   double farthest_beyond(Index v) const {
     Vector normal;
@@ -245,13 +257,19 @@ class Certifier {
     return power / std::min(center.norm(), diameter_ / 2);
   }
 
-  // Whether a point in the fattest of the tetrahedra looked at is in no other. All being oriented positively, there are
-  // then nowhere two on top of each other.
+  // Whether a point in the fattest of the tetrahedra looked at is in no other, and below all facets of the hull. All
+  // tetrahedra being oriented positively, there are then nowhere two on top of each other. And the hull, convex at
+  // every edge, does not go around a vertex twice: a ray from the point leaves the tetrahedra at every facet of the
+  // hull that it meets, and it starts in one of them only, so that it meets one facet.
   bool covers_once() const {
     const auto inner = [&](unsigned i) { return corner(fattest_, i); };
     const Point g = (inner(0) + inner(1) + inner(2) + inner(3)) / 4;
     for (Index v = 0; v < workspace_.vertices.size(); ++v) {
-      if (workspace_.is_free(v) || workspace_.at_infinity(v) || v == fattest_) continue;
+      if (workspace_.is_free(v) || v == fattest_) continue;
+      if (workspace_.at_infinity(v)) {
+        if (volume_sign(g, corner(v, 0), corner(v, 1), corner(v, 2)) != Sign::positive) return false;
+        continue;
+      }
       const double about = kAbout * (workspace_.vertices[v].radius + diameter_ * diameter_);
       if (workspace_.power(v, g) > -about && !is_outside(v, g)) return false;
     }
@@ -269,8 +287,7 @@ class Certifier {
   const std::vector<bool>& forming_;
   Index first_new_, fattest_ = kNone;
   double diameter_ = 0, at_most_ = 0, depth_ = 0, given_ = 0, largest_volume_ = 0;
-  std::vector<Index> facets_, hull_points_;  // of the hull
-  std::vector<Index> suspects_;
+  std::vector<Index> hull_points_, suspects_;
 };
 
 }  // namespace

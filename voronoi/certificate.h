@@ -26,10 +26,12 @@ struct Certificate {
 // says nothing, the planes and spheres on both sides are held against all points one by one.
 //
 // That no two tetrahedra lie on top of each other follows from their orientation, if around each edge of the hull they
-// turn by 180 degrees at most, and one point is in one of them only.
+// turn by 180 degrees at most, and one point is in one of them only. If that point is below all facets of the hull,
+// the hull does not go around a vertex twice either, which it may though it is convex at every edge.
 //
-// A vertex whose own sphere rounding leaves open counts with the sphere that it has been given, a neighbour's, on which
-// its forming points are as far as the input goes (see Workspace::share_sphere).
+// All this is said of the spheres that the vertices have: each must be that of its forming points up to a quarter of
+// the depth. Where doubles do not show that, a vertex is given its own sphere with more digits, but for one that has
+// been given a neighbour's, on which its forming points are as far as the input goes (see Workspace::share_sphere).
 //
 // Only facets of vertices that a point from first_new on forms are looked at: the others are as they were. Doubles
 // settle most of them: one distance each. O(1) a vertex, and O(n) for up to 512 of them.

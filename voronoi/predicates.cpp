@@ -12,6 +12,9 @@ namespace {
 // A few dozen operations of 2^-104 relative error each, in terms of the error bound of the same formula in doubles.
 constexpr double kSharper = 0x1p-48;
 
+// How many times the error of a divisor it must be, for the quotient to be right to a few roundings of a double.
+constexpr double kDivisible = 0x1p46;
+
 Sign exact_sign(const ExactInteger& number) { return static_cast<Sign>(number.sign()); }
 
 // A vector of Twofold or exact integer coordinates.
@@ -158,7 +161,7 @@ struct SharpCenter {
 
 bool sharp_circumcenter(const Point& q, const Point& a, const Point& b, const Point& c, Vector& center) {
   const auto sharp = SharpCenter<Twofold>::of(twofold_vectors(q, a, b, c));
-  if (std::abs(sharp.volume6.high) > 0x1p20 * kSharper * volume(a - q, b - q, c - q).bound) {
+  if (std::abs(sharp.volume6.high) > kDivisible * kSharper * volume(a - q, b - q, c - q).bound) {
     const Twofold twice = sharp.volume6 + sharp.volume6;
     center =
         Vector((sharp.numerator.x / twice).high, (sharp.numerator.y / twice).high, (sharp.numerator.z / twice).high);
@@ -178,7 +181,7 @@ bool sharp_normal(const Point& q, const Point& a, const Point& b, Vector& normal
   normal = Vector(cross.x.high, cross.y.high, cross.z.high);
   // Scaled first: the squares of a needle's area may be too small for a double.
   double scale = normal.cwiseAbs().maxCoeff();
-  if (!(scale > 0x1p-80 * (a - q).norm() * (b - q).norm())) {
+  if (!(scale > kDivisible * kSharper * kRounding * (a - q).norm() * (b - q).norm())) {
     const auto [exact_a, exact_b] = integer_vectors(q, a, b);
     const auto exact = exact_a.cross(exact_b);
     const ExactInteger largest = std::max({abs(exact.x), abs(exact.y), abs(exact.z)});

@@ -57,6 +57,17 @@ Placing Workspace::place_again(Index v, VoronoiVertex& placed, std::uint8_t& err
                         : place(placed, error, origin, a, b, LengthedVector(points[corner[3]] - origin));
 }
 
+void Workspace::place_sharply(Index v) {
+  VoronoiVertex& vertex = vertices[v];
+  const auto corner = [&](unsigned i) -> const Point& { return points[vertex.forming_points[i]]; };
+  Vector center;
+  if (!sharp_circumcenter(corner(0), corner(1), corner(2), corner(3), center)) return;
+  vertex.center = corner(0) + center;
+  vertex.radius = (vertex.center - corner(0)).squaredNorm();
+  const double rounding = 64 * kRounding * (vertex.radius + std::sqrt(vertex.radius) * vertex.center.lpNorm<1>());
+  set_error_class(v, error_class(rounding), false, state_[v] & 3u);
+}
+
 // Whether the centre that it has is that of its forming points, as far as doubles can tell.
 bool Workspace::has_own_center(Index v) const {
   const VoronoiVertex& vertex = vertices[v];
@@ -84,8 +95,9 @@ void Workspace::find_error_class(Index v) {
   } else if (!exact_) {
     // It may have a neighbour's sphere.
     vertex.radius = (vertex.center - points[vertex.forming_points[0]]).squaredNorm();
-    error = error_class(residual(vertex));
     shared = !has_own_center(v);
+    error =
+        error_class(residual(vertex) + (shared ? 0 : 8 * kSameCenter * (std::sqrt(vertex.radius) + scale()) * scale()));
   }
   set_error_class(v, error, shared, state_[v] & 3u);
 }

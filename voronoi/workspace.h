@@ -111,6 +111,8 @@ class Workspace {
     if (!settled(v)) [[unlikely]]
       find_error_class(v);
   }
+  // Gives a finite vertex the sphere of its forming points, to some roundings, if they have one.
+  void place_sharply(Index v);
   bool settled(Index v) const { return error_class_of(v) != kNotSettled; }
 
   static constexpr std::uint8_t kUnknownError = 63, kNotSettled = 62;
