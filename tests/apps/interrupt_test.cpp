@@ -32,6 +32,7 @@ TEST(Interrupt, EndsABuildAtOnceWith130AndLeavesNothing) {
   const std::string mesh = here.add("torus.obj", test::torus(60, 30));
   for (const auto& [signal, code] : {std::pair{SIGINT, 130}, {SIGTERM, 143}, {SIGHUP, 129}}) {
     Running program(long_build(mesh, (here / "out").string()), {}, here / "err");
+    ASSERT_TRUE(program.listens());
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     ASSERT_FALSE(program.ended()) << content(here / "err");
     program.send(signal);

@@ -143,6 +143,15 @@ bool Running::ended() {
   return status_.has_value();
 }
 
+bool Running::listens() const {
+  return wait_for([&] {
+    std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
+    for (std::string line; std::getline(status, line);)
+      if (line.starts_with("SigCgt:")) return (std::stoull(line.substr(7), nullptr, 16) >> (SIGINT - 1) & 1) != 0;
+    return false;
+  });
+}
+
 int Running::wait() {
   if (!wait_for([&] { return ended(); }) || !WIFEXITED(*status_)) return -1;
   return WEXITSTATUS(*status_);

@@ -52,6 +52,8 @@ class Running {
   // The exit code, or -1 if a signal ended it or it still runs after half a minute.
   int wait();
   bool ended();  // without waiting
+  // Waits until it catches SIGINT, half a minute at most; whether it does.
+  bool listens() const;
 
  private:
   pid_t pid_ = -1;
