@@ -1,7 +1,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 
 #include "build_plot.h"
 #include "commands.h"
@@ -46,6 +45,17 @@ std::vector<std::string> names_of(const BuildCommand& command) {
   return names;
 }
 
+// Everything that the tree is built with.
+SphereTreeOptions tree_options(const BuildCommand& command) {
+  SphereTreeOptions options = command.options;
+  MedialTuning tuning = command.tuning;
+  if (!tuning.samples) tuning.samples = samples_needed(options);
+  options.medial = build_options(tuning);
+  options.samples_by_need = false;
+  options.seed = options.medial.sampling.seed;
+  return options;
+}
+
 // What can be refused before anything is built.
 void check(const BuildCommand& command) {
   check_input(command.mesh);
@@ -57,10 +67,17 @@ void check(const BuildCommand& command) {
       throw InputError(fmt::format("--export-level {}: with --depth {} the tree has levels 0 to {}",
                                    *command.export_level, command.options.depth, command.options.depth));
   }
-  check_outputs(command.folder, names_of(command), std::array{command.mesh});
+  std::vector<fs::path> inputs = command.source.files();
+  if (inputs.size() > 1) throw InputError("--points, --diagram and --from-axis exclude each other");
+  if (!inputs.empty() && !needs_axis(command.options.method))
+    throw InputError("--points, --diagram and --from-axis: only tightened and merging build from a medial axis");
+  tree_options(command);  // whether the numbers fit together
+  for (const fs::path& file : inputs) check_input(file);
+  inputs.push_back(command.mesh);
+  check_outputs(command.folder, names_of(command), inputs);
 }
 
-void write_trees(const BuildCommand& command, const BuildResult& result, Outputs& outputs) {
+void write_trees(const BuildCommand& command, const SphereTreeBuild& result, Outputs& outputs) {
   const auto write = [&](const char* ending, std::string_view bytes, const char* what) {
     write_file(outputs.add(named(command.mesh, ending), what), bytes);
   };
@@ -90,10 +107,10 @@ void write_solid(const BuildCommand& command, const SolidMesh& solid, Outputs& o
 #ifdef ORCHARD_HAS_VIZ
 UpAxis parse_up(const std::string& up) { return up == "x" ? UpAxis::x : up == "z" ? UpAxis::z : UpAxis::y; }
 
-void write_views(const BuildCommand& command, const Surface& surface, const BuildResult& result, Outputs& outputs) {
+void write_views(const BuildCommand& command, const Surface& surface, const SphereTreeBuild& result, Outputs& outputs) {
   const PipelineValues values{.surface = &surface,
-                              .sampling = result.axis ? &result.sampling : nullptr,
-                              .axis = result.axis ? &*result.axis : nullptr,
+                              .sampling = result.medial ? &result.medial->sampling : nullptr,
+                              .axis = result.medial ? &result.medial->axis : nullptr,
                               .tree = &result.tree};
   if (command.views) {
     const fs::path vtm = outputs.add(named(command.mesh, "-build.vtm"), "open this in ParaView: all views at once");
@@ -115,7 +132,7 @@ void write_views(const BuildCommand& command, const Surface& surface, const Buil
   }
 }
 #else
-void write_views(const BuildCommand& command, const Surface&, const BuildResult&, Outputs&) {
+void write_views(const BuildCommand& command, const Surface&, const SphereTreeBuild&, Outputs&) {
   if (command.picture) fmt::print(stderr, "orchard: no picture was made: this program was built without VTK\n");
 }
 #endif
@@ -134,11 +151,13 @@ void build(const BuildCommand& command) {
   const double wrap_distance = solid.wrap ? solid.wrap->distance() : 0;
   if (talk) print_solid(command.mesh, solid);
 
-  BuildResult result = run_pipeline(surface, command.options, bar.callback());
+  const SphereTreeOptions options = tree_options(command);
+  OwnInput own = read_axis_source(command.source, surface);
+  SphereTreeBuild result = build_sphere_tree(surface, options, bar.callback(), std::move(own.input));
   result.seconds.insert(result.seconds.begin(), {"reading", seconds_reading});
   bar.clear();
 
-  nlohmann::json report = build_json(surface, command.options, result, wrap_distance);
+  nlohmann::json report = build_json(surface, options, result, wrap_distance);
   add_solid_json(solid, report);
   const char* const ending = ending_of(solid);
   report["certified_mesh"] = ending ? nlohmann::json(named(command.mesh, ending)) : nlohmann::json();

@@ -32,7 +32,7 @@ void add_line(plot::Plot& plot, const std::string& name, std::size_t levels, con
   }
 }
 
-plot::Plot inaccuracies(const BuildResult& result, double radius, const std::string& title) {
+plot::Plot inaccuracies(const SphereTreeBuild& result, double radius, const std::string& title) {
   plot::Plot plot = by_level(title + ": inaccuracy / R");
   const auto add = [&](const std::string& name, const SphereTree& tree) {
     const auto figures = level_figures(tree, radius);
@@ -44,7 +44,7 @@ plot::Plot inaccuracies(const BuildResult& result, double radius, const std::str
   return plot;
 }
 
-plot::Plot outside_volumes(const BuildResult& result, const Surface& surface) {
+plot::Plot outside_volumes(const SphereTreeBuild& result, const Surface& surface) {
   plot::Plot plot = by_level("volume outside / solid's");
   const auto add = [&](const std::string& name, const SphereTree& tree) {
     const SphereLists lists = levels_of(tree);
@@ -63,7 +63,7 @@ plot::Plot histogram(const SphereTree& tree, Index level, double radius) {
   std::vector<double> values;
   for (const SphereNode& node : tree.nodes)
     if (node.level == level) values.push_back(node.inaccuracy / radius);
-  const double largest = std::max(*std::max_element(values.begin(), values.end()), 1e-12);
+  const double max = std::max(*std::max_element(values.begin(), values.end()), 1e-12);
   plot::Plot plot;
   plot.title = "level " + std::to_string(level) + ": " + std::to_string(values.size()) + " spheres";
   plot.x_label = "inaccuracy / R";
@@ -72,15 +72,15 @@ plot::Plot histogram(const SphereTree& tree, Index level, double radius) {
   series.kind = plot::Series::Kind::bars;
   series.y.assign(kBins, 0);
   for (std::size_t bin = 0; bin < kBins; ++bin)
-    series.x.push_back(largest * static_cast<double>(bin) / static_cast<double>(kBins));
+    series.x.push_back(max * static_cast<double>(bin) / static_cast<double>(kBins));
   for (const double value : values)
-    ++series.y[std::min(kBins - 1, static_cast<std::size_t>(value / largest * static_cast<double>(kBins)))];
+    ++series.y[std::min(kBins - 1, static_cast<std::size_t>(value / max * static_cast<double>(kBins)))];
   return plot;
 }
 
 }  // namespace
 
-std::string build_plot(const BuildResult& result, const Surface& surface, const std::string& title) {
+std::string build_plot(const SphereTreeBuild& result, const Surface& surface, const std::string& title) {
   std::vector<plot::Plot> plots{inaccuracies(result, surface.bounding_radius(), title)};
   if (surface.solid()) plots.push_back(outside_volumes(result, surface));
   for (Index level = 1; level <= result.tree.depth(); ++level)

@@ -4,10 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "axis_source.h"
 #include "load_solid.h"
 #include "medial_tuning.h"
+#include "orchard/spheretree/build.h"
 #include "orchard/voronoi/algorithms.h"
-#include "pipeline.h"
 
 // The commands of the program, one file each: parse (main.cpp), call, report. They throw; main() turns that into an
 // exit code and one line on stderr.
@@ -21,7 +22,9 @@ struct Output {
 struct BuildCommand {
   std::filesystem::path mesh, folder;
   MeshOptions reading;
-  BuildOptions options;
+  SphereTreeOptions options;  // but for options.medial, which the tuning says
+  MedialTuning tuning;
+  AxisSource source;
   bool views = true;                  // ParaView files, where the program was built with them
   bool picture = false;               // a .png as well
   std::vector<std::string> exports;   // sph (always written), json, urdf
@@ -78,13 +81,13 @@ struct MedialCommand {
   std::filesystem::path mesh, folder;
   MeshOptions reading;
   MedialTuning tuning;
-  std::filesystem::path points;     // not empty: the user's own surface points
-  std::filesystem::path diagram;    // not empty: the user's own Voronoi diagram, a .vor file; taken as it is
-  std::filesystem::path axis;       // not empty: a .ma file to judge; nothing is built
-  bool report = false;              // judge what was built
-  Index quality_samples = 100'000;  // surface points of the judgement
-  std::vector<std::string> sweep;   // NAME=VALUE,VALUE,..
-  bool views = true;                // ParaView files, where the program was built with them
+  AxisSource source;
+  std::filesystem::path axis;             // not empty: a .ma file to judge; nothing is built
+  bool report = false;                    // judge what was built
+  Index quality_samples = 100'000;        // surface points of the judgement
+  std::vector<std::string> sweep;         // NAME=VALUE,VALUE,..
+  std::optional<SphereTreeOptions> tree;  // of a sweep: the tree to build from each axis
+  bool views = true;                      // ParaView files, where the program was built with them
   Output output;
 };
 void medial(const MedialCommand& command);

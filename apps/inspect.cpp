@@ -111,7 +111,7 @@ json inspect_mesh(const InspectCommand& command) {
   report["duplicate_triangles"] = details.duplicate_triangles;
   report["coincident_vertices"] = details.coincident_vertices;
   report["genus"] = details.genus ? json(*details.genus) : json();
-  if (command.full || surface.mesh().triangles.size() <= kMostForSelfIntersections)
+  if (command.full || surface.mesh().triangles.size() <= kMaxForSelfIntersections)
     report["self_intersections"] = surface.self_intersections().size();
   TriangleMesh mesh = surface.mesh();
   const MeshRepairReport repair = repair_mesh(mesh);

@@ -85,7 +85,7 @@ SolidMesh load_solid(const std::filesystem::path& file, const MeshOptions& optio
   }
   SolidMesh solid = options.strict ? strict(name, std::move(mesh), options.ball)
                                    : repaired(name, std::move(mesh), options.ball, progress);
-  if (solid.surface.mesh().triangles.size() <= kMostForSelfIntersections)
+  if (solid.surface.mesh().triangles.size() <= kMaxForSelfIntersections)
     solid.self_intersections = solid.surface.self_intersections().size();
   return solid;
 }
@@ -151,7 +151,7 @@ json to_json(const MeshRepairReport& repair, const RepairDistance& distance, dou
               {"vertices_split", repair.vertices_split},
               {"holes_filled", repair.holes_filled},
               {"triangles_added", repair.triangles_added},
-              {"largest_hole", repair.largest_hole},
+              {"largest_hole", repair.max_hole},
               {"parts_turned_outward", repair.parts_turned_outward},
               {"cavities_turned_inward", repair.cavities_turned_inward},
               {"lines", repair.lines()}};

@@ -39,7 +39,7 @@ struct SolidMesh {
   std::optional<std::size_t> self_intersections;
 };
 
-inline constexpr std::size_t kMostForSelfIntersections = 500'000;  // triangles: a few seconds
+inline constexpr std::size_t kMaxForSelfIntersections = 500'000;  // triangles: a few seconds
 
 // Reads a mesh and makes a solid of it: wraps it if that is asked for, else repairs what is safe to repair. Throws
 // InputError, with the way out, if that gives no solid.

@@ -69,6 +69,26 @@ void add_mesh_options(CLI::App& command, MeshOptions& options) {
       ->check(CLI::IsMember({"minimal", "ritter"}));
 }
 
+// Those that the command has a use for.
+void add_tuning(CLI::App& command, MedialTuning& tuning, bool for_tree) {
+  for (const TuningFlag& flag : tuning_flags()) {
+    if (for_tree && flag.of_report) continue;
+    const bool needs = for_tree && flag.name == "samples";
+    command
+        .add_option_function<std::string>(
+            "--" + flag.name, [&tuning, &flag](const std::string& value) { flag.set(tuning, value); },
+            flag.help + " [" + (needs ? "as method and depth need" : flag.standard) + "]")
+        ->check(CLI::Validator([&flag](std::string& value) { return flag.fault(value); }, "{" + flag.range() + "}"))
+        ->group(for_tree ? "Medial axis" : "Tuning");
+  }
+}
+
+void add_axis_source(CLI::App& command, AxisSource& source) {
+  command.add_option("--points", source.points, "Your own surface points: .xyz, .ply or .obj");
+  command.add_option("--diagram", source.diagram,
+                     "Your own Voronoi diagram of points on the mesh, a .vor file; its gaps are not repaired");
+}
+
 void add_build(CLI::App& app, Request& request) {
   CLI::App& command = *app.add_subcommand("build", "Build the sphere-tree of a triangle mesh");
   BuildCommand& build = request.build;
@@ -76,6 +96,10 @@ void add_build(CLI::App& app, Request& request) {
   command.add_option("-o,--output", build.folder, "Folder for the tree, the views and the report")->required();
   add_mesh_options(command, build.reading);
   add_tree_options(command, build.options);
+  add_tuning(command, build.tuning, true);
+  add_axis_source(command, build.source);
+  command.add_option("--from-axis", build.source.axis,
+                     "Build from this medial axis, a .ma file of any system, instead of one of its own");
   command.add_option("--threads", request.threads, "Threads at most; the result does not depend on it")
       ->check(CLI::Range(1, 1024));
   command.add_flag("!--no-views", build.views, "Write no files for ParaView");
@@ -208,15 +232,24 @@ void add_voronoi(CLI::App& app, Request& request) {
   command.callback([&request] { request.run = [&request] { orchard::apps::voronoi(request.voronoi); }; });
 }
 
-void add_tuning(CLI::App& command, MedialTuning& tuning) {
-  for (const TuningFlag& flag : tuning_flags()) {
-    command
-        .add_option_function<std::string>(
-            "--" + flag.name, [&tuning, &flag](const std::string& value) { flag.set(tuning, value); },
-            flag.help + " [" + flag.standard + "]")
-        ->check(CLI::Validator([&flag](std::string& value) { return flag.fault(value); }, "{" + flag.range() + "}"))
-        ->group("Tuning");
-  }
+void add_sweep_tree(CLI::App& command, std::optional<orchard::SphereTreeOptions>& tree) {
+  const auto wanted = [&tree]() -> orchard::SphereTreeOptions& {
+    if (!tree) tree.emplace();
+    return *tree;
+  };
+  command
+      .add_option_function<std::string>(
+          "--tree",
+          [wanted](const std::string& method) {
+            wanted().method = method == "merging" ? orchard::TreeMethod::merging : orchard::TreeMethod::tightened;
+          },
+          "With --sweep: build this tree from each axis too, and say how tight it is: tightened or merging")
+      ->check(CLI::IsMember({"tightened", "merging"}));
+  command
+      .add_option_function<orchard::Index>(
+          "--tree-depth", [wanted](orchard::Index depth) { wanted().depth = depth; },
+          "Levels of that tree below the root [3]")
+      ->check(CLI::Range(1, 10));
 }
 
 void add_medial(CLI::App& app, Request& request) {
@@ -232,13 +265,12 @@ void add_medial(CLI::App& app, Request& request) {
       ->check(CLI::Range(100, 10'000'000))
       ->capture_default_str();
   command.add_option("--axis", medial.axis, "Build nothing; measure the quality of this .ma file of any system");
-  command.add_option("--points", medial.points, "Your own surface points: .xyz, .ply or .obj");
-  command.add_option("--diagram", medial.diagram,
-                     "Your own Voronoi diagram of points on the mesh, a .vor file; its gaps are not repaired");
+  add_axis_source(command, medial.source);
   command
       .add_option("--sweep", medial.sweep, "NAME=A,B,..: run with each value of a tuning flag; again for another one")
       ->allow_extra_args(false);
-  add_tuning(command, medial.tuning);
+  add_sweep_tree(command, medial.tree);
+  add_tuning(command, medial.tuning, false);
   command.add_option("--threads", request.threads, "Threads at most; the result does not depend on it")
       ->check(CLI::Range(1, 1024));
   command.add_flag("!--no-views", medial.views, "Write no files for ParaView");

@@ -45,13 +45,14 @@ std::vector<std::string> names_of(const MedialCommand& command) {
 
 // What can be refused before anything is built.
 void check(const MedialCommand& command) {
-  const int own_input = !command.axis.empty() + !command.diagram.empty() + !command.points.empty();
-  if (own_input > 1) throw InputError("--axis, --diagram and --points exclude each other");
-  if (own_input > 0 && !command.sweep.empty()) throw InputError("--sweep takes no --axis, --diagram or --points");
+  std::vector<fs::path> inputs = command.source.files();
+  if (!command.axis.empty()) inputs.push_back(command.axis);
+  if (inputs.size() > 1) throw InputError("--axis, --diagram and --points exclude each other");
+  if (!inputs.empty() && !command.sweep.empty()) throw InputError("--sweep takes no --axis, --diagram or --points");
+  if (command.tree && command.sweep.empty())
+    throw InputError("--tree belongs to a --sweep; orchard build builds a tree");
   check_sweep(command);  // without a sweep, that of the one combination that there is
-  std::vector<fs::path> inputs{command.mesh};
-  for (const fs::path& file : {command.axis, command.diagram, command.points})
-    if (!file.empty()) inputs.push_back(file);
+  inputs.push_back(command.mesh);
   for (const fs::path& file : inputs) check_input(file);
   check_outputs(command.folder, names_of(command), inputs);
 }
@@ -115,16 +116,8 @@ void build_axis(const MedialCommand& command, const SolidMesh& solid, const Prog
   const Surface& surface = solid.surface;
   const bool talk = !command.output.quiet && !command.output.json;
   const MedialBuildOptions options = build_options(command.tuning);
-  double moved = 0;
-  const auto run = [&] {
-    if (!command.diagram.empty())
-      return build_medial_axis(surface, read_own_diagram(command.diagram, surface), options, progress);
-    if (command.points.empty()) return build_medial_axis(surface, options, progress);
-    OwnPoints own = read_own_points(command.points, surface);
-    moved = own.farthest_moved;
-    return build_medial_axis(surface, options, progress, std::move(own.sampling));
-  };
-  const MedialBuild build = run();
+  OwnInput own = read_axis_source(command.source, surface);
+  const MedialBuild build = build_medial_axis(surface, options, progress, std::move(own.input));
   const MedialMesh mesh = medial_mesh(build.axis);
   const MedialSegments segments = medial_segments(build.axis, segment_options(command, surface, build));
   const SkeletonGraph skeleton = skeleton_graph(build.axis);
@@ -136,21 +129,21 @@ void build_axis(const MedialCommand& command, const SolidMesh& solid, const Prog
   const std::string warning = medial_warning(solid, build,
                                              {.found = found,
                                               .wanted = wanted,
-                                              .mended = options.mend_gaps,
-                                              .own_points = !command.points.empty(),
-                                              .own_diagram = !command.diagram.empty()});
+                                              .mended = options.repair_gaps,
+                                              .own_points = !command.source.points.empty(),
+                                              .own_diagram = !command.source.diagram.empty()});
   json report{{"mesh", mesh_json(surface)},
               {"build", to_json(build)},
               {"topology", to_json(found)},
               {"topology_of_solid", to_json(wanted)},
               {"structure", to_json(segments, skeleton)}};
-  if (!command.points.empty()) report["points_moved_at_most"] = moved;
+  if (!command.source.points.empty()) report["points_moved_at_most"] = own.max_moved;
   if (judgement) report["quality"] = to_json(*judgement);
   if (!warning.empty()) report["warning"] = warning;
   add_solid_json(solid, report);
   if (talk) {
     fmt::print("{}: {} triangles\n", command.mesh.string(), surface.mesh().triangles.size());
-    if (!command.points.empty()) fmt::print("points moved onto the mesh by {:.6g} at most\n", moved);
+    if (!command.source.points.empty()) fmt::print("points moved onto the mesh by {:.6g} at most\n", own.max_moved);
     print(build);
     fmt::print("{} segments, skeleton of {} nodes and {} arcs\n", segments.segments.size(), skeleton.nodes.size(),
                skeleton.arcs.size());

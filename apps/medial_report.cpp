@@ -15,9 +15,9 @@ json to_json(const MedialStability& stability) {
 
 json to_json(const Spread& spread) { return {{"max", spread.max}, {"mean", spread.mean}}; }
 
-json to_json(const RepairReport& repair) {
+json to_json(const GapRepairReport& repair) {
   json passes = json::array();
-  for (const RepairPass& pass : repair.passes) {
+  for (const GapRepairPass& pass : repair.passes) {
     passes.push_back({{"cells_tested", pass.cells_tested},
                       {"cells_crossing", pass.cells_crossing},
                       {"faces_tested", pass.faces_tested},
@@ -61,8 +61,8 @@ json to_json(const MedialBuild& build) {
   const double gained = static_cast<double>(build.sampling.size()) - build.points;
   return {{"points", build.points},
           {"points_added_over_points", gained / points},
-          {"gap_repair", to_json(build.repair)},
-          {"voronoi_vertices", build.voronoi_vertices},
+          {"gap_repair", to_json(build.gap_repair)},
+          {"voronoi_vertices", build.diagram.vertices.size()},
           {"vertices_before_pruning", build.unpruned_vertices},
           {"vertices_on_stems", build.axis.stems},
           {"bridges", build.axis.bridges},
@@ -95,19 +95,19 @@ json to_json(const MedialSegments& segments, const SkeletonGraph& skeleton) {
     rows.push_back({{"sheet", s.sheet},
                     {"trunk", s.trunk},
                     {"cells", s.cells},
-                    {"least_radius", s.least_radius},
-                    {"most_radius", s.most_radius}});
+                    {"least_radius", s.min_radius},
+                    {"most_radius", s.max_radius}});
   }
   return {{"segments", rows}, {"skeleton_nodes", skeleton.nodes.size()}, {"skeleton_arcs", skeleton.arcs.size()}};
 }
 
 void print(const MedialBuild& build) {
   for (const auto& [stage, time] : build.seconds) fmt::print("  {:<18} {:>8.2f} s\n", stage, time);
-  const RepairReport& repair = build.repair;
+  const GapRepairReport& repair = build.gap_repair;
   if (!repair.passes.empty()) {
     fmt::print("gap repair  pass  cells tested  crossing  faces crossing  projected  snapped  at necks  refused\n");
     for (std::size_t i = 0; i < repair.passes.size(); ++i) {
-      const RepairPass& pass = repair.passes[i];
+      const GapRepairPass& pass = repair.passes[i];
       fmt::print("{:>16} {:>13} {:>9} {:>15} {:>10} {:>8} {:>9} {:>8}\n", i + 1, pass.cells_tested, pass.cells_crossing,
                  pass.faces_crossing, pass.added_by_projection, pass.added_by_snapping, pass.added_at_necks,
                  pass.refused_as_coincident);

@@ -10,17 +10,6 @@
 // The parts of `orchard medial`.
 namespace orchard::apps {
 
-// Points of a file (.xyz, or .ply or .obj, whose faces are not looked at), moved to the nearest place of the surface.
-// Throws InputError, which names file and line.
-struct OwnPoints {
-  SurfaceSampling sampling;
-  double farthest_moved = 0;  // mesh units
-};
-OwnPoints read_own_points(const std::filesystem::path& file, const Surface& surface);
-
-// A .vor file whose points lie on the surface. Throws InputError.
-OwnDiagram read_own_diagram(const std::filesystem::path& file, const Surface& surface);
-
 // What the command asks for: all counts go with --quality-samples.
 QualityOptions quality_options(const MedialCommand& command);
 

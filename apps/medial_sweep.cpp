@@ -8,7 +8,9 @@
 #include "medial_run.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
+#include "orchard/spheretree/outside_volume.h"
 #include "outputs.h"
+#include "sphere_lists.h"
 #include "svg_plot.h"
 
 namespace orchard::apps {
@@ -69,7 +71,7 @@ constexpr Metric kMetrics[] = {
     {"points_added", "Points added by gap repair",
      [](const B& b, const J&) { return static_cast<double>(b.sampling.size()) - b.points; }},
     {"still_crossing", "Faces still crossing",
-     [](const B& b, const J&) { return double{1} * b.repair.faces_still_crossing; }},
+     [](const B& b, const J&) { return double{1} * b.gap_repair.faces_still_crossing; }},
     {"vertices", "Medial vertices", [](const B& b, const J&) { return double{1} * b.axis.size(); }},
     {"coverage_max", "Coverage error, max (% of the diagonal)",
      [](const B&, const J& j) { return 100 * j.quality.coverage.max; }},
@@ -112,6 +114,43 @@ constexpr Metric kMetrics[] = {
     {"seconds", "Seconds to build", [](const B& b, const J&) { return whole_seconds(b); }},
 };
 
+// What is measured: kMetrics, and of a tree its levels.
+struct Column {
+  std::string name, title;
+};
+
+std::vector<Column> columns_of(const MedialCommand& command) {
+  std::vector<Column> columns;
+  for (const Metric& metric : kMetrics) columns.push_back({metric.column, metric.title});
+  for (Index level = 1; command.tree && level <= command.tree->depth; ++level) {
+    const auto add = [&](const char* name, const char* title) {
+      columns.push_back({fmt::format("level_{}_{}", level, name), fmt::format("Level {}: {}", level, title)});
+    };
+    add("spheres", "spheres");
+    add("mean", "inaccuracy, mean (of the bounding radius)");
+    add("max", "inaccuracy, max (of the bounding radius)");
+    add("outside", "volume outside (of the solid's)");
+  }
+  return columns;
+}
+
+// The tree's part of a run's numbers; NaN for levels that it has not.
+void measure_tree(const SphereTreeBuild& built, const Surface& surface, Index depth, std::vector<double>& metrics) {
+  const auto figures = level_figures(built.tree, surface.bounding_radius());
+  const SphereLists lists = levels_of(built.tree);
+  for (std::size_t level = 1; level <= depth; ++level) {
+    if (level >= figures.size()) {
+      metrics.insert(metrics.end(), 4, std::nan(""));
+      continue;
+    }
+    Level all = lists.levels[level];
+    all.insert(all.end(), lists.carried[level].begin(), lists.carried[level].end());
+    metrics.insert(metrics.end(),
+                   {double{1} * figures[level].spheres, figures[level].mean_inaccuracy, figures[level].max_inaccuracy,
+                    outside_volume(surface, all) / surface.report().volume});
+  }
+}
+
 struct Run {
   std::vector<std::size_t> choice;  // of each dimension's values
   std::vector<double> metrics;
@@ -119,11 +158,11 @@ struct Run {
 
 std::string csv_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
 
-std::string to_csv(const std::vector<Dimension>& dimensions, const std::vector<Run>& runs) {
+std::string to_csv(const std::vector<Dimension>& dimensions, const std::vector<Column>& columns,
+                   const std::vector<Run>& runs) {
   std::string text;
   for (const Dimension& dimension : dimensions) text += dimension.flag->name + ',';
-  for (const Metric& metric : kMetrics)
-    text += metric.column + std::string(&metric == std::end(kMetrics) - 1 ? "\n" : ",");
+  for (const Column& column : columns) text += column.name + (&column == &columns.back() ? "\n" : ",");
   for (const Run& run : runs) {
     for (std::size_t d = 0; d < dimensions.size(); ++d) text += dimensions[d].values[run.choice[d]] + ',';
     for (std::size_t m = 0; m < run.metrics.size(); ++m) {
@@ -134,8 +173,8 @@ std::string to_csv(const std::vector<Dimension>& dimensions, const std::vector<R
 }
 
 // The first dimension runs along x; each combination of the others is a line.
-plot::Plot plot_of(std::size_t metric, const std::string& model, const std::vector<Dimension>& dimensions,
-                   const std::vector<Run>& runs) {
+plot::Plot plot_of(std::size_t metric, const Column& column, const std::string& model,
+                   const std::vector<Dimension>& dimensions, const std::vector<Run>& runs) {
   const bool names = !dimensions[0].flag->choices.empty();
   std::map<std::string, std::vector<std::pair<double, double>>> lines;
   for (const Run& run : runs) {
@@ -146,9 +185,9 @@ plot::Plot plot_of(std::size_t metric, const std::string& model, const std::vect
     const double x = names ? static_cast<double>(run.choice[0]) : std::stod(dimensions[0].values[run.choice[0]]);
     lines[name].emplace_back(x, run.metrics[metric]);
   }
-  plot::Plot result{.title = model + ": " + kMetrics[metric].title,
+  plot::Plot result{.title = model + ": " + column.title,
                     .x_label = dimensions[0].flag->name,
-                    .y_label = kMetrics[metric].title,
+                    .y_label = column.title,
                     .log_x = dimensions[0].flag->name == "samples" || dimensions[0].flag->name == "coalesce",
                     .series = {},
                     .levels = {0},
@@ -188,10 +227,22 @@ MedialBuildOptions options_of(const MedialCommand& command, const std::vector<Di
   return build_options(tuning);
 }
 
+// From the very axis: its diagram is taken over.
+SphereTreeBuild tree_of(const SphereTreeOptions& wanted, const Surface& surface, const MedialBuildOptions& medial,
+                        MedialBuild build, const Progress& progress) {
+  SphereTreeOptions options = wanted;
+  options.medial = medial;
+  options.samples_by_need = false;
+  options.seed = medial.sampling.seed;
+  MedialBuildInput input;
+  input.diagram = {std::move(build.diagram), std::move(build.sampling)};
+  return build_sphere_tree(surface, options, progress, std::move(input));
+}
+
 std::string csv_name(const MedialCommand& command) { return named(command.mesh, "-sweep.csv"); }
 
-std::string plot_name(const MedialCommand& command, const Metric& metric) {
-  return named(command.mesh, fmt::format("-sweep-{}.svg", metric.column));
+std::string plot_name(const MedialCommand& command, const Column& column) {
+  return named(command.mesh, fmt::format("-sweep-{}.svg", column.name));
 }
 
 }  // namespace
@@ -206,7 +257,7 @@ void check_sweep(const MedialCommand& command) {
 
 std::vector<std::string> sweep_names(const MedialCommand& command) {
   std::vector<std::string> names{csv_name(command)};
-  for (const Metric& metric : kMetrics) names.push_back(plot_name(command, metric));
+  for (const Column& column : columns_of(command)) names.push_back(plot_name(command, column));
   return names;
 }
 
@@ -216,19 +267,24 @@ void sweep_medial(const MedialCommand& command, const Surface& surface, const Pr
   std::vector<std::size_t> choice(dimensions.size(), 0);
   do {
     const MedialBuildOptions options = options_of(command, dimensions, choice);
-    const MedialBuild build = build_medial_axis(surface, options, progress);
+    MedialBuild build = build_medial_axis(surface, options, progress);
     const MedialJudgement judgement = judge(command, surface, build, medial_mesh(build.axis), options, progress);
     Run& run = runs.emplace_back();
     run.choice = choice;
     for (const Metric& metric : kMetrics) run.metrics.push_back(metric.get(build, judgement));
+    if (command.tree)
+      measure_tree(tree_of(*command.tree, surface, options, std::move(build), progress), surface, command.tree->depth,
+                   run.metrics);
   } while (next(choice, dimensions));
 
-  const std::string csv = to_csv(dimensions, runs);
+  const std::vector<Column> columns = columns_of(command);
+  const std::string csv = to_csv(dimensions, columns, runs);
   Outputs outputs(command.folder);
   write_file(outputs.add(csv_name(command)), csv);
   const std::string model = command.mesh.stem().string();
-  for (std::size_t m = 0; m < std::size(kMetrics); ++m)
-    write_file(outputs.add(plot_name(command, kMetrics[m])), plot::to_svg({plot_of(m, model, dimensions, runs)}));
+  for (std::size_t m = 0; m < columns.size(); ++m)
+    write_file(outputs.add(plot_name(command, columns[m])),
+               plot::to_svg({plot_of(m, columns[m], model, dimensions, runs)}));
   outputs.commit();
   if (command.output.quiet) return;
   if (command.output.json) {
@@ -238,7 +294,7 @@ void sweep_medial(const MedialCommand& command, const Surface& surface, const Pr
       for (std::size_t d = 0; d < dimensions.size(); ++d)
         row[dimensions[d].flag->name] = dimensions[d].values[run.choice[d]];
       for (std::size_t m = 0; m < run.metrics.size(); ++m) {
-        row[kMetrics[m].column] = std::isfinite(run.metrics[m]) ? nlohmann::json(run.metrics[m]) : nlohmann::json();
+        row[columns[m].name] = std::isfinite(run.metrics[m]) ? nlohmann::json(run.metrics[m]) : nlohmann::json();
       }
       rows.push_back(std::move(row));
     }

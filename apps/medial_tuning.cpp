@@ -23,8 +23,9 @@ std::optional<double> number(const std::string& text) {
 
 template <class Set>
 TuningFlag real(const char* name, const char* standard, double low, double high, const char* help, Set set) {
-  return {name, help, standard, {},
-          low,  high, false,    [set](MedialTuning& tuning, const std::string& text) {
+  return {name,  help,  standard,
+          {},    low,   high,
+          false, false, [set](MedialTuning& tuning, const std::string& text) {
             set(tuning, *number(text)); }};
 }
 
@@ -37,7 +38,7 @@ TuningFlag whole(const char* name, const char* standard, double low, double high
 
 TuningFlag choice(const char* name, std::vector<std::string> choices, const char* help,
                   std::function<void(MedialTuning&, const std::string&)> set) {
-  return {name, help, choices.front(), choices, 0, 0, false, std::move(set)};
+  return {name, help, choices.front(), choices, 0, 0, false, false, std::move(set)};
 }
 
 void set_relaxation(MedialTuning& tuning, const std::string& text) {
@@ -47,10 +48,10 @@ void set_relaxation(MedialTuning& tuning, const std::string& text) {
 }
 
 void set_gaps(MedialTuning& tuning, const std::string& text) {
-  tuning.options.mend_gaps = text != "none";
-  tuning.options.repair.definition = text == "loose"    ? GapDefinition::loose
-                                     : text == "strict" ? GapDefinition::strict
-                                                        : GapDefinition::connected;
+  tuning.options.repair_gaps = text != "none";
+  tuning.options.gap_repair.definition = text == "loose"    ? GapDefinition::loose
+                                         : text == "strict" ? GapDefinition::strict
+                                                            : GapDefinition::connected;
 }
 
 std::vector<TuningFlag> make_flags() {
@@ -73,17 +74,20 @@ std::vector<TuningFlag> make_flags() {
                        [](T& t, double x) { t.options.sampling.crease_angle = x * kRadians; }));
   flags.push_back(whole("seed", "1", 0, 4294967295.0, "Of the random points: another draw of the same density",
                         [](T& t, double x) { t.options.sampling.seed = static_cast<std::uint64_t>(x); }));
+  flags.push_back(choice("algorithm", {"highest-first", "inagaki", "bowyer", "exact"},
+                         "Of the Voronoi diagram; inagaki and bowyer are for comparison, and need well-spread points",
+                         [](T& t, const std::string& text) { t.options.algorithm = *voronoi_algorithm_named(text); }));
   flags.push_back(choice(
       "gaps", {"connected", "loose", "strict", "none"},
       "What counts as a gap to mend: loose misses some, strict adds most points, none breaks thin parts", set_gaps));
   flags.push_back(real("joined-radius", "0", 0, 1000,
                        "Crossings joined within so many point distances are forgiven: fewer points, no guarantee",
-                       [](T& t, double x) { t.options.repair.joined_radius = x; }));
+                       [](T& t, double x) { t.options.gap_repair.joined_radius = x; }));
   flags.push_back(whole("max-passes", "20", 0, 1000, "Of gap repair at most: fewer leave gaps that need more",
-                        [](T& t, double x) { t.options.repair.max_passes = static_cast<int>(x); }));
+                        [](T& t, double x) { t.options.gap_repair.max_passes = static_cast<int>(x); }));
   flags.push_back(choice("thin", {"no", "yes"},
                          "Whether pairs of facing points that crowd thin parts go again: fewer points, coarser there",
-                         [](T& t, const std::string& text) { t.options.repair.thin = text == "yes"; }));
+                         [](T& t, const std::string& text) { t.options.gap_repair.thin = text == "yes"; }));
   flags.push_back(real("coalesce", "1e-7", 1e-12, 0.01,
                        "Vertices nearer than this, in bounding radii, become one: more loses detail and may lose loops",
                        [](T& t, double x) { t.options.axis.coalesce = x; }));
@@ -97,6 +101,7 @@ std::vector<TuningFlag> make_flags() {
   flags.push_back(real("segment-angle", "60", 0, 180,
                        "Degrees: faces with nearer contacts do not divide sheets; more makes fewer segments",
                        [](T& t, double x) { t.segment_degrees = x; }));
+  flags.back().of_report = true;
   flags.push_back(choice("topology", {"keep", "free"},
                          "Whether single edges may stand for faces where gaps that cannot be mended spoil the topology",
                          [](T& t, const std::string& text) { t.keep_topology = text == "keep"; }));
@@ -107,10 +112,10 @@ std::vector<TuningFlag> make_flags() {
 
 MedialBuildOptions build_options(const MedialTuning& tuning) {
   MedialBuildOptions options = tuning.options;
-  const Index edges = tuning.edge_samples.value_or(tuning.samples / 5);
-  if (edges > tuning.samples) throw InputError("--edge-samples: more than --samples");
+  const Index samples = tuning.samples.value_or(kStandardSamples), edges = tuning.edge_samples.value_or(samples / 5);
+  if (edges > samples) throw InputError("--edge-samples: more than --samples");
   options.sampling.edge_points = edges;
-  options.sampling.face_points = tuning.samples - edges;
+  options.sampling.face_points = samples - edges;
   if (tuning.cluster_degrees) options.sampling.cluster_angle = *tuning.cluster_degrees * kRadians;
   options.prune.angle = std::min(tuning.prune_degrees * kRadians, std::numbers::pi);
   options.axis.keep_topology = tuning.keep_topology;

@@ -8,9 +8,11 @@
 
 namespace orchard::apps {
 
+inline constexpr Index kStandardSamples = 5000;
+
 // What a user can tune on the way to a medial axis, in the units of the command line.
 struct MedialTuning {
-  Index samples = 5000;
+  std::optional<Index> samples;       // kStandardSamples, or what a tree needs, unless it is given
   std::optional<Index> edge_samples;  // a fifth unless it is given
   std::optional<double> cluster_degrees;
   double prune_degrees = 0, segment_degrees = 60;
@@ -28,6 +30,7 @@ struct TuningFlag {
   std::vector<std::string> choices;
   double low = 0, high = 0;  // where there are no choices
   bool whole = false;        // whole numbers only
+  bool of_report = false;    // it changes what is said of the axis, not the axis
   std::function<void(MedialTuning&, const std::string&)> set;
 
   // Why a value cannot be, without the flag's name; empty if it can.

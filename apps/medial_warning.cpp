@@ -29,8 +29,8 @@ std::string cause(const SolidMesh& solid, const MedialBuild& build, const Medial
   }
   if (!findings.mended) return "gaps were not mended (--gaps connected does)";
   const std::string more = findings.own_points ? "more points" : "more --samples";
-  if (build.repair.faces_still_crossing > 0) {
-    return counted(build.repair.faces_still_crossing, "face still crosses", "faces still cross") + " gaps; give " +
+  if (build.gap_repair.faces_still_crossing > 0) {
+    return counted(build.gap_repair.faces_still_crossing, "face still crosses", "faces still cross") + " gaps; give " +
            more + " or --max-passes";
   }
   return "give " + more + (solid.wrap ? "" : ", or --wrap");

@@ -14,9 +14,9 @@ namespace {
 
 using nlohmann::json;
 
-json repair_json(const RepairReport& repair) {
+json repair_json(const GapRepairReport& repair) {
   json passes = json::array();
-  for (const RepairPass& pass : repair.passes)
+  for (const GapRepairPass& pass : repair.passes)
     passes.push_back({{"faces_tested", pass.faces_tested},
                       {"faces_crossing", pass.faces_crossing},
                       {"added_by_projection", pass.added_by_projection},
@@ -29,11 +29,11 @@ json repair_json(const RepairReport& repair) {
 constexpr std::size_t kHistogramBins = 20;
 
 // How many balls have an inaccuracy in each twentieth of the range up to the level's largest.
-json histogram(const SphereTree& tree, Index level, double largest) {
+json histogram(const SphereTree& tree, Index level, double max) {
   std::vector<Index> bins(kHistogramBins, 0);
   for (const SphereNode& node : tree.nodes) {
     if (node.level != level) continue;
-    const double part = largest > 0 ? node.inaccuracy / largest : 0;
+    const double part = max > 0 ? node.inaccuracy / max : 0;
     ++bins[std::min(kHistogramBins - 1, static_cast<std::size_t>(part * kHistogramBins))];
   }
   return bins;
@@ -48,14 +48,14 @@ json levels_json(const SphereTree& tree, double bounding_radius, double wrap_dis
   const SphereLists lists = levels_of(tree);
   for (std::size_t i = 0; i < figures.size(); ++i) {
     const LevelFigures& level = figures[i];
-    const double largest = level.max_inaccuracy * bounding_radius;
+    const double max = level.max_inaccuracy * bounding_radius;
     json& row = levels.emplace_back(json{{"spheres", level.spheres},
                                          {"mean_inaccuracy", level.mean_inaccuracy * bounding_radius},
-                                         {"max_inaccuracy", largest},
+                                         {"max_inaccuracy", max},
                                          {"mean_inaccuracy_over_radius", level.mean_inaccuracy},
                                          {"max_inaccuracy_over_radius", level.max_inaccuracy},
-                                         {"histogram_up_to_max", histogram(tree, static_cast<Index>(i), largest)},
-                                         {"histogram_bin", largest / kHistogramBins},
+                                         {"histogram_up_to_max", histogram(tree, static_cast<Index>(i), max)},
+                                         {"histogram_bin", max / kHistogramBins},
                                          {"histogram_bin_over_radius", level.max_inaccuracy / kHistogramBins}});
     if (octree && i < others.size() && others[i].mean_inaccuracy > 0) {
       row["mean_inaccuracy_over_octree"] = level.mean_inaccuracy / others[i].mean_inaccuracy;
@@ -95,7 +95,7 @@ json merging_json(const MergeReport& report) {
     levels.push_back({{"spheres", level.spheres},
                       {"redundant_spheres_removed", level.removed},
                       {"loose_spheres_split", level.split},
-                      {"spots_uncovered_before", level.spots},
+                      {"uncovered_regions_before", level.regions},
                       {"closing_rounds", level.rounds},
                       {"largest_growth_over_radius", level.growth}});
   return levels;
@@ -103,6 +103,39 @@ json merging_json(const MergeReport& report) {
 
 std::size_t packed_bytes(const runtime::PackedSphereTree& packed) {
   return packed.blocks.size() * sizeof(runtime::SiblingBlock);
+}
+
+void print_axis(const MedialBuild& medial, Index components) {
+  if (medial.diagram.vertices.empty()) {
+    fmt::print("{} balls of the axis given ({} outside the solid refused, {} radii corrected, by {:.6g} at most)",
+               medial.unpruned_vertices, medial.balls_refused, medial.balls_adjusted, medial.ball_adjustment);
+  } else {
+    fmt::print("{} surface points ({} by gap repair, {} cell faces still crossing)", medial.sampling.size(),
+               medial.gap_repair.points_added, medial.gap_repair.faces_still_crossing);
+  }
+  fmt::print(", {} medial vertices in {} component{}\n", medial.axis.size(), components, components == 1 ? "" : "s");
+}
+
+json axis_json(const MedialBuild& medial, Index components) {
+  json report{{"surface_points", medial.sampling.size()},
+              {"gap_repair", repair_json(medial.gap_repair)},
+              {"medial_axis",
+               {{"vertices", medial.axis.size()},
+                {"vertices_before_pruning", medial.unpruned_vertices},
+                {"faces", medial.axis.faces.size()},
+                {"components", components}}}};
+  if (medial.diagram.vertices.empty()) {
+    report["imported_axis"] = {{"balls_refused", medial.balls_refused},
+                               {"balls_adjusted", medial.balls_adjusted},
+                               {"largest_adjustment", medial.ball_adjustment}};
+  } else {
+    report["voronoi"] = {{"vertices", medial.diagram.vertices.size()},
+                         {"certified_insertions", medial.voronoi.certified_insertions},
+                         {"constrained_insertions", medial.voronoi.constrained_insertions},
+                         {"coplanar_centers", medial.voronoi.coplanar_centers},
+                         {"duplicates", medial.voronoi.duplicates.size()}};
+  }
+  return report;
 }
 
 }  // namespace
@@ -126,7 +159,8 @@ json mesh_json(const Surface& surface) {
           {"bounding_ball", {ball.center.x(), ball.center.y(), ball.center.z(), ball.radius}}};
 }
 
-json build_json(const Surface& surface, const BuildOptions& options, const BuildResult& result, double wrap_distance) {
+json build_json(const Surface& surface, const SphereTreeOptions& options, const SphereTreeBuild& result,
+                double wrap_distance) {
   const double radius = surface.bounding_radius();
   json report;
   report["mesh"] = mesh_json(surface);
@@ -136,27 +170,16 @@ json build_json(const Surface& surface, const BuildOptions& options, const Build
                        {"effort", name(options.effort)},
                        {"objective", name(options.objective)},
                        {"closing", options.closing == MergeClosing::refit ? "refit" : "growth"},
-                       {"samples", options.samples.value_or(samples_needed(options))},
+                       {"samples", options.medial.sampling.face_points + options.medial.sampling.edge_points},
                        {"seed", options.seed}};
-  if (result.axis) {
-    report["surface_points"] = result.sampling.size();
-    report["voronoi"] = {{"vertices", result.voronoi_vertices},
-                         {"certified_insertions", result.voronoi.certified_insertions},
-                         {"constrained_insertions", result.voronoi.constrained_insertions},
-                         {"coplanar_centers", result.voronoi.coplanar_centers},
-                         {"duplicates", result.voronoi.duplicates.size()}};
-    report["gap_repair"] = repair_json(result.repair);
-    report["medial_axis"] = {{"vertices", result.axis->size()},
-                             {"faces", result.axis->faces.size()},
-                             {"components", result.axis_components}};
-  }
+  if (result.medial) report.update(axis_json(*result.medial, result.axis_components));
   report["covering"] = {{"rounds", result.cover.rounds},
                         {"triangles_uncovered_before", result.cover.triangles_uncovered},
-                        {"largest_growth_over_radius", result.cover.largest_growth}};
-  if (options.method == Method::tightened) report["tightening"] = tightening_json(result.tightening);
-  if (options.method == Method::merging && options.closing == MergeClosing::refit)
+                        {"largest_growth_over_radius", result.cover.max_growth}};
+  if (options.method == TreeMethod::tightened) report["tightening"] = tightening_json(result.tightening);
+  if (options.method == TreeMethod::merging && options.closing == MergeClosing::refit)
     report["merging"] = merging_json(result.merging);
-  if (options.method == Method::annealing)
+  if (options.method == TreeMethod::annealing)
     report["annealing"] = {{"changes", result.annealing.changes},
                            {"refused_as_uncovering", result.annealing.uncovering},
                            {"accepted", result.annealing.accepted},
@@ -169,7 +192,7 @@ json build_json(const Surface& surface, const BuildOptions& options, const Build
   report["redundant_spheres_removed"] = result.redundancy.removed;
   report["levels"] = levels_json(result.tree, radius, wrap_distance, &result.octree, &surface);
   report["octree_levels"] = levels_json(result.octree, radius, wrap_distance);
-  report["conservative"] = true;  // run_pipeline throws otherwise
+  report["conservative"] = true;  // build_sphere_tree() throws otherwise
   report["nodes_with_weakened_bounds"] = result.bounds_weakened;
   report["bytes_per_node"] =
       static_cast<double>(packed_bytes(result.packed)) / static_cast<double>(result.packed.node_count);
@@ -177,7 +200,7 @@ json build_json(const Surface& surface, const BuildOptions& options, const Build
   return report;
 }
 
-void print_build(const BuildResult& result, double bounding_radius, double wrap_distance) {
+void print_build(const SphereTreeBuild& result, double bounding_radius, double wrap_distance) {
   const double wrap = wrap_distance / bounding_radius;
   const auto levels = level_figures(result.tree, bounding_radius);
   const auto octree = level_figures(result.octree, bounding_radius);
@@ -193,11 +216,7 @@ void print_build(const BuildResult& result, double bounding_radius, double wrap_
                  (levels[i].mean_inaccuracy + wrap) / (octree[i].mean_inaccuracy + wrap));
     fmt::print("\n");
   }
-  if (result.axis)
-    fmt::print(
-        "{} surface points ({} by gap repair, {} cell faces still crossing), {} medial vertices in {} component{}\n",
-        result.sampling.size(), result.repair.points_added, result.repair.faces_still_crossing, result.axis->size(),
-        result.axis_components, result.axis_components == 1 ? "" : "s");
+  if (result.medial) print_axis(*result.medial, result.axis_components);
   fmt::print("{} redundant spheres removed\n", result.redundancy.removed);
   double total = 0;
   fmt::print("seconds:");

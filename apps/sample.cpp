@@ -23,9 +23,8 @@ namespace {
 using nlohmann::json;
 
 json to_json(const Evenness& evenness) {
-  return {{"mean_distance", evenness.mean},
-          {"least_over_mean", evenness.least},
-          {"deviation_over_mean", evenness.variation}};
+  return {
+      {"mean_distance", evenness.mean}, {"least_over_mean", evenness.min}, {"deviation_over_mean", evenness.variation}};
 }
 
 const char* name(Relaxation relaxation) { return relaxation == Relaxation::clusters ? "clusters" : "neighbors"; }

@@ -10,10 +10,10 @@
 namespace orchard::apps {
 namespace {
 
-const std::map<std::string, Method> kMethods{{"tightened", Method::tightened},
-                                             {"merging", Method::merging},
-                                             {"annealing", Method::annealing},
-                                             {"octree", Method::octree}};
+const std::map<std::string, TreeMethod> kMethods{{"tightened", TreeMethod::tightened},
+                                                 {"merging", TreeMethod::merging},
+                                                 {"annealing", TreeMethod::annealing},
+                                                 {"octree", TreeMethod::octree}};
 const std::map<std::string, SetEnergy> kEnergies{{"maximum", SetEnergy::maximum}, {"sum", SetEnergy::sum}};
 const std::map<std::string, Effort> kEfforts{
     {"low", Effort::low}, {"default", Effort::standard}, {"high", Effort::high}};
@@ -69,11 +69,11 @@ Refinement::Region parse_region(const std::string& text) {
 
 }  // namespace
 
-const char* name(Method method) { return key_of(kMethods, method); }
+const char* name(TreeMethod method) { return key_of(kMethods, method); }
 const char* name(Effort effort) { return key_of(kEfforts, effort); }
 const char* name(Objective objective) { return key_of(kObjectives, objective); }
 
-void add_tree_options(CLI::App& command, BuildOptions& options) {
+void add_tree_options(CLI::App& command, SphereTreeOptions& options) {
   add_choice(
       command, "--method", kMethods, options.method,
       "How to build: tightened (default), the tightest; merging along the medial axis; simulated annealing; octree");
@@ -110,11 +110,6 @@ void add_tree_options(CLI::App& command, BuildOptions& options) {
           },
           "x,y,z,r=E: the same, for spheres that meet this ball, in place of --error; may be repeated")
       ->allow_extra_args(false);
-  command
-      .add_option("--samples", options.samples,
-                  "Surface points: more follow the shape better, and take longer (default: as method and depth need)")
-      ->check(CLI::Range(20, 10'000'000));
-  command.add_option("--seed", options.seed, "Seed of the random choices")->capture_default_str();
 }
 
 }  // namespace orchard::apps

@@ -1,14 +1,14 @@
 #pragma once
 #include <CLI/CLI.hpp>
 
-#include "pipeline.h"
+#include "orchard/spheretree/build.h"
 
 namespace orchard::apps {
 
-// The options of a command that say how to build a tree.
-void add_tree_options(CLI::App& command, BuildOptions& options);
+// The options of a command that say how to build a tree from a medial axis or a surface.
+void add_tree_options(CLI::App& command, SphereTreeOptions& options);
 
-const char* name(Method method);
+const char* name(TreeMethod method);
 const char* name(Effort effort);
 const char* name(Objective objective);
 

@@ -115,7 +115,7 @@ json bounds_json(const Bounds& bounds, double unit) { return {bounds.lower / uni
 
 json to_json(const Verification& result, const Subject& subject) {
   const double radius = subject.surface.bounding_radius();
-  json violations = json::array(), largest = json::array();
+  json violations = json::array(), max = json::array();
   const auto index = [](Index i) { return i == kNone ? json() : json(i); };
   for (const Violation& v : result.violations)
     violations.push_back({{"kind", name(v.kind)},
@@ -123,7 +123,7 @@ json to_json(const Verification& result, const Subject& subject) {
                           {"triangle", index(v.triangle)},
                           {"point", {v.point.x(), v.point.y(), v.point.z()}},
                           {"amount", v.amount}});
-  for (double bound : result.largest_bound) largest.push_back((bound + subject.wrap_distance()) / radius);
+  for (double bound : result.max_bound) max.push_back((bound + subject.wrap_distance()) / radius);
   json report{{"ok", result.ok()},
               {"only_tangent", result.only_tangent(radius)},
               {"triangles", result.triangles},
@@ -135,7 +135,7 @@ json to_json(const Verification& result, const Subject& subject) {
               {"uncovered_nodes", result.uncovered_nodes},
               {"nodes", result.nodes},
               {"bounds_violated", result.bounds_violated},
-              {"largest_bound_over_radius", largest},
+              {"largest_bound_over_radius", max},
               {"same_mesh", result.same_mesh},
               {"violations", violations}};
   if (!subject.wrap.empty())
@@ -185,10 +185,10 @@ void print(const Verification& result, const Subject& subject, double seconds) {
         subject.wrap.string(), subject.wrap_to_mesh.upper / radius, subject.mesh_to_wrap.upper / radius);
   if (subject.repair.changed())
     fmt::print("against the repaired mesh: {}\n", in_words(subject.repair_distance, radius));
-  if (!result.largest_bound.empty()) {
+  if (!result.max_bound.empty()) {
     fmt::print("largest error bound by level, of the bounding radius{}:",
                subject.wrap.empty() ? "" : ", including the wrap's distance from the mesh");
-    for (double bound : result.largest_bound) fmt::print(" {:.4f}", (bound + subject.wrap_distance()) / radius);
+    for (double bound : result.max_bound) fmt::print(" {:.4f}", (bound + subject.wrap_distance()) / radius);
     fmt::print("\n");
   }
   const char* verdict = result.ok() ? "OK" : result.only_tangent(radius) ? "NOT PROVEN, TANGENT" : "NOT PROVEN";

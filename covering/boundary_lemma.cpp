@@ -173,13 +173,13 @@ bool triangle_covered(const std::array<Point, 3>& triangle, std::span<const Path
 
 double path_depth(const Point& point, std::span<const PathBall> balls) {
   std::vector<double> excess(balls.size());
-  double least = std::numeric_limits<double>::infinity();
+  double min = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < balls.size(); ++i) {
     excess[i] = (point - balls[i].center).norm() - balls[i].radius;
     if (balls[i].parent != kNone) excess[i] = std::max(excess[i], excess[balls[i].parent]);
-    if (balls[i].leaf) least = std::min(least, excess[i]);
+    if (balls[i].leaf) min = std::min(min, excess[i]);
   }
-  return least;
+  return min;
 }
 
 }  // namespace orchard

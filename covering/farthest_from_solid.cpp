@@ -9,7 +9,7 @@ namespace orchard {
 namespace {
 
 // As for inaccuracy(): the bounds stay valid when it is met.
-constexpr int kMostEvaluations = 200'000;
+constexpr int kMaxEvaluations = 200'000;
 constexpr double kFinest = 1e-6;
 
 // A cube, with an upper bound on the signed distance over its part inside the ball.
@@ -52,7 +52,7 @@ class Search {
     anchor_ = nearest.position;
     if (everywhere_ > best_ && everywhere_ > limit_) evaluate(ball_.center, ball_.radius, anchor_);
   }
-  bool open() const { return !cells_.empty() && evaluations_ < kMostEvaluations; }
+  bool open() const { return !cells_.empty() && evaluations_ < kMaxEvaluations; }
   Bounds bounds() const {
     if (evaluations_ == 0) return {best_, everywhere_};
     const double left = cells_.empty() ? 0 : cells_.front().upper;

@@ -18,7 +18,7 @@ struct Cell {
 bool less_promising(const Cell& a, const Cell& b) { return a.upper < b.upper; }
 
 // Far more than any sphere of a sensible tree needs; met only by adversarial input, and then the bounds stay valid.
-constexpr int kMostEvaluations = 200'000;
+constexpr int kMaxEvaluations = 200'000;
 // Least width of the bounds, as a fraction of R: a thousand roundings of a coordinate in a float.
 constexpr double kFinest = 1e-6;
 
@@ -39,7 +39,7 @@ class Search {
     anchor_ = nearest.position;
     upper_everywhere_ = everywhere;
     for (const auto& face : octahedron()) evaluate(face, anchor_);
-    while (!cells_.empty() && evaluations_ < kMostEvaluations) {
+    while (!cells_.empty() && evaluations_ < kMaxEvaluations) {
       if (cells_.front().upper <= best_ + width()) break;
       std::pop_heap(cells_.begin(), cells_.end(), less_promising);
       const Cell cell = cells_.back();

@@ -41,17 +41,17 @@ void PathForest::gather(const std::array<Point, 3>& triangle, NearBalls& near) c
 }
 
 double PathForest::depth(const Point& point) const {
-  double least = std::numeric_limits<double>::infinity();
-  for (Index root : roots_) descend(root, point, -std::numeric_limits<double>::infinity(), least);
-  return least;
+  double min = std::numeric_limits<double>::infinity();
+  for (Index root : roots_) descend(root, point, -std::numeric_limits<double>::infinity(), min);
+  return min;
 }
 
 // A path's excess only grows downwards: what is not below the least found so far can be left out.
-void PathForest::descend(Index ball, const Point& point, double above, double& least) const {
+void PathForest::descend(Index ball, const Point& point, double above, double& min) const {
   const double excess = std::max(above, (point - balls_[ball].center).norm() - balls_[ball].radius);
-  if (excess >= least) return;
-  if (balls_[ball].leaf) least = excess;
-  for (Index child : children_[ball]) descend(child, point, excess, least);
+  if (excess >= min) return;
+  if (balls_[ball].leaf) min = excess;
+  for (Index child : children_[ball]) descend(child, point, excess, min);
 }
 
 }  // namespace orchard

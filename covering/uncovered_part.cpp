@@ -31,7 +31,7 @@ class Measurer {
   }
 
   UncoveredPart run() {
-    while (!open_.empty() && cells_ < options_.most_cells &&
+    while (!open_.empty() && cells_ < options_.max_cells &&
            open_area_ > std::max(options_.area_tolerance * sure_area_, kNoArea * radius_ * radius_)) {
       const Cell cell = open_.top();
       open_.pop();
@@ -114,7 +114,7 @@ class Measurer {
       return std::max(options_.depth_tolerance.of_radius * radius_,
                       options_.depth_tolerance.of_distance * part_.depth.lower);
     };
-    for (Index spent = 0; !cells.empty() && spent < options_.most_cells; spent += 4) {
+    for (Index spent = 0; !cells.empty() && spent < options_.max_cells; spent += 4) {
       const Cell cell = cells.top();
       if (cell.deepest() <= part_.depth.lower + width()) break;
       cells.pop();

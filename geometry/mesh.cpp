@@ -20,15 +20,15 @@ void require_usable_size(const TriangleMesh& mesh) {
   for (const auto& corners : mesh.triangles)
     for (const Index vertex : corners) box.extend(mesh.vertices[vertex]);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    const double largest = mesh.vertices[i].cwiseAbs().maxCoeff();
-    if (largest <= kLargestCoordinate) continue;
-    throw InputError("vertex " + std::to_string(i) + " (counted from 0) has a coordinate of size " + text_of(largest) +
-                     ", beyond the limit of " + text_of(kLargestCoordinate) +
+    const double max = mesh.vertices[i].cwiseAbs().maxCoeff();
+    if (max <= kMaxCoordinate) continue;
+    throw InputError("vertex " + std::to_string(i) + " (counted from 0) has a coordinate of size " + text_of(max) +
+                     ", beyond the limit of " + text_of(kMaxCoordinate) +
                      "; scale the mesh down, or use a larger unit");
   }
   const double extent = box.sizes().maxCoeff();
-  if (extent > 0 && extent < kLeastExtent)
-    throw InputError("the mesh is only " + text_of(extent) + " long, below the limit of " + text_of(kLeastExtent) +
+  if (extent > 0 && extent < kMinExtent)
+    throw InputError("the mesh is only " + text_of(extent) + " long, below the limit of " + text_of(kMinExtent) +
                      "; scale the mesh up, or use a smaller unit");
 }
 

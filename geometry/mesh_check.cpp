@@ -97,13 +97,13 @@ struct Component {
 // Components that are turned against the mesh as a whole are cavities if they lie inside others. Boxes tell only some
 // that do not, but those for certain. Precondition: closed and oriented.
 void find_inside_out(std::span<const Component> components, double volume, MeshReport& report) {
-  constexpr std::size_t kMostPairs = 10'000'000;  // a fraction of a second; real meshes have far fewer
+  constexpr std::size_t kMaxPairs = 10'000'000;  // a fraction of a second; real meshes have far fewer
   std::vector<const Component*> along, against;
   for (const Component& component : components) {
     if (std::abs(component.volume) <= tolerance::kNoVolume * component.area) continue;
     ((component.volume < 0) == (volume < 0) ? along : against).push_back(&component);
   }
-  if (along.size() * against.size() > kMostPairs) return;
+  if (along.size() * against.size() > kMaxPairs) return;
   for (const Component* component : against) {
     if (std::ranges::any_of(along, [&](const Component* other) { return other->box.contains(component->box); }))
       continue;

@@ -9,10 +9,10 @@ namespace {
 
 Index farthest_from(const Point& from, std::span<const Point> points) {
   Index farthest = 0;
-  double largest = -1;
+  double max = -1;
   for (Index i = 0; i < points.size(); ++i) {
     const double squared = (points[i] - from).squaredNorm();
-    if (squared > largest) farthest = i, largest = squared;
+    if (squared > max) farthest = i, max = squared;
   }
   return farthest;
 }
@@ -20,10 +20,10 @@ Index farthest_from(const Point& from, std::span<const Point> points) {
 }  // namespace
 
 double radius_around(const Point& center, std::span<const Point> points) {
-  double largest = 0;
-  for (const Point& p : points) largest = std::max(largest, (p - center).squaredNorm());
+  double max = 0;
+  for (const Point& p : points) max = std::max(max, (p - center).squaredNorm());
   // A difference, three squares, two sums and a root: each is off by at most half a unit in the last place.
-  return std::sqrt(largest) * (1 + 4 * std::numeric_limits<double>::epsilon());
+  return std::sqrt(max) * (1 + 4 * std::numeric_limits<double>::epsilon());
 }
 
 Sphere ritter_ball(std::span<const Point> points) {

@@ -9,8 +9,8 @@
 #include "orchard/geometry/min_ball.h"
 #include "orchard/geometry/self_intersections.h"
 #include "orchard/geometry/tolerance.h"
-#include "sheets.h"
-#include "triangle_tree.h"
+#include "query/sheets.h"
+#include "query/triangle_tree.h"
 
 namespace orchard {
 namespace {

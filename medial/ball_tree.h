@@ -19,8 +19,8 @@ class BallTree {
   // scale * radius. Items that cannot be the least are not asked. Ends once anything is at most `enough`. One thread's
   // worth of work; any thread.
   template <class Value>
-  double least(const Point& query, double best, const Value& value, double scale = 1,
-               double enough = -std::numeric_limits<double>::infinity()) const {
+  double min(const Point& query, double best, const Value& value, double scale = 1,
+             double enough = -std::numeric_limits<double>::infinity()) const {
     if (items_.empty()) return best;
     std::array<std::pair<double, Index>, kDepth> stack;
     std::size_t size = 0;
@@ -47,14 +47,14 @@ class BallTree {
   // The largest radii[item] of the items that accept(item) and whose distance to the box less the radius is at most
   // `limit`; `least` if none is larger. Items that cannot be the largest are not asked.
   template <class Accept>
-  double largest_radius(const Point& query, double limit, double least, const Accept& accept) const {
-    if (items_.empty()) return least;
+  double max_radius(const Point& query, double limit, double min, const Accept& accept) const {
+    if (items_.empty()) return min;
     std::array<Index, kDepth> stack;
     std::size_t size = 0;
     stack[size++] = 0;
     while (size > 0) {
       const Node& node = nodes_[stack[--size]];
-      if (!(node.radius > least) || bound(node, query, 1) > limit) continue;
+      if (!(node.radius > min) || bound(node, query, 1) > limit) continue;
       if (node.count == 0) {
         const bool first_larger = nodes_[node.first].radius > nodes_[node.first + 1].radius;
         stack[size++] = node.first + (first_larger ? 1 : 0);  // the larger one is popped first
@@ -62,11 +62,11 @@ class BallTree {
         continue;
       }
       for (Index i = node.first; i < node.first + node.count; ++i) {
-        const bool may = radii_[i] > least && distance(boxes_[i], query) - radii_[i] <= limit;
-        if (may && accept(items_[i])) least = radii_[i];
+        const bool may = radii_[i] > min && distance(boxes_[i], query) - radii_[i] <= limit;
+        if (may && accept(items_[i])) min = radii_[i];
       }
     }
-    return least;
+    return min;
   }
 
  private:

@@ -7,71 +7,86 @@
 namespace orchard {
 namespace {
 
-class Stages {
+class MedialBuilder {
  public:
-  explicit Stages(MedialBuild& build) : build_(build) {}
+  MedialBuilder(const Surface& surface, const MedialBuildOptions& options, const Progress& progress)
+      : surface_(surface), options_(options), progress_(progress) {}
+
+  MedialBuild run(MedialBuildInput input) {
+    if (input.mesh) {
+      import(*input.mesh);
+    } else {
+      if (input.diagram) {
+        build_.sampling = std::move(input.diagram->sampling);
+        build_.diagram = std::move(input.diagram->diagram);
+        build_.points = build_.sampling.size();
+      } else {
+        make_diagram(std::move(input.sampling));
+      }
+      stage("medial axis",
+            [&] { build_.axis = medial_axis(surface_, build_.sampling, build_.diagram, progress_, options_.axis); });
+    }
+    build_.unpruned_vertices = build_.axis.size();
+    stage("pruning", [&] { build_.axis = prune(build_.axis, options_.prune); });
+    return std::move(build_);
+  }
+
+ private:
   template <class Function>
-  void operator()(const char* name, Function&& function) {
+  void stage(const char* name, Function&& function) {
     const auto start = std::chrono::steady_clock::now();
     function();
     build_.seconds.emplace_back(name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
 
- private:
-  MedialBuild& build_;
+  void sample(std::optional<SurfaceSampling> own) {
+    stage("surface points", [&] {
+      build_.sampling = own ? std::move(*own) : sample_surface(surface_, options_.sampling, progress_);
+      build_.points = build_.sampling.size();
+    });
+  }
+
+  void make_diagram(std::optional<SurfaceSampling> own) {
+    sample(std::move(own));
+    stage("Voronoi diagram",
+          [&] { build_.diagram = voronoi(build_.sampling.points, options_.algorithm, progress_, &build_.voronoi); });
+    if (!options_.repair_gaps) return;
+    stage("gap repair", [&] {
+      GapRepair repair = repair_gap_crossings(surface_, std::move(build_.sampling), std::move(build_.diagram),
+                                              options_.gap_repair, progress_);
+      build_.sampling = std::move(repair.sampling);
+      build_.diagram = std::move(repair.diagram);
+      build_.gap_repair = std::move(repair.report);
+    });
+  }
+
+  void import(const MedialMesh& mesh) {
+    sample(std::nullopt);
+    stage("importing the axis", [&] {
+      ImportedAxis imported = import_axis(surface_, mesh, std::move(build_.sampling), progress_);
+      build_.axis = std::move(imported.axis);
+      build_.sampling = std::move(imported.sampling);
+      build_.balls_refused = imported.refused;
+      build_.balls_adjusted = imported.adjusted;
+      build_.ball_adjustment = imported.adjustment;
+    });
+  }
+
+  const Surface& surface_;
+  const MedialBuildOptions& options_;
+  const Progress& progress_;
+  MedialBuild build_;
 };
-
-void require_solid(const Surface& surface) {
-  if (!surface.solid())
-    throw InputError("the medial axis needs a solid: " + surface.report().faults() + "; repair the mesh first");
-}
-
-// From build.sampling and its diagram.
-void find_axis(const Surface& surface, const VoronoiDiagram& diagram, const MedialBuildOptions& options,
-               const Progress& progress, MedialBuild& build, Stages& stage) {
-  stage("medial axis", [&] {
-    build.voronoi_vertices = static_cast<Index>(diagram.vertices.size());
-    build.axis = medial_axis(surface, build.sampling, diagram, progress, options.axis);
-    build.unpruned_vertices = build.axis.size();
-  });
-  stage("pruning", [&] { build.axis = prune(build.axis, options.prune); });
-}
 
 }  // namespace
 
 MedialBuild build_medial_axis(const Surface& surface, const MedialBuildOptions& options, const Progress& progress,
-                              std::optional<SurfaceSampling> own) {
-  require_solid(surface);
-  MedialBuild build;
-  Stages stage(build);
-  VoronoiDiagram diagram;
-  stage("surface points", [&] {
-    build.sampling = own ? std::move(*own) : sample_surface(surface, options.sampling, progress);
-    build.points = build.sampling.size();
-  });
-  stage("Voronoi diagram", [&] { diagram = highest_first_voronoi(build.sampling.points, progress, &build.voronoi); });
-  if (options.mend_gaps) {
-    stage("gap repair", [&] {
-      Repaired repaired =
-          repair_gap_crossings(surface, std::move(build.sampling), std::move(diagram), options.repair, progress);
-      build.sampling = std::move(repaired.sampling);
-      build.repair = std::move(repaired.report);
-      diagram = std::move(repaired.diagram);
-    });
-  }
-  find_axis(surface, diagram, options, progress, build, stage);
-  return build;
-}
-
-MedialBuild build_medial_axis(const Surface& surface, const OwnDiagram& own, const MedialBuildOptions& options,
-                              const Progress& progress) {
-  require_solid(surface);
-  MedialBuild build;
-  Stages stage(build);
-  build.sampling = own.sampling;
-  build.points = build.sampling.size();
-  find_axis(surface, own.diagram, options, progress, build, stage);
-  return build;
+                              MedialBuildInput input) {
+  if (!surface.solid())
+    throw InputError("the medial axis needs a solid: " + surface.report().faults() + "; repair the mesh first");
+  if (input.sampling.has_value() + input.diagram.has_value() + input.mesh.has_value() > 1)
+    throw InputError("a medial axis is built from own points, an own diagram or an own axis, not from several");
+  return MedialBuilder(surface, options, progress).run(std::move(input));
 }
 
 }  // namespace orchard

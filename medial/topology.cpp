@@ -5,7 +5,7 @@
 #include <map>
 #include <numeric>
 
-#include "incidence.h"
+#include "axis/incidence.h"
 #include "orchard/geometry/error.h"
 #include "solid_parts.h"
 

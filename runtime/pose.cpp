@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rigid_pair.h"
+#include "pair/rigid_pair.h"
 
 namespace orchard::runtime {
 

@@ -7,13 +7,13 @@
 namespace orchard::detail {
 namespace {
 
-constexpr std::size_t kMostCuts = 12;
-constexpr std::size_t kMostFar = 40;  // farthest points that a step looks at
+constexpr std::size_t kMaxCuts = 12;
+constexpr std::size_t kMaxFar = 40;  // farthest points that a step looks at
 constexpr int kDualSteps = 24;
 // A predicted gain below this part of the looseness is not worth another query.
 constexpr double kWorthwhile = 2e-4;
 // Steps below this part of the radius change nothing that matters.
-constexpr double kSmallest = 1e-4;
+constexpr double kMin = 1e-4;
 
 double radius_for(std::span<const Point> points, const Point& center) {
   double squared = 0;
@@ -66,19 +66,19 @@ BallFitter::Cut BallFitter::cut_at(const Point& center) const {
 
 void BallFitter::linearise(std::span<const Point> points, const FittedBall& ball, double reach) {
   far_.clear();
-  const double least = std::max(0.0, ball.radius - 2 * reach);
+  const double min = std::max(0.0, ball.radius - 2 * reach);
   for (const Point& p : points) {
     const Vector away = ball.center - p;
     const double squared = away.squaredNorm();
-    if (squared < least * least || squared == 0) continue;
+    if (squared < min * min || squared == 0) continue;
     const double length = std::sqrt(squared);
     far_.push_back({length, away / length});
   }
   if (far_.empty()) far_.push_back({ball.radius, Vector::Zero()});
-  if (far_.size() > kMostFar) {
-    std::nth_element(far_.begin(), far_.begin() + kMostFar, far_.end(),
+  if (far_.size() > kMaxFar) {
+    std::nth_element(far_.begin(), far_.begin() + kMaxFar, far_.end(),
                      [](const Term& a, const Term& b) { return a.value > b.value; });
-    far_.resize(kMostFar);
+    far_.resize(kMaxFar);
   }
   // A cut that claims more than the distance known here does not hold here: the surface is not convex.
   const auto value_here = [&](const Cut& cut) { return cut.value + cut.gradient.dot(ball.center - cut.at); };
@@ -107,11 +107,11 @@ FittedBall BallFitter::fit(std::span<const Point> points, const Point& start, in
   cuts_.assign(1, cut_at(start));
   FittedBall best{start, radius_for(points, start), cuts_.back().value};
   double t = 0.3 * best.looseness() + 0.05 * best.radius;
-  for (int used = 1; used < evaluations && t > kSmallest * best.radius;) {
+  for (int used = 1; used < evaluations && t > kMin * best.radius;) {
     linearise(points, best, t);
     const Vector step = best_step(t);
     const double length = step.norm(), predicted = best.looseness() - predicted_looseness(step);
-    if (predicted <= 0 || length < kSmallest * kWorthwhile * best.radius) break;
+    if (predicted <= 0 || length < kMin * kWorthwhile * best.radius) break;
     FittedBall next{best.center + step, 0, 0};
     next.radius = radius_for(points, next.center);
     // The distance changes by no more than the step: no need to look where even that would not help.
@@ -120,7 +120,7 @@ FittedBall BallFitter::fit(std::span<const Point> points, const Point& start, in
       continue;
     }
     ++used;
-    if (cuts_.size() == kMostCuts) cuts_.erase(cuts_.begin());
+    if (cuts_.size() == kMaxCuts) cuts_.erase(cuts_.begin());
     cuts_.push_back(cut_at(next.center));
     next.depth = cuts_.back().value;
     const double gain = best.looseness() - next.looseness();

@@ -8,52 +8,52 @@
 #include "orchard/covering/coverage.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/tolerance.h"
-#include "spots.h"
+#include "uncovered_regions.h"
 
 namespace orchard {
 namespace {
 
-constexpr int kMostRounds = 60;
+constexpr int kMaxRounds = 60;
 
-// What one path should take in: points of an uncovered spot, whose convex hull then lies in the path's region too.
+// What one path should take in: points of an uncovered region, whose convex hull then lies in the path's region too.
 using Points = std::vector<Point>;
 
-// Finds the path that takes a spot in for the least growth. Growth counts relative to each ball's radius: a per cent of
-// a large ball near the root costs as much looseness on its level as a per cent of a leaf does on its own.
+// Finds the path that takes a region in for the least growth. Growth counts relative to each ball's radius: a per cent
+// of a large ball near the root costs as much looseness on its level as a per cent of a leaf does on its own.
 class Grower {
  public:
   Grower(SphereTree& tree, double margin) : tree_(tree), margin_(margin) {}
 
-  double cost_of_best_path(const Points& spot) {
+  double cost_of_best_path(const Points& region) {
     best_cost_ = std::numeric_limits<double>::infinity();
     best_leaf_ = kNone;
-    descend(0, 0, spot);
+    descend(0, 0, region);
     return best_cost_;
   }
 
-  // Grows the path found last so that it holds the spot. Returns the largest growth of a radius.
-  double grow_best_path(const Points& spot) {
-    double largest = 0;
+  // Grows the path found last so that it holds the region. Returns the largest growth of a radius.
+  double grow_best_path(const Points& region) {
+    double max = 0;
     for (Index node = best_leaf_; node != kNone; node = tree_.nodes[node].parent) {
       double& radius = tree_.nodes[node].sphere.radius;
-      const double wanted = reach(node, spot) + margin_;
-      if (reach(node, spot) <= radius - margin_ / 2) continue;
-      largest = std::max(largest, wanted - radius);
+      const double wanted = reach(node, region) + margin_;
+      if (reach(node, region) <= radius - margin_ / 2) continue;
+      max = std::max(max, wanted - radius);
       radius = std::max(radius, wanted);
     }
-    return largest;
+    return max;
   }
 
  private:
-  double reach(Index node, const Points& spot) const {
+  double reach(Index node, const Points& region) const {
     double farthest = 0;
-    for (const Point& point : spot) farthest = std::max(farthest, (point - tree_.nodes[node].sphere.center).norm());
+    for (const Point& point : region) farthest = std::max(farthest, (point - tree_.nodes[node].sphere.center).norm());
     return farthest;
   }
 
-  void descend(Index index, double cost_above, const Points& spot) {
+  void descend(Index index, double cost_above, const Points& region) {
     const SphereNode& node = tree_.nodes[index];
-    const double growth = std::max(0.0, reach(index, spot) + margin_ - node.sphere.radius);
+    const double growth = std::max(0.0, reach(index, region) + margin_ - node.sphere.radius);
     const double cost = cost_above + growth / node.sphere.radius;
     if (cost >= best_cost_) return;
     if (node.child_count == 0) {
@@ -62,7 +62,7 @@ class Grower {
       return;
     }
     for (Index child = node.first_child; child < node.first_child + node.child_count; ++child)
-      descend(child, cost, spot);
+      descend(child, cost, region);
   }
 
   SphereTree& tree_;
@@ -71,22 +71,22 @@ class Grower {
   Index best_leaf_ = kNone;
 };
 
-// One path for the whole spot, or one for each of its points, whichever grows less.
-double take_in(Grower& grower, const detail::Spot& spot) {
-  Points all = spot.corners;
-  if (all.empty()) all.push_back(spot.deepest);
+// One path for the whole region, or one for each of its points, whichever grows less.
+double take_in(Grower& grower, const detail::UncoveredRegion& region) {
+  Points all = region.corners;
+  if (all.empty()) all.push_back(region.deepest);
   const double together = grower.cost_of_best_path(all);
   if (together == 0) return 0;
   double apart = 0;
   for (const Point& point : all) apart = std::max(apart, grower.cost_of_best_path({point}));
-  double largest = 0;
+  double max = 0;
   if (together <= 4 * apart) {
     grower.cost_of_best_path(all);
     return grower.grow_best_path(all);
   }
   for (const Point& point : all)
-    if (grower.cost_of_best_path({point}) > 0) largest = std::max(largest, grower.grow_best_path({point}));
-  return largest;
+    if (grower.cost_of_best_path({point}) > 0) max = std::max(max, grower.grow_best_path({point}));
+  return max;
 }
 
 }  // namespace
@@ -97,29 +97,29 @@ CoverReport cover(SphereTree& tree, const Surface& surface, const Progress& prog
   std::vector<Index> triangles;
   for (Index i = 0; i < surface.mesh().triangles.size(); ++i) triangles.push_back(i);
   double margin = tolerance::kCoverMargin * radius;
-  for (; report.rounds < kMostRounds; ++report.rounds) {
-    report_progress(progress, "covering", static_cast<double>(report.rounds) / kMostRounds);
+  for (; report.rounds < kMaxRounds; ++report.rounds) {
+    report_progress(progress, "covering", static_cast<double>(report.rounds) / kMaxRounds);
     const Coverage coverage = surface_coverage(surface, triangles, path_balls(tree));
     if (coverage.complete()) return report;
     if (report.rounds == 0) report.triangles_uncovered = static_cast<Index>(coverage.uncovered.size());
     // Balls only grow, so what is covered stays covered.
     triangles.clear();
     Grower grower(tree, margin);
-    const auto take = [&](const detail::Spot& spot) {
-      report.largest_growth = std::max(report.largest_growth, take_in(grower, spot) / radius);
+    const auto take = [&](const detail::UncoveredRegion& region) {
+      report.max_growth = std::max(report.max_growth, take_in(grower, region) / radius);
     };
-    for (const detail::Spot& spot :
-         detail::find_spots(surface, coverage, path_balls(tree), tolerance::kCoverMargin * radius))
-      take(spot);
+    for (const detail::UncoveredRegion& region :
+         detail::find_uncovered_regions(surface, coverage, path_balls(tree), tolerance::kCoverMargin * radius))
+      take(region);
     for (const UncoveredTriangle& uncovered : coverage.uncovered) {
       triangles.push_back(uncovered.triangle);
       for (const Point& corner : surface.corners(uncovered.triangle)) take({{}, corner, 0});
     }
-    // Spots shrink with every round; a slowly widening margin ends the last of them.
+    // Regions shrink with every round; a slowly widening margin ends the last of them.
     margin *= 1.5;
   }
   throw Error("cover: " + std::to_string(triangles.size()) + " triangles are still uncovered after " +
-              std::to_string(kMostRounds) + " rounds");
+              std::to_string(kMaxRounds) + " rounds");
 }
 
 namespace {
@@ -127,13 +127,13 @@ namespace {
 // The leaf whose path needs to grow least to hold the point.
 Index nearest_leaf(const SphereTree& tree, const Point& point) {
   Index best = kNone;
-  double least = std::numeric_limits<double>::infinity();
+  double min = std::numeric_limits<double>::infinity();
   for (Index leaf = 0; leaf < tree.nodes.size(); ++leaf) {
     if (tree.nodes[leaf].child_count > 0) continue;
     double outside = 0;
     for (Index up = leaf; up != kNone; up = tree.nodes[up].parent)
       outside = std::max(outside, (point - tree.nodes[up].sphere.center).norm() - tree.nodes[up].sphere.radius);
-    if (outside < least) least = outside, best = leaf;
+    if (outside < min) min = outside, best = leaf;
   }
   return best;
 }
@@ -145,8 +145,8 @@ CoverReport grow_to_cover(SphereTree& tree, const Surface& surface, double facto
   CoverReport report;
   std::vector<Index> triangles(surface.mesh().triangles.size());
   std::iota(triangles.begin(), triangles.end(), Index{0});
-  for (; report.rounds < kMostRounds; ++report.rounds) {
-    report_progress(progress, "growing", static_cast<double>(report.rounds) / kMostRounds);
+  for (; report.rounds < kMaxRounds; ++report.rounds) {
+    report_progress(progress, "growing", static_cast<double>(report.rounds) / kMaxRounds);
     const Coverage coverage = surface_coverage(surface, triangles, path_balls(tree));
     if (coverage.complete()) return report;
     if (report.rounds == 0) report.triangles_uncovered = static_cast<Index>(coverage.uncovered.size());
@@ -162,12 +162,12 @@ CoverReport grow_to_cover(SphereTree& tree, const Surface& surface, double facto
     for (Index i = 0; i < tree.nodes.size(); ++i) {
       if (!grows[i]) continue;
       double& radius = tree.nodes[i].sphere.radius;
-      report.largest_growth = std::max(report.largest_growth, (factor - 1) * radius / surface.bounding_radius());
+      report.max_growth = std::max(report.max_growth, (factor - 1) * radius / surface.bounding_radius());
       radius *= factor;
     }
   }
   throw Error("growing: " + std::to_string(triangles.size()) + " triangles are still uncovered after " +
-              std::to_string(kMostRounds) + " rounds");
+              std::to_string(kMaxRounds) + " rounds");
 }
 
 }  // namespace orchard

@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::uint64_t kStage = 300;  // of the random numbers
 // Steps as fractions of the ball's looseness: where they start, how they change, and where a ball has had enough.
-constexpr double kFirstStep = 0.2, kLeastStep = 2e-4;
+constexpr double kFirstStep = 0.2, kMinStep = 2e-4;
 // A ball that shrinks below this part of its radius is needed for nothing; and how near to the least radius to go.
-constexpr double kLeastShrink = 0.1, kShrinkTo = 0.01;
+constexpr double kMinShrink = 0.1, kShrinkTo = 0.01;
 constexpr double kLonger = 1.6, kShorter = 0.85;
 
 class Descent {
@@ -34,7 +34,7 @@ class Descent {
     for (Index round = 0; round < options_.trials_per_node; ++round) {
       report_progress(progress, "random descent", static_cast<double>(round) / options_.trials_per_node);
       for (Index node = 0; node < tree_.nodes.size(); ++node) {
-        if (step_[node] < kLeastStep) continue;
+        if (step_[node] < kMinStep) continue;
         ++report.trials;
         Random random(options_.seed, kStage + round, node);
         const bool better = try_node(node, random);
@@ -93,7 +93,7 @@ Index shrink_balls(SphereTree& tree, const Surface& surface, const Progress& pro
     if (i % 32 == 0) report_progress(progress, "shrinking", static_cast<double>(i) / static_cast<double>(order.size()));
     Sphere& ball = tree.nodes[order[i]].sphere;
     const double before = ball.radius;
-    double low = kLeastShrink * before;
+    double low = kMinShrink * before;
     while (ball.radius - low > kShrinkTo * ball.radius) {
       const Sphere next{ball.center, 0.5 * (low + ball.radius)};
       if (cover.try_change(order[i], next)) {

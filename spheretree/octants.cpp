@@ -48,8 +48,8 @@ Box child_box(const Box& box, int which) {
 
 namespace {
 
-constexpr int kMostHalvings = 8;  // for each box wanted: where one side of a
-                                  // halved box is empty, there is no box more
+constexpr int kMaxHalvings = 8;  // for each box wanted: where one side of a
+                                 // halved box is empty, there is no box more
 
 void keep_if_occupied(const Surface& surface, const Octant& parent, const Box& box, std::vector<Octant>& parts) {
   Octant part{box, {}, kNone};
@@ -63,12 +63,12 @@ void keep_if_occupied(const Surface& surface, const Octant& parent, const Box& b
 std::vector<Octant> occupied_parts(const Surface& surface, const Octant& parent, Index count) {
   if (count == 8) return occupied_children(surface, parent);
   std::vector<Octant> parts{parent};
-  for (Index halving = 0; parts.size() < count && halving < kMostHalvings * count; ++halving) {
-    const auto largest = std::max_element(parts.begin(), parts.end(), [](const Octant& a, const Octant& b) {
+  for (Index halving = 0; parts.size() < count && halving < kMaxHalvings * count; ++halving) {
+    const auto max = std::max_element(parts.begin(), parts.end(), [](const Octant& a, const Octant& b) {
       return a.box.diagonal().squaredNorm() < b.box.diagonal().squaredNorm();
     });
-    const Octant whole = std::move(*largest);
-    parts.erase(largest);
+    const Octant whole = std::move(*max);
+    parts.erase(max);
     int axis = 0;
     whole.box.sizes().maxCoeff(&axis);
     Box lower = whole.box, upper = whole.box;

@@ -10,7 +10,7 @@ namespace orchard {
 namespace {
 
 // A mesh that may be read has room to spare: balls of a tree are not hundreds of times as large as the mesh.
-static_assert(500 * kLargestCoordinate <= double{runtime::kCoordinateLimit});
+static_assert(500 * kMaxCoordinate <= double{runtime::kCoordinateLimit});
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 

@@ -28,7 +28,7 @@ ProvenTree pack_proven(SphereTree& tree, const Surface& surface, const Progress&
   ProvenTree result;
   const auto prove = [&] {
     result.packed = pack(tree, surface);
-    result.proof = verify(surface, result.packed, {.most_violations = kNone}, progress);
+    result.proof = verify(surface, result.packed, {.max_violations = kNone}, progress);
   };
   prove();
   if (result.proof.bounds_violated == 0) return result;

@@ -12,13 +12,13 @@ namespace orchard {
 namespace {
 
 // A complete tree grows as branching^depth: beyond this many nodes the text format is the wrong one.
-constexpr std::uint64_t kMostNodes = 20'000'000;
+constexpr std::uint64_t kMaxNodes = 20'000'000;
 
 std::uint64_t complete_size(std::uint64_t levels, std::uint64_t branching) {
   std::uint64_t total = 0, width = 1;
   for (std::uint64_t level = 0; level < levels; ++level) {
     total += width;
-    if (total > kMostNodes) return kMostNodes + 1;
+    if (total > kMaxNodes) return kMaxNodes + 1;
     width *= branching;
   }
   return total;
@@ -91,9 +91,9 @@ SphereTree compact(const std::vector<Sphere>& places, Index branching) {
 
 std::string to_sph(const SphereTree& tree) {
   const std::uint64_t levels = tree.depth() + 1, size = complete_size(levels, tree.branching);
-  if (size > kMostNodes)
+  if (size > kMaxNodes)
     throw InputError("the .sph format stores unused nodes too, and this tree would need more than " +
-                     std::to_string(kMostNodes) + ": use fewer levels or children");
+                     std::to_string(kMaxNodes) + ": use fewer levels or children");
   std::vector<const SphereNode*> places(size, nullptr);
   std::vector<std::uint64_t> place_of(tree.nodes.size(), 0);
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
@@ -113,15 +113,13 @@ SphereTree read_sph(const std::filesystem::path& file) {
   std::size_t number = 0;
   if (!next_line(in, line, number)) fail(file, 1, "is empty; a .sph file starts with \"levels branching\"");
   const auto header = parse_numbers(line, 2);
-  const auto whole = [](double value, double most) {
-    return value >= 1 && value <= most && value == std::floor(value);
-  };
+  const auto whole = [](double value, double max) { return value >= 1 && value <= max && value == std::floor(value); };
   if (!header || !whole(header->values[0], 64) || !whole(header->values[1], 4096))
     fail(file, number, "expected \"levels branching\", two whole numbers");
   const auto levels = static_cast<std::uint64_t>(header->values[0]);
   const auto branching = static_cast<Index>(header->values[1]);
   const std::uint64_t size = complete_size(levels, branching);
-  if (size > kMostNodes) fail(file, number, "promises more than " + std::to_string(kMostNodes) + " nodes");
+  if (size > kMaxNodes) fail(file, number, "promises more than " + std::to_string(kMaxNodes) + " nodes");
   // Missing nodes at the end count as unused, so memory follows the file, not the header.
   std::vector<Sphere> places;
   while (places.size() < size && next_line(in, line, number)) {

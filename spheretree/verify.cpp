@@ -17,10 +17,10 @@ namespace {
 constexpr double kRounding = 0x1p-49;
 
 void add(const VerifyOptions& options, Verification& result, Violation violation) {
-  if (result.violations.size() < options.most_violations) result.violations.push_back(std::move(violation));
+  if (result.violations.size() < options.max_violations) result.violations.push_back(std::move(violation));
 }
 
-// A triangle that is not proven, and the balls whose boundary its uncovered spots have.
+// A triangle that is not proven, and the balls whose boundary its uncovered regions have.
 struct TriangleViolation {
   bool bad = false;
   Violation violation;
@@ -89,7 +89,7 @@ class Verifier {
     result_.nodes = nodes_.size();
     check_mesh(options);
     if (result_.same_mesh) check_triangles(options, progress);
-    find_largest_bounds();
+    find_max_bounds();
     report_progress(progress, "verifying bounds", 0.5);
     check_bounds(options);
     return std::move(result_);
@@ -169,14 +169,14 @@ class Verifier {
     return triangle_covered(corners, balls);
   }
 
-  void find_largest_bounds() {
+  void find_max_bounds() {
     std::vector<Index> level(nodes_.size(), 0);
-    result_.largest_bound.assign(tree_.depth + 1, 0);
+    result_.max_bound.assign(tree_.depth + 1, 0);
     for (Index i = 0; i < nodes_.size(); ++i) {
       if (balls_[i].parent != kNone) level[i] = level[balls_[i].parent] + 1;
       const double bound = tree_.blocks[nodes_[i].block].error[nodes_[i].lane];
-      double& largest = result_.largest_bound[std::min<Index>(level[i], tree_.depth)];
-      largest = std::max(largest, bound);
+      double& max = result_.max_bound[std::min<Index>(level[i], tree_.depth)];
+      max = std::max(max, bound);
     }
   }
 

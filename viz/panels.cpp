@@ -37,7 +37,7 @@ using Data = vtkSmartPointer<vtkPolyData>;
 constexpr Color kInk{0.13, 0.16, 0.20};
 constexpr Color kStone{0.73, 0.77, 0.82};
 constexpr double kFeatureAngle = 40;             // degrees
-constexpr double kLeastAngle = 0.9;              // radians
+constexpr double kMinAngle = 0.9;                // radians
 constexpr vtkIdType kTrianglesOutlined = 20000;  // more would turn the mesh black
 constexpr int kLevelsShown = 3;
 
@@ -225,7 +225,7 @@ Data without_shallow_faces(vtkPolyData* faces) {
   vtkNew<vtkCellArray> polygons;
   vtkNew<vtkIdList> corners;
   for (vtkIdType i = 0; i < faces->GetNumberOfPolys(); ++i) {
-    if (angles->GetComponent(i, 0) < kLeastAngle) continue;
+    if (angles->GetComponent(i, 0) < kMinAngle) continue;
     faces->GetPolys()->GetCellAtId(i, corners);
     polygons->InsertNextCell(corners);
   }

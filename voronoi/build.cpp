@@ -17,12 +17,12 @@ Box checked_box(std::span<const Point> points) {
   for (Index i = 0; i < points.size(); ++i) {
     if (!points[i].allFinite())
       throw InputError("point " + std::to_string(i) + " has a coordinate that is not a finite number: remove it");
-    if (points[i].cwiseAbs().maxCoeff() > Frame::kLargest)
+    if (points[i].cwiseAbs().maxCoeff() > Frame::kMax)
       throw InputError("point " + std::to_string(i) + " has a coordinate beyond 1e100: scale the points down");
     box.extend(points[i]);
   }
   const double extent = box.isEmpty() ? 0 : box.sizes().maxCoeff();
-  if (extent > 0 && extent < Frame::kSmallest) throw InputError("the points are less than 1e-100 apart: scale them up");
+  if (extent > 0 && extent < Frame::kMin) throw InputError("the points are less than 1e-100 apart: scale them up");
   return box;
 }
 

@@ -25,7 +25,7 @@ constexpr double kTold = 1.0 / 64;
 constexpr double kBlurred = 0x1p-44;
 
 // Vertices that are held against all points one by one; where there are more, exact signs are cheaper.
-constexpr std::size_t kMostSuspects = 512;
+constexpr std::size_t kMaxSuspects = 512;
 
 // Of a squared size: far more than any stored sphere is off, where all that matters is to look at a few vertices more.
 constexpr double kAbout = 0x1p-20;
@@ -76,7 +76,7 @@ class Certifier {
     if (det.sign() == Sign::positive ||
         (det.sign() == Sign::uncertain && volume_sign(p3, p0, p1, p2) != Sign::negative))
       return false;
-    if (-det.value > largest_volume_) largest_volume_ = -det.value, fattest_ = v;
+    if (-det.value > max_volume_) max_volume_ = -det.value, fattest_ = v;
     workspace_.settle(v);
     double apart = from_own_sphere(v);
     if (apart > kTold * at_most_ && !workspace_.shares_sphere(v)) {
@@ -212,7 +212,7 @@ class Certifier {
     const Index below = workspace_.vertices[v].neighbors[3], next = workspace_.vertices[u].neighbors[3];
     if (!add(rise + depth_lost(below, next, b, away, 16 * kRounding, normal, rise)))
       suspects_.insert(suspects_.end(), {v, u, below, next});
-    return suspects_.size() <= kMostSuspects;
+    return suspects_.size() <= kMaxSuspects;
   }
 
   // All points, against the planes and the spheres at edges of the hull so short or facets so thin that bounds from
@@ -286,7 +286,7 @@ class Certifier {
   Workspace& workspace_;
   const std::vector<bool>& forming_;
   Index first_new_, fattest_ = kNone;
-  double diameter_ = 0, at_most_ = 0, depth_ = 0, given_ = 0, largest_volume_ = 0;
+  double diameter_ = 0, at_most_ = 0, depth_ = 0, given_ = 0, max_volume_ = 0;
   std::vector<Index> hull_points_, suspects_;
 };
 

@@ -15,7 +15,7 @@ class Frame {
   explicit Frame(const Box& box);
 
   // Of a coordinate, and of the longest side of the box. What users do with a diagram has room to spare then.
-  static constexpr double kLargest = 1e100, kSmallest = 1e-100;
+  static constexpr double kMax = 1e100, kMin = 1e-100;
 
   // Coordinates in the frame are below 4, and multiples of 2^-200: of what is smaller than 2^-148, the rest is dropped.
   Point inward(const Point& p) const { return {inward(p, 0), inward(p, 1), inward(p, 2)}; }

@@ -14,7 +14,7 @@ constexpr unsigned kBits = 12;  // of each coordinate: 4096 steps across the box
 constexpr unsigned kCurveBits = 3 * kBits;
 constexpr unsigned kRoundShift = 3;  // each round holds about 7/8 of the points that remain
 constexpr unsigned kMaxRound = 15;
-constexpr std::size_t kSmallestRound = 64;
+constexpr std::size_t kMinRound = 64;
 
 // The position on a Hilbert curve of a cell of the 2^kBits grid, by Skilling's transform (2004).
 std::uint64_t hilbert(std::array<std::uint32_t, 3> x) {
@@ -68,7 +68,7 @@ std::vector<Index> insertion_order(std::span<const Point> points, const Box& box
   const double side = box.isEmpty() ? 0 : box.sizes().maxCoeff();
   const double steps = side > 0 ? ((1u << kBits) - 1) / side : 0;
   unsigned rounds = 0;
-  for (std::size_t left = points.size(); left > kSmallestRound && rounds < kMaxRound; left >>= kRoundShift) ++rounds;
+  for (std::size_t left = points.size(); left > kMinRound && rounds < kMaxRound; left >>= kRoundShift) ++rounds;
 
   std::vector<Item> items(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {

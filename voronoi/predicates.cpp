@@ -184,9 +184,9 @@ bool sharp_normal(const Point& q, const Point& a, const Point& b, Vector& normal
   if (!(scale > kDivisible * kSharper * kRounding * (a - q).norm() * (b - q).norm())) {
     const auto [exact_a, exact_b] = integer_vectors(q, a, b);
     const auto exact = exact_a.cross(exact_b);
-    const ExactInteger largest = std::max({abs(exact.x), abs(exact.y), abs(exact.z)});
-    if (largest == 0) return false;
-    normal = Vector(quotient(exact.x, largest, 0), quotient(exact.y, largest, 0), quotient(exact.z, largest, 0));
+    const ExactInteger max = std::max({abs(exact.x), abs(exact.y), abs(exact.z)});
+    if (max == 0) return false;
+    normal = Vector(quotient(exact.x, max, 0), quotient(exact.y, max, 0), quotient(exact.z, max, 0));
     scale = 1;
   }
   normal = (normal / scale).normalized();

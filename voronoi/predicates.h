@@ -58,10 +58,10 @@ bool sharp_normal(const Point& q, const Point& a, const Point& b, Vector& normal
 
 // The circumcentre of the origin, a, b and c.
 struct RelativeCenter {
-  Vector center;        // meaningless where the condition is infinite or not a number
-  double volume6;       // a . (b x c): six times the signed volume
-  double condition;     // |a||b||c| / |volume6| >= 1: round-off is magnified this many times
-  double largest_face;  // twice the area of the largest of the three faces at the origin
+  Vector center;     // meaningless where the condition is infinite or not a number
+  double volume6;    // a . (b x c): six times the signed volume
+  double condition;  // |a||b||c| / |volume6| >= 1: round-off is magnified this many times
+  double max_face;   // twice the area of the largest of the three faces at the origin
 
   // Every error term of the determinants is a few roundings times |a||b||c| (times a length <= the diameter), so the
   // centre is off by at most kCenterError * condition * radius.

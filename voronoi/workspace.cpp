@@ -26,7 +26,7 @@ void Workspace::set_scale(const Box& box, double rounding) {
   noise_ = kInputNoise * rounding;
   good_center_ = std::min(0x1p21 * noise_ / box.diagonal().norm(), 0.125);
   squared_scale_ = std::ldexp(1.0, 2 * exponent);
-  per_smallest_bound_ = std::ldexp(1.0, 100 - 2 * exponent);
+  per_min_bound_ = std::ldexp(1.0, 100 - 2 * exponent);
   for (unsigned i = 0; i + 1 < bounds_.size(); ++i)
     bounds_[i] = std::ldexp(1.0, 2 * exponent - 100 + 2 * static_cast<int>(i));
   bounds_.back() = std::numeric_limits<double>::infinity();
@@ -105,11 +105,11 @@ void Workspace::find_error_class(Index v) {
 // A bound for a vertex whose own centre is poor, but which has a neighbour's: its forming points are on that sphere up
 // to this.
 double Workspace::residual(const VoronoiVertex& vertex) const {
-  double most = 0;
+  double max = 0;
   for (const Index p : vertex.forming_points)
-    most = std::max(most, std::abs(vertex.radius - (vertex.center - points[p]).squaredNorm()));
+    max = std::max(max, std::abs(vertex.radius - (vertex.center - points[p]).squaredNorm()));
   const double r = std::sqrt(vertex.radius);
-  return 4 * most + 16 * noise_ * r + 16 * kRounding * (vertex.radius + r * vertex.center.lpNorm<1>());
+  return 4 * max + 16 * noise_ * r + 16 * kRounding * (vertex.radius + r * vertex.center.lpNorm<1>());
 }
 
 double Workspace::value(Index v, const Point& q) const {
@@ -151,9 +151,9 @@ Sign Workspace::side_of_plane(Index v, const Point& q) const {
   const auto& corner = vertices[v].forming_points;
   const Point &p0 = points[corner[0]], &p1 = points[corner[1]], &p2 = points[corner[2]];
   const Vector a = p0 - q, b = p1 - q, c = p2 - q;
-  const double largest_face = std::sqrt(std::max({a.cross(b).squaredNorm(), b.cross(c).squaredNorm(),
-                                                  c.cross(a).squaredNorm(), (b - a).cross(c - a).squaredNorm()}));
-  return -volume_sign(q, p0, p1, p2, kFourPoints * noise_ * largest_face);
+  const double max_face = std::sqrt(std::max({a.cross(b).squaredNorm(), b.cross(c).squaredNorm(),
+                                              c.cross(a).squaredNorm(), (b - a).cross(c - a).squaredNorm()}));
+  return -volume_sign(q, p0, p1, p2, kFourPoints * noise_ * max_face);
 }
 
 // How far the height of a point beyond the facet of a vertex at infinity may be off.

@@ -40,7 +40,7 @@ class Workspace {
   void set_scale(const Box& box, double rounding);
   static constexpr double kInputNoise = 4;
   // Whether the input's noise is too near to what counts as harm for doubts to be settled by it.
-  bool too_noisy() const { return noise_ > kMostNoise * scale(); }
+  bool too_noisy() const { return noise_ > kMaxNoise * scale(); }
   // From now on signs are exact, as if the input had no noise: slower, and slivers appear where rounding has put points
   // off a plane, but consistent whatever the input. For input that is off by more than rounding but by too little.
   void set_exact(bool exact) { exact_ = exact; }
@@ -150,9 +150,9 @@ class Workspace {
   double residual(const VoronoiVertex& vertex) const;
 
   static constexpr unsigned kShared = 1u << 8;
-  std::vector<std::uint16_t> state_;                   // mark, error class above, kShared
-  std::array<double, 64> bounds_{};                    // by error class
-  double squared_scale_ = 1, per_smallest_bound_ = 1;  // powers of two, so that scaled input is treated exactly alike
+  std::vector<std::uint16_t> state_;                 // mark, error class above, kShared
+  std::array<double, 64> bounds_{};                  // by error class
+  double squared_scale_ = 1, per_min_bound_ = 1;     // powers of two, so that scaled input is treated exactly alike
   static constexpr double kThin = 0x1p-24;           // how far the noise may turn a facet of a good vertex, in radians
   static constexpr double kSharpCondition = 0x1p12;  // with exact signs: where a centre calls for sharper arithmetic
   // How many times the noise a point may be off a sphere that it is taken to be on: the sphere's centre magnifies the
@@ -162,7 +162,7 @@ class Workspace {
   static constexpr double kFourPoints = 4;        // the noise of four points off a plane, in terms of the largest face
   static constexpr double kWide = 0x1p8;          // a bound on a height is wide above this many times the noise
   static constexpr double kDepth = 0x1p-36;       // harmless_depth() in terms of scale()
-  static constexpr double kMostNoise = 0x1p-40;   // see too_noisy()
+  static constexpr double kMaxNoise = 0x1p-40;    // see too_noisy()
   static constexpr double kSameCenter = 0x1p-45;  // of a sphere's size: some roundings, going in and out of the frame
   bool exact_ = false;
   double noise_ = 0;        // how far off an input point may be
@@ -171,7 +171,7 @@ class Workspace {
 
 // The smallest class whose bound is not below the given one.
 inline std::uint8_t Workspace::error_class(double bound) const {
-  const double ratio = bound * per_smallest_bound_;
+  const double ratio = bound * per_min_bound_;
   if (!(ratio < 0x1p120)) return kUnknownError;
   if (ratio <= 1) return 0;
   const auto exponent = static_cast<unsigned>((std::bit_cast<std::uint64_t>(ratio) >> 52) - 1023);
@@ -183,7 +183,7 @@ inline Placing Workspace::place(VoronoiVertex& vertex, std::uint8_t& error, cons
   const RelativeCenter relative = circumcenter(a, b, c);
   // The reciprocal of the smallest height of the tetrahedron's corners at the new point: how far input noise is
   // magnified.
-  const double per_height = relative.largest_face / std::abs(relative.volume6);
+  const double per_height = relative.max_face / std::abs(relative.volume6);
   const double shake = noise_ * per_height;
   if (!relative.reliable() || !(shake < 0.125)) return Placing::failed;
   vertex.center = new_point + relative.center;

@@ -28,8 +28,8 @@ void compare(const std::filesystem::path& file) {
   for (const Index points : {5'000u, 100'000u}) {
     const Run before = run(surface, points, 0), after = run(surface, points, SamplingOptions{}.iterations);
     std::printf("%-18s %8zu %9u | %8.3f %8.3f | %8.3f %8.3f %9.2f\n", file.stem().c_str(),
-                surface.mesh().triangles.size(), points, before.evenness.least, before.evenness.variation,
-                after.evenness.least, after.evenness.variation, after.seconds);
+                surface.mesh().triangles.size(), points, before.evenness.min, before.evenness.variation,
+                after.evenness.min, after.evenness.variation, after.seconds);
   }
 }
 

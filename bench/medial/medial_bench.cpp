@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-#include "interior.h"
+#include "axis/interior.h"
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/repair.h"
 #include "orchard/medial/build.h"
@@ -47,7 +47,7 @@ void run(const std::string& file, Index points) {
   const MedialBuild build = build_medial_axis(surface, options);
   std::printf("%s: %zu triangles, %u + %u points, %u medial vertices, topology %s\n",
               std::filesystem::path(file).stem().c_str(), surface.mesh().triangles.size(), build.points,
-              build.repair.points_added, build.axis.size(),
+              build.gap_repair.points_added, build.axis.size(),
               topology(medial_mesh(build.axis)) == solid_topology(surface) ? "right" : "wrong");
   double whole = 0;
   for (const auto& [stage, seconds] : build.seconds) {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pair/triangle_pair.h"
 #include "rival.h"
-#include "triangle_pair.h"
 
 namespace orchard::bench {
 namespace {

@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "sphere_block.h"
 #include "support.h"
+#include "tree/sphere_block.h"
 #include "vector_support.h"
 
 namespace {

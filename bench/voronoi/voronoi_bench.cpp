@@ -148,12 +148,12 @@ void metric(const char* name, const test::Points& points) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::size_t largest = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 500000;
+  const std::size_t max = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 500000;
   const char* part = argc > 2 ? argv[2] : "";
   const std::string data = argc > 3 ? argv[3] : "data";
   Table table;
   const auto set = [&](const std::string& name, std::size_t n, const std::function<test::Points()>& make) {
-    if (n <= largest && name.find(part) != std::string::npos) table.add(name, make());
+    if (n <= max && name.find(part) != std::string::npos) table.add(name, make());
   };
   for (const std::size_t n : {5000u, 50000u, 500000u}) {
     set("bumpy sphere", n, [&] { return test::bumpy_sphere_points(n, 1); });

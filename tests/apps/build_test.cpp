@@ -59,6 +59,67 @@ TEST(Build, BuildsAMedialTreeAsTheDefault) {
   EXPECT_GT(report["medial_axis"]["vertices"].get<int>(), 0);
 }
 
+// What tunes an axis tunes the tree that is built from it.
+TEST(Build, TakesTheFlagsOfMedial) {
+  const Workplace here;
+  const std::string mesh = here.add("u.obj", test::u_shape(0.1));
+  const std::vector<std::string> common{"build",     mesh,   "-o",         (here / "out").string(),
+                                        "--depth",   "1",    "--effort",   "low",
+                                        "--samples", "1000", "--no-views", "--json"};
+  const auto built = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), common.begin(), common.end());
+    const Finished run = here.run(more);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return json::parse(run.out);
+  };
+  const json plain = built({});
+  EXPECT_EQ(plain["options"]["samples"], 1000);
+  EXPECT_EQ(plain["medial_axis"]["vertices"], plain["medial_axis"]["vertices_before_pruning"]);
+  const json pruned = built({"--prune-angle", "60"});
+  EXPECT_LT(pruned["medial_axis"]["vertices"], pruned["medial_axis"]["vertices_before_pruning"]);
+  EXPECT_EQ(built({"--gaps", "none"})["gap_repair"]["points_added"], 0);
+  EXPECT_GT(plain["gap_repair"]["points_added"], 0);
+  EXPECT_NE(built({"--algorithm", "exact"})["medial_axis"]["vertices"], 0);
+}
+
+TEST(Build, BuildsFromTheAxisThatMedialWrote) {
+  const Workplace here;
+  const std::string mesh = here.add("l.obj", test::l_shape()), out = (here / "out").string();
+  ASSERT_EQ(here.run({"medial", mesh, "-o", out, "--samples", "500", "--no-views", "--quiet"}).exit_code, 0);
+  const Finished run = here.run({"build", mesh, "-o", out, "--from-axis", out + "/l.ma", "--depth", "2", "--effort",
+                                 "low", "--samples", "2000", "--no-views", "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json report = json::parse(run.out);
+  EXPECT_EQ(report["imported_axis"]["balls_refused"], 0);
+  EXPECT_GT(report["medial_axis"]["vertices"], 100);
+  EXPECT_EQ(here.run({"verify", out + "/l.orchard", mesh}).exit_code, 0);
+  // A ball outside is refused, and counted.
+  here.add("one.ma", std::string("2 1 0\nv 99 0 0 1\nv .5 .5 .5 .1\ne 0 1\n"));
+  const Finished one = here.run({"build", mesh, "-o", out, "--from-axis", (here / "one.ma").string(), "--depth", "1",
+                                 "--method", "merging", "--no-views", "--json"});
+  ASSERT_EQ(one.exit_code, 0) << one.err;
+  EXPECT_EQ(json::parse(one.out)["imported_axis"]["balls_refused"], 1);
+}
+
+TEST(Build, RefusesAnAxisThatItHasNoUseFor) {
+  const Workplace here;
+  const std::string mesh = here.add("l.obj", test::l_shape()), out = (here / "out").string();
+  const std::string points = here.add("p.xyz", std::string("0 0 0\n")), axis = here.add("a.ma", std::string("0 0 0\n"));
+  for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--points", points, "--from-axis", axis},
+                                                {"--from-axis", axis, "--method", "octree"},
+                                                {"--from-axis", (here / "none.ma").string()},
+                                                {"--from-axis", axis},
+                                                {"--edge-samples", "200", "--samples", "100"},
+                                                {"--segment-angle", "20"}}) {
+    std::vector<std::string> arguments{"build", mesh, "-o", out, "--no-views"};
+    arguments.insert(arguments.end(), wrong.begin(), wrong.end());
+    const Finished run = here.run(arguments);
+    EXPECT_EQ(run.exit_code, 2) << wrong[0];
+    EXPECT_TRUE(test::is_one_line_error(run.err)) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(here / "out"));
+  }
+}
+
 TEST(Build, TakesTheMinimalBallAsRootUnlessAskedForRittersOne) {
   const Workplace here;
   const TriangleMesh solid = test::l_shape();

@@ -50,6 +50,25 @@ TEST(Medial, JudgesTheFileThatItWroteAsItJudgedTheAxis) {
   EXPECT_TRUE(here.files("other").contains("l-quality.json"));
 }
 
+TEST(Medial, SweepsSayHowTightTheTreeOfEachAxisIs) {
+  const Workplace here;
+  const std::string mesh = here.add("l.obj", test::l_shape()), out = (here / "out").string();
+  const Finished run = here.run({"medial", mesh, "-o", out, "--sweep", "samples=400,800", "--tree", "merging",
+                                 "--tree-depth", "2", "--quality-samples", "200", "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json runs = json::parse(run.out)["runs"];
+  ASSERT_EQ(runs.size(), 2u);
+  for (const json& row : runs) {
+    EXPECT_GT(row["level_2_spheres"], row["level_1_spheres"]);
+    EXPECT_LT(row["level_2_mean"], row["level_1_mean"]);
+    EXPECT_LE(row["level_2_mean"], row["level_2_max"]);
+    EXPECT_LT(row["level_2_outside"], row["level_1_outside"]);
+  }
+  EXPECT_NE(here.files("out").at("l-sweep.csv").find(",level_1_spheres,level_1_mean,level_1_max,level_1_outside,"),
+            std::string::npos);
+  EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--tree", "merging"}).exit_code, 2);
+}
+
 TEST(Medial, TakesTheUsersPoints) {
   const Workplace here;
   const std::string mesh = here.add("l.obj", test::l_shape());

@@ -24,7 +24,7 @@ std::string read(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-std::string quoted(const std::string& argument) {
+std::string in_quotes(const std::string& argument) {
   std::string text(1, '\'');
   for (const char c : argument) {
     if (c == '\'') {
@@ -61,10 +61,10 @@ std::string Workplace::add(const std::string& name, const std::string& text) con
 }
 
 Finished Workplace::run(const std::vector<std::string>& arguments, const std::string& out_to) const {
-  std::string command = quoted(ORCHARD_PROGRAM);
-  for (const std::string& argument : arguments) (command += ' ') += quoted(argument);
+  std::string command = in_quotes(ORCHARD_PROGRAM);
+  for (const std::string& argument : arguments) (command += ' ') += in_quotes(argument);
   const std::string out = (folder_ / "stdout").string(), err = (folder_ / "stderr").string();
-  command.append(" >").append(out_to.empty() ? quoted(out) : out_to).append(" 2>").append(quoted(err));
+  command.append(" >").append(out_to.empty() ? in_quotes(out) : out_to).append(" 2>").append(in_quotes(err));
   const int status = std::system(command.c_str());
   Finished finished{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
   std::filesystem::remove(out);

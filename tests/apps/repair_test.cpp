@@ -175,7 +175,7 @@ TEST(Repair, IsWrittenBesideTheTreeAndBoundedByDistancesThatHold) {
     if (!changed) continue;
     ++repaired;
     const double radius = report["mesh"]["bounding_ball"][3];
-    double largest = 0;
+    double max = 0;
     for (const auto& [key, from, to] :
          {std::tuple{"repaired_to_input", &solid, &input}, {"input_to_repaired", &input, &solid}}) {
       const double lower = repair[key][0], upper = repair[key][1];
@@ -183,11 +183,11 @@ TEST(Repair, IsWrittenBesideTheTreeAndBoundedByDistancesThatHold) {
       EXPECT_LE(judged.distance, upper + 1e-12 * radius) << key;
       EXPECT_GE(judged.distance + judged.spacing, lower) << key;
       EXPECT_LE(upper - lower, 1e-4 * radius) << key;
-      largest = std::max(largest, upper);
+      max = std::max(max, upper);
     }
-    moved += largest > 1e-3 * radius ? 1 : 0;
-    EXPECT_EQ(repair["distance"].get<double>(), largest);
-    EXPECT_DOUBLE_EQ(repair["distance_over_radius"].get<double>(), largest / radius);
+    moved += max > 1e-3 * radius ? 1 : 0;
+    EXPECT_EQ(repair["distance"].get<double>(), max);
+    EXPECT_DOUBLE_EQ(repair["distance_over_radius"].get<double>(), max / radius);
     const Finished inspected = here.run({"inspect", mesh, "--json"});
     const json seen = json::parse(inspected.out)["repair"];
     for (const char* key : {"repaired_to_input", "input_to_repaired", "distance", "lines"})

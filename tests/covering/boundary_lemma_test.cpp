@@ -48,11 +48,11 @@ TEST(BoundaryLemma, IsRarelyUncertainWhereAMarginOfOneInABillionIsLeft) {
     Random random(seed, 6);
     const Triangle t = random_triangle(random);
     const auto balls = random_forest(random, t, 0.5 * (t[1] - t[0]).norm());
-    const auto least = threshold(t, balls);
-    if (!least) continue;
+    const auto min = threshold(t, balls);
+    if (!min) continue;
     for (const double margin : {1e-9, 2e-9, 1e-8, 1e-6, 1e-3}) {
       ++regions;
-      uncertain += !triangle_covered(t, grown(balls, *least + margin));
+      uncertain += !triangle_covered(t, grown(balls, *min + margin));
     }
   }
   RecordProperty("regions", regions);
@@ -96,9 +96,9 @@ TEST(BoundaryLemma, AgreesWithDenseSamplingWhereCoverageIsAboutToFail) {
     Random random(seed, 2);
     const Triangle t = random_triangle(random);
     const auto balls = random_forest(random, t, 0.5 * (t[1] - t[0]).norm());
-    const auto least = threshold(t, balls);
-    if (!least) continue;
-    const double high = *least, low = high - 1e-12;
+    const auto min = threshold(t, balls);
+    if (!min) continue;
+    const double high = *min, low = high - 1e-12;
     // Sound just above the threshold, and complete just below it.
     double worst = -1;  // growth that the least covered sample needs
     const auto need = [&](const Point& p) {

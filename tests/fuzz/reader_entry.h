@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "mesh_formats.h"
+#include "io/mesh_formats.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_check.h"
 

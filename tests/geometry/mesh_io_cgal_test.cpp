@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "expect_input_error.h"
-#include "mesh_formats.h"
+#include "io/mesh_formats.h"
 #include "orchard/geometry/mesh_check.h"
 #include "orchard/geometry/random.h"
 #include "support/shapes.h"

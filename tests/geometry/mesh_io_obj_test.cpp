@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "expect_input_error.h"
-#include "mesh_formats.h"
+#include "io/mesh_formats.h"
 
 namespace orchard {
 namespace {

@@ -9,11 +9,11 @@
 #include <set>
 
 #include "expect_input_error.h"
-#include "mesh_formats.h"
+#include "io/mesh_formats.h"
+#include "io/ply_header.h"
 #include "orchard/geometry/mesh_check.h"
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/random.h"
-#include "ply_header.h"
 
 namespace orchard {
 namespace {

@@ -77,13 +77,12 @@ TEST_F(MeshIo, RefusesMeshesOfASizeThatNothingWorksWith) {
     write_obj(file, test::transformed(test::box({-1, -1, -1}, {1, 1, 1}), scale, Vector::Constant(offset)));
     return file;
   };
-  EXPECT_NO_THROW(read_mesh(written("largest.obj", kLargestCoordinate)));
-  EXPECT_NO_THROW(read_mesh(written("least.obj", kLeastExtent / 2)));
-  for (const auto& [scale, offset] :
-       {std::pair{1.001 * kLargestCoordinate, 0.0}, {1e20, 0.0}, {1.0, -1e16}, {1e300, 0.0}})
+  EXPECT_NO_THROW(read_mesh(written("largest.obj", kMaxCoordinate)));
+  EXPECT_NO_THROW(read_mesh(written("least.obj", kMinExtent / 2)));
+  for (const auto& [scale, offset] : {std::pair{1.001 * kMaxCoordinate, 0.0}, {1e20, 0.0}, {1.0, -1e16}, {1e300, 0.0}})
     test::expect_input_error([&] { (void)read_mesh(written("large.obj", scale, offset)); },
                              {"large.obj", "vertex 0", "limit of 1e+15", "scale the mesh down"});
-  for (const double scale : {0.499 * kLeastExtent, 1e-20, 1e-300})
+  for (const double scale : {0.499 * kMinExtent, 1e-20, 1e-300})
     test::expect_input_error([&] { (void)read_mesh(written("small.obj", scale)); },
                              {"small.obj", "limit of 1e-12", "scale the mesh up"});
 }

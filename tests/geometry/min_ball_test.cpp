@@ -45,9 +45,9 @@ std::vector<NamedPoints> named_cases() {
 }
 
 double rounding(const std::vector<Point>& points) {
-  double largest = 0;
-  for (const Point& p : points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
-  return 1e-15 * largest;
+  double max = 0;
+  for (const Point& p : points) max = std::max(max, p.cwiseAbs().maxCoeff());
+  return 1e-15 * max;
 }
 
 void expect_inside(const std::vector<Point>& points, const Sphere& ball, const std::string& name) {

@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "expect_input_error.h"
-#include "mesh_formats.h"
+#include "io/mesh_formats.h"
 #include "orchard/geometry/mesh_io.h"
 
 namespace orchard {

@@ -1,4 +1,4 @@
-#include "polygons.h"
+#include "io/polygons.h"
 
 #include <gtest/gtest.h>
 
@@ -21,12 +21,12 @@ Triangles split(const std::vector<Point>& polygon) {
 }
 
 // The smallest z of the triangles' normals, times twice their areas.
-double smallest_area(const std::vector<Point>& polygon, const Triangles& triangles) {
-  double smallest = INFINITY;
+double min_area(const std::vector<Point>& polygon, const Triangles& triangles) {
+  double min = INFINITY;
   for (const auto& [a, b, c] : triangles) {
-    smallest = std::min(smallest, (polygon[b] - polygon[a]).cross(polygon[c] - polygon[a]).z());
+    min = std::min(min, (polygon[b] - polygon[a]).cross(polygon[c] - polygon[a]).z());
   }
-  return smallest;
+  return min;
 }
 
 TEST(Polygons, FanOutFromTheFirstCornerIfConvex) {
@@ -43,7 +43,7 @@ TEST(Polygons, FanOutFromTheReflexCornerOfAConcaveQuadrilateral) {
     for (std::size_t i = 0; i < 4; ++i) turned.push_back(dart[(i + turn) % 4]);
     const Triangles triangles = split(turned);
     ASSERT_EQ(triangles.size(), 2u);
-    EXPECT_GT(smallest_area(turned, triangles), 0) << turn;
+    EXPECT_GT(min_area(turned, triangles), 0) << turn;
   }
 }
 
@@ -51,7 +51,7 @@ TEST(Polygons, AvoidDegenerateTrianglesWhereACornerLiesOnAnEdge) {
   const std::vector<Point> polygon{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}};
   const Triangles triangles = split(polygon);
   ASSERT_EQ(triangles.size(), 3u);
-  EXPECT_GT(smallest_area(polygon, triangles), 0);
+  EXPECT_GT(min_area(polygon, triangles), 0);
 }
 
 TEST(Polygons, KeepTheAreaOfStarShapedOnes) {
@@ -69,7 +69,7 @@ TEST(Polygons, KeepTheAreaOfStarShapedOnes) {
     for (std::size_t i = 0; i < n; ++i) turned.push_back(star[(i + turn) % n]);
     const Triangles triangles = split(turned);
     ASSERT_EQ(triangles.size(), n - 2) << seed;
-    EXPECT_GT(smallest_area(turned, triangles), 0) << seed;
+    EXPECT_GT(min_area(turned, triangles), 0) << seed;
   }
 }
 

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <numbers>
 
-#include "boundary_push.h"
 #include "cell_hash.h"
 #include "orchard/geometry/random.h"
+#include "sampling/boundary_push.h"
+#include "sampling/surface_walk.h"
 #include "support/shapes.h"
-#include "surface_walk.h"
 
 namespace orchard::detail {
 namespace {

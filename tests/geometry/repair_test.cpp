@@ -269,10 +269,10 @@ TEST(RepairMesh, FillsHolesUpToTheLimitsOnly) {
   EXPECT_TRUE(report.solid);
   EXPECT_EQ(report.holes_filled, 1u);
   EXPECT_EQ(report.triangles_added, 3u);
-  EXPECT_LT(report.largest_hole, size);
-  EXPECT_GT(report.largest_hole, 0);
+  EXPECT_LT(report.max_hole, size);
+  EXPECT_GT(report.max_hole, 0);
   for (const RepairMeshOptions& options :
-       {RepairMeshOptions{.max_hole_edges = 4}, RepairMeshOptions{.max_hole_diameter = 0.9 * report.largest_hole}}) {
+       {RepairMeshOptions{.max_hole_edges = 4}, RepairMeshOptions{.max_hole_diameter = 0.9 * report.max_hole}}) {
     mesh = holed;
     EXPECT_FALSE(repair_mesh(mesh, options).solid);
     EXPECT_EQ(mesh.triangles, holed.triangles);
@@ -388,11 +388,8 @@ TEST(RepairMesh, MendsTheSharedModels) {
 }
 
 TEST(MeshRepairReport, SaysEachThingInALine) {
-  const MeshRepairReport report{.vertices_welded = 1,
-                                .degenerate_dropped = 2,
-                                .holes_filled = 3,
-                                .triangles_added = 10,
-                                .largest_hole = 0.0123456};
+  const MeshRepairReport report{
+      .vertices_welded = 1, .degenerate_dropped = 2, .holes_filled = 3, .triangles_added = 10, .max_hole = 0.0123456};
   EXPECT_EQ(report.lines(), (std::vector<std::string>{"welded 1 vertex to another in the same place",
                                                       "dropped 2 triangles without area",
                                                       "filled 3 holes with 10 triangles, the largest 0.0123 across"}));

@@ -176,7 +176,7 @@ TEST(Sampling, RelaxationInsideClustersEvensOutFlatFaces) {
     EXPECT_GT(before.variation, 0.45);
     EXPECT_LT(after.variation, 0.15);
     EXPECT_GT(after.mean, 1.5 * before.mean);
-    EXPECT_GT(after.least, 0.2);
+    EXPECT_GT(after.min, 0.2);
   }
 }
 
@@ -192,7 +192,7 @@ TEST(Sampling, RelaxationByNeighborsEvensOutAnySurface) {
     EXPECT_GT(before.variation, 0.3);
     EXPECT_LT(after.variation, 0.12);
     EXPECT_GT(after.mean, 1.5 * before.mean);
-    EXPECT_GT(after.least, 0.3);
+    EXPECT_GT(after.min, 0.3);
   }
 }
 
@@ -214,7 +214,7 @@ TEST(Sampling, FacePointsKeepAwayFromEdgePoints) {
         sample_surface(surface, {.face_points = 1000, .edge_points = 160, .relaxation = relaxation});
     EXPECT_GT(std::ranges::count(sampling.origins, PointOrigin::edge), 100);
     EXPECT_LT(evenness(sampling, surface).variation, 0.15);
-    EXPECT_GT(evenness(sampling, surface).least, 0.25);
+    EXPECT_GT(evenness(sampling, surface).min, 0.25);
   }
 }
 
@@ -261,10 +261,10 @@ TEST(Evenness, OfALatticeIsPerfect) {
     }
   const Evenness even = evenness(lattice, surface);
   EXPECT_EQ(even.mean, 0.125);
-  EXPECT_EQ(even.least, 1);
+  EXPECT_EQ(even.min, 1);
   EXPECT_EQ(even.variation, 0);
   lattice.points[9].x() += 0.0625;  // now nearer to one of its neighbours, and that one to it
-  EXPECT_LT(evenness(lattice, surface).least, 0.6);
+  EXPECT_LT(evenness(lattice, surface).min, 0.6);
   EXPECT_GT(evenness(lattice, surface).variation, 0.05);
 }
 

@@ -20,10 +20,10 @@ Vector random_direction(Random& random) {
 
 // From below, by many points of the sphere.
 double densely_sampled(const Surface& surface, const Sphere& sphere, Random& random) {
-  double largest = 0;
+  double max = 0;
   for (int i = 0; i < 5000; ++i)
-    largest = std::max(largest, surface.signed_distance(sphere.center + sphere.radius * random_direction(random)));
-  return largest;
+    max = std::max(max, surface.signed_distance(sphere.center + sphere.radius * random_direction(random)));
+  return max;
 }
 
 Sphere random_sphere(const Surface& surface, Random& random) {
@@ -65,14 +65,14 @@ TEST(SphereDistance, OfTheLemmaIsExactOnAConvexSolid) {
 TEST(SphereDistance, OfTheLemmaOverestimatesWhereTheSolidIsNotConvex) {
   // A ball in the notch of an L: its farthest side faces another wall than the one nearest to its centre.
   const Surface surface(test::u_shape(0.4));
-  double largest_excess = 0;
+  double max_excess = 0;
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     Random random(seed, 3);
     const Sphere sphere = random_sphere(surface, random);
-    largest_excess =
-        std::max(largest_excess, convex_sphere_distance(surface, sphere) - densely_sampled(surface, sphere, random));
+    max_excess =
+        std::max(max_excess, convex_sphere_distance(surface, sphere) - densely_sampled(surface, sphere, random));
   }
-  EXPECT_GT(largest_excess, 0.1);
+  EXPECT_GT(max_excess, 0.1);
 }
 
 TEST(SphereDistance, OfTheSamplesIsExactWhereAVertexOfTheDodecahedronIsFarthest) {

@@ -60,15 +60,14 @@ TEST(SurfaceDistance, BoundsEverySampleOfRandomTriangles) {
     const SurfaceDistance found = surface_distance(from, to, {.tolerance = 1e-3});
     EXPECT_LE(found.upper - found.lower, 1.0001e-3 * to.bounding_radius()) << "seed " << seed;
     Random random(seed, 8);
-    double largest = 0;
+    double max = 0;
     for (int i = 0; i < 3000; ++i) {
       const auto corners = from.corners(static_cast<Index>(random.below(6)));
       double u = random.uniform(), v = random.uniform();
       if (u + v > 1) u = 1 - u, v = 1 - v;
-      largest =
-          std::max(largest, to.distance(corners[0] + u * (corners[1] - corners[0]) + v * (corners[2] - corners[0])));
+      max = std::max(max, to.distance(corners[0] + u * (corners[1] - corners[0]) + v * (corners[2] - corners[0])));
     }
-    EXPECT_LE(largest, found.upper) << "seed " << seed;
+    EXPECT_LE(max, found.upper) << "seed " << seed;
     EXPECT_NEAR(to.distance(found.at), found.lower, 1e-12) << "seed " << seed;
     EXPECT_LT(from.distance(found.at), 1e-12) << "seed " << seed;
   }

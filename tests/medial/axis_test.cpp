@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "interior.h"
+#include "axis/interior.h"
 #include "orchard/geometry/random.h"
 #include "orchard/medial/prune.h"
 #include "orchard/voronoi/exact.h"

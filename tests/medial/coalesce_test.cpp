@@ -1,4 +1,4 @@
-#include "coalesce.h"
+#include "axis/coalesce.h"
 
 #include <gtest/gtest.h>
 

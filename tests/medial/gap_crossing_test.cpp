@@ -16,15 +16,15 @@
 namespace orchard {
 namespace {
 
-Repaired sampled_and_repaired(const Surface& surface, const SamplingOptions& sampling,
-                              const RepairOptions& options = {}) {
+GapRepair sampled_and_repaired(const Surface& surface, const SamplingOptions& sampling,
+                               const GapRepairOptions& options = {}) {
   SurfaceSampling points = sample_surface(surface, sampling);
   VoronoiDiagram diagram = highest_first_voronoi(points.points);
   return repair_gap_crossings(surface, std::move(points), std::move(diagram), options);
 }
 
 // What every repair has to achieve: no crossing left, and an axis inside the solid with its components and its holes.
-void expect_mended(const Surface& surface, const Repaired& repaired) {
+void expect_mended(const Surface& surface, const GapRepair& repaired) {
   validate(repaired.sampling, surface);
   validate(repaired.diagram);
   EXPECT_EQ(repaired.report.faces_still_crossing, 0u);
@@ -40,7 +40,7 @@ struct Case {
   std::string name;
   TriangleMesh mesh;
   SamplingOptions sampling;
-  double most_added;  // fraction of the points
+  double max_added;  // fraction of the points
 };
 
 std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
@@ -51,10 +51,10 @@ TEST_P(GapCrossing, IsMendedWithFewPoints) {
   const Case& c = GetParam();
   const Surface surface(c.mesh);
   ASSERT_TRUE(surface.solid()) << surface.report().faults();
-  const Repaired repaired = sampled_and_repaired(surface, c.sampling);
+  const GapRepair repaired = sampled_and_repaired(surface, c.sampling);
   EXPECT_GT(repaired.report.passes.front().faces_crossing, 0u) << "the case shows no fault to mend";
   EXPECT_GT(repaired.report.points_added, 0u);
-  EXPECT_LT(repaired.report.points_added, c.most_added * (repaired.sampling.size() - repaired.report.points_added));
+  EXPECT_LT(repaired.report.points_added, c.max_added * (repaired.sampling.size() - repaired.report.points_added));
   expect_mended(surface, repaired);
 }
 
@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(Figures, GapCrossing, testing::ValuesIn(cases()),
 TEST(GapRepair, AddsNothingToSolidsThatNeedNothing) {
   for (TriangleMesh mesh : {test::box({0, 0, 0}, {1, 2, 3}), test::icosphere(3), test::torus(48, 24)}) {
     const Surface surface(std::move(mesh));
-    const Repaired repaired = sampled_and_repaired(surface, points(800, 200));
+    const GapRepair repaired = sampled_and_repaired(surface, points(800, 200));
     EXPECT_EQ(repaired.report.points_added, 0u);
     EXPECT_EQ(repaired.report.passes.size(), 1u);
     expect_mended(surface, repaired);
@@ -94,16 +94,16 @@ TEST(GapRepair, AddsNothingToSolidsThatNeedNothing) {
 TEST(GapRepair, FollowsAWireThinnerThanTheSpacing) {
   TriangleMesh mesh = test::box({0, 0, 0}, {10, 0.02, 0.02});
   const Surface surface(std::move(mesh));
-  const Repaired repaired = sampled_and_repaired(surface, points(60, 0));
+  const GapRepair repaired = sampled_and_repaired(surface, points(60, 0));
   Index at_necks = 0;
-  for (const RepairPass& pass : repaired.report.passes) at_necks += pass.added_at_necks;
+  for (const GapRepairPass& pass : repaired.report.passes) at_necks += pass.added_at_necks;
   EXPECT_GT(at_necks, 0u);
   expect_mended(surface, repaired);
 }
 
 TEST(GapRepair, FindsTheHoleOfAThinRing) {
   const Surface surface(test::torus(48, 12, 1, 0.03));
-  const Repaired repaired = sampled_and_repaired(surface, points(60, 0));
+  const GapRepair repaired = sampled_and_repaired(surface, points(60, 0));
   EXPECT_GT(repaired.report.points_added, 0u);
   EXPECT_EQ(surface.report().euler_characteristic, 0);
   expect_mended(surface, repaired);
@@ -124,7 +124,7 @@ TEST(GapRepair, FindsAComponentThatNoPointLiesOn) {
     kept.origins.push_back(sampling.origins[i]);
   }
   VoronoiDiagram diagram = highest_first_voronoi(kept.points);
-  const Repaired repaired = repair_gap_crossings(surface, std::move(kept), std::move(diagram));
+  const GapRepair repaired = repair_gap_crossings(surface, std::move(kept), std::move(diagram));
   EXPECT_GE(repaired.report.points_added, 4u);
   expect_mended(surface, repaired);
 }
@@ -132,7 +132,7 @@ TEST(GapRepair, FindsAComponentThatNoPointLiesOn) {
 TEST(GapRepair, KeepsTheGivenPointsAndMarksItsOwn) {
   const Surface surface(test::u_shape(0.02));
   const SurfaceSampling before = sample_surface(surface, points(800, 200));
-  const Repaired repaired = repair_gap_crossings(surface, before, highest_first_voronoi(before.points));
+  const GapRepair repaired = repair_gap_crossings(surface, before, highest_first_voronoi(before.points));
   const SurfaceSampling& after = repaired.sampling;
   ASSERT_EQ(after.size(), before.size() + repaired.report.points_added);
   for (Index i = 0; i < after.size(); ++i) {
@@ -149,9 +149,9 @@ TEST(GapRepair, KeepsTheGivenPointsAndMarksItsOwn) {
 
 TEST(GapRepair, ReportsWhatItDidInEachPass) {
   const Surface surface(test::u_shape(0.02));
-  const Repaired repaired = sampled_and_repaired(surface, points(800, 200));
+  const GapRepair repaired = sampled_and_repaired(surface, points(800, 200));
   Index added = 0;
-  for (const RepairPass& pass : repaired.report.passes) {
+  for (const GapRepairPass& pass : repaired.report.passes) {
     EXPECT_LE(pass.faces_crossing, pass.faces_tested);
     EXPECT_LE(pass.cells_tested, repaired.sampling.size());
     EXPECT_EQ(pass.cells_crossing > 0, pass.faces_crossing > 0);
@@ -163,25 +163,25 @@ TEST(GapRepair, ReportsWhatItDidInEachPass) {
 
 TEST(GapRepair, StopsAfterTheGivenPassesAndCountsWhatIsLeft) {
   const Surface surface(test::u_shape(0.02));
-  const Repaired untouched = sampled_and_repaired(surface, points(800, 200), {.max_passes = 0});
+  const GapRepair untouched = sampled_and_repaired(surface, points(800, 200), {.max_passes = 0});
   EXPECT_EQ(untouched.report.points_added, 0u);
   EXPECT_GT(untouched.report.faces_still_crossing, 0u);
-  const Repaired once = sampled_and_repaired(surface, points(800, 200), {.max_passes = 1});
+  const GapRepair once = sampled_and_repaired(surface, points(800, 200), {.max_passes = 1});
   EXPECT_EQ(once.report.passes.size(), 1u);
   EXPECT_LT(once.report.faces_still_crossing, untouched.report.faces_still_crossing);
 }
 
 TEST(GapRepair, LeavesNothingUnderTheLooseDefinitionOfTheDissertation) {
   const Surface surface(test::extruded(test::knees(0.01), 1));
-  const Repaired repaired = sampled_and_repaired(surface, points(700, 150), {.definition = GapDefinition::loose});
+  const GapRepair repaired = sampled_and_repaired(surface, points(700, 150), {.definition = GapDefinition::loose});
   EXPECT_GT(repaired.report.points_added, 0u);
   EXPECT_EQ(repaired.report.faces_still_crossing, 0u);
 }
 
 TEST(GapRepair, EndsUnderTheStrictDefinitionThoughAVBouncesForEver) {
   const Surface surface(test::extruded(test::knees(0.01), 1));
-  const RepairOptions strict{.max_passes = 6, .definition = GapDefinition::strict};
-  const Repaired repaired = sampled_and_repaired(surface, points(700, 150), strict);
+  const GapRepairOptions strict{.max_passes = 6, .definition = GapDefinition::strict};
+  const GapRepair repaired = sampled_and_repaired(surface, points(700, 150), strict);
   EXPECT_LE(repaired.report.passes.size(), 6u);
   EXPECT_LT(repaired.report.faces_still_crossing, repaired.report.passes.front().faces_crossing);
 }
@@ -190,7 +190,7 @@ TEST(GapRepair, StrictFlagsAllThatLooseFlags) {
   const Surface surface(test::extruded(test::knees(0.01), 1));
   std::vector<Index> crossing;
   for (const GapDefinition definition : {GapDefinition::strict, GapDefinition::loose}) {
-    const Repaired repaired =
+    const GapRepair repaired =
         sampled_and_repaired(surface, points(700, 150), {.max_passes = 0, .definition = definition});
     crossing.push_back(repaired.report.faces_still_crossing);
   }
@@ -202,8 +202,8 @@ TEST(GapRepair, ForgivesSmallFoldsWithinTheJoinedRadius) {
   const Surface surface(test::extruded(test::v_notch(0.15), 1));
   Index last = kNone;
   for (const double radius : {0.0, 1.0, 4.0, 1000.0}) {
-    const Repaired repaired = sampled_and_repaired(surface, points(700, 150),
-                                                   {.max_passes = 0, .joined_radius = radius, .mend_necks = false});
+    const GapRepair repaired = sampled_and_repaired(surface, points(700, 150),
+                                                    {.max_passes = 0, .joined_radius = radius, .mend_necks = false});
     EXPECT_LE(repaired.report.faces_still_crossing, last);
     last = repaired.report.faces_still_crossing;
   }
@@ -212,7 +212,7 @@ TEST(GapRepair, ForgivesSmallFoldsWithinTheJoinedRadius) {
 
 TEST(GapRepair, GivesTheSameBytesOnAnyNumberOfThreads) {
   const Surface surface(test::extruded(test::thin_bridge(0.06), 1));
-  std::vector<Repaired> results;
+  std::vector<GapRepair> results;
   for (const std::size_t threads : {1u, 2u, 7u}) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
     results.push_back(sampled_and_repaired(surface, points(700, 250)));
@@ -226,8 +226,8 @@ TEST(GapRepair, GivesTheSameBytesOnAnyNumberOfThreads) {
 TEST(GapRepair, ScalesWithTheSolidByPowersOfTwo) {
   const TriangleMesh mesh = test::extruded(test::knees(0.05), 1);
   const Surface surface(mesh), large(test::transformed(mesh, 8, Vector::Zero()));
-  const Repaired a = sampled_and_repaired(surface, points(500, 100));
-  const Repaired b = sampled_and_repaired(large, points(500, 100));
+  const GapRepair a = sampled_and_repaired(surface, points(500, 100));
+  const GapRepair b = sampled_and_repaired(large, points(500, 100));
   ASSERT_EQ(a.sampling.size(), b.sampling.size());
   for (Index i = 0; i < a.sampling.size(); ++i) EXPECT_EQ(8 * a.sampling.points[i], b.sampling.points[i]);
 }
@@ -253,7 +253,7 @@ TEST(GapRepair, MendsTheBundledModels) {
     if (!std::filesystem::exists(file)) continue;
     SCOPED_TRACE(name);
     const Surface surface(read_mesh(file));
-    const Repaired repaired = sampled_and_repaired(surface, points(count - count / 5, count / 5));
+    const GapRepair repaired = sampled_and_repaired(surface, points(count - count / 5, count / 5));
     EXPECT_LT(4 * repaired.report.points_added, repaired.sampling.size() - repaired.report.points_added);
     expect_mended(surface, repaired);
   }
@@ -266,7 +266,7 @@ TEST(GapRepair, WithThinningNeedsFarFewerPointsForTheSame) {
     const auto repaired = [&](bool thin) {
       return repair_gap_crossings(surface, sampling, highest_first_voronoi(sampling.points), {.thin = thin});
     };
-    const Repaired doubled = repaired(false), thinned = repaired(true);
+    const GapRepair doubled = repaired(false), thinned = repaired(true);
     SCOPED_TRACE(name);
     EXPECT_EQ(doubled.report.points_removed, 0u);
     EXPECT_GT(thinned.report.points_removed, 0u);
@@ -289,7 +289,7 @@ TEST(GapRepair, MendsScansAndMachineParts) {
     if (!std::filesystem::exists(file)) continue;
     SCOPED_TRACE(name);
     const Surface surface(read_mesh(file));
-    const Repaired repaired = sampled_and_repaired(surface, points(1000, 200));
+    const GapRepair repaired = sampled_and_repaired(surface, points(1000, 200));
     EXPECT_LT(4 * repaired.report.points_added, repaired.sampling.size());
     expect_mended(surface, repaired);
   }

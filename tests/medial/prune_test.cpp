@@ -5,12 +5,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "axis/scale_axis.h"
 #include "known_axes.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/random.h"
 #include "orchard/medial/build.h"
 #include "orchard/medial/topology.h"
-#include "scale_axis.h"
 #include "support/shapes.h"
 
 namespace orchard {
@@ -88,9 +88,9 @@ TEST(Prune, ByScaleCutsTheSheetsIntoEdges) {
   // A ball on a sheet into an edge, at depth t, has its centre sqrt(2) (0.5 - t) from the largest one there, which
   // holds it when both are enlarged by more than sqrt(2).
   EXPECT_LT(pruned.size(), axis.size() / 2);
-  double least = 1;
-  for (const double radius : pruned.radii) least = std::min(least, radius);
-  EXPECT_GT(least, 0.3);
+  double min = 1;
+  for (const double radius : pruned.radii) min = std::min(min, radius);
+  EXPECT_GT(min, 0.3);
 }
 
 TEST(Prune, RefusesOptionsOutOfRange) {

@@ -8,7 +8,7 @@
 
 #include "known_axes.h"
 #include "orchard/geometry/error.h"
-#include "quality_parts.h"
+#include "quality/quality_parts.h"
 #include "support/shapes.h"
 
 namespace orchard {

@@ -1,9 +1,9 @@
-#include "repair_point.h"
+#include "gaps/repair_point.h"
 
 #include <gtest/gtest.h>
 
-#include "fold_bottom.h"
-#include "neck_test.h"
+#include "gaps/fold_bottom.h"
+#include "gaps/neck_test.h"
 #include "orchard/voronoi/exact.h"
 #include "outlines.h"
 #include "support/shapes.h"

@@ -1,12 +1,12 @@
-#include "restricted_voronoi.h"
+#include "gaps/restricted_voronoi.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "cell_patches.h"
-#include "joined_inside.h"
+#include "gaps/cell_patches.h"
+#include "gaps/joined_inside.h"
 #include "orchard/geometry/random.h"
 #include "orchard/voronoi/exact.h"
 #include "support/shapes.h"

@@ -7,7 +7,7 @@
 
 #include "orchard/geometry/random.h"
 #include "orchard/medial/build.h"
-#include "reconstruction.h"
+#include "quality/reconstruction.h"
 #include "support/shapes.h"
 
 namespace orchard {
@@ -111,7 +111,7 @@ TEST(MedialSegments, OfABoxAreItsThirteenSheets) {
     ++large;
     trunks += segment.trunk ? 1 : 0;
     if (segment.trunk) {
-      EXPECT_NEAR(segment.least_radius, 0.5, 0.05);
+      EXPECT_NEAR(segment.min_radius, 0.5, 0.05);
     }
   }
   EXPECT_EQ(large, 13u);
@@ -129,18 +129,18 @@ TEST(NearestBall, IsTheLeastOverTheCell) {
     if (seed % 11 == 0) balls[2].center = 0.5 * (balls[0].center + balls[1].center);  // corners on a line
     const Point query = 2 * point();
     const auto value = [&](const Sphere& ball) { return (query - ball.center).norm() - ball.radius; };
-    double least = 1e9;
+    double min = 1e9;
     constexpr int kSteps = 60;
     for (int i = 0; i <= kSteps; ++i) {
       for (int k = 0; i + k <= kSteps; ++k) {
         const double u = double(i) / kSteps, v = double(k) / kSteps, w = 1 - u - v;
-        least = std::min(least, value({w * balls[0].center + u * balls[1].center + v * balls[2].center,
-                                       w * balls[0].radius + u * balls[1].radius + v * balls[2].radius}));
+        min = std::min(min, value({w * balls[0].center + u * balls[1].center + v * balls[2].center,
+                                   w * balls[0].radius + u * balls[1].radius + v * balls[2].radius}));
       }
     }
     const double found = value(detail::nearest_ball(query, balls[0], balls[1], balls[2]));
-    EXPECT_LE(found, least + 1e-9) << seed;
-    EXPECT_GE(found, least - 0.02) << seed;
+    EXPECT_LE(found, min + 1e-9) << seed;
+    EXPECT_GE(found, min - 0.02) << seed;
   }
 }
 
@@ -159,12 +159,12 @@ TEST(Reconstruction, FindsTheNearestOfAllCells) {
   for (Index i = 0; i < 200; ++i) {
     Random random(4, i);
     const Point query(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2));
-    double least = 1e9;
-    const auto take = [&](const Sphere& s) { least = std::min(least, (query - s.center).norm() - s.radius); };
+    double min = 1e9;
+    const auto take = [&](const Sphere& s) { min = std::min(min, (query - s.center).norm() - s.radius); };
     for (Index v = 0; v < mesh.size(); ++v) take(ball(v));
     for (const auto& [a, b] : mesh.edges) take(detail::nearest_ball(query, ball(a), ball(b)));
     for (const auto& [a, b, c] : mesh.triangles) take(detail::nearest_ball(query, ball(a), ball(b), ball(c)));
-    EXPECT_NEAR(reconstruction.distance(query), least, 1e-12);
+    EXPECT_NEAR(reconstruction.distance(query), min, 1e-12);
   }
 }
 

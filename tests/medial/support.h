@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "interior.h"
+#include "axis/interior.h"
 #include "orchard/geometry/surface.h"
 #include "orchard/medial/axis.h"
 

@@ -90,7 +90,7 @@ Axis axis_topology(TriangleMesh mesh, bool repair, bool keep) {
   SurfaceSampling sampling = sample_surface(surface, {.face_points = 800, .edge_points = 200});
   VoronoiDiagram diagram = exact_voronoi(sampling.points);
   if (repair) {
-    Repaired repaired = repair_gap_crossings(surface, std::move(sampling), std::move(diagram));
+    GapRepair repaired = repair_gap_crossings(surface, std::move(sampling), std::move(diagram));
     sampling = std::move(repaired.sampling);
     diagram = std::move(repaired.diagram);
   }
@@ -133,7 +133,7 @@ TEST(GapRepairAtCuts, AddsNoPointsWhereSheetsCross) {
   ASSERT_TRUE(surface.solid());
   SurfaceSampling sampling = sample_surface(surface, {.face_points = 800, .edge_points = 200});
   VoronoiDiagram diagram = exact_voronoi(sampling.points);
-  const Repaired repaired = repair_gap_crossings(surface, sampling, std::move(diagram));
+  const GapRepair repaired = repair_gap_crossings(surface, sampling, std::move(diagram));
   EXPECT_GT(repaired.report.faces_at_cuts, 0u);
   EXPECT_EQ(repaired.report.faces_still_crossing, repaired.report.faces_at_cuts);
   EXPECT_LT(10 * repaired.report.points_added, sampling.size());

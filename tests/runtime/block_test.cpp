@@ -8,10 +8,10 @@
 #include <limits>
 
 #include "machine.h"
-#include "patch_block.h"
-#include "sphere_block.h"
+#include "pair/support_map.h"
 #include "support.h"
-#include "support_map.h"
+#include "tree/patch_block.h"
+#include "tree/sphere_block.h"
 
 namespace orchard::runtime::detail {
 namespace {

@@ -8,8 +8,8 @@
 #include "allocation.h"
 #include "bodies.h"
 #include "machine.h"
-#include "patch_block.h"
-#include "triangle_distance.h"
+#include "pair/triangle_distance.h"
+#include "tree/patch_block.h"
 
 namespace orchard::runtime {
 namespace {

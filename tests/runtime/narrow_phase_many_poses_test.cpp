@@ -5,7 +5,7 @@
 
 #include "bodies.h"
 #include "orchard/runtime/narrow_phase.h"
-#include "triangle_pair.h"
+#include "pair/triangle_pair.h"
 
 // Ten thousand poses, random and around the first contact, against every pair of triangles.
 namespace orchard::runtime {

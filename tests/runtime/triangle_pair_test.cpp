@@ -1,4 +1,4 @@
-#include "triangle_pair.h"
+#include "pair/triangle_pair.h"
 
 #include <gtest/gtest.h>
 

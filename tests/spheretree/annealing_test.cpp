@@ -25,7 +25,7 @@ void expect_conservative(const SphereTree& tree, const Surface& surface, const c
 AnnealingOptions quick(Index depth = 2) {
   AnnealingOptions options;
   options.depth = depth;
-  options.most_accepted = options.most_rejected = 20;
+  options.max_accepted = options.max_rejected = 20;
   options.iterations_first = 30;
   options.iterations = 10;
   return options;
@@ -79,7 +79,7 @@ TEST(AnnealedTree, IsTheSameOnOneTwoAndSevenThreads) {
 TEST(AnnealedTree, FitsTighterThanTheOctreeThatItStartsFrom) {
   const Surface surface(torus(24, 12));
   AnnealingOptions options = quick(1);
-  options.most_accepted = options.most_rejected = 200;
+  options.max_accepted = options.max_rejected = 200;
   options.iterations_first = 60;
   SphereTree tree = annealed_tree(surface, options);
   SphereTree start = octree(surface, {.depth = 1});
@@ -110,10 +110,10 @@ TEST(AnnealedTree, RefusesOptionsThatMakeNoSchedule) {
   options.cooling = 1;
   EXPECT_THROW(annealed_tree(surface, options), InputError);
   options = {};
-  options.least_scale = 2;
+  options.min_scale = 2;
   EXPECT_THROW(annealed_tree(surface, options), InputError);
   options = {};
-  options.most_rejected = 0;
+  options.max_rejected = 0;
   EXPECT_THROW(annealed_tree(surface, options), InputError);
 }
 

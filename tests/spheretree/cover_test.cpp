@@ -35,7 +35,7 @@ TEST(Cover, RepairsRandomlyShrunkenTreesByTheLeastOfGrowth) {
     const CoverReport report = cover(tree, surface);
     EXPECT_TRUE(surface_coverage(surface, path_balls(tree)).complete()) << "seed " << seed;
     EXPECT_GT(report.rounds, 0) << "seed " << seed;
-    EXPECT_LE(report.largest_growth * surface.bounding_radius(), 1.5 * shrunk) << "seed " << seed;
+    EXPECT_LE(report.max_growth * surface.bounding_radius(), 1.5 * shrunk) << "seed " << seed;
     for (std::size_t i = 0; i < tree.nodes.size(); ++i)
       EXPECT_GE(tree.nodes[i].sphere.radius, damaged.nodes[i].sphere.radius) << "seed " << seed;
   }

@@ -152,11 +152,11 @@ TEST(Pack, RefusesABallThatNoReaderWouldTake) {
 // The largest and the smallest meshes that are read make trees that load.
 TEST(Pack, MakesTreesThatLoadOfEveryMeshThatIsRead) {
   TriangleMesh shape = torus(16, 8);
-  double largest = 0;
-  for (const Point& p : shape.vertices) largest = std::max(largest, p.cwiseAbs().maxCoeff());
-  for (const double scale : {kLargestCoordinate / largest, 0.51 * kLeastExtent / largest, 1.0}) {
+  double max = 0;
+  for (const Point& p : shape.vertices) max = std::max(max, p.cwiseAbs().maxCoeff());
+  for (const double scale : {kMaxCoordinate / max, 0.51 * kMinExtent / max, 1.0}) {
     TriangleMesh mesh = transformed(shape, scale, Vector::Zero());
-    for (Point& p : mesh.vertices) p = p.cwiseMin(kLargestCoordinate).cwiseMax(-kLargestCoordinate);
+    for (Point& p : mesh.vertices) p = p.cwiseMin(kMaxCoordinate).cwiseMax(-kMaxCoordinate);
     ASSERT_NO_THROW(require_usable_size(mesh));
     const Surface surface(mesh);
     const auto packed = pack(measured(surface, 8, 2), surface);

@@ -36,14 +36,14 @@ class Solid {
   explicit Solid(const Surface& surface) : surface_(surface), oracle_(surface.mesh()) {}
   // Nothing where the point is all but on the surface.
   std::optional<double> signed_distance(const Point& point) const {
-    double least = std::numeric_limits<double>::infinity();
+    double min = std::numeric_limits<double>::infinity();
     for (Index t = 0; t < surface_.mesh().triangles.size(); ++t) {
       const auto [a, b, c] = surface_.corners(t);
-      least = std::min(least, closest_point_of_triangle(point, a, b, c).distance);
+      min = std::min(min, closest_point_of_triangle(point, a, b, c).distance);
     }
     const auto winding = oracle_.winding(point);
     if (!winding) return std::nullopt;
-    return *winding > 0 ? -least : least;
+    return *winding > 0 ? -min : min;
   }
 
  private:

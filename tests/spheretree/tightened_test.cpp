@@ -56,10 +56,10 @@ TEST(TightenedTree, GoesAsDeepAsAskedWithAnyBranching) {
     expect_conservative(tree, surface, "torus");
     EXPECT_EQ(tree.depth(), depth);
     const auto counts = level_counts(tree);
-    Index most = 1;
+    Index max = 1;
     for (std::size_t level = 1; level < counts.size(); ++level) {
-      most *= branching;
-      EXPECT_LE(counts[level], most);
+      max *= branching;
+      EXPECT_LE(counts[level], max);
       EXPECT_GT(counts[level], counts[level - 1]);
     }
   }

@@ -34,7 +34,7 @@ std::vector<Named> varying_trees(const Surface& surface) {
   const MedialAxis axis = axis_of(surface);
   AnnealingOptions annealing;
   annealing.refinement = refinement;
-  annealing.most_accepted = annealing.most_rejected = 10;
+  annealing.max_accepted = annealing.max_rejected = 10;
   annealing.iterations_first = annealing.iterations = 8;
   TightenOptions tightening;
   tightening.effort = Effort::low;

@@ -295,7 +295,7 @@ TEST(Verify, ListsNoMoreViolationsThanAskedForButCountsAll) {
   PackedSphereTree tree = packed_tree(surface);
   for (std::size_t b = 1; b < tree.blocks.size(); ++b)
     for (float& r : tree.blocks[b].radius) r *= r > 0 ? 0.5f : 1.0f;
-  const Verification result = verify(surface, tree, {.most_violations = 3});
+  const Verification result = verify(surface, tree, {.max_violations = 3});
   EXPECT_EQ(result.violations.size(), 3u);
   EXPECT_GT(result.triangles_uncovered, 3u);
 }

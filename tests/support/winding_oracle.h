@@ -61,9 +61,9 @@ class WindingOracle {
       const double ax = a[0][t] - q.x(), ay = a[1][t] - q.y(), bx = b[0][t] - q.x(), by = b[1][t] - q.y(),
                    cx = c[0][t] - q.x(), cy = c[1][t] - q.y();
       const double ab = ax * by - ay * bx, bc = bx * cy - by * cx, ca = cx * ay - cy * ax;
-      const double least = std::min({ab, bc, ca}), most = std::max({ab, bc, ca});
-      if (least < -kUnclear && most > kUnclear) continue;
-      if (least <= kUnclear && most >= -kUnclear) {  // a corner or an edge may be met
+      const double min = std::min({ab, bc, ca}), max = std::max({ab, bc, ca});
+      if (min < -kUnclear && max > kUnclear) continue;
+      if (min <= kUnclear && max >= -kUnclear) {  // a corner or an edge may be met
         if (std::max({ax, bx, cx}) < -kUnclear || std::min({ax, bx, cx}) > kUnclear ||
             std::max({ay, by, cy}) < -kUnclear || std::min({ay, by, cy}) > kUnclear)
           continue;

@@ -88,12 +88,12 @@ TEST(WriteVoronoiCells, TakesTheInaccuracyOfEachCell) {
   const std::vector<double> expected = cell_inaccuracies(diagram);
   write_voronoi_cells(folder / "cells.vtu", diagram);
   const auto grid = read(folder / "cells.vtu");
-  double greatest = 0;
+  double max = 0;
   for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
     EXPECT_EQ(value(grid, "inaccuracy", c), expected[static_cast<std::size_t>(value(grid, "point", c))]);
-    greatest = std::max(greatest, value(grid, "inaccuracy", c));
+    max = std::max(max, value(grid, "inaccuracy", c));
   }
-  EXPECT_GT(greatest, 0);
+  EXPECT_GT(max, 0);
 }
 
 TEST(WriteVoronoiCells, ShowsTheCellsThatAreAskedForAndClipsThem) {

@@ -66,11 +66,11 @@ template <class Number>
 bool facet_normal(const std::array<Point, 3>& p, Vector& normal, double& condition) {
   const Coordinates<Number> a(p[1], p[0]), b(p[2], p[0]), n = a.cross(b);
   const auto magnitude = [](const Number& x) { return x < 0 ? Number(-x) : x; };
-  const Number largest = std::max({magnitude(n.x), magnitude(n.y), magnitude(n.z)});
-  if (largest == 0) return false;
-  normal = Vector(rounded(Number(n.x / largest)), rounded(Number(n.y / largest)), rounded(Number(n.z / largest)));
+  const Number max = std::max({magnitude(n.x), magnitude(n.y), magnitude(n.z)});
+  if (max == 0) return false;
+  normal = Vector(rounded(Number(n.x / max)), rounded(Number(n.y / max)), rounded(Number(n.z / max)));
   normal.normalize();
-  condition = std::sqrt(rounded(a.dot(a)) * rounded(b.dot(b))) / rounded(largest);
+  condition = std::sqrt(rounded(a.dot(a)) * rounded(b.dot(b))) / rounded(max);
   return true;
 }
 

@@ -35,12 +35,12 @@ void expect_right_at_once(const std::string& name, const test::Points& points) {
 }
 
 // In steps of 1 to `most` points.
-void expect_right_in_pieces(const std::string& name, const test::Points& points, std::uint64_t most,
+void expect_right_in_pieces(const std::string& name, const test::Points& points, std::uint64_t max,
                             std::uint64_t seed) {
   Random random(seed, 0x91eceu);
   VoronoiDiagram diagram;
   for (std::size_t at = 0; at < points.size();) {
-    const std::size_t step = std::min<std::size_t>(points.size() - at, 1 + random.below(most));
+    const std::size_t step = std::min<std::size_t>(points.size() - at, 1 + random.below(max));
     insert_points(diagram, std::span(points).subspan(at, step));
     at += step;
   }
@@ -48,7 +48,7 @@ void expect_right_in_pieces(const std::string& name, const test::Points& points,
   if (!diagram.vertices.empty()) expect_right(name + ", in pieces", diagram);
 }
 
-std::uint64_t most_at_once(std::uint64_t seed) { return 1 + Random(seed, 0x57e9u).below(20); }
+std::uint64_t max_at_once(std::uint64_t seed) { return 1 + Random(seed, 0x57e9u).below(20); }
 
 TEST(ShakenSets, HaveRightDiagramsAtOnceAndInPieces) {
   unsigned long long first = 0, count = 120;
@@ -58,7 +58,7 @@ TEST(ShakenSets, HaveRightDiagramsAtOnceAndInPieces) {
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     const test::ShakenSet set = test::shaken_set(seed);
     expect_right_at_once(set.name, set.points);
-    expect_right_in_pieces(set.name, set.points, most_at_once(seed), seed);
+    expect_right_in_pieces(set.name, set.points, max_at_once(seed), seed);
   }
 }
 
@@ -68,14 +68,14 @@ TEST(ShakenSets, ThatHadWrongDiagramsOnceHaveRightOnes) {
   for (const std::uint64_t seed : {30004220, 17, 83, 127, 238, 320, 340, 360, 362, 5, 15, 26, 27, 34, 40, 42, 55, 74}) {
     const test::ShakenSet set = test::shaken_set(seed);
     expect_right_at_once(set.name, set.points);
-    for (const std::uint64_t most : {1, 4, 20}) expect_right_in_pieces(set.name, set.points, most, seed);
+    for (const std::uint64_t max : {1, 4, 20}) expect_right_in_pieces(set.name, set.points, max, seed);
   }
 }
 
 TEST(ShakenSets, InPiecesOfWhichFlatVerticesMadeWrongDiagramsHaveRightOnes) {
   for (const std::uint64_t seed : {60020389, 60021837, 60024323, 60033294}) {
     const test::ShakenSet set = test::shaken_set(seed);
-    expect_right_in_pieces(set.name, set.points, most_at_once(seed), seed);
+    expect_right_in_pieces(set.name, set.points, max_at_once(seed), seed);
   }
 }
 
@@ -86,8 +86,8 @@ TEST(ShakenSets, InFilesThatHadWrongDiagramsOnceHaveRightOnes) {
     if (!std::filesystem::exists(file)) continue;
     const test::Points points = read_points_or_mesh(file).vertices;
     expect_right_at_once(name, points);
-    for (const std::uint64_t most : {1, 3, 7, 20})
-      for (std::uint64_t seed = 0; seed < 5; ++seed) expect_right_in_pieces(name, points, most, seed);
+    for (const std::uint64_t max : {1, 3, 7, 20})
+      for (std::uint64_t seed = 0; seed < 5; ++seed) expect_right_in_pieces(name, points, max, seed);
   }
 }
 

@@ -31,7 +31,7 @@ class PathForest {
   double depth(const Point& point) const;
 
  private:
-  void descend(Index ball, const Point& point, double above, double& least) const;
+  void descend(Index ball, const Point& point, double above, double& min) const;
 
   std::vector<PathBall> balls_;
   std::vector<Index> roots_;

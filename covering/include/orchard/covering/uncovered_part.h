@@ -18,7 +18,7 @@ struct UncoveredPart {
 struct UncoveredPartOptions {
   double area_tolerance = 0.02;  // of the area itself: upper - lower
   DistanceTolerance depth_tolerance;
-  Index most_cells = 100'000;  // of all triangles together; where they run out, the bounds are wider
+  Index max_cells = 100'000;  // of all triangles together; where they run out, the bounds are wider
 };
 
 // Splits the given triangles into four until the boundary lemma or the depth at a cell's middle, which is 1-Lipschitz,

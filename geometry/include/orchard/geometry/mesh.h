@@ -30,7 +30,7 @@ void validate(const TriangleMesh& mesh);
 // The sizes of meshes that all of orchard works with, in mesh units: no coordinate is larger, and the longest side of
 // the bounding box is no shorter. The run-time computes with the squares of lengths in floats; beyond either limit
 // these overflow or lose their digits. read_mesh() checks it.
-inline constexpr double kLargestCoordinate = 1e15, kLeastExtent = 1e-12;
+inline constexpr double kMaxCoordinate = 1e15, kMinExtent = 1e-12;
 
 // Throws InputError, naming the limit, unless the mesh has a size in that range. A mesh without extent, which is a
 // fault of another kind, passes. Precondition: validate(mesh) passes.

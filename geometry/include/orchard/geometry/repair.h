@@ -24,7 +24,7 @@ struct MeshRepairReport {
   Index edges_cut = 0;           // where more than two triangles met
   Index vertices_split = 0;      // where parts of the surface touched at a point
   Index holes_filled = 0, triangles_added = 0;
-  double largest_hole = 0;           // of those filled: diameter in mesh units
+  double max_hole = 0;               // of those filled: diameter in mesh units
   Index parts_turned_outward = 0;    // components that were inside out
   Index cavities_turned_inward = 0;  // components inside another one that faced outward
   bool solid = false;                // MeshReport::solid() of the result

@@ -51,7 +51,7 @@ SurfaceSampling sample_surface(const Surface& surface, const SamplingOptions& op
 // How evenly points are spread, by the distance from each to the nearest other one on the same sheet of the surface.
 struct Evenness {
   double mean = 0;       // of the distances; the best possible is near sqrt(2 / sqrt(3) * area / points)
-  double least = 0;      // over the mean; 1 is perfect, a random spread has nearly 0
+  double min = 0;        // over the mean; 1 is perfect, a random spread has nearly 0
   double variation = 0;  // standard deviation over the mean; 0 is perfect, a random spread has 0.52
 };
 Evenness evenness(const SurfaceSampling& sampling, const Surface& surface);  // O(n); zeros below two points

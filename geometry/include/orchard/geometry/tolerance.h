@@ -28,6 +28,10 @@ inline constexpr double kVoronoiDepth = 1e-9;
 // degenerate vertices about 1e-9 apart on relaxed points; real neighbours are about a point spacing (1e-2) apart.
 inline constexpr double kCoalesce = 1e-7;
 
+// A medial ball's radius and its centre's distance to the surface are the same up to this: files have six to nine
+// digits.
+inline constexpr double kSameRadius = 1e-5;
+
 // What a step from one vertex to the next takes off a proven distance to the surface: a thousand roundings.
 inline constexpr double kClearance = 1e-12;
 

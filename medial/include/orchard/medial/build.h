@@ -1,4 +1,5 @@
 #pragma once
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -6,29 +7,20 @@
 
 #include "orchard/medial/axis.h"
 #include "orchard/medial/gap_crossing.h"
+#include "orchard/medial/import_axis.h"
 #include "orchard/medial/prune.h"
-#include "orchard/voronoi/highest_first.h"
+#include "orchard/voronoi/algorithms.h"
 
 namespace orchard {
 
 // All that can be tuned on the way from a surface to a medial axis.
 struct MedialBuildOptions {
   SamplingOptions sampling = {};
-  bool mend_gaps = true;
-  RepairOptions repair = {};
+  VoronoiAlgorithm algorithm = VoronoiAlgorithm::highest_first;
+  bool repair_gaps = true;  // repair gap crossings; gap_repair says how
+  GapRepairOptions gap_repair = {};
   AxisOptions axis{.keep_topology = true};
   PruneOptions prune = {};
-};
-
-struct MedialBuild {
-  SurfaceSampling sampling;  // with the points that gap repair added
-  Index points = 0;          // before
-  InsertionReport voronoi;
-  Index voronoi_vertices = 0;
-  RepairReport repair;
-  Index unpruned_vertices = 0;
-  MedialAxis axis;
-  std::vector<std::pair<std::string, double>> seconds;  // of each stage
 };
 
 // A diagram that the caller made, and where its points lie on the surface; the points of both are the same.
@@ -37,13 +29,31 @@ struct OwnDiagram {
   SurfaceSampling sampling;
 };
 
-// Points, Voronoi diagram, gap repair, axis, pruning. `own`: the caller's points instead of sampled ones (validate()
-// passes, no two coincide). Throws InputError unless surface.solid(), or if an option is out of range.
-MedialBuild build_medial_axis(const Surface& surface, const MedialBuildOptions& options = {},
-                              const Progress& progress = {}, std::optional<SurfaceSampling> own = {});
+// What stands in for the first steps of a build; at most one of them.
+struct MedialBuildInput {
+  std::optional<SurfaceSampling> sampling;  // the points, instead of sampled ones: validate() passes, no two coincide
+  std::optional<OwnDiagram> diagram;        // the points and their diagram; its gaps are not repaired
+  std::optional<MedialMesh> mesh;           // the axis itself, of any system, see import_axis()
+};
 
-// Axis and pruning alone: the diagram is taken as it is, its gaps are not repaired.
-MedialBuild build_medial_axis(const Surface& surface, const OwnDiagram& own, const MedialBuildOptions& options = {},
-                              const Progress& progress = {});
+// Everything that a build made, and how long each stage took.
+struct MedialBuild {
+  SurfaceSampling sampling;  // with the points that gap repair added, or an imported axis's contacts
+  Index points = 0;          // before
+  InsertionReport voronoi;
+  VoronoiDiagram diagram;  // empty for an imported axis
+  GapRepairReport gap_repair;
+  Index unpruned_vertices = 0;
+  MedialAxis axis;
+  Index balls_refused = 0, balls_adjusted = 0;  // of an imported axis, see ImportedAxis
+  double ball_adjustment = 0;
+  std::vector<std::pair<std::string, double>> seconds;  // stage, time
+};
+
+// The main line from a solid to its medial axis: points, Voronoi diagram, gap repair, axis, pruning. The time goes as
+// the parts': about n log n in the points. Throws InputError unless surface.solid(), if an option is out of range, or
+// if `input` has more than one of its values.
+MedialBuild build_medial_axis(const Surface& surface, const MedialBuildOptions& options = {},
+                              const Progress& progress = {}, MedialBuildInput input = {});
 
 }  // namespace orchard

@@ -18,7 +18,7 @@ enum class GapDefinition : std::uint8_t {
   strict,  // on clusters that hold the cell's point
 };
 
-struct RepairOptions {
+struct GapRepairOptions {
   // A bounce between the sides of a V or U ends here at the latest.
   int max_passes = 20;
   // A crossing is harmless, too, if the crossed triangle is joined to both points' triangles within the surface, inside
@@ -34,15 +34,15 @@ struct RepairOptions {
   bool thin = false;
 };
 
-struct RepairPass {
+struct GapRepairPass {
   // What is known when the pass begins. Cells that no new point touched are not tested again, nor their faces.
   Index cells_tested = 0, cells_crossing = 0;
   Index faces_tested = 0, faces_crossing = 0;  // of all cells; each shared one once
   Index added_by_projection = 0, added_by_snapping = 0, added_at_necks = 0, refused_as_coincident = 0;
 };
 
-struct RepairReport {
-  std::vector<RepairPass> passes;
+struct GapRepairReport {
+  std::vector<GapRepairPass> passes;
   Index points_added = 0;          // that are there at the end
   Index points_removed = 0;        // of the sampling's own, by thinning
   Index faces_still_crossing = 0;  // at the final full recheck
@@ -51,10 +51,10 @@ struct RepairReport {
   Index faces_at_cuts = 0;
 };
 
-struct Repaired {
+struct GapRepair {
   SurfaceSampling sampling;
   VoronoiDiagram diagram;
-  RepairReport report;
+  GapRepairReport report;
 };
 
 // Dissertation 6.2.4: finds faces of Voronoi cells that cross the surface where they should not, and adds surface
@@ -64,7 +64,7 @@ struct Repaired {
 // Preconditions: diagram.points equals sampling.points, highest_first_voronoi made it. Throws InputError unless
 // surface.solid(), or if the diagram cannot be that of the sampling. O(n) per pass for all but pathological inputs;
 // parallel, the same for any thread count.
-Repaired repair_gap_crossings(const Surface& surface, SurfaceSampling sampling, VoronoiDiagram diagram,
-                              const RepairOptions& options = {}, const Progress& progress = {});
+GapRepair repair_gap_crossings(const Surface& surface, SurfaceSampling sampling, VoronoiDiagram diagram,
+                               const GapRepairOptions& options = {}, const Progress& progress = {});
 
 }  // namespace orchard

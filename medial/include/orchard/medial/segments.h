@@ -24,7 +24,7 @@ struct MedialSegments {
     bool sheet = false;  // else a curve
     bool trunk = false;  // else a branch
     Index cells = 0;     // faces and walls of a sheet, edges of a curve
-    double least_radius = 0, most_radius = 0;
+    double min_radius = 0, max_radius = 0;
   };
   std::vector<Segment> segments;
   std::vector<Index> of_face, of_wall;  // segments

@@ -13,12 +13,12 @@ struct AnnealingOptions {
   Index depth = 3;      // levels below the root at most
   Index branching = 8;  // children of a node at most, 2..64
   SetEnergy energy = SetEnergy::maximum;
-  double move = 0.035;        // a translation at most, as a fraction of the parent's radius
-  double least_scale = 0.95;  // of a radius in one change
-  double greatest_scale = 1.053;
-  int first_trials = 40;                         // that set the first temperature
-  double first_acceptance = 0.5;                 // the part of worse changes that it lets pass
-  int most_accepted = 200, most_rejected = 200;  // changes at one temperature
+  double move = 0.035;      // a translation at most, as a fraction of the parent's radius
+  double min_scale = 0.95;  // of a radius in one change
+  double max_scale = 1.053;
+  int first_trials = 40;                       // that set the first temperature
+  double first_acceptance = 0.5;               // the part of worse changes that it lets pass
+  int max_accepted = 200, max_rejected = 200;  // changes at one temperature
   double cooling = 0.9;
   int iterations_first = 100;  // temperatures on the first level
   int iterations = 50;         // and below

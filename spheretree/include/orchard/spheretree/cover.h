@@ -7,7 +7,7 @@ namespace orchard {
 struct CoverReport {
   int rounds = 0;
   Index triangles_uncovered = 0;  // before the first round
-  double largest_growth = 0;      // of a radius, as a fraction of R
+  double max_growth = 0;          // of a radius, as a fraction of R
 };
 
 // Makes a tree conservative by the path rule (dissertation 6.3.2): finds what the boundary lemma cannot certify, and
@@ -17,7 +17,7 @@ CoverReport cover(SphereTree& tree, const Surface& surface, const Progress& prog
 
 // The same as dissertation 6.3.2 has it: in every round, the spheres that have an uncovered boundary in some triangle
 // grow by the factor; where a triangle has none, the nearest leaf and what is above it. cover() grows less, since it
-// grows one path for each spot, and only as far as it must.
+// grows one path for each region, and only as far as it must.
 CoverReport grow_to_cover(SphereTree& tree, const Surface& surface, double factor = 1.1, const Progress& progress = {});
 
 }  // namespace orchard

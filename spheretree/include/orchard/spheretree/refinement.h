@@ -18,11 +18,11 @@ struct Refinement {
 
   // The least that is allowed anywhere in the ball.
   double allowed(const Sphere& ball) const {
-    double least = std::numeric_limits<double>::infinity();
+    double min = std::numeric_limits<double>::infinity();
     for (const Region& region : regions)
-      if ((region.where.center - ball.center).norm() <= region.where.radius + ball.radius && region.error < least)
-        least = region.error;
-    return least < std::numeric_limits<double>::infinity() ? least : error;
+      if ((region.where.center - ball.center).norm() <= region.where.radius + ball.radius && region.error < min)
+        min = region.error;
+    return min < std::numeric_limits<double>::infinity() ? min : error;
   }
 };
 

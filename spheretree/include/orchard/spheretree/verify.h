@@ -27,7 +27,7 @@ struct Violation {
 };
 
 struct VerifyOptions {
-  Index most_violations = 100;  // listed; all are counted
+  Index max_violations = 100;  // listed; all are counted
 };
 
 struct Verification {
@@ -35,8 +35,8 @@ struct Verification {
   std::uint64_t nodes = 0, bounds_violated = 0;
   bool same_mesh = true;
   UncoveredPart uncovered;             // how much has no path, and how far off the paths are
-  std::vector<Index> uncovered_nodes;  // whose boundary an uncovered spot has, ascending
-  std::vector<double> largest_bound;   // stored distance bound by level, in mesh units; none in a tree without bounds
+  std::vector<Index> uncovered_nodes;  // whose boundary an uncovered region has, ascending
+  std::vector<double> max_bound;       // stored distance bound by level, in mesh units; none in a tree without bounds
   std::vector<Violation> violations;   // triangles first, ascending
   bool ok() const { return same_mesh && triangles_uncovered == 0 && triangles_unlisted == 0 && bounds_violated == 0; }
   // Nothing is wrong but that spheres meet without overlapping, which no rounded computation can tell from a gap.

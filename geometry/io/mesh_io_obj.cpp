@@ -1,0 +1,172 @@
+#include <algorithm>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "mesh_formats.h"
+#include "polygons.h"
+#include "text_scan.h"
+
+namespace orchard {
+namespace {
+
+// One pass over the bytes. Lines are counted only when there is something to complain about.
+class ObjReader {
+ public:
+  ObjReader(std::string_view bytes, const std::string& name)
+      : bytes_(bytes), name_(name), at_(bytes.data()), end_(bytes.data() + bytes.size()) {}
+
+  TriangleMesh read(bool needs_faces) {
+    if (const void* zero = bytes_.empty() ? nullptr : std::memchr(bytes_.data(), 0, bytes_.size())) {
+      fail_at_byte(name_, offset(static_cast<const char*>(zero)), "a zero byte; this is not an OBJ text file");
+    }
+    if (bytes_.starts_with("\xef\xbb\xbf")) at_ += 3;  // byte order mark
+    while (at_ != end_) read_statement();
+    for (const ForwardReference& face : forward_references_) {
+      if (face.vertex >= mesh_.vertices.size()) {
+        fail(face.at, "face names vertex " + std::to_string(face.vertex + std::uint64_t{1}) + ", but the file has " +
+                          std::to_string(mesh_.vertices.size()) + " vertices");
+      }
+    }
+    if (!needs_faces && mesh_.vertices.empty())
+      throw InputError(name_ + ": no vertices (lines that begin with \"v\") in " + std::to_string(bytes_.size()) +
+                       " bytes of OBJ");
+    if (needs_faces && faces_.empty())
+      throw InputError(name_ + ": no faces (lines that begin with \"f\") in " + std::to_string(bytes_.size()) +
+                       " bytes of OBJ");
+    mesh_.triangles = std::move(faces_).finish(mesh_.vertices);
+    return std::move(mesh_);
+  }
+
+ private:
+  struct ForwardReference {
+    const char* at;
+    Index vertex;
+  };
+
+  std::size_t offset(const char* position) const { return static_cast<std::size_t>(position - bytes_.data()); }
+  [[noreturn]] void fail(const char* position, const std::string& fault) const {
+    fail_at_line(name_, bytes_, offset(position), fault);
+  }
+  std::string token(const char* position) const {
+    const char* stop = position;
+    while (stop != end_ && !is_blank(*stop) && !is_line_end(*stop)) ++stop;
+    return in_quotes({position, stop});
+  }
+
+  // Past the line end that a backslash at at_ hides; 0 if it hides none.
+  std::ptrdiff_t continuation_length() const {
+    if (end_ - at_ < 2 || *at_ != '\\') return 0;
+    if (at_[1] == '\r' && end_ - at_ > 2 && at_[2] == '\n') return 3;
+    return is_line_end(at_[1]) ? 2 : 0;
+  }
+  void skip_blanks() {
+    while (at_ != end_) {
+      if (is_blank(*at_)) {
+        ++at_;
+      } else if (const std::ptrdiff_t length = continuation_length()) {
+        at_ += length;
+      } else {
+        return;
+      }
+    }
+  }
+  bool at_token_end() const { return at_statement_end() || is_blank(*at_) || continuation_length() != 0; }
+  bool at_statement_end() const { return at_ == end_ || is_line_end(*at_) || *at_ == '#'; }
+
+  // To the end of the statement; a comment ends with its line, whatever its last character.
+  void skip_statement() {
+    bool comment = false;
+    while (at_ != end_ && !is_line_end(*at_)) {
+      comment = comment || *at_ == '#';
+      const std::ptrdiff_t length = *at_ == '\\' && !comment ? continuation_length() : 0;
+      at_ += length > 0 ? length : 1;
+    }
+    while (at_ != end_ && is_line_end(*at_)) ++at_;
+  }
+
+  void read_statement() {
+    skip_blanks();
+    if (at_ == end_) return;
+    const char* keyword = at_;
+    const char first = *at_;
+    if (first == 'v' || first == 'f') {
+      ++at_;
+      if (first == 'f' && at_ != end_ && *at_ == 'o') ++at_;  // the older name of "f"
+      if (at_token_end()) first == 'v' ? read_vertex(keyword) : read_face(keyword);
+    }
+    skip_statement();
+  }
+
+  void read_vertex(const char* statement) {
+    Point& vertex = mesh_.vertices.emplace_back();
+    for (int i = 0; i < 3; ++i) {
+      skip_blanks();
+      if (at_statement_end()) fail(statement, "vertex has " + std::to_string(i) + " coordinates; it needs 3");
+      const char* number = at_;
+      if (!scan_double(at_, end_, vertex[i]) || !at_token_end() || !std::isfinite(vertex[i])) {
+        fail(number, "vertex coordinate " + token(number) + " is not a finite number");
+      }
+    }
+    if (mesh_.vertices.size() >= kNone) fail(statement, "too many vertices for 32-bit indices");
+  }
+
+  void read_face(const char* statement) {
+    corners_.clear();
+    Index highest = 0;
+    for (skip_blanks(); !at_statement_end(); skip_blanks()) {
+      corners_.push_back(read_corner());
+      highest = std::max(highest, corners_.back());
+    }
+    if (corners_.size() < 3) {
+      fail(statement, "face has " + std::to_string(corners_.size()) + " corners; it needs at least 3");
+    }
+    // A later face is worth remembering only if it names a higher vertex.
+    if (highest >= mesh_.vertices.size() &&
+        (forward_references_.empty() || highest > forward_references_.back().vertex)) {
+      forward_references_.push_back({statement, highest});
+    }
+    faces_.add(corners_);
+  }
+
+  // v, v/vt, v//vn or v/vt/vn. Texture and normal indices must be integers, but nobody looks them up.
+  Index read_corner() {
+    const char* corner = at_;
+    std::int64_t vertex = 0, unused = 0;
+    bool good = scan_integer(at_, end_, vertex);
+    for (int i = 0; good && i < 2 && at_ != end_ && *at_ == '/'; ++i) {
+      ++at_;
+      if (!at_token_end() && *at_ != '/') good = scan_integer(at_, end_, unused);
+    }
+    if (!good || !at_token_end()) {
+      fail(corner, "face corner " + token(corner) + " is none of v, v/vt, v//vn, v/vt/vn");
+    }
+    const auto count = static_cast<std::int64_t>(mesh_.vertices.size());
+    if (vertex == 0) fail(corner, "face names vertex 0; OBJ counts from 1");
+    if (vertex < -count) {
+      fail(corner, "face names vertex " + std::to_string(vertex) + ", but only " + std::to_string(count) +
+                       " vertices come before it");
+    }
+    if (vertex >= kNone) fail(corner, "face names vertex " + std::to_string(vertex) + ", beyond 32-bit indices");
+    return static_cast<Index>(vertex > 0 ? vertex - 1 : count + vertex);
+  }
+
+  std::string_view bytes_;
+  const std::string& name_;
+  const char* at_;
+  const char* end_;
+  TriangleMesh mesh_;
+  FaceCollector faces_;
+  std::vector<Index> corners_;
+  std::vector<ForwardReference> forward_references_;  // ascending by vertex
+};
+
+}  // namespace
+
+TriangleMesh read_obj(std::string_view bytes, const std::string& name) { return ObjReader(bytes, name).read(true); }
+
+TriangleMesh read_obj_or_points(std::string_view bytes, const std::string& name) {
+  return ObjReader(bytes, name).read(false);
+}
+
+}  // namespace orchard

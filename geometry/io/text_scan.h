@@ -1,0 +1,54 @@
+#pragma once
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "orchard/geometry/error.h"
+
+namespace orchard {
+
+inline bool is_line_end(char c) { return c == '\n' || c == '\r'; }
+inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
+
+// Number of the line, counted from 1, that `offset` lies on. Lines end with \n, \r\n or \r.
+std::size_t line_number(std::string_view bytes, std::size_t offset);
+
+// `text` cut to a length and to characters that are fit for a message, in quotes.
+std::string in_quotes(std::string_view text);
+
+[[noreturn]] void fail_at_line(const std::string& name, std::string_view bytes, std::size_t offset,
+                               const std::string& fault);
+[[noreturn]] void fail_at_byte(const std::string& name, std::size_t offset, const std::string& fault);
+
+// Whether a well-formed decimal number, which no double can hold, is too small rather than too large.
+bool is_tiny(std::string_view number);
+
+// Reads the number at `at`, which moves past it: any form of C, an optional plus sign, never the locale. False, with
+// `at` unmoved, if there is none or it is too large. Reads "inf" and "nan" too.
+inline bool scan_double(const char*& at, const char* end, double& value) {
+  const char* first = at;
+  if (first != end && *first == '+' && first + 1 != end && first[1] != '-') ++first;
+  const auto [stop, error] = std::from_chars(first, end, value);
+  if (error == std::errc::result_out_of_range) {
+    if (!is_tiny({first, stop})) return false;
+    value = 0;
+  } else if (error != std::errc()) {
+    return false;
+  }
+  at = stop;
+  return true;
+}
+
+inline bool scan_integer(const char*& at, const char* end, std::int64_t& value) {
+  const char* first = at;
+  if (first != end && *first == '+' && first + 1 != end && first[1] != '-') ++first;
+  const auto [stop, error] = std::from_chars(first, end, value);
+  if (error != std::errc()) return false;
+  at = stop;
+  return true;
+}
+
+}  // namespace orchard

@@ -1,0 +1,79 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "orchard/geometry/surface.h"
+
+namespace orchard {
+namespace {
+
+// A point of a triangle as seen from the query.
+struct Foot {
+  Vector offset;  // from the query; its length keeps its digits where the position's rounding would swamp it
+  double squared = 0;
+  Point position;
+  Feature feature = Feature::face;
+};
+
+Foot at_vertex(const Vector& offset, const Point& vertex, Feature feature) {
+  return {offset, offset.squaredNorm(), vertex, feature};
+}
+
+// The nearest point of the edge from corner i, whose ends are p and q, or a and b as seen from the query. Both
+// triangles at an edge get the same bits out of it, whatever the direction in which they run along it. A foot within
+// `snap` of an end is that end.
+Foot on_edge(const Point& p, const Point& q, const Vector& a, const Vector& b, int i, double snap) {
+  const auto start = static_cast<Feature>(static_cast<int>(Feature::vertex0) + i);
+  const auto end = static_cast<Feature>(static_cast<int>(Feature::vertex0) + (i + 1) % 3);
+  const Vector edge = b - a;
+  const double to_end = -a.dot(edge), to_start = b.dot(edge);  // weights of the ends
+  if (!(to_end > 0)) return at_vertex(a, p, start);
+  if (!(to_start > 0)) return at_vertex(b, q, end);
+  const double sum = to_end + to_start;
+  const Vector offset = a * (to_start / sum) + b * (to_end / sum);
+  if ((offset - a).squaredNorm() <= snap * snap) return at_vertex(a, p, start);
+  if ((offset - b).squaredNorm() <= snap * snap) return at_vertex(b, q, end);
+  const Point position = to_end < to_start ? Point(p + edge * (to_end / sum)) : Point(q - edge * (to_start / sum));
+  return {offset, offset.squaredNorm(), position, static_cast<Feature>(static_cast<int>(Feature::edge0) + i)};
+}
+
+}  // namespace
+
+// The first case, the interior, is solved on the longest edge and the height over it, which stays accurate on needles;
+// the edges are measured in any case, so a poor interior foot cannot hide a better one.
+ClosestPoint closest_point_of_triangle(const Point& query, const Point& a, const Point& b, const Point& c) {
+  const std::array<Point, 3> corners{a, b, c};
+  const std::array<Vector, 3> seen{a - query, b - query, c - query};
+  const auto max = [](const Point& p) { return p.cwiseAbs().maxCoeff(); };
+  // What rounding the coordinates can move a point by: nearer feet than that are told apart by nothing.
+  const double snap = 8 * std::numeric_limits<double>::epsilon() * std::max({max(query), max(a), max(b), max(c)});
+
+  Foot best = on_edge(a, b, seen[0], seen[1], 0, snap);
+  std::size_t longest = 0;
+  double longest_squared = (b - a).squaredNorm();
+  for (std::size_t i = 1; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    const Foot foot = on_edge(corners[i], corners[j], seen[i], seen[j], static_cast<int>(i), snap);
+    if (foot.squared < best.squared) best = foot;
+    const double squared = (corners[j] - corners[i]).squaredNorm();
+    if (squared > longest_squared) longest = i, longest_squared = squared;
+  }
+
+  const Vector& start = seen[longest];
+  const Vector base = corners[(longest + 1) % 3] - corners[longest];
+  const Vector side = corners[(longest + 2) % 3] - corners[longest];
+  const double foot_of_apex = side.dot(base) / longest_squared;
+  Vector height = side - foot_of_apex * base;
+  height -= (height.dot(base) / longest_squared) * base;
+  const double x = -start.dot(base) / longest_squared, y = -start.dot(height) / height.squaredNorm();
+  const double weight = x - foot_of_apex * y;   // of the end of the base; y is the apex's
+  if (y > 0 && weight > 0 && weight + y < 1) {  // false for NaN: no area
+    const Vector shift = x * base + y * height, offset = start + shift;
+    const double squared = offset.squaredNorm();
+    if (squared < best.squared && (offset - best.offset).squaredNorm() > snap * snap)
+      best = {offset, squared, corners[longest] + shift, Feature::face};
+  }
+  return {best.position, std::sqrt(best.squared), kNone, best.feature};
+}
+
+}  // namespace orchard

@@ -1,0 +1,75 @@
+#include "orchard/geometry/repair.h"
+
+#include <charconv>
+
+#include "orchard/geometry/mesh_check.h"
+#include "repair_steps.h"
+
+namespace orchard {
+namespace {
+
+std::string in_digits(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, 3).ptr};
+}
+
+void close(TriangleMesh& mesh, const RepairMeshOptions& options, MeshRepairReport& report) {
+  detail::weld_vertices(mesh, report);
+  detail::drop_degenerate(mesh, report);
+  detail::drop_duplicates(mesh, report);
+  if (mesh.triangles.empty()) return;
+  detail::orient_patches(mesh, report);
+  // Before cutting, because holes that touch at a vertex are two; after it, because a cut can open one.
+  detail::fill_holes(mesh, options, report);
+  detail::cut_apart(mesh, report);
+  detail::fill_holes(mesh, options, report);
+  // The hole between an edge and its two halves is a triangle without area.
+  detail::drop_degenerate(mesh, report);
+  const MeshReport check = check_mesh(mesh);
+  if (check.closed() && check.manifold() && check.misoriented_edges == 0 && check.degenerate_triangles == 0)
+    detail::orient_parts(mesh, report);
+}
+
+}  // namespace
+
+MeshRepairReport repair_mesh(TriangleMesh& mesh, const RepairMeshOptions& options) {
+  validate(mesh);
+  MeshRepairReport report;
+  // Parts that repeat or hold each other are no fault to check_mesh().
+  const MeshReport before = check_mesh(mesh);
+  if (!before.solid()) {
+    close(mesh, options, report);
+  } else if (before.components > 1) {
+    detail::orient_parts(mesh, report);
+  }
+  const MeshReport after = check_mesh(mesh);
+  report.solid = after.solid();
+  report.faults = after.faults();
+  // Else the faults name vertices, and the user knows those by their numbers in the file.
+  if (report.solid) detail::drop_unused_vertices(mesh, report);
+  return report;
+}
+
+std::vector<std::string> MeshRepairReport::lines() const {
+  std::vector<std::string> lines;
+  const auto say = [&](Index count, const std::string& verb, const std::string& one, const std::string& many,
+                       const std::string& rest) {
+    if (count > 0) lines.push_back(verb + " " + std::to_string(count) + " " + (count == 1 ? one : many) + rest);
+  };
+  say(vertices_welded, "welded", "vertex", "vertices", " to another in the same place");
+  say(unused_vertices_dropped, "dropped", "vertex", "vertices", " that no triangle uses");
+  say(degenerate_dropped, "dropped", "triangle", "triangles", " without area");
+  say(neighbors_split, "split", "triangle", "triangles", " at a vertex that lay on an edge");
+  say(duplicates_dropped, "dropped", "triangle", "triangles", " that lay on another");
+  say(flipped, "turned", "triangle", "triangles", " round to agree with the neighbours");
+  say(edges_cut, "cut", "edge", "edges", " where more than two triangles met");
+  say(vertices_split, "split", "vertex", "vertices", " where parts of the surface touched");
+  say(holes_filled, "filled", "hole", "holes",
+      " with " + std::to_string(triangles_added) + (triangles_added == 1 ? " triangle" : " triangles") +
+          (holes_filled == 1 ? ", " : ", the largest ") + in_digits(max_hole) + " across");
+  say(parts_turned_outward, "turned", "part", "parts", " outward that faced inward");
+  say(cavities_turned_inward, "turned", "part", "parts", " inside another inward: it bounds a cavity");
+  return lines;
+}
+
+}  // namespace orchard

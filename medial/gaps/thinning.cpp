@@ -1,0 +1,116 @@
+#include "thinning.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace orchard::detail {
+namespace {
+
+constexpr double kCrowded = 0.75;  // in spacings; relaxed points keep about 1 apart
+constexpr double kSameSide = 0.5;  // cosine of the angle between normals: 60 degrees
+constexpr double kFacing = -kSameSide;
+
+// Of each point, those within `reach`, by a grid of cells that wide.
+Rows points_near(const std::vector<Point>& points, double reach) {
+  using Cell = std::array<std::int64_t, 3>;
+  const auto cell_of = [&](const Point& point) {
+    Cell cell{};
+    for (int axis = 0; axis < 3; ++axis) {
+      cell[static_cast<std::size_t>(axis)] =
+          static_cast<std::int64_t>(std::floor((point[axis] - points[0][axis]) / reach));
+    }
+    return cell;
+  };
+  std::vector<std::pair<Cell, Index>> sorted;
+  for (Index i = 0; i < points.size(); ++i) sorted.emplace_back(cell_of(points[i]), i);
+  std::sort(sorted.begin(), sorted.end());
+  Rows near;
+  for (Index i = 0; i < points.size(); ++i) {
+    const Cell cell = cell_of(points[i]);
+    for (std::int64_t x = -1; x <= 1; ++x) {
+      for (std::int64_t y = -1; y <= 1; ++y) {
+        const Cell first{cell[0] + x, cell[1] + y, cell[2] - 1}, last{cell[0] + x, cell[1] + y, cell[2] + 1};
+        auto other = std::lower_bound(sorted.begin(), sorted.end(), std::pair{first, Index{0}});
+        for (; other != sorted.end() && other->first <= last; ++other) {
+          const Index k = other->second;
+          if (k != i && (points[k] - points[i]).squaredNorm() <= reach * reach) near.items.push_back(k);
+        }
+      }
+    }
+    near.close_row();
+  }
+  return near;
+}
+
+class Thinning {
+ public:
+  Thinning(const Surface& surface, const SurfaceSampling& sampling, double spacing)
+      : points_(sampling.points), near_(points_near(points_, spacing)), stays_(points_.size(), 1) {
+    for (Index i = 0; i < points_.size(); ++i) {
+      normals_.push_back(surface.pseudonormal(sampling.triangles[i], sampling.features[i]));
+    }
+    for (Index i = 0; i < points_.size(); ++i) across_.push_back(nearest(i, -1, kFacing));
+  }
+
+  std::vector<std::uint8_t> run(double crowded) {
+    std::vector<std::pair<double, Index>> pairs;
+    for (Index i = 0; i < points_.size(); ++i) {
+      const Index other = across_[i];
+      if (other != kNone && other > i && across_[other] == i) pairs.emplace_back(gap(i), i);
+    }
+    std::sort(pairs.begin(), pairs.end());
+    for (const auto& [distance, i] : pairs) {
+      if (gap(i) < crowded && gap(across_[i]) < crowded) stays_[i] = stays_[across_[i]] = 0;
+    }
+    return std::move(stays_);
+  }
+
+ private:
+  // The nearest point that stays and whose normal has a cosine with that of i between the two; kNone if there is none.
+  Index nearest(Index i, double min, double max) const {
+    Index best = kNone;
+    double squared = std::numeric_limits<double>::infinity();
+    for (const Index k : near_[i]) {
+      const double cosine = normals_[k].dot(normals_[i]);
+      const double candidate = (points_[k] - points_[i]).squaredNorm();
+      if (!stays_[k] || cosine < min || cosine > max || !(candidate < squared)) continue;
+      squared = candidate;
+      best = k;
+    }
+    return best;
+  }
+  double gap(Index i) const {
+    const Index other = nearest(i, kSameSide, 2);
+    return other == kNone ? std::numeric_limits<double>::infinity() : (points_[other] - points_[i]).norm();
+  }
+
+  const std::vector<Point>& points_;
+  const Rows near_;
+  std::vector<std::uint8_t> stays_;
+  std::vector<Vector> normals_;
+  std::vector<Index> across_;
+};
+
+}  // namespace
+
+std::vector<std::uint8_t> without_crowded_pairs(const Surface& surface, const SurfaceSampling& sampling,
+                                                double spacing) {
+  return Thinning(surface, sampling, spacing).run(kCrowded * spacing);
+}
+
+SurfaceSampling points_that_stay(const SurfaceSampling& sampling, const std::vector<std::uint8_t>& stay) {
+  SurfaceSampling result;
+  for (Index i = 0; i < sampling.size(); ++i) {
+    if (!stay[i]) continue;
+    result.points.push_back(sampling.points[i]);
+    result.triangles.push_back(sampling.triangles[i]);
+    result.features.push_back(sampling.features[i]);
+    result.origins.push_back(sampling.origins[i]);
+  }
+  return result;
+}
+
+}  // namespace orchard::detail

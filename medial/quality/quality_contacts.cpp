@@ -1,0 +1,106 @@
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "quality_parts.h"
+
+namespace orchard::detail {
+namespace {
+
+constexpr double kPrecision = 1e-3;  // of the distance to the second contact
+constexpr double kTinyBall = 1e-6;   // of the diagonal: its contacts are rounding
+
+// The nearest point, outside a cone around the first contact, of triangles given one after the other.
+class ContactSearch {
+ public:
+  ContactSearch(const Point& center, const Vector& direction, double angle)
+      : center_(center), direction_(direction), cosine_(std::cos(angle)) {}
+
+  double nearest() const { return nearest_; }
+
+  // The cone is convex: a piece whose corners are inside it is inside. Of a piece across its border the nearest point
+  // counts if that is outside, else halves are looked at.
+  void look_at(const Point& a, const Point& b, const Point& c) {
+    const ClosestPoint closest = closest_point_of_triangle(center_, a, b, c);
+    if (closest.distance >= (1 - kPrecision) * nearest_) return;
+    if (in_cone(a) && in_cone(b) && in_cone(c)) return;
+    if (!in_cone(closest.position)) {
+      nearest_ = closest.distance;
+      return;
+    }
+    const double ab = (b - a).squaredNorm(), bc = (c - b).squaredNorm(), ca = (a - c).squaredNorm();
+    const double longest = std::max({ab, bc, ca});
+    if (longest <= std::pow(kPrecision * closest.distance, 2)) {
+      for (const Point& corner : {a, b, c}) {
+        if (!in_cone(corner)) nearest_ = std::min(nearest_, (corner - center_).norm());
+      }
+      return;
+    }
+    if (ab == longest) return look_at_halves(a, b, c);
+    if (bc == longest) return look_at_halves(b, c, a);
+    look_at_halves(c, a, b);
+  }
+
+ private:
+  void look_at_halves(const Point& a, const Point& b, const Point& c) {
+    const Point middle = 0.5 * (a + b);
+    look_at(a, middle, c);
+    look_at(middle, b, c);
+  }
+  bool in_cone(const Point& point) const {
+    const Vector way = point - center_;
+    return way.dot(direction_) > cosine_ * way.norm();
+  }
+
+  Point center_;
+  Vector direction_;
+  double cosine_;
+  double nearest_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace
+
+double second_contact_distance(const Surface& surface, const Point& center, const Vector& direction, double angle,
+                               double reach) {
+  const double max = (center - surface.bounding_ball().center).norm() + surface.bounding_radius();
+  std::vector<Index> triangles;
+  for (;; reach *= 1.5) {
+    reach = std::min(reach, max);
+    surface.triangles_near({center, reach}, triangles);
+    ContactSearch search(center, direction, angle);
+    for (const Index triangle : triangles) {
+      const auto [a, b, c] = surface.corners(triangle);
+      search.look_at(a, b, c);
+    }
+    if (search.nearest() <= reach || reach >= max) return search.nearest();
+  }
+}
+
+void measure_contacts(const Surface& surface, const QualityBalls& balls, const QualityOptions& options,
+                      MedialQuality& quality) {
+  const std::size_t count = balls.vertices.size();
+  std::vector<double> radius_error(count);
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    radius_error[i] = std::abs(balls.vertices[i].radius - surface.distance(balls.vertices[i].center));
+  });
+  quality.radius_error = spread_of(radius_error);
+
+  const std::size_t chosen = std::min<std::size_t>(count, options.contact_cells);
+  std::vector<double> off(chosen, -1);
+  tbb::parallel_for(std::size_t{0}, chosen, [&](std::size_t i) {
+    const Sphere& ball = balls.vertices[i * count / chosen];
+    if (!(ball.radius > kTinyBall * quality.diagonal)) return;
+    const ClosestPoint first = surface.closest(ball.center);
+    if (!(first.distance > 0)) return;
+    const Vector direction = (first.position - ball.center) / first.distance;
+    const double reach = 1.05 * std::max(ball.radius, first.distance);
+    const double second = second_contact_distance(surface, ball.center, direction, options.contact_angle, reach);
+    if (std::isfinite(second)) off[i] = std::abs(second - ball.radius) / ball.radius;
+  });
+  std::erase(off, -1.0);
+  quality.centredness = spread_of(off);
+}
+
+}  // namespace orchard::detail

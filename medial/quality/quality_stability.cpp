@@ -1,0 +1,150 @@
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "orchard/geometry/random.h"
+#include "orchard/medial/quality.h"
+
+namespace orchard {
+namespace {
+
+constexpr std::uint64_t kNoiseStage = 0x6e6f69;
+constexpr double kHysteresis = 0.1745;  // radians, 10 degrees: a part at the threshold does not count as lost
+
+// Each vertex moved to a random place in a ball around it.
+TriangleMesh with_noise(TriangleMesh mesh, double max, std::uint64_t seed) {
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    Random random(seed, kNoiseStage, i);
+    Vector step;
+    do {
+      step = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+    } while (step.squaredNorm() > 1);
+    mesh.vertices[i] += max * step;
+  }
+  return mesh;
+}
+
+// The points of the build, without those that gap repair added, where the moved mesh has them.
+SurfaceSampling carried_along(const MedialBuild& build, const Surface& from, const Surface& to) {
+  SurfaceSampling sampling = build.sampling;
+  const Index own = build.points - build.gap_repair.points_removed;
+  sampling.points.resize(own);
+  sampling.triangles.resize(own);
+  sampling.features.resize(own);
+  sampling.origins.resize(own);
+  for (Index i = 0; i < own; ++i) {
+    const auto [a, b, c] = from.corners(sampling.triangles[i]);
+    const auto [p, q, r] = to.corners(sampling.triangles[i]);
+    const Vector u = b - a, v = c - a, normal = u.cross(v), place = sampling.points[i] - a;
+    const double beta = v.cross(normal).dot(place) / normal.squaredNorm();
+    const double gamma = normal.cross(u).dot(place) / normal.squaredNorm();
+    sampling.points[i] = p + beta * (q - p) + gamma * (r - p);
+  }
+  return sampling;
+}
+
+struct Part {
+  std::vector<Point> points;  // vertices with a wide enough angle
+  TriangleMesh sheets;  // what of the axis has one that is a little smaller, flat triangles for edges and vertices
+};
+
+// Cuts the axis where its angle, linear between vertices, is the least that counts: cells may be long, and one with a
+// corner beyond the threshold is not lost with it.
+class SheetCutter {
+ public:
+  SheetCutter(const MedialAxis& axis, const std::vector<double>& angles, double min)
+      : axis_(axis), angles_(angles), min_(min) {
+    sheets_.vertices = axis.centers;
+  }
+
+  TriangleMesh run() {
+    for (Index i = 0; i < axis_.size(); ++i) {
+      if (wide(i)) sheets_.triangles.push_back({i, i, i});
+      for (const Index next : axis_.neighbors[i]) {
+        if (next > i) cut_edge(i, next);
+      }
+    }
+    for (Index face = 0; face < axis_.faces.size(); ++face) cut_face(axis_.faces[face]);
+    return std::move(sheets_);
+  }
+
+ private:
+  bool wide(Index vertex) const { return angles_[vertex] > min_; }
+
+  // The place between a wide and a narrow vertex.
+  Index crossing(Index a, Index b) {
+    const double t = (min_ - angles_[a]) / (angles_[b] - angles_[a]);
+    sheets_.vertices.push_back(axis_.centers[a] + t * (axis_.centers[b] - axis_.centers[a]));
+    return static_cast<Index>(sheets_.vertices.size()) - 1;
+  }
+  void cut_edge(Index a, Index b) {
+    if (!wide(a)) std::swap(a, b);
+    if (!wide(a)) return;
+    const Index end = wide(b) ? b : crossing(a, b);
+    sheets_.triangles.push_back({a, end, end});
+  }
+  void cut_face(std::span<const Index> corners) {
+    std::vector<Index> left;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const Index corner = corners[k], next = corners[(k + 1) % corners.size()];
+      if (wide(corner)) left.push_back(corner);
+      if (wide(corner) != wide(next)) left.push_back(crossing(corner, next));
+    }
+    for (std::size_t k = 1; k + 1 < left.size(); ++k) sheets_.triangles.push_back({left[0], left[k], left[k + 1]});
+  }
+
+  const MedialAxis& axis_;
+  const std::vector<double>& angles_;
+  const double min_;
+  TriangleMesh sheets_;
+};
+
+Part wide_part(const MedialAxis& axis, double angle) {
+  const std::vector<double> angles = contact_angles(axis);
+  Part part{.points = {}, .sheets = SheetCutter(axis, angles, angle - 2 * kHysteresis).run()};
+  for (Index i = 0; i < axis.size(); ++i) {
+    if (angles[i] > angle) part.points.push_back(axis.centers[i]);
+  }
+  return part;
+}
+
+void add_distances(const std::vector<Point>& points, const TriangleMesh& sheets, std::vector<double>& all) {
+  const Surface surface(sheets);
+  const std::size_t first = all.size();
+  all.resize(first + points.size());
+  tbb::parallel_for(std::size_t{0}, points.size(),
+                    [&](std::size_t i) { all[first + i] = surface.distance(points[i]); });
+}
+
+MedialStability summary(std::vector<double> distances, double noise) {
+  std::sort(distances.begin(), distances.end());
+  MedialStability result{.hausdorff = distances.back() / noise,
+                         .percentile99 = distances[(distances.size() - 1) * 99 / 100] / noise};
+  for (const double distance : distances) result.mean += distance / noise / static_cast<double>(distances.size());
+  return result;
+}
+
+}  // namespace
+
+std::optional<MedialStability> medial_stability(const Surface& surface, const MedialBuild& build,
+                                                const MedialBuildOptions& options, const StabilityOptions& stability,
+                                                const Progress& progress) {
+  const double noise = stability.noise * surface.bounding_box().diagonal().norm();
+  const Surface moved(with_noise(surface.mesh(), noise, stability.seed));
+  if (!moved.solid()) return std::nullopt;
+  MedialBuildInput points;
+  points.sampling = carried_along(build, surface, moved);
+  const MedialBuild other = build_medial_axis(moved, options, progress, std::move(points));
+  const Part a = wide_part(build.axis, 2 * stability.object_angle);
+  const Part b = wide_part(other.axis, 2 * stability.object_angle);
+  if (a.points.empty() || b.points.empty()) return std::nullopt;
+  std::vector<double> distances;
+  add_distances(a.points, b.sheets, distances);
+  add_distances(b.points, a.sheets, distances);
+  return summary(std::move(distances), noise);
+}
+
+}  // namespace orchard

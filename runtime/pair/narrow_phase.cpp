@@ -1,0 +1,250 @@
+#include "orchard/runtime/narrow_phase.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <new>
+
+#include "tree/tree_nodes.h"
+
+// Rounding. Let c be the true place of a centre of the second tree in the first one's frame, c' the one computed in
+// float, a a centre of the first tree, u = 2^-24, E1 and E2 the trees' extents, T the relative translation.
+//  (1) |c' - c| <= sigma. A row of the rotation has length 1, so per component rounding its entries costs u|q| and the
+//      three products and three sums 4.1 u (|q| + |T_i|): together, with the rounding of T itself, at most
+//      sqrt(3) 5.2 u |q| + 5.2 u |T| <= u (10 E2 + 6 |T|). What double arithmetic and poses that are rigid only to
+//      kRigidTolerance add is exact_error below.
+//  (2) square = |c' - a|^2 (1 + 5.1 u) at most and reach = (r1 + r2 + slack)(1 - 2 u) at least. If the balls touch,
+//      |c' - a| <= r1 + r2 + sigma, so square <= reach * reach, as computed, holds if slack - sigma >= 5.2 u (r1 +
+//      r2).
+//  (3) If the test fails, the true gap |c - a| - r1 - r2 is at least sqrt(square) - reach, evaluated exactly, if
+//      slack - sigma >= 4.1 u |c' - a| + 2.1 u (r1 + r2), which includes the rounding of square - reach * reach.
+//  (4) |c - a| <= sqrt(square) + slack if slack - sigma >= 3 u |c' - a|.
+// With D = |T| + E1 + E2, which bounds every |c' - a| and r1 + r2, slack = sigma + 8 u D serves all of them. E2, r2 and
+// what follows are the second tree's times its relative scale; rounding that product costs r2 another u.
+//  (5) Gaps between patches: a moved normal is within 10 u of the true one, and every normal's length within 8.4 u
+//  of 1.
+//      A height over a patch's middle plane is off by at most sigma + 22 u |c' - a|, an extent, which is at most the
+//      sum of the radii, by 35 u of itself but for the square of its sine, which kSineError covers, and the sums by 4
+//      u D: margin = sigma + 96 u D leaves room, also for two moved points and eight roundings of a triangle test.
+namespace orchard::runtime {
+
+using detail::length;
+
+namespace {
+
+constexpr double kFloatUnit = 0x1p-24;
+// Keeps the squares of the smallest reach clear of the numbers that a flush-to-zero mode drops.
+constexpr double kLeastSlack = 1e-15;
+constexpr double kLeastSize = 1e-18;  // below it Placement::unit stays as it is: margins are far larger
+
+constexpr double kLeastOpposition = 1e-6;  // between unit normals: less says nothing about a direction
+
+template <typename Container>
+int compare_bytes(const Container& a, const Container& b) noexcept {
+  if (a.size() != b.size()) return a.size() < b.size() ? -1 : 1;
+  if (a.data() == b.data()) return 0;
+  return a.empty() ? 0 : std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0]));
+}
+
+int compare(const TreeView& a, const TreeView& b) noexcept {
+  if (const int c = compare_bytes(a.blocks, b.blocks)) return c;
+  if (const int c = compare_bytes(a.triangles, b.triangles)) return c;
+  if (const int c = compare_bytes(a.vertices, b.vertices)) return c;
+  if (const int c = compare_bytes(a.leaf_triangles, b.leaf_triangles)) return c;
+  const std::array<double, 5> da = {a.origin[0], a.origin[1], a.origin[2], a.bounding_radius, a.vertex_error};
+  const std::array<double, 5> db = {b.origin[0], b.origin[1], b.origin[2], b.bounding_radius, b.vertex_error};
+  return compare_bytes(da, db);
+}
+
+}  // namespace
+
+bool NarrowPhase::PairList::reserve(std::size_t capacity) noexcept {
+  if (capacity <= capacity_) return true;
+  capacity = std::max({capacity, 2 * capacity_, std::size_t{64}});
+  std::unique_ptr<NodePair[]> larger(new (std::nothrow) NodePair[capacity]);
+  if (!larger) return false;
+  std::copy_n(pairs_.get(), size_, larger.get());
+  pairs_ = std::move(larger);
+  capacity_ = capacity;
+  return true;
+}
+
+NarrowPhase::Side NarrowPhase::side_of(const TreeView& tree) noexcept {
+  Side side;
+  side.tree = tree;
+  side.middle = side.root = detail::center_of(tree, 0);
+  for (std::size_t i = 0; i < 3; ++i) side.root[i] += tree.origin[i];
+  const SiblingBlock& block = tree.blocks[0];
+  side.radius = double{block.radius[0]}, side.reach = double{block.error[0]}, side.depth = double{block.depth[0]};
+  side.bits = link_bits(tree.branching);
+  side.extent = coordinate_extent(tree);
+  side.error = detail::kStretch * (side.extent + length(tree.origin)) + tree.vertex_error;
+  return side;
+}
+
+NarrowPhase::NarrowPhase(const TreeView& a, const TreeView& b, std::size_t room) noexcept {
+  const int order = compare(a, b);
+  arguments_exchanged_ = order > 0;
+  ordered_by_pose_ = order == 0;
+  first_ = side_of(a);
+  second_ = ordered_by_pose_ ? first_ : side_of(b);
+  if (arguments_exchanged_) std::swap(first_, second_);
+  for (std::size_t i = 0; i < 3; ++i) roots_[i] = {first_.root[i], second_.root[i]};
+  // An expanded pair leaves up to eight in its place, one level deeper in one of the trees.
+  const std::size_t deepest = std::size_t{kBlockWidth} * (a.patch_depth + b.patch_depth + 1) + 1;
+  if (has_triangles()) stack_.reset(new (std::nothrow) PatchPair[deepest]);
+  reserve(std::max(room, std::size_t{1}));
+}
+
+bool NarrowPhase::reserve(std::size_t pairs) noexcept {
+  pairs += std::size_t{kBlockWidth} * kBlockWidth;  // what one pair of blocks may add
+  return inner_.reserve(pairs) && leaves_.reserve(pairs) && next_.reserve(pairs);
+}
+
+// The second tree's frame in the first one's, both relative to the trees' origins: these enter here, so that everything
+// below works on the trees' own small coordinates.
+Pose NarrowPhase::relative_pose() const noexcept {
+  const Pose &first = first_pose_, &second = second_pose_;
+  const auto& r = first.rotation;
+  const auto& q = second.rotation;
+  const double shrink = 1 / first.scale;
+  // What is below this is no more than rounding, and without it no product of three coordinates underflows:
+  // exact_sign.h.
+  const auto settled = [](double value, double least) { return std::fabs(value) < least ? 0.0 : value; };
+  Pose relative;
+  relative.scale = second.scale * shrink;
+  auto offset = transform(second, second_.tree.origin);
+  for (std::size_t i = 0; i < 3; ++i) offset[i] -= first.translation[i];
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      relative.rotation[3 * i + j] = settled(r[i] * q[j] + r[3 + i] * q[3 + j] + r[6 + i] * q[6 + j], 0x1p-60);
+    }
+    relative.translation[i] = settled(
+        (r[i] * offset[0] + r[3 + i] * offset[1] + r[6 + i] * offset[2]) * shrink - first_.tree.origin[i], 0x1p-305);
+  }
+  return relative;
+}
+
+// Not needed where the roots decide.
+void NarrowPhase::place() noexcept {
+  if (placed_) return;
+  placed_ = true;
+  relative_ = relative_pose();
+  const double shrink = 1 / first_pose_.scale, scale = relative_.scale;
+  for (std::size_t i = 0; i < 9; ++i) {
+    placement_.turn[i] = static_cast<float>(relative_.rotation[i]);
+    placement_.rotation[i] = static_cast<float>(relative_.rotation[i] * scale);
+  }
+  for (std::size_t i = 0; i < 3; ++i) placement_.translation[i] = static_cast<float>(relative_.translation[i]);
+  placement_.scale = static_cast<float>(scale);
+  const double distance = length(relative_.translation), second_extent = second_.extent * scale;
+  const double sigma = exact_error_ * shrink + kFloatUnit * (10 * second_extent + 6 * distance);
+  const double size = distance + first_.extent + second_extent;
+  const auto rounded_up = [](double value) {
+    return static_cast<float>(std::max(value, kLeastSlack) * (1 + 2 * kFloatUnit));
+  };
+  placement_.slack = rounded_up(sigma + 8 * kFloatUnit * size);
+  placement_.margin = rounded_up(2 * sigma + 96 * kFloatUnit * size);
+  const int exponent = 1 + std::ilogb(std::max(size, kLeastSize));
+  placement_.unit = static_cast<float>(std::ldexp(1, -exponent));
+  placement_.whole = static_cast<float>(std::ldexp(1, exponent));
+}
+
+// Whether floats can hold the square of every distance in the pair's frame, and doubles the exact level's products.
+// With T and the second extent, origins and errors included, at most 4 L and the first extent below 2.8 L, L =
+// kCoordinateLimit, no float sum of squares or of products of two lengths exceeds 120 L^2, a third of the largest
+// float.
+bool NarrowPhase::in_range() const noexcept {
+  const double relative = second_pose_.scale / first_pose_.scale;
+  if (!(relative >= 1 / kMostRelativeScale && relative <= kMostRelativeScale)) return false;
+  double size = second_.extent * second_pose_.scale + exact_error_;
+  for (std::size_t i = 0; i < 3; ++i) {
+    size += std::fabs(second_pose_.translation[i] - first_pose_.translation[i]) +
+            std::fabs(second_.tree.origin[i]) * second_pose_.scale +
+            std::fabs(first_.tree.origin[i]) * first_pose_.scale;
+  }
+  return size <= 4 * double{kCoordinateLimit} * first_pose_.scale;
+}
+
+void NarrowPhase::finish(Answer answer) noexcept {
+  answer_ = answer;
+  finished_ = true;
+  roots_pending_ = false;
+  if (answer == Answer::no && !exact_started_) lower_bound_ = pruned_gap_ * (1 - detail::kStretch);
+  if (answer == Answer::yes) {
+    const double error = first_.tree.vertex_error + second_.tree.vertex_error * relative_.scale;
+    separation_bound_ = std::min(separation_bound_, error * first_pose_.scale * (1 + detail::kStretch));
+  }
+}
+
+Contact NarrowPhase::contact() const noexcept {
+  if (answer_ == Answer::no || refused_) return {};
+  const auto [a, b] = best_.pair;
+  const auto p = detail::center_of(first_.tree, a);
+  const Pose relative = placed_ ? relative_ : relative_pose();
+  const auto q = transform(relative, detail::center_of(second_.tree, b));
+  const double ra = detail::block_of(first_.tree, a).radius[a % kBlockWidth];
+  const double rb = detail::block_of(second_.tree, b).radius[b % kBlockWidth] * relative.scale;
+  const std::array<double, 3> way = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
+  const double distance = length(way);
+
+  // The smallest ball around the common part of two balls: one of them if it is less than half cut off, otherwise the
+  // ball on the circle in which the spheres cut each other, `at` away from p.
+  const double at = distance > 0 ? (distance * distance + ra * ra - rb * rb) / (2 * distance) : 0;
+  Contact contact;
+  double share = 0;  // of the way from p to q
+  if (distance == 0 || at <= 0 || at >= distance) {
+    contact.radius = std::min(ra, rb);
+    share = ra <= rb ? 0 : 1;
+  } else {
+    contact.radius = std::sqrt(std::max(0.0, ra * ra - at * at));
+    share = at / distance;
+  }
+  std::array<double, 3> center{}, normal = {1, 0, 0};
+  for (std::size_t i = 0; i < 3; ++i) {
+    center[i] = p[i] + share * way[i];
+    if (distance > 0) normal[i] = way[i] / distance;
+  }
+  if (answer_ == Answer::yes) {
+    center = witness_;
+    if (const auto by_triangles = triangle_normal(); length(by_triangles) > 0) normal = by_triangles;
+    contact.radius = 0;
+    contact.triangle_a = exchanged_ ? triangle_second_ : triangle_first_;
+    contact.triangle_b = exchanged_ ? triangle_first_ : triangle_second_;
+  }
+  for (std::size_t i = 0; i < 3; ++i) center[i] += first_.tree.origin[i];
+  if (exchanged_) {
+    for (double& component : normal) component = 0 - component;
+  }
+  contact.center = transform(first_pose_, center);
+  contact.radius *= first_pose_.scale;
+  contact.normal = rotate(first_pose_, normal);
+  return contact;
+}
+
+// From the first solid to the second one: the first triangle's outward normal less the second one's. Zero if unknown.
+std::array<double, 3> NarrowPhase::triangle_normal() const noexcept {
+  const auto normal_of = [](const detail::TrianglePoints& t) {
+    const auto minus = [](const detail::Vec3& p, const detail::Vec3& q) -> detail::Vec3 {
+      return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+    };
+    const auto u = minus(t[1], t[0]), v = minus(t[2], t[0]);
+    detail::Vec3 n = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+    const double size = length(n);
+    for (double& component : n) component = size > 0 ? component / size : 0;
+    return n;
+  };
+  const auto of_first = normal_of(detail::points_of(first_.tree, triangle_first_));
+  const auto of_second = rotate(relative_, normal_of(detail::points_of(second_.tree, triangle_second_)));
+  std::array<double, 3> way{};
+  for (std::size_t i = 0; i < 3; ++i) way[i] = of_first[i] - of_second[i];
+  const double size = length(way);
+  for (double& component : way) component = size > kLeastOpposition ? component / size : 0;
+  return way;
+}
+
+Verdict NarrowPhase::verdict() const noexcept {
+  return {answer_, separation_bound_, lower_bound_, contact(), level_, work_};
+}
+
+}  // namespace orchard::runtime

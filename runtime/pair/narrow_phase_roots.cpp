@@ -1,0 +1,150 @@
+#include <cmath>
+#include <limits>
+
+#include "orchard/runtime/narrow_phase.h"
+#include "rigid_pair.h"
+#include "support_map.h"
+#include "tree/tree_nodes.h"
+
+// Level 0: where most pairs end, so nothing is done here that only deeper levels need. In double and in the world:
+// bodies that are far apart must not overflow. Exchanging the bodies changes no bit of any result, so that equal trees
+// need no order yet.
+namespace orchard::runtime {
+
+using detail::Vec3;
+
+namespace {
+
+constexpr double kLeastError = 1e-150;  // of a length: covers the underflow of its square
+constexpr int kRootDirections = 5;      // tried at most, to part the hulls
+
+bool before(const Pose& a, const Pose& b) noexcept {
+  if (a.rotation != b.rotation) return a.rotation < b.rotation;
+  return a.translation != b.translation ? a.translation < b.translation : a.scale < b.scale;
+}
+
+double dot(const Vec3& a, const Vec3& b) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Vec3 minus(const Vec3& a, const Vec3& b) noexcept { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+Vec3 opposite(const Vec3& v) noexcept { return {-v[0], -v[1], -v[2]}; }
+
+Vec3 turned_back(const Pose& pose, const Vec3& u) noexcept {
+  const auto& r = pose.rotation;
+  return {r[0] * u[0] + r[3] * u[1] + r[6] * u[2], r[1] * u[0] + r[4] * u[1] + r[7] * u[2],
+          r[2] * u[0] + r[5] * u[1] + r[8] * u[2]};
+}
+
+double sum_of_sizes(const Vec3& v) noexcept { return std::fabs(v[0]) + std::fabs(v[1]) + std::fabs(v[2]); }
+
+}  // namespace
+
+Answer NarrowPhase::start(const Pose& a, const Pose& b) noexcept {
+  inner_.clear();
+  settled_leaves_ = 0;
+  level_ = 0;
+  pair_tests_ = 1;
+  triangle_tests_ = work_ = 0;
+  lower_bound_ = 0;
+  out_of_room_ = exact_started_ = refused_ = false;
+
+  // Nothing below holds otherwise, and the hulls' tables have no place for directions that are no directions.
+  const Pose &first = arguments_exchanged_ ? b : a, &second = arguments_exchanged_ ? a : b;
+  const detail::PoseLanes poses(first, second);
+  if (!poses.rotate()) return refuse(a, b);
+  const auto lanes = [](const std::array<double, 2>& pair) { return detail::Two{pair[0], pair[1]}; };
+  const detail::Two roots[3] = {lanes(roots_[0]), lanes(roots_[1]), lanes(roots_[2])};
+  Vec3 way{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const detail::Two place = poses.placed(i, roots);
+    way[i] = place[1] - place[0];
+  }
+  const double square = dot(way, way), distance = std::sqrt(square);
+  const auto sum = [&first, &second](double of_first, double of_second) {
+    return first.scale * of_first + second.scale * of_second;
+  };
+  exact_error_ = sum(first_.error, second_.error) +
+                 1e-14 * (sum_of_sizes(first.translation) + sum_of_sizes(second.translation)) + kLeastError;
+  const double radii = sum(first_.radius, second_.radius);
+  separation_bound_ = detail::pair_bound(distance + exact_error_, radii, sum(first_.reach, second_.reach),
+                                         sum(first_.depth, second_.depth));
+  const double ball_gap = distance - radii - exact_error_;
+  double gap = ball_gap;
+  if (gap <= 0 && square > 0 && has_triangles()) {
+    // How far the bodies' convex hulls are apart, at least: along the line through the roots' centres first.
+    const auto reach = [](const Side& side, const Pose& pose, const Vec3& u) {
+      const Vec3 direction = turned_back(pose, u);
+      return pose.scale * (detail::reach_along(side.tree.supports, direction) - dot(direction, side.middle));
+    };
+    gap = square - (reach(first_, first, way) + reach(second_, second, opposite(way)));
+    if (!(gap > 0)) gap = hulls_gap(first, second, way);
+    gap = gap / distance * (1 - detail::kStretch) - detail::kStretch * distance - exact_error_;
+  }
+  if (gap > 0 && std::isfinite(gap)) {
+    answer_ = Answer::no;
+    finished_ = true;
+    roots_pending_ = false;
+    lower_bound_ = gap * (1 - detail::kStretch);
+    return answer_;
+  }
+  keep(a, b);
+  if (!std::isfinite(ball_gap) || !in_range()) return refuse(a, b);
+  answer_ = Answer::maybe;
+  roots_pending_ = true;
+  finished_ = detail::is_leaf(first_.tree, 0) && detail::is_leaf(second_.tree, 0) && !has_last_level();
+  return answer_;
+}
+
+// Poses that name no place, or one beyond what floats can hold: nothing is certain then and nothing can be refined.
+Answer NarrowPhase::refuse(const Pose& a, const Pose& b) noexcept {
+  keep(a, b);
+  refused_ = finished_ = true;
+  roots_pending_ = false;
+  separation_bound_ = std::numeric_limits<double>::infinity();
+  return answer_ = Answer::maybe;
+}
+
+// What deeper levels need.
+void NarrowPhase::keep(const Pose& a, const Pose& b) noexcept {
+  exchanged_ = ordered_by_pose_ ? before(b, a) : arguments_exchanged_;
+  first_pose_ = exchanged_ ? b : a;
+  second_pose_ = exchanged_ ? a : b;
+  placed_ = false;
+  leaves_.clear();
+  next_.clear();
+  cursor_ = {};
+  leaf_best_ = {};
+  best_ = {separation_bound_, {0, 0}};
+  triangle_first_ = triangle_second_ = kNoTriangle;
+  stack_size_ = 0;
+  pruned_gap_ = std::numeric_limits<double>::infinity();
+}
+
+// Along directions that what is in the way suggests (Chung and Wang 1996), as long as these get better. Times the
+// distance of the roots' centres: reaches are proportional to the direction's length, and reflecting keeps it.
+double NarrowPhase::hulls_gap(const Pose& first, const Pose& second, const Vec3& way) const noexcept {
+  const auto support_of = [](const Side& side, const Pose& pose, const Vec3& u) {
+    const Vec3 direction = turned_back(pose, u);
+    detail::Support support = detail::support_along(side.tree.supports, direction);
+    support.most = pose.scale * (support.most - dot(direction, side.middle));
+    support.point = rotate(pose, minus(support.point, side.middle));
+    for (double& component : support.point) component *= pose.scale;
+    return support;  // from the root's centre, in the world
+  };
+  Vec3 u = way;
+  double best = -std::numeric_limits<double>::infinity();
+  for (int turn = 0; turn < kRootDirections; ++turn) {
+    const detail::Support p = support_of(first_, first, u), q = support_of(second_, second, opposite(u));
+    const double gap = dot(u, way) - (p.most + q.most);
+    if (gap > 0) return gap;
+    if (gap <= best) break;
+    best = gap;
+    // From the point of the first one to that of the second one; reflecting the direction in it turns these apart.
+    const Vec3 apart = minus(q.point, p.point), between = {way[0] + apart[0], way[1] + apart[1], way[2] + apart[2]};
+    const double square = dot(between, between), component = dot(between, u);
+    if (component >= 0 || !(square > 0)) break;
+    const double factor = 2 * component / square;
+    for (std::size_t i = 0; i < 3; ++i) u[i] -= factor * between[i];
+  }
+  return best;
+}
+
+}  // namespace orchard::runtime

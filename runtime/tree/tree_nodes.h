@@ -1,0 +1,60 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "orchard/runtime/packed_tree.h"
+#include "pair/triangle_pair.h"
+
+// How queries read a packed tree. All of it relies on structure_fault() being nullptr.
+namespace orchard::runtime::detail {
+
+// A bound is stretched by this, since distances under poses rigid to kRigidTolerance are off by up to 3e-12 of them.
+inline constexpr double kStretch = 1e-11;
+
+// How far two solids are apart at most, by a pair of their spheres. Also right for spheres that do not meet: a point
+// between them is within `errors` plus their gap of both solids.
+inline double pair_bound(double distance, double radii, double errors, double depths) noexcept {
+  const double bound = std::min(errors + std::max(0.0, distance - radii), depths + distance);
+  return std::max(0.0, bound) * (1 + kStretch);
+}
+
+inline double length(const Vec3& v) noexcept { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
+inline const SiblingBlock& block_of(const TreeView& tree, std::uint32_t node) noexcept {
+  return tree.blocks[node / kBlockWidth];
+}
+
+inline bool is_leaf(const TreeView& tree, std::uint32_t node) noexcept {
+  return (block_of(tree, node).link[node % kBlockWidth] & kLeafBit) != 0;
+}
+
+inline Vec3 center_of(const TreeView& tree, std::uint32_t node) noexcept {
+  const SiblingBlock& block = block_of(tree, node);
+  const std::uint32_t lane = node % kBlockWidth;
+  return {block.x[lane], block.y[lane], block.z[lane]};
+}
+
+struct Group {  // consecutive nodes: the children of a node, or one leaf
+  std::uint32_t first, count;
+};
+
+// `bits`: link_bits(tree.branching).
+inline Group group_of(const TreeView& tree, int bits, std::uint32_t node) noexcept {
+  const std::uint32_t link = block_of(tree, node).link[node % kBlockWidth];
+  if (link & kLeafBit) return {node, 1};
+  const Children children = linked_children(bits, link);
+  return {children.first * kBlockWidth, children.count};
+}
+
+inline TrianglePoints points_of(const TreeView& tree, std::uint32_t triangle) noexcept {
+  TrianglePoints points{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto& vertex = tree.vertices[tree.triangles[triangle][i]];
+    points[i] = {vertex[0], vertex[1], vertex[2]};
+  }
+  return points;
+}
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,244 @@
+#include "orchard/spheretree/annealing.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "octants.h"
+#include "orchard/covering/incremental_cover.h"
+#include "orchard/geometry/error.h"
+#include "orchard/geometry/random.h"
+#include "orchard/geometry/tolerance.h"
+#include "orchard/spheretree/redundancy.h"
+#include "random_direction.h"
+
+namespace orchard {
+namespace {
+
+constexpr std::uint64_t kStage = 400;  // of the random numbers
+// A child that has become redundant would shrink for ever.
+constexpr double kMin = 1e-3;  // of its parent's radius
+
+// Anneals the children of one node.
+class Schedule {
+ public:
+  Schedule(SphereTree& tree, Index parent, const Surface& surface, const AnnealingOptions& options,
+           IncrementalCover& cover, AnnealingReport& report)
+      : tree_(tree),
+        parent_(tree.nodes[parent]),
+        surface_(surface),
+        options_(options),
+        cover_(cover),
+        report_(report),
+        random_(options.seed, kStage + parent_.level, parent) {
+    for (Index k = 0; k < parent_.child_count; ++k) energies_.push_back(energy_of(child(k).sphere));
+    energy_ = energy_of_set();
+  }
+
+  void run(int iterations) {
+    double temperature = first_temperature();
+    for (int i = 0; i < iterations && temperature > 0; ++i, temperature *= options_.cooling) {
+      int accepted = 0, rejected = 0;
+      while (accepted < options_.max_accepted && rejected < options_.max_rejected)
+        (try_change(temperature) ? accepted : rejected) += 1;
+    }
+  }
+
+ private:
+  SphereNode& child(Index k) { return tree_.nodes[parent_.first_child + k]; }
+  double energy_of(const Sphere& ball) const {
+    return std::max(0.0, ball.radius + surface_.signed_distance(ball.center));
+  }
+  double energy_of_set() const {
+    double energy = 0;
+    for (const double e : energies_) energy = options_.energy == SetEnergy::sum ? energy + e : std::max(energy, e);
+    return energy;
+  }
+
+  Sphere changed(const Sphere& ball) {
+    Sphere next = ball;
+    next.center += random_.uniform() * options_.move * parent_.sphere.radius * random_direction(random_);
+    next.radius *= random_.uniform(options_.min_scale, options_.max_scale);
+    next.radius = std::max(next.radius, kMin * parent_.sphere.radius);
+    return next;
+  }
+
+  // The temperature at which the mean rise over some changes would pass with the wanted probability.
+  double first_temperature() {
+    double sum = 0;
+    for (int i = 0; i < options_.first_trials; ++i) {
+      const auto k = static_cast<Index>(random_.below(parent_.child_count));
+      const double before = energies_[k];
+      energies_[k] = energy_of(changed(child(k).sphere));
+      sum += std::abs(energy_of_set() - energy_);
+      energies_[k] = before;
+    }
+    return options_.first_trials > 0 ? -sum / options_.first_trials / std::log(options_.first_acceptance) : 0;
+  }
+
+  // The energy costs less than the cover, so it is asked first.
+  bool try_change(double temperature) {
+    ++report_.changes;
+    const auto k = static_cast<Index>(random_.below(parent_.child_count));
+    const Sphere next = changed(child(k).sphere);
+    const double before = energies_[k];
+    energies_[k] = energy_of(next);
+    const double energy = energy_of_set(), rise = energy - energy_;
+    const bool wanted = rise <= 0 || random_.uniform() < std::exp(-rise / temperature);
+    const bool covers = wanted && cover_.try_change(parent_.first_child + k, next);
+    report_.uncovering += wanted && !covers;
+    if (!covers) {
+      energies_[k] = before;
+      return false;
+    }
+    ++report_.accepted;
+    child(k).sphere = next;
+    energy_ = energy;
+    return true;
+  }
+
+  SphereTree& tree_;
+  const SphereNode parent_;
+  const Surface& surface_;
+  const AnnealingOptions& options_;
+  IncrementalCover& cover_;
+  AnnealingReport& report_;
+  Random random_;
+  std::vector<double> energies_;
+  double energy_ = 0;
+};
+
+class Annealer {
+ public:
+  Annealer(const Surface& surface, const AnnealingOptions& options, AnnealingReport& report)
+      : surface_(surface),
+        options_(options),
+        report_(report),
+        margin_(tolerance::kCoverMargin * surface.bounding_radius()) {}
+
+  SphereTree run(const Progress& progress) {
+    tree_.branching = options_.branching;
+    tree_.nodes.push_back({.sphere = surface_.bounding_ball()});
+    tree_.nodes[0].sphere.radius += margin_;
+    for (Index level = 1; level <= options_.depth; ++level) {
+      const auto above = static_cast<Index>(tree_.nodes.size());
+      for (Index node = 0; node < above; ++node)
+        if (tree_.nodes[node].level + 1 == level && wants_children(options_.refinement, surface_, ball(node)))
+          add_children(node);
+      if (tree_.nodes.size() == above) break;
+      anneal_level(level, progress);
+      report_.redundant += remove_redundant(tree_, surface_, Selection::acyclic).removed;
+    }
+    return std::move(tree_);
+  }
+
+ private:
+  const Sphere& ball(Index node) const { return tree_.nodes[node].sphere; }
+
+  // The octants of the bounding box, or of the cube around the parent, that meet triangles inside the balls above.
+  void add_children(Index parent) {
+    Octant whole{surface_.bounding_box(), triangles_on_path(parent), parent};
+    if (parent != 0) {
+      const Vector half = Vector::Constant(ball(parent).radius);
+      whole.box = Box(ball(parent).center - half, ball(parent).center + half);
+    }
+    const auto octants = occupied_parts(surface_, whole, options_.branching);
+    tree_.nodes[parent].first_child = static_cast<Index>(tree_.nodes.size());
+    tree_.nodes[parent].child_count = static_cast<Index>(octants.size());
+    const Index level = tree_.nodes[parent].level + 1;
+    for (const Octant& octant : octants)
+      tree_.nodes.push_back({.sphere = {octant.box.center(), octant.box.diagonal().norm() / 2 + margin_},
+                             .parent = parent,
+                             .level = level});
+    if (octants.empty()) tree_.nodes[parent].first_child = kNone;
+  }
+
+  std::vector<Index> triangles_on_path(Index node) const {
+    std::vector<Index> triangles;
+    // With room for roundings: a triangle too many does no harm.
+    constexpr double kRoom = 1 + 1e-9;
+    surface_.triangles_near({ball(node).center, kRoom * ball(node).radius}, triangles);
+    for (Index above = tree_.nodes[node].parent; above != kNone; above = tree_.nodes[above].parent)
+      std::erase_if(triangles, [&](Index triangle) {
+        const auto [a, b, c] = surface_.corners(triangle);
+        return closest_point_of_triangle(ball(above).center, a, b, c).distance > kRoom * ball(above).radius;
+      });
+    return triangles;
+  }
+
+  // Children of two parents that no triangle meets both of cannot uncover what the others hold: such parents are
+  // annealed at the same time, each with a cover of its own triangles.
+  void anneal_level(Index level, const Progress& progress) {
+    std::vector<Index> parents;
+    for (Index node = 0; node < tree_.nodes.size(); ++node)
+      if (tree_.nodes[node].level + 1 == level && tree_.nodes[node].child_count > 0) parents.push_back(node);
+    std::vector<std::vector<Index>> triangles(parents.size());
+    tbb::parallel_for(std::size_t{0}, parents.size(),
+                      [&](std::size_t i) { triangles[i] = triangles_on_path(parents[i]); });
+    std::vector<AnnealingReport> reports(parents.size());
+    std::size_t done = 0;
+    for (const std::vector<std::size_t>& group : apart(triangles)) {
+      report_progress(progress, "annealing",
+                      (level - 1 + static_cast<double>(done) / static_cast<double>(parents.size())) / options_.depth);
+      const std::vector<PathBall> balls = path_balls(tree_);
+      tbb::parallel_for(std::size_t{0}, group.size(), [&](std::size_t k) {
+        const std::size_t i = group[k];
+        IncrementalCover cover(surface_, triangles[i], balls);
+        Schedule(tree_, parents[i], surface_, options_, cover, reports[i])
+            .run(level == 1 ? options_.iterations_first : options_.iterations);
+      });
+      done += group.size();
+    }
+    for (const AnnealingReport& one : reports) {
+      report_.changes += one.changes;
+      report_.uncovering += one.uncovering;
+      report_.accepted += one.accepted;
+    }
+  }
+
+  // Splits lists of triangles into groups without a triangle in two lists of a group; each list, in order, goes to the
+  // first group that it can.
+  std::vector<std::vector<std::size_t>> apart(const std::vector<std::vector<Index>>& lists) const {
+    std::vector<std::vector<std::size_t>> groups;
+    std::vector<std::vector<char>> taken;  // by each group
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+      std::size_t group = 0;
+      const auto clash = [&](Index triangle) { return taken[group][triangle] != 0; };
+      while (group < groups.size() && std::any_of(lists[i].begin(), lists[i].end(), clash)) ++group;
+      if (group == groups.size()) {
+        groups.emplace_back();
+        taken.emplace_back(surface_.mesh().triangles.size(), 0);
+      }
+      groups[group].push_back(i);
+      for (Index triangle : lists[i]) taken[group][triangle] = 1;
+    }
+    return groups;
+  }
+
+  const Surface& surface_;
+  const AnnealingOptions& options_;
+  AnnealingReport& report_;
+  const double margin_;
+  SphereTree tree_;
+};
+
+void check(const AnnealingOptions& o) {
+  if (o.branching < 2 || o.branching > 64) throw InputError("branching must lie between 2 and 64");
+  if (!(o.min_scale > 0) || !(o.min_scale <= o.max_scale) || !(o.move >= 0))
+    throw InputError("annealing: moves and scales must be positive, the least scale first");
+  if (!(o.cooling > 0) || !(o.cooling < 1) || !(o.first_acceptance > 0) || !(o.first_acceptance < 1))
+    throw InputError("annealing: the cooling and the first acceptance must lie between 0 and 1");
+  if (o.max_accepted < 1 || o.max_rejected < 1) throw InputError("annealing: at least one change at each temperature");
+}
+
+}  // namespace
+
+SphereTree annealed_tree(const Surface& surface, const AnnealingOptions& options, const Progress& progress,
+                         AnnealingReport* report) {
+  check(options);
+  AnnealingReport unused;
+  return Annealer(surface, options, report ? *report : unused).run(progress);
+}
+
+}  // namespace orchard

@@ -1,0 +1,145 @@
+#include "orchard/spheretree/build.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "orchard/geometry/error.h"
+#include "orchard/spheretree/measure.h"
+#include "orchard/spheretree/octree.h"
+#include "orchard/spheretree/proven.h"
+
+namespace orchard {
+namespace {
+
+constexpr double kSamplesPerLeaf = 20;
+constexpr double kGrowthFactor = 1.1;  // of dissertation 6.3.2
+
+// The dissertation's schedule, or a share of it.
+AnnealingOptions annealing_options(const SphereTreeOptions& o) {
+  AnnealingOptions annealing;
+  annealing.depth = o.depth;
+  annealing.branching = o.branching;
+  annealing.energy = o.energy;
+  annealing.refinement = o.refinement;
+  annealing.seed = o.seed;
+  if (o.effort == Effort::high) return annealing;
+  const bool low = o.effort == Effort::low;
+  annealing.max_accepted = annealing.max_rejected = low ? 30 : 60;
+  annealing.iterations_first = low ? 40 : 80;
+  annealing.iterations = low ? 20 : 30;
+  annealing.cooling = low ? 0.8 : 0.85;
+  return annealing;
+}
+
+class TreeBuilder {
+ public:
+  TreeBuilder(const Surface& surface, const SphereTreeOptions& options, const Progress& progress)
+      : surface_(surface), options_(options), progress_(progress) {}
+
+  SphereTreeBuild run(MedialBuildInput input) {
+    stage("octree to compare with", [&] { build_.octree = octree(surface_, {.depth = options_.depth}, progress_); });
+    if (needs_axis(options_.method)) make_axis(std::move(input));
+    make_tree();
+    stage("covering", [&] {
+      const bool grows = options_.method == TreeMethod::merging && options_.closing == MergeClosing::growth;
+      build_.cover = grows ? grow_to_cover(build_.tree, surface_, kGrowthFactor, progress_)
+                           : cover(build_.tree, surface_, progress_);
+    });
+    stage("redundant spheres",
+          [&] { build_.redundancy = remove_redundant(build_.tree, surface_, Selection::exhaustive, progress_); });
+    if (options_.descent > 0) stage("random descent", [&] { descend(); });
+    stage("measuring", [&] {
+      measure(build_.tree, surface_, progress_);
+      measure(build_.octree, surface_, progress_);
+    });
+    stage("packing and verifying", [&] { require_proof(); });
+    return std::move(build_);
+  }
+
+ private:
+  template <class Function>
+  void stage(const char* name, Function&& function) {
+    const auto start = std::chrono::steady_clock::now();
+    function();
+    build_.seconds.emplace_back(name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+
+  void make_axis(MedialBuildInput input) {
+    MedialBuildOptions medial = options_.medial;
+    if (options_.samples_by_need) {
+      const Index samples = samples_needed(options_);
+      medial.sampling.edge_points = samples / 5;
+      medial.sampling.face_points = samples - samples / 5;
+    }
+    build_.medial = build_medial_axis(surface_, medial, progress_, std::move(input));
+    build_.seconds.insert(build_.seconds.end(), build_.medial->seconds.begin(), build_.medial->seconds.end());
+    connected_components(build_.medial->axis, build_.axis_components);
+  }
+
+  void make_tree() {
+    const SphereTreeOptions& o = options_;
+    switch (o.method) {
+      case TreeMethod::octree:
+        stage("octree", [&] { build_.tree = octree(surface_, {o.depth, o.refinement, o.branching}, progress_); });
+        break;
+      case TreeMethod::merging:
+        stage("merging", [&] {
+          build_.tree = merge_tree(surface_, build_.medial->axis, {o.depth, o.branching, o.refinement, o.closing},
+                                   progress_, &build_.merging);
+        });
+        break;
+      case TreeMethod::annealing:
+        stage("annealing",
+              [&] { build_.tree = annealed_tree(surface_, annealing_options(o), progress_, &build_.annealing); });
+        break;
+      case TreeMethod::tightened:
+        stage("tightening", [&] {
+          const TightenOptions tightening{o.depth, o.branching, o.effort, o.objective, o.refinement, o.seed};
+          build_.tree = tightened_tree(surface_, build_.medial->axis, tightening, progress_, &build_.tightening);
+        });
+        break;
+    }
+  }
+
+  void descend() {
+    build_.descent = random_descent(build_.tree, surface_, {options_.descent, options_.seed}, progress_);
+    build_.redundancy.removed += remove_redundant(build_.tree, surface_, Selection::exhaustive, progress_).removed;
+  }
+
+  // What is returned has passed verify().
+  void require_proof() {
+    ProvenTree proven = pack_proven(build_.tree, surface_, progress_);
+    const Verification& proof = proven.proof;
+    if (!proof.ok())
+      throw Error("the packed tree is not proven to be conservative: " + std::to_string(proof.triangles_uncovered) +
+                  " triangles uncovered, " + std::to_string(proof.triangles_unlisted) + " not listed, " +
+                  std::to_string(proof.bounds_violated) + " bounds missed");
+    build_.packed = std::move(proven.packed);
+    build_.certificate = std::move(proven.proof);
+    build_.bounds_weakened = static_cast<Index>(proven.weakened.size());
+  }
+
+  const Surface& surface_;
+  const SphereTreeOptions& options_;
+  const Progress& progress_;
+  SphereTreeBuild build_;
+};
+
+}  // namespace
+
+bool needs_axis(TreeMethod method) { return method == TreeMethod::tightened || method == TreeMethod::merging; }
+
+Index samples_needed(const SphereTreeOptions& options) {
+  if (options.method != TreeMethod::tightened) return 5000;
+  const double leaves = std::pow(static_cast<double>(options.branching), options.depth);
+  const double min = options.effort == Effort::high ? 20'000 : 10'000;
+  return static_cast<Index>(std::clamp(kSamplesPerLeaf * leaves, min, 200'000.0));
+}
+
+SphereTreeBuild build_sphere_tree(const Surface& surface, const SphereTreeOptions& options, const Progress& progress,
+                                  MedialBuildInput input) {
+  return TreeBuilder(surface, options, progress).run(std::move(input));
+}
+
+}  // namespace orchard

@@ -1,0 +1,94 @@
+#include "merge_reallocation.h"
+
+#include <algorithm>
+#include <limits>
+#include <queue>
+
+#include "orchard/spheretree/redundancy.h"
+
+namespace orchard::detail {
+namespace {
+
+constexpr double kSplitGain = 0.97;  // a split that leaves more of the looseness is not worth a sphere
+
+struct Holder {
+  Index node = kNone;
+  double radius = std::numeric_limits<double>::infinity();
+};
+// The tightest leaf that the point has a path to.
+void find_holder(const SphereTree& tree, Index index, const Point& point, Holder& best) {
+  const SphereNode& node = tree.nodes[index];
+  if ((point - node.sphere.center).squaredNorm() > node.sphere.radius * node.sphere.radius) return;
+  if (node.child_count == 0 && node.sphere.radius < best.radius) best = {index, node.sphere.radius};
+  for (Index k = 0; k < node.child_count; ++k) find_holder(tree, node.first_child + k, point, best);
+}
+
+struct Place {
+  double loose;
+  std::size_t family, child;
+  bool operator<(const Place& other) const {
+    if (loose != other.loose) return loose < other.loose;
+    return family != other.family ? family > other.family : child > other.child;
+  }
+};
+
+}  // namespace
+
+Index remove_redundant_nodes(SphereTree& tree, const Surface& surface, std::vector<Patch>& patches) {
+  const std::vector<SphereNode> before = tree.nodes;
+  const Index level = tree.depth();
+  const Index removed = remove_redundant(tree, surface).removed;
+  if (removed == 0) return 0;
+  std::vector<Patch> kept_patches(tree.nodes.size()), homeless;
+  for (Index i = 0, k = 0; i < before.size(); ++i) {
+    const bool kept = k < tree.nodes.size() && before[i].level == tree.nodes[k].level &&
+                      before[i].sphere.center == tree.nodes[k].sphere.center &&
+                      before[i].sphere.radius == tree.nodes[k].sphere.radius;
+    if (kept) {
+      kept_patches[k++] = std::move(patches[i]);
+    } else if (before[i].level == level) {
+      homeless.push_back(std::move(patches[i]));
+    }
+  }
+  patches = std::move(kept_patches);
+  for (const Patch& patch : homeless)
+    for (std::size_t i = 0; i < patch.held.size(); ++i) {
+      Holder best;
+      find_holder(tree, 0, patch.held[i], best);
+      if (best.node == kNone) continue;
+      patches[best.node].held.push_back(patch.held[i]);
+      patches[best.node].points.push_back(patch.points[i]);
+    }
+  return removed;
+}
+
+void split_loosest(const ChildBuilder& maker, Index branching, std::vector<std::vector<Child>>& families) {
+  std::priority_queue<Place> loosest;
+  Index room = 0;
+  for (std::size_t i = 0; i < families.size(); ++i) {
+    if (!families[i].empty()) room += branching;
+    for (std::size_t k = 0; k < families[i].size(); ++k) {
+      loosest.push({maker.looseness(families[i][k].sphere), i, k});
+      --room;
+    }
+  }
+  const std::size_t max = std::min(std::size_t{64}, 2 * std::size_t{branching});
+  for (; room > 0 && !loosest.empty();) {
+    const Place at = loosest.top();
+    loosest.pop();
+    if (maker.tight(families[at.family][at.child].sphere)) return;
+    std::vector<Child>& family = families[at.family];
+    if (family.size() >= max) continue;
+    std::vector<Child> two = maker.halves(family[at.child]);
+    if (two.size() < 2) continue;
+    const double first = maker.looseness(two[0].sphere), second = maker.looseness(two[1].sphere);
+    if (std::max(first, second) > kSplitGain * at.loose) continue;
+    family[at.child] = std::move(two[0]);
+    family.push_back(std::move(two[1]));
+    loosest.push({first, at.family, at.child});
+    loosest.push({second, at.family, family.size() - 1});
+    --room;
+  }
+}
+
+}  // namespace orchard::detail

@@ -1,0 +1,107 @@
+#include "partial_tree.h"
+
+#include <algorithm>
+
+#include "orchard/geometry/tolerance.h"
+
+namespace orchard::detail {
+
+PartialTree::PartialTree(const Surface& surface) : radius_(surface.bounding_radius()) {
+  const Sphere& ball = surface.bounding_ball();
+  levels_.push_back({{{ball.center, ball.radius + tolerance::kCoverMargin * radius_}}});
+}
+
+void PartialTree::add_level() {
+  parents_.clear();
+  for (Index i = 0; i < levels_.back().size(); ++i)
+    if (!levels_.back()[i].leaf) parents_.push_back(i);
+  levels_.emplace_back();
+}
+
+std::vector<std::vector<Sphere>> PartialTree::paths() const {
+  std::vector<std::vector<Sphere>> result;
+  for (Index parent : parents_) result.push_back(path(levels_.size() - 2, parent));
+  return result;
+}
+
+std::vector<Sphere> PartialTree::path(std::size_t level, Index node) const {
+  std::vector<Sphere> balls;
+  for (;; --level) {
+    const LevelNode& n = levels_[level][node];
+    balls.push_back({n.sphere.center, n.sphere.radius - (level == 0 ? 0 : kLastGrowth / 2 * radius_)});
+    if (level == 0) break;
+    node = n.parent;
+  }
+  std::reverse(balls.begin(), balls.end());
+  return balls;
+}
+
+bool PartialTree::in_leaf(const Point& point) const {
+  const auto inside = [&](const Sphere& ball) {
+    return (point - ball.center).squaredNorm() <= ball.radius * ball.radius;
+  };
+  for (std::size_t level = 0; level < levels_.size(); ++level)
+    for (Index i = 0; i < levels_[level].size(); ++i) {
+      if (!levels_[level][i].leaf || !inside(levels_[level][i].sphere)) continue;
+      const std::vector<Sphere> balls = path(level, i);
+      if (std::all_of(balls.begin(), balls.end(), inside)) return true;
+    }
+  return false;
+}
+
+std::vector<std::vector<char>> PartialTree::kept() const {
+  std::vector<std::vector<char>> kept(levels_.size());
+  for (std::size_t level = levels_.size(); level-- > 0;) {
+    const bool last = level + 1 == levels_.size();
+    for (const LevelNode& node : levels_[level]) kept[level].push_back(last || node.leaf);
+    if (last) continue;
+    for (Index i = 0; i < levels_[level + 1].size(); ++i)
+      if (kept[level + 1][i]) kept[level][levels_[level + 1][i].parent] = 1;
+  }
+  return kept;
+}
+
+SphereTree PartialTree::tree() const {
+  std::vector<std::vector<Index>> places;
+  return tree(places);
+}
+
+SphereTree PartialTree::tree(std::vector<std::vector<Index>>& places) const {
+  const auto kept = this->kept();
+  places.clear();
+  for (const Level& level : levels_) places.emplace_back(level.size(), kNone);
+  SphereTree result;
+  result.branching = 0;
+  result.nodes.push_back({.sphere = levels_[0][0].sphere});
+  places[0][0] = 0;
+  std::vector<Index> row{0};  // of the level, in the tree's order
+  for (std::size_t level = 0; level + 1 < levels_.size(); ++level) {
+    std::vector<std::vector<Index>> children(levels_[level].size());
+    for (Index i = 0; i < levels_[level + 1].size(); ++i)
+      if (kept[level + 1][i]) children[levels_[level + 1][i].parent].push_back(i);
+    std::vector<Index> next;
+    for (Index i : row) {
+      if (children[i].empty()) continue;
+      const Index at = places[level][i];
+      result.nodes[at].first_child = static_cast<Index>(result.nodes.size());
+      result.nodes[at].child_count = static_cast<Index>(children[i].size());
+      result.branching = std::max(result.branching, result.nodes[at].child_count);
+      for (Index child : children[i]) {
+        places[level + 1][child] = static_cast<Index>(result.nodes.size());
+        result.nodes.push_back(
+            {.sphere = levels_[level + 1][child].sphere, .parent = at, .level = static_cast<Index>(level + 1)});
+        next.push_back(child);
+      }
+    }
+    row = std::move(next);
+  }
+  return result;
+}
+
+void PartialTree::take_spheres(const SphereTree& tree, const std::vector<std::vector<Index>>& places) {
+  for (std::size_t level = 0; level < levels_.size(); ++level)
+    for (Index i = 0; i < levels_[level].size(); ++i)
+      if (places[level][i] != kNone) levels_[level][i].sphere = tree.nodes[places[level][i]].sphere;
+}
+
+}  // namespace orchard::detail

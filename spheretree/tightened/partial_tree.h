@@ -1,0 +1,53 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "orchard/geometry/surface.h"
+#include "orchard/spheretree/tree.h"
+
+namespace orchard::detail {
+
+struct LevelNode {
+  Sphere sphere;
+  Index parent = kNone;  // on the level above
+  bool leaf = false;     // needs no children
+};
+using Level = std::vector<LevelNode>;
+
+// What every ball grows by once its level is closed, as a fraction of R: the levels below find their samples well
+// inside some region, and gaps smaller than that need no more work.
+inline constexpr double kLastGrowth = 2e-5;
+
+// A tree in the making, level by level, where parents may still change. Level 0 is the root, a ball around the surface.
+class PartialTree {
+ public:
+  explicit PartialTree(const Surface& surface);
+
+  std::size_t size() const { return levels_.size(); }
+  Level& last() { return levels_.back(); }
+  const Level& last() const { return levels_.back(); }
+  void add_level();
+
+  // Nodes of the level above the last that need children; the path regions of these are what balls may lie in.
+  std::span<const Index> parents() const { return parents_; }
+  // The balls from the root to each of them, without half of their last growth.
+  std::vector<std::vector<Sphere>> paths() const;
+  bool in_leaf(const Point& point) const;
+
+  // A node above the last level that got no children, and was to have some, holds nothing that others do not: it is
+  // left out.
+  SphereTree tree() const;
+  // The same, with each node's place in it; kNone: left out.
+  SphereTree tree(std::vector<std::vector<Index>>& places) const;
+  void take_spheres(const SphereTree& tree, const std::vector<std::vector<Index>>& places);
+
+ private:
+  std::vector<Sphere> path(std::size_t level, Index node) const;
+  std::vector<std::vector<char>> kept() const;
+
+  double radius_;
+  std::vector<Level> levels_;
+  std::vector<Index> parents_;
+};
+
+}  // namespace orchard::detail

@@ -1,0 +1,110 @@
+#include "uncovered_regions.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "orchard/covering/path_forest.h"
+
+namespace orchard::detail {
+namespace {
+
+constexpr int kProbes = 14;  // outward from the middle of an arc, each twice as far as the one before
+
+bool same_region(const std::vector<Point>& region, const UncoveredArc& arc, double near) {
+  return std::any_of(region.begin(), region.end(),
+                     [&](const Point& p) { return (p - arc.begin).norm() <= near || (p - arc.end).norm() <= near; });
+}
+
+std::vector<std::vector<const UncoveredArc*>> joined_arcs(const TriangleCover& cover, double near) {
+  std::vector<std::vector<const UncoveredArc*>> groups;
+  std::vector<std::vector<Point>> corners;
+  for (const UncoveredArc& arc : cover.arcs) {
+    std::vector<const UncoveredArc*> group{&arc};
+    std::vector<Point> points{arc.begin, arc.middle, arc.end};
+    for (std::size_t i = groups.size(); i-- > 0;) {
+      if (!same_region(corners[i], arc, near)) continue;
+      group.insert(group.end(), groups[i].begin(), groups[i].end());
+      points.insert(points.end(), corners[i].begin(), corners[i].end());
+      groups.erase(groups.begin() + static_cast<std::ptrdiff_t>(i));
+      corners.erase(corners.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+    groups.push_back(std::move(group));
+    corners.push_back(std::move(points));
+  }
+  return groups;
+}
+
+class Prober {
+ public:
+  Prober(const Surface& surface, Index triangle, std::span<const PathBall> balls, const PathForest& forest, double step)
+      : corners_(surface.corners(triangle)), normal_(surface.normal(triangle)), balls_(balls), step_(step) {
+    forest.gather(corners_, near_);
+  }
+
+  void try_point(const Point& point, UncoveredRegion& region) const {
+    const Point inside = closest_point_of_triangle(point, corners_[0], corners_[1], corners_[2]).position;
+    const double depth = path_depth(inside, near_.balls);
+    if (depth <= region.depth) return;
+    region.depth = depth;
+    region.deepest = inside;
+  }
+
+  // A region between an arc and an edge of the triangle has no corner off its border: look outward from the arc.
+  void try_outward(const UncoveredArc& arc, UncoveredRegion& region) const {
+    Vector out = arc.middle - balls_[arc.ball].center;
+    out -= out.dot(normal_) * normal_;
+    const double length = out.norm();
+    if (!(length > 0)) return;
+    double step = step_;
+    for (int probe = 0; probe < kProbes; ++probe, step *= 2) try_point(arc.middle + out * (step / length), region);
+  }
+
+ private:
+  std::array<Point, 3> corners_;
+  Vector normal_;
+  std::span<const PathBall> balls_;
+  const double step_;
+  NearBalls near_;
+};
+
+std::vector<UncoveredRegion> regions_of(const UncoveredTriangle& uncovered, const Prober& prober, double near) {
+  std::vector<UncoveredRegion> regions;
+  for (const auto& arcs : joined_arcs(uncovered.cover, near)) {
+    UncoveredRegion region{{}, arcs[0]->middle, 0};
+    Point middle = Point::Zero();
+    for (const UncoveredArc* arc : arcs) {
+      for (const Point& p : {arc->begin, arc->middle, arc->end}) {
+        region.corners.push_back(p);
+        middle += p;
+      }
+      prober.try_outward(*arc, region);
+    }
+    prober.try_point(middle / static_cast<double>(region.corners.size()), region);
+    regions.push_back(std::move(region));
+  }
+  if (regions.empty()) {
+    regions.push_back({{uncovered.cover.witness}, uncovered.cover.witness, 0});
+    prober.try_point(uncovered.cover.witness, regions.back());
+  }
+  return regions;
+}
+
+}  // namespace
+
+std::vector<UncoveredRegion> find_uncovered_regions(const Surface& surface, const Coverage& coverage,
+                                                    std::span<const PathBall> balls, double near) {
+  const PathForest forest(balls);
+  const std::size_t count = coverage.uncovered.size();
+  std::vector<std::vector<UncoveredRegion>> found(count);
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    const UncoveredTriangle& uncovered = coverage.uncovered[i];
+    found[i] = regions_of(uncovered, Prober(surface, uncovered.triangle, balls, forest, near), near);
+  });
+  std::vector<UncoveredRegion> regions;
+  for (auto& list : found)
+    for (UncoveredRegion& region : list) regions.push_back(std::move(region));
+  return regions;
+}
+
+}  // namespace orchard::detail

@@ -1,0 +1,93 @@
+#include "orchard/spheretree/build.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "orchard/geometry/error.h"
+#include "support.h"
+
+namespace orchard {
+namespace {
+
+SphereTreeOptions small(TreeMethod method) {
+  SphereTreeOptions options{.method = method, .depth = 2, .effort = Effort::low};
+  options.medial.sampling.face_points = 1600;
+  options.medial.sampling.edge_points = 400;
+  options.samples_by_need = false;
+  return options;
+}
+
+TEST(BuildSphereTree, ProvesWhatItReturnsWhateverTheMethod) {
+  const Surface surface(test::l_shape());
+  for (const TreeMethod method :
+       {TreeMethod::tightened, TreeMethod::merging, TreeMethod::annealing, TreeMethod::octree}) {
+    const SphereTreeBuild build = build_sphere_tree(surface, small(method));
+    EXPECT_TRUE(build.certificate.ok());
+    EXPECT_TRUE(verify(surface, build.packed).ok());
+    EXPECT_EQ(build.packed.node_count, build.tree.nodes.size());
+    EXPECT_EQ(build.medial.has_value(), needs_axis(method));
+    test::expect_conservative(build.tree, surface, "L");
+  }
+}
+
+TEST(BuildSphereTree, BuildsTheAxisThatBuildMedialAxisBuilds) {
+  const Surface surface(test::u_shape(0.1));
+  SphereTreeOptions options = small(TreeMethod::merging);
+  options.medial.prune.angle = 0.5;
+  options.medial.gap_repair.definition = GapDefinition::strict;
+  const SphereTreeBuild tree = build_sphere_tree(surface, options);
+  const MedialBuild medial = build_medial_axis(surface, options.medial);
+  ASSERT_TRUE(tree.medial.has_value());
+  EXPECT_EQ(tree.medial->axis.centers, medial.axis.centers);
+  EXPECT_EQ(tree.medial->sampling.points, medial.sampling.points);
+  EXPECT_LT(medial.axis.size(), medial.unpruned_vertices);
+}
+
+TEST(BuildSphereTree, TakesAsManyPointsAsTheTreeNeedsUnlessTold) {
+  EXPECT_EQ(samples_needed({.method = TreeMethod::merging}), 5000u);
+  EXPECT_EQ(samples_needed({.depth = 1}), 10'000u);
+  EXPECT_EQ(samples_needed({.depth = 4}), 81'920u);
+  EXPECT_EQ(samples_needed({.depth = 10}), 200'000u);
+  const Surface surface(test::l_shape());
+  SphereTreeOptions options = small(TreeMethod::merging);
+  EXPECT_NEAR(build_sphere_tree(surface, options).medial->points, 2000, 20);
+  options.samples_by_need = true;
+  EXPECT_NEAR(build_sphere_tree(surface, options).medial->points, 5000, 50);
+}
+
+TEST(BuildSphereTree, BuildsFromAForeignAxis) {
+  const Surface surface(test::u_shape(0.2));
+  MedialMesh foreign = medial_mesh(build_medial_axis(surface, {.sampling = {.face_points = 400}}).axis);
+  foreign.centers.push_back(Point(99, 0, 0));
+  foreign.radii.push_back(1);
+  for (const TreeMethod method : {TreeMethod::tightened, TreeMethod::merging}) {
+    MedialBuildInput input;
+    input.mesh = foreign;
+    const SphereTreeBuild build = build_sphere_tree(surface, small(method), {}, input);
+    EXPECT_TRUE(build.certificate.ok());
+    EXPECT_EQ(build.medial->balls_refused, 1u);
+    EXPECT_EQ(build.medial->axis.size(), foreign.size() - 1);
+    test::expect_conservative(build.tree, surface, "U");
+  }
+}
+
+TEST(BuildSphereTree, FromTheDiagramOfABuildIsTheSameTree) {
+  const Surface surface(test::u_shape(0.2));
+  const SphereTreeOptions options = small(TreeMethod::tightened);
+  SphereTreeBuild first = build_sphere_tree(surface, options);
+  MedialBuildInput input;
+  input.diagram = {std::move(first.medial->diagram), std::move(first.medial->sampling)};
+  EXPECT_TRUE(test::same_tree(first.tree, build_sphere_tree(surface, options, {}, std::move(input)).tree));
+}
+
+TEST(BuildSphereTree, RefusesTwoInputsAtOnce) {
+  const Surface surface(test::l_shape());
+  MedialBuildInput input;
+  input.sampling.emplace();
+  input.mesh.emplace();
+  EXPECT_THROW(build_sphere_tree(surface, small(TreeMethod::merging), {}, input), InputError);
+}
+
+}  // namespace
+}  // namespace orchard
