@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -39,6 +40,9 @@ struct RepairPass {
   Index cells_tested = 0, cells_crossing = 0;
   Index faces_tested = 0, faces_crossing = 0;  // of all cells; each shared one once
   Index added_by_projection = 0, added_by_snapping = 0, added_at_necks = 0, refused_as_coincident = 0;
+  // Boxes and points that the search for new points near other new points looked at: the cost of choosing places, in
+  // numbers that no machine changes.
+  std::size_t steps_among_new_points = 0;
 };
 
 struct RepairReport {
