@@ -232,6 +232,23 @@ TEST(GapRepair, ScalesWithTheSolidByPowersOfTwo) {
   for (Index i = 0; i < a.sampling.size(); ++i) EXPECT_EQ(8 * a.sampling.points[i], b.sampling.points[i]);
 }
 
+// Nearly every cell of a plate thinner than its points are apart gets a new point.
+TEST(GapRepair, LooksAtFewNewPointsForEachOfAThinPlate) {
+  const Surface surface(test::box({0, 0, 0}, {1, 1, 2e-4}));
+  std::vector<double> steps;  // for each new point
+  for (const Index count : {1500u, 6000u}) {
+    const Repaired repaired = sampled_and_repaired(surface, points(count, count / 5));
+    EXPECT_GT(2 * repaired.report.points_added, count);
+    EXPECT_EQ(repaired.report.faces_still_crossing, 0u);
+    std::size_t sum = 0;
+    for (const RepairPass& pass : repaired.report.passes) sum += pass.steps_among_new_points;
+    steps.push_back(static_cast<double>(sum) / repaired.report.points_added);
+  }
+  EXPECT_GE(steps[0], 1) << "it has to look at something";
+  EXPECT_LT(steps[0], 200);
+  EXPECT_LT(steps[1], 1.5 * steps[0]) << "a logarithm grows by a fifth, looking at all of them fourfold";
+}
+
 TEST(GapRepair, RefusesWhatIsNoSolid) {
   const Surface surface(test::open_box());
   EXPECT_THROW(repair_gap_crossings(surface, {}, {}), InputError);
