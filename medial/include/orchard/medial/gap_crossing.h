@@ -66,8 +66,8 @@ struct Repaired {
 // without crossings has one disk of surface for each cell, one arc for each two neighbours and one point for each
 // three, so that the Voronoi edges that stay inside hang together as the solid does (Edelsbrunner and Shah 1997).
 // Preconditions: diagram.points equals sampling.points, highest_first_voronoi made it. Throws InputError unless
-// surface.solid(), or if the diagram cannot be that of the sampling. O(n) per pass for all but pathological inputs;
-// parallel, the same for any thread count.
+// surface.solid(), or if the diagram cannot be that of the sampling. O(n log n) per pass for all but pathological
+// inputs; parallel, the same for any thread count.
 Repaired repair_gap_crossings(const Surface& surface, SurfaceSampling sampling, VoronoiDiagram diagram,
                               const RepairOptions& options = {}, const Progress& progress = {});
 
