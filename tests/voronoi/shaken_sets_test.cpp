@@ -15,6 +15,7 @@
 #include "orchard/geometry/random.h"
 #include "orchard/geometry/tolerance.h"
 #include "orchard/voronoi/highest_first.h"
+#include "support/effort.h"
 #include "voronoi/diagram_judge.h"
 #include "voronoi/quadruples.h"
 

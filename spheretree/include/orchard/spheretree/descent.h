@@ -22,9 +22,4 @@ struct DescentReport {
 DescentReport random_descent(SphereTree& tree, const Surface& surface, const DescentOptions& options = {},
                              const Progress& progress = {});
 
-// Shrinks balls about their centres to the least radius that the path rule allows, to about 1 % of it; loosest first, a
-// level after the other from the top. What growing balls one by one has made too large, as cover() may, so comes down
-// again, and tight balls are needed that loose ones had stood in for. Preconditions as above; returns how many shrank.
-Index shrink_balls(SphereTree& tree, const Surface& surface, const Progress& progress = {});
-
 }  // namespace orchard
