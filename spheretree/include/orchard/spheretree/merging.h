@@ -37,9 +37,9 @@ struct MergeReport {
 // thread count. Throws InputError for a branching out of range or an axis without vertices.
 //
 // With MergeClosing::refit, merging gives the start (8.2): siblings share their parent's points out, spheres that do
-// not pay go to where they help most, within a node and, up to twice `branching` for a node, within a level, which has
-// at most `branching` times the nodes of the one above. Each level is closed, rid of what is redundant and filled up
-// again before it gets children.
+// not pay go to where they help most, within a node and, up to three times `branching` for a node (64 at most), within
+// a level, which has at most `branching` times the nodes of the one above. Each level is closed, rid of what is
+// redundant and filled up again before it gets children.
 SphereTree merge_tree(const Surface& surface, const MedialAxis& axis, const MergeOptions& options = {},
                       const Progress& progress = {}, MergeReport* report = nullptr);
 
