@@ -47,7 +47,7 @@ function(orchard_add_module name)
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})  # "room/header.h"
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE $<BUILD_INTERFACE:orchard_flags> ${ARG_PRIVATE})
-  if(NOT name STREQUAL runtime)  # which is small, and needs nothing to be built but a compiler
+  if(NOT name MATCHES "^(runtime|broad_phase_methods)$")  # which are small, and need nothing to be built but a compiler
     set(headers ${ORCHARD_CONSTRUCTION_HEADERS})
     if(TBB::tbb IN_LIST ARG_PRIVATE)
       list(APPEND headers <tbb/blocked_range.h> <tbb/enumerable_thread_specific.h> <tbb/parallel_for.h>)
