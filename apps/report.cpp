@@ -81,7 +81,7 @@ json tightening_json(const TightenReport& report) {
   json levels = json::array();
   for (const TightenReport::Level& level : report.levels)
     levels.push_back({{"balls", level.balls},
-                      {"gaps_closed", level.gaps},
+                      {"gaps_closed", level.uncovered_regions},
                       {"closing_rounds", level.closing_rounds},
                       {"largest_growth_over_radius", level.grown},
                       {"seconds_search", level.seconds_search},
@@ -95,7 +95,7 @@ json merging_json(const MergeReport& report) {
     levels.push_back({{"spheres", level.spheres},
                       {"redundant_spheres_removed", level.removed},
                       {"loose_spheres_split", level.split},
-                      {"uncovered_regions_before", level.regions},
+                      {"uncovered_regions_before", level.uncovered_regions},
                       {"closing_rounds", level.rounds},
                       {"largest_growth_over_radius", level.growth}});
   return levels;

@@ -13,6 +13,8 @@ struct FittedBall {
   double radius = 0;
   double depth = 0;  // signed distance of the centre, negative inside
   double looseness() const { return radius + depth; }
+  // With the radius that the ball needs to reach the point, whatever it has now.
+  double looseness_with(const Point& point) const { return (point - center).norm() + depth; }
 };
 
 // Fits one ball to points: minimises the looseness max |p - c| + sd(c) over the centre c by a bundle method. The first

@@ -15,29 +15,29 @@ namespace {
 
 constexpr int kMaxRounds = 60;
 
-// What one path should take in: points of an uncovered region, whose convex hull then lies in the path's region too.
+// What one path should take in: points of an uncovered region. The path region then holds their convex hull as well.
 using Points = std::vector<Point>;
 
-// Finds the path that takes a region in for the least growth. Growth counts relative to each ball's radius: a per cent
+// Finds the path that takes points in for the least growth. Growth counts relative to each ball's radius: a per cent
 // of a large ball near the root costs as much looseness on its level as a per cent of a leaf does on its own.
 class Grower {
  public:
   Grower(SphereTree& tree, double margin) : tree_(tree), margin_(margin) {}
 
-  double cost_of_best_path(const Points& region) {
+  double cost_of_best_path(const Points& points) {
     best_cost_ = std::numeric_limits<double>::infinity();
     best_leaf_ = kNone;
-    descend(0, 0, region);
+    descend(0, 0, points);
     return best_cost_;
   }
 
-  // Grows the path found last so that it holds the region. Returns the largest growth of a radius.
-  double grow_best_path(const Points& region) {
+  // Grows the path found last so that it holds the points. Returns the largest growth of a radius.
+  double grow_best_path(const Points& points) {
     double max = 0;
     for (Index node = best_leaf_; node != kNone; node = tree_.nodes[node].parent) {
       double& radius = tree_.nodes[node].sphere.radius;
-      const double wanted = reach(node, region) + margin_;
-      if (reach(node, region) <= radius - margin_ / 2) continue;
+      const double wanted = reach(node, points) + margin_;
+      if (reach(node, points) <= radius - margin_ / 2) continue;
       max = std::max(max, wanted - radius);
       radius = std::max(radius, wanted);
     }
@@ -45,15 +45,15 @@ class Grower {
   }
 
  private:
-  double reach(Index node, const Points& region) const {
+  double reach(Index node, const Points& points) const {
     double farthest = 0;
-    for (const Point& point : region) farthest = std::max(farthest, (point - tree_.nodes[node].sphere.center).norm());
+    for (const Point& point : points) farthest = std::max(farthest, (point - tree_.nodes[node].sphere.center).norm());
     return farthest;
   }
 
-  void descend(Index index, double cost_above, const Points& region) {
+  void descend(Index index, double cost_above, const Points& points) {
     const SphereNode& node = tree_.nodes[index];
-    const double growth = std::max(0.0, reach(index, region) + margin_ - node.sphere.radius);
+    const double growth = std::max(0.0, reach(index, points) + margin_ - node.sphere.radius);
     const double cost = cost_above + growth / node.sphere.radius;
     if (cost >= best_cost_) return;
     if (node.child_count == 0) {
@@ -62,7 +62,7 @@ class Grower {
       return;
     }
     for (Index child = node.first_child; child < node.first_child + node.child_count; ++child)
-      descend(child, cost, region);
+      descend(child, cost, points);
   }
 
   SphereTree& tree_;
@@ -71,10 +71,10 @@ class Grower {
   Index best_leaf_ = kNone;
 };
 
-// One path for the whole region, or one for each of its points, whichever grows less.
-double take_in(Grower& grower, const detail::UncoveredRegion& region) {
-  Points all = region.corners;
-  if (all.empty()) all.push_back(region.deepest);
+// One path for the whole uncovered region, or one for each of its points, whichever grows less.
+double take_in(Grower& grower, const detail::UncoveredRegion& uncovered) {
+  Points all = uncovered.corners;
+  if (all.empty()) all.push_back(uncovered.deepest);
   const double together = grower.cost_of_best_path(all);
   if (together == 0) return 0;
   double apart = 0;
@@ -115,7 +115,7 @@ CoverReport cover(SphereTree& tree, const Surface& surface, const Progress& prog
       triangles.push_back(uncovered.triangle);
       for (const Point& corner : surface.corners(uncovered.triangle)) take({{}, corner, 0});
     }
-    // Regions shrink with every round; a slowly widening margin ends the last of them.
+    // What is uncovered shrinks with every round; a slowly widening margin puts an end to the last of it.
     margin *= 1.5;
   }
   throw Error("cover: " + std::to_string(triangles.size()) + " triangles are still uncovered after " +

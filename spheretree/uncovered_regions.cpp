@@ -5,14 +5,19 @@
 #include <algorithm>
 
 #include "orchard/covering/path_forest.h"
+#include "orchard/geometry/tolerance.h"
 
 namespace orchard::detail {
 namespace {
 
 constexpr int kProbes = 14;  // outward from the middle of an arc, each twice as far as the one before
+// Uncovered regions below this part of the last growth are left to it.
+constexpr double kLeftToGrowth = 0.4;
+// An uncovered region is taken in whole unless that costs so many times what its deepest point does.
+constexpr double kDearer = 8;
 
-bool same_region(const std::vector<Point>& region, const UncoveredArc& arc, double near) {
-  return std::any_of(region.begin(), region.end(),
+bool bounds_same(const std::vector<Point>& corners, const UncoveredArc& arc, double near) {
+  return std::any_of(corners.begin(), corners.end(),
                      [&](const Point& p) { return (p - arc.begin).norm() <= near || (p - arc.end).norm() <= near; });
 }
 
@@ -23,7 +28,7 @@ std::vector<std::vector<const UncoveredArc*>> joined_arcs(const TriangleCover& c
     std::vector<const UncoveredArc*> group{&arc};
     std::vector<Point> points{arc.begin, arc.middle, arc.end};
     for (std::size_t i = groups.size(); i-- > 0;) {
-      if (!same_region(corners[i], arc, near)) continue;
+      if (!bounds_same(corners[i], arc, near)) continue;
       group.insert(group.end(), groups[i].begin(), groups[i].end());
       points.insert(points.end(), corners[i].begin(), corners[i].end());
       groups.erase(groups.begin() + static_cast<std::ptrdiff_t>(i));
@@ -50,7 +55,8 @@ class Prober {
     region.deepest = inside;
   }
 
-  // A region between an arc and an edge of the triangle has no corner off its border: look outward from the arc.
+  // An uncovered region between an arc and an edge of the triangle has no corner off its border: look outward from the
+  // arc.
   void try_outward(const UncoveredArc& arc, UncoveredRegion& region) const {
     Vector out = arc.middle - balls_[arc.ball].center;
     out -= out.dot(normal_) * normal_;
@@ -68,7 +74,8 @@ class Prober {
   NearBalls near_;
 };
 
-std::vector<UncoveredRegion> regions_of(const UncoveredTriangle& uncovered, const Prober& prober, double near) {
+std::vector<UncoveredRegion> uncovered_regions_of(const UncoveredTriangle& uncovered, const Prober& prober,
+                                                  double near) {
   std::vector<UncoveredRegion> regions;
   for (const auto& arcs : joined_arcs(uncovered.cover, near)) {
     UncoveredRegion region{{}, arcs[0]->middle, 0};
@@ -92,6 +99,12 @@ std::vector<UncoveredRegion> regions_of(const UncoveredTriangle& uncovered, cons
 
 }  // namespace
 
+std::vector<Point> UncoveredRegion::points() const {
+  std::vector<Point> points = corners;
+  points.push_back(deepest);
+  return points;
+}
+
 std::vector<UncoveredRegion> find_uncovered_regions(const Surface& surface, const Coverage& coverage,
                                                     std::span<const PathBall> balls, double near) {
   const PathForest forest(balls);
@@ -99,12 +112,40 @@ std::vector<UncoveredRegion> find_uncovered_regions(const Surface& surface, cons
   std::vector<std::vector<UncoveredRegion>> found(count);
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
     const UncoveredTriangle& uncovered = coverage.uncovered[i];
-    found[i] = regions_of(uncovered, Prober(surface, uncovered.triangle, balls, forest, near), near);
+    found[i] = uncovered_regions_of(uncovered, Prober(surface, uncovered.triangle, balls, forest, near), near);
   });
   std::vector<UncoveredRegion> regions;
   for (auto& list : found)
     for (UncoveredRegion& region : list) regions.push_back(std::move(region));
   return regions;
+}
+
+std::vector<UncoveredRegion> find_deep_uncovered_regions(const Surface& surface, const Coverage& coverage,
+                                                         std::span<const PathBall> balls) {
+  const double radius = surface.bounding_radius();
+  auto uncovered = find_uncovered_regions(surface, coverage, balls, tolerance::kCoverMargin * radius);
+  std::erase_if(uncovered,
+                [&](const UncoveredRegion& region) { return region.depth <= kLeftToGrowth * kLastGrowth * radius; });
+  return uncovered;
+}
+
+bool taken_whole(double rise_for_whole, double rise_for_deepest) {
+  return rise_for_whole <= kDearer * rise_for_deepest;
+}
+
+std::vector<Index> triangles_to_recheck(const Surface& surface, const Coverage& before,
+                                        std::span<const Sphere> changed) {
+  std::vector<char> marked(surface.mesh().triangles.size(), 0);
+  for (const UncoveredTriangle& uncovered : before.uncovered) marked[uncovered.triangle] = 1;
+  std::vector<Index> near;
+  for (const Sphere& ball : changed) {
+    surface.triangles_near(ball, near);
+    for (Index triangle : near) marked[triangle] = 1;
+  }
+  std::vector<Index> triangles;
+  for (Index i = 0; i < marked.size(); ++i)
+    if (marked[i]) triangles.push_back(i);
+  return triangles;
 }
 
 }  // namespace orchard::detail

@@ -19,12 +19,8 @@ namespace {
 
 constexpr int kRounds = 14;
 constexpr int kEvaluations = 14;
-// What every ball of a closed level grows by, as a fraction of R: gaps smaller than a part of it need no more work.
-constexpr double kGrowth = 2e-5, kSmallGap = 0.4;
 // What breaks ties between balls that would not get looser, as a fraction of growth.
 constexpr double kTie = 1e-9;
-// A region is taken in whole unless that costs so many times what its deepest point does.
-constexpr double kDearer = 8;
 
 struct Taker {
   Index node = kNone;
@@ -53,54 +49,44 @@ class Closer {
     for (; report.rounds < kRounds; ++report.rounds) {
       const std::vector<PathBall> balls = path_balls(tree_);
       const Coverage coverage = surface_coverage(surface_, triangles, balls);
-      auto regions = find_uncovered_regions(surface_, coverage, balls, margin_);
-      std::erase_if(regions,
-                    [&](const UncoveredRegion& region) { return region.depth <= kSmallGap * kGrowth * radius_; });
-      if (report.rounds == 0) report.regions = static_cast<Index>(regions.size());
-      if (regions.empty()) break;
-      triangles = take_in(regions, coverage);
+      const std::vector<UncoveredRegion> uncovered = find_deep_uncovered_regions(surface_, coverage, balls);
+      if (report.rounds == 0) report.uncovered_regions = static_cast<Index>(uncovered.size());
+      if (uncovered.empty()) break;
+      const std::vector<Index> takers = give(uncovered);
+      std::vector<Sphere> changed;
+      for (Index node : takers) changed.push_back(tree_.nodes[node].sphere);
+      triangles = triangles_to_recheck(surface_, coverage, changed);
+      tbb::parallel_for(std::size_t{0}, takers.size(), [&](std::size_t i) { refit(takers[i]); });
     }
     const Index last = tree_.depth();
     for (SphereNode& node : tree_.nodes)
-      if (node.level == last) node.sphere.radius += kGrowth * radius_;
+      if (node.level == last) node.sphere.radius += kLastGrowth * radius_;
     report.growth = cover(tree_, surface_).max_growth;
     return report;
   }
 
  private:
-  // Gives the regions to balls and fits these; returns the triangles that may be uncovered now.
-  std::vector<Index> take_in(const std::vector<UncoveredRegion>& regions, const Coverage& coverage) {
-    std::vector<Taker> whole(regions.size()), deepest(regions.size());
-    tbb::parallel_for(std::size_t{0}, regions.size(), [&](std::size_t i) {
-      std::vector<Point> points = regions[i].corners;
-      points.push_back(regions[i].deepest);
-      descend(0, points, whole[i]);
-      descend(0, {regions[i].deepest}, deepest[i]);
+  // Adds the uncovered regions to what the nodes that they cost least have to hold; returns these nodes, ascending.
+  std::vector<Index> give(const std::vector<UncoveredRegion>& uncovered) {
+    std::vector<Taker> whole(uncovered.size()), deepest(uncovered.size());
+    tbb::parallel_for(std::size_t{0}, uncovered.size(), [&](std::size_t i) {
+      descend(0, uncovered[i].points(), whole[i]);
+      descend(0, {uncovered[i].deepest}, deepest[i]);
     });
     std::vector<char> marked(tree_.nodes.size(), 0);
-    for (std::size_t i = 0; i < regions.size(); ++i) {
-      const bool together = whole[i].rise <= kDearer * deepest[i].rise;
+    for (std::size_t i = 0; i < uncovered.size(); ++i) {
+      const std::vector<Point>& corners = uncovered[i].corners;
+      const bool together = taken_whole(whole[i].rise, deepest[i].rise);
       const Index taker = together ? whole[i].node : deepest[i].node;
-      if (taker == kNone) continue;  // across the border of a region: cover() mends it
+      if (taker == kNone) continue;  // across the border of a path region: cover() mends it
       marked[taker] = 1;
-      held_[taker].push_back(regions[i].deepest);
-      if (together) held_[taker].insert(held_[taker].end(), regions[i].corners.begin(), regions[i].corners.end());
+      held_[taker].push_back(uncovered[i].deepest);
+      if (together) held_[taker].insert(held_[taker].end(), corners.begin(), corners.end());
     }
-    std::vector<char> recheck(surface_.mesh().triangles.size(), 0);
-    for (const UncoveredTriangle& uncovered : coverage.uncovered) recheck[uncovered.triangle] = 1;
-    std::vector<Index> near;
-    for (Index i = 0; i < marked.size(); ++i) {
-      if (!marked[i]) continue;
-      surface_.triangles_near(tree_.nodes[i].sphere, near);
-      for (Index triangle : near) recheck[triangle] = 1;
-    }
-    tbb::parallel_for(std::size_t{0}, marked.size(), [&](std::size_t i) {
-      if (marked[i]) refit(static_cast<Index>(i));
-    });
-    std::vector<Index> triangles;
-    for (Index i = 0; i < recheck.size(); ++i)
-      if (recheck[i]) triangles.push_back(i);
-    return triangles;
+    std::vector<Index> takers;
+    for (Index i = 0; i < marked.size(); ++i)
+      if (marked[i]) takers.push_back(i);
+    return takers;
   }
 
   void refit(Index i) {
@@ -109,14 +95,15 @@ class Closer {
     depth_[i] = fitted.depth;
   }
 
-  // The leaf of which the region lies in the path region above, and that it costs least.
-  void descend(Index index, const std::vector<Point>& region, Taker& best) const {
+  // Of the leaves below the node whose path region, but for the leaf itself, holds the points: the one that they cost
+  // least.
+  void descend(Index index, const std::vector<Point>& points, Taker& best) const {
     const SphereNode& node = tree_.nodes[index];
     double reach = 0;
-    for (const Point& p : region) reach = std::max(reach, (p - node.sphere.center).squaredNorm());
+    for (const Point& p : points) reach = std::max(reach, (p - node.sphere.center).squaredNorm());
     if (node.child_count > 0) {
       if (reach > node.sphere.radius * node.sphere.radius) return;
-      for (Index k = 0; k < node.child_count; ++k) descend(node.first_child + k, region, best);
+      for (Index k = 0; k < node.child_count; ++k) descend(node.first_child + k, points, best);
       return;
     }
     const double growth = std::max(0.0, std::sqrt(reach) - node.sphere.radius) / radius_;
@@ -135,8 +122,8 @@ class Closer {
 
 }  // namespace
 
-ClosingReport close_level(SphereTree& tree, const Surface& surface, std::vector<std::vector<Point>>& held,
-                          double power) {
+ClosingReport close_by_refitting(SphereTree& tree, const Surface& surface, std::vector<std::vector<Point>>& held,
+                                 double power) {
   return Closer(tree, surface, held, power).run();
 }
 

@@ -116,12 +116,12 @@ class MergeTree {
   void close(MergeReport::Level& row) {
     std::vector<std::vector<Point>> held(patches_.size());
     for (std::size_t i = 0; i < held.size(); ++i) held[i] = std::move(patches_[i].held);
-    const detail::ClosingReport closed = detail::close_level(tree_, surface_, held, maker_.power());
+    const detail::ClosingReport closed = detail::close_by_refitting(tree_, surface_, held, maker_.power());
     for (std::size_t i = 0; i < held.size(); ++i) {
       patches_[i].points.resize(held[i].size(), kNone);
       patches_[i].held = std::move(held[i]);
     }
-    if (row.rounds == 0) row.regions = closed.regions;
+    if (row.rounds == 0) row.uncovered_regions = closed.uncovered_regions;
     row.rounds += closed.rounds;
     row.growth = std::max(row.growth, closed.growth);
   }

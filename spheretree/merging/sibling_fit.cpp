@@ -51,13 +51,12 @@ class Fit {
     return sum;
   }
   double cost(const FittedBall& ball) const { return std::pow(std::max(0.0, ball.looseness()), power_); }
-  double key(const FittedBall& ball, Index p) const { return (points_[p] - ball.center).norm() + ball.depth; }
 
   void divide(Siblings& state) const {
     for (Index p = 0; p < points_.size(); ++p) {
       double min = kInfinity;
       for (Index b = 0; b < state.balls.size(); ++b) {
-        const double k = key(state.balls[b], p);
+        const double k = state.balls[b].looseness_with(points_[p]);
         if (k < min) min = k, state.owner[p] = b;
       }
     }
@@ -147,7 +146,7 @@ class Fit {
       double min = kInfinity;
       for (Index b = 0; b < count; ++b) {
         if (b == lost) continue;
-        const double k = key(state.balls[b], p);
+        const double k = state.balls[b].looseness_with(points_[p]);
         if (k < min) min = k, taker = b;
       }
       reach[lost][taker] = std::max(reach[lost][taker], min);

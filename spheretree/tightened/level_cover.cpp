@@ -17,31 +17,31 @@ bool apart(const Sphere& ball, const Point& center, double reach) {
 
 }  // namespace
 
-LevelCover::LevelCover(const Surface& surface, std::span<const PathBall> upper, std::vector<Index> region_nodes,
-                       std::vector<RegionBall> balls)
+LevelCover::LevelCover(const Surface& surface, std::span<const PathBall> upper, std::vector<Index> path_ends,
+                       std::vector<PlacedBall> balls)
     : surface_(surface),
       margin_(tolerance::kCoverMargin * surface.bounding_radius()),
       upper_(upper),
-      region_nodes_(std::move(region_nodes)),
-      region_of_node_(upper.size(), kNone),
+      path_ends_(std::move(path_ends)),
+      region_at_(upper.size(), kNone),
       balls_(std::move(balls)),
-      in_region_(region_nodes_.size()) {
-  for (Index r = 0; r < region_nodes_.size(); ++r)
-    if (region_nodes_[r] != kNone) region_of_node_[region_nodes_[r]] = r;
-  for (Index b = 0; b < balls_.size(); ++b) in_region_[balls_[b].region].push_back(b);
+      balls_in_(path_ends_.size()) {
+  for (Index r = 0; r < path_ends_.size(); ++r)
+    if (path_ends_[r] != kNone) region_at_[path_ends_[r]] = r;
+  for (Index b = 0; b < balls_.size(); ++b) balls_in_[balls_[b].path_region].push_back(b);
 }
 
-void LevelCover::replace(Index ball, const RegionBall& by) {
-  if (by.region != balls_[ball].region) {
-    std::erase(in_region_[balls_[ball].region], ball);
-    in_region_[by.region].push_back(ball);
+void LevelCover::replace(Index ball, const PlacedBall& by) {
+  if (by.path_region != balls_[ball].path_region) {
+    std::erase(balls_in_[balls_[ball].path_region], ball);
+    balls_in_[by.path_region].push_back(ball);
   }
   balls_[ball] = by;
 }
 
-bool LevelCover::in_region(Index region, const Point& point) const {
-  if (region_nodes_[region] == kNone) return false;
-  for (Index node = region_nodes_[region]; node != kNone; node = upper_.balls()[node].parent) {
+bool LevelCover::in_path_region(Index path_region, const Point& point) const {
+  if (path_ends_[path_region] == kNone) return false;
+  for (Index node = path_ends_[path_region]; node != kNone; node = upper_.balls()[node].parent) {
     const PathBall& ball = upper_.balls()[node];
     if ((point - ball.center).norm() > ball.radius - margin_) return false;
   }
@@ -60,12 +60,12 @@ void LevelCover::gather(const std::array<Point, 3>& corners, const Sphere& where
     near.balls.push_back({ball.center, ball.radius, parent, true});
   };
   for (Index i = 0, count = static_cast<Index>(near.balls.size()); i < count; ++i) {
-    const Index region = region_of_node_[near.original[i]];
-    if (region == kNone) continue;
-    for (Index b : in_region_[region])
+    const Index path_region = region_at_[near.original[i]];
+    if (path_region == kNone) continue;
+    for (Index b : balls_in_[path_region])
       if (std::find(change.gone.begin(), change.gone.end(), b) == change.gone.end()) visit(balls_[b].sphere, i);
-    for (const RegionBall& ball : change.added)
-      if (ball.region == region) visit(ball.sphere, i);
+    for (const PlacedBall& ball : change.added)
+      if (ball.path_region == path_region) visit(ball.sphere, i);
   }
 }
 

@@ -7,16 +7,16 @@
 
 namespace orchard::detail {
 
-// A ball of the level in question and the region that it lies in.
-struct RegionBall {
+// A ball of the level in question and the path region that it lies in.
+struct PlacedBall {
   Sphere sphere;
-  Index region = kNone;
+  Index path_region = kNone;
 };
 
 // A change that is being tried: some balls are gone, others there instead.
 struct Change {
   std::span<const Index> gone;
-  std::span<const RegionBall> added;
+  std::span<const PlacedBall> added;
 };
 
 // The ends of an arc that bounds a piece of surface without a path, or a corner in such a piece twice. In each triangle
@@ -34,14 +34,14 @@ class LevelCover {
     std::vector<Index> triangles;
   };
 
-  // `upper`: the tree above the level, with leaves where it has leaves already; region_nodes[r]: the last ball on the
-  // path of region r in it, kNone if the region is not to be used.
-  LevelCover(const Surface& surface, std::span<const PathBall> upper, std::vector<Index> region_nodes,
-             std::vector<RegionBall> balls);
+  // `upper`: the tree above the level, with leaves where it has leaves already; path_ends[r]: the last ball on the
+  // path of path region r in it, kNone if that is not to be used.
+  LevelCover(const Surface& surface, std::span<const PathBall> upper, std::vector<Index> path_ends,
+             std::vector<PlacedBall> balls);
 
-  std::span<const RegionBall> balls() const { return balls_; }
-  void replace(Index ball, const RegionBall& by);
-  bool in_region(Index region, const Point& point) const;
+  std::span<const PlacedBall> balls() const { return balls_; }
+  void replace(Index ball, const PlacedBall& by);
+  bool in_path_region(Index path_region, const Point& point) const;
 
   // What is open inside the closed sphere after the change.
   void open_arcs(const Sphere& where, const Change& change, Scratch& scratch, std::vector<OpenArc>& arcs) const;
@@ -53,9 +53,9 @@ class LevelCover {
   const Surface& surface_;
   const double margin_;
   PathForest upper_;
-  std::vector<Index> region_nodes_, region_of_node_;
-  std::vector<RegionBall> balls_;
-  std::vector<std::vector<Index>> in_region_;  // balls
+  std::vector<Index> path_ends_, region_at_;
+  std::vector<PlacedBall> balls_;
+  std::vector<std::vector<Index>> balls_in_;  // each path region
 };
 
 }  // namespace orchard::detail

@@ -12,134 +12,121 @@
 namespace orchard::detail {
 namespace {
 
-// Gaps below this part of the last growth are left to it.
-constexpr double kSmallGap = 0.4;
-constexpr int kTighteningRounds = 4;  // after those that search
-constexpr int kTakingRounds = 8;      // after these
-constexpr int kClosedRounds = 4;      // of the search that never uncovers anything
+// Rounds of taking uncovered regions in: those that search come first, then those that only tighten, then those that
+// do neither.
+constexpr int kTighteningRounds = 4;
+constexpr int kTakingRounds = 8;
+constexpr int kClosedRounds = 4;  // of the search that never uncovers anything
 
-class Closing {
+class Finish {
  public:
-  Closing(const Surface& surface, LevelSolver& solver, PartialTree& stack, const ClosingOptions& options)
-      : surface_(surface), solver_(solver), stack_(stack), options_(options), radius_(surface.bounding_radius()) {}
+  Finish(const Surface& surface, LevelSolver& solver, PartialTree& partial, const FinishOptions& options)
+      : surface_(surface), solver_(solver), partial_(partial), options_(options), radius_(surface.bounding_radius()) {}
 
-  // Finds what no path region is certain to hold and has the balls take it in, until only gaps are left that the last
-  // growth fills. While there is work left, the search goes on with what was found among its samples.
-  void take_in_gaps(TightenReport::Level& report) {
+  // Finds uncovered regions and has the balls take them in, until only those are left that the last growth fills. In
+  // the first rounds, the search goes on with what was found among its samples.
+  void take_in_uncovered(TightenReport::Level& report) {
     std::vector<Index> triangles(surface_.mesh().triangles.size());
     std::iota(triangles.begin(), triangles.end(), Index{0});
-    const int rounds = options_.polishing + kTighteningRounds + kTakingRounds;
+    const int rounds = options_.searching_rounds + kTighteningRounds + kTakingRounds;
     for (int round = 0; round < rounds; ++round) {
       report_progress(options_.progress, "tightening", 0.5 * round / rounds);
       take_balls();
-      const std::vector<PathBall> balls = path_balls(stack_.tree());
+      const std::vector<PathBall> balls = path_balls(partial_.tree());
       const Coverage coverage = surface_coverage(surface_, triangles, balls);
-      const auto regions = large_regions(coverage, balls);
-      if (round == 0) report.gaps = static_cast<Index>(regions.size());
-      if (regions.empty()) return;
+      const std::vector<UncoveredRegion> uncovered = find_deep_uncovered_regions(surface_, coverage, balls);
+      if (round == 0) report.uncovered_regions = static_cast<Index>(uncovered.size());
+      if (uncovered.empty()) return;
       ++report.closing_rounds;
       const std::vector<LevelBall> before = solver_.balls();
-      const bool polish = round < options_.polishing;
-      solver_.take_in(regions, !polish);
-      if (round < options_.polishing + kTighteningRounds) solver_.tighten();
-      if (polish) {
+      const bool search = round < options_.searching_rounds;
+      solver_.take_in(uncovered, !search);
+      if (round < options_.searching_rounds + kTighteningRounds) solver_.tighten();
+      if (search) {
         solver_.search(options_.search_trials);
         solver_.tighten();
       }
-      triangles = to_recheck(coverage, before);
+      triangles = triangles_to_recheck(surface_, coverage, changed(before));
     }
   }
 
   // Settles what is left by growing.
   void grow(TightenReport::Level& report) {
     take_balls();
-    for (LevelNode& node : stack_.last()) node.sphere.radius += 0.5 * kLastGrowth * radius_;
+    for (LevelNode& node : partial_.last()) node.sphere.radius += 0.5 * kLastGrowth * radius_;
     std::vector<std::vector<Index>> places;
-    SphereTree closed = stack_.tree(places);
+    SphereTree closed = partial_.tree(places);
     report.grown = cover(closed, surface_, {}).max_growth;
-    stack_.take_spheres(closed, places);
+    partial_.take_spheres(closed, places);
   }
 
   // The surface is covered: what was grown carelessly is fitted again, with nothing uncovered.
   void tighten_closed() {
     std::vector<std::vector<Index>> places;
-    const SphereTree closed = stack_.tree(places);
-    const auto level = static_cast<Index>(stack_.size() - 1);
+    const SphereTree closed = partial_.tree(places);
+    const auto level = static_cast<Index>(partial_.size() - 1);
     const auto first_below = std::find_if(closed.nodes.begin(), closed.nodes.end(),
                                           [&](const SphereNode& node) { return node.level == level; });
     std::vector<PathBall> upper = path_balls(closed);
     upper.resize(static_cast<std::size_t>(first_below - closed.nodes.begin()));
-    std::vector<Index> region_nodes;
-    for (Index parent : stack_.parents()) {
+    std::vector<Index> path_ends;
+    for (Index parent : partial_.parents()) {
       const Index place = places[level - 1][parent];
-      region_nodes.push_back(place);
+      path_ends.push_back(place);
       if (place != kNone) upper[place].leaf = false;
     }
-    std::vector<RegionBall> balls;
+    std::vector<PlacedBall> balls;
     for (std::size_t b = 0; b < solver_.balls().size(); ++b)
-      balls.push_back({stack_.last()[b].sphere, solver_.balls()[b].region});
-    LevelCover cover(surface_, upper, std::move(region_nodes), std::move(balls));
+      balls.push_back({partial_.last()[b].sphere, solver_.balls()[b].path_region});
+    LevelCover cover(surface_, upper, std::move(path_ends), std::move(balls));
     solver_.take_radii(cover);
-    solver_.refit(cover);
+    solver_.tighten(cover);
     for (int round = 0; round < kClosedRounds && options_.closed_trials > 0; ++round) {
       report_progress(options_.progress, "tightening", 0.5 + 0.5 * round / kClosedRounds);
-      solver_.polish(cover, options_.closed_trials / kClosedRounds);
-      solver_.refit(cover);
+      solver_.search(cover, options_.closed_trials / kClosedRounds);
+      solver_.tighten(cover);
     }
     for (std::size_t b = 0; b < cover.balls().size(); ++b)
-      stack_.last()[b] = {cover.balls()[b].sphere, stack_.parents()[cover.balls()[b].region]};
+      partial_.last()[b] = {cover.balls()[b].sphere, partial_.parents()[cover.balls()[b].path_region]};
   }
 
  private:
   void take_balls() {
-    Level& level = stack_.last();
+    Level& level = partial_.last();
     level.clear();
     for (const LevelBall& ball : solver_.balls())
-      level.push_back({{ball.center, ball.radius + tolerance::kCoverMargin * radius_}, stack_.parents()[ball.region]});
+      level.push_back(
+          {{ball.center, ball.radius + tolerance::kCoverMargin * radius_}, partial_.parents()[ball.path_region]});
   }
 
-  std::vector<UncoveredRegion> large_regions(const Coverage& coverage, std::span<const PathBall> balls) const {
-    auto regions = find_uncovered_regions(surface_, coverage, balls, tolerance::kCoverMargin * radius_);
-    std::erase_if(regions,
-                  [&](const UncoveredRegion& region) { return region.depth <= kSmallGap * kLastGrowth * radius_; });
-    return regions;
-  }
-
-  // Uncovered triangles, and those that a ball may have let go.
-  std::vector<Index> to_recheck(const Coverage& coverage, const std::vector<LevelBall>& before) const {
+  // The balls that may have let something go, as they were.
+  std::vector<Sphere> changed(const std::vector<LevelBall>& before) const {
     const std::vector<LevelBall>& after = solver_.balls();
-    std::vector<char> marked(surface_.mesh().triangles.size(), 0);
-    for (const UncoveredTriangle& uncovered : coverage.uncovered) marked[uncovered.triangle] = 1;
-    std::vector<Index> near;
+    std::vector<Sphere> changed;
     for (std::size_t b = 0; b < before.size(); ++b) {
-      if (before[b].center == after[b].center && before[b].radius <= after[b].radius &&
-          before[b].region == after[b].region)
-        continue;
-      surface_.triangles_near({before[b].center, before[b].radius + tolerance::kCoverMargin * radius_}, near);
-      for (Index triangle : near) marked[triangle] = 1;
+      const bool holds_as_much = before[b].center == after[b].center && before[b].radius <= after[b].radius &&
+                                 before[b].path_region == after[b].path_region;
+      if (!holds_as_much) changed.push_back({before[b].center, before[b].radius + tolerance::kCoverMargin * radius_});
     }
-    std::vector<Index> triangles;
-    for (Index i = 0; i < marked.size(); ++i)
-      if (marked[i]) triangles.push_back(i);
-    return triangles;
+    return changed;
   }
 
   const Surface& surface_;
   LevelSolver& solver_;
-  PartialTree& stack_;
-  const ClosingOptions& options_;
+  PartialTree& partial_;
+  const FinishOptions& options_;
   const double radius_;
 };
 
 }  // namespace
 
-void close_level(const Surface& surface, LevelSolver& solver, PartialTree& stack, const ClosingOptions& options,
-                 TightenReport::Level& report) {
-  Closing closing(surface, solver, stack, options);
-  closing.take_in_gaps(report);
-  closing.grow(report);
-  closing.tighten_closed();
-  for (LevelNode& node : stack.last()) node.sphere.radius += 0.5 * kLastGrowth * surface.bounding_radius();
+void finish_level(const Surface& surface, LevelSolver& solver, PartialTree& partial, const FinishOptions& options,
+                  TightenReport::Level& report) {
+  Finish finish(surface, solver, partial, options);
+  finish.take_in_uncovered(report);
+  finish.grow(report);
+  finish.tighten_closed();
+  for (LevelNode& node : partial.last()) node.sphere.radius += 0.5 * kLastGrowth * surface.bounding_radius();
 }
 
 }  // namespace orchard::detail

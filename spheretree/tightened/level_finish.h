@@ -6,16 +6,16 @@
 
 namespace orchard::detail {
 
-struct ClosingOptions {
-  int polishing = 8;        // rounds that search again among the samples, with what was found open
-  Index search_trials = 0;  // in each of them
-  Index closed_trials = 0;  // afterwards, of the search that never uncovers anything
-  Progress progress;        // called with a fraction of the closing
+struct FinishOptions {
+  int searching_rounds = 8;  // of taking in what is open: the search among the samples goes on in these
+  Index search_trials = 0;   // in each of them
+  Index closed_trials = 0;   // afterwards, of the search that never uncovers anything
+  Progress progress;         // called with a fraction of the finish
 };
 
-// Turns the solver's balls, which hold its samples, into the stack's last level, which covers the surface. Fills in
+// Turns the solver's balls, which hold its samples, into the last level of the tree, which covers the surface. Fills in
 // what the report says about closing.
-void close_level(const Surface& surface, LevelSolver& solver, PartialTree& stack, const ClosingOptions& options,
-                 TightenReport::Level& report);
+void finish_level(const Surface& surface, LevelSolver& solver, PartialTree& partial, const FinishOptions& options,
+                  TightenReport::Level& report);
 
 }  // namespace orchard::detail

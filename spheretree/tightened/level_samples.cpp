@@ -29,12 +29,12 @@ Samples surface_samples(const Surface& surface, const MedialAxis& axis) {
   return samples;
 }
 
-Samples samples_for(const Samples& all, const PartialTree& stack, Index balls) {
+Samples samples_for(const Samples& all, const PartialTree& partial, Index balls) {
   const Index enough = std::max<Index>(2000, kEnoughSamplesPerBall * balls);
   const Index stride = std::max<Index>(1, all.size() / enough);
   Samples chosen;
   for (Index s = 0; s < all.size(); s += stride) {
-    if (stack.in_leaf(all.points[s])) continue;
+    if (partial.in_leaf(all.points[s])) continue;
     chosen.points.push_back(all.points[s]);
     chosen.starts.push_back(all.starts[s]);
   }

@@ -15,6 +15,6 @@ struct Samples {
 Samples surface_samples(const Surface& surface, const MedialAxis& axis);
 
 // Enough of them for so many balls: every k-th, without those that a leaf holds.
-Samples samples_for(const Samples& all, const PartialTree& stack, Index balls);
+Samples samples_for(const Samples& all, const PartialTree& partial, Index balls);
 
 }  // namespace orchard::detail

@@ -1,14 +1,25 @@
 #pragma once
-#include "level_solver.h"
+#include <vector>
+
+#include "level_balls.h"
+#include "level_objective.h"
+#include "orchard/geometry/random.h"
 
 namespace orchard::detail {
 
-// One step of the large-neighbourhood search.
-struct LevelSolver::Trial {
-  std::vector<Index> chosen;
-  std::vector<LevelBall> balls;           // in their place; empty: nothing better
-  std::vector<std::vector<Point>> needs;  // what each of them must hold
-  Index moved = kNone;                    // into `chosen`: the one that leaves its place, with those after it near that
+// One step of the large-neighbourhood search: some balls, and what to put in their place.
+struct LevelTrial {
+  std::vector<Index> chosen;              // balls of the level
+  std::vector<LevelBall> balls;           // in their place, as many; empty: nothing better was found
+  std::vector<std::vector<Point>> needs;  // what each of these must hold
+  Index moved = kNone;  // into `chosen`: the one that leaves its place; those after it lie near that place
+  double max_cost = 0;  // that the new balls must stay below for the trial to be worthwhile
 };
+
+// A few neighbouring balls give up what only they hold, some start anew, and they share it out again. The trial has
+// balls if the objective falls and every sample is held; their samples are not found yet. Only `random` decides which
+// trial it is.
+LevelTrial propose_trial(const Surface& surface, const LevelBalls& balls, const LevelObjective& objective,
+                         Random random);
 
 }  // namespace orchard::detail

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "orchard/geometry/tolerance.h"
+#include "uncovered_regions.h"
 
 namespace orchard::detail {
 

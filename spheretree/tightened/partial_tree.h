@@ -14,10 +14,6 @@ struct LevelNode {
 };
 using Level = std::vector<LevelNode>;
 
-// What every ball grows by once its level is closed, as a fraction of R: the levels below find their samples well
-// inside some region, and gaps smaller than that need no more work.
-inline constexpr double kLastGrowth = 2e-5;
-
 // A tree in the making, level by level, where parents may still change. Level 0 is the root, a ball around the surface.
 class PartialTree {
  public:

@@ -26,7 +26,7 @@ constexpr Index kSamplesPerBall = 8;
 // How much work the levels get; of everything, the best of some starts is kept.
 struct Work {
   double trials;         // of the neighbourhood search, as a multiple of the standard number
-  int polishing;         // closing rounds that search again
+  int searching_rounds;  // of closing a level: those in which the search goes on
   double closed_trials;  // for each ball of a level, of the search in closed levels
   Index starts[2];       // of the first level, of the second
 };
@@ -43,7 +43,7 @@ Work work_for(Effort effort) {
 }
 // The search in closed levels looks at every triangle in reach: of fine meshes it gets less.
 constexpr double kFewTriangles = 4000;
-constexpr double kPolishShare = 0.1;  // of the trials, in each polishing round
+constexpr double kSearchShare = 0.1;  // of the trials, in each searching round
 Index trials_for(Index balls, const Work& work) { return static_cast<Index>(work.trials * (300 + 14.0 * balls)); }
 
 // High powers at the top: what is loose there is loose all the way down. The more trials, the lower the sum, at the
@@ -65,7 +65,7 @@ LevelCost cost_for(Objective objective, Index level, Index depth, Effort effort)
 }
 
 struct Candidate {
-  PartialTree stack;
+  PartialTree partial;
   double objective;
   std::vector<double> depths;  // signed distances of the last level's centres
   TightenReport::Level report;
@@ -79,12 +79,12 @@ class Tightener {
         progress_(progress),
         work_(work_for(options.effort)),
         samples_(detail::surface_samples(surface, axis)),
-        stack_(surface) {}
+        partial_(surface) {}
 
   SphereTree run(TightenReport& report) {
     for (Index level = 1; level <= options_.depth; ++level)
       if (!build_level(level, report.levels)) break;
-    SphereTree tree = stack_.tree();
+    SphereTree tree = partial_.tree();
     tree.branching = std::max(tree.branching, options_.branching);
     return tree;
   }
@@ -92,7 +92,7 @@ class Tightener {
  private:
   bool build_level(Index level, std::vector<TightenReport::Level>& reports) {
     const auto refined = static_cast<double>(
-        std::count_if(stack_.last().begin(), stack_.last().end(), [](const LevelNode& node) { return !node.leaf; }));
+        std::count_if(partial_.last().begin(), partial_.last().end(), [](const LevelNode& node) { return !node.leaf; }));
     const std::size_t max = samples_.size() / kSamplesPerBall;
     const double wanted = std::min(static_cast<double>(max), options_.branching * refined);
     if (refined == 0 || (wanted <= refined && level > 1)) return false;
@@ -115,12 +115,12 @@ class Tightener {
       closing += next.report.seconds_closing;
       if (!best || next.objective < best->objective) best.emplace(std::move(next));
     }
-    stack_ = std::move(best->stack);
+    partial_ = std::move(best->partial);
     reports.push_back(best->report);
     reports.back().seconds_search = search;
     reports.back().seconds_closing = closing;
-    for (std::size_t i = 0; i < stack_.last().size(); ++i) {
-      LevelNode& node = stack_.last()[i];
+    for (std::size_t i = 0; i < partial_.last().size(); ++i) {
+      LevelNode& node = partial_.last()[i];
       node.leaf = node.sphere.radius + best->depths[i] <= options_.refinement.allowed(node.sphere);
     }
     return true;
@@ -128,13 +128,12 @@ class Tightener {
 
   // One solution of a level. All of them are to be judged by the first one's unit.
   Candidate candidate(detail::LevelOptions& level_options, const Progress& progress) {
-    Candidate result{stack_, 0, {}, {}};
-    result.stack.add_level();
+    Candidate result{partial_, 0, {}, {}};
+    result.partial.add_level();
     const auto start = std::chrono::steady_clock::now();
     const Index trials = trials_for(level_options.balls, work_);
-    LevelSolver solver(surface_, detail::samples_for(samples_, stack_, level_options.balls), result.stack.paths(),
+    LevelSolver solver(surface_, detail::samples_for(samples_, partial_, level_options.balls), result.partial.paths(),
                        level_options);
-    solver.start();
     level_options.cost.unit = solver.unit();
     solver.tighten();
     solver.search(trials, [&](std::string_view stage, double fraction) { return progress(stage, 0.4 * fraction); });
@@ -142,12 +141,12 @@ class Tightener {
     const auto middle = std::chrono::steady_clock::now();
     const double fineness = static_cast<double>(surface_.mesh().triangles.size()) / kFewTriangles;
     const double closed_trials = work_.closed_trials / std::max(1.0, fineness);
-    detail::ClosingOptions closing{
-        work_.polishing, static_cast<Index>(kPolishShare * trials),
+    detail::FinishOptions finish{
+        work_.searching_rounds, static_cast<Index>(kSearchShare * trials),
         static_cast<Index>(closed_trials * static_cast<double>(solver.balls().size())),
         [&](std::string_view stage, double fraction) { return progress(stage, 0.4 + 0.6 * fraction); }};
-    detail::close_level(surface_, solver, result.stack, closing, result.report);
-    result.objective = solver.objective();
+    detail::finish_level(surface_, solver, result.partial, finish, result.report);
+    result.objective = solver.cost();
     for (const detail::LevelBall& ball : solver.balls()) result.depths.push_back(ball.depth);
     result.report.balls = static_cast<Index>(solver.balls().size());
     result.report.seconds_search = std::chrono::duration<double>(middle - start).count();
@@ -160,7 +159,7 @@ class Tightener {
   const Progress& progress_;
   const Work work_;
   const Samples samples_;
-  PartialTree stack_;
+  PartialTree partial_;
 };
 
 }  // namespace

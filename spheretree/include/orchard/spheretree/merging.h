@@ -24,7 +24,7 @@ struct MergeReport {
   struct Level {
     Index spheres = 0;
     Index removed = 0, split = 0;  // redundant spheres, and loose ones in their place
-    Index regions = 0;             // that were uncovered in the first round of closing
+    Index uncovered_regions = 0;   // in the first round of closing
     int rounds = 0;                // of closing
     double growth = 0;             // by cover() at last, the largest, as a fraction of R
   };

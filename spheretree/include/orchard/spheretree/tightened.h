@@ -26,8 +26,8 @@ struct TightenReport {
   struct Level {
     Index balls = 0;
     Index closing_rounds = 0;
-    Index gaps = 0;    // that the samples had left, in the first round
-    double grown = 0;  // by the last resort, cover(): the largest growth, as a fraction of R
+    Index uncovered_regions = 0;  // that the samples had left, in the first round of closing
+    double grown = 0;             // by the last resort, cover(): the largest growth, as a fraction of R
     double seconds_search = 0, seconds_closing = 0;
   };
   std::vector<Level> levels;

@@ -1,0 +1,108 @@
+#include "level_balls.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace orchard::detail {
+namespace {
+
+// A sample that decided a radius is inside, whatever the rounding.
+constexpr double kInside = 1 + 1e-12;
+
+}  // namespace
+
+LevelBalls::LevelBalls(PathRegions regions, std::vector<LevelBall> balls, Index max_children)
+    : regions_(std::move(regions)), balls_(std::move(balls)), max_children_(max_children) {
+  for (LevelBall& ball : balls_) find_samples(ball);
+  recount();
+}
+
+void LevelBalls::find_samples(LevelBall& ball) const {
+  ball.samples.clear();
+  const double limit = ball.radius * ball.radius * kInside;
+  const std::vector<Point>& points = regions_.samples().points;
+  for (Index s : regions_.samples_in(ball.path_region))
+    if ((points[s] - ball.center).squaredNorm() <= limit) ball.samples.push_back(s);
+}
+
+void LevelBalls::recount() {
+  holders_.assign(regions_.samples().size(), 0);
+  children_.assign(regions_.size(), 0);
+  for (const LevelBall& ball : balls_) {
+    for (Index s : ball.samples) ++holders_[s];
+    ++children_[ball.path_region];
+  }
+}
+
+std::vector<Index> LevelBalls::held_only_by(std::span<const Index> balls) const {
+  std::vector<Index> held, only;
+  for (Index b : balls) held.insert(held.end(), balls_[b].samples.begin(), balls_[b].samples.end());
+  std::sort(held.begin(), held.end());
+  for (std::size_t i = 0, end = 0; i < held.size(); i = end) {
+    while (end < held.size() && held[end] == held[i]) ++end;
+    if (end - i == holders_[held[i]]) only.push_back(held[i]);
+  }
+  return only;
+}
+
+void LevelBalls::append_held_alone(Index ball, std::vector<Point>& points) const {
+  for (Index s : balls_[ball].samples)
+    if (holders_[s] == 1) points.push_back(regions_.samples().points[s]);
+}
+
+std::vector<Index> LevelBalls::loosest_first() const {
+  std::vector<Index> order(balls_.size());
+  std::iota(order.begin(), order.end(), Index{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Index a, Index b) { return balls_[a].looseness() > balls_[b].looseness(); });
+  return order;
+}
+
+void LevelBalls::replace(Index index, const FittedBall& by) {
+  LevelBall& ball = balls_[index];
+  for (Index s : ball.samples) --holders_[s];
+  static_cast<FittedBall&>(ball) = by;
+  find_samples(ball);
+  for (Index s : ball.samples) ++holders_[s];
+}
+
+bool LevelBalls::try_replace(std::span<const Index> balls, std::vector<LevelBall>& by) {
+  const auto swap_in = [&] {
+    for (std::size_t i = 0; i < by.size(); ++i) {
+      LevelBall& old = balls_[balls[i]];
+      for (Index s : old.samples) --holders_[s];
+      for (Index s : by[i].samples) ++holders_[s];
+      --children_[old.path_region];
+      ++children_[by[i].path_region];
+      std::swap(old, by[i]);
+    }
+  };
+  swap_in();
+  bool allowed = true;
+  for (const LevelBall& old : by)
+    for (Index s : old.samples) allowed = allowed && holders_[s] > 0;
+  for (Index b : balls) allowed = allowed && children_[balls_[b].path_region] <= max_children_;
+  if (!allowed) swap_in();
+  return allowed;
+}
+
+void LevelBalls::set_radii(std::span<const double> radii) {
+  for (Index b = 0; b < size(); ++b) {
+    balls_[b].radius = radii[b];
+    find_samples(balls_[b]);
+  }
+  recount();
+}
+
+void LevelBalls::add_samples(const Samples& more) {
+  const Index old = regions_.samples().size();
+  for (Index s = 0; s < more.size(); ++s) regions_.add_sample(more.points[s], more.starts[s]);
+  holders_.resize(regions_.samples().size(), 0);
+  for (LevelBall& ball : balls_) {
+    find_samples(ball);
+    for (auto s = std::lower_bound(ball.samples.begin(), ball.samples.end(), old); s != ball.samples.end(); ++s)
+      ++holders_[*s];
+  }
+}
+
+}  // namespace orchard::detail

@@ -1,0 +1,17 @@
+#pragma once
+#include <vector>
+
+#include "level_balls.h"
+#include "level_objective.h"
+#include "uncovered_regions.h"
+
+namespace orchard::detail {
+
+// How a level takes in what its samples missed: each uncovered region goes to the ball that it costs least, which is
+// fitted again to it and to the samples that it alone holds, and the region's deepest point becomes a sample. With
+// `hold`, points near its corners do too. An uncovered region that lies in no path region as a whole goes by its
+// deepest point alone; where not even that has a ball, it is left for the levels above to mend.
+void take_in(const Surface& surface, const LevelObjective& objective, const std::vector<UncoveredRegion>& uncovered,
+             bool hold, LevelBalls& balls);
+
+}  // namespace orchard::detail

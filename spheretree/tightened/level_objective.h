@@ -1,0 +1,33 @@
+#pragma once
+#include <span>
+
+#include "level_balls.h"
+
+namespace orchard::detail {
+
+// A level's objective is the sum over its balls of t^power (1 + (t / cap)^cap_power) (radius / R)^size_power, where t
+// is the looseness as a multiple of `unit`. The cap keeps the largest near the others where the power is low.
+struct LevelCost {
+  double power = 4;
+  double cap = 0, cap_power = 8;  // cap 0: none
+  double size_power = 0;
+  double unit = 0;  // mesh units; 0: the mean looseness of the balls that the level starts with
+};
+
+// What a level's search is to keep low. It does not change once its unit is known.
+class LevelObjective {
+ public:
+  // `start`: the balls that set the unit if `by` leaves that open.
+  LevelObjective(const LevelCost& by, std::span<const LevelBall> start, double bounding_radius);
+
+  double cost(const FittedBall& ball) const;
+  double cost(std::span<const LevelBall> balls) const;  // their sum
+  double slope(const FittedBall& ball) const;           // of a ball's cost, by its radius
+  double unit() const { return by_.unit; }              // of the looseness, mesh units
+
+ private:
+  LevelCost by_;
+  double bounding_radius_;
+};
+
+}  // namespace orchard::detail

@@ -1,0 +1,37 @@
+#pragma once
+#include <cstdint>
+
+#include "level_balls.h"
+#include "level_cover.h"
+#include "level_objective.h"
+#include "level_trial.h"
+#include "orchard/geometry/progress.h"
+
+namespace orchard::detail {
+
+// Large-neighbourhood search for balls with a low objective. Trials run in batches, each on the balls as they were
+// before the batch, and are applied in order, so the result does not depend on threads.
+class LevelSearch {
+ public:
+  LevelSearch(const Surface& surface, const LevelObjective& objective, std::uint64_t seed, Index level)
+      : surface_(surface), objective_(objective), seed_(seed), level_(level) {}
+
+  // No sample is lost.
+  void run(LevelBalls& balls, Index trials, const Progress& progress);
+  // The balls cover the surface, and go on doing so: what a trial leaves open is closed before it is judged. `cover`
+  // holds the same balls, before and after.
+  void run_covering(LevelBalls& balls, Index trials, LevelCover& cover);
+
+ private:
+  void run(LevelBalls& balls, Index trials, LevelCover* cover, const Progress& progress);
+  LevelTrial propose(const LevelBalls& balls, std::uint64_t number, const LevelCover* cover) const;
+  void apply(std::vector<LevelTrial>& batch, LevelBalls& balls, LevelCover* cover) const;
+
+  const Surface& surface_;
+  LevelObjective objective_;
+  std::uint64_t seed_;
+  Index level_;               // for the random numbers
+  std::uint64_t trials_ = 0;  // so far
+};
+
+}  // namespace orchard::detail

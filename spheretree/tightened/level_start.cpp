@@ -1,0 +1,137 @@
+#include "level_start.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "orchard/geometry/random.h"
+
+namespace orchard::detail {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kRounds = 8;  // of Lloyd's iteration
+constexpr int kEvaluations = 8;
+
+// While this runs, a ball's samples are those that it owns: every sample has one owner. A radius below 0 marks a ball
+// that owns none.
+class LevelStart {
+ public:
+  LevelStart(const Surface& surface, const PathRegions& regions, const LevelOptions& options)
+      : surface_(surface),
+        regions_(regions),
+        samples_(regions.samples()),
+        options_(options),
+        children_(regions.size(), 0) {}
+
+  std::vector<LevelBall> run() {
+    if (samples_.size() == 0) return {};
+    seed();
+    for (int round = 0; round < kRounds; ++round) lloyd_round();
+    std::erase_if(balls_, [](const LevelBall& ball) { return ball.samples.empty(); });
+    for (LevelBall& ball : balls_) ball.samples.clear();
+    return std::move(balls_);
+  }
+
+ private:
+  void seed() {
+    std::vector<double> min(samples_.size(), kInfinity);
+    Index next = static_cast<Index>(Random(options_.seed, 100 + options_.level).below(samples_.size()));
+    for (Index seeds = 0; seeds < samples_.size() && balls_.size() < options_.balls; ++seeds) {
+      LevelBall ball;
+      ball.center = samples_.starts[next];
+      ball.depth = surface_.signed_distance(ball.center);
+      ball.path_region = region_for_seed(ball, next);
+      if (ball.path_region != kNone) {
+        for (Index s : regions_.samples_in(ball.path_region))
+          min[s] = std::min(min[s], ball.looseness_with(samples_.points[s]));
+        ++children_[ball.path_region];
+        balls_.push_back(ball);
+      }
+      min[next] = -kInfinity;
+      next = static_cast<Index>(std::max_element(min.begin(), min.end()) - min.begin());
+    }
+  }
+
+  // The path region with room that holds most of the samples near a seed; kNone if all are full.
+  Index region_for_seed(const FittedBall& seed, Index sample) const {
+    const double near = 1.2 * (samples_.points[sample] - seed.center).norm();
+    Index best = kNone, max = 0;
+    for (Index r : regions_.regions_of(sample)) {
+      if (children_[r] >= options_.max_children) continue;
+      Index held = 0;
+      for (Index s : regions_.samples_in(r)) held += (samples_.points[s] - seed.center).squaredNorm() <= near * near;
+      if (best == kNone || held > max) best = r, max = held;
+    }
+    return best;
+  }
+
+  void lloyd_round() {
+    for (LevelBall& ball : balls_)
+      if (ball.samples.empty() && ball.radius < 0) move_to_loosest(ball);
+    assign(owners());
+    tbb::enumerable_thread_specific<BallFitter> fitters([&] { return BallFitter(surface_); });
+    tbb::parallel_for(std::size_t{0}, balls_.size(), [&](std::size_t b) {
+      LevelBall& ball = balls_[b];
+      ball.radius = -1;
+      if (ball.samples.empty()) return;
+      std::vector<Point> points;
+      for (Index s : ball.samples) points.push_back(samples_.points[s]);
+      static_cast<FittedBall&>(ball) = fitters.local().fit(points, ball.center, kEvaluations);
+    });
+  }
+
+  // Has an unused ball take its share of what the loosest one holds.
+  void move_to_loosest(LevelBall& unused) {
+    const auto looser = [](const LevelBall& a, const LevelBall& b) { return a.looseness() < b.looseness(); };
+    const LevelBall& loosest = *std::max_element(balls_.begin(), balls_.end(), looser);
+    if (loosest.samples.empty() || children_[loosest.path_region] >= options_.max_children) return;
+    const Index far = *std::max_element(loosest.samples.begin(), loosest.samples.end(), [&](Index a, Index b) {
+      return (samples_.points[a] - loosest.center).squaredNorm() < (samples_.points[b] - loosest.center).squaredNorm();
+    });
+    --children_[unused.path_region];
+    ++children_[loosest.path_region];
+    unused.path_region = loosest.path_region;
+    unused.center = samples_.starts[far];
+    unused.depth = surface_.signed_distance(unused.center);
+  }
+
+  // The ball that gets least loose by each sample; kNone if no ball lies in a path region of it.
+  std::vector<Index> owners() const {
+    std::vector<std::vector<Index>> balls_in(regions_.size());
+    for (Index b = 0; b < balls_.size(); ++b) balls_in[balls_[b].path_region].push_back(b);
+    std::vector<Index> owner(samples_.size(), kNone);
+    tbb::parallel_for(Index{0}, samples_.size(), [&](Index s) {
+      double min = kInfinity;
+      for (Index r : regions_.regions_of(s))
+        for (Index b : balls_in[r]) {
+          const double loose = balls_[b].looseness_with(samples_.points[s]);
+          if (loose < min) min = loose, owner[s] = b;
+        }
+    });
+    return owner;
+  }
+
+  void assign(const std::vector<Index>& owner) {
+    for (LevelBall& ball : balls_) ball.samples.clear();
+    for (Index s = 0; s < samples_.size(); ++s)
+      if (owner[s] != kNone) balls_[owner[s]].samples.push_back(s);
+  }
+
+  const Surface& surface_;
+  const PathRegions& regions_;
+  const Samples& samples_;
+  const LevelOptions& options_;
+  std::vector<LevelBall> balls_;
+  std::vector<Index> children_;  // how many balls lie in each path region
+};
+
+}  // namespace
+
+std::vector<LevelBall> seeded_balls(const Surface& surface, const PathRegions& regions, const LevelOptions& options) {
+  return LevelStart(surface, regions, options).run();
+}
+
+}  // namespace orchard::detail

@@ -1,0 +1,165 @@
+#include "level_trial.h"
+
+#include <algorithm>
+#include <limits>
+
+// The numbers below were tuned on four models of 700 to 2000 triangles; none of them matters much.
+namespace orchard::detail {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kRounds = 3;  // of sharing out
+constexpr int kFirstEvaluations = 5, kLastEvaluations = 12;
+constexpr double kMoveShare = 0.35;   // of trials that move a cheap ball to a dear place
+constexpr Index kFewForMoves = 8;     // balls, up to which there is no such move
+constexpr double kWorthwhile = 1e-6;  // part of the cost that must go
+
+class Proposal {
+ public:
+  Proposal(const Surface& surface, const LevelBalls& balls, const LevelObjective& objective, Random random)
+      : surface_(surface),
+        balls_(balls),
+        regions_(balls.regions()),
+        samples_(regions_.samples()),
+        objective_(objective),
+        random_(random) {}
+
+  LevelTrial run() {
+    choose();
+    freed_ = balls_.held_only_by(trial_.chosen);
+    if (freed_.empty()) return std::move(trial_);
+    copy_chosen();
+    start_some_anew();
+    if (!share_out() || !(objective_.cost(trial_.balls) < trial_.max_cost)) trial_.balls.clear();
+    return std::move(trial_);
+  }
+
+ private:
+  // A ball, loose ones more often, and some neighbours; perhaps also a tight one from anywhere that is to move here,
+  // with the neighbours that must stand in for it.
+  void choose() {
+    trial_.chosen.push_back(pick(1 + random_.below(3), true));
+    add_neighbors(trial_.chosen[0], 1 + random_.below(5));
+    if (balls_.size() <= kFewForMoves || random_.uniform() >= kMoveShare) return;
+    const Index cheap = pick(4, false);
+    if (is_chosen(cheap)) return;
+    trial_.moved = static_cast<Index>(trial_.chosen.size());
+    trial_.chosen.push_back(cheap);
+    add_neighbors(cheap, 1 + random_.below(3));
+  }
+
+  // The loosest, or the tightest, of some balls at random.
+  Index pick(std::uint64_t tournament, bool loose) {
+    Index best = static_cast<Index>(random_.below(balls_.size()));
+    for (std::uint64_t i = 1; i < tournament; ++i) {
+      const Index other = static_cast<Index>(random_.below(balls_.size()));
+      if ((balls_[other].looseness() > balls_[best].looseness()) == loose) best = other;
+    }
+    return best;
+  }
+
+  void add_neighbors(Index of, std::size_t how_many) {
+    std::vector<std::pair<double, Index>> near;
+    for (Index b = 0; b < balls_.size(); ++b) {
+      const double apart = (balls_[b].center - balls_[of].center).norm() - 0.5 * balls_[b].radius;
+      if (b != of) near.emplace_back(apart * random_.uniform(0.8, 1.25), b);
+    }
+    how_many = std::min(how_many, near.size());
+    std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(how_many), near.end());
+    for (std::size_t i = 0; i < how_many; ++i)
+      if (!is_chosen(near[i].second)) trial_.chosen.push_back(near[i].second);
+  }
+
+  bool is_chosen(Index ball) const {
+    return std::find(trial_.chosen.begin(), trial_.chosen.end(), ball) != trial_.chosen.end();
+  }
+
+  void copy_chosen() {
+    double cost = 0;
+    for (Index b : trial_.chosen) {
+      cost += objective_.cost(balls_[b]);
+      LevelBall& copy = trial_.balls.emplace_back();
+      static_cast<FittedBall&>(copy) = balls_[b];
+      copy.path_region = balls_[b].path_region;
+    }
+    trial_.max_cost = cost * (1 - kWorthwhile);
+  }
+
+  void start_some_anew() {
+    const bool moves = trial_.moved != kNone;
+    if (moves) {
+      const std::vector<Index>& there = balls_[trial_.chosen[0]].samples;
+      start_anew(trial_.balls[trial_.moved], there.empty() ? freed_ : there);
+    }
+    const double share = moves ? 0.15 : random_.uniform() < 0.3 ? 1.0 : 0.4;
+    for (std::size_t i = 0; i < trial_.balls.size(); ++i)
+      if (i != trial_.moved && random_.uniform() < share) start_anew(trial_.balls[i], freed_);
+  }
+
+  // Near one of the samples, in one of its path regions.
+  void start_anew(LevelBall& ball, const std::vector<Index>& samples) {
+    const Index sample = samples[random_.below(samples.size())];
+    ball.center = samples_.starts[sample];
+    if (random_.uniform() < 0.3) ball.center = 0.5 * (ball.center + samples_.points[sample]);
+    ball.depth = surface_.signed_distance(ball.center);
+    const std::vector<Index>& regions = regions_.regions_of(sample);
+    ball.path_region = regions[random_.below(regions.size())];
+  }
+
+  // Lloyd's iteration among the trial's balls. False: a sample lies in none of their path regions, or a ball is left
+  // unused.
+  bool share_out() {
+    trial_.needs.resize(trial_.balls.size());
+    BallFitter fitter(surface_);
+    bool all_used = true;
+    for (int round = 1; round <= kRounds; ++round) {
+      if (!divide_freed()) return false;
+      all_used = true;
+      for (std::size_t i = 0; i < trial_.balls.size(); ++i) {
+        LevelBall& ball = trial_.balls[i];
+        if (trial_.needs[i].empty()) {
+          all_used = false;
+          start_anew(ball, freed_);
+          continue;
+        }
+        const int evaluations = round == kRounds ? kLastEvaluations : kFirstEvaluations;
+        static_cast<FittedBall&>(ball) = fitter.fit(trial_.needs[i], ball.center, evaluations);
+      }
+    }
+    return all_used;
+  }
+
+  bool divide_freed() {
+    for (auto& list : trial_.needs) list.clear();
+    for (Index s : freed_) {
+      double min = kInfinity;
+      std::size_t at = kNone;
+      for (std::size_t i = 0; i < trial_.balls.size(); ++i) {
+        if (!regions_.holds_sample(trial_.balls[i].path_region, s)) continue;
+        const double loose = trial_.balls[i].looseness_with(samples_.points[s]);
+        if (loose < min) min = loose, at = i;
+      }
+      if (at == kNone) return false;
+      trial_.needs[at].push_back(samples_.points[s]);
+    }
+    return true;
+  }
+
+  const Surface& surface_;
+  const LevelBalls& balls_;
+  const PathRegions& regions_;
+  const Samples& samples_;
+  const LevelObjective& objective_;
+  Random random_;
+  LevelTrial trial_;
+  std::vector<Index> freed_;  // samples that only the chosen balls hold
+};
+
+}  // namespace
+
+LevelTrial propose_trial(const Surface& surface, const LevelBalls& balls, const LevelObjective& objective,
+                         Random random) {
+  return Proposal(surface, balls, objective, random).run();
+}
+
+}  // namespace orchard::detail

@@ -1,0 +1,37 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "level_samples.h"
+
+namespace orchard::detail {
+
+// The path regions that a level's balls may lie in, and the samples in each. A path region is the common part of the
+// balls on a path of the levels above; path regions overlap, so a sample may lie in several. Path regions are numbered
+// as the paths were given, samples in the order in which they came; samples are never taken out.
+class PathRegions {
+ public:
+  // paths[r]: the balls from the root down whose common part is path region r. Samples in no path region are left out.
+  PathRegions(const Samples& samples, std::vector<std::vector<Sphere>> paths);
+
+  Index size() const { return static_cast<Index>(paths_.size()); }
+  const Samples& samples() const { return samples_; }
+  const std::vector<Index>& samples_in(Index path_region) const { return samples_in_[path_region]; }  // ascending
+  const std::vector<Index>& regions_of(Index sample) const { return regions_of_[sample]; }            // ascending
+  bool holds(Index path_region, const Point& point) const;
+  bool holds_sample(Index path_region, Index sample) const;
+
+  // Also takes samples that lie in no path region.
+  void add_sample(const Point& point, const Point& start);
+
+ private:
+  std::vector<Index> regions_around(const Point& point) const;
+  void append(const Point& point, const Point& start, std::vector<Index> regions);
+
+  std::vector<std::vector<Sphere>> paths_;
+  Samples samples_;
+  std::vector<std::vector<Index>> samples_in_;  // each path region
+  std::vector<std::vector<Index>> regions_of_;  // each sample
+};
+
+}  // namespace orchard::detail
