@@ -78,8 +78,11 @@ function(orchard_add_tests name)
   endif()
   target_compile_definitions(${target} PRIVATE
     ORCHARD_DATA_DIR="${PROJECT_SOURCE_DIR}/data" ORCHARD_SHARED_MODELS="${PROJECT_SOURCE_DIR}/../shared/models")
-  gtest_discover_tests(${target} TEST_PREFIX "${name}." PROPERTIES LABELS "${name};quick" DISCOVERY_TIMEOUT 60
-    DISCOVERY_MODE PRE_TEST)
+  gtest_discover_tests(${target} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60 DISCOVERY_MODE PRE_TEST)
+  # Two labels are more than gtest_discover_tests can pass on.
+  set(labels ${CMAKE_CURRENT_BINARY_DIR}/${target}_labels.cmake)
+  file(WRITE ${labels} "set_tests_properties(\${${target}_TESTS} PROPERTIES LABELS \"${name};quick\")\n")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${labels})
   foreach(suite IN LISTS ARG_LONG)
     add_test(NAME ${name}.long.${suite} COMMAND ${target} --gtest_filter=${suite})
     set_tests_properties(${name}.long.${suite} PROPERTIES LABELS "${name};long" ENVIRONMENT ORCHARD_MORE=20 TIMEOUT 7200)
