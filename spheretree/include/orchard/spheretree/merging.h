@@ -8,8 +8,8 @@ namespace orchard {
 
 // How merged spheres come to cover the surface between the forming points.
 enum class MergeClosing {
-  refit,  // Siblings divide their parent's points among them and are fitted to them. What is uncovered then becomes
-          // further points for a sphere to hold, which is fitted again. The result is conservative.
+  refit,   // Siblings divide their parent's points among them and are fitted to them. What is uncovered then becomes
+           // further points for a sphere to hold, which is fitted again. The result is conservative.
   growth,  // As in dissertation 6.3.1, spheres stay as merged; grow_to_cover() or cover() has to follow.
 };
 
