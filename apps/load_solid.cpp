@@ -2,8 +2,7 @@
 
 #include <fmt/core.h>
 
-#include <charconv>
-
+#include "finite_number.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
 
@@ -13,12 +12,11 @@ namespace {
 using nlohmann::json;
 
 double parse_offset(const std::string& text) {
-  double offset = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), offset);
-  if (error != std::errc() || end != text.data() + text.size() || !(offset > 0 && offset < 1))
+  const std::optional<double> offset = finite_number(text);
+  if (!offset || !(*offset > 0 && *offset < 1))
     throw InputError("--wrap=" + text + ": expected a fraction of the diagonal between 0 and 1, such as " +
                      kDefaultWrap);
-  return offset;
+  return *offset;
 }
 
 SolidMesh strict(const std::string& name, TriangleMesh mesh, BoundingBall ball) {

@@ -8,10 +8,9 @@
 #include "medial_run.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
-#include "orchard/spheretree/outside_volume.h"
 #include "outputs.h"
-#include "sphere_lists.h"
 #include "svg_plot.h"
+#include "sweep_columns.h"
 
 namespace orchard::apps {
 namespace {
@@ -50,105 +49,6 @@ Dimension parse(const std::string& text) {
       throw InputError("--sweep " + name + ": " + fault);
   }
   return dimension;
-}
-
-// What a run gave, by column.
-struct Metric {
-  const char* column;
-  const char* title;
-  double (*get)(const MedialBuild&, const MedialJudgement&);
-};
-
-double whole_seconds(const MedialBuild& build) {
-  double sum = 0;
-  for (const auto& [stage, time] : build.seconds) sum += time;
-  return sum;
-}
-
-using B = MedialBuild;
-using J = MedialJudgement;
-constexpr Metric kMetrics[] = {
-    {"points_added", "Points added by gap repair",
-     [](const B& b, const J&) { return static_cast<double>(b.sampling.size()) - b.points; }},
-    {"still_crossing", "Faces still crossing",
-     [](const B& b, const J&) { return double{1} * b.gap_repair.faces_still_crossing; }},
-    {"vertices", "Medial vertices", [](const B& b, const J&) { return double{1} * b.axis.size(); }},
-    {"coverage_max", "Coverage error, max (% of the diagonal)",
-     [](const B&, const J& j) { return 100 * j.quality.coverage.max; }},
-    {"coverage_mean", "Coverage error, mean (% of the diagonal)",
-     [](const B&, const J& j) { return 100 * j.quality.coverage.mean; }},
-    {"protrusion_max", "Protrusion, max (% of the diagonal)",
-     [](const B&, const J& j) { return 100 * j.quality.protrusion.max; }},
-    {"protrusion_mean", "Protrusion, mean (% of the diagonal)",
-     [](const B&, const J& j) { return 100 * j.quality.protrusion.mean; }},
-    {"radius_error_max", "Radius error, max (% of the diagonal)",
-     [](const B&, const J& j) { return 100 * j.quality.radius_error.max; }},
-    {"radius_error_mean", "Radius error, mean (% of the diagonal)",
-     [](const B&, const J& j) { return 100 * j.quality.radius_error.mean; }},
-    {"centredness_max", "Centredness, max (of the radius)",
-     [](const B&, const J& j) { return j.quality.centredness.max; }},
-    {"centredness_mean", "Centredness, mean (of the radius)",
-     [](const B&, const J& j) { return j.quality.centredness.mean; }},
-    {"components", "Components", [](const B&, const J& j) { return double(j.quality.found.components); }},
-    {"loops", "Loops", [](const B&, const J& j) { return double(j.quality.found.loops); }},
-    {"cavities", "Cavities", [](const B&, const J& j) { return double(j.quality.found.cavities); }},
-    {"euler_characteristic", "Euler characteristic",
-     [](const B&, const J& j) { return double(j.quality.found.euler_characteristic()); }},
-    {"topology_right", "Topology right (1) or wrong (0)",
-     [](const B&, const J& j) { return j.quality.found == j.quality.wanted ? 1.0 : 0.0; }},
-    {"outside_vertices", "Vertices outside (fraction)",
-     [](const B&, const J& j) { return j.quality.outside_vertices; }},
-    {"outside_edges", "Edge samples outside (fraction)", [](const B&, const J& j) { return j.quality.outside_edges; }},
-    {"outside_triangles", "Face samples outside (fraction)",
-     [](const B&, const J& j) { return j.quality.outside_triangles; }},
-    {"stability_max", "Stability, max (times the noise)",
-     [](const B&, const J& j) { return j.stability ? j.stability->hausdorff : std::nan(""); }},
-    {"stability_99", "Stability, 99 % of vertices (times the noise)",
-     [](const B&, const J& j) { return j.stability ? j.stability->percentile99 : std::nan(""); }},
-    {"stability_mean", "Stability, mean (times the noise)",
-     [](const B&, const J& j) { return j.stability ? j.stability->mean : std::nan(""); }},
-    {"economy_spheres", "Economy (spheres for 1 %)",
-     [](const B&, const J& j) { return double{1} * j.quality.economy.spheres; }},
-    {"economy_uncovered", "Economy: surface not reached (fraction)",
-     [](const B&, const J& j) { return j.quality.economy.uncovered; }},
-    {"seconds", "Seconds to build", [](const B& b, const J&) { return whole_seconds(b); }},
-};
-
-// What is measured: kMetrics, and of a tree its levels.
-struct Column {
-  std::string name, title;
-};
-
-std::vector<Column> columns_of(const MedialCommand& command) {
-  std::vector<Column> columns;
-  for (const Metric& metric : kMetrics) columns.push_back({metric.column, metric.title});
-  for (Index level = 1; command.tree && level <= command.tree->depth; ++level) {
-    const auto add = [&](const char* name, const char* title) {
-      columns.push_back({fmt::format("level_{}_{}", level, name), fmt::format("Level {}: {}", level, title)});
-    };
-    add("spheres", "spheres");
-    add("mean", "inaccuracy, mean (of the bounding radius)");
-    add("max", "inaccuracy, max (of the bounding radius)");
-    add("outside", "volume outside (of the solid's)");
-  }
-  return columns;
-}
-
-// The tree's part of a run's numbers; NaN for levels that it has not.
-void measure_tree(const SphereTreeBuild& built, const Surface& surface, Index depth, std::vector<double>& metrics) {
-  const auto figures = level_figures(built.tree, surface.bounding_radius());
-  const SphereLists lists = levels_of(built.tree);
-  for (std::size_t level = 1; level <= depth; ++level) {
-    if (level >= figures.size()) {
-      metrics.insert(metrics.end(), 4, std::nan(""));
-      continue;
-    }
-    Level all = lists.levels[level];
-    all.insert(all.end(), lists.carried[level].begin(), lists.carried[level].end());
-    metrics.insert(metrics.end(),
-                   {double{1} * figures[level].spheres, figures[level].mean_inaccuracy, figures[level].max_inaccuracy,
-                    outside_volume(surface, all) / surface.report().volume});
-  }
 }
 
 struct Run {
@@ -271,10 +171,12 @@ void sweep_medial(const MedialCommand& command, const Surface& surface, const Pr
     const MedialJudgement judgement = judge(command, surface, build, medial_mesh(build.axis), options, progress);
     Run& run = runs.emplace_back();
     run.choice = choice;
-    for (const Metric& metric : kMetrics) run.metrics.push_back(metric.get(build, judgement));
-    if (command.tree)
-      measure_tree(tree_of(*command.tree, surface, options, std::move(build), progress), surface, command.tree->depth,
-                   run.metrics);
+    run.metrics = axis_numbers(build, judgement);
+    if (command.tree) {
+      const SphereTreeBuild tree = tree_of(*command.tree, surface, options, std::move(build), progress);
+      const std::vector<double> numbers = tree_numbers(tree, surface, command.tree->depth);
+      run.metrics.insert(run.metrics.end(), numbers.begin(), numbers.end());
+    }
   } while (next(choice, dimensions));
 
   const std::vector<Column> columns = columns_of(command);

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 
+#include "finite_number.h"
 #include "orchard/geometry/error.h"
 
 namespace orchard::apps {
@@ -14,19 +14,12 @@ namespace {
 
 constexpr double kRadians = std::numbers::pi / 180;
 
-std::optional<double> number(const std::string& text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
 template <class Set>
 TuningFlag real(const char* name, const char* standard, double low, double high, const char* help, Set set) {
   return {name,  help,  standard,
           {},    low,   high,
           false, false, [set](MedialTuning& tuning, const std::string& text) {
-            set(tuning, *number(text)); }};
+            set(tuning, *finite_number(text)); }};
 }
 
 template <class Set>
@@ -129,7 +122,7 @@ std::string TuningFlag::range() const {
 std::string TuningFlag::fault(const std::string& value) const {
   bool good = false;
   if (choices.empty()) {
-    const std::optional<double> x = number(value);
+    const std::optional<double> x = finite_number(value);
     good = x && *x >= low && *x <= high && (!whole || *x == std::floor(*x));
   } else {
     good = std::find(choices.begin(), choices.end(), value) != choices.end();

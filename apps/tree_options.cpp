@@ -81,8 +81,9 @@ void add_tree_options(CLI::App& command, SphereTreeOptions& options) {
       ->check(CLI::Range(1, 10))
       ->capture_default_str();
   command
-      .add_option("--branching", options.branching,
-                  "Children of a sphere at most; tightened and merging: on average, up to twice as many")
+      .add_option(
+          "--branching", options.branching,
+          "Children of a sphere at most; tightened and merging: on average, up to twice and three times as many")
       ->check(CLI::Range(2, 64))
       ->capture_default_str();
   add_choice(

@@ -47,7 +47,7 @@ function(orchard_add_module name)
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})  # "room/header.h"
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE $<BUILD_INTERFACE:orchard_flags> ${ARG_PRIVATE})
-  if(NOT name STREQUAL runtime)  # which is small, and needs nothing to be built but a compiler
+  if(NOT name MATCHES "^(runtime|broad_phase_methods)$")  # which are small, and need nothing to be built but a compiler
     set(headers ${ORCHARD_CONSTRUCTION_HEADERS})
     if(TBB::tbb IN_LIST ARG_PRIVATE)
       list(APPEND headers <tbb/blocked_range.h> <tbb/enumerable_thread_specific.h> <tbb/parallel_for.h>)
@@ -60,9 +60,11 @@ function(orchard_add_module name)
   set_property(GLOBAL APPEND PROPERTY ORCHARD_COMPONENTS ${ARG_COMPONENT})
 endfunction()
 
-# orchard_add_tests(module SOURCES .. [LINK ..]): one executable and one ctest label per module.
+# orchard_add_tests(module SOURCES .. [LINK ..] [LONG suites..]): one executable and one ctest label per module. All tests
+# are "quick"; the suites named take their random cases from tests/support/effort.h, and are once more, with twenty
+# times as many and fresh ones, a test that is "long".
 function(orchard_add_tests name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LONG" ${ARGN})
   set(target orchard_${name}_tests)
   add_executable(${target} ${ARG_SOURCES})
   target_link_libraries(${target} PRIVATE orchard_flags ${ARG_LINK} GTest::gtest_main)
@@ -76,8 +78,12 @@ function(orchard_add_tests name)
   endif()
   target_compile_definitions(${target} PRIVATE
     ORCHARD_DATA_DIR="${PROJECT_SOURCE_DIR}/data" ORCHARD_SHARED_MODELS="${PROJECT_SOURCE_DIR}/../shared/models")
-  gtest_discover_tests(${target} TEST_PREFIX "${name}." PROPERTIES LABELS ${name} DISCOVERY_TIMEOUT 60
+  gtest_discover_tests(${target} TEST_PREFIX "${name}." PROPERTIES LABELS "${name};quick" DISCOVERY_TIMEOUT 60
     DISCOVERY_MODE PRE_TEST)
+  foreach(suite IN LISTS ARG_LONG)
+    add_test(NAME ${name}.long.${suite} COMMAND ${target} --gtest_filter=${suite})
+    set_tests_properties(${name}.long.${suite} PROPERTIES LABELS "${name};long" ENVIRONMENT ORCHARD_MORE=20 TIMEOUT 7200)
+  endforeach()
 endfunction()
 
 # One export set per component, so that find_package(orchard COMPONENTS runtime) needs nothing else.

@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "half_edges.h"
+#include "orchard/geometry/angle.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/min_ball.h"
 #include "orchard/geometry/self_intersections.h"
@@ -54,8 +55,6 @@ TriangleMesh validated(TriangleMesh mesh) {
   validate(mesh);
   return mesh;
 }
-
-double angle_between(const Vector& a, const Vector& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 bool is_edge(Feature feature) { return feature >= Feature::edge0 && feature <= Feature::edge2; }
 std::size_t edge_of(Feature feature) {

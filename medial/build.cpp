@@ -24,7 +24,7 @@ class MedialBuilder {
         make_diagram(std::move(input.sampling));
       }
       stage("medial axis",
-            [&] { build_.axis = medial_axis(surface_, build_.sampling, build_.diagram, progress_, options_.axis); });
+            [&] { build_.axis = medial_axis(surface_, build_.sampling, build_.diagram, options_.axis, progress_); });
     }
     build_.unpruned_vertices = build_.axis.size();
     stage("pruning", [&] { build_.axis = prune(build_.axis, options_.prune); });

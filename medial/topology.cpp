@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
-#include <numeric>
 
 #include "axis/incidence.h"
+#include "orchard/geometry/disjoint_sets.h"
 #include "orchard/geometry/error.h"
 #include "solid_parts.h"
 
@@ -79,20 +79,14 @@ class Complex {
     return std::any_of(row.begin(), row.end(), [&](Index triangle) { return triangle_alive_[triangle] != 0; });
   }
 
-  static Index root(std::vector<Index>& parents, Index item) {
-    while (parents[item] != item) item = parents[item] = parents[parents[item]];
-    return item;
-  }
-
   std::int64_t count_components() const {
-    std::vector<Index> parents(mesh_.centers.size());
-    std::iota(parents.begin(), parents.end(), Index{0});
+    DisjointSets sets(mesh_.centers.size());
     std::int64_t count = std::count(vertex_alive_.begin(), vertex_alive_.end(), 1);
     for (Index e = 0; e < mesh_.edges.size(); ++e) {
       if (!edge_alive_[e]) continue;
-      const Index a = root(parents, mesh_.edges[e][0]), b = root(parents, mesh_.edges[e][1]);
-      if (a == b) continue;
-      parents[a] = b;
+      const auto [a, b] = mesh_.edges[e];
+      if (sets.root(a) == sets.root(b)) continue;
+      sets.unite(a, b);
       --count;
     }
     return count;
@@ -101,8 +95,7 @@ class Complex {
   // The dimension of the space of 2-cycles. Where two triangles meet at an edge, a cycle holds both or neither, so the
   // unknowns are sheets of such triangles, few; the edges where more of them meet give the equations.
   std::int64_t count_cavities() const {
-    std::vector<Index> sheet(mesh_.triangles.size());
-    std::iota(sheet.begin(), sheet.end(), Index{0});
+    DisjointSets sheet(mesh_.triangles.size());
     std::vector<std::vector<Index>> equations;
     std::vector<Index> at;
     const auto living_at = [&](Index edge) {
@@ -113,16 +106,16 @@ class Complex {
     };
     for (Index e = 0; e < mesh_.edges.size(); ++e) {
       living_at(e);
-      if (at.size() == 2) sheet[root(sheet, at[0])] = root(sheet, at[1]);
+      if (at.size() == 2) sheet.unite(at[0], at[1]);
     }
     for (Index e = 0; e < mesh_.edges.size(); ++e) {
       living_at(e);
       if (at.size() < 3) continue;
-      for (Index& triangle : at) triangle = root(sheet, triangle);
+      for (Index& triangle : at) triangle = sheet.root(triangle);
       equations.push_back(odd(at));
     }
     std::int64_t sheets = 0;
-    for (Index t = 0; t < sheet.size(); ++t) sheets += triangle_alive_[t] && root(sheet, t) == t ? 1 : 0;
+    for (Index t = 0; t < mesh_.triangles.size(); ++t) sheets += triangle_alive_[t] && sheet.root(t) == t ? 1 : 0;
     return sheets - rank(std::move(equations));
   }
   // The items that occur an odd number of times, ascending.

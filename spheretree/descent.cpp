@@ -1,8 +1,6 @@
 #include "orchard/spheretree/descent.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
 
 #include "orchard/covering/incremental_cover.h"
 #include "orchard/geometry/random.h"
@@ -14,8 +12,6 @@ namespace {
 constexpr std::uint64_t kStage = 300;  // of the random numbers
 // Steps as fractions of the ball's looseness: where they start, how they change, and where a ball has had enough.
 constexpr double kFirstStep = 0.2, kMinStep = 2e-4;
-// A ball that shrinks below this part of its radius is needed for nothing; and how near to the least radius to go.
-constexpr double kMinShrink = 0.1, kShrinkTo = 0.01;
 constexpr double kLonger = 1.6, kShorter = 0.85;
 
 class Descent {
@@ -76,36 +72,6 @@ class Descent {
 };
 
 }  // namespace
-
-Index shrink_balls(SphereTree& tree, const Surface& surface, const Progress& progress) {
-  IncrementalCover cover(surface, path_balls(tree));
-  std::vector<double> looseness(tree.nodes.size());
-  for (std::size_t i = 0; i < looseness.size(); ++i)
-    looseness[i] = tree.nodes[i].sphere.radius + surface.signed_distance(tree.nodes[i].sphere.center);
-  std::vector<Index> order(tree.nodes.size());
-  std::iota(order.begin(), order.end(), Index{0});
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
-    const Index x = tree.nodes[a].level, y = tree.nodes[b].level;
-    return x != y ? x < y : looseness[a] > looseness[b];
-  });
-  Index shrunk = 0;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    if (i % 32 == 0) report_progress(progress, "shrinking", static_cast<double>(i) / static_cast<double>(order.size()));
-    Sphere& ball = tree.nodes[order[i]].sphere;
-    const double before = ball.radius;
-    double low = kMinShrink * before;
-    while (ball.radius - low > kShrinkTo * ball.radius) {
-      const Sphere next{ball.center, 0.5 * (low + ball.radius)};
-      if (cover.try_change(order[i], next)) {
-        ball = next;
-      } else {
-        low = next.radius;
-      }
-    }
-    shrunk += ball.radius < before;
-  }
-  return shrunk;
-}
 
 DescentReport random_descent(SphereTree& tree, const Surface& surface, const DescentOptions& options,
                              const Progress& progress) {

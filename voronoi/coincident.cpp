@@ -1,22 +1,12 @@
 #include "coincident.h"
 
 #include <bit>
-#include <cmath>
 #include <cstdint>
+
+#include "orchard/geometry/grid_cell.h"
 
 namespace orchard::detail {
 namespace {
-
-using Cell = std::array<std::int64_t, 3>;
-
-std::uint64_t hash(const Cell& cell) {
-  std::uint64_t h = 0;
-  for (const std::int64_t c : cell) {
-    h = (h ^ static_cast<std::uint64_t>(c)) * 0x9e3779b97f4a7c15u;
-    h ^= h >> 29;
-  }
-  return h;
-}
 
 // Cells much wider than the distance, so that most points need to look into one cell only; linear probing. Points of
 // different cells may share a run of slots: comparing them too is harmless.
@@ -31,12 +21,8 @@ class Grid {
   Index find_or_add(Index point) {
     const Point& p = points_[point];
     const Vector from_origin = p - points_[0];
-    Cell low, high;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto i = static_cast<std::size_t>(axis);
-      low[i] = static_cast<std::int64_t>(std::floor((from_origin[axis] - distance_) / width_));
-      high[i] = static_cast<std::int64_t>(std::floor((from_origin[axis] + distance_) / width_));
-    }
+    const Vector reach = Vector::Constant(distance_);
+    const GridCell low = grid_cell(from_origin - reach, width_), high = grid_cell(from_origin + reach, width_);
     Index found = kNone;
     for (std::int64_t x = low[0]; x <= high[0]; ++x)
       for (std::int64_t y = low[1]; y <= high[1]; ++y)
@@ -47,20 +33,15 @@ class Grid {
   void add(Index point) { add(home(points_[point] - points_[0]), point); }
 
  private:
-  Cell home(const Vector& from_origin) const {
-    Cell cell;
-    for (int axis = 0; axis < 3; ++axis)
-      cell[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(std::floor(from_origin[axis] / width_));
-    return cell;
-  }
-  Index find(const Cell& cell, const Point& p) const {
+  GridCell home(const Vector& from_origin) const { return grid_cell(from_origin, width_); }
+  Index find(const GridCell& cell, const Point& p) const {
     Index found = kNone;
-    for (std::size_t slot = hash(cell) & mask(); slots_[slot] != kNone; slot = (slot + 1) & mask())
+    for (std::size_t slot = hash_of(cell) & mask(); slots_[slot] != kNone; slot = (slot + 1) & mask())
       if ((points_[slots_[slot]] - p).squaredNorm() <= distance_ * distance_) found = std::min(found, slots_[slot]);
     return found;
   }
-  void add(const Cell& cell, Index point) {
-    std::size_t slot = hash(cell) & mask();
+  void add(const GridCell& cell, Index point) {
+    std::size_t slot = hash_of(cell) & mask();
     while (slots_[slot] != kNone) slot = (slot + 1) & mask();
     slots_[slot] = point;
   }

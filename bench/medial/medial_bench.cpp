@@ -1,11 +1,12 @@
-// Seconds and memory of medial axes, and the interior classification against its slow twin. orchard_medial_bench POINTS
-// MESHES..
+// Seconds and memory of medial axes, the interior classification against its slow twin, and how gap repair of a thin
+// plate grows with the points. orchard_medial_bench POINTS MESHES..
 #include <sys/resource.h>
 
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include "axis/interior.h"
 #include "orchard/geometry/mesh_io.h"
@@ -13,6 +14,7 @@
 #include "orchard/medial/build.h"
 #include "orchard/medial/topology.h"
 #include "orchard/voronoi/highest_first.h"
+#include "support/shapes.h"
 
 namespace {
 
@@ -60,6 +62,20 @@ void run(const std::string& file, Index points) {
   classify(surface, build.sampling);
 }
 
+// Nearly every cell of a plate thinner than its points are apart needs a new point: the worst for what compares them.
+void repair_plate(Index points) {
+  const Surface surface(test::box({0, 0, 0}, {1, 1, 1e-3}));
+  SurfaceSampling sampling = sample_surface(surface, {.face_points = points - points / 5, .edge_points = points / 5});
+  VoronoiDiagram diagram = highest_first_voronoi(sampling.points);
+  const double start = processor_seconds();
+  const GapRepair repaired = repair_gap_crossings(surface, std::move(sampling), std::move(diagram));
+  const double seconds = processor_seconds() - start;
+  std::size_t steps = 0;
+  for (const GapRepairPass& pass : repaired.report.passes) steps += pass.steps_among_new_points;
+  std::printf("  thin plate, %u points: gap repair %.2f s, %u added, %.0f steps among new points for each\n", points,
+              seconds, repaired.report.points_added, static_cast<double>(steps) / repaired.report.points_added);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -68,4 +84,5 @@ int main(int argc, char** argv) {
     return 2;
   }
   for (int i = 2; i < argc; ++i) run(argv[i], static_cast<Index>(std::stoul(argv[1])));
+  for (const Index points : {10000u, 20000u, 40000u, 80000u}) repair_plate(points);
 }

@@ -110,10 +110,9 @@ static Run run(Cubes& cubes, double end, bool stop, const std::function<double(d
   return result;
 }
 
-Run run_bounds(std::size_t count, double ball, std::uint64_t seed, const runtime::BroadPhaseOptions& options,
-               double end, bool stop) {
+Run run_bounds(std::size_t count, double ball, std::uint64_t seed, const MakeBroadPhase& make, double end, bool stop) {
   Cubes cubes(count, ball, seed);
-  runtime::BroadPhase world(cubes.source(), options);
+  runtime::BroadPhase world = make(cubes.source());
   for (std::size_t i = 0; i < count; ++i) world.add();
   Run result = run(cubes, end, stop, [&](double time) {
     double first = -1;

@@ -1,6 +1,8 @@
 #pragma once
+#include <functional>
 #include <vector>
 
+#include "orchard/runtime/broad_phase.h"
 #include "spatial_hash.h"
 
 namespace orchard::bench {
@@ -46,9 +48,11 @@ struct Run {
   double worst() const { return frames.empty() ? 0 : *std::max_element(frames.begin(), frames.end()); }
 };
 
+using MakeBroadPhase = std::function<runtime::BroadPhase(runtime::MotionSource)>;
+
 // Frames until `end`, or with `stop` until the first collision. `memory`: of the hash, at most; 0: as it likes.
-Run run_bounds(std::size_t count, double ball, std::uint64_t seed, const runtime::BroadPhaseOptions& options,
-               double end = kEnd, bool stop = true);
+Run run_bounds(std::size_t count, double ball, std::uint64_t seed, const MakeBroadPhase& make, double end = kEnd,
+               bool stop = true);
 Run run_hash(std::size_t count, double ball, std::uint64_t seed, std::size_t memory, double cell, double end = kEnd,
              bool stop = true);
 

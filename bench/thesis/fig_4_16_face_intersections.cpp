@@ -13,13 +13,14 @@
 #include <fstream>
 #include <string>
 
-#include "orchard/runtime/space_time_bound.h"
+#include "orchard/broad_phase_methods/space_time_bound.h"
 #include "svg_plot.h"
 #include "worlds.h"
 
 namespace {
 
-using namespace orchard::runtime;
+using namespace orchard::broad_phase_methods;
+namespace test = orchard::runtime::test;
 using orchard::plot::Plot;
 using orchard::plot::Series;
 

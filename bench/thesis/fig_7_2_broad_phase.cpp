@@ -17,15 +17,18 @@
 #include <string>
 
 #include "cubes.h"
+#include "orchard/broad_phase_methods/sleeping_broad_phase.h"
 #include "svg_plot.h"
 
 namespace {
 
 using namespace orchard::bench;
+using orchard::broad_phase_methods::Rebuild;
+using orchard::broad_phase_methods::SleepingMethod;
 using orchard::plot::Plot;
 using orchard::plot::Series;
-using orchard::runtime::BroadPhaseMethod;
-using orchard::runtime::BroadPhaseOptions;
+using orchard::runtime::BroadPhase;
+using orchard::runtime::MotionSource;
 
 struct Setting {
   std::size_t cubes;
@@ -38,22 +41,22 @@ constexpr Setting kSettings[] = {
 
 struct Way {
   const char* name;
-  BroadPhaseOptions options;
+  MakeBroadPhase make;
 };
 std::vector<Way> ways() {
-  const auto with = [](BroadPhaseMethod method) {
-    BroadPhaseOptions options{.method = method, .time_step = kDetection};
-    return options;
+  const auto sleeping = [](SleepingMethod method, Rebuild rebuild = Rebuild::what_intersected) {
+    return [=](MotionSource source) {
+      return orchard::broad_phase_methods::make_sleeping_broad_phase(std::move(source),
+                                                                     {method, rebuild, {.time_step = kDetection}});
+    };
   };
-  BroadPhaseOptions everything = with(BroadPhaseMethod::projection);
-  everything.rebuild = orchard::runtime::Rebuild::everything;
-  return {{"projection", with(BroadPhaseMethod::projection)},
-          {"projection with everything rebuilt", everything},
-          {"subdivision", with(BroadPhaseMethod::subdivision)},
-          {"hybrid", with(BroadPhaseMethod::hybrid)},
-          {"quadratic faces", with(BroadPhaseMethod::quadratic)},
-          {"horns", with(BroadPhaseMethod::horns)},
-          {"events", with(BroadPhaseMethod::events)}};
+  return {{"projection", sleeping(SleepingMethod::projection)},
+          {"projection with everything rebuilt", sleeping(SleepingMethod::projection, Rebuild::everything)},
+          {"subdivision", sleeping(SleepingMethod::subdivision)},
+          {"hybrid", sleeping(SleepingMethod::hybrid)},
+          {"quadratic faces", sleeping(SleepingMethod::quadratic)},
+          {"horns", sleeping(SleepingMethod::horns)},
+          {"events", [](MotionSource source) { return BroadPhase(std::move(source), {.time_step = kDetection}); }}};
 }
 
 double median(std::vector<double> values) {
@@ -101,7 +104,7 @@ bool run_setting(const Setting& setting, double share, const std::filesystem::pa
     std::size_t memory = 0;
     std::vector<Run> runs;
     for (const Way& way : all) {
-      runs.push_back(best_of([&] { return run_bounds(setting.cubes, setting.ball, seed, way.options); }));
+      runs.push_back(best_of([&] { return run_bounds(setting.cubes, setting.ball, seed, way.make); }));
       if (memory == 0) memory = runs.back().memory;  // projection's
     }
     const Run hash = best_of([&] { return run_hash(setting.cubes, setting.ball, seed, memory, cell); });
@@ -188,7 +191,7 @@ void run_large(std::ofstream& csv) {
     std::printf("| %zu | %.3f ", count, 1e3 * hash.detection / frames);
     const std::vector<Way> all = ways();
     for (const std::size_t w : {6u, 0u, 3u, 4u, 5u}) {
-      const Run own = run_bounds(count, ball, 1, all[w].options, w == 6 ? kEnd : end, false);
+      const Run own = run_bounds(count, ball, 1, all[w].make, w == 6 ? kEnd : end, false);
       const double per_frame = own.detection / static_cast<double>(own.frames.size());
       std::printf("| %.3f: %.2f times ", 1e3 * per_frame, hash.detection / frames / per_frame);
       std::fflush(stdout);

@@ -23,6 +23,40 @@ Pose pose_of(const Body& body, const Vec3& position, double time) {
   return *pose_from_quaternion({std::cos(half), s * body.spin[0], s * body.spin[1], s * body.spin[2]}, position);
 }
 
+constexpr double kFrame = 0.02;  // seconds
+
+// 27 bodies in a cube of three by three by three, each on its own way.
+void start(double radius, std::vector<Body>& bodies, std::vector<Motion>& motions) {
+  for (int i = 0; i < 27; ++i) {
+    bodies.push_back({{std::sin(i), std::cos(i), 0.5}, 1.0 * i});
+    Motion motion;
+    motion.position = 3.5 * radius * Vec3{i % 3 - 1.0, i / 3 % 3 - 1.0, i / 9 - 1.0};
+    motion.velocity = radius * Vec3{2 * std::sin(3.0 * i), 2 * std::cos(5.0 * i), 2 * std::sin(7.0 * i)};
+    motion.radius = radius;
+    motions.push_back(motion);
+  }
+}
+
+// Exchanges what the two velocities have along `normal`; false where the bodies are on their way apart already.
+bool bounce(Motion& a, Motion& b, const Vec3& normal) {
+  const double approach = dot(b.velocity - a.velocity, normal);
+  if (approach >= 0) return false;
+  a.velocity = a.velocity + approach * normal, b.velocity = b.velocity - approach * normal;
+  return true;
+}
+
+// Until the next frame; true where the body turned back at a wall.
+bool fly(Motion& motion, double wall) {
+  bool turned = false;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (motion.position[axis] * motion.velocity[axis] <= 0 || std::fabs(motion.position[axis]) < wall) continue;
+    motion.velocity[axis] *= -1;
+    turned = true;
+  }
+  motion.position = motion.position + kFrame * motion.velocity;
+  return turned;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -37,22 +71,14 @@ int main(int argc, char** argv) {
 
   std::vector<Body> bodies;
   std::vector<Motion> motions;  // by BodyIndex: steady flight between two bounces
-  BroadPhase world(values_of(motions), {.time_step = 0.02});
-  for (int i = 0; i < 27; ++i) {
-    bodies.push_back({{std::sin(i), std::cos(i), 0.5}, 1.0 * i});
-    Motion motion;
-    motion.position = 3.5 * radius * Vec3{i % 3 - 1.0, i / 3 % 3 - 1.0, i / 9 - 1.0};
-    motion.velocity = radius * Vec3{2 * std::sin(3.0 * i), 2 * std::cos(5.0 * i), 2 * std::sin(7.0 * i)};
-    motion.radius = radius;
-    motions.push_back(motion);
-    world.add();
-  }
+  start(radius, bodies, motions);
+  BroadPhase world(values_of(motions), {.time_step = kFrame});
+  for (std::size_t i = 0; i < bodies.size(); ++i) world.add();
 
   std::vector<NarrowPhase> pool;  // one for each pair of a frame; reused, so that later frames allocate nothing
   std::size_t pairs = 0, answers[3] = {}, bounces = 0;
-  const double dt = 0.02;
   for (int frame = 0; frame < 500; ++frame) {
-    const double time = frame * dt;
+    const double time = frame * kFrame;
     const Advance now = world.advance(time);
     while (pool.size() < now.pairs.size()) pool.emplace_back(tree, tree, 1024);
     for (std::size_t k = 0; k < now.pairs.size(); ++k) {
@@ -67,24 +93,14 @@ int main(int argc, char** argv) {
       ++pairs, ++answers[static_cast<int>(verdict.answer)];
       if (verdict.answer == Answer::no) continue;
       if (verdict.answer == Answer::maybe && verdict.separation_bound > 0.05 * radius) continue;
-      Motion &a = motions[now.pairs[k].a], &b = motions[now.pairs[k].b];
-      const Vec3 normal = verdict.contact.normal;
-      const double approach = dot(b.velocity - a.velocity, normal);
-      if (approach >= 0) continue;  // already on their way apart
+      const auto [a, b] = now.pairs[k];
+      if (!bounce(motions[a], motions[b], verdict.contact.normal)) continue;
       ++bounces;
-      a.velocity = a.velocity + approach * normal, b.velocity = b.velocity - approach * normal;
-      for (const BodyIndex i : {now.pairs[k].a, now.pairs[k].b}) {
-        world.cancel(world.id_of(i));  // what was said about its motion is void
-      }
+      // What was said about their motions is void.
+      world.cancel(world.id_of(a)), world.cancel(world.id_of(b));
     }
-    for (std::size_t i = 0; i < motions.size(); ++i) {
-      Motion& motion = motions[i];
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (motion.position[axis] * motion.velocity[axis] <= 0 || std::fabs(motion.position[axis]) < wall) continue;
-        motion.velocity[axis] *= -1;
-        world.cancel(world.id_of(static_cast<BodyIndex>(i)));
-      }
-      motion.position = motion.position + dt * motion.velocity;
+    for (BodyIndex i = 0; i < motions.size(); ++i) {
+      if (fly(motions[i], wall)) world.cancel(world.id_of(i));
     }
   }
   std::printf("%zu pairs of spheres met in 500 frames: %zu no, %zu maybe, %zu yes; %zu bounces\n", pairs, answers[0],

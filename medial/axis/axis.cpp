@@ -116,7 +116,7 @@ void validate_faces(const Rows& faces, const std::vector<std::array<Index, 2>>& 
 }  // namespace
 
 MedialAxis medial_axis(const Surface& surface, const SurfaceSampling& sampling, const VoronoiDiagram& diagram,
-                       const Progress& progress, const AxisOptions& options) {
+                       const AxisOptions& options, const Progress& progress) {
   MedialAxis axis;
   detail::add_points(surface, sampling, axis);
   std::vector<std::uint8_t> inside = detail::interior_vertices(surface, diagram, progress);

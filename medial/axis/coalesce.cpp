@@ -1,36 +1,13 @@
 #include "coalesce.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdint>
 #include <utility>
 
 #include "orchard/geometry/disjoint_sets.h"
+#include "orchard/geometry/grid_cell.h"
 
 namespace orchard::detail {
-namespace {
-
-using Cell = std::array<std::int64_t, 3>;
-
-Cell cell_of(const Point& point, const Point& origin, double size) {
-  Cell cell{};
-  for (int axis = 0; axis < 3; ++axis) {
-    cell[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(std::floor((point[axis] - origin[axis]) / size));
-  }
-  return cell;
-}
-
-std::uint64_t hash_of(const Cell& cell) {
-  std::uint64_t hash = 0;
-  for (const std::int64_t coordinate : cell) {
-    hash = (hash ^ static_cast<std::uint64_t>(coordinate)) * 0x9e3779b97f4a7c15u;
-    hash ^= hash >> 29;
-  }
-  return hash;
-}
-
-}  // namespace
 
 std::vector<Index> representatives_of_coincident(std::span<const Point> points, double distance) {
   if (points.empty()) return {};
@@ -42,7 +19,7 @@ std::vector<Index> representatives_of_coincident(std::span<const Point> points, 
   Point origin = points[0];
   for (const Point& point : points) origin = origin.cwiseMin(point);
   std::vector<std::pair<std::uint64_t, Index>> entries(points.size());
-  for (Index i = 0; i < points.size(); ++i) entries[i] = {hash_of(cell_of(points[i], origin, size)), i};
+  for (Index i = 0; i < points.size(); ++i) entries[i] = {hash_of(grid_cell(points[i] - origin, size)), i};
   std::sort(entries.begin(), entries.end());
 
   const auto unite_if_near = [&](Index a, Index b) {
@@ -53,11 +30,11 @@ std::vector<Index> representatives_of_coincident(std::span<const Point> points, 
     for (std::size_t other = k + 1; other < entries.size() && entries[other].first == hash; ++other) {
       unite_if_near(i, entries[other].second);
     }
-    const Cell low = cell_of(points[i] - Vector::Constant(distance), origin, size);
-    const Cell high = cell_of(points[i] + Vector::Constant(distance), origin, size);
+    const GridCell low = grid_cell(points[i] - Vector::Constant(distance) - origin, size);
+    const GridCell high = grid_cell(points[i] + Vector::Constant(distance) - origin, size);
     if (low == high) continue;
     for (int corner = 0; corner < 8; ++corner) {
-      const Cell cell{corner & 1 ? high[0] : low[0], corner & 2 ? high[1] : low[1], corner & 4 ? high[2] : low[2]};
+      const GridCell cell{corner & 1 ? high[0] : low[0], corner & 2 ? high[1] : low[1], corner & 4 ? high[2] : low[2]};
       const std::pair<std::uint64_t, Index> first{hash_of(cell), 0};
       if (first.first == hash) continue;
       auto entry = std::lower_bound(entries.begin(), entries.end(), first);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "orchard/geometry/angle.h"
 #include "orchard/medial/prune.h"
 
 namespace orchard {
@@ -14,8 +15,6 @@ namespace {
 
 constexpr std::size_t kEnough = 64;  // of the forming points of a coalesced centre
 constexpr int kMaxWalk = 1000;       // triangles; a step always comes nearer, so this is but a guard
-
-double angle_between(const Vector& a, const Vector& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 std::span<const Index> looked_at(const MedialAxis& axis, Index vertex) {
   const auto forming = axis.forming_points[vertex];

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "ball_tree.h"
+#include "orchard/geometry/angle.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/tolerance.h"
 #include "point_normals.h"
@@ -89,9 +90,8 @@ class Importer {
     }
   }
 
-  double angle_between(Index v, Index p, Index q) const {
-    const Vector a = axis_.points[p] - axis_.centers[v], b = axis_.points[q] - axis_.centers[v];
-    return std::atan2(a.cross(b).norm(), a.dot(b));
+  double angle_at(Index v, Index p, Index q) const {
+    return angle_between(axis_.points[p] - axis_.centers[v], axis_.points[q] - axis_.centers[v]);
   }
 
   // The contacts in ascending order, and how far apart the nearest one and the one opposite it are seen.
@@ -99,7 +99,7 @@ class Importer {
     for (Index v = 0; v < axis_.size(); ++v) {
       const Index first = contacts_[v].front();
       double widest = 0;
-      for (const Index p : contacts_[v]) widest = std::max(widest, angle_between(v, first, p));
+      for (const Index p : contacts_[v]) widest = std::max(widest, angle_at(v, first, p));
       axis_.angles.push_back(widest);
       std::sort(contacts_[v].begin(), contacts_[v].end());
       append(axis_.forming_points, contacts_[v]);

@@ -1,7 +1,8 @@
 #include "point_normals.h"
 
 #include <algorithm>
-#include <cmath>
+
+#include "orchard/geometry/angle.h"
 
 namespace orchard::detail {
 
@@ -15,7 +16,7 @@ void add_points(const Surface& surface, const SurfaceSampling& sampling, MedialA
     double turn = 0;
     for (const Index triangle : around) {
       const Vector& own = surface.normal(triangle);
-      turn = std::max(turn, std::atan2(normal.cross(own).norm(), normal.dot(own)));
+      turn = std::max(turn, angle_between(normal, own));
     }
     axis.normals.push_back(normal);
     axis.turns.push_back(turn);

@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
-#include <numeric>
 #include <span>
 #include <utility>
+
+#include "orchard/geometry/disjoint_sets.h"
 
 namespace orchard::detail {
 namespace {
@@ -16,10 +17,8 @@ namespace {
 class PatchFinder {
  public:
   PatchFinder(const Surface& surface, const RestrictedVoronoi& restricted, Index cell, std::vector<Index> triangles)
-      : surface_(surface), cell_(cell), triangles_(std::move(triangles)) {
+      : surface_(surface), cell_(cell), triangles_(std::move(triangles)), sets_(triangles_.size()) {
     for (const Index triangle : triangles_) pieces_.push_back(restricted.piece(triangle, cell));
-    parents_.resize(triangles_.size());
-    std::iota(parents_.begin(), parents_.end(), std::size_t{0});
     euler_.assign(triangles_.size(), 1);
     joined_.assign(triangles_.size(), 0);
   }
@@ -30,7 +29,7 @@ class PatchFinder {
     std::vector<CellPatch> patches;
     std::vector<std::size_t> patch_of(triangles_.size());
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
-      const std::size_t first = root(i);  // the lowest of its set
+      const std::size_t first = sets_.root(static_cast<Index>(i));  // the lowest of its set
       if (first == i) {
         patch_of[i] = patches.size();
         patches.push_back({cell_, {}, false, 0});
@@ -45,10 +44,6 @@ class PatchFinder {
  private:
   static constexpr std::size_t kNotHere = ~std::size_t{0};
 
-  std::size_t root(std::size_t i) {
-    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
-    return i;
-  }
   std::size_t find(Index triangle) const {
     const auto found = std::lower_bound(triangles_.begin(), triangles_.end(), triangle);
     return found != triangles_.end() && *found == triangle ? static_cast<std::size_t>(found - triangles_.begin())
@@ -67,8 +62,7 @@ class PatchFinder {
       joined_[i] |= here;
       joined_[k] |= there;
       --euler_[i];
-      const std::size_t a = root(i), b = root(k);
-      parents_[std::max(a, b)] = std::min(a, b);
+      sets_.unite(static_cast<Index>(i), static_cast<Index>(k));
     }
   }
   std::uint8_t edges_towards(Index triangle, Index neighbor) const {
@@ -102,7 +96,7 @@ class PatchFinder {
   Index cell_;
   std::vector<Index> triangles_;  // ascending
   std::vector<const CellPiece*> pieces_;
-  std::vector<std::size_t> parents_;
+  DisjointSets sets_;
   std::vector<int> euler_;            // what each piece adds to its patch's characteristic
   std::vector<std::uint8_t> joined_;  // bit i: to a piece across the triangle's edge i
 };

@@ -3,77 +3,111 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <optional>
+#include <span>
 #include <utility>
 
+#include "axis/incidence.h"
 #include "joined_inside.h"
 #include "neck_test.h"
 
 namespace orchard::detail {
 namespace {
 
-// What the point of a cell lies on: its clusters, and for the loose definition those that adjoin them.
-class AllowedClusters {
- public:
-  AllowedClusters(const Surface& surface, const SurfaceSampling& sampling, bool adjoining)
-      : surface_(surface), sampling_(sampling), adjoining_(adjoining) {}
+using ClusterPair = std::array<Index, 2>;
 
-  std::vector<Index> of(Index cell) const {
-    std::vector<Index> around;
-    surface_.triangles_at(sampling_.triangles[cell], sampling_.features[cell], around);
-    std::vector<Index> allowed = clusters_of(around);
-    if (!adjoining_) return allowed;
-    std::vector<Index> near;
-    for (const Index cluster : allowed) {
-      for (const Index triangle : surface_.clusters().triangles[cluster]) {
-        for (const Index vertex : surface_.mesh().triangles[triangle]) {
-          const auto fan = surface_.triangles_around(vertex);
-          near.insert(near.end(), fan.begin(), fan.end());
-        }
-      }
-    }
-    return clusters_of(near);
+std::vector<Index> clusters_at(const Surface& surface, std::span<const Index> triangles) {
+  std::vector<Index> clusters;
+  clusters.reserve(triangles.size());
+  for (const Index triangle : triangles) clusters.push_back(surface.clusters().of_triangle[triangle]);
+  std::sort(clusters.begin(), clusters.end());
+  clusters.erase(std::unique(clusters.begin(), clusters.end()), clusters.end());
+  return clusters;
+}
+
+// Which of the pairs of clusters have a vertex in common. A cluster may have very many vertices inside, and a fan very
+// many clusters around its middle, so each pair's own border vertices are looked at, once.
+std::vector<ClusterPair> adjoining_pairs(const Surface& surface, std::vector<ClusterPair> pairs) {
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  std::vector<std::array<Index, 2>> at_border;  // cluster, vertex
+  for (Index vertex = 0; vertex < surface.mesh().vertices.size(); ++vertex) {
+    const std::vector<Index> clusters = clusters_at(surface, surface.triangles_around(vertex));
+    if (clusters.size() < 2) continue;
+    for (const Index cluster : clusters) at_border.push_back({cluster, vertex});
   }
-
- private:
-  std::vector<Index> clusters_of(const std::vector<Index>& triangles) const {
-    std::vector<Index> clusters;
-    clusters.reserve(triangles.size());
-    for (const Index triangle : triangles) clusters.push_back(surface_.clusters().of_triangle[triangle]);
-    std::sort(clusters.begin(), clusters.end());
-    clusters.erase(std::unique(clusters.begin(), clusters.end()), clusters.end());
-    return clusters;
+  const Rows vertices = rows_of(at_border, surface.clusters().count());
+  std::vector<std::uint8_t> adjoin(pairs.size(), 0);
+  tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
+    auto few = vertices[pairs[i][0]], many = vertices[pairs[i][1]];
+    if (few.size() > many.size()) std::swap(few, many);
+    adjoin[i] = std::any_of(few.begin(), few.end(),
+                            [&](Index vertex) { return std::binary_search(many.begin(), many.end(), vertex); });
+  });
+  std::vector<ClusterPair> result;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (adjoin[i]) result.push_back(pairs[i]);
   }
-
-  const Surface& surface_;
-  const SurfaceSampling& sampling_;
-  bool adjoining_;
-};
+  return result;
+}
 
 // The definitions of 6.2.4, seen from the cell: a face crosses a cluster where the two cells meet on it, and it may if
 // the cluster is allowed to both. So each cell answers for the clusters it reaches; one patch for each forbidden one.
-std::vector<CellPatch> patches_on_forbidden_clusters(const Surface& surface, const SurfaceSampling& sampling,
-                                                     const std::vector<CellPatch>& patches, bool adjoining) {
-  const AllowedClusters allowed_clusters(surface, sampling, adjoining);
-  std::vector<std::vector<CellPatch>> found(patches.size());
-  tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t i) {
-    const std::vector<Index> allowed = allowed_clusters.of(patches[i].cell);
-    std::vector<std::pair<Index, Index>> forbidden;  // cluster, triangle
-    for (const Index triangle : patches[i].triangles) {
-      const Index cluster = surface.clusters().of_triangle[triangle];
-      if (!std::binary_search(allowed.begin(), allowed.end(), cluster)) forbidden.emplace_back(cluster, triangle);
+// Allowed are the clusters that the cell's point lies on, and for the loose definition those that adjoin one of them.
+class ForbiddenClusters {
+ public:
+  ForbiddenClusters(const Surface& surface, const SurfaceSampling& sampling, const std::vector<CellPatch>& patches)
+      : surface_(surface), patches_(patches), own_(patches.size()), reached_(patches.size()) {
+    tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t i) {
+      std::vector<Index> around;
+      surface.triangles_at(sampling.triangles[patches[i].cell], sampling.features[patches[i].cell], around);
+      own_[i] = clusters_at(surface, around);
+      reached_[i] = clusters_at(surface, patches[i].triangles);
+      std::erase_if(reached_[i],
+                    [&](Index cluster) { return std::binary_search(own_[i].begin(), own_[i].end(), cluster); });
+    });
+  }
+
+  void allow_adjoining() {
+    std::vector<ClusterPair> pairs;
+    for (std::size_t i = 0; i < patches_.size(); ++i) {
+      for (const Index own : own_[i]) {
+        for (const Index cluster : reached_[i]) pairs.push_back({own, cluster});
+      }
     }
-    std::sort(forbidden.begin(), forbidden.end());
-    for (std::size_t k = 0; k < forbidden.size(); ++k) {
-      if (k == 0 || forbidden[k].first != forbidden[k - 1].first) found[i].push_back({patches[i].cell, {}, false, 0});
-      found[i].back().triangles.push_back(forbidden[k].second);
+    const std::vector<ClusterPair> adjoining = adjoining_pairs(surface_, std::move(pairs));
+    tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t i) {
+      std::erase_if(reached_[i], [&](Index cluster) {
+        return std::any_of(own_[i].begin(), own_[i].end(), [&](Index own) {
+          return std::binary_search(adjoining.begin(), adjoining.end(), ClusterPair{own, cluster});
+        });
+      });
+    });
+  }
+
+  std::vector<CellPatch> patches() const {
+    std::vector<CellPatch> result;
+    for (std::size_t i = 0; i < patches_.size(); ++i) {
+      const std::size_t first = result.size();
+      for (std::size_t k = 0; k < reached_[i].size(); ++k) result.push_back({patches_[i].cell, {}, false, 0});
+      if (reached_[i].empty()) continue;
+      for (const Index triangle : patches_[i].triangles) {
+        const Index cluster = surface_.clusters().of_triangle[triangle];
+        const auto found = std::lower_bound(reached_[i].begin(), reached_[i].end(), cluster);
+        if (found == reached_[i].end() || *found != cluster) continue;
+        result[first + static_cast<std::size_t>(found - reached_[i].begin())].triangles.push_back(triangle);
+      }
     }
-  });
-  std::vector<CellPatch> result;
-  for (std::vector<CellPatch>& some : found) std::move(some.begin(), some.end(), std::back_inserter(result));
-  return result;
-}
+    return result;
+  }
+
+ private:
+  const Surface& surface_;
+  const std::vector<CellPatch>& patches_;
+  std::vector<std::vector<Index>> own_, reached_;  // of each patch: clusters, ascending; reached_: not allowed yet
+};
 
 // The cells beyond the patch's borders whose faces cross harmfully.
 std::vector<Index> harmful_neighbors(const Surface& surface, const SurfaceSampling& sampling,
@@ -137,7 +171,9 @@ std::vector<Crossing> find_crossings(const Surface& surface, const SurfaceSampli
     std::copy_if(patches.begin(), patches.end(), std::back_inserter(suspects),
                  [](const CellPatch& patch) { return !patch.home; });
   } else {
-    suspects = patches_on_forbidden_clusters(surface, sampling, patches, options.definition == GapDefinition::loose);
+    ForbiddenClusters forbidden(surface, sampling, patches);
+    if (options.definition == GapDefinition::loose) forbidden.allow_adjoining();
+    suspects = forbidden.patches();
   }
   std::vector<std::optional<Crossing>> gaps(suspects.size()), necks(mends_necks(options) ? patches.size() : 0);
   tbb::parallel_for(std::size_t{0}, gaps.size(), [&](std::size_t i) {

@@ -13,6 +13,7 @@
 #include "crossings.h"
 #include "orchard/geometry/tolerance.h"
 #include "orchard/voronoi/highest_first.h"
+#include "point_tree.h"
 #include "repair_point.h"
 #include "restricted_voronoi.h"
 #include "thinning.h"
@@ -154,13 +155,13 @@ class Repair {
   }
 
   void add_points(const std::vector<Candidate>& candidates) {
-    const Index first_new = result_.sampling.size();
-    std::vector<std::uint8_t> projected(first_new, 0);  // cells that a projection mends in this pass
+    std::vector<std::uint8_t> projected(result_.sampling.size(), 0);  // cells that a projection mends in this pass
+    detail::PointTree new_points(surface_.bounding_box());
     for (const Candidate& candidate : candidates) {
-      if (near_new_point(candidate, first_new)) continue;
+      if (near_new_point(candidate, new_points)) continue;
       GapRepairPass& pass = result_.report.passes.back();
       const auto& [facing, snapped] = candidate.proposal;
-      const auto add_place = [&](const ClosestPoint& place) { return add(place, candidate.cell); };
+      const auto add_place = [&](const ClosestPoint& place) { return add(place, candidate.cell, new_points); };
       if (std::any_of(facing.begin(), facing.end(), add_place)) {
         projected[candidate.cell] = 1;
         ++pass.added_by_projection;
@@ -170,36 +171,32 @@ class Repair {
       const bool wait = std::any_of(candidate.neighbors.begin(), candidate.neighbors.end(),
                                     [&](Index other) { return projected[other] != 0; });
       if (wait) continue;
-      if (add(snapped, candidate.cell)) {
+      if (add(snapped, candidate.cell, new_points)) {
         ++(candidate.neck ? pass.added_at_necks : pass.added_by_snapping);
       } else {
         ++pass.refused_as_coincident;
       }
     }
+    result_.report.passes.back().steps_among_new_points = new_points.steps();
   }
 
-  bool near_new_point(const Candidate& candidate, Index first_new) const {
+  static bool near_new_point(const Candidate& candidate, const detail::PointTree& new_points) {
     const RepairProposal& proposal = candidate.proposal;
     const Point& position = proposal.facing.empty() ? proposal.snapped.position : proposal.facing[0].position;
     const double spread = kSpread * proposal.gap();
-    for (Index i = first_new; i < result_.sampling.size(); ++i) {
-      if ((result_.sampling.points[i] - position).squaredNorm() < spread * spread) return true;
-    }
-    return false;
+    return new_points.any_within(
+        position, spread, [&](const Point& point) { return (point - position).squaredNorm() < spread * spread; });
   }
 
   // False if the place is taken.
-  bool add(const ClosestPoint& place, Index cell) {
+  bool add(const ClosestPoint& place, Index cell, detail::PointTree& new_points) {
     SurfaceSampling& sampling = result_.sampling;
     // At least what insert_points() takes for coincident.
     const double coincident = tolerance::kCoincidentPoints * surface_.bounding_box().diagonal().norm() / 2;
     const auto taken = [&](const Point& point) { return !((point - place.position).norm() > coincident); };
-    const Index first_new = static_cast<Index>(result_.diagram.points.size());
     const Index nearest = detail::nearest_point(result_.diagram.points, neighbors_, place.position, cell);
-    if (taken(sampling.points[nearest])) return false;
-    for (Index i = first_new; i < sampling.size(); ++i) {
-      if (taken(sampling.points[i])) return false;
-    }
+    if (taken(sampling.points[nearest]) || new_points.any_within(place.position, coincident, taken)) return false;
+    new_points.add(place.position);
     sampling.points.push_back(place.position);
     sampling.triangles.push_back(place.triangle);
     sampling.features.push_back(place.feature);

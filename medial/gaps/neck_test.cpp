@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "orchard/geometry/disjoint_sets.h"
 #include "orchard/geometry/tolerance.h"
 
 namespace orchard::detail {
@@ -17,80 +18,92 @@ struct Stretch {
 };
 
 // Whether the stretches of one border hang together. Those on triangles that share an edge do if either ends on it; a
-// border that runs through a vertex or along an edge is told by the positions of its ends.
+// border that runs through a vertex or along an edge is told by the positions of its ends. A border around the middle
+// of a fan crosses each of its triangles, so nothing here compares all stretches with all.
 class SingleArc {
  public:
   SingleArc(const Surface& surface, const RestrictedVoronoi& restricted, Index cell)
       : surface_(surface), restricted_(restricted), cell_(cell) {}
 
+  // The stretches ascend by triangle.
   bool operator()(std::span<const Stretch> stretches) {
     if (stretches.size() < 2) return true;
-    stretches_ = stretches;
-    if (connected([&](std::size_t i, std::size_t k) { return joined_across_edge(stretches_[i], stretches_[k]); })) {
-      return true;
-    }
-    ends_.clear();
-    for (const Stretch& stretch : stretches_) ends_.push_back(ends_of(stretch));
-    return connected([&](std::size_t i, std::size_t k) { return ends_meet(ends_[i], ends_[k]); });
+    return joined_across_edges(stretches) || joined_at_ends(stretches);
   }
 
  private:
-  using Ends = std::vector<Point>;
+  // Sets of stretches, and how many there are.
+  struct Arcs {
+    explicit Arcs(std::size_t size) : sets(size), count(size) {}
+    void join(std::size_t a, std::size_t b) {
+      const Index first = sets.root(static_cast<Index>(a)), second = sets.root(static_cast<Index>(b));
+      if (first == second) return;
+      sets.unite(first, second);
+      --count;
+    }
+    DisjointSets sets;
+    std::size_t count;
+  };
+  struct End {
+    Point position;
+    std::size_t stretch;
+  };
 
-  template <typename Joined>
-  bool connected(const Joined& joined) {
-    reached_.assign(stretches_.size(), 0);
-    open_.assign(1, 0);
-    reached_[0] = 1;
-    std::size_t count = 1;
-    while (!open_.empty()) {
-      const std::size_t at = open_.back();
-      open_.pop_back();
-      for (std::size_t next = 0; next < stretches_.size(); ++next) {
-        if (reached_[next] || !joined(at, next)) continue;
-        reached_[next] = 1;
-        open_.push_back(next);
-        ++count;
+  bool joined_across_edges(std::span<const Stretch> stretches) const {
+    Arcs arcs(stretches.size());
+    for (std::size_t i = 0; i < stretches.size(); ++i) {
+      for (unsigned edge = 0; edge < 3; ++edge) {
+        if (!(stretches[i].edges >> edge & 1u)) continue;
+        const Index across = surface_.neighbors(stretches[i].triangle)[edge];
+        auto next =
+            std::lower_bound(stretches.begin(), stretches.end(), across,
+                             [](const Stretch& stretch, Index triangle) { return stretch.triangle < triangle; });
+        for (; next != stretches.end() && next->triangle == across; ++next) {
+          arcs.join(i, static_cast<std::size_t>(next - stretches.begin()));
+        }
       }
     }
-    return count == stretches_.size();
+    return arcs.count == 1;
   }
 
-  bool joined_across_edge(const Stretch& a, const Stretch& b) const {
-    for (unsigned edge = 0; edge < 3; ++edge) {
-      if (surface_.neighbors(a.triangle)[edge] == b.triangle && (a.edges >> edge & 1u)) return true;
-      if (surface_.neighbors(b.triangle)[edge] == a.triangle && (b.edges >> edge & 1u)) return true;
+  // Along the axis on which the ends spread most, only those that are near each other are compared.
+  bool joined_at_ends(std::span<const Stretch> stretches) {
+    ends_.clear();
+    Box box;
+    for (std::size_t i = 0; i < stretches.size(); ++i) add_ends(stretches[i], i, box);
+    if (ends_.empty()) return false;
+    int axis = 0;
+    box.sizes().maxCoeff(&axis);
+    std::sort(ends_.begin(), ends_.end(),
+              [&](const End& a, const End& b) { return a.position[axis] < b.position[axis]; });
+    const double near = 4 * tolerance::kTouch * surface_.bounding_radius();
+    const double window = near * (1 + 0x1p-20);  // beyond it, no rounding makes two ends near
+    Arcs arcs(stretches.size());
+    for (std::size_t i = 0; i < ends_.size(); ++i) {
+      for (std::size_t k = i + 1; k < ends_.size(); ++k) {
+        if (ends_[k].position[axis] - ends_[i].position[axis] > window) break;
+        if ((ends_[i].position - ends_[k].position).squaredNorm() > near * near) continue;
+        arcs.join(ends_[i].stretch, ends_[k].stretch);
+      }
     }
-    return false;
+    return arcs.count == 1;
   }
-  Ends ends_of(const Stretch& stretch) {
-    Ends ends;
+  void add_ends(const Stretch& stretch, std::size_t index, Box& box) {
     restricted_.polygon(stretch.triangle, cell_, polygon_);
     const std::size_t size = polygon_.corners.size();
     for (std::size_t i = 0; i < size; ++i) {
       if (polygon_.labels[i] != stretch.other + 3) continue;
-      ends.push_back(polygon_.corners[i]);
-      ends.push_back(polygon_.corners[i + 1 == size ? 0 : i + 1]);
-    }
-    return ends;
-  }
-  bool ends_meet(const Ends& a, const Ends& b) const {
-    const double near = 4 * tolerance::kTouch * surface_.bounding_radius();
-    for (const Point& first : a) {
-      for (const Point& second : b) {
-        if ((first - second).squaredNorm() <= near * near) return true;
+      for (const std::size_t corner : {i, i + 1 == size ? 0 : i + 1}) {
+        ends_.push_back({polygon_.corners[corner], index});
+        box.extend(polygon_.corners[corner]);
       }
     }
-    return false;
   }
 
   const Surface& surface_;
   const RestrictedVoronoi& restricted_;
   Index cell_;
-  std::span<const Stretch> stretches_;
-  std::vector<std::uint8_t> reached_;
-  std::vector<std::size_t> open_;
-  std::vector<Ends> ends_;
+  std::vector<End> ends_;
   CellPolygon polygon_;
 };
 

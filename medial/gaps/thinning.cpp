@@ -1,10 +1,10 @@
 #include "thinning.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
 #include <utility>
+
+#include "orchard/geometry/grid_cell.h"
 
 namespace orchard::detail {
 namespace {
@@ -15,24 +15,16 @@ constexpr double kFacing = -kSameSide;
 
 // Of each point, those within `reach`, by a grid of cells that wide.
 Rows points_near(const std::vector<Point>& points, double reach) {
-  using Cell = std::array<std::int64_t, 3>;
-  const auto cell_of = [&](const Point& point) {
-    Cell cell{};
-    for (int axis = 0; axis < 3; ++axis) {
-      cell[static_cast<std::size_t>(axis)] =
-          static_cast<std::int64_t>(std::floor((point[axis] - points[0][axis]) / reach));
-    }
-    return cell;
-  };
-  std::vector<std::pair<Cell, Index>> sorted;
+  const auto cell_of = [&](const Point& point) { return grid_cell(point - points[0], reach); };
+  std::vector<std::pair<GridCell, Index>> sorted;
   for (Index i = 0; i < points.size(); ++i) sorted.emplace_back(cell_of(points[i]), i);
   std::sort(sorted.begin(), sorted.end());
   Rows near;
   for (Index i = 0; i < points.size(); ++i) {
-    const Cell cell = cell_of(points[i]);
+    const GridCell cell = cell_of(points[i]);
     for (std::int64_t x = -1; x <= 1; ++x) {
       for (std::int64_t y = -1; y <= 1; ++y) {
-        const Cell first{cell[0] + x, cell[1] + y, cell[2] - 1}, last{cell[0] + x, cell[1] + y, cell[2] + 1};
+        const GridCell first{cell[0] + x, cell[1] + y, cell[2] - 1}, last{cell[0] + x, cell[1] + y, cell[2] + 1};
         auto other = std::lower_bound(sorted.begin(), sorted.end(), std::pair{first, Index{0}});
         for (; other != sorted.end() && other->first <= last; ++other) {
           const Index k = other->second;

@@ -31,16 +31,22 @@ bool is_valid(const BroadPhaseOptions& options) noexcept {
          std::fabs(options.start) <= kMostSteps * step;  // none is NaN
 }
 
-BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& wanted) {
+BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& options)
+    : BroadPhase(std::move(source), options, detail::make_events) {}
+
+BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& wanted, const detail::MakeMethod& make) {
   const bool valid = is_valid(wanted);
   const BroadPhaseOptions options = valid ? wanted : BroadPhaseOptions{};
   state_ = std::make_unique<State>(
       State{detail::Roster(std::move(source), detail::Clock{options.start, options.time_step}), nullptr, {}});
   largest_time_ = valid ? kMostSteps * options.time_step : -1;
-  state_->method = options.method == BroadPhaseMethod::events ? detail::make_events(state_->roster, options)
-                                                              : detail::make_sleeping(state_->roster, options);
+  state_->method = make(state_->roster, options);
   next_time_ = wake_time_ = std::numeric_limits<double>::infinity();
   seen_time_ = -next_time_;
+}
+
+BroadPhase detail::make_broad_phase(MotionSource source, const BroadPhaseOptions& options, const MakeMethod& make) {
+  return {std::move(source), options, make};
 }
 
 BroadPhase::BroadPhase(BroadPhase&&) noexcept = default;

@@ -24,6 +24,10 @@ class Method {
 };
 
 std::unique_ptr<Method> make_events(Roster& roster, const BroadPhaseOptions& options);
-std::unique_ptr<Method> make_sleeping(Roster& roster, const BroadPhaseOptions& options);
+
+// The seam for a library that finds what happens next in another way (declared in broad_phase.h, for the friendship):
+//   BroadPhase make_broad_phase(MotionSource source, const BroadPhaseOptions& options, const MakeMethod& make);
+// `make` is called once, before it returns, with options that are valid; the roster stays where it is. As this header
+// is not installed, such a library is built together with this one.
 
 }  // namespace orchard::runtime::detail

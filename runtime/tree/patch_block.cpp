@@ -1,3 +1,5 @@
+// One file: its three kernels share Eight and what is built of it, which has to become part of each of them for every
+// machine (machine.h), and which nothing else uses.
 #include "patch_block.h"
 
 #include "machine.h"
@@ -141,6 +143,88 @@ ORCHARD_INLINE std::uint32_t outside(const typename Eight<Kind>::Vectors (&corne
   return Kind::bits((limit < e.low) | (e.high < -limit));
 }
 
+// Vectors that were made eight at a time, to be taken one by one.
+template <typename Kind>
+struct OneByOne {
+  using E = Eight<Kind>;
+  std::array<float, kBlockWidth> x, y, z;
+
+  ORCHARD_INLINE explicit OneByOne(const typename E::Vectors& v) noexcept {
+    store(v.x, x), store(v.y, y), store(v.z, z);
+  }
+  ORCHARD_INLINE typename E::Vectors operator[](std::size_t i) const noexcept {
+    return {E::all(x[i]), E::all(y[i]), E::all(z[i])};
+  }
+};
+
+// For each row the lanes whose boxes, grown by the margin, meet its own; all of them together.
+template <typename Kind>
+ORCHARD_INLINE std::uint32_t find_near(const typename Eight<Kind>::Vectors (&lane)[3],
+                                       const typename Eight<Kind>::Vectors (&row)[3], const LeafPair& pair,
+                                       float margin, std::uint32_t (&near)[kBlockWidth]) noexcept {
+  using E = Eight<Kind>;
+  // Heights are along normals that are unit to 1e-6, so a margin for patches serves here, too.
+  const std::uint32_t rows = ~outside<Kind>(row, pair.lane_patch, margin) & 0xffu;
+  const std::uint32_t lanes = ~outside<Kind>(lane, pair.row_patch, margin) & 0xffu;
+  if (rows == 0 || lanes == 0) return 0;
+  const Box<Kind> lane_box = box_of<Kind>(lane, E::all(margin)), row_boxes = box_of<Kind>(row, E::all(0.0f));
+  const OneByOne<Kind> lows(row_boxes.low), highs(row_boxes.high);
+  std::uint32_t any = 0;
+  for (std::uint32_t r = 0; r < kBlockWidth; ++r) {
+    near[r] = 0;
+    if ((rows >> r & 1) == 0 || pair.rows.triangle[r] == kNoTriangle) continue;
+    const typename E::Vectors low = lows[r], high = highs[r];
+    near[r] = lanes & ~Kind::bits((lane_box.high.x < low.x) | (high.x < lane_box.low.x) |  //
+                                  (lane_box.high.y < low.y) | (high.y < lane_box.low.y) |  //
+                                  (lane_box.high.z < low.z) | (high.z < lane_box.low.z));
+    any |= near[r];
+  }
+  return any;
+}
+
+// The eight lanes' triangles, and their planes.
+template <typename Kind>
+struct Lanes {
+  using Vectors = typename Eight<Kind>::Vectors;
+  Vectors corner[3], edge[3], normal;
+  typename Kind::Floats limit;  // own corners' heights over the plane
+};
+
+// Those of the lanes in `left` that neither the plane of the triangle p, with its own corners' heights `limit`, nor
+// their own keeps apart from it, nor any product of two edges.
+template <typename Kind>
+ORCHARD_INLINE std::uint32_t not_apart(std::uint32_t left, const Lanes<Kind>& lanes,
+                                       const typename Eight<Kind>::Vectors (&p)[3],
+                                       const typename Eight<Kind>::Vectors& normal, const typename Kind::Floats& limit,
+                                       const typename Kind::Floats& margin) noexcept {
+  using E = Eight<Kind>;
+  using Floats = typename E::Floats;
+  using Vectors = typename E::Vectors;
+  const Vectors from[3] = {E::minus(lanes.corner[0], p[0]), E::minus(lanes.corner[1], p[0]),
+                           E::minus(lanes.corner[2], p[0])};
+  const Extent<Kind> over_row = extent<Kind>(E::dot(normal, from[0]), E::dot(normal, from[1]), E::dot(normal, from[2]));
+  left &= ~Kind::bits((limit < over_row.low) | (over_row.high < -limit));
+  if (left == 0) return 0;
+  const Extent<Kind> over_lane =
+      extent<Kind>(-E::dot(lanes.normal, from[0]), E::dot(lanes.normal, E::minus(p[1], lanes.corner[0])),
+                   E::dot(lanes.normal, E::minus(p[2], lanes.corner[0])));
+  left &= ~Kind::bits((lanes.limit < over_lane.low) | (over_lane.high < -lanes.limit));
+  if (left == 0) return 0;
+  const Vectors edges[3] = {E::minus(p[1], p[0]), E::minus(p[2], p[1]), E::minus(p[0], p[2])};
+  const Floats zero = E::all(0.0f), least = E::all(kLeastRoom);
+  for (std::size_t i = 0; i < 3 && left != 0; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const Vectors axis = E::cross(edges[i], lanes.edge[j]);
+      const auto project = [&](const Vectors& v) ORCHARD_INLINE_LAMBDA { return E::dot(axis, E::minus(v, p[0])); };
+      const Extent<Kind> of_row = extent<Kind>(zero, project(p[1]), project(p[2]));
+      const Extent<Kind> of_lane = extent<Kind>(E::dot(axis, from[0]), E::dot(axis, from[1]), E::dot(axis, from[2]));
+      const Floats room = E::one_norm(axis) * margin + least;
+      left &= ~Kind::bits((of_row.high + room < of_lane.low) | (of_lane.high + room < of_row.low));
+    }
+  }
+  return left;
+}
+
 template <typename Kind>
 ORCHARD_INLINE std::uint64_t find_candidates(const LeafPair& pair, const Placement& placement) noexcept {
   using E = Eight<Kind>;
@@ -149,28 +233,10 @@ ORCHARD_INLINE std::uint64_t find_candidates(const LeafPair& pair, const Placeme
   Vectors lane[3] = {E::corner(pair.lanes, 0), E::corner(pair.lanes, 1), E::corner(pair.lanes, 2)};
   Vectors row[3] = {E::move(placement, E::corner(pair.rows, 0)), E::move(placement, E::corner(pair.rows, 1)),
                     E::move(placement, E::corner(pair.rows, 2))};
-  // Heights are along normals that are unit to 1e-6, so a margin for patches serves here, too.
-  const std::uint32_t rows = ~outside<Kind>(row, pair.lane_patch, placement.margin) & 0xffu;
-  const std::uint32_t lanes = ~outside<Kind>(lane, pair.row_patch, placement.margin) & 0xffu;
-  if (rows == 0 || lanes == 0) return 0;
-
-  const Box<Kind> lane_box = box_of<Kind>(lane, E::all(placement.margin)), row_boxes = box_of<Kind>(row, E::all(0.0f));
-  std::array<float, kBlockWidth> low[3], high[3];
-  store(row_boxes.low.x, low[0]), store(row_boxes.low.y, low[1]), store(row_boxes.low.z, low[2]);
-  store(row_boxes.high.x, high[0]), store(row_boxes.high.y, high[1]), store(row_boxes.high.z, high[2]);
-  std::uint32_t near[kBlockWidth], any = 0;
-  for (std::uint32_t r = 0; r < kBlockWidth; ++r) {
-    near[r] = 0;
-    if ((rows >> r & 1) == 0 || pair.rows.triangle[r] == kNoTriangle) continue;
-    near[r] = lanes & ~Kind::bits((lane_box.high.x < E::all(low[0][r])) | (E::all(high[0][r]) < lane_box.low.x) |
-                                  (lane_box.high.y < E::all(low[1][r])) | (E::all(high[1][r]) < lane_box.low.y) |
-                                  (lane_box.high.z < E::all(low[2][r])) | (E::all(high[2][r]) < lane_box.low.z));
-    any |= near[r];
-  }
-  if (any == 0) return 0;
+  std::uint32_t near[kBlockWidth];
+  if (find_near<Kind>(lane, row, pair, placement.margin, near) == 0) return 0;
 
   const Floats unit = E::all(placement.unit), margin = E::all(placement.margin * placement.unit);
-  const Floats least = E::all(kLeastRoom);
   for (std::size_t k = 0; k < 3; ++k) lane[k] = E::times(lane[k], unit), row[k] = E::times(row[k], unit);
   const Vectors lane_edge[2] = {E::minus(lane[1], lane[0]), E::minus(lane[2], lane[0])};
   const Vectors row_edge[2] = {E::minus(row[1], row[0]), E::minus(row[2], row[0])};
@@ -178,46 +244,21 @@ ORCHARD_INLINE std::uint64_t find_candidates(const LeafPair& pair, const Placeme
   // Own corners' heights over the plane through the first one: 0 but for rounding.
   const auto own_height = [&](const Vectors& normal, const Vectors(&edge)[2]) ORCHARD_INLINE_LAMBDA -> Floats {
     return E::larger(E::size(E::dot(normal, edge[0])), E::size(E::dot(normal, edge[1]))) +
-           (E::one_norm(normal) * margin + least);
+           (E::one_norm(normal) * margin + E::all(kLeastRoom));
   };
-  const Floats lane_limit = own_height(lane_normal, lane_edge);
-  std::array<float, kBlockWidth> row_limit, nx, ny, nz, x[3], y[3], z[3];
+  const Lanes<Kind> lanes = {{lane[0], lane[1], lane[2]},
+                             {lane_edge[0], E::minus(lane[2], lane[1]), lane_edge[1]},
+                             lane_normal,
+                             own_height(lane_normal, lane_edge)};
+  std::array<float, kBlockWidth> row_limit;
   store(own_height(row_normal, row_edge), row_limit);
-  store(row_normal.x, nx), store(row_normal.y, ny), store(row_normal.z, nz);
-  for (std::size_t k = 0; k < 3; ++k) store(row[k].x, x[k]), store(row[k].y, y[k]), store(row[k].z, z[k]);
-
+  const OneByOne<Kind> normals(row_normal),
+      corners[3] = {OneByOne<Kind>(row[0]), OneByOne<Kind>(row[1]), OneByOne<Kind>(row[2])};
   std::uint64_t result = 0;
   for (std::uint32_t r = 0; r < kBlockWidth; ++r) {
     if (near[r] == 0) continue;
-    const Vectors p[3] = {{E::all(x[0][r]), E::all(y[0][r]), E::all(z[0][r])},
-                          {E::all(x[1][r]), E::all(y[1][r]), E::all(z[1][r])},
-                          {E::all(x[2][r]), E::all(y[2][r]), E::all(z[2][r])}};
-    const Vectors normal = {E::all(nx[r]), E::all(ny[r]), E::all(nz[r])};
-    const Vectors from[3] = {E::minus(lane[0], p[0]), E::minus(lane[1], p[0]), E::minus(lane[2], p[0])};
-    const Extent<Kind> over_row =
-        extent<Kind>(E::dot(normal, from[0]), E::dot(normal, from[1]), E::dot(normal, from[2]));
-    const Floats limit = E::all(row_limit[r]);
-    std::uint32_t left = near[r] & ~Kind::bits((limit < over_row.low) | (over_row.high < -limit));
-    if (left == 0) continue;
-    const Extent<Kind> over_lane =
-        extent<Kind>(-E::dot(lane_normal, from[0]), E::dot(lane_normal, E::minus(p[1], lane[0])),
-                     E::dot(lane_normal, E::minus(p[2], lane[0])));
-    left &= ~Kind::bits((lane_limit < over_lane.low) | (over_lane.high < -lane_limit));
-    if (left == 0) continue;
-    // Edge against edge.
-    const Vectors row_edges[3] = {E::minus(p[1], p[0]), E::minus(p[2], p[1]), E::minus(p[0], p[2])};
-    const Vectors lane_edges[3] = {lane_edge[0], E::minus(lane[2], lane[1]), lane_edge[1]};
-    for (std::size_t i = 0; i < 3 && left != 0; ++i) {
-      for (std::size_t j = 0; j < 3; ++j) {
-        const Vectors axis = E::cross(row_edges[i], lane_edges[j]);
-        const auto project = [&](const Vectors& v) ORCHARD_INLINE_LAMBDA { return E::dot(axis, E::minus(v, p[0])); };
-        const Floats zero = E::all(0.0f);
-        const Extent<Kind> of_row = extent<Kind>(zero, project(p[1]), project(p[2]));
-        const Extent<Kind> of_lane = extent<Kind>(E::dot(axis, from[0]), E::dot(axis, from[1]), E::dot(axis, from[2]));
-        const Floats room = E::one_norm(axis) * margin + least;
-        left &= ~Kind::bits((of_row.high + room < of_lane.low) | (of_lane.high + room < of_row.low));
-      }
-    }
+    const Vectors p[3] = {corners[0][r], corners[1][r], corners[2][r]};
+    const std::uint32_t left = not_apart<Kind>(near[r], lanes, p, normals[r], E::all(row_limit[r]), margin);
     result |= std::uint64_t{left} << (8 * r);
   }
   for (std::uint32_t l = 1; l < kBlockWidth; ++l) {
@@ -258,23 +299,19 @@ ORCHARD_INLINE void find_triangle_gaps(const TriangleBlock& lanes, const Triangl
   };
   const Vectors lane_normal = normal_of(lane), row_normal = normal_of(row);
   const Vectors given = {E::all(direction[0]), E::all(direction[1]), E::all(direction[2])};
-  std::array<float, kBlockWidth> nx, ny, nz, x[3], y[3], z[3];
-  store(row_normal.x, nx), store(row_normal.y, ny), store(row_normal.z, nz);
-  for (std::size_t k = 0; k < 3; ++k) store(row[k].x, x[k]), store(row[k].y, y[k]), store(row[k].z, z[k]);
+  const OneByOne<Kind> normals(row_normal),
+      corners[3] = {OneByOne<Kind>(row[0]), OneByOne<Kind>(row[1]), OneByOne<Kind>(row[2])};
   const Floats third = E::all(1.0f / 3), margin = E::all(2 * placement.margin * placement.unit);
   for (std::uint32_t r = 0; r < kBlockWidth; ++r) {
     if (rows.triangle[r] == kNoTriangle) break;
-    const Vectors p[3] = {{E::all(x[0][r]), E::all(y[0][r]), E::all(z[0][r])},
-                          {E::all(x[1][r]), E::all(y[1][r]), E::all(z[1][r])},
-                          {E::all(x[2][r]), E::all(y[2][r]), E::all(z[2][r])}};
+    const Vectors p[3] = {corners[0][r], corners[1][r], corners[2][r]};
     const auto middle = [&](const Floats& a, const Floats& b, const Floats& c)
                             ORCHARD_INLINE_LAMBDA -> Floats { return (a + b + c) * third; };
     const Vectors line = normalised(
         E::minus({middle(lane[0].x, lane[1].x, lane[2].x), middle(lane[0].y, lane[1].y, lane[2].y),
                   middle(lane[0].z, lane[1].z, lane[2].z)},
                  {middle(p[0].x, p[1].x, p[2].x), middle(p[0].y, p[1].y, p[2].y), middle(p[0].z, p[1].z, p[2].z)}));
-    const Vectors of_row = {E::all(nx[r]), E::all(ny[r]), E::all(nz[r])};
-    const Floats gap = E::larger(E::larger(gap_along(of_row, p), gap_along(lane_normal, p)),
+    const Floats gap = E::larger(E::larger(gap_along(normals[r], p), gap_along(lane_normal, p)),
                                  E::larger(gap_along(line, p), gap_along(given, p)));
     store((gap - margin) * whole, result.lower[r]);
   }

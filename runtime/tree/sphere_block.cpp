@@ -81,6 +81,43 @@ ORCHARD_INLINE Centers<Kind> centers_of(const SiblingBlock& block, bool move, co
   return {component(0), component(1), component(2)};
 }
 
+// The bits of links that end in a leaf.
+template <typename Kind>
+ORCHARD_INLINE std::uint64_t leaves_of(const SiblingBlock& block) noexcept {
+  using Words = typename Kind::Words;
+  const Words sign = spread<Words>(~kLeafBit), ones = spread<Words>(1u);
+  return bits_of(Kind::low_bytes(Kind::words(sign < load<Words>(block.link)) & ones));
+}
+
+// Of the pairs that meet, those whose errors or depths may give a lower separation bound than the best one so far.
+template <typename Kind>
+ORCHARD_INLINE std::uint64_t find_improving(const BlockPair& pair, const Placement& placement, const LevelState& level,
+                                            const BlockHits& hits) noexcept {
+  using Floats = typename Kind::Floats;
+  using Words = typename Kind::Words;
+  const SiblingBlock &rows = *pair.rows, &lanes = *pair.lanes;
+  const float row_scale = pair.lanes_are_second ? 1.0f : placement.scale;
+  const Floats zero = spread<Floats>(0.0f), lane_scale = spread<Floats>(pair.lanes_are_second ? placement.scale : 1.0f);
+
+  const bool only_leaves = (hits.meeting & ~hits.leaves) == 0;
+  const float best_mixed = level.best_inner < level.best_leaf ? level.best_leaf : level.best_inner;
+  const Floats best = spread<Floats>(only_leaves ? level.best_leaf : hits.leaves == 0 ? level.best_inner : best_mixed);
+  const Floats errors = load<Floats>(lanes.error) * lane_scale, depths = load<Floats>(lanes.depth) * lane_scale;
+  const Floats unknown = spread<Floats>(std::numeric_limits<float>::infinity());
+  if (Kind::low_bytes(Kind::words(errors < best) | Kind::words(depths < unknown)) == 0) return 0;
+  Words improve = spread<Words>(0u);
+  for (std::uint32_t r = pair.row_begin; r < pair.row_end; ++r) {
+    if ((hits.meeting >> (8 * r) & 0xff) == 0) continue;
+    const Floats rest = best - (depths + spread<Floats>(rows.depth[r] * row_scale)),
+                 square = load<Floats>(hits.square[r]);
+    const Words better = Kind::words(errors + spread<Floats>(rows.error[r] * row_scale) < best) |
+                         (Kind::words(zero < rest) & Kind::words(square < rest * rest));
+    improve = improve | (better & spread<Words>(1u << r));
+  }
+  const std::uint64_t improve_bytes = Kind::low_bytes(improve);
+  return improve_bytes == 0 ? 0 : hits.meeting & transposed(improve_bytes);
+}
+
 template <typename Kind>
 ORCHARD_INLINE void test(const BlockPair& pair, const Placement& placement, LevelState& level,
                          BlockHits& hits) noexcept {
@@ -131,31 +168,8 @@ ORCHARD_INLINE void test(const BlockPair& pair, const Placement& placement, Leve
   hits.meeting = transposed(met_bytes) & (lane_bits * 0x0101010101010101u);
   if (hits.meeting == 0) return;
 
-  const Words sign = spread<Words>(~kLeafBit);
-  const auto leaf_bits = [&](const SiblingBlock& block) ORCHARD_INLINE_LAMBDA {
-    return bits_of(Kind::low_bytes(Kind::words(sign < load<Words>(block.link)) & ones));
-  };
-  const std::uint64_t row_leaves = leaf_bits(rows), lane_leaves = leaf_bits(lanes);
-  hits.leaves = hits.meeting & (flags_of(row_leaves) * lane_leaves);
-
-  const bool only_leaves = (hits.meeting & ~hits.leaves) == 0;
-  const float best_mixed = level.best_inner < level.best_leaf ? level.best_leaf : level.best_inner;
-  const Floats best = spread<Floats>(only_leaves ? level.best_leaf : hits.leaves == 0 ? level.best_inner : best_mixed);
-  const Floats errors = load<Floats>(lanes.error) * lane_scale, depths = load<Floats>(lanes.depth) * lane_scale;
-  const Floats unknown = spread<Floats>(std::numeric_limits<float>::infinity());
-  if (Kind::low_bytes(Kind::words(errors < best) | Kind::words(depths < unknown)) == 0) return;
-  const float row_factor = pair.lanes_are_second ? 1.0f : placement.scale;
-  Words improve = spread<Words>(0u);
-  for (std::uint32_t r = pair.row_begin; r < pair.row_end; ++r) {
-    if ((hits.meeting >> (8 * r) & 0xff) == 0) continue;
-    const Floats rest = best - (depths + spread<Floats>(rows.depth[r] * row_factor)),
-                 square = load<Floats>(hits.square[r]);
-    const Words better = Kind::words(errors + spread<Floats>(rows.error[r] * row_factor) < best) |
-                         (Kind::words(zero < rest) & Kind::words(square < rest * rest));
-    improve = improve | (better & spread<Words>(1u << r));
-  }
-  const std::uint64_t improve_bytes = Kind::low_bytes(improve);
-  if (improve_bytes != 0) hits.improving = hits.meeting & transposed(improve_bytes);
+  hits.leaves = hits.meeting & (flags_of(leaves_of<Kind>(rows)) * leaves_of<Kind>(lanes));
+  hits.improving = find_improving<Kind>(pair, placement, level, hits);
 }
 
 }  // namespace

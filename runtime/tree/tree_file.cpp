@@ -1,3 +1,5 @@
+// One file: reading and writing share the table of fields and sections, and every check that reading makes is the other
+// side of a line that writes.
 #include "orchard/runtime/tree_file.h"
 
 #include <algorithm>

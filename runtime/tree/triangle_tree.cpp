@@ -1,3 +1,5 @@
+// One file: the builder is one pass down the tree, and what it measures of a part of the triangles (extents, moments,
+// balls, patches) goes by the order that the pass itself makes.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -5,6 +5,7 @@
 #include <queue>
 
 #include "orchard/spheretree/redundancy.h"
+#include "sibling_balance.h"
 
 namespace orchard::detail {
 namespace {
@@ -72,7 +73,7 @@ void split_loosest(const ChildBuilder& maker, Index branching, std::vector<std::
       --room;
     }
   }
-  const std::size_t max = std::min(std::size_t{64}, 2 * std::size_t{branching});
+  const std::size_t max = max_children(branching);
   for (; room > 0 && !loosest.empty();) {
     const Place at = loosest.top();
     loosest.pop();

@@ -11,7 +11,7 @@ namespace orchard::detail {
 Index remove_redundant_nodes(SphereTree& tree, const Surface& surface, std::vector<Patch>& patches);
 
 // Splits the loosest spheres, as long as the level has room: `branching` spheres for each family that is not empty, up
-// to twice as many in one.
+// to max_children() in one.
 void split_loosest(const ChildBuilder& maker, Index branching, std::vector<std::vector<Child>>& families);
 
 }  // namespace orchard::detail

@@ -13,7 +13,7 @@ constexpr double kFall = 0.7;
 }  // namespace
 
 std::vector<Index> balanced_counts(const std::vector<Family>& families, double power, Index branching) {
-  const Index max = std::min<Index>(64, 2 * branching);
+  const Index max = max_children(branching);
   std::vector<Index> counts(families.size(), 0);
   Index left = 0;
   for (std::size_t i = 0; i < families.size(); ++i) {

@@ -1,4 +1,4 @@
-#include "orchard/runtime/space_time_bound.h"
+#include "orchard/broad_phase_methods/space_time_bound.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,10 @@
 #include "oracles.h"
 #include "worlds.h"
 
-namespace orchard::runtime {
+namespace orchard::broad_phase_methods {
 namespace {
+
+namespace test = runtime::test;
 
 constexpr BoundShape kShapes[] = {BoundShape::hypertrapezoid, BoundShape::quadratic, BoundShape::horn};
 
@@ -212,4 +214,4 @@ TEST(IntersectionFinder, ReportsAllPairsThatMeetAtTheStart) {
 }
 
 }  // namespace
-}  // namespace orchard::runtime
+}  // namespace orchard::broad_phase_methods

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "any_broad_phase.h"
 #include "oracles.h"
 #include "worlds.h"
 
@@ -13,10 +14,6 @@ namespace orchard::runtime {
 namespace {
 
 constexpr double kStep = 0.01;
-
-constexpr BroadPhaseMethod kMethods[] = {
-    BroadPhaseMethod::events, BroadPhaseMethod::all_pairs, BroadPhaseMethod::projection, BroadPhaseMethod::subdivision,
-    BroadPhaseMethod::hybrid, BroadPhaseMethod::quadratic, BroadPhaseMethod::horns};
 
 std::vector<Motion> resting(std::size_t n, double ball, std::uint64_t seed) {
   test::Draw draw(seed);
@@ -29,15 +26,15 @@ std::vector<Motion> resting(std::size_t n, double ball, std::uint64_t seed) {
 }
 
 // Steps until every one of the overlaps, which last for ever, has been reported at least once.
-int steps_to_find_all(const std::vector<Motion>& motions, const BroadPhaseOptions& options, std::uint64_t work,
+int steps_to_find_all(const std::vector<Motion>& motions, const test::AnyOptions& options, std::uint64_t work,
                       int most) {
   const std::vector<BodyPair> expected = test::touching_pairs(motions);
-  BroadPhase world(values_of(motions), options);
+  BroadPhase world = test::make_broad_phase(values_of(motions), options);
   for (std::size_t i = 0; i < motions.size(); ++i) world.add();
   std::set<BodyPair> seen;
   std::uint64_t asked = 0;
   for (int step = 0; step < most; ++step) {
-    const Advance now = world.advance(options.time_step * step, WorkBudget{.work = work});
+    const Advance now = world.advance(options.common.time_step * step, WorkBudget{.work = work});
     for (const BodyPair& pair : now.pairs) {
       EXPECT_TRUE(std::binary_search(expected.begin(), expected.end(), pair));
       seen.insert(pair);
@@ -69,13 +66,13 @@ TEST(Budget, OfOneUnitFindsEverythingAmongTenThousandBodies) {
 }
 
 TEST(Budget, OfOneUnitFindsEverythingByEveryMethod) {
-  for (const BroadPhaseMethod method : kMethods) {
+  for (const test::AnyMethod method : test::kMethods) {
     for (const std::size_t n : {2u, 20u, 60u, 250u}) {
-      if (method != BroadPhaseMethod::events && n > 60) continue;
+      if (method != test::AnyMethod::events && n > 60) continue;
       const std::vector<Motion> motions = resting(n, 2 * std::cbrt(static_cast<double>(n)), n);
       const std::size_t pairs = test::touching_pairs(motions).size();
       for (const std::uint64_t work : {1u, 3u, 7u}) {
-        for (const Rebuild rebuild : {Rebuild::what_intersected, Rebuild::everything}) {
+        for (const test::Rebuild rebuild : {test::Rebuild::what_intersected, test::Rebuild::everything}) {
           const int most = static_cast<int>(50 + 8 * (n + 2 * pairs) / work);
           steps_to_find_all(motions, {.method = method, .rebuild = rebuild}, work, most);
           if (testing::Test::HasFailure()) FAIL() << static_cast<int>(method) << " " << n;

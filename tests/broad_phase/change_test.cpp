@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 
+#include "any_broad_phase.h"
 #include "worlds.h"
 
 namespace orchard::runtime {
@@ -10,16 +11,15 @@ namespace {
 
 constexpr double kStep = 0.01;
 
-constexpr BroadPhaseMethod kMethods[] = {
-    BroadPhaseMethod::events, BroadPhaseMethod::all_pairs, BroadPhaseMethod::projection, BroadPhaseMethod::subdivision,
-    BroadPhaseMethod::hybrid, BroadPhaseMethod::quadratic, BroadPhaseMethod::horns};
-
 // An application that keeps values, moves bodies itself and now and then breaks its own word.
 class Application {
  public:
   // period > 0: all bounds hold for so many steps, and up to the same ones.
-  Application(std::uint64_t seed, const BroadPhaseOptions& options, int bodies = 20, int period = 0)
-      : draw_(seed), ball_(15 * std::cbrt(bodies / 20.0)), period_(period), world_(values_of(values_), options) {
+  Application(std::uint64_t seed, const test::AnyOptions& options, int bodies = 20, int period = 0)
+      : draw_(seed),
+        ball_(15 * std::cbrt(bodies / 20.0)),
+        period_(period),
+        world_(test::make_broad_phase(values_of(values_), options)) {
     for (int i = 0; i < bodies; ++i) add();
   }
 
@@ -117,14 +117,14 @@ class Application {
   BroadPhase world_;
 };
 
-class Changes : public testing::TestWithParam<BroadPhaseMethod> {};
-INSTANTIATE_TEST_SUITE_P(BroadPhase, Changes, testing::ValuesIn(kMethods));
+class Changes : public testing::TestWithParam<test::AnyMethod> {};
+INSTANTIATE_TEST_SUITE_P(BroadPhase, Changes, testing::ValuesIn(test::kMethods));
 
 TEST_P(Changes, TakePartFromTheNextStep) {
-  for (std::uint64_t seed = 0; seed < (GetParam() == BroadPhaseMethod::events ? 400 : 30); ++seed) {
-    BroadPhaseOptions options{.method = GetParam(), .time_step = kStep};
-    if (seed % 2 == 1) options.rebuild = Rebuild::everything;
-    if (seed % 3 == 1) options.window = static_cast<std::uint32_t>(1 + seed % 30);
+  for (std::uint64_t seed = 0; seed < (GetParam() == test::AnyMethod::events ? 400 : 30); ++seed) {
+    test::AnyOptions options{.method = GetParam(), .common = {.time_step = kStep}};
+    if (seed % 2 == 1) options.rebuild = test::Rebuild::everything;
+    if (seed % 3 == 1) options.common.window = static_cast<std::uint32_t>(1 + seed % 30);
     Application application(seed, options);
     for (int step = 0; step < 150; ++step) {
       application.frame(step);
@@ -137,7 +137,7 @@ TEST_P(Changes, TakePartFromTheNextStep) {
 TEST(BroadPhase, ChangesAroundACommonExpiryTakePart) {
   for (std::uint64_t seed = 0; seed < 24; ++seed) {
     const int period = 3 + static_cast<int>(seed % 9), bodies = seed % 3 == 0 ? 300 : seed % 3 == 1 ? 189 : 60;
-    Application application(seed, {.time_step = kStep, .vectors = seed % 5 != 0}, bodies, period);
+    Application application(seed, {.common = {.time_step = kStep, .vectors = seed % 5 != 0}}, bodies, period);
     for (int step = 0; step < 60; ++step) {
       application.frame(step);
       if (testing::Test::HasFatalFailure()) FAIL() << "seed " << seed;
@@ -230,9 +230,9 @@ TEST(BroadPhase, WithoutBodiesSleepsForEver) {
 // 8.2: with too little budget the important pairs are still right, and the report says what may be missing.
 TEST_P(Changes, InterruptedKeepTheImportantPairs) {
   int interrupted = 0;
-  for (std::uint64_t seed = 0; seed < (GetParam() == BroadPhaseMethod::events ? 40 : 6); ++seed) {
+  for (std::uint64_t seed = 0; seed < (GetParam() == test::AnyMethod::events ? 40 : 6); ++seed) {
     const test::MovingBodies bodies({.bodies = 200, .ball = 25, .staggered = seed % 2 == 0}, seed);
-    BroadPhase world(bodies.source(), {.method = GetParam(), .time_step = kStep});
+    BroadPhase world = test::make_broad_phase(bodies.source(), {.method = GetParam(), .common = {.time_step = kStep}});
     std::vector<unsigned> importance;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       importance.push_back(i < 20 ? 0 : i < 60 ? 3 : 7);
@@ -258,12 +258,12 @@ TEST_P(Changes, InterruptedKeepTheImportantPairs) {
     EXPECT_EQ(std::vector<BodyPair>(now.pairs.begin(), now.pairs.end()), bodies.touching(kStep * 63)) << seed;
     EXPECT_EQ(now.incomplete_from, kNoClass);
   }
-  EXPECT_GT(interrupted, GetParam() == BroadPhaseMethod::events ? 100 : 2);
+  EXPECT_GT(interrupted, GetParam() == test::AnyMethod::events ? 100 : 2);
 }
 
 TEST_P(Changes, WithoutAnyTimeGetSomewhereAndSayWhatIsMissing) {
   const test::MovingBodies bodies({.bodies = 300, .ball = 30}, 1);
-  BroadPhase world(bodies.source(), {.method = GetParam(), .time_step = kStep});
+  BroadPhase world = test::make_broad_phase(bodies.source(), {.method = GetParam(), .common = {.time_step = kStep}});
   for (std::size_t i = 0; i < bodies.size(); ++i) world.add(static_cast<std::uint8_t>(i % 2));
   std::uint64_t asked = 0;
   for (int step = 0; step < 50; ++step) {

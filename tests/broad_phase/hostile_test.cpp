@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "any_broad_phase.h"
 #include "worlds.h"
 
 // Values that are none: refused, and said to be.
@@ -12,14 +13,10 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kStep = 0.01;
 
-constexpr BroadPhaseMethod kMethods[] = {
-    BroadPhaseMethod::events, BroadPhaseMethod::all_pairs, BroadPhaseMethod::projection, BroadPhaseMethod::subdivision,
-    BroadPhaseMethod::hybrid, BroadPhaseMethod::quadratic, BroadPhaseMethod::horns};
-
 std::vector<BodyIndex> refused_by(const Advance& now) { return {now.refused.begin(), now.refused.end()}; }
 
 TEST(HostileTimes, AreRefusedAndChangeNothing) {
-  for (const BroadPhaseMethod method : kMethods) {
+  for (const test::AnyMethod method : test::kMethods) {
     std::vector<Motion> values(3);
     for (std::size_t i = 0; i < values.size(); ++i) {
       values[i].position = {static_cast<double>(i), 0, 0};
@@ -27,7 +24,7 @@ TEST(HostileTimes, AreRefusedAndChangeNothing) {
       values[i].radius = 0.6;
       values[i].expiry = 0.5;
     }
-    BroadPhase world(values_of(values), {.method = method, .time_step = kStep});
+    BroadPhase world = test::make_broad_phase(values_of(values), {.method = method, .common = {.time_step = kStep}});
     const auto refuses = [&](double t) {
       const double next = world.next_time();
       const std::uint64_t asked = world.motions_asked();
@@ -72,12 +69,14 @@ TEST(HostileOptions, MakeAWorldThatRefusesEverything) {
   }
   for (const BroadPhaseOptions& options : bad) {
     EXPECT_FALSE(is_valid(options));
-    BroadPhase world(values_of(values), options);
-    EXPECT_FALSE(world.valid());
-    EXPECT_EQ(world.add(), kNoBody);
-    EXPECT_EQ(world.add_static(Motion{}), kNoBody);
-    EXPECT_TRUE(world.advance(0).time_refused);
-    EXPECT_EQ(world.size(), 0u);
+    for (const test::AnyMethod method : test::kMethods) {
+      BroadPhase world = test::make_broad_phase(values_of(values), {.method = method, .common = options});
+      EXPECT_FALSE(world.valid());
+      EXPECT_EQ(world.add(), kNoBody);
+      EXPECT_EQ(world.add_static(Motion{}), kNoBody);
+      EXPECT_TRUE(world.advance(0).time_refused);
+      EXPECT_EQ(world.size(), 0u);
+    }
   }
 }
 
@@ -116,13 +115,14 @@ std::vector<Motion> invalid_motions() {
 
 // Among n bodies in a row, each of which touches the next, one is invalid for some steps.
 TEST(HostileMotions, AreRefusedAndReportedUntilTheyAreValid) {
-  for (const BroadPhaseMethod method : kMethods) {
+  for (const test::AnyMethod method : test::kMethods) {
     for (const std::size_t n : {3u, 9u, 250u}) {
-      if (method != BroadPhaseMethod::events && n > 9) continue;
+      if (method != test::AnyMethod::events && n > 9) continue;
       for (const bool vectors : {true, false}) {
         for (const Motion& bad : invalid_motions()) {
           std::vector<Motion> values(n);
-          BroadPhase world(values_of(values), {.method = method, .time_step = kStep, .vectors = vectors});
+          BroadPhase world = test::make_broad_phase(
+              values_of(values), {.method = method, .common = {.time_step = kStep, .vectors = vectors}});
           for (std::size_t i = 0; i < n; ++i) {
             values[i].position = {1.5 * static_cast<double>(i), 0, 0};
             values[i].radius = 1;
@@ -174,10 +174,10 @@ TEST(HostileMotions, BetweenTwoLooksAreFoundAtThePairsTest) {
 }
 
 TEST(HostileMotions, AllAtOnceLeaveAWorldThatRecovers) {
-  for (const BroadPhaseMethod method : kMethods) {
-    const std::size_t n = method == BroadPhaseMethod::events ? 400 : 30;
+  for (const test::AnyMethod method : test::kMethods) {
+    const std::size_t n = method == test::AnyMethod::events ? 400 : 30;
     std::vector<Motion> values(n);
-    BroadPhase world(values_of(values), {.method = method, .time_step = kStep});
+    BroadPhase world = test::make_broad_phase(values_of(values), {.method = method, .common = {.time_step = kStep}});
     for (Motion& motion : values) {
       motion.radius = kNaN;
       world.add();
@@ -215,9 +215,9 @@ TEST(HostileMotions, AtTheEndsOfTheRangeAreStillAnsweredRight) {
       m.expiry = expiries[draw.bits() % 6];
     }
     const double steps[] = {1e-20, 1e-3, 1, 1e20};
-    for (const BroadPhaseMethod method : kMethods) {
+    for (const test::AnyMethod method : test::kMethods) {
       for (const double step : steps) {
-        BroadPhase world(values_of(values), {.method = method, .time_step = step});
+        BroadPhase world = test::make_broad_phase(values_of(values), {.method = method, .common = {.time_step = step}});
         for (std::size_t i = 0; i < values.size(); ++i) world.add();
         std::vector<BodyPair> expected;
         for (BodyIndex i = 0; i < values.size(); ++i) {

@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "any_broad_phase.h"
 #include "worlds.h"
 
 // Which bodies there are: ids, and worlds that are emptied and filled again.
@@ -9,10 +10,6 @@ namespace orchard::runtime {
 namespace {
 
 constexpr double kStep = 0.01;
-
-constexpr BroadPhaseMethod kMethods[] = {
-    BroadPhaseMethod::events, BroadPhaseMethod::all_pairs, BroadPhaseMethod::projection, BroadPhaseMethod::subdivision,
-    BroadPhaseMethod::hybrid, BroadPhaseMethod::quadratic, BroadPhaseMethod::horns};
 
 TEST(BodyIds, OfBodiesRemovedAreRefusedForGood) {
   BroadPhase world({}, {});
@@ -81,7 +78,8 @@ struct Resting {
   BroadPhase world;
   test::Draw draw;
 
-  Resting(const BroadPhaseOptions& options, std::uint64_t seed) : world(values_of(values), options), draw(seed) {}
+  Resting(const test::AnyOptions& options, std::uint64_t seed)
+      : world(test::make_broad_phase(values_of(values), options)), draw(seed) {}
 
   void add() {
     const BodyId id = world.add();
@@ -111,11 +109,11 @@ struct Resting {
 };
 
 TEST(EmptiedWorlds, SleepAndAreFilledAgain) {
-  for (const BroadPhaseMethod method : kMethods) {
+  for (const test::AnyMethod method : test::kMethods) {
     for (const int n : {0, 1, 5, 16, 17, 100, 192, 193, 400}) {
       for (const int k : {0, 1, 15, 16, 33, 200}) {
-        if (method != BroadPhaseMethod::events && n + k > 120) continue;
-        Resting app({.method = method, .time_step = kStep}, static_cast<std::uint64_t>(1000 * n + k));
+        if (method != test::AnyMethod::events && n + k > 120) continue;
+        Resting app({.method = method, .common = {.time_step = kStep}}, static_cast<std::uint64_t>(1000 * n + k));
         int step = 0;
         for (int round = 0; round < 3; ++round) {
           for (int i = 0; i < n; ++i) app.add();

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 
+#include "any_broad_phase.h"
 #include "orchard/runtime/motion_helpers.h"
 #include "worlds.h"
 
@@ -177,7 +178,7 @@ struct Trial {
 using Rounding = std::function<Motion(const Motion&)>;
 
 Trial head_on(Integrator integrator, double drift_share, std::uint64_t seeds, std::uint64_t first,
-              BroadPhaseMethod method) {
+              test::AnyMethod method) {
   Trial trial;
   for (std::uint64_t seed = first; seed < first + seeds; ++seed) {
     test::Draw draw(seed);
@@ -194,7 +195,7 @@ Trial head_on(Integrator integrator, double drift_share, std::uint64_t seeds, st
       values[static_cast<std::size_t>(i)].acceleration = m;
       values[static_cast<std::size_t>(i)].drift = drift_share * drift_of(integrator, kDt, m);
     }
-    BroadPhase world(values_of(values), {.method = method, .time_step = kDt});
+    BroadPhase world = test::make_broad_phase(values_of(values), {.method = method, .common = {.time_step = kDt}});
     world.add(), world.add();
     for (int step = 0; step < 60; ++step) {
       for (std::size_t i = 0; i < 2; ++i) {
@@ -213,14 +214,14 @@ Trial head_on(Integrator integrator, double drift_share, std::uint64_t seeds, st
 
 TEST(DriftOf, IsWhatTheBroadPhaseNeedsToMissNothing) {
   for (const Integrator integrator : kIntegrators) {
-    for (const BroadPhaseMethod method :
-         {BroadPhaseMethod::events, BroadPhaseMethod::projection, BroadPhaseMethod::horns}) {
+    for (const test::AnyMethod method :
+         {test::AnyMethod::events, test::AnyMethod::projection, test::AnyMethod::horns}) {
       const Trial trial = head_on(integrator, 1, 150, 1, method);
       EXPECT_GT(trial.touching, 1000u);
       EXPECT_EQ(trial.missed, 0u) << static_cast<int>(integrator);
     }
   }
-  EXPECT_GT(head_on(Integrator::semi_implicit_euler, 0, 300, 1, BroadPhaseMethod::events).missed, 0u);
+  EXPECT_GT(head_on(Integrator::semi_implicit_euler, 0, 300, 1, test::AnyMethod::events).missed, 0u);
 }
 
 Vec3 rounded(const Vec3& v) {
@@ -229,7 +230,7 @@ Vec3 rounded(const Vec3& v) {
 }
 
 // Slow, steady flight 5 km from the origin, positions given in float.
-Trial far_away(double slack, std::uint64_t seeds, std::uint64_t first, BroadPhaseMethod method) {
+Trial far_away(double slack, std::uint64_t seeds, std::uint64_t first, test::AnyMethod method) {
   Trial trial;
   for (std::uint64_t seed = first; seed < first + seeds; ++seed) {
     test::Draw draw(seed);
@@ -242,7 +243,8 @@ Trial far_away(double slack, std::uint64_t seeds, std::uint64_t first, BroadPhas
       m.radius = draw.uniform(0.2, 0.6);
     }
     given = exact;
-    BroadPhase world(values_of(given), {.method = method, .time_step = kDt, .position_slack = slack});
+    BroadPhase world = test::make_broad_phase(
+        values_of(given), {.method = method, .common = {.time_step = kDt, .position_slack = slack}});
     for (std::size_t i = 0; i < kBodies; ++i) world.add();
     for (int step = 0; step < 80; ++step) {
       for (std::size_t i = 0; i < kBodies; ++i) given[i].position = rounded(exact[i].position);
@@ -263,13 +265,13 @@ Trial far_away(double slack, std::uint64_t seeds, std::uint64_t first, BroadPhas
 }
 
 TEST(PositionSlack, IsWhatFloatPositionsFarAwayNeed) {
-  for (const BroadPhaseMethod method :
-       {BroadPhaseMethod::events, BroadPhaseMethod::all_pairs, BroadPhaseMethod::projection, BroadPhaseMethod::horns}) {
+  for (const test::AnyMethod method :
+       {test::AnyMethod::events, test::AnyMethod::all_pairs, test::AnyMethod::projection, test::AnyMethod::horns}) {
     const Trial trial = far_away(float_slack(5010), 60, 1, method);
     EXPECT_GT(trial.touching, 1000u);
     EXPECT_EQ(trial.missed, 0u) << static_cast<int>(method);
   }
-  EXPECT_GT(far_away(0, 60, 1, BroadPhaseMethod::events).missed, 0u);
+  EXPECT_GT(far_away(0, 60, 1, test::AnyMethod::events).missed, 0u);
 }
 
 TEST(PositionSlack, HasToBeALength) {

@@ -49,7 +49,7 @@ bool solve(std::array<Row, 4> m, std::array<double, 4>& x) {
 
 double least_time(const SpaceTimeBound& a, const SpaceTimeBound& b, double duration) {
   const std::vector<Row> rows = constraints(a, b, duration);
-  double least = kNoContact;
+  double least = broad_phase_methods::kNoContact;
   const std::size_t n = rows.size();
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 1; j < n; ++j) {

@@ -1,8 +1,10 @@
 #pragma once
+#include "orchard/broad_phase_methods/space_time_bound.h"
 #include "orchard/runtime/broad_phase.h"
-#include "orchard/runtime/space_time_bound.h"
 
 namespace orchard::runtime::test {
+
+using broad_phase_methods::SpaceTimeBound;
 
 // The least t in [0, duration] at which the hypertrapezoids, cut by their planes, have a common point: the linear
 // program in (x, y, z, t), by trying every vertex of its feasible region.

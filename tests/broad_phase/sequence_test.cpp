@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "any_broad_phase.h"
 #include "worlds.h"
 
 // Random sequences of everything an application can do, hostile values included, against comparing all bodies.
@@ -13,14 +14,10 @@ constexpr double kStep = 0.01;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-constexpr BroadPhaseMethod kMethods[] = {
-    BroadPhaseMethod::events, BroadPhaseMethod::all_pairs, BroadPhaseMethod::projection, BroadPhaseMethod::subdivision,
-    BroadPhaseMethod::hybrid, BroadPhaseMethod::quadratic, BroadPhaseMethod::horns};
-
 class Sequence {
  public:
-  Sequence(std::uint64_t seed, const BroadPhaseOptions& options, std::size_t crowd)
-      : draw_(seed), crowd_(crowd), world_(values_of(values_), options) {
+  Sequence(std::uint64_t seed, const test::AnyOptions& options, std::size_t crowd)
+      : draw_(seed), crowd_(crowd), world_(test::make_broad_phase(values_of(values_), options)) {
     hostile_ = chance(0.5);
     ball_ = draw_.uniform(1, 4) * std::cbrt(static_cast<double>(crowd));
   }
@@ -227,16 +224,16 @@ class Sequence {
   BroadPhase world_;
 };
 
-class Sequences : public testing::TestWithParam<BroadPhaseMethod> {};
-INSTANTIATE_TEST_SUITE_P(BroadPhase, Sequences, testing::ValuesIn(kMethods));
+class Sequences : public testing::TestWithParam<test::AnyMethod> {};
+INSTANTIATE_TEST_SUITE_P(BroadPhase, Sequences, testing::ValuesIn(test::kMethods));
 
 TEST_P(Sequences, OfAnyCallsAreAnsweredRight) {
-  const bool events = GetParam() == BroadPhaseMethod::events;
+  const bool events = GetParam() == test::AnyMethod::events;
   for (std::uint64_t seed = kFirstSeed; seed < kFirstSeed + (events ? kSeeds : kSeedsOfOthers); ++seed) {
-    BroadPhaseOptions options{.method = GetParam(), .time_step = kStep};
-    if (seed % 3 == 1) options.window = static_cast<std::uint32_t>(1 + seed % 30);
-    if (seed % 4 == 2) options.vectors = false;
-    if (seed % 2 == 1) options.rebuild = Rebuild::everything;
+    test::AnyOptions options{.method = GetParam(), .common = {.time_step = kStep}};
+    if (seed % 3 == 1) options.common.window = static_cast<std::uint32_t>(1 + seed % 30);
+    if (seed % 4 == 2) options.common.vectors = false;
+    if (seed % 2 == 1) options.rebuild = test::Rebuild::everything;
     const std::size_t crowd = !events ? 12 : seed % 10 == 9 ? 220 : seed % 10 == 8 ? 90 : 15;
     Sequence sequence(seed, options, crowd);
     sequence.run(crowd > 100 ? 60 : 150);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "any_broad_phase.h"
 #include "worlds.h"
 
 namespace orchard::runtime {
@@ -11,10 +12,6 @@ namespace {
 
 using test::MovingBodies;
 using test::WorldShape;
-
-constexpr BroadPhaseMethod kMethods[] = {
-    BroadPhaseMethod::events, BroadPhaseMethod::all_pairs, BroadPhaseMethod::projection, BroadPhaseMethod::subdivision,
-    BroadPhaseMethod::hybrid, BroadPhaseMethod::quadratic, BroadPhaseMethod::horns};
 
 WorldShape random_shape(test::Draw& draw, std::size_t bodies) {
   WorldShape shape{.bodies = bodies};
@@ -30,8 +27,9 @@ WorldShape random_shape(test::Draw& draw, std::size_t bodies) {
 
 using Reports = std::map<int, std::vector<BodyPair>>;  // by step
 
-Reports run(const MovingBodies& bodies, const BroadPhaseOptions& options, double end, double frame) {
-  BroadPhase world(bodies.source(), options);
+Reports run(const MovingBodies& bodies, const test::AnyOptions& any, double end, double frame) {
+  const BroadPhaseOptions& options = any.common;
+  BroadPhase world = test::make_broad_phase(bodies.source(), any);
   for (std::size_t i = 0; i < bodies.size(); ++i) world.add();
   Reports reports;
   for (int frames = 0; frames * frame < end + frame; ++frames) {
@@ -55,17 +53,18 @@ Reports brute_force(const MovingBodies& bodies, const BroadPhaseOptions& options
   return reports;
 }
 
-class EveryMethod : public testing::TestWithParam<BroadPhaseMethod> {};
-INSTANTIATE_TEST_SUITE_P(BroadPhase, EveryMethod, testing::ValuesIn(kMethods));
+class EveryMethod : public testing::TestWithParam<test::AnyMethod> {};
+INSTANTIATE_TEST_SUITE_P(BroadPhase, EveryMethod, testing::ValuesIn(test::kMethods));
 
 TEST_P(EveryMethod, ReportsWhatOverlapsAtEachStep) {
   for (std::uint64_t seed = 0; seed < 1000; ++seed) {
     test::Draw draw(seed);
     const std::size_t n = seed == 500 ? 300 : seed % 100 == 99 ? 80 : 2 + seed % 24;
     const MovingBodies bodies(random_shape(draw, n), seed);
-    BroadPhaseOptions options{.method = GetParam(), .time_step = draw.uniform(0.008, 0.03)};
-    if (seed % 3 == 1) options.rebuild = Rebuild::everything;
-    ASSERT_EQ(run(bodies, options, 1, draw.uniform(0.005, 0.1)), brute_force(bodies, options, 1)) << "seed " << seed;
+    test::AnyOptions options{.method = GetParam(), .common = {.time_step = draw.uniform(0.008, 0.03)}};
+    if (seed % 3 == 1) options.rebuild = test::Rebuild::everything;
+    ASSERT_EQ(run(bodies, options, 1, draw.uniform(0.005, 0.1)), brute_force(bodies, options.common, 1))
+        << "seed " << seed;
   }
 }
 
@@ -77,7 +76,8 @@ TEST(BroadPhase, ReportsWhatOverlapsAtEachStepInThousandsOfWorlds) {
     BroadPhaseOptions options{.time_step = draw.uniform(0.008, 0.03)};
     if (seed % 4 == 0) options.window = static_cast<std::uint32_t>(1 + seed % 40);
     if (seed % 5 == 0) options.vectors = false;
-    ASSERT_EQ(run(bodies, options, 1, draw.uniform(0.005, 0.1)), brute_force(bodies, options, 1)) << "seed " << seed;
+    ASSERT_EQ(run(bodies, {.common = options}, 1, draw.uniform(0.005, 0.1)), brute_force(bodies, options, 1))
+        << "seed " << seed;
   }
 }
 
@@ -88,7 +88,7 @@ TEST(BroadPhase, ReportsEveryOverlapThatLastsForATimeStep) {
     test::Draw draw(seed + 77);
     const MovingBodies bodies(random_shape(draw, 2 + seed % 20), seed + 77);
     const BroadPhaseOptions options{.time_step = 0.02};
-    const Reports reports = run(bodies, options, 1, 0.02);
+    const Reports reports = run(bodies, {.common = options}, 1, 0.02);
     std::map<BodyPair, int> since;  // the first fine sample of the overlap under way
     for (int fine = 0; fine <= 500; ++fine) {
       const auto pairs = bodies.touching(0.002 * fine);
@@ -145,8 +145,8 @@ TEST(BroadPhase, HandlesAlignedAndDegenerateConfigurations) {
     m.velocity = {1, 0, 0};  // all the same
   }
   values[7] = values[5];  // coincident
-  for (const BroadPhaseMethod method : kMethods) {
-    BroadPhase world(values_of(values), {.method = method});
+  for (const test::AnyMethod method : test::kMethods) {
+    BroadPhase world = test::make_broad_phase(values_of(values), {.method = method});
     for (std::size_t i = 0; i < values.size(); ++i) world.add();
     std::vector<BodyPair> expected;
     for (BodyIndex i = 0; i < values.size(); ++i) {
@@ -174,8 +174,8 @@ TEST(BroadPhase, HandlesFarOffsetsAndExtremeScales) {
           motions[i] = m;
         }
       };
-      for (const BroadPhaseMethod method : kMethods) {
-        BroadPhase world(moved, {.method = method});
+      for (const test::AnyMethod method : test::kMethods) {
+        BroadPhase world = test::make_broad_phase(moved, {.method = method});
         for (int i = 0; i < 40; ++i) world.add();
         std::vector<Motion> motions(40);
         std::vector<BodyIndex> ids(40);
@@ -199,13 +199,13 @@ TEST(BroadPhase, HandlesFarOffsetsAndExtremeScales) {
 }
 
 // What a source gives at each step has to be what is reported, by comparing all.
-void expect_right(const MotionSource& source, std::size_t n, const BroadPhaseOptions& options, int steps) {
-  BroadPhase world(source, options);
+void expect_right(const MotionSource& source, std::size_t n, const test::AnyOptions& options, int steps) {
+  BroadPhase world = test::make_broad_phase(source, options);
   std::vector<BodyIndex> ids(n);
   for (BodyIndex& id : ids) id = world.add().index;
   std::vector<Motion> motions(n);
   for (int step = 0; step < steps; ++step) {
-    const double time = options.time_step * step;
+    const double time = options.common.time_step * step;
     const Advance now = world.advance(time);
     source(time, ids, motions);
     std::vector<BodyPair> expected;
@@ -237,8 +237,8 @@ TEST(BroadPhase, WorksFromSpeedBoundsAlone) {  // 8.2: bodies that turn at will,
         motions[i] = speed_bounded(paths[bodies[i]][step], 0.7, kSpeed, std::numeric_limits<double>::infinity());
       }
     };
-    for (const BroadPhaseMethod method : kMethods) {
-      expect_right(source, kBodies, {.method = method, .time_step = kStep}, kSteps);
+    for (const test::AnyMethod method : test::kMethods) {
+      expect_right(source, kBodies, {.method = method, .common = {.time_step = kStep}}, kSteps);
       if (testing::Test::HasFatalFailure()) FAIL() << "seed " << seed;
     }
   }
@@ -261,7 +261,7 @@ TEST(BroadPhase, HandlesClustersStragglersAndAllSizes) {
         motions[i].radius *= sizes[bodies[i]];
       }
     };
-    for (const std::uint32_t window : {0u, 7u}) expect_right(source, 150, {.window = window}, 90);
+    for (const std::uint32_t window : {0u, 7u}) expect_right(source, 150, {.common = {.window = window}}, 90);
     if (testing::Test::HasFatalFailure()) FAIL() << "seed " << seed;
   }
 }

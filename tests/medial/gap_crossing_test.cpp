@@ -3,9 +3,14 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
+#include <numbers>
+#include <set>
 #include <string>
 
+#include "gaps/crossings.h"
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/voronoi/highest_first.h"
 #include "orchard/voronoi/quality.h"
@@ -230,6 +235,94 @@ TEST(GapRepair, ScalesWithTheSolidByPowersOfTwo) {
   const GapRepair b = sampled_and_repaired(large, points(500, 100));
   ASSERT_EQ(a.sampling.size(), b.sampling.size());
   for (Index i = 0; i < a.sampling.size(); ++i) EXPECT_EQ(8 * a.sampling.points[i], b.sampling.points[i]);
+}
+
+// A fan around the middle of each face of a flat disk: many triangles at one vertex, all of one cluster.
+TriangleMesh disk(Index corners, double thickness) {
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {0, 0, thickness}};
+  for (Index k = 0; k < corners; ++k) {
+    const double angle = 2 * std::numbers::pi * k / corners;
+    mesh.vertices.push_back({std::cos(angle), std::sin(angle), 0});
+    mesh.vertices.push_back({std::cos(angle), std::sin(angle), thickness});
+  }
+  for (Index k = 0; k < corners; ++k) {
+    const Index a = 2 + 2 * k, b = 2 + 2 * ((k + 1) % corners);
+    for (const auto& triangle :
+         {std::array{Index{0}, b, a}, {Index{1}, a + 1, b + 1}, {a, b, b + 1}, {a, b + 1, a + 1}})
+      mesh.triangles.push_back(triangle);
+  }
+  return mesh;
+}
+
+// Borders around the middle run through all triangles of a fan; none of them is a neck.
+TEST(GapRepair, TakesAFanForNoNeck) {
+  const Surface surface(disk(400, 1));
+  const GapRepair thick = sampled_and_repaired(surface, points(300, 100));
+  EXPECT_EQ(thick.report.points_added, 0u);
+  expect_mended(surface, thick);
+  const Surface flat(disk(400, 0.01));
+  const GapRepair thin = sampled_and_repaired(flat, points(300, 100));
+  EXPECT_GT(thin.report.points_added, 0u);
+  expect_mended(flat, thin);
+}
+
+// By looking at all vertices of all triangles of all clusters.
+TEST(GapRepair, LooseForgivesClustersThatShareAVertexAndNoOthers) {
+  for (const TriangleMesh& mesh : {test::extruded(test::knees(0.01), 1), test::u_shape(0.02), disk(40, 0.02)}) {
+    const Surface surface(mesh);
+    const SurfaceSampling sampling = sample_surface(surface, points(600, 100));
+    const VoronoiDiagram diagram = highest_first_voronoi(sampling.points);
+    const detail::CellNeighbors neighbors(diagram);
+    const detail::RestrictedVoronoi restricted(surface, sampling.points, neighbors);
+    const auto scope = detail::PatchScope::everything(surface, sampling);
+    const auto crossings =
+        detail::find_crossings(surface, sampling, restricted, scope, {.definition = GapDefinition::loose});
+    std::vector<std::set<Index>> vertices(surface.clusters().count());  // of each cluster
+    for (Index t = 0; t < surface.mesh().triangles.size(); ++t) {
+      const auto& corners = surface.mesh().triangles[t];
+      vertices[surface.clusters().of_triangle[t]].insert(corners.begin(), corners.end());
+    }
+    std::set<std::array<Index, 2>> wanted, found;  // cell, triangle
+    std::vector<Index> around;
+    for (const detail::CellPatch& patch : detail::find_cell_patches(surface, sampling, restricted, scope)) {
+      surface.triangles_at(sampling.triangles[patch.cell], sampling.features[patch.cell], around);
+      for (const Index triangle : patch.triangles) {
+        const std::set<Index>& reached = vertices[surface.clusters().of_triangle[triangle]];
+        const bool allowed = std::any_of(around.begin(), around.end(), [&](Index own) {
+          const std::set<Index>& mine = vertices[surface.clusters().of_triangle[own]];
+          return std::any_of(mine.begin(), mine.end(), [&](Index vertex) { return reached.contains(vertex); });
+        });
+        const bool has_border = !restricted.piece(triangle, patch.cell)->borders.empty();
+        if (!allowed && has_border) wanted.insert({patch.cell, triangle});
+      }
+    }
+    for (const detail::Crossing& crossing : crossings) {
+      for (const Index triangle : crossing.patch.triangles) {
+        if (restricted.piece(triangle, crossing.patch.cell)->borders.empty()) continue;
+        found.insert({crossing.patch.cell, triangle});
+      }
+    }
+    EXPECT_FALSE(wanted.empty());
+    EXPECT_EQ(found, wanted);
+  }
+}
+
+// Nearly every cell of a plate thinner than its points are apart gets a new point.
+TEST(GapRepair, LooksAtFewNewPointsForEachOfAThinPlate) {
+  const Surface surface(test::box({0, 0, 0}, {1, 1, 2e-4}));
+  std::vector<double> steps;  // for each new point
+  for (const Index count : {1500u, 6000u}) {
+    const GapRepair repaired = sampled_and_repaired(surface, points(count, count / 5));
+    EXPECT_GT(2 * repaired.report.points_added, count);
+    EXPECT_EQ(repaired.report.faces_still_crossing, 0u);
+    std::size_t sum = 0;
+    for (const GapRepairPass& pass : repaired.report.passes) sum += pass.steps_among_new_points;
+    steps.push_back(static_cast<double>(sum) / repaired.report.points_added);
+  }
+  EXPECT_GE(steps[0], 1) << "it has to look at something";
+  EXPECT_LT(steps[0], 200);
+  EXPECT_LT(steps[1], 1.5 * steps[0]) << "a logarithm grows by a fifth, looking at all of them fourfold";
 }
 
 TEST(GapRepair, RefusesWhatIsNoSolid) {

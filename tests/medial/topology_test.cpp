@@ -94,7 +94,7 @@ Axis axis_topology(TriangleMesh mesh, bool repair, bool keep) {
     sampling = std::move(repaired.sampling);
     diagram = std::move(repaired.diagram);
   }
-  const MedialAxis axis = medial_axis(surface, sampling, diagram, {}, {.keep_topology = keep});
+  const MedialAxis axis = medial_axis(surface, sampling, diagram, {.keep_topology = keep});
   validate(axis, surface);
   const MedialMesh result = medial_mesh(axis);
   validate(result);

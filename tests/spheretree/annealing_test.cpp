@@ -139,25 +139,6 @@ TEST(RandomDescent, MakesNoBallLooserAndKeepsThePathRule) {
   }
 }
 
-TEST(ShrinkBalls, LeavesNoBallThatCouldBeMuchSmallerAndKeepsThePathRule) {
-  for (const TriangleMesh& mesh : {torus(16, 8), l_shape(), u_shape(0.3)}) {
-    const Surface surface(mesh);
-    SphereTree tree = octree(surface, {.depth = 2});
-    for (SphereNode& node : tree.nodes) node.sphere.radius *= 1.3;
-    const SphereTree before = tree;
-    EXPECT_GT(shrink_balls(tree, surface), 0);
-    expect_conservative(tree, surface, "shrunk");
-    for (Index i = 0; i < tree.nodes.size(); ++i) {
-      const double radius = tree.nodes[i].sphere.radius;
-      EXPECT_LE(radius, before.nodes[i].sphere.radius) << i;
-      if (radius < 0.15 * before.nodes[i].sphere.radius) continue;  // needed for nothing
-      SphereTree smaller = tree;
-      smaller.nodes[i].sphere.radius *= 0.97;
-      EXPECT_FALSE(surface_coverage(surface, path_balls(smaller)).complete()) << i;
-    }
-  }
-}
-
 TEST(RandomDescent, RepeatsItselfForASeed) {
   const Surface surface(l_shape());
   SphereTree one = octree(surface, {.depth = 2}), two = one;

@@ -111,7 +111,7 @@ TEST(MergeTree, HasNoMoreChildrenAndLevelsThanAskedFor) {
         const bool refit = closing == MergeClosing::refit;
         EXPECT_LE(tree.nodes[0].child_count, branching);
         EXPECT_TRUE(refit || tree.nodes[0].child_count == branching);
-        const Index max = refit ? std::min<Index>(64, 2 * branching) : branching;
+        const Index max = refit ? std::min<Index>(64, 3 * branching) : branching;
         std::vector<std::size_t> level(depth + 1, 0), parents(depth + 1, 0);
         for (const SphereNode& node : tree.nodes) {
           EXPECT_LE(node.child_count, max);

@@ -15,6 +15,7 @@
 #include "orchard/geometry/random.h"
 #include "orchard/geometry/tolerance.h"
 #include "orchard/voronoi/highest_first.h"
+#include "support/effort.h"
 #include "voronoi/diagram_judge.h"
 #include "voronoi/quadruples.h"
 
@@ -51,7 +52,7 @@ void expect_right_in_pieces(const std::string& name, const test::Points& points,
 std::uint64_t max_at_once(std::uint64_t seed) { return 1 + Random(seed, 0x57e9u).below(20); }
 
 TEST(ShakenSets, HaveRightDiagramsAtOnceAndInPieces) {
-  unsigned long long first = 0, count = 120;
+  unsigned long long first = test::first_seed(), count = 120 * test::more();
   if (const char* asked = std::getenv("ORCHARD_SHAKEN_SETS")) {
     ASSERT_EQ(std::sscanf(asked, "%llu:%llu", &first, &count), 2) << "ORCHARD_SHAKEN_SETS=FIRST:COUNT";
   }

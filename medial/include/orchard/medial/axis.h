@@ -52,7 +52,7 @@ struct AxisOptions {
 
 // Precondition: diagram.points equals sampling.points. Throws InputError unless surface.solid().
 MedialAxis medial_axis(const Surface& surface, const SurfaceSampling& sampling, const VoronoiDiagram& diagram,
-                       const Progress& progress = {}, const AxisOptions& options = {});
+                       const AxisOptions& options = {}, const Progress& progress = {});
 
 // Numbers the connected components of the vertices' adjacency; returns the component of each vertex.
 std::vector<Index> connected_components(const MedialAxis& axis, Index& count);

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -39,6 +40,9 @@ struct GapRepairPass {
   Index cells_tested = 0, cells_crossing = 0;
   Index faces_tested = 0, faces_crossing = 0;  // of all cells; each shared one once
   Index added_by_projection = 0, added_by_snapping = 0, added_at_necks = 0, refused_as_coincident = 0;
+  // Boxes and points that the search for new points near other new points looked at: the cost of choosing places, in
+  // numbers that no machine changes.
+  std::size_t steps_among_new_points = 0;
 };
 
 struct GapRepairReport {
@@ -62,8 +66,8 @@ struct GapRepair {
 // without crossings has one disk of surface for each cell, one arc for each two neighbours and one point for each
 // three, so that the Voronoi edges that stay inside hang together as the solid does (Edelsbrunner and Shah 1997).
 // Preconditions: diagram.points equals sampling.points, highest_first_voronoi made it. Throws InputError unless
-// surface.solid(), or if the diagram cannot be that of the sampling. O(n) per pass for all but pathological inputs;
-// parallel, the same for any thread count.
+// surface.solid(), or if the diagram cannot be that of the sampling. O(n log n) per pass for all but pathological
+// inputs; parallel, the same for any thread count.
 GapRepair repair_gap_crossings(const Surface& surface, SurfaceSampling sampling, VoronoiDiagram diagram,
                                const GapRepairOptions& options = {}, const Progress& progress = {});
 

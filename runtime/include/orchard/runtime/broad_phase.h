@@ -41,26 +41,10 @@ using MotionSource = std::function<void(double time, std::span<const BodyIndex> 
 // advance() at every step then, which costs nothing while the broad phase sleeps. `values` outlives the broad phase.
 MotionSource values_of(const std::vector<Motion>& values);
 
-// How the next time is found. All give the same pairs at the same steps; they differ in speed.
-enum class BroadPhaseMethod : std::uint8_t {
-  events,      // an event per near pair: the default, and the one that scales
-  all_pairs,   // the others sleep until the earliest two bounds touch (4.3): by comparing all pairs of hypertrapezoids,
-  projection,  // by projecting faces and sweeping (4.2.3)
-  subdivision,  // by 16-way cells in space and time (4.2.4)
-  hybrid,       // by a few cells, projection in each (8.2)
-  quadratic,    // by projection of a cube around every cross section (8.2)
-  horns         // by the parabolic horns themselves (8.2)
-};
-
-// What the sleeping methods rebuild when they wake (4.3); without meaning for `events`.
-enum class Rebuild : std::uint8_t { what_intersected, everything };
-
 struct BroadPhaseOptions {
-  BroadPhaseMethod method = BroadPhaseMethod::events;
   double time_step = 0.01;  // dt_d: the temporal resolution, in seconds; > 0
   double start = 0;         // the time of step 0
-  Rebuild rebuild = Rebuild::what_intersected;
-  // `events`: most steps between two looks at a body's surroundings; 0 lets the broad phase choose.
+  // Most steps between two looks at a body's surroundings; 0 lets the broad phase choose.
   std::uint32_t window = 0;
   bool vectors = true;  // false: the portable inner loop. Same answers
   // How far each position that the source gives may lie from one for which the bounds hold: for positions rounded to
@@ -100,6 +84,15 @@ struct Advance {
   bool time_refused = false;  // t_now is NaN, infinite or too far away (kMostSteps): nothing was done
 };
 
+class BroadPhase;
+
+namespace detail {  // not for applications: the private header broad/method.h says what they are
+class Method;
+class Roster;
+using MakeMethod = std::function<std::unique_ptr<Method>(Roster& roster, const BroadPhaseOptions& options)>;
+BroadPhase make_broad_phase(MotionSource source, const BroadPhaseOptions& options, const MakeMethod& make);
+}  // namespace detail
+
 // Tells which bodies' bounding spheres overlap, and until when nothing can happen, from bounds on their motion
 // (dissertation, chapter 4).
 //
@@ -120,7 +113,8 @@ struct Advance {
 // cut short in *work* leaves out. Not thread-safe. Throws only std::bad_alloc, and what the source throws.
 class BroadPhase {
  public:
-  // Without a source there can be static bodies only.
+  // Keeps an event for each near pair, at the first step at which its two bounds can touch. Without a source there can
+  // be static bodies only.
   explicit BroadPhase(MotionSource source, const BroadPhaseOptions& options = {});
   BroadPhase(BroadPhase&&) noexcept;
   BroadPhase& operator=(BroadPhase&&) noexcept;
@@ -151,8 +145,7 @@ class BroadPhase {
   }
   // The same, within a budget per step: the bodies and pairs of the more important classes come first; what is left
   // over is resumed at the next step. Any budget gets to every body and pair of a class in time, unless a more
-  // important class takes it all. Each pair reported was tested at this step. The methods that sleep are interrupted
-  // while they ask for motions, not while they search.
+  // important class takes it all. Each pair reported was tested at this step.
   Advance advance(double t_now, const WorkBudget& budget) {
     if (!sleeps_until(t_now)) return process(t_now, &budget);
     seen_time_ = t_now > seen_time_ ? t_now : seen_time_;
@@ -167,6 +160,9 @@ class BroadPhase {
 
  private:
   struct State;
+  friend BroadPhase detail::make_broad_phase(MotionSource source, const BroadPhaseOptions& options,
+                                             const detail::MakeMethod& make);
+  BroadPhase(MotionSource source, const BroadPhaseOptions& options, const detail::MakeMethod& make);
   Advance process(double t_now, const WorkBudget* budget);
   BodyId take_in(BodyIndex body);
   bool sleeps_until(double t) const noexcept { return t < wake_time_ && std::fabs(t) <= largest_time_; }

@@ -22,10 +22,4 @@ struct DescentReport {
 DescentReport random_descent(SphereTree& tree, const Surface& surface, const DescentOptions& options = {},
                              const Progress& progress = {});
 
-// Shrinks balls about their centres to the smallest radius that the path rule allows, to about 1 % of it: one level
-// after the other from the top, the loosest ball of a level first. Returns how many balls shrank. This takes back what
-// growing balls one by one, as cover() does, has made too large; tight balls are then needed for what loose ones had
-// stood in for. Preconditions, bounds and errors are those of random_descent().
-Index shrink_balls(SphereTree& tree, const Surface& surface, const Progress& progress = {});
-
 }  // namespace orchard

@@ -35,11 +35,11 @@ struct MergeReport {
 // merged pairwise along the axis by least cost until few enough remain. Where a node has fewer vertices than it takes,
 // its surface points are merged in their place.
 // With MergeClosing::refit, the merged spheres are only the start. Siblings divide their parent's points among them;
-// spheres that do not pay go to where they help most, within a node and within a level. A node then has up to twice
-// `branching` children, and a level at most `branching` times the nodes of the one above. Each level is closed, rid of
-// what is redundant and filled up again before it gets children. Throws InputError for a branching out of range or an
-// axis without vertices. Parallel over the nodes of a level; the result does not depend on the thread count. Source:
-// dissertation 6.3, and 8.2 for refit.
+// spheres that do not pay go to where they help most, within a node and within a level. A node then has up to three
+// times `branching` children (64 at most), and a level at most `branching` times the nodes of the one above. Each level
+// is closed, rid of what is redundant and filled up again before it gets children. Throws InputError for a branching
+// out of range or an axis without vertices. Parallel over the nodes of a level; the result does not depend on the
+// thread count. Source: dissertation 6.3, and 8.2 for refit.
 SphereTree merge_tree(const Surface& surface, const MedialAxis& axis, const MergeOptions& options = {},
                       const Progress& progress = {}, MergeReport* report = nullptr);
 

@@ -5,7 +5,7 @@
 // A step within a budget. What is limited is the asking, not the search. Bodies whose bounds hold take part, the others
 // wait for their turn; of the pairs that touch as far as is known, those are reported whose bodies' motions are of now.
 // New bounds and pairs get about the same share of the work, and go round, so every body and every pair gets its turn.
-namespace orchard::runtime::detail {
+namespace orchard::broad_phase_methods::detail {
 namespace {
 
 // Those after the last one come first.
@@ -105,4 +105,4 @@ StepReport Sleeping::step_within(Step now, Meter& meter, std::vector<BodyPair>& 
   return sleep(now);
 }
 
-}  // namespace orchard::runtime::detail
+}  // namespace orchard::broad_phase_methods::detail

@@ -3,7 +3,7 @@
 
 #include "intersections.h"
 
-namespace orchard::runtime::detail {
+namespace orchard::broad_phase_methods::detail {
 namespace {
 
 constexpr int kDeepest = 10;      // levels: where many faces touch in a point, dividing does not help
@@ -142,4 +142,4 @@ void Subdivision::divide(const Search& search, std::size_t axis, const Cell& cel
   std::erase_if(parts, [](const Cell& part) { return part.faces.size() < 2; });
 }
 
-}  // namespace orchard::runtime::detail
+}  // namespace orchard::broad_phase_methods::detail

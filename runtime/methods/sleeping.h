@@ -1,14 +1,26 @@
 #pragma once
-#include "method.h"
-#include "orchard/runtime/space_time_bound.h"
+#include "broad/method.h"
+#include "orchard/broad_phase_methods/sleeping_broad_phase.h"
+#include "orchard/broad_phase_methods/space_time_bound.h"
 
-namespace orchard::runtime::detail {
+namespace orchard::broad_phase_methods::detail {
+
+using runtime::BodyIndex;
+using runtime::BodyPair;
+using runtime::kNoClass;
+using runtime::kNoIndex;
+using runtime::detail::bytes_of;
+using runtime::detail::kNeverStep;
+using runtime::detail::Meter;
+using runtime::detail::Roster;
+using runtime::detail::Step;
+using runtime::detail::StepReport;
 
 // The dissertation's broad phase (Fig. 4.23): sleep until the earliest two bounds touch, rebuild, and look again. While
 // bounds touch it goes on step by step, and reports the pairs whose spheres really overlap.
-class Sleeping final : public Method {
+class Sleeping final : public runtime::detail::Method {
  public:
-  Sleeping(Roster& roster, const BroadPhaseOptions& options);
+  Sleeping(Roster& roster, const SleepingOptions& options);
 
   void changed(BodyIndex body) override;
   void removed(BodyIndex) override { members_changed_ = true; }
@@ -65,4 +77,4 @@ class Sleeping final : public Method {
   bool members_changed_ = true;
 };
 
-}  // namespace orchard::runtime::detail
+}  // namespace orchard::broad_phase_methods::detail

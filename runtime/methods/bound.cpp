@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "horn.h"
+#include "broad/horn.h"
 
-namespace orchard::runtime {
+namespace orchard::broad_phase_methods {
 
 SpaceTimeBound make_bound(const Motion& motion, double age, double duration, double more) noexcept {
   SpaceTimeBound bound;
-  const double slack = detail::motion_slack(motion, motion, age + duration) + more;
+  const double slack = runtime::detail::motion_slack(motion, motion, age + duration) + more;
   bound.center = motion.position + age * motion.velocity;
   bound.velocity = motion.velocity;
   bound.bend = motion.acceleration / 2;
@@ -29,9 +29,9 @@ double first_contact(const SpaceTimeBound& a, const SpaceTimeBound& b, double du
   double contact = 0;
   if (shape == BoundShape::horn) {
     constexpr double kConverged = 1e-14;  // of the interval
-    const detail::HornPair pair{b.center - a.center, b.velocity - a.velocity, a.size + b.size, a.growth + b.growth,
-                                2 * (a.bend + b.bend)};
-    contact = detail::horn_contact(pair, duration, kConverged * duration);
+    const runtime::detail::HornPair pair{b.center - a.center, b.velocity - a.velocity, a.size + b.size,
+                                         a.growth + b.growth, 2 * (a.bend + b.bend)};
+    contact = runtime::detail::horn_contact(pair, duration, kConverged * duration);
   } else if (shape == BoundShape::quadratic) {
     contact = detail::quadratic_contact(a, b, duration);
   }
@@ -111,4 +111,4 @@ double quadratic_contact(const SpaceTimeBound& a, const SpaceTimeBound& b, doubl
 }
 
 }  // namespace detail
-}  // namespace orchard::runtime
+}  // namespace orchard::broad_phase_methods

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace orchard::runtime {
+namespace orchard::broad_phase_methods {
 
 using detail::PairSet;
 using detail::Search;
@@ -188,4 +188,4 @@ std::size_t IntersectionFinder::memory_bytes() const noexcept {
          s.order.capacity() * sizeof(std::uint32_t) + (s.lower.capacity() + s.upper.capacity()) * sizeof(double);
 }
 
-}  // namespace orchard::runtime
+}  // namespace orchard::broad_phase_methods

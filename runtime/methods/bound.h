@@ -1,7 +1,9 @@
 #pragma once
-#include "orchard/runtime/space_time_bound.h"
+#include "orchard/broad_phase_methods/space_time_bound.h"
 
-namespace orchard::runtime::detail {
+namespace orchard::broad_phase_methods::detail {
+
+using runtime::kMotionSlack;
 
 // The first t in [0, duration] at which the cubes meet: of hypertrapezoids, and of quadratic bounds. No cutting planes.
 double trapezoid_contact(const SpaceTimeBound& a, const SpaceTimeBound& b, double duration) noexcept;
@@ -16,4 +18,4 @@ bool cubes_meet_at_start(const SpaceTimeBound& a, const SpaceTimeBound& b) noexc
 // Room for rounding at time t, relative to the coordinates there.
 double contact_slack(const SpaceTimeBound& a, const SpaceTimeBound& b, double t) noexcept;
 
-}  // namespace orchard::runtime::detail
+}  // namespace orchard::broad_phase_methods::detail

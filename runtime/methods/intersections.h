@@ -1,7 +1,7 @@
 #pragma once
 #include "bound.h"
 
-namespace orchard::runtime::detail {
+namespace orchard::broad_phase_methods::detail {
 
 // A set of ordered pairs, by open addressing.
 class PairSet {
@@ -81,4 +81,4 @@ class Subdivision {
   std::vector<Face> some_;
 };
 
-}  // namespace orchard::runtime::detail
+}  // namespace orchard::broad_phase_methods::detail

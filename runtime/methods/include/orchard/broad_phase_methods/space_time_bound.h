@@ -9,7 +9,10 @@
 
 #include "orchard/runtime/motion.h"
 
-namespace orchard::runtime {
+namespace orchard::broad_phase_methods {
+
+using runtime::Motion;
+using runtime::Vec3;
 
 inline constexpr double kNoContact = std::numeric_limits<double>::infinity();
 
@@ -20,7 +23,7 @@ inline constexpr double kNoContact = std::numeric_limits<double>::infinity();
 //   hypertrapezoid (4.1.3):  the cube around c(t) with half the edge size + slope t, equal to the last one at 0 and at
 //                            the end, larger between
 //   cutting plane (4.1.4):   the half-space (x - c(t)) . normal <= cut + cut_growth t; none if normal is zero
-// The cutting plane belongs to each of them. Everything is enlarged by kMotionSlack.
+// The cutting plane belongs to each of them. Everything is enlarged by runtime::kMotionSlack.
 struct SpaceTimeBound {
   Vec3 center{}, velocity{};
   double size = 0, growth = 0, bend = 0, slope = 0;
@@ -28,7 +31,7 @@ struct SpaceTimeBound {
   double cut = 0, cut_growth = 0;
   bool fixed = false;  // of a static body: an IntersectionFinder leaves out pairs of two of them
 
-  bool has_plane() const noexcept { return normal != Vec3{}; }
+  bool has_plane() const noexcept { return dot(normal, normal) != 0; }
   Vec3 center_at(double t) const noexcept { return center + t * velocity; }
   double horn_radius(double t) const noexcept { return size + t * (growth + t * bend); }
   double trapezoid_half(double t) const noexcept { return size + t * slope; }
@@ -96,4 +99,4 @@ class IntersectionFinder {
   std::unique_ptr<Scratch> scratch_;
 };
 
-}  // namespace orchard::runtime
+}  // namespace orchard::broad_phase_methods

@@ -2,22 +2,22 @@
 
 #include <algorithm>
 
-namespace orchard::runtime::detail {
+namespace orchard::broad_phase_methods::detail {
 namespace {
 
 constexpr Step kLongestSleep = 1000;  // steps: a common end is needed even if no bound expires
 
-IntersectionOptions find_options(BroadPhaseMethod method) {
+IntersectionOptions find_options(SleepingMethod method) {
   switch (method) {
-    case BroadPhaseMethod::projection:
+    case SleepingMethod::projection:
       return {.method = IntersectionMethod::projection};
-    case BroadPhaseMethod::subdivision:
+    case SleepingMethod::subdivision:
       return {.method = IntersectionMethod::subdivision};
-    case BroadPhaseMethod::hybrid:
+    case SleepingMethod::hybrid:
       return {.method = IntersectionMethod::hybrid};
-    case BroadPhaseMethod::quadratic:
+    case SleepingMethod::quadratic:
       return {.method = IntersectionMethod::projection, .shape = BoundShape::quadratic};
-    case BroadPhaseMethod::horns:
+    case SleepingMethod::horns:
       return {.method = IntersectionMethod::sorted, .shape = BoundShape::horn};
     default:
       return {.method = IntersectionMethod::all_pairs};
@@ -26,10 +26,10 @@ IntersectionOptions find_options(BroadPhaseMethod method) {
 
 }  // namespace
 
-Sleeping::Sleeping(Roster& roster, const BroadPhaseOptions& options)
+Sleeping::Sleeping(Roster& roster, const SleepingOptions& options)
     : roster_(roster),
       rebuild_all_(options.rebuild == Rebuild::everything),
-      slack_(2 * options.position_slack),  // now, and at the start of the bound
+      slack_(2 * options.common.position_slack),  // now, and at the start of the bound
       find_(find_options(options.method)) {}
 
 void Sleeping::changed(BodyIndex body) {
@@ -136,8 +136,15 @@ std::size_t Sleeping::memory_bytes() const noexcept {
          bytes_of(motions_) + bytes_of(bounds_) + bytes_of(pairs_) + bytes_of(turns_) + finder_.memory_bytes();
 }
 
-std::unique_ptr<Method> make_sleeping(Roster& roster, const BroadPhaseOptions& options) {
-  return std::make_unique<Sleeping>(roster, options);
+}  // namespace orchard::broad_phase_methods::detail
+
+namespace orchard::broad_phase_methods {
+
+BroadPhase make_sleeping_broad_phase(MotionSource source, const SleepingOptions& options) {
+  const auto make = [&](runtime::detail::Roster& roster, const BroadPhaseOptions& common) {
+    return std::make_unique<detail::Sleeping>(roster, SleepingOptions{options.method, options.rebuild, common});
+  };
+  return runtime::detail::make_broad_phase(std::move(source), options.common, make);
 }
 
-}  // namespace orchard::runtime::detail
+}  // namespace orchard::broad_phase_methods

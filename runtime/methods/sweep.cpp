@@ -3,7 +3,7 @@
 
 #include "intersections.h"
 
-namespace orchard::runtime::detail {
+namespace orchard::broad_phase_methods::detail {
 
 Face face_of(const SpaceTimeBound& bound, std::uint32_t body, std::size_t axis, bool upper, BoundShape shape) noexcept {
   const bool quadratic = shape == BoundShape::quadratic;
@@ -81,4 +81,4 @@ std::size_t Sweep::memory_bytes() const noexcept {
          queue_.capacity() * sizeof(Crossing) + crossed_.memory_bytes();
 }
 
-}  // namespace orchard::runtime::detail
+}  // namespace orchard::broad_phase_methods::detail

@@ -4,7 +4,7 @@
 #include "bound.h"
 
 // Face-plane and plane-plane intersections (dissertation 4.2.6, 4.2.7).
-namespace orchard::runtime {
+namespace orchard::broad_phase_methods {
 namespace {
 
 constexpr double kParallel = 1e-5;  // sine of the angle below which two planes' line is too ill-conditioned to use
@@ -173,4 +173,4 @@ double plane_contact(const SpaceTimeBound& a, const SpaceTimeBound& b, double fi
 }
 
 }  // namespace detail
-}  // namespace orchard::runtime
+}  // namespace orchard::broad_phase_methods

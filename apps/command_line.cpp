@@ -1,0 +1,275 @@
+// All commands' options beside each other, so that the same option reads the same everywhere: hence its length.
+#include "command_line.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "tree_options.h"
+
+namespace orchard::apps {
+namespace {
+
+void add_output_flags(CLI::App& command, Output& output) {
+  command.add_flag("--quiet", output.quiet, "Print nothing but errors");
+  command.add_flag("--json", output.json, "Print a JSON report instead of a table");
+}
+
+void add_mesh_options(CLI::App& command, MeshOptions& options) {
+  auto* strict =
+      command.add_flag("--strict", options.strict, "Refuse a mesh that is no closed manifold instead of repairing it");
+  command
+      .add_flag("--wrap{" + kDefaultWrap + "}", options.wrap,
+                "Build on a closed skin around the mesh; =OFFSET: about how far outside, in diagonals of its box")
+      ->excludes(strict);
+  command
+      .add_option(
+          "--wrap-alpha", options.wrap_alpha,
+          "Openings narrower than this stay closed, in diagonals; less follows the mesh better, and takes longer")
+      ->check(CLI::Range(1e-4, 0.5))
+      ->capture_default_str();
+  command
+      .add_option_function<std::string>(
+          "--root-ball",
+          [&options](const std::string& name) {
+            options.ball = name == "ritter" ? BoundingBall::ritter : BoundingBall::minimal;
+          },
+          "The ball around the whole, the root of the tree: minimal (default), or ritter for that of Ritter's method")
+      ->check(CLI::IsMember({"minimal", "ritter"}));
+}
+
+// Those that the command has a use for.
+void add_tuning(CLI::App& command, MedialTuning& tuning, bool for_tree) {
+  for (const TuningFlag& flag : tuning_flags()) {
+    if (for_tree && flag.of_report) continue;
+    const bool needs = for_tree && flag.name == "samples";
+    command
+        .add_option_function<std::string>(
+            "--" + flag.name, [&tuning, &flag](const std::string& value) { flag.set(tuning, value); },
+            flag.help + " [" + (needs ? "as method and depth need" : flag.standard) + "]")
+        ->check(CLI::Validator([&flag](std::string& value) { return flag.fault(value); }, "{" + flag.range() + "}"))
+        ->group(for_tree ? "Medial axis" : "Tuning");
+  }
+}
+
+void add_axis_source(CLI::App& command, AxisSource& source) {
+  command.add_option("--points", source.points, "Your own surface points: .xyz, .ply or .obj");
+  command.add_option("--diagram", source.diagram,
+                     "Your own Voronoi diagram of points on the mesh, a .vor file; its gaps are not repaired");
+}
+
+void add_build(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("build", "Build the sphere-tree of a triangle mesh");
+  BuildCommand& build = request.build;
+  command.add_option("mesh", build.mesh, "The mesh: .obj, .ply, .stl or .off")->required();
+  command.add_option("-o,--output", build.folder, "Folder for the tree, the views and the report")->required();
+  add_mesh_options(command, build.reading);
+  add_tree_options(command, build.options);
+  add_tuning(command, build.tuning, true);
+  add_axis_source(command, build.source);
+  command.add_option("--from-axis", build.source.axis,
+                     "Build from this medial axis, a .ma file of any system, instead of one of its own");
+  command.add_option("--threads", request.threads, "Threads at most; the result does not depend on it")
+      ->check(CLI::Range(1, 1024));
+  command.add_flag("!--no-views", build.views, "Write no files for ParaView");
+  command.add_flag("--picture", build.picture, "Draw the pipeline to a .png as well");
+  command
+      .add_option("--export", build.exports, "More files: json (spheres by level), urdf (a link's collision spheres)")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"sph", "json", "urdf"}));
+  command.add_option("--export-level", build.export_level, "Level of the urdf's spheres (default: the last)");
+  command.add_option("--up", build.up, "The mesh's axis that points up in the picture")
+      ->check(CLI::IsMember({"x", "y", "z"}))
+      ->capture_default_str();
+  add_output_flags(command, build.output);
+  command.footer("Example:\n  orchard build data/lamp.obj -o out/lamp --picture");
+  command.callback([&request] { request.run = [&request] { orchard::apps::build(request.build); }; });
+}
+
+void add_collide(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("collide", "Ask whether two placed trees' objects touch, level by level");
+  CollideCommand& collide = request.collide;
+  command.add_option("a", collide.a, "An .orchard file")->required();
+  command.add_option("b", collide.b, "Another, or the same")->required();
+  command.add_option("--pose", collide.pose, "Where b is: \"tx ty tz qw qx qy qz\", a translation and a quaternion");
+  command.add_option("--pose-a", collide.pose_a, "Where a is, in the same form (default: where it was built)");
+  add_output_flags(command, collide.output);
+  command.footer("Example:\n  orchard collide out/lamp/lamp.orchard out/ship/ship.orchard --pose \"4 0 0 1 0 0 0\"");
+  command.callback([&request] { request.run = [&request] { orchard::apps::collide(request.collide); }; });
+}
+
+void add_verify(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("verify", "Prove that a tree covers a mesh and that its bounds hold");
+  VerifyCommand& verify = request.verify;
+  command.add_option("tree", verify.tree, "An .orchard file, or an .sph file of any system in the mesh's frame")
+      ->required();
+  command.add_option("mesh", verify.mesh, "The mesh that it was built for")->required();
+  command.add_flag("--bbox-centre", verify.box_centered,
+                   "The .sph file's origin is the centre of the mesh's bounding box, as some systems write it");
+  add_output_flags(command, verify.output);
+  command.footer(
+      "Exit code 1 if anything is not proven; each violation is named.\n"
+      "Example:\n  orchard verify out/lamp/lamp.orchard data/lamp.obj");
+  command.callback([&request] {
+    request.run = [&request] { request.exit_code = orchard::apps::verify(request.verify) ? 0 : kFailed; };
+  });
+}
+
+void add_compare(CLI::App& app, Request& request) {
+  CLI::App& command =
+      *app.add_subcommand("compare", "Tell which of several trees fits a mesh tightest, level by level");
+  CompareCommand& compare = request.compare;
+  command.add_option("mesh", compare.mesh, "The mesh: .obj, .ply, .stl or .off")->required();
+  command
+      .add_option("trees", compare.trees,
+                  "Trees in the mesh's frame: .orchard, .sph, or .json lists of spheres by level")
+      ->required();
+  command.add_option("--plot", compare.plot, "Draw the table to this .svg file");
+  add_mesh_options(command, compare.reading);
+  add_output_flags(command, compare.output);
+  command.footer("Example:\n  orchard compare data/lamp.obj out/lamp/lamp.orchard other.sph --plot out/lamp.svg");
+  command.callback([&request] { request.run = [&request] { orchard::apps::compare(request.compare); }; });
+}
+
+Relaxation relaxation_named(const std::string& name) {
+  return name == "clusters"    ? Relaxation::clusters
+         : name == "neighbors" ? Relaxation::neighbors
+                               : Relaxation::automatic;
+}
+
+void add_sampling_options(CLI::App& command, SampleCommand& sample) {
+  command.add_option("--samples", sample.samples, "Points in all")
+      ->check(CLI::Range(20, 10'000'000))
+      ->capture_default_str();
+  command.add_option("--edge-samples", sample.edge_samples, "Of them on edges (default: a fifth)")
+      ->check(CLI::Range(0, 10'000'000));
+  command.add_option("--iterations", sample.iterations, "Of relaxation")
+      ->check(CLI::Range(0, 10'000))
+      ->capture_default_str();
+  command
+      .add_option_function<std::string>(
+          "--relaxation", [&sample](const std::string& name) { sample.relaxation = relaxation_named(name); },
+          "Points keep apart within coplanar clusters, from neighbors across faces, or as fits the mesh (automatic)")
+      ->check(CLI::IsMember({"automatic", "clusters", "neighbors"}));
+  command
+      .add_option("--cluster-angle", sample.cluster_degrees, "Degrees that a cluster may turn; more makes curved ones")
+      ->check(CLI::Range(0.0, 90.0));
+  command.add_option("--crease-angle", sample.crease_degrees, "Degrees from which a curved mesh has an edge")
+      ->check(CLI::Range(0.0, 180.0))
+      ->capture_default_str();
+  command.add_option("--seed", sample.seed, "Seed of the random points")->capture_default_str();
+}
+
+void add_sample(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("sample", "Spread points evenly over a mesh");
+  SampleCommand& sample = request.sample;
+  command.add_option("mesh", sample.mesh, "The mesh: .obj, .ply, .stl or .off")->required();
+  command.add_option("-o,--output", sample.folder, "Folder for the points")->required();
+  add_sampling_options(command, sample);
+  command.add_option("--threads", request.threads, "Threads at most; the result does not depend on it")
+      ->check(CLI::Range(1, 1024));
+  command.add_flag("!--no-views", sample.views, "Write no files for ParaView");
+  add_output_flags(command, sample.output);
+  command.footer("Example:\n  orchard sample data/lamp.obj -o out/lamp --samples 20000");
+  command.callback([&request] { request.run = [&request] { orchard::apps::sample(request.sample); }; });
+}
+
+void add_voronoi(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("voronoi", "Build the Voronoi diagram of points and say how good it is");
+  VoronoiCommand& voronoi = request.voronoi;
+  command
+      .add_option("input", voronoi.input,
+                  "Points (.xyz, or .ply or .obj without faces), or a mesh to sample (.obj, .ply, .stl or .off)")
+      ->required();
+  command
+      .add_option_function<std::string>(
+          "--algorithm",
+          [&voronoi](const std::string& name) { voronoi.algorithm = *orchard::voronoi_algorithm_named(name); },
+          "bowyer, inagaki, highest-first (default) or exact")
+      ->check(CLI::IsMember({"bowyer", "inagaki", "highest-first", "exact"}));
+  command.add_flag("--compare", voronoi.compare, "Run all four algorithms on the same points");
+  command.add_option("-o,--output", voronoi.folder, "Folder for the cells, for ParaView, and for the points of a mesh");
+  command.add_option("--cells", voronoi.cells, "Write the cells of these points alone, counted from 0: 3,14,15")
+      ->delimiter(',');
+  command.add_option("--box", voronoi.box, "Clip the cells to this box: x y z of its lower and upper corner")
+      ->expected(6);
+  add_sampling_options(command, voronoi.sampling);
+  command.add_option("--threads", request.threads, "Threads at most; the result does not depend on it")
+      ->check(CLI::Range(1, 1024));
+  add_output_flags(command, voronoi.output);
+  command.footer("Example:\n  orchard voronoi data/faucet.obj --compare -o out/faucet");
+  command.callback([&request] { request.run = [&request] { orchard::apps::voronoi(request.voronoi); }; });
+}
+
+void add_sweep_tree(CLI::App& command, std::optional<SphereTreeOptions>& tree) {
+  const auto wanted = [&tree]() -> SphereTreeOptions& {
+    if (!tree) tree.emplace();
+    return *tree;
+  };
+  command
+      .add_option_function<std::string>(
+          "--tree",
+          [wanted](const std::string& method) {
+            wanted().method = method == "merging" ? TreeMethod::merging : TreeMethod::tightened;
+          },
+          "With --sweep: build this tree from each axis too, and say how tight it is: tightened or merging")
+      ->check(CLI::IsMember({"tightened", "merging"}));
+  command
+      .add_option_function<Index>(
+          "--tree-depth", [wanted](Index depth) { wanted().depth = depth; }, "Levels of that tree below the root [3]")
+      ->check(CLI::Range(1, 10));
+}
+
+void add_medial(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("medial", "Build the medial axis of a mesh, or judge one");
+  MedialCommand& medial = request.medial;
+  command.add_option("mesh", medial.mesh, "The mesh: .obj, .ply, .stl or .off")->required();
+  command.add_option("-o,--output", medial.folder, "Folder for the axis and the reports")->required();
+  add_mesh_options(command, medial.reading);
+  command.add_flag("--report", medial.report, "Measure the quality of what was built (docs/medial-quality.md)");
+  command
+      .add_option("--quality-samples", medial.quality_samples,
+                  "Surface points to measure at: fewer are faster and miss more of the largest errors")
+      ->check(CLI::Range(100, 10'000'000))
+      ->capture_default_str();
+  command.add_option("--axis", medial.axis, "Build nothing; measure the quality of this .ma file of any system");
+  add_axis_source(command, medial.source);
+  command
+      .add_option("--sweep", medial.sweep, "NAME=A,B,..: run with each value of a tuning flag; again for another one")
+      ->allow_extra_args(false);
+  add_sweep_tree(command, medial.tree);
+  add_tuning(command, medial.tuning, false);
+  command.add_option("--threads", request.threads, "Threads at most; the result does not depend on it")
+      ->check(CLI::Range(1, 1024));
+  command.add_flag("!--no-views", medial.views, "Write no files for ParaView");
+  add_output_flags(command, medial.output);
+  command.footer(
+      "Examples:\n  orchard medial data/lamp.obj -o out/lamp --report\n"
+      "  orchard medial data/lamp.obj -o out/lamp --axis other.ma\n"
+      "  orchard medial data/lamp.obj -o out/lamp --sweep samples=1000,4000,16000 --sweep prune=0,20,40");
+  command.callback([&request] { request.run = [&request] { orchard::apps::medial(request.medial); }; });
+}
+
+void add_inspect(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("inspect", "Say what a mesh or tree file holds and what is wrong with it");
+  InspectCommand& inspect = request.inspect;
+  command.add_option("file", inspect.file, "A mesh (.obj, .ply, .stl, .off) or a tree (.orchard, .sph)")->required();
+  command.add_flag("--full", inspect.full, "Look for self-intersections in a mesh of more than 500,000 triangles too");
+  add_output_flags(command, inspect.output);
+  command.footer("Example:\n  orchard inspect data/lamp.obj");
+  command.callback([&request] { request.run = [&request] { orchard::apps::inspect(request.inspect); }; });
+}
+
+}  // namespace
+
+void add_commands(CLI::App& app, Request& request) {
+  add_build(app, request);
+  add_collide(app, request);
+  add_verify(app, request);
+  add_inspect(app, request);
+  add_sample(app, request);
+  add_compare(app, request);
+  add_voronoi(app, request);
+  add_medial(app, request);
+}
+
+}  // namespace orchard::apps

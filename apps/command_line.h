@@ -1,0 +1,30 @@
+#pragma once
+#include <CLI/CLI.hpp>
+#include <functional>
+
+#include "commands.h"
+
+// What the user may write after the program's name.
+namespace orchard::apps {
+
+inline constexpr int kFailed = 1, kBadInput = 2;  // exit codes
+
+// What the user asked for, once parsed.
+struct Request {
+  BuildCommand build;
+  CollideCommand collide;
+  VerifyCommand verify;
+  InspectCommand inspect;
+  CompareCommand compare;
+  SampleCommand sample;
+  VoronoiCommand voronoi;
+  MedialCommand medial;
+  int threads = 0;  // 0: as many as the machine has
+  std::function<void()> run;
+  int exit_code = 0;
+};
+
+// Every command with its options; parsing one sets request.run.
+void add_commands(CLI::App& app, Request& request);
+
+}  // namespace orchard::apps
