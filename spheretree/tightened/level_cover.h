@@ -13,7 +13,7 @@ struct PlacedBall {
   Index path_region = kNone;
 };
 
-// A change that is being tried: some balls are gone, others there instead.
+// A change that is being tried: some balls are gone, and others are there instead.
 struct Change {
   std::span<const Index> gone;
   std::span<const PlacedBall> added;
@@ -25,8 +25,8 @@ struct OpenArc {
   Point begin, end;
 };
 
-// Which part of the surface the path regions of a level leave open, exactly, and what changes to a few balls would do
-// to it. Const functions may run in parallel, each with its own scratch.
+// Says exactly which part of the surface the path regions of a level leave uncovered, and which part they would leave
+// after a change to a few balls. Const functions may run in parallel, each with its own scratch.
 class LevelCover {
  public:
   struct Scratch {
@@ -43,7 +43,7 @@ class LevelCover {
   void replace(Index ball, const PlacedBall& by);
   bool in_path_region(Index path_region, const Point& point) const;
 
-  // What is open inside the closed sphere after the change.
+  // Appends what is uncovered inside the closed sphere after the change; or says whether nothing is.
   void open_arcs(const Sphere& where, const Change& change, Scratch& scratch, std::vector<OpenArc>& arcs) const;
   bool covered(const Sphere& where, const Change& change, Scratch& scratch) const;
 

@@ -91,8 +91,8 @@ class Tightener {
 
  private:
   bool build_level(Index level, std::vector<TightenReport::Level>& reports) {
-    const auto refined = static_cast<double>(
-        std::count_if(partial_.last().begin(), partial_.last().end(), [](const LevelNode& node) { return !node.leaf; }));
+    const auto refined = static_cast<double>(std::count_if(partial_.last().begin(), partial_.last().end(),
+                                                           [](const LevelNode& node) { return !node.leaf; }));
     const std::size_t max = samples_.size() / kSamplesPerBall;
     const double wanted = std::min(static_cast<double>(max), options_.branching * refined);
     if (refined == 0 || (wanted <= refined && level > 1)) return false;

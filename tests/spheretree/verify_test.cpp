@@ -1,3 +1,5 @@
+// More than 300 lines: the ways to damage a packed tree and the sampling oracle that judges the damage, which most
+// tests here share, are a third of the file.
 #include "orchard/spheretree/verify.h"
 
 #include <gtest/gtest.h>

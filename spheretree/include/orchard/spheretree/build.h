@@ -24,7 +24,7 @@ enum class TreeMethod { tightened, merging, annealing, octree };
 struct SphereTreeOptions {
   TreeMethod method = TreeMethod::tightened;
   Index depth = 3;      // levels below the root at most
-  Index branching = 8;  // children of a node, see the builders; an octree has 8
+  Index branching = 8;  // children of a node at most or on average, as the method has it; an octree has 8
   Effort effort = Effort::standard;
   Objective objective = Objective::balanced;   // tightened
   SetEnergy energy = SetEnergy::maximum;       // annealing
@@ -33,21 +33,21 @@ struct SphereTreeOptions {
   Index descent = 0;       // trials of random descent for each node, after any method
   std::uint64_t seed = 1;  // of the tree's own random choices; medial.sampling has its own
   MedialBuildOptions medial{};
-  // Take samples_needed() surface points, a fifth of them along edges, in place of the numbers in medial.sampling: a
-  // deep tree needs more than an axis does.
+  // Whether to take samples_needed() surface points, a fifth of them along edges, in place of the numbers in
+  // medial.sampling: a deep tree needs more than an axis does.
   bool samples_by_need = true;
 };
 
 // Whether the method starts from a medial axis.
 bool needs_axis(TreeMethod method);
 
-// Surface points that a method and its depth need: 5000, or for tightened trees 20 for each ball of the last level,
+// How many surface points a method and its depth need: 5000, or for tightened trees 20 for each ball of the last level,
 // 10,000 (20,000 with high effort) at least and 200,000 at most.
 Index samples_needed(const SphereTreeOptions& options);
 
 // Everything that one run from a surface to a packed tree made, and how long each stage took.
 struct SphereTreeBuild {
-  std::optional<MedialBuild> medial;  // not for an octree or annealing
+  std::optional<MedialBuild> medial;  // empty for an octree or annealing, which need no axis
   Index axis_components = 0;
   SphereTree tree;
   SphereTree octree;  // of the same depth, to compare with
@@ -58,15 +58,15 @@ struct SphereTreeBuild {
   CoverReport cover;
   RedundancyReport redundancy;
   runtime::PackedSphereTree packed;
-  Verification certificate;   // of the packed tree; ok()
+  Verification certificate;   // of the packed tree; always ok()
   Index bounds_weakened = 0;  // nodes with a bound that is weaker than measured, since only that is proven
   std::vector<std::pair<std::string, double>> seconds;  // stage, time; those of the medial axis among them
 };
 
-// The main line from a surface to a certified tree: medial axis, tree, covering, redundant spheres, bounds, packing,
-// verification. Some seconds for three levels; see docs/benchmarks.md. The same tree for the same surface, options and
-// input, whatever the number of threads. Throws InputError if the surface or an option does not allow it, and Error if
-// the packed tree fails its certificate: what this returns is conservative.
+// Builds a certified tree of a surface: medial axis, tree, covering, removal of redundant spheres, bounds, packing,
+// verification. The result is conservative, and the same for the same surface, options and input whatever the number of
+// threads. Throws InputError if the surface or an option does not allow it, and Error if the packed tree fails its
+// certificate. Three levels take some seconds; see docs/benchmarks.md.
 SphereTreeBuild build_sphere_tree(const Surface& surface, const SphereTreeOptions& options = {},
                                   const Progress& progress = {}, MedialBuildInput input = {});
 

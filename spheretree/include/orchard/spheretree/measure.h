@@ -4,8 +4,9 @@
 
 namespace orchard {
 
-// Fills center_distance, distance_bound and inaccuracy of every node (dissertation 5.3.5, 6.3.4). Parallel over nodes.
-// If the surface is not solid, distances are unsigned and the inaccuracy is the distance bound.
+// Fills center_distance, distance_bound and inaccuracy of every node, in mesh units. If the surface is not solid,
+// distances are unsigned and the inaccuracy is the distance bound. Parallel over nodes; the result does not depend on
+// the thread count. Source: dissertation 5.3.5 and 6.3.4.
 void measure(SphereTree& tree, const Surface& surface, const Progress& progress = {});
 
 }  // namespace orchard

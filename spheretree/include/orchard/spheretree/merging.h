@@ -8,9 +8,9 @@ namespace orchard {
 
 // How merged spheres come to cover the surface between the forming points.
 enum class MergeClosing {
-  refit,   // least growth: siblings share their parent's points out and are fitted to them; what is uncovered then is
-           // one more point for a sphere to hold, and it is fitted again. The result is conservative.
-  growth,  // as in dissertation 6.3.1: spheres stay as merged; grow_to_cover() or cover() has to follow
+  refit,   // Siblings divide their parent's points among them and are fitted to them. What is uncovered then becomes
+           // further points for a sphere to hold, which is fitted again. The result is conservative.
+  growth,  // As in dissertation 6.3.1, spheres stay as merged; grow_to_cover() or cover() has to follow.
 };
 
 struct MergeOptions {
@@ -23,7 +23,7 @@ struct MergeOptions {
 struct MergeReport {
   struct Level {
     Index spheres = 0;
-    Index removed = 0, split = 0;  // redundant spheres, and loose ones in their place
+    Index removed = 0, split = 0;  // redundant spheres taken out, and loose ones split in their place
     Index uncovered_regions = 0;   // in the first round of closing
     int rounds = 0;                // of closing
     double growth = 0;             // by cover() at last, the largest, as a fraction of R
@@ -31,15 +31,15 @@ struct MergeReport {
   std::vector<Level> levels;  // below the root; with MergeClosing::refit
 };
 
-// Dissertation 6.3: the children of each node are the spheres of the medial vertices merged into it, merged pairwise
-// along the medial axis by least cost until few enough remain. Where a node has fewer vertices than it takes, its
-// surface points are merged in their place. Parallel over the nodes of a level; the result does not depend on the
-// thread count. Throws InputError for a branching out of range or an axis without vertices.
-//
-// With MergeClosing::refit, merging gives the start (8.2): siblings share their parent's points out, spheres that do
-// not pay go to where they help most, within a node and, up to three times `branching` for a node (64 at most), within
-// a level, which has at most `branching` times the nodes of the one above. Each level is closed, rid of what is
-// redundant and filled up again before it gets children.
+// Builds a tree from a medial axis: the children of each node are the spheres of the medial vertices merged into it,
+// merged pairwise along the axis by least cost until few enough remain. Where a node has fewer vertices than it takes,
+// its surface points are merged in their place.
+// With MergeClosing::refit, the merged spheres are only the start. Siblings divide their parent's points among them;
+// spheres that do not pay go to where they help most, within a node and within a level. A node then has up to three
+// times `branching` children (64 at most), and a level at most `branching` times the nodes of the one above. Each level
+// is closed, rid of what is redundant and filled up again before it gets children. Throws InputError for a branching
+// out of range or an axis without vertices. Parallel over the nodes of a level; the result does not depend on the
+// thread count. Source: dissertation 6.3, and 8.2 for refit.
 SphereTree merge_tree(const Surface& surface, const MedialAxis& axis, const MergeOptions& options = {},
                       const Progress& progress = {}, MergeReport* report = nullptr);
 

@@ -6,9 +6,9 @@
 
 namespace orchard {
 
-// The volume of a union of balls that lies outside the solid, by counting points of a low-discrepancy sequence (R3) in
-// the union's box: good to about 1 % with the default. Cubic mesh units. Parallel; the same on any number of threads.
-// Throws InputError unless surface.solid().
+// The volume of the part of a union of balls that lies outside the solid, in cubic mesh units: counts points of a
+// low-discrepancy sequence (R3) in the box of the union, and is good to about 1 % with the default number. Throws
+// InputError unless surface.solid(). Parallel; the result does not depend on the thread count.
 double outside_volume(const Surface& surface, std::span<const Sphere> balls, std::uint64_t points = 200'000);
 
 }  // namespace orchard

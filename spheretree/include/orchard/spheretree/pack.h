@@ -5,11 +5,11 @@
 
 namespace orchard {
 
-// The tree as the run-time takes it: float nodes around a double origin, radii and bounds rounded outward so that every
-// packed ball holds the ball it came from, and for each leaf the triangles that meet its path region. Bounds that
-// measure() did not fill are packed as unknown, +infinity, and so is every bound on separation that rests on them.
-// Throws Error if the tree has no root, is too large, or has a ball that is out of the run-time's range, which no ball
-// near a mesh of a usable size is (mesh.h).
+// Packs a tree for the run-time: float nodes around a double origin, radii and bounds rounded outward so that every
+// packed ball holds the ball that it came from, and for each leaf the triangles that meet its path region. A bound that
+// measure() did not fill is packed as unknown, +infinity, and so is every bound on separation that rests on it. Throws
+// Error if the tree has no root, is too large, or has a ball that is out of the run-time's range, which no ball near a
+// mesh of a usable size is (mesh.h).
 runtime::PackedSphereTree pack(const SphereTree& tree, const Surface& surface);
 
 }  // namespace orchard

@@ -6,8 +6,8 @@
 
 namespace orchard {
 
-// Where a tree goes deeper (dissertation 8.2): a node gets children only if its inaccuracy exceeds what is allowed
-// there, so depth may vary. By default every node down to the builder's depth.
+// Where a tree goes deeper: a node gets children only if its inaccuracy exceeds what is allowed where it lies, so the
+// depth may vary. By default every node above the builder's depth does. Source: dissertation 8.2.
 struct Refinement {
   struct Region {
     Sphere where;
@@ -16,7 +16,7 @@ struct Refinement {
   double error = 0;  // allowed everywhere else; mesh units, 0: refine always
   std::vector<Region> regions;
 
-  // The least that is allowed anywhere in the ball.
+  // The smallest error that is allowed anywhere in the ball, in mesh units.
   double allowed(const Sphere& ball) const {
     double min = std::numeric_limits<double>::infinity();
     for (const Region& region : regions)
@@ -26,8 +26,8 @@ struct Refinement {
   }
 };
 
-// Whether a ball's inaccuracy exceeds what is allowed there. If the surface is not solid, its distance bound stands for
-// the inaccuracy.
+// Whether a ball's inaccuracy exceeds what is allowed where it lies. If the surface is not solid, the ball's distance
+// bound stands for its inaccuracy.
 bool wants_children(const Refinement& refinement, const Surface& surface, const Sphere& ball);
 
 }  // namespace orchard

@@ -25,26 +25,27 @@ struct SphereNode {
   static constexpr double kUnknown = std::numeric_limits<double>::infinity();
 };
 
-// Nodes in breadth-first order, the root first. Conservative by the path rule: every point of the surface lies in all
-// balls of at least one root-to-leaf path.
+// A sphere-tree: nodes in breadth-first order, the root first. A tree is conservative by the path rule if every point
+// of the surface lies in all balls of at least one path from the root to a leaf.
 struct SphereTree {
   std::vector<SphereNode> nodes;
   Index branching = 8;  // no node has more children
   Index depth() const { return nodes.empty() ? 0 : nodes.back().level; }
 };
 
-// Throws Error unless there is one root, the order is breadth-first, children are contiguous and radii positive and
-// finite.
+// Checks a tree's structure. Throws Error unless there is one root, the order is breadth-first, children are
+// contiguous, and radii are positive and finite.
 void validate(const SphereTree& tree);
 
 // The balls of a tree as the boundary lemma takes them, in the order of the nodes.
 std::vector<PathBall> path_balls(const SphereTree& tree);
 
-// Figures of one level, as fractions of the bounding radius.
+// How many spheres a level has, and their inaccuracies as fractions of the bounding radius.
 struct LevelFigures {
   Index spheres = 0;
   double mean_inaccuracy = 0, max_inaccuracy = 0;
 };
+// One row for each level, the root's first. Precondition: measure() has filled the nodes.
 std::vector<LevelFigures> level_figures(const SphereTree& tree, double bounding_radius);
 
 }  // namespace orchard

@@ -27,7 +27,7 @@ struct Violation {
 };
 
 struct VerifyOptions {
-  Index max_violations = 100;  // listed; all are counted
+  Index max_violations = 100;  // that are listed; all are counted
 };
 
 struct Verification {
@@ -35,7 +35,7 @@ struct Verification {
   std::uint64_t nodes = 0, bounds_violated = 0;
   bool same_mesh = true;
   UncoveredPart uncovered;             // how much has no path, and how far off the paths are
-  std::vector<Index> uncovered_nodes;  // whose boundary an uncovered region has, ascending
+  std::vector<Index> uncovered_nodes;  // that bound an uncovered region, ascending
   std::vector<double> max_bound;       // stored distance bound by level, in mesh units; none in a tree without bounds
   std::vector<Violation> violations;   // triangles first, ascending
   bool ok() const { return same_mesh && triangles_uncovered == 0 && triangles_unlisted == 0 && bounds_violated == 0; }
@@ -43,14 +43,15 @@ struct Verification {
   bool only_tangent(double bounding_radius) const;
 };
 
-// Proves from the packed floats and the mesh alone that (a) the path rule holds, (b) every stored bound holds, (c)
-// every triangle is covered by the path regions of the leaves that list it, which implies (a). "Not proven" counts as
-// violated. If the surface is not solid, every point counts as outside. Precondition: structure_fault(tree) == nullptr.
-// Parallel; the result does not depend on the thread count.
+// Verifies a packed tree: proves from its floats and the mesh alone that (a) the path rule holds, (b) every stored
+// bound holds, (c) every triangle is covered by the path regions of the leaves that list it, which implies (a). What is
+// not proven counts as violated. If the surface is not solid, every point counts as outside. Precondition:
+// structure_fault(tree) == nullptr. Parallel; the result does not depend on the thread count.
 Verification verify(const Surface& surface, const runtime::PackedSphereTree& tree, const VerifyOptions& options = {},
                     const Progress& progress = {});
 
-// Proves the path rule of a tree that promises nothing else: balls without bounds and lists of triangles.
+// Verifies the path rule alone, for a tree that promises nothing else: balls without bounds and without lists of
+// triangles. Parallel; the result does not depend on the thread count.
 Verification verify_path_rule(const Surface& surface, std::span<const PathBall> balls,
                               const VerifyOptions& options = {}, const Progress& progress = {});
 

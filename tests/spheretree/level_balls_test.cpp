@@ -1,0 +1,116 @@
+#include "tightened/level_balls.h"  // private
+
+#include <gtest/gtest.h>
+
+namespace orchard {
+namespace {
+
+using detail::LevelBall;
+using detail::LevelBalls;
+using detail::PathRegions;
+using detail::Samples;
+
+Samples on_axis(std::initializer_list<double> xs) {
+  Samples samples;
+  for (const double x : xs) samples.points.emplace_back(x, 0, 0);
+  samples.starts = samples.points;
+  return samples;
+}
+
+Sphere ball(double x, double radius) { return {Point(x, 0, 0), radius}; }
+
+LevelBall placed(double x, double radius, Index path_region) {
+  LevelBall placed;
+  placed.center = Point(x, 0, 0);
+  placed.radius = radius;
+  placed.path_region = path_region;
+  return placed;
+}
+
+// Samples 0..4 at 1, 4, 5, 6, 9; path region 0 reaches to 6.5 from below, path region 1 to 3.5 from above.
+PathRegions two_regions() {
+  return {on_axis({1, 4, 5, 6, 9}), {{ball(5, 20), ball(2.5, 4)}, {ball(5, 20), ball(7.5, 4)}}};
+}
+
+// Balls 0 and 1 lie in path region 0 and hold 0, 1 and 1, 2, 3; ball 2 lies in path region 1 and holds 3, 4.
+LevelBalls three_balls(Index max_children = 2) {
+  return {two_regions(), {placed(2.5, 1.6, 0), placed(5, 1.1, 0), placed(7.5, 1.6, 1)}, max_children};
+}
+
+TEST(PathRegions, HoldTheSamplesInAllBallsOfTheirPath) {
+  const PathRegions regions(on_axis({1, 30, 5, 9}), {{ball(5, 20), ball(2.5, 4)}, {ball(5, 20), ball(7.5, 4)}});
+  ASSERT_EQ(regions.samples().size(), 3u);  // the one at 30 is in neither
+  EXPECT_EQ(regions.samples_in(0), (std::vector<Index>{0, 1}));
+  EXPECT_EQ(regions.samples_in(1), (std::vector<Index>{1, 2}));
+  EXPECT_EQ(regions.regions_of(1), (std::vector<Index>{0, 1}));
+  EXPECT_TRUE(regions.holds(1, Point(11, 0, 0)));
+  EXPECT_FALSE(regions.holds(0, Point(11, 0, 0)));
+  EXPECT_FALSE(regions.holds_sample(0, 2));
+}
+
+TEST(LevelBalls, HoldSamplesOfTheirOwnPathRegionOnly) {
+  const LevelBalls balls(two_regions(), {placed(6, 3, 0), placed(6, 3, 1)}, 2);
+  EXPECT_EQ(balls[0].samples, (std::vector<Index>{1, 2, 3}));
+  EXPECT_EQ(balls[1].samples, (std::vector<Index>{1, 2, 3, 4}));
+}
+
+TEST(LevelBalls, KnowWhatOnlySomeOfThemHold) {
+  const LevelBalls balls = three_balls();
+  const std::vector<Index> first{0}, both{0, 1};
+  EXPECT_EQ(balls.held_only_by(first), (std::vector<Index>{0}));
+  EXPECT_EQ(balls.held_only_by(both), (std::vector<Index>{0, 1, 2}));
+  std::vector<Point> alone;
+  balls.append_held_alone(1, alone);
+  ASSERT_EQ(alone.size(), 1u);
+  EXPECT_EQ(alone[0], Point(5, 0, 0));
+}
+
+TEST(LevelBalls, CountAgainWhenOneIsReplaced) {
+  LevelBalls balls = three_balls();
+  balls.replace(1, {Point(5, 0, 0), 0.5, 0});  // lets 1 and 3 go
+  const std::vector<Index> first{0}, last{2};
+  EXPECT_EQ(balls.held_only_by(first), (std::vector<Index>{0, 1}));
+  EXPECT_EQ(balls.held_only_by(last), (std::vector<Index>{3, 4}));
+}
+
+TEST(LevelBalls, RefuseAReplacementThatLosesASample) {
+  LevelBalls balls = three_balls();
+  const std::vector<Index> chosen{0};
+  std::vector<LevelBall> by{placed(4, 0.5, 0)};
+  balls.find_samples(by[0]);
+  EXPECT_FALSE(balls.try_replace(chosen, by));
+  EXPECT_EQ(balls[0].samples, (std::vector<Index>{0, 1}));
+  EXPECT_EQ(by[0].samples, (std::vector<Index>{1}));
+  EXPECT_EQ(balls.held_only_by(chosen), (std::vector<Index>{0}));
+
+  by = {placed(1, 0.5, 0)};  // lets go only what ball 1 holds too
+  balls.find_samples(by[0]);
+  EXPECT_TRUE(balls.try_replace(chosen, by));
+  EXPECT_EQ(balls[0].samples, (std::vector<Index>{0}));
+  EXPECT_EQ(by[0].samples, (std::vector<Index>{0, 1}));
+}
+
+TEST(LevelBalls, RefuseMoreBallsInAPathRegionThanAllowed) {
+  for (const Index max : {2u, 3u}) {
+    LevelBalls balls = three_balls(max);
+    const std::vector<Index> chosen{2};
+    std::vector<LevelBall> by{placed(7.5, 1.6, 0)};
+    by[0].samples = {3, 4};  // as if path region 0 held them
+    EXPECT_EQ(balls.try_replace(chosen, by), max == 3);
+    EXPECT_EQ(balls[2].path_region, max == 3 ? 0u : 1u);
+  }
+}
+
+TEST(LevelBalls, TakeTheNewSamplesThatTheyHold) {
+  LevelBalls balls = three_balls();
+  balls.add_samples(on_axis({3, 40, 6.2}));
+  EXPECT_EQ(balls[0].samples, (std::vector<Index>{0, 1, 5}));
+  EXPECT_EQ(balls[2].samples, (std::vector<Index>{3, 4, 7}));
+  EXPECT_TRUE(balls.regions().regions_of(6).empty());
+  const std::vector<Index> first{0}, last{2};
+  EXPECT_EQ(balls.held_only_by(first), (std::vector<Index>{0, 5}));
+  EXPECT_EQ(balls.held_only_by(last), (std::vector<Index>{4, 7}));
+}
+
+}  // namespace
+}  // namespace orchard
