@@ -1,3 +1,5 @@
+// One argument with its cases, hence one file of more than 300 lines: shapes, their boundaries inside the region, and
+// what is certain of them.
 #include "orchard/covering/planar_cover.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// One function for each panel of the pipeline picture beside what they share, hence more than 300 lines.
 #include "panels.h"
 
 #include <vtkActor.h>

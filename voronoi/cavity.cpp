@@ -1,3 +1,5 @@
+// Everything that happens to one cavity, from its deletion to its new vertices, works on the same arrays, so that a
+// point is inserted within the cache; hence more than 300 lines.
 #include "cavity.h"
 
 #include <algorithm>
