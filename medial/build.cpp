@@ -1,6 +1,6 @@
 #include "orchard/medial/build.h"
 
-#include <chrono>
+#include <utility>
 
 #include "orchard/geometry/error.h"
 
@@ -34,9 +34,7 @@ class MedialBuilder {
  private:
   template <class Function>
   void stage(const char* name, Function&& function) {
-    const auto start = std::chrono::steady_clock::now();
-    function();
-    build_.seconds.emplace_back(name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    time_stage(build_.seconds, name, std::forward<Function>(function));
   }
 
   void sample(std::optional<SurfaceSampling> own) {

@@ -1,8 +1,8 @@
 #include "orchard/spheretree/build.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "orchard/geometry/error.h"
 #include "orchard/spheretree/measure.h"
@@ -60,9 +60,7 @@ class TreeBuilder {
  private:
   template <class Function>
   void stage(const char* name, Function&& function) {
-    const auto start = std::chrono::steady_clock::now();
-    function();
-    build_.seconds.emplace_back(name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    time_stage(build_.seconds, name, std::forward<Function>(function));
   }
 
   void make_axis(MedialBuildInput input) {

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "orchard/geometry/stage_times.h"
 #include "orchard/medial/axis.h"
 #include "orchard/medial/gap_crossing.h"
 #include "orchard/medial/import_axis.h"
@@ -47,7 +48,7 @@ struct MedialBuild {
   MedialAxis axis;
   Index balls_refused = 0, balls_adjusted = 0;  // of an imported axis, see ImportedAxis
   double ball_adjustment = 0;
-  std::vector<std::pair<std::string, double>> seconds;  // stage, time
+  StageTimes seconds;  // stage, time
 };
 
 // The main line from a solid to its medial axis: points, Voronoi diagram, gap repair, axis, pruning. The time goes as

@@ -60,7 +60,7 @@ struct SphereTreeBuild {
   runtime::PackedSphereTree packed;
   Verification certificate;   // of the packed tree; always ok()
   Index bounds_weakened = 0;  // nodes with a bound that is weaker than measured, since only that is proven
-  std::vector<std::pair<std::string, double>> seconds;  // stage, time; those of the medial axis among them
+  StageTimes seconds;         // stage, time; those of the medial axis among them
 };
 
 // Builds a certified tree of a surface: medial axis, tree, covering, removal of redundant spheres, bounds, packing,
