@@ -68,8 +68,10 @@ struct Run {
 Run run(const std::vector<Point>& points, VoronoiAlgorithm algorithm, const Progress& progress) {
   Run result{.algorithm = algorithm};
   const Stopwatch watch;
-  result.diagram = orchard::voronoi(points, algorithm, progress, &result.report);
+  VoronoiBuild build = orchard::voronoi(points, algorithm, progress);
   result.seconds = watch.seconds();
+  result.diagram = std::move(build.diagram);
+  result.report = std::move(build.report);
   validate(result.diagram);
   result.inaccuracy = inaccuracy(result.diagram);
   result.corners = corner_inaccuracy(result.diagram);

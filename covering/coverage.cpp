@@ -40,8 +40,8 @@ Coverage check(const Surface& surface, std::span<const Index> triangles, std::sp
 
 }  // namespace
 
-Coverage surface_coverage(const Surface& surface, std::span<const PathBall> balls, const Progress& progress,
-                          const Point& origin) {
+Coverage surface_coverage(const Surface& surface, std::span<const PathBall> balls, const Point& origin,
+                          const Progress& progress) {
   std::vector<Index> all(surface.mesh().triangles.size());
   std::iota(all.begin(), all.end(), Index{0});
   return check(surface, all, balls, progress, origin);

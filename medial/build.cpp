@@ -46,8 +46,11 @@ class MedialBuilder {
 
   void make_diagram(std::optional<SurfaceSampling> own) {
     sample(std::move(own));
-    stage("Voronoi diagram",
-          [&] { build_.diagram = voronoi(build_.sampling.points, options_.algorithm, progress_, &build_.voronoi); });
+    stage("Voronoi diagram", [&] {
+      VoronoiBuild voronoi_build = voronoi(build_.sampling.points, options_.algorithm, progress_);
+      build_.diagram = std::move(voronoi_build.diagram);
+      build_.voronoi = std::move(voronoi_build.report);
+    });
     if (!options_.repair_gaps) return;
     stage("gap repair", [&] {
       GapRepair repair = repair_gap_crossings(surface_, std::move(build_.sampling), std::move(build_.diagram),

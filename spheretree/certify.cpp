@@ -23,7 +23,7 @@ std::vector<PathBall> path_balls(const runtime::PackedSphereTree& tree) {
 
 Coverage certify(const Surface& surface, const runtime::PackedSphereTree& tree, const Progress& progress) {
   const Point origin(tree.origin[0], tree.origin[1], tree.origin[2]);
-  return surface_coverage(surface, path_balls(tree), progress, origin);
+  return surface_coverage(surface, path_balls(tree), origin, progress);
 }
 
 }  // namespace orchard

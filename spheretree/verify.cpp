@@ -249,7 +249,7 @@ Verification verify_path_rule(const Surface& surface, std::span<const PathBall> 
   result.nodes = balls.size();
   const PathForest forest(balls);
   std::vector<TriangleViolation> found(result.triangles);
-  for (const UncoveredTriangle& one : surface_coverage(surface, balls, progress).uncovered)
+  for (const UncoveredTriangle& one : surface_coverage(surface, balls, Point::Zero(), progress).uncovered)
     found[one.triangle] = check_all_paths(surface, one.triangle, forest, Point::Zero());
   report_triangles(surface, forest, Point::Zero(), found, options, result);
   return result;

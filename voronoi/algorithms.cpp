@@ -27,19 +27,18 @@ std::optional<VoronoiAlgorithm> voronoi_algorithm_named(std::string_view wanted)
   return std::nullopt;
 }
 
-VoronoiDiagram voronoi(std::span<const Point> points, VoronoiAlgorithm algorithm, const Progress& progress,
-                       InsertionReport* report) {
+VoronoiBuild voronoi(std::span<const Point> points, VoronoiAlgorithm algorithm, const Progress& progress) {
   switch (algorithm) {
     case VoronoiAlgorithm::bowyer:
-      return bowyer_voronoi(points, progress, report);
+      return bowyer_voronoi(points, progress);
     case VoronoiAlgorithm::inagaki:
-      return inagaki_voronoi(points, progress, report);
+      return inagaki_voronoi(points, progress);
     case VoronoiAlgorithm::highest_first:
-      return highest_first_voronoi(points, progress, report);
+      return highest_first_voronoi(points, progress);
     case VoronoiAlgorithm::exact:
       break;
   }
-  return exact_voronoi(points, report);
+  return exact_voronoi(points);
 }
 
 }  // namespace orchard

@@ -4,8 +4,8 @@
 
 namespace orchard {
 
-VoronoiDiagram bowyer_voronoi(std::span<const Point> points, const Progress& progress, InsertionReport* report) {
-  return detail::build_voronoi(points, detail::Search::bowyer, "Voronoi diagram", progress, report);
+VoronoiBuild bowyer_voronoi(std::span<const Point> points, const Progress& progress) {
+  return detail::build_voronoi(points, detail::Search::bowyer, "Voronoi diagram", progress);
 }
 
 }  // namespace orchard

@@ -167,10 +167,10 @@ bool insert_with_all_means(Workspace& workspace, Search search, std::string_view
 
 }  // namespace
 
-VoronoiDiagram build_voronoi(std::span<const Point> points, Search search, std::string_view stage,
-                             const Progress& progress, InsertionReport* caller_report, bool exact) {
-  InsertionReport report;
-  VoronoiDiagram diagram;
+VoronoiBuild build_voronoi(std::span<const Point> points, Search search, std::string_view stage,
+                           const Progress& progress, bool exact) {
+  VoronoiBuild build;
+  auto& [diagram, report] = build;
   const Box box = checked_box(points);
   const Frame frame(box);
   const double radius = points.empty() ? 0 : box.diagonal().norm() / 2;
@@ -202,8 +202,7 @@ VoronoiDiagram build_voronoi(std::span<const Point> points, Search search, std::
     report.dimension = std::min(affine_dimension(diagram.points), 2);
   }
   diagram.points.assign(points.begin(), points.end());
-  if (caller_report != nullptr) *caller_report = std::move(report);
-  return diagram;
+  return build;
 }
 
 }  // namespace orchard::detail

@@ -4,18 +4,17 @@
 
 #include "insertion.h"
 #include "orchard/geometry/progress.h"
-#include "orchard/voronoi/diagram.h"
-#include "orchard/voronoi/insertion_report.h"
+#include "orchard/voronoi/voronoi_build.h"
 
 namespace orchard::detail {
 
 // What the incremental algorithms share: leaving out coincident points, ordering, the first four points, insertion, and
 // turning the workspace into a diagram. With exact signs from the start if asked for.
-VoronoiDiagram build_voronoi(std::span<const Point> points, Search search, std::string_view stage,
-                             const Progress& progress, InsertionReport* report, bool exact = false);
+VoronoiBuild build_voronoi(std::span<const Point> points, Search search, std::string_view stage,
+                           const Progress& progress, bool exact = false);
 
 // The box of the points; throws InputError, naming the point, for a coordinate that is not finite or beyond
-// Frame::kLargest, or if the points are not all one and yet nearer to each other than Frame::kSmallest.
+// Frame::kMax, or if the points are not all one and yet nearer to each other than Frame::kMin.
 Box checked_box(std::span<const Point> points);
 
 // Four points far apart: each the farthest from what those before it span.

@@ -98,14 +98,14 @@ void place_at_infinity(VoronoiVertex& vertex, std::span<const Point> points) {
 
 }  // namespace
 
-VoronoiDiagram exact_voronoi(std::span<const Point> points, InsertionReport* report) {
+VoronoiBuild exact_voronoi(std::span<const Point> points) {
   detail::checked_box(points);
   const auto distinct = distinct_points(points);
   Delaunay delaunay(distinct.begin(), distinct.end());
-  if (report != nullptr) *report = {.dimension = std::max(delaunay.dimension(), 0), .duplicates = identical(points)};
-  VoronoiDiagram diagram;
+  VoronoiBuild build{{}, {.dimension = std::max(delaunay.dimension(), 0), .duplicates = identical(points)}};
+  VoronoiDiagram& diagram = build.diagram;
   diagram.points.assign(points.begin(), points.end());
-  if (delaunay.dimension() < 3) return diagram;
+  if (delaunay.dimension() < 3) return build;
 
   Index count = 0;
   for (auto cell : delaunay.all_cell_handles()) cell->info() = count++;
@@ -125,7 +125,7 @@ VoronoiDiagram exact_voronoi(std::span<const Point> points, InsertionReport* rep
       vertex.at_infinity() ? place_at_infinity(vertex, points) : place_finite(vertex, points);
     }
   });
-  return diagram;
+  return build;
 }
 
 }  // namespace orchard

@@ -4,8 +4,8 @@
 
 namespace orchard {
 
-VoronoiDiagram highest_first_voronoi(std::span<const Point> points, const Progress& progress, InsertionReport* report) {
-  return detail::build_voronoi(points, detail::Search::highest_first, "Voronoi diagram", progress, report);
+VoronoiBuild highest_first_voronoi(std::span<const Point> points, const Progress& progress) {
+  return detail::build_voronoi(points, detail::Search::highest_first, "Voronoi diagram", progress);
 }
 
 }  // namespace orchard

@@ -4,8 +4,8 @@
 
 namespace orchard {
 
-VoronoiDiagram inagaki_voronoi(std::span<const Point> points, const Progress& progress, InsertionReport* report) {
-  return detail::build_voronoi(points, detail::Search::inagaki, "Voronoi diagram", progress, report);
+VoronoiBuild inagaki_voronoi(std::span<const Point> points, const Progress& progress) {
+  return detail::build_voronoi(points, detail::Search::inagaki, "Voronoi diagram", progress);
 }
 
 }  // namespace orchard

@@ -65,9 +65,15 @@ bool insert_into_copy(Workspace& workspace, const Insertion& insertion, bool exa
   return true;
 }
 
+// Moves all of it: a copy could fail with the diagram already replaced.
+InsertionReport replace(VoronoiDiagram& diagram, VoronoiBuild&& build) {
+  diagram = std::move(build.diagram);
+  return std::move(build.report);
+}
+
 }  // namespace
 
-void insert_points(VoronoiDiagram& diagram, std::span<const Point> added, InsertionReport* caller_report) {
+InsertionReport insert_points(VoronoiDiagram& diagram, std::span<const Point> added) {
   InsertionReport report;
   report.dimension = 3;
   const auto first_new = static_cast<Index>(diagram.points.size());
@@ -75,28 +81,25 @@ void insert_points(VoronoiDiagram& diagram, std::span<const Point> added, Insert
   points.insert(points.end(), added.begin(), added.end());
   const Box box = detail::checked_box(points);
 
-  if (diagram.vertices.empty()) {
-    diagram = highest_first_voronoi(points, {}, &report);
-  } else {
-    const detail::Frame frame(box);
-    report.duplicates = detail::coincident_points(points, tolerance::kCoincidentPoints * box.diagonal().norm() / 2,
-                                                  first_new, forming(diagram, points.size()));
-    const std::vector<Index> order = order_of_new(added, first_new, report.duplicates);
-    const Insertion insertion{diagram.vertices, frame, order, first_new};
-    Workspace workspace;
-    set_scale(workspace, frame, box);
-    workspace.points.reserve(points.size());
-    for (const Point& p : points) workspace.points.push_back(frame.inward(p));
-    if ((!workspace.too_noisy() && insert_into_copy(workspace, insertion, false, report)) ||
-        insert_into_copy(workspace, insertion, true, report)) {
-      detail::finish(workspace, frame, {});
-      diagram.vertices = std::move(workspace.vertices);
-      diagram.points = std::move(points);
-    } else {
-      diagram = detail::build_voronoi(points, detail::Search::highest_first, "Voronoi diagram", {}, &report, true);
-    }
+  if (diagram.vertices.empty()) return replace(diagram, highest_first_voronoi(points));
+
+  const detail::Frame frame(box);
+  report.duplicates = detail::coincident_points(points, tolerance::kCoincidentPoints * box.diagonal().norm() / 2,
+                                                first_new, forming(diagram, points.size()));
+  const std::vector<Index> order = order_of_new(added, first_new, report.duplicates);
+  const Insertion insertion{diagram.vertices, frame, order, first_new};
+  Workspace workspace;
+  set_scale(workspace, frame, box);
+  workspace.points.reserve(points.size());
+  for (const Point& p : points) workspace.points.push_back(frame.inward(p));
+  if ((workspace.too_noisy() || !insert_into_copy(workspace, insertion, false, report)) &&
+      !insert_into_copy(workspace, insertion, true, report)) {
+    return replace(diagram, detail::build_voronoi(points, detail::Search::highest_first, "Voronoi diagram", {}, true));
   }
-  if (caller_report != nullptr) *caller_report = std::move(report);
+  detail::finish(workspace, frame, {});
+  diagram.vertices = std::move(workspace.vertices);
+  diagram.points = std::move(points);
+  return report;
 }
 
 }  // namespace orchard

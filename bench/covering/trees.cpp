@@ -13,7 +13,7 @@ namespace orchard::bench {
 
 SphereTree merged_tree(const Surface& surface) {
   SurfaceSampling sampling = sample_surface(surface);
-  VoronoiDiagram diagram = highest_first_voronoi(sampling.points);
+  VoronoiDiagram diagram = highest_first_voronoi(sampling.points).diagram;
   const GapRepair repaired = repair_gap_crossings(surface, std::move(sampling), std::move(diagram));
   SphereTree tree =
       merge_tree(surface, medial_axis(surface, repaired.sampling, repaired.diagram), {.closing = MergeClosing::growth});

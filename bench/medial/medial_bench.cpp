@@ -23,7 +23,7 @@ using namespace orchard;
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 void classify(const Surface& surface, const SurfaceSampling& sampling) {
-  const VoronoiDiagram diagram = highest_first_voronoi(sampling.points);
+  const VoronoiDiagram diagram = highest_first_voronoi(sampling.points).diagram;
   double start = processor_seconds();
   const std::vector<std::uint8_t> inside = detail::interior_vertices(surface, diagram);
   const double fast = processor_seconds() - start;
@@ -66,7 +66,7 @@ void run(const std::string& file, Index points) {
 void repair_plate(Index points) {
   const Surface surface(test::box({0, 0, 0}, {1, 1, 1e-3}));
   SurfaceSampling sampling = sample_surface(surface, {.face_points = points - points / 5, .edge_points = points / 5});
-  VoronoiDiagram diagram = highest_first_voronoi(sampling.points);
+  VoronoiDiagram diagram = highest_first_voronoi(sampling.points).diagram;
   const double start = processor_seconds();
   const GapRepair repaired = repair_gap_crossings(surface, std::move(sampling), std::move(diagram));
   const double seconds = processor_seconds() - start;

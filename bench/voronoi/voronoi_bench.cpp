@@ -73,14 +73,13 @@ class Table {
     std::vector<Kernel::Point_3> cgal_points;
     for (const Point& p : points) cgal_points.emplace_back(p.x(), p.y(), p.z());
     const double bytes = bench::peak_bytes([&] { highest_first_voronoi(points); });
-    InsertionReport report;
-    VoronoiDiagram diagram;
+    VoronoiBuild build;
     double ours = 1e300, cgal = 1e300;
     for (int i = 0; i < runs; ++i) {  // alternating, so that both meet the same machine
-      ours = std::min(ours, seconds([&] { diagram = highest_first_voronoi(points, {}, &report); }));
+      ours = std::min(ours, seconds([&] { build = highest_first_voronoi(points); }));
       cgal = std::min(cgal, seconds([&] { Delaunay(cgal_points.begin(), cgal_points.end()); }));
     }
-    print(name, points, diagram, report, ours, cgal, bytes);
+    print(name, points, build.diagram, build.report, ours, cgal, bytes);
   }
 
  private:
@@ -121,7 +120,7 @@ test::Points model_points(const std::string& file, std::size_t n) {
 }
 
 void insertion(const char* name, const test::Points& points, std::size_t last) {
-  const VoronoiDiagram before = highest_first_voronoi(std::span(points).first(points.size() - last));
+  const VoronoiDiagram before = highest_first_voronoi(std::span(points).first(points.size() - last)).diagram;
   double best = 1e300, best_wall = 1e300;
   for (int i = 0; i < 9; ++i) {
     VoronoiDiagram diagram = before;
@@ -138,7 +137,7 @@ void insertion(const char* name, const test::Points& points, std::size_t last) {
 }
 
 void metric(const char* name, const test::Points& points) {
-  const VoronoiDiagram diagram = highest_first_voronoi(points);
+  const VoronoiDiagram diagram = highest_first_voronoi(points).diagram;
   VoronoiInaccuracy result;
   const double time = seconds([&] { result = inaccuracy(diagram); });
   std::printf("%-20s %7zu points: %.2f s of processor time, %llu samples, mean %.1e\n", name, points.size(), time,

@@ -209,8 +209,7 @@ class Repair {
   // What was wrong with cells that stay as they are is still wrong with them.
   void update(Index first_new) {
     const auto added = std::span<const Point>(result_.sampling.points).subspan(first_new);
-    InsertionReport inserted;
-    insert_points(result_.diagram, added, &inserted);
+    const InsertionReport inserted = insert_points(result_.diagram, added);
     if (made_anew(inserted, added.size())) {
       neighbors_ = detail::CellNeighbors(result_.diagram);
       find_anew();
@@ -253,7 +252,7 @@ GapRepair thinned(const Surface& surface, GapRepair repaired, Index original, co
     if (std::count(stay.begin(), stay.end(), 0) == 0) break;
     const Index left = static_cast<Index>(std::count(stay.begin(), stay.begin() + original, 1));
     SurfaceSampling sampling = detail::points_that_stay(repaired.sampling, stay);
-    VoronoiDiagram diagram = highest_first_voronoi(sampling.points, progress);
+    VoronoiDiagram diagram = highest_first_voronoi(sampling.points, progress).diagram;
     GapRepair next = Repair(surface, std::move(sampling), std::move(diagram), options, progress).run();
     if (next.sampling.size() >= repaired.sampling.size() ||
         next.report.faces_still_crossing > repaired.report.faces_still_crossing) {

@@ -28,7 +28,7 @@ SurfaceSampling points_at_vertices(const Surface& surface) {
 }
 
 MedialAxis axis_of(const Surface& surface, const SurfaceSampling& sampling) {
-  MedialAxis axis = medial_axis(surface, sampling, exact_voronoi(sampling.points));
+  MedialAxis axis = medial_axis(surface, sampling, exact_voronoi(sampling.points).diagram);
   validate(axis, surface);
   return axis;
 }
@@ -254,7 +254,7 @@ TEST(MedialAxis, ClassifiesVerticesAsTheSurfaceDoes) {
   for (const TriangleMesh& mesh : {test::u_shape(0.05), test::torus(32, 16), test::two_boxes(0.01)}) {
     const Surface surface(mesh);
     const VoronoiDiagram diagram =
-        exact_voronoi(sample_surface(surface, {.face_points = 600, .edge_points = 100}).points);
+        exact_voronoi(sample_surface(surface, {.face_points = 600, .edge_points = 100}).points).diagram;
     const std::vector<std::uint8_t> inside = detail::interior_vertices(surface, diagram);
     for (std::size_t i = 0; i < inside.size(); ++i) {
       const VoronoiVertex& vertex = diagram.vertices[i];
@@ -266,7 +266,7 @@ TEST(MedialAxis, ClassifiesVerticesAsTheSurfaceDoes) {
 TEST(MedialAxis, LeavesOutVerticesWithoutAPosition) {
   const Surface surface(test::box({0, 0, 0}, {1, 1, 1}));
   const SurfaceSampling sampling = sample_surface(surface, {.face_points = 200, .edge_points = 50});
-  VoronoiDiagram diagram = exact_voronoi(sampling.points);
+  VoronoiDiagram diagram = exact_voronoi(sampling.points).diagram;
   for (VoronoiVertex& vertex : diagram.vertices) {
     if (surface.bounding_box().contains(vertex.center)) {
       vertex.center = Point::Constant(std::numeric_limits<double>::quiet_NaN());

@@ -24,7 +24,7 @@ namespace {
 GapRepair sampled_and_repaired(const Surface& surface, const SamplingOptions& sampling,
                                const GapRepairOptions& options = {}) {
   SurfaceSampling points = sample_surface(surface, sampling);
-  VoronoiDiagram diagram = highest_first_voronoi(points.points);
+  VoronoiDiagram diagram = highest_first_voronoi(points.points).diagram;
   return repair_gap_crossings(surface, std::move(points), std::move(diagram), options);
 }
 
@@ -128,7 +128,7 @@ TEST(GapRepair, FindsAComponentThatNoPointLiesOn) {
     kept.features.push_back(sampling.features[i]);
     kept.origins.push_back(sampling.origins[i]);
   }
-  VoronoiDiagram diagram = highest_first_voronoi(kept.points);
+  VoronoiDiagram diagram = highest_first_voronoi(kept.points).diagram;
   const GapRepair repaired = repair_gap_crossings(surface, std::move(kept), std::move(diagram));
   EXPECT_GE(repaired.report.points_added, 4u);
   expect_mended(surface, repaired);
@@ -137,7 +137,7 @@ TEST(GapRepair, FindsAComponentThatNoPointLiesOn) {
 TEST(GapRepair, KeepsTheGivenPointsAndMarksItsOwn) {
   const Surface surface(test::u_shape(0.02));
   const SurfaceSampling before = sample_surface(surface, points(800, 200));
-  const GapRepair repaired = repair_gap_crossings(surface, before, highest_first_voronoi(before.points));
+  const GapRepair repaired = repair_gap_crossings(surface, before, highest_first_voronoi(before.points).diagram);
   const SurfaceSampling& after = repaired.sampling;
   ASSERT_EQ(after.size(), before.size() + repaired.report.points_added);
   for (Index i = 0; i < after.size(); ++i) {
@@ -272,7 +272,7 @@ TEST(GapRepair, LooseForgivesClustersThatShareAVertexAndNoOthers) {
   for (const TriangleMesh& mesh : {test::extruded(test::knees(0.01), 1), test::u_shape(0.02), disk(40, 0.02)}) {
     const Surface surface(mesh);
     const SurfaceSampling sampling = sample_surface(surface, points(600, 100));
-    const VoronoiDiagram diagram = highest_first_voronoi(sampling.points);
+    const VoronoiDiagram diagram = highest_first_voronoi(sampling.points).diagram;
     const detail::CellNeighbors neighbors(diagram);
     const detail::RestrictedVoronoi restricted(surface, sampling.points, neighbors);
     const auto scope = detail::PatchScope::everything(surface, sampling);
@@ -333,7 +333,7 @@ TEST(GapRepair, RefusesWhatIsNoSolid) {
 TEST(GapRepair, StopsWhenTheCallerSaysSo) {
   const Surface surface(test::u_shape(0.02));
   SurfaceSampling sampling = sample_surface(surface, points(200, 50));
-  VoronoiDiagram diagram = highest_first_voronoi(sampling.points);
+  VoronoiDiagram diagram = highest_first_voronoi(sampling.points).diagram;
   EXPECT_THROW(repair_gap_crossings(surface, std::move(sampling), std::move(diagram), {},
                                     [](std::string_view, double) { return false; }),
                Cancelled);
@@ -357,7 +357,7 @@ TEST(GapRepair, WithThinningNeedsFarFewerPointsForTheSame) {
     const Surface surface(read_mesh(std::filesystem::path(ORCHARD_DATA_DIR) / (std::string(name) + ".obj")));
     const SurfaceSampling sampling = sample_surface(surface, points(800, 200));
     const auto repaired = [&](bool thin) {
-      return repair_gap_crossings(surface, sampling, highest_first_voronoi(sampling.points), {.thin = thin});
+      return repair_gap_crossings(surface, sampling, highest_first_voronoi(sampling.points).diagram, {.thin = thin});
     };
     const GapRepair doubled = repaired(false), thinned = repaired(true);
     SCOPED_TRACE(name);

@@ -24,7 +24,7 @@ struct Scene {
   explicit Scene(TriangleMesh mesh) : surface(std::move(mesh)) {}
 
   void prepare() {
-    diagram = exact_voronoi(sampling.points);
+    diagram = exact_voronoi(sampling.points).diagram;
     neighbors.emplace(diagram);
     restricted.emplace(surface, diagram.points, *neighbors);
     for (Crossing& crossing :
@@ -88,7 +88,7 @@ TEST(RepairPoint, NeverFloats) {
   Scene scene(test::extruded(test::short_shelf(0.05), 1));
   const SurfaceSampling some = sample_surface(scene.surface, {.face_points = 150, .edge_points = 40});
   scene.sampling = some;
-  scene.diagram = exact_voronoi(some.points);
+  scene.diagram = exact_voronoi(some.points).diagram;
   scene.neighbors.emplace(scene.diagram);
   scene.restricted.emplace(scene.surface, scene.diagram.points, *scene.neighbors);
   const auto crossings =

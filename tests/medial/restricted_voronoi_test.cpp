@@ -59,7 +59,7 @@ TEST(RestrictedVoronoi, DividesEveryTriangleAmongItsNearestPoints) {
     SCOPED_TRACE(++seed);
     const Surface surface(mesh);
     const SurfaceSampling sampling = random_sampling(surface, 300, seed);
-    const VoronoiDiagram diagram = exact_voronoi(sampling.points);
+    const VoronoiDiagram diagram = exact_voronoi(sampling.points).diagram;
     const CellNeighbors neighbors(diagram);
     const RestrictedVoronoi restricted(surface, diagram.points, neighbors);
     CellPolygon polygon;
@@ -83,7 +83,7 @@ TEST(RestrictedVoronoi, BordersAreMutual) {
   for (const TriangleMesh& mesh : solids()) {
     const Surface surface(mesh);
     const SurfaceSampling sampling = random_sampling(surface, 200, 9);
-    const VoronoiDiagram diagram = exact_voronoi(sampling.points);
+    const VoronoiDiagram diagram = exact_voronoi(sampling.points).diagram;
     const CellNeighbors neighbors(diagram);
     const RestrictedVoronoi restricted(surface, diagram.points, neighbors);
     for (Index triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
@@ -106,10 +106,10 @@ TEST(RestrictedVoronoi, UpdatesToWhatItWouldHaveBeen) {
     const Surface surface(mesh);
     const SurfaceSampling all = random_sampling(surface, 260, seed);
     const Index first_new = 240;
-    VoronoiDiagram diagram = exact_voronoi(std::span(all.points).first(first_new));
+    VoronoiDiagram diagram = exact_voronoi(std::span(all.points).first(first_new)).diagram;
     CellNeighbors neighbors(diagram);
     RestrictedVoronoi updated(surface, diagram.points, neighbors);
-    const VoronoiDiagram larger = exact_voronoi(all.points);
+    const VoronoiDiagram larger = exact_voronoi(all.points).diagram;
     updated.update(larger.points, neighbors.update(larger, first_new));
     const CellNeighbors fresh_neighbors(larger);
     const RestrictedVoronoi fresh(surface, larger.points, fresh_neighbors);
@@ -136,7 +136,7 @@ TEST(CellPatches, AddUpToTheEulerCharacteristicOfTheSurface) {
        std::vector<std::pair<TriangleMesh, int>>{{test::icosphere(3), 2}, {test::torus(48, 24), 0}}) {
     const Surface surface(mesh);
     const SurfaceSampling sampling = sample_surface(surface, {.face_points = 600, .edge_points = 0});
-    const VoronoiDiagram diagram = exact_voronoi(sampling.points);
+    const VoronoiDiagram diagram = exact_voronoi(sampling.points).diagram;
     const CellNeighbors neighbors(diagram);
     const RestrictedVoronoi restricted(surface, diagram.points, neighbors);
     const auto patches = find_cell_patches(surface, sampling, restricted, PatchScope::everything(surface, sampling));
@@ -170,7 +170,7 @@ TEST(CellPatches, TellOneThatTheCellReachesFromOneThatItsPointLiesOn) {
     some.features.push_back(all.features[i]);
     some.origins.push_back(all.origins[i]);
   }
-  const VoronoiDiagram diagram = exact_voronoi(some.points);
+  const VoronoiDiagram diagram = exact_voronoi(some.points).diagram;
   const CellNeighbors neighbors(diagram);
   const RestrictedVoronoi restricted(surface, diagram.points, neighbors);
   const auto patches = find_cell_patches(surface, some, restricted, PatchScope::everything(surface, some));

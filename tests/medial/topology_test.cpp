@@ -88,7 +88,7 @@ struct Axis {
 Axis axis_topology(TriangleMesh mesh, bool repair, bool keep) {
   const Surface surface(std::move(mesh));
   SurfaceSampling sampling = sample_surface(surface, {.face_points = 800, .edge_points = 200});
-  VoronoiDiagram diagram = exact_voronoi(sampling.points);
+  VoronoiDiagram diagram = exact_voronoi(sampling.points).diagram;
   if (repair) {
     GapRepair repaired = repair_gap_crossings(surface, std::move(sampling), std::move(diagram));
     sampling = std::move(repaired.sampling);
@@ -132,7 +132,7 @@ TEST(GapRepairAtCuts, AddsNoPointsWhereSheetsCross) {
   const Surface surface(with(test::box({0, 0, 0}, {1, 1, 1}), test::box({0.53, 0.31, 0.27}, {1.61, 0.69, 0.73})));
   ASSERT_TRUE(surface.solid());
   SurfaceSampling sampling = sample_surface(surface, {.face_points = 800, .edge_points = 200});
-  VoronoiDiagram diagram = exact_voronoi(sampling.points);
+  VoronoiDiagram diagram = exact_voronoi(sampling.points).diagram;
   const GapRepair repaired = repair_gap_crossings(surface, sampling, std::move(diagram));
   EXPECT_GT(repaired.report.faces_at_cuts, 0u);
   EXPECT_EQ(repaired.report.faces_still_crossing, repaired.report.faces_at_cuts);

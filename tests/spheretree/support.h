@@ -17,7 +17,7 @@ namespace orchard::test {
 inline MedialAxis axis_of(const Surface& surface, Index points = 600, std::uint64_t seed = 1) {
   const SurfaceSampling sampling =
       sample_surface(surface, {.face_points = points, .edge_points = points / 4, .iterations = 10, .seed = seed});
-  return medial_axis(surface, sampling, exact_voronoi(sampling.points));
+  return medial_axis(surface, sampling, exact_voronoi(sampling.points).diagram);
 }
 
 // Points of the surface, corners included.

@@ -54,7 +54,7 @@ TEST(ViewFiles, OfVoronoiCellsToo) {
   points.reserve(60);
   Random random(2, 1);
   for (int i = 0; i < 60; ++i) points.emplace_back(random.uniform(), random.uniform(), random.uniform());
-  write_voronoi_cells(folder / "cells.vtu", highest_first_voronoi(points));
+  write_voronoi_cells(folder / "cells.vtu", highest_first_voronoi(points).diagram);
   expect_text_within_elements(content(folder / "cells.vtu"));
 }
 

@@ -63,7 +63,7 @@ double value(vtkUnstructuredGrid* grid, const char* array, vtkIdType cell) {
 
 TEST(WriteVoronoiCells, IsReadBackAsTheSamePolyhedra) {
   const TestFolder folder;
-  const VoronoiDiagram diagram = highest_first_voronoi(random_points());
+  const VoronoiDiagram diagram = highest_first_voronoi(random_points()).diagram;
   const VoronoiCells cells(diagram);
   const Box box(Point(-0.5, -0.5, -0.5), Point(1.5, 1.5, 1.5));
   EXPECT_EQ(write_voronoi_cells(folder / "cells.vtu", diagram, {.box = box, .points = {}}), 60u);
@@ -84,7 +84,7 @@ TEST(WriteVoronoiCells, IsReadBackAsTheSamePolyhedra) {
 
 TEST(WriteVoronoiCells, TakesTheInaccuracyOfEachCell) {
   const TestFolder folder;
-  const VoronoiDiagram diagram = inagaki_voronoi(lattice());
+  const VoronoiDiagram diagram = inagaki_voronoi(lattice()).diagram;
   const std::vector<double> expected = cell_inaccuracies(diagram);
   write_voronoi_cells(folder / "cells.vtu", diagram);
   const auto grid = read(folder / "cells.vtu");
@@ -98,7 +98,7 @@ TEST(WriteVoronoiCells, TakesTheInaccuracyOfEachCell) {
 
 TEST(WriteVoronoiCells, ShowsTheCellsThatAreAskedForAndClipsThem) {
   const TestFolder folder;
-  const VoronoiDiagram diagram = highest_first_voronoi(lattice());
+  const VoronoiDiagram diagram = highest_first_voronoi(lattice()).diagram;
   const std::vector<Index> chosen{21, 3, 42};
   const Box box(Point(-0.5, -0.5, -0.5), Point(3.5, 1.5, 1.5));
   EXPECT_EQ(write_voronoi_cells(folder / "some.vtu", diagram, {.box = box, .points = chosen}), 2u) << "42 is outside";
@@ -114,14 +114,14 @@ TEST(WriteVoronoiCells, ShowsTheCellsThatAreAskedForAndClipsThem) {
 
 TEST(WriteVoronoiCells, WritesTheSameBytesForTheSameDiagramAndAnEmptyFileForFlatPoints) {
   const TestFolder folder;
-  const VoronoiDiagram diagram = highest_first_voronoi(random_points());
+  const VoronoiDiagram diagram = highest_first_voronoi(random_points()).diagram;
   const auto bytes = [&](const char* name) {
     write_voronoi_cells(folder / name, diagram);
     std::ifstream in(folder / name, std::ios::binary);
     return std::string(std::istreambuf_iterator<char>(in), {});
   };
   EXPECT_EQ(bytes("a.vtu"), bytes("b.vtu"));
-  EXPECT_EQ(write_voronoi_cells(folder / "flat.vtu", highest_first_voronoi(std::vector<Point>{{0, 0, 0}})), 0u);
+  EXPECT_EQ(write_voronoi_cells(folder / "flat.vtu", highest_first_voronoi(std::vector<Point>{{0, 0, 0}}).diagram), 0u);
   EXPECT_EQ(read(folder / "flat.vtu")->GetNumberOfCells(), 0);
 }
 

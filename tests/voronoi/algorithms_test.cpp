@@ -30,10 +30,9 @@ TEST(VoronoiAlgorithms, HaveNames) {
 TEST(VoronoiAlgorithms, AgreeOnPointsThatAreFarFromDegenerate) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const test::Points points = seed % 2 == 0 ? test::uniform_points(150, seed) : test::bumpy_sphere_points(150, seed);
-    const auto expected = quadruples(exact_voronoi(points));
+    const auto expected = quadruples(exact_voronoi(points).diagram);
     for (const VoronoiAlgorithm algorithm : kVoronoiAlgorithms) {
-      InsertionReport report;
-      const VoronoiDiagram diagram = voronoi(points, algorithm, {}, &report);
+      const auto [diagram, report] = voronoi(points, algorithm);
       EXPECT_NO_THROW(validate(diagram));
       EXPECT_EQ(quadruples(diagram), expected) << name(algorithm) << ", seed " << seed;
       EXPECT_EQ(report.dimension, 3);
@@ -45,7 +44,7 @@ TEST(VoronoiAlgorithms, GiveFlatPointsNoVertices) {
   for (const auto& points : {test::Points{}, test::Points{{1, 2, 3}}, test::Points{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}},
                              test::Points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {3, 4, 0}}})
     for (const VoronoiAlgorithm algorithm : kVoronoiAlgorithms) {
-      const VoronoiDiagram diagram = voronoi(points, algorithm);
+      const VoronoiDiagram diagram = voronoi(points, algorithm).diagram;
       EXPECT_EQ(diagram.points, points);
       EXPECT_TRUE(diagram.vertices.empty()) << name(algorithm);
     }
@@ -55,7 +54,7 @@ TEST(Bowyer, FailsLoudlyOnDegeneratePoints) {
   int failures = 0;
   for (const auto& [name, points] : test::degenerate_point_sets()) {
     try {
-      validate(bowyer_voronoi(points));  // where it does not fail, what it gives is consistent
+      validate(bowyer_voronoi(points).diagram);  // where it does not fail, what it gives is consistent
     } catch (const InputError&) {
       ADD_FAILURE() << name << ": the points are not at fault";
     } catch (const Error& error) {
@@ -69,7 +68,7 @@ TEST(Bowyer, FailsLoudlyOnDegeneratePoints) {
 TEST(Inagaki, IsConsistentOnDegeneratePoints) {
   for (const auto& [name, points] : test::degenerate_point_sets()) {
     VoronoiDiagram diagram;
-    ASSERT_NO_THROW(diagram = inagaki_voronoi(points)) << name;
+    ASSERT_NO_THROW(diagram = inagaki_voronoi(points).diagram) << name;
     EXPECT_NO_THROW(validate(diagram)) << name;
   }
 }
@@ -77,9 +76,8 @@ TEST(Inagaki, IsConsistentOnDegeneratePoints) {
 // Chapter 6 reports four to eight orders of magnitude between the two, on its faucet and its ship.
 void expect_far_more_accurate(const std::string& name, const test::Points& points) {
   const double radius = test::bounding_radius(points);
-  InsertionReport coarse, fine;
-  const VoronoiDiagram inagaki = inagaki_voronoi(points, {}, &coarse);
-  const VoronoiDiagram highest_first = highest_first_voronoi(points, {}, &fine);
+  const auto [inagaki, coarse] = inagaki_voronoi(points);
+  const auto [highest_first, fine] = highest_first_voronoi(points);
   EXPECT_GT(inaccuracy(inagaki).mean, 1e-5 * radius) << name;
   EXPECT_LT(inaccuracy(highest_first).mean, 1e-15 * radius) << name;
   EXPECT_GT(coarse.coplanar_centers, 10 * fine.coplanar_centers) << name;
@@ -98,10 +96,9 @@ TEST(Inagaki, IsOrdersOfMagnitudeLessAccurateThanHighestFirst) {
 TEST(ConstrainedSearch, AloneFindsTheExactDiagramToo) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const test::Points points = seed % 2 == 0 ? test::uniform_points(120, seed) : test::torus_points(120, seed);
-    InsertionReport report;
-    const VoronoiDiagram diagram = detail::build_voronoi(points, detail::Search::always_by_value, "test", {}, &report);
+    const auto [diagram, report] = detail::build_voronoi(points, detail::Search::always_by_value, "test", {});
     validate(diagram);
-    EXPECT_EQ(quadruples(diagram), quadruples(exact_voronoi(points))) << "seed " << seed;
+    EXPECT_EQ(quadruples(diagram), quadruples(exact_voronoi(points).diagram)) << "seed " << seed;
     EXPECT_EQ(report.constrained_insertions, points.size() - 4);
   }
 }
@@ -109,7 +106,7 @@ TEST(ConstrainedSearch, AloneFindsTheExactDiagramToo) {
 TEST(ConstrainedSearch, AloneIsConsistentOnDegeneratePoints) {
   for (const auto& [name, points] : test::degenerate_point_sets()) {
     VoronoiDiagram diagram;
-    ASSERT_NO_THROW(diagram = detail::build_voronoi(points, detail::Search::always_by_value, "test", {}, nullptr))
+    ASSERT_NO_THROW(diagram = detail::build_voronoi(points, detail::Search::always_by_value, "test", {}).diagram)
         << name;
     EXPECT_NO_THROW(validate(diagram)) << name;
   }

@@ -23,7 +23,7 @@ TEST(ClippedCell, OfAllPointsFillTheBox) {
     const Box box = box_around(points, 0.1);
     if (name == "needle" || name == "two distant clusters" || name.starts_with("tiny") || name.starts_with("grid far"))
       continue;
-    const VoronoiDiagram diagram = highest_first_voronoi(points);
+    const VoronoiDiagram diagram = highest_first_voronoi(points).diagram;
     const VoronoiCells cells(diagram);
     double sum = 0;
     for (Index p = 0; p < cells.size(); ++p) sum += volume(clipped_cell(diagram, cells, p, box));
@@ -33,7 +33,7 @@ TEST(ClippedCell, OfAllPointsFillTheBox) {
 
 TEST(ClippedCell, IsClosedAndConvexAndHoldsItsPoint) {
   const test::Points points = test::bumpy_sphere_points(200, 1);
-  const VoronoiDiagram diagram = highest_first_voronoi(points);
+  const VoronoiDiagram diagram = highest_first_voronoi(points).diagram;
   const VoronoiCells cells(diagram);
   const Box box = box_around(points, 0.5);
   for (Index p = 0; p < cells.size(); ++p) {
@@ -71,7 +71,7 @@ test::Points unit_lattice() {
 }
 
 TEST(ClippedCell, OfALatticeAreItsCubes) {
-  const VoronoiDiagram diagram = highest_first_voronoi(unit_lattice());
+  const VoronoiDiagram diagram = highest_first_voronoi(unit_lattice()).diagram;
   const VoronoiCells cells(diagram);
   const Box box(Point(-0.5, -0.5, -0.5), Point(3.5, 3.5, 3.5));
   for (Index p = 0; p < cells.size(); ++p) {
@@ -85,7 +85,7 @@ TEST(ClippedCell, OfALatticeAreItsCubes) {
 TEST(ClippedCell, IsEmptyOutsideTheBoxAndForPointsWithoutVertices) {
   test::Points points = unit_lattice();
   points.push_back(points[0]);
-  const VoronoiDiagram diagram = highest_first_voronoi(points);
+  const VoronoiDiagram diagram = highest_first_voronoi(points).diagram;
   const VoronoiCells cells(diagram);
   const Box corner(Point(-1, -1, -1), Point(0.4, 0.4, 0.4));
   EXPECT_NEAR(volume(clipped_cell(diagram, cells, 0, corner)), corner.volume(), 1e-12);

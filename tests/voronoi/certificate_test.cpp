@@ -30,7 +30,7 @@ Certificate certificate_of(const VoronoiDiagram& diagram, bool exact) {
 
 TEST(Certificate, HoldsForExactDiagramsWithNoDepthAtAll) {
   for (const auto& [name, points] : test::degenerate_point_sets()) {
-    const VoronoiDiagram diagram = exact_voronoi(points);
+    const VoronoiDiagram diagram = exact_voronoi(points).diagram;
     const Certificate certificate = certificate_of(diagram, true);
     EXPECT_TRUE(certificate.holds) << name;
     EXPECT_EQ(certificate.depth, 0) << name;
@@ -39,8 +39,7 @@ TEST(Certificate, HoldsForExactDiagramsWithNoDepthAtAll) {
 
 TEST(Certificate, IsReportedAndHoldsTheDepthThatTheJudgeFinds) {
   for (const auto& [name, points] : test::degenerate_point_sets()) {
-    InsertionReport report;
-    const VoronoiDiagram diagram = highest_first_voronoi(points, {}, &report);
+    const auto [diagram, report] = highest_first_voronoi(points);
     const test::Judgement judgement = test::judge(diagram);
     // Spheres and planes are rounded, in the judge as well.
     EXPECT_LE(judgement.deepest, report.certified_depth + 1e-11) << name;
@@ -54,7 +53,7 @@ TEST(Certificate, IsNeverGivenToADiagramThatIsWrong) {
   int given = 0, refused = 0, wrong = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     const test::ShakenSet set = test::shaken_set(seed);
-    const VoronoiDiagram diagram = inagaki_voronoi(set.points);
+    const VoronoiDiagram diagram = inagaki_voronoi(set.points).diagram;
     if (diagram.vertices.empty()) continue;
     const test::Judgement judgement = test::judge(diagram);
     const bool is_wrong = judgement.deepest > tolerance::kVoronoiDepth || judgement.beyond > tolerance::kVoronoiDepth;
@@ -73,7 +72,7 @@ TEST(Certificate, IsNeverGivenToADiagramThatIsWrong) {
 TEST(Certificate, IsRefusedWhereAPointHasMovedAway) {
   int moved = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    VoronoiDiagram diagram = exact_voronoi(test::uniform_points(40, seed));
+    VoronoiDiagram diagram = exact_voronoi(test::uniform_points(40, seed)).diagram;
     ASSERT_TRUE(certificate_of(diagram, false).holds);
     Point& p = diagram.points[seed];
     p += 0.5 * (diagram.points[(seed + 7) % 40] - p);

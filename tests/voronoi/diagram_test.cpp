@@ -23,7 +23,7 @@ bool neighbors(const VoronoiVertex& vertex, Index other) {
 
 TEST(VoronoiFaces, ListEachPairOfNeighbouringCellsOnceInAscendingOrder) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    const VoronoiDiagram diagram = exact_voronoi(test::torus_points(150, seed));
+    const VoronoiDiagram diagram = exact_voronoi(test::torus_points(150, seed)).diagram;
     const VoronoiFaces faces = voronoi_faces(diagram);
     std::set<std::array<Index, 2>> expected;
     for (const VoronoiVertex& vertex : diagram.vertices)
@@ -36,7 +36,7 @@ TEST(VoronoiFaces, ListEachPairOfNeighbouringCellsOnceInAscendingOrder) {
 }
 
 TEST(VoronoiFaces, GoAroundTheEdgeBetweenTheTwoPoints) {
-  const VoronoiDiagram diagram = exact_voronoi(test::uniform_points(300, 3));
+  const VoronoiDiagram diagram = exact_voronoi(test::uniform_points(300, 3)).diagram;
   const VoronoiFaces faces = voronoi_faces(diagram);
   for (Index f = 0; f < faces.vertices.size(); ++f) {
     const auto ring = faces.vertices[f];
@@ -57,7 +57,7 @@ TEST(VoronoiFaces, GoAroundTheEdgeBetweenTheTwoPoints) {
 }
 
 TEST(VoronoiFaces, RunCounterClockwiseSeenFromTheSecondPoint) {
-  const VoronoiDiagram diagram = exact_voronoi(test::uniform_points(300, 4));
+  const VoronoiDiagram diagram = exact_voronoi(test::uniform_points(300, 4)).diagram;
   const VoronoiFaces faces = voronoi_faces(diagram);
   for (Index f = 0; f < faces.vertices.size(); ++f) {
     const auto ring = faces.vertices[f];
@@ -70,7 +70,7 @@ TEST(VoronoiFaces, RunCounterClockwiseSeenFromTheSecondPoint) {
 }
 
 TEST(VerticesOfPoints, AreAscendingAndComplete) {
-  const VoronoiDiagram diagram = exact_voronoi(test::uniform_points(200, 5));
+  const VoronoiDiagram diagram = exact_voronoi(test::uniform_points(200, 5)).diagram;
   const Rows rows = vertices_of_points(diagram);
   ASSERT_EQ(rows.size(), diagram.points.size());
   for (Index p = 0; p < rows.size(); ++p) {
@@ -84,7 +84,7 @@ TEST(VerticesOfPoints, AreAscendingAndComplete) {
 TEST(Validate, AcceptsAnEmptyDiagram) { EXPECT_NO_THROW(validate(VoronoiDiagram{})); }
 
 TEST(Validate, NoticesWhatIsBroken) {
-  const VoronoiDiagram good = exact_voronoi(test::uniform_points(60, 6));
+  const VoronoiDiagram good = exact_voronoi(test::uniform_points(60, 6)).diagram;
   ASSERT_NO_THROW(validate(good));
   const auto refuses = [&](const char* what, auto&& damage) {
     VoronoiDiagram bad = good;

@@ -51,7 +51,7 @@ std::set<Four> brute_force(const test::Points& points) {
 TEST(ExactVoronoi, HasTheVerticesWhoseSpheresHoldNoPoint) {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     const test::Points points = test::uniform_points(5 + seed % 10, seed);
-    const VoronoiDiagram diagram = exact_voronoi(points);
+    const VoronoiDiagram diagram = exact_voronoi(points).diagram;
     validate(diagram);
     std::set<Four> found;
     for (const VoronoiVertex& vertex : diagram.vertices) {
@@ -65,7 +65,7 @@ TEST(ExactVoronoi, HasTheVerticesWhoseSpheresHoldNoPoint) {
 
 TEST(ExactVoronoi, PlacesVerticesAtEqualDistanceFromTheirFormingPoints) {
   for (const auto& [name, points] : test::degenerate_point_sets()) {
-    const VoronoiDiagram diagram = exact_voronoi(points);
+    const VoronoiDiagram diagram = exact_voronoi(points).diagram;
     validate(diagram);
     const Box box = [&p = points] {
       Box b;
@@ -83,7 +83,7 @@ TEST(ExactVoronoi, PlacesVerticesAtEqualDistanceFromTheirFormingPoints) {
 
 TEST(ExactVoronoi, PointsUnboundedEdgesAwayFromAllPoints) {
   const test::Points points = test::torus_points(200, 1);
-  for (const VoronoiVertex& vertex : exact_voronoi(points).vertices) {
+  for (const VoronoiVertex& vertex : exact_voronoi(points).diagram.vertices) {
     if (!vertex.at_infinity()) continue;
     EXPECT_NEAR(vertex.center.norm(), 1, 1e-14);
     const Index on = vertex.forming_points[0] == kInfinitePoint ? vertex.forming_points[1] : vertex.forming_points[0];
@@ -95,7 +95,7 @@ TEST(ExactVoronoi, LeavesOutCoincidentPointsButTheFirst) {
   test::Points points = test::uniform_points(40, 1);
   points.push_back(points[7]);
   points.insert(points.begin(), points[5]);
-  const Rows rows = vertices_of_points(exact_voronoi(points));
+  const Rows rows = vertices_of_points(exact_voronoi(points).diagram);
   EXPECT_TRUE(rows[41].empty());
   EXPECT_TRUE(rows[6].empty());
   EXPECT_FALSE(rows[0].empty());
@@ -109,8 +109,8 @@ TEST(ExactVoronoi, OfPointsInAPlaneHasNoVertices) {
                                                        {2, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
                                                        {2, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}}}};
   for (const auto& [dimension, points] : flat) {
-    InsertionReport report;
-    EXPECT_TRUE(exact_voronoi(points, &report).vertices.empty());
+    const auto [diagram, report] = exact_voronoi(points);
+    EXPECT_TRUE(diagram.vertices.empty());
     EXPECT_EQ(report.dimension, dimension);
   }
 }

@@ -53,10 +53,10 @@ TEST(Frame, HasCoordinatesThatAreSmallAndMultiplesOfItsQuantum) {
 TEST(Frame, LetsDiagramsBeTheSameAtEveryScaleThatIsAPowerOfTwo) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const test::Points points = test::shaken_set(seed).points;
-    const VoronoiDiagram one = highest_first_voronoi(points);
+    const VoronoiDiagram one = highest_first_voronoi(points).diagram;
     for (const int exponent : {-320, -280, -60, 60, 280, 320}) {
       const double scale = std::ldexp(1.0, exponent);
-      const VoronoiDiagram other = highest_first_voronoi(test::moved(points, scale, Vector::Zero()));
+      const VoronoiDiagram other = highest_first_voronoi(test::moved(points, scale, Vector::Zero())).diagram;
       ASSERT_EQ(quadruples(one), quadruples(other)) << "seed " << seed << ", scale 2^" << exponent;
       for (std::size_t v = 0; v < one.vertices.size(); ++v)
         if (!one.vertices[v].at_infinity()) {
@@ -73,8 +73,7 @@ TEST(Frame, LetsPointsFarFromTheOriginHaveRightDiagrams) {
       for (const test::Points& points :
            {test::bumpy_sphere_points(150, seed), test::grid_points(5), test::relaxed_polyhedron_points(150, seed)}) {
         test::Points moved = test::moved(points, 1, far);
-        InsertionReport report;
-        VoronoiDiagram diagram = highest_first_voronoi(moved, {}, &report);
+        auto [diagram, report] = highest_first_voronoi(moved);
         if (offset < 1e14) {
           ASSERT_EQ(report.dimension, 3);
         }
@@ -83,7 +82,7 @@ TEST(Frame, LetsPointsFarFromTheOriginHaveRightDiagrams) {
         test::Judgement judgement = test::judge(diagram);
         EXPECT_LE(judgement.deepest, tolerance::kVoronoiDepth) << offset;
         EXPECT_LE(judgement.beyond, tolerance::kVoronoiDepth) << offset;
-        diagram = highest_first_voronoi(std::span(moved).first(100));
+        diagram = highest_first_voronoi(std::span(moved).first(100)).diagram;
         insert_points(diagram, std::span(moved).subspan(100));
         judgement = test::judge(diagram);
         EXPECT_LE(judgement.deepest, tolerance::kVoronoiDepth) << offset << ", inserted";
@@ -96,12 +95,12 @@ TEST(Frame, RefusesSizesBeyondItsLimitsAndTakesThoseUpToThem) {
   const test::Points points = test::uniform_points(60, 1);
   for (const double scale : {1e99, 1e-98}) {
     const test::Points scaled = test::moved(points, scale, Vector::Zero());
-    EXPECT_EQ(quadruples(highest_first_voronoi(scaled)), quadruples(exact_voronoi(scaled))) << scale;
+    EXPECT_EQ(quadruples(highest_first_voronoi(scaled).diagram), quadruples(exact_voronoi(scaled).diagram)) << scale;
   }
   for (const double scale : {1e101, 1e300, 1e-102, 1e-300}) {
     const test::Points scaled = test::moved(points, scale, Vector::Zero());
     EXPECT_THROW(highest_first_voronoi(scaled), InputError) << scale;
-    VoronoiDiagram diagram = highest_first_voronoi(points);
+    VoronoiDiagram diagram = highest_first_voronoi(points).diagram;
     if (scale > 1) {
       EXPECT_THROW(insert_points(diagram, scaled), InputError) << scale;
     }

@@ -25,17 +25,17 @@ TEST(HighestFirstVoronoi, HasExactlyTheFormingPointsOfTheExactDiagramInfiniteOne
                                 : seed % 4 == 1 ? test::bumpy_sphere_points(n, seed)
                                 : seed % 4 == 2 ? test::torus_points(n, seed)
                                                 : test::box_face_points(n, seed);
-    const VoronoiDiagram diagram = highest_first_voronoi(points);
+    const VoronoiDiagram diagram = highest_first_voronoi(points).diagram;
     ASSERT_NO_THROW(validate(diagram)) << "seed " << seed;
-    ASSERT_EQ(quadruples(diagram), quadruples(exact_voronoi(points))) << "seed " << seed;
+    ASSERT_EQ(quadruples(diagram), quadruples(exact_voronoi(points).diagram)) << "seed " << seed;
   }
 }
 
 // Consistent, and no sample measurably nearer to a foreign point.
 void expect_good(const std::string& name, const test::Points& points) {
-  InsertionReport report;
-  VoronoiDiagram diagram;
-  ASSERT_NO_THROW(diagram = highest_first_voronoi(points, {}, &report)) << name;
+  VoronoiBuild build;
+  ASSERT_NO_THROW(build = highest_first_voronoi(points)) << name;
+  const auto& [diagram, report] = build;
   ASSERT_EQ(report.dimension, 3) << name;
   EXPECT_NO_THROW(validate(diagram)) << name;
   const double radius = test::bounding_radius(points);
@@ -83,8 +83,7 @@ TEST(HighestFirstVoronoi, MeetsContradictionsWhereTheyAreAndDoesNotStartAnew) {
       {"turned lattice", test::turned(test::box_lattice_points(18), 1)},
       {"sphere", test::sphere_points(700, 5)}};
   for (const auto& [name, points] : sets) {
-    InsertionReport report;
-    const VoronoiDiagram diagram = highest_first_voronoi(points, {}, &report);
+    const auto [diagram, report] = highest_first_voronoi(points);
     EXPECT_FALSE(report.exact_signs) << name;
     EXPECT_GT(report.settled_insertions, points.size() / 2) << name << ": else it shows nothing";
     coplanar += report.coplanar_centers;
@@ -102,8 +101,7 @@ TEST(HighestFirstVoronoi, MeetsContradictionsWhereTheyAreAndDoesNotStartAnew) {
 
 TEST(HighestFirstVoronoi, IsExactWhereRoundingLeavesSpheresOpen) {
   for (const test::Points& points : {test::turned(test::cone_ring_points(60, 80), 1), test::sphere_points(2000, 4)}) {
-    InsertionReport report;
-    const VoronoiDiagram diagram = highest_first_voronoi(points, {}, &report);
+    const auto [diagram, report] = highest_first_voronoi(points);
     EXPECT_TRUE(report.exact_signs);
     EXPECT_EQ(report.certified_depth, 0);
     EXPECT_EQ(report.constrained_insertions, 0u);
@@ -127,8 +125,7 @@ TEST(HighestFirstVoronoi, OfFlatPointsHasNoVertices) {
       {2, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}}},
       {2, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}}}};
   for (const auto& [dimension, points] : flat) {
-    InsertionReport report;
-    const VoronoiDiagram diagram = highest_first_voronoi(points, {}, &report);
+    const auto [diagram, report] = highest_first_voronoi(points);
     EXPECT_EQ(diagram.points, points);
     EXPECT_TRUE(diagram.vertices.empty());
     EXPECT_EQ(report.dimension, dimension);
@@ -136,9 +133,9 @@ TEST(HighestFirstVoronoi, OfFlatPointsHasNoVertices) {
   }
   test::Points plane = test::uniform_points(200, 1);
   for (Point& p : plane) p.z() = 0;
-  InsertionReport report;
-  EXPECT_TRUE(highest_first_voronoi(test::turned(plane, 2), {}, &report).vertices.empty());
-  EXPECT_EQ(report.dimension, 2) << "flat up to rounding is flat";
+  const VoronoiBuild of_plane = highest_first_voronoi(test::turned(plane, 2));
+  EXPECT_TRUE(of_plane.diagram.vertices.empty());
+  EXPECT_EQ(of_plane.report.dimension, 2) << "flat up to rounding is flat";
   EXPECT_THROW(highest_first_voronoi(test::Points{{0, 0, 0}, nan}), InputError);
 }
 
@@ -146,9 +143,9 @@ TEST(HighestFirstVoronoi, OfFourOrFivePointsHasTheFewVerticesThatThereAre) {
   for (std::uint64_t seed = 0; seed < 50; ++seed)
     for (const std::size_t n : {4u, 5u}) {
       const test::Points points = test::uniform_points(n, seed);
-      const VoronoiDiagram diagram = highest_first_voronoi(points);
+      const VoronoiDiagram diagram = highest_first_voronoi(points).diagram;
       validate(diagram);
-      EXPECT_EQ(quadruples(diagram), quadruples(exact_voronoi(points)));
+      EXPECT_EQ(quadruples(diagram), quadruples(exact_voronoi(points).diagram));
     }
 }
 
@@ -158,8 +155,7 @@ TEST(HighestFirstVoronoi, MergesCoincidentPointsAndSaysWhich) {
   points.push_back(points[7]);
   points.push_back(points[7] + Vector(near, 0, 0));
   points.push_back(points[8] + Vector(0, apart, 0));
-  InsertionReport report;
-  const VoronoiDiagram diagram = highest_first_voronoi(points, {}, &report);
+  const auto [diagram, report] = highest_first_voronoi(points);
   validate(diagram);
   EXPECT_EQ(report.duplicates, (std::vector<std::array<Index, 2>>{{300, 7}, {301, 7}}));
   const Rows cells = vertices_of_points(diagram);
@@ -170,8 +166,7 @@ TEST(HighestFirstVoronoi, MergesCoincidentPointsAndSaysWhich) {
 
 TEST(HighestFirstVoronoi, CountsEveryInsertionOnce) {
   for (const auto& [name, points] : test::degenerate_point_sets()) {
-    InsertionReport report;
-    highest_first_voronoi(points, {}, &report);
+    const InsertionReport report = highest_first_voronoi(points).report;
     EXPECT_EQ(report.certified_insertions + report.settled_insertions + report.exact_insertions +
                   report.constrained_insertions + report.duplicates.size() + 4,
               points.size())
@@ -182,8 +177,8 @@ TEST(HighestFirstVoronoi, CountsEveryInsertionOnce) {
 TEST(HighestFirstVoronoi, ScalesWithItsPointsByPowersOfTwo) {
   for (const auto& points : {test::relaxed_polyhedron_points(500, 3), test::turned(test::grid_points(6), 2)})
     for (const double scale : {0x1p-40, 0x1p30}) {
-      const VoronoiDiagram one = highest_first_voronoi(points);
-      const VoronoiDiagram other = highest_first_voronoi(test::moved(points, scale, Vector::Zero()));
+      const VoronoiDiagram one = highest_first_voronoi(points).diagram;
+      const VoronoiDiagram other = highest_first_voronoi(test::moved(points, scale, Vector::Zero())).diagram;
       ASSERT_EQ(one.vertices.size(), other.vertices.size());
       for (std::size_t v = 0; v < one.vertices.size(); ++v) {
         ASSERT_EQ(one.vertices[v].forming_points, other.vertices[v].forming_points);

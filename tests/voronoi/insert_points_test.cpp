@@ -22,11 +22,10 @@ std::span<const Point> rest(const test::Points& points, std::size_t n) { return 
 TEST(InsertPoints, AgreesWithARebuildWhateverMadeTheDiagram) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const test::Points points = seed % 2 == 0 ? test::uniform_points(200, seed) : test::bumpy_sphere_points(200, seed);
-    const auto expected = quadruples(exact_voronoi(points));
+    const auto expected = quadruples(exact_voronoi(points).diagram);
     for (const VoronoiAlgorithm algorithm : {VoronoiAlgorithm::highest_first, VoronoiAlgorithm::exact}) {
-      VoronoiDiagram diagram = voronoi(first(points, 150), algorithm);
-      InsertionReport report;
-      insert_points(diagram, rest(points, 150), &report);
+      VoronoiDiagram diagram = voronoi(first(points, 150), algorithm).diagram;
+      const InsertionReport report = insert_points(diagram, rest(points, 150));
       validate(diagram);
       EXPECT_EQ(diagram.points, points);
       EXPECT_EQ(quadruples(diagram), expected) << name(algorithm) << ", seed " << seed;
@@ -39,10 +38,10 @@ TEST(InsertPoints, AgreesWithARebuildWhateverMadeTheDiagram) {
 
 TEST(InsertPoints, MayBeCalledAgainAndAgain) {
   const test::Points points = test::torus_points(300, 1);
-  VoronoiDiagram diagram = highest_first_voronoi(first(points, 100));
+  VoronoiDiagram diagram = highest_first_voronoi(first(points, 100)).diagram;
   for (std::size_t i = 100; i < points.size(); i += 4) insert_points(diagram, std::span(points).subspan(i, 4));
   validate(diagram);
-  EXPECT_EQ(quadruples(diagram), quadruples(exact_voronoi(points)));
+  EXPECT_EQ(quadruples(diagram), quadruples(exact_voronoi(points).diagram));
   const auto before = quadruples(diagram);
   insert_points(diagram, {});
   EXPECT_EQ(quadruples(diagram), before);
@@ -50,7 +49,7 @@ TEST(InsertPoints, MayBeCalledAgainAndAgain) {
 
 TEST(InsertPoints, GivesPositionsAsGoodAsARebuild) {
   const test::Points points = test::bumpy_sphere_points(400, 2);
-  VoronoiDiagram diagram = highest_first_voronoi(first(points, 300));
+  VoronoiDiagram diagram = highest_first_voronoi(first(points, 300)).diagram;
   insert_points(diagram, rest(points, 300));
   for (const VoronoiVertex& vertex : diagram.vertices) {
     if (vertex.at_infinity()) {
@@ -66,7 +65,7 @@ TEST(InsertPoints, GivesPositionsAsGoodAsARebuild) {
 TEST(InsertPoints, IsConsistentAndAccurateOnDegeneratePoints) {
   for (const auto& [name, points] : test::degenerate_point_sets())
     for (const std::size_t part : {points.size() / 2, points.size() - 1}) {
-      VoronoiDiagram diagram = highest_first_voronoi(first(points, part));
+      VoronoiDiagram diagram = highest_first_voronoi(first(points, part)).diagram;
       ASSERT_NO_THROW(insert_points(diagram, rest(points, part))) << name;
       EXPECT_NO_THROW(validate(diagram)) << name;
       EXPECT_EQ(diagram.points, points);
@@ -81,9 +80,8 @@ TEST(InsertPoints, LooksAtTheNewPointsOnlyEvenWhereSignsContradict) {
     for (std::size_t i = 0; i < cone.size(); ++i)
       if ((i % 25 == 7) == late) points.push_back(cone[i]);
   const std::size_t part = points.size() - cone.size() / 25;
-  VoronoiDiagram diagram = highest_first_voronoi(first(points, part));
-  InsertionReport report;
-  insert_points(diagram, rest(points, part), &report);
+  VoronoiDiagram diagram = highest_first_voronoi(first(points, part)).diagram;
+  const InsertionReport report = insert_points(diagram, rest(points, part));
   validate(diagram);
   EXPECT_TRUE(report.exact_signs) << "signs do not contradict";
   EXPECT_EQ(
@@ -94,10 +92,10 @@ TEST(InsertPoints, LooksAtTheNewPointsOnlyEvenWhereSignsContradict) {
 
 TEST(InsertPoints, LeavesOutWhatIsThereAlready) {
   const test::Points points = test::uniform_points(100, 3);
-  VoronoiDiagram diagram = highest_first_voronoi(points);
+  VoronoiDiagram diagram = highest_first_voronoi(points).diagram;
   const auto before = quadruples(diagram);
-  InsertionReport report;
-  insert_points(diagram, test::Points{points[5], points[9], points[5] + Vector(1e-9, 0, 0)}, &report);
+  const InsertionReport report =
+      insert_points(diagram, test::Points{points[5], points[9], points[5] + Vector(1e-9, 0, 0)});
   validate(diagram);
   EXPECT_EQ(quadruples(diagram), before);
   EXPECT_EQ(report.duplicates, (std::vector<std::array<Index, 2>>{{100, 5}, {101, 9}, {102, 5}}));
@@ -105,29 +103,28 @@ TEST(InsertPoints, LeavesOutWhatIsThereAlready) {
 
 TEST(InsertPoints, TakesPointsFarOutsideTheDiagram) {
   test::Points points = test::uniform_points(100, 4);
-  VoronoiDiagram diagram = highest_first_voronoi(points);
+  VoronoiDiagram diagram = highest_first_voronoi(points).diagram;
   const test::Points far{{100, 0, 0}, {0, -100, 3}, {-50, 60, 70}, {0.5, 0.5, 1e4}};
   insert_points(diagram, far);
   points.insert(points.end(), far.begin(), far.end());
   validate(diagram);
-  EXPECT_EQ(quadruples(diagram), quadruples(exact_voronoi(points)));
+  EXPECT_EQ(quadruples(diagram), quadruples(exact_voronoi(points).diagram));
 }
 
 TEST(InsertPoints, MakesADiagramOfFlatPoints) {
-  VoronoiDiagram diagram = highest_first_voronoi(test::Points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  VoronoiDiagram diagram = highest_first_voronoi(test::Points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}).diagram;
   insert_points(diagram, test::Points{{1, 1, 0}});
   EXPECT_TRUE(diagram.vertices.empty());
-  InsertionReport report;
-  insert_points(diagram, test::Points{{0.2, 0.3, 1}}, &report);
+  const InsertionReport report = insert_points(diagram, test::Points{{0.2, 0.3, 1}});
   validate(diagram);
   EXPECT_EQ(diagram.points.size(), 5u);
   EXPECT_EQ(report.dimension, 3);
-  EXPECT_EQ(diagram.vertices.size(), exact_voronoi(diagram.points).vertices.size());
+  EXPECT_EQ(diagram.vertices.size(), exact_voronoi(diagram.points).diagram.vertices.size());
 }
 
 TEST(InsertPoints, LeavesTheDiagramAsItWasWhenMemoryRunsOut) {
   const test::Points points = test::turned(test::grid_points(5), 1);
-  VoronoiDiagram diagram = highest_first_voronoi(first(points, 80));
+  VoronoiDiagram diagram = highest_first_voronoi(first(points, 80)).diagram;
   const VoronoiDiagram before = diagram;
   std::size_t failures = 0;
   for (bool failed = true; failed; ++failures) {
@@ -147,7 +144,7 @@ TEST(InsertPoints, LeavesTheDiagramAsItWasWhenMemoryRunsOut) {
 }
 
 TEST(InsertPoints, LeavesTheDiagramAsItWasOnBadInput) {
-  VoronoiDiagram diagram = highest_first_voronoi(test::uniform_points(50, 5));
+  VoronoiDiagram diagram = highest_first_voronoi(test::uniform_points(50, 5)).diagram;
   const VoronoiDiagram before = diagram;
   EXPECT_THROW(insert_points(diagram, test::Points{{0, 0, std::numeric_limits<double>::infinity()}}), InputError);
   EXPECT_EQ(diagram.points, before.points);

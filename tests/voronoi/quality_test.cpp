@@ -52,7 +52,7 @@ void expect_near(const VoronoiInaccuracy& found, const VoronoiInaccuracy& expect
 TEST(Inaccuracy, IsTheDissertationsMeasure) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     // Inagaki's diagram of such points is wrong in many places.
-    const VoronoiDiagram diagram = inagaki_voronoi(test::relaxed_box_points(150, seed));
+    const VoronoiDiagram diagram = inagaki_voronoi(test::relaxed_box_points(150, seed)).diagram;
     const BruteForce expected(diagram, {0.25, 0.5, 0.75});
     EXPECT_GT(expected.all.mean, 1e-3);
     expect_near(inaccuracy(diagram), expected.all);
@@ -66,14 +66,14 @@ TEST(Inaccuracy, IsTheDissertationsMeasure) {
 TEST(Inaccuracy, OfAnExactDiagramIsRoundOff) {
   for (const auto& points : {test::uniform_points(1000, 1), test::torus_points(1000, 2),
                              test::relaxed_polyhedron_points(1000, 3), test::grid_points(8)}) {
-    const VoronoiDiagram diagram = exact_voronoi(points);
+    const VoronoiDiagram diagram = exact_voronoi(points).diagram;
     EXPECT_LT(inaccuracy(diagram).mean, 1e-16);
     EXPECT_LT(corner_inaccuracy(diagram).mean, 1e-15);
   }
 }
 
 TEST(Inaccuracy, SeesAMisplacedVertex) {
-  VoronoiDiagram diagram = exact_voronoi(test::grid_points(5));
+  VoronoiDiagram diagram = exact_voronoi(test::grid_points(5)).diagram;
   const auto vertex = std::find_if(diagram.vertices.begin(), diagram.vertices.end(),
                                    [](const VoronoiVertex& v) { return !v.at_infinity(); });
   vertex->center += Vector(2, 0, 0);
@@ -85,7 +85,7 @@ TEST(Inaccuracy, SeesAMisplacedVertex) {
 }
 
 TEST(Inaccuracy, OfNothingIsZero) {
-  const VoronoiDiagram flat = exact_voronoi(test::Points{{0, 0, 0}, {1, 0, 0}});
+  const VoronoiDiagram flat = exact_voronoi(test::Points{{0, 0, 0}, {1, 0, 0}}).diagram;
   EXPECT_EQ(inaccuracy(flat).samples, 0u);
   EXPECT_EQ(inaccuracy(VoronoiDiagram{}).mean, 0);
   EXPECT_EQ(cell_inaccuracies(flat), (std::vector<double>{0, 0}));

@@ -31,7 +31,7 @@ void expect_right(const std::string& name, const VoronoiDiagram& diagram) {
 }
 
 void expect_right_at_once(const std::string& name, const test::Points& points) {
-  const VoronoiDiagram diagram = highest_first_voronoi(points);
+  const VoronoiDiagram diagram = highest_first_voronoi(points).diagram;
   if (!diagram.vertices.empty()) expect_right(name + ", at once", diagram);
 }
 

@@ -34,7 +34,7 @@ std::vector<Index> rotated(std::span<const Index> ring) {
 
 TEST(VoronoiViews, OfFacesAreTheArraysInAnotherOrder) {
   for (const auto& points : {test::uniform_points(300, 1), test::torus_points(300, 2), test::grid_points(5)}) {
-    const VoronoiDiagram diagram = highest_first_voronoi(points);
+    const VoronoiDiagram diagram = highest_first_voronoi(points).diagram;
     const VoronoiFaces expected = voronoi_faces(diagram);
     std::map<std::array<Index, 2>, std::vector<Index>> found;
     for (const VoronoiFace& face : faces(diagram)) {
@@ -51,7 +51,7 @@ TEST(VoronoiViews, OfFacesAreTheArraysInAnotherOrder) {
 }
 
 TEST(VoronoiViews, OfEdgesListEachPairOfNeighboursOnce) {
-  const VoronoiDiagram diagram = highest_first_voronoi(test::bumpy_sphere_points(200, 3));
+  const VoronoiDiagram diagram = highest_first_voronoi(test::bumpy_sphere_points(200, 3)).diagram;
   std::set<std::array<Index, 2>> found;
   for (const VoronoiEdge& edge : edges(diagram)) {
     EXPECT_LT(edge.vertices[0], edge.vertices[1]);
@@ -68,7 +68,7 @@ TEST(VoronoiViews, OfEdgesListEachPairOfNeighboursOnce) {
 TEST(VoronoiViews, OfCellsHoldTheFacesTowardsAllNeighbours) {
   test::Points points = test::uniform_points(200, 4);
   points.push_back(points[0]);
-  const VoronoiDiagram diagram = highest_first_voronoi(points);
+  const VoronoiDiagram diagram = highest_first_voronoi(points).diagram;
   const VoronoiCells cells(diagram);
   ASSERT_EQ(cells.size(), points.size());
   std::map<Index, std::map<Index, std::vector<Index>>> expected;
@@ -91,7 +91,7 @@ TEST(VoronoiViews, OfCellsHoldTheFacesTowardsAllNeighbours) {
 }
 
 TEST(VoronoiViews, TellBoundedCells) {
-  const VoronoiDiagram diagram = exact_voronoi(test::grid_points(4));
+  const VoronoiDiagram diagram = exact_voronoi(test::grid_points(4)).diagram;
   const VoronoiCells cells(diagram);
   int bounded = 0;
   for (Index p = 0; p < cells.size(); ++p) bounded += cells.bounded(p);
@@ -99,7 +99,7 @@ TEST(VoronoiViews, TellBoundedCells) {
 }
 
 TEST(VoronoiViews, AllocateNothing) {
-  const VoronoiDiagram diagram = highest_first_voronoi(test::torus_points(300, 5));
+  const VoronoiDiagram diagram = highest_first_voronoi(test::torus_points(300, 5)).diagram;
   const VoronoiCells cells(diagram);
   const std::size_t before = test::allocations();
   std::size_t seen = 0;
@@ -114,7 +114,7 @@ TEST(VoronoiViews, AllocateNothing) {
 }
 
 TEST(VoronoiViews, OfADiagramWithoutVerticesAreEmpty) {
-  const VoronoiDiagram diagram = highest_first_voronoi(test::Points{{0, 0, 0}, {1, 0, 0}});
+  const VoronoiDiagram diagram = highest_first_voronoi(test::Points{{0, 0, 0}, {1, 0, 0}}).diagram;
   EXPECT_EQ(std::ranges::distance(edges(diagram)), 0);
   EXPECT_EQ(std::ranges::distance(faces(diagram)), 0);
   EXPECT_EQ(std::ranges::distance(VoronoiCells(diagram).faces(0)), 0);

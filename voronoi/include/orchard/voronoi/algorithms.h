@@ -6,8 +6,7 @@
 #include <string_view>
 
 #include "orchard/geometry/progress.h"
-#include "orchard/voronoi/diagram.h"
-#include "orchard/voronoi/insertion_report.h"
+#include "orchard/voronoi/voronoi_build.h"
 
 namespace orchard {
 
@@ -22,7 +21,7 @@ std::optional<VoronoiAlgorithm> voronoi_algorithm_named(std::string_view name);
 
 // The same result type from each, so that they can stand in for one another. `exact` inserts with no report but the
 // dimension, the duplicates, which are identical points only, and does not call progress.
-VoronoiDiagram voronoi(std::span<const Point> points, VoronoiAlgorithm algorithm = VoronoiAlgorithm::highest_first,
-                       const Progress& progress = {}, InsertionReport* report = nullptr);
+VoronoiBuild voronoi(std::span<const Point> points, VoronoiAlgorithm algorithm = VoronoiAlgorithm::highest_first,
+                     const Progress& progress = {});
 
 }  // namespace orchard

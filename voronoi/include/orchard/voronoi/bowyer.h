@@ -2,8 +2,7 @@
 #include <span>
 
 #include "orchard/geometry/progress.h"
-#include "orchard/voronoi/diagram.h"
-#include "orchard/voronoi/insertion_report.h"
+#include "orchard/voronoi/voronoi_build.h"
 
 namespace orchard {
 
@@ -11,7 +10,6 @@ namespace orchard {
 // vertex that computes as nearer to the new point is deleted. It presumes exact arithmetic: throws Error, naming the
 // point, where rounding leaves nothing to delete, makes what is deleted other than a ball or a new vertex wrongly
 // oriented. Nearly all points of polyhedra do. Coincident, flat and infinite input as highest_first_voronoi.
-VoronoiDiagram bowyer_voronoi(std::span<const Point> points, const Progress& progress = {},
-                              InsertionReport* report = nullptr);
+VoronoiBuild bowyer_voronoi(std::span<const Point> points, const Progress& progress = {});
 
 }  // namespace orchard

@@ -1,8 +1,7 @@
 #pragma once
 #include <span>
 
-#include "orchard/voronoi/diagram.h"
-#include "orchard/voronoi/insertion_report.h"
+#include "orchard/voronoi/voronoi_build.h"
 
 namespace orchard {
 
@@ -11,6 +10,6 @@ namespace orchard {
 // diagram without vertices. Of the report only the dimension and the duplicates are filled in. The circumcentres are
 // computed in parallel; the triangulation is not, since CGAL's parallel insertion numbers the vertices differently in
 // every run. Throws InputError for coordinates that are not finite.
-VoronoiDiagram exact_voronoi(std::span<const Point> points, InsertionReport* report = nullptr);
+VoronoiBuild exact_voronoi(std::span<const Point> points);
 
 }  // namespace orchard

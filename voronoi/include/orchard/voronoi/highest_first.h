@@ -2,22 +2,20 @@
 #include <span>
 
 #include "orchard/geometry/progress.h"
-#include "orchard/voronoi/diagram.h"
-#include "orchard/voronoi/insertion_report.h"
+#include "orchard/voronoi/voronoi_build.h"
 
 namespace orchard {
 
 // The Voronoi diagram by incremental insertion with the highest-first deletion search under Inagaki et al.'s five
 // constraints (dissertation 6.2.3): consistent for every input, and certified to be right: no point is deeper in a
-// sphere, or farther beyond a facet of the hull, than report->certified_depth, which is at most
+// sphere, or farther beyond a facet of the hull, than report.certified_depth, which is at most
 // tolerance::kVoronoiDepth of the bounding radius for up to 1024 points (a thousandth of that for each point more).
 // Points within tolerance::kCoincidentPoints of the bounding radius of an earlier point form no vertex. Points that all
-// lie in a plane, up to rounding, or are fewer than four have a diagram without vertices; report->dimension tells.
+// lie in a plane, up to rounding, or are fewer than four have a diagram without vertices; report.dimension tells.
 // Deterministic. Throws InputError for coordinates that are not finite or beyond 1e100, or if all points lie within
 // 1e-100 and are not one. About O(n log n) on surface points; at the peak 66 bytes a vertex and 32 a point beside the
 // caller's points.
-VoronoiDiagram highest_first_voronoi(std::span<const Point> points, const Progress& progress = {},
-                                     InsertionReport* report = nullptr);
+VoronoiBuild highest_first_voronoi(std::span<const Point> points, const Progress& progress = {});
 
 // Adds points to a diagram that any of the algorithms made; new ones are numbered after those there are. A rebuild
 // agrees up to rounding. Old vertices may be renumbered. The report speaks of the new points, or of all of them if the
@@ -25,6 +23,6 @@ VoronoiDiagram highest_first_voronoi(std::span<const Point> points, const Progre
 // contradict the old ones, and these are not exactly Voronoi. Else O(n) with a small constant, plus about O(k log k)
 // for k new points. The certificate is of what is new: an old vertex that was wrong stays wrong. Throws InputError as
 // above; whatever is thrown, the diagram is as it was.
-void insert_points(VoronoiDiagram& diagram, std::span<const Point> points, InsertionReport* report = nullptr);
+InsertionReport insert_points(VoronoiDiagram& diagram, std::span<const Point> points);
 
 }  // namespace orchard

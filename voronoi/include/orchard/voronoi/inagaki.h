@@ -2,8 +2,7 @@
 #include <span>
 
 #include "orchard/geometry/progress.h"
-#include "orchard/voronoi/diagram.h"
-#include "orchard/voronoi/insertion_report.h"
+#include "orchard/voronoi/voronoi_build.h"
 
 namespace orchard {
 
@@ -12,7 +11,6 @@ namespace orchard {
 // precision, whatever the values say beyond their sign. Consistent for every input, but inaccurate where many points
 // lie on a plane or a sphere: one wrong decision misplaces a vertex, which misleads later ones. Kept to compare with.
 // Coincident, flat and infinite input as highest_first_voronoi.
-VoronoiDiagram inagaki_voronoi(std::span<const Point> points, const Progress& progress = {},
-                               InsertionReport* report = nullptr);
+VoronoiBuild inagaki_voronoi(std::span<const Point> points, const Progress& progress = {});
 
 }  // namespace orchard
