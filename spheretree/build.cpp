@@ -75,6 +75,12 @@ class TreeBuilder {
     connected_components(build_.medial->axis, build_.axis_components);
   }
 
+  template <class Build, class Report>
+  void keep(Build made, Report& report) {
+    build_.tree = std::move(made.tree);
+    report = std::move(made.report);
+  }
+
   void make_tree() {
     const SphereTreeOptions& o = options_;
     switch (o.method) {
@@ -83,18 +89,17 @@ class TreeBuilder {
         break;
       case TreeMethod::merging:
         stage("merging", [&] {
-          build_.tree = merge_tree(surface_, build_.medial->axis, {o.depth, o.branching, o.refinement, o.closing},
-                                   progress_, &build_.merging);
+          const MergeOptions merging{o.depth, o.branching, o.refinement, o.closing};
+          keep(merge_tree(surface_, build_.medial->axis, merging, progress_), build_.merging);
         });
         break;
       case TreeMethod::annealing:
-        stage("annealing",
-              [&] { build_.tree = annealed_tree(surface_, annealing_options(o), progress_, &build_.annealing); });
+        stage("annealing", [&] { keep(annealed_tree(surface_, annealing_options(o), progress_), build_.annealing); });
         break;
       case TreeMethod::tightened:
         stage("tightening", [&] {
           const TightenOptions tightening{o.depth, o.branching, o.effort, o.objective, o.refinement, o.seed};
-          build_.tree = tightened_tree(surface_, build_.medial->axis, tightening, progress_, &build_.tightening);
+          keep(tightened_tree(surface_, build_.medial->axis, tightening, progress_), build_.tightening);
         });
         break;
     }

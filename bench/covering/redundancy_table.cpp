@@ -38,8 +38,7 @@ void rows(const char* file, bool annealing) {
   row(name, "octree", surface, octree(surface), 0);
   row(name, "merged", surface, bench::merged_tree(surface), 0);
   if (!annealing) return;
-  AnnealingReport report;
-  const SphereTree annealed = annealed_tree(surface, {}, {}, &report);
+  const auto [annealed, report] = annealed_tree(surface);
   row(name, "annealed", surface, annealed, report.redundant);
 }
 

@@ -16,7 +16,8 @@ SphereTree merged_tree(const Surface& surface) {
   VoronoiDiagram diagram = highest_first_voronoi(sampling.points).diagram;
   const GapRepair repaired = repair_gap_crossings(surface, std::move(sampling), std::move(diagram));
   SphereTree tree =
-      merge_tree(surface, medial_axis(surface, repaired.sampling, repaired.diagram), {.closing = MergeClosing::growth});
+      merge_tree(surface, medial_axis(surface, repaired.sampling, repaired.diagram), {.closing = MergeClosing::growth})
+          .tree;
   cover(tree, surface);
   return tree;
 }

@@ -111,13 +111,10 @@ class Schedule {
 
 class Annealer {
  public:
-  Annealer(const Surface& surface, const AnnealingOptions& options, AnnealingReport& report)
-      : surface_(surface),
-        options_(options),
-        report_(report),
-        margin_(tolerance::kCoverMargin * surface.bounding_radius()) {}
+  Annealer(const Surface& surface, const AnnealingOptions& options)
+      : surface_(surface), options_(options), margin_(tolerance::kCoverMargin * surface.bounding_radius()) {}
 
-  SphereTree run(const Progress& progress) {
+  AnnealingBuild run(const Progress& progress) {
     tree_.branching = options_.branching;
     tree_.nodes.push_back({.sphere = surface_.bounding_ball()});
     tree_.nodes[0].sphere.radius += margin_;
@@ -130,7 +127,7 @@ class Annealer {
       anneal_level(level, progress);
       report_.redundant += remove_redundant(tree_, surface_, Selection::acyclic).removed;
     }
-    return std::move(tree_);
+    return {std::move(tree_), report_};
   }
 
  private:
@@ -218,9 +215,9 @@ class Annealer {
 
   const Surface& surface_;
   const AnnealingOptions& options_;
-  AnnealingReport& report_;
   const double margin_;
   SphereTree tree_;
+  AnnealingReport report_;
 };
 
 void check(const AnnealingOptions& o) {
@@ -234,11 +231,9 @@ void check(const AnnealingOptions& o) {
 
 }  // namespace
 
-SphereTree annealed_tree(const Surface& surface, const AnnealingOptions& options, const Progress& progress,
-                         AnnealingReport* report) {
+AnnealingBuild annealed_tree(const Surface& surface, const AnnealingOptions& options, const Progress& progress) {
   check(options);
-  AnnealingReport unused;
-  return Annealer(surface, options, report ? *report : unused).run(progress);
+  return Annealer(surface, options).run(progress);
 }
 
 }  // namespace orchard

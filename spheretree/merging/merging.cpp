@@ -28,7 +28,8 @@ class MergeTree {
         maker_(surface, axis, options),
         margin_(tolerance::kCoverMargin * surface.bounding_radius()) {}
 
-  SphereTree run(const Progress& progress, MergeReport& report) {
+  MergeBuild run(const Progress& progress) {
+    MergeReport report;
     start();
     for (Index level = 1; level <= options_.depth; ++level) {
       report_progress(progress, "merging", static_cast<double>(level - 1) / options_.depth);
@@ -41,7 +42,7 @@ class MergeTree {
       for (int round = 0; round < kReallocationRounds && reallocate_freed_budget(level, row); ++round) close(row);
       row.spheres = static_cast<Index>(nodes_of(level).size());
     }
-    return std::move(tree_);
+    return {std::move(tree_), std::move(report)};
   }
 
  private:
@@ -165,12 +166,11 @@ class MergeTree {
 
 }  // namespace
 
-SphereTree merge_tree(const Surface& surface, const MedialAxis& axis, const MergeOptions& options,
-                      const Progress& progress, MergeReport* report) {
+MergeBuild merge_tree(const Surface& surface, const MedialAxis& axis, const MergeOptions& options,
+                      const Progress& progress) {
   if (options.branching < 2 || options.branching > 64) throw InputError("branching must lie between 2 and 64");
   if (axis.size() == 0) throw InputError("the medial axis has no vertex: sample the surface more densely");
-  MergeReport unused;
-  return MergeTree(surface, axis, options).run(progress, report ? *report : unused);
+  return MergeTree(surface, axis, options).run(progress);
 }
 
 }  // namespace orchard

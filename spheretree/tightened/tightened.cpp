@@ -81,12 +81,13 @@ class Tightener {
         samples_(detail::surface_samples(surface, axis)),
         partial_(surface) {}
 
-  SphereTree run(TightenReport& report) {
+  TightenBuild run() {
+    TightenReport report;
     for (Index level = 1; level <= options_.depth; ++level)
       if (!build_level(level, report.levels)) break;
     SphereTree tree = partial_.tree();
     tree.branching = std::max(tree.branching, options_.branching);
-    return tree;
+    return {std::move(tree), std::move(report)};
   }
 
  private:
@@ -164,12 +165,11 @@ class Tightener {
 
 }  // namespace
 
-SphereTree tightened_tree(const Surface& surface, const MedialAxis& axis, const TightenOptions& options,
-                          const Progress& progress, TightenReport* report) {
+TightenBuild tightened_tree(const Surface& surface, const MedialAxis& axis, const TightenOptions& options,
+                            const Progress& progress) {
   if (options.branching < 2 || options.branching > 64) throw InputError("branching must lie between 2 and 64");
   if (axis.size() == 0) throw InputError("the medial axis has no vertex: sample the surface more densely");
-  TightenReport unused;
-  return Tightener(surface, axis, options, progress).run(report ? *report : unused);
+  return Tightener(surface, axis, options, progress).run();
 }
 
 }  // namespace orchard

@@ -39,8 +39,7 @@ TEST(AnnealedTree, IsConservativeWithEitherEnergy) {
     for (const SetEnergy energy : {SetEnergy::sum, SetEnergy::maximum}) {
       AnnealingOptions options = quick();
       options.energy = energy;
-      AnnealingReport report;
-      const SphereTree tree = annealed_tree(surface, options, {}, &report);
+      const auto [tree, report] = annealed_tree(surface, options);
       expect_conservative(tree, surface, name);
       EXPECT_GT(report.accepted, 0) << name;
       EXPECT_LE(report.accepted + report.uncovering, report.changes) << name;
@@ -54,7 +53,7 @@ TEST(AnnealedTree, TakesAnyBranching) {
   for (const Index branching : {2u, 5u, 12u, 64u}) {
     AnnealingOptions options = quick(branching == 64 ? 1 : 2);
     options.branching = branching;
-    const SphereTree tree = annealed_tree(surface, options);
+    const SphereTree tree = annealed_tree(surface, options).tree;
     EXPECT_EQ(tree.branching, branching);
     expect_conservative(tree, surface, "U");
   }
@@ -70,7 +69,7 @@ TEST(AnnealedTree, IsTheSameOnOneTwoAndSevenThreads) {
   std::vector<SphereTree> trees;
   for (const std::size_t threads : {1u, 2u, 7u}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    trees.push_back(annealed_tree(surface, quick()));
+    trees.push_back(annealed_tree(surface, quick()).tree);
   }
   EXPECT_TRUE(same_tree(trees[0], trees[1]));
   EXPECT_TRUE(same_tree(trees[0], trees[2]));
@@ -81,7 +80,7 @@ TEST(AnnealedTree, FitsTighterThanTheOctreeThatItStartsFrom) {
   AnnealingOptions options = quick(1);
   options.max_accepted = options.max_rejected = 200;
   options.iterations_first = 60;
-  SphereTree tree = annealed_tree(surface, options);
+  SphereTree tree = annealed_tree(surface, options).tree;
   SphereTree start = octree(surface, {.depth = 1});
   measure(tree, surface);
   measure(start, surface);
@@ -91,17 +90,17 @@ TEST(AnnealedTree, FitsTighterThanTheOctreeThatItStartsFrom) {
 TEST(AnnealedTree, RepeatsItselfForASeedAndChangesWithIt) {
   const Surface surface(l_shape());
   AnnealingOptions options = quick();
-  const SphereTree one = annealed_tree(surface, options);
-  EXPECT_TRUE(same_tree(one, annealed_tree(surface, options)));
+  const SphereTree one = annealed_tree(surface, options).tree;
+  EXPECT_TRUE(same_tree(one, annealed_tree(surface, options).tree));
   options.seed = 2;
-  EXPECT_FALSE(same_tree(one, annealed_tree(surface, options)));
+  EXPECT_FALSE(same_tree(one, annealed_tree(surface, options).tree));
 }
 
 TEST(AnnealedTree, RefinesOnlyWhatIsNotAccurateEnough) {
   const Surface surface(l_shape());
   AnnealingOptions options = quick(3);
   options.refinement.error = 10 * surface.bounding_radius();
-  EXPECT_EQ(annealed_tree(surface, options).nodes.size(), 1);
+  EXPECT_EQ(annealed_tree(surface, options).tree.nodes.size(), 1);
 }
 
 TEST(AnnealedTree, RefusesOptionsThatMakeNoSchedule) {

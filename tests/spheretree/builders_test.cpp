@@ -60,7 +60,7 @@ TEST(MergeTree, HoldsItsFormingPointsOnSomePathBeforeAnythingIsGrown) {
   for (const Shape& shape : shapes()) {
     const Surface surface(shape.mesh);
     const MedialAxis axis = axis_of(surface);
-    const SphereTree tree = merge_tree(surface, axis, {.closing = MergeClosing::growth});
+    const SphereTree tree = merge_tree(surface, axis, {.closing = MergeClosing::growth}).tree;
     ASSERT_NO_THROW(validate(tree)) << shape.name;
     for (Index i = 0; i < axis.size(); ++i)
       for (Index p : axis.forming_points[i]) ASSERT_TRUE(has_path(tree, axis.points[p])) << shape.name;
@@ -70,8 +70,7 @@ TEST(MergeTree, HoldsItsFormingPointsOnSomePathBeforeAnythingIsGrown) {
 TEST(MergeTree, IsConservativeByFitting) {
   for (const Shape& shape : shapes()) {
     const Surface surface(shape.mesh);
-    MergeReport report;
-    const SphereTree tree = merge_tree(surface, axis_of(surface), {.depth = 2}, {}, &report);
+    const auto [tree, report] = merge_tree(surface, axis_of(surface), {.depth = 2});
     EXPECT_EQ(report.levels.size(), tree.depth()) << shape.name;
     expect_conservative(tree, surface, shape.name);
   }
@@ -80,7 +79,7 @@ TEST(MergeTree, IsConservativeByFitting) {
 TEST(MergeTree, BecomesConservativeByGrowth) {
   for (const Shape& shape : shapes()) {
     const Surface surface(shape.mesh);
-    const SphereTree merged = merge_tree(surface, axis_of(surface), {.closing = MergeClosing::growth});
+    const SphereTree merged = merge_tree(surface, axis_of(surface), {.closing = MergeClosing::growth}).tree;
     SphereTree grown = merged, covered = merged;
     const CoverReport report = grow_to_cover(grown, surface);
     expect_conservative(grown, surface, shape.name);
@@ -105,7 +104,7 @@ TEST(MergeTree, HasNoMoreChildrenAndLevelsThanAskedFor) {
   for (const MergeClosing closing : {MergeClosing::refit, MergeClosing::growth})
     for (const Index branching : {2u, 5u, 64u})
       for (const Index depth : {1u, branching == 64u ? 2u : 3u}) {
-        SphereTree tree = merge_tree(surface, axis, {.depth = depth, .branching = branching, .closing = closing});
+        SphereTree tree = merge_tree(surface, axis, {.depth = depth, .branching = branching, .closing = closing}).tree;
         validate(tree);
         EXPECT_EQ(tree.depth(), depth);
         const bool refit = closing == MergeClosing::refit;
@@ -133,14 +132,14 @@ TEST(MergeTree, JoinsComponentsThatAreMoreThanTheChildren) {
     for (auto t : part.triangles) mesh.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
   }
   const Surface surface(mesh);
-  const SphereTree tree = merge_tree(surface, axis_of(surface), {.depth = 2, .branching = 3});
+  const SphereTree tree = merge_tree(surface, axis_of(surface), {.depth = 2, .branching = 3}).tree;
   expect_conservative(tree, surface, "row of boxes");
 }
 
 TEST(MergeTree, FitsTighterThanTheOctree) {
   for (const TriangleMesh& mesh : {torus(32, 16), l_shape(), u_shape(0.3)}) {
     const Surface surface(mesh);
-    SphereTree tree = merge_tree(surface, axis_of(surface, 1500), {.depth = 2});
+    SphereTree tree = merge_tree(surface, axis_of(surface, 1500), {.depth = 2}).tree;
     SphereTree oct = octree(surface, {.depth = tree.depth()});
     measure(tree, surface);
     measure(oct, surface);
@@ -164,7 +163,7 @@ TEST(MergeTree, IsTheSameOnOneTwoAndSevenThreads) {
   std::vector<SphereTree> trees;
   for (const std::size_t threads : {1u, 2u, 7u}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    SphereTree tree = merge_tree(surface, axis_of(surface), {.depth = 2});
+    SphereTree tree = merge_tree(surface, axis_of(surface), {.depth = 2}).tree;
     measure(tree, surface);
     trees.push_back(tree);
   }

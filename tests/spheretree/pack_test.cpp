@@ -26,7 +26,8 @@ using namespace test;
 
 SphereTree measured(const Surface& surface, Index branching, Index depth) {
   SphereTree tree =
-      merge_tree(surface, axis_of(surface), {.depth = depth, .branching = branching, .closing = MergeClosing::growth});
+      merge_tree(surface, axis_of(surface), {.depth = depth, .branching = branching, .closing = MergeClosing::growth})
+          .tree;
   cover(tree, surface);
   measure(tree, surface);
   return tree;

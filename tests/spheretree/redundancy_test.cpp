@@ -22,9 +22,9 @@ constexpr Selection kSelections[] = {Selection::independent, Selection::acyclic,
 
 // A conservative tree with spheres to spare: radii of an octree or a merged tree, grown at random.
 SphereTree loose_tree(const Surface& surface, std::uint64_t seed) {
-  SphereTree tree = seed % 2 == 0
-                        ? octree(surface)
-                        : merge_tree(surface, axis_of(surface, 300), {.depth = 2, .closing = MergeClosing::growth});
+  SphereTree tree =
+      seed % 2 == 0 ? octree(surface)
+                    : merge_tree(surface, axis_of(surface, 300), {.depth = 2, .closing = MergeClosing::growth}).tree;
   cover(tree, surface);
   Random random(seed, 11);
   for (SphereNode& node : tree.nodes)

@@ -27,7 +27,7 @@ std::vector<Index> level_counts(const SphereTree& tree) {
 TEST(TightenedTree, IsConservativeOnEveryShape) {
   for (const Shape& shape : shapes()) {
     const Surface surface(shape.mesh);
-    const SphereTree tree = tightened_tree(surface, axis_of(surface, 1000), {.depth = 2, .effort = Effort::low});
+    const SphereTree tree = tightened_tree(surface, axis_of(surface, 1000), {.depth = 2, .effort = Effort::low}).tree;
     EXPECT_EQ(tree.depth(), 2) << shape.name;
     expect_conservative(tree, surface, shape.name);
   }
@@ -37,7 +37,8 @@ TEST(TightenedTree, KeepsToTheBudgetOfEachLevelAndOfEachNode) {
   const Surface surface(u_shape(0.3));
   const MedialAxis axis = axis_of(surface, 3000);
   for (const Index branching : {2u, 5u, 8u, 17u}) {
-    const SphereTree tree = tightened_tree(surface, axis, {.depth = 2, .branching = branching, .effort = Effort::low});
+    const SphereTree tree =
+        tightened_tree(surface, axis, {.depth = 2, .branching = branching, .effort = Effort::low}).tree;
     expect_conservative(tree, surface, "U");
     const auto counts = level_counts(tree);
     ASSERT_EQ(counts.size(), 3);
@@ -52,7 +53,7 @@ TEST(TightenedTree, GoesAsDeepAsAskedWithAnyBranching) {
   const MedialAxis axis = axis_of(surface, 1500);
   for (const auto& [branching, depth] : {std::pair<Index, Index>{2, 6}, {4, 4}, {64, 1}}) {
     const SphereTree tree =
-        tightened_tree(surface, axis, {.depth = depth, .branching = branching, .effort = Effort::low});
+        tightened_tree(surface, axis, {.depth = depth, .branching = branching, .effort = Effort::low}).tree;
     expect_conservative(tree, surface, "torus");
     EXPECT_EQ(tree.depth(), depth);
     const auto counts = level_counts(tree);
@@ -67,7 +68,7 @@ TEST(TightenedTree, GoesAsDeepAsAskedWithAnyBranching) {
 
 TEST(TightenedTree, HasNoSphereOfNoSizeAndOnceThinnedNoneThatCanGo) {
   const Surface surface(u_shape(0.3));
-  SphereTree tree = tightened_tree(surface, axis_of(surface, 2000), {.depth = 2, .effort = Effort::low});
+  SphereTree tree = tightened_tree(surface, axis_of(surface, 2000), {.depth = 2, .effort = Effort::low}).tree;
   remove_redundant(tree, surface);
   for (const SphereNode& node : tree.nodes) EXPECT_GT(node.sphere.radius, 0.01 * surface.bounding_radius());
   for (Index node = 1; node < tree.nodes.size(); ++node) {
@@ -86,8 +87,8 @@ TEST(TightenedTree, FitsTighterThanMerging) {
   for (const TriangleMesh& mesh : {torus(32, 16), l_shape(), u_shape(0.3)}) {
     const Surface surface(mesh);
     const MedialAxis axis = axis_of(surface, 3000);
-    SphereTree tight = tightened_tree(surface, axis, {.depth = 2, .effort = Effort::low});
-    SphereTree merged = merge_tree(surface, axis, {.depth = 2, .closing = MergeClosing::growth});
+    SphereTree tight = tightened_tree(surface, axis, {.depth = 2, .effort = Effort::low}).tree;
+    SphereTree merged = merge_tree(surface, axis, {.depth = 2, .closing = MergeClosing::growth}).tree;
     cover(merged, surface);
     measure(tight, surface);
     measure(merged, surface);
@@ -102,7 +103,7 @@ TEST(TightenedTree, FitsTighterThanMerging) {
 
 TEST(TightenedTree, ABallOfABallIsAlmostExact) {
   const Surface surface(icosphere(3));
-  SphereTree tree = tightened_tree(surface, axis_of(surface, 1000), {.depth = 1, .branching = 2});
+  SphereTree tree = tightened_tree(surface, axis_of(surface, 1000), {.depth = 1, .branching = 2}).tree;
   measure(tree, surface);
   for (const SphereNode& node : tree.nodes) EXPECT_LT(node.inaccuracy, 0.02 * surface.bounding_radius());
 }
@@ -112,7 +113,7 @@ TEST(TightenedTree, RefinesOnlyWhatIsNotAccurateEnough) {
   const MedialAxis axis = axis_of(surface, 3000);
   TightenOptions options{.depth = 3, .effort = Effort::low};
   options.refinement.error = 0.15 * surface.bounding_radius();
-  SphereTree tree = tightened_tree(surface, axis, options);
+  SphereTree tree = tightened_tree(surface, axis, options).tree;
   expect_conservative(tree, surface, "U");
   measure(tree, surface);
   Index leaves_above = 0;
@@ -130,7 +131,7 @@ TEST(TightenedTree, RefinesARegionMore) {
   TightenOptions options{.depth = 3, .effort = Effort::low};
   options.refinement.error = 100;
   options.refinement.regions.push_back({{Point(10, 0.5, 0.5), 0.5}, 1e-3});
-  const SphereTree tree = tightened_tree(surface, axis, options);
+  const SphereTree tree = tightened_tree(surface, axis, options).tree;
   expect_conservative(tree, surface, "bar");
   EXPECT_EQ(tree.depth(), 3);
   for (const SphereNode& node : tree.nodes) {
@@ -146,7 +147,7 @@ TEST(TightenedTree, EveryObjectiveIsConservativeAndLowersWhatItIsFor) {
     double mean, max, outside;
   };
   const auto figures = [&](Objective objective) {
-    SphereTree tree = tightened_tree(surface, axis, {.depth = 2, .effort = Effort::low, .objective = objective});
+    SphereTree tree = tightened_tree(surface, axis, {.depth = 2, .effort = Effort::low, .objective = objective}).tree;
     expect_conservative(tree, surface, "U");
     measure(tree, surface);
     std::vector<Sphere> spheres;
@@ -168,7 +169,7 @@ TEST(TightenedTree, IsTheSameOnOneTwoAndSevenThreads) {
   std::vector<SphereTree> trees;
   for (const std::size_t threads : {1u, 2u, 7u}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    trees.push_back(tightened_tree(surface, axis, {.depth = 2, .branching = 3}));
+    trees.push_back(tightened_tree(surface, axis, {.depth = 2, .branching = 3}).tree);
   }
   EXPECT_TRUE(same_tree(trees[0], trees[1]));
   EXPECT_TRUE(same_tree(trees[0], trees[2]));
@@ -178,10 +179,10 @@ TEST(TightenedTree, AnotherSeedIsAnotherTree) {
   const Surface surface(u_shape(0.3));
   const MedialAxis axis = axis_of(surface, 1000);
   TightenOptions options{.depth = 2, .effort = Effort::low};
-  const SphereTree one = tightened_tree(surface, axis, options);
-  EXPECT_TRUE(same_tree(one, tightened_tree(surface, axis, options)));
+  const SphereTree one = tightened_tree(surface, axis, options).tree;
+  EXPECT_TRUE(same_tree(one, tightened_tree(surface, axis, options).tree));
   options.seed = 2;
-  EXPECT_FALSE(same_tree(one, tightened_tree(surface, axis, options)));
+  EXPECT_FALSE(same_tree(one, tightened_tree(surface, axis, options).tree));
 }
 
 TEST(TightenedTree, RefusesABranchingThatIsNoBranching) {

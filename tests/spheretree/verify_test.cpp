@@ -25,7 +25,7 @@ using namespace test;
 using runtime::PackedSphereTree;
 
 PackedSphereTree packed_tree(const Surface& surface) {
-  SphereTree tree = merge_tree(surface, axis_of(surface), {.depth = 2, .closing = MergeClosing::growth});
+  SphereTree tree = merge_tree(surface, axis_of(surface), {.depth = 2, .closing = MergeClosing::growth}).tree;
   cover(tree, surface);
   measure(tree, surface);
   return pack(tree, surface);
@@ -95,7 +95,7 @@ TEST(Verify, RejectsEachKindOfDamage) {
 
 // A tree without a node to spare: what is taken from a leaf is missed somewhere.
 PackedSphereTree lean_tree(const Surface& surface) {
-  SphereTree tree = merge_tree(surface, axis_of(surface), {.depth = 2, .closing = MergeClosing::growth});
+  SphereTree tree = merge_tree(surface, axis_of(surface), {.depth = 2, .closing = MergeClosing::growth}).tree;
   cover(tree, surface);
   remove_redundant(tree, surface);
   measure(tree, surface);
@@ -104,7 +104,7 @@ PackedSphereTree lean_tree(const Surface& surface) {
 
 // The same with every radius as small as the path rule allows, given the others.
 PackedSphereTree tight_tree(const Surface& surface) {
-  SphereTree tree = merge_tree(surface, axis_of(surface), {.depth = 2, .closing = MergeClosing::growth});
+  SphereTree tree = merge_tree(surface, axis_of(surface), {.depth = 2, .closing = MergeClosing::growth}).tree;
   cover(tree, surface);
   remove_redundant(tree, surface);
   IncrementalCover kept(surface, path_balls(tree));

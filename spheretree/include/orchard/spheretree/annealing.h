@@ -33,6 +33,11 @@ struct AnnealingReport {
   Index redundant = 0;           // spheres removed between levels
 };
 
+struct AnnealingBuild {
+  SphereTree tree;
+  AnnealingReport report;
+};
+
 // Builds a tree by simulated annealing of the children of each node, from the top down (dissertation 5.3). Children
 // start as the octree's on the first level, and below as those octants of the cube around their parent (Fig. 5.8) that
 // meet the surface; with another branching than 8, as that many boxes. A change moves and scales one child; one that
@@ -41,7 +46,7 @@ struct AnnealingReport {
 // result is conservative, and the same for a seed on any number of threads; temperatures go through exp(), so another
 // maths library may give another result. Throws InputError unless surface.solid(). Parents that no triangle meets two
 // of are annealed in parallel.
-SphereTree annealed_tree(const Surface& surface, const AnnealingOptions& options = {}, const Progress& progress = {},
-                         AnnealingReport* report = nullptr);
+AnnealingBuild annealed_tree(const Surface& surface, const AnnealingOptions& options = {},
+                             const Progress& progress = {});
 
 }  // namespace orchard

@@ -31,6 +31,11 @@ struct MergeReport {
   std::vector<Level> levels;  // below the root; with MergeClosing::refit
 };
 
+struct MergeBuild {
+  SphereTree tree;
+  MergeReport report;
+};
+
 // Builds a tree from a medial axis: the children of each node are the spheres of the medial vertices merged into it,
 // merged pairwise along the axis by least cost until few enough remain. Where a node has fewer vertices than it takes,
 // its surface points are merged in their place.
@@ -40,7 +45,7 @@ struct MergeReport {
 // is closed, rid of what is redundant and filled up again before it gets children. Throws InputError for a branching
 // out of range or an axis without vertices. Parallel over the nodes of a level; the result does not depend on the
 // thread count. Source: dissertation 6.3, and 8.2 for refit.
-SphereTree merge_tree(const Surface& surface, const MedialAxis& axis, const MergeOptions& options = {},
-                      const Progress& progress = {}, MergeReport* report = nullptr);
+MergeBuild merge_tree(const Surface& surface, const MedialAxis& axis, const MergeOptions& options = {},
+                      const Progress& progress = {});
 
 }  // namespace orchard

@@ -35,6 +35,11 @@ struct TightenReport {
   std::vector<Level> levels;
 };
 
+struct TightenBuild {
+  SphereTree tree;
+  TightenReport report;
+};
+
 // Builds the tightest trees: each level is solved as a whole, with branching^level balls for the whole surface and
 // every ball free to choose its parent. A parent so has one to twice `branching` children (at most 64), and the load
 // balances itself. Balls are fitted to surface points, so that max |p - c| + sd(c) is small over the centre c, improved
@@ -43,7 +48,7 @@ struct TightenReport {
 // holds, and the search goes on with nothing uncovered. The surface points are those of the axis: 20 or more for each
 // ball of the last level. The result is conservative and, since work is counted and not timed, the same on any number
 // of threads. Throws InputError for a branching out of range or an axis without vertices.
-SphereTree tightened_tree(const Surface& surface, const MedialAxis& axis, const TightenOptions& options = {},
-                          const Progress& progress = {}, TightenReport* report = nullptr);
+TightenBuild tightened_tree(const Surface& surface, const MedialAxis& axis, const TightenOptions& options = {},
+                            const Progress& progress = {});
 
 }  // namespace orchard
