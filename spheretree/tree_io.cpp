@@ -1,12 +1,11 @@
 #include "orchard/spheretree/tree_io.h"
 
-#include <charconv>
+#include <array>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
-#include <optional>
 
 #include "orchard/geometry/error.h"
+#include "orchard/geometry/text_lines.h"
 
 namespace orchard {
 namespace {
@@ -36,35 +35,21 @@ void append_node(std::string& text, const SphereNode* node) {
   text.append(line, static_cast<std::size_t>(length));
 }
 
-struct SphLine {
-  double values[4];
-};
-
-// The numbers of one line, or nothing if there are fewer than `count`.
-std::optional<SphLine> parse_numbers(const std::string& line, int count) {
-  SphLine parsed{};
-  const char* at = line.data();
-  const char* const end = at + line.size();
-  for (int i = 0; i < count; ++i) {
-    while (at != end && (*at == ' ' || *at == '\t' || *at == '+')) ++at;
-    const auto [next, error] = std::from_chars(at, end, parsed.values[i]);
-    if (error != std::errc() || !std::isfinite(parsed.values[i])) return std::nullopt;
-    at = next;
-  }
-  return parsed;
+// The levels, which count the root, and the branching.
+std::array<Index, 2> read_header(TextLines& lines) {
+  constexpr const char* kExpected = "\"levels branching\", two whole numbers,";
+  if (!lines.next()) lines.fail("is empty; a .sph file starts with \"levels branching\"");
+  const double levels = lines.real(kExpected), branching = lines.real(kExpected);
+  const auto whole = [](double value, double max) { return value >= 1 && value <= max && value == std::floor(value); };
+  if (!whole(levels, 64) || !whole(branching, 4096))
+    lines.fail("\"levels branching\" must be two whole numbers, 1 to 64 and 1 to 4096");
+  return {static_cast<Index>(levels), static_cast<Index>(branching)};
 }
 
-[[noreturn]] void fail(const std::filesystem::path& file, std::size_t line, const std::string& what) {
-  throw InputError(file.string() + ":" + std::to_string(line) + ": " + what);
-}
-
-bool next_line(std::istream& in, std::string& line, std::size_t& number) {
-  while (std::getline(in, line)) {
-    ++number;
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (line.find_first_not_of(" \t") != std::string::npos) return true;
-  }
-  return false;
+Sphere read_place(TextLines& lines) {
+  constexpr const char* kExpected = "\"x y z radius\", four finite numbers,";
+  const double x = lines.real(kExpected), y = lines.real(kExpected), z = lines.real(kExpected);
+  return {Point(x, y, z), lines.real(kExpected)};
 }
 
 // Places of used nodes in the complete tree, breadth-first, become the nodes of a compact one.
@@ -107,28 +92,14 @@ std::string to_sph(const SphereTree& tree) {
 }
 
 SphereTree read_sph(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file)) throw InputError(file.string() + ": cannot be read");
-  std::string line;
-  std::size_t number = 0;
-  if (!next_line(in, line, number)) fail(file, 1, "is empty; a .sph file starts with \"levels branching\"");
-  const auto header = parse_numbers(line, 2);
-  const auto whole = [](double value, double max) { return value >= 1 && value <= max && value == std::floor(value); };
-  if (!header || !whole(header->values[0], 64) || !whole(header->values[1], 4096))
-    fail(file, number, "expected \"levels branching\", two whole numbers");
-  const auto levels = static_cast<std::uint64_t>(header->values[0]);
-  const auto branching = static_cast<Index>(header->values[1]);
+  TextLines lines(file);
+  const auto [levels, branching] = read_header(lines);
   const std::uint64_t size = complete_size(levels, branching);
-  if (size > kMaxNodes) fail(file, number, "promises more than " + std::to_string(kMaxNodes) + " nodes");
+  if (size > kMaxNodes) lines.fail("promises more than " + std::to_string(kMaxNodes) + " nodes");
   // Missing nodes at the end count as unused, so memory follows the file, not the header.
   std::vector<Sphere> places;
-  while (places.size() < size && next_line(in, line, number)) {
-    const auto numbers = parse_numbers(line, 4);
-    if (!numbers) fail(file, number, "expected \"x y z radius\", four finite numbers");
-    const double* v = numbers->values;
-    places.push_back({Point(v[0], v[1], v[2]), v[3]});
-  }
-  if (places.empty() || places[0].radius <= 0) fail(file, number, "the first node, the root, must be in use");
+  while (places.size() < size && lines.next()) places.push_back(read_place(lines));
+  if (places.empty() || places[0].radius <= 0) lines.fail("the first node, the root, must be in use");
   return compact(places, branching);
 }
 

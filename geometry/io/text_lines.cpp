@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <limits>
 
 #include "orchard/geometry/error.h"
 #include "text_scan.h"
@@ -29,7 +30,8 @@ TextLines::TextLines(const std::filesystem::path& file) : TextLines(file.string(
 TextLines::TextLines(std::string name, std::string text) : name_(std::move(name)), text_(std::move(text)) {}
 
 void TextLines::fail(const std::string& fault) const {
-  throw InputError(name_ + ", line " + std::to_string(line_number_) + ": " + fault);
+  const std::string line = line_number_ > 0 ? ", line " + std::to_string(line_number_) : std::string();
+  throw InputError(name_ + line + ": " + fault);
 }
 
 bool TextLines::next() {
@@ -55,39 +57,56 @@ void TextLines::expect(std::string_view word) {
   at_ += word.size();
 }
 
-template <class Number>
-Number TextLines::number(const char* what) {
-  skip_space();
-  Number value{};
+// Reads what is next on the line with one of the functions of text_scan.h.
+template <class Scan, class Number>
+bool TextLines::scan(Scan&& number, Number& value) {
   const std::string_view rest = line();
-  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
-  if (error != std::errc()) fail("expected " + std::string(what) + " at " + in_quotes(rest));
-  at_ += static_cast<std::size_t>(end - rest.data());
-  return value;
+  const char* at = rest.data();
+  const bool found = number(at, rest.data() + rest.size(), value);
+  at_ += static_cast<std::size_t>(at - rest.data());
+  return found;
+}
+
+void TextLines::fail_to_find(std::string_view what) const {
+  fail("expected " + std::string(what) + " at " + (at_ < line_end_ ? in_quotes(line()) : "the end of the line"));
 }
 
 std::size_t TextLines::whole_numbers_to_the_end(std::span<std::int64_t> numbers) {
   const std::size_t start = at_;
   std::size_t count = 0;
   for (skip_space(); at_ < line_end_; skip_space()) {
-    const std::string_view rest = line();
     std::int64_t value = 0;
-    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
-    const std::size_t length = static_cast<std::size_t>(end - rest.data());
-    if (error != std::errc() || count == numbers.size() || (length < rest.size() && !is_space(rest[length]))) {
+    const bool found = scan(scan_integer, value);
+    if (!found || count == numbers.size() || (at_ < line_end_ && !is_space(text_[at_]))) {
       at_ = start;
       return 0;
     }
     numbers[count++] = value;
-    at_ += length;
   }
   return count;
 }
 
-Index TextLines::index() { return number<Index>("a whole number"); }
-std::int64_t TextLines::whole() { return number<std::int64_t>("a whole number"); }
-double TextLines::real() {
-  const double value = number<double>("a number");
+Index TextLines::index() {
+  skip_space();
+  const std::size_t start = at_;
+  std::int64_t value = 0;
+  if (scan(scan_integer, value) && value >= 0 && value <= std::numeric_limits<Index>::max())
+    return static_cast<Index>(value);
+  at_ = start;
+  fail_to_find("a whole number");
+}
+
+std::int64_t TextLines::whole() {
+  skip_space();
+  std::int64_t value = 0;
+  if (!scan(scan_integer, value)) fail_to_find("a whole number");
+  return value;
+}
+
+double TextLines::real(std::string_view what) {
+  skip_space();
+  double value = 0;
+  if (!scan(scan_double, value)) fail_to_find(what);
   if (!std::isfinite(value)) fail("a number that is not finite");
   return value;
 }

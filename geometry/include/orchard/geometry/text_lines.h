@@ -21,7 +21,7 @@ class TextLines {
   void expect(std::string_view word);  // the next line, which must start with this word
   Index index();                       // a whole number, 0 or more
   std::int64_t whole();
-  double real();  // finite
+  double real(std::string_view what = "a number");  // finite; `what` names it in the message if there is none
   // What is left of the line, if it is nothing but whole numbers and no more of them than `numbers` has room for: how
   // many they are. Otherwise 0, and the line stays where it is.
   std::size_t whole_numbers_to_the_end(std::span<std::int64_t> numbers);
@@ -30,8 +30,9 @@ class TextLines {
  private:
   std::string_view line() const { return std::string_view(text_).substr(at_, line_end_ - at_); }
   void skip_space();
-  template <class Number>
-  Number number(const char* what);
+  template <class Scan, class Number>
+  bool scan(Scan&& number, Number& value);
+  [[noreturn]] void fail_to_find(std::string_view what) const;
 
   std::string name_, text_;
   // Places in text_ rather than views of it, which would stay with the text of the value that a copy was made of.
