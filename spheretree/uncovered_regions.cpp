@@ -13,8 +13,6 @@ namespace {
 constexpr int kProbes = 14;  // outward from the middle of an arc, each twice as far as the one before
 // Uncovered regions below this part of the last growth are left to it.
 constexpr double kLeftToGrowth = 0.4;
-// An uncovered region is taken in whole unless that costs so many times what its deepest point does.
-constexpr double kDearer = 8;
 
 bool bounds_same(const std::vector<Point>& corners, const UncoveredArc& arc, double near) {
   return std::any_of(corners.begin(), corners.end(),
@@ -127,10 +125,6 @@ std::vector<UncoveredRegion> find_deep_uncovered_regions(const Surface& surface,
   std::erase_if(uncovered,
                 [&](const UncoveredRegion& region) { return region.depth <= kLeftToGrowth * kLastGrowth * radius; });
   return uncovered;
-}
-
-bool taken_whole(double rise_for_whole, double rise_for_deepest) {
-  return rise_for_whole <= kDearer * rise_for_deepest;
 }
 
 std::vector<Index> triangles_to_recheck(const Surface& surface, const Coverage& before,

@@ -31,10 +31,6 @@ std::vector<UncoveredRegion> find_uncovered_regions(const Surface& surface, cons
 std::vector<UncoveredRegion> find_deep_uncovered_regions(const Surface& surface, const Coverage& coverage,
                                                          std::span<const PathBall> balls);
 
-// Whether an uncovered region goes to one ball as a whole, or only its deepest point does, by how much the cost of the
-// cheapest ball would rise for either; infinite where no ball can take it.
-bool taken_whole(double rise_for_whole, double rise_for_deepest);
-
 // The triangles that may be uncovered after a change, ascending: those that were before, and those near the balls as
 // they were before they changed.
 std::vector<Index> triangles_to_recheck(const Surface& surface, const Coverage& before,

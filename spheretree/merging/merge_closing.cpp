@@ -5,27 +5,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "ball_fit.h"
 #include "orchard/covering/coverage.h"
 #include "orchard/geometry/tolerance.h"
 #include "orchard/spheretree/cover.h"
-#include "uncovered_regions.h"
+#include "takers.h"
 
 namespace orchard::detail {
 namespace {
 
 constexpr int kRounds = 14;
-constexpr int kEvaluations = 14;
-// What breaks ties between balls that would not get looser, as a fraction of growth.
-constexpr double kTie = 1e-9;
-
-struct Taker {
-  Index node = kNone;
-  double rise = std::numeric_limits<double>::infinity();  // of its cost
-};
 
 class Closer {
  public:
@@ -68,20 +59,19 @@ class Closer {
  private:
   // Adds the uncovered regions to what the nodes that they cost least have to hold; returns these nodes, ascending.
   std::vector<Index> give(const std::vector<UncoveredRegion>& uncovered) {
-    std::vector<Taker> whole(uncovered.size()), deepest(uncovered.size());
-    tbb::parallel_for(std::size_t{0}, uncovered.size(), [&](std::size_t i) {
-      descend(0, uncovered[i].points(), whole[i]);
-      descend(0, {uncovered[i].deepest}, deepest[i]);
+    const std::vector<Taking> takings = find_takers(uncovered, [&](std::span<const Point> points) {
+      Taker best;
+      descend(0, points, best);
+      return best;
     });
     std::vector<char> marked(tree_.nodes.size(), 0);
     for (std::size_t i = 0; i < uncovered.size(); ++i) {
       const std::vector<Point>& corners = uncovered[i].corners;
-      const bool together = taken_whole(whole[i].rise, deepest[i].rise);
-      const Index taker = together ? whole[i].node : deepest[i].node;
+      const auto [taker, whole] = takings[i];
       if (taker == kNone) continue;  // across the border of a path region: cover() mends it
       marked[taker] = 1;
       held_[taker].push_back(uncovered[i].deepest);
-      if (together) held_[taker].insert(held_[taker].end(), corners.begin(), corners.end());
+      if (whole) held_[taker].insert(held_[taker].end(), corners.begin(), corners.end());
     }
     std::vector<Index> takers;
     for (Index i = 0; i < marked.size(); ++i)
@@ -90,14 +80,14 @@ class Closer {
   }
 
   void refit(Index i) {
-    const FittedBall fitted = fitters_.local().fit(held_[i], tree_.nodes[i].sphere.center, kEvaluations);
+    const FittedBall fitted = fitters_.local().fit(held_[i], tree_.nodes[i].sphere.center, kTakerEvaluations);
     tree_.nodes[i].sphere = {fitted.center, fitted.radius + margin_};
     depth_[i] = fitted.depth;
   }
 
   // Of the leaves below the node whose path region, but for the leaf itself, holds the points: the one that they cost
   // least.
-  void descend(Index index, const std::vector<Point>& points, Taker& best) const {
+  void descend(Index index, std::span<const Point> points, Taker& best) const {
     const SphereNode& node = tree_.nodes[index];
     double reach = 0;
     for (const Point& p : points) reach = std::max(reach, (p - node.sphere.center).squaredNorm());
@@ -108,7 +98,7 @@ class Closer {
     }
     const double growth = std::max(0.0, std::sqrt(reach) - node.sphere.radius) / radius_;
     const double loose = std::max(0.0, node.sphere.radius + depth_[index]) / radius_;
-    const double rise = std::pow(loose + growth, power_) - std::pow(loose, power_) + kTie * growth;
+    const double rise = std::pow(loose + growth, power_) - std::pow(loose, power_) + kTakerTie * growth;
     if (rise < best.rise) best = {index, rise};
   }
 

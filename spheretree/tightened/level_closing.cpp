@@ -1,24 +1,15 @@
 #include "level_closing.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
-#include <limits>
+
+#include "takers.h"
 
 namespace orchard::detail {
 namespace {
 
-constexpr int kEvaluations = 14;
 // Between an uncovered region's corner and its deepest point: corners themselves lie on other balls, and would be let
 // go again.
 constexpr double kInward = 0.1;
-// What breaks ties between balls that would not get looser at all, as a fraction of growth.
-constexpr double kTie = 1e-9;
-
-struct Taker {
-  Index ball = kNone;
-  double rise = std::numeric_limits<double>::infinity();  // of its cost
-};
 
 // Finds the ball that given points cost least. The objective is convex in the looseness: a rise is at least the slope
 // times the growth, which spares most balls.
@@ -42,7 +33,7 @@ class TakerSearch {
                        [&](const Point& p) { return balls_.regions().holds(ball.path_region, p); }))
         continue;
       const double rise =
-          (growth > 0 ? objective_.cost(grown) - objective_.cost(ball) : 0) + kTie * growth / bounding_radius_;
+          (growth > 0 ? objective_.cost(grown) - objective_.cost(ball) : 0) + kTakerTie * growth / bounding_radius_;
       if (rise < best.rise) best = {b, rise};
     }
     return best;
@@ -60,11 +51,8 @@ class TakerSearch {
 void take_in(const Surface& surface, const LevelObjective& objective, const std::vector<UncoveredRegion>& uncovered,
              bool hold, LevelBalls& balls) {
   const TakerSearch search(balls, objective, surface.bounding_radius());
-  std::vector<Taker> whole(uncovered.size()), deepest_only(uncovered.size());
-  tbb::parallel_for(std::size_t{0}, uncovered.size(), [&](std::size_t i) {
-    whole[i] = search.cheapest(uncovered[i].points());
-    deepest_only[i] = search.cheapest({&uncovered[i].deepest, 1});
-  });
+  const std::vector<Taking> takings =
+      find_takers(uncovered, [&](std::span<const Point> points) { return search.cheapest(points); });
   std::vector<std::vector<Point>> taken(balls.size());
   Samples fresh;
   const auto add_sample = [&](const Point& point, Index ball) {
@@ -73,14 +61,12 @@ void take_in(const Surface& surface, const LevelObjective& objective, const std:
   };
   for (std::size_t i = 0; i < uncovered.size(); ++i) {
     const UncoveredRegion& region = uncovered[i];
-    const bool together = taken_whole(whole[i].rise, deepest_only[i].rise);
-    const Index taker = together ? whole[i].ball : deepest_only[i].ball;
+    const auto [taker, whole] = takings[i];
     if (taker == kNone) continue;
-    // Otherwise it is a long sliver, or lies across the border of a path region, and will fall apart.
-    if (together) taken[taker].insert(taken[taker].end(), region.corners.begin(), region.corners.end());
+    if (whole) taken[taker].insert(taken[taker].end(), region.corners.begin(), region.corners.end());
     taken[taker].push_back(region.deepest);
     add_sample(region.deepest, taker);
-    if (!hold || !together) continue;
+    if (!hold || !whole) continue;
     for (const Point& p : region.corners) add_sample((1 - kInward) * p + kInward * region.deepest, taker);
   }
   balls.add_samples(fresh);
@@ -88,7 +74,7 @@ void take_in(const Surface& surface, const LevelObjective& objective, const std:
   for (Index b = 0; b < balls.size(); ++b) {
     if (taken[b].empty()) continue;
     balls.append_held_alone(b, taken[b]);
-    balls.replace(b, fitter.fit(taken[b], balls[b].center, kEvaluations));
+    balls.replace(b, fitter.fit(taken[b], balls[b].center, kTakerEvaluations));
   }
 }
 

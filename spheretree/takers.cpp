@@ -1,0 +1,24 @@
+#include "takers.h"
+
+#include <tbb/parallel_for.h>
+
+namespace orchard::detail {
+namespace {
+
+// An uncovered region is taken in whole unless that costs so many times what its deepest point does.
+constexpr double kDearer = 8;
+
+}  // namespace
+
+std::vector<Taking> find_takers(const std::vector<UncoveredRegion>& uncovered, const CheapestTaker& cheapest) {
+  std::vector<Taking> takings(uncovered.size());
+  tbb::parallel_for(std::size_t{0}, uncovered.size(), [&](std::size_t i) {
+    const Taker whole = cheapest(uncovered[i].points());
+    const Taker deepest = cheapest({&uncovered[i].deepest, 1});
+    const bool together = whole.rise <= kDearer * deepest.rise;  // true if both are infinite, too: none takes it
+    takings[i] = {together ? whole.ball : deepest.ball, together};
+  });
+  return takings;
+}
+
+}  // namespace orchard::detail
