@@ -75,6 +75,7 @@ class Importer {
     std::vector<Box> boxes;
     for (const Point& center : axis_.centers) boxes.emplace_back(center, center);
     const detail::BallTree tree(std::move(boxes), axis_.radii);
+    const Index step = std::max<Index>(samples_ / 64, 1);
     for (Index p = 0; p < samples_; ++p) {
       const Point& point = axis_.points[p];
       const auto gap = [&](Index v) { return (point - axis_.centers[v]).norm() - axis_.radii[v]; };
@@ -86,7 +87,7 @@ class Importer {
         return g;
       });
       contacts_[nearest].push_back(p);
-      report_progress(progress_, "importing the axis", static_cast<double>(p) / samples_);
+      if (p % step == 0) report_progress(progress_, "importing the axis", static_cast<double>(p) / samples_);
     }
   }
 

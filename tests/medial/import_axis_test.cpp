@@ -77,6 +77,21 @@ TEST(ImportAxis, RefusesBallsOutsideWithTheirCellsAndCorrectsRadii) {
   EXPECT_EQ(imported.axis.radii, (std::vector<double>{1, 1, 1}));
 }
 
+TEST(ImportAxis, ReportsItsProgressAHundredTimesAtMostHoweverManySamples) {
+  const Surface surface(test::l_shape());
+  const MedialMesh own = axis_of(surface);
+  int reports = 0;
+  double last = -1;
+  import_axis(surface, own, samples_of(surface, 4000), [&](std::string_view, double fraction) {
+    EXPECT_GT(fraction, last);
+    last = fraction;
+    return ++reports > 0;
+  });
+  EXPECT_LE(reports, 100);
+  EXPECT_GT(reports, 10);
+  EXPECT_EQ(last, 1);
+}
+
 TEST(ImportAxis, NeedsASolidAndABallInIt) {
   const Surface surface(test::box(Point(0, 0, 0), Point(1, 1, 1)));
   MedialMesh mesh;
