@@ -24,7 +24,7 @@ enum class TreeMethod { tightened, merging, annealing, octree };
 struct SphereTreeOptions {
   TreeMethod method = TreeMethod::tightened;
   Index depth = 3;      // levels below the root at most
-  Index branching = 8;  // children of a node at most or on average, as the method has it; an octree has 8
+  Index branching = 8;  // children of a node at most or on average, as the method has it
   Effort effort = Effort::standard;
   Objective objective = Objective::balanced;   // tightened
   SetEnergy energy = SetEnergy::maximum;       // annealing
