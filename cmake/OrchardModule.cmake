@@ -98,6 +98,15 @@ function(orchard_install_package)
   foreach(component IN LISTS components)
     install(EXPORT orchard-${component} NAMESPACE orchard:: DESTINATION ${directory} COMPONENT ${component})
   endforeach()
+  # Beside those of the run-time and its methods, which install runtime/LICENSE themselves.
+  if(ORCHARD_CONSTRUCTION)
+    list(APPEND components apps)
+    list(REMOVE_ITEM components runtime broad_phase_methods)
+    foreach(component IN LISTS components)
+      install(FILES ${PROJECT_SOURCE_DIR}/LICENSES/GPL-3.0-or-later.txt
+        DESTINATION ${CMAKE_INSTALL_DOCDIR}/${component} COMPONENT ${component})
+    endforeach()
+  endif()
   configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/orchardConfig.cmake.in
     ${PROJECT_BINARY_DIR}/orchardConfig.cmake INSTALL_DESTINATION ${directory})
   write_basic_package_version_file(${PROJECT_BINARY_DIR}/orchardConfigVersion.cmake COMPATIBILITY SameMinorVersion)

@@ -16,6 +16,16 @@ file(REMOVE_RECURSE "${SCRATCH}")
 foreach(component IN ITEMS runtime construction)
   must_run("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${prefix}" --component ${component})
 endforeach()
+# Each component brings the licence that it is under.
+function(must_be_installed file source)
+  file(GLOB found "${prefix}/*/doc/orchard/${file}")
+  if(NOT found)
+    message(FATAL_ERROR "the installation has no doc/orchard/${file}")
+  endif()
+  must_run("${CMAKE_COMMAND}" -E compare_files "${found}" "${SOURCE}/${source}")
+endfunction()
+must_be_installed(runtime/LICENSE runtime/LICENSE)
+must_be_installed(construction/GPL-3.0-or-later.txt LICENSES/GPL-3.0-or-later.txt)
 must_run("${CMAKE_COMMAND}" -G "${GENERATOR}" "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_CXX_FLAGS=${FLAGS}"
   "-DCMAKE_PREFIX_PATH=${prefix}" -DCMAKE_BUILD_TYPE=Release -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF
   -S "${SOURCE}/examples/construction" -B "${SCRATCH}/example")
