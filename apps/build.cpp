@@ -5,6 +5,7 @@
 #include "build_plot.h"
 #include "commands.h"
 #include "console.h"
+#include "idle_options.h"
 #include "input_file.h"
 #include "load_solid.h"
 #include "orchard/geometry/atomic_file.h"
@@ -69,8 +70,7 @@ void check(const BuildCommand& command) {
   }
   std::vector<fs::path> inputs = command.source.files();
   if (inputs.size() > 1) throw InputError("--points, --diagram and --from-axis exclude each other");
-  if (!inputs.empty() && !needs_axis(command.options.method))
-    throw InputError("--points, --diagram and --from-axis: only tightened and merging build from a medial axis");
+  refuse_idle_options(command);
   tree_options(command);  // whether the numbers fit together
   for (const fs::path& file : inputs) check_input(file);
   inputs.push_back(command.mesh);

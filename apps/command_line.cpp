@@ -40,14 +40,14 @@ void add_mesh_options(CLI::App& command, MeshOptions& options) {
 // Those that the command has a use for.
 void add_tuning(CLI::App& command, MedialTuning& tuning, bool for_tree) {
   for (const TuningFlag& flag : tuning_flags()) {
-    if (for_tree && flag.of_report) continue;
+    if (for_tree && flag.step == TuningStep::report) continue;
     const bool needs = for_tree && flag.name == "samples";
     command
         .add_option_function<std::string>(
             "--" + flag.name, [&tuning, &flag](const std::string& value) { flag.set(tuning, value); },
             flag.help + " [" + (needs ? "as method and depth need" : flag.standard) + "]")
         ->check(CLI::Validator([&flag](std::string& value) { return flag.fault(value); }, "{" + flag.range() + "}"))
-        ->group(for_tree ? "Medial axis" : "Tuning");
+        ->group(for_tree ? "Medial axis, for --method tightened and merging" : "Tuning");
   }
 }
 
@@ -82,7 +82,12 @@ void add_build(CLI::App& app, Request& request) {
       ->capture_default_str();
   add_output_flags(command, build.output);
   command.footer("Example:\n  orchard build data/lamp.obj -o out/lamp --picture");
-  command.callback([&request] { request.run = [&request] { orchard::apps::build(request.build); }; });
+  command.callback([&request, &command] {
+    for (const CLI::Option* option : command.get_options())
+      if (option->count() > 0 && !option->get_lnames().empty())
+        request.build.given.push_back(option->get_lnames().front());
+    request.run = [&request] { orchard::apps::build(request.build); };
+  });
 }
 
 void add_collide(CLI::App& app, Request& request) {

@@ -30,6 +30,7 @@ struct BuildCommand {
   std::vector<std::string> exports;   // sph (always written), json, urdf
   std::optional<Index> export_level;  // of the urdf; the last one
   std::string up = "y";               // the mesh's axis that points up in the picture
+  std::vector<std::string> given;     // the options on the command line, by their long names, without dashes
   Output output;
 };
 void build(const BuildCommand& command);

@@ -16,10 +16,13 @@ constexpr double kRadians = std::numbers::pi / 180;
 
 template <class Set>
 TuningFlag real(const char* name, const char* standard, double low, double high, const char* help, Set set) {
-  return {name,  help,  standard,
-          {},    low,   high,
-          false, false, [set](MedialTuning& tuning, const std::string& text) {
-            set(tuning, *finite_number(text)); }};
+  return {.name = name,
+          .help = help,
+          .standard = standard,
+          .choices = {},
+          .low = low,
+          .high = high,
+          .set = [set](MedialTuning& tuning, const std::string& text) { set(tuning, *finite_number(text)); }};
 }
 
 template <class Set>
@@ -31,7 +34,7 @@ TuningFlag whole(const char* name, const char* standard, double low, double high
 
 TuningFlag choice(const char* name, std::vector<std::string> choices, const char* help,
                   std::function<void(MedialTuning&, const std::string&)> set) {
-  return {name, help, choices.front(), choices, 0, 0, false, false, std::move(set)};
+  return {.name = name, .help = help, .standard = choices.front(), .choices = choices, .set = std::move(set)};
 }
 
 void set_relaxation(MedialTuning& tuning, const std::string& text) {
@@ -47,57 +50,81 @@ void set_gaps(MedialTuning& tuning, const std::string& text) {
                                                             : GapDefinition::connected;
 }
 
+using T = MedialTuning;
+
+std::vector<TuningFlag> point_flags() {
+  return {whole("samples", "5000", 20, 1e7, "Surface points: more follow the shape better, and take longer",
+                [](T& t, double x) { t.samples = static_cast<Index>(x); }),
+          whole("edge-samples", "a fifth", 0, 1e7,
+                "Of them along edges: more make sheets reach sharp edges, fewer resolve the faces better",
+                [](T& t, double x) { t.edge_samples = static_cast<Index>(x); }),
+          choice("relaxation", {"automatic", "clusters", "neighbors"},
+                 "Points keep apart within flat clusters (designed parts) or across faces (scans)", set_relaxation),
+          whole("iterations", "40", 0, 1000, "Of relaxation: more even points give smoother sheets",
+                [](T& t, double x) { t.options.sampling.iterations = static_cast<int>(x); }),
+          real("cluster-angle", "0.0057", 0, 90,
+               "Degrees that a cluster may turn: more treats curved parts as one face without edges",
+               [](T& t, double x) { t.cluster_degrees = x; }),
+          real("crease-angle", "28.6", 0, 180, "Degrees from which a scan has an edge that gets edge points",
+               [](T& t, double x) { t.options.sampling.crease_angle = x * kRadians; }),
+          whole("seed", "1", 0, 4294967295.0, "Of the random points: another draw of the same density",
+                [](T& t, double x) { t.options.sampling.seed = static_cast<std::uint64_t>(x); })};
+}
+
+std::vector<TuningFlag> diagram_flags() {
+  return {choice("algorithm", {"highest-first", "inagaki", "bowyer", "exact"},
+                 "Of the Voronoi diagram; inagaki and bowyer are for comparison, and need well-spread points",
+                 [](T& t, const std::string& text) { t.options.algorithm = *voronoi_algorithm_named(text); }),
+          choice("gaps", {"connected", "loose", "strict", "none"},
+                 "What counts as a gap to mend: loose misses some, strict adds most points, none breaks thin parts",
+                 set_gaps),
+          real("joined-radius", "0", 0, 1000,
+               "Crossings joined within so many point distances are forgiven: fewer points, no guarantee",
+               [](T& t, double x) { t.options.gap_repair.joined_radius = x; }),
+          whole("max-passes", "20", 0, 1000, "Of gap repair at most: fewer leave gaps that need more",
+                [](T& t, double x) { t.options.gap_repair.max_passes = static_cast<int>(x); }),
+          choice("thin", {"no", "yes"},
+                 "Whether pairs of facing points that crowd thin parts go again: fewer points, coarser there",
+                 [](T& t, const std::string& text) { t.options.gap_repair.thin = text == "yes"; })};
+}
+
+std::vector<TuningFlag> axis_flags() {
+  return {real("coalesce", "1e-7", 1e-12, 0.01,
+               "Vertices nearer than this, in bounding radii, become one: more loses detail and may lose loops",
+               [](T& t, double x) { t.options.axis.coalesce = x; }),
+          choice("topology", {"keep", "free"},
+                 "Whether single edges may stand for faces where gaps that cannot be mended spoil the topology",
+                 [](T& t, const std::string& text) { t.keep_topology = text == "keep"; })};
+}
+
+std::vector<TuningFlag> pruning_flags() {
+  return {real("prune-angle", "0", 0, 180,
+               "Degrees: cuts spurs whose two contacts are nearer in angle; more loses sheets into shallow edges",
+               [](T& t, double x) { t.prune_degrees = x; }),
+          real("prune-scale", "1", 1, 10,
+               "Cuts balls that others hold when all are so many times larger; more loses small features",
+               [](T& t, double x) { t.options.prune.scale = x; })};
+}
+
+std::vector<TuningFlag> report_flags() {
+  return {real("segment-angle", "60", 0, 180,
+               "Degrees: faces with nearer contacts do not divide sheets; more makes fewer segments",
+               [](T& t, double x) { t.segment_degrees = x; })};
+}
+
 std::vector<TuningFlag> make_flags() {
-  using T = MedialTuning;
   std::vector<TuningFlag> flags;
-  flags.push_back(whole("samples", "5000", 20, 1e7, "Surface points: more follow the shape better, and take longer",
-                        [](T& t, double x) { t.samples = static_cast<Index>(x); }));
-  flags.push_back(whole("edge-samples", "a fifth", 0, 1e7,
-                        "Of them along edges: more make sheets reach sharp edges, fewer resolve the faces better",
-                        [](T& t, double x) { t.edge_samples = static_cast<Index>(x); }));
-  flags.push_back(choice("relaxation", {"automatic", "clusters", "neighbors"},
-                         "Points keep apart within flat clusters (designed parts) or across faces (scans)",
-                         set_relaxation));
-  flags.push_back(whole("iterations", "40", 0, 1000, "Of relaxation: more even points give smoother sheets",
-                        [](T& t, double x) { t.options.sampling.iterations = static_cast<int>(x); }));
-  flags.push_back(real("cluster-angle", "0.0057", 0, 90,
-                       "Degrees that a cluster may turn: more treats curved parts as one face without edges",
-                       [](T& t, double x) { t.cluster_degrees = x; }));
-  flags.push_back(real("crease-angle", "28.6", 0, 180, "Degrees from which a scan has an edge that gets edge points",
-                       [](T& t, double x) { t.options.sampling.crease_angle = x * kRadians; }));
-  flags.push_back(whole("seed", "1", 0, 4294967295.0, "Of the random points: another draw of the same density",
-                        [](T& t, double x) { t.options.sampling.seed = static_cast<std::uint64_t>(x); }));
-  flags.push_back(choice("algorithm", {"highest-first", "inagaki", "bowyer", "exact"},
-                         "Of the Voronoi diagram; inagaki and bowyer are for comparison, and need well-spread points",
-                         [](T& t, const std::string& text) { t.options.algorithm = *voronoi_algorithm_named(text); }));
-  flags.push_back(choice(
-      "gaps", {"connected", "loose", "strict", "none"},
-      "What counts as a gap to mend: loose misses some, strict adds most points, none breaks thin parts", set_gaps));
-  flags.push_back(real("joined-radius", "0", 0, 1000,
-                       "Crossings joined within so many point distances are forgiven: fewer points, no guarantee",
-                       [](T& t, double x) { t.options.gap_repair.joined_radius = x; }));
-  flags.push_back(whole("max-passes", "20", 0, 1000, "Of gap repair at most: fewer leave gaps that need more",
-                        [](T& t, double x) { t.options.gap_repair.max_passes = static_cast<int>(x); }));
-  flags.push_back(choice("thin", {"no", "yes"},
-                         "Whether pairs of facing points that crowd thin parts go again: fewer points, coarser there",
-                         [](T& t, const std::string& text) { t.options.gap_repair.thin = text == "yes"; }));
-  flags.push_back(real("coalesce", "1e-7", 1e-12, 0.01,
-                       "Vertices nearer than this, in bounding radii, become one: more loses detail and may lose loops",
-                       [](T& t, double x) { t.options.axis.coalesce = x; }));
-  flags.push_back(
-      real("prune-angle", "0", 0, 180,
-           "Degrees: cuts spurs whose two contacts are nearer in angle; more loses sheets into shallow edges",
-           [](T& t, double x) { t.prune_degrees = x; }));
-  flags.push_back(real("prune-scale", "1", 1, 10,
-                       "Cuts balls that others hold when all are so many times larger; more loses small features",
-                       [](T& t, double x) { t.options.prune.scale = x; }));
-  flags.push_back(real("segment-angle", "60", 0, 180,
-                       "Degrees: faces with nearer contacts do not divide sheets; more makes fewer segments",
-                       [](T& t, double x) { t.segment_degrees = x; }));
-  flags.back().of_report = true;
-  flags.push_back(choice("topology", {"keep", "free"},
-                         "Whether single edges may stand for faces where gaps that cannot be mended spoil the topology",
-                         [](T& t, const std::string& text) { t.keep_topology = text == "keep"; }));
+  const auto add = [&flags](TuningStep step, std::vector<TuningFlag> some) {
+    for (TuningFlag& flag : some) {
+      flag.step = step;
+      flags.push_back(std::move(flag));
+    }
+  };
+  add(TuningStep::points, point_flags());
+  add(TuningStep::diagram, diagram_flags());
+  add(TuningStep::axis, axis_flags());
+  add(TuningStep::pruning, pruning_flags());
+  add(TuningStep::report, report_flags());
   return flags;
 }
 

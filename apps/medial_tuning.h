@@ -23,6 +23,9 @@ struct MedialTuning {
 // Everything in one value. Throws InputError if edge samples exceed samples.
 MedialBuildOptions build_options(const MedialTuning& tuning);
 
+// The step on the way to an axis that a flag acts on; the report only says more or less of the axis.
+enum class TuningStep { points, diagram, axis, pruning, report };
+
 // One flag: --name on the command line, name=a,b,c in a sweep.
 struct TuningFlag {
   std::string name, help;  // help: what it trades
@@ -30,7 +33,7 @@ struct TuningFlag {
   std::vector<std::string> choices;
   double low = 0, high = 0;  // where there are no choices
   bool whole = false;        // whole numbers only
-  bool of_report = false;    // it changes what is said of the axis, not the axis
+  TuningStep step = TuningStep::points;
   std::function<void(MedialTuning&, const std::string&)> set;
 
   // Why a value cannot be, without the flag's name; empty if it can.

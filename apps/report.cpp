@@ -170,8 +170,8 @@ json build_json(const Surface& surface, const SphereTreeOptions& options, const 
                        {"effort", name(options.effort)},
                        {"objective", name(options.objective)},
                        {"closing", options.closing == MergeClosing::refit ? "refit" : "growth"},
-                       {"samples", options.medial.sampling.face_points + options.medial.sampling.edge_points},
                        {"seed", options.seed}};
+  if (result.medial) report["options"]["samples"] = result.medial->points;
   if (result.medial) report.update(axis_json(*result.medial, result.axis_components));
   report["covering"] = {{"rounds", result.cover.rounds},
                         {"triangles_uncovered_before", result.cover.triangles_uncovered},
