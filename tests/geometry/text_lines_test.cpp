@@ -88,6 +88,30 @@ TEST(TextLines, GiveWholeNumbersToTheEndOrNothing) {
   EXPECT_EQ(kept.index(), 1u);
 }
 
+TEST(TextLines, TakeNumbersInAnyFormOfC) {
+  TextLines lines("text", "+3 -7 +2.5e1 1e-999 .5\n");
+  ASSERT_TRUE(lines.next());
+  EXPECT_EQ(lines.index(), 3u);
+  EXPECT_EQ(lines.whole(), -7);
+  EXPECT_EQ(lines.real(), 25);
+  EXPECT_EQ(lines.real(), 0) << "too small for a double";
+  EXPECT_EQ(lines.real(), 0.5);
+  test::expect_input_error([&] { lines.real("a radius"); },
+                           {"text, line 1", "expected a radius at the end of the line"});
+}
+
+TEST(TextLines, RefuseNumbersThatDoNotFit) {
+  for (const char* number : {"-1", "4294967296", "99999999999999999999", "+-1", "x"}) {
+    TextLines lines("text", number);
+    ASSERT_TRUE(lines.next());
+    test::expect_input_error([&] { lines.index(); }, {"text, line 1", '"' + std::string(number) + '"'});
+  }
+  TextLines large("text", "1e999 inf");
+  ASSERT_TRUE(large.next());
+  test::expect_input_error([&] { large.real(); }, {"text, line 1", "expected a number at"});
+  test::expect_input_error([] { TextLines("text", "").fail("is empty"); }, {"text: is empty"});
+}
+
 TEST(TextLines, ShowOnlyPrintableTextInTheirMessages) {
   TextLines lines("text", "\x01\x02 strange\n");
   ASSERT_TRUE(lines.next());

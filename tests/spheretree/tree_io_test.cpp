@@ -54,15 +54,36 @@ TEST_F(SphFile, TakesNodesThatAreMissingAtTheEndAsUnused) {
   EXPECT_NO_THROW(validate(tree));
 }
 
+TEST_F(SphFile, TakesNumbersAsOtherProgramsWriteThem) {
+  write_file(path_, "# of some program\n2 8\n+0.5 1e-999 -0 +1 1\n\t.5 0. 5E-1 .25\n");
+  const SphereTree tree = read_sph(path_);
+  ASSERT_EQ(tree.nodes.size(), 2u);
+  EXPECT_EQ(tree.nodes[0].sphere.center, Point(0.5, 0, 0));
+  EXPECT_EQ(tree.nodes[1].sphere.center, Point(0.5, 0, 0.5));
+  EXPECT_EQ(tree.nodes[1].sphere.radius, 0.25);
+}
+
 TEST_F(SphFile, NamesFileAndLineOfWhatItCannotRead) {
-  EXPECT_NE(error_of("").find("is empty"), std::string::npos);
-  EXPECT_NE(error_of("two eight\n").find(":1:"), std::string::npos);
-  EXPECT_NE(error_of("2.5 8\n").find(":1:"), std::string::npos);
-  EXPECT_NE(error_of("0 8\n").find(":1:"), std::string::npos);
-  EXPECT_NE(error_of("3 8\n0 0 0 1 1\n1 2 three 4 5\n").find(":3:"), std::string::npos);
-  EXPECT_NE(error_of("3 8\n0 0 0 nan 1\n").find(":2:"), std::string::npos);
-  EXPECT_NE(error_of("3 8\n0 0 0 -1 1\n").find("root"), std::string::npos);
-  EXPECT_NE(error_of("60 4000\n0 0 0 1 1\n").find("nodes"), std::string::npos);
+  const struct {
+    const char* text;
+    const char* fault;
+  } cases[] = {
+      {"", "is empty; a .sph file starts with \"levels branching\""},
+      {"two eight\n", ", line 1: expected \"levels branching\", two whole numbers, at \"two eight\""},
+      {"4\n", ", line 1: expected \"levels branching\", two whole numbers, at the end of the line"},
+      {"2.5 8\n", ", line 1: \"levels branching\" must be two whole numbers"},
+      {"0 8\n", ", line 1: \"levels branching\" must be two whole numbers, 1 to 64 and 1 to 4096"},
+      {"3 8\n0 0 0 1 1\n1 2 three 4 5\n", ", line 3: expected \"x y z radius\", four finite numbers, at \"three"},
+      {"3 8\n\n0 0 0\n", ", line 3: expected \"x y z radius\""},
+      {"3 8\n0 0 0 nan 1\n", ", line 2: a number that is not finite"},
+      {"3 8\n0 0 0 1e999 1\n", ", line 2: expected \"x y z radius\""},
+      {"3 8\n0 0 0 -1 1\n", ", line 2: the first node, the root, must be in use"},
+      {"60 4000\n0 0 0 1 1\n", ", line 1: promises more than"}};
+  for (const auto& [text, fault] : cases) {
+    const std::string error = error_of(text);
+    EXPECT_EQ(error.find(path_.string()), 0u) << error;
+    EXPECT_NE(error.find(fault), std::string::npos) << error;
+  }
   EXPECT_THROW(read_sph("/nonexistent/tree.sph"), InputError);
   EXPECT_THROW(read_sph(std::filesystem::temp_directory_path()), InputError);
 }

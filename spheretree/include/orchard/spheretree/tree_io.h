@@ -11,7 +11,8 @@ namespace orchard {
 // in the mesh's own frame.
 std::string to_sph(const SphereTree& tree);
 
-// Reads a .sph file. Nodes of radius 0 count as unused. Throws InputError naming file, line, fault and remedy.
+// Reads a .sph file. Nodes of radius 0 count as unused; blank lines and lines that start with '#' are skipped. Throws
+// InputError naming file, line, fault and remedy.
 SphereTree read_sph(const std::filesystem::path& file);
 
 }  // namespace orchard
