@@ -61,4 +61,9 @@ class MovingBodies {
   std::vector<Body> bodies_;
 };
 
+// Of a trial run: the pairs at any step that touch, and those of them that a broad phase did not find.
+struct Misses {
+  std::size_t touching = 0, missed = 0;
+};
+
 }  // namespace orchard::runtime::test

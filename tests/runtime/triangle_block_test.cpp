@@ -1,0 +1,162 @@
+// The inner loops over triangles: the compiler's vectors against one number at a time, bit for bit, and the definition.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "every_machine.h"
+#include "orchard/runtime/vec3.h"
+#include "pair/support_map.h"
+#include "support.h"
+#include "tree/patch_block.h"
+
+namespace orchard::runtime::detail {
+namespace {
+
+using test::Draw;
+using test::on_every_machine;
+
+Placement placement_of(const Pose& pose, double size) {
+  Placement p{};
+  for (std::size_t i = 0; i < 9; ++i) {
+    p.turn[i] = static_cast<float>(pose.rotation[i]);
+    p.rotation[i] = static_cast<float>(pose.rotation[i] * pose.scale);
+  }
+  for (std::size_t i = 0; i < 3; ++i) p.translation[i] = static_cast<float>(pose.translation[i]);
+  p.scale = static_cast<float>(pose.scale);
+  p.margin = static_cast<float>(size * 128 * 0x1p-24);
+  return p;
+}
+
+// A tree of few random triangles, flat ones, needles and points among them, not far from the origin.
+PackedSphereTree random_triangles(Draw& draw, std::uint32_t count) {
+  PackedSphereTree tree;
+  const double spread = draw.uniform(0.02, 1);
+  const test::Vec middle = draw.direction();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double size = draw.bits() % 8 == 0 ? 0 : draw.uniform(0, spread);
+    const test::Vec center = draw.direction();
+    for (int k = 0; k < 3; ++k) {
+      const test::Vec d = draw.direction();
+      auto& vertex = tree.vertices.emplace_back();
+      for (std::size_t j = 0; j < 3; ++j) {
+        vertex[j] = static_cast<float>(0.2 * middle[j] + spread * center[j] + size * d[j]);
+      }
+    }
+    tree.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  index_triangles(tree);
+  return tree;
+}
+
+std::vector<test::Triangle> triangles_below(const PackedSphereTree& tree, std::uint32_t node,
+                                            const std::vector<test::Triangle>& placed) {
+  const std::uint32_t child = tree.patches[node / kBlockWidth].child[node % kBlockWidth];
+  std::vector<test::Triangle> result;
+  if (child & kLeafBit) {
+    for (const std::uint32_t t : tree.triangle_blocks[child & ~kLeafBit].triangle) {
+      if (t != kNoTriangle) result.push_back(placed[t]);
+    }
+    return result;
+  }
+  for (std::uint32_t lane = 0; lane < kBlockWidth && tree.patches[child].radius[lane] >= 0; ++lane) {
+    const auto more = triangles_below(tree, child * kBlockWidth + lane, placed);
+    result.insert(result.end(), more.begin(), more.end());
+  }
+  return result;
+}
+
+TEST(PatchBlock, GivesTheSameBitsWithAndWithoutVectorsAndNeverAGapAboveTheDistance) {
+  int apart = 0, tight = 0;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    Draw draw(seed);
+    const PackedSphereTree a = random_triangles(draw, static_cast<std::uint32_t>(1 + draw.bits() % 12)),
+                           b = random_triangles(draw, 30);
+    Pose pose = draw.pose(draw.uniform(0, 3));
+    pose.scale = draw.uniform(0.5, 2);
+    const Placement placement = placement_of(pose, 10);
+    const Patch single = patch_at(a.patches[0], 0);
+    PatchGaps gaps, plain, still, plain_still;
+    patch_gaps_scalar(single, b.patches[1], &placement, placement.margin, plain);
+    patch_gaps_scalar(single, b.patches[1], nullptr, placement.margin, plain_still);
+    on_every_machine([&] {
+      patch_gaps(single, b.patches[1], &placement, placement.margin, gaps);
+      patch_gaps(single, b.patches[1], nullptr, placement.margin, still);
+      constexpr std::size_t lanes = offsetof(PatchGaps, used);
+      ASSERT_EQ(std::memcmp(&gaps, &plain, lanes), 0) << seed;
+      ASSERT_EQ(std::memcmp(&still, &plain_still, lanes), 0) << seed;
+      ASSERT_EQ(std::pair(gaps.used, gaps.meeting), std::pair(plain.used, plain.meeting));
+      ASSERT_EQ(std::pair(still.used, still.meeting), std::pair(plain_still.used, plain_still.meeting));
+    });
+    if (HasFatalFailure()) return;
+    const auto placed = test::placed_triangles(b, pose), others = test::placed_triangles(a, Pose{});
+    for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
+      ASSERT_EQ(gaps.used >> lane & 1, b.patches[1].radius[lane] >= 0 ? 1u : 0u);
+      if ((gaps.used >> lane & 1) == 0) continue;
+      ASSERT_EQ(gaps.meeting >> lane & 1, gaps.gap[lane] <= 0 ? 1u : 0u);
+      const auto distance = test::surface_distance(others, triangles_below(b, kBlockWidth + lane, placed));
+      ASSERT_LE(gaps.gap[lane], distance) << seed;
+      apart += gaps.gap[lane] > 0;
+      tight += distance > 0 && gaps.gap[lane] > 0.5 * static_cast<double>(distance);
+    }
+  }
+  EXPECT_GT(apart, 300);
+  EXPECT_GT(tight, 300);
+}
+
+TEST(SupportMap, CoversEveryPointInEveryDirection) {
+  double worst = 0;
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    Draw draw(seed);
+    const PackedSphereTree tree = random_triangles(draw, 30);
+    Vec3 u = draw.direction();
+    if (seed % 4 == 0) u[seed % 3] = 0;
+    if (seed % 8 == 0) u[seed % 5 % 3] = u[(seed + 1) % 3];
+    const Support support = support_along(tree.supports, u);
+    double most = -1e300, size = 0;
+    for (const auto& v : tree.vertices) {
+      most = std::max(most, u[0] * v[0] + u[1] * v[1] + u[2] * v[2]);
+      size = std::max(size, double{std::hypot(v[0], v[1], v[2])});
+    }
+    ASSERT_GE(support.most, most - 1e-14) << seed;
+    worst = std::max(worst, (support.most - most) / size);
+    ASSERT_NEAR(u[0] * support.point[0] + u[1] * support.point[1] + u[2] * support.point[2], support.most, 1e-9);
+  }
+  EXPECT_LT(worst, 0.1);
+}
+
+TEST(TriangleBlock, KeepsEveryPairThatMeetsAndGivesTheSameWithoutVectors) {
+  int kept = 0, dropped = 0, meeting = 0;
+  for (std::uint64_t seed = 0; seed < 8000; ++seed) {
+    Draw draw(seed);
+    const auto draw_count = [&draw] { return static_cast<std::uint32_t>(1 + draw.bits() % 8); };
+    const PackedSphereTree a = random_triangles(draw, draw_count()), b = random_triangles(draw, draw_count());
+    Pose pose = draw.pose(draw.uniform(0, 0.5));
+    if (seed % 2 == 0) pose.scale = draw.uniform(0.25, 4);
+    const Placement placement = placement_of(pose, 10);
+    const TriangleBlock &lanes = a.triangle_blocks[0], &rows = b.triangle_blocks[0];
+    const LeafPair pair{lanes, rows, patch_at(a.patches[0], 0), moved(patch_at(b.patches[0], 0), placement)};
+    const std::uint64_t found = triangle_candidates_scalar(pair, placement);
+    on_every_machine([&] { ASSERT_EQ(triangle_candidates(pair, placement), found) << seed; });
+    if (HasFatalFailure()) return;
+    for (std::uint32_t r = 0; r < kBlockWidth; ++r) {
+      for (std::uint32_t l = 0; l < kBlockWidth; ++l) {
+        const bool candidate = found >> (8 * r + l) & 1;
+        if (rows.triangle[r] == kNoTriangle || lanes.triangle[l] == kNoTriangle) {
+          ASSERT_FALSE(candidate) << seed;
+          continue;
+        }
+        const bool meet = triangles_intersect(points_of(lanes, l), moved_points_of(rows, r, pose), nullptr);
+        ASSERT_TRUE(candidate || !meet) << seed;
+        (candidate ? kept : dropped) += 1;
+        meeting += meet;
+      }
+    }
+  }
+  EXPECT_GT(meeting, 500);
+  EXPECT_GT(dropped, kept);
+  EXPECT_LT(kept, 2 * meeting);  // the filter leaves little to the exact test
+}
+
+}  // namespace
+}  // namespace orchard::runtime::detail
