@@ -92,88 +92,111 @@ Series histogram(const std::string& name, const std::vector<double>& frames, dou
   return bars;
 }
 
-bool run_setting(const Setting& setting, double share, const std::filesystem::path& folder, std::ofstream& csv) {
-  const std::vector<Way> all = ways();
-  const double cell = best_cell(setting.cubes, setting.ball);
-  const int trials = std::max(1, static_cast<int>(setting.trials * share));
-  bool right = true;
-  std::vector<Series> overall(all.size()), detection(all.size()), worst(all.size());
+// What the trials of a setting came to: the speedups of each way, and the detection times of all frames.
+struct Outcome {
+  explicit Outcome(std::size_t ways) : overall(ways), detection(ways), worst(ways) {}
+  std::vector<Series> overall, detection, worst;
   std::vector<double> hash_frames, projection_frames, event_frames;
-  for (int trial = 0; trial < trials; ++trial) {
-    const auto seed = static_cast<std::uint64_t>(trial) + 1;
-    std::size_t memory = 0;
-    std::vector<Run> runs;
-    for (const Way& way : all) {
-      runs.push_back(best_of([&] { return run_bounds(setting.cubes, setting.ball, seed, way.make); }));
-      if (memory == 0) memory = runs.back().memory;  // projection's
-    }
-    const Run hash = best_of([&] { return run_hash(setting.cubes, setting.ball, seed, memory, cell); });
-    hash_frames.insert(hash_frames.end(), hash.frames.begin(), hash.frames.end());
-    projection_frames.insert(projection_frames.end(), runs.front().frames.begin(), runs.front().frames.end());
-    event_frames.insert(event_frames.end(), runs.back().frames.begin(), runs.back().frames.end());
-    for (std::size_t w = 0; w < all.size(); ++w) {
-      if (std::fabs(runs[w].collision - hash.collision) > 1e-9) {
-        std::printf("%s: another collision in trial %d: %g, not %g\n", all[w].name, trial, runs[w].collision,
-                    hash.collision);
-        right = false;
-      }
-      const auto add = [&](Series& series, double ours, double theirs) {
-        series.x.push_back(hash.collision);
-        series.y.push_back(theirs / ours);
-      };
-      add(overall[w], runs[w].overall, hash.overall);
-      add(detection[w], runs[w].detection, hash.detection);
-      add(worst[w], runs[w].worst(), hash.worst());
-      csv << setting.cubes << ',' << trial << ',' << all[w].name << ',' << hash.collision << ',' << runs[w].overall
-          << ',' << runs[w].detection << ',' << runs[w].worst() << ',' << hash.overall << ',' << hash.detection << ','
-          << hash.worst() << ',' << runs[w].memory << ',' << hash.memory << '\n';
-    }
+};
+
+// False if a way found another collision than the hash.
+bool run_trial(const Setting& setting, int trial, double cell, Outcome& outcome, std::ofstream& csv) {
+  const std::vector<Way> all = ways();
+  const auto seed = static_cast<std::uint64_t>(trial) + 1;
+  std::size_t memory = 0;
+  std::vector<Run> runs;
+  for (const Way& way : all) {
+    runs.push_back(best_of([&] { return run_bounds(setting.cubes, setting.ball, seed, way.make); }));
+    if (memory == 0) memory = runs.back().memory;  // projection's
   }
+  const Run hash = best_of([&] { return run_hash(setting.cubes, setting.ball, seed, memory, cell); });
+  const auto append = [](std::vector<double>& to, const Run& run) {
+    to.insert(to.end(), run.frames.begin(), run.frames.end());
+  };
+  append(outcome.hash_frames, hash);
+  append(outcome.projection_frames, runs.front());
+  append(outcome.event_frames, runs.back());
+  bool right = true;
   for (std::size_t w = 0; w < all.size(); ++w) {
-    std::printf("| %zu | %s | %.2f | %.2f | %.2f | %.0f %% |\n", setting.cubes, all[w].name, median(overall[w].y),
-                median(detection[w].y), median(worst[w].y),
-                100.0 *
-                    static_cast<double>(
-                        std::count_if(detection[w].y.begin(), detection[w].y.end(), [](double s) { return s > 1; })) /
-                    static_cast<double>(detection[w].y.size()));
+    if (std::fabs(runs[w].collision - hash.collision) > 1e-9) {
+      std::printf("%s: another collision in trial %d: %g, not %g\n", all[w].name, trial, runs[w].collision,
+                  hash.collision);
+      right = false;
+    }
+    const auto add = [&](Series& series, double ours, double theirs) {
+      series.x.push_back(hash.collision);
+      series.y.push_back(theirs / ours);
+    };
+    add(outcome.overall[w], runs[w].overall, hash.overall);
+    add(outcome.detection[w], runs[w].detection, hash.detection);
+    add(outcome.worst[w], runs[w].worst(), hash.worst());
+    csv << setting.cubes << ',' << trial << ',' << all[w].name << ',' << hash.collision << ',' << runs[w].overall << ','
+        << runs[w].detection << ',' << runs[w].worst() << ',' << hash.overall << ',' << hash.detection << ','
+        << hash.worst() << ',' << runs[w].memory << ',' << hash.memory << '\n';
+  }
+  return right;
+}
+
+void print_medians(const Setting& setting, const Outcome& outcome) {
+  const std::vector<Way> all = ways();
+  for (std::size_t w = 0; w < all.size(); ++w) {
+    const std::vector<double>& detection = outcome.detection[w].y;
+    const auto faster = std::count_if(detection.begin(), detection.end(), [](double s) { return s > 1; });
+    std::printf("| %zu | %s | %.2f | %.2f | %.2f | %.0f %% |\n", setting.cubes, all[w].name,
+                median(outcome.overall[w].y), median(detection), median(outcome.worst[w].y),
+                100.0 * static_cast<double>(faster) / static_cast<double>(detection.size()));
   }
   std::fflush(stdout);
+}
 
-  const auto scatter = [&](const std::string& title, std::vector<Series>& all_series) {
-    Plot plot{.title = title,
-              .x_label = "time of the collision",
-              .y_label = "speedup over the spatial hash",
-              .log_y = true,
-              .series = {},
-              .levels = {1},
-              .x_names = {}};
-    for (const std::size_t w : {std::size_t{0}, all.size() - 1}) {
-      all_series[w].name = all[w].name;
-      plot.series.push_back(all_series[w]);
-    }
-    return plot;
-  };
+// Of the first way and the last.
+Plot scatter(const std::string& title, const std::vector<Series>& speedups) {
+  Plot plot{.title = title,
+            .x_label = "time of the collision",
+            .y_label = "speedup over the spatial hash",
+            .log_y = true,
+            .series = {speedups.front(), speedups.back()},
+            .levels = {1},
+            .x_names = {}};
+  plot.series.front().name = ways().front().name;
+  plot.series.back().name = ways().back().name;
+  return plot;
+}
+
+void draw(const Setting& setting, const Outcome& outcome, const std::filesystem::path& folder) {
   const std::string cubes = ", " + std::to_string(setting.cubes) + " cubes";
-  std::vector<double> sorted = hash_frames;
+  std::vector<double> sorted = outcome.hash_frames;
   std::sort(sorted.begin(), sorted.end());
   const double width = 2 * sorted[sorted.size() * 99 / 100] / 40;
   Plot frames{.title = std::string("Fig. ") + setting.histogram_figure + ": frames" + cubes,
               .x_label = "detection time of a frame, microseconds",
               .y_label = "frames + 1",
               .log_y = true,
-              .series = {histogram("spatial hash", hash_frames, width),
-                         histogram("projection", projection_frames, width), histogram("events", event_frames, width)},
+              .series = {histogram("spatial hash", outcome.hash_frames, width),
+                         histogram("projection", outcome.projection_frames, width),
+                         histogram("events", outcome.event_frames, width)},
               .levels = {},
               .x_names = {}};
   for (Series& bars : frames.series) {
     for (double& count : bars.y) count += 1;
   }
+  const std::string speedup = std::string("Fig. ") + setting.speedup_figure;
   orchard::plot::write_svg(
       folder / ("fig_" + std::string(setting.speedup_figure) + ".svg"),
-      {scatter(std::string("Fig. ") + setting.speedup_figure + ": overall" + cubes, overall),
-       scatter(std::string("Fig. ") + setting.speedup_figure + ": detection only" + cubes, detection),
-       scatter(std::string("Fig. ") + setting.worst_figure + ": worst frame" + cubes, worst), frames},
+      {scatter(speedup + ": overall" + cubes, outcome.overall),
+       scatter(speedup + ": detection only" + cubes, outcome.detection),
+       scatter(std::string("Fig. ") + setting.worst_figure + ": worst frame" + cubes, outcome.worst), frames},
       2);
+}
+
+bool run_setting(const Setting& setting, double share, const std::filesystem::path& folder, std::ofstream& csv) {
+  const double cell = best_cell(setting.cubes, setting.ball);
+  const int trials = std::max(1, static_cast<int>(setting.trials * share));
+  Outcome outcome(ways().size());
+  bool right = true;
+  for (int trial = 0; trial < trials; ++trial) right = run_trial(setting, trial, cell, outcome, csv) && right;
+  print_medians(setting, outcome);
+  draw(setting, outcome, folder);
   return right;
 }
 
