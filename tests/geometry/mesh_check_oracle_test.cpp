@@ -14,12 +14,35 @@ namespace {
 using Edge = std::array<Index, 2>;
 using Triangle = std::array<Index, 3>;
 
+using EdgeUses = std::map<std::set<Index>, std::vector<std::pair<Index, Edge>>>;  // triangles, and how they run
+
+// Pieces of a set of triangles that edges through `vertex` (any edges for kNone) hold together.
+Index pieces(const EdgeUses& edges, std::set<Index> triangles, Index vertex) {
+  Index number = 0;
+  for (; !triangles.empty(); ++number) {
+    std::vector<Index> stack{*triangles.begin()};
+    triangles.erase(triangles.begin());
+    while (!stack.empty()) {
+      const Index t = stack.back();
+      stack.pop_back();
+      for (const auto& [key, uses] : edges) {
+        if (vertex != kNone && !key.contains(vertex)) continue;
+        if (std::ranges::none_of(uses, [&](const auto& use) { return use.first == t; })) continue;
+        for (const auto& use : uses) {
+          if (triangles.erase(use.first)) stack.push_back(use.first);
+        }
+      }
+    }
+  }
+  return number;
+}
+
 // Everything that MeshReport says about connectivity, by sets and searches that follow the definitions.
 MeshReport brute_force(const TriangleMesh& mesh) {
   MeshReport report;
   const Index count = static_cast<Index>(mesh.triangles.size());
   const auto collapsed = [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; };
-  std::map<std::set<Index>, std::vector<std::pair<Index, Edge>>> edges;
+  EdgeUses edges;
   std::vector<std::set<Index>> order;  // as first met
   std::set<Index> used, joined;
   for (Index t = 0; t < count; ++t) {
@@ -47,26 +70,6 @@ MeshReport brute_force(const TriangleMesh& mesh) {
       tally(report.misoriented_edges, report.first_misoriented_edge, uses[0].second);
     }
   }
-  // Pieces of a set of triangles that edges through `vertex` (any edges for kNone) hold together.
-  const auto pieces = [&](std::set<Index> triangles, Index vertex) {
-    Index number = 0;
-    for (; !triangles.empty(); ++number) {
-      std::vector<Index> stack{*triangles.begin()};
-      triangles.erase(triangles.begin());
-      while (!stack.empty()) {
-        const Index t = stack.back();
-        stack.pop_back();
-        for (const auto& [key, uses] : edges) {
-          if (vertex != kNone && !key.contains(vertex)) continue;
-          if (std::ranges::none_of(uses, [&](const auto& use) { return use.first == t; })) continue;
-          for (const auto& use : uses) {
-            if (triangles.erase(use.first)) stack.push_back(use.first);
-          }
-        }
-      }
-    }
-    return number;
-  };
   std::set<Index> all;
   std::map<Index, std::set<Index>> around;
   for (Index t = 0; t < count; ++t) {
@@ -74,9 +77,10 @@ MeshReport brute_force(const TriangleMesh& mesh) {
     all.insert(t);
     for (const Index corner : mesh.triangles[t]) around[corner].insert(t);
   }
-  report.components = pieces(all, kNone);
+  report.components = pieces(edges, all, kNone);
   for (const auto& [vertex, triangles] : around) {
-    if (pieces(triangles, vertex) > 1 && report.non_manifold_vertices++ == 0) report.first_non_manifold_vertex = vertex;
+    if (pieces(edges, triangles, vertex) > 1 && report.non_manifold_vertices++ == 0)
+      report.first_non_manifold_vertex = vertex;
   }
   return report;
 }

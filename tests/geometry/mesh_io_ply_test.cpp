@@ -14,6 +14,7 @@
 #include "orchard/geometry/mesh_check.h"
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/random.h"
+#include "random_ply.h"
 
 namespace orchard {
 namespace {
@@ -26,211 +27,10 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(text.find(from), from.size(), to);
 }
 
-const PlyType kTypes[] = {PlyType::int8,  PlyType::uint8,  PlyType::int16,   PlyType::uint16,
-                          PlyType::int32, PlyType::uint32, PlyType::float32, PlyType::float64};
-const char* const kNames[][2] = {{"char", "int8"}, {"uchar", "uint8"}, {"short", "int16"},   {"ushort", "uint16"},
-                                 {"int", "int32"}, {"uint", "uint32"}, {"float", "float32"}, {"double", "float64"}};
-
-// Writes numbers as one encoding has them.
-class Body {
- public:
-  explicit Body(PlyEncoding encoding) : encoding_(encoding) {}
-  void put(PlyType type, double value) {
-    switch (type) {
-      case PlyType::int8:
-        return put_as<std::int8_t>(value);
-      case PlyType::uint8:
-        return put_as<std::uint8_t>(value);
-      case PlyType::int16:
-        return put_as<std::int16_t>(value);
-      case PlyType::uint16:
-        return put_as<std::uint16_t>(value);
-      case PlyType::int32:
-        return put_as<std::int32_t>(value);
-      case PlyType::uint32:
-        return put_as<std::uint32_t>(value);
-      case PlyType::float32:
-        return put_as<float>(value);
-      case PlyType::float64:
-        return put_as<double>(value);
-    }
-  }
-  void end_row() {
-    if (encoding_ == PlyEncoding::ascii) bytes_.back() = '\n';
-  }
-  const std::string& bytes() const { return bytes_; }
-
- private:
-  template <typename T>
-  void put_as(double value) {
-    if (encoding_ == PlyEncoding::ascii) {
-      char text[32];
-      std::snprintf(text, sizeof text, "%.17g ", static_cast<double>(static_cast<T>(value)));
-      bytes_ += text;
-      return;
-    }
-    const T exact = static_cast<T>(value);
-    std::string raw(sizeof(T), '\0');
-    std::memcpy(raw.data(), &exact, sizeof(T));
-    const bool little = encoding_ == PlyEncoding::little_endian;
-    if (little != (std::endian::native == std::endian::little)) std::ranges::reverse(raw);
-    bytes_ += raw;
-  }
-  PlyEncoding encoding_;
-  std::string bytes_;
-};
-
-const char* const kEncodings[] = {"ascii", "binary_little_endian", "binary_big_endian"};
-
-// A random file: property order, types, further properties and elements differ with the seed.
-class RandomPly {
- public:
-  // `strips`: the faces are in strips of triangles.
-  RandomPly(std::uint64_t seed, PlyEncoding encoding, bool strips = false)
-      : random_(seed, 1), header_("ply\nformat "), body_(encoding) {
-    header_ += std::string(kEncodings[static_cast<std::size_t>(encoding)]) + " 1.0\ncomment seed\n";
-    const bool faces_first = random_.below(4) == 0;
-    for (int part = 0; part < 2; ++part) {
-      if (random_.below(2)) add_extra_element("extra" + std::to_string(part));
-      (part == 0) != faces_first ? add_vertices() : strips ? add_strips() : add_faces();
-    }
-    header_ += "obj_info hand-made\nend_header\n";
-  }
-  std::string bytes() const { return header_ + body_.bytes(); }
-  const TriangleMesh& mesh() const { return mesh_; }
-
- private:
-  static constexpr Index kVertices = 100;  // so that char can name them all
-
-  PlyType any_type() { return kTypes[random_.below(8)]; }
-  std::string name_of(PlyType type) { return kNames[static_cast<std::size_t>(type)][random_.below(2)]; }
-  double any_number() { return static_cast<double>(random_.below(100)); }
-
-  struct Column {
-    PlyType type;
-    bool list;
-    PlyType length_type;
-    std::string name;
-  };
-  // The named column among some that nobody needs, in random order.
-  std::vector<Column> columns(std::vector<Column> named) {
-    for (std::uint64_t i = random_.below(3); i > 0; --i) {
-      named.push_back({any_type(), random_.below(3) == 0, any_type(), "extra" + std::to_string(i)});
-    }
-    for (std::size_t i = named.size() - 1; i > 0; --i) std::swap(named[i], named[random_.below(i + 1)]);
-    for (const Column& column : named) {
-      header_ += "property " + (column.list ? "list " + name_of(column.length_type) + " " : "") + name_of(column.type) +
-                 " " + column.name + "\n";
-    }
-    return named;
-  }
-  void put_unneeded(const Column& column) {
-    const std::uint64_t count = column.list ? random_.below(4) : 1;
-    if (column.list) body_.put(column.length_type, static_cast<double>(count));
-    for (std::uint64_t i = 0; i < count; ++i) body_.put(column.type, any_number());
-  }
-  void add_extra_element(const std::string& name) {
-    header_ += "element " + name + " 3\n";
-    const auto layout = columns({{any_type(), false, any_type(), "x"}});
-    for (int row = 0; row < 3; ++row) {
-      for (const Column& column : layout) put_unneeded(column);
-      body_.end_row();
-    }
-  }
-  void add_vertices() {
-    header_ += "element vertex " + std::to_string(kVertices) + "\n";
-    const auto layout = columns({{any_type(), false, any_type(), "x"},
-                                 {any_type(), false, any_type(), "y"},
-                                 {any_type(), false, any_type(), "z"}});
-    for (Index row = 0; row < kVertices; ++row) {
-      Point& point = mesh_.vertices.emplace_back();
-      for (const Column& column : layout) {
-        const std::size_t axis = std::string("xyz").find(column.name);
-        if (axis == std::string::npos) {
-          put_unneeded(column);
-          continue;
-        }
-        double value = any_number();
-        if (column.type == PlyType::float64) value = random_.uniform(-1e9, 1e9);
-        if (column.type == PlyType::float32) value = static_cast<float>(random_.uniform(-1, 1));
-        point[static_cast<Eigen::Index>(axis)] = value;
-        body_.put(column.type, value);
-      }
-      body_.end_row();
-    }
-  }
-  void add_faces() {
-    header_ += "element face 50\n";
-    const auto layout = columns({{any_type(), true, any_type(), random_.below(2) ? "vertex_indices" : "vertex_index"}});
-    for (int row = 0; row < 50; ++row) {
-      for (const Column& column : layout) {
-        if (!column.name.starts_with("vertex")) {
-          put_unneeded(column);
-          continue;
-        }
-        body_.put(column.length_type, 3);
-        for (Index& corner : mesh_.triangles.emplace_back()) {
-          corner = static_cast<Index>(random_.below(kVertices));
-          body_.put(column.type, corner);
-        }
-      }
-      body_.end_row();
-    }
-  }
-
-  // As a picture of a strip has it: corners alternate between its two rims, and each triangle lies between three that
-  // follow one another.
-  void add_strips() {
-    const std::uint64_t rows = random_.below(4);
-    header_ += "element tristrips " + std::to_string(rows) + "\n";
-    static constexpr std::array kLengths{PlyType::uint8, PlyType::int16, PlyType::int32};
-    static constexpr std::array kSigned{PlyType::int8, PlyType::int16, PlyType::int32, PlyType::float64};
-    const auto layout = columns({{kSigned.at(random_.below(4)), true, kLengths.at(random_.below(3)),
-                                  random_.below(2) ? "vertex_indices" : "vertex_index"}});
-    for (std::uint64_t row = 0; row < rows; ++row) {
-      for (const Column& column : layout) {
-        if (!column.name.starts_with("vertex")) {
-          put_unneeded(column);
-          continue;
-        }
-        const std::vector<int> list = random_strips();
-        body_.put(column.length_type, static_cast<double>(list.size()));
-        for (const int item : list) body_.put(column.type, item);
-      }
-      body_.end_row();
-    }
-  }
-  std::vector<int> random_strips() {
-    std::vector<int> list;
-    for (std::uint64_t strips = random_.below(6); strips > 0; --strips) {
-      std::vector<int> strip;
-      for (std::uint64_t corners = random_.below(12); corners > 0; --corners) {
-        strip.push_back(random_.below(5) == 0 && !strip.empty() ? strip.back()
-                                                                : static_cast<int>(random_.below(kVertices)));
-      }
-      for (std::size_t i = 0; i + 2 < strip.size(); ++i) {
-        std::array<int, 3> corners{strip[i], strip[i + 1], strip[i + 2]};
-        if (i % 2 == 1) std::swap(corners[0], corners[1]);
-        if (std::set<int>(corners.begin(), corners.end()).size() < 3) continue;
-        mesh_.triangles.push_back(
-            {static_cast<Index>(corners[0]), static_cast<Index>(corners[1]), static_cast<Index>(corners[2])});
-      }
-      list.insert(list.end(), strip.begin(), strip.end());
-      if (strips > 1 || random_.below(2) == 0) list.push_back(-1);
-    }
-    return list;
-  }
-
-  Random random_;
-  std::string header_;
-  Body body_;
-  TriangleMesh mesh_;
-};
-
 TEST(ReadPly, ReadsAnyTypesAndOrderInEveryEncoding) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     for (const PlyEncoding encoding : {PlyEncoding::ascii, PlyEncoding::little_endian, PlyEncoding::big_endian}) {
-      const RandomPly file(seed, encoding);
+      const test::RandomPly file(seed, encoding);
       const TriangleMesh mesh = read(file.bytes());
       ASSERT_EQ(mesh.vertices, file.mesh().vertices) << "seed " << seed << "\n" << file.bytes().substr(0, 600);
       ASSERT_EQ(mesh.triangles, file.mesh().triangles) << "seed " << seed;
@@ -242,7 +42,7 @@ TEST(ReadPly, ReadsStripsOfTrianglesInEveryEncoding) {
   std::size_t triangles = 0;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     for (const PlyEncoding encoding : {PlyEncoding::ascii, PlyEncoding::little_endian, PlyEncoding::big_endian}) {
-      const RandomPly file(seed, encoding, true);
+      const test::RandomPly file(seed, encoding, true);
       const TriangleMesh mesh = read_ply_or_points(file.bytes(), "mesh.ply");
       ASSERT_EQ(mesh.vertices, file.mesh().vertices) << "seed " << seed << "\n" << file.bytes().substr(0, 600);
       ASSERT_EQ(mesh.triangles, file.mesh().triangles) << "seed " << seed << "\n" << file.bytes();
@@ -293,7 +93,7 @@ TEST(ReadPly, NamesTheLineOrByteOfAFaultInAStrip) {
 
 TEST(ReadPly, RefusesARandomFileCutShort) {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
-    const std::string bytes = RandomPly(seed, PlyEncoding::little_endian).bytes();
+    const std::string bytes = test::RandomPly(seed, PlyEncoding::little_endian).bytes();
     const std::size_t size = Random(seed, 3).below(bytes.size());
     test::expect_input_error([&] { read(std::string_view(bytes).substr(0, size)); }, {"mesh.ply"});
   }
@@ -317,7 +117,7 @@ TEST(ReadPly, TakesEveryEndOfLineInTheHeader) {
     for (const char c : replaced(header("binary_big_endian"), "float x", "uchar x")) {
       binary += c == '\n' ? end : std::string(1, c);
     }
-    Body body(PlyEncoding::big_endian);
+    test::PlyBody body(PlyEncoding::big_endian);
     for (int i = 0; i < 3; ++i) {
       body.put(PlyType::uint8, '\n');
       body.put(PlyType::float32, i);
@@ -395,7 +195,7 @@ TEST(ReadPly, NamesTheLineAndTheFaultOfAsciiFiles) {
 TEST(ReadPly, NamesTheByteAndTheFaultOfBinaryFiles) {
   const std::string head = header("binary_little_endian");
   const auto file = [&](float coordinate, double length, double corner) {
-    Body body(PlyEncoding::little_endian);
+    test::PlyBody body(PlyEncoding::little_endian);
     for (int i = 0; i < 9; ++i) body.put(PlyType::float32, i == 4 ? coordinate : static_cast<float>(i));
     body.put(PlyType::uint8, length);
     for (int i = 0; i < 3; ++i) body.put(PlyType::int32, i == 1 ? corner : 0);

@@ -3,10 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
-#include <numeric>
 
+#include "broken_meshes.h"
 #include "orchard/geometry/mesh_check.h"
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/random.h"
@@ -17,172 +18,12 @@ namespace orchard {
 namespace {
 
 using Triangle = std::array<Index, 3>;
-
-TriangleMesh unit_box() { return test::box(Point(0, 0, 0), Point(1, 1, 1)); }
-
-TriangleMesh joined(std::initializer_list<TriangleMesh> parts) {
-  TriangleMesh mesh;
-  for (const TriangleMesh& part : parts) {
-    const Index first = static_cast<Index>(mesh.vertices.size());
-    mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
-    for (const auto& [a, b, c] : part.triangles) mesh.triangles.push_back({a + first, b + first, c + first});
-  }
-  return mesh;
-}
-
-// Vertices at the same place become one, as in a file without connectivity that a reader welds.
-TriangleMesh welded(const TriangleMesh& mesh) {
-  TriangleMesh result;
-  for (Triangle t : mesh.triangles) {
-    for (Index& vertex : t) {
-      const auto at = std::ranges::find(result.vertices, mesh.vertices[vertex]);
-      const Index number = static_cast<Index>(at - result.vertices.begin());
-      if (at == result.vertices.end()) result.vertices.push_back(mesh.vertices[vertex]);
-      vertex = number;
-    }
-    result.triangles.push_back(t);
-  }
-  return result;
-}
-
-// Three vertices of its own for each triangle.
-TriangleMesh soup(const TriangleMesh& mesh) {
-  TriangleMesh bag;
-  for (const Triangle& t : mesh.triangles) {
-    const Index first = static_cast<Index>(bag.vertices.size());
-    for (const Index vertex : t) bag.vertices.push_back(mesh.vertices[vertex]);
-    bag.triangles.push_back({first, first + 1, first + 2});
-  }
-  return bag;
-}
-
-TriangleMesh turned(TriangleMesh mesh) {
-  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
-  return mesh;
-}
-
-TriangleMesh without(TriangleMesh mesh, std::size_t triangle) {
-  mesh.triangles.erase(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(triangle));
-  return mesh;
-}
-
-TriangleMesh turned_triangles(TriangleMesh mesh, std::uint64_t seed) {
-  Random random(seed, 0);
-  for (Triangle& t : mesh.triangles)
-    if (random.uniform() < 0.3) std::swap(t[0], t[1]);
-  return mesh;
-}
-
-TriangleMesh with(TriangleMesh mesh, std::initializer_list<Triangle> triangles) {
-  mesh.triangles.insert(mesh.triangles.end(), triangles);
-  return mesh;
-}
-
-// A box with a vertex in the middle of the edge between vertices 0 and 1, on one side of it only.
-TriangleMesh box_with_t_junction(double depth = 0) {
-  TriangleMesh mesh = unit_box();
-  mesh.vertices.emplace_back(0.5, 0, depth);
-  const auto at = std::ranges::find(mesh.triangles, Triangle{0, 1, 5});
-  *at = {0, 8, 5};
-  mesh.triangles.push_back({8, 1, 5});
-  return mesh;
-}
-
-// The same, closed by a triangle without area.
-TriangleMesh box_with_flat_triangle() { return with(box_with_t_junction(), {{0, 1, 8}}); }
-
-// A ball without two triangles that share a vertex but no edge.
-TriangleMesh without_opposite_triangles() {
-  TriangleMesh ball = test::icosphere(2);
-  const Index vertex = 20;
-  std::vector<std::size_t> fan;
-  for (std::size_t t = 0; t < ball.triangles.size(); ++t)
-    if (std::ranges::count(ball.triangles[t], vertex) > 0) fan.push_back(t);
-  const auto shared = [&](std::size_t a, std::size_t b) {
-    return std::ranges::count_if(ball.triangles[a],
-                                 [&](Index v) { return std::ranges::count(ball.triangles[b], v) > 0; });
-  };
-  const auto other = std::ranges::find_if(fan, [&](std::size_t t) { return shared(fan[0], t) == 1; });
-  return without(without(ball, *other), fan[0]);
-}
-
-struct Case {
-  const char* name;
-  TriangleMesh mesh;
-  double volume;  // of the solid that it stands for
-  MeshRepairReport expected;
-};
-
-std::vector<Case> repairable() {
-  const TriangleMesh ball = test::icosphere(2), inner = test::box(Point(0.2, 0.2, 0.2), Point(0.7, 0.7, 0.7));
-  const TriangleMesh innermost = test::box(Point(0.3, 0.3, 0.3), Point(0.5, 0.5, 0.5));
-  const double ball_volume = check_mesh(ball).volume;
-  std::vector<Case> cases{
-      {"a bag of triangles", soup(unit_box()), 1, {.vertices_welded = 28}},
-      {"inside out", turned(unit_box()), 1, {.parts_turned_outward = 1}},
-      {"a triangle turned round", turned_triangles(ball, 1), ball_volume, {}},
-      {"a triangle twice", with(unit_box(), {{2, 3, 0}}), 1, {.duplicates_dropped = 1}},
-      {"all triangles in both orientations",
-       joined({unit_box(), turned(unit_box())}),
-       1,
-       {.vertices_welded = 8, .duplicates_dropped = 12}},
-      {"all triangles twice",
-       joined({unit_box(), unit_box()}),
-       1,
-       {.unused_vertices_dropped = 8, .duplicates_dropped = 12}},
-      {"a vertex near an edge", box_with_t_junction(1e-5), 1, {.holes_filled = 1, .triangles_added = 1}},
-      {"a triangle off a bag",
-       without(soup(ball), 3),
-       ball_volume,
-       {.vertices_welded = 3 * 319 - 162, .unused_vertices_dropped = 3, .holes_filled = 1, .triangles_added = 1}},
-      {"holes that touch at a vertex",
-       without_opposite_triangles(),
-       ball_volume,
-       {.holes_filled = 2, .triangles_added = 2}},
-
-      {"a repeated corner", with(unit_box(), {{3, 3, 5}}), 1, {.degenerate_dropped = 1}},
-      {"a triangle without area", box_with_flat_triangle(), 1, {.degenerate_dropped = 1, .neighbors_split = 1}},
-      {"a vertex on an edge",
-       box_with_t_junction(),
-       1,
-       {.degenerate_dropped = 1, .neighbors_split = 1, .holes_filled = 1, .triangles_added = 1}},
-      {"a hole", without(ball, 17), ball_volume, {.holes_filled = 1, .triangles_added = 1}},
-      {"unused vertices", {{Point(9, 9, 9)}, {}}, 1, {.unused_vertices_dropped = 1}},
-      {"boxes that touch at a vertex",
-       welded(joined({unit_box(), test::box(Point(1, 1, 1), Point(2, 2, 2))})),
-       2,
-       {.vertices_split = 1}},
-      {"boxes that touch along an edge",
-       welded(joined({unit_box(), test::box(Point(1, 1, 0), Point(2, 2, 1))})),
-       2,
-       {.edges_cut = 1, .vertices_split = 2}},
-      {"boxes that share a side",
-       welded(joined({unit_box(), test::box(Point(1, 0, 0), Point(2, 1, 1))})),
-       2,
-       {.edges_cut = 5, .vertices_split = 4}},
-      {"a part inside out beside another",
-       joined({unit_box(), turned(test::box(Point(3, 0, 0), Point(4, 1, 1)))}),
-       2,
-       {.parts_turned_outward = 1}},
-      {"a part inside another one", joined({inner, unit_box()}), 1 - 0.125, {.cavities_turned_inward = 1}},
-      {"a hollow box inside out",
-       joined({inner, turned(unit_box())}),
-       1 - 0.125,
-       {.parts_turned_outward = 1, .cavities_turned_inward = 1}},
-      {"a box in the cavity of a box, all inside out",
-       joined({turned(innermost), inner, turned(unit_box())}),
-       1 - 0.125 + 0.008,
-       {.parts_turned_outward = 2, .cavities_turned_inward = 1}},
-      {"parts that poke out of each other",
-       joined({unit_box(), turned(test::box(Point(0.5, 0.5, 0.5), Point(1.5, 1.5, 1.5)))}),
-       2,
-       {.parts_turned_outward = 1}},
-  };
-  TriangleMesh& unused = std::ranges::find(cases, std::string("unused vertices"), &Case::name)->mesh;
-  unused = unit_box();
-  unused.vertices.emplace_back(9, 9, 9);
-  return cases;
-}
+using test::joined;
+using test::soup;
+using test::turned;
+using test::unit_box;
+using test::welded;
+using test::with;
 
 // The four corners of a chessboard of boxes: every inner edge is shared by boxes that touch along it only.
 TriangleMesh chessboard() {
@@ -195,35 +36,35 @@ TriangleMesh chessboard() {
 }
 
 TEST(RepairMesh, MakesASolidOfWhatHasOneMeaning) {
-  for (const Case& test : repairable()) {
-    TriangleMesh mesh = test.mesh;
+  for (const test::BrokenMesh& broken : test::repairable()) {
+    TriangleMesh mesh = broken.mesh;
     const MeshRepairReport report = repair_mesh(mesh);
     const MeshReport check = check_mesh(mesh);
-    EXPECT_TRUE(report.solid && check.solid()) << test.name << ": " << check.faults();
-    EXPECT_EQ(check.unused_vertices, 0u) << test.name;
-    EXPECT_NEAR(check.volume, test.volume, 1e-12) << test.name;
-    EXPECT_TRUE(report.changed()) << test.name;
-    EXPECT_FALSE(repair_mesh(mesh).changed()) << test.name << " was not repaired at one go";
+    EXPECT_TRUE(report.solid && check.solid()) << broken.name << ": " << check.faults();
+    EXPECT_EQ(check.unused_vertices, 0u) << broken.name;
+    EXPECT_NEAR(check.volume, broken.volume, 1e-12) << broken.name;
+    EXPECT_TRUE(report.changed()) << broken.name;
+    EXPECT_FALSE(repair_mesh(mesh).changed()) << broken.name << " was not repaired at one go";
   }
 }
 
 TEST(RepairMesh, CountsWhatItDid) {
-  for (const Case& test : repairable()) {
-    if (MeshRepairReport{test.expected}.lines().empty()) continue;
-    TriangleMesh mesh = test.mesh;
-    const MeshRepairReport report = repair_mesh(mesh), &expected = test.expected;
-    EXPECT_EQ(report.vertices_welded, expected.vertices_welded) << test.name;
-    EXPECT_EQ(report.unused_vertices_dropped, expected.unused_vertices_dropped) << test.name;
-    EXPECT_EQ(report.degenerate_dropped, expected.degenerate_dropped) << test.name;
-    EXPECT_EQ(report.neighbors_split, expected.neighbors_split) << test.name;
-    EXPECT_EQ(report.duplicates_dropped, expected.duplicates_dropped) << test.name;
-    EXPECT_EQ(report.flipped, expected.flipped) << test.name;
-    EXPECT_EQ(report.edges_cut, expected.edges_cut) << test.name;
-    EXPECT_EQ(report.vertices_split, expected.vertices_split) << test.name;
-    EXPECT_EQ(report.holes_filled, expected.holes_filled) << test.name;
-    EXPECT_EQ(report.triangles_added, expected.triangles_added) << test.name;
-    EXPECT_EQ(report.parts_turned_outward, expected.parts_turned_outward) << test.name;
-    EXPECT_EQ(report.cavities_turned_inward, expected.cavities_turned_inward) << test.name;
+  for (const test::BrokenMesh& broken : test::repairable()) {
+    if (MeshRepairReport{broken.expected}.lines().empty()) continue;
+    TriangleMesh mesh = broken.mesh;
+    const MeshRepairReport report = repair_mesh(mesh), &expected = broken.expected;
+    EXPECT_EQ(report.vertices_welded, expected.vertices_welded) << broken.name;
+    EXPECT_EQ(report.unused_vertices_dropped, expected.unused_vertices_dropped) << broken.name;
+    EXPECT_EQ(report.degenerate_dropped, expected.degenerate_dropped) << broken.name;
+    EXPECT_EQ(report.neighbors_split, expected.neighbors_split) << broken.name;
+    EXPECT_EQ(report.duplicates_dropped, expected.duplicates_dropped) << broken.name;
+    EXPECT_EQ(report.flipped, expected.flipped) << broken.name;
+    EXPECT_EQ(report.edges_cut, expected.edges_cut) << broken.name;
+    EXPECT_EQ(report.vertices_split, expected.vertices_split) << broken.name;
+    EXPECT_EQ(report.holes_filled, expected.holes_filled) << broken.name;
+    EXPECT_EQ(report.triangles_added, expected.triangles_added) << broken.name;
+    EXPECT_EQ(report.parts_turned_outward, expected.parts_turned_outward) << broken.name;
+    EXPECT_EQ(report.cavities_turned_inward, expected.cavities_turned_inward) << broken.name;
   }
 }
 
@@ -362,16 +203,16 @@ TEST(RepairMesh, SurvivesAnyTriangles) {
 }
 
 TEST(RepairMesh, ScalesExactlyByPowersOfTwo) {
-  for (const Case& test : repairable()) {
-    TriangleMesh mesh = test.mesh;
+  for (const test::BrokenMesh& broken : test::repairable()) {
+    TriangleMesh mesh = broken.mesh;
     const MeshRepairReport report = repair_mesh(mesh);
     for (const int exponent : {-200, -20, 1, 30, 200}) {
       const double scale = std::ldexp(1.0, exponent);
-      TriangleMesh scaled = test::transformed(test.mesh, scale, Vector::Zero());
+      TriangleMesh scaled = test::transformed(broken.mesh, scale, Vector::Zero());
       const MeshRepairReport scaled_report = repair_mesh(scaled);
-      EXPECT_EQ(scaled.triangles, mesh.triangles) << test.name << " " << exponent;
-      EXPECT_EQ(scaled.vertices, test::transformed(mesh, scale, Vector::Zero()).vertices) << test.name;
-      EXPECT_EQ(scaled_report.lines().size(), report.lines().size()) << test.name;
+      EXPECT_EQ(scaled.triangles, mesh.triangles) << broken.name << " " << exponent;
+      EXPECT_EQ(scaled.vertices, test::transformed(mesh, scale, Vector::Zero()).vertices) << broken.name;
+      EXPECT_EQ(scaled_report.lines().size(), report.lines().size()) << broken.name;
     }
   }
 }

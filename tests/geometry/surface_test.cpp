@@ -2,235 +2,29 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <numbers>
-#include <string>
 #include <thread>
 
 #include "orchard/geometry/error.h"
-#include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/random.h"
 #include "support/shapes.h"
+#include "surface_queries.h"
 
 namespace orchard {
 namespace {
 
-struct NamedMesh {
-  std::string name;
-  TriangleMesh mesh;
-};
-
-// Needles, points, coincident and crossing triangles: legal for distances.
-TriangleMesh degenerate_soup() {
-  TriangleMesh mesh;
-  mesh.vertices = {{0, 0, 0}, {1, 0, 0},     {0, 1, 0}, {1, 1e-9, 0},       {0.5, 0.5, 0.5}, {0.25, 0.25, 0.25},
-                   {2, 2, 2}, {1, 1e-16, 0}, {3, 0, 0}, {0.3, 1e-12, 1e-3}, {-1, 0.1, 7}};
-  mesh.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 5, 4}, {6, 6, 6}, {0, 4, 6}, {1, 2, 0},
-                    {0, 1, 7}, {1, 8, 0}, {2, 2, 8}, {0, 8, 9}, {4, 9, 10}};
-  return mesh;
-}
-
-TriangleMesh random_soup(std::uint64_t seed) {
-  Random random(seed, 1);
-  TriangleMesh mesh;
-  for (int i = 0; i < 120; ++i) {
-    const Point corner(random.uniform(), random.uniform(), random.uniform());
-    for (int k = 0; k < 3; ++k)
-      mesh.vertices.push_back(corner + 0.2 * Vector(random.uniform(), random.uniform(), random.uniform()));
-  }
-  for (Index t = 0; t < 120; ++t) mesh.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
-  return mesh;
-}
-
-std::vector<NamedMesh> solids() {
-  return {{"box", test::box({0, 0, 0}, {1, 2, 3})}, {"l_shape", test::l_shape()},
-          {"u_shape", test::u_shape(0.1)},          {"torus", test::torus(24, 12)},
-          {"icosphere", test::icosphere(2)},        {"two_boxes", test::two_boxes(0.01)}};
-}
-
-std::vector<NamedMesh> all_meshes() {
-  std::vector<NamedMesh> meshes = solids();
-  meshes.push_back({"open_box", test::open_box()});
-  meshes.push_back({"degenerate_soup", degenerate_soup()});
-  meshes.push_back({"random_soup", random_soup(7)});
-  meshes.push_back({"one_triangle", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}});
-  meshes.push_back({"one_point", {{{1, 2, 3}}, {{0, 0, 0}}}});
-  std::vector<NamedMesh> placed;
-  for (const auto& [name, mesh] : meshes) {
-    placed.push_back({name, mesh});
-    placed.push_back({name + " scaled by 1e-6", test::transformed(mesh, 1e-6, Vector::Zero())});
-    placed.push_back({name + " scaled by 1e6", test::transformed(mesh, 1e6, Vector::Zero())});
-    placed.push_back({name + " offset by 1e6", test::transformed(mesh, 1, {1e6, -1e6, 1e6})});
-    placed.push_back({name + " scaled by 1e-30", test::transformed(mesh, 1e-30, Vector::Zero())});
-    placed.push_back({name + " scaled by 1e30", test::transformed(mesh, 1e30, Vector::Zero())});
-  }
-  return placed;
-}
-
-// In and around the box, on vertices, edges and faces, at distances from a rounding to a size off them, and far away.
-std::vector<Point> queries_for(const Surface& surface, int count, std::uint64_t seed) {
-  const Box& box = surface.bounding_box();
-  const double size = std::max(surface.bounding_radius(), 1e-40);
-  std::vector<Point> queries;
-  for (int i = 0; i < count; ++i) {
-    Random random(seed, 2, static_cast<std::uint64_t>(i));
-    const auto in_cube = [&] { return Vector(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)); };
-    const auto [a, b, c] = surface.corners(static_cast<Index>(random.below(surface.mesh().triangles.size())));
-    const double u = random.uniform(), v = random.uniform(0, 1 - u);
-    const Vector normal = (b - a).cross(c - a).normalized();
-    const Vector away = (std::isfinite(normal.x()) ? normal : Vector::UnitZ()) * size * std::ldexp(1.0, -(i % 60));
-    switch (i % 8) {
-      case 0:
-        queries.push_back(box.center() + 0.6 * Vector(in_cube().cwiseProduct(box.sizes())));
-        break;
-      case 1:
-        queries.push_back(a);
-        break;
-      case 2:
-        queries.push_back(a + u * (b - a));
-        break;
-      case 3:
-        queries.push_back(a + u * (b - a) + v * (c - a));
-        break;
-      case 4:
-        queries.push_back(a + u * (b - a) + v * (c - a) + away);
-        break;
-      case 5:
-        queries.push_back(a - away);
-        break;
-      case 6:
-        queries.push_back(b + u * (c - b) + away);
-        break;
-      default:
-        queries.push_back(box.center() + size * std::pow(10, random.uniform(0, 12)) * in_cube());
-    }
-  }
-  return queries;
-}
-
-ClosestPoint closest_by_brute_force(const Surface& surface, const Point& query) {
-  ClosestPoint best;
-  best.distance = std::numeric_limits<double>::infinity();
-  for (Index t = 0; t < surface.mesh().triangles.size(); ++t) {
-    const auto [a, b, c] = surface.corners(t);
-    ClosestPoint candidate = closest_point_of_triangle(query, a, b, c);
-    if (candidate.distance >= best.distance) continue;
-    best = candidate;
-    best.triangle = t;
-  }
-  return best;
-}
-
-double winding_number(const Surface& surface, const Point& query) {
-  double sum = 0;
-  for (Index t = 0; t < surface.mesh().triangles.size(); ++t) {
-    auto [a, b, c] = surface.corners(t);
-    a -= query, b -= query, c -= query;
-    const double la = a.norm(), lb = b.norm(), lc = c.norm();
-    sum += 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-  }
-  return sum / (4 * std::numbers::pi);
-}
+using test::all_meshes;
+using test::degenerate_soup;
+using test::queries_for;
+using test::solids;
+using test::winding_number;
 
 double coordinate_rounding(const Surface& surface) {
   const Box& box = surface.bounding_box();
   return std::numeric_limits<double>::epsilon() * box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
-}
-
-TEST(ClosestPointOfTriangle, IsNearerThanEveryOtherPointOfTheTriangle) {
-  for (std::uint64_t seed = 0; seed < 20000; ++seed) {
-    Random random(seed, 3);
-    const auto in_cube = [&] { return Vector(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)); };
-    std::array<Point, 3> p{in_cube(), in_cube(), in_cube()};
-    // Every other triangle is a needle, down to the rounding of its width.
-    if (seed % 2 == 0)
-      p[2] = p[0] + random.uniform() * (p[1] - p[0]) + std::pow(10, random.uniform(-17, 0)) * in_cube();
-    if (seed % 3 == 0) std::swap(p[0], p[2]);
-    const Point query = std::pow(10, random.uniform(-10, 2)) * in_cube() + p[seed % 3];
-    const ClosestPoint closest = closest_point_of_triangle(query, p[0], p[1], p[2]);
-    const Vector back = query - closest.position;
-    // The triangle lies behind the plane through the closest point, perpendicular to the way to the query.
-    const double rounding = 1e-14 * (1 + back.norm());
-    for (const Point& corner : p)
-      ASSERT_LE(back.dot(corner - closest.position), rounding * (1 + back.norm())) << "seed " << seed;
-    ASSERT_NEAR(closest.distance, back.norm(), rounding) << "seed " << seed;
-  }
-}
-
-TEST(ClosestPointOfTriangle, NamesTheFeatureThatTheClosestPointLiesOn) {
-  const Point a(0, 0, 0), b(4, 0, 0), c(0, 4, 0);
-  const std::vector<std::pair<Point, Feature>> cases = {
-      {{1, 1, 5}, Feature::face},      {{1, 1, 0}, Feature::face},     {{1, -1, 2}, Feature::edge0},
-      {{3, 3, 0}, Feature::edge1},     {{-1, 2, -1}, Feature::edge2},  {{1, 0, 0}, Feature::edge0},
-      {{2, 2, 0}, Feature::edge1},     {{0, 3, 0}, Feature::edge2},    {{1, 0, 9}, Feature::edge0},
-      {{-1, -1, 3}, Feature::vertex0}, {{6, -1, 0}, Feature::vertex1}, {{-1, 5, 0}, Feature::vertex2},
-      {{0, 0, 0}, Feature::vertex0},   {{4, 0, 0}, Feature::vertex1},  {{0, 4, 1}, Feature::vertex2}};
-  for (const auto& [query, feature] : cases) {
-    const ClosestPoint closest = closest_point_of_triangle(query, a, b, c);
-    EXPECT_EQ(closest.feature, feature) << query.transpose();
-  }
-}
-
-TEST(ClosestPointOfTriangle, GivesTheSameBitsFromBothSidesOfAnEdge) {
-  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
-    Random random(seed, 4);
-    const auto in_cube = [&] { return Point(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)); };
-    const Point a = in_cube(), b = in_cube(), c = in_cube(), d = in_cube(), query = 2 * in_cube();
-    const ClosestPoint one = closest_point_of_triangle(query, a, b, c),
-                       other = closest_point_of_triangle(query, b, a, d);
-    if (one.feature == Feature::edge0 && other.feature == Feature::edge0) {
-      ASSERT_EQ(one.distance, other.distance) << "seed " << seed;
-      ASSERT_EQ(one.position, other.position) << "seed " << seed;
-    }
-  }
-}
-
-TEST(Surface, FindsTheSameClosestPointAsALoopOverAllTriangles) {
-  for (const auto& [name, mesh] : all_meshes()) {
-    const Surface surface(mesh);
-    for (const Point& query : queries_for(surface, 240, 5)) {
-      const ClosestPoint expected = closest_by_brute_force(surface, query), found = surface.closest(query);
-      ASSERT_EQ(found.distance, expected.distance) << name << " at " << query.transpose();
-      ASSERT_EQ(found.triangle, expected.triangle) << name << " at " << query.transpose();
-      ASSERT_EQ(found.feature, expected.feature) << name << " at " << query.transpose();
-      ASSERT_EQ(found.position, expected.position) << name << " at " << query.transpose();
-    }
-  }
-}
-
-TEST(Surface, BreaksTiesByTheLowestTriangle) {
-  const Surface surface(test::icosphere(3));  // its centre is about as far from every triangle
-  const Point center = Point::Zero();
-  EXPECT_EQ(surface.closest(center).triangle, closest_by_brute_force(surface, center).triangle);
-  TriangleMesh twice = test::box({0, 0, 0}, {1, 1, 1});
-  const auto triangles = twice.triangles;
-  twice.triangles.insert(twice.triangles.end(), triangles.begin(), triangles.end());
-  EXPECT_LT(Surface(twice).closest({0.3, 0.4, 2}).triangle, triangles.size());
-}
-
-TEST(Surface, FindsExactlyTheTrianglesThatTouchAClosedBall) {
-  for (const auto& [name, mesh] : all_meshes()) {
-    const Surface surface(mesh);
-    std::vector<Index> found;
-    std::uint64_t item = 0;
-    for (const Point& query : queries_for(surface, 60, 6)) {
-      Random random(6, 7, item++);
-      const auto [a, b, c] = surface.corners(static_cast<Index>(random.below(mesh.triangles.size())));
-      const double exact = closest_point_of_triangle(query, a, b, c).distance;
-      for (const double radius :
-           {0.0, exact, std::nextafter(exact, 0.0), random.uniform() * surface.bounding_radius()}) {
-        std::vector<Index> expected;
-        for (Index t = 0; t < mesh.triangles.size(); ++t) {
-          const auto [p, q, r] = surface.corners(t);
-          if (closest_point_of_triangle(query, p, q, r).distance <= radius) expected.push_back(t);
-        }
-        surface.triangles_near({query, radius}, found);
-        ASSERT_EQ(found, expected) << name << " at " << query.transpose() << ", radius " << radius;
-      }
-    }
-  }
 }
 
 TEST(Surface, IsInfinitelyFarFromAQueryThatIsNotFinite) {
@@ -436,22 +230,6 @@ TEST(Surface, StaysUsableWhenMoved) {
   Surface first(test::box({0, 0, 0}, {1, 1, 1}));
   const Surface second(std::move(first));
   EXPECT_EQ(second.distance({0.5, 0.5, 2}), 1);
-}
-
-TEST(Surface, MeasuresRealModelsLikeABruteForceLoop) {
-  const std::filesystem::path shared = ORCHARD_SHARED_MODELS, bundled = ORCHARD_DATA_DIR;
-  for (const auto& file : {bundled / "lamp.obj", bundled / "faucet.obj", bundled / "ship.obj",
-                           shared / "clean/spot.obj", shared / "dirty/cow.obj", shared / "clean/fandisk.obj"}) {
-    if (!std::filesystem::exists(file)) continue;
-    const Surface surface(read_mesh(file));
-    for (const Point& query : queries_for(surface, 80, 12)) {
-      const ClosestPoint expected = closest_by_brute_force(surface, query), found = surface.closest(query);
-      ASSERT_EQ(found.distance, expected.distance) << file << " at " << query.transpose();
-      ASSERT_EQ(found.triangle, expected.triangle) << file << " at " << query.transpose();
-      if (!surface.solid() || found.distance < 1e-10 * surface.bounding_radius()) continue;
-      ASSERT_EQ(surface.inside(query), winding_number(surface, query) > 0.5) << file << " at " << query.transpose();
-    }
-  }
 }
 
 }  // namespace

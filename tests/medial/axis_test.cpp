@@ -1,3 +1,4 @@
+// More than 300 lines: one property of the axis a test, all on the same few solids and samplings.
 #include "orchard/medial/axis.h"
 
 #include <cmath>

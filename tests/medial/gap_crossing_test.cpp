@@ -1,3 +1,5 @@
+// More than 300 lines: one expectation of what repair has to achieve serves the tests of every way in which points can
+// leave gaps, and of every option that mends them.
 #include "orchard/medial/gap_crossing.h"
 
 #include <tbb/global_control.h>

@@ -1,3 +1,4 @@
+// One function for each family of point sets, hence more than 300 lines.
 #include "voronoi/shaken_sets.h"
 
 #include <algorithm>
