@@ -161,6 +161,13 @@ bool appears(const std::filesystem::path& file) {
   return wait_for([&] { return std::filesystem::exists(file); });
 }
 
+std::vector<std::string> quick_build(const std::string& mesh, const std::string& folder,
+                                     const std::vector<std::string>& more) {
+  std::vector<std::string> arguments{"build", mesh, "-o", folder, "--method", "octree", "--depth", "2", "--no-views"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
 bool is_one_line_error(const std::string& err) {
   return err.starts_with("orchard: ") && err.ends_with('\n') && std::count(err.begin(), err.end(), '\n') == 1;
 }

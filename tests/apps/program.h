@@ -36,6 +36,10 @@ class Workplace {
   std::filesystem::path folder_;
 };
 
+// The arguments for the quick way to a tree: an octree of two levels, without views.
+std::vector<std::string> quick_build(const std::string& mesh, const std::string& folder,
+                                     const std::vector<std::string>& more = {});
+
 // The program in a process group of its own, as a shell starts it, with its errors in a file.
 class Running {
  public:
