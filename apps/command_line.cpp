@@ -42,12 +42,16 @@ void add_tuning(CLI::App& command, MedialTuning& tuning, bool for_tree) {
   for (const TuningFlag& flag : tuning_flags()) {
     if (for_tree && flag.step == TuningStep::report) continue;
     const bool needs = for_tree && flag.name == "samples";
+    const bool of_all = for_tree && flag.name == "seed";  // no axis is needed to use it
+    const std::string help = of_all ? "Of all random choices: another tree, about as good" : flag.help;
     command
         .add_option_function<std::string>(
             "--" + flag.name, [&tuning, &flag](const std::string& value) { flag.set(tuning, value); },
-            flag.help + " [" + (needs ? "as method and depth need" : flag.standard) + "]")
+            help + " [" + (needs ? "as method and depth need" : flag.standard) + "]")
         ->check(CLI::Validator([&flag](std::string& value) { return flag.fault(value); }, "{" + flag.range() + "}"))
-        ->group(for_tree ? "Medial axis, for --method tightened and merging" : "Tuning");
+        ->group(of_all     ? "Options"
+                : for_tree ? "Medial axis, for --method tightened and merging"
+                           : "Tuning");
   }
 }
 
