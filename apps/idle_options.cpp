@@ -25,6 +25,7 @@ const std::vector<OwnOption>& own_options() {
 
 std::string names_of(const std::vector<TreeMethod>& methods) {
   std::vector<std::string> names;
+  names.reserve(methods.size());
   for (const TreeMethod method : methods) names.emplace_back(name(method));
   return fmt::format("{}", fmt::join(names, " and "));
 }
