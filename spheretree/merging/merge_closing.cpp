@@ -45,6 +45,7 @@ class Closer {
       if (uncovered.empty()) break;
       const std::vector<Index> takers = give(uncovered);
       std::vector<Sphere> changed;
+      changed.reserve(takers.size());
       for (Index node : takers) changed.push_back(tree_.nodes[node].sphere);
       triangles = triangles_to_recheck(surface_, coverage, changed);
       tbb::parallel_for(std::size_t{0}, takers.size(), [&](std::size_t i) { refit(takers[i]); });
