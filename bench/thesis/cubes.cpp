@@ -10,18 +10,42 @@ namespace {
 
 using runtime::dot;
 
-constexpr int kForces = 5;  // in a period
+constexpr int kForces = 5;          // in a period
+constexpr double kAccuracy = 1e-9;  // of a position after a step
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-void runge_kutta(Vec3& position, Vec3& velocity, const Vec3& force, double h) {
+struct Place {
+  Vec3 position, velocity;
+};
+
+Place runge_kutta(const Place& from, const Vec3& force, double h) {
   const auto slope = [&](const Vec3& v) { return std::pair<Vec3, Vec3>{v, force}; };
-  const auto [x1, v1] = slope(velocity);
-  const auto [x2, v2] = slope(velocity + (h / 2) * v1);
-  const auto [x3, v3] = slope(velocity + (h / 2) * v2);
-  const auto [x4, v4] = slope(velocity + h * v3);
-  position = position + (h / 6) * (x1 + 2.0 * x2 + 2.0 * x3 + x4);
-  velocity = velocity + (h / 6) * (v1 + 2.0 * v2 + 2.0 * v3 + v4);
+  const auto [x1, v1] = slope(from.velocity);
+  const auto [x2, v2] = slope(from.velocity + (h / 2) * v1);
+  const auto [x3, v3] = slope(from.velocity + (h / 2) * v2);
+  const auto [x4, v4] = slope(from.velocity + h * v3);
+  return {from.position + (h / 6) * (x1 + 2.0 * x2 + 2.0 * x3 + x4),
+          from.velocity + (h / 6) * (v1 + 2.0 * v2 + 2.0 * v3 + v4)};
+}
+
+// Step doubling, as in chapter 16.2 of Numerical Recipes: a step and two halves of it. Moves `place` on by `step` or
+// less, returns by how much, and leaves in `step` what to try next.
+double adaptive_step(Place& place, const Vec3& force, double& step) {
+  while (true) {
+    const double h = step;
+    const Place once = runge_kutta(place, force, h);
+    const Place twice = runge_kutta(runge_kutta(place, force, h / 2), force, h / 2);
+    const Vec3 apart = twice.position - once.position;
+    const double error = std::sqrt(dot(apart, apart)) / kAccuracy;
+    if (error > 1) {
+      step = h * std::max(0.1, 0.9 * std::pow(error, -0.25));
+      continue;
+    }
+    step = h * std::min(4.0, 0.9 * std::pow(std::max(error, 1e-4), -0.2));
+    place = twice;
+    return h;
+  }
 }
 
 }  // namespace
@@ -29,7 +53,7 @@ void runge_kutta(Vec3& position, Vec3& velocity, const Vec3& force, double h) {
 Cubes::Cubes(std::size_t count, double ball, std::uint64_t seed) {
   runtime::test::Draw draw(seed);
   for (std::size_t i = 0; i < count; ++i) {
-    Cube cube{draw.in_ball(ball), draw.uniform(5, 15) * draw.direction(), 0, {}, {}};
+    Cube cube{draw.in_ball(ball), draw.uniform(5, 15) * draw.direction(), 0, kDetection, {}, {}};
     for (double begin = 0; begin < kEnd + kPeriod; begin += kPeriod) {
       const Period period{draw.uniform(0, 4), draw.direction()};
       for (int f = 0; f < kForces; ++f) {
@@ -78,14 +102,20 @@ bool Cubes::collide(BodyIndex a, BodyIndex b, double time) {
   return meet;
 }
 
+// The steps end where the force changes and at the time asked for; between them they are as long as the accuracy
+// allows.
 const Cubes::Cube& Cubes::solved(std::size_t i, double time) {
   Cube& cube = cubes_[i];
   const double interval = kPeriod / kForces;
   while (cube.time < time - 1e-12) {
     const auto f = static_cast<std::size_t>((cube.time + 1e-9) / interval);
-    const double step = std::min({time, static_cast<double>(f + 1) * interval, cube.time + kDetection}) - cube.time;
-    runge_kutta(cube.position, cube.velocity, cube.forces[f], step);
-    cube.time += step;
+    const double left = std::min(time, static_cast<double>(f + 1) * interval) - cube.time;
+    double step = std::min(left, cube.step);
+    Place place{cube.position, cube.velocity};
+    cube.time += adaptive_step(place, cube.forces[f], step);
+    cube.step = left < cube.step ? std::max(step, cube.step) : step;  // one cut short says nothing against longer ones
+    cube.position = place.position;
+    cube.velocity = place.velocity;
   }
   return cube;
 }

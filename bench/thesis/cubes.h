@@ -31,7 +31,7 @@ class Cubes {
   };
   struct Cube {
     Vec3 position, velocity;
-    double time;
+    double time, step;  // up to when it is solved; the solver's next step
     std::vector<Vec3> forces;
     std::vector<Period> periods;
   };

@@ -2,11 +2,11 @@
 // against Turk's spatial hash:
 //   fig_7_2_broad_phase [folder for CSV and SVG] [share of the trials]
 // As published: 30, 100 and 300 cubes in 100, 200 and 100 trials, frames of dt_r = 0.02, dt_d = dt_r / 2 for both,
-// forces in subsequences with known M and d that start and end at the same times for all, 4th-order Runge-Kutta, the
-// hash with as much memory as the space-time bounds used, the first 42 times as dense as the last. Chosen here, as it
-// is not published: half edges 0.5 to 1.5, speeds 5 to 15, M in [0, 4], subsequences of 0.5 s with 5 forces each, balls
-// of radius 38, 107 and 288. Cubes go through the broad phase as their bounding spheres; pairs it reports are compared
-// as cubes.
+// forces in subsequences with known M and d that start and end at the same times for all, 4th-order Runge-Kutta with
+// adaptive steps, every position asked for at each frame, the hash with as much memory as the space-time bounds used,
+// the first 42 times as dense as the last. Chosen here, as it is not published: half edges 0.5 to 1.5, speeds 5 to 15,
+// M in [0, 4], subsequences of 0.5 s with 5 forces each, balls of radius 38, 107 and 288. Cubes go through the broad
+// phase as their bounding spheres; pairs it reports are compared as cubes.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
