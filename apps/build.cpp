@@ -50,6 +50,7 @@ std::vector<std::string> names_of(const BuildCommand& command) {
 SphereTreeOptions tree_options(const BuildCommand& command) {
   SphereTreeOptions options = command.options;
   MedialTuning tuning = command.tuning;
+  tuning.refine = false;
   if (!tuning.samples) tuning.samples = samples_needed(options);
   options.medial = build_options(tuning);
   options.samples_by_need = false;

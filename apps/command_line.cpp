@@ -40,7 +40,7 @@ void add_mesh_options(CLI::App& command, MeshOptions& options) {
 // Those that the command has a use for.
 void add_tuning(CLI::App& command, MedialTuning& tuning, bool for_tree) {
   for (const TuningFlag& flag : tuning_flags()) {
-    if (for_tree && flag.step == TuningStep::report) continue;
+    if (for_tree && (flag.step == TuningStep::report || flag.step == TuningStep::refining)) continue;
     const bool needs = for_tree && flag.name == "samples";
     const bool of_all = for_tree && flag.name == "seed";  // no axis is needed to use it
     const std::string help = of_all ? "Of all random choices: another tree, about as good" : flag.help;
@@ -247,6 +247,8 @@ void add_medial(CLI::App& app, Request& request) {
       ->allow_extra_args(false);
   add_sweep_tree(command, medial.tree);
   add_tuning(command, medial.tuning, false);
+  command.add_flag("--raw", [&medial](std::int64_t) { medial.tuning.refine = false; },
+                   "The axis as the Voronoi diagram has it, the dissertation's: the same as --refine no");
   command.add_option("--threads", request.threads, "Threads at most; the result does not depend on it")
       ->check(CLI::Range(1, 1024));
   command.add_flag("!--no-views", medial.views, "Write no files for ParaView");

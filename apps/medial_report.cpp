@@ -49,6 +49,18 @@ json to_json(const Topology& topology) {
           {"euler_characteristic", topology.euler_characteristic()}};
 }
 
+json to_json(const RefineReport& report) {
+  return {{"vertices_before", report.vertices_before},
+          {"inexact_vertices", report.inexact},
+          {"folded_triangles", report.folded_triangles},
+          {"border_cuts", report.border_cuts},
+          {"notches_filled", report.notches},
+          {"vertices_on_sharp_edges", report.edge_vertices},
+          {"edges_divided", report.divided},
+          {"edges_beyond_tolerance", report.undivided},
+          {"border_length_over_diagonal", report.border_length}};
+}
+
 json to_json(const MedialBuild& build) {
   json seconds = json::object();
   double whole = 0;
@@ -64,6 +76,7 @@ json to_json(const MedialBuild& build) {
           {"gap_repair", to_json(build.gap_repair)},
           {"voronoi_vertices", build.diagram.vertices.size()},
           {"vertices_before_pruning", build.unpruned_vertices},
+          {"refinement", build.refinement.vertices > 0 ? to_json(build.refinement) : json()},
           {"vertices_on_stems", build.axis.stems},
           {"bridges", build.axis.bridges},
           {"vertices_left_out", build.axis.left_out},
@@ -119,12 +132,21 @@ void print(const MedialBuild& build) {
   fmt::print(" points ({:.1f} % added), {} faces still crossing", 100.0 * gained / std::max<double>(build.points, 1),
              repair.faces_still_crossing);
   if (repair.faces_at_cuts > 0) fmt::print(", {} of them where the mesh cuts itself", repair.faces_at_cuts);
+  const RefineReport& refinement = build.refinement;
+  const Index pruned = refinement.vertices > 0 ? refinement.vertices_before : build.axis.size();
   fmt::print("\n{} medial vertices", build.axis.size());
-  if (build.axis.size() != build.unpruned_vertices) fmt::print(" after pruning {}", build.unpruned_vertices);
+  if (pruned != build.unpruned_vertices) fmt::print(" after pruning {} to {}", build.unpruned_vertices, pruned);
+  if (refinement.vertices > 0)
+    fmt::print(", refined from {}: {} inexact, {} on sharp edges", pruned, refinement.inexact, refinement.edge_vertices);
   if (build.axis.stems > 0) fmt::print(", {} without faces", build.axis.stems);
   if (build.axis.bridges > 0) fmt::print(", {} edges that bridge the outside", build.axis.bridges);
   if (build.axis.left_out > 0) fmt::print(", {} left out", build.axis.left_out);
   fmt::print(", {} faces\n", build.axis.faces.size());
+  if (refinement.vertices == 0) return;
+  fmt::print("refining: {} folded triangles and what borders lose less than cut off, {} notches filled, {} edges divided",
+             refinement.folded_triangles, refinement.notches, refinement.divided);
+  if (refinement.undivided > 0) fmt::print(", {} still beyond the tolerance", refinement.undivided);
+  fmt::print("; borders {:.1f} diagonals long\n", refinement.border_length);
 }
 
 void print(const MedialJudgement& judgement) {

@@ -106,6 +106,20 @@ std::vector<TuningFlag> pruning_flags() {
                [](T& t, double x) { t.options.prune.scale = x; })};
 }
 
+std::vector<TuningFlag> refining_flags() {
+  return {choice("refine", {"yes", "no"},
+                 "Whether balls are made exact and sheets end smoothly, or the axis stays as the diagram has it (--raw)",
+                 [](T& t, const std::string& text) { t.refine = text == "yes"; }),
+          real("border-loss", "0.1", 0, 100,
+               "Percent of the diagonal that a sheet's border may lose of the surface: more cuts more spurs off",
+               [](T& t, double x) { t.refinement.border_loss = x / 100; }),
+          real("linear-error", "0.05", 1e-4, 100,
+               "Percent of the diagonal that balls between two vertices may be off: less makes more vertices",
+               [](T& t, double x) { t.refinement.tolerance = x / 100; }),
+          real("sharp-angle", "40.1", 0, 180, "Degrees from which a convex edge is one that sheets reach to",
+               [](T& t, double x) { t.refinement.sharp_angle = std::min(x * kRadians, std::numbers::pi); })};
+}
+
 std::vector<TuningFlag> report_flags() {
   return {real("segment-angle", "60", 0, 180,
                "Degrees: faces with nearer contacts do not divide sheets; more makes fewer segments",
@@ -124,6 +138,7 @@ std::vector<TuningFlag> make_flags() {
   add(TuningStep::diagram, diagram_flags());
   add(TuningStep::axis, axis_flags());
   add(TuningStep::pruning, pruning_flags());
+  add(TuningStep::refining, refining_flags());
   add(TuningStep::report, report_flags());
   return flags;
 }
@@ -139,6 +154,7 @@ MedialBuildOptions build_options(const MedialTuning& tuning) {
   if (tuning.cluster_degrees) options.sampling.cluster_angle = *tuning.cluster_degrees * kRadians;
   options.prune.angle = std::min(tuning.prune_degrees * kRadians, std::numbers::pi);
   options.axis.keep_topology = tuning.keep_topology;
+  if (tuning.refine) options.refine = tuning.refinement;
   return options;
 }
 

@@ -17,6 +17,8 @@ struct MedialTuning {
   std::optional<double> cluster_degrees;
   double prune_degrees = 0, segment_degrees = 60;
   bool keep_topology = true;
+  bool refine = true;        // for orchard medial; trees have no use for it yet
+  RefineOptions refinement;  // if so
   MedialBuildOptions options;  // the rest of it
 };
 
@@ -24,7 +26,7 @@ struct MedialTuning {
 MedialBuildOptions build_options(const MedialTuning& tuning);
 
 // The step on the way to an axis that a flag acts on; the report only says more or less of the axis.
-enum class TuningStep { points, diagram, axis, pruning, report };
+enum class TuningStep { points, diagram, axis, pruning, refining, report };
 
 // One flag: --name on the command line, name=a,b,c in a sweep.
 struct TuningFlag {

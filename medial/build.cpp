@@ -13,7 +13,8 @@ class MedialBuilder {
       : surface_(surface), options_(options), progress_(progress) {}
 
   MedialBuild run(MedialBuildInput input) {
-    if (input.mesh) {
+    const bool imported = input.mesh.has_value();
+    if (imported) {
       import(*input.mesh);
     } else {
       if (input.diagram) {
@@ -28,6 +29,7 @@ class MedialBuilder {
     }
     build_.unpruned_vertices = build_.axis.size();
     stage("pruning", [&] { build_.axis = prune(build_.axis, options_.prune); });
+    if (options_.refine && !imported) refine();
     return std::move(build_);
   }
 
@@ -70,6 +72,14 @@ class MedialBuilder {
       build_.balls_refused = imported.refused;
       build_.balls_adjusted = imported.adjusted;
       build_.ball_adjustment = imported.adjustment;
+    });
+  }
+
+  void refine() {
+    stage("refining", [&] {
+      RefinedAxis refined = refine_axis(surface_, build_.sampling, build_.axis, *options_.refine, progress_);
+      build_.axis = std::move(refined.axis);
+      build_.refinement = refined.report;
     });
   }
 

@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <string>
 #include <unordered_set>
+#include <utility>
 
+#include "axis_triangles.h"
 #include "orchard/geometry/error.h"
 
 namespace orchard {
@@ -33,11 +35,19 @@ class Triangulator {
     for (const auto& [a, b] : mesh_.edges) joined_.insert(key(a, b));
   }
 
-  MedialMesh run() {
-    for (Index face = 0; face < axis_.faces.size(); ++face) cut(axis_.faces[face], axis_.face_points[face]);
-    for (Index face = 0; face < axis_.walls.size(); ++face) cut(axis_.walls[face], axis_.wall_points[face]);
+  detail::AxisTriangles run() {
+    for (; face_ < axis_.faces.size(); ++face_) cut(axis_.faces[face_], axis_.face_points[face_]);
+    for (Index wall = 0; wall < axis_.walls.size(); ++wall, ++face_) cut(axis_.walls[wall], axis_.wall_points[wall]);
+    std::sort(pieces_.begin(), pieces_.end());
+    detail::AxisTriangles result;
+    for (const auto& [triangle, face] : pieces_) {
+      if (!mesh_.triangles.empty() && mesh_.triangles.back() == triangle) continue;  // of two faces, the first one's
+      mesh_.triangles.push_back(triangle);
+      result.face_of_triangle.push_back(face);
+    }
     complete(mesh_);
-    return std::move(mesh_);
+    result.mesh = std::move(mesh_);
+    return result;
   }
 
  private:
@@ -73,11 +83,13 @@ class Triangulator {
   void add(Index a, Index b, Index c) {
     std::array<Index, 3> triangle{a, b, c};
     std::sort(triangle.begin(), triangle.end());
-    if (triangle[0] != triangle[1] && triangle[1] != triangle[2]) mesh_.triangles.push_back(triangle);
+    if (triangle[0] != triangle[1] && triangle[1] != triangle[2]) pieces_.emplace_back(triangle, face_);
   }
 
   const MedialAxis& axis_;
   MedialMesh mesh_;
+  Index face_ = 0;                                               // that is being cut
+  std::vector<std::pair<std::array<Index, 3>, Index>> pieces_;  // triangles, and their faces
   std::unordered_set<std::uint64_t> joined_;  // asked only whether it holds a pair of vertices
 };
 
@@ -98,7 +110,9 @@ void validate_cells(const std::vector<std::array<Index, kCorners>>& cells, Index
 
 }  // namespace
 
-MedialMesh medial_mesh(const MedialAxis& axis) { return Triangulator(axis).run(); }
+detail::AxisTriangles detail::axis_triangles(const MedialAxis& axis) { return Triangulator(axis).run(); }
+
+MedialMesh medial_mesh(const MedialAxis& axis) { return detail::axis_triangles(axis).mesh; }
 
 void complete(MedialMesh& mesh) {
   for (auto& corners : mesh.edges) std::sort(corners.begin(), corners.end());

@@ -10,6 +10,7 @@
 #include "orchard/medial/gap_crossing.h"
 #include "orchard/medial/import_axis.h"
 #include "orchard/medial/prune.h"
+#include "orchard/medial/refine.h"
 #include "orchard/voronoi/algorithms.h"
 
 namespace orchard {
@@ -22,6 +23,7 @@ struct MedialBuildOptions {
   GapRepairOptions gap_repair = {};
   AxisOptions axis{.keep_topology = true};
   PruneOptions prune = {};
+  std::optional<RefineOptions> refine = {};  // nothing: the axis stays as the diagram has it; an imported one always
 };
 
 // A diagram that the caller made, and where its points lie on the surface; the points of both are the same.
@@ -45,13 +47,14 @@ struct MedialBuild {
   VoronoiDiagram diagram;  // empty for an imported axis
   GapRepairReport gap_repair;
   Index unpruned_vertices = 0;
-  MedialAxis axis;
+  MedialAxis axis;          // refined, if that was asked for
+  RefineReport refinement;  // zeros, if not
   Index balls_refused = 0, balls_adjusted = 0;  // of an imported axis, see ImportedAxis
   double ball_adjustment = 0;
   StageTimes seconds;  // stage, time
 };
 
-// The main line from a solid to its medial axis: points, Voronoi diagram, gap repair, axis, pruning. The time goes as
+// The main line from a solid to its medial axis: points, Voronoi diagram, gap repair, axis, pruning, refining. The time goes as
 // the parts': about n log n in the points. Throws InputError unless surface.solid(), if an option is out of range, or
 // if `input` has more than one of its values.
 MedialBuild build_medial_axis(const Surface& surface, const MedialBuildOptions& options = {},

@@ -1,0 +1,207 @@
+#include "ball_complex.h"
+
+#include <algorithm>
+#include <functional>
+#include <queue>
+#include <tuple>
+#include <utility>
+
+#include "../axis/incidence.h"
+
+namespace orchard::detail {
+namespace {
+
+using Edge = std::array<Index, 2>;
+using Triangle = std::array<Index, 3>;
+
+template <class Cell>
+void sort_and_deduplicate(std::vector<Cell>& cells) {
+  for (Cell& corners : cells) std::sort(corners.begin(), corners.end());
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+}
+
+// A triangle in pieces, by the vertices that divide its sides (b c), (c a) and (a b), or kNone.
+class TriangleCutter {
+ public:
+  TriangleCutter(const BallComplex& complex, std::vector<Triangle>& out) : complex_(complex), out_(out) {}
+
+  void cut(const Triangle& corners, const Triangle& middle) {
+    const auto cuts = std::count_if(middle.begin(), middle.end(), [](Index m) { return m != kNone; });
+    if (cuts == 0) out_.push_back(corners);
+    if (cuts == 3) {
+      out_.push_back(middle);
+      for (std::size_t i = 0; i < 3; ++i) out_.push_back({corners[i], middle[(i + 1) % 3], middle[(i + 2) % 3]});
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Index a = corners[i], b = corners[(i + 1) % 3], c = corners[(i + 2) % 3];
+      if (cuts == 1 && middle[i] != kNone) {
+        out_.push_back({a, b, middle[i]});
+        out_.push_back({a, middle[i], c});
+      }
+      if (cuts == 2 && middle[i] == kNone) {
+        const Index ca = middle[(i + 1) % 3], ab = middle[(i + 2) % 3];
+        out_.push_back({a, ab, ca});
+        quad(b, c, ca, ab);
+      }
+    }
+  }
+
+ private:
+  // Along the shorter diagonal.
+  void quad(Index a, Index b, Index c, Index d) {
+    const auto apart = [&](Index p, Index q) {
+      return (complex_.balls[p].center - complex_.balls[q].center).squaredNorm();
+    };
+    if (apart(a, c) <= apart(b, d)) {
+      out_.push_back({a, b, c});
+      out_.push_back({a, c, d});
+    } else {
+      out_.push_back({a, b, d});
+      out_.push_back({b, c, d});
+    }
+  }
+
+  const BallComplex& complex_;
+  std::vector<Triangle>& out_;
+};
+
+class Collapse {
+ public:
+  Collapse(BallComplex& complex, const Doomed& doomed, const std::vector<double>& value)
+      : complex_(complex), doomed_(doomed), value_(value) {
+    vertex_alive_.assign(complex.balls.size(), 1);
+    edge_alive_.assign(complex.edges.size(), 1);
+    triangle_alive_.assign(complex.triangles.size(), 1);
+    std::vector<Edge> at_edge, at_vertex;
+    for (Index t = 0; t < complex.triangles.size(); ++t) {
+      const auto& [a, b, c] = complex.triangles[t];
+      sides_.push_back({complex.edge_of(a, b), complex.edge_of(a, c), complex.edge_of(b, c)});
+      for (const Index side : sides_.back()) at_edge.push_back({side, t});
+    }
+    for (Index e = 0; e < complex.edges.size(); ++e) {
+      for (const Index v : complex.edges[e]) at_vertex.push_back({v, e});
+    }
+    triangles_at_ = rows_of(at_edge, static_cast<Index>(complex.edges.size()));
+    edges_at_ = rows_of(at_vertex, complex.size());
+  }
+
+  void run() {
+    for (Index e = 0; e < edge_alive_.size(); ++e) offer(e);
+    while (!queue_.empty()) {
+      const Index edge = std::get<1>(queue_.top());
+      queue_.pop();
+      if (edge_alive_[edge]) take(edge);
+    }
+    write_back();
+  }
+
+ private:
+  bool has_triangle(Index edge) const {
+    const auto row = triangles_at_[edge];
+    return std::any_of(row.begin(), row.end(), [&](Index t) { return triangle_alive_[t] != 0; });
+  }
+  Index free_end(Index edge) const {
+    if (has_triangle(edge)) return kNone;
+    for (const Index v : complex_.edges[edge]) {
+      if (doomed_.vertices[v] && only(edges_at_[v], edge_alive_) == edge) return v;
+    }
+    return kNone;
+  }
+  void offer(Index edge) {
+    if (!edge_alive_[edge] || !doomed_.edges[edge]) return;
+    if (only(triangles_at_[edge], triangle_alive_) == kNone && free_end(edge) == kNone) return;
+    const auto& [a, b] = complex_.edges[edge];
+    queue_.emplace(std::min(value_[a], value_[b]), edge);
+  }
+  void take(Index edge) {
+    const Index triangle = only(triangles_at_[edge], triangle_alive_);
+    if (triangle != kNone) {
+      edge_alive_[edge] = triangle_alive_[triangle] = 0;
+      for (const Index side : sides_[triangle]) offer(side);
+    } else {
+      const Index end = free_end(edge);
+      if (end == kNone) return;
+      edge_alive_[edge] = vertex_alive_[end] = 0;
+    }
+    for (const Index v : complex_.edges[edge]) {
+      for (const Index other : edges_at_[v]) offer(other);
+    }
+  }
+
+  void write_back() {
+    std::vector<Index> number(vertex_alive_.size(), kNone);
+    Index count = 0;
+    for (Index v = 0; v < number.size(); ++v) {
+      if (!vertex_alive_[v]) continue;
+      number[v] = count;
+      complex_.balls[count++] = complex_.balls[v];
+    }
+    complex_.balls.resize(count);
+    const auto keep = [&](auto& cells, const std::vector<std::uint8_t>& alive) {
+      std::size_t kept = 0;
+      for (std::size_t i = 0; i < cells.size(); ++i) {
+        if (!alive[i]) continue;
+        cells[kept] = cells[i];
+        for (Index& v : cells[kept]) v = number[v];
+        ++kept;
+      }
+      cells.resize(kept);
+    };
+    keep(complex_.edges, edge_alive_);
+    keep(complex_.triangles, triangle_alive_);
+  }
+
+  BallComplex& complex_;
+  const Doomed& doomed_;
+  const std::vector<double>& value_;
+  std::vector<std::uint8_t> vertex_alive_, edge_alive_, triangle_alive_;
+  std::vector<std::array<Index, 3>> sides_;
+  Rows triangles_at_, edges_at_;
+  std::priority_queue<std::pair<double, Index>, std::vector<std::pair<double, Index>>, std::greater<>> queue_;
+};
+
+}  // namespace
+
+void BallComplex::complete() {
+  for (const auto& [a, b, c] : triangles) {
+    edges.push_back({a, b});
+    edges.push_back({a, c});
+    edges.push_back({b, c});
+  }
+  sort_and_deduplicate(edges);
+  sort_and_deduplicate(triangles);
+}
+
+Index BallComplex::edge_of(Index a, Index b) const {
+  const Edge edge{std::min(a, b), std::max(a, b)};
+  return static_cast<Index>(std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin());
+}
+
+void subdivide(BallComplex& complex, const std::vector<Index>& cut) {
+  std::vector<Triangle> triangles;
+  triangles.reserve(complex.triangles.size() * 2);
+  TriangleCutter cutter(complex, triangles);
+  for (const auto& [a, b, c] : complex.triangles)
+    cutter.cut({a, b, c}, {cut[complex.edge_of(b, c)], cut[complex.edge_of(a, c)], cut[complex.edge_of(a, b)]});
+  std::vector<Edge> edges;
+  edges.reserve(complex.edges.size() * 2);
+  for (Index e = 0; e < complex.edges.size(); ++e) {
+    const auto& [a, b] = complex.edges[e];
+    if (cut[e] == kNone) {
+      edges.push_back({a, b});
+    } else {
+      edges.push_back({a, cut[e]});
+      edges.push_back({b, cut[e]});
+    }
+  }
+  complex.triangles = std::move(triangles);
+  complex.edges = std::move(edges);
+  complex.complete();
+}
+
+void collapse(BallComplex& complex, const Doomed& doomed, const std::vector<double>& value_of_vertex) {
+  Collapse(complex, doomed, value_of_vertex).run();
+}
+
+}  // namespace orchard::detail

@@ -1,0 +1,36 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "exact_ball.h"
+#include "orchard/medial/medial_mesh.h"
+
+namespace orchard::detail {
+
+// A medial mesh whose vertices know their contacts. Edges are sorted and each there once, those of triangles included.
+struct BallComplex {
+  std::vector<ExactBall> balls;
+  std::vector<std::array<Index, 2>> edges;
+  std::vector<std::array<Index, 3>> triangles;
+
+  Index size() const { return static_cast<Index>(balls.size()); }
+  // Sorts edges and triangles, drops repeated ones and adds the edges of triangles.
+  void complete();
+  // The number of an edge that there is.
+  Index edge_of(Index a, Index b) const;
+};
+
+// Cuts edges in two, and with them the triangles at them: the same topology. cut[e] is the vertex that divides edge e,
+// which is in `complex.balls` already, or kNone. O(n log n).
+void subdivide(BallComplex& complex, const std::vector<Index>& cut);
+
+// What may be taken away, by edges and vertices; a triangle may go if one of its edges may. Nothing else does.
+struct Doomed {
+  std::vector<std::uint8_t> edges, vertices;
+};
+
+// Takes away cells from the free ends on, triangles at free doomed edges and doomed edges at free doomed vertices, which
+// changes no topology; edges with the least value of an end first. What has nothing free stays. O(n log n).
+void collapse(BallComplex& complex, const Doomed& doomed, const std::vector<double>& value_of_vertex);
+
+}  // namespace orchard::detail

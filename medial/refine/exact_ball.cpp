@@ -1,0 +1,191 @@
+#include "exact_ball.h"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "orchard/geometry/angle.h"
+
+namespace orchard::detail {
+namespace {
+
+constexpr int kMaxWalk = 1000;   // triangles; a step always comes nearer, so this is but a guard
+constexpr int kMaxSteps = 12;    // of Newton's method, from one set of contacts
+constexpr int kMaxRounds = 8;    // of contacts that come nearer than those held
+constexpr double kEqual = 1e-11;  // bounding radii: distances that are the same
+constexpr double kRank = 0.03;  // of the widest contacts: normals that differ by less do not say where to go
+
+}  // namespace
+
+double ball_error(const Surface& surface, const Point& center, double radius, double reach) {
+  const double distance = surface.distance(center);
+  if (distance <= reach && !surface.inside(center)) return radius + distance;
+  return std::abs(radius - distance);
+}
+
+double BallSolver::loss(double radius, double angle) {
+  if (angle >= std::numbers::pi) return std::numeric_limits<double>::infinity();
+  return radius * (1 / std::cos(angle / 2) - 1);
+}
+
+ClosestPoint BallSolver::descend(const Point& from, ClosestPoint at) {
+  at.distance = (at.position - from).norm();
+  for (int step = 0; step < kMaxWalk; ++step) {
+    surface_.triangles_at(at.triangle, at.feature, around_);
+    ClosestPoint best = at;
+    for (const Index next : around_) {
+      const auto [a, b, c] = surface_.corners(next);
+      ClosestPoint found = closest_point_of_triangle(from, a, b, c);
+      found.triangle = next;
+      if (found.distance < best.distance) best = found;
+    }
+    if (!(best.distance < at.distance)) break;
+    at = best;
+  }
+  return at;
+}
+
+// The nearest contacts first; one that a nearer one stands for goes, and what is beyond the fourth.
+void BallSolver::merge(const Point& center) {
+  for (Held& contact : contacts_) static_cast<ClosestPoint&>(contact) = descend(center, contact);
+  std::stable_sort(contacts_.begin(), contacts_.end(),
+                   [](const Held& a, const Held& b) { return a.distance < b.distance; });
+  std::size_t kept = 0;
+  for (const Held& contact : contacts_) {
+    const auto end = contacts_.begin() + static_cast<std::ptrdiff_t>(kept);
+    const auto stands_for_it = std::find_if(contacts_.begin(), end, [&](const Held& other) {
+      const double angle = angle_between(contact.position - center, other.position - center);
+      return loss(contacts_.front().distance, angle) < merging_;
+    });
+    if (stands_for_it != end) {
+      stands_for_it->of |= contact.of;
+    } else if (kept < 4) {
+      contacts_[kept++] = contact;
+    }
+  }
+  contacts_.resize(kept);
+}
+
+// One step; false if the contacts are all at one distance already.
+bool BallSolver::step(Point& center) {
+  const double equal = kEqual * surface_.bounding_radius();
+  const std::size_t rows = contacts_.size() - 1;
+  if (contacts_.back().distance - contacts_.front().distance <= equal) return false;
+  Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3> matrix(rows, 3);
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> side(rows);
+  const Vector first = (center - contacts_[0].position) / contacts_[0].distance;
+  for (std::size_t i = 0; i < rows; ++i) {
+    const ClosestPoint& contact = contacts_[i + 1];
+    matrix.row(static_cast<Eigen::Index>(i)) = ((center - contact.position) / contact.distance - first).transpose();
+    side(static_cast<Eigen::Index>(i)) = contacts_[0].distance - contact.distance;
+  }
+  Vector move;
+  if (rows == 1) {
+    move = matrix.row(0).transpose() * (side(0) / matrix.row(0).squaredNorm());
+  } else {
+    Eigen::JacobiSVD<decltype(matrix)> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    svd.setThreshold(kRank);
+    move = svd.solve(side);
+  }
+  const double length = move.norm(), limit = contacts_[0].distance / 2;
+  if (length > limit) move *= limit / length;
+  center += move;
+  return true;
+}
+
+bool BallSolver::converge(Point& center) {
+  for (int i = 0; i < kMaxSteps; ++i) {
+    merge(center);
+    if (contacts_.size() < 2 || !(contacts_[0].distance > 0)) return false;
+    if (!step(center)) return true;
+  }
+  return false;
+}
+
+bool BallSolver::add_violator(const Point& center, double radius) {
+  const ClosestPoint nearest = surface_.closest(center);
+  if (nearest.distance >= radius - kEqual * surface_.bounding_radius()) return false;
+  contacts_.push_back({nearest});
+  return true;
+}
+
+ExactBall BallSolver::finished(const Point& center, bool exact) {
+  ExactBall ball;
+  ball.center = center;
+  ball.count = static_cast<int>(std::min<std::size_t>(contacts_.size(), 4));
+  std::copy_n(contacts_.begin(), ball.count, ball.contacts.begin());
+  ball.radius = contacts_.front().distance;
+  ball.exact = exact;
+  double widest = 0;
+  for (int i = 0; i < ball.count; ++i) {
+    for (int k = 0; k < i; ++k)
+      widest = std::max(widest, angle_between(ball.contacts[i].position - center, ball.contacts[k].position - center));
+  }
+  ball.loss = loss(ball.radius, widest);
+  return ball;
+}
+
+// From contacts_; if that leads nowhere, from the nearest of them and the one that is seen farthest from it.
+ExactBall BallSolver::solve_held(const Point& start) {
+  first_ = contacts_;
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    Point center = start;
+    for (int round = 0; round < kMaxRounds; ++round) {
+      if (!converge(center)) break;
+      if (!add_violator(center, contacts_[0].distance)) return finished(center, true);
+    }
+    contacts_ = first_;
+    if (contacts_.size() < 2) break;
+    const auto seen = [&](const Held& other) {
+      return angle_between(contacts_[0].position - start, other.position - start);
+    };
+    const auto opposite = std::max_element(contacts_.begin() + 1, contacts_.end(),
+                                           [&](const Held& a, const Held& b) { return seen(a) < seen(b); });
+    contacts_ = {contacts_[0], *opposite};
+  }
+  contacts_ = first_;
+  return finished(start, false);
+}
+
+ExactBall BallSolver::solve(const Point& start, std::span<const ClosestPoint> seeds) {
+  contacts_.clear();
+  for (const ClosestPoint& seed : seeds) contacts_.push_back({seed});
+  contacts_.push_back({surface_.closest(start)});
+  merge(start);
+  return solve_held(start);
+}
+
+ExactBall BallSolver::on_surface(const Point& place, bool exact) const {
+  ExactBall ball;
+  ball.contacts[0] = surface_.closest(place);
+  ball.center = ball.contacts[0].position;
+  ball.contacts[0].distance = 0;
+  ball.count = 1;
+  ball.exact = exact;
+  ball.loss = std::numeric_limits<double>::infinity();
+  return ball;
+}
+
+ExactBall BallSolver::between(const ExactBall& a, const ExactBall& b, double t) {
+  const Point start = (1 - t) * a.center + t * b.center;
+  if (!(a.radius > 0) && !(b.radius > 0)) return on_surface(start, true);
+  contacts_.clear();
+  for (const ClosestPoint& contact : a.touching()) contacts_.push_back({contact, 1});
+  for (const ClosestPoint& contact : b.touching()) contacts_.push_back({contact, 2});
+  contacts_.push_back({surface_.closest(start)});
+  merge(start);
+  std::stable_partition(contacts_.begin(), contacts_.end(), [](const Held& contact) { return contact.of == 3; });
+  const auto common = static_cast<std::size_t>(
+      std::count_if(contacts_.begin(), contacts_.end(), [](const Held& contact) { return contact.of == 3; }));
+  contacts_.resize(std::min(contacts_.size(), std::max<std::size_t>(common, 2)));
+  std::stable_sort(contacts_.begin(), contacts_.end(),
+                   [](const Held& x, const Held& y) { return x.distance < y.distance; });
+  const ExactBall ball = solve_held(start);
+  // The ends are inside, so only what is as near to the surface as they are to each other can be outside.
+  const bool outside = ball.radius <= (a.center - b.center).norm() && !surface_.inside(ball.center);
+  return outside ? on_surface(start, false) : ball;
+}
+
+}  // namespace orchard::detail

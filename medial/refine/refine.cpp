@@ -1,0 +1,354 @@
+#include "orchard/medial/refine.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "../axis/incidence.h"
+#include "../axis/point_normals.h"
+#include "../axis_triangles.h"
+#include "ball_complex.h"
+#include "border.h"
+#include "orchard/geometry/angle.h"
+#include "orchard/geometry/error.h"
+#include "split.h"
+
+namespace orchard {
+namespace {
+
+using detail::BallComplex;
+using detail::BallSolver;
+using detail::ExactBall;
+
+// Contacts merge where the ball between them would lose this much of what a border may lose: fine enough to see on which
+// side of the level a vertex is.
+constexpr double kMerging = 0.25;
+constexpr int kBorderPasses = 3;      // of filling notches and reaching edges: the last ones find next to nothing
+constexpr double kMinLength = 1e-3;   // diagonals: shorter edges are not divided
+constexpr std::size_t kEnough = 24;   // seeds of a vertex: coalesced ones have hundreds
+constexpr int kLevelSteps = 5;        // of bisection for the place where an edge crosses the level
+constexpr double kNearLevel = 0.04;   // of the loss: near enough to end that
+
+// A loss as a number from 0 to 1, 1/2 at the level.
+double scaled(const ExactBall& ball, double level) {
+  if (ball.radius > 0 && ball.count < 2) return 0;
+  if (!std::isfinite(ball.loss)) return 1;
+  const double ratio = ball.loss / level;
+  return ratio / (1 + ratio);
+}
+
+class Refiner {
+ public:
+  Refiner(const Surface& surface, const SurfaceSampling& sampling, const MedialAxis& axis, const RefineOptions& options,
+          const Progress& progress)
+      : surface_(surface),
+        sampling_(sampling),
+        axis_(axis),
+        options_(options),
+        progress_(progress),
+        diagonal_(surface.bounding_box().diagonal().norm()),
+        level_(std::max(options.border_loss, std::numeric_limits<double>::min()) * diagonal_) {}
+
+  RefinedAxis run() {
+    report_.vertices_before = axis_.size();
+    make_complex();
+    find_balls();
+    report_progress(progress_, kStage, 0.25);
+    drop_folded();
+    cut_at_level();
+    report_progress(progress_, kStage, 0.45);
+    mend_borders();
+    report_progress(progress_, kStage, 0.6);
+    const detail::SplitReport split = detail::split_nonlinear(surface_, complex_,
+                                                              {.tolerance = options_.tolerance * diagonal_,
+                                                               .merging = kMerging * level_,
+                                                               .min_length = kMinLength * diagonal_,
+                                                               .max_rounds = options_.max_rounds},
+                                                              progress_);
+    report_.divided = split.divided;
+    report_.undivided = split.undivided;
+    report_progress(progress_, kStage, 1);
+    return result();
+  }
+
+ private:
+  static constexpr const char* kStage = "refining the axis";
+
+  BallSolver solver() const { return {surface_, kMerging * level_}; }
+  ClosestPoint place(Index point) const {
+    return {.position = sampling_.points[point],
+            .distance = 0,
+            .triangle = sampling_.triangles[point],
+            .feature = sampling_.features[point]};
+  }
+
+  void make_complex() {
+    detail::AxisTriangles triangles = detail::axis_triangles(axis_);
+    face_of_triangle_ = std::move(triangles.face_of_triangle);
+    complex_.balls.resize(triangles.mesh.size());
+    for (Index v = 0; v < triangles.mesh.size(); ++v) complex_.balls[v].center = triangles.mesh.centers[v];
+    complex_.edges = std::move(triangles.mesh.edges);
+    complex_.triangles = std::move(triangles.mesh.triangles);
+  }
+
+  // What is downhill from the forming points; for the middle of a face, from its two points.
+  void find_balls() {
+    std::vector<Index> face_of_middle(complex_.size(), kNone);
+    for (Index t = 0; t < complex_.triangles.size(); ++t) {
+      for (const Index v : complex_.triangles[t]) face_of_middle[v] = face_of_triangle_[t];
+    }
+    tbb::parallel_for(tbb::blocked_range<Index>(0, complex_.size(), 64), [&](const auto& range) {
+      BallSolver solver = this->solver();
+      std::vector<ClosestPoint> seeds;
+      for (Index v = range.begin(); v != range.end(); ++v) {
+        seeds.clear();
+        if (v < axis_.size()) {
+          for (const Index point : axis_.forming_points[v].first(std::min(kEnough, axis_.forming_points[v].size())))
+            seeds.push_back(place(point));
+        } else {
+          for (const Index point : points_of(face_of_middle[v])) seeds.push_back(place(point));
+        }
+        complex_.balls[v] = solver.solve(complex_.balls[v].center, seeds);
+      }
+    });
+  }
+
+  const std::array<Index, 2>& points_of(Index face) const {
+    return face < axis_.faces.size() ? axis_.face_points[face] : axis_.wall_points[face - axis_.faces.size()];
+  }
+  std::span<const Index> corners_of(Index face) const {
+    return face < axis_.faces.size() ? axis_.faces[face] : axis_.walls[face - axis_.faces.size()];
+  }
+
+  // Whether the two points of a face have, seen from its middle, contacts between which nothing is lost: such a face
+  // folds onto its sheet, or stands on the surface.
+  bool folded(Index face, BallSolver& solver) const {
+    Point middle = Point::Zero();
+    for (const Index v : corners_of(face)) middle += axis_.centers[v];
+    middle /= static_cast<double>(corners_of(face).size());
+    const auto& [p, q] = points_of(face);
+    const ClosestPoint a = solver.descend(middle, place(p)), b = solver.descend(middle, place(q));
+    const double angle = angle_between(a.position - middle, b.position - middle);
+    return BallSolver::loss(std::min(a.distance, b.distance), angle) < level_;
+  }
+
+  void drop_folded() {
+    std::vector<std::uint8_t> folded_faces(axis_.faces.size() + axis_.walls.size(), 0);
+    tbb::parallel_for(tbb::blocked_range<Index>(0, static_cast<Index>(folded_faces.size()), 128),
+                      [&](const auto& range) {
+                        BallSolver solver = this->solver();
+                        for (Index face = range.begin(); face != range.end(); ++face)
+                          folded_faces[face] = folded(face, solver) ? 1 : 0;
+                      });
+    // Edges go with all of their triangles, vertices with all of their edges; those without triangles stay.
+    std::vector<std::uint8_t> has(complex_.edges.size(), 0);
+    detail::Doomed doomed{.edges = std::vector<std::uint8_t>(complex_.edges.size(), 1),
+                          .vertices = std::vector<std::uint8_t>(complex_.size(), 1)};
+    for (Index t = 0; t < complex_.triangles.size(); ++t) {
+      const auto& [a, b, c] = complex_.triangles[t];
+      for (const Index e : {complex_.edge_of(a, b), complex_.edge_of(a, c), complex_.edge_of(b, c)}) {
+        has[e] = 1;
+        if (!folded_faces[face_of_triangle_[t]]) doomed.edges[e] = 0;
+      }
+    }
+    for (Index e = 0; e < complex_.edges.size(); ++e) {
+      if (!has[e]) doomed.edges[e] = 0;
+      if (doomed.edges[e]) continue;
+      for (const Index v : complex_.edges[e]) doomed.vertices[v] = 0;
+    }
+    const std::size_t before = complex_.triangles.size();
+    detail::collapse(complex_, doomed, std::vector<double>(complex_.size(), 0));
+    report_.folded_triangles = static_cast<Index>(before - complex_.triangles.size());
+  }
+
+  // Where an edge from a vertex above the level to one below crosses it: the last exact ball above; nothing if there is
+  // none.
+  bool crossing(BallSolver& solver, const ExactBall& above, const ExactBall& below, ExactBall& found) const {
+    const double high = scaled(above, level_), low = scaled(below, level_);
+    double from = 0, to = 1;
+    bool any = false;
+    for (int step = 0; step < kLevelSteps; ++step) {
+      double t = step == 0 ? (high - 0.5) / (high - low) : 0.5 * (from + to);
+      t = std::clamp(t, from + 0.05 * (to - from), to - 0.05 * (to - from));
+      const ExactBall middle = solver.between(above, below, t);
+      const double value = scaled(middle, level_);
+      if (!middle.exact || value < 0.5) {
+        to = t;
+        continue;
+      }
+      from = t;
+      found = middle;
+      any = true;
+      if (value < 0.5 + kNearLevel / 2) break;
+    }
+    return any;
+  }
+
+  void cut_at_level() {
+    const auto above = [&](Index v) { return scaled(complex_.balls[v], level_) >= 0.5; };
+    std::vector<Index> crossed;
+    for (Index e = 0; e < complex_.edges.size(); ++e) {
+      if (above(complex_.edges[e][0]) != above(complex_.edges[e][1])) crossed.push_back(e);
+    }
+    std::vector<ExactBall> places(crossed.size());
+    std::vector<std::uint8_t> found(crossed.size(), 0);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, crossed.size(), 32), [&](const auto& range) {
+      BallSolver solver = this->solver();
+      for (std::size_t i = range.begin(); i != range.end(); ++i) {
+        auto [a, b] = complex_.edges[crossed[i]];
+        if (!above(a)) std::swap(a, b);
+        found[i] = crossing(solver, complex_.balls[a], complex_.balls[b], places[i]) ? 1 : 0;
+      }
+    });
+    std::vector<Index> cut(complex_.edges.size(), kNone);
+    for (std::size_t i = 0; i < crossed.size(); ++i) {
+      if (!found[i]) continue;
+      cut[crossed[i]] = complex_.size();
+      complex_.balls.push_back(places[i]);
+      ++report_.border_cuts;
+    }
+    detail::subdivide(complex_, cut);
+    drop_below();
+  }
+
+  void drop_below() {
+    std::vector<double> value(complex_.size());
+    detail::Doomed doomed{.edges = std::vector<std::uint8_t>(complex_.edges.size(), 0),
+                          .vertices = std::vector<std::uint8_t>(complex_.size(), 0)};
+    for (Index v = 0; v < complex_.size(); ++v) {
+      value[v] = scaled(complex_.balls[v], level_);
+      doomed.vertices[v] = value[v] < 0.5 ? 1 : 0;
+    }
+    for (Index e = 0; e < complex_.edges.size(); ++e) {
+      const auto& [a, b] = complex_.edges[e];
+      doomed.edges[e] = doomed.vertices[a] != 0 || doomed.vertices[b] != 0 ? 1 : 0;
+    }
+    detail::collapse(complex_, doomed, value);
+  }
+
+  void mend_borders() {
+    const detail::BorderOptions border{.level = level_,
+                                       .tolerance = options_.tolerance * diagonal_,
+                                       .spacing = std::sqrt(surface_.report().area / sampling_.size()),
+                                       .sharp_angle = options_.sharp_angle};
+    BallSolver solver = this->solver();
+    for (int pass = 0; pass < kBorderPasses; ++pass) {
+      const Index notches = detail::fill_notches(surface_, complex_, solver, border);
+      const Index reached = detail::extend_to_edges(surface_, complex_, border);
+      report_.notches += notches;
+      report_.edge_vertices += reached;
+      if (notches == 0 && reached == 0) break;
+    }
+  }
+
+  RefinedAxis result() {
+    RefinedAxis refined;
+    MedialAxis& axis = refined.axis;
+    SurfaceSampling contacts;
+    for (const ExactBall& ball : complex_.balls) {
+      axis.centers.push_back(ball.center);
+      axis.radii.push_back(ball.radius);
+      double widest = 0;
+      for (int i = 0; i < ball.count; ++i) {
+        for (int k = 0; k < i; ++k) widest = std::max(widest, seen(ball, i, k));
+        axis.forming_points.items.push_back(contacts.size());
+        contacts.points.push_back(ball.contacts[i].position);
+        contacts.triangles.push_back(ball.contacts[i].triangle);
+        contacts.features.push_back(ball.contacts[i].feature);
+        contacts.origins.push_back(ball.contacts[i].feature == Feature::face ? PointOrigin::face : PointOrigin::edge);
+      }
+      axis.angles.push_back(widest);
+      axis.forming_points.close_row();
+      if (!ball.exact) ++report_.inexact;
+    }
+    detail::add_points(surface_, contacts, axis);
+    add_cells(axis);
+    axis.stems = axis_.stems;
+    axis.bridges = axis_.bridges;
+    axis.left_out = axis_.left_out;
+    report_.vertices = axis.size();
+    refined.report = report_;
+    return refined;
+  }
+  static double seen(const ExactBall& ball, int i, int k) {
+    return angle_between(ball.contacts[i].position - ball.center, ball.contacts[k].position - ball.center);
+  }
+
+  void add_cells(MedialAxis& axis) {
+    std::vector<std::array<Index, 2>> adjacent;
+    for (const auto& [a, b] : complex_.edges) {
+      adjacent.push_back({a, b});
+      adjacent.push_back({b, a});
+    }
+    axis.neighbors = detail::rows_of(adjacent, axis.size());
+    std::vector<std::uint8_t> count(complex_.edges.size(), 0);
+    for (const auto& corners : complex_.triangles) {
+      axis.faces.items.insert(axis.faces.items.end(), corners.begin(), corners.end());
+      axis.faces.close_row();
+      axis.face_points.push_back(points_of_triangle(axis, corners));
+      const auto& [a, b, c] = corners;
+      for (const Index e : {complex_.edge_of(a, b), complex_.edge_of(a, c), complex_.edge_of(b, c)}) {
+        if (count[e] < 2) ++count[e];
+      }
+    }
+    for (Index e = 0; e < count.size(); ++e) {
+      const auto& [a, b] = complex_.edges[e];
+      if (count[e] == 1) report_.border_length += (axis.centers[a] - axis.centers[b]).norm() / diagonal_;
+    }
+  }
+  // The contacts of the corners that are seen farthest apart from the middle.
+  static std::array<Index, 2> points_of_triangle(const MedialAxis& axis, const std::array<Index, 3>& corners) {
+    const Point middle = (axis.centers[corners[0]] + axis.centers[corners[1]] + axis.centers[corners[2]]) / 3;
+    std::array<Index, 2> best{axis.forming_points[corners[0]][0], axis.forming_points[corners[1]][0]};
+    double widest = -1;
+    for (const Index v : corners) {
+      const auto points = axis.forming_points[v];
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        for (std::size_t k = 0; k < i; ++k) {
+          const double angle = angle_between(axis.points[points[i]] - middle, axis.points[points[k]] - middle);
+          if (angle <= widest) continue;
+          widest = angle;
+          best = {points[k], points[i]};
+        }
+      }
+    }
+    return best;
+  }
+
+  const Surface& surface_;
+  const SurfaceSampling& sampling_;
+  const MedialAxis& axis_;
+  const RefineOptions& options_;
+  const Progress& progress_;
+  const double diagonal_, level_;  // mesh units
+  BallComplex complex_;
+  std::vector<Index> face_of_triangle_;  // of the axis as it came
+  RefineReport report_;
+};
+
+void check(const RefineOptions& options) {
+  if (!(options.border_loss >= 0 && std::isfinite(options.border_loss)))
+    throw InputError("border loss: a finite number of diagonals, not negative");
+  if (!(options.tolerance > 0 && std::isfinite(options.tolerance)))
+    throw InputError("refining tolerance: a finite number of diagonals above 0");
+  if (!(options.sharp_angle >= 0 && options.sharp_angle <= std::numbers::pi))
+    throw InputError("sharp angle: between 0 and pi");
+  if (options.max_rounds < 0) throw InputError("rounds of refining: not negative");
+}
+
+}  // namespace
+
+RefinedAxis refine_axis(const Surface& surface, const SurfaceSampling& sampling, const MedialAxis& axis,
+                        const RefineOptions& options, const Progress& progress) {
+  if (!surface.solid())
+    throw InputError("the medial axis needs a solid: " + surface.report().faults() + "; repair the mesh first");
+  check(options);
+  return Refiner(surface, sampling, axis, options, progress).run();
+}
+
+}  // namespace orchard

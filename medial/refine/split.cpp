@@ -1,0 +1,114 @@
+#include "split.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace orchard::detail {
+namespace {
+
+class Splitter {
+ public:
+  Splitter(const Surface& surface, BallComplex& complex, const SplitOptions& options)
+      : surface_(surface), complex_(complex), options_(options) {}
+
+  // Of each edge, how far the balls on it and on the triangles whose longest edge it is are off.
+  std::vector<double> errors() const {
+    const auto& edges = complex_.edges;
+    std::vector<double> error(edges.size(), 0), of_triangle(complex_.triangles.size(), 0);
+    tbb::parallel_for(tbb::blocked_range<Index>(0, static_cast<Index>(edges.size()), 256), [&](const auto& range) {
+      for (Index e = range.begin(); e != range.end(); ++e) error[e] = error_of_edge(edges[e]);
+    });
+    tbb::parallel_for(tbb::blocked_range<Index>(0, static_cast<Index>(of_triangle.size()), 256),
+                      [&](const auto& range) {
+                        for (Index t = range.begin(); t != range.end(); ++t)
+                          of_triangle[t] = error_of_triangle(complex_.triangles[t]);
+                      });
+    for (Index t = 0; t < of_triangle.size(); ++t) {
+      if (of_triangle[t] <= options_.tolerance) continue;
+      double& worst = error[longest_edge(complex_.triangles[t])];
+      worst = std::max(worst, of_triangle[t]);
+    }
+    return error;
+  }
+
+  // Returns how many edges were divided.
+  Index divide(const std::vector<double>& error) {
+    std::vector<Index> chosen, cut(complex_.edges.size(), kNone);
+    for (Index e = 0; e < error.size(); ++e) {
+      if (error[e] <= options_.tolerance || length(complex_.edges[e]) <= options_.min_length) continue;
+      cut[e] = complex_.size() + static_cast<Index>(chosen.size());
+      chosen.push_back(e);
+    }
+    std::vector<ExactBall> middles(chosen.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, chosen.size(), 64), [&](const auto& range) {
+      BallSolver solver(surface_, options_.merging);
+      for (std::size_t i = range.begin(); i != range.end(); ++i) {
+        const auto& [a, b] = complex_.edges[chosen[i]];
+        middles[i] = solver.between(complex_.balls[a], complex_.balls[b], 0.5);
+      }
+    });
+    if (chosen.empty()) return 0;
+    complex_.balls.insert(complex_.balls.end(), middles.begin(), middles.end());
+    subdivide(complex_, cut);
+    return static_cast<Index>(chosen.size());
+  }
+
+ private:
+  double length(const std::array<Index, 2>& edge) const {
+    return (complex_.balls[edge[0]].center - complex_.balls[edge[1]].center).norm();
+  }
+  Index longest_edge(const std::array<Index, 3>& t) const {
+    const std::array<std::array<Index, 2>, 3> sides{{{t[0], t[1]}, {t[0], t[2]}, {t[1], t[2]}}};
+    const auto longest = std::max_element(sides.begin(), sides.end(),
+                                          [&](const auto& a, const auto& b) { return length(a) < length(b); });
+    return complex_.edge_of((*longest)[0], (*longest)[1]);
+  }
+  // Along an edge both the interpolated radius and the distance change by no more than the way, so short ones are right.
+  double error_of_edge(const std::array<Index, 2>& edge) const {
+    const ExactBall &a = complex_.balls[edge[0]], &b = complex_.balls[edge[1]];
+    const double reach = (length(edge) + std::abs(a.radius - b.radius)) / 2;
+    if (reach <= options_.tolerance) return 0;
+    double worst = 0;
+    for (const double t : {0.5, 0.25, 0.75}) {
+      const double error = ball_error(surface_, (1 - t) * a.center + t * b.center,
+                                      (1 - t) * a.radius + t * b.radius, length(edge));
+      worst = std::max(worst, error);
+      if (error < kSmall * options_.tolerance) break;  // in the middle: nor is it much at the quarters
+    }
+    return worst;
+  }
+  double error_of_triangle(const std::array<Index, 3>& t) const {
+    const ExactBall &a = complex_.balls[t[0]], &b = complex_.balls[t[1]], &c = complex_.balls[t[2]];
+    return ball_error(surface_, (a.center + b.center + c.center) / 3, (a.radius + b.radius + c.radius) / 3,
+                      std::max({length({t[0], t[1]}), length({t[0], t[2]}), length({t[1], t[2]})}));
+  }
+
+  static constexpr double kSmall = 0.25;
+  const Surface& surface_;
+  BallComplex& complex_;
+  const SplitOptions& options_;
+};
+
+}  // namespace
+
+SplitReport split_nonlinear(const Surface& surface, BallComplex& complex, const SplitOptions& options,
+                            const Progress& progress) {
+  SplitReport report;
+  Splitter splitter(surface, complex, options);
+  for (int round = 0;; ++round) {
+    const std::vector<double> errors = splitter.errors();
+    report.undivided = static_cast<Index>(
+        std::count_if(errors.begin(), errors.end(), [&](double error) { return error > options.tolerance; }));
+    if (round == options.max_rounds || report.undivided == 0) break;
+    const Index divided = splitter.divide(errors);
+    if (divided == 0) break;
+    report.divided += divided;
+    report_progress(progress, "refining the axis", 0.6 + 0.4 * (round + 1) / (options.max_rounds + 1));
+  }
+  return report;
+}
+
+}  // namespace orchard::detail
