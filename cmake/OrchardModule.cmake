@@ -21,10 +21,12 @@ if(ORCHARD_SANITIZE_THREADS)
   target_link_options(orchard_flags INTERFACE -fsanitize=thread)
 endif()
 
-# What most files of the construction include, read once for each target: a third to a half of its compile time.
+# What most files of the construction include, read once for all modules and once for all tests: a third to a half of the
+# compile time of a file.
 set(ORCHARD_STANDARD_HEADERS <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <limits> <memory> <numeric>
   <optional> <span> <string> <utility> <vector>)
 set(ORCHARD_CONSTRUCTION_HEADERS <Eigen/Core> <Eigen/Geometry> ${ORCHARD_STANDARD_HEADERS})
+set(ORCHARD_TBB_HEADERS <tbb/blocked_range.h> <tbb/enumerable_thread_specific.h> <tbb/parallel_for.h>)
 
 # orchard_precompile(target headers..), unless ORCHARD_PRECOMPILE is off.
 function(orchard_precompile target)
@@ -33,10 +35,58 @@ function(orchard_precompile target)
   endif()
 endfunction()
 
-# orchard_add_module(name COMPONENT component SOURCES .. [PUBLIC ..] [PRIVATE ..])
+# orchard_precompile_once(target name [PIC] [OPTIONS ..] [LINK ..] HEADERS ..): the same, but the headers are compiled for
+# the first target that asks for this name; the others, whose flags are the same, take what there is.
+function(orchard_precompile_once target name)
+  cmake_parse_arguments(ARG "PIC" "" "OPTIONS;LINK;HEADERS" ${ARGN})
+  if(NOT ORCHARD_PRECOMPILE)
+    return()
+  elseif(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # which alone lets other flags of CGAL's or a test's pass
+    target_precompile_headers(${target} PRIVATE ${ARG_HEADERS})
+    return()
+  endif()
+  set(owner orchard_${name}_headers)
+  if(NOT TARGET ${owner})
+    set(empty ${PROJECT_BINARY_DIR}/${owner}.cpp)
+    file(CONFIGURE OUTPUT ${empty} CONTENT "")
+    add_library(${owner} OBJECT ${empty})
+    set_target_properties(${owner} PROPERTIES POSITION_INDEPENDENT_CODE ${ARG_PIC})
+    target_compile_options(${owner} PRIVATE ${ARG_OPTIONS})
+    target_link_libraries(${owner} PRIVATE orchard_flags ${ARG_LINK})
+    target_precompile_headers(${owner} PRIVATE ${ARG_HEADERS})
+  endif()
+  target_precompile_headers(${target} REUSE_FROM ${owner})
+endfunction()
+
+# orchard_unite(target [APART ..]): with ORCHARD_UNITY, files are compiled eight at a time, in the order in which they are
+# listed, and all NAME_cgal.cpp at once: what they instantiate of CGAL takes longer than all else. APART: by themselves, for
+# they have names of their own in unnamed namespaces that others have as well. A build without ORCHARD_UNITY compiles less
+# after a change.
+function(orchard_unite target)
+  cmake_parse_arguments(ARG "" "" "APART" ${ARGN})
+  if(NOT ORCHARD_UNITY)
+    return()
+  endif()
+  get_target_property(sources ${target} SOURCES)
+  set(count 0)
+  foreach(source IN LISTS sources)
+    if(source IN_LIST ARG_APART)
+      continue()
+    elseif(source MATCHES "_cgal\\.cpp$")
+      set(group cgal)
+    else()
+      math(EXPR group "${count} / 8")
+      math(EXPR count "${count} + 1")
+    endif()
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${target}_${group})
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+endfunction()
+
+# orchard_add_module(name COMPONENT component SOURCES .. [APART ..] [PUBLIC ..] [PRIVATE ..])
 # makes the library orchard::name with its own include root, so that an arrow that is not declared does not compile.
 function(orchard_add_module name)
-  cmake_parse_arguments(ARG "" "COMPONENT" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "" "COMPONENT" "SOURCES;APART;PUBLIC;PRIVATE" ${ARGN})
   set(target orchard_${name})
   add_library(${target} ${ARG_SOURCES})
   add_library(orchard::${name} ALIAS ${target})
@@ -47,12 +97,12 @@ function(orchard_add_module name)
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})  # "room/header.h"
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE $<BUILD_INTERFACE:orchard_flags> ${ARG_PRIVATE})
-  if(NOT name MATCHES "^(runtime|broad_phase_methods)$")  # which are small, and need nothing to be built but a compiler
-    set(headers ${ORCHARD_CONSTRUCTION_HEADERS})
-    if(TBB::tbb IN_LIST ARG_PRIVATE)
-      list(APPEND headers <tbb/blocked_range.h> <tbb/enumerable_thread_specific.h> <tbb/parallel_for.h>)
-    endif()
-    orchard_precompile(${target} ${headers})
+  if(name MATCHES "^(runtime|broad_phase_methods)$")  # file by file, so that a game links no more than it uses
+    orchard_precompile_once(${target} runtime PIC HEADERS ${ORCHARD_STANDARD_HEADERS})
+  else()
+    orchard_precompile_once(${target} construction PIC LINK Eigen3::Eigen TBB::tbb
+      HEADERS ${ORCHARD_CONSTRUCTION_HEADERS} ${ORCHARD_TBB_HEADERS})
+    orchard_unite(${target} APART ${ARG_APART})
   endif()
   install(TARGETS ${target} EXPORT orchard-${ARG_COMPONENT} COMPONENT ${ARG_COMPONENT}
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
@@ -60,22 +110,26 @@ function(orchard_add_module name)
   set_property(GLOBAL APPEND PROPERTY ORCHARD_COMPONENTS ${ARG_COMPONENT})
 endfunction()
 
-# orchard_add_tests(module SOURCES .. [LINK ..] [LONG suites..]): one executable and one ctest label per module. All tests
+# orchard_add_tests(module SOURCES .. [APART ..] [LINK ..] [LONG suites..]): one executable and one ctest label per module. All tests
 # are "quick"; the suites named take their random cases from tests/support/effort.h, and are once more, with twenty
 # times as many and fresh ones, a test that is "long".
 function(orchard_add_tests name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LONG" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;APART;LINK;LONG" ${ARGN})
   set(target orchard_${name}_tests)
   add_executable(${target} ${ARG_SOURCES})
   target_link_libraries(${target} PRIVATE orchard_flags ${ARG_LINK} GTest::gtest_main)
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/tests)
   # Most of a test's time is its compiler's, and GCC 12's optimiser sees bounds broken within std::string's own code.
-  target_compile_options(${target} PRIVATE -O1 -Wno-array-bounds)
+  set(options -O1 -Wno-array-bounds)
+  target_compile_options(${target} PRIVATE ${options})
   if(name STREQUAL runtime OR name STREQUAL broad_phase)
-    orchard_precompile(${target} <gtest/gtest.h> ${ORCHARD_STANDARD_HEADERS})
+    orchard_precompile_once(${target} runtime_tests OPTIONS ${options} LINK GTest::gtest
+      HEADERS <gtest/gtest.h> ${ORCHARD_STANDARD_HEADERS})
   else()
-    orchard_precompile(${target} <gtest/gtest.h> ${ORCHARD_CONSTRUCTION_HEADERS})
+    orchard_precompile_once(${target} construction_tests OPTIONS ${options} LINK Eigen3::Eigen GTest::gtest
+      HEADERS <gtest/gtest.h> ${ORCHARD_CONSTRUCTION_HEADERS})
   endif()
+  orchard_unite(${target} APART ${ARG_APART})
   target_compile_definitions(${target} PRIVATE
     ORCHARD_DATA_DIR="${PROJECT_SOURCE_DIR}/data" ORCHARD_SHARED_MODELS="${PROJECT_SOURCE_DIR}/../shared/models")
   gtest_discover_tests(${target} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60 DISCOVERY_MODE PRE_TEST)

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kRounds = 8;  // of Lloyd's iteration
-constexpr int kEvaluations = 8;
+constexpr int kStartEvaluations = 8;
 
 // While this runs, a ball's samples are those that it owns: every sample has one owner. A radius below 0 marks a ball
 // that owns none.
@@ -79,7 +79,7 @@ class LevelStart {
       if (ball.samples.empty()) return;
       std::vector<Point> points;
       for (Index s : ball.samples) points.push_back(samples_.points[s]);
-      static_cast<FittedBall&>(ball) = fitters.local().fit(points, ball.center, kEvaluations);
+      static_cast<FittedBall&>(ball) = fitters.local().fit(points, ball.center, kStartEvaluations);
     });
   }
 
