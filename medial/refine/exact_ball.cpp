@@ -152,6 +152,14 @@ ExactBall BallSolver::solve_held(const Point& start) {
 ExactBall BallSolver::solve(const Point& start, std::span<const ClosestPoint> seeds) {
   contacts_.clear();
   for (const ClosestPoint& seed : seeds) contacts_.push_back({seed});
+  merge(start);
+  if (contacts_.size() >= 2) {
+    const ExactBall ball = solve_held(start);
+    if (ball.exact) return ball;
+  }
+  // Seldom needed, and dear: the nearest place of all.
+  contacts_.clear();
+  for (const ClosestPoint& seed : seeds) contacts_.push_back({seed});
   contacts_.push_back({surface_.closest(start)});
   merge(start);
   return solve_held(start);

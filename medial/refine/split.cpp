@@ -5,9 +5,31 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace orchard::detail {
 namespace {
+
+// The errors of sorted cells. Most cells of a round are those of the last one: theirs are known.
+template <class Cell>
+struct CellErrors {
+  std::vector<Cell> cells;
+  std::vector<double> errors;
+
+  template <class Measure>
+  void measure(const std::vector<Cell>& now, Measure&& of) {
+    std::vector<double> found(now.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, now.size(), 256), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i != range.end(); ++i) {
+        const auto at = std::lower_bound(cells.begin(), cells.end(), now[i]);
+        const bool known = at != cells.end() && *at == now[i];
+        found[i] = known ? errors[static_cast<std::size_t>(at - cells.begin())] : of(now[i]);
+      }
+    });
+    cells = now;
+    errors = std::move(found);
+  }
+};
 
 class Splitter {
  public:
@@ -15,21 +37,14 @@ class Splitter {
       : surface_(surface), complex_(complex), options_(options) {}
 
   // Of each edge, how far the balls on it and on the triangles whose longest edge it is are off.
-  std::vector<double> errors() const {
-    const auto& edges = complex_.edges;
-    std::vector<double> error(edges.size(), 0), of_triangle(complex_.triangles.size(), 0);
-    tbb::parallel_for(tbb::blocked_range<Index>(0, static_cast<Index>(edges.size()), 256), [&](const auto& range) {
-      for (Index e = range.begin(); e != range.end(); ++e) error[e] = error_of_edge(edges[e]);
-    });
-    tbb::parallel_for(tbb::blocked_range<Index>(0, static_cast<Index>(of_triangle.size()), 256),
-                      [&](const auto& range) {
-                        for (Index t = range.begin(); t != range.end(); ++t)
-                          of_triangle[t] = error_of_triangle(complex_.triangles[t]);
-                      });
-    for (Index t = 0; t < of_triangle.size(); ++t) {
-      if (of_triangle[t] <= options_.tolerance) continue;
+  std::vector<double> errors() {
+    edges_.measure(complex_.edges, [this](const auto& edge) { return error_of_edge(edge); });
+    triangles_.measure(complex_.triangles, [this](const auto& triangle) { return error_of_triangle(triangle); });
+    std::vector<double> error = edges_.errors;
+    for (Index t = 0; t < complex_.triangles.size(); ++t) {
+      if (triangles_.errors[t] <= options_.tolerance) continue;
       double& worst = error[longest_edge(complex_.triangles[t])];
-      worst = std::max(worst, of_triangle[t]);
+      worst = std::max(worst, triangles_.errors[t]);
     }
     return error;
   }
@@ -90,6 +105,8 @@ class Splitter {
   const Surface& surface_;
   BallComplex& complex_;
   const SplitOptions& options_;
+  CellErrors<std::array<Index, 2>> edges_;
+  CellErrors<std::array<Index, 3>> triangles_;
 };
 
 }  // namespace
