@@ -146,6 +146,8 @@ ExactBall BallSolver::solve_held(const Point& start) {
     contacts_ = {contacts_[0], *opposite};
   }
   contacts_ = first_;
+  contacts_.push_back({surface_.closest(start)});  // whose distance is the radius
+  merge(start);
   return finished(start, false);
 }
 
@@ -165,20 +167,20 @@ ExactBall BallSolver::solve(const Point& start, std::span<const ClosestPoint> se
   return solve_held(start);
 }
 
-ExactBall BallSolver::on_surface(const Point& place, bool exact) const {
+ExactBall BallSolver::on_surface(const Point& place) const {
   ExactBall ball;
   ball.contacts[0] = surface_.closest(place);
   ball.center = ball.contacts[0].position;
   ball.contacts[0].distance = 0;
   ball.count = 1;
-  ball.exact = exact;
+  ball.exact = ball.contacts[0].feature != Feature::face;  // on an edge, but for flat ones
   ball.loss = std::numeric_limits<double>::infinity();
   return ball;
 }
 
 ExactBall BallSolver::between(const ExactBall& a, const ExactBall& b, double t) {
   const Point start = (1 - t) * a.center + t * b.center;
-  if (!(a.radius > 0) && !(b.radius > 0)) return on_surface(start, true);
+  if (!(a.radius > 0) && !(b.radius > 0)) return on_surface(start);
   contacts_.clear();
   for (const ClosestPoint& contact : a.touching()) contacts_.push_back({contact, 1});
   for (const ClosestPoint& contact : b.touching()) contacts_.push_back({contact, 2});
@@ -193,7 +195,7 @@ ExactBall BallSolver::between(const ExactBall& a, const ExactBall& b, double t) 
   const ExactBall ball = solve_held(start);
   // The ends are inside, so only what is as near to the surface as they are to each other can be outside.
   const bool outside = ball.radius <= (a.center - b.center).norm() && !surface_.inside(ball.center);
-  return outside ? on_surface(start, false) : ball;
+  return outside ? on_surface(start) : ball;
 }
 
 }  // namespace orchard::detail

@@ -57,7 +57,7 @@ class BallSolver {
     int of = 0;  // bits: which of the two balls had it
   };
   ExactBall solve_held(const Point& start);
-  ExactBall on_surface(const Point& place, bool exact) const;
+  ExactBall on_surface(const Point& place) const;
   void merge(const Point& center);
   bool add_violator(const Point& center, double radius);
   bool step(Point& center);
