@@ -247,8 +247,9 @@ void add_medial(CLI::App& app, Request& request) {
       ->allow_extra_args(false);
   add_sweep_tree(command, medial.tree);
   add_tuning(command, medial.tuning, false);
-  command.add_flag("--raw", [&medial](std::int64_t) { medial.tuning.refine = false; },
-                   "The axis as the Voronoi diagram has it, the dissertation's: the same as --refine no");
+  command.add_flag(
+      "--raw", [&medial](std::int64_t) { medial.tuning.refine = false; },
+      "The axis as the Voronoi diagram has it, the dissertation's: the same as --refine no");
   command.add_option("--threads", request.threads, "Threads at most; the result does not depend on it")
       ->check(CLI::Range(1, 1024));
   command.add_flag("!--no-views", medial.views, "Write no files for ParaView");

@@ -137,14 +137,16 @@ void print(const MedialBuild& build) {
   fmt::print("\n{} medial vertices", build.axis.size());
   if (pruned != build.unpruned_vertices) fmt::print(" after pruning {} to {}", build.unpruned_vertices, pruned);
   if (refinement.vertices > 0)
-    fmt::print(", refined from {}: {} inexact, {} on sharp edges", pruned, refinement.inexact, refinement.edge_vertices);
+    fmt::print(", refined from {}: {} inexact, {} on sharp edges", pruned, refinement.inexact,
+               refinement.edge_vertices);
   if (build.axis.stems > 0) fmt::print(", {} without faces", build.axis.stems);
   if (build.axis.bridges > 0) fmt::print(", {} edges that bridge the outside", build.axis.bridges);
   if (build.axis.left_out > 0) fmt::print(", {} left out", build.axis.left_out);
   fmt::print(", {} faces\n", build.axis.faces.size());
   if (refinement.vertices == 0) return;
-  fmt::print("refining: {} folded triangles and what borders lose less than cut off, {} notches filled, {} edges divided",
-             refinement.folded_triangles, refinement.notches, refinement.divided);
+  fmt::print(
+      "refining: {} folded triangles and what borders lose less than cut off, {} notches filled, {} edges divided",
+      refinement.folded_triangles, refinement.notches, refinement.divided);
   if (refinement.undivided > 0) fmt::print(", {} still beyond the tolerance", refinement.undivided);
   fmt::print("; borders {:.1f} diagonals long\n", refinement.border_length);
 }

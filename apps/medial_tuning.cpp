@@ -107,17 +107,18 @@ std::vector<TuningFlag> pruning_flags() {
 }
 
 std::vector<TuningFlag> refining_flags() {
-  return {choice("refine", {"yes", "no"},
-                 "Whether balls are made exact and sheets end smoothly, or the axis stays as the diagram has it (--raw)",
-                 [](T& t, const std::string& text) { t.refine = text == "yes"; }),
-          real("border-loss", "0.1", 0, 100,
-               "Percent of the diagonal that a sheet's border may lose of the surface: more cuts more spurs off",
-               [](T& t, double x) { t.refinement.border_loss = x / 100; }),
-          real("linear-error", "0.05", 1e-4, 100,
-               "Percent of the diagonal that balls between two vertices may be off: less makes more vertices",
-               [](T& t, double x) { t.refinement.tolerance = x / 100; }),
-          real("sharp-angle", "40.1", 0, 180, "Degrees from which a convex edge is one that sheets reach to",
-               [](T& t, double x) { t.refinement.sharp_angle = std::min(x * kRadians, std::numbers::pi); })};
+  return {
+      choice("refine", {"yes", "no"},
+             "Whether balls are made exact and sheets end smoothly, or the axis stays as the diagram has it (--raw)",
+             [](T& t, const std::string& text) { t.refine = text == "yes"; }),
+      real("border-loss", "0.1", 0, 100,
+           "Percent of the diagonal that a sheet's border may lose of the surface: more cuts more spurs off",
+           [](T& t, double x) { t.refinement.border_loss = x / 100; }),
+      real("linear-error", "0.05", 1e-4, 100,
+           "Percent of the diagonal that balls between two vertices may be off: less makes more vertices",
+           [](T& t, double x) { t.refinement.tolerance = x / 100; }),
+      real("sharp-angle", "40.1", 0, 180, "Degrees from which a convex edge is one that sheets reach to",
+           [](T& t, double x) { t.refinement.sharp_angle = std::min(x * kRadians, std::numbers::pi); })};
 }
 
 std::vector<TuningFlag> report_flags() {

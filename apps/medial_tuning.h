@@ -17,8 +17,8 @@ struct MedialTuning {
   std::optional<double> cluster_degrees;
   double prune_degrees = 0, segment_degrees = 60;
   bool keep_topology = true;
-  bool refine = true;        // for orchard medial; trees have no use for it yet
-  RefineOptions refinement;  // if so
+  bool refine = true;          // for orchard medial; trees have no use for it yet
+  RefineOptions refinement;    // if so
   MedialBuildOptions options;  // the rest of it
 };
 

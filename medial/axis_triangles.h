@@ -5,7 +5,8 @@
 
 namespace orchard::detail {
 
-// medial_mesh(axis), and the face of the axis that each triangle is cut from: faces first, then walls, numbered through.
+// medial_mesh(axis), and the face of the axis that each triangle is cut from: faces first, then walls, numbered
+// through.
 struct AxisTriangles {
   MedialMesh mesh;
   std::vector<Index> face_of_triangle;

@@ -88,9 +88,9 @@ class Triangulator {
 
   const MedialAxis& axis_;
   MedialMesh mesh_;
-  Index face_ = 0;                                               // that is being cut
+  Index face_ = 0;                                              // that is being cut
   std::vector<std::pair<std::array<Index, 3>, Index>> pieces_;  // triangles, and their faces
-  std::unordered_set<std::uint64_t> joined_;  // asked only whether it holds a pair of vertices
+  std::unordered_set<std::uint64_t> joined_;                    // asked only whether it holds a pair of vertices
 };
 
 [[noreturn]] void fail(const char* kind, std::size_t index, const char* fault) {

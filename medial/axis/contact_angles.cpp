@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "downhill.h"
 #include "orchard/geometry/angle.h"
 #include "orchard/medial/prune.h"
 
@@ -14,7 +15,6 @@ namespace orchard {
 namespace {
 
 constexpr std::size_t kEnough = 64;  // of the forming points of a coalesced centre
-constexpr int kMaxWalk = 1000;       // triangles; a step always comes nearer, so this is but a guard
 
 std::span<const Index> looked_at(const MedialAxis& axis, Index vertex) {
   const auto forming = axis.forming_points[vertex];
@@ -24,7 +24,7 @@ std::span<const Index> looked_at(const MedialAxis& axis, Index vertex) {
 class ContactFinder {
  public:
   ContactFinder(const Surface& surface, const SurfaceSampling& sampling, const MedialAxis& axis)
-      : surface_(surface), sampling_(sampling), axis_(axis) {}
+      : sampling_(sampling), axis_(axis), downhill_(surface) {}
 
   // The widest pairs first: most vertices need the contacts of one or two.
   double angle(Index vertex) {
@@ -57,29 +57,16 @@ class ContactFinder {
   };
 
   Point nearest_downhill(const Point& from, Index point) {
-    ClosestPoint at{.position = sampling_.points[point],
-                    .distance = (sampling_.points[point] - from).norm(),
-                    .triangle = sampling_.triangles[point],
-                    .feature = sampling_.features[point]};
-    for (int step = 0; step < kMaxWalk; ++step) {
-      surface_.triangles_at(at.triangle, at.feature, around_);
-      ClosestPoint best = at;
-      for (const Index next : around_) {
-        const auto [a, b, c] = surface_.corners(next);
-        ClosestPoint found = closest_point_of_triangle(from, a, b, c);
-        found.triangle = next;
-        if (found.distance < best.distance) best = found;
-      }
-      if (!(best.distance < at.distance)) break;
-      at = best;
-    }
-    return at.position;
+    ClosestPoint place;
+    place.position = sampling_.points[point];
+    place.triangle = sampling_.triangles[point];
+    place.feature = sampling_.features[point];
+    return downhill_.descend(from, place).position;
   }
 
-  const Surface& surface_;
   const SurfaceSampling& sampling_;
   const MedialAxis& axis_;
-  std::vector<Index> around_;
+  detail::Downhill downhill_;
   std::vector<Pair> pairs_;
   std::vector<std::optional<Vector>> contacts_;
 };

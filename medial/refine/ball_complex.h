@@ -29,8 +29,8 @@ struct Doomed {
   std::vector<std::uint8_t> edges, vertices;
 };
 
-// Takes away cells from the free ends on, triangles at free doomed edges and doomed edges at free doomed vertices, which
-// changes no topology; edges with the least value of an end first. What has nothing free stays. O(n log n).
+// Takes away cells from the free ends on, triangles at free doomed edges and doomed edges at free doomed vertices,
+// which changes no topology; edges with the least value of an end first. What has nothing free stays. O(n log n).
 void collapse(BallComplex& complex, const Doomed& doomed, const std::vector<double>& value_of_vertex);
 
 }  // namespace orchard::detail

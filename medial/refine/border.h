@@ -4,9 +4,9 @@
 namespace orchard::detail {
 
 struct BorderOptions {
-  double level = 0;      // mesh units: sheets end where what they lose beyond is this (BallSolver::loss)
-  double tolerance = 0;  // mesh units: what a ball between two exact ones may protrude or fall short
-  double spacing = 0;    // mesh units, of the surface points
+  double level = 0;        // mesh units: sheets end where what they lose beyond is this (BallSolver::loss)
+  double tolerance = 0;    // mesh units: what a ball between two exact ones may protrude or fall short
+  double spacing = 0;      // mesh units, of the surface points
   double sharp_angle = 0;  // radians between the normals of two faces at an edge that sheets reach to
 };
 

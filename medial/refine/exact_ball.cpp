@@ -11,11 +11,10 @@
 namespace orchard::detail {
 namespace {
 
-constexpr int kMaxWalk = 1000;   // triangles; a step always comes nearer, so this is but a guard
-constexpr int kMaxSteps = 12;    // of Newton's method, from one set of contacts
-constexpr int kMaxRounds = 8;    // of contacts that come nearer than those held
+constexpr int kMaxSteps = 12;     // of Newton's method, from one set of contacts
+constexpr int kMaxRounds = 8;     // of contacts that come nearer than those held
 constexpr double kEqual = 1e-11;  // bounding radii: distances that are the same
-constexpr double kRank = 0.03;  // of the widest contacts: normals that differ by less do not say where to go
+constexpr double kRank = 0.03;    // of the widest contacts: normals that differ by less do not say where to go
 
 }  // namespace
 
@@ -28,23 +27,6 @@ double ball_error(const Surface& surface, const Point& center, double radius, do
 double BallSolver::loss(double radius, double angle) {
   if (angle >= std::numbers::pi) return std::numeric_limits<double>::infinity();
   return radius * (1 / std::cos(angle / 2) - 1);
-}
-
-ClosestPoint BallSolver::descend(const Point& from, ClosestPoint at) {
-  at.distance = (at.position - from).norm();
-  for (int step = 0; step < kMaxWalk; ++step) {
-    surface_.triangles_at(at.triangle, at.feature, around_);
-    ClosestPoint best = at;
-    for (const Index next : around_) {
-      const auto [a, b, c] = surface_.corners(next);
-      ClosestPoint found = closest_point_of_triangle(from, a, b, c);
-      found.triangle = next;
-      if (found.distance < best.distance) best = found;
-    }
-    if (!(best.distance < at.distance)) break;
-    at = best;
-  }
-  return at;
 }
 
 // The nearest contacts first; one that a nearer one stands for goes, and what is beyond the fourth.

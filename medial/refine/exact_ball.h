@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "../axis/downhill.h"
 #include "orchard/geometry/surface.h"
 
 namespace orchard::detail {
@@ -36,21 +37,20 @@ double ball_error(const Surface& surface, const Point& center, double radius, do
 class BallSolver {
  public:
   // Two contacts are one where a ball between them would lose less than `merging`, in mesh units.
-  BallSolver(const Surface& surface, double merging) : surface_(surface), merging_(merging) {}
+  BallSolver(const Surface& surface, double merging) : surface_(surface), merging_(merging), downhill_(surface) {}
 
   // From `start`, with contacts downhill from `seeds`, which are places on the surface.
   ExactBall solve(const Point& start, std::span<const ClosestPoint> seeds);
   // From the place that divides the centres of two balls as `t` to 1 - t. The contacts that both have are held, so that
-  // what lies between two balls of a seam is one of the seam; where they share less than two, the nearest are. What lies
-  // between two places of the surface, or outside the solid, is the nearest place of the surface.
+  // what lies between two balls of a seam is one of the seam; where they share less than two, the nearest are. What
+  // lies between two places of the surface, or outside the solid, is the nearest place of the surface.
   ExactBall between(const ExactBall& a, const ExactBall& b, double t);
 
   // How far a solid's convex edge lies beyond a ball of radius r that touches both of its faces, with contacts seen
   // from its centre at an angle a: r (1 / cos(a / 2) - 1). What an axis loses that ends at this ball is no more.
   static double loss(double radius, double angle);
 
-  // The nearest place downhill: from `place`, over the surface, to where the distance from `from` has a local minimum.
-  ClosestPoint descend(const Point& from, ClosestPoint place);
+  ClosestPoint descend(const Point& from, const ClosestPoint& place) { return downhill_.descend(from, place); }
 
  private:
   struct Held : ClosestPoint {
@@ -66,7 +66,7 @@ class BallSolver {
 
   const Surface& surface_;
   const double merging_;
-  std::vector<Index> around_;
+  Downhill downhill_;
   std::vector<Held> contacts_, first_;
 };
 

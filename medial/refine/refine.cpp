@@ -25,14 +25,14 @@ using detail::BallComplex;
 using detail::BallSolver;
 using detail::ExactBall;
 
-// Contacts merge where the ball between them would lose this much of what a border may lose: fine enough to see on which
-// side of the level a vertex is.
+// Contacts merge where the ball between them would lose this much of what a border may lose: fine enough to see on
+// which side of the level a vertex is.
 constexpr double kMerging = 0.25;
-constexpr int kBorderPasses = 3;      // of filling notches and reaching edges: the last ones find next to nothing
-constexpr double kMinLength = 1e-3;   // diagonals: shorter edges are not divided
-constexpr std::size_t kEnough = 24;   // seeds of a vertex: coalesced ones have hundreds
-constexpr int kLevelSteps = 5;        // of bisection for the place where an edge crosses the level
-constexpr double kNearLevel = 0.04;   // of the loss: near enough to end that
+constexpr int kBorderPasses = 3;     // of filling notches and reaching edges: the last ones find next to nothing
+constexpr double kMinLength = 1e-3;  // diagonals: shorter edges are not divided
+constexpr std::size_t kEnough = 24;  // seeds of a vertex: coalesced ones have hundreds
+constexpr int kLevelSteps = 5;       // of bisection for the place where an edge crosses the level
+constexpr double kNearLevel = 0.04;  // of the loss: near enough to end that
 
 // A loss as a number from 0 to 1, 1/2 at the level.
 double scaled(const ExactBall& ball, double level) {

@@ -81,15 +81,16 @@ class Splitter {
                                           [&](const auto& a, const auto& b) { return length(a) < length(b); });
     return complex_.edge_of((*longest)[0], (*longest)[1]);
   }
-  // Along an edge both the interpolated radius and the distance change by no more than the way, so short ones are right.
+  // Along an edge both the interpolated radius and the distance change by no more than the way, so short ones are
+  // right.
   double error_of_edge(const std::array<Index, 2>& edge) const {
     const ExactBall &a = complex_.balls[edge[0]], &b = complex_.balls[edge[1]];
     const double reach = (length(edge) + std::abs(a.radius - b.radius)) / 2;
     if (reach <= options_.tolerance) return 0;
     double worst = 0;
     for (const double t : {0.5, 0.25, 0.75}) {
-      const double error = ball_error(surface_, (1 - t) * a.center + t * b.center,
-                                      (1 - t) * a.radius + t * b.radius, length(edge));
+      const double error =
+          ball_error(surface_, (1 - t) * a.center + t * b.center, (1 - t) * a.radius + t * b.radius, length(edge));
       worst = std::max(worst, error);
       if (error < kSmall * options_.tolerance) break;  // in the middle: nor is it much at the quarters
     }

@@ -14,9 +14,9 @@ struct SplitReport {
   Index divided = 0, undivided = 0;
 };
 
-// Divides edges until the balls that are interpolated on edges and triangles neither protrude nor fall short by more than
-// the tolerance: they are looked at at the quarters of edges and the middles of triangles, a triangle's counts for its
-// longest edge. New vertices are exact where that is possible. Deterministic; parallel.
+// Divides edges until the balls that are interpolated on edges and triangles neither protrude nor fall short by more
+// than the tolerance: they are looked at at the quarters of edges and the middles of triangles, a triangle's counts for
+// its longest edge. New vertices are exact where that is possible. Deterministic; parallel.
 SplitReport split_nonlinear(const Surface& surface, BallComplex& complex, const SplitOptions& options,
                             const Progress& progress);
 

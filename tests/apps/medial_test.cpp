@@ -34,6 +34,33 @@ TEST(Medial, WritesTheAxisItsGraphAndAReport) {
   EXPECT_NE(files.at("u.graphml").find("</graphml>"), std::string::npos);
 }
 
+TEST(Medial, RefinesTheAxisUnlessTheRawOneIsAskedFor) {
+  const Workplace here;
+  const std::string mesh = here.add("l.obj", test::l_shape());
+  const auto run = [&](const std::string& folder, const std::vector<std::string>& more) {
+    std::vector<std::string> words{"medial",    mesh,     "-o",        (here / folder).string(),
+                                   "--samples", "500",    "--report",  "--quality-samples",
+                                   "2000",      "--json", "--no-views"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Finished finished = here.run(words);
+    EXPECT_EQ(finished.exit_code, 0) << finished.err;
+    return json::parse(finished.out);
+  };
+  const json refined = run("refined", {}), raw = run("raw", {"--raw"}), no = run("no", {"--refine", "no"});
+  EXPECT_TRUE(raw["build"]["refinement"].is_null());
+  EXPECT_EQ(here.files("raw").at("l.ma"), here.files("no").at("l.ma"));
+  EXPECT_EQ(refined["build"]["refinement"]["vertices_before"], raw["build"]["vertices"]);
+  EXPECT_GT(refined["build"]["refinement"]["vertices_on_sharp_edges"], 50);
+  const auto max = [](const json& report, const char* metric) {
+    return report["quality"][metric]["max"].get<double>();
+  };
+  EXPECT_LT(max(refined, "radius_error_over_diagonal"), 1e-9);
+  EXPECT_LT(max(refined, "protrusion_over_diagonal"), 0.2 * max(raw, "protrusion_over_diagonal"));
+  EXPECT_LT(max(refined, "coverage_over_diagonal"), max(raw, "coverage_over_diagonal"));
+  EXPECT_TRUE(refined["quality"]["topology_right"].get<bool>());
+  EXPECT_EQ(here.run({"medial", mesh, "-o", (here / "x").string(), "--border-loss", "-1"}).exit_code, 2);
+}
+
 TEST(Medial, JudgesTheFileThatItWroteAsItJudgedTheAxis) {
   const Workplace here;
   const std::string mesh = here.add("l.obj", test::l_shape()), out = (here / "out").string();

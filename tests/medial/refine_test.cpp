@@ -105,7 +105,8 @@ TEST(RefineAxis, LiesOnTheClosedFormOfABoxAndReachesItsEdges) {
   EXPECT_NEAR(build.refinement.border_length * diagonal(surface), 24, 1.5);
   // Nothing of the closed form is farther from the axis than what a border may lose, and corners somewhat more.
   const Surface built(test::as_triangles(medial_mesh(build.axis)));
-  for (const Point& place : test::points_on(known.axis, 0.05)) EXPECT_LT(built.distance(place), 0.02 * diagonal(surface));
+  for (const Point& place : test::points_on(known.axis, 0.05))
+    EXPECT_LT(built.distance(place), 0.02 * diagonal(surface));
 }
 
 TEST(RefineAxis, LiesOnTheClosedFormOfAnLBesideItsParabolas) {

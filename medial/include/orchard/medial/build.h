@@ -47,16 +47,16 @@ struct MedialBuild {
   VoronoiDiagram diagram;  // empty for an imported axis
   GapRepairReport gap_repair;
   Index unpruned_vertices = 0;
-  MedialAxis axis;          // refined, if that was asked for
-  RefineReport refinement;  // zeros, if not
+  MedialAxis axis;                              // refined, if that was asked for
+  RefineReport refinement;                      // zeros, if not
   Index balls_refused = 0, balls_adjusted = 0;  // of an imported axis, see ImportedAxis
   double ball_adjustment = 0;
   StageTimes seconds;  // stage, time
 };
 
-// The main line from a solid to its medial axis: points, Voronoi diagram, gap repair, axis, pruning, refining. The time goes as
-// the parts': about n log n in the points. Throws InputError unless surface.solid(), if an option is out of range, or
-// if `input` has more than one of its values.
+// The main line from a solid to its medial axis: points, Voronoi diagram, gap repair, axis, pruning, refining. The time
+// goes as the parts': about n log n in the points. Throws InputError unless surface.solid(), if an option is out of
+// range, or if `input` has more than one of its values.
 MedialBuild build_medial_axis(const Surface& surface, const MedialBuildOptions& options = {},
                               const Progress& progress = {}, MedialBuildInput input = {});
 

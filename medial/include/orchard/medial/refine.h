@@ -11,8 +11,8 @@ struct RefineOptions {
   // Where a sheet ends, in diagonals of the bounding box: what the axis loses beyond a border is no more than this,
   // r (1 / cos(a / 2) - 1) for a ball of radius r whose contacts are seen at an angle a. At least 0.
   double border_loss = 1e-3;
-  // In diagonals: how far a ball that is interpolated on an edge or a triangle may protrude from the solid or fall short
-  // of its surface before the cell is divided. Above 0.
+  // In diagonals: how far a ball that is interpolated on an edge or a triangle may protrude from the solid or fall
+  // short of its surface before the cell is divided. Above 0.
   double tolerance = 5e-4;
   // Radians between the normals of two faces from which sheets reach to the convex edge between them, in [0, pi].
   double sharp_angle = 0.7;
@@ -34,9 +34,9 @@ struct RefineReport {
 };
 
 struct RefinedAxis {
-  // With triangles for faces, and no walls. Its points are the contacts of its vertices, each with one to four; those of
-  // a face are the two contacts of its corners that are seen farthest apart. Vertices of radius 0 are on sharp edges.
-  // So validate(axis, surface) does not hold.
+  // With triangles for faces, and no walls. Its points are the contacts of its vertices, each with one to four; those
+  // of a face are the two contacts of its corners that are seen farthest apart. Vertices of radius 0 are on sharp
+  // edges. So validate(axis, surface) does not hold.
   MedialAxis axis;
   RefineReport report;
 };
@@ -44,12 +44,12 @@ struct RefinedAxis {
 // The refined axis: every vertex is moved to the centre of a ball of the medial axis of the mesh itself, which touches
 // the surface where the forming points stand for and holds nothing of it; cells that fold onto others are taken away;
 // sheets are cut where their borders lose border_loss, notches between the teeth of their borders are filled, and those
-// that end at sharp convex edges are extended onto these; what is interpolated too coarsely is divided, with exact balls
-// for new vertices. All by divisions, collapses and free extensions, so the topology is that of `axis`.
+// that end at sharp convex edges are extended onto these; what is interpolated too coarsely is divided, with exact
+// balls for new vertices. All by divisions, collapses and free extensions, so the topology is that of `axis`.
 //
-// Vertices have the radius that is the distance of their centre to the surface, up to rounding. Deterministic; parallel.
-// O(n log n) for n vertices, and some nearest-point queries each. `sampling` has the points of `axis`. Throws InputError
-// unless surface.solid(), or if an option is out of range.
+// Vertices have the radius that is the distance of their centre to the surface, up to rounding. Deterministic;
+// parallel. O(n log n) for n vertices, and some nearest-point queries each. `sampling` has the points of `axis`. Throws
+// InputError unless surface.solid(), or if an option is out of range.
 RefinedAxis refine_axis(const Surface& surface, const SurfaceSampling& sampling, const MedialAxis& axis,
                         const RefineOptions& options = {}, const Progress& progress = {});
 
