@@ -122,7 +122,7 @@ TEST(Medial, TakesTheUsersDiagramAsItIs) {
   ASSERT_EQ(made.exit_code, 0) << made.err;
   const std::string diagram = (here / "v/l-exact.vor").string();
   const auto axis = [&](const std::vector<std::string>& options) {
-    std::vector<std::string> arguments{"medial", mesh, "-o", (here / "out").string(), "--quiet", "--no-views"};
+    std::vector<std::string> arguments{"medial", mesh, "-o", (here / "out").string(), "--raw", "--quiet", "--no-views"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     const Finished run = here.run(arguments);
     EXPECT_EQ(run.exit_code, 0) << run.err;
