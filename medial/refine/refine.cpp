@@ -9,9 +9,8 @@
 #include <numbers>
 #include <utility>
 
-#include "../axis/incidence.h"
-#include "../axis/point_normals.h"
 #include "../axis_triangles.h"
+#include "axis_of_balls.h"
 #include "ball_complex.h"
 #include "border.h"
 #include "orchard/geometry/angle.h"
@@ -248,76 +247,16 @@ class Refiner {
 
   RefinedAxis result() {
     RefinedAxis refined;
-    MedialAxis& axis = refined.axis;
-    SurfaceSampling contacts;
-    for (const ExactBall& ball : complex_.balls) {
-      axis.centers.push_back(ball.center);
-      axis.radii.push_back(ball.radius);
-      double widest = 0;
-      for (int i = 0; i < ball.count; ++i) {
-        for (int k = 0; k < i; ++k) widest = std::max(widest, seen(ball, i, k));
-        axis.forming_points.items.push_back(contacts.size());
-        contacts.points.push_back(ball.contacts[i].position);
-        contacts.triangles.push_back(ball.contacts[i].triangle);
-        contacts.features.push_back(ball.contacts[i].feature);
-        contacts.origins.push_back(ball.contacts[i].feature == Feature::face ? PointOrigin::face : PointOrigin::edge);
-      }
-      axis.angles.push_back(widest);
-      axis.forming_points.close_row();
-      if (!ball.exact) ++report_.inexact;
-    }
-    detail::add_points(surface_, contacts, axis);
-    add_cells(axis);
-    axis.stems = axis_.stems;
-    axis.bridges = axis_.bridges;
-    axis.left_out = axis_.left_out;
-    report_.vertices = axis.size();
+    refined.axis = detail::axis_of_balls(surface_, complex_);
+    refined.axis.stems = axis_.stems;
+    refined.axis.bridges = axis_.bridges;
+    refined.axis.left_out = axis_.left_out;
+    report_.vertices = refined.axis.size();
+    report_.inexact = static_cast<Index>(
+        std::count_if(complex_.balls.begin(), complex_.balls.end(), [](const ExactBall& ball) { return !ball.exact; }));
+    report_.border_length = detail::border_length(complex_) / diagonal_;
     refined.report = report_;
     return refined;
-  }
-  static double seen(const ExactBall& ball, int i, int k) {
-    return angle_between(ball.contacts[i].position - ball.center, ball.contacts[k].position - ball.center);
-  }
-
-  void add_cells(MedialAxis& axis) {
-    std::vector<std::array<Index, 2>> adjacent;
-    for (const auto& [a, b] : complex_.edges) {
-      adjacent.push_back({a, b});
-      adjacent.push_back({b, a});
-    }
-    axis.neighbors = detail::rows_of(adjacent, axis.size());
-    std::vector<std::uint8_t> count(complex_.edges.size(), 0);
-    for (const auto& corners : complex_.triangles) {
-      axis.faces.items.insert(axis.faces.items.end(), corners.begin(), corners.end());
-      axis.faces.close_row();
-      axis.face_points.push_back(points_of_triangle(axis, corners));
-      const auto& [a, b, c] = corners;
-      for (const Index e : {complex_.edge_of(a, b), complex_.edge_of(a, c), complex_.edge_of(b, c)}) {
-        if (count[e] < 2) ++count[e];
-      }
-    }
-    for (Index e = 0; e < count.size(); ++e) {
-      const auto& [a, b] = complex_.edges[e];
-      if (count[e] == 1) report_.border_length += (axis.centers[a] - axis.centers[b]).norm() / diagonal_;
-    }
-  }
-  // The contacts of the corners that are seen farthest apart from the middle.
-  static std::array<Index, 2> points_of_triangle(const MedialAxis& axis, const std::array<Index, 3>& corners) {
-    const Point middle = (axis.centers[corners[0]] + axis.centers[corners[1]] + axis.centers[corners[2]]) / 3;
-    std::array<Index, 2> best{axis.forming_points[corners[0]][0], axis.forming_points[corners[1]][0]};
-    double widest = -1;
-    for (const Index v : corners) {
-      const auto points = axis.forming_points[v];
-      for (std::size_t i = 0; i < points.size(); ++i) {
-        for (std::size_t k = 0; k < i; ++k) {
-          const double angle = angle_between(axis.points[points[i]] - middle, axis.points[points[k]] - middle);
-          if (angle <= widest) continue;
-          widest = angle;
-          best = {points[k], points[i]};
-        }
-      }
-    }
-    return best;
   }
 
   const Surface& surface_;

@@ -59,7 +59,7 @@ TEST(RefineAxis, BallsTouchTheSurfaceAtTheirContactsAndHoldNothingOfIt) {
   for (const Solid& solid : solids()) {
     SCOPED_TRACE(solid.name);
     const Surface surface(solid.mesh);
-    const MedialBuild build = build_medial_axis(surface, options_for(800, 7));
+    const MedialBuild build = build_medial_axis(surface, options_for(500, 7));
     const MedialAxis& axis = build.axis;
     const double tolerance = 1e-9 * diagonal(surface);
     Index exact = 0;
@@ -81,7 +81,7 @@ TEST(RefineAxis, BallsTouchTheSurfaceAtTheirContactsAndHoldNothingOfIt) {
 TEST(RefineAxis, KeepsTheTopologyOfTheSolid) {
   for (const Solid& solid : solids()) {
     const Surface surface(solid.mesh);
-    for (const Index points : {300u, 1000u, 3000u}) {
+    for (const Index points : {300u, 1000u}) {
       SCOPED_TRACE(std::string(solid.name) + ", " + std::to_string(points));
       const MedialMesh mesh = medial_mesh(build_medial_axis(surface, options_for(points)).axis);
       EXPECT_EQ(topology(mesh), solid_topology(surface));

@@ -1,0 +1,92 @@
+#include "axis_of_balls.h"
+
+#include <algorithm>
+
+#include "../axis/incidence.h"
+#include "../axis/point_normals.h"
+#include "orchard/geometry/angle.h"
+#include "orchard/geometry/sampling.h"
+
+namespace orchard::detail {
+namespace {
+
+// Adds the contacts of a ball; returns the widest angle that two of them are seen at.
+double add_contacts(const ExactBall& ball, SurfaceSampling& contacts) {
+  double widest = 0;
+  const auto touching = ball.touching();
+  for (std::size_t i = 0; i < touching.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      const double angle = angle_between(touching[i].position - ball.center, touching[k].position - ball.center);
+      widest = std::max(widest, angle);
+    }
+    contacts.points.push_back(touching[i].position);
+    contacts.triangles.push_back(touching[i].triangle);
+    contacts.features.push_back(touching[i].feature);
+    contacts.origins.push_back(touching[i].feature == Feature::face ? PointOrigin::face : PointOrigin::edge);
+  }
+  return widest;
+}
+
+// The contacts of one corner that are seen farthest apart from the middle.
+std::array<Index, 2> points_of_triangle(const MedialAxis& axis, const std::array<Index, 3>& corners) {
+  const Point middle = (axis.centers[corners[0]] + axis.centers[corners[1]] + axis.centers[corners[2]]) / 3;
+  std::array<Index, 2> best{axis.forming_points[corners[0]][0], axis.forming_points[corners[1]][0]};
+  double widest = -1;
+  for (const Index v : corners) {
+    const auto points = axis.forming_points[v];
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      for (std::size_t k = 0; k < i; ++k) {
+        const double angle = angle_between(axis.points[points[i]] - middle, axis.points[points[k]] - middle);
+        if (angle <= widest) continue;
+        widest = angle;
+        best = {points[k], points[i]};
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+MedialAxis axis_of_balls(const Surface& surface, const BallComplex& complex) {
+  MedialAxis axis;
+  SurfaceSampling contacts;
+  for (const ExactBall& ball : complex.balls) {
+    axis.centers.push_back(ball.center);
+    axis.radii.push_back(ball.radius);
+    const Index first = contacts.size();
+    axis.angles.push_back(add_contacts(ball, contacts));
+    for (Index contact = first; contact < contacts.size(); ++contact) axis.forming_points.items.push_back(contact);
+    axis.forming_points.close_row();
+  }
+  add_points(surface, contacts, axis);
+  std::vector<std::array<Index, 2>> adjacent;
+  for (const auto& [a, b] : complex.edges) {
+    adjacent.push_back({a, b});
+    adjacent.push_back({b, a});
+  }
+  axis.neighbors = rows_of(adjacent, axis.size());
+  for (const auto& corners : complex.triangles) {
+    axis.faces.items.insert(axis.faces.items.end(), corners.begin(), corners.end());
+    axis.faces.close_row();
+    axis.face_points.push_back(points_of_triangle(axis, corners));
+  }
+  return axis;
+}
+
+double border_length(const BallComplex& complex) {
+  std::vector<std::uint8_t> count(complex.edges.size(), 0);
+  for (const auto& [a, b, c] : complex.triangles) {
+    for (const Index e : {complex.edge_of(a, b), complex.edge_of(a, c), complex.edge_of(b, c)}) {
+      if (count[e] < 2) ++count[e];
+    }
+  }
+  double sum = 0;
+  for (Index e = 0; e < count.size(); ++e) {
+    const auto& [a, b] = complex.edges[e];
+    if (count[e] == 1) sum += (complex.balls[a].center - complex.balls[b].center).norm();
+  }
+  return sum;
+}
+
+}  // namespace orchard::detail
