@@ -50,7 +50,7 @@ std::vector<Solid> solids() {
   return {{"box", test::known_box({1, 2, 3}).solid},
           {"L", test::known_l_shape(8).solid},
           {"cylinder", test::known_cylinder(24, 4).solid},
-          {"torus", test::known_torus(32, 16).solid, 0.6},
+          {"torus", test::known_torus(32, 16).solid, 0.5},
           {"bridge", test::extruded(test::thin_bridge(0.05), 1)},
           {"notch", test::extruded(test::v_notch(0.2), 1)}};
 }
