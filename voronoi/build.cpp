@@ -1,7 +1,6 @@
 #include "build.h"
 
 #include <algorithm>
-#include <limits>
 #include <string>
 
 #include "certificate.h"
@@ -137,18 +136,16 @@ Outcome insert_all(Workspace& workspace, Search search, std::string_view stage, 
   return Outcome::done;
 }
 
-// With exact signs from the start if the inserter asks for them, or the result has no certificate; if that has none
-// either, its depth is infinite. False if the points are flat.
+// With exact signs from the start if the inserter asks for them, or the result has no certificate. False if the points
+// are flat.
 bool insert_with_all_means(Workspace& workspace, Search search, std::string_view stage, const Progress& progress,
                            std::span<const Index> original_of, InsertionReport& report) {
   InsertionCounts counts;
   Index at = 0;
   const char* reason = "";
   Certificate certificate;
-  bool inserted_all = false;
   const auto attempt = [&] {
     const Outcome outcome = insert_all(workspace, search, stage, progress, counts, at, reason);
-    inserted_all = outcome == Outcome::done;
     if (outcome != Outcome::done || search != Search::highest_first) return outcome;
     certificate = certify(workspace, workspace.points.size());
     return certificate.holds ? Outcome::done : Outcome::failed;
@@ -160,11 +157,6 @@ bool insert_with_all_means(Workspace& workspace, Search search, std::string_view
   if (outcome == Outcome::failed && !workspace.exact()) {
     workspace.set_exact(true);
     outcome = attempt();
-  }
-  if (outcome == Outcome::failed && workspace.exact() && inserted_all) {
-    // Made with exact signs, so what remains in doubt is where rounding puts its vertices: nothing is proven of that.
-    outcome = Outcome::done;
-    certificate.depth = std::numeric_limits<double>::infinity();
   }
   if (outcome == Outcome::failed) throw Error("internal: a Voronoi diagram made with exact signs is not exact");
   add_counts(counts, report);

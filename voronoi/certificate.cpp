@@ -263,25 +263,38 @@ class Certifier {
   // every edge, does not go around a vertex twice: a ray from the point leaves the tetrahedra at every facet of the
   // hull that it meets, and it starts in one of them only, so that it meets one facet.
   bool covers_once() const {
-    const auto inner = [&](unsigned i) { return corner(fattest_, i); };
-    const Point g = (inner(0) + inner(1) + inner(2) + inner(3)) / 4;
+    const std::array<Point, 4> inner{corner(fattest_, 0), corner(fattest_, 1), corner(fattest_, 2),
+                                     corner(fattest_, 3)};
+    const Point rounded = (inner[0] + inner[1] + inner[2] + inner[3]) / 4;
+    const auto is_below = [&](const Point& a, const Point& b, const Point& c) {
+      return volume_sign(rounded, a, b, c) == Sign::positive;
+    };
+    // Where all tetrahedra are needles, the fattest may be too thin for the rounded middle to be inside it.
+    const auto is_middle_below = [&](const Point& a, const Point& b, const Point& c) {
+      return volume_sign_of_middle(inner, a, b, c) == Sign::positive;
+    };
+    return is_only_in_fattest(rounded, is_below) || is_only_in_fattest(rounded, is_middle_below);
+  }
+
+  // Whether a point, at or next to `about`, is below all facets of the hull and outside of all tetrahedra but the
+  // fattest. is_below(a, b, c) tells on which side of a facet it is.
+  template <class IsBelow>
+  bool is_only_in_fattest(const Point& about, const IsBelow& is_below) const {
     for (Index v = 0; v < workspace_.vertices.size(); ++v) {
       if (workspace_.is_free(v) || v == fattest_) continue;
       if (workspace_.at_infinity(v)) {
-        if (volume_sign(g, corner(v, 0), corner(v, 1), corner(v, 2)) != Sign::positive) return false;
+        if (!is_below(corner(v, 0), corner(v, 1), corner(v, 2))) return false;
         continue;
       }
-      const double about = kAbout * (workspace_.vertices[v].radius + diameter_ * diameter_);
-      if (workspace_.power(v, g) > -about && !is_outside(v, g)) return false;
+      const double doubt = kAbout * (workspace_.vertices[v].radius + diameter_ * diameter_);
+      const auto is_beyond = [&](const auto& facet) {
+        return is_below(corner(v, facet[0]), corner(v, facet[2]), corner(v, facet[1]));
+      };
+      if (workspace_.power(v, about) > -doubt &&
+          std::none_of(Cavity::kOthers.begin(), Cavity::kOthers.end(), is_beyond))
+        return false;
     }
     return true;
-  }
-  bool is_outside(Index v, const Point& q) const {
-    for (unsigned i = 0; i < 4; ++i) {
-      const auto& [a, b, c] = Cavity::kOthers[i];
-      if (volume_sign(q, corner(v, a), corner(v, b), corner(v, c)) == Sign::negative) return true;
-    }
-    return false;
   }
 
   Workspace& workspace_;

@@ -121,6 +121,17 @@ Sign volume_sign(const Point& q, const Point& a, const Point& b, const Point& c,
   return exact_sign(sharp_volume(integer_vectors(q, a, b, c)));
 }
 
+Sign volume_sign_of_middle(const std::array<Point, 4>& points, const Point& a, const Point& b, const Point& c) {
+  const auto& [p, q, r, s] = points;
+  const auto [to_a, to_b, to_c, to_q, to_r, to_s] = integer_vectors(p, a, b, c, q, r, s);
+  // All four times as far from p.
+  const auto from_middle = [&](const SharpVector<ExactInteger>& v) {
+    return SharpVector<ExactInteger>{4 * v.x - to_q.x - to_r.x - to_s.x, 4 * v.y - to_q.y - to_r.y - to_s.y,
+                                     4 * v.z - to_q.z - to_r.z - to_s.z};
+  };
+  return exact_sign(sharp_volume(std::array{from_middle(to_a), from_middle(to_b), from_middle(to_c)}));
+}
+
 Sign same_side_of_line(const Point& a, const Point& b, const Point& p, const Point& q) {
   const Vector along = b - a, to_p = p - a, to_q = q - a;
   const double value = along.cross(to_p).dot(along.cross(to_q));

@@ -43,6 +43,9 @@ inline Determinant volume(const Vector& a, const Vector& b, const Vector& c) {
 // 0; else a value that is as near to +-indifferent as a few dozen roundings of 2^-104 may count as uncertain.
 Sign volume_sign(const Point& q, const Point& a, const Point& b, const Point& c, double indifferent = 0);
 
+// The same, exactly, of a point that no double may be: the middle of four points.
+Sign volume_sign_of_middle(const std::array<Point, 4>& points, const Point& a, const Point& b, const Point& c);
+
 // Whether p and q, in one plane with a and b, lie on the same side of the line through these; exact likewise.
 Sign same_side_of_line(const Point& a, const Point& b, const Point& p, const Point& q);
 
