@@ -7,6 +7,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "axis/incidence.h"
 #include "axis_triangles.h"
 #include "orchard/geometry/error.h"
 
@@ -14,12 +15,6 @@ namespace orchard {
 namespace {
 
 using Edge = std::array<Index, 2>;
-
-template <class Item>
-void sort_and_deduplicate(std::vector<Item>& items) {
-  std::sort(items.begin(), items.end());
-  items.erase(std::unique(items.begin(), items.end()), items.end());
-}
 
 // Cuts the faces of an axis into triangles.
 class Triangulator {
@@ -114,17 +109,7 @@ detail::AxisTriangles detail::axis_triangles(const MedialAxis& axis) { return Tr
 
 MedialMesh medial_mesh(const MedialAxis& axis) { return detail::axis_triangles(axis).mesh; }
 
-void complete(MedialMesh& mesh) {
-  for (auto& corners : mesh.edges) std::sort(corners.begin(), corners.end());
-  for (auto& corners : mesh.triangles) std::sort(corners.begin(), corners.end());
-  for (const auto& [a, b, c] : mesh.triangles) {
-    mesh.edges.push_back({a, b});
-    mesh.edges.push_back({a, c});
-    mesh.edges.push_back({b, c});
-  }
-  sort_and_deduplicate(mesh.edges);
-  sort_and_deduplicate(mesh.triangles);
-}
+void complete(MedialMesh& mesh) { detail::complete_cells(mesh.edges, mesh.triangles); }
 
 void validate(const MedialMesh& mesh) {
   if (mesh.centers.empty()) throw InputError("medial mesh: no vertices");

@@ -15,21 +15,10 @@ namespace {
 // A complex that is taken apart by elementary collapses, which leave its homotopy type alone.
 class Complex {
  public:
-  explicit Complex(const MedialMesh& mesh) : mesh_(mesh) {
+  explicit Complex(const MedialMesh& mesh) : mesh_(mesh), at_(mesh.edges, mesh.triangles, mesh.size()) {
     edge_alive_.assign(mesh.edges.size(), 1);
     triangle_alive_.assign(mesh.triangles.size(), 1);
     vertex_alive_.assign(mesh.centers.size(), 1);
-    std::vector<std::array<Index, 2>> at_edge, at_vertex;
-    for (Index t = 0; t < mesh.triangles.size(); ++t) {
-      const auto& [a, b, c] = mesh.triangles[t];
-      sides_.push_back({index_of({a, b}), index_of({a, c}), index_of({b, c})});
-      for (const Index side : sides_.back()) at_edge.push_back({side, t});
-    }
-    for (Index e = 0; e < mesh.edges.size(); ++e) {
-      for (const Index vertex : mesh.edges[e]) at_vertex.push_back({vertex, e});
-    }
-    triangles_at_ = detail::rows_of(at_edge, static_cast<Index>(mesh.edges.size()));
-    edges_at_ = detail::rows_of(at_vertex, static_cast<Index>(mesh.centers.size()));
   }
 
   Topology run() {
@@ -45,10 +34,6 @@ class Complex {
   }
 
  private:
-  Index index_of(const std::array<Index, 2>& edge) const {
-    return static_cast<Index>(std::lower_bound(mesh_.edges.begin(), mesh_.edges.end(), edge) - mesh_.edges.begin());
-  }
-
   void collapse_triangles() {
     std::vector<Index> open(mesh_.edges.size());
     std::iota(open.begin(), open.end(), Index{0});
@@ -56,10 +41,10 @@ class Complex {
       const Index edge = open.back();
       open.pop_back();
       if (!edge_alive_[edge]) continue;
-      const Index triangle = detail::only(triangles_at_[edge], triangle_alive_);
+      const Index triangle = detail::only(at_.triangles_at[edge], triangle_alive_);
       if (triangle == kNone) continue;
       edge_alive_[edge] = triangle_alive_[triangle] = 0;
-      open.insert(open.end(), sides_[triangle].begin(), sides_[triangle].end());
+      open.insert(open.end(), at_.sides[triangle].begin(), at_.sides[triangle].end());
     }
   }
   void collapse_edges() {
@@ -68,14 +53,14 @@ class Complex {
     while (!open.empty()) {
       const Index vertex = open.back();
       open.pop_back();
-      const Index edge = detail::only(edges_at_[vertex], edge_alive_);
+      const Index edge = detail::only(at_.edges_at[vertex], edge_alive_);
       if (edge == kNone || has_triangle(edge)) continue;
       vertex_alive_[vertex] = edge_alive_[edge] = 0;
       open.insert(open.end(), mesh_.edges[edge].begin(), mesh_.edges[edge].end());
     }
   }
   bool has_triangle(Index edge) const {
-    const auto row = triangles_at_[edge];
+    const auto row = at_.triangles_at[edge];
     return std::any_of(row.begin(), row.end(), [&](Index triangle) { return triangle_alive_[triangle] != 0; });
   }
 
@@ -100,7 +85,7 @@ class Complex {
     std::vector<Index> at;
     const auto living_at = [&](Index edge) {
       at.clear();
-      for (const Index triangle : triangles_at_[edge]) {
+      for (const Index triangle : at_.triangles_at[edge]) {
         if (triangle_alive_[triangle]) at.push_back(triangle);
       }
     };
@@ -149,9 +134,8 @@ class Complex {
   }
 
   const MedialMesh& mesh_;
+  const detail::CellIncidence at_;
   std::vector<std::uint8_t> vertex_alive_, edge_alive_, triangle_alive_;
-  std::vector<std::array<Index, 3>> sides_;  // of each triangle: edges
-  Rows triangles_at_, edges_at_;             // of each edge; of each vertex
 };
 
 }  // namespace

@@ -38,4 +38,40 @@ Index only(std::span<const Index> row, const std::vector<std::uint8_t>& alive) {
   return found;
 }
 
+void complete_cells(std::vector<std::array<Index, 2>>& edges, std::vector<std::array<Index, 3>>& triangles) {
+  for (const auto& [a, b, c] : triangles) {
+    edges.push_back({a, b});
+    edges.push_back({a, c});
+    edges.push_back({b, c});
+  }
+  const auto sort_and_deduplicate = [](auto& cells) {
+    for (auto& corners : cells) std::sort(corners.begin(), corners.end());
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  };
+  sort_and_deduplicate(edges);
+  sort_and_deduplicate(triangles);
+}
+
+Index index_of_edge(const std::vector<std::array<Index, 2>>& edges, Index a, Index b) {
+  const std::array<Index, 2> edge{std::min(a, b), std::max(a, b)};
+  return static_cast<Index>(std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin());
+}
+
+CellIncidence::CellIncidence(const std::vector<std::array<Index, 2>>& edges,
+                             const std::vector<std::array<Index, 3>>& triangles, Index vertices) {
+  std::vector<std::array<Index, 2>> at_edge, at_vertex;
+  sides.reserve(triangles.size());
+  for (Index t = 0; t < triangles.size(); ++t) {
+    const auto& [a, b, c] = triangles[t];
+    sides.push_back({index_of_edge(edges, a, b), index_of_edge(edges, a, c), index_of_edge(edges, b, c)});
+    for (const Index side : sides.back()) at_edge.push_back({side, t});
+  }
+  for (Index e = 0; e < edges.size(); ++e) {
+    for (const Index vertex : edges[e]) at_vertex.push_back({vertex, e});
+  }
+  triangles_at = rows_of(at_edge, static_cast<Index>(edges.size()));
+  edges_at = rows_of(at_vertex, vertices);
+}
+
 }  // namespace orchard::detail

@@ -15,4 +15,19 @@ Rows rows_of(const std::vector<std::array<Index, 2>>& pairs, Index count);
 // The only living cell of a row; kNone if there is none, or more than one.
 Index only(std::span<const Index> row, const std::vector<std::uint8_t>& alive);
 
+// Sorts the corners of edges and triangles, then these; drops repeated ones and adds the edges of triangles.
+void complete_cells(std::vector<std::array<Index, 2>>& edges, std::vector<std::array<Index, 3>>& triangles);
+
+// The number of an edge that there is, of sorted ones.
+Index index_of_edge(const std::vector<std::array<Index, 2>>& edges, Index a, Index b);
+
+// Of complete cells with corners below `vertices`.
+struct CellIncidence {
+  CellIncidence(const std::vector<std::array<Index, 2>>& edges, const std::vector<std::array<Index, 3>>& triangles,
+                Index vertices);
+
+  std::vector<std::array<Index, 3>> sides;  // of each triangle: the edges ab, ac and bc
+  Rows triangles_at, edges_at;              // of each edge; of each vertex
+};
+
 }  // namespace orchard::detail

@@ -14,13 +14,6 @@ namespace {
 using Edge = std::array<Index, 2>;
 using Triangle = std::array<Index, 3>;
 
-template <class Cell>
-void sort_and_deduplicate(std::vector<Cell>& cells) {
-  for (Cell& corners : cells) std::sort(corners.begin(), corners.end());
-  std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-}
-
 // A triangle in pieces, by the vertices that divide its sides (b c), (c a) and (a b), or kNone.
 class TriangleCutter {
  public:
@@ -69,21 +62,10 @@ class TriangleCutter {
 class Collapse {
  public:
   Collapse(BallComplex& complex, const Doomed& doomed, const std::vector<double>& value)
-      : complex_(complex), doomed_(doomed), value_(value) {
+      : complex_(complex), doomed_(doomed), value_(value), at_(complex.edges, complex.triangles, complex.size()) {
     vertex_alive_.assign(complex.balls.size(), 1);
     edge_alive_.assign(complex.edges.size(), 1);
     triangle_alive_.assign(complex.triangles.size(), 1);
-    std::vector<Edge> at_edge, at_vertex;
-    for (Index t = 0; t < complex.triangles.size(); ++t) {
-      const auto& [a, b, c] = complex.triangles[t];
-      sides_.push_back({complex.edge_of(a, b), complex.edge_of(a, c), complex.edge_of(b, c)});
-      for (const Index side : sides_.back()) at_edge.push_back({side, t});
-    }
-    for (Index e = 0; e < complex.edges.size(); ++e) {
-      for (const Index v : complex.edges[e]) at_vertex.push_back({v, e});
-    }
-    triangles_at_ = rows_of(at_edge, static_cast<Index>(complex.edges.size()));
-    edges_at_ = rows_of(at_vertex, complex.size());
   }
 
   void run() {
@@ -98,34 +80,34 @@ class Collapse {
 
  private:
   bool has_triangle(Index edge) const {
-    const auto row = triangles_at_[edge];
+    const auto row = at_.triangles_at[edge];
     return std::any_of(row.begin(), row.end(), [&](Index t) { return triangle_alive_[t] != 0; });
   }
   Index free_end(Index edge) const {
     if (has_triangle(edge)) return kNone;
     for (const Index v : complex_.edges[edge]) {
-      if (doomed_.vertices[v] && only(edges_at_[v], edge_alive_) == edge) return v;
+      if (doomed_.vertices[v] && only(at_.edges_at[v], edge_alive_) == edge) return v;
     }
     return kNone;
   }
   void offer(Index edge) {
     if (!edge_alive_[edge] || !doomed_.edges[edge]) return;
-    if (only(triangles_at_[edge], triangle_alive_) == kNone && free_end(edge) == kNone) return;
+    if (only(at_.triangles_at[edge], triangle_alive_) == kNone && free_end(edge) == kNone) return;
     const auto& [a, b] = complex_.edges[edge];
     queue_.emplace(std::min(value_[a], value_[b]), edge);
   }
   void take(Index edge) {
-    const Index triangle = only(triangles_at_[edge], triangle_alive_);
+    const Index triangle = only(at_.triangles_at[edge], triangle_alive_);
     if (triangle != kNone) {
       edge_alive_[edge] = triangle_alive_[triangle] = 0;
-      for (const Index side : sides_[triangle]) offer(side);
+      for (const Index side : at_.sides[triangle]) offer(side);
     } else {
       const Index end = free_end(edge);
       if (end == kNone) return;
       edge_alive_[edge] = vertex_alive_[end] = 0;
     }
     for (const Index v : complex_.edges[edge]) {
-      for (const Index other : edges_at_[v]) offer(other);
+      for (const Index other : at_.edges_at[v]) offer(other);
     }
   }
 
@@ -155,28 +137,16 @@ class Collapse {
   BallComplex& complex_;
   const Doomed& doomed_;
   const std::vector<double>& value_;
+  const CellIncidence at_;
   std::vector<std::uint8_t> vertex_alive_, edge_alive_, triangle_alive_;
-  std::vector<std::array<Index, 3>> sides_;
-  Rows triangles_at_, edges_at_;
   std::priority_queue<std::pair<double, Index>, std::vector<std::pair<double, Index>>, std::greater<>> queue_;
 };
 
 }  // namespace
 
-void BallComplex::complete() {
-  for (const auto& [a, b, c] : triangles) {
-    edges.push_back({a, b});
-    edges.push_back({a, c});
-    edges.push_back({b, c});
-  }
-  sort_and_deduplicate(edges);
-  sort_and_deduplicate(triangles);
-}
+void BallComplex::complete() { complete_cells(edges, triangles); }
 
-Index BallComplex::edge_of(Index a, Index b) const {
-  const Edge edge{std::min(a, b), std::max(a, b)};
-  return static_cast<Index>(std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin());
-}
+Index BallComplex::edge_of(Index a, Index b) const { return index_of_edge(edges, a, b); }
 
 void subdivide(BallComplex& complex, const std::vector<Index>& cut) {
   std::vector<Triangle> triangles;

@@ -12,7 +12,7 @@
 #include "../axis_triangles.h"
 #include "axis_of_balls.h"
 #include "ball_complex.h"
-#include "border.h"
+#include "extend_sheets.h"
 #include "orchard/geometry/angle.h"
 #include "orchard/geometry/error.h"
 #include "split.h"
@@ -234,14 +234,18 @@ class Refiner {
     const detail::BorderOptions border{.level = level_,
                                        .tolerance = options_.tolerance * diagonal_,
                                        .spacing = std::sqrt(surface_.report().area / sampling_.size()),
+                                       .merging = kMerging * level_,
                                        .sharp_angle = options_.sharp_angle};
     BallSolver solver = this->solver();
     for (int pass = 0; pass < kBorderPasses; ++pass) {
       const Index notches = detail::fill_notches(surface_, complex_, solver, border);
-      const Index reached = detail::extend_to_edges(surface_, complex_, border);
+      const Index seams = detail::extend_to_seams(surface_, complex_, border);
+      const Index reached = detail::extend_to_edges(surface_, complex_, border) +
+                            detail::extend_to_corners(surface_, complex_, border) +
+                            detail::follow_edges(surface_, complex_, border);
       report_.notches += notches;
       report_.edge_vertices += reached;
-      if (notches == 0 && reached == 0) break;
+      if (notches == 0 && seams == 0 && reached == 0) break;
     }
   }
 

@@ -1,0 +1,54 @@
+#include "borders.h"
+
+#include <utility>
+
+#include "orchard/geometry/angle.h"
+
+namespace orchard::detail {
+
+double angle_at(const BallComplex& complex, Index at, Index a, Index b) {
+  const Point& p = complex.balls[at].center;
+  return angle_between(complex.balls[a].center - p, complex.balls[b].center - p);
+}
+
+Borders find_borders(const BallComplex& complex) {
+  Borders borders;
+  std::vector<std::uint8_t> count(complex.edges.size(), 0);
+  borders.inner.assign(complex.size(), 0);
+  for (const auto& [a, b, c] : complex.triangles) {
+    for (const Index edge : {complex.edge_of(a, b), complex.edge_of(a, c), complex.edge_of(b, c)}) {
+      if (count[edge] < 3) ++count[edge];
+    }
+    borders.inner[a] += angle_at(complex, a, b, c);
+    borders.inner[b] += angle_at(complex, b, a, c);
+    borders.inner[c] += angle_at(complex, c, a, b);
+  }
+  borders.next.assign(complex.size(), {kNone, kNone});
+  borders.on_border.assign(complex.size(), 0);
+  std::vector<std::uint8_t> branching(complex.size(), 0);
+  for (Index e = 0; e < complex.edges.size(); ++e) {
+    const auto& [a, b] = complex.edges[e];
+    if (count[e] == 1) borders.edges.push_back(e);
+    for (const auto& [v, other] : {std::pair{a, b}, std::pair{b, a}}) {
+      if (count[e] == 1) {
+        borders.on_border[v] = 1;
+        auto& next = borders.next[v];
+        if (next[0] == kNone) {
+          next[0] = other;
+        } else if (next[1] == kNone) {
+          next[1] = other;
+        } else {
+          branching[v] = 1;
+        }
+      } else if (count[e] != 2) {
+        branching[v] = 1;
+      }
+    }
+  }
+  for (Index v = 0; v < complex.size(); ++v) {
+    if (branching[v] || borders.next[v][1] == kNone) borders.next[v] = {kNone, kNone};
+  }
+  return borders;
+}
+
+}  // namespace orchard::detail

@@ -1,0 +1,29 @@
+#pragma once
+#include "borders.h"
+#include "orchard/geometry/surface.h"
+
+// What makes sheets go as far as they belong. All of it is free: it changes no topology.
+namespace orchard::detail {
+
+// Fills the notches of the sheets' borders: a vertex between two border edges that see each other becomes an inner one,
+// by a triangle, where there is a ball of the axis in the middle of its third side. Returns the number of triangles.
+Index fill_notches(const Surface& surface, BallComplex& complex, BallSolver& solver, const BorderOptions& options);
+
+// Lets the sheets between two parallel faces, thinner than the points' spacing, go on to the seam where a third face
+// comes as near. Returns the number of new triangles.
+Index extend_to_seams(const Surface& surface, BallComplex& complex, const BorderOptions& options);
+
+// Lets the sheets that end near a sharp convex edge reach it, by vertices of radius 0, where the balls in between are
+// right up to the tolerance; and adds those between a seam and such an edge that are missing, being narrower than the
+// points' spacing. Returns the number of new vertices.
+Index extend_to_edges(const Surface& surface, BallComplex& complex, const BorderOptions& options);
+
+// Lets the sheets that reach sharp convex edges go on to the corner where the edges meet. Returns the number of new
+// vertices.
+Index extend_to_corners(const Surface& surface, BallComplex& complex, const BorderOptions& options);
+
+// Bends the borders between places of sharp convex edges onto these, and into their corners. Returns the number of new
+// vertices.
+Index follow_edges(const Surface& surface, BallComplex& complex, const BorderOptions& options);
+
+}  // namespace orchard::detail

@@ -1,0 +1,111 @@
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <numbers>
+#include <utility>
+
+#include "../axis/incidence.h"
+#include "extend_sheets.h"
+#include "free_extension.h"
+#include "orchard/geometry/angle.h"
+
+namespace orchard::detail {
+namespace {
+
+class SeamReacher {
+ public:
+  SeamReacher(const Surface& surface, BallComplex& complex, const BorderOptions& options)
+      : surface_(surface),
+        complex_(complex),
+        options_(options),
+        at_(complex.edges, complex.triangles, complex.size()),
+        extension_(complex) {}
+
+  Index run() {
+    find_outward();
+    find_seams();
+    for (const Index e : borders_) {
+      const auto& [a, b] = complex_.edges[e];
+      const Index x = seam_[a], y = seam_[b];
+      if (x != kNone && y != kNone) extension_.add_strip(a, b, x, y);
+      if (x != kNone && y == kNone && complex_.balls[b].count > 2) extension_.add(a, b, x);
+      if (x == kNone && y != kNone && complex_.balls[a].count > 2) extension_.add(a, b, y);
+    }
+    return extension_.finish();
+  }
+
+ private:
+  static constexpr double kParallel = 150 * std::numbers::pi / 180;  // contacts seen at this angle or a wider one
+  static constexpr double kStep = 0.25;                              // spacings
+  static constexpr int kMaxSteps = 8;
+
+  // The sum of the directions from border edges at a vertex away from their triangles, in these.
+  void find_outward() {
+    outward_.assign(complex_.size(), Vector::Zero());
+    for (Index e = 0; e < at_.triangles_at.size(); ++e) {
+      if (at_.triangles_at[e].size() != 1) continue;
+      borders_.push_back(e);
+      const auto& [a, b] = complex_.edges[e];
+      const Point &p = complex_.balls[a].center, &q = complex_.balls[b].center;
+      for (const Index v : complex_.triangles[at_.triangles_at[e][0]]) {
+        if (v == a || v == b) continue;
+        const Vector along = q - p, from = p - complex_.balls[v].center;
+        const Vector out = from - along * (from.dot(along) / along.squaredNorm());
+        if (!(out.norm() > 0)) continue;
+        outward_[a] += out.normalized();
+        outward_[b] += out.normalized();
+      }
+    }
+  }
+
+  void find_seams() {
+    const Index before = complex_.size();
+    std::vector<ExactBall> found(before);
+    tbb::parallel_for(tbb::blocked_range<Index>(0, before, 64), [&](const auto& range) {
+      BallSolver solver(surface_, options_.merging);
+      for (Index v = range.begin(); v != range.end(); ++v) {
+        if (outward_[v] != Vector::Zero() && is_between_parallel_faces(complex_.balls[v]))
+          found[v] = seam_beyond(complex_.balls[v], outward_[v].normalized(), solver);
+      }
+    });
+    seam_.assign(before, kNone);
+    for (Index v = 0; v < before; ++v) {
+      if (found[v].exact) seam_[v] = extension_.add_vertex(found[v]);
+    }
+  }
+  static bool is_between_parallel_faces(const ExactBall& ball) {
+    return ball.exact && ball.count == 2 && ball.radius > 0 &&
+           angle_between(ball.contacts[0].position - ball.center, ball.contacts[1].position - ball.center) > kParallel;
+  }
+  // The first ball on the way out that has a third contact; none that is exact if there is none.
+  ExactBall seam_beyond(const ExactBall& from, const Vector& out, BallSolver& solver) const {
+    const double step = kStep * options_.spacing;
+    ExactBall at = from;
+    for (int i = 0; i < kMaxSteps; ++i) {
+      const Point start = at.center + step * out;
+      const ExactBall next = solver.solve(start, at.touching());
+      const bool goes_on = next.exact && (next.center - start).norm() <= step && next.loss >= options_.level;
+      if (!goes_on) break;
+      if (next.count > 2) return next;
+      at = next;
+    }
+    return {};
+  }
+
+  const Surface& surface_;
+  BallComplex& complex_;
+  const BorderOptions& options_;
+  const CellIncidence at_;
+  FreeExtension extension_;
+  std::vector<Index> borders_, seam_;  // edges; of each vertex
+  std::vector<Vector> outward_;
+};
+
+}  // namespace
+
+Index extend_to_seams(const Surface& surface, BallComplex& complex, const BorderOptions& options) {
+  return SeamReacher(surface, complex, options).run();
+}
+
+}  // namespace orchard::detail

@@ -1,0 +1,63 @@
+#include "free_extension.h"
+
+#include <algorithm>
+
+namespace orchard::detail {
+
+bool FreeExtension::joined(Index a, Index b) const {
+  return new_edges_.contains(key(a, b)) || std::binary_search(complex_.edges.begin(), complex_.edges.end(),
+                                                              std::array<Index, 2>{std::min(a, b), std::max(a, b)});
+}
+
+Index FreeExtension::add_vertex(const ExactBall& ball) {
+  complex_.balls.push_back(ball);
+  used_.push_back(0);
+  return complex_.size() - 1;
+}
+
+bool FreeExtension::add(Index a, Index b, Index c) {
+  if (a == b || b == c || a == c) return false;
+  const bool ab = joined(a, b), bc = joined(b, c), ca = joined(c, a);
+  const int sides = (ab ? 1 : 0) + (bc ? 1 : 0) + (ca ? 1 : 0);
+  const Index opposite = ab ? c : bc ? a : b;
+  if (sides != 2 && !(sides == 1 && is_unused(opposite))) return false;
+  for (const auto& [p, q] : {std::pair{a, b}, std::pair{b, c}, std::pair{c, a}}) {
+    new_edges_.insert(key(p, q));
+    if (p >= first_new_) used_[p - first_new_] = 1;
+  }
+  added_.push_back({a, b, c});
+  return true;
+}
+
+void FreeExtension::add_strip(Index a, Index b, Index x, Index y) {
+  if (x == y) {
+    add(a, b, x);
+  } else if (apart(a, y) < apart(b, x)) {
+    add(a, b, y);
+    add(a, y, x);
+  } else {
+    add(a, b, x);
+    add(b, y, x);
+  }
+}
+
+Index FreeExtension::finish() {
+  std::vector<Index> number(used_.size(), kNone);
+  Index size = first_new_;
+  for (Index i = 0; i < used_.size(); ++i) {
+    if (!used_[i]) continue;
+    complex_.balls[size] = complex_.balls[first_new_ + i];
+    number[i] = size++;
+  }
+  complex_.balls.resize(size);
+  for (auto& corners : added_) {
+    for (Index& v : corners) {
+      if (v >= first_new_) v = number[v - first_new_];
+    }
+  }
+  complex_.triangles.insert(complex_.triangles.end(), added_.begin(), added_.end());
+  if (!added_.empty()) complex_.complete();
+  return static_cast<Index>(added_.size());
+}
+
+}  // namespace orchard::detail
