@@ -175,7 +175,7 @@ void add_sampling_options(CLI::App& command, SampleCommand& sample) {
   command
       .add_option("--cluster-angle", sample.cluster_degrees, "Degrees that a cluster may turn; more makes curved ones")
       ->check(CLI::Range(0.0, 90.0));
-  command.add_option("--crease-angle", sample.crease_degrees, "Degrees from which a curved mesh has an edge [30]")
+  command.add_option("--crease-angle", sample.crease_degrees, "Degrees from which a curved mesh has an edge [28.6]")
       ->check(CLI::Range(0.0, 180.0));
   command.add_option("--seed", sample.seed, "Seed of the random points")->capture_default_str();
 }

@@ -58,7 +58,7 @@ SamplingOptions sampling_options(const SampleCommand& command, const Surface& su
   options.edge_points = command.edge_samples.value_or(command.samples / 5);
   options.face_points = command.samples - options.edge_points;
   if (command.cluster_degrees) options.cluster_angle = *command.cluster_degrees * kRadians;
-  options.crease_angle = command.crease_degrees.value_or(30) * kRadians;
+  if (command.crease_degrees) options.crease_angle = *command.crease_degrees * kRadians;
   if (options.relaxation == Relaxation::automatic) options.relaxation = choose_relaxation(surface, options);
   return options;
 }
