@@ -46,7 +46,7 @@ Dimension parse(const std::string& text) {
   Dimension dimension{.flag = &*flag, .values = split(text.substr(equals + 1), ',')};
   for (const std::string& value : dimension.values) {
     if (const std::string fault = flag->fault(value); !fault.empty())
-      throw InputError("--sweep " + name + ": " + fault);
+      throw InputError(fmt::format("--sweep {}: {}", name, fault));
   }
   return dimension;
 }
