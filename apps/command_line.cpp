@@ -3,29 +3,42 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "tree_options.h"
 
 namespace orchard::apps {
 namespace {
 
+// The options on the command line, by their long names.
+std::vector<std::string> given_of(const std::vector<const CLI::Option*>& options) {
+  std::vector<std::string> given;
+  for (const CLI::Option* option : options)
+    if (option->count() > 0 && !option->get_lnames().empty()) given.push_back(option->get_lnames().front());
+  return given;
+}
+
+std::vector<std::string> given_of(const CLI::App& command) { return given_of(command.get_options()); }
+
 void add_output_flags(CLI::App& command, Output& output) {
   command.add_flag("--quiet", output.quiet, "Print nothing but errors");
-  command.add_flag("--json", output.json, "Print a JSON report instead of a table");
+  command.add_flag("--json", output.json, "Print a JSON report instead of a table, --quiet or not");
 }
 
 void add_mesh_options(CLI::App& command, MeshOptions& options) {
   auto* strict =
       command.add_flag("--strict", options.strict, "Refuse a mesh that is no closed manifold instead of repairing it");
-  command
-      .add_flag("--wrap{" + kDefaultWrap + "}", options.wrap,
-                "Build on a closed skin around the mesh; =OFFSET: about how far outside, in diagonals of its box")
-      ->excludes(strict);
+  auto* wrap =
+      command
+          .add_flag("--wrap{" + kDefaultWrap + "}", options.wrap,
+                    "Build on a closed skin around the mesh; =OFFSET: about how far outside, in diagonals of its box")
+          ->excludes(strict);
   command
       .add_option(
           "--wrap-alpha", options.wrap_alpha,
           "Openings narrower than this stay closed, in diagonals; less follows the mesh better, and takes longer")
       ->check(CLI::Range(1e-4, 0.5))
+      ->needs(wrap)
       ->capture_default_str();
   command
       .add_option_function<std::string>(
@@ -75,7 +88,7 @@ void add_build(CLI::App& app, Request& request) {
   command.add_option("--threads", request.threads, "Threads at most; the result does not depend on it")
       ->check(CLI::Range(1, 1024));
   command.add_flag("!--no-views", build.views, "Write no files for ParaView");
-  command.add_flag("--picture", build.picture, "Draw the pipeline to a .png as well");
+  auto* picture = command.add_flag("--picture", build.picture, "Draw the pipeline to a .png as well");
   command
       .add_option("--export", build.exports, "More files: json (spheres by level), urdf (a link's collision spheres)")
       ->delimiter(',')
@@ -83,13 +96,12 @@ void add_build(CLI::App& app, Request& request) {
   command.add_option("--export-level", build.export_level, "Level of the urdf's spheres (default: the last)");
   command.add_option("--up", build.up, "The mesh's axis that points up in the picture")
       ->check(CLI::IsMember({"x", "y", "z"}))
+      ->needs(picture)
       ->capture_default_str();
   add_output_flags(command, build.output);
   command.footer("Example:\n  orchard build data/lamp.obj -o out/lamp --picture");
   command.callback([&request, &command] {
-    for (const CLI::Option* option : command.get_options())
-      if (option->count() > 0 && !option->get_lnames().empty())
-        request.build.given.push_back(option->get_lnames().front());
+    request.build.given = given_of(command);
     request.run = [&request] { orchard::apps::build(request.build); };
   });
 }
@@ -102,6 +114,7 @@ void add_collide(CLI::App& app, Request& request) {
   command.add_option("--pose", collide.pose, "Where b is: \"tx ty tz qw qx qy qz\", a translation and a quaternion");
   command.add_option("--pose-a", collide.pose_a, "Where a is, in the same form (default: where it was built)");
   add_output_flags(command, collide.output);
+  command.get_option("--quiet")->description("Print the answer alone");
   command.footer("Example:\n  orchard collide out/lamp/lamp.orchard out/ship/ship.orchard --pose \"4 0 0 1 0 0 0\"");
   command.callback([&request] { request.run = [&request] { orchard::apps::collide(request.collide); }; });
 }
@@ -162,9 +175,8 @@ void add_sampling_options(CLI::App& command, SampleCommand& sample) {
   command
       .add_option("--cluster-angle", sample.cluster_degrees, "Degrees that a cluster may turn; more makes curved ones")
       ->check(CLI::Range(0.0, 90.0));
-  command.add_option("--crease-angle", sample.crease_degrees, "Degrees from which a curved mesh has an edge")
-      ->check(CLI::Range(0.0, 180.0))
-      ->capture_default_str();
+  command.add_option("--crease-angle", sample.crease_degrees, "Degrees from which a curved mesh has an edge [28.6]")
+      ->check(CLI::Range(0.0, 180.0));
   command.add_option("--seed", sample.seed, "Seed of the random points")->capture_default_str();
 }
 
@@ -189,24 +201,34 @@ void add_voronoi(CLI::App& app, Request& request) {
       .add_option("input", voronoi.input,
                   "Points (.xyz, or .ply or .obj without faces), or a mesh to sample (.obj, .ply, .stl or .off)")
       ->required();
-  command
-      .add_option_function<std::string>(
-          "--algorithm",
-          [&voronoi](const std::string& name) { voronoi.algorithm = *orchard::voronoi_algorithm_named(name); },
-          "bowyer, inagaki, highest-first (default) or exact")
-      ->check(CLI::IsMember({"bowyer", "inagaki", "highest-first", "exact"}));
-  command.add_flag("--compare", voronoi.compare, "Run all four algorithms on the same points");
-  command.add_option("-o,--output", voronoi.folder, "Folder for the cells, for ParaView, and for the points of a mesh");
+  auto* algorithm =
+      command
+          .add_option_function<std::string>(
+              "--algorithm",
+              [&voronoi](const std::string& name) { voronoi.algorithm = *orchard::voronoi_algorithm_named(name); },
+              "bowyer, inagaki, highest-first (default) or exact")
+          ->check(CLI::IsMember({"bowyer", "inagaki", "highest-first", "exact"}));
+  command.add_flag("--compare", voronoi.compare, "Run all four algorithms on the same points")->excludes(algorithm);
+  auto* folder = command.add_option("-o,--output", voronoi.folder,
+                                    "Folder for the cells, for ParaView, and for the points of a mesh");
   command.add_option("--cells", voronoi.cells, "Write the cells of these points alone, counted from 0: 3,14,15")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->needs(folder);
   command.add_option("--box", voronoi.box, "Clip the cells to this box: x y z of its lower and upper corner")
-      ->expected(6);
+      ->expected(6)
+      ->needs(folder);
+  const auto others = static_cast<std::ptrdiff_t>(command.get_options().size());
   add_sampling_options(command, voronoi.sampling);
+  const auto all = std::as_const(command).get_options();
+  const std::vector<const CLI::Option*> sampling(all.begin() + others, all.end());
   command.add_option("--threads", request.threads, "Threads at most; the result does not depend on it")
       ->check(CLI::Range(1, 1024));
   add_output_flags(command, voronoi.output);
   command.footer("Example:\n  orchard voronoi data/faucet.obj --compare -o out/faucet");
-  command.callback([&request] { request.run = [&request] { orchard::apps::voronoi(request.voronoi); }; });
+  command.callback([&request, sampling] {
+    request.voronoi.sampling_given = given_of(sampling);
+    request.run = [&request] { orchard::apps::voronoi(request.voronoi); };
+  });
 }
 
 void add_sweep_tree(CLI::App& command, std::optional<SphereTreeOptions>& tree) {
@@ -247,9 +269,11 @@ void add_medial(CLI::App& app, Request& request) {
       ->allow_extra_args(false);
   add_sweep_tree(command, medial.tree);
   add_tuning(command, medial.tuning, false);
-  command.add_flag(
-      "--raw", [&medial](std::int64_t) { medial.tuning.refine = false; },
-      "The axis as the Voronoi diagram has it, the dissertation's: the same as --refine no");
+  command
+      .add_flag(
+          "--raw", [&medial](std::int64_t) { medial.tuning.refine = false; },
+          "The axis as the Voronoi diagram has it, the dissertation's: the same as --refine no")
+      ->excludes(command.get_option("--refine"));
   command.add_option("--threads", request.threads, "Threads at most; the result does not depend on it")
       ->check(CLI::Range(1, 1024));
   command.add_flag("!--no-views", medial.views, "Write no files for ParaView");
@@ -258,7 +282,10 @@ void add_medial(CLI::App& app, Request& request) {
       "Examples:\n  orchard medial data/lamp.obj -o out/lamp --report\n"
       "  orchard medial data/lamp.obj -o out/lamp --axis other.ma\n"
       "  orchard medial data/lamp.obj -o out/lamp --sweep samples=1000,4000,16000 --sweep prune=0,20,40");
-  command.callback([&request] { request.run = [&request] { orchard::apps::medial(request.medial); }; });
+  command.callback([&request, &command] {
+    request.medial.given = given_of(command);
+    request.run = [&request] { orchard::apps::medial(request.medial); };
+  });
 }
 
 void add_inspect(CLI::App& app, Request& request) {

@@ -57,12 +57,12 @@ struct SampleCommand {
   std::uint64_t seed = 1;
   Relaxation relaxation = Relaxation::automatic;
   std::optional<double> cluster_degrees;
-  double crease_degrees = 30;
+  std::optional<double> crease_degrees;
   bool views = true;  // ParaView files, where the program was built with them
   Output output;
 };
 void sample(const SampleCommand& command);
-// Throws InputError if they contradict each other.
+// Throws InputError if they contradict each other, or one leaves another without effect.
 void check_sampling(const SampleCommand& command);
 // What the command's options come to on a surface.
 SamplingOptions sampling_options(const SampleCommand& command, const Surface& surface);
@@ -71,9 +71,10 @@ struct VoronoiCommand {
   std::filesystem::path input, folder;  // points or a mesh; no folder: write nothing
   SampleCommand sampling;               // of a mesh; its own mesh, folder and output do not count
   VoronoiAlgorithm algorithm = VoronoiAlgorithm::highest_first;
-  bool compare = false;      // run all algorithms
-  std::vector<Index> cells;  // to write; empty: all
-  std::vector<double> box;   // that cells are clipped to: x y z of two corners; empty: around the points
+  bool compare = false;                     // run all algorithms
+  std::vector<Index> cells;                 // to write; empty: all
+  std::vector<double> box;                  // that cells are clipped to: x y z of two corners; empty: around the points
+  std::vector<std::string> sampling_given;  // the options of `sampling` on the command line, as of BuildCommand
   Output output;
 };
 void voronoi(const VoronoiCommand& command);
@@ -89,6 +90,7 @@ struct MedialCommand {
   std::vector<std::string> sweep;         // NAME=VALUE,VALUE,..
   std::optional<SphereTreeOptions> tree;  // of a sweep: the tree to build from each axis
   bool views = true;                      // ParaView files, where the program was built with them
+  std::vector<std::string> given;         // the options on the command line, as of BuildCommand
   Output output;
 };
 void medial(const MedialCommand& command);

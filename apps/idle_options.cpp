@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "medial_run.h"
 #include "orchard/geometry/error.h"
 #include "tree_options.h"
 
@@ -37,35 +38,88 @@ std::vector<TuningStep> steps_replaced(const std::string& source) {
   return {TuningStep::diagram, TuningStep::axis};
 }
 
+using Names = std::vector<std::string>;
+
+bool among(const std::string& name, const Names& names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// Refuses flags for a step that a file is in place of.
+void refuse_replaced(const TuningFlag& flag, const Names& sources) {
+  for (const std::string& source : sources) {
+    const std::vector<TuningStep> replaced = steps_replaced(source);
+    if (std::find(replaced.begin(), replaced.end(), flag.step) != replaced.end())
+      throw InputError(
+          fmt::format("--{} has no effect with --{}, whose file is in place of that step", flag.name, source));
+  }
+}
+
+// Refuses a flag that other flags' values leave without effect, whichever of the tunings is run.
+void refuse_disabled(const TuningFlag& flag, const std::vector<MedialTuning>& tunings) {
+  if (!flag.idle) return;
+  std::string why;
+  for (const MedialTuning& tuning : tunings) {
+    why = flag.idle(tuning);
+    if (why.empty()) return;
+  }
+  throw InputError(fmt::format("--{} has no effect with {}", flag.name, why));
+}
+
+// Refuses what a sweep overrides, and what it varies without any column that would tell.
+void refuse_idle_in_sweep(const MedialCommand& command, const Names& swept) {
+  for (const std::string& name : swept) {
+    if (std::count(swept.begin(), swept.end(), name) > 1)
+      throw InputError(fmt::format("--sweep: {} is there twice; give all its values at once", name));
+    if (among(name, command.given))
+      throw InputError(fmt::format("--{} has no effect with --sweep {}=.., which sets it", name, name));
+  }
+  if (among("raw", command.given) && among("refine", swept))
+    throw InputError("--raw has no effect with --sweep refine=.., which sets it");
+}
+
 }  // namespace
 
 void refuse_idle_options(const BuildCommand& command) {
-  const auto given = [&](const std::string& option) {
-    return std::find(command.given.begin(), command.given.end(), option) != command.given.end();
-  };
   const TreeMethod method = command.options.method;
   for (const auto& [option, methods] : own_options()) {
-    if (given(option) && std::find(methods.begin(), methods.end(), method) == methods.end())
+    if (among(option, command.given) && std::find(methods.begin(), methods.end(), method) == methods.end())
       throw InputError(
           fmt::format("--{} has no effect on --method {}; it is for {}", option, name(method), names_of(methods)));
   }
-  std::vector<std::string> sources;
+  Names sources;
   for (const char* source : {"points", "diagram", "from-axis"})
-    if (given(source)) sources.emplace_back(source);
+    if (among(source, command.given)) sources.emplace_back(source);
   const auto refuse_without_axis = [&](const std::string& option) {
     throw InputError(fmt::format("--{} has no effect on --method {}, which builds from no medial axis; it is for {}",
                                  option, name(method), names_of({TreeMethod::tightened, TreeMethod::merging})));
   };
   if (!needs_axis(method) && !sources.empty()) refuse_without_axis(sources.front());
   for (const TuningFlag& flag : tuning_flags()) {
-    if (!given(flag.name) || flag.name == "seed") continue;
+    if (!among(flag.name, command.given) || flag.name == "seed") continue;
     if (!needs_axis(method)) refuse_without_axis(flag.name);
-    for (const std::string& source : sources) {
-      const std::vector<TuningStep> replaced = steps_replaced(source);
-      if (std::find(replaced.begin(), replaced.end(), flag.step) != replaced.end())
-        throw InputError(
-            fmt::format("--{} has no effect with --{}, whose file is in place of that step", flag.name, source));
-    }
+    refuse_replaced(flag, sources);
+    refuse_disabled(flag, {command.tuning});
+  }
+}
+
+void refuse_idle_options(const MedialCommand& command) {
+  const bool judges = !command.axis.empty(), sweeps = !command.sweep.empty();
+  if (among("quality-samples", command.given) && !command.report && !judges && !sweeps)
+    throw InputError("--quality-samples has no effect without --report, --axis or --sweep: nothing is measured");
+  const Names swept = swept_flags(command);
+  refuse_idle_in_sweep(command, swept);
+  if (judges && among("raw", command.given)) throw InputError("--raw has no effect with --axis, which builds nothing");
+  Names sources;
+  for (const char* source : {"points", "diagram"})
+    if (among(source, command.given)) sources.emplace_back(source);
+  const std::vector<MedialTuning> tunings = tunings_of(command);
+  for (const TuningFlag& flag : tuning_flags()) {
+    if ((!among(flag.name, command.given) && !among(flag.name, swept)) || flag.name == "seed") continue;
+    if (judges) throw InputError(fmt::format("--{} has no effect with --axis, which builds nothing", flag.name));
+    if (sweeps && flag.step == TuningStep::report)
+      throw InputError(fmt::format("--{} has no effect with --sweep, whose table tells nothing of it", flag.name));
+    refuse_replaced(flag, sources);
+    refuse_disabled(flag, tunings);
   }
 }
 

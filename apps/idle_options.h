@@ -3,8 +3,11 @@
 
 namespace orchard::apps {
 
-// Throws InputError if an option was given that the method, or the file in place of a step, leaves without effect:
-// names it and says what it belongs to. `--seed` always passes: where nothing is random, any seed is kept to.
+// Each throws InputError if an option was given that the method, another option, or the file in place of a step, leaves
+// without effect: names it and says what it belongs to. `--seed` always passes: where nothing is random, any seed is
+// kept to. So does what is so anyhow, as `--report` with a sweep, which always measures. In a sweep, an option is idle
+// that is so with every combination of the values.
 void refuse_idle_options(const BuildCommand& command);
+void refuse_idle_options(const MedialCommand& command);
 
 }  // namespace orchard::apps

@@ -176,6 +176,8 @@ void print(const std::filesystem::path& file, const json& report) {
 void inspect(const InspectCommand& command) {
   check_input(command.file);
   const std::string extension = lower_extension(command.file);
+  if (command.full && (extension == ".orchard" || extension == ".sph"))
+    throw InputError("--full has no effect on a tree; it is for meshes");
   const json report = extension == ".orchard" ? inspect_packed(command.file)
                       : extension == ".sph"   ? inspect_sph(command.file)
                                               : inspect_mesh(command);

@@ -6,6 +6,7 @@
 
 #include "commands.h"
 #include "console.h"
+#include "idle_options.h"
 #include "input_file.h"
 #include "medial_run.h"
 #include "medial_warning.h"
@@ -51,6 +52,7 @@ void check(const MedialCommand& command) {
   if (!inputs.empty() && !command.sweep.empty()) throw InputError("--sweep takes no --axis, --diagram or --points");
   if (command.tree && command.sweep.empty())
     throw InputError("--tree belongs to a --sweep; orchard build builds a tree");
+  refuse_idle_options(command);
   check_sweep(command);  // without a sweep, that of the one combination that there is
   inputs.push_back(command.mesh);
   for (const fs::path& file : inputs) check_input(file);

@@ -18,6 +18,11 @@ MedialJudgement judge(const MedialCommand& command, const Surface& surface, cons
 
 // Throws InputError if a combination of the values of command.sweep cannot be run.
 void check_sweep(const MedialCommand& command);
+// The flags that command.sweep varies, by their names. Throws InputError if one cannot be read.
+std::vector<std::string> swept_flags(const MedialCommand& command);
+// The tuning of every combination of the values of command.sweep, its last one's fastest; without a sweep, that of the
+// command. Throws InputError if one cannot be read.
+std::vector<MedialTuning> tunings_of(const MedialCommand& command);
 // The files of a sweep.
 std::vector<std::string> sweep_names(const MedialCommand& command);
 // Every combination of the values of command.sweep, each judged: MODEL-sweep.csv and a plot for each metric.

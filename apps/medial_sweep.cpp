@@ -46,7 +46,7 @@ Dimension parse(const std::string& text) {
   Dimension dimension{.flag = &*flag, .values = split(text.substr(equals + 1), ',')};
   for (const std::string& value : dimension.values) {
     if (const std::string fault = flag->fault(value); !fault.empty())
-      throw InputError("--sweep " + name + ": " + fault);
+      throw InputError(fmt::format("--sweep {}: {}", name, fault));
   }
   return dimension;
 }
@@ -120,11 +120,11 @@ std::vector<Dimension> dimensions_of(const MedialCommand& command) {
   return dimensions;
 }
 
-MedialBuildOptions options_of(const MedialCommand& command, const std::vector<Dimension>& dimensions,
-                              const std::vector<std::size_t>& choice) {
+MedialTuning tuning_of(const MedialCommand& command, const std::vector<Dimension>& dimensions,
+                       const std::vector<std::size_t>& choice) {
   MedialTuning tuning = command.tuning;
   for (std::size_t d = 0; d < dimensions.size(); ++d) dimensions[d].flag->set(tuning, dimensions[d].values[choice[d]]);
-  return build_options(tuning);
+  return tuning;
 }
 
 // From the very axis: its diagram is taken over.
@@ -147,12 +147,24 @@ std::string plot_name(const MedialCommand& command, const Column& column) {
 
 }  // namespace
 
-void check_sweep(const MedialCommand& command) {
+std::vector<std::string> swept_flags(const MedialCommand& command) {
+  std::vector<std::string> names;
+  for (const Dimension& dimension : dimensions_of(command)) names.push_back(dimension.flag->name);
+  return names;
+}
+
+std::vector<MedialTuning> tunings_of(const MedialCommand& command) {
   const std::vector<Dimension> dimensions = dimensions_of(command);
+  std::vector<MedialTuning> tunings;
   std::vector<std::size_t> choice(dimensions.size(), 0);
   do {
-    options_of(command, dimensions, choice);
+    tunings.push_back(tuning_of(command, dimensions, choice));
   } while (next(choice, dimensions));
+  return tunings;
+}
+
+void check_sweep(const MedialCommand& command) {
+  for (const MedialTuning& tuning : tunings_of(command)) build_options(tuning);
 }
 
 std::vector<std::string> sweep_names(const MedialCommand& command) {
@@ -166,7 +178,7 @@ void sweep_medial(const MedialCommand& command, const Surface& surface, const Pr
   std::vector<Run> runs;
   std::vector<std::size_t> choice(dimensions.size(), 0);
   do {
-    const MedialBuildOptions options = options_of(command, dimensions, choice);
+    const MedialBuildOptions options = build_options(tuning_of(command, dimensions, choice));
     MedialBuild build = build_medial_axis(surface, options, progress);
     const MedialJudgement judgement = judge(command, surface, build, medial_mesh(build.axis), options, progress);
     Run& run = runs.emplace_back();
@@ -188,7 +200,6 @@ void sweep_medial(const MedialCommand& command, const Surface& surface, const Pr
     write_file(outputs.add(plot_name(command, columns[m])),
                plot::to_svg({plot_of(m, columns[m], model, dimensions, runs)}));
   outputs.commit();
-  if (command.output.quiet) return;
   if (command.output.json) {
     nlohmann::json rows = nlohmann::json::array();
     for (const Run& run : runs) {
@@ -203,6 +214,7 @@ void sweep_medial(const MedialCommand& command, const Surface& surface, const Pr
     fmt::print("{}\n", nlohmann::json{{"runs", rows}}.dump(2));
     return;
   }
+  if (command.output.quiet) return;
   fmt::print("{}  {}  ({} runs, and a plot for each metric beside it)\n", csv,
              outputs.place_of(csv_name(command)).string(), runs.size());
 }

@@ -37,6 +37,11 @@ TuningFlag choice(const char* name, std::vector<std::string> choices, const char
   return {.name = name, .help = help, .standard = choices.front(), .choices = choices, .set = std::move(set)};
 }
 
+TuningFlag idle_where(TuningFlag flag, std::function<std::string(const MedialTuning&)> idle) {
+  flag.idle = std::move(idle);
+  return flag;
+}
+
 void set_relaxation(MedialTuning& tuning, const std::string& text) {
   tuning.options.sampling.relaxation = text == "clusters"    ? Relaxation::clusters
                                        : text == "neighbors" ? Relaxation::neighbors
@@ -52,6 +57,21 @@ void set_gaps(MedialTuning& tuning, const std::string& text) {
 
 using T = MedialTuning;
 
+// Only relaxation across faces has creases, and only edge points lie on them.
+std::string no_creases(const T& t) {
+  if (t.options.sampling.relaxation == Relaxation::clusters) return "--relaxation clusters";
+  return t.edge_samples == Index{0} ? "--edge-samples 0" : "";
+}
+
+std::string no_repair(const T& t) { return t.options.repair_gaps ? "" : "--gaps none"; }
+
+// Only where points were added are points taken out.
+std::string no_thinning(const T& t) {
+  return t.options.repair_gaps && t.options.gap_repair.max_passes == 0 ? "--max-passes 0" : no_repair(t);
+}
+
+std::string no_refining(const T& t) { return t.refine ? "" : "--refine no (--raw)"; }
+
 std::vector<TuningFlag> point_flags() {
   return {whole("samples", "5000", 20, 1e7, "Surface points: more follow the shape better, and take longer",
                 [](T& t, double x) { t.samples = static_cast<Index>(x); }),
@@ -65,27 +85,32 @@ std::vector<TuningFlag> point_flags() {
           real("cluster-angle", "0.0057", 0, 90,
                "Degrees that a cluster may turn: more treats curved parts as one face without edges",
                [](T& t, double x) { t.cluster_degrees = x; }),
-          real("crease-angle", "28.6", 0, 180, "Degrees from which a scan has an edge that gets edge points",
-               [](T& t, double x) { t.options.sampling.crease_angle = x * kRadians; }),
+          idle_where(real("crease-angle", "28.6", 0, 180, "Degrees from which a scan has an edge that gets edge points",
+                          [](T& t, double x) { t.options.sampling.crease_angle = x * kRadians; }),
+                     no_creases),
           whole("seed", "1", 0, 4294967295.0, "Of the random points: another draw of the same density",
                 [](T& t, double x) { t.options.sampling.seed = static_cast<std::uint64_t>(x); })};
 }
 
 std::vector<TuningFlag> diagram_flags() {
-  return {choice("algorithm", {"highest-first", "inagaki", "bowyer", "exact"},
-                 "Of the Voronoi diagram; inagaki and bowyer are for comparison, and need well-spread points",
-                 [](T& t, const std::string& text) { t.options.algorithm = *voronoi_algorithm_named(text); }),
-          choice("gaps", {"connected", "loose", "strict", "none"},
-                 "What counts as a gap to mend: loose misses some, strict adds most points, none breaks thin parts",
-                 set_gaps),
-          real("joined-radius", "0", 0, 1000,
-               "Crossings joined within so many point distances are forgiven: fewer points, no guarantee",
-               [](T& t, double x) { t.options.gap_repair.joined_radius = x; }),
-          whole("max-passes", "20", 0, 1000, "Of gap repair at most: fewer leave gaps that need more",
-                [](T& t, double x) { t.options.gap_repair.max_passes = static_cast<int>(x); }),
-          choice("thin", {"no", "yes"},
-                 "Whether pairs of facing points that crowd thin parts go again: fewer points, coarser there",
-                 [](T& t, const std::string& text) { t.options.gap_repair.thin = text == "yes"; })};
+  return {
+      choice("algorithm", {"highest-first", "inagaki", "bowyer", "exact"},
+             "Of the Voronoi diagram; inagaki and bowyer are for comparison, and need well-spread points",
+             [](T& t, const std::string& text) { t.options.algorithm = *voronoi_algorithm_named(text); }),
+      choice("gaps", {"connected", "loose", "strict", "none"},
+             "What counts as a gap to mend: loose misses some, strict adds most points, none breaks thin parts",
+             set_gaps),
+      idle_where(real("joined-radius", "0", 0, 1000,
+                      "Crossings joined within so many point distances are forgiven: fewer points, no guarantee",
+                      [](T& t, double x) { t.options.gap_repair.joined_radius = x; }),
+                 no_repair),
+      idle_where(whole("max-passes", "20", 0, 1000, "Of gap repair at most: fewer leave gaps that need more",
+                       [](T& t, double x) { t.options.gap_repair.max_passes = static_cast<int>(x); }),
+                 no_repair),
+      idle_where(choice("thin", {"no", "yes"},
+                        "Whether pairs of facing points that crowd thin parts go again: fewer points, coarser there",
+                        [](T& t, const std::string& text) { t.options.gap_repair.thin = text == "yes"; }),
+                 no_thinning)};
 }
 
 std::vector<TuningFlag> axis_flags() {
@@ -111,14 +136,17 @@ std::vector<TuningFlag> refining_flags() {
       choice("refine", {"yes", "no"},
              "Whether balls are made exact and sheets end smoothly, or the axis stays as the diagram has it (--raw)",
              [](T& t, const std::string& text) { t.refine = text == "yes"; }),
-      real("border-loss", "0.1", 0, 100,
-           "Percent of the diagonal that a sheet's border may lose of the surface: more cuts more spurs off",
-           [](T& t, double x) { t.refinement.border_loss = x / 100; }),
-      real("linear-error", "0.05", 1e-4, 100,
-           "Percent of the diagonal that balls between two vertices may be off: less makes more vertices",
-           [](T& t, double x) { t.refinement.tolerance = x / 100; }),
-      real("sharp-angle", "40.1", 0, 180, "Degrees from which a convex edge is one that sheets reach to",
-           [](T& t, double x) { t.refinement.sharp_angle = std::min(x * kRadians, std::numbers::pi); })};
+      idle_where(real("border-loss", "0.1", 0, 100,
+                      "Percent of the diagonal that a sheet's border may lose of the surface: more cuts more spurs off",
+                      [](T& t, double x) { t.refinement.border_loss = x / 100; }),
+                 no_refining),
+      idle_where(real("linear-error", "0.05", 1e-4, 100,
+                      "Percent of the diagonal that balls between two vertices may be off: less makes more vertices",
+                      [](T& t, double x) { t.refinement.tolerance = x / 100; }),
+                 no_refining),
+      idle_where(real("sharp-angle", "40.1", 0, 180, "Degrees from which a convex edge is one that sheets reach to",
+                      [](T& t, double x) { t.refinement.sharp_angle = std::min(x * kRadians, std::numbers::pi); }),
+                 no_refining)};
 }
 
 std::vector<TuningFlag> report_flags() {

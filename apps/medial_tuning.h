@@ -37,6 +37,8 @@ struct TuningFlag {
   bool whole = false;        // whole numbers only
   TuningStep step = TuningStep::points;
   std::function<void(MedialTuning&, const std::string&)> set;
+  // Which other flag's value leaves this one without effect, as "--gaps none"; empty if none does.
+  std::function<std::string(const MedialTuning&)> idle = {};
 
   // Why a value cannot be, without the flag's name; empty if it can.
   std::string fault(const std::string& value) const;

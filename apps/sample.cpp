@@ -46,17 +46,19 @@ void print(const SampleCommand& command, const json& report) {
 
 void check_sampling(const SampleCommand& command) {
   if (command.edge_samples.value_or(0) > command.samples) throw InputError("--edge-samples: more than --samples");
+  if (!command.crease_degrees) return;
+  if (command.relaxation == Relaxation::clusters)
+    throw InputError("--crease-angle has no effect with --relaxation clusters");
+  if (command.edge_samples == Index{0}) throw InputError("--crease-angle has no effect with --edge-samples 0");
 }
 
 SamplingOptions sampling_options(const SampleCommand& command, const Surface& surface) {
   constexpr double kRadians = std::numbers::pi / 180;
-  SamplingOptions options{.iterations = command.iterations,
-                          .seed = command.seed,
-                          .relaxation = command.relaxation,
-                          .crease_angle = command.crease_degrees * kRadians};
+  SamplingOptions options{.iterations = command.iterations, .seed = command.seed, .relaxation = command.relaxation};
   options.edge_points = command.edge_samples.value_or(command.samples / 5);
   options.face_points = command.samples - options.edge_points;
   if (command.cluster_degrees) options.cluster_angle = *command.cluster_degrees * kRadians;
+  if (command.crease_degrees) options.crease_angle = *command.crease_degrees * kRadians;
   if (options.relaxation == Relaxation::automatic) options.relaxation = choose_relaxation(surface, options);
   return options;
 }

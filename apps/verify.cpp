@@ -202,6 +202,8 @@ void print(const Verification& result, const Subject& subject, double seconds) {
 }  // namespace
 
 bool verify(const VerifyCommand& command) {
+  if (command.box_centered && command.tree.extension() != ".sph")
+    throw InputError("--bbox-centre has no effect on an .orchard file; it is for .sph files");
   check_input(command.tree);
   check_input(command.mesh);
   ProgressBar bar(!command.output.quiet && !command.output.json);

@@ -38,6 +38,10 @@ Input read_input(const VoronoiCommand& command, const Progress& progress) {
   Input input;
   TriangleMesh mesh = read_points_or_mesh(command.input);
   if (mesh.triangles.empty()) {
+    for (const std::string& option : command.sampling_given)
+      if (option != "seed")
+        throw InputError(fmt::format("--{} has no effect on {}, which has no faces; it is for sampling a mesh", option,
+                                     command.input.string()));
     input.points = std::move(mesh.vertices);
     return input;
   }
@@ -203,6 +207,10 @@ void write(const VoronoiCommand& command, const Input& input, const std::vector<
 
 // What can be refused before anything is built.
 void check(const VoronoiCommand& command) {
+#ifndef ORCHARD_HAS_VIZ
+  if (!command.cells.empty() || !command.box.empty())
+    throw InputError("--cells and --box have no effect: this program was built without VTK, which writes the cells");
+#endif
   if (!command.box.empty() && !(Box(Point(command.box.data()), Point(command.box.data() + 3)).volume() > 0))
     throw InputError("--box needs x y z of its lower corner, then of its upper one, with room between them");
   check_input(command.input);

@@ -57,11 +57,11 @@ Vector start_weights(const Terms& terms, std::vector<double>& weights) {
 
 BallFitter::Cut BallFitter::cut_at(const Point& center) const {
   ClosestPoint nearest;
-  const double depth = surface_.signed_distance(center, nearest);
+  const double center_distance = surface_.signed_distance(center, nearest);
   const Vector away = center - nearest.position;
   const double length = away.norm();
-  if (!(length > 0)) return {center, depth, surface_.pseudonormal(nearest.triangle, nearest.feature)};
-  return {center, depth, away / (depth < 0 ? -length : length)};
+  if (!(length > 0)) return {center, center_distance, surface_.pseudonormal(nearest.triangle, nearest.feature)};
+  return {center, center_distance, away / (center_distance < 0 ? -length : length)};
 }
 
 void BallFitter::linearise(std::span<const Point> points, const FittedBall& ball, double reach) {
@@ -82,10 +82,10 @@ void BallFitter::linearise(std::span<const Point> points, const FittedBall& ball
   }
   // A cut that claims more than the distance known here does not hold here: the surface is not convex.
   const auto value_here = [&](const Cut& cut) { return cut.value + cut.gradient.dot(ball.center - cut.at); };
-  std::erase_if(cuts_, [&](const Cut& cut) { return value_here(cut) > ball.depth + 1e-9 * ball.radius; });
+  std::erase_if(cuts_, [&](const Cut& cut) { return value_here(cut) > ball.center_distance + 1e-9 * ball.radius; });
   near_.clear();
   for (const Cut& cut : cuts_) near_.push_back({value_here(cut), cut.gradient});
-  if (near_.empty()) near_.push_back({ball.depth, Vector::Zero()});
+  if (near_.empty()) near_.push_back({ball.center_distance, Vector::Zero()});
 }
 
 // Minimises max far + max near + |step|^2 / (2 t) over the step, through the dual.
@@ -115,14 +115,14 @@ FittedBall BallFitter::fit(std::span<const Point> points, const Point& start, in
     FittedBall next{best.center + step, 0, 0};
     next.radius = radius_for(points, next.center);
     // The distance changes by no more than the step: no need to look where even that would not help.
-    if (next.radius + best.depth - length >= best.looseness()) {
+    if (next.radius + best.center_distance - length >= best.looseness()) {
       t /= 4;
       continue;
     }
     ++used;
     if (cuts_.size() == kMaxCuts) cuts_.erase(cuts_.begin());
     cuts_.push_back(cut_at(next.center));
-    next.depth = cuts_.back().value;
+    next.center_distance = cuts_.back().value;
     const double gain = best.looseness() - next.looseness();
     if (gain > 0) best = next;
     if (predicted < kWorthwhile * best.looseness()) break;

@@ -6,15 +6,15 @@
 
 namespace orchard::detail {
 
-// A ball with the signed distance of its centre. Its looseness, radius + depth, bounds Hubbard's inaccuracy from above,
-// equals it where the object is convex, and is never negative for a ball that holds a point of the surface.
+// A ball with the signed distance of its centre. Its looseness, radius + center_distance, bounds Hubbard's inaccuracy
+// from above, equals it where the object is convex, and is never negative for a ball that holds a point of the surface.
 struct FittedBall {
   Point center = Point::Zero();
   double radius = 0;
-  double depth = 0;  // signed distance of the centre, negative inside
-  double looseness() const { return radius + depth; }
+  double center_distance = 0;  // signed distance of the centre, negative inside
+  double looseness() const { return radius + center_distance; }
   // With the radius that the ball needs to reach the point, whatever it has now.
-  double looseness_with(const Point& point) const { return (point - center).norm() + depth; }
+  double looseness_with(const Point& point) const { return (point - center).norm() + center_distance; }
 };
 
 // Fits one ball to points: minimises the looseness max |p - c| + sd(c) over the centre c by a bundle method. The first

@@ -19,9 +19,9 @@ class Descent {
   Descent(SphereTree& tree, const Surface& surface, const DescentOptions& options)
       : tree_(tree), surface_(surface), options_(options), cover_(surface, path_balls(tree)) {
     const std::size_t count = tree.nodes.size();
-    depth_.resize(count);
+    center_distance_.resize(count);
     step_.assign(count, kFirstStep);
-    for (std::size_t i = 0; i < count; ++i) depth_[i] = surface.signed_distance(tree.nodes[i].sphere.center);
+    for (std::size_t i = 0; i < count; ++i) center_distance_[i] = surface.signed_distance(tree.nodes[i].sphere.center);
   }
 
   DescentReport run(const Progress& progress) {
@@ -45,22 +45,22 @@ class Descent {
  private:
   double mean_looseness() const {
     double sum = 0;
-    for (std::size_t i = 0; i < depth_.size(); ++i) sum += tree_.nodes[i].sphere.radius + depth_[i];
-    return sum / static_cast<double>(depth_.size()) / surface_.bounding_radius();
+    for (std::size_t i = 0; i < center_distance_.size(); ++i) sum += tree_.nodes[i].sphere.radius + center_distance_[i];
+    return sum / static_cast<double>(center_distance_.size()) / surface_.bounding_radius();
   }
 
   bool try_node(Index node, Random& random) {
     Sphere& ball = tree_.nodes[node].sphere;
-    const double looseness = ball.radius + depth_[node], size = step_[node] * looseness;
+    const double looseness = ball.radius + center_distance_[node], size = step_[node] * looseness;
     if (!(looseness > 0)) return false;
     Sphere next = ball;
     next.center += random.uniform() * size * random_direction(random);
-    const double depth = surface_.signed_distance(next.center);
-    // Less loose by some part of the step, whatever the centre's move did to the depth.
-    next.radius = looseness - 0.5 * random.uniform() * size - depth;
+    const double center_distance = surface_.signed_distance(next.center);
+    // Less loose by some part of the step, whatever the centre's move did to its distance.
+    next.radius = looseness - 0.5 * random.uniform() * size - center_distance;
     if (!(next.radius > 0) || !cover_.try_change(node, next)) return false;
     ball = next;
-    depth_[node] = depth;
+    center_distance_[node] = center_distance;
     return true;
   }
 
@@ -68,7 +68,7 @@ class Descent {
   const Surface& surface_;
   const DescentOptions& options_;
   IncrementalCover cover_;
-  std::vector<double> depth_, step_;
+  std::vector<double> center_distance_, step_;
 };
 
 }  // namespace

@@ -5,12 +5,15 @@
 #include "rigid_pair.h"
 #include "support_map.h"
 #include "tree/tree_nodes.h"
+#include "vector_functions.h"
 
 // Level 0: where most pairs end, so nothing is done here that only deeper levels need. In double and in the world:
 // bodies that are far apart must not overflow. Exchanging the bodies changes no bit of any result, so that equal trees
 // need no order yet.
 namespace orchard::runtime {
 
+using detail::dot;
+using detail::minus;
 using detail::Vec3;
 
 namespace {
@@ -23,8 +26,6 @@ bool before(const Pose& a, const Pose& b) noexcept {
   return a.translation != b.translation ? a.translation < b.translation : a.scale < b.scale;
 }
 
-double dot(const Vec3& a, const Vec3& b) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vec3 minus(const Vec3& a, const Vec3& b) noexcept { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 Vec3 opposite(const Vec3& v) noexcept { return {-v[0], -v[1], -v[2]}; }
 
 Vec3 turned_back(const Pose& pose, const Vec3& u) noexcept {

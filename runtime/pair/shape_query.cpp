@@ -6,9 +6,13 @@
 
 #include "tree/tree_nodes.h"
 #include "triangle_distance.h"
+#include "vector_functions.h"
 
 namespace orchard::runtime {
 
+using detail::along;
+using detail::dot;
+using detail::minus;
 using detail::orientation;
 using detail::TrianglePoints;
 using detail::Vec3;
@@ -21,12 +25,6 @@ constexpr double kRounding = 1e-12;
 constexpr double kLeastCoordinate = 0x1p-305;
 constexpr int kRays = 16;  // directions tried before contains() adds up angles
 
-Vec3 minus(const Vec3& a, const Vec3& b) noexcept { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Vec3 plus(const Vec3& a, const Vec3& d, double t) noexcept {
-  return {a[0] + t * d[0], a[1] + t * d[1], a[2] + t * d[2]};
-}
-double dot(const Vec3& a, const Vec3& b) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
 struct Segment {
   Vec3 p, d;  // from p to p + d
   double square;
@@ -38,7 +36,7 @@ double patch_distance(const PatchBlock& block, std::uint32_t lane, const Segment
   const Vec3 c = {block.x[lane], block.y[lane], block.z[lane]}, n = {block.nx[lane], block.ny[lane], block.nz[lane]};
   const Vec3 to = minus(c, s.p);
   const double t = s.square > 0 ? std::clamp(dot(to, s.d) / s.square, 0.0, 1.0) : 0;
-  const double by_ball = detail::length(minus(to, plus({0, 0, 0}, s.d, t))) - double{block.radius[lane]};
+  const double by_ball = detail::length(minus(to, along({0, 0, 0}, s.d, t))) - double{block.radius[lane]};
   const double begin = -dot(n, to), end = begin + dot(n, s.d);
   const double nearer = begin * end <= 0 ? 0 : std::min(std::fabs(begin), std::fabs(end));
   // The normal's length is 1 to within 5e-7.
@@ -107,7 +105,7 @@ bool within_reach(const Vec3& v) noexcept {  // false for what is not a number
 struct Frame {  // the body's, with its coordinates relative to the tree's origin
   explicit Frame(const TreeView& view, const Pose& body) noexcept : tree(view), pose(body), back(inverse(body)) {}
   Vec3 enter(const Vec3& world) const noexcept { return settled(minus(transform(back, world), tree.origin)); }
-  Vec3 leave(const Vec3& local) const noexcept { return transform(pose, plus(local, tree.origin, 1)); }
+  Vec3 leave(const Vec3& local) const noexcept { return transform(pose, along(local, tree.origin, 1)); }
   double rounding(const Segment& s) const noexcept {
     return kRounding * (detail::length(s.p) + detail::length(s.d) + tree.bounding_radius);
   }
@@ -148,7 +146,7 @@ Vec3 ray_direction(int i) noexcept {
     return x - std::floor(x) - 0.5;
   };
   const Vec3 v = {part(0.8191725133961645), part(0.6710436067037893), part(0.5497004779019703)};
-  return plus({0, 0, 0}, v, 1 / detail::length(v));
+  return along({0, 0, 0}, v, 1 / detail::length(v));
 }
 
 enum class Crossing { none, leaving, entering, unclear };
@@ -235,7 +233,7 @@ std::optional<RayHit> cast_ray(const TreeView& tree, const Pose& pose, const std
   if (!within_reach(from) || !std::isfinite(course.speed)) return unknown;
   if (longest < 0) return std::nullopt;
   const double end = course.speed > 0 ? std::min(course.steps(longest), reach_beyond(tree, from) / course.speed) : 0;
-  const Vec3 to = settled(plus(from, course.step, end));
+  const Vec3 to = settled(along(from, course.step, end));
   std::optional<RayHit> best;
   const Segment whole(from, to);
   const TrianglePoints shape = {from, to, to};
@@ -261,7 +259,7 @@ bool contains(const TreeView& solid, const Pose& pose, const std::array<double, 
   const Vec3 p = frame.enter(point);
   if (!within_reach(p)) return true;
   for (int ray = 0; ray < kRays; ++ray) {
-    const Vec3 q = settled(plus(p, ray_direction(ray), reach_beyond(solid, p)));
+    const Vec3 q = settled(along(p, ray_direction(ray), reach_beyond(solid, p)));
     const Segment segment(p, q);
     int winding = 0;
     bool clear = true;

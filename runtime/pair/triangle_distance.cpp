@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "vector_functions.h"
+
 namespace orchard::runtime::detail {
 namespace {
 
@@ -11,14 +13,6 @@ namespace {
 // of the length; below it, no place on the line is farther than 1e-7 of the length from the best one.
 constexpr double kParallelSineSquare = 1e-14;
 
-Vec3 minus(const Vec3& a, const Vec3& b) noexcept { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Vec3 along(const Vec3& a, const Vec3& d, double t) noexcept {
-  return {a[0] + t * d[0], a[1] + t * d[1], a[2] + t * d[2]};
-}
-double dot(const Vec3& a, const Vec3& b) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 double unit(double part, double whole) noexcept { return whole > 0 ? std::clamp(part / whole, 0.0, 1.0) : 0.0; }
 
 struct Best {

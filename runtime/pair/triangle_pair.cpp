@@ -4,19 +4,16 @@
 #include <cmath>
 #include <cstddef>
 
+#include "vector_functions.h"
+
 // Two closed triangles meet iff an edge of one meets the other one: their common part is convex, and each of its
 // extreme points lies on an edge of one of them, since interior points of both can be moved both ways along the common
 // line or plane. A triangle of zero area is the union of its edges. So segments against triangles and segments suffice.
 namespace orchard::runtime::detail {
 namespace {
 
-Vec3 minus(const Vec3& a, const Vec3& b) noexcept { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Vec3 along(const Vec3& a, const Vec3& b, double t) noexcept {
+Vec3 between(const Vec3& a, const Vec3& b, double t) noexcept {
   return {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2])};
-}
-double dot(const Vec3& a, const Vec3& b) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 double ratio(double part, double whole) noexcept { return whole > 0 ? std::clamp(part / whole, 0.0, 1.0) : 0.0; }
 
@@ -25,19 +22,19 @@ double ratio(double part, double whole) noexcept { return whole > 0 ? std::clamp
 Vec3 crossing_point(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept {
   const Vec3 normal = cross(minus(t[1], t[0]), minus(t[2], t[0]));
   const double hp = std::fabs(dot(normal, minus(p, t[0]))), hq = std::fabs(dot(normal, minus(q, t[0])));
-  return along(p, q, ratio(hp, hp + hq));
+  return between(p, q, ratio(hp, hp + hq));
 }
 
 Vec3 closest_on_segment(const Vec3& point, const Vec3& a, const Vec3& b) noexcept {
   const Vec3 ab = minus(b, a);
-  return along(a, b, ratio(dot(minus(point, a), ab), dot(ab, ab)));
+  return between(a, b, ratio(dot(minus(point, a), ab), dot(ab, ab)));
 }
 
 // The point of pq closest to ab, for segments that meet: at an end of one of them, or where their lines cross.
 Vec3 meeting_point(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) noexcept {
   const Vec3 u = minus(q, p), v = minus(b, a), w = minus(a, p), n = cross(u, v);
   const Vec3 candidates[] = {p, q, closest_on_segment(a, p, q), closest_on_segment(b, p, q),
-                             along(p, q, ratio(dot(cross(w, v), n), dot(n, n)))};
+                             between(p, q, ratio(dot(cross(w, v), n), dot(n, n)))};
   const auto distance = [&a, &b](const Vec3& x) {
     const Vec3 d = minus(x, closest_on_segment(x, a, b));
     return dot(d, d);

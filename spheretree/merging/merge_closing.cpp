@@ -28,9 +28,10 @@ class Closer {
         radius_(surface.bounding_radius()),
         margin_(tolerance::kCoverMargin * radius_),
         fitters_([&surface] { return BallFitter(surface); }) {
-    depth_.resize(tree.nodes.size());
-    tbb::parallel_for(std::size_t{0}, depth_.size(),
-                      [&](std::size_t i) { depth_[i] = surface_.signed_distance(tree_.nodes[i].sphere.center); });
+    center_distance_.resize(tree.nodes.size());
+    tbb::parallel_for(std::size_t{0}, center_distance_.size(), [&](std::size_t i) {
+      center_distance_[i] = surface_.signed_distance(tree_.nodes[i].sphere.center);
+    });
   }
 
   ClosingReport run() {
@@ -83,7 +84,7 @@ class Closer {
   void refit(Index i) {
     const FittedBall fitted = fitters_.local().fit(held_[i], tree_.nodes[i].sphere.center, kTakerEvaluations);
     tree_.nodes[i].sphere = {fitted.center, fitted.radius + margin_};
-    depth_[i] = fitted.depth;
+    center_distance_[i] = fitted.center_distance;
   }
 
   // Of the leaves below the node whose path region, but for the leaf itself, holds the points: the one that they cost
@@ -98,7 +99,7 @@ class Closer {
       return;
     }
     const double growth = std::max(0.0, std::sqrt(reach) - node.sphere.radius) / radius_;
-    const double loose = std::max(0.0, node.sphere.radius + depth_[index]) / radius_;
+    const double loose = std::max(0.0, node.sphere.radius + center_distance_[index]) / radius_;
     const double rise = std::pow(loose + growth, power_) - std::pow(loose, power_) + kTakerTie * growth;
     if (rise < best.rise) best = {index, rise};
   }
@@ -107,7 +108,7 @@ class Closer {
   const Surface& surface_;
   std::vector<std::vector<Point>>& held_;
   const double power_, radius_, margin_;
-  std::vector<double> depth_;  // signed distances of the centres
+  std::vector<double> center_distance_;  // signed distances of the centres
   tbb::enumerable_thread_specific<BallFitter> fitters_;
 };
 

@@ -167,7 +167,7 @@ class Fit {
 
   void lose_cheapest() {
     Siblings state = std::move(best_state_);
-    state.balls[cheapest_to_lose(state)[0]].depth = kInfinity;  // gets no points
+    state.balls[cheapest_to_lose(state)[0]].center_distance = kInfinity;  // gets no points
     best_state_ = {};
     best_ = kInfinity;
     improve(state, kRoundsOfExchange, false);
@@ -188,7 +188,7 @@ class Fit {
       if (++tried > kVictims) break;
       Siblings state = best_state_;
       split(state, loosest);
-      state.balls[lost].depth = kInfinity;
+      state.balls[lost].center_distance = kInfinity;
       if (improve(state, kRoundsOfExchange, false)) return true;
     }
     return false;

@@ -42,7 +42,7 @@ class LevelStart {
     for (Index seeds = 0; seeds < samples_.size() && balls_.size() < options_.balls; ++seeds) {
       LevelBall ball;
       ball.center = samples_.starts[next];
-      ball.depth = surface_.signed_distance(ball.center);
+      ball.center_distance = surface_.signed_distance(ball.center);
       ball.path_region = region_for_seed(ball, next);
       if (ball.path_region != kNone) {
         for (Index s : regions_.samples_in(ball.path_region))
@@ -95,7 +95,7 @@ class LevelStart {
     ++children_[loosest.path_region];
     unused.path_region = loosest.path_region;
     unused.center = samples_.starts[far];
-    unused.depth = surface_.signed_distance(unused.center);
+    unused.center_distance = surface_.signed_distance(unused.center);
   }
 
   // The ball that gets least loose by each sample; kNone if no ball lies in a path region of it.

@@ -101,7 +101,7 @@ class Proposal {
     const Index sample = samples[random_.below(samples.size())];
     ball.center = samples_.starts[sample];
     if (random_.uniform() < 0.3) ball.center = 0.5 * (ball.center + samples_.points[sample]);
-    ball.depth = surface_.signed_distance(ball.center);
+    ball.center_distance = surface_.signed_distance(ball.center);
     const std::vector<Index>& regions = regions_.regions_of(sample);
     ball.path_region = regions[random_.below(regions.size())];
   }

@@ -67,7 +67,7 @@ LevelCost cost_for(Objective objective, Index level, Index depth, Effort effort)
 struct Candidate {
   PartialTree partial;
   double objective;
-  std::vector<double> depths;  // signed distances of the last level's centres
+  std::vector<double> center_distances;  // signed distances of the last level's centres
   TightenReport::Level report;
 };
 
@@ -122,7 +122,7 @@ class Tightener {
     reports.back().seconds_closing = closing;
     for (std::size_t i = 0; i < partial_.last().size(); ++i) {
       LevelNode& node = partial_.last()[i];
-      node.leaf = node.sphere.radius + best->depths[i] <= options_.refinement.allowed(node.sphere);
+      node.leaf = node.sphere.radius + best->center_distances[i] <= options_.refinement.allowed(node.sphere);
     }
     return true;
   }
@@ -148,7 +148,7 @@ class Tightener {
         [&](std::string_view stage, double fraction) { return progress(stage, 0.4 + 0.6 * fraction); }};
     detail::finish_level(surface_, solver, result.partial, finish, result.report);
     result.objective = solver.cost();
-    for (const detail::LevelBall& ball : solver.balls()) result.depths.push_back(ball.depth);
+    for (const detail::LevelBall& ball : solver.balls()) result.center_distances.push_back(ball.center_distance);
     result.report.balls = static_cast<Index>(solver.balls().size());
     result.report.seconds_search = std::chrono::duration<double>(middle - start).count();
     result.report.seconds_closing = std::chrono::duration<double>(std::chrono::steady_clock::now() - middle).count();

@@ -78,37 +78,6 @@ TEST(Build, RefusesAnAxisThatItHasNoUseFor) {
   }
 }
 
-TEST(Build, RefusesOptionsThatWouldHaveNoEffect) {
-  const Workplace here;
-  const std::string mesh = here.add("l.obj", test::l_shape()), file = here.add("p.xyz", std::string("0 0 0\n"));
-  const struct {
-    std::vector<std::string> options;
-    const char* fault;
-  } cases[] = {
-      {{"--method", "octree", "--effort", "low"}, "--effort has no effect on --method octree"},
-      {{"--method", "merging", "--effort", "high"}, "it is for tightened and annealing"},
-      {{"--method", "annealing", "--objective", "mean"}, "it is for tightened"},
-      {{"--closing", "growth"}, "--closing has no effect on --method tightened; it is for merging"},
-      {{"--energy", "sum"}, "it is for annealing"},
-      {{"--method", "octree", "--gaps", "none"}, "--gaps has no effect on --method octree, which builds from no"},
-      {{"--method", "octree", "--samples", "500"}, "it is for tightened and merging"},
-      {{"--method", "annealing", "--prune-angle", "20"}, "--prune-angle has no effect on --method annealing"},
-      {{"--method", "annealing", "--points", file}, "--points has no effect on --method annealing"},
-      {{"--points", file, "--samples", "500"}, "--samples has no effect with --points"},
-      {{"--diagram", file, "--gaps", "none"}, "--gaps has no effect with --diagram"},
-      {{"--from-axis", file, "--topology", "free"}, "--topology has no effect with --from-axis"}};
-  for (const auto& [options, fault] : cases) {
-    std::vector<std::string> arguments{"build", mesh, "-o", (here / "out").string(), "--no-views"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    const Finished run = here.run(arguments);
-    EXPECT_EQ(run.exit_code, 2) << fault;
-    EXPECT_TRUE(test::is_one_line_error(run.err)) << run.err;
-    EXPECT_NE(run.err.find(fault), std::string::npos) << run.err;
-    EXPECT_FALSE(std::filesystem::exists(here / "out"));
-  }
-  EXPECT_EQ(here.run(test::quick_build(mesh, (here / "out").string(), {"--seed", "3"})).exit_code, 0);
-}
-
 TEST(Build, CountsTheSurfacePointsThatItWasGiven) {
   const Workplace here;
   const std::string mesh = here.add("l.obj", test::l_shape()), out = (here / "out").string();

@@ -174,12 +174,7 @@ TEST(Medial, GivesTheSameBytesOnAnyNumberOfThreads) {
 
 // Two boxes that cut each other: no gap between their sheets could be mended.
 TriangleMesh crossed_boxes() {
-  TriangleMesh mesh = test::box({0, 0, 0}, {3, 1, 1});
-  const TriangleMesh other = test::box({1.1, -1.2, 0.2}, {1.9, 2.1, 0.8});
-  const Index first = static_cast<Index>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
-  for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + first, b + first, c + first});
-  return mesh;
+  return test::joined({test::box({0, 0, 0}, {3, 1, 1}), test::box({1.1, -1.2, 0.2}, {1.9, 2.1, 0.8})});
 }
 
 TEST(Medial, WarnsInOneLineOfAMeshThatCutsItselfAndNamesTheWayOut) {

@@ -67,22 +67,6 @@ Sampled sampled_distance(const TriangleMesh& from, const TriangleMesh& to) {
 // --- broken meshes
 // -----------------------------------------------------------------------------------------------------
 
-void append(TriangleMesh& mesh, const TriangleMesh& other) {
-  const auto first = static_cast<Index>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
-  for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + first, b + first, c + first});
-}
-
-TriangleMesh soup(const TriangleMesh& mesh) {
-  TriangleMesh result;
-  for (const auto& corners : mesh.triangles) {
-    const auto first = static_cast<Index>(result.vertices.size());
-    for (const Index vertex : corners) result.vertices.push_back(mesh.vertices[vertex]);
-    result.triangles.push_back({first, first + 1, first + 2});
-  }
-  return result;
-}
-
 // A vertex in the middle of an edge of one of its two triangles, and the triangle without area between them.
 void add_sliver(TriangleMesh& mesh, std::size_t triangle) {
   const auto [a, b, c] = mesh.triangles[triangle];
@@ -133,8 +117,9 @@ TriangleMesh broken(std::uint64_t seed) {
   }
   if (random.below(3) == 0) mesh.triangles.push_back(mesh.triangles[any()]);
   if (random.below(4) == 0) mesh = test::mirrored(std::move(mesh));
-  if (random.below(4) == 0) append(mesh, test::transformed(test::icosphere(1), 0.01 * size, size * Vector(30, 0, 0)));
-  if (random.below(3) == 0) mesh = soup(mesh);
+  if (random.below(4) == 0)
+    mesh = test::joined({mesh, test::transformed(test::icosphere(1), 0.01 * size, size * Vector(30, 0, 0))});
+  if (random.below(3) == 0) mesh = test::soup(mesh);
   return mesh;
 }
 
@@ -227,9 +212,9 @@ TEST(Repair, OfAHoleIsAsFarFromTheInputAsTheFillReaches) {
 
 TEST(Repair, ThatOnlyTurnsAndWeldsMovesNothing) {
   const Workplace here;
-  TriangleMesh hollow = test::box({0, 0, 0}, {4, 4, 4});
-  append(hollow, test::box({1, 1, 1}, {2, 2, 2}));  // faces outward, but is a cavity
-  for (const auto& [name, mesh] : {std::pair{"soup.obj", soup(test::l_shape())},
+  // Its cavity faces outward.
+  const TriangleMesh hollow = test::joined({test::box({0, 0, 0}, {4, 4, 4}), test::box({1, 1, 1}, {2, 2, 2})});
+  for (const auto& [name, mesh] : {std::pair{"soup.obj", test::soup(test::l_shape())},
                                    {"turned.obj", test::mirrored(test::torus(12, 8))},
                                    {"hollow.obj", hollow}}) {
     const Finished run = here.run({"build", here.add(name, mesh), "-o", (here / "out").string(), "--method", "octree",

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "orchard/geometry/sampling.h"
 #include "orchard/geometry/surface.h"
 #include "program.h"
 #include "support/shapes.h"
@@ -33,6 +34,20 @@ TEST(Sample, WritesPointsOfTheSurface) {
   EXPECT_NEAR(static_cast<double>(points.size()), 500, 25);
   const Surface surface(mesh);
   for (const Point& point : points) EXPECT_LT(surface.distance(point), 1e-12);
+}
+
+// A ring of twelve sides, whose edges turn by 30 degrees but for rounding, is where two opinions of an edge would show.
+TEST(Sample, SpreadsThePointsOfTheLibrarysStandards) {
+  const Workplace here;
+  const TriangleMesh mesh = test::torus(24, 12);
+  const Finished run = here.run({"sample", here.add("ring.obj", mesh), "-o", (here / "out").string(), "--samples",
+                                 "500", "--relaxation", "neighbors", "--quiet", "--no-views"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const std::vector<Point> points = points_of(here.files("out").at("ring.xyz"));
+  const SurfaceSampling wanted =
+      sample_surface(Surface(mesh), {.face_points = 400, .edge_points = 100, .relaxation = Relaxation::neighbors});
+  ASSERT_EQ(points.size(), wanted.size());
+  for (std::size_t i = 0; i < points.size(); ++i) EXPECT_LT((points[i] - wanted.points[i]).norm(), 1e-12) << i;
 }
 
 TEST(Sample, SpreadsPointsMoreEvenlyByRelaxing) {

@@ -6,17 +6,6 @@
 
 namespace orchard::runtime::test {
 
-std::uint64_t Draw::bits() {
-  std::uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return z ^ (z >> 31);
-}
-
-double Draw::uniform(double lower, double upper) {
-  return lower + (upper - lower) * (static_cast<double>(bits() >> 11) * 0x1p-53);
-}
-
 Vec3 Draw::direction() {
   const double z = uniform(-1, 1), angle = uniform(0, 2 * std::numbers::pi), across = std::sqrt(1 - z * z);
   return {across * std::cos(angle), across * std::sin(angle), z};

@@ -2,21 +2,17 @@
 #include <cstdint>
 #include <vector>
 
+#include "../runtime/split_mix.h"
 #include "orchard/runtime/broad_phase.h"
 
 // Bodies that move within bounds they announce, for tests and benchmarks.
 namespace orchard::runtime::test {
 
-class Draw {  // splitmix64: a stream of numbers per seed
+class Draw : public SplitMix {
  public:
-  explicit Draw(std::uint64_t seed) : state_(seed) {}
-  std::uint64_t bits();
-  double uniform(double lower, double upper);
+  using SplitMix::SplitMix;
   Vec3 direction();
   Vec3 in_ball(double radius);
-
- private:
-  std::uint64_t state_;
 };
 
 struct WorldShape {

@@ -13,16 +13,6 @@ using Triangle = std::array<Index, 3>;
 
 TriangleMesh unit_box() { return box(Point(0, 0, 0), Point(1, 1, 1)); }
 
-TriangleMesh joined(std::initializer_list<TriangleMesh> parts) {
-  TriangleMesh mesh;
-  for (const TriangleMesh& part : parts) {
-    const Index first = static_cast<Index>(mesh.vertices.size());
-    mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
-    for (const auto& [a, b, c] : part.triangles) mesh.triangles.push_back({a + first, b + first, c + first});
-  }
-  return mesh;
-}
-
 TriangleMesh welded(const TriangleMesh& mesh) {
   TriangleMesh result;
   for (Triangle t : mesh.triangles) {
@@ -35,16 +25,6 @@ TriangleMesh welded(const TriangleMesh& mesh) {
     result.triangles.push_back(t);
   }
   return result;
-}
-
-TriangleMesh soup(const TriangleMesh& mesh) {
-  TriangleMesh bag;
-  for (const Triangle& t : mesh.triangles) {
-    const Index first = static_cast<Index>(bag.vertices.size());
-    for (const Index vertex : t) bag.vertices.push_back(mesh.vertices[vertex]);
-    bag.triangles.push_back({first, first + 1, first + 2});
-  }
-  return bag;
 }
 
 TriangleMesh turned(TriangleMesh mesh) {

@@ -9,11 +9,8 @@
 namespace orchard::test {
 
 TriangleMesh unit_box();
-TriangleMesh joined(std::initializer_list<TriangleMesh> parts);
 // Vertices at the same place become one, as in a file without connectivity that a reader welds.
 TriangleMesh welded(const TriangleMesh& mesh);
-// Three vertices of its own for each triangle.
-TriangleMesh soup(const TriangleMesh& mesh);
 TriangleMesh turned(TriangleMesh mesh);
 TriangleMesh with(TriangleMesh mesh, std::initializer_list<std::array<Index, 3>> triangles);
 

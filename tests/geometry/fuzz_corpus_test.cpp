@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <vector>
 
 #include "../fuzz/reader_entry.h"
 #include "orchard/geometry/random.h"
+#include "support/corpus.h"
 
 namespace orchard {
 namespace {
@@ -29,19 +28,10 @@ const Format kFormats[] = {{"obj", read_obj},
                            {"ply", read_ply_or_points, test::read_point_bytes},
                            {"xyz", read_xyz, test::read_point_bytes}};
 
-using Bytes = std::vector<std::uint8_t>;
+using test::Bytes;
 
-// In the order of their names.
 std::vector<std::pair<std::string, Bytes>> corpus(const Format& format) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(fs::path(ORCHARD_FUZZ_CORPUS) / format.name)) files.push_back(entry);
-  std::ranges::sort(files);
-  std::vector<std::pair<std::string, Bytes>> result;
-  for (const fs::path& file : files) {
-    std::ifstream stream(file, std::ios::binary);
-    result.emplace_back(file.filename().string(), Bytes(std::istreambuf_iterator<char>(stream), {}));
-  }
-  return result;
+  return test::corpus(fs::path(ORCHARD_FUZZ_CORPUS) / format.name);
 }
 
 TEST(FuzzCorpus, GivesAMeshOrAnInputError) {
@@ -74,20 +64,7 @@ TEST(FuzzCorpus, SurvivesRandomDamage) {
     for (const auto& [name, bytes] : corpus(format)) {
       for (int trial = 0; trial < 200; ++trial) {
         Random random(1, 2, item++);
-        Bytes damaged = bytes;
-        for (std::uint64_t edits = 1 + random.below(3); edits > 0 && !damaged.empty(); --edits) {
-          const auto at = damaged.begin() + static_cast<std::ptrdiff_t>(random.below(damaged.size()));
-          switch (random.below(3)) {
-            case 0:
-              *at = static_cast<std::uint8_t>(random.bits());
-              break;
-            case 1:
-              damaged.erase(at);
-              break;
-            default:
-              damaged.insert(at, damaged[random.below(damaged.size())]);
-          }
-        }
+        const Bytes damaged = test::damaged(bytes, random);
         ASSERT_NO_THROW(format.read(format.reader, damaged.data(), damaged.size()))
             << format.name << name << " item " << item - 1;
       }

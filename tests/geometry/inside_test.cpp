@@ -24,13 +24,6 @@ namespace fs = std::filesystem;
 
 Vector in_cube(Random& random) { return {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}; }
 
-TriangleMesh joined(TriangleMesh mesh, const TriangleMesh& other) {
-  const Index first = static_cast<Index>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
-  for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + first, b + first, c + first});
-  return mesh;
-}
-
 // Folds everywhere: places that the surface surrounds twice, or the wrong way round.
 TriangleMesh crumpled(TriangleMesh mesh, double amplitude, std::uint64_t seed) {
   Random random(seed, 21);
@@ -51,7 +44,7 @@ TriangleMesh lattice_boxes(std::uint64_t seed) {
     }
     TriangleMesh box = test::box(lower, upper);
     if (random.below(4) == 0) box = test::mirrored(std::move(box));
-    TriangleMesh more = joined(mesh, box);
+    TriangleMesh more = test::joined({mesh, box});
     if (check_mesh(more).solid()) mesh = std::move(more);
   }
   return mesh;
@@ -138,7 +131,7 @@ TEST(Inside, IsWhereBoxesOnALatticeWindAround) {
 
 // Needs the winding number: pseudonormals call the shell between the two outside, and the overlap a matter of luck.
 TEST(Inside, IsWhatIsSurroundedHoweverOften) {
-  const Surface nested(joined(test::icosphere(2, 2), test::icosphere(2, 1)));
+  const Surface nested(test::joined({test::icosphere(2, 2), test::icosphere(2, 1)}));
   ASSERT_TRUE(nested.solid());
   EXPECT_TRUE(nested.self_intersections().empty());
   EXPECT_EQ(nested.winding_number({0, 0, 0}), 2);
@@ -147,7 +140,7 @@ TEST(Inside, IsWhatIsSurroundedHoweverOften) {
   EXPECT_LT(nested.signed_distance({0, 0, 0.5}), 0);
   EXPECT_GT(nested.signed_distance({0, 0, 2.5}), 0);
 
-  const Surface hollow(joined(test::icosphere(2, 2), test::mirrored(test::icosphere(2, 1))));
+  const Surface hollow(test::joined({test::icosphere(2, 2), test::mirrored(test::icosphere(2, 1))}));
   EXPECT_EQ(hollow.winding_number({0, 0, 0}), 0);
   EXPECT_GT(hollow.signed_distance({0, 0, 0.5}), 0);
   EXPECT_LT(hollow.signed_distance({0, 0, 1.1}), 0);

@@ -39,18 +39,11 @@ std::vector<Solid> solids() {
           {"touching boxes with vertices of their own", test::two_boxes(0), 2, 4, 12, 2}};
 }
 
-void append(TriangleMesh& mesh, const TriangleMesh& other) {
-  const Index first = static_cast<Index>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
-  for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + first, b + first, c + first});
-}
-
 TriangleMesh unit_box() { return test::box(Point(0, 0, 0), Point(1, 1, 1)); }
 
 // Two boxes that share the vertices that coincide.
 TriangleMesh joined_boxes(const Vector& offset) {
-  TriangleMesh mesh = unit_box();
-  append(mesh, test::transformed(unit_box(), 1, offset));
+  TriangleMesh mesh = test::joined({unit_box(), test::transformed(unit_box(), 1, offset)});
   for (Triangle& triangle : mesh.triangles) {
     for (Index& corner : triangle) {
       for (Index other = 0; other < 8; ++other) {
@@ -169,7 +162,7 @@ TEST(MeshCheck, CountsUnusedVerticesWithoutBlame) {
 
 TEST(MeshCheck, AcceptsACavity) {
   TriangleMesh mesh = unit_box();
-  append(mesh, test::mirrored(test::box(Point(-0.75, 0.25, 0.25), Point(-0.25, 0.75, 0.75))));
+  mesh = test::joined({mesh, test::mirrored(test::box(Point(-0.75, 0.25, 0.25), Point(-0.25, 0.75, 0.75)))});
   const MeshReport report = check_mesh(mesh);
   EXPECT_TRUE(report.solid());
   EXPECT_DOUBLE_EQ(report.volume, 1 - 0.125);
@@ -180,7 +173,7 @@ TEST(MeshCheck, AcceptsACavity) {
 
 TEST(MeshCheck, TellsAPartTurnedInsideOutFromACavity) {
   TriangleMesh mesh = test::box(Point(0, 0, 0), Point(2, 1, 1));
-  append(mesh, test::mirrored(test::box(Point(-4, 0, 0), Point(-3, 1, 1))));
+  mesh = test::joined({mesh, test::mirrored(test::box(Point(-4, 0, 0), Point(-3, 1, 1)))});
   for (const bool turned : {false, true}) {
     const MeshReport report = check_mesh(mesh);
     EXPECT_EQ(report.inside_out_components, 1u);
@@ -256,7 +249,7 @@ TEST(RequireSolid, SaysInOneSentenceWhatIsWrong) {
   collapsed.triangles.push_back({0, 1, 1});
   mixed.triangles.push_back({0, 2, 3});
   TriangleMesh half_turned = unit_box();
-  append(half_turned, test::mirrored(test::box(Point(-9, 0, 0), Point(-8, 2, 2))));
+  half_turned = test::joined({half_turned, test::mirrored(test::box(Point(-9, 0, 0), Point(-8, 2, 2)))});
   const struct {
     const char* name;
     TriangleMesh mesh;

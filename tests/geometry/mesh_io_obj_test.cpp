@@ -147,7 +147,8 @@ TEST(ReadObj, NamesTheLineAndTheFault) {
       {four + "f 1 2 " + std::string(1000, 'a'), {"line 5", "aaa...\""}},
   };
   for (const auto& [text, parts] : cases) {
-    for (const std::string& part : parts) test::expect_input_error([&] { read(text); }, {"mesh.obj", part});
+    for (const std::string& part : parts)
+      test::expect_input_error([&, &text = text] { read(text); }, {"mesh.obj", part});
   }
 }
 

@@ -188,7 +188,8 @@ TEST(ReadPly, NamesTheLineAndTheFaultOfAsciiFiles) {
       {"ply\nformat ascii 1.0\nelement nothing 999999999999\nend_header\n", {"no faces"}},
   };
   for (const auto& [text, parts] : cases) {
-    for (const std::string& part : parts) test::expect_input_error([&] { read(text); }, {"mesh.ply", part});
+    for (const std::string& part : parts)
+      test::expect_input_error([&, &text = text] { read(text); }, {"mesh.ply", part});
   }
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "broken_meshes.h"
 #include "orchard/geometry/mesh_check.h"
@@ -48,23 +49,27 @@ TEST(RepairMesh, MakesASolidOfWhatHasOneMeaning) {
   }
 }
 
+constexpr std::pair<const char*, Index MeshRepairReport::*> kCounts[] = {
+    {"vertices welded", &MeshRepairReport::vertices_welded},
+    {"unused vertices dropped", &MeshRepairReport::unused_vertices_dropped},
+    {"degenerate dropped", &MeshRepairReport::degenerate_dropped},
+    {"neighbors split", &MeshRepairReport::neighbors_split},
+    {"duplicates dropped", &MeshRepairReport::duplicates_dropped},
+    {"flipped", &MeshRepairReport::flipped},
+    {"edges cut", &MeshRepairReport::edges_cut},
+    {"vertices split", &MeshRepairReport::vertices_split},
+    {"holes filled", &MeshRepairReport::holes_filled},
+    {"triangles added", &MeshRepairReport::triangles_added},
+    {"parts turned outward", &MeshRepairReport::parts_turned_outward},
+    {"cavities turned inward", &MeshRepairReport::cavities_turned_inward},
+};
+
 TEST(RepairMesh, CountsWhatItDid) {
   for (const test::BrokenMesh& broken : test::repairable()) {
     if (MeshRepairReport{broken.expected}.lines().empty()) continue;
     TriangleMesh mesh = broken.mesh;
     const MeshRepairReport report = repair_mesh(mesh), &expected = broken.expected;
-    EXPECT_EQ(report.vertices_welded, expected.vertices_welded) << broken.name;
-    EXPECT_EQ(report.unused_vertices_dropped, expected.unused_vertices_dropped) << broken.name;
-    EXPECT_EQ(report.degenerate_dropped, expected.degenerate_dropped) << broken.name;
-    EXPECT_EQ(report.neighbors_split, expected.neighbors_split) << broken.name;
-    EXPECT_EQ(report.duplicates_dropped, expected.duplicates_dropped) << broken.name;
-    EXPECT_EQ(report.flipped, expected.flipped) << broken.name;
-    EXPECT_EQ(report.edges_cut, expected.edges_cut) << broken.name;
-    EXPECT_EQ(report.vertices_split, expected.vertices_split) << broken.name;
-    EXPECT_EQ(report.holes_filled, expected.holes_filled) << broken.name;
-    EXPECT_EQ(report.triangles_added, expected.triangles_added) << broken.name;
-    EXPECT_EQ(report.parts_turned_outward, expected.parts_turned_outward) << broken.name;
-    EXPECT_EQ(report.cavities_turned_inward, expected.cavities_turned_inward) << broken.name;
+    for (const auto& [name, count] : kCounts) EXPECT_EQ(report.*count, expected.*count) << broken.name << ": " << name;
   }
 }
 

@@ -25,13 +25,6 @@ TriangleMesh mesh_of(std::initializer_list<Triangle> triangles) {
   return mesh;
 }
 
-TriangleMesh joined(TriangleMesh mesh, const TriangleMesh& other) {
-  const Index first = static_cast<Index>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
-  for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + first, b + first, c + first});
-  return mesh;
-}
-
 TEST(SelfIntersections, AreFoundWherePairsOfTrianglesMeetBeyondWhatTheyShare) {
   const Triangle flat{Point(0, 0, 0), Point(2, 0, 0), Point(0, 2, 0)};
   const struct {
@@ -118,12 +111,12 @@ TEST(MeshDetails, CountsLoopsDuplicatesAndHandles) {
   } cases[] = {
       {"box", box, 0, 0, 0, 0},
       {"torus", torus, 0, 0, 0, 1},
-      {"two tori", joined(torus, test::transformed(torus, 1, Vector(9, 0, 0))), 0, 0, 0, 2},
+      {"two tori", test::joined({torus, test::transformed(torus, 1, Vector(9, 0, 0))}), 0, 0, 0, 2},
       {"open box", test::open_box(), 1, 0, 0, -1},
       {"lone triangle", lone, 1, 0, 0, -1},
       {"three triangles that touch at a vertex", touching, 3, 0, 0, -1},
       {"two boxes side by side", test::two_boxes(0), 0, 2, 4, 0},
-      {"box twice", joined(box, box), 0, 12, 8, 0},
+      {"box twice", test::joined({box, box}), 0, 12, 8, 0},
   };
   for (const auto& [name, mesh, loops, duplicates, coincident, genus] : cases) {
     const MeshDetails details = mesh_details(mesh, check_mesh(mesh));

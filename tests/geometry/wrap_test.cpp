@@ -13,13 +13,6 @@
 namespace orchard {
 namespace {
 
-TriangleMesh joined(TriangleMesh mesh, const TriangleMesh& other) {
-  const Index first = static_cast<Index>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
-  for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + first, b + first, c + first});
-  return mesh;
-}
-
 double diagonal(const TriangleMesh& mesh) {
   Box box;
   for (const Point& vertex : mesh.vertices) box.extend(vertex);
@@ -45,9 +38,9 @@ std::vector<Case> dirty_meshes() {
       {"triangles turned round", turned},
       {"a wall inside and a degenerate triangle", walled},
       {"parts that cut each other",
-       joined(test::icosphere(2), test::transformed(test::torus(20, 9), 1, Vector(0.3, 0, 0)))},
+       test::joined({test::icosphere(2), test::transformed(test::torus(20, 9), 1, Vector(0.3, 0, 0))})},
       {"parts apart", test::two_boxes(0.4)},
-      {"a shell in a shell", joined(test::icosphere(2), test::icosphere(2, 0.5))},
+      {"a shell in a shell", test::joined({test::icosphere(2), test::icosphere(2, 0.5)})},
       {"a lone triangle", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}},
       {"far from the origin", test::transformed(test::open_box(), 1, Vector(1e4, 0, -1e4))},
       {"tiny", test::transformed(test::open_box(), 1e-6, Vector::Zero())},

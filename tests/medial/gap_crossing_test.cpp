@@ -117,11 +117,8 @@ TEST(GapRepair, FindsTheHoleOfAThinRing) {
 }
 
 TEST(GapRepair, FindsAComponentThatNoPointLiesOn) {
-  TriangleMesh mesh = test::box({0, 0, 0}, {1, 1, 1});
-  const TriangleMesh speck = test::box({1.5, 0.5, 0.5}, {1.52, 0.52, 0.52});
-  for (const auto& [a, b, c] : speck.triangles) mesh.triangles.push_back({a + 8, b + 8, c + 8});
-  mesh.vertices.insert(mesh.vertices.end(), speck.vertices.begin(), speck.vertices.end());
-  const Surface surface(std::move(mesh));
+  const Surface surface(
+      test::joined({test::box({0, 0, 0}, {1, 1, 1}), test::box({1.5, 0.5, 0.5}, {1.52, 0.52, 0.52})}));
   SurfaceSampling sampling = sample_surface(surface, points(500, 100)), kept;
   for (Index i = 0; i < sampling.size(); ++i) {
     if (sampling.points[i].x() > 1.2) continue;

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "support/shapes.h"
+
 namespace orchard::test {
 namespace {
 
@@ -33,23 +35,7 @@ std::vector<std::array<Index, 3>> triangulated(const Outline& outline) {
 
 }  // namespace
 
-TriangleMesh extruded(const Outline& outline, double height) {
-  TriangleMesh mesh;
-  const Index size = static_cast<Index>(outline.size());
-  for (const double z : {0.0, height}) {
-    for (const auto& corner : outline) mesh.vertices.emplace_back(corner[0], corner[1], z);
-  }
-  for (const auto& [a, b, c] : triangulated(outline)) {
-    mesh.triangles.push_back({a, c, b});
-    mesh.triangles.push_back({a + size, b + size, c + size});
-  }
-  for (Index i = 0; i < size; ++i) {
-    const Index next = (i + 1) % size;
-    mesh.triangles.push_back({i, next, next + size});
-    mesh.triangles.push_back({i, next + size, i + size});
-  }
-  return mesh;
-}
+TriangleMesh extruded(const Outline& outline, double height) { return prism(outline, triangulated(outline), height); }
 
 Outline thin_bridge(double thickness) {
   const double low = 1 - thickness / 2, high = 1 + thickness / 2;

@@ -60,17 +60,10 @@ TEST(ComplexTopology, OfClosedSheets) {
   EXPECT_EQ(topology(complex_of(6, {}, divided)), betti(1, 0, 2));
 }
 
-TriangleMesh with(TriangleMesh mesh, const TriangleMesh& other) {
-  const Index shift = static_cast<Index>(mesh.vertices.size());
-  for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + shift, b + shift, c + shift});
-  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
-  return mesh;
-}
-
 TriangleMesh hollow_box() {
   TriangleMesh cavity = test::box({0.3, 0.3, 0.4}, {0.6, 0.6, 0.6});
   for (auto& corners : cavity.triangles) std::swap(corners[0], corners[1]);
-  return with(test::box({0, 0, 0}, {1, 1, 1}), cavity);
+  return test::joined({test::box({0, 0, 0}, {1, 1, 1}), cavity});
 }
 
 TEST(SolidTopology, CountsComponentsHandlesAndCavities) {
@@ -129,7 +122,8 @@ TEST(AxisTopology, IsKeptWhereGapsWereNotMended) {
 }
 
 TEST(GapRepairAtCuts, AddsNoPointsWhereSheetsCross) {
-  const Surface surface(with(test::box({0, 0, 0}, {1, 1, 1}), test::box({0.53, 0.31, 0.27}, {1.61, 0.69, 0.73})));
+  const Surface surface(
+      test::joined({test::box({0, 0, 0}, {1, 1, 1}), test::box({0.53, 0.31, 0.27}, {1.61, 0.69, 0.73})}));
   ASSERT_TRUE(surface.solid());
   SurfaceSampling sampling = sample_surface(surface, {.face_points = 800, .edge_points = 200});
   VoronoiDiagram diagram = exact_voronoi(sampling.points).diagram;

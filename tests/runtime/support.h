@@ -5,6 +5,7 @@
 
 #include "orchard/runtime/packed_tree.h"
 #include "orchard/runtime/pose.h"
+#include "split_mix.h"
 
 // Meshes, trees and slow oracles for the run-time's tests: nothing here uses the construction libraries.
 namespace orchard::runtime::test {
@@ -25,17 +26,11 @@ Mesh spikes(std::uint64_t seed, int around, int across);  // a sphere whose vert
 Mesh soup(std::uint64_t seed, int triangles);             // open, self-intersecting, some triangles degenerate
 Mesh scaled(Mesh mesh, double scale);
 
-// Counter-free small generator: the tests need streams, not the library's item numbering.
-class Draw {
+class Draw : public SplitMix {
  public:
-  explicit Draw(std::uint64_t seed) : state_(seed) {}
-  std::uint64_t bits();
-  double uniform(double lower, double upper);
+  using SplitMix::SplitMix;
   Vec direction();
   Pose pose(double distance);  // a random rotation, and a translation of that length
-
- private:
-  std::uint64_t state_;
 };
 
 struct TreeOptions {

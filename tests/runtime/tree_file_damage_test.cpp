@@ -75,8 +75,10 @@ TEST(TreeFile, RefusesSealedFilesWithImpossibleTables) {
 
 using Change = std::function<void(PackedSphereTree&)>;
 
-// Each makes the sample tree unsafe to walk; one table, hence more than 60 lines.
-std::vector<std::pair<const char*, Change>> unsafe_changes() {
+using Changes = std::vector<std::pair<const char*, Change>>;
+
+// Each makes the sample tree unsafe to walk: its spheres and vertices.
+Changes unsafe_sphere_changes() {
   const float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
   return {
       {"no blocks", [](auto& t) { t.blocks.clear(); }},
@@ -117,6 +119,13 @@ std::vector<std::pair<const char*, Change>> unsafe_changes() {
        [](auto& t) { t.triangles[1][2] = static_cast<std::uint32_t>(t.vertices.size()); }},
       {"leaf triangle beyond the end",
        [](auto& t) { t.leaf_triangles[2] = static_cast<std::uint32_t>(t.triangles.size()); }},
+  };
+}
+
+// Each makes the sample tree unsafe to walk: the tree of its triangles and the leaves' lists.
+Changes unsafe_triangle_changes() {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  return {
       {"no tree of triangles", [](auto& t) { t.patches.clear(), t.triangle_blocks.clear(); }},
       {"patch not a number", [=](auto& t) { t.patches[1].height[1] = nan; }},
       {"patch with a negative radius", [](auto& t) { t.patches[1].radius[0] = -2; }},
@@ -144,7 +153,9 @@ std::vector<std::pair<const char*, Change>> unsafe_changes() {
 
 TEST(TreeFile, RefusesSealedFilesWhoseTreesAreNotSafeToWalk) {
   ASSERT_EQ(structure_fault(sample_tree()), nullptr);
-  for (const auto& [name, change] : unsafe_changes()) {
+  Changes changes = unsafe_sphere_changes();
+  for (auto& change : unsafe_triangle_changes()) changes.push_back(std::move(change));
+  for (const auto& [name, change] : changes) {
     SCOPED_TRACE(name);
     PackedSphereTree tree = sample_tree();
     change(tree);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -11,31 +10,6 @@ namespace orchard::test {
 namespace {
 
 using Triangle = std::array<Index, 3>;
-
-// A prism of height 1 over a counter-clockwise polygon in the plane z = 0, whose caps are triangulated as given.
-TriangleMesh prism(const std::vector<Eigen::Vector2d>& polygon, std::initializer_list<Triangle> caps) {
-  const Index n = static_cast<Index>(polygon.size());
-  TriangleMesh mesh;
-  for (const double z : {0.0, 1.0}) {
-    for (const Eigen::Vector2d& corner : polygon) mesh.vertices.emplace_back(corner.x(), corner.y(), z);
-  }
-  for (const auto& [a, b, c] : caps) {
-    mesh.triangles.push_back({a, c, b});
-    mesh.triangles.push_back({a + n, b + n, c + n});
-  }
-  for (Index i = 0; i < n; ++i) {
-    const Index j = (i + 1) % n;
-    mesh.triangles.push_back({i, j, j + n});
-    mesh.triangles.push_back({i, j + n, i + n});
-  }
-  return mesh;
-}
-
-void append(TriangleMesh& mesh, const TriangleMesh& other) {
-  const Index first = static_cast<Index>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
-  for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + first, b + first, c + first});
-}
 
 TriangleMesh icosahedron() {
   constexpr double phi = std::numbers::phi;
@@ -66,6 +40,45 @@ void subdivide(TriangleMesh& mesh) {
 }
 
 }  // namespace
+
+TriangleMesh prism(const std::vector<std::array<double, 2>>& polygon, const std::vector<Triangle>& caps,
+                   double height) {
+  const Index n = static_cast<Index>(polygon.size());
+  TriangleMesh mesh;
+  for (const double z : {0.0, height}) {
+    for (const auto& [x, y] : polygon) mesh.vertices.emplace_back(x, y, z);
+  }
+  for (const auto& [a, b, c] : caps) {
+    mesh.triangles.push_back({a, c, b});
+    mesh.triangles.push_back({a + n, b + n, c + n});
+  }
+  for (Index i = 0; i < n; ++i) {
+    const Index j = (i + 1) % n;
+    mesh.triangles.push_back({i, j, j + n});
+    mesh.triangles.push_back({i, j + n, i + n});
+  }
+  return mesh;
+}
+
+TriangleMesh joined(std::initializer_list<TriangleMesh> parts) {
+  TriangleMesh mesh;
+  for (const TriangleMesh& part : parts) {
+    const Index first = static_cast<Index>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
+    for (const auto& [a, b, c] : part.triangles) mesh.triangles.push_back({a + first, b + first, c + first});
+  }
+  return mesh;
+}
+
+TriangleMesh soup(const TriangleMesh& mesh) {
+  TriangleMesh bag;
+  for (const Triangle& t : mesh.triangles) {
+    const Index first = static_cast<Index>(bag.vertices.size());
+    for (const Index vertex : t) bag.vertices.push_back(mesh.vertices[vertex]);
+    bag.triangles.push_back({first, first + 1, first + 2});
+  }
+  return bag;
+}
 
 TriangleMesh box(const Point& lower, const Point& upper) {
   TriangleMesh mesh;
@@ -116,9 +129,7 @@ TriangleMesh u_shape(double gap) {
 }
 
 TriangleMesh two_boxes(double gap) {
-  TriangleMesh mesh = box(Point(0, 0, 0), Point(1, 1, 1));
-  append(mesh, box(Point(1 + gap, 0, 0), Point(2 + gap, 1, 1)));
-  return mesh;
+  return joined({box(Point(0, 0, 0), Point(1, 1, 1)), box(Point(1 + gap, 0, 0), Point(2 + gap, 1, 1))});
 }
 
 TriangleMesh open_box() {

@@ -1,5 +1,8 @@
 #pragma once
+#include <array>
 #include <cstdint>
+#include <initializer_list>
+#include <vector>
 
 #include "orchard/geometry/mesh.h"
 
@@ -13,6 +16,11 @@ TriangleMesh l_shape();              // extruded L: nonconvex, coplanar clusters
 TriangleMesh u_shape(double gap);    // extruded U whose arms are `gap` apart, in [0, 3] x [0, 2] x [0, 1]
 TriangleMesh two_boxes(double gap);  // two components side by side along x
 TriangleMesh open_box();             // a box without its top: not closed
+// Over a counter-clockwise polygon in the plane z = 0, whose caps are triangulated as given.
+TriangleMesh prism(const std::vector<std::array<double, 2>>& polygon, const std::vector<std::array<Index, 3>>& caps,
+                   double height = 1);
+TriangleMesh joined(std::initializer_list<TriangleMesh> parts);  // one mesh of all, nothing welded
+TriangleMesh soup(const TriangleMesh& mesh);                     // each triangle with vertices of its own: not closed
 TriangleMesh transformed(TriangleMesh mesh, double scale, const Vector& offset);
 TriangleMesh mirrored(TriangleMesh mesh);  // inside out
 
