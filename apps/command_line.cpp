@@ -53,7 +53,7 @@ void add_mesh_options(CLI::App& command, MeshOptions& options) {
 // Those that the command has a use for.
 void add_tuning(CLI::App& command, MedialTuning& tuning, bool for_tree) {
   for (const TuningFlag& flag : tuning_flags()) {
-    if (for_tree && (flag.step == TuningStep::report || flag.step == TuningStep::refining)) continue;
+    if (for_tree && flag.step >= TuningStep::refining) continue;
     const bool needs = for_tree && flag.name == "samples";
     const bool of_all = for_tree && flag.name == "seed";  // no axis is needed to use it
     const std::string help = of_all ? "Of all random choices: another tree, about as good" : flag.help;

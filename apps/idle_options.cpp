@@ -33,8 +33,8 @@ std::string names_of(const std::vector<TreeMethod>& methods) {
 
 // The steps to an axis that a file stands in for. An axis of one's own still gets points on the surface, and is pruned.
 std::vector<TuningStep> steps_replaced(const std::string& source) {
-  if (source == "points") return {TuningStep::points};
-  if (source == "diagram") return {TuningStep::points, TuningStep::diagram};
+  if (source == "points") return {TuningStep::points, TuningStep::open_places};
+  if (source == "diagram") return {TuningStep::points, TuningStep::diagram, TuningStep::open_places};
   return {TuningStep::diagram, TuningStep::axis};
 }
 

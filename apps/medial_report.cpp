@@ -76,6 +76,7 @@ json to_json(const MedialBuild& build) {
           {"gap_repair", to_json(build.gap_repair)},
           {"voronoi_vertices", build.diagram.vertices.size()},
           {"vertices_before_pruning", build.unpruned_vertices},
+          {"open_places", build.open_places},
           {"refinement", build.refinement.vertices > 0 ? to_json(build.refinement) : json()},
           {"vertices_on_stems", build.axis.stems},
           {"bridges", build.axis.bridges},
@@ -129,6 +130,7 @@ void print(const MedialBuild& build) {
   const double gained = static_cast<double>(build.sampling.size()) - build.points;
   fmt::print("{} + {}", build.points, repair.points_added);
   if (repair.points_removed > 0) fmt::print(" - {}", repair.points_removed);
+  if (build.open_places > 0) fmt::print(" + {} at open places", build.open_places);
   fmt::print(" points ({:.1f} % added), {} faces still crossing", 100.0 * gained / std::max<double>(build.points, 1),
              repair.faces_still_crossing);
   if (repair.faces_at_cuts > 0) fmt::print(", {} of them where the mesh cuts itself", repair.faces_at_cuts);

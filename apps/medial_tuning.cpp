@@ -149,6 +149,14 @@ std::vector<TuningFlag> refining_flags() {
                  no_refining)};
 }
 
+std::vector<TuningFlag> open_place_flags() {
+  return {idle_where(whole("open-rounds", "1", 0, 20,
+                           "Times that points are added where the surface is left open, and all is made anew: more "
+                           "resolve thin parts, and take longer",
+                           [](T& t, double x) { t.options.open_rounds = static_cast<int>(x); }),
+                     no_refining)};
+}
+
 std::vector<TuningFlag> report_flags() {
   return {real("segment-angle", "60", 0, 180,
                "Degrees: faces with nearer contacts do not divide sheets; more makes fewer segments",
@@ -168,6 +176,7 @@ std::vector<TuningFlag> make_flags() {
   add(TuningStep::axis, axis_flags());
   add(TuningStep::pruning, pruning_flags());
   add(TuningStep::refining, refining_flags());
+  add(TuningStep::open_places, open_place_flags());
   add(TuningStep::report, report_flags());
   return flags;
 }

@@ -26,7 +26,7 @@ struct MedialTuning {
 MedialBuildOptions build_options(const MedialTuning& tuning);
 
 // The step on the way to an axis that a flag acts on; the report only says more or less of the axis.
-enum class TuningStep { points, diagram, axis, pruning, refining, report };
+enum class TuningStep { points, diagram, axis, pruning, refining, open_places, report };
 
 // One flag: --name on the command line, name=a,b,c in a sweep.
 struct TuningFlag {

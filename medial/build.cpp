@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "orchard/geometry/error.h"
+#include "refine/open_places.h"
 
 namespace orchard {
 namespace {
@@ -13,23 +14,26 @@ class MedialBuilder {
       : surface_(surface), options_(options), progress_(progress) {}
 
   MedialBuild run(MedialBuildInput input) {
-    const bool imported = input.mesh.has_value();
-    if (imported) {
+    if (input.mesh) {
       import(*input.mesh);
-    } else {
-      if (input.diagram) {
-        build_.sampling = std::move(input.diagram->sampling);
-        build_.diagram = std::move(input.diagram->diagram);
-        build_.points = build_.sampling.size();
-      } else {
-        make_diagram(std::move(input.sampling));
-      }
-      stage("medial axis",
-            [&] { build_.axis = medial_axis(surface_, build_.sampling, build_.diagram, options_.axis, progress_); });
+      finish_axis();
+      return std::move(build_);
     }
-    build_.unpruned_vertices = build_.axis.size();
-    stage("pruning", [&] { build_.axis = prune(build_.axis, options_.prune); });
-    if (options_.refine && !imported) refine();
+    const bool own = input.sampling || input.diagram;
+    if (input.diagram) {
+      build_.sampling = std::move(input.diagram->sampling);
+      build_.diagram = std::move(input.diagram->diagram);
+      build_.points = build_.sampling.size();
+    } else {
+      make_diagram(std::move(input.sampling));
+    }
+    make_axis();
+    if (!options_.refine) return std::move(build_);
+    refine();
+    for (int round = 0; round < options_.open_rounds && !own && add_open_places(); ++round) {
+      make_axis();
+      refine();
+    }
     return std::move(build_);
   }
 
@@ -75,6 +79,40 @@ class MedialBuilder {
     });
   }
 
+  void make_axis() {
+    stage("medial axis",
+          [&] { build_.axis = medial_axis(surface_, build_.sampling, build_.diagram, options_.axis, progress_); });
+    finish_axis();
+  }
+  void finish_axis() {
+    build_.unpruned_vertices = build_.axis.size();
+    stage("pruning", [&] { build_.axis = prune(build_.axis, options_.prune); });
+  }
+
+  // And makes the diagram anew. False if there are none.
+  bool add_open_places() {
+    SurfaceSampling added;
+    stage("open places", [&] {
+      const double limit = options_.refine->border_loss * surface_.bounding_box().diagonal().norm();
+      added = detail::open_places(surface_, build_.axis, build_.sampling, limit);
+    });
+    if (added.size() == 0) return false;
+    build_.open_places += added.size();
+    SurfaceSampling all = std::move(build_.sampling);
+    const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+    append(all.points, added.points);
+    append(all.triangles, added.triangles);
+    append(all.features, added.features);
+    append(all.origins, added.origins);
+    const Index points = build_.points, added_before = build_.gap_repair.points_added,
+                removed_before = build_.gap_repair.points_removed;
+    make_diagram(std::move(all));
+    build_.points = points;
+    build_.gap_repair.points_added += added_before;
+    build_.gap_repair.points_removed += removed_before;
+    return true;
+  }
+
   void refine() {
     stage("refining", [&] {
       RefinedAxis refined = refine_axis(surface_, build_.sampling, build_.axis, *options_.refine, progress_);
@@ -95,6 +133,7 @@ MedialBuild build_medial_axis(const Surface& surface, const MedialBuildOptions& 
                               MedialBuildInput input) {
   if (!surface.solid())
     throw InputError("the medial axis needs a solid: " + surface.report().faults() + "; repair the mesh first");
+  if (options.open_rounds < 0) throw InputError("rounds of adding points at open places: not negative");
   if (input.sampling.has_value() + input.diagram.has_value() + input.mesh.has_value() > 1)
     throw InputError("a medial axis is built from own points, an own diagram or an own axis, not from several");
   return MedialBuilder(surface, options, progress).run(std::move(input));

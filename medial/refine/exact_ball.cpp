@@ -149,6 +149,11 @@ ExactBall BallSolver::solve(const Point& start, std::span<const ClosestPoint> se
   return solve_held(start);
 }
 
+ExactBall BallSolver::at(const Point& place) {
+  contacts_ = {{surface_.closest(place)}};
+  return finished(place, false);
+}
+
 ExactBall BallSolver::on_surface(const Point& place) const {
   ExactBall ball;
   ball.contacts[0] = surface_.closest(place);

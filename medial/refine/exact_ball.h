@@ -46,6 +46,9 @@ class BallSolver {
   // lies between two places of the surface, or outside the solid, is the nearest place of the surface.
   ExactBall between(const ExactBall& a, const ExactBall& b, double t);
 
+  // The largest ball around a place of the solid, with its nearest contact only.
+  ExactBall at(const Point& place);
+
   // How far a solid's convex edge lies beyond a ball of radius r that touches both of its faces, with contacts seen
   // from its centre at an angle a: r (1 / cos(a / 2) - 1). What an axis loses that ends at this ball is no more.
   static double loss(double radius, double angle);

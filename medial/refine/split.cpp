@@ -62,7 +62,7 @@ class Splitter {
       BallSolver solver(surface_, options_.merging);
       for (std::size_t i = range.begin(); i != range.end(); ++i) {
         const auto& [a, b] = complex_.edges[chosen[i]];
-        middles[i] = solver.between(complex_.balls[a], complex_.balls[b], 0.5);
+        middles[i] = middle(solver, complex_.balls[a], complex_.balls[b]);
       }
     });
     if (chosen.empty()) return 0;
@@ -72,6 +72,15 @@ class Splitter {
   }
 
  private:
+  // Where the ends are of different sheets, the exact ball may be next to one of them; dividing there leads nowhere.
+  ExactBall middle(BallSolver& solver, const ExactBall& a, const ExactBall& b) const {
+    const ExactBall exact = solver.between(a, b, 0.5);
+    const Point straight = 0.5 * (a.center + b.center);
+    const double apart = (a.center - b.center).norm();
+    if ((exact.center - straight).norm() <= kMaxAside * apart || !surface_.inside(straight)) return exact;
+    return solver.at(straight);
+  }
+
   double length(const std::array<Index, 2>& edge) const {
     return (complex_.balls[edge[0]].center - complex_.balls[edge[1]].center).norm();
   }
@@ -87,21 +96,42 @@ class Splitter {
     const ExactBall &a = complex_.balls[edge[0]], &b = complex_.balls[edge[1]];
     const double reach = (length(edge) + std::abs(a.radius - b.radius)) / 2;
     if (reach <= options_.tolerance) return 0;
-    double worst = 0;
-    for (const double t : {0.5, 0.25, 0.75}) {
-      const double error =
-          ball_error(surface_, (1 - t) * a.center + t * b.center, (1 - t) * a.radius + t * b.radius, length(edge));
-      worst = std::max(worst, error);
-      if (error < kSmall * options_.tolerance) break;  // in the middle: nor is it much at the quarters
+    const auto error_at = [&](double t) {
+      return ball_error(surface_, (1 - t) * a.center + t * b.center, (1 - t) * a.radius + t * b.radius, length(edge));
+    };
+    const int parts = parts_of(length(edge));
+    double worst = error_at(0.5);
+    if (parts == kMinParts && worst < kSmall * options_.tolerance) return worst;  // nor is it much at the quarters
+    for (int i = 1; i < parts; ++i) {
+      if (2 * i != parts) worst = std::max(worst, error_at(static_cast<double>(i) / parts));
     }
     return worst;
   }
   double error_of_triangle(const std::array<Index, 3>& t) const {
     const ExactBall &a = complex_.balls[t[0]], &b = complex_.balls[t[1]], &c = complex_.balls[t[2]];
-    return ball_error(surface_, (a.center + b.center + c.center) / 3, (a.radius + b.radius + c.radius) / 3,
-                      std::max({length({t[0], t[1]}), length({t[0], t[2]}), length({t[1], t[2]})}));
+    const double longest = std::max({length({t[0], t[1]}), length({t[0], t[2]}), length({t[1], t[2]})});
+    const auto error_at = [&](double u, double v) {
+      const double w = 1 - u - v;
+      return ball_error(surface_, u * a.center + v * b.center + w * c.center,
+                        u * a.radius + v * b.radius + w * c.radius, longest);
+    };
+    const int parts = parts_of(longest);
+    double worst = error_at(1.0 / 3, 1.0 / 3);
+    if (parts == kMinParts) return worst;
+    for (int i = 1; i + 1 < parts; ++i) {
+      for (int k = 1; i + k < parts; ++k)
+        worst = std::max(worst, error_at(static_cast<double>(i) / parts, static_cast<double>(k) / parts));
+    }
+    return worst;
+  }
+  // Into how many parts a cell is cut by the places where it is looked at.
+  int parts_of(double length) const {
+    return std::clamp(static_cast<int>(std::ceil(length / (kPart * options_.tolerance))), kMinParts, kMaxParts);
   }
 
+  static constexpr double kPart = 10;  // tolerances
+  static constexpr int kMinParts = 4, kMaxParts = 16;
+  static constexpr double kMaxAside = 0.4;  // of an edge's length: its dividing vertex, from the middle
   static constexpr double kSmall = 0.25;
   const Surface& surface_;
   BallComplex& complex_;

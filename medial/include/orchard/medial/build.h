@@ -24,6 +24,10 @@ struct MedialBuildOptions {
   AxisOptions axis{.keep_topology = true};
   PruneOptions prune = {};
   std::optional<RefineOptions> refine = {};  // nothing: the axis stays as the diagram has it; an imported one always
+  // How often surface points are added where the refined axis leaves the surface open by more than its border loss, as
+  // it does where the solid is thinner than the points' spacing, and all is made anew: each time takes as long as the
+  // first. Not with own points, nor with an own diagram.
+  int open_rounds = 1;
 };
 
 // A diagram that the caller made, and where its points lie on the surface; the points of both are the same.
@@ -49,13 +53,14 @@ struct MedialBuild {
   Index unpruned_vertices = 0;
   MedialAxis axis;                              // refined, if that was asked for
   RefineReport refinement;                      // zeros, if not
+  Index open_places = 0;                        // points added where a refined axis left the surface open
   Index balls_refused = 0, balls_adjusted = 0;  // of an imported axis, see ImportedAxis
   double ball_adjustment = 0;
   StageTimes seconds;  // stage, time
 };
 
 // The main line from a solid to its medial axis: points, Voronoi diagram, gap repair, axis, pruning, refining. The time
-// goes as the parts': about n log n in the points. Throws InputError unless surface.solid(), if an option is out of
+// goes as the parts': about n log n in the points, for each of the rounds. Throws InputError unless surface.solid(), if an option is out of
 // range, or if `input` has more than one of its values.
 MedialBuild build_medial_axis(const Surface& surface, const MedialBuildOptions& options = {},
                               const Progress& progress = {}, MedialBuildInput input = {});
