@@ -54,6 +54,7 @@ json to_json(const RefineReport& report) {
           {"inexact_vertices", report.inexact},
           {"folded_triangles", report.folded_triangles},
           {"border_cuts", report.border_cuts},
+          {"spike_and_flake_cells_removed", report.small_pieces},
           {"notches_filled", report.notches},
           {"vertices_on_sharp_edges", report.edge_vertices},
           {"edges_divided", report.divided},
@@ -147,8 +148,9 @@ void print(const MedialBuild& build) {
   fmt::print(", {} faces\n", build.axis.faces.size());
   if (refinement.vertices == 0) return;
   fmt::print(
-      "refining: {} folded triangles and what borders lose less than cut off, {} notches filled, {} edges divided",
-      refinement.folded_triangles, refinement.notches, refinement.divided);
+      "refining: {} folded triangles and what borders lose less than cut off, {} cells of spikes and flakes, {} "
+      "notches filled, {} edges divided",
+      refinement.folded_triangles, refinement.small_pieces, refinement.notches, refinement.divided);
   if (refinement.undivided > 0) fmt::print(", {} still beyond the tolerance", refinement.undivided);
   fmt::print("; borders {:.1f} diagonals long\n", refinement.border_length);
 }

@@ -15,6 +15,7 @@
 #include "extend_sheets.h"
 #include "orchard/geometry/angle.h"
 #include "orchard/geometry/error.h"
+#include "small_pieces.h"
 #include "split.h"
 
 namespace orchard {
@@ -60,8 +61,10 @@ class Refiner {
     report_progress(progress_, kStage, 0.25);
     drop_folded();
     cut_at_level();
+    report_.small_pieces = detail::drop_small_pieces(complex_);
     report_progress(progress_, kStage, 0.45);
     mend_borders();
+    report_.small_pieces += detail::drop_small_pieces(complex_);
     report_progress(progress_, kStage, 0.6);
     const detail::SplitReport split = detail::split_nonlinear(surface_, complex_,
                                                               {.tolerance = options_.tolerance * diagonal_,
@@ -240,9 +243,9 @@ class Refiner {
     for (int pass = 0; pass < kBorderPasses; ++pass) {
       const Index notches = detail::fill_notches(surface_, complex_, solver, border);
       const Index seams = detail::extend_to_seams(surface_, complex_, border);
-      const Index reached = detail::extend_to_edges(surface_, complex_, border) +
-                            detail::extend_to_corners(surface_, complex_, border) +
-                            detail::follow_edges(surface_, complex_, border);
+      Index reached = detail::extend_to_edges(surface_, complex_, border);
+      reached += detail::follow_edges(surface_, complex_, border);
+      reached += detail::extend_to_corners(surface_, complex_, border);
       report_.notches += notches;
       report_.edge_vertices += reached;
       if (notches == 0 && seams == 0 && reached == 0) break;

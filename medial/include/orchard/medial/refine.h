@@ -26,6 +26,7 @@ struct RefineReport {
   Index inexact = 0;           // vertices that stayed where they were: no ball with two contacts was found from there
   Index folded_triangles = 0;  // taken away: their two points have one contact
   Index border_cuts = 0;       // edges cut where the loss passes border_loss
+  Index small_pieces = 0;      // edges and triangles of spikes and flakes, taken away
   Index notches = 0;           // triangles that fill notches of borders
   Index edge_vertices = 0;     // vertices of radius 0 on sharp edges
   Index divided = 0;           // edges
@@ -43,9 +44,11 @@ struct RefinedAxis {
 
 // The refined axis: every vertex is moved to the centre of a ball of the medial axis of the mesh itself, which touches
 // the surface where the forming points stand for and holds nothing of it; cells that fold onto others are taken away;
-// sheets are cut where their borders lose border_loss, notches between the teeth of their borders are filled, and those
-// that end at sharp convex edges are extended onto these; what is interpolated too coarsely is divided, with exact
-// balls for new vertices. All by divisions, collapses and free extensions, so the topology is that of `axis`.
+// sheets are cut where their borders lose border_loss; spikes and flakes go that hang on the rest by one vertex and
+// reach no farther from it than twice its radius, but for what the topology needs; notches between the teeth of their
+// borders are filled, and those that end at sharp convex edges are extended onto these; what is interpolated too
+// coarsely is divided, with exact balls for new vertices. All by divisions, collapses and free extensions, so the
+// topology is that of `axis`.
 //
 // Vertices have the radius that is the distance of their centre to the surface, up to rounding. Deterministic;
 // parallel. O(n log n) for n vertices, and some nearest-point queries each. `sampling` has the points of `axis`. Throws

@@ -1,0 +1,103 @@
+#include "small_pieces.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "../axis/incidence.h"
+#include "orchard/geometry/disjoint_sets.h"
+
+namespace orchard::detail {
+namespace {
+
+class PieceDropper {
+ public:
+  explicit PieceDropper(BallComplex& complex)
+      : complex_(complex),
+        at_(complex.edges, complex.triangles, complex.size()),
+        piece_of_edge_(complex.edges.size()) {}
+
+  Index run() {
+    find_pieces();
+    find_joints();
+    measure();
+    const std::size_t before = complex_.edges.size() + complex_.triangles.size();
+    collapse(complex_, doomed(), std::vector<double>(complex_.size(), 0));
+    return static_cast<Index>(before - complex_.edges.size() - complex_.triangles.size());
+  }
+
+ private:
+  bool is_wire(Index e) const { return at_.triangles_at[e].empty(); }
+
+  // Triangles that share edges are of one piece, and wires that nothing else is at the end of.
+  void find_pieces() {
+    for (const auto& [ab, ac, bc] : at_.sides) {
+      piece_of_edge_.unite(ab, ac);
+      piece_of_edge_.unite(ab, bc);
+    }
+    for (Index v = 0; v < complex_.size(); ++v) {
+      const auto edges = at_.edges_at[v];
+      if (edges.size() == 2 && is_wire(edges[0]) && is_wire(edges[1])) piece_of_edge_.unite(edges[0], edges[1]);
+    }
+  }
+
+  // Vertices at which several pieces meet, and how many of them each piece has.
+  void find_joints() {
+    joint_.assign(complex_.edges.size(), kNone);
+    joints_.assign(complex_.edges.size(), 0);
+    std::vector<Index> pieces;
+    for (Index v = 0; v < complex_.size(); ++v) {
+      pieces.clear();
+      for (const Index e : at_.edges_at[v]) pieces.push_back(piece(e));
+      std::sort(pieces.begin(), pieces.end());
+      pieces.erase(std::unique(pieces.begin(), pieces.end()), pieces.end());
+      if (pieces.size() < 2) continue;
+      for (const Index p : pieces) {
+        joint_[p] = v;
+        ++joints_[p];
+      }
+    }
+  }
+
+  // How far each piece with one joint reaches from there.
+  void measure() {
+    reach_.assign(complex_.edges.size(), 0);
+    for (Index e = 0; e < complex_.edges.size(); ++e) {
+      const Index p = piece(e);
+      if (joints_[p] != 1) continue;
+      for (const Index v : complex_.edges[e])
+        reach_[p] = std::max(reach_[p], (complex_.balls[v].center - complex_.balls[joint_[p]].center).norm());
+    }
+  }
+
+  Doomed doomed() {
+    Doomed doomed{.edges = std::vector<std::uint8_t>(complex_.edges.size(), 0),
+                  .vertices = std::vector<std::uint8_t>(complex_.size(), 0)};
+    for (Index e = 0; e < complex_.edges.size(); ++e) {
+      const Index p = piece(e);
+      if (joints_[p] != 1 || reach_[p] > kPieceReach * complex_.balls[joint_[p]].radius) continue;
+      doomed.edges[e] = 1;
+      for (const Index v : complex_.edges[e]) {
+        if (v != joint_[p]) doomed.vertices[v] = 1;
+      }
+    }
+    return doomed;
+  }
+
+  Index piece(Index e) { return static_cast<Index>(piece_of_edge_.root(e)); }
+
+  BallComplex& complex_;
+  const CellIncidence at_;
+  DisjointSets piece_of_edge_;
+  std::vector<Index> joint_, joints_;  // of each piece: the last of its joints, how many
+  std::vector<double> reach_;          // of each piece, mesh units
+};
+
+}  // namespace
+
+Index drop_small_pieces(BallComplex& complex) {
+  Index dropped = 0;
+  while (const Index now = PieceDropper(complex).run()) dropped += now;
+  return dropped;
+}
+
+}  // namespace orchard::detail
