@@ -15,7 +15,7 @@ constexpr std::uint32_t kFacetMask = (1u << kFacetBits) - 1;
 
 }  // namespace
 
-void Cavity::begin(Index new_point) {
+void Cavity::end() {
   for (Index v : deleted_.items()) workspace_.set_mark(v, Mark::unseen);
   for (Index v : seen_.items()) workspace_.set_mark(v, Mark::unseen);
   for (const LocalPoint& local : local_points_) known_local(local.point) = kNone;
@@ -24,6 +24,10 @@ void Cavity::begin(Index new_point) {
   facets_.clear();
   local_points_.clear();
   edge_limit_ = 0;
+}
+
+void Cavity::begin(Index new_point) {
+  end();
   new_point_ = new_point;
   position_ = workspace_.points[new_point];
   if (local_of_.size() != workspace_.points.size() + 1) local_of_.assign(workspace_.points.size() + 1, kNone);
@@ -250,7 +254,7 @@ bool Cavity::link_many() {
 bool Cavity::is_ball() {
   for (Index v : deleted_.items())
     for (Index point : workspace_.vertices[v].forming_points)
-      if (known_local(point) == kNone) return false;
+      if (known_local(point) == kNone && point != new_point_) return false;
   // Two facets on each edge and the right number of facets for one sphere: several pieces, or a piece with a handle,
   // would have to touch themselves in points to get there, so one piece is a sphere that does not.
   reached_.assign(facets_.size(), false);

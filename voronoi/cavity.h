@@ -53,6 +53,8 @@ class Cavity {
 
   // Starts anew for a new point: nothing deleted, all marks removed.
   void begin(Index new_point);
+  // Removes all marks.
+  void end();
 
   std::span<const Index> deleted() const { return deleted_.items(); }
   const std::vector<Facet>& facets() const { return facets_; }
@@ -92,7 +94,7 @@ class Cavity {
   // Joins the new vertices with each other; false unless the boundary is closed, with two facets on each edge and the
   // number of facets that a sphere has.
   bool link_vertices();
-  // Whether the boundary is one piece and no point lies within. After link_vertices.
+  // Whether the boundary is one piece and no point but the new one lies within. After link_vertices.
   bool is_ball();
   // Whether no new vertex is moved, farther than does harm, by the new point's being in the sphere of an undeleted
   // neighbour. That a doubtful vertex was kept is magnified where the new point is low above the facet. After
@@ -103,6 +105,8 @@ class Cavity {
   Index place_flat_vertices();
   // Replaces the deleted vertices by the new ones and removes all marks. The last new vertex that has a position.
   Index replace();
+  // The new vertices, after replace().
+  std::span<const Index> created() const { return slots_; }
 
  private:
   struct LocalPoint {

@@ -95,6 +95,7 @@ class Workspace {
   bool poor(const VoronoiVertex& vertex, std::uint8_t error_class) const {
     return !(bounds_[error_class] < good_center_ * vertex.radius);
   }
+  bool poor(Index v) const { return poor(vertices[v], error_class_of(v)); }
   // For a vertex of the new point that forms a facet with v, if that puts it on the sphere of v as far as the input
   // goes: takes over this very sphere and its error bound, so that all vertices of many points on one sphere have the
   // same sign for the next. False, and no change, if not.
