@@ -114,6 +114,13 @@ class Cavity {
     Index point;
   };
 
+  // An edge of one facet that waits for the other one, in a list of those that wait at the same corner.
+  struct Link {
+    Index far, next, facet;  // the edge's other corner; the facet is kNone once the other one has come
+    std::uint8_t slot;       // of the facet's vertex: the neighbour across the edge
+    bool outward;            // whether the facet runs along the edge to its other corner
+  };
+
   Index local(Index point) {
     const Index known = known_local(point);
     return known != kNone ? known : make_local(point);
@@ -140,6 +147,8 @@ class Cavity {
   std::vector<LocalPoint> local_points_;  // the points of the boundary, the one at infinity included
   std::vector<Index> local_of_;           // of the infinite point and each other: into local_points_ or kNone
   EdgeTable edges_;
+  std::vector<Index> degrees_, waiting_;  // by local point
+  std::vector<Link> links_;
   std::vector<std::uint32_t> link_table_;  // for each directed edge between few local points: round and facet
   std::uint32_t link_round_ = 0;
   Index edge_limit_ = 0;  // local points that the edge table was set up for, in the constrained search

@@ -157,10 +157,15 @@ class Certifier {
       return false;
     note_volume(v, det.value);
     workspace_.settle(v);
-    double apart = from_own_sphere(v);
-    if (apart > (workspace_.shares_sphere(v) ? kGiven : kTold) * at_most_) {
-      workspace_.place_sharply(v);
-      apart = from_own_sphere(v);
+    double apart = from_told_sphere(v);
+    if (apart > kTold * at_most_) {
+      Vector center;
+      if (!own_center(v, center)) return false;
+      apart = from_sphere(v, center);
+      if (apart > (workspace_.shares_sphere(v) ? kGiven : kTold) * at_most_) {
+        workspace_.place_sharply(v, center);
+        apart = std::min(from_told_sphere(v), from_sphere(v, center));
+      }
     }
     if (apart > small_share_ && workspace_.shares_sphere(v)) lossy_.push_back(v);
     given_ = std::max(given_, apart);
@@ -169,14 +174,23 @@ class Certifier {
 
   // How far the sphere that a vertex was given is from that of its forming points, at most, where points may be.
   double from_own_sphere(Index v) const {
-    if (workspace_.exact()) return 0;
-    const VoronoiVertex& vertex = workspace_.vertices[v];
-    const double told = workspace_.power_bound(v) / std::sqrt(vertex.radius);
-    if (!workspace_.shares_sphere(v) && told <= kTold * at_most_) return told;
+    const double told = from_told_sphere(v);
+    if (told <= kTold * at_most_) return told;
     Vector center;
-    if (!sharp_circumcenter(corner(v, 0), corner(v, 1), corner(v, 2), corner(v, 3), center)) return diameter_;
+    return own_center(v, center) ? from_sphere(v, center) : diameter_;
+  }
+  // The same as far as its error bound tells.
+  double from_told_sphere(Index v) const {
+    if (workspace_.exact()) return 0;
+    if (workspace_.shares_sphere(v)) return diameter_;
+    return workspace_.power_bound(v) / std::sqrt(workspace_.vertices[v].radius);
+  }
+  bool own_center(Index v, Vector& center) const {
+    return sharp_circumcenter(corner(v, 0), corner(v, 1), corner(v, 2), corner(v, 3), center);
+  }
+  double from_sphere(Index v, const Vector& center) const {
     // Both go through a point: at a distance d from it, powers differ by 2 d times the distance of the centres.
-    const double apart = (corner(v, 0) + center - vertex.center).norm(), radius = center.norm();
+    const double apart = (corner(v, 0) + center - workspace_.vertices[v].center).norm(), radius = center.norm();
     return apart <= radius / 2 ? 4 * apart * std::min(2.0, diameter_ / radius) : diameter_;
   }
 

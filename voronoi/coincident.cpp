@@ -9,7 +9,7 @@ namespace orchard::detail {
 namespace {
 
 constexpr double kWide = 1024, kNarrow = 2, kNarrower = 8;  // widths of cells in terms of the distance; their ratio
-constexpr std::size_t kCrowded = 48;                        // slots to look at for one cell before all become narrower
+constexpr std::size_t kLongRun = 48;                        // slots to look at for one cell before all become narrower
 
 // Cells much wider than the distance, so that most points need to look into one cell only; linear probing. Points of
 // different cells may share a run of slots: comparing them too is harmless. Where points crowd together, the cells
@@ -44,7 +44,7 @@ class Grid {
     std::size_t looked_at = 0;
     for (std::size_t slot = hash_of(cell) & mask(); slots_[slot] != kNone; slot = (slot + 1) & mask(), ++looked_at)
       if ((points_[slots_[slot]] - p).squaredNorm() <= distance_ * distance_) found = std::min(found, slots_[slot]);
-    if (looked_at > kCrowded && width_ > kNarrow * distance_) crowded_ = true;
+    if (looked_at > kLongRun && width_ > kNarrow * distance_) crowded_ = true;
     return found;
   }
   void narrow() {

@@ -114,6 +114,7 @@ class Workspace {
   }
   // Gives a finite vertex the sphere of its forming points, to some roundings, if they have one.
   void place_sharply(Index v);
+  void place_sharply(Index v, const Vector& center);  // which is relative to its first point
   bool settled(Index v) const { return error_class_of(v) != kNotSettled; }
 
   static constexpr std::uint8_t kUnknownError = 63, kNotSettled = 62;
