@@ -147,7 +147,8 @@ bool insert_with_all_means(Workspace& workspace, Search search, std::string_view
   const auto attempt = [&] {
     const Outcome outcome = insert_all(workspace, search, stage, progress, counts, at, reason);
     if (outcome != Outcome::done || search != Search::highest_first) return outcome;
-    certificate = certify(workspace, workspace.points.size());
+    Mender mender(workspace);
+    certificate = certify(workspace, workspace.points.size(), 0, &mender);
     return certificate.holds ? Outcome::done : Outcome::failed;
   };
   Outcome outcome = attempt();

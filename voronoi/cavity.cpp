@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 namespace orchard::detail {
 namespace {
@@ -15,7 +16,7 @@ constexpr std::uint32_t kFacetMask = (1u << kFacetBits) - 1;
 
 }  // namespace
 
-void Cavity::begin(Index new_point) {
+void Cavity::end() {
   for (Index v : deleted_.items()) workspace_.set_mark(v, Mark::unseen);
   for (Index v : seen_.items()) workspace_.set_mark(v, Mark::unseen);
   for (const LocalPoint& local : local_points_) known_local(local.point) = kNone;
@@ -24,6 +25,10 @@ void Cavity::begin(Index new_point) {
   facets_.clear();
   local_points_.clear();
   edge_limit_ = 0;
+}
+
+void Cavity::begin(Index new_point) {
+  end();
   new_point_ = new_point;
   position_ = workspace_.points[new_point];
   if (local_of_.size() != workspace_.points.size() + 1) local_of_.assign(workspace_.points.size() + 1, kNone);
@@ -228,29 +233,46 @@ bool Cavity::link_few() {
   return good;
 }
 
+// Each edge waits at its corner of fewer facets, of which there are few for most edges of any sphere: a planar graph
+// has fewer than three edges a corner. Without hashing.
 bool Cavity::link_many() {
-  edges_.reset(static_cast<Index>(local_points_.size()));
-  edge_limit_ = 0;
-  for (std::size_t f = 0; f < facets_.size(); ++f)
-    for (unsigned n = 0; n < 3; ++n)
-      if (!edges_.insert(facets_[f].local[(n + 1) % 3], facets_[f].local[(n + 2) % 3], static_cast<Index>(f)))
-        return false;
+  degrees_.assign(local_points_.size(), 0);
+  for (const Facet& facet : facets_)
+    for (const Index corner : facet.local) ++degrees_[corner];
+  waiting_.assign(local_points_.size(), kNone);
+  links_.clear();
+  std::size_t open = 0;
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     const Facet& facet = facets_[f];
     fresh_[f].neighbors[facet.slot] = facet.outside;
     for (unsigned n = 0; n < 3; ++n) {
-      const Index mate = edges_.find(facet.local[(n + 2) % 3], facet.local[(n + 1) % 3]);
-      if (mate == kNone) return false;
-      fresh_[f].neighbors[kOthers[facet.slot][n]] = mate;
+      const Index from = facet.local[(n + 1) % 3], to = facet.local[(n + 2) % 3];
+      const bool at_from = std::pair(degrees_[from], from) < std::pair(degrees_[to], to);
+      const Index at = at_from ? from : to, far = at_from ? to : from;
+      Index* link = &waiting_[at];
+      while (*link != kNone && links_[*link].far != far) link = &links_[*link].next;
+      const std::uint8_t slot = kOthers[facet.slot][n];
+      if (*link == kNone) {
+        *link = static_cast<Index>(links_.size());
+        links_.push_back({far, kNone, static_cast<Index>(f), slot, at_from});
+        ++open;
+        continue;
+      }
+      Link& other = links_[*link];
+      if (other.facet == kNone || other.outward == at_from) return false;
+      fresh_[f].neighbors[slot] = other.facet;
+      fresh_[other.facet].neighbors[other.slot] = static_cast<Index>(f);
+      other.facet = kNone;
+      --open;
     }
   }
-  return true;
+  return open == 0;
 }
 
 bool Cavity::is_ball() {
   for (Index v : deleted_.items())
     for (Index point : workspace_.vertices[v].forming_points)
-      if (known_local(point) == kNone) return false;
+      if (known_local(point) == kNone && point != new_point_) return false;
   // Two facets on each edge and the right number of facets for one sphere: several pieces, or a piece with a handle,
   // would have to touch themselves in points to get there, so one piece is a sphere that does not.
   reached_.assign(facets_.size(), false);

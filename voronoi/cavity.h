@@ -53,6 +53,8 @@ class Cavity {
 
   // Starts anew for a new point: nothing deleted, all marks removed.
   void begin(Index new_point);
+  // Removes all marks.
+  void end();
 
   std::span<const Index> deleted() const { return deleted_.items(); }
   const std::vector<Facet>& facets() const { return facets_; }
@@ -92,7 +94,7 @@ class Cavity {
   // Joins the new vertices with each other; false unless the boundary is closed, with two facets on each edge and the
   // number of facets that a sphere has.
   bool link_vertices();
-  // Whether the boundary is one piece and no point lies within. After link_vertices.
+  // Whether the boundary is one piece and no point but the new one lies within. After link_vertices.
   bool is_ball();
   // Whether no new vertex is moved, farther than does harm, by the new point's being in the sphere of an undeleted
   // neighbour. That a doubtful vertex was kept is magnified where the new point is low above the facet. After
@@ -103,11 +105,20 @@ class Cavity {
   Index place_flat_vertices();
   // Replaces the deleted vertices by the new ones and removes all marks. The last new vertex that has a position.
   Index replace();
+  // The new vertices, after replace().
+  std::span<const Index> created() const { return slots_; }
 
  private:
   struct LocalPoint {
     LengthedVector from_new;
     Index point;
+  };
+
+  // An edge of one facet that waits for the other one, in a list of those that wait at the same corner.
+  struct Link {
+    Index far, next, facet;  // the edge's other corner; the facet is kNone once the other one has come
+    std::uint8_t slot;       // of the facet's vertex: the neighbour across the edge
+    bool outward;            // whether the facet runs along the edge to its other corner
   };
 
   Index local(Index point) {
@@ -136,6 +147,8 @@ class Cavity {
   std::vector<LocalPoint> local_points_;  // the points of the boundary, the one at infinity included
   std::vector<Index> local_of_;           // of the infinite point and each other: into local_points_ or kNone
   EdgeTable edges_;
+  std::vector<Index> degrees_, waiting_;  // by local point
+  std::vector<Link> links_;
   std::vector<std::uint32_t> link_table_;  // for each directed edge between few local points: round and facet
   std::uint32_t link_round_ = 0;
   Index edge_limit_ = 0;  // local points that the edge table was set up for, in the constrained search

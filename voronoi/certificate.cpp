@@ -2,8 +2,10 @@
 #include "certificate.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "cavity.h"
+#include "line_sum.h"
 #include "orchard/geometry/tolerance.h"
 
 namespace orchard::detail {
@@ -13,7 +15,7 @@ namespace {
 constexpr double kFacet = 1.0 / 64;
 
 // The part of the depth that a point may take up in the mean, where there are many: a straight line meets few of them.
-constexpr double kMean = 1.0 / 1024;
+constexpr double kMean = 1.0 / 512;
 
 // The part of the depth that may lie between the sphere that a vertex was given and its own.
 constexpr double kGiven = 1.0 / 4;
@@ -22,31 +24,43 @@ constexpr double kGiven = 1.0 / 4;
 // more, its own is found.
 constexpr double kTold = 1.0 / 64;
 
+// What a facet may take off, where the bounds are too much for all: of what all of them may, this part for each vertex.
+constexpr double kShares = 64;
+
 // The angle by which the normal of a facet may be off before it is found with more digits.
 constexpr double kBlurred = 0x1p-44;
 
 // Vertices that are held against all points one by one; where there are more, exact signs are cheaper.
 constexpr std::size_t kMaxSuspects = 512;
 
+// Of mending and looking at what is new.
+constexpr int kRounds = 24;
+
+// How many doubts are still local ones, those of all rounds together: more are made anew sooner than mended.
+constexpr std::size_t kDoubtsAtMost = 16, kDoubtsOneIn = 64;
+
 // Of a squared size: far more than any stored sphere is off, where all that matters is to look at a few vertices more.
 constexpr double kAbout = 0x1p-20;
 
 class Certifier {
  public:
-  Certifier(Workspace& workspace, const std::vector<bool>& forming, Index first_new)
-      : workspace_(workspace), forming_(forming), first_new_(first_new) {
+  Certifier(Workspace& workspace, const std::vector<bool>& forming, Index first_new, Mender* mender)
+      : workspace_(workspace), forming_(forming), first_new_(first_new), mender_(workspace.exact() ? nullptr : mender) {
     Box box;
     for (const Point& p : workspace.points) box.extend(p);
+    losses_ = LineSum(box);
     diameter_ = box.diagonal().norm();
     at_most_ = tolerance::kVoronoiDepth * diameter_ / 2;
+    const double count = static_cast<double>(workspace_.points.size());
+    all_at_most_ = (1 - kGiven) * at_most_ * std::max(1.0, kMean * count);
+    share_ = kFacet * at_most_;
+    small_share_ = all_at_most_ / (kShares * static_cast<double>(workspace_.vertices.size() + 1));
   }
 
   Certificate run() {
-    for (const auto good : {&Certifier::is_oriented, &Certifier::are_facets_good})
-      for (Index v = 0; v < workspace_.vertices.size(); ++v)
-        if (!workspace_.is_free(v) && is_new(v) && !(this->*good)(v)) return {};
-    const double count = static_cast<double>(workspace_.points.size());
-    if (depth_ > (1 - kGiven) * at_most_ * std::max(1.0, kMean * count)) return {};
+    if (!look_at_all()) return {};
+    if (depth_ > all_at_most_ && (!look_closer() || depth_ > all_at_most_)) return {};
+    if (mended_) find_fattest();
     if (fattest_ != kNone && !covers_once()) return {};
     if (!are_suspects_innocent()) return {};
     return {true, 2 * (depth_ + given_) / diameter_};
@@ -65,7 +79,71 @@ class Certifier {
     return first_new_ == 0 || from(p[0]) || from(p[1]) || from(p[2]) || from(p[3]);
   }
 
-  // And whether the sphere that it was given is its own, nearly. What doubles could not place well is placed anew.
+  // All that is new; and where facets are in doubt, what they are mended by.
+  bool look_at_all() {
+    for (const auto good : {&Certifier::is_oriented, &Certifier::are_facets_good})
+      for (Index v = 0; v < workspace_.vertices.size(); ++v)
+        if (!workspace_.is_free(v) && is_new(v) && !(this->*good)(v)) return false;
+    for (int round = 0; !doubts_.empty(); ++round) {
+      doubtful_ += doubts_.size();
+      if (round == kRounds || doubtful_ > kDoubtsAtMost + workspace_.vertices.size() / kDoubtsOneIn) return false;
+      mended_ = true;
+      looks_at_changed_ = true;
+      const std::vector<Doubt> doubts = std::exchange(doubts_, {});
+      if (!look_at_changed(mender_->mend(doubts, round))) return false;
+      looks_at_changed_ = false;
+      if (doubts_.empty() && !look_at_hull()) return false;
+    }
+    return true;
+  }
+  bool look_at_changed(const std::vector<Index>& changed) {
+    for (const auto good : {&Certifier::is_oriented, &Certifier::are_facets_good})
+      for (const Index v : changed)
+        if (!workspace_.is_free(v) && !(this->*good)(v)) return false;
+    return true;
+  }
+  // After mending: what is around an edge of the hull may have changed, though the facets next to it have not.
+  bool look_at_hull() {
+    suspects_.clear();
+    for (Index v = 0; v < workspace_.vertices.size(); ++v)
+      if (!workspace_.is_free(v) && workspace_.at_infinity(v) && !are_facets_good(v)) return false;
+    return true;
+  }
+
+  // Once more, where bounds that suffice for each facet are too much for all of them: with own spheres where those of
+  // neighbours are far enough to count, with exact signs where a facet takes off more than its share, and only with
+  // what one line can meet. What was mended need not have a new point.
+  bool look_closer() {
+    for (const Index v : lossy_)
+      if (!workspace_.is_free(v) && !workspace_.at_infinity(v)) workspace_.place_sharply(v);
+    if (mended_) first_new_ = 0;
+    share_ = small_share_;
+    depth_ = 0;
+    suspects_.clear();
+    if (!look_at_all()) return false;
+    depth_ += std::min(lost_, losses_.most());
+    return true;
+  }
+  void find_fattest() {
+    max_volume_ = 0;
+    fattest_ = kNone;
+    for (Index v = 0; v < workspace_.vertices.size(); ++v)
+      if (!workspace_.is_free(v) && !workspace_.at_infinity(v)) note_volume(v, six_volumes(v).value);
+  }
+  Determinant six_volumes(Index v) const {
+    const Point& last = corner(v, 3);
+    return volume(corner(v, 0) - last, corner(v, 1) - last, corner(v, 2) - last);
+  }
+  void note_volume(Index v, double negative) {
+    if (-negative > max_volume_) max_volume_ = -negative, fattest_ = v;
+  }
+  bool doubt(Index v, Index u) {
+    if (mender_) doubts_.push_back({v, u});
+    return mender_ != nullptr;
+  }
+
+  // And whether the sphere that it was given is its own, nearly. What doubles could not place well is placed anew, and
+  // so is what was given a neighbour's sphere and is too far from it.
   bool is_oriented(Index v) {
     const Point &p0 = corner(v, 0), &p1 = corner(v, 1), &p2 = corner(v, 2);
     if (workspace_.at_infinity(v)) {
@@ -73,31 +151,46 @@ class Certifier {
       return sharp_normal(p0, p1, p2, normal);
     }
     const Point& p3 = corner(v, 3);
-    const Determinant det = volume(p0 - p3, p1 - p3, p2 - p3);
+    const Determinant det = six_volumes(v);
     if (det.sign() == Sign::positive ||
         (det.sign() == Sign::uncertain && volume_sign(p3, p0, p1, p2) != Sign::negative))
       return false;
-    if (-det.value > max_volume_) max_volume_ = -det.value, fattest_ = v;
+    note_volume(v, det.value);
     workspace_.settle(v);
-    double apart = from_own_sphere(v);
-    if (apart > kTold * at_most_ && !workspace_.shares_sphere(v)) {
-      workspace_.place_sharply(v);
-      apart = from_own_sphere(v);
+    double apart = from_told_sphere(v);
+    if (apart > kTold * at_most_) {
+      Vector center;
+      if (!own_center(v, center)) return false;
+      apart = from_sphere(v, center);
+      if (apart > (workspace_.shares_sphere(v) ? kGiven : kTold) * at_most_) {
+        workspace_.place_sharply(v, center);
+        apart = std::min(from_told_sphere(v), from_sphere(v, center));
+      }
     }
+    if (apart > small_share_ && workspace_.shares_sphere(v)) lossy_.push_back(v);
     given_ = std::max(given_, apart);
     return apart <= kGiven * at_most_;
   }
 
   // How far the sphere that a vertex was given is from that of its forming points, at most, where points may be.
   double from_own_sphere(Index v) const {
-    if (workspace_.exact()) return 0;
-    const VoronoiVertex& vertex = workspace_.vertices[v];
-    const double told = workspace_.power_bound(v) / std::sqrt(vertex.radius);
-    if (!workspace_.shares_sphere(v) && told <= kTold * at_most_) return told;
+    const double told = from_told_sphere(v);
+    if (told <= kTold * at_most_) return told;
     Vector center;
-    if (!sharp_circumcenter(corner(v, 0), corner(v, 1), corner(v, 2), corner(v, 3), center)) return diameter_;
+    return own_center(v, center) ? from_sphere(v, center) : diameter_;
+  }
+  // The same as far as its error bound tells.
+  double from_told_sphere(Index v) const {
+    if (workspace_.exact()) return 0;
+    if (workspace_.shares_sphere(v)) return diameter_;
+    return workspace_.power_bound(v) / std::sqrt(workspace_.vertices[v].radius);
+  }
+  bool own_center(Index v, Vector& center) const {
+    return sharp_circumcenter(corner(v, 0), corner(v, 1), corner(v, 2), corner(v, 3), center);
+  }
+  double from_sphere(Index v, const Vector& center) const {
     // Both go through a point: at a distance d from it, powers differ by 2 d times the distance of the centres.
-    const double apart = (corner(v, 0) + center - vertex.center).norm(), radius = center.norm();
+    const double apart = (corner(v, 0) + center - workspace_.vertices[v].center).norm(), radius = center.norm();
     return apart <= radius / 2 ? 4 * apart * std::min(2.0, diameter_ / radius) : diameter_;
   }
 
@@ -105,9 +198,9 @@ class Certifier {
     const bool outside = workspace_.at_infinity(v);
     for (unsigned i = 0; i < 4; ++i) {
       const Index u = workspace_.vertices[v].neighbors[i];
-      if (u < v && is_new(u)) continue;                    // seen from there
-      if (outside != workspace_.at_infinity(u)) continue;  // a facet of the hull: its edges will be looked at
-      if (!(outside ? is_hull_convex(v, i) : do_spheres_agree(v, i, u))) return false;
+      if (u < v && is_new(u) && !looks_at_changed_) continue;  // seen from there
+      if (outside != workspace_.at_infinity(u)) continue;      // a facet of the hull: its edges will be looked at
+      if (!(outside ? is_hull_convex(v, i) : do_spheres_agree(v, i, u)) && !doubt(v, u)) return false;
     }
     return true;
   }
@@ -116,6 +209,16 @@ class Certifier {
     if (!(depth <= kFacet * at_most_)) return false;
     depth_ += depth;
     return true;
+  }
+  // What only lines through the facet of v that is opposite to its point i lose.
+  void note_loss(double depth, Index v, unsigned i) {
+    if (share_ > small_share_) {
+      depth_ += depth;
+      return;
+    }
+    lost_ += depth;
+    const auto& [a, b, c] = Cavity::kOthers[i];
+    losses_.add(depth, corner(v, a), corner(v, b), corner(v, c));
   }
 
   // Across the facet between v and its neighbour i, u.
@@ -126,15 +229,21 @@ class Certifier {
     if (own && (workspace_.power(v, across) < -workspace_.power_bound(v) ||
                 workspace_.power(u, corner(v, i)) < -workspace_.power_bound(u)))
       return true;
+    double lost = 2 * diameter_;
     if (!workspace_.exact()) {
       const auto& [a, b, c] = Cavity::kOthers[i];
       Vector away;
       const double blur = normal(corner(v, a), corner(v, b), corner(v, c), away);
-      if (add(depth_lost(v, u, corner(v, a), away, blur, Vector::Zero(), 0))) return true;
+      lost = depth_lost(v, u, corner(v, a), away, blur, Vector::Zero(), 0);
+      if (lost <= share_ && add(lost)) return true;
     }
-    if (inside_sphere(across, corner(v, 0), corner(v, 1), corner(v, 2), corner(v, 3)) == Sign::positive) return false;
-    // In terms of the vertices' own spheres there is no doubt.
-    if (!own) depth_ += from_own_sphere(v) + from_own_sphere(u);
+    if (inside_sphere(across, corner(v, 0), corner(v, 1), corner(v, 2), corner(v, 3)) != Sign::positive) {
+      // In terms of the vertices' own spheres there is no doubt.
+      lost = std::min(lost, own ? 0 : from_own_sphere(v) + from_own_sphere(u));
+    } else if (!(lost <= kFacet * at_most_)) {
+      return false;
+    }
+    note_loss(lost, v, i);
     return true;
   }
 
@@ -300,8 +409,15 @@ class Certifier {
   Workspace& workspace_;
   const std::vector<bool>& forming_;
   Index first_new_, fattest_ = kNone;
-  double diameter_ = 0, at_most_ = 0, depth_ = 0, given_ = 0, max_volume_ = 0;
+  double diameter_ = 0, at_most_ = 0, all_at_most_ = 0, share_ = 0, small_share_ = 0, depth_ = 0, lost_ = 0, given_ = 0,
+         max_volume_ = 0;
   std::vector<Index> hull_points_, suspects_;
+  LineSum losses_{Box()};  // what facets take off more than their share
+  Mender* mender_;
+  std::vector<Doubt> doubts_;
+  std::size_t doubtful_ = 0;
+  std::vector<Index> lossy_;  // that share a sphere farther from their own than a facet's share
+  bool looks_at_changed_ = false, mended_ = false;
 };
 
 }  // namespace
@@ -323,10 +439,10 @@ std::size_t count(const std::vector<bool>& forming) {
 
 std::size_t count_forming(const Workspace& workspace) { return count(forming_points(workspace)); }
 
-Certificate certify(Workspace& workspace, std::size_t points, Index first_new) {
+Certificate certify(Workspace& workspace, std::size_t points, Index first_new, Mender* mender) {
   const std::vector<bool> forming = forming_points(workspace);
   if (count(forming) != points) return {};
-  return Certifier(workspace, forming, first_new).run();
+  return Certifier(workspace, forming, first_new, mender).run();
 }
 
 }  // namespace orchard::detail

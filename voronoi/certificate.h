@@ -1,4 +1,5 @@
 #pragma once
+#include "mend.h"
 #include "workspace.h"
 
 namespace orchard::detail {
@@ -19,8 +20,10 @@ struct Certificate {
 // facets.
 //
 // It holds if no facet takes off more than a 64th of tolerance::kVoronoiDepth, and all of them together no more than
-// it, or, for more than 1024 points, than a 1024th of it for each point: rounding is to be told from what is wrong, and
-// a line meets few of many facets. What is proven is `depth`.
+// it, or, for more than 512 points, than a 512th of it for each point: rounding is to be told from what is wrong, and a
+// line meets few of many facets; where the sum is more, only those count that one line can meet (see LineSum). What is
+// proven is `depth`. Where a facet takes off more than its share of that, exact arithmetic may show that it takes off
+// nothing.
 //
 // At edges of the hull that are so short, or facets so thin, that a bound from next to them, carried across all points,
 // says nothing, the planes and spheres on both sides are held against all points one by one.
@@ -36,7 +39,10 @@ struct Certificate {
 // Only facets of vertices that a point from first_new on forms are looked at: the others are as they were. Doubles
 // settle most of them: one distance each. O(1) a vertex, and O(n) for up to 512 of them.
 // `points`: how many form vertices if none was lost.
-Certificate certify(Workspace& workspace, std::size_t points, Index first_new = 0);
+//
+// With a mender, facets that spoil it are mended, and what is new is looked at in the same way, until nothing is left;
+// what was mended away still counts in the depth. Not with exact signs.
+Certificate certify(Workspace& workspace, std::size_t points, Index first_new = 0, Mender* mender = nullptr);
 
 // How many points form vertices.
 std::size_t count_forming(const Workspace& workspace);

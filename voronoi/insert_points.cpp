@@ -56,8 +56,9 @@ bool insert_into_copy(Workspace& workspace, const Insertion& insertion, bool exa
   for (const Index point : insertion.order)
     if (!inserter.insert(point)) return false;
   if (!inserter.insert_deferred()) return false;
+  detail::Mender mender(workspace);
   const detail::Certificate certificate =
-      detail::certify(workspace, before + insertion.order.size(), insertion.first_new);
+      detail::certify(workspace, before + insertion.order.size(), insertion.first_new, &mender);
   if (!certificate.holds) return false;
   add_counts(inserter.counts(), report);
   report.exact_signs = exact;

@@ -10,7 +10,7 @@ namespace {
 
 // How many insertions may need exact signs or the constrained search, or be deferred, before all are made anew with
 // exact signs.
-constexpr std::uint64_t kDoubtfulAtMost = 16, kDoubtfulOneIn = 256;
+constexpr std::uint64_t kDoubtfulAtMost = 16, kDoubtfulOneIn = 4;
 
 }  // namespace
 
@@ -62,7 +62,9 @@ bool Inserter::insert(Index point) {
 bool Inserter::insert_deferred() {
   while (!deferred_.empty()) {
     if (std::erase_if(deferred_, [this](Index point) { return insert_now(point); }) > 0) continue;
-    if (!insert_by_value(deferred_.back(), workspace_.points[deferred_.back()], true)) return false;
+    const Index point = deferred_.back();
+    const Point q = workspace_.points[point];
+    if (!insert_by_value(point, q, true) && !insert_sparsely(point, q)) return false;
     deferred_.pop_back();
   }
   return true;
@@ -139,6 +141,28 @@ bool Inserter::insert_by_value(Index point, const Point& q, bool may_overrule) {
   cavity_.note_facets();
   if (!cavity_.place_vertices() || !cavity_.link_vertices()) return false;
   if (!may_overrule && cavity_.worst_placing() > Placing::thin) return false;
+  ++counts_.constrained;
+  finish();
+  return true;
+}
+
+// Where nothing fits: only the vertex whose tetrahedron holds q, and those on whose facets it is, exactly, are deleted.
+// Oriented positively, and far from right: mend() does the rest.
+bool Inserter::insert_sparsely(Index point, const Point& q) {
+  const Index start = locate(q);
+  workspace_.set_exact(true);
+  cavity_.begin(point);
+  cavity_.delete_vertex(walk_by_orientation(start, q));
+  for (std::size_t i = 0; i < cavity_.deleted().size(); ++i)
+    for (unsigned slot = 0; slot < 4; ++slot) {
+      const Index v = cavity_.deleted()[i], next = workspace_.vertices[v].neighbors[slot];
+      if (workspace_.mark(next) != Mark::deleted && cavity_.side_of_facet(v, slot) != Sign::positive)
+        cavity_.delete_vertex(next);
+    }
+  cavity_.note_facets();
+  const bool good = cavity_.place_vertices() && cavity_.link_vertices() && cavity_.is_ball();
+  workspace_.set_exact(false);
+  if (!good) return false;
   ++counts_.constrained;
   finish();
   return true;

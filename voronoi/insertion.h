@@ -53,6 +53,7 @@ class Inserter {
 
   bool insert_now(Index point);
   bool insert_by_value(Index point, const Point& q, bool may_overrule);
+  bool insert_sparsely(Index point, const Point& q);
   void insert_constrained(Index start, const Point& q);
   bool too_doubtful() const;
   Index locate(const Point& q) const;

@@ -15,6 +15,8 @@ constexpr unsigned kCurveBits = 3 * kBits;
 constexpr unsigned kRoundShift = 3;  // each round holds about 7/8 of the points that remain
 constexpr unsigned kMaxRound = 15;
 constexpr std::size_t kMinRound = 64;
+constexpr std::size_t kCrowded = 16;  // points of one round in one cell that are ordered by a finer grid
+constexpr int kFinest = 4;            // grids within grids: the last one resolves a double
 
 // The position on a Hilbert curve of a cell of the 2^kBits grid, by Skilling's transform (2004).
 std::uint64_t hilbert(std::array<std::uint32_t, 3> x) {
@@ -41,6 +43,13 @@ std::uint64_t hilbert(std::array<std::uint32_t, 3> x) {
   return position;
 }
 
+std::array<std::uint32_t, 3> cell_of(const Point& p, const Box& box, double side) {
+  const double steps = side > 0 ? ((1u << kBits) - 1) / side : 0;
+  const Vector cell = (p - box.min()) * steps;
+  return {static_cast<std::uint32_t>(cell.x()), static_cast<std::uint32_t>(cell.y()),
+          static_cast<std::uint32_t>(cell.z())};
+}
+
 struct Item {
   std::uint64_t key;
   Index point;
@@ -62,27 +71,40 @@ void radix_sort(std::vector<Item>& items, unsigned bits) {
   }
 }
 
+// Where points crowd together: those of one round in one cell follow a curve of their own, in their own box.
+void order_crowds(std::span<Item> items, std::span<const Point> points, int finer) {
+  for (std::size_t begin = 0, end = 0; begin < items.size(); begin = end) {
+    for (end = begin + 1; end < items.size() && items[end].key == items[begin].key; ++end) continue;
+    if (end - begin <= kCrowded) continue;
+    const std::span<Item> crowd = items.subspan(begin, end - begin);
+    Box box;
+    for (const Item& item : crowd) box.extend(points[item.point]);
+    const double side = box.sizes().maxCoeff();
+    if (side == 0) continue;
+    for (Item& item : crowd) item.key = hilbert(cell_of(points[item.point], box, side));
+    std::stable_sort(crowd.begin(), crowd.end(), [](const Item& a, const Item& b) { return a.key < b.key; });
+    if (finer > 1) order_crowds(crowd, points, finer - 1);
+  }
+}
+
 }  // namespace
 
 std::vector<Index> insertion_order(std::span<const Point> points, const Box& box) {
   const double side = box.isEmpty() ? 0 : box.sizes().maxCoeff();
-  const double steps = side > 0 ? ((1u << kBits) - 1) / side : 0;
   unsigned rounds = 0;
   for (std::size_t left = points.size(); left > kMinRound && rounds < kMaxRound; left >>= kRoundShift) ++rounds;
 
   std::vector<Item> items(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vector cell = (points[i] - box.min()) * steps;
     // A point stays in the last round but for one time in eight, and so on downwards.
     std::uint64_t bits = Random(0, 0x40b3u, i).bits();
     unsigned round = rounds;
     for (; round > 0 && (bits & ((1u << kRoundShift) - 1)) == 0; bits >>= kRoundShift) --round;
-    items[i].key = (static_cast<std::uint64_t>(round) << kCurveBits) |
-                   hilbert({static_cast<std::uint32_t>(cell.x()), static_cast<std::uint32_t>(cell.y()),
-                            static_cast<std::uint32_t>(cell.z())});
+    items[i].key = (static_cast<std::uint64_t>(round) << kCurveBits) | hilbert(cell_of(points[i], box, side));
     items[i].point = static_cast<Index>(i);
   }
   radix_sort(items, kCurveBits + 4);
+  order_crowds(items, points, kFinest);
   std::vector<Index> order(points.size());
   std::transform(items.begin(), items.end(), order.begin(), [](const Item& item) { return item.point; });
   return order;

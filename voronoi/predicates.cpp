@@ -48,6 +48,55 @@ auto integer_vectors(const Point& q, const Points&... points) {
   return std::array{from_q(points)...};
 }
 
+// Where the differences have few enough digits, as those of neighbours mostly have: the cross and dot products of these
+// in two machine words.
+#ifdef __SIZEOF_INT128__
+__extension__ using TwoWords = __int128;
+#else
+using TwoWords = ExactInteger;
+#endif
+
+struct ShortVector {
+  std::int64_t x, y, z;
+
+  SharpVector<ExactInteger> cross(const ShortVector& o) const {
+    return {ExactInteger(product(y, o.z) - product(z, o.y)), ExactInteger(product(z, o.x) - product(x, o.z)),
+            ExactInteger(product(x, o.y) - product(y, o.x))};
+  }
+  ExactInteger dot(const ShortVector& o) const {
+    return ExactInteger(product(x, o.x) + product(y, o.y) + product(z, o.z));
+  }
+  ExactInteger dot(const SharpVector<ExactInteger>& o) const {
+    return ExactInteger(x) * o.x + ExactInteger(y) * o.y + ExactInteger(z) * o.z;
+  }
+
+ private:
+  static TwoWords product(std::int64_t a, std::int64_t b) { return TwoWords(a) * b; }
+};
+
+// As integer_vectors(), where all fit; false where they do not.
+template <std::size_t kCount, class... Points>
+bool short_vectors(std::array<ShortVector, kCount>& vectors, const Point& q, const Points&... points) {
+  constexpr int kShortBits = 60;  // of a coordinate: three products of differences are below 2^124
+  const int unit = common_unit({&q, &points...});
+  bool fits = true;
+  const auto in_short_units = [&](double x) -> std::int64_t {
+    const Binary binary(x);
+    if (binary.mantissa == 0) return 0;
+    const int shift = binary.exponent - unit;
+    if (shift < 0) return binary.mantissa / (std::int64_t{1} << -shift);
+    fits = fits && shift + 53 <= kShortBits;
+    return fits ? binary.mantissa * (std::int64_t{1} << shift) : 0;
+  };
+  const auto short_vector = [&](const Point& p) {
+    return ShortVector{in_short_units(p.x()), in_short_units(p.y()), in_short_units(p.z())};
+  };
+  const ShortVector origin = short_vector(q);
+  vectors = {short_vector(points)...};
+  for (ShortVector& v : vectors) v = {v.x - origin.x, v.y - origin.y, v.z - origin.z};
+  return fits;
+}
+
 // The lifted determinant of four points relative to the query, expanded by the lifts. Positive for a query inside.
 template <class Number>
 Number lifted(const Number& aa, const Number& bb, const Number& cc, const Number& dd, const Number& bcd,
@@ -84,11 +133,51 @@ Number sharp_volume(const std::array<SharpVector<Number>, 3>& v) {
   return v[0].dot(v[1].cross(v[2]));
 }
 
+ExactInteger exact_volume(const Point& q, const Point& a, const Point& b, const Point& c) {
+  std::array<ShortVector, 3> v;
+  if (short_vectors(v, q, a, b, c)) return v[0].dot(v[1].cross(v[2]));
+  return sharp_volume(integer_vectors(q, a, b, c));
+}
+
 template <class Number>
 Number sharp_inside_sphere(const std::array<SharpVector<Number>, 4>& v) {
   const auto& [a, b, c, d] = v;
   const SharpVector<Number> ab = a.cross(b), cd = c.cross(d);
   return lifted<Number>(a.dot(a), b.dot(b), c.dot(c), d.dot(d), b.dot(cd), a.dot(cd), d.dot(ab), c.dot(ab));
+}
+
+// The circumcentre of q, a, b, c relative to q as four determinants: x, y and z over twice six times the volume.
+template <class Number>
+struct SharpCenter {
+  SharpVector<Number> numerator;
+  Number volume6;
+
+  static SharpCenter of(const std::array<SharpVector<Number>, 3>& v) {
+    const auto& [a, b, c] = v;
+    const SharpVector<Number> bc = b.cross(c), ca = c.cross(a), ab = a.cross(b);
+    const Number aa = a.dot(a), bb = b.dot(b), cc = c.dot(c);
+    return {{bc.x * aa + ca.x * bb + ab.x * cc, bc.y * aa + ca.y * bb + ab.y * cc, bc.z * aa + ca.z * bb + ab.z * cc},
+            a.dot(bc)};
+  }
+};
+
+// The quotient, and by what it was divided.
+struct RoundedCenter {
+  Vector center;
+  double volume6 = 0;
+};
+inline RoundedCenter rounded_center(const Point& q, const Point& a, const Point& b, const Point& c) {
+  const auto [numerator, volume6] = SharpCenter<Twofold>::of(twofold_vectors(q, a, b, c));
+  const Twofold twice = volume6 + volume6;
+  return {Vector((numerator.x / twice).high, (numerator.y / twice).high, (numerator.z / twice).high), volume6.high};
+}
+
+ExactInteger exact_inside_sphere(const Point& q, const Point& a, const Point& b, const Point& c, const Point& d) {
+  std::array<ShortVector, 4> v;
+  if (!short_vectors(v, q, a, b, c, d)) return sharp_inside_sphere(integer_vectors(q, a, b, c, d));
+  const SharpVector<ExactInteger> ab = v[0].cross(v[1]), cd = v[2].cross(v[3]);
+  return lifted<ExactInteger>(v[0].dot(v[0]), v[1].dot(v[1]), v[2].dot(v[2]), v[3].dot(v[3]), v[1].dot(cd),
+                              v[0].dot(cd), v[3].dot(ab), v[2].dot(ab));
 }
 
 // The same products and sums with the fused operation as one instruction instead of a call: the same results, twice as
@@ -102,10 +191,15 @@ Number sharp_inside_sphere(const std::array<SharpVector<Number>, 4>& v) {
                                                          const Point& c) {
   return sharp_volume(twofold_vectors(q, a, b, c)).high;
 }
+[[gnu::target("fma"), gnu::flatten]] RoundedCenter fused_center(const Point& q, const Point& a, const Point& b,
+                                                                const Point& c) {
+  return rounded_center(q, a, b, c);
+}
 const bool kFused = __builtin_cpu_supports("fma");
 #else
 double fused_inside_sphere(const Point&, const Point&, const Point&, const Point&, const Point&) { return 0; }
 double fused_volume(const Point&, const Point&, const Point&, const Point&) { return 0; }
+RoundedCenter fused_center(const Point&, const Point&, const Point&, const Point&) { return {}; }
 constexpr bool kFused = false;
 #endif
 
@@ -118,7 +212,7 @@ Sign volume_sign(const Point& q, const Point& a, const Point& b, const Point& c,
   const Sign sharp = sign_of(kFused ? fused_volume(q, a, b, c) : sharp_volume(twofold_vectors(q, a, b, c)).high,
                              fast.bound * kSharper + indifferent);
   if (sharp != Sign::uncertain || indifferent > 0) return sharp;
-  return exact_sign(sharp_volume(integer_vectors(q, a, b, c)));
+  return exact_sign(exact_volume(q, a, b, c));
 }
 
 Sign volume_sign_of_middle(const std::array<Point, 4>& points, const Point& a, const Point& b, const Point& c) {
@@ -148,34 +242,13 @@ Sign inside_sphere(const Point& q, const Point& a, const Point& b, const Point& 
       sign_of(kFused ? fused_inside_sphere(q, a, b, c, d) : sharp_inside_sphere(twofold_vectors(q, a, b, c, d)).high,
               fast.bound * kSharper);
   if (sharp != Sign::uncertain) return sharp;
-  return exact_sign(sharp_inside_sphere(integer_vectors(q, a, b, c, d)));
+  return exact_sign(exact_inside_sphere(q, a, b, c, d));
 }
 
-namespace {
-
-// The circumcentre of q, a, b, c relative to q as four determinants: x, y and z over twice six times the volume.
-template <class Number>
-struct SharpCenter {
-  SharpVector<Number> numerator;
-  Number volume6;
-
-  static SharpCenter of(const std::array<SharpVector<Number>, 3>& v) {
-    const auto& [a, b, c] = v;
-    const SharpVector<Number> bc = b.cross(c), ca = c.cross(a), ab = a.cross(b);
-    const Number aa = a.dot(a), bb = b.dot(b), cc = c.dot(c);
-    return {{bc.x * aa + ca.x * bb + ab.x * cc, bc.y * aa + ca.y * bb + ab.y * cc, bc.z * aa + ca.z * bb + ab.z * cc},
-            a.dot(bc)};
-  }
-};
-
-}  // namespace
-
 bool sharp_circumcenter(const Point& q, const Point& a, const Point& b, const Point& c, Vector& center) {
-  const auto sharp = SharpCenter<Twofold>::of(twofold_vectors(q, a, b, c));
-  if (std::abs(sharp.volume6.high) > kDivisible * kSharper * volume(a - q, b - q, c - q).bound) {
-    const Twofold twice = sharp.volume6 + sharp.volume6;
-    center =
-        Vector((sharp.numerator.x / twice).high, (sharp.numerator.y / twice).high, (sharp.numerator.z / twice).high);
+  const RoundedCenter sharp = kFused ? fused_center(q, a, b, c) : rounded_center(q, a, b, c);
+  if (std::abs(sharp.volume6) > kDivisible * kSharper * volume(a - q, b - q, c - q).bound) {
+    center = sharp.center;
   } else {
     const auto exact = SharpCenter<ExactInteger>::of(integer_vectors(q, a, b, c));
     if (exact.volume6 == 0) return false;

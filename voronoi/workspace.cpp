@@ -58,12 +58,16 @@ Placing Workspace::place_again(Index v, VoronoiVertex& placed, std::uint8_t& err
 }
 
 void Workspace::place_sharply(Index v) {
-  VoronoiVertex& vertex = vertices[v];
-  const auto corner = [&](unsigned i) -> const Point& { return points[vertex.forming_points[i]]; };
+  const auto corner = [&](unsigned i) -> const Point& { return points[vertices[v].forming_points[i]]; };
   Vector center;
-  if (!sharp_circumcenter(corner(0), corner(1), corner(2), corner(3), center)) return;
-  vertex.center = corner(0) + center;
-  vertex.radius = (vertex.center - corner(0)).squaredNorm();
+  if (sharp_circumcenter(corner(0), corner(1), corner(2), corner(3), center)) place_sharply(v, center);
+}
+
+void Workspace::place_sharply(Index v, const Vector& center) {
+  VoronoiVertex& vertex = vertices[v];
+  const Point& origin = points[vertex.forming_points[0]];
+  vertex.center = origin + center;
+  vertex.radius = (vertex.center - origin).squaredNorm();
   const double rounding = 64 * kRounding * (vertex.radius + std::sqrt(vertex.radius) * vertex.center.lpNorm<1>());
   set_error_class(v, error_class(rounding), false, state_[v] & 3u);
 }

@@ -95,6 +95,7 @@ class Workspace {
   bool poor(const VoronoiVertex& vertex, std::uint8_t error_class) const {
     return !(bounds_[error_class] < good_center_ * vertex.radius);
   }
+  bool poor(Index v) const { return poor(vertices[v], error_class_of(v)); }
   // For a vertex of the new point that forms a facet with v, if that puts it on the sphere of v as far as the input
   // goes: takes over this very sphere and its error bound, so that all vertices of many points on one sphere have the
   // same sign for the next. False, and no change, if not.
@@ -113,6 +114,7 @@ class Workspace {
   }
   // Gives a finite vertex the sphere of its forming points, to some roundings, if they have one.
   void place_sharply(Index v);
+  void place_sharply(Index v, const Vector& center);  // which is relative to its first point
   bool settled(Index v) const { return error_class_of(v) != kNotSettled; }
 
   static constexpr std::uint8_t kUnknownError = 63, kNotSettled = 62;

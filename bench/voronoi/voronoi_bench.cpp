@@ -18,6 +18,7 @@
 
 #include "build.h"
 #include "certificate.h"
+#include "hard_sets.h"
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/sampling.h"
 #include "orchard/voronoi/highest_first.h"
@@ -179,6 +180,19 @@ int main(int argc, char** argv) {
     set("box lattice", static_cast<std::size_t>(6 * side * side), [&] { return test::box_lattice_points(side); });
     set("turned box lattice", static_cast<std::size_t>(6 * side * side),
         [&] { return test::turned(test::box_lattice_points(side), 1); });
+    set("integer grid", n, [&] { return bench::integer_grid_points(k); });
+  }
+  for (const std::size_t n : {5000u, 50000u, 500000u}) set("clusters", n, [&] { return bench::cluster_points(n, 1); });
+  for (const int rings : {20, 50, 140})
+    set("cylinder rings", static_cast<std::size_t>(360 * rings),
+        [&] { return bench::cylinder_ring_points(rings, 360); });
+  for (const int across : {40, 125})
+    set("torus lattice", static_cast<std::size_t>(3 * across * across),
+        [&] { return bench::torus_lattice_points(3 * across, across); });
+  for (const std::size_t n : {5000u, 50000u}) set("noisy lines", n, [&] { return bench::noisy_line_points(n, 1); });
+  for (const std::size_t n : {500u, 1500u}) {
+    set("moment curve", n, [&] { return bench::moment_curve_points(n); });
+    set("skew lines", n, [&] { return bench::skew_line_points(n, 1); });
   }
   if (*part != '\0' && std::string(part) != "insert_points") return 0;
   std::printf("\ninsert_points\n");

@@ -122,7 +122,7 @@ TEST(RefineAxis, LiesOnTheClosedFormOfABoxAndReachesItsEdges) {
 
 // Between its parallel faces the points are farther apart than it is thick.
 TEST(RefineAxis, ReachesTheEdgesOfAPlateThatIsThinnerThanThePointsSpacing) {
-  const test::KnownAxis known = test::known_box({1, 2, 0.02});
+  const test::KnownAxis known = test::known_box({0.02, 1, 2});
   const Surface surface(known.solid);
   const MedialBuild build = build_medial_axis(surface, options_for(400));
   EXPECT_EQ(topology(medial_mesh(build.axis)), solid_topology(surface));

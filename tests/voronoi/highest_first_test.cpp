@@ -3,15 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <numbers>
 #include <numeric>
 
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/random.h"
+#include "orchard/geometry/tolerance.h"
 #include "orchard/voronoi/exact.h"
 #include "orchard/voronoi/quality.h"
 #include "voronoi/diagram_judge.h"
 #include "voronoi/point_sets.h"
 #include "voronoi/quadruples.h"
+#include "voronoi/shaken_sets.h"
 
 namespace orchard {
 namespace {
@@ -99,18 +102,52 @@ TEST(HighestFirstVoronoi, MeetsContradictionsWhereTheyAreAndDoesNotStartAnew) {
   EXPECT_GT(coplanar, 0u) << "else it shows nothing";
 }
 
-TEST(HighestFirstVoronoi, IsExactWhereRoundingLeavesSpheresOpen) {
+TEST(HighestFirstVoronoi, IsMendedWhereRoundingLeavesSpheresOpen) {
   for (const test::Points& points : {test::turned(test::cone_ring_points(60, 80), 1), test::sphere_points(2000, 4)}) {
     const auto [diagram, report] = highest_first_voronoi(points);
-    EXPECT_TRUE(report.exact_signs);
-    EXPECT_EQ(report.certified_depth, 0);
-    EXPECT_EQ(report.constrained_insertions, 0u);
+    EXPECT_FALSE(report.exact_signs) << "all made anew for the sake of a few";
+    EXPECT_LT(report.certified_depth, tolerance::kVoronoiDepth * static_cast<double>(points.size()) / 512);
     EXPECT_NO_THROW(validate(diagram));
     if (points.size() > 3000) continue;  // the judge holds all points against all spheres
     const test::Judgement judgement = test::judge(diagram);
-    EXPECT_LT(judgement.deepest, 1e-11);
-    EXPECT_LT(judgement.beyond, 1e-11);
+    EXPECT_LE(judgement.deepest, report.certified_depth);
+    EXPECT_LE(judgement.beyond, report.certified_depth);
+    EXPECT_EQ(judgement.missing, 0u);
   }
+}
+
+// Rings of a long cylinder and lattices of a torus: thousands of points on each of many spheres, up to rounding.
+TEST(HighestFirstVoronoi, IsNotMadeAnewForLocalDoubts) {
+  const auto ring = [](double radius, int i, int around, double z) {
+    const double angle = 2 * std::numbers::pi * i / around;
+    return Point(radius * std::cos(angle), radius * std::sin(angle), z);
+  };
+  test::Points cylinder, torus;
+  for (int z = 0; z < 20; ++z)
+    for (int i = 0; i < 360; ++i) cylinder.push_back(ring(2, i, 360, 10.0 * z / 19));
+  for (int u = 0; u < 120; ++u)
+    for (int v = 0; v < 40; ++v) {
+      const double across = 2 * std::numbers::pi * v / 40;
+      torus.push_back(ring(1 + 0.35 * std::cos(across), u, 120, 0.35 * std::sin(across)));
+    }
+  for (const test::Points& points : {cylinder, torus}) {
+    const auto [diagram, report] = highest_first_voronoi(points);
+    EXPECT_FALSE(report.exact_signs);
+    EXPECT_LT(report.certified_depth, tolerance::kVoronoiDepth * static_cast<double>(points.size()) / 512);
+    EXPECT_NO_THROW(validate(diagram));
+    EXPECT_LT(inaccuracy(diagram).max, tolerance::kVoronoiDepth * test::bounding_radius(points));
+  }
+}
+
+TEST(HighestFirstVoronoi, IsMadeAnewWithExactSignsWhereDoubtsAreEverywhere) {
+  const test::ShakenSet set = test::shaken_set(14);
+  const auto [diagram, report] = highest_first_voronoi(set.points);
+  EXPECT_TRUE(report.exact_signs) << set.name;
+  EXPECT_EQ(report.certified_depth, 0);
+  EXPECT_EQ(report.constrained_insertions, 0u);
+  const test::Judgement judgement = test::judge(diagram);
+  EXPECT_LT(judgement.deepest, 1e-11);
+  EXPECT_LT(judgement.beyond, 1e-11);
 }
 
 TEST(HighestFirstVoronoi, OfFlatPointsHasNoVertices) {

@@ -1,0 +1,126 @@
+#include "mend.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace orchard::detail {
+namespace {
+
+constexpr std::size_t kMost = 256;  // vertices that one insertion may delete: what takes more is no local doubt
+constexpr int kStricter = 2;        // bits that a round takes off the depth that does no harm
+
+// How deep a point is in a sphere through the origin, both relative to it.
+double depth_in(const Vector& center, const Vector& point) {
+  return point.dot(2 * center - point) / (2 * center.norm());
+}
+
+}  // namespace
+
+std::vector<Index> Mender::mend(std::span<const Doubt> doubts, int round) {
+  changed_.clear();
+  harmless_ = std::ldexp(workspace_.harmless_depth(), -kStricter * round);
+  workspace_.set_exact(true);
+  for (const auto& [v, u] : doubts) {
+    if (workspace_.is_free(v) || workspace_.is_free(u) || slot_of(v, u) == 4) continue;  // gone with another doubt
+    sharpen(v);
+    sharpen(u);
+    if (!insert_again(v, u) && !insert_again(u, v)) changed_.insert(changed_.end(), {v, u});
+  }
+  cavity_.end();
+  workspace_.set_exact(false);
+  std::sort(changed_.begin(), changed_.end());
+  changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
+  return changed_;
+}
+
+unsigned Mender::slot_of(Index v, Index neighbor) const {
+  const auto& neighbors = workspace_.vertices[v].neighbors;
+  return static_cast<unsigned>(std::find(neighbors.begin(), neighbors.end(), neighbor) - neighbors.begin());
+}
+
+bool Mender::is_formed_by(Index v, Index point) const {
+  const auto& corner = workspace_.vertices[v].forming_points;
+  return std::find(corner.begin(), corner.end(), point) != corner.end();
+}
+
+// Its own sphere: signs by a neighbour's would not be exact.
+void Mender::sharpen(Index v) {
+  if (workspace_.at_infinity(v)) return;
+  workspace_.settle(v);
+  if (!workspace_.shares_sphere(v)) return;
+  workspace_.place_sharply(v);
+  changed_.push_back(v);
+}
+
+// Of q in the sphere of a vertex, or beyond its plane.
+double Mender::depth(Index v, const Point& q) {
+  const VoronoiVertex& vertex = workspace_.vertices[v];
+  const Point& origin = workspace_.points[vertex.forming_points[0]];
+  if (workspace_.at_infinity(v)) return vertex.center.dot(q - origin);
+  sharpen(v);
+  return depth_in(vertex.center - origin, q - origin);
+}
+
+bool Mender::is_in_sphere(Index v, const Point& q) {
+  sharpen(workspace_.at_infinity(v) ? workspace_.vertices[v].neighbors[3] : v);
+  return workspace_.sign(v, q) == Sign::positive;
+}
+
+// The point that u has instead of a shared one, if it is in the sphere of v.
+bool Mender::insert_again(Index v, Index u) {
+  const Index point = workspace_.vertices[u].forming_points[slot_of(u, v)];
+  if (point == kInfinitePoint) return false;
+  const Point q = workspace_.points[point];
+  if (!is_in_sphere(v, q)) return false;
+  cavity_.begin(point);
+  cavity_.delete_vertex(u);
+  cavity_.delete_vertex(v);
+  if (!grow(point, q) || !cavity_.link_vertices() || !cavity_.is_ball()) return false;
+  cavity_.place_flat_vertices();
+  cavity_.replace();
+  for (const Index fresh : cavity_.created()) {
+    changed_.push_back(fresh);
+    if (!workspace_.at_infinity(fresh) && workspace_.poor(fresh)) workspace_.place_sharply(fresh);
+  }
+  return true;
+}
+
+// Deletes all that has to go with what is deleted, and places the new vertices. False if something has to go that the
+// point is far from.
+bool Mender::grow(Index point, const Point& q) {
+  for (std::size_t done = 0; done < cavity_.deleted().size();) {
+    for (; done < cavity_.deleted().size(); ++done) {
+      if (cavity_.deleted().size() > kMost) return false;
+      for (const Index next : workspace_.vertices[cavity_.deleted()[done]].neighbors) {
+        if (workspace_.mark(next) != Mark::unseen) continue;
+        if (is_formed_by(next, point) || depth(next, q) > harmless_)
+          cavity_.delete_vertex(next);
+        else
+          cavity_.add_seen(next, Mark::kept);
+      }
+    }
+    cavity_.note_facets();
+    cavity_.place_vertices();
+    for (const Cavity::Facet& facet : cavity_.facets()) {
+      if (workspace_.mark(facet.outside) == Mark::deleted || is_facet_good(facet, q)) continue;
+      if (depth(facet.outside, q) < -workspace_.harmless_depth()) return false;
+      cavity_.delete_vertex(facet.outside);
+    }
+  }
+  return true;
+}
+
+// Whether the new point sees it, and the sphere of both does not hold the point beyond.
+bool Mender::is_facet_good(const Cavity::Facet& facet, const Point& q) const {
+  if (!facet.visible) return false;
+  const auto& corner = workspace_.vertices[facet.inside].forming_points;
+  const Index beyond = workspace_.vertices[facet.outside].forming_points[facet.back];
+  const auto& [a, b, c] = Cavity::kOthers[facet.slot];
+  if (corner[c] == kInfinitePoint || beyond == kInfinitePoint) return true;
+  const auto& points = workspace_.points;
+  Vector center;
+  return sharp_circumcenter(q, points[corner[a]], points[corner[b]], points[corner[c]], center) &&
+         depth_in(center, points[beyond] - q) <= harmless_;
+}
+
+}  // namespace orchard::detail
