@@ -2,6 +2,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <utility>
 
@@ -38,7 +39,8 @@ class SeamReacher {
  private:
   static constexpr double kParallel = 150 * std::numbers::pi / 180;  // contacts seen at this angle or a wider one
   static constexpr double kStep = 0.25;                              // spacings
-  static constexpr int kMaxSteps = 8;
+  static constexpr double kReach = 2;                                // spacings
+  static constexpr int kMaxSteps = 64;
 
   // The sum of the directions from border edges at a vertex away from their triangles, in these.
   void find_outward() {
@@ -80,9 +82,11 @@ class SeamReacher {
   }
   // The first ball on the way out that has a third contact; none that is exact if there is none.
   ExactBall seam_beyond(const ExactBall& from, const Vector& out, BallSolver& solver) const {
-    const double step = kStep * options_.spacing;
+    // No step leaves the solid: beyond a seam there may be no more of it than half the thickness.
+    const double step = std::min(kStep * options_.spacing, from.radius / 2);
+    const int steps = std::min(kMaxSteps, static_cast<int>(std::ceil(kReach * options_.spacing / step)));
     ExactBall at = from;
-    for (int i = 0; i < kMaxSteps; ++i) {
+    for (int i = 0; i < steps; ++i) {
       const Point start = at.center + step * out;
       const ExactBall next = solver.solve(start, at.touching());
       const bool goes_on = next.exact && (next.center - start).norm() <= step && next.loss >= options_.level;
