@@ -24,7 +24,8 @@ class EdgeReacher {
   Index run() {
     const Index before = complex_.size();
     find_ends();
-    for (const Index e : borders_) extend(e);
+    for (const Index e : borders_) add_strips(e);
+    for (const Index e : borders_) add_end(e);
     extension_.finish();
     return complex_.size() - before;
   }
@@ -73,19 +74,21 @@ class EdgeReacher {
     }
   }
 
-  void extend(Index e) {
+  void add_strips(Index e) {
     const auto [a, b] = complex_.edges[e];
-    if (ends_[a].empty() && ends_[b].empty()) return;
-    if (!(complex_.balls[a].radius > 0 && complex_.balls[b].radius > 0)) return;
     for (End& x : ends_[a]) {
       End* y = nearest(ends_[b], x);
       if (y != nullptr && nearest(ends_[a], *y) == &x && fits(e, x, *y))
         extension_.add_strip(a, b, vertex_of(a, x), vertex_of(b, *y));
     }
-    if (ends_[a].size() + ends_[b].size() != 1) return;
-    const Index from = ends_[a].empty() ? b : a;
-    End& end = ends_[from].front();
-    if (fits(e, end, end)) extension_.add_strip(a, b, vertex_of(from, end), vertex_of(from, end));
+  }
+  // A triangle where a row of strips ends; alone it would be a spike.
+  void add_end(Index e) {
+    const auto [a, b] = complex_.edges[e];
+    if (ends_[a].size() + ends_[b].size() != 1 || complex_.balls[a].radius == 0 || complex_.balls[b].radius == 0)
+      return;
+    const End& end = ends_[a].empty() ? ends_[b].front() : ends_[a].front();
+    if (end.vertex != kNone && fits(e, end, end)) extension_.add(a, b, end.vertex);
   }
 
   static End* nearest(std::vector<End>& ends, const End& to) {
