@@ -106,6 +106,8 @@ void refuse_idle_options(const MedialCommand& command) {
   const bool judges = !command.axis.empty(), sweeps = !command.sweep.empty();
   if (among("quality-samples", command.given) && !command.report && !judges && !sweeps)
     throw InputError("--quality-samples has no effect without --report, --axis or --sweep: nothing is measured");
+  if (!command.beside.empty() && (sweeps || (!command.report && !judges)))
+    throw InputError("--beside needs --report or --axis, in whose table the other axes stand");
   const Names swept = swept_flags(command);
   refuse_idle_in_sweep(command, swept);
   if (judges && among("raw", command.given)) throw InputError("--raw has no effect with --axis, which builds nothing");

@@ -8,7 +8,10 @@
 #include "console.h"
 #include "idle_options.h"
 #include "input_file.h"
+#include "medial_advice.h"
+#include "medial_report.h"
 #include "medial_run.h"
+#include "medial_table.h"
 #include "medial_warning.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
@@ -25,6 +28,8 @@ namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
+
+constexpr double kDistanceAccuracy = 1e-4;  // of the diagonal: to which the largest distance of two axes is searched
 
 SegmentOptions segment_options(const MedialCommand& command, const Surface& surface, const MedialBuild& build) {
   // Below twice the mean spacing of the points, what they show is the points.
@@ -54,6 +59,7 @@ void check(const MedialCommand& command) {
     throw InputError("--tree belongs to a --sweep; orchard build builds a tree");
   refuse_idle_options(command);
   check_sweep(command);  // without a sweep, that of the one combination that there is
+  inputs.insert(inputs.end(), command.beside.begin(), command.beside.end());
   inputs.push_back(command.mesh);
   for (const fs::path& file : inputs) check_input(file);
   check_outputs(command.folder, names_of(command), inputs);
@@ -95,26 +101,78 @@ void finish(const MedialCommand& command, const std::string& report_name, const 
   if (!command.output.quiet && !command.output.json) outputs.print();
 }
 
-void judge_file(const MedialCommand& command, const SolidMesh& solid, const Progress& progress, ProgressBar& bar) {
-  const MedialMesh mesh = read_ma(command.axis);
-  const MedialJudgement judgement{.quality = medial_quality(solid.surface, mesh, quality_options(command), progress),
-                                  .stability = {}};
+// The axes of files, read before anything takes long.
+struct AxisFile {
+  fs::path file;
+  MedialMesh mesh;
+};
+std::vector<AxisFile> read_axes(const std::vector<fs::path>& files) {
+  std::vector<AxisFile> axes;
+  for (const fs::path& file : files) axes.push_back({file, read_ma(file)});
+  return axes;
+}
+
+json counts_of(const MedialMesh& mesh) {
+  return {{"vertices", mesh.centers.size()}, {"edges", mesh.edges.size()}, {"triangles", mesh.triangles.size()}};
+}
+
+// What the whole report of one axis needs.
+struct Judged {
+  const MedialMesh& mesh;
+  MedialJudgement judgement;
+  AxisOrigin origin;
+  std::string name;
+};
+
+// The first axis and those beside it in one table, and where the first one is worst: printed, and into `report`.
+void report_quality(const MedialCommand& command, const SolidMesh& solid, const Judged& first,
+                    const std::vector<AxisFile>& beside, json& report, const Progress& progress, ProgressBar& bar) {
+  std::vector<JudgedAxis> axes{{first.name, first.judgement}};
+  json others = json::array();
+  for (const AxisFile& other : beside) {
+    const MedialJudgement judgement = judge_beside(command, solid.surface, other.mesh, first.mesh, progress);
+    axes.push_back({other.file.string(), judgement});
+    json row = counts_of(other.mesh);
+    row["axis"] = other.file.string();
+    row["quality"] = to_json(judgement);
+    others.push_back(std::move(row));
+  }
   bar.clear();
-  json report{{"mesh", mesh_json(solid.surface)}, {"axis", command.axis.string()}, {"quality", to_json(judgement)}};
-  report["vertices"] = mesh.centers.size();
-  report["edges"] = mesh.edges.size();
-  report["triangles"] = mesh.triangles.size();
+  std::vector<ReportedPlace> places;
+  for (const WorstPlace& place : first.judgement.quality.worst)
+    places.push_back({place, advice(place, solid.surface, first.origin)});
+  report["quality"] = to_json(first.judgement);
+  report["diagonal"] = first.judgement.quality.diagonal;
+  if (!beside.empty()) report["beside"] = std::move(others);
+  report["worst_places"] = to_json(places);
+  if (command.output.quiet || command.output.json) return;
+  print_table(axes, {"stability_max", "economy_spheres"});
+  print(places);
+}
+
+void judge_file(const MedialCommand& command, const SolidMesh& solid, const std::vector<AxisFile>& beside,
+                const MedialMesh& mesh, const Progress& progress, ProgressBar& bar) {
+  const bool talk = !command.output.quiet && !command.output.json;
+  const Judged judged{.mesh = mesh,
+                      .judgement = {.quality = medial_quality(solid.surface, mesh, quality_options(command), progress)},
+                      .origin = {.built = false},
+                      .name = command.axis.string()};
+  bar.clear();
+  json report = counts_of(mesh);
+  report["mesh"] = mesh_json(solid.surface);
+  report["axis"] = command.axis.string();
   add_solid_json(solid, report);
-  if (!command.output.quiet && !command.output.json) {
+  if (talk) {
     fmt::print("{}: {} vertices, {} edges, {} triangles\n", command.axis.string(), mesh.centers.size(),
                mesh.edges.size(), mesh.triangles.size());
-    print(judgement);
   }
+  report_quality(command, solid, judged, beside, report, progress, bar);
   Outputs outputs(command.folder);
   finish(command, named(command.axis, "-quality.json"), report, outputs);
 }
 
-void build_axis(const MedialCommand& command, const SolidMesh& solid, const Progress& progress, ProgressBar& bar) {
+void build_axis(const MedialCommand& command, const SolidMesh& solid, const std::vector<AxisFile>& beside,
+                const Progress& progress, ProgressBar& bar) {
   const Surface& surface = solid.surface;
   const bool talk = !command.output.quiet && !command.output.json;
   const MedialBuildOptions options = build_options(command.tuning);
@@ -140,7 +198,6 @@ void build_axis(const MedialCommand& command, const SolidMesh& solid, const Prog
               {"topology_of_solid", to_json(wanted)},
               {"structure", to_json(segments, skeleton)}};
   if (!command.source.points.empty()) report["points_moved_at_most"] = own.max_moved;
-  if (judgement) report["quality"] = to_json(*judgement);
   if (!warning.empty()) report["warning"] = warning;
   add_solid_json(solid, report);
   if (talk) {
@@ -149,7 +206,16 @@ void build_axis(const MedialCommand& command, const SolidMesh& solid, const Prog
     print(build);
     fmt::print("{} segments, skeleton of {} nodes and {} arcs\n", segments.segments.size(), skeleton.nodes.size(),
                skeleton.arcs.size());
-    if (judgement) print(*judgement);
+  }
+  if (judgement) {
+    const Judged judged{.mesh = mesh,
+                        .judgement = std::move(*judgement),
+                        .origin = {.built = true,
+                                   .tuning = command.tuning,
+                                   .own_points = !command.source.files().empty(),
+                                   .cuts_itself = solid.self_intersections.value_or(0) > 0},
+                        .name = "this axis"};
+    report_quality(command, solid, judged, beside, report, progress, bar);
   }
   Outputs outputs(command.folder);
   write_file(outputs.add(named(command.mesh, ".ma"), "the axis for medial-mesh programs"), to_ma(mesh));
@@ -180,19 +246,32 @@ MedialJudgement judge(const MedialCommand& command, const Surface& surface, cons
           .stability = medial_stability(surface, build, options, {.seed = options.sampling.seed}, progress)};
 }
 
+MedialJudgement judge_beside(const MedialCommand& command, const Surface& surface, const MedialMesh& mesh,
+                             const MedialMesh& first, const Progress& progress) {
+  MedialJudgement judgement{.quality = medial_quality(surface, mesh, quality_options(command), progress)};
+  const double diagonal = judgement.quality.diagonal;
+  AxisDistance distance = axis_distance(first, mesh, kDistanceAccuracy * diagonal);
+  for (double* length : {&distance.max, &distance.max_gap, &distance.mean, &distance.max_from, &distance.max_to})
+    *length /= diagonal;
+  judgement.distance = distance;
+  return judgement;
+}
+
 void medial(const MedialCommand& command) {
   check(command);
+  const std::vector<AxisFile> beside = read_axes(command.beside);
+  const std::optional<MedialMesh> axis = command.axis.empty() ? std::nullopt : std::optional(read_ma(command.axis));
   ProgressBar bar(!command.output.quiet && !command.output.json);
   const SolidMesh solid = load_solid(command.mesh, command.reading, bar.callback());
   bar.clear();
   if (!command.output.quiet && !command.output.json) print_solid(command.mesh, solid);
-  if (!command.axis.empty()) {
-    judge_file(command, solid, bar.callback(), bar);
+  if (axis) {
+    judge_file(command, solid, beside, *axis, bar.callback(), bar);
   } else if (!command.sweep.empty()) {
     sweep_medial(command, solid.surface, bar.callback());
     bar.clear();
   } else {
-    build_axis(command, solid, bar.callback(), bar);
+    build_axis(command, solid, beside, bar.callback(), bar);
   }
 }
 

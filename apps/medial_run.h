@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "commands.h"
-#include "medial_report.h"
+#include "medial_measures.h"
+#include "orchard/medial/build.h"
 
 // The parts of `orchard medial`.
 namespace orchard::apps {
@@ -15,6 +16,10 @@ QualityOptions quality_options(const MedialCommand& command);
 
 MedialJudgement judge(const MedialCommand& command, const Surface& surface, const MedialBuild& build,
                       const MedialMesh& mesh, const MedialBuildOptions& options, const Progress& progress);
+
+// Of an axis that was not built here, with its distance from `first`.
+MedialJudgement judge_beside(const MedialCommand& command, const Surface& surface, const MedialMesh& mesh,
+                             const MedialMesh& first, const Progress& progress);
 
 // Throws InputError if a combination of the values of command.sweep cannot be run.
 void check_sweep(const MedialCommand& command);
