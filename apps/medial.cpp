@@ -12,16 +12,12 @@
 #include "medial_report.h"
 #include "medial_run.h"
 #include "medial_table.h"
+#include "medial_views.h"
 #include "medial_warning.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
 #include "outputs.h"
 #include "report.h"
-
-#ifdef ORCHARD_HAS_VIZ
-#include "orchard/viz/medial_writer.h"
-#include "orchard/viz/vtk_writer.h"
-#endif
 
 namespace orchard::apps {
 namespace {
@@ -39,13 +35,10 @@ SegmentOptions segment_options(const MedialCommand& command, const Surface& surf
 
 // Every name that the command may write to.
 std::vector<std::string> names_of(const MedialCommand& command) {
-  if (!command.axis.empty()) return {named(command.axis, "-quality.json")};
+  if (!command.axis.empty()) return {named(command.axis, "-quality.json"), named(command.axis, "-quality.png")};
   if (!command.sweep.empty()) return sweep_names(command);
-  std::vector<std::string> names;
-  for (const char* ending :
-       {".ma", ".graphml", "-medial.json", "-medial.vtu", "-medial.vtm", "-medial-vertices.vtp", "-medial-edges.vtp",
-        "-medial-faces.vtp", "-medial-mesh.vtp", "-medial-points.vtp", "-medial-thickness.vtp", "-medial-skeleton.vtp"})
-    names.push_back(named(command.mesh, ending));
+  std::vector<std::string> names = view_names(command.mesh);
+  for (const char* ending : {".ma", ".graphml", "-medial.json"}) names.push_back(named(command.mesh, ending));
   return names;
 }
 
@@ -63,35 +56,6 @@ void check(const MedialCommand& command) {
   inputs.push_back(command.mesh);
   for (const fs::path& file : inputs) check_input(file);
   check_outputs(command.folder, names_of(command), inputs);
-}
-
-void write_views(const MedialCommand& command, const Surface& surface, const MedialBuild& build,
-                 const MedialSegments& segments, const SkeletonGraph& skeleton, const MedialMesh& mesh,
-                 Outputs& outputs) {
-#ifdef ORCHARD_HAS_VIZ
-  if (!command.views) return;
-  std::vector<NamedFile> shown;
-  const auto add = [&](const std::string& ending, const char* block, const char* what = "") {
-    const std::string name = named(command.mesh, "-medial" + ending);
-    if (*block != '\0') shown.push_back({block, name});
-    return outputs.add(name, what);
-  };
-  write_medial_grid(add(".vtu", "", "the axis with radius, angle, segment, component; open it in ParaView"), build.axis,
-                    segments);
-  write_mesh(add("-mesh.vtp", "mesh"), surface);
-  write_points(add("-points.vtp", "surface points", "the surface points, and which of them repair added"),
-               build.sampling);
-  add("-vertices.vtp", "medial vertices");
-  add("-edges.vtp", "medial edges");
-  add("-faces.vtp", "medial faces", "its faces; edges and vertices likewise");
-  write_medial_axis(outputs.staged(named(command.mesh, "-medial")), build.axis);
-  write_thickness(add("-thickness.vtp", "", "the mesh with its local thickness"), surface,
-                  medial_radii_at_surface(surface, mesh));
-  write_skeleton(add("-skeleton.vtp", "skeleton", "the lines where sheets end and meet"), build.axis, skeleton);
-  write_multiblock(add(".vtm", "", "open this in ParaView: mesh, points, axis and skeleton at once"), shown);
-#else
-  (void)command, (void)surface, (void)build, (void)segments, (void)skeleton, (void)mesh, (void)outputs;
-#endif
 }
 
 void finish(const MedialCommand& command, const std::string& report_name, const json& report, Outputs& outputs) {
@@ -129,6 +93,8 @@ void report_quality(const MedialCommand& command, const SolidMesh& solid, const 
                     const std::vector<AxisFile>& beside, json& report, const Progress& progress, ProgressBar& bar) {
   std::vector<JudgedAxis> axes{{first.name, first.judgement}};
   json others = json::array();
+  StageTimes seconds = first.judgement.seconds;
+  const Stopwatch measuring;
   for (const AxisFile& other : beside) {
     const MedialJudgement judgement = judge_beside(command, solid.surface, other.mesh, first.mesh, progress);
     axes.push_back({other.file.string(), judgement});
@@ -137,6 +103,7 @@ void report_quality(const MedialCommand& command, const SolidMesh& solid, const 
     row["quality"] = to_json(judgement);
     others.push_back(std::move(row));
   }
+  if (!beside.empty()) seconds.emplace_back("axes beside it", measuring.seconds());
   bar.clear();
   std::vector<ReportedPlace> places;
   for (const WorstPlace& place : first.judgement.quality.worst)
@@ -145,18 +112,21 @@ void report_quality(const MedialCommand& command, const SolidMesh& solid, const 
   report["diagonal"] = first.judgement.quality.diagonal;
   if (!beside.empty()) report["beside"] = std::move(others);
   report["worst_places"] = to_json(places);
+  for (const auto& [stage, time] : seconds) report["report_seconds"][stage] = time;
   if (command.output.quiet || command.output.json) return;
   print_table(axes, {"stability_max", "economy_spheres"});
   print(places);
+  for (const auto& [stage, time] : seconds) fmt::print("  {:<18} {:>8.2f} s\n", stage, time);
 }
 
 void judge_file(const MedialCommand& command, const SolidMesh& solid, const std::vector<AxisFile>& beside,
                 const MedialMesh& mesh, const Progress& progress, ProgressBar& bar) {
   const bool talk = !command.output.quiet && !command.output.json;
-  const Judged judged{.mesh = mesh,
-                      .judgement = {.quality = medial_quality(solid.surface, mesh, quality_options(command), progress)},
-                      .origin = {.built = false},
-                      .name = command.axis.string()};
+  MedialJudgement judgement;
+  time_stage(judgement.seconds, "quality",
+             [&] { judgement.quality = medial_quality(solid.surface, mesh, quality_options(command), progress); });
+  const Judged judged{
+      .mesh = mesh, .judgement = std::move(judgement), .origin = {.built = false}, .name = command.axis.string()};
   bar.clear();
   json report = counts_of(mesh);
   report["mesh"] = mesh_json(solid.surface);
@@ -168,6 +138,8 @@ void judge_file(const MedialCommand& command, const SolidMesh& solid, const std:
   }
   report_quality(command, solid, judged, beside, report, progress, bar);
   Outputs outputs(command.folder);
+  write_picture(command, solid.surface, mesh, nullptr, judged.judgement.quality.worst,
+                named(command.axis, "-quality.png"), outputs);
   finish(command, named(command.axis, "-quality.json"), report, outputs);
 }
 
@@ -207,7 +179,13 @@ void build_axis(const MedialCommand& command, const SolidMesh& solid, const std:
     fmt::print("{} segments, skeleton of {} nodes and {} arcs\n", segments.segments.size(), skeleton.nodes.size(),
                skeleton.arcs.size());
   }
+  std::vector<WorstPlace> worst;
+  std::optional<MedialErrors> errors;
   if (judgement) {
+    worst = judgement->quality.worst;
+    if (command.views)
+      time_stage(judgement->seconds, "arrays of the views",
+                 [&] { errors = medial_errors(surface, build, mesh, quality_options(command)); });
     const Judged judged{.mesh = mesh,
                         .judgement = std::move(*judgement),
                         .origin = {.built = true,
@@ -220,7 +198,16 @@ void build_axis(const MedialCommand& command, const SolidMesh& solid, const std:
   Outputs outputs(command.folder);
   write_file(outputs.add(named(command.mesh, ".ma"), "the axis for medial-mesh programs"), to_ma(mesh));
   write_file(outputs.add(named(command.mesh, ".graphml"), "its skeleton graph"), to_graphml(skeleton, build.axis));
-  write_views(command, surface, build, segments, skeleton, mesh, outputs);
+  write_views(command,
+              {.surface = surface,
+               .build = build,
+               .segments = segments,
+               .skeleton = skeleton,
+               .mesh = mesh,
+               .errors = errors ? &*errors : nullptr,
+               .worst = worst},
+              outputs);
+  write_picture(command, surface, mesh, &build.sampling, worst, named(command.mesh, "-medial.png"), outputs);
   finish(command, named(command.mesh, "-medial.json"), report, outputs);
   if (!warning.empty()) fmt::print(stderr, "orchard: warning: {}: {}\n", command.mesh.string(), warning);
 }
@@ -242,8 +229,13 @@ QualityOptions quality_options(const MedialCommand& command) {
 
 MedialJudgement judge(const MedialCommand& command, const Surface& surface, const MedialBuild& build,
                       const MedialMesh& mesh, const MedialBuildOptions& options, const Progress& progress) {
-  return {.quality = medial_quality(surface, mesh, quality_options(command), progress),
-          .stability = medial_stability(surface, build, options, {.seed = options.sampling.seed}, progress)};
+  MedialJudgement judgement;
+  time_stage(judgement.seconds, "quality",
+             [&] { judgement.quality = medial_quality(surface, mesh, quality_options(command), progress); });
+  time_stage(judgement.seconds, "stability", [&] {
+    judgement.stability = medial_stability(surface, build, options, {.seed = options.sampling.seed}, progress);
+  });
+  return judgement;
 }
 
 MedialJudgement judge_beside(const MedialCommand& command, const Surface& surface, const MedialMesh& mesh,

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "orchard/geometry/stage_times.h"
 #include "orchard/medial/axis_distance.h"
 #include "orchard/medial/quality.h"
 
@@ -14,6 +15,7 @@ struct MedialJudgement {
   MedialQuality quality;
   std::optional<MedialStability> stability = {};
   std::optional<AxisDistance> distance = {};  // in diagonals
+  StageTimes seconds = {};                    // that measuring took
 };
 
 // One number of a judgement, by the one name and in the one unit that it has in tables, JSON, sweeps and views.

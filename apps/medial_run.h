@@ -30,7 +30,8 @@ std::vector<std::string> swept_flags(const MedialCommand& command);
 std::vector<MedialTuning> tunings_of(const MedialCommand& command);
 // The files of a sweep.
 std::vector<std::string> sweep_names(const MedialCommand& command);
-// Every combination of the values of command.sweep, each judged: MODEL-sweep.csv and a plot for each metric.
+// Every combination of the values of command.sweep, each judged: MODEL-sweep.csv, in the order of the combinations, and
+// a plot for each metric; printed with the best by command.best first.
 void sweep_medial(const MedialCommand& command, const Surface& surface, const Progress& progress);
 
 }  // namespace orchard::apps

@@ -22,6 +22,15 @@ BallErrors ball_errors(const Surface& surface, std::span<const Sphere> balls, co
   return errors;
 }
 
+std::vector<double> ball_protrusions(const Surface& surface, std::span<const Sphere> balls) {
+  if (!surface.solid()) throw InputError("balls are judged by a solid: the mesh must be closed and oriented");
+  const double diagonal = surface.bounding_box().diagonal().norm();
+  std::vector<double> protrusions(balls.size());
+  tbb::parallel_for(std::size_t{0}, balls.size(),
+                    [&](std::size_t i) { protrusions[i] = detail::reach_of(surface, balls[i]).beyond / diagonal; });
+  return protrusions;
+}
+
 SurfaceErrors surface_errors(const Surface& surface, const MedialMesh& mesh, std::span<const Point> points,
                              std::span<const Vector> normals) {
   if (!surface.solid()) throw InputError("a reconstruction is judged by a solid: the mesh must be closed and oriented");

@@ -72,7 +72,8 @@ SurfaceReach reach_at(const Surface& surface, const Reconstruction& reconstructi
   if (depth < 0) {
     reach.uncovered = reach.to_boundary = -depth;
     const Vector way = reach.ball.center - sample.position;
-    reach.farthest -= depth / way.norm() * way;
+    // A ball of radius 0 may be there itself.
+    if (way.norm() > 0) reach.farthest -= depth / way.norm() * way;
     reach.from_boundary = surface.distance(reach.farthest);
     return reach;
   }

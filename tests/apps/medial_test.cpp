@@ -213,6 +213,61 @@ TEST(Medial, SweepsSayHowTightTheTreeOfEachAxisIs) {
   EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--tree", "merging"}).exit_code, 2);
 }
 
+TEST(Medial, SweepsShowTheirBestRowsFirst) {
+  const Workplace here;
+  const std::string mesh = here.add("l.obj", test::l_shape()), out = (here / "out").string();
+  const auto sweep = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{
+        "medial", mesh, "-o", out, "--raw", "--quality-samples", "500", "--sweep", "samples=200,800,400"};
+    words.insert(words.end(), more.begin(), more.end());
+    return here.run(words);
+  };
+  const Finished standard = sweep({"--json"});
+  ASSERT_EQ(standard.exit_code, 0) << standard.err;
+  json report = json::parse(standard.out);
+  EXPECT_EQ(report["best_by"], "hausdorff_max");
+  for (std::size_t i = 1; i < 3; ++i)
+    EXPECT_LE(report["runs"][i - 1]["hausdorff_max"], report["runs"][i]["hausdorff_max"]);
+  report = json::parse(sweep({"--json", "--best", "balls"}).out);
+  EXPECT_EQ(report["best_by"], "balls");
+  EXPECT_EQ(report["runs"][0]["samples"], "200");
+  EXPECT_EQ(report["runs"][2]["samples"], "800");
+  // The file keeps the order of the sweep.
+  const std::string csv = here.files("out").at("l-sweep.csv");
+  EXPECT_LT(csv.find("\n800,"), csv.find("\n400,"));
+  const Finished printed = sweep({"--best", "balls"});
+  EXPECT_NE(printed.out.find("best first, by balls"), std::string::npos) << printed.out;
+  for (const char* measure : {"loops", "nothing"}) {
+    const Finished refused = sweep({"--best", measure});
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_TRUE(test::is_one_line_error(refused.err)) << refused.err;
+  }
+  EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--best", "balls"}).exit_code, 2);
+}
+
+#ifdef ORCHARD_HAS_VIZ
+TEST(Medial, DrawsWhereItIsWorstWithTheReport) {
+  const Workplace here;
+  const std::string mesh = here.add("l.obj", test::l_shape()), out = (here / "out").string();
+  const Finished run = here.run({"medial", mesh, "-o", out, "--samples", "300", "--report", "--quality-samples", "500",
+                                 "--picture", "--up", "z", "--quiet"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  const auto files = here.files("out");
+  EXPECT_TRUE(files.contains("l-medial.png") || run.err.find("no picture was made") != std::string::npos) << run.err;
+  for (const char* array : {"\"radius_error\"", "\"centredness\"", "\"protrusion\"", "\"contact_angle\""}) {
+    EXPECT_NE(files.at("l-medial.vtu").find(array), std::string::npos) << array;
+    EXPECT_NE(files.at("l-medial-faces.vtp").find(array), std::string::npos) << array;
+  }
+  for (const char* name : {"l-medial-points.vtp", "l-medial-thickness.vtp"})
+    EXPECT_NE(files.at(name).find("\"coverage\""), std::string::npos) << name;
+  EXPECT_NE(files.at("l-medial-points.vtp").find("\"repair_pass\""), std::string::npos);
+  EXPECT_NE(files.at("l-medial-worst.vtp").find("\"number\""), std::string::npos);
+  EXPECT_NE(files.at("l-medial.vtm").find("worst places"), std::string::npos);
+  EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--picture"}).exit_code, 2);
+  EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--sweep", "samples=200,300", "--picture"}).exit_code, 2);
+}
+#endif
+
 TEST(Medial, TakesTheUsersPoints) {
   const Workplace here;
   const std::string mesh = here.add("l.obj", test::l_shape());

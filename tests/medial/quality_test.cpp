@@ -272,6 +272,16 @@ TEST(MedialQuality, ErrorsOfBallsAndPlacesAreThoseOfTheMetrics) {
   EXPECT_THROW(ball_errors(Surface(test::open_box()), balls), InputError);
 }
 
+// Sheets that end in balls of radius 0 have such balls on the surface itself, where samples may be.
+TEST(MedialQuality, PlacesAtBallsOfRadiusZeroAreNotOff) {
+  const Surface cube(test::box({0, 0, 0}, {1, 1, 1}));
+  const MedialMesh axis{
+      .centers = {{0.5, 0.5, 0.5}, {0.1, 0.2, 1 + 1e-17}}, .radii = {0.5, 0}, .edges = {{0, 1}}, .triangles = {}};
+  const std::vector<Point> points(50, axis.centers[1]);
+  const SurfaceErrors errors = surface_errors(cube, axis, points, std::vector<Vector>(50, Vector(0, 0, 1)));
+  for (const double coverage : errors.coverage) EXPECT_LT(coverage, 1e-12);
+}
+
 MedialMesh square(double z, double size) {
   MedialMesh mesh;
   mesh.centers = {{0, 0, z}, {size, 0, z}, {size, size, z}, {0, size, z}};

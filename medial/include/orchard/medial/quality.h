@@ -88,6 +88,9 @@ struct BallErrors {
 // By the definitions of medial_quality(), of each ball. Parallel. Throws InputError unless surface.solid().
 BallErrors ball_errors(const Surface& surface, std::span<const Sphere> balls, const QualityOptions& options = {});
 
+// The protrusion alone.
+std::vector<double> ball_protrusions(const Surface& surface, std::span<const Sphere> balls);
+
 // What is wrong with the reconstruction at single points of the surface, over the diagonal.
 struct SurfaceErrors {
   std::vector<double> coverage, protrusion;
