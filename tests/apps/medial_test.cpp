@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -211,6 +213,27 @@ TEST(Medial, SweepsSayHowTightTheTreeOfEachAxisIs) {
   EXPECT_NE(here.files("out").at("l-sweep.csv").find(",level_1_spheres,level_1_mean,level_1_max,level_1_outside,"),
             std::string::npos);
   EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--tree", "merging"}).exit_code, 2);
+}
+
+TEST(Medial, EveryTuningFlagIsOnThePageOfTuning) {
+  const Workplace here;
+  const Finished help = here.run({"medial", "--help"});
+  ASSERT_EQ(help.exit_code, 0);
+  std::ifstream file(ORCHARD_TUNING_PAGE);
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  std::istringstream tuning(help.out.substr(help.out.find("Tuning:")));
+  int flags = 0;
+  for (std::string word; tuning >> word;) {
+    if (!word.starts_with("--")) continue;
+    std::string follows;
+    const auto at = tuning.tellg();
+    tuning >> follows;
+    tuning.seekg(at);
+    if (!follows.starts_with("TEXT:")) continue;  // a mention in some other flag's text
+    ++flags;
+    EXPECT_NE(page.find("| `" + word + "`"), std::string::npos) << word;
+  }
+  EXPECT_GT(flags, 15);
 }
 
 TEST(Medial, SweepsShowTheirBestRowsFirst) {
