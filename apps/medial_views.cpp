@@ -78,8 +78,10 @@ MedialErrors medial_errors(const Surface& surface, const MedialBuild& build, con
   std::vector<Sphere> middles;
   add_middles(build.axis, build.axis.faces, middles);
   add_middles(build.axis, build.axis.walls, middles);
+  QualityOptions no_contacts = options;
+  no_contacts.contact_cells = 0;
   return {.vertices = in_percent(ball_errors(surface, balls_of(mesh), options)),
-          .faces = in_percent(ball_errors(surface, middles, options)),
+          .faces = in_percent(ball_errors(surface, middles, no_contacts)),
           .points = errors_at(surface, mesh, build.sampling),
           .mesh = errors_at_vertices(surface, mesh)};
 }
@@ -138,8 +140,9 @@ std::vector<double> protrusion_around(const Surface& surface, const MedialMesh& 
 }
 
 ViewArrays arrays_of(const BallErrors& errors) {
-  return {
-      {"radius_error", errors.radius_error}, {"centredness", errors.centredness}, {"protrusion", errors.protrusion}};
+  ViewArrays arrays{{"radius_error", errors.radius_error}, {"protrusion", errors.protrusion}};
+  if (!errors.centredness.empty()) arrays.push_back({"centredness", errors.centredness});
+  return arrays;
 }
 
 ViewArrays arrays_of(const SurfaceErrors& errors) {

@@ -11,13 +11,14 @@ BallErrors ball_errors(const Surface& surface, std::span<const Sphere> balls, co
   if (!surface.solid()) throw InputError("balls are judged by a solid: the mesh must be closed and oriented");
   const double diagonal = surface.bounding_box().diagonal().norm();
   BallErrors errors;
-  for (std::vector<double>* values : {&errors.radius_error, &errors.protrusion, &errors.centredness})
-    values->resize(balls.size());
+  for (std::vector<double>* values : {&errors.radius_error, &errors.protrusion}) values->resize(balls.size());
+  if (options.contact_cells > 0) errors.centredness.resize(balls.size());
   tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t i) {
     const Sphere& ball = balls[i];
     errors.radius_error[i] = std::abs(ball.radius - surface.distance(ball.center)) / diagonal;
     errors.protrusion[i] = detail::reach_of(surface, ball).beyond / diagonal;
-    errors.centredness[i] = detail::off_centre(surface, ball, options.contact_angle, diagonal);
+    if (options.contact_cells > 0)
+      errors.centredness[i] = detail::off_centre(surface, ball, options.contact_angle, diagonal);
   });
   return errors;
 }

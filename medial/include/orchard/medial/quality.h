@@ -85,7 +85,8 @@ struct BallErrors {
   std::vector<double> radius_error, protrusion;
   std::vector<double> centredness;  // over the radius; -1 where there is none: no second contact, or next to no radius
 };
-// By the definitions of medial_quality(), of each ball. Parallel. Throws InputError unless surface.solid().
+// By the definitions of medial_quality(), of each ball; no centredness, which takes longest, if options.contact_cells
+// is 0. Parallel. Throws InputError unless surface.solid().
 BallErrors ball_errors(const Surface& surface, std::span<const Sphere> balls, const QualityOptions& options = {});
 
 // The protrusion alone.
