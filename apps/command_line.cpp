@@ -258,6 +258,17 @@ void add_medial(CLI::App& app, Request& request) {
   add_mesh_options(command, medial.reading);
   command.add_flag("--report", medial.report, "Measure the quality of what was built (docs/medial-quality.md)");
   command
+      .add_option(
+          "--beside", medial.beside,
+          "A .ma file of any system to measure with the same instrument, beside this axis; again for another one")
+      ->allow_extra_args(false);
+  CLI::Option* picture = command.add_flag("--picture", medial.picture,
+                                          "With --report or --axis: draw where the axis is worst, places numbered");
+  command.add_option("--up", medial.up, "The mesh's axis that points up in the picture")
+      ->check(CLI::IsMember({"x", "y", "z"}))
+      ->needs(picture)
+      ->capture_default_str();
+  command
       .add_option("--quality-samples", medial.quality_samples,
                   "Surface points to measure at: fewer are faster and miss more of the largest errors")
       ->check(CLI::Range(100, 10'000'000))
@@ -267,6 +278,11 @@ void add_medial(CLI::App& app, Request& request) {
   command
       .add_option("--sweep", medial.sweep, "NAME=A,B,..: run with each value of a tuning flag; again for another one")
       ->allow_extra_args(false);
+  command
+      .add_option(
+          "--best", medial.best,
+          "Of a --sweep: the measure by which its rows are printed, the best first; right topologies before wrong")
+      ->capture_default_str();
   add_sweep_tree(command, medial.tree);
   add_tuning(command, medial.tuning, false);
   command
@@ -280,6 +296,7 @@ void add_medial(CLI::App& app, Request& request) {
   add_output_flags(command, medial.output);
   command.footer(
       "Examples:\n  orchard medial data/lamp.obj -o out/lamp --report\n"
+      "  orchard medial data/lamp.obj -o out/lamp --report --beside other.ma --beside older.ma --picture\n"
       "  orchard medial data/lamp.obj -o out/lamp --axis other.ma\n"
       "  orchard medial data/lamp.obj -o out/lamp --sweep samples=1000,4000,16000 --sweep prune=0,20,40");
   command.callback([&request, &command] {

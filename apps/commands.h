@@ -84,13 +84,17 @@ struct MedialCommand {
   MeshOptions reading;
   MedialTuning tuning;
   AxisSource source;
-  std::filesystem::path axis;             // not empty: a .ma file to judge; nothing is built
-  bool report = false;                    // judge what was built
-  Index quality_samples = 100'000;        // surface points of the judgement
-  std::vector<std::string> sweep;         // NAME=VALUE,VALUE,..
-  std::optional<SphereTreeOptions> tree;  // of a sweep: the tree to build from each axis
-  bool views = true;                      // ParaView files, where the program was built with them
-  std::vector<std::string> given;         // the options on the command line, as of BuildCommand
+  std::filesystem::path axis;                 // not empty: a .ma file to judge; nothing is built
+  bool report = false;                        // judge what was built
+  std::vector<std::filesystem::path> beside;  // .ma files to judge by the same measures, in the same table
+  bool picture = false;                       // of where the judged axis is worst
+  std::string up = "y";                       // the mesh's axis that points up in the picture
+  Index quality_samples = 100'000;            // surface points of the judgement
+  std::vector<std::string> sweep;             // NAME=VALUE,VALUE,..
+  std::string best = "hausdorff_max";         // of a sweep: the measure that its rows are printed by, the best first
+  std::optional<SphereTreeOptions> tree;      // of a sweep: the tree to build from each axis
+  bool views = true;                          // ParaView files, where the program was built with them
+  std::vector<std::string> given;             // the options on the command line, as of BuildCommand
   Output output;
 };
 void medial(const MedialCommand& command);

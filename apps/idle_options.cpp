@@ -106,6 +106,11 @@ void refuse_idle_options(const MedialCommand& command) {
   const bool judges = !command.axis.empty(), sweeps = !command.sweep.empty();
   if (among("quality-samples", command.given) && !command.report && !judges && !sweeps)
     throw InputError("--quality-samples has no effect without --report, --axis or --sweep: nothing is measured");
+  if (!command.beside.empty() && (sweeps || (!command.report && !judges)))
+    throw InputError("--beside needs --report or --axis, in whose table the other axes stand");
+  if (among("best", command.given) && !sweeps) throw InputError("--best has no effect without --sweep");
+  if (command.picture && (sweeps || (!command.report && !judges)))
+    throw InputError("--picture needs --report or --axis: it shows where what they measure is worst");
   const Names swept = swept_flags(command);
   refuse_idle_in_sweep(command, swept);
   if (judges && among("raw", command.given)) throw InputError("--raw has no effect with --axis, which builds nothing");

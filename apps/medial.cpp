@@ -8,23 +8,24 @@
 #include "console.h"
 #include "idle_options.h"
 #include "input_file.h"
+#include "medial_advice.h"
+#include "medial_report.h"
 #include "medial_run.h"
+#include "medial_table.h"
+#include "medial_views.h"
 #include "medial_warning.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
 #include "outputs.h"
 #include "report.h"
 
-#ifdef ORCHARD_HAS_VIZ
-#include "orchard/viz/medial_writer.h"
-#include "orchard/viz/vtk_writer.h"
-#endif
-
 namespace orchard::apps {
 namespace {
 
 using nlohmann::json;
 namespace fs = std::filesystem;
+
+constexpr double kDistanceAccuracy = 1e-4;  // of the diagonal: to which the largest distance of two axes is searched
 
 SegmentOptions segment_options(const MedialCommand& command, const Surface& surface, const MedialBuild& build) {
   // Below twice the mean spacing of the points, what they show is the points.
@@ -34,13 +35,10 @@ SegmentOptions segment_options(const MedialCommand& command, const Surface& surf
 
 // Every name that the command may write to.
 std::vector<std::string> names_of(const MedialCommand& command) {
-  if (!command.axis.empty()) return {named(command.axis, "-quality.json")};
+  if (!command.axis.empty()) return {named(command.axis, "-quality.json"), named(command.axis, "-quality.png")};
   if (!command.sweep.empty()) return sweep_names(command);
-  std::vector<std::string> names;
-  for (const char* ending :
-       {".ma", ".graphml", "-medial.json", "-medial.vtu", "-medial.vtm", "-medial-vertices.vtp", "-medial-edges.vtp",
-        "-medial-faces.vtp", "-medial-mesh.vtp", "-medial-points.vtp", "-medial-thickness.vtp", "-medial-skeleton.vtp"})
-    names.push_back(named(command.mesh, ending));
+  std::vector<std::string> names = view_names(command.mesh);
+  for (const char* ending : {".ma", ".graphml", "-medial.json"}) names.push_back(named(command.mesh, ending));
   return names;
 }
 
@@ -54,38 +52,10 @@ void check(const MedialCommand& command) {
     throw InputError("--tree belongs to a --sweep; orchard build builds a tree");
   refuse_idle_options(command);
   check_sweep(command);  // without a sweep, that of the one combination that there is
+  inputs.insert(inputs.end(), command.beside.begin(), command.beside.end());
   inputs.push_back(command.mesh);
   for (const fs::path& file : inputs) check_input(file);
   check_outputs(command.folder, names_of(command), inputs);
-}
-
-void write_views(const MedialCommand& command, const Surface& surface, const MedialBuild& build,
-                 const MedialSegments& segments, const SkeletonGraph& skeleton, const MedialMesh& mesh,
-                 Outputs& outputs) {
-#ifdef ORCHARD_HAS_VIZ
-  if (!command.views) return;
-  std::vector<NamedFile> shown;
-  const auto add = [&](const std::string& ending, const char* block, const char* what = "") {
-    const std::string name = named(command.mesh, "-medial" + ending);
-    if (*block != '\0') shown.push_back({block, name});
-    return outputs.add(name, what);
-  };
-  write_medial_grid(add(".vtu", "", "the axis with radius, angle, segment, component; open it in ParaView"), build.axis,
-                    segments);
-  write_mesh(add("-mesh.vtp", "mesh"), surface);
-  write_points(add("-points.vtp", "surface points", "the surface points, and which of them repair added"),
-               build.sampling);
-  add("-vertices.vtp", "medial vertices");
-  add("-edges.vtp", "medial edges");
-  add("-faces.vtp", "medial faces", "its faces; edges and vertices likewise");
-  write_medial_axis(outputs.staged(named(command.mesh, "-medial")), build.axis);
-  write_thickness(add("-thickness.vtp", "", "the mesh with its local thickness"), surface,
-                  medial_radii_at_surface(surface, mesh));
-  write_skeleton(add("-skeleton.vtp", "skeleton", "the lines where sheets end and meet"), build.axis, skeleton);
-  write_multiblock(add(".vtm", "", "open this in ParaView: mesh, points, axis and skeleton at once"), shown);
-#else
-  (void)command, (void)surface, (void)build, (void)segments, (void)skeleton, (void)mesh, (void)outputs;
-#endif
 }
 
 void finish(const MedialCommand& command, const std::string& report_name, const json& report, Outputs& outputs) {
@@ -95,26 +65,86 @@ void finish(const MedialCommand& command, const std::string& report_name, const 
   if (!command.output.quiet && !command.output.json) outputs.print();
 }
 
-void judge_file(const MedialCommand& command, const SolidMesh& solid, const Progress& progress, ProgressBar& bar) {
-  const MedialMesh mesh = read_ma(command.axis);
-  const MedialJudgement judgement{.quality = medial_quality(solid.surface, mesh, quality_options(command), progress),
-                                  .stability = {}};
+// The axes of files, read before anything takes long.
+struct AxisFile {
+  fs::path file;
+  MedialMesh mesh;
+};
+std::vector<AxisFile> read_axes(const std::vector<fs::path>& files) {
+  std::vector<AxisFile> axes;
+  for (const fs::path& file : files) axes.push_back({file, read_ma(file)});
+  return axes;
+}
+
+json counts_of(const MedialMesh& mesh) {
+  return {{"vertices", mesh.centers.size()}, {"edges", mesh.edges.size()}, {"triangles", mesh.triangles.size()}};
+}
+
+// What the whole report of one axis needs.
+struct Judged {
+  const MedialMesh& mesh;
+  MedialJudgement judgement;
+  AxisOrigin origin;
+  std::string name;
+};
+
+// The first axis and those beside it in one table, and where the first one is worst: printed, and into `report`.
+void report_quality(const MedialCommand& command, const SolidMesh& solid, const Judged& first,
+                    const std::vector<AxisFile>& beside, json& report, const Progress& progress, ProgressBar& bar) {
+  std::vector<JudgedAxis> axes{{first.name, first.judgement}};
+  json others = json::array();
+  StageTimes seconds = first.judgement.seconds;
+  const Stopwatch measuring;
+  for (const AxisFile& other : beside) {
+    const MedialJudgement judgement = judge_beside(command, solid.surface, other.mesh, first.mesh, progress);
+    axes.push_back({other.file.string(), judgement});
+    json row = counts_of(other.mesh);
+    row["axis"] = other.file.string();
+    row["quality"] = to_json(judgement);
+    others.push_back(std::move(row));
+  }
+  if (!beside.empty()) seconds.emplace_back("axes beside it", measuring.seconds());
   bar.clear();
-  json report{{"mesh", mesh_json(solid.surface)}, {"axis", command.axis.string()}, {"quality", to_json(judgement)}};
-  report["vertices"] = mesh.centers.size();
-  report["edges"] = mesh.edges.size();
-  report["triangles"] = mesh.triangles.size();
+  std::vector<ReportedPlace> places;
+  for (const WorstPlace& place : first.judgement.quality.worst)
+    places.push_back({place, advice(place, solid.surface, first.origin)});
+  report["quality"] = to_json(first.judgement);
+  report["diagonal"] = first.judgement.quality.diagonal;
+  if (!beside.empty()) report["beside"] = std::move(others);
+  report["worst_places"] = to_json(places);
+  for (const auto& [stage, time] : seconds) report["report_seconds"][stage] = time;
+  if (command.output.quiet || command.output.json) return;
+  print_table(axes, {"stability_max", "economy_spheres"});
+  print(places);
+  for (const auto& [stage, time] : seconds) fmt::print("  {:<18} {:>8.2f} s\n", stage, time);
+}
+
+void judge_file(const MedialCommand& command, const SolidMesh& solid, const std::vector<AxisFile>& beside,
+                const MedialMesh& mesh, const Progress& progress, ProgressBar& bar) {
+  const bool talk = !command.output.quiet && !command.output.json;
+  MedialJudgement judgement;
+  time_stage(judgement.seconds, "quality",
+             [&] { judgement.quality = medial_quality(solid.surface, mesh, quality_options(command), progress); });
+  const Judged judged{
+      .mesh = mesh, .judgement = std::move(judgement), .origin = {.built = false}, .name = command.axis.string()};
+  bar.clear();
+  json report = counts_of(mesh);
+  report["mesh"] = mesh_json(solid.surface);
+  report["axis"] = command.axis.string();
   add_solid_json(solid, report);
-  if (!command.output.quiet && !command.output.json) {
+  if (talk) {
     fmt::print("{}: {} vertices, {} edges, {} triangles\n", command.axis.string(), mesh.centers.size(),
                mesh.edges.size(), mesh.triangles.size());
-    print(judgement);
   }
+  report_quality(command, solid, judged, beside, report, progress, bar);
   Outputs outputs(command.folder);
+  write_picture(command, solid.surface, mesh, nullptr, judged.judgement.quality.worst,
+                named(command.axis, "-quality.png"), outputs);
   finish(command, named(command.axis, "-quality.json"), report, outputs);
 }
 
-void build_axis(const MedialCommand& command, const SolidMesh& solid, const Progress& progress, ProgressBar& bar) {
+void build_axis(const MedialCommand& command, const SolidMesh& solid, const std::vector<AxisFile>& beside,
+                const Progress& progress, ProgressBar& bar) {
   const Surface& surface = solid.surface;
   const bool talk = !command.output.quiet && !command.output.json;
   const MedialBuildOptions options = build_options(command.tuning);
@@ -140,7 +170,6 @@ void build_axis(const MedialCommand& command, const SolidMesh& solid, const Prog
               {"topology_of_solid", to_json(wanted)},
               {"structure", to_json(segments, skeleton)}};
   if (!command.source.points.empty()) report["points_moved_at_most"] = own.max_moved;
-  if (judgement) report["quality"] = to_json(*judgement);
   if (!warning.empty()) report["warning"] = warning;
   add_solid_json(solid, report);
   if (talk) {
@@ -149,12 +178,36 @@ void build_axis(const MedialCommand& command, const SolidMesh& solid, const Prog
     print(build);
     fmt::print("{} segments, skeleton of {} nodes and {} arcs\n", segments.segments.size(), skeleton.nodes.size(),
                skeleton.arcs.size());
-    if (judgement) print(*judgement);
+  }
+  std::vector<WorstPlace> worst;
+  std::optional<MedialErrors> errors;
+  if (judgement) {
+    worst = judgement->quality.worst;
+    if (command.views)
+      time_stage(judgement->seconds, "arrays of the views",
+                 [&] { errors = medial_errors(surface, build, mesh, quality_options(command)); });
+    const Judged judged{.mesh = mesh,
+                        .judgement = std::move(*judgement),
+                        .origin = {.built = true,
+                                   .tuning = command.tuning,
+                                   .own_points = !command.source.files().empty(),
+                                   .cuts_itself = solid.self_intersections.value_or(0) > 0},
+                        .name = "this axis"};
+    report_quality(command, solid, judged, beside, report, progress, bar);
   }
   Outputs outputs(command.folder);
   write_file(outputs.add(named(command.mesh, ".ma"), "the axis for medial-mesh programs"), to_ma(mesh));
   write_file(outputs.add(named(command.mesh, ".graphml"), "its skeleton graph"), to_graphml(skeleton, build.axis));
-  write_views(command, surface, build, segments, skeleton, mesh, outputs);
+  write_views(command,
+              {.surface = surface,
+               .build = build,
+               .segments = segments,
+               .skeleton = skeleton,
+               .mesh = mesh,
+               .errors = errors ? &*errors : nullptr,
+               .worst = worst},
+              outputs);
+  write_picture(command, surface, mesh, &build.sampling, worst, named(command.mesh, "-medial.png"), outputs);
   finish(command, named(command.mesh, "-medial.json"), report, outputs);
   if (!warning.empty()) fmt::print(stderr, "orchard: warning: {}: {}\n", command.mesh.string(), warning);
 }
@@ -176,23 +229,41 @@ QualityOptions quality_options(const MedialCommand& command) {
 
 MedialJudgement judge(const MedialCommand& command, const Surface& surface, const MedialBuild& build,
                       const MedialMesh& mesh, const MedialBuildOptions& options, const Progress& progress) {
-  return {.quality = medial_quality(surface, mesh, quality_options(command), progress),
-          .stability = medial_stability(surface, build, options, {.seed = options.sampling.seed}, progress)};
+  MedialJudgement judgement;
+  time_stage(judgement.seconds, "quality",
+             [&] { judgement.quality = medial_quality(surface, mesh, quality_options(command), progress); });
+  time_stage(judgement.seconds, "stability", [&] {
+    judgement.stability = medial_stability(surface, build, options, {.seed = options.sampling.seed}, progress);
+  });
+  return judgement;
+}
+
+MedialJudgement judge_beside(const MedialCommand& command, const Surface& surface, const MedialMesh& mesh,
+                             const MedialMesh& first, const Progress& progress) {
+  MedialJudgement judgement{.quality = medial_quality(surface, mesh, quality_options(command), progress)};
+  const double diagonal = judgement.quality.diagonal;
+  AxisDistance distance = axis_distance(first, mesh, kDistanceAccuracy * diagonal);
+  for (double* length : {&distance.max, &distance.max_gap, &distance.mean, &distance.max_from, &distance.max_to})
+    *length /= diagonal;
+  judgement.distance = distance;
+  return judgement;
 }
 
 void medial(const MedialCommand& command) {
   check(command);
+  const std::vector<AxisFile> beside = read_axes(command.beside);
+  const std::optional<MedialMesh> axis = command.axis.empty() ? std::nullopt : std::optional(read_ma(command.axis));
   ProgressBar bar(!command.output.quiet && !command.output.json);
   const SolidMesh solid = load_solid(command.mesh, command.reading, bar.callback());
   bar.clear();
   if (!command.output.quiet && !command.output.json) print_solid(command.mesh, solid);
-  if (!command.axis.empty()) {
-    judge_file(command, solid, bar.callback(), bar);
+  if (axis) {
+    judge_file(command, solid, beside, *axis, bar.callback(), bar);
   } else if (!command.sweep.empty()) {
     sweep_medial(command, solid.surface, bar.callback());
     bar.clear();
   } else {
-    build_axis(command, solid, bar.callback(), bar);
+    build_axis(command, solid, beside, bar.callback(), bar);
   }
 }
 

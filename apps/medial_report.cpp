@@ -9,12 +9,6 @@ namespace {
 
 using nlohmann::json;
 
-json to_json(const MedialStability& stability) {
-  return {{"hausdorff", stability.hausdorff}, {"percentile99", stability.percentile99}, {"mean", stability.mean}};
-}
-
-json to_json(const Spread& spread) { return {{"max", spread.max}, {"mean", spread.mean}}; }
-
 json to_json(const GapRepairReport& repair) {
   json passes = json::array();
   for (const GapRepairPass& pass : repair.passes) {
@@ -32,12 +26,6 @@ json to_json(const GapRepairReport& repair) {
           {"points_removed", repair.points_removed},
           {"faces_still_crossing", repair.faces_still_crossing},
           {"faces_at_cuts", repair.faces_at_cuts}};
-}
-
-const char* verdict(const MedialQuality& quality) { return quality.found == quality.wanted ? "right" : "WRONG"; }
-
-void print_line(const char* name, const Spread& spread, double factor, const char* unit) {
-  fmt::print("  {:<22} {:>12.5f} {:>12.5f}  {}\n", name, factor * spread.max, factor * spread.mean, unit);
 }
 
 }  // namespace
@@ -59,7 +47,7 @@ json to_json(const RefineReport& report) {
           {"vertices_on_sharp_edges", report.edge_vertices},
           {"edges_divided", report.divided},
           {"edges_beyond_tolerance", report.undivided},
-          {"border_length_over_diagonal", report.border_length}};
+          {"border_length", report.border_length}};
 }
 
 json to_json(const MedialBuild& build) {
@@ -86,22 +74,6 @@ json to_json(const MedialBuild& build) {
           {"faces", build.axis.faces.size()},
           {"walls", build.axis.walls.size()},
           {"seconds", seconds}};
-}
-
-json to_json(const MedialJudgement& judgement) {
-  const MedialQuality& q = judgement.quality;
-  return {
-      {"diagonal", q.diagonal},
-      {"coverage_over_diagonal", to_json(q.coverage)},
-      {"protrusion_over_diagonal", to_json(q.protrusion)},
-      {"radius_error_over_diagonal", to_json(q.radius_error)},
-      {"centredness_over_radius", to_json(q.centredness)},
-      {"topology", to_json(q.found)},
-      {"topology_of_solid", to_json(q.wanted)},
-      {"topology_right", q.found == q.wanted},
-      {"outside", {{"vertices", q.outside_vertices}, {"edges", q.outside_edges}, {"triangles", q.outside_triangles}}},
-      {"stability", judgement.stability ? to_json(*judgement.stability) : json()},
-      {"economy", {{"spheres", q.economy.spheres}, {"uncovered", q.economy.uncovered}}}};
 }
 
 json to_json(const MedialSegments& segments, const SkeletonGraph& skeleton) {
@@ -153,26 +125,6 @@ void print(const MedialBuild& build) {
       refinement.folded_triangles, refinement.small_pieces, refinement.notches, refinement.divided);
   if (refinement.undivided > 0) fmt::print(", {} still beyond the tolerance", refinement.undivided);
   fmt::print("; borders {:.1f} diagonals long\n", refinement.border_length);
-}
-
-void print(const MedialJudgement& judgement) {
-  const MedialQuality& q = judgement.quality;
-  fmt::print("quality                           max         mean\n");
-  print_line("coverage error", q.coverage, 100, "% of the diagonal");
-  print_line("protrusion", q.protrusion, 100, "% of the diagonal");
-  print_line("radius error", q.radius_error, 100, "% of the diagonal");
-  print_line("centredness", q.centredness, 1, "of the radius");
-  fmt::print("  {:<22} {} {} {}, solid {} {} {}: {} (components, loops, cavities); Euler characteristic {}\n",
-             "topology", q.found.components, q.found.loops, q.found.cavities, q.wanted.components, q.wanted.loops,
-             q.wanted.cavities, verdict(q), q.found.euler_characteristic());
-  fmt::print("  {:<22} {:.5f} of vertices, {:.5f} of edges, {:.5f} of triangles\n", "outside", q.outside_vertices,
-             q.outside_edges, q.outside_triangles);
-  if (const auto& stability = judgement.stability) {
-    fmt::print("  {:<22} {:>12.2f} {:>12.2f}  times the noise; 99 % of vertices within {:.2f}\n", "stability",
-               stability->hausdorff, stability->mean, stability->percentile99);
-  }
-  fmt::print("  {:<22} {} spheres leave {:.3f} % of the surface farther than 1 % of the diagonal\n", "economy",
-             q.economy.spheres, 100 * q.economy.uncovered);
 }
 
 }  // namespace orchard::apps

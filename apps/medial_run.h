@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "commands.h"
-#include "medial_report.h"
+#include "medial_measures.h"
+#include "orchard/medial/build.h"
 
 // The parts of `orchard medial`.
 namespace orchard::apps {
@@ -16,6 +17,10 @@ QualityOptions quality_options(const MedialCommand& command);
 MedialJudgement judge(const MedialCommand& command, const Surface& surface, const MedialBuild& build,
                       const MedialMesh& mesh, const MedialBuildOptions& options, const Progress& progress);
 
+// Of an axis that was not built here, with its distance from `first`.
+MedialJudgement judge_beside(const MedialCommand& command, const Surface& surface, const MedialMesh& mesh,
+                             const MedialMesh& first, const Progress& progress);
+
 // Throws InputError if a combination of the values of command.sweep cannot be run.
 void check_sweep(const MedialCommand& command);
 // The flags that command.sweep varies, by their names. Throws InputError if one cannot be read.
@@ -25,7 +30,8 @@ std::vector<std::string> swept_flags(const MedialCommand& command);
 std::vector<MedialTuning> tunings_of(const MedialCommand& command);
 // The files of a sweep.
 std::vector<std::string> sweep_names(const MedialCommand& command);
-// Every combination of the values of command.sweep, each judged: MODEL-sweep.csv and a plot for each metric.
+// Every combination of the values of command.sweep, each judged: MODEL-sweep.csv, in the order of the combinations, and
+// a plot for each metric; printed with the best by command.best first.
 void sweep_medial(const MedialCommand& command, const Surface& surface, const Progress& progress);
 
 }  // namespace orchard::apps

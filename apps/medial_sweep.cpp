@@ -139,6 +139,58 @@ SphereTreeBuild tree_of(const SphereTreeOptions& wanted, const Surface& surface,
   return build_sphere_tree(surface, options, progress, std::move(input));
 }
 
+// The column of command.best. Throws InputError unless there is one in which less is better.
+std::size_t best_column(const MedialCommand& command, const std::vector<Column>& columns) {
+  std::string names;
+  for (std::size_t m = 0; m < columns.size(); ++m) {
+    if (!columns[m].rates) continue;
+    if (columns[m].name == command.best) return m;
+    names += (names.empty() ? "" : ", ") + columns[m].name;
+  }
+  throw InputError(fmt::format("--best: {} is no measure that is better or worse; there are {}", command.best, names));
+}
+
+std::size_t column_of(const std::vector<Column>& columns, const char* name) {
+  return static_cast<std::size_t>(
+      std::find_if(columns.begin(), columns.end(), [&](const Column& column) { return column.name == name; }) -
+      columns.begin());
+}
+
+// Right topologies before wrong ones, then by the measure, what has none last; equals in the order of the sweep.
+std::vector<Run> best_first(std::vector<Run> runs, std::size_t best, std::size_t topology) {
+  std::stable_sort(runs.begin(), runs.end(), [&](const Run& a, const Run& b) {
+    if (a.metrics[topology] != b.metrics[topology]) return a.metrics[topology] > b.metrics[topology];
+    const double x = a.metrics[best], y = b.metrics[best];
+    return std::isnan(y) ? !std::isnan(x) : x < y;
+  });
+  return runs;
+}
+
+// Some columns for the eye, that of the order first; the file has all of them.
+void print_rows(const std::vector<Dimension>& dimensions, const std::vector<Column>& columns, std::size_t best,
+                const std::vector<Run>& runs) {
+  std::vector<std::size_t> shown{best};
+  for (const char* name : {"hausdorff_max", "hausdorff_mean", "coverage_max", "protrusion_max", "radius_error_max",
+                           "topology_right", "border_length", "small_pieces", "balls", "stability_99", "seconds"}) {
+    if (const std::size_t m = column_of(columns, name); m != best) shown.push_back(m);
+  }
+  fmt::print("best first, by {}; right topologies before wrong ones\n", columns[best].name);
+  const auto width = [](const std::string& title) { return std::max<std::size_t>(title.size(), 9); };
+  for (const Dimension& dimension : dimensions)
+    fmt::print("{:>{}}  ", dimension.flag->name, width(dimension.flag->name));
+  for (const std::size_t m : shown) fmt::print("{:>{}}  ", columns[m].name, width(columns[m].name));
+  fmt::print("\n");
+  for (const Run& run : runs) {
+    for (std::size_t d = 0; d < dimensions.size(); ++d)
+      fmt::print("{:>{}}  ", dimensions[d].values[run.choice[d]], width(dimensions[d].flag->name));
+    for (const std::size_t m : shown) {
+      const double value = run.metrics[m];
+      fmt::print("{:>{}}  ", std::isfinite(value) ? fmt::format("{:.5g}", value) : "-", width(columns[m].name));
+    }
+    fmt::print("\n");
+  }
+}
+
 std::string csv_name(const MedialCommand& command) { return named(command.mesh, "-sweep.csv"); }
 
 std::string plot_name(const MedialCommand& command, const Column& column) {
@@ -165,6 +217,7 @@ std::vector<MedialTuning> tunings_of(const MedialCommand& command) {
 
 void check_sweep(const MedialCommand& command) {
   for (const MedialTuning& tuning : tunings_of(command)) build_options(tuning);
+  best_column(command, columns_of(command));
 }
 
 std::vector<std::string> sweep_names(const MedialCommand& command) {
@@ -200,6 +253,8 @@ void sweep_medial(const MedialCommand& command, const Surface& surface, const Pr
     write_file(outputs.add(plot_name(command, columns[m])),
                plot::to_svg({plot_of(m, columns[m], model, dimensions, runs)}));
   outputs.commit();
+  const std::size_t best = best_column(command, columns);
+  runs = best_first(std::move(runs), best, column_of(columns, "topology_right"));
   if (command.output.json) {
     nlohmann::json rows = nlohmann::json::array();
     for (const Run& run : runs) {
@@ -211,11 +266,12 @@ void sweep_medial(const MedialCommand& command, const Surface& surface, const Pr
       }
       rows.push_back(std::move(row));
     }
-    fmt::print("{}\n", nlohmann::json{{"runs", rows}}.dump(2));
+    fmt::print("{}\n", nlohmann::json{{"best_by", columns[best].name}, {"runs", rows}}.dump(2));
     return;
   }
   if (command.output.quiet) return;
-  fmt::print("{}  {}  ({} runs, and a plot for each metric beside it)\n", csv,
+  print_rows(dimensions, columns, best, runs);
+  fmt::print("  {}  ({} runs with all measures, and a plot for each beside it)\n",
              outputs.place_of(csv_name(command)).string(), runs.size());
 }
 

@@ -3,13 +3,16 @@
 #include <vector>
 
 #include "commands.h"
-#include "medial_report.h"
+#include "medial_measures.h"
+#include "orchard/medial/build.h"
+#include "orchard/spheretree/build.h"
 
 namespace orchard::apps {
 
 // What a sweep measures of every run: the axis and its quality, and of a tree its levels.
 struct Column {
   std::string name, title;
+  bool rates = false;  // less is better
 };
 std::vector<Column> columns_of(const MedialCommand& command);
 

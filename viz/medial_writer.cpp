@@ -59,7 +59,7 @@ void add_point_arrays(const MedialAxis& axis, const MedialSegments& segments, co
   const std::vector<double> angles = contact_angles(axis);
   const auto row = [&](std::size_t i) { return axis.forming_points[static_cast<Index>(i)]; };
   add_doubles(data, "radius", count, [&](std::size_t i) { return axis.radii[i]; });
-  add_doubles(data, "angle", count, [&](std::size_t i) { return angles[i]; });
+  add_doubles(data, "contact_angle", count, [&](std::size_t i) { return angles[i]; });
   add_ints(data, "component", count, [&](std::size_t i) { return as_int(components[i]); });
   add_ints(data, "segment", count, [&](std::size_t i) { return as_int(segments.of_vertex[i]); });
   add_ints(data, "added", count, [&](std::size_t i) {
@@ -86,7 +86,7 @@ void add_cell_arrays(const MedialAxis& axis, const MedialSegments& segments, con
   add_ints(data, "sheet", count, [&](std::size_t i) { return segments.segments[cells[i].segment].sheet ? 1 : 0; });
   add_ints(data, "trunk", count, [&](std::size_t i) { return segments.segments[cells[i].segment].trunk ? 1 : 0; });
   add_ints(data, "wall", count, [&](std::size_t i) { return cells[i].wall ? 1 : 0; });
-  add_doubles(data, "angle", count, [&](std::size_t i) { return cells[i].angle; });
+  add_doubles(data, "contact_angle", count, [&](std::size_t i) { return cells[i].angle; });
   add_ints(data, "point_a", count, [&](std::size_t i) { return as_int(cells[i].point_a); });
   add_ints(data, "point_b", count, [&](std::size_t i) { return as_int(cells[i].point_b); });
   add_ints(data, "added", count,
@@ -96,7 +96,8 @@ void add_cell_arrays(const MedialAxis& axis, const MedialSegments& segments, con
 
 }  // namespace
 
-void write_medial_grid(const std::filesystem::path& vtu, const MedialAxis& axis, const MedialSegments& segments) {
+void write_medial_grid(const std::filesystem::path& vtu, const MedialAxis& axis, const MedialSegments& segments,
+                       const ViewArrays& of_vertices, const ViewArrays& of_faces) {
   vtkNew<vtkUnstructuredGrid> grid;
   set_points(grid, axis.centers.size(), [&](std::size_t i) { return axis.centers[i]; });
   const std::vector<Cell> cells = cells_of(axis, segments);
@@ -109,14 +110,59 @@ void write_medial_grid(const std::filesystem::path& vtu, const MedialAxis& axis,
   const std::vector<Index> components = connected_components(axis, count);
   add_point_arrays(axis, segments, components, grid->GetPointData());
   add_cell_arrays(axis, segments, components, cells, grid->GetCellData());
+  add_all(grid->GetPointData(), of_vertices, axis.centers.size());
+  for (const ViewArray& array : of_faces) {
+    add_doubles(grid->GetCellData(), array.name.c_str(), cells.size(),
+                [&](std::size_t i) { return i < array.values.size() ? array.values[i] : -1; });
+  }
   write_with<vtkXMLUnstructuredGridWriter>(vtu, grid.GetPointer());
 }
 
-void write_thickness(const std::filesystem::path& vtp, const Surface& surface, const std::vector<double>& radii) {
+void write_thickness(const std::filesystem::path& vtp, const Surface& surface, const std::vector<double>& radii,
+                     const ViewArrays& more) {
   vtkNew<vtkPolyData> data;
   set_mesh(data, surface.mesh());
   add_doubles(data->GetPointData(), "medial_radius", radii.size(), [&](std::size_t i) { return radii[i]; });
   add_doubles(data->GetPointData(), "thickness", radii.size(), [&](std::size_t i) { return 2 * radii[i]; });
+  add_all(data->GetPointData(), more, radii.size());
+  write(vtp, data);
+}
+
+void write_medial_mesh(const std::filesystem::path& vtp, const MedialMesh& mesh, const ViewArrays& of_vertices) {
+  vtkNew<vtkPolyData> data;
+  set_points(data, mesh.centers.size(), [&](std::size_t i) { return mesh.centers[i]; });
+  std::vector<std::array<Index, 2>> sides;
+  vtkNew<vtkCellArray> triangles, lines;
+  for (const auto& triangle : mesh.triangles) {
+    const auto& [a, b, c] = triangle;
+    for (const auto& side : {std::array{a, b}, std::array{a, c}, std::array{b, c}}) sides.push_back(side);
+    add_cell(triangles, triangle);
+  }
+  std::sort(sides.begin(), sides.end());
+  for (const auto& edge : mesh.edges)
+    if (!std::binary_search(sides.begin(), sides.end(), edge)) add_cell(lines, edge);
+  data->SetPolys(triangles);
+  data->SetLines(lines);
+  add_doubles(data->GetPointData(), "radius", mesh.radii.size(), [&](std::size_t i) { return mesh.radii[i]; });
+  add_all(data->GetPointData(), of_vertices, mesh.radii.size());
+  write(vtp, data);
+}
+
+void write_worst_places(const std::filesystem::path& vtp, const std::vector<WorstPlace>& places) {
+  vtkNew<vtkPolyData> data;
+  set_points(data, places.size(), [&](std::size_t i) { return places[i].position; });
+  set_vertex_cells(data);
+  vtkPointData* arrays = data->GetPointData();
+  add_ints(arrays, "number", places.size(), [](std::size_t i) { return static_cast<int>(i) + 1; });
+  add_ints(arrays, "measure", places.size(), [&](std::size_t i) { return static_cast<int>(places[i].kind); });
+  add_doubles(arrays, "value", places.size(), [&](std::size_t i) { return 100 * places[i].value; });
+  vtkNew<vtkDoubleArray> outward;
+  outward->SetName("outward");
+  outward->SetNumberOfComponents(3);
+  outward->SetNumberOfTuples(static_cast<vtkIdType>(places.size()));
+  for (std::size_t i = 0; i < places.size(); ++i)
+    outward->SetTuple(static_cast<vtkIdType>(i), places[i].outward.data());
+  arrays->AddArray(outward);
   write(vtp, data);
 }
 

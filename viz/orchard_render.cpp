@@ -1,6 +1,7 @@
 // Draws the files of write_pipeline() on the display of $DISPLAY. A program of its own because VTK aborts where there
 // is none (see orchard/viz/render.h).
 #include <vtkCamera.h>
+#include <vtkCoordinate.h>
 #include <vtkImageData.h>
 #include <vtkImageShrink3D.h>
 #include <vtkNew.h>
@@ -33,6 +34,7 @@ constexpr int kOversampling = 2;  // pixels drawn per pixel kept, along each axi
 
 constexpr double kMargin = 1.06;      // around what is drawn
 constexpr double kWidestPanel = 1.3;  // of its height
+constexpr double kLabelPrint = 0.2;   // of numbers of places, of the height of captions
 constexpr int kRowHeight = 560;       // pixels, where no height is asked for
 
 struct Layout {
@@ -120,6 +122,25 @@ void add_text(vtkRenderer* renderer, const std::string& text, double x, double y
   renderer->AddViewProp(actor);
 }
 
+// On top of what is there, if it faces this eye more than the other.
+void add_label(vtkRenderer* renderer, const Label& label, const View& view, const View& other, double pixels) {
+  if (Vector3d(label.outward.data()).dot(view.backward - other.backward) < 0) return;
+  vtkNew<vtkTextActor> actor;
+  actor->SetInput((" " + label.text + " ").c_str());
+  actor->GetPositionCoordinate()->SetCoordinateSystemToWorld();
+  actor->GetPositionCoordinate()->SetValue(label.position[0], label.position[1], label.position[2]);
+  vtkTextProperty* property = actor->GetTextProperty();
+  property->SetFontFamilyToArial();
+  property->SetFontSize(std::max(1, static_cast<int>(pixels)));
+  property->SetBold(1);
+  property->SetColor(1, 1, 1);
+  property->SetBackgroundColor(0.13, 0.16, 0.20);
+  property->SetBackgroundOpacity(0.85);
+  property->SetJustificationToCentered();
+  property->SetVerticalJustificationToCentered();
+  renderer->AddViewProp(actor);
+}
+
 // What one renderer shows, averaged down to width x height.
 vtkSmartPointer<vtkImageData> draw(vtkRenderWindow* window, vtkRenderer* renderer, int width, int height) {
   window->SetSize(width * kOversampling, height * kOversampling);
@@ -172,7 +193,15 @@ Layout make_layout(const Request& request, int panels, const View& view) {
 void render(const Request& request) {
   const std::string& title = request.title;
   Panels content = make_panels(request.vtm, 1.5 * kOversampling);
-  const View view = make_view(request, content.extents);
+  Request behind = request;
+  behind.azimuth += 180;
+  View view = make_view(request, content.extents), back = make_view(behind, content.extents);
+  const bool both =
+      std::any_of(content.panels.begin(), content.panels.end(), [](const Panel& panel) { return panel.from_behind; });
+  if (both) {  // at one scale
+    view.width = back.width = std::max(view.width, back.width);
+    view.height = back.height = std::max(view.height, back.height);
+  }
   const Layout layout = make_layout(request, static_cast<int>(content.panels.size()), view);
   const int width = layout.width, height = layout.height;
 
@@ -204,7 +233,10 @@ void render(const Request& request) {
     const int in_row = std::min(layout.columns, count - row * layout.columns);
     add_text(panel.renderer, panel.caption, span / 2, 0.70 * line, caption_print, true);
     add_text(panel.renderer, panel.detail, span / 2, 0.28 * line, detail_print, false);
-    aim(panel.renderer->GetActiveCamera(), view, layout);
+    const View& from = panel.from_behind ? back : view;
+    aim(panel.renderer->GetActiveCamera(), from, layout);
+    for (const Label& label : panel.labels)
+      add_label(panel.renderer, label, from, panel.from_behind ? view : back, kLabelPrint * line);
     const int left = (width - in_row * layout.panel_width) / 2 + column * layout.panel_width;
     const int bottom = height - layout.title_height - (row + 1) * layout.panel_height;
     paste(picture, draw(window, panel.renderer, layout.panel_width, layout.panel_height), left, bottom);

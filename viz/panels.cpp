@@ -222,7 +222,7 @@ Panel points_panel(vtkPolyData* mesh, vtkPolyData* points, double size) {
 // The faces whose surface points are seen at more than kLeastAngle: without the sheets that run into every shallow
 // edge.
 Data without_shallow_faces(vtkPolyData* faces) {
-  vtkDataArray* angles = require_array(faces->GetCellData(), "angle", faces->GetNumberOfPolys());
+  vtkDataArray* angles = require_array(faces->GetCellData(), "contact_angle", faces->GetNumberOfPolys());
   vtkNew<vtkCellArray> polygons;
   vtkNew<vtkIdList> corners;
   for (vtkIdType i = 0; i < faces->GetNumberOfPolys(); ++i) {
@@ -294,6 +294,91 @@ Panel level_panel(vtkPolyData* spheres, int level, double size, double bounding_
   return panel;
 }
 
+// Pale where a value is 0, red where it is `max`.
+vtkSmartPointer<vtkColorTransferFunction> error_colors(double max) {
+  constexpr std::array kColors{rgb(0xdfe6ec), rgb(0xf4d58a), rgb(0xee8a3c), rgb(0xb3121d)};
+  auto colors = vtkSmartPointer<vtkColorTransferFunction>::New();
+  for (std::size_t i = 0; i < kColors.size(); ++i)
+    colors->AddRGBPoint(std::max(max, 1e-12) * static_cast<double>(i) / static_cast<double>(kColors.size() - 1),
+                        kColors[i][0], kColors[i][1], kColors[i][2]);
+  return colors;
+}
+
+// The places of one measure, numbered; `span` says which numbers they have.
+std::vector<Label> labels_of(vtkPolyData* places, int measure, std::string& span) {
+  std::vector<Label> labels;
+  if (places == nullptr) return labels;
+  vtkPointData* arrays = places->GetPointData();
+  const vtkIdType count = places->GetNumberOfPoints();
+  vtkDataArray* measures = require_array(arrays, "measure", count);
+  vtkDataArray* numbers = require_array(arrays, "number", count);
+  vtkDataArray* outward = require_array(arrays, "outward", count);
+  for (vtkIdType i = 0; i < count; ++i) {
+    if (static_cast<int>(measures->GetComponent(i, 0)) != measure) continue;
+    Label& label = labels.emplace_back();
+    places->GetPoint(i, label.position.data());
+    outward->GetTuple(i, label.outward.data());
+    label.text = std::to_string(static_cast<int>(numbers->GetComponent(i, 0)));
+  }
+  if (!labels.empty()) span = "; worst: " + labels.front().text + " to " + labels.back().text;
+  return labels;
+}
+
+std::string up_to(double max) {
+  char text[64];
+  std::snprintf(text, sizeof text, "0 to %.3g %% of the diagonal", max);
+  return text;
+}
+
+Panel coverage_panel(vtkPolyData* mesh, vtkPolyData* points, vtkPolyData* places, double size, double line_width) {
+  Panel panel{make_renderer(size), "surface left uncovered", {}};
+  const vtkIdType count = points->GetNumberOfPoints();
+  vtkDataArray* coverage = require_array(points->GetCellData(), "coverage", count);
+  const double max = coverage->GetRange()[1];
+  const auto colors = error_colors(max);
+  vtkNew<vtkPolyData> dots;
+  dots->SetPoints(points->GetPoints());
+  set_colors(dots->GetPointData(), count, [&](vtkIdType i) {
+    Color color{};
+    colors->GetColor(coverage->GetComponent(i, 0), color.data());
+    return color;
+  });
+  vtkNew<vtkDoubleArray> radii;
+  radii->SetName("radius");
+  radii->SetNumberOfValues(count);
+  radii->Fill(std::clamp(1.1 * size / std::sqrt(static_cast<double>(count)), 0.006 * size, 0.03 * size));
+  dots->GetPointData()->AddArray(radii);
+  panel.renderer->AddActor(make_actor(mesh, {0.93, 0.94, 0.95}));
+  panel.renderer->AddActor(make_spheres(dots));
+  panel.renderer->AddActor(edges(mesh, kFeatureAngle, line_width, 0.6));
+  std::string span;
+  panel.labels = labels_of(places, 1, span);
+  panel.detail = up_to(max) + span;
+  return panel;
+}
+
+Panel protrusion_panel(vtkPolyData* mesh, vtkPolyData* medial, vtkPolyData* places, double size, double line_width) {
+  Panel panel{make_renderer(size), "balls that protrude", {}};
+  vtkDataArray* protrusion = require_array(medial->GetPointData(), "protrusion", medial->GetNumberOfPoints());
+  const double max = protrusion->GetRange()[1];
+  auto sheet = make_actor(medial, kStone);
+  vtkMapper* mapper = sheet->GetMapper();
+  mapper->ScalarVisibilityOn();
+  mapper->SetScalarModeToUsePointFieldData();
+  mapper->SelectColorArray("protrusion");
+  mapper->SetLookupTable(error_colors(max));
+  mapper->UseLookupTableScalarRangeOn();
+  mapper->InterpolateScalarsBeforeMappingOn();
+  sheet->GetProperty()->SetLineWidth(static_cast<float>(2 * line_width));
+  panel.renderer->AddActor(sheet);
+  panel.renderer->AddActor(make_actor(mesh, {0.72, 0.78, 0.85}, 0.16));
+  panel.renderer->AddActor(edges(mesh, kFeatureAngle, 0.8 * line_width, 0.5));
+  std::string span;
+  panel.labels = labels_of(places, 0, span);
+  panel.detail = up_to(max) + span;
+  return panel;
+}
+
 void extend(std::vector<Extent>& extents, vtkPolyData* data, const char* radius_array) {
   vtkDataArray* radii =
       radius_array == nullptr ? nullptr : require_array(data->GetPointData(), radius_array, data->GetNumberOfPoints());
@@ -310,6 +395,19 @@ Panels make_panels(const std::filesystem::path& vtm, double line_width) {
   Panels result;
   const Blocks blocks(vtm);
   const Data mesh = blocks["mesh"], points = blocks["surface points"], faces = blocks["medial faces"];
+  if (const Data medial = blocks["medial mesh"]; medial != nullptr && mesh != nullptr && points != nullptr) {
+    extend(result.extents, mesh, nullptr);
+    result.size = 0.5 * mesh->GetLength();
+    for (const bool from_behind : {false, true}) {
+      result.panels.push_back(coverage_panel(mesh, points, blocks["worst places"], result.size, line_width));
+      result.panels.push_back(protrusion_panel(mesh, medial, blocks["worst places"], result.size, line_width));
+      for (std::size_t i = result.panels.size() - 2; from_behind && i < result.panels.size(); ++i) {
+        result.panels[i].from_behind = true;
+        result.panels[i].caption += ", from behind";
+      }
+    }
+    return result;
+  }
   std::vector<Data> levels;  // from the root on
   for (;;) {
     const Data level = blocks["tree level " + std::to_string(levels.size())];

@@ -17,9 +17,17 @@ struct Extent {
   double radius;
 };
 
+// A word on top of a place, where the place faces the eye.
+struct Label {
+  std::array<double, 3> position, outward;
+  std::string text;
+};
+
 struct Panel {
   vtkSmartPointer<vtkRenderer> renderer;  // without a camera
   std::string caption, detail;            // a name, and figures in smaller print
+  bool from_behind = false;               // the camera is on the other side of the model
+  std::vector<Label> labels = {};
 };
 
 struct Panels {
@@ -29,7 +37,8 @@ struct Panels {
 };
 
 // Panels for the files that a .vtm of write_pipeline() opens, by the names that it gives them. `line_width`: of the
-// model's edges, in pixels. Throws std::runtime_error if the .vtm cannot be read.
+// model's edges, in pixels. Where there is a block "medial mesh", panels of where it is
+// bad instead. Throws std::runtime_error if the .vtm cannot be read.
 Panels make_panels(const std::filesystem::path& vtm, double line_width);
 
 }  // namespace orchard::detail

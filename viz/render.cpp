@@ -15,6 +15,7 @@
 #include "child_process.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
+#include "orchard/viz/medial_writer.h"
 
 namespace orchard {
 namespace {
@@ -127,14 +128,14 @@ std::optional<std::string> run_somewhere(const fs::path& renderer, const Pipelin
   return reasons + ", and " + *failure;
 }
 
-}  // namespace
-
-PictureStatus draw_pipeline(const fs::path& png, const PipelinePicture& picture) {
+// write(prefix): the files to draw, with prefix.vtm to open them.
+template <class Write>
+PictureStatus draw(const fs::path& png, const PipelinePicture& picture, const Write& write) {
   try {
     const fs::path renderer = find_renderer(picture);
     if (renderer.empty()) return {false, "the program orchard-render is neither beside this one nor in PATH"};
     const TemporaryFolder folder;
-    write_pipeline(folder.path() / kPrefix, picture.values);
+    write(folder.path() / kPrefix);
     report_progress(picture.progress, "picture", 0);
     if (const auto reason = run_somewhere(renderer, picture, folder.path())) return {false, *reason};
     write_file(png, content(folder.path() / "picture.png"));
@@ -146,6 +147,29 @@ PictureStatus draw_pipeline(const fs::path& png, const PipelinePicture& picture)
   } catch (const fs::filesystem_error& error) {
     return {false, error.what()};
   }
+}
+
+}  // namespace
+
+PictureStatus draw_pipeline(const fs::path& png, const PipelinePicture& picture) {
+  return draw(png, picture, [&](const fs::path& prefix) { write_pipeline(prefix, picture.values); });
+}
+
+PictureStatus draw_medial_errors(const fs::path& png, const MedialErrorsPicture& errors,
+                                 const PipelinePicture& picture) {
+  return draw(png, picture, [&](const fs::path& prefix) {
+    std::vector<NamedFile> files;
+    const auto add = [&](const std::string& name, const std::string& ending) {
+      const fs::path file = with_ending(prefix, ending);
+      files.push_back({name, file.filename()});
+      return file;
+    };
+    write_mesh(add("mesh", "-mesh.vtp"), *errors.surface);
+    write_points(add("surface points", "-points.vtp"), *errors.sampling, {{"coverage", errors.coverage}});
+    write_medial_mesh(add("medial mesh", "-medial.vtp"), *errors.mesh, {{"protrusion", errors.protrusion}});
+    write_worst_places(add("worst places", "-worst.vtp"), errors.worst);
+    write_multiblock(with_ending(prefix, ".vtm"), files);
+  });
 }
 
 }  // namespace orchard

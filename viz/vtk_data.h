@@ -17,6 +17,7 @@
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh.h"
+#include "orchard/viz/vtk_writer.h"
 
 // What the writers share: values into VTK's containers, and those into files.
 namespace orchard::detail {
@@ -62,6 +63,12 @@ inline void set_mesh(vtkPolyData* data, const TriangleMesh& mesh) {
   vtkNew<vtkCellArray> triangles;
   for (const auto& triangle : mesh.triangles) add_cell(triangles, triangle);
   data->SetPolys(triangles);
+}
+
+// The first `count` values of each array.
+inline void add_all(vtkFieldData* data, const ViewArrays& arrays, std::size_t count) {
+  for (const ViewArray& array : arrays)
+    add_doubles(data, array.name.c_str(), count, [&](std::size_t i) { return array.values.at(i); });
 }
 
 // One vertex cell per point, so that points are drawn without a filter.

@@ -22,7 +22,7 @@ using namespace detail;
 
 namespace {
 
-vtkSmartPointer<vtkPolyData> medial_points(const MedialAxis& axis) {
+vtkSmartPointer<vtkPolyData> medial_points(const MedialAxis& axis, const ViewArrays& more) {
   auto data = vtkSmartPointer<vtkPolyData>::New();
   const std::size_t count = axis.centers.size();
   set_points(data, count, [&](std::size_t i) { return axis.centers[i]; });
@@ -30,9 +30,12 @@ vtkSmartPointer<vtkPolyData> medial_points(const MedialAxis& axis) {
   const std::vector<Index> component = connected_components(axis, components);
   vtkPointData* arrays = data->GetPointData();
   add_doubles(arrays, "radius", count, [&](std::size_t i) { return axis.radii[i]; });
+  const std::vector<double> angles = contact_angles(axis);
+  add_doubles(arrays, "contact_angle", count, [&](std::size_t i) { return angles[i]; });
   add_ints(arrays, "component", count, [&](std::size_t i) { return as_int(component[i]); });
   add_ints(arrays, "valence", count,
            [&](std::size_t i) { return static_cast<int>(axis.neighbors[static_cast<Index>(i)].size()); });
+  add_all(arrays, more, count);
   return data;
 }
 
@@ -88,13 +91,14 @@ void write_mesh(const std::filesystem::path& vtp, const Surface& surface) {
   write(vtp, data);
 }
 
-void write_points(const std::filesystem::path& vtp, const SurfaceSampling& sampling) {
+void write_points(const std::filesystem::path& vtp, const SurfaceSampling& sampling, const ViewArrays& more) {
   vtkNew<vtkPolyData> data;
   const std::size_t count = sampling.points.size();
   set_points(data, count, [&](std::size_t i) { return sampling.points[i]; });
   set_vertex_cells(data);
   add_ints(data->GetCellData(), "origin", count, [&](std::size_t i) { return static_cast<int>(sampling.origins[i]); });
   add_ints(data->GetCellData(), "triangle", count, [&](std::size_t i) { return as_int(sampling.triangles[i]); });
+  add_all(data->GetCellData(), more, count);
   write(vtp, data);
 }
 
@@ -103,8 +107,9 @@ std::filesystem::path with_ending(const std::filesystem::path& prefix, const std
   return file += ending;
 }
 
-void write_medial_axis(const std::filesystem::path& prefix, const MedialAxis& axis) {
-  const vtkSmartPointer<vtkPolyData> points = medial_points(axis);
+void write_medial_axis(const std::filesystem::path& prefix, const MedialAxis& axis, const ViewArrays& of_vertices,
+                       const ViewArrays& of_faces) {
+  const vtkSmartPointer<vtkPolyData> points = medial_points(axis, of_vertices);
 
   const vtkSmartPointer<vtkPolyData> vertices = with_topology_of(points);
   set_vertex_cells(vertices);
@@ -127,9 +132,10 @@ void write_medial_axis(const std::filesystem::path& prefix, const MedialAxis& ax
   const std::size_t count = axis.face_points.size();
   add_ints(faces->GetCellData(), "point_a", count, [&](std::size_t i) { return as_int(axis.face_points[i][0]); });
   add_ints(faces->GetCellData(), "point_b", count, [&](std::size_t i) { return as_int(axis.face_points[i][1]); });
-  add_doubles(faces->GetCellData(), "angle", count, [&](std::size_t i) {
+  add_doubles(faces->GetCellData(), "contact_angle", count, [&](std::size_t i) {
     return separation_angle(axis, axis.faces[static_cast<Index>(i)], axis.face_points[i]);
   });
+  add_all(faces->GetCellData(), of_faces, count);
   write(with_ending(prefix, "-faces.vtp"), faces);
 }
 

@@ -79,12 +79,16 @@ MedialQuality medial_quality(const Surface& surface, const MedialMesh& mesh, con
   report_progress(progress, "quality: reconstruction", 0.2);
   const auto samples = detail::quality_samples(surface, options.surface_samples, options.seed);
   const detail::QualityBalls balls = detail::quality_balls(mesh, options.cells);
-  detail::measure_reconstruction(surface, mesh, samples, balls, quality);
+  detail::measure_reconstruction(surface, mesh, samples, balls, options, quality);
   report_progress(progress, "quality: contacts", 0.5);
   detail::measure_contacts(surface, balls, options, quality);
   report_progress(progress, "quality: economy", 0.8);
   quality.economy = detail::measure_economy(surface, mesh, options, quality.diagonal);
-  for (Spread* spread : {&quality.coverage, &quality.protrusion, &quality.radius_error}) {
+  quality.balls = mesh.size();
+  quality.border_length = border_length(mesh) / quality.diagonal;
+  quality.pieces = medial_pieces(mesh);
+  for (WorstPlace& place : quality.worst) place.value /= quality.diagonal;
+  for (Spread* spread : {&quality.hausdorff, &quality.coverage, &quality.protrusion, &quality.radius_error}) {
     spread->max /= quality.diagonal;
     spread->mean /= quality.diagonal;
   }

@@ -78,6 +78,16 @@ double second_contact_distance(const Surface& surface, const Point& center, cons
   }
 }
 
+double off_centre(const Surface& surface, const Sphere& ball, double contact_angle, double diagonal) {
+  if (!(ball.radius > kTinyBall * diagonal)) return -1;
+  const ClosestPoint first = surface.closest(ball.center);
+  if (!(first.distance > 0)) return -1;
+  const Vector direction = (first.position - ball.center) / first.distance;
+  const double reach = 1.05 * std::max(ball.radius, first.distance);
+  const double second = second_contact_distance(surface, ball.center, direction, contact_angle, reach);
+  return std::isfinite(second) ? std::abs(second - ball.radius) / ball.radius : -1;
+}
+
 void measure_contacts(const Surface& surface, const QualityBalls& balls, const QualityOptions& options,
                       MedialQuality& quality) {
   const std::size_t count = balls.vertices.size();
@@ -90,14 +100,7 @@ void measure_contacts(const Surface& surface, const QualityBalls& balls, const Q
   const std::size_t chosen = std::min<std::size_t>(count, options.contact_cells);
   std::vector<double> off(chosen, -1);
   tbb::parallel_for(std::size_t{0}, chosen, [&](std::size_t i) {
-    const Sphere& ball = balls.vertices[i * count / chosen];
-    if (!(ball.radius > kTinyBall * quality.diagonal)) return;
-    const ClosestPoint first = surface.closest(ball.center);
-    if (!(first.distance > 0)) return;
-    const Vector direction = (first.position - ball.center) / first.distance;
-    const double reach = 1.05 * std::max(ball.radius, first.distance);
-    const double second = second_contact_distance(surface, ball.center, direction, options.contact_angle, reach);
-    if (std::isfinite(second)) off[i] = std::abs(second - ball.radius) / ball.radius;
+    off[i] = off_centre(surface, balls.vertices[i * count / chosen], options.contact_angle, quality.diagonal);
   });
   std::erase(off, -1.0);
   quality.centredness = spread_of(off);

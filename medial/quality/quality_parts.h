@@ -24,9 +24,36 @@ QualityBalls quality_balls(const MedialMesh& mesh, Index max);
 Spread spread_of(std::span<const double> values);
 
 // quality_reconstruction.cpp
+// How the boundary of the reconstruction lies to a point of the surface; lengths in mesh units.
+struct SurfaceReach {
+  double distance = 0;               // of the point to the reconstruction, minus the depth inside
+  double uncovered = 0;              // distance to the reconstruction, 0 inside it
+  double beyond = 0;                 // how far outside the solid it reaches along the normal
+  double to_boundary = 0;            // distance of the point to its boundary; an upper bound where the point is inside
+  double least_to_boundary = 0;      // and a lower one: the depth in the deepest ball
+  bool arrived = true;               // `farthest` is a place of the boundary, or the point itself
+  double from_boundary = 0;          // distance of a point of its boundary, that one or beside it, to the surface
+  Point farthest = Point::Zero();    // where it reaches to, along the normal
+  Sphere ball = {Point::Zero(), 0};  // the last one on the way
+};
+// Fastest where samples follow each other over the surface.
+std::vector<SurfaceReach> reach_of(const Surface& surface, const MedialMesh& mesh,
+                                   std::span<const SurfaceSample> samples, double diagonal);
+// How far a ball reaches outside the solid, where to, and whether its centre is outside.
+struct BallReach {
+  double beyond = 0;
+  Point farthest = Point::Zero();
+  bool outside = false;
+};
+BallReach reach_of(const Surface& surface, const Sphere& ball);
 void measure_reconstruction(const Surface& surface, const MedialMesh& mesh, std::span<const SurfaceSample> samples,
-                            const QualityBalls& balls, MedialQuality& quality);
+                            const QualityBalls& balls, const QualityOptions& options, MedialQuality& quality);
+// worst_places.cpp
+// The `count` worst of `places`, whichever their order, no two within `apart` of each other.
+std::vector<WorstPlace> worst_of(std::vector<WorstPlace> places, Index count, double apart);
 // quality_contacts.cpp
+// |distance to the second contact - radius| over the radius; -1 if the ball has none, or is a point.
+double off_centre(const Surface& surface, const Sphere& ball, double contact_angle, double diagonal);
 void measure_contacts(const Surface& surface, const QualityBalls& balls, const QualityOptions& options,
                       MedialQuality& quality);
 // The distance from `center` to the part of the surface that is seen at `angle` or more from `direction` (unit), up to

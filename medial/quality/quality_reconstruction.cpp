@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "quality_parts.h"
 #include "reconstruction.h"
@@ -11,6 +13,8 @@ namespace {
 
 constexpr double kArrived = 1e-6;  // of the diagonal: a march ends this near to the boundary
 constexpr int kMostSteps = 50;
+constexpr std::size_t kBlock = 64;  // samples that one task takes, one after the other
+constexpr double kSlack = 1e-9;     // above what rounding can do to a bound
 
 // How far along a unit direction a point inside a ball is from leaving it.
 double way_out(const Sphere& ball, const Point& from, const Vector& direction) {
@@ -19,61 +23,179 @@ double way_out(const Sphere& ball, const Point& from, const Vector& direction) {
   return std::sqrt(std::max(0.0, along * along + ball.radius * ball.radius - offset.squaredNorm())) - along;
 }
 
-// How far outside the solid the reconstruction reaches beyond a point of the surface, which `ball` holds `depth` deep:
-// outward along the normal, from ball to ball, until none holds the point.
-double reach_beyond(const Surface& surface, const Reconstruction& reconstruction, const SurfaceSample& sample,
-                    Sphere ball, double depth, double diagonal) {
-  Point at = sample.position;
+// From a point that `ball` holds `depth` deep straight out of the deepest ball, from ball to ball, until none holds the
+// place: how far that is from there, and whether it is a place of the union's boundary. One step is the shortest way.
+double straight_out(const Reconstruction& reconstruction, const Point& from, Sphere ball, double depth,
+                    double diagonal) {
+  Point at = from;
   for (int step = 0; step < kMostSteps && depth > kArrived * diagonal; ++step) {
-    at += way_out(ball, at, sample.normal) * sample.normal;
-    depth = -reconstruction.distance(at, ball);
+    const Vector way = at - ball.center;
+    const double length = way.norm();
+    if (!(length > 0)) break;
+    at = ball.center + ball.radius / length * way;
+    depth = -reconstruction.distance_below(-kArrived * diagonal, at, ball);
   }
-  return at == sample.position ? 0.0 : std::max(0.0, surface.signed_distance(at));
+  return depth > kArrived * diagonal ? std::numeric_limits<double>::infinity() : (at - from).norm();
 }
 
-// The point of a ball beyond the ball's nearest surface point is the farthest outside wherever the surface is flat or
-// convex there; it is a point of the ball in any case, so what it gives is attained.
-double protrusion_of(const Surface& surface, const Sphere& ball, bool& outside) {
-  ClosestPoint nearest;
-  const double depth = surface.signed_distance(ball.center, nearest);
-  outside = depth > 0;
-  if (!(depth + ball.radius > 0)) return 0;  // distance is 1-Lipschitz: all of the ball is inside
-  if (!(nearest.distance > 0)) return std::max(0.0, ball.radius);
-  const Vector outward = (depth > 0 ? 1.0 : -1.0) / nearest.distance * (ball.center - nearest.position);
-  return std::max(0.0, surface.signed_distance(ball.center + ball.radius * outward));
+// Whether the way found from a point to the boundary may be much longer than the shortest.
+bool is_loose(const SurfaceReach& reach, double diagonal) {
+  return reach.to_boundary > 1.1 * reach.least_to_boundary + kArrived * diagonal;
 }
 
-// Returns the fraction of centres outside.
-double look_at(const Surface& surface, const std::vector<Sphere>& balls, double& max) {
-  std::vector<double> protrusions(balls.size());
-  std::vector<std::uint8_t> outside(balls.size());
-  tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t i) {
-    bool out = false;
-    protrusions[i] = protrusion_of(surface, balls[i], out);
-    outside[i] = out ? 1 : 0;
+// Where ways ended for other points is boundary, too, and may be nearer.
+void tighten(std::span<const SurfaceSample> samples, std::vector<SurfaceReach>& reaches, double diagonal) {
+  std::vector<std::size_t> loose;
+  TriangleMesh places;
+  for (std::size_t i = 0; i < reaches.size(); ++i) {
+    if (is_loose(reaches[i], diagonal)) loose.push_back(i);
+    if (!reaches[i].arrived) continue;
+    const Index place = static_cast<Index>(places.vertices.size());
+    places.vertices.push_back(reaches[i].farthest);
+    places.triangles.push_back({place, place, place});
+  }
+  if (loose.empty() || places.vertices.empty()) return;
+  const Surface boundary(std::move(places));
+  tbb::parallel_for(std::size_t{0}, loose.size(), [&](std::size_t k) {
+    SurfaceReach& reach = reaches[loose[k]];
+    reach.to_boundary = std::min(reach.to_boundary, boundary.distance(samples[loose[k]].position));
   });
-  for (const double value : protrusions) max = std::max(max, value);
-  const auto count = std::count(outside.begin(), outside.end(), std::uint8_t{1});
-  return balls.empty() ? 0 : static_cast<double>(count) / static_cast<double>(balls.size());
+}
+
+// Outward along the normal, from ball to ball, until none holds the point.
+SurfaceReach reach_at(const Surface& surface, const Reconstruction& reconstruction, const SurfaceSample& sample,
+                      double bound, double diagonal) {
+  SurfaceReach reach;
+  double depth = -reconstruction.distance_below(bound, sample.position, reach.ball);
+  reach.distance = -depth;
+  reach.farthest = sample.position;
+  if (depth < 0) {
+    reach.uncovered = reach.to_boundary = -depth;
+    const Vector way = reach.ball.center - sample.position;
+    // A ball of radius 0 may be there itself.
+    if (way.norm() > 0) reach.farthest -= depth / way.norm() * way;
+    reach.from_boundary = surface.distance(reach.farthest);
+    return reach;
+  }
+  const Sphere deepest = reach.ball;
+  const double first_depth = depth;
+  for (int step = 0; step < kMostSteps && depth > kArrived * diagonal; ++step) {
+    reach.farthest += way_out(reach.ball, reach.farthest, sample.normal) * sample.normal;
+    depth = -reconstruction.distance_below(-kArrived * diagonal, reach.farthest, reach.ball);
+  }
+  if (reach.farthest == sample.position) return reach;
+  const double off = surface.signed_distance(reach.farthest);
+  reach.beyond = std::max(0.0, off);
+  reach.from_boundary = std::abs(off);
+  reach.arrived = !(depth > kArrived * diagonal);
+  reach.to_boundary = (reach.farthest - sample.position).norm();
+  reach.least_to_boundary = first_depth;
+  // The way along the normal is the shortest but where the ball is not the surface's own.
+  if (is_loose(reach, diagonal)) {
+    reach.to_boundary =
+        std::min(reach.to_boundary, straight_out(reconstruction, sample.position, deepest, first_depth, diagonal));
+  }
+  return reach;
+}
+
+// Returns the fraction of centres outside; adds to `places` where balls protrude.
+double look_at(const Surface& surface, const std::vector<Sphere>& balls, std::vector<WorstPlace>& places) {
+  std::vector<BallReach> reaches(balls.size());
+  tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t i) { reaches[i] = reach_of(surface, balls[i]); });
+  std::size_t outside = 0;
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    outside += reaches[i].outside ? 1 : 0;
+    if (reaches[i].beyond > 0) {
+      places.push_back({.kind = WorstKind::protrusion,
+                        .value = reaches[i].beyond,
+                        .position = reaches[i].farthest,
+                        .ball = balls[i]});
+    }
+  }
+  return balls.empty() ? 0 : static_cast<double>(outside) / static_cast<double>(balls.size());
+}
+
+Vector outward_at(const Surface& surface, const Point& position) {
+  const ClosestPoint nearest = surface.closest(position);
+  return surface.pseudonormal(nearest.triangle, nearest.feature);
+}
+
+// Of one value of each sample.
+Spread spread_over(std::span<const SurfaceReach> reaches, double SurfaceReach::*value) {
+  std::vector<double> values;
+  values.reserve(reaches.size());
+  for (const SurfaceReach& reach : reaches) values.push_back(reach.*value);
+  return spread_of(values);
 }
 
 }  // namespace
 
-void measure_reconstruction(const Surface& surface, const MedialMesh& mesh, std::span<const SurfaceSample> samples,
-                            const QualityBalls& balls, MedialQuality& quality) {
+std::vector<SurfaceReach> reach_of(const Surface& surface, const MedialMesh& mesh,
+                                   std::span<const SurfaceSample> samples, double diagonal) {
   const Reconstruction reconstruction(mesh);
-  std::vector<double> uncovered(samples.size()), beyond(samples.size());
-  tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
-    Sphere ball;
-    const double distance = reconstruction.distance(samples[i].position, ball);
-    uncovered[i] = std::max(0.0, distance);
-    beyond[i] = reach_beyond(surface, reconstruction, samples[i], ball, -distance, quality.diagonal);
+  std::vector<SurfaceReach> reaches(samples.size());
+  const std::size_t blocks = (samples.size() + kBlock - 1) / kBlock;
+  tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
+    const std::size_t end = std::min(samples.size(), (block + 1) * kBlock);
+    double bound = std::numeric_limits<double>::infinity();
+    for (std::size_t i = block * kBlock; i < end; ++i) {
+      reaches[i] = reach_at(surface, reconstruction, samples[i], bound, diagonal);
+      if (i + 1 == end) break;
+      // The distance is 1-Lipschitz, and samples follow each other over the surface.
+      const double step = (samples[i + 1].position - samples[i].position).norm();
+      bound = reaches[i].distance + (1 + kSlack) * step + kSlack * diagonal;
+    }
   });
-  quality.coverage = spread_of(uncovered);
-  quality.protrusion = spread_of(beyond);
-  quality.outside_vertices = look_at(surface, balls.vertices, quality.protrusion.max);
-  quality.outside_edges = look_at(surface, balls.edges, quality.protrusion.max);
-  quality.outside_triangles = look_at(surface, balls.triangles, quality.protrusion.max);
+  tighten(samples, reaches, diagonal);
+  return reaches;
+}
+
+// The point of a ball beyond the ball's nearest surface point is the farthest outside wherever the surface is flat or
+// convex there; it is a point of the ball in any case, so what it gives is attained.
+BallReach reach_of(const Surface& surface, const Sphere& ball) {
+  ClosestPoint nearest;
+  const double depth = surface.signed_distance(ball.center, nearest);
+  BallReach reach{.beyond = 0, .farthest = ball.center, .outside = depth > 0};
+  if (!(depth + ball.radius > 0)) return reach;  // distance is 1-Lipschitz: all of the ball is inside
+  if (!(nearest.distance > 0)) {
+    reach.beyond = std::max(0.0, ball.radius);
+    return reach;
+  }
+  const Vector outward = (depth > 0 ? 1.0 : -1.0) / nearest.distance * (ball.center - nearest.position);
+  reach.farthest = ball.center + ball.radius * outward;
+  reach.beyond = std::max(0.0, surface.signed_distance(reach.farthest));
+  return reach;
+}
+
+void measure_reconstruction(const Surface& surface, const MedialMesh& mesh, std::span<const SurfaceSample> samples,
+                            const QualityBalls& balls, const QualityOptions& options, MedialQuality& quality) {
+  const std::vector<SurfaceReach> reaches = reach_of(surface, mesh, samples, quality.diagonal);
+  quality.coverage = spread_over(reaches, &SurfaceReach::uncovered);
+  quality.protrusion = spread_over(reaches, &SurfaceReach::beyond);
+  const Spread to = spread_over(reaches, &SurfaceReach::to_boundary);
+  const Spread from = spread_over(reaches, &SurfaceReach::from_boundary);
+
+  const double negligible = kArrived * quality.diagonal;
+  std::vector<WorstPlace> protruding, uncovered;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const SurfaceReach& reach = reaches[i];
+    if (reach.beyond > negligible)
+      protruding.push_back({WorstKind::protrusion, reach.beyond, reach.farthest, Vector::Zero(), reach.ball});
+    if (reach.uncovered > negligible)
+      uncovered.push_back({WorstKind::coverage, reach.uncovered, samples[i].position, samples[i].normal, reach.ball});
+  }
+  quality.outside_vertices = look_at(surface, balls.vertices, protruding);
+  quality.outside_edges = look_at(surface, balls.edges, protruding);
+  quality.outside_triangles = look_at(surface, balls.triangles, protruding);
+  for (const WorstPlace& place : protruding) quality.protrusion.max = std::max(quality.protrusion.max, place.value);
+  quality.hausdorff = {.max = std::max({to.max, from.max, quality.protrusion.max}),
+                       .mean = 0.5 * (to.mean + from.mean)};
+
+  const double apart = options.places_apart * quality.diagonal;
+  quality.worst = worst_of(std::move(protruding), options.worst_places, apart);
+  for (WorstPlace& place : quality.worst) place.outward = outward_at(surface, place.position);
+  const auto open = worst_of(std::move(uncovered), options.worst_places, apart);
+  quality.worst.insert(quality.worst.end(), open.begin(), open.end());
 }
 
 }  // namespace orchard::detail

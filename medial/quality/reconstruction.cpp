@@ -24,46 +24,33 @@ double min_along(const Point& query, const std::array<Sphere, 3>& balls) {
   return min;
 }
 
-// What makes up the items, in their order.
+// The cells that no larger one holds: triangles, edges, vertices.
 struct Cells {
-  std::vector<Index> triangles, edges, vertices;
-  std::vector<Box> boxes;
-  std::vector<double> radii;
+  std::vector<SupportTree::Item> items;
+  Index triangles = 0, edges = 0;
 };
-
-template <std::size_t kCorners>
-void add(const MedialMesh& mesh, const std::array<Index, kCorners>& corners, Cells& cells) {
-  Box box;
-  double radius = 0;
-  for (const Index corner : corners) {
-    box.extend(mesh.centers[corner]);
-    radius = std::max(radius, mesh.radii[corner]);
-  }
-  cells.boxes.push_back(box);
-  cells.radii.push_back(radius);
-}
 
 Cells max_cells(const MedialMesh& mesh) {
   Cells cells;
   std::vector<std::array<Index, 2>> sides;
-  for (Index t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& [a, b, c] = mesh.triangles[t];
+  const auto add = [&](Index a, Index b, Index c) {
+    cells.items.push_back({vertex_ball(mesh, a), vertex_ball(mesh, b), vertex_ball(mesh, c)});
+  };
+  for (const auto& [a, b, c] : mesh.triangles) {
     for (const auto& side : {std::array{a, b}, std::array{a, c}, std::array{b, c}}) sides.push_back(side);
-    cells.triangles.push_back(t);
-    add(mesh, mesh.triangles[t], cells);
+    add(a, b, c);
+    ++cells.triangles;
   }
   std::sort(sides.begin(), sides.end());
   std::vector<std::uint8_t> used(mesh.centers.size(), 0);
-  for (Index e = 0; e < mesh.edges.size(); ++e) {
-    for (const Index vertex : mesh.edges[e]) used[vertex] = 1;
-    if (std::binary_search(sides.begin(), sides.end(), mesh.edges[e])) continue;
-    cells.edges.push_back(e);
-    add(mesh, mesh.edges[e], cells);
+  for (const auto& edge : mesh.edges) {
+    for (const Index vertex : edge) used[vertex] = 1;
+    if (std::binary_search(sides.begin(), sides.end(), edge)) continue;
+    add(edge[0], edge[1], edge[1]);
+    ++cells.edges;
   }
   for (Index v = 0; v < mesh.size(); ++v) {
-    if (used[v]) continue;
-    cells.vertices.push_back(v);
-    add(mesh, std::array{v}, cells);
+    if (used[v] == 0) add(v, v, v);
   }
   return cells;
 }
@@ -114,27 +101,21 @@ Sphere nearest_ball(const Point& query, const Sphere& a, const Sphere& b, const 
   return best;
 }
 
-Reconstruction::Reconstruction(const MedialMesh& mesh) : mesh_(&mesh), tree_({}, {}) {
+Reconstruction::Reconstruction(const MedialMesh& mesh) {
   Cells cells = max_cells(mesh);
-  triangles_ = std::move(cells.triangles);
-  edges_ = std::move(cells.edges);
-  vertices_ = std::move(cells.vertices);
-  tree_ = BallTree(std::move(cells.boxes), std::move(cells.radii));
+  triangles_ = cells.triangles;
+  edges_ = cells.edges;
+  tree_ = SupportTree(std::move(cells.items));
 }
 
-// A value that is `best` or more need not be exact.
-double Reconstruction::evaluate(Index item, const Point& query, double best, Sphere& ball) const {
-  const MedialMesh& mesh = *mesh_;
-  if (item < triangles_.size()) {
-    const auto& [a, b, c] = mesh.triangles[triangles_[item]];
-    const double bound = min_along(query, {vertex_ball(mesh, a), vertex_ball(mesh, b), vertex_ball(mesh, c)});
+double Reconstruction::evaluate(Index item, const SupportTree::Item& balls, const Point& query, double best,
+                                Sphere& ball) const {
+  if (item < triangles_) {
+    const double bound = min_along(query, balls);
     if (bound >= best) return bound;
-    ball = nearest_ball(query, vertex_ball(mesh, a), vertex_ball(mesh, b), vertex_ball(mesh, c));
-  } else if (item - triangles_.size() < edges_.size()) {
-    const auto& [a, b] = mesh.edges[edges_[item - triangles_.size()]];
-    ball = nearest_ball(query, vertex_ball(mesh, a), vertex_ball(mesh, b));
+    ball = nearest_ball(query, balls[0], balls[1], balls[2]);
   } else {
-    ball = vertex_ball(mesh, vertices_[item - triangles_.size() - edges_.size()]);
+    ball = item - triangles_ < edges_ ? nearest_ball(query, balls[0], balls[1]) : balls[0];
   }
   return distance_to(query, ball);
 }
@@ -145,14 +126,14 @@ double Reconstruction::distance(const Point& query) const {
 }
 
 double Reconstruction::distance(const Point& query, Sphere& ball) const {
-  double best = std::numeric_limits<double>::infinity();
-  return tree_.min(query, best, [&](Index item) {
+  return distance_below(std::numeric_limits<double>::infinity(), query, ball);
+}
+
+double Reconstruction::distance_below(double bound, const Point& query, Sphere& ball) const {
+  return tree_.min(query, bound, [&](Index item, const SupportTree::Item& balls, double best) {
     Sphere found;
-    const double value = evaluate(item, query, best, found);
-    if (value < best) {
-      best = value;
-      ball = found;
-    }
+    const double value = evaluate(item, balls, query, best, found);
+    if (value < best) ball = found;
     return value;
   });
 }

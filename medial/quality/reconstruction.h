@@ -1,8 +1,7 @@
 #pragma once
-#include <vector>
 
-#include "ball_tree.h"
 #include "orchard/medial/medial_mesh.h"
+#include "support_tree.h"
 
 namespace orchard::detail {
 
@@ -17,13 +16,15 @@ class Reconstruction {
   double distance(const Point& query) const;
   // The ball of which that is the distance; ties go to the first found.
   double distance(const Point& query, Sphere& ball) const;
+  // The same where it is below `bound`, which saves looking for what is not; else `bound`, and `ball` stays.
+  double distance_below(double bound, const Point& query, Sphere& ball) const;
 
  private:
-  double evaluate(Index item, const Point& query, double best, Sphere& ball) const;
+  // The least for an item, and the ball; a value that is `best` or more need not be exact.
+  double evaluate(Index item, const SupportTree::Item& balls, const Point& query, double best, Sphere& ball) const;
 
-  const MedialMesh* mesh_;
-  std::vector<Index> triangles_, edges_, vertices_;  // those that no larger cell holds; items in this order
-  BallTree tree_;
+  Index triangles_ = 0, edges_ = 0;  // items are triangles, edges and vertices that no larger cell holds, in this order
+  SupportTree tree_;
 };
 
 // The ball of a cell that comes nearest to `query`, for cells of one, two or three vertices.

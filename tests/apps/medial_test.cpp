@@ -1,7 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "program.h"
 #include "support/shapes.h"
@@ -25,9 +30,9 @@ TEST(Medial, WritesTheAxisItsGraphAndAReport) {
   const json report = json::parse(run.out);
   EXPECT_EQ(report["build"]["gap_repair"]["faces_still_crossing"], 0);
   EXPECT_EQ(report["topology"], report["topology_of_solid"]);
-  EXPECT_TRUE(report["quality"]["topology_right"].get<bool>());
-  EXPECT_LT(report["quality"]["coverage_over_diagonal"]["mean"].get<double>(), 0.01);
-  EXPECT_TRUE(report["quality"]["stability"]["hausdorff"].is_number());
+  EXPECT_EQ(report["quality"]["topology_right"], 1);
+  EXPECT_LT(report["quality"]["coverage_mean"].get<double>(), 1);
+  EXPECT_TRUE(report["quality"]["stability_max"].is_number());
   const auto files = here.files("out");
   EXPECT_EQ(json::parse(files.at("u-medial.json")), report);
   EXPECT_GT(lines(files.at("u.ma")), 800u);
@@ -51,13 +56,12 @@ TEST(Medial, RefinesTheAxisUnlessTheRawOneIsAskedFor) {
   EXPECT_EQ(here.files("raw").at("l.ma"), here.files("no").at("l.ma"));
   EXPECT_EQ(refined["build"]["refinement"]["vertices_before"], raw["build"]["vertices"]);
   EXPECT_GT(refined["build"]["refinement"]["vertices_on_sharp_edges"], 50);
-  const auto max = [](const json& report, const char* metric) {
-    return report["quality"][metric]["max"].get<double>();
-  };
-  EXPECT_LT(max(refined, "radius_error_over_diagonal"), 1e-9);
-  EXPECT_LT(max(refined, "protrusion_over_diagonal"), 0.2 * max(raw, "protrusion_over_diagonal"));
-  EXPECT_LT(max(refined, "coverage_over_diagonal"), max(raw, "coverage_over_diagonal"));
-  EXPECT_TRUE(refined["quality"]["topology_right"].get<bool>());
+  const auto max = [](const json& report, const char* metric) { return report["quality"][metric].get<double>(); };
+  EXPECT_LT(max(refined, "radius_error_max"), 1e-7);
+  EXPECT_LT(max(refined, "protrusion_max"), 0.2 * max(raw, "protrusion_max"));
+  EXPECT_LT(max(refined, "coverage_max"), max(raw, "coverage_max"));
+  EXPECT_LT(max(refined, "hausdorff_mean"), max(raw, "hausdorff_mean"));
+  EXPECT_EQ(refined["quality"]["topology_right"], 1);
   EXPECT_EQ(here.run({"medial", mesh, "-o", (here / "x").string(), "--border-loss", "-1"}).exit_code, 2);
 }
 
@@ -71,10 +75,125 @@ TEST(Medial, JudgesTheFileThatItWroteAsItJudgedTheAxis) {
                                     "--quality-samples", "2000", "--json"});
   ASSERT_EQ(judged.exit_code, 0) << judged.err;
   json first = json::parse(built.out)["quality"], second = json::parse(judged.out)["quality"];
-  first.erase("stability");
-  second.erase("stability");
+  for (const char* needs_a_build : {"stability_max", "stability_99", "stability_mean"}) {
+    EXPECT_TRUE(first[needs_a_build].is_number());
+    EXPECT_TRUE(second[needs_a_build].is_null());
+    first.erase(needs_a_build);
+    second.erase(needs_a_build);
+  }
   EXPECT_EQ(first, second);
   EXPECT_TRUE(here.files("other").contains("l-quality.json"));
+}
+
+// Arguments for the report of a small solid.
+std::vector<std::string> small_report(const std::string& mesh, const std::string& folder,
+                                      const std::vector<std::string>& more) {
+  std::vector<std::string> words{
+      "medial", mesh, "-o", folder, "--report", "--samples", "400", "--quality-samples", "1000", "--no-views"};
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+TEST(Medial, MeasuresOtherAxesBesideItsOwnWithTheSameInstrument) {
+  const Workplace here;
+  const std::string mesh = here.add("l.obj", test::l_shape());
+  ASSERT_EQ(
+      here.run({"medial", mesh, "-o", (here / "raw").string(), "--raw", "--samples", "300", "--no-views"}).exit_code,
+      0);
+  const std::string raw = (here / "raw/l.ma").string();
+  // One ball and nothing else: far from the solid's axis, and no cover of its surface.
+  const std::string ball = here.add("ball.ma", std::string("1 0 0\nv 0.5 0.5 0.25 0.2\n"));
+  const Finished run = here.run(small_report(mesh, (here / "out").string(), {"--beside", raw, "--beside", ball}));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json report = json::parse(here.files("out").at("l-medial.json"));
+  ASSERT_EQ(report["beside"].size(), 2u);
+  EXPECT_EQ(report["beside"][1]["vertices"], 1);
+  const Finished alone =
+      here.run({"medial", mesh, "-o", (here / "alone").string(), "--axis", raw, "--quality-samples", "1000", "--json"});
+  ASSERT_EQ(alone.exit_code, 0) << alone.err;
+  json beside = report["beside"][0]["quality"], judged = json::parse(alone.out)["quality"];
+  EXPECT_GT(beside["distance_max"].get<double>(), beside["distance_mean"].get<double>());
+  EXPECT_GT(report["beside"][1]["quality"]["distance_max"], beside["distance_max"]);
+  for (json* values : {&beside, &judged}) {
+    values->erase("distance_max");
+    values->erase("distance_mean");
+  }
+  EXPECT_EQ(beside, judged);
+  EXPECT_TRUE(report["quality"]["distance_max"].is_null());  // from itself
+  EXPECT_TRUE(report["quality"]["stability_max"].is_number());
+  EXPECT_TRUE(beside["stability_max"].is_null());  // would need the system that made it
+  for (const json& values : {report["quality"], beside})
+    EXPECT_EQ(values["economy_spheres"].is_number(), values["economy_uncovered"].get<double>() <= 0.01);
+  EXPECT_TRUE(report["beside"][1]["quality"]["economy_spheres"].is_null());  // leaves most of the surface
+
+  // The printed table has a column for each.
+  std::map<std::string, std::string> rows;
+  std::istringstream out(run.out);
+  for (std::string line; std::getline(out, line);) rows[line.substr(0, std::min<std::size_t>(line.size(), 32))] = line;
+  const auto row = [&](const std::string& title) {
+    std::string padded = "  " + title;
+    padded.resize(32, ' ');
+    return rows[padded];
+  };
+  const auto times = [](const std::string& text, const std::string& word) {
+    int count = 0;
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++count;
+    return count;
+  };
+  EXPECT_EQ(times(row("stability, max"), "not defined"), 2) << run.out;
+  EXPECT_EQ(times(row("distance from this axis, max"), "not defined"), 1) << run.out;
+  EXPECT_EQ(times(row("coverage error, max"), "not defined"), 0) << run.out;
+  EXPECT_NE(run.out.find("ball.ma"), std::string::npos);
+}
+
+TEST(Medial, NamesTheWorstPlacesAlikeInTheReportAndTheJson) {
+  const Workplace here;
+  const Finished run = here.run(small_report(here.add("l.obj", test::l_shape()), (here / "out").string(), {"--raw"}));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json report = json::parse(here.files("out").at("l-medial.json"));
+  const json& places = report["worst_places"];
+  ASSERT_GE(places.size(), 6u);
+  EXPECT_DOUBLE_EQ(places[0]["value"], report["quality"]["protrusion_max"]);
+  int coverages = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const json& place = places[i];
+    EXPECT_EQ(place["number"], i + 1);
+    if (i > 0 && place["measure"] == places[i - 1]["measure"]) {
+      EXPECT_LE(place["value"], places[i - 1]["value"]);
+    }
+    if (place["measure"] == "coverage" && ++coverages == 1) {
+      EXPECT_DOUBLE_EQ(place["value"], report["quality"]["coverage_max"]);
+    }
+    EXPECT_NE(place["advice"].get<std::string>().find("--"), std::string::npos);
+    // The printed line has the same number, value and place.
+    char line[200];
+    std::snprintf(line, sizeof line, "  %10zu  %-11s %18.5f  %.6g %.6g %.6g: ", i + 1,
+                  place["measure"].get<std::string>().c_str(), place["value"].get<double>(),
+                  place["position"][0].get<double>(), place["position"][1].get<double>(),
+                  place["position"][2].get<double>());
+    EXPECT_NE(run.out.find(line + place["advice"].get<std::string>() + "\n"), std::string::npos) << line << run.out;
+  }
+  EXPECT_GT(coverages, 0);
+}
+
+TEST(Medial, RefusesAxesBesideThatCannotBeReadBeforeItBuilds) {
+  const Workplace here;
+  const std::string mesh = here.add("l.obj", test::l_shape()), out = (here / "out").string();
+  const std::string bad = here.add("bad.ma", std::string("1 0 0\nv 0 0 zero 1\n"));
+  // With so many samples building would take minutes.
+  const Finished unreadable =
+      here.run({"medial", mesh, "-o", out, "--samples", "3000000", "--report", "--beside", bad});
+  EXPECT_EQ(unreadable.exit_code, 2);
+  EXPECT_TRUE(test::is_one_line_error(unreadable.err)) << unreadable.err;
+  EXPECT_NE(unreadable.err.find("line 2"), std::string::npos) << unreadable.err;
+  const Finished missing = here.run({"medial", mesh, "-o", out, "--report", "--beside", (here / "no.ma").string()});
+  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_NE(missing.err.find("no.ma"), std::string::npos) << missing.err;
+  const std::string ball = here.add("ball.ma", std::string("1 0 0\nv 0.5 0.5 0.25 0.2\n"));
+  EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--beside", ball}).exit_code, 2);
+  EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--sweep", "samples=200,300", "--beside", ball}).exit_code, 2);
+  EXPECT_EQ(
+      here.run({"medial", mesh, "-o", out, "--axis", ball, "--beside", ball, "--quality-samples", "500"}).exit_code, 0);
 }
 
 TEST(Medial, SweepsSayHowTightTheTreeOfEachAxisIs) {
@@ -95,6 +214,82 @@ TEST(Medial, SweepsSayHowTightTheTreeOfEachAxisIs) {
             std::string::npos);
   EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--tree", "merging"}).exit_code, 2);
 }
+
+TEST(Medial, EveryTuningFlagIsOnThePageOfTuning) {
+  const Workplace here;
+  const Finished help = here.run({"medial", "--help"});
+  ASSERT_EQ(help.exit_code, 0);
+  std::ifstream file(ORCHARD_TUNING_PAGE);
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  std::istringstream tuning(help.out.substr(help.out.find("Tuning:")));
+  int flags = 0;
+  for (std::string word; tuning >> word;) {
+    if (!word.starts_with("--")) continue;
+    std::string follows;
+    const auto at = tuning.tellg();
+    tuning >> follows;
+    tuning.seekg(at);
+    if (!follows.starts_with("TEXT:")) continue;  // a mention in some other flag's text
+    ++flags;
+    EXPECT_NE(page.find("| `" + word + "`"), std::string::npos) << word;
+  }
+  EXPECT_GT(flags, 15);
+}
+
+TEST(Medial, SweepsShowTheirBestRowsFirst) {
+  const Workplace here;
+  const std::string mesh = here.add("l.obj", test::l_shape()), out = (here / "out").string();
+  const auto sweep = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{
+        "medial", mesh, "-o", out, "--raw", "--quality-samples", "500", "--sweep", "samples=200,800,400"};
+    words.insert(words.end(), more.begin(), more.end());
+    return here.run(words);
+  };
+  const Finished standard = sweep({"--json"});
+  ASSERT_EQ(standard.exit_code, 0) << standard.err;
+  json report = json::parse(standard.out);
+  EXPECT_EQ(report["best_by"], "hausdorff_max");
+  for (std::size_t i = 1; i < 3; ++i)
+    EXPECT_LE(report["runs"][i - 1]["hausdorff_max"], report["runs"][i]["hausdorff_max"]);
+  report = json::parse(sweep({"--json", "--best", "balls"}).out);
+  EXPECT_EQ(report["best_by"], "balls");
+  EXPECT_EQ(report["runs"][0]["samples"], "200");
+  EXPECT_EQ(report["runs"][2]["samples"], "800");
+  // The file keeps the order of the sweep.
+  const std::string csv = here.files("out").at("l-sweep.csv");
+  EXPECT_LT(csv.find("\n800,"), csv.find("\n400,"));
+  const Finished printed = sweep({"--best", "balls"});
+  EXPECT_NE(printed.out.find("best first, by balls"), std::string::npos) << printed.out;
+  for (const char* measure : {"loops", "nothing"}) {
+    const Finished refused = sweep({"--best", measure});
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_TRUE(test::is_one_line_error(refused.err)) << refused.err;
+  }
+  EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--best", "balls"}).exit_code, 2);
+}
+
+#ifdef ORCHARD_HAS_VIZ
+TEST(Medial, DrawsWhereItIsWorstWithTheReport) {
+  const Workplace here;
+  const std::string mesh = here.add("l.obj", test::l_shape()), out = (here / "out").string();
+  const Finished run = here.run({"medial", mesh, "-o", out, "--samples", "300", "--report", "--quality-samples", "500",
+                                 "--picture", "--up", "z", "--quiet"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  const auto files = here.files("out");
+  EXPECT_TRUE(files.contains("l-medial.png") || run.err.find("no picture was made") != std::string::npos) << run.err;
+  for (const char* array : {"\"radius_error\"", "\"centredness\"", "\"protrusion\"", "\"contact_angle\""}) {
+    EXPECT_NE(files.at("l-medial.vtu").find(array), std::string::npos) << array;
+    EXPECT_NE(files.at("l-medial-faces.vtp").find(array), std::string::npos) << array;  // vertices have it
+  }
+  for (const char* name : {"l-medial-points.vtp", "l-medial-thickness.vtp"})
+    EXPECT_NE(files.at(name).find("\"coverage\""), std::string::npos) << name;
+  EXPECT_NE(files.at("l-medial-points.vtp").find("\"repair_pass\""), std::string::npos);
+  EXPECT_NE(files.at("l-medial-worst.vtp").find("\"number\""), std::string::npos);
+  EXPECT_NE(files.at("l-medial.vtm").find("worst places"), std::string::npos);
+  EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--picture"}).exit_code, 2);
+  EXPECT_EQ(here.run({"medial", mesh, "-o", out, "--sweep", "samples=200,300", "--picture"}).exit_code, 2);
+}
+#endif
 
 TEST(Medial, TakesTheUsersPoints) {
   const Workplace here;

@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "known_axes.h"
 #include "orchard/geometry/error.h"
+#include "orchard/medial/axis_distance.h"
 #include "quality/quality_parts.h"
 #include "support/shapes.h"
 
@@ -187,6 +189,131 @@ TEST(MedialRadiiAtSurface, AreHalfTheThickness) {
   TriangleMesh mesh = test::torus(48, 24);
   const test::KnownAxis known = test::known_torus(48, 24);
   for (const double radius : medial_radii_at_surface(Surface(mesh), known.axis)) EXPECT_NEAR(radius, 0.35, 1e-9);
+}
+
+// One ball of a cube's, with half the cube's inner radius: the envelope is short of the surface everywhere.
+TEST(MedialQuality, HausdorffSeesWhatIsShortAndWhatIsTooLarge) {
+  const Surface cube(test::box({0, 0, 0}, {2, 2, 2}));
+  MedialMesh ball{.centers = {{1, 1, 1}}, .radii = {0.5}, .edges = {}, .triangles = {}};
+  MedialQuality quality = medial_quality(cube, ball, kFew);
+  const double diagonal = std::sqrt(12.0);
+  EXPECT_NEAR(quality.hausdorff.max * diagonal, std::sqrt(3.0) - 0.5, 0.1);  // a corner; samples come near it
+  EXPECT_LE(quality.hausdorff.max * diagonal, std::sqrt(3.0) - 0.5);
+  EXPECT_DOUBLE_EQ(quality.hausdorff.max, quality.coverage.max);
+  EXPECT_EQ(quality.protrusion.max, 0.0);
+  ASSERT_EQ(quality.worst.size(), 5u);  // five of eight corners; nothing protrudes
+  for (const WorstPlace& place : quality.worst) EXPECT_EQ(place.kind, WorstKind::coverage);
+
+  ball.radii = {2.0};
+  quality = medial_quality(cube, ball, kFew);
+  EXPECT_NEAR(quality.hausdorff.max * diagonal, 1, 1e-9);  // beyond the middles of the faces
+  EXPECT_EQ(quality.coverage.max, 0.0);
+  EXPECT_NEAR(quality.worst.front().value * diagonal, 1, 1e-9);
+  EXPECT_NEAR((quality.worst.front().position - Point(1, 1, 1)).norm(), 2, 1e-6);
+  EXPECT_NEAR(quality.worst.front().outward.cwiseAbs().maxCoeff(), 1, 1e-9);
+}
+
+TEST(MedialQuality, WorstPlacesAreApartAndFromTheWorstDown) {
+  std::vector<WorstPlace> places;
+  for (int i = 0; i < 100; ++i)
+    places.push_back({.kind = WorstKind::coverage, .value = (i * 37) % 100 / 100.0, .position = {0.01 * i, 0, 0}});
+  const auto worst = detail::worst_of(places, 4, 0.1);
+  ASSERT_EQ(worst.size(), 4u);
+  EXPECT_EQ(worst[0].value, 0.99);
+  for (std::size_t i = 0; i < worst.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) EXPECT_GE((worst[i].position - worst[j].position).norm(), 0.1);
+    if (i > 0) {
+      EXPECT_LT(worst[i].value, worst[i - 1].value);
+    }
+  }
+}
+
+TEST(MedialQuality, CountsSheetsWiresAndFlakes) {
+  MedialMesh mesh;
+  mesh.centers = {{0, 0, 0},      {9, 0, 0},    {0, 9, 0}, {9, 9, 0}, {-9, 0, 0},
+                  {-9.1, 0.1, 0}, {-9.1, 0, 0}, {0, 0, 9}, {5, 5, 5}};
+  mesh.radii.assign(9, 1.0);
+  mesh.triangles = {{0, 1, 2}, {1, 2, 3}, {4, 5, 6}};
+  mesh.edges = {{0, 4}, {0, 7}};
+  complete(mesh);
+  const MedialPieces pieces = medial_pieces(mesh);
+  EXPECT_EQ(pieces.sheets, 2u);
+  EXPECT_EQ(pieces.wires, 2u);  // two edges at one vertex, and the ball that is alone
+  EXPECT_EQ(pieces.small, 2u);  // the small triangle and that ball
+  const double flake = 0.1 + 0.1 + std::sqrt(0.02);
+  EXPECT_NEAR(border_length(mesh), 4 * 9 + flake, 1e-9);
+  MedialMesh ball{.centers = {{0, 0, 0}}, .radii = {1}, .edges = {}, .triangles = {}};
+  EXPECT_EQ(medial_pieces(ball).small, 0u);  // alone
+}
+
+TEST(MedialQuality, ErrorsOfBallsAndPlacesAreThoseOfTheMetrics) {
+  const test::KnownAxis known = test::known_box({1, 2, 3});
+  const Surface surface(known.solid);
+  MedialMesh axis = known.axis;
+  axis.radii[3] += 0.07;
+  std::vector<Sphere> balls;
+  for (Index i = 0; i < axis.size(); ++i) balls.push_back({axis.centers[i], axis.radii[i]});
+  const MedialQuality quality = medial_quality(surface, axis, kFew);
+  const BallErrors errors = ball_errors(surface, balls);
+  EXPECT_DOUBLE_EQ(*std::max_element(errors.radius_error.begin(), errors.radius_error.end()), quality.radius_error.max);
+  EXPECT_NEAR(errors.radius_error[3] * quality.diagonal, 0.07, 1e-12);
+  EXPECT_NEAR(errors.protrusion[3] * quality.diagonal, 0.07, 1e-12);
+  EXPECT_EQ(errors.protrusion[2], 0.0);
+  EXPECT_DOUBLE_EQ(*std::max_element(errors.centredness.begin(), errors.centredness.end()), quality.centredness.max);
+
+  // Beside the middle of a face the reconstruction is exact; beside a corner without its ball it is not.
+  const std::vector<Point> points{{0.5, 1, 0}, {0.5, 1, 3}};
+  const std::vector<Vector> normals{{0, 0, -1}, {0, 0, 1}};
+  const MedialMesh one{.centers = {{0.5, 1, 0.5}}, .radii = {0.5}, .edges = {}, .triangles = {}};
+  const SurfaceErrors places = surface_errors(surface, one, points, normals);
+  EXPECT_NEAR(places.coverage[0], 0, 1e-12);
+  EXPECT_NEAR(places.coverage[1] * quality.diagonal, 2, 1e-9);
+  EXPECT_EQ(places.protrusion[1], 0.0);
+  EXPECT_THROW(ball_errors(Surface(test::open_box()), balls), InputError);
+}
+
+// Sheets that end in balls of radius 0 have such balls on the surface itself, where samples may be.
+TEST(MedialQuality, PlacesAtBallsOfRadiusZeroAreNotOff) {
+  const Surface cube(test::box({0, 0, 0}, {1, 1, 1}));
+  const MedialMesh axis{
+      .centers = {{0.5, 0.5, 0.5}, {0.1, 0.2, 1 + 1e-17}}, .radii = {0.5, 0}, .edges = {{0, 1}}, .triangles = {}};
+  const std::vector<Point> points(50, axis.centers[1]);
+  const SurfaceErrors errors = surface_errors(cube, axis, points, std::vector<Vector>(50, Vector(0, 0, 1)));
+  for (const double coverage : errors.coverage) EXPECT_LT(coverage, 1e-8);
+}
+
+MedialMesh square(double z, double size) {
+  MedialMesh mesh;
+  mesh.centers = {{0, 0, z}, {size, 0, z}, {size, size, z}, {0, size, z}};
+  mesh.radii.assign(4, 0.1);
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  complete(mesh);
+  return mesh;
+}
+
+TEST(AxisDistance, IsThatOfSheetsNotOfVertices) {
+  const AxisDistance same = axis_distance(square(0, 1), square(0, 1), 1e-4);
+  EXPECT_LT(same.max, 1e-15);
+  EXPECT_LT(same.max_gap, 1e-4);
+  EXPECT_LT(same.mean, 1e-15);
+  const AxisDistance apart = axis_distance(square(0, 1), square(0.25, 1), 1e-4);
+  EXPECT_DOUBLE_EQ(apart.max, 0.25);
+  EXPECT_LT(apart.max_gap, 1e-4);
+  EXPECT_DOUBLE_EQ(apart.mean, 0.25);
+  // Every vertex of the frame is on the square, which reaches half its side from the frame, in its middle.
+  MedialMesh frame = square(0, 1);
+  frame.triangles.clear();
+  frame.edges = {{0, 1}, {1, 2}, {2, 3}, {0, 3}};
+  const AxisDistance hole = axis_distance(square(0, 1), frame, 1e-4);
+  EXPECT_NEAR(hole.max, 0.5, 1e-4);
+  EXPECT_LE(hole.max, 0.5);
+  EXPECT_GE(hole.max + hole.max_gap, 0.5);
+  EXPECT_EQ(hole.max_to, 0.0);
+  EXPECT_DOUBLE_EQ(hole.max_from, hole.max);
+  const AxisDistance back = axis_distance(frame, square(0, 1), 1e-4);
+  EXPECT_EQ(back.max, hole.max);
+  EXPECT_EQ(back.max_from, 0.0);
+  EXPECT_THROW(axis_distance(frame, frame, 0), InputError);
 }
 
 }  // namespace

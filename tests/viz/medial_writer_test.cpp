@@ -77,8 +77,8 @@ TEST(MedialGrid, HoldsEveryCellWithItsArrays) {
   EXPECT_EQ(values(cells, "sheet"), (std::vector<double>{1, 1, 0}));
   EXPECT_EQ(values(cells, "point_b"), (std::vector<double>{1, 3, -1}));
   EXPECT_EQ(values(cells, "added"), (std::vector<double>{0, 1, 0}));
-  EXPECT_NEAR(values(cells, "angle")[0], 3.1, 0.1);
-  EXPECT_EQ(values(cells, "angle")[2], -1);
+  EXPECT_NEAR(values(cells, "contact_angle")[0], 3.1, 0.1);
+  EXPECT_EQ(values(cells, "contact_angle")[2], -1);
   EXPECT_EQ(values(cells, "trunk").size(), 3u);
   vtkPointData* points = grid->GetPointData();
   EXPECT_EQ(values(points, "radius"), axis.radii);
@@ -103,10 +103,10 @@ TEST(MedialGrid, AndTheFilesByPartsGiveAFaceTheSameAngle) {
     vtkNew<vtkXMLUnstructuredGridReader> reader;
     reader->SetFileName((folder.path() / "axis.vtu").c_str());
     reader->Update();
-    std::vector<double> in_grid = values(reader->GetOutput()->GetCellData(), "angle");
+    std::vector<double> in_grid = values(reader->GetOutput()->GetCellData(), "contact_angle");
     ASSERT_GE(in_grid.size(), axis.faces.size());
     in_grid.resize(axis.faces.size());  // walls and lines follow
-    EXPECT_EQ(values(read(folder.path() / "axis-faces.vtp")->GetCellData(), "angle"), in_grid);
+    EXPECT_EQ(values(read(folder.path() / "axis-faces.vtp")->GetCellData(), "contact_angle"), in_grid);
   }
 }
 

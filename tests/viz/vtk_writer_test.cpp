@@ -134,7 +134,7 @@ TEST(WriteMedialAxis, HasALinePerPairOfNeighboursAndAPolygonPerFace) {
   EXPECT_EQ(values(faces->GetCellData(), "point_a"), std::vector<double>{0});
   EXPECT_EQ(values(faces->GetCellData(), "point_b"), std::vector<double>{1});
   // From (1/6, 1/6, 0) the points (0, 0, 1) and (0, 0, -1).
-  const auto angle = values(faces->GetCellData(), "angle");
+  const auto angle = values(faces->GetCellData(), "contact_angle");
   ASSERT_EQ(angle.size(), 1u);
   EXPECT_NEAR(angle[0], 2 * std::atan(1 / (std::sqrt(2.0) / 6)), 1e-12);
 }

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "orchard/geometry/progress.h"
@@ -21,6 +22,8 @@ struct QualityOptions {
   double contact_angle = 0.5235987755982988;  // radians, 30 degrees: half the opening of the first contact's cone
   double economy_error = 0.01;                // of the diagonal
   Index economy_candidates = 20'000, economy_samples = 20'000;
+  Index worst_places = 5;      // of each kind that are named
+  double places_apart = 0.05;  // of the diagonal: nearer ones of a kind are one place
   std::uint64_t seed = 1;
 };
 
@@ -33,8 +36,33 @@ struct Economy {
   double uncovered = 0;  // fraction of the samples that no admissible ball reaches
 };
 
+// What a medial mesh falls into where it is joined by less than edges.
+struct MedialPieces {
+  Index sheets = 0;  // sets of triangles joined across edges
+  Index wires = 0;   // sets of edges without triangles, joined at vertices; a ball without edges is one, too
+  // Of both, those whose bounding box has a diagonal below their largest radius: flakes and spikes. One that is alone
+  // does not count.
+  Index small = 0;
+};
+// O(n log n).
+MedialPieces medial_pieces(const MedialMesh& mesh);
+// The length of the edges that have one triangle, in mesh units: the borders of sheets, walls included. O(n log n).
+double border_length(const MedialMesh& mesh);
+
+enum class WorstKind : std::uint8_t { protrusion, coverage };
+
+// Where a metric is worst.
+struct WorstPlace {
+  WorstKind kind = WorstKind::protrusion;
+  double value = 0;                  // over D
+  Point position = Point::Zero();    // of the reconstruction, farthest outside; or of the surface, left uncovered
+  Vector outward = Vector::Zero();   // the surface's unit normal there
+  Sphere ball = {Point::Zero(), 0};  // of the reconstruction: that which protrudes; or the nearest one
+};
+
 struct MedialQuality {
   double diagonal = 0;  // D of the mesh's bounding box, in mesh units
+  Spread hausdorff;     // two-sided distance between the surface and the reconstruction's boundary, over D
   Spread coverage;      // distance from the surface to the reconstruction, over D
   Spread protrusion;    // distance of the reconstruction outside the solid, over D
   Spread radius_error;  // |radius - distance to the surface| of vertices, over D
@@ -42,11 +70,36 @@ struct MedialQuality {
   double outside_vertices = 0, outside_edges = 0, outside_triangles = 0;  // fractions
   Topology found, wanted;                                                 // of the medial mesh; of the solid
   Economy economy;
+  Index balls = 0;           // vertices of the medial mesh
+  double border_length = 0;  // over D
+  MedialPieces pieces;
+  std::vector<WorstPlace> worst;  // protrusion first, then coverage, each from the worst down; of values above 1e-6
 };
 
 // Deterministic for a seed; parallel. Throws InputError unless surface.solid() and validate(mesh) passes.
 MedialQuality medial_quality(const Surface& surface, const MedialMesh& mesh, const QualityOptions& options = {},
                              const Progress& progress = {});
+
+// What is wrong with single balls of an axis: lengths over the diagonal of the surface's bounding box.
+struct BallErrors {
+  std::vector<double> radius_error, protrusion;
+  std::vector<double> centredness;  // over the radius; -1 where there is none: no second contact, or next to no radius
+};
+// By the definitions of medial_quality(), of each ball; no centredness, which takes longest, if options.contact_cells
+// is 0. Parallel. Throws InputError unless surface.solid().
+BallErrors ball_errors(const Surface& surface, std::span<const Sphere> balls, const QualityOptions& options = {});
+
+// The protrusion alone.
+std::vector<double> ball_protrusions(const Surface& surface, std::span<const Sphere> balls);
+
+// What is wrong with the reconstruction at single points of the surface, over the diagonal.
+struct SurfaceErrors {
+  std::vector<double> coverage, protrusion;
+};
+// By the definitions of medial_quality(), of each point; normals: outward, unit length. Parallel. Throws InputError
+// unless surface.solid().
+SurfaceErrors surface_errors(const Surface& surface, const MedialMesh& mesh, std::span<const Point> points,
+                             std::span<const Vector> normals);
 
 struct StabilityOptions {
   double noise = 0.001;          // every vertex moves by at most this, in diagonals

@@ -3,20 +3,35 @@
 #include <vector>
 
 #include "orchard/geometry/surface.h"
+#include "orchard/medial/medial_mesh.h"
+#include "orchard/medial/quality.h"
 #include "orchard/medial/segments.h"
+#include "orchard/viz/vtk_writer.h"
 
 // A medial axis and what is known about it as ParaView opens it. The rules of vtk_writer.h hold.
 namespace orchard {
 
 // One unstructured grid (.vtu): a polygon for each face and wall, a line for each edge that no face has.
-// Point arrays: radius; angle (the widest at which two forming points are seen, radians); component; segment; added (1
-// if gap repair added a forming point); forming_points (four of them, -1 for none); forming_count.
-// Cell arrays: segment; sheet (1, else a curve) and trunk (1, else a branch) of the segment; wall (1 for walls); angle
-// (at which the two points are seen, -1 for lines); point_a, point_b (-1 for lines); added; component.
-void write_medial_grid(const std::filesystem::path& vtu, const MedialAxis& axis, const MedialSegments& segments);
+// Point arrays: radius; contact_angle (the widest at which two forming points are seen, radians); component; segment;
+// added (1 if gap repair added a forming point); forming_points (four of them, -1 for none); forming_count. Cell
+// arrays: segment; sheet (1, else a curve) and trunk (1, else a branch) of the segment; wall (1 for walls);
+// contact_angle (at which the two points are seen, -1 for lines); point_a, point_b (-1 for lines); added; component.
+// Also what `of_vertices` has, and `of_faces`: one value for each face, then for each wall; lines get -1.
+void write_medial_grid(const std::filesystem::path& vtu, const MedialAxis& axis, const MedialSegments& segments,
+                       const ViewArrays& of_vertices = {}, const ViewArrays& of_faces = {});
 
-// The mesh with a point array `medial_radius`, and `thickness`, twice that. radii: of each vertex of the mesh.
-void write_thickness(const std::filesystem::path& vtp, const Surface& surface, const std::vector<double>& radii);
+// The mesh with a point array `medial_radius`, and `thickness`, twice that; radii: of each vertex of the mesh. And what
+// `more` has of each vertex.
+void write_thickness(const std::filesystem::path& vtp, const Surface& surface, const std::vector<double>& radii,
+                     const ViewArrays& more = {});
+
+// A medial mesh of any system: triangles, and lines for the other edges. Point arrays: radius, and what `of_vertices`
+// has.
+void write_medial_mesh(const std::filesystem::path& vtp, const MedialMesh& mesh, const ViewArrays& of_vertices = {});
+
+// One vertex per place, in order. Point arrays: number (from 1 on, as reports have it), measure (0 protrusion, 1
+// coverage), value (in % of the diagonal), outward (the surface's normal there).
+void write_worst_places(const std::filesystem::path& vtp, const std::vector<WorstPlace>& places);
 
 // A polyline for each arc. Point arrays: radius; vertex (of the axis). Cell arrays: kind (0 curve, 1 border, 2
 // junction), length, mean_radius, from, to (nodes, as in the GraphML).

@@ -4,6 +4,8 @@
 #include <string>
 
 #include "orchard/geometry/progress.h"
+#include "orchard/medial/medial_mesh.h"
+#include "orchard/medial/quality.h"
 #include "orchard/viz/vtk_writer.h"
 
 // The pipeline in one picture. Debian's VTK draws only on an X display, even offscreen, and aborts the process where
@@ -38,5 +40,20 @@ struct PictureStatus {
 // neither processes nor temporary files behind; not when it throws Cancelled either, which is all that it throws. Safe
 // to call from several threads.
 PictureStatus draw_pipeline(const std::filesystem::path& png, const PipelinePicture& picture);
+
+// Where a medial axis is bad.
+struct MedialErrorsPicture {
+  const Surface* surface = nullptr;
+  const SurfaceSampling* sampling = nullptr;  // points of the surface at which coverage is shown
+  const MedialMesh* mesh = nullptr;
+  std::vector<double> coverage;    // of each point, in % of the diagonal
+  std::vector<double> protrusion;  // at each vertex of the medial mesh, the most of the balls around it; likewise
+  std::vector<WorstPlace> worst;   // numbered from 1 on
+};
+
+// As draw_pipeline(): the surface coloured by coverage and the axis by protrusion, each from the front and from behind,
+// with the numbers of the worst places on the side that they face. picture.values do not count.
+PictureStatus draw_medial_errors(const std::filesystem::path& png, const MedialErrorsPicture& errors,
+                                 const PipelinePicture& picture);
 
 }  // namespace orchard

@@ -15,23 +15,33 @@
 // exist.
 namespace orchard {
 
+// Values of one's own beside the arrays that a file has anyhow: one for each point, vertex or face.
+struct ViewArray {
+  std::string name;
+  std::vector<double> values;
+};
+using ViewArrays = std::vector<ViewArray>;
+
 // Triangles; cell array `cluster`. Field data `bounding_radius`: what tolerances and figures are fractions of.
 void write_mesh(const std::filesystem::path& vtp, const Surface& surface);
 
-// One vertex per surface point; cell arrays `origin` (0 face, 1 edge, 2 repair) and `triangle`.
-void write_points(const std::filesystem::path& vtp, const SurfaceSampling& sampling);
+// One vertex per surface point; cell arrays `origin` (0 face, 1 edge, 2 repair) and `triangle`, and `more` of each.
+void write_points(const std::filesystem::path& vtp, const SurfaceSampling& sampling, const ViewArrays& more = {});
 
 // A name that several files begin with: "out/lamp-build" and "-mesh.vtp" make "out/lamp-build-mesh.vtp".
 std::filesystem::path with_ending(const std::filesystem::path& prefix, const std::string& ending);
 
 // Three files, each of which can be shown alone; vertices are numbered alike in all of them and carry the point arrays
-// `radius`, `component` and `valence` (number of neighbours).
+// `radius`, `contact_angle` (contact_angles(), radians), `component` and `valence` (number of neighbours), and what
+// `of_vertices` has.
 //   PREFIX-vertices.vtp  the medial vertices
 //   PREFIX-edges.vtp     a line per pair of neighbours
 //   PREFIX-faces.vtp     the faces; cell arrays `point_a`, `point_b`: the two surface points that a face separates, and
-//                        `angle`: separation_angle(), in radians, as in write_medial_grid(). Small angles belong to
-//                        sheets that run into shallow edges and noise: a threshold clears the view.
-void write_medial_axis(const std::filesystem::path& prefix, const MedialAxis& axis);
+//                        `contact_angle`: separation_angle(), in radians, as in write_medial_grid(). Small angles
+//                        belong to sheets that run into shallow edges and noise: a threshold clears the view. And what
+//                        `of_faces` has, one value for each face and then for each wall, which is not drawn.
+void write_medial_axis(const std::filesystem::path& prefix, const MedialAxis& axis, const ViewArrays& of_vertices = {},
+                       const ViewArrays& of_faces = {});
 
 // The spheres of one level as points, for glyphs scaled by `radius`: the nodes of that level and, flagged `carried`,
 // the leaves above it, which stand in for the children they do not have. Point arrays:

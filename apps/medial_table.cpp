@@ -1,0 +1,101 @@
+#include "medial_table.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace orchard::apps {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kNotDefined = "not defined";
+constexpr std::size_t kNarrowest = 12, kWidest = 28;  // of a column
+
+// Long names keep their ends, which tell files apart.
+std::string fitted(const std::string& name) {
+  return name.size() <= kWidest ? name : ".." + name.substr(name.size() - kWidest + 2);
+}
+
+std::string cell(double value, const MedialMeasure& measure) {
+  if (std::isnan(value)) return kNotDefined;
+  return *measure.unit == '\0' ? fmt::format("{:.0f}", value) : fmt::format("{:.5f}", value);
+}
+
+const char* kind_name(WorstKind kind) { return kind == WorstKind::protrusion ? "protrusion" : "coverage"; }
+
+// "1 0 0 right" says more in a line than four rows.
+void print_topologies(const std::vector<JudgedAxis>& axes, const std::vector<std::size_t>& widths) {
+  const auto three = [](const Topology& t) { return fmt::format("{} {} {}", t.components, t.loops, t.cavities); };
+  fmt::print("  {:<30}", "components, loops, cavities");
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const MedialQuality& quality = axes[i].judgement.quality;
+    fmt::print(" {:>{}}", three(quality.found) + (quality.found == quality.wanted ? " right" : " WRONG"), widths[i]);
+  }
+  fmt::print("  the solid has {}\n", three(axes.front().judgement.quality.wanted));
+}
+
+}  // namespace
+
+json to_json(const MedialJudgement& judgement) {
+  json values = json::object();
+  for (const MedialMeasure& measure : medial_measures()) {
+    const double value = measure.get(judgement);
+    if (std::isnan(value)) {
+      values[measure.name] = json();
+    } else if (*measure.unit == '\0') {
+      values[measure.name] = static_cast<std::int64_t>(value);
+    } else {
+      values[measure.name] = value;
+    }
+  }
+  return values;
+}
+
+void print_table(const std::vector<JudgedAxis>& axes, const std::vector<std::string>& promised) {
+  std::vector<std::size_t> widths;
+  fmt::print("{:<32}", "quality");
+  for (const JudgedAxis& axis : axes) {
+    widths.push_back(std::clamp(axis.name.size(), kNarrowest, kWidest));
+    fmt::print(" {:>{}}", fitted(axis.name), widths.back());
+  }
+  fmt::print("\n");
+  for (const MedialMeasure& measure : medial_measures()) {
+    const std::string name = measure.name;
+    if (name == "topology_right") print_topologies(axes, widths);
+    if (name == "topology_right" || name == "components" || name == "loops" || name == "cavities") continue;
+    const bool defined = std::any_of(axes.begin(), axes.end(),
+                                     [&](const JudgedAxis& axis) { return !std::isnan(measure.get(axis.judgement)); });
+    if (!defined && std::find(promised.begin(), promised.end(), name) == promised.end()) continue;
+    fmt::print("  {:<30}", measure.title);
+    for (std::size_t i = 0; i < axes.size(); ++i)
+      fmt::print(" {:>{}}", cell(measure.get(axes[i].judgement), measure), widths[i]);
+    fmt::print("{}{}\n", *measure.unit == '\0' ? "" : "  ", measure.unit);
+  }
+}
+
+json to_json(const std::vector<ReportedPlace>& places) {
+  json rows = json::array();
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const WorstPlace& place = places[i].place;
+    rows.push_back({{"number", i + 1},
+                    {"measure", kind_name(place.kind)},
+                    {"value", 100 * place.value},
+                    {"position", {place.position.x(), place.position.y(), place.position.z()}},
+                    {"advice", places[i].advice}});
+  }
+  return rows;
+}
+
+void print(const std::vector<ReportedPlace>& places) {
+  if (places.empty()) return;
+  fmt::print("worst places  measure      % of the diagonal  at\n");
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const WorstPlace& place = places[i].place;
+    fmt::print("  {:>10}  {:<11} {:>18.5f}  {:.6g} {:.6g} {:.6g}: {}\n", i + 1, kind_name(place.kind),
+               100 * place.value, place.position.x(), place.position.y(), place.position.z(), places[i].advice);
+  }
+}
+
+}  // namespace orchard::apps
