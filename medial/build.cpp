@@ -1,5 +1,7 @@
 #include "orchard/medial/build.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "orchard/geometry/error.h"
@@ -41,6 +43,13 @@ class MedialBuilder {
   template <class Function>
   void stage(const char* name, Function&& function) {
     time_stage(build_.seconds, name, std::forward<Function>(function));
+    // Of all rounds together.
+    const auto last = std::prev(build_.seconds.end());
+    const auto first =
+        std::find_if(build_.seconds.begin(), last, [&](const auto& stage) { return stage.first == name; });
+    if (first == last) return;
+    first->second += last->second;
+    build_.seconds.pop_back();
   }
 
   void sample(std::optional<SurfaceSampling> own) {

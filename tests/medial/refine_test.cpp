@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "known_axes.h"
@@ -153,6 +155,8 @@ TEST(RefineAxis, PointsAtOpenPlacesCloseThem) {
   options.open_rounds = 2;
   const MedialBuild closed = build_medial_axis(surface, options);
   EXPECT_GT(closed.open_places, 0u);
+  std::set<std::string> stages;
+  for (const auto& [stage, seconds] : closed.seconds) EXPECT_TRUE(stages.insert(stage).second) << stage;
   EXPECT_EQ(closed.points, first.points);
   EXPECT_EQ(closed.sampling.size(), closed.points + closed.open_places + closed.gap_repair.points_added);
   EXPECT_LT(mean_gap(surface, closed.axis), 0.9 * mean_gap(surface, first.axis));

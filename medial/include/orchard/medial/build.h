@@ -60,8 +60,8 @@ struct MedialBuild {
 };
 
 // The main line from a solid to its medial axis: points, Voronoi diagram, gap repair, axis, pruning, refining. The time
-// goes as the parts': about n log n in the points, for each of the rounds. Throws InputError unless surface.solid(), if an option is out of
-// range, or if `input` has more than one of its values.
+// goes as the parts': about n log n in the points, for each of the rounds. Throws InputError unless surface.solid(), if
+// an option is out of range, or if `input` has more than one of its values.
 MedialBuild build_medial_axis(const Surface& surface, const MedialBuildOptions& options = {},
                               const Progress& progress = {}, MedialBuildInput input = {});
 
