@@ -15,8 +15,9 @@ struct SplitReport {
 };
 
 // Divides edges until the balls that are interpolated on edges and triangles neither protrude nor fall short by more
-// than the tolerance: they are looked at at the quarters of edges and the middles of triangles, and every ten tolerances
-// of long ones. A triangle's error counts for its longest edge. New vertices are exact where that is possible. Deterministic; parallel.
+// than the tolerance: they are looked at at the quarters of edges and the middles of triangles, and every ten
+// tolerances of long ones. A triangle's error counts for its longest edge. New vertices are exact where that is
+// possible. Deterministic; parallel.
 SplitReport split_nonlinear(const Surface& surface, BallComplex& complex, const SplitOptions& options,
                             const Progress& progress);
 

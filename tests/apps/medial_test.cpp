@@ -51,7 +51,8 @@ TEST(Medial, RefinesTheAxisUnlessTheRawOneIsAskedFor) {
     EXPECT_EQ(finished.exit_code, 0) << finished.err;
     return json::parse(finished.out);
   };
-  const json refined = run("refined", {"--open-rounds", "0"}), raw = run("raw", {"--raw"}), no = run("no", {"--refine", "no"});
+  const json refined = run("refined", {"--open-rounds", "0"}), raw = run("raw", {"--raw"}),
+             no = run("no", {"--refine", "no"});
   EXPECT_TRUE(raw["build"]["refinement"].is_null());
   EXPECT_EQ(here.files("raw").at("l.ma"), here.files("no").at("l.ma"));
   EXPECT_EQ(refined["build"]["refinement"]["vertices_before"], raw["build"]["vertices"]);
