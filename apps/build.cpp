@@ -1,7 +1,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
 
+#include "build_cost.h"
+#include "build_doubts.h"
+#include "build_page.h"
 #include "build_plot.h"
 #include "commands.h"
 #include "console.h"
@@ -14,6 +20,7 @@
 #include "orchard/runtime/tree_file.h"
 #include "orchard/spheretree/tree_io.h"
 #include "outputs.h"
+#include "picture.h"
 #include "report.h"
 #include "sphere_lists.h"
 
@@ -33,7 +40,8 @@ std::string_view as_text(const std::vector<std::byte>& bytes) {
 
 // Every name that the command may write to.
 std::vector<std::string> names_of(const BuildCommand& command) {
-  std::vector<std::string> endings{".orchard", ".sph", ".json", "-levels.svg", "-build.vtm", ".png"};
+  std::vector<std::string> endings{".orchard",   ".sph",           ".json", "-levels.svg", "-build.vtm",
+                                   "-build.pvd", "-build-view.py", ".png",  "-report.html"};
   for (const std::string& format : command.exports) endings.push_back(format == "urdf" ? ".urdf" : "-spheres.json");
   endings.emplace_back(command.reading.wrap.empty() ? kRepairedEnding : kWrapEnding);
   for (const char* view : {"mesh", "points", "medial-vertices", "medial-edges", "medial-faces"})
@@ -69,6 +77,9 @@ void check(const BuildCommand& command) {
       throw InputError(fmt::format("--export-level {}: with --depth {} the tree has levels 0 to {}",
                                    *command.export_level, command.options.depth, command.options.depth));
   }
+  const bool up_given = std::find(command.given.begin(), command.given.end(), "up") != command.given.end();
+  if (up_given && !command.views && !command.picture && !command.page)
+    throw InputError("--up has no effect with --no-views and without --picture or --report: nothing is drawn");
   std::vector<fs::path> inputs = command.source.files();
   if (inputs.size() > 1) throw InputError("--points, --diagram and --from-axis exclude each other");
   refuse_idle_options(command);
@@ -106,37 +117,62 @@ void write_solid(const BuildCommand& command, const SolidMesh& solid, Outputs& o
 }
 
 #ifdef ORCHARD_HAS_VIZ
-UpAxis parse_up(const std::string& up) { return up == "x" ? UpAxis::x : up == "z" ? UpAxis::z : UpAxis::y; }
-
-void write_views(const BuildCommand& command, const Surface& surface, const SphereTreeBuild& result, Outputs& outputs) {
+// The picture that was drawn, if one was: its name in `outputs`.
+std::string write_views(const BuildCommand& command, const Surface& surface, const SphereTreeBuild& result,
+                        Outputs& outputs) {
   const PipelineValues values{.surface = &surface,
                               .sampling = result.medial ? &result.medial->sampling : nullptr,
                               .axis = result.medial ? &result.medial->axis : nullptr,
-                              .tree = &result.tree};
+                              .tree = &result.tree,
+                              .up = parse_up(command.up)};
   if (command.views) {
     const fs::path vtm = outputs.add(named(command.mesh, "-build.vtm"), "open this in ParaView: all views at once");
     write_pipeline(fs::path(vtm).replace_extension(), values);
+    outputs.add(named(command.mesh, "-build-view.py"), "paraview --script=.. shows the spheres around the mesh");
   }
-  if (!command.picture) return;
+  if (!command.picture && !command.page) return {};
   PipelinePicture picture;
   picture.values = values;
   picture.title = command.mesh.stem().string();
   picture.up = parse_up(command.up);
   picture.progress = cancelled_by_interrupts();
   const std::string name = named(command.mesh, ".png");
-  const PictureStatus status = draw_pipeline(outputs.staged(name), picture);
-  throw_if_interrupted();  // on a terminal the renderer is interrupted too
-  if (status) {
-    outputs.add(name, "the pipeline in one picture");
-  } else {
-    fmt::print(stderr, "orchard: no picture was made: {}\n", status.reason);
-  }
+  if (!is_drawn(draw_pipeline(outputs.staged(name), picture))) return {};
+  if (command.picture) outputs.add(name, "the pipeline in one picture");
+  return name;
 }
 #else
-void write_views(const BuildCommand& command, const Surface&, const SphereTreeBuild&, Outputs&) {
-  if (command.picture) fmt::print(stderr, "orchard: no picture was made: this program was built without VTK\n");
+std::string write_views(const BuildCommand& command, const Surface&, const SphereTreeBuild&, Outputs&) {
+  if (command.picture || command.page)
+    fmt::print(stderr, "orchard: no picture was made: this program was built without VTK\n");
+  return {};
 }
 #endif
+
+std::string content(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// The page, with the picture in it; a picture that nobody asked for by itself goes.
+void write_page(const BuildCommand& command, BuildPage page, const std::string& picture, Outputs& outputs) {
+  if (!picture.empty()) page.picture = content(outputs.staged(picture));
+  if (!picture.empty() && !command.picture) fs::remove(outputs.staged(picture));
+  write_file(outputs.add(named(command.mesh, "-report.html"), "this report as a page, with everything in it"),
+             to_html(page));
+}
+
+// Before a long wait.
+void print_cost(const BuildCommand& command, const SphereTreeOptions& options) {
+  const auto& sampling = options.medial.sampling;
+  const double points = needs_axis(options.method) && command.source.axis.empty()
+                            ? static_cast<double>(sampling.face_points) + static_cast<double>(sampling.edge_points)
+                            : 0;
+  const std::string cost = in_words(estimated_cost(options, points), options);
+  if (cost.empty()) return;
+  fmt::print("{}: {}\n", command.mesh.string(), cost);
+  std::fflush(stdout);
+}
 
 }  // namespace
 
@@ -154,6 +190,7 @@ void build(const BuildCommand& command) {
 
   const SphereTreeOptions options = tree_options(command);
   OwnInput own = read_axis_source(command.source, surface);
+  if (talk) print_cost(command, options);
   SphereTreeBuild result = build_sphere_tree(surface, options, bar.callback(), std::move(own.input));
   result.seconds.insert(result.seconds.begin(), {"reading", seconds_reading});
   bar.clear();
@@ -168,20 +205,26 @@ void build(const BuildCommand& command) {
   const Stopwatch writing;
   write_trees(command, result, outputs);
   write_solid(command, solid, outputs);
-  write_views(command, surface, result, outputs);
+  const std::string picture = write_views(command, surface, result, outputs);
   write_file(outputs.add(named(command.mesh, "-levels.svg"), "this report as a plot"), plot);
   result.seconds.emplace_back("writing", writing.seconds());
   report["seconds"]["writing"] = writing.seconds();
   write_file(outputs.add(named(command.mesh, ".json"), "this report as JSON"), report.dump(2) + "\n");
+  const std::string certified = certificate(solid, outputs.place_of(named(command.mesh, ending ? ending : "")));
+  const std::string doubts = build_doubts(solid, result);
+  if (command.page)
+    write_page(command, {command.mesh.stem().string(), command.command_line, certified, doubts, report, plot, {}},
+               picture, outputs);
   outputs.commit();
 
   if (command.output.json) fmt::print("{}\n", report.dump(2));
   if (!talk) return;
-  fmt::print("{}: {} triangles, {} clusters, bounding radius {:.6g}\n", command.mesh.string(),
+  fmt::print("{}: {} triangles in {} clusters (flat parts), bounding radius {:.6g}\n", command.mesh.string(),
              surface.mesh().triangles.size(), surface.clusters().count(), surface.bounding_radius());
   print_build(result, surface.bounding_radius(), wrap_distance);
   outputs.print();
-  fmt::print("{}\n", certificate(solid, outputs.place_of(named(command.mesh, ending ? ending : ""))));
+  fmt::print("{}\n", certified);
+  if (!doubts.empty()) fmt::print("{}\n", doubts);
 }
 
 }  // namespace orchard::apps

@@ -12,17 +12,19 @@ namespace {
 constexpr std::size_t kBins = 20;
 constexpr std::uint64_t kPlotPoints = 50'000;  // of the volume: a plot shows no more
 
-plot::Plot by_level(const std::string& title) {
+plot::Plot by_level(const std::string& title, const std::string& what) {
   plot::Plot plot;
   plot.title = title;
+  plot.y_label = what;
   plot.x_label = "level";
   plot.log_y = true;
   return plot;
 }
 
 template <class Value>
-void add_line(plot::Plot& plot, const std::string& name, std::size_t levels, const Value& value) {
+void add_line(plot::Plot& plot, const std::string& name, std::size_t levels, bool octree, const Value& value) {
   plot::Series& series = plot.series.emplace_back();
+  series.dashed = octree;
   series.name = name;
   series.kind = plot::Series::Kind::line;
   for (std::size_t level = 0; level < levels; ++level) {
@@ -33,29 +35,29 @@ void add_line(plot::Plot& plot, const std::string& name, std::size_t levels, con
 }
 
 plot::Plot inaccuracies(const SphereTreeBuild& result, double radius, const std::string& title) {
-  plot::Plot plot = by_level(title + ": inaccuracy / R");
-  const auto add = [&](const std::string& name, const SphereTree& tree) {
+  plot::Plot plot = by_level(title + ": inaccuracy", "inaccuracy / R");
+  const auto add = [&](const std::string& name, const SphereTree& tree, bool octree) {
     const auto figures = level_figures(tree, radius);
-    add_line(plot, name + "mean", figures.size(), [&](std::size_t i) { return figures[i].mean_inaccuracy; });
-    add_line(plot, name + "max", figures.size(), [&](std::size_t i) { return figures[i].max_inaccuracy; });
+    add_line(plot, name + "mean", figures.size(), octree, [&](std::size_t i) { return figures[i].mean_inaccuracy; });
+    add_line(plot, name + "max", figures.size(), octree, [&](std::size_t i) { return figures[i].max_inaccuracy; });
   };
-  add("", result.tree);
-  add("octree's ", result.octree);
+  add("", result.tree, false);
+  add("octree's ", result.octree, true);
   return plot;
 }
 
 plot::Plot outside_volumes(const SphereTreeBuild& result, const Surface& surface) {
-  plot::Plot plot = by_level("volume outside / solid's");
-  const auto add = [&](const std::string& name, const SphereTree& tree) {
+  plot::Plot plot = by_level("volume outside", "volume outside / solid's");
+  const auto add = [&](const std::string& name, const SphereTree& tree, bool octree) {
     const SphereLists lists = levels_of(tree);
-    add_line(plot, name, lists.levels.size(), [&](std::size_t i) {
+    add_line(plot, name, lists.levels.size(), octree, [&](std::size_t i) {
       Level all = lists.levels[i];
       all.insert(all.end(), lists.carried[i].begin(), lists.carried[i].end());
       return outside_volume(surface, all, kPlotPoints) / surface.report().volume;
     });
   };
-  add("tree", result.tree);
-  add("octree", result.octree);
+  add("tree", result.tree, false);
+  add("octree", result.octree, true);
   return plot;
 }
 

@@ -8,23 +8,15 @@
 
 #include "commands.h"
 #include "input_file.h"
+#include "load_tree.h"
 #include "orchard/geometry/error.h"
 #include "orchard/runtime/narrow_phase.h"
-#include "orchard/runtime/tree_file.h"
 
 namespace orchard::apps {
 namespace {
 
 using nlohmann::json;
 using runtime::Answer;
-
-runtime::PackedSphereTree load(const std::filesystem::path& file) {
-  runtime::PackedSphereTree tree;
-  const auto status = runtime::load_file(file.c_str(), tree);
-  if (status != runtime::LoadStatus::ok)
-    throw InputError(file.string() + ": " + runtime::message(status) + "; make one with \"orchard build\"");
-  return tree;
-}
 
 // "tx ty tz qw qx qy qz"; a quaternion of any length but zero.
 runtime::Pose parse_pose(const std::string& text, const char* option) {
@@ -122,7 +114,7 @@ void print(const json& levels) {
 void collide(const CollideCommand& command) {
   check_input(command.a);
   check_input(command.b);
-  const runtime::PackedSphereTree a = load(command.a), b = load(command.b);
+  const runtime::PackedSphereTree a = load_tree(command.a), b = load_tree(command.b);
   const runtime::Pose pose_a = parse_pose(command.pose_a, "--pose-a"), pose_b = parse_pose(command.pose, "--pose");
   constexpr std::size_t room = 1u << 20;  // meeting pairs a level: plenty, 25 MB
   runtime::NarrowPhase narrow(a, b, room);

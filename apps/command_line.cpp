@@ -1,10 +1,13 @@
 // All commands' options beside each other, so that the same option reads the same everywhere: hence its length.
 #include "command_line.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <optional>
 #include <utility>
 
+#include "command_list.h"
 #include "tree_options.h"
 
 namespace orchard::apps {
@@ -40,6 +43,14 @@ void add_mesh_options(CLI::App& command, MeshOptions& options) {
       ->check(CLI::Range(1e-4, 0.5))
       ->needs(wrap)
       ->capture_default_str();
+  command
+      .add_option_function<double>(
+          "--fill-holes", [&options](double width) { options.fill_holes = width; },
+          "Fill holes up to this width, in bounding radii, whatever their edges (default: 0.5, and of at most 100 "
+          "edges)")
+      ->check(CLI::Range(0.0, 2.0))
+      ->excludes(strict)
+      ->excludes(wrap);
   command
       .add_option_function<std::string>(
           "--root-ball",
@@ -88,15 +99,16 @@ void add_build(CLI::App& app, Request& request) {
   command.add_option("--threads", request.threads, "Threads at most; the result does not depend on it")
       ->check(CLI::Range(1, 1024));
   command.add_flag("!--no-views", build.views, "Write no files for ParaView");
-  auto* picture = command.add_flag("--picture", build.picture, "Draw the pipeline to a .png as well");
+  command.add_flag("--picture", build.picture, "Draw the pipeline to a .png as well");
+  command.add_flag("--report", build.page,
+                   "Write a page (.html) as well: picture, tables, plots, options, repairs, times, certificate");
   command
       .add_option("--export", build.exports, "More files: json (spheres by level), urdf (a link's collision spheres)")
       ->delimiter(',')
       ->check(CLI::IsMember({"sph", "json", "urdf"}));
   command.add_option("--export-level", build.export_level, "Level of the urdf's spheres (default: the last)");
-  command.add_option("--up", build.up, "The mesh's axis that points up in the picture")
+  command.add_option("--up", build.up, "The mesh's axis that points up in the picture and in ParaView")
       ->check(CLI::IsMember({"x", "y", "z"}))
-      ->needs(picture)
       ->capture_default_str();
   add_output_flags(command, build.output);
   command.footer("Example:\n  orchard build data/lamp.obj -o out/lamp --picture");
@@ -250,6 +262,23 @@ void add_sweep_tree(CLI::App& command, std::optional<SphereTreeOptions>& tree) {
       ->check(CLI::Range(1, 10));
 }
 
+void add_few_balls(CLI::App& command, MedialCommand& medial) {
+  CLI::Option* vertices =
+      command
+          .add_option("--vertices", medial.few_vertices,
+                      "Write the axis in so many balls at most as well: MODEL-simplified.ma, .ply and .obj")
+          ->check(CLI::Range(1, 100'000'000));
+  command
+      .add_option("--error", medial.few_error,
+                  "The same, in as few balls as are this near: percent of the diagonal, two-sided distance between the "
+                  "surface and what the balls stand for, as measured at the end")
+      ->check(CLI::Range(1e-4, 100.0))
+      ->excludes(vertices);
+  command.add_flag("--curve", medial.curve, "Write how far off ever fewer balls are: MODEL-curve.csv and .svg");
+  command.add_option("--envelope", medial.envelope,
+                     "Write the surface of what the balls stand for, those of --vertices or --error if given: an .obj");
+}
+
 void add_medial(CLI::App& app, Request& request) {
   CLI::App& command = *app.add_subcommand("medial", "Build the medial axis of a mesh, or judge one");
   MedialCommand& medial = request.medial;
@@ -275,6 +304,7 @@ void add_medial(CLI::App& app, Request& request) {
       ->capture_default_str();
   command.add_option("--axis", medial.axis, "Build nothing; measure the quality of this .ma file of any system");
   add_axis_source(command, medial.source);
+  add_few_balls(command, medial);
   command
       .add_option("--sweep", medial.sweep, "NAME=A,B,..: run with each value of a tuning flag; again for another one")
       ->allow_extra_args(false);
@@ -298,6 +328,7 @@ void add_medial(CLI::App& app, Request& request) {
       "Examples:\n  orchard medial data/lamp.obj -o out/lamp --report\n"
       "  orchard medial data/lamp.obj -o out/lamp --report --beside other.ma --beside older.ma --picture\n"
       "  orchard medial data/lamp.obj -o out/lamp --axis other.ma\n"
+      "  orchard medial data/lamp.obj -o out/lamp --vertices 200 --envelope out/lamp/envelope.obj\n"
       "  orchard medial data/lamp.obj -o out/lamp --sweep samples=1000,4000,16000 --sweep prune=0,20,40");
   command.callback([&request, &command] {
     request.medial.given = given_of(command);
@@ -315,6 +346,113 @@ void add_inspect(CLI::App& app, Request& request) {
   command.callback([&request] { request.run = [&request] { orchard::apps::inspect(request.inspect); }; });
 }
 
+void add_view(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("view", "Draw files, one in the other, or look at them in a window");
+  ViewCommand& view = request.view;
+  command
+      .add_option(
+          "files", view.files,
+          "Trees (.orchard, .sph), medial axes (.ma), Voronoi diagrams (.vor), meshes (.obj, .ply, .stl, .off), "
+          "points (.xyz)")
+      ->required();
+  command.add_option("-o,--output", view.picture, "The picture, a .png file; with --window, where the key s saves to");
+  command
+      .add_option(
+          "--level", view.levels,
+          "Level of the trees, 0 for the root; several, such as 1,2,3, make a panel each (default: the deepest)")
+      ->delimiter(',')
+      ->check(CLI::Range(0, 1'000'000));
+  command.add_option("--camera", view.camera,
+                     "Where the eye is: degrees from the front to the right, and upward (default: 34,23)");
+  command.add_option("--up", view.up, "The axis that points up")
+      ->check(CLI::IsMember({"x", "y", "z"}))
+      ->capture_default_str();
+  command.add_option("--size", view.size, "WIDTHxHEIGHT in pixels (default: as the model needs; a window 1000x800)");
+  command.add_option("--opacity", view.opacity, "Of meshes, where there is something else to see: 0 to 1")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command.add_flag("--window", view.window,
+                   "Open a window: up, down and digits choose the level, o and O the opacity of meshes; a click on a "
+                   "sphere prints its record, s saves what is seen, r shows all again, q closes");
+  command.add_flag("--quiet", view.quiet, "Print nothing but errors");
+  command.footer(
+      "Examples:\n  orchard view out/lamp/lamp.orchard data/lamp.obj -o out/lamp/view.png --level 1,2,3\n"
+      "  orchard view out/lamp/lamp.orchard --window");
+  command.callback([&request] { request.run = [&request] { orchard::apps::view(request.view); }; });
+}
+
+void add_completion(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("completion", "Print a script that completes commands in a shell");
+  command.add_option("shell", request.shell, "bash or zsh")->required()->check(CLI::IsMember({"bash", "zsh"}));
+  command.footer(
+      "Examples:\n  orchard completion bash > ~/.local/share/bash-completion/completions/orchard\n"
+      "  orchard completion zsh > /usr/local/share/zsh/site-functions/_orchard");
+  command.callback([&app, &request] {
+    request.run = [&app, &request] {
+      fmt::print("{}", request.shell == "bash" ? bash_completion(app) : zsh_completion(app));
+    };
+  });
+}
+
+// What packages and pages are made with; --help does not list it.
+void add_reference(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("reference", "Print all commands and options")->group("");
+  command.add_option("format", request.format, "markdown or man")
+      ->required()
+      ->check(CLI::IsMember({"markdown", "man"}));
+  command.callback([&app, &request] {
+    request.run = [&app, &request] {
+      fmt::print("{}", request.format == "man" ? manual_page(app, ORCHARD_VERSION) : markdown_reference(app));
+    };
+  });
+}
+
+void add_profile(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("profile", "Say what a tree buys: decided by level, bounds, microseconds");
+  ProfileCommand& profile = request.profile;
+  command.add_option("a", profile.a, "An .orchard file")->required();
+  command.add_option("b", profile.b, "The other body's (default: another copy of a)");
+  command
+      .add_option("--flights", profile.flights, "Random flights of b past a, or until they touch; about ten poses each")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  command.add_option("--seed", profile.seed, "Of the flights")->capture_default_str();
+  command.add_option("--plot", profile.plot, "Draw the table to this .svg file");
+  command.add_option("--csv", profile.csv, "Write every pose, and what each level said, to this .csv file");
+  add_output_flags(command, profile.output);
+  command.footer("Example:\n  orchard profile out/lamp/lamp.orchard --plot out/profile.svg");
+  command.callback([&request] { request.run = [&request] { orchard::apps::profile(request.profile); }; });
+}
+
+void add_simulate(CLI::App& app, Request& request) {
+  CLI::App& command = *app.add_subcommand("simulate", "Play a scene of moving bodies, and trace what detection does");
+  SimulateCommand& simulate = request.simulate;
+  command.add_option("scene", simulate.scene, "flight, pile, asteroids, robot, box, conveyor or clusters")
+      ->required()
+      ->check(CLI::IsMember({"flight", "pile", "asteroids", "robot", "box", "conveyor", "clusters"}));
+  command.add_option("--tree", simulate.tree, "The bodies' tree, an .orchard file (default: a small ship's)");
+  auto* replay = command.add_option("--replay", simulate.replay, "Run what --record wrote, step for step");
+  command.add_option("--bodies", simulate.bodies, "How many, beside what the scene always has (0: as it has them)")
+      ->check(CLI::Range(0, 1'000'000))
+      ->excludes(replay);
+  command.add_option("--frames", simulate.frames, "How many [100, or as many as were recorded]")
+      ->check(CLI::Range(1, 10'000'000));
+  command
+      .add_option("--budget", simulate.budget,
+                  "Of a frame's narrow phase: sphere tests, 20000, or time, 2ms or 500us (default: none)")
+      ->excludes(replay);
+  command.add_option("--seed", simulate.seed, "Of all random choices")->capture_default_str()->excludes(replay);
+  command.add_option("--record", simulate.record, "Write the steering and each step's work to this file")
+      ->excludes(replay);
+  auto* folder = command.add_option("-o,--output", simulate.folder, "Folder for the traces, and the run for ParaView");
+  command.add_flag("!--no-views", simulate.views, "Write no files for ParaView")->needs(folder);
+  add_output_flags(command, simulate.output);
+  command.footer(
+      "Examples:\n  orchard simulate flight --tree out/lamp/lamp.orchard --frames 400 --budget 20000 -o out/flight\n"
+      "  orchard simulate pile --budget 2ms --record pile.txt\n  orchard simulate pile --replay pile.txt");
+  command.callback([&request] { request.run = [&request] { orchard::apps::simulate(request.simulate); }; });
+}
+
 }  // namespace
 
 void add_commands(CLI::App& app, Request& request) {
@@ -326,6 +464,11 @@ void add_commands(CLI::App& app, Request& request) {
   add_compare(app, request);
   add_voronoi(app, request);
   add_medial(app, request);
+  add_view(app, request);
+  add_completion(app, request);
+  add_reference(app, request);
+  add_profile(app, request);
+  add_simulate(app, request);
 }
 
 }  // namespace orchard::apps

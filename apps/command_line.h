@@ -19,6 +19,10 @@ struct Request {
   SampleCommand sample;
   VoronoiCommand voronoi;
   MedialCommand medial;
+  ViewCommand view;
+  std::string shell, format;  // of completion and reference
+  ProfileCommand profile;
+  SimulateCommand simulate;
   int threads = 0;  // 0: as many as the machine has
   std::function<void()> run;
   int exit_code = 0;

@@ -27,6 +27,8 @@ struct BuildCommand {
   AxisSource source;
   bool views = true;                  // ParaView files, where the program was built with them
   bool picture = false;               // a .png as well
+  bool page = false;                  // an .html page with pictures, tables and plots
+  std::string command_line;           // for the page
   std::vector<std::string> exports;   // sph (always written), json, urdf
   std::optional<Index> export_level;  // of the urdf; the last one
   std::string up = "y";               // the mesh's axis that points up in the picture
@@ -90,11 +92,15 @@ struct MedialCommand {
   bool picture = false;                       // of where the judged axis is worst
   std::string up = "y";                       // the mesh's axis that points up in the picture
   Index quality_samples = 100'000;            // surface points of the judgement
-  std::vector<std::string> sweep;             // NAME=VALUE,VALUE,..
-  std::string best = "hausdorff_max";         // of a sweep: the measure that its rows are printed by, the best first
-  std::optional<SphereTreeOptions> tree;      // of a sweep: the tree to build from each axis
-  bool views = true;                          // ParaView files, where the program was built with them
-  std::vector<std::string> given;             // the options on the command line, as of BuildCommand
+  Index few_vertices = 0;                     // to simplify the axis to; 0: by few_error
+  double few_error = 0;                   // percent of the diagonal that the simplified axis may be off; 0: not asked
+  bool curve = false;                     // simplify to ever fewer vertices, and write how far off each is
+  std::filesystem::path envelope;         // .obj: the surface of what the axis stands for; empty: none
+  std::vector<std::string> sweep;         // NAME=VALUE,VALUE,..
+  std::string best = "hausdorff_max";     // of a sweep: the measure that its rows are printed by, the best first
+  std::optional<SphereTreeOptions> tree;  // of a sweep: the tree to build from each axis
+  bool views = true;                      // ParaView files, where the program was built with them
+  std::vector<std::string> given;         // the options on the command line, as of BuildCommand
   Output output;
 };
 void medial(const MedialCommand& command);
@@ -108,11 +114,46 @@ struct CompareCommand {
 };
 void compare(const CompareCommand& command);
 
+struct ProfileCommand {
+  std::filesystem::path a, b;  // .orchard files; b empty: two copies of a
+  unsigned flights = 300;      // of b past a
+  std::uint64_t seed = 1;      // of the flights
+  std::filesystem::path plot;  // .svg; empty: none
+  std::filesystem::path csv;   // every pose and level; empty: none
+  Output output;
+};
+void profile(const ProfileCommand& command);
+
+struct SimulateCommand {
+  std::string scene;
+  std::filesystem::path tree;         // of the bodies; empty: a small ship of its own
+  std::size_t bodies = 0;             // 0: as many as the scene has
+  std::optional<std::size_t> frames;  // 100, or as many as were recorded
+  std::string budget;                 // a frame's, in tests of spheres or as time; empty: none
+  std::uint64_t seed = 1;
+  std::filesystem::path record, replay;  // what came from outside; empty: neither
+  std::filesystem::path folder;          // for the traces; empty: none
+  bool views = true;                     // frames for ParaView
+  Output output;
+};
+void simulate(const SimulateCommand& command);
+
 struct InspectCommand {
   std::filesystem::path file;
   bool full = false;  // count self-intersections of large meshes too
   Output output;
 };
 void inspect(const InspectCommand& command);
+
+struct ViewCommand {
+  std::vector<std::filesystem::path> files;  // trees, axes, diagrams, meshes, points: all in one picture
+  std::filesystem::path picture;             // .png; of a window, where s saves to
+  std::vector<Index> levels;                 // of the trees, a panel for each; empty: the deepest
+  std::string camera, size;                  // "azimuth,elevation" in degrees, "widthxheight" in pixels; empty: as fits
+  std::string up = "y";
+  double opacity = 0.16;  // of meshes beside other things
+  bool window = false, quiet = false;
+};
+void view(const ViewCommand& command);
 
 }  // namespace orchard::apps

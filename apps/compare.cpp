@@ -124,16 +124,25 @@ void print(const std::vector<Compared>& all, std::size_t triangles, double radiu
     }
 }
 
+// Without the ending, where that tells the files apart all the same.
+std::string short_name(const Compared& compared, const std::vector<Compared>& all) {
+  const auto stem = [](const Compared& one) { return std::filesystem::path(one.name).stem().string(); };
+  const auto same =
+      std::count_if(all.begin(), all.end(), [&](const Compared& other) { return stem(other) == stem(compared); });
+  return same > 1 ? compared.name : stem(compared);
+}
+
 std::string chart(const std::vector<Compared>& all, const std::string& title, double radius) {
   std::vector<plot::Plot> plots;
   const auto add = [&](const std::string& figure, const auto& value) {
     plot::Plot& plot = plots.emplace_back();
     plot.title = title + ": " + figure;
     plot.x_label = "level";
+    plot.y_label = figure;
     plot.log_y = true;
     for (const Compared& compared : all) {
       plot::Series& series = plot.series.emplace_back();
-      series.name = compared.name;
+      series.name = short_name(compared, all);
       series.kind = plot::Series::Kind::line;
       for (std::size_t level = 0; level < compared.levels.size(); ++level) {
         if (level >= plot.x_names.size()) plot.x_names.push_back(std::to_string(level));
@@ -144,7 +153,7 @@ std::string chart(const std::vector<Compared>& all, const std::string& title, do
   };
   add("mean inaccuracy / R", [&](const LevelRow& row) { return row.mean / radius; });
   add("max inaccuracy / R", [&](const LevelRow& row) { return row.max / radius; });
-  add("outside volume", [](const LevelRow& row) { return row.outside; });
+  add("volume outside / solid's", [](const LevelRow& row) { return row.outside; });
   return plot::to_svg(plots, 3);
 }
 

@@ -17,10 +17,17 @@ struct OwnOption {
   std::vector<TreeMethod> methods;
 };
 const std::vector<OwnOption>& own_options() {
-  static const std::vector<OwnOption> options{{"effort", {TreeMethod::tightened, TreeMethod::annealing}},
-                                              {"objective", {TreeMethod::tightened}},
-                                              {"closing", {TreeMethod::merging}},
-                                              {"energy", {TreeMethod::annealing}}};
+  static const std::vector<OwnOption> options = [] {
+    std::vector<OwnOption> own{{"effort", {TreeMethod::tightened, TreeMethod::annealing}},
+                               {"objective", {TreeMethod::tightened}},
+                               {"closing", {TreeMethod::merging}}};
+    for (const char* option :
+         {"energy", "anneal-distance", "anneal-move", "anneal-min-scale", "anneal-max-scale", "anneal-first-trials",
+          "anneal-first-acceptance", "anneal-max-accepted", "anneal-max-rejected", "anneal-max-uncovering",
+          "anneal-cooling", "anneal-first-iterations", "anneal-iterations"})
+      own.push_back({option, {TreeMethod::annealing}});
+    return own;
+  }();
   return options;
 }
 

@@ -120,6 +120,7 @@ json inspect_mesh(const InspectCommand& command) {
   report["repair"] = to_json(repair, distance, surface.bounding_radius());
   report["repair"]["solid"] = repair.solid;
   report["repair"]["faults"] = repair.faults;
+  report["repair"]["holes_left_in_words"] = holes_left(repair);
   return report;
 }
 
@@ -147,8 +148,8 @@ void print_verdict(const json& report) {
                in_words(distance_of(repair), report["bounding_ball"][3].get<double>()));
   if (!repair["solid"].get<bool>())
     fmt::print(
-        "no closed manifold, even after repair: {}; \"orchard build --wrap\" builds on a closed skin around it\n",
-        repair["faults"].get<std::string>());
+        "no closed manifold, even after repair: {}{}; \"orchard build --wrap\" builds on a closed skin around it\n",
+        repair["faults"].get<std::string>(), repair["holes_left_in_words"].get<std::string>());
 }
 
 void print_levels(const json& levels) {

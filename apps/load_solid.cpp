@@ -2,6 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
+#include <limits>
+
 #include "finite_number.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
@@ -50,12 +53,23 @@ std::string with_note_on_numbers(const std::string& faults) {
   return faults.find_first_of("0123456789") == std::string::npos ? faults : faults + " (numbers count from 0)";
 }
 
-SolidMesh repaired(const std::string& name, TriangleMesh mesh, BoundingBall ball, const Progress& progress) {
+RepairMeshOptions repair_options(const MeshOptions& options) {
+  RepairMeshOptions repair;
+  if (options.fill_holes) {
+    repair.max_hole_diameter = *options.fill_holes;
+    repair.max_hole_edges = std::numeric_limits<Index>::max();
+  }
+  return repair;
+}
+
+SolidMesh repaired(const std::string& name, TriangleMesh mesh, const MeshOptions& options, const Progress& progress) {
   TriangleMesh input = mesh;
-  MeshRepairReport repair = repair_mesh(mesh);
+  const BoundingBall ball = options.ball;
+  const RepairMeshOptions limits = repair_options(options);
+  MeshRepairReport repair = repair_mesh(mesh, limits);
   if (!repair.solid)
     throw InputError(name + ": no closed manifold, even after repair: " + with_note_on_numbers(repair.faults) +
-                     "; --wrap builds on a closed skin around it instead");
+                     holes_left(repair, limits) + "; --wrap builds on a closed skin around it instead");
   SolidMesh solid{.surface = Surface(std::move(mesh), ball),
                   .repair = std::move(repair),
                   .repair_distance = {},
@@ -69,6 +83,21 @@ json bounds(const SurfaceDistance& distance) { return {distance.lower, distance.
 
 }  // namespace
 
+std::string holes_left(const MeshRepairReport& repair, const RepairMeshOptions& limits) {
+  if (repair.holes_left == 0) return {};
+  // The width that would do, rounded up so that what is written here can be copied.
+  const double enough = std::ceil(repair.max_hole_left * 100) / 100;
+  const std::string of_edges = limits.max_hole_edges == std::numeric_limits<Index>::max()
+                                   ? ""
+                                   : fmt::format(" or of more than {} edges", limits.max_hole_edges);
+  return fmt::format(
+      "; {} hole{} left open, {}of {} edges, {:.2g} bounding radii across: holes wider than {:g}{} are; "
+      "--fill-holes {:g} fills {}",
+      repair.holes_left, repair.holes_left == 1 ? "" : "s", repair.holes_left == 1 ? "" : "the widest ",
+      repair.edges_of_hole_left, repair.max_hole_left, limits.max_hole_diameter, of_edges, enough,
+      repair.holes_left == 1 ? "it" : "them");
+}
+
 SolidMesh load_solid(const std::filesystem::path& file, const MeshOptions& options, const Progress& progress) {
   WrapOptions wrap{.alpha = options.wrap_alpha};
   if (!options.wrap.empty()) wrap.offset = parse_offset(options.wrap);
@@ -81,8 +110,8 @@ SolidMesh load_solid(const std::filesystem::path& file, const MeshOptions& optio
       throw InputError(name + ": " + error.what());
     }
   }
-  SolidMesh solid = options.strict ? strict(name, std::move(mesh), options.ball)
-                                   : repaired(name, std::move(mesh), options.ball, progress);
+  SolidMesh solid =
+      options.strict ? strict(name, std::move(mesh), options.ball) : repaired(name, std::move(mesh), options, progress);
   if (solid.surface.mesh().triangles.size() <= kMaxForSelfIntersections)
     solid.self_intersections = solid.surface.self_intersections().size();
   return solid;

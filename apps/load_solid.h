@@ -18,6 +18,7 @@ struct MeshOptions {
   bool strict = false;  // as it is or not at all
   std::string wrap;     // not empty: build on a wrap that lies this far outside, a number of WrapOptions::offset
   double wrap_alpha = WrapOptions{}.alpha;
+  std::optional<double> fill_holes;  // up to this width, in bounding radii, whatever their edges; else as repair.h says
   BoundingBall ball = BoundingBall::minimal;
 };
 inline const std::string kDefaultWrap = "0.002";
@@ -35,7 +36,7 @@ struct SolidMesh {
   RepairDistance repair_distance;  // likewise
   std::optional<WrapResult> wrap;  // then `surface` is the wrap
   // Pairs of triangles that cut or touch each other: parts of the surface lie inside there, or stick out inside out.
-  // Not counted for a wrap, which has none, and beyond kMostForSelfIntersections.
+  // Not counted for a wrap, which has none, and beyond kMaxForSelfIntersections.
   std::optional<std::size_t> self_intersections;
 };
 
@@ -54,6 +55,9 @@ struct RepairedMesh {
 // For commands that take any triangles: the mesh that load_solid() gives without options, or as it is in the file if
 // that cannot be repaired; then nothing was done.
 RepairedMesh read_repaired(const std::filesystem::path& file);
+
+// What to say of holes that were too large to fill, and how to have them filled; empty if there are none.
+std::string holes_left(const MeshRepairReport& repair, const RepairMeshOptions& limits = {});
 
 // A line for each thing done, and one for how far it moved the surface.
 void print_repair(const std::filesystem::path& file, const MeshRepairReport& repair, const RepairDistance& distance,

@@ -11,6 +11,7 @@
 #include "medial_advice.h"
 #include "medial_report.h"
 #include "medial_run.h"
+#include "medial_simplify.h"
 #include "medial_table.h"
 #include "medial_views.h"
 #include "medial_warning.h"
@@ -35,9 +36,13 @@ SegmentOptions segment_options(const MedialCommand& command, const Surface& surf
 
 // Every name that the command may write to.
 std::vector<std::string> names_of(const MedialCommand& command) {
-  if (!command.axis.empty()) return {named(command.axis, "-quality.json"), named(command.axis, "-quality.png")};
   if (!command.sweep.empty()) return sweep_names(command);
-  std::vector<std::string> names = view_names(command.mesh);
+  std::vector<std::string> names = few_balls_names(command);
+  if (!command.axis.empty()) {
+    for (const char* ending : {"-quality.json", "-quality.png"}) names.push_back(named(command.axis, ending));
+    return names;
+  }
+  for (const std::string& name : view_names(command.mesh)) names.push_back(name);
   for (const char* ending : {".ma", ".graphml", "-medial.json"}) names.push_back(named(command.mesh, ending));
   return names;
 }
@@ -56,6 +61,7 @@ void check(const MedialCommand& command) {
   inputs.push_back(command.mesh);
   for (const fs::path& file : inputs) check_input(file);
   check_outputs(command.folder, names_of(command), inputs);
+  check_few_balls(command, inputs);
 }
 
 void finish(const MedialCommand& command, const std::string& report_name, const json& report, Outputs& outputs) {
@@ -136,8 +142,10 @@ void judge_file(const MedialCommand& command, const SolidMesh& solid, const std:
     fmt::print("{}: {} vertices, {} edges, {} triangles\n", command.axis.string(), mesh.centers.size(),
                mesh.edges.size(), mesh.triangles.size());
   }
+  const FewBalls few = make_few_balls(command, solid.surface, mesh, progress);
   report_quality(command, solid, judged, beside, report, progress, bar);
   Outputs outputs(command.folder);
+  write_few_balls(command, few, report, outputs);
   write_picture(command, solid.surface, mesh, nullptr, judged.judgement.quality.worst,
                 named(command.axis, "-quality.png"), outputs);
   finish(command, named(command.axis, "-quality.json"), report, outputs);
@@ -153,6 +161,7 @@ void build_axis(const MedialCommand& command, const SolidMesh& solid, const std:
   const MedialMesh mesh = medial_mesh(build.axis);
   const MedialSegments segments = medial_segments(build.axis, segment_options(command, surface, build));
   const SkeletonGraph skeleton = skeleton_graph(build.axis);
+  const FewBalls few = make_few_balls(command, surface, mesh, progress);
   std::optional<MedialJudgement> judgement;
   if (command.report) judgement = judge(command, surface, build, mesh, options, progress);
   bar.clear();
@@ -198,6 +207,7 @@ void build_axis(const MedialCommand& command, const SolidMesh& solid, const std:
   Outputs outputs(command.folder);
   write_file(outputs.add(named(command.mesh, ".ma"), "the axis for medial-mesh programs"), to_ma(mesh));
   write_file(outputs.add(named(command.mesh, ".graphml"), "its skeleton graph"), to_graphml(skeleton, build.axis));
+  write_few_balls(command, few, report, outputs);
   write_views(command,
               {.surface = surface,
                .build = build,

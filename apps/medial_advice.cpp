@@ -10,8 +10,8 @@ namespace orchard::apps {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-constexpr double kLeastTurn = 10 / kDegrees;  // of an edge that sheets might reach: below, it is curvature
-constexpr double kSlack = 1.5;                // times a bound: what is beyond that, the bound does not explain
+constexpr double kMinTurn = 10 / kDegrees;  // of an edge that sheets might reach: below, it is curvature
+constexpr double kSlack = 1.5;              // times a bound: what is beyond that, the bound does not explain
 
 std::string more_points(const AxisOrigin& origin) {
   if (origin.own_points) return "more points of your own there";
@@ -54,9 +54,9 @@ std::string about_coverage(const WorstPlace& place, const Surface& surface, cons
   if (!tuning.refine) return "no --raw, or " + more_points(origin);
   const double diagonal = surface.bounding_box().diagonal().norm();
   const double turn = sharpest_edge_near(surface, place.position, 1e-9 * diagonal + 0.5 * place.value * diagonal);
-  if (turn > kLeastTurn && turn < tuning.refinement.sharp_angle)
+  if (turn > kMinTurn && turn < tuning.refinement.sharp_angle)
     return fmt::format("--sharp-angle {:.0f}, for the edge here", std::floor(turn * kDegrees));
-  if (turn < kLeastTurn && place.value <= kSlack * tuning.refinement.border_loss)
+  if (turn < kMinTurn && place.value <= kSlack * tuning.refinement.border_loss)
     return fmt::format("--border-loss {:.2g}", 50 * place.value);
   return more_points(origin);
 }

@@ -8,7 +8,7 @@ namespace {
 using J = MedialJudgement;
 
 constexpr const char* kDiagonal = "% of the diagonal";
-constexpr double kMostUncovered =
+constexpr double kMaxUncovered =
     0.01;  // of the surface: a cover that leaves more is none, and has no number of spheres
 
 double percent(double fraction) { return 100 * fraction; }
@@ -24,6 +24,12 @@ std::vector<MedialMeasure> reconstruction_measures() {
            [](const J& j) { return percent(j.quality.coverage.max); }},
           {"coverage_mean", "coverage error, mean", kDiagonal, true,
            [](const J& j) { return percent(j.quality.coverage.mean); }},
+          {"coverage_upper", "coverage error, proven to be at most", kDiagonal, true,
+           [](const J& j) { return percent(j.quality.coverage_upper); }},
+          {"inner_coverage_max", "coverage error not at borders, max", kDiagonal, true,
+           [](const J& j) { return percent(j.quality.inner_coverage.max); }},
+          {"inner_coverage_mean", "coverage error not at borders, mean", kDiagonal, true,
+           [](const J& j) { return percent(j.quality.inner_coverage.mean); }},
           {"protrusion_max", "protrusion, max", kDiagonal, true,
            [](const J& j) { return percent(j.quality.protrusion.max); }},
           {"protrusion_mean", "protrusion, mean", kDiagonal, true,
@@ -77,7 +83,7 @@ std::vector<MedialMeasure> use_measures() {
           {"economy_spheres", "economy: balls for 1 %", "", true,
            [](const J& j) {
              const Economy& economy = j.quality.economy;
-             return economy.uncovered <= kMostUncovered ? number(economy.spheres) : not_defined();
+             return economy.uncovered <= kMaxUncovered ? number(economy.spheres) : not_defined();
            }},
           {"economy_uncovered", "economy: surface out of reach", "fraction", true,
            [](const J& j) { return j.quality.economy.uncovered; }}};

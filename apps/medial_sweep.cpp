@@ -89,6 +89,7 @@ plot::Plot plot_of(std::size_t metric, const Column& column, const std::string& 
                     .x_label = dimensions[0].flag->name,
                     .y_label = column.title,
                     .log_x = dimensions[0].flag->name == "samples" || dimensions[0].flag->name == "coalesce",
+                    .log_y_if_wide = true,
                     .series = {},
                     .levels = {0},
                     .x_names = names ? dimensions[0].values : std::vector<std::string>{}};

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "interrupt.h"
+#include "picture.h"
 
 #ifdef ORCHARD_HAS_VIZ
 #include "orchard/viz/medial_writer.h"
@@ -86,21 +87,6 @@ MedialErrors medial_errors(const Surface& surface, const MedialBuild& build, con
           .mesh = errors_at_vertices(surface, mesh)};
 }
 
-std::vector<double> repair_passes(const MedialBuild& build) {
-  std::vector<double> passes(build.sampling.size(), 0);
-  std::size_t at = build.points;
-  const bool known = build.gap_repair.points_removed == 0;
-  for (std::size_t pass = 0; known && pass < build.gap_repair.passes.size(); ++pass) {
-    const GapRepairPass& made = build.gap_repair.passes[pass];
-    const Index added = made.added_by_projection + made.added_by_snapping + made.added_at_necks;
-    for (Index i = 0; i < added && at < passes.size(); ++i) passes[at++] = static_cast<double>(pass + 1);
-  }
-  for (std::size_t i = 0; i < passes.size(); ++i) {
-    if (build.sampling.origins[i] == PointOrigin::repair && passes[i] == 0) passes[i] = -1;
-  }
-  return passes;
-}
-
 std::vector<std::string> view_names(const std::filesystem::path& model) {
   std::vector<std::string> names;
   for (const char* ending : {"-medial.vtu", "-medial.vtm", "-medial-vertices.vtp", "-medial-edges.vtp",
@@ -127,16 +113,16 @@ std::vector<double> protrusion_around(const Surface& surface, const MedialMesh& 
   for (const auto& edge : mesh.edges) add(edge);
   for (const auto& triangle : mesh.triangles) add(triangle);
   const std::vector<double> all = ball_protrusions(surface, balls);
-  std::vector<double> most(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(mesh.size()));
+  std::vector<double> max(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(mesh.size()));
   std::size_t at = mesh.size();
   const auto take = [&](const auto& corners) {
-    for (const Index corner : corners) most[corner] = std::max(most[corner], all[at]);
+    for (const Index corner : corners) max[corner] = std::max(max[corner], all[at]);
     ++at;
   };
   for (const auto& edge : mesh.edges) take(edge);
   for (const auto& triangle : mesh.triangles) take(triangle);
-  to_percent(most);
-  return most;
+  to_percent(max);
+  return max;
 }
 
 ViewArrays arrays_of(const BallErrors& errors) {
@@ -166,7 +152,8 @@ void write_views(const MedialCommand& command, const MedialViews& views, Outputs
     of_points = arrays_of(views.errors->points);
     of_mesh = arrays_of(views.errors->mesh);
   }
-  of_points.push_back({"repair_pass", repair_passes(views.build)});
+  const std::vector<int> passes = repair_passes(views.build);
+  of_points.push_back({"repair_pass", {passes.begin(), passes.end()}});
   const MedialAxis& axis = views.build.axis;
   write_medial_grid(add(".vtu", "", "the axis with radius, angle, segment, component; open it in ParaView"), axis,
                     views.segments, of_vertices, of_faces);
@@ -202,15 +189,10 @@ void write_picture(const MedialCommand& command, const Surface& surface, const M
                                    .worst = worst};
   PipelinePicture picture;
   picture.title = name.substr(0, name.rfind('.'));
-  picture.up = command.up == "x" ? UpAxis::x : command.up == "z" ? UpAxis::z : UpAxis::y;
+  picture.up = parse_up(command.up);
   picture.progress = cancelled_by_interrupts();
-  const PictureStatus status = draw_medial_errors(outputs.staged(name), errors, picture);
-  throw_if_interrupted();  // on a terminal the renderer is interrupted too
-  if (status) {
+  if (is_drawn(draw_medial_errors(outputs.staged(name), errors, picture)))
     outputs.add(name, "where it is worst, in a picture, numbered as above");
-  } else {
-    fmt::print(stderr, "orchard: no picture was made: {}\n", status.reason);
-  }
 }
 #else
 void write_views(const MedialCommand&, const MedialViews&, Outputs&) {}

@@ -22,10 +22,6 @@ struct MedialErrors {
 MedialErrors medial_errors(const Surface& surface, const MedialBuild& build, const MedialMesh& mesh,
                            const QualityOptions& options);
 
-// The pass of gap repair that added each surface point, from 1 on; 0 for the others. Where points were taken out again,
-// nobody knows: -1 for those that repair added.
-std::vector<double> repair_passes(const MedialBuild& build);
-
 // Every name that they may have.
 std::vector<std::string> view_names(const std::filesystem::path& model);
 

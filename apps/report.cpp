@@ -110,8 +110,8 @@ void print_axis(const MedialBuild& medial, Index components) {
     fmt::print("{} balls of the axis given ({} outside the solid refused, {} radii corrected, by {:.6g} at most)",
                medial.unpruned_vertices, medial.balls_refused, medial.balls_adjusted, medial.ball_adjustment);
   } else {
-    fmt::print("{} surface points ({} by gap repair, {} cell faces still crossing)", medial.sampling.size(),
-               medial.gap_repair.points_added, medial.gap_repair.faces_still_crossing);
+    fmt::print("{} surface points ({} by gap repair, {} cell faces still crossing gaps between parts of the surface)",
+               medial.sampling.size(), medial.gap_repair.points_added, medial.gap_repair.faces_still_crossing);
   }
   fmt::print(", {} medial vertices in {} component{}\n", medial.axis.size(), components, components == 1 ? "" : "s");
 }
@@ -204,7 +204,7 @@ void print_build(const SphereTreeBuild& result, double bounding_radius, double w
   const double wrap = wrap_distance / bounding_radius;
   const auto levels = level_figures(result.tree, bounding_radius);
   const auto octree = level_figures(result.octree, bounding_radius);
-  fmt::print("inaccuracy as a fraction of the bounding radius{}\n",
+  fmt::print("inaccuracy (how far a sphere reaches from the solid) as a fraction of the bounding radius{}\n",
              wrap > 0 ? fmt::format(", including {:.5f} from the wrap to the mesh", wrap) : "");
   fmt::print("level  spheres      mean       max | octree:  spheres      mean       max | mean / octree's\n");
   for (std::size_t i = 0; i < levels.size(); ++i) {

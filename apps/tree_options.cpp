@@ -15,6 +15,9 @@ const std::map<std::string, TreeMethod> kMethods{{"tightened", TreeMethod::tight
                                                  {"annealing", TreeMethod::annealing},
                                                  {"octree", TreeMethod::octree}};
 const std::map<std::string, SetEnergy> kEnergies{{"maximum", SetEnergy::maximum}, {"sum", SetEnergy::sum}};
+const std::map<std::string, SphereEnergy> kDistances{{"lemma", SphereEnergy::lemma},
+                                                     {"samples", SphereEnergy::samples},
+                                                     {"corrected-samples", SphereEnergy::corrected_samples}};
 const std::map<std::string, Effort> kEfforts{
     {"low", Effort::low}, {"default", Effort::standard}, {"high", Effort::high}};
 const std::map<std::string, Objective> kObjectives{{"balanced", Objective::balanced},
@@ -67,6 +70,35 @@ Refinement::Region parse_region(const std::string& text) {
   return {{Point(values[0], values[1], values[2]), values[3]}, values[4]};
 }
 
+// The numbers of dissertation 5.3.1, in place of the effort's.
+void add_annealing_options(CLI::App& command, SphereTreeOptions& options) {
+  AnnealingTuning& tuning = options.annealing;
+  constexpr const char* group = "Annealing, in place of what --effort stands for [as in the dissertation]";
+  const auto share = CLI::Range(1e-6, 1 - 1e-6);
+  const auto count = CLI::Range(1, 1'000'000);
+  const auto add = [&](const char* option, auto& value, const char* what, const auto& check) {
+    command.add_option(option, value, what)->check(check)->group(group);
+  };
+  add_choice(command, "--anneal-distance", kDistances, options.distance,
+             "How loose a sphere is: by Lemma 5.1 (lemma, the default), at 20 points (samples), or there and corrected "
+             "(corrected-samples)")
+      ->group(group);
+  add("--anneal-move", tuning.move, "Longest translation of a change, in radii of the parent [0.035]",
+      CLI::Range(0.0, 1.0));
+  add("--anneal-min-scale", tuning.min_scale, "Least factor on a radius [0.95]", CLI::Range(0.01, 1.0));
+  add("--anneal-max-scale", tuning.max_scale, "Largest factor on a radius [1.053]", CLI::Range(1.0, 100.0));
+  add("--anneal-first-trials", tuning.first_trials, "Changes that the first temperature is found by [40]", count);
+  add("--anneal-first-acceptance", tuning.first_acceptance, "Probability of a mean rise at the first temperature [0.9]",
+      share);
+  add("--anneal-max-accepted", tuning.max_accepted, "Accepted changes at one temperature, at most [200]", count);
+  add("--anneal-max-rejected", tuning.max_rejected, "Rejected changes at one temperature, at most [200]", count);
+  add("--anneal-max-uncovering", tuning.max_uncovering,
+      "Changes at one temperature that uncover the surface and are tried again, at most [20000]", count);
+  add("--anneal-cooling", tuning.cooling, "Factor from one temperature to the next [0.9]", share);
+  add("--anneal-first-iterations", tuning.iterations_first, "Temperatures on the first level [100]", count);
+  add("--anneal-iterations", tuning.iterations, "Temperatures on the levels below [50]", count);
+}
+
 }  // namespace
 
 const char* name(TreeMethod method) { return key_of(kMethods, method); }
@@ -96,6 +128,7 @@ void add_tree_options(CLI::App& command, SphereTreeOptions& options) {
              "tenth at a time, as in the dissertation");
   add_choice(command, "--energy", kEnergies, options.energy,
              "annealing: what makes a set of siblings loose, its loosest (default) or all together");
+  add_annealing_options(command, options);
   command.add_option("--descent", options.descent, "Random descent afterwards: trials for each sphere; any method")
       ->check(CLI::Range(0, 100'000))
       ->capture_default_str();

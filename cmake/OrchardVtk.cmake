@@ -4,7 +4,7 @@
 enable_language(C)
 set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)
 set(orchard_vtk_components CommonCore CommonDataModel CommonExecutionModel FiltersCore FiltersSources IOImage IOXML
-  ImagingCore RenderingCore RenderingFreeType RenderingOpenGL2)
+  ImagingCore InteractionStyle RenderingCore RenderingFreeType RenderingOpenGL2 RenderingUI)
 if(ORCHARD_BENCH)
   list(APPEND orchard_vtk_components IOGeometry)  # a rival of the OBJ reader
 endif()

@@ -148,4 +148,21 @@ MedialBuild build_medial_axis(const Surface& surface, const MedialBuildOptions& 
   return MedialBuilder(surface, options, progress).run(std::move(input));
 }
 
+std::vector<int> repair_passes(const MedialBuild& build) {
+  std::vector<int> pass_of_point(build.sampling.size(), 0);
+  for (Index i = 0; i < pass_of_point.size(); ++i) {
+    if (build.sampling.origins[i] == PointOrigin::repair) pass_of_point[i] = -1;
+  }
+  if (build.gap_repair.points_removed > 0) return pass_of_point;
+  // The last passes' points are the last ones of the sampling, in their order.
+  const std::vector<GapRepairPass>& passes = build.gap_repair.passes;
+  auto at = pass_of_point.rbegin();
+  for (std::size_t pass = passes.size(); pass > 0; --pass) {
+    const GapRepairPass& made = passes[pass - 1];
+    at = std::fill_n(at, made.added_by_projection + made.added_by_snapping + made.added_at_necks,
+                     static_cast<int>(pass));
+  }
+  return pass_of_point;
+}
+
 }  // namespace orchard

@@ -36,19 +36,23 @@ inline Machine machine() noexcept {
 
 // PerMachine<kernel>::call(..) is kernel(..) for the machine chosen. The kernel is ORCHARD_INLINE, so that it becomes
 // part of a function for each.
-template <auto kernel>
+// `base`: the same for the base of the architecture, where that is better served by other code.
+template <auto kernel, auto base = kernel>
 struct PerMachine;
 
-template <typename Result, typename... Arguments, Result (*kernel)(Arguments...) noexcept>
-struct PerMachine<kernel> {
+template <typename Result, typename... Arguments, Result (*kernel)(Arguments...) noexcept,
+          Result (*base)(Arguments...) noexcept>
+struct PerMachine<kernel, base> {
 #ifdef ORCHARD_MACHINES
   static Result call(Arguments... arguments) noexcept {
     const Machine chosen = machine();
     if (chosen == Machine::avx512) return avx512(arguments...);
-    return chosen == Machine::avx2 ? avx2(arguments...) : kernel(arguments...);
+    return chosen == Machine::avx2 ? avx2(arguments...) : base(arguments...);
   }
   ORCHARD_AVX2 static Result avx2(Arguments... arguments) noexcept { return kernel(arguments...); }
   ORCHARD_AVX512 static Result avx512(Arguments... arguments) noexcept { return kernel(arguments...); }
+#elif defined(ORCHARD_VECTORS) && !defined(__AVX2__)
+  static Result call(Arguments... arguments) noexcept { return base(arguments...); }
 #else
   static Result call(Arguments... arguments) noexcept { return kernel(arguments...); }
 #endif

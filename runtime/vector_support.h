@@ -14,6 +14,9 @@
 #define ORCHARD_INLINE [[gnu::always_inline]] inline
 #define ORCHARD_INLINE_LAMBDA __attribute__((always_inline))
 #pragma GCC diagnostic ignored "-Wpsabi"  // no vector crosses a call
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
 #else
 #define ORCHARD_INLINE inline
 #define ORCHARD_INLINE_LAMBDA
@@ -103,6 +106,68 @@ struct VectorFloats {
     std::uint64_t bytes;
     std::memcpy(&bytes, &narrow, sizeof bytes);
     return static_cast<std::uint32_t>((bytes * 0x0102040810204080u) >> 56);
+  }
+};
+#endif
+
+#ifdef ORCHARD_VECTORS
+// The same as two vectors of four, for machines that have no wider ones: compilers split vectors of eight there, but
+// comparisons and choices of them one number at a time.
+struct FourFloats {
+  using Four __attribute__((vector_size(16))) = float;
+  using FourMask __attribute__((vector_size(16))) = std::int32_t;
+  struct Mask {
+    FourMask low, high;
+    ORCHARD_INLINE friend Mask operator|(const Mask& a, const Mask& b) noexcept {
+      return {a.low | b.low, a.high | b.high};
+    }
+    ORCHARD_INLINE friend Mask operator&(const Mask& a, const Mask& b) noexcept {
+      return {a.low & b.low, a.high & b.high};
+    }
+  };
+  struct Floats {
+    Four low, high;
+    ORCHARD_INLINE Floats operator-() const noexcept { return {-low, -high}; }
+    ORCHARD_INLINE friend Floats operator+(const Floats& a, const Floats& b) noexcept {
+      return {a.low + b.low, a.high + b.high};
+    }
+    ORCHARD_INLINE friend Floats operator-(const Floats& a, const Floats& b) noexcept {
+      return {a.low - b.low, a.high - b.high};
+    }
+    ORCHARD_INLINE friend Floats operator*(const Floats& a, const Floats& b) noexcept {
+      return {a.low * b.low, a.high * b.high};
+    }
+    ORCHARD_INLINE friend Floats operator/(const Floats& a, const Floats& b) noexcept {
+      return {a.low / b.low, a.high / b.high};
+    }
+    ORCHARD_INLINE friend Mask operator<(const Floats& a, const Floats& b) noexcept {
+      return {a.low < b.low, a.high < b.high};
+    }
+    ORCHARD_INLINE friend Mask operator<=(const Floats& a, const Floats& b) noexcept {
+      return {a.low <= b.low, a.high <= b.high};
+    }
+  };
+  ORCHARD_INLINE static Floats choose(const Mask& mask, const Floats& a, const Floats& b) noexcept {
+    return {mask.low ? a.low : b.low, mask.high ? a.high : b.high};
+  }
+  ORCHARD_INLINE static Four root_of(const Four& a) noexcept {
+#ifdef __SSE2__
+    return _mm_sqrt_ps(a);
+#else
+    return Four{__builtin_sqrtf(a[0]), __builtin_sqrtf(a[1]), __builtin_sqrtf(a[2]), __builtin_sqrtf(a[3])};
+#endif
+  }
+  ORCHARD_INLINE static Floats root(const Floats& a) noexcept { return {root_of(a.low), root_of(a.high)}; }
+  ORCHARD_INLINE static std::uint32_t bits_of(const FourMask& mask) noexcept {
+#ifdef __SSE2__
+    return static_cast<std::uint32_t>(_mm_movemask_ps(reinterpret_cast<Four>(mask)));
+#else
+    return (static_cast<std::uint32_t>(mask[0]) & 1u) | (static_cast<std::uint32_t>(mask[1]) & 2u) |
+           (static_cast<std::uint32_t>(mask[2]) & 4u) | (static_cast<std::uint32_t>(mask[3]) & 8u);
+#endif
+  }
+  ORCHARD_INLINE static std::uint32_t bits(const Mask& mask) noexcept {
+    return bits_of(mask.low) | bits_of(mask.high) << 4;
   }
 };
 #endif

@@ -15,23 +15,6 @@ namespace {
 constexpr double kSamplesPerLeaf = 20;
 constexpr double kGrowthFactor = 1.1;  // of dissertation 6.3.2
 
-// The dissertation's schedule, or a share of it.
-AnnealingOptions annealing_options(const SphereTreeOptions& o) {
-  AnnealingOptions annealing;
-  annealing.depth = o.depth;
-  annealing.branching = o.branching;
-  annealing.energy = o.energy;
-  annealing.refinement = o.refinement;
-  annealing.seed = o.seed;
-  if (o.effort == Effort::high) return annealing;
-  const bool low = o.effort == Effort::low;
-  annealing.max_accepted = annealing.max_rejected = low ? 30 : 60;
-  annealing.iterations_first = low ? 40 : 80;
-  annealing.iterations = low ? 20 : 30;
-  annealing.cooling = low ? 0.8 : 0.85;
-  return annealing;
-}
-
 class TreeBuilder {
  public:
   TreeBuilder(const Surface& surface, const SphereTreeOptions& options, const Progress& progress)
@@ -130,6 +113,37 @@ class TreeBuilder {
 };
 
 }  // namespace
+
+AnnealingOptions annealing_options(const SphereTreeOptions& o) {
+  AnnealingOptions annealing;
+  annealing.depth = o.depth;
+  annealing.branching = o.branching;
+  annealing.energy = o.energy;
+  annealing.distance = o.distance;
+  annealing.refinement = o.refinement;
+  annealing.seed = o.seed;
+  if (o.effort != Effort::high) {
+    const bool low = o.effort == Effort::low;
+    annealing.max_accepted = annealing.max_rejected = low ? 30 : 60;
+    annealing.iterations_first = low ? 40 : 80;
+    annealing.iterations = low ? 20 : 30;
+    annealing.cooling = low ? 0.8 : 0.85;
+  }
+  const auto set = [](auto& number, const auto& given) { number = given.value_or(number); };
+  const AnnealingTuning& t = o.annealing;
+  set(annealing.move, t.move);
+  set(annealing.min_scale, t.min_scale);
+  set(annealing.max_scale, t.max_scale);
+  set(annealing.first_trials, t.first_trials);
+  set(annealing.first_acceptance, t.first_acceptance);
+  set(annealing.max_accepted, t.max_accepted);
+  set(annealing.max_rejected, t.max_rejected);
+  set(annealing.max_uncovering, t.max_uncovering);
+  set(annealing.cooling, t.cooling);
+  set(annealing.iterations_first, t.iterations_first);
+  set(annealing.iterations, t.iterations);
+  return annealing;
+}
 
 bool needs_axis(TreeMethod method) { return method == TreeMethod::tightened || method == TreeMethod::merging; }
 

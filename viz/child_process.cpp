@@ -46,8 +46,10 @@ class FileActions {
   explicit FileActions(const Launch& launch) {
     posix_spawn_file_actions_init(&actions_);
     posix_spawn_file_actions_addopen(&actions_, 0, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions_, 1, launch.log.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
-    posix_spawn_file_actions_adddup2(&actions_, 1, 2);
+    if (!launch.log.empty()) {
+      posix_spawn_file_actions_addopen(&actions_, 1, launch.log.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
+      posix_spawn_file_actions_adddup2(&actions_, 1, 2);
+    }
     if (launch.passed_descriptor >= 0) posix_spawn_file_actions_adddup2(&actions_, launch.passed_descriptor, 3);
   }
   ~FileActions() { posix_spawn_file_actions_destroy(&actions_); }

@@ -18,7 +18,7 @@ struct Launch {
   std::filesystem::path program;
   std::vector<std::string> arguments;  // without the program's name
   std::string display;                 // $DISPLAY of the child; empty: as here
-  std::filesystem::path log;           // takes standard output and error
+  std::filesystem::path log;           // takes standard output and error; empty: they go where this one's go
   int passed_descriptor = -1;          // becomes descriptor 3 of the child
 };
 

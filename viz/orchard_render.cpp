@@ -1,6 +1,5 @@
 // Draws the files of write_pipeline() on the display of $DISPLAY. A program of its own because VTK aborts where there
 // is none (see orchard/viz/render.h).
-#include <vtkCamera.h>
 #include <vtkCoordinate.h>
 #include <vtkImageData.h>
 #include <vtkImageShrink3D.h>
@@ -18,12 +17,13 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "camera.h"
 #include "panels.h"
+#include "window.h"
 
 namespace {
 
@@ -32,7 +32,6 @@ using namespace orchard::detail;
 
 constexpr int kOversampling = 2;  // pixels drawn per pixel kept, along each axis
 
-constexpr double kMargin = 1.06;      // around what is drawn
 constexpr double kWidestPanel = 1.3;  // of its height
 constexpr double kLabelPrint = 0.2;   // of numbers of places, of the height of captions
 constexpr int kRowHeight = 560;       // pixels, where no height is asked for
@@ -47,59 +46,11 @@ struct Request {
   std::filesystem::path vtm;
   std::string png, title;
   int width = 0, height = 0;  // pixels; 0: chosen here
-  char up = 'y';
-  double azimuth = 35, elevation = 23;  // degrees
+  Direction direction;
+  bool window = false;
+  int level = -1;         // that the window begins with
+  double opacity = 0.16;  // of meshes beside other things
 };
-
-struct View {
-  Vector3d right, up, backward;  // the picture's axes; backward: towards the eye
-  Vector3d center = Vector3d::Zero();
-  double width = 1, height = 1;  // of what must be seen
-  double depth = 1;              // half of it
-};
-
-View make_view(const Request& request, const std::vector<Extent>& extents) {
-  const int axis = request.up - 'x';
-  const Vector3d up = Vector3d::Unit(axis);
-  // z up: the front is -y, as CAD has it; y up: the front is z.
-  const Vector3d front = axis == 2 ? Vector3d(-Vector3d::UnitY()) : Vector3d(Vector3d::Unit((axis + 1) % 3));
-  const Vector3d side = up.cross(front);
-  constexpr double kDegree = std::numbers::pi / 180;
-  const double azimuth = request.azimuth * kDegree, elevation = request.elevation * kDegree;
-  View view;
-  view.backward =
-      std::cos(elevation) * (std::cos(azimuth) * front + std::sin(azimuth) * side) + std::sin(elevation) * up;
-  view.right = up.cross(view.backward).normalized();
-  view.up = view.backward.cross(view.right);
-
-  Eigen::AlignedBox3d box;
-  for (const Extent& extent : extents) {
-    const Vector3d center(extent.center.data());
-    const Vector3d seen(center.dot(view.right), center.dot(view.up), center.dot(view.backward));
-    box.extend(seen - Vector3d::Constant(extent.radius));
-    box.extend(seen + Vector3d::Constant(extent.radius));
-  }
-  if (box.isEmpty() || !(box.sizes().norm() > 0)) throw std::runtime_error("nothing to draw");
-  const Vector3d middle = box.center();
-  view.center = middle.x() * view.right + middle.y() * view.up + middle.z() * view.backward;
-  view.width = std::max(box.sizes().x(), 0.01 * box.sizes().norm());
-  view.height = std::max(box.sizes().y(), 0.01 * box.sizes().norm());
-  view.depth = 0.5 * box.sizes().norm();
-  return view;
-}
-
-void aim(vtkCamera* camera, const View& view, const Layout& layout) {
-  const double free_height = layout.panel_height - layout.caption_height;
-  const double unit = kMargin * std::max(view.height / free_height, view.width / layout.panel_width);  // per pixel
-  camera->ParallelProjectionOn();
-  camera->SetParallelScale(0.5 * unit * layout.panel_height);
-  const Vector3d focus = view.center - 0.5 * unit * layout.caption_height * view.up;
-  const Vector3d eye = focus + 3 * view.depth * view.backward;
-  camera->SetFocalPoint(focus.x(), focus.y(), focus.z());
-  camera->SetPosition(eye.x(), eye.y(), eye.z());
-  camera->SetViewUp(view.up.x(), view.up.y(), view.up.z());
-  camera->SetClippingRange(1.5 * view.depth, 4.5 * view.depth);
-}
 
 // The size of print, at most `pixels`, in which `text` is not wider than `width`; all in pixels.
 double fitting(const std::string& text, double pixels, double width) {
@@ -192,10 +143,13 @@ Layout make_layout(const Request& request, int panels, const View& view) {
 
 void render(const Request& request) {
   const std::string& title = request.title;
-  Panels content = make_panels(request.vtm, 1.5 * kOversampling);
-  Request behind = request;
+  const Vector3d backward = looking(request.direction).backward;
+  Panels content = make_panels(request.vtm, {.line_width = 1.5 * kOversampling,
+                                             .backward = {backward.x(), backward.y(), backward.z()},
+                                             .opacity = request.opacity});
+  Direction behind = request.direction;
   behind.azimuth += 180;
-  View view = make_view(request, content.extents), back = make_view(behind, content.extents);
+  View view = make_view(request.direction, content.extents), back = make_view(behind, content.extents);
   const bool both =
       std::any_of(content.panels.begin(), content.panels.end(), [](const Panel& panel) { return panel.from_behind; });
   if (both) {  // at one scale
@@ -234,7 +188,7 @@ void render(const Request& request) {
     add_text(panel.renderer, panel.caption, span / 2, 0.70 * line, caption_print, true);
     add_text(panel.renderer, panel.detail, span / 2, 0.28 * line, detail_print, false);
     const View& from = panel.from_behind ? back : view;
-    aim(panel.renderer->GetActiveCamera(), from, layout);
+    aim(panel.renderer->GetActiveCamera(), from, layout.panel_width, layout.panel_height, layout.caption_height);
     for (const Label& label : panel.labels)
       add_label(panel.renderer, label, from, panel.from_behind ? view : back, kLabelPrint * line);
     const int left = (width - in_row * layout.panel_width) / 2 + column * layout.panel_width;
@@ -250,14 +204,18 @@ void render(const Request& request) {
 
 constexpr const char* kUsage =
     "usage: orchard-render VIEWS.vtm PICTURE.png [options]\n"
-    "Draws what \"orchard build\" or \"orchard medial\" wrote for ParaView. Needs an X display, for instance by "
+    "Draws what \"orchard build\" or \"orchard medial\" wrote for ParaView, or a scene of \"orchard view\". Needs an X "
+    "display, for instance by "
     "xvfb-run.\n"
     "  --width N      pixels, 64 to 8192; 0 (default): as wide as the model needs\n"
     "  --height N     pixels, 64 to 8192; 0 (default): 560 for each row of panels\n"
     "  --up x|y|z     the model's axis that points up (y)\n"
     "  --azimuth A    degrees from the model's front to its right (35)\n"
     "  --elevation A  degrees above its middle, -80 to 80 (23)\n"
-    "  --title TEXT   above the panels\n";
+    "  --title TEXT   above the panels\n"
+    "  --opacity A    of meshes in a scene that has more than them, 0 to 1 (0.16)\n"
+    "  --window       a window instead of a picture, of a scene; s saves what it shows to PICTURE.png\n"
+    "  --level K      of the trees, that the window begins with (the last)\n";
 
 double number(const std::string& text, double low, double high) {
   std::size_t used = 0;
@@ -272,17 +230,26 @@ Request parse(const std::vector<std::string>& arguments) {
   request.vtm = arguments.at(0);
   request.png = arguments.at(1);
   for (std::size_t i = 2; i < arguments.size(); i += 2) {
+    if (arguments[i] == "--window") {
+      request.window = true;
+      --i;
+      continue;
+    }
     const std::string &option = arguments[i], &value = arguments.at(i + 1);
     if (option == "--width") {
       request.width = value == "0" ? 0 : static_cast<int>(number(value, 64, 8192));
     } else if (option == "--height") {
       request.height = value == "0" ? 0 : static_cast<int>(number(value, 64, 8192));
     } else if (option == "--up" && (value == "x" || value == "y" || value == "z")) {
-      request.up = value[0];
+      request.direction.up = value[0];
     } else if (option == "--azimuth") {
-      request.azimuth = number(value, -360, 360);
+      request.direction.azimuth = number(value, -360, 360);
     } else if (option == "--elevation") {
-      request.elevation = number(value, -80, 80);
+      request.direction.elevation = number(value, -80, 80);
+    } else if (option == "--opacity") {
+      request.opacity = number(value, 0, 1);
+    } else if (option == "--level") {
+      request.level = static_cast<int>(number(value, 0, 1e6));
     } else if (option == "--title") {
       request.title = value;
     } else {
@@ -303,7 +270,18 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    render(request);
+    if (request.window) {
+      show_window({.vtm = request.vtm,
+                   .png = request.png,
+                   .title = request.title,
+                   .width = request.width,
+                   .height = request.height,
+                   .direction = request.direction,
+                   .level = request.level,
+                   .opacity = request.opacity});
+    } else {
+      render(request);
+    }
   } catch (const std::exception& error) {
     std::fprintf(stderr, "orchard-render: %s\n", error.what());
     return 1;

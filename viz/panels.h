@@ -36,9 +36,15 @@ struct Panels {
   double size = 1;              // a length of the model's order
 };
 
-// Panels for the files that a .vtm of write_pipeline() opens, by the names that it gives them. `line_width`: of the
-// model's edges, in pixels. Where there is a block "medial mesh", panels of where it is
-// bad instead. Throws std::runtime_error if the .vtm cannot be read.
-Panels make_panels(const std::filesystem::path& vtm, double line_width);
+struct PanelOptions {
+  double line_width = 1;             // of the model's edges, in pixels
+  std::array<double, 3> backward{};  // a unit vector towards the eye
+  double opacity = 0.16;             // of meshes, where a scene has more than them
+};
+
+// Panels for the files that a .vtm of write_pipeline() opens, by the names that it gives them; where there is a block
+// "medial mesh", of where that is bad instead; of a scene of view.h, that. Throws std::runtime_error if the .vtm cannot
+// be read.
+Panels make_panels(const std::filesystem::path& vtm, const PanelOptions& options);
 
 }  // namespace orchard::detail

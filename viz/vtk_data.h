@@ -13,6 +13,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
@@ -23,6 +24,8 @@
 namespace orchard::detail {
 
 inline int as_int(Index index) { return index == kNone ? -1 : static_cast<int>(index); }
+
+std::string xml_escaped(const std::string& text);
 
 // value(i) for i in [0, count) as an array of that name.
 template <typename Array, typename Value>

@@ -14,11 +14,35 @@
 
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/medial/prune.h"
+#include "paraview_script.h"
 #include "vtk_data.h"
 
 namespace orchard {
 
 using namespace detail;
+
+std::string detail::xml_escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += c;
+    }
+  }
+  return result;
+}
 
 namespace {
 
@@ -44,29 +68,6 @@ vtkSmartPointer<vtkPolyData> with_topology_of(vtkPolyData* points) {
   data->SetPoints(points->GetPoints());
   data->GetPointData()->ShallowCopy(points->GetPointData());
   return data;
-}
-
-std::string xml_escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
 }
 
 // The child of the root that each node descends from, counted from 0.
@@ -196,6 +197,8 @@ std::vector<NamedFile> write_pipeline(const std::filesystem::path& prefix, const
     }
   }
   write_multiblock(with_ending(prefix, ".vtm"), files);
+  if (values.tree != nullptr && !values.tree->nodes.empty()) write_levels_in_time(prefix, values.tree->depth());
+  if (values.surface != nullptr) write_paraview_script(prefix, values);
   return files;
 }
 

@@ -37,7 +37,7 @@ constexpr std::size_t kMaxSuspects = 512;
 constexpr int kRounds = 24;
 
 // How many doubts are still local ones, those of all rounds together: more are made anew sooner than mended.
-constexpr std::size_t kDoubtsAtMost = 16, kDoubtsOneIn = 64;
+constexpr std::size_t kMaxDoubts = 16, kMaxDoubtsOneIn = 64;
 
 // Of a squared size: far more than any stored sphere is off, where all that matters is to look at a few vertices more.
 constexpr double kAbout = 0x1p-20;
@@ -50,16 +50,16 @@ class Certifier {
     for (const Point& p : workspace.points) box.extend(p);
     losses_ = LineSum(box);
     diameter_ = box.diagonal().norm();
-    at_most_ = tolerance::kVoronoiDepth * diameter_ / 2;
+    max_ = tolerance::kVoronoiDepth * diameter_ / 2;
     const double count = static_cast<double>(workspace_.points.size());
-    all_at_most_ = (1 - kGiven) * at_most_ * std::max(1.0, kMean * count);
-    share_ = kFacet * at_most_;
-    small_share_ = all_at_most_ / (kShares * static_cast<double>(workspace_.vertices.size() + 1));
+    max_sum_ = (1 - kGiven) * max_ * std::max(1.0, kMean * count);
+    share_ = kFacet * max_;
+    small_share_ = max_sum_ / (kShares * static_cast<double>(workspace_.vertices.size() + 1));
   }
 
   Certificate run() {
     if (!look_at_all()) return {};
-    if (depth_ > all_at_most_ && (!look_closer() || depth_ > all_at_most_)) return {};
+    if (depth_ > max_sum_ && (!look_closer() || depth_ > max_sum_)) return {};
     if (mended_) find_fattest();
     if (fattest_ != kNone && !covers_once()) return {};
     if (!are_suspects_innocent()) return {};
@@ -86,7 +86,7 @@ class Certifier {
         if (!workspace_.is_free(v) && is_new(v) && !(this->*good)(v)) return false;
     for (int round = 0; !doubts_.empty(); ++round) {
       doubtful_ += doubts_.size();
-      if (round == kRounds || doubtful_ > kDoubtsAtMost + workspace_.vertices.size() / kDoubtsOneIn) return false;
+      if (round == kRounds || doubtful_ > kMaxDoubts + workspace_.vertices.size() / kMaxDoubtsOneIn) return false;
       mended_ = true;
       looks_at_changed_ = true;
       const std::vector<Doubt> doubts = std::exchange(doubts_, {});
@@ -121,7 +121,7 @@ class Certifier {
     depth_ = 0;
     suspects_.clear();
     if (!look_at_all()) return false;
-    depth_ += std::min(lost_, losses_.most());
+    depth_ += std::min(lost_, losses_.max());
     return true;
   }
   void find_fattest() {
@@ -158,24 +158,24 @@ class Certifier {
     note_volume(v, det.value);
     workspace_.settle(v);
     double apart = from_told_sphere(v);
-    if (apart > kTold * at_most_) {
+    if (apart > kTold * max_) {
       Vector center;
       if (!own_center(v, center)) return false;
       apart = from_sphere(v, center);
-      if (apart > (workspace_.shares_sphere(v) ? kGiven : kTold) * at_most_) {
+      if (apart > (workspace_.shares_sphere(v) ? kGiven : kTold) * max_) {
         workspace_.place_sharply(v, center);
         apart = std::min(from_told_sphere(v), from_sphere(v, center));
       }
     }
     if (apart > small_share_ && workspace_.shares_sphere(v)) lossy_.push_back(v);
     given_ = std::max(given_, apart);
-    return apart <= kGiven * at_most_;
+    return apart <= kGiven * max_;
   }
 
   // How far the sphere that a vertex was given is from that of its forming points, at most, where points may be.
   double from_own_sphere(Index v) const {
     const double told = from_told_sphere(v);
-    if (told <= kTold * at_most_) return told;
+    if (told <= kTold * max_) return told;
     Vector center;
     return own_center(v, center) ? from_sphere(v, center) : diameter_;
   }
@@ -206,7 +206,7 @@ class Certifier {
   }
 
   bool add(double depth) {
-    if (!(depth <= kFacet * at_most_)) return false;
+    if (!(depth <= kFacet * max_)) return false;
     depth_ += depth;
     return true;
   }
@@ -240,7 +240,7 @@ class Certifier {
     if (inside_sphere(across, corner(v, 0), corner(v, 1), corner(v, 2), corner(v, 3)) != Sign::positive) {
       // In terms of the vertices' own spheres there is no doubt.
       lost = std::min(lost, own ? 0 : from_own_sphere(v) + from_own_sphere(u));
-    } else if (!(lost <= kFacet * at_most_)) {
+    } else if (!(lost <= kFacet * max_)) {
       return false;
     }
     note_loss(lost, v, i);
@@ -409,7 +409,7 @@ class Certifier {
   Workspace& workspace_;
   const std::vector<bool>& forming_;
   Index first_new_, fattest_ = kNone;
-  double diameter_ = 0, at_most_ = 0, all_at_most_ = 0, share_ = 0, small_share_ = 0, depth_ = 0, lost_ = 0, given_ = 0,
+  double diameter_ = 0, max_ = 0, max_sum_ = 0, share_ = 0, small_share_ = 0, depth_ = 0, lost_ = 0, given_ = 0,
          max_volume_ = 0;
   std::vector<Index> hull_points_, suspects_;
   LineSum losses_{Box()};  // what facets take off more than their share

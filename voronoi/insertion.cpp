@@ -10,7 +10,7 @@ namespace {
 
 // How many insertions may need exact signs or the constrained search, or be deferred, before all are made anew with
 // exact signs.
-constexpr std::uint64_t kDoubtfulAtMost = 16, kDoubtfulOneIn = 4;
+constexpr std::uint64_t kMaxDoubtful = 16, kMaxDoubtfulOneIn = 4;
 
 }  // namespace
 
@@ -72,7 +72,7 @@ bool Inserter::insert_deferred() {
 
 bool Inserter::too_doubtful() const {
   return counts_.exact + counts_.constrained + deferred_.size() >=
-         kDoubtfulAtMost + workspace_.points.size() / kDoubtfulOneIn;
+         kMaxDoubtful + workspace_.points.size() / kMaxDoubtfulOneIn;
 }
 
 bool Inserter::insert_now(Index point) {

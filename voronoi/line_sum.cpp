@@ -7,9 +7,9 @@
 namespace orchard::detail {
 namespace {
 
-constexpr std::size_t kSide = 64;                  // cells along each axis
-constexpr std::size_t kOnLine = 3 * kSide - 2;     // that a line can pass through
-constexpr std::size_t kMostCells = kSide * kSide;  // of one place; what is in more may as well be anywhere
+constexpr std::size_t kSide = 64;                 // cells along each axis
+constexpr std::size_t kOnLine = 3 * kSide - 2;    // that a line can pass through
+constexpr std::size_t kMaxCells = kSide * kSide;  // of one place; what is in more may as well be anywhere
 
 }  // namespace
 
@@ -31,13 +31,13 @@ void LineSum::add(double amount, const Point& a, const Point& b, const Point& c)
   items_.push_back(item);
 }
 
-double LineSum::most() const {
+double LineSum::max() const {
   double anywhere = 0;
   std::vector<double> cells(kSide * kSide * kSide, 0.0);
   for (const auto& [amount, low, high] : items_) {
     std::size_t count = 1;
     for (unsigned axis = 0; axis < 3; ++axis) count *= high[axis] - low[axis] + std::size_t{1};
-    if (count > kMostCells) {
+    if (count > kMaxCells) {
       anywhere += amount;
       continue;
     }

@@ -16,7 +16,7 @@ class LineSum {
 
   // An amount that a line collects at most once, in the triangle a, b, c.
   void add(double amount, const Point& a, const Point& b, const Point& c);
-  double most() const;
+  double max() const;
 
  private:
   struct Item {

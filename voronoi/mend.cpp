@@ -6,8 +6,8 @@
 namespace orchard::detail {
 namespace {
 
-constexpr std::size_t kMost = 256;  // vertices that one insertion may delete: what takes more is no local doubt
-constexpr int kStricter = 2;        // bits that a round takes off the depth that does no harm
+constexpr std::size_t kMaxDeleted = 256;  // vertices that one insertion may delete: what takes more is no local doubt
+constexpr int kStricter = 2;              // bits that a round takes off the depth that does no harm
 
 // How deep a point is in a sphere through the origin, both relative to it.
 double depth_in(const Vector& center, const Vector& point) {
@@ -90,7 +90,7 @@ bool Mender::insert_again(Index v, Index u) {
 bool Mender::grow(Index point, const Point& q) {
   for (std::size_t done = 0; done < cavity_.deleted().size();) {
     for (; done < cavity_.deleted().size(); ++done) {
-      if (cavity_.deleted().size() > kMost) return false;
+      if (cavity_.deleted().size() > kMaxDeleted) return false;
       for (const Index next : workspace_.vertices[cavity_.deleted()[done]].neighbors) {
         if (workspace_.mark(next) != Mark::unseen) continue;
         if (is_formed_by(next, point) || depth(next, q) > harmless_)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <sstream>
@@ -11,15 +12,39 @@
 namespace orchard::plot {
 namespace {
 
-constexpr double kWidth = 420, kHeight = 300, kLeft = 58, kRight = 20, kTop = 28, kBottom = 42;  // of a plot, in pixels
-constexpr double kLegendRow = 14;
+constexpr double kWidth = 420, kHeight = 300, kRight = 20, kTop = 30, kBottom = 44;  // of a plot, in pixels
+constexpr double kLegendRow = 15;
+constexpr double kLetter = 6.2;  // the width of one, about, at the size of all print
+constexpr double kWide = 8;  // the largest value over the smallest, from which on a scale is logarithmic if it may be
 constexpr std::size_t kMaxMarks = 40;  // on a line
 constexpr const char* kColors[] = {"#1f6fb4", "#d9581c", "#2e8b4f", "#8c4fa8", "#b8860b", "#555555", "#c2417c"};
+// Lines differ by more than their colour: not all printers, nor all eyes, tell colours apart.
+constexpr const char* kDashes[] = {"", "7 3", "2 3", "8 3 2 3", "12 4", "4 2", "1 2"};
+constexpr const char* kDashed = "6 4";
 
+// Digits where they are few, else a power of ten.
 std::string number(double value) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
+  const double size = std::fabs(value);
+  if (value == 0 || (size >= 1e-4 && size < 1e6)) {
+    std::snprintf(text, sizeof text, "%.7g", value);
+    return text;
+  }
+  std::snprintf(text, sizeof text, "%.3e", value);
+  const std::string all = text, digits = all.substr(0, all.find('e'));
+  const int power = std::atoi(all.c_str() + all.find('e') + 1);
+  std::string result = digits.substr(0, digits.find_last_not_of('0') + 1);
+  if (result.ends_with('.')) result.pop_back();
+  result = result == "1" ? "" : result == "-1" ? "-" : result + "·";
+  static constexpr const char* kSuperscripts[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  result += power < 0 ? "10⁻" : "10";
+  for (const char digit : std::to_string(std::abs(power))) result += kSuperscripts[digit - '0'];
+  return result;
+}
+
+// Letters, not bytes.
+std::size_t letters(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
 }
 
 std::string escaped(const std::string& text) {
@@ -47,31 +72,50 @@ class Axis {
   }
   void settle() {
     if (!(low_ <= high_)) low_ = 0, high_ = 1;
-    if (log_) low_ = std::floor(low_ + 1e-9), high_ = std::ceil(high_ - 1e-9);
-    if (high_ == low_) high_ = low_ + std::max(1.0, std::fabs(low_));
-    if (!log_) {
+    if (high_ == low_) high_ = low_ + (log_ ? 0.5 : std::max(1.0, std::fabs(low_)));
+    if (log_) {
+      const double margin = 0.05 * (high_ - low_);
+      low_ -= margin;
+      high_ += margin;
+    } else {
       const double margin = 0.04 * (high_ - low_);
       low_ = low_ >= 0 && low_ < 0.3 * high_ ? 0 : low_ - margin;
       high_ += margin;
     }
   }
   double place(double v) const { return from_ + (scaled(v) - low_) / (high_ - low_) * (to_ - from_); }
-  std::vector<double> ticks() const {
+  std::vector<double> ticks() const { return log_ ? log_ticks() : even_ticks(); }
+  bool log() const { return log_; }
+
+ private:
+  // Powers of ten; between few of them 2 and 5 as well, between none every digit that is not crowded.
+  std::vector<double> log_ticks() const {
+    const double decades = high_ - low_;
+    std::vector<double> factors{1};
+    if (decades < 3) factors = {1, 2, 5};
+    if (decades < 1) factors = {1, 1.5, 2, 3, 4, 5, 7};
+    if (decades < 0.35) factors = {1, 1.2, 1.4, 1.6, 1.8, 2, 2.5, 3, 3.5, 4, 4.5, 5, 6, 7, 8, 9};
+    const int step = std::max(1, static_cast<int>(std::ceil(decades / 8)));
     std::vector<double> result;
-    double step =
-        log_ ? std::max(1.0, std::ceil((high_ - low_) / 8)) : std::pow(10, std::floor(std::log10(high_ - low_)));
-    if (!log_ && (high_ - low_) / step < 2.5) step /= 5;
-    if (!log_ && (high_ - low_) / step < 5) step /= 2;
-    const auto first = static_cast<long>(std::ceil(low_ / step));
-    const auto last = static_cast<long>(std::floor(high_ / step + 1e-9));
-    for (long i = first; i <= last; ++i) {
-      const double v = static_cast<double>(i) * step;
-      result.push_back(log_ ? std::pow(10, v) : v);
+    for (int power = static_cast<int>(std::floor(low_)); power <= static_cast<int>(std::floor(high_)); ++power) {
+      if (power % step != 0) continue;
+      for (const double factor : factors) {
+        const double place = power + std::log10(factor);
+        if (place >= low_ && place <= high_) result.push_back(factor * std::pow(10, power));
+      }
     }
     return result;
   }
-
- private:
+  std::vector<double> even_ticks() const {
+    double step = std::pow(10, std::floor(std::log10(high_ - low_)));
+    if ((high_ - low_) / step < 2.5) step /= 5;
+    if ((high_ - low_) / step < 5) step /= 2;
+    const auto first = static_cast<long>(std::ceil(low_ / step));
+    const auto last = static_cast<long>(std::floor(high_ / step + 1e-9));
+    std::vector<double> result;
+    for (long k = first; k <= last; ++k) result.push_back(static_cast<double>(k) * step);
+    return result;
+  }
   double scaled(double v) const { return log_ ? std::log10(v) : v; }
   bool log_;
   double from_, to_;
@@ -91,13 +135,27 @@ void rectangle(std::ostream& out, double x, double y, double width, double heigh
       << "/>\n";
 }
 
-void draw_series(std::ostream& out, const Series& series, const Axis& x, const Axis& y, const char* color) {
+// Where colours begin again, dashes go on to the next.
+const char* dashes_of_line(std::size_t line) {
+  return kDashes[(line + line / std::size(kColors)) % std::size(kDashes)];
+}
+
+struct Look {
+  const char *color, *dashes;
+};
+
+std::string dashes_of(const Look& look) {
+  return *look.dashes == 0 ? std::string() : " stroke-dasharray=\"" + std::string(look.dashes) + "\"";
+}
+
+void draw_series(std::ostream& out, const Series& series, const Axis& x, const Axis& y, const Look& look) {
+  const char* const color = look.color;
   const std::size_t count = std::min(series.x.size(), series.y.size());
   const std::string paint = color;
   const double width = count > 1 && series.kind == Series::Kind::bars ? x.place(series.x[1]) - x.place(series.x[0]) : 0;
   bool drawing = false;
   if (series.kind == Series::Kind::line)
-    out << "<path fill=\"none\" stroke=\"" << color << "\" stroke-width=\"1.5\" d=\"";
+    out << "<path fill=\"none\" stroke=\"" << color << "\" stroke-width=\"1.8\"" << dashes_of(look) << " d=\"";
   for (std::size_t i = 0; i < count; ++i) {
     if (!x.shows(series.x[i]) || !y.shows(series.y[i])) {
       drawing = false;
@@ -123,29 +181,39 @@ void draw_series(std::ostream& out, const Series& series, const Axis& x, const A
           << color << "\"/>\n";
 }
 
-void draw_frame(std::ostream& out, const Plot& plot, const Axis& x, const Axis& y) {
-  const double bottom = kHeight - kBottom, right = kWidth - kRight;
+// Where a plot's frame is.
+struct Frame {
+  double left, right;
+};
+
+void draw_frame(std::ostream& out, const Plot& plot, const Axis& x, const Axis& y, const Frame& frame) {
+  const double bottom = kHeight - kBottom, left = frame.left, right = frame.right;
   std::vector<double> ticks = x.ticks();
   if (!plot.x_names.empty()) {
     ticks.resize(plot.x_names.size());
     for (std::size_t i = 0; i < ticks.size(); ++i) ticks[i] = static_cast<double>(i);
   }
+  double written = -1e9;  // up to where there is print below the frame
   for (std::size_t i = 0; i < ticks.size(); ++i) {
     line(out, x.place(ticks[i]), kTop, x.place(ticks[i]), bottom, "stroke=\"#e4e4e4\"");
-    text(out, x.place(ticks[i]), bottom + 14, plot.x_names.empty() ? number(ticks[i]) : plot.x_names[i],
-         "text-anchor=\"middle\"");
+    const std::string name = plot.x_names.empty() ? number(ticks[i]) : plot.x_names[i];
+    const double half = 0.5 * kLetter * static_cast<double>(letters(name));
+    if (x.place(ticks[i]) - half < written + kLetter) continue;
+    written = x.place(ticks[i]) + half;
+    text(out, x.place(ticks[i]), bottom + 15, name, "text-anchor=\"middle\"");
   }
   for (const double t : y.ticks()) {
-    line(out, kLeft, y.place(t), right, y.place(t), "stroke=\"#e4e4e4\"");
-    text(out, kLeft - 5, y.place(t) + 4, number(t), "text-anchor=\"end\"");
+    line(out, left, y.place(t), right, y.place(t), "stroke=\"#e4e4e4\"");
+    text(out, left - 5, y.place(t) + 4, number(t), "text-anchor=\"end\"");
   }
   for (const double level : plot.levels) {
-    line(out, kLeft, y.place(level), right, y.place(level), "stroke=\"#888\" stroke-dasharray=\"5 4\"");
+    if (!y.shows(level)) continue;
+    line(out, left, y.place(level), right, y.place(level), "stroke=\"#888\" stroke-dasharray=\"5 4\"");
   }
-  rectangle(out, kLeft, kTop, right - kLeft, bottom - kTop, "fill=\"none\" stroke=\"#444\"");
-  text(out, (kLeft + right) / 2, kTop - 10, plot.title, "text-anchor=\"middle\" font-weight=\"bold\"");
-  text(out, (kLeft + right) / 2, kHeight - 8, plot.x_label, "text-anchor=\"middle\"");
-  out << "<g transform=\"translate(13 " << (kTop + bottom) / 2 << ") rotate(-90)\">";
+  rectangle(out, left, kTop, right - left, bottom - kTop, "fill=\"none\" stroke=\"#444\"");
+  text(out, (left + right) / 2, kTop - 10, plot.title, "text-anchor=\"middle\" font-weight=\"bold\"");
+  text(out, (left + right) / 2, kHeight - 8, plot.x_label, "text-anchor=\"middle\"");
+  out << "<g transform=\"translate(14 " << (kTop + bottom) / 2 << ") rotate(-90)\">";
   text(out, 0, 0, plot.y_label, "text-anchor=\"middle\"");
   out << "</g>\n";
 }
@@ -156,8 +224,19 @@ double end_of_bars(const std::vector<double>& x, bool log) {
   return log ? last * last / before : last + (last - before);
 }
 
-void draw(std::ostream& out, const Plot& plot) {
-  Axis x(plot.log_x, kLeft, kWidth - kRight), y(plot.log_y, kHeight - kBottom, kTop);
+bool wide(const Plot& plot) {
+  double low = std::numeric_limits<double>::infinity(), high = 0;
+  for (const Series& series : plot.series)
+    for (const double y : series.y) {
+      if (!std::isfinite(y)) continue;
+      low = std::min(low, y);
+      high = std::max(high, y);
+    }
+  return low > 0 && high > kWide * low;
+}
+
+// What the axes must span.
+void see_all(const Plot& plot, Axis& x, Axis& y) {
   for (const Series& series : plot.series) {
     for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
       if (!x.shows(series.x[i]) || !y.shows(series.y[i])) continue;
@@ -165,47 +244,87 @@ void draw(std::ostream& out, const Plot& plot) {
       y.see(series.y[i]);
     }
     if (series.kind != Series::Kind::bars) continue;
-    if (!plot.log_y) y.see(0);
+    if (!y.log()) y.see(0);
     if (series.x.size() > 1) x.see(end_of_bars(series.x, plot.log_x));
   }
   for (const double level : plot.levels) y.see(level);
   if (!plot.x_names.empty()) x.see(0), x.see(static_cast<double>(plot.x_names.size() - 1));
-  x.settle();
+}
+
+// Room for the widest number of the scale, and for what it counts.
+double left_of_frame(const Plot& plot, const Axis& y) {
+  std::size_t longest = 0;
+  for (const double tick : y.ticks()) longest = std::max(longest, letters(number(tick)));
+  return 12 + kLetter * static_cast<double>(longest) + (plot.y_label.empty() ? 0 : 16);
+}
+
+void draw_legend(std::ostream& out, const Series& series, const Look& look, double left, double row) {
+  const std::string color = look.color;
+  if (series.kind == Series::Kind::line) {
+    const std::string style = "stroke-width=\"1.8\" stroke=\"" + color + "\"" + dashes_of(look);
+    line(out, left, row - 4, left + 26, row - 4, style.c_str());
+  } else {
+    rectangle(out, left + 8, row - 8, 9, 9, "fill=\"" + color + "\"");
+  }
+  text(out, left + 33, row, series.name, "");
+}
+
+void draw(std::ostream& out, const Plot& plot, double width) {
+  const bool log_y = plot.log_y || (plot.log_y_if_wide && wide(plot));
+  Axis y(log_y, kHeight - kBottom, kTop), unplaced(plot.log_x, 0, 1);
+  see_all(plot, unplaced, y);
   y.settle();
-  draw_frame(out, plot, x, y);
-  std::size_t color = 0, named = 0;
+  const Frame frame{left_of_frame(plot, y), width - kRight};
+  Axis x(plot.log_x, frame.left, frame.right), same(log_y, 0, 1);
+  see_all(plot, x, same);
+  x.settle();
+  draw_frame(out, plot, x, y, frame);
+  const bool compared = std::any_of(plot.series.begin(), plot.series.end(), [](const Series& s) { return s.dashed; });
+  std::size_t lines = 0, colors = 0, named = 0;
   for (const Series& series : plot.series) {
-    const char* const paint = kColors[color++ % std::size(kColors)];
-    draw_series(out, series, x, y, paint);
+    const bool line = series.kind == Series::Kind::line;
+    const Look look{kColors[colors++ % std::size(kColors)], series.dashed       ? kDashed
+                                                            : line && !compared ? dashes_of_line(lines++)
+                                                                                : ""};
+    draw_series(out, series, x, y, look);
     if (series.name.empty()) continue;
-    const double row = kHeight + kLegendRow * (static_cast<double>(named++) + 0.5);
-    const std::string fill = paint;
-    rectangle(out, kLeft, row - 8, 9, 9, "fill=\"" + fill + "\"");
-    text(out, kLeft + 15, row, series.name, "");
+    draw_legend(out, series, look, frame.left, kHeight + kLegendRow * (static_cast<double>(named++) + 0.5));
   }
 }
 
 }  // namespace
 
+namespace {
+
+double height_of(const Plot& plot) {
+  const auto names =
+      std::count_if(plot.series.begin(), plot.series.end(), [](const Series& series) { return !series.name.empty(); });
+  return kHeight + kLegendRow * static_cast<double>(names);
+}
+
+}  // namespace
+
 std::string to_svg(const std::vector<Plot>& plots, int columns) {
-  const int count = static_cast<int>(plots.size()), rows = (count + columns - 1) / columns;
-  std::ptrdiff_t names = 0;
-  for (const Plot& plot : plots) {
-    names = std::max(names, std::count_if(plot.series.begin(), plot.series.end(),
-                                          [](const Series& series) { return !series.name.empty(); }));
+  const int count = static_cast<int>(plots.size()), most = std::min(columns, count);
+  std::ostringstream drawn;
+  double top = 0;
+  for (int first = 0; first < count; first += most) {
+    const int in_row = std::min(most, count - first);
+    const double width = kWidth * most / in_row;
+    double height = 0;
+    for (int i = first; i < first + in_row; ++i) {
+      const Plot& plot = plots[static_cast<std::size_t>(i)];
+      height = std::max(height, height_of(plot));
+      drawn << "<g transform=\"translate(" << width * (i - first) << " " << top << ")\">\n";
+      draw(drawn, plot, width);
+      drawn << "</g>\n";
+    }
+    top += height;
   }
-  const double height = kHeight + kLegendRow * static_cast<double>(names);
   std::ostringstream out;
-  out << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << kWidth * std::min(columns, count) << "\" height=\""
-      << height * rows
-      << "\" font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
-  for (int i = 0; i < count; ++i) {
-    const int row = i / columns;
-    out << "<g transform=\"translate(" << kWidth * (i % columns) << " " << height * row << ")\">\n";
-    draw(out, plots[static_cast<std::size_t>(i)]);
-    out << "</g>\n";
-  }
-  out << "</svg>\n";
+  out << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << kWidth * most << "\" height=\"" << top
+      << "\" font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
+      << drawn.str() << "</svg>\n";
   return out.str();
 }
 

@@ -12,17 +12,19 @@ struct Series {
   std::string name;                        // for the legend; empty: none
   std::vector<double> x, y;
   Kind kind = Kind::points;
+  bool dashed = false;  // of a line: for what others are compared with
 };
 
 struct Plot {
   std::string title, x_label, y_label;
   bool log_x = false, log_y = false;
+  bool log_y_if_wide = false;  // so if no value is 0 or below, and the largest is many times the smallest
   std::vector<Series> series;
   std::vector<double> levels;        // y of dashed horizontal lines
   std::vector<std::string> x_names;  // not empty: x counts these
 };
 
-// The plots side by side, `columns` in a row.
+// The plots side by side, `columns` in a row; where the last row has fewer, they are wider.
 std::string to_svg(const std::vector<Plot>& plots, int columns = 1);
 
 // Throws std::runtime_error if the file cannot be written.

@@ -1,7 +1,7 @@
 // The dissertation's baseline (7.2): a BSP-tree of one body, into which the other one's triangles are filtered
-// (Thibault and Naylor 1987). Built by the second of its heuristics: of the candidate faces, the one that splits the
-// fewest others partitions; ties go to the better balance. Beyond it: bounding balls first, of the bodies and of each
-// triangle.
+// (Thibault and Naylor 1987). Built by either of its heuristics: of the candidate faces, the one that most nearly
+// balances those before and behind it partitions, or the one that splits the fewest others, where ties go to the better
+// balance; it used the second. Beyond it: bounding balls first, of the bodies and of each triangle.
 #include <algorithm>
 #include <cmath>
 
@@ -72,8 +72,8 @@ struct Node {
 
 class BspTree {
  public:
-  explicit BspTree(std::vector<TrianglePoints> triangles, double size)
-      : triangles_(std::move(triangles)), tolerance_(kOnPlane * size) {
+  BspTree(std::vector<TrianglePoints> triangles, double size, BspHeuristic heuristic)
+      : triangles_(std::move(triangles)), heuristic_(heuristic), tolerance_(kOnPlane * size) {
     std::vector<Face> faces;
     for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
       planes_.push_back(plane_of(triangles_[t]));
@@ -104,10 +104,13 @@ class BspTree {
         const Sides s = sides(planes_[faces[c].triangle], face.polygon, tolerance_);
         splits += s.front && s.back;
         front += s.front, back += s.back;
-        if (splits > fewest) break;
+        if (heuristic_ == BspHeuristic::fewest_splits && splits > fewest) break;
       }
       const std::size_t uneven = front > back ? front - back : back - front;
-      if (splits < fewest || (splits == fewest && uneven < imbalance)) {
+      const bool better = heuristic_ == BspHeuristic::fewest_splits
+                              ? splits < fewest || (splits == fewest && uneven < imbalance)
+                              : uneven < imbalance || (uneven == imbalance && splits < fewest);
+      if (c == 0 || better) {
         best = faces[c].triangle, fewest = splits, imbalance = uneven;
       }
     }
@@ -174,6 +177,7 @@ class BspTree {
   }
 
   std::vector<TrianglePoints> triangles_;
+  BspHeuristic heuristic_;
   std::vector<Plane> planes_;
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> in_planes_;
@@ -181,12 +185,15 @@ class BspTree {
   std::int32_t root_ = -1;
 };
 
-class Bsp final : public Rival {
+class Bsp final : public PairRival {
  public:
-  Bsp(const runtime::TreeView& a, const runtime::TreeView& b) : b_(triangles_of(b)), tree_(triangles_of(a), reach(a)) {
+  Bsp(const runtime::TreeView& a, const runtime::TreeView& b, BspHeuristic heuristic)
+      : b_(triangles_of(b)), heuristic_(heuristic), tree_(triangles_of(a), reach(a), heuristic) {
     ball_a_ = ball_of(a), ball_b_ = ball_of(b);
   }
-  std::string name() const override { return "BSP-tree, fewest splits"; }
+  std::string name() const override {
+    return heuristic_ == BspHeuristic::fewest_splits ? "BSP-tree, fewest splits" : "BSP-tree, balanced";
+  }
   void place(const std::vector<Query>& queries) override {
     poses_.clear();
     for (const Query& q : queries) poses_.push_back(runtime::compose(runtime::inverse(q.a), q.b));
@@ -238,6 +245,7 @@ class Bsp final : public Rival {
   }
 
   std::vector<TrianglePoints> b_;
+  BspHeuristic heuristic_;
   BspTree tree_;
   Ball ball_a_{}, ball_b_{};
   std::vector<runtime::Pose> poses_;
@@ -245,8 +253,8 @@ class Bsp final : public Rival {
 
 }  // namespace
 
-std::unique_ptr<Rival> bsp_trees(const runtime::TreeView& a, const runtime::TreeView& b) {
-  return std::make_unique<Bsp>(a, b);
+std::unique_ptr<PairRival> bsp_trees(const runtime::TreeView& a, const runtime::TreeView& b, BspHeuristic heuristic) {
+  return std::make_unique<Bsp>(a, b, heuristic);
 }
 
 }  // namespace orchard::bench

@@ -29,8 +29,13 @@ class Body {
     object.setCollisionShape(shape_.get());
   }
   btCollisionObject object;
+  const btBvhTriangleMeshShape& bvh() {
+    if (!bvh_) bvh_ = std::make_unique<btBvhTriangleMeshShape>(&mesh_, true);
+    return *bvh_;
+  }
 
  private:
+  std::unique_ptr<btBvhTriangleMeshShape> bvh_;
   btTriangleMesh mesh_;
   std::unique_ptr<btGImpactMeshShape> shape_;
 };
@@ -44,7 +49,16 @@ struct AnyContact final : btCollisionWorld::ContactResultCallback {
   }
 };
 
-class Bullet final : public Rival {
+struct AllContacts final : btCollisionWorld::ContactResultCallback {
+  std::size_t found = 0;
+  btScalar addSingleResult(btManifoldPoint&, const btCollisionObjectWrapper*, int, int, const btCollisionObjectWrapper*,
+                           int, int) override {
+    ++found;
+    return 0;
+  }
+};
+
+class Bullet final : public PairRival {
  public:
   Bullet(const runtime::TreeView& a, const runtime::TreeView& b)
       : dispatcher_(&configuration_), world_(&dispatcher_, &broad_phase_, &configuration_), a_(a), b_(b) {
@@ -65,7 +79,29 @@ class Bullet final : public Rival {
     return contact.found;
   }
 
+  bool finds_contacts() const override { return true; }
+  std::size_t contacts(std::size_t query) override {
+    a_.object.setWorldTransform(poses_[query].first);
+    b_.object.setWorldTransform(poses_[query].second);
+    AllContacts contacts;
+    world_.contactPairTest(&a_.object, &b_.object, contacts);
+    return contacts.found;
+  }
+  bool casts_rays() const override { return true; }
+  double cast_ray(const std::array<double, 3>& from, const std::array<double, 3>& to) override {
+    const auto vector = [](const std::array<double, 3>& v) {
+      return btVector3(static_cast<btScalar>(v[0]), static_cast<btScalar>(v[1]), static_cast<btScalar>(v[2]));
+    };
+    const btVector3 p = vector(from), q = vector(to);
+    btCollisionWorld::ClosestRayResultCallback result(p, q);
+    btCollisionWorld::rayTestSingle(btTransform(btQuaternion::getIdentity(), p),
+                                    btTransform(btQuaternion::getIdentity(), q), &still_, &a_.bvh(),
+                                    btTransform::getIdentity(), result);
+    return result.hasHit() ? static_cast<double>(result.m_closestHitFraction) : 1;
+  }
+
  private:
+  btCollisionObject still_;
   static btTransform transform_of(const runtime::Pose& pose) {
     const auto r = [&pose](std::size_t i) { return static_cast<btScalar>(pose.rotation[i]); };
     const auto t = [&pose](std::size_t i) { return static_cast<btScalar>(pose.translation[i]); };
@@ -82,11 +118,11 @@ class Bullet final : public Rival {
 
 }  // namespace
 
-std::unique_ptr<Rival> bullet(const runtime::TreeView& a, const runtime::TreeView& b) {
+std::unique_ptr<PairRival> bullet(const runtime::TreeView& a, const runtime::TreeView& b) {
   return std::make_unique<Bullet>(a, b);
 }
 #else
-std::unique_ptr<Rival> bullet(const runtime::TreeView&, const runtime::TreeView&) { return nullptr; }
+std::unique_ptr<PairRival> bullet(const runtime::TreeView&, const runtime::TreeView&) { return nullptr; }
 #endif
 
 }  // namespace orchard::bench

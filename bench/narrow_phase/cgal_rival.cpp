@@ -33,7 +33,7 @@ Mesh mesh_of(const runtime::TreeView& tree) {
   return mesh;
 }
 
-class Cgal final : public Rival {
+class Cgal final : public PairRival {
  public:
   Cgal(const runtime::TreeView& a, const runtime::TreeView& b) : a_(mesh_of(a)), b_(mesh_of(b)) {
     ids_ = {detection_.add_mesh(a_), detection_.add_mesh(b_)};
@@ -63,11 +63,11 @@ class Cgal final : public Rival {
 
 }  // namespace
 
-std::unique_ptr<Rival> cgal(const runtime::TreeView& a, const runtime::TreeView& b) {
+std::unique_ptr<PairRival> cgal(const runtime::TreeView& a, const runtime::TreeView& b) {
   return std::make_unique<Cgal>(a, b);
 }
 #else
-std::unique_ptr<Rival> cgal(const runtime::TreeView&, const runtime::TreeView&) { return nullptr; }
+std::unique_ptr<PairRival> cgal(const runtime::TreeView&, const runtime::TreeView&) { return nullptr; }
 #endif
 
 }  // namespace orchard::bench

@@ -4,6 +4,7 @@
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/math/bv/OBBRSS.h>
 #include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/continuous_collision.h>
 #include <fcl/narrowphase/distance.h>
 #endif
 
@@ -14,7 +15,7 @@ namespace {
 
 // Compiled from FCL's headers: in float that is twice as fast as the packaged library, which is in double.
 template <typename S>
-class Fcl final : public Rival {
+class Fcl final : public PairRival {
  public:
   Fcl(const runtime::TreeView& a, const runtime::TreeView& b) : a_(model_of(a)), b_(model_of(b)) {}
 
@@ -33,10 +34,30 @@ class Fcl final : public Rival {
   }
   bool measures_distance() const override { return true; }
   double distance(std::size_t query) override {
-    fcl::DistanceRequest<S> request(false, false, S(0.01), S(0));
+    fcl::DistanceRequest<S> request;
     fcl::DistanceResult<S> result;
     fcl::distance(a_.get(), poses_[query].first, b_.get(), poses_[query].second, request, result);
     return static_cast<double>(result.min_distance);
+  }
+
+  bool finds_contacts() const override { return true; }
+  std::size_t contacts(std::size_t query) override {
+    fcl::CollisionRequest<S> request(100000, true);
+    fcl::CollisionResult<S> result;
+    fcl::collide(a_.get(), poses_[query].first, b_.get(), poses_[query].second, request, result);
+    return result.numContacts();
+  }
+  bool moves() const override { return sizeof(S) == sizeof(double); }
+  double time_of_impact(std::size_t query, const runtime::Pose& to, double tolerance) override {
+    if constexpr (sizeof(S) == sizeof(double)) {  // in float its motions do not compile
+      fcl::ContinuousCollisionRequest<S> request(1000, S(tolerance), fcl::CCDM_LINEAR, fcl::GST_LIBCCD,
+                                                 fcl::CCDC_CONSERVATIVE_ADVANCEMENT);
+      fcl::ContinuousCollisionResult<S> result;
+      fcl::continuousCollide(a_.get(), poses_[query].first, poses_[query].first, b_.get(), poses_[query].second,
+                             transform_of(to), request, result);
+      return result.is_collide ? static_cast<double>(result.time_of_contact) : 1;
+    }
+    return 1;
   }
 
  private:
@@ -71,15 +92,15 @@ class Fcl final : public Rival {
 
 }  // namespace
 
-std::unique_ptr<Rival> fcl_float(const runtime::TreeView& a, const runtime::TreeView& b) {
+std::unique_ptr<PairRival> fcl_float(const runtime::TreeView& a, const runtime::TreeView& b) {
   return std::make_unique<Fcl<float>>(a, b);
 }
-std::unique_ptr<Rival> fcl_double(const runtime::TreeView& a, const runtime::TreeView& b) {
+std::unique_ptr<PairRival> fcl_double(const runtime::TreeView& a, const runtime::TreeView& b) {
   return std::make_unique<Fcl<double>>(a, b);
 }
 #else
-std::unique_ptr<Rival> fcl_float(const runtime::TreeView&, const runtime::TreeView&) { return nullptr; }
-std::unique_ptr<Rival> fcl_double(const runtime::TreeView&, const runtime::TreeView&) { return nullptr; }
+std::unique_ptr<PairRival> fcl_float(const runtime::TreeView&, const runtime::TreeView&) { return nullptr; }
+std::unique_ptr<PairRival> fcl_double(const runtime::TreeView&, const runtime::TreeView&) { return nullptr; }
 #endif
 
 }  // namespace orchard::bench

@@ -113,9 +113,9 @@ void boolean(const PackedSphereTree& tree, const std::vector<Query>& queries) {
                        }});
   }
   const std::size_t ours = engines.size() - 1;
-  std::vector<std::unique_ptr<Rival>> rivals;
+  std::vector<std::unique_ptr<PairRival>> rivals;
   constexpr std::size_t most_for_bsp = 10000;  // building takes the square of it
-  const auto add = [&](std::unique_ptr<Rival> rival) {
+  const auto add = [&](std::unique_ptr<PairRival> rival) {
     if (!rival) return;
     rival->place(queries);
     engines.push_back({rival->name(), [r = rival.get()](std::size_t i) { r->collide(i); }});
@@ -141,6 +141,10 @@ void boolean(const PackedSphereTree& tree, const std::vector<Query>& queries) {
 void distance(const PackedSphereTree& tree, const std::vector<Query>& queries) {
   DistanceQuery query(tree, tree);
   std::vector<Engine> engines;
+  engines.push_back({"orchard, exact", [&](std::size_t i) {
+                       query.start(queries[i].a, queries[i].b, {.relative = 0});
+                       query.refine();
+                     }});
   engines.push_back({"orchard, to 1 %", [&](std::size_t i) {
                        query.start(queries[i].a, queries[i].b, {.relative = 0.01});
                        query.refine();
@@ -151,7 +155,7 @@ void distance(const PackedSphereTree& tree, const std::vector<Query>& queries) {
     engines.push_back({rival->name(), [&](std::size_t i) { rival->distance(i); }});
   }
   measure(engines, queries.size());
-  print_table("distance", queries, engines, 0, 1);
+  print_table("distance", queries, engines, 1, 2);
 }
 
 }  // namespace

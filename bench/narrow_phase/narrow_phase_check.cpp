@@ -57,7 +57,7 @@ struct Count {
   std::size_t poses = 0, touching = 0, differ = 0, unexplained = 0;
 };
 
-Count compare(const TreeView& tree, Rival& rival, std::size_t poses) {
+Count compare(const TreeView& tree, PairRival& rival, std::size_t poses) {
   NarrowPhase pair(tree, tree, 1);
   const double step = 1e-6 * double{tree.blocks[0].radius[0]};
   Count count;
@@ -100,7 +100,7 @@ int main(int argc, char** argv) {
       continue;
     }
     const PackedSphereTree tree = read_body(argv[i]);
-    std::vector<std::pair<std::unique_ptr<Rival>, std::size_t>> rivals;
+    std::vector<std::pair<std::unique_ptr<PairRival>, std::size_t>> rivals;
     rivals.emplace_back(fcl_double(tree, tree), poses);
     rivals.emplace_back(cgal(tree, tree), poses / 20);  // slower
     for (const auto& [rival, share] : rivals) {

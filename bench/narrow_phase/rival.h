@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -15,21 +16,31 @@ struct Query {
   int pose_class;
 };
 
-class Rival {
+class PairRival {
  public:
-  virtual ~Rival() = default;
+  virtual ~PairRival() = default;
   virtual std::string name() const = 0;
   virtual void place(const std::vector<Query>& queries) = 0;  // poses in its own form, before any clock runs
   virtual bool collide(std::size_t query) = 0;
   virtual bool measures_distance() const { return false; }
-  virtual double distance(std::size_t) { return 0; }  // to 1 %
+  virtual double distance(std::size_t) { return 0; }  // exact: FCL does not heed its relative error
+  virtual bool finds_contacts() const { return false; }
+  virtual std::size_t contacts(std::size_t) { return 0; }  // all of them, with normals and depths; how many
+  virtual bool moves() const { return false; }
+  // From pose `a` at rest, `b` to `to` in a unit of time, by conservative advancement.
+  virtual double time_of_impact(std::size_t, const runtime::Pose& /*to*/, double /*tolerance*/) { return 1; }
+  virtual bool casts_rays() const { return false; }
+  // Against the first body as it is, from a point to another; the fraction of the way, or 1.
+  virtual double cast_ray(const std::array<double, 3>&, const std::array<double, 3>&) { return 1; }
 };
 
 // Each made of the triangles that the trees store. Null where the library is not installed.
-std::unique_ptr<Rival> fcl_float(const runtime::TreeView& a, const runtime::TreeView& b);
-std::unique_ptr<Rival> fcl_double(const runtime::TreeView& a, const runtime::TreeView& b);
-std::unique_ptr<Rival> bullet(const runtime::TreeView& a, const runtime::TreeView& b);
-std::unique_ptr<Rival> cgal(const runtime::TreeView& a, const runtime::TreeView& b);
-std::unique_ptr<Rival> bsp_trees(const runtime::TreeView& a, const runtime::TreeView& b);
+std::unique_ptr<PairRival> fcl_float(const runtime::TreeView& a, const runtime::TreeView& b);
+std::unique_ptr<PairRival> fcl_double(const runtime::TreeView& a, const runtime::TreeView& b);
+std::unique_ptr<PairRival> bullet(const runtime::TreeView& a, const runtime::TreeView& b);
+std::unique_ptr<PairRival> cgal(const runtime::TreeView& a, const runtime::TreeView& b);
+enum class BspHeuristic { fewest_splits, balanced };
+std::unique_ptr<PairRival> bsp_trees(const runtime::TreeView& a, const runtime::TreeView& b,
+                                     BspHeuristic heuristic = BspHeuristic::fewest_splits);
 
 }  // namespace orchard::bench

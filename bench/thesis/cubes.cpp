@@ -156,6 +156,7 @@ Run run_bounds(std::size_t count, double ball, std::uint64_t seed, const MakeBro
     return first;
   });
   result.memory = world.memory_bytes();
+  result.asked = world.motions_asked();
   return result;
 }
 

@@ -43,6 +43,7 @@ class Cubes {
 struct Run {
   double overall = 0, detection = 0, collision = kEnd;
   std::vector<double> frames;  // detection-only seconds of each
+  std::uint64_t asked = 0;     // motions, by the broad phase
   std::size_t memory = 0;
 
   double worst() const { return frames.empty() ? 0 : *std::max_element(frames.begin(), frames.end()); }

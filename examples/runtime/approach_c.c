@@ -24,7 +24,10 @@ int main(int argc, char** argv) {
   static const char* const names[] = {"no", "maybe", "yes"};
   const orchard_budget budget = {1000000, ORCHARD_NO_LIMIT};
   const orchard_pose still = orchard_identity();
-  orchard_pose moving = orchard_identity();
+  const double turned[4] = {0.9238795325112867, 0, 0, 0.3826834323650898}, nowhere[3] = {0, 0, 0}; /* 45 degrees, z */
+  orchard_pose moving;
+  if (!orchard_pose_from_quaternion(turned, nowhere, &moving)) return 1;
+  printf("orchard %s\n", orchard_version());
   for (int step = 0; step <= 10; ++step) {
     moving.translation[0] = (2.5 - 0.25 * step) * orchard_tree_bounding_radius(body);
     const orchard_verdict verdict = orchard_collide(pair, &still, &moving, budget);

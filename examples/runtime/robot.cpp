@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "orchard/runtime/collide.h"
+#include "orchard/runtime/self_collision.h"
 #include "orchard/runtime/tree_file.h"
 
 using namespace orchard::runtime;
@@ -13,11 +13,6 @@ using namespace orchard::runtime;
 namespace {
 
 constexpr std::size_t kLinks = 6;
-
-struct LinkPair {
-  std::size_t a, b;
-  NarrowPhase query;
-};
 
 // Where the links are when all joints turn by the same angle.
 std::vector<Pose> posture(double angle, double length) {
@@ -38,25 +33,24 @@ int main(int argc, char** argv) {
   }
   const double length = 2.1 * link.bounding_radius;
   const std::vector<Pose> rest = posture(0, length);
-  std::vector<LinkPair> checked;
+  const std::vector<PreparedTree> links(kLinks, PreparedTree(link));
+  SelfCollision arm(links);
+  Workspace workspace;
+  for (std::size_t i = 0; i + 1 < kLinks; ++i) arm.allowed.allow(i, i + 1);  // neighbours share a joint
+  arm.allow_touching(workspace, rest);
+  std::size_t checked = 0;
   for (std::size_t a = 0; a < kLinks; ++a) {
-    for (std::size_t b = a + 2; b < kLinks; ++b) {  // neighbours share a joint: allowed
-      LinkPair pair{a, b, NarrowPhase(link, link, 1024)};
-      if (collide(pair.query, rest[a], rest[b]).answer == Answer::no) checked.push_back(std::move(pair));
-    }
+    for (std::size_t b = a + 1; b < kLinks; ++b) checked += !arm.allowed.allowed(a, b);
   }
-  std::printf("%zu of %zu pairs of links are checked\n", checked.size(), kLinks * (kLinks - 1) / 2);
+  std::printf("%zu of %zu pairs of links are checked\n", checked, kLinks * (kLinks - 1) / 2);
 
   for (double angle = 0; angle < 1.3; angle += 0.01) {
-    const std::vector<Pose> poses = posture(angle, length);
-    for (LinkPair& pair : checked) {
-      const Verdict verdict = collide(pair.query, poses[pair.a], poses[pair.b]);
-      if (verdict.answer != Answer::yes) continue;
-      const auto at = verdict.contact.center;
-      std::printf("with its joints at %.2f rad link %zu touches link %zu at (%.3g, %.3g, %.3g)\n", angle, pair.a,
-                  pair.b, at[0], at[1], at[2]);
-      return angle > 0 ? 0 : 1;
-    }
+    const SelfCollision::Touch touch = arm.first(workspace, posture(angle, length));
+    if (touch.answer != Answer::yes) continue;
+    const auto at = touch.contact.center;
+    std::printf("with its joints at %.2f rad link %zu touches link %zu at (%.3g, %.3g, %.3g)\n", angle, touch.part_a,
+                touch.part_b, at[0], at[1], at[2]);
+    return angle > 0 ? 0 : 1;
   }
   std::printf("the arm never touches itself\n");
   return 1;

@@ -69,7 +69,15 @@ struct Extent {
   double diameter = 0, width = 0;  // width: the largest distance of a point from the diameter
 };
 
+constexpr std::size_t kMostForPairs = 2000;  // points of which all pairs are looked at
+
+// Of more points than that, the diagonal of their box: no pair is farther apart.
 Extent extent(std::span<const Point> points) {
+  if (points.size() > kMostForPairs) {
+    Box box;
+    for (const Point& point : points) box.extend(point);
+    return {box.diagonal().norm(), box.diagonal().norm()};
+  }
   std::size_t a = 0, b = 0;
   double squared = 0;
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -94,25 +102,35 @@ class HoleFiller {
 
   void run() {
     const BoundaryLoops boundary(mesh_, uses_);
+    report_.holes_left = report_.edges_of_hole_left = 0;
+    report_.max_hole_left = 0;
     for (const auto& loop : boundary.loops()) fill(loop);
   }
 
  private:
   void fill(const std::vector<Index>& loop) {
-    if (loop.size() > options_.max_hole_edges) return;
     // A lone triangle's hole is its own back.
     if (loop.size() == 3 && is_triangle(loop)) return;
     std::vector<Point> polyline;
     polyline.reserve(loop.size());
     for (const Index vertex : loop) polyline.push_back(mesh_.vertices[vertex]);
     const auto [diameter, width] = extent(polyline);
-    if (diameter > options_.max_hole_diameter * radius_ && width > options_.max_crack_width * radius_) return;
+    if (loop.size() > options_.max_hole_edges ||
+        (diameter > options_.max_hole_diameter * radius_ && width > options_.max_crack_width * radius_))
+      return leave(loop.size(), diameter / radius_);
     auto patch = triangles_over(loop, polyline);
     if (patch.empty() || !fits(loop, patch)) patch = fan_over(loop, polyline);
     mesh_.triangles.insert(mesh_.triangles.end(), patch.begin(), patch.end());
     ++report_.holes_filled;
     report_.triangles_added += static_cast<Index>(patch.size());
     report_.max_hole = std::max(report_.max_hole, diameter);
+  }
+
+  void leave(std::size_t edges, double diameter) {
+    ++report_.holes_left;
+    if (diameter <= report_.max_hole_left) return;
+    report_.max_hole_left = diameter;
+    report_.edges_of_hole_left = static_cast<Index>(edges);
   }
 
   // Turned so that they run against the loop.

@@ -3,6 +3,17 @@
 #include <algorithm>
 
 namespace orchard::detail {
+namespace {
+
+std::vector<Index> with_cells(const Rows& rows, std::size_t count) {
+  std::vector<Index> found;
+  for (Index i = 0; i < rows.size(); ++i) {
+    if (rows[i].size() == count) found.push_back(i);
+  }
+  return found;
+}
+
+}  // namespace
 
 Rows rows_of(const std::vector<std::array<Index, 2>>& pairs, Index count) {
   std::vector<Index> ends(count, 0);  // of the rows, while they are filled; repeated items among them
@@ -73,5 +84,9 @@ CellIncidence::CellIncidence(const std::vector<std::array<Index, 2>>& edges,
   triangles_at = rows_of(at_edge, static_cast<Index>(edges.size()));
   edges_at = rows_of(at_vertex, vertices);
 }
+
+std::vector<Index> CellIncidence::border_edges() const { return with_cells(triangles_at, 1); }
+std::vector<Index> CellIncidence::bare_edges() const { return with_cells(triangles_at, 0); }
+std::vector<Index> CellIncidence::lone_vertices() const { return with_cells(edges_at, 0); }
 
 }  // namespace orchard::detail

@@ -21,10 +21,14 @@ void complete_cells(std::vector<std::array<Index, 2>>& edges, std::vector<std::a
 // The number of an edge that there is, of sorted ones.
 Index index_of_edge(const std::vector<std::array<Index, 2>>& edges, Index a, Index b);
 
-// Of complete cells with corners below `vertices`.
+// Of complete cells with corners below `vertices`; lists of cells are ascending. O(n log n).
 struct CellIncidence {
   CellIncidence(const std::vector<std::array<Index, 2>>& edges, const std::vector<std::array<Index, 3>>& triangles,
                 Index vertices);
+
+  std::vector<Index> border_edges() const;   // with just one triangle
+  std::vector<Index> bare_edges() const;     // without a triangle
+  std::vector<Index> lone_vertices() const;  // without an edge
 
   std::vector<std::array<Index, 3>> sides;  // of each triangle: the edges ab, ac and bc
   Rows triangles_at, edges_at;              // of each edge; of each vertex

@@ -40,7 +40,7 @@ SurfaceErrors surface_errors(const Surface& surface, const MedialMesh& mesh, std
   samples.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) samples.push_back({points[i], normals[i]});
   SurfaceErrors errors;
-  for (const detail::SurfaceReach& reach : detail::reach_of(surface, mesh, samples, diagonal)) {
+  for (const detail::SurfaceReach& reach : detail::reach_of(surface, detail::Reconstruction(mesh), samples, diagonal)) {
     errors.coverage.push_back(reach.uncovered / diagonal);
     errors.protrusion.push_back(reach.beyond / diagonal);
   }

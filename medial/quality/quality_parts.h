@@ -2,7 +2,9 @@
 #include <span>
 #include <vector>
 
+#include "max_over_triangles.h"
 #include "orchard/medial/quality.h"
+#include "reconstruction.h"
 
 // The metrics of medial_quality(), one file each. Lengths in mesh units; medial_quality() divides.
 namespace orchard::detail {
@@ -30,14 +32,14 @@ struct SurfaceReach {
   double uncovered = 0;              // distance to the reconstruction, 0 inside it
   double beyond = 0;                 // how far outside the solid it reaches along the normal
   double to_boundary = 0;            // distance of the point to its boundary; an upper bound where the point is inside
-  double least_to_boundary = 0;      // and a lower one: the depth in the deepest ball
+  double min_to_boundary = 0;        // and a lower one: the depth in the deepest ball
   bool arrived = true;               // `farthest` is a place of the boundary, or the point itself
   double from_boundary = 0;          // distance of a point of its boundary, that one or beside it, to the surface
   Point farthest = Point::Zero();    // where it reaches to, along the normal
   Sphere ball = {Point::Zero(), 0};  // the last one on the way
 };
 // Fastest where samples follow each other over the surface.
-std::vector<SurfaceReach> reach_of(const Surface& surface, const MedialMesh& mesh,
+std::vector<SurfaceReach> reach_of(const Surface& surface, const Reconstruction& reconstruction,
                                    std::span<const SurfaceSample> samples, double diagonal);
 // How far a ball reaches outside the solid, where to, and whether its centre is outside.
 struct BallReach {
@@ -48,6 +50,12 @@ struct BallReach {
 BallReach reach_of(const Surface& surface, const Sphere& ball);
 void measure_reconstruction(const Surface& surface, const MedialMesh& mesh, std::span<const SurfaceSample> samples,
                             const QualityBalls& balls, const QualityOptions& options, MedialQuality& quality);
+// quality_coverage.cpp
+// The largest distance of the surface from the reconstruction; `known`: what samples found.
+MaxOverTriangles max_coverage(const Surface& surface, const Reconstruction& reconstruction, MaxOverTriangles known,
+                              double diagonal);
+// Of the samples, without the distances to balls at borders of sheets: those count as 0.
+Spread inner_coverage(const MedialMesh& mesh, std::span<const SurfaceReach> reaches, double diagonal);
 // worst_places.cpp
 // The `count` worst of `places`, whichever their order, no two within `apart` of each other.
 std::vector<WorstPlace> worst_of(std::vector<WorstPlace> places, Index count, double apart);

@@ -6,13 +6,12 @@
 #include <utility>
 
 #include "quality_parts.h"
-#include "reconstruction.h"
 
 namespace orchard::detail {
 namespace {
 
 constexpr double kArrived = 1e-6;  // of the diagonal: a march ends this near to the boundary
-constexpr int kMostSteps = 50;
+constexpr int kMaxSteps = 50;
 constexpr std::size_t kBlock = 64;  // samples that one task takes, one after the other
 constexpr double kSlack = 1e-9;     // above what rounding can do to a bound
 
@@ -28,7 +27,7 @@ double way_out(const Sphere& ball, const Point& from, const Vector& direction) {
 double straight_out(const Reconstruction& reconstruction, const Point& from, Sphere ball, double depth,
                     double diagonal) {
   Point at = from;
-  for (int step = 0; step < kMostSteps && depth > kArrived * diagonal; ++step) {
+  for (int step = 0; step < kMaxSteps && depth > kArrived * diagonal; ++step) {
     const Vector way = at - ball.center;
     const double length = way.norm();
     if (!(length > 0)) break;
@@ -40,7 +39,7 @@ double straight_out(const Reconstruction& reconstruction, const Point& from, Sph
 
 // Whether the way found from a point to the boundary may be much longer than the shortest.
 bool is_loose(const SurfaceReach& reach, double diagonal) {
-  return reach.to_boundary > 1.1 * reach.least_to_boundary + kArrived * diagonal;
+  return reach.to_boundary > 1.1 * reach.min_to_boundary + kArrived * diagonal;
 }
 
 // Where ways ended for other points is boundary, too, and may be nearer.
@@ -79,7 +78,7 @@ SurfaceReach reach_at(const Surface& surface, const Reconstruction& reconstructi
   }
   const Sphere deepest = reach.ball;
   const double first_depth = depth;
-  for (int step = 0; step < kMostSteps && depth > kArrived * diagonal; ++step) {
+  for (int step = 0; step < kMaxSteps && depth > kArrived * diagonal; ++step) {
     reach.farthest += way_out(reach.ball, reach.farthest, sample.normal) * sample.normal;
     depth = -reconstruction.distance_below(-kArrived * diagonal, reach.farthest, reach.ball);
   }
@@ -89,7 +88,7 @@ SurfaceReach reach_at(const Surface& surface, const Reconstruction& reconstructi
   reach.from_boundary = std::abs(off);
   reach.arrived = !(depth > kArrived * diagonal);
   reach.to_boundary = (reach.farthest - sample.position).norm();
-  reach.least_to_boundary = first_depth;
+  reach.min_to_boundary = first_depth;
   // The way along the normal is the shortest but where the ball is not the surface's own.
   if (is_loose(reach, diagonal)) {
     reach.to_boundary =
@@ -130,9 +129,8 @@ Spread spread_over(std::span<const SurfaceReach> reaches, double SurfaceReach::*
 
 }  // namespace
 
-std::vector<SurfaceReach> reach_of(const Surface& surface, const MedialMesh& mesh,
+std::vector<SurfaceReach> reach_of(const Surface& surface, const Reconstruction& reconstruction,
                                    std::span<const SurfaceSample> samples, double diagonal) {
-  const Reconstruction reconstruction(mesh);
   std::vector<SurfaceReach> reaches(samples.size());
   const std::size_t blocks = (samples.size() + kBlock - 1) / kBlock;
   tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
@@ -169,8 +167,12 @@ BallReach reach_of(const Surface& surface, const Sphere& ball) {
 
 void measure_reconstruction(const Surface& surface, const MedialMesh& mesh, std::span<const SurfaceSample> samples,
                             const QualityBalls& balls, const QualityOptions& options, MedialQuality& quality) {
-  const std::vector<SurfaceReach> reaches = reach_of(surface, mesh, samples, quality.diagonal);
+  const Reconstruction reconstruction(mesh);
+  const std::vector<SurfaceReach> reaches = reach_of(surface, reconstruction, samples, quality.diagonal);
   quality.coverage = spread_over(reaches, &SurfaceReach::uncovered);
+  quality.inner_coverage = inner_coverage(mesh, reaches, quality.diagonal);
+  const MaxOverTriangles open = max_coverage(
+      surface, reconstruction, {.max = quality.coverage.max, .upper = 0, .place = Point::Zero()}, quality.diagonal);
   quality.protrusion = spread_over(reaches, &SurfaceReach::beyond);
   const Spread to = spread_over(reaches, &SurfaceReach::to_boundary);
   const Spread from = spread_over(reaches, &SurfaceReach::from_boundary);
@@ -184,18 +186,25 @@ void measure_reconstruction(const Surface& surface, const MedialMesh& mesh, std:
     if (reach.uncovered > negligible)
       uncovered.push_back({WorstKind::coverage, reach.uncovered, samples[i].position, samples[i].normal, reach.ball});
   }
+  if (open.max > std::max(negligible, quality.coverage.max)) {
+    Sphere ball;
+    reconstruction.distance(open.place, ball);
+    uncovered.push_back({WorstKind::coverage, open.max, open.place, outward_at(surface, open.place), ball});
+  }
+  quality.coverage.max = open.max;
+  quality.coverage_upper = open.upper;
   quality.outside_vertices = look_at(surface, balls.vertices, protruding);
   quality.outside_edges = look_at(surface, balls.edges, protruding);
   quality.outside_triangles = look_at(surface, balls.triangles, protruding);
   for (const WorstPlace& place : protruding) quality.protrusion.max = std::max(quality.protrusion.max, place.value);
-  quality.hausdorff = {.max = std::max({to.max, from.max, quality.protrusion.max}),
+  quality.hausdorff = {.max = std::max({to.max, from.max, quality.protrusion.max, open.max}),
                        .mean = 0.5 * (to.mean + from.mean)};
 
   const double apart = options.places_apart * quality.diagonal;
   quality.worst = worst_of(std::move(protruding), options.worst_places, apart);
   for (WorstPlace& place : quality.worst) place.outward = outward_at(surface, place.position);
-  const auto open = worst_of(std::move(uncovered), options.worst_places, apart);
-  quality.worst.insert(quality.worst.end(), open.begin(), open.end());
+  const auto most_open = worst_of(std::move(uncovered), options.worst_places, apart);
+  quality.worst.insert(quality.worst.end(), most_open.begin(), most_open.end());
 }
 
 }  // namespace orchard::detail

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "../axis/incidence.h"
+
 namespace orchard::detail {
 namespace {
 
@@ -31,27 +33,16 @@ struct Cells {
 };
 
 Cells max_cells(const MedialMesh& mesh) {
-  Cells cells;
-  std::vector<std::array<Index, 2>> sides;
+  const CellIncidence at(mesh.edges, mesh.triangles, mesh.size());
+  const std::vector<Index> bare = at.bare_edges();
+  Cells cells{
+      .items = {}, .triangles = static_cast<Index>(mesh.triangles.size()), .edges = static_cast<Index>(bare.size())};
   const auto add = [&](Index a, Index b, Index c) {
     cells.items.push_back({vertex_ball(mesh, a), vertex_ball(mesh, b), vertex_ball(mesh, c)});
   };
-  for (const auto& [a, b, c] : mesh.triangles) {
-    for (const auto& side : {std::array{a, b}, std::array{a, c}, std::array{b, c}}) sides.push_back(side);
-    add(a, b, c);
-    ++cells.triangles;
-  }
-  std::sort(sides.begin(), sides.end());
-  std::vector<std::uint8_t> used(mesh.centers.size(), 0);
-  for (const auto& edge : mesh.edges) {
-    for (const Index vertex : edge) used[vertex] = 1;
-    if (std::binary_search(sides.begin(), sides.end(), edge)) continue;
-    add(edge[0], edge[1], edge[1]);
-    ++cells.edges;
-  }
-  for (Index v = 0; v < mesh.size(); ++v) {
-    if (used[v] == 0) add(v, v, v);
-  }
+  for (const auto& [a, b, c] : mesh.triangles) add(a, b, c);
+  for (const Index e : bare) add(mesh.edges[e][0], mesh.edges[e][1], mesh.edges[e][1]);
+  for (const Index v : at.lone_vertices()) add(v, v, v);
   return cells;
 }
 

@@ -74,19 +74,4 @@ MedialAxis axis_of_balls(const Surface& surface, const BallComplex& complex) {
   return axis;
 }
 
-double border_length(const BallComplex& complex) {
-  std::vector<std::uint8_t> count(complex.edges.size(), 0);
-  for (const auto& [a, b, c] : complex.triangles) {
-    for (const Index e : {complex.edge_of(a, b), complex.edge_of(a, c), complex.edge_of(b, c)}) {
-      if (count[e] < 2) ++count[e];
-    }
-  }
-  double sum = 0;
-  for (Index e = 0; e < count.size(); ++e) {
-    const auto& [a, b] = complex.edges[e];
-    if (count[e] == 1) sum += (complex.balls[a].center - complex.balls[b].center).norm();
-  }
-  return sum;
-}
-
 }  // namespace orchard::detail

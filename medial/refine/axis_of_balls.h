@@ -8,7 +8,4 @@ namespace orchard::detail {
 // contacts, vertex by vertex. O(n log n).
 MedialAxis axis_of_balls(const Surface& surface, const BallComplex& complex);
 
-// Of the edges with one triangle, in mesh units.
-double border_length(const BallComplex& complex);
-
 }  // namespace orchard::detail

@@ -24,14 +24,12 @@ Borders find_borders(const BallComplex& complex) {
     borders.inner[c] += angle_at(complex, c, a, b);
   }
   borders.next.assign(complex.size(), {kNone, kNone});
-  borders.on_border.assign(complex.size(), 0);
   std::vector<std::uint8_t> branching(complex.size(), 0);
   for (Index e = 0; e < complex.edges.size(); ++e) {
     const auto& [a, b] = complex.edges[e];
     if (count[e] == 1) borders.edges.push_back(e);
     for (const auto& [v, other] : {std::pair{a, b}, std::pair{b, a}}) {
       if (count[e] == 1) {
-        borders.on_border[v] = 1;
         auto& next = borders.next[v];
         if (next[0] == kNone) {
           next[0] = other;

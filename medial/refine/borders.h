@@ -21,7 +21,6 @@ inline constexpr double kBorderSlack = 4;
 struct Borders {
   std::vector<std::array<Index, 2>> next;  // of each vertex with just two border edges on one sheet: its neighbours
   std::vector<double> inner;               // radians: the sum of the triangles' angles there
-  std::vector<std::uint8_t> on_border;     // all that have a border edge
   std::vector<Index> edges;                // those with one triangle
 };
 

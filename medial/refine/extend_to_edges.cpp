@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "../axis/incidence.h"
 #include "extend_sheets.h"
-#include "free_extension.h"
 #include "sharp_ends.h"
+#include "sheet_extension.h"
 
 namespace orchard::detail {
 namespace {
@@ -15,19 +14,15 @@ namespace {
 class EdgeReacher {
  public:
   EdgeReacher(const Surface& surface, BallComplex& complex, const BorderOptions& options)
-      : surface_(surface),
-        complex_(complex),
-        options_(options),
-        at_(complex.edges, complex.triangles, complex.size()),
-        extension_(complex) {}
+      : sheets_(surface, complex, options) {}
 
   Index run() {
-    const Index before = complex_.size();
+    const Index before = sheets_.complex.size();
     find_ends();
-    for (const Index e : borders_) add_strips(e);
-    for (const Index e : borders_) add_end(e);
-    extension_.finish();
-    return complex_.size() - before;
+    for (const Index e : sheets_.borders) add_strips(e);
+    for (const Index e : sheets_.borders) add_end(e);
+    sheets_.triangles.finish();
+    return sheets_.complex.size() - before;
   }
 
  private:
@@ -41,17 +36,15 @@ class EdgeReacher {
   static constexpr double kSame = 0.5;    // cosine of the angle around an edge between two triangles of one sheet
 
   void find_ends() {
-    ends_.resize(complex_.size());
-    std::vector<std::uint8_t> on_border(complex_.size(), 0);
-    for (Index e = 0; e < at_.triangles_at.size(); ++e) {
-      if (at_.triangles_at[e].size() != 1) continue;
-      borders_.push_back(e);
-      for (const Index v : complex_.edges[e]) on_border[v] = 1;
+    ends_.resize(sheets_.complex.size());
+    std::vector<std::uint8_t> on_border(sheets_.complex.size(), 0);
+    for (const Index e : sheets_.borders) {
+      for (const Index v : sheets_.complex.edges[e]) on_border[v] = 1;
     }
-    tbb::parallel_for(tbb::blocked_range<Index>(0, complex_.size(), 64), [&](const auto& range) {
-      SharpEdges edges(surface_, options_.sharp_angle);
+    tbb::parallel_for(tbb::blocked_range<Index>(0, sheets_.complex.size(), 64), [&](const auto& range) {
+      SharpEdges edges(sheets_.surface, sheets_.options.sharp_angle);
       for (Index v = range.begin(); v != range.end(); ++v) {
-        const ExactBall& ball = complex_.balls[v];
+        const ExactBall& ball = sheets_.complex.balls[v];
         if (ball.exact && ball.radius > 0 && on_border[v]) find_ends(ball, edges, ends_[v]);
       }
     });
@@ -63,32 +56,33 @@ class EdgeReacher {
         if (!apex_of_two(ball, i, k, to_apex)) continue;
         const double far = to_apex.norm();
         ClosestPoint foot = ExactBall::nowhere();
-        if (far - ball.radius < options_.level || far > kMaxReach * options_.spacing) continue;
+        if (far - ball.radius < sheets_.options.level || far > kMaxReach * sheets_.options.spacing) continue;
         if (!edges.nearest(ball.center + to_apex, kMaxFoot * far, foot)) continue;
         const bool known = std::any_of(ends.begin(), ends.end(), [&](const End& end) {
           return (end.ball.center - foot.position).norm() < kMaxFoot * far;
         });
-        if (!known && is_way_right(surface_, ball, foot.position, options_.tolerance))
+        if (!known && is_way_right(sheets_.surface, ball, foot.position, sheets_.options.tolerance))
           ends.push_back({ball_on_edge(foot), kNone});
       }
     }
   }
 
   void add_strips(Index e) {
-    const auto [a, b] = complex_.edges[e];
+    const auto [a, b] = sheets_.complex.edges[e];
     for (End& x : ends_[a]) {
       End* y = nearest(ends_[b], x);
       if (y != nullptr && nearest(ends_[a], *y) == &x && fits(e, x, *y))
-        extension_.add_strip(a, b, vertex_of(a, x), vertex_of(b, *y));
+        sheets_.triangles.add_strip(a, b, vertex_of(a, x), vertex_of(b, *y));
     }
   }
   // A triangle where a row of strips ends; alone it would be a spike.
   void add_end(Index e) {
-    const auto [a, b] = complex_.edges[e];
-    if (ends_[a].size() + ends_[b].size() != 1 || complex_.balls[a].radius == 0 || complex_.balls[b].radius == 0)
+    const auto [a, b] = sheets_.complex.edges[e];
+    if (ends_[a].size() + ends_[b].size() != 1 || sheets_.complex.balls[a].radius == 0 ||
+        sheets_.complex.balls[b].radius == 0)
       return;
     const End& end = ends_[a].empty() ? ends_[b].front() : ends_[a].front();
-    if (end.vertex != kNone && fits(e, end, end)) extension_.add(a, b, end.vertex);
+    if (end.vertex != kNone && fits(e, end, end)) sheets_.triangles.add(a, b, end.vertex);
   }
 
   static End* nearest(std::vector<End>& ends, const End& to) {
@@ -100,43 +94,40 @@ class EdgeReacher {
 
   // Whether the strip from an edge to two ends, or one, is right, and its sheet not there yet.
   bool fits(Index e, const End& x, const End& y) const {
-    const ExactBall &p = complex_.balls[complex_.edges[e][0]], &q = complex_.balls[complex_.edges[e][1]];
+    const ExactBall &p = sheets_.complex.balls[sheets_.complex.edges[e][0]],
+                    &q = sheets_.complex.balls[sheets_.complex.edges[e][1]];
     const Vector along = q.center - p.center, between = y.ball.center - x.ball.center;
-    if (between.norm() > kMaxAlong * (along.norm() + options_.spacing)) return false;
+    if (between.norm() > kMaxAlong * (along.norm() + sheets_.options.spacing)) return false;
     const Point middle = 0.5 * (p.center + q.center);
     const auto around = [&](const Point& place) -> Vector {
       const Vector from = place - middle;
       return (from - along * (from.dot(along) / along.squaredNorm())).normalized();
     };
     const Vector way = around(0.5 * (x.ball.center + y.ball.center));
-    for (const Index t : at_.triangles_at[e]) {
-      for (const Index v : complex_.triangles[t]) {
-        if (v != complex_.edges[e][0] && v != complex_.edges[e][1] && way.dot(around(complex_.balls[v].center)) > kSame)
+    for (const Index t : sheets_.at.triangles_at[e]) {
+      for (const Index v : sheets_.complex.triangles[t]) {
+        if (v != sheets_.complex.edges[e][0] && v != sheets_.complex.edges[e][1] &&
+            way.dot(around(sheets_.complex.balls[v].center)) > kSame)
           return false;
       }
     }
-    return is_triangle_right(surface_, p, x.ball, y.ball, options_.tolerance) &&
-           is_triangle_right(surface_, q, x.ball, y.ball, options_.tolerance);
+    return is_triangle_right(sheets_.surface, p, x.ball, y.ball, sheets_.options.tolerance) &&
+           is_triangle_right(sheets_.surface, q, x.ball, y.ball, sheets_.options.tolerance);
   }
 
   // One that is there already, if v is joined to it.
   Index vertex_of(Index v, End& end) {
     if (end.vertex != kNone) return end.vertex;
-    for (const Index e : at_.edges_at[v]) {
-      const Index other = complex_.edges[e][0] == v ? complex_.edges[e][1] : complex_.edges[e][0];
-      const ExactBall& ball = complex_.balls[other];
-      if (ball.radius == 0 && (ball.center - end.ball.center).norm() < kMaxFoot * complex_.balls[v].radius)
+    for (const Index e : sheets_.at.edges_at[v]) {
+      const Index other = sheets_.other_end(e, v);
+      const ExactBall& ball = sheets_.complex.balls[other];
+      if (ball.radius == 0 && (ball.center - end.ball.center).norm() < kMaxFoot * sheets_.complex.balls[v].radius)
         return end.vertex = other;
     }
-    return end.vertex = extension_.add_vertex(end.ball);
+    return end.vertex = sheets_.triangles.add_vertex(end.ball);
   }
 
-  const Surface& surface_;
-  BallComplex& complex_;
-  const BorderOptions& options_;
-  const CellIncidence at_;
-  FreeExtension extension_;
-  std::vector<Index> borders_;          // edges
+  SheetExtension sheets_;
   std::vector<std::vector<End>> ends_;  // of each vertex
 };
 

@@ -6,10 +6,9 @@
 #include <numbers>
 #include <utility>
 
-#include "../axis/incidence.h"
 #include "extend_sheets.h"
-#include "free_extension.h"
 #include "orchard/geometry/angle.h"
+#include "sheet_extension.h"
 
 namespace orchard::detail {
 namespace {
@@ -17,23 +16,19 @@ namespace {
 class SeamReacher {
  public:
   SeamReacher(const Surface& surface, BallComplex& complex, const BorderOptions& options)
-      : surface_(surface),
-        complex_(complex),
-        options_(options),
-        at_(complex.edges, complex.triangles, complex.size()),
-        extension_(complex) {}
+      : sheets_(surface, complex, options) {}
 
   Index run() {
     find_outward();
     find_seams();
-    for (const Index e : borders_) {
-      const auto& [a, b] = complex_.edges[e];
+    for (const Index e : sheets_.borders) {
+      const auto& [a, b] = sheets_.complex.edges[e];
       const Index x = seam_[a], y = seam_[b];
-      if (x != kNone && y != kNone) extension_.add_strip(a, b, x, y);
-      if (x != kNone && y == kNone && complex_.balls[b].count > 2) extension_.add(a, b, x);
-      if (x == kNone && y != kNone && complex_.balls[a].count > 2) extension_.add(a, b, y);
+      if (x != kNone && y != kNone) sheets_.triangles.add_strip(a, b, x, y);
+      if (x != kNone && y == kNone && sheets_.complex.balls[b].count > 2) sheets_.triangles.add(a, b, x);
+      if (x == kNone && y != kNone && sheets_.complex.balls[a].count > 2) sheets_.triangles.add(a, b, y);
     }
-    return extension_.finish();
+    return sheets_.triangles.finish();
   }
 
  private:
@@ -44,15 +39,13 @@ class SeamReacher {
 
   // The sum of the directions from border edges at a vertex away from their triangles, in these.
   void find_outward() {
-    outward_.assign(complex_.size(), Vector::Zero());
-    for (Index e = 0; e < at_.triangles_at.size(); ++e) {
-      if (at_.triangles_at[e].size() != 1) continue;
-      borders_.push_back(e);
-      const auto& [a, b] = complex_.edges[e];
-      const Point &p = complex_.balls[a].center, &q = complex_.balls[b].center;
-      for (const Index v : complex_.triangles[at_.triangles_at[e][0]]) {
+    outward_.assign(sheets_.complex.size(), Vector::Zero());
+    for (const Index e : sheets_.borders) {
+      const auto& [a, b] = sheets_.complex.edges[e];
+      const Point &p = sheets_.complex.balls[a].center, &q = sheets_.complex.balls[b].center;
+      for (const Index v : sheets_.complex.triangles[sheets_.at.triangles_at[e][0]]) {
         if (v == a || v == b) continue;
-        const Vector along = q - p, from = p - complex_.balls[v].center;
+        const Vector along = q - p, from = p - sheets_.complex.balls[v].center;
         const Vector out = from - along * (from.dot(along) / along.squaredNorm());
         if (!(out.norm() > 0)) continue;
         outward_[a] += out.normalized();
@@ -62,18 +55,18 @@ class SeamReacher {
   }
 
   void find_seams() {
-    const Index before = complex_.size();
+    const Index before = sheets_.complex.size();
     std::vector<ExactBall> found(before);
     tbb::parallel_for(tbb::blocked_range<Index>(0, before, 64), [&](const auto& range) {
-      BallSolver solver(surface_, options_.merging);
+      BallSolver solver(sheets_.surface, sheets_.options.merging);
       for (Index v = range.begin(); v != range.end(); ++v) {
-        if (outward_[v] != Vector::Zero() && is_between_parallel_faces(complex_.balls[v]))
-          found[v] = seam_beyond(complex_.balls[v], outward_[v].normalized(), solver);
+        if (outward_[v] != Vector::Zero() && is_between_parallel_faces(sheets_.complex.balls[v]))
+          found[v] = seam_beyond(sheets_.complex.balls[v], outward_[v].normalized(), solver);
       }
     });
     seam_.assign(before, kNone);
     for (Index v = 0; v < before; ++v) {
-      if (found[v].exact) seam_[v] = extension_.add_vertex(found[v]);
+      if (found[v].exact) seam_[v] = sheets_.triangles.add_vertex(found[v]);
     }
   }
   static bool is_between_parallel_faces(const ExactBall& ball) {
@@ -83,13 +76,13 @@ class SeamReacher {
   // The first ball on the way out that has a third contact; none that is exact if there is none.
   ExactBall seam_beyond(const ExactBall& from, const Vector& out, BallSolver& solver) const {
     // No step leaves the solid: beyond a seam there may be no more of it than half the thickness.
-    const double step = std::min(kStep * options_.spacing, from.radius / 2);
-    const int steps = std::min(kMaxSteps, static_cast<int>(std::ceil(kReach * options_.spacing / step)));
+    const double step = std::min(kStep * sheets_.options.spacing, from.radius / 2);
+    const int steps = std::min(kMaxSteps, static_cast<int>(std::ceil(kReach * sheets_.options.spacing / step)));
     ExactBall at = from;
     for (int i = 0; i < steps; ++i) {
       const Point start = at.center + step * out;
       const ExactBall next = solver.solve(start, at.touching());
-      const bool goes_on = next.exact && (next.center - start).norm() <= step && next.loss >= options_.level;
+      const bool goes_on = next.exact && (next.center - start).norm() <= step && next.loss >= sheets_.options.level;
       if (!goes_on) break;
       if (next.count > 2) return next;
       at = next;
@@ -97,12 +90,8 @@ class SeamReacher {
     return {};
   }
 
-  const Surface& surface_;
-  BallComplex& complex_;
-  const BorderOptions& options_;
-  const CellIncidence at_;
-  FreeExtension extension_;
-  std::vector<Index> borders_, seam_;  // edges; of each vertex
+  SheetExtension sheets_;
+  std::vector<Index> seam_;  // of each vertex
   std::vector<Vector> outward_;
 };
 

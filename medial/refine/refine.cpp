@@ -15,6 +15,7 @@
 #include "extend_sheets.h"
 #include "orchard/geometry/angle.h"
 #include "orchard/geometry/error.h"
+#include "orchard/medial/quality.h"
 #include "small_pieces.h"
 #include "split.h"
 
@@ -100,9 +101,11 @@ class Refiner {
 
   // What is downhill from the forming points; for the middle of a face, from its two points.
   void find_balls() {
-    std::vector<Index> face_of_middle(complex_.size(), kNone);
+    std::vector<Index> face_of_middle(complex_.size() - axis_.size(), kNone);
     for (Index t = 0; t < complex_.triangles.size(); ++t) {
-      for (const Index v : complex_.triangles[t]) face_of_middle[v] = face_of_triangle_[t];
+      for (const Index v : complex_.triangles[t]) {
+        if (v >= axis_.size()) face_of_middle[v - axis_.size()] = face_of_triangle_[t];
+      }
     }
     tbb::parallel_for(tbb::blocked_range<Index>(0, complex_.size(), 64), [&](const auto& range) {
       BallSolver solver = this->solver();
@@ -113,7 +116,7 @@ class Refiner {
           for (const Index point : axis_.forming_points[v].first(std::min(kEnough, axis_.forming_points[v].size())))
             seeds.push_back(place(point));
         } else {
-          for (const Index point : points_of(face_of_middle[v])) seeds.push_back(place(point));
+          for (const Index point : points_of(face_of_middle[v - axis_.size()])) seeds.push_back(place(point));
         }
         complex_.balls[v] = solver.solve(complex_.balls[v].center, seeds);
       }
@@ -261,7 +264,7 @@ class Refiner {
     report_.vertices = refined.axis.size();
     report_.inexact = static_cast<Index>(
         std::count_if(complex_.balls.begin(), complex_.balls.end(), [](const ExactBall& ball) { return !ball.exact; }));
-    report_.border_length = detail::border_length(complex_) / diagonal_;
+    report_.border_length = border_length(medial_mesh(refined.axis)) / diagonal_;
     refined.report = report_;
     return refined;
   }

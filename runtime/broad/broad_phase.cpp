@@ -152,6 +152,14 @@ bool BroadPhase::set_importance(BodyId body, std::uint8_t importance) {
   return true;
 }
 
+std::size_t BroadPhase::foresee(double time, std::span<StepsAhead> steps) const noexcept {
+  for (StepsAhead& step : steps) step = {};
+  if (!(std::fabs(time) <= largest_time_)) return 0;
+  const detail::Clock& clock = state_->roster.clock;
+  const Step now = static_cast<Step>(std::floor((time - clock.start) / clock.time_step + detail::kStepSlack));
+  return state_->method->foresee(now, steps);
+}
+
 std::size_t BroadPhase::size() const noexcept { return state_->roster.size(); }
 std::uint64_t BroadPhase::motions_asked() const noexcept { return state_->roster.asked(); }
 std::size_t BroadPhase::memory_bytes() const noexcept {

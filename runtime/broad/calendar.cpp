@@ -85,6 +85,20 @@ void Calendar::take(Step step, std::vector<BodyIndex>& bodies, std::vector<PairE
   busy_[index / 64] &= ~(std::uint64_t{1} << (index % 64));
 }
 
+std::size_t Calendar::bodies_due(Step step) const noexcept {
+  std::size_t count = 0;
+  for (std::uint32_t line = buckets_[bucket_of(step)].bodies; line != kNone; line = lines_[line].next) {
+    for (const BodyIndex body : lines_[line].ids) count += body != kNoIndex;
+  }
+  return count;
+}
+
+std::size_t Calendar::events_due(Step step) const noexcept {
+  std::size_t count = 0;
+  for (std::uint32_t node = buckets_[bucket_of(step)].event; node != kNone; node = nodes_[node].next) ++count;
+  return count;
+}
+
 Step Calendar::next_after(Step now) const noexcept {
   for (Step ahead = 1; ahead < kCalendarSteps;) {
     const std::size_t bucket = bucket_of(now + ahead);

@@ -25,6 +25,9 @@ class Calendar {
 
   // Moves everything due at the step to the ends of the vectors.
   void take(Step step, std::vector<BodyIndex>& bodies, std::vector<PairEvent>& events);
+  // How much take() would give, void entries included. O(of that).
+  std::size_t bodies_due(Step step) const noexcept;
+  std::size_t events_due(Step step) const noexcept;
   // The first step after `now` that may have something; kNeverStep if there is none.
   Step next_after(Step now) const noexcept;
   std::size_t memory_bytes() const noexcept;

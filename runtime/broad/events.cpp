@@ -174,6 +174,17 @@ void Events::report(std::vector<BodyPair>& pairs) {
   for (const PairEvent& event : overlaps_) pairs.push_back(event.pair);
 }
 
+std::size_t Events::foresee(Step now, std::span<StepsAhead> steps) const noexcept {
+  const std::size_t known = std::min<std::size_t>(steps.size(), kCalendarSteps - 2);
+  for (std::size_t i = 0; i < known; ++i) {
+    const Step step = now + 1 + static_cast<Step>(i);
+    steps[i].looks += calendar_.bodies_due(step);
+    steps[i].meetings += calendar_.events_due(step);
+    steps[i].overlaps += overlaps_.size();
+  }
+  return known;
+}
+
 std::size_t Events::memory_bytes() const noexcept {
   return sizeof(*this) + bytes_of(boxes_) + bytes_of(windows_) + bytes_of(places_) + bytes_of(pending_) +
          bytes_of(changed_) + bytes_of(entries_) + bytes_of(oversized_) + bytes_of(overlaps_) + bytes_of(due_) +

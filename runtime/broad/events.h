@@ -23,6 +23,7 @@ class Events final : public Method {
   void reclassified(BodyIndex body) override;
   StepReport step(Step now, Meter& meter, std::vector<BodyPair>& pairs) override;
   std::size_t memory_bytes() const noexcept override;
+  std::size_t foresee(Step now, std::span<StepsAhead> steps) const noexcept override;
 
  private:
   enum class Place : std::uint8_t { nowhere, inside, oversized };

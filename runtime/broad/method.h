@@ -21,6 +21,11 @@ class Method {
   // Puts the overlapping pairs into `pairs`, in ascending order.
   virtual StepReport step(Step now, Meter& meter, std::vector<BodyPair>& pairs) = 0;
   virtual std::size_t memory_bytes() const noexcept = 0;
+  // Adds what is due at the steps after `now`, one after the other; returns for how many it knows.
+  virtual std::size_t foresee(Step now, std::span<StepsAhead> steps) const noexcept {
+    (void)now, (void)steps;
+    return 0;
+  }
 };
 
 std::unique_ptr<Method> make_events(Roster& roster, const BroadPhaseOptions& options);

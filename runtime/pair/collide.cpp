@@ -43,10 +43,17 @@ Pose placed(const Pose& body, const Pose& local) noexcept {
 
 }  // namespace
 
-Verdict collide(NarrowPhase& pair, const Pose& a, const Pose& b, const Budget& budget) noexcept {
+Verdict collide(NarrowPhase& pair, const Pose& a, const Pose& b, const Budget& budget, Order order) noexcept {
   pair.start(a, b);
+  if (order == Order::exact_first) {
+    while (!pair.finished() && budget.pair_tests > 0) {
+      pair.refine_exactly(budget);
+      if (!unlimited(budget)) break;
+    }
+    return pair.verdict();
+  }
   if (unlimited(budget)) {
-    while (!pair.finished()) pair.refine_exactly();
+    while (!pair.finished()) pair.refine();
     return pair.verdict();
   }
   Purse purse(budget);
@@ -58,9 +65,9 @@ Verdict collide(NarrowPhase& pair, const Pose& a, const Pose& b, const Budget& b
   return pair.verdict();
 }
 
-void collide(NarrowPhase& pair, std::span<const PosePair> poses, std::span<Verdict> verdicts,
-             const Budget& each) noexcept {
-  for (std::size_t i = 0; i < poses.size(); ++i) verdicts[i] = collide(pair, poses[i].a, poses[i].b, each);
+void collide(NarrowPhase& pair, std::span<const PosePair> poses, std::span<Verdict> verdicts, const Budget& each,
+             Order order) noexcept {
+  for (std::size_t i = 0; i < poses.size(); ++i) verdicts[i] = collide(pair, poses[i].a, poses[i].b, each, order);
 }
 
 bool RoundRobin::refine(const Budget& budget) noexcept {

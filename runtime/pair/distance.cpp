@@ -15,7 +15,12 @@ namespace orchard::runtime {
 
 namespace {
 
-constexpr double kRounding = 1e-12;  // of distances in double, relative to them
+constexpr double kRounding = 1e-12;     // of distances in double, relative to them
+constexpr double kSmallMargin = 0.125;  // of two leaves' radii: then most of their triangles are farther apart
+
+float float_above(double value) noexcept {
+  return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity());
+}
 
 std::uint32_t child_of(const TreeView& tree, std::uint32_t node) noexcept {
   return tree.patches[node / kBlockWidth].child[node % kBlockWidth];
@@ -23,13 +28,36 @@ std::uint32_t child_of(const TreeView& tree, std::uint32_t node) noexcept {
 
 }  // namespace
 
-DistanceQuery::DistanceQuery(const TreeView& a, const TreeView& b) noexcept : pair_(a, b, 1) {
-  const std::size_t deepest = std::size_t{kBlockWidth} * (a.patch_depth + b.patch_depth + 1) + 1;
-  if (pair_.has_triangles()) stack_.reset(new (std::nothrow) PatchPair[deepest]);
+DistanceQuery::DistanceQuery(const TreeView& a, const TreeView& b) noexcept : pair_(a, b, 1) { make_room(); }
+
+bool DistanceQuery::bind(const PreparedTree& a, const PreparedTree& b) noexcept {
+  const bool bound = pair_.bind(a, b);
+  finished_ = true;
+  lower_ = 0;
+  upper_ = std::numeric_limits<double>::infinity();
+  return make_room() && bound;
+}
+
+bool DistanceQuery::make_room() noexcept {
+  const std::size_t deepest =
+      std::size_t{kBlockWidth} * (pair_.first_.tree.patch_depth + pair_.second_.tree.patch_depth + 1) + 1;
+  if (!pair_.has_triangles() || deepest <= stack_room_) return true;
+  stack_.reset(new (std::nothrow) PatchPair[deepest]);
+  stack_room_ = stack_ ? deepest : 0;
+  return stack_ != nullptr;
 }
 
 void DistanceQuery::start(const Pose& a, const Pose& b, const Tolerance& tolerance) noexcept {
   tolerance_ = tolerance;
+  begin(a, b, std::numeric_limits<double>::infinity());
+}
+
+void DistanceQuery::start_within(const Pose& a, const Pose& b, double limit) noexcept {
+  tolerance_ = {0, 0};
+  begin(a, b, limit);
+}
+
+void DistanceQuery::begin(const Pose& a, const Pose& b, double limit) noexcept {
   pair_.start(a, b);
   pair_.keep(a, b);  // which start() does not where the roots decide
   lower_ = pair_.lower_bound();
@@ -39,27 +67,44 @@ void DistanceQuery::start(const Pose& a, const Pose& b, const Tolerance& toleran
   direction_ = {};
   triangle_first_ = triangle_second_ = kNoTriangle;
   upper_ = std::numeric_limits<double>::infinity();
-  finished_ = !stack_ || pair_.refused() || !pair_.in_range();
+  limit_ = std::numeric_limits<double>::infinity();
+  enough_ = 0;
+  finished_ = !has_room() || pair_.refused() || !pair_.in_range();
   if (finished_) return;
   pair_.place();
+  if (limit < std::numeric_limits<double>::infinity()) {
+    finished_ = lower_ > limit;  // the roots are enough
+    if (finished_) return;
+    // Beyond the limit by what the bounds lose to rounding when they are reported, so that "farther" is certain.
+    const double error = pair_.exact_error_, scale = pair_.first_pose_.scale;
+    limit_ = (limit + 2 * error) / scale * (1 + 4 * kRounding);
+    enough_ = std::max(0.0, (limit - error) / scale * (1 - 4 * kRounding));
+  }
+  find_cut();
   const TreeView& second = pair_.second_.tree;
   stack_[stack_size_++] = {0, 0, 0, detail::moved(detail::patch_at(second.patches[0], 0), pair_.placement_)};
 }
 
-bool DistanceQuery::worth_a_look(double lower) const noexcept {
-  return lower * (1 + tolerance_.relative) + tolerance_.absolute / pair_.first_pose_.scale < nearest_;
+// What is farther need not be looked at.
+void DistanceQuery::find_cut() noexcept {
+  const double absolute = tolerance_.absolute > 0 ? tolerance_.absolute / pair_.first_pose_.scale : 0;
+  cut_ = std::min(limit_, (nearest_ - absolute) / (1 + tolerance_.relative));
+  below_nearest_ = nearest_ <= limit_;
 }
+
+bool DistanceQuery::worth_a_look(double lower) const noexcept { return below_nearest_ ? lower < cut_ : lower <= cut_; }
 
 void DistanceQuery::refine(const Budget& budget) noexcept {
   if (finished_ || budget.pair_tests == 0) return;
   NarrowPhase::Meter meter(budget);
   const TreeView &first = pair_.first_.tree, &second = pair_.second_.tree;
-  while (stack_size_ > 0 && nearest_ > 0 && !meter.exhausted()) {
+  while (stack_size_ > 0 && nearest_ > enough_ && !meter.exhausted()) {
     const PatchPair pair = stack_[--stack_size_];
     if (!worth_a_look(double{pair.lower})) {
       least_lower_ = std::min(least_lower_, double{pair.lower});
       continue;
     }
+    if (limit_ < std::numeric_limits<double>::infinity() && surely_near(pair)) break;
     const std::uint32_t a = child_of(first, pair.a), b = child_of(second, pair.b);
     if (a & b & kLeafBit) {
       compare_leaves(pair);
@@ -71,10 +116,29 @@ void DistanceQuery::refine(const Budget& budget) noexcept {
     expand(pair, open_second ? b : a, open_second);
     meter.spend(kBlockWidth);
   }
-  if (nearest_ == 0) stack_size_ = 0;
+  if (nearest_ <= enough_) leave_the_rest();
   finished_ = stack_size_ == 0;
   work_ += meter.spent();
   report();
+}
+
+// Near enough: what has not been looked at still counts for the lower bound.
+void DistanceQuery::leave_the_rest() noexcept {
+  for (std::size_t i = 0; i < stack_size_; ++i) least_lower_ = std::min(least_lower_, double{stack_[i].lower});
+  stack_size_ = 0;
+}
+
+// Every patch holds triangles, so two are no farther apart than the farthest points of their patches.
+bool DistanceQuery::surely_near(const PatchPair& pair) noexcept {
+  const detail::Patch p = detail::patch_at(pair_.first_.tree.patches[pair.a / kBlockWidth], pair.a % kBlockWidth);
+  const detail::Patch& q = pair.second;
+  const double x = double{q.x} - double{p.x}, y = double{q.y} - double{p.y}, z = double{q.z} - double{p.z};
+  const double farthest =
+      std::sqrt(x * x + y * y + z * z) + double{p.radius} + double{q.radius} + double{pair_.placement_.margin};
+  if (farthest > enough_) return false;
+  nearest_ = std::min(nearest_, farthest);
+  least_lower_ = std::min(least_lower_, std::max(0.0, double{pair.lower}));
+  return true;
 }
 
 // In place of a pair, those of its children that may be nearer than the best, the nearest last.
@@ -105,35 +169,74 @@ void DistanceQuery::expand(const PatchPair& pair, std::uint32_t block, bool seco
   }
 }
 
+// The nearest ones first: each found makes fewer of the others worth a look.
 void DistanceQuery::compare_leaves(const PatchPair& pair) noexcept {
   const TreeView &first = pair_.first_.tree, &second = pair_.second_.tree;
   const TriangleBlock& lanes = first.triangle_blocks[child_of(first, pair.a) & ~kLeafBit];
   const TriangleBlock& rows = second.triangle_blocks[child_of(second, pair.b) & ~kLeafBit];
+  const float radii = first.patches[pair.a / kBlockWidth].radius[pair.a % kBlockWidth] + pair.second.radius;
+  if (limit_ < kSmallMargin * double{radii}) return find_within(pair, lanes, rows);
   detail::TriangleGaps gaps;
-  detail::triangle_gaps(lanes, rows, pair_.placement_, direction_, gaps);
+  const float reach = float_above(std::min(cut_, 1e30));
+  detail::triangle_gaps(lanes, rows, pair_.placement_, direction_, reach, gaps);
+  const float least = std::max(0.0f, pair.lower);
+  std::array<std::uint8_t, std::size_t{kBlockWidth} * kBlockWidth> order;
+  std::size_t count = 0;
+  float left_out = std::numeric_limits<float>::infinity();
+  const auto lower_of = [&](std::uint8_t i) { return gaps.lower[i / kBlockWidth][i % kBlockWidth]; };
   for (std::uint32_t row = 0; row < kBlockWidth && rows.triangle[row] != kNoTriangle; ++row) {
     for (std::uint32_t lane = 0; lane < kBlockWidth && lanes.triangle[lane] != kNoTriangle; ++lane) {
-      const double lower = std::max({0.0, double{gaps.lower[row][lane]}, double{pair.lower}});
-      if (worth_a_look(lower)) {
-        compare_triangles(lanes, lane, rows, row);
-      } else {
-        least_lower_ = std::min(least_lower_, lower);
+      const float lower = gaps.lower[row][lane];
+      if (lower > reach) {
+        left_out = std::min(left_out, lower);
+        continue;
       }
+      std::size_t at = count++;
+      for (; at > 0 && lower_of(order[at - 1]) > lower; --at) order[at] = order[at - 1];
+      order[at] = static_cast<std::uint8_t>(kBlockWidth * row + lane);
     }
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const float lower = lower_of(order[i]);
+    // The rest of the pair is no nearer than this one and than its patches.
+    if (nearest_ <= enough_ || !worth_a_look(double{std::max(lower, least)})) {
+      left_out = std::min(left_out, lower);
+      break;
+    }
+    compare_triangles(lanes, order[i] % kBlockWidth, rows, order[i] / kBlockWidth, lower <= 0);
+  }
+  if (left_out < std::numeric_limits<float>::infinity()) {
+    least_lower_ = std::min(least_lower_, double{std::max(left_out, least)});
   }
 }
 
+// Only whether some are within the limit: as triangles that may meet are found, with the limit for a margin.
+void DistanceQuery::find_within(const PatchPair& pair, const TriangleBlock& lanes, const TriangleBlock& rows) noexcept {
+  detail::Placement near = pair_.placement_;
+  near.margin = float_above((double{near.margin} + limit_) * (1 + 1e-6));
+  const detail::Patch lane_patch =
+      detail::patch_at(pair_.first_.tree.patches[pair.a / kBlockWidth], pair.a % kBlockWidth);
+  std::uint64_t left = detail::triangle_candidates({lanes, rows, lane_patch, pair.second}, near);
+  least_lower_ = std::min(least_lower_, limit_);
+  for (; left != 0 && nearest_ > enough_; left &= left - 1) {
+    const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
+    compare_triangles(lanes, bit % kBlockWidth, rows, bit / kBlockWidth, true);
+  }
+  if (left != 0) least_lower_ = std::min(least_lower_, std::max(0.0, double{pair.lower}));
+}
+
 void DistanceQuery::compare_triangles(const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows,
-                                      std::uint32_t row) noexcept {
+                                      std::uint32_t row, bool may_meet) noexcept {
   const detail::TrianglePoints a = detail::points_of(lanes, lane),
                                b = detail::moved_points_of(rows, row, pair_.relative_);
-  detail::NearestPoints nearest = detail::nearest_points(a, b);
-  const double error = detail::kParallelError * (detail::longest_edge(a) + detail::longest_edge(b));
   detail::Vec3 common{};
-  if (detail::triangles_intersect(a, b, &common)) nearest = {0, common, common};
+  const bool meet = may_meet && detail::triangles_intersect(a, b, &common);
+  const detail::NearestPoints nearest = meet ? detail::NearestPoints{0, common, common} : detail::nearest_points(a, b);
+  const double error = detail::kParallelError * (detail::longest_edge(a) + detail::longest_edge(b));
   least_lower_ = std::min(least_lower_, std::max(0.0, nearest.distance * (1 - kRounding) - error));
   if (nearest.distance >= nearest_) return;
   nearest_ = nearest.distance;
+  find_cut();
   on_first_ = nearest.on_a, on_second_ = nearest.on_b;
   triangle_first_ = lanes.triangle[lane], triangle_second_ = rows.triangle[row];
   if (nearest_ == 0) return;

@@ -56,6 +56,46 @@ int compare(const TreeView& a, const TreeView& b) noexcept {
   return compare_bytes(da, db);
 }
 
+// Of the stored bytes, eight at a time: equal for copies, and different for others but for one in 2^64.
+class Fingerprint {
+ public:
+  template <typename Container>
+  void add(const Container& items) noexcept {
+    const auto* bytes = reinterpret_cast<const unsigned char*>(items.data());
+    std::size_t left = items.size() * sizeof(items[0]);
+    mix(left);
+    for (; left >= sizeof(std::uint64_t); left -= sizeof(std::uint64_t), bytes += sizeof(std::uint64_t)) {
+      std::uint64_t word;
+      std::memcpy(&word, bytes, sizeof word);
+      mix(word);
+    }
+    std::uint64_t rest = 0;
+    if (left > 0) std::memcpy(&rest, bytes, left);
+    mix(rest);
+  }
+  std::uint64_t value() const noexcept { return value_; }
+
+ private:
+  void mix(std::uint64_t word) noexcept {  // a bijection of the value for each word, and of the word for each value
+    value_ = (value_ ^ word) * 0x9e3779b97f4a7c15u;
+    value_ ^= value_ >> 32;
+  }
+  std::uint64_t value_ = 0x243f6a8885a308d3u;
+};
+
+bool same_place(const TreeView& a, const TreeView& b) noexcept {
+  return a.blocks.data() == b.blocks.data() && a.triangle_blocks.data() == b.triangle_blocks.data() &&
+         a.vertices.data() == b.vertices.data() && a.origin == b.origin;
+}
+
+std::uint64_t fingerprint_of(const TreeView& tree) noexcept {
+  Fingerprint print;
+  print.add(tree.blocks), print.add(tree.triangles), print.add(tree.vertices), print.add(tree.leaf_triangles);
+  print.add(
+      std::array<double, 5>{tree.origin[0], tree.origin[1], tree.origin[2], tree.bounding_radius, tree.vertex_error});
+  return print.value();
+}
+
 }  // namespace
 
 bool NarrowPhase::PairList::reserve(std::size_t capacity) noexcept {
@@ -69,31 +109,49 @@ bool NarrowPhase::PairList::reserve(std::size_t capacity) noexcept {
   return true;
 }
 
-NarrowPhase::Side NarrowPhase::side_of(const TreeView& tree) noexcept {
-  Side side;
-  side.tree = tree;
-  side.middle = side.root = detail::center_of(tree, 0);
-  for (std::size_t i = 0; i < 3; ++i) side.root[i] += tree.origin[i];
+PreparedTree::PreparedTree(const TreeView& view) noexcept : tree(view) {
+  middle = root = detail::center_of(tree, 0);
+  for (std::size_t i = 0; i < 3; ++i) root[i] += tree.origin[i];
   const SiblingBlock& block = tree.blocks[0];
-  side.radius = double{block.radius[0]}, side.reach = double{block.error[0]}, side.depth = double{block.depth[0]};
-  side.bits = link_bits(tree.branching);
-  side.extent = coordinate_extent(tree);
-  side.error = detail::kStretch * (side.extent + length(tree.origin)) + tree.vertex_error;
-  return side;
+  radius = double{block.radius[0]}, reach = double{block.error[0]}, depth = double{block.depth[0]};
+  bits = link_bits(tree.branching);
+  extent = coordinate_extent(tree);
+  error = detail::kStretch * (extent + length(tree.origin)) + tree.vertex_error;
+  fingerprint = fingerprint_of(tree);
+}
+
+NarrowPhase::NarrowPhase(std::size_t room) noexcept : refused_(true) {
+  answer_ = Answer::maybe;
+  if (room > 0) reserve(room);
 }
 
 NarrowPhase::NarrowPhase(const TreeView& a, const TreeView& b, std::size_t room) noexcept {
-  const int order = compare(a, b);
-  arguments_exchanged_ = order > 0;
-  ordered_by_pose_ = order == 0;
-  first_ = side_of(a);
-  second_ = ordered_by_pose_ ? first_ : side_of(b);
-  if (arguments_exchanged_) std::swap(first_, second_);
-  for (std::size_t i = 0; i < 3; ++i) roots_[i] = {first_.root[i], second_.root[i]};
-  // An expanded pair leaves up to eight in its place, one level deeper in one of the trees.
-  const std::size_t deepest = std::size_t{kBlockWidth} * (a.patch_depth + b.patch_depth + 1) + 1;
-  if (has_triangles()) stack_.reset(new (std::nothrow) PatchPair[deepest]);
+  const PreparedTree of_a(a);
+  bind(of_a, compare(a, b) == 0 ? of_a : PreparedTree(b));
   reserve(std::max(room, std::size_t{1}));
+}
+
+bool NarrowPhase::bind(const PreparedTree& a, const PreparedTree& b) noexcept {
+  ordered_by_pose_ = a.fingerprint == b.fingerprint;
+  one_tree_ = ordered_by_pose_ && same_place(a.tree, b.tree);
+  arguments_exchanged_ = !ordered_by_pose_ && compare(a.tree, b.tree) > 0;
+  first_ = arguments_exchanged_ ? b : a;
+  second_ = arguments_exchanged_ ? a : b;
+  for (std::size_t i = 0; i < 3; ++i) roots_[i] = {first_.root[i], second_.root[i]};
+  finished_ = true;
+  refused_ = true;
+  roots_pending_ = exact_started_ = placed_ = false;
+  answer_ = Answer::maybe;
+  separation_bound_ = std::numeric_limits<double>::infinity();
+  lower_bound_ = 0;
+  inner_.clear(), leaves_.clear(), next_.clear();
+  settled_leaves_ = 0;
+  // An expanded pair leaves up to eight in its place, one level deeper in one of the trees.
+  const std::size_t deepest = std::size_t{kBlockWidth} * (a.tree.patch_depth + b.tree.patch_depth + 1) + 1;
+  if (!has_triangles() || deepest <= stack_room_) return true;
+  stack_.reset(new (std::nothrow) PatchPair[deepest]);
+  stack_room_ = stack_ ? deepest : 0;
+  return stack_ != nullptr;
 }
 
 bool NarrowPhase::reserve(std::size_t pairs) noexcept {

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "orchard/runtime/narrow_phase.h"
 #include "rigid_pair.h"
@@ -38,7 +39,7 @@ double sum_of_sizes(const Vec3& v) noexcept { return std::fabs(v[0]) + std::fabs
 
 }  // namespace
 
-Answer NarrowPhase::start(const Pose& a, const Pose& b) noexcept {
+void NarrowPhase::reset_counts() noexcept {
   inner_.clear();
   settled_leaves_ = 0;
   level_ = 0;
@@ -46,7 +47,15 @@ Answer NarrowPhase::start(const Pose& a, const Pose& b) noexcept {
   triangle_tests_ = work_ = 0;
   lower_bound_ = 0;
   out_of_room_ = exact_started_ = refused_ = false;
+}
 
+void NarrowPhase::find_exact_error(const Pose& first, const Pose& second) noexcept {
+  exact_error_ = (first.scale * first_.error + second.scale * second_.error) +
+                 1e-14 * (sum_of_sizes(first.translation) + sum_of_sizes(second.translation)) + kLeastError;
+}
+
+Answer NarrowPhase::start(const Pose& a, const Pose& b) noexcept {
+  reset_counts();
   // Nothing below holds otherwise, and the hulls' tables have no place for directions that are no directions.
   const Pose &first = arguments_exchanged_ ? b : a, &second = arguments_exchanged_ ? a : b;
   const detail::PoseLanes poses(first, second);
@@ -62,8 +71,7 @@ Answer NarrowPhase::start(const Pose& a, const Pose& b) noexcept {
   const auto sum = [&first, &second](double of_first, double of_second) {
     return first.scale * of_first + second.scale * of_second;
   };
-  exact_error_ = sum(first_.error, second_.error) +
-                 1e-14 * (sum_of_sizes(first.translation) + sum_of_sizes(second.translation)) + kLeastError;
+  find_exact_error(first, second);
   const double radii = sum(first_.radius, second_.radius);
   separation_bound_ = detail::pair_bound(distance + exact_error_, radii, sum(first_.reach, second_.reach),
                                          sum(first_.depth, second_.depth));
@@ -105,7 +113,8 @@ Answer NarrowPhase::refuse(const Pose& a, const Pose& b) noexcept {
 
 // What deeper levels need.
 void NarrowPhase::keep(const Pose& a, const Pose& b) noexcept {
-  exchanged_ = ordered_by_pose_ ? before(b, a) : arguments_exchanged_;
+  if (ordered_by_pose_ && !one_tree_) order_copies(a, b);
+  exchanged_ = one_tree_ ? before(b, a) : arguments_exchanged_;
   first_pose_ = exchanged_ ? b : a;
   second_pose_ = exchanged_ ? a : b;
   placed_ = false;
@@ -117,6 +126,15 @@ void NarrowPhase::keep(const Pose& a, const Pose& b) noexcept {
   triangle_first_ = triangle_second_ = kNoTriangle;
   stack_size_ = 0;
   pruned_gap_ = std::numeric_limits<double>::infinity();
+}
+
+// Copies of one tree change places together with their poses: should the fingerprints of different trees ever agree,
+// each keeps its own.
+void NarrowPhase::order_copies(const Pose& a, const Pose& b) noexcept {
+  if (before(b, a) == arguments_exchanged_) return;
+  arguments_exchanged_ = !arguments_exchanged_;
+  std::swap(first_, second_);
+  for (auto& pair : roots_) std::swap(pair[0], pair[1]);
 }
 
 // Along directions that what is in the way suggests (Chung and Wang 1996), as long as these get better. Times the

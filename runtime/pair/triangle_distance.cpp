@@ -72,4 +72,31 @@ NearestPoints nearest_points(const TrianglePoints& a, const TrianglePoints& b) n
   return {std::sqrt(best.square), best.p, best.q};
 }
 
+NearestPoints nearest_points(const Vec3& point, const TrianglePoints& t) noexcept {
+  Best best;
+  const TrianglePoints edge = {minus(t[1], t[0]), minus(t[2], t[1]), minus(t[0], t[2])};
+  for (std::size_t i = 0; i < 3; ++i) {
+    best.offer(point, along(t[i], edge[i], unit(dot(minus(point, t[i]), edge[i]), dot(edge[i], edge[i]))));
+  }
+  face(point, t, cross(edge[0], edge[1]), [&](const Vec3& on_t) { best.offer(point, on_t); });
+  return {std::sqrt(best.square), best.p, best.q};
+}
+
+NearestPoints nearest_points(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept {
+  Best best;
+  const TrianglePoints edge = {minus(t[1], t[0]), minus(t[2], t[1]), minus(t[0], t[2])};
+  const Vec3 way = minus(q, p);
+  for (std::size_t i = 0; i < 3; ++i) {
+    edges(p, way, t[i], edge[i], best);
+    // Parallel ones, too, from each corner.
+    best.offer(along(p, way, unit(dot(minus(t[i], p), way), dot(way, way))), t[i]);
+    for (const Vec3& end : {p, q}) {
+      best.offer(end, along(t[i], edge[i], unit(dot(minus(end, t[i]), edge[i]), dot(edge[i], edge[i]))));
+    }
+  }
+  const Vec3 normal = cross(edge[0], edge[1]);
+  for (const Vec3& end : {p, q}) face(end, t, normal, [&](const Vec3& on_t) { best.offer(end, on_t); });
+  return {std::sqrt(best.square), best.p, best.q};
+}
+
 }  // namespace orchard::runtime::detail

@@ -14,6 +14,11 @@ struct NearestPoints {
 inline constexpr double kParallelError = 2e-7;
 NearestPoints nearest_points(const TrianglePoints& a, const TrianglePoints& b) noexcept;
 
+// Of a triangle from a point, and from a segment that it does not intersect: as above, `on_a` being the point or on the
+// segment.
+NearestPoints nearest_points(const Vec3& point, const TrianglePoints& t) noexcept;
+NearestPoints nearest_points(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept;
+
 double longest_edge(const TrianglePoints& t) noexcept;
 
 }  // namespace orchard::runtime::detail

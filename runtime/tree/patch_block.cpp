@@ -1,9 +1,9 @@
-// One file: its three kernels share Eight and what is built of it, which has to become part of each of them for every
-// machine (machine.h), and which nothing else uses.
+// One file: its three kernels share what is built of Eight, which has to become part of each of them for every machine
+// (machine.h), and which nothing else uses.
 #include "patch_block.h"
 
+#include "eight.h"
 #include "machine.h"
-#include "vector_support.h"
 
 // Rounding. Patches: see Placement::margin in narrow_phase.cpp, (5). Triangles: any fixed vector serves as an axis,
 // so an axis itself needs no accuracy; only the projections do. Along a coordinate, points placed to within sigma that
@@ -20,44 +20,6 @@ namespace {
 constexpr float kSineError = 0x1p-17f;
 constexpr float kLeastDistance = 1e-18f;  // keeps a quotient finite; far below every margin
 constexpr float kLeastRoom = 0x1p-110f;   // to add to the room along an axis, in units of Placement::whole
-
-template <typename Kind>
-struct Eight {
-  using Floats = typename Kind::Floats;
-  using Mask = typename Kind::Mask;
-  struct Vectors {
-    Floats x, y, z;
-  };
-
-  ORCHARD_INLINE static Floats all(float value) noexcept { return spread<Floats>(value); }
-  ORCHARD_INLINE static Floats smaller(const Floats& a, const Floats& b) noexcept { return Kind::choose(a < b, a, b); }
-  ORCHARD_INLINE static Floats larger(const Floats& a, const Floats& b) noexcept { return Kind::choose(a < b, b, a); }
-  ORCHARD_INLINE static Floats size(const Floats& a) noexcept { return larger(a, -a); }
-  ORCHARD_INLINE static Floats dot(const Vectors& a, const Vectors& b) noexcept {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-  }
-  ORCHARD_INLINE static Vectors minus(const Vectors& a, const Vectors& b) noexcept {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-  }
-  ORCHARD_INLINE static Vectors cross(const Vectors& a, const Vectors& b) noexcept {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-  }
-  ORCHARD_INLINE static Floats one_norm(const Vectors& a) noexcept { return size(a.x) + size(a.y) + size(a.z); }
-  ORCHARD_INLINE static Vectors times(const Vectors& v, const Floats& s) noexcept {
-    return {v.x * s, v.y * s, v.z * s};
-  }
-  ORCHARD_INLINE static Vectors turn(const std::array<float, 9>& r, const Vectors& v) noexcept {
-    return {all(r[0]) * v.x + all(r[1]) * v.y + all(r[2]) * v.z, all(r[3]) * v.x + all(r[4]) * v.y + all(r[5]) * v.z,
-            all(r[6]) * v.x + all(r[7]) * v.y + all(r[8]) * v.z};
-  }
-  ORCHARD_INLINE static Vectors move(const Placement& p, const Vectors& v) noexcept {
-    const Vectors turned = turn(p.rotation, v);
-    return {turned.x + all(p.translation[0]), turned.y + all(p.translation[1]), turned.z + all(p.translation[2])};
-  }
-  ORCHARD_INLINE static Vectors corner(const TriangleBlock& block, std::size_t k) noexcept {
-    return {load<Floats>(block.corner[k][0]), load<Floats>(block.corner[k][1]), load<Floats>(block.corner[k][2])};
-  }
-};
 
 template <typename Kind>
 ORCHARD_INLINE void find_gaps(const Patch& single, const PatchBlock& lanes, const Placement* placement, float margin,
@@ -271,7 +233,7 @@ ORCHARD_INLINE std::uint64_t find_candidates(const LeafPair& pair, const Placeme
 // 12 u D and the points' own errors: twice the margin is plenty.
 template <typename Kind>
 ORCHARD_INLINE void find_triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows,
-                                       const Placement& placement, const std::array<float, 3>& direction,
+                                       const Placement& placement, const std::array<float, 3>& direction, float reach,
                                        TriangleGaps& result) noexcept {
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
@@ -302,8 +264,19 @@ ORCHARD_INLINE void find_triangle_gaps(const TriangleBlock& lanes, const Triangl
   const OneByOne<Kind> normals(row_normal),
       corners[3] = {OneByOne<Kind>(row[0]), OneByOne<Kind>(row[1]), OneByOne<Kind>(row[2])};
   const Floats third = E::all(1.0f / 3), margin = E::all(2 * placement.margin * placement.unit);
+  const Box<Kind> lane_box = box_of<Kind>(lane, E::all(0.0f)), row_boxes = box_of<Kind>(row, E::all(0.0f));
+  const OneByOne<Kind> lows(row_boxes.low), highs(row_boxes.high);
   for (std::uint32_t r = 0; r < kBlockWidth; ++r) {
     if (rows.triangle[r] == kNoTriangle) break;
+    const Vectors low = lows[r], high = highs[r];
+    const Floats apart = E::larger(E::larger(E::larger(lane_box.low.x - high.x, low.x - lane_box.high.x),
+                                             E::larger(lane_box.low.y - high.y, low.y - lane_box.high.y)),
+                                   E::larger(lane_box.low.z - high.z, low.z - lane_box.high.z));
+    const Floats by_boxes = (apart - margin) * whole;
+    if (Kind::bits(by_boxes <= E::all(reach)) == 0) {
+      store(by_boxes, result.lower[r]);
+      continue;
+    }
     const Vectors p[3] = {corners[0][r], corners[1][r], corners[2][r]};
     const auto middle = [&](const Floats& a, const Floats& b, const Floats& c)
                             ORCHARD_INLINE_LAMBDA -> Floats { return (a + b + c) * third; };
@@ -313,7 +286,7 @@ ORCHARD_INLINE void find_triangle_gaps(const TriangleBlock& lanes, const Triangl
                  {middle(p[0].x, p[1].x, p[2].x), middle(p[0].y, p[1].y, p[2].y), middle(p[0].z, p[1].z, p[2].z)}));
     const Floats gap = E::larger(E::larger(gap_along(normals[r], p), gap_along(lane_normal, p)),
                                  E::larger(gap_along(line, p), gap_along(given, p)));
-    store((gap - margin) * whole, result.lower[r]);
+    store(E::larger((gap - margin) * whole, by_boxes), result.lower[r]);
   }
 }
 
@@ -348,8 +321,8 @@ void patch_gaps_scalar(const Patch& single, const PatchBlock& lanes, const Place
 }
 
 void triangle_gaps_scalar(const TriangleBlock& lanes, const TriangleBlock& rows, const Placement& placement,
-                          const std::array<float, 3>& direction, TriangleGaps& result) noexcept {
-  find_triangle_gaps<PlainFloats>(lanes, rows, placement, direction, result);
+                          const std::array<float, 3>& direction, float reach, TriangleGaps& result) noexcept {
+  find_triangle_gaps<PlainFloats>(lanes, rows, placement, direction, reach, result);
 }
 
 std::uint64_t triangle_candidates_scalar(const LeafPair& pair, const Placement& placement) noexcept {
@@ -358,22 +331,25 @@ std::uint64_t triangle_candidates_scalar(const LeafPair& pair, const Placement& 
 
 #ifdef ORCHARD_VECTORS
 using Widest = VectorFloats;
+using Base = FourFloats;
 #else
 using Widest = PlainFloats;
+using Base = PlainFloats;
 #endif
 
 void patch_gaps(const Patch& single, const PatchBlock& lanes, const Placement* placement, float margin,
                 PatchGaps& result) noexcept {
-  PerMachine<find_gaps<Widest>>::call(single, lanes, placement, margin, result);
+  PerMachine<find_gaps<Widest>, find_gaps<Base>>::call(single, lanes, placement, margin, result);
 }
 
 void triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows, const Placement& placement,
-                   const std::array<float, 3>& direction, TriangleGaps& result) noexcept {
-  PerMachine<find_triangle_gaps<Widest>>::call(lanes, rows, placement, direction, result);
+                   const std::array<float, 3>& direction, float reach, TriangleGaps& result) noexcept {
+  PerMachine<find_triangle_gaps<Widest>, find_triangle_gaps<Base>>::call(lanes, rows, placement, direction, reach,
+                                                                         result);
 }
 
 std::uint64_t triangle_candidates(const LeafPair& pair, const Placement& placement) noexcept {
-  return PerMachine<find_candidates<Widest>>::call(pair, placement);
+  return PerMachine<find_candidates<Widest>, find_candidates<Base>>::call(pair, placement);
 }
 
 }  // namespace orchard::runtime::detail

@@ -49,11 +49,12 @@ std::uint64_t triangle_candidates_scalar(const LeafPair& pair, const Placement& 
 struct TriangleGaps {
   alignas(32) std::array<std::array<float, kBlockWidth>, kBlockWidth> lower;  // [row][lane]
 };
-// `direction`: one more axis to try, of length 1 at most.
+// `direction`: one more axis to try, of length 1 at most. Rows that are all farther than `reach` get no closer bounds
+// than need be to see that.
 void triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows, const Placement& placement,
-                   const std::array<float, 3>& direction, TriangleGaps& result) noexcept;
+                   const std::array<float, 3>& direction, float reach, TriangleGaps& result) noexcept;
 void triangle_gaps_scalar(const TriangleBlock& lanes, const TriangleBlock& rows, const Placement& placement,
-                          const std::array<float, 3>& direction, TriangleGaps& result) noexcept;
+                          const std::array<float, 3>& direction, float reach, TriangleGaps& result) noexcept;
 
 TrianglePoints points_of(const TriangleBlock& block, std::uint32_t lane) noexcept;
 TrianglePoints moved_points_of(const TriangleBlock& block, std::uint32_t lane, const Pose& pose) noexcept;

@@ -12,6 +12,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "guarded.h"
+
 namespace orchard::runtime {
 namespace {
 
@@ -178,6 +180,11 @@ LoadStatus read_up_to(std::FILE* stream, std::uint64_t size, std::vector<std::by
   return LoadStatus::ok;
 }
 
+template <typename Work>
+LoadStatus unless_out_of_memory(const Work& work) noexcept {
+  return detail::guarded(work, [] { return LoadStatus::out_of_memory; });
+}
+
 }  // namespace
 
 const char* message(LoadStatus status) noexcept {
@@ -252,7 +259,7 @@ LoadStatus load(std::span<const std::byte> file, PackedSphereTree& out) noexcept
   if (const LoadStatus status = check_file(file); status != LoadStatus::ok) return status;
   std::array<std::uint64_t, kSections> counts{};
   if (const LoadStatus status = check_table(file, counts); status != LoadStatus::ok) return status;
-  try {
+  return unless_out_of_memory([&] {
     PackedSphereTree tree;
     std::uint64_t offset = kHeaderSize;
     each_section(tree, [&](std::size_t i, auto& elements) {
@@ -265,9 +272,7 @@ LoadStatus load(std::span<const std::byte> file, PackedSphereTree& out) noexcept
     if (structure_fault(tree) != nullptr) return LoadStatus::invalid_structure;
     out = std::move(tree);
     return LoadStatus::ok;
-  } catch (const std::bad_alloc&) {
-    return LoadStatus::out_of_memory;
-  }
+  });
 }
 
 LoadStatus view(std::span<const std::byte> file, TreeView& out) noexcept {
@@ -295,7 +300,7 @@ LoadStatus view(std::span<const std::byte> file, TreeView& out) noexcept {
 LoadStatus load_file(const char* path, PackedSphereTree& out) noexcept {
   const std::unique_ptr<std::FILE, Close> stream(std::fopen(path, "rb"));
   if (!stream) return LoadStatus::cannot_open;
-  try {
+  return unless_out_of_memory([&] {
     std::vector<std::byte> bytes;
     if (const LoadStatus status = read_up_to(stream.get(), kPreambleSize, bytes); status != LoadStatus::ok)
       return status;
@@ -305,9 +310,7 @@ LoadStatus load_file(const char* path, PackedSphereTree& out) noexcept {
     const std::uint64_t wanted = promised < UINT64_MAX ? promised + 1 : promised;
     if (const LoadStatus status = read_up_to(stream.get(), wanted, bytes); status != LoadStatus::ok) return status;
     return load(bytes, out);
-  } catch (const std::bad_alloc&) {
-    return LoadStatus::out_of_memory;
-  }
+  });
 }
 
 }  // namespace orchard::runtime

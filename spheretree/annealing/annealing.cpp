@@ -9,6 +9,7 @@
 #include "orchard/covering/incremental_cover.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/random.h"
+#include "orchard/geometry/sphere_distance.h"
 #include "orchard/geometry/tolerance.h"
 #include "orchard/spheretree/redundancy.h"
 #include "random_direction.h"
@@ -39,16 +40,38 @@ class Schedule {
   void run(int iterations) {
     double temperature = first_temperature();
     for (int i = 0; i < iterations && temperature > 0; ++i, temperature *= options_.cooling) {
-      int accepted = 0, rejected = 0;
-      while (accepted < options_.max_accepted && rejected < options_.max_rejected)
-        (try_change(temperature) ? accepted : rejected) += 1;
+      int accepted = 0, rejected = 0, uncovering = 0;
+      while (accepted < options_.max_accepted && rejected < options_.max_rejected &&
+             uncovering < options_.max_uncovering) {
+        switch (try_change(temperature)) {
+          case Outcome::accepted:
+            ++accepted;
+            break;
+          case Outcome::rejected:
+            ++rejected;
+            break;
+          case Outcome::uncovering:
+            ++uncovering;
+            break;
+        }
+      }
     }
   }
 
  private:
+  enum class Outcome { accepted, rejected, uncovering };
+
   SphereNode& child(Index k) { return tree_.nodes[parent_.first_child + k]; }
   double energy_of(const Sphere& ball) const {
-    return std::max(0.0, ball.radius + surface_.signed_distance(ball.center));
+    switch (options_.distance) {
+      case SphereEnergy::samples:
+        return sampled_sphere_distance(surface_, ball);
+      case SphereEnergy::corrected_samples:
+        return corrected_sphere_distance(surface_, ball);
+      case SphereEnergy::lemma:
+        break;
+    }
+    return std::max(0.0, convex_sphere_distance(surface_, ball));
   }
   double energy_of_set() const {
     double energy = 0;
@@ -74,28 +97,32 @@ class Schedule {
       sum += std::abs(energy_of_set() - energy_);
       energies_[k] = before;
     }
-    return options_.first_trials > 0 ? -sum / options_.first_trials / std::log(options_.first_acceptance) : 0;
+    return -sum / options_.first_trials / std::log(options_.first_acceptance);
   }
 
-  // The energy costs less than the cover, so it is asked first.
-  bool try_change(double temperature) {
+  // As written: first whether the surface stays covered, of what would not be accepted, too; for what is not covered is
+  // tried again, and must not count as rejected.
+  Outcome try_change(double temperature) {
     ++report_.changes;
     const auto k = static_cast<Index>(random_.below(parent_.child_count));
+    const Index node = parent_.first_child + k;
     const Sphere next = changed(child(k).sphere);
+    if (!cover_.try_change(node, next)) {
+      ++report_.uncovering;
+      return Outcome::uncovering;
+    }
     const double before = energies_[k];
     energies_[k] = energy_of(next);
     const double energy = energy_of_set(), rise = energy - energy_;
-    const bool wanted = rise <= 0 || random_.uniform() < std::exp(-rise / temperature);
-    const bool covers = wanted && cover_.try_change(parent_.first_child + k, next);
-    report_.uncovering += wanted && !covers;
-    if (!covers) {
+    if (rise > 0 && random_.uniform() >= std::exp(-rise / temperature)) {
       energies_[k] = before;
-      return false;
+      cover_.change(node, child(k).sphere);
+      return Outcome::rejected;
     }
     ++report_.accepted;
     child(k).sphere = next;
     energy_ = energy;
-    return true;
+    return Outcome::accepted;
   }
 
   SphereTree& tree_;
@@ -226,7 +253,9 @@ void check(const AnnealingOptions& o) {
     throw InputError("annealing: moves and scales must be positive, the least scale first");
   if (!(o.cooling > 0) || !(o.cooling < 1) || !(o.first_acceptance > 0) || !(o.first_acceptance < 1))
     throw InputError("annealing: the cooling and the first acceptance must lie between 0 and 1");
-  if (o.max_accepted < 1 || o.max_rejected < 1) throw InputError("annealing: at least one change at each temperature");
+  if (o.max_accepted < 1 || o.max_rejected < 1 || o.max_uncovering < 1)
+    throw InputError("annealing: at least one change at each temperature");
+  if (o.first_trials < 1) throw InputError("annealing: at least one trial for the first temperature");
 }
 
 }  // namespace

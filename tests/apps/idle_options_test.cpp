@@ -91,6 +91,8 @@ TEST(IdleOptions, BuildRefusesWhatItsMethodInputOrOtherFlagsLeaveIdle) {
        {{"--method", "annealing", "--objective", "mean"}, "it is for tightened"},
        {{"--closing", "growth"}, "--closing has no effect on --method tightened; it is for merging"},
        {{"--energy", "sum"}, "it is for annealing"},
+       {{"--anneal-move", "0.1"}, "--anneal-move has no effect on --method tightened; it is for annealing"},
+       {{"--method", "octree", "--anneal-cooling", "0.8"}, "it is for annealing"},
        {{"--method", "octree", "--gaps", "none"}, "--gaps has no effect on --method octree, which builds from no"},
        {{"--method", "octree", "--samples", "500"}, "it is for tightened and merging"},
        {{"--method", "annealing", "--prune-angle", "20"}, "--prune-angle has no effect on --method annealing"},
@@ -99,7 +101,7 @@ TEST(IdleOptions, BuildRefusesWhatItsMethodInputOrOtherFlagsLeaveIdle) {
        {{"--diagram", file, "--gaps", "none"}, "--gaps has no effect with --diagram"},
        {{"--from-axis", file, "--topology", "free"}, "--topology has no effect with --from-axis"},
        {{"--gaps", "none", "--max-passes", "3"}, "--max-passes has no effect with --gaps none"},
-       {{"--up", "z"}, "--up requires --picture"},
+       {{"--no-views", "--up", "z"}, "--up has no effect with --no-views"},
        {{"--wrap-alpha", "0.02"}, "--wrap-alpha requires --wrap"},
        {{"--strict", "--wrap-alpha", "0.02"}, "--wrap-alpha requires --wrap"}});
   EXPECT_EQ(here.run(test::quick_build(mesh, (here / "out").string(), {"--seed", "3"})).exit_code, 0);

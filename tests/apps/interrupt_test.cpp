@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "program.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 
 namespace orchard {
@@ -131,11 +132,11 @@ TEST(Interrupt, AtAnyMomentLeavesAllOrNothing) {
   const std::size_t whole = picturing.here.files("out").size();
   fs::remove_all(picturing.out);
   int interrupted = 0;
-  constexpr int kMoments = 8;
-  for (int moment = 1; moment <= kMoments; ++moment) {
+  const int moments = 4 * static_cast<int>(test::more());
+  for (int moment = 1; moment <= moments; ++moment) {
     SCOPED_TRACE(moment);
     Running program(picturing.arguments(), {"TMPDIR=" + picturing.temporary.string()}, picturing.here / "err");
-    std::this_thread::sleep_for(duration * moment / kMoments);
+    std::this_thread::sleep_for(duration * moment / moments);
     program.send_to_group(SIGINT);
     const int code = program.wait();
     EXPECT_TRUE(program.ended());

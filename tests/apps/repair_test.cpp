@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
@@ -235,6 +236,42 @@ TEST(Repair, OfASolidIsNotWritten) {
   EXPECT_FALSE(here.files("out").contains("l-repaired.obj"));
   EXPECT_EQ(json::parse(here.files("out").at("l.json"))["repair"]["distance"].get<double>(), 0);
   EXPECT_NE(run.out.find("conservative: every point of the surface is certified"), std::string::npos);
+}
+
+// A ball without its cap, down to this height.
+TriangleMesh open_ball(double height) {
+  TriangleMesh mesh = test::icosphere(4);
+  std::erase_if(mesh.triangles, [&](const std::array<Index, 3>& t) {
+    return std::ranges::all_of(t, [&](Index v) { return mesh.vertices[v].z() > height; });
+  });
+  return mesh;
+}
+
+TEST(FillHoles, NamesTheLimitAndTheWayOut) {
+  const Workplace here;
+  const std::string mesh = here.add("open.obj", open_ball(0.5)), out = (here / "out").string();
+  const Finished refused = here.run(test::quick_build(mesh, out));
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_TRUE(test::is_one_line_error(refused.err)) << refused.err;
+  for (const char* part : {"1 hole left open", "bounding radii across", "wider than 0.5 or of more than 100 edges"})
+    EXPECT_NE(refused.err.find(part), std::string::npos) << refused.err;
+  // What it says to do does it.
+  const std::size_t at = refused.err.find("--fill-holes ");
+  ASSERT_NE(at, std::string::npos) << refused.err;
+  const std::string size = refused.err.substr(at + 13, refused.err.find(' ', at + 13) - at - 13);
+  const Finished filled = here.run(test::quick_build(mesh, out, {"--fill-holes", size}));
+  EXPECT_EQ(filled.exit_code, 0) << filled.err;
+  EXPECT_NE(filled.out.find("filled 1 hole"), std::string::npos) << filled.out;
+  const Finished inspected = here.run({"inspect", mesh});
+  EXPECT_NE(inspected.out.find("--fill-holes " + size), std::string::npos) << inspected.out;
+}
+
+TEST(FillHoles, LeavesOpenWhatIsWider) {
+  const Workplace here;
+  const std::string mesh = here.add("open.obj", open_ball(0.95)), out = (here / "out").string();
+  EXPECT_EQ(here.run(test::quick_build(mesh, out)).exit_code, 2) << "it is 0.6 wide";
+  EXPECT_EQ(here.run(test::quick_build(mesh, out, {"--fill-holes", "0.3"})).exit_code, 2);
+  EXPECT_EQ(here.run(test::quick_build(mesh, out, {"--fill-holes", "0.9"})).exit_code, 0);
 }
 
 }  // namespace

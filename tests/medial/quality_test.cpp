@@ -40,7 +40,7 @@ TEST(MedialQuality, OfTheBallOfASphereIsThatOfTheMesh) {
   const MedialQuality quality = quality_of(test::known_sphere(4));
   // The inscribed mesh lies below the ball by its sagitta, and the ball is as much too large.
   const double sagitta = 0.0023;
-  EXPECT_EQ(quality.coverage.max, 0.0);
+  EXPECT_LT(quality.coverage.max, 1e-15);
   EXPECT_LT(quality.protrusion.max, sagitta / quality.diagonal);
   EXPECT_GT(quality.protrusion.max, 0.2 * sagitta / quality.diagonal);
   EXPECT_LT(quality.radius_error.max, sagitta / quality.diagonal);
@@ -58,6 +58,33 @@ TEST(MedialQuality, OfTheAxisOfACylinderIsNearlyPerfect) {
   EXPECT_LT(quality.radius_error.max, 1e-12);
   EXPECT_LT(quality.centredness.max, 2e-3);
   EXPECT_EQ(quality.found, quality.wanted);
+}
+
+// One ball in a box: what is farthest is a corner, which no random point is.
+TEST(MedialQuality, FindsTheLargestCoverageErrorWhereNoSampleIs) {
+  const test::KnownAxis box = test::known_box({1, 2, 3});
+  const Point center = Surface(box.solid).bounding_box().center();
+  MedialMesh ball{.centers = {center}, .radii = {0.5}, .edges = {}, .triangles = {}};
+  const MedialQuality quality = medial_quality(Surface(box.solid), ball, kFew);
+  const double exact = (std::sqrt(14.0) / 2 - 0.5) / quality.diagonal;
+  EXPECT_NEAR(quality.coverage.max, exact, 1e-12);
+  EXPECT_GE(quality.coverage_upper, exact - 1e-12);
+  EXPECT_LT(quality.coverage_upper, exact + 1.1e-5);
+  EXPECT_GE(quality.hausdorff.max, exact - 1e-12);
+  EXPECT_EQ(quality.inner_coverage.max, 0) << "the only ball is a border";
+}
+
+// Two balls on a line, and all between them: outside of the middle of a side, the nearest ball is at no border.
+TEST(MedialQuality, TellsCoverageErrorsAtBordersFromThoseWithin) {
+  const test::KnownAxis box = test::known_box({1, 2, 3});
+  const Point center = Surface(box.solid).bounding_box().center();
+  const Vector half(0, 0, 1.25);
+  const MedialMesh wire{
+      .centers = {center - half, center + half}, .radii = {0.25, 0.25}, .edges = {{0, 1}}, .triangles = {}};
+  const MedialQuality quality = medial_quality(Surface(box.solid), wire, kFew);
+  EXPECT_NEAR(quality.inner_coverage.max, (std::sqrt(1.25) - 0.25) / quality.diagonal, 0.01);
+  EXPECT_LE(quality.inner_coverage.max, (std::sqrt(1.25) - 0.25) / quality.diagonal);
+  EXPECT_NEAR(quality.coverage.max, (std::sqrt(1.25 + 0.0625) - 0.25) / quality.diagonal, 1e-12);
 }
 
 TEST(MedialQuality, OfTheCircleOfATorusHasItsLoop) {

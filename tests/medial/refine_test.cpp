@@ -21,6 +21,7 @@
 #include "outlines.h"
 #include "quality/reconstruction.h"
 #include "refine/free_extension.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 
 namespace orchard {
@@ -64,7 +65,7 @@ TEST(RefineAxis, BallsTouchTheSurfaceAtTheirContactsAndHoldNothingOfIt) {
   for (const Solid& solid : solids()) {
     SCOPED_TRACE(solid.name);
     const Surface surface(solid.mesh);
-    const MedialBuild build = build_medial_axis(surface, options_for(500, 7));
+    const MedialBuild build = build_medial_axis(surface, options_for(300, 7));
     const MedialAxis& axis = build.axis;
     const double tolerance = 1e-9 * diagonal(surface);
     Index exact = 0;
@@ -86,7 +87,7 @@ TEST(RefineAxis, BallsTouchTheSurfaceAtTheirContactsAndHoldNothingOfIt) {
 TEST(RefineAxis, KeepsTheTopologyOfTheSolid) {
   for (const Solid& solid : solids()) {
     const Surface surface(solid.mesh);
-    for (const Index points : {300u, 1000u}) {
+    for (const Index points : test::more() > 1 ? std::vector<Index>{1000, 3000} : std::vector<Index>{300}) {
       SCOPED_TRACE(std::string(solid.name) + ", " + std::to_string(points));
       const MedialMesh mesh = medial_mesh(build_medial_axis(surface, options_for(points)).axis);
       EXPECT_EQ(topology(mesh), solid_topology(surface));
@@ -161,6 +162,25 @@ TEST(RefineAxis, PointsAtOpenPlacesCloseThem) {
   EXPECT_EQ(closed.sampling.size(), closed.points + closed.open_places + closed.gap_repair.points_added);
   EXPECT_LT(mean_gap(surface, closed.axis), 0.9 * mean_gap(surface, first.axis));
   EXPECT_EQ(topology(medial_mesh(closed.axis)), solid_topology(surface));
+}
+
+TEST(RefineAxis, RepairPassesAreThoseOfTheLastRound) {
+  const Surface surface(test::extruded(test::thin_bridge(0.05), 1));
+  MedialBuildOptions options = options_for(300);
+  options.open_rounds = 2;
+  const MedialBuild build = build_medial_axis(surface, options);
+  ASSERT_GT(build.open_places, 0u);
+  ASSERT_FALSE(build.gap_repair.passes.empty());
+  std::vector<int> expected(build.sampling.size(), 0);
+  std::size_t at = 0;
+  for (; at < expected.size(); ++at) expected[at] = build.sampling.origins[at] == PointOrigin::repair ? -1 : 0;
+  for (std::size_t pass = build.gap_repair.passes.size(); pass-- > 0;) {
+    const GapRepairPass& made = build.gap_repair.passes[pass];
+    for (Index i = made.added_by_projection + made.added_by_snapping + made.added_at_necks; i > 0; --i)
+      expected[--at] = static_cast<int>(pass + 1);
+  }
+  EXPECT_LT(build.points, at) << "points of earlier rounds lie between";
+  EXPECT_EQ(repair_passes(build), expected);
 }
 
 TEST(RefineAxis, OwnPointsAreLeftAsTheyAre) {

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -111,6 +112,156 @@ TEST(CInterface, LoadsNothingFromNothing) {
   const char* error = nullptr;
   EXPECT_EQ(orchard_tree_load(nullptr, 0, &error), nullptr);
   EXPECT_NE(error, nullptr);
+}
+
+TEST(CInterface, TakesQuaternionsAsTheOtherHeadersDo) {
+  const double wxyz[4] = {0.3, -2, 0.5, 1}, translation[3] = {1, 2, 3};
+  orchard_pose pose;
+  ASSERT_EQ(orchard_pose_from_quaternion(wxyz, translation, &pose), 1);
+  const auto expected = orchard::runtime::pose_from_quaternion({0.3, -2, 0.5, 1}, {1, 2, 3});
+  ASSERT_TRUE(expected);
+  const orchard_pose other = in_c(*expected);
+  EXPECT_EQ(std::memcmp(&pose, &other, sizeof pose), 0);
+  EXPECT_EQ(orchard_is_rigid(&pose), 1);
+  const double zero[4] = {0, 0, 0, 0}, infinite[4] = {1, HUGE_VAL, 0, 0}, beyond[3] = {NAN, 0, 0};
+  for (const auto& [q, t] : {std::pair{zero, translation}, {infinite, translation}, {wxyz, beyond}}) {
+    EXPECT_EQ(orchard_pose_from_quaternion(q, t, &pose), 0);
+    EXPECT_EQ(std::memcmp(&pose, &other, sizeof pose), 0) << "it was changed";
+  }
+}
+
+TEST(CInterface, SaysItsVersion) {
+  EXPECT_STREQ(orchard_version(), ORCHARD_VERSION_STRING);
+  const std::string text = std::to_string(ORCHARD_VERSION_MAJOR) + "." + std::to_string(ORCHARD_VERSION_MINOR) + "." +
+                           std::to_string(ORCHARD_VERSION_PATCH);
+  EXPECT_EQ(text, ORCHARD_VERSION_STRING);
+  static_assert(ORCHARD_VERSION_NUMBER >= ORCHARD_MAKE_VERSION(0, 1, 0));
+  static_assert(ORCHARD_MAKE_VERSION(0, 2, 0) > ORCHARD_MAKE_VERSION(0, 1, 999));
+}
+
+constexpr orchard_budget kNoBudget = {ORCHARD_NO_LIMIT, ORCHARD_NO_LIMIT};
+
+struct Work {
+  Work() : workspace(orchard_workspace_new()) {}
+  ~Work() { orchard_workspace_free(workspace); }
+  orchard_workspace* workspace;
+};
+
+orchard_pose at(double x, double y, double z) { return {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {x, y, z}, 1}; }
+
+TEST(CInterface, HasContactsClearanceAndTimesOfImpact) {
+  const Tree cube(box({-1, -1, -1}, {1, 1, 1}));
+  const Work work;
+  const orchard_pose still = orchard_identity(), near = at(1.99, 0.2, 0.1), far = at(6, 0, 0);
+  const orchard_manifold m = orchard_contacts(work.workspace, cube.tree, &still, cube.tree, &near);
+  EXPECT_EQ(m.answer, ORCHARD_YES);
+  EXPECT_EQ(m.count, 4u);
+  EXPECT_EQ(m.complete, 1);
+  EXPECT_NEAR(m.normal[0], 1, 1e-9);
+  EXPECT_NEAR(m.depth, 0.01, 1e-9);
+  EXPECT_LT(m.triangles[0][0], 12u);
+  EXPECT_EQ(orchard_contacts(work.workspace, cube.tree, &still, cube.tree, &far).answer, ORCHARD_NO);
+  EXPECT_EQ(orchard_closer_than(work.workspace, cube.tree, &still, cube.tree, &far, 3.9), 0);
+  EXPECT_EQ(orchard_closer_than(work.workspace, cube.tree, &still, cube.tree, &far, 4.1), 1);
+  EXPECT_EQ(orchard_closer_than(work.workspace, cube.tree, &still, cube.tree, &far, std::nan("")), -1);
+
+  orchard_travel rest{}, moving{};
+  rest.start = still, moving.start = far;
+  moving.velocity[0] = -8;
+  const orchard_impact hit =
+      orchard_time_of_impact(work.workspace, cube.tree, &rest, cube.tree, &moving, 0, 1, 1e-6, 0, kNoBudget);
+  EXPECT_EQ(hit.answer, ORCHARD_YES);
+  EXPECT_TRUE(hit.finished && !hit.refused);
+  EXPECT_NEAR(hit.t0, 0.5, 1e-6);
+  // The same motion by a function, and one that fails.
+  orchard_travel by_function = moving;
+  by_function.velocity[0] = 0;
+  by_function.speed = 8;
+  by_function.pose_at = [](const void* context, double time, orchard_pose* pose) {
+    *pose = *static_cast<const orchard_pose*>(context);
+    pose->translation[0] -= 8 * time;
+    return 1;
+  };
+  by_function.context = &far;
+  EXPECT_NEAR(
+      orchard_time_of_impact(work.workspace, cube.tree, &rest, cube.tree, &by_function, 0, 1, 1e-6, 0, kNoBudget).t0,
+      0.5, 1e-6);
+  by_function.pose_at = [](const void*, double, orchard_pose*) { return 0; };
+  EXPECT_TRUE(
+      orchard_time_of_impact(work.workspace, cube.tree, &rest, cube.tree, &by_function, 0, 1, 1e-6, 0, kNoBudget)
+          .refused);
+  const double middle[3] = {0, 0, 0};
+  const orchard_travel between = orchard_travel_between(&far, &still, middle);
+  EXPECT_NEAR(between.velocity[0], -6, 1e-12);
+}
+
+TEST(CInterface, HasShapesAndTheirTrees) {
+  const Tree cube(box({-1, -1, -1}, {1, 1, 1}));
+  const Work work;
+  const orchard_pose still = orchard_identity(), aside = at(1.4, 0, 0), away = at(3, 0, 0);
+  const double half[3] = {0.5, 0.5, 0.5}, up[3] = {0, 0, 2}, origin[3] = {0, 0, 0}, end[3] = {0, 0, 1};
+  EXPECT_EQ(orchard_box_touches(cube.tree, &still, half, &aside), 1);
+  EXPECT_EQ(orchard_box_touches(cube.tree, &still, half, &away), 0);
+  EXPECT_EQ(orchard_box_touches(cube.tree, &still, origin, &away), -1);
+  EXPECT_NEAR(orchard_plane_distance(cube.tree, &still, up, -1), -0.5, 1e-12);
+  const double corners[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const uint32_t facets[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+  EXPECT_EQ(orchard_hull_touches(cube.tree, &still, corners[0], 4, facets[0], 4, &aside), 0);
+  const orchard_pose close = at(0.9, 0, 0);
+  EXPECT_EQ(orchard_hull_touches(cube.tree, &still, corners[0], 4, facets[0], 4, &close), 1);
+  orchard_tree* const trees[] = {orchard_point_tree(origin), orchard_segment_tree(origin, end), orchard_box_tree(half),
+                                 orchard_hull_tree(corners[0], 4)};
+  for (orchard_tree* tree : trees) {
+    ASSERT_NE(tree, nullptr);
+    EXPECT_EQ(orchard_closer_than(work.workspace, cube.tree, &still, tree, &away, 2.1), 1);
+    EXPECT_EQ(orchard_closer_than(work.workspace, cube.tree, &still, tree, &away, 1.4), 0);
+    orchard_tree_close(tree);
+  }
+  EXPECT_EQ(orchard_hull_tree(corners[0], 3), nullptr);
+  double distance = 0, point[3];
+  uint32_t triangle = 0;
+  EXPECT_EQ(orchard_nearest_point(cube.tree, &still, away.translation, 5, &distance, point, &triangle), 1);
+  EXPECT_EQ(distance, 2);
+  EXPECT_EQ(point[0], 1);
+  EXPECT_EQ(orchard_nearest_point(cube.tree, &still, away.translation, 1, nullptr, nullptr, nullptr), 0);
+}
+
+TEST(CInterface, AsksManyThingsAtOnce) {
+  const Tree cube(box({-1, -1, -1}, {1, 1, 1}));
+  const double origins[3][3] = {{5, 0, 0}, {5, 3, 0}, {0, 0, 9}},
+               directions[3][3] = {{-1, 0, 0}, {-1, 0, 0}, {0, 0, -2}};
+  int hit[3];
+  double along[3];
+  const orchard_pose still = orchard_identity();
+  orchard_cast_rays(cube.tree, &still, origins[0], directions[0], 100, 3, hit, along);
+  EXPECT_EQ(hit[0], 1);
+  EXPECT_EQ(along[0], 4);
+  EXPECT_EQ(hit[1], 0);
+  EXPECT_EQ(hit[2], 1);
+  EXPECT_EQ(along[2], 4);
+
+  std::vector<orchard_pose> a(100, still), b;
+  const std::vector<const orchard_tree*> trees(100, cube.tree);
+  for (int i = 0; i < 100; ++i) b.push_back(at(0.04 * i, 0.3, 0));
+  const Work first, second;
+  orchard_workspace* const workspaces[] = {first.workspace, second.workspace};
+  std::vector<orchard_verdict> verdicts(100);
+  const orchard_executor backward = {[](void*, size_t count, void (*job)(void*, size_t), void* data) {
+                                       while (count-- > 0) job(data, count);
+                                     },
+                                     nullptr, 2};
+  orchard_collide_all(workspaces, 2, &backward, trees.data(), a.data(), trees.data(), b.data(), 100, verdicts.data());
+  orchard_pair* const pair = orchard_pair_new(cube.tree, cube.tree);
+  for (std::size_t i = 0; i < 100; ++i) {
+    EXPECT_EQ(verdicts[i].answer, orchard_collide(pair, &a[i], &b[i], kNoBudget).answer) << i;
+    EXPECT_EQ(verdicts[i].finished, 1);
+    EXPECT_EQ(orchard_collide_again(pair, &a[i], &b[i]).answer, verdicts[i].answer) << i;
+  }
+  EXPECT_EQ(orchard_start(pair, &a[60], &b[20]).answer, ORCHARD_MAYBE);
+  orchard_verdict stepped{};
+  for (int i = 0; i < 10 && !stepped.finished; ++i) stepped = orchard_refine(pair, kNoBudget);
+  EXPECT_EQ(stepped.answer, ORCHARD_YES);
+  orchard_pair_free(pair);
 }
 
 }  // namespace

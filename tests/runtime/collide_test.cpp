@@ -120,7 +120,8 @@ TEST(ArticulatedPair, TouchesWhenTwoOfItsPartsDo) {
       for (std::size_t j = 0; j < post.size(); ++j) {
         NarrowPhase single(arm[i].tree, post[j].tree);
         const Pose at = compose(a, i == 1 ? bent : arm[i].local), other = compose(b, post[j].local);
-        const Verdict verdict = collide(single, at, other, {.pair_tests = std::uint64_t{1} << 40});
+        const Verdict verdict =
+            collide(single, at, other, {.pair_tests = std::uint64_t{1} << 40}, Order::level_by_level);
         expected = std::max(expected, verdict.answer);
         bound = std::min(bound, verdict.separation_bound);
       }

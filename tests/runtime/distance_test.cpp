@@ -135,11 +135,11 @@ TEST(TriangleGaps, NeverExceedTheDistanceAndAreTheSameWithoutVectors) {
     const std::array<float, 3> direction = {static_cast<float>(d[0]), static_cast<float>(d[1]),
                                             static_cast<float>(d[2])};
     detail::TriangleGaps gaps{}, plain{};
-    detail::triangle_gaps_scalar(a.triangle_blocks[0], b.triangle_blocks[0], placement, direction, plain);
+    detail::triangle_gaps_scalar(a.triangle_blocks[0], b.triangle_blocks[0], placement, direction, 1e30f, plain);
     for (const detail::Machine m : {detail::Machine::base, detail::Machine::avx2, detail::Machine::avx512}) {
       if (m > detail::best_machine()) break;
       detail::use_machine(m);
-      detail::triangle_gaps(a.triangle_blocks[0], b.triangle_blocks[0], placement, direction, gaps);
+      detail::triangle_gaps(a.triangle_blocks[0], b.triangle_blocks[0], placement, direction, 1e30f, gaps);
       ASSERT_EQ(gaps.lower, plain.lower) << seed;
     }
     const auto pa = placed_triangles(a, {}), pb = placed_triangles(b, pose);

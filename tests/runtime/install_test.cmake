@@ -1,5 +1,5 @@
 # cmake -D<what stands below>=.. -P install_test.cmake
-#   STEP: install, example, missing or methods
+#   STEP: install, example, pkg_config, missing or methods
 #   BUILD: the build tree; SCRATCH: a directory to work in; SOURCE: orchard's root; WRITER: the sample tree's writer
 #   GENERATOR, COMPILER, FLAGS: those of the build
 set(prefix "${SCRATCH}/prefix")
@@ -82,6 +82,29 @@ elseif(STEP STREQUAL "example")
   must_run("${SCRATCH}/example/robot" "${SCRATCH}/torus.orchard")
   if(NOT output MATCHES "10 of 15 pairs of links .* link 0 touches link 5")
     message(FATAL_ERROR "the robot did not touch itself as it should:\n${output}")
+  endif()
+elseif(STEP STREQUAL "pkg_config")  # a program in C that knows no CMake
+  find_program(pkg_config NAMES pkg-config pkgconf)
+  if(NOT pkg_config)
+    message("skipped: there is no pkg-config")
+    return()
+  endif()
+  file(GLOB_RECURSE found "${prefix}/*/orchard-runtime.pc")
+  get_filename_component(folder "${found}" DIRECTORY)
+  set(ENV{PKG_CONFIG_PATH} "${folder}")
+  must_run("${pkg_config}" --modversion orchard-runtime)
+  string(STRIP "${output}" version)
+  must_run("${pkg_config}" --cflags --libs orchard-runtime)
+  separate_arguments(arguments UNIX_COMMAND "${output}")
+  find_program(c_compiler NAMES cc gcc clang REQUIRED)
+  must_run("${c_compiler}" ${FLAGS} "${SOURCE}/examples/runtime/approach_c.c" -o "${SCRATCH}/approach_pc" ${arguments})
+  must_run("${WRITER}" "${SCRATCH}/torus_pc.orchard")
+  file(GLOB_RECURSE library "${prefix}/*/liborchard_runtime.*")
+  list(GET library 0 library)
+  get_filename_component(folder "${library}" DIRECTORY)
+  must_run("${CMAKE_COMMAND}" -E env "LD_LIBRARY_PATH=${folder}" "${SCRATCH}/approach_pc" "${SCRATCH}/torus_pc.orchard")
+  if(NOT output MATCHES "^orchard ${version}\n.* 0: no; at least .*: yes; at least 0 ")
+    message(FATAL_ERROR "the example in C, built by pkg-config, found no contact, or is not of version ${version}:\n${output}")
   endif()
 elseif(STEP STREQUAL "missing")
   foreach(component IN ITEMS construction broad_phase_methods)

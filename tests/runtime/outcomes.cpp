@@ -4,8 +4,9 @@
 #include <cstdio>
 
 #include "bodies.h"
-#include "orchard/runtime/distance.h"
-#include "orchard/runtime/narrow_phase.h"
+#include "orchard/runtime/contacts.h"
+#include "orchard/runtime/shape_query.h"
+#include "orchard/runtime/time_of_impact.h"
 
 namespace {
 
@@ -33,11 +34,14 @@ class Digest {
 
 int main() {
   const auto all = bodies();
+  Workspace workspace;
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t j = i; j < all.size(); ++j) {
       const PackedSphereTree &a = all[i].tree, &b = all[j].tree;
       NarrowPhase query(a, b);
       DistanceQuery distance(a, b);
+      const PreparedTree first(a), second(b);
+      const TreePair pair(first, second);
       Digest digest;
       for (std::uint64_t seed = 0; seed < 60; ++seed) {
         Draw draw(seed);
@@ -54,6 +58,17 @@ int main() {
         distance.start(pose_a, pose_b);
         distance.refine();
         digest.add(distance.lower()), digest.add(distance.upper()), digest.add(distance.work());
+        const Manifold manifold = contacts(workspace, pair, pose_a, pose_b);
+        digest.add(manifold.depth), digest.add(manifold.normal[0]), digest.add(std::uint64_t{manifold.count});
+        Travel still, moving;
+        still.start = pose_a, moving.start = pose_b;
+        moving.velocity = {1, -2, 0.5}, moving.spin = {0.3, 0, 1};
+        const Impact impact = time_of_impact(workspace, pair, still, moving);
+        digest.add(impact.t0), digest.add(impact.work), digest.add(static_cast<std::uint64_t>(impact.answer));
+        const auto near = nearest_point(a, pose_a, pose_b.translation);
+        digest.add(near.distance), digest.add(std::uint64_t{near.triangle});
+        const auto hit = cast_ray(a, pose_a, pose_b.translation, draw.direction());
+        digest.add(hit ? hit->along : -1);
       }
       std::printf("%s / %s: %016llx\n", all[i].name.c_str(), all[j].name.c_str(),
                   static_cast<unsigned long long>(digest.value()));

@@ -48,6 +48,50 @@ TEST(AnnealedTree, IsConservativeWithEitherEnergy) {
   }
 }
 
+TEST(AnnealedTree, IsConservativeWithEveryDistanceOfASphere) {
+  const Surface surface(u_shape(0.3));
+  SphereTree first;
+  for (const SphereEnergy distance : {SphereEnergy::lemma, SphereEnergy::samples, SphereEnergy::corrected_samples}) {
+    AnnealingOptions options = quick();
+    options.distance = distance;
+    const SphereTree tree = annealed_tree(surface, options).tree;
+    expect_conservative(tree, surface, "U");
+    EXPECT_FALSE(same_tree(tree, first)) << "they guide it differently";
+    first = tree;
+  }
+}
+
+// 5.3.1: what uncovers the surface is undone, and another change tried; it is none of the 200 rejected ones.
+TEST(AnnealedTree, TriesAgainWhatUncoversTheSurfaceWithoutCountingItAsRejected) {
+  const Surface surface(torus(24, 12));
+  AnnealingOptions options = quick(1);
+  options.iterations_first = 1;
+  options.max_accepted = 1'000'000;
+  options.max_rejected = 5;
+  options.first_acceptance = 0.1;
+  const AnnealingReport report = annealed_tree(surface, options).report;
+  EXPECT_EQ(report.changes - report.accepted - report.uncovering, 5);
+  EXPECT_GT(report.uncovering, 0);
+  options.max_uncovering = 1;
+  EXPECT_EQ(annealed_tree(surface, options).report.uncovering, 1) << "the limit holds";
+}
+
+TEST(AnnealedTree, PassesMoreAtAHigherFirstAcceptance) {
+  const Surface surface(torus(24, 12));
+  std::vector<double> shares;
+  for (const double acceptance : {0.05, 0.95}) {
+    AnnealingOptions options = quick(1);
+    options.iterations_first = 1;
+    options.max_accepted = options.max_rejected = 400;
+    options.energy = SetEnergy::sum;
+    options.first_acceptance = acceptance;
+    const AnnealingReport report = annealed_tree(surface, options).report;
+    shares.push_back(static_cast<double>(report.accepted) / static_cast<double>(report.changes - report.uncovering));
+  }
+  EXPECT_GT(shares[1], shares[0]);
+  EXPECT_GT(shares[1], 0.7);
+}
+
 TEST(AnnealedTree, TakesAnyBranching) {
   const Surface surface(u_shape(0.3));
   for (const Index branching : {2u, 5u, 12u, 64u}) {

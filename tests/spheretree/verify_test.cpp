@@ -169,7 +169,7 @@ TEST(Verify, RejectsEveryChildThatIsMovedOutwardByATenThousandthOfTheRadius) {
 }
 
 TEST(Verify, RejectsEveryRadiusThatIsShrunkByATenThousandthWhereNoneIsLooser) {
-  const Surface surface(torus(24, 12));
+  const Surface surface(torus(16, 8));
   const PackedSphereTree good = tight_tree(surface);
   ASSERT_TRUE(verify(surface, good).ok());
   for (std::size_t block = 0; block < good.blocks.size(); ++block)

@@ -25,6 +25,9 @@ struct MeshRepairReport {
   Index vertices_split = 0;      // where parts of the surface touched at a point
   Index holes_filled = 0, triangles_added = 0;
   double max_hole = 0;               // of those filled: diameter in mesh units
+  Index holes_left = 0;              // too large to fill; of the widest of them:
+  double max_hole_left = 0;          // its diameter in bounding radii, and
+  Index edges_of_hole_left = 0;      // the edges of its boundary
   Index parts_turned_outward = 0;    // components that were inside out
   Index cavities_turned_inward = 0;  // components inside another one that faced outward
   bool solid = false;                // MeshReport::solid() of the result

@@ -65,4 +65,9 @@ struct MedialBuild {
 MedialBuild build_medial_axis(const Surface& surface, const MedialBuildOptions& options = {},
                               const Progress& progress = {}, MedialBuildInput input = {});
 
+// The pass of gap repair that added each surface point, from 1 on, counted in the last round; 0 for points that the
+// sampling had. -1 is unknown: for what earlier rounds added, at open places and by gap repair, and for all that was
+// added where thinning took points out again. O(n).
+std::vector<int> repair_passes(const MedialBuild& build);
+
 }  // namespace orchard

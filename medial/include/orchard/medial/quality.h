@@ -63,10 +63,12 @@ struct WorstPlace {
 struct MedialQuality {
   double diagonal = 0;  // D of the mesh's bounding box, in mesh units
   Spread hausdorff;     // two-sided distance between the surface and the reconstruction's boundary, over D
-  Spread coverage;      // distance from the surface to the reconstruction, over D
-  Spread protrusion;    // distance of the reconstruction outside the solid, over D
-  Spread radius_error;  // |radius - distance to the surface| of vertices, over D
-  Spread centredness;   // |distance to the second contact - radius| of vertices, over the radius
+  Spread coverage;      // distance from the surface to the reconstruction, over D; the maximum searched, 1e-5 D low
+  double coverage_upper = 0;  // proven, up to rounding: no place of the surface is farther from the reconstruction
+  Spread inner_coverage;      // of coverage, what is not at the borders of sheets, where what is pruned is missing
+  Spread protrusion;          // distance of the reconstruction outside the solid, over D
+  Spread radius_error;        // |radius - distance to the surface| of vertices, over D
+  Spread centredness;         // |distance to the second contact - radius| of vertices, over the radius
   double outside_vertices = 0, outside_edges = 0, outside_triangles = 0;  // fractions
   Topology found, wanted;                                                 // of the medial mesh; of the solid
   Economy economy;

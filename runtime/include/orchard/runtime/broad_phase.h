@@ -28,8 +28,8 @@ struct BodyId {
 inline constexpr BodyId kNoBody{};
 
 struct BodyPair {
-  BodyIndex a, b;  // a < b
-  friend auto operator<=>(const BodyPair&, const BodyPair&) = default;
+  BodyIndex a, b;                                                       // a < b
+  friend auto operator<=>(const BodyPair&, const BodyPair&) = default;  // NOLINT(modernize-use-nullptr): no 0 here
 };
 
 // Fills motions[i] with what is known of bodies[i] at `time`, the time of a step. A body may come up twice.
@@ -82,6 +82,13 @@ struct Advance {
   // ascending order; valid as long as the pairs.
   std::span<const BodyIndex> refused{};
   bool time_refused = false;  // t_now is NaN, infinite or too far away (kMostSteps): nothing was done
+};
+
+// What the broad phase already knows of a step to come (8.2: the load, predicted).
+struct StepsAhead {
+  std::size_t looks = 0;     // bodies to be looked at: a motion each
+  std::size_t meetings = 0;  // pairs whose bounds can touch from that step on: two motions each
+  std::size_t overlaps = 0;  // pairs that overlapped at the last step: they may do so still
 };
 
 class BroadPhase;
@@ -151,6 +158,11 @@ class BroadPhase {
     seen_time_ = t_now > seen_time_ ? t_now : seen_time_;
     return {next_time_, {}};
   }
+
+  // steps[i] becomes what is due at the i-th step after `time`, up to which steps have been processed. What has been
+  // cancelled since is not in it, what has become void is: an estimate. Returns how many are known, at most 254; 0 for
+  // other methods than the default one. O(what is due).
+  std::size_t foresee(double time, std::span<StepsAhead> steps) const noexcept;
 
   bool valid() const noexcept { return largest_time_ >= 0; }  // the options are
   double next_time() const noexcept { return next_time_; }    // nothing happens before

@@ -10,17 +10,24 @@
 // about the question answered, threads, determinism and memory holds here.
 namespace orchard::runtime {
 
-// Answers a pair within a budget. Without a limit: straight to the triangles, the fastest way to "yes" or "no"; its
-// bounds are then those of the roots. With one: level by level, so that the bounds are as good as the budget allows.
-// The same budget of tests gives the same verdict; Verdict::work of a timed call, given as pair_tests, repeats it.
-Verdict collide(NarrowPhase& pair, const Pose& a, const Pose& b, const Budget& budget = {}) noexcept;
+// How a budget is spent.
+enum class Order : std::uint8_t {
+  exact_first,    // straight to the triangles: the fastest way to "yes" or "no"; bounds are those of the roots
+  level_by_level  // all levels of spheres, then the triangles: bounds on the separation as good as the budget allows
+};
+
+// Answers a pair within a budget. What a budget ends can be gone on with: pair.refine_exactly(), or refine() for level
+// by level. The same budget of tests gives the same verdict; Verdict::work of a timed call, given as pair_tests,
+// repeats it.
+Verdict collide(NarrowPhase& pair, const Pose& a, const Pose& b, const Budget& budget = {},
+                Order order = Order::exact_first) noexcept;
 
 // The same for many poses of one pair, each with its own budget. verdicts.size() >= poses.size().
 struct PosePair {
   Pose a, b;
 };
-void collide(NarrowPhase& pair, std::span<const PosePair> poses, std::span<Verdict> verdicts,
-             const Budget& each = {}) noexcept;
+void collide(NarrowPhase& pair, std::span<const PosePair> poses, std::span<Verdict> verdicts, const Budget& each = {},
+             Order order = Order::exact_first) noexcept;
 
 // Shares one budget among many started pairs, a level each in turn (dissertation 7.3). A call goes on where the one
 // before stopped, within a level if need be. The pairs and the array outlive this object.

@@ -27,9 +27,16 @@ class DistanceQuery {
   };
 
   DistanceQuery(const TreeView& a, const TreeView& b) noexcept;
+  // Of no bodies yet, and of others from now on: as NarrowPhase::bind().
+  DistanceQuery() noexcept : pair_(0) {}
+  bool bind(const PreparedTree& a, const PreparedTree& b) noexcept;
 
   void start(const Pose& a, const Pose& b, const Tolerance& tolerance) noexcept;
   void start(const Pose& a, const Pose& b) noexcept { start(a, b, Tolerance{}); }
+  // For whether they are within `limit` of each other, in world units: finished once lower() > limit or upper() <=
+  // limit, but for rounding; the bounds are no better than that, and there may be no points(). Precondition: limit >=
+  // 0.
+  void start_within(const Pose& a, const Pose& b, double limit) noexcept;
   void refine(const Budget& budget = {}) noexcept;
 
   bool finished() const noexcept { return finished_; }
@@ -52,17 +59,29 @@ class DistanceQuery {
     detail::Patch second;
   };
 
+  bool make_room() noexcept;
+  bool has_room() const noexcept { return pair_.has_triangles() && stack_; }
+  void begin(const Pose& a, const Pose& b, double limit) noexcept;
+  void leave_the_rest() noexcept;
+  bool surely_near(const PatchPair& pair) noexcept;
   bool worth_a_look(double lower) const noexcept;
   void expand(const PatchPair& pair, std::uint32_t block, bool second) noexcept;
   void compare_leaves(const PatchPair& pair) noexcept;
-  void compare_triangles(const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows,
-                         std::uint32_t row) noexcept;
+  void find_within(const PatchPair& pair, const TriangleBlock& lanes, const TriangleBlock& rows) noexcept;
+  void compare_triangles(const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows, std::uint32_t row,
+                         bool may_meet) noexcept;
+  void find_cut() noexcept;
   void report() noexcept;
 
   NarrowPhase pair_;  // the bodies' order and placement
   std::unique_ptr<PatchPair[]> stack_;
   std::size_t stack_size_ = 0;
+  std::size_t stack_room_ = 0;
   Tolerance tolerance_;
+  double limit_ = std::numeric_limits<double>::infinity();  // what is farther is left out
+  double cut_ = std::numeric_limits<double>::infinity();    // from nearest_ and limit_, with the tolerance
+  bool below_nearest_ = false;                              // what is as far is not looked at, either
+  double enough_ = 0;                                       // so near: nothing nearer is looked for
   // In the first tree's units, of the stored triangles.
   double nearest_ = std::numeric_limits<double>::infinity();      // the least distance found
   double least_lower_ = std::numeric_limits<double>::infinity();  // of everything looked at or left out

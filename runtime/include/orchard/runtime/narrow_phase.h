@@ -8,6 +8,7 @@
 
 #include "orchard/runtime/packed_tree.h"
 #include "orchard/runtime/pose.h"
+#include "orchard/runtime/prepared_tree.h"
 
 namespace orchard::runtime {
 
@@ -101,6 +102,12 @@ class NarrowPhase {
 
   // Once per pair of bodies: reuse the object. O(nodes + vertices). `room`: meeting pairs per level, 24 bytes each.
   NarrowPhase(const TreeView& a, const TreeView& b, std::size_t room = kDefaultRoom) noexcept;
+  // Of no bodies yet: not to be started before bind().
+  explicit NarrowPhase(std::size_t room = kDefaultRoom) noexcept;
+  // Of other bodies from now on, as if made anew of them, in some 50 ns; reserve()'s room stays. Not to be asked or
+  // refined before the next start(). Allocates only if these trees are deeper than all before; false if there is no
+  // memory for that: "maybe" can then be final.
+  bool bind(const PreparedTree& a, const PreparedTree& b) noexcept;
 
   // Room for that many meeting pairs per level. False, and nothing changed, if there is not enough memory.
   bool reserve(std::size_t pairs) noexcept;
@@ -148,14 +155,8 @@ class NarrowPhase {
 
  private:
   friend class DistanceQuery;
-  struct Side {
-    std::array<double, 3> root{}, middle{};   // the root's centre, with and without the origin
-    double radius = 0, reach = 0, depth = 0;  // the root's; `reach` is its error
-    double error = 0;                         // of a point, whatever the pose
-    double extent = 0;                        // coordinate_extent()
-    int bits = 0;                             // link_bits() of the tree
-    TreeView tree;
-  };
+  friend struct PairAccess;  // the other queries of runtime/pair
+  using Side = PreparedTree;
   struct NodePair {
     std::uint32_t a, b;
   };
@@ -186,8 +187,10 @@ class NarrowPhase {
   };
   class Meter;
 
-  static Side side_of(const TreeView& tree) noexcept;
+  void reset_counts() noexcept;
+  void find_exact_error(const Pose& first, const Pose& second) noexcept;
   void keep(const Pose& a, const Pose& b) noexcept;
+  void order_copies(const Pose& a, const Pose& b) noexcept;
   Answer refuse(const Pose& a, const Pose& b) noexcept;
   struct Probe;
   bool probe_below(NodePair pair, std::uint32_t levels, Probe& probe) noexcept;
@@ -220,7 +223,8 @@ class NarrowPhase {
   // The pair in a fixed order that does not depend on the order of the arguments: exchanged_ tells.
   Side first_, second_;
   std::array<std::array<double, 2>, 3> roots_{};  // of both, coordinate by coordinate
-  bool ordered_by_pose_ = false;
+  bool ordered_by_pose_ = false;                  // equal trees
+  bool one_tree_ = false;                         // in the same place, too
   bool arguments_exchanged_ = false;
   bool exchanged_ = false;
 
@@ -235,7 +239,7 @@ class NarrowPhase {
   std::size_t settled_leaves_ = 0;
   Cursor cursor_;
   std::unique_ptr<PatchPair[]> stack_;  // the last level's, deepest first; room for the trees' depths
-  std::size_t stack_size_ = 0;
+  std::size_t stack_size_ = 0, stack_room_ = 0;
   bool exact_started_ = false;
   detail::LevelState level_state_{};
   Best level_best_, leaf_best_, best_;

@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 
+#include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/packed_tree.h"
 #include "orchard/runtime/pose.h"
 
@@ -36,6 +38,11 @@ SurfacePoint nearest_point_to_segment(const TreeView& tree, const Pose& pose, co
                                       const std::array<double, 3>& q,
                                       double limit = std::numeric_limits<double>::infinity()) noexcept;
 
+// The same question as a boolean, for less: whether a capsule, the points within `radius` of the segment from p to q,
+// touches the surface; a sphere if p is q. "Maybe" where nothing could be asked.
+Answer touches_capsule(const TreeView& tree, const Pose& pose, const std::array<double, 3>& p,
+                       const std::array<double, 3>& q, double radius) noexcept;
+
 struct RayHit {
   double along;  // hit = origin + along * direction
   std::array<double, 3> point;
@@ -47,6 +54,41 @@ struct RayHit {
 std::optional<RayHit> cast_ray(const TreeView& tree, const Pose& pose, const std::array<double, 3>& origin,
                                const std::array<double, 3>& direction,
                                double longest = std::numeric_limits<double>::infinity()) noexcept;
+
+// Many rays against one body: the same answers, and cheaper by what the pose costs each. hits.size() >= rays.size().
+struct Ray {
+  std::array<double, 3> origin{}, direction{};
+  double longest = std::numeric_limits<double>::infinity();
+};
+void cast_rays(const TreeView& tree, const Pose& pose, std::span<const Ray> rays,
+               std::span<std::optional<RayHit>> hits) noexcept;
+
+// The surface point that reaches deepest below a plane, normal . x = offset, the normal of any length but 0: `distance`
+// is its signed distance from the plane, negative below it, and minus infinity, without a triangle, where nothing could
+// be asked. The half-space normal . x <= offset touches the surface iff it is <= 0.
+SurfacePoint deepest_point(const TreeView& tree, const Pose& pose, const std::array<double, 3>& normal,
+                           double offset) noexcept;
+
+// A convex solid: the corners, and triangles outward, of positive area, all around it. At most kMostCorners and
+// kMostFacets.
+struct ConvexShape {
+  std::span<const std::array<double, 3>> corners;
+  std::span<const std::array<std::uint32_t, 3>> facets;
+};
+inline constexpr std::size_t kMostCorners = 256, kMostFacets = 508;
+
+// Whether a convex solid, its inside included, and the surface have a point in common: exact for the triangles and
+// facets as stored, with the solid moved into the body's frame in double. "Maybe" where nothing can be asked, for a
+// solid with more corners or facets or a facet without area, and where a facet names a corner that does not exist.
+struct ShapeContact {
+  Answer answer = Answer::maybe;
+  std::uint32_t triangle = kNoTriangle;  // of the surface, if the answer is yes
+};
+ShapeContact touches_convex(const TreeView& tree, const Pose& pose, const ConvexShape& shape,
+                            const Pose& shape_pose) noexcept;
+// A box around its pose's origin, of half the edges' lengths `half`, all positive.
+ShapeContact touches_box(const TreeView& tree, const Pose& pose, const std::array<double, 3>& half,
+                         const Pose& box_pose) noexcept;
 
 // Whether a point is inside the solid that the triangles bound (they must be closed and oriented outward): where they
 // wind around it at least once, as everywhere in orchard. By signed crossings of a ray, exactly; by the sum of the

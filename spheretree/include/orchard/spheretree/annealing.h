@@ -8,27 +8,37 @@ namespace orchard {
 // What the energy of a set of siblings is: the sum of the energies of its spheres, or the largest of them.
 enum class SetEnergy { sum, maximum };
 
+// What the energy of one sphere is, its distance to the solid (dissertation 5.3.2, geometry/sphere_distance.h): by
+// Lemma 5.1, one query and an over-estimate; at the 20 corners of a dodecahedron, an under-estimate that may miss what
+// protrudes between them; or that plus the correction that makes it an over-estimate again.
+enum class SphereEnergy { lemma, samples, corrected_samples };
+
 // The parameters of the annealing in dissertation 5.3.1.
 struct AnnealingOptions {
   Index depth = 3;      // levels below the root at most
   Index branching = 8;  // children of a node at most, 2..64
   SetEnergy energy = SetEnergy::maximum;
+  SphereEnergy distance = SphereEnergy::lemma;
   double move = 0.035;      // longest translation in one change, as a fraction of the parent's radius
   double min_scale = 0.95;  // smallest and largest factor on a radius in one change
   double max_scale = 1.053;
-  int first_trials = 40;                       // changes that are tried to find the first temperature
-  double first_acceptance = 0.5;               // part of the worse changes that the first temperature lets pass
+  int first_trials = 40;  // changes that are tried to find the first temperature
+  // The probability with which a mean rise passes at the first temperature. The text says "high", and no number.
+  double first_acceptance = 0.9;
   int max_accepted = 200, max_rejected = 200;  // changes at one temperature, whichever number is reached first
-  double cooling = 0.9;                        // factor from one temperature to the next
-  int iterations_first = 100;                  // temperatures on the first level
-  int iterations = 50;                         // and below
+  // A change that uncovers the surface is tried again and counts as neither; but no more often than this at one
+  // temperature, where every sphere of a set is held in place.
+  int max_uncovering = 20'000;
+  double cooling = 0.9;        // factor from one temperature to the next
+  int iterations_first = 100;  // temperatures on the first level
+  int iterations = 50;         // and below
   Refinement refinement{};
   std::uint64_t seed = 1;
 };
 
 struct AnnealingReport {
   std::uint64_t changes = 0;     // tried
-  std::uint64_t uncovering = 0;  // of them, undone because they break the path rule
+  std::uint64_t uncovering = 0;  // of them, undone because they break the path rule, and tried again
   std::uint64_t accepted = 0;    // of them, kept
   Index redundant = 0;           // spheres removed between levels
 };
@@ -41,11 +51,10 @@ struct AnnealingBuild {
 // Builds a tree by simulated annealing of the children of each node, from the top down (dissertation 5.3). Children
 // start as the octree's on the first level, and below as those octants of the cube around their parent (Fig. 5.8) that
 // meet the surface; with another branching than 8, as that many boxes. A change moves and scales one child; one that
-// breaks the path rule is undone, others pass by the Metropolis criterion. A ball's energy is Lemma 5.1's distance, the
-// radius plus the signed distance of the centre. Redundant spheres are removed before they get children (5.3.4). The
-// result is conservative, and the same for a seed on any number of threads; temperatures go through exp(), so another
-// maths library may give another result. Throws InputError unless surface.solid(). Parents that no triangle meets two
-// of are annealed in parallel.
+// breaks the path rule is undone and tried again, others pass by the Metropolis criterion. Redundant spheres are
+// removed before they get children (5.3.4). The result is conservative, and the same for a seed on any number of
+// threads; temperatures go through exp(), so another maths library may give another result. Throws InputError unless
+// surface.solid(). Parents that no triangle meets two of are annealed in parallel.
 AnnealingBuild annealed_tree(const Surface& surface, const AnnealingOptions& options = {},
                              const Progress& progress = {});
 

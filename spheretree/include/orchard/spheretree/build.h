@@ -20,14 +20,22 @@ namespace orchard {
 
 enum class TreeMethod { tightened, merging, annealing, octree };
 
+// Numbers of the annealing in place of those that the effort stands for.
+struct AnnealingTuning {
+  std::optional<double> move, min_scale, max_scale, first_acceptance, cooling;
+  std::optional<int> first_trials, max_accepted, max_rejected, max_uncovering, iterations_first, iterations;
+};
+
 // All that can be tuned on the way from a surface to a certified tree.
 struct SphereTreeOptions {
   TreeMethod method = TreeMethod::tightened;
   Index depth = 3;      // levels below the root at most
   Index branching = 8;  // children of a node at most or on average, as the method has it
   Effort effort = Effort::standard;
-  Objective objective = Objective::balanced;   // tightened
-  SetEnergy energy = SetEnergy::maximum;       // annealing
+  Objective objective = Objective::balanced;  // tightened
+  SetEnergy energy = SetEnergy::maximum;      // annealing, the three
+  SphereEnergy distance = SphereEnergy::lemma;
+  AnnealingTuning annealing{};
   MergeClosing closing = MergeClosing::refit;  // merging
   Refinement refinement{};
   Index descent = 0;       // trials of random descent for each node, after any method
@@ -40,6 +48,9 @@ struct SphereTreeOptions {
 
 // Whether the method starts from a medial axis.
 bool needs_axis(TreeMethod method);
+
+// What the annealing runs with: the dissertation's schedule with high effort, otherwise a share of it, and the tuning.
+AnnealingOptions annealing_options(const SphereTreeOptions& options);
 
 // How many surface points a method and its depth need: 5000, or for tightened trees 20 for each ball of the last level,
 // 10,000 (20,000 with high effort) at least and 200,000 at most.

@@ -14,8 +14,6 @@
 // the caller would be unsafe beside the threads of TBB and Embree.)
 namespace orchard {
 
-enum class UpAxis { x, y, z };
-
 struct PipelinePicture {
   PipelineValues values;  // what is missing gets no panel: mesh, points, medial axis, three tree levels
   std::string title;      // above the panels; may be empty

@@ -61,17 +61,21 @@ struct NamedFile {
 // A .vtm that opens several files at once. The files need not exist yet.
 void write_multiblock(const std::filesystem::path& vtm, std::span<const NamedFile> files);
 
+enum class UpAxis { x, y, z };
+
 // What a run of the pipeline made; null: it did not make that.
 struct PipelineValues {
   const Surface* surface = nullptr;
   const SurfaceSampling* sampling = nullptr;
   const MedialAxis* axis = nullptr;
   const SphereTree* tree = nullptr;
+  UpAxis up = UpAxis::y;  // the mesh's axis that points up in ParaView
 };
 
 // Writes all of it: PREFIX-mesh.vtp, PREFIX-points.vtp, PREFIX-medial-{vertices,edges,faces}.vtp, PREFIX-level-<n>.vtp
-// for every level, and PREFIX.vtm, which opens them. Returns the files in the order of the .vtm, which names them
-// "mesh", "surface points", "medial vertices", "medial edges", "medial faces", "tree level <n>".
+// for every level, and PREFIX.vtm, which opens them; PREFIX.pvd with the levels as steps of time; and PREFIX-view.py,
+// which shows the spheres around the mesh (paraview --script, pvbatch). Returns the files in the order of the .vtm,
+// which names them "mesh", "surface points", "medial vertices", "medial edges", "medial faces", "tree level <n>".
 std::vector<NamedFile> write_pipeline(const std::filesystem::path& prefix, const PipelineValues& values);
 
 }  // namespace orchard

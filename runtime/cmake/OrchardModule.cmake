@@ -1,12 +1,27 @@
-# Build functions shared by every module.
+# Build functions shared by every module. They lie here because the run-time is built without the rest of orchard as well.
+include(GNUInstallDirs)
 
-# The flags that orchard's own code must compile cleanly with. -ffp-contract=off: the same bytes out on every machine.
+# The flags that orchard's own code must compile cleanly with. The same bytes out on every machine: nothing is fused into
+# one rounding (-ffp-contract=off; MSVC does not unless it is told to), nothing is kept in wider registers (x87).
 add_library(orchard_flags INTERFACE)
 target_compile_features(orchard_flags INTERFACE cxx_std_20)
-target_compile_options(orchard_flags INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -ffp-contract=off)
+if(CMAKE_CXX_COMPILER_FRONTEND_VARIANT STREQUAL "MSVC" OR MSVC)
+  target_compile_options(orchard_flags INTERFACE /W4 /permissive- /utf-8 /fp:precise)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    target_compile_options(orchard_flags INTERFACE /clang:-ffp-contract=off)
+  endif()
+  target_compile_definitions(orchard_flags INTERFACE NOMINMAX _CRT_SECURE_NO_WARNINGS)
+  set(orchard_werror /WX)
+else()
+  target_compile_options(orchard_flags INTERFACE
+    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -ffp-contract=off)
+  if(CMAKE_SIZEOF_VOID_P EQUAL 4 AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(i.86|x86|x86_64|AMD64)$")
+    target_compile_options(orchard_flags INTERFACE -msse2 -mfpmath=sse)
+  endif()
+  set(orchard_werror -Werror)
+endif()
 if(ORCHARD_WARNINGS_AS_ERRORS)
-  target_compile_options(orchard_flags INTERFACE -Werror)
+  target_compile_options(orchard_flags INTERFACE ${orchard_werror})
 endif()
 if(ORCHARD_SANITIZE)
   target_compile_options(orchard_flags INTERFACE
@@ -99,58 +114,83 @@ function(orchard_add_module name)
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE $<BUILD_INTERFACE:orchard_flags> ${ARG_PRIVATE})
   if(name MATCHES "^(runtime|broad_phase_methods)$")  # file by file, so that a game links no more than it uses
     orchard_precompile_once(${target} runtime PIC HEADERS ${ORCHARD_STANDARD_HEADERS})
+    if(ORCHARD_SANITIZE AND name STREQUAL "runtime")  # where nobody links it but its tests
+      orchard_unite(${target} APART ${ARG_APART})
+    endif()
   else()
     orchard_precompile_once(${target} construction PIC LINK Eigen3::Eigen TBB::tbb
       HEADERS ${ORCHARD_CONSTRUCTION_HEADERS} ${ORCHARD_TBB_HEADERS})
     orchard_unite(${target} APART ${ARG_APART})
   endif()
-  install(TARGETS ${target} EXPORT orchard-${ARG_COMPONENT} COMPONENT ${ARG_COMPONENT}
-    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT ${ARG_COMPONENT})
+  # Until 1.0.0 a minor version may change an interface, so two of them are two libraries.
+  set(interface ${PROJECT_VERSION_MAJOR})
+  if(PROJECT_VERSION_MAJOR EQUAL 0)
+    set(interface 0.${PROJECT_VERSION_MINOR})
+  endif()
+  set_target_properties(${target} PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${interface}
+    WINDOWS_EXPORT_ALL_SYMBOLS ON)
+  orchard_development_component(development ${ARG_COMPONENT})
+  install(TARGETS ${target} EXPORT orchard-${ARG_COMPONENT}
+    RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${ARG_COMPONENT}
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${ARG_COMPONENT} NAMELINK_COMPONENT ${development}
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${development})
+  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT ${development})
   set_property(GLOBAL APPEND PROPERTY ORCHARD_COMPONENTS ${ARG_COMPONENT})
 endfunction()
 
-# orchard_add_tests(module SOURCES .. [APART ..] [LINK ..] [LONG suites..]): one executable and one ctest label per module. All tests
-# are "quick"; the suites named take their random cases from tests/support/effort.h, and are once more, with twenty
-# times as many and fresh ones, a test that is "long".
-function(orchard_add_tests name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;APART;LINK;LONG" ${ARGN})
-  set(target orchard_${name}_tests)
-  add_executable(${target} ${ARG_SOURCES})
-  target_link_libraries(${target} PRIVATE orchard_flags ${ARG_LINK} GTest::gtest_main)
-  target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/tests)
-  # Most of a test's time is its compiler's, and GCC 12's optimiser sees bounds broken within std::string's own code.
-  set(options -O1 -Wno-array-bounds)
-  target_compile_options(${target} PRIVATE ${options})
-  if(name STREQUAL runtime OR name STREQUAL broad_phase)
-    orchard_precompile_once(${target} runtime_tests OPTIONS ${options} LINK GTest::gtest
-      HEADERS <gtest/gtest.h> ${ORCHARD_STANDARD_HEADERS})
+# Where headers and all else go that only a compiler needs: the component itself, or, where packages are made
+# (ORCHARD_DEVELOPMENT_APART), one beside it.
+function(orchard_development_component result component)
+  if(ORCHARD_DEVELOPMENT_APART)
+    set(${result} ${component}_development PARENT_SCOPE)
   else()
-    orchard_precompile_once(${target} construction_tests OPTIONS ${options} LINK Eigen3::Eigen GTest::gtest
-      HEADERS <gtest/gtest.h> ${ORCHARD_CONSTRUCTION_HEADERS})
+    set(${result} ${component} PARENT_SCOPE)
   endif()
-  orchard_unite(${target} APART ${ARG_APART})
-  target_compile_definitions(${target} PRIVATE
-    ORCHARD_DATA_DIR="${PROJECT_SOURCE_DIR}/data" ORCHARD_SHARED_MODELS="${PROJECT_SOURCE_DIR}/../shared/models")
-  gtest_discover_tests(${target} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60 DISCOVERY_MODE PRE_TEST)
-  # Two labels are more than gtest_discover_tests can pass on.
-  set(labels ${CMAKE_CURRENT_BINARY_DIR}/${target}_labels.cmake)
-  file(WRITE ${labels} "set_tests_properties(\${${target}_TESTS} PROPERTIES LABELS \"${name};quick\")\n")
-  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${labels})
-  foreach(suite IN LISTS ARG_LONG)
-    add_test(NAME ${name}.long.${suite} COMMAND ${target} --gtest_filter=${suite})
-    set_tests_properties(${name}.long.${suite} PROPERTIES LABELS "${name};long" ENVIRONMENT ORCHARD_MORE=20 TIMEOUT 7200)
-  endforeach()
+endfunction()
+
+# orchard_pkg_config(module name COMPONENT component DESCRIPTION text [REQUIRES ..]): NAME.pc for a library that needs no
+# package files but those, so that make, meson and others find it. It can be moved with its prefix.
+function(orchard_pkg_config module name)
+  cmake_parse_arguments(ARG "" "COMPONENT;DESCRIPTION" "REQUIRES" ${ARGN})
+  if(IS_ABSOLUTE "${CMAKE_INSTALL_LIBDIR}" OR IS_ABSOLUTE "${CMAKE_INSTALL_INCLUDEDIR}")
+    return()  # a prefix that can be moved is what the file is about
+  endif()
+  file(RELATIVE_PATH up /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+  get_target_property(type orchard_${module} TYPE)
+  set(also)
+  if(type STREQUAL "STATIC_LIBRARY")  # what a program in C does not link by itself
+    foreach(library IN LISTS CMAKE_CXX_IMPLICIT_LINK_LIBRARIES)
+      if(library MATCHES "^(stdc\\+\\+|c\\+\\+|m)$")
+        string(APPEND also " -l${library}")
+      endif()
+    endforeach()
+  endif()
+  list(JOIN ARG_REQUIRES ", " requires)
+  file(WRITE ${PROJECT_BINARY_DIR}/${name}.pc "prefix=\${pcfiledir}/${up}
+libdir=\${prefix}/${CMAKE_INSTALL_LIBDIR}
+includedir=\${prefix}/${CMAKE_INSTALL_INCLUDEDIR}
+
+Name: ${name}
+Description: ${ARG_DESCRIPTION}
+Version: ${PROJECT_VERSION}
+Requires: ${requires}
+Libs: -L\${libdir} -lorchard_${module}${also}
+Cflags: -I\${includedir}
+")
+  orchard_development_component(development ${ARG_COMPONENT})
+  install(FILES ${PROJECT_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT ${development})
 endfunction()
 
 # One export set per component, so that find_package(orchard COMPONENTS runtime) needs nothing else.
 function(orchard_install_package)
   include(CMakePackageConfigHelpers)
+  orchard_development_component(runtime_development runtime)
   set(directory ${CMAKE_INSTALL_LIBDIR}/cmake/orchard)
   get_property(components GLOBAL PROPERTY ORCHARD_COMPONENTS)
   list(REMOVE_DUPLICATES components)
   foreach(component IN LISTS components)
-    install(EXPORT orchard-${component} NAMESPACE orchard:: DESTINATION ${directory} COMPONENT ${component})
+    orchard_development_component(development ${component})
+    install(EXPORT orchard-${component} NAMESPACE orchard:: DESTINATION ${directory} COMPONENT ${development})
   endforeach()
   # Beside those of the run-time and its methods, which install runtime/LICENSE themselves.
   if(ORCHARD_CONSTRUCTION)
@@ -161,9 +201,9 @@ function(orchard_install_package)
         DESTINATION ${CMAKE_INSTALL_DOCDIR}/${component} COMPONENT ${component})
     endforeach()
   endif()
-  configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/orchardConfig.cmake.in
+  configure_package_config_file(${CMAKE_CURRENT_FUNCTION_LIST_DIR}/orchardConfig.cmake.in
     ${PROJECT_BINARY_DIR}/orchardConfig.cmake INSTALL_DESTINATION ${directory})
   write_basic_package_version_file(${PROJECT_BINARY_DIR}/orchardConfigVersion.cmake COMPATIBILITY SameMinorVersion)
   install(FILES ${PROJECT_BINARY_DIR}/orchardConfig.cmake ${PROJECT_BINARY_DIR}/orchardConfigVersion.cmake
-    DESTINATION ${directory} COMPONENT runtime)
+    DESTINATION ${directory} COMPONENT ${runtime_development})
 endfunction()

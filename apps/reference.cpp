@@ -1,0 +1,100 @@
+#include <fmt/core.h>
+
+#include "command_list.h"
+
+namespace orchard::apps {
+namespace {
+
+std::string joined(const std::vector<std::string>& words, const std::string& between) {
+  std::string all;
+  for (const std::string& word : words) all += (all.empty() ? "" : between) + word;
+  return all;
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
+    text.replace(at, what.size(), by);
+  return text;
+}
+
+std::string value_of(const OptionEntry& option) {
+  if (!option.choices.empty()) return joined(option.choices, "|");
+  if (option.file) return "FILE";
+  return option.value;
+}
+
+// "orchard build mesh -o FILE [options]".
+std::string synopsis(const std::string& program, const CommandEntry& command) {
+  std::string text = program + " " + command.name;
+  for (const OptionEntry& option : command.options) {
+    if (option.positional) {
+      text += " " + option.names.front() + (option.repeats ? ".." : "");
+    } else if (option.required) {
+      text += " " + option.names.back() + " " + value_of(option);
+    }
+  }
+  return text + " [options]";
+}
+
+std::string cell(const std::string& text) { return replaced(replaced(text, "|", "\\|"), "<", "&lt;"); }
+
+// The lines of a footer that are commands.
+std::vector<std::string> examples(const CommandEntry& command) {
+  std::vector<std::string> lines;
+  std::string rest = command.footer + "\n";
+  for (std::size_t end = 0; (end = rest.find('\n')) != std::string::npos; rest.erase(0, end + 1))
+    if (rest.starts_with("  ")) lines.push_back(rest.substr(2, end - 2));
+  return lines;
+}
+
+std::string roff(const std::string& text) {
+  std::string result = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
+  if (result.starts_with(".") || result.starts_with("'")) result = "\\&" + result;
+  return result;
+}
+
+}  // namespace
+
+std::string markdown_reference(const CLI::App& app) {
+  std::string text =
+      "# All commands and options\n\nMade by `orchard reference markdown`, from what `orchard COMMAND --help` says; a "
+      "test "
+      "compares the two.\n";
+  for (const CommandEntry& command : command_list(app)) {
+    text += fmt::format("\n## {0} {1}\n\n{2}.\n\n```text\n{3}\n```\n\n| Option | Value | |\n|---|---|---|\n",
+                        app.get_name(), command.name, command.help, synopsis(app.get_name(), command));
+    for (const OptionEntry& option : command.options) {
+      const std::string standard = option.standard.empty() ? "" : " [" + option.standard + "]";
+      const std::string value = value_of(option);
+      text += fmt::format("| `{}` | {} | {}{} |\n", joined(option.names, "`, `"),
+                          value.empty() ? "" : "`" + cell(value) + "`", cell(option.help), standard);
+    }
+    const std::vector<std::string> lines = examples(command);
+    if (!lines.empty()) text += "\n```sh\n" + joined(lines, "\n") + "\n```\n";
+  }
+  return text;
+}
+
+std::string manual_page(const CLI::App& app, const std::string& version) {
+  const std::string name = app.get_name();
+  std::string text = fmt::format(
+      ".TH ORCHARD 1 \"\" \"{0} {1}\" \"User Commands\"\n.SH NAME\n{0} \\- sphere\\-trees, medial axes and collision "
+      "answers from triangle meshes\n.SH SYNOPSIS\n.B {0}\n.I COMMAND\n[options]\n.SH DESCRIPTION\n{2}.\n",
+      name, version, roff(app.get_description()));
+  for (const CommandEntry& command : command_list(app)) {
+    text += fmt::format(".SH {} {}\n{}.\n.PP\n.B {}\n", name, command.name, roff(command.help),
+                        roff(synopsis(name, command)));
+    for (const OptionEntry& option : command.options) {
+      const std::string value = value_of(option);
+      text += fmt::format(".TP\n.B {}{}\n{}{}\n", roff(joined(option.names, ", ")),
+                          value.empty() ? "" : " \\fR" + roff(value), roff(option.help),
+                          option.standard.empty() ? "" : roff(" [" + option.standard + "]"));
+    }
+    for (const std::string& line : examples(command)) text += ".PP\n.RS\n.B " + roff(line) + "\n.RE\n";
+  }
+  return text +
+         ".SH EXIT STATUS\n0 if all went well, 1 if something failed or is not proven, 2 for bad input, 130 after "
+         "Ctrl\\-C.\n.SH FILES\nThe formats are described in FORMATS.md of the documentation.\n";
+}
+
+}  // namespace orchard::apps

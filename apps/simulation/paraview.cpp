@@ -1,0 +1,154 @@
+#include "paraview.h"
+
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+
+namespace orchard::simulation {
+namespace {
+
+constexpr double kHorizon = 1;  // of promises without an end, for the hypertrapezoid's slope
+
+class Array {
+ public:
+  Array(const char* name, const char* type, int components = 1) {
+    values_.precision(9);
+    values_ << "<DataArray type=\"" << type << "\" Name=\"" << name << "\" NumberOfComponents=\"" << components
+            << "\" format=\"ascii\">\n";
+  }
+  template <class Value>
+  void add(const Value& value) {
+    values_ << value << ' ';
+  }
+  void add(const Vec3& v) {
+    for (const double x : v) values_ << x << ' ';
+  }
+  std::string text() const { return values_.str() + "\n</DataArray>\n"; }
+
+ private:
+  std::ostringstream values_;
+};
+
+std::string dataset(std::size_t points, const std::string& coordinates, const std::string& point_data,
+                    std::size_t verts, std::size_t lines, std::size_t polygons, const std::string& cells,
+                    const std::string& cell_data) {
+  std::ostringstream out;
+  out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" "
+         "byte_order=\"LittleEndian\">\n<PolyData>\n"
+      << "<Piece NumberOfPoints=\"" << points << "\" NumberOfVerts=\"" << verts << "\" NumberOfLines=\"" << lines
+      << "\" NumberOfStrips=\"0\" NumberOfPolys=\"" << polygons << "\">\n<Points>\n"
+      << coordinates << "</Points>\n<PointData>\n"
+      << point_data << "</PointData>\n"
+      << cells << "<CellData>\n"
+      << cell_data << "</CellData>\n</Piece>\n</PolyData>\n</VTKFile>\n";
+  return out.str();
+}
+
+std::string cells(const char* kind, const Array& connectivity, const Array& offsets) {
+  std::ostringstream out;
+  out << '<' << kind << ">\n" << connectivity.text() << offsets.text() << "</" << kind << ">\n";
+  return out.str();
+}
+
+}  // namespace
+
+CrossSection cross_section(const Detection::Promise& promise, double time) {
+  const Motion& motion = promise.motion;
+  const auto radius_after = [&](double s) {
+    return motion.radius + motion.drift * s + motion.acceleration * s * s / 2;
+  };
+  const double s = time - promise.since, ends = std::min(motion.expiry - promise.since, std::max(s, kHorizon));
+  // The hypertrapezoid goes from the radius at the start straight to what the horn has at the end.
+  const double half = motion.radius + (ends > 0 ? s / ends : 0) * (radius_after(ends) - motion.radius);
+  return {motion.position + s * motion.velocity, radius_after(s), half};
+}
+
+std::string bodies_vtp(const Simulation& simulation) {
+  const World& world = simulation.world();
+  std::vector<int> answers(world.bodies.size(), 0);
+  for (const PairOutcome& pair : simulation.pairs())
+    for (const std::uint32_t body : {pair.a, pair.b})
+      answers[body] = std::max(answers[body], static_cast<int>(pair.verdict.answer) + 1);
+  Array points("Points", "Float64", 3), lines("connectivity", "Int64"), line_ends("offsets", "Int64"),
+      polygons("connectivity", "Int64"), polygon_ends("offsets", "Int64");
+  // Of lines first, then of triangles; what is not said of one is -1 there.
+  Array body("body", "Int32"), answer("answer", "Int32"), level("level", "Int32"), bound("separation_bound", "Float64"),
+      work("work", "Int64");
+  std::size_t count = 0, line_count = 0, polygon_count = 0;
+  for (const PairOutcome& pair : simulation.pairs()) {
+    points.add(world.bodies[pair.a].position);
+    points.add(world.bodies[pair.b].position);
+    lines.add(count);
+    lines.add(count + 1);
+    count += 2;
+    line_ends.add(2 * ++line_count);
+    body.add(-1);
+    answer.add(static_cast<int>(pair.verdict.answer) + 1);
+    level.add(pair.verdict.level);
+    bound.add(std::isfinite(pair.verdict.separation_bound) ? pair.verdict.separation_bound : -1.0);
+    work.add(pair.verdict.work);
+  }
+  for (std::uint32_t i = 0; i < world.bodies.size(); ++i) {
+    if (!world.bodies[i].there) continue;
+    const Shape& shape = world.shapes[world.bodies[i].shape];
+    const Pose pose = pose_of(world.bodies[i], shape);
+    for (const auto& v : shape.tree.vertices)
+      points.add(Vec3(runtime::transform(
+          pose, {v[0] + shape.tree.origin[0], v[1] + shape.tree.origin[1], v[2] + shape.tree.origin[2]})));
+    for (const auto& triangle : shape.tree.triangles) {
+      for (const std::uint32_t corner : triangle) polygons.add(count + corner);
+      polygon_ends.add(3 * ++polygon_count);
+      body.add(i);
+      answer.add(answers[i]);
+      level.add(-1);
+      bound.add(-1);
+      work.add(-1);
+    }
+    count += shape.tree.vertices.size();
+  }
+  return dataset(count, points.text(), "", 0, line_count, polygon_count,
+                 cells("Lines", lines, line_ends) + cells("Polys", polygons, polygon_ends),
+                 body.text() + answer.text() + level.text() + bound.text() + work.text());
+}
+
+std::string bounds_vtp(const Simulation& simulation) {
+  const World& world = simulation.world();
+  Array points("Points", "Float64", 3), connectivity("connectivity", "Int64"), offsets("offsets", "Int64");
+  Array horn("horn_radius", "Float64"), half("hypertrapezoid_half", "Float64"), body("body", "Int32");
+  std::size_t count = 0;
+  for (std::uint32_t i = 0; i < world.bodies.size(); ++i) {
+    if (!world.bodies[i].there || world.bodies[i].fixed) continue;
+    const CrossSection section = cross_section(world.detection.promises()[i], world.time);
+    points.add(section.middle);
+    horn.add(section.horn);
+    half.add(section.half);
+    body.add(i);
+    connectivity.add(count);
+    offsets.add(++count);
+  }
+  return dataset(count, points.text(), horn.text() + half.text() + body.text(), count, 0, 0,
+                 cells("Verts", connectivity, offsets), "");
+}
+
+std::string frame_file(std::size_t frame, const char* part) {
+  char name[48];
+  std::snprintf(name, sizeof name, "frame-%05zu-%s.vtp", frame, part);
+  return name;
+}
+
+std::string run_pvd(const std::vector<double>& times, const std::string& prefix) {
+  std::ostringstream out;
+  out.precision(12);
+  out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
+         "byte_order=\"LittleEndian\">\n<Collection>\n";
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    int part = 0;
+    for (const char* name : {"bodies", "bounds"})
+      out << "<DataSet timestep=\"" << times[i] << "\" part=\"" << part++ << "\" file=\"" << prefix
+          << frame_file(i, name) << "\"/>\n";
+  }
+  out << "</Collection>\n</VTKFile>\n";
+  return out.str();
+}
+
+}  // namespace orchard::simulation

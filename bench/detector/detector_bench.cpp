@@ -1,0 +1,236 @@
+// Whole frames of every scene: the detector against other libraries, with one and with two threads, and within budgets.
+//   detector_bench frames BODIES STEPS     a table; rivals that are not installed are left out
+//   detector_bench threads BODIES STEPS
+//   detector_bench budgets BODIES STEPS
+#include <sys/resource.h>
+#include <time.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "frame_rival.h"
+#include "scene_run.h"
+#include "thread_pool.h"
+
+namespace {
+
+using namespace orchard;
+using runtime::test::Promises;
+using runtime::test::Scene;
+using Clock = std::chrono::steady_clock;
+
+// Of this thread: what else the machine does is nobody's fault.
+double processor_ms() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return 1e3 * double(t.tv_sec) + 1e-6 * double(t.tv_nsec);
+}
+
+double milliseconds(Clock::duration d) { return std::chrono::duration<double, std::milli>(d).count(); }
+
+struct Run {
+  double ms = 0, processor = 0;  // over all frames but the first, which makes everything
+  std::size_t touching = 0;
+  std::uint64_t pairs = 0, work = 0;
+};
+
+// The application's states of a step are its own business, and ready before the clock runs.
+class OrchardFrames {
+ public:
+  OrchardFrames(const Scene& scene, runtime::Executor executor, bool watch = false)
+      : scene_(scene), values_(2 * scene.bodies.size() + 64), ids_(scene.bodies.size()) {
+    runtime::DetectorOptions options;
+    options.time_step = scene.dt;
+    options.executor = executor;
+    options.watch = watch;
+    detector_ = std::make_unique<runtime::Detector>(runtime::states_of(values_), options);
+    for (const auto& shape : scene.shapes) {
+      using Kind = runtime::test::SceneShape::Kind;
+      shapes_.push_back(shape.kind == Kind::tree    ? detector_->add_shape(shape.tree)
+                        : shape.kind == Kind::round ? detector_->add_capsule(shape.p, shape.q, shape.radius)
+                                                    : detector_->add_box(shape.p));
+    }
+    for (const auto& plane : scene.planes) detector_->add_half_space(plane.normal, plane.offset);
+  }
+
+  double processor = 0;  // of the last step, in ms
+
+  runtime::Frame step(int step, const runtime::FrameBudget& budget, Clock::duration& time) {
+    for (std::size_t i = 0; i < ids_.size(); ++i) {
+      if (ids_[i] != runtime::kNoBody) values_[ids_[i].index] = scene_.state(step, i, 8);
+    }
+    const auto begin = Clock::now();
+    const double before = processor_ms();
+    for (std::size_t i = 0; i < ids_.size(); ++i) {
+      const bool there = scene_.bodies[i].birth <= step && step < scene_.bodies[i].death;
+      if (there && ids_[i] == runtime::kNoBody) {
+        const runtime::BodyPart part{shapes_[scene_.bodies[i].parts[0]], {}};
+        ids_[i] = scene_.bodies[i].is_static
+                      ? detector_->add_static({part}, scene_.poses[static_cast<std::size_t>(step)][i])
+                      : detector_->add_body({part}, scene_.bodies[i].options);
+        values_[ids_[i].index] = scene_.state(step, i, 8);
+      } else if (!there && ids_[i] != runtime::kNoBody) {
+        detector_->remove(ids_[i]);
+        ids_[i] = runtime::kNoBody;
+      }
+    }
+    const runtime::Frame frame = detector_->step(step * scene_.dt, budget);
+    processor = processor_ms() - before;
+    time = Clock::now() - begin;
+    return frame;
+  }
+
+ private:
+  const Scene& scene_;
+  std::vector<runtime::BodyState> values_;
+  std::vector<runtime::BodyId> ids_;
+  std::vector<runtime::ShapeId> shapes_;
+  std::unique_ptr<runtime::Detector> detector_;
+};
+
+Run run_orchard(const Scene& scene, runtime::Executor executor) {
+  OrchardFrames frames(scene, executor);
+  Run run;
+  for (int step = 0; step < scene.steps; ++step) {
+    Clock::duration time{};
+    const runtime::Frame frame = frames.step(step, {}, time);
+    if (step == 0) continue;
+    run.ms += milliseconds(time);
+    run.processor += frames.processor;
+    run.pairs += frame.pairs, run.work += frame.work;
+    for (const auto& event : frame.events) run.touching += event.change != runtime::PairChange::end;
+  }
+  return run;
+}
+
+Run run_rival(const Scene& scene, bench::FrameRival& rival) {
+  Run run;
+  for (int step = 0; step < scene.steps; ++step) {
+    const double begin = processor_ms();
+    const std::size_t touching = rival.step(step);
+    if (step == 0) continue;
+    run.processor += processor_ms() - begin;
+    run.touching += touching;
+  }
+  return run;
+}
+
+std::vector<Scene> scenes_of(std::size_t bodies, int steps) {
+  std::vector<Scene> scenes = runtime::test::every_scene(bodies, steps, 1);
+  std::erase_if(scenes, [](const Scene& scene) { return !scene.locals.empty(); });
+  return scenes;
+}
+
+void frames(std::size_t bodies, int steps) {
+  std::printf(
+      "| scene | bodies | pairs a frame | touching | orchard, ms a frame | FCL float | FCL double | Bullet |\n");
+  std::printf("|---|---|---|---|---|---|---|---|\n");
+  for (const Scene& scene : scenes_of(bodies, steps)) {
+    const Run ours = run_orchard(scene, {});
+    const int timed = steps - 1;
+    std::printf("| %s | %zu | %.0f | %.0f | %.3f |", scene.name.c_str(), bodies, double(ours.pairs) / timed,
+                double(ours.touching) / timed, ours.processor / timed);
+    for (auto* make : {bench::fcl_frames_float, bench::fcl_frames_double, bench::bullet_frames}) {
+      const auto rival = make(scene);
+      if (!rival) {
+        std::printf(" - |");
+        continue;
+      }
+      const Run theirs = run_rival(scene, *rival);
+      std::printf(" %.1f times", theirs.processor / ours.processor);
+      if (theirs.touching != ours.touching) {
+        std::printf(" (%+.2f %% touching)", 100 * (double(theirs.touching) / double(ours.touching) - 1));
+      }
+      std::printf(" |");
+      std::fflush(stdout);
+    }
+    std::printf("\n");
+    std::fflush(stdout);
+  }
+}
+
+void threads(std::size_t bodies, int steps) {
+  std::printf("| scene | bodies | ms a frame | with 2 threads |\n|---|---|---|---|\n");
+  runtime::test::ThreadPool pool(2);
+  for (const Scene& scene : scenes_of(bodies, steps)) {
+    double one = 1e300, two = 1e300;
+    for (int round = 0; round < 2; ++round) {
+      one = std::min(one, run_orchard(scene, {}).ms);
+      two = std::min(two, run_orchard(scene, pool.executor()).ms);
+    }
+    std::printf("| %s | %zu | %.3f | %.2f times as fast |\n", scene.name.c_str(), bodies, one / (steps - 1), one / two);
+    std::fflush(stdout);
+  }
+}
+
+long preempted() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_nivcsw;
+}
+
+// The budget is half of what a frame takes in the mean without one.
+void budgets(std::size_t bodies, int steps) {
+  std::printf(
+      "| scene | bodies | work a frame | budget | most beyond it | certain | budget, ms | p50 | p99 | p99.9 | max | "
+      "preempted "
+      "frames | certain |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  for (const Scene& scene : scenes_of(bodies, steps)) {
+    const Run full = run_orchard(scene, {});
+    const std::uint64_t work = full.work / static_cast<std::uint64_t>(2 * (steps - 1));
+    OrchardFrames counted(scene, {});
+    std::int64_t beyond = std::numeric_limits<std::int64_t>::min();
+    std::uint64_t certain = 0, pairs = 0;
+    Clock::duration time{};
+    for (int step = 0; step < steps; ++step) {
+      const runtime::Frame frame = counted.step(step, {.work = work}, time);
+      beyond = std::max(beyond, static_cast<std::int64_t>(frame.work) - static_cast<std::int64_t>(work));
+      certain += frame.certain, pairs += frame.pairs;
+    }
+    std::printf("| %s | %zu | %.0f | %llu | %lld | %.1f %% |", scene.name.c_str(), bodies,
+                double(full.work) / (steps - 1), static_cast<unsigned long long>(work), static_cast<long long>(beyond),
+                100.0 * double(certain) / double(std::max<std::uint64_t>(pairs, 1)));
+    const double limit = std::max(0.05, full.ms / (2 * (steps - 1)));
+    OrchardFrames timed(scene, {});
+    std::vector<double> calm;
+    int disturbed = 0;
+    certain = pairs = 0;
+    for (int step = 0; step < steps; ++step) {
+      const long before = preempted();
+      const runtime::Frame frame =
+          timed.step(step, {.time = std::chrono::nanoseconds(static_cast<std::int64_t>(limit * 1e6))}, time);
+      if (step == 0) continue;
+      certain += frame.certain, pairs += frame.pairs;
+      if (preempted() != before) {
+        ++disturbed;
+      } else {
+        calm.push_back(milliseconds(time));
+      }
+    }
+    std::sort(calm.begin(), calm.end());
+    const auto at = [&](double share) {
+      return calm.empty() ? 0.0
+                          : calm[std::min(calm.size() - 1, static_cast<std::size_t>(share * double(calm.size())))];
+    };
+    std::printf(" %.3f | %.3f | %.3f | %.3f | %.3f | %d | %.1f %% |\n", limit, at(0.5), at(0.99), at(0.999), at(1),
+                disturbed, 100.0 * double(certain) / double(std::max<std::uint64_t>(pairs, 1)));
+    std::fflush(stdout);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string what = argc > 1 ? argv[1] : "";
+  const std::size_t bodies = argc > 2 ? static_cast<std::size_t>(std::max(1, std::atoi(argv[2]))) : 1000;
+  const int steps = argc > 3 ? std::max(3, std::atoi(argv[3])) : 100;
+  if (what == "frames") return frames(bodies, steps), 0;
+  if (what == "threads") return threads(bodies, steps), 0;
+  if (what == "budgets") return budgets(bodies, steps), 0;
+  std::fprintf(stderr, "usage: detector_bench frames|threads|budgets [BODIES [STEPS]]\n");
+  return 2;
+}

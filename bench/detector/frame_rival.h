@@ -1,0 +1,22 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "scenes.h"
+
+// Other libraries' whole frames: all bodies are moved, then all pairs that touch are found and counted.
+namespace orchard::bench {
+
+class FrameRival {
+ public:
+  virtual ~FrameRival() = default;
+  virtual std::string name() const = 0;
+  virtual std::size_t step(int step) = 0;  // how many pairs touch
+};
+
+// Of scenes without articulated bodies. Null where the library is not installed.
+std::unique_ptr<FrameRival> fcl_frames_double(const runtime::test::Scene& scene);
+std::unique_ptr<FrameRival> fcl_frames_float(const runtime::test::Scene& scene);
+std::unique_ptr<FrameRival> bullet_frames(const runtime::test::Scene& scene);
+
+}  // namespace orchard::bench

@@ -1,0 +1,60 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "orchard/geometry/progress.h"
+#include "orchard/geometry/surface.h"
+#include "orchard/medial/medial_mesh.h"
+#include "orchard/medial/quality.h"
+
+namespace orchard {
+
+// The medial mesh in as few balls as you like: its envelope, the union of the balls, cones and slabs of its vertices,
+// edges and triangles, stays as near to the surface as so many can.
+struct SimplifyOptions {
+  Index vertices = 0;      // at most so many; 0: as few as `error` allows
+  double error = 0;        // where vertices is 0: the two-sided distance allowed, over the diagonal; above 0
+  Index samples = 10'000;  // places of the surface that balls are fitted to
+  Index check = 20'000;    // places from which the distance is measured at the end
+  int rounds = 3;          // of moving vertices from where they are spared to where the distance is largest
+  std::uint64_t seed = 1;
+};
+
+struct SimplifyReport {
+  Index vertices_before = 0, vertices = 0;
+  // Measured on the result, over the diagonal, as medial_quality() defines them; coverage.max is a bound, proved over
+  // the whole surface, and hausdorff.max no less. Not seen are dents of the envelope under slits with no place over
+  // them.
+  Spread hausdorff, coverage, protrusion;
+};
+
+struct SimplifiedMedialMesh {
+  MedialMesh mesh;
+  SimplifyReport report;
+};
+
+// Contracts edges under the link condition, and so keeps the Betti numbers of `mesh`, until options.vertices are left:
+// first by quadrics of slabs, cones and borders, then by what contracting costs places of the surface; fits all balls
+// to the surface in between and at the end; then moves vertices from where they are spared to where the distance is
+// largest. One vertex alone is the largest ball in the solid. Radii may be 0, on edges. Balls are those that fit best,
+// not those of the medial axis: their radius is not the distance of their centre.
+//
+// Deterministic, whatever the number of threads; parallel. O(n log n) for n vertices, and some nearest-ball queries for
+// each sample. Throws InputError unless surface.solid(), validate(mesh) passes and options are in range; if no
+// contraction leads to so few vertices, since the topology needs more: the error names the least number; or if no
+// number of vertices leads to options.error: it names what was reached.
+SimplifiedMedialMesh simplify_medial_mesh(const Surface& surface, const MedialMesh& mesh,
+                                          const SimplifyOptions& options, const Progress& progress = {});
+
+// The same for each of several numbers of vertices, which are descending, all from one descent; options.vertices and
+// .error do not count. Ends before the first that the topology does not allow.
+std::vector<SimplifiedMedialMesh> simplify_to_each(const Surface& surface, const MedialMesh& mesh,
+                                                   std::span<const Index> vertices, const SimplifyOptions& options,
+                                                   const Progress& progress = {});
+
+// The largest ball inside the solid that lies uphill, on the distance to the surface, from the largest balls of `mesh`.
+// Throws InputError unless surface.solid().
+Sphere largest_inscribed_ball(const Surface& surface, const MedialMesh& mesh);
+
+}  // namespace orchard

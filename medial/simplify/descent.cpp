@@ -1,0 +1,107 @@
+#include "descent.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "contract_by_samples.h"
+#include "improve.h"
+#include "slab_quadrics.h"
+#include "two_sided.h"
+
+namespace orchard::detail {
+namespace {
+
+// How far quadrics lead: to so many times the vertices wanted, but no fewer than so many. They are fast, and the
+// samples, which see more, have what is left.
+constexpr Index kBySlabs = 3, kLeastBySlabs = 1000;
+constexpr double kShrink = 0.6;   // vertices left by one pass of contractions
+constexpr double kMoved = 0.08;   // share of the vertices that the first round moves
+constexpr double kNotable = 0.6;  // of the largest distance: places that are as far off become samples
+constexpr FitOptions kBetween[] = {{.power = 4, .steps = 1, .middles = false}};
+constexpr FitOptions kAtEnd[] = {{.power = 2, .steps = 2}, {.power = 4, .steps = 4}, {.power = 8, .steps = 6}};
+constexpr FitOptions kAfterInsertion[] = {{.power = 4, .steps = 2, .middles = false}};
+constexpr FitOptions kAfterMoving[] = {{.power = 4, .steps = 2}, {.power = 8, .steps = 5}};
+
+}  // namespace
+
+Descent::Descent(const Surface& surface, const MedialMesh& mesh, const SimplifyOptions& options,
+                 const Progress& progress)
+    : surface_(surface),
+      options_(options),
+      progress_(progress),
+      diagonal_(surface.bounding_box().diagonal().norm()),
+      vertices_before_(mesh.size()),
+      whole_(mesh) {}
+
+Stage Descent::start() const { return {whole_, fit_samples(surface_, options_.samples, options_.seed), {}}; }
+
+void Descent::go_down(Stage& stage, Index count) const {
+  contract_by_slabs(stage.mesh, std::max({count, kBySlabs * std::min(count, stage.mesh.living()), kLeastBySlabs}));
+  stage.feet.feet.clear();
+  refine(stage, kBetween);
+  while (stage.mesh.living() > count) {
+    const Index before = stage.mesh.living();
+    contract(stage, std::max(count, static_cast<Index>(kShrink * before)));
+    if (stage.mesh.living() == before && !stage.mesh.make_contractible()) break;
+    refine(stage, kBetween);
+  }
+}
+
+void Descent::contract(Stage& stage, Index count) const {
+  contract_by_samples(surface_, stage.mesh, stage.samples, stage.feet, count);
+}
+
+void Descent::refine(Stage& stage, std::span<const FitOptions> passes) const {
+  for (const FitOptions& pass : passes) fit(surface_, stage.mesh, stage.samples, stage.feet, pass);
+}
+
+Stage Descent::finished(Stage stage) const {
+  const Index count = stage.mesh.living();
+  refine(stage, kAtEnd);
+  stage.feet.find(stage.mesh, stage.samples);
+  double share = kMoved;
+  for (int round = 0; round < options_.rounds; ++round) {
+    report_progress(progress_, "simplifying the axis: moving vertices", static_cast<double>(round) / options_.rounds);
+    look_closer(stage, round);
+    Stage next = stage;
+    const Index moved = std::max(Index{1}, static_cast<Index>(share * count));
+    if (insert_at_worst(surface_, next.mesh, next.samples, next.feet, moved) == 0) break;
+    refine(next, kAfterInsertion);
+    contract(next, count);
+    if (next.mesh.living() > count) break;
+    refine(next, kAfterMoving);
+    next.feet.find(next.mesh, next.samples);
+    if (next.feet.worst() < stage.feet.worst()) {
+      stage = std::move(next);
+    } else {
+      share /= 2;
+    }
+  }
+  return stage;
+}
+
+void Descent::look_closer(Stage& stage, int round) const {
+  std::vector<FitSample> others =
+      fit_samples(surface_, options_.samples, options_.seed + static_cast<std::uint64_t>(round) + 1);
+  Assignment feet;
+  feet.find(stage.mesh, others);
+  const double enough = kNotable * stage.feet.worst();
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    if (std::abs(feet.feet[i].value) < enough) continue;
+    stage.samples.push_back(others[i]);
+    stage.feet.feet.push_back(feet.feet[i]);
+    stage.feet.max = std::max(stage.feet.max, std::abs(feet.feet[i].value));
+  }
+}
+
+SimplifiedMedialMesh Descent::measured(const Stage& stage) const {
+  SimplifiedMedialMesh result;
+  result.mesh = stage.mesh.mesh();
+  result.report.vertices_before = vertices_before_;
+  result.report.vertices = result.mesh.size();
+  measure_two_sided(surface_, stage.mesh, options_, result.report);
+  return result;
+}
+
+}  // namespace orchard::detail

@@ -1,0 +1,177 @@
+#include "fit.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "normal_equations.h"
+#include "protrusions.h"
+
+namespace orchard::detail {
+namespace {
+
+constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-6, kMostDamping = 1e3;
+constexpr double kFloor = 1e-3;  // share of the weight that small distances keep at high powers
+
+class Fitter {
+ public:
+  Fitter(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples, Assignment& feet,
+         const FitOptions& options)
+      : surface_(surface),
+        mesh_(mesh),
+        samples_(samples),
+        feet_(feet),
+        options_(options),
+        walker_(mesh),
+        places_(options.middles ? places_to_look(mesh, kLookSpacing * surface.bounding_radius())
+                                : std::vector<Protrusion>()),
+        equations_(mesh) {}
+
+  void run() {
+    feet_.find(mesh_, samples_);
+    protrusions_ = protruding();
+    scale_ = std::max(feet_.max, 1e-300);
+    for (const Protrusion& protrusion : protrusions_) scale_ = std::max(scale_, protrusion.value);
+    double cost = total();
+    double damping = kFirstDamping;
+    for (int step = 0; step < options_.steps && damping < kMostDamping; ++step) {
+      assemble();
+      const std::vector<Ball4> before = balls();
+      const Assignment feet_before = feet_;
+      const std::vector<Protrusion> protrusions_before = protrusions_;
+      move(before, damping);
+      feet_.walk(samples_, walker_);
+      protrusions_ = protruding();
+      const double next = total();
+      if (next < cost) {
+        cost = next;
+        damping = std::max(kLeastDamping, damping / 4);
+      } else {
+        restore(before);
+        feet_ = feet_before;
+        protrusions_ = protrusions_before;
+        damping *= 8;
+      }
+    }
+    feet_.max_protrusion = 0;
+    for (const Protrusion& protrusion : protrusions_)
+      feet_.max_protrusion = std::max(feet_.max_protrusion, protrusion.value);
+  }
+
+ private:
+  double weight_at(double value) const {
+    return options_.power == 2 ? 1 : kFloor + std::pow(std::abs(value) / scale_, options_.power - 2);
+  }
+  double cost_of(double value) const {
+    const double relative = std::abs(value) / scale_;
+    return (options_.power == 2 ? 0 : kFloor * relative * relative) + std::pow(relative, options_.power);
+  }
+
+  double total() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < samples_.size(); ++i) sum += samples_[i].weight * cost_of(feet_.feet[i].value);
+    for (const Protrusion& protrusion : protrusions_) sum += ball_weight() * cost_of(protrusion.value);
+    return sum;
+  }
+  double ball_weight() const { return kProtrusionWeight * samples_[0].weight; }
+
+  std::vector<Protrusion> protruding() const { return find_protrusions(surface_, mesh_, places_); }
+
+  // The distance |p - c| - r changes by -(u, 1) * (dc, dr); where p is outside, and as near as c is thick, the
+  // curvature of |p - c| counts, too.
+  void assemble() {
+    equations_.clear();
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      const Foot& foot = feet_.feet[i];
+      const Ball4 ball = foot.ball(mesh_);
+      const Vector way = samples_[i].position - ball.head<3>();
+      const double length = way.norm();
+      const Vector unit = length > 0 ? Vector(way / length) : samples_[i].normal;
+      const double weight = samples_[i].weight * weight_at(foot.value);
+      Ball4 row;
+      row << unit, 1;
+      Eigen::Matrix4d block = (options_.power - 1) * row * row.transpose();
+      if (foot.value > 0) {
+        const double bend = length > foot.value ? foot.value / length : 1;
+        block.topLeftCorner<3, 3>() += bend * (Eigen::Matrix3d::Identity() - unit * unit.transpose());
+      }
+      equations_.add(foot.corners, foot.weights, weight * block, weight * foot.value * row);
+    }
+    for (const Protrusion& protrusion : protrusions_) {
+      const double weight = ball_weight() * weight_at(protrusion.value);
+      Ball4 row;
+      row << protrusion.outward, 1;
+      equations_.add(protrusion.corners, protrusion.weights, weight * (options_.power - 1) * row * row.transpose(),
+                     -weight * protrusion.value * row);
+    }
+  }
+
+  // Radii stay at 0 that would fall below.
+  void move(const std::vector<Ball4>& before, double damping) {
+    std::vector<std::uint8_t> held(mesh_.size(), 0);
+    for (Index v = 0; v < mesh_.size(); ++v)
+      held[v] = mesh_.alive(v) && !(before[v][3] > 0) && equations_.side(v)[3] < 0 ? 1 : 0;
+    const std::vector<Ball4> step = equations_.solve(damping, held);
+    for (Index v = 0; v < mesh_.size(); ++v) {
+      if (!mesh_.alive(v)) continue;
+      Ball4 ball = before[v] + step[v];
+      ball[3] = std::max(ball[3], 0.0);
+      mesh_.set_ball(v, ball);
+    }
+  }
+
+  std::vector<Ball4> balls() const {
+    std::vector<Ball4> result(mesh_.size());
+    for (Index v = 0; v < mesh_.size(); ++v) result[v] = mesh_.ball(v);
+    return result;
+  }
+  void restore(const std::vector<Ball4>& balls) {
+    for (Index v = 0; v < mesh_.size(); ++v) mesh_.set_ball(v, balls[v]);
+  }
+
+  const Surface& surface_;
+  ContractibleMesh& mesh_;
+  const std::span<const FitSample> samples_;
+  Assignment& feet_;
+  const FitOptions options_;
+  const FootWalker walker_;
+  const std::vector<Protrusion> places_;  // values not known
+  NormalEquations equations_;
+  std::vector<Protrusion> protrusions_;
+  double scale_ = 1;
+};
+
+}  // namespace
+
+void Assignment::find(const ContractibleMesh& mesh, std::span<const FitSample> samples) {
+  const FootFinder finder(mesh);
+  const bool guess = feet.size() == samples.size();
+  feet.resize(samples.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, samples.size(), 256), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i)
+      feet[i] = finder.find(samples[i].position, guess ? &feet[i] : nullptr);
+  });
+  find_max();
+}
+
+void Assignment::walk(std::span<const FitSample> samples, const FootWalker& walker) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, samples.size(), 256), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) feet[i] = walker.walk(samples[i].position, feet[i]);
+  });
+  find_max();
+}
+
+void Assignment::find_max() {
+  max = 0;
+  for (const Foot& foot : feet) max = std::max(max, std::abs(foot.value));
+}
+
+void fit(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples, Assignment& feet,
+         const FitOptions& options) {
+  Fitter(surface, mesh, samples, feet, options).run();
+}
+
+}  // namespace orchard::detail

@@ -1,0 +1,40 @@
+#pragma once
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "fit_samples.h"
+#include "foot.h"
+
+namespace orchard::detail {
+
+// Places of a surface and the balls of a medial mesh that come nearest to them.
+struct Assignment {
+  std::vector<Foot> feet;  // one for each sample
+  double max = 0;          // of |value|: how far the envelope is from a sample, outside, or how deep that is inside
+
+  double max_protrusion = 0;  // as the last fit() left it, of the balls that it looked at
+
+  double worst() const { return std::max(max, max_protrusion); }
+  // Deterministic; parallel.
+  void find(const ContractibleMesh& mesh, std::span<const FitSample> samples);
+  // Near where the feet are.
+  void walk(std::span<const FitSample> samples, const FootWalker& walker);
+
+ private:
+  void find_max();
+};
+
+struct FitOptions {
+  double power = 2;  // of the distances whose weighted sum is made small; at least 2
+  int steps = 5;
+  bool middles = true;  // look at balls in the middles of cells, too, which protrude where no sample is
+};
+
+// Moves the balls of a medial mesh, which keeps its cells, so that the boundary of its envelope comes to the samples,
+// and no vertex' ball protrudes: Levenberg-Marquardt steps with every sample held by its foot; powers above 2 by
+// reweighting. `feet` are cells of the mesh, or none; they are found anew, and then followed. Deterministic; parallel.
+void fit(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples, Assignment& feet,
+         const FitOptions& options);
+
+}  // namespace orchard::detail

@@ -1,0 +1,56 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "../quality/support_tree.h"
+#include "contractible_mesh.h"
+
+namespace orchard::detail {
+
+// The ball of a medial mesh that comes nearest to a point: the corners of its cell, and what it takes of each.
+struct Foot {
+  std::array<Index, 3> corners{kNone, kNone, kNone};  // smaller cells repeat the first
+  std::array<double, 3> weights{1, 0, 0};             // of corners that are repeated: 0
+  double value = 0;                                   // |point - centre| - radius
+
+  Ball4 ball(const ContractibleMesh& mesh) const {
+    return weights[0] * mesh.ball(corners[0]) + weights[1] * mesh.ball(corners[1]) + weights[2] * mesh.ball(corners[2]);
+  }
+};
+
+// The best ball of one cell.
+Foot foot_on(const ContractibleMesh& mesh, const std::array<Index, 3>& corners, const Point& query);
+
+// Like FootWalker::walk(), for meshes whose cells change.
+Foot walk_to_foot(const ContractibleMesh& mesh, const Point& query, const Foot& start);
+
+// Finds feet near where they were while the mesh keeps its cells, whatever its balls do.
+class FootWalker {
+ public:
+  explicit FootWalker(const ContractibleMesh& mesh);
+
+  // The best ball of the cells around the heaviest corner of `start`, and so on from there while it gets better. Its
+  // corners are a cell of the mesh. Many times as fast as a search of all, and mostly the same.
+  Foot walk(const Point& query, const Foot& start) const;
+
+ private:
+  const ContractibleMesh& mesh_;
+  std::vector<std::array<Index, 3>> cells_;
+  Rows at_;  // numbers of cells at each vertex
+};
+
+// Finds feet while the mesh stays as it is.
+class FootFinder {
+ public:
+  explicit FootFinder(const ContractibleMesh& mesh);
+
+  // `guess`, if its corners are a cell of the mesh, is where to look first: that saves most of the time.
+  Foot find(const Point& query, const Foot* guess = nullptr) const;
+
+ private:
+  const ContractibleMesh& mesh_;
+  std::vector<std::array<Index, 3>> cells_;
+  SupportTree tree_;
+};
+
+}  // namespace orchard::detail

@@ -1,0 +1,77 @@
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "orchard/geometry/error.h"
+#include "orchard/medial/simplify.h"
+
+namespace orchard {
+namespace {
+
+constexpr Index kStarts = 8;
+constexpr double kTouching = 1e-7;   // of the radius: what is nearer than this beyond the nearest place holds the ball
+constexpr double kLeastStep = 1e-9;  // of the radius
+constexpr int kMaxSteps = 400;
+constexpr int kHullSteps = 200;
+
+// The way on which a ball leaves all places that are within `reach` of it at once, or next to nothing where there is
+// none: the least vector of the hull of the directions away from them (Gilbert's method).
+Vector uphill(const Surface& surface, const Point& center, double reach, std::vector<Index>& near) {
+  surface.triangles_near({center, reach}, near);
+  std::vector<Vector> away;
+  for (const Index t : near) {
+    const auto [a, b, c] = surface.corners(t);
+    const ClosestPoint place = closest_point_of_triangle(center, a, b, c);
+    if (place.distance > 0) away.push_back((center - place.position) / place.distance);
+  }
+  if (away.empty()) return Vector::Zero();
+  Vector least = away[0];
+  for (int step = 0; step < kHullSteps; ++step) {
+    const Vector& extreme = *std::min_element(
+        away.begin(), away.end(), [&](const Vector& x, const Vector& y) { return least.dot(x) < least.dot(y); });
+    const Vector along = extreme - least;
+    if (!(-least.dot(along) > 1e-12 * least.squaredNorm()) || !(along.squaredNorm() > 0)) break;
+    least += std::clamp(-least.dot(along) / along.squaredNorm(), 0.0, 1.0) * along;
+  }
+  return least;
+}
+
+Sphere climb(const Surface& surface, Sphere ball) {
+  std::vector<Index> near;
+  double length = 0.1 * ball.radius;
+  for (int i = 0; i < kMaxSteps && length > kLeastStep * ball.radius; ++i) {
+    const Vector way = uphill(surface, ball.center, ball.radius * (1 + kTouching) + 0.5 * length, near);
+    if (!(way.norm() > 1e-9)) {
+      length /= 4;
+      continue;
+    }
+    const Point next = ball.center + length * way.normalized();
+    const double radius = -surface.signed_distance(next);
+    if (radius > ball.radius) {
+      ball = {next, radius};
+      length *= 1.5;
+    } else {
+      length /= 2;
+    }
+  }
+  return ball;
+}
+
+}  // namespace
+
+Sphere largest_inscribed_ball(const Surface& surface, const MedialMesh& mesh) {
+  if (!surface.solid())
+    throw InputError("the largest ball needs a solid: " + surface.report().faults() + "; repair the mesh first");
+  std::vector<Sphere> starts;
+  for (const Point& center : mesh.centers) starts.push_back({center, std::max(0.0, -surface.signed_distance(center))});
+  std::stable_sort(starts.begin(), starts.end(), [](const Sphere& a, const Sphere& b) { return a.radius > b.radius; });
+  if (starts.size() > kStarts) starts.resize(kStarts);
+  Sphere best;
+  for (const Sphere& start : starts) {
+    const Sphere ball = climb(surface, start);
+    if (ball.radius > best.radius) best = ball;
+  }
+  return best;
+}
+
+}  // namespace orchard

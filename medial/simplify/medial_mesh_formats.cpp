@@ -1,0 +1,107 @@
+#include "orchard/medial/medial_mesh_formats.h"
+
+#include <string>
+
+#include "../axis/incidence.h"
+#include "orchard/geometry/disjoint_sets.h"
+#include "orchard/geometry/text_lines.h"
+
+namespace orchard {
+namespace {
+
+void append_place(std::string& text, const Point& place) {
+  for (int axis = 0; axis < 3; ++axis) append_number(text, place[axis]);
+}
+
+}  // namespace
+
+FlaggedMedialMesh with_feature_flags(const MedialMesh& mesh) {
+  FlaggedMedialMesh flagged{mesh, std::vector<CellFlags>(mesh.centers.size()),
+                            std::vector<CellFlags>(mesh.edges.size()), std::vector<CellFlags>(mesh.triangles.size())};
+  const detail::CellIncidence at(mesh.edges, mesh.triangles, mesh.size());
+  for (CellFlags& vertex : flagged.vertices) vertex.type = -1;
+  for (Index e = 0; e < mesh.edges.size(); ++e) {
+    const auto& [a, b] = mesh.edges[e];
+    const std::size_t triangles = at.triangles_at[e].size();
+    if (!(mesh.radii[a] > 0) && !(mesh.radii[b] > 0)) {
+      flagged.edges[e].type = 2;
+    } else if (triangles != 1 && triangles != 2) {
+      flagged.edges[e].type = 1;
+    }
+  }
+  return flagged;
+}
+
+std::vector<Index> sheet_of_triangles(const MedialMesh& mesh) {
+  const detail::CellIncidence at(mesh.edges, mesh.triangles, mesh.size());
+  DisjointSets sets(mesh.triangles.size());
+  for (Index e = 0; e < mesh.edges.size(); ++e) {
+    const auto row = at.triangles_at[e];
+    if (row.size() == 2) sets.unite(row[0], row[1]);
+  }
+  std::vector<Index> number(mesh.triangles.size(), kNone), sheet(mesh.triangles.size());
+  Index count = 0;
+  for (Index t = 0; t < mesh.triangles.size(); ++t) {
+    Index& own = number[sets.root(t)];
+    if (own == kNone) own = count++;
+    sheet[t] = own;
+  }
+  return sheet;
+}
+
+std::string to_ply(const MedialMesh& mesh) {
+  const std::vector<Index> sheet = sheet_of_triangles(mesh);
+  std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(mesh.centers.size()) +
+                     "\nproperty double x\nproperty double y\nproperty double z\nproperty double radius\n"
+                     "element face " +
+                     std::to_string(mesh.triangles.size()) +
+                     "\nproperty list uchar int vertex_indices\nproperty int sheet\nelement edge " +
+                     std::to_string(mesh.edges.size()) + "\nproperty int vertex1\nproperty int vertex2\nend_header\n";
+  for (Index v = 0; v < mesh.size(); ++v) {
+    std::string line;
+    append_place(line, mesh.centers[v]);
+    append_number(line, mesh.radii[v]);
+    text.append(line, 1);  // without the first blank
+    text += '\n';
+  }
+  for (Index t = 0; t < mesh.triangles.size(); ++t) {
+    text += '3';
+    for (const Index corner : mesh.triangles[t]) append_number(text, corner);
+    append_number(text, sheet[t]);
+    text += '\n';
+  }
+  for (const auto& [a, b] : mesh.edges) text += std::to_string(a) + ' ' + std::to_string(b) + '\n';
+  return text;
+}
+
+std::string to_obj(const MedialMesh& mesh) {
+  const std::vector<Index> sheet = sheet_of_triangles(mesh);
+  std::string text;
+  for (const Point& center : mesh.centers) {
+    text += 'v';
+    append_place(text, center);
+    text += '\n';
+  }
+  Index sheets = 0;
+  for (const Index own : sheet) sheets = std::max(sheets, own + 1);
+  std::vector<std::string> groups(sheets);
+  for (Index t = 0; t < mesh.triangles.size(); ++t) {
+    std::string& group = groups[sheet[t]];
+    group += 'f';
+    for (const Index corner : mesh.triangles[t]) append_number(group, corner + 1);
+    group += '\n';
+  }
+  for (Index i = 0; i < sheets; ++i) text += "g sheet" + std::to_string(i) + '\n' + groups[i];
+  const detail::CellIncidence at(mesh.edges, mesh.triangles, mesh.size());
+  std::string wires;
+  for (Index e = 0; e < mesh.edges.size(); ++e) {
+    if (!at.triangles_at[e].empty()) continue;
+    wires += 'l';
+    for (const Index corner : mesh.edges[e]) append_number(wires, corner + 1);
+    wires += '\n';
+  }
+  if (!wires.empty()) text += "g wires\n" + wires;
+  return text;
+}
+
+}  // namespace orchard

@@ -1,0 +1,41 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "contractible_mesh.h"
+#include "orchard/geometry/surface.h"
+
+namespace orchard::detail {
+
+inline constexpr double kLookSpacing = 0.04;      // bounding radii, of balls of edges that are looked at
+inline constexpr double kProtrusionWeight = 4.0;  // of a ball that protrudes, in samples
+
+// A ball of a medial mesh that reaches out of the solid: what it takes of which corners, how far it reaches (mesh
+// units), and the way there. Where a sheet ends with radius 0, or next to none, no place of the surface need be inside
+// of what reaches out, so it has to be looked for from the balls.
+struct Protrusion {
+  std::array<Index, 3> corners{};   // smaller cells repeat the first
+  std::array<double, 3> weights{};  // of corners that are repeated: 0
+  double value = 0;
+  Vector outward = Vector::Zero();
+
+  Ball4 ball(const ContractibleMesh& mesh) const {
+    return weights[0] * mesh.ball(corners[0]) + weights[1] * mesh.ball(corners[1]) + weights[2] * mesh.ball(corners[2]);
+  }
+};
+
+// Balls to look at: those of the vertices, at even steps of at most `spacing` (mesh units) inside edges, but three at
+// most, and in the middles of triangles. Values are not known.
+std::vector<Protrusion> places_to_look(const ContractibleMesh& mesh, double spacing);
+
+// The same for all cells at one of two vertices, or both.
+std::vector<Protrusion> places_around(const ContractibleMesh& mesh, Index a, Index b, double spacing);
+
+// How far a ball reaches out of the solid, and the way there.
+double protrusion_of(const Surface& surface, const Ball4& ball, Vector& outward);
+
+// Those of `places` that protrude. Parallel.
+std::vector<Protrusion> find_protrusions(const Surface& surface, const ContractibleMesh& mesh,
+                                         const std::vector<Protrusion>& places);
+
+}  // namespace orchard::detail

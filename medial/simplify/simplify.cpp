@@ -1,0 +1,155 @@
+#include "orchard/medial/simplify.h"
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "descent.h"
+#include "orchard/geometry/error.h"
+#include "two_sided.h"
+
+namespace orchard {
+namespace {
+
+using detail::ContractibleMesh;
+using detail::Descent;
+using detail::Stage;
+
+constexpr const char* kStage = "simplifying the axis";
+
+void check(const Surface& surface, const MedialMesh& mesh, const SimplifyOptions& options) {
+  if (!surface.solid()) {
+    throw InputError("a medial mesh is simplified for a solid: " + surface.report().faults() +
+                     "; repair the mesh first");
+  }
+  validate(mesh);
+  if (options.samples == 0 || options.check == 0) throw InputError("samples of simplifying: at least 1");
+  if (options.rounds < 0) throw InputError("rounds of simplifying: not negative");
+}
+
+// One ball for a component that has nothing but it.
+bool is_single_ball(const ContractibleMesh& mesh) { return mesh.living() == 1; }
+
+SimplifiedMedialMesh finish(const Surface& surface, const MedialMesh& whole, const Descent& descent, Stage stage) {
+  if (is_single_ball(stage.mesh)) {
+    const Sphere ball = largest_inscribed_ball(surface, whole);
+    MedialMesh single;
+    single.centers.push_back(ball.center);
+    single.radii.push_back(ball.radius);
+    return descent.measured({ContractibleMesh(single), {}, {}});
+  }
+  return descent.measured(descent.finished(std::move(stage)));
+}
+
+// The fewest vertices whose two-sided distance is within the limit, by bisection of their number: as a rule the
+// distance falls with it.
+class FewestWithin {
+ public:
+  FewestWithin(const Surface& surface, const MedialMesh& mesh, const SimplifyOptions& options, const Progress& progress)
+      : surface_(surface),
+        mesh_(mesh),
+        options_(options),
+        progress_(progress),
+        descent_(surface, mesh, options, progress) {}
+
+  SimplifiedMedialMesh run() {
+    Index high = mesh_.size(), low = 1;  // `high` is enough, as far as is known; one less than `low` is not
+    std::optional<SimplifiedMedialMesh> best;
+    double least = std::numeric_limits<double>::infinity();
+    // From few to many at first: few take less time.
+    Index next = std::min<Index>(high, kFirst);
+    while (low <= high) {
+      report_progress(progress_, kStage, progress_of(low, high));
+      SimplifiedMedialMesh result = finish(surface_, mesh_, descent_, stage_of(next));
+      least = std::min(least, result.report.hausdorff.max);
+      if (result.report.hausdorff.max <= options_.error) {
+        high = next - 1;
+        const bool fewest = result.report.vertices > next || next == 1;  // the topology allows no less
+        best = std::move(result);
+        if (fewest) break;
+      } else {
+        low = std::max(next, result.report.vertices) + 1;
+      }
+      next = best ? middle(low, high) : std::max(low, std::min<Index>(high, next * 2));
+    }
+    if (!best) {
+      throw InputError("error " + percent(options_.error) +
+                       " of the diagonal: no number of vertices of this axis comes nearer than " + percent(least) +
+                       "; allow more, or refine the axis further");
+    }
+    return std::move(*best);
+  }
+
+ private:
+  static constexpr Index kFirst = 256;
+
+  static Index middle(Index low, Index high) {
+    const double mean = std::sqrt(static_cast<double>(low) * static_cast<double>(high));
+    return std::min(high, std::max(low, static_cast<Index>(mean)));
+  }
+  static std::string percent(double share) { return std::to_string(100 * share) + " %"; }
+  double progress_of(Index low, Index high) const {
+    return 1 - std::log(static_cast<double>(high) / low + 1) / std::log(static_cast<double>(mesh_.size()) + 1);
+  }
+
+  // From the nearest stage above that was met on the way.
+  Stage stage_of(Index count) {
+    const auto found = stages_.lower_bound(count);
+    Stage stage = found == stages_.end() ? descent_.start() : found->second;
+    if (stage.mesh.living() > count) descent_.go_down(stage, count);
+    stages_.insert_or_assign(stage.mesh.living(), stage);
+    return stage;
+  }
+
+  const Surface& surface_;
+  const MedialMesh& mesh_;
+  const SimplifyOptions& options_;
+  const Progress& progress_;
+  const Descent descent_;
+  std::map<Index, Stage> stages_;
+};
+
+}  // namespace
+
+SimplifiedMedialMesh simplify_medial_mesh(const Surface& surface, const MedialMesh& mesh,
+                                          const SimplifyOptions& options, const Progress& progress) {
+  check(surface, mesh, options);
+  if (options.vertices == 0) {
+    if (!(options.error > 0)) throw InputError("simplifying: a number of vertices, or an error above 0");
+    return FewestWithin(surface, mesh, options, progress).run();
+  }
+  report_progress(progress, kStage, 0);
+  const Descent descent(surface, mesh, options, progress);
+  Stage stage = descent.start();
+  descent.go_down(stage, options.vertices);
+  if (stage.mesh.living() > options.vertices) {
+    throw InputError(std::to_string(options.vertices) +
+                     " vertices are fewer than the topology of the axis allows; at least " +
+                     std::to_string(stage.mesh.living()));
+  }
+  SimplifiedMedialMesh result = finish(surface, mesh, descent, std::move(stage));
+  report_progress(progress, kStage, 1);
+  return result;
+}
+
+std::vector<SimplifiedMedialMesh> simplify_to_each(const Surface& surface, const MedialMesh& mesh,
+                                                   std::span<const Index> vertices, const SimplifyOptions& options,
+                                                   const Progress& progress) {
+  check(surface, mesh, options);
+  const Descent descent(surface, mesh, options, progress);
+  Stage stage = descent.start();
+  std::vector<SimplifiedMedialMesh> results;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    report_progress(progress, kStage, static_cast<double>(i) / static_cast<double>(vertices.size()));
+    descent.go_down(stage, vertices[i]);
+    if (stage.mesh.living() > vertices[i]) break;
+    results.push_back(finish(surface, mesh, descent, stage));
+  }
+  report_progress(progress, kStage, 1);
+  return results;
+}
+
+}  // namespace orchard

@@ -1,0 +1,210 @@
+#include "slab_quadrics.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <queue>
+#include <tuple>
+
+namespace orchard::detail {
+namespace {
+
+constexpr double kPull = 1e-4;     // of the trace: towards the middle of the edge, where planes leave a way open
+constexpr double kSpread = 1e-6;   // weight of an edge's length, so that short ones go first among equals
+constexpr double kBorder = 1.0;    // weight of the square over a border edge
+constexpr double kFarthest = 2.0;  // edge lengths from its middle that a new ball may be
+
+// The weighted squared distances to planes: x A x - 2 b x + c.
+struct Quadric {
+  Eigen::Matrix4d a = Eigen::Matrix4d::Zero();
+  Ball4 b = Ball4::Zero();
+  double c = 0;
+
+  Quadric& operator+=(const Quadric& other) {
+    a += other.a;
+    b += other.b;
+    c += other.c;
+    return *this;
+  }
+  // Of balls that touch the plane with this outward normal that `on` touches.
+  void add_plane(const Vector& normal, const Ball4& on, double weight) {
+    Ball4 row;
+    row << normal, 1;
+    const double side = row.dot(on);
+    a += weight * row * row.transpose();
+    b += weight * side * row;
+    c += weight * side * side;
+  }
+  double at(const Ball4& x) const { return std::max(0.0, x.dot(a * x) - 2 * b.dot(x) + c); }
+};
+
+// Any unit vector at right angles to one.
+Vector across(const Vector& unit) {
+  Vector other = Vector::Zero();
+  Index least = 0;
+  for (Index k = 1; k < 3; ++k) {
+    if (std::abs(unit[k]) < std::abs(unit[least])) least = k;
+  }
+  other[least] = 1;
+  return unit.cross(other).normalized();
+}
+
+class Contraction {
+ public:
+  explicit Contraction(ContractibleMesh& mesh) : mesh_(mesh), origin_(mesh.size() > 0 ? mesh.ball(0) : Ball4::Zero()) {
+    origin_[3] = 0;
+  }
+
+  void run(Index target) {
+    quadrics_.resize(mesh_.size());
+    stamp_.assign(mesh_.size(), 0);
+    for (const auto& cell : mesh_.largest_cells()) add_cell(cell);
+    for (Index v = 0; v < mesh_.size(); ++v) {
+      for (const Index other : mesh_.neighbors(v)) {
+        if (v < other) offer(v, other);
+      }
+    }
+    while (mesh_.living() > target && !queue_.empty()) {
+      const auto [cost, a, b, stamp] = queue_.top();
+      queue_.pop();
+      if (!mesh_.alive(a) || !mesh_.alive(b) || stamp != stamp_[a] + stamp_[b]) continue;
+      if (!mesh_.adjacent(a, b) || !mesh_.may_contract(a, b)) continue;
+      contract(a, b);
+    }
+  }
+
+ private:
+  using Entry = std::tuple<double, Index, Index, Index>;
+
+  Ball4 local(Index vertex) const { return mesh_.ball(vertex) - origin_; }
+
+  void add_cell(const std::array<Index, 3>& cell) {
+    const auto& [a, b, c] = cell;
+    if (b == a) {
+      for (int axis = 0; axis < 3; ++axis) {
+        for (const double sign : {-1.0, 1.0}) quadrics_[a].add_plane(sign * Vector::Unit(axis), local(a), 1);
+      }
+    } else if (c == a) {
+      add_cone(a, b);
+    } else {
+      add_slab(cell);
+      for (const auto& [p, q, r] : {std::tuple{a, b, c}, std::tuple{b, c, a}, std::tuple{a, c, b}}) {
+        if (mesh_.count_triangles_at(p, q) == 1) add_border(p, q, r);
+      }
+    }
+  }
+
+  // Both planes that touch all three balls.
+  void add_slab(const std::array<Index, 3>& cell) {
+    const Ball4 a = local(cell[0]), b = local(cell[1]), c = local(cell[2]);
+    const Vector u = (b - a).head<3>(), v = (c - a).head<3>(), normal = u.cross(v);
+    const double squared = normal.squaredNorm();
+    if (!(squared > 0)) return;
+    const Vector gradient = (b[3] - a[3]) / squared * v.cross(normal) + (c[3] - a[3]) / squared * normal.cross(u);
+    const double steep = gradient.squaredNorm();
+    if (steep >= 1) return;
+    const Vector up = std::sqrt((1 - steep) / squared) * normal;
+    const double area = 0.5 * std::sqrt(squared);
+    for (const Index corner : cell) {
+      quadrics_[corner].add_plane(up - gradient, a, area / 3);
+      quadrics_[corner].add_plane(-up - gradient, a, area / 3);
+    }
+  }
+
+  // The plane that touches both balls and is at right angles to a sheet on one side of them.
+  void add_border(Index p, Index q, Index inner) {
+    const Ball4 a = local(p), b = local(q);
+    const Vector along = (b - a).head<3>();
+    const double length = along.norm();
+    if (!(length > 0)) return;
+    const Vector unit = along / length;
+    const double slope = (b[3] - a[3]) / length;
+    Vector out = (a - local(inner)).head<3>();
+    out -= unit.dot(out) * unit;
+    if (!(out.norm() > 0) || std::abs(slope) >= 1) return;
+    const Vector normal = std::sqrt(1 - slope * slope) * out.normalized() - slope * unit;
+    for (const Index v : {p, q}) quadrics_[v].add_plane(normal, a, kBorder * length * length / 2);
+  }
+
+  // Four planes around the cone, and one at each end that is free.
+  void add_cone(Index p, Index q) {
+    const Ball4 a = local(p), b = local(q);
+    const Vector along = (b - a).head<3>();
+    const double length = along.norm();
+    if (!(length > 0)) return;
+    const Vector unit = along / length;
+    const double slope = (b[3] - a[3]) / length;
+    if (std::abs(slope) < 1) {
+      const Vector side = across(unit), other = unit.cross(side);
+      for (const Vector& out : {side, other, Vector(-side), Vector(-other)}) {
+        const Vector normal = std::sqrt(1 - slope * slope) * out - slope * unit;
+        for (const Index v : {p, q}) quadrics_[v].add_plane(normal, a, length * (a[3] + b[3]) / 8);
+      }
+    }
+    if (mesh_.neighbors(p).size() == 1) quadrics_[p].add_plane(-unit, a, length * length);
+    if (mesh_.neighbors(q).size() == 1) quadrics_[q].add_plane(unit, b, length * length);
+  }
+
+  // The best ball for both ends of an edge, and its cost.
+  std::pair<Ball4, double> best(Index p, Index q) const {
+    Quadric sum = quadrics_[p];
+    sum += quadrics_[q];
+    const Ball4 a = local(p), b = local(q), middle = 0.5 * (a + b);
+    const double length = (b - a).norm();
+    Ball4 found = middle;
+    const double pull = kPull * sum.a.trace();
+    if (pull > 0) {
+      const Eigen::Matrix4d matrix = sum.a + pull * Eigen::Matrix4d::Identity();
+      found = matrix.inverse() * (sum.b + pull * middle);
+      if (found[3] < 0) {
+        const Eigen::Matrix3d block = matrix.topLeftCorner<3, 3>();
+        found.head<3>() = block.inverse() * (sum.b + pull * middle).head<3>();
+        found[3] = 0;
+      }
+    }
+    double cost = sum.at(found);
+    if (!found.allFinite() || (found - middle).norm() > kFarthest * length)
+      cost = std::numeric_limits<double>::infinity();
+    for (const Ball4& other : {middle, a, b}) {
+      const double value = sum.at(other);
+      if (value < cost) {
+        cost = value;
+        found = other;
+      }
+    }
+    return {found, cost + kSpread * length * length * length * length};
+  }
+
+  void offer(Index a, Index b) {
+    const auto [p, q] = std::minmax(a, b);
+    queue_.emplace(best(p, q).second, p, q, stamp_[p] + stamp_[q]);
+  }
+
+  void contract(Index a, Index b) {
+    const Ball4 ball = best(a, b).first + origin_;
+    quadrics_[a] += quadrics_[b];
+    mesh_.contract(a, b, ball);
+    stamp_[a] += stamp_[b] + 1;  // above what any edge at a was offered with
+    for (const Index other : mesh_.neighbors(a)) offer(a, other);
+    // What the link condition stood against may be free now.
+    for (const Index other : mesh_.neighbors(a)) {
+      for (const Index next : mesh_.neighbors(other)) {
+        if (next > other && mesh_.adjacent(a, next)) offer(other, next);
+      }
+    }
+  }
+
+  ContractibleMesh& mesh_;
+  Ball4 origin_;  // quadrics lose digits far from 0
+  std::vector<Quadric> quadrics_;
+  std::vector<Index> stamp_;  // grows with each change of a vertex
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
+};
+
+}  // namespace
+
+void contract_by_slabs(ContractibleMesh& mesh, Index target) { Contraction(mesh).run(target); }
+
+}  // namespace orchard::detail

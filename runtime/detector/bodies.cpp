@@ -1,0 +1,99 @@
+#include "bodies.h"
+
+namespace orchard::runtime {
+
+StateSource states_of(const std::vector<BodyState>& values) {
+  return [&values](double, std::span<const BodyIndex> bodies, std::span<BodyState> states) {
+    for (std::size_t i = 0; i < bodies.size(); ++i) states[i] = values[bodies[i]];
+  };
+}
+
+namespace detail {
+
+bool set_local(PartRecord& part, const Shape& shape, const Pose& local) noexcept {
+  if (!is_rigid(local)) return false;
+  part.local = local;
+  part.at_origin = local == Pose{};
+  part.center = transform(local, shape.center);
+  part.reach = shape.reach * local.scale;
+  return std::isfinite(part.reach + length(part.center));
+}
+
+double reach_of(std::span<const PartRecord> parts) noexcept {
+  double reach = 0;
+  for (const PartRecord& part : parts) reach = std::max(reach, length(part.center) + part.reach);
+  return reach * (1 + 1e-11);  // rotations are rotations to kRigidTolerance only
+}
+
+Body& BodyTable::take_in(BodyId id, std::size_t count) {
+  const std::size_t slots = std::size_t{id.index} + 1;
+  grow(bodies_, slots);
+  grow(states_, slots);
+  grow(before_, slots);
+  grow(asking_, slots), asking_.clear();  // room for asking everyone
+  Body& body = bodies_[id.index];
+  body.parts.clear();
+  body.parts.reserve(count);  // nothing throws from here on
+  std::vector<PartRecord> parts = std::move(body.parts);
+  body = Body{};
+  body.parts = std::move(parts);
+  body.id = id;
+  return body;
+}
+
+void BodyTable::leave(BodyIndex body) noexcept { bodies_[body].id = kNoBody; }
+
+std::span<const BodyIndex> BodyTable::ask(Step step, double time, std::span<const BodyIndex> bodies) {
+  asking_.clear();
+  for (const BodyIndex index : bodies) {
+    Body& body = bodies_[index];
+    if (body.asked == step || body.is_static || body.frozen) continue;
+    body.known_before = body.asked;
+    before_[index] = states_[index].pose;
+    body.asked = step;
+    asking_.push_back(index);
+  }
+  if (asking_.empty()) return {};
+  if (answers_.size() < asking_.size()) grow(answers_, asking_.size());
+  const auto answers = std::span(answers_).first(asking_.size());
+  source_(time, asking_, answers);
+  for (std::size_t i = 0; i < asking_.size(); ++i) {
+    Body& body = bodies_[asking_[i]];
+    BodyState& state = states_[asking_[i]];
+    if (body.moved < 0 || !(state.pose == answers[i].pose)) body.moved = step;
+    state = answers[i];
+    body.rigid = is_rigid(state.pose);
+    if (body.asleep) {
+      body.frozen = true;
+      state.velocity = state.half_space = {};
+      state.acceleration = state.drift = 0;
+      state.expiry = std::numeric_limits<double>::infinity();
+    }
+  }
+  return asking_;
+}
+
+Motion BodyTable::motion_of(BodyIndex index, double time_step) const noexcept {
+  const Body& body = bodies_[index];
+  const BodyState& state = states_[index];
+  Motion motion;
+  motion.position = state.pose.translation;
+  motion.velocity = state.velocity;
+  motion.radius = body.reach * state.pose.scale + body.continuous_speed * time_step;
+  motion.acceleration = state.acceleration;
+  motion.drift = state.drift;
+  motion.half_space = state.half_space;
+  motion.expiry = state.expiry;
+  if (!body.rigid) motion.radius = -1;  // refused
+  return motion;
+}
+
+std::size_t BodyTable::memory_bytes() const noexcept {
+  std::size_t bytes =
+      bytes_of(bodies_) + bytes_of(states_) + bytes_of(before_) + bytes_of(asking_) + bytes_of(answers_);
+  for (const Body& body : bodies_) bytes += bytes_of(body.parts);
+  return bytes;
+}
+
+}  // namespace detail
+}  // namespace orchard::runtime

@@ -1,0 +1,83 @@
+#pragma once
+#include "broad/roster.h"
+#include "shapes.h"
+
+namespace orchard::runtime::detail {
+
+// Half-spaces have the indices from here on, beyond those of all bodies.
+inline constexpr BodyIndex kFirstHalfSpace = 0xf0000000u;
+inline bool is_half_space(BodyIndex index) noexcept { return index >= kFirstHalfSpace && index != kNoIndex; }
+
+struct PartRecord {
+  ShapeId shape = kNoShape;
+  bool at_origin = true;  // `local` changes nothing
+  Pose local{};
+  Vec3 center{};     // of a sphere around it, in the body's frame,
+  double reach = 0;  // and its radius there
+};
+
+inline constexpr Step kNotAsked = -2;  // not the step before any step
+
+struct Body {
+  BodyId id = kNoBody;  // kNoBody: no body has this index now
+  std::uint32_t group = 1, mask = 0;
+  std::uint8_t importance = 0;
+  bool is_static = false;
+  bool asleep = false;  // wanted by the application
+  bool frozen = false;  // asleep, and its state is known: never asked again
+  bool suggest = false;
+  bool rigid = true;  // the pose that is known
+  double continuous_speed = 0;
+  double least_reach = 0;         // as the application gave it
+  double reach = 0;               // what the broad phase has been told of, at scale 1
+  double told_radius = -1;        // of the sphere that the broad phase relies on; below 0: none yet
+  Step asked = kNotAsked;         // the step that `state` is of
+  Step moved = -1;                // the last step at which the pose was another one than at the time asked before
+  Step known_before = kNotAsked;  // the step that `before` is of
+  std::uint32_t jumps = 0;        // teleports
+  std::uint32_t deformed = 0;     // changes of its shapes' trees
+  std::uint32_t filters = 0;      // grows with changes of group, mask, sleep
+  std::vector<PartRecord> parts;
+};
+
+// The parts of `body`, ready for the broad phase: a sphere around all of them, around the body's origin.
+double reach_of(std::span<const PartRecord> parts) noexcept;
+bool set_local(PartRecord& part, const Shape& shape, const Pose& local) noexcept;  // false: not rigid
+
+// Which bodies there are and, per step, where: asked for at most once a step. Indices are the broad phase's.
+class BodyTable {
+ public:
+  BodyTable(StateSource source, const ShapeTable& shapes) : source_(std::move(source)), shapes_(&shapes) {}
+
+  bool has_source() const noexcept { return static_cast<bool>(source_); }
+  Body& take_in(BodyId id, std::size_t parts);  // with room for so many
+  void leave(BodyIndex body) noexcept;
+  bool contains(BodyId id) const noexcept {
+    return id.index < bodies_.size() && bodies_[id.index].id == id && id != kNoBody;
+  }
+  Body& operator[](BodyIndex body) noexcept { return bodies_[body]; }
+  const Body& operator[](BodyIndex body) const noexcept { return bodies_[body]; }
+  std::size_t slots() const noexcept { return bodies_.size(); }
+
+  BodyState& state(BodyIndex body) noexcept { return states_[body]; }
+  const BodyState& state(BodyIndex body) const noexcept { return states_[body]; }
+  const Pose& before(BodyIndex body) const noexcept { return before_[body]; }
+
+  // Makes all their states those of the step; a body may come up twice. Returns those that had to be asked, in the
+  // order given, valid until the next call.
+  std::span<const BodyIndex> ask(Step step, double time, std::span<const BodyIndex> bodies);
+  // As the broad phase wants it. Not valid if the state is not.
+  Motion motion_of(BodyIndex body, double time_step) const noexcept;
+  std::size_t memory_bytes() const noexcept;
+
+ private:
+  StateSource source_;
+  const ShapeTable* shapes_;
+  std::vector<Body> bodies_;
+  std::vector<BodyState> states_;
+  std::vector<Pose> before_;  // at the step asked before
+  std::vector<BodyIndex> asking_;
+  std::vector<BodyState> answers_;
+};
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,305 @@
+#include "orchard/runtime/detector.h"
+
+#include <algorithm>
+
+#include "detector_state.h"
+
+namespace orchard::runtime {
+
+using detail::Body;
+using detail::is_half_space;
+using detail::PartRecord;
+
+namespace {
+
+bool is_valid_option(const DetectorOptions& options) noexcept {
+  return options.steps_to_end >= 1 &&
+         is_valid(BroadPhaseOptions{options.time_step, options.start, 0, true, options.position_slack});
+}
+
+bool are_valid(const BodyOptions& options) noexcept {
+  return options.continuous_speed >= 0 && options.continuous_speed <= kLargestNumber && options.reach >= 0 &&
+         options.reach <= kLargestNumber;
+}
+
+BroadPhaseOptions broad_options(const DetectorOptions& options) noexcept {
+  BroadPhaseOptions result;
+  result.time_step = options.time_step;
+  result.start = options.start;
+  result.position_slack = options.position_slack;
+  return result;
+}
+
+}  // namespace
+
+Detector::State::State(StateSource source, const DetectorOptions& wanted)
+    : options(wanted),
+      valid(is_valid_option(wanted)),
+      clock{valid ? wanted.start : 0, valid ? wanted.time_step : 1},
+      bodies(std::move(source), shapes),
+      places(shapes, bodies, halves),
+      broad([this](double time, std::span<const BodyIndex> asked,
+                   std::span<Motion> answers) { motions(time, asked, answers); },
+            broad_options(wanted)),
+      rounds(places, queries, options.executor, wanted.most_unfinished) {}
+
+Detector::Detector(StateSource source, const DetectorOptions& options)
+    : state_(std::make_unique<State>(std::move(source), options)) {}
+Detector::Detector(Detector&&) noexcept = default;
+Detector& Detector::operator=(Detector&&) noexcept = default;
+Detector::~Detector() = default;
+
+namespace {
+
+ShapeId counted(std::size_t& count, ShapeId shape) noexcept {
+  if (shape != kNoShape) ++count;
+  return shape;
+}
+
+}  // namespace
+
+ShapeId Detector::add_shape(const TreeView& tree) {
+  return counted(state_->shape_count, state_->shapes.add_tree(tree));
+}
+ShapeId Detector::add_sphere(double radius, const Vec3& center) { return add_capsule(center, center, radius); }
+ShapeId Detector::add_capsule(const Vec3& p, const Vec3& q, double radius) {
+  return counted(state_->shape_count, state_->shapes.add_round(p, q, radius));
+}
+ShapeId Detector::add_box(const Vec3& half_lengths) {
+  return counted(state_->shape_count, state_->shapes.add_box(half_lengths));
+}
+
+bool Detector::State::acceptable(std::span<const BodyPart> parts) const noexcept {
+  if (!valid || failed || parts.empty()) return false;
+  return std::all_of(parts.begin(), parts.end(), [this](const BodyPart& part) {
+    PartRecord trial;
+    return shapes.contains(part.shape) && detail::set_local(trial, shapes[part.shape], part.local);
+  });
+}
+
+Body& Detector::State::take_in(BodyId id, std::span<const BodyPart> parts, const BodyOptions& with) {
+  Body& body = bodies.take_in(id, parts.size());
+  ++count;
+  body.group = with.group, body.mask = with.mask;
+  body.importance = with.importance;
+  body.suggest = with.suggest && options.watch;
+  body.continuous_speed = with.continuous_speed;
+  body.least_reach = with.reach;
+  for (const BodyPart& part : parts) {
+    PartRecord& taken = body.parts.emplace_back();
+    taken.shape = part.shape;
+    detail::set_local(taken, shapes[part.shape], part.local);
+  }
+  body.reach = std::max(body.least_reach, detail::reach_of(body.parts));
+  changed(body);
+  body.moved = -1;
+  return body;
+}
+
+BodyId Detector::add_body(std::span<const BodyPart> parts, const BodyOptions& options) {
+  State& s = *state_;
+  if (!s.acceptable(parts) || !are_valid(options) || !s.bodies.has_source()) return kNoBody;
+  return s.or_fail([&] {
+    const BodyId id = s.broad.add(options.importance);
+    if (id == kNoBody) return id;
+    s.take_in(id, parts, options);
+    s.monitor.forget(id.index);
+    s.halves.look_again(id.index);
+    return id;
+  });
+}
+
+Motion Detector::State::place_of(const Body& body) const noexcept {
+  Motion place;
+  const Pose& pose = bodies.state(body.id.index).pose;
+  place.position = pose.translation;
+  place.radius = body.reach * pose.scale;
+  return place;
+}
+
+BodyId Detector::add_static(std::span<const BodyPart> parts, const Pose& pose, const BodyOptions& options) {
+  State& s = *state_;
+  if (!s.acceptable(parts) || !are_valid(options) || !is_rigid(pose)) return kNoBody;
+  Motion somewhere;
+  somewhere.position = pose.translation;
+  if (!is_valid(somewhere)) return kNoBody;
+  return s.or_fail([&] {
+    const BodyId id = s.broad.add_static(somewhere, options.importance);
+    if (id == kNoBody) return id;
+    Body& body = s.take_in(id, parts, options);
+    body.is_static = true;
+    body.moved = s.answered + 1;
+    s.bodies.state(id.index).pose = pose;
+    s.halves.forget(id.index);
+    if (s.broad.move_static(id, s.place_of(body))) return id;
+    remove(id);  // too large
+    return kNoBody;
+  });
+}
+
+BodyId Detector::add_half_space(const Vec3& normal, double offset, const BodyOptions& options) {
+  State& s = *state_;
+  const double size = detail::length(normal);
+  if (!s.valid || s.failed || !(size > 0) || !std::isfinite(size) || !(std::fabs(offset / size) <= kLargestNumber))
+    return kNoBody;
+  Body body;
+  body.group = options.group, body.mask = options.mask;
+  body.importance = options.importance;
+  return s.or_fail([&] {
+    const BodyIndex index = s.halves.add({(1 / size) * normal, offset / size}, body);
+    s.halves.body(index).moved = s.answered + 1;
+    s.halves.look_at_all(s.bodies.slots());
+    ++s.count;
+    return s.halves.body(index).id;
+  });
+}
+
+Body* Detector::State::find(BodyId body) noexcept {
+  if (!contains(body)) return nullptr;
+  return is_half_space(body.index) ? &halves.body(body.index) : &bodies[body.index];
+}
+
+void Detector::State::look_again(Body& body) {
+  if (is_half_space(body.id.index)) return;
+  body.told_radius = -1;
+  or_fail([&] {
+    if (options.watch) monitor.cancelled(body.id.index);
+    if (!body.is_static) halves.look_again(body.id.index);
+    return broad.cancel(body.id);
+  });
+}
+
+bool Detector::remove(BodyId body) {
+  State& s = *state_;
+  if (!s.contains(body)) return false;
+  --s.count;
+  if (is_half_space(body.index)) return s.halves.remove(body.index);
+  s.bodies.leave(body.index);
+  return s.or_fail([&] {
+    s.halves.forget(body.index);
+    return s.broad.remove(body);
+  });
+}
+
+bool Detector::cancel(BodyId body) {
+  Body* found = state_->find(body);
+  if (found == nullptr) return false;
+  state_->look_again(*found);
+  return true;
+}
+
+bool Detector::teleport(BodyId body) {
+  Body* found = state_->find(body);
+  if (found == nullptr || found->is_static) return false;
+  found->frozen = false;
+  found->asked = found->known_before = detail::kNotAsked;
+  ++found->jumps;
+  state_->monitor.forget(body.index);
+  state_->look_again(*found);
+  return true;
+}
+
+bool Detector::move_static(BodyId body, const Pose& pose) {
+  State& s = *state_;
+  Body* found = s.find(body);
+  if (found == nullptr || !found->is_static || is_half_space(body.index) || !is_rigid(pose)) return false;
+  const Pose before = s.bodies.state(body.index).pose;
+  s.bodies.state(body.index).pose = pose;
+  if (!s.or_fail([&] { return s.broad.move_static(body, s.place_of(*found)); })) {
+    s.bodies.state(body.index).pose = before;
+    return false;
+  }
+  s.changed(*found);
+  return true;
+}
+
+bool Detector::set_local(BodyId body, std::size_t part, const Pose& local) {
+  State& s = *state_;
+  Body* found = s.find(body);
+  if (found == nullptr || part >= found->parts.size()) return false;
+  if (!detail::set_local(found->parts[part], s.shapes[found->parts[part].shape], local)) return false;
+  s.changed(*found);
+  const double reach = detail::reach_of(found->parts);
+  if (reach <= found->reach) return true;
+  found->reach = reach;
+  if (found->is_static) return s.or_fail([&] { return s.broad.move_static(body, s.place_of(*found)); });
+  s.look_again(*found);
+  return true;
+}
+
+bool Detector::set_importance(BodyId body, std::uint8_t importance) {
+  Body* found = state_->find(body);
+  if (found == nullptr) return false;
+  found->importance = importance;
+  return is_half_space(body.index) || state_->or_fail([&] { return state_->broad.set_importance(body, importance); });
+}
+
+bool Detector::set_groups(BodyId body, std::uint32_t group, std::uint32_t mask) {
+  Body* found = state_->find(body);
+  if (found == nullptr) return false;
+  found->group = group, found->mask = mask;
+  ++found->filters;
+  return true;
+}
+
+bool Detector::sleep(BodyId body) {
+  Body* found = state_->find(body);
+  if (found == nullptr || found->is_static) return false;
+  if (found->asleep) return true;
+  found->asleep = true;
+  state_->look_again(*found);
+  return true;
+}
+
+bool Detector::wake(BodyId body) {
+  Body* found = state_->find(body);
+  if (found == nullptr || found->is_static) return false;
+  if (!found->asleep) return true;
+  found->asleep = found->frozen = false;
+  state_->look_again(*found);
+  return true;
+}
+
+bool Detector::asleep(BodyId body) const noexcept {
+  return state_->contains(body) && state_->places.body(body.index).asleep;
+}
+
+bool Detector::shape_changed(ShapeId shape) {
+  State& s = *state_;
+  if (!s.shapes.contains(shape)) return false;
+  for (BodyIndex i = 0; i < s.bodies.slots(); ++i) {
+    Body& body = s.bodies[i];
+    const auto uses = [shape](const PartRecord& part) { return part.shape == shape; };
+    if (body.id != kNoBody && std::any_of(body.parts.begin(), body.parts.end(), uses)) {
+      s.changed(body);
+      ++body.deformed;
+    }
+  }
+  return true;
+}
+
+void Detector::set_filter(PairFilter filter) {
+  state_->filter = std::move(filter);
+  ++state_->filter_version;
+}
+
+void Detector::set_executor(const Executor& executor) noexcept { state_->options.executor = executor; }
+bool Detector::contains(BodyId body) const noexcept { return state_->contains(body); }
+std::size_t Detector::size() const noexcept { return state_->count; }
+bool Detector::valid() const noexcept { return state_->valid; }
+std::uint64_t Detector::promises_broken() const noexcept { return state_->monitor.broken(); }
+std::uint64_t Detector::promises_broken(BodyId body) const noexcept {
+  return state_->contains(body) ? state_->monitor.broken(body.index) : 0;
+}
+
+std::size_t Detector::memory_bytes() const noexcept {
+  const State& s = *state_;
+  const auto bytes = [](const auto&... v) { return (detail::bytes_of(v) + ...); };
+  return sizeof(State) + s.shapes.memory_bytes() + s.bodies.memory_bytes() + s.halves.memory_bytes() +
+         s.broad.memory_bytes() + s.monitor.memory_bytes() + s.records.memory_bytes() + s.queries.memory_bytes() +
+         s.rounds.memory_bytes() +
+         bytes(s.due, s.involved, s.everyone, s.refused, s.broken, s.plane_pairs, s.pairs, s.kept_pairs, s.open,
+               s.events);
+}
+
+}  // namespace orchard::runtime

@@ -1,0 +1,229 @@
+#include <array>
+#include <new>
+
+#include "guarded.h"
+#include "orchard/runtime/detector.h"
+#include "orchard/runtime/orchard_detector.h"
+#include "orchard_c.h"
+
+namespace rt = orchard::runtime;
+
+struct orchard_detector {
+  orchard_state_source source;
+  void* context;
+  rt::Frame frame;
+  std::vector<orchard_body_state> answers;
+  std::vector<rt::BodyPart> parts;
+  std::unique_ptr<rt::Detector> detector;
+};
+
+namespace {
+
+using rt::detail::pose_of;
+
+rt::Vec3 vector_of(const double* v) noexcept { return {v[0], v[1], v[2]}; }
+rt::BodyId id_of(orchard_body body) noexcept { return {body.index, body.generation}; }
+orchard_body body_of(rt::BodyId id) noexcept { return {id.index, id.generation}; }
+
+rt::BodyOptions options_of(const orchard_body_options& from) noexcept {
+  return {from.importance, from.group, from.mask, from.continuous_speed, from.reach, from.suggest != 0};
+}
+
+void fill(orchard_detector& detector, double time, std::span<const rt::BodyIndex> bodies,
+          std::span<rt::BodyState> states) {
+  if (detector.answers.size() < bodies.size()) detector.answers.resize(bodies.size() + bodies.size() / 8);
+  orchard_body_state* const answers = detector.answers.data();
+  detector.source(detector.context, time, bodies.data(), bodies.size(), answers);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    states[i].pose = pose_of(answers[i].pose);
+    states[i].velocity = vector_of(answers[i].velocity);
+    states[i].acceleration = answers[i].acceleration;
+    states[i].drift = answers[i].drift;
+    states[i].half_space = vector_of(answers[i].half_space);
+    states[i].expiry = answers[i].expiry;
+  }
+}
+
+std::span<const rt::BodyPart> parts_of(orchard_detector& detector, const orchard_part* parts, std::size_t count) {
+  detector.parts.clear();
+  for (std::size_t i = 0; i < count; ++i) detector.parts.push_back({parts[i].shape, pose_of(parts[i].local)});
+  return detector.parts;
+}
+
+// What `make` gives, or `otherwise` if there is no memory for it.
+template <typename Result, typename Make>
+Result guarded(Result otherwise, Make&& make) noexcept {
+  return rt::detail::guarded([&]() -> Result { return make(); }, [&]() -> Result { return otherwise; });
+}
+
+constexpr orchard_body kNobody = {ORCHARD_NO_BODY, 0};
+
+}  // namespace
+
+extern "C" {
+
+orchard_body_options orchard_default_body(void) { return {0, 1, 0xffffffffu, 0, 0, 0}; }
+
+orchard_detector_options orchard_default_detector(void) {
+  const rt::DetectorOptions options;
+  return {options.time_step,
+          options.start,
+          options.position_slack,
+          0,
+          options.steps_to_end,
+          options.most_unfinished,
+          nullptr,
+          nullptr,
+          1};
+}
+
+orchard_detector* orchard_detector_new(orchard_state_source source, void* context,
+                                       const orchard_detector_options* with) {
+  return guarded<orchard_detector*>(nullptr, [&] {
+    auto made = std::make_unique<orchard_detector>();
+    made->source = source;
+    made->context = context;
+    rt::DetectorOptions options;
+    options.time_step = with->time_step, options.start = with->start, options.position_slack = with->position_slack;
+    options.watch = with->watch != 0;
+    options.steps_to_end = with->steps_to_end;
+    options.most_unfinished = with->most_unfinished;
+    options.executor = {with->run, with->run_context, with->concurrency};
+    orchard_detector* const self = made.get();
+    made->detector =
+        std::make_unique<rt::Detector>([self](double time, std::span<const rt::BodyIndex> bodies,
+                                              std::span<rt::BodyState> states) { fill(*self, time, bodies, states); },
+                                       options);
+    return made.release();
+  });
+}
+
+void orchard_detector_free(orchard_detector* detector) { delete detector; }
+
+orchard_shape orchard_detector_add_tree(orchard_detector* detector, const orchard_tree* tree) {
+  return guarded(rt::kNoShape, [&] { return detector->detector->add_shape(tree->view); });
+}
+orchard_shape orchard_detector_add_sphere(orchard_detector* detector, double radius, const double center[3]) {
+  return guarded(rt::kNoShape, [&] { return detector->detector->add_sphere(radius, vector_of(center)); });
+}
+orchard_shape orchard_detector_add_capsule(orchard_detector* detector, const double p[3], const double q[3],
+                                           double radius) {
+  return guarded(rt::kNoShape, [&] { return detector->detector->add_capsule(vector_of(p), vector_of(q), radius); });
+}
+orchard_shape orchard_detector_add_box(orchard_detector* detector, const double half_lengths[3]) {
+  return guarded(rt::kNoShape, [&] { return detector->detector->add_box(vector_of(half_lengths)); });
+}
+
+orchard_body orchard_detector_add_body(orchard_detector* detector, const orchard_part* parts, size_t count,
+                                       const orchard_body_options* options) {
+  return guarded(kNobody, [&] {
+    return body_of(detector->detector->add_body(parts_of(*detector, parts, count), options_of(*options)));
+  });
+}
+
+orchard_body orchard_detector_add_static(orchard_detector* detector, const orchard_part* parts, size_t count,
+                                         const orchard_pose* pose, const orchard_body_options* options) {
+  return guarded(kNobody, [&] {
+    return body_of(
+        detector->detector->add_static(parts_of(*detector, parts, count), pose_of(*pose), options_of(*options)));
+  });
+}
+
+orchard_body orchard_detector_add_half_space(orchard_detector* detector, const double normal[3], double offset,
+                                             const orchard_body_options* options) {
+  return guarded(kNobody, [&] {
+    return body_of(detector->detector->add_half_space(vector_of(normal), offset, options_of(*options)));
+  });
+}
+
+int orchard_detector_remove(orchard_detector* detector, orchard_body body) {
+  return guarded(0, [&] { return int{detector->detector->remove(id_of(body))}; });
+}
+int orchard_detector_cancel(orchard_detector* detector, orchard_body body) {
+  return guarded(0, [&] { return int{detector->detector->cancel(id_of(body))}; });
+}
+int orchard_detector_teleport(orchard_detector* detector, orchard_body body) {
+  return guarded(0, [&] { return int{detector->detector->teleport(id_of(body))}; });
+}
+int orchard_detector_move_static(orchard_detector* detector, orchard_body body, const orchard_pose* pose) {
+  return guarded(0, [&] { return int{detector->detector->move_static(id_of(body), pose_of(*pose))}; });
+}
+int orchard_detector_set_local(orchard_detector* detector, orchard_body body, size_t part, const orchard_pose* local) {
+  return guarded(0, [&] { return int{detector->detector->set_local(id_of(body), part, pose_of(*local))}; });
+}
+int orchard_detector_set_importance(orchard_detector* detector, orchard_body body, uint8_t importance) {
+  return guarded(0, [&] { return int{detector->detector->set_importance(id_of(body), importance)}; });
+}
+int orchard_detector_set_groups(orchard_detector* detector, orchard_body body, uint32_t group, uint32_t mask) {
+  return guarded(0, [&] { return int{detector->detector->set_groups(id_of(body), group, mask)}; });
+}
+int orchard_detector_sleep(orchard_detector* detector, orchard_body body) {
+  return guarded(0, [&] { return int{detector->detector->sleep(id_of(body))}; });
+}
+int orchard_detector_wake(orchard_detector* detector, orchard_body body) {
+  return guarded(0, [&] { return int{detector->detector->wake(id_of(body))}; });
+}
+
+int orchard_detector_set_filter(orchard_detector* detector, orchard_pair_filter filter, void* context) {
+  return guarded(0, [&] {
+    rt::PairFilter made;
+    if (filter != nullptr) {
+      made = [filter, context](rt::BodyId a, rt::BodyId b) { return filter(context, body_of(a), body_of(b)) != 0; };
+    }
+    detector->detector->set_filter(std::move(made));
+    return 1;
+  });
+}
+
+size_t orchard_detector_size(const orchard_detector* detector) { return detector->detector->size(); }
+
+orchard_frame orchard_detector_step(orchard_detector* detector, double time, orchard_budget budget) {
+  const rt::Frame& frame = detector->frame =
+      detector->detector->step(time, {budget.tests, rt::detail::time_of(budget.nanoseconds)});
+  orchard_frame result{};
+  result.time = frame.time, result.next_time = frame.next_time;
+  result.steps = frame.steps;
+  result.events = frame.events.size();
+  result.pairs = frame.pairs, result.certain = frame.certain;
+  result.work = frame.work, result.motions_asked = frame.motions_asked;
+  result.worst_bound = frame.worst_bound;
+  result.incomplete_from = frame.incomplete_from;
+  result.left_over = frame.left_over;
+  result.refused = frame.refused.size(), result.broken = frame.broken.size();
+  result.time_refused = frame.time_refused, result.out_of_memory = frame.out_of_memory;
+  return result;
+}
+
+orchard_pair_event orchard_detector_event(const orchard_detector* detector, size_t index) {
+  const rt::PairEvent& event = detector->frame.events[index];
+  orchard_pair_event result{};
+  result.change = static_cast<orchard_pair_change>(event.change);
+  result.a = body_of(event.a), result.b = body_of(event.b);
+  result.part_a = event.part_a, result.part_b = event.part_b;
+  result.time = event.time;
+  result.verdict = rt::detail::verdict_of(event.verdict);
+  result.impact_from = event.impact_from, result.impact_to = event.impact_to;
+  return result;
+}
+
+uint32_t orchard_detector_refused(const orchard_detector* detector, size_t index) {
+  return detector->frame.refused[index];
+}
+uint32_t orchard_detector_broken(const orchard_detector* detector, size_t index) {
+  return detector->frame.broken[index];
+}
+uint64_t orchard_detector_promises_broken(const orchard_detector* detector) {
+  return detector->detector->promises_broken();
+}
+
+size_t orchard_detector_foresee(const orchard_detector* detector, size_t count, double* pairs, double* work) {
+  std::array<rt::StepLoad, 254> loads;
+  const std::size_t known = detector->detector->foresee(std::span(loads).first(std::min(count, loads.size())));
+  for (std::size_t i = 0; i < known; ++i) {
+    if (pairs != nullptr) pairs[i] = loads[i].pairs;
+    if (work != nullptr) work[i] = loads[i].work;
+  }
+  return known;
+}
+
+}  // extern "C"

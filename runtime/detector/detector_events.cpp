@@ -1,0 +1,153 @@
+#include <algorithm>
+
+#include "detector_state.h"
+
+// From pairs of spheres to records, and from answers to events.
+namespace orchard::runtime {
+
+using detail::Body;
+using detail::Record;
+
+void Detector::State::note(Record& record, Step step, PairChange change) {
+  PairEvent& event = events.emplace_back();
+  event.change = change;
+  event.a = record.a, event.b = record.b;
+  event.part_a = record.part_a, event.part_b = record.part_b;
+  event.time = clock.time(step);
+  event.verdict = record.verdict;
+  if (!record.impact) return;
+  event.impact_from = clock.time(step) + (record.impact_from - 1) * clock.time_step;
+  event.impact_to = clock.time(step) + (record.impact_to - 1) * clock.time_step;
+}
+
+void Detector::State::match(Step step, Frame& frame) {
+  known_pairs = records.known().size();
+  fresh_pairs = parted_pairs = 0;
+  const auto gone = [&](Record& record) {
+    ++parted_pairs;
+    const bool there = contains(record.a) && contains(record.b);
+    record.impact = false;
+    record.verdict = Verdict{};
+    record.verdict.answer = there ? Answer::no : Answer::maybe;
+    record.verdict.separation_bound = std::numeric_limits<double>::infinity();
+    if (there && record.touching && ++record.nos < options.steps_to_end) {
+      record.apart = true;
+      note(record, step, PairChange::stay);
+      return true;
+    }
+    if (record.touching) note(record, step, PairChange::end);
+    return false;
+  };
+  const auto fresh = [&](Record& record) {
+    ++fresh_pairs;
+    record.filter_version = filter_version - 1;
+    const Body &a = places.body(record.pair.a), &b = places.body(record.pair.b);
+    record.jumps = a.jumps + b.jumps;
+    record.deformed = a.deformed + b.deformed;
+    if (a.parts.size() != 1 || b.parts.size() != 1) return;
+    const detail::Shape &of_a = shapes[a.parts[0].shape], &of_b = shapes[b.parts[0].shape];
+    record.coherent = of_a.has_tree() && of_b.has_tree();
+    if (record.coherent) record.trees = TreePair(of_a.prepared, of_b.prepared);
+  };
+  records.match(
+      pairs, [this](BodyIndex index) { return id_of(index); }, gone, fresh);
+  frame.pairs += pairs.size();
+}
+
+bool Detector::State::allowed(Record& record) {
+  const Body &a = places.body(record.pair.a), &b = places.body(record.pair.b);
+  if (record.filter_version == filter_version && record.filters_a == a.filters && record.filters_b == b.filters) {
+    return record.allowed;
+  }
+  record.filter_version = filter_version;
+  record.filters_a = a.filters, record.filters_b = b.filters;
+  record.allowed = (a.mask & b.group) != 0 && (b.mask & a.group) != 0 && (!filter || filter(record.a, record.b));
+  return record.allowed;
+}
+
+// Neither has moved since the last certain answer.
+bool Detector::State::reusable(const Record& record) const noexcept {
+  const Body &a = places.body(record.pair.a), &b = places.body(record.pair.b);
+  return record.answered >= 0 && std::max(a.moved, b.moved) <= record.answered && !record.impact;
+}
+
+// Which records have to be asked about.
+void Detector::State::open_records(Step step) {
+  open.clear();
+  for (const auto& known : records.known()) {
+    Record& record = records[known.record];
+    if (record.apart) continue;
+    const Body &a = places.body(record.pair.a), &b = places.body(record.pair.b);
+    record.importance = std::max(a.importance, b.importance);
+    if (!allowed(record)) continue;
+    const bool continuous = a.continuous_speed > 0 || b.continuous_speed > 0;
+    const std::uint32_t jumps = a.jumps + b.jumps;
+    const auto known_before = [&](const Body& body) {
+      return body.is_static || body.frozen || body.known_before == step - 1;
+    };
+    record.swept = continuous && record.jumps == jumps && known_before(a) && known_before(b);
+    if (record.jumps != jumps && record.touching) {
+      record.verdict = Verdict{};
+      record.verdict.separation_bound = std::numeric_limits<double>::infinity();
+      record.impact = false;
+      note(record, step, PairChange::end);
+      record.touching = false;
+      record.answered = -1;
+    }
+    record.jumps = jumps;
+    if (record.deformed != a.deformed + b.deformed) {
+      record.deformed = a.deformed + b.deformed;
+      record.trees.forget();
+    }
+    if (!reusable(record)) open.push_back(known.record);
+  }
+}
+
+void Detector::State::begin_or_end(Record& record, Step step, Frame& frame) {
+  const Answer answer = record.verdict.answer;
+  if (answer == Answer::maybe) {
+    ++record.waited;
+    frame.worst_bound = std::max(frame.worst_bound, record.verdict.separation_bound);
+  } else {
+    record.waited = 0;
+    ++frame.certain;
+  }
+  if (answer == Answer::yes) {
+    record.nos = 0;
+    note(record, step, record.touching ? PairChange::stay : PairChange::begin);
+    record.touching = true;
+  } else if (record.touching) {
+    record.nos = answer == Answer::no ? record.nos + 1 : 0;
+    const bool end = record.nos >= options.steps_to_end;
+    note(record, step, end ? PairChange::end : PairChange::stay);
+    if (end) record.touching = false, record.nos = 0;
+  } else if (answer == Answer::maybe) {
+    note(record, step, PairChange::possible);
+  }
+}
+
+void Detector::State::report(Step step, Frame& frame) {
+  for (const auto& known : records.known()) {
+    Record& record = records[known.record];
+    if (record.apart) continue;
+    if (record.allowed) {
+      begin_or_end(record, step, frame);
+    } else {
+      ++frame.certain;  // that nothing is asked
+      if (!record.touching) continue;
+      record.touching = record.impact = false;
+      record.verdict = Verdict{};
+      record.answered = -1;
+      note(record, step, PairChange::end);
+    }
+  }
+  const auto by_pair = [](const PairEvent& p, const PairEvent& q) {
+    if (p.time != q.time) return p.time < q.time;
+    if (p.a.index != q.a.index) return p.a.index < q.a.index;
+    if (p.b.index != q.b.index) return p.b.index < q.b.index;
+    return p.change == PairChange::end && q.change != PairChange::end;
+  };
+  if (!std::is_sorted(events.begin(), events.end(), by_pair)) std::sort(events.begin(), events.end(), by_pair);
+}
+
+}  // namespace orchard::runtime

@@ -1,0 +1,47 @@
+#include "detector_state.h"
+
+namespace orchard::runtime {
+
+using detail::is_half_space;
+using detail::PlacedPair;
+
+// The places of the last step are still known.
+Manifold Detector::State::manifold(const PairEvent& event, const ContactOptions& with) noexcept {
+  Manifold result;
+  if (event.verdict.answer != Answer::yes || !contains(event.a) || !contains(event.b) || queries.jobs() == 0) {
+    return result;
+  }
+  if (event.part_a >= places.parts(event.a.index) || event.part_b >= places.parts(event.b.index)) return result;
+  PlacedPair pair;
+  places.place(event.a.index, event.part_a, pair.a);
+  places.place(event.b.index, event.part_b, pair.b);
+  const bool half = is_half_space(event.b.index);
+  if (half) pair.half = places.half_space(event.b.index);
+  Workspace& workspace = queries.scratch(0).workspace;
+  if (!pair.simple()) {
+    result =
+        contacts(workspace, TreePair(pair.a.shape->prepared, pair.b.shape->prepared), pair.a.pose, pair.b.pose, with);
+    if (result.answer == Answer::yes) return result;
+  }
+  std::uint64_t work = 0;
+  const Verdict verdict = detail::answer_exactly(workspace.narrow, pair, work);
+  result.answer = verdict.answer;
+  if (verdict.answer != Answer::yes) return result;
+  result.count = 1;
+  result.points[0] = {verdict.contact.center, verdict.contact.triangle_a, verdict.contact.triangle_b};
+  result.normal = verdict.contact.normal;
+  if (half) {
+    result.depth = detail::half_space_depth(*pair.a.shape, pair.a.pose, pair.half);
+  } else if (pair.simple()) {
+    result.depth = detail::simple_depth(*pair.a.shape, pair.a.pose, *pair.b.shape, pair.b.pose);
+  } else {  // one wholly inside a box
+    result.complete = false;
+  }
+  return result;
+}
+
+Manifold Detector::manifold(const PairEvent& event, const ContactOptions& options) noexcept {
+  return state_->manifold(event, options);
+}
+
+}  // namespace orchard::runtime

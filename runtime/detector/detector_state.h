@@ -1,0 +1,89 @@
+#pragma once
+#include "orchard/runtime/detector.h"
+#include "orchard/runtime/motion_monitor.h"
+#include "rounds.h"
+
+namespace orchard::runtime {
+
+// detector.cpp: what changes between steps; detector_step.cpp: steps.
+struct Detector::State {
+  using Step = detail::Step;
+  State(StateSource source, const DetectorOptions& wanted);
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  // detector.cpp
+  // What `made()` gives. Where there is no memory for it, nobody knows what has been done.
+  template <typename Make>
+  auto or_fail(Make&& made) {
+    try {
+      return made();
+    } catch (...) {
+      failed = true;
+      throw;
+    }
+  }
+  detail::Body& take_in(BodyId id, std::span<const BodyPart> parts, const BodyOptions& with);
+  bool acceptable(std::span<const BodyPart> parts) const noexcept;
+  BodyId id_of(BodyIndex index) const noexcept { return places.body(index).id; }
+  bool contains(BodyId body) const noexcept {
+    if (failed) return false;
+    return detail::is_half_space(body.index) ? halves.contains(body) : bodies.contains(body);
+  }
+  detail::Body* find(BodyId body) noexcept;
+  void look_again(detail::Body& body);  // its promise holds no longer
+  void changed(detail::Body& body) noexcept { body.moved = answered + 1; }
+  Motion place_of(const detail::Body& body) const noexcept;  // of a static one
+
+  // detector_step.cpp
+  void run(double time, const FrameBudget& budget, Frame& frame);
+  void run_to(Step last, Step end, detail::Purse& purse, Frame& frame);
+  void watch(Step step);
+  bool keeps_more(const detail::Body& body, Step step, const Motion& motion) const noexcept;
+  void answer(Step step, const Advance& now, detail::Purse& purse, Frame& frame);
+  void gather(Step step, const Advance& now);
+  void match(Step step, Frame& frame);
+  void open_records(Step step);
+  bool reusable(const detail::Record& record) const noexcept;
+  bool allowed(detail::Record& record);
+  void learn(std::uint64_t work) noexcept;
+  void report(Step step, Frame& frame);
+  void note(detail::Record& record, Step step, PairChange change);
+  void begin_or_end(detail::Record& record, Step step, Frame& frame);
+  Manifold manifold(const PairEvent& event, const ContactOptions& with) noexcept;
+  void motions(double time, std::span<const BodyIndex> asked, std::span<Motion> motions);
+  void note_refused(std::span<const BodyIndex> more);
+
+  DetectorOptions options;
+  bool valid;
+  detail::Clock clock;
+  detail::ShapeTable shapes;
+  std::size_t shape_count = 0;
+  detail::BodyTable bodies;
+  detail::HalfSpaces halves;
+  detail::Places places;
+  BroadPhase broad;
+  MotionMonitor monitor;
+  PairFilter filter;
+  std::uint32_t filter_version = 0;
+  detail::RecordTable records;
+  detail::Queries queries;
+  detail::Rounds rounds;
+
+  Step answered = -1;  // up to which steps have been answered
+  std::size_t count = 0;
+  bool failed = false;  // out of memory
+  // For foresee(), smoothed: of what the calendar has as meeting, the share that overlaps; of the pairs that overlap,
+  // the share that does no more at the next step; what a pair costs.
+  double share_of_meetings = 0.5, share_that_part = 0.1, work_per_pair = 200;
+  double meetings = 0;  // that the calendar had for the step under way
+  std::size_t known_pairs = 0, fresh_pairs = 0, parted_pairs = 0;
+
+  // Of the step under way; kept for their memory.
+  std::vector<BodyIndex> due, involved, everyone, refused, broken;
+  std::vector<BodyPair> plane_pairs, pairs, kept_pairs;
+  std::vector<std::uint32_t> open;
+  std::vector<PairEvent> events;
+};
+
+}  // namespace orchard::runtime

@@ -1,0 +1,241 @@
+#include <algorithm>
+#include <iterator>
+
+#include "detector_state.h"
+#include "guarded.h"
+
+// A step: the broad phase, then the pairs it reports, in the order of the dissertation's Fig. 3.2.
+namespace orchard::runtime {
+
+using detail::Body;
+using detail::is_half_space;
+using detail::kNeverStep;
+using detail::Purse;
+using detail::Record;
+
+namespace {
+
+constexpr double kSmoothing = 0.1;  // of what foresee() goes by
+
+}  // namespace
+
+// For the broad phase. Whoever watches has asked for everybody by now.
+void Detector::State::motions(double time, std::span<const BodyIndex> asked, std::span<Motion> answers) {
+  bodies.ask(std::llround((time - clock.start) / clock.time_step), time, asked);
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    answers[i] = bodies.motion_of(asked[i], clock.time_step);
+    if (!options.watch) continue;
+    Body& body = bodies[asked[i]];
+    if (body.suggest && !body.frozen && answers[i].radius >= 0) {
+      answers[i] = monitor.suggest(asked[i], time, answers[i].radius);
+    }
+    body.told_radius = answers[i].radius;
+    monitor.promised(asked[i], time, answers[i]);
+  }
+}
+
+// 4.4: before the broad phase relies on anything at this step, everybody's state is compared with what it relies on.
+void Detector::State::watch(Step step) {
+  const double time = clock.time(step);
+  everyone.clear();
+  for (BodyIndex i = 0; i < bodies.slots(); ++i) {
+    if (bodies[i].id != kNoBody && !bodies[i].is_static && !bodies[i].frozen) everyone.push_back(i);
+  }
+  bodies.ask(step, time, everyone);
+  for (const BodyIndex i : everyone) {
+    Body& body = bodies[i];
+    const Motion motion = bodies.motion_of(i, clock.time_step);
+    if (!is_valid(motion)) continue;  // refused soon
+    const bool given = !body.suggest || dot(motion.velocity, motion.velocity) > 0;
+    bool kept =
+        given ? monitor.observe(i, time, motion.position, motion.velocity) : monitor.observe(i, time, motion.position);
+    if (kept && !keeps_more(body, step, motion)) {
+      kept = false;
+      monitor.count_broken(i);
+    }
+    if (kept) continue;
+    broken.push_back(i);
+    look_again(body);
+  }
+}
+
+// Besides the monitor's promise: what half-spaces rely on, the size, and the speed of what is continuous.
+bool Detector::State::keeps_more(const Body& body, Step step, const Motion& motion) const noexcept {
+  if (!halves.promise_kept(body.id.index, clock.time(step), motion)) return false;
+  if (body.told_radius >= 0 && motion.radius > body.told_radius) return false;
+  if (!(body.continuous_speed > 0) || body.known_before != step - 1) return true;
+  const Vec3 way = motion.position - Vec3(bodies.before(body.id.index).translation);
+  return detail::length(way) <= body.continuous_speed * clock.time_step * (1 + 1e-9);
+}
+
+void Detector::State::note_refused(std::span<const BodyIndex> more) {
+  refused.insert(refused.end(), more.begin(), more.end());
+}
+
+Frame Detector::step(double time, const FrameBudget& budget) noexcept {
+  State& s = *state_;
+  Frame frame;
+  frame.time_refused = !s.valid || !(std::fabs(time) <= kMostSteps * s.clock.time_step);
+  frame.out_of_memory = s.failed;
+  if (frame.time_refused || s.failed) return frame;
+  detail::guarded([&] { s.run(time, budget, frame); },  // sources and filters throw nothing
+                  [&] {
+                    s.failed = true;
+                    frame = Frame{};
+                    frame.out_of_memory = true;
+                  });
+  return frame;
+}
+
+// The part of the meetings that overlap, and what a pair costs, are what they have been lately.
+std::size_t Detector::foresee(std::span<StepLoad> loads) const noexcept {
+  const State& s = *state_;
+  constexpr std::size_t kMost = 254;
+  std::array<StepsAhead, kMost> ahead;
+  const std::size_t wanted = std::min(loads.size(), kMost);
+  const double now = s.clock.time(s.answered);
+  const std::size_t known = s.valid ? s.broad.foresee(now, std::span(ahead).first(wanted)) : 0;
+  double pairs = static_cast<double>(s.records.known().size());
+  for (std::size_t i = 0; i < known; ++i) {
+    pairs += s.share_of_meetings * static_cast<double>(ahead[i].meetings);
+    loads[i].time = s.clock.time(s.answered + 1 + static_cast<State::Step>(i));
+    loads[i].motions = ahead[i].looks + 2 * ahead[i].meetings + 2 * ahead[i].overlaps;
+    loads[i].pairs = pairs;
+    loads[i].work = pairs * s.work_per_pair + static_cast<double>(loads[i].motions * kMotionWork);
+    pairs -= s.share_that_part * pairs;
+  }
+  return known;
+}
+
+void Detector::State::run(double time, const FrameBudget& budget, Frame& frame) {
+  events.clear(), refused.clear(), broken.clear();
+  queries.prepare(shapes, shape_count,
+                  options.executor.run == nullptr ? 1 : std::max<std::size_t>(1, options.executor.concurrency) * 4);
+  Purse purse(budget);
+  const double steps = std::floor((time - clock.start) / clock.time_step + detail::kStepSlack);
+  const Step end = static_cast<Step>(std::max(-1.0, steps));
+  const std::uint64_t asked_before = broad.motions_asked();
+  if (options.watch) {
+    while (answered < end) {
+      watch(answered + 1);
+      run_to(answered + 1, end, purse, frame);
+    }
+  } else {
+    run_to(end, end, purse, frame);
+  }
+  frame.motions_asked = broad.motions_asked() - asked_before;
+  frame.work = purse.spent();
+  frame.time = clock.time(std::max<Step>(answered, 0));
+  const Step next = records.known().empty() ? halves.next() : answered + 1;
+  frame.next_time =
+      options.watch ? clock.time(answered + 1)
+                    : std::min(broad.next_time(), next >= kNeverStep - 1 ? std::numeric_limits<double>::infinity()
+                                                                         : clock.time(std::max(next, answered + 1)));
+  std::sort(refused.begin(), refused.end());
+  refused.erase(std::unique(refused.begin(), refused.end()), refused.end());
+  frame.events = events, frame.refused = refused, frame.broken = broken;
+}
+
+// The steps up to `last` that have anything. `end`: the last step of this call, among which the purse is shared.
+void Detector::State::run_to(Step last, Step end, Purse& purse, Frame& frame) {
+  while (answered < last) {
+    // What overlapped at the step before may be apart at the next; half-spaces are not the broad phase's.
+    const bool under_way = !records.known().empty();
+    const Step stop = std::min(last, under_way ? answered + 1 : std::max(answered + 1, halves.next()));
+    const double time = clock.time(stop);
+    const std::uint64_t before = broad.motions_asked();
+    StepsAhead next;
+    broad.foresee(clock.time(answered), {&next, 1});
+    meetings = static_cast<double>(next.meetings);
+    Advance now{};
+    Purse share(purse.share(static_cast<std::uint64_t>(end - answered)));
+    if (!purse.limited()) {
+      now = broad.advance(time);
+    } else {
+      WorkBudget work;
+      if (purse.limited_in_work()) work.work = std::max<std::uint64_t>(1, share.left() / (2 * kMotionWork));
+      work.time = share.time_left() / 2;
+      now = broad.advance(time, work);
+    }
+    const std::uint64_t asked = (broad.motions_asked() - before) * kMotionWork;
+    share.spend(asked);
+    note_refused(now.refused);
+    frame.incomplete_from = std::min(frame.incomplete_from, now.incomplete_from);
+    frame.left_over += now.left_over;
+    const bool found = !now.pairs.empty() || now.incomplete_from != kNoClass;
+    const Step step = found ? std::llround((now.time - clock.start) / clock.time_step) : stop;
+    if (found || under_way || halves.next() <= step) answer(step, now, share, frame);
+    purse.spend(share.spent());
+    answered = step;
+  }
+}
+
+// The pairs of the step, in ascending order: the broad phase's, those with half-spaces, and those known before that an
+// interrupted broad phase may have left out.
+void Detector::State::gather(Step step, const Advance& now) {
+  plane_pairs.clear(), pairs.clear(), kept_pairs.clear();
+  due.clear();
+  halves.due(step, due);
+  if (!due.empty()) {
+    bodies.ask(step, clock.time(step), due);
+    halves.look_at(step, clock, due, bodies, clock.time_step, options.position_slack, plane_pairs);
+  }
+  if (now.incomplete_from != kNoClass) {
+    for (const auto& known : records.known()) {
+      if (is_half_space(known.pair.b)) continue;
+      const Record& record = records[known.record];
+      if (!contains(record.a) || !contains(record.b)) continue;
+      if (std::binary_search(now.pairs.begin(), now.pairs.end(), known.pair)) continue;
+      kept_pairs.push_back(known.pair);
+    }
+    involved.clear();
+    for (const BodyPair& pair : kept_pairs) involved.push_back(pair.a), involved.push_back(pair.b);
+    bodies.ask(step, clock.time(step), involved);
+    std::erase_if(kept_pairs, [&](const BodyPair& pair) {
+      const Motion a = bodies.motion_of(pair.a, clock.time_step), b = bodies.motion_of(pair.b, clock.time_step);
+      return is_valid(a) && is_valid(b) && !spheres_touch(a, b);
+    });
+  }
+  std::merge(now.pairs.begin(), now.pairs.end(), plane_pairs.begin(), plane_pairs.end(), std::back_inserter(pairs));
+  if (!kept_pairs.empty()) {
+    pairs.insert(pairs.end(), kept_pairs.begin(), kept_pairs.end());
+    std::sort(pairs.begin(), pairs.end());
+  }
+  involved.clear();
+  for (const BodyPair& pair : pairs) {
+    involved.push_back(pair.a);
+    if (!is_half_space(pair.b)) involved.push_back(pair.b);
+  }
+  bodies.ask(step, clock.time(step), involved);
+  for (const BodyIndex body : involved) {
+    if (!bodies[body].rigid) refused.push_back(body);
+  }
+}
+
+// For foresee().
+void Detector::State::learn(std::uint64_t work) noexcept {
+  const auto smooth = [](double& mean, double value) { mean += kSmoothing * (value - mean); };
+  const double now = static_cast<double>(pairs.size());
+  if (!pairs.empty()) smooth(work_per_pair, static_cast<double>(work) / now);
+  if (meetings > 0) smooth(share_of_meetings, std::min(1.0, static_cast<double>(fresh_pairs) / meetings));
+  if (known_pairs > 0) smooth(share_that_part, static_cast<double>(parted_pairs) / static_cast<double>(known_pairs));
+}
+
+void Detector::State::answer(Step step, const Advance& now, Purse& purse, Frame& frame) {
+  gather(step, now);
+  match(step, frame);
+  open_records(step);
+  rounds.use(options.executor);
+  const std::uint64_t before = purse.spent();
+  if (purse.limited()) {
+    rounds.answer_within(records, open, step, purse);
+  } else {
+    purse.spend(rounds.answer_all(records, open, step));
+  }
+  rounds.sweep_all(records, open, purse);
+  learn(purse.spent() - before);
+  report(step, frame);
+  ++frame.steps;
+}
+
+}  // namespace orchard::runtime

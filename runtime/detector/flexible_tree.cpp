@@ -1,0 +1,288 @@
+#include "orchard/runtime/flexible_tree.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tree/tree_nodes.h"
+
+namespace orchard::runtime {
+namespace {
+
+constexpr float kLargest = std::numeric_limits<float>::max();
+
+float above(double value) noexcept {  // at least `value`, rounding of a few operations in double included
+  return value > 0 ? std::nextafter(static_cast<float>(value * (1 + 1e-14)), kLargest) : static_cast<float>(value);
+}
+
+float raised(float value, double by) noexcept {  // infinity stays
+  return by > 0 && std::isfinite(value) ? std::nextafter(static_cast<float>(double{value} + by), kLargest) : value;
+}
+
+double distance_of(const std::array<float, 3>& p, const std::array<float, 3>& q) noexcept {
+  double square = 0;
+  for (std::size_t i = 0; i < 3; ++i) square += (double{p[i]} - double{q[i]}) * (double{p[i]} - double{q[i]});
+  return std::sqrt(square) * (1 + 1e-15);
+}
+
+}  // namespace
+
+FlexibleTree::FlexibleTree(const PackedSphereTree& rest, double largest_displacement)
+    : tree_(rest), largest_(largest_displacement), rest_(rest.vertices) {
+  link_spheres();
+  link_patches();
+  list_triangles();
+  valid_ = largest_ >= 0 && coordinate_extent(tree_) + 4 * largest_ <= double{kCoordinateLimit};
+  if (valid_) enlarge_for_good();
+}
+
+void FlexibleTree::adopt(std::vector<Node>& nodes, std::uint32_t parent, std::uint32_t child) noexcept {
+  nodes[child].used = true;
+  nodes[child].parent = parent;
+  nodes[child].level = nodes[parent].level + 1;
+}
+
+FlexibleTree::Levels FlexibleTree::room_by_level(const std::vector<Node>& nodes) {
+  std::vector<std::size_t> counts;
+  for (const Node& node : nodes) {
+    if (!node.used) continue;
+    if (node.level >= counts.size()) counts.resize(node.level + 1);
+    ++counts[node.level];
+  }
+  Levels levels(counts.size());
+  for (std::size_t i = 0; i < counts.size(); ++i) levels[i].reserve(counts[i]);
+  return levels;
+}
+
+void FlexibleTree::link_spheres() {
+  spheres_.resize(tree_.blocks.size() * kBlockWidth);
+  spheres_[0].used = true;
+  for (std::uint32_t node = 0; node < spheres_.size(); ++node) {  // children come after their parents
+    if (!spheres_[node].used) continue;
+    const std::uint32_t link = tree_.blocks[node / kBlockWidth].link[node % kBlockWidth];
+    spheres_[node].radius = tree_.blocks[node / kBlockWidth].radius[node % kBlockWidth];
+    if (link & kLeafBit) {
+      rest_radii_ += double{spheres_[node].radius};
+      continue;
+    }
+    const Children children = children_of(tree_.branching, link);
+    for (std::uint32_t i = 0; i < children.count; ++i) adopt(spheres_, node, children.first * kBlockWidth + i);
+  }
+  dirty_spheres_ = room_by_level(spheres_);
+}
+
+void FlexibleTree::link_patches() {
+  patches_.resize(tree_.patches.size() * kBlockWidth);
+  patch_of_block_.assign(tree_.triangle_blocks.size(), kNone);
+  if (patches_.empty()) return;
+  patches_[0].used = true;
+  for (std::uint32_t node = 0; node < patches_.size(); ++node) {
+    if (!patches_[node].used) continue;
+    const PatchBlock& block = tree_.patches[node / kBlockWidth];
+    const std::uint32_t lane = node % kBlockWidth, child = block.child[lane];
+    patches_[node].radius = block.radius[lane];
+    patches_[node].height = block.height[lane];
+    if (child & kLeafBit) {
+      patch_of_block_[child & ~kLeafBit] = node;
+      continue;
+    }
+    for (std::uint32_t i = 0; i < kBlockWidth && tree_.patches[child].radius[i] >= 0; ++i)
+      adopt(patches_, node, child * kBlockWidth + i);
+  }
+  dirty_patches_ = room_by_level(patches_);
+}
+
+// Which triangles each vertex has, and which leaves and blocks each triangle is in.
+void FlexibleTree::list_triangles() {
+  const auto lists = [](std::size_t count, auto&& for_each) {
+    Lists made;
+    made.begin.assign(count + 1, 0);
+    for_each([&](std::uint32_t key, std::uint32_t) { ++made.begin[key + 1]; });
+    for (std::size_t i = 0; i < count; ++i) made.begin[i + 1] += made.begin[i];
+    made.items.resize(made.begin[count]);
+    std::vector<std::uint32_t> next(made.begin.begin(), made.begin.end() - 1);
+    for_each([&](std::uint32_t key, std::uint32_t item) { made.items[next[key]++] = item; });
+    return made;
+  };
+  triangles_of_vertex_ = lists(tree_.vertices.size(), [this](auto&& add) {
+    for (std::uint32_t t = 0; t < tree_.triangles.size(); ++t) {
+      for (const std::uint32_t v : tree_.triangles[t]) add(v, t);
+    }
+  });
+  leaves_of_triangle_ = lists(tree_.triangles.size(), [this](auto&& add) {
+    for (std::uint32_t node = 0; node < spheres_.size(); ++node) {
+      if (!spheres_[node].used) continue;
+      const std::uint32_t link = tree_.blocks[node / kBlockWidth].link[node % kBlockWidth];
+      if ((link & kLeafBit) == 0) continue;
+      for (const std::uint32_t entry : listed_triangles(tree_, link)) add(entry & ~kLeafBit, node);
+    }
+  });
+  block_of_triangle_.assign(tree_.triangles.size(), kNone);
+  for (std::uint32_t b = 0; b < tree_.triangle_blocks.size(); ++b) {
+    for (const std::uint32_t t : tree_.triangle_blocks[b].triangle) {
+      if (t != kNoTriangle) block_of_triangle_[t] = b;
+    }
+  }
+  moved_.assign(tree_.triangles.size(), 0);
+  block_dirty_.assign(tree_.triangle_blocks.size(), 0);
+  dirty_blocks_.reserve(block_dirty_.size());
+}
+
+// What every query reads of the whole tree, and may keep: it holds for all that the tree can become.
+void FlexibleTree::enlarge_for_good() {
+  const auto root_center = detail::center_of(tree_, 0);
+  const auto from_root = [&](const auto& p) {
+    const std::array<double, 3> d = {p[0] - root_center[0], p[1] - root_center[1], p[2] - root_center[2]};
+    return detail::length(d);
+  };
+  double reach = 0;
+  for (std::uint32_t node = 0; node < spheres_.size(); ++node) {
+    if (!spheres_[node].used) continue;
+    reach = std::max(reach, from_root(detail::center_of(tree_, node)) + double{spheres_[node].radius});
+  }
+  for (const auto& v : tree_.vertices) {
+    reach = std::max(reach, from_root(std::array<double, 3>{double{v[0]}, double{v[1]}, double{v[2]}}));
+  }
+  const float before = spheres_[0].radius;
+  const float root_radius = above(std::max(double{before}, reach) + largest_);
+  // The nearest point of the solid may have moved away by the largest displacement, and the ball may have grown by it.
+  for (std::uint32_t node = 0; node < spheres_.size(); ++node) {
+    if (!spheres_[node].used) continue;
+    SiblingBlock& block = tree_.blocks[node / kBlockWidth];
+    const std::uint32_t lane = node % kBlockWidth;
+    block.error[lane] = raised(block.error[lane], 2 * largest_);
+    block.depth[lane] = raised(block.depth[lane], largest_);
+  }
+  tree_.blocks[0].radius[0] = root_radius;
+  tree_.blocks[0].error[0] = raised(tree_.blocks[0].error[0], double{root_radius} - double{before});
+  for (std::uint32_t i = 0; i < tree_.supports.size(); ++i) {
+    tree_.supports[i] = raised(tree_.supports[i], largest_ * detail::length(support_direction(i)));
+  }
+  tree_.bounding_radius += largest_;
+  if (largest_ > 0) tree_.vertex_error += 0x1p-23 * coordinate_extent(tree_);  // places are rounded to float
+}
+
+void FlexibleTree::mark(std::vector<Node>& nodes, Levels& levels, std::uint32_t node) noexcept {
+  if (nodes[node].dirty) return;
+  nodes[node].dirty = true;
+  levels[nodes[node].level].push_back(node);
+  ++touched_;
+}
+
+bool FlexibleTree::move(std::span<const std::uint32_t> vertices,
+                        std::span<const std::array<double, 3>> places) noexcept {
+  if (!valid_ || places.size() < vertices.size()) return false;
+  const auto stored = [this](const std::array<double, 3>& place) {
+    std::array<float, 3> result{};
+    for (std::size_t i = 0; i < 3; ++i) result[i] = static_cast<float>(place[i] - tree_.origin[i]);
+    return result;
+  };
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    if (vertices[i] >= rest_.size()) return false;
+    if (!(distance_of(stored(places[i]), rest_[vertices[i]]) <= largest_)) return false;
+  }
+  touched_ = 0;
+  for (std::size_t i = 0; i < vertices.size(); ++i) tree_.vertices[vertices[i]] = stored(places[i]);
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    for (const std::uint32_t t : triangles_of_vertex_.of(vertices[i])) {
+      moved_[t] = 0;
+      for (const std::uint32_t v : tree_.triangles[t]) {
+        moved_[t] = std::max(moved_[t], distance_of(tree_.vertices[v], rest_[v]));
+      }
+      for (const std::uint32_t leaf : leaves_of_triangle_.of(t)) mark(spheres_, dirty_spheres_, leaf);
+      const std::uint32_t block = block_of_triangle_[t];
+      if (block == kNone || block_dirty_[block]) continue;
+      block_dirty_[block] = 1;
+      dirty_blocks_.push_back(block);
+    }
+  }
+  for (const std::uint32_t block : dirty_blocks_) {
+    block_dirty_[block] = 0;
+    rewrite(block);
+    if (patch_of_block_[block] != kNone) mark(patches_, dirty_patches_, patch_of_block_[block]);
+  }
+  dirty_blocks_.clear();
+  refit_spheres();
+  refit_patches();
+  return true;
+}
+
+void FlexibleTree::rewrite(std::uint32_t index) noexcept {
+  TriangleBlock& block = tree_.triangle_blocks[index];
+  for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
+    const std::uint32_t t = block.triangle[lane] != kNoTriangle ? block.triangle[lane] : block.triangle[0];
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const auto& vertex = tree_.vertices[tree_.triangles[t][corner]];
+      for (std::size_t i = 0; i < 3; ++i) block.corner[corner][i][lane] = vertex[i];
+    }
+  }
+}
+
+double FlexibleTree::largest_of_leaf(std::uint32_t link) const noexcept {
+  double largest = 0;
+  for (const std::uint32_t entry : listed_triangles(tree_, link)) {
+    largest = std::max(largest, moved_[entry & ~kLeafBit]);
+  }
+  return largest;
+}
+
+double FlexibleTree::largest_of_block(std::uint32_t index) const noexcept {
+  double largest = 0;
+  for (const std::uint32_t t : tree_.triangle_blocks[index].triangle) {
+    if (t != kNoTriangle) largest = std::max(largest, moved_[t]);
+  }
+  return largest;
+}
+
+void FlexibleTree::refit_spheres() noexcept {
+  for (std::size_t level = dirty_spheres_.size(); level-- > 0;) {
+    for (const std::uint32_t index : dirty_spheres_[level]) {
+      Node& node = spheres_[index];
+      node.dirty = false;
+      SiblingBlock& block = tree_.blocks[index / kBlockWidth];
+      const std::uint32_t lane = index % kBlockWidth, link = block.link[lane];
+      double enlarged = 0;
+      if (link & kLeafBit) {
+        enlarged = largest_of_leaf(link);
+        enlarged_ += enlarged - node.enlarged;
+      } else {
+        const Children children = children_of(tree_.branching, link);
+        for (std::uint32_t i = 0; i < children.count; ++i) {
+          enlarged = std::max(enlarged, spheres_[children.first * kBlockWidth + i].enlarged);
+        }
+      }
+      const bool changed = enlarged != node.enlarged;
+      node.enlarged = enlarged;
+      if (index != 0) block.radius[lane] = raised(node.radius, enlarged);
+      if (changed && node.parent != kNone) mark(spheres_, dirty_spheres_, node.parent);
+    }
+    dirty_spheres_[level].clear();
+  }
+}
+
+void FlexibleTree::refit_patches() noexcept {
+  constexpr double kNormalLength = 1 + 1e-6;  // of a patch's normal, at most
+  for (std::size_t level = dirty_patches_.size(); level-- > 0;) {
+    for (const std::uint32_t index : dirty_patches_[level]) {
+      Node& node = patches_[index];
+      node.dirty = false;
+      PatchBlock& block = tree_.patches[index / kBlockWidth];
+      const std::uint32_t lane = index % kBlockWidth, child = block.child[lane];
+      double enlarged = 0;
+      if (child & kLeafBit) {
+        enlarged = largest_of_block(child & ~kLeafBit);
+      } else {
+        for (std::uint32_t i = 0; i < kBlockWidth; ++i) {
+          enlarged = std::max(enlarged, patches_[child * kBlockWidth + i].enlarged);
+        }
+      }
+      const bool changed = enlarged != node.enlarged;
+      node.enlarged = enlarged;
+      block.radius[lane] = raised(node.radius, enlarged);
+      block.height[lane] = raised(node.height, enlarged * kNormalLength);
+      if (changed && node.parent != kNone) mark(patches_, dirty_patches_, node.parent);
+    }
+    dirty_patches_[level].clear();
+  }
+}
+
+}  // namespace orchard::runtime

@@ -1,0 +1,131 @@
+#include <algorithm>
+
+#include "simple_pair.h"
+
+// Shapes against half-spaces: the least height of a shape over the plane decides.
+namespace orchard::runtime::detail {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNormalSlack = 2e-6;  // of a patch's normal, unit to 1e-6 and rounded
+
+// How far a patch, a ball between two planes, reaches along a unit vector from its centre, at least.
+double reach_of(const PatchBlock& block, std::uint32_t lane, const Vec3& n) noexcept {
+  const double radius = double{block.radius[lane]}, height = std::min(double{block.height[lane]}, radius);
+  const double across = std::min(
+      1.0, std::fabs(n[0] * double{block.nx[lane]} + n[1] * double{block.ny[lane]} + n[2] * double{block.nz[lane]}));
+  if (radius * across <= height) return radius;
+  const double along = std::sqrt(std::max(0.0, 1 - across * across));
+  const double reach = across * height + along * std::sqrt(std::max(0.0, radius * radius - height * height));
+  // A normal that is off by some angle moves the reach by that share of the radius.
+  return std::min(radius, reach + kNormalSlack * radius);
+}
+
+struct Lowest {
+  double height = kInfinity;  // normal . point, in the tree's frame
+  std::array<float, 3> point{};
+  std::uint32_t triangle = kNoTriangle;
+};
+
+Lowest lowest_of(const TreeView& tree, const Vec3& n) noexcept {
+  struct Entry {
+    double height;
+    std::uint32_t child;
+  };
+  std::array<Entry, kBlockWidth*(kPatchDepthLimit + 1) + 1> stack;
+  std::size_t size = 0;
+  Lowest lowest;
+  const auto push_children = [&](std::uint32_t index) {
+    const PatchBlock& block = tree.patches[index];
+    const std::size_t begin = size;
+    for (std::uint32_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
+      const double middle = n[0] * double{block.x[lane]} + n[1] * double{block.y[lane]} + n[2] * double{block.z[lane]};
+      const double height = middle - reach_of(block, lane, n) * (1 + 1e-12) - 1e-14 * std::fabs(middle);
+      if (height >= lowest.height) continue;
+      std::size_t at = size++;
+      for (; at > begin && stack[at - 1].height < height; --at) stack[at] = stack[at - 1];
+      stack[at] = {height, block.child[lane]};
+    }
+  };
+  push_children(0);
+  while (size > 0) {
+    const Entry entry = stack[--size];
+    if (entry.height >= lowest.height) continue;
+    if ((entry.child & kLeafBit) == 0) {
+      push_children(entry.child);
+      continue;
+    }
+    const TriangleBlock& block = tree.triangle_blocks[entry.child & ~kLeafBit];
+    for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
+      for (const auto& corner : block.corner) {
+        const double height =
+            n[0] * double{corner[0][lane]} + n[1] * double{corner[1][lane]} + n[2] * double{corner[2][lane]};
+        if (height < lowest.height) {
+          lowest = {height, {corner[0][lane], corner[1][lane], corner[2][lane]}, block.triangle[lane]};
+        }
+      }
+    }
+  }
+  return lowest;
+}
+
+struct Bottom {
+  double height = kInfinity;  // over the plane
+  Vec3 point{};
+  std::uint32_t triangle = kNoTriangle;
+};
+
+Bottom bottom_of(const Shape& shape, const Pose& pose, const HalfSpace& half) noexcept {
+  if (shape.kind == ShapeKind::round) {
+    const Vec3 p = transform(pose, shape.p), q = transform(pose, shape.q);
+    const double at_p = dot(half.normal, p), at_q = dot(half.normal, q), radius = shape.radius * pose.scale;
+    const Vec3& lower = at_p <= at_q ? p : q;
+    return {std::min(at_p, at_q) - radius - half.offset, lower - radius * half.normal, kNoTriangle};
+  }
+  const auto& r = pose.rotation;
+  const Vec3& n = half.normal;
+  const Vec3 turned = {r[0] * n[0] + r[3] * n[1] + r[6] * n[2], r[1] * n[0] + r[4] * n[1] + r[7] * n[2],
+                       r[2] * n[0] + r[5] * n[1] + r[8] * n[2]};
+  const Lowest lowest = lowest_of(shape.tree, turned);
+  const Vec3 point = {double{lowest.point[0]} + shape.tree.origin[0], double{lowest.point[1]} + shape.tree.origin[1],
+                      double{lowest.point[2]} + shape.tree.origin[2]};
+  const Vec3 placed_point = transform(pose, point);
+  return {dot(n, placed_point) - half.offset, placed_point, lowest.triangle};
+}
+
+bool can_ask(const Shape& shape) noexcept { return shape.kind == ShapeKind::round || !shape.tree.patches.empty(); }
+
+}  // namespace
+
+Verdict test_half_space(const Shape& a, const Pose& pose, const HalfSpace& b) noexcept {
+  Verdict verdict;
+  verdict.separation_bound = kInfinity;
+  if (!can_ask(a)) return verdict;
+  const Bottom bottom = bottom_of(a, pose, b);
+  if (!std::isfinite(bottom.height)) return verdict;
+  verdict.level = 1;
+  if (bottom.height > 0) {
+    verdict.answer = Answer::no;
+    verdict.separation_bound = verdict.lower_bound = bottom.height;
+    return verdict;
+  }
+  verdict.answer = Answer::yes;
+  verdict.separation_bound = 0;
+  verdict.contact.center = bottom.point;
+  verdict.contact.normal = -1.0 * b.normal;
+  verdict.contact.triangle_a = bottom.triangle;
+  return verdict;
+}
+
+double half_space_depth(const Shape& a, const Pose& pose, const HalfSpace& b) noexcept {
+  return can_ask(a) ? std::max(0.0, -bottom_of(a, pose, b).height) : 0;
+}
+
+double half_space_distance(const Shape& a, const Pose& pose, const HalfSpace& b) noexcept {
+  if (!can_ask(a) || !is_rigid(pose)) return 0;
+  const Bottom bottom = bottom_of(a, pose, b);
+  const double size = length(bottom.point) + std::fabs(b.offset) + length(Vec3(pose.translation));
+  return std::isfinite(bottom.height) ? std::max(0.0, bottom.height - 1e-14 * size) : 0;
+}
+
+}  // namespace orchard::runtime::detail

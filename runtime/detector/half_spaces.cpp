@@ -1,0 +1,119 @@
+#include "half_spaces.h"
+
+#include <algorithm>
+
+#include "orchard/runtime/motion_monitor.h"
+
+namespace orchard::runtime::detail {
+namespace {
+
+// How high a body's sphere is over the plane, at least; and after how many seconds it may have come down: the root of
+// height + v s - drift s - M s^2 / 2 = 0.
+double height_over(const HalfSpace& half, const Motion& motion) noexcept {
+  const double size = std::fabs(half.offset) + length(motion.position) + motion.radius;
+  return dot(half.normal, motion.position) - half.offset - motion.radius - kMotionSlack * size;
+}
+
+double seconds_above(const HalfSpace& half, const Motion& motion, double height) noexcept {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (height <= 0) return 0;
+  const double fall = (motion.drift - dot(half.normal, motion.velocity)) * (1 + 1e-12),
+               half_m = motion.acceleration / 2;
+  const double root = std::sqrt(std::max(0.0, fall * fall + 4 * half_m * height));
+  // Without cancellation, whichever sign `fall` has; 0 / 0 where it neither falls nor is pulled.
+  const double below = fall + root;
+  if (fall >= 0) return below > 0 ? 2 * height / below : kInfinity;
+  return half_m > 0 ? (root - fall) / (2 * half_m) : kInfinity;
+}
+
+}  // namespace
+
+BodyIndex HalfSpaces::add(const HalfSpace& half, const Body& with) {
+  // An index is never used again: half-spaces are few, and pairs may still name a removed one.
+  planes_.push_back({half, with, true});
+  ++alive_;
+  const auto index = static_cast<BodyIndex>(kFirstHalfSpace + planes_.size() - 1);
+  planes_.back().body.id = {index, 1};
+  planes_.back().body.is_static = true;
+  return index;
+}
+
+bool HalfSpaces::remove(BodyIndex index) noexcept {
+  Plane& plane = planes_[index - kFirstHalfSpace];
+  if (!plane.alive) return false;
+  plane.alive = false;
+  plane.body.id = kNoBody;
+  if (--alive_ == 0) next_ = kNeverStep;
+  return true;
+}
+
+void HalfSpaces::look_again(BodyIndex body) {
+  grow(due_, std::size_t{body} + 1);
+  grow(promises_, due_.size());
+  due_[body] = 0;
+  if (alive_ > 0) next_ = 0;
+}
+
+void HalfSpaces::look_at_all(std::size_t bodies) {
+  grow(due_, bodies);
+  grow(promises_, due_.size());
+  for (Step& due : due_) due = due == kNeverStep ? due : 0;
+  next_ = 0;
+}
+
+void HalfSpaces::forget(BodyIndex body) {
+  grow(due_, std::size_t{body} + 1);
+  grow(promises_, due_.size());
+  due_[body] = kNeverStep;
+}
+
+void HalfSpaces::due(Step now, std::vector<BodyIndex>& bodies) const {
+  if (alive_ == 0 || next_ > now) return;
+  for (std::size_t body = 0; body < due_.size(); ++body) {
+    if (due_[body] <= now) bodies.push_back(static_cast<BodyIndex>(body));
+  }
+}
+
+void HalfSpaces::look_at(Step now, const Clock& clock, std::span<const BodyIndex> bodies, const BodyTable& table,
+                         double time_step, double slack, std::vector<BodyPair>& pairs) {
+  for (const BodyIndex body : bodies) {
+    Motion motion = table.motion_of(body, time_step);
+    motion.radius += slack;
+    promises_[body] = {clock.time(now), motion};
+    if (!is_valid(motion)) {
+      due_[body] = now + 1;
+      continue;
+    }
+    double seconds = std::numeric_limits<double>::infinity();
+    bool meets = false;
+    for (std::size_t i = 0; i < planes_.size(); ++i) {
+      if (!planes_[i].alive) continue;
+      const double height = height_over(planes_[i].half, motion);
+      seconds = std::min(seconds, seconds_above(planes_[i].half, motion, height));
+      if (height > 0) continue;
+      meets = true;
+      pairs.push_back({body, static_cast<BodyIndex>(kFirstHalfSpace + i)});
+    }
+    const bool rests = table[body].frozen;
+    const Step last = rests ? kNeverStep : clock.last_before_expiry(motion.expiry);
+    const Step known = last >= kNeverStep - 1 ? kNeverStep - 1 : std::max(now, last) + 1;
+    const Step free = clock.steps_before(std::min(seconds, 1e12 * time_step));
+    const Step safe = now + std::max<Step>(1, free);
+    due_[body] = meets ? now + 1 : std::min(known, safe);
+  }
+  next_ = kNeverStep;
+  for (const Step due : due_) next_ = std::min(next_, due);
+}
+
+bool HalfSpaces::promise_kept(BodyIndex body, double time, const Motion& now) const noexcept {
+  if (alive_ == 0 || body >= due_.size() || due_[body] <= 0 || due_[body] == kNeverStep) return true;
+  const Promise& promise = promises_[body];
+  return keeps_promise(promise.motion, promise.time, time, now.position, nullptr) &&
+         now.radius <= promise.motion.radius;
+}
+
+std::size_t HalfSpaces::memory_bytes() const noexcept {
+  return bytes_of(planes_) + bytes_of(due_) + bytes_of(promises_);
+}
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,53 @@
+#pragma once
+#include "bodies.h"
+
+namespace orchard::runtime::detail {
+
+// When each body can reach a half-space at the earliest, from the same bounds as the broad phase's; at that step it is
+// looked at again. One number per body, whatever the number of half-spaces: they are few.
+class HalfSpaces {
+ public:
+  BodyIndex add(const HalfSpace& half, const Body& with);  // its BodyIndex; BodyId::generation is 1
+  bool remove(BodyIndex index) noexcept;
+  bool contains(BodyId id) const noexcept {
+    return is_half_space(id.index) && id.generation == 1 && id.index - kFirstHalfSpace < planes_.size() &&
+           planes_[id.index - kFirstHalfSpace].alive;
+  }
+  const HalfSpace& half_space(BodyIndex index) const noexcept { return planes_[index - kFirstHalfSpace].half; }
+  Body& body(BodyIndex index) noexcept { return planes_[index - kFirstHalfSpace].body; }
+  const Body& body(BodyIndex index) const noexcept { return planes_[index - kFirstHalfSpace].body; }
+  std::size_t size() const noexcept { return alive_; }
+
+  void look_again(BodyIndex body);              // at the next step: it is new, or its promise holds no longer
+  void look_at_all(std::size_t bodies);         // a half-space is new
+  void forget(BodyIndex body);                  // it is gone, or does not move
+  Step next() const noexcept { return next_; }  // at which any body is due
+
+  // The bodies due at `now` or before.
+  void due(Step now, std::vector<BodyIndex>& bodies) const;
+  // For each of these, whose states are known: its pairs, in ascending order of half-spaces, and when it is due again.
+  // `slack`: see BroadPhaseOptions::position_slack.
+  void look_at(Step now, const Clock& clock, std::span<const BodyIndex> bodies, const BodyTable& table,
+               double time_step, double slack, std::vector<BodyPair>& pairs);
+  // Whether the promise that the body's next look relies on is kept by where it is now.
+  bool promise_kept(BodyIndex body, double time, const Motion& now) const noexcept;
+  std::size_t memory_bytes() const noexcept;
+
+ private:
+  struct Plane {
+    HalfSpace half;
+    Body body;
+    bool alive = false;
+  };
+  struct Promise {
+    double time = 0;
+    Motion motion;
+  };
+  std::vector<Plane> planes_;
+  std::vector<Step> due_;          // by body
+  std::vector<Promise> promises_;  // by body
+  std::size_t alive_ = 0;
+  Step next_ = kNeverStep;
+};
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,164 @@
+#include "orchard/runtime/motion_monitor.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace orchard::runtime {
+namespace {
+
+constexpr double kMostAngle = 0.5;          // cosine: of accelerations that share a half-space, with their mean
+constexpr double kFasterHorizon = 1.25;     // a kept promise makes the next one so much longer
+constexpr double kVelocityRounding = 1e-9;  // of a velocity: the application's own arithmetic
+
+double length(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
+
+}  // namespace
+
+// Two velocities, that promised and that given now, are each within drift of the true ones.
+bool keeps_promise(const Motion& promise, double promise_time, double now, const Vec3& position,
+                   const Vec3* velocity) noexcept {
+  const double seconds = now - promise_time;
+  if (!(seconds > 0) || now > promise.expiry) return true;
+  const double reach = promise.drift * seconds + promise.acceleration * seconds * seconds / 2;
+  const Vec3 foreseen = promise.position + seconds * promise.velocity, off = position - foreseen;
+  const double slack = kMotionSlack * (length(position) + length(foreseen) + reach);
+  if (!(length(off) <= reach + slack)) return false;
+  const double size = length(promise.half_space);
+  if (size > 0 && !(dot(off, promise.half_space) / size <= promise.drift * seconds + slack)) return false;
+  if (velocity == nullptr) return true;
+  const double change = 2 * promise.drift + promise.acceleration * seconds;
+  return length(*velocity - promise.velocity) <= change + kVelocityRounding * (length(*velocity) + change);
+}
+
+void MotionMonitor::Part::add(const Vec3& acceleration) noexcept {
+  const double size = length(acceleration);
+  largest = std::max(largest, size);
+  sum = sum + acceleration;
+  ++count;
+  if (!(size > 0)) return;
+  for (std::size_t i = 0; i < 3; ++i) {
+    lower[i] = std::min(lower[i], acceleration[i] / size);
+    upper[i] = std::max(upper[i], acceleration[i] / size);
+  }
+}
+
+double MotionMonitor::Part::least_along(const Vec3& way) const noexcept {
+  double least = 0;
+  for (std::size_t i = 0; i < 3; ++i) least += std::min(lower[i] * way[i], upper[i] * way[i]);
+  return least / length(way);
+}
+
+MotionMonitor::Track& MotionMonitor::track(BodyIndex body) {
+  if (body >= tracks_.size()) {
+    if (tracks_.capacity() <= body) tracks_.reserve(std::size_t{body} + body / 8 + 32);
+    tracks_.resize(std::size_t{body} + 1);
+  }
+  return tracks_[body];
+}
+
+void MotionMonitor::promised(BodyIndex body, double time, const Motion& motion) {
+  Track& t = track(body);
+  t.promise = true;
+  t.promise_time = time;
+  t.motion = motion;
+}
+
+bool MotionMonitor::observe(BodyIndex body, double time, const Vec3& position, const Vec3& velocity) {
+  return look(body, time, position, &velocity);
+}
+
+bool MotionMonitor::observe(BodyIndex body, double time, const Vec3& position) {
+  return look(body, time, position, nullptr);
+}
+
+void MotionMonitor::count_broken(BodyIndex body) {
+  Track& t = track(body);
+  t.promise = false;
+  t.horizon = std::max(t.horizon / 2, options_.least_horizon);
+  t.kept_since = t.time;
+  ++t.broken, ++broken_;
+}
+
+bool MotionMonitor::look(BodyIndex body, double time, const Vec3& position, const Vec3* velocity) {
+  Track& t = track(body);
+  learn(t, time, position, velocity);
+  if (t.promise && time - t.kept_since >= t.horizon) {  // a whole one without a broken promise
+    t.horizon = std::min(t.horizon * kFasterHorizon, options_.longest_horizon);
+    t.kept_since = time;
+  }
+  if (!t.promise || keeps_promise(t.motion, t.promise_time, time, position, velocity)) return true;
+  count_broken(body);
+  return false;
+}
+
+// Accelerations go by differences of velocities; without these, of positions: (x2 - x1) / h is the velocity in the
+// middle of a step.
+void MotionMonitor::learn(Track& t, double time, const Vec3& position, const Vec3* velocity) const noexcept {
+  const double step = time - t.time;
+  if (t.seen > 0 && !(step > 0)) return;
+  if (t.seen == 0) {
+    t.horizon = std::max(t.horizon, options_.least_horizon);
+    t.parts = {};
+    t.part = 0;
+    t.parts[0].begin = t.kept_since = time;
+  }
+  const Vec3 moved = t.seen > 0 ? (1 / step) * (position - t.position) : Vec3{};
+  const Vec3 now = velocity != nullptr ? *velocity : moved;
+  const std::uint32_t needed = velocity != nullptr ? 1 : 2;  // observations before
+  if (t.seen >= needed) {
+    const double between = velocity != nullptr ? step : (step + t.step) / 2;
+    const Vec3 acceleration = (1 / between) * (now - t.velocity);
+    if (time - t.parts[t.part].begin >= options_.window / kParts) {
+      t.part = (t.part + 1) % kParts;
+      t.parts[t.part] = Part{};
+      t.parts[t.part].begin = time;
+    }
+    t.parts[t.part].add(acceleration);
+  }
+  t.velocity = now;
+  t.velocity_given = velocity != nullptr;
+  t.time = time, t.step = step, t.position = position;
+  t.seen = std::min(t.seen + 1, 3u);
+}
+
+Motion MotionMonitor::suggest(BodyIndex body, double time, double radius) const {
+  Motion motion;
+  motion.radius = radius;
+  if (body >= tracks_.size() || tracks_[body].seen == 0) {  // nothing is known: until the next step
+    motion.expiry = time;
+    return motion;
+  }
+  const Track& t = tracks_[body];
+  motion.position = t.position;
+  motion.velocity = t.velocity;
+  double largest = 0;
+  Vec3 sum{};
+  std::uint32_t count = 0;
+  for (const Part& part : t.parts) {
+    largest = std::max(largest, part.largest);
+    sum = sum + part.sum;
+    count += part.count;
+  }
+  motion.acceleration = std::max(options_.least_acceleration, options_.safety * largest);
+  // A difference of positions is the velocity of half a step ago.
+  if (!t.velocity_given) motion.drift = motion.acceleration * t.step;
+  motion.expiry = count == 0 ? time : time + std::clamp(t.horizon, options_.least_horizon, options_.longest_horizon);
+  const double size = length(sum);
+  if (count < 2 || !(size > 0)) return motion;
+  for (const Part& part : t.parts) {
+    if (part.count > 0 && !(part.least_along(sum) >= kMostAngle)) return motion;
+  }
+  motion.half_space = (-1 / size) * sum;
+  return motion;
+}
+
+void MotionMonitor::cancelled(BodyIndex body) { track(body).promise = false; }
+
+void MotionMonitor::forget(BodyIndex body) {
+  Track& t = track(body);
+  const std::uint64_t counted = t.broken;
+  t = Track{};
+  t.broken = counted;
+}
+
+}  // namespace orchard::runtime

@@ -1,0 +1,115 @@
+#pragma once
+#include "orchard/runtime/body_pair.h"
+#include "pair_tests.h"
+
+namespace orchard::runtime::detail {
+
+// What is remembered of a pair while its spheres overlap, or until its touch has ended.
+struct Record {
+  BodyPair pair{};
+  BodyId a, b;
+  std::uint32_t filters_a = 0, filters_b = 0, filter_version = 0;  // of when it was allowed, or not
+  std::uint32_t jumps = 0;                                         // teleports of both, so far
+  std::uint32_t deformed = 0;                                      // and changes of their shapes
+  bool coherent = false;  // one tree each: `trees` knows what the last answer was
+  TreePair trees;
+  Vec3 apart_by{};  // from centre to centre, at the step before
+  bool allowed = false;
+  bool touching = false;
+  bool apart = false;  // the broad phase says no at this step
+  bool swept = false;  // at the step before both poses were known: a sweep may start there
+  std::uint8_t importance = 0;
+  std::uint32_t nos = 0;     // certain ones in a row, while touching
+  std::uint32_t waited = 0;  // steps without a certain answer
+  Step answered = -1;        // the step of `verdict`, if that is certain
+  std::uint32_t part_a = 0, part_b = 0;
+  Verdict verdict;
+  double impact_from = 0, impact_to = 0;
+  bool impact = false;
+};
+
+// The pairs of the step before and their records, in ascending order of pairs.
+class RecordTable {
+ public:
+  struct Known {
+    BodyPair pair;
+    std::uint32_t record;
+  };
+
+  std::span<const Known> known() const noexcept { return known_; }
+  Record& operator[](std::uint32_t record) noexcept { return records_[record]; }
+  const Record& operator[](std::uint32_t record) const noexcept { return records_[record]; }
+
+  // Those of `pairs`, which ascend, become the known ones; calls gone(record) for each that is not among them, or whose
+  // bodies are others by now, and keeps it if that says true; fresh(record) for each new one.
+  template <typename IdOf, typename Gone, typename Fresh>
+  void match(std::span<const BodyPair> pairs, IdOf&& id_of, Gone&& gone, Fresh&& fresh);
+  // For those that have ended: known() afterwards is without them.
+  template <typename Ended>
+  void drop(Ended&& ended);
+  std::size_t memory_bytes() const noexcept {
+    return bytes_of(records_) + bytes_of(free_) + bytes_of(known_) + bytes_of(next_);
+  }
+
+ private:
+  std::uint32_t take() {
+    if (free_.empty()) {
+      records_.emplace_back();
+      free_.reserve(records_.capacity());
+      return static_cast<std::uint32_t>(records_.size() - 1);
+    }
+    const std::uint32_t record = free_.back();
+    free_.pop_back();
+    records_[record] = Record{};
+    return record;
+  }
+  std::vector<Record> records_;
+  std::vector<std::uint32_t> free_;
+  std::vector<Known> known_, next_;
+};
+
+template <typename IdOf, typename Gone, typename Fresh>
+void RecordTable::match(std::span<const BodyPair> pairs, IdOf&& id_of, Gone&& gone, Fresh&& fresh) {
+  next_.clear();
+  std::size_t old = 0;
+  const auto leave = [&] {
+    const Known known = known_[old++];
+    if (gone(records_[known.record])) {
+      next_.push_back(known);
+    } else {
+      free_.push_back(known.record);
+    }
+  };
+  for (const BodyPair& pair : pairs) {
+    while (old < known_.size() && known_[old].pair < pair) leave();
+    if (old < known_.size() && known_[old].pair == pair) {
+      Record& record = records_[known_[old].record];
+      if (record.a == id_of(pair.a) && record.b == id_of(pair.b)) {
+        record.apart = false;
+        next_.push_back(known_[old++]);
+        continue;
+      }
+      gone(record);  // of a body that is no more: it cannot stay
+      free_.push_back(known_[old++].record);
+    }
+    const std::uint32_t index = take();
+    Record& record = records_[index];
+    record.pair = pair;
+    record.a = id_of(pair.a), record.b = id_of(pair.b);
+    fresh(record);
+    next_.push_back({pair, index});
+  }
+  while (old < known_.size()) leave();
+  std::swap(known_, next_);
+}
+
+template <typename Ended>
+void RecordTable::drop(Ended&& ended) {
+  std::erase_if(known_, [&](const Known& known) {
+    if (!ended(records_[known.record])) return false;
+    free_.push_back(known.record);
+    return true;
+  });
+}
+
+}  // namespace orchard::runtime::detail

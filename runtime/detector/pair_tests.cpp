@@ -1,0 +1,98 @@
+#include "pair_tests.h"
+
+namespace orchard::runtime::detail {
+
+void Places::place_at(const Pose& pose, bool rigid, const PartRecord& part, PlacedPart& placed_part) const noexcept {
+  placed_part.shape = &(*shapes_)[part.shape];
+  placed_part.pose = part.at_origin || !rigid ? pose : placed(pose, part.local);
+  placed_part.rigid = rigid;
+  placed_part.center = transform(pose, part.center);
+  placed_part.reach = part.reach * pose.scale;
+}
+
+void Places::place(BodyIndex body, std::uint32_t part, PlacedPart& placed_part) const noexcept {
+  if (!is_half_space(body)) {
+    const Body& of = (*bodies_)[body];
+    return place_at(bodies_->state(body).pose, of.rigid, of.parts[part], placed_part);
+  }
+  placed_part.shape = nullptr;
+}
+
+void Places::place_before(BodyIndex body, std::uint32_t part, PlacedPart& placed_part) const noexcept {
+  if (is_half_space(body)) {
+    placed_part.shape = nullptr;
+    return;
+  }
+  const Body& of = (*bodies_)[body];
+  const bool moves = !of.is_static && !of.frozen;
+  const Pose& pose = moves ? bodies_->before(body) : bodies_->state(body).pose;
+  place_at(pose, is_rigid(pose), of.parts[part], placed_part);
+}
+
+double sphere_gap(const PlacedPair& pair) noexcept {
+  constexpr double kRounding = 1e-11;  // of rotations that are rotations to kRigidTolerance, and of coordinates
+  if (pair.b.shape == nullptr) {
+    const double height = dot(pair.half.normal, pair.a.center) - pair.half.offset;
+    return height - pair.a.reach - kRounding * (std::fabs(pair.half.offset) + length(pair.a.center) + pair.a.reach);
+  }
+  const double size = length(pair.a.center) + length(pair.b.center) + pair.a.reach + pair.b.reach;
+  const double gap = length(pair.b.center - pair.a.center) - pair.a.reach - pair.b.reach - kRounding * size;
+  return std::isfinite(gap) ? gap : 0;
+}
+
+Verdict unasked(const PlacedPair& pair) noexcept {
+  Verdict verdict;
+  const double gap = sphere_gap(pair);
+  verdict.answer = gap > 0 ? Answer::no : Answer::maybe;
+  verdict.lower_bound = std::max(0.0, gap);
+  const bool half = pair.b.shape == nullptr;
+  // Each solid is somewhere in its sphere.
+  const double apart = half ? std::max(0.0, dot(pair.half.normal, pair.a.center) - pair.half.offset)
+                            : length(pair.b.center - pair.a.center);
+  verdict.separation_bound = apart + pair.a.reach + (half ? 0 : pair.b.reach);
+  if (!(verdict.separation_bound >= 0)) verdict.separation_bound = std::numeric_limits<double>::infinity();
+  if (verdict.answer == Answer::no) return verdict;
+  verdict.contact.center = pair.a.center;
+  verdict.contact.radius = pair.a.reach;
+  const Vec3 way = half ? -1.0 * pair.half.normal : pair.b.center - pair.a.center;
+  const double size = length(way);
+  verdict.contact.normal = size > 0 ? (1 / size) * way : Vec3{0, 0, 1};
+  return verdict;
+}
+
+Verdict solid_verdict(Verdict verdict, const PlacedPair& pair) noexcept {
+  const bool solid = pair.a.shape->kind == ShapeKind::box || pair.b.shape->kind == ShapeKind::box;
+  if (solid && verdict.answer == Answer::no &&
+      inside_box(*pair.a.shape, pair.a.pose, *pair.b.shape, pair.b.pose, verdict.contact)) {
+    verdict.answer = Answer::yes;
+    verdict.separation_bound = verdict.lower_bound = 0;
+  }
+  return verdict;
+}
+
+Verdict answer_exactly(NarrowPhase& narrow, const PlacedPair& pair, std::uint64_t& work, std::uint64_t most) noexcept {
+  if (!pair.a.rigid || (pair.b.shape != nullptr && !pair.b.rigid)) return unknown_verdict();
+  if (pair.simple()) {
+    work += kSimplePairWork;
+    return pair.b.shape == nullptr ? test_half_space(*pair.a.shape, pair.a.pose, pair.half)
+                                   : test_simple(*pair.a.shape, pair.a.pose, *pair.b.shape, pair.b.pose);
+  }
+  narrow.bind(pair.a.shape->prepared, pair.b.shape->prepared);
+  narrow.start(pair.a.pose, pair.b.pose);
+  const bool limited = most != std::numeric_limits<std::uint64_t>::max();
+  work += kPairWork;
+  if (!limited) {
+    while (!narrow.finished()) narrow.refine_exactly();
+  } else if (work < most) {
+    narrow.refine_exactly({.pair_tests = most - work});
+  }
+  work += narrow.work();
+  return verdict_of(narrow, pair);
+}
+
+bool decides(const Verdict& verdict, const Verdict& than) noexcept {
+  if (verdict.answer != than.answer) return verdict.answer > than.answer;
+  return verdict.separation_bound < than.separation_bound;
+}
+
+}  // namespace orchard::runtime::detail

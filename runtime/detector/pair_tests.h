@@ -1,0 +1,66 @@
+#pragma once
+#include "half_spaces.h"
+#include "simple_pair.h"
+
+namespace orchard::runtime::detail {
+
+// What is asked at one step about two parts, or a part and a half-space.
+struct PlacedPart {
+  const Shape* shape = nullptr;  // null: a half-space
+  Pose pose{};
+  Vec3 center{};  // of the part's sphere, in the world
+  double reach = 0;
+  bool rigid = true;
+};
+
+struct PlacedPair {
+  PlacedPart a, b;
+  HalfSpace half;  // b, where it is one
+  bool simple() const noexcept { return b.shape == nullptr || !a.shape->has_tree() || !b.shape->has_tree(); }
+};
+
+// Where bodies, parts and half-spaces are at the step under way.
+class Places {
+ public:
+  Places(const ShapeTable& shapes, const BodyTable& bodies, const HalfSpaces& halves) noexcept
+      : shapes_(&shapes), bodies_(&bodies), halves_(&halves) {}
+
+  const Body& body(BodyIndex index) const noexcept {
+    return is_half_space(index) ? halves_->body(index) : (*bodies_)[index];
+  }
+  std::uint32_t parts(BodyIndex index) const noexcept {
+    return is_half_space(index) ? 1 : static_cast<std::uint32_t>((*bodies_)[index].parts.size());
+  }
+  void place(BodyIndex body, std::uint32_t part, PlacedPart& placed) const noexcept;
+  // At the step before; only of bodies that have been asked for then.
+  void place_before(BodyIndex body, std::uint32_t part, PlacedPart& placed) const noexcept;
+  const HalfSpace& half_space(BodyIndex index) const noexcept { return halves_->half_space(index); }
+  const BodyTable& bodies() const noexcept { return *bodies_; }
+
+ private:
+  void place_at(const Pose& pose, bool rigid, const PartRecord& part, PlacedPart& placed) const noexcept;
+  const ShapeTable* shapes_;
+  const BodyTable* bodies_;
+  const HalfSpaces* halves_;
+};
+
+// How far apart the spheres around the two are, at least; at most 0 where they may overlap.
+double sphere_gap(const PlacedPair& pair) noexcept;
+// What is known of two parts that nothing was asked about.
+Verdict unasked(const PlacedPair& pair) noexcept;
+
+// The whole answer, unless `work`, which it increases by what it costs, reaches `most`. `narrow` is only scratch.
+Verdict answer_exactly(NarrowPhase& narrow, const PlacedPair& pair, std::uint64_t& work,
+                       std::uint64_t most = std::numeric_limits<std::uint64_t>::max()) noexcept;
+
+// What is known of two trees whose surfaces have been asked about: of solid boxes these do not tell everything.
+Verdict solid_verdict(Verdict verdict, const PlacedPair& pair) noexcept;
+inline Verdict verdict_of(const NarrowPhase& narrow, const PlacedPair& pair) noexcept {
+  return solid_verdict(narrow.verdict(), pair);
+}
+
+// The better of what is known of two pairs of parts, for their bodies: yes before maybe before no, then the least
+// bound.
+bool decides(const Verdict& verdict, const Verdict& than) noexcept;
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,57 @@
+#pragma once
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "orchard/runtime/detector.h"
+#include "orchard/runtime/prepared_tree.h"
+
+namespace orchard::runtime::detail {
+
+enum class ShapeKind : std::uint8_t {
+  tree,
+  round,  // a sphere or a capsule: the points within `radius` of the segment from p to q
+  box     // a tree of twelve triangles, and solid
+};
+
+struct Shape {
+  ShapeKind kind = ShapeKind::tree;
+  PackedSphereTree box;      // what the tree of a box views
+  TreeView tree;             // of trees and boxes
+  PreparedTree prepared;     // the same
+  Vec3 p{}, q{};             // of a box: p is half of its lengths
+  double radius = 0;         // of round shapes
+  Vec3 center{};             // of a sphere around the shape,
+  double reach = 0;          // and its radius
+  std::vector<Vec3> pieces;  // of a tree: a vertex of each connected piece of its surface
+  bool has_tree() const noexcept { return kind != ShapeKind::round; }
+};
+
+// Shapes stay where they are.
+class ShapeTable {
+ public:
+  ShapeId add_tree(const TreeView& tree);
+  ShapeId add_round(const Vec3& p, const Vec3& q, double radius);
+  ShapeId add_box(const Vec3& half_lengths);
+
+  bool contains(ShapeId shape) const noexcept { return shape < shapes_.size(); }
+  const Shape& operator[](ShapeId shape) const noexcept { return shapes_[shape]; }
+  std::size_t memory_bytes() const noexcept;
+
+ private:
+  ShapeId add(Shape&& shape);
+  std::deque<Shape> shapes_;
+};
+
+// Everything with normal . point <= offset; the normal is a unit vector.
+struct HalfSpace {
+  Vec3 normal{1, 0, 0};
+  double offset = 0;
+};
+
+inline double length(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
+
+// `local` in `body`: each may be off by kRigidTolerance, and together by more. What is not rigid stays so.
+Pose placed(const Pose& body, const Pose& local) noexcept;
+
+}  // namespace orchard::runtime::detail

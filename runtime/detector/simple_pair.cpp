@@ -1,0 +1,195 @@
+#include "simple_pair.h"
+
+#include <algorithm>
+
+#include "orchard/runtime/shape_query.h"
+
+namespace orchard::runtime::detail {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Of distances computed from a few operations on coordinates of that size.
+constexpr double kSimpleRounding = 1e-14;
+
+struct Round {  // in the world
+  Vec3 p, q;
+  double radius;
+  Round(const Shape& shape, const Pose& pose) noexcept
+      : p(transform(pose, shape.p)), q(transform(pose, shape.q)), radius(shape.radius * pose.scale) {}
+};
+
+Vec3 point_of(const Vec3& p, const Vec3& q, double share) noexcept { return p + share * (q - p); }
+
+Vec3 nearest_of_segment(const Vec3& p, const Vec3& q, const Vec3& to) noexcept {
+  const Vec3 d = q - p;
+  const double square = dot(d, d);
+  return square > 0 ? point_of(p, q, std::clamp(dot(to - p, d) / square, 0.0, 1.0)) : p;
+}
+
+struct Nearest {
+  Vec3 on_a, on_b;
+};
+
+// Of two segments (Ericson 2005, 5.1.9).
+Nearest nearest_of_segments(const Vec3& p1, const Vec3& q1, const Vec3& p2, const Vec3& q2) noexcept {
+  const Vec3 d1 = q1 - p1, d2 = q2 - p2, r = p1 - p2;
+  const double a = dot(d1, d1), e = dot(d2, d2), f = dot(d2, r);
+  if (!(a > 0)) return {p1, nearest_of_segment(p2, q2, p1)};
+  if (!(e > 0)) return {nearest_of_segment(p1, q1, p2), p2};
+  const double c = dot(d1, r), b = dot(d1, d2), across = a * e - b * b;
+  double s = across > 0 ? std::clamp((b * f - c * e) / across, 0.0, 1.0) : 0;
+  const double t = std::clamp((b * s + f) / e, 0.0, 1.0);
+  s = std::clamp((b * t - c) / a, 0.0, 1.0);
+  return {point_of(p1, q1, s), nearest_of_segment(p2, q2, point_of(p1, q1, s))};
+}
+
+Vec3 unit(const Vec3& v, const Vec3& otherwise) noexcept {
+  const double size = length(v);
+  return size > 0 ? (1 / size) * v : otherwise;
+}
+
+// Into the box's frame at scale 1; the components' sizes say which side is nearest.
+Vec3 in_box(const Pose& pose, const Vec3& point) noexcept { return transform(inverse(pose), point); }
+
+bool holds(const Shape& box, const Pose& pose, const Vec3& point) noexcept {
+  const Vec3 at = in_box(pose, point);
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!(std::fabs(at[i]) <= box.p[i])) return false;
+  }
+  return true;
+}
+
+// From a point inside outwards, through the nearest side.
+Vec3 way_out(const Shape& box, const Pose& pose, const Vec3& point) noexcept {
+  const Vec3 at = in_box(pose, point);
+  std::size_t axis = 0;
+  for (std::size_t i = 1; i < 3; ++i) {
+    if (box.p[i] - std::fabs(at[i]) < box.p[axis] - std::fabs(at[axis])) axis = i;
+  }
+  Vec3 way{};
+  way[axis] = at[axis] < 0 ? -1 : 1;
+  return rotate(pose, way);
+}
+
+Verdict yes_at(const Vec3& center, const Vec3& normal) noexcept {
+  Verdict verdict;
+  verdict.answer = Answer::yes;
+  verdict.level = 1;
+  verdict.contact.center = center;
+  verdict.contact.normal = normal;
+  return verdict;
+}
+
+Verdict no_with(double gap) noexcept {
+  Verdict verdict;
+  verdict.answer = Answer::no;
+  verdict.level = 1;
+  verdict.separation_bound = gap;
+  verdict.lower_bound = gap;
+  return verdict;
+}
+
+Verdict of_rounds(const Round& a, const Round& b) noexcept {
+  const Nearest near = nearest_of_segments(a.p, a.q, b.p, b.q);
+  const Vec3 way = near.on_b - near.on_a;
+  const double distance = length(way);
+  if (!std::isfinite(distance)) return unknown_verdict();
+  if (distance > a.radius + b.radius) return no_with(distance - a.radius - b.radius);
+  const Vec3 normal = unit(way, {0, 0, 1});
+  // In the middle of what both have in common along the way.
+  const double from = std::max(0.0, distance - b.radius), to = std::min(distance, a.radius);
+  return yes_at(near.on_a + 0.5 * (from + to) * normal, normal);
+}
+
+// The normal from the tree to the round shape.
+Verdict of_tree(const Shape& shape, const Pose& pose, const Round& round) noexcept {
+  if (shape.tree.patches.empty()) return unknown_verdict();
+  const SurfacePoint near = nearest_point_to_segment(shape.tree, pose, round.p, round.q, round.radius);
+  if (near.triangle != kNoTriangle) {
+    const Vec3 core = nearest_of_segment(round.p, round.q, near.point);
+    Verdict verdict = yes_at(near.point, unit(core - Vec3(near.point), {0, 0, 1}));
+    verdict.contact.triangle_a = near.triangle;
+    return verdict;
+  }
+  if (near.distance == 0) return unknown_verdict();
+  if (shape.kind == ShapeKind::box && holds(shape, pose, round.p)) {
+    return yes_at(round.p, way_out(shape, pose, round.p));
+  }
+  Verdict verdict = no_with(0);
+  verdict.separation_bound = length(round.p - Vec3(transform(pose, shape.center))) + shape.reach * pose.scale;
+  return verdict;
+}
+
+void exchange(Contact& contact) noexcept {
+  for (double& x : contact.normal) x = -x;
+  std::swap(contact.triangle_a, contact.triangle_b);
+}
+
+}  // namespace
+
+Verdict unknown_verdict() noexcept {
+  Verdict verdict;
+  verdict.separation_bound = kInfinity;
+  return verdict;
+}
+
+Verdict test_simple(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) noexcept {
+  if (!a.has_tree() && !b.has_tree()) return of_rounds(Round(a, pose_a), Round(b, pose_b));
+  if (a.has_tree()) return of_tree(a, pose_a, Round(b, pose_b));
+  Verdict verdict = of_tree(b, pose_b, Round(a, pose_a));
+  exchange(verdict.contact);
+  return verdict;
+}
+
+bool inside_box(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b, Contact& contact) noexcept {
+  for (const bool second : {true, false}) {
+    const Shape &box = second ? b : a, &other = second ? a : b;
+    const Pose &pose = second ? pose_b : pose_a, &other_pose = second ? pose_a : pose_b;
+    if (box.kind != ShapeKind::box) continue;
+    for (const Vec3& piece : other.pieces) {
+      const Vec3 point = transform(other_pose, piece);
+      if (!holds(box, pose, point)) continue;
+      contact = {};
+      contact.center = point;
+      contact.normal = way_out(box, pose, point);
+      if (second) exchange(contact);
+      return true;
+    }
+  }
+  return false;
+}
+
+// Of round shapes along the way between their cores; of a tree and a round shape up to the nearest point.
+double simple_depth(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) noexcept {
+  if (!a.has_tree() && !b.has_tree()) {
+    const Round p(a, pose_a), q(b, pose_b);
+    const Nearest near = nearest_of_segments(p.p, p.q, q.p, q.q);
+    return std::max(0.0, p.radius + q.radius - length(near.on_b - near.on_a));
+  }
+  const bool first = a.has_tree();
+  const Shape& tree = first ? a : b;
+  const Pose& pose = first ? pose_a : pose_b;
+  const Round round(first ? b : a, first ? pose_b : pose_a);
+  const SurfacePoint near = nearest_point_to_segment(tree.tree, pose, round.p, round.q);
+  const bool within = tree.kind == ShapeKind::box && holds(tree, pose, round.p);
+  return std::max(0.0, round.radius + (within ? near.distance : -near.distance));
+}
+
+double simple_distance(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) noexcept {
+  if (!is_rigid(pose_a) || !is_rigid(pose_b)) return 0;
+  if (!a.has_tree() && !b.has_tree()) {
+    const Verdict verdict = of_rounds(Round(a, pose_a), Round(b, pose_b));
+    return verdict.lower_bound * (1 - kSimpleRounding);
+  }
+  const bool first = a.has_tree();
+  const Shape& tree = first ? a : b;
+  const Pose& pose = first ? pose_a : pose_b;
+  const Round round(first ? b : a, first ? pose_b : pose_a);
+  if (tree.tree.patches.empty()) return 0;
+  const SurfacePoint near = nearest_point_to_segment(tree.tree, pose, round.p, round.q);
+  if (tree.kind == ShapeKind::box && holds(tree, pose, round.p)) return 0;
+  const double size = near.distance + round.radius + length(round.p) + length(Vec3(pose.translation));
+  return std::max(0.0, near.distance - round.radius - kSimpleRounding * size);
+}
+
+}  // namespace orchard::runtime::detail

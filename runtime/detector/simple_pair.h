@@ -1,0 +1,29 @@
+#pragma once
+#include "shapes.h"
+
+// Pairs with a simple shape: in closed form, or one walk down one tree. Correct to rounding in double, as shape_query.h
+// says. None is interrupted. A round or box-shaped body is solid.
+namespace orchard::runtime::detail {
+
+Verdict unknown_verdict() noexcept;
+
+// At least one of the two is round. The poses are rigid here, and in test_half_space().
+Verdict test_simple(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) noexcept;
+
+// `b` is the half-space; the normal of a contact points into it.
+Verdict test_half_space(const Shape& a, const Pose& pose, const HalfSpace& b) noexcept;
+
+// How far the second one of a pair that touches has to move along the verdict's normal, until it does no more.
+double simple_depth(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) noexcept;
+double half_space_depth(const Shape& a, const Pose& pose, const HalfSpace& b) noexcept;
+
+// Whether a piece of one lies wholly inside the other, which is a box. Precondition: their surfaces do not touch, and
+// both have trees.
+bool inside_box(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b, Contact& contact) noexcept;
+
+// A lower bound on the distance between two shapes of which at least one is round: for advancing safely. 0 if they
+// touch, or if nothing can be said.
+double simple_distance(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) noexcept;
+double half_space_distance(const Shape& a, const Pose& pose, const HalfSpace& b) noexcept;
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,97 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include "orchard/runtime/collide.h"
+#include "orchard/runtime/distance.h"
+#include "orchard/runtime/narrow_phase.h"
+#include "orchard/runtime/prepared_tree.h"
+
+// Many pairs of bodies, cheaply: a TreePair is a few words and is made in some 50 ns; what a query needs while it runs
+// is in a Workspace, one per thread, which all pairs share.
+//
+//   PreparedTree body(tree), ground(other);          // once per tree
+//   Workspace workspace;                             // once per thread
+//   TreePair pair(body, ground);                     // as many as there are
+//   Verdict v = collide(workspace, pair, pose_a, pose_b);
+//
+// What NarrowPhase says about the question answered, poses, determinism and rounding holds here. Nothing here throws,
+// and nothing allocates once a workspace has seen trees as deep as those of a pair.
+namespace orchard::runtime {
+
+// Two bodies that may be asked about, and, for collide_coherently(), what the last answer said. Free to copy. The
+// prepared trees outlive it.
+class TreePair {
+ public:
+  TreePair() = default;  // of nothing: not to be asked about
+  TreePair(const PreparedTree& a, const PreparedTree& b) noexcept : a_(&a), b_(&b) {}
+
+  const PreparedTree& a() const noexcept { return *a_; }
+  const PreparedTree& b() const noexcept { return *b_; }
+  void forget() noexcept { memory_ = {}; }  // as if never asked before
+
+ private:
+  friend struct Coherence;
+  struct Memory {
+    Pose relative;         // of b in a's frame, when `clearance` was certified
+    double clearance = 0;  // in a's units; 0: none
+    std::uint32_t triangle_a = kNoTriangle, triangle_b = kNoTriangle;  // that met last
+    std::uint32_t answers = 0;                                         // given since then, without a look
+    std::uint8_t misses = 0;  // clearances that were asked for in vain, in a row
+    std::uint8_t wait = 0;    // looks until one is asked for again
+    bool seen = false;
+  };
+  const PreparedTree* a_ = nullptr;
+  const PreparedTree* b_ = nullptr;
+  Memory memory_;
+};
+static_assert(sizeof(TreePair) <= 256);
+
+// What queries work with: belongs to one thread at a time. After collide() its `narrow` is the query that was answered
+// or interrupted, to be looked at or refined further, until the next call.
+class Workspace {
+ public:
+  // `room`: meeting pairs of spheres per level, 24 bytes each, for queries that go level by level; see NarrowPhase.
+  explicit Workspace(std::size_t room = NarrowPhase::kDefaultRoom) noexcept;
+  ~Workspace();
+  Workspace(Workspace&&) noexcept;
+  Workspace& operator=(Workspace&&) noexcept;
+
+  NarrowPhase narrow;
+  DistanceQuery distance;
+
+  struct Scratch;               // of contacts() and time_of_impact(), some 100 KB
+  Scratch* scratch() noexcept;  // made when first asked for; null: there is no memory
+
+ private:
+  std::unique_ptr<Scratch> scratch_;
+};
+
+// As collide() for a NarrowPhase. The answer depends on nothing but trees, poses and budget.
+Verdict collide(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b, const Budget& budget = {},
+                Order order = Order::exact_first) noexcept;
+
+// The same answer for a pair that is asked about again and again while it moves a little each time, at a fraction of
+// the cost: the triangles that met last are tried first, and a "no" holds as long as the pair has moved less, its
+// farthest point counted, than the clearance that was certified with it. Yes and no are those of collide() without a
+// budget; where several triangles meet, which ones are named, and bounds and work, depend on what was asked before.
+// Where nothing has to be looked at, the workspace stays as it is.
+Verdict collide_coherently(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept;
+
+// Whether the surfaces are closer to each other than `margin` (in world units, at least 0; at most that far, exactly),
+// at about the cost of collide(), up to twice that for margins far larger than triangles. "No" and "yes" are certain.
+// "Maybe" is the answer where rounding does not tell: within some 1e-12 of the coordinates, and for triangles with
+// nearly parallel edges within 2e-7 of these; for what NarrowPhase refuses, for a margin that is not a number or
+// negative, and where a tree has no triangles.
+Answer closer_than(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b, double margin) noexcept;
+
+// The distance between the surfaces, by DistanceQuery, and where they are nearest.
+struct Distance {
+  double lower = 0, upper = std::numeric_limits<double>::infinity();  // lower <= distance <= upper
+  DistanceQuery::Points points;
+};
+Distance distance(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,
+                  const DistanceQuery::Tolerance& tolerance = {}) noexcept;
+
+}  // namespace orchard::runtime

@@ -1,0 +1,54 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "orchard/runtime/body_pair.h"
+
+// Where two bodies touch and how they come apart: for a response to a contact.
+namespace orchard::runtime {
+
+inline constexpr std::uint32_t kMostContactPoints = 4;
+
+struct ContactPoint {
+  std::array<double, 3> place{};  // common to both surfaces, in world coordinates
+  std::uint32_t triangle_a = kNoTriangle, triangle_b = kNoTriangle;
+};
+
+struct Manifold {
+  Answer answer = Answer::maybe;
+  std::uint32_t count = 0;  // of points: 0 for "no"; the outermost ones of all that were found, seen along the normal
+  std::array<ContactPoint, kMostContactPoints> points{};
+  // Unit, pointing from a to b: b moved by `depth` along it does not touch a any more, and moved less than that it
+  // does. The direction is a local minimum of depth(direction): the least way out near the way that the cut surfaces
+  // show. For "maybe" it is a guess, from sphere to sphere.
+  std::array<double, 3> normal{};
+  double depth = 0;
+  // Of points and depth. Yes: rounding, some 1e-12 of the coordinates. Maybe: the radius of a ball around the point
+  // that holds the common part of two of the trees' spheres.
+  double error = 0;
+  bool complete =
+      true;  // false if there were more pairs of triangles than room for them: the depth is then a lower bound
+};
+
+struct ContactOptions {
+  std::uint32_t refinements = 12;  // directions tried at most, besides the first ones; 0: only the first normal's depth
+  bool depth = true;               // false: points and a first normal only, at a fraction of the cost
+};
+
+// All pairs of triangles that meet give the curves in which the surfaces cut each other; the points are on these. The
+// depth along a direction is exact for the stored triangles but for rounding: the least way at whose end no triangle
+// of one meets any of the other, following every triangle of the bodies that gets in the way. Where one solid is deep
+// in the other, that is the way to where the *surfaces* part, which may be within the solid.
+Manifold contacts(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,
+                  const ContactOptions& options = {}) noexcept;
+
+// The distance of the surfaces, negative where they meet: then minus the manifold's depth. For shallow contacts, that
+// is continuous in the poses. `normal` is the direction in which b leaves a.
+struct SignedDistance {
+  double lower = 0, upper = 0;  // lower <= distance <= upper; equal for contacts
+  std::array<double, 3> on_a{}, on_b{}, normal{};
+};
+SignedDistance signed_distance(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,
+                               double relative_tolerance = 0.01) noexcept;
+
+}  // namespace orchard::runtime

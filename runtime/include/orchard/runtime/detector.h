@@ -1,0 +1,243 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "orchard/runtime/broad_phase.h"
+#include "orchard/runtime/contacts.h"
+#include "orchard/runtime/executor.h"
+#include "orchard/runtime/narrow_phase.h"
+
+// The whole detector of the dissertation's Fig. 3.2 in one object: broad phase, narrow phase, and a schedule that keeps
+// to a budget.
+//
+//   Detector world(states_of(states), {.time_step = 1.0 / 60});     // states: a vector of BodyState, by BodyIndex
+//   const ShapeId hull = world.add_shape(tree);
+//   const BodyId ship = world.add_body({{hull}});
+//   while (running) {
+//     move(states, time);
+//     for (const PairEvent& event : world.step(time, {.work = 100'000}).events) respond(event);
+//   }
+namespace orchard::runtime {
+
+// A shape that parts of bodies have: any number of bodies may share it. Shapes are never removed.
+using ShapeId = std::uint32_t;
+inline constexpr ShapeId kNoShape = 0xffffffffu;
+
+// A rigid part of a body: world = the body's pose after `local`. Lengths of a shape times local.scale times the body's.
+struct BodyPart {
+  ShapeId shape = kNoShape;
+  Pose local{};
+};
+
+// What the application knows of a body at the time of a step. The promise is about the body's origin, pose.translation:
+// see Motion in motion.h, whose fields these are. The scale stays what it is until the promise expires.
+struct BodyState {
+  Pose pose{};
+  Vec3 velocity{};
+  double acceleration = 0;
+  double drift = 0;
+  Vec3 half_space{};
+  double expiry = std::numeric_limits<double>::infinity();
+};
+
+// Fills states[i] with what is known of bodies[i] at `time`, the time of a step. It throws nothing. Called from within
+// step() only, in the thread that called this.
+using StateSource = std::function<void(double time, std::span<const BodyIndex> bodies, std::span<BodyState> states)>;
+
+// For an application that keeps all states as values, by BodyIndex, as of the time it calls step() with.
+StateSource states_of(const std::vector<BodyState>& values);
+
+struct BodyOptions {
+  std::uint8_t importance = 0;  // 0 is the highest class; a pair is as important as the less important of its bodies
+  // Two bodies may touch if each one's mask has a bit of the other's group.
+  std::uint32_t group = 1, mask = 0xffffffffu;
+  // Above 0: also what happens between two steps is found, by a sweep from pose to pose. It is a promise that relative
+  // to whatever the body may meet no origin moves faster. Lengths per second.
+  double continuous_speed = 0;
+  // The body, whatever its parts do, lies within this distance of its origin at scale 1: saves a new look whenever an
+  // articulated body stretches. 0: as far as the parts reach.
+  double reach = 0;
+  // The source gives poses, and a velocity if it has one: acceleration, drift, half-space and expiry are suggested by
+  // the motion monitor. Needs DetectorOptions::watch.
+  bool suggest = false;
+};
+
+// False: this pair shall not be asked about. Asked once when a pair's spheres begin to overlap.
+using PairFilter = std::function<bool(BodyId a, BodyId b)>;
+
+struct DetectorOptions {
+  double time_step = 0.01;    // dt_d, see BroadPhaseOptions; > 0. Usually a frame
+  double start = 0;           // the time of step 0
+  double position_slack = 0;  // see BroadPhaseOptions
+  // Every moving body's state is asked for at every step and compared with what was promised (4.4). A promise that does
+  // not hold is cancelled in time for this very step, counted, and named in Frame::broken: nothing is missed. Without
+  // it a body is only asked for when something depends on it, and the application has to cancel().
+  bool watch = false;
+  // An "end" comes after so many steps in a row with a certain "no"; at least 1. What trembles at contact may use more.
+  std::uint32_t steps_to_end = 1;
+  // Pairs of trees that a budget may leave unfinished within a step, at most; what exceeds it is reported as possible.
+  std::size_t most_unfinished = 4096;
+  Executor executor{};  // of narrow-phase work; the same answers with any
+};
+
+// Whichever ends first. Work is counted as Budget::pair_tests is; a motion that the broad phase asks for counts as
+// kMotionWork, beginning a pair as kPairWork, one with a simple shape as kSimplePairWork. The broad phase gets half of
+// a limited budget at most. A step exceeds `work` by less than kMostOvershoot, one pair of leaves, but for what each
+// step does in any case: one unit of the broad phase (WorkBudget). Only a budget in counted work gives the same answers
+// on every machine.
+struct FrameBudget {
+  std::uint64_t work = std::numeric_limits<std::uint64_t>::max();
+  std::chrono::nanoseconds time = std::chrono::nanoseconds::max();
+};
+inline constexpr std::uint64_t kMotionWork = 16;
+inline constexpr std::uint64_t kPairWork = 16;
+inline constexpr std::uint64_t kSimplePairWork = 64;
+inline constexpr std::uint64_t kMostOvershoot = std::uint64_t{kLeafPairTests} * kTriangleTestCost + kBlockWidth;
+
+enum class PairChange : std::uint8_t {
+  begin,     // the first certain yes
+  stay,      // touching since an earlier step: no certain no since
+  end,       // the certain no after a begin (the last one of steps_to_end), or a body was removed or teleported
+  possible,  // neither touching nor certainly apart at this step: the budget ended, or nothing more can be known
+};
+
+// One pair at one step. a.index < b.index, but for half-spaces, which are always b.
+struct PairEvent {
+  PairChange change = PairChange::possible;
+  BodyId a, b;
+  std::uint32_t part_a = 0, part_b = 0;  // that touch, or with the least bound
+  double time = 0;                       // of the step
+  Verdict verdict;  // what is certain at this step. `stay` may have "maybe", or "no" while steps_to_end counts
+  // Of a contact between the step before and this one (continuous bodies): begins in this bracket. NaN: not such a one.
+  double impact_from = std::numeric_limits<double>::quiet_NaN();
+  double impact_to = std::numeric_limits<double>::quiet_NaN();
+};
+
+// What step() found. The spans are valid until the next call of a member that is not const.
+struct Frame {
+  double time = 0;                      // of the last step that was answered
+  double next_time = 0;                 // nothing can begin or end before: no need to call earlier
+  std::uint32_t steps = 0;              // answered in this call
+  std::span<const PairEvent> events;    // by time, then by pair
+  std::uint64_t pairs = 0;              // of bodies whose spheres overlapped, over the steps
+  std::uint64_t certain = 0;            // of these, with a certain answer
+  double worst_bound = 0;               // the largest separation bound among the rest: how far from certain
+  std::uint64_t work = 0;               // as FrameBudget counts it
+  std::uint64_t motions_asked = 0;      // part of it: times kMotionWork
+  unsigned incomplete_from = kNoClass;  // the broad phase was interrupted: see Advance
+  std::size_t left_over = 0;
+  // States that were not valid, or poses not rigid: such a body is in no pair at that step, or, if its promise held on,
+  // in pairs that are possible.
+  std::span<const BodyIndex> refused;
+  std::span<const BodyIndex> broken;  // promises that did not hold; cancelled (watch)
+  bool time_refused = false;          // see Advance: nothing was done
+  // There was not enough memory for what this step needs. The detector answers nothing from then on: make another one.
+  bool out_of_memory = false;
+};
+
+// What the next steps are likely to cost, from the broad phase's own calendar of events (8.2).
+struct StepLoad {
+  double time = 0;
+  std::uint64_t motions = 0;  // to be asked for, at least
+  double pairs = 0;           // expected to overlap
+  double work = 0;            // expected, as FrameBudget counts it
+};
+
+// Which bodies touch, at every step, within a budget, always with a bound.
+//
+// At each step every pair of bodies whose spheres overlap, that groups, masks and the filter allow, is answered from
+// the poses of that step: yes, no, or maybe with bounds. Bodies of several parts touch iff two of their parts do; the
+// parts of one body are never a pair, nor are two static bodies. Trees are their surfaces, as for NarrowPhase; the
+// simple shapes (sphere, capsule, box, half-space) are solid.
+//
+// Refinement (7.3): by class of importance. Within a class those that have waited longest for a certain answer come
+// first: half of what is left goes straight to their triangles, one after the other. Then round: a level of spheres for
+// each pair before any gets more, then slices of exact work, each four times the last.
+//
+// Deterministic: same calls, same states, same budget in work: same frames, with any executor. A pair's answer without
+// budget does not depend on other pairs. Allocates nothing once warm: once as many bodies, pairs and kinds of pairs as
+// there are have been there before. step() throws nothing; the other members throw only std::bad_alloc, and then the
+// detector has no bodies and answers nothing any more: see Frame::out_of_memory. One object
+// belongs to one thread at a time.
+class Detector {
+ public:
+  explicit Detector(StateSource source, const DetectorOptions& options = {});
+  Detector(Detector&&) noexcept;
+  Detector& operator=(Detector&&) noexcept;
+  ~Detector();
+
+  // Shapes. kNoShape if structure_fault(tree), or a number is not finite, or a length is negative (a half-length of 0
+  // is a flat box). Trees outlive the detector, unchanged but for what FlexibleTree does between steps.
+  ShapeId add_shape(const TreeView& tree);
+  ShapeId add_sphere(double radius, const Vec3& center = {});
+  ShapeId add_capsule(const Vec3& p, const Vec3& q, double radius);  // the points within `radius` of the segment
+  ShapeId add_box(const Vec3& half_lengths);                         // around the origin, along the axes
+
+  // Bodies. What changes between two steps takes part from the next one. kNoBody if a part's shape is none or its pose
+  // not rigid, if there are no parts, if there are kMaxBodies, or the options are not valid.
+  BodyId add_body(std::span<const BodyPart> parts, const BodyOptions& options = {});
+  BodyId add_body(std::initializer_list<BodyPart> parts, const BodyOptions& options = {}) {
+    return add_body(std::span(parts.begin(), parts.size()), options);
+  }
+  // Never asked for.
+  BodyId add_static(std::span<const BodyPart> parts, const Pose& pose, const BodyOptions& options = {});
+  BodyId add_static(std::initializer_list<BodyPart> parts, const Pose& pose, const BodyOptions& options = {}) {
+    return add_static(std::span(parts.begin(), parts.size()), pose, options);
+  }
+  // Everything with normal . point <= offset; the normal of any length but 0. Costs nothing for bodies that cannot
+  // reach it: each has an event of its own, like the broad phase's.
+  BodyId add_half_space(const Vec3& normal, double offset, const BodyOptions& options = {});
+
+  // The following change nothing and return false if there is no such body, or what is handed over is not valid.
+  bool remove(BodyId body);
+  bool cancel(BodyId body);    // the promise last given holds no longer
+  bool teleport(BodyId body);  // the source gives the new place from now on; a touch ends, and no sweep leads there
+  bool move_static(BodyId body, const Pose& pose);
+  bool set_local(BodyId body, std::size_t part, const Pose& local);  // articulated bodies: at any time
+  bool set_importance(BodyId body, std::uint8_t importance);
+  bool set_groups(BodyId body, std::uint32_t group, std::uint32_t mask);
+  // It does not move until wake(): its source is asked once more, at the next step, and then no more. Pairs of it with
+  // what does not move either keep their answers at no cost.
+  bool sleep(BodyId body);
+  bool wake(BodyId body);
+  bool asleep(BodyId body) const noexcept;
+  // The triangles of a shape's tree have moved (FlexibleTree): answers about bodies at rest are void. O(bodies).
+  bool shape_changed(ShapeId shape);
+  // None: all pairs. Pairs that overlap already are asked about again.
+  void set_filter(PairFilter filter);
+  void set_executor(const Executor& executor) noexcept;
+
+  bool contains(BodyId body) const noexcept;
+  std::size_t size() const noexcept;  // bodies, half-spaces included
+  bool valid() const noexcept;        // the options are
+
+  // Answers the steps up to `time` that may have something, in order; what the budget has left is shared evenly among
+  // them. Call it once per frame, never with a smaller time. A long time ahead takes a long time: see BroadPhase, and
+  // with `watch` every step is looked at.
+  Frame step(double time, const FrameBudget& budget = {}) noexcept;
+
+  // Where the parts of an event of the last step touch, at up to four points, and how they come apart; as contacts()
+  // does for two trees, in closed form where one part is simple (one point; the depth is that along the normal).
+  // Without points, and "maybe", if the event's bodies are gone or its answer is not yes. For a contact between two
+  // steps it tells of this step, at which it may be over: "no". Allocates nothing once warm; throws nothing.
+  Manifold manifold(const PairEvent& event, const ContactOptions& options = {}) noexcept;
+
+  // What the steps after the last one will cost, as far as the broad phase knows now: loads[i] is that of the i-th step
+  // after it. At most 254 are filled; returns how many.
+  std::size_t foresee(std::span<StepLoad> loads) const noexcept;
+
+  std::uint64_t promises_broken() const noexcept;             // found so far (watch)
+  std::uint64_t promises_broken(BodyId body) const noexcept;  // of one body
+  std::size_t memory_bytes() const noexcept;                  // held on the heap, shapes' trees not included
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace orchard::runtime

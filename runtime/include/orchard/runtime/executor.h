@@ -1,0 +1,37 @@
+#pragma once
+#include <cstddef>
+
+namespace orchard::runtime {
+
+/// How the run-time's batches use more than one processor: a function of the caller's that runs numbered jobs, on the
+/// threads of a pool that the caller owns. orchard itself never starts a thread, and without such a function every
+/// batch is serial. The answers are the same either way.
+struct Executor {
+  /// One job of a batch: `data` is what came with it, `index` is 0 .. count - 1. It throws nothing.
+  using Job = void (*)(void* data, std::size_t index);
+
+  /// Calls job(data, i) once for each i < count, in any order and on any threads, and returns when all calls have
+  /// returned. Their effects are visible to the caller of `run` from then on. Null: the jobs run here, in order.
+  void (*run)(void* context, std::size_t count, Job job, void* data) = nullptr;
+
+  /// What `run` is given first: the caller's own pool, say.
+  void* context = nullptr;
+
+  /// How many jobs may run at once, at least 1: work is cut into at least this many parts. It changes the cutting only,
+  /// never an answer.
+  std::size_t concurrency = 1;
+};
+
+/// Runs jobs 0 .. count - 1 of `work`, a callable that takes the index, and returns when all are done. Allocates
+/// nothing.
+template <typename Work>
+void run_jobs(const Executor& executor, std::size_t count, Work& work) {
+  if (executor.run == nullptr || count <= 1) {
+    for (std::size_t i = 0; i < count; ++i) work(i);
+    return;
+  }
+  executor.run(
+      executor.context, count, [](void* data, std::size_t index) { (*static_cast<Work*>(data))(index); }, &work);
+}
+
+}  // namespace orchard::runtime

@@ -1,0 +1,140 @@
+/* The detector for programs in C and for languages that call C: a thin cover of detector.h, which says more.
+ *
+ * Link orchard::runtime and the C++ standard library. No function throws or exits; the application's callbacks must not
+ * either (no exception, no longjmp). Pointers must not be null unless it says so. A detector belongs to one thread at a
+ * time; trees outlive it. Lengths in the world's unit, times in seconds. */
+#ifndef ORCHARD_RUNTIME_ORCHARD_DETECTOR_H
+#define ORCHARD_RUNTIME_ORCHARD_DETECTOR_H
+
+#include "orchard/runtime/orchard.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct orchard_detector orchard_detector;
+typedef uint32_t orchard_shape;
+#define ORCHARD_NO_SHAPE 0xffffffffu
+
+typedef struct orchard_body {
+  uint32_t index, generation; /* no body: ORCHARD_NO_BODY, 0 */
+} orchard_body;
+#define ORCHARD_NO_BODY 0xffffffffu
+
+/* What is known of a body at the time of a step; the promise (velocity .. expiry) is about pose.translation. */
+typedef struct orchard_body_state {
+  orchard_pose pose;
+  double velocity[3];
+  double acceleration; /* M */
+  double drift;
+  double half_space[3]; /* d; zero: none */
+  double expiry;        /* may be INFINITY */
+} orchard_body_state;
+
+typedef struct orchard_part {
+  orchard_shape shape;
+  orchard_pose local;
+} orchard_part;
+
+typedef struct orchard_body_options {
+  uint8_t importance; /* 0 is the highest class */
+  uint32_t group, mask;
+  double continuous_speed; /* 0: not continuous */
+  double reach;            /* 0: as far as the parts reach */
+  int suggest;             /* needs orchard_detector_options.watch */
+} orchard_body_options;
+
+/* Fills states[i] with that of bodies[i] (indices) at `time`. */
+typedef void (*orchard_state_source)(void* context, double time, const uint32_t* bodies, size_t count,
+                                     orchard_body_state* states);
+/* 0: the pair shall not be asked about. */
+typedef int (*orchard_pair_filter)(void* context, orchard_body a, orchard_body b);
+
+/* Calls job(data, i) for each i < count, on any threads, and returns when all have returned. */
+typedef void (*orchard_run_jobs)(void* context, size_t count, void (*job)(void* data, size_t index), void* data);
+
+typedef struct orchard_detector_options {
+  double time_step, start, position_slack;
+  int watch;
+  uint32_t steps_to_end;
+  size_t most_unfinished;
+  orchard_run_jobs run; /* null: serial */
+  void* run_context;
+  size_t concurrency;
+} orchard_detector_options;
+
+typedef enum orchard_pair_change {
+  ORCHARD_BEGIN = 0,
+  ORCHARD_STAY = 1,
+  ORCHARD_END = 2,
+  ORCHARD_POSSIBLE = 3
+} orchard_pair_change;
+
+typedef struct orchard_pair_event {
+  orchard_pair_change change;
+  orchard_body a, b;
+  uint32_t part_a, part_b;
+  double time;
+  orchard_verdict verdict;       /* `finished` and `refused` are 0 */
+  double impact_from, impact_to; /* NaN unless between two steps */
+} orchard_pair_event;
+
+typedef struct orchard_frame {
+  double time, next_time;
+  uint32_t steps;
+  size_t events; /* orchard_detector_event() gives them */
+  uint64_t pairs, certain, work, motions_asked;
+  double worst_bound;
+  unsigned incomplete_from; /* 256: the broad phase was not interrupted */
+  size_t left_over, refused, broken;
+  int time_refused, out_of_memory;
+} orchard_frame;
+
+orchard_body_options orchard_default_body(void);
+orchard_detector_options orchard_default_detector(void);
+
+/* Null if there is no memory. The source's context outlives it. */
+orchard_detector* orchard_detector_new(orchard_state_source source, void* context,
+                                       const orchard_detector_options* options);
+void orchard_detector_free(orchard_detector* detector); /* null is fine */
+
+/* ORCHARD_NO_SHAPE, or a body whose index is ORCHARD_NO_BODY: what was handed over is not valid, or no memory. */
+orchard_shape orchard_detector_add_tree(orchard_detector* detector, const orchard_tree* tree);
+orchard_shape orchard_detector_add_sphere(orchard_detector* detector, double radius, const double center[3]);
+orchard_shape orchard_detector_add_capsule(orchard_detector* detector, const double p[3], const double q[3],
+                                           double radius);
+orchard_shape orchard_detector_add_box(orchard_detector* detector, const double half_lengths[3]);
+orchard_body orchard_detector_add_body(orchard_detector* detector, const orchard_part* parts, size_t count,
+                                       const orchard_body_options* options);
+orchard_body orchard_detector_add_static(orchard_detector* detector, const orchard_part* parts, size_t count,
+                                         const orchard_pose* pose, const orchard_body_options* options);
+orchard_body orchard_detector_add_half_space(orchard_detector* detector, const double normal[3], double offset,
+                                             const orchard_body_options* options);
+
+/* 1, or 0 and nothing is changed. */
+int orchard_detector_remove(orchard_detector* detector, orchard_body body);
+int orchard_detector_cancel(orchard_detector* detector, orchard_body body);
+int orchard_detector_teleport(orchard_detector* detector, orchard_body body);
+int orchard_detector_move_static(orchard_detector* detector, orchard_body body, const orchard_pose* pose);
+int orchard_detector_set_local(orchard_detector* detector, orchard_body body, size_t part, const orchard_pose* local);
+int orchard_detector_set_importance(orchard_detector* detector, orchard_body body, uint8_t importance);
+int orchard_detector_set_groups(orchard_detector* detector, orchard_body body, uint32_t group, uint32_t mask);
+int orchard_detector_sleep(orchard_detector* detector, orchard_body body);
+int orchard_detector_wake(orchard_detector* detector, orchard_body body);
+int orchard_detector_set_filter(orchard_detector* detector, orchard_pair_filter filter, void* context); /* or null */
+size_t orchard_detector_size(const orchard_detector* detector);
+
+orchard_frame orchard_detector_step(orchard_detector* detector, double time, orchard_budget budget);
+/* Of the last step; index < events. */
+orchard_pair_event orchard_detector_event(const orchard_detector* detector, size_t index);
+uint32_t orchard_detector_refused(const orchard_detector* detector, size_t index);
+uint32_t orchard_detector_broken(const orchard_detector* detector, size_t index);
+uint64_t orchard_detector_promises_broken(const orchard_detector* detector);
+/* What the next `count` steps will cost: fills the arrays (each may be null), and returns how many are known. */
+size_t orchard_detector_foresee(const orchard_detector* detector, size_t count, double* pairs, double* work);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,47 @@
+#pragma once
+#include <algorithm>
+
+#include "orchard/runtime/mapped_tree.h"
+#include "orchard/runtime/narrow_phase.h"
+#include "orchard/runtime/orchard.h"
+#include "orchard/runtime/prepared_tree.h"
+
+// What both C interfaces share.
+struct orchard_tree {
+  orchard::runtime::MappedTree mapped;
+  orchard::runtime::PackedSphereTree loaded;
+  orchard::runtime::TreeView view;
+  orchard::runtime::PreparedTree prepared;
+};
+
+namespace orchard::runtime::detail {
+
+inline Pose pose_of(const orchard_pose& from) noexcept {
+  Pose pose;
+  std::copy_n(from.rotation, 9, pose.rotation.begin());
+  std::copy_n(from.translation, 3, pose.translation.begin());
+  pose.scale = from.scale;
+  return pose;
+}
+
+inline std::chrono::nanoseconds time_of(std::uint64_t nanoseconds) noexcept {
+  const auto longest = static_cast<std::uint64_t>(std::chrono::nanoseconds::max().count());
+  return nanoseconds < longest ? std::chrono::nanoseconds(nanoseconds) : std::chrono::nanoseconds::max();
+}
+
+inline orchard_verdict verdict_of(const Verdict& v) noexcept {
+  orchard_verdict result{};
+  result.answer = static_cast<orchard_answer>(v.answer);
+  result.separation_bound = v.separation_bound;
+  result.lower_bound = v.lower_bound;
+  std::copy_n(v.contact.center.begin(), 3, result.contact_center);
+  std::copy_n(v.contact.normal.begin(), 3, result.contact_normal);
+  result.contact_radius = v.contact.radius;
+  result.triangle_a = v.contact.triangle_a;
+  result.triangle_b = v.contact.triangle_b;
+  result.level = v.level;
+  result.work = v.work;
+  return result;
+}
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,50 @@
+#include "orchard/runtime/body_pair.h"
+
+#include <cmath>
+
+#include "workspace_scratch.h"
+
+namespace orchard::runtime {
+
+Workspace::Workspace(std::size_t room) noexcept : narrow(room) {}
+Workspace::~Workspace() = default;
+Workspace::Workspace(Workspace&&) noexcept = default;
+Workspace& Workspace::operator=(Workspace&&) noexcept = default;
+
+Workspace::Scratch* Workspace::scratch() noexcept {
+  if (!scratch_) scratch_.reset(new (std::nothrow) Scratch);
+  return scratch_.get();
+}
+
+Verdict collide(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b, const Budget& budget,
+                Order order) noexcept {
+  workspace.narrow.bind(pair.a(), pair.b());
+  return collide(workspace.narrow, a, b, budget, order);
+}
+
+Answer closer_than(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b, double margin) noexcept {
+  if (!(margin >= 0)) return Answer::maybe;
+  if (margin == 0) {
+    workspace.narrow.bind(pair.a(), pair.b());
+    workspace.narrow.start(a, b);
+    while (!workspace.narrow.finished()) workspace.narrow.refine_exactly();
+    return workspace.narrow.answer();
+  }
+  DistanceQuery& query = workspace.distance;
+  query.bind(pair.a(), pair.b());
+  query.start_within(a, b, margin);
+  query.refine();
+  if (query.lower() > margin) return Answer::no;
+  return query.upper() <= margin && std::isfinite(query.upper()) ? Answer::yes : Answer::maybe;
+}
+
+Distance distance(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,
+                  const DistanceQuery::Tolerance& tolerance) noexcept {
+  DistanceQuery& query = workspace.distance;
+  query.bind(pair.a(), pair.b());
+  query.start(a, b, tolerance);
+  query.refine();
+  return {query.lower(), query.upper(), query.points()};
+}
+
+}  // namespace orchard::runtime

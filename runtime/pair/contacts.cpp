@@ -1,0 +1,240 @@
+#include "orchard/runtime/contacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pair_access.h"
+#include "tree/principal_axes.h"
+#include "triangle_cut.h"
+#include "vector_functions.h"
+#include "way_out.h"
+#include "workspace_scratch.h"
+
+namespace orchard::runtime {
+
+using detail::along;
+using detail::cross;
+using detail::dot;
+using detail::minus;
+using detail::PlacedPair;
+using detail::Vec3;
+
+namespace {
+
+using Cut = Workspace::Scratch::Cut;
+
+constexpr double kSameLine = 1e-9;  // of the points' spread: too little of a second direction to say anything
+
+double length(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
+
+Vec3 unit(const Vec3& v) noexcept {
+  const double size = length(v);
+  return size > 0 ? along({0, 0, 0}, v, 1 / size) : Vec3{0, 0, 0};
+}
+
+Vec3 opposite(const Vec3& v) noexcept { return {-v[0], -v[1], -v[2]}; }
+
+// All pairs of triangles that meet. Their number, of which cuts holds as many as there is room for.
+std::size_t find_cuts(const PlacedPair& pair, Workspace::Scratch& scratch) noexcept {
+  std::size_t found = 0;
+  detail::walk_candidates(
+      pair, scratch.walk,
+      [&](const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows, std::uint32_t row) {
+        const detail::TrianglePoints a = detail::points_of(lanes, lane),
+                                     b = detail::moved_points_of(rows, row, pair.relative);
+        Vec3 witness{};
+        if (!detail::triangles_intersect(a, b, &witness)) return;
+        ++found;
+        if (found > Workspace::Scratch::kCuts) return;
+        const detail::Segment3 common = detail::common_segment(a, b, witness);
+        scratch.cuts[found - 1] = {a, b, common.p, common.q, lanes.triangle[lane], rows.triangle[row]};
+      });
+  scratch.cut_count = std::min(found, Workspace::Scratch::kCuts);
+  return found;
+}
+
+// From the triangles that meet: what the second surface faces, on the whole, to leave the first one.
+Vec3 facing(std::span<const Cut> cuts, double least) noexcept {
+  Vec3 sum{};
+  for (const Cut& cut : cuts) {
+    const auto normal = [](const detail::TrianglePoints& t) {
+      return unit(cross(minus(t[1], t[0]), minus(t[2], t[0])));
+    };
+    const double weight = length(minus(cut.q, cut.p)) + least;
+    sum = along(along(sum, normal(cut.first), weight), normal(cut.second), -weight);
+  }
+  return unit(sum);
+}
+
+// Across the plane that the curves of contact lie in, nearly: the direction in which they extend least.
+Vec3 flattest(std::span<const Cut> cuts) noexcept {
+  Vec3 mean{};
+  double sum = 0;
+  for (const Cut& cut : cuts) {
+    const double weight = length(minus(cut.q, cut.p));
+    mean = along(along(mean, cut.p, weight / 2), cut.q, weight / 2);
+    sum += weight;
+  }
+  if (!(sum > 0)) return {};
+  mean = along({0, 0, 0}, mean, 1 / sum);
+  std::array<double, 6> m{};
+  for (const Cut& cut : cuts) {
+    const double weight = length(minus(cut.q, cut.p)) / sum;
+    for (const Vec3& p : {cut.p, cut.q}) {
+      const Vec3 d = minus(p, mean);
+      m[0] += weight * d[0] * d[0], m[1] += weight * d[1] * d[1], m[2] += weight * d[2] * d[2];
+      m[3] += weight * d[0] * d[1], m[4] += weight * d[0] * d[2], m[5] += weight * d[1] * d[2];
+    }
+  }
+  const double largest = std::max({m[0], m[1], m[2]});
+  if (!(largest > 0)) return {};
+  for (double& entry : m) entry /= largest;
+  const std::array<Vec3, 3> axes = detail::axes_of(m);
+  const auto spread = [&m](const Vec3& u) {
+    return m[0] * u[0] * u[0] + m[1] * u[1] * u[1] + m[2] * u[2] * u[2] +
+           2 * (m[3] * u[0] * u[1] + m[4] * u[0] * u[2] + m[5] * u[1] * u[2]);
+  };
+  return spread(axes[1]) > kSameLine ? unit(axes[2]) : Vec3{};
+}
+
+// Up to four of the curves' points that span them, seen along the normal.
+void choose_points(std::span<const Cut> cuts, const Vec3& normal, std::array<std::size_t, kMostContactPoints>& chosen,
+                   std::uint32_t& count) noexcept {
+  const detail::Way way(normal);
+  const std::size_t points = 2 * cuts.size();
+  const auto at = [&](std::size_t i) -> std::array<double, 2> {
+    const Vec3 p = minus(i % 2 == 0 ? cuts[i / 2].p : cuts[i / 2].q, cuts[0].p);
+    return {dot(way.e, p), dot(way.f, p)};
+  };
+  const auto best_by = [&](auto&& value) {
+    std::size_t best = 0;
+    double most = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < points; ++i) {
+      const double v = value(at(i));
+      if (v > most) most = v, best = i;
+    }
+    return std::pair(best, most);
+  };
+  const auto apart = [](const std::array<double, 2>& p, const std::array<double, 2>& q) {
+    return (p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]);
+  };
+  const std::array<double, 2> start = at(0);
+  chosen[0] = best_by([&](const auto& p) { return apart(p, start); }).first;
+  const std::array<double, 2> first = at(chosen[0]);
+  const auto [second, square] = best_by([&](const auto& p) { return apart(p, first); });
+  count = 1;
+  if (!(square > 0)) return;
+  chosen[count++] = second;
+  const std::array<double, 2> line = {at(second)[0] - first[0], at(second)[1] - first[1]};
+  const auto beside = [&](const auto& p) { return line[0] * (p[1] - first[1]) - line[1] * (p[0] - first[0]); };
+  for (const double side : {1.0, -1.0}) {
+    const auto [point, area] = best_by([&](const auto& p) { return side * beside(p); });
+    if (area > kSameLine * square) chosen[count++] = point;
+  }
+}
+
+// The directions to begin with, the most promising last.
+std::uint32_t first_directions(std::span<const Cut> cuts, double size, std::array<Vec3, 3>& directions) noexcept {
+  std::uint32_t count = 0;
+  const Vec3 by_normals = facing(cuts, 1e-9 * size), by_plane = flattest(cuts);
+  if (length(by_normals) > 0) directions[count++] = by_normals;
+  if (length(by_plane) > 0) {
+    const bool same_side = dot(by_plane, by_normals) >= 0;
+    directions[count++] = same_side ? by_plane : opposite(by_plane);
+  }
+  // Where normals cancel out, as those of open surfaces may, either side may be the way out.
+  if (count < 2 || std::fabs(dot(by_plane, by_normals)) < 0.3) {
+    directions[count] = count > 0 ? opposite(directions[count - 1]) : Vec3{0, 0, 1};
+    ++count;
+  }
+  return count;
+}
+
+// Without triangles, or without an answer: what the spheres say.
+Manifold by_spheres(NarrowPhase& narrow) noexcept {
+  while (!narrow.finished()) narrow.refine();
+  Manifold result;
+  result.answer = narrow.answer();
+  if (result.answer == Answer::no || narrow.refused()) return result;
+  const Contact contact = narrow.contact();
+  result.count = 1;
+  result.points[0] = {contact.center, contact.triangle_a, contact.triangle_b};
+  result.normal = contact.normal;
+  result.error = contact.radius;
+  return result;
+}
+
+}  // namespace
+
+Manifold contacts(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,
+                  const ContactOptions& options) noexcept {
+  Manifold result;
+  NarrowPhase& narrow = workspace.narrow;
+  narrow.bind(pair.a(), pair.b());
+  narrow.start(a, b);
+  if (narrow.finished() && narrow.answer() == Answer::no) {
+    result.answer = Answer::no;
+    return result;
+  }
+  Workspace::Scratch* const scratch = workspace.scratch();
+  const bool placed = !narrow.refused() && PairAccess::place(narrow, a, b);
+  if (!placed || !PairAccess::has_triangles(narrow) || scratch == nullptr ||
+      !scratch->walk.reserve(pair.a().tree, pair.b().tree)) {
+    return by_spheres(narrow);
+  }
+  const PlacedPair both{PairAccess::first(narrow), PairAccess::second(narrow), PairAccess::relative(narrow),
+                        PairAccess::placement(narrow)};
+  if (find_cuts(both, *scratch) == 0) {
+    result.answer = Answer::no;
+    return result;
+  }
+  result.answer = Answer::yes;
+  const std::span<const Cut> cuts(scratch->cuts.data(), scratch->cut_count);
+  const Pose& world = PairAccess::first_pose(narrow);
+  const bool exchanged = PairAccess::exchanged(narrow);
+  const double size = both.first.extent + both.second.extent * both.relative.scale;
+
+  std::array<Vec3, 3> directions{};
+  const std::uint32_t count = first_directions(cuts, size, directions);
+  detail::WayOut out{directions[0], 0, directions[0], true};
+  if (options.depth) {
+    out = detail::least_way_out(both, scratch->walk, cuts, std::span(directions.data(), count), size,
+                                options.refinements);
+  }
+  result.complete = out.ended;
+  result.depth = out.way * world.scale;
+  result.normal = rotate(world, exchanged ? opposite(out.direction) : out.direction);
+  result.error = PairAccess::exact_error(narrow);
+
+  std::array<std::size_t, kMostContactPoints> chosen{};
+  choose_points(cuts, out.direction, chosen, result.count);
+  for (std::uint32_t i = 0; i < result.count; ++i) {
+    const Cut& cut = cuts[chosen[i] / 2];
+    const Vec3 p = chosen[i] % 2 == 0 ? cut.p : cut.q;
+    result.points[i] = {transform(world, along(p, both.first.tree.origin, 1)),
+                        exchanged ? cut.triangle_second : cut.triangle_first,
+                        exchanged ? cut.triangle_first : cut.triangle_second};
+  }
+  return result;
+}
+
+SignedDistance signed_distance(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b,
+                               double relative_tolerance) noexcept {
+  SignedDistance result;
+  const Distance apart = distance(workspace, pair, a, b, {.relative = relative_tolerance, .absolute = 0});
+  if (apart.lower > 0 || apart.points.triangle_a == kNoTriangle) {
+    result = {apart.lower, apart.upper, apart.points.on_a, apart.points.on_b, {}};
+    result.normal = unit(minus(result.on_b, result.on_a));
+    return result;
+  }
+  const Manifold manifold = contacts(workspace, pair, a, b);
+  if (manifold.answer != Answer::yes) {  // nearer than rounding can tell
+    return {0, apart.upper, apart.points.on_a, apart.points.on_b, unit(minus(apart.points.on_b, apart.points.on_a))};
+  }
+  result.lower = result.upper = -manifold.depth;
+  result.on_a = result.on_b = manifold.points[0].place;
+  result.normal = manifold.normal;
+  return result;
+}
+
+}  // namespace orchard::runtime

@@ -1,0 +1,101 @@
+#pragma once
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <new>
+
+#include "orchard/runtime/prepared_tree.h"
+#include "tree/patch_block.h"
+
+// Depth first through the two trees of triangles of a pair, to every pair of triangles that meet.
+namespace orchard::runtime::detail {
+
+// Two trees, the second one placed in the first one's frame, both relative to their origins.
+struct PlacedPair {
+  const PreparedTree &first, &second;
+  Pose relative;
+  Placement placement;
+
+  // The second one moved by `by`, in the first one's units.
+  PlacedPair moved(const Vec3& by) const noexcept {
+    PlacedPair result = *this;
+    double size = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      result.relative.translation[i] += by[i];
+      result.placement.translation[i] = static_cast<float>(result.relative.translation[i]);
+      size += std::fabs(by[i]);
+    }
+    // A margin has at most 108 u for each unit of the translation's length (narrow_phase.cpp).
+    result.placement.margin += static_cast<float>(size * 0x1p-17);
+    return result;
+  }
+};
+
+struct WalkPair {  // patches that may meet, the second one moved
+  std::uint32_t a, b;
+  Patch second;
+};
+
+class WalkStack {
+ public:
+  // Room for two trees. False if there is no memory.
+  bool reserve(const TreeView& a, const TreeView& b) noexcept {
+    const std::size_t deepest = std::size_t{kBlockWidth} * (a.patch_depth + b.patch_depth + 1) + 1;
+    if (deepest <= room_) return true;
+    pairs_.reset(new (std::nothrow) WalkPair[deepest]);
+    room_ = pairs_ ? deepest : 0;
+    return pairs_ != nullptr;
+  }
+  WalkPair* data() const noexcept { return pairs_.get(); }
+
+ private:
+  std::unique_ptr<WalkPair[]> pairs_;
+  std::size_t room_ = 0;
+};
+
+inline std::uint32_t patch_child(const TreeView& tree, std::uint32_t node) noexcept {
+  return tree.patches[node / kBlockWidth].child[node % kBlockWidth];
+}
+
+// Calls visit(lanes, lane, rows, row) for every pair of triangles, of the first and of the second tree, that the float
+// tests do not tell apart. Precondition: both trees have triangles, and `stack` has room for them.
+template <typename Visit>
+void walk_candidates(const PlacedPair& pair, const WalkStack& room, Visit&& visit) noexcept {
+  const TreeView &first = pair.first.tree, &second = pair.second.tree;
+  WalkPair* const stack = room.data();
+  std::size_t size = 0;
+  stack[size++] = {0, 0, moved(patch_at(second.patches[0], 0), pair.placement)};
+  PatchGaps gaps;
+  while (size > 0) {
+    const WalkPair top = stack[--size];
+    const std::uint32_t a = patch_child(first, top.a), b = patch_child(second, top.b);
+    const PatchBlock& own = first.patches[top.a / kBlockWidth];
+    const std::uint32_t lane_of_own = top.a % kBlockWidth;
+    if (a & b & kLeafBit) {
+      const TriangleBlock &lanes = first.triangle_blocks[a & ~kLeafBit], &rows = second.triangle_blocks[b & ~kLeafBit];
+      std::uint64_t left = triangle_candidates({lanes, rows, patch_at(own, lane_of_own), top.second}, pair.placement);
+      for (; left != 0; left &= left - 1) {
+        const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
+        visit(lanes, bit % kBlockWidth, rows, bit / kBlockWidth);
+      }
+      continue;
+    }
+    const bool open_second =
+        (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && own.radius[lane_of_own] < top.second.radius);
+    const std::uint32_t block = open_second ? b : a;
+    if (open_second) {
+      patch_gaps(patch_at(own, lane_of_own), second.patches[block], &pair.placement, pair.placement.margin, gaps);
+    } else {
+      patch_gaps(top.second, first.patches[block], nullptr, pair.placement.margin, gaps);
+    }
+    for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+      const std::uint32_t node = block * kBlockWidth + lane;
+      stack[size++] = open_second ? WalkPair{top.a, node, gaps.patch(lane)} : WalkPair{node, top.b, top.second};
+    }
+  }
+}
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,304 @@
+#pragma once
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "orchard/runtime/shape_query.h"
+#include "tree/patch_block.h"
+#include "tree/point_block.h"
+#include "tree/ray_block.h"
+#include "tree/tree_nodes.h"
+#include "vector_functions.h"
+
+// How queries about one tree go through its triangles: along a ray, or outward from a point or segment.
+namespace orchard::runtime::detail {
+
+// Patches are left out only beyond this much more than need be, for the rounding of a few operations.
+inline constexpr double kRounding = 1e-12;
+// Below this a coordinate is no more than rounding, and without it no product of three underflows: exact_sign.h.
+inline constexpr double kLeastCoordinate = 0x1p-305;
+// Farther from the origin than that, floats cannot hold squares of distances: one patch at a time in double.
+inline constexpr double kFloatReach = 2e18;
+inline constexpr std::size_t kWalkRoom = std::size_t{kBlockWidth} * (kPatchDepthLimit + 1) + 1;
+
+struct Segment {
+  Vec3 p, d;  // from p to p + d
+  double square;
+  Segment(const Vec3& from, const Vec3& to) noexcept : p(from), d(minus(to, from)), square(dot(d, d)) {}
+};
+
+// Lower bound on the distance of a patch from a segment.
+inline double patch_distance(const PatchBlock& block, std::uint32_t lane, const Segment& s) noexcept {
+  const Vec3 c = {block.x[lane], block.y[lane], block.z[lane]}, n = {block.nx[lane], block.ny[lane], block.nz[lane]};
+  const Vec3 to = minus(c, s.p);
+  const double t = s.square > 0 ? std::clamp(dot(to, s.d) / s.square, 0.0, 1.0) : 0;
+  const double by_ball = length(minus(to, along({0, 0, 0}, s.d, t))) - double{block.radius[lane]};
+  const double begin = -dot(n, to), end = begin + dot(n, s.d);
+  const double nearer = begin * end <= 0 ? 0 : std::min(std::fabs(begin), std::fabs(end));
+  // The normal's length is 1 to within 5e-7.
+  const double by_planes = (nearer - double{block.height[lane]}) * (1 - 1e-6);
+  return std::max(by_ball, by_planes);
+}
+
+// In double, one patch at a time. Calls visit(triangle block) for the leaves whose patches are within limit() of the
+// segment, the nearest child first, until it returns false.
+template <typename Limit, typename Visit>
+void walk(const TreeView& tree, const Segment& segment, double rounding, Limit&& limit, Visit&& visit) noexcept {
+  struct Entry {
+    double distance;
+    std::uint32_t child;
+  };
+  std::array<Entry, kWalkRoom> stack;
+  std::size_t size = 0;
+  const auto push_children = [&](std::uint32_t index) {
+    const PatchBlock& block = tree.patches[index];
+    const std::size_t begin = size;
+    for (std::uint32_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
+      const double distance = patch_distance(block, lane, segment);
+      if (distance > limit() * (1 + kRounding) + rounding) continue;
+      std::size_t at = size++;
+      for (; at > begin && stack[at - 1].distance < distance; --at) stack[at] = stack[at - 1];
+      stack[at] = {distance, block.child[lane]};
+    }
+  };
+  push_children(0);
+  while (size > 0) {
+    const Entry entry = stack[--size];
+    if (entry.distance > limit() * (1 + kRounding) + rounding) continue;
+    if ((entry.child & kLeafBit) == 0) {
+      push_children(entry.child);
+    } else if (!visit(tree.triangle_blocks[entry.child & ~kLeafBit])) {
+      return;
+    }
+  }
+}
+
+template <typename Visit>
+bool each_triangle(const TriangleBlock& block, Visit&& visit) noexcept {
+  for (std::uint32_t lane = 0; lane < kBlockWidth && block.triangle[lane] != kNoTriangle; ++lane) {
+    if (!visit(points_of(block, lane), block.triangle[lane])) return false;
+  }
+  return true;
+}
+
+inline Vec3 settled(Vec3 v) noexcept {
+  for (double& x : v) x = std::fabs(x) < kLeastCoordinate ? 0 : x;
+  return v;
+}
+
+inline bool within_reach(const Vec3& v) noexcept {  // false for what is not a number
+  return std::fabs(v[0]) <= kFarthest && std::fabs(v[1]) <= kFarthest && std::fabs(v[2]) <= kFarthest;
+}
+
+struct Frame {  // the body's, with its coordinates relative to the tree's origin
+  explicit Frame(const TreeView& view, const Pose& body) noexcept : tree(view), pose(body), back(inverse(body)) {}
+  Vec3 enter(const Vec3& world) const noexcept { return settled(minus(transform(back, world), tree.origin)); }
+  Vec3 leave(const Vec3& local) const noexcept { return transform(pose, along(local, tree.origin, 1)); }
+  double rounding(const Segment& s) const noexcept {
+    return kRounding * (length(s.p) + length(s.d) + tree.bounding_radius);
+  }
+  const TreeView& tree;
+  const Pose& pose;
+  Pose back;
+};
+
+// A ray in the body's frame, by steps of about one unit: directions of every length are as good as unit vectors.
+struct Course {
+  Course(const Frame& frame, const Vec3& direction) noexcept : scale(frame.pose.scale) {
+    const double largest = std::max({std::fabs(direction[0]), std::fabs(direction[1]), std::fabs(direction[2])});
+    power = largest > 0 && std::isfinite(largest) ? std::ilogb(largest) : 0;
+    Vec3 way{};
+    for (std::size_t i = 0; i < 3; ++i) way[i] = std::ldexp(direction[i], -power);
+    step = rotate(frame.back, way);
+    speed = length(step);
+  }
+  // A factor of the direction in steps, and back.
+  double steps(double along) const noexcept {
+    if (!std::isfinite(along)) return along;
+    int p = 0, q = 0;
+    const double ratio = std::frexp(along, &p) / std::frexp(scale, &q);
+    return std::ldexp(ratio, p - q + power);
+  }
+  double along(double steps) const noexcept { return std::ldexp(steps * scale, -power); }
+  double steps_to(const Vec3& place) const noexcept { return speed > 0 ? dot(place, step) / (speed * speed) : 0; }
+
+  double scale, speed = 0;
+  int power = 0;
+  Vec3 step{};
+};
+
+// A ray for the float tests, or the verdict that there is none: past the whole tree.
+struct Line {
+  FloatRay ray;
+  double at = 0;             // of s = 0, along the ray from its origin
+  float begin = 0, end = 0;  // in s
+  bool misses = false, in_float = true;
+};
+
+// From `from` along the unit vector `way`, for `length`.
+inline Line line_of(const TreeView& tree, const Vec3& from, const Vec3& way, double length_of_ray) noexcept {
+  constexpr double unit = 0x1p-24;
+  const PatchBlock& root = tree.patches[0];
+  const Vec3 middle = {root.x[0], root.y[0], root.z[0]};
+  const double radius = double{root.radius[0]};
+  Line line;
+  line.at = dot(minus(middle, from), way);
+  const Vec3 origin = along(from, way, line.at);
+  const double error = kRounding * (length(from) + std::fabs(line.at) + length(middle) + radius);
+  const double size = length(middle) + 2 * radius + error;
+  if (!(size <= kFloatReach)) {
+    line.in_float = false;
+    return line;
+  }
+  const double margin = std::max(48 * unit * size + 2 * error, 1e-15);
+  line.misses = length(minus(origin, middle)) > radius + margin;
+  for (std::size_t i = 0; i < 3; ++i) {
+    line.ray.origin[i] = static_cast<float>(origin[i]);
+    line.ray.direction[i] = static_cast<float>(way[i]);
+  }
+  line.ray.margin = static_cast<float>(margin * (1 + 4 * unit));
+  line.begin = static_cast<float>(std::max(-line.at, -radius - 2 * margin) - margin);
+  line.end = static_cast<float>(std::min(length_of_ray - line.at, radius + 2 * margin) + margin);
+  line.misses = line.misses || line.end < line.begin;
+  return line;
+}
+
+// Calls visit(triangle block, bits of the triangles that the line may meet) for the leaves on the ray, the nearest
+// patch of a block first. visit() returns up to which s the ray goes on from there.
+template <typename Visit>
+void walk_ray(const TreeView& tree, const Line& line, Visit&& visit) noexcept {
+  struct Entry {
+    float enter;
+    std::uint32_t child;
+  };
+  std::array<Entry, kWalkRoom> stack;
+  std::size_t size = 0;
+  float end = line.end;
+  RayEntries entries;
+  stack[size++] = {line.begin, tree.patches[0].child[0]};
+  while (size > 0) {
+    const Entry entry = stack[--size];
+    if (entry.enter > end) continue;
+    if (entry.child & kLeafBit) {
+      const TriangleBlock& block = tree.triangle_blocks[entry.child & ~kLeafBit];
+      const std::uint32_t some = ray_triangles(line.ray, block);
+      if (some != 0) end = visit(block, some, end);
+      continue;
+    }
+    const PatchBlock& block = tree.patches[entry.child];
+    const std::size_t begin = size;
+    for (std::uint32_t left = ray_patches(line.ray, block, line.begin, end, entries); left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+      std::size_t place = size++;
+      for (; place > begin && stack[place - 1].enter < entries[lane]; --place) stack[place] = stack[place - 1];
+      stack[place] = {entries[lane], block.child[lane]};
+    }
+  }
+}
+
+// A point or segment as a patch, a triangle and what they need to be asked about in float.
+struct FloatShape {
+  bool point = false;
+  Patch patch{};
+  TriangleBlock rows{};
+  Placement placement{};
+};
+
+inline FloatShape shape_of(const TreeView& tree, const Segment& s) noexcept {
+  constexpr double unit = 0x1p-24;
+  const PatchBlock& root = tree.patches[0];
+  const Vec3 middle = along(s.p, s.d, 0.5);
+  const double half = length(s.d) / 2;
+  const double size = length(middle) + half + length({root.x[0], root.y[0], root.z[0]}) + double{root.radius[0]};
+  FloatShape shape;
+  shape.point = !(half > 0);
+  Vec3 normal = {1, 0, 0};
+  if (half > 0) {  // across the segment
+    std::size_t least = 0;
+    for (std::size_t i = 1; i < 3; ++i) {
+      if (std::fabs(s.d[i]) < std::fabs(s.d[least])) least = i;
+    }
+    Vec3 axis{};
+    axis[least] = 1;
+    normal = cross(along({0, 0, 0}, s.d, 0.5 / half), axis);
+    normal = along({0, 0, 0}, normal, 1 / length(normal));
+  }
+  const auto f = [](double x) { return static_cast<float>(x); };
+  shape.patch = {f(middle[0]), f(middle[1]), f(middle[2]),         f(normal[0]),
+                 f(normal[1]), f(normal[2]), f(half * (1 + 1e-6)), f(half * 1e-6)};
+  const Vec3 end = along(s.p, s.d, 1);
+  for (std::size_t i = 0; i < 3; ++i) {
+    shape.rows.corner[0][i].fill(f(s.p[i]));
+    shape.rows.corner[1][i].fill(f(end[i]));
+    shape.rows.corner[2][i].fill(f(end[i]));
+  }
+  shape.rows.triangle.fill(kNoTriangle);
+  shape.rows.triangle[0] = 0;
+  Placement& p = shape.placement;
+  p.rotation = p.turn = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  p.translation = {};
+  p.scale = 1;
+  p.margin = f(std::max(128 * unit * size, 1e-15) * (1 + 4 * unit));
+  const int exponent = 1 + std::ilogb(std::max(size, 1e-18));
+  p.unit = f(std::ldexp(1, -exponent)), p.whole = f(std::ldexp(1, exponent));
+  return shape;
+}
+
+// Calls visit(triangle block, lane, whether it may meet the segment) for the triangles that may be within limit() of
+// the segment, nearest patches of a block and nearest triangles of a leaf first, until it returns false; `direction()`
+// is a unit vector that may tell triangles apart.
+template <typename Limit, typename Direction, typename Visit>
+void walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit, Direction&& direction,
+                  Visit&& visit) noexcept {
+  struct Entry {
+    float gap;
+    std::uint32_t child;
+  };
+  std::array<Entry, kWalkRoom> stack;
+  std::size_t size = 0;
+  PatchGaps gaps;
+  TriangleGaps lower;
+  stack[size++] = {0, tree.patches[0].child[0]};
+  while (size > 0) {
+    const Entry entry = stack[--size];
+    if (double{entry.gap} > limit()) continue;
+    if (entry.child & kLeafBit) {
+      const TriangleBlock& block = tree.triangle_blocks[entry.child & ~kLeafBit];
+      auto& row = lower.lower[0];
+      if (shape.point) {
+        point_gaps({shape.patch.x, shape.patch.y, shape.patch.z}, block, shape.placement, row);
+      } else {
+        triangle_gaps(block, shape.rows, shape.placement, direction(), std::numeric_limits<float>::infinity(), lower);
+      }
+      std::uint32_t left = 0;
+      for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
+        left |= std::uint32_t{block.triangle[lane] != kNoTriangle && double{row[lane]} <= limit()} << lane;
+      }
+      while (left != 0) {
+        auto nearest = static_cast<std::uint32_t>(std::countr_zero(left));
+        for (std::uint32_t rest = left & (left - 1); rest != 0; rest &= rest - 1) {
+          const auto lane = static_cast<std::uint32_t>(std::countr_zero(rest));
+          if (row[lane] < row[nearest]) nearest = lane;
+        }
+        left &= ~(1u << nearest);
+        if (double{row[nearest]} > limit()) break;
+        if (!visit(block, nearest, row[nearest] <= 0)) return;
+      }
+      continue;
+    }
+    const PatchBlock& block = tree.patches[entry.child];
+    patch_gaps(shape.patch, block, nullptr, shape.placement.margin, gaps);
+    const std::size_t begin = size;
+    for (std::uint32_t left = gaps.used; left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+      if (double{gaps.gap[lane]} > limit()) continue;
+      std::size_t place = size++;
+      for (; place > begin && stack[place - 1].gap < gaps.gap[lane]; --place) stack[place] = stack[place - 1];
+      stack[place] = {gaps.gap[lane], block.child[lane]};
+    }
+  }
+}
+
+}  // namespace orchard::runtime::detail

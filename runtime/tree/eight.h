@@ -1,0 +1,51 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "orchard/runtime/narrow_phase.h"
+#include "orchard/runtime/packed_tree.h"
+#include "vector_support.h"
+
+// Eight numbers, and eight vectors, at a time: what the inner loops over patches and triangles are made of. `Kind` is
+// PlainFloats or VectorFloats.
+namespace orchard::runtime::detail {
+
+template <typename Kind>
+struct Eight {
+  using Floats = typename Kind::Floats;
+  using Mask = typename Kind::Mask;
+  struct Vectors {
+    Floats x, y, z;
+  };
+
+  ORCHARD_INLINE static Floats all(float value) noexcept { return spread<Floats>(value); }
+  ORCHARD_INLINE static Floats smaller(const Floats& a, const Floats& b) noexcept { return Kind::choose(a < b, a, b); }
+  ORCHARD_INLINE static Floats larger(const Floats& a, const Floats& b) noexcept { return Kind::choose(a < b, b, a); }
+  ORCHARD_INLINE static Floats size(const Floats& a) noexcept { return larger(a, -a); }
+  ORCHARD_INLINE static Floats dot(const Vectors& a, const Vectors& b) noexcept {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+  }
+  ORCHARD_INLINE static Vectors minus(const Vectors& a, const Vectors& b) noexcept {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+  }
+  ORCHARD_INLINE static Vectors cross(const Vectors& a, const Vectors& b) noexcept {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  }
+  ORCHARD_INLINE static Floats one_norm(const Vectors& a) noexcept { return size(a.x) + size(a.y) + size(a.z); }
+  ORCHARD_INLINE static Vectors times(const Vectors& v, const Floats& s) noexcept {
+    return {v.x * s, v.y * s, v.z * s};
+  }
+  ORCHARD_INLINE static Vectors turn(const std::array<float, 9>& r, const Vectors& v) noexcept {
+    return {all(r[0]) * v.x + all(r[1]) * v.y + all(r[2]) * v.z, all(r[3]) * v.x + all(r[4]) * v.y + all(r[5]) * v.z,
+            all(r[6]) * v.x + all(r[7]) * v.y + all(r[8]) * v.z};
+  }
+  ORCHARD_INLINE static Vectors move(const Placement& p, const Vectors& v) noexcept {
+    const Vectors turned = turn(p.rotation, v);
+    return {turned.x + all(p.translation[0]), turned.y + all(p.translation[1]), turned.z + all(p.translation[2])};
+  }
+  ORCHARD_INLINE static Vectors corner(const TriangleBlock& block, std::size_t k) noexcept {
+    return {load<Floats>(block.corner[k][0]), load<Floats>(block.corner[k][1]), load<Floats>(block.corner[k][2])};
+  }
+};
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,101 @@
+#include "ray_block.h"
+
+#include "eight.h"
+#include "machine.h"
+
+// Rounding, u = 2^-24. Let D be the size of the tree's coordinates and of s. Patches: the distance of a centre from the
+// line is the length of a cross product of differences below 2 D and of a unit vector, and a height over the middle
+// plane is such a dot product: off by less than 16 u D, which FloatRay::margin covers besides the line's own error.
+// Half the length of what a ball cuts off the line is the root of a difference of squares, and kGrazing of the greater
+// of them covers its rounding. Triangles: corners relative to a point of the line nearby are off by at most the margin,
+// and longer than L nowhere. A product of three such vectors, one of them of length 1, is off by less than 4 L margin +
+// 16 u L^2.
+namespace orchard::runtime::detail {
+namespace {
+
+constexpr float kGrazing = 0x1p-20f;
+constexpr float kLeastSlope = 1e-12f;  // a ray along a slab: s is below 1e19 then, times this less than every margin
+constexpr float kProductError = 0x1p-20f;
+constexpr float kLeastRoom = 1e-33f;  // covers what underflows in a product
+
+template <typename Kind>
+ORCHARD_INLINE std::uint32_t find_patches(const FloatRay& ray, const PatchBlock& patches, float begin, float end,
+                                          RayEntries& entries) noexcept {
+  using E = Eight<Kind>;
+  using Floats = typename E::Floats;
+  using Vectors = typename E::Vectors;
+  const Vectors d = {E::all(ray.direction[0]), E::all(ray.direction[1]), E::all(ray.direction[2])};
+  const Vectors n = {load<Floats>(patches.nx), load<Floats>(patches.ny), load<Floats>(patches.nz)};
+  const Vectors to = E::minus({load<Floats>(patches.x), load<Floats>(patches.y), load<Floats>(patches.z)},
+                              {E::all(ray.origin[0]), E::all(ray.origin[1]), E::all(ray.origin[2])});
+  const Floats zero = E::all(0.0f), margin = E::all(ray.margin), radius = load<Floats>(patches.radius);
+  const Floats r = radius + margin, h = load<Floats>(patches.height) + margin;
+  const Vectors across = E::cross(to, d);
+  const Floats square = r * r, apart = E::dot(across, across), inside = square - apart;
+  const Floats middle = E::dot(to, d);
+  const Floats half = Kind::root(E::larger(inside, zero) + square * E::all(kGrazing)) + margin;
+  // Between the planes: |s (n . d) - n . to| <= h.
+  const Floats slope = E::dot(n, d), height = E::dot(n, to);
+  const Floats steep = E::larger(E::size(slope), E::all(kLeastSlope));
+  const Floats rise = Kind::choose(slope < zero, -height, height);
+  const Floats low = (rise - h) / steep, high = (rise + h) / steep;
+  const Floats enter = E::larger(middle - half, low - E::size(low) * E::all(kGrazing));
+  const Floats leave = E::smaller(middle + half, high + E::size(high) * E::all(kGrazing));
+  store(enter, entries);
+  // Written so that what is not a number, from infinite quotients, counts as met.
+  const auto missed = (inside < zero) | (leave < enter) | (leave < E::all(begin)) | (E::all(end) < enter);
+  return Kind::bits(zero <= radius) & ~Kind::bits(missed);
+}
+
+template <typename Kind>
+ORCHARD_INLINE std::uint32_t find_triangles(const FloatRay& ray, const TriangleBlock& block) noexcept {
+  using E = Eight<Kind>;
+  using Floats = typename E::Floats;
+  using Vectors = typename E::Vectors;
+  const Vectors d = {E::all(ray.direction[0]), E::all(ray.direction[1]), E::all(ray.direction[2])};
+  // From a point of the line near the first triangle, so that products are as small as the leaf.
+  float at = 0;
+  for (std::size_t i = 0; i < 3; ++i) at += (block.corner[0][i][0] - ray.origin[i]) * ray.direction[i];
+  const Vectors from = {E::all(ray.origin[0] + at * ray.direction[0]), E::all(ray.origin[1] + at * ray.direction[1]),
+                        E::all(ray.origin[2] + at * ray.direction[2])};
+  const Vectors a = E::minus(E::corner(block, 0), from), b = E::minus(E::corner(block, 1), from),
+                c = E::minus(E::corner(block, 2), from);
+  const Floats longest = E::larger(E::larger(E::one_norm(a), E::one_norm(b)), E::one_norm(c));
+  const Floats room = longest * (E::all(4 * ray.margin) + longest * E::all(kProductError)) + E::all(kLeastRoom);
+  const Floats p = E::dot(d, E::cross(a, b)), q = E::dot(d, E::cross(b, c)), r = E::dot(d, E::cross(c, a));
+  const Floats least = E::smaller(E::smaller(p, q), r), most = E::larger(E::larger(p, q), r);
+  const auto missed = (least < -room) & (room < most);
+  std::uint32_t used = 0;
+  for (std::uint32_t i = 0; i < kBlockWidth; ++i) used |= std::uint32_t{block.triangle[i] != kNoTriangle} << i;
+  return used & ~Kind::bits(missed);
+}
+
+}  // namespace
+
+std::uint32_t ray_patches_scalar(const FloatRay& ray, const PatchBlock& patches, float begin, float end,
+                                 RayEntries& entries) noexcept {
+  return find_patches<PlainFloats>(ray, patches, begin, end, entries);
+}
+
+std::uint32_t ray_triangles_scalar(const FloatRay& ray, const TriangleBlock& block) noexcept {
+  return find_triangles<PlainFloats>(ray, block);
+}
+
+#ifdef ORCHARD_VECTORS
+using Widest = VectorFloats;
+using Base = FourFloats;
+#else
+using Widest = PlainFloats;
+using Base = PlainFloats;
+#endif
+
+std::uint32_t ray_patches(const FloatRay& ray, const PatchBlock& patches, float begin, float end,
+                          RayEntries& entries) noexcept {
+  return PerMachine<find_patches<Widest>, find_patches<Base>>::call(ray, patches, begin, end, entries);
+}
+
+std::uint32_t ray_triangles(const FloatRay& ray, const TriangleBlock& block) noexcept {
+  return PerMachine<find_triangles<Widest>, find_triangles<Base>>::call(ray, block);
+}
+
+}  // namespace orchard::runtime::detail

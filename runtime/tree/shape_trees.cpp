@@ -1,0 +1,194 @@
+#include "orchard/runtime/shape_trees.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "pair/box_facets.h"
+#include "pair/exact_sign.h"
+#include "pair/vector_functions.h"
+
+namespace orchard::runtime {
+
+using detail::cross;
+using detail::dot;
+using detail::minus;
+using detail::orientation;
+using detail::Vec3;
+
+namespace {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+float above(double value) {
+  return std::nextafter(static_cast<float>(value * (1 + 1e-14)), std::numeric_limits<float>::infinity());
+}
+
+double farthest(const PackedSphereTree& tree, const Vec3& from) {
+  double square = 0;
+  for (const auto& v : tree.vertices) {
+    const Vec3 d = minus({double{v[0]}, double{v[1]}, double{v[2]}}, from);
+    square = std::max(square, dot(d, d));
+  }
+  return std::sqrt(square);
+}
+
+// One sphere around everything, a leaf. `depth`: of the sphere's centre, an upper bound on its signed distance.
+PackedSphereTree tree_of(std::span<const Vec3> vertices, std::span<const Triangle> triangles, double depth) {
+  PackedSphereTree tree;
+  if (vertices.empty()) return tree;
+  Vec3 low = vertices[0], high = vertices[0];
+  for (const Vec3& v : vertices) {
+    for (std::size_t i = 0; i < 3; ++i) low[i] = std::min(low[i], v[i]), high[i] = std::max(high[i], v[i]);
+  }
+  for (std::size_t i = 0; i < 3; ++i) tree.origin[i] = low[i] + (high[i] - low[i]) / 2;
+  for (const Vec3& v : vertices) {
+    std::array<float, 3> stored{};
+    double square = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double exact = v[i] - tree.origin[i];
+      stored[i] = static_cast<float>(exact);
+      const double change = double{stored[i]} - exact;
+      square += change * change;
+    }
+    tree.vertices.push_back(stored);
+    tree.vertex_error = std::max(tree.vertex_error, std::sqrt(square) * (1 + 1e-12));
+  }
+  tree.triangles.assign(triangles.begin(), triangles.end());
+  const double radius = farthest(tree, {0, 0, 0}) + tree.vertex_error;
+  tree.bounding_radius = radius;
+  tree.branching = 1;
+  tree.node_count = 1;
+  SiblingBlock& root = tree.blocks.emplace_back();
+  root.radius.fill(-1);
+  root.radius[0] = above(radius);
+  root.depth[0] = above(depth);
+  root.error[0] = above(radius + std::max(0.0, depth));
+  std::vector<std::uint32_t> all(triangles.size());
+  for (std::uint32_t t = 0; t < all.size(); ++t) all[t] = t;
+  root.link[0] = add_list(tree, all);
+  index_triangles(tree);
+  return tree;
+}
+
+// The convex hull, one point after the other: what a point sees of the hull so far is replaced by triangles to its
+// edge. Points in a facet's plane do not see it, so that no facet is ever without area.
+class Hull {
+ public:
+  explicit Hull(std::span<const Vec3> points) : points_(points) {}
+
+  bool build() {
+    if (!start()) return false;
+    for (std::uint32_t p = 0; p < points_.size(); ++p) add(p);
+    return true;
+  }
+  const std::vector<Triangle>& triangles() const { return triangles_; }
+
+ private:
+  int side(const Triangle& t, std::uint32_t p) const {  // > 0: outside
+    return -orientation(points_[t[0]], points_[t[1]], points_[t[2]], points_[p]);
+  }
+
+  bool start() {
+    const auto count = static_cast<std::uint32_t>(points_.size());
+    if (count < 4) return false;
+    std::uint32_t b = 1, c = 1, d = 1;
+    while (b < count && points_[b] == points_[0]) ++b;
+    if (b == count) return false;
+    const auto in_line = [&](std::uint32_t p) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (orientation(points_[0], points_[b], points_[p], axis) != 0) return false;
+      }
+      return true;
+    };
+    while (c < count && in_line(c)) ++c;
+    if (c == count) return false;
+    while (d < count && orientation(points_[0], points_[b], points_[c], points_[d]) == 0) ++d;
+    if (d == count) return false;
+    const Triangle base = {0, b, c};
+    const bool outward = side(base, d) < 0;
+    const std::uint32_t x = outward ? b : c, y = outward ? c : b;
+    triangles_ = {{0, x, y}, {0, y, d}, {y, x, d}, {x, 0, d}};
+    return true;
+  }
+
+  void add(std::uint32_t p) {
+    std::vector<Triangle> kept, seen;
+    for (const Triangle& t : triangles_) (side(t, p) > 0 ? seen : kept).push_back(t);
+    if (seen.empty()) return;
+    for (const Triangle& t : seen) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t from = t[i], to = t[(i + 1) % 3];
+        const bool inner = std::any_of(seen.begin(), seen.end(), [&](const Triangle& other) {
+          return (other[0] == to && other[1] == from) || (other[1] == to && other[2] == from) ||
+                 (other[2] == to && other[0] == from);
+        });
+        if (!inner) kept.push_back({from, to, p});
+      }
+    }
+    triangles_.swap(kept);
+  }
+
+  std::span<const Vec3> points_;
+  std::vector<Triangle> triangles_;
+};
+
+}  // namespace
+
+PackedSphereTree point_tree(const std::array<double, 3>& point) {
+  const Vec3 vertices[] = {point};
+  const Triangle triangles[] = {{0, 0, 0}};
+  return tree_of(vertices, triangles, 0);
+}
+
+PackedSphereTree segment_tree(const std::array<double, 3>& p, const std::array<double, 3>& q) {
+  const Vec3 vertices[] = {p, q};
+  const Triangle triangles[] = {{0, 1, 1}};
+  return tree_of(vertices, triangles, 0);
+}
+
+PackedSphereTree box_tree(const std::array<double, 3>& half) {
+  return tree_of(detail::box_corners(half), detail::kBoxFacets, 0);
+}
+
+PackedSphereTree triangles_tree(std::span<const std::array<double, 3>> vertices,
+                                std::span<const std::array<std::uint32_t, 3>> triangles) {
+  return tree_of(vertices, triangles, std::numeric_limits<double>::infinity());
+}
+
+std::optional<PackedSphereTree> hull_tree(std::span<const std::array<double, 3>> points) {
+  for (const Vec3& p : points) {
+    for (const double x : p) {
+      if (!(std::fabs(x) <= double{kCoordinateLimit})) return std::nullopt;
+    }
+  }
+  Hull hull(points);
+  if (!hull.build()) return std::nullopt;
+  std::vector<std::uint32_t> place(points.size(), kNoTriangle);
+  std::vector<Vec3> corners;
+  std::vector<Triangle> triangles = hull.triangles();
+  for (Triangle& t : triangles) {
+    for (std::uint32_t& v : t) {
+      if (place[v] == kNoTriangle) place[v] = static_cast<std::uint32_t>(corners.size()), corners.push_back(points[v]);
+      v = place[v];
+    }
+  }
+  // The middle of the hull's box may be outside of it, but no farther from it than from its corners.
+  PackedSphereTree tree = tree_of(corners, triangles, 0);
+  double depth = -std::numeric_limits<double>::infinity();
+  for (const Triangle& t : triangles) {
+    const Vec3 n = cross(minus(corners[t[1]], corners[t[0]]), minus(corners[t[2]], corners[t[0]]));
+    const double size = std::sqrt(dot(n, n));
+    if (size > 0) depth = std::max(depth, dot(n, minus(tree.origin, corners[t[0]])) / size);
+  }
+  if (depth > -1e-9 * tree.bounding_radius)
+    depth = tree.bounding_radius;
+  else
+    depth = 0;
+  tree.blocks[0].depth[0] = above(depth);
+  tree.blocks[0].error[0] = above(tree.bounding_radius + depth);
+  return tree;
+}
+
+}  // namespace orchard::runtime

@@ -1,0 +1,155 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "orchard/runtime/detector.h"
+#include "support.h"
+
+// Bodies that are found between two steps.
+namespace orchard::runtime {
+namespace {
+
+constexpr double kStep = 0.02;
+
+struct Shot {
+  Frame frame;
+  std::vector<PairEvent> events;
+};
+
+// A bullet that flies from one place to another within one step, and what it meets.
+std::vector<PairEvent> shoot(const PackedSphereTree& target, const Pose& target_pose, double radius, const Vec3& from,
+                             const Vec3& to, double speed, bool half_space = false) {
+  std::vector<BodyState> states(4);
+  Detector detector(states_of(states), {.time_step = kStep});
+  const ShapeId bullet = detector.add_sphere(radius), tree = detector.add_shape(target);
+  const BodyId id = detector.add_body({{bullet, {}}}, {.continuous_speed = speed});
+  if (half_space) {
+    detector.add_half_space({0, 0, 1}, 0);
+  } else {
+    detector.add_static({{tree, {}}}, target_pose);
+  }
+  for (BodyState& state : states) state.expiry = 0;
+  std::vector<PairEvent> events;
+  const Vec3 places[] = {from, to, to + 10.0 * (to - from)};
+  for (int step = 0; step < 3; ++step) {
+    states[id.index].pose.translation = places[step];
+    if (step == 2) detector.teleport(id);
+    const Frame frame = detector.step(step * kStep);
+    events.insert(events.end(), frame.events.begin(), frame.events.end());
+  }
+  return events;
+}
+
+TEST(Continuous, ABulletDoesNotTunnelThroughAThinWall) {
+  const PackedSphereTree wall = test::build_tree(test::box({-5, -5, -0.001}, {5, 5, 0.001}));
+  const Vec3 from = {0.3, 0.2, 7}, to = {-0.4, 0.1, -9};
+  const double speed = std::sqrt(dot(to - from, to - from)) / kStep * 1.01;
+  EXPECT_TRUE(shoot(wall, {}, 0.01, from, to, 0).empty());  // at the steps nothing is to be seen
+  const auto events = shoot(wall, {}, 0.01, from, to, speed);
+  ASSERT_EQ(events.size(), 2u);
+  EXPECT_EQ(events[0].change, PairChange::begin);
+  EXPECT_EQ(events[1].change, PairChange::end);
+  // The ball's front is 0.011 above the middle of the wall at first.
+  const double impact = kStep * (7 - 0.011) / 16;
+  EXPECT_LE(events[0].impact_from, impact + 1e-9);
+  EXPECT_GE(events[0].impact_to, impact - 1e-9);
+  EXPECT_NEAR(events[0].impact_from, impact, 1e-5);
+  EXPECT_NEAR(events[0].impact_to, impact, 1e-5);
+  EXPECT_NEAR(events[0].verdict.contact.center[2], 0.001, 1e-3);
+}
+
+TEST(Continuous, ABulletDoesNotTunnelThroughAHalfSpaceThatItLeavesAgain) {
+  const auto events = shoot({}, {}, 0.1, {0, 0, 5}, {3, 0, -2}, 400, true);
+  ASSERT_GE(events.size(), 1u);
+  EXPECT_EQ(events[0].change, PairChange::begin);
+  EXPECT_NEAR(events[0].impact_from, kStep * 4.9 / 7, 1e-6);
+}
+
+// Random shots through random bodies against dense sampling.
+TEST(Continuous, HitsWhereSamplingDoesAndMissesElsewhere) {
+  const PackedSphereTree tree = test::build_tree(test::torus(14, 6, 1, 0.3));
+  test::Draw draw(7);
+  int hits = 0, misses = 0;
+  for (int shot = 0; shot < 120; ++shot) {
+    const Pose pose = draw.pose(draw.uniform(0, 1));
+    const auto outside = [&] { return 4.0 * Vec3(draw.direction()); };
+    const Vec3 from = outside(), to = -1.0 * from + 1.2 * Vec3(draw.direction());
+    const double radius = draw.uniform(0.01, 0.2);
+    const auto triangles = test::placed_triangles(tree, pose);
+    long double least = 1e9L;
+    constexpr int kSamples = 400;
+    const double way = std::sqrt(dot(to - from, to - from));
+    for (int i = 0; i <= kSamples; ++i) {
+      const Vec3 at = from + (1.0 * i / kSamples) * (to - from);
+      for (const auto& t : triangles) {
+        least = std::min(least, test::point_distance({at[0], at[1], at[2]}, t) - static_cast<long double>(radius));
+      }
+    }
+    const auto events = shoot(tree, pose, radius, from, to, way / kStep * 1.01);
+    const bool hit = !events.empty() && events[0].change == PairChange::begin;
+    if (least <= 0) {
+      EXPECT_TRUE(hit) << shot;
+      ++hits;
+    } else if (least > way / kSamples) {
+      EXPECT_TRUE(events.empty()) << shot;
+      ++misses;
+    }
+  }
+  EXPECT_GT(hits, 30);
+  EXPECT_GT(misses, 10);
+}
+
+// Two trees that spin through each other within one step, at whose ends they are apart.
+TEST(Continuous, TreesThatTurnAreSweptAsWell) {
+  const PackedSphereTree blade = test::build_tree(test::box({-2, -0.05, -0.05}, {2, 0.05, 0.05}));
+  const PackedSphereTree post = test::build_tree(test::box({-0.1, -0.1, -1}, {0.1, 0.1, 1}));
+  std::vector<BodyState> states(2);
+  Detector detector(states_of(states), {.time_step = kStep});
+  const ShapeId shape = detector.add_shape(blade);
+  const BodyId id = detector.add_body({{shape, {}}}, {.continuous_speed = 1});
+  detector.add_static({{detector.add_shape(post), {}}}, {.translation = {1.5, 0, 0}});
+  states[0].expiry = 0;
+  const auto turned = [](double angle) {
+    return *pose_from_quaternion({std::cos(angle / 2), 0, 0, std::sin(angle / 2)}, {});
+  };
+  states[id.index].pose = turned(-0.5);
+  EXPECT_TRUE(detector.step(0).events.empty());
+  states[id.index].pose = turned(0.5);
+  const Frame frame = detector.step(kStep);
+  ASSERT_EQ(frame.events.size(), 1u);
+  EXPECT_EQ(frame.events[0].change, PairChange::begin);
+  EXPECT_GT(frame.events[0].impact_from, 0.5 * kStep * 0.5);
+  EXPECT_LT(frame.events[0].impact_to, 0.5 * kStep);
+  states[id.index].pose = turned(0.7);
+  const Frame after = detector.step(2 * kStep);
+  ASSERT_EQ(after.events.size(), 1u);
+  EXPECT_EQ(after.events[0].change, PairChange::end);
+}
+
+TEST(Continuous, ABudgetIsKeptAndWhatItLeavesOpenIsPossible) {
+  const PackedSphereTree wall = test::build_tree(test::torus(30, 16, 1, 0.3));
+  std::vector<BodyState> states(40);
+  Detector detector(states_of(states), {.time_step = kStep});
+  const ShapeId shape = detector.add_shape(wall);
+  detector.add_static({{shape, {}}}, {});
+  std::vector<BodyId> ids;
+  for (int i = 0; i < 20; ++i) ids.push_back(detector.add_body({{shape, {.scale = 0.05}}}, {.continuous_speed = 1e3}));
+  for (BodyState& state : states) state.expiry = 0;
+  std::size_t possible = 0;
+  for (const std::uint64_t work : {2000u, 4000u, 20'000u}) {
+    for (int step = 0; step < 4; ++step) {
+      for (std::size_t i = 0; i < ids.size(); ++i) {
+        states[ids[i].index].pose.translation = {1 + 0.01 * static_cast<double>(i), 0.002 * static_cast<double>(i),
+                                                 step % 2 == 0 ? 2.0 : -2.0};
+      }
+      static int time = 0;
+      const Frame frame = detector.step(time++ * kStep, {.work = work});
+      EXPECT_LT(frame.work, work + kMostOvershoot + 2 * kMotionWork);
+      for (const PairEvent& event : frame.events) possible += event.change == PairChange::possible;
+    }
+  }
+  EXPECT_GT(possible, 0u);
+}
+
+}  // namespace
+}  // namespace orchard::runtime

@@ -1,0 +1,200 @@
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "runtime/allocation.h"
+#include "scene_oracle.h"
+#include "scene_run.h"
+#include "support/effort.h"
+#include "thread_pool.h"
+
+// Every scene against brute force over all pairs at every step.
+namespace orchard::runtime {
+namespace {
+
+using test::Promises;
+using test::Scene;
+using test::SceneRun;
+using test::Touching;
+
+// ORCHARD_MORE: 2.5 million pairs of bodies at a step, instead of 120,000.
+const bool kMore = orchard::test::more() > 1;
+const std::size_t kBodies = kMore ? 60 : 30;
+const int kSteps = kMore ? 200 : 40;
+
+struct Case {
+  const Scene* scene;
+  std::vector<test::StepTruth> truth;
+};
+
+// Once for all tests: the oracle is what takes time.
+const std::vector<Case>& cases() {
+  static const std::vector<Scene> scenes = test::every_scene(kBodies, kSteps, 1 + orchard::test::first_seed());
+  static const std::vector<Case> made = [] {
+    std::vector<Case> result;
+    for (const Scene& scene : scenes) {
+      const test::SceneOracle oracle(scene);
+      Case& c = result.emplace_back(Case{&scene, {}});
+      for (int step = 0; step < scene.steps; ++step) c.truth.push_back(oracle.at(step));
+    }
+    return result;
+  }();
+  return made;
+}
+
+struct Answers {
+  Touching yes, maybe;
+};
+
+Answers answers_of(const SceneRun& run, const Frame& frame) {
+  Answers answers;
+  for (const PairEvent& event : frame.events) {
+    if (event.change == PairChange::end) continue;
+    if (event.verdict.answer == Answer::yes) answers.yes.insert(run.numbers(event));
+    if (event.verdict.answer == Answer::maybe) answers.maybe.insert(run.numbers(event));
+  }
+  return answers;
+}
+
+Touching without(const Touching& from, const Touching& what) {
+  Touching rest;
+  for (const auto& pair : from) {
+    if (what.count(pair) == 0) rest.insert(pair);
+  }
+  return rest;
+}
+
+TEST(Scenes, HaveContactsThatBeginAndEnd) {
+  for (const Case& c : cases()) {
+    std::size_t pairs = 0, changes = 0;
+    for (std::size_t step = 0; step < c.truth.size(); ++step) {
+      pairs += c.truth[step].touching.size();
+      changes += step > 0 && c.truth[step].touching != c.truth[step - 1].touching;
+    }
+    EXPECT_GT(pairs, 20u) << c.scene->name;
+    EXPECT_GT(changes, 2u) << c.scene->name;
+  }
+}
+
+class EveryPromise : public testing::TestWithParam<Promises> {};
+INSTANTIATE_TEST_SUITE_P(Detector, EveryPromise,
+                         testing::Values(Promises::known, Promises::watched, Promises::suggested));
+
+TEST_P(EveryPromise, TellsExactlyWhoTouchesAtEachStep) {
+  for (const Case& c : cases()) {
+    SceneRun run(*c.scene, {}, GetParam());
+    for (int step = 0; step < c.scene->steps; ++step) {
+      const Frame frame = run.step(step);
+      const auto& truth = c.truth[static_cast<std::size_t>(step)];
+      const Answers answers = answers_of(run, frame);
+      ASSERT_TRUE(answers.maybe.empty()) << c.scene->name << " at " << step;
+      ASSERT_EQ(without(answers.yes, truth.close), without(truth.touching, truth.close))
+          << c.scene->name << " at step " << step;
+      ASSERT_EQ(frame.certain, frame.pairs);
+      ASSERT_TRUE(frame.refused.empty());
+      ASSERT_FALSE(frame.out_of_memory);
+    }
+    if (GetParam() != Promises::suggested) {
+      EXPECT_EQ(run.detector().promises_broken(), 0u) << c.scene->name;
+    }
+  }
+}
+
+// Begin and end alternate, and what stays is between them.
+TEST(Detector, EventsOfAPairAlternate) {
+  for (const Case& c : cases()) {
+    SceneRun run(*c.scene, {});
+    std::map<std::pair<std::size_t, std::size_t>, bool> touching;
+    for (int step = 0; step < c.scene->steps; ++step) {
+      for (const PairEvent& event : run.step(step).events) {
+        bool& touch = touching[run.numbers(event)];
+        EXPECT_EQ(touch, event.change == PairChange::stay || event.change == PairChange::end) << c.scene->name;
+        touch = event.change == PairChange::begin || event.change == PairChange::stay;
+        EXPECT_NEAR(event.time, step * c.scene->dt, 1e-12);
+      }
+    }
+  }
+}
+
+TEST(Detector, WithinABudgetOnlySaysWhatIsTrue) {
+  for (const Case& c : cases()) {
+    std::size_t certain = 0, possible = 0;
+    for (const std::uint64_t work :
+         {std::uint64_t{1}, std::uint64_t{300}, std::uint64_t{2000}, std::uint64_t{20'000}}) {
+      SceneRun run(*c.scene, {}, Promises::known);
+      for (int step = 0; step < c.scene->steps; ++step) {
+        const Frame frame = run.step(step, {.work = work});
+        const auto& truth = c.truth[static_cast<std::size_t>(step)];
+        const Answers answers = answers_of(run, frame);
+        // Besides one unit that the broad phase gets in any case: a pair's two motions.
+        EXPECT_LT(frame.work, work + kMostOvershoot + 2 * kMotionWork) << c.scene->name;
+        EXPECT_TRUE(without(without(answers.yes, truth.touching), truth.close).empty()) << c.scene->name;
+        if (frame.incomplete_from == kNoClass) {
+          Touching known = answers.yes;
+          known.insert(answers.maybe.begin(), answers.maybe.end());
+          ASSERT_TRUE(without(without(truth.touching, known), truth.close).empty())
+              << c.scene->name << " at step " << step << " with " << work;
+        }
+        certain += frame.certain, possible += frame.pairs - frame.certain;
+      }
+    }
+    EXPECT_GT(certain, 0u) << c.scene->name;
+    EXPECT_GT(possible, 0u) << c.scene->name;
+  }
+}
+
+// Bytes of an event that mean something.
+void append(std::vector<double>& all, const Frame& frame) {
+  all.push_back(static_cast<double>(frame.work));
+  all.push_back(static_cast<double>(frame.certain));
+  all.push_back(frame.worst_bound);
+  for (const PairEvent& event : frame.events) {
+    const Verdict& v = event.verdict;
+    all.insert(all.end(),
+               {static_cast<double>(event.change), static_cast<double>(event.a.index),
+                static_cast<double>(event.b.index), static_cast<double>(event.part_a),
+                static_cast<double>(event.part_b), event.time, static_cast<double>(v.answer), v.separation_bound,
+                v.lower_bound, static_cast<double>(v.level), static_cast<double>(v.work), v.contact.radius});
+    all.insert(all.end(), v.contact.center.begin(), v.contact.center.end());
+    all.insert(all.end(), v.contact.normal.begin(), v.contact.normal.end());
+  }
+}
+
+TEST(Detector, SaysTheSameWithAnyNumberOfThreads) {
+  for (const Case& c : cases()) {
+    for (const std::uint64_t work : {FrameBudget{}.work, std::uint64_t{5000}}) {
+      std::vector<double> serial;
+      for (const std::size_t threads : {0, 1, 2, 3}) {
+        test::ThreadPool pool(std::max<std::size_t>(threads, 1));
+        DetectorOptions options;
+        if (threads > 0) options.executor = pool.executor();
+        SceneRun run(*c.scene, options);
+        std::vector<double> all;
+        for (int step = 0; step < c.scene->steps; ++step) append(all, run.step(step, {.work = work}));
+        if (threads == 0) serial = all;
+        ASSERT_EQ(all.size(), serial.size()) << c.scene->name;
+        ASSERT_EQ(std::memcmp(all.data(), serial.data(), all.size() * sizeof(double)), 0)
+            << c.scene->name << " with " << threads << " threads";
+      }
+    }
+  }
+}
+
+TEST(Detector, AllocatesNothingOnceWarm) {
+  for (const Case& c : cases()) {
+    if (c.scene->name == "conveyor") continue;  // adding bodies may
+    for (const std::uint64_t work : {FrameBudget{}.work, std::uint64_t{5000}}) {
+      SceneRun run(*c.scene, {});
+      int step = 0;
+      for (; step < 8 * c.scene->steps; ++step) run.step(step, {.work = work});
+      const std::size_t before = test::allocations;
+      const std::size_t bytes = run.detector().memory_bytes();
+      for (; step < 12 * c.scene->steps; ++step) run.step(step, {.work = work});
+      EXPECT_EQ(test::allocations - before, 0u) << c.scene->name << " with " << work;
+      EXPECT_EQ(run.detector().memory_bytes(), bytes);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace orchard::runtime

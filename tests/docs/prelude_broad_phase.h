@@ -1,0 +1,10 @@
+// What the page about the broad phase leaves to its reader.
+#include "orchard/broad_phase_methods/sleeping_broad_phase.h"
+#include "orchard/runtime/broad_phase.h"
+
+using namespace orchard::runtime;
+using namespace orchard::broad_phase_methods;
+
+extern MotionSource source;
+extern double t;
+void narrow_phase(const BodyPair& pair);

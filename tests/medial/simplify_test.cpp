@@ -1,0 +1,327 @@
+// The medial mesh in few balls: its topology, closed forms, limits, and its error beside brute force.
+#include "orchard/medial/simplify.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "known_axes.h"
+#include "orchard/geometry/error.h"
+#include "orchard/geometry/random.h"
+#include "orchard/medial/build.h"
+#include "orchard/medial/topology.h"
+#include "quality/reconstruction.h"
+#include "simplify/contractible_mesh.h"
+#include "simplify/fit_samples.h"
+#include "simplify/two_sided.h"
+#include "support/shapes.h"
+
+namespace orchard {
+namespace {
+
+using detail::Ball4;
+using detail::ContractibleMesh;
+
+MedialMesh built_axis(const Surface& surface, Index points, bool refined = true) {
+  MedialBuildOptions options{.sampling = {.face_points = points - points / 5, .edge_points = points / 5}};
+  if (refined) options.refine = RefineOptions{};
+  return medial_mesh(build_medial_axis(surface, options).axis);
+}
+
+// All of a mesh as a medial mesh: the surface of a solid, whose Betti numbers have loops and cavities.
+MedialMesh shell_of(const TriangleMesh& mesh) {
+  MedialMesh shell;
+  shell.centers = mesh.vertices;
+  shell.radii.assign(mesh.vertices.size(), 0.1);
+  for (auto triangle : mesh.triangles) {
+    std::sort(triangle.begin(), triangle.end());
+    shell.triangles.push_back(triangle);
+  }
+  complete(shell);
+  return shell;
+}
+
+std::vector<std::array<Index, 2>> contractible_edges(const ContractibleMesh& mesh) {
+  std::vector<std::array<Index, 2>> edges;
+  for (Index v = 0; v < mesh.size(); ++v) {
+    for (const Index other : mesh.neighbors(v)) {
+      if (v < other && mesh.may_contract(v, other)) edges.push_back({v, other});
+    }
+  }
+  return edges;
+}
+
+// An edge that may be contracted, at random as long as that is quick; nothing if there is none.
+std::optional<std::array<Index, 2>> some_edge(const ContractibleMesh& mesh, Random& random) {
+  for (int i = 0; i < 200; ++i) {
+    const auto v = static_cast<Index>(random.below(mesh.size()));
+    if (!mesh.alive(v) || mesh.neighbors(v).empty()) continue;
+    const Index other = mesh.neighbors(v)[random.below(mesh.neighbors(v).size())];
+    if (mesh.may_contract(v, other)) return std::array{v, other};
+  }
+  const auto edges = contractible_edges(mesh);
+  if (edges.empty()) return std::nullopt;
+  return edges[random.below(edges.size())];
+}
+
+// Random contractions, and divisions and extensions between them, until no edge may be contracted.
+int contract_at_random(const MedialMesh& start, std::uint64_t seed, const Topology& expected, Index& left) {
+  ContractibleMesh mesh(start);
+  Random random(seed, 1);
+  int contractions = 0;
+  for (int step = 0;; ++step) {
+    const auto edge = some_edge(mesh, random);
+    if (!edge) break;
+    const auto [a, b] = *edge;
+    const Ball4 middle = 0.5 * (mesh.ball(a) + mesh.ball(b));
+    if (step % 16 == 7) {
+      mesh.divide(a, b, middle);
+    } else if (step % 16 == 11) {
+      mesh.extend(a, b, middle + Ball4(0.1, 0, 0, 0));
+    } else {
+      mesh.contract(a, b, middle);
+      ++contractions;
+    }
+    if (step % 64 == 0) {
+      const MedialMesh now = mesh.mesh();
+      EXPECT_NO_THROW(validate(now));
+      EXPECT_EQ(topology(now), expected) << "seed " << seed << " step " << step;
+    }
+  }
+  EXPECT_EQ(topology(mesh.mesh()), expected) << "seed " << seed;
+  left = mesh.living();
+  return contractions;
+}
+
+TEST(ContractibleMesh, KeepsTheBettiNumbersThroughAThousandRandomContractions) {
+  struct Case {
+    const char* name;
+    MedialMesh mesh;
+    Topology expected;
+  };
+  const std::vector<Case> cases{{"torus shell", shell_of(test::torus(14, 9)), {1, 2, 1}},
+                                {"two shells", shell_of(test::two_boxes(0.5)), {2, 0, 2}},
+                                {"axis of a torus", built_axis(Surface(test::torus(24, 12)), 200), {1, 1, 0}},
+                                {"axis of an L with seams", built_axis(Surface(test::l_shape()), 200), {1, 0, 0}}};
+  int contractions = 0;
+  for (const auto& [name, mesh, expected] : cases) {
+    SCOPED_TRACE(name);
+    ASSERT_EQ(topology(mesh), expected);
+    for (const std::uint64_t seed : {1u, 2u}) {
+      Index left = 0;
+      contractions += contract_at_random(mesh, seed, expected, left);
+      EXPECT_LE(left, mesh.size() / 2);
+    }
+  }
+  EXPECT_GE(contractions, 1000);
+}
+
+TEST(ContractibleMesh, RefusesContractionsThatCloseALoopOrACavity) {
+  MedialMesh ring;
+  ring.centers = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  ring.radii = {1, 1, 1};
+  ring.edges = {{0, 1}, {0, 2}, {1, 2}};
+  complete(ring);
+  EXPECT_TRUE(contractible_edges(ContractibleMesh(ring)).empty());
+  MedialMesh hollow;
+  hollow.centers = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  hollow.radii = {1, 1, 1, 1};
+  hollow.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}};
+  complete(hollow);
+  EXPECT_TRUE(contractible_edges(ContractibleMesh(hollow)).empty());
+}
+
+// An icosphere whose halves are moved apart along z.
+TriangleMesh capsule(double length) {
+  TriangleMesh mesh = test::icosphere(3);
+  for (Point& vertex : mesh.vertices)
+    vertex.z() += vertex.z() > 1e-9 ? length / 2 : vertex.z() < -1e-9 ? -length / 2 : 0;
+  return mesh;
+}
+
+TEST(SimplifiedMedialMesh, IsTwoBallsForACapsule) {
+  const Surface surface(capsule(3));
+  MedialMesh chain;
+  for (Index v = 0; v < 40; ++v) {
+    chain.centers.emplace_back(0, 0, -1.5 + 3.0 * v / 39);
+    chain.radii.push_back(1);
+    if (v > 0) chain.edges.push_back({v - 1, v});
+  }
+  complete(chain);
+  const SimplifiedMedialMesh result =
+      simplify_medial_mesh(surface, chain, {.vertices = 2, .samples = 1500, .check = 2000, .rounds = 2});
+  ASSERT_EQ(result.mesh.size(), 2u);
+  ASSERT_EQ(result.mesh.edges.size(), 1u);
+  EXPECT_LT(result.report.hausdorff.max, 0.01);  // the facets are off by as much
+  for (Index v = 0; v < 2; ++v) {
+    EXPECT_NEAR(result.mesh.radii[v], 1, 0.02);
+    EXPECT_NEAR(std::abs(result.mesh.centers[v].z()), 1.5, 0.05);
+    EXPECT_NEAR(result.mesh.centers[v].head<2>().norm(), 0, 0.01);
+  }
+}
+
+TEST(SimplifiedMedialMesh, IsFewBallsForABox) {
+  const Surface surface(test::known_box({1, 2, 3}).solid);
+  const SimplifiedMedialMesh result = simplify_medial_mesh(
+      surface, built_axis(surface, 300), {.vertices = 48, .samples = 1500, .check = 2000, .rounds = 2});
+  EXPECT_LE(result.mesh.size(), 48u);
+  EXPECT_LT(result.report.hausdorff.max, 0.02);
+  EXPECT_LT(result.report.hausdorff.mean, 0.002);
+  EXPECT_EQ(topology(result.mesh), (Topology{1, 0, 0}));
+}
+
+TEST(SimplifiedMedialMesh, OfOneVertexIsTheLargestInscribedBall) {
+  const Surface box(test::known_box({1, 2, 3}).solid);
+  const SimplifiedMedialMesh in_box =
+      simplify_medial_mesh(box, built_axis(box, 300), {.vertices = 1, .samples = 1500, .check = 2000, .rounds = 2});
+  ASSERT_EQ(in_box.mesh.size(), 1u);
+  EXPECT_NEAR(in_box.mesh.radii[0], 0.5, 1e-6);
+  // In the bend of an L with arms as wide as 1, a ball touches both outer sides and the reentrant edge.
+  const Surface bend(test::known_l_shape(8).solid);
+  const SimplifiedMedialMesh in_bend =
+      simplify_medial_mesh(bend, built_axis(bend, 300), {.vertices = 1, .samples = 1500, .check = 2000, .rounds = 2});
+  ASSERT_EQ(in_bend.mesh.size(), 1u);
+  EXPECT_NEAR(in_bend.mesh.radii[0], std::sqrt(2.0) / (1 + std::sqrt(2.0)), 1e-5);
+  EXPECT_NEAR(-bend.signed_distance(in_bend.mesh.centers[0]), in_bend.mesh.radii[0], 1e-12);
+}
+
+std::string message_for(const Surface& surface, const MedialMesh& mesh, const SimplifyOptions& options) {
+  try {
+    simplify_medial_mesh(surface, mesh, options);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(SimplifiedMedialMesh, NamesTheLeastNumberThatTheTopologyAllows) {
+  const Surface ring(test::torus(24, 12));
+  const MedialMesh axis = built_axis(ring, 300);
+  EXPECT_NE(message_for(ring, axis, {.vertices = 2, .samples = 1500, .check = 2000, .rounds = 2}).find("at least 3"),
+            std::string::npos);
+  const SimplifiedMedialMesh three =
+      simplify_medial_mesh(ring, axis, {.vertices = 3, .samples = 1500, .check = 2000, .rounds = 2});
+  EXPECT_EQ(three.mesh.size(), 3u);
+  EXPECT_EQ(topology(three.mesh), (Topology{1, 1, 0}));
+  const Surface boxes(test::two_boxes(0.5));
+  EXPECT_NE(message_for(boxes, built_axis(boxes, 300), {.vertices = 1, .samples = 1500, .check = 2000, .rounds = 2})
+                .find("at least 2"),
+            std::string::npos);
+}
+
+TEST(SimplifiedMedialMesh, IsRefusedWhatItCannotDo) {
+  const Surface box(test::known_box({1, 2, 3}).solid);
+  const MedialMesh axis = built_axis(box, 200);
+  EXPECT_NE(message_for(box, axis, {.samples = 1500, .check = 2000, .rounds = 2}).find("error above 0"),
+            std::string::npos);
+  EXPECT_NE(message_for(box, axis, {.error = 1e-12, .samples = 1500, .check = 2000, .rounds = 2}).find("comes nearer"),
+            std::string::npos);
+  EXPECT_NE(message_for(Surface(test::open_box()), axis, {.vertices = 5}).find("solid"), std::string::npos);
+}
+
+TEST(SimplifiedMedialMesh, IsWithinTheErrorAskedFor) {
+  const Surface surface(test::known_l_shape(8).solid);
+  const MedialMesh axis = built_axis(surface, 300);
+  const SimplifiedMedialMesh coarse =
+      simplify_medial_mesh(surface, axis, {.error = 0.03, .samples = 1500, .check = 2000, .rounds = 2});
+  const SimplifiedMedialMesh fine =
+      simplify_medial_mesh(surface, axis, {.error = 0.01, .samples = 1500, .check = 2000, .rounds = 2});
+  EXPECT_LE(coarse.report.hausdorff.max, 0.03);
+  EXPECT_LE(fine.report.hausdorff.max, 0.01);
+  EXPECT_LT(coarse.mesh.size(), fine.mesh.size());
+  EXPECT_LT(fine.mesh.size(), axis.size() / 2);
+}
+
+TEST(SimplifiedMedialMesh, KeepsTheTopologyAllTheWayDown) {
+  const Surface surface(test::torus(24, 12));
+  const std::vector<Index> counts{100, 30, 10, 5, 3, 2};
+  const auto curve =
+      simplify_to_each(surface, built_axis(surface, 300), counts, {.samples = 1500, .check = 2000, .rounds = 2});
+  ASSERT_EQ(curve.size(), 5u);  // no ring has two vertices
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    EXPECT_LE(curve[i].mesh.size(), counts[i]);
+    EXPECT_EQ(topology(curve[i].mesh), (Topology{1, 1, 0}));
+    EXPECT_NO_THROW(validate(curve[i].mesh));
+  }
+  EXPECT_LT(curve[0].report.hausdorff.max, curve[4].report.hausdorff.max);
+}
+
+TEST(SimplifiedMedialMesh, IsTheSameWhateverTheNumberOfThreads) {
+  const Surface surface(test::known_l_shape(8).solid);
+  const MedialMesh axis = built_axis(surface, 300);
+  const SimplifyOptions options{.vertices = 40, .samples = 1500, .check = 2000, .rounds = 2};
+  const std::string all = to_ma(simplify_medial_mesh(surface, axis, options).mesh);
+  for (const std::size_t threads : {1, 2, 7}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    EXPECT_EQ(to_ma(simplify_medial_mesh(surface, axis, options).mesh), all) << threads << " threads";
+  }
+}
+
+// The least |query - c| - r of a cell's balls, over a fine grid of them.
+double brute_value(const std::vector<Ball4>& balls, const Point& query) {
+  constexpr int kSteps = 200;
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= kSteps; ++i) {
+    for (int k = 0; i + k <= kSteps; ++k) {
+      const double u = static_cast<double>(i) / kSteps, v = static_cast<double>(k) / kSteps;
+      const Ball4 ball = (1 - u - v) * balls[0] + u * balls[1] + v * balls[2];
+      least = std::min(least, (query - ball.head<3>()).norm() - ball[3]);
+    }
+  }
+  return least;
+}
+
+TEST(FootFinder, FindsTheBallThatBruteForceFinds) {
+  Random random(3, 1);
+  const auto number = [&] { return random.uniform(-1, 1); };
+  for (int round = 0; round < 20; ++round) {
+    MedialMesh mesh;
+    for (int v = 0; v < 5; ++v) {
+      mesh.centers.emplace_back(number(), number(), number());
+      mesh.radii.push_back(random.uniform(0, 0.8));
+    }
+    mesh.triangles = {{0, 1, 2}};
+    mesh.edges = {{2, 3}};
+    complete(mesh);
+    const ContractibleMesh contractible(mesh);
+    const detail::FootFinder finder(contractible);
+    const auto ball = [&](Index v) { return contractible.ball(v); };
+    for (int k = 0; k < 5; ++k) {
+      const Point query = 2 * Point(number(), number(), number());
+      const double brute =
+          std::min({brute_value({ball(0), ball(1), ball(2)}, query), brute_value({ball(2), ball(3), ball(3)}, query),
+                    brute_value({ball(4), ball(4), ball(4)}, query)});
+      const detail::Foot foot = finder.find(query);
+      EXPECT_LE(foot.value, brute + 1e-12);
+      EXPECT_NEAR(foot.value, brute, 2e-3);
+      const Ball4 at = foot.ball(contractible);
+      EXPECT_NEAR((query - at.head<3>()).norm() - at[3], foot.value, 1e-12);
+    }
+  }
+}
+
+TEST(LargestGap, BoundsWhatAnyPointHas) {
+  const Surface box(test::known_box({1, 2, 3}).solid);
+  MedialMesh mesh;
+  mesh.centers = {{0.5, 0.6, 0.5}, {0.5, 1.2, 2.4}};
+  mesh.radii = {0.5, 0.45};
+  mesh.edges = {{0, 1}};
+  complete(mesh);
+  const ContractibleMesh contractible(mesh);
+  const detail::FootFinder finder(contractible);
+  const double bound = detail::largest_gap(box, contractible, finder, 0, 1e-3);
+  double attained = 0;
+  for (const detail::FitSample& sample : detail::fit_samples(box, 20000, 5))
+    attained = std::max(attained, finder.find(sample.position).value);
+  EXPECT_GE(bound, attained);
+  EXPECT_LE(bound, attained + 2e-3);
+}
+
+}  // namespace
+}  // namespace orchard

@@ -1,0 +1,194 @@
+#include "simulation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "paraview.h"
+#include "runtime/support.h"
+
+namespace orchard::simulation {
+namespace {
+
+using runtime::Answer;
+
+const runtime::PackedSphereTree& tree() {
+  static const runtime::PackedSphereTree made = runtime::test::build_tree(runtime::test::l_shape());
+  return made;
+}
+
+std::vector<Shape> shapes() { return {shape_of(tree())}; }
+
+std::size_t few(const std::string& scene) {
+  return scene == "asteroids" || scene == "clusters" ? 60 : scene == "conveyor" ? 20 : 8;
+}
+
+class EveryScene : public testing::TestWithParam<const char*> {};
+
+INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene, testing::ValuesIn(kSceneNames),
+                         [](const auto& scene) { return std::string(scene.param); });
+
+// At every step, the pairs reported are those whose spheres overlap, and the answers those of a narrow phase that has
+// all the time it wants.
+TEST_P(EveryScene, FindsWhatBruteForceFindsAtEveryStep) {
+  const auto world = make_world(GetParam(), shapes(), few(GetParam()), 1);
+  runtime::NarrowPhase pair(tree(), tree());
+  std::size_t overlaps = 0;
+  for (int step = 0; step < 100; ++step) {
+    world->time = step * world->scene.step;
+    world->scene.before(*world, world->time);
+    const StepOutcome outcome = world->detection.step(world->time, {});
+    std::set<std::pair<std::uint32_t, std::uint32_t>> found;
+    for (const PairOutcome& p : outcome.pairs) {
+      found.insert({p.a, p.b});
+      pair.start(pose_of(world->bodies[p.a], world->shapes[0]), pose_of(world->bodies[p.b], world->shapes[0]));
+      ASSERT_EQ(p.verdict.answer, pair.refine_exactly()) << "step " << step;
+    }
+    ASSERT_EQ(found.size(), outcome.pairs.size());
+    for (std::uint32_t a = 0; a < world->bodies.size(); ++a) {
+      for (std::uint32_t b = a + 1; b < world->bodies.size(); ++b) {
+        const Body &one = world->bodies[a], &two = world->bodies[b];
+        if (!one.there || !two.there || (one.fixed && two.fixed)) continue;
+        const bool overlap = length(one.position - two.position) <= one.radius + two.radius;
+        ASSERT_EQ(found.contains({a, b}), overlap) << "step " << step << ", bodies " << a << " and " << b;
+        overlaps += overlap;
+      }
+    }
+    respond_and_move(*world, outcome);
+  }
+  if (GetParam() != std::string("asteroids")) {
+    EXPECT_GT(overlaps, 0u);
+  }
+}
+
+TEST_P(EveryScene, ReplaysToTheSameTrace) {
+  const std::size_t bodies = few(GetParam());
+  Simulation first(GetParam(), shapes(), bodies, 7);
+  const Steering steering{0.5, -0.25, 1};
+  std::string trace;
+  // A budget in time: every run stops elsewhere, but for the replay.
+  for (int frame = 0; frame < 30; ++frame)
+    trace += trace_row(first.frame({.time = std::chrono::microseconds(20)}, steering));
+  const Recording recording = parse_recording(to_text(first.recording()));
+  Simulation again(GetParam(), shapes(), bodies, 7, &recording);
+  std::string replayed;
+  for (int frame = 0; frame < 30; ++frame) replayed += trace_row(again.frame({}));
+  EXPECT_EQ(trace, replayed);
+  EXPECT_THROW(again.frame({}), std::out_of_range);
+}
+
+TEST_P(EveryScene, WithoutABudgetReplaysToTheSameTraceToo) {
+  Simulation first(GetParam(), shapes(), few(GetParam()), 7);
+  std::string trace, replayed;
+  for (int frame = 0; frame < 30; ++frame) trace += trace_row(first.frame({}));
+  const Recording recording = parse_recording(to_text(first.recording()));
+  Simulation again(GetParam(), shapes(), few(GetParam()), 7, &recording);
+  for (int frame = 0; frame < 30; ++frame) replayed += trace_row(again.frame({}));
+  EXPECT_EQ(trace, replayed);
+}
+
+TEST_P(EveryScene, NeverSpendsMuchMoreThanItsBudget) {
+  constexpr std::uint64_t budget = 600;
+  Simulation simulation(GetParam(), shapes(), few(GetParam()), 3);
+  for (int frame = 0; frame < 30; ++frame) {
+    simulation.frame({.pair_tests = budget * static_cast<std::uint64_t>(simulation.steps_per_frame())});
+    EXPECT_LT(simulation.recording().work.back(),
+              budget + runtime::kLeafPairTests * runtime::kTriangleTestCost + runtime::kBlockWidth);
+  }
+}
+
+TEST_P(EveryScene, WritesFramesForParaView) {
+  Simulation simulation(GetParam(), shapes(), few(GetParam()), 1);
+  simulation.frame({});
+  const std::string bodies = bodies_vtp(simulation), bounds = bounds_vtp(simulation);
+  EXPECT_NE(bodies.find("separation_bound"), std::string::npos);
+  EXPECT_NE(bounds.find("hypertrapezoid_half"), std::string::npos);
+  EXPECT_EQ(bodies.find("nan"), std::string::npos);
+  EXPECT_EQ(bounds.find("inf"), std::string::npos);
+}
+
+TEST(Simulation, ChangesWithItsSeed) {
+  Simulation one("flight", shapes(), 5, 1), two("flight", shapes(), 5, 2);
+  EXPECT_NE(one.frame({}).state, two.frame({}).state);
+}
+
+TEST(Simulation, TheSteeredShipIsAJuggernautAndDronesJumpHome) {
+  Simulation simulation("flight", shapes(), 3, 1);
+  World& world = simulation.world();
+  world.jump(1, world.bodies[0].position, {});
+  const Vec3 home = world.bodies[1].home;
+  simulation.frame({});
+  EXPECT_LT(length(world.bodies[0].position), world.bodies[0].radius) << "it flies on";
+  EXPECT_LT(length(world.bodies[1].position - home), world.bodies[1].radius);
+}
+
+TEST(Simulation, ThrottleAndRudderMoveTheSteeredShip) {
+  Simulation still("flight", shapes(), 1, 1), steered("flight", shapes(), 1, 1);
+  for (int frame = 0; frame < 10; ++frame) {
+    still.frame({});
+    steered.frame({}, {1, 1, 0});
+  }
+  EXPECT_EQ(length(still.world().bodies[0].position), 0);
+  EXPECT_GT(length(steered.world().bodies[0].position), 0.1);
+  EXPECT_NE(still.world().bodies[0].attitude, steered.world().bodies[0].attitude);
+}
+
+TEST(Simulation, APileComesToRestAboveTheFloor) {
+  Simulation simulation("pile", shapes(), 6, 1);
+  std::size_t touching = 0;
+  for (int frame = 0; frame < 400; ++frame) touching += simulation.frame({}).yes > 0;
+  EXPECT_GT(touching, 50u) << "bodies lie on each other";
+  for (const Body& body : simulation.world().bodies) {
+    EXPECT_GT(body.position[1], -3.2 * body.radius);
+    EXPECT_LT(body.position[1], 6 * body.radius);
+    EXPECT_LT(length(body.velocity), 3 * body.radius) << "per second";
+  }
+}
+
+TEST(Simulation, AConveyorRemovesAndAddsBodies) {
+  Simulation simulation("conveyor", shapes(), 12, 1);
+  std::size_t most = 0;
+  for (int frame = 0; frame < 400; ++frame) {
+    EXPECT_EQ(simulation.frame({}).bodies, 12u);
+    most = simulation.world().bodies.size();
+  }
+  EXPECT_GT(most, 20u) << "new ones came";
+}
+
+TEST(Simulation, ASmallerBudgetLeavesMoreOpenAtLowerLevels) {
+  const runtime::PackedSphereTree ring = runtime::test::build_tree(runtime::test::torus(16, 8, 1, 0.4));
+  std::size_t open[2] = {}, deep[2] = {};
+  for (const std::size_t run : {0, 1}) {
+    Simulation simulation("pile", {shape_of(ring)}, 8, 2);
+    for (int frame = 0; frame < 150; ++frame) {
+      const FrameRecord record = simulation.frame({.pair_tests = run == 0 ? 200u : 2000u});
+      open[run] += record.maybe;
+      for (std::size_t level = 2; level < kLevels; ++level) deep[run] += record.stopped[level];
+    }
+  }
+  EXPECT_GT(open[0], open[1]);
+  EXPECT_GT(open[0] - deep[0], open[1] - deep[1]) << "of those at the first levels";
+}
+
+TEST(Recording, SaysWhichLineIsWrong) {
+  const auto fault = [](const std::string& text) {
+    try {
+      parse_recording(text);
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(fault("nothing").find("line 1"), std::string::npos);
+  EXPECT_NE(fault("orchard-recording 1\nnowhere 1 1 ab budgeted\n").find("line 2"), std::string::npos);
+  EXPECT_NE(fault("orchard-recording 1\nflight 1 1 ab budgeted\n0 0 0 12 13\n0 0 0 12\n").find("line 4"),
+            std::string::npos);
+  EXPECT_NE(fault("orchard-recording 1\nflight 1 1 ab budgeted\n0 9 0 12\n").find("line 3"), std::string::npos);
+  EXPECT_NE(fault("orchard-recording 1\nflight 1 1 ab budgeted\n0 0 0 x\n").find("line 3"), std::string::npos);
+  EXPECT_EQ(fault("orchard-recording 1\nflight 1 1 ab budgeted\n0 0 0 12 13\n"), "");
+}
+
+}  // namespace
+}  // namespace orchard::simulation

@@ -1,0 +1,91 @@
+"""Opens orchard's own files in ParaView by its plugin, and looks at what the script beside the views drew.
+
+paraview_opens.py PLUGIN.py FOLDER    FOLDER: lamp.orchard, .sph, .ma, a .vor, lamp-build.pvd and view.png, of --level 1
+"""
+import glob
+import os
+import sys
+
+import numpy
+from paraview import simple
+from paraview.vtk.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOImage import vtkPNGReader
+
+
+def fetched(source, time=None):
+    source.UpdatePipeline() if time is None else source.UpdatePipeline(time)
+    return simple.servermanager.Fetch(source)
+
+
+def values(data, name):
+    return vtk_to_numpy(data.GetPointData().GetArray(name))
+
+
+def check_trees(folder):
+    packed = simple.OpenDataFile(os.path.join(folder, "lamp.orchard"))
+    text = simple.OpenDataFile(os.path.join(folder, "lamp.sph"))
+    for tree in (packed, text):
+        tree.Resolution = 0
+    for level in (0, 1, 2):
+        packed.Level = text.Level = level
+        a, b = fetched(packed), fetched(text)
+        reader = simple.XMLPolyDataReader(FileName=[os.path.join(folder, f"lamp-build-level-{level}.vtp")])
+        written = fetched(reader)
+        for data in (a, b):
+            assert data.GetNumberOfPoints() == written.GetNumberOfPoints()
+            for name, tolerance in (("radius", 1e-5), ("node", 0), ("parent", 0), ("branch", 0), ("carried", 0)):
+                assert numpy.allclose(values(data, name), values(written, name), rtol=tolerance, atol=tolerance), name
+            centers = [vtk_to_numpy(x.GetPoints().GetData()) for x in (data, written)]
+            assert numpy.allclose(*centers, atol=1e-5)
+        # What is stored is not below what was measured, but for the last bits.
+        assert (values(a, "error") >= values(written, "error") * (1 - 1e-5)).all()
+    packed.Level, packed.Resolution = 1, 8
+    surfaces = fetched(packed)
+    spheres = fetched(text).GetNumberOfPoints()
+    assert surfaces.GetNumberOfPolys() % spheres != 1 and surfaces.GetNumberOfPolys() > 100
+    packed.LevelsInTime, packed.Resolution = 1, 0
+    assert [fetched(packed, time).GetNumberOfPoints() for time in (0, 1)][0] == 1
+
+
+def check_levels_in_time(folder):
+    levels = simple.PVDReader(FileName=os.path.join(folder, "lamp-build.pvd"))
+    assert list(levels.TimestepValues) == [0, 1, 2]
+    counts = [fetched(levels, time).GetNumberOfPoints() for time in (0, 1, 2)]
+    assert counts[0] == 1 and counts[0] < counts[1] < counts[2], counts
+
+
+def check_axis_and_diagram(folder):
+    axis = fetched(simple.OpenDataFile(os.path.join(folder, "lamp.ma")))
+    with open(os.path.join(folder, "lamp.ma"), encoding="utf-8") as file:
+        vertices, _, triangles = (int(word) for word in file.readline().split()[:3])
+    assert axis.GetNumberOfPoints() == vertices and axis.GetNumberOfPolys() == triangles
+    assert (values(axis, "radius") >= 0).all()
+    diagram = simple.OpenDataFile(glob.glob(os.path.join(folder, "*.vor"))[0])
+    drawn = fetched(diagram)
+    assert drawn.GetNumberOfPoints() > 300 and drawn.GetNumberOfLines() > drawn.GetNumberOfPoints()
+    diagram.Points = 1
+    assert fetched(diagram).GetNumberOfPoints() >= 300
+
+
+def check_picture(file):
+    reader = vtkPNGReader()
+    reader.SetFileName(file)
+    reader.Update()
+    image = reader.GetOutput()
+    pixels = vtk_to_numpy(image.GetPointData().GetScalars())[:, :3].astype(int)
+    drawn = (pixels < 240).any(axis=1).mean()
+    colors = len(numpy.unique(pixels // 16, axis=0))
+    assert image.GetDimensions()[:2] == (1200, 900) and 0.05 < drawn < 0.9 and colors > 30, (drawn, colors)
+
+
+def main():
+    plugin, folder = sys.argv[1:]
+    simple.LoadPlugin(plugin, remote=False, ns=globals())
+    check_trees(folder)
+    check_levels_in_time(folder)
+    check_axis_and_diagram(folder)
+    check_picture(os.path.join(folder, "view.png"))
+    print("ParaView opens all of it")
+
+
+main()

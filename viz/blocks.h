@@ -1,0 +1,24 @@
+#pragma once
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "actors.h"
+
+class vtkDataObject;
+
+namespace orchard::detail {
+
+// The blocks of a .vtm by their names, but for empty ones. Throws std::runtime_error if there is no such file.
+class Blocks {
+ public:
+  explicit Blocks(const std::filesystem::path& vtm);
+
+  Data operator[](const std::string& name) const;  // null: there is no such block, or it is no PolyData
+  const std::map<std::string, vtkSmartPointer<vtkDataObject>>& all() const { return blocks_; }
+
+ private:
+  std::map<std::string, vtkSmartPointer<vtkDataObject>> blocks_;
+};
+
+}  // namespace orchard::detail

@@ -1,0 +1,32 @@
+#pragma once
+#include <vtkCamera.h>
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "panels.h"
+
+// From where a model is seen.
+namespace orchard::detail {
+
+struct Direction {
+  char up = 'y';
+  double azimuth = 35, elevation = 23;  // degrees
+};
+
+struct View {
+  Eigen::Vector3d right, up, backward;  // the picture's axes; backward: towards the eye
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  double width = 1, height = 1;  // of what must be seen
+  double depth = 1;              // half of it
+};
+
+// Which way the axes point, without a centre and a size.
+View looking(const Direction& direction);
+// Everything in view. Throws std::runtime_error if there is nothing.
+View make_view(const Direction& direction, const std::vector<Extent>& extents);
+
+// The model in a rectangle of pixels, above its lowest `caption_height`.
+void aim(vtkCamera* camera, const View& view, int width, int height, int caption_height);
+
+}  // namespace orchard::detail

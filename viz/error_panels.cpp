@@ -1,0 +1,100 @@
+#include "error_panels.h"
+
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkProperty.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace orchard::detail {
+namespace {
+
+// The places of one measure, numbered; `span` says which numbers they have.
+std::vector<Label> labels_of(vtkPolyData* places, int measure, std::string& span) {
+  std::vector<Label> labels;
+  if (places == nullptr) return labels;
+  vtkPointData* arrays = places->GetPointData();
+  const vtkIdType count = places->GetNumberOfPoints();
+  vtkDataArray* measures = require_array(arrays, "measure", count);
+  vtkDataArray* numbers = require_array(arrays, "number", count);
+  vtkDataArray* outward = require_array(arrays, "outward", count);
+  for (vtkIdType i = 0; i < count; ++i) {
+    if (static_cast<int>(measures->GetComponent(i, 0)) != measure) continue;
+    Label& label = labels.emplace_back();
+    places->GetPoint(i, label.position.data());
+    outward->GetTuple(i, label.outward.data());
+    label.text = std::to_string(static_cast<int>(numbers->GetComponent(i, 0)));
+  }
+  if (!labels.empty()) span = "; worst: " + labels.front().text + " to " + labels.back().text;
+  return labels;
+}
+
+std::string up_to(double max) {
+  char text[64];
+  std::snprintf(text, sizeof text, "0 to %.3g %% of the diagonal", max);
+  return text;
+}
+
+Panel coverage_panel(vtkPolyData* mesh, vtkPolyData* points, vtkPolyData* places, double size, double line_width) {
+  Panel panel{make_renderer(size), "surface left uncovered", {}};
+  const vtkIdType count = points->GetNumberOfPoints();
+  vtkDataArray* coverage = require_array(points->GetCellData(), "coverage", count);
+  const double max = coverage->GetRange()[1];
+  const auto colors = error_colors(max);
+  vtkNew<vtkPolyData> dots;
+  dots->SetPoints(points->GetPoints());
+  set_colors(dots->GetPointData(), count, [&](vtkIdType i) {
+    Color color{};
+    colors->GetColor(coverage->GetComponent(i, 0), color.data());
+    return color;
+  });
+  vtkNew<vtkDoubleArray> radii;
+  radii->SetName("radius");
+  radii->SetNumberOfValues(count);
+  radii->Fill(std::clamp(1.1 * size / std::sqrt(static_cast<double>(count)), 0.006 * size, 0.03 * size));
+  dots->GetPointData()->AddArray(radii);
+  panel.renderer->AddActor(make_actor(mesh, {0.93, 0.94, 0.95}));
+  panel.renderer->AddActor(make_spheres(dots));
+  panel.renderer->AddActor(edges(mesh, kFeatureAngle, line_width, 0.6));
+  std::string span;
+  panel.labels = labels_of(places, 1, span);
+  panel.detail = up_to(max) + span;
+  return panel;
+}
+
+Panel protrusion_panel(vtkPolyData* mesh, vtkPolyData* medial, vtkPolyData* places, double size, double line_width) {
+  Panel panel{make_renderer(size), "balls that protrude", {}};
+  vtkDataArray* protrusion = require_array(medial->GetPointData(), "protrusion", medial->GetNumberOfPoints());
+  const double max = protrusion->GetRange()[1];
+  auto sheet = make_sheet(medial, "protrusion", error_colors(max));
+  sheet->GetProperty()->SetLineWidth(static_cast<float>(2 * line_width));
+  panel.renderer->AddActor(sheet);
+  add_glass(panel.renderer, mesh, line_width);
+  std::string span;
+  panel.labels = labels_of(places, 0, span);
+  panel.detail = up_to(max) + span;
+  return panel;
+}
+
+}  // namespace
+
+Panels error_panels(const Blocks& blocks, double line_width) {
+  Panels result;
+  const Data mesh = blocks["mesh"], points = blocks["surface points"], medial = blocks["medial mesh"];
+  extend(result.extents, mesh, nullptr);
+  result.size = 0.5 * mesh->GetLength();
+  for (const bool from_behind : {false, true}) {
+    result.panels.push_back(coverage_panel(mesh, points, blocks["worst places"], result.size, line_width));
+    result.panels.push_back(protrusion_panel(mesh, medial, blocks["worst places"], result.size, line_width));
+    for (std::size_t i = result.panels.size() - 2; from_behind && i < result.panels.size(); ++i) {
+      result.panels[i].from_behind = true;
+      result.panels[i].caption += ", from behind";
+    }
+  }
+  return result;
+}
+
+}  // namespace orchard::detail

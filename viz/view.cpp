@@ -1,0 +1,81 @@
+#include "orchard/viz/view.h"
+
+#include <algorithm>
+#include <set>
+
+#include "drawing.h"
+#include "orchard/viz/medial_writer.h"
+#include "orchard/viz/voronoi_writer.h"
+
+namespace orchard {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The files of a scene, with names as view_parts() reads them.
+class SceneFiles {
+ public:
+  explicit SceneFiles(const fs::path& prefix) : prefix_(prefix) {}
+
+  fs::path add(const std::string& name, const char* ending) {
+    const fs::path file = with_ending(prefix_, "-" + std::to_string(files_.size()) + ending);
+    // Two files of one name are two blocks.
+    std::string block = name;
+    for (int i = 2; std::any_of(files_.begin(), files_.end(), [&](const NamedFile& f) { return f.name == block; }); ++i)
+      block = name + " (" + std::to_string(i) + ")";
+    files_.push_back({block, file.filename()});
+    return file;
+  }
+  void write() const { write_multiblock(with_ending(prefix_, ".vtm"), files_); }
+
+ private:
+  fs::path prefix_;
+  std::vector<NamedFile> files_;
+};
+
+Index depth_of(const Scene& scene) {
+  Index depth = 0;
+  for (const auto& tree : scene.trees) depth = std::max(depth, tree.value.depth());
+  return depth;
+}
+
+void write_scene(const fs::path& prefix, const Scene& scene, const std::set<Index>& levels) {
+  SceneFiles files(prefix);
+  for (const auto& [name, surface] : scene.meshes) write_mesh(files.add("view/mesh/" + name, ".vtp"), surface);
+  for (const auto& [name, axis] : scene.axes) write_medial_mesh(files.add("view/axis/" + name, ".vtp"), axis);
+  for (const auto& [name, diagram] : scene.diagrams)
+    write_voronoi_cells(files.add("view/cells/" + name, ".vtu"), diagram);
+  for (const auto& [name, points] : scene.points) {
+    SurfaceSampling sampling;
+    sampling.points = points;
+    sampling.origins.resize(points.size());
+    sampling.triangles.resize(points.size());
+    write_points(files.add("view/points/" + name, ".vtp"), sampling);
+  }
+  for (const auto& [name, tree] : scene.trees)
+    for (const Index level : levels)
+      write_tree_level(files.add("view/level/" + std::to_string(level) + "/" + name, ".vtp"), tree, level);
+  files.write();
+}
+
+}  // namespace
+
+PictureStatus draw_view(const fs::path& png, const Scene& scene, const PipelinePicture& picture) {
+  std::set<Index> levels(scene.levels.begin(), scene.levels.end());
+  if (levels.empty()) levels.insert(depth_of(scene));
+  return detail::draw(png, picture, {"--opacity", std::to_string(scene.opacity)},
+                      [&](const fs::path& prefix) { write_scene(prefix, scene, levels); });
+}
+
+PictureStatus show_view(const fs::path& png, const Scene& scene, const PipelinePicture& picture) {
+  std::set<Index> levels;
+  for (Index level = 0; level <= depth_of(scene); ++level) levels.insert(level);
+  std::vector<std::string> more{"--window", "--opacity", std::to_string(scene.opacity)};
+  if (!scene.levels.empty()) {
+    more.emplace_back("--level");
+    more.push_back(std::to_string(scene.levels.front()));
+  }
+  return detail::show(png, picture, more, [&](const fs::path& prefix) { write_scene(prefix, scene, levels); });
+}
+
+}  // namespace orchard

@@ -1,0 +1,247 @@
+#include "view_parts.h"
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkIdList.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkProperty.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+
+namespace orchard::detail {
+namespace {
+
+constexpr double kRounding = 1e-6;  // of the diagonal
+constexpr double kShrink = 0.93;    // of a cell, so that one sees where it ends
+
+// "view/KIND/NAME" or "view/level/K/NAME": what follows the kind, if it is this one.
+bool named_as(const std::string& block, const std::string& kind, std::string& rest) {
+  const std::string begin = "view/" + kind + "/";
+  if (!block.starts_with(begin)) return false;
+  rest = block.substr(begin.size());
+  return true;
+}
+
+Eigen::Vector3d corner(vtkDataSet* data, vtkIdType point) {
+  Eigen::Vector3d result;
+  data->GetPoint(point, result.data());
+  return result;
+}
+
+// Neighbours should differ, whatever their numbers.
+Color cell_color(vtkIdType cell) {
+  const auto mixed = static_cast<std::uint64_t>(cell) * 0x9e3779b97f4a7c15U;
+  Color color = kBranchColors.at((mixed >> 40) % kBranchColors.size());
+  for (double& c : color) c = 0.35 + 0.65 * c;
+  return color;
+}
+
+// From a quiet blue for 0 to red for 1.
+Color wrong_color(double part) {
+  constexpr std::array kColors{rgb(0x8fa9c2), rgb(0xd9c27a), rgb(0xe07b39), rgb(0xb3121d)};
+  const double place = std::clamp(part, 0.0, 1.0) * (kColors.size() - 1);
+  const auto below = std::min(static_cast<std::size_t>(place), kColors.size() - 2);
+  Color color{};
+  for (std::size_t c = 0; c < 3; ++c)
+    color[c] = kColors[below][c] + (place - static_cast<double>(below)) * (kColors[below + 1][c] - kColors[below][c]);
+  return color;
+}
+
+// Whether cells are more inaccurate than rounding makes them.
+bool is_wrong(vtkUnstructuredGrid* grid) {
+  return require_array(grid->GetCellData(), "inaccuracy", grid->GetNumberOfCells())->GetRange()[1] >
+         kRounding * grid->GetLength();
+}
+
+// The polyhedra of the half that is away from the eye, each drawn in towards its middle.
+Data cut_open(vtkUnstructuredGrid* grid, const Eigen::Vector3d& backward) {
+  const double middle = Eigen::Vector3d(grid->GetCenter()).dot(backward);
+  vtkDataArray* inaccuracy = require_array(grid->GetCellData(), "inaccuracy", grid->GetNumberOfCells());
+  const double max = inaccuracy->GetRange()[1];
+  const bool wrong = is_wrong(grid);
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> polygons;
+  std::vector<Color> colors;
+  vtkNew<vtkIdList> corners, stream;
+  for (vtkIdType i = 0; i < grid->GetNumberOfCells(); ++i) {
+    grid->GetCellPoints(i, corners);
+    Eigen::Vector3d center = Eigen::Vector3d::Zero();
+    for (const vtkIdType id : *corners) center += corner(grid, id) / static_cast<double>(corners->GetNumberOfIds());
+    if (center.dot(backward) > middle) continue;
+    Color color = cell_color(i);
+    if (wrong) color = wrong_color(std::sqrt(inaccuracy->GetComponent(i, 0) / max));
+    grid->GetFaceStream(i, stream);
+    vtkIdType at = 1;
+    for (vtkIdType face = 0; face < stream->GetId(0); ++face) {
+      const vtkIdType count = stream->GetId(at++);
+      polygons->InsertNextCell(static_cast<int>(count));
+      for (vtkIdType k = 0; k < count; ++k) {
+        const Eigen::Vector3d place = center + kShrink * (corner(grid, stream->GetId(at++)) - center);
+        polygons->InsertCellPoint(points->InsertNextPoint(place.data()));
+      }
+      colors.push_back(color);
+    }
+  }
+  auto result = Data::New();
+  result->SetPoints(points);
+  result->SetPolys(polygons);
+  set_colors(result->GetCellData(), polygons->GetNumberOfCells(),
+             [&](vtkIdType i) { return colors[static_cast<std::size_t>(i)]; });
+  return result;
+}
+
+vtkSmartPointer<vtkActor> make_cells(vtkUnstructuredGrid* grid, const Eigen::Vector3d& backward, double line_width) {
+  auto actor = make_actor(cut_open(grid, backward), kStone);
+  vtkMapper* mapper = actor->GetMapper();
+  mapper->ScalarVisibilityOn();
+  mapper->SetScalarModeToUseCellFieldData();
+  mapper->SelectColorArray("color");
+  vtkProperty* property = actor->GetProperty();
+  property->SetInterpolationToFlat();
+  property->SetDiffuse(0.72);  // pale colours stay colours where the light is brightest
+  property->EdgeVisibilityOn();
+  property->SetEdgeColor(kInk[0], kInk[1], kInk[2]);
+  property->SetLineWidth(static_cast<float>(0.5 * line_width));
+  return actor;
+}
+
+vtkSmartPointer<vtkActor> make_axis(vtkPolyData* axis, double line_width) {
+  double range[2];
+  require_array(axis->GetPointData(), "radius", axis->GetNumberOfPoints())->GetRange(range);
+  auto sheet = make_sheet(axis, "radius", viridis(range));
+  sheet->GetProperty()->SetLineWidth(static_cast<float>(1.5 * line_width));
+  return sheet;
+}
+
+vtkSmartPointer<vtkActor> make_points(vtkPolyData* points, double size) {
+  vtkNew<vtkPolyData> dots;
+  dots->SetPoints(points->GetPoints());
+  set_colors(dots->GetPointData(), points->GetNumberOfPoints(), [](vtkIdType) { return kOriginColors[0]; });
+  return make_dots(dots, size);
+}
+
+vtkSmartPointer<vtkActor> in_one_color(vtkPolyData* spheres, const Color& color) {
+  set_colors(spheres->GetPointData(), spheres->GetNumberOfPoints(), [&](vtkIdType) { return color; });
+  return make_spheres(spheres);
+}
+
+// How far from the solid the spheres of a level reach at most, as far as the file knows.
+std::string reach(vtkPolyData* spheres) {
+  const double error = require_array(spheres->GetPointData(), "error", spheres->GetNumberOfPoints())->GetRange()[1];
+  if (!std::isfinite(error) || error <= 0) return {};
+  char text[64];
+  std::snprintf(text, sizeof text, ", at most %.3g outside", error);
+  return text;
+}
+
+void append(std::string& list, const std::string& item) { list += (list.empty() ? "" : ", ") + item; }
+
+}  // namespace
+
+ViewParts view_parts(const Blocks& blocks) {
+  ViewParts parts;
+  std::string name;
+  for (const auto& [block, data] : blocks.all()) {
+    const Data poly = vtkPolyData::SafeDownCast(data);
+    if (named_as(block, "mesh", name) && poly != nullptr) parts.meshes.emplace_back(name, poly);
+    if (named_as(block, "axis", name) && poly != nullptr) parts.axes.emplace_back(name, poly);
+    if (named_as(block, "points", name) && poly != nullptr) parts.points.emplace_back(name, poly);
+    if (named_as(block, "cells", name) && vtkUnstructuredGrid::SafeDownCast(data) != nullptr)
+      parts.cells.emplace_back(name, vtkUnstructuredGrid::SafeDownCast(data));
+    if (named_as(block, "level", name) && poly != nullptr)
+      parts.levels[std::atoi(name.c_str())].emplace_back(name.substr(name.find('/') + 1), poly);
+  }
+  return parts;
+}
+
+std::vector<Extent> extents_of(const ViewParts& parts) {
+  std::vector<Extent> extents;
+  for (const auto* list : {&parts.meshes, &parts.axes, &parts.points})
+    for (const auto& part : *list) extend(extents, part.second, nullptr);
+  for (const auto& [level, trees] : parts.levels)
+    for (const auto& part : trees) extend(extents, part.second, "radius");
+  for (const auto& part : parts.cells) {
+    for (vtkIdType i = 0; i < part.second->GetNumberOfPoints(); ++i) {
+      Extent extent{{}, 0};
+      part.second->GetPoint(i, extent.center.data());
+      extents.push_back(extent);
+    }
+  }
+  return extents;
+}
+
+double size_of(const ViewParts& parts) {
+  Eigen::AlignedBox3d box;
+  for (const Extent& extent : extents_of(parts)) box.extend(Eigen::Vector3d(extent.center.data()));
+  const double size = box.isEmpty() ? 0 : 0.5 * box.diagonal().norm();
+  if (size > 0) return size;
+  // One sphere alone.
+  for (const auto& [level, trees] : parts.levels)
+    return trees.front().second->GetPointData()->GetArray("radius")->GetRange()[1];
+  return 1;
+}
+
+std::vector<vtkSmartPointer<vtkActor>> add_still_parts(vtkRenderer* renderer, const ViewParts& parts, double size,
+                                                       double line_width, double opacity,
+                                                       const std::array<double, 3>& backward) {
+  for (const auto& part : parts.points) renderer->AddActor(make_points(part.second, size));
+  for (const auto& part : parts.axes) renderer->AddActor(make_axis(part.second, line_width));
+  for (const auto& part : parts.cells)
+    renderer->AddActor(make_cells(part.second, Eigen::Vector3d(backward.data()), line_width));
+  std::vector<vtkSmartPointer<vtkActor>> glass;
+  for (const auto& part : parts.meshes) {
+    if (parts.meshes_alone()) {
+      add_mesh(renderer, part.second, line_width);
+    } else {
+      glass.push_back(add_glass(renderer, part.second, line_width, opacity));
+    }
+  }
+  return glass;
+}
+
+std::vector<vtkSmartPointer<vtkActor>> level_actors(const NamedParts<Data>& trees) {
+  std::vector<vtkSmartPointer<vtkActor>> actors;
+  for (std::size_t i = 0; i < trees.size(); ++i)
+    actors.push_back(trees.size() == 1 ? make_level(trees[i].second)
+                                       : in_one_color(trees[i].second, kBranchColors.at(i % kBranchColors.size())));
+  return actors;
+}
+
+std::string caption_of(const ViewParts& parts, int level) {
+  std::string caption;
+  for (const auto* list : {&parts.meshes, &parts.axes, &parts.points})
+    for (const auto& part : *list) append(caption, part.first);
+  for (const auto& part : parts.cells) append(caption, part.first);
+  if (const auto trees = parts.levels.find(level); trees != parts.levels.end()) {
+    for (const auto& part : trees->second) append(caption, part.first);
+    caption += ", level " + std::to_string(level);
+  }
+  return caption;
+}
+
+std::string detail_of(const ViewParts& parts, int level) {
+  std::string detail;
+  for (const auto& part : parts.meshes) append(detail, counted(part.second->GetNumberOfPolys(), "triangle"));
+  for (const auto& part : parts.axes) append(detail, counted(part.second->GetNumberOfPoints(), "medial sphere"));
+  for (const auto& part : parts.points) append(detail, counted(part.second->GetNumberOfPoints(), "point"));
+  for (const auto& part : parts.cells) {
+    append(detail, counted(part.second->GetNumberOfCells(), "cell"));
+    if (!is_wrong(part.second)) continue;
+    char text[64];
+    const double max = part.second->GetCellData()->GetArray("inaccuracy")->GetRange()[1];
+    std::snprintf(text, sizeof text, "red: inaccurate by %.2g", max);
+    append(detail, text);
+  }
+  if (const auto trees = parts.levels.find(level); trees != parts.levels.end())
+    for (const auto& part : trees->second)
+      append(detail, counted(part.second->GetNumberOfPoints(), "sphere") + reach(part.second));
+  return detail;
+}
+
+}  // namespace orchard::detail

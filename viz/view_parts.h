@@ -1,0 +1,45 @@
+#pragma once
+#include <vtkUnstructuredGrid.h>
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "actors.h"
+#include "blocks.h"
+
+// What a scene of view.h holds, as its pictures and its window need it.
+namespace orchard::detail {
+
+template <class Value>
+using NamedParts = std::vector<std::pair<std::string, Value>>;
+
+struct ViewParts {
+  NamedParts<Data> meshes, axes, points;
+  NamedParts<vtkSmartPointer<vtkUnstructuredGrid>> cells;
+  std::map<int, NamedParts<Data>> levels;  // of all trees, by number
+
+  bool any() const { return !(meshes.empty() && axes.empty() && points.empty() && cells.empty() && levels.empty()); }
+  bool meshes_alone() const { return axes.empty() && points.empty() && cells.empty() && levels.empty(); }
+};
+
+// Empty where the blocks are not those of a scene.
+ViewParts view_parts(const Blocks& blocks);
+
+// A length of the model's order, and everything that the camera must keep in view.
+double size_of(const ViewParts& parts);
+std::vector<Extent> extents_of(const ViewParts& parts);
+
+// What is seen whatever the level. Of meshes beside other things the faces' actors come back, for their opacity.
+std::vector<vtkSmartPointer<vtkActor>> add_still_parts(vtkRenderer* renderer, const ViewParts& parts, double size,
+                                                       double line_width, double opacity,
+                                                       const std::array<double, 3>& backward);
+// The spheres of a level: one tree's by branch, several trees' by tree.
+std::vector<vtkSmartPointer<vtkActor>> level_actors(const NamedParts<Data>& trees);
+
+// "lamp.obj, lamp.orchard, level 2", and the figures of what is seen. level < 0: there is none.
+std::string caption_of(const ViewParts& parts, int level);
+std::string detail_of(const ViewParts& parts, int level);
+
+}  // namespace orchard::detail
