@@ -16,12 +16,14 @@ struct Detector::State {
   // What `made()` gives. Where there is no memory for it, nobody knows what has been done.
   template <typename Make>
   auto or_fail(Make&& made) {
-    try {
-      return made();
-    } catch (...) {
-      failed = true;
-      throw;
-    }
+    struct FailsUnlessDone {
+      bool& failed;
+      bool done = false;
+      ~FailsUnlessDone() { failed = failed || !done; }
+    } until_done{failed};
+    auto result = made();
+    until_done.done = true;
+    return result;
   }
   detail::Body& take_in(BodyId id, std::span<const BodyPart> parts, const BodyOptions& with);
   bool acceptable(std::span<const BodyPart> parts) const noexcept;
