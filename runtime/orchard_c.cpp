@@ -1,3 +1,4 @@
+// The C interface, function after function as orchard.h has them: hence more than 300 lines.
 #include <algorithm>
 #include <memory>
 #include <new>

@@ -55,8 +55,8 @@ bool BallSolver::step(Point& center) {
   const double equal = kEqual * surface_.bounding_radius();
   const std::size_t rows = contacts_.size() - 1;
   if (contacts_.back().distance - contacts_.front().distance <= equal) return false;
-  Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3> matrix(rows, 3);
-  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> side(rows);
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();  // rows of zeros ask for nothing
+  Eigen::Vector3d side = Eigen::Vector3d::Zero();
   const Vector first = (center - contacts_[0].position) / contacts_[0].distance;
   for (std::size_t i = 0; i < rows; ++i) {
     const ClosestPoint& contact = contacts_[i + 1];
@@ -67,7 +67,7 @@ bool BallSolver::step(Point& center) {
   if (rows == 1) {
     move = matrix.row(0).transpose() * (side(0) / matrix.row(0).squaredNorm());
   } else {
-    Eigen::JacobiSVD<decltype(matrix)> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Eigen::JacobiSVD<Eigen::Matrix3d, Eigen::NoQRPreconditioner> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
     svd.setThreshold(kRank);
     move = svd.solve(side);
   }

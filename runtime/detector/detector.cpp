@@ -1,3 +1,5 @@
+// All that changes a detector between steps, hence more than 300 lines; steps, events and manifolds have files of their
+// own.
 #include "orchard/runtime/detector.h"
 
 #include <algorithm>

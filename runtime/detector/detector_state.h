@@ -39,10 +39,10 @@ struct Detector::State {
 
   // detector_step.cpp
   void run(double time, const FrameBudget& budget, Frame& frame);
-  void run_to(Step last, Step end, detail::Purse& purse, Frame& frame);
+  void run_to(Step last, Step end, detail::StepBudget& budget, Frame& frame);
   void watch(Step step);
   bool keeps_more(const detail::Body& body, Step step, const Motion& motion) const noexcept;
-  void answer(Step step, const Advance& now, detail::Purse& purse, Frame& frame);
+  void answer(Step step, const Advance& now, detail::StepBudget& budget, Frame& frame);
   void gather(Step step, const Advance& now);
   void match(Step step, Frame& frame);
   void open_records(Step step);
@@ -69,7 +69,7 @@ struct Detector::State {
   PairFilter filter;
   std::uint32_t filter_version = 0;
   detail::RecordTable records;
-  detail::Queries queries;
+  detail::QueryPool queries;
   detail::Rounds rounds;
 
   Step answered = -1;  // up to which steps have been answered

@@ -10,8 +10,8 @@ namespace orchard::runtime {
 using detail::Body;
 using detail::is_half_space;
 using detail::kNeverStep;
-using detail::Purse;
 using detail::Record;
+using detail::StepBudget;
 
 namespace {
 
@@ -107,24 +107,24 @@ std::size_t Detector::foresee(std::span<StepLoad> loads) const noexcept {
   return known;
 }
 
-void Detector::State::run(double time, const FrameBudget& budget, Frame& frame) {
+void Detector::State::run(double time, const FrameBudget& given, Frame& frame) {
   events.clear(), refused.clear(), broken.clear();
   queries.prepare(shapes, shape_count,
                   options.executor.run == nullptr ? 1 : std::max<std::size_t>(1, options.executor.concurrency) * 4);
-  Purse purse(budget);
+  StepBudget budget(given);
   const double steps = std::floor((time - clock.start) / clock.time_step + detail::kStepSlack);
   const Step end = static_cast<Step>(std::max(-1.0, steps));
   const std::uint64_t asked_before = broad.motions_asked();
   if (options.watch) {
     while (answered < end) {
       watch(answered + 1);
-      run_to(answered + 1, end, purse, frame);
+      run_to(answered + 1, end, budget, frame);
     }
   } else {
-    run_to(end, end, purse, frame);
+    run_to(end, end, budget, frame);
   }
   frame.motions_asked = broad.motions_asked() - asked_before;
-  frame.work = purse.spent();
+  frame.work = budget.spent();
   frame.time = clock.time(std::max<Step>(answered, 0));
   const Step next = records.known().empty() ? halves.next() : answered + 1;
   frame.next_time =
@@ -136,8 +136,8 @@ void Detector::State::run(double time, const FrameBudget& budget, Frame& frame) 
   frame.events = events, frame.refused = refused, frame.broken = broken;
 }
 
-// The steps up to `last` that have anything. `end`: the last step of this call, among which the purse is shared.
-void Detector::State::run_to(Step last, Step end, Purse& purse, Frame& frame) {
+// The steps up to `last` that have anything. `end`: the last step of this call, among which the budget is shared.
+void Detector::State::run_to(Step last, Step end, StepBudget& budget, Frame& frame) {
   while (answered < last) {
     // What overlapped at the step before may be apart at the next; half-spaces are not the broad phase's.
     const bool under_way = !records.known().empty();
@@ -148,12 +148,12 @@ void Detector::State::run_to(Step last, Step end, Purse& purse, Frame& frame) {
     broad.foresee(clock.time(answered), {&next, 1});
     meetings = static_cast<double>(next.meetings);
     Advance now{};
-    Purse share(purse.share(static_cast<std::uint64_t>(end - answered)));
-    if (!purse.limited()) {
+    StepBudget share(budget.share(static_cast<std::uint64_t>(end - answered)));
+    if (!budget.limited()) {
       now = broad.advance(time);
     } else {
       WorkBudget work;
-      if (purse.limited_in_work()) work.work = std::max<std::uint64_t>(1, share.left() / (2 * kMotionWork));
+      if (budget.limited_in_work()) work.work = std::max<std::uint64_t>(1, share.left() / (2 * kMotionWork));
       work.time = share.time_left() / 2;
       now = broad.advance(time, work);
     }
@@ -165,7 +165,7 @@ void Detector::State::run_to(Step last, Step end, Purse& purse, Frame& frame) {
     const bool found = !now.pairs.empty() || now.incomplete_from != kNoClass;
     const Step step = found ? std::llround((now.time - clock.start) / clock.time_step) : stop;
     if (found || under_way || halves.next() <= step) answer(step, now, share, frame);
-    purse.spend(share.spent());
+    budget.spend(share.spent());
     answered = step;
   }
 }
@@ -221,19 +221,19 @@ void Detector::State::learn(std::uint64_t work) noexcept {
   if (known_pairs > 0) smooth(share_that_part, static_cast<double>(parted_pairs) / static_cast<double>(known_pairs));
 }
 
-void Detector::State::answer(Step step, const Advance& now, Purse& purse, Frame& frame) {
+void Detector::State::answer(Step step, const Advance& now, StepBudget& budget, Frame& frame) {
   gather(step, now);
   match(step, frame);
   open_records(step);
   rounds.use(options.executor);
-  const std::uint64_t before = purse.spent();
-  if (purse.limited()) {
-    rounds.answer_within(records, open, step, purse);
+  const std::uint64_t before = budget.spent();
+  if (budget.limited()) {
+    rounds.answer_within(records, open, step, budget);
   } else {
-    purse.spend(rounds.answer_all(records, open, step));
+    budget.spend(rounds.answer_all(records, open, step));
   }
-  rounds.sweep_all(records, open, purse);
-  learn(purse.spent() - before);
+  rounds.sweep_all(records, open, budget);
+  learn(budget.spent() - before);
   report(step, frame);
   ++frame.steps;
 }

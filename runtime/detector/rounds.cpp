@@ -10,8 +10,6 @@ constexpr std::uint64_t kFirstSlice = 256;   // tests, of a level of spheres
 constexpr std::uint64_t kExactSlice = 1024;  // of the first exact slice; each further one is four times as large
 constexpr std::uint64_t kDeepSlice = 4096;   // for who has waited
 constexpr double kSlow = 0.005;              // of the smaller body's size, per step
-constexpr std::size_t kJobsPerThread = 4;    // some pairs cost a hundred times what others do
-constexpr std::size_t kLeastPerJob = 8;
 
 // What a record knows before anything is asked: nobody's parts are near.
 void forget_answer(Record& record) noexcept {
@@ -37,60 +35,15 @@ void take_in(Record& record, const Verdict& verdict, std::uint32_t part_a, std::
 
 }  // namespace
 
-void Queries::prepare(const ShapeTable& shapes, std::size_t shape_count, std::size_t jobs) {
-  const bool more = seen_shapes_ < shape_count;
-  for (; seen_shapes_ < shape_count; ++seen_shapes_) {
-    const Shape& shape = shapes[static_cast<ShapeId>(seen_shapes_)];
-    if (shape.has_tree() && (deepest_.tree.blocks.empty() || deepest_.tree.patch_depth <= shape.tree.patch_depth)) {
-      deepest_ = shape.prepared;
-    }
-  }
-  const std::size_t before = scratches_.size();
-  while (scratches_.size() < jobs) scratches_.push_back(std::make_unique<Scratch>());
-  if (deepest_.tree.blocks.empty()) return;
-  for (std::size_t i = more ? 0 : before; i < scratches_.size(); ++i) {
-    scratches_[i]->workspace.narrow.bind(deepest_, deepest_);
-    scratches_[i]->workspace.distance.bind(deepest_, deepest_);
-  }
-  for (std::size_t i = 0; more && i < pool_.size(); ++i) pool_[i]->bind(deepest_, deepest_);
-}
-
-NarrowPhase* Queries::take(std::size_t most) {
-  if (used_ >= most) return nullptr;
-  if (used_ == pool_.size()) {
-    pool_.push_back(std::make_unique<NarrowPhase>(kRoom));
-    if (!deepest_.tree.blocks.empty()) pool_.back()->bind(deepest_, deepest_);
-  }
-  return pool_[used_++].get();
-}
-
-std::size_t Queries::memory_bytes() const noexcept {
-  const std::size_t stack = (std::size_t{kBlockWidth} * (2 * deepest_.tree.patch_depth + 1) + 1) * 48;
-  const std::size_t lists = 3 * (kRoom + std::size_t{kBlockWidth} * kBlockWidth) * 8;
-  return scratches_.size() * (sizeof(Scratch) + 2 * stack) + pool_.size() * (sizeof(NarrowPhase) + stack + lists);
-}
-
 void Rounds::place(const Record& record, std::uint32_t part_a, std::uint32_t part_b, PlacedPair& pair) const noexcept {
   places_->place(record.pair.a, part_a, pair.a);
   places_->place(record.pair.b, part_b, pair.b);
   if (pair.b.shape == nullptr) pair.half = places_->half_space(record.pair.b);
 }
 
-// work(begin, end, scratch) for consecutive parts of 0 .. count - 1; the cutting depends on nothing but `count` and the
-// executor's concurrency, and no answer on the cutting.
-template <typename Work>
-void Rounds::in_parallel(std::size_t count, Work&& work) const {
-  const std::size_t wanted = executor_->run == nullptr ? 1 : executor_->concurrency * kJobsPerThread;
-  const std::size_t jobs = std::clamp<std::size_t>(std::min(wanted, queries_->jobs()), 1, count / kLeastPerJob + 1);
-  auto job = [&](std::size_t index) {
-    work(count * index / jobs, count * (index + 1) / jobs, queries_->scratch(index));
-  };
-  run_jobs(*executor_, jobs, job);
-}
-
 // Two bodies of one tree each, as most are: what the last step found is where this one begins, unless they pass each
 // other so fast that looking for what lasts would not pay.
-void Rounds::answer_coherently(Record& record, Step now, Queries::Scratch& scratch) const noexcept {
+void Rounds::answer_coherently(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept {
   forget_answer(record);
   PlacedPair pair;
   place(record, 0, 0, pair);
@@ -115,7 +68,7 @@ void Rounds::answer_coherently(Record& record, Step now, Queries::Scratch& scrat
   record.verdict.work = scratch.work - before;
 }
 
-void Rounds::answer(Record& record, Step now, Queries::Scratch& scratch) const noexcept {
+void Rounds::answer(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept {
   if (record.coherent) return answer_coherently(record, now, scratch);
   forget_answer(record);
   PlacedPair pair;
@@ -141,7 +94,7 @@ void Rounds::answer(Record& record, Step now, Queries::Scratch& scratch) const n
 
 std::uint64_t Rounds::answer_all(RecordTable& records, std::span<const std::uint32_t> open, Step now) {
   for (std::size_t job = 0; job < queries_->jobs(); ++job) queries_->scratch(job).work = 0;
-  in_parallel(open.size(), [&](std::size_t begin, std::size_t end, Queries::Scratch& scratch) {
+  in_parallel(open.size(), [&](std::size_t begin, std::size_t end, QueryPool::Scratch& scratch) {
     for (std::size_t i = begin; i < end; ++i) answer(records[open[i]], now, scratch);
   });
   std::uint64_t work = 0;
@@ -172,10 +125,10 @@ void Rounds::make_tasks(const RecordTable& records, std::span<const std::uint32_
 }
 
 // The spheres of the parts, the roots, and simple pairs at once: as many as the budget allows.
-void Rounds::begin_tasks(Purse& purse, RecordTable& records) {
+void Rounds::begin_tasks(StepBudget& budget, RecordTable& records) {
   std::size_t count = 0;
   std::uint64_t cost = 0;
-  for (; count < tasks_.size() && cost < purse.left(); ++count) {
+  for (; count < tasks_.size() && cost < budget.left(); ++count) {
     const Task& task = tasks_[count];
     const Record& record = records[task.record];
     PlacedPair pair;
@@ -192,8 +145,8 @@ void Rounds::begin_tasks(Purse& purse, RecordTable& records) {
     tasks_[i].verdict = unasked(pair);
     tasks_[i].done = tasks_[i].verdict.answer == Answer::no;
   }
-  const Purse& clock = purse;
-  in_parallel(count, [&](std::size_t begin, std::size_t end, Queries::Scratch& scratch) {
+  const StepBudget& clock = budget;
+  in_parallel(count, [&](std::size_t begin, std::size_t end, QueryPool::Scratch& scratch) {
     for (std::size_t i = begin; i < end; ++i) {
       Task& task = tasks_[i];
       if (task.done || clock.late()) continue;
@@ -211,7 +164,7 @@ void Rounds::begin_tasks(Purse& purse, RecordTable& records) {
       task.done = scratch.workspace.narrow.finished();
     }
   });
-  purse.spend(cost);
+  budget.spend(cost);
 }
 
 void Rounds::refine_one(Task& task, const Record& record, std::uint64_t slice, bool by_level,
@@ -238,15 +191,16 @@ void Rounds::refine_one(Task& task, const Record& record, std::uint64_t slice, b
 
 // One piece for each of order_, as far as `most` goes; what may run at once has its overshoot set aside, so that the
 // budget holds.
-void Rounds::refine_once(std::uint64_t slice, bool by_level, std::uint64_t most, Purse& purse, RecordTable& records) {
+void Rounds::refine_once(std::uint64_t slice, bool by_level, std::uint64_t most, StepBudget& budget,
+                         RecordTable& records) {
   for (std::size_t next = 0; next < order_.size();) {
-    const std::uint64_t may = std::min(most, purse.left());
-    if (may == 0 || purse.late()) return;
+    const std::uint64_t may = std::min(most, budget.left());
+    if (may == 0 || budget.late()) return;
     const std::uint64_t at_once = std::min<std::uint64_t>(order_.size() - next, may / (slice + kMostOvershoot));
     const auto count = static_cast<std::size_t>(std::max<std::uint64_t>(at_once, 1));
     const std::uint64_t piece = at_once > 0 ? slice : std::min(slice, may);
-    const Purse& clock = purse;
-    in_parallel(count, [&](std::size_t from, std::size_t to, Queries::Scratch&) {
+    const StepBudget& clock = budget;
+    in_parallel(count, [&](std::size_t from, std::size_t to, QueryPool::Scratch&) {
       for (std::size_t i = from; i < to; ++i) {
         Task& task = tasks_[order_[next + i]];
         task.work = 0;
@@ -255,7 +209,7 @@ void Rounds::refine_once(std::uint64_t slice, bool by_level, std::uint64_t most,
     });
     for (std::size_t i = 0; i < count; ++i) {
       const Task& task = tasks_[order_[next + i]];
-      purse.spend(task.work);
+      budget.spend(task.work);
       most -= std::min(most, task.work);
       if (task.verdict.answer == Answer::yes) records[task.record].verdict.answer = Answer::yes;
     }
@@ -277,14 +231,14 @@ void Rounds::order_open(std::size_t begin, std::size_t end, std::uint32_t least_
 
 // Half of it straight to certainty for those that have waited, one after the other: else a small budget would end
 // before anybody gets anywhere, step after step. Then a level for each, then slices.
-void Rounds::refine_class(std::size_t begin, std::size_t end, Purse& purse, RecordTable& records) {
+void Rounds::refine_class(std::size_t begin, std::size_t end, StepBudget& budget, RecordTable& records) {
   order_open(begin, end, 1, records);
-  if (!order_.empty()) refine_once(kDeepSlice, false, purse.left() / 2 + 1, purse, records);
+  if (!order_.empty()) refine_once(kDeepSlice, false, budget.left() / 2 + 1, budget, records);
   std::uint64_t slice = kFirstSlice;
-  for (bool by_level = true; !purse.empty(); by_level = false) {
+  for (bool by_level = true; !budget.empty(); by_level = false) {
     order_open(begin, end, 0, records);
     if (order_.empty()) return;
-    refine_once(slice, by_level, std::numeric_limits<std::uint64_t>::max(), purse, records);
+    refine_once(slice, by_level, std::numeric_limits<std::uint64_t>::max(), budget, records);
     slice = by_level ? kExactSlice : std::min<std::uint64_t>(4 * slice, std::uint64_t{1} << 32);
   }
 }
@@ -299,79 +253,21 @@ void Rounds::fold(RecordTable& records, std::span<const std::uint32_t> open, Ste
   }
 }
 
-void Rounds::answer_within(RecordTable& records, std::span<const std::uint32_t> open, Step now, Purse& purse) {
+void Rounds::answer_within(RecordTable& records, std::span<const std::uint32_t> open, Step now, StepBudget& budget) {
   for (const std::uint32_t index : open) forget_answer(records[index]);
   make_tasks(records, open);
-  begin_tasks(purse, records);
+  begin_tasks(budget, records);
   for (const Task& task : tasks_) {
     if (task.verdict.answer == Answer::yes) records[task.record].verdict.answer = Answer::yes;
   }
-  for (std::size_t begin = 0; begin < tasks_.size() && !purse.empty();) {
+  for (std::size_t begin = 0; begin < tasks_.size() && !budget.empty();) {
     std::size_t end = begin;
     while (end < tasks_.size() && tasks_[end].importance == tasks_[begin].importance) ++end;
-    refine_class(begin, end, purse, records);
+    refine_class(begin, end, budget, records);
     begin = end;
   }
   queries_->give_back_all();
   fold(records, open, now);
-}
-
-void Rounds::sweep_one(Record& record, Queries::Scratch& scratch, std::uint64_t most) const noexcept {
-  PlacedPair from, to;
-  const bool half = is_half_space(record.pair.b);
-  if (half) from.half = to.half = places_->half_space(record.pair.b);
-  Swept first;
-  first.from = first.to = 2;
-  for (std::uint32_t i = 0; i < places_->parts(record.pair.a); ++i) {
-    places_->place_before(record.pair.a, i, from.a);
-    places_->place(record.pair.a, i, to.a);
-    for (std::uint32_t j = 0; j < places_->parts(record.pair.b); ++j) {
-      places_->place_before(record.pair.b, j, from.b);
-      places_->place(record.pair.b, j, to.b);
-      const Swept swept = sweep(scratch.workspace.narrow, scratch.workspace.distance, from, to, most, scratch.work);
-      if (swept.answer == Answer::no) continue;
-      const bool better = swept.answer != first.answer ? swept.answer > first.answer : swept.from < first.from;
-      if (!better) continue;
-      first = swept;
-      record.part_a = i, record.part_b = j;
-    }
-  }
-  if (first.answer == Answer::no) return;
-  record.impact = true;
-  record.impact_from = first.from;
-  record.impact_to = first.answer == Answer::yes ? first.to : std::numeric_limits<double>::quiet_NaN();
-  if (record.verdict.answer == Answer::yes) return;
-  if (first.answer == Answer::yes) {
-    record.verdict = first.verdict;
-  } else {
-    record.verdict.answer = Answer::maybe;
-    record.answered = -1;
-  }
-}
-
-void Rounds::sweep_all(RecordTable& records, std::span<const std::uint32_t> open, Purse& purse) {
-  sweeps_.clear();
-  for (const std::uint32_t index : open) {
-    if (records[index].swept) sweeps_.push_back(index);
-  }
-  if (sweeps_.empty()) return;
-  std::size_t done = 0;
-  while (done < sweeps_.size() && !purse.empty()) {
-    const std::size_t count = purse.limited() ? 1 : sweeps_.size() - done;
-    const std::uint64_t most = purse.left();
-    for (std::size_t job = 0; job < queries_->jobs(); ++job) queries_->scratch(job).work = 0;
-    in_parallel(count, [&](std::size_t begin, std::size_t end, Queries::Scratch& scratch) {
-      for (std::size_t i = begin; i < end; ++i) sweep_one(records[sweeps_[done + i]], scratch, most);
-    });
-    for (std::size_t job = 0; job < queries_->jobs(); ++job) purse.spend(queries_->scratch(job).work);
-    done += count;
-  }
-  for (; done < sweeps_.size(); ++done) {  // nobody knows what was in between
-    Record& record = records[sweeps_[done]];
-    if (record.verdict.answer == Answer::yes) continue;
-    record.verdict.answer = Answer::maybe;
-    record.answered = -1;
-  }
 }
 
 }  // namespace orchard::runtime::detail

@@ -1,3 +1,4 @@
+// One search, whose steps share what it knows of both motions: hence more than 300 lines.
 #include "orchard/runtime/time_of_impact.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Templates that every walk through one tree is an instance of: hence a header of more than 300 lines.
 #pragma once
 #include <algorithm>
 #include <bit>

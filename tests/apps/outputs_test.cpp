@@ -24,11 +24,11 @@ struct Models {
   std::vector<std::vector<std::string>> runs(const std::string& folder) const {
     std::vector<std::vector<std::string>> all;
     for (const std::string& mesh : {ball, l}) {
-      all.push_back({"build", mesh, "--samples", "300", "--depth", "1", "--export", "json,urdf"});
-      all.push_back({"medial", mesh, "--samples", "300"});
-      all.push_back({"medial", mesh, "--sweep", "samples=200", "--quality-samples", "200"});
+      all.push_back({"build", mesh, "--samples", "150", "--depth", "1", "--export", "json,urdf"});
+      all.push_back({"medial", mesh, "--samples", "150"});
+      all.push_back({"medial", mesh, "--sweep", "samples=100", "--quality-samples", "100"});
       all.push_back({"sample", mesh, "--samples", "200"});
-      all.push_back({"voronoi", mesh, "--samples", "250"});
+      all.push_back({"voronoi", mesh, "--samples", "150"});
     }
     for (auto& run : all) run.insert(run.end(), {"-o", (here / folder).string(), "--quiet"});
     return all;

@@ -1,0 +1,38 @@
+#include "query_pool.h"
+
+namespace orchard::runtime::detail {
+
+void QueryPool::prepare(const ShapeTable& shapes, std::size_t shape_count, std::size_t jobs) {
+  const bool more = seen_shapes_ < shape_count;
+  for (; seen_shapes_ < shape_count; ++seen_shapes_) {
+    const Shape& shape = shapes[static_cast<ShapeId>(seen_shapes_)];
+    if (shape.has_tree() && (deepest_.tree.blocks.empty() || deepest_.tree.patch_depth <= shape.tree.patch_depth)) {
+      deepest_ = shape.prepared;
+    }
+  }
+  const std::size_t before = scratches_.size();
+  while (scratches_.size() < jobs) scratches_.push_back(std::make_unique<Scratch>());
+  if (deepest_.tree.blocks.empty()) return;
+  for (std::size_t i = more ? 0 : before; i < scratches_.size(); ++i) {
+    scratches_[i]->workspace.narrow.bind(deepest_, deepest_);
+    scratches_[i]->workspace.distance.bind(deepest_, deepest_);
+  }
+  for (std::size_t i = 0; more && i < pool_.size(); ++i) pool_[i]->bind(deepest_, deepest_);
+}
+
+NarrowPhase* QueryPool::take(std::size_t most) {
+  if (used_ >= most) return nullptr;
+  if (used_ == pool_.size()) {
+    pool_.push_back(std::make_unique<NarrowPhase>(kRoom));
+    if (!deepest_.tree.blocks.empty()) pool_.back()->bind(deepest_, deepest_);
+  }
+  return pool_[used_++].get();
+}
+
+std::size_t QueryPool::memory_bytes() const noexcept {
+  const std::size_t stack = (std::size_t{kBlockWidth} * (2 * deepest_.tree.patch_depth + 1) + 1) * 48;
+  const std::size_t lists = 3 * (kRoom + std::size_t{kBlockWidth} * kBlockWidth) * 8;
+  return scratches_.size() * (sizeof(Scratch) + 2 * stack) + pool_.size() * (sizeof(NarrowPhase) + stack + lists);
+}
+
+}  // namespace orchard::runtime::detail
