@@ -131,7 +131,7 @@ json to_json(const Verification& result, const Subject& subject) {
               {"triangles_unlisted", result.triangles_unlisted},
               {"uncovered_share_likely", result.uncovered.likely_area / subject.surface.report().area},
               {"uncovered_share", bounds_json(result.uncovered.area, subject.surface.report().area)},
-              {"uncovered_depth_over_radius", bounds_json(result.uncovered.depth, radius)},
+              {"uncovered_distance_over_radius", bounds_json(result.uncovered.distance, radius)},
               {"uncovered_nodes", result.uncovered_nodes},
               {"nodes", result.nodes},
               {"bounds_violated", result.bounds_violated},
@@ -160,7 +160,7 @@ void print_violations(const Verification& result) {
 void print_uncovered(const Verification& result, const Surface& surface) {
   if (result.triangles_uncovered == 0) return;
   const double radius = surface.bounding_radius();
-  const Bounds &area = result.uncovered.area, &depth = result.uncovered.depth;
+  const Bounds &area = result.uncovered.area, &depth = result.uncovered.distance;
   const auto percent = [&](double part) { return 100 * part / surface.report().area; };
   if (result.only_tangent(radius)) {
     fmt::print("spheres meet there without overlapping, which cannot be told from a gap; nodes");

@@ -134,7 +134,8 @@ json to_json(const Run& run) {
     result["insertions"] = {{"certified", report.certified_insertions}, {"settled", report.settled_insertions},
                             {"exact", report.exact_insertions},         {"constrained", report.constrained_insertions},
                             {"exact_signs", report.exact_signs},        {"coplanar_centers", report.coplanar_centers}};
-  if (run.algorithm == VoronoiAlgorithm::highest_first) result["certified_depth_over_radius"] = report.certified_depth;
+  if (run.algorithm == VoronoiAlgorithm::highest_first)
+    result["certified_intrusion_over_radius"] = report.certified_intrusion;
   return result;
 }
 
@@ -162,7 +163,7 @@ void print_insertions(const Run& run) {
              report.constrained_insertions, report.exact_signs ? "; all with exact signs in the end" : "");
   fmt::print(
       "certified: no point is deeper than {:.2g} of the bounding radius in a sphere, or farther beyond the hull\n",
-      report.certified_depth);
+      report.certified_intrusion);
   if (!report.duplicates.empty())
     fmt::print("{} points coincide with an earlier one and were left out\n", report.duplicates.size());
 }

@@ -171,7 +171,7 @@ bool triangle_covered(const std::array<Point, 3>& triangle, std::span<const Path
   return detail::check(detail::TrianglePlane(triangle), balls, detail::LemmaCheck::Want::answer).covered;
 }
 
-double path_depth(const Point& point, std::span<const PathBall> balls) {
+double path_distance(const Point& point, std::span<const PathBall> balls) {
   std::vector<double> excess(balls.size());
   double min = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < balls.size(); ++i) {

@@ -40,7 +40,7 @@ void PathForest::gather(const std::array<Point, 3>& triangle, NearBalls& near) c
     for (Index child : children_[near.original[i]]) visit(child, i);
 }
 
-double PathForest::depth(const Point& point) const {
+double PathForest::distance(const Point& point) const {
   double min = std::numeric_limits<double>::infinity();
   for (Index root : roots_) descend(root, point, -std::numeric_limits<double>::infinity(), min);
   return min;

@@ -9,15 +9,15 @@ namespace {
 struct Cell {
   std::array<Point, 3> corners;
   double area, reach;  // reach: of the farthest corner from the middle
-  double depth;        // at the middle
+  double distance;     // at the middle
   Point middle() const { return (corners[0] + corners[1] + corners[2]) / 3; }
-  double deepest() const { return depth + reach; }
+  double farthest() const { return distance + reach; }
 };
 struct Smaller {
   bool operator()(const Cell& a, const Cell& b) const { return a.area < b.area; }
 };
 struct Shallower {
-  bool operator()(const Cell& a, const Cell& b) const { return a.deepest() < b.deepest(); }
+  bool operator()(const Cell& a, const Cell& b) const { return a.farthest() < b.farthest(); }
 };
 
 class Measurer {
@@ -46,8 +46,8 @@ class Measurer {
     part_.area = {sure_area_, sure_area_ + std::max(0.0, open_area_) + settled_area_};
     part_.likely_area = sure_area_;
     for (const Cell& cell : settled_)
-      if (cell.depth > 0 && cell.depth <= cell.reach) part_.likely_area += cell.area;
-    bound_depth();
+      if (cell.distance > 0 && cell.distance <= cell.reach) part_.likely_area += cell.area;
+    bound_distance();
     return part_;
   }
 
@@ -71,8 +71,8 @@ class Measurer {
   void classify(const std::array<Point, 3>& corners, double area) {
     ++cells_;
     const Cell cell = make_cell(corners, area);
-    if (cell.deepest() <= 0) return;
-    if (cell.depth > cell.reach) {
+    if (cell.farthest() <= 0) return;
+    if (cell.distance > cell.reach) {
       sure_area_ += area;
       settled_.push_back(cell);
       return;
@@ -93,37 +93,38 @@ class Measurer {
     for (const Point& corner : corners) cell.reach = std::max(cell.reach, (corner - middle).norm());
     cell.reach *= 1 + 1e-12;
     for (const Point& point : {middle, corners[0], corners[1], corners[2]}) {
-      const double depth = forest_.depth(point);
-      if (point == middle) cell.depth = depth;
-      if (depth <= part_.depth.lower) continue;
-      part_.depth.lower = depth;
-      part_.deepest = point;
+      const double distance = forest_.distance(point);
+      if (point == middle) cell.distance = distance;
+      if (distance <= part_.distance.lower) continue;
+      part_.distance.lower = distance;
+      part_.farthest = point;
     }
     return cell;
   }
 
   // Empties open_.
-  void bound_depth() {
+  void bound_distance() {
     std::priority_queue<Cell, std::vector<Cell>, Shallower> cells;
     for (; !open_.empty(); open_.pop()) {
       cells.push(open_.top());
-      if (open_.top().depth > 0) part_.likely_area += open_.top().area;
+      if (open_.top().distance > 0) part_.likely_area += open_.top().area;
     }
     for (const Cell& cell : settled_) cells.push(cell);
     const auto width = [&] {
-      return std::max(options_.depth_tolerance.of_radius * radius_,
-                      options_.depth_tolerance.of_distance * part_.depth.lower);
+      return std::max(options_.distance_tolerance.of_radius * radius_,
+                      options_.distance_tolerance.of_distance * part_.distance.lower);
     };
     for (Index spent = 0; !cells.empty() && spent < options_.max_cells; spent += 4) {
       const Cell cell = cells.top();
-      if (cell.deepest() <= part_.depth.lower + width()) break;
+      if (cell.farthest() <= part_.distance.lower + width()) break;
       cells.pop();
       for_each_quarter(cell, [&](const auto& corners) {
         const Cell quarter = make_cell(corners, cell.area / 4);
-        if (quarter.deepest() > 0 && (quarter.depth > quarter.reach || !covered(corners))) cells.push(quarter);
+        if (quarter.farthest() > 0 && (quarter.distance > quarter.reach || !covered(corners))) cells.push(quarter);
       });
     }
-    part_.depth.upper = cells.empty() ? part_.depth.lower : std::max(part_.depth.lower, cells.top().deepest());
+    part_.distance.upper =
+        cells.empty() ? part_.distance.lower : std::max(part_.distance.lower, cells.top().farthest());
   }
 
   const PathForest& forest_;

@@ -74,7 +74,7 @@ class Grower {
 // One path for the whole uncovered region, or one for each of its points, whichever grows less.
 double take_in(Grower& grower, const detail::UncoveredRegion& uncovered) {
   Points all = uncovered.corners;
-  if (all.empty()) all.push_back(uncovered.deepest);
+  if (all.empty()) all.push_back(uncovered.farthest);
   const double together = grower.cost_of_best_path(all);
   if (together == 0) return 0;
   double apart = 0;

@@ -5,7 +5,7 @@
 namespace orchard::detail {
 namespace {
 
-// An uncovered region is taken in whole unless that costs so many times what its deepest point does.
+// An uncovered region is taken in whole unless that costs so many times what its farthest point does.
 constexpr double kDearer = 8;
 
 }  // namespace
@@ -14,9 +14,9 @@ std::vector<Taking> find_takers(const std::vector<UncoveredRegion>& uncovered, c
   std::vector<Taking> takings(uncovered.size());
   tbb::parallel_for(std::size_t{0}, uncovered.size(), [&](std::size_t i) {
     const Taker whole = cheapest(uncovered[i].points());
-    const Taker deepest = cheapest({&uncovered[i].deepest, 1});
-    const bool together = whole.rise <= kDearer * deepest.rise;  // true if both are infinite, too: none takes it
-    takings[i] = {together ? whole.ball : deepest.ball, together};
+    const Taker farthest = cheapest({&uncovered[i].farthest, 1});
+    const bool together = whole.rise <= kDearer * farthest.rise;  // true if both are infinite, too: none takes it
+    takings[i] = {together ? whole.ball : farthest.ball, together};
   });
   return takings;
 }

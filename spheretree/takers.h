@@ -24,13 +24,13 @@ struct Taker {
 using CheapestTaker = std::function<Taker(std::span<const Point>)>;
 
 struct Taking {
-  Index ball = kNone;  // none: no ball can hold even the deepest point
-  bool whole = false;  // takes the region's corners in as well as its deepest point
+  Index ball = kNone;  // none: no ball can hold even the farthest point
+  bool whole = false;  // takes the region's corners in as well as its farthest point
 };
 
 // Where each uncovered region goes: as a whole to the ball that this costs least, unless that costs many times what its
-// deepest point alone does, or no ball can hold it. Then it is a long sliver, or lies across the border of a path
-// region, and will fall apart: only its deepest point goes, to the ball that this costs least. Parallel over the
+// farthest point alone does, or no ball can hold it. Then it is a long sliver, or lies across the border of a path
+// region, and will fall apart: only its farthest point goes, to the ball that this costs least. Parallel over the
 // regions.
 std::vector<Taking> find_takers(const std::vector<UncoveredRegion>& uncovered, const CheapestTaker& cheapest);
 

@@ -47,10 +47,10 @@ class Prober {
 
   void try_point(const Point& point, UncoveredRegion& region) const {
     const Point inside = closest_point_of_triangle(point, corners_[0], corners_[1], corners_[2]).position;
-    const double depth = path_depth(inside, near_.balls);
-    if (depth <= region.depth) return;
-    region.depth = depth;
-    region.deepest = inside;
+    const double distance = path_distance(inside, near_.balls);
+    if (distance <= region.distance) return;
+    region.distance = distance;
+    region.farthest = inside;
   }
 
   // An uncovered region between an arc and an edge of the triangle has no corner off its border: look outward from the
@@ -99,7 +99,7 @@ std::vector<UncoveredRegion> uncovered_regions_of(const UncoveredTriangle& uncov
 
 std::vector<Point> UncoveredRegion::points() const {
   std::vector<Point> points = corners;
-  points.push_back(deepest);
+  points.push_back(farthest);
   return points;
 }
 
@@ -123,7 +123,7 @@ std::vector<UncoveredRegion> find_deep_uncovered_regions(const Surface& surface,
   const double radius = surface.bounding_radius();
   auto uncovered = find_uncovered_regions(surface, coverage, balls, tolerance::kCoverMargin * radius);
   std::erase_if(uncovered,
-                [&](const UncoveredRegion& region) { return region.depth <= kLeftToGrowth * kLastGrowth * radius; });
+                [&](const UncoveredRegion& region) { return region.distance <= kLeftToGrowth * kLastGrowth * radius; });
   return uncovered;
 }
 

@@ -15,10 +15,10 @@ inline constexpr double kLastGrowth = 2e-5;
 // A connected part of a triangle that no path region is certain to hold.
 struct UncoveredRegion {
   std::vector<Point> corners;  // on its border: ends and middles of uncovered arcs
-  Point deepest;               // of the points tried, the one farthest outside
-  double depth = 0;            // how far; <= 0: nothing but rounding is missing
+  Point farthest;              // of the points tried, the one farthest outside
+  double distance = 0;            // how far; <= 0: nothing but rounding is missing
 
-  std::vector<Point> points() const;  // corners and deepest
+  std::vector<Point> points() const;  // corners and farthest
 };
 
 // The uncovered regions of all triangles. Arcs whose ends are within `near` of each other bound the same one. An arc

@@ -37,15 +37,15 @@ TriangleViolation check_all_paths(const Surface& surface, Index triangle, const 
   const TriangleCover cover = cover_of_triangle(corners, near.balls);
   TriangleViolation found{true, {Violation::Kind::uncovered, kNone, triangle, cover.witness, 0}, {}};
   if (cover.covered) found.violation.kind = Violation::Kind::unlisted;
-  if (!cover.covered) found.violation.amount = std::max(0.0, forest.depth(cover.witness));
+  if (!cover.covered) found.violation.amount = std::max(0.0, forest.distance(cover.witness));
   for (const UncoveredArc& arc : cover.arcs) {
     found.nodes.push_back(near.original[arc.ball]);
     for (const Point& point : {arc.begin, arc.middle, arc.end}) {
-      const double depth = forest.depth(point);
-      if (depth <= found.violation.amount && found.violation.node != kNone) continue;
+      const double distance = forest.distance(point);
+      if (distance <= found.violation.amount && found.violation.node != kNone) continue;
       found.violation.node = near.original[arc.ball];
       found.violation.point = point;
-      found.violation.amount = std::max(depth, found.violation.amount);
+      found.violation.amount = std::max(distance, found.violation.amount);
     }
   }
   found.violation.point += origin;
@@ -71,9 +71,9 @@ void report_triangles(const Surface& surface, const PathForest& forest, const Po
   result.triangles_uncovered = uncovered.size();
   if (uncovered.empty()) return;
   UncoveredPartOptions part;
-  part.depth_tolerance.of_radius = 0.01 * tolerance::kTangent;
+  part.distance_tolerance.of_radius = 0.01 * tolerance::kTangent;
   result.uncovered = uncovered_part(surface, uncovered, forest, origin, part);
-  result.uncovered.deepest += origin;
+  result.uncovered.farthest += origin;
 }
 
 class Verifier {
@@ -234,7 +234,7 @@ class Verifier {
 
 bool Verification::only_tangent(double bounding_radius) const {
   return same_mesh && triangles_unlisted == 0 && bounds_violated == 0 && triangles_uncovered > 0 &&
-         uncovered.depth.upper <= tolerance::kTangent * bounding_radius;
+         uncovered.distance.upper <= tolerance::kTangent * bounding_radius;
 }
 
 Verification verify(const Surface& surface, const runtime::PackedSphereTree& tree, const VerifyOptions& options,

@@ -162,7 +162,7 @@ bool insert_with_all_means(Workspace& workspace, Search search, std::string_view
   if (outcome == Outcome::failed) throw Error("internal: a Voronoi diagram made with exact signs is not exact");
   add_counts(counts, report);
   report.exact_signs = workspace.exact();
-  report.certified_depth = certificate.depth;
+  report.certified_intrusion = certificate.intrusion;
   return outcome == Outcome::done;
 }
 

@@ -306,7 +306,7 @@ bool Cavity::doubts_are_harmless() const {
     const Vector& b = local_points_[facet.local[1]].from_new.vector;
     const Vector& c = local_points_[facet.local[2]].from_new.vector;
     const double height = a.dot(b.cross(c)) / (b - a).cross(c - a).norm();
-    if (!(power <= 2 * workspace_.harmless_depth() * height)) return false;
+    if (!(power <= 2 * workspace_.harmless_intrusion() * height)) return false;
   }
   return true;
 }

@@ -1,4 +1,4 @@
-// One proof, whose parts hand each other the depth that is left, hence more than 300 lines.
+// One proof, whose parts hand each other the intrusion that is left, hence more than 300 lines.
 #include "certificate.h"
 
 #include <algorithm>
@@ -11,16 +11,17 @@
 namespace orchard::detail {
 namespace {
 
-// The part of the depth that a single facet may take up. What takes more is wrong, not rounded.
+// The part of the intrusion that a single facet may take up. What takes more is wrong, not rounded.
 constexpr double kFacet = 1.0 / 64;
 
-// The part of the depth that a point may take up in the mean, where there are many: a straight line meets few of them.
+// The part of the intrusion that a point may take up in the mean, where there are many: a straight line meets few of
+// them.
 constexpr double kMean = 1.0 / 512;
 
-// The part of the depth that may lie between the sphere that a vertex was given and its own.
+// The part of the intrusion that may lie between the sphere that a vertex was given and its own.
 constexpr double kGiven = 1.0 / 4;
 
-// The part of the depth that may lie between a vertex's sphere and its own by the bound of its error; where that is
+// The part of the intrusion that may lie between a vertex's sphere and its own by the bound of its error; where that is
 // more, its own is found.
 constexpr double kTold = 1.0 / 64;
 
@@ -50,7 +51,7 @@ class Certifier {
     for (const Point& p : workspace.points) box.extend(p);
     losses_ = LineSum(box);
     diameter_ = box.diagonal().norm();
-    max_ = tolerance::kVoronoiDepth * diameter_ / 2;
+    max_ = tolerance::kVoronoiIntrusion * diameter_ / 2;
     const double count = static_cast<double>(workspace_.points.size());
     max_sum_ = (1 - kGiven) * max_ * std::max(1.0, kMean * count);
     share_ = kFacet * max_;
@@ -59,11 +60,11 @@ class Certifier {
 
   Certificate run() {
     if (!look_at_all()) return {};
-    if (depth_ > max_sum_ && (!look_closer() || depth_ > max_sum_)) return {};
+    if (intrusion_ > max_sum_ && (!look_closer() || intrusion_ > max_sum_)) return {};
     if (mended_) find_fattest();
     if (fattest_ != kNone && !covers_once()) return {};
     if (!are_suspects_innocent()) return {};
-    return {true, 2 * (depth_ + given_) / diameter_};
+    return {true, 2 * (intrusion_ + given_) / diameter_};
   }
 
  private:
@@ -118,10 +119,10 @@ class Certifier {
       if (!workspace_.is_free(v) && !workspace_.at_infinity(v)) workspace_.place_sharply(v);
     if (mended_) first_new_ = 0;
     share_ = small_share_;
-    depth_ = 0;
+    intrusion_ = 0;
     suspects_.clear();
     if (!look_at_all()) return false;
-    depth_ += std::min(lost_, losses_.max());
+    intrusion_ += std::min(lost_, losses_.max());
     return true;
   }
   void find_fattest() {
@@ -205,20 +206,20 @@ class Certifier {
     return true;
   }
 
-  bool add(double depth) {
-    if (!(depth <= kFacet * max_)) return false;
-    depth_ += depth;
+  bool add(double intrusion) {
+    if (!(intrusion <= kFacet * max_)) return false;
+    intrusion_ += intrusion;
     return true;
   }
   // What only lines through the facet of v that is opposite to its point i lose.
-  void note_loss(double depth, Index v, unsigned i) {
+  void note_loss(double intrusion, Index v, unsigned i) {
     if (share_ > small_share_) {
-      depth_ += depth;
+      intrusion_ += intrusion;
       return;
     }
-    lost_ += depth;
+    lost_ += intrusion;
     const auto& [a, b, c] = Cavity::kOthers[i];
-    losses_.add(depth, corner(v, a), corner(v, b), corner(v, c));
+    losses_.add(intrusion, corner(v, a), corner(v, b), corner(v, c));
   }
 
   // Across the facet between v and its neighbour i, u.
@@ -234,7 +235,7 @@ class Certifier {
       const auto& [a, b, c] = Cavity::kOthers[i];
       Vector away;
       const double blur = normal(corner(v, a), corner(v, b), corner(v, c), away);
-      lost = depth_lost(v, u, corner(v, a), away, blur, Vector::Zero(), 0);
+      lost = intrusion_added(v, u, corner(v, a), away, blur, Vector::Zero(), 0);
       if (lost <= share_ && add(lost)) return true;
     }
     if (inside_sphere(across, corner(v, 0), corner(v, 1), corner(v, 2), corner(v, 3)) != Sign::positive) {
@@ -264,11 +265,11 @@ class Certifier {
     return from_corner.dot(2 * (workspace_.vertices[v].center - corner(v, 0)) - from_corner);
   }
 
-  // The depth that may be lost from v to u, for points beyond the plane through the origin, the normal, which may be
-  // off by the angle `blur`, pointing to them, if u is on that side, or, if `up` is not zero, less than `height` above
-  // the plane that it is normal to.
-  double depth_lost(Index v, Index u, const Point& origin, const Vector& normal, double blur, const Vector& up,
-                    double height) const {
+  // The intrusion that may be lost from v to u, for points beyond the plane through the origin, the normal, which may
+  // be off by the angle `blur`, pointing to them, if u is on that side, or, if `up` is not zero, less than `height`
+  // above the plane that it is normal to.
+  double intrusion_added(Index v, Index u, const Point& origin, const Vector& normal, double blur, const Vector& up,
+                         double height) const {
     const VoronoiVertex &from = workspace_.vertices[v], &to = workspace_.vertices[u];
     const Vector step = to.center - from.center;
     if (step == Vector::Zero()) return 0;
@@ -320,7 +321,7 @@ class Certifier {
     if (away.dot(corner(v, i) - b) > 0) away = -away;
     const Index u = workspace_.vertices[v].neighbors[i];
     const Index below = workspace_.vertices[v].neighbors[3], next = workspace_.vertices[u].neighbors[3];
-    if (!add(rise + depth_lost(below, next, b, away, 16 * kRounding, normal, rise)))
+    if (!add(rise + intrusion_added(below, next, b, away, 16 * kRounding, normal, rise)))
       suspects_.insert(suspects_.end(), {v, u, below, next});
     return suspects_.size() <= kMaxSuspects;
   }
@@ -409,7 +410,7 @@ class Certifier {
   Workspace& workspace_;
   const std::vector<bool>& forming_;
   Index first_new_, fattest_ = kNone;
-  double diameter_ = 0, max_ = 0, max_sum_ = 0, share_ = 0, small_share_ = 0, depth_ = 0, lost_ = 0, given_ = 0,
+  double diameter_ = 0, max_ = 0, max_sum_ = 0, share_ = 0, small_share_ = 0, intrusion_ = 0, lost_ = 0, given_ = 0,
          max_volume_ = 0;
   std::vector<Index> hull_points_, suspects_;
   LineSum losses_{Box()};  // what facets take off more than their share

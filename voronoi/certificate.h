@@ -7,7 +7,8 @@ namespace orchard::detail {
 // What a look at a whole diagram proves of it.
 struct Certificate {
   bool holds = false;
-  double depth = 0;  // over the bounding radius: no point lies deeper in a vertex's sphere or farther beyond the hull
+  double intrusion =
+      0;  // over the bounding radius: no point lies deeper in a vertex's sphere or farther beyond the hull
 };
 
 // Delaunay's lemma, with a margin: if all vertices are oriented positively, the hull is convex, and the sphere of no
@@ -19,11 +20,11 @@ struct Certificate {
 // any straight line meets. With exact signs, nothing is taken off anywhere. Likewise for the planes of the hull's
 // facets.
 //
-// It holds if no facet takes off more than a 64th of tolerance::kVoronoiDepth, and all of them together no more than
-// it, or, for more than 512 points, than a 512th of it for each point: rounding is to be told from what is wrong, and a
-// line meets few of many facets; where the sum is more, only those count that one line can meet (see LineSum). What is
-// proven is `depth`. Where a facet takes off more than its share of that, exact arithmetic may show that it takes off
-// nothing.
+// It holds if no facet takes off more than a 64th of tolerance::kVoronoiIntrusion, and all of them together no more
+// than it, or, for more than 512 points, than a 512th of it for each point: rounding is to be told from what is wrong,
+// and a line meets few of many facets; where the sum is more, only those count that one line can meet (see LineSum).
+// What is proven is `intrusion`. Where a facet takes off more than its share of that, exact arithmetic may show that it
+// takes off nothing.
 //
 // At edges of the hull that are so short, or facets so thin, that a bound from next to them, carried across all points,
 // says nothing, the planes and spheres on both sides are held against all points one by one.
@@ -33,15 +34,15 @@ struct Certificate {
 // the hull does not go around a vertex twice either, which it may though it is convex at every edge.
 //
 // All this is said of the spheres that the vertices have: each must be that of its forming points up to a quarter of
-// the depth. Where doubles do not show that, a vertex is given its own sphere with more digits, but for one that has
-// been given a neighbour's, on which its forming points are as far as the input goes (see Workspace::share_sphere).
+// the intrusion. Where doubles do not show that, a vertex is given its own sphere with more digits, but for one that
+// has been given a neighbour's, on which its forming points are as far as the input goes (see Workspace::share_sphere).
 //
 // Only facets of vertices that a point from first_new on forms are looked at: the others are as they were. Doubles
 // settle most of them: one distance each. O(1) a vertex, and O(n) for up to 512 of them.
 // `points`: how many form vertices if none was lost.
 //
 // With a mender, facets that spoil it are mended, and what is new is looked at in the same way, until nothing is left;
-// what was mended away still counts in the depth. Not with exact signs.
+// what was mended away still counts in the intrusion. Not with exact signs.
 Certificate certify(Workspace& workspace, std::size_t points, Index first_new = 0, Mender* mender = nullptr);
 
 // How many points form vertices.

@@ -62,7 +62,7 @@ bool insert_into_copy(Workspace& workspace, const Insertion& insertion, bool exa
   if (!certificate.holds) return false;
   add_counts(inserter.counts(), report);
   report.exact_signs = exact;
-  report.certified_depth = certificate.depth;
+  report.certified_intrusion = certificate.intrusion;
   return true;
 }
 

@@ -7,10 +7,10 @@ namespace orchard::detail {
 namespace {
 
 constexpr std::size_t kMaxDeleted = 256;  // vertices that one insertion may delete: what takes more is no local doubt
-constexpr int kStricter = 2;              // bits that a round takes off the depth that does no harm
+constexpr int kStricter = 2;              // bits that a round takes off the intrusion that does no harm
 
 // How deep a point is in a sphere through the origin, both relative to it.
-double depth_in(const Vector& center, const Vector& point) {
+double intrusion_in(const Vector& center, const Vector& point) {
   return point.dot(2 * center - point) / (2 * center.norm());
 }
 
@@ -18,7 +18,7 @@ double depth_in(const Vector& center, const Vector& point) {
 
 std::vector<Index> Mender::mend(std::span<const Doubt> doubts, int round) {
   changed_.clear();
-  harmless_ = std::ldexp(workspace_.harmless_depth(), -kStricter * round);
+  harmless_ = std::ldexp(workspace_.harmless_intrusion(), -kStricter * round);
   workspace_.set_exact(true);
   for (const auto& [v, u] : doubts) {
     if (workspace_.is_free(v) || workspace_.is_free(u) || slot_of(v, u) == 4) continue;  // gone with another doubt
@@ -53,12 +53,12 @@ void Mender::sharpen(Index v) {
 }
 
 // Of q in the sphere of a vertex, or beyond its plane.
-double Mender::depth(Index v, const Point& q) {
+double Mender::intrusion(Index v, const Point& q) {
   const VoronoiVertex& vertex = workspace_.vertices[v];
   const Point& origin = workspace_.points[vertex.forming_points[0]];
   if (workspace_.at_infinity(v)) return vertex.center.dot(q - origin);
   sharpen(v);
-  return depth_in(vertex.center - origin, q - origin);
+  return intrusion_in(vertex.center - origin, q - origin);
 }
 
 bool Mender::is_in_sphere(Index v, const Point& q) {
@@ -93,7 +93,7 @@ bool Mender::grow(Index point, const Point& q) {
       if (cavity_.deleted().size() > kMaxDeleted) return false;
       for (const Index next : workspace_.vertices[cavity_.deleted()[done]].neighbors) {
         if (workspace_.mark(next) != Mark::unseen) continue;
-        if (is_formed_by(next, point) || depth(next, q) > harmless_)
+        if (is_formed_by(next, point) || intrusion(next, q) > harmless_)
           cavity_.delete_vertex(next);
         else
           cavity_.add_seen(next, Mark::kept);
@@ -103,7 +103,7 @@ bool Mender::grow(Index point, const Point& q) {
     cavity_.place_vertices();
     for (const Cavity::Facet& facet : cavity_.facets()) {
       if (workspace_.mark(facet.outside) == Mark::deleted || is_facet_good(facet, q)) continue;
-      if (depth(facet.outside, q) < -workspace_.harmless_depth()) return false;
+      if (intrusion(facet.outside, q) < -workspace_.harmless_intrusion()) return false;
       cavity_.delete_vertex(facet.outside);
     }
   }
@@ -120,7 +120,7 @@ bool Mender::is_facet_good(const Cavity::Facet& facet, const Point& q) const {
   const auto& points = workspace_.points;
   Vector center;
   return sharp_circumcenter(q, points[corner[a]], points[corner[b]], points[corner[c]], center) &&
-         depth_in(center, points[beyond] - q) <= harmless_;
+         intrusion_in(center, points[beyond] - q) <= harmless_;
 }
 
 }  // namespace orchard::detail

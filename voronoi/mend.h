@@ -29,7 +29,7 @@ class Mender {
   unsigned slot_of(Index v, Index neighbor) const;
   bool is_formed_by(Index v, Index point) const;
   void sharpen(Index v);
-  double depth(Index v, const Point& q);
+  double intrusion(Index v, const Point& q);
   bool is_in_sphere(Index v, const Point& q);
   bool insert_again(Index v, Index u);
   bool grow(Index point, const Point& q);

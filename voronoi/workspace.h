@@ -74,11 +74,11 @@ class Workspace {
   Sign doubtful_sign(Index v, const Point& q, double bound);
 
   // How deep a point in a sphere does no harm, unless many such are met on one line (see certificate.h).
-  double harmless_depth() const { return kDepth * scale(); }
+  double harmless_intrusion() const { return kIntrusion * scale(); }
   // Whether the error bound of a placed vertex alone, of which input noise over a height is a part (see place()), shows
-  // that power over twice this height is below the harmless depth.
+  // that power over twice this height is below the harmless intrusion.
   bool harmless(double power, const VoronoiVertex& placed, std::uint8_t error_class) const {
-    return power * bounds_[error_class] < 16 * harmless_depth() * placed.radius * noise_;
+    return power * bounds_[error_class] < 16 * harmless_intrusion() * placed.radius * noise_;
   }
   // The dissertation's value of a deletion: distance to the forming points minus distance to q; at infinity the limit
   // of that along the unbounded edge, which is the distance of q beyond the facet.
@@ -163,7 +163,7 @@ class Workspace {
   static constexpr double kSphereNoise = 0x1p12;
   static constexpr double kFourPoints = 4;        // the noise of four points off a plane, in terms of the largest face
   static constexpr double kWide = 0x1p8;          // a bound on a height is wide above this many times the noise
-  static constexpr double kDepth = 0x1p-36;       // harmless_depth() in terms of scale()
+  static constexpr double kIntrusion = 0x1p-36;   // harmless_intrusion() in terms of scale()
   static constexpr double kMaxNoise = 0x1p-40;    // see too_noisy()
   static constexpr double kSameCenter = 0x1p-45;  // of a sphere's size: some roundings, going in and out of the frame
   bool exact_ = false;

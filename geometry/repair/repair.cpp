@@ -18,7 +18,7 @@ void close(TriangleMesh& mesh, const RepairMeshOptions& options, MeshRepairRepor
   detail::drop_degenerate(mesh, report);
   detail::drop_duplicates(mesh, report);
   if (mesh.triangles.empty()) return;
-  detail::orient_patches(mesh, report);
+  detail::orient_components(mesh, report);
   // Before cutting, because holes that touch at a vertex are two; after it, because a cut can open one.
   detail::fill_holes(mesh, options, report);
   detail::cut_apart(mesh, report);

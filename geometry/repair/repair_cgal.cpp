@@ -12,11 +12,11 @@ std::vector<std::array<Index, 3>> triangulate_polyline(std::span<const Point> po
   std::vector<Kernel::Point_3> points;
   points.reserve(polyline.size());
   for (const Point& p : polyline) points.emplace_back(p.x(), p.y(), p.z());
-  std::vector<CGAL::Triple<int, int, int>> patch;
-  CGAL::Polygon_mesh_processing::triangulate_hole_polyline(points, std::back_inserter(patch));
+  std::vector<CGAL::Triple<int, int, int>> cap;
+  CGAL::Polygon_mesh_processing::triangulate_hole_polyline(points, std::back_inserter(cap));
   std::vector<std::array<Index, 3>> triangles;
-  triangles.reserve(patch.size());
-  for (const auto& t : patch)
+  triangles.reserve(cap.size());
+  for (const auto& t : cap)
     triangles.push_back({static_cast<Index>(t.first), static_cast<Index>(t.second), static_cast<Index>(t.third)});
   return triangles;
 }

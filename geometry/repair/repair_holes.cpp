@@ -118,11 +118,11 @@ class HoleFiller {
     if (loop.size() > options_.max_hole_edges ||
         (diameter > options_.max_hole_diameter * radius_ && width > options_.max_crack_width * radius_))
       return leave(loop.size(), diameter / radius_);
-    auto patch = triangles_over(loop, polyline);
-    if (patch.empty() || !fits(loop, patch)) patch = fan_over(loop, polyline);
-    mesh_.triangles.insert(mesh_.triangles.end(), patch.begin(), patch.end());
+    auto cap = triangles_over(loop, polyline);
+    if (cap.empty() || !fits(loop, cap)) cap = fan_over(loop, polyline);
+    mesh_.triangles.insert(mesh_.triangles.end(), cap.begin(), cap.end());
     ++report_.holes_filled;
-    report_.triangles_added += static_cast<Index>(patch.size());
+    report_.triangles_added += static_cast<Index>(cap.size());
     report_.max_hole = std::max(report_.max_hole, diameter);
   }
 
@@ -161,10 +161,10 @@ class HoleFiller {
   }
 
   // Whether no edge between two corners of the loop is there already.
-  bool fits(const std::vector<Index>& loop, std::span<const std::array<Index, 3>> patch) {
+  bool fits(const std::vector<Index>& loop, std::span<const std::array<Index, 3>> cap) {
     std::set<Edge> on_loop, inner;
     for (std::size_t i = 0; i < loop.size(); ++i) on_loop.insert(edge_between(loop[i], loop[(i + 1) % loop.size()]));
-    for (const auto& t : patch)
+    for (const auto& t : cap)
       for (std::size_t i = 0; i < 3; ++i) {
         const Edge edge = edge_between(t[i], t[(i + 1) % 3]);
         if (!on_loop.contains(edge)) inner.insert(edge);

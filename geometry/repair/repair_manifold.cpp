@@ -186,7 +186,7 @@ bool give_midpoints(TriangleMesh& mesh) {
 
 }  // namespace
 
-void orient_patches(TriangleMesh& mesh, MeshRepairReport& report) {
+void orient_components(TriangleMesh& mesh, MeshRepairReport& report) {
   const auto neighbors = triangle_neighbors(mesh);
   const auto runs_along = [&](Index t, Index from, Index to) {
     const auto& corners = mesh.triangles[t];
@@ -203,14 +203,14 @@ void orient_patches(TriangleMesh& mesh, MeshRepairReport& report) {
     return area_vector({mesh.vertices[i], mesh.vertices[j], mesh.vertices[k]}, scale).norm();
   };
   std::vector<bool> seen(mesh.triangles.size(), false), against(mesh.triangles.size(), false);
-  std::vector<Index> patch;
+  std::vector<Index> component;
   for (Index first = 0; first < mesh.triangles.size(); ++first) {
     if (seen[first]) continue;
-    patch.assign(1, first);
+    component.assign(1, first);
     seen[first] = true;
     double area_along = 0, area_against = 0;
-    for (std::size_t at = 0; at < patch.size(); ++at) {
-      const Index t = patch[at];
+    for (std::size_t at = 0; at < component.size(); ++at) {
+      const Index t = component[at];
       (against[t] ? area_against : area_along) += area(t);
       for (std::size_t i = 0; i < 3; ++i) {
         const Index other = neighbors[t][i];
@@ -218,12 +218,12 @@ void orient_patches(TriangleMesh& mesh, MeshRepairReport& report) {
         const bool disagree = runs_along(other, mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3]);
         against[other] = against[t] != disagree;
         seen[other] = true;
-        patch.push_back(other);
+        component.push_back(other);
       }
     }
-    // The larger part of the patch is right.
+    // The larger part of the component is right.
     const bool turn = area_against <= area_along;
-    for (const Index t : patch) {
+    for (const Index t : component) {
       if (against[t] != turn) continue;
       std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
       ++report.flipped;

@@ -17,7 +17,7 @@ void drop_degenerate(TriangleMesh& mesh, MeshRepairReport& report);
 void drop_unused_vertices(TriangleMesh& mesh, MeshRepairReport& report);
 
 // repair_manifold.cpp: how triangles hang together.
-void orient_patches(TriangleMesh& mesh, MeshRepairReport& report);
+void orient_components(TriangleMesh& mesh, MeshRepairReport& report);
 void cut_apart(TriangleMesh& mesh, MeshRepairReport& report);
 
 // repair_holes.cpp: any triangles; those around a hole must agree.

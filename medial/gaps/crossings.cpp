@@ -54,17 +54,19 @@ std::vector<ClusterPair> adjoining_pairs(const Surface& surface, std::vector<Clu
 }
 
 // The definitions of 6.2.4, seen from the cell: a face crosses a cluster where the two cells meet on it, and it may if
-// the cluster is allowed to both. So each cell answers for the clusters it reaches; one patch for each forbidden one.
-// Allowed are the clusters that the cell's point lies on, and for the loose definition those that adjoin one of them.
+// the cluster is allowed to both. So each cell answers for the clusters it reaches; one component for each forbidden
+// one. Allowed are the clusters that the cell's point lies on, and for the loose definition those that adjoin one of
+// them.
 class ForbiddenClusters {
  public:
-  ForbiddenClusters(const Surface& surface, const SurfaceSampling& sampling, const std::vector<CellPatch>& patches)
-      : surface_(surface), patches_(patches), own_(patches.size()), reached_(patches.size()) {
-    tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t i) {
+  ForbiddenClusters(const Surface& surface, const SurfaceSampling& sampling,
+                    const std::vector<CellComponent>& components)
+      : surface_(surface), components_(components), own_(components.size()), reached_(components.size()) {
+    tbb::parallel_for(std::size_t{0}, components.size(), [&](std::size_t i) {
       std::vector<Index> around;
-      surface.triangles_at(sampling.triangles[patches[i].cell], sampling.features[patches[i].cell], around);
+      surface.triangles_at(sampling.triangles[components[i].cell], sampling.features[components[i].cell], around);
       own_[i] = clusters_at(surface, around);
-      reached_[i] = clusters_at(surface, patches[i].triangles);
+      reached_[i] = clusters_at(surface, components[i].triangles);
       std::erase_if(reached_[i],
                     [&](Index cluster) { return std::binary_search(own_[i].begin(), own_[i].end(), cluster); });
     });
@@ -72,13 +74,13 @@ class ForbiddenClusters {
 
   void allow_adjoining() {
     std::vector<ClusterPair> pairs;
-    for (std::size_t i = 0; i < patches_.size(); ++i) {
+    for (std::size_t i = 0; i < components_.size(); ++i) {
       for (const Index own : own_[i]) {
         for (const Index cluster : reached_[i]) pairs.push_back({own, cluster});
       }
     }
     const std::vector<ClusterPair> adjoining = adjoining_pairs(surface_, std::move(pairs));
-    tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t i) {
+    tbb::parallel_for(std::size_t{0}, components_.size(), [&](std::size_t i) {
       std::erase_if(reached_[i], [&](Index cluster) {
         return std::any_of(own_[i].begin(), own_[i].end(), [&](Index own) {
           return std::binary_search(adjoining.begin(), adjoining.end(), ClusterPair{own, cluster});
@@ -87,13 +89,13 @@ class ForbiddenClusters {
     });
   }
 
-  std::vector<CellPatch> patches() const {
-    std::vector<CellPatch> result;
-    for (std::size_t i = 0; i < patches_.size(); ++i) {
+  std::vector<CellComponent> components() const {
+    std::vector<CellComponent> result;
+    for (std::size_t i = 0; i < components_.size(); ++i) {
       const std::size_t first = result.size();
-      for (std::size_t k = 0; k < reached_[i].size(); ++k) result.push_back({patches_[i].cell, {}, false, 0});
+      for (std::size_t k = 0; k < reached_[i].size(); ++k) result.push_back({components_[i].cell, {}, false, 0});
       if (reached_[i].empty()) continue;
-      for (const Index triangle : patches_[i].triangles) {
+      for (const Index triangle : components_[i].triangles) {
         const Index cluster = surface_.clusters().of_triangle[triangle];
         const auto found = std::lower_bound(reached_[i].begin(), reached_[i].end(), cluster);
         if (found == reached_[i].end() || *found != cluster) continue;
@@ -105,17 +107,17 @@ class ForbiddenClusters {
 
  private:
   const Surface& surface_;
-  const std::vector<CellPatch>& patches_;
-  std::vector<std::vector<Index>> own_, reached_;  // of each patch: clusters, ascending; reached_: not allowed yet
+  const std::vector<CellComponent>& components_;
+  std::vector<std::vector<Index>> own_, reached_;  // of each component: clusters, ascending; reached_: not allowed yet
 };
 
-// The cells beyond the patch's borders whose faces cross harmfully.
+// The cells beyond the component's borders whose faces cross harmfully.
 std::vector<Index> harmful_neighbors(const Surface& surface, const SurfaceSampling& sampling,
-                                     const RestrictedVoronoi& restricted, const CellPatch& patch,
+                                     const RestrictedVoronoi& restricted, const CellComponent& component,
                                      double joined_radius) {
   std::vector<std::pair<Index, Index>> borders;  // other cell, triangle
-  for (const Index triangle : patch.triangles) {
-    for (const CellBorder& border : restricted.piece(triangle, patch.cell)->borders) {
+  for (const Index triangle : component.triangles) {
+    for (const CellBorder& border : restricted.piece(triangle, component.cell)->borders) {
       borders.emplace_back(border.cell, triangle);
     }
   }
@@ -125,62 +127,63 @@ std::vector<Index> harmful_neighbors(const Surface& surface, const SurfaceSampli
     const Index other = border->first;
     crossed.clear();
     for (; border != borders.end() && border->first == other; ++border) crossed.push_back(border->second);
-    const Point& a = restricted.points()[patch.cell];
+    const Point& a = restricted.points()[component.cell];
     const Point& b = restricted.points()[other];
     const Sphere ball{0.5 * (a + b), joined_radius * (a - b).norm()};
-    if (joined_radius > 0 && joined_inside(surface, sampling, ball, crossed, {patch.cell, other})) continue;
+    if (joined_radius > 0 && joined_inside(surface, sampling, ball, crossed, {component.cell, other})) continue;
     harmful.push_back(other);
   }
   return harmful;
 }
 
-// Nothing for a patch that is as it should be.
+// Nothing for a component that is as it should be.
 std::optional<Crossing> gap_crossing(const Surface& surface, const SurfaceSampling& sampling,
-                                     const RestrictedVoronoi& restricted, const CellPatch& patch,
+                                     const RestrictedVoronoi& restricted, const CellComponent& component,
                                      const GapRepairOptions& options) {
-  std::vector<Index> harmful = harmful_neighbors(surface, sampling, restricted, patch, options.joined_radius);
+  std::vector<Index> harmful = harmful_neighbors(surface, sampling, restricted, component, options.joined_radius);
   if (harmful.empty()) {
-    const bool has_border = std::any_of(patch.triangles.begin(), patch.triangles.end(), [&](Index triangle) {
-      return !restricted.piece(triangle, patch.cell)->borders.empty();
+    const bool has_border = std::any_of(component.triangles.begin(), component.triangles.end(), [&](Index triangle) {
+      return !restricted.piece(triangle, component.cell)->borders.empty();
     });
     // A closed component without a point of its own has no border; no face would ever tell of it.
     if (has_border || options.definition != GapDefinition::connected) return std::nullopt;
   }
-  return Crossing{patch, std::move(harmful), false, false};
+  return Crossing{component, std::move(harmful), false, false};
 }
 
-// A harmless second patch of a cell looks like a neck to its neighbours.
+// A harmless second component of a cell looks like a neck to its neighbours.
 bool mends_necks(const GapRepairOptions& options) {
   return options.mend_necks && options.definition == GapDefinition::connected && !(options.joined_radius > 0);
 }
 
-std::optional<Crossing> neck(const Surface& surface, const RestrictedVoronoi& restricted, const CellPatch& patch) {
-  NeckFault fault = find_neck(surface, restricted, patch);
+std::optional<Crossing> neck(const Surface& surface, const RestrictedVoronoi& restricted,
+                             const CellComponent& component) {
+  NeckFault fault = find_neck(surface, restricted, component);
   if (!fault.found) return std::nullopt;
-  return Crossing{patch, std::move(fault.neighbors), true, false};
+  return Crossing{component, std::move(fault.neighbors), true, false};
 }
 
 }  // namespace
 
 std::vector<Crossing> find_crossings(const Surface& surface, const SurfaceSampling& sampling,
-                                     const RestrictedVoronoi& restricted, const PatchScope& scope,
+                                     const RestrictedVoronoi& restricted, const ComponentScope& scope,
                                      const GapRepairOptions& options) {
-  const std::vector<CellPatch> patches = find_cell_patches(surface, sampling, restricted, scope);
-  std::vector<CellPatch> suspects;
+  const std::vector<CellComponent> components = find_cell_components(surface, sampling, restricted, scope);
+  std::vector<CellComponent> suspects;
   if (options.definition == GapDefinition::connected) {
-    std::copy_if(patches.begin(), patches.end(), std::back_inserter(suspects),
-                 [](const CellPatch& patch) { return !patch.home; });
+    std::copy_if(components.begin(), components.end(), std::back_inserter(suspects),
+                 [](const CellComponent& component) { return !component.home; });
   } else {
-    ForbiddenClusters forbidden(surface, sampling, patches);
+    ForbiddenClusters forbidden(surface, sampling, components);
     if (options.definition == GapDefinition::loose) forbidden.allow_adjoining();
-    suspects = forbidden.patches();
+    suspects = forbidden.components();
   }
-  std::vector<std::optional<Crossing>> gaps(suspects.size()), necks(mends_necks(options) ? patches.size() : 0);
+  std::vector<std::optional<Crossing>> gaps(suspects.size()), necks(mends_necks(options) ? components.size() : 0);
   tbb::parallel_for(std::size_t{0}, gaps.size(), [&](std::size_t i) {
     gaps[i] = gap_crossing(surface, sampling, restricted, suspects[i], options);
   });
   tbb::parallel_for(std::size_t{0}, necks.size(), [&](std::size_t i) {
-    if (patches[i].home) necks[i] = neck(surface, restricted, patches[i]);
+    if (components[i].home) necks[i] = neck(surface, restricted, components[i]);
   });
   std::vector<Crossing> crossings;
   for (auto* some : {&gaps, &necks}) {
@@ -189,14 +192,14 @@ std::vector<Crossing> find_crossings(const Surface& surface, const SurfaceSampli
     }
   }
   std::stable_sort(crossings.begin(), crossings.end(),
-                   [](const Crossing& a, const Crossing& b) { return a.patch.cell < b.patch.cell; });
+                   [](const Crossing& a, const Crossing& b) { return a.component.cell < b.component.cell; });
   return crossings;
 }
 
 Index count_faces(const std::vector<Crossing>& crossings) {
   std::vector<std::array<Index, 2>> faces;
   for (const Crossing& crossing : crossings) {
-    const Index cell = crossing.patch.cell;
+    const Index cell = crossing.component.cell;
     for (const Index other : crossing.neighbors) faces.push_back({std::min(cell, other), std::max(cell, other)});
   }
   std::sort(faces.begin(), faces.end());
@@ -206,8 +209,8 @@ Index count_faces(const std::vector<Crossing>& crossings) {
 Index count_cells(const std::vector<Crossing>& crossings) {
   Index count = 0, last = kNone;  // crossings ascend by cell
   for (const Crossing& crossing : crossings) {
-    if (crossing.patch.cell != last) ++count;
-    last = crossing.patch.cell;
+    if (crossing.component.cell != last) ++count;
+    last = crossing.component.cell;
   }
   return count;
 }

@@ -87,7 +87,7 @@ class Repair {
     cells_tested_ = result_.sampling.size();
     restricted_.emplace(surface_, result_.diagram.points, neighbors_);
     crossings_ = detail::find_crossings(surface_, result_.sampling, *restricted_,
-                                        detail::PatchScope::everything(surface_, result_.sampling), options_);
+                                        detail::ComponentScope::everything(surface_, result_.sampling), options_);
     mark_cuts(crossings_);
   }
 
@@ -96,11 +96,11 @@ class Repair {
       const auto cut_inside = [&](Index triangle) {
         auto cut = std::lower_bound(cuts_.begin(), cuts_.end(), std::array{triangle, Index{0}});
         for (; cut != cuts_.end() && (*cut)[0] == triangle; ++cut) {
-          if (restricted_->piece((*cut)[1], crossing.patch.cell) != nullptr) return true;
+          if (restricted_->piece((*cut)[1], crossing.component.cell) != nullptr) return true;
         }
         return false;
       };
-      const auto& triangles = crossing.patch.triangles;
+      const auto& triangles = crossing.component.triangles;
       crossing.at_cut = std::any_of(triangles.begin(), triangles.end(), cut_inside);
     }
   }
@@ -122,14 +122,14 @@ class Repair {
     std::vector<std::uint8_t> at_gap(result_.sampling.size(), 0);
     for (const Crossing& crossing : crossings_) {
       if (crossing.neck || crossing.at_cut) continue;
-      at_gap[crossing.patch.cell] = 1;
+      at_gap[crossing.component.cell] = 1;
       for (const Index other : crossing.neighbors) at_gap[other] = 1;
     }
     std::vector<const Crossing*> chosen;
     for (const Crossing& crossing : crossings_) {
       const auto is_at_gap = [&](Index cell) { return at_gap[cell] != 0; };
       if (crossing.at_cut) continue;
-      const bool wait = crossing.neck && (is_at_gap(crossing.patch.cell) ||
+      const bool wait = crossing.neck && (is_at_gap(crossing.component.cell) ||
                                           std::any_of(crossing.neighbors.begin(), crossing.neighbors.end(), is_at_gap));
       if (!wait) chosen.push_back(&crossing);
     }
@@ -141,7 +141,7 @@ class Repair {
     std::vector<Candidate> candidates(crossings.size());
     tbb::parallel_for(std::size_t{0}, crossings.size(), [&](std::size_t i) {
       const Crossing& crossing = *crossings[i];
-      const Index cell = crossing.patch.cell;
+      const Index cell = crossing.component.cell;
       candidates[i] = {cell, crossing.neighbors,
                        detail::propose_repair(surface_, result_.sampling, *restricted_, crossing,
                                               generations_[cell] >= kBounceLength),
@@ -216,16 +216,16 @@ class Repair {
       return;
     }
     anew_ = false;
-    detail::PatchScope scope;
+    detail::ComponentScope scope;
     scope.cells = neighbors_.update(result_.diagram, first_new);
     cells_tested_ = static_cast<Index>(std::count(scope.cells.begin(), scope.cells.end(), std::uint8_t{1}));
     scope.triangles = restricted_->update(result_.diagram.points, scope.cells);
-    std::erase_if(crossings_, [&](const Crossing& crossing) { return scope.cells[crossing.patch.cell] != 0; });
+    std::erase_if(crossings_, [&](const Crossing& crossing) { return scope.cells[crossing.component.cell] != 0; });
     std::vector<Crossing> found = detail::find_crossings(surface_, result_.sampling, *restricted_, scope, options_);
     mark_cuts(found);
     std::move(found.begin(), found.end(), std::back_inserter(crossings_));
     std::stable_sort(crossings_.begin(), crossings_.end(),
-                     [](const Crossing& a, const Crossing& b) { return a.patch.cell < b.patch.cell; });
+                     [](const Crossing& a, const Crossing& b) { return a.component.cell < b.component.cell; });
   }
 
   const Surface& surface_;

@@ -109,40 +109,41 @@ class SingleArc {
 
 }  // namespace
 
-NeckFault find_neck(const Surface& surface, const RestrictedVoronoi& restricted, const CellPatch& patch) {
+NeckFault find_neck(const Surface& surface, const RestrictedVoronoi& restricted, const CellComponent& component) {
   std::vector<Stretch> stretches;
-  for (const Index triangle : patch.triangles) {
-    for (const CellBorder& border : restricted.piece(triangle, patch.cell)->borders) {
+  for (const Index triangle : component.triangles) {
+    for (const CellBorder& border : restricted.piece(triangle, component.cell)->borders) {
       stretches.push_back({border.cell, triangle, border.edges});
     }
   }
   std::stable_sort(stretches.begin(), stretches.end(),
                    [](const Stretch& a, const Stretch& b) { return a.other < b.other; });
   NeckFault fault;
-  SingleArc single_arc(surface, restricted, patch.cell);
+  SingleArc single_arc(surface, restricted, component.cell);
   std::vector<Index> neighbors;
   for (std::size_t first = 0, end = 0; first < stretches.size(); first = end) {
     const Index other = stretches[first].other;
     while (end < stretches.size() && stretches[end].other == other) ++end;
     neighbors.push_back(other);
-    if (other > patch.cell && !single_arc({&stretches[first], end - first})) fault.neighbors.push_back(other);
+    if (other > component.cell && !single_arc({&stretches[first], end - first})) fault.neighbors.push_back(other);
   }
-  if (patch.euler_characteristic != 1 || neighbors.size() < 3) fault.neighbors = neighbors;
+  if (component.euler_characteristic != 1 || neighbors.size() < 3) fault.neighbors = neighbors;
   fault.found = !fault.neighbors.empty() || neighbors.empty();
   return fault;
 }
 
-std::pair<Point, Index> farthest_corner(const RestrictedVoronoi& restricted, const CellPatch& patch, Index neighbor) {
+std::pair<Point, Index> farthest_corner(const RestrictedVoronoi& restricted, const CellComponent& component,
+                                        Index neighbor) {
   std::pair<Point, Index> farthest{Point::Zero(), kNone};
   double squared = -1;
   CellPolygon polygon;
-  for (const Index triangle : patch.triangles) {
-    restricted.polygon(triangle, patch.cell, polygon);
+  for (const Index triangle : component.triangles) {
+    restricted.polygon(triangle, component.cell, polygon);
     const std::size_t size = polygon.corners.size();
     for (std::size_t i = 0; i < size; ++i) {
       const Index before = polygon.labels[i == 0 ? size - 1 : i - 1], after = polygon.labels[i];
       if (neighbor != kNone && before != neighbor + 3 && after != neighbor + 3) continue;
-      const double candidate = (polygon.corners[i] - restricted.points()[patch.cell]).squaredNorm();
+      const double candidate = (polygon.corners[i] - restricted.points()[component.cell]).squaredNorm();
       if (candidate <= squared) continue;
       squared = candidate;
       farthest = {polygon.corners[i], triangle};

@@ -29,13 +29,14 @@ ClosestPoint place_on(const Surface& surface, Index triangle, const Point& posit
   return place;
 }
 
-ClosestPoint nearest_of_patch(const Surface& surface, const RestrictedVoronoi& restricted, const CellPatch& patch) {
-  const Point& from = restricted.points()[patch.cell];
+ClosestPoint nearest_of_component(const Surface& surface, const RestrictedVoronoi& restricted,
+                                  const CellComponent& component) {
+  const Point& from = restricted.points()[component.cell];
   ClosestPoint nearest;
   nearest.distance = std::numeric_limits<double>::infinity();
   CellPolygon polygon;
-  for (const Index triangle : patch.triangles) {
-    restricted.polygon(triangle, patch.cell, polygon);
+  for (const Index triangle : component.triangles) {
+    restricted.polygon(triangle, component.cell, polygon);
     for (std::size_t i = 2; i < polygon.corners.size(); ++i) {
       const ClosestPoint found =
           closest_point_of_triangle(from, polygon.corners[0], polygon.corners[i - 1], polygon.corners[i]);
@@ -49,8 +50,8 @@ ClosestPoint nearest_of_patch(const Surface& surface, const RestrictedVoronoi& r
 
 class Projector {
  public:
-  Projector(const Surface& surface, const RestrictedVoronoi& restricted, const CellPatch& patch)
-      : surface_(surface), restricted_(restricted), patch_(patch), from_(restricted.points()[patch.cell]) {}
+  Projector(const Surface& surface, const RestrictedVoronoi& restricted, const CellComponent& component)
+      : surface_(surface), restricted_(restricted), component_(component), from_(restricted.points()[component.cell]) {}
 
   // `target`, which lies in the plane of the triangle's cluster, if the cluster holds it.
   std::optional<ClosestPoint> within_cluster(const Point& target, Index triangle) const {
@@ -65,12 +66,13 @@ class Projector {
     return std::nullopt;
   }
 
-  // Downhill on the distance to `target`, over edges that are all but flat, and not into another of the cell's patches.
+  // Downhill on the distance to `target`, over edges that are all but flat, and not into another of the cell's
+  // components.
   std::optional<ClosestPoint> walk(const Point& target, Index start) const {
     ClosestPoint at = nearest_on(start, target);
     std::vector<Index> around;
     for (int step = 0; step < kMaxWalk; ++step) {
-      if (in_other_patch(at.triangle)) return std::nullopt;
+      if (in_other_component(at.triangle)) return std::nullopt;
       surface_.triangles_at(at.triangle, at.feature, around);
       ClosestPoint best = at;
       for (const Index next : around) {
@@ -95,14 +97,14 @@ class Projector {
     found.triangle = triangle;
     return found;
   }
-  bool in_other_patch(Index triangle) const {
-    return restricted_.piece(triangle, patch_.cell) != nullptr &&
-           !std::binary_search(patch_.triangles.begin(), patch_.triangles.end(), triangle);
+  bool in_other_component(Index triangle) const {
+    return restricted_.piece(triangle, component_.cell) != nullptr &&
+           !std::binary_search(component_.triangles.begin(), component_.triangles.end(), triangle);
   }
 
   const Surface& surface_;
   const RestrictedVoronoi& restricted_;
-  const CellPatch& patch_;
+  const CellComponent& component_;
   const Point from_;
 };
 
@@ -131,28 +133,28 @@ Vector facing_normal(const Surface& surface, const SurfaceSampling& sampling, In
 
 RepairProposal propose_repair(const Surface& surface, const SurfaceSampling& sampling,
                               const RestrictedVoronoi& restricted, const Crossing& crossing, bool bounced) {
-  const CellPatch& patch = crossing.patch;
-  const Point& from = restricted.points()[patch.cell];
+  const CellComponent& component = crossing.component;
+  const Point& from = restricted.points()[component.cell];
   RepairProposal proposal;
   if (crossing.neck) {
-    const bool disk = patch.euler_characteristic == 1 && !crossing.neighbors.empty();
-    const auto [position, triangle] = farthest_corner(restricted, patch, disk ? crossing.neighbors[0] : kNone);
+    const bool disk = component.euler_characteristic == 1 && !crossing.neighbors.empty();
+    const auto [position, triangle] = farthest_corner(restricted, component, disk ? crossing.neighbors[0] : kNone);
     proposal.snapped = place_on(surface, triangle, position, from);
     return proposal;
   }
-  proposal.snapped = nearest_of_patch(surface, restricted, patch);
+  proposal.snapped = nearest_of_component(surface, restricted, component);
   const Index met = proposal.snapped.triangle;
   const auto propose = [&](const std::optional<ClosestPoint>& place) {
     if (place) proposal.facing.push_back(*place);
   };
   if (bounced) {
     const double reach = kNearBottom * proposal.snapped.distance;
-    propose(bottom_of_fold(surface, sampling, patch.cell, met, reach));
+    propose(bottom_of_fold(surface, sampling, component.cell, met, reach));
     if (!proposal.facing.empty() && proposal.facing[0].distance > reach) proposal.facing.clear();
   }
-  const Projector projector(surface, restricted, patch);
+  const Projector projector(surface, restricted, component);
   const Vector& normal = surface.normal(met);
-  const Vector own = facing_normal(surface, sampling, patch.cell, normal);
+  const Vector own = facing_normal(surface, sampling, component.cell, normal);
   const std::optional<Point> mirrored = straight_across(from, own, proposal.snapped.position, normal);
   const Point projection = from - normal * normal.dot(from - proposal.snapped.position);
   if (mirrored) propose(projector.within_cluster(*mirrored, met));

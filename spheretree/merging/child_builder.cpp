@@ -24,7 +24,7 @@ constexpr double kStarts[] = {1.5, 1};
 
 }  // namespace
 
-std::vector<Index> Patch::axis_points() const {
+std::vector<Index> Portion::axis_points() const {
   std::vector<Index> list;
   std::copy_if(points.begin(), points.end(), std::back_inserter(list), [](Index p) { return p != kNone; });
   std::sort(list.begin(), list.end());
@@ -49,19 +49,19 @@ void ChildBuilder::start_level(Index level) {
   patient_ = level == 1;
 }
 
-Patch ChildBuilder::whole() const {
-  Patch patch;
-  for (Index i = 0; i < axis_.size(); ++i) patch.vertices.push_back(i);
+Portion ChildBuilder::whole() const {
+  Portion portion;
+  for (Index i = 0; i < axis_.size(); ++i) portion.vertices.push_back(i);
   for (Index p = 0; p < axis_.points.size(); ++p)
-    if (!vertices_of_[p].empty()) add_point(p, patch);
-  return patch;
+    if (!vertices_of_[p].empty()) add_point(p, portion);
+  return portion;
 }
 
 bool ChildBuilder::tight(const Sphere& ball) const { return looseness(ball) <= kTight * surface_.bounding_radius(); }
 
-void ChildBuilder::add_point(Index point, Patch& patch) const {
-  patch.points.push_back(point);
-  patch.held.push_back(axis_.points[point]);
+void ChildBuilder::add_point(Index point, Portion& portion) const {
+  portion.points.push_back(point);
+  portion.held.push_back(axis_.points[point]);
 }
 
 double ChildBuilder::cost_of(const std::vector<Child>& family) const {
@@ -71,15 +71,15 @@ double ChildBuilder::cost_of(const std::vector<Child>& family) const {
   return sum;
 }
 
-std::vector<Child> ChildBuilder::children_of(const Patch& patch, Index max) const {
-  const std::vector<Index> points = patch.axis_points();
+std::vector<Child> ChildBuilder::children_of(const Portion& portion, Index max) const {
+  const std::vector<Index> points = portion.axis_points();
   if (points.size() < 2) return {};
-  const std::vector<Index> vertices = patch.vertices.empty() ? touching(points) : patch.vertices;
+  const std::vector<Index> vertices = portion.vertices.empty() ? touching(points) : portion.vertices;
   const std::size_t target = std::clamp<std::size_t>(points.size() / kPointsPerChild, 2, max);
   Parts parts = vertex_parts(axis_, vertices, points, scratch_.local());
   const bool by_points = parts.spheres.size() < kVerticesPerChild * target;
   if (by_points) parts = point_parts(axis_, points);
-  if (options_.closing == MergeClosing::refit) return fitted(patch, parts, target);
+  if (options_.closing == MergeClosing::refit) return fitted(portion, parts, target);
   const auto groups = merge_parts(axis_, parts, {&target, 1})[0];
   return as_merged(parts, groups, by_points ? std::vector<Index>{} : vertices);
 }
@@ -102,12 +102,12 @@ std::vector<Child> ChildBuilder::as_merged(const Parts& parts, const std::vector
     std::vector<Index> points;
     for (Index part : group.parts) {
       points.insert(points.end(), parts.points[part].begin(), parts.points[part].end());
-      if (!vertices.empty()) child.patch.vertices.push_back(vertices[part]);
+      if (!vertices.empty()) child.portion.vertices.push_back(vertices[part]);
     }
     std::sort(points.begin(), points.end());
     points.erase(std::unique(points.begin(), points.end()), points.end());
-    for (Index p : points) add_point(p, child.patch);
-    shrink_around(child.patch.held, child.sphere);
+    for (Index p : points) add_point(p, child.portion);
+    shrink_around(child.portion.held, child.sphere);
     child.sphere.radius += margin_;
     children.push_back(std::move(child));
   }
@@ -116,7 +116,7 @@ std::vector<Child> ChildBuilder::as_merged(const Parts& parts, const std::vector
 
 // From more spheres than wanted as well: which of them are best to do without, their fit tells better than the
 // merging.
-std::vector<Child> ChildBuilder::fitted(const Patch& patch, const Parts& parts, std::size_t wanted) const {
+std::vector<Child> ChildBuilder::fitted(const Portion& portion, const Parts& parts, std::size_t wanted) const {
   std::vector<std::size_t> targets;
   for (const double more : kStarts) targets.push_back(static_cast<std::size_t>(more * static_cast<double>(wanted)));
   std::vector<std::vector<FittedBall>> starts;
@@ -124,38 +124,38 @@ std::vector<Child> ChildBuilder::fitted(const Patch& patch, const Parts& parts, 
     starts.emplace_back();
     for (const MergedParts& group : groups) starts.back().push_back(start_at(group.sphere.center));
   }
-  return shared_out(patch, starts, wanted);
+  return shared_out(portion, starts, wanted);
 }
 
 // As many as wanted, from a family of another size.
-std::vector<Child> ChildBuilder::resized(const Patch& patch, const std::vector<Child>& family, Index wanted) const {
+std::vector<Child> ChildBuilder::resized(const Portion& portion, const std::vector<Child>& family, Index wanted) const {
   std::vector<FittedBall> start;
   for (const Child& child : family) start.push_back(start_at(child.sphere.center));
-  return shared_out(patch, {&start, 1}, wanted);
+  return shared_out(portion, {&start, 1}, wanted);
 }
 
-std::vector<Child> ChildBuilder::shared_out(const Patch& patch, std::span<const std::vector<FittedBall>> starts,
+std::vector<Child> ChildBuilder::shared_out(const Portion& portion, std::span<const std::vector<FittedBall>> starts,
                                             std::size_t wanted) const {
-  const Siblings siblings = fit_siblings(surface_, patch.held, starts, wanted, power_, patient_);
+  const Siblings siblings = fit_siblings(surface_, portion.held, starts, wanted, power_, patient_);
   std::vector<Child> children;
   for (const FittedBall& ball : siblings.balls) children.push_back({{ball.center, ball.radius + margin_}, {}});
   for (std::size_t i = 0; i < siblings.owner.size(); ++i) {
-    Patch& own = children[siblings.owner[i]].patch;
-    own.held.push_back(patch.held[i]);
-    own.points.push_back(patch.points[i]);
+    Portion& own = children[siblings.owner[i]].portion;
+    own.held.push_back(portion.held[i]);
+    own.points.push_back(portion.points[i]);
   }
   return children;
 }
 
 std::vector<Child> ChildBuilder::halves(const Child& child) const {
-  const std::vector<Point>& held = child.patch.held;
+  const std::vector<Point>& held = child.portion.held;
   if (held.size() < 2 * kPointsPerChild) return {};
   const Point& center = child.sphere.center;
   const Point& far = *std::max_element(held.begin(), held.end(), [&](const Point& p, const Point& q) {
     return (p - center).squaredNorm() < (q - center).squaredNorm();
   });
   const std::vector<FittedBall> two{start_at(center), start_at(far + 0.3 * (center - far))};
-  return shared_out(child.patch, {&two, 1}, 2);
+  return shared_out(child.portion, {&two, 1}, 2);
 }
 
 }  // namespace orchard::detail

@@ -12,7 +12,7 @@
 namespace orchard::detail {
 
 // What a node answers for: surface points that it must hold.
-struct Patch {
+struct Portion {
   std::vector<Point> held;
   std::vector<Index> points;    // of each: of the axis, or kNone for one that a closing added
   std::vector<Index> vertices;  // of the axis, ascending, where they are not simply those that touch a point
@@ -22,10 +22,10 @@ struct Patch {
 
 struct Child {
   Sphere sphere;
-  Patch patch;
+  Portion portion;
 };
 
-// Makes the children of a node of a merged tree from the patch that the node answers for. For many threads at once.
+// Makes the children of a node of a merged tree from the portion that the node answers for. For many threads at once.
 class ChildBuilder {
  public:
   // Keeps references.
@@ -34,9 +34,9 @@ class ChildBuilder {
   void start_level(Index level);
   double power() const { return power_; }  // of the looseness, in the sum over a level that is to be low
 
-  Patch whole() const;  // the root's
-  std::vector<Child> children_of(const Patch& patch, Index max) const;
-  std::vector<Child> resized(const Patch& patch, const std::vector<Child>& family, Index wanted) const;
+  Portion whole() const;  // the root's
+  std::vector<Child> children_of(const Portion& portion, Index max) const;
+  std::vector<Child> resized(const Portion& portion, const std::vector<Child>& family, Index wanted) const;
   std::vector<Child> halves(const Child& child) const;  // two, or fewer where it cannot be split
 
   double looseness(const Sphere& ball) const { return ball.radius + surface_.signed_distance(ball.center); }
@@ -44,12 +44,12 @@ class ChildBuilder {
   double cost_of(const std::vector<Child>& family) const;
 
  private:
-  void add_point(Index point, Patch& patch) const;
+  void add_point(Index point, Portion& portion) const;
   std::vector<Index> touching(const std::vector<Index>& points) const;
   std::vector<Child> as_merged(const Parts& parts, const std::vector<MergedParts>& groups,
                                const std::vector<Index>& vertices) const;
-  std::vector<Child> fitted(const Patch& patch, const Parts& parts, std::size_t wanted) const;
-  std::vector<Child> shared_out(const Patch& patch, std::span<const std::vector<FittedBall>> starts,
+  std::vector<Child> fitted(const Portion& portion, const Parts& parts, std::size_t wanted) const;
+  std::vector<Child> shared_out(const Portion& portion, std::span<const std::vector<FittedBall>> starts,
                                 std::size_t wanted) const;
   FittedBall start_at(const Point& center) const { return {center, 0, surface_.signed_distance(center)}; }
 

@@ -72,7 +72,7 @@ class Closer {
       const auto [taker, whole] = takings[i];
       if (taker == kNone) continue;  // across the border of a path region: cover() mends it
       marked[taker] = 1;
-      held_[taker].push_back(uncovered[i].deepest);
+      held_[taker].push_back(uncovered[i].farthest);
       if (whole) held_[taker].insert(held_[taker].end(), corners.begin(), corners.end());
     }
     std::vector<Index> takers;

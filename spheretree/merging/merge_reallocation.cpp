@@ -35,30 +35,30 @@ struct Place {
 
 }  // namespace
 
-Index remove_redundant_nodes(SphereTree& tree, const Surface& surface, std::vector<Patch>& patches) {
+Index remove_redundant_nodes(SphereTree& tree, const Surface& surface, std::vector<Portion>& portions) {
   const std::vector<SphereNode> before = tree.nodes;
   const Index level = tree.depth();
   const Index removed = remove_redundant(tree, surface).removed;
   if (removed == 0) return 0;
-  std::vector<Patch> kept_patches(tree.nodes.size()), homeless;
+  std::vector<Portion> kept_portions(tree.nodes.size()), homeless;
   for (Index i = 0, k = 0; i < before.size(); ++i) {
     const bool kept = k < tree.nodes.size() && before[i].level == tree.nodes[k].level &&
                       before[i].sphere.center == tree.nodes[k].sphere.center &&
                       before[i].sphere.radius == tree.nodes[k].sphere.radius;
     if (kept) {
-      kept_patches[k++] = std::move(patches[i]);
+      kept_portions[k++] = std::move(portions[i]);
     } else if (before[i].level == level) {
-      homeless.push_back(std::move(patches[i]));
+      homeless.push_back(std::move(portions[i]));
     }
   }
-  patches = std::move(kept_patches);
-  for (const Patch& patch : homeless)
-    for (std::size_t i = 0; i < patch.held.size(); ++i) {
+  portions = std::move(kept_portions);
+  for (const Portion& portion : homeless)
+    for (std::size_t i = 0; i < portion.held.size(); ++i) {
       Holder best;
-      find_holder(tree, 0, patch.held[i], best);
+      find_holder(tree, 0, portion.held[i], best);
       if (best.node == kNone) continue;
-      patches[best.node].held.push_back(patch.held[i]);
-      patches[best.node].points.push_back(patch.points[i]);
+      portions[best.node].held.push_back(portion.held[i]);
+      portions[best.node].points.push_back(portion.points[i]);
     }
   return removed;
 }

@@ -16,7 +16,7 @@ namespace {
 
 using detail::Child;
 using detail::Family;
-using detail::Patch;
+using detail::Portion;
 
 constexpr int kReallocationRounds = 2;
 
@@ -50,7 +50,7 @@ class MergeTree {
     tree_.branching = options_.branching;
     const Sphere& ball = surface_.bounding_ball();
     tree_.nodes.push_back({.sphere = {ball.center, ball.radius + margin_}});
-    patches_.push_back(maker_.whole());
+    portions_.push_back(maker_.whole());
   }
 
   std::vector<Index> nodes_of(Index level) const {
@@ -65,7 +65,7 @@ class MergeTree {
     const std::vector<Index> parents = nodes_of(level - 1);
     std::vector<std::vector<Child>> families(parents.size());
     tbb::parallel_for(std::size_t{0}, parents.size(), [&](std::size_t i) {
-      if (splits(parents[i])) families[i] = maker_.children_of(patches_[parents[i]], options_.branching);
+      if (splits(parents[i])) families[i] = maker_.children_of(portions_[parents[i]], options_.branching);
       if (families[i].size() < 2) families[i].clear();
     });
     if (options_.closing == MergeClosing::refit) balance(parents, families);
@@ -84,7 +84,7 @@ class MergeTree {
     std::vector<std::vector<Child>> balanced(families.size());
     std::vector<double> costs(families.size(), 0);
     tbb::parallel_for(std::size_t{0}, families.size(), [&](std::size_t i) {
-      if (counts[i] != loads[i].spheres) balanced[i] = maker_.resized(patches_[parents[i]], families[i], counts[i]);
+      if (counts[i] != loads[i].spheres) balanced[i] = maker_.resized(portions_[parents[i]], families[i], counts[i]);
       costs[i] = counts[i] != loads[i].spheres ? maker_.cost_of(balanced[i]) : loads[i].cost;
     });
     double before = 0, after = 0;
@@ -102,25 +102,25 @@ class MergeTree {
       tree_.branching = std::max(tree_.branching, tree_.nodes[parents[i]].child_count);
       for (Child& child : families[i]) {
         tree_.nodes.push_back({.sphere = child.sphere, .parent = parents[i], .level = level});
-        patches_.push_back(std::move(child.patch));
+        portions_.push_back(std::move(child.portion));
       }
-      patches_[parents[i]] = {};
+      portions_[parents[i]] = {};
     }
   }
 
   bool splits(Index node) const {
     const Sphere& ball = tree_.nodes[node].sphere;
-    return patches_[node].held.size() >= 2 && wants_children(options_.refinement, surface_, ball) &&
+    return portions_[node].held.size() >= 2 && wants_children(options_.refinement, surface_, ball) &&
            !maker_.tight(ball);
   }
 
   void close(MergeReport::Level& row) {
-    std::vector<std::vector<Point>> held(patches_.size());
-    for (std::size_t i = 0; i < held.size(); ++i) held[i] = std::move(patches_[i].held);
+    std::vector<std::vector<Point>> held(portions_.size());
+    for (std::size_t i = 0; i < held.size(); ++i) held[i] = std::move(portions_[i].held);
     const detail::ClosingReport closed = detail::close_by_refitting(tree_, surface_, held, maker_.power());
     for (std::size_t i = 0; i < held.size(); ++i) {
-      patches_[i].points.resize(held[i].size(), kNone);
-      patches_[i].held = std::move(held[i]);
+      portions_[i].points.resize(held[i].size(), kNone);
+      portions_[i].held = std::move(held[i]);
     }
     if (row.rounds == 0) row.uncovered_regions = closed.uncovered_regions;
     row.rounds += closed.rounds;
@@ -130,7 +130,7 @@ class MergeTree {
   // Takes out what the last level can do without and splits its loosest spheres instead, as many as their parents have
   // room for. Whether anything was split.
   bool reallocate_freed_budget(Index level, MergeReport::Level& row) {
-    const Index removed = detail::remove_redundant_nodes(tree_, surface_, patches_);
+    const Index removed = detail::remove_redundant_nodes(tree_, surface_, portions_);
     row.removed += removed;
     const std::vector<Index> parents = nodes_of(level - 1);
     std::vector<std::vector<Child>> families = take_off(level, parents);
@@ -149,10 +149,10 @@ class MergeTree {
     for (std::size_t i = 0; i < parents.size(); ++i) {
       const SphereNode& parent = tree_.nodes[parents[i]];
       for (Index k = parent.first_child; k != kNone && k < parent.first_child + parent.child_count; ++k)
-        families[i].push_back({tree_.nodes[k].sphere, std::move(patches_[k])});
+        families[i].push_back({tree_.nodes[k].sphere, std::move(portions_[k])});
     }
     std::erase_if(tree_.nodes, [&](const SphereNode& node) { return node.level == level; });
-    patches_.resize(tree_.nodes.size());
+    portions_.resize(tree_.nodes.size());
     return families;
   }
 
@@ -161,7 +161,7 @@ class MergeTree {
   detail::ChildBuilder maker_;
   const double margin_;
   SphereTree tree_;
-  std::vector<Patch> patches_;  // of each node; empty once it has children
+  std::vector<Portion> portions_;  // of each node; empty once it has children
 };
 
 }  // namespace

@@ -7,7 +7,7 @@
 namespace orchard::detail {
 namespace {
 
-// Between an uncovered region's corner and its deepest point: corners themselves lie on other balls, and would be let
+// Between an uncovered region's corner and its farthest point: corners themselves lie on other balls, and would be let
 // go again.
 constexpr double kInward = 0.1;
 
@@ -64,10 +64,10 @@ void take_in(const Surface& surface, const LevelObjective& objective, const std:
     const auto [taker, whole] = takings[i];
     if (taker == kNone) continue;
     if (whole) taken[taker].insert(taken[taker].end(), region.corners.begin(), region.corners.end());
-    taken[taker].push_back(region.deepest);
-    add_sample(region.deepest, taker);
+    taken[taker].push_back(region.farthest);
+    add_sample(region.farthest, taker);
     if (!hold || !whole) continue;
-    for (const Point& p : region.corners) add_sample((1 - kInward) * p + kInward * region.deepest, taker);
+    for (const Point& p : region.corners) add_sample((1 - kInward) * p + kInward * region.farthest, taker);
   }
   balls.add_samples(fresh);
   BallFitter fitter(surface);

@@ -81,7 +81,7 @@ void LevelCover::open_arcs(const Sphere& where, const Change& change, Scratch& s
     for (const UncoveredArc& arc : cover.arcs) arcs.push_back({arc.begin, arc.end});
     for (const Point& corner : corners) {
       if ((corner - where.center).norm() > where.radius) continue;
-      if (path_depth(corner, scratch.near.balls) > -margin_) arcs.push_back({corner, corner});
+      if (path_distance(corner, scratch.near.balls) > -margin_) arcs.push_back({corner, corner});
     }
     if (arcs.size() == before) arcs.push_back({cover.witness, cover.witness});
   }

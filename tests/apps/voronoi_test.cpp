@@ -38,7 +38,7 @@ TEST(Voronoi, ComparesTheAlgorithmsOnAMesh) {
   EXPECT_EQ(insertions["certified"].get<int>() + insertions["settled"].get<int>() + insertions["exact"].get<int>() +
                 insertions["constrained"].get<int>() + 4,
             report["points"].get<int>());
-  EXPECT_LE(highest_first["certified_depth_over_radius"].get<double>(), 1e-9);
+  EXPECT_LE(highest_first["certified_intrusion_over_radius"].get<double>(), 1e-9);
 }
 
 TEST(Voronoi, RefusesSizesThatItCannotWorkWithAndSaysWhichPointItIs) {

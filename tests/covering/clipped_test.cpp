@@ -130,7 +130,7 @@ TEST(ManyBalls, BallsThatDoNotMatterDoNotChangeTheAnswer) {
     // Small ones, each inside some leaf's path region, so that they add nothing.
     for (int added = 0; added < 100;) {
       const Point center = point_of(t, random.uniform(), random.uniform());
-      const double room = -path_depth(center, balls);
+      const double room = -path_distance(center, balls);
       ++added;
       if (room <= 0) continue;
       balls.push_back({center, 0.9 * room, kNone, true});

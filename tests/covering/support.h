@@ -38,7 +38,7 @@ inline std::vector<PathBall> grown(std::vector<PathBall> balls, double by) {
   return balls;
 }
 
-// Balls of random sizes around points near the triangle, as a forest of random depth.
+// Balls of random sizes around points near the triangle, as a forest of random distance.
 inline std::vector<PathBall> random_forest(Random& random, const Triangle& t, double scale) {
   const auto count = static_cast<Index>(4 + random.below(40));
   std::vector<PathBall> balls;

@@ -23,13 +23,13 @@ TEST(UncoveredPart, OfATriangleWithADiskInIt) {
   const Surface surface(TriangleMesh{{Point(0, 0, 0), Point(4, 0, 0), Point(0, 4, 0)}, {{0, 1, 2}}});
   const PathForest forest(leaves({{Point(1, 1, 0), 0.5}}));
   const UncoveredPart part = uncovered_part(surface, all_triangles(surface), forest);
-  const double area = 8 - 0.25 * 3.14159265358979, depth = std::sqrt(10.0) - 0.5;
+  const double area = 8 - 0.25 * 3.14159265358979, distance = std::sqrt(10.0) - 0.5;
   EXPECT_LE(part.area.lower, area);
   EXPECT_GE(part.area.upper, area);
   EXPECT_LE(part.area.upper - part.area.lower, 0.03 * area);
-  EXPECT_NEAR(part.depth.lower, depth, 0.02 * depth);
-  EXPECT_GE(part.depth.upper, depth);
-  EXPECT_NEAR(forest.depth(part.deepest), part.depth.lower, 1e-12);
+  EXPECT_NEAR(part.distance.lower, distance, 0.02 * distance);
+  EXPECT_GE(part.distance.upper, distance);
+  EXPECT_NEAR(forest.distance(part.farthest), part.distance.lower, 1e-12);
 }
 
 TEST(UncoveredPart, BracketsWhatSamplesFind) {
@@ -41,19 +41,19 @@ TEST(UncoveredPart, BracketsWhatSamplesFind) {
     const UncoveredPart part = uncovered_part(surface, all_triangles(surface), PathForest(balls));
     const int samples = 20000;
     int outside = 0;
-    double deepest = 0;
+    double farthest = 0;
     for (int i = 0; i < samples; ++i) {
-      const double depth = path_depth(point_of(t, random.uniform(), random.uniform()), balls);
-      outside += depth > 0;
-      deepest = std::max(deepest, depth);
+      const double distance = path_distance(point_of(t, random.uniform(), random.uniform()), balls);
+      outside += distance > 0;
+      farthest = std::max(farthest, distance);
     }
     const double share = static_cast<double>(outside) / samples, noise = 4 * std::sqrt(share / samples) + 4.0 / samples;
     EXPECT_LE(part.area.lower / surface.area(0), share + noise) << "seed " << seed;
     EXPECT_GE(part.area.upper / surface.area(0), share - noise) << "seed " << seed;
     EXPECT_NEAR(part.likely_area / surface.area(0), share, noise + 0.01 * share) << "seed " << seed;
     EXPECT_LE(part.area.upper - part.area.lower, 0.02 * part.area.upper + 1e-12) << "seed " << seed;
-    EXPECT_GE(part.depth.upper, deepest) << "seed " << seed;
-    EXPECT_LE(part.depth.lower, part.depth.upper) << "seed " << seed;
+    EXPECT_GE(part.distance.upper, farthest) << "seed " << seed;
+    EXPECT_LE(part.distance.lower, part.distance.upper) << "seed " << seed;
   }
 }
 
@@ -62,7 +62,7 @@ TEST(UncoveredPart, IsNothingWhereEverythingIsCovered) {
   const PathForest forest(leaves({{Point::Zero(), 1.1}}));
   const UncoveredPart part = uncovered_part(surface, all_triangles(surface), forest);
   EXPECT_EQ(part.area.upper, 0);
-  EXPECT_EQ(part.depth.upper, 0);
+  EXPECT_EQ(part.distance.upper, 0);
 }
 
 TEST(PathForest, DepthIsPathDepth) {
@@ -73,7 +73,7 @@ TEST(PathForest, DepthIsPathDepth) {
     const PathForest forest(balls);
     for (int i = 0; i < 20; ++i) {
       const Point p = random_vector(random, 2);
-      EXPECT_EQ(forest.depth(p), path_depth(p, balls)) << "seed " << seed;
+      EXPECT_EQ(forest.distance(p), path_distance(p, balls)) << "seed " << seed;
     }
   }
 }

@@ -274,7 +274,7 @@ TEST(GapRepair, LooseForgivesClustersThatShareAVertexAndNoOthers) {
     const VoronoiDiagram diagram = highest_first_voronoi(sampling.points).diagram;
     const detail::CellNeighbors neighbors(diagram);
     const detail::RestrictedVoronoi restricted(surface, sampling.points, neighbors);
-    const auto scope = detail::PatchScope::everything(surface, sampling);
+    const auto scope = detail::ComponentScope::everything(surface, sampling);
     const auto crossings =
         detail::find_crossings(surface, sampling, restricted, scope, {.definition = GapDefinition::loose});
     std::vector<std::set<Index>> vertices(surface.clusters().count());  // of each cluster
@@ -284,22 +284,22 @@ TEST(GapRepair, LooseForgivesClustersThatShareAVertexAndNoOthers) {
     }
     std::set<std::array<Index, 2>> wanted, found;  // cell, triangle
     std::vector<Index> around;
-    for (const detail::CellPatch& patch : detail::find_cell_patches(surface, sampling, restricted, scope)) {
-      surface.triangles_at(sampling.triangles[patch.cell], sampling.features[patch.cell], around);
-      for (const Index triangle : patch.triangles) {
+    for (const detail::CellComponent& component : detail::find_cell_components(surface, sampling, restricted, scope)) {
+      surface.triangles_at(sampling.triangles[component.cell], sampling.features[component.cell], around);
+      for (const Index triangle : component.triangles) {
         const std::set<Index>& reached = vertices[surface.clusters().of_triangle[triangle]];
         const bool allowed = std::any_of(around.begin(), around.end(), [&](Index own) {
           const std::set<Index>& mine = vertices[surface.clusters().of_triangle[own]];
           return std::any_of(mine.begin(), mine.end(), [&](Index vertex) { return reached.contains(vertex); });
         });
-        const bool has_border = !restricted.piece(triangle, patch.cell)->borders.empty();
-        if (!allowed && has_border) wanted.insert({patch.cell, triangle});
+        const bool has_border = !restricted.piece(triangle, component.cell)->borders.empty();
+        if (!allowed && has_border) wanted.insert({component.cell, triangle});
       }
     }
     for (const detail::Crossing& crossing : crossings) {
-      for (const Index triangle : crossing.patch.triangles) {
-        if (restricted.piece(triangle, crossing.patch.cell)->borders.empty()) continue;
-        found.insert({crossing.patch.cell, triangle});
+      for (const Index triangle : crossing.component.triangles) {
+        if (restricted.piece(triangle, crossing.component.cell)->borders.empty()) continue;
+        found.insert({crossing.component.cell, triangle});
       }
     }
     EXPECT_FALSE(wanted.empty());

@@ -28,8 +28,8 @@ struct Scene {
     neighbors.emplace(diagram);
     restricted.emplace(surface, diagram.points, *neighbors);
     for (Crossing& crossing :
-         find_crossings(surface, sampling, *restricted, PatchScope::everything(surface, sampling), {})) {
-      if (crossing.patch.cell == 0) crossings.push_back(std::move(crossing));
+         find_crossings(surface, sampling, *restricted, ComponentScope::everything(surface, sampling), {})) {
+      if (crossing.component.cell == 0) crossings.push_back(std::move(crossing));
     }
   }
 
@@ -92,7 +92,7 @@ TEST(RepairPoint, NeverFloats) {
   scene.neighbors.emplace(scene.diagram);
   scene.restricted.emplace(scene.surface, scene.diagram.points, *scene.neighbors);
   const auto crossings =
-      find_crossings(scene.surface, some, *scene.restricted, PatchScope::everything(scene.surface, some), {});
+      find_crossings(scene.surface, some, *scene.restricted, ComponentScope::everything(scene.surface, some), {});
   ASSERT_FALSE(crossings.empty());
   for (const Crossing& crossing : crossings) {
     for (const bool bounced : {false, true}) {
@@ -102,7 +102,7 @@ TEST(RepairPoint, NeverFloats) {
         EXPECT_LT(scene.surface.distance(place.position), 1e-9);
         const auto [a, b, c] = scene.surface.corners(place.triangle);
         EXPECT_LT(closest_point_of_triangle(place.position, a, b, c).distance, 1e-9);
-        EXPECT_NEAR(place.distance, (place.position - some.points[crossing.patch.cell]).norm(), 1e-12);
+        EXPECT_NEAR(place.distance, (place.position - some.points[crossing.component.cell]).norm(), 1e-12);
       }
     }
   }
@@ -138,8 +138,8 @@ TEST(Neck, IsACellThatWrapsAroundAWire) {
   scene.prepare();
   ASSERT_FALSE(scene.crossings.empty());
   EXPECT_TRUE(scene.crossings[0].neck);
-  EXPECT_EQ(scene.crossings[0].patch.euler_characteristic, 0);
-  const auto [position, triangle] = farthest_corner(*scene.restricted, scene.crossings[0].patch, kNone);
+  EXPECT_EQ(scene.crossings[0].component.euler_characteristic, 0);
+  const auto [position, triangle] = farthest_corner(*scene.restricted, scene.crossings[0].component, kNone);
   EXPECT_NEAR(std::abs(position.x() - 5), 2, 0.1) << "half-way to the next point";
   EXPECT_NEAR(position.z(), 0.1, 1e-9) << "on the far side of the wire";
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "gaps/cell_patches.h"
+#include "gaps/cell_components.h"
 #include "gaps/joined_inside.h"
 #include "orchard/geometry/random.h"
 #include "orchard/voronoi/exact.h"
@@ -130,8 +130,8 @@ TEST(RestrictedVoronoi, UpdatesToWhatItWouldHaveBeen) {
 }
 
 TEST(CellPatches, AddUpToTheEulerCharacteristicOfTheSurface) {
-  // Patches are faces, their common borders arcs and the points where three meet vertices of a division of the surface;
-  // when all are disks, the triangles of their dual count it as well.
+  // Components are faces, their common borders arcs and the points where three meet vertices of a division of the
+  // surface; when all are disks, the triangles of their dual count it as well.
   for (const auto& [mesh, characteristic] :
        std::vector<std::pair<TriangleMesh, int>>{{test::icosphere(3), 2}, {test::torus(48, 24), 0}}) {
     const Surface surface(mesh);
@@ -139,21 +139,23 @@ TEST(CellPatches, AddUpToTheEulerCharacteristicOfTheSurface) {
     const VoronoiDiagram diagram = exact_voronoi(sampling.points).diagram;
     const CellNeighbors neighbors(diagram);
     const RestrictedVoronoi restricted(surface, diagram.points, neighbors);
-    const auto patches = find_cell_patches(surface, sampling, restricted, PatchScope::everything(surface, sampling));
-    ASSERT_EQ(patches.size(), sampling.size());
+    const auto components =
+        find_cell_components(surface, sampling, restricted, ComponentScope::everything(surface, sampling));
+    ASSERT_EQ(components.size(), sampling.size());
     std::size_t ends = 0;
-    for (const CellPatch& patch : patches) {
-      EXPECT_TRUE(patch.home);
-      EXPECT_EQ(patch.euler_characteristic, 1);
+    for (const CellComponent& component : components) {
+      EXPECT_TRUE(component.home);
+      EXPECT_EQ(component.euler_characteristic, 1);
       std::vector<Index> others;
-      for (const Index triangle : patch.triangles) {
-        for (const CellBorder& border : restricted.piece(triangle, patch.cell)->borders) others.push_back(border.cell);
+      for (const Index triangle : component.triangles) {
+        for (const CellBorder& border : restricted.piece(triangle, component.cell)->borders)
+          others.push_back(border.cell);
       }
       std::sort(others.begin(), others.end());
       ends += static_cast<std::size_t>(std::unique(others.begin(), others.end()) - others.begin());
     }
     // In a triangulation 3 F = 2 E, so V - E + F = V - E / 3, where E = ends / 2.
-    EXPECT_EQ(6 * static_cast<int>(patches.size()) - static_cast<int>(ends), 6 * characteristic);
+    EXPECT_EQ(6 * static_cast<int>(components.size()) - static_cast<int>(ends), 6 * characteristic);
   }
 }
 
@@ -173,13 +175,13 @@ TEST(CellPatches, TellOneThatTheCellReachesFromOneThatItsPointLiesOn) {
   const VoronoiDiagram diagram = exact_voronoi(some.points).diagram;
   const CellNeighbors neighbors(diagram);
   const RestrictedVoronoi restricted(surface, diagram.points, neighbors);
-  const auto patches = find_cell_patches(surface, some, restricted, PatchScope::everything(surface, some));
+  const auto components = find_cell_components(surface, some, restricted, ComponentScope::everything(surface, some));
   Index foreign = 0;
-  for (const CellPatch& patch : patches) {
-    if (patch.home) continue;
+  for (const CellComponent& component : components) {
+    if (component.home) continue;
     ++foreign;
-    EXPECT_LT(some.points[patch.cell].x(), middle);
-    for (const Index triangle : patch.triangles) EXPECT_GT(surface.corners(triangle)[0].x(), middle);
+    EXPECT_LT(some.points[component.cell].x(), middle);
+    for (const Index triangle : component.triangles) EXPECT_GT(surface.corners(triangle)[0].x(), middle);
   }
   EXPECT_GT(foreign, 10u);
 }

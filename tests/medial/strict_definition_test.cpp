@@ -40,7 +40,7 @@ std::vector<Crossing> crossings_of(const Surface& surface, const SurfaceSampling
   const VoronoiDiagram diagram = exact_voronoi(sampling.points).diagram;
   const CellNeighbors neighbors(diagram);
   const RestrictedVoronoi restricted(surface, diagram.points, neighbors);
-  return find_crossings(surface, sampling, restricted, PatchScope::everything(surface, sampling),
+  return find_crossings(surface, sampling, restricted, ComponentScope::everything(surface, sampling),
                         {.definition = definition, .mend_necks = false});
 }
 
@@ -48,8 +48,8 @@ std::vector<Crossing> crossings_of(const Surface& surface, const SurfaceSampling
 // cluster, snapped to each of the triangles that were crossed.
 void add_as_written(const Surface& surface, SurfaceSampling& sampling, const std::vector<Crossing>& crossings) {
   for (const Crossing& crossing : crossings) {
-    const Point point = sampling.points[crossing.patch.cell];
-    const Index first = crossing.patch.triangles.front();
+    const Point point = sampling.points[crossing.component.cell];
+    const Index first = crossing.component.triangles.front();
     const Vector& normal = surface.normal(first);
     const Point projected = point - normal.dot(point - surface.corners(first)[0]) * normal;
     ClosestPoint place;
@@ -63,7 +63,7 @@ void add_as_written(const Surface& surface, SurfaceSampling& sampling, const std
       add_at(surface, sampling, place);
       continue;
     }
-    for (const Index triangle : crossing.patch.triangles) {
+    for (const Index triangle : crossing.component.triangles) {
       const auto [a, b, c] = surface.corners(triangle);
       ClosestPoint snapped = closest_point_of_triangle(projected, a, b, c);
       snapped.triangle = triangle;

@@ -147,7 +147,7 @@ bool samples_find_nothing(const Surface& surface, const PackedSphereTree& tree) 
   const auto balls = path_balls(tree);
   const Point origin(tree.origin[0], tree.origin[1], tree.origin[2]);
   for (const Point& point : points_on(surface, 40, 3))
-    if (path_depth(point - origin, balls) > 0) return false;
+    if (path_distance(point - origin, balls) > 0) return false;
   return true;
 }
 
@@ -283,7 +283,7 @@ TEST(Verify, NamesAPointThatHasNoPathAndHowDeepItLies) {
     for (float& r : tree.blocks[b].radius) r *= r > 0 ? 0.9f : 1.0f;
   const Verification result = verify(surface, tree);
   ASSERT_FALSE(result.ok());
-  EXPECT_GT(result.uncovered.depth.lower, 0);
+  EXPECT_GT(result.uncovered.distance.lower, 0);
   EXPECT_GT(result.uncovered.area.lower, 0);
   EXPECT_FALSE(result.only_tangent(surface.bounding_radius()));
   for (const Violation& violation : result.violations) {
@@ -313,7 +313,7 @@ TEST(Verify, IsTheSameOnOneTwoAndSevenThreads) {
   }
   for (const Verification& other : results) {
     ASSERT_EQ(other.violations.size(), results[0].violations.size());
-    EXPECT_EQ(other.uncovered.depth.lower, results[0].uncovered.depth.lower);
+    EXPECT_EQ(other.uncovered.distance.lower, results[0].uncovered.distance.lower);
     EXPECT_EQ(other.uncovered.area.upper, results[0].uncovered.area.upper);
     EXPECT_EQ(other.uncovered_nodes, results[0].uncovered_nodes);
     for (std::size_t i = 0; i < other.violations.size(); ++i) {

@@ -33,7 +33,7 @@ TEST(Certificate, HoldsForExactDiagramsWithNoDepthAtAll) {
     const VoronoiDiagram diagram = exact_voronoi(points).diagram;
     const Certificate certificate = certificate_of(diagram, true);
     EXPECT_TRUE(certificate.holds) << name;
-    EXPECT_EQ(certificate.depth, 0) << name;
+    EXPECT_EQ(certificate.intrusion, 0) << name;
   }
 }
 
@@ -42,9 +42,9 @@ TEST(Certificate, IsReportedAndHoldsTheDepthThatTheJudgeFinds) {
     const auto [diagram, report] = highest_first_voronoi(points);
     const test::Judgement judgement = test::judge(diagram);
     // Spheres and planes are rounded, in the judge as well.
-    EXPECT_LE(judgement.deepest, report.certified_depth + 1e-11) << name;
-    EXPECT_LE(judgement.beyond, report.certified_depth + 1e-11) << name;
-    EXPECT_LE(report.certified_depth, tolerance::kVoronoiDepth) << name;
+    EXPECT_LE(judgement.deepest, report.certified_intrusion + 1e-11) << name;
+    EXPECT_LE(judgement.beyond, report.certified_intrusion + 1e-11) << name;
+    EXPECT_LE(report.certified_intrusion, tolerance::kVoronoiIntrusion) << name;
   }
 }
 
@@ -56,7 +56,8 @@ TEST(Certificate, IsNeverGivenToADiagramThatIsWrong) {
     const VoronoiDiagram diagram = inagaki_voronoi(set.points).diagram;
     if (diagram.vertices.empty()) continue;
     const test::Judgement judgement = test::judge(diagram);
-    const bool is_wrong = judgement.deepest > tolerance::kVoronoiDepth || judgement.beyond > tolerance::kVoronoiDepth;
+    const bool is_wrong =
+        judgement.deepest > tolerance::kVoronoiIntrusion || judgement.beyond > tolerance::kVoronoiIntrusion;
     const bool holds = certificate_of(diagram, false).holds;
     wrong += is_wrong;
     ++(holds ? given : refused);
@@ -77,7 +78,7 @@ TEST(Certificate, IsRefusedWhereAPointHasMovedAway) {
     Point& p = diagram.points[seed];
     p += 0.5 * (diagram.points[(seed + 7) % 40] - p);
     const test::Judgement judgement = test::judge(diagram);
-    if (judgement.deepest <= tolerance::kVoronoiDepth && judgement.beyond <= tolerance::kVoronoiDepth) continue;
+    if (judgement.deepest <= tolerance::kVoronoiIntrusion && judgement.beyond <= tolerance::kVoronoiIntrusion) continue;
     ++moved;
     for (const bool exact : {false, true}) EXPECT_FALSE(certificate_of(diagram, exact).holds) << seed;
   }

@@ -161,8 +161,8 @@ Judgement judge(const VoronoiDiagram& diagram) {
       ++result.flat;
       continue;
     }
-    const double depth = depth_in_sphere(present, p[0], center) / present.radius;
-    if (depth > result.deepest) result.deepest = depth, result.sphere = v;
+    const double intrusion = depth_in_sphere(present, p[0], center) / present.radius;
+    if (intrusion > result.deepest) result.deepest = intrusion, result.sphere = v;
   }
   return result;
 }

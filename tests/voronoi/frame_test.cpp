@@ -80,13 +80,13 @@ TEST(Frame, LetsPointsFarFromTheOriginHaveRightDiagrams) {
         if (diagram.vertices.empty()) continue;
         ASSERT_NO_THROW(validate(diagram));
         test::Judgement judgement = test::judge(diagram);
-        EXPECT_LE(judgement.deepest, tolerance::kVoronoiDepth) << offset;
-        EXPECT_LE(judgement.beyond, tolerance::kVoronoiDepth) << offset;
+        EXPECT_LE(judgement.deepest, tolerance::kVoronoiIntrusion) << offset;
+        EXPECT_LE(judgement.beyond, tolerance::kVoronoiIntrusion) << offset;
         diagram = highest_first_voronoi(std::span(moved).first(100)).diagram;
         insert_points(diagram, std::span(moved).subspan(100));
         judgement = test::judge(diagram);
-        EXPECT_LE(judgement.deepest, tolerance::kVoronoiDepth) << offset << ", inserted";
-        EXPECT_LE(judgement.beyond, tolerance::kVoronoiDepth) << offset << ", inserted";
+        EXPECT_LE(judgement.deepest, tolerance::kVoronoiIntrusion) << offset << ", inserted";
+        EXPECT_LE(judgement.beyond, tolerance::kVoronoiIntrusion) << offset << ", inserted";
       }
     }
 }

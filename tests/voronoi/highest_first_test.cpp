@@ -106,12 +106,12 @@ TEST(HighestFirstVoronoi, IsMendedWhereRoundingLeavesSpheresOpen) {
   for (const test::Points& points : {test::turned(test::cone_ring_points(60, 80), 1), test::sphere_points(2000, 4)}) {
     const auto [diagram, report] = highest_first_voronoi(points);
     EXPECT_FALSE(report.exact_signs) << "all made anew for the sake of a few";
-    EXPECT_LT(report.certified_depth, tolerance::kVoronoiDepth * static_cast<double>(points.size()) / 512);
+    EXPECT_LT(report.certified_intrusion, tolerance::kVoronoiIntrusion * static_cast<double>(points.size()) / 512);
     EXPECT_NO_THROW(validate(diagram));
     if (points.size() > 3000) continue;  // the judge holds all points against all spheres
     const test::Judgement judgement = test::judge(diagram);
-    EXPECT_LE(judgement.deepest, report.certified_depth);
-    EXPECT_LE(judgement.beyond, report.certified_depth);
+    EXPECT_LE(judgement.deepest, report.certified_intrusion);
+    EXPECT_LE(judgement.beyond, report.certified_intrusion);
     EXPECT_EQ(judgement.missing, 0u);
   }
 }
@@ -133,9 +133,9 @@ TEST(HighestFirstVoronoi, IsNotMadeAnewForLocalDoubts) {
   for (const test::Points& points : {cylinder, torus}) {
     const auto [diagram, report] = highest_first_voronoi(points);
     EXPECT_FALSE(report.exact_signs);
-    EXPECT_LT(report.certified_depth, tolerance::kVoronoiDepth * static_cast<double>(points.size()) / 512);
+    EXPECT_LT(report.certified_intrusion, tolerance::kVoronoiIntrusion * static_cast<double>(points.size()) / 512);
     EXPECT_NO_THROW(validate(diagram));
-    EXPECT_LT(inaccuracy(diagram).max, tolerance::kVoronoiDepth * test::bounding_radius(points));
+    EXPECT_LT(inaccuracy(diagram).max, tolerance::kVoronoiIntrusion * test::bounding_radius(points));
   }
 }
 
@@ -143,7 +143,7 @@ TEST(HighestFirstVoronoi, IsMadeAnewWithExactSignsWhereDoubtsAreEverywhere) {
   const test::ShakenSet set = test::shaken_set(14);
   const auto [diagram, report] = highest_first_voronoi(set.points);
   EXPECT_TRUE(report.exact_signs) << set.name;
-  EXPECT_EQ(report.certified_depth, 0);
+  EXPECT_EQ(report.certified_intrusion, 0);
   EXPECT_EQ(report.constrained_insertions, 0u);
   const test::Judgement judgement = test::judge(diagram);
   EXPECT_LT(judgement.deepest, 1e-11);

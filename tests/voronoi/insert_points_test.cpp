@@ -85,11 +85,11 @@ TEST(InsertPoints, LooksAtTheNewPointsOnlyAndMendsWhereSignsContradict) {
   const InsertionReport report = insert_points(diagram, rest(points, part));
   validate(diagram);
   EXPECT_FALSE(report.exact_signs) << "all made anew for the sake of a few";
-  EXPECT_LT(report.certified_depth, tolerance::kVoronoiDepth * static_cast<double>(points.size()) / 512);
+  EXPECT_LT(report.certified_intrusion, tolerance::kVoronoiIntrusion * static_cast<double>(points.size()) / 512);
   EXPECT_EQ(
       report.certified_insertions + report.settled_insertions + report.exact_insertions + report.constrained_insertions,
       points.size() - part);
-  EXPECT_LT(inaccuracy(diagram).max, tolerance::kVoronoiDepth * test::bounding_radius(points));
+  EXPECT_LT(inaccuracy(diagram).max, tolerance::kVoronoiIntrusion * test::bounding_radius(points));
 }
 
 TEST(InsertPoints, LeavesOutWhatIsThereAlready) {

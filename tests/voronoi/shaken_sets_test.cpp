@@ -1,5 +1,5 @@
 // What a diagram must be is known even where points are nearly, but not quite, degenerate: no point deeper than
-// tolerance::kVoronoiDepth in a sphere or beyond a facet of the hull. ORCHARD_SHAKEN_SETS=FIRST:COUNT in the
+// tolerance::kVoronoiIntrusion in a sphere or beyond a facet of the hull. ORCHARD_SHAKEN_SETS=FIRST:COUNT in the
 // environment lets the first test look at other and at more sets.
 #include "voronoi/shaken_sets.h"
 
@@ -25,8 +25,8 @@ namespace {
 void expect_right(const std::string& name, const VoronoiDiagram& diagram) {
   ASSERT_NO_THROW(validate(diagram)) << name;
   const test::Judgement judgement = test::judge(diagram);
-  EXPECT_LE(judgement.deepest, tolerance::kVoronoiDepth) << name << ": a point lies in a sphere";
-  EXPECT_LE(judgement.beyond, tolerance::kVoronoiDepth) << name << ": a point lies beyond the hull";
+  EXPECT_LE(judgement.deepest, tolerance::kVoronoiIntrusion) << name << ": a point lies in a sphere";
+  EXPECT_LE(judgement.beyond, tolerance::kVoronoiIntrusion) << name << ": a point lies beyond the hull";
   EXPECT_EQ(judgement.missing, 0u) << name;
 }
 

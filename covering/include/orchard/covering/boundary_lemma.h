@@ -47,6 +47,6 @@ bool triangle_covered(const std::array<Point, 3>& triangle, std::span<const Path
 
 // How far a point is outside every path region: the least growth of all balls that would put it into one; <= 0 inside,
 // infinite without a leaf.
-double path_depth(const Point& point, std::span<const PathBall> balls);
+double path_distance(const Point& point, std::span<const PathBall> balls);
 
 }  // namespace orchard

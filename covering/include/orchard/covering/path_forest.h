@@ -27,8 +27,8 @@ class PathForest {
   // and neither do the path regions below it. `near` is cleared first.
   void gather(const std::array<Point, 3>& triangle, NearBalls& near) const;
 
-  // path_depth() over all balls, without a look at most of them.
-  double depth(const Point& point) const;
+  // path_distance() over all balls, without a look at most of them.
+  double distance(const Point& point) const;
 
  private:
   void descend(Index ball, const Point& point, double above, double& min) const;

@@ -39,8 +39,8 @@ struct MeshRepairReport {
 
 // Makes a solid of a mesh where that is safe, which is where the surface keeps its place: vertices at the same place
 // are welded where a seam or a triangle without area asks for it; degenerate and duplicate triangles go; neighbours are
-// turned to agree with the majority of their patch; edges and vertices where solids touch are cut apart (Gueziec et al.
-// 2001, each triangle stays with the one across the solid between them); small holes are filled (CGAL's
+// turned to agree with the majority of their component; edges and vertices where solids touch are cut apart (Gueziec et
+// al. 2001, each triangle stays with the one across the solid between them); small holes are filled (CGAL's
 // triangulate_hole_polyline, after Liepa 2003); components are turned outward, those wholly inside another one are
 // cavities and turned inward. Only the filling of holes adds surface. Holes that are larger, strips with one side and
 // walls inside a solid stay as they are: see the report. A mesh without faults keeps every byte. O(n log n). Throws

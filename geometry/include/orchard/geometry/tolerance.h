@@ -22,7 +22,7 @@ inline constexpr double kCoincidentPoints = 1e-7;
 // How deep a point may lie in the sphere of a Voronoi vertex, or beyond a facet of the hull: a Voronoi diagram that is
 // wrong by less cannot be told from a right one by anything that follows, and one on spheres and planes that rounding
 // has bent is wrong by 1e-16 to 1e-12.
-inline constexpr double kVoronoiDepth = 1e-9;
+inline constexpr double kVoronoiIntrusion = 1e-9;
 
 // Two Voronoi vertices nearer than this, and connected, are one medial vertex (dissertation 6.2.1). Round-off leaves
 // degenerate vertices about 1e-9 apart on relaxed points; real neighbours are about a point spacing (1e-2) apart.

@@ -8,8 +8,8 @@ namespace orchard {
 
 // The Voronoi diagram by incremental insertion with the highest-first deletion search under Inagaki et al.'s five
 // constraints (dissertation 6.2.3): consistent for every input, and certified to be right: no point is deeper in a
-// sphere, or farther beyond a facet of the hull, than report.certified_depth, which is at most
-// tolerance::kVoronoiDepth of the bounding radius for up to 512 points (a 512th of that for each point more).
+// sphere, or farther beyond a facet of the hull, than report.certified_intrusion, which is at most
+// tolerance::kVoronoiIntrusion of the bounding radius for up to 512 points (a 512th of that for each point more).
 // Points within tolerance::kCoincidentPoints of the bounding radius of an earlier point form no vertex. Points that all
 // lie in a plane, up to rounding, or are fewer than four have a diagram without vertices; report.dimension tells.
 // Deterministic. Throws InputError for coordinates that are not finite or beyond 1e100, or if all points lie within

@@ -1,4 +1,4 @@
-#include "cell_patches.h"
+#include "cell_components.h"
 
 #include <tbb/parallel_for.h>
 
@@ -13,32 +13,32 @@
 namespace orchard::detail {
 namespace {
 
-// Divides the pieces of one cell into patches.
-class PatchFinder {
+// Divides the pieces of one cell into components.
+class ComponentFinder {
  public:
-  PatchFinder(const Surface& surface, const RestrictedVoronoi& restricted, Index cell, std::vector<Index> triangles)
+  ComponentFinder(const Surface& surface, const RestrictedVoronoi& restricted, Index cell, std::vector<Index> triangles)
       : surface_(surface), cell_(cell), triangles_(std::move(triangles)), sets_(triangles_.size()) {
     for (const Index triangle : triangles_) pieces_.push_back(restricted.piece(triangle, cell));
     euler_.assign(triangles_.size(), 1);
     joined_.assign(triangles_.size(), 0);
   }
 
-  std::vector<CellPatch> run() {
+  std::vector<CellComponent> run() {
     for (std::size_t i = 0; i < triangles_.size(); ++i) join_across_edges(i);
     for (std::size_t i = 0; i < triangles_.size(); ++i) count_inner_vertices(i);
-    std::vector<CellPatch> patches;
-    std::vector<std::size_t> patch_of(triangles_.size());
+    std::vector<CellComponent> components;
+    std::vector<std::size_t> component_of(triangles_.size());
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
       const std::size_t first = sets_.root(static_cast<Index>(i));  // the lowest of its set
       if (first == i) {
-        patch_of[i] = patches.size();
-        patches.push_back({cell_, {}, false, 0});
+        component_of[i] = components.size();
+        components.push_back({cell_, {}, false, 0});
       }
-      CellPatch& patch = patches[patch_of[first]];
-      patch.triangles.push_back(triangles_[i]);
-      patch.euler_characteristic += euler_[i];
+      CellComponent& component = components[component_of[first]];
+      component.triangles.push_back(triangles_[i]);
+      component.euler_characteristic += euler_[i];
     }
-    return patches;
+    return components;
   }
 
  private:
@@ -73,7 +73,7 @@ class PatchFinder {
     return mask;
   }
 
-  // A vertex is inside a patch if the pieces around it are joined all the way round. Counted at the first of them.
+  // A vertex is inside a component if the pieces around it are joined all the way round. Counted at the first of them.
   void count_inner_vertices(std::size_t i) {
     for (const Index vertex : surface_.mesh().triangles[triangles_[i]]) {
       const auto around = surface_.triangles_around(vertex);
@@ -97,64 +97,65 @@ class PatchFinder {
   std::vector<Index> triangles_;  // ascending
   std::vector<const CellPiece*> pieces_;
   DisjointSets sets_;
-  std::vector<int> euler_;            // what each piece adds to its patch's characteristic
+  std::vector<int> euler_;            // what each piece adds to its component's characteristic
   std::vector<std::uint8_t> joined_;  // bit i: to a piece across the triangle's edge i
 };
 
-double distance_to(const Surface& surface, const CellPatch& patch, const Point& point) {
+double distance_to(const Surface& surface, const CellComponent& component, const Point& point) {
   double nearest = std::numeric_limits<double>::infinity();
-  for (const Index triangle : patch.triangles) {
+  for (const Index triangle : component.triangles) {
     const auto [a, b, c] = surface.corners(triangle);
     nearest = std::min(nearest, closest_point_of_triangle(point, a, b, c).distance);
   }
   return nearest;
 }
 
-// `patches`: all of one cell, at least one. A diagram that is not exact may cut the point's own place off by a
-// rounding; then the patch nearest to it counts.
-void mark_home(const Surface& surface, const SurfaceSampling& sampling, std::vector<CellPatch>& patches) {
-  const Index cell = patches[0].cell;
+// `components`: all of one cell, at least one. A diagram that is not exact may cut the point's own place off by a
+// rounding; then the component nearest to it counts.
+void mark_home(const Surface& surface, const SurfaceSampling& sampling, std::vector<CellComponent>& components) {
+  const Index cell = components[0].cell;
   std::vector<Index> around;
   surface.triangles_at(sampling.triangles[cell], sampling.features[cell], around);
-  for (CellPatch& patch : patches) {
-    patch.home = std::any_of(around.begin(), around.end(), [&](Index triangle) {
-      return std::binary_search(patch.triangles.begin(), patch.triangles.end(), triangle);
+  for (CellComponent& component : components) {
+    component.home = std::any_of(around.begin(), around.end(), [&](Index triangle) {
+      return std::binary_search(component.triangles.begin(), component.triangles.end(), triangle);
     });
   }
-  if (std::any_of(patches.begin(), patches.end(), [](const CellPatch& patch) { return patch.home; })) return;
-  const auto nearer = [&](const CellPatch& a, const CellPatch& b) {
+  if (std::any_of(components.begin(), components.end(), [](const CellComponent& component) { return component.home; }))
+    return;
+  const auto nearer = [&](const CellComponent& a, const CellComponent& b) {
     return distance_to(surface, a, sampling.points[cell]) < distance_to(surface, b, sampling.points[cell]);
   };
-  std::min_element(patches.begin(), patches.end(), nearer)->home = true;
+  std::min_element(components.begin(), components.end(), nearer)->home = true;
 }
 
 }  // namespace
 
-PatchScope PatchScope::everything(const Surface& surface, const SurfaceSampling& sampling) {
-  PatchScope scope;
+ComponentScope ComponentScope::everything(const Surface& surface, const SurfaceSampling& sampling) {
+  ComponentScope scope;
   scope.cells.assign(sampling.size(), 1);
   scope.triangles.resize(surface.mesh().triangles.size());
   std::iota(scope.triangles.begin(), scope.triangles.end(), Index{0});
   return scope;
 }
 
-std::vector<CellPatch> find_cell_patches(const Surface& surface, const SurfaceSampling& sampling,
-                                         const RestrictedVoronoi& restricted, const PatchScope& scope) {
+std::vector<CellComponent> find_cell_components(const Surface& surface, const SurfaceSampling& sampling,
+                                                const RestrictedVoronoi& restricted, const ComponentScope& scope) {
   std::vector<std::vector<Index>> triangles_of(scope.cells.size());
   for (const Index triangle : scope.triangles) {
     for (const CellPiece& piece : restricted.pieces(triangle)) {
       if (scope.cells[piece.cell]) triangles_of[piece.cell].push_back(triangle);
     }
   }
-  std::vector<std::vector<CellPatch>> patches_of(triangles_of.size());
+  std::vector<std::vector<CellComponent>> components_of(triangles_of.size());
   tbb::parallel_for(Index{0}, static_cast<Index>(triangles_of.size()), [&](Index cell) {
     if (triangles_of[cell].empty()) return;
-    patches_of[cell] = PatchFinder(surface, restricted, cell, std::move(triangles_of[cell])).run();
-    mark_home(surface, sampling, patches_of[cell]);
+    components_of[cell] = ComponentFinder(surface, restricted, cell, std::move(triangles_of[cell])).run();
+    mark_home(surface, sampling, components_of[cell]);
   });
-  std::vector<CellPatch> patches;
-  for (auto& some : patches_of) std::move(some.begin(), some.end(), std::back_inserter(patches));
-  return patches;
+  std::vector<CellComponent> components;
+  for (auto& some : components_of) std::move(some.begin(), some.end(), std::back_inserter(components));
+  return components;
 }
 
 }  // namespace orchard::detail
