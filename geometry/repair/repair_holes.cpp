@@ -69,11 +69,11 @@ struct Extent {
   double diameter = 0, width = 0;  // width: the largest distance of a point from the diameter
 };
 
-constexpr std::size_t kMostForPairs = 2000;  // points of which all pairs are looked at
+constexpr std::size_t kMaxForPairs = 2000;  // points of which all pairs are looked at
 
 // Of more points than that, the diagonal of their box: no pair is farther apart.
 Extent extent(std::span<const Point> points) {
-  if (points.size() > kMostForPairs) {
+  if (points.size() > kMaxForPairs) {
     Box box;
     for (const Point& point : points) box.extend(point);
     return {box.diagonal().norm(), box.diagonal().norm()};

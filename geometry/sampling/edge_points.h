@@ -21,7 +21,7 @@ struct EdgePlacement {
 // Spreads at most `count` points over the edges whose two triangles divided(a, b) says are parted, and over those
 // without just two triangles. Edges that meet two by two form chains; a table of partial sums of the chains' lengths
 // decides the share of each chain, and a chain's n points lie at (k + 1/2) / n of its length, so that the gap at a
-// chain's end is half a spacing. No closer than `least_spacing` on average.
+// chain's end is half a spacing. No closer than `min_spacing` on average.
 EdgePlacement place_edge_points(const Surface& surface, const std::function<bool(Index, Index)>& divided, Index count,
                                 double min_spacing);
 

@@ -203,8 +203,8 @@ void measure_reconstruction(const Surface& surface, const MedialMesh& mesh, std:
   const double apart = options.places_apart * quality.diagonal;
   quality.worst = worst_of(std::move(protruding), options.worst_places, apart);
   for (WorstPlace& place : quality.worst) place.outward = outward_at(surface, place.position);
-  const auto most_open = worst_of(std::move(uncovered), options.worst_places, apart);
-  quality.worst.insert(quality.worst.end(), most_open.begin(), most_open.end());
+  const auto max_open = worst_of(std::move(uncovered), options.worst_places, apart);
+  quality.worst.insert(quality.worst.end(), max_open.begin(), max_open.end());
 }
 
 }  // namespace orchard::detail

@@ -190,7 +190,7 @@ MedialMesh ContractibleMesh::mesh() const {
   return mesh;
 }
 
-std::vector<ContractibleMesh::Triangle> ContractibleMesh::largest_cells() const {
+std::vector<ContractibleMesh::Triangle> ContractibleMesh::maximal_cells() const {
   std::vector<Triangle> cells;
   for (Index t = 0; t < triangles_.size(); ++t) {
     if (triangle_alive_[t]) cells.push_back(triangles_[t]);

@@ -52,7 +52,7 @@ class ContractibleMesh {
   // The living cells, vertices numbered anew in their order.
   MedialMesh mesh() const;
   // For each of its cells that no larger one holds, its corners by the numbers here; missing ones repeat the first.
-  std::vector<Triangle> largest_cells() const;
+  std::vector<Triangle> maximal_cells() const;
 
  private:
   bool has_contractible_edge() const;

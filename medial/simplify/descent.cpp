@@ -14,7 +14,7 @@ namespace {
 
 // How far quadrics lead: to so many times the vertices wanted, but no fewer than so many. They are fast, and the
 // samples, which see more, have what is left.
-constexpr Index kBySlabs = 3, kLeastBySlabs = 1000;
+constexpr Index kBySlabs = 3, kMinBySlabs = 1000;
 constexpr double kShrink = 0.6;   // vertices left by one pass of contractions
 constexpr double kMoved = 0.08;   // share of the vertices that the first round moves
 constexpr double kNotable = 0.6;  // of the largest distance: places that are as far off become samples
@@ -37,7 +37,7 @@ Descent::Descent(const Surface& surface, const MedialMesh& mesh, const SimplifyO
 Stage Descent::start() const { return {whole_, fit_samples(surface_, options_.samples, options_.seed), {}}; }
 
 void Descent::go_down(Stage& stage, Index count) const {
-  contract_by_slabs(stage.mesh, std::max({count, kBySlabs * std::min(count, stage.mesh.living()), kLeastBySlabs}));
+  contract_by_slabs(stage.mesh, std::max({count, kBySlabs * std::min(count, stage.mesh.living()), kMinBySlabs}));
   stage.feet.feet.clear();
   refine(stage, kBetween);
   while (stage.mesh.living() > count) {

@@ -13,7 +13,7 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-6, kMostDamping = 1e3;
+constexpr double kFirstDamping = 1e-3, kMinDamping = 1e-6, kMaxDamping = 1e3;
 constexpr double kFloor = 1e-3;  // share of the weight that small distances keep at high powers
 
 class Fitter {
@@ -37,7 +37,7 @@ class Fitter {
     for (const Protrusion& protrusion : protrusions_) scale_ = std::max(scale_, protrusion.value);
     double cost = total();
     double damping = kFirstDamping;
-    for (int step = 0; step < options_.steps && damping < kMostDamping; ++step) {
+    for (int step = 0; step < options_.steps && damping < kMaxDamping; ++step) {
       assemble();
       const std::vector<Ball4> before = balls();
       const Assignment feet_before = feet_;
@@ -48,7 +48,7 @@ class Fitter {
       const double next = total();
       if (next < cost) {
         cost = next;
-        damping = std::max(kLeastDamping, damping / 4);
+        damping = std::max(kMinDamping, damping / 4);
       } else {
         restore(before);
         feet_ = feet_before;

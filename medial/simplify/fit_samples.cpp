@@ -59,10 +59,10 @@ void add_edges(const Surface& surface, double spacing, std::vector<FitSample>& o
 }
 
 // `most` of them at even steps.
-void thin_out(std::vector<FitSample>& samples, std::size_t most) {
-  if (samples.size() <= most) return;
-  for (std::size_t i = 0; i < most; ++i) samples[i] = samples[i * samples.size() / most];
-  samples.resize(most);
+void thin_out(std::vector<FitSample>& samples, std::size_t max) {
+  if (samples.size() <= max) return;
+  for (std::size_t i = 0; i < max; ++i) samples[i] = samples[i * samples.size() / max];
+  samples.resize(max);
 }
 
 }  // namespace

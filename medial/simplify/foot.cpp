@@ -7,7 +7,7 @@
 namespace orchard::detail {
 namespace {
 
-constexpr int kMostHops = 6;
+constexpr int kMaxHops = 6;
 
 // Along a segment the distance is convex: sqrt(h^2 + (t - q)^2) - r(t), least where the slope of the root is that of
 // the radius. Returns the share of b.
@@ -50,7 +50,7 @@ template <class Visit>
 Foot walk_from(const ContractibleMesh& mesh, const Point& query, const Foot& start, const Visit& visit) {
   Foot best = foot_on(mesh, start.corners, query);
   Index last = kNone;
-  for (int hop = 0; hop < kMostHops; ++hop) {
+  for (int hop = 0; hop < kMaxHops; ++hop) {
     const auto heaviest = std::max_element(best.weights.begin(), best.weights.end()) - best.weights.begin();
     const Index corner = best.corners[static_cast<std::size_t>(heaviest)];
     if (corner == last) break;
@@ -105,7 +105,7 @@ Foot foot_on(const ContractibleMesh& mesh, const std::array<Index, 3>& corners, 
   return best;
 }
 
-FootWalker::FootWalker(const ContractibleMesh& mesh) : mesh_(mesh), cells_(mesh.largest_cells()) {
+FootWalker::FootWalker(const ContractibleMesh& mesh) : mesh_(mesh), cells_(mesh.maximal_cells()) {
   std::vector<Index> next(mesh.size() + 1, 0);
   const auto visit = [&](const auto& look_at) {
     for (Index i = 0; i < cells_.size(); ++i) {
@@ -137,7 +137,7 @@ Foot walk_to_foot(const ContractibleMesh& mesh, const Point& query, const Foot& 
   });
 }
 
-FootFinder::FootFinder(const ContractibleMesh& mesh) : mesh_(mesh), cells_(mesh.largest_cells()) {
+FootFinder::FootFinder(const ContractibleMesh& mesh) : mesh_(mesh), cells_(mesh.maximal_cells()) {
   std::vector<SupportTree::Item> items;
   items.reserve(cells_.size());
   for (const auto& cell : cells_) {
@@ -151,9 +151,9 @@ FootFinder::FootFinder(const ContractibleMesh& mesh) : mesh_(mesh), cells_(mesh.
 Foot FootFinder::find(const Point& query, const Foot* guess) const {
   Foot best{.value = std::numeric_limits<double>::infinity()};
   if (guess != nullptr) best = foot_on(mesh_, guess->corners, query);
-  tree_.min(query, best.value, [&](Index item, const SupportTree::Item&, double least) {
+  tree_.min(query, best.value, [&](Index item, const SupportTree::Item&, double min) {
     const double bound = bound_on(mesh_, cells_[item], query);
-    if (bound >= least) return bound;
+    if (bound >= min) return bound;
     const Foot foot = foot_on(mesh_, cells_[item], query);
     if (foot.value < best.value) best = foot;
     return foot.value;

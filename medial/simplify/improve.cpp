@@ -59,8 +59,8 @@ class Insertion {
     }
     // The cell of a foot may be divided; each of its corners is a cell.
     for (Foot& foot : feet_.feet) {
-      const auto largest = std::max_element(foot.weights.begin(), foot.weights.end()) - foot.weights.begin();
-      const Index corner = foot.corners[static_cast<std::size_t>(largest)];
+      const auto heaviest = std::max_element(foot.weights.begin(), foot.weights.end()) - foot.weights.begin();
+      const Index corner = foot.corners[static_cast<std::size_t>(heaviest)];
       foot = {.corners = {corner, corner, corner}, .weights = {1, 0, 0}, .value = foot.value};
     }
     return done;
@@ -91,13 +91,13 @@ class Insertion {
     }
     if (corners.size() != 1) return false;
     Index best = kNone;
-    double least = std::numeric_limits<double>::infinity();
+    double min = std::numeric_limits<double>::infinity();
     const Point from = mesh_.ball(corners[0]).head<3>();
     for (const Index other : mesh_.neighbors(corners[0])) {
       if (mesh_.count_triangles_at(corners[0], other) > 1) continue;
       const double distance = distance_to_segment(sample.position, from, mesh_.ball(other).head<3>());
-      if (distance >= least) continue;
-      least = distance;
+      if (distance >= min) continue;
+      min = distance;
       best = other;
     }
     if (best == kNone) {

@@ -9,8 +9,8 @@ namespace orchard {
 namespace {
 
 constexpr Index kStarts = 8;
-constexpr double kTouching = 1e-7;   // of the radius: what is nearer than this beyond the nearest place holds the ball
-constexpr double kLeastStep = 1e-9;  // of the radius
+constexpr double kTouching = 1e-7;  // of the radius: what is nearer than this beyond the nearest place holds the ball
+constexpr double kMinStep = 1e-9;   // of the radius
 constexpr int kMaxSteps = 400;
 constexpr int kHullSteps = 200;
 
@@ -39,7 +39,7 @@ Vector uphill(const Surface& surface, const Point& center, double reach, std::ve
 Sphere climb(const Surface& surface, Sphere ball) {
   std::vector<Index> near;
   double length = 0.1 * ball.radius;
-  for (int i = 0; i < kMaxSteps && length > kLeastStep * ball.radius; ++i) {
+  for (int i = 0; i < kMaxSteps && length > kMinStep * ball.radius; ++i) {
     const Vector way = uphill(surface, ball.center, ball.radius * (1 + kTouching) + 0.5 * length, near);
     if (!(way.norm() > 1e-9)) {
       length /= 4;
@@ -59,7 +59,7 @@ Sphere climb(const Surface& surface, Sphere ball) {
 
 }  // namespace
 
-Sphere largest_inscribed_ball(const Surface& surface, const MedialMesh& mesh) {
+Sphere max_inscribed_ball(const Surface& surface, const MedialMesh& mesh) {
   if (!surface.solid())
     throw InputError("the largest ball needs a solid: " + surface.report().faults() + "; repair the mesh first");
   std::vector<Sphere> starts;

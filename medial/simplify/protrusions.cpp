@@ -48,7 +48,7 @@ std::vector<Protrusion> places_to_look(const ContractibleMesh& mesh, double spac
       if (v < other) places.add_edge(v, other);
     }
   }
-  for (const auto& cell : mesh.largest_cells()) {
+  for (const auto& cell : mesh.maximal_cells()) {
     if (cell[2] != cell[0]) places.add_triangle(cell);
   }
   return std::move(places.result);

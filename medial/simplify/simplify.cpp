@@ -35,7 +35,7 @@ bool is_single_ball(const ContractibleMesh& mesh) { return mesh.living() == 1; }
 
 SimplifiedMedialMesh finish(const Surface& surface, const MedialMesh& whole, const Descent& descent, Stage stage) {
   if (is_single_ball(stage.mesh)) {
-    const Sphere ball = largest_inscribed_ball(surface, whole);
+    const Sphere ball = max_inscribed_ball(surface, whole);
     MedialMesh single;
     single.centers.push_back(ball.center);
     single.radii.push_back(ball.radius);
@@ -58,13 +58,13 @@ class FewestWithin {
   SimplifiedMedialMesh run() {
     Index high = mesh_.size(), low = 1;  // `high` is enough, as far as is known; one less than `low` is not
     std::optional<SimplifiedMedialMesh> best;
-    double least = std::numeric_limits<double>::infinity();
+    double min = std::numeric_limits<double>::infinity();
     // From few to many at first: few take less time.
     Index next = std::min<Index>(high, kFirst);
     while (low <= high) {
       report_progress(progress_, kStage, progress_of(low, high));
       SimplifiedMedialMesh result = finish(surface_, mesh_, descent_, stage_of(next));
-      least = std::min(least, result.report.hausdorff.max);
+      min = std::min(min, result.report.hausdorff.max);
       if (result.report.hausdorff.max <= options_.error) {
         high = next - 1;
         const bool fewest = result.report.vertices > next || next == 1;  // the topology allows no less
@@ -77,7 +77,7 @@ class FewestWithin {
     }
     if (!best) {
       throw InputError("error " + percent(options_.error) +
-                       " of the diagonal: no number of vertices of this axis comes nearer than " + percent(least) +
+                       " of the diagonal: no number of vertices of this axis comes nearer than " + percent(min) +
                        "; allow more, or refine the axis further");
     }
     return std::move(*best);

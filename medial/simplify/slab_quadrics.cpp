@@ -43,11 +43,11 @@ struct Quadric {
 // Any unit vector at right angles to one.
 Vector across(const Vector& unit) {
   Vector other = Vector::Zero();
-  Index least = 0;
+  Index axis = 0;
   for (Index k = 1; k < 3; ++k) {
-    if (std::abs(unit[k]) < std::abs(unit[least])) least = k;
+    if (std::abs(unit[k]) < std::abs(unit[axis])) axis = k;
   }
-  other[least] = 1;
+  other[axis] = 1;
   return unit.cross(other).normalized();
 }
 
@@ -60,7 +60,7 @@ class Contraction {
   void run(Index target) {
     quadrics_.resize(mesh_.size());
     stamp_.assign(mesh_.size(), 0);
-    for (const auto& cell : mesh_.largest_cells()) add_cell(cell);
+    for (const auto& cell : mesh_.maximal_cells()) add_cell(cell);
     for (Index v = 0; v < mesh_.size(); ++v) {
       for (const Index other : mesh_.neighbors(v)) {
         if (v < other) offer(v, other);

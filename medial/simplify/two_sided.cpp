@@ -10,9 +10,9 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kSlack = 1e-4;    // diagonals: to which the largest gap is searched
-constexpr int kMostHalvings = 60;  // of a triangle: its corners are one point then
-constexpr Index kMostPieces = 2'000'000;
+constexpr double kSlack = 1e-4;   // diagonals: to which the largest gap is searched
+constexpr int kMaxHalvings = 60;  // of a triangle: its corners are one point then
+constexpr Index kMaxPieces = 2'000'000;
 
 struct Piece {
   double bound = 0;
@@ -23,8 +23,8 @@ struct Piece {
 
 }  // namespace
 
-double largest_gap(const Surface& surface, const ContractibleMesh& mesh, const FootFinder& finder, double known,
-                   double slack) {
+double max_gap(const Surface& surface, const ContractibleMesh& mesh, const FootFinder& finder, double known,
+               double slack) {
   double attained = known, left = known;  // `left`: the largest bound of a piece that is not looked at further
   std::priority_queue<Piece> queue;
   const auto look_at = [&](const std::array<Point, 3>& corners, int halvings, double limit) {
@@ -43,7 +43,7 @@ double largest_gap(const Surface& surface, const ContractibleMesh& mesh, const F
     look_at(surface.corners(t), 0, std::numeric_limits<double>::infinity());
   for (Index pieces = 0; !queue.empty() && queue.top().bound > attained + slack; ++pieces) {
     const Piece top = queue.top();
-    if (top.halvings == kMostHalvings || pieces == kMostPieces) break;
+    if (top.halvings == kMaxHalvings || pieces == kMaxPieces) break;
     queue.pop();
     const std::array<Point, 3>& at = top.corners;
     // In two, across the longest side.
@@ -70,7 +70,7 @@ void measure_two_sided(const Surface& surface, const ContractibleMesh& mesh, con
   measure_reconstruction(surface, result, samples, quality_balls(result, QualityOptions{}.cells), {.worst_places = 0},
                          quality);
   const FootFinder finder(mesh);
-  const double gap = largest_gap(surface, mesh, finder, quality.coverage.max, kSlack * diagonal);
+  const double gap = max_gap(surface, mesh, finder, quality.coverage.max, kSlack * diagonal);
   report.coverage = {gap / diagonal, quality.coverage.mean / diagonal};
   report.protrusion = {quality.protrusion.max / diagonal, quality.protrusion.mean / diagonal};
   report.hausdorff = {std::max(quality.hausdorff.max, gap) / diagonal, quality.hausdorff.mean / diagonal};

@@ -315,7 +315,7 @@ TEST(LargestGap, BoundsWhatAnyPointHas) {
   complete(mesh);
   const ContractibleMesh contractible(mesh);
   const detail::FootFinder finder(contractible);
-  const double bound = detail::largest_gap(box, contractible, finder, 0, 1e-3);
+  const double bound = detail::max_gap(box, contractible, finder, 0, 1e-3);
   double attained = 0;
   for (const detail::FitSample& sample : detail::fit_samples(box, 20000, 5))
     attained = std::max(attained, finder.find(sample.position).value);

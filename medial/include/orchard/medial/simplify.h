@@ -55,6 +55,6 @@ std::vector<SimplifiedMedialMesh> simplify_to_each(const Surface& surface, const
 
 // The largest ball inside the solid that lies uphill, on the distance to the surface, from the largest balls of `mesh`.
 // Throws InputError unless surface.solid().
-Sphere largest_inscribed_ball(const Surface& surface, const MedialMesh& mesh);
+Sphere max_inscribed_ball(const Surface& surface, const MedialMesh& mesh);
 
 }  // namespace orchard
