@@ -98,10 +98,10 @@ TEST(MedialQuality, OfTheCircleOfATorusHasItsLoop) {
 }
 
 TEST(MedialQuality, OfTheExactAxisOfAnLShapeIsPerfectUpToItsChords) {
-  const MedialQuality quality = quality_of(test::known_l_shape(16));
+  const MedialQuality quality = quality_of(test::known_l_shape(8));
   EXPECT_NEAR(quality.diagonal, std::sqrt(12.0), 1e-12);
-  // Seen from the reentrant edge a chord of a parabola spans 2.8 degrees: its middle is nearer by 0.5 (1 - cos 1.4).
-  const double chord = 1.5e-4;
+  // Seen from the reentrant edge a chord of a parabola spans 5.6 degrees: its middle is nearer by 0.5 (1 - cos 2.8).
+  const double chord = 6e-4;
   EXPECT_LT(quality.coverage.max, 1e-9);
   EXPECT_LT(quality.protrusion.max, chord);
   EXPECT_GT(quality.protrusion.max, 0);

@@ -155,7 +155,7 @@ TEST(SimplifiedMedialMesh, IsTwoBallsForACapsule) {
   }
   complete(chain);
   const SimplifiedMedialMesh result =
-      simplify_medial_mesh(surface, chain, {.vertices = 2, .samples = 800, .check = 1000, .rounds = 2});
+      simplify_medial_mesh(surface, chain, {.vertices = 2, .samples = 500, .check = 500, .rounds = 1});
   ASSERT_EQ(result.mesh.size(), 2u);
   ASSERT_EQ(result.mesh.edges.size(), 1u);
   EXPECT_LT(result.report.hausdorff.max, 0.01);  // the facets are off by as much
@@ -203,14 +203,14 @@ std::string message_for(const Surface& surface, const MedialMesh& mesh, const Si
 TEST(SimplifiedMedialMesh, NamesTheLeastNumberThatTheTopologyAllows) {
   const Surface ring(test::torus(24, 12));
   const MedialMesh axis = built_axis(ring, 200);
-  EXPECT_NE(message_for(ring, axis, {.vertices = 2, .samples = 800, .check = 1000, .rounds = 2}).find("at least 3"),
+  EXPECT_NE(message_for(ring, axis, {.vertices = 2, .samples = 500, .check = 500, .rounds = 1}).find("at least 3"),
             std::string::npos);
   const SimplifiedMedialMesh three =
-      simplify_medial_mesh(ring, axis, {.vertices = 3, .samples = 800, .check = 1000, .rounds = 2});
+      simplify_medial_mesh(ring, axis, {.vertices = 3, .samples = 500, .check = 500, .rounds = 1});
   EXPECT_EQ(three.mesh.size(), 3u);
   EXPECT_EQ(topology(three.mesh), (Topology{1, 1, 0}));
   const Surface boxes(test::two_boxes(0.5));
-  EXPECT_NE(message_for(boxes, built_axis(boxes, 200), {.vertices = 1, .samples = 800, .check = 1000, .rounds = 2})
+  EXPECT_NE(message_for(boxes, built_axis(boxes, 200), {.vertices = 1, .samples = 500, .check = 500, .rounds = 1})
                 .find("at least 2"),
             std::string::npos);
 }
@@ -229,9 +229,9 @@ TEST(SimplifiedMedialMesh, IsWithinTheErrorAskedFor) {
   const Surface surface(test::known_l_shape(8).solid);
   const MedialMesh axis = built_axis(surface, 200);
   const SimplifiedMedialMesh coarse =
-      simplify_medial_mesh(surface, axis, {.error = 0.03, .samples = 800, .check = 1000, .rounds = 2});
+      simplify_medial_mesh(surface, axis, {.error = 0.03, .samples = 500, .check = 500, .rounds = 1});
   const SimplifiedMedialMesh fine =
-      simplify_medial_mesh(surface, axis, {.error = 0.015, .samples = 800, .check = 1000, .rounds = 2});
+      simplify_medial_mesh(surface, axis, {.error = 0.015, .samples = 500, .check = 500, .rounds = 1});
   EXPECT_LE(coarse.report.hausdorff.max, 0.03);
   EXPECT_LE(fine.report.hausdorff.max, 0.015);
   EXPECT_LT(coarse.mesh.size(), fine.mesh.size());
@@ -242,7 +242,7 @@ TEST(SimplifiedMedialMesh, KeepsTheTopologyAllTheWayDown) {
   const Surface surface(test::torus(24, 12));
   const std::vector<Index> counts{60, 30, 10, 5, 3, 2};
   const auto curve =
-      simplify_to_each(surface, built_axis(surface, 200), counts, {.samples = 800, .check = 1000, .rounds = 2});
+      simplify_to_each(surface, built_axis(surface, 200), counts, {.samples = 500, .check = 500, .rounds = 1});
   ASSERT_EQ(curve.size(), 5u);  // no ring has two vertices
   for (std::size_t i = 0; i < curve.size(); ++i) {
     EXPECT_LE(curve[i].mesh.size(), counts[i]);
@@ -255,7 +255,7 @@ TEST(SimplifiedMedialMesh, KeepsTheTopologyAllTheWayDown) {
 TEST(SimplifiedMedialMesh, IsTheSameWhateverTheNumberOfThreads) {
   const Surface surface(test::known_l_shape(8).solid);
   const MedialMesh axis = built_axis(surface, 300);
-  const SimplifyOptions options{.vertices = 40, .samples = 800, .check = 1000, .rounds = 2};
+  const SimplifyOptions options{.vertices = 40, .samples = 500, .check = 500, .rounds = 1};
   const std::string all = to_ma(simplify_medial_mesh(surface, axis, options).mesh);
   for (const std::size_t threads : {1, 7}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
