@@ -40,8 +40,8 @@ std::string_view as_text(const std::vector<std::byte>& bytes) {
 
 // Every name that the command may write to.
 std::vector<std::string> names_of(const BuildCommand& command) {
-  std::vector<std::string> endings{".orchard",   ".sph",           ".json", "-levels.svg", "-build.vtm",
-                                   "-build.pvd", "-build-view.py", ".png",  "-report.html"};
+  std::vector<std::string> endings{".orchard",   ".sph",        ".json",          "-levels.svg", "-build.vtm",
+                                   "-build.pvd", "-build.pvsm", "-build-view.py", ".png",        "-report.html"};
   for (const std::string& format : command.exports) endings.push_back(format == "urdf" ? ".urdf" : "-spheres.json");
   endings.emplace_back(command.reading.wrap.empty() ? kRepairedEnding : kWrapEnding);
   for (const char* view : {"mesh", "points", "medial-vertices", "medial-edges", "medial-faces"})
@@ -128,7 +128,10 @@ std::string write_views(const BuildCommand& command, const Surface& surface, con
   if (command.views) {
     const fs::path vtm = outputs.add(named(command.mesh, "-build.vtm"), "open this in ParaView: all views at once");
     write_pipeline(fs::path(vtm).replace_extension(), values);
-    outputs.add(named(command.mesh, "-build-view.py"), "paraview --script=.. shows the spheres around the mesh");
+    const fs::path state =
+        outputs.add(named(command.mesh, "-build.pvsm"), "a double click shows the spheres in ParaView");
+    write_paraview_state(fs::path(state).replace_extension(), values, command.folder);
+    outputs.add(named(command.mesh, "-build-view.py"), "the same by paraview --script=.., or a picture by pvbatch");
   }
   if (!command.picture && !command.page) return {};
   PipelinePicture picture;

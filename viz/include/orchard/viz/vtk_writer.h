@@ -78,4 +78,10 @@ struct PipelineValues {
 // which names them "mesh", "surface points", "medial vertices", "medial edges", "medial faces", "tree level <n>".
 std::vector<NamedFile> write_pipeline(const std::filesystem::path& prefix, const PipelineValues& values);
 
+// PREFIX.pvsm: a state of ParaView (5.11 or later), which opens by a double click: the last level's spheres around the
+// mesh, as PREFIX-view.py shows them. States name their files absolutely: `folder` is where those of write_pipeline()
+// will be. Precondition: a surface, and a tree with nodes.
+void write_paraview_state(const std::filesystem::path& prefix, const PipelineValues& values,
+                          const std::filesystem::path& folder);
+
 }  // namespace orchard
