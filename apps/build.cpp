@@ -165,15 +165,19 @@ void write_page(const BuildCommand& command, BuildPage page, const std::string& 
              to_html(page));
 }
 
-// Before a long wait.
-void print_cost(const BuildCommand& command, const SphereTreeOptions& options) {
+BuildCost cost_of(const BuildCommand& command, const SphereTreeOptions& options, const Surface& surface) {
   const auto& sampling = options.medial.sampling;
   const double points = needs_axis(options.method) && command.source.axis.empty()
                             ? static_cast<double>(sampling.face_points) + static_cast<double>(sampling.edge_points)
                             : 0;
-  const std::string cost = in_words(estimated_cost(options, points), options);
-  if (cost.empty()) return;
-  fmt::print("{}: {}\n", command.mesh.string(), cost);
+  return estimated_cost(options, points, static_cast<double>(surface.mesh().triangles.size()));
+}
+
+// Before a long wait, or in place of it.
+void print_cost(const BuildCommand& command, const SphereTreeOptions& options, const BuildCost& cost) {
+  const std::string text = in_words(cost, options, command.cost);
+  if (text.empty()) return;
+  fmt::print("{}: {}\n", command.mesh.string(), text);
   std::fflush(stdout);
 }
 
@@ -193,7 +197,10 @@ void build(const BuildCommand& command) {
 
   const SphereTreeOptions options = tree_options(command);
   OwnInput own = read_axis_source(command.source, surface);
-  if (talk) print_cost(command, options);
+  const BuildCost cost = cost_of(command, options, surface);
+  if (talk) print_cost(command, options, cost);
+  if (command.cost && command.output.json) fmt::print("{}\n", to_json(cost).dump(2));
+  if (command.cost) return;
   SphereTreeBuild result = build_sphere_tree(surface, options, bar.callback(), std::move(own.input));
   result.seconds.insert(result.seconds.begin(), {"reading", seconds_reading});
   bar.clear();
