@@ -40,8 +40,8 @@ std::string_view as_text(const std::vector<std::byte>& bytes) {
 
 // Every name that the command may write to.
 std::vector<std::string> names_of(const BuildCommand& command) {
-  std::vector<std::string> endings{".orchard",   ".sph",           ".json", "-levels.svg", "-build.vtm",
-                                   "-build.pvd", "-build-view.py", ".png",  "-report.html"};
+  std::vector<std::string> endings{".orchard",   ".sph",        ".json",          "-levels.svg", "-build.vtm",
+                                   "-build.pvd", "-build.pvsm", "-build-view.py", ".png",        "-report.html"};
   for (const std::string& format : command.exports) endings.push_back(format == "urdf" ? ".urdf" : "-spheres.json");
   endings.emplace_back(command.reading.wrap.empty() ? kRepairedEnding : kWrapEnding);
   for (const char* view : {"mesh", "points", "medial-vertices", "medial-edges", "medial-faces"})
@@ -128,7 +128,10 @@ std::string write_views(const BuildCommand& command, const Surface& surface, con
   if (command.views) {
     const fs::path vtm = outputs.add(named(command.mesh, "-build.vtm"), "open this in ParaView: all views at once");
     write_pipeline(fs::path(vtm).replace_extension(), values);
-    outputs.add(named(command.mesh, "-build-view.py"), "paraview --script=.. shows the spheres around the mesh");
+    const fs::path state =
+        outputs.add(named(command.mesh, "-build.pvsm"), "a double click shows the spheres in ParaView");
+    write_paraview_state(fs::path(state).replace_extension(), values, command.folder);
+    outputs.add(named(command.mesh, "-build-view.py"), "the same by paraview --script=.., or a picture by pvbatch");
   }
   if (!command.picture && !command.page) return {};
   PipelinePicture picture;
@@ -162,15 +165,19 @@ void write_page(const BuildCommand& command, BuildPage page, const std::string& 
              to_html(page));
 }
 
-// Before a long wait.
-void print_cost(const BuildCommand& command, const SphereTreeOptions& options) {
+BuildCost cost_of(const BuildCommand& command, const SphereTreeOptions& options, const Surface& surface) {
   const auto& sampling = options.medial.sampling;
   const double points = needs_axis(options.method) && command.source.axis.empty()
                             ? static_cast<double>(sampling.face_points) + static_cast<double>(sampling.edge_points)
                             : 0;
-  const std::string cost = in_words(estimated_cost(options, points), options);
-  if (cost.empty()) return;
-  fmt::print("{}: {}\n", command.mesh.string(), cost);
+  return estimated_cost(options, points, static_cast<double>(surface.mesh().triangles.size()));
+}
+
+// Before a long wait, or in place of it.
+void print_cost(const BuildCommand& command, const SphereTreeOptions& options, const BuildCost& cost) {
+  const std::string text = in_words(cost, options, command.cost);
+  if (text.empty()) return;
+  fmt::print("{}: {}\n", command.mesh.string(), text);
   std::fflush(stdout);
 }
 
@@ -190,7 +197,10 @@ void build(const BuildCommand& command) {
 
   const SphereTreeOptions options = tree_options(command);
   OwnInput own = read_axis_source(command.source, surface);
-  if (talk) print_cost(command, options);
+  const BuildCost cost = cost_of(command, options, surface);
+  if (talk) print_cost(command, options, cost);
+  if (command.cost && command.output.json) fmt::print("{}\n", to_json(cost).dump(2));
+  if (command.cost) return;
   SphereTreeBuild result = build_sphere_tree(surface, options, bar.callback(), std::move(own.input));
   result.seconds.insert(result.seconds.begin(), {"reading", seconds_reading});
   bar.clear();

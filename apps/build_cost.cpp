@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace orchard::apps {
@@ -9,28 +10,60 @@ namespace {
 
 constexpr double kWorthAWord = 30;  // seconds
 
-// Measured on the bundled models with one thread (Xeon, 2.1 GHz): seconds for each sphere, by method and effort.
-double seconds_per_sphere(const SphereTreeOptions& options) {
-  const int effort = options.effort == Effort::low ? 0 : options.effort == Effort::standard ? 1 : 2;
-  switch (options.method) {
-    case TreeMethod::tightened: {
-      constexpr double kSeconds[] = {0.012, 0.024, 0.18};
-      return kSeconds[effort];
-    }
-    case TreeMethod::annealing: {
-      constexpr double kSeconds[] = {0.05, 0.15, 0.85};
-      return kSeconds[effort];
-    }
-    case TreeMethod::merging:
-      return 0.004;
-    case TreeMethod::octree:
-      return 0.0005;
-  }
-  return 0;
+// Fitted to what tools/build-cost measured: a build takes so long for each step, most of which make a sphere, for each
+// triangle of the mesh, since every stage reads it, and for each triangle that a search meets again and again, which
+// grows with the root of the number of spheres: they are small where they are many.
+struct Rates {
+  double step = 0;           // seconds
+  double triangle = 0;       // seconds for each triangle and root of the number of spheres
+  double triangle_once = 0;  // seconds for each triangle
+};
+
+constexpr double kSecondsPerTriangle = 4.5e-5, kSecondsPerPoint = 9e-5;
+constexpr double kBytes = 2.4e7, kBytesPerPoint = 2000, kBytesPerSphere = 1000;
+constexpr double kSecondsPerTrial = 1e-4;  // of --descent, and sphere
+
+double bytes_per_triangle(TreeMethod method) { return method == TreeMethod::annealing ? 1300 : 560; }
+
+int as_number(Effort effort) { return effort == Effort::low ? 0 : effort == Effort::standard ? 1 : 2; }
+
+double count(const SphereTreeOptions& options, Index levels) {
+  double spheres = 0;
+  for (Index level = 0; level <= levels; ++level) spheres += std::pow(static_cast<double>(options.branching), level);
+  return spheres;
 }
 
-constexpr double kSecondsPerPoint = 9e-5, kBytesPerPoint = 2000, kBytesPerSphere = 1500, kBytes = 4e7;
-constexpr double kSecondsPerTrial = 1e-4;  // of --descent
+// What takes time: spheres, or, where simulated annealing searches for the children of one, those searches. On a level
+// of the octree four times as many cubes hold surface, not eight, and annealing leaves away about half of the children.
+double steps(const SphereTreeOptions& options) {
+  const bool octree = options.method == TreeMethod::octree, annealing = options.method == TreeMethod::annealing;
+  if (!octree && !annealing) return count(options, options.depth);
+  const double first = octree ? 12 : static_cast<double>(options.branching);
+  double result = 1;
+  for (Index level = 1; level <= options.depth - (annealing ? 1 : 0); ++level)
+    result += std::min(std::pow(static_cast<double>(options.branching), level), first * std::pow(4.0, level - 1.0));
+  return result;
+}
+
+Rates rates(const SphereTreeOptions& options) {
+  const int effort = as_number(options.effort);
+  switch (options.method) {
+    case TreeMethod::tightened: {
+      constexpr double kSphere[] = {0.0085, 0.0135, 0.22}, kTriangle[] = {3e-6, 6e-6, 1e-4};
+      return {kSphere[effort], kTriangle[effort], 0};
+    }
+    case TreeMethod::annealing: {
+      // Every level divides all triangles among its searches.
+      constexpr double kSearch[] = {0.1, 0.25, 1.5}, kLevel[] = {1.9e-4, 6e-4, 3e-3};
+      return {kSearch[effort], 0, kLevel[effort] * options.depth};
+    }
+    case TreeMethod::merging:
+      return {0.002, 3e-6, 0};
+    case TreeMethod::octree:
+      return {0.0013, 6e-7, 0};
+  }
+  return {};
+}
 
 std::string of_time(double seconds) {
   if (seconds < 100) return fmt::format("{:.0f} seconds", std::ceil(seconds / 10) * 10);
@@ -40,28 +73,37 @@ std::string of_time(double seconds) {
 
 }  // namespace
 
-BuildCost estimated_cost(const SphereTreeOptions& options, double points) {
+BuildCost estimated_cost(const SphereTreeOptions& options, double points, double triangles) {
   BuildCost cost;
   cost.points = points;
-  for (Index level = 0; level <= options.depth; ++level)
-    cost.spheres += std::pow(static_cast<double>(options.branching), level);
+  cost.spheres = count(options, options.depth);
+  const double spheres = steps(options);
+  const Rates rate = rates(options);
+  const double of_triangle = kSecondsPerTriangle + rate.triangle * std::sqrt(spheres) + rate.triangle_once;
   cost.seconds =
-      points * kSecondsPerPoint + cost.spheres * (seconds_per_sphere(options) + options.descent * kSecondsPerTrial);
-  cost.bytes = kBytes + points * kBytesPerPoint + cost.spheres * kBytesPerSphere;
+      points * kSecondsPerPoint + spheres * (rate.step + options.descent * kSecondsPerTrial) + triangles * of_triangle;
+  cost.bytes =
+      kBytes + points * kBytesPerPoint + spheres * kBytesPerSphere + triangles * bytes_per_triangle(options.method);
   return cost;
 }
 
-std::string in_words(const BuildCost& cost, const SphereTreeOptions& options) {
-  if (cost.seconds < kWorthAWord) return {};
+std::string in_words(const BuildCost& cost, const SphereTreeOptions& options, bool always) {
+  if (cost.seconds < kWorthAWord && !always) return {};
   std::string text = fmt::format("up to {:.0f} spheres", cost.spheres);
   if (cost.points > 0) text += fmt::format(" from {:.0f} surface points", cost.points);
-  text += fmt::format(": about {} of processor time and {:.1f} GB of memory; ", of_time(cost.seconds),
+  text += fmt::format(": about {} of processor time and {:.1f} GB of memory", of_time(cost.seconds),
                       std::max(0.1, cost.bytes / 1e9));
+  if (cost.seconds < kWorthAWord) return text;
   const bool searches = options.method == TreeMethod::tightened || options.method == TreeMethod::annealing;
   const bool points_cost_most = cost.points * kSecondsPerPoint > cost.seconds / 2;
-  if (points_cost_most) return text + "fewer --samples take less";
-  return text + (searches && options.effort != Effort::low ? "--effort low, a smaller --depth or --branching take less"
-                                                           : "a smaller --depth or --branching takes less");
+  if (points_cost_most) return text + "; fewer --samples take less";
+  return text + (searches && options.effort != Effort::low
+                     ? "; --effort low, a smaller --depth or --branching take less"
+                     : "; a smaller --depth or --branching takes less");
+}
+
+nlohmann::json to_json(const BuildCost& cost) {
+  return {{"spheres", cost.spheres}, {"points", cost.points}, {"seconds", cost.seconds}, {"bytes", cost.bytes}};
 }
 
 }  // namespace orchard::apps

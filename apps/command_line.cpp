@@ -102,6 +102,7 @@ void add_build(CLI::App& app, Request& request) {
   command.add_flag("--picture", build.picture, "Draw the pipeline to a .png as well");
   command.add_flag("--report", build.page,
                    "Write a page (.html) as well: picture, tables, plots, options, repairs, times, certificate");
+  command.add_flag("--cost", build.cost, "Say what it will cost in time and memory, and build nothing");
   command
       .add_option("--export", build.exports, "More files: json (spheres by level), urdf (a link's collision spheres)")
       ->delimiter(',')

@@ -28,6 +28,7 @@ struct BuildCommand {
   bool views = true;                  // ParaView files, where the program was built with them
   bool picture = false;               // a .png as well
   bool page = false;                  // an .html page with pictures, tables and plots
+  bool cost = false;                  // say what it will cost, and build nothing
   std::string command_line;           // for the page
   std::vector<std::string> exports;   // sph (always written), json, urdf
   std::optional<Index> export_level;  // of the urdf; the last one

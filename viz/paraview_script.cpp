@@ -52,6 +52,7 @@ def show_spheres(view):
     simple.ColorBy(shown, ("POINTS", COLOR))
     colors = simple.GetColorTransferFunction(COLOR)
     colors.ApplyPreset("Viridis (matplotlib)", True)
+    colors.AutomaticRescaleRangeMode = "Clamp and update every timestep"
     bar = simple.GetScalarBar(colors, view)
     bar.Title, bar.ComponentTitle, bar.TitleColor, bar.LabelColor = COLOR, "", [0.1] * 3, [0.1] * 3
     bar.TitleFontSize, bar.LabelFontSize, bar.ScalarBarLength, bar.ScalarBarThickness = 14, 12, 0.3, 12
@@ -62,6 +63,7 @@ def show_spheres(view):
 
 def main():
     options = arguments()
+    simple._DisableFirstRenderCameraReset()  # which would step back further than the model needs
     view = simple.GetActiveViewOrCreate("RenderView")
     view.UseColorPaletteForBackground = 0
     view.Background = [1, 1, 1]
@@ -80,7 +82,7 @@ def main():
     view.CameraFocalPoint = CENTER
     view.CameraPosition = [c + 4 * RADIUS * d for c, d in zip(CENTER, TO_EYE)]
     view.CameraViewUp = UP
-    view.CameraParallelScale = RADIUS
+    view.CameraParallelScale = HALF_HEIGHT
     simple.Render(view)
     if options.output:
         simple.SaveScreenshot(options.output, view, ImageResolution=options.size)
@@ -130,6 +132,16 @@ bool measured(const SphereTree& tree) {
 
 }  // namespace
 
+ParaViewScene paraview_scene(const PipelineValues& values) {
+  const Sphere& ball = values.surface->bounding_ball();
+  constexpr double kRoom = 1.15;  // the spheres of the first levels reach further than the mesh
+  ParaViewScene scene{
+      ball.center, ball.radius, kRoom * ball.radius, towards_eye(values.up), Vector::Unit(static_cast<int>(values.up)),
+      {}};
+  if (values.tree) scene.color = measured(*values.tree) ? "inaccuracy" : "radius";
+  return scene;
+}
+
 void write_levels_in_time(const std::filesystem::path& prefix, Index depth) {
   write_file(with_ending(prefix, ".pvd"), [&](std::ostream& out) {
     out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
@@ -142,19 +154,17 @@ void write_levels_in_time(const std::filesystem::path& prefix, Index depth) {
 }
 
 void write_paraview_script(const std::filesystem::path& prefix, const PipelineValues& values) {
-  const Sphere& ball = values.surface->bounding_ball();
-  const Vector up = Vector::Unit(static_cast<int>(values.up)), eye = towards_eye(values.up);
+  const ParaViewScene scene = paraview_scene(values);
   const std::string name = prefix.filename().string();
   std::string text = "\"\"\"What ParaView shows of " + name + ": paraview --script=" + name +
                      "-view.py, or without a window\npvbatch " + name +
                      "-view.py -o picture.png [--level K]. In ParaView the levels are steps of time.\n\"\"\"\n";
   text += "PREFIX = " + quoted(name) + "\n";
-  text += "CENTER, RADIUS = " + list(ball.center) + ", " + digits(ball.radius) + "\n";
-  text += "TO_EYE, UP = " + list(eye) + ", " + list(up) + "\n";
+  text += "CENTER, RADIUS = " + list(scene.center) + ", " + digits(scene.radius) + "\n";
+  text += "HALF_HEIGHT = " + digits(scene.half_height) + "\n";
+  text += "TO_EYE, UP = " + list(scene.to_eye) + ", " + list(scene.up) + "\n";
   text += "LAST_LEVEL = " + (values.tree ? std::to_string(values.tree->depth()) : std::string("-1")) + "\n";
-  if (values.tree) {
-    text += std::string("COLOR = ") + (measured(*values.tree) ? "\"inaccuracy\"" : "\"radius\"") + "\n";
-  }
+  if (values.tree) text += "COLOR = " + quoted(scene.color) + "\n";
   write_file(with_ending(prefix, "-view.py"), text + kScript);
 }
 

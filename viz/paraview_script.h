@@ -6,6 +6,17 @@
 
 namespace orchard::detail {
 
+// From where ParaView looks, at what, and the array of a level's file that the spheres' colour stands for.
+struct ParaViewScene {
+  Vector center;
+  double radius = 0, half_height = 0;  // of the mesh; of the picture
+  Vector to_eye, up;
+  std::string color;  // empty without a tree
+};
+
+// Precondition: values.surface.
+ParaViewScene paraview_scene(const PipelineValues& values);
+
 // PREFIX.pvd: the levels of a tree as the steps of an animation, level k at the time k.
 void write_levels_in_time(const std::filesystem::path& prefix, Index depth);
 

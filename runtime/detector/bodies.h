@@ -47,7 +47,7 @@ bool set_local(PartRecord& part, const Shape& shape, const Pose& local) noexcept
 // Which bodies there are and, per step, where: asked for at most once a step. Indices are the broad phase's.
 class BodyTable {
  public:
-  BodyTable(StateSource source, const ShapeTable& shapes) : source_(std::move(source)), shapes_(&shapes) {}
+  explicit BodyTable(StateSource source) : source_(std::move(source)) {}
 
   bool has_source() const noexcept { return static_cast<bool>(source_); }
   Body& take_in(BodyId id, std::size_t parts);  // with room for so many
@@ -72,7 +72,6 @@ class BodyTable {
 
  private:
   StateSource source_;
-  const ShapeTable* shapes_;
   std::vector<Body> bodies_;
   std::vector<BodyState> states_;
   std::vector<Pose> before_;  // at the step asked before

@@ -38,7 +38,7 @@ Detector::State::State(StateSource source, const DetectorOptions& wanted)
     : options(wanted),
       valid(is_valid_option(wanted)),
       clock{valid ? wanted.start : 0, valid ? wanted.time_step : 1},
-      bodies(std::move(source), shapes),
+      bodies(std::move(source)),
       places(shapes, bodies, halves),
       broad([this](double time, std::span<const BodyIndex> asked,
                    std::span<Motion> answers) { motions(time, asked, answers); },

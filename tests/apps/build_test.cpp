@@ -183,6 +183,15 @@ TEST(Build, LeavesNothingWhereOneOfItsFilesCannotBeWritten) {
   EXPECT_TRUE(here.files("out").empty());
 }
 
+TEST(Build, SaysWhatItWouldCostAndBuildsNothing) {
+  const Workplace here;
+  const std::string mesh = here.add("ball.obj", test::icosphere(1)), out = (here / "out").string();
+  const Finished run = here.run({"build", mesh, "-o", out, "--cost"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("up to 585 spheres"), std::string::npos) << run.out;
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
 TEST(Build, SaysBeforehandWhatALongOneWillCost) {
   const Workplace here;
   const std::string mesh = here.add("ball.obj", test::icosphere(1)), out = (here / "out").string();

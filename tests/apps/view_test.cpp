@@ -119,6 +119,17 @@ TEST(Build, WritesWhatParaViewOpens) {
   EXPECT_NE(files["l-build-view.py"].find("LAST_LEVEL = 2\n"), std::string::npos);
 }
 
+TEST(Build, WritesAStateThatParaViewOpensFromAnywhere) {
+  const Workplace here;
+  const std::string mesh = here.add("l&l.obj", test::l_shape());
+  const Finished run = here.run({"build", mesh, "-o", (here / "out").string(), "--method", "octree", "--depth", "1"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const std::string state = here.files("out").at("l&l-build.pvsm");
+  const std::string folder = std::filesystem::absolute(here / "out").lexically_normal().string();
+  for (const char* file : {"-mesh.vtp", ".pvd"})
+    EXPECT_NE(state.find("value=\"" + folder + "/l&amp;l-build" + file + "\""), std::string::npos) << state;
+}
+
 #endif
 
 TEST(Build, WritesAPageThatNeedsNothingElse) {

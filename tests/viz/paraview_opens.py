@@ -1,6 +1,7 @@
 """Opens orchard's own files in ParaView by its plugin, and looks at what the script beside the views drew.
 
-paraview_opens.py PLUGIN.py FOLDER    FOLDER: lamp.orchard, .sph, .ma, a .vor, lamp-build.pvd and view.png, of --level 1
+paraview_opens.py PLUGIN.py FOLDER    FOLDER: lamp.orchard, .sph, .ma, a .vor, lamp-build.pvd, lamp-build.pvsm and view.png,
+of --level 1
 """
 import glob
 import os
@@ -68,14 +69,33 @@ def check_axis_and_diagram(folder):
 
 
 def check_picture(file):
+    """Where something was drawn."""
     reader = vtkPNGReader()
     reader.SetFileName(file)
     reader.Update()
     image = reader.GetOutput()
     pixels = vtk_to_numpy(image.GetPointData().GetScalars())[:, :3].astype(int)
-    drawn = (pixels < 240).any(axis=1).mean()
+    drawn = (pixels < 240).any(axis=1)
     colors = len(numpy.unique(pixels // 16, axis=0))
-    assert image.GetDimensions()[:2] == (1200, 900) and 0.05 < drawn < 0.9 and colors > 30, (drawn, colors)
+    assert image.GetDimensions()[:2] == (1200, 900) and 0.05 < drawn.mean() < 0.9 and colors > 30, (drawn.mean(), colors)
+    return drawn
+
+
+def check_state(folder, of_script):
+    """The state shows what the script does: the last level at first, and the others as time goes."""
+    simple.ResetSession()
+    simple.LoadState(os.path.join(folder, "lamp-build.pvsm"))
+    (view,) = simple.GetViews()
+    scene = simple.GetAnimationScene()
+    assert sorted(name for name, _ in simple.GetSources()) == ["levels", "mesh"] and scene.AnimationTime == 2
+    glyphs = simple.GetDisplayProperties(simple.FindSource("levels"), view).GetProperty("GlyphType").Available
+    assert len(glyphs) > 5 and "Sphere" in glyphs, glyphs
+    scene.AnimationTime = 1
+    picture = os.path.join(folder, "state.png")
+    simple.SaveScreenshot(picture, view, ImageResolution=[1200, 900])
+    drawn = check_picture(picture)
+    overlap = (drawn & of_script).sum() / (drawn | of_script).sum()
+    assert overlap > 0.99, overlap
 
 
 def main():
@@ -84,7 +104,7 @@ def main():
     check_trees(folder)
     check_levels_in_time(folder)
     check_axis_and_diagram(folder)
-    check_picture(os.path.join(folder, "view.png"))
+    check_state(folder, check_picture(os.path.join(folder, "view.png")))
     print("ParaView opens all of it")
 
 

@@ -17,7 +17,7 @@ rm -rf "$folder"
 grep -q 'agree on' "$folder/words.txt" && ! grep -E 'Traceback|Error' "$folder/errors.txt" ||
   { cat "$folder/errors.txt"; exit 1; }
 
-# What opens right by itself: the script that was written beside the views, and orchard's own files by the plugin.
+# What opens right by itself: the script and the state that were written beside the views, and orchard's own files by the plugin.
 "$orchard" medial "$source/data/lamp.obj" -o "$folder" --raw --samples 1500 --no-views --quiet
 "$orchard" voronoi "$source/data/lamp.obj" -o "$folder" --samples 300 --quiet
 "$source/tools/paraview" pvbatch "$folder/lamp-build-view.py" -o "$folder/view.png" --level 1 2> "$folder/errors.txt" || true

@@ -72,10 +72,16 @@ struct PipelineValues {
   UpAxis up = UpAxis::y;  // the mesh's axis that points up in ParaView
 };
 
-// Writes all of it: PREFIX-mesh.vtp, PREFIX-points.vtp, PREFIX-medial-{vertices,edges,faces}.vtp, PREFIX-level-<n>.vtp
+// Writes all of it: PREFIX-mesh.vtp, PREFIX-points.vtp, PREFIX-medial-{vertices,edges,faces}.vtp, PREFIX-level-N.vtp
 // for every level, and PREFIX.vtm, which opens them; PREFIX.pvd with the levels as steps of time; and PREFIX-view.py,
 // which shows the spheres around the mesh (paraview --script, pvbatch). Returns the files in the order of the .vtm,
-// which names them "mesh", "surface points", "medial vertices", "medial edges", "medial faces", "tree level <n>".
+// which names them "mesh", "surface points", "medial vertices", "medial edges", "medial faces", "tree level N".
 std::vector<NamedFile> write_pipeline(const std::filesystem::path& prefix, const PipelineValues& values);
+
+// PREFIX.pvsm: a state of ParaView (5.11 or later), which opens by a double click: the last level's spheres around the
+// mesh, as PREFIX-view.py shows them. States name their files absolutely: `folder` is where those of write_pipeline()
+// will be. Precondition: a surface, and a tree with nodes.
+void write_paraview_state(const std::filesystem::path& prefix, const PipelineValues& values,
+                          const std::filesystem::path& folder);
 
 }  // namespace orchard
