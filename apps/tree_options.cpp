@@ -25,6 +25,8 @@ const std::map<std::string, Objective> kObjectives{{"balanced", Objective::balan
                                                    {"mean", Objective::mean},
                                                    {"volume", Objective::volume}};
 
+const std::map<std::string, Selection> kSelections{
+    {"independent", Selection::independent}, {"acyclic", Selection::acyclic}, {"exhaustive", Selection::exhaustive}};
 const std::map<std::string, MergeClosing> kClosings{{"refit", MergeClosing::refit}, {"growth", MergeClosing::growth}};
 
 template <class Value>
@@ -129,6 +131,11 @@ void add_tree_options(CLI::App& command, SphereTreeOptions& options) {
   add_choice(command, "--energy", kEnergies, options.energy,
              "annealing: what makes a set of siblings loose, its loosest (default) or all together");
   add_annealing_options(command, options);
+  add_choice(
+      command, "--redundant", kSelections, options.redundancy,
+      "Which spheres that others make needless are left out: all that can be (exhaustive, the default), chains of "
+      "them without cycles (acyclic), or only those that no other of them rests on, as in the dissertation "
+      "(independent)");
   command.add_option("--descent", options.descent, "Random descent afterwards: trials for each sphere; any method")
       ->check(CLI::Range(0, 100'000))
       ->capture_default_str();

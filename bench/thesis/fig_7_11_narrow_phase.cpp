@@ -177,26 +177,36 @@ Plot plot_of(const std::string& title, const std::string& x, const std::string& 
 
 void draw(const std::filesystem::path& folder, const std::vector<Tree>& trees, const std::vector<Engine>& engines,
           double radius) {
-  std::vector<Plot> speedups, bounds;
+  constexpr double kLeast = 0.1, kMost = 1000;  // speedups
+  std::vector<Plot> speedups, no_speedups, maybe_speedups, bounds;
   std::vector<Series> curves;
   for (const Tree& tree : trees) {
-    std::vector<Series> all, open;
+    std::vector<Series> all, no, still, open;
     Series curve{tree.name, {}, {}, Series::Kind::line};
     for (const std::size_t level : levels_of(tree)) {
       const std::string name = "level " + level_name(level);
-      all.push_back(histogram(name, pick(tree, engines, level, Cases::reached, radius).speedups.front(), 0.1, 1000));
+      const auto bars = [&](Cases cases) {
+        return histogram(name, pick(tree, engines, level, cases, radius).speedups.front(), kLeast, kMost);
+      };
+      all.push_back(bars(Cases::reached));
+      no.push_back(bars(Cases::no));
+      still.push_back(bars(Cases::maybe));
       const Picked maybe = pick(tree, engines, level, Cases::maybe, radius);
       if (level == kExact) continue;
       open.push_back(histogram(name, maybe.bounds, 0.001, 2));
       curve.x.push_back(quantile(maybe.microseconds, 0.5));
       curve.y.push_back(quantile(maybe.bounds, 0.5));
     }
-    speedups.push_back(
-        plot_of("Figs. 7.11-7.15: " + tree.name, "speedup over the BSP-tree, fewest splits", "calls", all));
+    const char* const over = "speedup over the BSP-tree, fewest splits";
+    speedups.push_back(plot_of("Figs. 7.11-7.15: " + tree.name, over, "calls", all));
+    no_speedups.push_back(plot_of("Fig. 7.16: " + tree.name, over, "calls decided with no", no));
+    maybe_speedups.push_back(plot_of("Figs. 7.17-7.21: " + tree.name, over, "calls left open", still));
     bounds.push_back(plot_of("Fig. 7.22: " + tree.name, "separation bound / R", "calls left open", open));
     curves.push_back(curve);
   }
   orchard::plot::write_svg(folder / "fig_7.11.svg", speedups, 2);
+  orchard::plot::write_svg(folder / "fig_7.16.svg", no_speedups, 2);
+  orchard::plot::write_svg(folder / "fig_7.17.svg", maybe_speedups, 2);
   orchard::plot::write_svg(folder / "fig_7.22.svg", bounds, 2);
   Plot trade =
       plot_of("Time against accuracy, calls left open", "microseconds, median", "separation bound / R, median", curves);
