@@ -106,6 +106,7 @@ void add_annealing_options(CLI::App& command, SphereTreeOptions& options) {
 const char* name(TreeMethod method) { return key_of(kMethods, method); }
 const char* name(Effort effort) { return key_of(kEfforts, effort); }
 const char* name(Objective objective) { return key_of(kObjectives, objective); }
+const char* name(Selection selection) { return key_of(kSelections, selection); }
 
 void add_tree_options(CLI::App& command, SphereTreeOptions& options) {
   add_choice(

@@ -111,6 +111,9 @@ TEST_P(EveryScene, WritesFramesForParaView) {
   const std::string bodies = bodies_vtp(simulation), bounds = bounds_vtp(simulation);
   EXPECT_NE(bodies.find("separation_bound"), std::string::npos);
   EXPECT_NE(bounds.find("hypertrapezoid_half"), std::string::npos);
+  std::size_t moving = 0;
+  for (const Body& body : simulation.world().bodies) moving += body.there && !body.fixed;
+  EXPECT_NE(bounds.find("NumberOfPolys=\"" + std::to_string(6 * moving) + '"'), std::string::npos) << "cubes";
   EXPECT_EQ(bodies.find("nan"), std::string::npos);
   EXPECT_EQ(bounds.find("inf"), std::string::npos);
 }
