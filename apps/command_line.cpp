@@ -439,11 +439,12 @@ void add_simulate(CLI::App& app, Request& request) {
   command.add_option("--frames", simulate.frames, "How many [100, or as many as were recorded]")
       ->check(CLI::Range(1, 10'000'000));
   command
-      .add_option("--budget", simulate.budget,
-                  "Of a frame's narrow phase: sphere tests, 20000, or time, 2ms or 500us (default: none)")
+      .add_option(
+          "--budget", simulate.budget,
+          "Of a frame's detection: tests as the detector counts them, 20000, or time, 2ms or 500us (default: none)")
       ->excludes(replay);
   command.add_option("--seed", simulate.seed, "Of all random choices")->capture_default_str()->excludes(replay);
-  command.add_option("--record", simulate.record, "Write the steering and each step's work to this file")
+  command.add_option("--record", simulate.record, "Write the steering and where each step's budget ended to this file")
       ->excludes(replay);
   auto* folder = command.add_option("-o,--output", simulate.folder, "Folder for the traces, and the run for ParaView");
   command.add_flag("!--no-views", simulate.views, "Write no files for ParaView")->needs(folder);

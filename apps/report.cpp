@@ -164,13 +164,11 @@ json build_json(const Surface& surface, const SphereTreeOptions& options, const 
   const double radius = surface.bounding_radius();
   json report;
   report["mesh"] = mesh_json(surface);
-  report["options"] = {{"method", name(options.method)},
-                       {"depth", options.depth},
-                       {"branching", options.branching},
-                       {"effort", name(options.effort)},
-                       {"objective", name(options.objective)},
-                       {"closing", options.closing == MergeClosing::refit ? "refit" : "growth"},
-                       {"seed", options.seed}};
+  report["options"] = {
+      {"method", name(options.method)},        {"depth", options.depth},
+      {"branching", options.branching},        {"effort", name(options.effort)},
+      {"objective", name(options.objective)},  {"closing", options.closing == MergeClosing::refit ? "refit" : "growth"},
+      {"redundant", name(options.redundancy)}, {"seed", options.seed}};
   if (result.medial) report["options"]["samples"] = result.medial->points;
   if (result.medial) report.update(axis_json(*result.medial, result.axis_components));
   report["covering"] = {{"rounds", result.cover.rounds},

@@ -30,19 +30,19 @@ using simulation::Simulation;
 constexpr std::size_t kControlFrames = 20;  // for which the steered ship's controls stay
 
 // "20000": so much counted work a frame; "2ms", "500us": so much time.
-runtime::Budget parse_budget(const std::string& text) {
+runtime::FrameBudget parse_budget(const std::string& text) {
   if (text.empty()) return {};
   std::uint64_t number = 0;
   const char* const end = text.data() + text.size();
   const auto [at, error] = std::from_chars(text.data(), end, number);
   const std::string unit(at, end);
-  runtime::Budget budget;
+  runtime::FrameBudget budget;
   if (error != std::errc() || number == 0 || number > 1'000'000'000'000 ||
       (!unit.empty() && unit != "ms" && unit != "us"))
     throw InputError("--budget " + text +
-                     ": expected a number of sphere tests a frame, \"20000\", or a time, \"2ms\" or \"500us\"");
+                     ": expected a number of tests a frame, \"20000\", or a time, \"2ms\" or \"500us\"");
   if (unit.empty())
-    budget.pair_tests = number;
+    budget.work = number;
   else
     budget.time = unit == "ms" ? std::chrono::nanoseconds(std::chrono::milliseconds(number))
                                : std::chrono::nanoseconds(std::chrono::microseconds(number));
@@ -86,35 +86,34 @@ json microseconds(const std::vector<FrameRecord>& frames, double (*seconds)(cons
 
 json report_of(const SimulateCommand& command, const Simulation& simulation, const std::vector<FrameRecord>& frames) {
   std::size_t pairs = 0, no = 0, maybe = 0, yes = 0;
-  std::uint64_t work = 0, motions = 0;
+  std::uint64_t work = 0, motions = 0, left_over = 0;
   double worst = 0;
   std::vector<std::size_t> stopped(simulation::kLevels, 0);
   for (const FrameRecord& frame : frames) {
     pairs += frame.pairs, no += frame.no, maybe += frame.maybe, yes += frame.yes;
-    work += frame.work, motions += frame.motions;
+    work += frame.work, motions += frame.motions, left_over += frame.left_over;
     worst = std::max(worst, frame.worst_bound);
     for (std::size_t level = 0; level < simulation::kLevels; ++level) stopped[level] += frame.stopped[level];
   }
   while (stopped.size() > 1 && stopped.back() == 0) stopped.pop_back();
-  return {
-      {"scene", command.scene},
-      {"seed", simulation.recording().seed},
-      {"frames", frames.size()},
-      {"steps_per_frame", simulation.steps_per_frame()},
-      {"bodies", frames.empty() ? 0 : frames.back().bodies},
-      {"pairs", pairs},
-      {"no", no},
-      {"maybe", maybe},
-      {"yes", yes},
-      {"maybe_by_level", stopped},
-      {"worst_bound", worst},
-      {"work", work},
-      {"motions_asked", motions},
-      {"state", frames.empty() ? 0 : frames.back().state},
-      {"microseconds",
-       {{"detection", microseconds(frames, [](const FrameRecord& f) { return f.seconds_broad + f.seconds_narrow; })},
-        {"broad", microseconds(frames, [](const FrameRecord& f) { return f.seconds_broad; })},
-        {"other", microseconds(frames, [](const FrameRecord& f) { return f.seconds_other; })}}}};
+  return {{"scene", command.scene},
+          {"seed", simulation.recording().seed},
+          {"frames", frames.size()},
+          {"steps_per_frame", simulation.steps_per_frame()},
+          {"bodies", frames.empty() ? 0 : frames.back().bodies},
+          {"pairs", pairs},
+          {"no", no},
+          {"maybe", maybe},
+          {"yes", yes},
+          {"maybe_by_level", stopped},
+          {"worst_bound", worst},
+          {"work", work},
+          {"motions_asked", motions},
+          {"left_over", left_over},
+          {"state", frames.empty() ? 0 : frames.back().state},
+          {"microseconds",
+           {{"detection", microseconds(frames, [](const FrameRecord& f) { return f.seconds_detection; })},
+            {"other", microseconds(frames, [](const FrameRecord& f) { return f.seconds_other; })}}}};
 }
 
 void print(const json& report) {
@@ -129,7 +128,7 @@ void print(const json& report) {
     fmt::print("; the largest bound left: {:.4g}\n", report["worst_bound"].get<double>());
   }
   fmt::print("microseconds a frame      p50      p99    p99.9      max\n");
-  for (const char* kind : {"detection", "broad", "other"}) {
+  for (const char* kind : {"detection", "other"}) {
     const json& times = report["microseconds"][kind];
     fmt::print("{:20} {:8.1f} {:8.1f} {:8.1f} {:8.1f}\n", kind, times["p50"].get<double>(), times["p99"].get<double>(),
                times["p99.9"].get<double>(), times["max"].get<double>());
@@ -142,7 +141,7 @@ class Run {
   Run(const SimulateCommand& command, Simulation& simulation, Outputs* outputs)
       : command_(command), simulation_(simulation), outputs_(outputs), draw_(command.seed ^ 0x5eed5u) {}
 
-  void frame(const runtime::Budget& budget) {
+  void frame(const runtime::FrameBudget& budget) {
     if (frames_.size() % kControlFrames == 0)
       steering_ = {draw_.uniform(0, 1), draw_.uniform(-1, 1), draw_.uniform(-1, 1)};
     frames_.push_back(simulation_.frame(budget, steering_));
@@ -196,7 +195,7 @@ void simulate(const SimulateCommand& asked) {
           fmt::format("--frames {}: {} has {}", *command.frames, command.replay.string(), replay->steering.size()));
   }
   const std::size_t frames = command.frames.value_or(100);
-  const runtime::Budget budget = parse_budget(command.budget);
+  const runtime::FrameBudget budget = parse_budget(command.budget);
   std::vector<std::filesystem::path> inputs;
   for (const auto* file : {&command.tree, &command.replay})
     if (!file->empty()) inputs.push_back(*file);

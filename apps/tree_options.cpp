@@ -25,6 +25,8 @@ const std::map<std::string, Objective> kObjectives{{"balanced", Objective::balan
                                                    {"mean", Objective::mean},
                                                    {"volume", Objective::volume}};
 
+const std::map<std::string, Selection> kSelections{
+    {"independent", Selection::independent}, {"acyclic", Selection::acyclic}, {"exhaustive", Selection::exhaustive}};
 const std::map<std::string, MergeClosing> kClosings{{"refit", MergeClosing::refit}, {"growth", MergeClosing::growth}};
 
 template <class Value>
@@ -104,6 +106,7 @@ void add_annealing_options(CLI::App& command, SphereTreeOptions& options) {
 const char* name(TreeMethod method) { return key_of(kMethods, method); }
 const char* name(Effort effort) { return key_of(kEfforts, effort); }
 const char* name(Objective objective) { return key_of(kObjectives, objective); }
+const char* name(Selection selection) { return key_of(kSelections, selection); }
 
 void add_tree_options(CLI::App& command, SphereTreeOptions& options) {
   add_choice(
@@ -129,6 +132,11 @@ void add_tree_options(CLI::App& command, SphereTreeOptions& options) {
   add_choice(command, "--energy", kEnergies, options.energy,
              "annealing: what makes a set of siblings loose, its loosest (default) or all together");
   add_annealing_options(command, options);
+  add_choice(
+      command, "--redundant", kSelections, options.redundancy,
+      "Which spheres that others make needless are left out: all that can be (exhaustive, the default), chains of "
+      "them without cycles (acyclic), or only those that no other of them rests on, as in the dissertation "
+      "(independent)");
   command.add_option("--descent", options.descent, "Random descent afterwards: trials for each sphere; any method")
       ->check(CLI::Range(0, 100'000))
       ->capture_default_str();

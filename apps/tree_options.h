@@ -11,5 +11,6 @@ void add_tree_options(CLI::App& command, SphereTreeOptions& options);
 const char* name(TreeMethod method);
 const char* name(Effort effort);
 const char* name(Objective objective);
+const char* name(Selection selection);
 
 }  // namespace orchard::apps

@@ -30,7 +30,7 @@ class TreeBuilder {
                            : cover(build_.tree, surface_, progress_);
     });
     stage("redundant spheres",
-          [&] { build_.redundancy = remove_redundant(build_.tree, surface_, Selection::exhaustive, progress_); });
+          [&] { build_.redundancy = remove_redundant(build_.tree, surface_, options_.redundancy, progress_); });
     if (options_.descent > 0) stage("random descent", [&] { descend(); });
     stage("measuring", [&] {
       measure(build_.tree, surface_, progress_);
@@ -90,7 +90,7 @@ class TreeBuilder {
 
   void descend() {
     build_.descent = random_descent(build_.tree, surface_, {options_.descent, options_.seed}, progress_);
-    build_.redundancy.removed += remove_redundant(build_.tree, surface_, Selection::exhaustive, progress_).removed;
+    build_.redundancy.removed += remove_redundant(build_.tree, surface_, options_.redundancy, progress_).removed;
   }
 
   // What is returned has passed verify().
@@ -122,6 +122,7 @@ AnnealingOptions annealing_options(const SphereTreeOptions& o) {
   annealing.distance = o.distance;
   annealing.refinement = o.refinement;
   annealing.seed = o.seed;
+  if (o.redundancy == Selection::independent) annealing.redundancy = Selection::independent;
   if (o.effort != Effort::high) {
     const bool low = o.effort == Effort::low;
     annealing.max_accepted = annealing.max_rejected = low ? 30 : 60;

@@ -4,30 +4,10 @@
 #include <chrono>
 
 namespace orchard::simulation {
-namespace {
 
-constexpr std::size_t kRoom = 4096;  // meeting pairs of spheres a level, of each pair of bodies
-
-double seconds_since(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-Motion motion_of(const Body& body) {
-  Motion motion;
-  motion.position = body.position;
-  motion.velocity = body.velocity;
-  motion.radius = body.radius;
-  motion.acceleration = body.acceleration;
-  motion.drift = body.drift;
-  motion.half_space = body.half_space;
-  motion.expiry = body.expiry;
-  return motion;
-}
-
-}  // namespace
-
-bool unlimited(const runtime::Budget& budget) {
-  return budget.pair_tests == runtime::Budget{}.pair_tests && budget.time == runtime::Budget{}.time;
+bool unlimited(const runtime::FrameBudget& budget) {
+  return budget.work == runtime::FrameBudget{}.work && budget.time == runtime::FrameBudget{}.time &&
+         budget.replay == nullptr;
 }
 
 Shape shape_of(const runtime::TreeView& tree) {
@@ -45,18 +25,39 @@ Pose pose_of(const Body& body, const Shape& shape) {
   return pose;
 }
 
+runtime::DetectorOptions Detection::options(double time_step) {
+  runtime::DetectorOptions options;
+  options.time_step = time_step;
+  options.promised = [this](double time, runtime::BodyIndex body, const Motion& promise) {
+    promises_[body_of_[body]] = {promise, time};
+  };
+  return options;
+}
+
 Detection::Detection(const std::vector<Body>& bodies, const std::vector<Shape>& shapes, double time_step)
     : bodies_(bodies),
       shapes_(shapes),
-      broad_(
-          [this](double time, std::span<const runtime::BodyIndex> asked, std::span<Motion> motions) {
-            for (std::size_t i = 0; i < asked.size(); ++i) {
-              const std::uint32_t body = body_of_[asked[i]];
-              motions[i] = motion_of(bodies_[body]);
-              promises_[body] = {motions[i], time};
-            }
+      detector_(
+          [this](double, std::span<const runtime::BodyIndex> asked, std::span<runtime::BodyState> states) {
+            for (std::size_t i = 0; i < asked.size(); ++i) states[i] = state_of(body_of_[asked[i]]);
           },
-          {.time_step = time_step}) {}
+          options(time_step)) {
+  for (const Shape& shape : shapes_) shape_ids_.push_back(detector_.add_shape(shape.tree));
+}
+
+// What moves is the middle of the bounding sphere, so that a body turns about it and its reach is the sphere's radius.
+runtime::BodyState Detection::state_of(std::uint32_t body) const {
+  const Body& b = bodies_[body];
+  runtime::BodyState state;
+  state.pose = runtime::pose_from_quaternion(b.attitude, b.position).value_or(Pose{});
+  state.pose.scale = b.scale;
+  state.velocity = b.velocity;
+  state.acceleration = b.acceleration;
+  state.drift = b.drift;
+  state.half_space = b.half_space;
+  state.expiry = b.expiry;
+  return state;
+}
 
 void Detection::add(std::uint32_t body) {
   if (ids_.size() <= body) {
@@ -64,88 +65,40 @@ void Detection::add(std::uint32_t body) {
     promises_.resize(body + 1);
   }
   const Body& b = bodies_[body];
-  const runtime::BodyId id = b.fixed ? broad_.add_static(motion_of(b)) : broad_.add();
+  runtime::BodyPart part{shape_ids_[b.shape]};
+  part.local.translation = -1.0 * shapes_[b.shape].center;
+  const runtime::BodyId id = b.fixed ? detector_.add_static({part}, state_of(body).pose) : detector_.add_body({part});
   ids_[body] = id;
   if (body_of_.size() <= id.index) body_of_.resize(id.index + 1);
   body_of_[id.index] = body;
 }
 
 void Detection::remove(std::uint32_t body) {
-  broad_.remove(ids_[body]);
+  detector_.remove(ids_[body]);
   ids_[body] = runtime::kNoBody;
 }
 
-void Detection::cancel(std::uint32_t body) { broad_.cancel(ids_[body]); }
+void Detection::cancel(std::uint32_t body) { detector_.cancel(ids_[body]); }
 
-runtime::NarrowPhase& Detection::narrow(std::uint32_t shape_a, std::uint32_t shape_b) {
-  Pool& pool = pools_[{shape_a, shape_b}];
-  if (pool.used == pool.pairs.size())
-    pool.pairs.push_back(std::make_unique<runtime::NarrowPhase>(shapes_[shape_a].tree, shapes_[shape_b].tree, kRoom));
-  return *pool.pairs[pool.used++];
-}
+void Detection::teleport(std::uint32_t body) { detector_.teleport(ids_[body]); }
 
-// A level each in turn, so that no pair gets a second one before all have had the first. Where the budget's work ends
-// within a level the same work ends there again, which is what makes a timed run repeatable.
-void Detection::refine(std::vector<runtime::NarrowPhase*>& pairs, const runtime::Budget& budget, StepOutcome& outcome) {
+StepOutcome Detection::step(double time, const runtime::FrameBudget& budget) {
   const auto begin = std::chrono::steady_clock::now();
-  std::uint64_t left = budget.pair_tests;
-  const bool straight = unlimited(budget);
-  const auto time_left = [&] {
-    return budget.time == std::chrono::nanoseconds::max()
-               ? budget.time
-               : budget.time -
-                     std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - begin);
-  };
-  while (!pairs.empty()) {
-    for (runtime::NarrowPhase* pair : pairs) {
-      const auto time = time_left();
-      if (left == 0 || time.count() <= 0) return;
-      const std::uint64_t before = pair->verdict().work;
-      // Bounds on the way are for those who may have to stop on it.
-      if (straight) {
-        pair->refine_exactly();
-      } else {
-        pair->refine({left, time});
-      }
-      const std::uint64_t spent = pair->verdict().work - before;
-      outcome.work += spent;
-      outcome.refined += spent;
-      left -= std::min(left, spent);
-    }
-    std::erase_if(pairs, [](const runtime::NarrowPhase* pair) { return pair->finished(); });
-  }
-}
-
-StepOutcome Detection::step(double time, const runtime::Budget& budget) {
+  const runtime::Frame frame = detector_.step(time, budget);
   StepOutcome outcome;
-  for (auto& [kind, pool] : pools_) pool.used = 0;
-  const std::uint64_t asked = broad_.motions_asked();
-  auto begin = std::chrono::steady_clock::now();
-  const runtime::Advance advance = broad_.advance(time);
-  outcome.seconds_broad = seconds_since(begin);
-  outcome.motions = broad_.motions_asked() - asked;
-
-  begin = std::chrono::steady_clock::now();
-  std::vector<runtime::NarrowPhase*> all, open;
-  for (const runtime::BodyPair& pair : advance.pairs) {
-    const std::uint32_t first = body_of_[pair.a], second = body_of_[pair.b];
-    const std::uint32_t a = std::min(first, second), b = std::max(first, second);
-    const Body &body_a = bodies_[a], &body_b = bodies_[b];
-    runtime::NarrowPhase& phase = narrow(body_a.shape, body_b.shape);
-    phase.start(pose_of(body_a, shapes_[body_a.shape]), pose_of(body_b, shapes_[body_b.shape]));
-    outcome.work += phase.verdict().work;
-    outcome.pairs.push_back({a, b, {}, false});
-    all.push_back(&phase);
-    if (!phase.finished()) open.push_back(&phase);
-  }
-  refine(open, budget, outcome);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    outcome.pairs[i].verdict = all[i]->verdict();
-    outcome.pairs[i].exact = all[i]->exact();
+  outcome.overlapping = frame.pairs;
+  outcome.work = frame.work;
+  outcome.motions = frame.motions_asked;
+  outcome.left_over = frame.left_over;
+  outcome.cut = frame.cut;
+  for (const runtime::PairEvent& event : frame.events) {
+    if (event.change == runtime::PairChange::end || event.verdict.answer == runtime::Answer::no) continue;
+    const std::uint32_t first = body_of_[event.a.index], second = body_of_[event.b.index];
+    outcome.pairs.push_back({std::min(first, second), std::max(first, second), event.verdict});
   }
   std::sort(outcome.pairs.begin(), outcome.pairs.end(),
             [](const PairOutcome& x, const PairOutcome& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; });
-  outcome.seconds_narrow = seconds_since(begin);
+  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return outcome;
 }
 

@@ -7,6 +7,10 @@
 namespace orchard::simulation {
 namespace {
 
+// Corners by the bits of their numbers: x, y, z.
+constexpr unsigned kCubeFaces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                       {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+
 constexpr double kHorizon = 1;  // of promises without an end, for the hypertrapezoid's slope
 
 class Array {
@@ -113,21 +117,37 @@ std::string bodies_vtp(const Simulation& simulation) {
 
 std::string bounds_vtp(const Simulation& simulation) {
   const World& world = simulation.world();
-  Array points("Points", "Float64", 3), connectivity("connectivity", "Int64"), offsets("offsets", "Int64");
+  Array points("Points", "Float64", 3), verts("connectivity", "Int64"), vert_ends("offsets", "Int64"),
+      polygons("connectivity", "Int64"), polygon_ends("offsets", "Int64");
+  // A cube's corners have the horn's radius 0, so that no sphere is drawn around them.
   Array horn("horn_radius", "Float64"), half("hypertrapezoid_half", "Float64"), body("body", "Int32");
-  std::size_t count = 0;
+  std::size_t count = 0, bodies = 0, faces = 0;
   for (std::uint32_t i = 0; i < world.bodies.size(); ++i) {
     if (!world.bodies[i].there || world.bodies[i].fixed) continue;
     const CrossSection section = cross_section(world.detection.promises()[i], world.time);
     points.add(section.middle);
     horn.add(section.horn);
-    half.add(section.half);
-    body.add(i);
-    connectivity.add(count);
-    offsets.add(++count);
+    verts.add(count);
+    vert_ends.add(++bodies);
+    for (unsigned corner = 0; corner < 8; ++corner) {
+      Vec3 place = section.middle;
+      for (unsigned axis = 0; axis < 3; ++axis)
+        place[axis] += (corner >> axis & 1u) != 0 ? section.half : -section.half;
+      points.add(place);
+      horn.add(0);
+    }
+    for (const auto& face : kCubeFaces) {
+      for (const unsigned corner : face) polygons.add(count + 1 + corner);
+      polygon_ends.add(4 * ++faces);
+    }
+    for (int point = 0; point < 9; ++point) {
+      half.add(section.half);
+      body.add(i);
+    }
+    count += 9;
   }
-  return dataset(count, points.text(), horn.text() + half.text() + body.text(), count, 0, 0,
-                 cells("Verts", connectivity, offsets), "");
+  return dataset(count, points.text(), horn.text() + half.text() + body.text(), bodies, 0, faces,
+                 cells("Verts", verts, vert_ends) + cells("Polys", polygons, polygon_ends), "");
 }
 
 std::string frame_file(std::size_t frame, const char* part) {

@@ -17,7 +17,8 @@ struct CrossSection {
 };
 CrossSection cross_section(const Detection::Promise& promise, double time);
 
-// What the broad phase was promised, at the present time: for each body the cross section of its space-time bound.
+// What the broad phase was promised, at the present time: for each body the cross sections of its space-time bound, the
+// hypertrapezoid's as a cube, the horn's as the radius of the point in its middle.
 std::string bounds_vtp(const Simulation& simulation);
 
 // The frames of a run, as the text of a .pvd file that names them all, two parts each: prefix + frame_file().

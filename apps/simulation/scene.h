@@ -62,7 +62,7 @@ struct World {
 
   std::uint32_t add(Body body);  // takes the radius from its shape and scale
   void remove(std::uint32_t body);
-  void jump(std::uint32_t body, const Vec3& position, const Vec3& velocity);  // and cancels what was promised
+  void jump(std::uint32_t body, const Vec3& position, const Vec3& velocity);  // what was promised is void
 
   Scene scene;
   std::vector<Shape> shapes;

@@ -1,8 +1,11 @@
 #include "simulation.h"
 
+#include <algorithm>
 #include <bit>
+#include <charconv>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 
@@ -42,15 +45,15 @@ std::uint64_t state_of(const std::vector<Body>& bodies) {
 }
 
 void count(const StepOutcome& step, const World& world, FrameRecord& record) {
-  record.pairs += step.pairs.size();
+  record.pairs += step.overlapping;
+  record.no += step.overlapping - step.pairs.size();
   record.work += step.work;
   record.motions += step.motions;
-  record.seconds_broad += step.seconds_broad;
-  record.seconds_narrow += step.seconds_narrow;
+  record.left_over += step.left_over;
+  record.seconds_detection += step.seconds;
   for (const PairOutcome& pair : step.pairs) {
     switch (pair.verdict.answer) {
       case Answer::no:
-        ++record.no;
         break;
       case Answer::yes:
         ++record.yes;
@@ -64,6 +67,39 @@ void count(const StepOutcome& step, const World& world, FrameRecord& record) {
       }
     }
   }
+}
+
+constexpr const char* kLimitNames[] = {"none", "work", "time"};  // by Limits
+
+Limits limits_of(const runtime::FrameBudget& budget) {
+  if (unlimited(budget)) return Limits::none;
+  return budget.time == runtime::FrameBudget{}.time ? Limits::work : Limits::time;
+}
+
+// "4000:-:3:120:-": the work granted, and how far the step's parts got; -: no limit.
+std::string to_word(const StepLimit& step) {
+  std::string word;
+  for (const std::uint64_t number : {step.work, step.cut.broad, step.cut.begun, step.cut.refined, step.cut.swept}) {
+    if (!word.empty()) word += ':';
+    word += number == runtime::kWholeStep ? "-" : std::to_string(number);
+  }
+  return word;
+}
+
+bool parse_word(const std::string& word, StepLimit& step) {
+  const char *at = word.data(), *const end = at + word.size();
+  for (std::uint64_t* number : {&step.work, &step.cut.broad, &step.cut.begun, &step.cut.refined, &step.cut.swept}) {
+    if (number != &step.work && (at == end || *at++ != ':')) return false;
+    if (at != end && *at == '-') {
+      *number = runtime::kWholeStep;
+      ++at;
+      continue;
+    }
+    const auto [rest, error] = std::from_chars(at, end, *number);
+    if (error != std::errc()) return false;
+    at = rest;
+  }
+  return at == end;
 }
 
 std::string hexadecimal(std::uint64_t value) {
@@ -89,38 +125,42 @@ Simulation::Simulation(const std::string& scene, const std::vector<Shape>& shape
                        std::uint64_t seed, const Recording* replay)
     : world_(make_world(scene, shapes, bodies, seed)), replay_(replay) {
   steps_ = static_cast<int>(std::lround(world_->scene.frame / world_->scene.step));
-  recording_ = {scene, checksum(shapes.front().tree), bodies, seed, false, {}, {}};
+  recording_ = {scene, checksum(shapes.front().tree), bodies, seed, Limits::none, {}, {}};
 }
 
 // A frame's time is shared evenly; work, too, with what does not divide for the first steps.
-runtime::Budget Simulation::budget_of_step(const runtime::Budget& frame) const {
+runtime::FrameBudget Simulation::budget_of_step(const runtime::FrameBudget& frame) const {
+  runtime::FrameBudget step = frame;
   if (replay_ != nullptr) {
-    const std::uint64_t work = replay_->work.at(steps_done_);
-    return replay_->budgeted ? runtime::Budget{work, std::chrono::nanoseconds::max()} : runtime::Budget{};
+    const StepLimit& limit = replay_->steps.at(steps_done_);
+    step = {};
+    step.work = limit.work;
+    if (replay_->limits == Limits::time) step.replay = &limit.cut;
+    return step;
   }
   const auto steps = static_cast<std::uint64_t>(steps_);
-  runtime::Budget step = frame;
-  if (frame.pair_tests != runtime::Budget{}.pair_tests) step.pair_tests = (frame.pair_tests + steps - 1) / steps;
+  if (frame.work != runtime::FrameBudget{}.work) step.work = (frame.work + steps - 1) / steps;
   if (frame.time != std::chrono::nanoseconds::max()) step.time = frame.time / steps_;
   return step;
 }
 
-FrameRecord Simulation::frame(const runtime::Budget& budget, const Steering& steering) {
+FrameRecord Simulation::frame(const runtime::FrameBudget& budget, const Steering& steering) {
   FrameRecord record;
   record.frame = frames_;
   world_->steering = replay_ != nullptr ? replay_->steering.at(frames_) : steering;
   recording_.steering.push_back(world_->steering);
-  recording_.budgeted = replay_ != nullptr ? replay_->budgeted : !unlimited(budget);
+  recording_.limits = replay_ != nullptr ? replay_->limits : limits_of(budget);
   for (int step = 0; step < steps_; ++step) {
     auto begin = std::chrono::steady_clock::now();
     // Counted anew, so that times of steps do not drift off the broad phase's own.
     world_->time = static_cast<double>(steps_done_) * world_->scene.step;
     world_->scene.before(*world_, world_->time);
     record.seconds_other += seconds_since(begin);
-    last_ = world_->detection.step(world_->time, budget_of_step(budget));
+    const runtime::FrameBudget allowed = budget_of_step(budget);
+    last_ = world_->detection.step(world_->time, allowed);
     begin = std::chrono::steady_clock::now();
     count(last_, *world_, record);
-    recording_.work.push_back(last_.refined);
+    recording_.steps.push_back({allowed.work, last_.cut});
     respond_and_move(*world_, last_);
     record.seconds_other += seconds_since(begin);
     ++steps_done_;
@@ -135,13 +175,13 @@ FrameRecord Simulation::frame(const runtime::Budget& budget, const Steering& ste
 std::string to_text(const Recording& r) {
   std::ostringstream out;
   out.precision(17);
-  out << "orchard-recording 1\n"
-      << r.scene << ' ' << r.bodies << ' ' << r.seed << ' ' << r.shape << ' ' << (r.budgeted ? "budgeted" : "unlimited")
-      << '\n';
-  const std::size_t steps = r.steering.empty() ? 0 : r.work.size() / r.steering.size();
+  out << "orchard-recording 2\n"
+      << r.scene << ' ' << r.bodies << ' ' << r.seed << ' ' << r.shape << ' '
+      << kLimitNames[static_cast<std::size_t>(r.limits)] << '\n';
+  const std::size_t steps = r.steering.empty() ? 0 : r.steps.size() / r.steering.size();
   for (std::size_t f = 0; f < r.steering.size(); ++f) {
     out << r.steering[f].throttle << ' ' << r.steering[f].yaw << ' ' << r.steering[f].pitch;
-    for (std::size_t s = 0; s < steps; ++s) out << ' ' << r.work[f * steps + s];
+    for (std::size_t s = 0; s < steps; ++s) out << ' ' << to_word(r.steps[f * steps + s]);
     out << '\n';
   }
   return out.str();
@@ -159,16 +199,16 @@ Recording parse_recording(const std::string& text) {
     return static_cast<bool>(std::getline(lines, line));
   };
   Recording r;
-  if (!next() || line != "orchard-recording 1")
-    fail("not a recording: its first line should be \"orchard-recording 1\"");
-  const std::string head_fault = "there should be a scene, bodies, a seed, a checksum, and budgeted or unlimited";
+  if (!next() || line != "orchard-recording 2")
+    fail("not a recording: its first line should be \"orchard-recording 2\"");
+  const std::string head_fault = "there should be a scene, bodies, a seed, a checksum, and none, work or time";
   if (!next()) fail(head_fault);
   std::istringstream head(line);
   std::string budget;
-  if (!(head >> r.scene >> r.bodies >> r.seed >> r.shape >> budget) || !is_scene(r.scene) ||
-      (budget != "budgeted" && budget != "unlimited"))
-    fail(head_fault);
-  r.budgeted = budget == "budgeted";
+  if (!(head >> r.scene >> r.bodies >> r.seed >> r.shape >> budget) || !is_scene(r.scene)) fail(head_fault);
+  const auto* const name = std::find(std::begin(kLimitNames), std::end(kLimitNames), budget);
+  if (name == std::end(kLimitNames)) fail(head_fault);
+  r.limits = static_cast<Limits>(name - std::begin(kLimitNames));
   while (next()) {
     std::istringstream words(line);
     Steering s;
@@ -176,9 +216,10 @@ Recording parse_recording(const std::string& text) {
         !(std::fabs(s.pitch) <= 1))
       fail("a frame begins with throttle, yaw and pitch, from -1 to 1");
     std::size_t count = 0;
-    for (std::uint64_t work = 0; words >> work; ++count) r.work.push_back(work);
-    if (!words.eof() || count == 0 || (steps != 0 && count != steps))
-      fail("every frame has the same number of steps, with a whole number of tests each");
+    for (std::string word; words >> word; ++count) {
+      if (!parse_word(word, r.steps.emplace_back())) fail("a step has five numbers, as in 4000:-:3:120:-");
+    }
+    if (count == 0 || (steps != 0 && count != steps)) fail("every frame has the same number of steps");
     steps = count;
     r.steering.push_back(s);
   }
@@ -188,7 +229,7 @@ Recording parse_recording(const std::string& text) {
 std::string trace_header() {
   std::string text = "frame,time,bodies,pairs,no,maybe,yes";
   for (std::size_t level = 0; level < kLevels; ++level) text += ",maybe_at_" + std::to_string(level);
-  return text + ",worst_bound,work,motions,state\n";
+  return text + ",worst_bound,work,motions,left_over,state\n";
 }
 
 std::string trace_row(const FrameRecord& r) {
@@ -196,16 +237,16 @@ std::string trace_row(const FrameRecord& r) {
   out.precision(17);
   out << r.frame << ',' << r.time << ',' << r.bodies << ',' << r.pairs << ',' << r.no << ',' << r.maybe << ',' << r.yes;
   for (const std::size_t count : r.stopped) out << ',' << count;
-  out << ',' << r.worst_bound << ',' << r.work << ',' << r.motions << ',' << hexadecimal(r.state) << '\n';
+  out << ',' << r.worst_bound << ',' << r.work << ',' << r.motions << ',' << r.left_over << ',' << hexadecimal(r.state)
+      << '\n';
   return out.str();
 }
 
-std::string times_header() { return "frame,broad_us,narrow_us,other_us\n"; }
+std::string times_header() { return "frame,detection_us,other_us\n"; }
 
 std::string times_row(const FrameRecord& r) {
   std::ostringstream out;
-  out << r.frame << ',' << 1e6 * r.seconds_broad << ',' << 1e6 * r.seconds_narrow << ',' << 1e6 * r.seconds_other
-      << '\n';
+  out << r.frame << ',' << 1e6 * r.seconds_detection << ',' << 1e6 * r.seconds_other << '\n';
   return out.str();
 }
 

@@ -137,7 +137,7 @@ void World::remove(std::uint32_t body) {
 void World::jump(std::uint32_t body, const Vec3& position, const Vec3& velocity) {
   bodies[body].position = position;
   bodies[body].velocity = velocity;
-  detection.cancel(body);
+  detection.teleport(body);
 }
 
 void respond_and_move(World& world, const StepOutcome& outcome) {

@@ -85,21 +85,21 @@ void on_key(vtkObject* caller, unsigned long, void* data, void*) {
 std::string hud(const Simulation& simulation, const FrameRecord& frame, const Controls& controls, double seconds) {
   std::uint32_t level = 0;
   double bound = 0;
-  bool exact = false;
   for (const simulation::PairOutcome& pair : simulation.pairs()) {
+    if (pair.verdict.answer != runtime::Answer::maybe) continue;
     level = std::max(level, pair.verdict.level);
-    exact = exact || pair.exact;
-    if (pair.verdict.answer != runtime::Answer::no) bound = std::max(bound, pair.verdict.separation_bound);
+    bound = std::max(bound, pair.verdict.separation_bound);
   }
+  const std::string reached = frame.maybe == 0 ? "all, every pair is certain" : std::to_string(level);
   const double radius = simulation.world().shapes[0].radius;
   char text[512];
   std::snprintf(text, sizeof text,
                 "frame %6.1f ms   detection %6.0f us\npairs %3zu: no %zu, maybe %zu, yes %zu\n"
-                "level reached %u%s   bound %.3f R\nthrottle %+.2f  yaw %+.2f  pitch %+.2f\n"
+                "level reached: %s   bound %.3f R\nthrottle %+.2f  yaw %+.2f  pitch %+.2f\n"
                 "spheres: %s   bounds: %s",
-                1e3 * seconds, 1e6 * (frame.seconds_broad + frame.seconds_narrow), frame.pairs, frame.no, frame.maybe,
-                frame.yes, level, exact ? " and triangles" : "", std::min(bound / radius, 99.0),
-                controls.steering.throttle, controls.steering.yaw, controls.steering.pitch,
+                1e3 * seconds, 1e6 * frame.seconds_detection, frame.pairs, frame.no, frame.maybe, frame.yes,
+                reached.c_str(), std::min(bound / radius, 99.0), controls.steering.throttle, controls.steering.yaw,
+                controls.steering.pitch,
                 controls.shown.level < 0 ? "none" : ("level " + std::to_string(controls.shown.level)).c_str(),
                 controls.shown.bounds ? "shown" : "none");
   return text;
@@ -119,8 +119,8 @@ void fly(const Request& request, const runtime::PackedSphereTree& tree) {
   keys->SetClientData(&controls);
   interactor->AddObserver(vtkCommand::KeyPressEvent, keys);
   interactor->Initialize();
-  runtime::Budget budget;
-  if (request.budget > 0) budget.pair_tests = request.budget;
+  runtime::FrameBudget budget;
+  if (request.budget > 0) budget.work = request.budget;
   const auto period = std::chrono::duration<double>(simulation.world().scene.frame);
   FrameRecord frame;
   double seconds = 0;

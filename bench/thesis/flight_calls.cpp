@@ -13,13 +13,14 @@ std::vector<Query> flight_calls(const runtime::TreeView& tree, std::size_t count
     if (step % kControlSteps == 0) world->steering = {draw.uniform(0, 1), draw.uniform(-1, 1), draw.uniform(-1, 1)};
     world->time = step * world->scene.step;
     world->scene.before(*world, world->time);
-    const simulation::StepOutcome outcome = world->detection.step(world->time, {});
-    for (const simulation::PairOutcome& pair : outcome.pairs) {
-      if (calls.size() == count) break;
-      const auto pose = [&](std::uint32_t body) { return pose_of(world->bodies[body], world->shapes[0]); };
-      calls.push_back({pose(pair.a), pose(pair.b), 0});
+    for (std::uint32_t a = 0; a < world->bodies.size(); ++a) {
+      for (std::uint32_t b = a + 1; b < world->bodies.size() && calls.size() < count; ++b) {
+        const simulation::Body &one = world->bodies[a], &two = world->bodies[b];
+        if (simulation::length(one.position - two.position) > one.radius + two.radius) continue;
+        calls.push_back({pose_of(one, world->shapes[0]), pose_of(two, world->shapes[0]), 0});
+      }
     }
-    respond_and_move(*world, outcome);
+    respond_and_move(*world, world->detection.step(world->time, {}));
   }
   return calls;
 }

@@ -84,20 +84,22 @@ Advance BroadPhase::process(double t_now, const WorkBudget* budget) {
     return bodies_refused;
   };
   const detail::Clock& clock = state.roster.clock;
+  std::uint64_t work = 0;
   while (t_now >= wake_time_) {
     const Step now = state.next;
     detail::Meter meter = budget ? detail::Meter(*budget) : detail::Meter();
     state.pairs.clear();
     const detail::StepReport report = state.method->step(now, meter, state.pairs);
     state.next = report.next;
+    work = meter.done();
     note_next_step();
     if (!state.pairs.empty() || report.incomplete_from != kNoClass) {
       seen_time_ = clock.time(now);
-      return {seen_time_, state.pairs, report.incomplete_from, report.left_over, refused()};
+      return {seen_time_, state.pairs, report.incomplete_from, report.left_over, refused(), false, work};
     }
   }
   seen_time_ = std::max(seen_time_, t_now);
-  return {next_time_, {}, kNoClass, 0, refused()};
+  return {next_time_, {}, kNoClass, 0, refused(), false, work};
 }
 
 BodyId BroadPhase::id_of(BodyIndex index) const noexcept {

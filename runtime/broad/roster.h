@@ -44,7 +44,10 @@ class Meter {
   Meter() = default;
   explicit Meter(const WorkBudget& budget) : budget_(budget), begin_(std::chrono::steady_clock::now()) {}
 
-  bool limited() const noexcept { return budget_.work != WorkBudget{}.work || budget_.time != WorkBudget{}.time; }
+  bool limited() const noexcept {
+    return budget_.work != WorkBudget{}.work || budget_.time != WorkBudget{}.time || budget_.replay != 0;
+  }
+  std::uint64_t done() const noexcept { return done_; }
   void count(std::uint64_t work) noexcept {
     done_ += work;
     since_clock_ += work;
@@ -53,6 +56,7 @@ class Meter {
   bool spent() noexcept {
     if (done_ == 0) return false;
     if (done_ >= budget_.work) return true;
+    if (budget_.replay != 0) return done_ >= budget_.replay;
     if (since_clock_ < kWorkPerClock || budget_.time == WorkBudget{}.time) return late_;
     since_clock_ = 0;
     late_ = late_ || std::chrono::steady_clock::now() - begin_ >= budget_.time;

@@ -32,6 +32,8 @@ void Detector::State::motions(double time, std::span<const BodyIndex> asked, std
     body.told_radius = answers[i].radius;
     monitor.promised(asked[i], time, answers[i]);
   }
+  if (!options.promised) return;
+  for (std::size_t i = 0; i < asked.size(); ++i) options.promised(time, asked[i], answers[i]);
 }
 
 // 4.4: before the broad phase relies on anything at this step, everybody's state is compared with what it relies on.
@@ -155,7 +157,9 @@ void Detector::State::run_to(Step last, Step end, StepBudget& budget, Frame& fra
       WorkBudget work;
       if (budget.limited_in_work()) work.work = std::max<std::uint64_t>(1, share.left() / (2 * kMotionWork));
       work.time = share.time_left() / 2;
+      if (share.replay() != nullptr) work.replay = share.replay()->broad;
       now = broad.advance(time, work);
+      if (now.incomplete_from != kNoClass) share.cut_broad(now.work);
     }
     const std::uint64_t asked = (broad.motions_asked() - before) * kMotionWork;
     share.spend(asked);
@@ -166,6 +170,7 @@ void Detector::State::run_to(Step last, Step end, StepBudget& budget, Frame& fra
     const Step step = found ? std::llround((now.time - clock.start) / clock.time_step) : stop;
     if (found || under_way || halves.next() <= step) answer(step, now, share, frame);
     budget.spend(share.spent());
+    frame.cut = share.cut();
     answered = step;
   }
 }

@@ -145,11 +145,11 @@ void Rounds::begin_tasks(StepBudget& budget, RecordTable& records) {
     tasks_[i].verdict = unasked(pair);
     tasks_[i].done = tasks_[i].verdict.answer == Answer::no;
   }
-  const StepBudget& clock = budget;
+  const bool alone = executor_->run == nullptr;
   in_parallel(count, [&](std::size_t begin, std::size_t end, QueryPool::Scratch& scratch) {
     for (std::size_t i = begin; i < end; ++i) {
       Task& task = tasks_[i];
-      if (task.done || clock.late()) continue;
+      if (task.done || (alone ? !budget.may_begin(i) : budget.late())) continue;
       PlacedPair pair;
       place(records[task.record], task.part_a, task.part_b, pair);
       std::uint64_t work = 0;
@@ -193,18 +193,20 @@ void Rounds::refine_one(Task& task, const Record& record, std::uint64_t slice, b
 // budget holds.
 void Rounds::refine_once(std::uint64_t slice, bool by_level, std::uint64_t most, StepBudget& budget,
                          RecordTable& records) {
+  const bool alone = executor_->run == nullptr;
   for (std::size_t next = 0; next < order_.size();) {
     const std::uint64_t may = std::min(most, budget.left());
-    if (may == 0 || budget.late()) return;
+    if (may == 0 || !budget.may_refine()) return;
     const std::uint64_t at_once = std::min<std::uint64_t>(order_.size() - next, may / (slice + kMostOvershoot));
     const auto count = static_cast<std::size_t>(std::max<std::uint64_t>(at_once, 1));
     const std::uint64_t piece = at_once > 0 ? slice : std::min(slice, may);
-    const StepBudget& clock = budget;
     in_parallel(count, [&](std::size_t from, std::size_t to, QueryPool::Scratch&) {
       for (std::size_t i = from; i < to; ++i) {
         Task& task = tasks_[order_[next + i]];
         task.work = 0;
-        if (!clock.late()) refine_one(task, records[task.record], piece, by_level, clock.time_left());
+        if (alone ? !budget.may_refine() : budget.late()) continue;
+        refine_one(task, records[task.record], budget.piece(piece), by_level, budget.time_left());
+        if (alone) budget.refined(task.work);
       }
     });
     for (std::size_t i = 0; i < count; ++i) {
@@ -235,7 +237,7 @@ void Rounds::refine_class(std::size_t begin, std::size_t end, StepBudget& budget
   order_open(begin, end, 1, records);
   if (!order_.empty()) refine_once(kDeepSlice, false, budget.left() / 2 + 1, budget, records);
   std::uint64_t slice = kFirstSlice;
-  for (bool by_level = true; !budget.empty(); by_level = false) {
+  for (bool by_level = true; budget.may_refine(); by_level = false) {
     order_open(begin, end, 0, records);
     if (order_.empty()) return;
     refine_once(slice, by_level, std::numeric_limits<std::uint64_t>::max(), budget, records);
@@ -260,7 +262,7 @@ void Rounds::answer_within(RecordTable& records, std::span<const std::uint32_t> 
   for (const Task& task : tasks_) {
     if (task.verdict.answer == Answer::yes) records[task.record].verdict.answer = Answer::yes;
   }
-  for (std::size_t begin = 0; begin < tasks_.size() && !budget.empty();) {
+  for (std::size_t begin = 0; begin < tasks_.size() && budget.may_refine();) {
     std::size_t end = begin;
     while (end < tasks_.size() && tasks_[end].importance == tasks_[begin].importance) ++end;
     refine_class(begin, end, budget, records);

@@ -44,7 +44,7 @@ void Rounds::sweep_all(RecordTable& records, std::span<const std::uint32_t> open
   }
   if (sweeps_.empty()) return;
   std::size_t done = 0;
-  while (done < sweeps_.size() && !budget.empty()) {
+  while (done < sweeps_.size() && budget.may_sweep(done)) {
     const std::size_t count = budget.limited() ? 1 : sweeps_.size() - done;
     const std::uint64_t most = budget.left();
     for (std::size_t job = 0; job < queries_->jobs(); ++job) queries_->scratch(job).work = 0;

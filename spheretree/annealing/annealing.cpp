@@ -152,7 +152,7 @@ class Annealer {
           add_children(node);
       if (tree_.nodes.size() == above) break;
       anneal_level(level, progress);
-      report_.redundant += remove_redundant(tree_, surface_, Selection::acyclic).removed;
+      report_.redundant += remove_redundant(tree_, surface_, options_.redundancy).removed;
     }
     return {std::move(tree_), report_};
   }

@@ -63,7 +63,7 @@ TEST(Simulate, RefusesWhatItCannotRun) {
             0);
   const std::string mesh = here.add("u.obj", test::u_shape(0.3)), trees = (here / "trees").string();
   ASSERT_EQ(here.run(test::quick_build(mesh, trees)).exit_code, 0);
-  const std::string broken = here.add("broken.txt", std::string("orchard-recording 1\npile 2 1\n"));
+  const std::string broken = here.add("broken.txt", std::string("orchard-recording 2\npile 2 1\n"));
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"simulate", "regatta"},
         {"simulate", "pile", "--budget", "soon"},

@@ -55,6 +55,26 @@ TEST(DetectorShapes, AreRefusedWhereTheyMakeNoSense) {
   EXPECT_EQ(w.detector.add_sphere(1), 0u);
 }
 
+TEST(DetectorBodies, TellWhatTheBroadPhaseReliesOn) {
+  std::vector<std::pair<double, Motion>> told;
+  DetectorOptions options;
+  options.promised = [&](double time, BodyIndex, const Motion& promise) { told.push_back({time, promise}); };
+  World w(options);
+  const BodyId body = w.detector.add_body({{w.detector.add_sphere(2)}});
+  w.states[body.index].acceleration = 3;
+  w.states[body.index].expiry = INFINITY;
+  std::uint64_t asked = 0;
+  for (int step = 0; step < 4; ++step) asked += w.step().motions_asked;
+  ASSERT_EQ(told.size(), asked);
+  EXPECT_EQ(told[0].first, 0);
+  EXPECT_EQ(told[0].second.acceleration, 3);
+  EXPECT_NEAR(told[0].second.radius, 2, 1e-9);
+  w.detector.cancel(body);
+  w.step();
+  ASSERT_EQ(told.size(), asked + 1);
+  EXPECT_EQ(told.back().first, 4 * kStep);
+}
+
 TEST(DetectorBodies, AreRefusedWhereTheyMakeNoSense) {
   World w;
   const ShapeId ball = w.detector.add_sphere(1);

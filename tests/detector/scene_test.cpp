@@ -180,6 +180,32 @@ TEST(Detector, SaysTheSameWithAnyNumberOfThreads) {
   }
 }
 
+// A clock ends each run elsewhere, within the broad phase or at any pair, but for the replay.
+TEST(Detector, ReplaysWhatABudgetInTimeHasCutShort) {
+  std::size_t cuts = 0;
+  for (const Case& c : cases()) {
+    const int steps = std::min(c.scene->steps, 12);
+    std::vector<StepCut> taken;
+    std::vector<double> first, again;
+    SceneRun run(*c.scene, {}), replay(*c.scene, {});
+    for (int step = 0; step < steps; ++step) {
+      const Frame frame = run.step(step, {.time = std::chrono::microseconds(1 + 5 * step)});
+      append(first, frame);
+      taken.push_back(frame.cut);
+      cuts += frame.cut != StepCut{};
+    }
+    for (int step = 0; step < steps; ++step) {
+      const auto at = static_cast<std::size_t>(step);
+      const Frame frame = replay.step(step, {.replay = &taken[at]});
+      append(again, frame);
+      EXPECT_EQ(frame.cut, taken[at]) << c.scene->name << ", step " << step;
+    }
+    ASSERT_EQ(first.size(), again.size()) << c.scene->name;
+    ASSERT_EQ(std::memcmp(first.data(), again.data(), first.size() * sizeof(double)), 0) << c.scene->name;
+  }
+  EXPECT_GT(cuts, 20u);
+}
+
 TEST(Detector, AllocatesNothingOnceWarm) {
   for (const Case& c : cases()) {
     if (c.scene->name == "conveyor") continue;  // adding bodies may

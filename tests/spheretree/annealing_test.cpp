@@ -131,6 +131,21 @@ TEST(AnnealedTree, FitsTighterThanTheOctreeThatItStartsFrom) {
   EXPECT_LT(level_figures(tree, 1)[1].max_inaccuracy, level_figures(start, 1)[1].max_inaccuracy);
 }
 
+// The schedule is the same, and what rests on one that goes may go, too, in chains only.
+TEST(AnnealedTree, LosesFewerSpheresWhereOnlyIndependentOnesGo) {
+  const Surface surface(torus(12, 6));
+  AnnealingOptions options = quick(1);
+  options.branching = 27;
+  options.energy = SetEnergy::sum;
+  options.seed = 2;
+  const Index chains = annealed_tree(surface, options).report.redundant;
+  options.redundancy = Selection::independent;
+  const auto [tree, report] = annealed_tree(surface, options);
+  expect_conservative(tree, surface, "torus");
+  EXPECT_GT(report.redundant, 0);
+  EXPECT_LT(report.redundant, chains);
+}
+
 TEST(AnnealedTree, RepeatsItselfForASeedAndChangesWithIt) {
   const Surface surface(l_shape());
   AnnealingOptions options = quick();

@@ -66,8 +66,12 @@ bool is_valid(const BroadPhaseOptions& options) noexcept;
 struct WorkBudget {
   std::uint64_t work = std::numeric_limits<std::uint64_t>::max();
   std::chrono::nanoseconds time = std::chrono::nanoseconds::max();
+  // Not 0: the step ends where that of another run did, in place of `time`: after its Advance::work if it was
+  // interrupted, or kWholeStep if not. For replaying what a clock cut short.
+  std::uint64_t replay = 0;
 };
 inline constexpr std::uint64_t kWorkPerClock = 64;
+inline constexpr std::uint64_t kWholeStep = std::numeric_limits<std::uint64_t>::max();
 
 inline constexpr unsigned kNoClass = 256;
 
@@ -82,6 +86,7 @@ struct Advance {
   // ascending order; valid as long as the pairs.
   std::span<const BodyIndex> refused{};
   bool time_refused = false;  // t_now is NaN, infinite or too far away (kMostSteps): nothing was done
+  std::uint64_t work = 0;     // of the last step processed within a budget, in its units
 };
 
 // What the broad phase already knows of a step to come (8.2: the load, predicted).

@@ -70,6 +70,9 @@ struct BodyOptions {
 // False: this pair shall not be asked about. Asked once when a pair's spheres begin to overlap.
 using PairFilter = std::function<bool(BodyId a, BodyId b)>;
 
+// What the broad phase relies on from `time` on, until it asks for the body again: for whoever wants to look at it.
+using PromiseListener = std::function<void(double time, BodyIndex body, const Motion& promise)>;
+
 struct DetectorOptions {
   double time_step = 0.01;    // dt_d, see BroadPhaseOptions; > 0. Usually a frame
   double start = 0;           // the time of step 0
@@ -83,16 +86,30 @@ struct DetectorOptions {
   // Pairs of trees that a budget may leave unfinished within a step, at most; what exceeds it is reported as possible.
   std::size_t most_unfinished = 4096;
   Executor executor{};  // of narrow-phase work; the same answers with any
+  // Called from within step(), whenever the broad phase is given a body's motion. It throws nothing.
+  PromiseListener promised{};
+};
+
+// How far a step got that a budget in time cut short.
+struct StepCut {
+  std::uint64_t broad = kWholeStep;    // WorkBudget::replay
+  std::uint64_t begun = kWholeStep;    // pairs of parts
+  std::uint64_t refined = kWholeStep;  // their work, and 1 for each piece of it
+  std::uint64_t swept = kWholeStep;    // pairs
+  friend bool operator==(const StepCut&, const StepCut&) = default;
 };
 
 // Whichever ends first. Work is counted as Budget::pair_tests is; a motion that the broad phase asks for counts as
 // kMotionWork, beginning a pair as kPairWork, one with a simple shape as kSimplePairWork. The broad phase gets half of
 // a limited budget at most. A step exceeds `work` by less than kMostOvershoot, one pair of leaves, but for what each
 // step does in any case: one unit of the broad phase (WorkBudget). Only a budget in counted work gives the same answers
-// on every machine.
+// on every machine; what a clock has cut short can be replayed.
 struct FrameBudget {
   std::uint64_t work = std::numeric_limits<std::uint64_t>::max();
   std::chrono::nanoseconds time = std::chrono::nanoseconds::max();
+  // Not null: the step ends where that of another run did, Frame::cut, in place of `time`. After the same calls with
+  // the same states, the frame is that run's. A replayed call answers one step at most, and no executor took part.
+  const StepCut* replay = nullptr;
 };
 inline constexpr std::uint64_t kMotionWork = 16;
 inline constexpr std::uint64_t kPairWork = 16;
@@ -126,6 +143,7 @@ struct Frame {
   std::span<const PairEvent> events;    // by time, then by pair
   std::uint64_t pairs = 0;              // of bodies whose spheres overlapped, over the steps
   std::uint64_t certain = 0;            // of these, with a certain answer
+  StepCut cut{};                        // the last step's, if the budget was in time and there is no executor
   double worst_bound = 0;               // the largest separation bound among the rest: how far from certain
   std::uint64_t work = 0;               // as FrameBudget counts it
   std::uint64_t motions_asked = 0;      // part of it: times kMotionWork

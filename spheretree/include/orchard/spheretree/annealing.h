@@ -1,5 +1,6 @@
 #pragma once
 #include "orchard/geometry/progress.h"
+#include "orchard/spheretree/redundancy.h"
 #include "orchard/spheretree/refinement.h"
 #include "orchard/spheretree/tree.h"
 
@@ -32,6 +33,8 @@ struct AnnealingOptions {
   double cooling = 0.9;        // factor from one temperature to the next
   int iterations_first = 100;  // temperatures on the first level
   int iterations = 50;         // and below
+  // Which spheres of a level go before the others get children. The text's implementation took independent ones.
+  Selection redundancy = Selection::acyclic;
   Refinement refinement{};
   std::uint64_t seed = 1;
 };

@@ -36,6 +36,9 @@ struct SphereTreeOptions {
   SetEnergy energy = SetEnergy::maximum;      // annealing, the three
   SphereEnergy distance = SphereEnergy::lemma;
   AnnealingTuning annealing{};
+  // Which spheres that others make needless go at the end; annealing: between levels, too, but for `exhaustive`, which
+  // stands for `acyclic` there.
+  Selection redundancy = Selection::exhaustive;
   MergeClosing closing = MergeClosing::refit;  // merging
   Refinement refinement{};
   Index descent = 0;       // trials of random descent for each node, after any method
