@@ -1,3 +1,4 @@
+// One command: what is measured of a pose, its sums, and their table, plot and JSON, hence more than 300 lines.
 #include <fmt/core.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// One drawing: axes, curves, bars and legend share its margins and scales, hence more than 300 lines.
 #include "svg_plot.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// One function for each scene, beside each other so that they read alike: hence more than 300 lines.
 #include <algorithm>
 #include <cmath>
 #include <limits>

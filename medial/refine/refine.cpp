@@ -1,3 +1,4 @@
+// The rounds of refining in the order in which they run, hence more than 300 lines; each step has a file of its own.
 #include "orchard/medial/refine.h"
 
 #include <tbb/blocked_range.h>
