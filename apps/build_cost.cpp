@@ -10,9 +10,9 @@ namespace {
 
 constexpr double kWorthAWord = 30;  // seconds
 
-// Fitted to what tools/build-cost measured: a build takes so long for each step, most of which make a sphere, for each
-// triangle of the mesh, since every stage reads it, and for each triangle that a search meets again and again, which
-// grows with the root of the number of spheres: they are small where they are many.
+// Fitted to what tools/build-cost measured: so long for each step, most of which make a sphere, so long for each
+// triangle of the mesh, and more for each triangle the more steps there are. That it grows as their root is what
+// fitted, not derived.
 struct Rates {
   double step = 0;           // seconds
   double triangle = 0;       // seconds for each triangle and root of the number of spheres
@@ -34,7 +34,8 @@ double count(const SphereTreeOptions& options, Index levels) {
 }
 
 // What takes time: spheres, or, where simulated annealing searches for the children of one, those searches. On a level
-// of the octree four times as many cubes hold surface, not eight, and annealing leaves away about half of the children.
+// of the octree about four times as many cubes hold surface as above, not eight; annealing left 19 to 33 spheres of 64
+// on level 2.
 double steps(const SphereTreeOptions& options) {
   const bool octree = options.method == TreeMethod::octree, annealing = options.method == TreeMethod::annealing;
   if (!octree && !annealing) return count(options, options.depth);
