@@ -132,7 +132,7 @@ TEST(Interrupt, AtAnyMomentLeavesAllOrNothing) {
   const std::size_t whole = picturing.here.files("out").size();
   fs::remove_all(picturing.out);
   int interrupted = 0;
-  const int moments = 4 * static_cast<int>(test::more());
+  const int moments = 3 * static_cast<int>(test::more());
   for (int moment = 1; moment <= moments; ++moment) {
     SCOPED_TRACE(moment);
     Running program(picturing.arguments(), {"TMPDIR=" + picturing.temporary.string()}, picturing.here / "err");

@@ -273,7 +273,7 @@ TEST(Medial, SweepsShowTheirBestRowsFirst) {
 TEST(Medial, DrawsWhereItIsWorstWithTheReport) {
   const Workplace here;
   const std::string mesh = here.add("l.obj", test::l_shape()), out = (here / "out").string();
-  const Finished run = here.run({"medial", mesh, "-o", out, "--samples", "300", "--report", "--quality-samples", "500",
+  const Finished run = here.run({"medial", mesh, "-o", out, "--samples", "150", "--report", "--quality-samples", "200",
                                  "--picture", "--up", "z", "--quiet"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   const auto files = here.files("out");

@@ -44,7 +44,7 @@ int main() {
       const PreparedTree first(a), second(b);
       const TreePair pair(first, second);
       Digest digest;
-      for (std::uint64_t seed = 0; seed < 20 * orchard::test::more(); ++seed) {
+      for (std::uint64_t seed = 0; seed < 12 * orchard::test::more(); ++seed) {
         Draw draw(seed);
         Pose pose_a = draw.pose(0), pose_b = draw.pose(draw.uniform(0, 1.2) * (a.bounding_radius + b.bounding_radius));
         if (seed % 3 == 0) pose_b.scale = draw.uniform(0.5, 2);
