@@ -1,4 +1,5 @@
-// One query from its start to its end, hence more than 300 lines; its roots, levels and exact tests have files of their own.
+// One query from its start to its end, hence more than 300 lines; its roots, levels and exact tests have files of their
+// own.
 #include "orchard/runtime/narrow_phase.h"
 
 #include <algorithm>
