@@ -16,7 +16,7 @@ inline constexpr double kLastGrowth = 2e-5;
 struct UncoveredRegion {
   std::vector<Point> corners;  // on its border: ends and middles of uncovered arcs
   Point farthest;              // of the points tried, the one farthest outside
-  double distance = 0;            // how far; <= 0: nothing but rounding is missing
+  double distance = 0;         // how far; <= 0: nothing but rounding is missing
 
   std::vector<Point> points() const;  // corners and farthest
 };
