@@ -6,6 +6,8 @@
 #include <array>
 #include <cstdint>
 
+#include "orchard/geometry/xml_escaped.h"
+
 namespace orchard::apps {
 namespace {
 
@@ -23,29 +25,6 @@ th { font-weight: 600; color: #5a6678; } th:first-child, td:first-child { text-a
 .bar { display: inline-block; height: .8em; background: #4e79a7; border-radius: 2px; }
 img, svg { max-width: 100%; height: auto; } dt { font-weight: 600; } .note { color: #5a6678; }
 )";
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
 
 std::string base64(const std::string& bytes) {
   constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -79,7 +58,7 @@ std::string values_table(const json& object) {
     if (value.is_structured()) continue;
     std::string name = key;
     std::replace(name.begin(), name.end(), '_', ' ');
-    rows += row({escaped(name), escaped(value.is_string() ? value.get<std::string>() : number(value))}, "td");
+    rows += row({xml_escaped(name), xml_escaped(value.is_string() ? value.get<std::string>() : number(value))}, "td");
   }
   return "<table>\n" + rows + "</table>\n";
 }
@@ -106,7 +85,7 @@ std::string timings(const json& seconds) {
   }
   std::string rows;
   for (const auto& [stage, value] : seconds.items())
-    rows += row({escaped(stage), fmt::format("{:.2f} s", value.get<double>()),
+    rows += row({xml_escaped(stage), fmt::format("{:.2f} s", value.get<double>()),
                  fmt::format("<span class=\"bar\" style=\"width:{:.1f}em\"></span>",
                              longest > 0 ? 20 * value.get<double>() / longest : 0)},
                 "td");
@@ -120,7 +99,8 @@ std::string repairs(const json& report) {
                        number(report["wrap_distance"]));
   } else if (report.contains("repair") && !report["repair"]["lines"].empty()) {
     text = "<ul>\n";
-    for (const json& line : report["repair"]["lines"]) text += "<li>" + escaped(line.get<std::string>()) + "</li>\n";
+    for (const json& line : report["repair"]["lines"])
+      text += "<li>" + xml_escaped(line.get<std::string>()) + "</li>\n";
     text += "</ul>\n";
   } else {
     text = "<p>None: the mesh is a solid as it is.</p>\n";
@@ -160,10 +140,10 @@ std::string to_html(const BuildPage& page) {
   std::string text =
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta name=\"viewport\" "
       "content=\"width=device-width\">\n<title>" +
-      escaped(page.title) + ": sphere-tree</title>\n<style>" + kStyle + "</style></head><body>\n";
-  text += "<h1>" + escaped(page.title) + "</h1>\n<p><code>" + escaped(page.command_line) + "</code></p>\n";
-  text += "<div class=\"certificate\">" + escaped(page.certificate) + "</div>\n";
-  if (!page.doubts.empty()) text += "<div class=\"doubts\">" + escaped(page.doubts) + "</div>\n";
+      xml_escaped(page.title) + ": sphere-tree</title>\n<style>" + kStyle + "</style></head><body>\n";
+  text += "<h1>" + xml_escaped(page.title) + "</h1>\n<p><code>" + xml_escaped(page.command_line) + "</code></p>\n";
+  text += "<div class=\"certificate\">" + xml_escaped(page.certificate) + "</div>\n";
+  if (!page.doubts.empty()) text += "<div class=\"doubts\">" + xml_escaped(page.doubts) + "</div>\n";
   if (!page.picture.empty())
     text += "<p><img alt=\"mesh, surface points, medial axis and levels of the tree\" src=\"data:image/png;base64," +
             base64(page.picture) + "\"></p>\n";
@@ -174,7 +154,7 @@ std::string to_html(const BuildPage& page) {
   text += "<h2>Options</h2>\n" + values_table(report["options"]);
   text += "<h2>Time</h2>\n" + timings(report["seconds"]);
   text += std::string("<h2>Terms</h2>\n") + kTerms;
-  return text + "<details><summary>The whole report as JSON</summary><pre>" + escaped(report.dump(1)) +
+  return text + "<details><summary>The whole report as JSON</summary><pre>" + xml_escaped(report.dump(1)) +
          "</pre></details>\n</body></html>\n";
 }
 

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "orchard/geometry/error.h"
+#include "orchard/geometry/xml_escaped.h"
 #include "orchard/runtime/tree_file.h"
 #include "orchard/spheretree/certify.h"
 #include "orchard/spheretree/tree_io.h"
@@ -123,8 +124,7 @@ json to_json(const SphereLists& lists) {
 
 std::string to_urdf(const SphereLists& lists, std::size_t level, const std::string& link) {
   level = std::min(level, lists.levels.size() - 1);
-  std::string escaped;
-  for (const char c : link) escaped += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
+  const std::string escaped = xml_escaped(link);
   std::string text = fmt::format("<?xml version=\"1.0\"?>\n<robot name=\"{0}\">\n  <link name=\"{0}\">\n", escaped);
   for (const Level* list : {&lists.levels[level], &lists.carried[level]})
     for (const Sphere& s : *list)

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "orchard/geometry/atomic_file.h"
+#include "orchard/geometry/xml_escaped.h"
 #include "vtk_data.h"
 
 namespace orchard::detail {

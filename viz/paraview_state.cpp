@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "orchard/geometry/atomic_file.h"
+#include "orchard/geometry/xml_escaped.h"
 #include "paraview_script.h"
 #include "vtk_data.h"
 
@@ -54,8 +55,7 @@ class State {
   void set(const char* property, const std::vector<std::string>& values) {
     begin_property(property, values.size());
     for (std::size_t i = 0; i < values.size(); ++i)
-      text_ +=
-          "        <Element index=\"" + std::to_string(i) + "\" value=\"" + detail::xml_escaped(values[i]) + "\"/>\n";
+      text_ += "        <Element index=\"" + std::to_string(i) + "\" value=\"" + xml_escaped(values[i]) + "\"/>\n";
     text_ += "      </Property>\n";
   }
 
@@ -83,7 +83,7 @@ class State {
 
   void name(const char* collection, Object object, const std::string& name) {
     names_.append("    <ProxyCollection name=\"").append(collection).append("\">\n      <Item id=\"");
-    names_ += std::to_string(object) + "\" name=\"" + detail::xml_escaped(name) + "\"/>\n    </ProxyCollection>\n";
+    names_ += std::to_string(object) + "\" name=\"" + xml_escaped(name) + "\"/>\n    </ProxyCollection>\n";
   }
 
   std::string whole() const {

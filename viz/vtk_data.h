@@ -25,8 +25,6 @@ namespace orchard::detail {
 
 inline int as_int(Index index) { return index == kNone ? -1 : static_cast<int>(index); }
 
-std::string xml_escaped(const std::string& text);
-
 // value(i) for i in [0, count) as an array of that name.
 template <typename Array, typename Value>
 vtkSmartPointer<Array> make_array(const char* name, std::size_t count, const Value& value) {

@@ -13,6 +13,7 @@
 #include <vtkXMLPolyDataWriter.h>
 
 #include "orchard/geometry/atomic_file.h"
+#include "orchard/geometry/xml_escaped.h"
 #include "orchard/medial/prune.h"
 #include "paraview_script.h"
 #include "vtk_data.h"
@@ -20,29 +21,6 @@
 namespace orchard {
 
 using namespace detail;
-
-std::string detail::xml_escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
 
 namespace {
 

@@ -10,6 +10,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "orchard/geometry/xml_escaped.h"
+
 namespace orchard::plot {
 namespace {
 
@@ -46,19 +48,6 @@ std::string number(double value) {
 // Letters, not bytes.
 std::size_t letters(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
-}
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '<')
-      result += "&lt;";
-    else if (c == '&')
-      result += "&amp;";
-    else
-      result += c;
-  }
-  return result;
 }
 
 class Axis {
@@ -124,7 +113,7 @@ class Axis {
 };
 
 void text(std::ostream& out, double x, double y, const std::string& what, const char* style) {
-  out << "<text x=\"" << x << "\" y=\"" << y << "\" " << style << ">" << escaped(what) << "</text>\n";
+  out << "<text x=\"" << x << "\" y=\"" << y << "\" " << style << ">" << xml_escaped(what) << "</text>\n";
 }
 
 void line(std::ostream& out, double x1, double y1, double x2, double y2, const char* style) {
