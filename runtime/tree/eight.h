@@ -10,6 +10,15 @@
 // PlainFloats or VectorFloats.
 namespace orchard::runtime::detail {
 
+// What PerMachine (machine.h) is given: for the widest vectors there are, and for those that every machine has.
+#ifdef ORCHARD_VECTORS
+using Widest = VectorFloats;
+using Base = FourFloats;
+#else
+using Widest = PlainFloats;
+using Base = PlainFloats;
+#endif
+
 template <typename Kind>
 struct Eight {
   using Floats = typename Kind::Floats;

@@ -4,6 +4,7 @@
 
 #include "eight.h"
 #include "machine.h"
+#include "patch_pair.h"
 
 // Rounding. Patches: see Placement::margin in narrow_phase.cpp, (5). Triangles: any fixed vector serves as an axis,
 // so an axis itself needs no accuracy; only the projections do. Along a coordinate, points placed to within sigma that
@@ -16,52 +17,17 @@
 namespace orchard::runtime::detail {
 namespace {
 
-// Added to the square of a sine before its root: a cosine of two float normals is good to some 50 u, u = 2^-24.
-constexpr float kSineError = 0x1p-17f;
-constexpr float kLeastDistance = 1e-18f;  // keeps a quotient finite; far below every margin
-constexpr float kLeastRoom = 0x1p-110f;   // to add to the room along an axis, in units of Placement::whole
+constexpr float kLeastRoom = 0x1p-110f;  // to add to the room along an axis, in units of Placement::whole
 
 template <typename Kind>
 ORCHARD_INLINE void find_gaps(const Patch& single, const PatchBlock& lanes, const Placement* placement, float margin,
                               PatchGaps& result) noexcept {
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
-  using Vectors = typename E::Vectors;
-  Vectors c = {load<Floats>(lanes.x), load<Floats>(lanes.y), load<Floats>(lanes.z)};
-  Vectors n = {load<Floats>(lanes.nx), load<Floats>(lanes.ny), load<Floats>(lanes.nz)};
-  Floats r = load<Floats>(lanes.radius), h = load<Floats>(lanes.height);
-  const Floats zero = E::all(0.0f);
-  result.used = Kind::bits(zero <= r);
-  if (placement != nullptr) {
-    c = E::move(*placement, c);
-    n = E::turn(placement->turn, n);
-    r = r * E::all(placement->scale);
-    h = h * E::all(placement->scale);
-  }
-  store(c.x, result.x), store(c.y, result.y), store(c.z, result.z);
-  store(n.x, result.nx), store(n.y, result.ny), store(n.z, result.nz);
-  store(r, result.radius), store(h, result.height);
-
-  // How far each reaches along a unit vector: across the planes, height times the cosine; along them, at most the
-  // radius times the sine. The axes tried: both normals, the line of the centres, and the balls.
-  const Vectors m = {E::all(single.nx), E::all(single.ny), E::all(single.nz)};
-  const Floats s = E::all(single.radius), k = E::all(single.height), slack = E::all(kSineError), one = E::all(1.0f);
-  const Vectors d = E::minus(c, {E::all(single.x), E::all(single.y), E::all(single.z)});
-  const Floats square = E::dot(d, d), along_n = E::size(E::dot(d, n)), along_m = E::size(E::dot(d, m));
-  const Floats cosine = E::size(E::dot(n, m));
-  const Floats sine = Kind::root(E::larger(one - cosine * cosine, zero) + slack);
-  const Floats distance = Kind::root(square);
-  const Floats slope = square * slack;
-  const Floats across_n = Kind::root(E::larger(square - along_n * along_n, zero) + slope);
-  const Floats across_m = Kind::root(E::larger(square - along_m * along_m, zero) + slope);
-  const Floats by_n = along_n - (h + (k * cosine + s * sine));
-  const Floats by_m = along_m - (k + (h * cosine + r * sine));
-  const Floats reach = (h * along_n + r * across_n) + (k * along_m + s * across_m);
-  const Floats by_line = distance - reach / (distance + E::all(kLeastDistance));
-  const Floats by_balls = distance - (r + s);
-  const Floats gap = E::larger(E::larger(by_n, by_m), E::larger(by_line, by_balls)) - E::all(margin);
+  const PatchPair<Kind> pair(single, lanes, placement, result);
+  const Floats gap = E::larger(E::larger(pair.by_n, pair.by_m), pair.by_line) - E::all(margin);
   store(gap, result.gap);
-  result.meeting = result.used & Kind::bits(gap <= zero);
+  result.meeting = result.used & Kind::bits(gap <= E::all(0.0f));
 }
 
 template <typename Kind>
@@ -328,14 +294,6 @@ void triangle_gaps_scalar(const TriangleBlock& lanes, const TriangleBlock& rows,
 std::uint64_t triangle_candidates_scalar(const LeafPair& pair, const Placement& placement) noexcept {
   return find_candidates<PlainFloats>(pair, placement);
 }
-
-#ifdef ORCHARD_VECTORS
-using Widest = VectorFloats;
-using Base = FourFloats;
-#else
-using Widest = PlainFloats;
-using Base = PlainFloats;
-#endif
 
 void patch_gaps(const Patch& single, const PatchBlock& lanes, const Placement* placement, float margin,
                 PatchGaps& result) noexcept {

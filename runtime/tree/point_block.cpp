@@ -59,14 +59,6 @@ void point_gaps_scalar(const std::array<float, 3>& point, const TriangleBlock& b
   find_point_gaps<PlainFloats>(point, block, placement, lower);
 }
 
-#ifdef ORCHARD_VECTORS
-using Widest = VectorFloats;
-using Base = FourFloats;
-#else
-using Widest = PlainFloats;
-using Base = PlainFloats;
-#endif
-
 void point_gaps(const std::array<float, 3>& point, const TriangleBlock& block, const Placement& placement,
                 PointGaps& lower) noexcept {
   PerMachine<find_point_gaps<Widest>, find_point_gaps<Base>>::call(point, block, placement, lower);

@@ -81,14 +81,6 @@ std::uint32_t ray_triangles_scalar(const FloatRay& ray, const TriangleBlock& blo
   return find_triangles<PlainFloats>(ray, block);
 }
 
-#ifdef ORCHARD_VECTORS
-using Widest = VectorFloats;
-using Base = FourFloats;
-#else
-using Widest = PlainFloats;
-using Base = PlainFloats;
-#endif
-
 std::uint32_t ray_patches(const FloatRay& ray, const PatchBlock& patches, float begin, float end,
                           RayEntries& entries) noexcept {
   return PerMachine<find_patches<Widest>, find_patches<Base>>::call(ray, patches, begin, end, entries);
