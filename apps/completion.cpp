@@ -1,21 +1,10 @@
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "command_list.h"
+#include "text.h"
 
 namespace orchard::apps {
 namespace {
-
-std::string joined(const std::vector<std::string>& words, const std::string& between = " ") {
-  std::string all;
-  for (const std::string& word : words) all += (all.empty() ? "" : between) + word;
-  return all;
-}
-
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
-    text.replace(at, what.size(), by);
-  return text;
-}
 
 // Within single quotes, where zsh's _arguments takes brackets and colons for its own.
 std::string zsh_quoted(std::string text) {

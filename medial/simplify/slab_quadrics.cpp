@@ -51,6 +51,23 @@ Vector across(const Vector& unit) {
   return unit.cross(other).normalized();
 }
 
+// The cone around two balls. A plane that touches both along `out`, a unit vector at right angles to `unit`, has the
+// normal `normal(out)`.
+struct Cone {
+  Ball4 a, b;
+  Vector unit = Vector::Zero();  // from a to b
+  double length = 0, slope = 0;  // a length of 0: no cone
+
+  Cone(const Ball4& first, const Ball4& second) : a(first), b(second) {
+    const Vector along = (b - a).head<3>();
+    length = along.norm();
+    if (!(length > 0)) return;
+    unit = along / length;
+    slope = (b[3] - a[3]) / length;
+  }
+  Vector normal(const Vector& out) const { return std::sqrt(1 - slope * slope) * out - slope * unit; }
+};
+
 class Contraction {
  public:
   explicit Contraction(ContractibleMesh& mesh) : mesh_(mesh), origin_(mesh.size() > 0 ? mesh.ball(0) : Ball4::Zero()) {
@@ -115,36 +132,29 @@ class Contraction {
 
   // The plane that touches both balls and is at right angles to a sheet on one side of them.
   void add_border(Index p, Index q, Index inner) {
-    const Ball4 a = local(p), b = local(q);
-    const Vector along = (b - a).head<3>();
-    const double length = along.norm();
-    if (!(length > 0)) return;
-    const Vector unit = along / length;
-    const double slope = (b[3] - a[3]) / length;
-    Vector out = (a - local(inner)).head<3>();
-    out -= unit.dot(out) * unit;
-    if (!(out.norm() > 0) || std::abs(slope) >= 1) return;
-    const Vector normal = std::sqrt(1 - slope * slope) * out.normalized() - slope * unit;
-    for (const Index v : {p, q}) quadrics_[v].add_plane(normal, a, kBorder * length * length / 2);
+    const Cone cone(local(p), local(q));
+    if (!(cone.length > 0)) return;
+    Vector out = (cone.a - local(inner)).head<3>();
+    out -= cone.unit.dot(out) * cone.unit;
+    if (!(out.norm() > 0) || std::abs(cone.slope) >= 1) return;
+    const Vector normal = cone.normal(out.normalized());
+    for (const Index v : {p, q}) quadrics_[v].add_plane(normal, cone.a, kBorder * cone.length * cone.length / 2);
   }
 
   // Four planes around the cone, and one at each end that is free.
   void add_cone(Index p, Index q) {
-    const Ball4 a = local(p), b = local(q);
-    const Vector along = (b - a).head<3>();
-    const double length = along.norm();
-    if (!(length > 0)) return;
-    const Vector unit = along / length;
-    const double slope = (b[3] - a[3]) / length;
-    if (std::abs(slope) < 1) {
-      const Vector side = across(unit), other = unit.cross(side);
+    const Cone cone(local(p), local(q));
+    if (!(cone.length > 0)) return;
+    const double square = cone.length * cone.length;
+    if (std::abs(cone.slope) < 1) {
+      const Vector side = across(cone.unit), other = cone.unit.cross(side);
       for (const Vector& out : {side, other, Vector(-side), Vector(-other)}) {
-        const Vector normal = std::sqrt(1 - slope * slope) * out - slope * unit;
-        for (const Index v : {p, q}) quadrics_[v].add_plane(normal, a, length * (a[3] + b[3]) / 8);
+        for (const Index v : {p, q})
+          quadrics_[v].add_plane(cone.normal(out), cone.a, cone.length * (cone.a[3] + cone.b[3]) / 8);
       }
     }
-    if (mesh_.neighbors(p).size() == 1) quadrics_[p].add_plane(-unit, a, length * length);
-    if (mesh_.neighbors(q).size() == 1) quadrics_[q].add_plane(unit, b, length * length);
+    if (mesh_.neighbors(p).size() == 1) quadrics_[p].add_plane(-cone.unit, cone.a, square);
+    if (mesh_.neighbors(q).size() == 1) quadrics_[q].add_plane(cone.unit, cone.b, square);
   }
 
   // The best ball for both ends of an edge, and its cost.

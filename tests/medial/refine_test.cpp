@@ -21,6 +21,7 @@
 #include "outlines.h"
 #include "quality/reconstruction.h"
 #include "refine/free_extension.h"
+#include "support/brute_distance.h"
 #include "support/effort.h"
 #include "support/shapes.h"
 
@@ -33,16 +34,6 @@ MedialBuildOptions options_for(Index points, std::uint64_t seed = 1) {
 }
 
 double diagonal(const Surface& surface) { return surface.bounding_box().diagonal().norm(); }
-
-// The distance to the nearest of all triangles: no tree, no shortcut.
-double brute_distance(const Surface& surface, const Point& query) {
-  double min = std::numeric_limits<double>::infinity();
-  for (Index t = 0; t < surface.mesh().triangles.size(); ++t) {
-    const auto [a, b, c] = surface.corners(t);
-    min = std::min(min, closest_point_of_triangle(query, a, b, c).distance);
-  }
-  return min;
-}
 
 struct Solid {
   const char* name;
@@ -70,11 +61,11 @@ TEST(RefineAxis, BallsTouchTheSurfaceAtTheirContactsAndHoldNothingOfIt) {
     const double tolerance = 1e-9 * diagonal(surface);
     Index exact = 0;
     for (Index v = 0; v < axis.size(); ++v) {
-      ASSERT_NEAR(axis.radii[v], brute_distance(surface, axis.centers[v]), tolerance);
+      ASSERT_NEAR(axis.radii[v], test::brute_distance(surface, axis.centers[v]), tolerance);
       ASSERT_GE(axis.forming_points[v].size(), 1u);
       bool all = axis.forming_points[v].size() >= 2 || axis.radii[v] == 0;
       for (const Index contact : axis.forming_points[v]) {
-        ASSERT_LT(brute_distance(surface, axis.points[contact]), tolerance);
+        ASSERT_LT(test::brute_distance(surface, axis.points[contact]), tolerance);
         all = all && std::abs((axis.points[contact] - axis.centers[v]).norm() - axis.radii[v]) <= tolerance;
       }
       if (all) ++exact;
@@ -258,7 +249,7 @@ TEST(RefineAxis, InterpolatedBallsAreRightUpToTheTolerance) {
     for (const auto& [a, b] : mesh.edges) {
       for (const double t : {0.25, 0.5, 0.75}) {
         const double radius = (1 - t) * mesh.radii[a] + t * mesh.radii[b];
-        const double distance = brute_distance(surface, (1 - t) * mesh.centers[a] + t * mesh.centers[b]);
+        const double distance = test::brute_distance(surface, (1 - t) * mesh.centers[a] + t * mesh.centers[b]);
         EXPECT_NEAR(radius, distance, 1.5 * tolerance * diagonal(surface));
       }
     }

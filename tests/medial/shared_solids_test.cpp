@@ -14,6 +14,7 @@
 #include "orchard/medial/build.h"
 #include "orchard/medial/medial_mesh.h"
 #include "orchard/medial/topology.h"
+#include "support/brute_distance.h"
 #include "support/effort.h"
 
 // The refined axis of the shared models: in long runs of all that are solids as read or repaired, from other seeds.
@@ -27,22 +28,13 @@ constexpr std::size_t kFewTriangles = 8000;     // up to which a model's contact
 constexpr std::size_t kMaxTriangles = 100'000;  // larger ones take minutes at each number of points
 constexpr Index kJudged = 2000;                 // balls of a model, evenly chosen
 
-double brute_distance(const Surface& surface, const Point& query) {
-  double min = std::numeric_limits<double>::infinity();
-  for (Index t = 0; t < surface.mesh().triangles.size(); ++t) {
-    const auto [a, b, c] = surface.corners(t);
-    min = std::min(min, closest_point_of_triangle(query, a, b, c).distance);
-  }
-  return min;
-}
-
 // Returns how many balls were looked at. Every radius is the distance to the surface, of exact and inexact balls alike.
 Index judge_balls(const Surface& surface, const MedialAxis& axis) {
   const double tolerance = 1e-9 * surface.bounding_box().diagonal().norm();
   const Index step = std::max<Index>(1, axis.size() / kJudged);
   Index judged = 0;
   for (Index v = 0; v < axis.size(); v += step, ++judged) {
-    EXPECT_NEAR(axis.radii[v], brute_distance(surface, axis.centers[v]), tolerance) << "vertex " << v;
+    EXPECT_NEAR(axis.radii[v], test::brute_distance(surface, axis.centers[v]), tolerance) << "vertex " << v;
   }
   return judged;
 }

@@ -1,0 +1,20 @@
+#pragma once
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+namespace orchard::apps {
+
+inline std::string joined(const std::vector<std::string>& words, const std::string& between = " ") {
+  return fmt::format("{}", fmt::join(words, between));
+}
+
+// The text with every `what` replaced `by` that.
+inline std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
+    text.replace(at, what.size(), by);
+  return text;
+}
+
+}  // namespace orchard::apps
