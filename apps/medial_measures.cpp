@@ -33,7 +33,11 @@ std::vector<MedialMeasure> reconstruction_measures() {
           {"protrusion_max", "protrusion, max", kDiagonal, true,
            [](const J& j) { return percent(j.quality.protrusion.max); }},
           {"protrusion_mean", "protrusion, mean", kDiagonal, true,
-           [](const J& j) { return percent(j.quality.protrusion.mean); }}};
+           [](const J& j) { return percent(j.quality.protrusion.mean); }},
+          {"protrusion_upper", "protrusion, proven to be at most", kDiagonal, true,
+           [](const J& j) { return percent(j.quality.protrusion_upper); }},
+          {"dent_upper", "dents, proven to be at most", kDiagonal, true,
+           [](const J& j) { return percent(j.quality.dent_upper); }}};
 }
 
 std::vector<MedialMeasure> ball_measures() {

@@ -43,7 +43,8 @@ json to_json(const SimplifyReport& report) {
           {"coverage_max", 100 * report.coverage.max},
           {"coverage_mean", 100 * report.coverage.mean},
           {"protrusion_max", 100 * report.protrusion.max},
-          {"protrusion_mean", 100 * report.protrusion.mean}};
+          {"protrusion_mean", 100 * report.protrusion.mean},
+          {"dent_upper", 100 * report.dent_upper}};
 }
 
 std::string to_csv(const std::vector<SimplifiedMedialMesh>& curve) {

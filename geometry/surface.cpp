@@ -168,6 +168,10 @@ Vector Surface::pseudonormal(Index triangle, Feature feature) const {
 
 ClosestPoint Surface::closest(const Point& query) const { return data_->tree.closest(query); }
 
+ClosestPoint Surface::closest_within(const Point& query, double distance) const {
+  return data_->tree.closest_within(query, distance);
+}
+
 double Surface::signed_distance(const Point& query) const {
   ClosestPoint nearest;
   return signed_distance(query, nearest);

@@ -202,6 +202,17 @@ ClosestPoint TriangleTree::closest(const Point& point, NearestTriangles& nearest
   return candidates.best();
 }
 
+ClosestPoint TriangleTree::closest_within(const Point& point, double distance) const {
+  const ClosestPoint none{.position = Point::Zero(), .distance = std::numeric_limits<double>::infinity()};
+  if (!(distance >= 0)) return none;
+  Candidates candidates(*this, point);
+  const double radius = scale_ * distance;
+  if (radius < 1e15) candidates.limit = squared_limit(static_cast<float>(radius));
+  find_candidates(point, candidates);
+  const ClosestPoint& best = candidates.best();
+  return best.distance <= distance ? best : none;
+}
+
 void TriangleTree::near(const Sphere& ball, std::vector<Index>& out) const {
   out.clear();
   const auto add_if_near = [&](Index triangle) {

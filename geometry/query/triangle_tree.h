@@ -28,6 +28,8 @@ class TriangleTree {
 
   ClosestPoint closest(const Point& query) const;
   ClosestPoint closest(const Point& query, NearestTriangles& nearest) const;
+  // The same if it is within `distance`; else infinitely far, and no triangle.
+  ClosestPoint closest_within(const Point& query, double distance) const;
   // How often the surface winds around the query: exact if the mesh is closed and consistently oriented and the query
   // is not on it. Precondition: the query lies in the mesh's box.
   int winding_number(const Point& query) const;

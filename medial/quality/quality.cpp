@@ -88,7 +88,8 @@ MedialQuality medial_quality(const Surface& surface, const MedialMesh& mesh, con
   quality.border_length = border_length(mesh) / quality.diagonal;
   quality.pieces = medial_pieces(mesh);
   for (WorstPlace& place : quality.worst) place.value /= quality.diagonal;
-  quality.coverage_upper /= quality.diagonal;
+  for (double* upper : {&quality.coverage_upper, &quality.protrusion_upper, &quality.dent_upper})
+    *upper /= quality.diagonal;
   for (Spread* spread :
        {&quality.hausdorff, &quality.coverage, &quality.inner_coverage, &quality.protrusion, &quality.radius_error}) {
     spread->max /= quality.diagonal;

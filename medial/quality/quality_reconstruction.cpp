@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "boundary_reach.h"
 #include "quality_parts.h"
 
 namespace orchard::detail {
@@ -12,8 +13,9 @@ namespace {
 
 constexpr double kArrived = 1e-6;  // of the diagonal: a march ends this near to the boundary
 constexpr int kMaxSteps = 50;
-constexpr std::size_t kBlock = 64;  // samples that one task takes, one after the other
-constexpr double kSlack = 1e-9;     // above what rounding can do to a bound
+constexpr std::size_t kBlock = 64;                                  // samples that one task takes, one after the other
+constexpr double kSlack = 1e-9;                                     // above what rounding can do to a bound
+constexpr double kProtrusionAccuracy = 1e-5, kDentAccuracy = 1e-4;  // diagonals: to which maxima are searched
 
 // How far along a unit direction a point inside a ball is from leaving it.
 double way_out(const Sphere& ball, const Point& from, const Vector& direction) {
@@ -197,8 +199,19 @@ void measure_reconstruction(const Surface& surface, const MedialMesh& mesh, std:
   quality.outside_edges = look_at(surface, balls.edges, protruding);
   quality.outside_triangles = look_at(surface, balls.triangles, protruding);
   for (const WorstPlace& place : protruding) quality.protrusion.max = std::max(quality.protrusion.max, place.value);
+  const SearchedMax beyond =
+      max_protrusion(surface, mesh, quality.protrusion.max, kProtrusionAccuracy * quality.diagonal, options.search);
+  if (beyond.max > std::max(negligible, quality.protrusion.max)) {
+    protruding.push_back({WorstKind::protrusion, beyond.max, beyond.place, Vector::Zero(), beyond.ball});
+    quality.protrusion.max = beyond.max;
+  }
+  quality.protrusion_upper = beyond.upper;
   quality.hausdorff = {.max = std::max({to.max, from.max, quality.protrusion.max, open.max}),
                        .mean = 0.5 * (to.mean + from.mean)};
+  const SearchedMax dent =
+      max_dent(surface, reconstruction, quality.hausdorff.max, kDentAccuracy * quality.diagonal, options.search);
+  quality.hausdorff.max = dent.max;
+  quality.dent_upper = dent.upper;
 
   const double apart = options.places_apart * quality.diagonal;
   quality.worst = worst_of(std::move(protruding), options.worst_places, apart);

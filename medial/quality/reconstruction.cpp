@@ -121,12 +121,17 @@ double Reconstruction::distance(const Point& query, Sphere& ball) const {
 }
 
 double Reconstruction::distance_below(double bound, const Point& query, Sphere& ball) const {
-  return tree_.min(query, bound, [&](Index item, const SupportTree::Item& balls, double best) {
+  return distance_between(-std::numeric_limits<double>::infinity(), bound, query, ball);
+}
+
+double Reconstruction::distance_between(double enough, double bound, const Point& query, Sphere& ball) const {
+  const auto value_of = [&](Index item, const SupportTree::Item& balls, double best) {
     Sphere found;
     const double value = evaluate(item, balls, query, best, found);
     if (value < best) ball = found;
     return value;
-  });
+  };
+  return tree_.min(query, bound, value_of, enough);
 }
 
 }  // namespace orchard::detail

@@ -18,6 +18,8 @@ class Reconstruction {
   double distance(const Point& query, Sphere& ball) const;
   // The same where it is below `bound`, which saves looking for what is not; else `bound`, and `ball` stays.
   double distance_below(double bound, const Point& query, Sphere& ball) const;
+  // The same, but any value below `enough`, with its ball, will do where there are such.
+  double distance_between(double enough, double bound, const Point& query, Sphere& ball) const;
 
  private:
   // The least for an item, and the ball; a value that is `best` or more need not be exact.

@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -23,14 +24,16 @@ class SupportTree {
   explicit SupportTree(std::vector<Item> items);
 
   // The least of `best` and value(item, balls of the item, least so far) over all items. Precondition: value() is at
-  // least the least |query - c| - r of the item. Items that cannot be the least are not asked.
+  // least the least |query - c| - r of the item. Items that cannot be the least are not asked. A value below `enough`
+  // ends the search.
   template <class Value>
-  double min(const Point& query, double best, const Value& value) const {
+  double min(const Point& query, double best, const Value& value,
+             double enough = -std::numeric_limits<double>::infinity()) const {
     if (items_.empty()) return best;
     std::array<std::pair<double, Index>, kDepth> stack;
     std::size_t size = 0;
     stack[size++] = {bound(nodes_[0], query), 0};
-    while (size > 0) {
+    while (size > 0 && best >= enough) {
       const auto [lower, at] = stack[--size];
       if (!(lower < best)) continue;
       const Node& node = nodes_[at];

@@ -33,22 +33,45 @@ double fourth(double value) {
   return square * square;
 }
 
-// The sum of the fourth powers of what protrudes around an edge, how much larger it gets by contracting it.
-double added_protrusion(const Surface& surface, const ContractibleMesh& mesh, Index a, Index b, const Ball4& ball) {
-  const double spacing = kLookSpacing * surface.bounding_radius();
-  double before = 0, after = 0;
-  Vector outward;
-  for (const Protrusion& place : places_around(mesh, a, b, spacing)) {
-    before += fourth(protrusion_of(surface, place.ball(mesh), outward));
-    Ball4 moved = Ball4::Zero();
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Index corner = place.corners[k];
-      moved += place.weights[k] * (corner == a || corner == b ? ball : mesh.ball(corner));
+// What protrudes around edges.
+class ProtrusionCost {
+ public:
+  ProtrusionCost(const Surface& surface, const ContractibleMesh& mesh)
+      : surface_(surface), mesh_(mesh), inside_(mesh.size()) {}
+
+  // The sum of the fourth powers, how much larger it gets by contracting an edge to this ball.
+  double added(Index a, Index b, const Ball4& ball) {
+    double before = 0, after = 0;
+    for (const Protrusion& place : places_around(mesh_, a, b, kLookSpacing * surface_.bounding_radius())) {
+      before += fourth(value(place, place.ball(mesh_)));
+      Ball4 moved = Ball4::Zero();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Index corner = place.corners[k];
+        moved += place.weights[k] * (corner == a || corner == b ? ball : mesh_.ball(corner));
+      }
+      after += fourth(value(place, moved));
     }
-    after += fourth(protrusion_of(surface, moved, outward));
+    return after - before;
   }
-  return after - before;
-}
+
+ private:
+  double value(const Protrusion& place, const Ball4& ball) {
+    Vector outward;
+    return protrusion_of(surface_, ball, known_at(place, ball.head<3>()), outward);
+  }
+  // Of a corner of the place's cell, one that holds it if there is any.
+  InsideBall& known_at(const Protrusion& place, const Point& center) {
+    for (const Index corner : place.corners) {
+      if (inside_[corner].holds(center)) return inside_[corner];
+    }
+    const auto heaviest = std::max_element(place.weights.begin(), place.weights.end()) - place.weights.begin();
+    return inside_[place.corners[static_cast<std::size_t>(heaviest)]];
+  }
+
+  const Surface& surface_;
+  const ContractibleMesh& mesh_;
+  std::vector<InsideBall> inside_;  // for each vertex
+};
 
 // The foot's cell after b became a.
 void follow(Foot& foot, Index a, Index b) {
@@ -78,7 +101,12 @@ class SampledContraction {
  public:
   SampledContraction(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples,
                      Assignment& feet)
-      : surface_(surface), mesh_(mesh), samples_(samples), feet_(feet), at_(mesh.size()), blocked_(mesh.size()) {
+      : mesh_(mesh),
+        samples_(samples),
+        feet_(feet),
+        protrusion_(surface, mesh),
+        at_(mesh.size()),
+        blocked_(mesh.size()) {
     stamp_.assign(mesh.size(), 0);
     for (Index i = 0; i < samples.size(); ++i) enter(i);
   }
@@ -97,7 +125,7 @@ class SampledContraction {
         blocked_[a].push_back(b);
         blocked_[b].push_back(a);
       } else if (!whole) {
-        const double added = added_protrusion(surface_, mesh_, a, b, candidate(a, b).ball);
+        const double added = protrusion_.added(a, b, candidate(a, b).ball);
         turns_.emplace(cost + kProtrusionWeight * samples_[0].weight * added, a, b, stamp, true);
       } else {
         contract(a, b);
@@ -118,7 +146,7 @@ class SampledContraction {
 
     double value(const Ball4& ball) const {
       const Ball4 foot = rest + share * ball;
-      return (sample->position - foot.head<3>()).norm() - foot[3];
+      return (sample->position - foot.head<3>()).norm() - foot[3] + sample->depth;
     }
   };
 
@@ -174,7 +202,7 @@ class SampledContraction {
     for (const Index i : seen) {
       Foot& foot = feet_.feet[i];
       follow(foot, a, b);
-      foot = walk_to_foot(mesh_, samples_[i].position, foot);
+      foot = walk_to_foot(mesh_, samples_[i].position, foot).below(samples_[i].depth);
       enter(i);
     }
     // What the neighbours cost may have changed; it is found anew when their turn comes.
@@ -234,7 +262,7 @@ class SampledContraction {
       row << (length > 0 ? Vector(way / length) : p.sample->normal), 1;
       const double weight = p.sample->weight * p.share;
       matrix += weight * p.share * row * row.transpose();
-      side += weight * (length - foot[3]) * row;
+      side += weight * (length - foot[3] + p.sample->depth) * row;
     }
     const double pull = kToMiddle * matrix.trace();
     if (!(pull > 0)) return middle;
@@ -249,10 +277,10 @@ class SampledContraction {
     return ball.allFinite() ? ball : middle;
   }
 
-  const Surface& surface_;
   ContractibleMesh& mesh_;
   const std::span<const FitSample> samples_;
   Assignment& feet_;
+  ProtrusionCost protrusion_;
   std::vector<std::vector<Index>> at_;                // samples of each vertex, ascending
   std::vector<std::vector<Index>> blocked_;           // other ends of edges that the link condition stood against
   std::unordered_map<std::uint64_t, Index> offered_;  // edges, by their ends, with the stamps they were offered with

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "../quality/boundary_reach.h"
 #include "contract_by_samples.h"
 #include "improve.h"
 #include "slab_quadrics.h"
@@ -15,9 +16,12 @@ namespace {
 // How far quadrics lead: to so many times the vertices wanted, but no fewer than so many. They are fast, and the
 // samples, which see more, have what is left.
 constexpr Index kBySlabs = 3, kMinBySlabs = 1000;
-constexpr double kShrink = 0.6;   // vertices left by one pass of contractions
-constexpr double kMoved = 0.08;   // share of the vertices that the first round moves
-constexpr double kNotable = 0.6;  // of the largest distance: places that are as far off become samples
+constexpr double kFree = 1e-5;       // diagonals: contractions that move a ball no farther from its planes cost nothing
+constexpr double kShrink = 0.6;      // vertices left by one pass of contractions
+constexpr double kMoved = 0.08;      // share of the vertices that the first round moves
+constexpr double kNotable = 0.6;     // of the largest distance: places that are as far off become samples
+constexpr double kInvisible = 2e-4;  // diagonals: dents so deep are not looked for
+constexpr std::size_t kSamplesPerDent = 10;  // of the surface, for each dent at most that becomes one
 constexpr FitOptions kBetween[] = {{.power = 4, .steps = 1, .middles = false}};
 constexpr FitOptions kAtEnd[] = {{.power = 2, .steps = 2}, {.power = 4, .steps = 4}, {.power = 8, .steps = 6}};
 constexpr FitOptions kAfterInsertion[] = {{.power = 4, .steps = 2, .middles = false}};
@@ -37,7 +41,8 @@ Descent::Descent(const Surface& surface, const MedialMesh& mesh, const SimplifyO
 Stage Descent::start() const { return {whole_, fit_samples(surface_, options_.samples, options_.seed), {}}; }
 
 void Descent::go_down(Stage& stage, Index count) const {
-  contract_by_slabs(stage.mesh, std::max({count, kBySlabs * std::min(count, stage.mesh.living()), kMinBySlabs}));
+  contract_by_slabs(stage.mesh, std::max({count, kBySlabs * std::min(count, stage.mesh.living()), kMinBySlabs}), count,
+                    kFree * diagonal_);
   stage.feet.feet.clear();
   refine(stage, kBetween);
   while (stage.mesh.living() > count) {
@@ -93,6 +98,22 @@ void Descent::look_closer(Stage& stage, int round) const {
     stage.feet.feet.push_back(feet.feet[i]);
     stage.feet.max = std::max(stage.feet.max, std::abs(feet.feet[i].value));
   }
+  if (enough > kInvisible * diagonal_) add_dents(stage, enough);
+}
+
+// What the envelope leaves open below the surface: no place of the surface is as far from it as the bottom of a dent is
+// from the surface.
+void Descent::add_dents(Stage& stage, double min_depth) const {
+  std::vector<Dent> dents = dents_deeper_than(surface_, Reconstruction(stage.mesh.mesh()), min_depth, options_.search);
+  const std::size_t max = options_.samples / kSamplesPerDent;
+  if (dents.size() > max) dents.resize(max);
+  std::vector<FitSample> samples;
+  for (const Dent& dent : dents) samples.push_back({dent.place, dent.outward, 1.0 / options_.samples, dent.depth});
+  Assignment feet;
+  feet.find(stage.mesh, samples);
+  stage.samples.insert(stage.samples.end(), samples.begin(), samples.end());
+  stage.feet.feet.insert(stage.feet.feet.end(), feet.feet.begin(), feet.feet.end());
+  stage.feet.max = std::max(stage.feet.max, feet.max);
 }
 
 SimplifiedMedialMesh Descent::measured(const Stage& stage) const {
@@ -100,7 +121,7 @@ SimplifiedMedialMesh Descent::measured(const Stage& stage) const {
   result.mesh = stage.mesh.mesh();
   result.report.vertices_before = vertices_before_;
   result.report.vertices = result.mesh.size();
-  measure_two_sided(surface_, stage.mesh, options_, result.report);
+  measure_two_sided(surface_, result.mesh, options_, result.report);
   return result;
 }
 

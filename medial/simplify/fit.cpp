@@ -28,6 +28,7 @@ class Fitter {
         walker_(mesh),
         places_(options.middles ? places_to_look(mesh, kLookSpacing * surface.bounding_radius())
                                 : std::vector<Protrusion>()),
+        inside_(places_.size()),
         equations_(mesh) {}
 
   void run() {
@@ -78,7 +79,7 @@ class Fitter {
   }
   double ball_weight() const { return kProtrusionWeight * samples_[0].weight; }
 
-  std::vector<Protrusion> protruding() const { return find_protrusions(surface_, mesh_, places_); }
+  std::vector<Protrusion> protruding() { return find_protrusions(surface_, mesh_, places_, inside_); }
 
   // The distance |p - c| - r changes by -(u, 1) * (dc, dr); where p is outside, and as near as c is thick, the
   // curvature of |p - c| counts, too.
@@ -139,6 +140,7 @@ class Fitter {
   const FitOptions options_;
   const FootWalker walker_;
   const std::vector<Protrusion> places_;  // values not known
+  std::vector<InsideBall> inside_;        // for each of them
   NormalEquations equations_;
   std::vector<Protrusion> protrusions_;
   double scale_ = 1;
@@ -152,14 +154,15 @@ void Assignment::find(const ContractibleMesh& mesh, std::span<const FitSample> s
   feet.resize(samples.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, samples.size(), 256), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i)
-      feet[i] = finder.find(samples[i].position, guess ? &feet[i] : nullptr);
+      feet[i] = finder.find(samples[i].position, guess ? &feet[i] : nullptr).below(samples[i].depth);
   });
   find_max();
 }
 
 void Assignment::walk(std::span<const FitSample> samples, const FootWalker& walker) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, samples.size(), 256), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) feet[i] = walker.walk(samples[i].position, feet[i]);
+    for (std::size_t i = range.begin(); i != range.end(); ++i)
+      feet[i] = walker.walk(samples[i].position, feet[i]).below(samples[i].depth);
   });
   find_max();
 }

@@ -10,8 +10,8 @@ namespace orchard::detail {
 
 // Places of a surface and the balls of a medial mesh that come nearest to them.
 struct Assignment {
-  std::vector<Foot> feet;  // one for each sample
-  double max = 0;          // of |value|: how far the envelope is from a sample, outside, or how deep that is inside
+  std::vector<Foot> feet;  // one for each sample, whose depth is added to the value: what is missing at it, or too much
+  double max = 0;          // of |value|
 
   double max_protrusion = 0;  // as the last fit() left it, of the balls that it looked at
 

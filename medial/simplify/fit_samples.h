@@ -5,11 +5,13 @@
 
 namespace orchard::detail {
 
-// A place of the surface that a medial mesh is to reach.
+// A place of the surface that the envelope of a medial mesh is to end at, or one inside the solid that is to be as deep
+// in the envelope.
 struct FitSample {
   Point position;
   Vector normal;      // outward
   double weight = 0;  // of all of them about 1
+  double depth = 0;   // in the solid, mesh units; 0 on the surface
 };
 
 // `count` places spread evenly over the area, and, as many again at most, where the surface is bent: the corners of the

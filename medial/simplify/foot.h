@@ -13,6 +13,8 @@ struct Foot {
   std::array<double, 3> weights{1, 0, 0};             // of corners that are repeated: 0
   double value = 0;                                   // |point - centre| - radius
 
+  // Of a point so deep in the solid: what is missing to that depth.
+  Foot below(double depth) const { return {corners, weights, value + depth}; }
   Ball4 ball(const ContractibleMesh& mesh) const {
     return weights[0] * mesh.ball(corners[0]) + weights[1] * mesh.ball(corners[1]) + weights[2] * mesh.ball(corners[2]);
   }

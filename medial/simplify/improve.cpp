@@ -36,7 +36,8 @@ class Insertion {
     for (std::size_t i = 0; i < samples_.size(); ++i)
       places.push_back({std::abs(feet_.feet[i].value), feet_.feet[i], &samples_[i]});
     const auto balls = places_to_look(mesh_, std::numeric_limits<double>::infinity());
-    for (const Protrusion& protrusion : find_protrusions(surface, mesh_, balls))
+    std::vector<InsideBall> known(balls.size());
+    for (const Protrusion& protrusion : find_protrusions(surface, mesh_, balls, known))
       places.push_back({protrusion.value, {protrusion.corners, protrusion.weights, -protrusion.value}, nullptr});
     double worst = 0;
     for (const Place& place : places) worst = std::max(worst, place.value);
@@ -86,7 +87,7 @@ class Insertion {
       if (foot.weights[k] > kNoShare) corners.push_back(foot.corners[k]);
     }
     if (corners.size() == 2 && mesh_.count_triangles_at(corners[0], corners[1]) <= 1) {
-      mesh_.extend(corners[0], corners[1], ball4(sample.position, 0));
+      mesh_.extend(corners[0], corners[1], ball4(sample.position, sample.depth));
       return true;
     }
     if (corners.size() != 1) return false;
@@ -101,9 +102,9 @@ class Insertion {
       best = other;
     }
     if (best == kNone) {
-      mesh_.extend(corners[0], ball4(sample.position, 0));
+      mesh_.extend(corners[0], ball4(sample.position, sample.depth));
     } else {
-      mesh_.extend(corners[0], best, ball4(sample.position, 0));
+      mesh_.extend(corners[0], best, ball4(sample.position, sample.depth));
     }
     return true;
   }

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <span>
 #include <vector>
 
 #include "contractible_mesh.h"
@@ -31,11 +32,24 @@ std::vector<Protrusion> places_to_look(const ContractibleMesh& mesh, double spac
 // The same for all cells at one of two vertices, or both.
 std::vector<Protrusion> places_around(const ContractibleMesh& mesh, Index a, Index b, double spacing);
 
-// How far a ball reaches out of the solid, and the way there.
-double protrusion_of(const Surface& surface, const Ball4& ball, Vector& outward);
+// A ball inside the solid, with nothing of the surface in it: what it holds needs no test of being inside. That is true
+// whatever becomes of the medial mesh, so it is worth keeping from one look at a place to the next.
+struct InsideBall {
+  Point center = Point::Zero();
+  double radius = 0;  // 0: none is known
 
-// Those of `places` that protrude. Parallel.
+  bool holds(const Point& place) const { return (place - center).norm() < kSure * radius; }
+
+ private:
+  static constexpr double kSure = 1 - 1e-9;  // rounding
+};
+
+// How far a ball reaches out of the solid, and the way there. `known` becomes a ball around the centre unless it holds
+// it already.
+double protrusion_of(const Surface& surface, const Ball4& ball, InsideBall& known, Vector& outward);
+
+// Those of `places` that protrude; known: one for each place. Parallel.
 std::vector<Protrusion> find_protrusions(const Surface& surface, const ContractibleMesh& mesh,
-                                         const std::vector<Protrusion>& places);
+                                         const std::vector<Protrusion>& places, std::span<InsideBall> known);
 
 }  // namespace orchard::detail

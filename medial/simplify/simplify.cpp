@@ -9,7 +9,6 @@
 
 #include "descent.h"
 #include "orchard/geometry/error.h"
-#include "two_sided.h"
 
 namespace orchard {
 namespace {

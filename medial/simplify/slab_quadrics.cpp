@@ -38,6 +38,7 @@ struct Quadric {
     c += weight * side * side;
   }
   double at(const Ball4& x) const { return std::max(0.0, x.dot(a * x) - 2 * b.dot(x) + c); }
+  double weight() const { return a(3, 3); }  // of all planes, whose rows end in 1
 };
 
 // Any unit vector at right angles to one.
@@ -74,7 +75,7 @@ class Contraction {
     origin_[3] = 0;
   }
 
-  void run(Index target) {
+  void run(Index target, Index free_target, double free_distance) {
     quadrics_.resize(mesh_.size());
     stamp_.assign(mesh_.size(), 0);
     for (const auto& cell : mesh_.maximal_cells()) add_cell(cell);
@@ -83,11 +84,12 @@ class Contraction {
         if (v < other) offer(v, other);
       }
     }
-    while (mesh_.living() > target && !queue_.empty()) {
+    while (mesh_.living() > free_target && !queue_.empty()) {
       const auto [cost, a, b, stamp] = queue_.top();
       queue_.pop();
       if (!mesh_.alive(a) || !mesh_.alive(b) || stamp != stamp_[a] + stamp_[b]) continue;
       if (!mesh_.adjacent(a, b) || !mesh_.may_contract(a, b)) continue;
+      if (mesh_.living() <= target && distance_of(a, b) > free_distance) continue;
       contract(a, b);
     }
   }
@@ -157,6 +159,13 @@ class Contraction {
     if (mesh_.neighbors(q).size() == 1) quadrics_[q].add_plane(cone.unit, cone.b, square);
   }
 
+  // Of what an edge becomes, from the planes of both ends in the mean.
+  double distance_of(Index p, Index q) const {
+    Quadric sum = quadrics_[p];
+    sum += quadrics_[q];
+    return sum.weight() > 0 ? std::sqrt(sum.at(best(p, q).first) / sum.weight()) : 0;
+  }
+
   // The best ball for both ends of an edge, and its cost.
   std::pair<Ball4, double> best(Index p, Index q) const {
     Quadric sum = quadrics_[p];
@@ -215,6 +224,8 @@ class Contraction {
 
 }  // namespace
 
-void contract_by_slabs(ContractibleMesh& mesh, Index target) { Contraction(mesh).run(target); }
+void contract_by_slabs(ContractibleMesh& mesh, Index target, Index free_target, double free_distance) {
+  Contraction(mesh).run(target, free_target, free_distance);
+}
 
 }  // namespace orchard::detail

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/random.h"
@@ -75,6 +76,29 @@ TEST(Surface, FindsTheSameClosestPointAsALoopOverAllTriangles) {
       ASSERT_EQ(found.feature, expected.feature) << name << " at " << query.transpose();
       ASSERT_EQ(found.position, expected.position) << name << " at " << query.transpose();
     }
+  }
+}
+
+TEST(Surface, FindsTheClosestPointWithinADistanceOrNothing) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& [name, mesh] : all_meshes()) {
+    const Surface surface(mesh);
+    for (const Point& query : queries_for(surface, 120, 9)) {
+      const ClosestPoint expected = surface.closest(query);
+      const double exact = expected.distance;
+      for (const double within : {exact, std::nextafter(exact, 2 * exact + 1), 2 * exact, 1e300}) {
+        const ClosestPoint found = surface.closest_within(query, within);
+        ASSERT_EQ(found.distance, exact) << name << " at " << query.transpose();
+        ASSERT_EQ(found.triangle, expected.triangle) << name << " at " << query.transpose();
+        ASSERT_EQ(found.position, expected.position) << name << " at " << query.transpose();
+      }
+      for (const double within : {std::nextafter(exact, -1.0), 0.5 * exact - 1e-300, -1.0, nan}) {
+        const ClosestPoint none = surface.closest_within(query, within);
+        ASSERT_EQ(none.triangle, kNone) << name << " at " << query.transpose();
+        ASSERT_EQ(none.distance, std::numeric_limits<double>::infinity());
+      }
+    }
+    EXPECT_EQ(surface.closest_within({nan, 0, 0}, 1e300).triangle, kNone);
   }
 }
 

@@ -9,15 +9,21 @@
 
 #include "known_axes.h"
 #include "orchard/geometry/error.h"
+#include "orchard/geometry/random.h"
 #include "orchard/medial/axis_distance.h"
+#include "quality/boundary_reach.h"
 #include "quality/quality_parts.h"
 #include "support/shapes.h"
 
 namespace orchard {
 namespace {
 
-constexpr QualityOptions kFew{
-    .surface_samples = 2000, .cells = 2000, .contact_cells = 300, .economy_candidates = 500, .economy_samples = 1000};
+constexpr QualityOptions kFew{.surface_samples = 2000,
+                              .cells = 2000,
+                              .search = 20'000,
+                              .contact_cells = 300,
+                              .economy_candidates = 500,
+                              .economy_samples = 1000};
 
 MedialQuality quality_of(const test::KnownAxis& known) {
   return medial_quality(Surface(known.solid), known.axis, kFew);
@@ -316,6 +322,111 @@ MedialMesh square(double z, double size) {
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   complete(mesh);
   return mesh;
+}
+
+constexpr Index kSearch = 1'000'000;
+
+// A sheet and a wire in a box, most of whose balls end before the surface, and some beyond it.
+MedialMesh random_mesh(Random& random) {
+  MedialMesh mesh;
+  for (int v = 0; v < 5; ++v) {
+    mesh.centers.emplace_back(random.uniform(0.1, 0.9), random.uniform(0.1, 1.9), random.uniform(0.1, 2.9));
+    mesh.radii.push_back(random.uniform(0, 0.6));
+  }
+  mesh.triangles = {{0, 1, 2}, {1, 2, 3}};
+  mesh.edges = {{3, 4}};
+  complete(mesh);
+  return mesh;
+}
+
+// Any ball of the mesh.
+Sphere random_ball(const MedialMesh& mesh, Random& random) {
+  const auto cell = random.below(3);
+  std::array<Index, 3> corners{3, 4, 4};
+  if (cell < 2) corners = mesh.triangles[cell];
+  double u = random.uniform(), v = random.uniform();
+  if (u + v > 1) u = 1 - u, v = 1 - v;
+  const std::array<double, 3> weights{1 - u - v, u, v};
+  Sphere ball{Point::Zero(), 0};
+  for (std::size_t k = 0; k < 3; ++k) {
+    ball.center += weights[k] * mesh.centers[corners[k]];
+    ball.radius += weights[k] * mesh.radii[corners[k]];
+  }
+  return ball;
+}
+
+TEST(MedialQuality, NoPlaceOfTheBoundaryIsDeeperInTheSolidThanIsProven) {
+  const Surface box(test::known_box({1, 2, 3}).solid);
+  constexpr double kAccuracy = 0.01;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Random random(seed, 7);
+    const MedialMesh mesh = random_mesh(random);
+    const detail::Reconstruction reconstruction(mesh);
+    const detail::SearchedMax dent = detail::max_dent(box, reconstruction, 0, kAccuracy, kSearch);
+    double attained = 0;
+    for (int i = 0; i < 4000; ++i) {
+      const Sphere ball = random_ball(mesh, random);
+      const Vector way(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+      const Point place = ball.center + ball.radius * way.normalized();
+      if (reconstruction.distance(place) > -1e-9) attained = std::max(attained, -box.signed_distance(place));
+    }
+    EXPECT_LE(attained, dent.upper);
+    EXPECT_LE(dent.max, dent.upper);
+    EXPECT_LE(dent.upper, dent.max + std::max(kAccuracy, 0.02 * dent.max) + 1e-9);
+    if (!(dent.max > 0)) continue;
+    EXPECT_NEAR(-box.signed_distance(dent.place), dent.max, 1e-12);
+    EXPECT_NEAR(reconstruction.distance(dent.place), 0, 1e-9);
+  }
+}
+
+TEST(MedialQuality, NoBallReachesFartherOutThanIsProven) {
+  const Surface box(test::known_box({1, 2, 3}).solid);
+  const Surface bend(test::known_l_shape(8).solid);
+  constexpr double kAccuracy = 1e-3;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Random random(seed, 8);
+    const MedialMesh mesh = random_mesh(random);
+    for (const Surface* solid : {&box, &bend}) {
+      const detail::SearchedMax most = detail::max_protrusion(*solid, mesh, 0, kAccuracy, kSearch);
+      double bound = 0, attained = 0;
+      for (int i = 0; i < 4000; ++i) {
+        const Sphere ball = random_ball(mesh, random);
+        bound = std::max(bound, ball.radius + solid->signed_distance(ball.center));
+        attained = std::max(attained, detail::reach_of(*solid, ball).beyond);
+      }
+      EXPECT_LE(bound, most.upper);
+      EXPECT_GE(most.max, attained - std::max(kAccuracy, 0.02 * most.max));
+      if (most.max > 0) {
+        EXPECT_NEAR(solid->signed_distance(most.place), most.max, 1e-12);
+      }
+      if (solid == &box) {  // beside a flat or convex surface, what is proven is what is attained
+        EXPECT_LE(most.upper, most.max + std::max(kAccuracy, 0.02 * most.max) + 1e-9);
+      }
+    }
+  }
+}
+
+// Two halves of a plate's sheet, apart: the boundary is deepest at the ends of the slit between them, half way to the
+// plate's side.
+TEST(MedialQuality, HausdorffSeesHowDeepASlitIs) {
+  const Surface plate(test::known_box({1, 4, 4}).solid);
+  constexpr double kHalfWidth = 0.45;
+  const auto at = [](double y, double z) { return Point(0.5, y, z); };
+  const double low = 2 - kHalfWidth, high = 2 + kHalfWidth;
+  MedialMesh halves{.centers = {at(0.5, 0.5), at(low, 0.5), at(low, 3.5), at(0.5, 3.5),  //
+                                at(high, 0.5), at(3.5, 0.5), at(3.5, 3.5), at(high, 3.5)},
+                    .radii = std::vector<double>(8, 0.5),
+                    .edges = {},
+                    .triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}};
+  complete(halves);
+  const double exact = 0.5 - std::sqrt((0.25 - kHalfWidth * kHalfWidth) / 2);
+  const detail::SearchedMax dent = detail::max_dent(plate, detail::Reconstruction(halves), 0, 1e-3, kSearch);
+  EXPECT_LE(dent.max, exact + 1e-9);
+  EXPECT_GE(dent.max, exact - 0.02 * exact);
+  EXPECT_GE(dent.upper, exact);
+  const MedialQuality quality = medial_quality(plate, halves, kFew);
+  EXPECT_GE(quality.dent_upper, exact / quality.diagonal);
+  EXPECT_GE(quality.hausdorff.max, dent.max / quality.diagonal);
 }
 
 TEST(AxisDistance, IsThatOfSheetsNotOfVertices) {

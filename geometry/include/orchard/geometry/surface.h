@@ -57,6 +57,9 @@ class Surface {
   // The nearest point; ties go to the lowest triangle; infinitely far if the query is not finite. O(log n).
   ClosestPoint closest(const Point& query) const;
   double distance(const Point& query) const { return closest(query).distance; }
+  // The same where it is within `distance`, else infinitely far, on no triangle: many times as fast where there is
+  // nothing so near.
+  ClosestPoint closest_within(const Point& query, double distance) const;
   // Inside is, for all of orchard, where the winding number is above 1/2: places that the surface surrounds, however
   // often, and in whatever way it cuts itself. The solid is the surface and its inside. Negative inside, and
   // 1-Lipschitz; the sign is exact, the distance but for a few roundings of the coordinates. About the cost of

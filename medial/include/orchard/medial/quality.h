@@ -18,6 +18,7 @@ namespace orchard {
 struct QualityOptions {
   Index surface_samples = 100'000;  // for coverage and protrusion
   Index cells = 200'000;            // of each kind (vertices, edges, triangles) that are looked at, evenly chosen
+  Index search = 250'000;           // cubes and cells at most in which the largest dent and protrusion are searched
   Index contact_cells = 10'000;     // vertices whose second contact is searched
   double contact_angle = 0.5235987755982988;  // radians, 30 degrees: half the opening of the first contact's cone
   double economy_error = 0.01;                // of the diagonal
@@ -67,8 +68,12 @@ struct MedialQuality {
   double coverage_upper = 0;  // proven, up to rounding: no place of the surface is farther from the reconstruction
   Spread inner_coverage;      // of coverage, what is not at the borders of sheets, where what is pruned is missing
   Spread protrusion;          // distance of the reconstruction outside the solid, over D
-  Spread radius_error;        // |radius - distance to the surface| of vertices, over D
-  Spread centredness;         // |distance to the second contact - radius| of vertices, over the radius
+  // Proven, up to rounding: no ball reaches farther beyond the place of the surface that is nearest to its centre. More
+  // than what protrudes where a ball closes a crevice.
+  double protrusion_upper = 0;
+  double dent_upper = 0;  // proven: no place of the reconstruction's boundary is deeper in the solid
+  Spread radius_error;    // |radius - distance to the surface| of vertices, over D
+  Spread centredness;     // |distance to the second contact - radius| of vertices, over the radius
   double outside_vertices = 0, outside_edges = 0, outside_triangles = 0;  // fractions
   Topology found, wanted;                                                 // of the medial mesh; of the solid
   Economy economy;

@@ -1,0 +1,46 @@
+#pragma once
+#include <vector>
+
+#include "orchard/geometry/surface.h"
+#include "reconstruction.h"
+
+namespace orchard::detail {
+
+// A maximum that was searched by branch and bound; lengths in mesh units.
+struct SearchedMax {
+  double max = 0;               // attained, or what was known before
+  double upper = 0;             // proven, up to rounding: nowhere more
+  Point place = Point::Zero();  // of the reconstruction's boundary, where it is attained, if it is above what was known
+  Sphere ball{Point::Zero(), 0};  // of the reconstruction, there
+};
+
+// How deep inside the solid the boundary of the reconstruction lies where it lies deepest: dents, slits and gaps
+// between sheets, which samples of the surface may all miss. Searched is above `known` only, in cubes around the solid
+// that are divided until none can have more than the larger of `accuracy` (mesh units) and 2 % above what was found, or
+// until `max_cubes` were: `upper` says then how much is left open. Parallel, and the same for any number of threads.
+// About one query of each kind for each cube: some (D / known)^2 of them, D being the diagonal.
+SearchedMax max_dent(const Surface& surface, const Reconstruction& reconstruction, double known, double accuracy,
+                     Index max_cubes);
+
+// A place of the reconstruction's boundary inside the solid.
+struct Dent {
+  Point place;
+  double depth;    // mesh units
+  Vector outward;  // unit, to the nearest place of the surface
+};
+
+// Places of the boundary that are deeper than `min_depth`, the deepest first: where there are any, one at least in each
+// cube whose half diagonal is a quarter of it, unless that takes dividing more than `max_cubes`. Parallel,
+// deterministic.
+std::vector<Dent> dents_deeper_than(const Surface& surface, const Reconstruction& reconstruction, double min_depth,
+                                    Index max_cubes);
+
+// How far the reconstruction reaches out of the solid at most: that is attained. `upper` bounds how far any ball
+// reaches beyond the place of the surface that is nearest to its centre, which is no less than what protrudes, and more
+// where a ball closes a crevice and ends in the solid again. Cells are halved until that is within the larger of
+// `accuracy` and 2 % above what was attained, or until `max_cells` were looked at. Parallel, and the same for any
+// number of threads.
+SearchedMax max_protrusion(const Surface& surface, const MedialMesh& mesh, double known, double accuracy,
+                           Index max_cells);
+
+}  // namespace orchard::detail

@@ -1,0 +1,188 @@
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "boundary_reach.h"
+
+namespace orchard::detail {
+namespace {
+
+constexpr double kShareAbove = 0.02;  // of what was found: not searched for more
+constexpr int kMaxLevels = 40;        // then a cube is as small as rounding
+constexpr double kFineness = 0.25;    // of the depth searched for: half diagonals of the cubes that are collected from
+constexpr std::size_t kBlock = 64;    // cubes that one task divides
+constexpr double kRounding = 1e-12;   // of the coordinates: more than a bound is off by
+
+struct Cube {
+  Point center;
+  double bound;    // no boundary of the reconstruction in it is deeper
+  Sphere ball;     // of the reconstruction: one of the deepest at the centre
+  Index triangle;  // of the surface, nearest to the centre
+};
+
+// A place of the reconstruction's boundary.
+struct Place {
+  double depth = 0;  // in the solid
+  Point place = Point::Zero();
+  Sphere ball{Point::Zero(), 0};  // of the reconstruction
+};
+
+class DentSearch {
+ public:
+  // Looks for places deeper than `known` only.
+  DentSearch(const Surface& surface, const Reconstruction& reconstruction, double known, Index max_cubes)
+      : surface_(surface), reconstruction_(reconstruction), max_cubes_(max_cubes) {
+    found_.depth = known;
+    const Box& box = surface.bounding_box();
+    rounding_ = kRounding * (box.min().norm() + box.max().norm());
+    half_ = 0.5 * (box.max() - box.min()).maxCoeff();
+    cubes_ = {first_cube(box)};
+  }
+
+  SearchedMax max(double accuracy) {
+    while (more_cubes()) {
+      const auto found = divide([](std::vector<Place>& places, const Place& place) {
+        if (places.empty()) places.push_back(place);
+        if (place.depth > places.front().depth) places.front() = place;
+      });
+      for (const Place& place : found) {
+        if (place.depth > found_.depth) found_ = place;
+      }
+      const double enough = found_.depth + std::max(accuracy, kShareAbove * found_.depth);
+      std::erase_if(cubes_, [&](const Cube& cube) {
+        const bool done = cube.bound <= enough;
+        if (done) open_ = std::max(open_, cube.bound);
+        return done;
+      });
+    }
+    for (const Cube& cube : cubes_) open_ = std::max(open_, cube.bound);
+    return {.max = found_.depth,
+            .upper = std::max(open_, found_.depth) + rounding_,
+            .place = found_.place,
+            .ball = found_.ball};
+  }
+
+  std::vector<Place> all() {
+    std::vector<Place> places;
+    for (bool fine = false; !fine && more_cubes();) {
+      places = divide([](std::vector<Place>& list, const Place& place) { list.push_back(place); });
+      fine = std::sqrt(3.0) * half_ <= kFineness * found_.depth;
+    }
+    return places;
+  }
+
+ private:
+  bool more_cubes() {
+    divided_ += cubes_.size();
+    return !cubes_.empty() && divided_ <= max_cubes_ && level_++ < kMaxLevels;
+  }
+
+  Cube first_cube(const Box& box) const {
+    Cube cube{.center = 0.5 * (box.min() + box.max()), .bound = 0, .ball = {Point::Zero(), 0}, .triangle = 0};
+    cube.bound = (box.max() - box.min()).norm();
+    reconstruction_.distance(cube.center, cube.ball);
+    cube.triangle = surface_.closest(cube.center).triangle;
+    return cube;
+  }
+
+  // Puts the parts that may hold places deeper than what was found in place of all cubes, and returns such places.
+  // What was found stays the same for all parts, so that their order does not matter.
+  template <class Take>
+  std::vector<Place> divide(const Take& take) {
+    struct Result {
+      std::vector<Cube> parts;
+      std::vector<Place> places;
+    };
+    half_ *= 0.5;
+    std::vector<Result> results((cubes_.size() + kBlock - 1) / kBlock);
+    tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t block) {
+      Result& result = results[block];
+      const std::size_t end = std::min(cubes_.size(), (block + 1) * kBlock);
+      for (std::size_t i = block * kBlock; i < end; ++i) {
+        for (int part = 0; part < 8; ++part) {
+          const Vector step(part & 1 ? half_ : -half_, part & 2 ? half_ : -half_, part & 4 ? half_ : -half_);
+          look_at(cubes_[i], cubes_[i].center + step, result.parts,
+                  [&](const Place& place) { take(result.places, place); });
+        }
+      }
+    });
+    cubes_.clear();
+    std::vector<Place> places;
+    for (const Result& result : results) {
+      cubes_.insert(cubes_.end(), result.parts.begin(), result.parts.end());
+      places.insert(places.end(), result.places.begin(), result.places.end());
+    }
+    return places;
+  }
+
+  // A part of a cube: nothing of the boundary is in it if the reconstruction holds it wholly, or has nothing in it.
+  template <class Take>
+  void look_at(const Cube& whole, const Point& center, std::vector<Cube>& parts, const Take& take) const {
+    const double reach = std::sqrt(3.0) * half_ + rounding_;
+    Cube cube{.center = center, .bound = whole.bound, .ball = whole.ball, .triangle = whole.triangle};
+    const double at_most = (center - cube.ball.center).norm() - cube.ball.radius;
+    if (at_most < -reach) return;
+    const auto [a, b, c] = surface_.corners(whole.triangle);
+    cube.bound = std::min(cube.bound, closest_point_of_triangle(center, a, b, c).distance + reach);
+    if (cube.bound <= found_.depth) return;
+    ClosestPoint nearest;
+    const double depth = -surface_.signed_distance(center, nearest);
+    cube.triangle = nearest.triangle;
+    cube.bound = std::min(cube.bound, depth + reach);
+    if (cube.bound <= found_.depth) return;
+    // Searching for the deepest ball takes longest. Where the one of the whole cube ends in this part, too, it can but
+    // tell of a place that is deeper than what was found.
+    if (at_most > 0 || depth + at_most > found_.depth) {
+      const double gap = reconstruction_.distance_between(-reach, std::min(at_most, reach), center, cube.ball);
+      if (!(std::abs(gap) < reach)) return;
+      if (gap >= 0 && depth + gap > found_.depth) take_boundary(center, cube.ball, take);
+    }
+    parts.push_back(cube);
+  }
+
+  // The place of the boundary that is nearest to a point outside the reconstruction.
+  template <class Take>
+  void take_boundary(const Point& from, const Sphere& ball, const Take& take) const {
+    const Vector way = from - ball.center;
+    const double length = way.norm();
+    if (!(length > 0)) return;
+    const Point place = ball.center + ball.radius / length * way;
+    const double depth = -surface_.signed_distance(place);
+    if (depth > found_.depth) take(Place{depth, place, ball});
+  }
+
+  const Surface& surface_;
+  const Reconstruction& reconstruction_;
+  const std::size_t max_cubes_;  // to divide, all levels together
+  std::vector<Cube> cubes_;
+  double half_ = 0;      // side, halved, of the cubes
+  double open_ = 0;      // the largest bound of what is not divided any more
+  double rounding_ = 0;  // of coordinates
+  std::size_t divided_ = 0;
+  int level_ = 0;
+  Place found_;
+};
+
+}  // namespace
+
+SearchedMax max_dent(const Surface& surface, const Reconstruction& reconstruction, double known, double accuracy,
+                     Index max_cubes) {
+  return DentSearch(surface, reconstruction, known, max_cubes).max(accuracy);
+}
+
+std::vector<Dent> dents_deeper_than(const Surface& surface, const Reconstruction& reconstruction, double min_depth,
+                                    Index max_cubes) {
+  std::vector<Dent> dents;
+  for (const Place& place : DentSearch(surface, reconstruction, min_depth, max_cubes).all()) {
+    const ClosestPoint nearest = surface.closest(place.place);
+    dents.push_back({place.place, place.depth, (nearest.position - place.place) / nearest.distance});
+  }
+  std::stable_sort(dents.begin(), dents.end(), [](const Dent& a, const Dent& b) { return a.depth > b.depth; });
+  return dents;
+}
+
+}  // namespace orchard::detail
