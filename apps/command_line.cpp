@@ -263,6 +263,18 @@ void add_sweep_tree(CLI::App& command, std::optional<SphereTreeOptions>& tree) {
       ->check(CLI::Range(1, 10));
 }
 
+void add_side(CLI::App& command, MedialCommand& medial) {
+  CLI::Option* side = command
+                          .add_option_function<std::string>(
+                              "--side", [&medial](const std::string& name) { medial.outside = name == "outside"; },
+                              "Of which space: inside the solid, or outside, within a sphere around it [inside]")
+                          ->check(CLI::IsMember({"inside", "outside"}));
+  command.add_option("--outside-radius", medial.outside_radius, "Of that sphere, in bounding radii")
+      ->check(CLI::Range(1.1, 1000.0))
+      ->needs(side)
+      ->capture_default_str();
+}
+
 void add_few_balls(CLI::App& command, MedialCommand& medial) {
   CLI::Option* vertices =
       command
@@ -286,6 +298,7 @@ void add_medial(CLI::App& app, Request& request) {
   command.add_option("mesh", medial.mesh, "The mesh: .obj, .ply, .stl or .off")->required();
   command.add_option("-o,--output", medial.folder, "Folder for the axis and the reports")->required();
   add_mesh_options(command, medial.reading);
+  add_side(command, medial);
   command.add_flag("--report", medial.report, "Measure the quality of what was built (docs/medial-quality.md)");
   command
       .add_option(

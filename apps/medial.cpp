@@ -17,6 +17,7 @@
 #include "medial_warning.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
+#include "orchard/geometry/outside_solid.h"
 #include "outputs.h"
 #include "report.h"
 
@@ -47,12 +48,26 @@ std::vector<std::string> names_of(const MedialCommand& command) {
   return names;
 }
 
+void check_side(const MedialCommand& command) {
+  const auto given = [&](const char* option) {
+    return std::find(command.given.begin(), command.given.end(), option) != command.given.end();
+  };
+  if (!command.outside) {
+    if (given("outside-radius")) throw InputError("--outside-radius belongs to --side outside");
+    return;
+  }
+  for (const char* option : {"sweep", "points", "diagram", "open-rounds"}) {
+    if (given(option)) throw InputError(fmt::format("--{} has no effect with --side outside", option));
+  }
+}
+
 // What can be refused before anything is built.
 void check(const MedialCommand& command) {
   std::vector<fs::path> inputs = command.source.files();
   if (!command.axis.empty()) inputs.push_back(command.axis);
   if (inputs.size() > 1) throw InputError("--axis, --diagram and --points exclude each other");
   if (!inputs.empty() && !command.sweep.empty()) throw InputError("--sweep takes no --axis, --diagram or --points");
+  check_side(command);
   if (command.tree && command.sweep.empty())
     throw InputError("--tree belongs to a --sweep; orchard build builds a tree");
   refuse_idle_options(command);
@@ -151,12 +166,14 @@ void judge_file(const MedialCommand& command, const SolidMesh& solid, const std:
   finish(command, named(command.axis, "-quality.json"), report, outputs);
 }
 
-void build_axis(const MedialCommand& command, const SolidMesh& solid, const std::vector<AxisFile>& beside,
-                const Progress& progress, ProgressBar& bar) {
+// `inner`: the solid itself where `solid` is the space around it, else none.
+void build_axis(const MedialCommand& command, const SolidMesh& solid, const Surface* inner,
+                const std::vector<AxisFile>& beside, const Progress& progress, ProgressBar& bar) {
   const Surface& surface = solid.surface;
   const bool talk = !command.output.quiet && !command.output.json;
   const MedialBuildOptions options = build_options(command.tuning);
   OwnInput own = read_axis_source(command.source, surface);
+  if (inner != nullptr) own.input.sampling = sample_outside(*inner, surface, options.sampling, progress);
   const MedialBuild build = build_medial_axis(surface, options, progress, std::move(own.input));
   const MedialMesh mesh = medial_mesh(build.axis);
   const MedialSegments segments = medial_segments(build.axis, segment_options(command, surface, build));
@@ -230,6 +247,7 @@ QualityOptions quality_options(const MedialCommand& command) {
     const double share = static_cast<double>(command.quality_samples) / options.surface_samples;
     return std::max(Index{1}, static_cast<Index>(share * standard));
   };
+  options.search = scaled(options.search);
   options.contact_cells = scaled(options.contact_cells);
   options.economy_candidates = scaled(options.economy_candidates);
   options.economy_samples = scaled(options.economy_samples);
@@ -267,13 +285,24 @@ void medial(const MedialCommand& command) {
   const SolidMesh solid = load_solid(command.mesh, command.reading, bar.callback());
   bar.clear();
   if (!command.output.quiet && !command.output.json) print_solid(command.mesh, solid);
+  std::optional<SolidMesh> outside;
+  if (command.outside) {
+    outside = SolidMesh{.surface = Surface(outside_solid(solid.surface, command.outside_radius)),
+                        .repair = {},
+                        .repair_distance = {},
+                        .wrap = {},
+                        .self_intersections = solid.self_intersections};
+    if (!command.output.quiet && !command.output.json)
+      fmt::print("outside: the space around it, within a sphere of {:.6g} bounding radii\n", command.outside_radius);
+  }
+  const SolidMesh& wanted = outside ? *outside : solid;
   if (axis) {
-    judge_file(command, solid, beside, *axis, bar.callback(), bar);
+    judge_file(command, wanted, beside, *axis, bar.callback(), bar);
   } else if (!command.sweep.empty()) {
-    sweep_medial(command, solid.surface, bar.callback());
+    sweep_medial(command, wanted.surface, bar.callback());
     bar.clear();
   } else {
-    build_axis(command, solid, beside, bar.callback(), bar);
+    build_axis(command, wanted, outside ? &solid.surface : nullptr, beside, bar.callback(), bar);
   }
 }
 

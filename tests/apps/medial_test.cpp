@@ -66,6 +66,36 @@ TEST(Medial, RefinesTheAxisUnlessTheRawOneIsAskedFor) {
   EXPECT_EQ(here.run({"medial", mesh, "-o", (here / "x").string(), "--border-loss", "-1"}).exit_code, 2);
 }
 
+// Between two boxes that are near each other, the axis outside is the plane in the middle.
+TEST(Medial, BuildsTheAxisOfTheSpaceAroundTheSolid) {
+  const Workplace here;
+  const std::string mesh = here.add("boxes.obj", test::two_boxes(0.25)), out = (here / "out").string();
+  const Finished run = here.run({"medial", mesh, "-o", out, "--side", "outside", "--samples", "600", "--json",
+                                 "--no-views", "--report", "--quality-samples", "500"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json report = json::parse(run.out);
+  EXPECT_EQ(report["quality"]["topology_right"], 1);
+  EXPECT_EQ(report["quality"]["cavities"], 2);  // each box is one of the space around it
+  EXPECT_LT(report["quality"]["radius_error_max"].get<double>(), 0.1);
+  const Finished judged = here.run({"medial", mesh, "-o", (here / "other").string(), "--side", "outside", "--axis",
+                                    out + "/boxes.ma", "--quality-samples", "500", "--json"});
+  ASSERT_EQ(judged.exit_code, 0) << judged.err;
+  EXPECT_EQ(json::parse(judged.out)["quality"]["coverage_max"], report["quality"]["coverage_max"]);
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"--side", "outside", "--sweep", "samples=100,200"},
+        {"--side", "outside", "--open-rounds", "2"},
+        {"--side", "outside", "--outside-radius", "1"},
+        {"--outside-radius", "3"},
+        {"--side", "inside", "--outside-radius", "3"},
+        {"--side", "beside"}}) {
+    std::vector<std::string> all{"medial", mesh, "-o", (here / "x").string()};
+    all.insert(all.end(), words.begin(), words.end());
+    const Finished refused = here.run(all);
+    EXPECT_EQ(refused.exit_code, 2) << words.back();
+    EXPECT_FALSE(refused.err.empty());
+  }
+}
+
 TEST(Medial, JudgesTheFileThatItWroteAsItJudgedTheAxis) {
   const Workplace here;
   const std::string mesh = here.add("l.obj", test::l_shape()), out = (here / "out").string();

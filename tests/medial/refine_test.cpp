@@ -14,6 +14,7 @@
 
 #include "known_axes.h"
 #include "orchard/geometry/error.h"
+#include "orchard/geometry/outside_solid.h"
 #include "orchard/geometry/surface.h"
 #include "orchard/medial/build.h"
 #include "orchard/medial/medial_mesh.h"
@@ -50,6 +51,21 @@ std::vector<Solid> solids() {
           {"torus", test::known_torus(32, 16).solid, 0.5},
           {"bridge", test::extruded(test::thin_bridge(0.05), 1)},
           {"notch", test::extruded(test::v_notch(0.2), 1)}};
+}
+
+// Between a sphere and the one around it that is twice as large: the sphere half way.
+TEST(RefineAxis, OfTheSpaceAroundASphereIsTheSphereHalfWay) {
+  const Surface sphere(test::icosphere(4));
+  const Surface outside(outside_solid(sphere, 2));
+  MedialBuildInput input;
+  input.sampling = sample_outside(sphere, outside, {.face_points = 800, .edge_points = 0});
+  const MedialBuild build = build_medial_axis(outside, options_for(1000), {}, std::move(input));
+  const MedialMesh mesh = medial_mesh(build.axis);
+  EXPECT_EQ(topology(mesh), (Topology{1, 0, 1}));
+  for (Index v = 0; v < mesh.size(); ++v) {
+    EXPECT_NEAR(mesh.centers[v].norm(), 1.5, 0.02);  // both are meshes, whose facets are below them by .005
+    EXPECT_NEAR(mesh.radii[v], 0.5, 0.02);
+  }
 }
 
 TEST(RefineAxis, BallsTouchTheSurfaceAtTheirContactsAndHoldNothingOfIt) {
