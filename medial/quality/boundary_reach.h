@@ -30,7 +30,7 @@ struct Dent {
 };
 
 // Places of the boundary that are deeper than `min_depth`, the deepest first: where there are any, one at least in each
-// cube whose half diagonal is a quarter of it, unless that takes dividing more than `max_cubes`. Parallel,
+// cube whose half diagonal is half of it, unless that takes dividing more than `max_cubes`. Parallel,
 // deterministic.
 std::vector<Dent> dents_deeper_than(const Surface& surface, const Reconstruction& reconstruction, double min_depth,
                                     Index max_cubes);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kShareAbove = 0.02;  // of what was found: not searched for more
 constexpr int kMaxLevels = 40;        // then a cube is as small as rounding
-constexpr double kFineness = 0.25;    // of the depth searched for: half diagonals of the cubes that are collected from
+constexpr double kFineness = 0.5;     // of the depth searched for: half diagonals of the cubes that are collected from
 constexpr std::size_t kBlock = 64;    // cubes that one task divides
 constexpr double kRounding = 1e-12;   // of the coordinates: more than a bound is off by
 

@@ -21,6 +21,7 @@ constexpr double kShrink = 0.6;      // vertices left by one pass of contraction
 constexpr double kMoved = 0.08;      // share of the vertices that the first round moves
 constexpr double kNotable = 0.6;     // of the largest distance: places that are as far off become samples
 constexpr double kInvisible = 2e-4;  // diagonals: dents so deep are not looked for
+constexpr Index kSearchesPerRound = 4;       // of a round: the share of the cubes of the last search
 constexpr std::size_t kSamplesPerDent = 10;  // of the surface, for each dent at most that becomes one
 constexpr FitOptions kBetween[] = {{.power = 4, .steps = 1, .middles = false}};
 constexpr FitOptions kAtEnd[] = {{.power = 2, .steps = 2}, {.power = 4, .steps = 4}, {.power = 8, .steps = 6}};
@@ -104,7 +105,8 @@ void Descent::look_closer(Stage& stage, int round) const {
 // What the envelope leaves open below the surface: no place of the surface is as far from it as the bottom of a dent is
 // from the surface.
 void Descent::add_dents(Stage& stage, double min_depth) const {
-  std::vector<Dent> dents = dents_deeper_than(surface_, Reconstruction(stage.mesh.mesh()), min_depth, options_.search);
+  std::vector<Dent> dents =
+      dents_deeper_than(surface_, Reconstruction(stage.mesh.mesh()), min_depth, options_.search / kSearchesPerRound);
   const std::size_t max = options_.samples / kSamplesPerDent;
   if (dents.size() > max) dents.resize(max);
   std::vector<FitSample> samples;
