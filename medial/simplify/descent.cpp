@@ -110,6 +110,7 @@ void Descent::add_dents(Stage& stage, double min_depth) const {
   const std::size_t max = options_.samples / kSamplesPerDent;
   if (dents.size() > max) dents.resize(max);
   std::vector<FitSample> samples;
+  samples.reserve(dents.size());
   for (const Dent& dent : dents) samples.push_back({dent.place, dent.outward, 1.0 / options_.samples, dent.depth});
   Assignment feet;
   feet.find(stage.mesh, samples);
