@@ -75,6 +75,18 @@ Advance BroadPhase::process(double t_now, const WorkBudget* budget) {
     refused.time_refused = true;
     return refused;
   }
+  // A step that is left half-way cannot be taken up again: what is reported after it would be wrong.
+  const auto fail = [this] {
+    largest_time_ = -1;
+    next_time_ = wake_time_ = std::numeric_limits<double>::infinity();
+  };
+  detail::UndoUnlessDone fails(fail);
+  const Advance report = process_steps(t_now, budget);
+  fails.done();
+  return report;
+}
+
+Advance BroadPhase::process_steps(double t_now, const WorkBudget* budget) {
   State& state = *state_;
   std::vector<BodyIndex>& bodies_refused = state.roster.refused();
   bodies_refused.clear();
@@ -104,31 +116,32 @@ Advance BroadPhase::process(double t_now, const WorkBudget* budget) {
 
 BodyId BroadPhase::id_of(BodyIndex index) const noexcept {
   const detail::Roster& roster = state_->roster;
-  return index < roster.slots() && roster.alive(index) ? roster.id_of(index) : kNoBody;
+  return valid() && index < roster.slots() && roster.alive(index) ? roster.id_of(index) : kNoBody;
 }
 
-BodyId BroadPhase::take_in(BodyIndex body) {
+BodyId BroadPhase::take_in(std::uint8_t importance, const Motion* place) {
+  detail::Roster& roster = state_->roster;
+  const BodyIndex body = roster.add(importance, place);
+  if (body == kNoIndex) return kNoBody;
+  const auto undo = [&] { roster.undo_add(body); };
+  detail::UndoUnlessDone undone(undo);
   state_->method->changed(body);
+  undone.done();
   wake_for_change();
-  return state_->roster.id_of(body);
+  return roster.id_of(body);
 }
 
 BodyId BroadPhase::add(std::uint8_t importance) {
-  if (!valid() || !state_->roster.has_source()) return kNoBody;
-  const BodyIndex body = state_->roster.add(importance);
-  return body == kNoIndex ? kNoBody : take_in(body);
+  return valid() && state_->roster.has_source() ? take_in(importance, nullptr) : kNoBody;
 }
 
 BodyId BroadPhase::add_static(const Motion& place, std::uint8_t importance) {
-  if (!valid() || !is_valid(place)) return kNoBody;
-  const BodyIndex body = state_->roster.add(importance);
-  if (body == kNoIndex) return kNoBody;
-  state_->roster.set_static(body, place);
-  return take_in(body);
+  return valid() && is_valid(place) ? take_in(importance, &place) : kNoBody;
 }
 
 bool BroadPhase::remove(BodyId body) {
   if (!contains(body)) return false;
+  state_->roster.make_room_to_remove(body.index);
   state_->method->removed(body.index);
   state_->roster.remove(body.index);
   return true;
@@ -143,14 +156,20 @@ bool BroadPhase::cancel(BodyId body) {
 
 bool BroadPhase::move_static(BodyId body, const Motion& place) {
   if (!contains(body) || !state_->roster.is_static(body.index) || !is_valid(place)) return false;
-  state_->roster.set_static(body.index, place);
-  return cancel(body);
+  cancel(body);
+  state_->roster.move_static(body.index, place);
+  return true;
 }
 
 bool BroadPhase::set_importance(BodyId body, std::uint8_t importance) {
   if (!contains(body)) return false;
-  state_->roster.set_importance(body.index, importance);
+  detail::Roster& roster = state_->roster;
+  const std::uint8_t before = roster.importance(body.index);
+  const auto undo = [&] { roster.set_importance(body.index, before); };
+  roster.set_importance(body.index, importance);
+  detail::UndoUnlessDone undone(undo);
   state_->method->reclassified(body.index);
+  undone.done();
   return true;
 }
 
@@ -162,7 +181,7 @@ std::size_t BroadPhase::foresee(double time, std::span<StepsAhead> steps) const 
   return state_->method->foresee(now, steps);
 }
 
-std::size_t BroadPhase::size() const noexcept { return state_->roster.size(); }
+std::size_t BroadPhase::size() const noexcept { return valid() ? state_->roster.size() : 0; }
 std::uint64_t BroadPhase::motions_asked() const noexcept { return state_->roster.asked(); }
 std::size_t BroadPhase::memory_bytes() const noexcept {
   return sizeof(State) + detail::bytes_of(state_->pairs) + state_->roster.memory_bytes() +

@@ -10,19 +10,19 @@ constexpr std::size_t kChangesKept = 1024;  // room for as many changes in a ste
 void Events::make_room() {
   const std::size_t n = roster_.slots();
   if (windows_.size() >= n) return;
-  grow(windows_, n);
   grow(places_, n);
   grow(pending_, n);
+  grow(windows_, n);  // last: it tells that there is room in all of them
 }
 
 void Events::changed(BodyIndex body) {
   make_room();
   if (pending_[body]) return;
-  pending_[body] = 1;
   changed_.push_back(body);
+  pending_[body] = 1;
 }
 
-void Events::removed(BodyIndex body) {
+void Events::removed(BodyIndex body) noexcept {
   take_away(body);
   backlog_.leave(body);
   pending_[body] = 0;

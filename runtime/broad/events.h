@@ -19,7 +19,7 @@ class Events final : public Method {
   Events(Roster& roster, const BroadPhaseOptions& options) : roster_(roster), options_(options) {}
 
   void changed(BodyIndex body) override;
-  void removed(BodyIndex body) override;
+  void removed(BodyIndex body) noexcept override;
   void reclassified(BodyIndex body) override;
   StepReport step(Step now, Meter& meter, std::vector<BodyPair>& pairs) override;
   std::size_t memory_bytes() const noexcept override;

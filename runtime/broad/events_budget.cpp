@@ -19,6 +19,7 @@ void Events::postpone(BodyIndex body) {
 
 void Events::reclassified(BodyIndex body) {
   if (backlog_.waits(body)) {
+    backlog_.rank(roster_.importance(body));  // nothing throws after that
     backlog_.leave(body);
     backlog_.wait(body, roster_.importance(body));
   }

@@ -10,13 +10,14 @@ struct StepReport {
 };
 
 // A way to find what happens next. Steps are processed in ascending order; those in between had nothing to do.
+// Where step() throws, the method is not asked again. Where the others do, they have changed nothing.
 class Method {
  public:
   virtual ~Method() = default;
   // The body is new or its bounds hold no longer; to be asked for at the next step that is processed.
   virtual void changed(BodyIndex body) = 0;
   // Called while the roster still has it.
-  virtual void removed(BodyIndex body) = 0;
+  virtual void removed(BodyIndex body) noexcept = 0;
   virtual void reclassified(BodyIndex body) = 0;  // the roster has its new importance
   // Puts the overlapping pairs into `pairs`, in ascending order.
   virtual StepReport step(Step now, Meter& meter, std::vector<BodyPair>& pairs) = 0;

@@ -4,26 +4,63 @@
 
 namespace orchard::runtime::detail {
 
-BodyIndex Roster::add(std::uint8_t importance) {
+// First all that may throw, then the change.
+BodyIndex Roster::add(std::uint8_t importance, const Motion* place) {
   if (free_.empty() && slots() >= kMaxBodies) return kNoIndex;
-  BodyIndex body;
-  if (free_.empty()) {
-    body = static_cast<BodyIndex>(generations_.size());
-    grow(generations_, std::size_t{body} + 1);
-    grow(importance_, std::size_t{body} + 1);
-    if (!static_slot_.empty()) static_slot_.push_back(kNoSlot);
-  } else {
-    body = free_.back();
-    free_.pop_back();
-  }
+  const bool again = !free_.empty();
+  const BodyIndex body = again ? free_.back() : static_cast<BodyIndex>(slots());
+  const std::size_t slots_then = std::max(slots(), std::size_t{body} + 1);
+  make_class(importance);
+  make_room(generations_, slots_then);
+  make_room(importance_, slots_then);
+  if (place != nullptr && free_slots_.empty()) make_room(static_motions_, static_motions_.size() + 1);
+  if (place != nullptr || any_static()) make_room(static_slot_, slots_then);
+
+  if (again) free_.pop_back();
+  generations_.resize(slots_then);
+  importance_.resize(slots_then);
+  if (place != nullptr || any_static()) static_slot_.resize(slots_then, kNoSlot);
   ++generations_[body];
   importance_[body] = importance;
   enter_class(importance);
   ++size_;
+  if (place == nullptr) return body;
+  if (free_slots_.empty()) {
+    static_slot_[body] = static_cast<std::uint32_t>(static_motions_.size());
+    static_motions_.emplace_back();
+  } else {
+    static_slot_[body] = free_slots_.back();
+    free_slots_.pop_back();
+  }
+  move_static(body, *place);
   return body;
 }
 
-void Roster::remove(BodyIndex body) {
+// What was taken from a list has room there; what was made new is the last one.
+void Roster::undo_add(BodyIndex body) noexcept {
+  if (is_static(body)) {
+    const std::uint32_t slot = static_slot_[body];
+    slot + 1 == static_motions_.size() ? static_motions_.pop_back() : free_slots_.push_back(slot);
+    static_slot_[body] = kNoSlot;
+  }
+  leave_class(importance_[body]);
+  --size_;
+  if (--generations_[body] != 0) {
+    free_.push_back(body);
+    return;
+  }
+  assert(std::size_t{body} + 1 == slots());
+  generations_.pop_back();
+  importance_.pop_back();
+  if (any_static()) static_slot_.pop_back();
+}
+
+void Roster::make_room_to_remove(BodyIndex body) {
+  make_room(free_, free_.size() + 1);
+  if (is_static(body)) make_room(free_slots_, free_slots_.size() + 1);
+}
+
+void Roster::remove(BodyIndex body) noexcept {
   assert(body < slots() && alive(body));
   // An index whose generations are used up is not used again.
   if (++generations_[body] != 0) free_.push_back(body);
@@ -35,25 +72,15 @@ void Roster::remove(BodyIndex body) {
   --size_;
 }
 
-void Roster::set_static(BodyIndex body, const Motion& place) {
-  if (static_slot_.empty()) static_slot_.assign(slots(), kNoSlot);
-  std::uint32_t& slot = static_slot_[body];
-  if (slot == kNoSlot) {
-    if (free_slots_.empty()) {
-      slot = static_cast<std::uint32_t>(static_motions_.size());
-      static_motions_.emplace_back();
-    } else {
-      slot = free_slots_.back();
-      free_slots_.pop_back();
-    }
-  }
-  Motion& stored = static_motions_[slot];
+void Roster::move_static(BodyIndex body, const Motion& place) noexcept {
+  Motion& stored = static_motions_[static_slot_[body]];
   stored = Motion{};
   stored.position = place.position;
   stored.radius = place.radius;
 }
 
 void Roster::set_importance(BodyIndex body, std::uint8_t importance) {
+  make_class(importance);
   leave_class(importance_[body]);
   importance_[body] = importance;
   enter_class(importance);

@@ -84,10 +84,13 @@ class Roster {
 
   const Clock clock;
 
-  BodyIndex add(std::uint8_t importance);  // kNoIndex: full
-  void remove(BodyIndex body);
+  // Where there is no memory for it, a change changes nothing.
+  BodyIndex add(std::uint8_t importance, const Motion* place = nullptr);  // a place: static. kNoIndex: full
+  void undo_add(BodyIndex body) noexcept;                                 // the one added last, which never was
+  void make_room_to_remove(BodyIndex body);
+  void remove(BodyIndex body) noexcept;  // after make_room_to_remove()
   BodyId id_of(BodyIndex body) const noexcept { return {body, generations_[body]}; }
-  void set_static(BodyIndex body, const Motion& place);
+  void move_static(BodyIndex body, const Motion& place) noexcept;
   void set_importance(BodyIndex body, std::uint8_t importance);
 
   std::size_t slots() const noexcept { return generations_.size(); }  // indices are below
@@ -125,23 +128,45 @@ class Roster {
   std::vector<Motion> answers_;
   std::size_t size_ = 0;
   std::uint64_t asked_ = 0;
-  void enter_class(std::uint8_t importance) {
+  void make_class(std::uint8_t importance) {
     if (in_class_.size() <= importance) in_class_.resize(std::size_t{importance} + 1);
-    classes_ += in_class_[importance]++ == 0;
   }
+  void enter_class(std::uint8_t importance) noexcept { classes_ += in_class_[importance]++ == 0; }
   void leave_class(std::uint8_t importance) noexcept { classes_ -= --in_class_[importance] == 0; }
   std::vector<std::uint32_t> in_class_;  // bodies, by class
   unsigned classes_ = 0;                 // that have bodies
 };
 
-// Resizes a vector that grows body by body. By an eighth at a time: twice the room would be half the memory.
+// Of a vector that grows body by body. By an eighth at a time: twice the room would be half the memory.
+template <typename T>
+void make_room(std::vector<T>& v, std::size_t size) {
+  constexpr std::size_t kLeast = 32;
+  if (v.capacity() < size) v.reserve(std::max(kLeast, size + size / 8));
+}
 template <typename T>
 void grow(std::vector<T>& v, std::size_t size) {
   if (v.size() >= size) return;
-  constexpr std::size_t kLeast = 32;
-  if (v.capacity() < size) v.reserve(std::max(kLeast, size + size / 8));
+  make_room(v, size);
   v.resize(size);
 }
+
+// Undoes what has been done so far, unless all of it has been: what is between throws. (No `catch`: the run-time is built
+// without exceptions as well.)
+template <typename Undo>
+class UndoUnlessDone {
+ public:
+  explicit UndoUnlessDone(const Undo& undo) : undo_(undo) {}
+  UndoUnlessDone(const UndoUnlessDone&) = delete;
+  UndoUnlessDone& operator=(const UndoUnlessDone&) = delete;
+  ~UndoUnlessDone() {
+    if (!done_) undo_();
+  }
+  void done() noexcept { done_ = true; }
+
+ private:
+  Undo undo_;
+  bool done_ = false;
+};
 
 // Starts loading what will be written soon.
 inline void prefetch(const void* where) noexcept {

@@ -23,7 +23,7 @@ class Sleeping final : public runtime::detail::Method {
   Sleeping(Roster& roster, const SleepingOptions& options);
 
   void changed(BodyIndex body) override;
-  void removed(BodyIndex) override { members_changed_ = true; }
+  void removed(BodyIndex) noexcept override { members_changed_ = true; }
   void reclassified(BodyIndex) override {}
   StepReport step(Step now, Meter& meter, std::vector<BodyPair>& pairs) override;
   std::size_t memory_bytes() const noexcept override;

@@ -6,13 +6,15 @@
 namespace orchard::runtime::test {
 std::atomic<std::size_t> allocations = 0;
 std::atomic<bool> allocation_fails = false;
+std::atomic<std::size_t> failing_allocation = 0;
 }  // namespace orchard::runtime::test
 
 namespace {
 
 void* allocate(std::size_t size, std::size_t alignment) noexcept {
-  ++orchard::runtime::test::allocations;
+  const std::size_t number = ++orchard::runtime::test::allocations;
   if (orchard::runtime::test::allocation_fails) return nullptr;
+  if (number == orchard::runtime::test::failing_allocation) return nullptr;
   return std::aligned_alloc(alignment, (size + alignment) / alignment * alignment);
 }
 }  // namespace

@@ -122,7 +122,10 @@ BroadPhase make_broad_phase(MotionSource source, const BroadPhaseOptions& option
 // While pairs overlap, each step reports them.
 //
 // Deterministic: same calls, same motions, same reports in the same order, with vectors or without, whatever a budget
-// cut short in *work* leaves out. Not thread-safe. Throws only std::bad_alloc, and what the source throws.
+// cut short in *work* leaves out. Not thread-safe.
+//
+// Throws only std::bad_alloc, and what the source throws. Where a change of bodies throws, nothing has changed. Where
+// advance() throws, what it was about is lost: valid() is false from then on, there are no bodies, and all is refused.
 class BroadPhase {
  public:
   // Keeps an event for each near pair, at the first step at which its two bounds can touch. Without a source there can
@@ -169,7 +172,7 @@ class BroadPhase {
   // other methods than the default one. O(what is due).
   std::size_t foresee(double time, std::span<StepsAhead> steps) const noexcept;
 
-  bool valid() const noexcept { return largest_time_ >= 0; }  // the options are
+  bool valid() const noexcept { return largest_time_ >= 0; }  // the options are, and no step has thrown
   double next_time() const noexcept { return next_time_; }    // nothing happens before
   std::size_t size() const noexcept;                          // bodies
   std::size_t memory_bytes() const noexcept;                  // held on the heap
@@ -181,7 +184,8 @@ class BroadPhase {
                                              const detail::MakeMethod& make);
   BroadPhase(MotionSource source, const BroadPhaseOptions& options, const detail::MakeMethod& make);
   Advance process(double t_now, const WorkBudget* budget);
-  BodyId take_in(BodyIndex body);
+  Advance process_steps(double t_now, const WorkBudget* budget);
+  BodyId take_in(std::uint8_t importance, const Motion* place);
   bool sleeps_until(double t) const noexcept { return t < wake_time_ && std::fabs(t) <= largest_time_; }
   void wake_for_change();
   void note_next_step();

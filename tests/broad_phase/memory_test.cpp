@@ -1,0 +1,183 @@
+#include <gtest/gtest.h>
+
+#include "../runtime/allocation.h"
+#include "any_broad_phase.h"
+#include "worlds.h"
+
+// Without memory at any moment: a call that throws has changed nothing, or the world says that it is no more.
+namespace orchard::runtime {
+namespace {
+
+constexpr double kStep = 0.01;
+constexpr int kSteps = 40;
+constexpr std::size_t kMostBodies = 60;
+
+// An application all of whose calls go through attempt(), which makes one allocation of the library's fail.
+class Application {
+ public:
+  Application(const test::AnyOptions& options, std::uint64_t seed, std::size_t failing)
+      : draw_(seed), left_(failing), values_(kMostBodies), known_(kMostBodies) {
+    world_.emplace(test::make_broad_phase(values_of(values_), options));
+  }
+
+  void run() {
+    for (int step = 0; step < kSteps && world_->valid(); ++step) {
+      for (BodyIndex i = 0; i < kMostBodies; ++i) {
+        if (known_[i].alive && !known_[i].fixed) values_[i].position = values_[i].position + kStep * values_[i].velocity;
+      }
+      for (std::size_t changes = step == 0 ? 20 : draw_.bits() % 6; changes > 0; --changes) change();
+      advance(step);
+      if (testing::Test::HasFatalFailure()) return;
+    }
+  }
+
+  bool failed() const { return failed_; }
+  bool lost() const { return !world_->valid(); }
+
+ private:
+  struct Known {
+    bool alive = false, fixed = false;
+    BodyId id;
+  };
+
+  // Calls until there is memory; what throws has to have changed nothing that can be seen.
+  template <typename Call>
+  void attempt(Call&& call) {
+    for (;;) {
+      const std::size_t before = test::allocations, bodies = world_->size();
+      test::failing_allocation = left_ > 0 ? before + left_ : 0;
+      bool thrown = false;
+      try {
+        call();
+      } catch (const std::bad_alloc&) {
+        thrown = true;
+      }
+      test::failing_allocation = 0;
+      const std::size_t used = test::allocations - before;
+      left_ -= std::min(left_, used);
+      failed_ = failed_ || thrown;
+      if (!thrown || !world_->valid()) return;
+      ASSERT_EQ(world_->size(), bodies);
+      for (const Known& known : known_) ASSERT_EQ(world_->contains(known.id), known.alive);
+    }
+  }
+
+  Motion random_motion() {
+    Motion m;
+    m.position = draw_.in_ball(8);
+    m.velocity = draw_.uniform(0, 10) * draw_.direction();
+    m.radius = draw_.uniform(0, 1.2);
+    return m;
+  }
+
+  void change() {
+    const auto i = static_cast<BodyIndex>(draw_.bits() % kMostBodies);
+    Known& known = known_[i];
+    const auto rank = static_cast<std::uint8_t>(draw_.bits() % 3 * 50);
+    const double dice = draw_.uniform(0, 1);
+    if (dice < 0.5) {
+      if (world_->size() == kMostBodies) return;
+      const Motion m = random_motion();
+      const bool fixed = draw_.bits() % 3 == 0;
+      BodyId id;
+      attempt([&] { id = fixed ? world_->add_static(m, rank) : world_->add(rank); });
+      ASSERT_NE(id, kNoBody);
+      ASSERT_FALSE(known_[id.index].alive);
+      known_[id.index] = {true, fixed, id};
+      values_[id.index] = m;
+    } else if (!known.alive) {
+      return;
+    } else if (dice < 0.65) {
+      attempt([&] { ASSERT_TRUE(world_->remove(known.id)); });
+      known.alive = false;
+    } else if (dice < 0.8) {
+      values_[i] = random_motion();
+      attempt([&] { ASSERT_TRUE(known.fixed ? world_->move_static(known.id, values_[i]) : world_->cancel(known.id)); });
+    } else {
+      attempt([&] { ASSERT_TRUE(world_->set_importance(known.id, rank)); });
+    }
+  }
+
+  void advance(int step) {
+    std::vector<BodyPair> found, expected;
+    found.reserve(kMostBodies * kMostBodies);
+    const bool within = draw_.bits() % 3 == 0;
+    attempt([&] {
+      const Advance now =
+          within ? world_->advance(kStep * step, WorkBudget{.work = 1'000'000}) : world_->advance(kStep * step);
+      found.assign(now.pairs.begin(), now.pairs.end());
+    });
+    if (!world_->valid()) {
+      expect_refused(step);
+      return;
+    }
+    for (BodyIndex i = 0; i < kMostBodies; ++i) {
+      for (BodyIndex j = i + 1; j < kMostBodies; ++j) {
+        const Known &a = known_[i], &b = known_[j];
+        if (a.alive && b.alive && !(a.fixed && b.fixed) && spheres_touch(values_[i], values_[j]))
+          expected.push_back({i, j});
+      }
+    }
+    ASSERT_EQ(found, expected) << "step " << step;
+  }
+
+  void expect_refused(int step) {
+    const Advance now = world_->advance(kStep * (step + 1));
+    EXPECT_TRUE(now.time_refused);
+    EXPECT_TRUE(now.pairs.empty());
+    EXPECT_EQ(world_->size(), 0u);
+    EXPECT_EQ(world_->add(), kNoBody);
+    EXPECT_EQ(world_->add_static(Motion{}), kNoBody);
+    for (const Known& known : known_) {
+      EXPECT_FALSE(world_->contains(known.id));
+      EXPECT_FALSE(world_->cancel(known.id) || world_->remove(known.id) || world_->set_importance(known.id, 1));
+    }
+  }
+
+  test::Draw draw_;
+  std::size_t left_;  // allocations until one fails; 0: none will any more
+  bool failed_ = false;
+  std::vector<Motion> values_;
+  std::vector<Known> known_;
+  std::optional<BroadPhase> world_;
+};
+
+class WithoutMemory : public testing::TestWithParam<test::AnyMethod> {};
+INSTANTIATE_TEST_SUITE_P(BroadPhase, WithoutMemory, testing::ValuesIn(test::kMethods));
+
+TEST_P(WithoutMemory, NothingIsChangedOrAllIsRefused) {
+  const bool events = GetParam() == test::AnyMethod::events;
+  int kept = 0, lost = 0;
+  // The others allocate in their search, thousands of times.
+  for (std::size_t failing = 1;; failing += events ? 1 : 1 + failing / 10) {
+    Application application({.method = GetParam(), .common = {.time_step = kStep}}, events ? failing : 3, failing);
+    application.run();
+    if (testing::Test::HasFatalFailure()) FAIL() << "the allocation number " << failing;
+    if (!application.failed()) break;
+    ++(application.lost() ? lost : kept);
+  }
+  EXPECT_GT(kept, events ? 20 : 3);
+  EXPECT_GT(lost, 10);
+}
+
+// What the application's source throws is no different.
+TEST(BroadPhase, WhoseSourceThrowsIsLost) {
+  const MotionSource source = [&](double time, std::span<const BodyIndex>, std::span<Motion> motions) {
+    if (time > 5 * kStep) throw 7;
+    std::fill(motions.begin(), motions.end(), Motion{.radius = 1, .acceleration = 1e6});
+  };
+  BroadPhase world(source, {.time_step = kStep});
+  world.add(), world.add();
+  int step = 0;
+  EXPECT_THROW(
+      {
+        for (; step < 1000; ++step) world.advance(kStep * step);
+      },
+      int);
+  EXPECT_GE(step, 5);
+  EXPECT_FALSE(world.valid());
+  EXPECT_TRUE(world.advance(kStep * (step + 1)).time_refused);
+}
+
+}  // namespace
+}  // namespace orchard::runtime
