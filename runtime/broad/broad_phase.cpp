@@ -119,9 +119,9 @@ BodyId BroadPhase::id_of(BodyIndex index) const noexcept {
   return valid() && index < roster.slots() && roster.alive(index) ? roster.id_of(index) : kNoBody;
 }
 
-BodyId BroadPhase::take_in(std::uint8_t importance, const Motion* place) {
+BodyId BroadPhase::take_in(std::uint8_t importance, const BodyFilter& filter, const Motion* place) {
   detail::Roster& roster = state_->roster;
-  const BodyIndex body = roster.add(importance, place);
+  const BodyIndex body = roster.add(importance, filter, place);
   if (body == kNoIndex) return kNoBody;
   const auto undo = [&] { roster.undo_add(body); };
   detail::UndoUnlessDone undone(undo);
@@ -131,12 +131,12 @@ BodyId BroadPhase::take_in(std::uint8_t importance, const Motion* place) {
   return roster.id_of(body);
 }
 
-BodyId BroadPhase::add(std::uint8_t importance) {
-  return valid() && state_->roster.has_source() ? take_in(importance, nullptr) : kNoBody;
+BodyId BroadPhase::add(std::uint8_t importance, const BodyFilter& filter) {
+  return valid() && state_->roster.has_source() ? take_in(importance, filter, nullptr) : kNoBody;
 }
 
-BodyId BroadPhase::add_static(const Motion& place, std::uint8_t importance) {
-  return valid() && is_valid(place) ? take_in(importance, &place) : kNoBody;
+BodyId BroadPhase::add_static(const Motion& place, std::uint8_t importance, const BodyFilter& filter) {
+  return valid() && is_valid(place) ? take_in(importance, filter, &place) : kNoBody;
 }
 
 bool BroadPhase::remove(BodyId body) {
@@ -171,6 +171,32 @@ bool BroadPhase::set_importance(BodyId body, std::uint8_t importance) {
   state_->method->reclassified(body.index);
   undone.done();
   return true;
+}
+
+// A look finds all near pairs anew, and those found before become void.
+bool BroadPhase::set_filter(BodyId body, const BodyFilter& filter) {
+  if (!contains(body)) return false;
+  detail::Roster& roster = state_->roster;
+  if (roster.filter(body.index) == filter) return true;
+  roster.make_room_for_filters();
+  state_->method->changed(body.index);
+  wake_for_change();
+  roster.set_filter(body.index, filter);
+  return true;
+}
+
+BodyFilter BroadPhase::filter_of(BodyId body) const noexcept {
+  return contains(body) ? state_->roster.filter(body.index) : BodyFilter{};
+}
+
+void BroadPhase::set_pair_filter(PairFilter filter) {
+  if (!valid()) return;
+  detail::Roster& roster = state_->roster;
+  for (BodyIndex body = 0; body < roster.slots(); ++body) {
+    if (roster.alive(body)) state_->method->changed(body);
+  }
+  wake_for_change();
+  roster.set_pair_filter(std::move(filter));
 }
 
 std::size_t BroadPhase::foresee(double time, std::span<StepsAhead> steps) const noexcept {

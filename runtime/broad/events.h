@@ -78,6 +78,7 @@ class Events final : public Method {
   void shrink(Look& look, BodyIndex body, std::size_t i);
   void insert(Look& look, std::span<const BodyIndex> bodies);
   void meet_oversized(std::span<const BodyIndex> bodies);
+  void drop_what_is_none();
 
   // events_pairs.cpp
   bool valid(const PairEvent& event) const noexcept;

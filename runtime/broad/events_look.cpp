@@ -192,6 +192,12 @@ void Events::look_at(Step now, Step from, std::span<const BodyIndex> bodies) {
     insert(look, block);
   }
   if (!few_) grid_.finish(look.queue, boxes_, options_.vectors, near_);
+  if (roster_.filters_pairs()) drop_what_is_none();
+}
+
+// Pairs that the filters exclude. The plan does not count them: they cost next to nothing.
+void Events::drop_what_is_none() {
+  grid_.discount_pairs(std::erase_if(near_, [&](const BodyPair& pair) { return !roster_.may_pair(pair); }));
 }
 
 void Events::insert(Look& look, std::span<const BodyIndex> bodies) {

@@ -42,7 +42,7 @@ Step Events::known_until(BodyIndex body, Step now) const noexcept {
 
 // Both motions are of this step: they overlap, surely for a while, or they cannot for a while.
 void Events::settle(Step now, const BodyPair& pair, const Motion& a, const Motion& b) {
-  if (roster_.is_static(pair.a) && roster_.is_static(pair.b)) return;
+  if (!roster_.may_pair(pair)) return;  // what waited for its test while that changed
   const Clock& clock = roster_.clock;
   const double slack = 4 * options_.position_slack;  // of two bodies, now and later
   // Until the next look at one of them, or a bound expires.

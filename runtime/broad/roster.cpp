@@ -5,7 +5,7 @@
 namespace orchard::runtime::detail {
 
 // First all that may throw, then the change.
-BodyIndex Roster::add(std::uint8_t importance, const Motion* place) {
+BodyIndex Roster::add(std::uint8_t importance, const BodyFilter& filter, const Motion* place) {
   if (free_.empty() && slots() >= kMaxBodies) return kNoIndex;
   const bool again = !free_.empty();
   const BodyIndex body = again ? free_.back() : static_cast<BodyIndex>(slots());
@@ -15,8 +15,14 @@ BodyIndex Roster::add(std::uint8_t importance, const Motion* place) {
   make_room(importance_, slots_then);
   if (place != nullptr && free_slots_.empty()) make_room(static_motions_, static_motions_.size() + 1);
   if (place != nullptr || any_static()) make_room(static_slot_, slots_then);
+  const bool filters = !filters_.empty() || filter != BodyFilter{};
+  if (filters) make_room(filters_, slots_then);
 
   if (again) free_.pop_back();
+  if (filters) {
+    filters_.resize(slots_then);
+    filters_[body] = filter;
+  }
   generations_.resize(slots_then);
   importance_.resize(slots_then);
   if (place != nullptr || any_static()) static_slot_.resize(slots_then, kNoSlot);
@@ -53,6 +59,7 @@ void Roster::undo_add(BodyIndex body) noexcept {
   generations_.pop_back();
   importance_.pop_back();
   if (any_static()) static_slot_.pop_back();
+  if (!filters_.empty()) filters_.pop_back();
 }
 
 void Roster::make_room_to_remove(BodyIndex body) {
@@ -116,8 +123,8 @@ void Roster::ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion>
 }
 
 std::size_t Roster::memory_bytes() const noexcept {
-  return bytes_of(in_class_) + bytes_of(generations_) + bytes_of(importance_) + bytes_of(static_slot_) +
-         bytes_of(static_motions_) + bytes_of(free_slots_) + bytes_of(free_) + bytes_of(moving_) + bytes_of(refused_) +
+  return bytes_of(in_class_) + bytes_of(generations_) + bytes_of(importance_) + bytes_of(filters_) +
+         bytes_of(static_slot_) + bytes_of(static_motions_) + bytes_of(free_slots_) + bytes_of(free_) + bytes_of(moving_) + bytes_of(refused_) +
          bytes_of(answers_);
 }
 

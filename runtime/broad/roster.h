@@ -77,6 +77,19 @@ class Meter {
   bool late_ = false;
 };
 
+// Of a vector that grows body by body. By an eighth at a time: twice the room would be half the memory.
+template <typename T>
+void make_room(std::vector<T>& v, std::size_t size) {
+  constexpr std::size_t kLeast = 32;
+  if (v.capacity() < size) v.reserve(std::max(kLeast, size + size / 8));
+}
+template <typename T>
+void grow(std::vector<T>& v, std::size_t size) {
+  if (v.size() >= size) return;
+  make_room(v, size);
+  v.resize(size);
+}
+
 // Which bodies there are, and where to ask for their motions.
 class Roster {
  public:
@@ -85,19 +98,31 @@ class Roster {
   const Clock clock;
 
   // Where there is no memory for it, a change changes nothing.
-  BodyIndex add(std::uint8_t importance, const Motion* place = nullptr);  // a place: static. kNoIndex: full
-  void undo_add(BodyIndex body) noexcept;                                 // the one added last, which never was
+  // With a place: a static one. kNoIndex: full.
+  BodyIndex add(std::uint8_t importance, const BodyFilter& filter, const Motion* place);
+  void undo_add(BodyIndex body) noexcept;  // the one added last, which never was
   void make_room_to_remove(BodyIndex body);
   void remove(BodyIndex body) noexcept;  // after make_room_to_remove()
   BodyId id_of(BodyIndex body) const noexcept { return {body, generations_[body]}; }
   void move_static(BodyIndex body, const Motion& place) noexcept;
   void set_importance(BodyIndex body, std::uint8_t importance);
+  void make_room_for_filters() { grow(filters_, slots()); }
+  void set_filter(BodyIndex body, const BodyFilter& filter) noexcept { filters_[body] = filter; }  // after that
+  void set_pair_filter(PairFilter filter) noexcept { pair_filter_ = std::move(filter); }
 
   std::size_t slots() const noexcept { return generations_.size(); }  // indices are below
   std::size_t size() const noexcept { return size_; }
   bool alive(BodyIndex body) const noexcept { return generations_[body] % 2 != 0; }
   bool is_static(BodyIndex body) const noexcept { return !static_slot_.empty() && static_slot_[body] != kNoSlot; }
   bool any_static() const noexcept { return !static_slot_.empty(); }
+  BodyFilter filter(BodyIndex body) const noexcept { return filters_.empty() ? BodyFilter{} : filters_[body]; }
+  // Whether some pairs are none.
+  bool filters_pairs() const noexcept { return any_static() || !filters_.empty() || pair_filter_; }
+  bool may_pair(const BodyPair& pair) const {
+    if (any_static() && is_static(pair.a) && is_static(pair.b)) return false;
+    if (!filters_.empty() && !runtime::may_pair(filters_[pair.a], filters_[pair.b])) return false;
+    return !pair_filter_ || pair_filter_(id_of(pair.a), id_of(pair.b));
+  }
   std::uint8_t importance(BodyIndex body) const noexcept { return importance_[body]; }
   unsigned next_class(unsigned from) const noexcept;  // the first class, from `from` on, that has bodies; or kNoClass
   bool one_class() const noexcept { return classes_ <= 1; }
@@ -121,6 +146,8 @@ class Roster {
   MotionSource source_;
   std::vector<std::uint32_t> generations_;  // by body; odd while there is one: each body has an odd number of its own
   std::vector<std::uint8_t> importance_;
+  std::vector<BodyFilter> filters_;         // empty until a body has another than all
+  PairFilter pair_filter_;
   std::vector<std::uint32_t> static_slot_;  // empty until there is a static body
   std::vector<Motion> static_motions_;
   std::vector<std::uint32_t> free_slots_;
@@ -136,19 +163,6 @@ class Roster {
   std::vector<std::uint32_t> in_class_;  // bodies, by class
   unsigned classes_ = 0;                 // that have bodies
 };
-
-// Of a vector that grows body by body. By an eighth at a time: twice the room would be half the memory.
-template <typename T>
-void make_room(std::vector<T>& v, std::size_t size) {
-  constexpr std::size_t kLeast = 32;
-  if (v.capacity() < size) v.reserve(std::max(kLeast, size + size / 8));
-}
-template <typename T>
-void grow(std::vector<T>& v, std::size_t size) {
-  if (v.size() >= size) return;
-  make_room(v, size);
-  v.resize(size);
-}
 
 // Undoes what has been done so far, unless all of it has been: what is between throws. (No `catch`: the run-time is built
 // without exceptions as well.)

@@ -46,6 +46,7 @@ class SweptGrid {
 
   std::size_t lines() const noexcept { return lines_.size(); }
   const GridCounts& counts() const noexcept { return counts_; }  // of insertions, since they were taken
+  void discount_pairs(std::uint64_t pairs) noexcept { counts_.pairs -= std::min(pairs, counts_.pairs); }
   GridCounts take_counts() noexcept { return std::exchange(counts_, {}); }
   std::size_t memory_bytes() const noexcept { return bytes_of(lines_) + bytes_of(overflow_); }
 

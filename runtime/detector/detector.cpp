@@ -24,6 +24,8 @@ bool are_valid(const BodyOptions& options) noexcept {
          options.reach <= kLargestNumber;
 }
 
+BodyFilter filter_of(std::uint32_t group, std::uint32_t mask) noexcept { return {group, mask, 0}; }
+
 BroadPhaseOptions broad_options(const DetectorOptions& options) noexcept {
   BroadPhaseOptions result;
   result.time_step = options.time_step;
@@ -102,7 +104,7 @@ BodyId Detector::add_body(std::span<const BodyPart> parts, const BodyOptions& op
   State& s = *state_;
   if (!s.acceptable(parts) || !are_valid(options) || !s.bodies.has_source()) return kNoBody;
   return s.or_fail([&] {
-    const BodyId id = s.broad.add(options.importance);
+    const BodyId id = s.broad.add(options.importance, filter_of(options.group, options.mask));
     if (id == kNoBody) return id;
     s.take_in(id, parts, options);
     s.monitor.forget(id.index);
@@ -126,7 +128,7 @@ BodyId Detector::add_static(std::span<const BodyPart> parts, const Pose& pose, c
   somewhere.position = pose.translation;
   if (!is_valid(somewhere)) return kNoBody;
   return s.or_fail([&] {
-    const BodyId id = s.broad.add_static(somewhere, options.importance);
+    const BodyId id = s.broad.add_static(somewhere, options.importance, filter_of(options.group, options.mask));
     if (id == kNoBody) return id;
     Body& body = s.take_in(id, parts, options);
     body.is_static = true;
@@ -241,7 +243,8 @@ bool Detector::set_groups(BodyId body, std::uint32_t group, std::uint32_t mask) 
   if (found == nullptr) return false;
   found->group = group, found->mask = mask;
   ++found->filters;
-  return true;
+  if (is_half_space(body.index)) return true;
+  return state_->or_fail([&] { return state_->broad.set_filter(body, filter_of(group, mask)); });
 }
 
 bool Detector::sleep(BodyId body) {
@@ -281,8 +284,13 @@ bool Detector::shape_changed(ShapeId shape) {
 }
 
 void Detector::set_filter(PairFilter filter) {
-  state_->filter = std::move(filter);
-  ++state_->filter_version;
+  State& s = *state_;
+  ++s.filter_version;
+  s.or_fail([&] {
+    s.filter = filter;
+    s.broad.set_pair_filter(std::move(filter));
+    return true;
+  });
 }
 
 void Detector::set_executor(const Executor& executor) noexcept { state_->options.executor = executor; }

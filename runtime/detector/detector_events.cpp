@@ -25,7 +25,8 @@ void Detector::State::match(Step step, Frame& frame) {
   fresh_pairs = parted_pairs = 0;
   const auto gone = [&](Record& record) {
     ++parted_pairs;
-    const bool there = contains(record.a) && contains(record.b);
+    // What the filters exclude is no pair of the broad phase's any more.
+    const bool there = contains(record.a) && contains(record.b) && allowed(record);
     record.impact = false;
     record.verdict = Verdict{};
     record.verdict.answer = there ? Answer::no : Answer::maybe;

@@ -45,9 +45,8 @@ std::size_t PairSet::memory_bytes() const noexcept {
 
 void Search::settle(std::uint32_t i, std::uint32_t j) {
   const auto a = std::min(i, j), b = std::max(i, j);
-  if (bounds[a].fixed && bounds[b].fixed) return;
   const double contact = first_contact(bounds[a], bounds[b], duration, shape);
-  if (contact < earliest.time) earliest = {contact, a, b};
+  if (contact < earliest.time && (!filter || filter(a, b))) earliest = {contact, a, b};
 }
 
 void Search::faces_meet(std::uint32_t i, std::uint32_t j, std::size_t axis, double t) {
@@ -74,7 +73,8 @@ struct IntersectionFinder::Scratch {
 
   template <typename Visit>
   void sort_and_visit(std::span<const SpaceTimeBound> bounds, double duration, Visit&& visit);
-  void find_initial(std::span<const SpaceTimeBound> bounds, double duration, const IntersectionOptions& options);
+  void find_initial(std::span<const SpaceTimeBound> bounds, double duration, const IntersectionOptions& options,
+                    const BoundFilter& filter);
   void search(Search& search, const IntersectionOptions& options);
 };
 
@@ -115,15 +115,15 @@ void IntersectionFinder::Scratch::sort_and_visit(std::span<const SpaceTimeBound>
 
 // 4.3: all of them, and by the cubes, as a cutting plane only hides that they overlap.
 void IntersectionFinder::Scratch::find_initial(std::span<const SpaceTimeBound> bounds, double duration,
-                                               const IntersectionOptions& options) {
+                                               const IntersectionOptions& options, const BoundFilter& filter) {
   const auto visit = [&](std::uint32_t i, std::uint32_t j) {
-    if (bounds[i].fixed && bounds[j].fixed) return;
     if (!detail::cubes_meet_at_start(bounds[i], bounds[j])) return;
     if (options.shape == BoundShape::horn) {
       const Vec3 apart = bounds[j].center - bounds[i].center;
       const double reach = bounds[i].size + bounds[j].size;
       if (dot(apart, apart) > reach * reach) return;
     }
+    if (filter && !filter(i, j)) return;
     result.initial.push_back({first_contact(bounds[i], bounds[j], duration, options.shape), i, j});
   };
   if (options.method == IntersectionMethod::all_pairs) {
@@ -170,13 +170,13 @@ IntersectionFinder& IntersectionFinder::operator=(IntersectionFinder&&) noexcept
 IntersectionFinder::~IntersectionFinder() = default;
 
 const Intersections& IntersectionFinder::find(std::span<const SpaceTimeBound> bounds, double duration,
-                                              const IntersectionOptions& options) {
+                                              const IntersectionOptions& options, const BoundFilter& filter) {
   Scratch& s = *scratch_;
   s.result.initial.clear();
   s.result.earliest = {kNoContact, 0, 0};
   s.settled.clear();
-  s.find_initial(bounds, duration, options);
-  Search search{bounds, duration, options.shape, s.settled, s.result.earliest};
+  s.find_initial(bounds, duration, options, filter);
+  Search search{bounds, duration, options.shape, s.settled, s.result.earliest, filter};
   if (s.result.earliest.time > 0) s.search(search, options);
   return s.result;
 }

@@ -24,6 +24,7 @@ struct Search {
   BoundShape shape;
   PairSet& settled;  // pairs whose contact is known: those that meet at the start, those with planes
   BoundContact& earliest;
+  const BoundFilter& filter;  // none: all are compared
 
   double limit() const noexcept { return earliest.time < duration ? earliest.time : duration; }
   double half(std::uint32_t body, double t) const noexcept {

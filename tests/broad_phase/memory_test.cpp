@@ -93,8 +93,16 @@ class Application {
     } else if (dice < 0.8) {
       values_[i] = random_motion();
       attempt([&] { ASSERT_TRUE(known.fixed ? world_->move_static(known.id, values_[i]) : world_->cancel(known.id)); });
-    } else {
+    } else if (dice < 0.9) {
       attempt([&] { ASSERT_TRUE(world_->set_importance(known.id, rank)); });
+    } else if (dice < 0.98) {
+      const BodyFilter filter{1, 0xffffffffu, static_cast<std::int32_t>(draw_.bits() % 3) - 2};
+      attempt([&] { ASSERT_TRUE(world_->set_filter(known.id, filter)); });
+    } else {
+      filtered_ = !filtered_;
+      PairFilter filter;
+      if (filtered_) filter = [](BodyId a, BodyId b) { return (a.index + b.index) % 3 != 0; };
+      attempt([&] { world_->set_pair_filter(filter); });
     }
   }
 
@@ -114,8 +122,9 @@ class Application {
     for (BodyIndex i = 0; i < kMostBodies; ++i) {
       for (BodyIndex j = i + 1; j < kMostBodies; ++j) {
         const Known &a = known_[i], &b = known_[j];
-        if (a.alive && b.alive && !(a.fixed && b.fixed) && spheres_touch(values_[i], values_[j]))
-          expected.push_back({i, j});
+        if (!a.alive || !b.alive || (a.fixed && b.fixed) || !spheres_touch(values_[i], values_[j])) continue;
+        if (!may_pair(world_->filter_of(a.id), world_->filter_of(b.id)) || (filtered_ && (i + j) % 3 == 0)) continue;
+        expected.push_back({i, j});
       }
     }
     ASSERT_EQ(found, expected) << "step " << step;
@@ -136,7 +145,7 @@ class Application {
 
   test::Draw draw_;
   std::size_t left_;  // allocations until one fails; 0: none will any more
-  bool failed_ = false;
+  bool failed_ = false, filtered_ = false;
   std::vector<Motion> values_;
   std::vector<Known> known_;
   std::optional<BroadPhase> world_;

@@ -19,6 +19,7 @@ class Sequence {
   Sequence(std::uint64_t seed, const test::AnyOptions& options, std::size_t crowd)
       : draw_(seed), crowd_(crowd), world_(test::make_broad_phase(values_of(values_), options)) {
     hostile_ = chance(0.5);
+    filtered_ = chance(0.5);
     ball_ = draw_.uniform(1, 4) * std::cbrt(static_cast<double>(crowd));
   }
 
@@ -37,9 +38,27 @@ class Sequence {
     bool alive = false, fixed = false, valid = true;
     unsigned importance = 0;
     BodyId id;
+    BodyFilter filter{};
   };
 
   bool chance(double share) { return draw_.uniform(0, 1) < share; }
+
+  BodyFilter random_filter() {
+    if (!filtered_ || chance(0.3)) return {};
+    const auto bits = [&] { return chance(0.1) ? 0 : static_cast<std::uint32_t>(draw_.bits()); };
+    return {bits() & 7, chance(0.5) ? bits() : 0xffffffffu, static_cast<std::int32_t>(draw_.bits() % 9) - 4};
+  }
+
+  // Every third pair is none, or every fourth, or all are some.
+  void set_pair_filter() {
+    excluded_ = chance(0.3) ? 0 : 3 + static_cast<BodyIndex>(draw_.bits() % 2);
+    if (excluded_ == 0) return world_.set_pair_filter(nullptr);
+    world_.set_pair_filter([this](BodyId a, BodyId b) {
+      EXPECT_TRUE(a.index < b.index && world_.contains(a) && world_.contains(b));
+      EXPECT_TRUE(may_pair(known_[a.index].filter, known_[b.index].filter));
+      return (a.index + b.index) % excluded_ != 0;
+    });
+  }
 
   Motion random_motion() {
     Motion m;
@@ -104,12 +123,14 @@ class Sequence {
       ASSERT_EQ(world_.size(), before);
     }
     const auto rank = static_cast<std::uint8_t>(importance);
-    const BodyId id = fixed ? world_.add_static(m, rank) : world_.add(rank);
+    const BodyFilter filter = random_filter();
+    const BodyId id = fixed ? world_.add_static(m, rank, filter) : world_.add(rank, filter);
     ASSERT_NE(id, kNoBody);
     if (id.index >= values_.size()) values_.resize(id.index + 1), known_.resize(id.index + 1);
     ASSERT_FALSE(known_[id.index].alive);
     values_[id.index] = m;
-    known_[id.index] = {true, fixed, true, importance, id};
+    ASSERT_EQ(world_.filter_of(id), filter);
+    known_[id.index] = {true, fixed, true, importance, id, filter};
   }
 
   void remove(BodyIndex i) {
@@ -129,6 +150,7 @@ class Sequence {
       }
       if (chance(0.5)) add();
     }
+    if (filtered_ && chance(0.03)) set_pair_filter();
     if (values_.empty()) return;
     for (std::size_t k = draw_.bits() % 4; k > 0; --k) {
       const auto i = static_cast<BodyIndex>(draw_.bits() % values_.size());
@@ -148,6 +170,10 @@ class Sequence {
     } else if (dice < 0.4) {
       known.importance = static_cast<unsigned>(draw_.bits() % 3) * 100;
       ASSERT_TRUE(world_.set_importance(known.id, static_cast<std::uint8_t>(known.importance)));
+    } else if (dice < 0.5 && filtered_) {
+      known.filter = random_filter();
+      ASSERT_TRUE(world_.set_filter(known.id, known.filter));
+      ASSERT_EQ(world_.filter_of(known.id), known.filter);
     } else if (dice < 0.6 && hostile_) {
       Motion bad = values_[i];
       do spoil(bad);
@@ -169,7 +195,9 @@ class Sequence {
       ASSERT_EQ(refused.time_refused, !(std::fabs(t) <= kMostSteps * kStep)) << t;
       ASSERT_TRUE(refused.pairs.empty());
     }
-    for (const BodyId id : gone_) ASSERT_FALSE(world_.remove(id) || world_.cancel(id) || world_.set_importance(id, 0));
+    for (const BodyId id : gone_) {
+      ASSERT_FALSE(world_.remove(id) || world_.cancel(id) || world_.set_importance(id, 0) || world_.set_filter(id, {}));
+    }
     ASSERT_FALSE(world_.cancel({static_cast<BodyIndex>(draw_.bits()), static_cast<std::uint32_t>(draw_.bits())}));
     ASSERT_FALSE(world_.remove(kNoBody));
   }
@@ -210,12 +238,14 @@ class Sequence {
   bool touch(BodyIndex i, BodyIndex j) const {
     const auto takes_part = [&](BodyIndex k) { return known_[k].alive && known_[k].valid; };
     return takes_part(i) && takes_part(j) && !(known_[i].fixed && known_[j].fixed) &&
+           may_pair(known_[i].filter, known_[j].filter) && (excluded_ == 0 || (i + j) % excluded_ != 0) &&
            spheres_touch(values_[i], values_[j]);
   }
 
   test::Draw draw_;
   std::size_t crowd_;
-  bool hostile_ = false;
+  bool hostile_ = false, filtered_ = false;
+  BodyIndex excluded_ = 0;
   double ball_ = 1, now_ = -kStep;
   int mode_ = 0;
   std::vector<Motion> values_;

@@ -27,6 +27,27 @@ struct BodyId {
 };
 inline constexpr BodyId kNoBody{};
 
+// Which pairs there are, in Box2D's terms: two bodies may be a pair if each one's mask has a bit of the other's category;
+// but two of the same group, unless it is 0, always are if it is positive, and never if it is negative. Bullet's group
+// and mask are `category` and `mask`; of Jolt's layers each gets a category. What is one body for the application, and
+// several spheres for the broad phase, gets a negative group of its own: its parts are no pairs and keep nobody awake.
+struct BodyFilter {
+  std::uint32_t category = 1;        // bits: what the body is
+  std::uint32_t mask = 0xffffffffu;  // bits: the categories it has pairs with
+  std::int32_t group = 0;
+  friend bool operator==(const BodyFilter&, const BodyFilter&) = default;
+};
+
+constexpr bool may_pair(const BodyFilter& a, const BodyFilter& b) noexcept {
+  if (a.group == b.group && a.group != 0) return a.group > 0;
+  return (a.mask & b.category) != 0 && (b.mask & a.category) != 0;
+}
+
+// The application's own: false, and the two are no pair. Asked about bodies that may_pair() allows, a.index < b.index,
+// whenever they are found near each other, and when that is looked at again: it has to answer alike until it is set
+// anew. Called from within advance() (a Detector's: step()) only; it calls neither.
+using PairFilter = std::function<bool(BodyId a, BodyId b)>;
+
 struct BodyPair {
   BodyIndex a, b;                                                       // a < b
   friend auto operator<=>(const BodyPair&, const BodyPair&) = default;  // NOLINT(modernize-use-nullptr): no 0 here
@@ -112,7 +133,8 @@ BroadPhase make_broad_phase(MotionSource source, const BroadPhaseOptions& option
 // *exactly* those with spheres_touch() for the motions of that step, provided that the motions have kept their bounds
 // since they were asked for (or cancel() was called). Hence: an overlap that lasts for dt_d or longer contains a step,
 // and is reported at the first one, so less than dt_d after it begins. A shorter one may fall between two steps. Two
-// static bodies are never a pair.
+// static bodies are never a pair, nor are two that the filters exclude: such a pair is not made, and costs nothing but
+// finding once per look that the two are near.
 //
 // A bound that expires at a step's time still holds at this step. Where most bounds expire together and advance() is
 // called when the new ones can be given already, half of the work is done at the step before the one that needs it.
@@ -137,9 +159,9 @@ class BroadPhase {
 
   // What changes between two calls of advance() takes part from the first step after the time of the last report.
   // importance: 0 is the highest class. kNoBody if there are kMaxBodies already, or no source.
-  BodyId add(std::uint8_t importance = 0);
+  BodyId add(std::uint8_t importance = 0, const BodyFilter& filter = {});
   // Never asked for again. Takes the position and the radius; kNoBody if the motion is not valid, too.
-  BodyId add_static(const Motion& place, std::uint8_t importance = 0);
+  BodyId add_static(const Motion& place, std::uint8_t importance = 0, const BodyFilter& filter = {});
   // The following change nothing and return false if there is no such body (any more).
   bool remove(BodyId body);
   // 4.4: the bounds last given for the body no longer hold from now on; they are asked for again at the next step.
@@ -147,6 +169,11 @@ class BroadPhase {
   bool teleport(BodyId body) { return cancel(body); }         // the source gives the new place from now on
   bool move_static(BodyId body, const Motion& place);         // false, too, if it is not static or the motion not valid
   bool set_importance(BodyId body, std::uint8_t importance);  // from the next step
+  bool set_filter(BodyId body, const BodyFilter& filter);     // from the next step; costs a look at the body
+
+  BodyFilter filter_of(BodyId body) const noexcept;  // that of no body: BodyFilter{}
+  // None: all pairs that may_pair() allows. From the next step; costs a look at each body.
+  void set_pair_filter(PairFilter filter);
 
   BodyId id_of(BodyIndex index) const noexcept;  // of the body that has the index now; kNoBody: none
   bool contains(BodyId body) const noexcept { return body != kNoBody && id_of(body.index) == body; }
@@ -185,7 +212,7 @@ class BroadPhase {
   BroadPhase(MotionSource source, const BroadPhaseOptions& options, const detail::MakeMethod& make);
   Advance process(double t_now, const WorkBudget* budget);
   Advance process_steps(double t_now, const WorkBudget* budget);
-  BodyId take_in(std::uint8_t importance, const Motion* place);
+  BodyId take_in(std::uint8_t importance, const BodyFilter& filter, const Motion* place);
   bool sleeps_until(double t) const noexcept { return t < wake_time_ && std::fabs(t) <= largest_time_; }
   void wake_for_change();
   void note_next_step();

@@ -54,7 +54,8 @@ StateSource states_of(const std::vector<BodyState>& values);
 
 struct BodyOptions {
   std::uint8_t importance = 0;  // 0 is the highest class; a pair is as important as the less important of its bodies
-  // Two bodies may touch if each one's mask has a bit of the other's group.
+  // Two bodies may touch if each one's mask has a bit of the other's group (BodyFilter::category). Others are no pair in
+  // the broad phase already, and cost nothing.
   std::uint32_t group = 1, mask = 0xffffffffu;
   // Above 0: also what happens between two steps is found, by a sweep from pose to pose. It is a promise that relative
   // to whatever the body may meet no origin moves faster. Lengths per second.
@@ -66,9 +67,6 @@ struct BodyOptions {
   // the motion monitor. Needs DetectorOptions::watch.
   bool suggest = false;
 };
-
-// False: this pair shall not be asked about. Asked once when a pair's spheres begin to overlap.
-using PairFilter = std::function<bool(BodyId a, BodyId b)>;
 
 // What the broad phase relies on from `time` on, until it asks for the body again: for whoever wants to look at it.
 using PromiseListener = std::function<void(double time, BodyIndex body, const Motion& promise)>;
@@ -141,7 +139,7 @@ struct Frame {
   double next_time = 0;                 // nothing can begin or end before: no need to call earlier
   std::uint32_t steps = 0;              // answered in this call
   std::span<const PairEvent> events;    // by time, then by pair
-  std::uint64_t pairs = 0;              // of bodies whose spheres overlapped, over the steps
+  std::uint64_t pairs = 0;              // of bodies that may touch, whose spheres overlapped, over the steps
   std::uint64_t certain = 0;            // of these, with a certain answer
   StepCut cut{};                        // the last step's, if the budget was in time and there is no executor
   double worst_bound = 0;               // the largest separation bound among the rest: how far from certain
@@ -226,7 +224,7 @@ class Detector {
   bool asleep(BodyId body) const noexcept;
   // The triangles of a shape's tree have moved (FlexibleTree): answers about bodies at rest are void. O(bodies).
   bool shape_changed(ShapeId shape);
-  // None: all pairs. Pairs that overlap already are asked about again.
+  // None: all pairs. Pairs that overlap already are asked about again; see PairFilter in broad_phase.h.
   void set_filter(PairFilter filter);
   void set_executor(const Executor& executor) noexcept;
 

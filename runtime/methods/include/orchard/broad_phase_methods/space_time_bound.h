@@ -2,6 +2,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
@@ -29,7 +30,6 @@ struct SpaceTimeBound {
   double size = 0, growth = 0, bend = 0, slope = 0;
   Vec3 normal{};  // of length 1
   double cut = 0, cut_growth = 0;
-  bool fixed = false;  // of a static body: an IntersectionFinder leaves out pairs of two of them
 
   bool has_plane() const noexcept { return dot(normal, normal) != 0; }
   Vec3 center_at(double t) const noexcept { return center + t * velocity; }
@@ -80,6 +80,9 @@ struct Intersections {
   BoundContact earliest{kNoContact, 0, 0};
 };
 
+// False: the two, a < b, are not to be compared. It has to answer alike while find() runs.
+using BoundFilter = std::function<bool(std::uint32_t a, std::uint32_t b)>;
+
 // Finds where N bounds first meet between 0 and `duration` (Fig. 4.22), and which meet at the start. Every method gives
 // the same time, to rounding. A method that does not know the shape is replaced by `sorted`.
 // The object keeps its memory from call to call.
@@ -91,7 +94,7 @@ class IntersectionFinder {
   ~IntersectionFinder();
 
   const Intersections& find(std::span<const SpaceTimeBound> bounds, double duration,
-                            const IntersectionOptions& options);
+                            const IntersectionOptions& options, const BoundFilter& filter = {});
   std::size_t memory_bytes() const noexcept;
 
  private:
