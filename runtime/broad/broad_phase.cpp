@@ -15,6 +15,7 @@ struct BroadPhase::State {
   std::unique_ptr<detail::Method> method;
   std::vector<BodyPair> pairs;
   Step next = kNeverStep;  // the next step with anything to do
+  Step validated = -1;     // up to which step all bodies have been asked for, for their promises
 };
 
 MotionSource values_of(const std::vector<Motion>& values) {
@@ -41,8 +42,9 @@ BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& wanted, con
       State{detail::Roster(std::move(source), detail::Clock{options.start, options.time_step}), nullptr, {}});
   largest_time_ = valid ? kMostSteps * options.time_step : -1;
   state_->method = make(state_->roster, options);
-  next_time_ = wake_time_ = std::numeric_limits<double>::infinity();
-  seen_time_ = -next_time_;
+  if (options.validate) state_->roster.check_promises(options.broken, options.position_slack);
+  note_next_step();
+  seen_time_ = -std::numeric_limits<double>::infinity();
 }
 
 BroadPhase detail::make_broad_phase(MotionSource source, const BroadPhaseOptions& options, const MakeMethod& make) {
@@ -67,6 +69,13 @@ void BroadPhase::note_next_step() {
   const bool any = state_->next != kNeverStep;
   next_time_ = any ? clock.time(state_->next) : std::numeric_limits<double>::infinity();
   wake_time_ = next_time_ - detail::kStepSlack * clock.time_step;
+  if (state_->roster.promises() != nullptr) wake_time_ = -std::numeric_limits<double>::infinity();  // looked at always
+}
+
+void BroadPhase::validate_up_to(Step step) {
+  if (state_->roster.promises() == nullptr || step <= state_->validated) return;
+  state_->validated = step;
+  state_->roster.ask_all(step);
 }
 
 Advance BroadPhase::process(double t_now, const WorkBudget* budget) {
@@ -97,8 +106,10 @@ Advance BroadPhase::process_steps(double t_now, const WorkBudget* budget) {
   };
   const detail::Clock& clock = state.roster.clock;
   std::uint64_t work = 0;
-  while (t_now >= wake_time_) {
+  const double rounding = detail::kStepSlack * clock.time_step;
+  while (t_now >= next_time_ - rounding) {
     const Step now = state.next;
+    validate_up_to(now);
     detail::Meter meter = budget ? detail::Meter(*budget) : detail::Meter();
     state.pairs.clear();
     const detail::StepReport report = state.method->step(now, meter, state.pairs);
@@ -111,6 +122,7 @@ Advance BroadPhase::process_steps(double t_now, const WorkBudget* budget) {
     }
   }
   seen_time_ = std::max(seen_time_, t_now);
+  validate_up_to(static_cast<Step>(std::floor((seen_time_ - clock.start) / clock.time_step + detail::kStepSlack)));
   return {next_time_, {}, kNoClass, 0, refused(), false, work};
 }
 
@@ -150,6 +162,7 @@ bool BroadPhase::remove(BodyId body) {
 bool BroadPhase::cancel(BodyId body) {
   if (!contains(body)) return false;
   state_->method->changed(body.index);
+  state_->roster.forget_promise(body.index);
   wake_for_change();
   return true;
 }
@@ -209,6 +222,10 @@ std::size_t BroadPhase::foresee(double time, std::span<StepsAhead> steps) const 
 
 std::size_t BroadPhase::size() const noexcept { return valid() ? state_->roster.size() : 0; }
 std::uint64_t BroadPhase::motions_asked() const noexcept { return state_->roster.asked(); }
+std::uint64_t BroadPhase::promises_broken() const noexcept {
+  const detail::PromiseCheck* const promises = state_->roster.promises();
+  return promises == nullptr ? 0 : promises->broken();
+}
 std::size_t BroadPhase::memory_bytes() const noexcept {
   return sizeof(State) + detail::bytes_of(state_->pairs) + state_->roster.memory_bytes() +
          state_->method->memory_bytes();

@@ -77,6 +77,7 @@ void Roster::remove(BodyIndex body) noexcept {
   }
   leave_class(importance_[body]);
   --size_;
+  forget_promise(body);
 }
 
 void Roster::move_static(BodyIndex body, const Motion& place) noexcept {
@@ -98,11 +99,36 @@ unsigned Roster::next_class(unsigned from) const noexcept {
   return from < in_class_.size() ? from : kNoClass;
 }
 
+void Roster::ask_source(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
+  const double time = clock.time(step);
+  source_(time, bodies, motions);
+  for (std::size_t i = 0; check_ && i < bodies.size(); ++i) check_->given(id_of(bodies[i]), motions[i], time);
+}
+
+void Roster::ask_all(Step step) {
+  constexpr std::size_t kAtOnce = 64;
+  std::array<BodyIndex, kAtOnce> bodies;
+  std::array<Motion, kAtOnce> motions;
+  std::size_t count = 0;
+  const auto ask_them = [&] {
+    if (count == 0) return;
+    asked_ += count;
+    ask_source(step, std::span(bodies).first(count), std::span(motions).first(count));
+    count = 0;
+  };
+  for (BodyIndex body = 0; body < slots(); ++body) {
+    if (!alive(body) || is_static(body)) continue;
+    bodies[count++] = body;
+    if (count == kAtOnce) ask_them();
+  }
+  ask_them();
+}
+
 void Roster::ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
   assert(bodies.size() == motions.size());
   asked_ += bodies.size();
   if (static_slot_.empty()) {
-    source_(clock.time(step), bodies, motions);
+    ask_source(step, bodies, motions);
     return;
   }
   moving_.clear();
@@ -116,7 +142,7 @@ void Roster::ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion>
   }
   if (moving_.empty()) return;
   answers_.resize(moving_.size());
-  source_(clock.time(step), moving_, answers_);
+  ask_source(step, moving_, answers_);
   for (std::size_t i = 0, next = 0; i < bodies.size(); ++i) {
     if (static_slot_[bodies[i]] == kNoSlot) motions[i] = answers_[next++];
   }
@@ -125,7 +151,7 @@ void Roster::ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion>
 std::size_t Roster::memory_bytes() const noexcept {
   return bytes_of(in_class_) + bytes_of(generations_) + bytes_of(importance_) + bytes_of(filters_) +
          bytes_of(static_slot_) + bytes_of(static_motions_) + bytes_of(free_slots_) + bytes_of(free_) + bytes_of(moving_) + bytes_of(refused_) +
-         bytes_of(answers_);
+         bytes_of(answers_) + (check_ ? sizeof(*check_) + check_->memory_bytes() : 0);
 }
 
 }  // namespace orchard::runtime::detail

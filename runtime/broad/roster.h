@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "orchard/runtime/broad_phase.h"
+#include "promise_check.h"
 
 namespace orchard::runtime::detail {
 
@@ -133,6 +133,14 @@ class Roster {
 
   // motions[i] is that of bodies[i] at the step.
   void ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions);
+  void check_promises(BrokenPromiseListener listener, double position_slack) {
+    check_ = std::make_unique<PromiseCheck>(std::move(listener), position_slack);
+  }
+  const PromiseCheck* promises() const noexcept { return check_.get(); }  // null: they are not checked
+  void forget_promise(BodyIndex body) noexcept {
+    if (check_) check_->forget(body);
+  }
+  void ask_all(Step step);  // for their promises
   // Bodies whose motions were not valid when they were asked for, in the course of a call of advance().
   void refuse(BodyIndex body) { refused_.push_back(body); }
   std::vector<BodyIndex>& refused() noexcept { return refused_; }
@@ -143,7 +151,10 @@ class Roster {
  private:
   static constexpr std::uint32_t kNoSlot = 0xffffffffu;
 
+  void ask_source(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions);
+
   MotionSource source_;
+  std::unique_ptr<PromiseCheck> check_;
   std::vector<std::uint32_t> generations_;  // by body; odd while there is one: each body has an odd number of its own
   std::vector<std::uint8_t> importance_;
   std::vector<BodyFilter> filters_;         // empty until a body has another than all

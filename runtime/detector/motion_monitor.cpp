@@ -8,27 +8,10 @@ namespace {
 
 constexpr double kMostAngle = 0.5;          // cosine: of accelerations that share a half-space, with their mean
 constexpr double kFasterHorizon = 1.25;     // a kept promise makes the next one so much longer
-constexpr double kVelocityRounding = 1e-9;  // of a velocity: the application's own arithmetic
 
 double length(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
 
 }  // namespace
-
-// Two velocities, that promised and that given now, are each within drift of the true ones.
-bool keeps_promise(const Motion& promise, double promise_time, double now, const Vec3& position,
-                   const Vec3* velocity) noexcept {
-  const double seconds = now - promise_time;
-  if (!(seconds > 0) || now > promise.expiry) return true;
-  const double reach = promise.drift * seconds + promise.acceleration * seconds * seconds / 2;
-  const Vec3 foreseen = promise.position + seconds * promise.velocity, off = position - foreseen;
-  const double slack = kMotionSlack * (length(position) + length(foreseen) + reach);
-  if (!(length(off) <= reach + slack)) return false;
-  const double size = length(promise.half_space);
-  if (size > 0 && !(dot(off, promise.half_space) / size <= promise.drift * seconds + slack)) return false;
-  if (velocity == nullptr) return true;
-  const double change = 2 * promise.drift + promise.acceleration * seconds;
-  return length(*velocity - promise.velocity) <= change + kVelocityRounding * (length(*velocity) + change);
-}
 
 void MotionMonitor::Part::add(const Vec3& acceleration) noexcept {
   const double size = length(acceleration);

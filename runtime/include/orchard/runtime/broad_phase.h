@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "orchard/runtime/motion.h"
+#include "orchard/runtime/promise.h"
 
 namespace orchard::runtime {
 
@@ -62,6 +62,16 @@ using MotionSource = std::function<void(double time, std::span<const BodyIndex> 
 // advance() at every step then, which costs nothing while the broad phase sleeps. `values` outlives the broad phase.
 MotionSource values_of(const std::vector<Motion>& values);
 
+// A body that has not kept its bounds: `promise`, given at promise_time, does not allow what was given at `time`.
+struct BrokenPromise {
+  BodyId body;
+  double promise_time, time;
+  const Motion &promise, &given;
+  PromiseExcess by;
+};
+// Called from within advance(), and within a query of BodyQueries; it calls nothing of the broad phase's.
+using BrokenPromiseListener = std::function<void(const BrokenPromise&)>;
+
 struct BroadPhaseOptions {
   double time_step = 0.01;  // dt_d: the temporal resolution, in seconds; > 0
   double start = 0;         // the time of step 0
@@ -71,6 +81,13 @@ struct BroadPhaseOptions {
   // How far each position that the source gives may lie from one for which the bounds hold: for positions rounded to
   // float float_slack() in motion_helpers.h. A length; it costs what radii larger by twice as much would.
   double position_slack = 0;
+  // For debugging: each motion that the source gives is compared with what it promised for the same body before, and
+  // every moving body is asked for at every step that is processed, and at the last one not after the time of each
+  // advance(). So what is not of the time it is asked for shows, too, as values of a frame that are taken for those of a
+  // step. Pairs are the same as without; it costs what asking for all bodies costs, and 250 bytes for each. `broken`
+  // hears of each broken promise, once: what was given instead counts from then on. Without it they are counted.
+  bool validate = false;
+  BrokenPromiseListener broken{};
 };
 
 // Times are at most so many time steps before and after 0 (348 years at a step of 0.01 seconds): beyond, rounding would
@@ -204,6 +221,7 @@ class BroadPhase {
   std::size_t size() const noexcept;                          // bodies
   std::size_t memory_bytes() const noexcept;                  // held on the heap
   std::uint64_t motions_asked() const noexcept;               // of the source, so far
+  std::uint64_t promises_broken() const noexcept;             // found by BroadPhaseOptions::validate, so far
 
  private:
   struct State;
@@ -214,6 +232,7 @@ class BroadPhase {
   Advance process_steps(double t_now, const WorkBudget* budget);
   BodyId take_in(std::uint8_t importance, const BodyFilter& filter, const Motion* place);
   bool sleeps_until(double t) const noexcept { return t < wake_time_ && std::fabs(t) <= largest_time_; }
+  void validate_up_to(std::int64_t step);
   void wake_for_change();
   void note_next_step();
 

@@ -7,12 +7,6 @@
 
 namespace orchard::runtime {
 
-// Whether a body that is at `position` now, with `velocity` unless that is null, has kept what was promised at
-// `promise_time`: Lemmas 4.1 and 4.2, and |velocity - promised| <= 2 drift + M seconds, each to kMotionSlack. True once
-// the promise has expired.
-bool keeps_promise(const Motion& promise, double promise_time, double now, const Vec3& position,
-                   const Vec3* velocity) noexcept;
-
 struct MonitorOptions {
   double safety = 1.5;  // a suggested M is the largest acceleration seen lately, times this; >= 1
   double window = 0.5;  // seconds: "lately". > 0
@@ -22,7 +16,8 @@ struct MonitorOptions {
 
 // Watches bodies' motions (dissertation 4.4): whether the bounds that were promised hold, and which ones could be
 // promised, from what was seen. A promise that is broken silently is the one way in which a broad phase misses a
-// contact. Use it where the simulation moves its bodies:
+// contact. (BroadPhaseOptions::validate finds such ones while a program is being written.) Use it where the simulation
+// moves its bodies:
 //   monitor.promised(body, time, motion);                                     // in the source, as it answers
 //   if (!monitor.observe(body, time, position, velocity)) world.cancel(id);   // at every step, before advance()
 // A Detector with DetectorOptions::watch does so itself.
