@@ -91,7 +91,10 @@ void Events::make_room_for_boxes() {
 
 // Everything that is due, and what a budget left over before.
 void Events::step_in_full(Step now, bool completing) {
-  if (!backlog_.empty()) backlog_.take_all(due_, waiting_);
+  if (!backlog_.empty()) {
+    for (const BodyIndex body : due_) backlog_.leave(body);  // changed while it waited: one look is enough
+    backlog_.take_all(due_, waiting_);
+  }
   bool all_anew = completing;
   Meter unlimited;
   if (!completing) {
