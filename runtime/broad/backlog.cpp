@@ -67,6 +67,12 @@ void Backlog::take_all(std::vector<BodyIndex>& bodies, std::vector<PairEvent>& p
   }
 }
 
+void Backlog::append_bodies(std::vector<BodyIndex>& bodies) const {
+  for (const Rank& rank : ranks_) {
+    for (BodyIndex body = rank.first; body != kNoIndex; body = links_[body].next) bodies.push_back(body);
+  }
+}
+
 std::size_t Backlog::size() const noexcept {
   std::size_t all = 0;
   for (const Rank& rank : ranks_) all += rank.bodies + rank.found.size() + rank.due.size();

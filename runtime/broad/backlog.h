@@ -53,6 +53,7 @@ class Backlog {
   std::size_t take(unsigned importance, std::span<BodyIndex> bodies) noexcept;
   // Everything leaves, the more important classes first.
   void take_all(std::vector<BodyIndex>& bodies, std::vector<PairEvent>& pairs);
+  void append_bodies(std::vector<BodyIndex>& bodies) const;  // those that wait
   bool empty() const noexcept { return size() == 0; }
   std::size_t size() const noexcept;  // bodies and pairs
   std::size_t memory_bytes() const noexcept;

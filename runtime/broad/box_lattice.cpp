@@ -104,6 +104,10 @@ Lattice::Lattice(const Vec3& origin, double cell_size, double slack) noexcept
       kRoundingQuanta + 8 * kMotionSlack * (size * per_length_ + kLastQuantum) + (slack + kLeastLength) * per_length_;
 }
 
+double Lattice::quantum(double coordinate, std::size_t axis) const noexcept {
+  return kMiddle + (coordinate - origin_[axis]) * per_length_;
+}
+
 // The centre's offset along an axis is at most v t + wide(t), which is convex: largest at an end. Likewise below. A box
 // that does not lie within the lattice is everything: rounding would no longer be under control.
 // What tells whether all motions are valid, put together from those of each four: NaN stays in the sum.

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -15,6 +16,12 @@ struct QuantumBox {
     bool meet = true;
     for (std::size_t i = 0; i < 3; ++i) meet = meet && lower[i] <= other.upper[i] && other.lower[i] <= upper[i];
     return meet;
+  }
+  void include(const QuantumBox& other) noexcept {
+    for (std::size_t i = 0; i < 3; ++i) {
+      lower[i] = std::min(lower[i], other.lower[i]);
+      upper[i] = std::max(upper[i], other.upper[i]);
+    }
   }
 };
 inline constexpr std::uint32_t kQuantumBits = 5, kQuanta = 1u << kQuantumBits;
@@ -47,6 +54,9 @@ class Lattice {
   Lattice(const Vec3& origin, double cell_size, double slack) noexcept;
 
   const Vec3& origin() const noexcept { return origin_; }
+  // Where a point lies along an axis, to less than a quantum if it lies within the lattice.
+  double quantum(double coordinate, std::size_t axis) const noexcept;
+  double quanta(double length) const noexcept { return length * per_length_; }
   // Box i holds body i's sphere for durations[i] seconds from its motion's time; at most kBlock of them. False if a
   // motion may not be valid, which costs next to nothing to tell here; its expiry is not looked at.
   bool boxes(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes,

@@ -100,6 +100,14 @@ void BoxList::set(BodyIndex body, const QuantumBox& box) noexcept {
   }
 }
 
+void BoxList::append_meeting(const QuantumBox& box, std::vector<BodyIndex>& bodies) const {
+  for (std::size_t g = 0; g * kGroup < filled_; ++g) {
+    for (std::uint32_t hits = PlainLanes::meeting(PlainLanes::apart(groups_[g], 0, box)); hits != 0; hits &= hits - 1) {
+      bodies.push_back(static_cast<BodyIndex>(kGroup * g + static_cast<std::size_t>(std::countr_zero(hits))));
+    }
+  }
+}
+
 // Mostly a box meets none: that is found out about all of them together.
 template <typename Lanes>
 ORCHARD_INLINE void BoxList::insert_all(std::span<const BodyIndex> bodies, const BoxBlock& block,

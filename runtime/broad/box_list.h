@@ -15,6 +15,7 @@ class BoxList {
   void release() { groups_ = {}; }
   // Adds bodies[i] with block's box i and appends the pairs whose boxes meet, of each of them and everything in before.
   void insert(std::span<const BodyIndex> bodies, const BoxBlock& block, bool vectors, std::vector<BodyPair>& pairs);
+  void append_meeting(const QuantumBox& box, std::vector<BodyIndex>& bodies) const;  // those whose boxes meet it
   void remove(BodyIndex body) noexcept { set(body, kNowhere); }
   std::size_t slots() const noexcept { return kGroup * groups_.size(); }
   std::size_t memory_bytes() const noexcept { return bytes_of(groups_); }

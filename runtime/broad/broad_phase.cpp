@@ -3,20 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "method.h"
+#include "broad_phase_state.h"
 
 namespace orchard::runtime {
 
 using detail::kNeverStep;
 using detail::Step;
-
-struct BroadPhase::State {
-  detail::Roster roster;
-  std::unique_ptr<detail::Method> method;
-  std::vector<BodyPair> pairs;
-  Step next = kNeverStep;  // the next step with anything to do
-  Step validated = -1;     // up to which step all bodies have been asked for, for their promises
-};
 
 MotionSource values_of(const std::vector<Motion>& values) {
   return [&values](double, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
@@ -55,12 +47,16 @@ BroadPhase::BroadPhase(BroadPhase&&) noexcept = default;
 BroadPhase& BroadPhase::operator=(BroadPhase&&) noexcept = default;
 BroadPhase::~BroadPhase() = default;
 
-// While we slept, the caller's time went on: the change counts from the first step after it.
-void BroadPhase::wake_for_change() {
+// The last one not after what everything has been reported up to; -1: none yet.
+Step BroadPhase::step_reported() const noexcept {
   const detail::Clock& clock = state_->roster.clock;
   const double passed = (seen_time_ - clock.start) / clock.time_step + detail::kStepSlack;
-  const Step first = passed >= 0 ? static_cast<Step>(passed) + 1 : 0;
-  state_->next = std::min(state_->next, first);
+  return passed >= 0 ? static_cast<Step>(passed) : -1;
+}
+
+// While we slept, the caller's time went on: the change counts from the first step after it.
+void BroadPhase::wake_for_change() {
+  state_->next = std::min(state_->next, step_reported() + 1);
   note_next_step();
 }
 
@@ -73,7 +69,7 @@ void BroadPhase::note_next_step() {
 }
 
 void BroadPhase::validate_up_to(Step step) {
-  if (state_->roster.promises() == nullptr || step <= state_->validated) return;
+  if (step <= state_->validated) return;
   state_->validated = step;
   state_->roster.ask_all(step);
 }
@@ -106,10 +102,11 @@ Advance BroadPhase::process_steps(double t_now, const WorkBudget* budget) {
   };
   const detail::Clock& clock = state.roster.clock;
   std::uint64_t work = 0;
+  const bool validating = state.roster.promises() != nullptr;
   const double rounding = detail::kStepSlack * clock.time_step;
   while (t_now >= next_time_ - rounding) {
     const Step now = state.next;
-    validate_up_to(now);
+    if (validating) validate_up_to(now);
     detail::Meter meter = budget ? detail::Meter(*budget) : detail::Meter();
     state.pairs.clear();
     const detail::StepReport report = state.method->step(now, meter, state.pairs);
@@ -122,7 +119,7 @@ Advance BroadPhase::process_steps(double t_now, const WorkBudget* budget) {
     }
   }
   seen_time_ = std::max(seen_time_, t_now);
-  validate_up_to(static_cast<Step>(std::floor((seen_time_ - clock.start) / clock.time_step + detail::kStepSlack)));
+  if (validating) validate_up_to(step_reported());
   return {next_time_, {}, kNoClass, 0, refused(), false, work};
 }
 

@@ -24,6 +24,10 @@ class Events final : public Method {
   StepReport step(Step now, Meter& meter, std::vector<BodyPair>& pairs) override;
   std::size_t memory_bytes() const noexcept override;
   std::size_t foresee(Step now, std::span<StepsAhead> steps) const noexcept override;
+  Near near_box(const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const override;
+  bool along(const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
+             PortionVisitor& visitor) const override;
+  double cell_size() const noexcept override { return plan_.cell_size; }
 
  private:
   enum class Place : std::uint8_t { nowhere, inside, oversized };
@@ -34,6 +38,7 @@ class Events final : public Method {
   struct Look;
   static constexpr std::size_t kFewestInRush = 32;  // bodies that are worth a step more
   static constexpr std::size_t kTestsAtOnce = kBlock / 2;
+  static constexpr QuantumBox kNothing = {{kLastQuantum, kLastQuantum, kLastQuantum}, {0, 0, 0}};
   static constexpr Step kLookDue = -1;  // a window's end while its body waits for a look
 
   // events.cpp: a step
@@ -75,10 +80,17 @@ class Events final : public Method {
   void refuse(BodyIndex body);
   bool place(Look& look, std::span<const BodyIndex> bodies);
   bool place_in_grid(Look& look, std::span<const BodyIndex> bodies);
+  void note_extent(const BoxBlock& boxes, std::size_t count) noexcept;
   void shrink(Look& look, BodyIndex body, std::size_t i);
   void insert(Look& look, std::span<const BodyIndex> bodies);
   void meet_oversized(std::span<const BodyIndex> bodies);
   void drop_what_is_none();
+
+  // events_queries.cpp
+  struct GridRay;
+  void append_loose(std::vector<BodyIndex>& bodies) const;
+  void append_in_cells(const QuantumBox& box, std::vector<BodyIndex>& bodies) const;
+  bool walk_slabs(const GridRay& ray, std::vector<BodyIndex>& portion, PortionVisitor& visitor) const;
 
   // events_pairs.cpp
   bool valid(const PairEvent& event) const noexcept;
@@ -97,6 +109,7 @@ class Events final : public Method {
   bool few_ = true;  // bodies: they are in the list, not in the grid
   BoxList list_;
   SweptGrid grid_;
+  QuantumBox extent_ = kNothing;  // around all boxes that are in the grid, or have been since all were placed anew
   Lattice lattice_;
   Calendar calendar_;
   std::vector<PairEvent> overlaps_;  // in ascending order of pairs

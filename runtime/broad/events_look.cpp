@@ -100,11 +100,32 @@ bool Events::place(Look& look, std::span<const BodyIndex> bodies) {
 // False if a window had to be cut short.
 bool Events::place_in_grid(Look& look, std::span<const BodyIndex> bodies) {
   for (std::size_t i = 0; i < bodies.size(); ++i) boxes_[bodies[i]] = look.boxes.get(i);
-  if (excess_cells(look.boxes, bodies.size()) == 0) return true;
+  if (excess_cells(look.boxes, bodies.size()) == 0) {
+    note_extent(look.boxes, bodies.size());
+    return true;
+  }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (!cells_fit(boxes_[bodies[i]])) shrink(look, bodies[i], i);
+    if (places_[bodies[i]] == Place::inside) extent_.include(boxes_[bodies[i]]);
   }
   return false;
+}
+
+// Mostly none of them lies outside. By fours, whose boxes are all made: those after the last body are somewhere in the
+// world. Quanta are below 2^31: what is outside shows in the highest bit of a difference.
+void Events::note_extent(const BoxBlock& boxes, std::size_t count) noexcept {
+  constexpr std::size_t kFour = 4;
+  std::array<std::uint32_t, kFour> outside{};
+  for (std::size_t d = 0; d < 3; ++d) {
+    const std::uint32_t lower = extent_.lower[d], upper = extent_.upper[d];
+    for (std::size_t i = 0; i < count; i += kFour) {
+      for (std::size_t k = 0; k < kFour; ++k) {
+        outside[k] |= (boxes.lower[d][i + k] - lower) | (upper - boxes.upper[d][i + k]);
+      }
+    }
+  }
+  if ((outside[0] | outside[1] | outside[2] | outside[3]) >> 31 == 0) return;
+  for (std::size_t i = 0; i < count; ++i) extent_.include(boxes.get(i));
 }
 
 // Faster than the others: look at it again sooner, until its box takes few enough cells.

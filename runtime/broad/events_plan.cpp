@@ -89,6 +89,7 @@ void Events::place_all_anew() {
   calendar_.clear_bodies();
   std::fill(places_.begin(), places_.end(), Place::nowhere);
   oversized_.clear();
+  extent_ = kNothing;
   if (due_.capacity() > 2 * roster_.size()) due_ = {};
   due_.clear();
   due_.reserve(roster_.size());

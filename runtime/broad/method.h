@@ -9,6 +9,21 @@ struct StepReport {
   std::size_t left_over = 0;
 };
 
+enum class Near : std::uint8_t {
+  untold,  // no way to tell: it may be any body
+  some,    // others are farther away
+  all      // there are no others
+};
+
+class PortionVisitor {
+ public:
+  // All bodies that are met up to `until` have been visited by now. False: it is enough.
+  virtual bool visit(std::span<const BodyIndex> bodies, double until) = 0;
+
+ protected:
+  ~PortionVisitor() = default;
+};
+
 // A way to find what happens next. Steps are processed in ascending order; those in between had nothing to do.
 // Where step() throws, the method is not asked again. Where the others do, they have changed nothing.
 class Method {
@@ -27,6 +42,22 @@ class Method {
     (void)now, (void)steps;
     return 0;
   }
+
+  // For queries about the last step that was processed, or one after it before anything is due. What they hand over may
+  // be far away, gone, or come up twice.
+  // Appends all bodies whose spheres may meet the box.
+  virtual Near near_box(const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const {
+    (void)lower, (void)upper, (void)bodies;
+    return Near::untold;
+  }
+  // Visits all bodies whose spheres origin + t way may meet, |way| = 1 and 0 <= t <= length. `portion` is for its use.
+  // False: it may be any body, and nobody has been visited.
+  virtual bool along(const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
+                     PortionVisitor& visitor) const {
+    (void)origin, (void)way, (void)length, (void)portion, (void)visitor;
+    return false;
+  }
+  virtual double cell_size() const noexcept { return 0; }  // a length to begin a search with; 0: none
 };
 
 std::unique_ptr<Method> make_events(Roster& roster, const BroadPhaseOptions& options);

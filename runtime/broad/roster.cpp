@@ -150,8 +150,9 @@ void Roster::ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion>
 
 std::size_t Roster::memory_bytes() const noexcept {
   return bytes_of(in_class_) + bytes_of(generations_) + bytes_of(importance_) + bytes_of(filters_) +
-         bytes_of(static_slot_) + bytes_of(static_motions_) + bytes_of(free_slots_) + bytes_of(free_) + bytes_of(moving_) + bytes_of(refused_) +
-         bytes_of(answers_) + (check_ ? sizeof(*check_) + check_->memory_bytes() : 0);
+         bytes_of(static_slot_) + bytes_of(static_motions_) + bytes_of(free_slots_) + bytes_of(free_) +
+         bytes_of(moving_) + bytes_of(refused_) + bytes_of(answers_) +
+         (check_ ? sizeof(*check_) + check_->memory_bytes() : 0);
 }
 
 }  // namespace orchard::runtime::detail

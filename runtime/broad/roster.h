@@ -157,7 +157,7 @@ class Roster {
   std::unique_ptr<PromiseCheck> check_;
   std::vector<std::uint32_t> generations_;  // by body; odd while there is one: each body has an odd number of its own
   std::vector<std::uint8_t> importance_;
-  std::vector<BodyFilter> filters_;         // empty until a body has another than all
+  std::vector<BodyFilter> filters_;  // empty until a body has another than all
   PairFilter pair_filter_;
   std::vector<std::uint32_t> static_slot_;  // empty until there is a static body
   std::vector<Motion> static_motions_;
@@ -175,8 +175,8 @@ class Roster {
   unsigned classes_ = 0;                 // that have bodies
 };
 
-// Undoes what has been done so far, unless all of it has been: what is between throws. (No `catch`: the run-time is built
-// without exceptions as well.)
+// Undoes what has been done so far, unless all of it has been: what is between throws. (No `catch`: the run-time is
+// built without exceptions as well.)
 template <typename Undo>
 class UndoUnlessDone {
  public:

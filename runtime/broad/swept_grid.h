@@ -44,6 +44,15 @@ class SweptGrid {
   void remove(BodyIndex body, const QuantumBox& box) noexcept;
   void prepare_removal(const QuantumBox& box) const noexcept;  // starts loading
 
+  // Those that have entries in the cell, and in others that share its line; a body as often as it has.
+  template <typename Visit>
+  void visit_cell(const std::array<std::uint32_t, 3>& cell, const Visit& visit) const {
+    for (const CellLine* line = &lines_[line_of(cell)];; line = &overflow_[line->overflow - 1]) {
+      for (std::uint32_t i = 0; i < line->count; ++i) visit(static_cast<BodyIndex>(line->entries[i] >> kIdShift));
+      if (line->overflow == 0) return;
+    }
+  }
+
   std::size_t lines() const noexcept { return lines_.size(); }
   const GridCounts& counts() const noexcept { return counts_; }  // of insertions, since they were taken
   void discount_pairs(std::uint64_t pairs) noexcept { counts_.pairs -= std::min(pairs, counts_.pairs); }

@@ -78,7 +78,9 @@ void Sleeping::find(Step now) {
     const double age = static_cast<double>(now - known_[body].asked) * roster_.clock.time_step;
     bounds_.push_back(make_bound(known_[body].motion, age, duration, slack_));
   }
-  const auto may_pair = [this](std::uint32_t a, std::uint32_t b) { return roster_.may_pair({present_[a], present_[b]}); };
+  const auto may_pair = [this](std::uint32_t a, std::uint32_t b) {
+    return roster_.may_pair({present_[a], present_[b]});
+  };
   found_ = &finder_.find(bounds_, duration, find_, roster_.filters_pairs() ? BoundFilter(may_pair) : BoundFilter());
 }
 

@@ -23,7 +23,8 @@ class Application {
   void run() {
     for (int step = 0; step < kSteps && world_->valid(); ++step) {
       for (BodyIndex i = 0; i < kMostBodies; ++i) {
-        if (known_[i].alive && !known_[i].fixed) values_[i].position = values_[i].position + kStep * values_[i].velocity;
+        if (known_[i].alive && !known_[i].fixed)
+          values_[i].position = values_[i].position + kStep * values_[i].velocity;
       }
       for (std::size_t changes = step == 0 ? 20 : draw_.bits() % 6; changes > 0; --changes) change();
       advance(step);

@@ -225,7 +225,8 @@ class Sequence {
         if (std::max(known_[i].importance, known_[j].importance) < now.incomplete_from) sure.push_back({i, j});
       }
     }
-    for (const BodyPair& pair : found) ASSERT_TRUE(pair.a < pair.b && touch(pair.a, pair.b)) << pair.a << ", " << pair.b;
+    for (const BodyPair& pair : found)
+      ASSERT_TRUE(pair.a < pair.b && touch(pair.a, pair.b)) << pair.a << ", " << pair.b;
     ASSERT_TRUE(std::is_sorted(found.begin(), found.end()));
     ASSERT_EQ(std::adjacent_find(found.begin(), found.end()), found.end()) << "a pair twice";
     ASSERT_TRUE(std::includes(found.begin(), found.end(), sure.begin(), sure.end())) << "mode " << mode_;

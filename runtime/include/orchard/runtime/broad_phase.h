@@ -27,10 +27,11 @@ struct BodyId {
 };
 inline constexpr BodyId kNoBody{};
 
-// Which pairs there are, in Box2D's terms: two bodies may be a pair if each one's mask has a bit of the other's category;
-// but two of the same group, unless it is 0, always are if it is positive, and never if it is negative. Bullet's group
-// and mask are `category` and `mask`; of Jolt's layers each gets a category. What is one body for the application, and
-// several spheres for the broad phase, gets a negative group of its own: its parts are no pairs and keep nobody awake.
+// Which pairs there are, in Box2D's terms: two bodies may be a pair if each one's mask has a bit of the other's
+// category; but two of the same group, unless it is 0, always are if it is positive, and never if it is negative.
+// Bullet's group and mask are `category` and `mask`; of Jolt's layers each gets a category. What is one body for the
+// application, and several spheres for the broad phase, gets a negative group of its own: its parts are no pairs and
+// keep nobody awake.
 struct BodyFilter {
   std::uint32_t category = 1;        // bits: what the body is
   std::uint32_t mask = 0xffffffffu;  // bits: the categories it has pairs with
@@ -83,8 +84,8 @@ struct BroadPhaseOptions {
   double position_slack = 0;
   // For debugging: each motion that the source gives is compared with what it promised for the same body before, and
   // every moving body is asked for at every step that is processed, and at the last one not after the time of each
-  // advance(). So what is not of the time it is asked for shows, too, as values of a frame that are taken for those of a
-  // step. Pairs are the same as without; it costs what asking for all bodies costs, and 250 bytes for each. `broken`
+  // advance(). So what is not of the time it is asked for shows, too, as values of a frame that are taken for those of
+  // a step. Pairs are the same as without; it costs what asking for all bodies costs, and 250 bytes for each. `broken`
   // hears of each broken promise, once: what was given instead counts from then on. Without it they are counted.
   bool validate = false;
   BrokenPromiseListener broken{};
@@ -225,6 +226,7 @@ class BroadPhase {
 
  private:
   struct State;
+  friend class BodyQueries;  // broad_queries.h
   friend BroadPhase detail::make_broad_phase(MotionSource source, const BroadPhaseOptions& options,
                                              const detail::MakeMethod& make);
   BroadPhase(MotionSource source, const BroadPhaseOptions& options, const detail::MakeMethod& make);
@@ -232,6 +234,7 @@ class BroadPhase {
   Advance process_steps(double t_now, const WorkBudget* budget);
   BodyId take_in(std::uint8_t importance, const BodyFilter& filter, const Motion* place);
   bool sleeps_until(double t) const noexcept { return t < wake_time_ && std::fabs(t) <= largest_time_; }
+  std::int64_t step_reported() const noexcept;
   void validate_up_to(std::int64_t step);
   void wake_for_change();
   void note_next_step();

@@ -54,8 +54,8 @@ StateSource states_of(const std::vector<BodyState>& values);
 
 struct BodyOptions {
   std::uint8_t importance = 0;  // 0 is the highest class; a pair is as important as the less important of its bodies
-  // Two bodies may touch if each one's mask has a bit of the other's group (BodyFilter::category). Others are no pair in
-  // the broad phase already, and cost nothing.
+  // Two bodies may touch if each one's mask has a bit of the other's group (BodyFilter::category). Others are no pair
+  // in the broad phase already, and cost nothing.
   std::uint32_t group = 1, mask = 0xffffffffu;
   // Above 0: also what happens between two steps is found, by a sweep from pose to pose. It is a promise that relative
   // to whatever the body may meet no origin moves faster. Lengths per second.

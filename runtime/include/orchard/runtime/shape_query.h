@@ -8,6 +8,7 @@
 #include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/packed_tree.h"
 #include "orchard/runtime/pose.h"
+#include "orchard/runtime/ray.h"
 
 // Simple shapes against one body. Coordinates, lengths and results are in the world's units. Answers are about the
 // triangles as stored (see vertex_error) and correct to rounding in double, about 1e-14 of the coordinates. Nothing is
@@ -56,10 +57,6 @@ std::optional<RayHit> cast_ray(const TreeView& tree, const Pose& pose, const std
                                double longest = std::numeric_limits<double>::infinity()) noexcept;
 
 // Many rays against one body: the same answers, and cheaper by what the pose costs each. hits.size() >= rays.size().
-struct Ray {
-  std::array<double, 3> origin{}, direction{};
-  double longest = std::numeric_limits<double>::infinity();
-};
 void cast_rays(const TreeView& tree, const Pose& pose, std::span<const Ray> rays,
                std::span<std::optional<RayHit>> hits) noexcept;
 

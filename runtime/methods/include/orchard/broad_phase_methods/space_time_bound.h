@@ -93,8 +93,8 @@ class IntersectionFinder {
   IntersectionFinder& operator=(IntersectionFinder&&) noexcept;
   ~IntersectionFinder();
 
-  const Intersections& find(std::span<const SpaceTimeBound> bounds, double duration,
-                            const IntersectionOptions& options, const BoundFilter& filter = {});
+  const Intersections& find(std::span<const SpaceTimeBound> bounds, double duration, const IntersectionOptions& options,
+                            const BoundFilter& filter = {});
   std::size_t memory_bytes() const noexcept;
 
  private:
