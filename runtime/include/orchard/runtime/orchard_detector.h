@@ -7,6 +7,7 @@
 #define ORCHARD_RUNTIME_ORCHARD_DETECTOR_H
 
 #include "orchard/runtime/orchard.h"
+#include "orchard/runtime/orchard_broad_phase.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -15,11 +16,6 @@ extern "C" {
 typedef struct orchard_detector orchard_detector;
 typedef uint32_t orchard_shape;
 #define ORCHARD_NO_SHAPE 0xffffffffu
-
-typedef struct orchard_body {
-  uint32_t index, generation; /* no body: ORCHARD_NO_BODY, 0 */
-} orchard_body;
-#define ORCHARD_NO_BODY 0xffffffffu
 
 /* What is known of a body at the time of a step; the promise (velocity .. expiry) is about pose.translation. */
 typedef struct orchard_body_state {
@@ -37,8 +33,8 @@ typedef struct orchard_part {
 } orchard_part;
 
 typedef struct orchard_body_options {
-  uint8_t importance; /* 0 is the highest class */
-  uint32_t group, mask;
+  uint8_t importance;      /* 0 is the highest class */
+  uint32_t group, mask;    /* two may touch if each one's mask has a bit of the other's group */
   double continuous_speed; /* 0: not continuous */
   double reach;            /* 0: as far as the parts reach */
   int suggest;             /* needs orchard_detector_options.watch */
@@ -47,8 +43,6 @@ typedef struct orchard_body_options {
 /* Fills states[i] with that of bodies[i] (indices) at `time`. */
 typedef void (*orchard_state_source)(void* context, double time, const uint32_t* bodies, size_t count,
                                      orchard_body_state* states);
-/* 0: the pair shall not be asked about. */
-typedef int (*orchard_pair_filter)(void* context, orchard_body a, orchard_body b);
 
 /* Calls job(data, i) for each i < count, on any threads, and returns when all have returned. */
 typedef void (*orchard_run_jobs)(void* context, size_t count, void (*job)(void* data, size_t index), void* data);
