@@ -7,4 +7,7 @@ using namespace orchard::broad_phase_methods;
 
 extern MotionSource source;
 extern double t;
+extern BroadPhase world;
+extern Vec3 origin, direction;
 void narrow_phase(const BodyPair& pair);
+void wake(BodyIndex body);
