@@ -212,6 +212,7 @@ class Sequence {
     if (mode_ == 3) budget.time = std::chrono::nanoseconds(0);
     if (mode_ == 4) budget.work = 1'000'000;
     const Advance now = mode_ == 0 ? world_.advance(now_) : world_.advance(now_, budget);
+    ASSERT_EQ(world_.promises_broken(), 0u);
     const std::vector<BodyIndex> refused(now.refused.begin(), now.refused.end());
     const bool complete = now.incomplete_from == kNoClass;
     ASSERT_EQ(complete, now.left_over == 0);
@@ -267,6 +268,7 @@ TEST_P(Sequences, OfAnyCallsAreAnsweredRight) {
     test::AnyOptions options{.method = GetParam(), .common = {.time_step = kStep}};
     if (seed % 3 == 1) options.common.window = static_cast<std::uint32_t>(1 + seed % 30);
     if (seed % 4 == 2) options.common.vectors = false;
+    options.common.validate = seed % 5 == 0;
     if (seed % 2 == 1) options.rebuild = test::Rebuild::everything;
     const std::size_t crowd = !events ? 12 : seed % 10 == 9 ? 220 : seed % 10 == 8 ? 90 : 15;
     Sequence sequence(seed, options, crowd);
