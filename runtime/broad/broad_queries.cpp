@@ -16,7 +16,7 @@ constexpr double kRounding = 1e-12;  // of the coordinates: more than the tests'
 
 bool fits(double x) noexcept { return std::fabs(x) <= kLargestNumber; }  // not NaN
 bool fits(const Vec3& v) noexcept { return fits(v[0]) && fits(v[1]) && fits(v[2]); }
-double largest(const Vec3& v) noexcept { return std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])}); }
+double max_coordinate(const Vec3& v) noexcept { return std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])}); }
 double length(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
 
 bool admits(const QueryFilter& query, const BodyFilter& body) noexcept {
@@ -38,7 +38,7 @@ struct BodyQueries::Line {
   double unit, length;  // of what `along` counts, and as many of it
 
   Line(const Vec3& from, const Vec3& direction, double longest) noexcept : origin(from), way{1, 0, 0} {
-    const double size = largest(direction);  // squares of very small ones vanish
+    const double size = max_coordinate(direction);  // squares of very small ones vanish
     const Vec3 scaled = size > 0 ? (1 / size) * direction : Vec3{};
     const double norm = runtime::length(scaled);
     if (size > 0) way = (1 / norm) * scaled;
@@ -150,7 +150,7 @@ void BodyQueries::walk(const Line& line, Hits& hits) {
 
 std::optional<BodyHit> BodyQueries::first_hit(const Ray& ray, const QueryFilter& filter) {
   const Vec3 direction = ray.direction;
-  if (!begin(fits(Vec3(ray.origin)) && fits(direction) && largest(direction) > 0 && ray.longest >= 0)) return {};
+  if (!begin(fits(Vec3(ray.origin)) && fits(direction) && max_coordinate(direction) > 0 && ray.longest >= 0)) return {};
   return first_along({ray.origin, direction, ray.longest}, filter);
 }
 
@@ -168,7 +168,7 @@ std::optional<BodyHit> BodyQueries::first_along(const Line& line, const QueryFil
 
 std::span<const BodyHit> BodyQueries::all_hits(const Ray& ray, const QueryFilter& filter) {
   const Vec3 direction = ray.direction;
-  if (!begin(fits(Vec3(ray.origin)) && fits(direction) && largest(direction) > 0 && ray.longest >= 0)) return {};
+  if (!begin(fits(Vec3(ray.origin)) && fits(direction) && max_coordinate(direction) > 0 && ray.longest >= 0)) return {};
   return all_along({ray.origin, direction, ray.longest}, filter);
 }
 
@@ -190,7 +190,7 @@ std::span<const BodyHit> BodyQueries::all_along(const Line& line, const QueryFil
 template <typename Touches>
 std::span<const BodyIndex> BodyQueries::touching(const Vec3& lower, const Vec3& upper, const QueryFilter& filter,
                                                  const Touches& touches) {
-  const double spare = kRounding * std::max(largest(lower), largest(upper));
+  const double spare = kRounding * std::max(max_coordinate(lower), max_coordinate(upper));
   const Vec3 wider = {spare, spare, spare};
   const Near near = world_->state_->method->near_box(lower - wider, upper + wider, candidates_);
   use_motions(near == Near::untold ? everybody() : candidates_, filter, [&](BodyIndex body, const Motion& motion) {
@@ -230,7 +230,7 @@ std::span<const NearBody> BodyQueries::nearest(const Vec3& point, std::size_t k,
   const auto note = [&](BodyIndex body, const Motion& motion) {
     near_.push_back({body, std::max(0.0, length(motion.position - point) - motion.radius)});
   };
-  const double spare = kRounding * largest(point);
+  const double spare = kRounding * max_coordinate(point);
   double reach = kFirstReach * method.cell_size() * std::cbrt(static_cast<double>(k)) + spare;
   for (Near covered = Near::some; covered == Near::some; reach *= 2) {
     const Vec3 wide = {reach + 2 * spare, reach + 2 * spare, reach + 2 * spare};

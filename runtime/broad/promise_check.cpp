@@ -7,7 +7,8 @@ namespace {
 
 // Whoever keeps the one keeps the other, too.
 bool implies(const Motion& newer, const Motion& older) noexcept {
-  const bool side = older.half_space == Vec3{} || older.half_space == newer.half_space;
+  const bool any = dot(older.half_space, older.half_space) > 0;
+  const bool side = !any || older.half_space == newer.half_space;
   return side && newer.acceleration <= older.acceleration && newer.drift <= older.drift && newer.expiry >= older.expiry;
 }
 

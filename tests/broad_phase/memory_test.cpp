@@ -10,19 +10,19 @@ namespace {
 
 constexpr double kStep = 0.01;
 constexpr int kSteps = 40;
-constexpr std::size_t kMostBodies = 60;
+constexpr std::size_t kMaxCount = 60;
 
 // An application all of whose calls go through attempt(), which makes one allocation of the library's fail.
 class Application {
  public:
   Application(const test::AnyOptions& options, std::uint64_t seed, std::size_t failing)
-      : draw_(seed), left_(failing), values_(kMostBodies), known_(kMostBodies) {
+      : draw_(seed), left_(failing), values_(kMaxCount), known_(kMaxCount) {
     world_.emplace(test::make_broad_phase(values_of(values_), options));
   }
 
   void run() {
     for (int step = 0; step < kSteps && world_->valid(); ++step) {
-      for (BodyIndex i = 0; i < kMostBodies; ++i) {
+      for (BodyIndex i = 0; i < kMaxCount; ++i) {
         if (known_[i].alive && !known_[i].fixed)
           values_[i].position = values_[i].position + kStep * values_[i].velocity;
       }
@@ -72,12 +72,12 @@ class Application {
   }
 
   void change() {
-    const auto i = static_cast<BodyIndex>(draw_.bits() % kMostBodies);
+    const auto i = static_cast<BodyIndex>(draw_.bits() % kMaxCount);
     Known& known = known_[i];
     const auto rank = static_cast<std::uint8_t>(draw_.bits() % 3 * 50);
     const double dice = draw_.uniform(0, 1);
     if (dice < 0.5) {
-      if (world_->size() == kMostBodies) return;
+      if (world_->size() == kMaxCount) return;
       const Motion m = random_motion();
       const bool fixed = draw_.bits() % 3 == 0;
       BodyId id;
@@ -109,7 +109,7 @@ class Application {
 
   void advance(int step) {
     std::vector<BodyPair> found, expected;
-    found.reserve(kMostBodies * kMostBodies);
+    found.reserve(kMaxCount * kMaxCount);
     const bool within = draw_.bits() % 3 == 0;
     attempt([&] {
       const Advance now =
@@ -120,8 +120,8 @@ class Application {
       expect_refused(step);
       return;
     }
-    for (BodyIndex i = 0; i < kMostBodies; ++i) {
-      for (BodyIndex j = i + 1; j < kMostBodies; ++j) {
+    for (BodyIndex i = 0; i < kMaxCount; ++i) {
+      for (BodyIndex j = i + 1; j < kMaxCount; ++j) {
         const Known &a = known_[i], &b = known_[j];
         if (!a.alive || !b.alive || (a.fixed && b.fixed) || !spheres_touch(values_[i], values_[j])) continue;
         if (!may_pair(world_->filter_of(a.id), world_->filter_of(b.id)) || (filtered_ && (i + j) % 3 == 0)) continue;

@@ -142,8 +142,8 @@ typedef struct orchard_near_body {
 } orchard_near_body;
 
 double orchard_broad_phase_query_time(const orchard_broad_phase* world);
-/* 1 and the hit (null: not wanted), or 0; -1 where nothing can be said: numbers that are not finite, a direction of 0, no memory, a broad
- * phase that is not valid. `longest` may be INFINITY. */
+/* 1 and the hit (null: not wanted), or 0; -1 where nothing can be said: numbers that are not finite, a direction of 0,
+ * no memory, a broad phase that is not valid. `longest` may be INFINITY. */
 int orchard_broad_phase_first_hit(orchard_broad_phase* world, const double origin[3], const double direction[3],
                                   double longest, const orchard_query_filter* filter, orchard_body_hit* hit);
 int orchard_broad_phase_first_on_segment(orchard_broad_phase* world, const double p[3], const double q[3],
