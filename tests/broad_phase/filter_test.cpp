@@ -35,7 +35,8 @@ struct Triples {
   explicit Triples(std::size_t bodies, bool grouped, const test::AnyOptions& options)
       : world(test::make_broad_phase(values_of(values), options)) {
     for (std::size_t i = 0; i < 3 * bodies; ++i) {
-      const double body = static_cast<double>(i / 3), part = static_cast<double>(i % 3);
+      const std::size_t which = i / 3;
+      const double body = static_cast<double>(which), part = static_cast<double>(i % 3);
       values.push_back({.position = {10 * body + part, 0, 0}, .radius = 1, .acceleration = 0.1});
       world.add(0, {.group = grouped ? -1 - static_cast<std::int32_t>(i / 3) : 0});
     }
@@ -96,7 +97,8 @@ TEST(BodyFilters, ExcludedPairsCostNothingAtLaterSteps) {
 TEST(BodyFilters, TheApplicationsOwnIsAskedOnlyAboutNearBodies) {
   std::vector<Motion> values(400);
   for (std::size_t i = 0; i < values.size(); ++i) {
-    values[i].position = {3.0 * static_cast<double>(i / 2), static_cast<double>(i % 2), 0};  // in twos
+    const std::size_t two = i / 2;
+    values[i].position = {3.0 * static_cast<double>(two), static_cast<double>(i % 2), 0};
     values[i].radius = 1;
   }
   BroadPhase world(values_of(values), {.time_step = kStep});

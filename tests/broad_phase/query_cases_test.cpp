@@ -127,7 +127,7 @@ TEST(QueryCases, AskFewBodies) {
   const test::MovingBodies bodies({.bodies = 8000, .ball = 40, .least_radius = 0.1, .largest_radius = 0.4}, 1);
   BroadPhase world(bodies.source(), {.time_step = kStep});
   for (std::size_t i = 0; i < bodies.size(); ++i) world.add();
-  for (double t = 0; t < 0.3; t += kStep) world.advance(t);
+  for (int step = 0; step < 30; ++step) world.advance(kStep * step);
   BodyQueries queries(world);
   test::Draw draw(2);
   const std::uint64_t before = world.motions_asked();

@@ -48,7 +48,8 @@ TEST_P(Queries, AreAnsweredAsByAskingEveryBody) {
     EXPECT_EQ(queries.time(), 0);
     ask();  // before the first step
     const double frame = draw.uniform(0.004, 0.05);
-    for (double t = 0; t < 0.6; t += frame) {
+    for (int k = 0; k * frame < 0.6; ++k) {
+      const double t = k * frame;
       for (Advance now = world.advance(t); !now.pairs.empty(); now = world.advance(t)) {
         if (draw.bits() % 8 != 0) continue;
         EXPECT_EQ(queries.time(), now.time);
