@@ -91,7 +91,7 @@ TEST(BodyFilters, ExcludedPairsCostNothingAtLaterSteps) {
   }
   EXPECT_EQ(found[0], found[1]);
   EXPECT_FALSE(found[1].empty());
-  EXPECT_LT(3 * asked[1], asked[0]);
+  EXPECT_LT(2 * asked[1], asked[0]);
 }
 
 TEST(BodyFilters, TheApplicationsOwnIsAskedOnlyAboutNearBodies) {
