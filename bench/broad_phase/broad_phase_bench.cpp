@@ -3,15 +3,13 @@
 //   broad_phase_bench [table|variations|worst|budgets] [most bodies]
 // 300 steps of 0.01 s. Times are of detection only, the motion is the application's; of each step the fastest of some
 // runs, summed. All have to report the same pairs at every step.
-#include <ctime>
-
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <string>
 
+#include "measure.h"
 #include "rivals.h"
 #include "spatial_hash.h"
 
@@ -23,64 +21,10 @@ using orchard::runtime::BroadPhaseOptions;
 
 constexpr int kSteps = 300;
 
-// Processor time where it is fine enough, so that other work on the machine does not count; else the time of day.
-class Stopwatch {
- public:
-  explicit Stopwatch(std::size_t bodies) : processor_(bodies >= 10000) {
-    overhead_ = 1;
-    for (int i = 0; i < 2000; ++i) {
-      const double begin = now();
-      overhead_ = std::min(overhead_, now() - begin);
-    }
-  }
-  double now() const {
-    if (processor_) {
-      timespec t{};
-      clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-      return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-    }
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-  }
-  double since(double begin) const { return std::max(0.0, now() - begin - overhead_); }
-
- private:
-  bool processor_;
-  double overhead_;  // of two readings with nothing between them
-};
-
-struct Result {
-  std::vector<double> steps;         // seconds of each step
-  std::vector<std::uint64_t> pairs;  // a checksum of each step's pairs
-  std::size_t memory = 0;
-  std::uint64_t asked = 0;
-  bool whole = true;  // all steps were run
-
-  double total() const {
-    double sum = 0;
-    for (const double s : steps) sum += s;
-    return sum;
-  }
-  double worst(std::size_t from) const {
-    double most = 0;
-    for (std::size_t i = from; i < steps.size(); ++i) most = std::max(most, steps[i]);
-    return most;
-  }
-};
-
-// Order does not matter.
-std::uint64_t checksum(std::span<const BodyPair> pairs) {
-  std::uint64_t sum = pairs.size();
-  for (const BodyPair& p : pairs) {
-    orchard::runtime::test::Draw mixed(std::uint64_t{p.a} << 32 | p.b);
-    sum += mixed.bits();
-  }
-  return sum;
-}
-
 using Make = std::function<std::function<std::span<const BodyPair>(const Scene&)>(Scene&, Result&)>;
 
 Result measure(const SceneShape& shape, int runs, int steps, const Make& make) {
-  const Stopwatch watch(shape.bodies);
+  const Stopwatch watch(shape.bodies >= 10000);
   Result best;
   for (int run = 0; run < runs; ++run) {
     Scene scene(shape, 7);
@@ -94,11 +38,7 @@ Result measure(const SceneShape& shape, int runs, int steps, const Make& make) {
       scene.next_step();
     }
     find(scene);  // lets it note its memory
-    if (run == 0) {
-      best = result;
-    } else {
-      for (std::size_t i = 0; i < best.steps.size(); ++i) best.steps[i] = std::min(best.steps[i], result.steps[i]);
-    }
+    best.keep_fastest(result);
   }
   best.whole = steps == kSteps;
   return best;
@@ -140,15 +80,6 @@ Result hash_result(const SceneShape& shape, int runs, double& cell) {
   return measure(shape, runs, kSteps, rival([cell](const Scene& scene) {
                    return std::make_unique<SpatialHash>(scene.positions(), scene.radii(), SpatialHash::Options{cell});
                  }));
-}
-
-bool same(const char* name, const Result& a, const Result& b) {
-  for (std::size_t i = 0; i < std::min(a.pairs.size(), b.pairs.size()); ++i) {
-    if (a.pairs[i] == b.pairs[i]) continue;
-    std::printf("%s reports other pairs at step %zu\n", name, i);
-    return false;
-  }
-  return true;
 }
 
 int runs_for(std::size_t bodies) { return bodies <= 1000 ? 15 : bodies <= 10000 ? 5 : 3; }

@@ -43,24 +43,27 @@ void SpatialHash::enter(BodyIndex i, const Range& range, std::vector<BodyPair>& 
   const auto& [first, last] = range;
   const Vec3& p = positions_[i];
   const double r = radii_[i];
+  constexpr int kCoordinateBits = 21;
   for (std::uint32_t z = first[2]; z <= last[2]; ++z) {
     for (std::uint32_t y = first[1]; y <= last[1]; ++y) {
       for (std::uint32_t x = first[0]; x <= last[0]; ++x) {
         Bucket& bucket = buckets_[hash_of(x, y, z) & mask_];
         if (bucket.stamp != stamp_) bucket = {stamp_, kNone};
+        const std::uint64_t cell = (std::uint64_t{z} << kCoordinateBits | y) << kCoordinateBits | x;
         for (std::uint32_t e = bucket.entry; e != kNone; e = entries_[e].next) {
           const Entry& q = entries_[e];
+          if (q.cell != cell) continue;
           const double reach = r + q.radius, dx = q.x - p[0], dy = q.y - p[1], dz = q.z - p[2];
           const bool meet = Cubes ? std::fabs(dx) <= reach && std::fabs(dy) <= reach && std::fabs(dz) <= reach
                                   : dx * dx + dy * dy + dz * dz <= reach * reach;
-          if (!meet || q.body == i) continue;
+          if (!meet) continue;
           const Range other = range_of(q.body);
           if (std::max(first[0], other.first[0]) == x && std::max(first[1], other.first[1]) == y &&
               std::max(first[2], other.first[2]) == z) {
             pairs.push_back({std::min(i, q.body), std::max(i, q.body)});
           }
         }
-        entries_.push_back({p[0], p[1], p[2], r, i, bucket.entry});
+        entries_.push_back({p[0], p[1], p[2], r, cell, i, bucket.entry});
         bucket.entry = static_cast<std::uint32_t>(entries_.size() - 1);
       }
     }
@@ -85,22 +88,64 @@ void SpatialHash::find_all(std::vector<BodyPair>& pairs) {
 
 void SpatialHash::find(std::vector<BodyPair>& pairs) { cubes_ ? find_all<true>(pairs) : find_all<false>(pairs); }
 
+namespace {
+
+double fastest_of(SpatialHash& hash, int rounds) {
+  std::vector<BodyPair> pairs;
+  double fastest = 1e300;
+  for (int round = 0; round < rounds; ++round) {
+    pairs.clear();
+    const auto begin = std::chrono::steady_clock::now();
+    hash.find(pairs);
+    fastest = std::min(fastest, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  }
+  return fastest;
+}
+
+// The edge of the cube that each body has, were they spread evenly over the box around them.
+double even_spacing(const std::vector<Vec3>& positions) {
+  double volume = 1;
+  for (std::size_t d = 0; d < 3; ++d) {
+    const auto less = [&](const Vec3& a, const Vec3& b) { return a[d] < b[d]; };
+    const auto [low, high] = std::minmax_element(positions.begin(), positions.end(), less);
+    volume *= std::max(1.0, (*high)[d] - (*low)[d]);
+  }
+  return std::cbrt(volume / static_cast<double>(positions.size()));
+}
+
+}  // namespace
+
 double SpatialHash::best_cell_size(const std::vector<Vec3>& positions, const std::vector<double>& radii, double spacing,
                                    const Options& options) {
   double best = spacing, least = 1e300;
-  std::vector<BodyPair> pairs;
   for (double size = 3; size < 2 * spacing + 3; size *= 1.4) {
     Options tried = options;
     tried.cell_size = size;
     SpatialHash hash(positions, radii, tried);
-    double fastest = 1e300;
-    for (int round = 0; round < 5; ++round) {
-      pairs.clear();
-      const auto begin = std::chrono::steady_clock::now();
-      hash.find(pairs);
-      fastest = std::min(fastest, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-    }
+    const double fastest = fastest_of(hash, 5);
     if (fastest < least) least = fastest, best = size;
+  }
+  return best;
+}
+
+double SpatialHash::best_cell_size(const std::vector<State>& states, const std::vector<double>& radii) {
+  constexpr double kMostEntries = 40;  // a body: cells so small are not worth trying
+  double radius = 0, widest = 0, farthest = 0, best = 0, least = 1e300;
+  for (const double r : radii) radius += r / static_cast<double>(radii.size());
+  for (const State& state : states) {
+    widest = std::max(widest, even_spacing(state));
+    for (const Vec3& p : state) farthest = std::max({farthest, std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])});
+  }
+  for (double size = 0.5 * radius; size < std::max(3 * widest, 8 * radius); size *= 1.25) {
+    double entries = 0;
+    for (const double r : radii) entries += std::pow(1 + 2 * r / size, 3);
+    if (entries > kMostEntries * static_cast<double>(radii.size()) || farthest > 0.9 * kMiddle * size) continue;
+    double sum = 0;
+    for (const State& state : states) {
+      SpatialHash hash(state, radii, {size});
+      sum += fastest_of(hash, 3);
+    }
+    if (sum < least) least = sum, best = size;
   }
   return best;
 }

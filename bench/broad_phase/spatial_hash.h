@@ -5,8 +5,9 @@ namespace orchard::bench {
 
 // Turk's spatial hash, rebuilt at each step: every body enters the cells that its box overlaps and is compared with
 // what is there. Cells are buckets of a table with a stamp, so that nothing is cleared, and are loaded a block of
-// bodies ahead; an entry has its sphere with it. A pair counts in the cell of the lower corner of what its boxes have
-// in common. Of spheres, or of isothetic cubes with the radius as half the edge (7.1).
+// bodies ahead; an entry has its sphere with it, and its cell, as several cells share a bucket. A pair counts in the
+// cell of the lower corner of what its boxes have in common, and once. Of spheres, or of isothetic cubes with the
+// radius as half the edge (7.1).
 class SpatialHash final : public Rival {
  public:
   struct Options {
@@ -22,6 +23,10 @@ class SpatialHash final : public Rival {
   // The fastest of a row of cell sizes, on the positions as they are.
   static double best_cell_size(const std::vector<Vec3>& positions, const std::vector<double>& radii, double spacing,
                                const Options& options);
+  // The same by the sum over several states of a scene, from cells of half a mean radius up to three times the spacing
+  // that their volume has room for.
+  using State = std::vector<Vec3>;
+  static double best_cell_size(const std::vector<State>& states, const std::vector<double>& radii);
 
  private:
   struct Bucket {
@@ -29,6 +34,7 @@ class SpatialHash final : public Rival {
   };
   struct Entry {
     double x, y, z, radius;
+    std::uint64_t cell;
     std::uint32_t body, next;
   };
   struct Range {
