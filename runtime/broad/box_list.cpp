@@ -79,6 +79,52 @@ struct BoxList::VectorLanes {
 };
 #endif
 
+#ifdef ORCHARD_VECTORS
+// The same as two vectors of eight, for machines that have no wider ones: of the others GCC keeps parts in memory.
+struct BoxList::HalvesLanes {
+  using Eight __attribute__((vector_size(32))) = std::uint32_t;
+  using Signed __attribute__((vector_size(32))) = std::int32_t;
+  using Four __attribute__((vector_size(32))) = std::uint64_t;
+  struct Words {
+    Eight low, high;
+  };
+  static constexpr Words kAllApart = {~Eight{}, ~Eight{}};
+  template <typename Boxes>
+  ORCHARD_INLINE static Eight eight_apart(const Boxes& boxes, std::size_t first, const QuantumBox& box) noexcept {
+    Eight words{};
+    for (std::size_t d = 0; d < 3; ++d) {  // numbers are spread
+      words |= at(boxes.upper[d].data() + first) - box.lower[d];
+      words |= box.upper[d] - at(boxes.lower[d].data() + first);
+    }
+    return words;
+  }
+  template <typename Boxes>
+  ORCHARD_INLINE static Words apart(const Boxes& boxes, std::size_t first, const QuantumBox& box) noexcept {
+    return {eight_apart(boxes, first, box), eight_apart(boxes, first + 8, box)};
+  }
+  ORCHARD_INLINE static Words before(const Words& apart, std::size_t end) noexcept {
+    const auto last = static_cast<std::uint32_t>(end) - 1;  // what lies beyond gives a negative difference
+    const Eight low = {0, 1, 2, 3, 4, 5, 6, 7};
+    return {apart.low | (last - low), apart.high | (last - (low + 8))};
+  }
+  ORCHARD_INLINE static Words both(const Words& a, const Words& b) noexcept { return {a.low & b.low, a.high & b.high}; }
+  ORCHARD_INLINE static std::uint32_t meeting(const Words& apart) noexcept {
+    const Signed low = reinterpret_cast<Signed>(~apart.low) >> 31, high = reinterpret_cast<Signed>(~apart.high) >> 31;
+    const Signed bits = {1, 2, 4, 8, 16, 32, 64, 128};
+    const Four met = reinterpret_cast<Four>((low & bits) | (high & (bits << 8)));
+    const std::uint64_t all = (met[0] | met[1]) | (met[2] | met[3]);
+    return static_cast<std::uint32_t>(all | all >> 32);
+  }
+
+ private:
+  ORCHARD_INLINE static Eight at(const std::uint32_t* from) noexcept {
+    Eight result;
+    std::memcpy(&result, from, sizeof result);
+    return result;
+  }
+};
+#endif
+
 void BoxList::reset(std::size_t slots) {
   groups_.clear();
   filled_ = 0;
@@ -145,15 +191,24 @@ void BoxList::insert_plain(std::span<const BodyIndex> bodies, const BoxBlock& bl
   insert_all<PlainLanes>(bodies, block, pairs);
 }
 
-#ifdef ORCHARD_VECTORS
 void BoxList::insert_vectors(std::span<const BodyIndex> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs) {
-  detail::per_machine([&]() ORCHARD_INLINE_LAMBDA { insert_all<VectorLanes>(bodies, block, pairs); });
-}
+#if defined(ORCHARD_MACHINES)
+  switch (machine()) {
+    case Machine::avx512:
+      return work_with_avx512([&]() ORCHARD_INLINE_LAMBDA { insert_all<VectorLanes>(bodies, block, pairs); });
+    case Machine::avx2:
+      return work_with_avx2([&]() ORCHARD_INLINE_LAMBDA { insert_all<HalvesLanes>(bodies, block, pairs); });
+    default:  // compilers make better vectors of four of it than of vectors of eight
+      return insert_all<PlainLanes>(bodies, block, pairs);
+  }
+#elif defined(ORCHARD_VECTORS) && defined(__AVX512BW__)
+  insert_all<VectorLanes>(bodies, block, pairs);
+#elif defined(ORCHARD_VECTORS) && (defined(__AVX2__) || defined(__aarch64__))
+  insert_all<HalvesLanes>(bodies, block, pairs);
 #else
-void BoxList::insert_vectors(std::span<const BodyIndex> bodies, const BoxBlock& block, std::vector<BodyPair>& pairs) {
   insert_all<PlainLanes>(bodies, block, pairs);
-}
 #endif
+}
 
 void BoxList::insert(std::span<const BodyIndex> bodies, const BoxBlock& block, bool vectors,
                      std::vector<BodyPair>& pairs) {

@@ -12,7 +12,7 @@ class BoxList {
 
   void reset(std::size_t slots);  // empties the list; bodies are below
   void grow(std::size_t slots);   // keeps what is in it
-  void release() { groups_ = {}; }
+  void release() { give_back(groups_); }
   // Adds bodies[i] with block's box i and appends the pairs whose boxes meet, of each of them and everything in before.
   void insert(std::span<const BodyIndex> bodies, const BoxBlock& block, bool vectors, std::vector<BodyPair>& pairs);
   void append_meeting(const QuantumBox& box, std::vector<BodyIndex>& bodies) const;  // those whose boxes meet it
@@ -28,6 +28,7 @@ class BoxList {
     std::array<std::array<std::uint32_t, kGroup>, 3> lower, upper;
   };
   struct PlainLanes;
+  struct HalvesLanes;
   struct VectorLanes;
 
   void set(BodyIndex body, const QuantumBox& box) noexcept;

@@ -193,6 +193,12 @@ class UndoUnlessDone {
   bool done_ = false;
 };
 
+// Empties a vector and gives its memory back, which assigning {} does not.
+template <typename T>
+void give_back(std::vector<T>& v) noexcept {
+  std::vector<T>().swap(v);
+}
+
 // Starts loading what will be written soon.
 inline void prefetch(const void* where) noexcept {
 #ifdef __GNUC__

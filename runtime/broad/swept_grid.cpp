@@ -1,6 +1,7 @@
 #include "swept_grid.h"
 
 #include <bit>
+#include <cstring>
 
 #include "../machine.h"
 #include "../vector_support.h"
@@ -14,8 +15,6 @@ constexpr std::uint32_t kLargest = 0x1f7dfu;     // three fields, each of them k
 static_assert(kIdShift == 6 * kFieldBits);
 static_assert(kMaxBodies < (1u << (64 - kIdShift)));
 
-std::uint64_t first_bytes(std::uint32_t count) noexcept { return (std::uint64_t{1} << (8 * count)) - 1; }
-
 // A box clipped to a cell, in three fields each: how far it begins from the cell's lower end, and ends from its upper
 // end. As an entry or as a query: entry's field <= query's field in all six means that they meet.
 ORCHARD_INLINE std::uint64_t entry_of(std::uint32_t from, std::uint32_t below) noexcept {
@@ -25,19 +24,41 @@ ORCHARD_INLINE std::uint64_t query_of(std::uint32_t from, std::uint32_t below) n
   return entry_of(kLargest - below, kLargest - from) | kGuards;
 }
 
-// Bit 8 i: entry i of the line meets the query. Only the first line.count bytes mean anything.
+// Which of a line's entries meet the query, as bits: kSpread of them for each entry.
 struct PlainCompare {
+  static constexpr int kSpread = 1;
   static std::uint64_t meeting(const CellLine& line, std::uint64_t query) noexcept {
     std::uint64_t bits = 0;
     for (std::uint32_t i = 0; i < 7; ++i) {
-      bits |= std::uint64_t{((query - line.entries[i]) & kGuards) == kGuards} << (8 * i);
+      bits |= std::uint64_t{((query - line.entries[i]) & kGuards) == kGuards} << i;
     }
     return bits;
   }
 };
 
 #ifdef ORCHARD_VECTORS
-struct VectorCompare {
+// For machines with vectors of 32 bytes: of twice as many GCC keeps parts in memory.
+struct HalvesCompare {
+  static constexpr int kSpread = 1;
+  using Words __attribute__((vector_size(32))) = std::uint64_t;
+  using Two __attribute__((vector_size(16))) = std::uint64_t;
+  ORCHARD_INLINE static Words at(const CellLine& line, std::size_t byte) noexcept {
+    Words result;
+    std::memcpy(&result, reinterpret_cast<const char*>(&line) + byte, sizeof result);
+    return result;
+  }
+  ORCHARD_INLINE static std::uint64_t meeting(const CellLine& line, std::uint64_t query) noexcept {
+    const Words first = at(line, 0), second = at(line, 32);  // the eighth is the counters
+    const Words met_first = reinterpret_cast<Words>(((query - first) & kGuards) == kGuards) & Words{1, 2, 4, 8};
+    const Words met_second = reinterpret_cast<Words>(((query - second) & kGuards) == kGuards) & Words{16, 32, 64, 0};
+    const Words met = met_first | met_second;
+    const Two both = __builtin_shufflevector(met, met, 0, 1) | __builtin_shufflevector(met, met, 2, 3);
+    return both[0] | both[1];
+  }
+};
+
+struct WideCompare {
+  static constexpr int kSpread = 8;
   using Words __attribute__((vector_size(64))) = std::uint64_t;
   using Bytes __attribute__((vector_size(8))) = std::uint8_t;
   ORCHARD_INLINE static std::uint64_t meeting(const CellLine& line, std::uint64_t query) noexcept {
@@ -47,6 +68,12 @@ struct VectorCompare {
   }
 };
 #endif
+
+// The bits of the first entries: the others are of no meaning.
+template <typename Kind>
+ORCHARD_INLINE std::uint64_t met_among(const CellLine& line, std::uint64_t query, std::uint32_t count) noexcept {
+  return Kind::meeting(line, query) & ((std::uint64_t{1} << (Kind::kSpread * static_cast<int>(count))) - 1);
+}
 
 }  // namespace
 
@@ -58,21 +85,28 @@ struct SweptGrid::Insertion {
   std::vector<BodyPair>& pairs;
 };
 
-// Of the entries hit, those whose box really meets the body's, and in this cell first.
+// Of the entries hit, those whose box really meets the body's, and in this cell first. Without branches that depend on
+// the boxes: in dense worlds nobody can tell. Quanta are below 2^31: the difference of two that are apart is negative.
+template <int kSpread>
 void SweptGrid::report(const Insertion& insertion, const CellLine& line, std::uint64_t hits, BodyIndex body,
                        Steps steps) {
-  const QuantumBox& box = insertion.boxes[body];
+  const QuantumBox box = insertion.boxes[body];
+  std::array<BodyPair, 8> found;
+  std::size_t count = 0;
   for (; hits != 0; hits &= hits - 1) {
-    const std::uint64_t entry = line.entries[static_cast<std::size_t>(std::countr_zero(hits)) / 8];
+    const std::uint64_t entry = line.entries[static_cast<std::size_t>(std::countr_zero(hits)) / kSpread];
     const auto other = static_cast<BodyIndex>(entry >> kIdShift);
     const QuantumBox& theirs = insertion.boxes[other];
-    bool here = box.meets(theirs);
+    std::uint32_t apart = 0, elsewhere = 0;
     for (std::size_t d = 0; d < 3; ++d) {
       const std::uint32_t cell = (box.lower[d] >> kQuantumBits) + steps[d];
-      here = here && std::max(box.lower[d], theirs.lower[d]) >> kQuantumBits == cell;
+      apart |= (theirs.upper[d] - box.lower[d]) | (box.upper[d] - theirs.lower[d]);
+      elsewhere |= (std::max(box.lower[d], theirs.lower[d]) >> kQuantumBits) ^ cell;
     }
-    if (here) insertion.pairs.push_back(body < other ? BodyPair{body, other} : BodyPair{other, body});
+    found[count] = {std::min(body, other), std::max(body, other)};
+    count += (apart >> 31 | elsewhere) == 0;
   }
+  if (count > 0) insertion.pairs.insert(insertion.pairs.end(), found.begin(), found.begin() + count);
 }
 
 template <typename Kind>
@@ -81,8 +115,8 @@ ORCHARD_INLINE void SweptGrid::insert_in_line(const Insertion& insertion, const 
   CellLine& first = lines_[visit.line];
   const auto body = static_cast<BodyIndex>(visit.entry >> kIdShift);
   const std::uint32_t count = first.count, more = first.overflow;
-  const std::uint64_t hits = Kind::meeting(first, visit.query) & first_bytes(count);
-  if (hits != 0) report(insertion, first, hits, body, visit.steps);
+  const std::uint64_t hits = met_among<Kind>(first, visit.query, count);
+  if (hits != 0) report<Kind::kSpread>(insertion, first, hits, body, visit.steps);
   if (more == 0 && count < first.entries.size()) [[likely]] {
     first.entries[count] = visit.entry;
     first.count = count + 1;
@@ -91,8 +125,8 @@ ORCHARD_INLINE void SweptGrid::insert_in_line(const Insertion& insertion, const 
   for (std::uint32_t next = more; next != 0;) {
     const CellLine& line = overflow_[next - 1];
     ++counts_.lines_read;
-    const std::uint64_t met = Kind::meeting(line, visit.query) & first_bytes(line.count);
-    if (met != 0) report(insertion, line, met, body, visit.steps);
+    const std::uint64_t met = met_among<Kind>(line, visit.query, line.count);
+    if (met != 0) report<Kind::kSpread>(insertion, line, met, body, visit.steps);
     next = line.overflow;
   }
   append(first, visit.entry);
@@ -105,7 +139,7 @@ ORCHARD_INLINE void SweptGrid::encode(Batch& batch, std::span<const BodyIndex> b
   const std::size_t lanes = lanes_for(bodies.size());
   Numbers all_from{}, all_below{}, all_line{}, axes{};
   for (std::uint32_t d = 0; d < 3; ++d) {
-    const std::uint32_t field = kFieldBits * d, mask = mask_[d], shift = shift_[d];
+    const std::uint32_t field = kFieldBits * d, factor = factors_[d];
     Numbers from, below, line, next_below, next_line;
     for (std::size_t i = 0; i < lanes; ++i) {
       const std::uint32_t lower = block.lower[d][i], upper = block.upper[d][i];
@@ -113,25 +147,25 @@ ORCHARD_INLINE void SweptGrid::encode(Batch& batch, std::span<const BodyIndex> b
       from[i] = (lower & (kQuanta - 1)) << field;
       next_below[i] = (~upper & (kQuanta - 1)) << field;
       below[i] = last > cell ? 0 : next_below[i];
-      line[i] = (cell & mask) << shift;
-      next_line[i] = (last & mask) << shift;
+      line[i] = cell * factor;
+      next_line[i] = last * factor;
       axes[i] |= (last > cell ? 1u : 0u) << d | (last > cell + 1 ? 8u : 0u);
       all_from[i] |= from[i];
       all_below[i] |= below[i];
-      all_line[i] |= line[i];
+      all_line[i] += line[i];
     }
     batch.from[d] = from;
     batch.below[0][d] = below, batch.below[1][d] = next_below;
     batch.lines[0][d] = line, batch.lines[1][d] = next_line;
   }
   batch.axes = axes;
-  batch.line = all_line;
+  for (std::size_t i = 0; i < lanes; ++i) batch.line[i] = all_line[i] & mask_;
   batch.count = bodies.size();
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     batch.bodies[i] = bodies[i];
     batch.entry[i] = entry_of(all_from[i], all_below[i]) | std::uint64_t{bodies[i]} << kIdShift;
     batch.query[i] = query_of(all_from[i], all_below[i]);
-    prefetch(&lines_[all_line[i]]);  // they are all over memory
+    prefetch(&lines_[batch.line[i]]);  // they are all over memory
   }
 }
 
@@ -181,8 +215,9 @@ ORCHARD_INLINE void SweptGrid::leave_visits(const Insertion& insertion, const Ba
     for (std::size_t d = 0; d < 3; ++d) {
       if (steps[d] == 0) from |= batch.from[d][i];
       below |= batch.below[steps[d]][d][i];
-      line |= batch.lines[steps[d]][d][i];
+      line += batch.lines[steps[d]][d][i];
     }
+    line &= mask_;
     prefetch(&lines_[line]);
     queue.visits_[queue.visits_waiting_++] = {entry_of(from, below) | id, query_of(from, below), line, steps};
   }
@@ -228,13 +263,24 @@ ORCHARD_INLINE void SweptGrid::advance(const Insertion& insertion) {
 
 void SweptGrid::advance_plain(const Insertion& insertion) { advance<PlainCompare>(insertion); }
 
-#ifdef ORCHARD_VECTORS
 void SweptGrid::advance_vectors(const Insertion& insertion) {
-  detail::per_machine([&]() ORCHARD_INLINE_LAMBDA { advance<VectorCompare>(insertion); });
-}
+#if defined(ORCHARD_MACHINES)
+  const Machine chosen = machine();
+  if (chosen == Machine::avx512) {
+    return work_with_avx512([&]() ORCHARD_INLINE_LAMBDA { advance<WideCompare>(insertion); });
+  }
+  if (chosen == Machine::avx2) {
+    return work_with_avx2([&]() ORCHARD_INLINE_LAMBDA { advance<HalvesCompare>(insertion); });
+  }
+  advance<PlainCompare>(insertion);  // without comparisons of 64 bits vectors are no faster
+#elif defined(ORCHARD_VECTORS) && defined(__AVX512BW__)
+  advance<WideCompare>(insertion);
+#elif defined(ORCHARD_VECTORS) && (defined(__AVX2__) || defined(__aarch64__))
+  advance<HalvesCompare>(insertion);
 #else
-void SweptGrid::advance_vectors(const Insertion& insertion) { advance<PlainCompare>(insertion); }
+  advance<PlainCompare>(insertion);
 #endif
+}
 
 void SweptGrid::run(const Insertion& insertion, bool vectors) {
   const std::size_t before = insertion.pairs.size();

@@ -22,7 +22,8 @@ struct GridCounts {
   std::uint64_t bodies = 0, entries = 0, lines_read = 0, pairs = 0;
 };
 
-// The boxes of all bodies in a hashed uniform grid: cells far apart may share a line, which costs time only.
+// The boxes of all bodies in a hashed uniform grid: cells far apart may share a line, which costs time only. A cell's
+// line is a sum of its coordinates times a factor each, so that flat and thin worlds, too, use all lines evenly.
 // (The idea of one cache line per cell and the lower-corner rule: each pair of boxes is found in the one cell that
 // holds the lower corner of what they have in common.)
 class SweptGrid {
@@ -71,7 +72,7 @@ class SweptGrid {
   };
   struct Batch;
   std::uint32_t line_of(const Cell& cell) const noexcept {
-    return (cell[0] & mask_[0]) << shift_[0] | (cell[1] & mask_[1]) << shift_[1] | (cell[2] & mask_[2]) << shift_[2];
+    return (cell[0] * factors_[0] + cell[1] * factors_[1] + cell[2] * factors_[2]) & mask_;
   }
   void encode(Batch& batch, std::span<const BodyIndex> bodies, const BoxBlock& block) const noexcept;
   template <typename Kind>
@@ -87,6 +88,7 @@ class SweptGrid {
   void advance_vectors(const Insertion& insertion);
   template <typename Kind>
   void insert_in_line(const Insertion& insertion, const Visit& visit);
+  template <int kSpread>
   void report(const Insertion& insertion, const CellLine& line, std::uint64_t hits, BodyIndex body, Steps steps);
   void leave_many_visits(Queue& queue, BodyIndex body, const QuantumBox& box) const noexcept;
   void append(CellLine& line, std::uint64_t entry);
@@ -95,7 +97,8 @@ class SweptGrid {
 
   std::vector<CellLine> lines_, overflow_;
   std::uint32_t free_overflow_ = 0;  // 1 + index
-  std::array<std::uint32_t, 3> mask_{}, shift_{};
+  std::uint32_t mask_ = 0;
+  std::array<std::uint32_t, 3> factors_{};
   GridCounts counts_;
 };
 
@@ -110,7 +113,7 @@ struct SweptGrid::Batch {
   ByBody<std::uint64_t> entry, query;
   ByBody<std::uint32_t> line;
   ByAxis<std::uint32_t> from;                         // the first cell's lower end; 0 for the next one
-  std::array<ByAxis<std::uint32_t>, 2> below, lines;  // of the first cell and the next along the axis
+  std::array<ByAxis<std::uint32_t>, 2> below, lines;  // of the first cell and the next along the axis; lines add up
   ByBody<std::uint32_t> axes;  // bit d: several cells along axis d; bit 3: more than two along one
   std::size_t count = 0;
 };

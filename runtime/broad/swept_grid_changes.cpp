@@ -5,25 +5,82 @@
 
 // Making room in the grid, and taking boxes out of it.
 namespace orchard::runtime::detail {
+namespace {
+
+// For tables of 2^6 lines, 2^7 and so on: what the second and the third coordinate of a cell are multiplied by; the
+// first one is added as it is. Found by trying at random such that cells that share a line lie far apart: about as far
+// as is possible in space, and in each plane of two axes from 2^10 lines on, but nowhere less than four cells along
+// some axis, so that the cells of one body never share a line.
+constexpr unsigned kFewestLineBits = 6;
+constexpr std::array<std::array<std::uint32_t, 2>, 23> kLineFactors = {{
+    {4u, 16u},
+    {25u, 5u},
+    {13u, 173u},
+    {455u, 81u},
+    {417u, 595u},
+    {555u, 1525u},
+    {2269u, 1477u},
+    {4561u, 1073u},
+    {14965u, 12261u},
+    {615u, 29187u},
+    {20841u, 50579u},
+    {53795u, 31159u},
+    {226939u, 254255u},
+    {257047u, 373547u},
+    {473433u, 491881u},
+    {1623247u, 1298969u},
+    {705049u, 2785325u},
+    {6477005u, 1636555u},
+    {8975075u, 10600377u},
+    {20366405u, 28785053u},
+    {51419493u, 5405973u},
+    {14447183u, 113607059u},
+    {47377195u, 86274897u},
+}};
+constexpr unsigned kMostLineBits = kFewestLineBits + static_cast<unsigned>(kLineFactors.size()) - 1;
+
+// No two cells of a box share a line.
+constexpr bool sets_apart(unsigned bits, const std::array<std::uint32_t, 2>& factors) {
+  constexpr auto kMost = static_cast<int>(kMostCellsPerAxis) - 1;
+  const std::uint32_t mask = (1u << bits) - 1;
+  for (int z = 0; z <= kMost; ++z) {
+    for (int y = -kMost; y <= kMost; ++y) {
+      for (int x = -kMost; x <= kMost; ++x) {
+        const std::uint32_t line = static_cast<std::uint32_t>(x) + static_cast<std::uint32_t>(y) * factors[0] +
+                                   static_cast<std::uint32_t>(z) * factors[1];
+        if ((x != 0 || y != 0 || z != 0) && (line & mask) == 0) return false;
+      }
+    }
+  }
+  return true;
+}
+
+constexpr bool all_set_apart() {
+  for (unsigned i = 0; i < kLineFactors.size(); ++i) {
+    if (!sets_apart(kFewestLineBits + i, kLineFactors[i])) return false;
+  }
+  return true;
+}
+static_assert(all_set_apart());
+
+}  // namespace
 
 void SweptGrid::reset(std::size_t lines) {
-  constexpr int kFewestBits = 2;  // kMostCellsPerAxis cells
   const auto nearest = static_cast<std::size_t>(std::max(1.0, 0.7 * static_cast<double>(lines)));
-  const int bits = std::max(3 * kFewestBits, static_cast<int>(std::bit_width(nearest)));
-  const int x = (bits + 2) / 3, y = (bits + 1) / 3, z = bits / 3;
-  mask_ = {(1u << x) - 1, (1u << y) - 1, (1u << z) - 1};
-  shift_ = {0, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(x + y)};
+  const unsigned bits = std::clamp(static_cast<unsigned>(std::bit_width(nearest)), kFewestLineBits, kMostLineBits);
+  mask_ = (1u << bits) - 1;
+  factors_ = {1, kLineFactors[bits - kFewestLineBits][0], kLineFactors[bits - kFewestLineBits][1]};
   overflow_.clear();
   free_overflow_ = 0;
   // All lines are written in order: those that have not been used for long come faster this way than one by one later.
   const std::size_t wanted = std::size_t{1} << bits;
-  if (lines_.capacity() > wanted) lines_ = {};
+  if (lines_.capacity() > 4 * wanted) give_back(lines_);
   lines_.assign(wanted, CellLine{});
 }
 
 void SweptGrid::release() {
-  lines_ = {};
-  overflow_ = {};
+  give_back(lines_);
+  give_back(overflow_);
 }
 
 void SweptGrid::append(CellLine& first, std::uint64_t entry) {
@@ -39,7 +96,7 @@ void SweptGrid::append(CellLine& first, std::uint64_t entry) {
     } else {
       const bool inner = line != &first;
       const std::size_t index = inner ? static_cast<std::size_t>(line - overflow_.data()) : 0;
-      overflow_.emplace_back();
+      grow(overflow_, overflow_.size() + 1);
       more = static_cast<std::uint32_t>(overflow_.size());
       (inner ? overflow_[index] : first).overflow = more;
       line = &overflow_.back();
