@@ -79,6 +79,10 @@ std::size_t Backlog::size() const noexcept {
   return all;
 }
 
+bool Backlog::no_body_waits() const noexcept {
+  return std::all_of(ranks_.begin(), ranks_.end(), [](const Rank& rank) { return rank.bodies == 0; });
+}
+
 std::size_t Backlog::memory_bytes() const noexcept {
   std::size_t bytes = ranks_.size() * sizeof(Rank) + bytes_of(links_);
   for (const Rank& rank : ranks_) bytes += rank.found.memory_bytes() + rank.due.memory_bytes();

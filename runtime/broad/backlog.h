@@ -55,6 +55,7 @@ class Backlog {
   void take_all(std::vector<BodyIndex>& bodies, std::vector<PairEvent>& pairs);
   void append_bodies(std::vector<BodyIndex>& bodies) const;  // those that wait
   bool empty() const noexcept { return size() == 0; }
+  bool no_body_waits() const noexcept;
   std::size_t size() const noexcept;  // bodies and pairs
   std::size_t memory_bytes() const noexcept;
 

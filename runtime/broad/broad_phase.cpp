@@ -31,7 +31,7 @@ BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& wanted, con
   const bool valid = is_valid(wanted);
   const BroadPhaseOptions options = valid ? wanted : BroadPhaseOptions{};
   state_ = std::make_unique<State>(
-      State{detail::Roster(std::move(source), detail::Clock{options.start, options.time_step}), nullptr, {}});
+      State{detail::Roster(std::move(source), detail::Clock{options.start, options.time_step}), nullptr});
   largest_time_ = valid ? kMostSteps * options.time_step : -1;
   state_->method = make(state_->roster, options);
   if (options.validate) state_->roster.check_promises(options.broken, options.position_slack);
@@ -108,14 +108,13 @@ Advance BroadPhase::process_steps(double t_now, const WorkBudget* budget) {
     const Step now = state.next;
     if (validating) validate_up_to(now);
     detail::Meter meter = budget ? detail::Meter(*budget) : detail::Meter();
-    state.pairs.clear();
-    const detail::StepReport report = state.method->step(now, meter, state.pairs);
+    const detail::StepReport report = state.method->step(now, meter);
     state.next = report.next;
     work = meter.done();
     note_next_step();
-    if (!state.pairs.empty() || report.incomplete_from != kNoClass) {
+    if (!report.pairs.empty() || report.incomplete_from != kNoClass) {
       seen_time_ = clock.time(now);
-      return {seen_time_, state.pairs, report.incomplete_from, report.left_over, refused(), false, work};
+      return {seen_time_, report.pairs, report.incomplete_from, report.left_over, refused(), false, work};
     }
   }
   seen_time_ = std::max(seen_time_, t_now);
@@ -224,8 +223,7 @@ std::uint64_t BroadPhase::promises_broken() const noexcept {
   return promises == nullptr ? 0 : promises->broken();
 }
 std::size_t BroadPhase::memory_bytes() const noexcept {
-  return sizeof(State) + detail::bytes_of(state_->pairs) + state_->roster.memory_bytes() +
-         state_->method->memory_bytes();
+  return sizeof(State) + state_->roster.memory_bytes() + state_->method->memory_bytes();
 }
 
 }  // namespace orchard::runtime

@@ -6,7 +6,6 @@ namespace orchard::runtime {
 struct BroadPhase::State {
   detail::Roster roster;
   std::unique_ptr<detail::Method> method;
-  std::vector<BodyPair> pairs;
   detail::Step next = detail::kNeverStep;  // the next step with anything to do
   detail::Step validated = -1;             // up to which step all bodies have been asked for, for their promises
 };

@@ -39,6 +39,12 @@ void Calendar::clear_bodies() noexcept {
   free_line_ = kNone;
 }
 
+void Calendar::clear_events() noexcept {
+  for (Bucket& bucket : buckets_) bucket.event = kNone;
+  nodes_.clear();
+  free_node_ = kNone;
+}
+
 void Calendar::clear() noexcept {
   buckets_.fill({});
   busy_.fill(0);
@@ -52,7 +58,7 @@ void Calendar::add(const PairEvent& event, Step step) {
   std::uint32_t node = free_node_;
   if (node == kNone) {
     node = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.emplace_back();
+    grow(nodes_, nodes_.size() + 1);
   } else {
     free_node_ = nodes_[node].next;
   }
@@ -95,7 +101,9 @@ std::size_t Calendar::bodies_due(Step step) const noexcept {
 
 std::size_t Calendar::events_due(Step step) const noexcept {
   std::size_t count = 0;
-  for (std::uint32_t node = buckets_[bucket_of(step)].event; node != kNone; node = nodes_[node].next) ++count;
+  for (std::uint32_t node = buckets_[bucket_of(step)].event; node != kNone; node = nodes_[node].next) {
+    count += nodes_[node].event.parting == 0;
+  }
   return count;
 }
 

@@ -8,11 +8,22 @@ namespace orchard::runtime::detail {
 inline constexpr Step kCalendarSteps = 256;  // a power of two
 inline constexpr Step kLongestWindow = kCalendarSteps - 1;
 
+// Rounds of looks are counted modulo 2^kRoundBits. Those compared are never as far apart as half of that.
+using Round = std::uint32_t;
+inline constexpr unsigned kRoundBits = 31;
+inline constexpr Round kFarthestRound = 1u << (kRoundBits - 2);
+inline bool is_later(Round a, Round b) noexcept { return static_cast<std::int32_t>((a - b) << (32 - kRoundBits)) > 0; }
+
 struct PairEvent {
   BodyPair pair;
-  Step created;    // the round of looks it belongs to: void once either body has been looked at in a later one
-  Step sure = -1;  // of an overlapping pair: it surely goes on to overlap up to this step
+  Round created : kRoundBits = 0;  // void once either body has been looked at in a later round
+  Round parting : 1 = 0;           // the pair is among those that overlap
+
+  PairEvent() = default;
+  PairEvent(const BodyPair& of, Round round, bool parts = false) noexcept
+      : pair(of), created(round & ((1u << kRoundBits) - 1)), parting(parts ? 1 : 0) {}
 };
+static_assert(sizeof(PairEvent) == 12);
 
 // What is due when, for less than kCalendarSteps steps ahead: bodies to look at again and pairs to test, in a ring of
 // lists indexed by step. Nothing is taken out before its time: the caller tells what is void.
@@ -20,6 +31,7 @@ class Calendar {
  public:
   void set_due(std::span<const BodyIndex> bodies, Step step);
   void clear_bodies() noexcept;
+  void clear_events() noexcept;
   void clear() noexcept;  // of everything
   void add(const PairEvent& event, Step step);
 
@@ -27,7 +39,7 @@ class Calendar {
   void take(Step step, std::vector<BodyIndex>& bodies, std::vector<PairEvent>& events);
   // How much take() would give, void entries included. O(of that).
   std::size_t bodies_due(Step step) const noexcept;
-  std::size_t events_due(Step step) const noexcept;
+  std::size_t events_due(Step step) const noexcept;  // of pairs that do not overlap yet
   // The first step after `now` that may have something; kNeverStep if there is none.
   Step next_after(Step now) const noexcept;
   std::size_t memory_bytes() const noexcept;

@@ -3,6 +3,8 @@
 namespace orchard::runtime::detail {
 namespace {
 
+constexpr double kManyPairs = 0.5;     // per body: so many are worth a note of each body's sphere
+constexpr std::uint8_t kPatience = 2;  // bounds that last for a step at most, one after the other, that mean nothing
 constexpr std::size_t kChangesKept = 1024;  // room for as many changes in a step stays allocated
 
 }  // namespace
@@ -12,6 +14,7 @@ void Events::make_room() {
   if (windows_.size() >= n) return;
   grow(places_, n);
   grow(pending_, n);
+  overlaps_.make_room(n);
   grow(windows_, n);  // last: it tells that there is room in all of them
 }
 
@@ -23,10 +26,30 @@ void Events::changed(BodyIndex body) {
 }
 
 void Events::removed(BodyIndex body) noexcept {
+  if (windows_[body].length > 0) ++cancellations_;
   take_away(body);
   backlog_.leave(body);
   pending_[body] = 0;
-  windows_[body] = {kNeverStep, kNeverStep};  // voids the events and the next look, until the slot's next body
+  windows_[body] = {.end = kNeverStep};  // no next look, until the slot's next body
+  void_events(body);
+}
+
+void Events::void_events(BodyIndex body) noexcept {
+  windows_[body].looked = round_ + 1;
+  windows_[body].length = 0;
+  overlaps_.mark(body, OverlapList::kLooked);
+}
+
+// Its bounds have ended before their time. Now and then that says nothing of the next ones, which may hold for as long
+// as any. Only where bounds last for no more than a step again and again a long window is of no use.
+void Events::note_cancelled(Window& window, Step now) noexcept {
+  if (window.length == 0 || window.end < 0 || window.end == kNeverStep) return;
+  ++cancellations_;
+  const Step lasted = now - (window.end - window.length);
+  if (lasted < 0) return;
+  if (lasted > 1) return window.rely_longer();
+  window.lasting = window.lasting > kLastsAsEver - kPatience ? window.lasting - 1 : 1;
+  any_short_ = any_short_ || window.lasting == 1;
 }
 
 void Events::take_away(BodyIndex body) noexcept {
@@ -58,11 +81,13 @@ void Events::collect_due(Step now) {
     Window& window = windows_[entries_[i]];
     if (window.end != now || pending_[entries_[i]]) continue;  // looked at since
     window.end = kLookDue;
+    window.rely_longer();
     due_.push_back(entries_[i]);
   }
   for (const BodyIndex body : changed_) {
     if (!pending_[body]) continue;
     pending_[body] = 0;
+    note_cancelled(windows_[body], now);
     due_.push_back(body);
   }
   changed_.clear();
@@ -70,15 +95,24 @@ void Events::collect_due(Step now) {
 }
 
 // What has not been looked at for this step yet is in due_ already; the rest changed since, or was added.
-void Events::complete_due() {
+void Events::complete_due(Step now) {
   std::erase_if(due_, [&](BodyIndex body) { return !roster_.alive(body) || pending_[body]; });
   for (const BodyIndex body : changed_) {
     if (!pending_[body]) continue;
     take_away(body);
     pending_[body] = 0;
+    note_cancelled(windows_[body], now);
     due_.push_back(body);
   }
   changed_.clear();
+}
+
+void Events::make_room_for_spheres() {
+  if (plan_.window == 1 || plan_.pairs_per_body >= kManyPairs) {
+    grow(spheres_, roster_.slots());
+  } else {
+    give_back(spheres_);
+  }
 }
 
 void Events::make_room_for_boxes() {
@@ -87,6 +121,7 @@ void Events::make_room_for_boxes() {
   } else {
     grow(boxes_, roster_.slots());
   }
+  if (!spheres_.empty()) make_room_for_spheres();
 }
 
 // Everything that is due, and what a budget left over before.
@@ -102,79 +137,90 @@ void Events::step_in_full(Step now, bool completing) {
     if (all_anew) {
       replan(now, unlimited);
       place_all_anew();
+      calendar_.clear_events();  // looks at all bodies void them
     } else {
       make_room_for_boxes();
       take_away_due();
     }
   }
   make_room_for_boxes();
-  look_at(now, now, due_);
-  tests_.clear();
-  for (const PairEvent& event : waiting_) {
-    if (valid(event)) (event.sure >= now ? overlaps_ : tests_).push_back(event);
+  if (all_anew) {
+    overlaps_.begin_anew();
+    make_room_for_spheres();
   }
-  for (const BodyPair& pair : near_) tests_.push_back({pair, round_});
-  test(now, tests_);
-  if (all_anew) rush_ = roster_.size() >= kFewestInRush && 4 * votes_ > roster_.size() ? voted_ : kNeverStep;
+  look_at(now, now, due_, Found::tested);
+  test_due(now);
+  if (!all_anew) return;
+  const bool lasts = plan_.window >= kShortestBeforeRush;
+  rush_ = lasts && roster_.size() >= kFewestInRush && 4 * votes_ > roster_.size() ? voted_ : kNeverStep;
+}
+
+// What the looks have left of it.
+void Events::test_due(Step now) {
+  std::erase_if(waiting_, [&](const PairEvent& event) { return !valid(event); });
+  test(now, waiting_);
+  for (const PairEvent& event : overlaps_ahead_) {
+    if (valid(event)) overlaps_.add(event.pair);
+  }
+  overlaps_ahead_.clear();
 }
 
 // Nothing is left to plan for, nor to wake up for.
 void Events::forget_all() noexcept {
   calendar_.clear();
   overlaps_.clear();
+  overlaps_ahead_.clear();
+  doubtful_.clear();
   changed_.clear();
   due_.clear();
   surveyed_.clear();
-  prepared_round_ = -1;
+  prepared_ = false;
   rush_ = kNeverStep;
 }
 
-StepReport Events::step(Step now, Meter& meter, std::vector<BodyPair>& pairs) {
+StepReport Events::step(Step now, Meter& meter) {
   if (roster_.size() == 0) {
     forget_all();
-    return {kNeverStep};
+    return {kNeverStep, {}};
   }
   ++round_;
   entries_.clear();
-  events_.clear();
-  calendar_.take(now, entries_, events_);
-  const bool completing = prepared_round_ >= 0 && !outgrown(), limited = meter.limited();
-  if (completing) {
-    complete_due();
+  waiting_.clear();
+  calendar_.take(now, entries_, waiting_);
+  const bool completing = prepared_ && !outgrown();
+  limited_ = meter.limited();
+  for (const PairEvent& event : doubtful_) overlaps_.drop(event.pair);
+  doubtful_.clear();
+  if (prepared_) {
+    complete_due(now);
   } else {
     due_.clear();
     collect_due(now);
   }
-  prepared_round_ = -1;
+  prepared_ = false;
   near_.clear();
-  waiting_.assign(overlaps_.begin(), overlaps_.end());
-  waiting_.insert(waiting_.end(), events_.begin(), events_.end());
-  overlaps_.clear();
   unsigned incomplete_from = kNoClass;
-  if (limited) {
+  if (limited_) {
+    waiting_.insert(waiting_.end(), overlaps_ahead_.begin(), overlaps_ahead_.end());
+    overlaps_ahead_.clear();
     incomplete_from = step_within(now, meter);
     if (incomplete_from != kNoClass) interrupted_at_ = now;
+    keep_doubtful();
   } else {
     step_in_full(now, completing);
   }
-  report(pairs);
-  if (incomplete_from != kNoClass) return {now + 1, incomplete_from, std::max<std::size_t>(1, backlog_.size())};
-
-  if (now + 1 == rush_ && !limited && prepare(now)) return {rush_};
-  if (!changed_.empty()) return {now + 1};
-  Step next = overlaps_.empty() ? calendar_.next_after(now) : now + 1;
-  if (rush_ != kNeverStep && rush_ - 1 > now) next = std::min(next, rush_ - 1);
-  return {next};
-}
-
-// Within a budget a pair can come up twice: when it was due, and when a look found it.
-void Events::report(std::vector<BodyPair>& pairs) {
-  std::sort(overlaps_.begin(), overlaps_.end(), [](const PairEvent& a, const PairEvent& b) {
-    return a.pair != b.pair ? a.pair < b.pair : a.created > b.created;
-  });
-  const auto same = [](const PairEvent& a, const PairEvent& b) { return a.pair == b.pair; };
-  overlaps_.erase(std::unique(overlaps_.begin(), overlaps_.end(), same), overlaps_.end());
-  for (const PairEvent& event : overlaps_) pairs.push_back(event.pair);
+  overlaps_.update(roster_.slots());
+  StepReport report{now + 1, overlaps_.pairs()};
+  if (incomplete_from != kNoClass) {
+    report.incomplete_from = incomplete_from;
+    report.left_over = std::max<std::size_t>(1, backlog_.size());
+    return report;
+  }
+  if (now + 1 == rush_ && !limited_ && prepare(now)) return report;
+  if (!changed_.empty() || !report.pairs.empty()) return report;
+  report.next = calendar_.next_after(now);
+  if (rush_ != kNeverStep && rush_ - 1 > now) report.next = std::min(report.next, rush_ - 1);
+  return report;
 }
 
 std::size_t Events::foresee(Step now, std::span<StepsAhead> steps) const noexcept {
@@ -183,17 +229,17 @@ std::size_t Events::foresee(Step now, std::span<StepsAhead> steps) const noexcep
     const Step step = now + 1 + static_cast<Step>(i);
     steps[i].looks += calendar_.bodies_due(step);
     steps[i].meetings += calendar_.events_due(step);
-    steps[i].overlaps += overlaps_.size();
+    steps[i].overlaps += overlaps_.pairs().size();
   }
   return known;
 }
 
 std::size_t Events::memory_bytes() const noexcept {
   return sizeof(*this) + bytes_of(boxes_) + bytes_of(windows_) + bytes_of(places_) + bytes_of(pending_) +
-         bytes_of(changed_) + bytes_of(entries_) + bytes_of(oversized_) + bytes_of(overlaps_) + bytes_of(due_) +
-         bytes_of(events_) + bytes_of(waiting_) + bytes_of(tests_) + bytes_of(near_) + bytes_of(motions_) +
-         bytes_of(surveyed_) + backlog_.memory_bytes() + list_.memory_bytes() + grid_.memory_bytes() +
-         calendar_.memory_bytes() - sizeof(calendar_);
+         bytes_of(changed_) + bytes_of(entries_) + bytes_of(oversized_) + overlaps_.memory_bytes() +
+         bytes_of(overlaps_ahead_) + bytes_of(doubtful_) + bytes_of(due_) + bytes_of(spheres_) + bytes_of(waiting_) +
+         bytes_of(tests_) + bytes_of(near_) + bytes_of(motions_) + bytes_of(surveyed_) + backlog_.memory_bytes() +
+         list_.memory_bytes() + grid_.memory_bytes() + calendar_.memory_bytes() - sizeof(calendar_);
 }
 
 std::unique_ptr<Method> make_events(Roster& roster, const BroadPhaseOptions& options) {

@@ -2,6 +2,7 @@
 #include "backlog.h"
 #include "box_list.h"
 #include "method.h"
+#include "overlap_list.h"
 #include "swept_grid.h"
 #include "window_plan.h"
 
@@ -10,7 +11,10 @@ namespace orchard::runtime::detail {
 // The default method. Each body is looked at once per window of steps: a box around all that its bound allows until the
 // window's end goes into a grid, and every other body whose box it meets makes a near pair. A near pair has an event at
 // the first step at which the two bounds can touch; no event lies beyond the earlier end of the two windows, as the
-// look due there finds the pair anew. Overlapping pairs are tested at every step at which they can have parted.
+// look due there finds the pair anew. A pair that overlaps has an event at the first step at which it can have parted;
+// until then it stays in the list that is reported.
+//
+// A body whose bounds are cancelled at every step gets windows of one step, and longer ones again once these go well.
 //
 // Where most windows end at one step, the *rush*, all boxes are made anew then, and half of that work is done a step
 // ahead: a bound that holds up to the step before the rush still answers for it, while the next bound is known already.
@@ -21,7 +25,7 @@ class Events final : public Method {
   void changed(BodyIndex body) override;
   void removed(BodyIndex body) noexcept override;
   void reclassified(BodyIndex body) override;
-  StepReport step(Step now, Meter& meter, std::vector<BodyPair>& pairs) override;
+  StepReport step(Step now, Meter& meter) override;
   std::size_t memory_bytes() const noexcept override;
   std::size_t foresee(Step now, std::span<StepsAhead> steps) const noexcept override;
   Near near_box(const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const override;
@@ -32,31 +36,48 @@ class Events final : public Method {
  private:
   enum class Place : std::uint8_t { nowhere, inside, oversized };
   struct Window {
-    Step looked = -1;  // the round of the last look: events of earlier rounds are void
-    Step end = 0;      // the step of the next look
+    Step end = 0;                         // the step of the next look
+    Round looked = 0;                     // the round of the last look: events of earlier rounds are void
+    std::uint8_t length = 0;              // steps; 0: not known
+    std::uint8_t lasting = kLastsAsEver;  // steps that bounds are relied on for, at most
+
+    void rely_longer() noexcept { lasting = lasting < kLastsAsEver / 4 ? lasting * 4 : kLastsAsEver; }
   };
+  // What a look takes note of where many pairs are near: most of them need no other test.
+  struct Sphere {
+    Vec3 center;
+    double radius, reach;  // reach: as far as the centre may get until the body's window ends, and all slack
+  };
+  enum class Found : std::uint8_t { tested, kept };  // near pairs that a look finds
   struct Look;
   static constexpr std::size_t kFewestInRush = 32;  // bodies that are worth a step more
+  static constexpr Step kShortestBeforeRush = 4;    // steps: half of a look ahead of each would be half a look more
   static constexpr std::size_t kTestsAtOnce = kBlock / 2;
   static constexpr QuantumBox kNothing = {{kLastQuantum, kLastQuantum, kLastQuantum}, {0, 0, 0}};
-  static constexpr Step kLookDue = -1;  // a window's end while its body waits for a look
+  static constexpr std::size_t kNearAtOnce = 1024;  // near pairs that are tested together
+  static constexpr Step kLookDue = -1;              // a window's end while its body waits for a look
+  static constexpr std::uint8_t kLastsAsEver = static_cast<std::uint8_t>(kLongestWindow - 1);
 
   // events.cpp: a step
   void make_room();
   void forget_all() noexcept;
   void collect_due(Step now);
-  void complete_due();
+  void complete_due(Step now);
   void take_away(BodyIndex body) noexcept;
   void take_away_due() noexcept;
   void make_room_for_boxes();
+  void make_room_for_spheres();
   bool outgrown() const noexcept { return few_ && roster_.slots() > BoxList::kMostBodies; }
   void step_in_full(Step now, bool completing);
-  void report(std::vector<BodyPair>& pairs);
+  void test_due(Step now);
+  void void_events(BodyIndex body) noexcept;
+  void note_cancelled(Window& window, Step now) noexcept;
 
   // events_budget.cpp: a step within a budget
   void postpone(BodyIndex body);
+  void keep_doubtful();
   void sort_pairs_again();
-  void join_backlog(Step now);
+  void join_backlog();
   bool worth_a_rebuild_within(Step now, std::size_t due) const noexcept;
   unsigned step_within(Step now, Meter& meter);
   bool work_through(Step now, unsigned importance, Meter& meter);
@@ -66,16 +87,23 @@ class Events final : public Method {
   // events_plan.cpp: looks at all bodies
   bool crowded(const GridCounts& counts) const noexcept;
   bool worth_a_rebuild(std::size_t due) const noexcept;
+  bool rounds_run_out() const noexcept { return is_later(round_, rebuilt_round_ + kFarthestRound); }
   bool replan(Step now, Meter& meter);
+  bool plan_outdated(double off, double cancelled) noexcept;
   bool survey(Step now, Meter& meter);
   void place_all_anew();
   bool prepare(Step now);
+  double share_ahead() const noexcept;
   void vote(Step end, std::size_t bodies) noexcept;
 
   // events_look.cpp: a look at some
-  void look_at(Step now, Step from, std::span<const BodyIndex> bodies);
+  void look_at(Step now, Step from, std::span<const BodyIndex> bodies, Found found);
+  void test_near(Step now);
+  bool settle_by_spheres(Step now, const BodyPair& pair);
+  double reach_of(const Motion& motion, double duration) const noexcept;
   std::size_t known_at(Step from, std::span<BodyIndex> bodies) noexcept;
   Step window_end(Step from, const Motion& motion) noexcept;
+  Step window_end(Step from, BodyIndex body, const Motion& motion) noexcept;
   std::size_t refuse_invalid(std::span<BodyIndex> bodies);
   void refuse(BodyIndex body);
   bool place(Look& look, std::span<const BodyIndex> bodies);
@@ -94,9 +122,14 @@ class Events final : public Method {
 
   // events_pairs.cpp
   bool valid(const PairEvent& event) const noexcept;
-  Step known_until(BodyIndex body, Step now) const noexcept;
-  void test(Step now, std::span<const PairEvent> pairs);
-  void settle(Step now, const BodyPair& pair, const Motion& a, const Motion& b);
+  // Up to the next look at the body. One that waits for it is known by its present motion only, which holds on its own.
+  Step known_until(BodyIndex body, Step now) const noexcept {
+    const Step end = windows_[body].end;
+    return end == kLookDue ? now + kLongestWindow : end;
+  }
+  void test(Step now, std::span<const PairEvent> events);
+  void settle(Step now, const PairEvent& event, const Motion& a, const Motion& b);
+  void settle_touching(Step now, const PairEvent& event, Step left, Step sure);
 
   Roster& roster_;
   const BroadPhaseOptions options_;
@@ -106,35 +139,44 @@ class Events final : public Method {
   std::vector<std::uint8_t> pending_;  // changed since the last step
   std::vector<QuantumBox> boxes_;      // of those in the grid
   std::vector<BodyIndex> changed_, oversized_;
-  bool few_ = true;  // bodies: they are in the list, not in the grid
+  bool any_short_ = false;  // windows, of bodies whose bounds are cancelled again and again
+  bool few_ = true;         // bodies: they are in the list, not in the grid
   BoxList list_;
   SweptGrid grid_;
   QuantumBox extent_ = kNothing;  // around all boxes that are in the grid, or have been since all were placed anew
   Lattice lattice_;
   Calendar calendar_;
-  std::vector<PairEvent> overlaps_;  // in ascending order of pairs
-  Backlog backlog_;                  // what budgets have left over
+  OverlapList overlaps_;
+  std::vector<PairEvent> overlaps_ahead_;  // of pairs tested ahead for the next step, at which they surely touch
+  Backlog backlog_;                        // what budgets have left over
+  std::vector<PairEvent> doubtful_;  // reported within a budget, before another look that may not have found them yet
   bool reclassified_ = false;        // some body, since the last step within a budget
   Step interrupted_at_ = kNeverStep / -2;
 
   WindowPlan plan_;
   MotionMeans means_;
-  double spacing_ = 0, correction_ = 1;
+  double spacing_ = 0, crowding_ = 1, correction_ = 1;
+  std::size_t cancellations_ = 0;  // of bounds, and removals, since the plan was made
+  double cancelled_ = 0;           // the share of the bodies at each step that it was made for
+  Step planned_at_ = 0;
   std::size_t planned_bodies_ = 0;
   unsigned plans_ = 0;
   std::vector<Motion> surveyed_;  // the sample of a survey under way
   BodyIndex survey_next_ = 0;
 
-  Step round_ = 0;            // of looks
-  Step prepared_round_ = -1;  // of those done ahead for the next step; -1: none
-  Step rush_ = kNeverStep;    // the step at which most windows end
+  Round round_ = 0;          // of looks
+  Round rebuilt_round_ = 0;  // in which all were to be looked at
+  bool prepared_ = false;    // half of the looks for the next step have been done ahead
+  Step rush_ = kNeverStep;   // the step at which most windows end
   Step voted_ = kNeverStep;
   std::size_t votes_ = 0;
 
   // Of the step under way; kept for their memory.
   std::vector<BodyIndex> entries_, due_;
-  std::vector<PairEvent> events_, waiting_, tests_;
+  std::vector<PairEvent> waiting_, tests_;
   std::vector<BodyPair> near_;
+  std::vector<Sphere> spheres_;  // by body; empty unless many pairs are near
+  bool preparing_ = false, limited_ = false;
   std::vector<Motion> motions_;
   Step last_from_ = -1, last_end_ = 1;
   double last_expiry_ = 0;

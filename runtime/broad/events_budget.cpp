@@ -29,42 +29,63 @@ void Events::reclassified(BodyIndex body) {
 // Pairs go to the class that they now belong to.
 void Events::sort_pairs_again() {
   reclassified_ = false;
-  events_.clear();
+  tests_.clear();
   std::size_t bodies_end = due_.size();
-  backlog_.take_all(due_, events_);
+  backlog_.take_all(due_, tests_);
   for (; bodies_end < due_.size(); ++bodies_end) backlog_.wait(due_[bodies_end], roster_.importance(due_[bodies_end]));
-  for (const PairEvent& event : events_) {
+  for (const PairEvent& event : tests_) {
     if (valid(event)) backlog_.rank(roster_.importance(event.pair)).due.push(event);
   }
 }
 
-void Events::join_backlog(Step now) {
+// Of what was added in this step, the pairs of which no test has come after the last look at both bodies.
+void Events::keep_doubtful() {
+  near_.clear();
+  for (const PairEvent& event : doubtful_) {
+    if (valid(event)) near_.push_back(event.pair);
+  }
+  std::sort(near_.begin(), near_.end());
+  std::erase_if(doubtful_,
+                [&](const PairEvent& event) { return std::binary_search(near_.begin(), near_.end(), event.pair); });
+  near_.clear();
+}
+
+void Events::join_backlog() {
   if (reclassified_ && !backlog_.empty()) sort_pairs_again();
   reclassified_ = false;
   for (const BodyIndex body : due_) postpone(body);
   due_.clear();
+  const auto test_later = [&](const BodyPair& pair, Round created) {
+    PairQueue& due = backlog_.rank(roster_.importance(pair)).due;
+    due.push({pair, created});
+    due.tidy([&](const PairEvent& old) { return valid(old); });
+  };
   for (const PairEvent& event : waiting_) {
     if (!valid(event)) continue;
-    if (event.sure >= now && !backlog_.waits(event.pair.a) && !backlog_.waits(event.pair.b)) {
-      overlaps_.push_back(event);
-      continue;
-    }
-    PairQueue& due = backlog_.rank(roster_.importance(event.pair)).due;
-    due.push(event);
-    due.tidy([&](const PairEvent& old) { return valid(old); });
+    overlaps_.drop(event.pair);  // unless it is tested at this step
+    test_later(event.pair, event.created);
   }
+  if (backlog_.no_body_waits()) return;
+  // No bound says any more that these overlap still.
+  near_.clear();
+  overlaps_.take_out([&](const BodyPair& pair) { return backlog_.waits(pair.a) || backlog_.waits(pair.b); }, near_);
+  for (const BodyPair& pair : near_) {
+    const PairEvent event{pair, round_};
+    if (valid(event)) test_later(pair, round_);
+  }
+  near_.clear();
 }
 
 // A rebuild forgets all boxes. It has to be where there are many more bodies than planned for; where it is a matter of
 // speed, only if no budget has interrupted for as long as a window lasts: else nothing would ever be finished.
 bool Events::worth_a_rebuild_within(Step now, std::size_t due) const noexcept {
-  if (outgrown() || roster_.size() > 2 * planned_bodies_) return true;
+  if (outgrown() || rounds_run_out() || roster_.size() > 2 * planned_bodies_) return true;
   return now - interrupted_at_ > kLongestWindow && worth_a_rebuild(due);
 }
 
 unsigned Events::step_within(Step now, Meter& meter) {
   const std::size_t due = due_.size();
-  join_backlog(now);
+  join_backlog();
   if (worth_a_rebuild_within(now, due)) {
     if (!replan(now, meter)) return roster_.next_class(0);
     place_all_anew();
@@ -110,7 +131,7 @@ std::size_t Events::look_at_waiting(Step now, unsigned importance, std::size_t m
   ++round_;
   for (std::size_t i = 0; i < count; ++i) take_away(bodies[i]);
   near_.clear();
-  look_at(now, now, std::span(bodies).first(count));
+  look_at(now, now, std::span(bodies).first(count), Found::kept);
   meter.count(count);
   for (const BodyPair& pair : near_) {
     const unsigned theirs = roster_.importance(pair);
@@ -127,8 +148,10 @@ std::size_t Events::test_waiting(Step now, PairQueue& queue, bool found, std::si
   const std::size_t pairs = std::clamp<std::size_t>(most / 2, 1, kTestsAtOnce);
   while (tests_.size() < pairs && !queue.empty()) {
     const PairEvent event = queue.pop();
-    const bool useful = found ? roster_.alive(event.pair.a) && roster_.alive(event.pair.b) : valid(event);
-    if (useful) tests_.push_back(event);
+    if (!roster_.alive(event.pair.a) || !roster_.alive(event.pair.b)) continue;
+    if (!found && !valid(event)) continue;
+    overlaps_.drop(event.pair);
+    tests_.push_back(event);
   }
   test(now, tests_);
   meter.count(2 * tests_.size());

@@ -55,6 +55,13 @@ Step Events::window_end(Step from, const Motion& motion) noexcept {
   return last_end_ = from + window;
 }
 
+// The same for a body, whose bounds may have been cancelled again and again.
+Step Events::window_end(Step from, BodyIndex body, const Motion& motion) noexcept {
+  if (roster_.is_static(body)) return kNeverStep;
+  const Step end = window_end(from, motion);
+  return any_short_ ? std::min(end, from + windows_[body].lasting) : end;
+}
+
 // Makes the boxes of a block of bodies, until the ends of their windows. Does nothing and returns false if a motion is
 // not valid.
 bool Events::place(Look& look, std::span<const BodyIndex> bodies) {
@@ -62,14 +69,16 @@ bool Events::place(Look& look, std::span<const BodyIndex> bodies) {
   const auto duration = [&](Step end) {
     return end == kNeverStep ? 0 : static_cast<double>(end - 1 - look.now) * options_.time_step;
   };
-  const bool first_moves = !roster_.is_static(bodies[0]);
-  const Step common = first_moves ? window_end(look.from, motions[0]) : kNeverStep;
+  const Step planned = window_end(look.from, motions[0]), common = window_end(look.from, bodies[0], motions[0]);
   bool same = !roster_.any_static();
   for (const Motion& motion : motions) same = same && motion.expiry == motions[0].expiry;
+  for (std::size_t i = 0; any_short_ && same && i < bodies.size(); ++i) {
+    same = std::min(planned, look.from + windows_[bodies[i]].lasting) == common;
+  }
   look.durations.fill(duration(common));
   bool valid = true;
   for (std::size_t i = 0; !same && i < bodies.size(); ++i) {
-    look.ends[i] = roster_.is_static(bodies[i]) ? kNeverStep : window_end(look.from, motions[i]);
+    look.ends[i] = window_end(look.from, bodies[i], motions[i]);
     look.durations[i] = duration(look.ends[i]);
     valid = valid && !std::isnan(motions[i].expiry);
   }
@@ -79,8 +88,17 @@ bool Events::place(Look& look, std::span<const BodyIndex> bodies) {
   if (!valid && !std::all_of(motions.begin(), motions.end(), is_one)) return false;
 
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    windows_[bodies[i]] = {round_, same ? common : look.ends[i]};
+    Window& window = windows_[bodies[i]];
+    const Step end = same ? common : look.ends[i];
+    const auto length = static_cast<std::uint8_t>(end == kNeverStep ? 0 : end - look.from);
+    window.end = end;
+    window.looked = round_;
+    window.length = length;
     places_[bodies[i]] = Place::inside;
+    overlaps_.mark(bodies[i], OverlapList::kLooked);
+  }
+  for (std::size_t i = 0; !spheres_.empty() && i < bodies.size(); ++i) {
+    spheres_[bodies[i]] = {motions[i].position, motions[i].radius, reach_of(motions[i], look.durations[i])};
   }
   for (std::size_t i = 0; i < bodies.size(); i += kMeansStride) means_.add(motions[i]);
   if (!few_ && !place_in_grid(look, bodies)) same = false;
@@ -137,6 +155,7 @@ void Events::shrink(Look& look, BodyIndex body, std::size_t i) {
   while (steps > 1 && places_[body] == Place::oversized) {
     steps = (steps + 1) / 2;
     window.end = look.from + steps;
+    window.length = static_cast<std::uint8_t>(steps);
     const double duration = static_cast<double>(window.end - 1 - look.now) * options_.time_step;
     lattice_.boxes({&motions_[i], 1}, {&duration, 1}, box, options_.vectors);
     boxes_[body] = box.get(0);
@@ -182,12 +201,14 @@ std::size_t Events::refuse_invalid(std::span<BodyIndex> bodies) {
 void Events::refuse(BodyIndex body) {
   roster_.refuse(body);
   take_away(body);
-  windows_[body] = {kNeverStep, kLookDue};
+  windows_[body].end = kLookDue;
+  void_events(body);
+  overlaps_.mark(body, OverlapList::kRefused);
   changed(body);
 }
 
 // Where `from` is a later step than now, bodies whose bounds do not reach it are left to the next step.
-void Events::look_at(Step now, Step from, std::span<const BodyIndex> bodies) {
+void Events::look_at(Step now, Step from, std::span<const BodyIndex> bodies, Found found) {
   motions_.resize(kBlock);
   Look look;
   look.now = now;
@@ -211,9 +232,17 @@ void Events::look_at(Step now, Step from, std::span<const BodyIndex> bodies) {
       place(look, block);
     }
     insert(look, block);
+    if (found == Found::tested && near_.size() >= kNearAtOnce) {
+      if (!few_) grid_.finish(look.queue, boxes_, options_.vectors, near_);
+      test_near(now);
+    }
   }
   if (!few_) grid_.finish(look.queue, boxes_, options_.vectors, near_);
-  if (roster_.filters_pairs()) drop_what_is_none();
+  if (found == Found::tested) {
+    test_near(now);
+  } else if (roster_.filters_pairs()) {
+    drop_what_is_none();
+  }
 }
 
 // Pairs that the filters exclude. The plan does not count them: they cost next to nothing.

@@ -10,58 +10,105 @@ constexpr double kEventResolution = 0.125;  // of a step: no need to know better
 }  // namespace
 
 bool Events::valid(const PairEvent& event) const noexcept {
-  return windows_[event.pair.a].looked <= event.created && windows_[event.pair.b].looked <= event.created;
+  const Round created = event.created;
+  return !is_later(windows_[event.pair.a].looked, created) && !is_later(windows_[event.pair.b].looked, created);
 }
 
-void Events::test(Step now, std::span<const PairEvent> pairs) {
+void Events::test(Step now, std::span<const PairEvent> events) {
   motions_.resize(kBlock);
   std::array<BodyIndex, kBlock> bodies;
-  while (!pairs.empty()) {
-    const std::size_t count = std::min(kTestsAtOnce, pairs.size());
+  while (!events.empty()) {
+    const std::size_t count = std::min(kTestsAtOnce, events.size());
     for (std::size_t i = 0; i < count; ++i) {
-      bodies[2 * i] = pairs[i].pair.a;
-      bodies[2 * i + 1] = pairs[i].pair.b;
+      bodies[2 * i] = events[i].pair.a;
+      bodies[2 * i + 1] = events[i].pair.b;
     }
     roster_.ask(now, std::span(bodies).first(2 * count), std::span(motions_).first(2 * count));
     for (std::size_t i = 0; i < count; ++i) {
       const Motion &a = motions_[2 * i], &b = motions_[2 * i + 1];
       const bool valid_a = is_valid(a), valid_b = is_valid(b);
-      if (!valid_a) refuse(pairs[i].pair.a);
-      if (!valid_b) refuse(pairs[i].pair.b);
-      if (valid_a && valid_b) settle(now, pairs[i].pair, a, b);
+      if (!valid_a) refuse(events[i].pair.a);
+      if (!valid_b) refuse(events[i].pair.b);
+      if (valid_a && valid_b) settle(now, events[i], a, b);
     }
-    pairs = pairs.subspan(count);
+    events = events.subspan(count);
   }
 }
 
-// Up to the next look at the body. One that waits for it is known by its present motion only, which holds on its own.
-Step Events::known_until(BodyIndex body, Step now) const noexcept {
-  const Step end = windows_[body].end;
-  return end == kLookDue ? now + kLongestWindow : end;
+double Events::reach_of(const Motion& m, double duration) const noexcept {
+  constexpr double kOutward = 1 + 1e-9;  // for what is rounded here
+  const double travel = duration * (std::sqrt(dot(m.velocity, m.velocity)) + m.drift + duration * m.acceleration / 2);
+  return travel * kOutward + motion_slack(m, m, duration) + 2 * options_.position_slack;
+}
+
+// A pair that both have just been looked at: true if nothing is to be done but what this does. It is found anew at the
+// end of the earlier window, and until then the spheres surely overlap, or surely do not.
+bool Events::settle_by_spheres(Step now, const BodyPair& pair) {
+  const Sphere &a = spheres_[pair.a], &b = spheres_[pair.b];
+  const Vec3 apart = b.center - a.center;
+  const double squared = dot(apart, apart), radii = a.radius + b.radius, reach = a.reach + b.reach;
+  const bool touching = squared <= radii * radii;  // as spheres_touch()
+  const bool over = std::min(windows_[pair.a].end, windows_[pair.b].end) <= now + 1;
+  if (!touching) return over || squared > (radii + reach) * (radii + reach);
+  const double sure = radii - reach;
+  if (!over && !(sure > 0 && squared < sure * sure)) return false;
+  if (!roster_.may_pair(pair)) return true;
+  if (preparing_) {
+    overlaps_ahead_.emplace_back(pair, round_);
+  } else {
+    overlaps_.add(pair);
+  }
+  return true;
+}
+
+void Events::test_near(Step now) {
+  if (roster_.filters_pairs()) drop_what_is_none();
+  tests_.clear();
+  for (const BodyPair& pair : near_) {
+    const bool known = !spheres_.empty() && windows_[pair.a].looked == round_ && windows_[pair.b].looked == round_;
+    if (!known || !settle_by_spheres(now, pair)) tests_.emplace_back(pair, round_);
+  }
+  near_.clear();
+  test(now, tests_);
 }
 
 // Both motions are of this step: they overlap, surely for a while, or they cannot for a while.
-void Events::settle(Step now, const BodyPair& pair, const Motion& a, const Motion& b) {
+void Events::settle(Step now, const PairEvent& event, const Motion& a, const Motion& b) {
+  const BodyPair& pair = event.pair;
   if (!roster_.may_pair(pair)) return;  // what waited for its test while that changed
   const Clock& clock = roster_.clock;
   const double slack = 4 * options_.position_slack;  // of two bodies, now and later
   // Until the next look at one of them, or a bound expires.
-  const Step safe = std::min(clock.last_before_expiry(a.expiry), clock.last_before_expiry(b.expiry)) - now;
   const Step left = std::min({known_until(pair.a, now), known_until(pair.b, now), now + kLongestWindow}) - now;
-  const double seconds = static_cast<double>(std::max<Step>(0, std::min(left - 1, safe))) * options_.time_step;
+  const double expiry = std::min(a.expiry, b.expiry);
+  const bool in_time = expiry >= clock.time(now + left + 1);  // mostly, and sooner said
+  const Step safe = in_time ? left : clock.last_before_expiry(expiry) - now;
+  const Step whole = std::max<Step>(0, std::min(left - 1, safe));
+  const double seconds = static_cast<double>(whole) * options_.time_step;
   if (spheres_touch(a, b)) {
-    if (prepared_round_ == round_) {  // reported already
-      calendar_.add({pair, round_}, now + 1);
-    } else {
-      overlaps_.push_back({pair, round_, now + clock.steps_within(overlap_lasts(a, b, seconds, slack))});
-    }
-    return;
+    const double lasts = whole > 0 ? overlap_lasts(a, b, seconds, slack) : 0;
+    return settle_touching(now, event, left, lasts < seconds ? clock.steps_within(lasts) : whole);
   }
+  if (event.parting) overlaps_.drop(pair);
   if (left <= 1) return;
   const double contact = earliest_contact(a, b, seconds, kEventResolution * options_.time_step, slack);
   Step ahead = contact <= seconds ? std::max<Step>(1, clock.steps_before(contact)) : kNeverStep;
   if (safe < left) ahead = std::min(ahead, std::max<Step>(0, safe) + 1);
   if (ahead < left) calendar_.add({pair, round_}, now + ahead);
+}
+
+// What has been looked at ahead is of the next step: this one has been reported already.
+void Events::settle_touching(Step now, const PairEvent& event, Step left, Step sure) {
+  const PairEvent next{event.pair, round_, !preparing_ || sure > 0};
+  if (preparing_) {
+    if (next.parting) overlaps_ahead_.push_back(next);
+  } else if (!event.parting) {
+    overlaps_.add(event.pair);
+    if (limited_) doubtful_.push_back(next);
+  }
+  // A pair with a body that waits is tested at the next step in any case.
+  const bool waits = windows_[event.pair.a].end == kLookDue || windows_[event.pair.b].end == kLookDue;
+  if (sure + 1 < left && !waits) calendar_.add(next, now + sure + 1);
 }
 
 }  // namespace orchard::runtime::detail

@@ -6,6 +6,7 @@ namespace {
 
 constexpr std::size_t kSmallSample = 16, kSample = 48;  // bodies that the first plan looks at: of few, and of many
 constexpr double kCrowding = 4;                         // lines read per entry from which on the cells are too large
+constexpr double kStepsCounted = 256;                   // that tell how often bounds are cancelled
 constexpr unsigned kPlansKept = 8;      // a plan that fits is made anew after as many looks at all bodies
 constexpr double kFewPairs = 1e-3;      // per body: too few to say anything about the prediction
 constexpr std::size_t kAskedAhead = 8;  // bodies, to see whether the next bounds are known
@@ -13,13 +14,14 @@ constexpr std::size_t kAskedAhead = 8;  // bodies, to see whether the next bound
 }  // namespace
 
 bool Events::crowded(const GridCounts& counts) const noexcept {
-  return counts.bodies >= roster_.size() &&
+  return plan_.roomy && counts.bodies >= roster_.size() &&
          static_cast<double>(counts.lines_read) > kCrowding * static_cast<double>(counts.entries);
 }
 
 // When most bodies are due it is cheaper to start afresh; it also lets the plan follow the bodies.
 bool Events::worth_a_rebuild(std::size_t due) const noexcept {
   const std::size_t n = roster_.size();
+  if (rounds_run_out()) return true;  // what is looked at seldom has to stay comparable
   if (due == 0 || n == 0) return false;
   return 2 * due >= n || n > 2 * planned_bodies_ || crowded(grid_.counts());
 }
@@ -36,16 +38,41 @@ bool Events::replan(Step now, Meter& meter) {
     const double seen = static_cast<double>(counts.pairs) / static_cast<double>(counts.bodies);
     off = (seen + kFewPairs) / (plan_.pairs_per_body + kFewPairs);
   }
+  const double steps = static_cast<double>(std::max<Step>(1, now - planned_at_));
+  const double cancelled = std::min(1.0, static_cast<double>(cancellations_) / (steps * static_cast<double>(n)));
   if (too_crowded) {
-    spacing_ /= 2;  // bodies in clusters: what counts is how dense these are
-  } else if (!other_number && 0.5 < off && off < 2 && plans_++ % kPlansKept != 1) {
-    return true;
+    crowding_ *= 2;  // bodies in clusters: what counts is how dense these are
+    spacing_ /= 2;
+  } else if (!other_number) {
+    if (!plan_outdated(off, cancelled)) {
+      if (steps > kStepsCounted) {  // what was long ago counts less and less
+        cancellations_ /= 2;
+        planned_at_ = now - (now - planned_at_) / 2;
+      }
+      return true;
+    }
+    if (means_.sample().size() >= kSmallSample) {  // bodies may have come closer, or gone apart
+      const double before = spacing_;
+      spacing_ = mean_spacing(means_.sample(), n) / crowding_;
+      if (before > 0) off *= std::pow(spacing_ / before, 3);
+    }
   }
   correction_ = std::clamp(correction_ * off, 0.05, 50.0);
-  plan_ = plan_window(means_, n, spacing_, options_.time_step, correction_, options_.window);
+  plan_ = plan_window(means_, n, spacing_, options_.time_step, correction_, options_.window, cancelled);
+  cancelled_ = cancelled;
+  planned_at_ = now;
+  cancellations_ = 0;
   lattice_ = Lattice(lattice_.origin(), plan_.cell_size, 2 * options_.position_slack);
   means_ = {};
   return true;
+}
+
+// `off`: pairs seen to pairs predicted. Bounds that are cancelled more often than they were, or less, count as well.
+bool Events::plan_outdated(double off, double cancelled) noexcept {
+  constexpr double kSeldom = 0.005;  // a share that makes no difference
+  const bool fits = 0.5 < off && off < 2;
+  const bool as_often = std::max(cancelled, cancelled_) < kSeldom + 2 * std::min(cancelled, cancelled_);
+  return !fits || !as_often || plans_++ % kPlansKept == 1;
 }
 
 // How bodies lie and move, from a sample. What a budget interrupts goes on with the bodies after those seen.
@@ -80,29 +107,32 @@ bool Events::survey(Step now, Meter& meter) {
   lattice_ = Lattice(centers.empty() ? Vec3{} : centers.front(), 1, 0);
   spacing_ = mean_spacing(centers, n);
   planned_bodies_ = n;
-  correction_ = 1;
+  crowding_ = correction_ = 1;
   plans_ = 0;
   return true;
 }
 
 void Events::place_all_anew() {
+  rebuilt_round_ = round_;
   calendar_.clear_bodies();
   std::fill(places_.begin(), places_.end(), Place::nowhere);
   oversized_.clear();
   extent_ = kNothing;
-  if (due_.capacity() > 2 * roster_.size()) due_ = {};
+  if (due_.capacity() > 2 * roster_.size()) give_back(due_);
   due_.clear();
   due_.reserve(roster_.size());
   for (BodyIndex body = 0; body < roster_.slots(); ++body) {
     if (roster_.alive(body)) due_.push_back(body);
   }
+  any_short_ = any_short_ && std::any_of(windows_.begin(), windows_.end(),
+                                         [](const Window& window) { return window.lasting < kLastsAsEver; });
   voted_ = kNeverStep;
   votes_ = 0;
   few_ = roster_.slots() <= BoxList::kMostBodies;
   if (few_) {
     list_.reset(roster_.slots());
     grid_.release();
-    boxes_ = {};
+    give_back(boxes_);
   } else {
     list_.release();
     grid_.reset(plan_.lines);
@@ -122,8 +152,15 @@ void Events::vote(Step end, std::size_t bodies) noexcept {
   }
 }
 
+// Of the bodies, so that both steps take the same time: of the near pairs only those among them are found ahead.
+double Events::share_ahead() const noexcept {
+  constexpr double kLook = 60, kNearPair = 100;  // nanoseconds of one machine
+  const double pairs = kNearPair * plan_.pairs_per_body;
+  return pairs < 1 ? 0.5 : (std::sqrt(kLook * kLook + 2 * pairs * (kLook + pairs)) - kLook) / (2 * pairs);
+}
+
 // A step ahead of the rush: the present bounds have answered for this step, and hold no longer than that. If the next
-// ones are known already, some bodies are looked at now, with windows that begin at the rush.
+// ones are known already, half of the work is done now, in looks with windows that begin at the rush.
 bool Events::prepare(Step now) {
   const Step from = now + 1;
   rush_ = kNeverStep;
@@ -138,17 +175,18 @@ bool Events::prepare(Step now) {
   if (2 * known_at(from, std::span(sample).first(count)) < count) return false;
 
   rush_ = from;
-  prepared_round_ = ++round_;
+  prepared_ = preparing_ = true;
+  ++round_;
   Meter unlimited;
   replan(now, unlimited);
   place_all_anew();
-  const std::size_t ahead = due_.size() / 2;
+  calendar_.clear_events();
+  const auto ahead = static_cast<std::size_t>(share_ahead() * static_cast<double>(due_.size()));
   near_.clear();
-  look_at(now, from, std::span(due_).first(ahead));
+  make_room_for_spheres();
+  look_at(now, from, std::span(due_).first(ahead), Found::tested);
   due_.erase(due_.begin(), due_.begin() + static_cast<std::ptrdiff_t>(ahead));
-  tests_.clear();
-  for (const BodyPair& pair : near_) tests_.push_back({pair, round_});
-  test(now, tests_);
+  preparing_ = false;
   return true;
 }
 

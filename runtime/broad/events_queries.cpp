@@ -78,7 +78,7 @@ void Events::append_loose(std::vector<BodyIndex>& bodies) const {
     if (pending_[body]) bodies.push_back(body);
   }
   backlog_.append_bodies(bodies);
-  if (prepared_round_ >= 0) bodies.insert(bodies.end(), due_.begin(), due_.end());
+  if (prepared_) bodies.insert(bodies.end(), due_.begin(), due_.end());
 }
 
 // Loose ones may be among them.

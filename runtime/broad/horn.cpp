@@ -71,11 +71,19 @@ double first_closing(double gap, double slope, double acceleration) noexcept {
   return acceleration > 0 ? (slope + root) / acceleration : kNever;
 }
 
+// As the root is concave, |offset + v t| <= |offset| + (t offset . v + t^2 v^2 / 2) / |offset|; it is at most
+// |offset| + t |v|, too.
 double overlap_lasts(const Motion& a, const Motion& b, double limit, double slack) noexcept {
   const Vec3 offset = b.position - a.position, velocity = b.velocity - a.velocity;
-  const double spare = a.radius + b.radius - std::sqrt(dot(offset, offset)) - motion_slack(a, b, limit) - slack;
-  const double speed = std::sqrt(dot(velocity, velocity)) + a.drift + b.drift;
-  return std::min(limit, first_closing(spare, -speed, a.acceleration + b.acceleration));
+  const double distance = std::sqrt(dot(offset, offset)), speed = std::sqrt(dot(velocity, velocity));
+  const double spare = a.radius + b.radius - distance - motion_slack(a, b, limit) - slack;
+  const double growth = a.drift + b.drift, acceleration = a.acceleration + b.acceleration;
+  double sure = first_closing(spare, -(speed + growth), acceleration);
+  if (sure < limit && distance > kLeastLength) {
+    const double parting = dot(offset, velocity) / distance;
+    sure = std::max(sure, first_closing(spare, -(parting + growth), acceleration + speed * speed / distance));
+  }
+  return std::min(limit, sure);
 }
 
 double horn_contact(const HornPair& pair, double limit, double resolution) noexcept {

@@ -5,6 +5,7 @@ namespace orchard::runtime::detail {
 
 struct StepReport {
   Step next;                            // the next step with anything to do; > the one just processed
+  std::span<const BodyPair> pairs{};    // that overlap, in ascending order; valid until the next call
   unsigned incomplete_from = kNoClass;  // as in Advance
   std::size_t left_over = 0;
 };
@@ -34,8 +35,7 @@ class Method {
   // Called while the roster still has it.
   virtual void removed(BodyIndex body) noexcept = 0;
   virtual void reclassified(BodyIndex body) = 0;  // the roster has its new importance
-  // Puts the overlapping pairs into `pairs`, in ascending order.
-  virtual StepReport step(Step now, Meter& meter, std::vector<BodyPair>& pairs) = 0;
+  virtual StepReport step(Step now, Meter& meter) = 0;
   virtual std::size_t memory_bytes() const noexcept = 0;
   // Adds what is due at the steps after `now`, one after the other; returns for how many it knows.
   virtual std::size_t foresee(Step now, std::span<StepsAhead> steps) const noexcept {

@@ -17,9 +17,18 @@ double extent(const MotionMeans& mean, double duration) noexcept {
   return 2 * mean.radius + spread + std::max(spread, mean.speed * duration);
 }
 
+// For how many of a window's steps a bound holds, on average.
+double lasting(double window, double cancelled) noexcept {
+  return cancelled > 0 ? (1 - std::pow(1 - cancelled, window)) / cancelled : window;
+}
+
 }  // namespace
 
 void MotionMeans::add(const Motion& m) noexcept {
+  // Of all seen so far each is among the places with the same chance, as far as a multiplication mixes.
+  const auto seen = static_cast<std::uint64_t>(count);
+  const std::uint64_t place = seen < kPlaces ? seen : ((seen * 0x9e3779b97f4a7c15u) >> 32) % (seen + 1);
+  if (place < kPlaces) places[place] = m.position;
   count += 1;
   radius += m.radius;
   speed += (std::fabs(m.velocity[0]) + std::fabs(m.velocity[1]) + std::fabs(m.velocity[2])) / 3;
@@ -28,31 +37,34 @@ void MotionMeans::add(const Motion& m) noexcept {
 }
 
 double mean_spacing(std::span<const Vec3> sample, std::size_t bodies) {
-  const std::size_t n = sample.size();
+  const std::size_t n = std::min(sample.size(), MotionMeans::kPlaces);
   if (n < 2) return 0;
   Vec3 lower{}, upper{};
-  std::vector<double> sorted(n);
+  std::array<double, MotionMeans::kPlaces> sorted;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < n; ++i) sorted[i] = sample[i][axis];
-    std::sort(sorted.begin(), sorted.end());
+    std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n));
     lower[axis] = sorted[n / 8];
     upper[axis] = sorted[n - 1 - n / 8];
   }
-  double volume = 1;
-  const double widest = std::max({upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]});
-  for (std::size_t axis = 0; axis < 3; ++axis) volume *= std::max(upper[axis] - lower[axis], 0.01 * widest);
   double inside = 0;
-  for (const Vec3& p : sample) {
+  for (const Vec3& p : sample.first(n)) {
     bool in = true;
     for (std::size_t axis = 0; axis < 3; ++axis) in = in && lower[axis] <= p[axis] && p[axis] <= upper[axis];
     inside += in;
   }
-  const double share = std::max(inside, 1.0) / static_cast<double>(n);
-  return std::cbrt(volume / (share * static_cast<double>(bodies)));
+  const double there = std::max(inside, 1.0) / static_cast<double>(n) * static_cast<double>(bodies);
+  Vec3 extent = upper - lower;
+  std::sort(extent.begin(), extent.end());
+  // An axis along which the world is thinner than the spacing does not set bodies apart.
+  const double in_space = std::cbrt(extent[0] * extent[1] * extent[2] / there);
+  if (in_space <= extent[0]) return in_space;
+  const double in_plane = std::sqrt(extent[1] * extent[2] / there);
+  return in_plane <= extent[1] ? in_plane : extent[2] / there;
 }
 
 WindowPlan plan_window(const MotionMeans& means, std::size_t bodies, double spacing, double time_step,
-                       double correction, Step fixed_window) noexcept {
+                       double correction, Step fixed_window, double cancelled) noexcept {
   MotionMeans mean = means;
   const double n = std::max(1.0, means.count);
   for (double* sum : {&mean.radius, &mean.speed, &mean.drift, &mean.acceleration}) *sum /= n;
@@ -68,11 +80,11 @@ WindowPlan plan_window(const MotionMeans& means, std::size_t bodies, double spac
     const double reach = 2 * length / spacing, pairs = correction * reach * reach * reach / 2;
     const double cost = (kCostOfLook / static_cast<double>(bodies) + kCostPerBody +
                          kCostPerCell * cells * (1 + occupancy / 2) + kCostPerPair * pairs) /
-                        static_cast<double>(window);
+                        lasting(static_cast<double>(window), cancelled);
     if (cost >= least) return;
     least = cost;
     const double lines = std::min(0.5, kLinesPerVolume / (share * share * share)) * static_cast<double>(bodies);
-    best = {cell, window, static_cast<std::size_t>(lines) + 1, pairs};
+    best = {cell, window, static_cast<std::size_t>(lines) + 1, pairs, cell > length};
   };
   if (fixed_window > 0) {
     consider(std::min(fixed_window, kLongestWindow));

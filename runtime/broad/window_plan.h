@@ -6,9 +6,15 @@ namespace orchard::runtime::detail {
 
 // What decides how long a window pays: means over the bodies looked at.
 struct MotionMeans {
+  static constexpr std::size_t kPlaces = 48;
+
   double count = 0, radius = 0, speed = 0, drift = 0, acceleration = 0;  // sums; speed per axis
+  std::array<Vec3, kPlaces> places{};                                    // where some of them are, no matter which
 
   void add(const Motion& motion) noexcept;
+  std::span<const Vec3> sample() const noexcept {
+    return std::span(places).first(std::min(kPlaces, static_cast<std::size_t>(count)));
+  }
 };
 
 struct WindowPlan {
@@ -16,15 +22,18 @@ struct WindowPlan {
   Step window = 1;
   std::size_t lines = 1;
   double pairs_per_body = 0;  // predicted for one look at all bodies
+  bool roomy = false;         // cells are larger than boxes: smaller ones would have fewer bodies in each
 };
 
-// The mean distance from a body to the next: (volume / bodies)^(1/3), of a sample's inner part, so that a few bodies
-// far away do not matter.
+// The mean distance from a body to the next: (volume / bodies)^(1/3), in flat worlds (area / bodies)^(1/2) and in thin
+// ones length / bodies, of a sample's inner part, so that a few bodies far away do not matter. O(1): of a sample of
+// more than MotionMeans::kPlaces the rest is left out.
 double mean_spacing(std::span<const Vec3> sample, std::size_t bodies);
 
 // The window with the least cost per step: a long one makes more boxes meet, a short one looks at bodies more often.
-// `correction` multiplies the predicted number of pairs; fixed_window 0 leaves the choice.
+// `correction` multiplies the predicted number of pairs; fixed_window 0 leaves the choice. `cancelled`: of the bodies,
+// the share whose bounds end before their time at a step, for which a long window would be in vain.
 WindowPlan plan_window(const MotionMeans& means, std::size_t bodies, double spacing, double time_step,
-                       double correction, Step fixed_window) noexcept;
+                       double correction, Step fixed_window, double cancelled) noexcept;
 
 }  // namespace orchard::runtime::detail

@@ -98,26 +98,27 @@ bool Sleeping::intersecting_are_current(Step now) {
   return all;
 }
 
-void Sleeping::report(Step now, std::vector<BodyPair>& pairs) const {
+void Sleeping::report(Step now) {
+  reported_.clear();
   for (const BoundContact& contact : found_->initial) {
     const BodyIndex a = present_[contact.a], b = present_[contact.b];
     if (contact.time > 0 || !current(a, now) || !current(b, now)) continue;
-    if (spheres_touch(known_[a].motion, known_[b].motion)) pairs.push_back({a, b});
+    if (spheres_touch(known_[a].motion, known_[b].motion)) reported_.push_back({a, b});
   }
 }
 
 // When all are known.
 StepReport Sleeping::sleep(Step now) {
   const BoundContact& first = found_->earliest;
-  if (first.time == kNoContact) return {end_};
+  if (first.time == kNoContact) return {end_, reported_};
   known_[present_[first.a]].asked = known_[present_[first.b]].asked = -1;  // to be rebuilt when we wake
-  return {std::min(end_, now + std::max<Step>(1, roster_.clock.steps_before(first.time)))};
+  return {std::min(end_, now + std::max<Step>(1, roster_.clock.steps_before(first.time))), reported_};
 }
 
-StepReport Sleeping::step(Step now, Meter& meter, std::vector<BodyPair>& pairs) {
+StepReport Sleeping::step(Step now, Meter& meter) {
   refresh_members();
   if (members_.empty()) return {kNeverStep};
-  if (meter.limited()) return step_within(now, meter, pairs);
+  if (meter.limited()) return step_within(now, meter);
   if (rebuild_all_) {
     for (const BodyIndex body : members_) known_[body].asked = -1;
   }
@@ -129,13 +130,14 @@ StepReport Sleeping::step(Step now, Meter& meter, std::vector<BodyPair>& pairs) 
     ask(now, stale_);
     find(now);
   } while (!intersecting_are_current(now));
-  report(now, pairs);
+  report(now);
   return sleep(now);
 }
 
 std::size_t Sleeping::memory_bytes() const noexcept {
   return sizeof(*this) + bytes_of(known_) + bytes_of(members_) + bytes_of(present_) + bytes_of(stale_) +
-         bytes_of(motions_) + bytes_of(bounds_) + bytes_of(pairs_) + bytes_of(turns_) + finder_.memory_bytes();
+         bytes_of(motions_) + bytes_of(bounds_) + bytes_of(pairs_) + bytes_of(reported_) + bytes_of(turns_) +
+         finder_.memory_bytes();
 }
 
 }  // namespace orchard::broad_phase_methods::detail

@@ -25,7 +25,7 @@ class Sleeping final : public runtime::detail::Method {
   void changed(BodyIndex body) override;
   void removed(BodyIndex) noexcept override { members_changed_ = true; }
   void reclassified(BodyIndex) override {}
-  StepReport step(Step now, Meter& meter, std::vector<BodyPair>& pairs) override;
+  StepReport step(Step now, Meter& meter) override;
   std::size_t memory_bytes() const noexcept override;
 
  private:
@@ -48,11 +48,11 @@ class Sleeping final : public runtime::detail::Method {
   void ask(Step now, std::span<const BodyIndex> bodies);
   void find(Step now);
   bool intersecting_are_current(Step now);
-  void report(Step now, std::vector<BodyPair>& pairs) const;
+  void report(Step now);
   StepReport sleep(Step now);
 
   // sleeping_budget.cpp
-  StepReport step_within(Step now, Meter& meter, std::vector<BodyPair>& pairs);
+  StepReport step_within(Step now, Meter& meter);
   bool work_through(Step now, unsigned importance, Meter& meter);
   void collect_stale(Step now, unsigned importance);
   void collect_pairs(Step now, unsigned importance);
@@ -68,7 +68,8 @@ class Sleeping final : public runtime::detail::Method {
   std::vector<Known> known_;  // by body
   std::vector<BodyIndex> members_, stale_;
   std::vector<Motion> motions_;
-  std::vector<BodyPair> pairs_;         // that touch, as far as is known, but are not all of now
+  std::vector<BodyPair> pairs_;  // that touch, as far as is known, but are not all of now
+  std::vector<BodyPair> reported_;
   std::vector<Turn> turns_;             // by class
   std::vector<BodyIndex> present_;      // the members whose bounds hold
   std::vector<SpaceTimeBound> bounds_;  // by place in present_

@@ -93,15 +93,15 @@ std::size_t Sleeping::left_over(Step now) const noexcept {
   return count;
 }
 
-StepReport Sleeping::step_within(Step now, Meter& meter, std::vector<BodyPair>& pairs) {
+StepReport Sleeping::step_within(Step now, Meter& meter) {
   if (turns_.empty()) turns_.resize(kNoClass);
   find(now);
   for (unsigned rank = roster_.next_class(0); rank < kNoClass; rank = roster_.next_class(rank + 1)) {
     if (work_through(now, rank, meter)) continue;
-    report(now, pairs);
-    return {now + 1, rank, left_over(now)};
+    report(now);
+    return {now + 1, reported_, rank, left_over(now)};
   }
-  report(now, pairs);
+  report(now);
   return sleep(now);
 }
 

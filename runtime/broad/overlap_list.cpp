@@ -1,0 +1,141 @@
+#include "overlap_list.h"
+
+namespace orchard::runtime::detail {
+namespace {
+
+constexpr std::size_t kFewPairs = 64;
+
+// Looks pairs up that come in ascending order, in steps that double from where the last one was.
+class Finder {
+ public:
+  explicit Finder(const std::vector<BodyPair>& sorted) : next_(sorted.begin()), end_(sorted.end()) {}
+  bool has(const BodyPair& pair) {
+    std::ptrdiff_t step = 1;
+    auto first = next_;
+    while (end_ - first > step && first[step] < pair) first += step, step *= 2;
+    const auto last = end_ - first > step ? first + step + 1 : end_;
+    next_ = std::lower_bound(first, last, pair);
+    return next_ != end_ && *next_ == pair;
+  }
+
+ private:
+  std::vector<BodyPair>::const_iterator next_, end_;
+};
+
+}  // namespace
+
+// By the first body into buckets, within the vector; in each by the second one: there are few.
+void OverlapList::sort(std::vector<BodyPair>& pairs, std::size_t slots) {
+  if (pairs.size() < kFewPairs || 8 * pairs.size() < slots) {
+    std::sort(pairs.begin(), pairs.end());
+    return;
+  }
+  begins_.assign(slots + 1, 0);
+  for (const BodyPair& pair : pairs) ++begins_[pair.a + 1];
+  for (std::size_t body = 0; body < slots; ++body) begins_[body + 1] += begins_[body];
+  ends_.assign(begins_.begin(), begins_.end() - 1);  // of what is in its bucket
+  for (std::size_t body = 0; body < slots; ++body) {
+    for (std::uint32_t& end = ends_[body]; end < begins_[body + 1];) {
+      BodyPair pair = pairs[end];
+      while (pair.a != body) std::swap(pair, pairs[ends_[pair.a]++]);
+      pairs[end++] = pair;
+    }
+    const auto begin = pairs.begin() + begins_[body], last = pairs.begin() + begins_[body + 1];
+    if (last - begin > 1) std::sort(begin, last);
+  }
+}
+
+void OverlapList::clear_marks() noexcept {
+  if (first_marked_ <= last_marked_) {
+    std::fill(marks_.begin() + first_marked_, marks_.begin() + last_marked_ + 1, std::uint8_t{0});
+  }
+  first_marked_ = kNoIndex;
+  last_marked_ = 0;
+  refuses_ = false;
+}
+
+void OverlapList::forget_marked() {
+  const auto marked = [&](const BodyPair& pair) { return (marks_[pair.a] | marks_[pair.b]) != 0; };
+  const auto refused = [&](const BodyPair& pair) { return ((marks_[pair.a] | marks_[pair.b]) & kRefused) != 0; };
+  if (!anew_) std::erase_if(pairs_, marked);
+  if (refuses_) std::erase_if(anew_ ? pairs_ : added_, refused);
+}
+
+void OverlapList::begin_anew() noexcept {
+  pairs_.clear();
+  added_.clear();
+  clear_marks();
+  anew_ = true;
+}
+
+// Both sorted. Leaves what is added and not in the list, and what is dropped and in it.
+void OverlapList::keep_changes() {
+  Finder touching(added_), in_list(pairs_), in_list_too(pairs_);
+  std::erase_if(dropped_, [&](const BodyPair& pair) { return touching.has(pair) || !in_list.has(pair); });
+  std::erase_if(added_, [&](const BodyPair& pair) { return in_list_too.has(pair); });
+}
+
+void OverlapList::remove_dropped() {
+  auto to = std::lower_bound(pairs_.begin(), pairs_.end(), dropped_.front());
+  auto from = to;
+  for (const BodyPair& pair : dropped_) {
+    const auto next = std::lower_bound(from, pairs_.end(), pair);
+    to = std::move(from, next, to);
+    from = next + 1;
+  }
+  pairs_.erase(std::move(from, pairs_.end(), to), pairs_.end());
+}
+
+// From the end: each part of the list moves once.
+void OverlapList::insert_added() {
+  auto from = pairs_.size();
+  grow(pairs_, from + added_.size());
+  auto to = pairs_.size();
+  for (auto k = added_.size(); k > 0; --k) {
+    const auto begin = pairs_.begin();
+    const auto place = static_cast<std::size_t>(
+        std::lower_bound(begin, begin + static_cast<std::ptrdiff_t>(from), added_[k - 1]) - begin);
+    std::move_backward(begin + static_cast<std::ptrdiff_t>(place), begin + static_cast<std::ptrdiff_t>(from),
+                       begin + static_cast<std::ptrdiff_t>(to));
+    to -= from - place + 1;
+    from = place;
+    pairs_[to] = added_[k - 1];
+  }
+}
+
+void OverlapList::update(std::size_t slots) {
+  if (first_marked_ <= last_marked_) {
+    forget_marked();
+    clear_marks();
+  }
+  if (anew_) {
+    sort(pairs_, slots);
+    pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+  } else if (!added_.empty() || !dropped_.empty()) {
+    sort(added_, slots);
+    added_.erase(std::unique(added_.begin(), added_.end()), added_.end());
+    std::sort(dropped_.begin(), dropped_.end());
+    dropped_.erase(std::unique(dropped_.begin(), dropped_.end()), dropped_.end());
+    keep_changes();
+    if (!dropped_.empty()) remove_dropped();
+    if (!added_.empty()) insert_added();
+  }
+  added_.clear();
+  dropped_.clear();
+  anew_ = false;
+}
+
+void OverlapList::clear() noexcept {
+  pairs_.clear();
+  added_.clear();
+  dropped_.clear();
+  anew_ = false;
+  clear_marks();
+}
+
+std::size_t OverlapList::memory_bytes() const noexcept {
+  return bytes_of(pairs_) + bytes_of(added_) + bytes_of(dropped_) + bytes_of(marks_) + bytes_of(begins_) +
+         bytes_of(ends_);
+}
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,93 @@
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "broad/calendar.h"
+#include "broad/overlap_list.h"
+#include "broad/swept_grid.h"
+#include "worlds.h"
+
+// What the default broad phase keeps between steps, by itself.
+namespace orchard::runtime::detail {
+namespace {
+
+TEST(OverlapList, IsTheSetThatASetWouldBe) {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    test::Draw draw(seed);
+    const std::uint64_t bodies = 3 + draw.bits() % 60;
+    const auto body = [&] { return static_cast<BodyIndex>(draw.bits() % bodies); };
+    OverlapList list;
+    list.make_room(bodies);
+    std::set<BodyPair> expected;
+    for (int step = 0; step < 30; ++step) {
+      const bool anew = draw.bits() % 8 == 0;
+      if (anew) list.begin_anew(), expected.clear();
+      std::set<BodyPair> added, dropped;
+      std::set<BodyIndex> looked, refused;
+      for (std::uint64_t k = draw.bits() % 3; k > 0; --k) list.mark(*looked.insert(body()).first, OverlapList::kLooked);
+      if (draw.bits() % 4 == 0) list.mark(*refused.insert(body()).first, OverlapList::kRefused);
+      for (std::uint64_t k = draw.bits() % (anew ? 400 : 20); k > 0; --k) {
+        const BodyIndex a = body(), b = body();
+        if (a == b) continue;
+        const BodyPair pair{std::min(a, b), std::max(a, b)};
+        const bool adds = anew || draw.bits() % 2 == 0;
+        adds ? list.add(pair) : list.drop(pair);
+        (adds ? added : dropped).insert(pair);
+      }
+      std::erase_if(expected, [&](const BodyPair& pair) {
+        return looked.contains(pair.a) || looked.contains(pair.b) || dropped.contains(pair);
+      });
+      expected.insert(added.begin(), added.end());
+      std::erase_if(expected,
+                    [&](const BodyPair& pair) { return refused.contains(pair.a) || refused.contains(pair.b); });
+      list.update(bodies);
+      const auto pairs = list.pairs();
+      ASSERT_EQ(std::vector<BodyPair>(pairs.begin(), pairs.end()),
+                std::vector<BodyPair>(expected.begin(), expected.end()))
+          << "seed " << seed << " step " << step;
+    }
+  }
+}
+
+TEST(Rounds, AreComparedAcrossTheEndOfTheirNumbers) {
+  const Round last = (1u << kRoundBits) - 1;
+  EXPECT_TRUE(is_later(2, 1));
+  EXPECT_FALSE(is_later(1, 1));
+  EXPECT_FALSE(is_later(1, 2));
+  EXPECT_TRUE(is_later(last + 1, last));
+  EXPECT_TRUE(is_later(last + 3, PairEvent({0, 1}, last).created));
+  EXPECT_FALSE(is_later(last - 3, PairEvent({0, 1}, last + 2).created));
+}
+
+// As many lines are read for each entry, however long and thin the world is: a rebuild takes time in proportion.
+TEST(SweptGrid, SpreadsWorldsOfAnyShapeEvenly) {
+  constexpr std::size_t kBodies = 20000;
+  const std::array<double, 3> shapes[] = {{27, 27, 27}, {141, 141, 1}, {1, 141, 141}, {20000, 1, 1}, {1, 1, 20000}};
+  for (const std::array<double, 3>& cells : shapes) {
+    test::Draw draw(1);
+    SweptGrid grid;
+    grid.reset(kBodies / 2);
+    SweptGrid::Queue queue;
+    std::vector<QuantumBox> boxes(kBodies);
+    std::vector<BodyPair> pairs;
+    for (BodyIndex begin = 0; begin < kBodies; begin += kBlock) {
+      BoxBlock block;
+      std::array<BodyIndex, kBlock> ids;
+      for (std::size_t i = 0; i < kBlock; ++i) {
+        ids[i] = begin + static_cast<BodyIndex>(i);
+        for (std::size_t d = 0; d < 3; ++d) {
+          const auto lower = static_cast<std::uint32_t>((1000 + draw.uniform(0, cells[d])) * kQuanta);
+          boxes[ids[i]].lower[d] = lower, boxes[ids[i]].upper[d] = lower + kQuanta / 4;
+        }
+        block.set(i, boxes[ids[i]]);
+      }
+      grid.insert(queue, ids, block, boxes, true, pairs);
+    }
+    grid.finish(queue, boxes, true, pairs);
+    const GridCounts counts = grid.counts();
+    EXPECT_LT(static_cast<double>(counts.lines_read), 1.5 * static_cast<double>(counts.entries)) << cells[0];
+  }
+}
+
+}  // namespace
+}  // namespace orchard::runtime::detail
