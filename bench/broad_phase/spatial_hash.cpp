@@ -129,7 +129,7 @@ double SpatialHash::best_cell_size(const std::vector<Vec3>& positions, const std
 }
 
 double SpatialHash::best_cell_size(const std::vector<State>& states, const std::vector<double>& radii) {
-  constexpr double kMostEntries = 40;  // a body: cells so small are not worth trying
+  constexpr double kMaxEntries = 40;  // a body: cells so small are not worth trying
   double radius = 0, widest = 0, farthest = 0, best = 0, least = 1e300;
   for (const double r : radii) radius += r / static_cast<double>(radii.size());
   for (const State& state : states) {
@@ -139,7 +139,7 @@ double SpatialHash::best_cell_size(const std::vector<State>& states, const std::
   for (double size = 0.5 * radius; size < std::max(3 * widest, 8 * radius); size *= 1.25) {
     double entries = 0;
     for (const double r : radii) entries += std::pow(1 + 2 * r / size, 3);
-    if (entries > kMostEntries * static_cast<double>(radii.size()) || farthest > 0.9 * kMiddle * size) continue;
+    if (entries > kMaxEntries * static_cast<double>(radii.size()) || farthest > 0.9 * kMiddle * size) continue;
     double sum = 0;
     for (const State& state : states) {
       SpatialHash hash(state, radii, {size});

@@ -11,7 +11,7 @@ namespace {
 // first one is added as it is. Found by trying at random such that cells that share a line lie far apart: about as far
 // as is possible in space, and in each plane of two axes from 2^10 lines on, but nowhere less than four cells along
 // some axis, so that the cells of one body never share a line.
-constexpr unsigned kFewestLineBits = 6;
+constexpr unsigned kMinLineBits = 6;
 constexpr std::array<std::array<std::uint32_t, 2>, 23> kLineFactors = {{
     {4u, 16u},
     {25u, 5u},
@@ -37,7 +37,7 @@ constexpr std::array<std::array<std::uint32_t, 2>, 23> kLineFactors = {{
     {14447183u, 113607059u},
     {47377195u, 86274897u},
 }};
-constexpr unsigned kMostLineBits = kFewestLineBits + static_cast<unsigned>(kLineFactors.size()) - 1;
+constexpr unsigned kMaxLineBits = kMinLineBits + static_cast<unsigned>(kLineFactors.size()) - 1;
 
 // No two cells of a box share a line.
 constexpr bool sets_apart(unsigned bits, const std::array<std::uint32_t, 2>& factors) {
@@ -57,7 +57,7 @@ constexpr bool sets_apart(unsigned bits, const std::array<std::uint32_t, 2>& fac
 
 constexpr bool all_set_apart() {
   for (unsigned i = 0; i < kLineFactors.size(); ++i) {
-    if (!sets_apart(kFewestLineBits + i, kLineFactors[i])) return false;
+    if (!sets_apart(kMinLineBits + i, kLineFactors[i])) return false;
   }
   return true;
 }
@@ -67,9 +67,9 @@ static_assert(all_set_apart());
 
 void SweptGrid::reset(std::size_t lines) {
   const auto nearest = static_cast<std::size_t>(std::max(1.0, 0.7 * static_cast<double>(lines)));
-  const unsigned bits = std::clamp(static_cast<unsigned>(std::bit_width(nearest)), kFewestLineBits, kMostLineBits);
+  const unsigned bits = std::clamp(static_cast<unsigned>(std::bit_width(nearest)), kMinLineBits, kMaxLineBits);
   mask_ = (1u << bits) - 1;
-  factors_ = {1, kLineFactors[bits - kFewestLineBits][0], kLineFactors[bits - kFewestLineBits][1]};
+  factors_ = {1, kLineFactors[bits - kMinLineBits][0], kLineFactors[bits - kMinLineBits][1]};
   overflow_.clear();
   free_overflow_ = 0;
   // All lines are written in order: those that have not been used for long come faster this way than one by one later.

@@ -15,7 +15,7 @@ double root_of(std::size_t bodies) { return std::sqrt(static_cast<double>(bodies
 
 }  // namespace
 
-std::vector<SceneSpec> table_scenes(std::size_t most) {
+std::vector<SceneSpec> table_scenes(std::size_t max_bodies) {
   using Kind = SceneKind;
   std::vector<SceneSpec> scenes = {
       {"slab", Kind::slab, 10000},
@@ -42,7 +42,7 @@ std::vector<SceneSpec> table_scenes(std::size_t most) {
       {"stream", Kind::stream, 10000},
       {"orbit", Kind::orbit, 10000},
   };
-  std::erase_if(scenes, [&](const SceneSpec& scene) { return scene.bodies > most; });
+  std::erase_if(scenes, [&](const SceneSpec& scene) { return scene.bodies > max_bodies; });
   return scenes;
 }
 

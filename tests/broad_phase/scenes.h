@@ -36,7 +36,7 @@ struct SceneSpec {
 };
 
 // The table's rows, those with rich contacts first, up to so many bodies.
-std::vector<SceneSpec> table_scenes(std::size_t most_bodies);
+std::vector<SceneSpec> table_scenes(std::size_t max_bodies);
 
 // The application: it knows where its bodies are at the present step, and promises what it knows of their motion.
 // Promises are kept up to rounding: an acceleration is constant for a step, or the path is given in closed form.
