@@ -6,6 +6,7 @@ namespace {
 
 constexpr std::size_t kSmallSample = 16, kSample = 48;  // bodies that the first plan looks at: of few, and of many
 constexpr double kCrowding = 4;                         // lines read per entry from which on the cells are too large
+constexpr double kStepsToTell = 3;                      // fewer do not tell how often bounds are cancelled
 constexpr double kStepsCounted = 256;                   // that tell how often bounds are cancelled
 constexpr unsigned kPlansKept = 8;      // a plan that fits is made anew after as many looks at all bodies
 constexpr double kFewPairs = 1e-3;      // per body: too few to say anything about the prediction
@@ -39,7 +40,8 @@ bool Events::replan(Step now, Meter& meter) {
     off = (seen + kFewPairs) / (plan_.pairs_per_body + kFewPairs);
   }
   const double steps = static_cast<double>(std::max<Step>(1, now - planned_at_));
-  const double cancelled = std::min(1.0, static_cast<double>(cancellations_) / (steps * static_cast<double>(n)));
+  const double share = std::min(1.0, static_cast<double>(cancellations_) / (steps * static_cast<double>(n)));
+  const double cancelled = steps < kStepsToTell ? cancelled_ : share;
   if (too_crowded) {
     crowding_ *= 2;  // bodies in clusters: what counts is how dense these are
     spacing_ /= 2;
@@ -60,8 +62,10 @@ bool Events::replan(Step now, Meter& meter) {
   correction_ = std::clamp(correction_ * off, 0.05, 50.0);
   plan_ = plan_window(means_, n, spacing_, options_.time_step, correction_, options_.window, cancelled);
   cancelled_ = cancelled;
-  planned_at_ = now;
-  cancellations_ = 0;
+  if (steps >= kStepsToTell || other_number) {
+    planned_at_ = now;
+    cancellations_ = 0;
+  }
   lattice_ = Lattice(lattice_.origin(), plan_.cell_size, 2 * options_.position_slack);
   means_ = {};
   return true;
