@@ -38,6 +38,8 @@ class Search {
     if (everywhere <= 0 || sphere_.radius <= 0) return {0, std::max(0.0, everywhere)};
     anchor_ = nearest.position;
     upper_everywhere_ = everywhere;
+    probe_beyond_nearest(center_distance);
+    if (everywhere <= best_ + width()) return {best_, everywhere};
     for (const auto& face : octahedron()) evaluate(face, anchor_);
     while (!cells_.empty() && evaluations_ < kMaxEvaluations) {
       if (cells_.front().upper <= best_ + width()) break;
@@ -54,6 +56,17 @@ class Search {
   // How far the bounds may be apart, given the lower one.
   double width() const {
     return std::max({tolerance_.of_radius * radius_, tolerance_.of_distance * best_, kFinest * radius_});
+  }
+
+  // Where nothing else of the solid is near, the farthest point lies beyond the point of the surface that is nearest to
+  // the centre, or, for a centre outside, across from it, and the bound that holds everywhere is met there.
+  void probe_beyond_nearest(double center_distance) {
+    const Vector towards = anchor_ - sphere_.center;
+    const double length = towards.norm();
+    if (!(length > 0)) return;
+    const double way = (center_distance < 0 ? sphere_.radius : -sphere_.radius) / length;
+    best_ = std::max(best_, surface_.signed_distance(sphere_.center + way * towards));
+    ++evaluations_;
   }
 
   static std::vector<std::array<Vector, 3>> octahedron() {
