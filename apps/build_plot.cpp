@@ -10,7 +10,7 @@ namespace orchard::apps {
 namespace {
 
 constexpr std::size_t kBins = 20;
-constexpr std::uint64_t kPlotPoints = 50'000;  // of the volume: a plot shows no more
+constexpr std::uint64_t kPlotRays = 2000;  // for the volume: a plot shows no more
 
 plot::Plot by_level(const std::string& title, const std::string& what) {
   plot::Plot plot;
@@ -53,7 +53,7 @@ plot::Plot outside_volumes(const SphereTreeBuild& result, const Surface& surface
     add_line(plot, name, lists.levels.size(), octree, [&](std::size_t i) {
       Level all = lists.levels[i];
       all.insert(all.end(), lists.carried[i].begin(), lists.carried[i].end());
-      return outside_volume(surface, all, kPlotPoints) / surface.report().volume;
+      return outside_volume(surface, all, kPlotRays) / surface.report().volume;
     });
   };
   add("tree", result.tree, false);
