@@ -59,9 +59,9 @@ SphereTreeOptions tree_options(const BuildCommand& command) {
   SphereTreeOptions options = command.options;
   MedialTuning tuning = command.tuning;
   tuning.refine = false;
+  options.samples_by_need = command.seconds && !tuning.samples;  // the efforts need different numbers
   if (!tuning.samples) tuning.samples = samples_needed(options);
   options.medial = build_options(tuning);
-  options.samples_by_need = false;
   options.seed = options.medial.sampling.seed;
   return options;
 }
@@ -201,7 +201,9 @@ void build(const BuildCommand& command) {
   if (talk) print_cost(command, options, cost);
   if (command.cost && command.output.json) fmt::print("{}\n", to_json(cost).dump(2));
   if (command.cost) return;
-  SphereTreeBuild result = build_sphere_tree(surface, options, bar.callback(), std::move(own.input));
+  SphereTreeBuild result = command.seconds
+                               ? build_sphere_tree_within(*command.seconds, surface, options, bar.callback(), own.input)
+                               : build_sphere_tree(surface, options, bar.callback(), std::move(own.input));
   result.seconds.insert(result.seconds.begin(), {"reading", seconds_reading});
   bar.clear();
 

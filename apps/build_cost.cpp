@@ -28,7 +28,9 @@ double bytes_per_triangle(TreeMethod method) { return method == TreeMethod::anne
 int as_number(Effort effort) { return effort == Effort::low ? 0 : effort == Effort::standard ? 1 : 2; }
 
 double count(const SphereTreeOptions& options, Index levels) {
-  double spheres = 0;
+  double spheres = options.spheres.empty() ? 0 : 1;
+  for (const Index of_level : options.spheres) spheres += of_level;
+  if (spheres > 0) return spheres;
   for (Index level = 0; level <= levels; ++level) spheres += std::pow(static_cast<double>(options.branching), level);
   return spheres;
 }

@@ -92,6 +92,12 @@ void add_build(CLI::App& app, Request& request) {
   command.add_option("-o,--output", build.folder, "Folder for the tree, the views and the report")->required();
   add_mesh_options(command, build.reading);
   add_tree_options(command, build.options);
+  command
+      .add_option("--time", build.seconds,
+                  "tightened: the tightest tree that there is after so many seconds, at whatever effort; the octree if "
+                  "there is none yet")
+      ->check(CLI::Range(0.0, 1e6))
+      ->excludes(command.get_option("--effort"));
   add_tuning(command, build.tuning, true);
   add_axis_source(command, build.source);
   command.add_option("--from-axis", build.source.axis,

@@ -22,7 +22,8 @@ struct Output {
 struct BuildCommand {
   std::filesystem::path mesh, folder;
   MeshOptions reading;
-  SphereTreeOptions options;  // but for options.medial, which the tuning says
+  SphereTreeOptions options;      // but for options.medial, which the tuning says
+  std::optional<double> seconds;  // what there is after that time
   MedialTuning tuning;
   AxisSource source;
   bool views = true;                  // ParaView files, where the program was built with them

@@ -20,6 +20,8 @@ const std::vector<OwnOption>& own_options() {
   static const std::vector<OwnOption> options = [] {
     std::vector<OwnOption> own{{"effort", {TreeMethod::tightened, TreeMethod::annealing}},
                                {"objective", {TreeMethod::tightened}},
+                               {"spheres", {TreeMethod::tightened}},
+                               {"time", {TreeMethod::tightened}},
                                {"closing", {TreeMethod::merging}}};
     for (const char* option :
          {"energy", "anneal-distance", "anneal-move", "anneal-min-scale", "anneal-max-scale", "anneal-first-trials",

@@ -165,16 +165,17 @@ json build_json(const Surface& surface, const SphereTreeOptions& options, const 
   json report;
   report["mesh"] = mesh_json(surface);
   report["options"] = {
-      {"method", name(options.method)},        {"depth", options.depth},
-      {"branching", options.branching},        {"effort", name(options.effort)},
+      {"method", name(result.method)},         {"depth", options.depth},
+      {"branching", options.branching},        {"effort", name(result.effort)},
       {"objective", name(options.objective)},  {"closing", options.closing == MergeClosing::refit ? "refit" : "growth"},
-      {"redundant", name(options.redundancy)}, {"seed", options.seed}};
+      {"redundant", name(options.redundancy)}, {"seed", result.seed}};
+  if (!options.spheres.empty()) report["options"]["spheres"] = options.spheres;
   if (result.medial) report["options"]["samples"] = result.medial->points;
   if (result.medial) report.update(axis_json(*result.medial, result.axis_components));
   report["covering"] = {{"rounds", result.cover.rounds},
                         {"triangles_uncovered_before", result.cover.triangles_uncovered},
                         {"largest_growth_over_radius", result.cover.max_growth}};
-  if (options.method == TreeMethod::tightened) report["tightening"] = tightening_json(result.tightening);
+  if (result.method == TreeMethod::tightened) report["tightening"] = tightening_json(result.tightening);
   if (options.method == TreeMethod::merging && options.closing == MergeClosing::refit)
     report["merging"] = merging_json(result.merging);
   if (options.method == TreeMethod::annealing)

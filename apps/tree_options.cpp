@@ -112,15 +112,29 @@ void add_tree_options(CLI::App& command, SphereTreeOptions& options) {
   add_choice(
       command, "--method", kMethods, options.method,
       "How to build: tightened (default), the tightest; merging along the medial axis; simulated annealing; octree");
-  command.add_option("--depth", options.depth, "Levels below the root at most")
-      ->check(CLI::Range(1, 10))
-      ->capture_default_str();
+  auto* depth = command.add_option("--depth", options.depth, "Levels below the root at most")
+                    ->check(CLI::Range(1, 20))
+                    ->capture_default_str();
+  auto* branching =
+      command
+          .add_option(
+              "--branching", options.branching,
+              "Children of a sphere at most; tightened and merging: on average, up to twice and three times as many; "
+              "above 64 for tightened only")
+          ->check(CLI::Range(2, static_cast<int>(kMaxBranching)))
+          ->capture_default_str();
   command
-      .add_option(
-          "--branching", options.branching,
-          "Children of a sphere at most; tightened and merging: on average, up to twice and three times as many")
-      ->check(CLI::Range(2, 64))
-      ->capture_default_str();
+      .add_option_function<std::vector<Index>>(
+          "--spheres",
+          [&options](const std::vector<Index>& spheres) {
+            options.spheres = spheres;
+            options.depth = static_cast<Index>(spheres.size());
+          },
+          "tightened: N1,N2,.. spheres on each level at most, in place of --depth and --branching; children go where "
+          "they help, up to 64 to a sphere")
+      ->delimiter(',')
+      ->excludes(depth)
+      ->excludes(branching);
   add_choice(
       command, "--effort", kEfforts, options.effort,
       "How long to search: tightened, about 1 : 2 : 15; annealing, about 1 : 3 : 17, high as in the dissertation");

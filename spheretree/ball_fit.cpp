@@ -7,113 +7,186 @@
 namespace orchard::detail {
 namespace {
 
-constexpr std::size_t kMaxCuts = 12;
-constexpr std::size_t kMaxFar = 40;  // farthest points that a step looks at
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kDualSteps = 24;
 // A predicted gain below this part of the looseness is not worth another query.
 constexpr double kWorthwhile = 2e-4;
 // Steps below this part of the radius change nothing that matters.
 constexpr double kMin = 1e-4;
 
-double radius_for(std::span<const Point> points, const Point& center) {
-  double squared = 0;
-  for (const Point& p : points) squared = std::max(squared, (p - center).squaredNorm());
-  return std::sqrt(squared) * (1 + 0x1p-50);
+}  // namespace
+
+template <std::size_t kRoom>
+void BallFitter::Terms<kRoom>::add(double term, const Vector& gradient) {
+  const std::size_t block = count / kLanes, lane = count % kLanes;
+  value[block][lane] = term;
+  x[block][lane] = gradient.x();
+  y[block][lane] = gradient.y();
+  z[block][lane] = gradient.z();
+  ++count;
+}
+
+template <std::size_t kRoom>
+void BallFitter::Terms<kRoom>::fill_up() {
+  const std::size_t real = count;
+  while (count % kLanes != 0) add(-kInfinity, Vector::Zero());
+  count = real;
+}
+
+template <std::size_t kRoom>
+Vector BallFitter::Terms<kRoom>::start_weights() {
+  std::size_t top = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    weight[i] = 0;
+    if (value[i / kLanes][i % kLanes] > value[top / kLanes][top % kLanes]) top = i;
+  }
+  weight[top] = 1;
+  return {x[top / kLanes][top % kLanes], y[top / kLanes][top % kLanes], z[top / kLanes][top % kLanes]};
 }
 
 // One step of maximising sum w_i value_i - t/2 |sum w_i gradient_i|^2 + .. over weights that sum to one: weight moves
 // from the least to the most wanted term. Returns how far apart these were; `sum` is over the terms of both kinds.
-template <class Terms>
-double shift_weight(const Terms& terms, std::vector<double>& weights, Vector& sum, double t) {
+template <std::size_t kRoom>
+double BallFitter::Terms<kRoom>::shift_weight(Vector& sum, double t) {
+  const double tx = t * sum.x(), ty = t * sum.y(), tz = t * sum.z();
+  double scores[kRoom];
+  for (std::size_t b = 0; b * kLanes < count; ++b) {
+    const Lanes score = value[b] - (tx * x[b] + ty * y[b] + tz * z[b]);
+    for (std::size_t k = 0; k < kLanes; ++k) scores[kLanes * b + k] = score[k];
+  }
   std::size_t up = 0, down = 0;
-  double highest = -std::numeric_limits<double>::infinity(), lowest = -highest;
-  for (std::size_t i = 0; i < terms.size(); ++i) {
-    const double value = terms[i].value - t * terms[i].gradient.dot(sum);
-    if (value > highest) highest = value, up = i;
-    if (weights[i] > 0 && value < lowest) lowest = value, down = i;
+  double highest = -kInfinity, lowest = kInfinity;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (scores[i] > highest) highest = scores[i], up = i;
+    if (weight[i] > 0 && scores[i] < lowest) lowest = scores[i], down = i;
   }
   if (up == down) return 0;
-  const Vector change = terms[up].gradient - terms[down].gradient;
+  const auto gradient = [&](std::size_t i) {
+    return Vector(x[i / kLanes][i % kLanes], y[i / kLanes][i % kLanes], z[i / kLanes][i % kLanes]);
+  };
+  const Vector change = gradient(up) - gradient(down);
   const double curvature = t * change.squaredNorm();
-  const bool all = curvature * weights[down] <= highest - lowest;
-  const double amount = all ? weights[down] : (highest - lowest) / curvature;
-  weights[up] += amount;
-  weights[down] = all ? 0 : weights[down] - amount;
+  const bool all = curvature * weight[down] <= highest - lowest;
+  const double amount = all ? weight[down] : (highest - lowest) / curvature;
+  weight[up] += amount;
+  weight[down] = all ? 0 : weight[down] - amount;
   sum += amount * change;
   return highest - lowest;
 }
 
-template <class Terms>
-Vector start_weights(const Terms& terms, std::vector<double>& weights) {
-  weights.assign(terms.size(), 0);
-  std::size_t top = 0;
-  for (std::size_t i = 1; i < terms.size(); ++i)
-    if (terms[i].value > terms[top].value) top = i;
-  weights[top] = 1;
-  return terms[top].gradient;
+template <std::size_t kRoom>
+double BallFitter::Terms<kRoom>::max_after(const Vector& step) const {
+  double max = -kInfinity;
+  for (std::size_t b = 0; b * kLanes < count; ++b) {
+    const Lanes after = value[b] + (step.x() * x[b] + step.y() * y[b] + step.z() * z[b]);
+    for (std::size_t k = 0; k < kLanes; ++k) max = std::max(max, after[k]);
+  }
+  return max;
 }
 
-}  // namespace
-
+// Within the distance of a centre whose side is known, the side is the same: that spares the question.
 BallFitter::Cut BallFitter::cut_at(const Point& center) const {
   ClosestPoint nearest;
-  const double center_distance = surface_.signed_distance(center, nearest);
+  double center_distance = 0;
+  const bool same_side = !cuts_.empty() && (center - cuts_.back().at).norm() < 0.999 * std::abs(cuts_.back().value);
+  if (same_side) {
+    nearest = surface_.closest(center);
+    center_distance = cuts_.back().value < 0 ? -nearest.distance : nearest.distance;
+  } else {
+    center_distance = surface_.signed_distance(center, nearest);
+  }
   const Vector away = center - nearest.position;
   const double length = away.norm();
   if (!(length > 0)) return {center, center_distance, surface_.pseudonormal(nearest.triangle, nearest.feature)};
   return {center, center_distance, away / (center_distance < 0 ? -length : length)};
 }
 
-void BallFitter::linearise(std::span<const Point> points, const FittedBall& ball, double reach) {
-  far_.clear();
-  const double min = std::max(0.0, ball.radius - 2 * reach);
-  for (const Point& p : points) {
-    const Vector away = ball.center - p;
-    const double squared = away.squaredNorm();
-    if (squared < min * min || squared == 0) continue;
+FittedBall BallFitter::at(const Point& center) const {
+  const Cut cut = cut_at(center);
+  return {center, 0, cut.value, cut.gradient};
+}
+
+void BallFitter::take_points(std::span<const Point> points) {
+  point_count_ = points.size();
+  points_.resize((points.size() + kLanes - 1) / kLanes);
+  squared_.resize(points_.size());
+  measured_.resize(points_.size());
+  for (std::size_t i = 0; i < kLanes * points_.size(); ++i) {
+    const Point& p = points[std::min(i, points.size() - 1)];
+    FourPoints& four = points_[i / kLanes];
+    four.x[i % kLanes] = p.x();
+    four.y[i % kLanes] = p.y();
+    four.z[i % kLanes] = p.z();
+  }
+}
+
+// The radius that holds all points.
+double BallFitter::measure(const Point& center) {
+  Lanes max{};
+  for (std::size_t b = 0; b < points_.size(); ++b) {
+    const Lanes dx = points_[b].x - center.x(), dy = points_[b].y - center.y(), dz = points_[b].z - center.z();
+    const Lanes squared = dx * dx + dy * dy + dz * dz;
+    measured_[b].numbers = squared;
+    max = squared > max ? squared : max;
+  }
+  return std::sqrt(std::max(std::max(max[0], max[1]), std::max(max[2], max[3]))) * (1 + 0x1p-50);
+}
+
+void BallFitter::linearise_points(const FittedBall& ball, double reach) {
+  const double min = std::max(0.0, ball.radius - 2 * reach), squared_min = min * min;
+  farthest_.clear();
+  for (std::size_t i = 0; i < point_count_; ++i) {
+    const double squared = squared_[i / kLanes].numbers[i % kLanes];
+    if (squared >= squared_min && squared > 0) farthest_.emplace_back(squared, static_cast<Index>(i));
+  }
+  if (farthest_.size() > kMaxFar) {
+    std::nth_element(farthest_.begin(), farthest_.begin() + kMaxFar, farthest_.end(), std::greater<>());
+    farthest_.resize(kMaxFar);
+  }
+  far_.count = 0;
+  for (const auto& [squared, i] : farthest_) {
+    const FourPoints& four = points_[i / kLanes];
+    const std::size_t lane = i % kLanes;
     const double length = std::sqrt(squared);
-    far_.push_back({length, away / length});
+    far_.add(length, (ball.center - Point(four.x[lane], four.y[lane], four.z[lane])) / length);
   }
-  if (far_.empty()) far_.push_back({ball.radius, Vector::Zero()});
-  if (far_.size() > kMaxFar) {
-    std::nth_element(far_.begin(), far_.begin() + kMaxFar, far_.end(),
-                     [](const Term& a, const Term& b) { return a.value > b.value; });
-    far_.resize(kMaxFar);
-  }
+  if (farthest_.empty()) far_.add(ball.radius, Vector::Zero());
+  far_.fill_up();
+}
+
+void BallFitter::linearise(const FittedBall& ball, double reach) {
+  linearise_points(ball, reach);
   // A cut that claims more than the distance known here does not hold here: the surface is not convex.
   const auto value_here = [&](const Cut& cut) { return cut.value + cut.gradient.dot(ball.center - cut.at); };
   std::erase_if(cuts_, [&](const Cut& cut) { return value_here(cut) > ball.center_distance + 1e-9 * ball.radius; });
-  near_.clear();
-  for (const Cut& cut : cuts_) near_.push_back({value_here(cut), cut.gradient});
-  if (near_.empty()) near_.push_back({ball.center_distance, Vector::Zero()});
+  near_.count = 0;
+  for (const Cut& cut : cuts_) near_.add(value_here(cut), cut.gradient);
+  if (cuts_.empty()) near_.add(ball.center_distance, Vector::Zero());
+  near_.fill_up();
 }
 
 // Minimises max far + max near + |step|^2 / (2 t) over the step, through the dual.
 Vector BallFitter::best_step(double t) {
-  Vector sum = start_weights(far_, far_weight_) + start_weights(near_, near_weight_);
+  Vector sum = far_.start_weights() + near_.start_weights();
   for (int k = 0; k < kDualSteps; ++k)
-    if (shift_weight(far_, far_weight_, sum, t) + shift_weight(near_, near_weight_, sum, t) < 1e-4 * t) break;
+    if (far_.shift_weight(sum, t) + near_.shift_weight(sum, t) < 1e-4 * t) break;
   return -t * sum;
 }
 
-double BallFitter::predicted_looseness(const Vector& step) const {
-  double far = -std::numeric_limits<double>::infinity(), near = far;
-  for (const Term& term : far_) far = std::max(far, term.value + term.gradient.dot(step));
-  for (const Term& term : near_) near = std::max(near, term.value + term.gradient.dot(step));
-  return far + near;
-}
-
-FittedBall BallFitter::fit(std::span<const Point> points, const Point& start, int evaluations) {
-  cuts_.assign(1, cut_at(start));
-  FittedBall best{start, radius_for(points, start), cuts_.back().value};
+FittedBall BallFitter::fit(std::span<const Point> points, const FittedBall& start, int evaluations) {
+  take_points(points);
+  cuts_.assign(1, {start.center, start.center_distance, start.slope});
+  if (start.slope.isZero(0)) cuts_.clear(), cuts_.push_back(cut_at(start.center));
+  FittedBall best{start.center, measure(start.center), cuts_.back().value, cuts_.back().gradient};
+  squared_.swap(measured_);
   double t = 0.3 * best.looseness() + 0.05 * best.radius;
   for (int used = 1; used < evaluations && t > kMin * best.radius;) {
-    linearise(points, best, t);
+    linearise(best, t);
     const Vector step = best_step(t);
     const double length = step.norm(), predicted = best.looseness() - predicted_looseness(step);
     if (predicted <= 0 || length < kMin * kWorthwhile * best.radius) break;
-    FittedBall next{best.center + step, 0, 0};
-    next.radius = radius_for(points, next.center);
+    FittedBall next{best.center + step, 0, 0, Vector::Zero()};
+    next.radius = measure(next.center);
     // The distance changes by no more than the step: no need to look where even that would not help.
     if (next.radius + best.center_distance - length >= best.looseness()) {
       t /= 4;
@@ -123,8 +196,12 @@ FittedBall BallFitter::fit(std::span<const Point> points, const Point& start, in
     if (cuts_.size() == kMaxCuts) cuts_.erase(cuts_.begin());
     cuts_.push_back(cut_at(next.center));
     next.center_distance = cuts_.back().value;
+    next.slope = cuts_.back().gradient;
     const double gain = best.looseness() - next.looseness();
-    if (gain > 0) best = next;
+    if (gain > 0) {
+      best = next;
+      squared_.swap(measured_);
+    }
     if (predicted < kWorthwhile * best.looseness()) break;
     t *= gain > 0.6 * predicted ? 1.7 : gain < 0.2 * predicted ? 1.0 / 3 : 1.0;
   }

@@ -11,7 +11,8 @@ namespace orchard::detail {
 struct FittedBall {
   Point center = Point::Zero();
   double radius = 0;
-  double center_distance = 0;  // signed distance of the centre, negative inside
+  double center_distance = 0;     // signed distance of the centre, negative inside
+  Vector slope = Vector::Zero();  // its gradient there, of length one; zero: not known
   double looseness() const { return radius + center_distance; }
   // With the radius that the ball needs to reach the point, whatever it has now.
   double looseness_with(const Point& point) const { return (point - center).norm() + center_distance; }
@@ -25,28 +26,62 @@ class BallFitter {
  public:
   explicit BallFitter(const Surface& surface) : surface_(surface) {}
 
-  // The ball holds all points. Precondition: there is one. At most `evaluations` queries of the signed distance.
-  FittedBall fit(std::span<const Point> points, const Point& start, int evaluations);
+  // The ball holds all points. Precondition: there is one. At most `evaluations` queries of the signed distance. A
+  // start whose slope is known must have the distance that belongs to it.
+  FittedBall fit(std::span<const Point> points, const FittedBall& start, int evaluations);
+  FittedBall fit(std::span<const Point> points, const Point& start, int evaluations) {
+    return fit(points, at(start), evaluations);
+  }
+  // A ball of no size, with what is to be known of its centre.
+  FittedBall at(const Point& center) const;
 
  private:
-  struct Term {  // value and gradient at the present centre
-    double value;
-    Vector gradient;
+  static constexpr std::size_t kLanes = 4;
+  using Lanes = double __attribute__((vector_size(32)));  // side by side (a GCC and Clang extension)
+  struct FourPoints {
+    Lanes x, y, z;
+  };
+  struct FourNumbers {
+    Lanes numbers;
   };
   struct Cut {  // sd(c) is about value + gradient . (c - at)
     Point at;
     double value;
     Vector gradient;
   };
+  // What the looseness is the largest of, as seen from the present centre: value + gradient . step. The weights are
+  // those of the dual.
+  template <std::size_t kRoom>
+  struct Terms {
+    Lanes value[kRoom / kLanes], x[kRoom / kLanes], y[kRoom / kLanes], z[kRoom / kLanes];
+    double weight[kRoom];
+    std::size_t count = 0;
+
+    void add(double term, const Vector& gradient);
+    void fill_up();  // the last four, so that they can be looked at together
+    Vector start_weights();
+    double shift_weight(Vector& sum, double t);
+    double max_after(const Vector& step) const;
+  };
+  static constexpr std::size_t kMaxFar = 40;  // farthest points that a step looks at
+  static constexpr std::size_t kMaxCuts = 12;
+
   Cut cut_at(const Point& center) const;
-  void linearise(std::span<const Point> points, const FittedBall& ball, double reach);
+  void take_points(std::span<const Point> points);
+  double measure(const Point& center);
+  void linearise(const FittedBall& ball, double reach);
+  void linearise_points(const FittedBall& ball, double reach);
   Vector best_step(double proximity);
-  double predicted_looseness(const Vector& step) const;
+  double predicted_looseness(const Vector& step) const { return far_.max_after(step) + near_.max_after(step); }
 
   const Surface& surface_;
   std::vector<Cut> cuts_;
-  std::vector<Term> far_, near_;
-  std::vector<double> far_weight_, near_weight_;
+  std::size_t point_count_ = 0;
+  std::vector<FourPoints> points_;
+  std::vector<FourNumbers> squared_, measured_;  // distances of the points from the best centre, from the last one
+  std::vector<std::pair<double, Index>> farthest_;
+  Terms<kMaxFar> far_;
+  Terms<kMaxCuts> near_;
 };
 
 }  // namespace orchard::detail

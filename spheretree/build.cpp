@@ -18,7 +18,11 @@ constexpr double kGrowthFactor = 1.1;  // of dissertation 6.3.2
 class TreeBuilder {
  public:
   TreeBuilder(const Surface& surface, const SphereTreeOptions& options, const Progress& progress)
-      : surface_(surface), options_(options), progress_(progress) {}
+      : surface_(surface), options_(options), progress_(progress) {
+    build_.method = options.method;
+    build_.effort = options.effort;
+    build_.seed = options.seed;
+  }
 
   SphereTreeBuild run(MedialBuildInput input) {
     stage("octree to compare with", [&] { build_.octree = octree(surface_, {.depth = options_.depth}, progress_); });
@@ -81,7 +85,7 @@ class TreeBuilder {
         break;
       case TreeMethod::tightened:
         stage("tightening", [&] {
-          const TightenOptions tightening{o.depth, o.branching, o.effort, o.objective, o.refinement, o.seed};
+          const TightenOptions tightening{o.depth, o.branching, o.spheres, o.effort, o.objective, o.refinement, o.seed};
           keep(tightened_tree(surface_, build_.medial->axis, tightening, progress_), build_.tightening);
         });
         break;
@@ -150,7 +154,8 @@ bool needs_axis(TreeMethod method) { return method == TreeMethod::tightened || m
 
 Index samples_needed(const SphereTreeOptions& options) {
   if (options.method != TreeMethod::tightened) return 5000;
-  const double leaves = std::pow(static_cast<double>(options.branching), options.depth);
+  const double leaves = options.spheres.empty() ? std::pow(static_cast<double>(options.branching), options.depth)
+                                                : static_cast<double>(options.spheres.back());
   const double min = options.effort == Effort::high ? 20'000 : 10'000;
   return static_cast<Index>(std::clamp(kSamplesPerLeaf * leaves, min, 200'000.0));
 }

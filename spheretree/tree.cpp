@@ -57,4 +57,12 @@ std::vector<LevelFigures> level_figures(const SphereTree& tree, double bounding_
   return levels;
 }
 
+double overall_inaccuracy(const SphereTree& tree) {
+  const std::vector<LevelFigures> levels = level_figures(tree, 1);
+  double sum = 0;
+  for (std::size_t i = 1; i < levels.size(); ++i)
+    sum += std::log(levels[i].mean_inaccuracy) + std::log(levels[i].max_inaccuracy);
+  return levels.size() < 2 ? 0 : std::exp(sum / static_cast<double>(2 * (levels.size() - 1)));
+}
+
 }  // namespace orchard

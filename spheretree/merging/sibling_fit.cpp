@@ -72,7 +72,7 @@ class Fit {
     for (Index b = 0; b < state.balls.size(); ++b) {
       if (own_[b].empty()) continue;
       FittedBall ball = state.balls[b];
-      if (marked[b]) ball = fitter_.fit(own_[b], ball.center, kEvaluations);
+      if (marked[b]) ball = fitter_.fit(own_[b], ball, kEvaluations);
       place[b] = count;
       state.balls[count++] = ball;
     }

@@ -35,13 +35,17 @@ void LevelBalls::recount() {
 }
 
 std::vector<Index> LevelBalls::held_only_by(std::span<const Index> balls) const {
-  std::vector<Index> held, only;
-  for (Index b : balls) held.insert(held.end(), balls_[b].samples.begin(), balls_[b].samples.end());
-  std::sort(held.begin(), held.end());
-  for (std::size_t i = 0, end = 0; i < held.size(); i = end) {
-    while (end < held.size() && held[end] == held[i]) ++end;
-    if (end - i == holders_[held[i]]) only.push_back(held[i]);
-  }
+  thread_local std::vector<Index> count;  // of these balls that hold each sample; all 0 between calls
+  count.resize(std::max<std::size_t>(count.size(), regions_.samples().size()), 0);
+  for (Index b : balls)
+    for (Index s : balls_[b].samples) ++count[s];
+  std::vector<Index> only;
+  for (Index b : balls)
+    for (Index s : balls_[b].samples) {
+      if (count[s] == holders_[s]) only.push_back(s);
+      count[s] = 0;
+    }
+  std::sort(only.begin(), only.end());
   return only;
 }
 

@@ -26,9 +26,12 @@ class TakerSearch {
     for (Index b = 0; b < balls_.size(); ++b) {
       const LevelBall& ball = balls_[b];
       FittedBall grown = ball;
-      for (const Point& p : points) grown.radius = std::max(grown.radius, (p - ball.center).norm());
+      const auto too_dear = [&](const Point& p) {
+        grown.radius = std::max(grown.radius, (p - ball.center).norm());
+        return slopes_[b] * (grown.radius - ball.radius) > best.rise * (1 + 1e-3);
+      };
+      if (std::any_of(points.begin(), points.end(), too_dear)) continue;
       const double growth = grown.radius - ball.radius;
-      if (slopes_[b] * growth > best.rise * (1 + 1e-3)) continue;
       if (!std::all_of(points.begin(), points.end(),
                        [&](const Point& p) { return balls_.regions().holds(ball.path_region, p); }))
         continue;
@@ -74,7 +77,7 @@ void take_in(const Surface& surface, const LevelObjective& objective, const std:
   for (Index b = 0; b < balls.size(); ++b) {
     if (taken[b].empty()) continue;
     balls.append_held_alone(b, taken[b]);
-    balls.replace(b, fitter.fit(taken[b], balls[b].center, kTakerEvaluations));
+    balls.replace(b, fitter.fit(taken[b], balls[b], kTakerEvaluations));
   }
 }
 

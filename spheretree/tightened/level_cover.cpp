@@ -1,6 +1,7 @@
 #include "level_cover.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "orchard/geometry/tolerance.h"
 
@@ -69,14 +70,32 @@ void LevelCover::gather(const std::array<Point, 3>& corners, const Sphere& where
   }
 }
 
-void LevelCover::open_arcs(const Sphere& where, const Change& change, Scratch& scratch,
-                           std::vector<OpenArc>& arcs) const {
-  surface_.triangles_near(where, scratch.triangles);
-  for (Index triangle : scratch.triangles) {
+void LevelCover::triangles_resting_on(std::span<const Index> balls, Scratch& scratch,
+                                      std::vector<Index>& triangles) const {
+  triangles.clear();
+  for (Index b : balls) {
+    surface_.triangles_near(balls_[b].sphere, scratch.triangles);
+    triangles.insert(triangles.end(), scratch.triangles.begin(), scratch.triangles.end());
+  }
+  std::sort(triangles.begin(), triangles.end());
+  triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+  const Sphere everywhere{Point::Zero(), std::numeric_limits<double>::infinity()};
+  std::erase_if(triangles, [&](Index triangle) {
+    const auto corners = surface_.corners(triangle);
+    gather(corners, everywhere, {balls, {}}, scratch.near);
+    return triangle_covered(corners, scratch.near.balls);
+  });
+}
+
+void LevelCover::open_arcs(std::span<const Index> triangles, const Sphere& where, const Change& change,
+                           Scratch& scratch, std::vector<OpenArc>& arcs) const {
+  scratch.open.clear();
+  for (Index triangle : triangles) {
     const auto corners = surface_.corners(triangle);
     gather(corners, where, change, scratch.near);
     const TriangleCover cover = cover_of_triangle(corners, where, scratch.near.balls);
     if (cover.covered) continue;
+    scratch.open.push_back(triangle);
     const std::size_t before = arcs.size();
     for (const UncoveredArc& arc : cover.arcs) arcs.push_back({arc.begin, arc.end});
     for (const Point& corner : corners) {
@@ -87,9 +106,9 @@ void LevelCover::open_arcs(const Sphere& where, const Change& change, Scratch& s
   }
 }
 
-bool LevelCover::covered(const Sphere& where, const Change& change, Scratch& scratch) const {
-  surface_.triangles_near(where, scratch.triangles);
-  return std::all_of(scratch.triangles.begin(), scratch.triangles.end(), [&](Index triangle) {
+bool LevelCover::covered(std::span<const Index> triangles, const Sphere& where, const Change& change,
+                         Scratch& scratch) const {
+  return std::all_of(triangles.begin(), triangles.end(), [&](Index triangle) {
     const auto corners = surface_.corners(triangle);
     gather(corners, where, change, scratch.near);
     return cover_of_triangle(corners, where, scratch.near.balls).covered;

@@ -32,6 +32,7 @@ class LevelCover {
   struct Scratch {
     NearBalls near;
     std::vector<Index> triangles;
+    std::vector<Index> open;  // of the triangles that open_arcs() looked at, those with any
   };
 
   // `upper`: the tree above the level, with leaves where it has leaves already; path_ends[r]: the last ball on the
@@ -43,9 +44,15 @@ class LevelCover {
   void replace(Index ball, const PlacedBall& by);
   bool in_path_region(Index path_region, const Point& point) const;
 
-  // Appends what is uncovered inside the closed sphere after the change; or says whether nothing is.
-  void open_arcs(const Sphere& where, const Change& change, Scratch& scratch, std::vector<OpenArc>& arcs) const;
-  bool covered(const Sphere& where, const Change& change, Scratch& scratch) const;
+  // The triangles that would not be covered without these balls, ascending. Precondition: they are with them.
+  void triangles_resting_on(std::span<const Index> balls, Scratch& scratch, std::vector<Index>& triangles) const;
+  void triangles_near(const Sphere& sphere, std::vector<Index>& triangles) const {
+    surface_.triangles_near(sphere, triangles);
+  }
+  // Appends what of some triangles is uncovered inside the closed sphere after the change; or says whether nothing is.
+  void open_arcs(std::span<const Index> triangles, const Sphere& where, const Change& change, Scratch& scratch,
+                 std::vector<OpenArc>& arcs) const;
+  bool covered(std::span<const Index> triangles, const Sphere& where, const Change& change, Scratch& scratch) const;
 
  private:
   void gather(const std::array<Point, 3>& corners, const Sphere& where, const Change& change, NearBalls& near) const;

@@ -1,4 +1,5 @@
 #pragma once
+#include "canonical_frame.h"
 #include "orchard/medial/axis.h"
 #include "partial_tree.h"
 
@@ -11,10 +12,13 @@ struct Samples {
 };
 
 // The axis's surface points, each with the centre of the largest medial ball that touches it, and the mesh's corners if
-// they are not too many.
-Samples surface_samples(const Surface& surface, const MedialAxis& axis);
+// they are not too many; both in the frame.
+Samples surface_samples(const Surface& surface, const MedialAxis& axis, const CanonicalFrame& frame);
 
-// Enough of them for so many balls: every k-th, without those that a leaf holds.
-Samples samples_for(const Samples& all, const PartialTree& partial, Index balls);
+// About so many of them, or a few more: every k-th, without those that a leaf holds.
+Samples samples_for(const Samples& all, const PartialTree& partial, Index enough);
+
+// How many are enough for so many balls.
+Index enough_samples(Index balls);
 
 }  // namespace orchard::detail

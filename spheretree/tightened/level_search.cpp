@@ -44,7 +44,7 @@ void LevelSearch::run(LevelBalls& balls, Index trials, LevelCover* cover, const 
 }
 
 LevelTrial LevelSearch::propose(const LevelBalls& balls, std::uint64_t number, const LevelCover* cover) const {
-  LevelTrial trial = propose_trial(surface_, balls, objective_, Random(seed_, 200 + level_, number));
+  LevelTrial trial = propose_trial(surface_, balls, objective_, cover != nullptr, Random(seed_, 200 + level_, number));
   if (trial.balls.empty()) return trial;
   if (cover != nullptr && !close_trial(surface_, balls, objective_, *cover, trial)) trial.balls.clear();
   for (LevelBall& ball : trial.balls) balls.find_samples(ball);

@@ -6,17 +6,19 @@
 namespace orchard::detail {
 namespace {
 
-LevelBalls started(const Surface& surface, PathRegions regions, const LevelOptions& options) {
-  std::vector<LevelBall> balls = seeded_balls(surface, regions, options);
+LevelBalls started(const Surface& surface, PathRegions regions, const LevelOptions& options,
+                   std::vector<LevelBall> start) {
+  std::vector<LevelBall> balls = start.empty() ? seeded_balls(surface, regions, options)
+                                               : relaxed_balls(surface, regions, options, std::move(start));
   return {std::move(regions), std::move(balls), options.max_children};
 }
 
 }  // namespace
 
 LevelSolver::LevelSolver(const Surface& surface, const Samples& samples, std::vector<std::vector<Sphere>> paths,
-                         const LevelOptions& options)
+                         const LevelOptions& options, std::vector<LevelBall> start)
     : surface_(surface),
-      balls_(started(surface, PathRegions(samples, std::move(paths)), options)),
+      balls_(started(surface, PathRegions(samples, std::move(paths)), options, std::move(start))),
       objective_(options.cost, balls_.all(), surface.bounding_radius()),
       search_(surface, objective_, options.seed, options.level) {}
 

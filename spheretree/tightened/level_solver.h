@@ -15,9 +15,9 @@ namespace orchard::detail {
 // takes in what the samples missed.
 class LevelSolver {
  public:
-  // Seeds the balls; paths as in PathRegions.
+  // Seeds the balls, or starts from those given; paths as in PathRegions.
   LevelSolver(const Surface& surface, const Samples& samples, std::vector<std::vector<Sphere>> paths,
-              const LevelOptions& options);
+              const LevelOptions& options, std::vector<LevelBall> start = {});
 
   void search(Index trials, const Progress& progress = {});
   void tighten();  // each ball to the samples that it alone holds

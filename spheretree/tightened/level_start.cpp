@@ -29,20 +29,33 @@ class LevelStart {
   std::vector<LevelBall> run() {
     if (samples_.size() == 0) return {};
     seed();
+    return relaxed();
+  }
+
+  std::vector<LevelBall> run_from(std::vector<LevelBall> balls) {
+    balls_ = std::move(balls);
+    for (LevelBall& ball : balls_) {
+      ball.samples.clear();
+      ++children_[ball.path_region];
+    }
+    return relaxed();
+  }
+
+ private:
+  std::vector<LevelBall> relaxed() {
     for (int round = 0; round < kRounds; ++round) lloyd_round();
     std::erase_if(balls_, [](const LevelBall& ball) { return ball.samples.empty(); });
     for (LevelBall& ball : balls_) ball.samples.clear();
     return std::move(balls_);
   }
 
- private:
   void seed() {
+    const BallFitter fitter(surface_);
     std::vector<double> min(samples_.size(), kInfinity);
     Index next = static_cast<Index>(Random(options_.seed, 100 + options_.level).below(samples_.size()));
     for (Index seeds = 0; seeds < samples_.size() && balls_.size() < options_.balls; ++seeds) {
       LevelBall ball;
-      ball.center = samples_.starts[next];
-      ball.center_distance = surface_.signed_distance(ball.center);
+      static_cast<FittedBall&>(ball) = fitter.at(samples_.starts[next]);
       ball.path_region = region_for_seed(ball, next);
       if (ball.path_region != kNone) {
         for (Index s : regions_.samples_in(ball.path_region))
@@ -79,7 +92,7 @@ class LevelStart {
       if (ball.samples.empty()) return;
       std::vector<Point> points;
       for (Index s : ball.samples) points.push_back(samples_.points[s]);
-      static_cast<FittedBall&>(ball) = fitters.local().fit(points, ball.center, kStartEvaluations);
+      static_cast<FittedBall&>(ball) = fitters.local().fit(points, ball, kStartEvaluations);
     });
   }
 
@@ -94,8 +107,8 @@ class LevelStart {
     --children_[unused.path_region];
     ++children_[loosest.path_region];
     unused.path_region = loosest.path_region;
-    unused.center = samples_.starts[far];
-    unused.center_distance = surface_.signed_distance(unused.center);
+    static_cast<FittedBall&>(unused) = BallFitter(surface_).at(samples_.starts[far]);
+    unused.radius = -1;
   }
 
   // The ball that gets least loose by each sample; kNone if no ball lies in a path region of it.
@@ -132,6 +145,11 @@ class LevelStart {
 
 std::vector<LevelBall> seeded_balls(const Surface& surface, const PathRegions& regions, const LevelOptions& options) {
   return LevelStart(surface, regions, options).run();
+}
+
+std::vector<LevelBall> relaxed_balls(const Surface& surface, const PathRegions& regions, const LevelOptions& options,
+                                     std::vector<LevelBall> balls) {
+  return LevelStart(surface, regions, options).run_from(std::move(balls));
 }
 
 }  // namespace orchard::detail

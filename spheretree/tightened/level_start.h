@@ -12,4 +12,8 @@ namespace orchard::detail {
 // fewer balls than options.balls, and there are none without samples. The balls' lists of samples are left empty.
 std::vector<LevelBall> seeded_balls(const Surface& surface, const PathRegions& regions, const LevelOptions& options);
 
+// The same from balls that were fitted to other samples of the same surface, in the place of seeds.
+std::vector<LevelBall> relaxed_balls(const Surface& surface, const PathRegions& regions, const LevelOptions& options,
+                                     std::vector<LevelBall> balls);
+
 }  // namespace orchard::detail

@@ -22,7 +22,7 @@ void tighten_to_samples(const Surface& surface, LevelBalls& balls) {
     points.clear();
     balls.append_held_alone(b, points);
     if (points.empty()) continue;
-    const FittedBall fitted = fitter.fit(points, balls[b].center, kSampleEvaluations);
+    const FittedBall fitted = fitter.fit(points, balls[b], kSampleEvaluations);
     if (fitted.looseness() < balls[b].looseness()) balls.replace(b, fitted);
   }
 }
@@ -31,17 +31,19 @@ void tighten_to_surface(const Surface& surface, LevelBalls& balls, LevelCover& c
   const double margin = tolerance::kCoverMargin * surface.bounding_radius();
   BallFitter fitter(surface);
   LevelCover::Scratch scratch;
+  std::vector<Index> near;
   std::vector<OpenArc> arcs;
   for (Index b : balls.loosest_first()) {
     const PlacedBall old = cover.balls()[b];
     arcs.clear();
-    cover.open_arcs(old.sphere, {{&b, 1}, {}}, scratch, arcs);
+    cover.triangles_near(old.sphere, near);
+    cover.open_arcs(near, old.sphere, {{&b, 1}, {}}, scratch, arcs);
     if (arcs.empty()) continue;
-    FittedBall fitted = fitter.fit(ends_of(arcs), balls[b].center, kSurfaceEvaluations);
+    FittedBall fitted = fitter.fit(ends_of(arcs), balls[b], kSurfaceEvaluations);
     fitted.radius += margin;
     if (fitted.looseness() > balls[b].looseness() * (1 - kWorthwhileTightening)) continue;
     const PlacedBall fresh{{fitted.center, fitted.radius}, old.path_region};
-    if (!cover.covered(old.sphere, {{&b, 1}, {&fresh, 1}}, scratch)) continue;
+    if (!cover.covered(scratch.open, old.sphere, {{&b, 1}, {&fresh, 1}}, scratch)) continue;
     cover.replace(b, fresh);
     balls.replace(b, fitted);
   }

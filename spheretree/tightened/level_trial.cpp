@@ -8,21 +8,26 @@ namespace orchard::detail {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kRounds = 3;  // of sharing out
+constexpr int kRounds = 2, kRoundsOfFew = 3;  // of sharing out
 constexpr int kFirstEvaluations = 5, kLastEvaluations = 12;
-constexpr double kMoveShare = 0.35;   // of trials that move a cheap ball to a dear place
-constexpr Index kFewForMoves = 8;     // balls, up to which there is no such move
-constexpr double kWorthwhile = 1e-6;  // part of the cost that must go
+constexpr double kLoosestShare = 0.5;  // of trials in a closed level that begin at one of the very loosest balls
+constexpr double kMoveShare = 0.35;    // of trials that move a cheap ball to a dear place
+constexpr Index kFewForMoves = 8;      // balls, up to which there is no such move
+constexpr Index kFew = 128;            // balls, up to which more is put at stake at a time
+constexpr double kWorthwhile = 1e-6;   // part of the cost that must go
+// By what part balls may become less loose in the last round.
+constexpr double kHoped = 0.3;
 
 class Proposal {
  public:
-  Proposal(const Surface& surface, const LevelBalls& balls, const LevelObjective& objective, Random random)
-      : surface_(surface),
-        balls_(balls),
+  Proposal(const Surface& surface, const LevelBalls& balls, const LevelObjective& objective, bool closed, Random random)
+      : balls_(balls),
         regions_(balls.regions()),
         samples_(regions_.samples()),
         objective_(objective),
-        random_(random) {}
+        closed_(closed),
+        random_(random),
+        fitter_(surface) {}
 
   LevelTrial run() {
     choose();
@@ -38,10 +43,11 @@ class Proposal {
   // A ball, loose ones more often, and some neighbours; perhaps also a tight one from anywhere that is to move here,
   // with the neighbours that must stand in for it.
   void choose() {
-    trial_.chosen.push_back(pick(1 + random_.below(3), true));
-    add_neighbors(trial_.chosen[0], 1 + random_.below(5));
+    const bool among_loosest = closed_ && random_.uniform() < kLoosestShare;
+    trial_.chosen.push_back(pick(among_loosest ? 1 + balls_.size() / 2 : 1 + random_.below(3), true));
+    add_neighbors(trial_.chosen[0], 1 + random_.below(few() ? 5 : 3));
     if (balls_.size() <= kFewForMoves || random_.uniform() >= kMoveShare) return;
-    const Index cheap = pick(4, false);
+    const Index cheap = pick(few() ? 4 : 8, false);
     if (is_chosen(cheap)) return;
     trial_.moved = static_cast<Index>(trial_.chosen.size());
     trial_.chosen.push_back(cheap);
@@ -70,6 +76,8 @@ class Proposal {
       if (!is_chosen(near[i].second)) trial_.chosen.push_back(near[i].second);
   }
 
+  bool few() const { return balls_.size() <= kFew; }
+
   bool is_chosen(Index ball) const {
     return std::find(trial_.chosen.begin(), trial_.chosen.end(), ball) != trial_.chosen.end();
   }
@@ -91,7 +99,7 @@ class Proposal {
       const std::vector<Index>& there = balls_[trial_.chosen[0]].samples;
       start_anew(trial_.balls[trial_.moved], there.empty() ? freed_ : there);
     }
-    const double share = moves ? 0.15 : random_.uniform() < 0.3 ? 1.0 : 0.4;
+    const double share = moves ? (few() ? 0.15 : 0) : random_.uniform() < 0.3 ? 1.0 : 0.4;
     for (std::size_t i = 0; i < trial_.balls.size(); ++i)
       if (i != trial_.moved && random_.uniform() < share) start_anew(trial_.balls[i], freed_);
   }
@@ -99,22 +107,24 @@ class Proposal {
   // Near one of the samples, in one of its path regions.
   void start_anew(LevelBall& ball, const std::vector<Index>& samples) {
     const Index sample = samples[random_.below(samples.size())];
-    ball.center = samples_.starts[sample];
-    if (random_.uniform() < 0.3) ball.center = 0.5 * (ball.center + samples_.points[sample]);
-    ball.center_distance = surface_.signed_distance(ball.center);
+    Point center = samples_.starts[sample];
+    if (random_.uniform() < 0.3) center = 0.5 * (center + samples_.points[sample]);
+    static_cast<FittedBall&>(ball) = fitter_.at(center);
     const std::vector<Index>& regions = regions_.regions_of(sample);
     ball.path_region = regions[random_.below(regions.size())];
   }
 
-  // Lloyd's iteration among the trial's balls. False: a sample lies in none of their path regions, or a ball is left
-  // unused.
+  // Lloyd's iteration among the trial's balls. False: a sample lies in none of their path regions, a ball is left
+  // unused, or the balls are so loose that another round would not make them worthwhile.
   bool share_out() {
     trial_.needs.resize(trial_.balls.size());
-    BallFitter fitter(surface_);
+    const int rounds = few() ? kRoundsOfFew : kRounds;
     bool all_used = true;
-    for (int round = 1; round <= kRounds; ++round) {
+    for (int round = 1; round <= rounds; ++round) {
       if (!divide_freed()) return false;
+      const int evaluations = round == rounds ? kLastEvaluations : kFirstEvaluations;
       all_used = true;
+      double hoped = 0;
       for (std::size_t i = 0; i < trial_.balls.size(); ++i) {
         LevelBall& ball = trial_.balls[i];
         if (trial_.needs[i].empty()) {
@@ -122,22 +132,25 @@ class Proposal {
           start_anew(ball, freed_);
           continue;
         }
-        const int evaluations = round == kRounds ? kLastEvaluations : kFirstEvaluations;
-        static_cast<FittedBall&>(ball) = fitter.fit(trial_.needs[i], ball.center, evaluations);
+        static_cast<FittedBall&>(ball) = fitter_.fit(trial_.needs[i], ball, evaluations);
+        FittedBall tighter = ball;
+        if (round < rounds) tighter.radius -= kHoped * ball.looseness();
+        hoped += objective_.cost(tighter);
+        if (hoped >= trial_.max_cost) return false;
       }
     }
     return all_used;
   }
 
+  // Has each sample go to the ball that gets least loose by it.
   bool divide_freed() {
     for (auto& list : trial_.needs) list.clear();
     for (Index s : freed_) {
       double min = kInfinity;
-      std::size_t at = kNone;
-      for (std::size_t i = 0; i < trial_.balls.size(); ++i) {
-        if (!regions_.holds_sample(trial_.balls[i].path_region, s)) continue;
+      Index at = kNone;
+      for (Index i = 0; i < trial_.balls.size(); ++i) {
         const double loose = trial_.balls[i].looseness_with(samples_.points[s]);
-        if (loose < min) min = loose, at = i;
+        if (loose < min && regions_.holds_sample(trial_.balls[i].path_region, s)) min = loose, at = i;
       }
       if (at == kNone) return false;
       trial_.needs[at].push_back(samples_.points[s]);
@@ -145,21 +158,22 @@ class Proposal {
     return true;
   }
 
-  const Surface& surface_;
   const LevelBalls& balls_;
   const PathRegions& regions_;
   const Samples& samples_;
   const LevelObjective& objective_;
+  const bool closed_;
   Random random_;
   LevelTrial trial_;
+  BallFitter fitter_;
   std::vector<Index> freed_;  // samples that only the chosen balls hold
 };
 
 }  // namespace
 
-LevelTrial propose_trial(const Surface& surface, const LevelBalls& balls, const LevelObjective& objective,
+LevelTrial propose_trial(const Surface& surface, const LevelBalls& balls, const LevelObjective& objective, bool closed,
                          Random random) {
-  return Proposal(surface, balls, objective, random).run();
+  return Proposal(surface, balls, objective, closed, random).run();
 }
 
 }  // namespace orchard::detail

@@ -17,9 +17,9 @@ struct LevelTrial {
 };
 
 // A few neighbouring balls give up what only they hold, some start anew, and they share it out again. The trial has
-// balls if the objective falls and every sample is held; their samples are not found yet. Only `random` decides which
-// trial it is.
-LevelTrial propose_trial(const Surface& surface, const LevelBalls& balls, const LevelObjective& objective,
+// balls if the objective falls and every sample is held; their samples are not found yet. `closed`: the level is, and
+// what growth has left loose is to be seen to. Only `random` decides which trial it is.
+LevelTrial propose_trial(const Surface& surface, const LevelBalls& balls, const LevelObjective& objective, bool closed,
                          Random random);
 
 }  // namespace orchard::detail

@@ -7,9 +7,8 @@
 
 namespace orchard::detail {
 
-PartialTree::PartialTree(const Surface& surface) : radius_(surface.bounding_radius()) {
-  const Sphere& ball = surface.bounding_ball();
-  levels_.push_back({{{ball.center, ball.radius + tolerance::kCoverMargin * radius_}}});
+PartialTree::PartialTree(const Sphere& root, double bounding_radius) : radius_(bounding_radius) {
+  levels_.push_back({{{root.center, root.radius + tolerance::kCoverMargin * radius_}}});
 }
 
 void PartialTree::add_level() {

@@ -17,7 +17,8 @@ using Level = std::vector<LevelNode>;
 // A tree in the making, level by level, where parents may still change. Level 0 is the root, a ball around the surface.
 class PartialTree {
  public:
-  explicit PartialTree(const Surface& surface);
+  // The root holds the surface, whose bounding radius is given.
+  PartialTree(const Sphere& root, double bounding_radius);
 
   std::size_t size() const { return levels_.size(); }
   Level& last() { return levels_.back(); }

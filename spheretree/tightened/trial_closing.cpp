@@ -37,6 +37,7 @@ class TrialCloser {
     where_.push_back(around(balls, chosen.first(here)));
     if (here < chosen.size()) where_.push_back(around(balls, chosen.subspan(here)));
     for (std::size_t i = 0; i < added_.size(); ++i) put(i, trial.balls[i], 1);
+    cover_.triangles_resting_on(chosen, scratch_, resting_);
   }
 
   bool worthwhile() const { return objective_.cost(trial_.balls) < trial_.max_cost; }
@@ -45,7 +46,7 @@ class TrialCloser {
   bool close() {
     for (int round = 1; round <= kRounds; ++round) {
       arcs_.clear();
-      for (const Sphere& sphere : where_) cover_.open_arcs(sphere, {trial_.chosen, added_}, scratch_, arcs_);
+      for (const Sphere& sphere : where_) cover_.open_arcs(resting_, sphere, {trial_.chosen, added_}, scratch_, arcs_);
       if (arcs_.empty()) return true;
       std::vector<char> grown(added_.size(), 0);
       for (const OpenArc& arc : arcs_) {
@@ -55,7 +56,7 @@ class TrialCloser {
         grown[taker] = 1;
       }
       for (std::size_t i = 0; i < added_.size(); ++i)
-        if (grown[i]) put(i, fitter_.fit(trial_.needs[i], trial_.balls[i].center, kEvaluations), round);
+        if (grown[i]) put(i, fitter_.fit(trial_.needs[i], trial_.balls[i], kEvaluations), round);
       if (!worthwhile()) return false;
     }
     return false;
@@ -67,16 +68,16 @@ class TrialCloser {
       std::vector<PlacedBall> others = added_;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
       arcs_.clear();
-      cover_.open_arcs(added_[i].sphere, {trial_.chosen, others}, scratch_, arcs_);
+      cover_.open_arcs(resting_, added_[i].sphere, {trial_.chosen, others}, scratch_, arcs_);
       if (arcs_.empty()) continue;
-      const FittedBall fitted = fitter_.fit(ends_of(arcs_), trial_.balls[i].center, kEvaluations);
+      const FittedBall fitted = fitter_.fit(ends_of(arcs_), trial_.balls[i], kEvaluations);
       if (fitted.looseness() + margin_ <= trial_.balls[i].looseness() * (1 - kWorthwhileTightening)) put(i, fitted, 1);
     }
   }
 
   bool covered() {
     return std::all_of(where_.begin(), where_.end(), [&](const Sphere& sphere) {
-      return cover_.covered(sphere, {trial_.chosen, added_}, scratch_);
+      return cover_.covered(resting_, sphere, {trial_.chosen, added_}, scratch_);
     });
   }
 
@@ -112,6 +113,7 @@ class TrialCloser {
   BallFitter fitter_;
   std::vector<PlacedBall> added_;  // the trial's balls, as the cover takes them
   std::vector<Sphere> where_;      // what may be open
+  std::vector<Index> resting_;     // triangles in which it may
   LevelCover::Scratch scratch_;
   std::vector<OpenArc> arcs_;
 };

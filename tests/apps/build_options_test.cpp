@@ -124,7 +124,7 @@ TEST(Build, ExplainsWrongUse) {
                                                     {"build"},
                                                     {"build", ball},
                                                     test::quick_build(ball, out, {"--depth", "0"}),
-                                                    test::quick_build(ball, out, {"--branching", "65"}),
+                                                    test::quick_build(ball, out, {"--branching", "1025"}),
                                                     test::quick_build(ball, out, {"--colour"}),
                                                     test::quick_build(ball, out, {"--strict", "--wrap"})};
   for (const auto& arguments : cases) {

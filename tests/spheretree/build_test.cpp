@@ -81,6 +81,26 @@ TEST(BuildSphereTree, FromTheDiagramOfABuildIsTheSameTree) {
   EXPECT_TRUE(test::same_tree(first.tree, build_sphere_tree(surface, options, {}, std::move(input)).tree));
 }
 
+TEST(BuildSphereTreeWithin, GivesACertifiedTreeWhateverTheLimitAndATighterOneForMoreTime) {
+  const Surface surface(test::l_shape());
+  SphereTreeOptions options = small(TreeMethod::tightened);
+  options.depth = 1;
+  const SphereTreeBuild none = build_sphere_tree_within(0, surface, options);
+  EXPECT_TRUE(none.certificate.ok());
+  EXPECT_EQ(none.method, TreeMethod::octree);
+  SphereTreeBuild some = build_sphere_tree_within(2, surface, options);
+  EXPECT_TRUE(some.certificate.ok());
+  EXPECT_LE(overall_inaccuracy(some.tree), overall_inaccuracy(none.tree));
+  test::expect_conservative(some.tree, surface, "L");
+}
+
+TEST(BuildSphereTreeWithin, StopsWhenCancelled) {
+  const Surface surface(test::l_shape());
+  EXPECT_THROW(build_sphere_tree_within(1000, surface, small(TreeMethod::tightened),
+                                        [](std::string_view, double) { return false; }),
+               Cancelled);
+}
+
 TEST(BuildSphereTree, RefusesTwoInputsAtOnce) {
   const Surface surface(test::l_shape());
   MedialBuildInput input;

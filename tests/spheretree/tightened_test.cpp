@@ -189,8 +189,66 @@ TEST(TightenedTree, RefusesABranchingThatIsNoBranching) {
   const Surface surface(torus(24, 12));
   const MedialAxis axis = axis_of(surface);
   EXPECT_THROW(tightened_tree(surface, axis, {.branching = 1}), InputError);
-  EXPECT_THROW(tightened_tree(surface, axis, {.branching = 65}), InputError);
+  EXPECT_THROW(tightened_tree(surface, axis, {.branching = 1025}), InputError);
   EXPECT_THROW(tightened_tree(surface, MedialAxis{}), InputError);
+}
+
+TEST(TightenedTree, KeepsToTheNumbersOfSpheresGivenForEachLevel) {
+  const Surface surface(u_shape(0.3));
+  const MedialAxis axis = axis_of(surface, 2000);
+  TightenOptions options{.depth = 2, .effort = Effort::low};
+  options.spheres = {5, 40};
+  const SphereTree tree = tightened_tree(surface, axis, options).tree;
+  expect_conservative(tree, surface, "U");
+  const auto counts = level_counts(tree);
+  ASSERT_EQ(counts.size(), 3u);
+  EXPECT_LE(counts[1], 5u);
+  EXPECT_LE(counts[2], 40u);
+  EXPECT_GT(counts[2], 30u);
+  for (const std::vector<Index>& wrong : {std::vector<Index>{5}, {1, 40}, {5, 5}, {5, 400}, {2000, 3000}}) {
+    options.spheres = wrong;
+    EXPECT_THROW(tightened_tree(surface, axis, options), InputError);
+  }
+}
+
+TEST(TightenedTree, MakesOneLevelOfMoreSpheresThanALevelUsuallyHas) {
+  const Surface surface(torus(24, 12));
+  const SphereTree tree =
+      tightened_tree(surface, axis_of(surface, 1500), {.depth = 1, .branching = 100, .effort = Effort::low}).tree;
+  expect_conservative(tree, surface, "torus");
+  EXPECT_GT(tree.nodes[0].child_count, 64u);
+  EXPECT_LE(tree.nodes[0].child_count, 100u);
+}
+
+TEST(TightenedTree, IsTheSameForAMeshThatIsScaledOrMoved) {
+  struct Frame {
+    double factor;
+    Vector offset;
+  };
+  const TriangleMesh mesh = u_shape(0.3);
+  const MedialAxis axis = axis_of(Surface(mesh), 1000);
+  const auto tree_in = [&](const Frame& frame) {
+    MedialAxis moved = axis;
+    for (auto* points : {&moved.points, &moved.centers})
+      for (Point& point : *points) point = frame.factor * point + frame.offset;
+    for (double& radius : moved.radii) radius *= frame.factor;
+    const Surface surface(transformed(mesh, frame.factor, frame.offset));
+    const SphereTree tree = tightened_tree(surface, moved, {.depth = 2, .effort = Effort::low}).tree;
+    expect_conservative(tree, surface, "moved U");
+    return tree;
+  };
+  const SphereTree tree = tree_in({1, Vector::Zero()});
+  for (const Frame& frame : {Frame{1024, Vector::Zero()}, Frame{1e-3, Vector::Zero()}, Frame{1, Vector(100, -7, 31)}}) {
+    const SphereTree other = tree_in(frame);
+    ASSERT_EQ(tree.nodes.size(), other.nodes.size()) << frame.factor;
+    for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+      EXPECT_EQ(tree.nodes[i].parent, other.nodes[i].parent);
+      const double radius = frame.factor * tree.nodes[i].sphere.radius;
+      EXPECT_NEAR(other.nodes[i].sphere.radius, radius, frame.factor == 1024 ? 0 : 1e-9 * radius) << frame.factor;
+      const Point center = frame.factor * tree.nodes[i].sphere.center + frame.offset;
+      EXPECT_LE((other.nodes[i].sphere.center - center).norm(), frame.factor == 1024 ? 0 : 1e-9 * radius + 1e-12);
+    }
+  }
 }
 
 TEST(TightenedTree, StopsWhenCancelled) {

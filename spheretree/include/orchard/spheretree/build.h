@@ -29,8 +29,9 @@ struct AnnealingTuning {
 // All that can be tuned on the way from a surface to a certified tree.
 struct SphereTreeOptions {
   TreeMethod method = TreeMethod::tightened;
-  Index depth = 3;      // levels below the root at most
-  Index branching = 8;  // children of a node at most or on average, as the method has it
+  Index depth = 3;               // levels below the root at most
+  Index branching = 8;           // children of a node at most or on average, as the method has it
+  std::vector<Index> spheres{};  // tightened: how many each level may have, in place of `branching`; see TightenOptions
   Effort effort = Effort::standard;
   Objective objective = Objective::balanced;  // tightened
   SetEnergy energy = SetEnergy::maximum;      // annealing, the three
@@ -61,6 +62,10 @@ Index samples_needed(const SphereTreeOptions& options);
 
 // Everything that one run from a surface to a packed tree made, and how long each stage took.
 struct SphereTreeBuild {
+  // Of the options, those that build_sphere_tree_within() chooses by itself.
+  TreeMethod method = TreeMethod::tightened;
+  Effort effort = Effort::standard;
+  std::uint64_t seed = 1;
   std::optional<MedialBuild> medial;  // empty for an octree or annealing, which need no axis
   Index axis_components = 0;
   SphereTree tree;
@@ -83,5 +88,13 @@ struct SphereTreeBuild {
 // certificate. Three levels take some seconds; see docs/benchmarks.md.
 SphereTreeBuild build_sphere_tree(const Surface& surface, const SphereTreeOptions& options = {},
                                   const Progress& progress = {}, MedialBuildInput input = {});
+
+// The tightest certified tree, by overall_inaccuracy(), that there is after some seconds: the octree first, which takes
+// its time whatever the limit, then tightened trees of low, standard and high effort, and of high effort with further
+// seeds, as long as there is time. The method and the effort of the options do not count. What comes out depends on the
+// machine's speed. A limit that is met is noticed at the next report of progress, within a second or so for meshes of a
+// few thousand triangles. Errors as above.
+SphereTreeBuild build_sphere_tree_within(double seconds, const Surface& surface, const SphereTreeOptions& options = {},
+                                         const Progress& progress = {}, const MedialBuildInput& input = {});
 
 }  // namespace orchard

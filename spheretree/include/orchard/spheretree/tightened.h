@@ -6,7 +6,8 @@
 
 namespace orchard {
 
-// How long to search: about 1 : 2 : 15 in time.
+// How long to search: about 1 : 2 : 15 in time. What high effort builds is compared with what standard effort builds,
+// by overall_inaccuracy(), and the tighter one of the two is kept.
 enum class Effort { low, standard, high };
 
 // What is to be low on every level: the largest inaccuracy, the mean one, the volume outside the object, or a balance.
@@ -15,9 +16,16 @@ enum class Effort { low, standard, high };
 // beyond two or three times the mean.
 enum class Objective { balanced, maximum, mean, volume };
 
+inline constexpr Index kMaxBranching = 1024;
+inline constexpr Index kMaxFanOut = 64;  // children of a node where its level's spheres are divided by need
+
 struct TightenOptions {
   Index depth = 3;      // levels below the root at most
-  Index branching = 8;  // a level has at most this many times the nodes of the one above; 2..64
+  Index branching = 8;  // a level has at most this many times the nodes of the one above; 2..kMaxBranching
+  // How many spheres each level may have, in place of `branching`; empty, or `depth` numbers, each above the one before
+  // and at most kMaxFanOut times it, the first one between 2 and kMaxBranching. Spheres go where they help: a parent
+  // has as many of its level's as it is worth.
+  std::vector<Index> spheres{};
   Effort effort = Effort::standard;
   Objective objective = Objective::balanced;
   Refinement refinement{};
@@ -41,13 +49,15 @@ struct TightenBuild {
 };
 
 // Builds the tightest trees: each level is solved as a whole, with branching^level balls for the whole surface and
-// every ball free to choose its parent. A parent so has one to twice `branching` children (at most 64), and the load
-// balances itself. Balls are fitted to surface points, so that max |p - c| + sd(c) is small over the centre c, improved
+// every ball free to choose its parent. A parent so has one to twice `branching` children, and the load balances
+// itself. Balls are fitted to surface points, so that max |p - c| + sd(c) is small over the centre c, improved
 // by Lloyd's iteration and large-neighbourhood search, and closed with the boundary lemma: each uncovered region is
 // given to the ball that it costs least, until there is none. Then each ball is fitted again to exactly what it alone
 // holds, and the search goes on with nothing uncovered. The surface points are those of the axis: 20 or more for each
 // ball of the last level. The result is conservative and, since work is counted and not timed, the same on any number
-// of threads. Throws InputError for a branching out of range or an axis without vertices.
+// of threads. The search runs on the mesh as it is in a frame of its own (tightened/canonical_frame.h), so that a mesh
+// that is scaled or moved gets the same tree but for the last digits. Throws InputError for a branching or numbers of
+// spheres out of range or an axis without vertices.
 TightenBuild tightened_tree(const Surface& surface, const MedialAxis& axis, const TightenOptions& options = {},
                             const Progress& progress = {});
 

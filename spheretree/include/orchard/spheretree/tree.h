@@ -48,4 +48,9 @@ struct LevelFigures {
 // One row for each level, the root's first. Precondition: measure() has filled the nodes.
 std::vector<LevelFigures> level_figures(const SphereTree& tree, double bounding_radius);
 
+// One number for how loosely a tree fits, in mesh units: the geometric mean of the mean and the maximum inaccuracy of
+// all levels below the root, 0 if there are none. What trees of as many levels are compared by where one is to be kept:
+// a part of any figure weighs as much as the same part of any other. Precondition: measure() has filled the nodes.
+double overall_inaccuracy(const SphereTree& tree);
+
 }  // namespace orchard

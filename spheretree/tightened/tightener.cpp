@@ -1,0 +1,196 @@
+#include "tightener.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include "level_finish.h"
+#include "orchard/covering/inaccuracy.h"
+#include "orchard/spheretree/outside_volume.h"
+
+namespace orchard::detail {
+namespace {
+
+// A level is as coarse as its samples allow.
+constexpr Index kSamplesPerBall = 8;
+// The search in closed levels looks at every triangle in reach: of fine meshes it gets less.
+constexpr double kFewTriangles = 4000;
+constexpr double kSearchShare = 0.1;  // of the trials, in each searching round
+
+// The starts of a first level are tried on so many samples, and with so many trials for each ball.
+constexpr Index kExploringSamples = 800, kExploringTrials = 8;
+constexpr Index kExploredBalls = 800;  // in all starts together, at most: with many balls, one start is like another
+
+constexpr std::uint64_t kComparingRays = 4000;  // for the outside volume of what is compared
+
+Index trials_for(Index balls, const Work& work) { return static_cast<Index>(work.trials * (300 + 14.0 * balls)); }
+
+// High powers at the top: what is loose there is loose all the way down. The more trials, the lower the sum, at the
+// cost of the largest ball unless the cap is lower too.
+LevelCost cost_for(Objective objective, Index level, Index depth, Effort effort) {
+  switch (objective) {
+    case Objective::balanced:
+      if (level == 1) return {.power = 8};
+      if (level < depth) return {.power = 3, .cap = effort == Effort::high ? 1.6 : 2.0};
+      return {.power = 2, .cap = 2.5};
+    case Objective::maximum:
+      return {.power = 10};
+    case Objective::mean:
+      return {.power = level < depth ? 3.0 : 1.5};
+    case Objective::volume:
+      return {.power = level == 1 ? 2.0 : 3.0, .size_power = 2};
+  }
+  return {};
+}
+
+std::uint64_t seed_of(std::uint64_t seed, Index start) { return seed + 0x100000001u * start; }
+
+// Neither is bought with much of the other.
+double mean_times_largest(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size()) *
+         *std::max_element(values.begin(), values.end());
+}
+
+double looseness(const LevelSolver& solver) {
+  std::vector<double> values;
+  for (const LevelBall& ball : solver.balls()) values.push_back(ball.looseness());
+  return mean_times_largest(values);
+}
+
+// Times the outside volume: all three figures count alike.
+double looseness(const Surface& surface, const Level& level) {
+  std::vector<double> values(level.size());
+  tbb::parallel_for(std::size_t{0}, level.size(), [&](std::size_t i) {
+    values[i] = inaccuracy(surface, level[i].sphere, {1e-3, 1e-2}).upper;
+  });
+  std::vector<Sphere> spheres;
+  for (const LevelNode& node : level) spheres.push_back(node.sphere);
+  const double outside = outside_volume(surface, spheres, kComparingRays);
+  return mean_times_largest(values) * outside;
+}
+
+}  // namespace
+
+Tightener::Tightener(const Surface& surface, const Samples& samples, const Sphere& root, const TightenOptions& options,
+                     const Work& work, const Progress& progress)
+    : surface_(surface),
+      samples_(samples),
+      options_(options),
+      work_(work),
+      progress_(progress),
+      partial_(root, surface.bounding_radius()) {}
+
+TightenBuild Tightener::run() {
+  TightenReport report;
+  for (Index level = 1; level <= options_.depth; ++level)
+    if (!build_level(level, report.levels)) break;
+  SphereTree tree = partial_.tree();
+  tree.branching = std::max(tree.branching, options_.branching);
+  return {std::move(tree), std::move(report)};
+}
+
+bool Tightener::build_level(Index level, std::vector<TightenReport::Level>& reports) {
+  const auto refined = static_cast<double>(
+      std::count_if(partial_.last().begin(), partial_.last().end(), [](const LevelNode& node) { return !node.leaf; }));
+  const std::size_t max = samples_.size() / kSamplesPerBall;
+  const double allowed = options_.spheres.empty() ? options_.branching * refined : options_.spheres[level - 1];
+  const double wanted = std::min(static_cast<double>(max), allowed);
+  if (refined == 0 || (wanted <= refined && level > 1)) return false;
+  LevelOptions level_options;
+  level_options.balls = static_cast<Index>(wanted);
+  level_options.max_children = level == 1                 ? level_options.balls
+                               : options_.spheres.empty() ? 2 * options_.branching
+                                                          : kMaxFanOut;
+  level_options.cost = cost_for(options_.objective, level, options_.depth, options_.effort);
+  level_options.level = level;
+  level_options.seed = options_.seed;
+
+  const Index starts = level <= std::size(work_.starts) ? work_.starts[level - 1] : 1;
+  std::vector<std::vector<LevelBall>> from(starts);
+  if (level == 1) from = promising_starts(level_options, starts);
+  std::optional<Candidate> best;
+  double search = 0, closing = 0;
+  for (Index start = 0; start < from.size(); ++start) {
+    level_options.seed = seed_of(options_.seed, start);
+    const double begin = (start + 0.0) / starts, share = 1.0 / starts;
+    Candidate next = candidate(level_options, std::move(from[start]), [&](std::string_view, double fraction) {
+      return !progress_ || progress_("tightening", (level - 1 + begin + share * fraction) / options_.depth);
+    });
+    search += next.report.seconds_search;
+    closing += next.report.seconds_closing;
+    if (!best || next.looseness < best->looseness) best.emplace(std::move(next));
+  }
+  reports.push_back(best->report);
+  reports.back().seconds_search = search;
+  reports.back().seconds_closing = closing;
+  take(std::move(*best));
+  return true;
+}
+
+void Tightener::take(Candidate best) {
+  partial_ = std::move(best.partial);
+  for (std::size_t i = 0; i < partial_.last().size(); ++i) {
+    LevelNode& node = partial_.last()[i];
+    node.leaf = node.sphere.radius + best.center_distances[i] <= options_.refinement.allowed(node.sphere);
+  }
+}
+
+// Many starts, each searched a little on few samples; the tightest of them.
+std::vector<std::vector<LevelBall>> Tightener::promising_starts(LevelOptions options, Index wanted) const {
+  const Index tried = std::min(work_.explored, kExploredBalls / std::max<Index>(1, options.balls));
+  if (tried <= wanted) return std::vector<std::vector<LevelBall>>(wanted);
+  PartialTree partial = partial_;
+  partial.add_level();
+  const Samples few = samples_for(samples_, partial, kExploringSamples);
+  struct Start {
+    std::vector<LevelBall> balls;
+    double looseness = 0;
+  };
+  std::vector<Start> starts(tried);
+  tbb::parallel_for(Index{0}, tried, [&](Index i) {
+    LevelOptions own = options;
+    own.seed = seed_of(options.seed, i);
+    LevelSolver solver(surface_, few, partial.paths(), own);
+    solver.search(kExploringTrials * own.balls);
+    solver.tighten();
+    starts[i] = {solver.balls(), looseness(solver)};
+  });
+  std::stable_sort(starts.begin(), starts.end(),
+                   [](const Start& a, const Start& b) { return a.looseness < b.looseness; });
+  std::vector<std::vector<LevelBall>> best;
+  for (Index i = 0; i < wanted; ++i) best.push_back(std::move(starts[i].balls));
+  return best;
+}
+
+// One solution of a level. All of them are to be judged by the first one's unit.
+Tightener::Candidate Tightener::candidate(LevelOptions& options, std::vector<LevelBall> from,
+                                          const Progress& progress) {
+  Candidate result{partial_, 0, {}, {}};
+  result.partial.add_level();
+  const auto start = std::chrono::steady_clock::now();
+  const Index trials = trials_for(options.balls, work_);
+  LevelSolver solver(surface_, samples_for(samples_, partial_, enough_samples(options.balls)), result.partial.paths(),
+                     options, std::move(from));
+  options.cost.unit = solver.unit();
+  solver.tighten();
+  solver.search(trials, [&](std::string_view stage, double fraction) { return progress(stage, 0.4 * fraction); });
+  solver.tighten();
+  const auto middle = std::chrono::steady_clock::now();
+  const double fineness = static_cast<double>(surface_.mesh().triangles.size()) / kFewTriangles;
+  const double closed_trials = work_.closed_trials / std::max(1.0, fineness);
+  FinishOptions finish{work_.searching_rounds, static_cast<Index>(kSearchShare * trials),
+                       static_cast<Index>(closed_trials * static_cast<double>(solver.balls().size())),
+                       [&](std::string_view stage, double fraction) { return progress(stage, 0.4 + 0.6 * fraction); }};
+  finish_level(surface_, solver, result.partial, finish, result.report);
+  result.looseness = looseness(surface_, result.partial.last());
+  for (const LevelBall& ball : solver.balls()) result.center_distances.push_back(ball.center_distance);
+  result.report.balls = static_cast<Index>(solver.balls().size());
+  result.report.seconds_search = std::chrono::duration<double>(middle - start).count();
+  result.report.seconds_closing = std::chrono::duration<double>(std::chrono::steady_clock::now() - middle).count();
+  return result;
+}
+
+}  // namespace orchard::detail
