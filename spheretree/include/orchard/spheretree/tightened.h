@@ -6,7 +6,7 @@
 
 namespace orchard {
 
-// How long to search: about 1 : 2 : 15 in time. What high effort builds is compared with what standard effort builds,
+// How long to search: about 1 : 2 : 11 in time. What high effort builds is compared with what standard effort builds,
 // by overall_inaccuracy(), and the tighter one of the two is kept.
 enum class Effort { low, standard, high };
 
