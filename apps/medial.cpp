@@ -1,3 +1,4 @@
+// The command from its checks to its files, each step a few lines: hence its length.
 #include <fmt/core.h>
 
 #include <algorithm>

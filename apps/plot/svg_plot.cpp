@@ -295,12 +295,12 @@ double height_of(const Plot& plot) {
 }  // namespace
 
 std::string to_svg(const std::vector<Plot>& plots, int columns) {
-  const int count = static_cast<int>(plots.size()), most = std::min(columns, count);
+  const int count = static_cast<int>(plots.size()), max_in_row = std::min(columns, count);
   std::ostringstream drawn;
   double top = 0;
-  for (int first = 0; first < count; first += most) {
-    const int in_row = std::min(most, count - first);
-    const double width = kWidth * most / in_row;
+  for (int first = 0; first < count; first += max_in_row) {
+    const int in_row = std::min(max_in_row, count - first);
+    const double width = kWidth * max_in_row / in_row;
     double height = 0;
     for (int i = first; i < first + in_row; ++i) {
       const Plot& plot = plots[static_cast<std::size_t>(i)];
@@ -312,7 +312,7 @@ std::string to_svg(const std::vector<Plot>& plots, int columns) {
     top += height;
   }
   std::ostringstream out;
-  out << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << kWidth * most << "\" height=\"" << top
+  out << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << kWidth * max_in_row << "\" height=\"" << top
       << "\" font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
       << drawn.str() << "</svg>\n";
   return out.str();

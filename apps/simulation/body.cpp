@@ -36,10 +36,10 @@ Quaternion about(const Vec3& axis, double angle) {
   return {std::cos(angle / 2), s * axis[0], s * axis[1], s * axis[2]};
 }
 
-void integrate(Body& body, double dt, double most) {
+void integrate(Body& body, double dt, double max_acceleration) {
   Vec3 acceleration = (1 / body.mass) * body.force;
   const double size = length(acceleration);
-  if (size > most) acceleration = (most / size) * acceleration;
+  if (size > max_acceleration) acceleration = (max_acceleration / size) * acceleration;
   body.velocity = body.velocity + dt * acceleration;
   body.position = body.position + dt * body.velocity;
   body.spin = body.spin + (dt / body.inertia) * body.torque;

@@ -47,7 +47,7 @@ struct Body {
   double expiry = 1e300;
 };
 
-// Semi-implicit Euler with everything that acts on a body; the acceleration is cut to `most`.
-void integrate(Body& body, double dt, double most);
+// Semi-implicit Euler with everything that acts on a body; the acceleration is cut to `max_acceleration`.
+void integrate(Body& body, double dt, double max_acceleration);
 
 }  // namespace orchard::simulation

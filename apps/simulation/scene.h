@@ -47,9 +47,9 @@ struct Scene {
   Vec3 gravity{};
   std::vector<Wall> walls;
   Response response = Response::none;
-  double stiffness = 900;          // of contacts, per mass: 1/s^2
-  double damping = 12;             // per mass: 1/s
-  double most_acceleration = 400;  // that forces can cause
+  double stiffness = 900;         // of contacts, per mass: 1/s^2
+  double damping = 12;            // per mass: 1/s
+  double max_acceleration = 400;  // that forces can cause
   // Before each step: controls, scripted motion, bodies that come and go.
   std::function<void(World&, double time)> before = [](World&, double) {};
 };

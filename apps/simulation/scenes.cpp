@@ -319,7 +319,7 @@ std::unique_ptr<World> make_world(const std::string& name, const std::vector<Sha
   scene.frame = entry.frame;
   scene.step = entry.step;
   scene.gravity = {0, -entry.gravity * size, 0};
-  scene.most_acceleration = 400 * size;
+  scene.max_acceleration = 400 * size;
   auto world = std::make_unique<World>(std::move(scene), shapes, seed);
   entry.fill({*world, size, bodies > 0 ? bodies : entry.bodies});
   return world;

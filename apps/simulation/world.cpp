@@ -155,8 +155,8 @@ void respond_and_move(World& world, const StepOutcome& outcome) {
     for (const Wall& wall : scene.walls) push_from_wall(world, body, wall);
     const bool held = dot(body.force, body.force) > 0;
     body.force = body.force + body.mass * scene.gravity;
-    if (scene.response == Response::push) promise(world, i, held ? scene.most_acceleration : length(scene.gravity));
-    integrate(body, scene.step, scene.most_acceleration);
+    if (scene.response == Response::push) promise(world, i, held ? scene.max_acceleration : length(scene.gravity));
+    integrate(body, scene.step, scene.max_acceleration);
   }
   world.time += scene.step;
 }

@@ -25,15 +25,15 @@ Vector uphill(const Surface& surface, const Point& center, double reach, std::ve
     if (place.distance > 0) away.push_back((center - place.position) / place.distance);
   }
   if (away.empty()) return Vector::Zero();
-  Vector least = away[0];
+  Vector min_norm = away[0];
   for (int step = 0; step < kHullSteps; ++step) {
     const Vector& extreme = *std::min_element(
-        away.begin(), away.end(), [&](const Vector& x, const Vector& y) { return least.dot(x) < least.dot(y); });
-    const Vector along = extreme - least;
-    if (!(-least.dot(along) > 1e-12 * least.squaredNorm()) || !(along.squaredNorm() > 0)) break;
-    least += std::clamp(-least.dot(along) / along.squaredNorm(), 0.0, 1.0) * along;
+        away.begin(), away.end(), [&](const Vector& x, const Vector& y) { return min_norm.dot(x) < min_norm.dot(y); });
+    const Vector along = extreme - min_norm;
+    if (!(-min_norm.dot(along) > 1e-12 * min_norm.squaredNorm()) || !(along.squaredNorm() > 0)) break;
+    min_norm += std::clamp(-min_norm.dot(along) / along.squaredNorm(), 0.0, 1.0) * along;
   }
-  return least;
+  return min_norm;
 }
 
 Sphere climb(const Surface& surface, Sphere ball) {

@@ -28,12 +28,12 @@ void require_in_range(const TightenOptions& options) {
   const auto require = [](bool holds, const std::string& what) {
     if (!holds) throw InputError(what);
   };
-  const std::string most = std::to_string(kMaxBranching);
-  require(options.branching >= 2 && options.branching <= kMaxBranching, "branching must lie between 2 and " + most);
+  const std::string max = std::to_string(kMaxBranching);
+  require(options.branching >= 2 && options.branching <= kMaxBranching, "branching must lie between 2 and " + max);
   const std::vector<Index>& spheres = options.spheres;
   if (spheres.empty()) return;
   require(spheres.size() == options.depth, "spheres: there must be one number for each level");
-  require(spheres[0] >= 2 && spheres[0] <= kMaxBranching, "spheres: the first level's must lie between 2 and " + most);
+  require(spheres[0] >= 2 && spheres[0] <= kMaxBranching, "spheres: the first level's must lie between 2 and " + max);
   for (std::size_t i = 1; i < spheres.size(); ++i)
     require(spheres[i] > spheres[i - 1] && spheres[i] / kMaxFanOut <= spheres[i - 1],
             "spheres: each level must have more than the one above, and at most " + std::to_string(kMaxFanOut) +
