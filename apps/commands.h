@@ -107,6 +107,7 @@ struct MedialCommand {
   std::vector<std::string> given;         // the options on the command line, as of BuildCommand
   Output output;
 };
+bool given(const MedialCommand& command, const char* option);  // on the command line
 void medial(const MedialCommand& command);
 
 struct CompareCommand {

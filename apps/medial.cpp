@@ -50,15 +50,12 @@ std::vector<std::string> names_of(const MedialCommand& command) {
 }
 
 void check_side(const MedialCommand& command) {
-  const auto given = [&](const char* option) {
-    return std::find(command.given.begin(), command.given.end(), option) != command.given.end();
-  };
   if (!command.outside) {
-    if (given("outside-radius")) throw InputError("--outside-radius belongs to --side outside");
+    if (given(command, "outside-radius")) throw InputError("--outside-radius belongs to --side outside");
     return;
   }
   for (const char* option : {"sweep", "points", "diagram", "open-rounds"}) {
-    if (given(option)) throw InputError(fmt::format("--{} has no effect with --side outside", option));
+    if (given(command, option)) throw InputError(fmt::format("--{} has no effect with --side outside", option));
   }
 }
 

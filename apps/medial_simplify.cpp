@@ -20,10 +20,6 @@ using nlohmann::json;
 // The numbers of vertices of a curve.
 constexpr Index kCurve[] = {5000, 2000, 1000, 500, 200, 100, 50, 20, 10, 5, 2, 1};
 
-bool given(const MedialCommand& command, const char* option) {
-  return std::find(command.given.begin(), command.given.end(), option) != command.given.end();
-}
-
 bool simplifies(const MedialCommand& command) { return command.few_vertices > 0 || command.few_error > 0; }
 
 SimplifyOptions options_of(const MedialCommand& command) {
@@ -94,6 +90,10 @@ void print(const FewBalls& few) {
 }
 
 }  // namespace
+
+bool given(const MedialCommand& command, const char* option) {
+  return std::find(command.given.begin(), command.given.end(), option) != command.given.end();
+}
 
 std::vector<std::string> few_balls_names(const MedialCommand& command) {
   std::vector<std::string> names;

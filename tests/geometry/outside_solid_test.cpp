@@ -7,6 +7,7 @@
 
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/random.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 
 namespace orchard {
@@ -19,8 +20,8 @@ TEST(OutsideSolid, IsWhatTheSolidIsNot) {
     const Surface outside(outside_solid(solid, 1.5));
     ASSERT_TRUE(outside.solid());
     const Sphere& ball = solid.bounding_ball();
-    Random random(3, 5);
-    for (int i = 0; i < 300; ++i) {
+    Random random(test::first_seed() + 3, 5);
+    for (std::uint64_t i = 0; i < 300 * test::more(); ++i) {
       const Vector offset(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
       const Point place = ball.center + 1.4 * ball.radius * offset;
       if ((place - ball.center).norm() > 1.45 * ball.radius) continue;  // beyond the facets of the sphere

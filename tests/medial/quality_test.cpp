@@ -13,6 +13,7 @@
 #include "orchard/medial/axis_distance.h"
 #include "quality/boundary_reach.h"
 #include "quality/quality_parts.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 
 namespace orchard {
@@ -358,7 +359,8 @@ Sphere random_ball(const MedialMesh& mesh, Random& random) {
 TEST(MedialQuality, NoPlaceOfTheBoundaryIsDeeperInTheSolidThanIsProven) {
   const Surface box(test::known_box({1, 2, 3}).solid);
   constexpr double kAccuracy = 0.01;
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+  for (std::uint64_t seed = test::first_seed(), end = seed + 20 * test::more(); seed < end; ++seed) {
+    SCOPED_TRACE(seed);
     Random random(seed, 7);
     const MedialMesh mesh = random_mesh(random);
     const detail::Reconstruction reconstruction(mesh);
@@ -383,7 +385,8 @@ TEST(MedialQuality, NoBallReachesFartherOutThanIsProven) {
   const Surface box(test::known_box({1, 2, 3}).solid);
   const Surface bend(test::known_l_shape(8).solid);
   constexpr double kAccuracy = 1e-3;
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+  for (std::uint64_t seed = test::first_seed(), end = seed + 20 * test::more(); seed < end; ++seed) {
+    SCOPED_TRACE(seed);
     Random random(seed, 8);
     const MedialMesh mesh = random_mesh(random);
     for (const Surface* solid : {&box, &bend}) {
