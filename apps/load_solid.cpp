@@ -178,7 +178,7 @@ json to_json(const MeshRepairReport& repair, const RepairDistance& distance, dou
               {"vertices_split", repair.vertices_split},
               {"holes_filled", repair.holes_filled},
               {"triangles_added", repair.triangles_added},
-              {"largest_hole", repair.max_hole},
+              {"max_hole", repair.max_hole},
               {"parts_turned_outward", repair.parts_turned_outward},
               {"cavities_turned_inward", repair.cavities_turned_inward},
               {"lines", repair.lines()}};

@@ -82,8 +82,8 @@ json to_json(const MedialSegments& segments, const SkeletonGraph& skeleton) {
     rows.push_back({{"sheet", s.sheet},
                     {"trunk", s.trunk},
                     {"cells", s.cells},
-                    {"least_radius", s.min_radius},
-                    {"most_radius", s.max_radius}});
+                    {"min_radius", s.min_radius},
+                    {"max_radius", s.max_radius}});
   }
   return {{"segments", rows}, {"skeleton_nodes", skeleton.nodes.size()}, {"skeleton_arcs", skeleton.arcs.size()}};
 }

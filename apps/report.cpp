@@ -83,7 +83,7 @@ json tightening_json(const TightenReport& report) {
     levels.push_back({{"balls", level.balls},
                       {"gaps_closed", level.uncovered_regions},
                       {"closing_rounds", level.closing_rounds},
-                      {"largest_growth_over_radius", level.grown},
+                      {"max_growth_over_radius", level.grown},
                       {"seconds_search", level.seconds_search},
                       {"seconds_closing", level.seconds_closing}});
   return levels;
@@ -97,7 +97,7 @@ json merging_json(const MergeReport& report) {
                       {"loose_spheres_split", level.split},
                       {"uncovered_regions_before", level.uncovered_regions},
                       {"closing_rounds", level.rounds},
-                      {"largest_growth_over_radius", level.growth}});
+                      {"max_growth_over_radius", level.growth}});
   return levels;
 }
 
@@ -127,7 +127,7 @@ json axis_json(const MedialBuild& medial, Index components) {
   if (medial.diagram.vertices.empty()) {
     report["imported_axis"] = {{"balls_refused", medial.balls_refused},
                                {"balls_adjusted", medial.balls_adjusted},
-                               {"largest_adjustment", medial.ball_adjustment}};
+                               {"max_adjustment", medial.ball_adjustment}};
   } else {
     report["voronoi"] = {{"vertices", medial.diagram.vertices.size()},
                          {"certified_insertions", medial.voronoi.certified_insertions},
@@ -174,7 +174,7 @@ json build_json(const Surface& surface, const SphereTreeOptions& options, const 
   if (result.medial) report.update(axis_json(*result.medial, result.axis_components));
   report["covering"] = {{"rounds", result.cover.rounds},
                         {"triangles_uncovered_before", result.cover.triangles_uncovered},
-                        {"largest_growth_over_radius", result.cover.max_growth}};
+                        {"max_growth_over_radius", result.cover.max_growth}};
   if (result.method == TreeMethod::tightened) report["tightening"] = tightening_json(result.tightening);
   if (options.method == TreeMethod::merging && options.closing == MergeClosing::refit)
     report["merging"] = merging_json(result.merging);

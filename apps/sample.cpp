@@ -24,7 +24,7 @@ using nlohmann::json;
 
 json to_json(const Evenness& evenness) {
   return {
-      {"mean_distance", evenness.mean}, {"least_over_mean", evenness.min}, {"deviation_over_mean", evenness.variation}};
+      {"mean_distance", evenness.mean}, {"min_over_mean", evenness.min}, {"deviation_over_mean", evenness.variation}};
 }
 
 const char* name(Relaxation relaxation) { return relaxation == Relaxation::clusters ? "clusters" : "neighbors"; }
@@ -37,7 +37,7 @@ void print(const SampleCommand& command, const json& report) {
   for (const char* when : {"before", "after"}) {
     const json& evenness = report["evenness"][when];
     fmt::print("{:26} {:11.6g} {:13.3f} {:17.3f}\n", std::string(when) + " relaxation",
-               evenness["mean_distance"].get<double>(), evenness["least_over_mean"].get<double>(),
+               evenness["mean_distance"].get<double>(), evenness["min_over_mean"].get<double>(),
                evenness["deviation_over_mean"].get<double>());
   }
 }

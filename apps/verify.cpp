@@ -135,7 +135,7 @@ json to_json(const Verification& result, const Subject& subject) {
               {"uncovered_nodes", result.uncovered_nodes},
               {"nodes", result.nodes},
               {"bounds_violated", result.bounds_violated},
-              {"largest_bound_over_radius", max},
+              {"max_bound_over_radius", max},
               {"same_mesh", result.same_mesh},
               {"violations", violations}};
   if (!subject.wrap.empty())

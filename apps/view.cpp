@@ -25,7 +25,7 @@ namespace orchard::apps {
 #ifdef ORCHARD_HAS_VIZ
 namespace {
 
-constexpr int kLeastPixels = 64, kMostPixels = 8192;
+constexpr int kMinPixels = 64, kMaxPixels = 8192;
 
 // "35,20" or "1200x800".
 std::pair<double, double> two_numbers(const std::string& option, const std::string& text, char separator,
@@ -51,9 +51,9 @@ PipelinePicture picture_of(const ViewCommand& command) {
   }
   if (!command.size.empty()) {
     const auto [width, height] = two_numbers("--size", command.size, 'x', "pixels, such as 1200x800");
-    if (std::min(width, height) < kLeastPixels || std::max(width, height) > kMostPixels)
+    if (std::min(width, height) < kMinPixels || std::max(width, height) > kMaxPixels)
       throw InputError(
-          fmt::format("--size {}: width and height are {} to {} pixels", command.size, kLeastPixels, kMostPixels));
+          fmt::format("--size {}: width and height are {} to {} pixels", command.size, kMinPixels, kMaxPixels));
     picture.width = static_cast<int>(width);
     picture.height = static_cast<int>(height);
   }

@@ -23,7 +23,7 @@ double corner_angle(Vec2 at, Vec2 a, Vec2 b) {
   return std::atan2(std::abs(cross(a - at, b - at)), dot(a - at, b - at));
 }
 
-double smallest_angle(Vec2 a, Vec2 b, Vec2 c) {
+double min_angle(Vec2 a, Vec2 b, Vec2 c) {
   return std::min({corner_angle(a, b, c), corner_angle(b, c, a), corner_angle(c, a, b)});
 }
 
@@ -167,8 +167,8 @@ class Triangulator {
       const Vec2 pc = points_[c];
       const Vec2 pd = points_[d];
       if (side(pc, pd, pa) > -kOnLine || side(pc, pd, pb) < kOnLine) return false;
-      const double now = std::min(smallest_angle(pa, pb, pc), smallest_angle(pb, pa, pd));
-      const double then = std::min(smallest_angle(pc, pd, pb), smallest_angle(pd, pc, pa));
+      const double now = std::min(min_angle(pa, pb, pc), min_angle(pb, pa, pd));
+      const double then = std::min(min_angle(pc, pd, pb), min_angle(pd, pc, pa));
       if (then < now + kTie) return false;
       s = {c, d, b};
       t = {d, c, a};

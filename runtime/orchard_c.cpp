@@ -34,6 +34,37 @@ namespace {
 
 using rt::detail::pose_of;
 
+orchard_distance distance_of(const rt::Distance& measured) noexcept {
+  orchard_distance result{};
+  result.lower = measured.lower;
+  result.upper = measured.upper;
+  std::copy_n(measured.points.on_a.begin(), 3, result.on_a);
+  std::copy_n(measured.points.on_b.begin(), 3, result.on_b);
+  result.triangle_a = measured.points.triangle_a;
+  result.triangle_b = measured.points.triangle_b;
+  return result;
+}
+
+// Question i in the workspace of the job that it falls to: ask(workspace, pair, pose of a, pose of b, i).
+struct CBatch {
+  orchard_workspace* const* workspaces;
+  size_t workspace_count;
+  const orchard_executor* executor;
+  const orchard_tree* const* a;
+  const orchard_pose* poses_a;
+  const orchard_tree* const* b;
+  const orchard_pose* poses_b;
+
+  template <typename Ask>
+  void run(size_t count, Ask&& ask) const noexcept {
+    const rt::Executor on{executor->run, executor->context, executor->concurrency};
+    rt::share_among(on, workspace_count, count, [&](size_t job, size_t i) {
+      ask(workspaces[job]->workspace, rt::TreePair(a[i]->prepared, b[i]->prepared), pose_of(poses_a[i]),
+          pose_of(poses_b[i]), i);
+    });
+  }
+};
+
 int given(const std::optional<rt::Pose>& from, orchard_pose* to) noexcept {
   if (!from) return 0;
   std::copy_n(from->rotation.begin(), 9, to->rotation);
@@ -191,16 +222,8 @@ orchard_verdict orchard_refine(orchard_pair* pair, orchard_budget budget) {
 }
 
 orchard_distance orchard_measure(orchard_pair* pair, const orchard_pose* a, const orchard_pose* b, double tolerance) {
-  const rt::Distance measured =
-      rt::distance(pair->workspace, pair->pair, pose_of(*a), pose_of(*b), {.relative = tolerance, .absolute = 0});
-  orchard_distance result{};
-  result.lower = measured.lower;
-  result.upper = measured.upper;
-  std::copy_n(measured.points.on_a.begin(), 3, result.on_a);
-  std::copy_n(measured.points.on_b.begin(), 3, result.on_b);
-  result.triangle_a = measured.points.triangle_a;
-  result.triangle_b = measured.points.triangle_b;
-  return result;
+  return distance_of(
+      rt::distance(pair->workspace, pair->pair, pose_of(*a), pose_of(*b), {.relative = tolerance, .absolute = 0}));
 }
 
 int orchard_capsule_touches(const orchard_tree* tree, const orchard_pose* pose, const double p[3], const double q[3],
@@ -239,9 +262,9 @@ int orchard_box_touches(const orchard_tree* tree, const orchard_pose* pose, cons
 
 int orchard_hull_touches(const orchard_tree* tree, const orchard_pose* pose, const double* corners, size_t corner_count,
                          const uint32_t* facets, size_t facet_count, const orchard_pose* hull) {
-  if (corner_count > rt::kMostCorners || facet_count > rt::kMostFacets) return -1;
-  std::array<std::array<double, 3>, rt::kMostCorners> points;
-  std::array<std::array<std::uint32_t, 3>, rt::kMostFacets> triangles;
+  if (corner_count > rt::kMaxCorners || facet_count > rt::kMaxFacets) return -1;
+  std::array<std::array<double, 3>, rt::kMaxCorners> points;
+  std::array<std::array<std::uint32_t, 3>, rt::kMaxFacets> triangles;
   for (size_t i = 0; i < corner_count; ++i) points[i] = vector_of(corners + 3 * i);
   for (size_t i = 0; i < facet_count; ++i) std::copy_n(facets + 3 * i, 3, triangles[i].begin());
   const rt::ConvexShape shape{std::span(points).first(corner_count), std::span(triangles).first(facet_count)};
@@ -297,6 +320,20 @@ orchard_manifold orchard_contacts(orchard_workspace* workspace, const orchard_tr
   return result;
 }
 
+orchard_signed_distance orchard_measure_signed(orchard_workspace* workspace, const orchard_tree* a,
+                                               const orchard_pose* pose_a, const orchard_tree* b,
+                                               const orchard_pose* pose_b, double tolerance) {
+  const rt::SignedDistance measured = rt::signed_distance(workspace->workspace, rt::TreePair(a->prepared, b->prepared),
+                                                          pose_of(*pose_a), pose_of(*pose_b), tolerance);
+  orchard_signed_distance result{};
+  result.lower = measured.lower;
+  result.upper = measured.upper;
+  std::copy_n(measured.on_a.begin(), 3, result.on_a);
+  std::copy_n(measured.on_b.begin(), 3, result.on_b);
+  std::copy_n(measured.normal.begin(), 3, result.normal);
+  return result;
+}
+
 orchard_travel orchard_travel_between(const orchard_pose* from, const orchard_pose* to, const double center[3]) {
   const rt::Travel travel = rt::travel_between(pose_of(*from), pose_of(*to), vector_of(center));
   orchard_travel result{};
@@ -349,12 +386,32 @@ void orchard_cast_rays(const orchard_tree* tree, const orchard_pose* pose, const
 void orchard_collide_all(orchard_workspace* const* workspaces, size_t workspace_count, const orchard_executor* executor,
                          const orchard_tree* const* a, const orchard_pose* poses_a, const orchard_tree* const* b,
                          const orchard_pose* poses_b, size_t count, orchard_verdict* verdicts) {
-  const rt::Executor on{executor->run, executor->context, executor->concurrency};
-  rt::share_among(on, workspace_count, count, [&](size_t job, size_t i) {
-    rt::Workspace& workspace = workspaces[job]->workspace;
-    rt::collide(workspace, rt::TreePair(a[i]->prepared, b[i]->prepared), pose_of(poses_a[i]), pose_of(poses_b[i]));
+  const CBatch batch{workspaces, workspace_count, executor, a, poses_a, b, poses_b};
+  batch.run(count, [&](rt::Workspace& workspace, const rt::TreePair& pair, const rt::Pose& pose_a,
+                       const rt::Pose& pose_b, size_t i) {
+    rt::collide(workspace, pair, pose_a, pose_b);
     verdicts[i] = verdict_of(workspace.narrow);
   });
+}
+
+void orchard_measure_all(orchard_workspace* const* workspaces, size_t workspace_count, const orchard_executor* executor,
+                         const orchard_tree* const* a, const orchard_pose* poses_a, const orchard_tree* const* b,
+                         const orchard_pose* poses_b, size_t count, double tolerance, orchard_distance* distances) {
+  const CBatch batch{workspaces, workspace_count, executor, a, poses_a, b, poses_b};
+  batch.run(count, [&](rt::Workspace& workspace, const rt::TreePair& pair, const rt::Pose& pose_a,
+                       const rt::Pose& pose_b, size_t i) {
+    distances[i] = distance_of(rt::distance(workspace, pair, pose_a, pose_b, {.relative = tolerance, .absolute = 0}));
+  });
+}
+
+void orchard_closer_than_all(orchard_workspace* const* workspaces, size_t workspace_count,
+                             const orchard_executor* executor, const orchard_tree* const* a,
+                             const orchard_pose* poses_a, const orchard_tree* const* b, const orchard_pose* poses_b,
+                             size_t count, double margin, int* closer) {
+  const CBatch batch{workspaces, workspace_count, executor, a, poses_a, b, poses_b};
+  batch.run(count,
+            [&](rt::Workspace& workspace, const rt::TreePair& pair, const rt::Pose& pose_a, const rt::Pose& pose_b,
+                size_t i) { closer[i] = in_c(rt::closer_than(workspace, pair, pose_a, pose_b, margin)); });
 }
 
 }  // extern "C"

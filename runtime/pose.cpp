@@ -9,7 +9,7 @@ namespace orchard::runtime {
 
 namespace {
 
-constexpr int kMostRepairs = 8;  // each squares the defect, 1e-3 at first
+constexpr int kMaxRepairs = 8;  // each squares the defect, 1e-3 at first
 
 double defect_of(const std::array<double, 9>& rotation) noexcept {
   return detail::rotation_defect<double>([&rotation](std::size_t i) { return rotation[i]; });
@@ -45,7 +45,7 @@ std::optional<Pose> made_rigid(const Pose& pose) noexcept {
   Pose result = pose;
   if (!(defect_of(pose.rotation) <= kRepairTolerance * kRepairTolerance)) return std::nullopt;
   constexpr double enough = 1e-15;
-  for (int i = 0; i < kMostRepairs && defect_of(result.rotation) > enough * enough; ++i) {
+  for (int i = 0; i < kMaxRepairs && defect_of(result.rotation) > enough * enough; ++i) {
     result.rotation = nearer_rotation(result.rotation);
   }
   if (!is_rigid(result)) return std::nullopt;

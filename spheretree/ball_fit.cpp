@@ -12,7 +12,7 @@ constexpr int kDualSteps = 24;
 // A predicted gain below this part of the looseness is not worth another query.
 constexpr double kWorthwhile = 2e-4;
 // Steps below this part of the radius change nothing that matters.
-constexpr double kMin = 1e-4;
+constexpr double kMinStep = 1e-4;
 
 }  // namespace
 
@@ -180,11 +180,11 @@ FittedBall BallFitter::fit(std::span<const Point> points, const FittedBall& star
   FittedBall best{start.center, measure(start.center), cuts_.back().value, cuts_.back().gradient};
   squared_.swap(measured_);
   double t = 0.3 * best.looseness() + 0.05 * best.radius;
-  for (int used = 1; used < evaluations && t > kMin * best.radius;) {
+  for (int used = 1; used < evaluations && t > kMinStep * best.radius;) {
     linearise(best, t);
     const Vector step = best_step(t);
     const double length = step.norm(), predicted = best.looseness() - predicted_looseness(step);
-    if (predicted <= 0 || length < kMin * kWorthwhile * best.radius) break;
+    if (predicted <= 0 || length < kMinStep * kWorthwhile * best.radius) break;
     FittedBall next{best.center + step, 0, 0, Vector::Zero()};
     next.radius = measure(next.center);
     // The distance changes by no more than the step: no need to look where even that would not help.

@@ -33,6 +33,8 @@ std::vector<Label> labels_of(vtkPolyData* places, int measure, std::string& span
 }
 
 std::string up_to(double max) {
+  constexpr double kNothing = 5e-5;  // %: what is less is rounding to the eye
+  if (max < kNothing) return "none above 0.0001 % of the diagonal";
   char text[64];
   std::snprintf(text, sizeof text, "0 to %.3g %% of the diagonal", max);
   return text;

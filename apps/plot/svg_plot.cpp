@@ -259,7 +259,20 @@ void draw_legend(std::ostream& out, const Series& series, const Look& look, doub
   text(out, left + 33, row, series.name, "");
 }
 
-void draw(std::ostream& out, const Plot& plot, double width) {
+// What the lines of a plot look like, by series.
+std::vector<Look> looks_of(const Plot& plot) {
+  const bool compared = std::any_of(plot.series.begin(), plot.series.end(), [](const Series& s) { return s.dashed; });
+  std::vector<Look> looks;
+  std::size_t lines = 0;
+  for (const Series& series : plot.series) {
+    const bool line = series.kind == Series::Kind::line;
+    const char* dashes = series.dashed ? kDashed : line && !compared ? dashes_of_line(lines++) : "";
+    looks.push_back({kColors[looks.size() % std::size(kColors)], dashes});
+  }
+  return looks;
+}
+
+void draw(std::ostream& out, const Plot& plot, double width, bool with_legend) {
   const bool log_y = plot.log_y || (plot.log_y_if_wide && wide(plot));
   Axis y(log_y, kHeight - kBottom, kTop), unplaced(plot.log_x, 0, 1);
   see_all(plot, unplaced, y);
@@ -269,22 +282,15 @@ void draw(std::ostream& out, const Plot& plot, double width) {
   see_all(plot, x, same);
   x.settle();
   draw_frame(out, plot, x, y, frame);
-  const bool compared = std::any_of(plot.series.begin(), plot.series.end(), [](const Series& s) { return s.dashed; });
-  std::size_t lines = 0, colors = 0, named = 0;
-  for (const Series& series : plot.series) {
-    const bool line = series.kind == Series::Kind::line;
-    const Look look{kColors[colors++ % std::size(kColors)], series.dashed       ? kDashed
-                                                            : line && !compared ? dashes_of_line(lines++)
-                                                                                : ""};
-    draw_series(out, series, x, y, look);
-    if (series.name.empty()) continue;
-    draw_legend(out, series, look, frame.left, kHeight + kLegendRow * (static_cast<double>(named++) + 0.5));
+  const std::vector<Look> looks = looks_of(plot);
+  std::size_t named = 0;
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    const Series& series = plot.series[i];
+    draw_series(out, series, x, y, looks[i]);
+    if (!with_legend || series.name.empty()) continue;
+    draw_legend(out, series, looks[i], frame.left, kHeight + kLegendRow * (static_cast<double>(named++) + 0.5));
   }
 }
-
-}  // namespace
-
-namespace {
 
 double height_of(const Plot& plot) {
   const auto names =
@@ -292,10 +298,36 @@ double height_of(const Plot& plot) {
   return kHeight + kLegendRow * static_cast<double>(names);
 }
 
+// Whether one legend serves all plots, so that it need not be repeated.
+bool same_legend(const std::vector<Plot>& plots) {
+  const auto alike = [](const Series& a, const Series& b) {
+    return a.name == b.name && a.kind == b.kind && a.dashed == b.dashed && !a.name.empty();
+  };
+  const std::vector<Series>& first = plots.front().series;
+  return plots.size() > 1 && std::all_of(plots.begin(), plots.end(), [&](const Plot& plot) {
+           return std::equal(first.begin(), first.end(), plot.series.begin(), plot.series.end(), alike);
+         });
+}
+
+// The legend of all plots, in as many rows as its names need; returns its height.
+double draw_common_legend(std::ostream& out, const Plot& plot, double top, double width) {
+  constexpr double kSample = 33, kBetween = 24;  // a line's sample, and the space between two names
+  const std::vector<Look> looks = looks_of(plot);
+  double left = kRight, row = top + kLegendRow;
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    const double taken = kSample + kLetter * static_cast<double>(letters(plot.series[i].name)) + kBetween;
+    if (left > kRight && left + taken > width) left = kRight, row += kLegendRow;
+    draw_legend(out, plot.series[i], looks[i], left, row);
+    left += taken;
+  }
+  return row + 0.6 * kLegendRow - top;
+}
+
 }  // namespace
 
 std::string to_svg(const std::vector<Plot>& plots, int columns) {
   const int count = static_cast<int>(plots.size()), max_in_row = std::min(columns, count);
+  const bool common = count > 0 && same_legend(plots);
   std::ostringstream drawn;
   double top = 0;
   for (int first = 0; first < count; first += max_in_row) {
@@ -304,13 +336,14 @@ std::string to_svg(const std::vector<Plot>& plots, int columns) {
     double height = 0;
     for (int i = first; i < first + in_row; ++i) {
       const Plot& plot = plots[static_cast<std::size_t>(i)];
-      height = std::max(height, height_of(plot));
+      height = std::max(height, common ? kHeight : height_of(plot));
       drawn << "<g transform=\"translate(" << width * (i - first) << " " << top << ")\">\n";
-      draw(drawn, plot, width);
+      draw(drawn, plot, width, !common);
       drawn << "</g>\n";
     }
     top += height;
   }
+  if (common) top += draw_common_legend(drawn, plots.front(), top, kWidth * max_in_row);
   std::ostringstream out;
   out << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << kWidth * max_in_row << "\" height=\"" << top
       << "\" font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"

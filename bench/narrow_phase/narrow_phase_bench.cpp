@@ -114,7 +114,7 @@ void boolean(const PackedSphereTree& tree, const std::vector<Query>& queries) {
   }
   const std::size_t ours = engines.size() - 1;
   std::vector<std::unique_ptr<PairRival>> rivals;
-  constexpr std::size_t most_for_bsp = 10000;  // building takes the square of it
+  constexpr std::size_t max_for_bsp = 10000;  // building takes the square of it
   const auto add = [&](std::unique_ptr<PairRival> rival) {
     if (!rival) return;
     rival->place(queries);
@@ -125,7 +125,7 @@ void boolean(const PackedSphereTree& tree, const std::vector<Query>& queries) {
   add(fcl_double(tree, tree));
   add(bullet(tree, tree));
   add(cgal(tree, tree));
-  if (tree.triangles.size() <= most_for_bsp) add(bsp_trees(tree, tree));
+  if (tree.triangles.size() <= max_for_bsp) add(bsp_trees(tree, tree));
   measure(engines, queries.size());
   print_table("boolean", queries, engines, ours, ours + 1);
   for (const auto& rival : rivals) {
@@ -174,7 +174,7 @@ int main(int argc, char** argv) {
                 tree.triangles.size(), tree.node_count, tree.depth + 1,
                 static_cast<double>(tree.blocks.size() * sizeof(SiblingBlock)) / tree.node_count,
                 static_cast<double>(tree.vertices.size() * 12 + tree.triangles.size() * 12 +
-                                    tree.leaf_triangles.size() * 4 + tree.patches.size() * sizeof(PatchBlock) +
+                                    tree.leaf_triangles.size() * 4 + tree.ball_slabs.size() * sizeof(BallSlabBlock) +
                                     tree.triangle_blocks.size() * sizeof(TriangleBlock)) /
                     static_cast<double>(tree.triangles.size()));
     const auto queries = approaches(tree, count, 0);

@@ -201,7 +201,7 @@ Plot plot_of(const std::string& title, const std::string& x, const std::string& 
 
 void draw(const std::filesystem::path& folder, const std::vector<Tree>& trees, const std::vector<Engine>& engines,
           double radius) {
-  constexpr double kLeast = 0.1, kMost = 1000;  // speedups
+  constexpr double kMin = 0.1, kMax = 1000;  // speedups
   std::vector<Plot> speedups, no_speedups, maybe_speedups, bounds;
   std::vector<Series> curves;
   for (const Tree& tree : trees) {
@@ -210,7 +210,7 @@ void draw(const std::filesystem::path& folder, const std::vector<Tree>& trees, c
     for (const std::size_t level : levels_of(tree)) {
       const std::string name = "level " + level_name(level);
       const auto bars = [&](Cases cases) {
-        return histogram(name, pick(tree, engines, level, cases, radius).speedups.front(), kLeast, kMost);
+        return histogram(name, pick(tree, engines, level, cases, radius).speedups.front(), kMin, kMax);
       };
       all.push_back(bars(Cases::reached));
       no.push_back(bars(Cases::no));

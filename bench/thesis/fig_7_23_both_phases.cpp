@@ -187,7 +187,7 @@ Degraded within(const FrameBudget& budget, const char* scene, std::size_t bodies
 }
 
 // Of the busiest frames, by a budget that never ends: what exact answers take without what the step before found.
-double most_work(const char* scene, std::size_t bodies, int frames, const PackedSphereTree& tree) {
+double max_work(const char* scene, std::size_t bodies, int frames, const PackedSphereTree& tree) {
   return percentile(within({.work = std::uint64_t{1} << 40}, scene, bodies, frames, tree).work, 0.99);
 }
 
@@ -197,7 +197,7 @@ Plot degrade(const char* scene, std::size_t bodies, int frames, const PackedSphe
   plot.title = std::string("Fig. 7.25: ") + scene;
   plot.x_label = "level where the budget ended";
   plot.y_label = "pairs left open";
-  const double most = most_work(scene, bodies, frames, tree);
+  const double most = max_work(scene, bodies, frames, tree);
   for (const int part : {2, 4, 8}) {
     const auto budget = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(most / part));
     const Degraded all = within({.work = budget}, scene, bodies, frames, tree);

@@ -163,7 +163,7 @@ int main(int argc, char** argv) {
   std::filesystem::create_directories(folder);
   {
     std::ofstream csv(folder / "sec_4_2_8_bounds.csv");
-    csv << "method,seconds,most_acceleration,trial,earliest_with,earliest_without,time_with,time_without\n";
+    csv << "method,seconds,max_acceleration,trial,earliest_with,earliest_without,time_with,time_without\n";
     intersections(trials, csv);
     std::printf("\n");
   }

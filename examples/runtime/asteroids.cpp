@@ -17,8 +17,8 @@ int main() {
   Rocket rocket;  // flies along x, its engine adds up to 4 units/s^2 forwards, its rudder turns it by up to 0.5 rad/s
   rocket.velocity = {6, 0, 0};
   rocket.radius = 1;
-  rocket.largest_thrust = 4;
-  rocket.largest_turning = 0.5;
+  rocket.max_thrust = 4;
+  rocket.max_turning = 0.5;
   motions.push_back(rocket_motion(rocket, 0, 2));
   const BodyId ship = world.add();
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <deque>
 
-#include "calendar.h"
+#include "timing_wheel.h"
 
 namespace orchard::runtime::detail {
 
@@ -36,13 +36,13 @@ class PairQueue {
 class Backlog {
  public:
   struct Rank {
-    BodyIndex first = kNoIndex, last = kNoIndex;  // the bodies that wait for a look: a list
-    PairQueue found;                              // near pairs that these looks found: tested before the next look
-    PairQueue due;                                // pairs whose test is due, and what other classes' looks found
-    std::int64_t lead = 0;                        // units of work that looks are ahead of tests
+    BodyIndex first = kNoIndex, last = kNoIndex;  // the bodies that wait for a window update: a list
+    PairQueue found;                              // near pairs that these updates found: tested before the next update
+    PairQueue due;                                // pairs whose test is due, and what other classes' updates found
+    std::int64_t lead = 0;                        // units of work that updates are ahead of tests
     std::size_t bodies = 0;
 
-    bool looking() const noexcept { return bodies > 0 || !found.empty(); }
+    bool updating() const noexcept { return bodies > 0 || !found.empty(); }
   };
 
   Rank& rank(unsigned importance);

@@ -101,7 +101,7 @@ Lattice::Lattice(const Vec3& origin, double cell_size, double slack) noexcept
   double size = 0;
   for (const double x : origin) size = std::max(size, std::fabs(x));
   margin_ =
-      kRoundingQuanta + 8 * kMotionSlack * (size * per_length_ + kLastQuantum) + (slack + kLeastLength) * per_length_;
+      kRoundingQuanta + 8 * kMotionSlack * (size * per_length_ + kLastQuantum) + (slack + kMinLength) * per_length_;
 }
 
 double Lattice::quantum(double coordinate, std::size_t axis) const noexcept {
@@ -118,7 +118,7 @@ struct Lattice::Validity {
   typename Kind::Numbers least = spread<typename Kind::Numbers>(0.0);    // of what must not be negative
 
   ORCHARD_INLINE bool all() const noexcept {
-    const auto largest = spread<typename Kind::Numbers>(kLargestNumber * kLargestNumber);
+    const auto largest = spread<typename Kind::Numbers>(kMaxNumber * kMaxNumber);
     return Kind::all(inside & (squares <= largest) & (spread<typename Kind::Numbers>(0.0) <= least));
   }
 };

@@ -1,6 +1,6 @@
 #pragma once
+#include "body_pool.h"
 #include "box_lattice.h"
-#include "roster.h"
 
 namespace orchard::runtime::detail {
 
@@ -8,7 +8,7 @@ namespace orchard::runtime::detail {
 // that takes less time than finding cells.
 class BoxList {
  public:
-  static constexpr std::size_t kMostBodies = 192;
+  static constexpr std::size_t kMaxBodies = 192;
 
   void reset(std::size_t slots);  // empties the list; bodies are below
   void grow(std::size_t slots);   // keeps what is in it

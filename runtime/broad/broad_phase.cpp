@@ -17,11 +17,11 @@ MotionSource values_of(const std::vector<Motion>& values) {
 }
 
 bool is_valid(const BroadPhaseOptions& options) noexcept {
-  constexpr double kLeastStep = 1e-20, kLargestStep = 1e20;
+  constexpr double kMinStep = 1e-20, kMaxStep = 1e20;
   const double step = options.time_step;
   const double slack = options.position_slack;
-  return 0 <= slack && slack <= kLargestNumber && kLeastStep <= step && step <= kLargestStep &&
-         std::fabs(options.start) <= kMostSteps * step;  // none is NaN
+  return 0 <= slack && slack <= kMaxNumber && kMinStep <= step && step <= kMaxStep &&
+         std::fabs(options.start) <= kMaxSteps * step;  // none is NaN
 }
 
 BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& options)
@@ -31,10 +31,10 @@ BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& wanted, con
   const bool valid = is_valid(wanted);
   const BroadPhaseOptions options = valid ? wanted : BroadPhaseOptions{};
   state_ = std::make_unique<State>(
-      State{detail::Roster(std::move(source), detail::Clock{options.start, options.time_step}), nullptr});
-  largest_time_ = valid ? kMostSteps * options.time_step : -1;
-  state_->method = make(state_->roster, options);
-  if (options.validate) state_->roster.check_promises(options.broken, options.position_slack);
+      State{detail::BodyPool(std::move(source), detail::Clock{options.start, options.time_step}), nullptr});
+  max_time_ = valid ? kMaxSteps * options.time_step : -1;
+  state_->method = make(state_->pool, options);
+  if (options.validate) state_->pool.check_promises(options.broken, options.position_slack);
   note_next_step();
   seen_time_ = -std::numeric_limits<double>::infinity();
 }
@@ -49,7 +49,7 @@ BroadPhase::~BroadPhase() = default;
 
 // The last one not after what everything has been reported up to; -1: none yet.
 Step BroadPhase::step_reported() const noexcept {
-  const detail::Clock& clock = state_->roster.clock;
+  const detail::Clock& clock = state_->pool.clock;
   const double passed = (seen_time_ - clock.start) / clock.time_step + detail::kStepSlack;
   return passed >= 0 ? static_cast<Step>(passed) : -1;
 }
@@ -61,28 +61,28 @@ void BroadPhase::wake_for_change() {
 }
 
 void BroadPhase::note_next_step() {
-  const detail::Clock& clock = state_->roster.clock;
+  const detail::Clock& clock = state_->pool.clock;
   const bool any = state_->next != kNeverStep;
   next_time_ = any ? clock.time(state_->next) : std::numeric_limits<double>::infinity();
   wake_time_ = next_time_ - detail::kStepSlack * clock.time_step;
-  if (state_->roster.promises() != nullptr) wake_time_ = -std::numeric_limits<double>::infinity();  // looked at always
+  if (state_->pool.promises() != nullptr) wake_time_ = -std::numeric_limits<double>::infinity();  // updated always
 }
 
 void BroadPhase::validate_up_to(Step step) {
   if (step <= state_->validated) return;
   state_->validated = step;
-  state_->roster.ask_all(step);
+  state_->pool.ask_all(step);
 }
 
 Advance BroadPhase::process(double t_now, const WorkBudget* budget) {
-  if (!(std::fabs(t_now) <= largest_time_)) {
+  if (!(std::fabs(t_now) <= max_time_)) {
     Advance refused{next_time_, {}};
     refused.time_refused = true;
     return refused;
   }
   // A step that is left half-way cannot be taken up again: what is reported after it would be wrong.
   const auto fail = [this] {
-    largest_time_ = -1;
+    max_time_ = -1;
     next_time_ = wake_time_ = std::numeric_limits<double>::infinity();
   };
   detail::UndoUnlessDone fails(fail);
@@ -93,24 +93,24 @@ Advance BroadPhase::process(double t_now, const WorkBudget* budget) {
 
 Advance BroadPhase::process_steps(double t_now, const WorkBudget* budget) {
   State& state = *state_;
-  std::vector<BodyIndex>& bodies_refused = state.roster.refused();
+  std::vector<BodyIndex>& bodies_refused = state.pool.refused();
   bodies_refused.clear();
   const auto refused = [&]() -> std::span<const BodyIndex> {
     std::sort(bodies_refused.begin(), bodies_refused.end());
     bodies_refused.erase(std::unique(bodies_refused.begin(), bodies_refused.end()), bodies_refused.end());
     return bodies_refused;
   };
-  const detail::Clock& clock = state.roster.clock;
+  const detail::Clock& clock = state.pool.clock;
   std::uint64_t work = 0;
-  const bool validating = state.roster.promises() != nullptr;
+  const bool validating = state.pool.promises() != nullptr;
   const double rounding = detail::kStepSlack * clock.time_step;
   while (t_now >= next_time_ - rounding) {
     const Step now = state.next;
     if (validating) validate_up_to(now);
-    detail::Meter meter = budget ? detail::Meter(*budget) : detail::Meter();
-    const detail::StepReport report = state.method->step(now, meter);
+    detail::BudgetTracker tracker = budget ? detail::BudgetTracker(*budget) : detail::BudgetTracker();
+    const detail::StepReport report = state.method->step(now, tracker);
     state.next = report.next;
-    work = meter.done();
+    work = tracker.done();
     note_next_step();
     if (!report.pairs.empty() || report.incomplete_from != kNoClass) {
       seen_time_ = clock.time(now);
@@ -123,24 +123,24 @@ Advance BroadPhase::process_steps(double t_now, const WorkBudget* budget) {
 }
 
 BodyId BroadPhase::id_of(BodyIndex index) const noexcept {
-  const detail::Roster& roster = state_->roster;
-  return valid() && index < roster.slots() && roster.alive(index) ? roster.id_of(index) : kNoBody;
+  const detail::BodyPool& pool = state_->pool;
+  return valid() && index < pool.slots() && pool.alive(index) ? pool.id_of(index) : kNoBody;
 }
 
 BodyId BroadPhase::take_in(std::uint8_t importance, const BodyFilter& filter, const Motion* place) {
-  detail::Roster& roster = state_->roster;
-  const BodyIndex body = roster.add(importance, filter, place);
+  detail::BodyPool& pool = state_->pool;
+  const BodyIndex body = pool.add(importance, filter, place);
   if (body == kNoIndex) return kNoBody;
-  const auto undo = [&] { roster.undo_add(body); };
+  const auto undo = [&] { pool.undo_add(body); };
   detail::UndoUnlessDone undone(undo);
   state_->method->changed(body);
   undone.done();
   wake_for_change();
-  return roster.id_of(body);
+  return pool.id_of(body);
 }
 
 BodyId BroadPhase::add(std::uint8_t importance, const BodyFilter& filter) {
-  return valid() && state_->roster.has_source() ? take_in(importance, filter, nullptr) : kNoBody;
+  return valid() && state_->pool.has_source() ? take_in(importance, filter, nullptr) : kNoBody;
 }
 
 BodyId BroadPhase::add_static(const Motion& place, std::uint8_t importance, const BodyFilter& filter) {
@@ -149,81 +149,81 @@ BodyId BroadPhase::add_static(const Motion& place, std::uint8_t importance, cons
 
 bool BroadPhase::remove(BodyId body) {
   if (!contains(body)) return false;
-  state_->roster.make_room_to_remove(body.index);
+  state_->pool.make_room_to_remove(body.index);
   state_->method->removed(body.index);
-  state_->roster.remove(body.index);
+  state_->pool.remove(body.index);
   return true;
 }
 
 bool BroadPhase::cancel(BodyId body) {
   if (!contains(body)) return false;
   state_->method->changed(body.index);
-  state_->roster.forget_promise(body.index);
+  state_->pool.forget_promise(body.index);
   wake_for_change();
   return true;
 }
 
 bool BroadPhase::move_static(BodyId body, const Motion& place) {
-  if (!contains(body) || !state_->roster.is_static(body.index) || !is_valid(place)) return false;
+  if (!contains(body) || !state_->pool.is_static(body.index) || !is_valid(place)) return false;
   cancel(body);
-  state_->roster.move_static(body.index, place);
+  state_->pool.move_static(body.index, place);
   return true;
 }
 
 bool BroadPhase::set_importance(BodyId body, std::uint8_t importance) {
   if (!contains(body)) return false;
-  detail::Roster& roster = state_->roster;
-  const std::uint8_t before = roster.importance(body.index);
-  const auto undo = [&] { roster.set_importance(body.index, before); };
-  roster.set_importance(body.index, importance);
+  detail::BodyPool& pool = state_->pool;
+  const std::uint8_t before = pool.importance(body.index);
+  const auto undo = [&] { pool.set_importance(body.index, before); };
+  pool.set_importance(body.index, importance);
   detail::UndoUnlessDone undone(undo);
   state_->method->reclassified(body.index);
   undone.done();
   return true;
 }
 
-// A look finds all near pairs anew, and those found before become void.
+// A window update finds all near pairs anew, and those found before become void.
 bool BroadPhase::set_filter(BodyId body, const BodyFilter& filter) {
   if (!contains(body)) return false;
-  detail::Roster& roster = state_->roster;
-  if (roster.filter(body.index) == filter) return true;
-  roster.make_room_for_filters();
+  detail::BodyPool& pool = state_->pool;
+  if (pool.filter(body.index) == filter) return true;
+  pool.make_room_for_filters();
   state_->method->changed(body.index);
   wake_for_change();
-  roster.set_filter(body.index, filter);
+  pool.set_filter(body.index, filter);
   return true;
 }
 
 BodyFilter BroadPhase::filter_of(BodyId body) const noexcept {
-  return contains(body) ? state_->roster.filter(body.index) : BodyFilter{};
+  return contains(body) ? state_->pool.filter(body.index) : BodyFilter{};
 }
 
 void BroadPhase::set_pair_filter(PairFilter filter) {
   if (!valid()) return;
-  detail::Roster& roster = state_->roster;
-  for (BodyIndex body = 0; body < roster.slots(); ++body) {
-    if (roster.alive(body)) state_->method->changed(body);
+  detail::BodyPool& pool = state_->pool;
+  for (BodyIndex body = 0; body < pool.slots(); ++body) {
+    if (pool.alive(body)) state_->method->changed(body);
   }
   wake_for_change();
-  roster.set_pair_filter(std::move(filter));
+  pool.set_pair_filter(std::move(filter));
 }
 
 std::size_t BroadPhase::foresee(double time, std::span<StepsAhead> steps) const noexcept {
   for (StepsAhead& step : steps) step = {};
-  if (!(std::fabs(time) <= largest_time_)) return 0;
-  const detail::Clock& clock = state_->roster.clock;
+  if (!(std::fabs(time) <= max_time_)) return 0;
+  const detail::Clock& clock = state_->pool.clock;
   const Step now = static_cast<Step>(std::floor((time - clock.start) / clock.time_step + detail::kStepSlack));
   return state_->method->foresee(now, steps);
 }
 
-std::size_t BroadPhase::size() const noexcept { return valid() ? state_->roster.size() : 0; }
-std::uint64_t BroadPhase::motions_asked() const noexcept { return state_->roster.asked(); }
+std::size_t BroadPhase::size() const noexcept { return valid() ? state_->pool.size() : 0; }
+std::uint64_t BroadPhase::motions_asked() const noexcept { return state_->pool.asked(); }
 std::uint64_t BroadPhase::promises_broken() const noexcept {
-  const detail::PromiseCheck* const promises = state_->roster.promises();
+  const detail::PromiseCheck* const promises = state_->pool.promises();
   return promises == nullptr ? 0 : promises->broken();
 }
 std::size_t BroadPhase::memory_bytes() const noexcept {
-  return sizeof(State) + state_->roster.memory_bytes() + state_->method->memory_bytes();
+  return sizeof(State) + state_->pool.memory_bytes() + state_->method->memory_bytes();
 }
 
 }  // namespace orchard::runtime

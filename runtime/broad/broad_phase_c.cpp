@@ -222,12 +222,12 @@ orchard_advance orchard_broad_phase_advance(orchard_broad_phase* world, double t
   return result;
 }
 
-size_t orchard_broad_phase_foresee(const orchard_broad_phase* world, double time, size_t count, size_t* looks,
+size_t orchard_broad_phase_foresee(const orchard_broad_phase* world, double time, size_t count, size_t* updates,
                                    size_t* meetings, size_t* overlaps) {
   std::array<rt::StepsAhead, 254> steps;
   const std::size_t known = world->world.foresee(time, std::span(steps).first(std::min(count, steps.size())));
   for (std::size_t i = 0; i < known; ++i) {
-    if (looks != nullptr) looks[i] = steps[i].looks;
+    if (updates != nullptr) updates[i] = steps[i].updates;
     if (meetings != nullptr) meetings[i] = steps[i].meetings;
     if (overlaps != nullptr) overlaps[i] = steps[i].overlaps;
   }

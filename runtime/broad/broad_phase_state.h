@@ -4,7 +4,7 @@
 namespace orchard::runtime {
 
 struct BroadPhase::State {
-  detail::Roster roster;
+  detail::BodyPool pool;
   std::unique_ptr<detail::Method> method;
   detail::Step next = detail::kNeverStep;  // the next step with anything to do
   detail::Step validated = -1;             // up to which step all bodies have been asked for, for their promises

@@ -11,10 +11,10 @@ namespace {
 using detail::Near;
 
 constexpr std::size_t kAskedAtOnce = 64;
-constexpr double kFirstReach = 0.5;  // of a cell, for the nearest body: half of the cube that is looked at first
+constexpr double kFirstReach = 0.5;  // of a cell, for the nearest body: half of the cube that is searched first
 constexpr double kRounding = 1e-12;  // of the coordinates: more than the tests' own
 
-bool fits(double x) noexcept { return std::fabs(x) <= kLargestNumber; }  // not NaN
+bool fits(double x) noexcept { return std::fabs(x) <= kMaxNumber; }  // not NaN
 bool fits(const Vec3& v) noexcept { return fits(v[0]) && fits(v[1]) && fits(v[2]); }
 double max_coordinate(const Vec3& v) noexcept { return std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])}); }
 double length(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
@@ -93,14 +93,14 @@ struct BodyQueries::AllHits final : detail::PortionVisitor {
 };
 
 double BodyQueries::time() const noexcept {
-  return world_->state_->roster.clock.time(std::max<detail::Step>(0, world_->step_reported()));
+  return world_->state_->pool.clock.time(std::max<detail::Step>(0, world_->step_reported()));
 }
 
 bool BodyQueries::begin(bool valid) {
   refused_ = !valid || !world_->valid();
   candidates_.clear(), found_.clear(), hits_.clear(), near_.clear();
   if (refused_) return false;
-  detail::grow(seen_, world_->state_->roster.slots());
+  detail::grow(seen_, world_->state_->pool.slots());
   if (++query_ == 0) {  // all numbers have been used
     std::fill(seen_.begin(), seen_.end(), 0);
     query_ = 1;
@@ -110,12 +110,12 @@ bool BodyQueries::begin(bool valid) {
 
 // Those that are there, count, and have not come up in this query.
 std::span<const BodyIndex> BodyQueries::new_ones(std::span<const BodyIndex> bodies, const QueryFilter& filter) {
-  const detail::Roster& roster = world_->state_->roster;
+  const detail::BodyPool& pool = world_->state_->pool;
   asked_.clear();
   for (const BodyIndex body : bodies) {
-    if (seen_[body] == query_ || !roster.alive(body)) continue;
+    if (seen_[body] == query_ || !pool.alive(body)) continue;
     seen_[body] = query_;
-    if (admits(filter, roster.filter(body))) asked_.push_back(body);
+    if (admits(filter, pool.filter(body))) asked_.push_back(body);
   }
   return asked_;
 }
@@ -128,7 +128,7 @@ void BodyQueries::use_motions(std::span<const BodyIndex> bodies, const QueryFilt
   motions_.resize(kAskedAtOnce);
   while (!rest.empty()) {
     const std::size_t count = std::min(kAskedAtOnce, rest.size());
-    world_->state_->roster.ask(now, rest.first(count), std::span(motions_).first(count));
+    world_->state_->pool.ask(now, rest.first(count), std::span(motions_).first(count));
     for (std::size_t i = 0; i < count; ++i) {
       if (is_valid(motions_[i])) use(rest[i], motions_[i]);
     }
@@ -138,7 +138,7 @@ void BodyQueries::use_motions(std::span<const BodyIndex> bodies, const QueryFilt
 
 std::span<const BodyIndex> BodyQueries::everybody() {
   candidates_.clear();
-  for (BodyIndex body = 0; body < world_->state_->roster.slots(); ++body) candidates_.push_back(body);
+  for (BodyIndex body = 0; body < world_->state_->pool.slots(); ++body) candidates_.push_back(body);
   return candidates_;
 }
 
@@ -235,8 +235,7 @@ std::span<const NearBody> BodyQueries::nearest(const Vec3& point, std::size_t k,
   for (Near covered = Near::some; covered == Near::some; reach *= 2) {
     const Vec3 wide = {reach + 2 * spare, reach + 2 * spare, reach + 2 * spare};
     candidates_.clear();
-    covered =
-        reach > 0 && reach < kLargestNumber ? method.near_box(point - wide, point + wide, candidates_) : Near::untold;
+    covered = reach > 0 && reach < kMaxNumber ? method.near_box(point - wide, point + wide, candidates_) : Near::untold;
     use_motions(covered == Near::untold ? everybody() : candidates_, filter, note);
     if (near_.size() < k) continue;
     std::nth_element(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(k) - 1, near_.end(), nearer);

@@ -10,7 +10,7 @@ constexpr std::size_t kChangesKept = 1024;  // room for as many changes in a ste
 }  // namespace
 
 void Events::make_room() {
-  const std::size_t n = roster_.slots();
+  const std::size_t n = pool_.slots();
   if (windows_.size() >= n) return;
   grow(places_, n);
   grow(pending_, n);
@@ -30,14 +30,14 @@ void Events::removed(BodyIndex body) noexcept {
   take_away(body);
   backlog_.leave(body);
   pending_[body] = 0;
-  windows_[body] = {.end = kNeverStep};  // no next look, until the slot's next body
+  windows_[body] = {.end = kNeverStep};  // no next update, until the slot's next body
   void_events(body);
 }
 
 void Events::void_events(BodyIndex body) noexcept {
-  windows_[body].looked = round_ + 1;
+  windows_[body].updated = round_ + 1;
   windows_[body].length = 0;
-  overlaps_.mark(body, OverlapList::kLooked);
+  overlaps_.mark(body, OverlapList::kUpdated);
 }
 
 // Its bounds have ended before their time. Now and then that says nothing of the next ones, which may hold for as long
@@ -58,7 +58,7 @@ void Events::take_away(BodyIndex body) noexcept {
   places_[body] = Place::nowhere;
 }
 
-// In the order of the calendar bodies are all over memory: what is needed next is loaded ahead.
+// In the order of the timing wheel bodies are all over memory: what is needed next is loaded ahead.
 void Events::take_away_due() noexcept {
   constexpr std::size_t kBoxAhead = 24, kLineAhead = 12;
   const std::size_t lines = few_ ? 0 : due_.size();
@@ -79,8 +79,8 @@ void Events::collect_due(Step now) {
       prefetch(&windows_[body]), prefetch(&places_[body]), prefetch(&pending_[body]);
     }
     Window& window = windows_[entries_[i]];
-    if (window.end != now || pending_[entries_[i]]) continue;  // looked at since
-    window.end = kLookDue;
+    if (window.end != now || pending_[entries_[i]]) continue;  // updated since
+    window.end = kUpdateDue;
     window.rely_longer();
     due_.push_back(entries_[i]);
   }
@@ -94,9 +94,9 @@ void Events::collect_due(Step now) {
   if (changed_.capacity() > kChangesKept) changed_.shrink_to_fit();  // not what adding all bodies took
 }
 
-// What has not been looked at for this step yet is in due_ already; the rest changed since, or was added.
+// What has not been updated for this step yet is in due_ already; the rest changed since, or was added.
 void Events::complete_due(Step now) {
-  std::erase_if(due_, [&](BodyIndex body) { return !roster_.alive(body) || pending_[body]; });
+  std::erase_if(due_, [&](BodyIndex body) { return !pool_.alive(body) || pending_[body]; });
   for (const BodyIndex body : changed_) {
     if (!pending_[body]) continue;
     take_away(body);
@@ -109,7 +109,7 @@ void Events::complete_due(Step now) {
 
 void Events::make_room_for_spheres() {
   if (plan_.window == 1 || plan_.pairs_per_body >= kManyPairs) {
-    grow(spheres_, roster_.slots());
+    grow(spheres_, pool_.slots());
   } else {
     give_back(spheres_);
   }
@@ -117,9 +117,9 @@ void Events::make_room_for_spheres() {
 
 void Events::make_room_for_boxes() {
   if (few_) {
-    list_.grow(roster_.slots());
+    list_.grow(pool_.slots());
   } else {
-    grow(boxes_, roster_.slots());
+    grow(boxes_, pool_.slots());
   }
   if (!spheres_.empty()) make_room_for_spheres();
 }
@@ -127,17 +127,17 @@ void Events::make_room_for_boxes() {
 // Everything that is due, and what a budget left over before.
 void Events::step_in_full(Step now, bool completing) {
   if (!backlog_.empty()) {
-    for (const BodyIndex body : due_) backlog_.leave(body);  // changed while it waited: one look is enough
+    for (const BodyIndex body : due_) backlog_.leave(body);  // changed while it waited: one update is enough
     backlog_.take_all(due_, waiting_);
   }
   bool all_anew = completing;
-  Meter unlimited;
+  BudgetTracker unlimited;
   if (!completing) {
     all_anew = outgrown() || worth_a_rebuild(due_.size());
     if (all_anew) {
       replan(now, unlimited);
       place_all_anew();
-      calendar_.clear_events();  // looks at all bodies void them
+      wheel_.clear_events();  // updates of all windows void them
     } else {
       make_room_for_boxes();
       take_away_due();
@@ -148,14 +148,14 @@ void Events::step_in_full(Step now, bool completing) {
     overlaps_.begin_anew();
     make_room_for_spheres();
   }
-  look_at(now, now, due_, Found::tested);
+  update_windows(now, now, due_, Found::tested);
   test_due(now);
   if (!all_anew) return;
-  const bool lasts = plan_.window >= kShortestBeforeRush;
-  rush_ = lasts && roster_.size() >= kFewestInRush && 4 * votes_ > roster_.size() ? voted_ : kNeverStep;
+  const bool lasts = plan_.window >= kMinStepsBeforeCommonExpiry;
+  common_expiry_ = lasts && pool_.size() >= kMinBodiesAtCommonExpiry && 4 * votes_ > pool_.size() ? voted_ : kNeverStep;
 }
 
-// What the looks have left of it.
+// What the updates have left of it.
 void Events::test_due(Step now) {
   std::erase_if(waiting_, [&](const PairEvent& event) { return !valid(event); });
   test(now, waiting_);
@@ -167,7 +167,7 @@ void Events::test_due(Step now) {
 
 // Nothing is left to plan for, nor to wake up for.
 void Events::forget_all() noexcept {
-  calendar_.clear();
+  wheel_.clear();
   overlaps_.clear();
   overlaps_ahead_.clear();
   doubtful_.clear();
@@ -175,20 +175,20 @@ void Events::forget_all() noexcept {
   due_.clear();
   surveyed_.clear();
   prepared_ = false;
-  rush_ = kNeverStep;
+  common_expiry_ = kNeverStep;
 }
 
-StepReport Events::step(Step now, Meter& meter) {
-  if (roster_.size() == 0) {
+StepReport Events::step(Step now, BudgetTracker& tracker) {
+  if (pool_.size() == 0) {
     forget_all();
     return {kNeverStep, {}};
   }
   ++round_;
   entries_.clear();
   waiting_.clear();
-  calendar_.take(now, entries_, waiting_);
+  wheel_.take(now, entries_, waiting_);
   const bool completing = prepared_ && !outgrown();
-  limited_ = meter.limited();
+  limited_ = tracker.limited();
   for (const PairEvent& event : doubtful_) overlaps_.drop(event.pair);
   doubtful_.clear();
   if (prepared_) {
@@ -203,32 +203,32 @@ StepReport Events::step(Step now, Meter& meter) {
   if (limited_) {
     waiting_.insert(waiting_.end(), overlaps_ahead_.begin(), overlaps_ahead_.end());
     overlaps_ahead_.clear();
-    incomplete_from = step_within(now, meter);
+    incomplete_from = step_within(now, tracker);
     if (incomplete_from != kNoClass) interrupted_at_ = now;
     keep_doubtful();
   } else {
     step_in_full(now, completing);
   }
-  overlaps_.update(roster_.slots());
+  overlaps_.update(pool_.slots());
   StepReport report{now + 1, overlaps_.pairs()};
   if (incomplete_from != kNoClass) {
     report.incomplete_from = incomplete_from;
     report.left_over = std::max<std::size_t>(1, backlog_.size());
     return report;
   }
-  if (now + 1 == rush_ && !limited_ && prepare(now)) return report;
+  if (now + 1 == common_expiry_ && !limited_ && prepare(now)) return report;
   if (!changed_.empty() || !report.pairs.empty()) return report;
-  report.next = calendar_.next_after(now);
-  if (rush_ != kNeverStep && rush_ - 1 > now) report.next = std::min(report.next, rush_ - 1);
+  report.next = wheel_.next_after(now);
+  if (common_expiry_ != kNeverStep && common_expiry_ - 1 > now) report.next = std::min(report.next, common_expiry_ - 1);
   return report;
 }
 
 std::size_t Events::foresee(Step now, std::span<StepsAhead> steps) const noexcept {
-  const std::size_t known = std::min<std::size_t>(steps.size(), kCalendarSteps - 2);
+  const std::size_t known = std::min<std::size_t>(steps.size(), kWheelSteps - 2);
   for (std::size_t i = 0; i < known; ++i) {
     const Step step = now + 1 + static_cast<Step>(i);
-    steps[i].looks += calendar_.bodies_due(step);
-    steps[i].meetings += calendar_.events_due(step);
+    steps[i].updates += wheel_.bodies_due(step);
+    steps[i].meetings += wheel_.events_due(step);
     steps[i].overlaps += overlaps_.pairs().size();
   }
   return known;
@@ -239,11 +239,11 @@ std::size_t Events::memory_bytes() const noexcept {
          bytes_of(changed_) + bytes_of(entries_) + bytes_of(oversized_) + overlaps_.memory_bytes() +
          bytes_of(overlaps_ahead_) + bytes_of(doubtful_) + bytes_of(due_) + bytes_of(spheres_) + bytes_of(waiting_) +
          bytes_of(tests_) + bytes_of(near_) + bytes_of(motions_) + bytes_of(surveyed_) + backlog_.memory_bytes() +
-         list_.memory_bytes() + grid_.memory_bytes() + calendar_.memory_bytes() - sizeof(calendar_);
+         list_.memory_bytes() + grid_.memory_bytes() + wheel_.memory_bytes() - sizeof(wheel_);
 }
 
-std::unique_ptr<Method> make_events(Roster& roster, const BroadPhaseOptions& options) {
-  return std::make_unique<Events>(roster, options);
+std::unique_ptr<Method> make_events(BodyPool& pool, const BroadPhaseOptions& options) {
+  return std::make_unique<Events>(pool, options);
 }
 
 }  // namespace orchard::runtime::detail

@@ -8,24 +8,25 @@
 
 namespace orchard::runtime::detail {
 
-// The default method. Each body is looked at once per window of steps: a box around all that its bound allows until the
+// The default method. Each body is updated once per window of steps: a box around all that its bound allows until the
 // window's end goes into a grid, and every other body whose box it meets makes a near pair. A near pair has an event at
 // the first step at which the two bounds can touch; no event lies beyond the earlier end of the two windows, as the
-// look due there finds the pair anew. A pair that overlaps has an event at the first step at which it can have parted;
-// until then it stays in the list that is reported.
+// update due there finds the pair anew. A pair that overlaps has an event at the first step at which it can have
+// parted; until then it stays in the list that is reported.
 //
 // A body whose bounds are cancelled at every step gets windows of one step, and longer ones again once these go well.
 //
-// Where most windows end at one step, the *rush*, all boxes are made anew then, and half of that work is done a step
-// ahead: a bound that holds up to the step before the rush still answers for it, while the next bound is known already.
+// Where most windows end at one step, the *common expiry*, all boxes are made anew then, and half of that work is done
+// a step ahead: a bound that holds up to the step before the common expiry still answers for it, while the next bound
+// is known already.
 class Events final : public Method {
  public:
-  Events(Roster& roster, const BroadPhaseOptions& options) : roster_(roster), options_(options) {}
+  Events(BodyPool& pool, const BroadPhaseOptions& options) : pool_(pool), options_(options) {}
 
   void changed(BodyIndex body) override;
   void removed(BodyIndex body) noexcept override;
   void reclassified(BodyIndex body) override;
-  StepReport step(Step now, Meter& meter) override;
+  StepReport step(Step now, BudgetTracker& tracker) override;
   std::size_t memory_bytes() const noexcept override;
   std::size_t foresee(Step now, std::span<StepsAhead> steps) const noexcept override;
   Near near_box(const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const override;
@@ -36,26 +37,27 @@ class Events final : public Method {
  private:
   enum class Place : std::uint8_t { nowhere, inside, oversized };
   struct Window {
-    Step end = 0;                         // the step of the next look
-    Round looked = 0;                     // the round of the last look: events of earlier rounds are void
+    Step end = 0;                         // the step of the next update
+    Round updated = 0;                    // the round of the last update: events of earlier rounds are void
     std::uint8_t length = 0;              // steps; 0: not known
     std::uint8_t lasting = kLastsAsEver;  // steps that bounds are relied on for, at most
 
     void rely_longer() noexcept { lasting = lasting < kLastsAsEver / 4 ? lasting * 4 : kLastsAsEver; }
   };
-  // What a look takes note of where many pairs are near: most of them need no other test.
+  // What a window update takes note of where many pairs are near: most of them need no other test.
   struct Sphere {
     Vec3 center;
     double radius, reach;  // reach: as far as the centre may get until the body's window ends, and all slack
   };
-  enum class Found : std::uint8_t { tested, kept };  // near pairs that a look finds
-  struct Look;
-  static constexpr std::size_t kFewestInRush = 32;  // bodies that are worth a step more
-  static constexpr Step kShortestBeforeRush = 4;    // steps: half of a look ahead of each would be half a look more
+  enum class Found : std::uint8_t { tested, kept };  // near pairs that a window update finds
+  struct WindowUpdate;
+  static constexpr std::size_t kMinBodiesAtCommonExpiry = 32;  // bodies that are worth a step more
+  static constexpr Step kMinStepsBeforeCommonExpiry =
+      4;  // steps: half of a window update ahead of each would be half a window update more
   static constexpr std::size_t kTestsAtOnce = kBlock / 2;
   static constexpr QuantumBox kNothing = {{kLastQuantum, kLastQuantum, kLastQuantum}, {0, 0, 0}};
   static constexpr std::size_t kNearAtOnce = 1024;  // near pairs that are tested together
-  static constexpr Step kLookDue = -1;              // a window's end while its body waits for a look
+  static constexpr Step kUpdateDue = -1;            // a window's end while its body waits for a window update
   static constexpr std::uint8_t kLastsAsEver = static_cast<std::uint8_t>(kLongestWindow - 1);
 
   // events.cpp: a step
@@ -67,7 +69,7 @@ class Events final : public Method {
   void take_away_due() noexcept;
   void make_room_for_boxes();
   void make_room_for_spheres();
-  bool outgrown() const noexcept { return few_ && roster_.slots() > BoxList::kMostBodies; }
+  bool outgrown() const noexcept { return few_ && pool_.slots() > BoxList::kMaxBodies; }
   void step_in_full(Step now, bool completing);
   void test_due(Step now);
   void void_events(BodyIndex body) noexcept;
@@ -79,25 +81,25 @@ class Events final : public Method {
   void sort_pairs_again();
   void join_backlog();
   bool worth_a_rebuild_within(Step now, std::size_t due) const noexcept;
-  unsigned step_within(Step now, Meter& meter);
-  bool work_through(Step now, unsigned importance, Meter& meter);
-  std::size_t look_at_waiting(Step now, unsigned importance, std::size_t most, Meter& meter);
-  std::size_t test_waiting(Step now, PairQueue& queue, bool found, std::size_t most, Meter& meter);
+  unsigned step_within(Step now, BudgetTracker& tracker);
+  bool work_through(Step now, unsigned importance, BudgetTracker& tracker);
+  std::size_t update_waiting(Step now, unsigned importance, std::size_t most, BudgetTracker& tracker);
+  std::size_t test_waiting(Step now, PairQueue& queue, bool found, std::size_t most, BudgetTracker& tracker);
 
-  // events_plan.cpp: looks at all bodies
+  // events_plan.cpp: updates of all windows
   bool crowded(const GridCounts& counts) const noexcept;
   bool worth_a_rebuild(std::size_t due) const noexcept;
   bool rounds_run_out() const noexcept { return is_later(round_, rebuilt_round_ + kFarthestRound); }
-  bool replan(Step now, Meter& meter);
+  bool replan(Step now, BudgetTracker& tracker);
   bool plan_outdated(double off, double cancelled) noexcept;
-  bool survey(Step now, Meter& meter);
+  bool survey(Step now, BudgetTracker& tracker);
   void place_all_anew();
   bool prepare(Step now);
   double share_ahead() const noexcept;
   void vote(Step end, std::size_t bodies) noexcept;
 
-  // events_look.cpp: a look at some
-  void look_at(Step now, Step from, std::span<const BodyIndex> bodies, Found found);
+  // events_update.cpp: updates of some windows
+  void update_windows(Step now, Step from, std::span<const BodyIndex> bodies, Found found);
   void test_near(Step now);
   bool settle_by_spheres(Step now, const BodyPair& pair);
   double reach_of(const Motion& motion, double duration) const noexcept;
@@ -106,11 +108,11 @@ class Events final : public Method {
   Step window_end(Step from, BodyIndex body, const Motion& motion) noexcept;
   std::size_t refuse_invalid(std::span<BodyIndex> bodies);
   void refuse(BodyIndex body);
-  bool place(Look& look, std::span<const BodyIndex> bodies);
-  bool place_in_grid(Look& look, std::span<const BodyIndex> bodies);
+  bool place(WindowUpdate& update, std::span<const BodyIndex> bodies);
+  bool place_in_grid(WindowUpdate& update, std::span<const BodyIndex> bodies);
   void note_extent(const BoxBlock& boxes, std::size_t count) noexcept;
-  void shrink(Look& look, BodyIndex body, std::size_t i);
-  void insert(Look& look, std::span<const BodyIndex> bodies);
+  void shrink(WindowUpdate& update, BodyIndex body, std::size_t i);
+  void insert(WindowUpdate& update, std::span<const BodyIndex> bodies);
   void meet_oversized(std::span<const BodyIndex> bodies);
   void drop_what_is_none();
 
@@ -122,16 +124,17 @@ class Events final : public Method {
 
   // events_pairs.cpp
   bool valid(const PairEvent& event) const noexcept;
-  // Up to the next look at the body. One that waits for it is known by its present motion only, which holds on its own.
+  // Up to the next update of its window. One that waits for it is known by its present motion only, which holds on its
+  // own.
   Step known_until(BodyIndex body, Step now) const noexcept {
     const Step end = windows_[body].end;
-    return end == kLookDue ? now + kLongestWindow : end;
+    return end == kUpdateDue ? now + kLongestWindow : end;
   }
   void test(Step now, std::span<const PairEvent> events);
   void settle(Step now, const PairEvent& event, const Motion& a, const Motion& b);
   void settle_touching(Step now, const PairEvent& event, Step left, Step sure);
 
-  Roster& roster_;
+  BodyPool& pool_;
   const BroadPhaseOptions options_;
 
   std::vector<Window> windows_;  // by body
@@ -145,11 +148,11 @@ class Events final : public Method {
   SweptGrid grid_;
   QuantumBox extent_ = kNothing;  // around all boxes that are in the grid, or have been since all were placed anew
   Lattice lattice_;
-  Calendar calendar_;
+  TimingWheel wheel_;
   OverlapList overlaps_;
   std::vector<PairEvent> overlaps_ahead_;  // of pairs tested ahead for the next step, at which they surely touch
   Backlog backlog_;                        // what budgets have left over
-  std::vector<PairEvent> doubtful_;  // reported within a budget, before another look that may not have found them yet
+  std::vector<PairEvent> doubtful_;  // reported within a budget, before another update that may not have found them yet
   bool reclassified_ = false;        // some body, since the last step within a budget
   Step interrupted_at_ = kNeverStep / -2;
 
@@ -164,10 +167,10 @@ class Events final : public Method {
   std::vector<Motion> surveyed_;  // the sample of a survey under way
   BodyIndex survey_next_ = 0;
 
-  Round round_ = 0;          // of looks
-  Round rebuilt_round_ = 0;  // in which all were to be looked at
-  bool prepared_ = false;    // half of the looks for the next step have been done ahead
-  Step rush_ = kNeverStep;   // the step at which most windows end
+  Round round_ = 0;                  // of updates
+  Round rebuilt_round_ = 0;          // in which all were to be updated
+  bool prepared_ = false;            // half of the updates for the next step have been done ahead
+  Step common_expiry_ = kNeverStep;  // the step at which most windows end
   Step voted_ = kNeverStep;
   std::size_t votes_ = 0;
 

@@ -11,7 +11,7 @@ constexpr double kEventResolution = 0.125;  // of a step: no need to know better
 
 bool Events::valid(const PairEvent& event) const noexcept {
   const Round created = event.created;
-  return !is_later(windows_[event.pair.a].looked, created) && !is_later(windows_[event.pair.b].looked, created);
+  return !is_later(windows_[event.pair.a].updated, created) && !is_later(windows_[event.pair.b].updated, created);
 }
 
 void Events::test(Step now, std::span<const PairEvent> events) {
@@ -23,7 +23,7 @@ void Events::test(Step now, std::span<const PairEvent> events) {
       bodies[2 * i] = events[i].pair.a;
       bodies[2 * i + 1] = events[i].pair.b;
     }
-    roster_.ask(now, std::span(bodies).first(2 * count), std::span(motions_).first(2 * count));
+    pool_.ask(now, std::span(bodies).first(2 * count), std::span(motions_).first(2 * count));
     for (std::size_t i = 0; i < count; ++i) {
       const Motion &a = motions_[2 * i], &b = motions_[2 * i + 1];
       const bool valid_a = is_valid(a), valid_b = is_valid(b);
@@ -41,7 +41,7 @@ double Events::reach_of(const Motion& m, double duration) const noexcept {
   return travel * kOutward + motion_slack(m, m, duration) + 2 * options_.position_slack;
 }
 
-// A pair that both have just been looked at: true if nothing is to be done but what this does. It is found anew at the
+// A pair that both have just been updated: true if nothing is to be done but what this does. It is found anew at the
 // end of the earlier window, and until then the spheres surely overlap, or surely do not.
 bool Events::settle_by_spheres(Step now, const BodyPair& pair) {
   const Sphere &a = spheres_[pair.a], &b = spheres_[pair.b];
@@ -52,7 +52,7 @@ bool Events::settle_by_spheres(Step now, const BodyPair& pair) {
   if (!touching) return over || squared > (radii + reach) * (radii + reach);
   const double sure = radii - reach;
   if (!over && !(sure > 0 && squared < sure * sure)) return false;
-  if (!roster_.may_pair(pair)) return true;
+  if (!pool_.may_pair(pair)) return true;
   if (preparing_) {
     overlaps_ahead_.emplace_back(pair, round_);
   } else {
@@ -62,10 +62,10 @@ bool Events::settle_by_spheres(Step now, const BodyPair& pair) {
 }
 
 void Events::test_near(Step now) {
-  if (roster_.filters_pairs()) drop_what_is_none();
+  if (pool_.filters_pairs()) drop_what_is_none();
   tests_.clear();
   for (const BodyPair& pair : near_) {
-    const bool known = !spheres_.empty() && windows_[pair.a].looked == round_ && windows_[pair.b].looked == round_;
+    const bool known = !spheres_.empty() && windows_[pair.a].updated == round_ && windows_[pair.b].updated == round_;
     if (!known || !settle_by_spheres(now, pair)) tests_.emplace_back(pair, round_);
   }
   near_.clear();
@@ -75,10 +75,10 @@ void Events::test_near(Step now) {
 // Both motions are of this step: they overlap, surely for a while, or they cannot for a while.
 void Events::settle(Step now, const PairEvent& event, const Motion& a, const Motion& b) {
   const BodyPair& pair = event.pair;
-  if (!roster_.may_pair(pair)) return;  // what waited for its test while that changed
-  const Clock& clock = roster_.clock;
+  if (!pool_.may_pair(pair)) return;  // what waited for its test while that changed
+  const Clock& clock = pool_.clock;
   const double slack = 4 * options_.position_slack;  // of two bodies, now and later
-  // Until the next look at one of them, or a bound expires.
+  // Until the next update of one of them, or a bound expires.
   const Step left = std::min({known_until(pair.a, now), known_until(pair.b, now), now + kLongestWindow}) - now;
   const double expiry = std::min(a.expiry, b.expiry);
   const bool in_time = expiry >= clock.time(now + left + 1);  // mostly, and sooner said
@@ -94,10 +94,10 @@ void Events::settle(Step now, const PairEvent& event, const Motion& a, const Mot
   const double contact = earliest_contact(a, b, seconds, kEventResolution * options_.time_step, slack);
   Step ahead = contact <= seconds ? std::max<Step>(1, clock.steps_before(contact)) : kNeverStep;
   if (safe < left) ahead = std::min(ahead, std::max<Step>(0, safe) + 1);
-  if (ahead < left) calendar_.add({pair, round_}, now + ahead);
+  if (ahead < left) wheel_.add({pair, round_}, now + ahead);
 }
 
-// What has been looked at ahead is of the next step: this one has been reported already.
+// What has been updated ahead is of the next step: this one has been reported already.
 void Events::settle_touching(Step now, const PairEvent& event, Step left, Step sure) {
   const PairEvent next{event.pair, round_, !preparing_ || sure > 0};
   if (preparing_) {
@@ -107,8 +107,8 @@ void Events::settle_touching(Step now, const PairEvent& event, Step left, Step s
     if (limited_) doubtful_.push_back(next);
   }
   // A pair with a body that waits is tested at the next step in any case.
-  const bool waits = windows_[event.pair.a].end == kLookDue || windows_[event.pair.b].end == kLookDue;
-  if (sure + 1 < left && !waits) calendar_.add(next, now + sure + 1);
+  const bool waits = windows_[event.pair.a].end == kUpdateDue || windows_[event.pair.b].end == kUpdateDue;
+  if (sure + 1 < left && !waits) wheel_.add(next, now + sure + 1);
 }
 
 }  // namespace orchard::runtime::detail

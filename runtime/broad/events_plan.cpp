@@ -1,38 +1,38 @@
 #include "events.h"
 
-// When to look at all bodies anew, and how long their windows are then.
+// When to update all windows anew, and how long their windows are then.
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr std::size_t kSmallSample = 16, kSample = 48;  // bodies that the first plan looks at: of few, and of many
+constexpr std::size_t kSmallSample = 16, kSample = 48;  // bodies that the first plan asks: of few, and of many
 constexpr double kCrowding = 4;                         // lines read per entry from which on the cells are too large
 constexpr double kStepsToTell = 3;                      // fewer do not tell how often bounds are cancelled
 constexpr double kStepsCounted = 256;                   // that tell how often bounds are cancelled
-constexpr unsigned kPlansKept = 8;      // a plan that fits is made anew after as many looks at all bodies
+constexpr unsigned kPlansKept = 8;      // a plan that fits is made anew after as many updates of all windows
 constexpr double kFewPairs = 1e-3;      // per body: too few to say anything about the prediction
 constexpr std::size_t kAskedAhead = 8;  // bodies, to see whether the next bounds are known
 
 }  // namespace
 
 bool Events::crowded(const GridCounts& counts) const noexcept {
-  return plan_.roomy && counts.bodies >= roster_.size() &&
+  return plan_.roomy && counts.bodies >= pool_.size() &&
          static_cast<double>(counts.lines_read) > kCrowding * static_cast<double>(counts.entries);
 }
 
 // When most bodies are due it is cheaper to start afresh; it also lets the plan follow the bodies.
 bool Events::worth_a_rebuild(std::size_t due) const noexcept {
-  const std::size_t n = roster_.size();
-  if (rounds_run_out()) return true;  // what is looked at seldom has to stay comparable
+  const std::size_t n = pool_.size();
+  if (rounds_run_out()) return true;  // what is updated seldom has to stay comparable
   if (due == 0 || n == 0) return false;
   return 2 * due >= n || n > 2 * planned_bodies_ || crowded(grid_.counts());
 }
 
 // False if a budget ended the survey before it was complete: it goes on at the next call.
-bool Events::replan(Step now, Meter& meter) {
-  const std::size_t n = roster_.size();
+bool Events::replan(Step now, BudgetTracker& tracker) {
+  const std::size_t n = pool_.size();
   const bool too_crowded = crowded(grid_.counts()) && n <= 2 * planned_bodies_;
   const bool other_number = n > 2 * planned_bodies_ || 2 * n < planned_bodies_;
-  if (!too_crowded && other_number && !survey(now, meter)) return false;
+  if (!too_crowded && other_number && !survey(now, tracker)) return false;
   const GridCounts counts = grid_.take_counts();
   double off = 1;  // pairs seen to pairs predicted
   if (counts.bodies > 0) {
@@ -80,24 +80,24 @@ bool Events::plan_outdated(double off, double cancelled) noexcept {
 }
 
 // How bodies lie and move, from a sample. What a budget interrupts goes on with the bodies after those seen.
-bool Events::survey(Step now, Meter& meter) {
-  const std::size_t n = roster_.size(), wanted = std::clamp(n / 8, kSmallSample, kSample);
+bool Events::survey(Step now, BudgetTracker& tracker) {
+  const std::size_t n = pool_.size(), wanted = std::clamp(n / 8, kSmallSample, kSample);
   const std::size_t stride = std::max<std::size_t>(1, n / wanted);
   if (surveyed_.empty()) survey_next_ = 0;
   std::vector<BodyIndex> sample;
   std::size_t seen = 0;
-  for (; survey_next_ < roster_.slots() && surveyed_.size() + sample.size() < wanted; ++survey_next_) {
-    if (roster_.alive(survey_next_) && seen++ % stride == 0) sample.push_back(survey_next_);
+  for (; survey_next_ < pool_.slots() && surveyed_.size() + sample.size() < wanted; ++survey_next_) {
+    if (pool_.alive(survey_next_) && seen++ % stride == 0) sample.push_back(survey_next_);
   }
   while (!sample.empty()) {
-    if (meter.spent()) {
+    if (tracker.spent()) {
       survey_next_ = sample.front();
       return false;
     }
-    const std::size_t count = meter.grant(sample.size());
+    const std::size_t count = tracker.grant(sample.size());
     surveyed_.resize(surveyed_.size() + count);
-    roster_.ask(now, std::span(sample).first(count), std::span(surveyed_).last(count));
-    meter.count(count);
+    pool_.ask(now, std::span(sample).first(count), std::span(surveyed_).last(count));
+    tracker.count(count);
     sample.erase(sample.begin(), sample.begin() + static_cast<std::ptrdiff_t>(count));
   }
   std::vector<Vec3> centers;
@@ -118,29 +118,29 @@ bool Events::survey(Step now, Meter& meter) {
 
 void Events::place_all_anew() {
   rebuilt_round_ = round_;
-  calendar_.clear_bodies();
+  wheel_.clear_bodies();
   std::fill(places_.begin(), places_.end(), Place::nowhere);
   oversized_.clear();
   extent_ = kNothing;
-  if (due_.capacity() > 2 * roster_.size()) give_back(due_);
+  if (due_.capacity() > 2 * pool_.size()) give_back(due_);
   due_.clear();
-  due_.reserve(roster_.size());
-  for (BodyIndex body = 0; body < roster_.slots(); ++body) {
-    if (roster_.alive(body)) due_.push_back(body);
+  due_.reserve(pool_.size());
+  for (BodyIndex body = 0; body < pool_.slots(); ++body) {
+    if (pool_.alive(body)) due_.push_back(body);
   }
   any_short_ = any_short_ && std::any_of(windows_.begin(), windows_.end(),
                                          [](const Window& window) { return window.lasting < kLastsAsEver; });
   voted_ = kNeverStep;
   votes_ = 0;
-  few_ = roster_.slots() <= BoxList::kMostBodies;
+  few_ = pool_.slots() <= BoxList::kMaxBodies;
   if (few_) {
-    list_.reset(roster_.slots());
+    list_.reset(pool_.slots());
     grid_.release();
     give_back(boxes_);
   } else {
     list_.release();
     grid_.reset(plan_.lines);
-    grow(boxes_, roster_.slots());
+    grow(boxes_, pool_.slots());
   }
 }
 
@@ -158,37 +158,38 @@ void Events::vote(Step end, std::size_t bodies) noexcept {
 
 // Of the bodies, so that both steps take the same time: of the near pairs only those among them are found ahead.
 double Events::share_ahead() const noexcept {
-  constexpr double kLook = 60, kNearPair = 100;  // nanoseconds of one machine
+  constexpr double kUpdate = 60, kNearPair = 100;  // nanoseconds of one machine
   const double pairs = kNearPair * plan_.pairs_per_body;
-  return pairs < 1 ? 0.5 : (std::sqrt(kLook * kLook + 2 * pairs * (kLook + pairs)) - kLook) / (2 * pairs);
+  return pairs < 1 ? 0.5 : (std::sqrt(kUpdate * kUpdate + 2 * pairs * (kUpdate + pairs)) - kUpdate) / (2 * pairs);
 }
 
-// A step ahead of the rush: the present bounds have answered for this step, and hold no longer than that. If the next
-// ones are known already, half of the work is done now, in looks with windows that begin at the rush.
+// A step ahead of the common expiry: the present bounds have answered for this step, and hold no longer than that. If
+// the next ones are known already, half of the work is done now, in updates with windows that begin at the common
+// expiry.
 bool Events::prepare(Step now) {
   const Step from = now + 1;
-  rush_ = kNeverStep;
+  common_expiry_ = kNeverStep;
   std::array<BodyIndex, kSample> sample;
   std::size_t count = 0;
-  const std::size_t stride = std::max<std::size_t>(1, roster_.slots() / kAskedAhead);
-  for (std::size_t body = 0; body < roster_.slots() && count < kAskedAhead; body += stride) {
-    if (roster_.alive(static_cast<BodyIndex>(body))) sample[count++] = static_cast<BodyIndex>(body);
+  const std::size_t stride = std::max<std::size_t>(1, pool_.slots() / kAskedAhead);
+  for (std::size_t body = 0; body < pool_.slots() && count < kAskedAhead; body += stride) {
+    if (pool_.alive(static_cast<BodyIndex>(body))) sample[count++] = static_cast<BodyIndex>(body);
   }
   motions_.resize(kBlock);
-  roster_.ask(now, std::span(sample).first(count), std::span(motions_).first(count));
+  pool_.ask(now, std::span(sample).first(count), std::span(motions_).first(count));
   if (2 * known_at(from, std::span(sample).first(count)) < count) return false;
 
-  rush_ = from;
+  common_expiry_ = from;
   prepared_ = preparing_ = true;
   ++round_;
-  Meter unlimited;
+  BudgetTracker unlimited;
   replan(now, unlimited);
   place_all_anew();
-  calendar_.clear_events();
+  wheel_.clear_events();
   const auto ahead = static_cast<std::size_t>(share_ahead() * static_cast<double>(due_.size()));
   near_.clear();
   make_room_for_spheres();
-  look_at(now, from, std::span(due_).first(ahead), Found::tested);
+  update_windows(now, from, std::span(due_).first(ahead), Found::tested);
   due_.erase(due_.begin(), due_.begin() + static_cast<std::ptrdiff_t>(ahead));
   preparing_ = false;
   return true;

@@ -2,7 +2,7 @@
 
 #include "events.h"
 
-// Which bodies a query may concern, by the boxes in the grid: these hold each sphere from the step of its look to the
+// Which bodies a query may concern, by the boxes in the grid: these hold each sphere from the step of its update to the
 // end of its window. Bodies that have no such box, or an old one, are handed over in any case: the *loose* ones.
 namespace orchard::runtime::detail {
 namespace {
@@ -72,7 +72,7 @@ struct Events::GridRay {
   }
 };
 
-// New ones, cancelled ones, those that wait for a budget, and those that are looked at at the step after this one.
+// New ones, cancelled ones, those that wait for a budget, and those that are updated at the step after this one.
 void Events::append_loose(std::vector<BodyIndex>& bodies) const {
   for (const BodyIndex body : changed_) {
     if (pending_[body]) bodies.push_back(body);
@@ -109,7 +109,7 @@ Near Events::near_box(const Vec3& lower, const Vec3& upper, std::vector<BodyInde
   }
   const QuantumBox inside = common(box, extent_);
   const double cells = cells_in(inside);
-  if (cells > static_cast<double>(std::max(kFewCells, roster_.size()))) {
+  if (cells > static_cast<double>(std::max(kFewCells, pool_.size()))) {
     for (BodyIndex body = 0; body < places_.size(); ++body) {
       if (places_[body] == Place::inside && boxes_[body].meets(box)) bodies.push_back(body);
     }
@@ -173,7 +173,7 @@ bool Events::along(const Vec3& origin, const Vec3& way, double length, std::vect
   if (any) ray.clip(extent_);
   if (any && ray.begin <= ray.end) {
     const double slabs = std::fabs(ray.at(ray.axis, ray.end) - ray.at(ray.axis, ray.begin)) / kQuanta;
-    if (kCellsPerSlab * slabs <= static_cast<double>(std::max(kFewCells, roster_.size()))) {
+    if (kCellsPerSlab * slabs <= static_cast<double>(std::max(kFewCells, pool_.size()))) {
       if (!walk_slabs(ray, portion, visitor)) return true;
     } else {
       for (BodyIndex body = 0; body < places_.size(); ++body) {

@@ -36,9 +36,9 @@ bool is_valid(const Motion& m) noexcept {
   // Without branches, and mostly enough: NaN stays in a sum and fails the comparison.
   const double squares = dot(m.position, m.position) + dot(m.velocity, m.velocity) + dot(m.half_space, m.half_space) +
                          (m.radius * m.radius + m.acceleration * m.acceleration + m.drift * m.drift);
-  const bool in_range = squares <= kLargestNumber * kLargestNumber, signs = m.radius >= 0 && m.acceleration >= 0;
+  const bool in_range = squares <= kMaxNumber * kMaxNumber, signs = m.radius >= 0 && m.acceleration >= 0;
   if (in_range && signs && m.drift >= 0 && !std::isnan(m.expiry)) return true;
-  const auto fits = [](double x) { return std::fabs(x) <= kLargestNumber; };
+  const auto fits = [](double x) { return std::fabs(x) <= kMaxNumber; };
   for (std::size_t i = 0; i < 3; ++i) {
     if (!fits(m.position[i]) || !fits(m.velocity[i]) || !fits(m.half_space[i])) return false;
   }
@@ -46,11 +46,11 @@ bool is_valid(const Motion& m) noexcept {
   return bound(m.radius) && bound(m.acceleration) && bound(m.drift) && !std::isnan(m.expiry);
 }
 
-Motion speed_bounded(const Vec3& position, double radius, double largest_speed, double expiry) noexcept {
+Motion speed_bounded(const Vec3& position, double radius, double max_speed, double expiry) noexcept {
   Motion motion;
   motion.position = position;
   motion.radius = radius;
-  motion.drift = largest_speed;
+  motion.drift = max_speed;
   motion.expiry = expiry;
   return motion;
 }
@@ -61,7 +61,7 @@ double motion_slack(const Motion& a, const Motion& b, double duration) noexcept 
   const auto reach = [&](const Motion& m) {
     return largest(m.position) + m.radius + duration * (largest(m.velocity) + m.drift + duration * m.acceleration / 2);
   };
-  return kMotionSlack * (reach(a) + reach(b)) + kLeastLength;
+  return kMotionSlack * (reach(a) + reach(b)) + kMinLength;
 }
 
 double first_closing(double gap, double slope, double acceleration) noexcept {
@@ -79,7 +79,7 @@ double overlap_lasts(const Motion& a, const Motion& b, double limit, double slac
   const double spare = a.radius + b.radius - distance - motion_slack(a, b, limit) - slack;
   const double growth = a.drift + b.drift, acceleration = a.acceleration + b.acceleration;
   double sure = first_closing(spare, -(speed + growth), acceleration);
-  if (sure < limit && distance > kLeastLength) {
+  if (sure < limit && distance > kMinLength) {
     const double parting = dot(offset, velocity) / distance;
     sure = std::max(sure, first_closing(spare, -(parting + growth), acceleration + speed * speed / distance));
   }

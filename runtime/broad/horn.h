@@ -20,7 +20,7 @@ double first_closing(double gap, double slope, double acceleration) noexcept;
 double overlap_lasts(const Motion& a, const Motion& b, double limit, double slack) noexcept;
 
 // Squares of less vanish: spheres_touch() takes it for 0.
-inline constexpr double kLeastLength = 1e-150;
+inline constexpr double kMinLength = 1e-150;
 
 // What to add to a sum of radii for the rounding of everything that follows, and the application's.
 double motion_slack(const Motion& a, const Motion& b, double duration) noexcept;

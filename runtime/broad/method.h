@@ -1,5 +1,5 @@
 #pragma once
-#include "roster.h"
+#include "body_pool.h"
 
 namespace orchard::runtime::detail {
 
@@ -32,10 +32,10 @@ class Method {
   virtual ~Method() = default;
   // The body is new or its bounds hold no longer; to be asked for at the next step that is processed.
   virtual void changed(BodyIndex body) = 0;
-  // Called while the roster still has it.
+  // Called while the body pool still has it.
   virtual void removed(BodyIndex body) noexcept = 0;
-  virtual void reclassified(BodyIndex body) = 0;  // the roster has its new importance
-  virtual StepReport step(Step now, Meter& meter) = 0;
+  virtual void reclassified(BodyIndex body) = 0;  // the body pool has its new importance
+  virtual StepReport step(Step now, BudgetTracker& tracker) = 0;
   virtual std::size_t memory_bytes() const noexcept = 0;
   // Adds what is due at the steps after `now`, one after the other; returns for how many it knows.
   virtual std::size_t foresee(Step now, std::span<StepsAhead> steps) const noexcept {
@@ -60,11 +60,11 @@ class Method {
   virtual double cell_size() const noexcept { return 0; }  // a length to begin a search with; 0: none
 };
 
-std::unique_ptr<Method> make_events(Roster& roster, const BroadPhaseOptions& options);
+std::unique_ptr<Method> make_events(BodyPool& pool, const BroadPhaseOptions& options);
 
 // The seam for a library that finds what happens next in another way (declared in broad_phase.h, for the friendship):
 //   BroadPhase make_broad_phase(MotionSource source, const BroadPhaseOptions& options, const MakeMethod& make);
-// `make` is called once, before it returns, with options that are valid; the roster stays where it is. As this header
-// is not installed, such a library is built together with this one.
+// `make` is called once, before it returns, with options that are valid; the body pool stays where it is. As this
+// header is not installed, such a library is built together with this one.
 
 }  // namespace orchard::runtime::detail

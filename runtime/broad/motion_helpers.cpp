@@ -8,7 +8,7 @@ namespace orchard::runtime {
 namespace {
 
 constexpr double kQuarterTurn = std::numbers::pi / 2;
-constexpr double kWorthwhile = 0.5;  // of the horizon: a half-space that ends earlier costs more looks than it saves
+constexpr double kWorthwhile = 0.5;  // of the horizon: a half-space that ends earlier costs more updates than it saves
 
 double length(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
 
@@ -36,16 +36,16 @@ double quarter_turn_time(double angular_speed) noexcept {
 }  // namespace
 
 Motion rocket_motion(const Rocket& r, double time, double horizon) noexcept {
-  Motion motion = bounded(r.position, r.velocity, r.radius, r.largest_thrust, time + horizon);
-  keep_to_side(motion, r.axis, quarter_turn_time(r.largest_turning), time, horizon);
+  Motion motion = bounded(r.position, r.velocity, r.radius, r.max_thrust, time + horizon);
+  keep_to_side(motion, r.axis, quarter_turn_time(r.max_turning), time, horizon);
   return motion;
 }
 
 Motion vehicle_motion(const Vehicle& v, double time, double horizon) noexcept {
-  const double centripetal = v.largest_speed * v.largest_speed / v.least_turn_radius;
-  Motion motion = bounded(v.position, v.velocity, v.radius, std::hypot(centripetal, v.largest_drive), time + horizon);
-  if (v.largest_drive == 0 && v.to_center != Vec3{}) {
-    keep_to_side(motion, v.to_center, quarter_turn_time(v.largest_speed / v.least_turn_radius), time, horizon);
+  const double centripetal = v.max_speed * v.max_speed / v.min_turn_radius;
+  Motion motion = bounded(v.position, v.velocity, v.radius, std::hypot(centripetal, v.max_drive), time + horizon);
+  if (v.max_drive == 0 && v.to_center != Vec3{}) {
+    keep_to_side(motion, v.to_center, quarter_turn_time(v.max_speed / v.min_turn_radius), time, horizon);
   }
   return motion;
 }
@@ -54,10 +54,10 @@ Motion dragged_motion(const Dragged& d, double time, double horizon) noexcept {
   // The second difference is a mean of the acceleration over the last two steps, which lie `step` back on average.
   const double h = d.step;
   const Vec3 mean = (1 / (h * h)) * (d.position - 2.0 * d.last + d.before_last);
-  const double change = d.largest_jerk * (h + horizon), size = length(mean);
+  const double change = d.max_jerk * (h + horizon), size = length(mean);
   const Vec3 velocity = (1 / h) * (d.position - d.last) + (h / 2) * mean;
   Motion motion = bounded(d.position, velocity, d.radius, size + change, time + horizon);
-  motion.drift = d.largest_jerk * h * h / 2;
+  motion.drift = d.max_jerk * h * h / 2;
   if (size > change) keep_to_side(motion, mean, horizon, time, horizon);
   return motion;
 }
@@ -78,7 +78,7 @@ Motion spring_motion(const SpringDragged& d, double time, double horizon) noexce
 namespace {
 
 constexpr double kFloatUnit = 0x1p-24;    // half of a float's last place, relative
-constexpr double kLeastFloat = 0x1p-150;  // the same of the smallest floats, absolute
+constexpr double kMinFloat = 0x1p-150;    // the same of the smallest floats, absolute
 constexpr double kRoundings = 9;          // of a change: eight, and their products
 const double kDiagonal = std::sqrt(3.0);  // of a cube of edge 1
 constexpr double kOutward = 1 + 0x1p-50;  // for the roundings here
@@ -101,18 +101,18 @@ double own_share(Integrator integrator) noexcept {
 
 }  // namespace
 
-double drift_of(Integrator integrator, double dt, double largest_acceleration, Sampling sampling) noexcept {
+double drift_of(Integrator integrator, double dt, double max_acceleration, Sampling sampling) noexcept {
   const double c = own_share(integrator), share = sampling == Sampling::between ? c + 1 : std::max(0.0, c - 0.5);
-  return share * largest_acceleration * dt * kOutward;
+  return share * max_acceleration * dt * kOutward;
 }
 
-double float_slack(double largest_coordinate) noexcept {
-  return kDiagonal * (kFloatUnit * largest_coordinate + kLeastFloat) * kOutward;
+double float_slack(double max_coordinate) noexcept {
+  return kDiagonal * (kFloatUnit * max_coordinate + kMinFloat) * kOutward;
 }
 
-Motion kept_in_float(const Motion& motion, double dt, double largest_coordinate, double largest_speed) noexcept {
-  const double position = kFloatUnit * (largest_coordinate + kRoundings * dt * largest_speed) + kLeastFloat;
-  const double velocity = kFloatUnit * (largest_speed + kRoundings * dt * motion.acceleration) + kLeastFloat;
+Motion kept_in_float(const Motion& motion, double dt, double max_coordinate, double max_speed) noexcept {
+  const double position = kFloatUnit * (max_coordinate + kRoundings * dt * max_speed) + kMinFloat;
+  const double velocity = kFloatUnit * (max_speed + kRoundings * dt * motion.acceleration) + kMinFloat;
   Motion result = motion;
   result.drift += kDiagonal * position / dt * kOutward;
   result.acceleration += kDiagonal * velocity / dt * kOutward;

@@ -1,5 +1,5 @@
 #pragma once
-#include "roster.h"
+#include "body_pool.h"
 
 namespace orchard::runtime::detail {
 
@@ -8,7 +8,7 @@ namespace orchard::runtime::detail {
 class OverlapList {
  public:
   // What a step does to a body's pairs.
-  static constexpr std::uint8_t kLooked = 1;   // all that are in the list are void: those that still touch are added
+  static constexpr std::uint8_t kUpdated = 1;  // all that are in the list are void: those that still touch are added
   static constexpr std::uint8_t kRefused = 2;  // it is in no pair, whatever was added
 
   std::span<const BodyPair> pairs() const noexcept { return pairs_; }
@@ -18,7 +18,7 @@ class OverlapList {
   void drop(const BodyPair& pair) { dropped_.push_back(pair); }                  // it does not, unless it is added, too
   void make_room(std::size_t slots) { grow(marks_, slots); }                     // bodies that are marked are below
   void mark(BodyIndex body, std::uint8_t what) noexcept {
-    if (anew_ && what == kLooked) return;
+    if (anew_ && what == kUpdated) return;
     marks_[body] |= what;
     first_marked_ = std::min(first_marked_, body);
     last_marked_ = std::max(last_marked_, body);

@@ -1,6 +1,6 @@
 #include "promise_check.h"
 
-#include "roster.h"
+#include "body_pool.h"
 
 namespace orchard::runtime::detail {
 namespace {

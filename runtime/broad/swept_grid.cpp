@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t kFieldBits = kQuantumBits + 1;
 constexpr std::uint64_t kGuards = 0x820820820u;  // bit 5 of each of six fields
-constexpr std::uint32_t kLargest = 0x1f7dfu;     // three fields, each of them kQuanta - 1
+constexpr std::uint32_t kMaxEntry = 0x1f7dfu;    // three fields, each of them kQuanta - 1
 static_assert(kIdShift == 6 * kFieldBits);
 static_assert(kMaxBodies < (1u << (64 - kIdShift)));
 
@@ -21,7 +21,7 @@ ORCHARD_INLINE std::uint64_t entry_of(std::uint32_t from, std::uint32_t below) n
   return std::uint64_t{below} << 3 * kFieldBits | from;
 }
 ORCHARD_INLINE std::uint64_t query_of(std::uint32_t from, std::uint32_t below) noexcept {
-  return entry_of(kLargest - below, kLargest - from) | kGuards;
+  return entry_of(kMaxEntry - below, kMaxEntry - from) | kGuards;
 }
 
 // Which of a line's entries meet the query, as bits: kSpread of them for each entry.
@@ -201,7 +201,7 @@ ORCHARD_INLINE void SweptGrid::insert_waiting(const Insertion& insertion) {
 template <typename Kind>
 ORCHARD_INLINE void SweptGrid::leave_visits(const Insertion& insertion, const Batch& batch, std::uint32_t i) {
   Queue& queue = insertion.queue;
-  if (queue.visits_waiting_ + kMostVisits > queue.visits_.size()) flush<Kind>(insertion);
+  if (queue.visits_waiting_ + kMaxVisits > queue.visits_.size()) flush<Kind>(insertion);
   const std::uint32_t axes = batch.axes[i];
   if (axes >= 8) {
     leave_many_visits(queue, batch.bodies[i], insertion.boxes[batch.bodies[i]]);

@@ -1,12 +1,12 @@
 #pragma once
 #include <utility>
 
+#include "body_pool.h"
 #include "box_lattice.h"
-#include "roster.h"
 
 namespace orchard::runtime::detail {
 
-inline constexpr std::uint32_t kMostCellsPerAxis = 4;  // that a body's box may take; the grid has at least as many
+inline constexpr std::uint32_t kMaxCellsPerAxis = 4;  // that a body's box may take; the grid has at least as many
 
 // Seven boxes clipped to a cell, quantised to 5 bits a coordinate, with their bodies' ids: one cache line. All seven
 // are compared with another box in one go: per coordinate a guard bit above the 5 catches the borrow of a subtraction.
@@ -37,7 +37,7 @@ class SweptGrid {
   void release();  // its memory, too
 
   // Adds bodies[i] with block's box i, at most kBlock of them, and appends the pairs whose boxes meet, of each body in
-  // the grid with every other. `boxes` is by body and has the new ones, too. No box takes more than kMostCellsPerAxis
+  // the grid with every other. `boxes` is by body and has the new ones, too. No box takes more than kMaxCellsPerAxis
   // cells along an axis. Only finish() makes sure that all pairs have been found.
   void insert(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const QuantumBox> boxes,
               bool vectors, std::vector<BodyPair>& pairs);
@@ -61,7 +61,7 @@ class SweptGrid {
   std::size_t memory_bytes() const noexcept { return bytes_of(lines_) + bytes_of(overflow_); }
 
  private:
-  static constexpr std::size_t kMostVisits = kMostCellsPerAxis * kMostCellsPerAxis * kMostCellsPerAxis - 1;  // a body's
+  static constexpr std::size_t kMaxVisits = kMaxCellsPerAxis * kMaxCellsPerAxis * kMaxCellsPerAxis - 1;  // a body's
   struct Insertion;
   using Cell = std::array<std::uint32_t, 3>;
   using Steps = std::array<std::uint8_t, 3>;  // from a body's first cell
@@ -122,7 +122,7 @@ class SweptGrid::Queue {
   friend class SweptGrid;
   std::array<Batch, 2> batches_;
   std::size_t current_ = 0;  // the batch that waits
-  std::array<Visit, 2 * kMostVisits> visits_;
+  std::array<Visit, 2 * kMaxVisits> visits_;
   std::size_t visits_waiting_ = 0;
 };
 

@@ -41,11 +41,11 @@ constexpr unsigned kMaxLineBits = kMinLineBits + static_cast<unsigned>(kLineFact
 
 // No two cells of a box share a line.
 constexpr bool sets_apart(unsigned bits, const std::array<std::uint32_t, 2>& factors) {
-  constexpr auto kMost = static_cast<int>(kMostCellsPerAxis) - 1;
+  constexpr auto kMaxOffset = static_cast<int>(kMaxCellsPerAxis) - 1;
   const std::uint32_t mask = (1u << bits) - 1;
-  for (int z = 0; z <= kMost; ++z) {
-    for (int y = -kMost; y <= kMost; ++y) {
-      for (int x = -kMost; x <= kMost; ++x) {
+  for (int z = 0; z <= kMaxOffset; ++z) {
+    for (int y = -kMaxOffset; y <= kMaxOffset; ++y) {
+      for (int x = -kMaxOffset; x <= kMaxOffset; ++x) {
         const std::uint32_t line = static_cast<std::uint32_t>(x) + static_cast<std::uint32_t>(y) * factors[0] +
                                    static_cast<std::uint32_t>(z) * factors[1];
         if ((x != 0 || y != 0 || z != 0) && (line & mask) == 0) return false;

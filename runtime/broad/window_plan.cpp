@@ -7,7 +7,7 @@ namespace {
 
 // Costs relative to each other, in nanoseconds of one machine (2023, 2 GHz class). Off by a factor of two, the window
 // is off by less, and the time hardly changes: it is flat around the minimum.
-constexpr double kCostOfLook = 600, kCostPerBody = 25, kCostPerCell = 12, kCostPerPair = 120;
+constexpr double kCostOfUpdate = 600, kCostPerBody = 25, kCostPerCell = 12, kCostPerPair = 120;
 constexpr double kCellPerSpacing = 1.7;  // smaller cells: more of them per body; larger: more bodies in each
 constexpr double kLinesPerVolume = 1.9;  // a ball fills 52 % of its box
 constexpr double kWindowGrowth = 1.4;    // between the windows tried
@@ -78,7 +78,7 @@ WindowPlan plan_window(const MotionMeans& means, std::size_t bodies, double spac
     const double along = 1 + length / cell, cells = along * along * along;
     const double share = cell / spacing, occupancy = cells * share * share * share / 7;
     const double reach = 2 * length / spacing, pairs = correction * reach * reach * reach / 2;
-    const double cost = (kCostOfLook / static_cast<double>(bodies) + kCostPerBody +
+    const double cost = (kCostOfUpdate / static_cast<double>(bodies) + kCostPerBody +
                          kCostPerCell * cells * (1 + occupancy / 2) + kCostPerPair * pairs) /
                         lasting(static_cast<double>(window), cancelled);
     if (cost >= least) return;

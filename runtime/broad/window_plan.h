@@ -1,10 +1,10 @@
 #pragma once
-#include "calendar.h"
 #include "swept_grid.h"
+#include "timing_wheel.h"
 
 namespace orchard::runtime::detail {
 
-// What decides how long a window pays: means over the bodies looked at.
+// What decides how long a window pays: means over the bodies updated.
 struct MotionMeans {
   static constexpr std::size_t kPlaces = 48;
 
@@ -21,7 +21,7 @@ struct WindowPlan {
   double cell_size = 1;
   Step window = 1;
   std::size_t lines = 1;
-  double pairs_per_body = 0;  // predicted for one look at all bodies
+  double pairs_per_body = 0;  // predicted for one update of all windows
   bool roomy = false;         // cells are larger than boxes: smaller ones would have fewer bodies in each
 };
 
@@ -30,7 +30,7 @@ struct WindowPlan {
 // more than MotionMeans::kPlaces the rest is left out.
 double mean_spacing(std::span<const Vec3> sample, std::size_t bodies);
 
-// The window with the least cost per step: a long one makes more boxes meet, a short one looks at bodies more often.
+// The window with the least cost per step: a long one makes more boxes meet, a short one updates bodies more often.
 // `correction` multiplies the predicted number of pairs; fixed_window 0 leaves the choice. `cancelled`: of the bodies,
 // the share whose bounds end before their time at a step, for which a long window would be in vain.
 WindowPlan plan_window(const MotionMeans& means, std::size_t bodies, double spacing, double time_step,

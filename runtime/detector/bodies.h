@@ -1,5 +1,5 @@
 #pragma once
-#include "broad/roster.h"
+#include "broad/body_pool.h"
 #include "shapes.h"
 
 namespace orchard::runtime::detail {
@@ -28,7 +28,7 @@ struct Body {
   bool suggest = false;
   bool rigid = true;  // the pose that is known
   double continuous_speed = 0;
-  double least_reach = 0;         // as the application gave it
+  double min_reach = 0;           // as the application gave it
   double reach = 0;               // what the broad phase has been told of, at scale 1
   double told_radius = -1;        // of the sphere that the broad phase relies on; below 0: none yet
   Step asked = kNotAsked;         // the step that `state` is of

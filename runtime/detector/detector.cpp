@@ -20,8 +20,8 @@ bool is_valid_option(const DetectorOptions& options) noexcept {
 }
 
 bool are_valid(const BodyOptions& options) noexcept {
-  return options.continuous_speed >= 0 && options.continuous_speed <= kLargestNumber && options.reach >= 0 &&
-         options.reach <= kLargestNumber;
+  return options.continuous_speed >= 0 && options.continuous_speed <= kMaxNumber && options.reach >= 0 &&
+         options.reach <= kMaxNumber;
 }
 
 BodyFilter filter_of(std::uint32_t group, std::uint32_t mask) noexcept { return {group, mask, 0}; }
@@ -45,7 +45,7 @@ Detector::State::State(StateSource source, const DetectorOptions& wanted)
       broad([this](double time, std::span<const BodyIndex> asked,
                    std::span<Motion> answers) { motions(time, asked, answers); },
             broad_options(wanted)),
-      rounds(places, queries, options.executor, wanted.most_unfinished) {}
+      rounds(places, queries, options.executor, wanted.max_unfinished) {}
 
 Detector::Detector(StateSource source, const DetectorOptions& options)
     : state_(std::make_unique<State>(std::move(source), options)) {}
@@ -88,13 +88,13 @@ Body& Detector::State::take_in(BodyId id, std::span<const BodyPart> parts, const
   body.importance = with.importance;
   body.suggest = with.suggest && options.watch;
   body.continuous_speed = with.continuous_speed;
-  body.least_reach = with.reach;
+  body.min_reach = with.reach;
   for (const BodyPart& part : parts) {
     PartRecord& taken = body.parts.emplace_back();
     taken.shape = part.shape;
     detail::set_local(taken, shapes[part.shape], part.local);
   }
-  body.reach = std::max(body.least_reach, detail::reach_of(body.parts));
+  body.reach = std::max(body.min_reach, detail::reach_of(body.parts));
   changed(body);
   body.moved = -1;
   return body;
@@ -108,7 +108,7 @@ BodyId Detector::add_body(std::span<const BodyPart> parts, const BodyOptions& op
     if (id == kNoBody) return id;
     s.take_in(id, parts, options);
     s.monitor.forget(id.index);
-    s.halves.look_again(id.index);
+    s.halves.update_again(id.index);
     return id;
   });
 }
@@ -144,7 +144,7 @@ BodyId Detector::add_static(std::span<const BodyPart> parts, const Pose& pose, c
 BodyId Detector::add_half_space(const Vec3& normal, double offset, const BodyOptions& options) {
   State& s = *state_;
   const double size = detail::length(normal);
-  if (!s.valid || s.failed || !(size > 0) || !std::isfinite(size) || !(std::fabs(offset / size) <= kLargestNumber))
+  if (!s.valid || s.failed || !(size > 0) || !std::isfinite(size) || !(std::fabs(offset / size) <= kMaxNumber))
     return kNoBody;
   Body body;
   body.group = options.group, body.mask = options.mask;
@@ -152,7 +152,7 @@ BodyId Detector::add_half_space(const Vec3& normal, double offset, const BodyOpt
   return s.or_fail([&] {
     const BodyIndex index = s.halves.add({(1 / size) * normal, offset / size}, body);
     s.halves.body(index).moved = s.answered + 1;
-    s.halves.look_at_all(s.bodies.slots());
+    s.halves.update_all(s.bodies.slots());
     ++s.count;
     return s.halves.body(index).id;
   });
@@ -163,12 +163,12 @@ Body* Detector::State::find(BodyId body) noexcept {
   return is_half_space(body.index) ? &halves.body(body.index) : &bodies[body.index];
 }
 
-void Detector::State::look_again(Body& body) {
+void Detector::State::update_again(Body& body) {
   if (is_half_space(body.id.index)) return;
   body.told_radius = -1;
   or_fail([&] {
     if (options.watch) monitor.cancelled(body.id.index);
-    if (!body.is_static) halves.look_again(body.id.index);
+    if (!body.is_static) halves.update_again(body.id.index);
     return broad.cancel(body.id);
   });
 }
@@ -188,7 +188,7 @@ bool Detector::remove(BodyId body) {
 bool Detector::cancel(BodyId body) {
   Body* found = state_->find(body);
   if (found == nullptr) return false;
-  state_->look_again(*found);
+  state_->update_again(*found);
   return true;
 }
 
@@ -199,7 +199,7 @@ bool Detector::teleport(BodyId body) {
   found->asked = found->known_before = detail::kNotAsked;
   ++found->jumps;
   state_->monitor.forget(body.index);
-  state_->look_again(*found);
+  state_->update_again(*found);
   return true;
 }
 
@@ -227,7 +227,7 @@ bool Detector::set_local(BodyId body, std::size_t part, const Pose& local) {
   if (reach <= found->reach) return true;
   found->reach = reach;
   if (found->is_static) return s.or_fail([&] { return s.broad.move_static(body, s.place_of(*found)); });
-  s.look_again(*found);
+  s.update_again(*found);
   return true;
 }
 
@@ -252,7 +252,7 @@ bool Detector::sleep(BodyId body) {
   if (found == nullptr || found->is_static) return false;
   if (found->asleep) return true;
   found->asleep = true;
-  state_->look_again(*found);
+  state_->update_again(*found);
   return true;
 }
 
@@ -261,7 +261,7 @@ bool Detector::wake(BodyId body) {
   if (found == nullptr || found->is_static) return false;
   if (!found->asleep) return true;
   found->asleep = found->frozen = false;
-  state_->look_again(*found);
+  state_->update_again(*found);
   return true;
 }
 

@@ -71,7 +71,7 @@ orchard_detector_options orchard_default_detector(void) {
           options.position_slack,
           0,
           options.steps_to_end,
-          options.most_unfinished,
+          options.max_unfinished,
           nullptr,
           nullptr,
           1};
@@ -87,7 +87,7 @@ orchard_detector* orchard_detector_new(orchard_state_source source, void* contex
     options.time_step = with->time_step, options.start = with->start, options.position_slack = with->position_slack;
     options.watch = with->watch != 0;
     options.steps_to_end = with->steps_to_end;
-    options.most_unfinished = with->most_unfinished;
+    options.max_unfinished = with->max_unfinished;
     options.executor = {with->run, with->run_context, with->concurrency};
     orchard_detector* const self = made.get();
     made->detector =

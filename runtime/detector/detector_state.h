@@ -33,7 +33,7 @@ struct Detector::State {
     return detail::is_half_space(body.index) ? halves.contains(body) : bodies.contains(body);
   }
   detail::Body* find(BodyId body) noexcept;
-  void look_again(detail::Body& body);  // its promise holds no longer
+  void update_again(detail::Body& body);  // its promise holds no longer
   void changed(detail::Body& body) noexcept { body.moved = answered + 1; }
   Motion place_of(const detail::Body& body) const noexcept;  // of a static one
 
@@ -75,10 +75,10 @@ struct Detector::State {
   Step answered = -1;  // up to which steps have been answered
   std::size_t count = 0;
   bool failed = false;  // out of memory
-  // For foresee(), smoothed: of what the calendar has as meeting, the share that overlaps; of the pairs that overlap,
-  // the share that does no more at the next step; what a pair costs.
+  // For foresee(), smoothed: of what the timing wheel has as meeting, the share that overlaps; of the pairs that
+  // overlap, the share that does no more at the next step; what a pair costs.
   double share_of_meetings = 0.5, share_that_part = 0.1, work_per_pair = 200;
-  double meetings = 0;  // that the calendar had for the step under way
+  double meetings = 0;  // that the timing wheel had for the step under way
   std::size_t known_pairs = 0, fresh_pairs = 0, parted_pairs = 0;
 
   // Of the step under way; kept for their memory.

@@ -57,7 +57,7 @@ void Detector::State::watch(Step step) {
     }
     if (kept) continue;
     broken.push_back(i);
-    look_again(body);
+    update_again(body);
   }
 }
 
@@ -77,7 +77,7 @@ void Detector::State::note_refused(std::span<const BodyIndex> more) {
 Frame Detector::step(double time, const FrameBudget& budget) noexcept {
   State& s = *state_;
   Frame frame;
-  frame.time_refused = !s.valid || !(std::fabs(time) <= kMostSteps * s.clock.time_step);
+  frame.time_refused = !s.valid || !(std::fabs(time) <= kMaxSteps * s.clock.time_step);
   frame.out_of_memory = s.failed;
   if (frame.time_refused || s.failed) return frame;
   detail::guarded([&] { s.run(time, budget, frame); },  // sources and filters throw nothing
@@ -92,16 +92,16 @@ Frame Detector::step(double time, const FrameBudget& budget) noexcept {
 // The part of the meetings that overlap, and what a pair costs, are what they have been lately.
 std::size_t Detector::foresee(std::span<StepLoad> loads) const noexcept {
   const State& s = *state_;
-  constexpr std::size_t kMost = 254;
-  std::array<StepsAhead, kMost> ahead;
-  const std::size_t wanted = std::min(loads.size(), kMost);
+  constexpr std::size_t kMaxAhead = 254;
+  std::array<StepsAhead, kMaxAhead> ahead;
+  const std::size_t wanted = std::min(loads.size(), kMaxAhead);
   const double now = s.clock.time(s.answered);
   const std::size_t known = s.valid ? s.broad.foresee(now, std::span(ahead).first(wanted)) : 0;
   double pairs = static_cast<double>(s.records.known().size());
   for (std::size_t i = 0; i < known; ++i) {
     pairs += s.share_of_meetings * static_cast<double>(ahead[i].meetings);
     loads[i].time = s.clock.time(s.answered + 1 + static_cast<State::Step>(i));
-    loads[i].motions = ahead[i].looks + 2 * ahead[i].meetings + 2 * ahead[i].overlaps;
+    loads[i].motions = ahead[i].updates + 2 * ahead[i].meetings + 2 * ahead[i].overlaps;
     loads[i].pairs = pairs;
     loads[i].work = pairs * s.work_per_pair + static_cast<double>(loads[i].motions * kMotionWork);
     pairs -= s.share_that_part * pairs;
@@ -183,7 +183,7 @@ void Detector::State::gather(Step step, const Advance& now) {
   halves.due(step, due);
   if (!due.empty()) {
     bodies.ask(step, clock.time(step), due);
-    halves.look_at(step, clock, due, bodies, clock.time_step, options.position_slack, plane_pairs);
+    halves.update_windows(step, clock, due, bodies, clock.time_step, options.position_slack, plane_pairs);
   }
   if (now.incomplete_from != kNoClass) {
     for (const auto& known : records.known()) {

@@ -8,14 +8,14 @@
 namespace orchard::runtime {
 namespace {
 
-constexpr float kLargest = std::numeric_limits<float>::max();
+constexpr float kMaxFloat = std::numeric_limits<float>::max();
 
 float above(double value) noexcept {  // at least `value`, rounding of a few operations in double included
-  return value > 0 ? std::nextafter(static_cast<float>(value * (1 + 1e-14)), kLargest) : static_cast<float>(value);
+  return value > 0 ? std::nextafter(static_cast<float>(value * (1 + 1e-14)), kMaxFloat) : static_cast<float>(value);
 }
 
 float raised(float value, double by) noexcept {  // infinity stays
-  return by > 0 && std::isfinite(value) ? std::nextafter(static_cast<float>(double{value} + by), kLargest) : value;
+  return by > 0 && std::isfinite(value) ? std::nextafter(static_cast<float>(double{value} + by), kMaxFloat) : value;
 }
 
 double distance_of(const std::array<float, 3>& p, const std::array<float, 3>& q) noexcept {
@@ -26,10 +26,10 @@ double distance_of(const std::array<float, 3>& p, const std::array<float, 3>& q)
 
 }  // namespace
 
-FlexibleTree::FlexibleTree(const PackedSphereTree& rest, double largest_displacement)
-    : tree_(rest), largest_(largest_displacement), rest_(rest.vertices) {
+FlexibleTree::FlexibleTree(const PackedSphereTree& rest, double max_displacement)
+    : tree_(rest), largest_(max_displacement), rest_(rest.vertices) {
   link_spheres();
-  link_patches();
+  link_ball_slabs();
   list_triangles();
   valid_ = largest_ >= 0 && coordinate_extent(tree_) + 4 * largest_ <= double{kCoordinateLimit};
   if (valid_) enlarge_for_good();
@@ -70,25 +70,25 @@ void FlexibleTree::link_spheres() {
   dirty_spheres_ = room_by_level(spheres_);
 }
 
-void FlexibleTree::link_patches() {
-  patches_.resize(tree_.patches.size() * kBlockWidth);
-  patch_of_block_.assign(tree_.triangle_blocks.size(), kNone);
-  if (patches_.empty()) return;
-  patches_[0].used = true;
-  for (std::uint32_t node = 0; node < patches_.size(); ++node) {
-    if (!patches_[node].used) continue;
-    const PatchBlock& block = tree_.patches[node / kBlockWidth];
+void FlexibleTree::link_ball_slabs() {
+  ball_slabs_.resize(tree_.ball_slabs.size() * kBlockWidth);
+  slab_of_block_.assign(tree_.triangle_blocks.size(), kNone);
+  if (ball_slabs_.empty()) return;
+  ball_slabs_[0].used = true;
+  for (std::uint32_t node = 0; node < ball_slabs_.size(); ++node) {
+    if (!ball_slabs_[node].used) continue;
+    const BallSlabBlock& block = tree_.ball_slabs[node / kBlockWidth];
     const std::uint32_t lane = node % kBlockWidth, child = block.child[lane];
-    patches_[node].radius = block.radius[lane];
-    patches_[node].height = block.height[lane];
+    ball_slabs_[node].radius = block.radius[lane];
+    ball_slabs_[node].height = block.height[lane];
     if (child & kLeafBit) {
-      patch_of_block_[child & ~kLeafBit] = node;
+      slab_of_block_[child & ~kLeafBit] = node;
       continue;
     }
-    for (std::uint32_t i = 0; i < kBlockWidth && tree_.patches[child].radius[i] >= 0; ++i)
-      adopt(patches_, node, child * kBlockWidth + i);
+    for (std::uint32_t i = 0; i < kBlockWidth && tree_.ball_slabs[child].radius[i] >= 0; ++i)
+      adopt(ball_slabs_, node, child * kBlockWidth + i);
   }
-  dirty_patches_ = room_by_level(patches_);
+  dirty_slabs_ = room_by_level(ball_slabs_);
 }
 
 // Which triangles each vertex has, and which leaves and blocks each triangle is in.
@@ -198,11 +198,11 @@ bool FlexibleTree::move(std::span<const std::uint32_t> vertices,
   for (const std::uint32_t block : dirty_blocks_) {
     block_dirty_[block] = 0;
     rewrite(block);
-    if (patch_of_block_[block] != kNone) mark(patches_, dirty_patches_, patch_of_block_[block]);
+    if (slab_of_block_[block] != kNone) mark(ball_slabs_, dirty_slabs_, slab_of_block_[block]);
   }
   dirty_blocks_.clear();
   refit_spheres();
-  refit_patches();
+  refit_ball_slabs();
   return true;
 }
 
@@ -217,7 +217,7 @@ void FlexibleTree::rewrite(std::uint32_t index) noexcept {
   }
 }
 
-double FlexibleTree::largest_of_leaf(std::uint32_t link) const noexcept {
+double FlexibleTree::max_of_leaf(std::uint32_t link) const noexcept {
   double largest = 0;
   for (const std::uint32_t entry : listed_triangles(tree_, link)) {
     largest = std::max(largest, moved_[entry & ~kLeafBit]);
@@ -225,7 +225,7 @@ double FlexibleTree::largest_of_leaf(std::uint32_t link) const noexcept {
   return largest;
 }
 
-double FlexibleTree::largest_of_block(std::uint32_t index) const noexcept {
+double FlexibleTree::max_of_block(std::uint32_t index) const noexcept {
   double largest = 0;
   for (const std::uint32_t t : tree_.triangle_blocks[index].triangle) {
     if (t != kNoTriangle) largest = std::max(largest, moved_[t]);
@@ -242,7 +242,7 @@ void FlexibleTree::refit_spheres() noexcept {
       const std::uint32_t lane = index % kBlockWidth, link = block.link[lane];
       double enlarged = 0;
       if (link & kLeafBit) {
-        enlarged = largest_of_leaf(link);
+        enlarged = max_of_leaf(link);
         enlarged_ += enlarged - node.enlarged;
       } else {
         const Children children = children_of(tree_.branching, link);
@@ -259,29 +259,29 @@ void FlexibleTree::refit_spheres() noexcept {
   }
 }
 
-void FlexibleTree::refit_patches() noexcept {
-  constexpr double kNormalLength = 1 + 1e-6;  // of a patch's normal, at most
-  for (std::size_t level = dirty_patches_.size(); level-- > 0;) {
-    for (const std::uint32_t index : dirty_patches_[level]) {
-      Node& node = patches_[index];
+void FlexibleTree::refit_ball_slabs() noexcept {
+  constexpr double kNormalLength = 1 + 1e-6;  // of a ball slab's normal, at most
+  for (std::size_t level = dirty_slabs_.size(); level-- > 0;) {
+    for (const std::uint32_t index : dirty_slabs_[level]) {
+      Node& node = ball_slabs_[index];
       node.dirty = false;
-      PatchBlock& block = tree_.patches[index / kBlockWidth];
+      BallSlabBlock& block = tree_.ball_slabs[index / kBlockWidth];
       const std::uint32_t lane = index % kBlockWidth, child = block.child[lane];
       double enlarged = 0;
       if (child & kLeafBit) {
-        enlarged = largest_of_block(child & ~kLeafBit);
+        enlarged = max_of_block(child & ~kLeafBit);
       } else {
         for (std::uint32_t i = 0; i < kBlockWidth; ++i) {
-          enlarged = std::max(enlarged, patches_[child * kBlockWidth + i].enlarged);
+          enlarged = std::max(enlarged, ball_slabs_[child * kBlockWidth + i].enlarged);
         }
       }
       const bool changed = enlarged != node.enlarged;
       node.enlarged = enlarged;
       block.radius[lane] = raised(node.radius, enlarged);
       block.height[lane] = raised(node.height, enlarged * kNormalLength);
-      if (changed && node.parent != kNone) mark(patches_, dirty_patches_, node.parent);
+      if (changed && node.parent != kNone) mark(ball_slabs_, dirty_slabs_, node.parent);
     }
-    dirty_patches_[level].clear();
+    dirty_slabs_[level].clear();
   }
 }
 

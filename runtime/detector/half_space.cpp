@@ -7,10 +7,10 @@ namespace orchard::runtime::detail {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNormalSlack = 2e-6;  // of a patch's normal, unit to 1e-6 and rounded
+constexpr double kNormalSlack = 2e-6;  // of a ball slab's normal, unit to 1e-6 and rounded
 
-// How far a patch, a ball between two planes, reaches along a unit vector from its centre, at least.
-double reach_of(const PatchBlock& block, std::uint32_t lane, const Vec3& n) noexcept {
+// How far a ball slab, a ball between two planes, reaches along a unit vector from its centre, at least.
+double reach_of(const BallSlabBlock& block, std::uint32_t lane, const Vec3& n) noexcept {
   const double radius = double{block.radius[lane]}, height = std::min(double{block.height[lane]}, radius);
   const double across = std::min(
       1.0, std::fabs(n[0] * double{block.nx[lane]} + n[1] * double{block.ny[lane]} + n[2] * double{block.nz[lane]}));
@@ -32,11 +32,11 @@ Lowest lowest_of(const TreeView& tree, const Vec3& n) noexcept {
     double height;
     std::uint32_t child;
   };
-  std::array<Entry, kBlockWidth*(kPatchDepthLimit + 1) + 1> stack;
+  std::array<Entry, kBlockWidth*(kTriangleTreeDepthLimit + 1) + 1> stack;
   std::size_t size = 0;
   Lowest lowest;
   const auto push_children = [&](std::uint32_t index) {
-    const PatchBlock& block = tree.patches[index];
+    const BallSlabBlock& block = tree.ball_slabs[index];
     const std::size_t begin = size;
     for (std::uint32_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
       const double middle = n[0] * double{block.x[lane]} + n[1] * double{block.y[lane]} + n[2] * double{block.z[lane]};
@@ -93,7 +93,7 @@ Bottom bottom_of(const Shape& shape, const Pose& pose, const HalfSpace& half) no
   return {dot(n, placed_point) - half.offset, placed_point, lowest.triangle};
 }
 
-bool can_ask(const Shape& shape) noexcept { return shape.kind == ShapeKind::round || !shape.tree.patches.empty(); }
+bool can_ask(const Shape& shape) noexcept { return shape.kind == ShapeKind::round || !shape.tree.ball_slabs.empty(); }
 
 }  // namespace
 

@@ -47,14 +47,14 @@ bool HalfSpaces::remove(BodyIndex index) noexcept {
   return true;
 }
 
-void HalfSpaces::look_again(BodyIndex body) {
+void HalfSpaces::update_again(BodyIndex body) {
   grow(due_, std::size_t{body} + 1);
   grow(promises_, due_.size());
   due_[body] = 0;
   if (alive_ > 0) next_ = 0;
 }
 
-void HalfSpaces::look_at_all(std::size_t bodies) {
+void HalfSpaces::update_all(std::size_t bodies) {
   grow(due_, bodies);
   grow(promises_, due_.size());
   for (Step& due : due_) due = due == kNeverStep ? due : 0;
@@ -74,8 +74,8 @@ void HalfSpaces::due(Step now, std::vector<BodyIndex>& bodies) const {
   }
 }
 
-void HalfSpaces::look_at(Step now, const Clock& clock, std::span<const BodyIndex> bodies, const BodyTable& table,
-                         double time_step, double slack, std::vector<BodyPair>& pairs) {
+void HalfSpaces::update_windows(Step now, const Clock& clock, std::span<const BodyIndex> bodies, const BodyTable& table,
+                                double time_step, double slack, std::vector<BodyPair>& pairs) {
   for (const BodyIndex body : bodies) {
     Motion motion = table.motion_of(body, time_step);
     motion.radius += slack;

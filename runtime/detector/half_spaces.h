@@ -4,7 +4,7 @@
 namespace orchard::runtime::detail {
 
 // When each body can reach a half-space at the earliest, from the same bounds as the broad phase's; at that step it is
-// looked at again. One number per body, whatever the number of half-spaces: they are few.
+// updated again. One number per body, whatever the number of half-spaces: they are few.
 class HalfSpaces {
  public:
   BodyIndex add(const HalfSpace& half, const Body& with);  // its BodyIndex; BodyId::generation is 1
@@ -18,8 +18,8 @@ class HalfSpaces {
   const Body& body(BodyIndex index) const noexcept { return planes_[index - kFirstHalfSpace].body; }
   std::size_t size() const noexcept { return alive_; }
 
-  void look_again(BodyIndex body);              // at the next step: it is new, or its promise holds no longer
-  void look_at_all(std::size_t bodies);         // a half-space is new
+  void update_again(BodyIndex body);            // at the next step: it is new, or its promise holds no longer
+  void update_all(std::size_t bodies);          // a half-space is new
   void forget(BodyIndex body);                  // it is gone, or does not move
   Step next() const noexcept { return next_; }  // at which any body is due
 
@@ -27,9 +27,9 @@ class HalfSpaces {
   void due(Step now, std::vector<BodyIndex>& bodies) const;
   // For each of these, whose states are known: its pairs, in ascending order of half-spaces, and when it is due again.
   // `slack`: see BroadPhaseOptions::position_slack.
-  void look_at(Step now, const Clock& clock, std::span<const BodyIndex> bodies, const BodyTable& table,
-               double time_step, double slack, std::vector<BodyPair>& pairs);
-  // Whether the promise that the body's next look relies on is kept by where it is now.
+  void update_windows(Step now, const Clock& clock, std::span<const BodyIndex> bodies, const BodyTable& table,
+                      double time_step, double slack, std::vector<BodyPair>& pairs);
+  // Whether the promise that the body's next update relies on is kept by where it is now.
   bool promise_kept(BodyIndex body, double time, const Motion& now) const noexcept;
   std::size_t memory_bytes() const noexcept;
 

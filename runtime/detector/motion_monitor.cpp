@@ -6,7 +6,7 @@
 namespace orchard::runtime {
 namespace {
 
-constexpr double kMostAngle = 0.5;       // cosine: of accelerations that share a half-space, with their mean
+constexpr double kMaxAngle = 0.5;        // cosine: of accelerations that share a half-space, with their mean
 constexpr double kFasterHorizon = 1.25;  // a kept promise makes the next one so much longer
 
 double length(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
@@ -25,7 +25,7 @@ void MotionMonitor::Part::add(const Vec3& acceleration) noexcept {
   }
 }
 
-double MotionMonitor::Part::least_along(const Vec3& way) const noexcept {
+double MotionMonitor::Part::min_along(const Vec3& way) const noexcept {
   double least = 0;
   for (std::size_t i = 0; i < 3; ++i) least += std::min(lower[i] * way[i], upper[i] * way[i]);
   return least / length(way);
@@ -47,22 +47,22 @@ void MotionMonitor::promised(BodyIndex body, double time, const Motion& motion) 
 }
 
 bool MotionMonitor::observe(BodyIndex body, double time, const Vec3& position, const Vec3& velocity) {
-  return look(body, time, position, &velocity);
+  return observe(body, time, position, &velocity);
 }
 
 bool MotionMonitor::observe(BodyIndex body, double time, const Vec3& position) {
-  return look(body, time, position, nullptr);
+  return observe(body, time, position, nullptr);
 }
 
 void MotionMonitor::count_broken(BodyIndex body) {
   Track& t = track(body);
   t.promise = false;
-  t.horizon = std::max(t.horizon / 2, options_.least_horizon);
+  t.horizon = std::max(t.horizon / 2, options_.min_horizon);
   t.kept_since = t.time;
   ++t.broken, ++broken_;
 }
 
-bool MotionMonitor::look(BodyIndex body, double time, const Vec3& position, const Vec3* velocity) {
+bool MotionMonitor::observe(BodyIndex body, double time, const Vec3& position, const Vec3* velocity) {
   Track& t = track(body);
   learn(t, time, position, velocity);
   if (t.promise && time - t.kept_since >= t.horizon) {  // a whole one without a broken promise
@@ -80,7 +80,7 @@ void MotionMonitor::learn(Track& t, double time, const Vec3& position, const Vec
   const double step = time - t.time;
   if (t.seen > 0 && !(step > 0)) return;
   if (t.seen == 0) {
-    t.horizon = std::max(t.horizon, options_.least_horizon);
+    t.horizon = std::max(t.horizon, options_.min_horizon);
     t.parts = {};
     t.part = 0;
     t.parts[0].begin = t.kept_since = time;
@@ -122,14 +122,14 @@ Motion MotionMonitor::suggest(BodyIndex body, double time, double radius) const 
     sum = sum + part.sum;
     count += part.count;
   }
-  motion.acceleration = std::max(options_.least_acceleration, options_.safety * largest);
+  motion.acceleration = std::max(options_.min_acceleration, options_.safety * largest);
   // A difference of positions is the velocity of half a step ago.
   if (!t.velocity_given) motion.drift = motion.acceleration * t.step;
-  motion.expiry = count == 0 ? time : time + std::clamp(t.horizon, options_.least_horizon, options_.longest_horizon);
+  motion.expiry = count == 0 ? time : time + std::clamp(t.horizon, options_.min_horizon, options_.longest_horizon);
   const double size = length(sum);
   if (count < 2 || !(size > 0)) return motion;
   for (const Part& part : t.parts) {
-    if (part.count > 0 && !(part.least_along(sum) >= kMostAngle)) return motion;
+    if (part.count > 0 && !(part.min_along(sum) >= kMaxAngle)) return motion;
   }
   motion.half_space = (-1 / size) * sum;
   return motion;

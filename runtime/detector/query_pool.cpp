@@ -6,7 +6,8 @@ void QueryPool::prepare(const ShapeTable& shapes, std::size_t shape_count, std::
   const bool more = seen_shapes_ < shape_count;
   for (; seen_shapes_ < shape_count; ++seen_shapes_) {
     const Shape& shape = shapes[static_cast<ShapeId>(seen_shapes_)];
-    if (shape.has_tree() && (deepest_.tree.blocks.empty() || deepest_.tree.patch_depth <= shape.tree.patch_depth)) {
+    if (shape.has_tree() &&
+        (deepest_.tree.blocks.empty() || deepest_.tree.triangle_tree_depth <= shape.tree.triangle_tree_depth)) {
       deepest_ = shape.prepared;
     }
   }
@@ -30,7 +31,7 @@ NarrowPhase* QueryPool::take(std::size_t most) {
 }
 
 std::size_t QueryPool::memory_bytes() const noexcept {
-  const std::size_t stack = (std::size_t{kBlockWidth} * (2 * deepest_.tree.patch_depth + 1) + 1) * 48;
+  const std::size_t stack = (std::size_t{kBlockWidth} * (2 * deepest_.tree.triangle_tree_depth + 1) + 1) * 48;
   const std::size_t lists = 3 * (kRoom + std::size_t{kBlockWidth} * kBlockWidth) * 8;
   return scratches_.size() * (sizeof(Scratch) + 2 * stack) + pool_.size() * (sizeof(NarrowPhase) + stack + lists);
 }

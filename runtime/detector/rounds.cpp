@@ -197,7 +197,7 @@ void Rounds::refine_once(std::uint64_t slice, bool by_level, std::uint64_t most,
   for (std::size_t next = 0; next < order_.size();) {
     const std::uint64_t may = std::min(most, budget.left());
     if (may == 0 || !budget.may_refine()) return;
-    const std::uint64_t at_once = std::min<std::uint64_t>(order_.size() - next, may / (slice + kMostOvershoot));
+    const std::uint64_t at_once = std::min<std::uint64_t>(order_.size() - next, may / (slice + kMaxOvershoot));
     const auto count = static_cast<std::size_t>(std::max<std::uint64_t>(at_once, 1));
     const std::uint64_t piece = at_once > 0 ? slice : std::min(slice, may);
     in_parallel(count, [&](std::size_t from, std::size_t to, QueryPool::Scratch&) {
@@ -220,13 +220,13 @@ void Rounds::refine_once(std::uint64_t slice, bool by_level, std::uint64_t most,
 }
 
 // What is still open of a class.
-void Rounds::order_open(std::size_t begin, std::size_t end, std::uint32_t least_waited, const RecordTable& records) {
+void Rounds::order_open(std::size_t begin, std::size_t end, std::uint32_t min_waited, const RecordTable& records) {
   order_.clear();
   for (std::size_t i = begin; i < end; ++i) {
     Task& task = tasks_[i];
-    if (task.done || task.simple || task.waited < least_waited) continue;
+    if (task.done || task.simple || task.waited < min_waited) continue;
     if (records[task.record].verdict.answer == Answer::yes) continue;
-    if (task.query == nullptr && (task.query = queries_->take(most_unfinished_)) == nullptr) continue;
+    if (task.query == nullptr && (task.query = queries_->take(max_unfinished_)) == nullptr) continue;
     order_.push_back(static_cast<std::uint32_t>(i));
   }
 }

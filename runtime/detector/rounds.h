@@ -9,8 +9,8 @@ namespace orchard::runtime::detail {
 // Answers records at one step.
 class Rounds {
  public:
-  Rounds(const Places& places, QueryPool& queries, const Executor& executor, std::size_t most_unfinished) noexcept
-      : places_(&places), queries_(&queries), executor_(&executor), most_unfinished_(most_unfinished) {}
+  Rounds(const Places& places, QueryPool& queries, const Executor& executor, std::size_t max_unfinished) noexcept
+      : places_(&places), queries_(&queries), executor_(&executor), max_unfinished_(max_unfinished) {}
 
   // Every record's part pairs to their end. Returns the work.
   std::uint64_t answer_all(RecordTable& records, std::span<const std::uint32_t> open, Step now);
@@ -40,7 +40,7 @@ class Rounds {
   void sweep_one(Record& record, QueryPool::Scratch& scratch, std::uint64_t most) const noexcept;
   void make_tasks(const RecordTable& records, std::span<const std::uint32_t> open);
   void begin_tasks(StepBudget& budget, RecordTable& records);
-  void order_open(std::size_t begin, std::size_t end, std::uint32_t least_waited, const RecordTable& records);
+  void order_open(std::size_t begin, std::size_t end, std::uint32_t min_waited, const RecordTable& records);
   void refine_once(std::uint64_t slice, bool by_level, std::uint64_t most, StepBudget& budget, RecordTable& records);
   void refine_class(std::size_t begin, std::size_t end, StepBudget& budget, RecordTable& records);
   void refine_one(Task& task, const Record& record, std::uint64_t slice, bool by_level,
@@ -54,7 +54,7 @@ class Rounds {
   const Places* places_;
   QueryPool* queries_;
   const Executor* executor_;
-  std::size_t most_unfinished_;
+  std::size_t max_unfinished_;
   std::vector<Task> tasks_;
   std::vector<std::uint32_t> order_, sweeps_;
 };

@@ -5,8 +5,8 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr int kMostLooks = 512;      // at a pair's distance, in a sweep
-constexpr double kCloseness = 1e-5;  // of the smaller part's size: nearer than that, time passes in steps of it
+constexpr int kMaxDistanceQueries = 512;  // at a pair's distance, in a sweep
+constexpr double kCloseness = 1e-5;       // of the smaller part's size: nearer than that, time passes in steps of it
 
 Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
@@ -92,7 +92,7 @@ Swept sweep(NarrowPhase& narrow, DistanceQuery& distance, const PlacedPair& from
   };
   double time = 0;
   bool certain = true;
-  for (int look = 0; look < kMostLooks && work < most; ++look) {
+  for (int query = 0; query < kMaxDistanceQueries && work < most; ++query) {
     now.a.pose = a.at(time);
     if (!half) now.b.pose = b.at(time);
     const double gap = apart();

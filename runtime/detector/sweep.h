@@ -29,7 +29,7 @@ struct Swept {
 
 // By conservative advancement (Mirtich 1996): nothing can touch before the distance has been used up at the largest
 // speed with which two points can come nearer. Ends once `work`, which it increases, has reached `most`, less than
-// kMostOvershoot beyond; what is not known by then is maybe.
+// kMaxOvershoot beyond; what is not known by then is maybe.
 Swept sweep(NarrowPhase& narrow, DistanceQuery& distance, const PlacedPair& from, const PlacedPair& to,
             std::uint64_t most, std::uint64_t& work) noexcept;
 

@@ -26,14 +26,14 @@ IntersectionOptions find_options(SleepingMethod method) {
 
 }  // namespace
 
-Sleeping::Sleeping(Roster& roster, const SleepingOptions& options)
-    : roster_(roster),
+Sleeping::Sleeping(BodyPool& pool, const SleepingOptions& options)
+    : pool_(pool),
       rebuild_all_(options.rebuild == Rebuild::everything),
       slack_(2 * options.common.position_slack),  // now, and at the start of the bound
       find_(find_options(options.method)) {}
 
 void Sleeping::changed(BodyIndex body) {
-  if (known_.size() < roster_.slots()) known_.resize(roster_.slots());
+  if (known_.size() < pool_.slots()) known_.resize(pool_.slots());
   known_[body].asked = -1;
   members_changed_ = true;
 }
@@ -42,23 +42,23 @@ void Sleeping::refresh_members() {
   if (!members_changed_) return;
   members_changed_ = false;
   members_.clear();
-  for (BodyIndex body = 0; body < roster_.slots(); ++body) {
-    if (roster_.alive(body)) members_.push_back(body);
+  for (BodyIndex body = 0; body < pool_.slots(); ++body) {
+    if (pool_.alive(body)) members_.push_back(body);
   }
 }
 
 void Sleeping::ask(Step now, std::span<const BodyIndex> bodies) {
   motions_.resize(bodies.size());
-  roster_.ask(now, bodies, motions_);
+  pool_.ask(now, bodies, motions_);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     Known& known = known_[bodies[i]];
     if (!is_valid(motions_[i])) {
-      roster_.refuse(bodies[i]);
+      pool_.refuse(bodies[i]);
       known = {Motion{}, now, now + 1, false};
       continue;
     }
-    const Step last = roster_.clock.last_before_expiry(motions_[i].expiry);
-    const bool for_ever = last == kNeverStep || roster_.is_static(bodies[i]);
+    const Step last = pool_.clock.last_before_expiry(motions_[i].expiry);
+    const bool for_ever = last == kNeverStep || pool_.is_static(bodies[i]);
     known = {motions_[i], now, for_ever ? kNeverStep : std::max(now, last) + 1, true};
   }
 }
@@ -72,16 +72,14 @@ void Sleeping::find(Step now) {
     end_ = std::min(end_, known_[body].end);
     if (known_[body].valid) present_.push_back(body);
   }
-  const double duration = static_cast<double>(end_ - 1 - now) * roster_.clock.time_step;
+  const double duration = static_cast<double>(end_ - 1 - now) * pool_.clock.time_step;
   bounds_.clear();
   for (const BodyIndex body : present_) {
-    const double age = static_cast<double>(now - known_[body].asked) * roster_.clock.time_step;
+    const double age = static_cast<double>(now - known_[body].asked) * pool_.clock.time_step;
     bounds_.push_back(make_bound(known_[body].motion, age, duration, slack_));
   }
-  const auto may_pair = [this](std::uint32_t a, std::uint32_t b) {
-    return roster_.may_pair({present_[a], present_[b]});
-  };
-  found_ = &finder_.find(bounds_, duration, find_, roster_.filters_pairs() ? BoundFilter(may_pair) : BoundFilter());
+  const auto may_pair = [this](std::uint32_t a, std::uint32_t b) { return pool_.may_pair({present_[a], present_[b]}); };
+  found_ = &finder_.find(bounds_, duration, find_, pool_.filters_pairs() ? BoundFilter(may_pair) : BoundFilter());
 }
 
 // Those that touch now have to be of now before anything can be said of the spheres.
@@ -112,13 +110,13 @@ StepReport Sleeping::sleep(Step now) {
   const BoundContact& first = found_->earliest;
   if (first.time == kNoContact) return {end_, reported_};
   known_[present_[first.a]].asked = known_[present_[first.b]].asked = -1;  // to be rebuilt when we wake
-  return {std::min(end_, now + std::max<Step>(1, roster_.clock.steps_before(first.time))), reported_};
+  return {std::min(end_, now + std::max<Step>(1, pool_.clock.steps_before(first.time))), reported_};
 }
 
-StepReport Sleeping::step(Step now, Meter& meter) {
+StepReport Sleeping::step(Step now, BudgetTracker& tracker) {
   refresh_members();
   if (members_.empty()) return {kNeverStep};
-  if (meter.limited()) return step_within(now, meter);
+  if (tracker.limited()) return step_within(now, tracker);
   if (rebuild_all_) {
     for (const BodyIndex body : members_) known_[body].asked = -1;
   }
@@ -145,8 +143,8 @@ std::size_t Sleeping::memory_bytes() const noexcept {
 namespace orchard::broad_phase_methods {
 
 BroadPhase make_sleeping_broad_phase(MotionSource source, const SleepingOptions& options) {
-  const auto make = [&](runtime::detail::Roster& roster, const BroadPhaseOptions& common) {
-    return std::make_unique<detail::Sleeping>(roster, SleepingOptions{options.method, options.rebuild, common});
+  const auto make = [&](runtime::detail::BodyPool& pool, const BroadPhaseOptions& common) {
+    return std::make_unique<detail::Sleeping>(pool, SleepingOptions{options.method, options.rebuild, common});
   };
   return runtime::detail::make_broad_phase(std::move(source), options.common, make);
 }

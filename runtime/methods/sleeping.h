@@ -9,10 +9,10 @@ using runtime::BodyIndex;
 using runtime::BodyPair;
 using runtime::kNoClass;
 using runtime::kNoIndex;
+using runtime::detail::BodyPool;
+using runtime::detail::BudgetTracker;
 using runtime::detail::bytes_of;
 using runtime::detail::kNeverStep;
-using runtime::detail::Meter;
-using runtime::detail::Roster;
 using runtime::detail::Step;
 using runtime::detail::StepReport;
 
@@ -20,12 +20,12 @@ using runtime::detail::StepReport;
 // bounds touch it goes on step by step, and reports the pairs whose spheres really overlap.
 class Sleeping final : public runtime::detail::Method {
  public:
-  Sleeping(Roster& roster, const SleepingOptions& options);
+  Sleeping(BodyPool& pool, const SleepingOptions& options);
 
   void changed(BodyIndex body) override;
   void removed(BodyIndex) noexcept override { members_changed_ = true; }
   void reclassified(BodyIndex) override {}
-  StepReport step(Step now, Meter& meter) override;
+  StepReport step(Step now, BudgetTracker& tracker) override;
   std::size_t memory_bytes() const noexcept override;
 
  private:
@@ -44,7 +44,7 @@ class Sleeping final : public runtime::detail::Method {
 
   void refresh_members();
   bool stale(BodyIndex body, Step now) const noexcept { return known_[body].asked < 0 || known_[body].end <= now; }
-  bool current(BodyIndex body, Step now) const noexcept { return known_[body].asked == now || roster_.is_static(body); }
+  bool current(BodyIndex body, Step now) const noexcept { return known_[body].asked == now || pool_.is_static(body); }
   void ask(Step now, std::span<const BodyIndex> bodies);
   void find(Step now);
   bool intersecting_are_current(Step now);
@@ -52,15 +52,15 @@ class Sleeping final : public runtime::detail::Method {
   StepReport sleep(Step now);
 
   // sleeping_budget.cpp
-  StepReport step_within(Step now, Meter& meter);
-  bool work_through(Step now, unsigned importance, Meter& meter);
+  StepReport step_within(Step now, BudgetTracker& tracker);
+  bool work_through(Step now, unsigned importance, BudgetTracker& tracker);
   void collect_stale(Step now, unsigned importance);
   void collect_pairs(Step now, unsigned importance);
-  void ask_in_turn(Step now, Turn& turn, std::uint64_t most, Meter& meter);
-  void test_in_turn(Step now, Turn& turn, std::uint64_t most, Meter& meter);
+  void ask_in_turn(Step now, Turn& turn, std::uint64_t most, BudgetTracker& tracker);
+  void test_in_turn(Step now, Turn& turn, std::uint64_t most, BudgetTracker& tracker);
   std::size_t left_over(Step now) const noexcept;
 
-  Roster& roster_;
+  BodyPool& pool_;
   const bool rebuild_all_;
   const double slack_;  // of a body's bound
   const IntersectionOptions find_;

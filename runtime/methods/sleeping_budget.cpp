@@ -19,7 +19,7 @@ void rotate_after(std::vector<T>& sorted, const T& last) {
 void Sleeping::collect_stale(Step now, unsigned importance) {
   stale_.clear();
   for (const BodyIndex body : members_) {
-    if (roster_.importance(body) == importance && stale(body, now)) stale_.push_back(body);
+    if (pool_.importance(body) == importance && stale(body, now)) stale_.push_back(body);
   }
   rotate_after(stale_, turns_[importance].body);
 }
@@ -28,33 +28,33 @@ void Sleeping::collect_pairs(Step now, unsigned importance) {
   pairs_.clear();
   for (const BoundContact& contact : found_->initial) {
     const BodyPair pair{present_[contact.a], present_[contact.b]};
-    if (contact.time > 0 || roster_.importance(pair) != importance) continue;
+    if (contact.time > 0 || pool_.importance(pair) != importance) continue;
     if (!current(pair.a, now) || !current(pair.b, now)) pairs_.push_back(pair);
   }
   rotate_after(pairs_, turns_[importance].pair);
 }
 
-void Sleeping::ask_in_turn(Step now, Turn& turn, std::uint64_t most, Meter& meter) {
+void Sleeping::ask_in_turn(Step now, Turn& turn, std::uint64_t most, BudgetTracker& tracker) {
   const std::size_t end = static_cast<std::size_t>(std::min<std::uint64_t>(most, stale_.size()));
-  for (std::size_t done = 0; done < end && !meter.spent();) {
-    const std::size_t count = meter.grant(end - done);
+  for (std::size_t done = 0; done < end && !tracker.spent();) {
+    const std::size_t count = tracker.grant(end - done);
     ask(now, std::span(stale_).subspan(done, count));
-    meter.count(count);
+    tracker.count(count);
     done += count;
     turn.body = stale_[done - 1];
     turn.lead += static_cast<std::int64_t>(count);
   }
 }
 
-void Sleeping::test_in_turn(Step now, Turn& turn, std::uint64_t most, Meter& meter) {
+void Sleeping::test_in_turn(Step now, Turn& turn, std::uint64_t most, BudgetTracker& tracker) {
   std::uint64_t units = 0;
   for (const BodyPair& pair : pairs_) {
-    if (units >= most || meter.spent()) break;
+    if (units >= most || tracker.spent()) break;
     turn.pair = pair;
     for (const BodyIndex body : {pair.a, pair.b}) {
       if (current(body, now)) continue;
       ask(now, {&body, 1});
-      meter.count(1);
+      tracker.count(1);
       ++units;
     }
   }
@@ -62,7 +62,7 @@ void Sleeping::test_in_turn(Step now, Turn& turn, std::uint64_t most, Meter& met
 }
 
 // False if the budget ends before.
-bool Sleeping::work_through(Step now, unsigned importance, Meter& meter) {
+bool Sleeping::work_through(Step now, unsigned importance, BudgetTracker& tracker) {
   Turn& turn = turns_[importance];
   for (;;) {
     collect_stale(now, importance);
@@ -71,14 +71,14 @@ bool Sleeping::work_through(Step now, unsigned importance, Meter& meter) {
       turn.lead = 0;
       return true;
     }
-    if (meter.spent()) return false;
+    if (tracker.spent()) return false;
     const bool both = !stale_.empty() && !pairs_.empty();
     if (!both) turn.lead = 0;
-    const std::uint64_t most = both ? meter.left() / 2 + 1 : meter.left();
+    const std::uint64_t most = both ? tracker.left() / 2 + 1 : tracker.left();
     if (stale_.empty() || (both && turn.lead > 0)) {
-      test_in_turn(now, turn, most, meter);
+      test_in_turn(now, turn, most, tracker);
     } else {
-      ask_in_turn(now, turn, most, meter);
+      ask_in_turn(now, turn, most, tracker);
     }
     find(now);
   }
@@ -93,11 +93,11 @@ std::size_t Sleeping::left_over(Step now) const noexcept {
   return count;
 }
 
-StepReport Sleeping::step_within(Step now, Meter& meter) {
+StepReport Sleeping::step_within(Step now, BudgetTracker& tracker) {
   if (turns_.empty()) turns_.resize(kNoClass);
   find(now);
-  for (unsigned rank = roster_.next_class(0); rank < kNoClass; rank = roster_.next_class(rank + 1)) {
-    if (work_through(now, rank, meter)) continue;
+  for (unsigned rank = pool_.next_class(0); rank < kNoClass; rank = pool_.next_class(rank + 1)) {
+    if (work_through(now, rank, tracker)) continue;
     report(now);
     return {now + 1, reported_, rank, left_over(now)};
   }

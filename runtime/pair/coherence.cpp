@@ -15,17 +15,17 @@ using detail::Vec3;
 
 namespace {
 
-// A clearance costs some three looks: it is asked for where it lasts for more steps than that, and after each time that
+// A clearance costs some three tests: it is asked for where it lasts for more steps than that, and after each time that
 // it was asked for in vain, half as often.
-constexpr double kAhead = 8;             // steps that a clearance is asked for
-constexpr std::uint8_t kMostMisses = 6;  // 2^6 looks without asking
-constexpr double kMargin = 1 - 1e-9;     // the rounding of a few operations
+constexpr double kAhead = 8;            // steps that a clearance is asked for
+constexpr std::uint8_t kMaxMisses = 6;  // 2^6 tests without asking
+constexpr double kMargin = 1 - 1e-9;    // the rounding of a few operations
 
 double size_of(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
 
 // How far a point of the tree's triangles is at most from where it was, both places relative to the other body.
 double displacement(const PreparedTree& tree, const Pose& before, const Pose& now) noexcept {
-  const PatchBlock& root = tree.tree.patches[0];
+  const BallSlabBlock& root = tree.tree.ball_slabs[0];
   Vec3 middle = {root.x[0], root.y[0], root.z[0]};
   for (std::size_t i = 0; i < 3; ++i) middle[i] += tree.tree.origin[i];
   double square = 0;
@@ -55,7 +55,7 @@ struct Coherence {
 
   Verdict collide() noexcept {
     const PreparedTree &first = pair.a(), &second = pair.b();
-    if (first.tree.patches.empty() || second.tree.patches.empty() || !is_rigid(a) || !is_rigid(b)) {
+    if (first.tree.ball_slabs.empty() || second.tree.ball_slabs.empty() || !is_rigid(a) || !is_rigid(b)) {
       pair.forget();
       return runtime::collide(workspace, pair, a, b);
     }
@@ -66,7 +66,7 @@ struct Coherence {
       return apart((memory.clearance * kMargin - moved) * a.scale);
     }
     const double step = memory.seen ? moved / (memory.answers + 1) : 0;
-    const Verdict verdict = look(step);
+    const Verdict verdict = decide(step);
     memory.relative = relative;
     memory.answers = 0;
     memory.seen = true;
@@ -81,7 +81,7 @@ struct Coherence {
     return verdict;
   }
 
-  Verdict look(double step) noexcept {
+  Verdict decide(double step) noexcept {
     memory.clearance = 0;
     if (memory.triangle_a != kNoTriangle) {
       if (same_triangles_meet()) return workspace.narrow.verdict();
@@ -100,7 +100,7 @@ struct Coherence {
         memory.misses = 0;
         return apart(query.lower());
       }
-      if (memory.misses < kMostMisses) ++memory.misses;
+      if (memory.misses < kMaxMisses) ++memory.misses;
       memory.wait = static_cast<std::uint8_t>(1u << memory.misses);
     }
     return remember(runtime::collide(workspace, pair, a, b));

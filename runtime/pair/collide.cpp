@@ -12,9 +12,9 @@ bool unlimited(const Budget& budget) noexcept {
 }
 
 // What several calls may spend together.
-class Purse {
+class SharedBudget {
  public:
-  explicit Purse(const Budget& budget) noexcept : left_(budget) {
+  explicit SharedBudget(const Budget& budget) noexcept : left_(budget) {
     timed_ = budget.time < std::chrono::hours(24 * 365);
     if (timed_) deadline_ = std::chrono::steady_clock::now() + budget.time;
   }
@@ -56,11 +56,11 @@ Verdict collide(NarrowPhase& pair, const Pose& a, const Pose& b, const Budget& b
     while (!pair.finished()) pair.refine();
     return pair.verdict();
   }
-  Purse purse(budget);
-  while (!pair.finished() && !purse.empty()) {
+  SharedBudget shared(budget);
+  while (!pair.finished() && !shared.empty()) {
     const std::uint64_t before = pair.work();
-    pair.refine(purse.left());
-    purse.spend(pair.work() - before);
+    pair.refine(shared.left());
+    shared.spend(pair.work() - before);
   }
   return pair.verdict();
 }
@@ -71,9 +71,9 @@ void collide(NarrowPhase& pair, std::span<const PosePair> poses, std::span<Verdi
 }
 
 bool RoundRobin::refine(const Budget& budget) noexcept {
-  Purse purse(budget);
+  SharedBudget shared(budget);
   std::size_t idle = 0;  // finished pairs in a row
-  while (idle < pairs_.size() && !purse.empty()) {
+  while (idle < pairs_.size() && !shared.empty()) {
     if (next_ >= pairs_.size()) next_ = 0;
     NarrowPhase& pair = pairs_[next_];
     if (pair.finished()) {
@@ -83,8 +83,8 @@ bool RoundRobin::refine(const Budget& budget) noexcept {
     idle = 0;
     const std::uint64_t before = pair.work();
     const std::uint32_t level = pair.level();
-    pair.refine(purse.left());
-    purse.spend(pair.work() - before);
+    pair.refine(shared.left());
+    shared.spend(pair.work() - before);
     if (pair.finished() || pair.level() != level) ++next_;  // else it goes on next time
   }
   return std::all_of(pairs_.begin(), pairs_.end(), [](const NarrowPhase& pair) { return pair.finished(); });

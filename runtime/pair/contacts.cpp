@@ -98,7 +98,7 @@ Vec3 flattest(std::span<const Cut> cuts) noexcept {
 }
 
 // Up to four of the curves' points that span them, seen along the normal.
-void choose_points(std::span<const Cut> cuts, const Vec3& normal, std::array<std::size_t, kMostContactPoints>& chosen,
+void choose_points(std::span<const Cut> cuts, const Vec3& normal, std::array<std::size_t, kMaxContactPoints>& chosen,
                    std::uint32_t& count) noexcept {
   const detail::Way way(normal);
   const std::size_t points = 2 * cuts.size();
@@ -206,7 +206,7 @@ Manifold contacts(Workspace& workspace, const TreePair& pair, const Pose& a, con
   result.normal = rotate(world, exchanged ? opposite(out.direction) : out.direction);
   result.error = PairAccess::exact_error(narrow);
 
-  std::array<std::size_t, kMostContactPoints> chosen{};
+  std::array<std::size_t, kMaxContactPoints> chosen{};
   choose_points(cuts, out.direction, chosen, result.count);
   for (std::uint32_t i = 0; i < result.count; ++i) {
     const Cut& cut = cuts[chosen[i] / 2];

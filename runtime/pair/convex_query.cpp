@@ -13,7 +13,7 @@ using namespace detail;
 
 namespace {
 
-double reach_along(const PatchBlock& block, std::uint32_t lane, const Vec3& n) noexcept {
+double reach_along(const BallSlabBlock& block, std::uint32_t lane, const Vec3& n) noexcept {
   const double cosine =
       std::fabs(n[0] * double{block.nx[lane]} + n[1] * double{block.ny[lane]} + n[2] * double{block.nz[lane]});
   const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine)) + 1e-5;  // the normal is unit to 1e-6
@@ -26,7 +26,7 @@ class Solid {
  public:
   // False if it cannot be asked about.
   bool place(const Frame& frame, const ConvexShape& shape, const Pose& pose) noexcept {
-    if (shape.corners.empty() || shape.corners.size() > kMostCorners || shape.facets.size() > kMostFacets) return false;
+    if (shape.corners.empty() || shape.corners.size() > kMaxCorners || shape.facets.size() > kMaxFacets) return false;
     corners_ = shape.corners.size(), facets_ = shape.facets.size();
     constexpr double infinity = std::numeric_limits<double>::infinity();
     low_ = {infinity, infinity, infinity}, high_ = {-infinity, -infinity, -infinity};
@@ -87,8 +87,8 @@ class Solid {
 
   std::size_t corners_ = 0, facets_ = 0;
   Vec3 low_{}, high_{};
-  std::array<Vec3, kMostCorners> corner_;
-  std::array<TrianglePoints, kMostFacets> facet_;
+  std::array<Vec3, kMaxCorners> corner_;
+  std::array<TrianglePoints, kMaxFacets> facet_;
 };
 
 }  // namespace
@@ -96,7 +96,7 @@ class Solid {
 SurfacePoint deepest_point(const TreeView& tree, const Pose& pose, const std::array<double, 3>& normal,
                            double offset) noexcept {
   SurfacePoint best;
-  if (tree.patches.empty()) return best;
+  if (tree.ball_slabs.empty()) return best;
   const SurfacePoint unknown{-std::numeric_limits<double>::infinity(), {}, kNoTriangle};
   const double size = length(normal);
   if (!is_rigid(pose) || !(size > 0) || !std::isfinite(size) || !std::isfinite(offset)) return unknown;
@@ -112,9 +112,10 @@ SurfacePoint deepest_point(const TreeView& tree, const Pose& pose, const std::ar
   std::size_t count = 0;
   double least = std::numeric_limits<double>::infinity();
   Vec3 deepest{};
-  const double rounding = kRounding * (length({tree.patches[0].x[0], tree.patches[0].y[0], tree.patches[0].z[0]}) +
-                                       double{tree.patches[0].radius[0]});
-  stack[count++] = {-std::numeric_limits<double>::infinity(), tree.patches[0].child[0]};
+  const double rounding =
+      kRounding * (length({tree.ball_slabs[0].x[0], tree.ball_slabs[0].y[0], tree.ball_slabs[0].z[0]}) +
+                   double{tree.ball_slabs[0].radius[0]});
+  stack[count++] = {-std::numeric_limits<double>::infinity(), tree.ball_slabs[0].child[0]};
   while (count > 0) {
     const Entry entry = stack[--count];
     if (entry.lower > least) continue;
@@ -130,7 +131,7 @@ SurfacePoint deepest_point(const TreeView& tree, const Pose& pose, const std::ar
                     });
       continue;
     }
-    const PatchBlock& block = tree.patches[entry.child];
+    const BallSlabBlock& block = tree.ball_slabs[entry.child];
     const std::size_t begin = count;
     for (std::uint32_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
       const Vec3 center = {block.x[lane], block.y[lane], block.z[lane]};
@@ -154,7 +155,7 @@ ShapeContact touches_convex(const TreeView& tree, const Pose& pose, const Convex
   Solid solid;
   if (!solid.place(frame, shape, shape_pose)) return result;
   result.answer = Answer::no;
-  if (tree.patches.empty()) return result;
+  if (tree.ball_slabs.empty()) return result;
   const Vec3 middle = solid.middle();
   const Segment segment(middle, middle);
   const double reach = solid.radius();

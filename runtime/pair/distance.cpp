@@ -5,11 +5,11 @@
 #include <cmath>
 #include <new>
 
-#include "meter.h"
-#include "tree/patch_block.h"
+#include "budget_tracker.h"
+#include "tree/ball_slab_block.h"
 #include "triangle_distance.h"
 
-// Depth first through the two trees of triangles, the nearest pair of patches first, leaving out what is not nearer
+// Depth first through the two trees of triangles, the nearest pair of ball slabs first, leaving out what is not nearer
 // than the best so far. Lower bounds are floats with their rounding taken off; distances of triangles are doubles.
 namespace orchard::runtime {
 
@@ -23,7 +23,7 @@ float float_above(double value) noexcept {
 }
 
 std::uint32_t child_of(const TreeView& tree, std::uint32_t node) noexcept {
-  return tree.patches[node / kBlockWidth].child[node % kBlockWidth];
+  return tree.ball_slabs[node / kBlockWidth].child[node % kBlockWidth];
 }
 
 }  // namespace
@@ -40,9 +40,10 @@ bool DistanceQuery::bind(const PreparedTree& a, const PreparedTree& b) noexcept 
 
 bool DistanceQuery::make_room() noexcept {
   const std::size_t deepest =
-      std::size_t{kBlockWidth} * (pair_.first_.tree.patch_depth + pair_.second_.tree.patch_depth + 1) + 1;
+      std::size_t{kBlockWidth} * (pair_.first_.tree.triangle_tree_depth + pair_.second_.tree.triangle_tree_depth + 1) +
+      1;
   if (!pair_.has_triangles() || deepest <= stack_room_) return true;
-  stack_.reset(new (std::nothrow) PatchPair[deepest]);
+  stack_.reset(new (std::nothrow) BallSlabPair[deepest]);
   stack_room_ = stack_ ? deepest : 0;
   return stack_ != nullptr;
 }
@@ -63,7 +64,7 @@ void DistanceQuery::begin(const Pose& a, const Pose& b, double limit) noexcept {
   lower_ = pair_.lower_bound();
   work_ = 0;
   stack_size_ = 0;
-  nearest_ = least_lower_ = std::numeric_limits<double>::infinity();
+  nearest_ = min_lower_ = std::numeric_limits<double>::infinity();
   direction_ = {};
   triangle_first_ = triangle_second_ = kNoTriangle;
   upper_ = std::numeric_limits<double>::infinity();
@@ -82,7 +83,7 @@ void DistanceQuery::begin(const Pose& a, const Pose& b, double limit) noexcept {
   }
   find_cut();
   const TreeView& second = pair_.second_.tree;
-  stack_[stack_size_++] = {0, 0, 0, detail::moved(detail::patch_at(second.patches[0], 0), pair_.placement_)};
+  stack_[stack_size_++] = {0, 0, 0, detail::moved(detail::ball_slab_at(second.ball_slabs[0], 0), pair_.placement_)};
 }
 
 // What is farther need not be looked at.
@@ -92,89 +93,90 @@ void DistanceQuery::find_cut() noexcept {
   below_nearest_ = nearest_ <= limit_;
 }
 
-bool DistanceQuery::worth_a_look(double lower) const noexcept { return below_nearest_ ? lower < cut_ : lower <= cut_; }
+bool DistanceQuery::may_be_nearer(double lower) const noexcept { return below_nearest_ ? lower < cut_ : lower <= cut_; }
 
 void DistanceQuery::refine(const Budget& budget) noexcept {
   if (finished_ || budget.pair_tests == 0) return;
-  NarrowPhase::Meter meter(budget);
+  NarrowPhase::BudgetTracker tracker(budget);
   const TreeView &first = pair_.first_.tree, &second = pair_.second_.tree;
-  while (stack_size_ > 0 && nearest_ > enough_ && !meter.exhausted()) {
-    const PatchPair pair = stack_[--stack_size_];
-    if (!worth_a_look(double{pair.lower})) {
-      least_lower_ = std::min(least_lower_, double{pair.lower});
+  while (stack_size_ > 0 && nearest_ > enough_ && !tracker.exhausted()) {
+    const BallSlabPair pair = stack_[--stack_size_];
+    if (!may_be_nearer(double{pair.lower})) {
+      min_lower_ = std::min(min_lower_, double{pair.lower});
       continue;
     }
     if (limit_ < std::numeric_limits<double>::infinity() && surely_near(pair)) break;
     const std::uint32_t a = child_of(first, pair.a), b = child_of(second, pair.b);
     if (a & b & kLeafBit) {
       compare_leaves(pair);
-      meter.spend(std::uint64_t{kLeafPairTests} * kTriangleTestCost);
+      tracker.spend(std::uint64_t{kLeafPairTests} * kTriangleTestCost);
       continue;
     }
-    const float radius = first.patches[pair.a / kBlockWidth].radius[pair.a % kBlockWidth];
+    const float radius = first.ball_slabs[pair.a / kBlockWidth].radius[pair.a % kBlockWidth];
     const bool open_second = (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && radius < pair.second.radius);
     expand(pair, open_second ? b : a, open_second);
-    meter.spend(kBlockWidth);
+    tracker.spend(kBlockWidth);
   }
   if (nearest_ <= enough_) leave_the_rest();
   finished_ = stack_size_ == 0;
-  work_ += meter.spent();
+  work_ += tracker.spent();
   report();
 }
 
 // Near enough: what has not been looked at still counts for the lower bound.
 void DistanceQuery::leave_the_rest() noexcept {
-  for (std::size_t i = 0; i < stack_size_; ++i) least_lower_ = std::min(least_lower_, double{stack_[i].lower});
+  for (std::size_t i = 0; i < stack_size_; ++i) min_lower_ = std::min(min_lower_, double{stack_[i].lower});
   stack_size_ = 0;
 }
 
-// Every patch holds triangles, so two are no farther apart than the farthest points of their patches.
-bool DistanceQuery::surely_near(const PatchPair& pair) noexcept {
-  const detail::Patch p = detail::patch_at(pair_.first_.tree.patches[pair.a / kBlockWidth], pair.a % kBlockWidth);
-  const detail::Patch& q = pair.second;
+// Every ball slab holds triangles, so two are no farther apart than the farthest points of their ball slabs.
+bool DistanceQuery::surely_near(const BallSlabPair& pair) noexcept {
+  const detail::BallSlab p =
+      detail::ball_slab_at(pair_.first_.tree.ball_slabs[pair.a / kBlockWidth], pair.a % kBlockWidth);
+  const detail::BallSlab& q = pair.second;
   const double x = double{q.x} - double{p.x}, y = double{q.y} - double{p.y}, z = double{q.z} - double{p.z};
   const double farthest =
       std::sqrt(x * x + y * y + z * z) + double{p.radius} + double{q.radius} + double{pair_.placement_.margin};
   if (farthest > enough_) return false;
   nearest_ = std::min(nearest_, farthest);
-  least_lower_ = std::min(least_lower_, std::max(0.0, double{pair.lower}));
+  min_lower_ = std::min(min_lower_, std::max(0.0, double{pair.lower}));
   return true;
 }
 
 // In place of a pair, those of its children that may be nearer than the best, the nearest last.
-void DistanceQuery::expand(const PatchPair& pair, std::uint32_t block, bool second) noexcept {
+void DistanceQuery::expand(const BallSlabPair& pair, std::uint32_t block, bool second) noexcept {
   const TreeView &first = pair_.first_.tree, &tree = (second ? pair_.second_ : pair_.first_).tree;
   const detail::Placement& placement = pair_.placement_;
-  detail::PatchGaps gaps;
+  detail::BallSlabGaps gaps;
   if (second) {
-    detail::patch_gaps(detail::patch_at(first.patches[pair.a / kBlockWidth], pair.a % kBlockWidth), tree.patches[block],
-                       &placement, placement.margin, gaps);
+    detail::ball_slab_gaps(detail::ball_slab_at(first.ball_slabs[pair.a / kBlockWidth], pair.a % kBlockWidth),
+                           tree.ball_slabs[block], &placement, placement.margin, gaps);
   } else {
-    detail::patch_gaps(pair.second, tree.patches[block], nullptr, placement.margin, gaps);
+    detail::ball_slab_gaps(pair.second, tree.ball_slabs[block], nullptr, placement.margin, gaps);
   }
   const std::size_t begin = stack_size_;
   for (std::uint32_t left = gaps.used; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-    // Overlapping patches keep their depth for the order: the deepest first.
+    // Overlapping ball slabs keep their depth for the order: the deepest first.
     const float lower = pair.lower > 0 ? std::max(gaps.gap[lane], pair.lower) : gaps.gap[lane];
-    if (!worth_a_look(std::max(0.0, double{lower}))) {
-      least_lower_ = std::min(least_lower_, std::max(0.0, double{lower}));
+    if (!may_be_nearer(std::max(0.0, double{lower}))) {
+      min_lower_ = std::min(min_lower_, std::max(0.0, double{lower}));
       continue;
     }
     std::size_t at = stack_size_++;
     for (; at > begin && stack_[at - 1].lower < lower; --at) stack_[at] = stack_[at - 1];
     const std::uint32_t node = block * kBlockWidth + lane;
     stack_[at] =
-        second ? PatchPair{lower, pair.a, node, gaps.patch(lane)} : PatchPair{lower, node, pair.b, pair.second};
+        second ? BallSlabPair{lower, pair.a, node, gaps.slab(lane)} : BallSlabPair{lower, node, pair.b, pair.second};
   }
 }
 
-// The nearest ones first: each found makes fewer of the others worth a look.
-void DistanceQuery::compare_leaves(const PatchPair& pair) noexcept {
+// The nearest ones first: each found makes fewer of the others worth a test.
+void DistanceQuery::compare_leaves(const BallSlabPair& pair) noexcept {
   const TreeView &first = pair_.first_.tree, &second = pair_.second_.tree;
   const TriangleBlock& lanes = first.triangle_blocks[child_of(first, pair.a) & ~kLeafBit];
   const TriangleBlock& rows = second.triangle_blocks[child_of(second, pair.b) & ~kLeafBit];
-  const float radii = first.patches[pair.a / kBlockWidth].radius[pair.a % kBlockWidth] + pair.second.radius;
+  const float radii = first.ball_slabs[pair.a / kBlockWidth].radius[pair.a % kBlockWidth] + pair.second.radius;
   if (limit_ < kSmallMargin * double{radii}) return find_within(pair, lanes, rows);
   detail::TriangleGaps gaps;
   const float reach = float_above(std::min(cut_, 1e30));
@@ -198,31 +200,32 @@ void DistanceQuery::compare_leaves(const PatchPair& pair) noexcept {
   }
   for (std::size_t i = 0; i < count; ++i) {
     const float lower = lower_of(order[i]);
-    // The rest of the pair is no nearer than this one and than its patches.
-    if (nearest_ <= enough_ || !worth_a_look(double{std::max(lower, least)})) {
+    // The rest of the pair is no nearer than this one and than its ball slabs.
+    if (nearest_ <= enough_ || !may_be_nearer(double{std::max(lower, least)})) {
       left_out = std::min(left_out, lower);
       break;
     }
     compare_triangles(lanes, order[i] % kBlockWidth, rows, order[i] / kBlockWidth, lower <= 0);
   }
   if (left_out < std::numeric_limits<float>::infinity()) {
-    least_lower_ = std::min(least_lower_, double{std::max(left_out, least)});
+    min_lower_ = std::min(min_lower_, double{std::max(left_out, least)});
   }
 }
 
 // Only whether some are within the limit: as triangles that may meet are found, with the limit for a margin.
-void DistanceQuery::find_within(const PatchPair& pair, const TriangleBlock& lanes, const TriangleBlock& rows) noexcept {
+void DistanceQuery::find_within(const BallSlabPair& pair, const TriangleBlock& lanes,
+                                const TriangleBlock& rows) noexcept {
   detail::Placement near = pair_.placement_;
   near.margin = float_above((double{near.margin} + limit_) * (1 + 1e-6));
-  const detail::Patch lane_patch =
-      detail::patch_at(pair_.first_.tree.patches[pair.a / kBlockWidth], pair.a % kBlockWidth);
-  std::uint64_t left = detail::triangle_candidates({lanes, rows, lane_patch, pair.second}, near);
-  least_lower_ = std::min(least_lower_, limit_);
+  const detail::BallSlab lane_slab =
+      detail::ball_slab_at(pair_.first_.tree.ball_slabs[pair.a / kBlockWidth], pair.a % kBlockWidth);
+  std::uint64_t left = detail::triangle_candidates({lanes, rows, lane_slab, pair.second}, near);
+  min_lower_ = std::min(min_lower_, limit_);
   for (; left != 0 && nearest_ > enough_; left &= left - 1) {
     const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
     compare_triangles(lanes, bit % kBlockWidth, rows, bit / kBlockWidth, true);
   }
-  if (left != 0) least_lower_ = std::min(least_lower_, std::max(0.0, double{pair.lower}));
+  if (left != 0) min_lower_ = std::min(min_lower_, std::max(0.0, double{pair.lower}));
 }
 
 void DistanceQuery::compare_triangles(const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows,
@@ -233,7 +236,7 @@ void DistanceQuery::compare_triangles(const TriangleBlock& lanes, std::uint32_t 
   const bool meet = may_meet && detail::triangles_intersect(a, b, &common);
   const detail::NearestPoints nearest = meet ? detail::NearestPoints{0, common, common} : detail::nearest_points(a, b);
   const double error = detail::kParallelError * (detail::longest_edge(a) + detail::longest_edge(b));
-  least_lower_ = std::min(least_lower_, std::max(0.0, nearest.distance * (1 - kRounding) - error));
+  min_lower_ = std::min(min_lower_, std::max(0.0, nearest.distance * (1 - kRounding) - error));
   if (nearest.distance >= nearest_) return;
   nearest_ = nearest.distance;
   find_cut();
@@ -247,12 +250,12 @@ void DistanceQuery::compare_triangles(const TriangleBlock& lanes, std::uint32_t 
 
 // Bounds never get worse, whatever rounding does.
 void DistanceQuery::report() noexcept {
-  double least = std::min(least_lower_, nearest_);
+  double least = std::min(min_lower_, nearest_);
   for (std::size_t i = 0; i < stack_size_; ++i) least = std::min(least, double{stack_[i].lower});
   const double scale = pair_.first_pose_.scale, error = pair_.exact_error_;
   if (std::isfinite(least)) lower_ = std::max(lower_, least * scale * (1 - kRounding) - error);
   upper_ = std::min(upper_, nearest_ * scale * (1 + kRounding) + error);
-  lower_ = std::min(lower_, upper_);  // they only ever cross in a file whose patches do not hold their triangles
+  lower_ = std::min(lower_, upper_);  // they only ever cross in a file whose ball slabs do not hold their triangles
 }
 
 DistanceQuery::Points DistanceQuery::points() const noexcept {

@@ -23,11 +23,11 @@
 //  (4) |c - a| <= sqrt(square) + slack if slack - sigma >= 3 u |c' - a|.
 // With D = |T| + E1 + E2, which bounds every |c' - a| and r1 + r2, slack = sigma + 8 u D serves all of them. E2, r2 and
 // what follows are the second tree's times its relative scale; rounding that product costs r2 another u.
-//  (5) Gaps between patches: a moved normal is within 10 u of the true one, and every normal's length within 8.4 u
+//  (5) Gaps between ball slabs: a moved normal is within 10 u of the true one, and every normal's length within 8.4 u
 //  of 1.
-//      A height over a patch's middle plane is off by at most sigma + 22 u |c' - a|, an extent, which is at most the
-//      sum of the radii, by 35 u of itself but for the square of its sine, which kSineError covers, and the sums by 4
-//      u D: margin = sigma + 96 u D leaves room, also for two moved points and eight roundings of a triangle test.
+//      A height over a ball slab's middle plane is off by at most sigma + 22 u |c' - a|, an extent, which is at most
+//      the sum of the radii, by 35 u of itself but for the square of its sine, which kSineError covers, and the sums by
+//      4 u D: margin = sigma + 96 u D leaves room, also for two moved points and eight roundings of a triangle test.
 namespace orchard::runtime {
 
 using detail::length;
@@ -36,10 +36,10 @@ namespace {
 
 constexpr double kFloatUnit = 0x1p-24;
 // Keeps the squares of the smallest reach clear of the numbers that a flush-to-zero mode drops.
-constexpr double kLeastSlack = 1e-15;
-constexpr double kLeastSize = 1e-18;  // below it Placement::unit stays as it is: margins are far larger
+constexpr double kMinSlack = 1e-15;
+constexpr double kMinSize = 1e-18;  // below it Placement::unit stays as it is: margins are far larger
 
-constexpr double kLeastOpposition = 1e-6;  // between unit normals: less says nothing about a direction
+constexpr double kMinOpposition = 1e-6;  // between unit normals: less says nothing about a direction
 
 template <typename Container>
 int compare_bytes(const Container& a, const Container& b) noexcept {
@@ -149,9 +149,10 @@ bool NarrowPhase::bind(const PreparedTree& a, const PreparedTree& b) noexcept {
   inner_.clear(), leaves_.clear(), next_.clear();
   settled_leaves_ = 0;
   // An expanded pair leaves up to eight in its place, one level deeper in one of the trees.
-  const std::size_t deepest = std::size_t{kBlockWidth} * (a.tree.patch_depth + b.tree.patch_depth + 1) + 1;
+  const std::size_t deepest =
+      std::size_t{kBlockWidth} * (a.tree.triangle_tree_depth + b.tree.triangle_tree_depth + 1) + 1;
   if (!has_triangles() || deepest <= stack_room_) return true;
-  stack_.reset(new (std::nothrow) PatchPair[deepest]);
+  stack_.reset(new (std::nothrow) BallSlabPair[deepest]);
   stack_room_ = stack_ ? deepest : 0;
   return stack_ != nullptr;
 }
@@ -201,11 +202,11 @@ void NarrowPhase::place() noexcept {
   const double sigma = exact_error_ * shrink + kFloatUnit * (10 * second_extent + 6 * distance);
   const double size = distance + first_.extent + second_extent;
   const auto rounded_up = [](double value) {
-    return static_cast<float>(std::max(value, kLeastSlack) * (1 + 2 * kFloatUnit));
+    return static_cast<float>(std::max(value, kMinSlack) * (1 + 2 * kFloatUnit));
   };
   placement_.slack = rounded_up(sigma + 8 * kFloatUnit * size);
   placement_.margin = rounded_up(2 * sigma + 96 * kFloatUnit * size);
-  const int exponent = 1 + std::ilogb(std::max(size, kLeastSize));
+  const int exponent = 1 + std::ilogb(std::max(size, kMinSize));
   placement_.unit = static_cast<float>(std::ldexp(1, -exponent));
   placement_.whole = static_cast<float>(std::ldexp(1, exponent));
 }
@@ -216,7 +217,7 @@ void NarrowPhase::place() noexcept {
 // float.
 bool NarrowPhase::in_range() const noexcept {
   const double relative = second_pose_.scale / first_pose_.scale;
-  if (!(relative >= 1 / kMostRelativeScale && relative <= kMostRelativeScale)) return false;
+  if (!(relative >= 1 / kMaxRelativeScale && relative <= kMaxRelativeScale)) return false;
   double size = second_.extent * second_pose_.scale + exact_error_;
   for (std::size_t i = 0; i < 3; ++i) {
     size += std::fabs(second_pose_.translation[i] - first_pose_.translation[i]) +
@@ -299,7 +300,7 @@ std::array<double, 3> NarrowPhase::triangle_normal() const noexcept {
   std::array<double, 3> way{};
   for (std::size_t i = 0; i < 3; ++i) way[i] = of_first[i] - of_second[i];
   const double size = length(way);
-  for (double& component : way) component = size > kLeastOpposition ? component / size : 0;
+  for (double& component : way) component = size > kMinOpposition ? component / size : 0;
   return way;
 }
 

@@ -1,19 +1,19 @@
 #include <bit>
 
-#include "meter.h"
+#include "budget_tracker.h"
 #include "orchard/runtime/narrow_phase.h"
-#include "tree/patch_block.h"
+#include "tree/ball_slab_block.h"
 
-// The last level: depth first through the two trees of triangles, the larger patch of a pair opened first and the
+// The last level: depth first through the two trees of triangles, the larger ball slab of a pair opened first and the
 // deepest overlap looked at first, so that a "yes" comes early.
 namespace orchard::runtime {
 
-using detail::PatchGaps;
+using detail::BallSlabGaps;
 
 namespace {
 
-const PatchBlock& block_of(const TreeView& tree, std::uint32_t node) noexcept {
-  return tree.patches[node / kBlockWidth];
+const BallSlabBlock& block_of(const TreeView& tree, std::uint32_t node) noexcept {
+  return tree.ball_slabs[node / kBlockWidth];
 }
 std::uint32_t child_of(const TreeView& tree, std::uint32_t node) noexcept {
   return block_of(tree, node).child[node % kBlockWidth];
@@ -29,20 +29,20 @@ void NarrowPhase::start_exact() noexcept {
   next_.clear();
   settled_leaves_ = 0;
   roots_pending_ = false;
-  stack_[0] = {0, 0, detail::moved(detail::patch_at(second_.tree.patches[0], 0), placement_)};
+  stack_[0] = {0, 0, detail::moved(detail::ball_slab_at(second_.tree.ball_slabs[0], 0), placement_)};
   stack_size_ = 1;
 }
 
 // False if interrupted. Ends at the first pair of triangles that meet.
-bool NarrowPhase::refine_patches(Meter& meter) noexcept {
+bool NarrowPhase::refine_ball_slabs(BudgetTracker& tracker) noexcept {
   while (stack_size_ > 0) {
-    if (meter.exhausted()) return false;
-    const PatchPair pair = stack_[--stack_size_];
+    if (tracker.exhausted()) return false;
+    const BallSlabPair pair = stack_[--stack_size_];
     const std::uint32_t a = child_of(first_.tree, pair.a), b = child_of(second_.tree, pair.b);
     if (a & b & kLeafBit) {
       const std::uint64_t before = triangle_tests_;
       const bool meet = test_triangles(pair);
-      meter.spend((triangle_tests_ - before) * kTriangleTestCost);
+      tracker.spend((triangle_tests_ - before) * kTriangleTestCost);
       if (meet) return true;
       continue;
     }
@@ -51,21 +51,21 @@ bool NarrowPhase::refine_patches(Meter& meter) noexcept {
         ((b & kLeafBit) == 0 && block_of(first_.tree, pair.a).radius[pair.a % kBlockWidth] < pair.second.radius);
     const std::uint64_t before = pair_tests_;
     expand(pair, second);
-    meter.spend(pair_tests_ - before);
+    tracker.spend(pair_tests_ - before);
   }
   return true;
 }
 
 // In place of a pair, those of its children that may meet, the deepest last.
-void NarrowPhase::expand(const PatchPair& pair, bool second) noexcept {
+void NarrowPhase::expand(const BallSlabPair& pair, bool second) noexcept {
   const TreeView& tree = (second ? second_ : first_).tree;
   const std::uint32_t block = child_of(tree, second ? pair.b : pair.a);
-  PatchGaps gaps;
+  BallSlabGaps gaps;
   if (second) {
-    detail::patch_gaps(detail::patch_at(block_of(first_.tree, pair.a), pair.a % kBlockWidth), tree.patches[block],
-                       &placement_, placement_.margin, gaps);
+    detail::ball_slab_gaps(detail::ball_slab_at(block_of(first_.tree, pair.a), pair.a % kBlockWidth),
+                           tree.ball_slabs[block], &placement_, placement_.margin, gaps);
   } else {
-    detail::patch_gaps(pair.second, tree.patches[block], nullptr, placement_.margin, gaps);
+    detail::ball_slab_gaps(pair.second, tree.ball_slabs[block], nullptr, placement_.margin, gaps);
   }
   pair_tests_ += static_cast<std::uint64_t>(std::bit_width(gaps.used));
   std::uint32_t order[kBlockWidth], count = 0;
@@ -78,11 +78,11 @@ void NarrowPhase::expand(const PatchPair& pair, bool second) noexcept {
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t node = block * kBlockWidth + order[i];
     stack_[stack_size_++] =
-        second ? PatchPair{pair.a, node, gaps.patch(order[i])} : PatchPair{node, pair.b, pair.second};
+        second ? BallSlabPair{pair.a, node, gaps.slab(order[i])} : BallSlabPair{node, pair.b, pair.second};
   }
 }
 
-bool NarrowPhase::test_triangles(const PatchPair& pair) noexcept {
+bool NarrowPhase::test_triangles(const BallSlabPair& pair) noexcept {
   const TriangleBlock& lanes = first_.tree.triangle_blocks[child_of(first_.tree, pair.a) & ~kLeafBit];
   const TriangleBlock& rows = second_.tree.triangle_blocks[child_of(second_.tree, pair.b) & ~kLeafBit];
   const auto used = [](const TriangleBlock& block) {
@@ -91,8 +91,8 @@ bool NarrowPhase::test_triangles(const PatchPair& pair) noexcept {
     return count;
   };
   triangle_tests_ += used(lanes) * used(rows);
-  const detail::Patch lane_patch = detail::patch_at(block_of(first_.tree, pair.a), pair.a % kBlockWidth);
-  std::uint64_t left = detail::triangle_candidates({lanes, rows, lane_patch, pair.second}, placement_);
+  const detail::BallSlab lane_slab = detail::ball_slab_at(block_of(first_.tree, pair.a), pair.a % kBlockWidth);
+  std::uint64_t left = detail::triangle_candidates({lanes, rows, lane_slab, pair.second}, placement_);
   for (; left != 0; left &= left - 1) {
     const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
     const std::uint32_t row = bit / kBlockWidth, lane = bit % kBlockWidth;

@@ -2,7 +2,7 @@
 #include <bit>
 #include <cmath>
 
-#include "meter.h"
+#include "budget_tracker.h"
 #include "orchard/runtime/narrow_phase.h"
 #include "tree/sphere_block.h"
 #include "tree/tree_nodes.h"
@@ -20,7 +20,7 @@ using detail::is_leaf;
 namespace {
 
 constexpr std::size_t kBlockPairs = std::size_t{kBlockWidth} * kBlockWidth;
-constexpr std::uint32_t kMostProbedLevels = 64;  // a call each
+constexpr std::uint32_t kMaxProbedLevels = 64;  // a call each
 constexpr std::uint32_t kNoExcess = std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity()) - 1;
 
 // sqrt(s^2 + x) - s falls with s and grows with x: with the largest reach and the least excess over all the pairs that
@@ -29,7 +29,7 @@ double gap_of(const detail::LevelState& state) noexcept {
   const auto largest = [](const auto& v) { return double{*std::max_element(v.begin(), v.end())}; };
   const double reach = (largest(state.row_radius) + largest(state.lane_radius)) * (1 + 1e-6);
   const double excess =
-      double{std::bit_cast<float>(*std::min_element(state.least_excess.begin(), state.least_excess.end()) + 1)};
+      double{std::bit_cast<float>(*std::min_element(state.min_excess.begin(), state.min_excess.end()) + 1)};
   return std::isfinite(excess) ? excess / (std::sqrt(reach * reach + excess) + reach)
                                : std::numeric_limits<double>::infinity();
 }
@@ -62,29 +62,29 @@ Answer NarrowPhase::refine_level(const Budget& budget) noexcept {
     settled_leaves_ = leaves_.size();
   }
   if (inner_.size() == 0) return refine_exactly(budget);
-  Meter meter(budget);
-  if (refine_spheres(meter)) finish_sphere_level();
-  work_ += meter.spent();
+  BudgetTracker tracker(budget);
+  if (refine_spheres(tracker)) finish_sphere_level();
+  work_ += tracker.spent();
   return answer_;
 }
 
 Answer NarrowPhase::refine_last(const Budget& budget) noexcept {
   if (budget.pair_tests == 0) return answer_;
   if (!has_last_level()) return refine(budget);
-  Meter meter(budget);
+  BudgetTracker tracker(budget);
   if (!exact_started_) {
     start_exact();
   }
-  if (refine_patches(meter)) {
+  if (refine_ball_slabs(tracker)) {
     ++level_;
     finish(triangle_first_ == kNoTriangle ? Answer::no : Answer::yes);
   }
-  work_ += meter.spent();
+  work_ += tracker.spent();
   return answer_;
 }
 
 // False if interrupted; cursor_ then says where to go on.
-bool NarrowPhase::refine_spheres(Meter& meter) noexcept {
+bool NarrowPhase::refine_spheres(BudgetTracker& tracker) noexcept {
   BlockHits hits;
   for (; cursor_.pair < inner_.size(); ++cursor_.pair, cursor_.outer = 0) {
     const auto [a, b] = inner_[cursor_.pair];
@@ -95,7 +95,7 @@ bool NarrowPhase::refine_spheres(Meter& meter) noexcept {
     const Group lanes = group_of(lane_side.tree, lane_side.bits, lanes_are_second ? b : a);
     for (; cursor_.outer < lanes.count; cursor_.outer += kBlockWidth, cursor_.inner = 0) {
       while (cursor_.inner < rows.count) {
-        if (meter.exhausted()) return false;
+        if (tracker.exhausted()) return false;
         if (!next_.room_for(kBlockPairs) || !leaves_.room_for(kBlockPairs)) {
           give_up_spheres();
           return false;
@@ -105,13 +105,13 @@ bool NarrowPhase::refine_spheres(Meter& meter) noexcept {
             &block_of(row_side.tree, row), &block_of(lane_side.tree, lane), row % kBlockWidth, 0, 0, lanes_are_second};
         block.lane_count = std::min(kBlockWidth, lanes.count - cursor_.outer);
         block.row_end = std::min(kBlockWidth, block.row_begin + rows.count - cursor_.inner);
-        block.row_end = std::min(block.row_end, block.row_begin + meter.rows(block.lane_count));
+        block.row_end = std::min(block.row_end, block.row_begin + tracker.rows(block.lane_count));
         detail::test_block(block, placement_, level_state_, hits);
         const std::uint32_t tested = block.row_end - block.row_begin;
         collect(row - block.row_begin, lane, hits, lanes_are_second);
         cursor_.inner += tested;
         pair_tests_ += std::uint64_t{tested} * block.lane_count;
-        meter.spend(std::uint64_t{tested} * block.lane_count);
+        tracker.spend(std::uint64_t{tested} * block.lane_count);
       }
     }
   }
@@ -151,7 +151,7 @@ void NarrowPhase::improve(NodePair pair, double square, bool leaves) noexcept {
 void NarrowPhase::start_level() noexcept {
   cursor_ = {};
   level_best_ = {};
-  level_state_.least_excess.fill(kNoExcess);
+  level_state_.min_excess.fill(kNoExcess);
   level_state_.row_radius.fill(0);
   level_state_.lane_radius.fill(0);
   level_state_.best_inner = std::numeric_limits<float>::infinity();
@@ -185,11 +185,11 @@ Answer NarrowPhase::probe(std::uint32_t level) noexcept {
   if (finished_ || !roots_pending_) return answer_;
   place();
   Probe probe{};
-  probe.seen.least_excess.fill(kNoExcess);
+  probe.seen.min_excess.fill(kNoExcess);
   const bool leaves = is_leaf(first_.tree, 0) && is_leaf(second_.tree, 0);
   if (leaves || level == 0) return answer_;
   level_best_ = {};
-  if (probe_below({0, 0}, std::min(level, kMostProbedLevels), probe)) {
+  if (probe_below({0, 0}, std::min(level, kMaxProbedLevels), probe)) {
     improve(probe.found, probe.square, false);
     if (level_best_.bound < best_.bound) best_ = level_best_;
     return answer_;

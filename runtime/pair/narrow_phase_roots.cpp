@@ -19,8 +19,8 @@ using detail::Vec3;
 
 namespace {
 
-constexpr double kLeastError = 1e-150;  // of a length: covers the underflow of its square
-constexpr int kRootDirections = 5;      // tried at most, to part the hulls
+constexpr double kMinError = 1e-150;  // of a length: covers the underflow of its square
+constexpr int kRootDirections = 5;    // tried at most, to part the hulls
 
 bool before(const Pose& a, const Pose& b) noexcept {
   if (a.rotation != b.rotation) return a.rotation < b.rotation;
@@ -51,7 +51,7 @@ void NarrowPhase::reset_counts() noexcept {
 
 void NarrowPhase::find_exact_error(const Pose& first, const Pose& second) noexcept {
   exact_error_ = (first.scale * first_.error + second.scale * second_.error) +
-                 1e-14 * (sum_of_sizes(first.translation) + sum_of_sizes(second.translation)) + kLeastError;
+                 1e-14 * (sum_of_sizes(first.translation) + sum_of_sizes(second.translation)) + kMinError;
 }
 
 Answer NarrowPhase::start(const Pose& a, const Pose& b) noexcept {

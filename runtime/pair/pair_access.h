@@ -8,7 +8,7 @@ namespace orchard::runtime {
 // What the queries about a pair besides NarrowPhase itself use of it: the bodies' order, their placement in each
 // other's frame, and what covers its rounding.
 struct PairAccess {
-  using Meter = NarrowPhase::Meter;
+  using BudgetTracker = NarrowPhase::BudgetTracker;
 
   // Prepares for queries in the first tree's frame, whatever the roots say. False where nothing can be said.
   static bool place(NarrowPhase& pair, const Pose& a, const Pose& b) noexcept {

@@ -7,7 +7,7 @@
 #include <new>
 
 #include "orchard/runtime/prepared_tree.h"
-#include "tree/patch_block.h"
+#include "tree/ball_slab_block.h"
 
 // Depth first through the two trees of triangles of a pair, to every pair of triangles that meet.
 namespace orchard::runtime::detail {
@@ -33,16 +33,16 @@ struct PlacedPair {
   }
 };
 
-struct WalkPair {  // patches that may meet, the second one moved
+struct WalkPair {  // ball slabs that may meet, the second one moved
   std::uint32_t a, b;
-  Patch second;
+  BallSlab second;
 };
 
 class WalkStack {
  public:
   // Room for two trees. False if there is no memory.
   bool reserve(const TreeView& a, const TreeView& b) noexcept {
-    const std::size_t deepest = std::size_t{kBlockWidth} * (a.patch_depth + b.patch_depth + 1) + 1;
+    const std::size_t deepest = std::size_t{kBlockWidth} * (a.triangle_tree_depth + b.triangle_tree_depth + 1) + 1;
     if (deepest <= room_) return true;
     pairs_.reset(new (std::nothrow) WalkPair[deepest]);
     room_ = pairs_ ? deepest : 0;
@@ -55,8 +55,8 @@ class WalkStack {
   std::size_t room_ = 0;
 };
 
-inline std::uint32_t patch_child(const TreeView& tree, std::uint32_t node) noexcept {
-  return tree.patches[node / kBlockWidth].child[node % kBlockWidth];
+inline std::uint32_t ball_slab_child(const TreeView& tree, std::uint32_t node) noexcept {
+  return tree.ball_slabs[node / kBlockWidth].child[node % kBlockWidth];
 }
 
 // Calls visit(lanes, lane, rows, row) for every pair of triangles, of the first and of the second tree, that the float
@@ -66,16 +66,17 @@ void walk_candidates(const PlacedPair& pair, const WalkStack& room, Visit&& visi
   const TreeView &first = pair.first.tree, &second = pair.second.tree;
   WalkPair* const stack = room.data();
   std::size_t size = 0;
-  stack[size++] = {0, 0, moved(patch_at(second.patches[0], 0), pair.placement)};
-  PatchGaps gaps;
+  stack[size++] = {0, 0, moved(ball_slab_at(second.ball_slabs[0], 0), pair.placement)};
+  BallSlabGaps gaps;
   while (size > 0) {
     const WalkPair top = stack[--size];
-    const std::uint32_t a = patch_child(first, top.a), b = patch_child(second, top.b);
-    const PatchBlock& own = first.patches[top.a / kBlockWidth];
+    const std::uint32_t a = ball_slab_child(first, top.a), b = ball_slab_child(second, top.b);
+    const BallSlabBlock& own = first.ball_slabs[top.a / kBlockWidth];
     const std::uint32_t lane_of_own = top.a % kBlockWidth;
     if (a & b & kLeafBit) {
       const TriangleBlock &lanes = first.triangle_blocks[a & ~kLeafBit], &rows = second.triangle_blocks[b & ~kLeafBit];
-      std::uint64_t left = triangle_candidates({lanes, rows, patch_at(own, lane_of_own), top.second}, pair.placement);
+      std::uint64_t left =
+          triangle_candidates({lanes, rows, ball_slab_at(own, lane_of_own), top.second}, pair.placement);
       for (; left != 0; left &= left - 1) {
         const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
         visit(lanes, bit % kBlockWidth, rows, bit / kBlockWidth);
@@ -86,14 +87,15 @@ void walk_candidates(const PlacedPair& pair, const WalkStack& room, Visit&& visi
         (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && own.radius[lane_of_own] < top.second.radius);
     const std::uint32_t block = open_second ? b : a;
     if (open_second) {
-      patch_gaps(patch_at(own, lane_of_own), second.patches[block], &pair.placement, pair.placement.margin, gaps);
+      ball_slab_gaps(ball_slab_at(own, lane_of_own), second.ball_slabs[block], &pair.placement, pair.placement.margin,
+                     gaps);
     } else {
-      patch_gaps(top.second, first.patches[block], nullptr, pair.placement.margin, gaps);
+      ball_slab_gaps(top.second, first.ball_slabs[block], nullptr, pair.placement.margin, gaps);
     }
     for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
       const std::uint32_t node = block * kBlockWidth + lane;
-      stack[size++] = open_second ? WalkPair{top.a, node, gaps.patch(lane)} : WalkPair{node, top.b, top.second};
+      stack[size++] = open_second ? WalkPair{top.a, node, gaps.slab(lane)} : WalkPair{node, top.b, top.second};
     }
   }
 }

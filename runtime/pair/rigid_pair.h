@@ -35,13 +35,13 @@ ORCHARD_INLINE T rotation_defect(At&& r) noexcept {
   return (a * a + b * b + across * across) + (x * x + y * y + z * z);
 }
 
-inline constexpr double kMostRotationDefect = kRigidTolerance * kRigidTolerance;
+inline constexpr double kMaxRotationDefect = kRigidTolerance * kRigidTolerance;
 
 inline bool scale_in_range(double scale) noexcept { return scale >= 1 / kScaleLimit && scale <= kScaleLimit; }
 
 inline bool rotates(const Pose& pose) noexcept {
   const double defect = rotation_defect<double>([&pose](std::size_t i) { return pose.rotation[i]; });
-  return defect <= kMostRotationDefect && scale_in_range(pose.scale);
+  return defect <= kMaxRotationDefect && scale_in_range(pose.scale);
 }
 
 // Two poses, number by number.
@@ -56,7 +56,7 @@ struct PoseLanes {
   // As is_rigid() says of both, but for translations.
   ORCHARD_INLINE bool rotate() const noexcept {
     const Two defect = rotation_defect<Two>([this](std::size_t i) ORCHARD_INLINE_LAMBDA -> Two { return rotation[i]; });
-    const auto good = (defect <= both<Two>(kMostRotationDefect)) & (both<Two>(1 / kScaleLimit) <= scale) &
+    const auto good = (defect <= both<Two>(kMaxRotationDefect)) & (both<Two>(1 / kScaleLimit) <= scale) &
                       (scale <= both<Two>(kScaleLimit));
     return (good[0] & good[1]) != 0;
   }

@@ -54,7 +54,7 @@ double winding_angle(const TreeView& tree, const Vec3& point) noexcept {
 }
 
 double reach_beyond(const TreeView& tree, const Vec3& point) noexcept {  // from the point to outside of everything
-  const PatchBlock& root = tree.patches[0];
+  const BallSlabBlock& root = tree.ball_slabs[0];
   return length(minus(point, {root.x[0], root.y[0], root.z[0]})) + 2 * double{root.radius[0]} +
          kRounding * tree.bounding_radius;
 }
@@ -152,7 +152,7 @@ class Caster {
 SurfacePoint search_outward(const TreeView& tree, const Pose& pose, const Vec3& p, const Vec3& q, double limit,
                             bool any) noexcept {
   SurfacePoint best;
-  if (tree.patches.empty()) return best;
+  if (tree.ball_slabs.empty()) return best;
   const SurfacePoint unknown{0, {}, kNoTriangle};
   if (!is_rigid(pose) || std::isnan(limit)) return unknown;
   const Frame frame(tree, pose);
@@ -221,7 +221,7 @@ Answer touches_capsule(const TreeView& tree, const Pose& pose, const std::array<
 
 std::optional<RayHit> cast_ray(const TreeView& tree, const Pose& pose, const std::array<double, 3>& origin,
                                const std::array<double, 3>& direction, double longest) noexcept {
-  if (tree.patches.empty()) return std::nullopt;
+  if (tree.ball_slabs.empty()) return std::nullopt;
   if (!is_rigid(pose)) return RayHit{0, origin, kNoTriangle};
   return Caster(tree, pose).cast({origin, direction, longest});
 }
@@ -231,7 +231,7 @@ void cast_rays(const TreeView& tree, const Pose& pose, std::span<const Ray> rays
   const bool rigid = is_rigid(pose);
   const Caster caster(tree, pose);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (tree.patches.empty()) {
+    if (tree.ball_slabs.empty()) {
       hits[i] = std::nullopt;
     } else if (rigid) {
       hits[i] = caster.cast(rays[i]);
@@ -242,7 +242,7 @@ void cast_rays(const TreeView& tree, const Pose& pose, std::span<const Ray> rays
 }
 
 bool contains(const TreeView& solid, const Pose& pose, const std::array<double, 3>& point) noexcept {
-  if (solid.patches.empty()) return false;
+  if (solid.ball_slabs.empty()) return false;
   if (!is_rigid(pose)) return true;
   const Frame frame(solid, pose);
   const Vec3 p = frame.enter(point);

@@ -5,9 +5,9 @@
 #include <bit>
 #include <cmath>
 
-#include "meter.h"
+#include "budget_tracker.h"
 #include "pair_access.h"
-#include "tree/patch_time.h"
+#include "tree/ball_slab_time.h"
 #include "triangle_distance.h"
 #include "vector_functions.h"
 #include "workspace_scratch.h"
@@ -15,21 +15,21 @@
 namespace orchard::runtime {
 
 using detail::along;
+using detail::BallSlab;
 using detail::cross;
 using detail::dot;
 using detail::minus;
-using detail::Patch;
 using detail::Vec3;
 
 namespace {
 
-constexpr double kLeastTolerance = 1e-9;  // of the bodies' size
-constexpr double kRounding = 1e-12;       // of lengths in double
-constexpr double kShorter = 1 - 1e-9;     // of a step: its own rounding
-constexpr double kLargest = 1e18;  // of speeds and reaches, in the first tree's units: floats hold their products
-constexpr int kFineSteps = 12;     // nearer than the tolerance
-constexpr int kProbes = 24;        // for a contact after the last certified time
-constexpr int kHalvings = 8;       // of the bracket
+constexpr double kMinTolerance = 1e-9;  // of the bodies' size
+constexpr double kRounding = 1e-12;     // of lengths in double
+constexpr double kShorter = 1 - 1e-9;   // of a step: its own rounding
+constexpr double kMaxQuantity = 1e18;   // of speeds and reaches, in the first tree's units: floats hold their products
+constexpr int kFineSteps = 12;          // nearer than the tolerance
+constexpr int kProbes = 24;             // for a contact after the last certified time
+constexpr int kHalvings = 8;            // of the bracket
 
 double length(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
 
@@ -59,7 +59,7 @@ struct Turn {
 
 // Of a point of the surface from the centre of rotation, at most.
 double reach_of(const PreparedTree& tree, const Vec3& center) noexcept {
-  const PatchBlock& root = tree.tree.patches[0];
+  const BallSlabBlock& root = tree.tree.ball_slabs[0];
   return (length(minus(center, {root.x[0], root.y[0], root.z[0]})) + double{root.radius[0]}) * (1 + kRounding);
 }
 
@@ -84,13 +84,13 @@ class Search {
 
   bool prepare() noexcept;
   bool place(double time) noexcept;
-  bool look(PairAccess::Meter& meter, Critical& critical) noexcept;
+  bool find_critical(PairAccess::BudgetTracker& tracker, Critical& critical) noexcept;
   void expand(const Scratch::TimedPair& top, std::size_t& size, double best) noexcept;
   void compare_leaves(const Scratch::TimedPair& top, Critical& critical) noexcept;
   double without_turning() const noexcept;
   void report(const Critical& critical) noexcept;
   void find_contact() noexcept;
-  bool advance(PairAccess::Meter& meter) noexcept;
+  bool advance(PairAccess::BudgetTracker& tracker) noexcept;
   bool touching(double time) noexcept;
   const TreeView& first() const noexcept { return PairAccess::first(narrow_).tree; }
   const TreeView& second() const noexcept { return PairAccess::second(narrow_).tree; }
@@ -117,8 +117,8 @@ bool Search::prepare() noexcept {
   Scratch* const scratch = workspace_.scratch();
   narrow_.bind(pair_.a(), pair_.b());
   const TreeView &a = pair_.a().tree, &b = pair_.b().tree;
-  if (scratch == nullptr || a.patches.empty() || b.patches.empty()) return false;
-  const std::size_t deepest = std::size_t{kBlockWidth} * (a.patch_depth + b.patch_depth + 1) + 1;
+  if (scratch == nullptr || a.ball_slabs.empty() || b.ball_slabs.empty()) return false;
+  const std::size_t deepest = std::size_t{kBlockWidth} * (a.triangle_tree_depth + b.triangle_tree_depth + 1) + 1;
   if (deepest > scratch->timed_room) {
     scratch->timed.reset(new (std::nothrow) Scratch::TimedPair[deepest]);
     scratch->timed_room = scratch->timed ? deepest : 0;
@@ -160,11 +160,12 @@ bool Search::place(double time) noexcept {
       reach_of(p, first_turn_.center) + scale * reach_of(q, minus(second.center, this->second().origin));
   const double fastest =
       length(velocity_) + speed_ + (first_turn_.spin + first_turn_.turning + second_turn_.spin + second_turn_.turning);
-  if (!(fastest <= kLargest && reach <= kLargest && fastest * reach <= kLargest * kLargest)) return false;
+  if (!(fastest <= kMaxQuantity && reach <= kMaxQuantity && fastest * reach <= kMaxQuantity * kMaxQuantity))
+    return false;
   if (!(speed_ >= 0 && first_turn_.turning >= 0 && second_turn_.turning >= 0)) return false;
   error_ = PairAccess::exact_error(narrow_) * shrink + kRounding * size;
   margin_ = options_.margin * shrink;
-  finest_ = std::max(kLeastTolerance * size, 4 * error_);
+  finest_ = std::max(kMinTolerance * size, 4 * error_);
   tolerance_ = std::max(options_.tolerance * shrink, finest_);
   for (std::size_t i = 0; i < 3; ++i) closing_.velocity[i] = static_cast<float>(velocity_[i]);
   closing_.speed = static_cast<float>((speed_ + 1e-6 * length(velocity_)) * (1 + 1e-6));
@@ -190,26 +191,27 @@ double Search::without_turning() const noexcept {
 
 // When triangles can meet first, within what is left of the time. False if the budget ends before all was looked at:
 // critical.time then holds for what was left, too.
-bool Search::look(PairAccess::Meter& meter, Critical& critical) noexcept {
+bool Search::find_critical(PairAccess::BudgetTracker& tracker, Critical& critical) noexcept {
   Scratch& scratch = *workspace_.scratch();
   Scratch::TimedPair* const stack = scratch.timed.get();
   std::size_t size = 0;
-  stack[size++] = {0, 0, 0, detail::moved(detail::patch_at(second().patches[0], 0), PairAccess::placement(narrow_))};
+  stack[size++] = {0, 0, 0,
+                   detail::moved(detail::ball_slab_at(second().ball_slabs[0], 0), PairAccess::placement(narrow_))};
   while (size > 0) {
-    if (meter.exhausted()) {
+    if (tracker.exhausted()) {
       for (std::size_t i = 0; i < size; ++i)
         critical.time = std::min(critical.time, std::max(0.0, double{stack[i].time}));
       return false;
     }
     const Scratch::TimedPair top = stack[--size];
     if (double{top.time} >= critical.time) continue;
-    const std::uint32_t a = detail::patch_child(first(), top.a), b = detail::patch_child(second(), top.b);
+    const std::uint32_t a = detail::ball_slab_child(first(), top.a), b = detail::ball_slab_child(second(), top.b);
     if (a & b & kLeafBit) {
       compare_leaves(top, critical);
-      meter.spend(std::uint64_t{kLeafPairTests} * kTriangleTestCost);
+      tracker.spend(std::uint64_t{kLeafPairTests} * kTriangleTestCost);
     } else {
       expand(top, size, critical.time);
-      meter.spend(kBlockWidth);
+      tracker.spend(kBlockWidth);
     }
   }
   return true;
@@ -219,17 +221,18 @@ bool Search::look(PairAccess::Meter& meter, Critical& critical) noexcept {
 void Search::expand(const Scratch::TimedPair& top, std::size_t& size, double best) noexcept {
   Scratch::TimedPair* const stack = workspace_.scratch()->timed.get();
   const detail::Placement& placement = PairAccess::placement(narrow_);
-  const std::uint32_t a = detail::patch_child(first(), top.a), b = detail::patch_child(second(), top.b);
-  const PatchBlock& own = first().patches[top.a / kBlockWidth];
+  const std::uint32_t a = detail::ball_slab_child(first(), top.a), b = detail::ball_slab_child(second(), top.b);
+  const BallSlabBlock& own = first().ball_slabs[top.a / kBlockWidth];
   const std::uint32_t own_lane = top.a % kBlockWidth;
   const bool open_second = (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && own.radius[own_lane] < top.second.radius);
   const std::uint32_t block = open_second ? b : a;
   const auto margin = static_cast<float>((double{placement.margin} + margin_) * (1 + 1e-6));
-  detail::PatchTimes times;
+  detail::BallSlabTimes times;
   if (open_second) {
-    detail::patch_times(detail::patch_at(own, own_lane), second().patches[block], &placement, closing_, margin, times);
+    detail::ball_slab_times(detail::ball_slab_at(own, own_lane), second().ball_slabs[block], &placement, closing_,
+                            margin, times);
   } else {
-    detail::patch_times(top.second, first().patches[block], nullptr, closing_, margin, times);
+    detail::ball_slab_times(top.second, first().ball_slabs[block], nullptr, closing_, margin, times);
   }
   const std::size_t begin = size;
   for (std::uint32_t left = times.used; left != 0; left &= left - 1) {
@@ -239,18 +242,18 @@ void Search::expand(const Scratch::TimedPair& top, std::size_t& size, double bes
     std::size_t at = size++;
     for (; at > begin && stack[at - 1].time < time; --at) stack[at] = stack[at - 1];
     const std::uint32_t node = block * kBlockWidth + lane;
-    stack[at] = open_second ? Scratch::TimedPair{time, top.a, node, times.patch(lane)}
+    stack[at] = open_second ? Scratch::TimedPair{time, top.a, node, times.slab(lane)}
                             : Scratch::TimedPair{time, node, top.b, top.second};
   }
 }
 
 void Search::compare_leaves(const Scratch::TimedPair& top, Critical& critical) noexcept {
-  const TriangleBlock& lanes = first().triangle_blocks[detail::patch_child(first(), top.a) & ~kLeafBit];
-  const TriangleBlock& rows = second().triangle_blocks[detail::patch_child(second(), top.b) & ~kLeafBit];
-  const Patch p = detail::patch_at(first().patches[top.a / kBlockWidth], top.a % kBlockWidth);
-  const auto reach = [](const Patch& patch, const Vec3& center) {
-    const Vec3 from = minus({patch.x, patch.y, patch.z}, center);
-    return (length(from) + double{patch.radius}) * (1 + 1e-5);
+  const TriangleBlock& lanes = first().triangle_blocks[detail::ball_slab_child(first(), top.a) & ~kLeafBit];
+  const TriangleBlock& rows = second().triangle_blocks[detail::ball_slab_child(second(), top.b) & ~kLeafBit];
+  const BallSlab p = detail::ball_slab_at(first().ball_slabs[top.a / kBlockWidth], top.a % kBlockWidth);
+  const auto reach = [](const BallSlab& slab, const Vec3& center) {
+    const Vec3 from = minus({slab.x, slab.y, slab.z}, center);
+    return (length(from) + double{slab.radius}) * (1 + 1e-5);
   };
   const double first_reach = reach(p, first_turn_.center), second_reach = reach(top.second, second_turn_.center);
   const double fastest = length(velocity_) + speed_ + (first_turn_.spin + first_turn_.turning) * first_reach +
@@ -327,7 +330,7 @@ void Search::find_contact() noexcept {
 }
 
 // One step. False where there is none left, or the budget ended it.
-bool Search::advance(PairAccess::Meter& meter) noexcept {
+bool Search::advance(PairAccess::BudgetTracker& tracker) noexcept {
   if (!place(result_.t0)) {
     result_.finished = result_.refused = true;
     return false;
@@ -340,7 +343,7 @@ bool Search::advance(PairAccess::Meter& meter) noexcept {
   if (!skip) {
     // What happens exactly at the end counts: one more than what is left.
     critical = Critical{std::nextafter(left, std::numeric_limits<double>::infinity())};
-    all = look(meter, critical);
+    all = find_critical(tracker, critical);
   }
   const bool found = critical.triangle_first != kNoTriangle;
   if (skip ? critical.time > left : all && !found) {
@@ -378,14 +381,14 @@ Impact Search::run() noexcept {
     result_.finished = result_.refused = true;
     return result_;
   }
-  PairAccess::Meter meter(options_.budget);
-  while (!result_.finished && !meter.exhausted() && advance(meter)) {
+  PairAccess::BudgetTracker tracker(options_.budget);
+  while (!result_.finished && !tracker.exhausted() && advance(tracker)) {
   }
   if (near_ > 0 && result_.answer == Answer::maybe) {
     result_.finished = true;
     find_contact();
   }
-  result_.work = meter.spent();
+  result_.work = tracker.spent();
   return result_;
 }
 

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "orchard/runtime/shape_query.h"
-#include "tree/patch_block.h"
+#include "tree/ball_slab_block.h"
 #include "tree/point_block.h"
 #include "tree/ray_block.h"
 #include "tree/tree_nodes.h"
@@ -16,13 +16,13 @@
 // How queries about one tree go through its triangles: along a ray, or outward from a point or segment.
 namespace orchard::runtime::detail {
 
-// Patches are left out only beyond this much more than need be, for the rounding of a few operations.
+// Ball slabs are left out only beyond this much more than need be, for the rounding of a few operations.
 inline constexpr double kRounding = 1e-12;
 // Below this a coordinate is no more than rounding, and without it no product of three underflows: exact_sign.h.
-inline constexpr double kLeastCoordinate = 0x1p-305;
-// Farther from the origin than that, floats cannot hold squares of distances: one patch at a time in double.
+inline constexpr double kMinCoordinate = 0x1p-305;
+// Farther from the origin than that, floats cannot hold squares of distances: one ball slab at a time in double.
 inline constexpr double kFloatReach = 2e18;
-inline constexpr std::size_t kWalkRoom = std::size_t{kBlockWidth} * (kPatchDepthLimit + 1) + 1;
+inline constexpr std::size_t kWalkRoom = std::size_t{kBlockWidth} * (kTriangleTreeDepthLimit + 1) + 1;
 
 struct Segment {
   Vec3 p, d;  // from p to p + d
@@ -30,8 +30,8 @@ struct Segment {
   Segment(const Vec3& from, const Vec3& to) noexcept : p(from), d(minus(to, from)), square(dot(d, d)) {}
 };
 
-// Lower bound on the distance of a patch from a segment.
-inline double patch_distance(const PatchBlock& block, std::uint32_t lane, const Segment& s) noexcept {
+// Lower bound on the distance of a ball slab from a segment.
+inline double ball_slab_distance(const BallSlabBlock& block, std::uint32_t lane, const Segment& s) noexcept {
   const Vec3 c = {block.x[lane], block.y[lane], block.z[lane]}, n = {block.nx[lane], block.ny[lane], block.nz[lane]};
   const Vec3 to = minus(c, s.p);
   const double t = s.square > 0 ? std::clamp(dot(to, s.d) / s.square, 0.0, 1.0) : 0;
@@ -43,8 +43,8 @@ inline double patch_distance(const PatchBlock& block, std::uint32_t lane, const 
   return std::max(by_ball, by_planes);
 }
 
-// In double, one patch at a time. Calls visit(triangle block) for the leaves whose patches are within limit() of the
-// segment, the nearest child first, until it returns false.
+// In double, one ball slab at a time. Calls visit(triangle block) for the leaves whose ball slabs are within limit() of
+// the segment, the nearest child first, until it returns false.
 template <typename Limit, typename Visit>
 void walk(const TreeView& tree, const Segment& segment, double rounding, Limit&& limit, Visit&& visit) noexcept {
   struct Entry {
@@ -54,10 +54,10 @@ void walk(const TreeView& tree, const Segment& segment, double rounding, Limit&&
   std::array<Entry, kWalkRoom> stack;
   std::size_t size = 0;
   const auto push_children = [&](std::uint32_t index) {
-    const PatchBlock& block = tree.patches[index];
+    const BallSlabBlock& block = tree.ball_slabs[index];
     const std::size_t begin = size;
     for (std::uint32_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
-      const double distance = patch_distance(block, lane, segment);
+      const double distance = ball_slab_distance(block, lane, segment);
       if (distance > limit() * (1 + kRounding) + rounding) continue;
       std::size_t at = size++;
       for (; at > begin && stack[at - 1].distance < distance; --at) stack[at] = stack[at - 1];
@@ -85,7 +85,7 @@ bool each_triangle(const TriangleBlock& block, Visit&& visit) noexcept {
 }
 
 inline Vec3 settled(Vec3 v) noexcept {
-  for (double& x : v) x = std::fabs(x) < kLeastCoordinate ? 0 : x;
+  for (double& x : v) x = std::fabs(x) < kMinCoordinate ? 0 : x;
   return v;
 }
 
@@ -141,7 +141,7 @@ struct Line {
 // From `from` along the unit vector `way`, for `length`.
 inline Line line_of(const TreeView& tree, const Vec3& from, const Vec3& way, double length_of_ray) noexcept {
   constexpr double unit = 0x1p-24;
-  const PatchBlock& root = tree.patches[0];
+  const BallSlabBlock& root = tree.ball_slabs[0];
   const Vec3 middle = {root.x[0], root.y[0], root.z[0]};
   const double radius = double{root.radius[0]};
   Line line;
@@ -167,7 +167,7 @@ inline Line line_of(const TreeView& tree, const Vec3& from, const Vec3& way, dou
 }
 
 // Calls visit(triangle block, bits of the triangles that the line may meet) for the leaves on the ray, the nearest
-// patch of a block first. visit() returns up to which s the ray goes on from there.
+// ball slab of a block first. visit() returns up to which s the ray goes on from there.
 template <typename Visit>
 void walk_ray(const TreeView& tree, const Line& line, Visit&& visit) noexcept {
   struct Entry {
@@ -178,7 +178,7 @@ void walk_ray(const TreeView& tree, const Line& line, Visit&& visit) noexcept {
   std::size_t size = 0;
   float end = line.end;
   RayEntries entries;
-  stack[size++] = {line.begin, tree.patches[0].child[0]};
+  stack[size++] = {line.begin, tree.ball_slabs[0].child[0]};
   while (size > 0) {
     const Entry entry = stack[--size];
     if (entry.enter > end) continue;
@@ -188,9 +188,9 @@ void walk_ray(const TreeView& tree, const Line& line, Visit&& visit) noexcept {
       if (some != 0) end = visit(block, some, end);
       continue;
     }
-    const PatchBlock& block = tree.patches[entry.child];
+    const BallSlabBlock& block = tree.ball_slabs[entry.child];
     const std::size_t begin = size;
-    for (std::uint32_t left = ray_patches(line.ray, block, line.begin, end, entries); left != 0; left &= left - 1) {
+    for (std::uint32_t left = ray_ball_slabs(line.ray, block, line.begin, end, entries); left != 0; left &= left - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
       std::size_t place = size++;
       for (; place > begin && stack[place - 1].enter < entries[lane]; --place) stack[place] = stack[place - 1];
@@ -199,17 +199,17 @@ void walk_ray(const TreeView& tree, const Line& line, Visit&& visit) noexcept {
   }
 }
 
-// A point or segment as a patch, a triangle and what they need to be asked about in float.
+// A point or segment as a ball slab, a triangle and what they need to be asked about in float.
 struct FloatShape {
   bool point = false;
-  Patch patch{};
+  BallSlab slab{};
   TriangleBlock rows{};
   Placement placement{};
 };
 
 inline FloatShape shape_of(const TreeView& tree, const Segment& s) noexcept {
   constexpr double unit = 0x1p-24;
-  const PatchBlock& root = tree.patches[0];
+  const BallSlabBlock& root = tree.ball_slabs[0];
   const Vec3 middle = along(s.p, s.d, 0.5);
   const double half = length(s.d) / 2;
   const double size = length(middle) + half + length({root.x[0], root.y[0], root.z[0]}) + double{root.radius[0]};
@@ -227,8 +227,8 @@ inline FloatShape shape_of(const TreeView& tree, const Segment& s) noexcept {
     normal = along({0, 0, 0}, normal, 1 / length(normal));
   }
   const auto f = [](double x) { return static_cast<float>(x); };
-  shape.patch = {f(middle[0]), f(middle[1]), f(middle[2]),         f(normal[0]),
-                 f(normal[1]), f(normal[2]), f(half * (1 + 1e-6)), f(half * 1e-6)};
+  shape.slab = {f(middle[0]), f(middle[1]), f(middle[2]),         f(normal[0]),
+                f(normal[1]), f(normal[2]), f(half * (1 + 1e-6)), f(half * 1e-6)};
   const Vec3 end = along(s.p, s.d, 1);
   for (std::size_t i = 0; i < 3; ++i) {
     shape.rows.corner[0][i].fill(f(s.p[i]));
@@ -248,8 +248,8 @@ inline FloatShape shape_of(const TreeView& tree, const Segment& s) noexcept {
 }
 
 // Calls visit(triangle block, lane, whether it may meet the segment) for the triangles that may be within limit() of
-// the segment, nearest patches of a block and nearest triangles of a leaf first, until it returns false; `direction()`
-// is a unit vector that may tell triangles apart.
+// the segment, nearest ball slabs of a block and nearest triangles of a leaf first, until it returns false;
+// `direction()` is a unit vector that may tell triangles apart.
 template <typename Limit, typename Direction, typename Visit>
 void walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit, Direction&& direction,
                   Visit&& visit) noexcept {
@@ -259,9 +259,9 @@ void walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit, 
   };
   std::array<Entry, kWalkRoom> stack;
   std::size_t size = 0;
-  PatchGaps gaps;
+  BallSlabGaps gaps;
   TriangleGaps lower;
-  stack[size++] = {0, tree.patches[0].child[0]};
+  stack[size++] = {0, tree.ball_slabs[0].child[0]};
   while (size > 0) {
     const Entry entry = stack[--size];
     if (double{entry.gap} > limit()) continue;
@@ -269,7 +269,7 @@ void walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit, 
       const TriangleBlock& block = tree.triangle_blocks[entry.child & ~kLeafBit];
       auto& row = lower.lower[0];
       if (shape.point) {
-        point_gaps({shape.patch.x, shape.patch.y, shape.patch.z}, block, shape.placement, row);
+        point_gaps({shape.slab.x, shape.slab.y, shape.slab.z}, block, shape.placement, row);
       } else {
         triangle_gaps(block, shape.rows, shape.placement, direction(), std::numeric_limits<float>::infinity(), lower);
       }
@@ -289,8 +289,8 @@ void walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit, 
       }
       continue;
     }
-    const PatchBlock& block = tree.patches[entry.child];
-    patch_gaps(shape.patch, block, nullptr, shape.placement.margin, gaps);
+    const BallSlabBlock& block = tree.ball_slabs[entry.child];
+    ball_slab_gaps(shape.slab, block, nullptr, shape.placement.margin, gaps);
     const std::size_t begin = size;
     for (std::uint32_t left = gaps.used; left != 0; left &= left - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));

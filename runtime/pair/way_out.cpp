@@ -13,7 +13,7 @@ namespace {
 
 using Cut = Workspace::Scratch::Cut;
 
-constexpr int kMostAdvances = 64;      // along one direction
+constexpr int kMaxAdvances = 64;       // along one direction
 constexpr double kNudge = 1e-12;       // of the bodies' size: beyond a contact
 constexpr double kGain = 1e-6;         // less is no gain
 constexpr double kSame = 1 - 1e-9;     // cosine of directions that count as one
@@ -35,7 +35,7 @@ WayOut follow(const PlacedPair& pair, const WalkStack& room, std::span<const Cut
     if (exit.t > out.way) out.way = exit.t, out.normal = exit.normal;
   }
   double nudge = kNudge * size;
-  for (int i = 0; i < kMostAdvances; ++i) {
+  for (int i = 0; i < kMaxAdvances; ++i) {
     out.ended = false;
     if (out.way >= limit) return out;
     const double at = out.way + nudge;
@@ -86,7 +86,7 @@ Vec3 reaching(const Obstacle& p, const Obstacle& q, const Obstacle& r) noexcept 
 }
 
 // The least vector that reaches all of them, or zero if there is none.
-Vec3 least_reaching(std::span<const Obstacle> obstacles, double size) noexcept {
+Vec3 min_reaching(std::span<const Obstacle> obstacles, double size) noexcept {
   Vec3 best{};
   double least = std::numeric_limits<double>::infinity();
   const auto offer = [&](const Vec3& x) {
@@ -129,7 +129,7 @@ class Descent {
       const double before = best_.way;
       if (try_direction(best_.normal)) --left;
       if (best_.way < before) continue;
-      if (left > 0 && try_direction(least_reaching(std::span(obstacles_.data(), obstacle_count_), size_))) {
+      if (left > 0 && try_direction(min_reaching(std::span(obstacles_.data(), obstacle_count_), size_))) {
         --left;
       } else {
         return;

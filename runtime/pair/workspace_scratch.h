@@ -22,11 +22,11 @@ struct Workspace::Scratch {
   std::array<Cut, kCuts> cuts;
   std::size_t cut_count = 0;
 
-  // Pairs of patches that may meet next, the second one moved, and when at the earliest.
+  // Pairs of ball slabs that may meet next, the second one moved, and when at the earliest.
   struct TimedPair {
     float time;
     std::uint32_t a, b;
-    detail::Patch second;
+    detail::BallSlab second;
   };
   std::unique_ptr<TimedPair[]> timed;
   std::size_t timed_room = 0;

@@ -6,8 +6,8 @@
 #include "orchard/runtime/packed_tree.h"
 #include "vector_support.h"
 
-// Eight numbers, and eight vectors, at a time: what the inner loops over patches and triangles are made of. `Kind` is
-// PlainFloats or VectorFloats.
+// Eight numbers, and eight vectors, at a time: what the inner loops over ball slabs and triangles are made of. `Kind`
+// is PlainFloats or VectorFloats.
 namespace orchard::runtime::detail {
 
 // What PerMachine (machine.h) is given: for the widest vectors there are, and for those that every machine has.

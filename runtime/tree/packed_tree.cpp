@@ -7,7 +7,7 @@
 namespace orchard::runtime {
 namespace {
 
-constexpr double kNormalTolerance = 1e-6;  // on the square of a patch's normal, which is rounded to float
+constexpr double kNormalTolerance = 1e-6;  // on the square of a ball slab's normal, which is rounded to float
 
 // Comparisons are written so that a NaN fails them.
 bool in_range(float value) noexcept { return std::fabs(value) <= kCoordinateLimit; }
@@ -76,7 +76,7 @@ class StructureCheck {
         }
         continue;
       }
-      if (tree_.branching == 0 || tree_.branching > kMostBranching) return "the branching is out of range";
+      if (tree_.branching == 0 || tree_.branching > kMaxBranching) return "the branching is out of range";
       const auto [first, count] = children_of(tree_.branching, block.link[lane]);
       if (count > tree_.branching) return "an inner node has more children than the branching";
       if (first != next_block_) return "blocks are not in breadth-first order";
@@ -115,14 +115,14 @@ const char* triangle_fault(const TreeView& tree) noexcept {
   return nullptr;
 }
 
-const char* patch_fault(const PatchBlock& block, std::uint32_t lane) noexcept {
+const char* ball_slab_fault(const BallSlabBlock& block, std::uint32_t lane) noexcept {
   for (const auto* values : {&block.x, &block.y, &block.z, &block.radius, &block.height}) {
-    if (!in_range((*values)[lane])) return "a patch is not finite or out of range";
+    if (!in_range((*values)[lane])) return "a ball slab is not finite or out of range";
   }
-  if (!(block.radius[lane] >= 0 && block.height[lane] >= 0)) return "a patch has a negative size";
+  if (!(block.radius[lane] >= 0 && block.height[lane] >= 0)) return "a ball slab has a negative size";
   double square = 0;
   for (const auto* n : {&block.nx, &block.ny, &block.nz}) square += double{(*n)[lane]} * (*n)[lane];
-  return std::fabs(square - 1) <= kNormalTolerance ? nullptr : "a patch's normal is not a unit vector";
+  return std::fabs(square - 1) <= kNormalTolerance ? nullptr : "a ball slab's normal is not a unit vector";
 }
 
 const char* triangle_block_fault(const TreeView& tree, const TriangleBlock& block) noexcept {
@@ -141,37 +141,39 @@ const char* triangle_block_fault(const TreeView& tree, const TriangleBlock& bloc
   return nullptr;
 }
 
-// Breadth-first order again: every node's child is the next block, of patches or of triangles, that has no parent yet.
+// Breadth-first order again: every node's child is the next block, of ball slabs or of triangles, that has no parent
+// yet.
 const char* triangle_tree_fault(const TreeView& tree) noexcept {
   if (tree.triangles.empty())
-    return tree.patches.empty() && tree.triangle_blocks.empty() ? nullptr : "patches of nothing";
-  if (tree.patches.empty()) return "the triangles have no tree: build the file again";
-  if (tree.patches.size() > kNoTriangle / kBlockWidth || tree.triangle_blocks.size() >= kLeafBit) {
-    return "there are too many patches";
+    return tree.ball_slabs.empty() && tree.triangle_blocks.empty() ? nullptr : "ball slabs of nothing";
+  if (tree.ball_slabs.empty()) return "the triangles have no tree: build the file again";
+  if (tree.ball_slabs.size() > kNoTriangle / kBlockWidth || tree.triangle_blocks.size() >= kLeafBit) {
+    return "there are too many ball slabs";
   }
-  std::size_t next_patches = 1, next_triangles = 0, level_end = 1;
+  std::size_t next_slabs = 1, next_triangles = 0, level_end = 1;
   std::uint32_t level = 0;
-  for (std::size_t b = 0; b < tree.patches.size(); ++b) {
-    if (b == next_patches) return "a block of patches has no parent";
-    if (b == level_end) level_end = next_patches, ++level;
-    const PatchBlock& block = tree.patches[b];
+  for (std::size_t b = 0; b < tree.ball_slabs.size(); ++b) {
+    if (b == next_slabs) return "a block of ball slabs has no parent";
+    if (b == level_end) level_end = next_slabs, ++level;
+    const BallSlabBlock& block = tree.ball_slabs[b];
     bool ended = false;
     for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
       if (block.radius[lane] == -1) {
-        if (lane == 0) return "a block of patches is empty";
+        if (lane == 0) return "a block of ball slabs is empty";
         ended = true;
         continue;
       }
-      if (ended || (b == 0 && lane > 0)) return "a patch stands behind an empty lane or beside the root";
-      if (const char* fault = patch_fault(block, lane)) return fault;
-      std::size_t& next = block.child[lane] & kLeafBit ? next_triangles : next_patches;
-      if ((block.child[lane] & ~kLeafBit) != next++) return "patches are not in breadth-first order";
+      if (ended || (b == 0 && lane > 0)) return "a ball slab stands behind an empty lane or beside the root";
+      if (const char* fault = ball_slab_fault(block, lane)) return fault;
+      std::size_t& next = block.child[lane] & kLeafBit ? next_triangles : next_slabs;
+      if ((block.child[lane] & ~kLeafBit) != next++) return "ball slabs are not in breadth-first order";
     }
   }
-  if (next_patches != tree.patches.size() || next_triangles != tree.triangle_blocks.size()) {
-    return "a patch's children are beyond the end";
+  if (next_slabs != tree.ball_slabs.size() || next_triangles != tree.triangle_blocks.size()) {
+    return "a ball slab's children are beyond the end";
   }
-  if (level != tree.patch_depth || level > kPatchDepthLimit) return "the depth does not match the patches";
+  if (level != tree.triangle_tree_depth || level > kTriangleTreeDepthLimit)
+    return "the depth does not match the ball slabs";
   std::size_t triangles = 0;
   for (const TriangleBlock& block : tree.triangle_blocks) {
     if (const char* fault = triangle_block_fault(tree, block)) return fault;
@@ -230,7 +232,7 @@ double coordinate_extent(const TreeView& tree) noexcept {
     }
   }
   for (const auto& vertex : tree.vertices) include(vertex[0], vertex[1], vertex[2], 0);
-  for (const PatchBlock& block : tree.patches) {
+  for (const BallSlabBlock& block : tree.ball_slabs) {
     for (std::uint32_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
       include(block.x[lane], block.y[lane], block.z[lane], block.radius[lane]);
     }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr float kNormalError = 0x1p-20f;
 constexpr float kRoom = 0x1p-18f;
-constexpr float kLeast = 1e-37f;
+constexpr float kMinLength = 1e-37f;
 
 template <typename Kind>
 ORCHARD_INLINE void find_point_gaps(const std::array<float, 3>& point, const TriangleBlock& block,
@@ -28,7 +28,7 @@ ORCHARD_INLINE void find_point_gaps(const std::array<float, 3>& point, const Tri
                           ORCHARD_INLINE_LAMBDA -> Vectors { return E::times(E::minus(E::corner(block, k), p), unit); };
   const Vectors a = corner(0), b = corner(1), c = corner(2);
   const Vectors ab = E::minus(b, a), bc = E::minus(c, b), ca = E::minus(a, c);
-  const Floats zero = E::all(0.0f), one = E::all(1.0f), least = E::all(kLeast);
+  const Floats zero = E::all(0.0f), one = E::all(1.0f), least = E::all(kMinLength);
   const auto edge = [&](const Vectors& from, const Vectors& way) ORCHARD_INLINE_LAMBDA -> Floats {
     const Floats t = E::smaller(E::larger(-E::dot(from, way) / (E::dot(way, way) + least), zero), one);
     const Vectors foot = {from.x + t * way.x, from.y + t * way.y, from.z + t * way.z};

@@ -3,8 +3,8 @@
 #include "eight.h"
 #include "machine.h"
 
-// Rounding, u = 2^-24. Let D be the size of the tree's coordinates and of s. Patches: the distance of a centre from the
-// line is the length of a cross product of differences below 2 D and of a unit vector, and a height over the middle
+// Rounding, u = 2^-24. Let D be the size of the tree's coordinates and of s. Ball slabs: the distance of a centre from
+// the line is the length of a cross product of differences below 2 D and of a unit vector, and a height over the middle
 // plane is such a dot product: off by less than 16 u D, which FloatRay::margin covers besides the line's own error.
 // Half the length of what a ball cuts off the line is the root of a difference of squares, and kGrazing of the greater
 // of them covers its rounding. Triangles: corners relative to a point of the line nearby are off by at most the margin,
@@ -14,29 +14,29 @@ namespace orchard::runtime::detail {
 namespace {
 
 constexpr float kGrazing = 0x1p-20f;
-constexpr float kLeastSlope = 1e-12f;  // a ray along a slab: s is below 1e19 then, times this less than every margin
+constexpr float kMinSlope = 1e-12f;  // a ray along a slab: s is below 1e19 then, times this less than every margin
 constexpr float kProductError = 0x1p-20f;
-constexpr float kLeastRoom = 1e-33f;  // covers what underflows in a product
+constexpr float kMinRoom = 1e-33f;  // covers what underflows in a product
 
 template <typename Kind>
-ORCHARD_INLINE std::uint32_t find_patches(const FloatRay& ray, const PatchBlock& patches, float begin, float end,
-                                          RayEntries& entries) noexcept {
+ORCHARD_INLINE std::uint32_t find_ball_slabs(const FloatRay& ray, const BallSlabBlock& ball_slabs, float begin,
+                                             float end, RayEntries& entries) noexcept {
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
   using Vectors = typename E::Vectors;
   const Vectors d = {E::all(ray.direction[0]), E::all(ray.direction[1]), E::all(ray.direction[2])};
-  const Vectors n = {load<Floats>(patches.nx), load<Floats>(patches.ny), load<Floats>(patches.nz)};
-  const Vectors to = E::minus({load<Floats>(patches.x), load<Floats>(patches.y), load<Floats>(patches.z)},
+  const Vectors n = {load<Floats>(ball_slabs.nx), load<Floats>(ball_slabs.ny), load<Floats>(ball_slabs.nz)};
+  const Vectors to = E::minus({load<Floats>(ball_slabs.x), load<Floats>(ball_slabs.y), load<Floats>(ball_slabs.z)},
                               {E::all(ray.origin[0]), E::all(ray.origin[1]), E::all(ray.origin[2])});
-  const Floats zero = E::all(0.0f), margin = E::all(ray.margin), radius = load<Floats>(patches.radius);
-  const Floats r = radius + margin, h = load<Floats>(patches.height) + margin;
+  const Floats zero = E::all(0.0f), margin = E::all(ray.margin), radius = load<Floats>(ball_slabs.radius);
+  const Floats r = radius + margin, h = load<Floats>(ball_slabs.height) + margin;
   const Vectors across = E::cross(to, d);
   const Floats square = r * r, apart = E::dot(across, across), inside = square - apart;
   const Floats middle = E::dot(to, d);
   const Floats half = Kind::root(E::larger(inside, zero) + square * E::all(kGrazing)) + margin;
   // Between the planes: |s (n . d) - n . to| <= h.
   const Floats slope = E::dot(n, d), height = E::dot(n, to);
-  const Floats steep = E::larger(E::size(slope), E::all(kLeastSlope));
+  const Floats steep = E::larger(E::size(slope), E::all(kMinSlope));
   const Floats rise = Kind::choose(slope < zero, -height, height);
   const Floats low = (rise - h) / steep, high = (rise + h) / steep;
   const Floats enter = E::larger(middle - half, low - E::size(low) * E::all(kGrazing));
@@ -61,7 +61,7 @@ ORCHARD_INLINE std::uint32_t find_triangles(const FloatRay& ray, const TriangleB
   const Vectors a = E::minus(E::corner(block, 0), from), b = E::minus(E::corner(block, 1), from),
                 c = E::minus(E::corner(block, 2), from);
   const Floats longest = E::larger(E::larger(E::one_norm(a), E::one_norm(b)), E::one_norm(c));
-  const Floats room = longest * (E::all(4 * ray.margin) + longest * E::all(kProductError)) + E::all(kLeastRoom);
+  const Floats room = longest * (E::all(4 * ray.margin) + longest * E::all(kProductError)) + E::all(kMinRoom);
   const Floats p = E::dot(d, E::cross(a, b)), q = E::dot(d, E::cross(b, c)), r = E::dot(d, E::cross(c, a));
   const Floats least = E::smaller(E::smaller(p, q), r), most = E::larger(E::larger(p, q), r);
   const auto missed = (least < -room) & (room < most);
@@ -72,18 +72,18 @@ ORCHARD_INLINE std::uint32_t find_triangles(const FloatRay& ray, const TriangleB
 
 }  // namespace
 
-std::uint32_t ray_patches_scalar(const FloatRay& ray, const PatchBlock& patches, float begin, float end,
-                                 RayEntries& entries) noexcept {
-  return find_patches<PlainFloats>(ray, patches, begin, end, entries);
+std::uint32_t ray_ball_slabs_scalar(const FloatRay& ray, const BallSlabBlock& ball_slabs, float begin, float end,
+                                    RayEntries& entries) noexcept {
+  return find_ball_slabs<PlainFloats>(ray, ball_slabs, begin, end, entries);
 }
 
 std::uint32_t ray_triangles_scalar(const FloatRay& ray, const TriangleBlock& block) noexcept {
   return find_triangles<PlainFloats>(ray, block);
 }
 
-std::uint32_t ray_patches(const FloatRay& ray, const PatchBlock& patches, float begin, float end,
-                          RayEntries& entries) noexcept {
-  return PerMachine<find_patches<Widest>, find_patches<Base>>::call(ray, patches, begin, end, entries);
+std::uint32_t ray_ball_slabs(const FloatRay& ray, const BallSlabBlock& ball_slabs, float begin, float end,
+                             RayEntries& entries) noexcept {
+  return PerMachine<find_ball_slabs<Widest>, find_ball_slabs<Base>>::call(ray, ball_slabs, begin, end, entries);
 }
 
 std::uint32_t ray_triangles(const FloatRay& ray, const TriangleBlock& block) noexcept {

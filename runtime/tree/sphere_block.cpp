@@ -10,7 +10,7 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr float kFar = 4e18f;  // x of unused lanes: keeps them out of least_excess unless bodies are as large
+constexpr float kFar = 4e18f;  // x of unused lanes: keeps them out of min_excess unless bodies are as large
 
 struct PlainKind {
   using Floats = Plain<float, kBlockWidth>;
@@ -148,7 +148,7 @@ ORCHARD_INLINE void test(const BlockPair& pair, const Placement& placement, Leve
   keep_larger(lane_radius, level.lane_radius);
 
   // Rows of bits per lane. The bits of positive floats are ordered as they are, those of others lie above them.
-  Words met = spread<Words>(0u), least = load<Words>(level.least_excess);
+  Words met = spread<Words>(0u), least = load<Words>(level.min_excess);
   for (std::uint32_t r = pair.row_begin; r < pair.row_end; ++r) {
     const Floats dx = c.x - spread<Floats>(row_x[r]), dy = c.y - spread<Floats>(row_y[r]),
                  dz = c.z - spread<Floats>(row_z[r]);
@@ -160,7 +160,7 @@ ORCHARD_INLINE void test(const BlockPair& pair, const Placement& placement, Leve
     const Words bits = load<Words>(excess) - ones;
     least = Kind::choose(bits < least, bits, least);
   }
-  store(least, level.least_excess);
+  store(least, level.min_excess);
   const std::uint64_t lane_bits = (std::uint64_t{1} << pair.lane_count) - 1;
   hits.meeting = hits.leaves = hits.improving = 0;
   const std::uint64_t met_bytes = Kind::low_bytes(met);

@@ -37,7 +37,7 @@ enum Field : std::size_t {
   kOriginAt = 48,
   kBoundingRadiusAt = 72,
   kVertexErrorAt = 80,
-  kPatchDepthAt = 88,
+  kTriangleTreeDepthAt = 88,
   kReservedAt = 92,
   kTableAt = 96,
   kTableStride = 24,
@@ -91,14 +91,14 @@ std::uint64_t checksum(const std::byte* file, std::size_t size) noexcept {
 }
 
 // In the order of the table; every element is made of 32-bit words.
-constexpr std::array<std::uint32_t, kSections> kElementSizes = {sizeof(SiblingBlock),  12, 12, 4, sizeof(PatchBlock),
+constexpr std::array<std::uint32_t, kSections> kElementSizes = {sizeof(SiblingBlock),  12, 12, 4, sizeof(BallSlabBlock),
                                                                 sizeof(TriangleBlock), 4};
 
 // Calls visit(section number from 0, array) for every section of a tree or view.
 template <typename Tree, typename Visit>
 void each_section(Tree& tree, Visit&& visit) {
   visit(0, tree.blocks), visit(1, tree.vertices), visit(2, tree.triangles);
-  visit(3, tree.leaf_triangles), visit(4, tree.patches), visit(5, tree.triangle_blocks), visit(6, tree.supports);
+  visit(3, tree.leaf_triangles), visit(4, tree.ball_slabs), visit(5, tree.triangle_blocks), visit(6, tree.supports);
 }
 
 template <typename Tree>
@@ -106,7 +106,7 @@ void get_header(const std::byte* file, Tree& tree) noexcept {
   tree.branching = get<std::uint32_t>(file, kBranchingAt);
   tree.depth = get<std::uint32_t>(file, kDepthAt);
   tree.node_count = get<std::uint32_t>(file, kNodeCountAt);
-  tree.patch_depth = get<std::uint32_t>(file, kPatchDepthAt);
+  tree.triangle_tree_depth = get<std::uint32_t>(file, kTriangleTreeDepthAt);
   for (std::size_t i = 0; i < 3; ++i) tree.origin[i] = get<double>(file, kOriginAt + 8 * i);
   tree.bounding_radius = get<double>(file, kBoundingRadiusAt);
   tree.vertex_error = get<double>(file, kVertexErrorAt);
@@ -239,7 +239,7 @@ std::vector<std::byte> serialize(const TreeView& tree) {
   for (std::size_t i = 0; i < 3; ++i) put(file.data(), kOriginAt + 8 * i, tree.origin[i]);
   put(file.data(), kBoundingRadiusAt, tree.bounding_radius);
   put(file.data(), kVertexErrorAt, tree.vertex_error);
-  put(file.data(), kPatchDepthAt, tree.patch_depth);
+  put(file.data(), kTriangleTreeDepthAt, tree.triangle_tree_depth);
 
   std::uint64_t offset = kHeaderSize;
   for (std::size_t i = 0; i < kSections; ++i) {

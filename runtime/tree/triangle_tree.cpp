@@ -1,5 +1,5 @@
 // One file: the builder is one pass down the tree, and what it measures of a part of the triangles (extents, moments,
-// balls, patches) goes by the order that the pass itself makes.
+// balls, ball slabs) goes by the order that the pass itself makes.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,7 +17,7 @@ namespace {
 using detail::axes_of, detail::cross, detail::dot, detail::minus, detail::Vec3;
 
 // To a float and back, through memory: where GCC 12 makes vectors of several such lines (-O2 and above) it leaves both
-// conversions out, and a patch would be measured from another centre than the one that is stored.
+// conversions out, and a ball slab would be measured from another centre than the one that is stored.
 double rounded(double value) {
   const volatile float stored = static_cast<float>(value);
   return double{stored};
@@ -38,7 +38,7 @@ float above(double value) {  // at least `value`, rounding of a few operations i
   return std::nextafter(static_cast<float>(value * (1 + 1e-14)), std::numeric_limits<float>::infinity());
 }
 
-// Levels below which parts are halved by number: 31 more are enough for every count, and kPatchDepthLimit is 64.
+// Levels below which parts are halved by number: 31 more are enough for every count, and kTriangleTreeDepthLimit is 64.
 constexpr std::uint32_t kCostlyDepth = 32;
 
 struct Range {
@@ -46,7 +46,7 @@ struct Range {
   std::size_t size() const { return end - begin; }
 };
 
-struct Patch {
+struct BallSlab {
   Vec3 center, normal;
   double radius, height;
 };
@@ -67,20 +67,20 @@ class Builder {
   }
 
   void build() {
-    tree_.patches.clear();
+    tree_.ball_slabs.clear();
     tree_.triangle_blocks.clear();
-    tree_.patch_depth = 0;
+    tree_.triangle_tree_depth = 0;
     if (order_.empty()) return;
     std::vector<Range> level = {{0, order_.size()}}, next;
     add_block();
     place(0, 0, level[0]);
     std::vector<std::pair<std::size_t, std::uint32_t>> places = {{0, 0}}, next_places;
-    for (; !level.empty(); ++tree_.patch_depth) {
+    for (; !level.empty(); ++tree_.triangle_tree_depth) {
       next.clear(), next_places.clear();
       for (std::size_t n = 0; n < level.size(); ++n) expand(level[n], places[n], next, next_places);
       level.swap(next), places.swap(next_places);
     }
-    --tree_.patch_depth;
+    --tree_.triangle_tree_depth;
   }
 
  private:
@@ -89,17 +89,17 @@ class Builder {
     return {double{v[0]}, double{v[1]}, double{v[2]}};
   }
 
-  void add_block() { tree_.patches.emplace_back().radius.fill(-1); }
+  void add_block() { tree_.ball_slabs.emplace_back().radius.fill(-1); }
 
   void expand(const Range& node, const std::pair<std::size_t, std::uint32_t>& at, std::vector<Range>& next,
               std::vector<std::pair<std::size_t, std::uint32_t>>& next_places) {
-    std::uint32_t& child = tree_.patches[at.first].child[at.second];
+    std::uint32_t& child = tree_.ball_slabs[at.first].child[at.second];
     if (node.size() <= kBlockWidth) {
       child = kLeafBit | static_cast<std::uint32_t>(tree_.triangle_blocks.size());
       add_triangles(node);
       return;
     }
-    const std::size_t block = tree_.patches.size();
+    const std::size_t block = tree_.ball_slabs.size();
     child = static_cast<std::uint32_t>(block);
     const std::vector<Range> parts = split(node);
     add_block();
@@ -176,7 +176,7 @@ class Builder {
   std::size_t halve(const Range& part) {
     const std::array<Vec3, 3> axes = axes_of(covariance(part));
     const std::size_t size = part.size(), half = multiple_of_width(size / 2);
-    if (tree_.patch_depth >= kCostlyDepth) return sort_along(axes[0], part), part.begin + half;
+    if (tree_.triangle_tree_depth >= kCostlyDepth) return sort_along(axes[0], part), part.begin + half;
     for (std::size_t i = part.begin; i < part.end; ++i) extents_[order_[i]] = extent_of(order_[i], axes);
     std::tuple<double, std::size_t, std::size_t, std::size_t> best = {kInfinity, 0, 0,
                                                                       half};  // cost, unevenness, axis, at
@@ -260,49 +260,50 @@ class Builder {
   }
 
   // Between the planes across `normal`, centred between them.
-  Patch patch_across(const Range& part, const Vec3& middle, const Vec3& normal) const {
+  BallSlab ball_slab_across(const Range& part, const Vec3& middle, const Vec3& normal) const {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     each_corner(part, [&](const Vec3& p) {
       const double h = dot(normal, minus(p, middle));
       low = std::min(low, h), high = std::max(high, h);
     });
-    Patch patch{middle, normal, 0, 0};
+    BallSlab slab{middle, normal, 0, 0};
     for (std::size_t i = 0; i < 3; ++i) {
-      patch.center[i] = rounded(middle[i] + (low + high) / 2 * normal[i]);
+      slab.center[i] = rounded(middle[i] + (low + high) / 2 * normal[i]);
     }
     each_corner(part, [&](const Vec3& p) {
-      const Vec3 d = minus(p, patch.center);
-      patch.radius = std::max(patch.radius, std::sqrt(dot(d, d)));
-      patch.height = std::max(patch.height, std::fabs(dot(normal, d)));
+      const Vec3 d = minus(p, slab.center);
+      slab.radius = std::max(slab.radius, std::sqrt(dot(d, d)));
+      slab.height = std::max(slab.height, std::fabs(dot(normal, d)));
     });
-    return patch;
+    return slab;
   }
 
-  // The flatter one of the patch across the corners' thinnest direction and the one along the surface's mean normal.
-  Patch patch_of(const Range& part) const {
+  // The flatter one of the ball slab across the corners' thinnest direction and the one along the surface's mean
+  // normal.
+  BallSlab ball_slab_of(const Range& part) const {
     const Vec3 middle = ball_of(part).first;
     Vec3 mean{};
     for (std::size_t i = part.begin; i < part.end; ++i) {
       const Vec3 a = corner(order_[i], 0), n = cross(minus(corner(order_[i], 1), a), minus(corner(order_[i], 2), a));
       for (std::size_t k = 0; k < 3; ++k) mean[k] += n[k];
     }
-    const Patch thin = patch_across(part, middle, direction(axes_of(covariance(part))[2]));
-    const Patch facing = patch_across(part, middle, direction(mean));
+    const BallSlab thin = ball_slab_across(part, middle, direction(axes_of(covariance(part))[2]));
+    const BallSlab facing = ball_slab_across(part, middle, direction(mean));
     return facing.height <= thin.height ? facing : thin;
   }
 
   void place(std::size_t block_index, std::uint32_t lane, const Range& part) {
-    const Patch patch = patch_of(part);
-    PatchBlock& block = tree_.patches[block_index];
-    block.x[lane] = static_cast<float>(patch.center[0]);
-    block.y[lane] = static_cast<float>(patch.center[1]);
-    block.z[lane] = static_cast<float>(patch.center[2]);
-    block.nx[lane] = static_cast<float>(patch.normal[0]);
-    block.ny[lane] = static_cast<float>(patch.normal[1]);
-    block.nz[lane] = static_cast<float>(patch.normal[2]);
-    block.radius[lane] = above(patch.radius);
+    const BallSlab slab = ball_slab_of(part);
+    BallSlabBlock& block = tree_.ball_slabs[block_index];
+    block.x[lane] = static_cast<float>(slab.center[0]);
+    block.y[lane] = static_cast<float>(slab.center[1]);
+    block.z[lane] = static_cast<float>(slab.center[2]);
+    block.nx[lane] = static_cast<float>(slab.normal[0]);
+    block.ny[lane] = static_cast<float>(slab.normal[1]);
+    block.nz[lane] = static_cast<float>(slab.normal[2]);
+    block.radius[lane] = above(slab.radius);
     // What cancels in a height is of the size of the distances from the centre.
-    block.height[lane] = above(patch.height + 1e-15 * patch.radius);
+    block.height[lane] = above(slab.height + 1e-15 * slab.radius);
   }
 
   PackedSphereTree& tree_;

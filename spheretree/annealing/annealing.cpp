@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uint64_t kStage = 400;  // of the random numbers
 // A child that has become redundant would shrink for ever.
-constexpr double kMin = 1e-3;  // of its parent's radius
+constexpr double kMinRadius = 1e-3;  // of its parent's radius
 
 // Anneals the children of one node.
 class Schedule {
@@ -83,7 +83,7 @@ class Schedule {
     Sphere next = ball;
     next.center += random_.uniform() * options_.move * parent_.sphere.radius * random_direction(random_);
     next.radius *= random_.uniform(options_.min_scale, options_.max_scale);
-    next.radius = std::max(next.radius, kMin * parent_.sphere.radius);
+    next.radius = std::max(next.radius, kMinRadius * parent_.sphere.radius);
     return next;
   }
 

@@ -49,7 +49,7 @@ LevelCost cost_for(Objective objective, Index level, Index depth, Effort effort)
 std::uint64_t seed_of(std::uint64_t seed, Index start) { return seed + 0x100000001u * start; }
 
 // Neither is bought with much of the other.
-double mean_times_largest(const std::vector<double>& values) {
+double mean_times_max(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size()) *
          *std::max_element(values.begin(), values.end());
 }
@@ -57,7 +57,7 @@ double mean_times_largest(const std::vector<double>& values) {
 double looseness(const LevelSolver& solver) {
   std::vector<double> values;
   for (const LevelBall& ball : solver.balls()) values.push_back(ball.looseness());
-  return mean_times_largest(values);
+  return mean_times_max(values);
 }
 
 // Times the outside volume: all three figures count alike.
@@ -69,7 +69,7 @@ double looseness(const Surface& surface, const Level& level) {
   std::vector<Sphere> spheres;
   for (const LevelNode& node : level) spheres.push_back(node.sphere);
   const double outside = outside_volume(surface, spheres, kComparingRays);
-  return mean_times_largest(values) * outside;
+  return mean_times_max(values) * outside;
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// One command with all its flags, each run on the same few models: hence more than 300 lines.
 #include <gtest/gtest.h>
 
 #include <algorithm>

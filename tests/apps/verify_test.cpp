@@ -40,9 +40,9 @@ TEST(Verify, FindsTheWrapBesideTheTreeAndAddsItsDistanceToEveryBound) {
     ASSERT_EQ(alone.exit_code, 0) << alone.err;
     const json plain = json::parse(alone.out);
     EXPECT_FALSE(plain.contains("wrap"));
-    for (std::size_t level = 0; level < plain["largest_bound_over_radius"].size(); ++level)
-      EXPECT_DOUBLE_EQ(report["largest_bound_over_radius"][level].get<double>(),
-                       plain["largest_bound_over_radius"][level].get<double>() +
+    for (std::size_t level = 0; level < plain["max_bound_over_radius"].size(); ++level)
+      EXPECT_DOUBLE_EQ(report["max_bound_over_radius"][level].get<double>(),
+                       plain["max_bound_over_radius"][level].get<double>() +
                            report["wrap"]["wrap_to_mesh_over_radius"].get<double>());
   }
 }

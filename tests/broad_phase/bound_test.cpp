@@ -34,8 +34,7 @@ Motion random_motion(test::Draw& draw, double ball, double half_spaces) {
 TEST(SpaceTimeBound, HoldsTheBody) {
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     test::Draw draw(seed);
-    const test::MovingBodies bodies({.bodies = 1, .largest_acceleration = 30, .half_spaces = 0.5, .extreme = true},
-                                    seed);
+    const test::MovingBodies bodies({.bodies = 1, .max_acceleration = 30, .half_spaces = 0.5, .extreme = true}, seed);
     const double age = seed % 2 == 0 ? 0 : draw.uniform(0, 0.5);
     const SpaceTimeBound bound = make_bound(bodies.motion(0, 0), age, 1 - age);
     for (double t = 0; t <= 1 - age; t += 0.05) {
@@ -56,7 +55,7 @@ TEST(FirstContact, OfHypertrapezoidsWithPlanesIsTheLinearProgramsLeastTime) {
     test::Draw draw(seed);
     const SpaceTimeBound a = make_bound(random_motion(draw, 6, 0.7), 0, 1),
                          b = make_bound(random_motion(draw, 6, 0.7), 0, 1);
-    const double found = first_contact(a, b, 1, BoundShape::hypertrapezoid), expected = test::least_time(a, b, 1);
+    const double found = first_contact(a, b, 1, BoundShape::hypertrapezoid), expected = test::min_time(a, b, 1);
     if (expected == kNoContact || found == kNoContact) {
       ASSERT_EQ(found, expected) << seed;
       continue;

@@ -52,7 +52,7 @@ int steps_to_find_all(const std::vector<Motion>& motions, const test::AnyOptions
   return most;
 }
 
-// A look costs a unit, a pair's test two, and each gets half of the work.
+// A window update costs a unit, a pair's test two, and each gets half of the work.
 TEST(Budget, OfOneUnitFindsEverythingAmongTenThousandBodies) {
   constexpr std::size_t kBodies = 10'000;
   const std::vector<Motion> motions = resting(kBodies, 150, 1);
@@ -152,7 +152,7 @@ TEST(Budget, ThatNeverReachesAClassKeepsNoEndlessList) {
   for (Motion& motion : motions) motion.acceleration = 20;
   std::size_t memory = 0;
   for (int step = 0; step < 4000; ++step) {
-    for (Motion& motion : motions) motion.expiry = kStep * (step + 3);  // to be looked at again and again
+    for (Motion& motion : motions) motion.expiry = kStep * (step + 3);  // to be updated again and again
     if (step == 0) {
       world.advance(0);  // all are in the grid, where the important ones find the others from now on
       continue;

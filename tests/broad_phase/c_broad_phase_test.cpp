@@ -1,3 +1,4 @@
+// The C interface beside the C++ one, function after function: hence more than 300 lines.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -121,13 +122,14 @@ class Twins {
   }
   void foresee(double time) {
     std::array<StepsAhead, 20> steps;
-    std::array<size_t, 20> looks, meetings, overlaps;
+    std::array<size_t, 20> updates, meetings, overlaps;
     const std::size_t known = in_cpp_.foresee(time, steps);
-    ASSERT_EQ(orchard_broad_phase_foresee(in_c_.get(), time, 20, looks.data(), meetings.data(), overlaps.data()),
+    ASSERT_EQ(orchard_broad_phase_foresee(in_c_.get(), time, 20, updates.data(), meetings.data(), overlaps.data()),
               known);
     EXPECT_EQ(orchard_broad_phase_foresee(in_c_.get(), time, 20, nullptr, nullptr, nullptr), known);
     for (std::size_t i = 0; i < known; ++i) {
-      EXPECT_TRUE(steps[i].looks == looks[i] && steps[i].meetings == meetings[i] && steps[i].overlaps == overlaps[i]);
+      EXPECT_TRUE(steps[i].updates == updates[i] && steps[i].meetings == meetings[i] &&
+                  steps[i].overlaps == overlaps[i]);
     }
   }
   std::size_t pairs() const { return pairs_; }
@@ -142,8 +144,7 @@ class Twins {
 
 TEST(CBroadPhase, SaysWhatItSaysInCpp) {
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
-    test::MovingBodies bodies({.bodies = seed % 2 == 0 ? 40u : 400u, .ball = 12, .least_radius = 0.1, .end = 0.5},
-                              seed);
+    test::MovingBodies bodies({.bodies = seed % 2 == 0 ? 40u : 400u, .ball = 12, .min_radius = 0.1, .end = 0.5}, seed);
     Twins twins(bodies);
     test::Draw draw(seed);
     const orchard_work_budget budget{1 + draw.bits() % 500, UINT64_MAX, 0};

@@ -133,7 +133,7 @@ TEST_P(Changes, TakePartFromTheNextStep) {
   }
 }
 
-// Most bodies are looked at a step ahead of the common expiry then: what changes in between has to take part, too.
+// Most bodies are updated a step ahead of the common expiry then: what changes in between has to take part, too.
 TEST(BroadPhase, ChangesAroundACommonExpiryTakePart) {
   for (std::uint64_t seed = 0; seed < 24; ++seed) {
     const int period = 3 + static_cast<int>(seed % 9), bodies = seed % 3 == 0 ? 300 : seed % 3 == 1 ? 189 : 60;

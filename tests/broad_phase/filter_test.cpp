@@ -70,7 +70,7 @@ TEST(BodyFilters, LetABodyOfSeveralSpheresSleep) {
 // 300 bodies of three spheres that cross each other's paths: what is asked for is what two bodies near each other need,
 // next to nothing beside what the parts would cost each other.
 TEST(BodyFilters, ExcludedPairsCostNothingAtLaterSteps) {
-  const test::MovingBodies bodies({.bodies = 300, .ball = 80, .largest_acceleration = 1, .end = 1}, 5);
+  const test::MovingBodies bodies({.bodies = 300, .ball = 80, .max_acceleration = 1, .end = 1}, 5);
   const MotionSource source = [&](double time, std::span<const BodyIndex> asked, std::span<Motion> motions) {
     for (std::size_t i = 0; i < asked.size(); ++i) {
       motions[i] = bodies.motion(asked[i] / 3, time);

@@ -89,8 +89,7 @@ TEST(HornContact, AgreesWithSampling) {
 // The bound holds for what bodies really do: half-spaces included, accelerations as large as allowed.
 TEST(HornContact, IsNeverAfterARealContact) {
   for (std::uint64_t seed = 0; seed < 3000; ++seed) {
-    const test::WorldShape shape{
-        .bodies = 2, .ball = 6, .largest_acceleration = 30, .half_spaces = 0.7, .extreme = true};
+    const test::WorldShape shape{.bodies = 2, .ball = 6, .max_acceleration = 30, .half_spaces = 0.7, .extreme = true};
     const test::MovingBodies bodies(shape, seed);
     const double found = earliest_contact(bodies.motion(0, 0), bodies.motion(1, 0), 1, 1e-9);
     for (double t = 0; t <= 1 && t < found; t += 0.002) {

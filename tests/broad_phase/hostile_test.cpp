@@ -35,7 +35,7 @@ TEST(HostileTimes, AreRefusedAndChangeNothing) {
       }
       EXPECT_EQ(world.motions_asked(), asked);
     };
-    const double hostile[] = {kNaN, kInfinity, -kInfinity, 1e300, -1e300, 1.01 * kMostSteps * kStep};
+    const double hostile[] = {kNaN, kInfinity, -kInfinity, 1e300, -1e300, 1.01 * kMaxSteps * kStep};
     for (const double t : hostile) refuses(t);  // of an empty world, which sleeps for ever
     for (std::size_t i = 0; i < values.size(); ++i) world.add();
     for (const double t : hostile) refuses(t);
@@ -47,7 +47,7 @@ TEST(HostileTimes, AreRefusedAndChangeNothing) {
 }
 
 TEST(HostileTimes, FarAwayAreTimesLikeOthers) {
-  for (const double start : {-0.9 * kMostSteps * kStep, 0.9 * kMostSteps * kStep}) {
+  for (const double start : {-0.9 * kMaxSteps * kStep, 0.9 * kMaxSteps * kStep}) {
     std::vector<Motion> values(2);
     for (Motion& motion : values) motion.radius = 1;
     BroadPhase world(values_of(values), {.time_step = kStep, .start = start});
@@ -64,7 +64,7 @@ TEST(HostileOptions, MakeAWorldThatRefusesEverything) {
   EXPECT_TRUE(is_valid(good));
   std::vector<BroadPhaseOptions> bad;
   for (const double step : {0.0, -0.01, kNaN, kInfinity, -kInfinity, 1e-300, 1e300}) bad.push_back({.time_step = step});
-  for (const double start : {kNaN, kInfinity, -kInfinity, 1e300, 1.01 * kMostSteps * kStep}) {
+  for (const double start : {kNaN, kInfinity, -kInfinity, 1e300, 1.01 * kMaxSteps * kStep}) {
     bad.push_back({.time_step = kStep, .start = start});
   }
   for (const BroadPhaseOptions& options : bad) {
@@ -199,7 +199,7 @@ TEST(HostileMotions, AllAtOnceLeaveAWorldThatRecovers) {
 
 // The largest and the smallest numbers that are allowed, all together, at the extreme time steps.
 TEST(HostileMotions, AtTheEndsOfTheRangeAreStillAnsweredRight) {
-  const double sizes[] = {0, 1e-300, 1e-100, 1e-20, 1, 1e20, 1e99, kLargestNumber};
+  const double sizes[] = {0, 1e-300, 1e-100, 1e-20, 1, 1e20, 1e99, kMaxNumber};
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     test::Draw draw(seed);
     const auto any = [&] { return sizes[draw.bits() % 8]; };

@@ -132,7 +132,7 @@ TEST(EmptiedWorlds, SleepAndAreFilledAgain) {
   }
 }
 
-// The step before a common expiry looks at bodies ahead: at none, if they are all gone by then.
+// The step before a common expiry updates bodies ahead: at none, if they are all gone by then.
 TEST(EmptiedWorlds, SleepThroughWhatWasACommonExpiry) {
   constexpr double kExactStep = 1.0 / 64;
   for (const std::size_t n : {40u, 300u}) {

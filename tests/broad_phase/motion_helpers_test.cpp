@@ -59,12 +59,12 @@ TEST(RocketMotion, HoldsForAnyThrottleAndRudderWithinTheBounds) {
     Vec3 position = rocket.position, velocity = rocket.velocity, axis = rocket.axis, side = across(axis, draw);
     for (double t = 0; t < 1; t += kDt) {
       if (draw.uniform(0, 1) < 0.001 && seed % 2 == 0) side = across(axis, draw);  // another way
-      const Vec3 a = (seed % 3 == 0 ? 1 : draw.uniform(0, 1)) * rocket.largest_thrust * axis;
+      const Vec3 a = (seed % 3 == 0 ? 1 : draw.uniform(0, 1)) * rocket.max_thrust * axis;
       watch.see(3 + t, position, a);
       position = position + kDt * velocity;
       velocity = velocity + kDt * a;
-      const Vec3 next = turned(axis, side, rocket.largest_turning * kDt);
-      side = turned(side, -1.0 * axis, rocket.largest_turning * kDt);
+      const Vec3 next = turned(axis, side, rocket.max_turning * kDt);
+      side = turned(side, -1.0 * axis, rocket.max_turning * kDt);
       axis = next;
     }
     EXPECT_GT(watch.seen(), 0.49);
@@ -80,7 +80,7 @@ TEST(VehicleMotion, HoldsInATurnNoTighterThanAnnounced) {
     Vec3 heading = draw.direction(), side = across(heading, draw);
     Vehicle vehicle{draw.in_ball(10), 8.0 * heading, 1, side, 8, draw.uniform(2, 20), 0};
     if (seed % 4 == 0) vehicle.to_center = {};
-    if (seed % 4 == 1) vehicle.largest_drive = 3, vehicle.largest_speed = 8 + 3;
+    if (seed % 4 == 1) vehicle.max_drive = 3, vehicle.max_speed = 8 + 3;
     const Motion motion = vehicle_motion(vehicle, 0, 1);
     with_half_space += motion.half_space != Vec3{};
     Watch watch(motion, 0);
@@ -89,7 +89,7 @@ TEST(VehicleMotion, HoldsInATurnNoTighterThanAnnounced) {
     for (double t = 0; t < 1; t += kDt) {
       if (draw.uniform(0, 1) < 0.002) sharpness = draw.uniform(0, 1);  // the same side, as tight as allowed at most
       const double drive = seed % 4 == 1 ? (seed % 8 == 1 ? 3 : -3) : 0;
-      const double turning = sharpness * speed / vehicle.least_turn_radius;
+      const double turning = sharpness * speed / vehicle.min_turn_radius;
       watch.see(t, position, speed * turning * side + drive * heading);
       position = position + kDt * speed * heading;
       speed += kDt * drive;

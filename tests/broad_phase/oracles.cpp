@@ -47,7 +47,7 @@ bool solve(std::array<Row, 4> m, std::array<double, 4>& x) {
 
 }  // namespace
 
-double least_time(const SpaceTimeBound& a, const SpaceTimeBound& b, double duration) {
+double min_time(const SpaceTimeBound& a, const SpaceTimeBound& b, double duration) {
   const std::vector<Row> rows = constraints(a, b, duration);
   double least = broad_phase_methods::kNoContact;
   const std::size_t n = rows.size();

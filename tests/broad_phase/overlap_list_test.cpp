@@ -2,9 +2,9 @@
 
 #include <set>
 
-#include "broad/calendar.h"
 #include "broad/overlap_list.h"
 #include "broad/swept_grid.h"
+#include "broad/timing_wheel.h"
 #include "worlds.h"
 
 // What the default broad phase keeps between steps, by itself.
@@ -23,8 +23,9 @@ TEST(OverlapList, IsTheSetThatASetWouldBe) {
       const bool anew = draw.bits() % 8 == 0;
       if (anew) list.begin_anew(), expected.clear();
       std::set<BodyPair> added, dropped;
-      std::set<BodyIndex> looked, refused;
-      for (std::uint64_t k = draw.bits() % 3; k > 0; --k) list.mark(*looked.insert(body()).first, OverlapList::kLooked);
+      std::set<BodyIndex> updated, refused;
+      for (std::uint64_t k = draw.bits() % 3; k > 0; --k)
+        list.mark(*updated.insert(body()).first, OverlapList::kUpdated);
       if (draw.bits() % 4 == 0) list.mark(*refused.insert(body()).first, OverlapList::kRefused);
       for (std::uint64_t k = draw.bits() % (anew ? 400 : 20); k > 0; --k) {
         const BodyIndex a = body(), b = body();
@@ -35,7 +36,7 @@ TEST(OverlapList, IsTheSetThatASetWouldBe) {
         (adds ? added : dropped).insert(pair);
       }
       std::erase_if(expected, [&](const BodyPair& pair) {
-        return looked.contains(pair.a) || looked.contains(pair.b) || dropped.contains(pair);
+        return updated.contains(pair.a) || updated.contains(pair.b) || dropped.contains(pair);
       });
       expected.insert(added.begin(), added.end());
       std::erase_if(expected,

@@ -124,7 +124,7 @@ TEST(QueryCases, PreferTheSmallerIndexAmongEquals) {
 
 // What a query costs does not grow with the world.
 TEST(QueryCases, AskFewBodies) {
-  const test::MovingBodies bodies({.bodies = 8000, .ball = 40, .least_radius = 0.1, .largest_radius = 0.4}, 1);
+  const test::MovingBodies bodies({.bodies = 8000, .ball = 40, .min_radius = 0.1, .max_radius = 0.4}, 1);
   BroadPhase world(bodies.source(), {.time_step = kStep});
   for (std::size_t i = 0; i < bodies.size(); ++i) world.add();
   for (int step = 0; step < 30; ++step) world.advance(kStep * step);

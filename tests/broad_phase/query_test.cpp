@@ -29,8 +29,8 @@ TEST_P(Queries, AreAnsweredAsByAskingEveryBody) {
     const double ball = std::cbrt(static_cast<double>(n)) * draw.uniform(0.7, 4);
     const test::MovingBodies bodies({.bodies = n,
                                      .ball = ball,
-                                     .least_radius = 0,
-                                     .largest_radius = seed % 7 == 0 ? ball : 0.6,
+                                     .min_radius = 0,
+                                     .max_radius = seed % 7 == 0 ? ball : 0.6,
                                      .period = draw.uniform(0.1, 0.6),
                                      .half_spaces = 0.3,
                                      .staggered = seed % 2 == 0,

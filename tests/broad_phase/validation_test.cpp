@@ -107,8 +107,7 @@ TEST(Validation, FindsValuesThatAreOfTheFrameAndNotOfTheStep) {
   constexpr double kFrame = 1.0 / 60;
   std::size_t touching = 0, missed = 0, wrong = 0;
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
-    const test::MovingBodies bodies({.bodies = 60, .ball = 14, .least_radius = 0.1, .largest_radius = 0.6, .end = 2},
-                                    seed);
+    const test::MovingBodies bodies({.bodies = 60, .ball = 14, .min_radius = 0.1, .max_radius = 0.6, .end = 2}, seed);
     std::vector<Motion> values(bodies.size());
     std::uint64_t heard = 0;
     double worst = 0;
@@ -150,15 +149,15 @@ TEST(Validation, FindsValuesThatAreOfTheFrameAndNotOfTheStep) {
 
 TEST(Validation, FindsADriftThatIsMissing) {
   for (const bool given : {false, true}) {
-    constexpr double kLargest = 5;
+    constexpr double kMax = 5;
     std::vector<Motion> values(1);
-    values[0].acceleration = kLargest;
-    values[0].drift = given ? drift_of(Integrator::semi_implicit_euler, kStep, kLargest) : 0;
+    values[0].acceleration = kMax;
+    values[0].drift = given ? drift_of(Integrator::semi_implicit_euler, kStep, kMax) : 0;
     BroadPhase world(values_of(values), {.time_step = kStep, .validate = true});
     world.add();
     for (int step = 0; step < 100; ++step) {
       world.advance(step * kStep);
-      values[0].velocity[2] += kStep * kLargest;
+      values[0].velocity[2] += kStep * kMax;
       values[0].position = values[0].position + kStep * values[0].velocity;
     }
     EXPECT_EQ(world.promises_broken() > 0, !given);

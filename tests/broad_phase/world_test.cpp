@@ -16,8 +16,8 @@ using test::WorldShape;
 WorldShape random_shape(test::Draw& draw, std::size_t bodies) {
   WorldShape shape{.bodies = bodies};
   shape.ball = std::cbrt(static_cast<double>(bodies)) * draw.uniform(1.2, 12);
-  shape.least_radius = draw.uniform(0, 1) < 0.1 ? 0 : draw.uniform(0, 0.5);
-  shape.largest_acceleration = draw.uniform(0, 1) < 0.2 ? 0 : draw.uniform(0, 40);
+  shape.min_radius = draw.uniform(0, 1) < 0.1 ? 0 : draw.uniform(0, 0.5);
+  shape.max_acceleration = draw.uniform(0, 1) < 0.2 ? 0 : draw.uniform(0, 40);
   shape.period = draw.uniform(0.1, 0.6);
   shape.half_spaces = draw.uniform(0, 1) < 0.5 ? 0 : draw.uniform(0, 1);
   shape.extreme = draw.uniform(0, 1) < 0.5;
@@ -107,7 +107,7 @@ TEST(BroadPhase, ReportsEveryOverlapThatLastsForATimeStep) {
 }
 
 TEST(BroadPhase, SleepsWhileNothingCanHappen) {
-  const WorldShape shape{.bodies = 2, .ball = 200, .largest_acceleration = 0.1};
+  const WorldShape shape{.bodies = 2, .ball = 200, .max_acceleration = 0.1};
   const MovingBodies bodies(shape, 3);
   BroadPhase world(bodies.source(), {});
   world.add(), world.add();
@@ -247,7 +247,7 @@ TEST(BroadPhase, WorksFromSpeedBoundsAlone) {  // 8.2: bodies that turn at will,
 TEST(BroadPhase, HandlesClustersStragglersAndAllSizes) {
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
     test::Draw draw(seed);
-    const test::MovingBodies near({.bodies = 150, .ball = 6, .least_radius = 0.01, .largest_radius = 0.4}, seed);
+    const test::MovingBodies near({.bodies = 150, .ball = 6, .min_radius = 0.01, .max_radius = 0.4}, seed);
     std::vector<Vec3> homes(150);
     std::vector<double> sizes(150);
     for (std::size_t i = 0; i < homes.size(); ++i) {

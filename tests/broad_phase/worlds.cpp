@@ -16,13 +16,13 @@ Vec3 Draw::in_ball(double radius) { return radius * std::cbrt(uniform(0, 1)) * d
 MovingBodies::MovingBodies(const WorldShape& shape, std::uint64_t seed) {
   Draw draw(seed);
   for (std::size_t i = 0; i < shape.bodies; ++i) {
-    Body body{draw.uniform(shape.least_radius, shape.largest_radius), {}, {}};
+    Body body{draw.uniform(shape.min_radius, shape.max_radius), {}, {}};
     Vec3 position = draw.in_ball(shape.ball);
-    Vec3 velocity = draw.uniform(shape.least_speed, shape.largest_speed) * draw.direction();
+    Vec3 velocity = draw.uniform(shape.min_speed, shape.max_speed) * draw.direction();
     const bool cut = draw.uniform(0, 1) < shape.half_spaces;
     double begin = shape.staggered ? -draw.uniform(0, shape.period) : 0;
     while (begin <= shape.end) {
-      Period period{begin, begin + shape.period, draw.uniform(0, shape.largest_acceleration), {}};
+      Period period{begin, begin + shape.period, draw.uniform(0, shape.max_acceleration), {}};
       if (cut) period.half_space = draw.uniform(0.1, 3) * draw.direction();
       const double step = shape.period / shape.forces_per_period;
       for (int f = 0; f < shape.forces_per_period; ++f) {

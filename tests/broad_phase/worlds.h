@@ -18,15 +18,15 @@ class Draw : public SplitMix {
 struct WorldShape {
   std::size_t bodies = 20;
   double ball = 10;  // initial positions lie in a ball of that radius
-  double least_radius = 0.5, largest_radius = 1.5;
-  double least_speed = 5, largest_speed = 15;
-  double largest_acceleration = 4;  // each body's M is uniform below, for a period
-  double period = 1;                // M and the half-space change, all bodies' at the same times
-  int forces_per_period = 5;        // changes of acceleration within the bounds
-  double half_spaces = 0;           // the share of bodies that announce one
-  bool extreme = false;             // accelerations of length M, not below
-  bool staggered = false;           // the periods of different bodies start at different times
-  double end = 1;                   // motions are known up to here
+  double min_radius = 0.5, max_radius = 1.5;
+  double min_speed = 5, max_speed = 15;
+  double max_acceleration = 4;  // each body's M is uniform below, for a period
+  double period = 1;            // M and the half-space change, all bodies' at the same times
+  int forces_per_period = 5;    // changes of acceleration within the bounds
+  double half_spaces = 0;       // the share of bodies that announce one
+  bool extreme = false;         // accelerations of length M, not below
+  bool staggered = false;       // the periods of different bodies start at different times
+  double end = 1;               // motions are known up to here
 };
 
 // Piecewise constant accelerations: positions are exact at any time, to rounding.

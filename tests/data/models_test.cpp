@@ -19,7 +19,7 @@
 
 namespace {
 
-constexpr double kSmallestAngleDegrees = 2.0;
+constexpr double kMinAngleDegrees = 2.0;
 constexpr double kCountTolerance = 0.15;
 // Neighbours in a flat side are coplanar within the first value; nothing that is meant as an edge
 // comes near it.
@@ -194,7 +194,7 @@ TEST_P(BundledModel, HasNoDuplicatePointsAndNoThinTriangles) {
     for (std::size_t i = 0; i < 3; ++i) {
       const Point& p = model_.points[t[i]];
       const double angle = angle_between(model_.points[t[(i + 1) % 3]] - p, model_.points[t[(i + 2) % 3]] - p);
-      EXPECT_GT(angle * 180.0 / std::acos(-1.0), kSmallestAngleDegrees) << t[0] << " " << t[1] << " " << t[2];
+      EXPECT_GT(angle * 180.0 / std::acos(-1.0), kMinAngleDegrees) << t[0] << " " << t[1] << " " << t[2];
     }
   }
 }

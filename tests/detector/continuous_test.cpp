@@ -144,7 +144,7 @@ TEST(Continuous, ABudgetIsKeptAndWhatItLeavesOpenIsPossible) {
       }
       static int time = 0;
       const Frame frame = detector.step(time++ * kStep, {.work = work});
-      EXPECT_LT(frame.work, work + kMostOvershoot + 2 * kMotionWork);
+      EXPECT_LT(frame.work, work + kMaxOvershoot + 2 * kMotionWork);
       for (const PairEvent& event : frame.events) possible += event.change == PairChange::possible;
     }
   }

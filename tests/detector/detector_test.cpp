@@ -1,3 +1,4 @@
+// One world, made by the same few helpers, and all that can be asked of it: hence more than 300 lines.
 #include "orchard/runtime/detector.h"
 
 #include <gtest/gtest.h>

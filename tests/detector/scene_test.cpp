@@ -127,7 +127,7 @@ TEST(Detector, WithinABudgetOnlySaysWhatIsTrue) {
         const auto& truth = c.truth[static_cast<std::size_t>(step)];
         const Answers answers = answers_of(run, frame);
         // Besides one unit that the broad phase gets in any case: a pair's two motions.
-        EXPECT_LT(frame.work, work + kMostOvershoot + 2 * kMotionWork) << c.scene->name;
+        EXPECT_LT(frame.work, work + kMaxOvershoot + 2 * kMotionWork) << c.scene->name;
         EXPECT_TRUE(without(without(answers.yes, truth.touching), truth.close).empty()) << c.scene->name;
         if (frame.incomplete_from == kNoClass) {
           Touching known = answers.yes;

@@ -1,3 +1,4 @@
+// One instrument, each of its measures on the same few solids: hence more than 300 lines.
 #include "orchard/medial/quality.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// The C interface, function after function: hence more than 300 lines.
 #include <gtest/gtest.h>
 
 #include <unistd.h>
@@ -262,6 +263,60 @@ TEST(CInterface, AsksManyThingsAtOnce) {
   for (int i = 0; i < 10 && !stepped.finished; ++i) stepped = orchard_refine(pair, kNoBudget);
   EXPECT_EQ(stepped.answer, ORCHARD_YES);
   orchard_pair_free(pair);
+}
+
+TEST(CInterface, MeasuresManyPairsAsItMeasuresEach) {
+  const Tree cube(box({-1, -1, -1}, {1, 1, 1})), ball(uv_sphere(12, 8, 1));
+  const std::vector<const orchard_tree*> first(60, cube.tree), second(60, ball.tree);
+  std::vector<orchard_pose> a, b;
+  Draw draw(11);
+  for (std::size_t i = 0; i < 60; ++i) a.push_back(in_c(draw.pose(1))), b.push_back(in_c(draw.pose(4)));
+  b[7].scale = 0;  // of which nothing is known
+  orchard_workspace* workspaces[] = {orchard_workspace_new(), orchard_workspace_new(), orchard_workspace_new()};
+  const orchard_executor backward = {[](void*, size_t count, void (*job)(void*, size_t), void* data) {
+                                       while (count-- > 0) job(data, count);
+                                     },
+                                     nullptr, 3};
+  std::vector<orchard_distance> distances(60);
+  std::vector<int> closer(60);
+  orchard_measure_all(workspaces, 3, &backward, first.data(), a.data(), second.data(), b.data(), 60, 0.01,
+                      distances.data());
+  orchard_closer_than_all(workspaces, 3, &backward, first.data(), a.data(), second.data(), b.data(), 60, 1,
+                          closer.data());
+  orchard_pair* const pair = orchard_pair_new(cube.tree, ball.tree);
+  for (std::size_t i = 0; i < 60; ++i) {
+    const orchard_distance alone = orchard_measure(pair, &a[i], &b[i], 0.01);
+    EXPECT_EQ(distances[i].lower, alone.lower) << i;
+    EXPECT_EQ(distances[i].upper, alone.upper) << i;
+    EXPECT_EQ(closer[i], orchard_closer_than(workspaces[0], cube.tree, &a[i], ball.tree, &b[i], 1)) << i;
+    if (i != 7) {
+      EXPECT_EQ(closer[i] == 1, orchard_measure(pair, &a[i], &b[i], 0).lower <= 1) << i;
+    }
+  }
+  EXPECT_EQ(closer[7], -1);
+  EXPECT_EQ(distances[7].lower, 0);
+  orchard_pair_free(pair);
+  for (orchard_workspace* workspace : workspaces) orchard_workspace_free(workspace);
+}
+
+TEST(CInterface, SignsDistancesByWhetherTheSurfacesMeet) {
+  const Tree cube(box({-1, -1, -1}, {1, 1, 1}));
+  orchard_workspace* const workspace = orchard_workspace_new();
+  const orchard_pose still = orchard_identity();
+  for (const double x : {1.9, 1.99, 2.5, 4.0}) {
+    orchard_pose moved = still;
+    moved.translation[0] = x;
+    const orchard_signed_distance d = orchard_measure_signed(workspace, cube.tree, &still, cube.tree, &moved, 1e-3);
+    EXPECT_NEAR(d.lower, x - 2, 2e-3 * std::fabs(x - 2) + 1e-9) << x;
+    EXPECT_LE(d.lower, d.upper) << x;
+    EXPECT_NEAR(d.normal[0], 1, 1e-6) << x;
+  }
+  orchard_pose flat = still;
+  flat.scale = 0;
+  const orchard_signed_distance none = orchard_measure_signed(workspace, cube.tree, &still, cube.tree, &flat, 1e-3);
+  EXPECT_FALSE(none.lower > 0);
+  EXPECT_FALSE(none.upper < 0);
+  orchard_workspace_free(workspace);
 }
 
 }  // namespace

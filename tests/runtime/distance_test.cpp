@@ -9,7 +9,7 @@
 #include "bodies.h"
 #include "machine.h"
 #include "pair/triangle_distance.h"
-#include "tree/patch_block.h"
+#include "tree/ball_slab_block.h"
 
 namespace orchard::runtime {
 namespace {

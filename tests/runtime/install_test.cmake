@@ -1,5 +1,5 @@
 # cmake -D<what stands below>=.. -P install_test.cmake
-#   STEP: install, example, pkg_config, missing or methods
+#   STEP: install, example, pkg_config, missing, methods or pages
 #   BUILD: the build tree; SCRATCH: a directory to work in; SOURCE: orchard's root; WRITER: the sample tree's writer
 #   GENERATOR, COMPILER, FLAGS: those of the build
 set(prefix "${SCRATCH}/prefix")
@@ -127,6 +127,32 @@ elseif(STEP STREQUAL "methods")  # into a prefix of its own: what the other step
   endif()
   must_run("${CMAKE_COMMAND}" --build "${SCRATCH}/methods")
   must_run("${SCRATCH}/methods/same_pairs")
+elseif(STEP STREQUAL "pages")  # each block of CMake in a page, in a project of its own
+  set(all "${SCRATCH}/all")
+  file(REMOVE_RECURSE "${all}" "${SCRATCH}/pages")
+  foreach(component IN ITEMS runtime broad_phase_methods)
+    must_run("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${all}" --component ${component})
+  endforeach()
+  foreach(page IN ITEMS README docs/runtime docs/broad-phase)
+    file(READ "${SOURCE}/${page}.md" text)
+    string(FIND "${text}" "```cmake\n" begin)
+    if(begin EQUAL -1)
+      message(FATAL_ERROR "${page}.md has no block of CMake")
+    endif()
+    math(EXPR begin "${begin} + 9")
+    string(SUBSTRING "${text}" ${begin} -1 text)
+    string(FIND "${text}" "\n```" end)
+    string(SUBSTRING "${text}" 0 ${end} block)
+    if(NOT block MATCHES "target_link_libraries\\(([a-z_]+) ")
+      message(FATAL_ERROR "the block of ${page}.md links nothing:\n${block}")
+    endif()
+    file(WRITE "${SCRATCH}/pages/${page}/main.cpp" "#include <orchard/runtime/version.h>\nint main() { return ORCHARD_VERSION_MAJOR < 0; }\n")
+    file(WRITE "${SCRATCH}/pages/${page}/CMakeLists.txt"
+      "cmake_minimum_required(VERSION 3.25)\nproject(page CXX)\nadd_executable(${CMAKE_MATCH_1} main.cpp)\n${block}\n")
+    must_run(${configure} "-DCMAKE_PREFIX_PATH=${all}" -S "${SCRATCH}/pages/${page}" -B "${SCRATCH}/pages/${page}/build")
+    must_run("${CMAKE_COMMAND}" --build "${SCRATCH}/pages/${page}/build")
+    must_run("${SCRATCH}/pages/${page}/build/${CMAKE_MATCH_1}")
+  endforeach()
 else()
   message(FATAL_ERROR "unknown step '${STEP}'")
 endif()

@@ -11,7 +11,7 @@ namespace orchard::runtime::test {
 
 // 2^-149 is the least float. Coordinates and radii are below 12: at 2^56 within 1e18, and at 2^60 those of 1 are
 // beyond.
-inline constexpr int kLeastPower = -149, kMostPower = 56, kBeyond = 60;
+inline constexpr int kMinPower = -149, kMaxPower = 56, kBeyond = 60;
 
 using LatticeMesh = std::vector<LatticeTriangle>;
 

@@ -1,5 +1,5 @@
-// The inner loops of rays, points and moving patches: the compiler's vectors against one number at a time, bit for bit,
-// and what they promise.
+// The inner loops of rays, points and moving ball slabs: the compiler's vectors against one number at a time, bit for
+// bit, and what they promise.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,8 +8,8 @@
 #include "bodies.h"
 #include "every_machine.h"
 #include "pair/triangle_distance.h"
-#include "tree/patch_block.h"
-#include "tree/patch_time.h"
+#include "tree/ball_slab_block.h"
+#include "tree/ball_slab_time.h"
 #include "tree/point_block.h"
 #include "tree/ray_block.h"
 
@@ -63,7 +63,7 @@ TEST(PointBlock, BoundsTheDistanceFromBelowAndCloselyAtEveryScaleOnEveryMachine)
   });
 }
 
-TEST(RayBlock, KeepsEveryTriangleAndPatchOnTheRayOnEveryMachine) {
+TEST(RayBlock, KeepsEveryTriangleAndBallSlabOnTheRayOnEveryMachine) {
   on_every_machine([] {
     long kept = 0, tested = 0;
     for (std::uint64_t seed = 0; seed < 100; ++seed) {
@@ -88,19 +88,19 @@ TEST(RayBlock, KeepsEveryTriangleAndPatchOnTheRayOnEveryMachine) {
       }
       ray.margin = static_cast<float>(std::max(4 * scale * 48 * 0x1p-24, 1e-15));
       const auto begin = static_cast<float>(-2 * scale), end = static_cast<float>(2 * scale);
-      for (std::size_t b = 0; b < tree.patches.size(); ++b) {
+      for (std::size_t b = 0; b < tree.ball_slabs.size(); ++b) {
         RayEntries entries, plain;
-        const std::uint32_t met = ray_patches(ray, tree.patches[b], begin, end, entries);
-        ASSERT_EQ(met, ray_patches_scalar(ray, tree.patches[b], begin, end, plain)) << seed;
+        const std::uint32_t met = ray_ball_slabs(ray, tree.ball_slabs[b], begin, end, entries);
+        ASSERT_EQ(met, ray_ball_slabs_scalar(ray, tree.ball_slabs[b], begin, end, plain)) << seed;
         ASSERT_TRUE(same_bits(entries, plain)) << seed;
-        for (std::uint32_t lane = 0; lane < kBlockWidth && tree.patches[b].radius[lane] >= 0; ++lane) {
-          const PatchBlock& patch = tree.patches[b];
-          const Vec3 from = {target[0] - double{patch.x[lane]}, target[1] - double{patch.y[lane]},
-                             target[2] - double{patch.z[lane]}};
+        for (std::uint32_t lane = 0; lane < kBlockWidth && tree.ball_slabs[b].radius[lane] >= 0; ++lane) {
+          const BallSlabBlock& slab = tree.ball_slabs[b];
+          const Vec3 from = {target[0] - double{slab.x[lane]}, target[1] - double{slab.y[lane]},
+                             target[2] - double{slab.z[lane]}};
           const double height =
-              from[0] * double{patch.nx[lane]} + from[1] * double{patch.ny[lane]} + from[2] * double{patch.nz[lane]};
-          const bool holds = std::hypot(from[0], from[1], from[2]) <= double{patch.radius[lane]} &&
-                             std::fabs(height) <= double{patch.height[lane]};
+              from[0] * double{slab.nx[lane]} + from[1] * double{slab.ny[lane]} + from[2] * double{slab.nz[lane]};
+          const bool holds = std::hypot(from[0], from[1], from[2]) <= double{slab.radius[lane]} &&
+                             std::fabs(height) <= double{slab.height[lane]};
           ASSERT_TRUE(!holds || (met >> lane & 1)) << seed;
           if (holds) {
             ASSERT_LE(double{entries[lane]}, at + 1e-6 * scale) << seed;
@@ -121,13 +121,13 @@ TEST(RayBlock, KeepsEveryTriangleAndPatchOnTheRayOnEveryMachine) {
   });
 }
 
-// Until the time that is told, no two points of the patches meet: corners of triangles in them, moved and turned.
-TEST(PatchTimes, AreNotLaterThanAnyContactOnEveryMachine) {
+// Until the time that is told, no two points of the ball slabs meet: corners of triangles in them, moved and turned.
+TEST(BallSlabTimes, AreNotLaterThanAnyContactOnEveryMachine) {
   on_every_machine([] {
     int met = 0, late = 0;
     for (std::uint64_t seed = 0; seed < 400; ++seed) {
       Draw draw(seed);
-      PatchBlock lanes;
+      BallSlabBlock lanes;
       for (std::uint32_t i = 0; i < kBlockWidth; ++i) {
         const auto n = draw.direction();
         lanes.x[i] = static_cast<float>(draw.uniform(-3, 3)), lanes.y[i] = static_cast<float>(draw.uniform(-3, 3));
@@ -139,8 +139,8 @@ TEST(PatchTimes, AreNotLaterThanAnyContactOnEveryMachine) {
       }
       lanes.radius[7] = -1;
       const auto m = draw.direction();
-      const Patch single = {0,    0,   0, static_cast<float>(m[0]), static_cast<float>(m[1]), static_cast<float>(m[2]),
-                            0.5f, 0.1f};
+      const BallSlab single = {
+          0, 0, 0, static_cast<float>(m[0]), static_cast<float>(m[1]), static_cast<float>(m[2]), 0.5f, 0.1f};
       Closing closing;
       const auto v = draw.direction(), a = draw.direction(), b = draw.direction();
       const double speed = draw.uniform(0, 4);
@@ -153,9 +153,9 @@ TEST(PatchTimes, AreNotLaterThanAnyContactOnEveryMachine) {
       closing.first.spin = static_cast<float>(seed % 3 == 0 ? 0 : draw.uniform(0, 2));
       closing.second.spin = static_cast<float>(seed % 2 == 0 ? 0 : draw.uniform(0, 2));
       const Placement placement = still(8);
-      PatchTimes times, plain;
-      patch_times(single, lanes, &placement, closing, placement.margin, times);
-      patch_times_scalar(single, lanes, &placement, closing, placement.margin, plain);
+      BallSlabTimes times, plain;
+      ball_slab_times(single, lanes, &placement, closing, placement.margin, times);
+      ball_slab_times_scalar(single, lanes, &placement, closing, placement.margin, plain);
       ASSERT_TRUE(same_bits(times.time, plain.time) && same_bits(times.x, plain.x)) << seed;
       ASSERT_EQ(times.used, 0x7fu);
       // As far as the axes go: the gap of two balls' centres along a line must not close before.

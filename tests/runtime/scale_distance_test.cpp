@@ -20,7 +20,7 @@ TEST(Scale, DistancesHoldAtEveryPowerOfTwoOfTheRange) {
     for (int i = 0; i < 2; ++i) {
       const Pose pose = draw.pose(draw.uniform(4, 20));
       const auto truth = static_cast<double>(surface_distance(placed_triangles(a, {}), placed_triangles(b, pose)));
-      for (int power = kLeastPower; power <= kMostPower; ++power) {
+      for (int power = kMinPower; power <= kMaxPower; ++power) {
         const PackedSphereTree large_a = tree_of(s.a, power), large_b = tree_of(s.b, power);
         Pose at = pose;
         for (double& x : at.translation) x = std::ldexp(x, power);
@@ -40,7 +40,7 @@ TEST(Scale, DistancesHoldAtEveryPowerOfTwoOfTheRange) {
 TEST(Scale, RaysCapsulesAndInsidesAreTheSameAtEveryPowerOfTwoOfTheRange) {
   int hits = 0, misses = 0;
   const LatticeMesh cube = lattice_box({4, 3, 2});
-  for (int power = kLeastPower; power <= kMostPower; ++power) {
+  for (int power = kMinPower; power <= kMaxPower; ++power) {
     const PackedSphereTree tree = tree_of(cube, power);
     const double unit = std::ldexp(1, power);
     for (std::uint64_t seed = 0; seed < 20; ++seed) {

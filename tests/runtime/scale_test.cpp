@@ -24,7 +24,7 @@ TEST(Scale, TouchingIsDecidedExactlyAtEveryPowerOfTwoOfTheRange) {
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
     const Scene s = scene(seed);
     touching += s.touch;
-    for (int power = kLeastPower; power <= kMostPower; ++power) {
+    for (int power = kMinPower; power <= kMaxPower; ++power) {
       const PackedSphereTree a = tree_of(s.a, power), b = tree_of(s.b, power);
       ASSERT_EQ(structure_fault(a), nullptr) << seed << " 2^" << power;
       NarrowPhase query(a, b, 64);
@@ -56,7 +56,7 @@ TEST(Scale, AnswersAtAnyPoseAreTheSameAtEveryPowerOfTwoOfTheRange) {
           << seed;
       touching += answers.back() == Answer::yes;
     }
-    for (int power = kLeastPower; power <= kMostPower; ++power) {
+    for (int power = kMinPower; power <= kMaxPower; ++power) {
       const PackedSphereTree large_a = tree_of(s.a, power), large_b = tree_of(s.b, power);
       NarrowPhase large(large_a, large_b, 64);
       for (std::size_t i = 0; i < poses.size(); ++i) {

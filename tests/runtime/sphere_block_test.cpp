@@ -58,7 +58,7 @@ void make(Draw& draw, Case& c) {
   }
   for (std::size_t i = 0; i < 3; ++i) c.placement.translation[i] = static_cast<float>(pose.translation[i]);
   c.placement.slack = 1e-6f;
-  c.level.least_excess.fill(std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity()) - 1);
+  c.level.min_excess.fill(std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity()) - 1);
   c.level.row_radius.fill(0);
   c.level.lane_radius.fill(0.25f);
   c.level.best_inner = draw.bits() % 4 == 0 ? std::numeric_limits<float>::infinity() : 0.5f;
@@ -83,7 +83,7 @@ TEST(SphereBlock, GivesTheSameBitsWithAndWithoutVectors) {
       for (std::uint32_t r = c.pair.row_begin; r < c.pair.row_end; ++r) {
         ASSERT_EQ(std::memcmp(&hits.square[r], &plain_hits.square[r], sizeof hits.square[r]), 0) << seed;
       }
-      ASSERT_EQ(level.least_excess, plain_level.least_excess) << seed;
+      ASSERT_EQ(level.min_excess, plain_level.min_excess) << seed;
       ASSERT_EQ(level.row_radius, plain_level.row_radius) << seed;
       ASSERT_EQ(level.lane_radius, plain_level.lane_radius) << seed;
     });
@@ -128,7 +128,7 @@ TEST(SphereBlock, FindsTheMeetingPairsTheirKindAndWhichMayImprove) {
         ASSERT_TRUE(!improves || bound < std::max(c.level.best_leaf, c.level.best_inner) + 1e-6) << seed;
       }
     }
-    const auto bits = *std::min_element(c.level.least_excess.begin(), c.level.least_excess.end()) + 1;
+    const auto bits = *std::min_element(c.level.min_excess.begin(), c.level.min_excess.end()) + 1;
     ASSERT_TRUE(!std::isfinite(least) || std::fabs(double{std::bit_cast<float>(bits)} - least) < 1e-5) << seed;
   }
 }

@@ -8,7 +8,7 @@
 #include "orchard/runtime/vec3.h"
 #include "pair/support_map.h"
 #include "support.h"
-#include "tree/patch_block.h"
+#include "tree/ball_slab_block.h"
 
 namespace orchard::runtime::detail {
 namespace {
@@ -51,7 +51,7 @@ PackedSphereTree random_triangles(Draw& draw, std::uint32_t count) {
 
 std::vector<test::Triangle> triangles_below(const PackedSphereTree& tree, std::uint32_t node,
                                             const std::vector<test::Triangle>& placed) {
-  const std::uint32_t child = tree.patches[node / kBlockWidth].child[node % kBlockWidth];
+  const std::uint32_t child = tree.ball_slabs[node / kBlockWidth].child[node % kBlockWidth];
   std::vector<test::Triangle> result;
   if (child & kLeafBit) {
     for (const std::uint32_t t : tree.triangle_blocks[child & ~kLeafBit].triangle) {
@@ -59,14 +59,14 @@ std::vector<test::Triangle> triangles_below(const PackedSphereTree& tree, std::u
     }
     return result;
   }
-  for (std::uint32_t lane = 0; lane < kBlockWidth && tree.patches[child].radius[lane] >= 0; ++lane) {
+  for (std::uint32_t lane = 0; lane < kBlockWidth && tree.ball_slabs[child].radius[lane] >= 0; ++lane) {
     const auto more = triangles_below(tree, child * kBlockWidth + lane, placed);
     result.insert(result.end(), more.begin(), more.end());
   }
   return result;
 }
 
-TEST(PatchBlock, GivesTheSameBitsWithAndWithoutVectorsAndNeverAGapAboveTheDistance) {
+TEST(BallSlabBlock, GivesTheSameBitsWithAndWithoutVectorsAndNeverAGapAboveTheDistance) {
   int apart = 0, tight = 0;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     Draw draw(seed);
@@ -75,14 +75,14 @@ TEST(PatchBlock, GivesTheSameBitsWithAndWithoutVectorsAndNeverAGapAboveTheDistan
     Pose pose = draw.pose(draw.uniform(0, 3));
     pose.scale = draw.uniform(0.5, 2);
     const Placement placement = placement_of(pose, 10);
-    const Patch single = patch_at(a.patches[0], 0);
-    PatchGaps gaps, plain, still, plain_still;
-    patch_gaps_scalar(single, b.patches[1], &placement, placement.margin, plain);
-    patch_gaps_scalar(single, b.patches[1], nullptr, placement.margin, plain_still);
+    const BallSlab single = ball_slab_at(a.ball_slabs[0], 0);
+    BallSlabGaps gaps, plain, still, plain_still;
+    ball_slab_gaps_scalar(single, b.ball_slabs[1], &placement, placement.margin, plain);
+    ball_slab_gaps_scalar(single, b.ball_slabs[1], nullptr, placement.margin, plain_still);
     on_every_machine([&] {
-      patch_gaps(single, b.patches[1], &placement, placement.margin, gaps);
-      patch_gaps(single, b.patches[1], nullptr, placement.margin, still);
-      constexpr std::size_t lanes = offsetof(PatchGaps, used);
+      ball_slab_gaps(single, b.ball_slabs[1], &placement, placement.margin, gaps);
+      ball_slab_gaps(single, b.ball_slabs[1], nullptr, placement.margin, still);
+      constexpr std::size_t lanes = offsetof(BallSlabGaps, used);
       ASSERT_EQ(std::memcmp(&gaps, &plain, lanes), 0) << seed;
       ASSERT_EQ(std::memcmp(&still, &plain_still, lanes), 0) << seed;
       ASSERT_EQ(std::pair(gaps.used, gaps.meeting), std::pair(plain.used, plain.meeting));
@@ -91,7 +91,7 @@ TEST(PatchBlock, GivesTheSameBitsWithAndWithoutVectorsAndNeverAGapAboveTheDistan
     if (HasFatalFailure()) return;
     const auto placed = test::placed_triangles(b, pose), others = test::placed_triangles(a, Pose{});
     for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
-      ASSERT_EQ(gaps.used >> lane & 1, b.patches[1].radius[lane] >= 0 ? 1u : 0u);
+      ASSERT_EQ(gaps.used >> lane & 1, b.ball_slabs[1].radius[lane] >= 0 ? 1u : 0u);
       if ((gaps.used >> lane & 1) == 0) continue;
       ASSERT_EQ(gaps.meeting >> lane & 1, gaps.gap[lane] <= 0 ? 1u : 0u);
       const auto distance = test::surface_distance(others, triangles_below(b, kBlockWidth + lane, placed));
@@ -135,7 +135,8 @@ TEST(TriangleBlock, KeepsEveryPairThatMeetsAndGivesTheSameWithoutVectors) {
     if (seed % 2 == 0) pose.scale = draw.uniform(0.25, 4);
     const Placement placement = placement_of(pose, 10);
     const TriangleBlock &lanes = a.triangle_blocks[0], &rows = b.triangle_blocks[0];
-    const LeafPair pair{lanes, rows, patch_at(a.patches[0], 0), moved(patch_at(b.patches[0], 0), placement)};
+    const LeafPair pair{lanes, rows, ball_slab_at(a.ball_slabs[0], 0),
+                        moved(ball_slab_at(b.ball_slabs[0], 0), placement)};
     const std::uint64_t found = triangle_candidates_scalar(pair, placement);
     on_every_machine([&] { ASSERT_EQ(triangle_candidates(pair, placement), found) << seed; });
     if (HasFatalFailure()) return;

@@ -31,8 +31,8 @@ Mesh stack_that_is_cheapest_to_peel(int groups) {
 TEST(TriangleTree, IsHalvedByNumberWhereCheapCutsWouldMakeItTooDeep) {
   constexpr int kGroups = 1000;  // cut by cost alone, they make more levels than a tree may have
   const PackedSphereTree tree = build_tree(stack_that_is_cheapest_to_peel(kGroups), {.max_depth = 1, .bounds = false});
-  EXPECT_GT(tree.patch_depth, 32u);  // or this is not the input that it is meant to be
-  EXPECT_LE(tree.patch_depth, kPatchDepthLimit);
+  EXPECT_GT(tree.triangle_tree_depth, 32u);  // or this is not the input that it is meant to be
+  EXPECT_LE(tree.triangle_tree_depth, kTriangleTreeDepthLimit);
   EXPECT_EQ(structure_fault(tree), nullptr);
 }
 
@@ -43,18 +43,18 @@ void add_triangles_below(const PackedSphereTree& tree, std::uint32_t child, std:
     }
     return;
   }
-  const PatchBlock& block = tree.patches[child];
+  const BallSlabBlock& block = tree.ball_slabs[child];
   for (std::size_t lane = 0; lane < kBlockWidth && block.radius[lane] >= 0; ++lane) {
     add_triangles_below(tree, block.child[lane], triangles);
   }
 }
 
-// Without any tolerance: rays and capsules allow patches no more than the rounding of doubles.
-TEST(TriangleTree, HoldsEveryTriangleInEveryPatchAboveItAsStored) {
+// Without any tolerance: rays and capsules allow ball slabs no more than the rounding of doubles.
+TEST(TriangleTree, HoldsEveryTriangleInEveryBallSlabAboveItAsStored) {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     const PackedSphereTree tree = build_tree(seed % 2 == 0 ? spikes(seed, 12, 9) : soup(seed, 80), {.bounds = false});
-    for (std::size_t b = 0; b < tree.patches.size(); ++b) {
-      const PatchBlock& p = tree.patches[b];
+    for (std::size_t b = 0; b < tree.ball_slabs.size(); ++b) {
+      const BallSlabBlock& p = tree.ball_slabs[b];
       for (std::size_t lane = 0; lane < kBlockWidth && p.radius[lane] >= 0; ++lane) {
         std::vector<std::uint32_t> triangles;
         add_triangles_below(tree, p.child[lane], triangles);

@@ -101,7 +101,7 @@ TEST_P(EveryScene, NeverSpendsMuchMoreThanItsBudget) {
   Simulation simulation(GetParam(), shapes(), few(GetParam()), 3);
   for (int frame = 0; frame < 30; ++frame) {
     const auto steps = static_cast<std::uint64_t>(simulation.steps_per_frame());
-    EXPECT_LT(simulation.frame({.work = budget * steps}).work, (budget + broad_unit + runtime::kMostOvershoot) * steps);
+    EXPECT_LT(simulation.frame({.work = budget * steps}).work, (budget + broad_unit + runtime::kMaxOvershoot) * steps);
   }
 }
 

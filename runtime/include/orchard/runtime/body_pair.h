@@ -37,9 +37,9 @@ class TreePair {
     Pose relative;         // of b in a's frame, when `clearance` was certified
     double clearance = 0;  // in a's units; 0: none
     std::uint32_t triangle_a = kNoTriangle, triangle_b = kNoTriangle;  // that met last
-    std::uint32_t answers = 0;                                         // given since then, without a look
+    std::uint32_t answers = 0;                                         // given since then, without a test
     std::uint8_t misses = 0;  // clearances that were asked for in vain, in a row
-    std::uint8_t wait = 0;    // looks until one is asked for again
+    std::uint8_t wait = 0;    // tests until one is asked for again
     bool seen = false;
   };
   const PreparedTree* a_ = nullptr;

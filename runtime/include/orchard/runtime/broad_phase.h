@@ -45,7 +45,7 @@ constexpr bool may_pair(const BodyFilter& a, const BodyFilter& b) noexcept {
 }
 
 // The application's own: false, and the two are no pair. Asked about bodies that may_pair() allows, a.index < b.index,
-// whenever they are found near each other, and when that is looked at again: it has to answer alike until it is set
+// whenever they are found near each other, and when that is tested again: it has to answer alike until it is set
 // anew. Called from within advance() (a Detector's: step()) only; it calls neither.
 using PairFilter = std::function<bool(BodyId a, BodyId b)>;
 
@@ -76,7 +76,7 @@ using BrokenPromiseListener = std::function<void(const BrokenPromise&)>;
 struct BroadPhaseOptions {
   double time_step = 0.01;  // dt_d: the temporal resolution, in seconds; > 0
   double start = 0;         // the time of step 0
-  // Most steps between two looks at a body's surroundings; 0 lets the broad phase choose.
+  // Most steps between two updates of a body's window; 0 lets the broad phase choose.
   std::uint32_t window = 0;
   bool vectors = true;  // false: the portable inner loop. Same answers
   // How far each position that the source gives may lie from one for which the bounds hold: for positions rounded to
@@ -93,10 +93,10 @@ struct BroadPhaseOptions {
 
 // Times are at most so many time steps before and after 0 (348 years at a step of 0.01 seconds): beyond, rounding would
 // blur the steps.
-inline constexpr double kMostSteps = 0x1p40;
+inline constexpr double kMaxSteps = 0x1p40;
 
-// time_step is from 1e-20 to 1e20, position_slack from 0 to kLargestNumber, and start is a time: not NaN, not infinite,
-// within kMostSteps time steps. A BroadPhase with other options refuses all bodies and all times.
+// time_step is from 1e-20 to 1e20, position_slack from 0 to kMaxNumber, and start is a time: not NaN, not infinite,
+// within kMaxSteps time steps. A BroadPhase with other options refuses all bodies and all times.
 bool is_valid(const BroadPhaseOptions& options) noexcept;
 
 // Whichever ends first (8.2). A unit of work is a motion asked for; a call gets through at least one of them. A pair's
@@ -124,13 +124,13 @@ struct Advance {
   // Bodies whose motions were not valid at one of the steps that this call processed: they were in no pair there. In
   // ascending order; valid as long as the pairs.
   std::span<const BodyIndex> refused{};
-  bool time_refused = false;  // t_now is NaN, infinite or too far away (kMostSteps): nothing was done
+  bool time_refused = false;  // t_now is NaN, infinite or too far away (kMaxSteps): nothing was done
   std::uint64_t work = 0;     // of the last step processed within a budget, in its units
 };
 
 // What the broad phase already knows of a step to come (8.2: the load, predicted).
 struct StepsAhead {
-  std::size_t looks = 0;     // bodies to be looked at: a motion each
+  std::size_t updates = 0;   // bodies to be updated: a motion each
   std::size_t meetings = 0;  // pairs whose bounds can touch from that step on: two motions each
   std::size_t overlaps = 0;  // pairs that overlapped at the last step: they may do so still
 };
@@ -139,8 +139,8 @@ class BroadPhase;
 
 namespace detail {  // not for applications: the private header broad/method.h says what they are
 class Method;
-class Roster;
-using MakeMethod = std::function<std::unique_ptr<Method>(Roster& roster, const BroadPhaseOptions& options)>;
+class BodyPool;
+using MakeMethod = std::function<std::unique_ptr<Method>(BodyPool& pool, const BroadPhaseOptions& options)>;
 BroadPhase make_broad_phase(MotionSource source, const BroadPhaseOptions& options, const MakeMethod& make);
 }  // namespace detail
 
@@ -152,7 +152,7 @@ BroadPhase make_broad_phase(MotionSource source, const BroadPhaseOptions& option
 // since they were asked for (or cancel() was called). Hence: an overlap that lasts for dt_d or longer contains a step,
 // and is reported at the first one, so less than dt_d after it begins. A shorter one may fall between two steps. Two
 // static bodies are never a pair, nor are two that the filters exclude: such a pair is not made, and costs nothing but
-// finding once per look that the two are near.
+// finding once per window update that the two are near.
 //
 // A bound that expires at a step's time still holds at this step. Where most bounds expire together and advance() is
 // called when the new ones can be given already, half of the work is done at the step before the one that needs it.
@@ -187,17 +187,17 @@ class BroadPhase {
   bool teleport(BodyId body) { return cancel(body); }         // the source gives the new place from now on
   bool move_static(BodyId body, const Motion& place);         // false, too, if it is not static or the motion not valid
   bool set_importance(BodyId body, std::uint8_t importance);  // from the next step
-  bool set_filter(BodyId body, const BodyFilter& filter);     // from the next step; costs a look at the body
+  bool set_filter(BodyId body, const BodyFilter& filter);  // from the next step; costs an update of the body's window
 
   BodyFilter filter_of(BodyId body) const noexcept;  // that of no body: BodyFilter{}
-  // None: all pairs that may_pair() allows. From the next step; costs a look at each body.
+  // None: all pairs that may_pair() allows. From the next step; costs an update of each body's window.
   void set_pair_filter(PairFilter filter);
 
   BodyId id_of(BodyIndex index) const noexcept;  // of the body that has the index now; kNoBody: none
   bool contains(BodyId body) const noexcept { return body != kNoBody && id_of(body.index) == body; }
 
   // Processes the steps up to t_now that may have something, and stops at the first one that has. A long time ahead
-  // takes a long time: a body is looked at every 254 steps at least.
+  // takes a long time: a body is updated every 254 steps at least.
   Advance advance(double t_now) {
     if (!sleeps_until(t_now)) return process(t_now, nullptr);
     seen_time_ = t_now > seen_time_ ? t_now : seen_time_;
@@ -217,12 +217,12 @@ class BroadPhase {
   // other methods than the default one. O(what is due).
   std::size_t foresee(double time, std::span<StepsAhead> steps) const noexcept;
 
-  bool valid() const noexcept { return largest_time_ >= 0; }  // the options are, and no step has thrown
-  double next_time() const noexcept { return next_time_; }    // nothing happens before
-  std::size_t size() const noexcept;                          // bodies
-  std::size_t memory_bytes() const noexcept;                  // held on the heap
-  std::uint64_t motions_asked() const noexcept;               // of the source, so far
-  std::uint64_t promises_broken() const noexcept;             // found by BroadPhaseOptions::validate, so far
+  bool valid() const noexcept { return max_time_ >= 0; }    // the options are, and no step has thrown
+  double next_time() const noexcept { return next_time_; }  // nothing happens before
+  std::size_t size() const noexcept;                        // bodies
+  std::size_t memory_bytes() const noexcept;                // held on the heap
+  std::uint64_t motions_asked() const noexcept;             // of the source, so far
+  std::uint64_t promises_broken() const noexcept;           // found by BroadPhaseOptions::validate, so far
 
  private:
   struct State;
@@ -233,17 +233,17 @@ class BroadPhase {
   Advance process(double t_now, const WorkBudget* budget);
   Advance process_steps(double t_now, const WorkBudget* budget);
   BodyId take_in(std::uint8_t importance, const BodyFilter& filter, const Motion* place);
-  bool sleeps_until(double t) const noexcept { return t < wake_time_ && std::fabs(t) <= largest_time_; }
+  bool sleeps_until(double t) const noexcept { return t < wake_time_ && std::fabs(t) <= max_time_; }
   std::int64_t step_reported() const noexcept;
   void validate_up_to(std::int64_t step);
   void wake_for_change();
   void note_next_step();
 
   std::unique_ptr<State> state_;
-  double next_time_ = 0;      // of the next step with anything to do
-  double wake_time_ = 0;      // the same, a rounding error earlier
-  double largest_time_ = -1;  // in size; below 0: no time is accepted
-  double seen_time_ = 0;      // up to when everything has been reported
+  double next_time_ = 0;  // of the next step with anything to do
+  double wake_time_ = 0;  // the same, a rounding error earlier
+  double max_time_ = -1;  // in size; below 0: no time is accepted
+  double seen_time_ = 0;  // up to when everything has been reported
 };
 
 }  // namespace orchard::runtime

@@ -37,7 +37,7 @@ struct NearBody {
 // bodies. For a query that meets more cells than there are bodies, or up to 192 bodies: a box for each body; but for a
 // ray among these, and for other methods, a motion for each.
 //
-// What is refused has no answer, and refused() is true: numbers that are not finite or above kLargestNumber (a ray may
+// What is refused has no answer, and refused() is true: numbers that are not finite or above kMaxNumber (a ray may
 // be infinitely long), a direction of 0, a negative radius or length, a box whose lower corner is above its upper one,
 // anything asked of a broad phase that is not valid().
 //

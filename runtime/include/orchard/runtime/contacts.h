@@ -7,7 +7,7 @@
 // Where two bodies touch and how they come apart: for a response to a contact.
 namespace orchard::runtime {
 
-inline constexpr std::uint32_t kMostContactPoints = 4;
+inline constexpr std::uint32_t kMaxContactPoints = 4;
 
 struct ContactPoint {
   std::array<double, 3> place{};  // common to both surfaces, in world coordinates
@@ -17,7 +17,7 @@ struct ContactPoint {
 struct Manifold {
   Answer answer = Answer::maybe;
   std::uint32_t count = 0;  // of points: 0 for "no"; the outermost ones of all that were found, seen along the normal
-  std::array<ContactPoint, kMostContactPoints> points{};
+  std::array<ContactPoint, kMaxContactPoints> points{};
   // Unit, pointing from a to b: b moved by `depth` along it does not touch a any more, and moved less than that it
   // does. The direction is a local minimum of depth(direction): the least way out near the way that the cut surfaces
   // show. For "maybe" it is a guess, from sphere to sphere.

@@ -60,8 +60,8 @@ struct BodyOptions {
   // Above 0: also what happens between two steps is found, by a sweep from pose to pose. It is a promise that relative
   // to whatever the body may meet no origin moves faster. Lengths per second.
   double continuous_speed = 0;
-  // The body, whatever its parts do, lies within this distance of its origin at scale 1: saves a new look whenever an
-  // articulated body stretches. 0: as far as the parts reach.
+  // The body, whatever its parts do, lies within this distance of its origin at scale 1: saves a new window update
+  // whenever an articulated body stretches. 0: as far as the parts reach.
   double reach = 0;
   // The source gives poses, and a velocity if it has one: acceleration, drift, half-space and expiry are suggested by
   // the motion monitor. Needs DetectorOptions::watch.
@@ -82,7 +82,7 @@ struct DetectorOptions {
   // An "end" comes after so many steps in a row with a certain "no"; at least 1. What trembles at contact may use more.
   std::uint32_t steps_to_end = 1;
   // Pairs of trees that a budget may leave unfinished within a step, at most; what exceeds it is reported as possible.
-  std::size_t most_unfinished = 4096;
+  std::size_t max_unfinished = 4096;
   Executor executor{};  // of narrow-phase work; the same answers with any
   // Called from within step(), whenever the broad phase is given a body's motion. It throws nothing.
   PromiseListener promised{};
@@ -99,7 +99,7 @@ struct StepCut {
 
 // Whichever ends first. Work is counted as Budget::pair_tests is; a motion that the broad phase asks for counts as
 // kMotionWork, beginning a pair as kPairWork, one with a simple shape as kSimplePairWork. The broad phase gets half of
-// a limited budget at most. A step exceeds `work` by less than kMostOvershoot, one pair of leaves, but for what each
+// a limited budget at most. A step exceeds `work` by less than kMaxOvershoot, one pair of leaves, but for what each
 // step does in any case: one unit of the broad phase (WorkBudget). Only a budget in counted work gives the same answers
 // on every machine; what a clock has cut short can be replayed.
 struct FrameBudget {
@@ -112,7 +112,7 @@ struct FrameBudget {
 inline constexpr std::uint64_t kMotionWork = 16;
 inline constexpr std::uint64_t kPairWork = 16;
 inline constexpr std::uint64_t kSimplePairWork = 64;
-inline constexpr std::uint64_t kMostOvershoot = std::uint64_t{kLeafPairTests} * kTriangleTestCost + kBlockWidth;
+inline constexpr std::uint64_t kMaxOvershoot = std::uint64_t{kLeafPairTests} * kTriangleTestCost + kBlockWidth;
 
 enum class PairChange : std::uint8_t {
   begin,     // the first certain yes
@@ -156,7 +156,7 @@ struct Frame {
   bool out_of_memory = false;
 };
 
-// What the next steps are likely to cost, from the broad phase's own calendar of events (8.2).
+// What the next steps are likely to cost, from the broad phase's own timing wheel of events (8.2).
 struct StepLoad {
   double time = 0;
   std::uint64_t motions = 0;  // to be asked for, at least

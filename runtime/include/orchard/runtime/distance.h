@@ -53,28 +53,28 @@ class DistanceQuery {
   Points points() const noexcept;
 
  private:
-  struct PatchPair {
+  struct BallSlabPair {
     float lower;
     std::uint32_t a, b;
-    detail::Patch second;
+    detail::BallSlab second;
   };
 
   bool make_room() noexcept;
   bool has_room() const noexcept { return pair_.has_triangles() && stack_; }
   void begin(const Pose& a, const Pose& b, double limit) noexcept;
   void leave_the_rest() noexcept;
-  bool surely_near(const PatchPair& pair) noexcept;
-  bool worth_a_look(double lower) const noexcept;
-  void expand(const PatchPair& pair, std::uint32_t block, bool second) noexcept;
-  void compare_leaves(const PatchPair& pair) noexcept;
-  void find_within(const PatchPair& pair, const TriangleBlock& lanes, const TriangleBlock& rows) noexcept;
+  bool surely_near(const BallSlabPair& pair) noexcept;
+  bool may_be_nearer(double lower) const noexcept;
+  void expand(const BallSlabPair& pair, std::uint32_t block, bool second) noexcept;
+  void compare_leaves(const BallSlabPair& pair) noexcept;
+  void find_within(const BallSlabPair& pair, const TriangleBlock& lanes, const TriangleBlock& rows) noexcept;
   void compare_triangles(const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows, std::uint32_t row,
                          bool may_meet) noexcept;
   void find_cut() noexcept;
   void report() noexcept;
 
   NarrowPhase pair_;  // the bodies' order and placement
-  std::unique_ptr<PatchPair[]> stack_;
+  std::unique_ptr<BallSlabPair[]> stack_;
   std::size_t stack_size_ = 0;
   std::size_t stack_room_ = 0;
   Tolerance tolerance_;
@@ -83,8 +83,8 @@ class DistanceQuery {
   bool below_nearest_ = false;                              // what is as far is not looked at, either
   double enough_ = 0;                                       // so near: nothing nearer is looked for
   // In the first tree's units, of the stored triangles.
-  double nearest_ = std::numeric_limits<double>::infinity();      // the least distance found
-  double least_lower_ = std::numeric_limits<double>::infinity();  // of everything looked at or left out
+  double nearest_ = std::numeric_limits<double>::infinity();    // the least distance found
+  double min_lower_ = std::numeric_limits<double>::infinity();  // of everything looked at or left out
   std::array<double, 3> on_first_{}, on_second_{};
   std::array<float, 3> direction_{};  // unit, from the nearest point of the first one to that of the second one
   std::uint32_t triangle_first_ = kNoTriangle, triangle_second_ = kNoTriangle;

@@ -24,8 +24,8 @@ namespace orchard::runtime {
 class FlexibleTree {
  public:
   // Precondition: structure_fault(rest) is nullptr. O(nodes + triangles). Bounds on the distance to the solid (`error`,
-  // `depth`) and the table of supports are enlarged once, by what `largest_displacement` allows, and so is the root.
-  FlexibleTree(const PackedSphereTree& rest, double largest_displacement);
+  // `depth`) and the table of supports are enlarged once, by what `max_displacement` allows, and so is the root.
+  FlexibleTree(const PackedSphereTree& rest, double max_displacement);
 
   // False: the displacement is negative or not finite, or coordinates might leave kCoordinateLimit. It then never
   // moves.
@@ -33,12 +33,12 @@ class FlexibleTree {
   TreeView view() const noexcept { return tree_; }
 
   // Moves vertices[i] (an index into the tree's vertices) to places[i], in the mesh's coordinates. False, and nothing
-  // is changed, if an index is out of range, a place is not finite or is farther than largest_displacement from where
+  // is changed, if an index is out of range, a place is not finite or is farther than max_displacement from where
   // the vertex rests. O(triangles at these vertices, and nodes above them): nodes_touched() says how many.
   bool move(std::span<const std::uint32_t> vertices, std::span<const std::array<double, 3>> places) noexcept;
 
   std::size_t nodes_touched() const noexcept { return touched_; }  // by the last move, of both trees
-  std::size_t nodes() const noexcept { return spheres_.size() + patches_.size(); }
+  std::size_t nodes() const noexcept { return spheres_.size() + ball_slabs_.size(); }
   // By how much the leaves are larger than at rest: the sum of what they were enlarged by over the sum of their radii.
   double looseness() const noexcept { return rest_radii_ > 0 ? enlarged_ / rest_radii_ : 0; }
   // Beyond this, queries cost several times as much as with a tree built for the present shape.
@@ -49,7 +49,7 @@ class FlexibleTree {
   struct Node {
     std::uint32_t parent = kNone;
     std::uint32_t level = 0;
-    float radius = 0, height = 0;  // at rest; height: of patches
+    float radius = 0, height = 0;  // at rest; height: of ball slabs
     double enlarged = 0;
     bool used = false, dirty = false;
   };
@@ -64,25 +64,25 @@ class FlexibleTree {
   static void adopt(std::vector<Node>& nodes, std::uint32_t parent, std::uint32_t child) noexcept;
   static Levels room_by_level(const std::vector<Node>& nodes);
   void link_spheres();
-  void link_patches();
+  void link_ball_slabs();
   void list_triangles();
   void enlarge_for_good();
   void mark(std::vector<Node>& nodes, Levels& levels, std::uint32_t node) noexcept;
   void rewrite(std::uint32_t block) noexcept;
   void refit_spheres() noexcept;
-  void refit_patches() noexcept;
-  double largest_of_leaf(std::uint32_t link) const noexcept;
-  double largest_of_block(std::uint32_t block) const noexcept;
+  void refit_ball_slabs() noexcept;
+  double max_of_leaf(std::uint32_t link) const noexcept;
+  double max_of_block(std::uint32_t block) const noexcept;
 
   PackedSphereTree tree_;
   double largest_;
   bool valid_ = false;
   std::vector<std::array<float, 3>> rest_;
-  std::vector<double> moved_;            // by triangle: how far its corners are from rest, at most
-  std::vector<Node> spheres_, patches_;  // by node
+  std::vector<double> moved_;               // by triangle: how far its corners are from rest, at most
+  std::vector<Node> spheres_, ball_slabs_;  // by node
   Lists triangles_of_vertex_, leaves_of_triangle_;
-  std::vector<std::uint32_t> block_of_triangle_, patch_of_block_;
-  Levels dirty_spheres_, dirty_patches_;
+  std::vector<std::uint32_t> block_of_triangle_, slab_of_block_;
+  Levels dirty_spheres_, dirty_slabs_;
   std::vector<std::uint32_t> dirty_blocks_;
   std::vector<std::uint8_t> block_dirty_;
   double enlarged_ = 0, rest_radii_ = 0;

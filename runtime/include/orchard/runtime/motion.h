@@ -26,15 +26,15 @@ struct Motion {
 inline constexpr double kMotionSlack = 1e-12;
 
 // No number of a motion, and no time step, is larger: squares and products stay finite.
-inline constexpr double kLargestNumber = 1e100;
+inline constexpr double kMaxNumber = 1e100;
 
-// All numbers finite and at most kLargestNumber in size (expiry: any time, infinity too, but not NaN); radius,
+// All numbers finite and at most kMaxNumber in size (expiry: any time, infinity too, but not NaN); radius,
 // acceleration and drift not negative. Every function that takes a Motion requires it, but for BroadPhase, which
 // refuses the others.
 bool is_valid(const Motion& motion) noexcept;
 
 // 8.2: only the speed is bounded. The bound is the ball that the body can reach.
-Motion speed_bounded(const Vec3& position, double radius, double largest_speed, double expiry) noexcept;
+Motion speed_bounded(const Vec3& position, double radius, double max_speed, double expiry) noexcept;
 
 // "Really overlap": closed, in double, from two positions at the same time.
 inline bool spheres_touch(const Motion& a, const Motion& b) noexcept {

@@ -14,9 +14,9 @@ namespace orchard::runtime {
 struct Rocket {
   Vec3 position{}, velocity{};
   double radius = 0;
-  Vec3 axis{1, 0, 0};          // forward, of length 1
-  double largest_thrust = 0;   // bound on the engine's acceleration: the present one, and some slack for the throttle
-  double largest_turning = 0;  // bound on the axis' angular speed: the present one, and some slack for the rudder
+  Vec3 axis{1, 0, 0};      // forward, of length 1
+  double max_thrust = 0;   // bound on the engine's acceleration: the present one, and some slack for the throttle
+  double max_turning = 0;  // bound on the axis' angular speed: the present one, and some slack for the rudder
 };
 // M is the thrust; the half-space holds until the axis may have turned by 90 degrees.
 Motion rocket_motion(const Rocket& rocket, double time, double horizon) noexcept;
@@ -26,23 +26,23 @@ Motion rocket_motion(const Rocket& rocket, double time, double horizon) noexcept
 struct Vehicle {
   Vec3 position{}, velocity{};
   double radius = 0;
-  Vec3 to_center{};              // from the vehicle to the turn's centre, of length 1; zero: either side
-  double largest_speed = 0;      // until the horizon
-  double least_turn_radius = 1;  // R: an underestimate
-  double largest_drive = 0;      // bound on the acceleration along the heading
+  Vec3 to_center{};            // from the vehicle to the turn's centre, of length 1; zero: either side
+  double max_speed = 0;        // until the horizon
+  double min_turn_radius = 1;  // R: an underestimate
+  double max_drive = 0;        // bound on the acceleration along the heading
 };
-// M is that of both accelerations together; a half-space exists only at constant speed (largest_drive 0), until the
+// M is that of both accelerations together; a half-space exists only at constant speed (max_drive 0), until the
 // heading may have turned by 90 degrees.
 Motion vehicle_motion(const Vehicle& vehicle, double time, double horizon) noexcept;
 
 // An object under the user's cursor, known by its last three positions, `step` apart, the last one at `time`. Provided
-// that the acceleration changes by at most largest_jerk per second from the first one on, everything else follows from
+// that the acceleration changes by at most max_jerk per second from the first one on, everything else follows from
 // finite differences: acceleration, velocity and how wrong they can be.
 struct Dragged {
   Vec3 before_last{}, last{}, position{};
   double step = 0.01;
   double radius = 0;
-  double largest_jerk = 0;
+  double max_jerk = 0;
 };
 Motion dragged_motion(const Dragged& dragged, double time, double horizon) noexcept;
 
@@ -93,13 +93,13 @@ enum class Sampling : std::uint8_t {
 // to the beginning of the side, which is at most s + h: integrated, M s^2 / 2 + (c + 1) M h s. For a velocity that is
 // the one at the end of the step under way this holds, too. Jumps of the velocity (impacts, impulses of a contact
 // solver) are not covered: cancel() after them.
-double drift_of(Integrator integrator, double dt, double largest_acceleration,
+double drift_of(Integrator integrator, double dt, double max_acceleration,
                 Sampling sampling = Sampling::at_steps) noexcept;
 
-// How far a position moves when its coordinates, at most `largest_coordinate` in size, are rounded to float: for
+// How far a position moves when its coordinates, at most `max_coordinate` in size, are rounded to float: for
 // BroadPhaseOptions::position_slack, if the simulation runs in double but gives its positions in float. A velocity
 // rounded to float is off by float_slack() of its largest coordinate: that is drift.
-double float_slack(double largest_coordinate) noexcept;
+double float_slack(double max_coordinate) noexcept;
 
 // For a simulation that also *keeps* positions and velocities as floats: each step rounds anew, which is drift and
 // acceleration. Gives the motion with both enlarged and without its half-space, as roundings point anywhere. The bounds
@@ -107,6 +107,6 @@ double float_slack(double largest_coordinate) noexcept;
 // rounded once, and its change dt v up to eight times, so it is off by u (L + 9 dt S) with u = 2^-24, the largest
 // coordinate L and the largest speed S along an axis; a velocity's is off by u (S + 9 dt M). n steps of e each are a
 // drift of e / dt, and n changes of the velocity an acceleration of e / dt.
-Motion kept_in_float(const Motion& motion, double dt, double largest_coordinate, double largest_speed) noexcept;
+Motion kept_in_float(const Motion& motion, double dt, double max_coordinate, double max_speed) noexcept;
 
 }  // namespace orchard::runtime

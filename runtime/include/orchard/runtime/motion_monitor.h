@@ -10,8 +10,8 @@ namespace orchard::runtime {
 struct MonitorOptions {
   double safety = 1.5;  // a suggested M is the largest acceleration seen lately, times this; >= 1
   double window = 0.5;  // seconds: "lately". > 0
-  double least_horizon = 0.02, longest_horizon = 1;  // seconds until a suggested promise expires
-  double least_acceleration = 0;                     // no suggested M is smaller
+  double min_horizon = 0.02, longest_horizon = 1;  // seconds until a suggested promise expires
+  double min_acceleration = 0;                     // no suggested M is smaller
 };
 
 // Watches bodies' motions (dissertation 4.4): whether the bounds that were promised hold, and which ones could be
@@ -61,7 +61,7 @@ class MotionMonitor {
     std::uint32_t count = 0;
     Vec3 lower{1, 1, 1}, upper{-1, -1, -1};  // a box around their directions
     void add(const Vec3& acceleration) noexcept;
-    double least_along(const Vec3& way) const noexcept;  // of the directions' cosines with it, a lower bound
+    double min_along(const Vec3& way) const noexcept;  // of the directions' cosines with it, a lower bound
   };
   struct Track {
     // The promise.
@@ -80,7 +80,7 @@ class MotionMonitor {
   };
 
   Track& track(BodyIndex body);
-  bool look(BodyIndex body, double time, const Vec3& position, const Vec3* velocity);
+  bool observe(BodyIndex body, double time, const Vec3& position, const Vec3* velocity);
   void learn(Track& track, double time, const Vec3& position, const Vec3* velocity) const noexcept;
 
   MonitorOptions options_;

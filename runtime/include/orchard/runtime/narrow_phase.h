@@ -23,20 +23,20 @@ struct Placement {
   std::array<float, 3> translation;
   float scale;
   float slack;      // to add to a sum of radii
-  float margin;     // to take from a gap between patches
+  float margin;     // to take from a gap between ball slabs
   float unit = 1;   // a power of two: times this, every coordinate of the pair's frame is at most 1
   float whole = 1;  // 1 / unit
 };
 
-// One patch, in the first tree's frame.
-struct Patch {
+// One ball slab, in the first tree's frame.
+struct BallSlab {
   float x, y, z, nx, ny, nz, radius, height;
 };
 
 // What the sphere tests of one level collect: the bits of the smallest square - reach^2 > 0, minus 1; the largest radii
-// seen; and the separation bounds from which on a pair needs no look, for pairs with an inner node and for two leaves.
+// seen; and the separation bounds from which on a pair needs no test, for pairs with an inner node and for two leaves.
 struct LevelState {
-  alignas(32) std::array<std::uint32_t, kBlockWidth> least_excess;
+  alignas(32) std::array<std::uint32_t, kBlockWidth> min_excess;
   alignas(32) std::array<float, kBlockWidth> row_radius, lane_radius;
   float best_inner, best_leaf;
 };
@@ -49,7 +49,7 @@ enum class Answer : std::uint8_t {
   yes     // a triangle of one meets a triangle of the other
 };
 
-// Whichever ends first. Work is counted in tests of two spheres or two patches; a test of two triangles counts as
+// Whichever ends first. Work is counted in tests of two spheres or two ball slabs; a test of two triangles counts as
 // kTriangleTestCost. A call with pair_tests > 0 always gets somewhere: it overshoots by less than a row of eight tests
 // or one pair of leaves (kLeafPairTests triangle tests).
 struct Budget {
@@ -131,14 +131,14 @@ class NarrowPhase {
   bool finished() const noexcept { return finished_; }  // refine() has nothing left to do
   // The poses given to start() cannot be answered for: one is not rigid, or the bodies meet at a place or in a size
   // that floats cannot hold (bodies scaled beyond 4 kCoordinateLimit of the other's units, or by more than
-  // kMostRelativeScale of each other). The answer is then "maybe", finished, with the bounds 0 and infinity.
+  // kMaxRelativeScale of each other). The answer is then "maybe", finished, with the bounds 0 and infinity.
   bool refused() const noexcept { return refused_; }
   bool out_of_room() const noexcept { return out_of_room_; }  // bounds are looser than they could be
   bool exact() const noexcept { return exact_started_; }      // the last level has begun
   std::uint32_t level() const noexcept { return level_; }     // completed levels below the roots
   // That met at the last completed level of spheres; 0 once the last level has begun.
   std::size_t pairs() const noexcept { return roots_pending_ ? 1 : inner_.size() + settled_leaves_; }
-  std::uint64_t pair_tests() const noexcept { return pair_tests_; }  // of spheres and patches, since start()
+  std::uint64_t pair_tests() const noexcept { return pair_tests_; }  // of spheres and ball slabs, since start()
   std::uint64_t triangle_tests() const noexcept { return triangle_tests_; }
   // Since start(), as a budget counts it. A query that a time budget cut short stops at the same place again when it is
   // given this as its budget of tests: a trace of these numbers replays a run exactly.
@@ -177,15 +177,15 @@ class NarrowPhase {
     std::size_t pair = 0;
     std::uint32_t outer = 0, inner = 0;
   };
-  struct PatchPair {  // patches that may meet, the second one moved
+  struct BallSlabPair {  // ball slabs that may meet, the second one moved
     std::uint32_t a, b;
-    detail::Patch second;
+    detail::BallSlab second;
   };
   struct Best {
     double bound = std::numeric_limits<double>::infinity();
     NodePair pair{0, 0};
   };
-  class Meter;
+  class BudgetTracker;
 
   void reset_counts() noexcept;
   void find_exact_error(const Pose& first, const Pose& second) noexcept;
@@ -197,19 +197,19 @@ class NarrowPhase {
   double hulls_gap(const Pose& first, const Pose& second, const std::array<double, 3>& way) const noexcept;
   Pose relative_pose() const noexcept;
   void place() noexcept;
-  bool has_triangles() const noexcept { return !first_.tree.patches.empty() && !second_.tree.patches.empty(); }
+  bool has_triangles() const noexcept { return !first_.tree.ball_slabs.empty() && !second_.tree.ball_slabs.empty(); }
   bool has_last_level() const noexcept { return has_triangles() && stack_; }  // memory for its stack, too
   bool in_range() const noexcept;
   void finish(Answer answer) noexcept;
 
   Answer refine_level(const Budget& budget) noexcept;
   Answer refine_last(const Budget& budget) noexcept;
-  bool refine_spheres(Meter& meter) noexcept;
+  bool refine_spheres(BudgetTracker& tracker) noexcept;
   void give_up_spheres() noexcept;
   void start_exact() noexcept;
-  bool refine_patches(Meter& meter) noexcept;
-  void expand(const PatchPair& pair, bool second) noexcept;
-  bool test_triangles(const PatchPair& pair) noexcept;
+  bool refine_ball_slabs(BudgetTracker& tracker) noexcept;
+  void expand(const BallSlabPair& pair, bool second) noexcept;
+  bool test_triangles(const BallSlabPair& pair) noexcept;
   std::array<double, 3> triangle_normal() const noexcept;
   static NodePair pair_at(std::uint32_t row, std::uint32_t lane, std::uint32_t bit, bool lanes_are_second) noexcept {
     const NodePair pair{row + bit / kBlockWidth, lane + bit % kBlockWidth};
@@ -238,7 +238,7 @@ class NarrowPhase {
   PairList inner_, leaves_, next_;  // meeting pairs: with an inner node, of two leaves, and of the level under way
   std::size_t settled_leaves_ = 0;
   Cursor cursor_;
-  std::unique_ptr<PatchPair[]> stack_;  // the last level's, deepest first; room for the trees' depths
+  std::unique_ptr<BallSlabPair[]> stack_;  // the last level's, deepest first; room for the trees' depths
   std::size_t stack_size_ = 0, stack_room_ = 0;
   bool exact_started_ = false;
   detail::LevelState level_state_{};

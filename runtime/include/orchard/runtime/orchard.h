@@ -158,6 +158,16 @@ typedef struct orchard_manifold {
 orchard_manifold orchard_contacts(orchard_workspace* workspace, const orchard_tree* a, const orchard_pose* pose_a,
                                   const orchard_tree* b, const orchard_pose* pose_b);
 
+typedef struct orchard_signed_distance {
+  double lower, upper; /* lower <= distance <= upper; negative where the surfaces meet: minus the manifold's depth */
+  double on_a[3], on_b[3];
+  double normal[3]; /* the direction in which b leaves a */
+} orchard_signed_distance;
+/* Apart: until upper <= (1 + tolerance) * lower, but for rounding. */
+orchard_signed_distance orchard_measure_signed(orchard_workspace* workspace, const orchard_tree* a,
+                                               const orchard_pose* pose_a, const orchard_tree* b,
+                                               const orchard_pose* pose_b, double tolerance);
+
 /* A motion: from `start`, with `center` (in the body's coordinates) at constant velocity and the body turning about it
  * with the constant angular velocity `spin`, in the world. Unless pose_at is null: any motion; pose_at gives the pose
  * at a time, 1 if it did; between two times the centre moves at most `speed` and the body turns at most by the angle
@@ -206,6 +216,14 @@ typedef struct orchard_executor {
 void orchard_collide_all(orchard_workspace* const* workspaces, size_t workspace_count, const orchard_executor* executor,
                          const orchard_tree* const* a, const orchard_pose* poses_a, const orchard_tree* const* b,
                          const orchard_pose* poses_b, size_t count, orchard_verdict* verdicts);
+/* The same for orchard_measure(), and for orchard_closer_than() with one margin: closer[i] is 1, 0 or -1. */
+void orchard_measure_all(orchard_workspace* const* workspaces, size_t workspace_count, const orchard_executor* executor,
+                         const orchard_tree* const* a, const orchard_pose* poses_a, const orchard_tree* const* b,
+                         const orchard_pose* poses_b, size_t count, double tolerance, orchard_distance* distances);
+void orchard_closer_than_all(orchard_workspace* const* workspaces, size_t workspace_count,
+                             const orchard_executor* executor, const orchard_tree* const* a,
+                             const orchard_pose* poses_a, const orchard_tree* const* b, const orchard_pose* poses_b,
+                             size_t count, double margin, int* closer);
 
 #ifdef __cplusplus
 }

@@ -51,7 +51,7 @@ typedef struct orchard_detector_options {
   double time_step, start, position_slack;
   int watch;
   uint32_t steps_to_end;
-  size_t most_unfinished;
+  size_t max_unfinished;
   orchard_run_jobs run; /* null: serial */
   void* run_context;
   size_t concurrency;

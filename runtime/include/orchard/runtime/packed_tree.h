@@ -38,8 +38,8 @@ struct Children {
 
 // An inner node's children in one word without kLeafBit: the lowest link_bits() bits, enough for the tree's branching,
 // are the number of children less 1, the others the first one's block, at most last_linked_block(). Branching is at
-// most kMostBranching.
-inline constexpr std::uint32_t kMostBranching = 1u << 30;
+// most kMaxBranching.
+inline constexpr std::uint32_t kMaxBranching = 1u << 30;
 constexpr int link_bits(std::uint32_t branching) noexcept {
   return branching > 1 ? static_cast<int>(std::bit_width(branching - 1)) : 0;
 }
@@ -56,17 +56,17 @@ constexpr std::uint32_t last_linked_block(std::uint32_t branching) noexcept {
   return (kLeafBit - 1) >> link_bits(branching);
 }
 
-// Eight patches side by side: nodes of the tree of triangles below the spheres. A patch is the part of a ball between
-// two parallel planes, the same distance from its centre; every triangle below the node lies in it, in every node above
-// it.
-struct alignas(32) PatchBlock {
+// Eight ball slabs side by side: nodes of the tree of triangles below the spheres. A ball slab is the part of a ball
+// between two parallel planes, the same distance from its centre; every triangle below the node lies in it, in every
+// node above it.
+struct alignas(32) BallSlabBlock {
   std::array<float, kBlockWidth> x{}, y{}, z{};     // centre
   std::array<float, kBlockWidth> nx{}, ny{}, nz{};  // normal of the planes: unit to 1e-6
   std::array<float, kBlockWidth> radius{};          // of the ball; -1 in lanes that hold no node
   std::array<float, kBlockWidth> height{};          // |normal * (point - centre)| of every point is at most this
   std::array<std::uint32_t, kBlockWidth> child{};   // block of the first child; with kLeafBit set, a triangle block
 };
-static_assert(sizeof(PatchBlock) == 288 && alignof(PatchBlock) == 32);
+static_assert(sizeof(BallSlabBlock) == 288 && alignof(BallSlabBlock) == 32);
 
 // Up to eight triangles side by side, as the exact level reads them.
 struct alignas(32) TriangleBlock {
@@ -80,26 +80,26 @@ inline constexpr std::uint32_t kNoTriangle = 0xffffffffu;
 inline constexpr std::uint32_t kEmptyLeaf = 0xffffffffu;  // link of a leaf that lists no triangles
 inline constexpr std::uint32_t kSupportCells = 8;         // along an edge of the cube of directions
 inline constexpr std::uint32_t kSupportCount = 6 * (kSupportCells + 1) * (kSupportCells + 1);
-inline constexpr std::uint32_t kPatchDepthLimit = 64;  // levels below the root that a tree of triangles may have
+inline constexpr std::uint32_t kTriangleTreeDepthLimit = 64;  // levels below the root that a tree of triangles may have
 
 // A sphere-tree as it ships: flat arrays of floats around a double origin, every ball rounded outward. Blocks are in
 // breadth-first order; lane 0 of block 0 is the root and the only node of its block. Node id = block * 8 + lane.
 // Every leaf lists the triangles that meet its path region; together the leaves list every triangle.
-// The exact level has a tree of its own over the same triangles (index_triangles() makes it): patches in breadth-first
-// order, lane 0 of block 0 its root, every other block the children of one node.
+// The exact level has a tree of its own over the same triangles (index_triangles() makes it): ball slabs in
+// breadth-first order, lane 0 of block 0 its root, every other block the children of one node.
 struct PackedSphereTree {
-  std::array<double, 3> origin{};  // of all float coordinates, in mesh units
-  double bounding_radius = 0;      // R of the mesh
-  double vertex_error = 0;         // how far a stored vertex may lie from the mesh's own
-  std::uint32_t branching = 0;     // largest number of children
-  std::uint32_t depth = 0;         // levels below the root
-  std::uint32_t node_count = 0;    // lanes in use
-  std::uint32_t patch_depth = 0;   // levels below the root of the tree of triangles
+  std::array<double, 3> origin{};         // of all float coordinates, in mesh units
+  double bounding_radius = 0;             // R of the mesh
+  double vertex_error = 0;                // how far a stored vertex may lie from the mesh's own
+  std::uint32_t branching = 0;            // largest number of children
+  std::uint32_t depth = 0;                // levels below the root
+  std::uint32_t node_count = 0;           // lanes in use
+  std::uint32_t triangle_tree_depth = 0;  // levels below the root of the tree of triangles
   std::vector<SiblingBlock> blocks;
   std::vector<std::array<float, 3>> vertices;           // relative to origin
   std::vector<std::array<std::uint32_t, 3>> triangles;  // into vertices
   std::vector<std::uint32_t> leaf_triangles;            // into triangles; kLeafBit marks the last one of a leaf
-  std::vector<PatchBlock> patches;
+  std::vector<BallSlabBlock> ball_slabs;
   std::vector<TriangleBlock> triangle_blocks;
   // How far the triangles reach: the largest of direction . point, rounded up, for directions on the surface of the
   // cube of side 2, in the order of support_direction(). kSupportCount of them if there are triangles, or none.
@@ -121,12 +121,12 @@ constexpr std::array<double, 3> support_direction(std::uint32_t index) noexcept 
 struct TreeView {
   std::array<double, 3> origin{};
   double bounding_radius = 0, vertex_error = 0;
-  std::uint32_t branching = 0, depth = 0, node_count = 0, patch_depth = 0;
+  std::uint32_t branching = 0, depth = 0, node_count = 0, triangle_tree_depth = 0;
   std::span<const SiblingBlock> blocks;
   std::span<const std::array<float, 3>> vertices;
   std::span<const std::array<std::uint32_t, 3>> triangles;
   std::span<const std::uint32_t> leaf_triangles;
-  std::span<const PatchBlock> patches;
+  std::span<const BallSlabBlock> ball_slabs;
   std::span<const TriangleBlock> triangle_blocks;
   std::span<const float> supports;
 
@@ -138,12 +138,12 @@ struct TreeView {
         branching(tree.branching),
         depth(tree.depth),
         node_count(tree.node_count),
-        patch_depth(tree.patch_depth),
+        triangle_tree_depth(tree.triangle_tree_depth),
         blocks(tree.blocks),
         vertices(tree.vertices),
         triangles(tree.triangles),
         leaf_triangles(tree.leaf_triangles),
-        patches(tree.patches),
+        ball_slabs(tree.ball_slabs),
         triangle_blocks(tree.triangle_blocks),
         supports(tree.supports) {}
 };

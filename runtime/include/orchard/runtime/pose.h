@@ -20,9 +20,9 @@ struct Pose {
 // With rows a, b, c of the rotation: on the root of the sum of the squares of |a|^2 - 1, |b|^2 - 1, a . b and the
 // components of c - a x b.
 inline constexpr double kRigidTolerance = 1e-12;
-inline constexpr double kScaleLimit = 1e100;          // a scale is between 1 / kScaleLimit and kScaleLimit
-inline constexpr double kMostRelativeScale = 0x1p44;  // of one body of a pair to the other
-inline constexpr double kRepairTolerance = 1e-3;      // as kRigidTolerance, of what made_rigid() repairs
+inline constexpr double kScaleLimit = 1e100;         // a scale is between 1 / kScaleLimit and kScaleLimit
+inline constexpr double kMaxRelativeScale = 0x1p44;  // of one body of a pair to the other
+inline constexpr double kRepairTolerance = 1e-3;     // as kRigidTolerance, of what made_rigid() repairs
 
 // Whether queries can answer for a pose: a proper rotation to within kRigidTolerance, a scale within its limits,
 // nothing that is not finite. Some ten nanoseconds; queries do it themselves.

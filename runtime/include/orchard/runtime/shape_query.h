@@ -16,7 +16,7 @@
 // Preconditions: structure_fault(tree) is nullptr and the tree has triangles. Where a pose does not satisfy is_rigid(),
 // a number is not finite, or a place is more than kFarthest of the body's units away along an axis, the answer is the
 // one that makes nobody miss a contact, and names no triangle: distance 0, a hit where the ray begins, "inside". Cost:
-// O(log n) patches and a few dozen triangles where the surface is much larger than the distance asked for.
+// O(log n) ball slabs and a few dozen triangles where the surface is much larger than the distance asked for.
 namespace orchard::runtime {
 
 inline constexpr double kFarthest = 1e100;
@@ -66,13 +66,13 @@ void cast_rays(const TreeView& tree, const Pose& pose, std::span<const Ray> rays
 SurfacePoint deepest_point(const TreeView& tree, const Pose& pose, const std::array<double, 3>& normal,
                            double offset) noexcept;
 
-// A convex solid: the corners, and triangles outward, of positive area, all around it. At most kMostCorners and
-// kMostFacets.
+// A convex solid: the corners, and triangles outward, of positive area, all around it. At most kMaxCorners and
+// kMaxFacets.
 struct ConvexShape {
   std::span<const std::array<double, 3>> corners;
   std::span<const std::array<std::uint32_t, 3>> facets;
 };
-inline constexpr std::size_t kMostCorners = 256, kMostFacets = 508;
+inline constexpr std::size_t kMaxCorners = 256, kMaxFacets = 508;
 
 // Whether a convex solid, its inside included, and the surface have a point in common: exact for the triangles and
 // facets as stored, with the solid moved into the body's frame in double. "Maybe" where nothing can be asked, for a

@@ -53,7 +53,7 @@ struct Impact {
   std::uint64_t work = 0;   // as a budget counts it
 };
 
-// By conservative advancement: at a time every pair of patches, and of triangles, that could meet next is followed
+// By conservative advancement: at a time every pair of ball slabs, and of triangles, that could meet next is followed
 // along the direction in which it is apart; how fast that gap can close, the turning of each about its centre included,
 // says until when it surely does not; the least such time is the next one. A step costs about as much as a distance
 // query, and a few are enough unless the bodies graze each other.

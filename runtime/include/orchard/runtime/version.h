@@ -9,7 +9,7 @@
 #define ORCHARD_VERSION_STRING "0.1.0"
 
 /* For comparisons, as in ORCHARD_VERSION_NUMBER >= ORCHARD_MAKE_VERSION(0, 2, 0). */
-#define ORCHARD_MAKE_VERSION(major, minor, patch) ((major)*1000000 + (minor)*1000 + (patch))
+#define ORCHARD_MAKE_VERSION(major, minor, slab) ((major)*1000000 + (minor)*1000 + (slab))
 #define ORCHARD_VERSION_NUMBER ORCHARD_MAKE_VERSION(ORCHARD_VERSION_MAJOR, ORCHARD_VERSION_MINOR, ORCHARD_VERSION_PATCH)
 
 #endif

@@ -1,14 +1,14 @@
 #pragma once
 #include <array>
 
-#include "roster.h"
+#include "body_pool.h"
 
 namespace orchard::runtime::detail {
 
-inline constexpr Step kCalendarSteps = 256;  // a power of two
-inline constexpr Step kLongestWindow = kCalendarSteps - 1;
+inline constexpr Step kWheelSteps = 256;  // a power of two
+inline constexpr Step kLongestWindow = kWheelSteps - 1;
 
-// Rounds of looks are counted modulo 2^kRoundBits. Those compared are never as far apart as half of that.
+// Rounds of updates are counted modulo 2^kRoundBits. Those compared are never as far apart as half of that.
 using Round = std::uint32_t;
 inline constexpr unsigned kRoundBits = 31;
 inline constexpr Round kFarthestRound = 1u << (kRoundBits - 2);
@@ -16,7 +16,7 @@ inline bool is_later(Round a, Round b) noexcept { return static_cast<std::int32_
 
 struct PairEvent {
   BodyPair pair;
-  Round created : kRoundBits = 0;  // void once either body has been looked at in a later round
+  Round created : kRoundBits = 0;  // void once either body has been updated in a later round
   Round parting : 1 = 0;           // the pair is among those that overlap
 
   PairEvent() = default;
@@ -25,9 +25,9 @@ struct PairEvent {
 };
 static_assert(sizeof(PairEvent) == 12);
 
-// What is due when, for less than kCalendarSteps steps ahead: bodies to look at again and pairs to test, in a ring of
+// What is due when, for less than kWheelSteps steps ahead: bodies to update again and pairs to test, in a ring of
 // lists indexed by step. Nothing is taken out before its time: the caller tells what is void.
-class Calendar {
+class TimingWheel {
  public:
   void set_due(std::span<const BodyIndex> bodies, Step step);
   void clear_bodies() noexcept;
@@ -59,11 +59,11 @@ class Calendar {
   };
 
   void add_line(std::uint32_t& head, const std::array<BodyIndex, 3>& ids);
-  static std::size_t bucket_of(Step step) noexcept { return static_cast<std::size_t>(step & (kCalendarSteps - 1)); }
+  static std::size_t bucket_of(Step step) noexcept { return static_cast<std::size_t>(step & (kWheelSteps - 1)); }
   void mark(std::size_t bucket) noexcept { busy_[bucket / 64] |= std::uint64_t{1} << (bucket % 64); }
 
-  std::array<Bucket, kCalendarSteps> buckets_{};
-  std::array<std::uint64_t, kCalendarSteps / 64> busy_{};  // a bit per bucket with anything in it, or once had
+  std::array<Bucket, kWheelSteps> buckets_{};
+  std::array<std::uint64_t, kWheelSteps / 64> busy_{};  // a bit per bucket with anything in it, or once had
   std::vector<Bodies> lines_;
   std::vector<Node> nodes_;
   std::uint32_t free_line_ = kNone, free_node_ = kNone;

@@ -7,37 +7,39 @@
 #include "orchard/runtime/pose.h"
 #include "pair/triangle_pair.h"
 
-// The inner loops of the exact level and of distances: one patch against eight, and eight triangles against eight.
+// The inner loops of the exact level and of distances: one ball slab against eight, and eight triangles against eight.
 // Every function has a twin that does the same, operation for operation, one number at a time: what the tests compare
 // with, and all that some compilers get.
 namespace orchard::runtime::detail {
 
-inline Patch patch_at(const PatchBlock& b, std::uint32_t i) noexcept {
+inline BallSlab ball_slab_at(const BallSlabBlock& b, std::uint32_t i) noexcept {
   return {b.x[i], b.y[i], b.z[i], b.nx[i], b.ny[i], b.nz[i], b.radius[i], b.height[i]};
 }
 
-Patch moved(const Patch& patch, const Placement& placement) noexcept;
+BallSlab moved(const BallSlab& slab, const Placement& placement) noexcept;
 
-// Eight patches as they were tested, in the first tree's frame, and how far each is from the single one.
-struct PatchGaps {
+// Eight ball slabs as they were tested, in the first tree's frame, and how far each is from the single one.
+struct BallSlabGaps {
   using Lanes = std::array<float, kBlockWidth>;
   alignas(32) Lanes x, y, z, nx, ny, nz, radius, height;
   alignas(32) Lanes gap;  // certified lower bound on the distance; negative: they may meet, the lower the deeper
-  std::uint32_t used;     // bits: lanes that hold a patch
+  std::uint32_t used;     // bits: lanes that hold a ball slab
   std::uint32_t meeting;  // bits: those with gap <= 0
 
-  Patch patch(std::uint32_t i) const noexcept { return {x[i], y[i], z[i], nx[i], ny[i], nz[i], radius[i], height[i]}; }
+  BallSlab slab(std::uint32_t i) const noexcept {
+    return {x[i], y[i], z[i], nx[i], ny[i], nz[i], radius[i], height[i]};
+  }
 };
 
 // `placement` moves the lanes unless it is null; `margin` (Placement::margin) covers all rounding.
-void patch_gaps(const Patch& single, const PatchBlock& lanes, const Placement* placement, float margin,
-                PatchGaps& result) noexcept;
-void patch_gaps_scalar(const Patch& single, const PatchBlock& lanes, const Placement* placement, float margin,
-                       PatchGaps& result) noexcept;
+void ball_slab_gaps(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
+                    BallSlabGaps& result) noexcept;
+void ball_slab_gaps_scalar(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
+                           BallSlabGaps& result) noexcept;
 
 struct LeafPair {
   const TriangleBlock &lanes, &rows;  // of the first tree and, to be moved, of the second
-  Patch lane_patch, row_patch;        // around them, both in the first tree's frame
+  BallSlab lane_slab, row_slab;       // around them, both in the first tree's frame
 };
 
 // Bit 8 * row + lane: pairs that may share a point. Never leaves out a pair that does.

@@ -39,10 +39,10 @@ struct Clock {
 };
 
 // Counts work against a budget. Without one it never stops.
-class Meter {
+class BudgetTracker {
  public:
-  Meter() = default;
-  explicit Meter(const WorkBudget& budget) : budget_(budget), begin_(std::chrono::steady_clock::now()) {}
+  BudgetTracker() = default;
+  explicit BudgetTracker(const WorkBudget& budget) : budget_(budget), begin_(std::chrono::steady_clock::now()) {}
 
   bool limited() const noexcept {
     return budget_.work != WorkBudget{}.work || budget_.time != WorkBudget{}.time || budget_.replay != 0;
@@ -80,8 +80,8 @@ class Meter {
 // Of a vector that grows body by body. By an eighth at a time: twice the room would be half the memory.
 template <typename T>
 void make_room(std::vector<T>& v, std::size_t size) {
-  constexpr std::size_t kLeast = 32;
-  if (v.capacity() < size) v.reserve(std::max(kLeast, size + size / 8));
+  constexpr std::size_t kMinRoom = 32;
+  if (v.capacity() < size) v.reserve(std::max(kMinRoom, size + size / 8));
 }
 template <typename T>
 void grow(std::vector<T>& v, std::size_t size) {
@@ -91,9 +91,9 @@ void grow(std::vector<T>& v, std::size_t size) {
 }
 
 // Which bodies there are, and where to ask for their motions.
-class Roster {
+class BodyPool {
  public:
-  Roster(MotionSource source, const Clock& steps) : clock(steps), source_(std::move(source)) {}
+  BodyPool(MotionSource source, const Clock& steps) : clock(steps), source_(std::move(source)) {}
 
   const Clock clock;
 

@@ -1,15 +1,16 @@
 #pragma once
 #include "eight.h"
 
-// One patch against eight: what the gaps (patch_block.cpp) and the times (patch_time.cpp) of such are made of.
+// One ball slab against eight: what the gaps (ball_slab_block.cpp) and the times (ball_slab_time.cpp) of such are made
+// of.
 namespace orchard::runtime::detail {
 
 // Added to the square of a sine before its root: a cosine of two float normals is good to some 50 u, u = 2^-24.
 inline constexpr float kSineError = 0x1p-17f;
-inline constexpr float kLeastDistance = 1e-18f;  // keeps a quotient finite; far below every margin
+inline constexpr float kMinDistance = 1e-18f;  // keeps a quotient finite; far below every margin
 
 template <typename Kind>
-struct PatchPair {
+struct BallSlabPair {
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
   using Vectors = typename E::Vectors;
@@ -23,8 +24,8 @@ struct PatchPair {
 
   // `placement` moves the lanes unless it is null. The lanes as they are tested go to `result`.
   template <typename Result>
-  ORCHARD_INLINE PatchPair(const Patch& single, const PatchBlock& lanes, const Placement* placement,
-                           Result& result) noexcept
+  ORCHARD_INLINE BallSlabPair(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement,
+                              Result& result) noexcept
       : c{load<Floats>(lanes.x), load<Floats>(lanes.y), load<Floats>(lanes.z)},
         n{load<Floats>(lanes.nx), load<Floats>(lanes.ny), load<Floats>(lanes.nz)},
         place{E::all(single.x), E::all(single.y), E::all(single.z)},
@@ -63,7 +64,7 @@ struct PatchPair {
     by_n = along_n - (h + (k * cosine + s * sine));
     by_m = along_m - (k + (h * cosine + r * sine));
     const Floats reach = (h * along_n + r * across_n) + (k * along_m + s * across_m);
-    by_line = E::larger(distance - reach / (distance + E::all(kLeastDistance)), distance - (r + s));
+    by_line = E::larger(distance - reach / (distance + E::all(kMinDistance)), distance - (r + s));
   }
 };
 

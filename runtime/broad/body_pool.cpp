@@ -1,11 +1,11 @@
-#include "roster.h"
+#include "body_pool.h"
 
 #include <cassert>
 
 namespace orchard::runtime::detail {
 
 // First all that may throw, then the change.
-BodyIndex Roster::add(std::uint8_t importance, const BodyFilter& filter, const Motion* place) {
+BodyIndex BodyPool::add(std::uint8_t importance, const BodyFilter& filter, const Motion* place) {
   if (free_.empty() && slots() >= kMaxBodies) return kNoIndex;
   const bool again = !free_.empty();
   const BodyIndex body = again ? free_.back() : static_cast<BodyIndex>(slots());
@@ -43,7 +43,7 @@ BodyIndex Roster::add(std::uint8_t importance, const BodyFilter& filter, const M
 }
 
 // What was taken from a list has room there; what was made new is the last one.
-void Roster::undo_add(BodyIndex body) noexcept {
+void BodyPool::undo_add(BodyIndex body) noexcept {
   if (is_static(body)) {
     const std::uint32_t slot = static_slot_[body];
     slot + 1 == static_motions_.size() ? static_motions_.pop_back() : free_slots_.push_back(slot);
@@ -62,12 +62,12 @@ void Roster::undo_add(BodyIndex body) noexcept {
   if (!filters_.empty()) filters_.pop_back();
 }
 
-void Roster::make_room_to_remove(BodyIndex body) {
+void BodyPool::make_room_to_remove(BodyIndex body) {
   make_room(free_, free_.size() + 1);
   if (is_static(body)) make_room(free_slots_, free_slots_.size() + 1);
 }
 
-void Roster::remove(BodyIndex body) noexcept {
+void BodyPool::remove(BodyIndex body) noexcept {
   assert(body < slots() && alive(body));
   // An index whose generations are used up is not used again.
   if (++generations_[body] != 0) free_.push_back(body);
@@ -80,32 +80,32 @@ void Roster::remove(BodyIndex body) noexcept {
   forget_promise(body);
 }
 
-void Roster::move_static(BodyIndex body, const Motion& place) noexcept {
+void BodyPool::move_static(BodyIndex body, const Motion& place) noexcept {
   Motion& stored = static_motions_[static_slot_[body]];
   stored = Motion{};
   stored.position = place.position;
   stored.radius = place.radius;
 }
 
-void Roster::set_importance(BodyIndex body, std::uint8_t importance) {
+void BodyPool::set_importance(BodyIndex body, std::uint8_t importance) {
   make_class(importance);
   leave_class(importance_[body]);
   importance_[body] = importance;
   enter_class(importance);
 }
 
-unsigned Roster::next_class(unsigned from) const noexcept {
+unsigned BodyPool::next_class(unsigned from) const noexcept {
   while (from < in_class_.size() && in_class_[from] == 0) ++from;
   return from < in_class_.size() ? from : kNoClass;
 }
 
-void Roster::ask_source(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
+void BodyPool::ask_source(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
   const double time = clock.time(step);
   source_(time, bodies, motions);
   for (std::size_t i = 0; check_ && i < bodies.size(); ++i) check_->given(id_of(bodies[i]), motions[i], time);
 }
 
-void Roster::ask_all(Step step) {
+void BodyPool::ask_all(Step step) {
   constexpr std::size_t kAtOnce = 64;
   std::array<BodyIndex, kAtOnce> bodies;
   std::array<Motion, kAtOnce> motions;
@@ -124,7 +124,7 @@ void Roster::ask_all(Step step) {
   ask_them();
 }
 
-void Roster::ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
+void BodyPool::ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
   assert(bodies.size() == motions.size());
   asked_ += bodies.size();
   if (static_slot_.empty()) {
@@ -148,7 +148,7 @@ void Roster::ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion>
   }
 }
 
-std::size_t Roster::memory_bytes() const noexcept {
+std::size_t BodyPool::memory_bytes() const noexcept {
   return bytes_of(in_class_) + bytes_of(generations_) + bytes_of(importance_) + bytes_of(filters_) +
          bytes_of(static_slot_) + bytes_of(static_motions_) + bytes_of(free_slots_) + bytes_of(free_) +
          bytes_of(moving_) + bytes_of(refused_) + bytes_of(answers_) +

@@ -1,11 +1,11 @@
-#include "calendar.h"
+#include "timing_wheel.h"
 
 #include <bit>
 #include <cassert>
 
 namespace orchard::runtime::detail {
 
-void Calendar::set_due(std::span<const BodyIndex> bodies, Step step) {
+void TimingWheel::set_due(std::span<const BodyIndex> bodies, Step step) {
   const std::size_t bucket = bucket_of(step);
   std::uint32_t& head = buckets_[bucket].bodies;
   std::size_t done = 0;
@@ -21,7 +21,7 @@ void Calendar::set_due(std::span<const BodyIndex> bodies, Step step) {
   mark(bucket);
 }
 
-void Calendar::add_line(std::uint32_t& head, const std::array<BodyIndex, 3>& ids) {
+void TimingWheel::add_line(std::uint32_t& head, const std::array<BodyIndex, 3>& ids) {
   std::uint32_t line = free_line_;
   if (line == kNone) {
     line = static_cast<std::uint32_t>(lines_.size());
@@ -33,19 +33,19 @@ void Calendar::add_line(std::uint32_t& head, const std::array<BodyIndex, 3>& ids
   head = line;
 }
 
-void Calendar::clear_bodies() noexcept {
+void TimingWheel::clear_bodies() noexcept {
   for (Bucket& bucket : buckets_) bucket.bodies = kNone;
   lines_.clear();
   free_line_ = kNone;
 }
 
-void Calendar::clear_events() noexcept {
+void TimingWheel::clear_events() noexcept {
   for (Bucket& bucket : buckets_) bucket.event = kNone;
   nodes_.clear();
   free_node_ = kNone;
 }
 
-void Calendar::clear() noexcept {
+void TimingWheel::clear() noexcept {
   buckets_.fill({});
   busy_.fill(0);
   lines_.clear();
@@ -53,7 +53,7 @@ void Calendar::clear() noexcept {
   free_line_ = free_node_ = kNone;
 }
 
-void Calendar::add(const PairEvent& event, Step step) {
+void TimingWheel::add(const PairEvent& event, Step step) {
   const std::size_t bucket = bucket_of(step);
   std::uint32_t node = free_node_;
   if (node == kNone) {
@@ -67,7 +67,7 @@ void Calendar::add(const PairEvent& event, Step step) {
   mark(bucket);
 }
 
-void Calendar::take(Step step, std::vector<BodyIndex>& bodies, std::vector<PairEvent>& events) {
+void TimingWheel::take(Step step, std::vector<BodyIndex>& bodies, std::vector<PairEvent>& events) {
   const std::size_t index = bucket_of(step);
   Bucket& bucket = buckets_[index];
   for (std::uint32_t line = bucket.bodies; line != kNone;) {
@@ -91,7 +91,7 @@ void Calendar::take(Step step, std::vector<BodyIndex>& bodies, std::vector<PairE
   busy_[index / 64] &= ~(std::uint64_t{1} << (index % 64));
 }
 
-std::size_t Calendar::bodies_due(Step step) const noexcept {
+std::size_t TimingWheel::bodies_due(Step step) const noexcept {
   std::size_t count = 0;
   for (std::uint32_t line = buckets_[bucket_of(step)].bodies; line != kNone; line = lines_[line].next) {
     for (const BodyIndex body : lines_[line].ids) count += body != kNoIndex;
@@ -99,7 +99,7 @@ std::size_t Calendar::bodies_due(Step step) const noexcept {
   return count;
 }
 
-std::size_t Calendar::events_due(Step step) const noexcept {
+std::size_t TimingWheel::events_due(Step step) const noexcept {
   std::size_t count = 0;
   for (std::uint32_t node = buckets_[bucket_of(step)].event; node != kNone; node = nodes_[node].next) {
     count += nodes_[node].event.parting == 0;
@@ -107,19 +107,19 @@ std::size_t Calendar::events_due(Step step) const noexcept {
   return count;
 }
 
-Step Calendar::next_after(Step now) const noexcept {
-  for (Step ahead = 1; ahead < kCalendarSteps;) {
+Step TimingWheel::next_after(Step now) const noexcept {
+  for (Step ahead = 1; ahead < kWheelSteps;) {
     const std::size_t bucket = bucket_of(now + ahead);
     const std::uint64_t rest = busy_[bucket / 64] >> (bucket % 64);
     if (rest != 0) {
       ahead += std::countr_zero(rest);
-      return ahead < kCalendarSteps ? now + ahead : kNeverStep;
+      return ahead < kWheelSteps ? now + ahead : kNeverStep;
     }
     ahead += static_cast<Step>(64 - bucket % 64);
   }
   return kNeverStep;
 }
 
-std::size_t Calendar::memory_bytes() const noexcept { return sizeof(*this) + bytes_of(lines_) + bytes_of(nodes_); }
+std::size_t TimingWheel::memory_bytes() const noexcept { return sizeof(*this) + bytes_of(lines_) + bytes_of(nodes_); }
 
 }  // namespace orchard::runtime::detail

@@ -1,16 +1,16 @@
-#include "patch_time.h"
+#include "ball_slab_time.h"
 
+#include "ball_slab_pair.h"
 #include "eight.h"
 #include "machine.h"
-#include "patch_pair.h"
 
-// Gaps are those of patch_gaps(), along the same directions. Rates are rounded up: their own rounding is below 40 u of
-// the sum of their parts' sizes, u = 2^-24, and kRateError is more.
+// Gaps are those of ball_slab_gaps(), along the same directions. Rates are rounded up: their own rounding is below 40 u
+// of the sum of their parts' sizes, u = 2^-24, and kRateError is more.
 namespace orchard::runtime::detail {
 namespace {
 
 constexpr float kRateError = 0x1p-17f;
-constexpr float kLeastRate = 1e-30f;  // gaps are below 1e20: a time far beyond every end, or infinite
+constexpr float kMinRate = 1e-30f;  // gaps are below 1e20: a time far beyond every end, or infinite
 constexpr float kTimeError = 1 - 0x1p-20f;
 
 template <typename Kind>
@@ -18,7 +18,7 @@ struct Turns {
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
   typename E::Vectors axis;
-  Floats spin, steady;  // times the reach of the patch from the centre of rotation
+  Floats spin, steady;  // times the reach of the ball slab from the centre of rotation
 
   ORCHARD_INLINE Turns(const Turning& turning, const Floats& reach) noexcept
       : axis{E::all(turning.axis[0]), E::all(turning.axis[1]), E::all(turning.axis[2])},
@@ -40,12 +40,12 @@ ORCHARD_INLINE typename Kind::Floats reach_of(const typename Eight<Kind>::Vector
 }
 
 template <typename Kind>
-ORCHARD_INLINE void find_times(const Patch& single, const PatchBlock& lanes, const Placement* placement,
-                               const Closing& closing, float margin, PatchTimes& result) noexcept {
+ORCHARD_INLINE void find_times(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement,
+                               const Closing& closing, float margin, BallSlabTimes& result) noexcept {
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
   using Vectors = typename E::Vectors;
-  const PatchPair<Kind> pair(single, lanes, placement, result);
+  const BallSlabPair<Kind> pair(single, lanes, placement, result);
   const bool second = placement != nullptr;
 
   // The lanes' velocity against the single one's, and what turning adds.
@@ -59,10 +59,10 @@ ORCHARD_INLINE void find_times(const Patch& single, const PatchBlock& lanes, con
   const Floats steady = E::all(closing.speed) + E::one_norm(v) * E::all(kRateError);
   const auto time = [&](const Floats& gap, const Floats& opening, const Vectors& u) ORCHARD_INLINE_LAMBDA -> Floats {
     const Floats rate = (steady - opening) + (lane_turns.rate(u) + single_turns.rate(u));
-    return (gap - E::all(margin)) / E::larger(rate + E::size(rate) * E::all(kRateError), E::all(kLeastRate));
+    return (gap - E::all(margin)) / E::larger(rate + E::size(rate) * E::all(kRateError), E::all(kMinRate));
   };
   const Floats speed_n = E::dot(v, pair.n), speed_m = E::dot(v, pair.m), zero = E::all(0.0f);
-  const Floats far = pair.distance + E::all(kLeastDistance);
+  const Floats far = pair.distance + E::all(kMinDistance);
   const Vectors line = {pair.d.x / far, pair.d.y / far, pair.d.z / far};
   const Floats best = E::larger(E::larger(time(pair.by_n, Kind::choose(pair.over_n < zero, -speed_n, speed_n), pair.n),
                                           time(pair.by_m, Kind::choose(pair.over_m < zero, -speed_m, speed_m), pair.m)),
@@ -72,13 +72,13 @@ ORCHARD_INLINE void find_times(const Patch& single, const PatchBlock& lanes, con
 
 }  // namespace
 
-void patch_times_scalar(const Patch& single, const PatchBlock& lanes, const Placement* placement,
-                        const Closing& closing, float margin, PatchTimes& result) noexcept {
+void ball_slab_times_scalar(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement,
+                            const Closing& closing, float margin, BallSlabTimes& result) noexcept {
   find_times<PlainFloats>(single, lanes, placement, closing, margin, result);
 }
 
-void patch_times(const Patch& single, const PatchBlock& lanes, const Placement* placement, const Closing& closing,
-                 float margin, PatchTimes& result) noexcept {
+void ball_slab_times(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement,
+                     const Closing& closing, float margin, BallSlabTimes& result) noexcept {
   PerMachine<find_times<Widest>, find_times<Base>>::call(single, lanes, placement, closing, margin, result);
 }
 

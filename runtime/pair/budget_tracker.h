@@ -9,18 +9,18 @@
 namespace orchard::runtime {
 
 // What one call may still spend.
-class NarrowPhase::Meter {
+class NarrowPhase::BudgetTracker {
  public:
-  explicit Meter(const Budget& budget) noexcept : limit_(budget.pair_tests) {
+  explicit BudgetTracker(const Budget& budget) noexcept : limit_(budget.pair_tests) {
     if (budget.time < std::chrono::hours(24 * 365)) {  // more is no limit, and would overflow the clock
-      next_look_ = kClockInterval;
+      next_clock_ = kClockInterval;
       deadline_ = std::chrono::steady_clock::now() + budget.time;
     }
   }
-  bool exhausted() noexcept { return spent_ >= limit_ || (spent_ >= next_look_ && late()); }
-  // How many rows of so many tests may follow before the next look at the limits: at least one.
+  bool exhausted() noexcept { return spent_ >= limit_ || (spent_ >= next_clock_ && late()); }
+  // How many rows of so many tests may follow before the limits are seen to again: at least one.
   std::uint32_t rows(std::uint32_t tests) const noexcept {
-    const std::uint64_t left = std::min(limit_, next_look_) - spent_;
+    const std::uint64_t left = std::min(limit_, next_clock_) - spent_;
     if (left >= std::uint64_t{kBlockWidth} * kBlockWidth) return kBlockWidth;  // saves a division
     return static_cast<std::uint32_t>(std::min<std::uint64_t>(kBlockWidth, (left - 1) / tests + 1));
   }
@@ -29,10 +29,10 @@ class NarrowPhase::Meter {
 
  private:
   bool late() noexcept {
-    next_look_ = spent_ + kClockInterval;
+    next_clock_ = spent_ + kClockInterval;
     return std::chrono::steady_clock::now() >= deadline_;
   }
-  std::uint64_t limit_, spent_ = 0, next_look_ = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t limit_, spent_ = 0, next_clock_ = std::numeric_limits<std::uint64_t>::max();
   std::chrono::steady_clock::time_point deadline_;
 };
 

@@ -1,30 +1,30 @@
 // One file: its three kernels share what is built of Eight, which has to become part of each of them for every machine
 // (machine.h), and which nothing else uses.
-#include "patch_block.h"
+#include "ball_slab_block.h"
 
+#include "ball_slab_pair.h"
 #include "eight.h"
 #include "machine.h"
-#include "patch_pair.h"
 
-// Rounding. Patches: see Placement::margin in narrow_phase.cpp, (5). Triangles: any fixed vector serves as an axis,
+// Rounding. Ball slabs: see Placement::margin in narrow_phase.cpp, (5). Triangles: any fixed vector serves as an axis,
 // so an axis itself needs no accuracy; only the projections do. Along a coordinate, points placed to within sigma that
 // are more than the margin apart are apart. A projection a . (p - q) of points placed to within sigma is computed to
 // within |a|_1 (2 sigma + 8 u D), which is below |a|_1 margin, with |a|_1 the sum of |components|.
 // Such projections are of the third degree, or of the fourth: coordinates of 1e13 would overflow and those of 1e-13
 // underflow. So triangles are first multiplied by a power of two (Placement::unit) that makes every coordinate at most
 // 1 and changes no digit. What then underflows, or is dropped by a flush-to-zero mode, is at most 2^-126 an operation:
-// below 2^-120 a projection, which kLeastRoom covers.
+// below 2^-120 a projection, which kMinRoom covers.
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr float kLeastRoom = 0x1p-110f;  // to add to the room along an axis, in units of Placement::whole
+constexpr float kMinRoom = 0x1p-110f;  // to add to the room along an axis, in units of Placement::whole
 
 template <typename Kind>
-ORCHARD_INLINE void find_gaps(const Patch& single, const PatchBlock& lanes, const Placement* placement, float margin,
-                              PatchGaps& result) noexcept {
+ORCHARD_INLINE void find_gaps(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement,
+                              float margin, BallSlabGaps& result) noexcept {
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
-  const PatchPair<Kind> pair(single, lanes, placement, result);
+  const BallSlabPair<Kind> pair(single, lanes, placement, result);
   const Floats gap = E::larger(E::larger(pair.by_n, pair.by_m), pair.by_line) - E::all(margin);
   store(gap, result.gap);
   result.meeting = result.used & Kind::bits(gap <= E::all(0.0f));
@@ -57,17 +57,17 @@ ORCHARD_INLINE Box<Kind> box_of(const typename Eight<Kind>::Vectors (&corner)[3]
   return {{x.low - margin, y.low - margin, z.low - margin}, {x.high + margin, y.high + margin, z.high + margin}};
 }
 
-// Triangles that do not reach between the planes of the other leaf's patch.
+// Triangles that do not reach between the planes of the other leaf's ball slab.
 template <typename Kind>
-ORCHARD_INLINE std::uint32_t outside(const typename Eight<Kind>::Vectors (&corner)[3], const Patch& patch,
+ORCHARD_INLINE std::uint32_t outside(const typename Eight<Kind>::Vectors (&corner)[3], const BallSlab& slab,
                                      float margin) noexcept {
   using E = Eight<Kind>;
   using Vectors = typename E::Vectors;
-  const Vectors n = {E::all(patch.nx), E::all(patch.ny), E::all(patch.nz)};
-  const Vectors center = {E::all(patch.x), E::all(patch.y), E::all(patch.z)};
+  const Vectors n = {E::all(slab.nx), E::all(slab.ny), E::all(slab.nz)};
+  const Vectors center = {E::all(slab.x), E::all(slab.y), E::all(slab.z)};
   const auto height = [&](std::size_t k) ORCHARD_INLINE_LAMBDA { return E::dot(n, E::minus(corner[k], center)); };
   const Extent<Kind> e = extent<Kind>(height(0), height(1), height(2));
-  const auto limit = E::all(patch.height + margin);
+  const auto limit = E::all(slab.height + margin);
   return Kind::bits((limit < e.low) | (e.high < -limit));
 }
 
@@ -91,9 +91,9 @@ ORCHARD_INLINE std::uint32_t find_near(const typename Eight<Kind>::Vectors (&lan
                                        const typename Eight<Kind>::Vectors (&row)[3], const LeafPair& pair,
                                        float margin, std::uint32_t (&near)[kBlockWidth]) noexcept {
   using E = Eight<Kind>;
-  // Heights are along normals that are unit to 1e-6, so a margin for patches serves here, too.
-  const std::uint32_t rows = ~outside<Kind>(row, pair.lane_patch, margin) & 0xffu;
-  const std::uint32_t lanes = ~outside<Kind>(lane, pair.row_patch, margin) & 0xffu;
+  // Heights are along normals that are unit to 1e-6, so a margin for ball slabs serves here, too.
+  const std::uint32_t rows = ~outside<Kind>(row, pair.lane_slab, margin) & 0xffu;
+  const std::uint32_t lanes = ~outside<Kind>(lane, pair.row_slab, margin) & 0xffu;
   if (rows == 0 || lanes == 0) return 0;
   const Box<Kind> lane_box = box_of<Kind>(lane, E::all(margin)), row_boxes = box_of<Kind>(row, E::all(0.0f));
   const OneByOne<Kind> lows(row_boxes.low), highs(row_boxes.high);
@@ -139,7 +139,7 @@ ORCHARD_INLINE std::uint32_t not_apart(std::uint32_t left, const Lanes<Kind>& la
   left &= ~Kind::bits((lanes.limit < over_lane.low) | (over_lane.high < -lanes.limit));
   if (left == 0) return 0;
   const Vectors edges[3] = {E::minus(p[1], p[0]), E::minus(p[2], p[1]), E::minus(p[0], p[2])};
-  const Floats zero = E::all(0.0f), least = E::all(kLeastRoom);
+  const Floats zero = E::all(0.0f), least = E::all(kMinRoom);
   for (std::size_t i = 0; i < 3 && left != 0; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       const Vectors axis = E::cross(edges[i], lanes.edge[j]);
@@ -172,7 +172,7 @@ ORCHARD_INLINE std::uint64_t find_candidates(const LeafPair& pair, const Placeme
   // Own corners' heights over the plane through the first one: 0 but for rounding.
   const auto own_height = [&](const Vectors& normal, const Vectors(&edge)[2]) ORCHARD_INLINE_LAMBDA -> Floats {
     return E::larger(E::size(E::dot(normal, edge[0])), E::size(E::dot(normal, edge[1]))) +
-           (E::one_norm(normal) * margin + E::all(kLeastRoom));
+           (E::one_norm(normal) * margin + E::all(kMinRoom));
   };
   const Lanes<Kind> lanes = {{lane[0], lane[1], lane[2]},
                              {lane_edge[0], E::minus(lane[2], lane[1]), lane_edge[1]},
@@ -213,7 +213,7 @@ ORCHARD_INLINE void find_triangle_gaps(const TriangleBlock& lanes, const Triangl
   const Vectors lane[3] = {lane_corner(0), lane_corner(1), lane_corner(2)};
   const Vectors row[3] = {row_corner(0), row_corner(1), row_corner(2)};
   const auto normalised = [](const Vectors& v) ORCHARD_INLINE_LAMBDA -> Vectors {
-    const Floats size = Kind::root(E::dot(v, v)) + E::all(kLeastDistance);
+    const Floats size = Kind::root(E::dot(v, v)) + E::all(kMinDistance);
     return {v.x / size, v.y / size, v.z / size};
   };
   const auto normal_of = [&](const Vectors(&t)[3]) ORCHARD_INLINE_LAMBDA -> Vectors {
@@ -258,13 +258,13 @@ ORCHARD_INLINE void find_triangle_gaps(const TriangleBlock& lanes, const Triangl
 
 }  // namespace
 
-Patch moved(const Patch& patch, const Placement& p) noexcept {
+BallSlab moved(const BallSlab& slab, const Placement& p) noexcept {
   const auto turn = [](const std::array<float, 9>& r, float x, float y, float z) -> std::array<float, 3> {
     return {r[0] * x + r[1] * y + r[2] * z, r[3] * x + r[4] * y + r[5] * z, r[6] * x + r[7] * y + r[8] * z};
   };
-  const auto c = turn(p.rotation, patch.x, patch.y, patch.z), n = turn(p.turn, patch.nx, patch.ny, patch.nz);
+  const auto c = turn(p.rotation, slab.x, slab.y, slab.z), n = turn(p.turn, slab.nx, slab.ny, slab.nz);
   return {c[0] + p.translation[0], c[1] + p.translation[1], c[2] + p.translation[2], n[0], n[1], n[2],
-          patch.radius * p.scale,  patch.height * p.scale};
+          slab.radius * p.scale,   slab.height * p.scale};
 }
 
 TrianglePoints points_of(const TriangleBlock& block, std::uint32_t lane) noexcept {
@@ -281,8 +281,8 @@ TrianglePoints moved_points_of(const TriangleBlock& block, std::uint32_t lane, c
   return result;
 }
 
-void patch_gaps_scalar(const Patch& single, const PatchBlock& lanes, const Placement* placement, float margin,
-                       PatchGaps& result) noexcept {
+void ball_slab_gaps_scalar(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
+                           BallSlabGaps& result) noexcept {
   find_gaps<PlainFloats>(single, lanes, placement, margin, result);
 }
 
@@ -295,8 +295,8 @@ std::uint64_t triangle_candidates_scalar(const LeafPair& pair, const Placement& 
   return find_candidates<PlainFloats>(pair, placement);
 }
 
-void patch_gaps(const Patch& single, const PatchBlock& lanes, const Placement* placement, float margin,
-                PatchGaps& result) noexcept {
+void ball_slab_gaps(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
+                    BallSlabGaps& result) noexcept {
   PerMachine<find_gaps<Widest>, find_gaps<Base>>::call(single, lanes, placement, margin, result);
 }
 
