@@ -139,7 +139,7 @@ std::string write_views(const BuildCommand& command, const Surface& surface, con
   picture.title = command.mesh.stem().string();
   picture.up = parse_up(command.up);
   picture.progress = cancelled_by_interrupts();
-  const std::string name = named(command.mesh, ".png");
+  std::string name = named(command.mesh, ".png");
   if (!is_drawn(draw_pipeline(outputs.staged(name), picture))) return {};
   if (command.picture) outputs.add(name, "the pipeline in one picture");
   return name;

@@ -13,7 +13,7 @@ namespace orchard {
 // The medial mesh in as few balls as you like: its envelope, the union of the balls, cones and slabs of its vertices,
 // edges and triangles, stays as near to the surface as so many can.
 struct SimplifyOptions {
-  Index vertices = 0;      // at most so many; 0: as few as `error` allows
+  Index vertices = 0;      // at most so many; 0: as few as `error` allows, to a fiftieth
   double error = 0;        // where vertices is 0: the two-sided distance allowed, over the diagonal; above 0
   Index samples = 10'000;  // places of the surface that balls are fitted to
   Index check = 20'000;    // places from which the distance is measured at the end
