@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "a_number.h"
 #include "command_list.h"
 #include "tree_options.h"
 
@@ -40,7 +41,7 @@ void add_mesh_options(CLI::App& command, MeshOptions& options) {
       .add_option(
           "--wrap-alpha", options.wrap_alpha,
           "Openings narrower than this stay closed, in diagonals; less follows the mesh better, and takes longer")
-      ->check(CLI::Range(1e-4, 0.5))
+      ->check(ANumber(CLI::Range(1e-4, 0.5)))
       ->needs(wrap)
       ->capture_default_str();
   command
@@ -48,7 +49,7 @@ void add_mesh_options(CLI::App& command, MeshOptions& options) {
           "--fill-holes", [&options](double width) { options.fill_holes = width; },
           "Fill holes up to this width, in bounding radii, whatever their edges (default: 0.5, and of at most 100 "
           "edges)")
-      ->check(CLI::Range(0.0, 2.0))
+      ->check(ANumber(CLI::Range(0.0, 2.0)))
       ->excludes(strict)
       ->excludes(wrap);
   command
@@ -96,7 +97,7 @@ void add_build(CLI::App& app, Request& request) {
       .add_option("--time", build.seconds,
                   "tightened: the tightest tree that there is after so many seconds, at whatever effort; the octree if "
                   "there is none yet")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(ANumber(CLI::Range(0.0, 1e6)))
       ->excludes(command.get_option("--effort"));
   add_tuning(command, build.tuning, true);
   add_axis_source(command, build.source);
@@ -193,9 +194,9 @@ void add_sampling_options(CLI::App& command, SampleCommand& sample) {
       ->check(CLI::IsMember({"automatic", "clusters", "neighbors"}));
   command
       .add_option("--cluster-angle", sample.cluster_degrees, "Degrees that a cluster may turn; more makes curved ones")
-      ->check(CLI::Range(0.0, 90.0));
+      ->check(ANumber(CLI::Range(0.0, 90.0)));
   command.add_option("--crease-angle", sample.crease_degrees, "Degrees from which a curved mesh has an edge [28.6]")
-      ->check(CLI::Range(0.0, 180.0));
+      ->check(ANumber(CLI::Range(0.0, 180.0)));
   command.add_option("--seed", sample.seed, "Seed of the random points")->capture_default_str();
 }
 
@@ -276,7 +277,7 @@ void add_side(CLI::App& command, MedialCommand& medial) {
                               "Of which space: inside the solid, or outside, within a sphere around it [inside]")
                           ->check(CLI::IsMember({"inside", "outside"}));
   command.add_option("--outside-radius", medial.outside_radius, "Of that sphere, in bounding radii")
-      ->check(CLI::Range(1.1, 1000.0))
+      ->check(ANumber(CLI::Range(1.1, 1000.0)))
       ->needs(side)
       ->capture_default_str();
 }
@@ -291,7 +292,7 @@ void add_few_balls(CLI::App& command, MedialCommand& medial) {
       .add_option("--error", medial.few_error,
                   "The same, in as few balls as are this near: percent of the diagonal, two-sided distance between the "
                   "surface and what the balls stand for, as measured at the end")
-      ->check(CLI::Range(1e-4, 100.0))
+      ->check(ANumber(CLI::Range(1e-4, 100.0)))
       ->excludes(vertices);
   command.add_flag("--curve", medial.curve, "Write how far off ever fewer balls are: MODEL-curve.csv and .svg");
   command.add_option("--envelope", medial.envelope,
@@ -389,7 +390,7 @@ void add_view(CLI::App& app, Request& request) {
       ->capture_default_str();
   command.add_option("--size", view.size, "WIDTHxHEIGHT in pixels (default: as the model needs; a window 1000x800)");
   command.add_option("--opacity", view.opacity, "Of meshes, where there is something else to see: 0 to 1")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(ANumber(CLI::Range(0.0, 1.0)))
       ->capture_default_str();
   command.add_flag("--window", view.window,
                    "Open a window: up, down and digits choose the level, o and O the opacity of meshes; a click on a "

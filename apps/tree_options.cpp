@@ -2,10 +2,14 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <string>
+
+#include "a_number.h"
 
 namespace orchard::apps {
 namespace {
@@ -67,8 +71,9 @@ Refinement::Region parse_region(const std::string& text) {
                                  ": give a ball and the error allowed there as x,y,z,r=E in mesh units");
     at = next + 1;
   }
-  if (!(values[3] > 0) || !(values[4] > 0))
-    throw CLI::ValidationError("--region " + text + ": r and E must be above 0");
+  const bool finite = std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+  if (!finite || !(values[3] > 0) || !(values[4] > 0))
+    throw CLI::ValidationError("--region " + text + ": r and E must be above 0, all numbers finite");
   return {{Point(values[0], values[1], values[2]), values[3]}, values[4]};
 }
 
@@ -76,7 +81,7 @@ Refinement::Region parse_region(const std::string& text) {
 void add_annealing_options(CLI::App& command, SphereTreeOptions& options) {
   AnnealingTuning& tuning = options.annealing;
   constexpr const char* group = "Annealing, in place of what --effort stands for [as in the dissertation]";
-  const auto share = CLI::Range(1e-6, 1 - 1e-6);
+  const auto share = ANumber(CLI::Range(1e-6, 1 - 1e-6));
   const auto count = CLI::Range(1, 1'000'000);
   const auto add = [&](const char* option, auto& value, const char* what, const auto& check) {
     command.add_option(option, value, what)->check(check)->group(group);
@@ -86,9 +91,9 @@ void add_annealing_options(CLI::App& command, SphereTreeOptions& options) {
              "(corrected-samples)")
       ->group(group);
   add("--anneal-move", tuning.move, "Longest translation of a change, in radii of the parent [0.035]",
-      CLI::Range(0.0, 1.0));
-  add("--anneal-min-scale", tuning.min_scale, "Least factor on a radius [0.95]", CLI::Range(0.01, 1.0));
-  add("--anneal-max-scale", tuning.max_scale, "Largest factor on a radius [1.053]", CLI::Range(1.0, 100.0));
+      ANumber(CLI::Range(0.0, 1.0)));
+  add("--anneal-min-scale", tuning.min_scale, "Least factor on a radius [0.95]", ANumber(CLI::Range(0.01, 1.0)));
+  add("--anneal-max-scale", tuning.max_scale, "Largest factor on a radius [1.053]", ANumber(CLI::Range(1.0, 100.0)));
   add("--anneal-first-trials", tuning.first_trials, "Changes that the first temperature is found by [40]", count);
   add("--anneal-first-acceptance", tuning.first_acceptance, "Probability of a mean rise at the first temperature [0.9]",
       share);
@@ -157,7 +162,7 @@ void add_tree_options(CLI::App& command, SphereTreeOptions& options) {
   command
       .add_option("--error", options.refinement.error,
                   "No children for a sphere whose inaccuracy is this or less, in mesh units (0: down to --depth)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(ANumber(CLI::NonNegativeNumber));
   command
       .add_option_function<std::vector<std::string>>(
           "--region",

@@ -2,6 +2,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include <regex>
+#include <sstream>
+#include <string>
+
 #include "program.h"
 #include "support/shapes.h"
 
@@ -44,6 +48,26 @@ TEST(Usage, ErrorsAreOneLineAndNameTheHelp) {
         << run.err;
     EXPECT_EQ(run.out, "");
   }
+}
+
+// All options with a range, from the page of all options.
+TEST(Usage, WhatIsNotANumberIsInNoRange) {
+  const Workplace here;
+  const std::string ball = here.add("ball.obj", test::icosphere(1));
+  std::istringstream page(here.run({"reference", "markdown"}).out);
+  const std::regex command("## orchard ([a-z]+)"), row(R"(\| `(--[a-z-]+)`[^|]*\| `[-0-9.e+]+ - [-0-9.e+]+` \|.*)");
+  std::string line, name;
+  std::smatch found;
+  int options = 0;
+  while (std::getline(page, line)) {
+    if (std::regex_match(line, found, command)) name = found[1];
+    if (!std::regex_match(line, found, row) || name == "simulate") continue;
+    const Finished run = here.run({name, ball, found[1].str(), "nan", "-o", (here / "out").string()});
+    EXPECT_EQ(run.exit_code, 2) << name << " " << found[1];
+    EXPECT_NE(run.err.find("nan"), std::string::npos) << name << " " << found[1] << ": " << run.err;
+    ++options;
+  }
+  EXPECT_GT(options, 40);
 }
 
 TEST(Usage, SuggestsTheCommandThatWasMeant) {
