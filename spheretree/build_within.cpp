@@ -66,6 +66,7 @@ class Attempts {
 
 SphereTreeBuild build_sphere_tree_within(double seconds, const Surface& surface, const SphereTreeOptions& options,
                                          const Progress& progress, const MedialBuildInput& input) {
+  if (!(seconds >= 0)) throw InputError("the time for a tree: a number of seconds, at least 0");
   return Attempts(seconds, surface, options, progress, input).run();
 }
 

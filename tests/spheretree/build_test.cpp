@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <numeric>
 
 #include "orchard/geometry/error.h"
@@ -92,6 +93,12 @@ TEST(BuildSphereTreeWithin, GivesACertifiedTreeWhateverTheLimitAndATighterOneFor
   EXPECT_TRUE(some.certificate.ok());
   EXPECT_LE(overall_inaccuracy(some.tree), overall_inaccuracy(none.tree));
   test::expect_conservative(some.tree, surface, "L");
+}
+
+TEST(BuildSphereTreeWithin, RefusesLimitsThatAreNone) {
+  const Surface surface(test::l_shape());
+  for (const double seconds : {-1.0, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_THROW(build_sphere_tree_within(seconds, surface, small(TreeMethod::tightened)), InputError) << seconds;
 }
 
 TEST(BuildSphereTreeWithin, StopsWhenCancelled) {

@@ -93,7 +93,7 @@ SphereTreeBuild build_sphere_tree(const Surface& surface, const SphereTreeOption
 // its time whatever the limit, then tightened trees of low, standard and high effort, and of high effort with further
 // seeds, as long as there is time. The method and the effort of the options do not count. What comes out depends on the
 // machine's speed. A limit that is met is noticed at the next report of progress, within a second or so for meshes of a
-// few thousand triangles. Errors as above.
+// few thousand triangles. Errors as above, and of a limit that is negative or not a number.
 SphereTreeBuild build_sphere_tree_within(double seconds, const Surface& surface, const SphereTreeOptions& options = {},
                                          const Progress& progress = {}, const MedialBuildInput& input = {});
 
