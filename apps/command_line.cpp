@@ -295,8 +295,17 @@ void add_few_balls(CLI::App& command, MedialCommand& medial) {
       ->check(ANumber(CLI::Range(1e-4, 100.0)))
       ->excludes(vertices);
   command.add_flag("--curve", medial.curve, "Write how far off ever fewer balls are: MODEL-curve.csv and .svg");
-  command.add_option("--envelope", medial.envelope,
-                     "Write the surface of what the balls stand for, those of --vertices or --error if given: an .obj");
+  CLI::Option* envelope = command.add_option(
+      "--envelope", medial.envelope,
+      "Write the surface of what the balls stand for, those of --vertices or --error if given: an .obj");
+  command
+      .add_option(
+          "--envelope-cell", medial.envelope_cell,
+          "Edge of the cells that surface is cut from, in percent of the diagonal: what is thinner may be lost; "
+          "time and size grow with the square of its inverse")
+      ->check(ANumber(CLI::Range(0.01, 50.0)))
+      ->needs(envelope)
+      ->capture_default_str();
 }
 
 void add_medial(CLI::App& app, Request& request) {

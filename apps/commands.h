@@ -100,6 +100,7 @@ struct MedialCommand {
   double few_error = 0;                   // percent of the diagonal that the simplified axis may be off; 0: not asked
   bool curve = false;                     // simplify to ever fewer vertices, and write how far off each is
   std::filesystem::path envelope;         // .obj: the surface of what the axis stands for; empty: none
+  double envelope_cell = 0.5;             // % of the diagonal
   std::vector<std::string> sweep;         // NAME=VALUE,VALUE,..
   std::string best = "hausdorff_max";     // of a sweep: the measure that its rows are printed by, the best first
   std::optional<SphereTreeOptions> tree;  // of a sweep: the tree to build from each axis

@@ -8,7 +8,6 @@
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
-#include "orchard/medial/envelope.h"
 #include "orchard/medial/medial_mesh_formats.h"
 #include "svg_plot.h"
 
@@ -72,6 +71,12 @@ std::string to_svg(const std::vector<SimplifiedMedialMesh>& curve) {
   return plot::to_svg({plot});
 }
 
+std::string lost_of(const EnvelopeMesh& envelope) {
+  if (envelope.lost == 0) return {};
+  return fmt::format("; what {} of the balls stand for is thinner than its cells and lost: --envelope-cell",
+                     envelope.lost);
+}
+
 void print(const FewBalls& few) {
   const auto row = [](const SimplifyReport& report) {
     fmt::print("  {:>7} {:>12.3f} {:>10.4f} {:>10.3f} {:>12.3f}\n", report.vertices, 100 * report.hausdorff.max,
@@ -84,7 +89,8 @@ void print(const FewBalls& few) {
   for (const auto& [mesh, report] : few.curve) row(report);
   if (few.simplified) row(few.simplified->report);
   if (few.envelope) {
-    fmt::print("envelope: {} vertices, {} triangles\n", few.envelope->vertices.size(), few.envelope->triangles.size());
+    fmt::print("envelope: {} vertices, {} triangles{}\n", few.envelope->mesh.vertices.size(),
+               few.envelope->mesh.triangles.size(), lost_of(*few.envelope));
   }
   for (const auto& [stage, time] : few.seconds) fmt::print("  {:<18} {:>8.2f} s\n", stage, time);
 }
@@ -143,8 +149,9 @@ FewBalls make_few_balls(const MedialCommand& command, const Surface& surface, co
                [&] { few.simplified = simplify_medial_mesh(surface, axis, options_of(command), progress); });
   }
   if (!command.envelope.empty()) {
+    const EnvelopeOptions options{.cell = command.envelope_cell / 100};
     time_stage(few.seconds, "envelope",
-               [&] { few.envelope = envelope_mesh(few.simplified ? few.simplified->mesh : axis, {}, progress); });
+               [&] { few.envelope = envelope_mesh(few.simplified ? few.simplified->mesh : axis, options, progress); });
   }
   return few;
 }
@@ -169,8 +176,10 @@ void write_few_balls(const MedialCommand& command, const FewBalls& few, json& re
     write_file(outputs.add(name("-curve.svg"), "the same as a picture"), to_svg(few.curve));
   }
   if (few.envelope) {
-    write_obj(command.envelope, *few.envelope);
-    report["envelope"] = {{"vertices", few.envelope->vertices.size()}, {"triangles", few.envelope->triangles.size()}};
+    const auto& [mesh, lost] = *few.envelope;
+    write_obj(command.envelope, mesh);
+    report["envelope"] = {
+        {"vertices", mesh.vertices.size()}, {"triangles", mesh.triangles.size()}, {"balls_lost", lost}};
   }
   for (const auto& [stage, time] : few.seconds) report["seconds_of_few_balls"][stage] = time;
   if (!command.output.quiet && !command.output.json) print(few);

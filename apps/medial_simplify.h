@@ -7,6 +7,7 @@
 
 #include "commands.h"
 #include "orchard/geometry/stage_times.h"
+#include "orchard/medial/envelope.h"
 #include "orchard/medial/simplify.h"
 #include "outputs.h"
 
@@ -17,7 +18,7 @@ namespace orchard::apps {
 struct FewBalls {
   std::optional<SimplifiedMedialMesh> simplified = {};  // with --vertices or --error
   std::vector<SimplifiedMedialMesh> curve = {};         // with --curve
-  std::optional<TriangleMesh> envelope = {};            // with --envelope: of the simplified mesh, or else of the axis
+  std::optional<EnvelopeMesh> envelope = {};            // with --envelope: of the simplified mesh, or else of the axis
   StageTimes seconds = {};
 };
 

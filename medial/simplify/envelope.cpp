@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <utility>
 
 #include "../quality/reconstruction.h"
@@ -41,7 +42,7 @@ void sort_unique(std::vector<std::uint64_t>& keys) {
 class Marching {
  public:
   Marching(const MedialMesh& mesh, const EnvelopeOptions& options, const Progress& progress)
-      : reconstruction_(mesh), progress_(progress) {
+      : mesh_(mesh), reconstruction_(mesh), progress_(progress) {
     Box box;
     for (Index v = 0; v < mesh.size(); ++v) {
       box.extend(mesh.centers[v] + Vector::Constant(mesh.radii[v]));
@@ -53,7 +54,7 @@ class Marching {
     while (static_cast<double>(1u << levels_) * cell_ < extent) ++levels_;
   }
 
-  TriangleMesh run() {
+  EnvelopeMesh run() {
     if (!(cell_ > 0)) return {};
     find_cubes();
     report_progress(progress_, kStage, 0.2);
@@ -62,7 +63,7 @@ class Marching {
     cut_cubes();
     place_vertices();
     report_progress(progress_, kStage, 1);
-    return std::move(result_);
+    return {std::move(result_), lost()};
   }
 
  private:
@@ -222,6 +223,33 @@ class Marching {
     return a + share * (b - a);
   }
 
+  // Whether a place of the lattice is inside. Cubes that the envelope cannot meet have no corners here, but those of
+  // their neighbours.
+  bool inside(const Lattice& at) const {
+    const std::uint64_t key = key_of(at);
+    const auto found = std::lower_bound(corners_.begin(), corners_.end(), key);
+    return found != corners_.end() && *found == key && values_[static_cast<std::size_t>(found - corners_.begin())] < 0;
+  }
+
+  // Balls whose cube is one that the envelope can meet, with no place inside at its corners, nor at its neighbours':
+  // not the edge of a part was cut off there, but all of it.
+  Index lost() const {
+    Index count = 0;
+    for (Index v = 0; v < mesh_.size(); ++v) {
+      if (mesh_.radii[v] <= 0) continue;
+      const Vector at = (mesh_.centers[v] - origin_) / cell_;  // at least 1.5
+      const Lattice cube{static_cast<std::uint32_t>(at.x()), static_cast<std::uint32_t>(at.y()),
+                         static_cast<std::uint32_t>(at.z())};
+      if (!std::binary_search(cubes_.begin(), cubes_.end(), key_of(cube))) continue;
+      bool held = false;
+      for (std::uint32_t i = 0; i < 64 && !held; ++i)
+        held = inside({cube[0] + i % 4 - 1, cube[1] + i / 4 % 4 - 1, cube[2] + i / 16 - 1});
+      count += held ? 0 : 1;
+    }
+    return count;
+  }
+
+  const MedialMesh& mesh_;
   const detail::Reconstruction reconstruction_;
   const Progress& progress_;
   double cell_ = 0;
@@ -235,13 +263,14 @@ class Marching {
 
 }  // namespace
 
-TriangleMesh envelope_mesh(const MedialMesh& mesh, const EnvelopeOptions& options, const Progress& progress) {
+EnvelopeMesh envelope_mesh(const MedialMesh& mesh, const EnvelopeOptions& options, const Progress& progress) {
   validate(mesh);
   if (!(options.cell >= 1e-4 && options.cell <= 0.5))
     throw InputError("cells of the envelope: between 0.0001 and 0.5 diagonals");
-  TriangleMesh result = Marching(mesh, options, progress).run();
-  if (result.triangles.empty())
-    throw InputError("the envelope is thinner than the cells of its grid everywhere; take smaller cells");
+  EnvelopeMesh result = Marching(mesh, options, progress).run();
+  if (result.mesh.triangles.empty())
+    throw InputError("the envelope is everywhere thinner than its cells of " + std::to_string(100 * options.cell) +
+                     " % of the diagonal; take smaller ones");
   return result;
 }
 

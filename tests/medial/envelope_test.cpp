@@ -41,7 +41,7 @@ TEST(EnvelopeMesh, IsABallsSurface) {
   MedialMesh mesh;
   mesh.centers = {{1, 2, 3}};
   mesh.radii = {0.7};
-  const TriangleMesh envelope = envelope_mesh(mesh, {.cell = 0.02});
+  const TriangleMesh envelope = envelope_mesh(mesh, {.cell = 0.02}).mesh;
   EXPECT_TRUE(Surface(envelope).solid());
   for (const Point& vertex : envelope.vertices) EXPECT_NEAR((vertex - mesh.centers[0]).norm(), 0.7, 1e-9);
   EXPECT_NEAR(enclosed_volume(envelope), 4.0 / 3 * std::numbers::pi * 0.7 * 0.7 * 0.7, 0.003);
@@ -56,7 +56,7 @@ TEST(EnvelopeMesh, HasTheVolumeOfARoundedTriangle) {
   const auto length = [&](int a, int b) { return (mesh.centers[a] - mesh.centers[b]).norm(); };
   const double r = 0.3, around = length(0, 1) + length(1, 2) + length(0, 2);
   const double volume = 2 * 1.5 * r + std::numbers::pi / 2 * around * r * r + 4.0 / 3 * std::numbers::pi * r * r * r;
-  const TriangleMesh envelope = envelope_mesh(mesh, {.cell = 0.02});
+  const TriangleMesh envelope = envelope_mesh(mesh, {.cell = 0.02}).mesh;
   EXPECT_TRUE(Surface(envelope).solid());
   EXPECT_NEAR(enclosed_volume(envelope), volume, 0.005 * volume);
 }
@@ -65,7 +65,7 @@ TEST(EnvelopeMesh, IsAClosedManifoldOfTheRightVolumeForAnyBalls) {
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     SCOPED_TRACE(seed);
     const MedialMesh mesh = random_balls(seed);
-    const TriangleMesh envelope = envelope_mesh(mesh, {.cell = 1.0 / 80});
+    const TriangleMesh envelope = envelope_mesh(mesh, {.cell = 1.0 / 80}).mesh;
     const Surface surface(envelope);
     EXPECT_TRUE(surface.solid()) << surface.report().faults();
     const detail::Reconstruction reconstruction(mesh);
@@ -96,8 +96,28 @@ TEST(EnvelopeMesh, HasTheTopologyOfARing) {
     ring.edges.push_back({i, (i + 1) % kCount});
   }
   complete(ring);
-  const Surface surface(envelope_mesh(ring, {.cell = 0.02}));
+  const Surface surface(envelope_mesh(ring, {.cell = 0.02}).mesh);
   EXPECT_EQ(solid_topology(surface), (Topology{1, 1, 0}));
+}
+
+TEST(EnvelopeMesh, CountsBallsThatAreLostBetweenItsCells) {
+  MedialMesh mesh;
+  mesh.centers = {{0, 0, 0}, {0.2, 0.01, 0.005}, {0, 0.18, 0.02}};
+  mesh.radii = {0.05, 0.004, 0.003};
+  const EnvelopeMesh coarse = envelope_mesh(mesh, {.cell = 0.05}), fine = envelope_mesh(mesh, {.cell = 4e-3});
+  EXPECT_EQ(coarse.lost, 2U);
+  EXPECT_EQ(solid_topology(Surface(coarse.mesh)).components, 1);
+  EXPECT_EQ(fine.lost, 0U);
+  EXPECT_EQ(solid_topology(Surface(fine.mesh)).components, 3);
+}
+
+// The tip of a cone is cut off, but not the cone.
+TEST(EnvelopeMesh, LosesNoBallWhereOnlyAnEdgeIsCutOff) {
+  MedialMesh mesh;
+  mesh.centers = {{0, 0, 0}, {0.9, 0, 0}, {0.99, 0, 0}};
+  mesh.radii = {0.3, 0.03, 0.003};
+  mesh.edges = {{0, 1}, {1, 2}};
+  EXPECT_EQ(envelope_mesh(mesh, {.cell = 0.02}).lost, 0U);
 }
 
 TEST(EnvelopeMesh, RefusesWhatHasNoInside) {
