@@ -29,9 +29,14 @@ constexpr std::size_t kManyBalls = 48;
 
 }  // namespace
 
+LemmaScratch& LemmaScratch::of_this_thread() {
+  thread_local LemmaScratch scratch;
+  return scratch;
+}
+
 LemmaCheck::LemmaCheck(const TrianglePlane& plane, std::span<const PathBall> balls,
                        std::span<CircleInPlane* const> circles, Want want)
-    : plane_(plane), balls_(balls), circles_(circles), want_(want) {}
+    : plane_(plane), balls_(balls), circles_(circles), want_(want), own_(LemmaScratch::of_this_thread()) {}
 
 TriangleCover LemmaCheck::run() {
   TriangleCover result;
@@ -39,11 +44,11 @@ TriangleCover LemmaCheck::run() {
     result.covered = true;
     return result;
   }
-  rests_on_.assign(balls_.size(), 0);
+  own_.rests_on.assign(balls_.size(), 0);
   check_named_point(result);
   if (!result.covered && want_ == Want::answer) return result;
-  covering_.resize(balls_.size());
-  made_for_.assign(balls_.size(), kNone);
+  if (own_.covering.size() < balls_.size()) own_.covering.resize(balls_.size());
+  own_.made_for.assign(balls_.size(), kNone);
   for (Index ball = 0; ball < balls_.size(); ++ball) {
     if (check_circle(ball)) continue;
     result.covered = false;
@@ -52,15 +57,18 @@ TriangleCover LemmaCheck::run() {
   }
   if (!result.covered) return result;
   for (Index ball = 0; ball < balls_.size(); ++ball)
-    if (rests_on_[ball]) result.coverers.push_back(ball);
+    if (own_.rests_on[ball]) result.coverers.push_back(ball);
   return result;
 }
 
 // Drops what is empty, doubtful, apart from the triangle or without a leaf. Returns true if one path region certainly
 // holds the whole region, which is convex.
 bool LemmaCheck::find_useful(TriangleCover& result) {
-  useful_.assign(balls_.size(), 0);
-  std::vector<char> sound(balls_.size(), 0), holds(balls_.size(), 0);
+  own_.useful.assign(balls_.size(), 0);
+  std::vector<char>&sound = own_.sound, &holds = own_.holds;
+  sound.assign(balls_.size(), 0);
+  holds.assign(balls_.size(), 0);
+  own_.all.clear();
   for (Index i = 0; i < balls_.size(); ++i) {
     const Index parent = balls_[i].parent;
     sound[i] = disk(i).radius > 0 && (parent == kNone || sound[parent]);
@@ -70,27 +78,28 @@ bool LemmaCheck::find_useful(TriangleCover& result) {
     return true;
   }
   for (Index i = static_cast<Index>(balls_.size()); i-- > 0;) {
-    if (sound[i] && balls_[i].leaf) useful_[i] = 1;
-    if (useful_[i] && balls_[i].parent != kNone) useful_[balls_[i].parent] = 1;
-    if (useful_[i]) all_.push_back(i);
+    if (sound[i] && balls_[i].leaf) own_.useful[i] = 1;
+    if (own_.useful[i] && balls_[i].parent != kNone) own_.useful[balls_[i].parent] = 1;
+    if (own_.useful[i]) own_.all.push_back(i);
   }
-  std::reverse(all_.begin(), all_.end());
-  if (all_.size() < kManyBalls) return false;
-  std::vector<Disk> disks(balls_.size());
-  for (Index i : all_) disks[i] = disk(i);
-  tree_ = std::make_unique<DiskTree>(disks);
+  std::reverse(own_.all.begin(), own_.all.end());
+  if (own_.all.size() < kManyBalls) return false;
+  own_.disks.assign(balls_.size(), {});
+  for (Index i : own_.all) own_.disks[i] = disk(i);
+  tree_ = std::make_unique<DiskTree>(own_.disks);
   return false;
 }
 
 void LemmaCheck::check_named_point(TriangleCover& result) {
   const Point2& point = plane_.named_point();
   result.witness = plane_.lift(point);
-  std::vector<char> inside(balls_.size(), 0);
-  for (Index i : all_) {
+  std::vector<char>& inside = own_.inside;
+  inside.assign(balls_.size(), 0);
+  for (Index i : own_.all) {
     if (balls_[i].parent != kNone && !inside[balls_[i].parent]) continue;
     inside[i] = plane_.certainly_inside(point, disk(i));
     if (!inside[i] || !balls_[i].leaf) continue;
-    rests_on_[i] = 1;
+    own_.rests_on[i] = 1;
     result.covered = true;
     return;
   }
@@ -99,42 +108,42 @@ void LemmaCheck::check_named_point(TriangleCover& result) {
 // Condition (ii) for one ball.
 bool LemmaCheck::check_circle(Index ball) {
   CircleInPlane& circle = *circles_[ball];
-  if (!useful_[ball] || circle.disk.holds_region) return true;
+  if (!own_.useful[ball] || circle.disk.holds_region) return true;
   if (!circle.clipped) {
     plane_.clip_to_region(circle.disk, circle.needed);
     circle.clipped = true;
   }
   if (circle.needed.empty()) return true;
-  needed_ = circle.needed;
+  own_.needed = circle.needed;
   subtract_covered(ball);
-  return needed_.empty();
+  return own_.needed.empty();
 }
 
 // Subtracts from what is needed of a circle what path regions that avoid it cover.
 void LemmaCheck::subtract_covered(Index ball) {
   for (Index i : candidates(ball)) {
-    if (i == ball || !useful_[i]) continue;
+    if (i == ball || !own_.useful[i]) continue;
     const Index parent = balls_[i].parent;
-    if (parent != kNone && made_for_[parent] != ball) continue;
-    const CircleIntervals& above = parent == kNone ? needed_ : covering_[parent];
-    covering_[i].assign_intersection(above, plane_.inside_of(disk(ball), disk(i)));
-    if (covering_[i].empty()) continue;
-    made_for_[i] = ball;
+    if (parent != kNone && own_.made_for[parent] != ball) continue;
+    const CircleIntervals& above = parent == kNone ? own_.needed : own_.covering[parent];
+    own_.covering[i].assign_intersection(above, plane_.inside_of(disk(ball), disk(i)));
+    if (own_.covering[i].empty()) continue;
+    own_.made_for[i] = ball;
     if (!balls_[i].leaf) continue;
-    if (needed_.subtract(covering_[i])) rests_on_[i] = 1;
-    if (needed_.empty()) return;
+    if (own_.needed.subtract(own_.covering[i])) own_.rests_on[i] = 1;
+    if (own_.needed.empty()) return;
   }
 }
 
 std::span<const Index> LemmaCheck::candidates(Index ball) {
-  if (!tree_) return all_;
-  tree_->meeting(box_of(disk(ball)).intersection(plane_.box()), near_);
-  return near_;
+  if (!tree_) return own_.all;
+  tree_->meeting(box_of(disk(ball)).intersection(plane_.box()), own_.near);
+  return own_.near;
 }
 
 void LemmaCheck::report_arcs(Index ball, TriangleCover& result) const {
   const Disk& circle = disk(ball);
-  for (const auto& interval : needed_.intervals()) {
+  for (const auto& interval : own_.needed.intervals()) {
     const auto at = [&](double angle) {
       return plane_.lift(circle.center + circle.radius * Point2(std::cos(angle), std::sin(angle)));
     };
@@ -146,33 +155,71 @@ void LemmaCheck::report_arcs(Index ball, TriangleCover& result) const {
 namespace {
 
 TriangleCover check(const TrianglePlane& plane, std::span<const PathBall> balls, LemmaCheck::Want want) {
-  std::vector<CircleInPlane> circles(balls.size());
-  std::vector<CircleInPlane*> pointers(balls.size());
+  LemmaScratch& own = LemmaScratch::of_this_thread();
+  if (own.circles.size() < balls.size()) own.circles.resize(balls.size());
+  own.pointers.resize(balls.size());
   for (std::size_t i = 0; i < balls.size(); ++i) {
-    circles[i].disk = plane.project(balls[i].center, balls[i].radius);
-    pointers[i] = &circles[i];
+    own.circles[i].disk = plane.project(balls[i].center, balls[i].radius);
+    own.circles[i].clipped = false;
+    own.pointers[i] = &own.circles[i];
   }
-  return LemmaCheck(plane, balls, pointers, want).run();
+  return LemmaCheck(plane, balls, own.pointers, want).run();
+}
+
+// Balls are convex: a ball that holds the corners holds the triangle. Far more than the roundings of a distance.
+constexpr double kSurelyInside = 1 - 0x1p-40;
+
+bool surely_holds(const PathBall& ball, const std::array<Point, 3>& triangle) {
+  const double limit = ball.radius * kSurelyInside;
+  return ball.radius > 0 && std::all_of(triangle.begin(), triangle.end(), [&](const Point& corner) {
+           return (corner - ball.center).squaredNorm() <= limit * limit;
+         });
+}
+
+// The first leaf with a path of balls that hold the triangle with room for all roundings; kNone without one. That is
+// how most triangles of a fine mesh are covered, and it needs no plane.
+Index leaf_around(const std::array<Point, 3>& triangle, std::span<const PathBall> balls) {
+  std::vector<char>& holds = LemmaScratch::of_this_thread().holds;
+  holds.assign(balls.size(), 0);
+  for (Index i = 0; i < balls.size(); ++i) {
+    if (balls[i].parent != kNone && !holds[balls[i].parent]) continue;
+    holds[i] = surely_holds(balls[i], triangle);
+    if (holds[i] && balls[i].leaf) return i;
+  }
+  return kNone;
+}
+
+TriangleCover covered_by(Index leaf) {
+  TriangleCover cover;
+  cover.covered = true;
+  cover.coverers = {leaf};
+  return cover;
 }
 
 }  // namespace
 }  // namespace detail
 
 TriangleCover cover_of_triangle(const std::array<Point, 3>& triangle, std::span<const PathBall> balls) {
+  const Index leaf = detail::leaf_around(triangle, balls);
+  if (leaf != kNone) return detail::covered_by(leaf);
   return detail::check(detail::TrianglePlane(triangle), balls, detail::LemmaCheck::Want::all_arcs);
 }
 
 TriangleCover cover_of_triangle(const std::array<Point, 3>& triangle, const Sphere& clip,
                                 std::span<const PathBall> balls) {
+  const Index leaf = detail::leaf_around(triangle, balls);
+  if (leaf != kNone) return detail::covered_by(leaf);
   return detail::check(detail::TrianglePlane(triangle, clip), balls, detail::LemmaCheck::Want::all_arcs);
 }
 
 bool triangle_covered(const std::array<Point, 3>& triangle, std::span<const PathBall> balls) {
+  if (detail::leaf_around(triangle, balls) != kNone) return true;
   return detail::check(detail::TrianglePlane(triangle), balls, detail::LemmaCheck::Want::answer).covered;
 }
 
 double path_distance(const Point& point, std::span<const PathBall> balls) {
-  std::vector<double> excess(balls.size());
+  thread_local std::vector<double> excess;
+  excess.resize(std::max(excess.size(), balls.size()));
   double min = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < balls.size(); ++i) {
     excess[i] = (point - balls[i].center).norm() - balls[i].radius;

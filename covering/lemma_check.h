@@ -17,7 +17,24 @@ struct CircleInPlane {
   bool clipped = false;
 };
 
-// The boundary lemma for one triangle. `circles` are those of `balls`, projected; what they lack is filled in.
+// What a check works in, kept from one triangle to the next for the room that its lists have.
+struct LemmaScratch {
+  std::vector<CircleInPlane> circles;  // where the caller keeps none
+  std::vector<CircleInPlane*> pointers;
+  std::vector<char> sound, holds, inside;
+  std::vector<char> useful;  // the disk and all above it are certain to be disks, and a leaf hangs on it
+  std::vector<char> rests_on;
+  std::vector<Index> all, near;
+  std::vector<Disk> disks;
+  CircleIntervals needed;
+  std::vector<CircleIntervals> covering;  // of the present circle, by each ball's path region
+  std::vector<Index> made_for;            // the circle that covering[i] was made for
+
+  static LemmaScratch& of_this_thread();
+};
+
+// The boundary lemma for one triangle. `circles` are those of `balls`, projected; what they lack is filled in. At most
+// one check at a time in a thread: all share its scratch.
 class LemmaCheck {
  public:
   enum class Want { all_arcs, answer };  // answer: stop at the first arc that is not covered
@@ -38,13 +55,8 @@ class LemmaCheck {
   std::span<const PathBall> balls_;
   std::span<CircleInPlane* const> circles_;
   Want want_;
-  std::vector<char> useful_;  // the disk and all above it are certain to be disks, and a leaf hangs on it
-  std::vector<char> rests_on_;
-  std::vector<Index> all_, near_;
+  LemmaScratch& own_;
   std::unique_ptr<DiskTree> tree_;  // where there are many
-  CircleIntervals needed_;
-  std::vector<CircleIntervals> covering_;  // of the present circle, by each ball's path region
-  std::vector<Index> made_for_;            // the circle that covering_[i] was made for
 };
 
 }  // namespace orchard::detail

@@ -20,29 +20,43 @@ double bound_over_ball(const Surface& surface, const Sphere& ball, double center
   return std::min(distance_bound(center_distance, ball.radius), found.upper + kRoom * width);
 }
 
+// Returns the lower bound on the inaccuracy, too, which spares the search over the ball work.
+Bounds inaccuracy_of(const SphereNode& node, const Surface& surface) {
+  if (surface.solid()) return inaccuracy(surface, node.sphere, {tolerance::kInaccuracy, 0});
+  const double bound = distance_bound(surface.distance(node.sphere.center), node.sphere.radius);
+  return {bound, bound};
+}
+
 void measure_node(SphereNode& node, const Surface& surface) {
   const Sphere& ball = node.sphere;
+  const Bounds on_sphere = inaccuracy_of(node, surface);
+  node.inaccuracy = on_sphere.upper;
   if (!surface.solid()) {
     node.center_distance = surface.distance(ball.center);
-    node.distance_bound = distance_bound(node.center_distance, ball.radius);
-    node.inaccuracy = node.distance_bound;
+    node.distance_bound = on_sphere.upper;
     return;
   }
   node.center_distance = surface.signed_distance(ball.center);
-  const Bounds on_sphere = inaccuracy(surface, ball, {tolerance::kInaccuracy, 0});
-  node.inaccuracy = on_sphere.upper;
   node.distance_bound = bound_over_ball(surface, ball, node.center_distance, on_sphere.lower);
+}
+
+template <class MeasureNode>
+void for_each_node(SphereTree& tree, const Progress& progress, MeasureNode&& measure_one) {
+  const std::size_t count = tree.nodes.size(), slice = std::max<std::size_t>(32, count / 50 + 1);
+  for (std::size_t begin = 0; begin < count; begin += slice) {
+    report_progress(progress, "measuring", static_cast<double>(begin) / static_cast<double>(count));
+    tbb::parallel_for(begin, std::min(count, begin + slice), [&](std::size_t i) { measure_one(tree.nodes[i]); });
+  }
 }
 
 }  // namespace
 
 void measure(SphereTree& tree, const Surface& surface, const Progress& progress) {
-  const std::size_t count = tree.nodes.size(), slice = std::max<std::size_t>(32, count / 50 + 1);
-  for (std::size_t begin = 0; begin < count; begin += slice) {
-    report_progress(progress, "measuring", static_cast<double>(begin) / static_cast<double>(count));
-    tbb::parallel_for(begin, std::min(count, begin + slice),
-                      [&](std::size_t i) { measure_node(tree.nodes[i], surface); });
-  }
+  for_each_node(tree, progress, [&](SphereNode& node) { measure_node(node, surface); });
+}
+
+void measure_inaccuracy(SphereTree& tree, const Surface& surface, const Progress& progress) {
+  for_each_node(tree, progress, [&](SphereNode& node) { node.inaccuracy = inaccuracy_of(node, surface).upper; });
 }
 
 }  // namespace orchard

@@ -89,6 +89,22 @@ TEST(BoundaryLemma, TheCoverersAloneAreEnough) {
   }
 }
 
+// What the corners alone tell is no shortcut past a path: every ball from the root to the leaf must hold them.
+TEST(BoundaryLemma, ATriangleInsideOnePathIsCoveredByTheFirstSuchLeafAlone) {
+  const Triangle t{Point(0, 0, 0), Point(1, 0, 0), Point(0, 1, 0)};
+  const Point middle(0.4, 0.4, 0);
+  std::vector<PathBall> balls{{middle, 0.3, kNone, false}, {middle, 5, 0, true},   {middle, 4, kNone, false},
+                              {middle, 0.2, 2, true},      {middle, 1.5, 2, true}, {middle, 2, 2, true},
+                              {middle, -3, kNone, false},  {middle, 3, 6, true}};
+  const std::vector<Index> fifth{4};
+  EXPECT_EQ(cover_of_triangle(t, balls).coverers, fifth);
+  EXPECT_EQ(cover_of_triangle(t, Sphere{Point(0, 0, 0), 0.5}, balls).coverers, fifth);
+  EXPECT_TRUE(triangle_covered(t, balls));
+  balls[4].leaf = balls[5].leaf = false;
+  EXPECT_FALSE(cover_of_triangle(t, balls).covered);
+  EXPECT_FALSE(triangle_covered(t, balls));
+}
+
 // Growing every ball until the lemma just says "covered" puts three circles within 1e-12 of a common point.
 TEST(BoundaryLemma, AgreesWithDenseSamplingWhereCoverageIsAboutToFail) {
   int compared = 0;

@@ -55,5 +55,18 @@ TEST(Measure, FallsBackToTheDistanceBoundOnAnOpenSurface) {
   }
 }
 
+TEST(Measure, TheInaccuracyAloneIsTheSame) {
+  for (const TriangleMesh& mesh : {u_shape(0.3), open_box()}) {
+    const Surface surface(mesh);
+    SphereTree whole = octree(surface), part = whole;
+    measure(whole, surface);
+    measure_inaccuracy(part, surface);
+    for (std::size_t i = 0; i < whole.nodes.size(); ++i) {
+      EXPECT_EQ(part.nodes[i].inaccuracy, whole.nodes[i].inaccuracy);
+      EXPECT_EQ(part.nodes[i].distance_bound, SphereNode{}.distance_bound);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace orchard

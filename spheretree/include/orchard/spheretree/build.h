@@ -69,7 +69,7 @@ struct SphereTreeBuild {
   std::optional<MedialBuild> medial;  // empty for an octree or annealing, which need no axis
   Index axis_components = 0;
   SphereTree tree;
-  SphereTree octree;  // of the same depth, to compare with
+  SphereTree octree;  // of the same depth, to compare with: measured for its inaccuracy alone
   TightenReport tightening;
   MergeReport merging;
   AnnealingReport annealing;

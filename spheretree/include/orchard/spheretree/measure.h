@@ -9,4 +9,7 @@ namespace orchard {
 // the thread count. Source: dissertation 5.3.5 and 6.3.4.
 void measure(SphereTree& tree, const Surface& surface, const Progress& progress = {});
 
+// Fills the inaccuracy alone, with the same numbers, in about half the time: for trees that are only compared with.
+void measure_inaccuracy(SphereTree& tree, const Surface& surface, const Progress& progress = {});
+
 }  // namespace orchard
