@@ -9,6 +9,7 @@
 #include "insertion_order.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/tolerance.h"
+#include "parallel_insertion.h"
 
 namespace orchard::detail {
 
@@ -112,6 +113,15 @@ void make_room(Workspace& workspace, std::size_t inserted) {
     workspace.reserve(5 * (vertices / 2));
 }
 
+// The point before which those from `begin` on are inserted next. The last rounds of insertion_order(), where they are
+// large, are for many threads, each when all before it are in.
+Index end_of_stage(std::size_t begin, std::size_t count) {
+  std::size_t end = count;
+  if (count >= large_set())
+    while (end / 8 > begin && end >= large_set() / 2) end /= 8;
+  return static_cast<Index>(end);
+}
+
 // All points of the workspace in order. If it fails, `at` is the point and `reason` the inserter's.
 Outcome insert_all(Workspace& workspace, Search search, std::string_view stage, const Progress& progress,
                    InsertionCounts& counts, Index& at, const char*& reason) {
@@ -122,13 +132,24 @@ Outcome insert_all(Workspace& workspace, Search search, std::string_view stage, 
   if (!inserter.start(first)) return Outcome::flat;
   if (workspace.exact()) workspace.forget_noise();
   const std::size_t count = workspace.points.size(), step = std::max<std::size_t>(count / 64, 1);
-  for (Index i = 0; i < count; ++i) {
-    make_room(workspace, i);
-    if (i % step == 0) report_progress(progress, stage, static_cast<double>(i) / static_cast<double>(count));
-    if (std::find(first.begin(), first.end(), i) != first.end() || inserter.insert(i)) continue;
-    at = i;
-    reason = inserter.failure();
-    return Outcome::failed;
+  std::vector<Index> stage_points;
+  for (Index begin = 0, end = 0; begin < count; begin = end) {
+    end = search == Search::highest_first ? end_of_stage(begin, count) : static_cast<Index>(count);
+    stage_points.clear();
+    for (Index i = begin; i < end; ++i)
+      if (std::find(first.begin(), first.end(), i) == first.end()) stage_points.push_back(i);
+    if (begin > 0) {
+      make_room(workspace, begin);
+      insert_in_regions(workspace, inserter, stage_points, end);
+    }
+    for (const Index i : stage_points) {
+      if (begin == 0) make_room(workspace, i);
+      if (i % step == 0) report_progress(progress, stage, static_cast<double>(i) / static_cast<double>(count));
+      if (inserter.insert(i)) continue;
+      at = i;
+      reason = inserter.failure();
+      return Outcome::failed;
+    }
   }
   if (!inserter.insert_deferred()) return Outcome::failed;
   report_progress(progress, stage, 1);

@@ -29,6 +29,7 @@ void Cavity::end() {
 
 void Cavity::begin(Index new_point) {
   end();
+  left_territory_ = false;
   new_point_ = new_point;
   position_ = workspace_.points[new_point];
   if (local_of_.size() != workspace_.points.size() + 1) local_of_.assign(workspace_.points.size() + 1, kNone);
@@ -45,11 +46,20 @@ Index Cavity::make_local(Index point) {
 // The time goes into mispredicted branches here if one is not careful: whether a neighbour has been seen, and on which
 // side its sign falls, is as good as random. So every neighbour is tested, and what has been seen is masked out.
 bool Cavity::delete_nearer(Index start) {
+  if (!territory_.owns(start)) {
+    left_territory_ = true;
+    return false;
+  }
   delete_vertex(start);
   return delete_nearer_around(0);
 }
 
 bool Cavity::delete_nearer_around(std::size_t first) {
+  return territory_.whole() ? delete_nearer_in<true>(first) : delete_nearer_in<false>(first);
+}
+
+template <bool kWhole>
+bool Cavity::delete_nearer_in(std::size_t first) {
   const Point q = position_;
   bool certain = true;
   for (std::size_t i = first; i < deleted_.size(); ++i) {
@@ -57,6 +67,11 @@ bool Cavity::delete_nearer_around(std::size_t first) {
     seen_.ensure_room();
     const std::array<Index, 4> neighbors = workspace_.vertices[deleted_.items()[i]].neighbors;
     for (const Index u : neighbors) __builtin_prefetch(&workspace_.vertices[u]);
+    if constexpr (!kWhole) {
+      left_territory_ = !(territory_.owns(neighbors[0]) && territory_.owns(neighbors[1]) &&
+                          territory_.owns(neighbors[2]) && territory_.owns(neighbors[3]));
+      if (left_territory_) return false;
+    }
     for (const Index u : neighbors) {
       const bool unseen = workspace_.mark(u) == Mark::unseen;
       const double power = workspace_.power(u, q), bound = workspace_.power_bound(u);
@@ -348,7 +363,7 @@ Index Cavity::place_flat_vertices() {
 void Cavity::choose_slots() {
   const auto reused = deleted_.items().first(std::min(deleted_.size(), facets_.size()));
   slots_.assign(reused.begin(), reused.end());
-  const auto& free = workspace_.free_vertices;
+  const auto& free = territory_.whole() ? workspace_.free_vertices : *territory_.free_vertices;
   for (std::size_t i = 0; i < free.size() && slots_.size() < facets_.size(); ++i)
     slots_.push_back(free[free.size() - 1 - i]);
   for (auto next = static_cast<Index>(workspace_.vertices.size()); slots_.size() < facets_.size(); ++next)
@@ -357,12 +372,12 @@ void Cavity::choose_slots() {
 
 Index Cavity::replace() {
   choose_slots();
+  auto& free = territory_.whole() ? workspace_.free_vertices : *territory_.free_vertices;
   for (std::size_t i = facets_.size(); i < deleted_.size(); ++i) {
     workspace_.store(deleted_.items()[i], VoronoiVertex{}, 0);
-    workspace_.free_vertices.push_back(deleted_.items()[i]);
+    free.push_back(deleted_.items()[i]);
   }
   if (facets_.size() > deleted_.size()) {
-    auto& free = workspace_.free_vertices;
     const std::size_t more = facets_.size() - deleted_.size(), recycled = std::min(more, free.size());
     free.resize(free.size() - recycled);
     if (more > recycled) workspace_.resize(workspace_.vertices.size() + more - recycled);

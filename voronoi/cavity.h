@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "edge_table.h"
+#include "territory.h"
 #include "workspace.h"
 
 namespace orchard::detail {
@@ -51,6 +52,16 @@ class Cavity {
 
   explicit Cavity(Workspace& workspace) : workspace_(workspace) {}
 
+  // Where vertices may be replaced from now on. Only delete_nearer(), widen() and what follows them heed it; no marks
+  // may be left.
+  void enter(const Territory& territory) { territory_ = territory; }
+  // Whether the search came to a vertex that is not to be touched: the point cannot be inserted from here then.
+  bool left_territory() const { return left_territory_; }
+  // Whether there are free vertices for all that replace() makes.
+  bool has_room() const {
+    return territory_.whole() || facets_.size() <= deleted_.size() + territory_.free_vertices->size();
+  }
+
   // Starts anew for a new point: nothing deleted, all marks removed.
   void begin(Index new_point);
   // Removes all marks.
@@ -59,7 +70,8 @@ class Cavity {
   std::span<const Index> deleted() const { return deleted_.items(); }
   const std::vector<Facet>& facets() const { return facets_; }
 
-  // Deletes all vertices, connected with the first, whose sign is certainly positive. True if no sign was in doubt.
+  // Deletes all vertices, connected with the first, whose sign is certainly positive. True if no sign was in doubt and
+  // the territory was not left.
   bool delete_nearer(Index start);
   // Deletes a vertex whatever may come of it.
   void delete_vertex(Index v) {
@@ -127,6 +139,8 @@ class Cavity {
   }
   Index make_local(Index point);
   bool delete_nearer_around(std::size_t first);
+  template <bool kWhole>
+  bool delete_nearer_in(std::size_t first);
   // The infinite point, being the highest number, wraps around to the first place.
   Index& known_local(Index point) { return local_of_[static_cast<Index>(point + 1)]; }
   Index known_local(Index point) const { return local_of_[static_cast<Index>(point + 1)]; }
@@ -136,6 +150,8 @@ class Cavity {
   void note_edges(Index v);
 
   Workspace& workspace_;
+  Territory territory_;
+  bool left_territory_ = false;
   Index new_point_ = kNone;
   Point position_ = Point::Zero();
   Placing worst_ = Placing::good;

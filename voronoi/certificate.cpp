@@ -1,12 +1,17 @@
 // One proof, whose parts hand each other the intrusion that is left, hence more than 300 lines.
 #include "certificate.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <atomic>
 #include <utility>
 
 #include "cavity.h"
 #include "line_sum.h"
 #include "orchard/geometry/tolerance.h"
+#include "parallel_insertion.h"
 
 namespace orchard::detail {
 namespace {
@@ -32,7 +37,10 @@ constexpr double kShares = 64;
 constexpr double kBlurred = 0x1p-44;
 
 // Vertices that are held against all points one by one; where there are more, exact signs are cheaper.
-constexpr std::size_t kMaxSuspects = 512;
+constexpr std::size_t kMaxSuspects = 512, kOfDent = 4;
+
+// Vertices that a thread looks at at once.
+constexpr Index kBlock = 1u << 14;
 
 // Of mending and looking at what is new.
 constexpr int kRounds = 24;
@@ -43,14 +51,41 @@ constexpr std::size_t kMaxDoubts = 16, kMaxDoubtsOneIn = 64;
 // Of a squared size: far more than any stored sphere is off, where all that matters is to look at a few vertices more.
 constexpr double kAbout = 0x1p-20;
 
+// What the facet of three points takes off, where that is more than its share.
+struct Loss {
+  double intrusion;
+  std::array<Index, 3> facet;
+};
+
+// What is found at some vertices, to be put together in their order, whichever thread looked at which.
+struct Findings {
+  bool good = true;
+  double intrusion = 0, lost = 0, given = 0, max_volume = 0;
+  Index fattest = kNone;
+  std::vector<Loss> losses;
+  std::vector<Index> suspects;
+  std::vector<Index> lossy;  // that share a sphere farther from their own than a facet's share
+  std::vector<Doubt> doubts;
+
+  void add(const Findings& next) {
+    good = good && next.good;
+    intrusion += next.intrusion;
+    lost += next.lost;
+    given = std::max(given, next.given);
+    if (next.max_volume > max_volume) max_volume = next.max_volume, fattest = next.fattest;
+    losses.insert(losses.end(), next.losses.begin(), next.losses.end());
+    suspects.insert(suspects.end(), next.suspects.begin(), next.suspects.end());
+    lossy.insert(lossy.end(), next.lossy.begin(), next.lossy.end());
+    doubts.insert(doubts.end(), next.doubts.begin(), next.doubts.end());
+  }
+};
+
 class Certifier {
  public:
-  Certifier(Workspace& workspace, const std::vector<bool>& forming, Index first_new, Mender* mender)
+  Certifier(Workspace& workspace, const std::vector<std::uint8_t>& forming, Index first_new, Mender* mender)
       : workspace_(workspace), forming_(forming), first_new_(first_new), mender_(workspace.exact() ? nullptr : mender) {
-    Box box;
-    for (const Point& p : workspace.points) box.extend(p);
-    losses_ = LineSum(box);
-    diameter_ = box.diagonal().norm();
+    for (const Point& p : workspace.points) box_.extend(p);
+    diameter_ = box_.diagonal().norm();
     max_ = tolerance::kVoronoiIntrusion * diameter_ / 2;
     const double count = static_cast<double>(workspace_.points.size());
     max_sum_ = (1 - kGiven) * max_ * std::max(1.0, kMean * count);
@@ -58,13 +93,28 @@ class Certifier {
     small_share_ = max_sum_ / (kShares * static_cast<double>(workspace_.vertices.size() + 1));
   }
 
+  // For a part of the vertices of the whole, found by a thread of its own.
+  struct Part {};
+  Certifier(const Certifier& whole, Part)
+      : workspace_(whole.workspace_),
+        forming_(whole.forming_),
+        box_(whole.box_),
+        first_new_(whole.first_new_),
+        diameter_(whole.diameter_),
+        max_(whole.max_),
+        max_sum_(whole.max_sum_),
+        share_(whole.share_),
+        small_share_(whole.small_share_),
+        mender_(whole.mender_),
+        looks_at_changed_(whole.looks_at_changed_) {}
+
   Certificate run() {
     if (!look_at_all()) return {};
-    if (intrusion_ > max_sum_ && (!look_closer() || intrusion_ > max_sum_)) return {};
+    if (found_.intrusion > max_sum_ && (!look_closer() || found_.intrusion > max_sum_)) return {};
     if (mended_) find_fattest();
-    if (fattest_ != kNone && !covers_once()) return {};
+    if (found_.fattest != kNone && !covers_once()) return {};
     if (!are_suspects_innocent()) return {};
-    return {true, 2 * (intrusion_ + given_) / diameter_};
+    return {true, 2 * (found_.intrusion + found_.given) / diameter_};
   }
 
  private:
@@ -82,20 +132,34 @@ class Certifier {
 
   // All that is new; and where facets are in doubt, what they are mended by.
   bool look_at_all() {
-    for (const auto good : {&Certifier::is_oriented, &Certifier::are_facets_good})
-      for (Index v = 0; v < workspace_.vertices.size(); ++v)
-        if (!workspace_.is_free(v) && is_new(v) && !(this->*good)(v)) return false;
-    for (int round = 0; !doubts_.empty(); ++round) {
-      doubtful_ += doubts_.size();
+    if (!look_at_each(&Certifier::is_oriented) || !look_at_each(&Certifier::are_facets_good)) return false;
+    for (int round = 0; !found_.doubts.empty(); ++round) {
+      doubtful_ += found_.doubts.size();
       if (round == kRounds || doubtful_ > kMaxDoubts + workspace_.vertices.size() / kMaxDoubtsOneIn) return false;
       mended_ = true;
       looks_at_changed_ = true;
-      const std::vector<Doubt> doubts = std::exchange(doubts_, {});
+      const std::vector<Doubt> doubts = std::exchange(found_.doubts, {});
       if (!look_at_changed(mender_->mend(doubts, round))) return false;
       looks_at_changed_ = false;
-      if (doubts_.empty() && !look_at_hull()) return false;
+      if (found_.doubts.empty() && !look_at_hull()) return false;
     }
     return true;
+  }
+  // By several threads where there are many. Nothing changes on the way but a vertex that is looked at itself.
+  bool look_at_each(bool (Certifier::*good)(Index)) {
+    const auto count = static_cast<Index>(workspace_.vertices.size());
+    const bool alone = workspace_.points.size() < large_set() || first_new_ > 0;
+    const Index block = alone ? std::max<Index>(count, 1) : kBlock;
+    std::vector<Findings> found((count + block - 1) / block);
+    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t b) {
+      Certifier part(*this, Part{});
+      const Index begin = static_cast<Index>(b) * block, end = std::min(count, begin + block);
+      for (Index v = begin; v < end && part.found_.good; ++v)
+        if (!workspace_.is_free(v) && is_new(v)) part.found_.good = (part.*good)(v);
+      found[b] = std::move(part.found_);
+    });
+    for (const Findings& each : found) found_.add(each);
+    return found_.good && found_.suspects.size() <= kMaxSuspects + kOfDent;
   }
   bool look_at_changed(const std::vector<Index>& changed) {
     for (const auto good : {&Certifier::is_oriented, &Certifier::are_facets_good})
@@ -105,7 +169,7 @@ class Certifier {
   }
   // After mending: what is around an edge of the hull may have changed, though the facets next to it have not.
   bool look_at_hull() {
-    suspects_.clear();
+    found_.suspects.clear();
     for (Index v = 0; v < workspace_.vertices.size(); ++v)
       if (!workspace_.is_free(v) && workspace_.at_infinity(v) && !are_facets_good(v)) return false;
     return true;
@@ -115,19 +179,26 @@ class Certifier {
   // neighbours are far enough to count, with exact signs where a facet takes off more than its share, and only with
   // what one line can meet. What was mended need not have a new point.
   bool look_closer() {
-    for (const Index v : lossy_)
+    for (const Index v : found_.lossy)
       if (!workspace_.is_free(v) && !workspace_.at_infinity(v)) workspace_.place_sharply(v);
     if (mended_) first_new_ = 0;
     share_ = small_share_;
-    intrusion_ = 0;
-    suspects_.clear();
+    found_.intrusion = 0;
+    found_.suspects.clear();
     if (!look_at_all()) return false;
-    intrusion_ += std::min(lost_, losses_.max());
+    found_.intrusion += std::min(found_.lost, max_lost_on_line());
     return true;
   }
+  double max_lost_on_line() const {
+    LineSum losses(box_);
+    const auto& points = workspace_.points;
+    for (const auto& [intrusion, facet] : found_.losses)
+      losses.add(intrusion, points[facet[0]], points[facet[1]], points[facet[2]]);
+    return losses.max();
+  }
   void find_fattest() {
-    max_volume_ = 0;
-    fattest_ = kNone;
+    found_.max_volume = 0;
+    found_.fattest = kNone;
     for (Index v = 0; v < workspace_.vertices.size(); ++v)
       if (!workspace_.is_free(v) && !workspace_.at_infinity(v)) note_volume(v, six_volumes(v).value);
   }
@@ -136,10 +207,10 @@ class Certifier {
     return volume(corner(v, 0) - last, corner(v, 1) - last, corner(v, 2) - last);
   }
   void note_volume(Index v, double negative) {
-    if (-negative > max_volume_) max_volume_ = -negative, fattest_ = v;
+    if (-negative > found_.max_volume) found_.max_volume = -negative, found_.fattest = v;
   }
   bool doubt(Index v, Index u) {
-    if (mender_) doubts_.push_back({v, u});
+    if (mender_) found_.doubts.push_back({v, u});
     return mender_ != nullptr;
   }
 
@@ -168,8 +239,8 @@ class Certifier {
         apart = std::min(from_told_sphere(v), from_sphere(v, center));
       }
     }
-    if (apart > small_share_ && workspace_.shares_sphere(v)) lossy_.push_back(v);
-    given_ = std::max(given_, apart);
+    if (apart > small_share_ && workspace_.shares_sphere(v)) found_.lossy.push_back(v);
+    found_.given = std::max(found_.given, apart);
     return apart <= kGiven * max_;
   }
 
@@ -208,18 +279,19 @@ class Certifier {
 
   bool add(double intrusion) {
     if (!(intrusion <= kFacet * max_)) return false;
-    intrusion_ += intrusion;
+    found_.intrusion += intrusion;
     return true;
   }
   // What only lines through the facet of v that is opposite to its point i lose.
   void note_loss(double intrusion, Index v, unsigned i) {
     if (share_ > small_share_) {
-      intrusion_ += intrusion;
+      found_.intrusion += intrusion;
       return;
     }
-    lost_ += intrusion;
+    found_.lost += intrusion;
     const auto& [a, b, c] = Cavity::kOthers[i];
-    losses_.add(intrusion, corner(v, a), corner(v, b), corner(v, c));
+    const auto& corner = workspace_.vertices[v].forming_points;
+    found_.losses.push_back({intrusion, {corner[a], corner[b], corner[c]}});
   }
 
   // Across the facet between v and its neighbour i, u.
@@ -322,18 +394,18 @@ class Certifier {
     const Index u = workspace_.vertices[v].neighbors[i];
     const Index below = workspace_.vertices[v].neighbors[3], next = workspace_.vertices[u].neighbors[3];
     if (!add(rise + intrusion_added(below, next, b, away, 16 * kRounding, normal, rise)))
-      suspects_.insert(suspects_.end(), {v, u, below, next});
-    return suspects_.size() <= kMaxSuspects;
+      found_.suspects.insert(found_.suspects.end(), {v, u, below, next});  // kOfDent
+    return found_.suspects.size() <= kMaxSuspects;
   }
 
   // All points, against the planes and the spheres at edges of the hull so short or facets so thin that bounds from
   // next to them, carried across the whole set, say nothing.
   bool are_suspects_innocent() {
-    if (suspects_.empty()) return true;
+    if (found_.suspects.empty()) return true;
     note_hull_points();
-    std::sort(suspects_.begin(), suspects_.end());
-    suspects_.erase(std::unique(suspects_.begin(), suspects_.end()), suspects_.end());
-    return std::all_of(suspects_.begin(), suspects_.end(), [this](Index v) {
+    std::sort(found_.suspects.begin(), found_.suspects.end());
+    found_.suspects.erase(std::unique(found_.suspects.begin(), found_.suspects.end()), found_.suspects.end());
+    return std::all_of(found_.suspects.begin(), found_.suspects.end(), [this](Index v) {
       return add(workspace_.at_infinity(v) ? farthest_beyond(v) : deepest_within(v));
     });
   }
@@ -373,8 +445,8 @@ class Certifier {
   // every edge, does not go around a vertex twice: a ray from the point leaves the tetrahedra at every facet of the
   // hull that it meets, and it starts in one of them only, so that it meets one facet.
   bool covers_once() const {
-    const std::array<Point, 4> inner{corner(fattest_, 0), corner(fattest_, 1), corner(fattest_, 2),
-                                     corner(fattest_, 3)};
+    const std::array<Point, 4> inner{corner(found_.fattest, 0), corner(found_.fattest, 1), corner(found_.fattest, 2),
+                                     corner(found_.fattest, 3)};
     const Point rounded = (inner[0] + inner[1] + inner[2] + inner[3]) / 4;
     const auto is_below = [&](const Point& a, const Point& b, const Point& c) {
       return volume_sign(rounded, a, b, c) == Sign::positive;
@@ -390,34 +462,34 @@ class Certifier {
   // fattest. is_below(a, b, c) tells on which side of a facet it is.
   template <class IsBelow>
   bool is_only_in_fattest(const Point& about, const IsBelow& is_below) const {
-    for (Index v = 0; v < workspace_.vertices.size(); ++v) {
-      if (workspace_.is_free(v) || v == fattest_) continue;
-      if (workspace_.at_infinity(v)) {
-        if (!is_below(corner(v, 0), corner(v, 1), corner(v, 2))) return false;
-        continue;
-      }
-      const double doubt = kAbout * (workspace_.vertices[v].radius + diameter_ * diameter_);
-      const auto is_beyond = [&](const auto& facet) {
-        return is_below(corner(v, facet[0]), corner(v, facet[2]), corner(v, facet[1]));
-      };
-      if (workspace_.power(v, about) > -doubt &&
-          std::none_of(Cavity::kOthers.begin(), Cavity::kOthers.end(), is_beyond))
-        return false;
-    }
-    return true;
+    std::atomic<bool> only = true;
+    const auto count = static_cast<Index>(workspace_.vertices.size());
+    tbb::parallel_for(tbb::blocked_range<Index>(0, count, kBlock), [&](const auto& range) {
+      for (Index v = range.begin(); v < range.end() && only; ++v)
+        if (v != found_.fattest && !workspace_.is_free(v) && !is_elsewhere(v, about, is_below)) only = false;
+    });
+    return only;
+  }
+  template <class IsBelow>
+  bool is_elsewhere(Index v, const Point& about, const IsBelow& is_below) const {
+    if (workspace_.at_infinity(v)) return is_below(corner(v, 0), corner(v, 1), corner(v, 2));
+    const double doubt = kAbout * (workspace_.vertices[v].radius + diameter_ * diameter_);
+    const auto is_beyond = [&](const auto& facet) {
+      return is_below(corner(v, facet[0]), corner(v, facet[2]), corner(v, facet[1]));
+    };
+    return !(workspace_.power(v, about) > -doubt) ||
+           std::any_of(Cavity::kOthers.begin(), Cavity::kOthers.end(), is_beyond);
   }
 
   Workspace& workspace_;
-  const std::vector<bool>& forming_;
-  Index first_new_, fattest_ = kNone;
-  double diameter_ = 0, max_ = 0, max_sum_ = 0, share_ = 0, small_share_ = 0, intrusion_ = 0, lost_ = 0, given_ = 0,
-         max_volume_ = 0;
-  std::vector<Index> hull_points_, suspects_;
-  LineSum losses_{Box()};  // what facets take off more than their share
+  const std::vector<std::uint8_t>& forming_;
+  Box box_;
+  Index first_new_;
+  double diameter_ = 0, max_ = 0, max_sum_ = 0, share_ = 0, small_share_ = 0;
+  Findings found_;
+  std::vector<Index> hull_points_;
   Mender* mender_;
-  std::vector<Doubt> doubts_;
   std::size_t doubtful_ = 0;
-  std::vector<Index> lossy_;  // that share a sphere farther from their own than a facet's share
   bool looks_at_changed_ = false, mended_ = false;
 };
 
@@ -425,15 +497,19 @@ class Certifier {
 
 namespace {
 
-std::vector<bool> forming_points(const Workspace& workspace) {
-  std::vector<bool> forming(workspace.points.size(), false);
-  for (const VoronoiVertex& vertex : workspace.vertices)
-    for (const Index point : vertex.forming_points)
-      if (point != kInfinitePoint) forming[point] = true;
+// By point: whether any vertex has it.
+std::vector<std::uint8_t> forming_points(const Workspace& workspace) {
+  std::vector<std::uint8_t> forming(workspace.points.size(), 0);
+  const auto count = static_cast<Index>(workspace.vertices.size());
+  tbb::parallel_for(tbb::blocked_range<Index>(0, count, kBlock), [&](const auto& range) {
+    for (Index v = range.begin(); v < range.end(); ++v)
+      for (const Index point : workspace.vertices[v].forming_points)
+        if (point != kInfinitePoint) std::atomic_ref(forming[point]).store(1, std::memory_order_relaxed);
+  });
   return forming;
 }
-std::size_t count(const std::vector<bool>& forming) {
-  return static_cast<std::size_t>(std::count(forming.begin(), forming.end(), true));
+std::size_t count(const std::vector<std::uint8_t>& forming) {
+  return static_cast<std::size_t>(std::count(forming.begin(), forming.end(), 1));
 }
 
 }  // namespace
@@ -441,7 +517,7 @@ std::size_t count(const std::vector<bool>& forming) {
 std::size_t count_forming(const Workspace& workspace) { return count(forming_points(workspace)); }
 
 Certificate certify(Workspace& workspace, std::size_t points, Index first_new, Mender* mender) {
-  const std::vector<bool> forming = forming_points(workspace);
+  const std::vector<std::uint8_t> forming = forming_points(workspace);
   if (count(forming) != points) return {};
   return Certifier(workspace, forming, first_new, mender).run();
 }

@@ -14,6 +14,15 @@ constexpr std::uint64_t kMaxDoubtful = 16, kMaxDoubtfulOneIn = 4;
 
 }  // namespace
 
+InsertionCounts& InsertionCounts::operator+=(const InsertionCounts& other) {
+  certified += other.certified;
+  settled += other.settled;
+  exact += other.exact;
+  constrained += other.constrained;
+  coplanar += other.coplanar;
+  return *this;
+}
+
 bool Inserter::start(const std::array<Index, 4>& points) {
   std::array<Index, 4> corner = points;
   const auto from_first = [&](unsigned i) { return workspace_.points[corner[i]] - workspace_.points[corner[0]]; };
@@ -57,6 +66,30 @@ bool Inserter::insert(Index point) {
   if (search_ == Search::bowyer || too_doubtful()) return false;
   deferred_.push_back(point);
   return true;
+}
+
+void Inserter::enter(const Territory& territory, Index start) {
+  territory_ = territory;
+  cavity_.enter(territory);
+  last_ = start;
+}
+
+bool Inserter::insert_within(Index point) {
+  const Point q = workspace_.points[point];
+  last_ = walk(q);
+  if (!territory_.owns(last_)) return false;
+  cavity_.begin(point);
+  return insert_directly(last_, q);
+}
+
+void Inserter::leave() {
+  cavity_.end();
+  territory_ = {};
+  cavity_.enter(territory_);
+}
+
+void Inserter::start_anywhere() {
+  for (last_ = 0; workspace_.is_free(last_);) ++last_;
 }
 
 bool Inserter::insert_deferred() {
@@ -109,15 +142,16 @@ void Inserter::insert_constrained(Index start, const Point& q) {
 bool Inserter::insert_directly(Index start, const Point& q) {
   if (workspace_.sign(start, q) != Sign::positive) return false;
   bool certain = cavity_.delete_nearer(start);
+  if (cavity_.left_territory()) return false;
   cavity_.note_facets();
   while (!cavity_.place_vertices()) {
-    if (!cavity_.widen()) return false;
+    if (!cavity_.widen() || cavity_.left_territory()) return false;
     certain = false;
     cavity_.note_facets();
   }
   // A thin tetrahedron magnifies what went wrong by a rounding behind its facet.
   if (!workspace_.exact() && cavity_.worst_placing() > (certain ? Placing::thin : Placing::shared)) return false;
-  if (!cavity_.link_vertices()) return false;
+  if (!cavity_.has_room() || !cavity_.link_vertices()) return false;
   if (!certain && !(cavity_.is_ball() && (workspace_.exact() || cavity_.doubts_are_harmless()))) return false;
   ++(certain ? counts_.certified : counts_.settled);
   finish();

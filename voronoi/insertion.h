@@ -23,6 +23,8 @@ struct InsertionCounts {
   std::uint64_t exact = 0;        // the same, after exact arithmetic had settled the doubts
   std::uint64_t constrained = 0;  // the constrained search decided
   std::uint64_t coplanar = 0;     // vertices with an approximate position
+
+  InsertionCounts& operator+=(const InsertionCounts& other);
 };
 
 // Inserts points one by one into the diagram of a workspace.
@@ -39,7 +41,18 @@ class Inserter {
   bool insert(Index point);
   // To be called at the end; false, as above, if there are points that do not fit even now.
   bool insert_deferred();
+  // Between enter() and leave(): where vertices may be replaced, by several threads that have an inserter each. The
+  // walk to the first point starts from `start`, which must be owned.
+  void enter(const Territory& territory, Index start);
+  // Only without doubts that take more than leaving vertices alone, and only if all that changes is owned; else false,
+  // with the diagram as it was.
+  bool insert_within(Index point);
+  // Removes all marks, lest other inserters meet them.
+  void leave();
+  // To be called when others have been at work.
+  void start_anywhere();
   const InsertionCounts& counts() const { return counts_; }
+  void add(const InsertionCounts& counts) { counts_ += counts; }
   const char* failure() const { return failure_; }  // why insert() returned false
 
  private:
@@ -77,6 +90,7 @@ class Inserter {
 
   Workspace& workspace_;
   Search search_;
+  Territory territory_;
   Cavity cavity_;
   InsertionCounts counts_;
   const char* failure_ = "";

@@ -7,6 +7,9 @@ namespace {
 
 constexpr std::size_t kNearby = 64;  // vertices in doubt that are searched before all others are
 
+// Steps of a walk that may have been led astray by what it must not read: a few times the way through a million points.
+constexpr std::size_t kPatience = 1024;
+
 }  // namespace
 
 // A vertex that is nearer to q than to its forming points, or as near to that as can be found. Uphill by power: across
@@ -37,12 +40,12 @@ Index Inserter::walk(const Point& q) const {
   Index came_from = kNone;
   workspace_.settle(v);
   double here = workspace_.power(v, q);
-  const std::size_t patience = workspace_.vertices.size() + 64;
+  const std::size_t patience = territory_.whole() ? workspace_.vertices.size() + 64 : kPatience;
   for (std::size_t steps = 0; steps < patience; ++steps) {
     if (here > workspace_.power_bound(v)) return v;
     Index next = kNone;
     for (Index u : workspace_.vertices[v].neighbors) {
-      if (u == came_from) continue;
+      if (u == came_from || !territory_.may_read(u)) continue;
       double power = workspace_.power(u, q);
       if (power > 0 && !workspace_.settled(u)) {
         workspace_.settle(u);
@@ -68,7 +71,7 @@ Index Inserter::walk(const Point& q) const {
     came_from = v;
     v = next;
   }
-  return highest_of_all(q);
+  return territory_.whole() ? highest_of_all(q) : v;
 }
 
 // The neighbour across a facet that certainly parts q from v, or kNone. Not where the walk just came from is not asked:
@@ -82,6 +85,7 @@ Index Inserter::step_by_orientation(Index v, const Point& q) const {
     const auto corner = [&](unsigned k) -> const Point& { return workspace_.points[vertex.forming_points[k]]; };
     if (volume_sign(q, corner(a), corner(b), corner(c)) != Sign::negative) continue;
     const Index next = vertex.neighbors[i];
+    if (!territory_.may_read(next)) continue;
     if (!workspace_.at_infinity(next) || workspace_.sign(next, q) == Sign::positive) return next;
     outside = next;
   }
