@@ -8,36 +8,54 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace orchard::detail {
 namespace {
 
-// The places of one measure, numbered; `span` says which numbers they have.
-std::vector<Label> labels_of(vtkPolyData* places, int measure, std::string& span) {
+// The places of one measure, numbered, which numbers they have, and the largest value there: %, as arrays have it.
+struct Worst {
   std::vector<Label> labels;
-  if (places == nullptr) return labels;
+  std::string span;
+  double max = 0;
+};
+
+Worst worst_of(vtkPolyData* places, int measure) {
+  Worst worst;
+  if (places == nullptr) return worst;
   vtkPointData* arrays = places->GetPointData();
   const vtkIdType count = places->GetNumberOfPoints();
   vtkDataArray* measures = require_array(arrays, "measure", count);
   vtkDataArray* numbers = require_array(arrays, "number", count);
+  vtkDataArray* values = require_array(arrays, "value", count);
   vtkDataArray* outward = require_array(arrays, "outward", count);
   for (vtkIdType i = 0; i < count; ++i) {
     if (static_cast<int>(measures->GetComponent(i, 0)) != measure) continue;
-    Label& label = labels.emplace_back();
+    worst.max = std::max(worst.max, values->GetComponent(i, 0));
+    Label& label = worst.labels.emplace_back();
     places->GetPoint(i, label.position.data());
     outward->GetTuple(i, label.outward.data());
     label.text = std::to_string(static_cast<int>(numbers->GetComponent(i, 0)));
   }
-  if (!labels.empty()) span = "; worst: " + labels.front().text + " to " + labels.back().text;
-  return labels;
+  if (!worst.labels.empty()) worst.span = "; worst: " + worst.labels.front().text + " to " + worst.labels.back().text;
+  return worst;
 }
 
-std::string up_to(double max) {
-  constexpr double kNothing = 5e-5;  // %: what is less is rounding to the eye
-  if (max < kNothing) return "none above 0.0001 % of the diagonal";
+// What a panel says below its caption, and its labels. `max`: of the values that are drawn, which need not be at the
+// worst places.
+void describe(Panel& panel, Worst worst, double max) {
+  constexpr double kNothing = 5e-5;  // %: what is less is rounding
+  max = std::max(max, worst.max);
+  if (max < kNothing) {
+    panel.detail = "none above 0.0001 % of the diagonal";
+    return;
+  }
   char text[64];
   std::snprintf(text, sizeof text, "0 to %.3g %% of the diagonal", max);
-  return text;
+  panel.detail = text + worst.span;
+  panel.labels = std::move(worst.labels);
 }
 
 Panel coverage_panel(vtkPolyData* mesh, vtkPolyData* points, vtkPolyData* places, double size, double line_width) {
@@ -61,9 +79,7 @@ Panel coverage_panel(vtkPolyData* mesh, vtkPolyData* points, vtkPolyData* places
   panel.renderer->AddActor(make_actor(mesh, {0.93, 0.94, 0.95}));
   panel.renderer->AddActor(make_spheres(dots));
   panel.renderer->AddActor(edges(mesh, kFeatureAngle, line_width, 0.6));
-  std::string span;
-  panel.labels = labels_of(places, 1, span);
-  panel.detail = up_to(max) + span;
+  describe(panel, worst_of(places, 1), max);
   return panel;
 }
 
@@ -75,9 +91,7 @@ Panel protrusion_panel(vtkPolyData* mesh, vtkPolyData* medial, vtkPolyData* plac
   sheet->GetProperty()->SetLineWidth(static_cast<float>(2 * line_width));
   panel.renderer->AddActor(sheet);
   add_glass(panel.renderer, mesh, line_width);
-  std::string span;
-  panel.labels = labels_of(places, 0, span);
-  panel.detail = up_to(max) + span;
+  describe(panel, worst_of(places, 0), max);
   return panel;
 }
 

@@ -68,30 +68,6 @@ bool Inserter::insert(Index point) {
   return true;
 }
 
-void Inserter::enter(const Territory& territory, Index start) {
-  territory_ = territory;
-  cavity_.enter(territory);
-  last_ = start;
-}
-
-bool Inserter::insert_within(Index point) {
-  const Point q = workspace_.points[point];
-  last_ = walk(q);
-  if (!territory_.owns(last_)) return false;
-  cavity_.begin(point);
-  return insert_directly(last_, q);
-}
-
-void Inserter::leave() {
-  cavity_.end();
-  territory_ = {};
-  cavity_.enter(territory_);
-}
-
-void Inserter::start_anywhere() {
-  for (last_ = 0; workspace_.is_free(last_);) ++last_;
-}
-
 bool Inserter::insert_deferred() {
   while (!deferred_.empty()) {
     if (std::erase_if(deferred_, [this](Index point) { return insert_now(point); }) > 0) continue;

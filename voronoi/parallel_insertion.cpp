@@ -10,6 +10,31 @@
 #include "regions.h"
 
 namespace orchard::detail {
+
+void Inserter::enter(const Territory& territory, Index start) {
+  territory_ = territory;
+  cavity_.enter(territory);
+  last_ = start;
+}
+
+bool Inserter::insert_within(Index point) {
+  const Point q = workspace_.points[point];
+  last_ = walk(q);
+  if (!territory_.owns(last_)) return false;
+  cavity_.begin(point);
+  return insert_directly(last_, q);
+}
+
+void Inserter::leave() {
+  cavity_.end();
+  territory_ = {};
+  cavity_.enter(territory_);
+}
+
+void Inserter::start_anywhere() {
+  for (last_ = 0; workspace_.is_free(last_);) ++last_;
+}
+
 namespace {
 
 std::atomic<std::size_t> large = 50000;
