@@ -31,11 +31,9 @@ class MedialBuilder {
     }
     make_axis();
     if (!options_.refine) return std::move(build_);
+    const int rounds = own ? 0 : options_.open_rounds;
+    for (int round = 0; round < rounds && add_open_places(); ++round) make_axis();
     refine();
-    for (int round = 0; round < options_.open_rounds && !own && add_open_places(); ++round) {
-      make_axis();
-      refine();
-    }
     return std::move(build_);
   }
 
@@ -98,12 +96,16 @@ class MedialBuilder {
     stage("pruning", [&] { build_.axis = prune(build_.axis, options_.prune); });
   }
 
-  // And makes the diagram anew. False if there are none.
+  // Those that the refined axis leaves open where it does not reach for them; and makes the diagram anew. False if
+  // there are none.
   bool add_open_places() {
+    RefineOptions as_sampled = *options_.refine;
+    as_sampled.reach_rounds = 0;
+    const MedialAxis refined = refined_axis(as_sampled).axis;
     SurfaceSampling added;
     stage("open places", [&] {
       const double limit = options_.refine->border_loss * surface_.bounding_box().diagonal().norm();
-      added = detail::open_places(surface_, build_.axis, build_.sampling, limit);
+      added = detail::open_places(surface_, refined, build_.sampling, limit);
     });
     if (added.size() == 0) return false;
     build_.open_places += added.size();
@@ -122,12 +124,15 @@ class MedialBuilder {
     return true;
   }
 
+  RefinedAxis refined_axis(const RefineOptions& options) {
+    RefinedAxis refined;
+    stage("refining", [&] { refined = refine_axis(surface_, build_.sampling, build_.axis, options, progress_); });
+    return refined;
+  }
   void refine() {
-    stage("refining", [&] {
-      RefinedAxis refined = refine_axis(surface_, build_.sampling, build_.axis, *options_.refine, progress_);
-      build_.axis = std::move(refined.axis);
-      build_.refinement = refined.report;
-    });
+    RefinedAxis refined = refined_axis(*options_.refine);
+    build_.axis = std::move(refined.axis);
+    build_.refinement = refined.report;
   }
 
   const Surface& surface_;

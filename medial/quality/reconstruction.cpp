@@ -29,16 +29,20 @@ double min_along(const Point& query, const std::array<Sphere, 3>& balls) {
 // The cells that no larger one holds: triangles, edges, vertices.
 struct Cells {
   std::vector<SupportTree::Item> items;
+  std::vector<std::array<Index, 3>> corners;
   Index triangles = 0, edges = 0;
 };
 
 Cells max_cells(const MedialMesh& mesh) {
   const CellIncidence at(mesh.edges, mesh.triangles, mesh.size());
   const std::vector<Index> bare = at.bare_edges();
-  Cells cells{
-      .items = {}, .triangles = static_cast<Index>(mesh.triangles.size()), .edges = static_cast<Index>(bare.size())};
+  Cells cells{.items = {},
+              .corners = {},
+              .triangles = static_cast<Index>(mesh.triangles.size()),
+              .edges = static_cast<Index>(bare.size())};
   const auto add = [&](Index a, Index b, Index c) {
     cells.items.push_back({vertex_ball(mesh, a), vertex_ball(mesh, b), vertex_ball(mesh, c)});
+    cells.corners.push_back({a, b, c});
   };
   for (const auto& [a, b, c] : mesh.triangles) add(a, b, c);
   for (const Index e : bare) add(mesh.edges[e][0], mesh.edges[e][1], mesh.edges[e][1]);
@@ -96,6 +100,7 @@ Reconstruction::Reconstruction(const MedialMesh& mesh) {
   Cells cells = max_cells(mesh);
   triangles_ = cells.triangles;
   edges_ = cells.edges;
+  corners_ = std::move(cells.corners);
   tree_ = SupportTree(std::move(cells.items));
 }
 
@@ -132,6 +137,21 @@ double Reconstruction::distance_between(double enough, double bound, const Point
     return value;
   };
   return tree_.min(query, bound, value_of, enough);
+}
+
+std::array<Index, 3> Reconstruction::nearest_cell(const Point& query, Sphere& ball) const {
+  Index cell = 0;
+  tree_.min(query, std::numeric_limits<double>::infinity(),
+            [&](Index item, const SupportTree::Item& balls, double best) {
+              Sphere found;
+              const double value = evaluate(item, balls, query, best, found);
+              if (value < best) {
+                ball = found;
+                cell = item;
+              }
+              return value;
+            });
+  return corners_[cell];
 }
 
 }  // namespace orchard::detail

@@ -1,4 +1,6 @@
 #pragma once
+#include <array>
+#include <vector>
 
 #include "orchard/medial/medial_mesh.h"
 #include "support_tree.h"
@@ -20,12 +22,16 @@ class Reconstruction {
   double distance_below(double bound, const Point& query, Sphere& ball) const;
   // The same, but any value below `enough`, with its ball, will do where there are such.
   double distance_between(double enough, double bound, const Point& query, Sphere& ball) const;
+  // The corners of the cell that has the ball of distance(query, ball); smaller cells repeat their last. Precondition:
+  // there is one.
+  std::array<Index, 3> nearest_cell(const Point& query, Sphere& ball) const;
 
  private:
   // The least for an item, and the ball; a value that is `best` or more need not be exact.
   double evaluate(Index item, const SupportTree::Item& balls, const Point& query, double best, Sphere& ball) const;
 
   Index triangles_ = 0, edges_ = 0;  // items are triangles, edges and vertices that no larger cell holds, in this order
+  std::vector<std::array<Index, 3>> corners_;  // of each item
   SupportTree tree_;
 };
 

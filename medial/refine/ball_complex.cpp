@@ -144,6 +144,15 @@ class Collapse {
 
 }  // namespace
 
+MedialMesh BallComplex::mesh() const {
+  MedialMesh mesh{.centers = {}, .radii = {}, .edges = edges, .triangles = triangles};
+  for (const ExactBall& ball : balls) {
+    mesh.centers.push_back(ball.center);
+    mesh.radii.push_back(ball.radius);
+  }
+  return mesh;
+}
+
 void BallComplex::complete() { complete_cells(edges, triangles); }
 
 Index BallComplex::edge_of(Index a, Index b) const { return index_of_edge(edges, a, b); }

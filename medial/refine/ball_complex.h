@@ -14,6 +14,7 @@ struct BallComplex {
   std::vector<std::array<Index, 3>> triangles;
 
   Index size() const { return static_cast<Index>(balls.size()); }
+  MedialMesh mesh() const;
   // Sorts edges and triangles, drops repeated ones and adds the edges of triangles.
   void complete();
   // The number of an edge that there is.

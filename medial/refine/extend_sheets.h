@@ -1,6 +1,9 @@
 #pragma once
+#include <span>
+
 #include "borders.h"
 #include "orchard/geometry/surface.h"
+#include "uncovered.h"
 
 // What makes sheets go as far as they belong. All of it is free: it changes no topology.
 namespace orchard::detail {
@@ -25,5 +28,12 @@ Index extend_to_corners(const Surface& surface, BallComplex& complex, const Bord
 // Bends the borders between places of sharp convex edges onto these, and into their corners. Returns the number of new
 // vertices.
 Index follow_edges(const Surface& surface, BallComplex& complex, const BorderOptions& options);
+
+// Reaches for places that the balls leave open, by triangles from the edges nearest to them, borders before others:
+// their third ball leaves half the border loss open there, and where a place is on a sharp edge nothing.
+// `reconstruction` is that of the complex as it is. Returns the number of places reached.
+Index reach_open_places(const Surface& surface, BallComplex& complex, BallSolver& solver,
+                        const Reconstruction& reconstruction, std::span<const UncoveredPlace> places,
+                        const BorderOptions& options);
 
 }  // namespace orchard::detail

@@ -13,6 +13,7 @@
 #include "../axis_triangles.h"
 #include "axis_of_balls.h"
 #include "ball_complex.h"
+#include "drop_degenerate.h"
 #include "extend_sheets.h"
 #include "orchard/geometry/angle.h"
 #include "orchard/geometry/error.h"
@@ -30,11 +31,15 @@ using detail::ExactBall;
 // Contacts merge where the ball between them would lose this much of what a border may lose: fine enough to see on
 // which side of the level a vertex is.
 constexpr double kMerging = 0.25;
-constexpr int kBorderPasses = 3;     // of filling notches and reaching edges: the last ones find next to nothing
-constexpr double kMinLength = 1e-3;  // diagonals: shorter edges are not divided
-constexpr std::size_t kEnough = 24;  // seeds of a vertex: coalesced ones have hundreds
-constexpr int kLevelSteps = 5;       // of bisection for the place where an edge crosses the level
-constexpr double kNearLevel = 0.04;  // of the loss: near enough to end that
+constexpr int kBorderPasses = 3;      // of filling notches and reaching edges: the last ones find next to nothing
+constexpr double kMinLength = 1e-3;   // diagonals: shorter edges are not divided
+constexpr std::size_t kEnough = 24;   // seeds of a vertex: coalesced ones have hundreds
+constexpr int kLevelSteps = 5;        // of bisection for the place where an edge crosses the level
+constexpr double kOpen = 1.6;         // of the border loss: places left open by more are reached for
+constexpr double kResolution = 0.1;   // spacings, of looking for these
+constexpr double kApart = 0.5;        // spacings, between two that are reached for at once
+constexpr double kCoincident = 1e-6;  // diagonals: vertices that are nearer are one
+constexpr double kNearLevel = 0.04;   // of the loss: near enough to end that
 
 // A loss as a number from 0 to 1, 1/2 at the level.
 double scaled(const ExactBall& ball, double level) {
@@ -68,14 +73,9 @@ class Refiner {
     mend_borders();
     report_.small_pieces += detail::drop_small_pieces(complex_);
     report_progress(progress_, kStage, 0.6);
-    const detail::SplitReport split = detail::split_nonlinear(surface_, complex_,
-                                                              {.tolerance = options_.tolerance * diagonal_,
-                                                               .merging = kMerging * level_,
-                                                               .min_length = kMinLength * diagonal_,
-                                                               .max_rounds = options_.max_rounds},
-                                                              progress_);
-    report_.divided = split.divided;
-    report_.undivided = split.undivided;
+    divide();
+    reach_open_places();
+    report_.degenerate = detail::drop_degenerate(complex_, kCoincident * diagonal_);
     report_progress(progress_, kStage, 1);
     return result();
   }
@@ -237,12 +237,16 @@ class Refiner {
     detail::collapse(complex_, doomed, value);
   }
 
+  detail::BorderOptions border_options() const {
+    return {.level = level_,
+            .tolerance = options_.tolerance * diagonal_,
+            .spacing = std::sqrt(surface_.report().area / sampling_.size()),
+            .merging = kMerging * level_,
+            .sharp_angle = options_.sharp_angle};
+  }
+
   void mend_borders() {
-    const detail::BorderOptions border{.level = level_,
-                                       .tolerance = options_.tolerance * diagonal_,
-                                       .spacing = std::sqrt(surface_.report().area / sampling_.size()),
-                                       .merging = kMerging * level_,
-                                       .sharp_angle = options_.sharp_angle};
+    const detail::BorderOptions border = border_options();
     BallSolver solver = this->solver();
     for (int pass = 0; pass < kBorderPasses; ++pass) {
       const Index notches = detail::fill_notches(surface_, complex_, solver, border);
@@ -253,6 +257,34 @@ class Refiner {
       report_.notches += notches;
       report_.edge_vertices += reached;
       if (notches == 0 && seams == 0 && reached == 0) break;
+    }
+  }
+
+  void divide() {
+    const detail::SplitReport split = detail::split_nonlinear(surface_, complex_,
+                                                              {.tolerance = options_.tolerance * diagonal_,
+                                                               .merging = kMerging * level_,
+                                                               .min_length = kMinLength * diagonal_,
+                                                               .max_rounds = options_.max_rounds},
+                                                              split_errors_, progress_);
+    report_.divided += split.divided;
+    report_.undivided = split.undivided;
+  }
+
+  // Where balls leave the surface open by more than borders may; what is added is divided, too.
+  void reach_open_places() {
+    const detail::BorderOptions border = border_options();
+    detail::UncoveredSearch search(surface_, kOpen * std::max(level_, border.tolerance), kResolution * border.spacing);
+    BallSolver solver = this->solver();
+    for (int round = 0; round < options_.reach_rounds; ++round) {
+      const detail::Reconstruction reconstruction(complex_.mesh());
+      const std::vector<detail::UncoveredPlace> places = search.find(reconstruction, kApart * border.spacing);
+      const Index reached = detail::reach_open_places(surface_, complex_, solver, reconstruction, places, border);
+      if (reached == 0) break;
+      report_.reached_places += reached;
+      report_.notches += detail::fill_notches(surface_, complex_, solver, border);
+      report_.edge_vertices += detail::follow_edges(surface_, complex_, border);
+      divide();
     }
   }
 
@@ -277,6 +309,7 @@ class Refiner {
   const Progress& progress_;
   const double diagonal_, level_;  // mesh units
   BallComplex complex_;
+  detail::SplitErrors split_errors_;
   std::vector<Index> face_of_triangle_;  // of the axis as it came
   RefineReport report_;
 };
@@ -289,6 +322,7 @@ void check(const RefineOptions& options) {
   if (!(options.sharp_angle >= 0 && options.sharp_angle <= std::numbers::pi))
     throw InputError("sharp angle: between 0 and pi");
   if (options.max_rounds < 0) throw InputError("rounds of refining: not negative");
+  if (options.reach_rounds < 0) throw InputError("rounds of reaching for open places: not negative");
 }
 
 }  // namespace

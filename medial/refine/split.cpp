@@ -10,41 +10,35 @@
 namespace orchard::detail {
 namespace {
 
-// The errors of sorted cells. Most cells of a round are those of the last one: theirs are known.
-template <class Cell>
-struct CellErrors {
-  std::vector<Cell> cells;
-  std::vector<double> errors;
-
-  template <class Measure>
-  void measure(const std::vector<Cell>& now, Measure&& of) {
-    std::vector<double> found(now.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, now.size(), 256), [&](const auto& range) {
-      for (std::size_t i = range.begin(); i != range.end(); ++i) {
-        const auto at = std::lower_bound(cells.begin(), cells.end(), now[i]);
-        const bool known = at != cells.end() && *at == now[i];
-        found[i] = known ? errors[static_cast<std::size_t>(at - cells.begin())] : of(now[i]);
-      }
-    });
-    cells = now;
-    errors = std::move(found);
-  }
-};
+// Most cells of a round are those of the last one: their errors are known.
+template <class Cell, class Measure>
+void measure(CellErrors<Cell>& known, const std::vector<Cell>& now, Measure&& of) {
+  std::vector<double> found(now.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, now.size(), 256), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      const auto at = std::lower_bound(known.cells.begin(), known.cells.end(), now[i]);
+      const bool is_known = at != known.cells.end() && *at == now[i];
+      found[i] = is_known ? known.errors[static_cast<std::size_t>(at - known.cells.begin())] : of(now[i]);
+    }
+  });
+  known.cells = now;
+  known.errors = std::move(found);
+}
 
 class Splitter {
  public:
-  Splitter(const Surface& surface, BallComplex& complex, const SplitOptions& options)
-      : surface_(surface), complex_(complex), options_(options) {}
+  Splitter(const Surface& surface, BallComplex& complex, const SplitOptions& options, SplitErrors& known)
+      : surface_(surface), complex_(complex), options_(options), known_(known) {}
 
   // Of each edge, how far the balls on it and on the triangles whose longest edge it is are off.
   std::vector<double> errors() {
-    edges_.measure(complex_.edges, [this](const auto& edge) { return error_of_edge(edge); });
-    triangles_.measure(complex_.triangles, [this](const auto& triangle) { return error_of_triangle(triangle); });
-    std::vector<double> error = edges_.errors;
+    measure(known_.edges, complex_.edges, [this](const auto& edge) { return error_of_edge(edge); });
+    measure(known_.triangles, complex_.triangles, [this](const auto& triangle) { return error_of_triangle(triangle); });
+    std::vector<double> error = known_.edges.errors;
     for (Index t = 0; t < complex_.triangles.size(); ++t) {
-      if (triangles_.errors[t] <= options_.tolerance) continue;
+      if (known_.triangles.errors[t] <= options_.tolerance) continue;
       double& worst = error[longest_edge(complex_.triangles[t])];
-      worst = std::max(worst, triangles_.errors[t]);
+      worst = std::max(worst, known_.triangles.errors[t]);
     }
     return error;
   }
@@ -136,16 +130,15 @@ class Splitter {
   const Surface& surface_;
   BallComplex& complex_;
   const SplitOptions& options_;
-  CellErrors<std::array<Index, 2>> edges_;
-  CellErrors<std::array<Index, 3>> triangles_;
+  SplitErrors& known_;
 };
 
 }  // namespace
 
 SplitReport split_nonlinear(const Surface& surface, BallComplex& complex, const SplitOptions& options,
-                            const Progress& progress) {
+                            SplitErrors& known, const Progress& progress) {
   SplitReport report;
-  Splitter splitter(surface, complex, options);
+  Splitter splitter(surface, complex, options, known);
   for (int round = 0;; ++round) {
     const std::vector<double> errors = splitter.errors();
     report.undivided = static_cast<Index>(

@@ -1,4 +1,7 @@
 #pragma once
+#include <array>
+#include <vector>
+
 #include "ball_complex.h"
 #include "orchard/geometry/progress.h"
 
@@ -14,11 +17,24 @@ struct SplitReport {
   Index divided = 0, undivided = 0;
 };
 
+// The errors of cells, sorted, so that no cell is looked at twice.
+template <class Cell>
+struct CellErrors {
+  std::vector<Cell> cells;
+  std::vector<double> errors;
+};
+
+// What dividing a complex found out, for the next time: as long as its vertices keep their numbers and balls.
+struct SplitErrors {
+  CellErrors<std::array<Index, 2>> edges;
+  CellErrors<std::array<Index, 3>> triangles;
+};
+
 // Divides edges until the balls that are interpolated on edges and triangles neither protrude nor fall short by more
 // than the tolerance: they are looked at at the quarters of edges and the middles of triangles, and every ten
 // tolerances of long ones. A triangle's error counts for its longest edge. New vertices are exact where that is
 // possible. Deterministic; parallel.
 SplitReport split_nonlinear(const Surface& surface, BallComplex& complex, const SplitOptions& options,
-                            const Progress& progress);
+                            SplitErrors& known, const Progress& progress);
 
 }  // namespace orchard::detail

@@ -1,0 +1,117 @@
+#include "drop_degenerate.h"
+
+#include <algorithm>
+#include <array>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "../simplify/contractible_mesh.h"
+
+namespace orchard::detail {
+namespace {
+
+constexpr double kFlat = 1e-4;  // of its longest edge: the height of a flat triangle
+constexpr int kMaxPasses = 8;   // what is divided at a corner may be flat, too
+
+class DegenerateCells {
+ public:
+  DegenerateCells(BallComplex& complex, double apart) : complex_(complex), apart_(apart), mesh_(complex.mesh()) {}
+
+  Index run() {
+    merge();
+    for (int pass = 0; pass < kMaxPasses && divide_flat(); ++pass) merge();
+    write_back();
+    return dropped_;
+  }
+
+ private:
+  double apart(Index a, Index b) const { return (mesh_.ball(a) - mesh_.ball(b)).head<3>().norm(); }
+
+  // What stays of two: what ends on the surface, then what is exact, then what has more contacts.
+  bool stays(Index a, Index b) const {
+    const auto key = [&](Index v) {
+      const ExactBall& ball = complex_.balls[v];
+      return std::tuple(ball.exact && !(ball.radius > 0), ball.exact, ball.count, b - v);
+    };
+    return key(a) > key(b);
+  }
+
+  void merge() {
+    for (Index v = 0; v < complex_.size(); ++v) {
+      bool merged = mesh_.alive(v);
+      while (merged && mesh_.alive(v)) {
+        merged = false;
+        for (const Index other : mesh_.neighbors(v)) {
+          if (other < v || apart(v, other) > apart_ || !mesh_.may_contract(v, other)) continue;
+          const auto [kept, gone] = stays(v, other) ? std::pair(v, other) : std::pair(other, v);
+          mesh_.contract(kept, gone, mesh_.ball(kept));
+          merged = true;
+          ++dropped_;
+          break;
+        }
+      }
+    }
+  }
+
+  // False if there is nothing to divide.
+  bool divide_flat() {
+    bool divided = false;
+    for (const auto& corners : mesh_.maximal_cells()) {
+      auto [a, b, c] = corners;
+      if (a == b || a == c || b == c || !is_triangle(a, b, c)) continue;
+      // The longest edge is ab.
+      if (apart(b, c) > apart(a, b) && apart(b, c) >= apart(a, c)) {
+        std::swap(a, c);
+      } else if (apart(a, c) > apart(a, b)) {
+        std::swap(b, c);
+      }
+      if (is_flat(a, b, c) && divide_at(a, b, c)) divided = true;
+    }
+    return divided;
+  }
+
+  bool is_triangle(Index a, Index b, Index c) {
+    if (!mesh_.alive(a) || !mesh_.alive(b) || !mesh_.alive(c) || !mesh_.adjacent(a, b)) return false;
+    mesh_.opposite(a, b, opposite_);
+    return std::find(opposite_.begin(), opposite_.end(), c) != opposite_.end();
+  }
+  bool is_flat(Index a, Index b, Index c) const {
+    const Vector along = (mesh_.ball(b) - mesh_.ball(a)).head<3>(), to = (mesh_.ball(c) - mesh_.ball(a)).head<3>();
+    return along.cross(to).norm() <= kFlat * along.squaredNorm();
+  }
+  bool divide_at(Index a, Index b, Index c) {
+    mesh_.opposite(a, b, opposite_);
+    const auto joined = [&](Index d) { return d != c && mesh_.adjacent(c, d); };
+    if (std::any_of(opposite_.begin(), opposite_.end(), joined)) return false;
+    const Index middle = mesh_.divide(a, b, mesh_.ball(c));
+    mesh_.contract(c, middle, mesh_.ball(c));
+    ++dropped_;
+    return true;
+  }
+
+  // What stays of vertices are such of the complex.
+  void write_back() {
+    Index count = 0;
+    for (Index v = 0; v < complex_.size(); ++v) {
+      if (mesh_.alive(v)) complex_.balls[count++] = complex_.balls[v];
+    }
+    complex_.balls.resize(count);
+    MedialMesh mesh = mesh_.mesh();
+    complex_.edges = std::move(mesh.edges);
+    complex_.triangles = std::move(mesh.triangles);
+    complex_.complete();
+  }
+
+  BallComplex& complex_;
+  const double apart_;
+  ContractibleMesh mesh_;
+  std::vector<Index> opposite_;
+  Index dropped_ = 0;
+};
+
+}  // namespace
+
+Index drop_degenerate(BallComplex& complex, double apart) { return DegenerateCells(complex, apart).run(); }
+
+}  // namespace orchard::detail

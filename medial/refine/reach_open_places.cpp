@@ -1,0 +1,167 @@
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "../quality/reconstruction.h"
+#include "extend_sheets.h"
+#include "join_fins.h"
+#include "sharp_ends.h"
+#include "sheet_extension.h"
+
+namespace orchard::detail {
+namespace {
+
+class OpenPlaceReacher {
+ public:
+  OpenPlaceReacher(const Surface& surface, BallComplex& complex, BallSolver& solver,
+                   const Reconstruction& reconstruction, const BorderOptions& options)
+      : sheets_(surface, complex, options),
+        solver_(solver),
+        edges_(surface, options.sharp_angle),
+        reconstruction_(reconstruction),
+        level_(std::max(options.level, options.tolerance)) {}
+
+  Index run(std::span<const UncoveredPlace> places) {
+    Index reached = 0;
+    for (const UncoveredPlace& place : places) reached += reach(place) ? 1 : 0;
+    join_fins(sheets_, solver_, fins_);
+    sheets_.triangles.finish();
+    return reached;
+  }
+
+ private:
+  static constexpr double kLeft = 1;         // border losses: what a new ball leaves open of its place
+  static constexpr double kSlack = 1.15;     // of that: what will do
+  static constexpr double kTouching = 1e-3;  // of a ball's radius: how far it may hold something of the surface
+  static constexpr int kSteps = 20;          // of bisection, and of shrinking
+  static constexpr int kAttempts = 4;        // each from half as far in as the last
+  static constexpr double kAt = 1e-9;        // bounding radii: what rounding puts beside a vertex or an edge
+
+  bool reach(const UncoveredPlace& place) {
+    Sphere foot;
+    const std::array<Index, 3> cell = reconstruction_.nearest_cell(place.position, foot);
+    const std::vector<Index> candidates = edges_at(cell, foot.center);
+    if (candidates.empty()) return false;
+    ClosestPoint on_edge = ExactBall::nowhere();
+    const ExactBall ball = edges_.nearest(place.position, level_, on_edge)
+                               ? ball_on_edge(on_edge)
+                               : ball_at(place.position, foot.center, kLeft * level_);
+    // Where no triangle leads all the way, one may lead half of it.
+    return attach(ball, candidates) || attach(ball_at(place.position, foot.center, place.value / 2), candidates);
+  }
+
+  bool attach(const ExactBall& ball, std::vector<Index> candidates) {
+    if (!ball.exact) return false;
+    const auto value = [&](Index e) {
+      return std::pair(sheets_.at.triangles_at[e].size() == 1 ? 0 : 1, apart(ball.center, e));
+    };
+    std::stable_sort(candidates.begin(), candidates.end(), [&](Index a, Index b) { return value(a) < value(b); });
+    Index vertex = kNone;
+    for (const Index e : candidates) {
+      const auto& [a, b] = sheets_.complex.edges[e];
+      if (vertex != kNone && sheets_.at.triangles_at[e].size() != 1) break;
+      if (!is_inside(a, b, ball)) continue;
+      const Index v = vertex == kNone ? sheets_.triangles.add_vertex(ball) : vertex;
+      if (!sheets_.triangles.add(a, b, v)) continue;
+      if (vertex == kNone) fins_.push_back({v, {a, b}});
+      vertex = v;
+    }
+    return vertex != kNone;
+  }
+
+  // An exact ball that leaves a place open by hardly more than `left`; none that is exact where none is found. It is
+  // looked for at what is nearest to the way from the place to the centre of its nearest ball: the farther in, the more
+  // is left open.
+  ExactBall ball_at(const Point& place, const Point& inside, double left) {
+    const double length = (inside - place).norm();
+    double from = 0, to = 1;
+    for (int step = 0; step < kSteps; ++step) {
+      const double t = 0.5 * (from + to);
+      (t * length - sheets_.surface.distance(place + t * (inside - place)) > left ? to : from) = t;
+    }
+    for (int attempt = 0; attempt < kAttempts; ++attempt, from /= 2) {
+      const Point start = place + from * (inside - place);
+      const ExactBall ball = ball_touching(sheets_.surface.closest(start), start);
+      if (ball.exact && (ball.center - place).norm() - ball.radius <= kSlack * left) return ball;
+    }
+    return {};
+  }
+
+  // The ball of the medial axis that touches at a contact, seen from `start`: one that is too large shrinks until it
+  // holds nothing of the surface.
+  ExactBall ball_touching(const ClosestPoint& contact, const Point& start) {
+    if (!(contact.distance > 0)) return {};
+    const Vector inward = (start - contact.position) / contact.distance;
+    double radius = 2 * sheets_.surface.bounding_radius();
+    ClosestPoint other = contact;
+    for (int step = 0; step < kSteps; ++step) {
+      const ClosestPoint nearest = sheets_.surface.closest(contact.position + radius * inward);
+      if (nearest.distance >= radius * (1 - kTouching)) break;
+      const Vector to = nearest.position - contact.position;
+      const double across = to.dot(inward);
+      if (!(across > 0)) return {};
+      other = nearest;
+      radius = to.squaredNorm() / (2 * across);
+    }
+    const std::array<ClosestPoint, 2> seeds{contact, other};
+    return solver_.solve(contact.position + radius * inward, seeds);
+  }
+
+  // The edges of a cell that a place of it is on; or its edges.
+  std::vector<Index> edges_at(const std::array<Index, 3>& cell, const Point& place) const {
+    const double at = kAt * sheets_.surface.bounding_radius();
+    std::vector<Index> edges;
+    for (const Index v : cell) {
+      if ((sheets_.complex.balls[v].center - place).norm() > at) continue;
+      const auto row = sheets_.at.edges_at[v];
+      return {row.begin(), row.end()};
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (cell[i] == cell[(i + 1) % 3]) continue;
+      const Index e =
+          sheets_.complex.edge_of(std::min(cell[i], cell[(i + 1) % 3]), std::max(cell[i], cell[(i + 1) % 3]));
+      if (apart(place, e) <= at) return {e};
+      edges.push_back(e);
+    }
+    return edges;
+  }
+
+  double apart(const Point& place, Index e) const {
+    const Point &a = sheets_.complex.balls[sheets_.complex.edges[e][0]].center,
+                &b = sheets_.complex.balls[sheets_.complex.edges[e][1]].center;
+    const Vector along = b - a;
+    const double squared = along.squaredNorm();
+    const double t = squared > 0 ? std::clamp(along.dot(place - a) / squared, 0.0, 1.0) : 0;
+    return (place - a - t * along).norm();
+  }
+
+  // Whether the balls between an edge and a new one protrude by little.
+  bool is_inside(Index a, Index b, const ExactBall& ball) const {
+    const ExactBall &p = sheets_.complex.balls[a], &q = sheets_.complex.balls[b];
+    const auto protrudes = [&](double u, double v, double w) {
+      const double radius = u * p.radius + v * q.radius + w * ball.radius;
+      return radius + sheets_.surface.signed_distance(u * p.center + v * q.center + w * ball.center) >
+             kBorderSlack * sheets_.options.tolerance;
+    };
+    return !protrudes(0.5, 0, 0.5) && !protrudes(0, 0.5, 0.5) && !protrudes(1.0 / 3, 1.0 / 3, 1.0 / 3);
+  }
+
+  SheetExtension sheets_;
+  BallSolver& solver_;
+  SharpEdges edges_;
+  std::vector<Fin> fins_;
+  const Reconstruction& reconstruction_;
+  const double level_;  // mesh units: the border loss, where balls in between may not fall short by more
+};
+
+}  // namespace
+
+Index reach_open_places(const Surface& surface, BallComplex& complex, BallSolver& solver,
+                        const Reconstruction& reconstruction, std::span<const UncoveredPlace> places,
+                        const BorderOptions& options) {
+  return OpenPlaceReacher(surface, complex, solver, reconstruction, options).run(places);
+}
+
+}  // namespace orchard::detail

@@ -1,0 +1,37 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "../quality/reconstruction.h"
+#include "orchard/geometry/surface.h"
+
+namespace orchard::detail {
+
+// A place of the surface that the balls of an axis leave open.
+struct UncoveredPlace {
+  double value = 0;  // mesh units: the distance to the nearest ball
+  Point position = Point::Zero();
+};
+
+// Looks for such places again and again while the axis grows.
+class UncoveredSearch {
+ public:
+  // For what is left open by more than `limit`; triangles are divided until what is left of them reaches no farther
+  // than `resolution`. Mesh units.
+  UncoveredSearch(const Surface& surface, double limit, double resolution);
+
+  // The worst first, no two within `apart` of each other. After the first time only the parts of the surface that may
+  // have been open then are looked at. Parallel, deterministic: a query for every few triangles, and some for each part
+  // that is open.
+  std::vector<UncoveredPlace> find(const Reconstruction& reconstruction, double apart);
+
+ private:
+  struct Block;  // what one task looks at
+  void look_at(const Reconstruction& reconstruction, Block& block) const;
+
+  const Surface& surface_;
+  const double limit_, resolution_;
+  std::vector<std::array<Point, 3>> parts_;  // triangles, or points: three times the same
+};
+
+}  // namespace orchard::detail

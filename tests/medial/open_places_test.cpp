@@ -1,0 +1,183 @@
+// What the refined axis does where it leaves the surface open, and the cells that it takes away in the end.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "known_axes.h"
+#include "orchard/geometry/surface.h"
+#include "orchard/medial/build.h"
+#include "orchard/medial/medial_mesh.h"
+#include "orchard/medial/topology.h"
+#include "outlines.h"
+#include "quality/reconstruction.h"
+#include "refine/drop_degenerate.h"
+#include "refine/uncovered.h"
+#include "support/effort.h"
+
+namespace orchard {
+namespace {
+
+MedialBuildOptions options_for(Index points, std::uint64_t seed = 1) {
+  return {.sampling = {.face_points = points - points / 5, .edge_points = points / 5, .seed = seed},
+          .refine = RefineOptions{}};
+}
+
+double diagonal(const Surface& surface) { return surface.bounding_box().diagonal().norm(); }
+
+// A box with a blunt pyramid for a lid: its apex has no sharp edge at it, and stands out by more than an edge would.
+TriangleMesh box_with_lid(double height) {
+  TriangleMesh mesh;
+  for (const double z : {0.0, 1.0})
+    for (const double y : {0.0, 1.0})
+      for (const double x : {0.0, 1.0}) mesh.vertices.push_back({x, y, z});
+  mesh.vertices.push_back({0.5, 0.5, 1 + height});
+  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {0, 1, 5}, {0, 5, 4}, {1, 3, 7}, {1, 7, 5}, {3, 2, 6},
+                    {3, 6, 7}, {2, 0, 4}, {2, 4, 6}, {4, 5, 8}, {5, 7, 8}, {7, 6, 8}, {6, 4, 8}};
+  return mesh;
+}
+
+TEST(RefineAxis, ReachesForPlacesThatStandOutWithoutASharpEdge) {
+  for (const double height : {0.08, 0.15, 0.22}) {
+    SCOPED_TRACE(height);
+    const Surface surface(box_with_lid(height));
+    for (std::uint64_t seed = 1; seed <= test::more(); ++seed) {
+      const MedialBuild build = build_medial_axis(surface, options_for(500, seed));
+      const MedialMesh mesh = medial_mesh(build.axis);
+      const detail::Reconstruction reconstruction(mesh);
+      const double limit = 2 * RefineOptions{}.border_loss * diagonal(surface);
+      for (const Point& vertex : surface.mesh().vertices) EXPECT_LE(reconstruction.distance(vertex), limit);
+      EXPECT_EQ(topology(mesh), (Topology{1, 0, 0}));
+      for (Index v = 0; v < mesh.size(); ++v)
+        ASSERT_NEAR(mesh.radii[v], surface.distance(mesh.centers[v]), 1e-9 * diagonal(surface));
+    }
+  }
+}
+
+TEST(UncoveredSearch, FindsTheCornersThatASphereInABoxLeavesOpen) {
+  const Surface box(test::known_box({2, 2, 2}).solid);
+  const Point middle = 0.5 * (box.bounding_box().min() + box.bounding_box().max());
+  const detail::Reconstruction sphere({.centers = {middle}, .radii = {1}, .edges = {}, .triangles = {}});
+  detail::UncoveredSearch search(box, 0.6, 0.01);
+  const auto corners = search.find(sphere, 0.5);
+  ASSERT_EQ(corners.size(), 8u);
+  for (const detail::UncoveredPlace& corner : corners) EXPECT_NEAR(corner.value, std::sqrt(3.0) - 1, 1e-12);
+  // The middles of edges are open by .41.
+  EXPECT_EQ(detail::UncoveredSearch(box, 0.4, 0.01).find(sphere, 0.9).size(), 20u);
+  EXPECT_TRUE(detail::UncoveredSearch(box, 0.74, 0.01).find(sphere, 0.5).empty());
+}
+
+// A house: its ridge is no sharp edge, and all of it stands out.
+Surface house(double height) {
+  const test::Outline outline{{{0, 0}}, {{1, 0}}, {{1, 0.6}}, {{0.5, 0.6 + height}}, {{0, 0.6}}};
+  return Surface(test::extruded(outline, 3));
+}
+
+TEST(RefineAxis, WhatReachesForARidgeIsOneSheetWithAStraightBorder) {
+  for (const double height : {0.05, 0.1, 0.15}) {
+    SCOPED_TRACE(height);
+    const Surface surface = house(height);
+    MedialBuildOptions options = options_for(1000);
+    const MedialBuild build = build_medial_axis(surface, options);
+    options.refine->reach_rounds = 0;
+    const MedialBuild without = build_medial_axis(surface, options);
+    const MedialMesh mesh = medial_mesh(build.axis);
+    const detail::Reconstruction reconstruction(mesh);
+    for (double z = 0; z <= 3; z += 0.01)
+      ASSERT_LE(reconstruction.distance({0.5, 0.6 + height, z}), 1.7 * RefineOptions{}.border_loss * diagonal(surface));
+    // Teeth side by side would double it.
+    EXPECT_GT(build.refinement.reached_places, 0u);
+    EXPECT_LE(build.refinement.border_length, 1.15 * without.refinement.border_length);
+    EXPECT_EQ(topology(mesh), (Topology{1, 0, 0}));
+  }
+}
+
+detail::ExactBall ball_at(const Point& center) {
+  detail::ExactBall ball;
+  ball.center = center;
+  ball.radius = 1;
+  return ball;
+}
+
+// Three sheets that meet in a line, with triangles that have no area: on edges, and between vertices at one place.
+detail::BallComplex sheets_with_degenerate_cells(std::mt19937_64& random) {
+  detail::BallComplex complex;
+  constexpr Index kRows = 5, kColumns = 4;
+  std::uniform_real_distribution<double> uneven(-0.1, 0.1);
+  std::vector<std::array<Index, kColumns>> rows;
+  for (int sheet = 0; sheet < 3; ++sheet) {
+    const double angle = 2.0 * sheet;
+    const std::size_t first = rows.size();
+    for (Index row = 0; row < kRows; ++row) {
+      std::array<Index, kColumns> vertices{};
+      for (Index column = 0; column < kColumns; ++column) {
+        vertices[column] = complex.size();
+        if (column == 0 && sheet > 0) {
+          vertices[0] = rows[row][0];
+          continue;
+        }
+        const double x = column + uneven(random);
+        complex.balls.push_back(ball_at({x * std::cos(angle), x * std::sin(angle), row + uneven(random)}));
+      }
+      rows.push_back(vertices);
+    }
+    for (std::size_t row = first; row + 1 < rows.size(); ++row) {
+      for (Index column = 0; column + 1 < kColumns; ++column) {
+        const Index a = rows[row][column], b = rows[row][column + 1], c = rows[row + 1][column],
+                    d = rows[row + 1][column + 1];
+        complex.triangles.push_back({a, b, c});
+        complex.triangles.push_back({b, c, d});
+      }
+    }
+  }
+  complex.complete();
+  const std::vector<std::array<Index, 2>> edges = complex.edges;
+  for (const auto& [a, b] : edges) {
+    const auto kind = random() % 6;
+    const double t = kind == 0 ? 0 : 0.25 + 0.5 * std::generate_canonical<double, 53>(random);
+    if (kind > 1) continue;
+    complex.triangles.push_back({a, b, complex.size()});
+    complex.balls.push_back(ball_at((1 - t) * complex.balls[a].center + t * complex.balls[b].center));
+  }
+  complex.complete();
+  return complex;
+}
+
+TEST(DropDegenerate, LeavesNoTriangleWithoutAreaAndTheSameTopology) {
+  for (std::uint64_t seed = 0; seed < 30 * test::more(); ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(test::first_seed() + seed);
+    detail::BallComplex complex = sheets_with_degenerate_cells(random);
+    const MedialMesh before = complex.mesh();
+    ASSERT_GT(detail::drop_degenerate(complex, 1e-9), 0u);
+    const MedialMesh after = complex.mesh();
+    EXPECT_EQ(topology(after), topology(before));
+    for (const auto& [a, b, c] : after.triangles) {
+      const Vector u = after.centers[b] - after.centers[a], v = after.centers[c] - after.centers[a];
+      EXPECT_GT(u.cross(v).norm(), 1e-6);
+    }
+    // All of what is left was there, and at its place.
+    const auto key = [](const Point& place) { return std::array{place.x(), place.y(), place.z()}; };
+    std::set<std::array<double, 3>> places;
+    for (const Point& center : before.centers) places.insert(key(center));
+    for (const Point& center : after.centers) EXPECT_TRUE(places.erase(key(center)) == 1);
+    EXPECT_TRUE(places.empty());
+  }
+}
+
+TEST(DropDegenerate, LeavesWhatTheTopologyNeeds) {
+  // A hollow tetrahedron without volume, two of whose vertices are one place.
+  detail::BallComplex complex;
+  for (const Point& center : {Point(0, 0, 0), Point(1, 0, 0), Point(0, 1, 0), Point(0, 0, 0)})
+    complex.balls.push_back(ball_at(center));
+  complex.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}};
+  complex.complete();
+  EXPECT_EQ(detail::drop_degenerate(complex, 1e-6), 0u);
+  EXPECT_EQ(topology(complex.mesh()), (Topology{1, 0, 1}));
+}
+
+}  // namespace
+}  // namespace orchard
