@@ -56,6 +56,8 @@ Step BroadPhase::step_reported() const noexcept {
 
 // While we slept, the caller's time went on: the change counts from the first step after it.
 void BroadPhase::wake_for_change() {
+  if (state_->woken) return;
+  state_->woken = true;
   state_->next = std::min(state_->next, step_reported() + 1);
   note_next_step();
 }
@@ -93,6 +95,7 @@ Advance BroadPhase::process(double t_now, const WorkBudget* budget) {
 
 Advance BroadPhase::process_steps(double t_now, const WorkBudget* budget) {
   State& state = *state_;
+  state.woken = false;
   std::vector<BodyIndex>& bodies_refused = state.pool.refused();
   bodies_refused.clear();
   const auto refused = [&]() -> std::span<const BodyIndex> {

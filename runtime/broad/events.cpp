@@ -133,9 +133,10 @@ void Events::step_in_full(Step now, bool completing) {
   bool all_anew = completing;
   BudgetTracker unlimited;
   if (!completing) {
-    all_anew = outgrown() || worth_a_rebuild(due_.size());
+    all_anew = sorting_ || outgrown() || worth_a_rebuild(due_.size());
     if (all_anew) {
       replan(now, unlimited);
+      if (worth_sorting(now)) return step_by_sorting(now);
       place_all_anew();
       wheel_.clear_events();  // updates of all windows void them
     } else {
@@ -195,7 +196,7 @@ StepReport Events::step(Step now, BudgetTracker& tracker) {
     complete_due(now);
   } else {
     due_.clear();
-    collect_due(now);
+    sorting_ ? collect_all(now) : collect_due(now);
   }
   prepared_ = false;
   near_.clear();
@@ -218,6 +219,7 @@ StepReport Events::step(Step now, BudgetTracker& tracker) {
   }
   if (now + 1 == common_expiry_ && !limited_ && prepare(now)) return report;
   if (!changed_.empty() || !report.pairs.empty()) return report;
+  if (sorting_) return report;
   report.next = wheel_.next_after(now);
   if (common_expiry_ != kNeverStep && common_expiry_ - 1 > now) report.next = std::min(report.next, common_expiry_ - 1);
   return report;
@@ -225,6 +227,7 @@ StepReport Events::step(Step now, BudgetTracker& tracker) {
 
 std::size_t Events::foresee(Step now, std::span<StepsAhead> steps) const noexcept {
   const std::size_t known = std::min<std::size_t>(steps.size(), kWheelSteps - 2);
+  if (sorting_ && known > 0) steps[0].updates += pool_.size();
   for (std::size_t i = 0; i < known; ++i) {
     const Step step = now + 1 + static_cast<Step>(i);
     steps[i].updates += wheel_.bodies_due(step);
@@ -239,7 +242,7 @@ std::size_t Events::memory_bytes() const noexcept {
          bytes_of(changed_) + bytes_of(entries_) + bytes_of(oversized_) + overlaps_.memory_bytes() +
          bytes_of(overlaps_ahead_) + bytes_of(doubtful_) + bytes_of(due_) + bytes_of(spheres_) + bytes_of(waiting_) +
          bytes_of(tests_) + bytes_of(near_) + bytes_of(motions_) + bytes_of(surveyed_) + backlog_.memory_bytes() +
-         list_.memory_bytes() + grid_.memory_bytes() + wheel_.memory_bytes() - sizeof(wheel_);
+         list_.memory_bytes() + grid_.memory_bytes() + sorted_.memory_bytes() + wheel_.memory_bytes() - sizeof(wheel_);
 }
 
 std::unique_ptr<Method> make_events(BodyPool& pool, const BroadPhaseOptions& options) {

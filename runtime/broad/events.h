@@ -3,6 +3,7 @@
 #include "box_list.h"
 #include "method.h"
 #include "overlap_list.h"
+#include "sorted_spheres.h"
 #include "swept_grid.h"
 #include "window_plan.h"
 
@@ -75,6 +76,12 @@ class Events final : public Method {
   void void_events(BodyIndex body) noexcept;
   void note_cancelled(Window& window, Step now) noexcept;
 
+  // events_sorting.cpp: where windows are of one step
+  void collect_all(Step now);
+  bool worth_sorting(Step now) const noexcept;
+  void begin_sorting();
+  void step_by_sorting(Step now);
+
   // events_budget.cpp: a step within a budget
   void postpone(BodyIndex body);
   void keep_doubtful();
@@ -93,6 +100,7 @@ class Events final : public Method {
   bool replan(Step now, BudgetTracker& tracker);
   bool plan_outdated(double off, double cancelled) noexcept;
   bool survey(Step now, BudgetTracker& tracker);
+  void all_are_due();
   void place_all_anew();
   bool prepare(Step now);
   double share_ahead() const noexcept;
@@ -146,6 +154,9 @@ class Events final : public Method {
   bool few_ = true;         // bodies: they are in the list, not in the grid
   BoxList list_;
   SweptGrid grid_;
+  bool sorting_ = false;  // the last step was done by sorting: no body is in the list nor in the grid, and all are due
+  Step sorts_from_ = kNeverStep / -2;  // at steps before, nothing is sorted
+  SortedSpheres sorted_;
   QuantumBox extent_ = kNothing;  // around all boxes that are in the grid, or have been since all were placed anew
   Lattice lattice_;
   TimingWheel wheel_;

@@ -80,7 +80,7 @@ void Events::join_backlog() {
 // A rebuild forgets all boxes. It has to be where there are many more bodies than planned for; where it is a matter of
 // speed, only if no budget has interrupted for as long as a window lasts: else nothing would ever be finished.
 bool Events::worth_a_rebuild_within(Step now, std::size_t due) const noexcept {
-  if (outgrown() || rounds_run_out() || pool_.size() > 2 * planned_bodies_) return true;
+  if (sorting_ || outgrown() || rounds_run_out() || pool_.size() > 2 * planned_bodies_) return true;
   return now - interrupted_at_ > kLongestWindow && worth_a_rebuild(due);
 }
 

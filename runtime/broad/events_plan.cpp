@@ -7,6 +7,7 @@ namespace {
 constexpr std::size_t kSmallSample = 16, kSample = 48;  // bodies that the first plan asks: of few, and of many
 constexpr double kCrowding = 4;                         // lines read per entry from which on the cells are too large
 constexpr double kStepsToTell = 3;                      // fewer do not tell how often bounds are cancelled
+constexpr double kNearlyAll = 0.9;                      // cancelled at each step so far: one is enough
 constexpr double kStepsCounted = 256;                   // that tell how often bounds are cancelled
 constexpr unsigned kPlansKept = 8;      // a plan that fits is made anew after as many updates of all windows
 constexpr double kFewPairs = 1e-3;      // per body: too few to say anything about the prediction
@@ -33,7 +34,8 @@ bool Events::replan(Step now, BudgetTracker& tracker) {
   const bool too_crowded = crowded(grid_.counts()) && n <= 2 * planned_bodies_;
   const bool other_number = n > 2 * planned_bodies_ || 2 * n < planned_bodies_;
   if (!too_crowded && other_number && !survey(now, tracker)) return false;
-  const GridCounts counts = grid_.take_counts();
+  GridCounts counts = grid_.take_counts();
+  if (sorting_) counts.bodies = n, counts.pairs = sorted_.boxes_met();
   double off = 1;  // pairs seen to pairs predicted
   if (counts.bodies > 0) {
     const double seen = static_cast<double>(counts.pairs) / static_cast<double>(counts.bodies);
@@ -41,7 +43,8 @@ bool Events::replan(Step now, BudgetTracker& tracker) {
   }
   const double steps = static_cast<double>(std::max<Step>(1, now - planned_at_));
   const double share = std::min(1.0, static_cast<double>(cancellations_) / (steps * static_cast<double>(n)));
-  const double cancelled = steps < kStepsToTell ? cancelled_ : share;
+  const bool tells = steps >= kStepsToTell || share > kNearlyAll;
+  const double cancelled = tells ? share : cancelled_;
   if (too_crowded) {
     crowding_ *= 2;  // bodies in clusters: what counts is how dense these are
     spacing_ /= 2;
@@ -62,7 +65,7 @@ bool Events::replan(Step now, BudgetTracker& tracker) {
   correction_ = std::clamp(correction_ * off, 0.05, 50.0);
   plan_ = plan_window(means_, n, spacing_, options_.time_step, correction_, options_.window, cancelled);
   cancelled_ = cancelled;
-  if (steps >= kStepsToTell || other_number) {
+  if (tells || other_number) {
     planned_at_ = now;
     cancellations_ = 0;
   }
@@ -116,18 +119,24 @@ bool Events::survey(Step now, BudgetTracker& tracker) {
   return true;
 }
 
-void Events::place_all_anew() {
-  rebuilt_round_ = round_;
-  wheel_.clear_bodies();
-  std::fill(places_.begin(), places_.end(), Place::nowhere);
-  oversized_.clear();
-  extent_ = kNothing;
+void Events::all_are_due() {
   if (due_.capacity() > 2 * pool_.size()) give_back(due_);
   due_.clear();
   due_.reserve(pool_.size());
   for (BodyIndex body = 0; body < pool_.slots(); ++body) {
     if (pool_.alive(body)) due_.push_back(body);
   }
+}
+
+void Events::place_all_anew() {
+  if (sorting_) sorted_.release();
+  sorting_ = false;
+  rebuilt_round_ = round_;
+  wheel_.clear_bodies();
+  std::fill(places_.begin(), places_.end(), Place::nowhere);
+  oversized_.clear();
+  extent_ = kNothing;
+  all_are_due();
   any_short_ = any_short_ && std::any_of(windows_.begin(), windows_.end(),
                                          [](const Window& window) { return window.lasting < kLastsAsEver; });
   voted_ = kNeverStep;

@@ -103,6 +103,7 @@ Near Events::near_box(const Vec3& lower, const Vec3& upper, std::vector<BodyInde
     box.upper[d] = quantum_above(lattice_.quantum(upper[d], d));
   }
   append_loose(bodies);
+  if (sorting_) return sorted_.append_near(lower, upper, bodies) ? Near::some : Near::untold;
   if (few_) {
     list_.append_meeting(box, bodies);
     return box.lower == kEverything.lower && box.upper == kEverything.upper ? Near::all : Near::some;
@@ -157,7 +158,7 @@ bool Events::walk_slabs(const GridRay& ray, std::vector<BodyIndex>& portion, Por
 
 bool Events::along(const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
                    PortionVisitor& visitor) const {
-  if (few_) return false;
+  if (few_ || sorting_) return false;
   GridRay ray{{}, way, 0, lattice_.quanta(length)};
   for (std::size_t d = 0; d < 3; ++d) {
     ray.origin[d] = lattice_.quantum(origin[d], d);

@@ -4,8 +4,7 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr std::size_t kMeansStride = 16;  // of the bodies updated, every so many count for the plan's means
-constexpr double kLongerWindow = 0.4;     // a window may exceed the plan's by as much of it: one update, not two
+constexpr double kLongerWindow = 0.4;  // a window may exceed the plan's by as much of it: one update, not two
 
 // Cells along an axis, less one; 0 if the boxes fit into the grid.
 std::uint32_t excess_cells(const BoxBlock& boxes, std::size_t count) noexcept {
@@ -100,7 +99,7 @@ bool Events::place(WindowUpdate& update, std::span<const BodyIndex> bodies) {
   for (std::size_t i = 0; !spheres_.empty() && i < bodies.size(); ++i) {
     spheres_[bodies[i]] = {motions[i].position, motions[i].radius, reach_of(motions[i], update.durations[i])};
   }
-  for (std::size_t i = 0; i < bodies.size(); i += kMeansStride) means_.add(motions[i]);
+  means_.add(motions);
   if (!few_ && !place_in_grid(update, bodies)) same = false;
   if (same) {
     if (common != kNeverStep) wheel_.set_due(bodies, common);
@@ -191,8 +190,11 @@ std::size_t Events::refuse_invalid(std::span<BodyIndex> bodies) {
       refuse(bodies[i]);
       continue;
     }
-    bodies[front] = bodies[i];
-    motions_[front++] = motions_[i];
+    if (front < i) {
+      bodies[front] = bodies[i];
+      motions_[front] = motions_[i];
+    }
+    ++front;
   }
   return front;
 }

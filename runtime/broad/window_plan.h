@@ -12,6 +12,10 @@ struct MotionMeans {
   std::array<Vec3, kPlaces> places{};                                    // where some of them are, no matter which
 
   void add(const Motion& motion) noexcept;
+  void add(std::span<const Motion> updated) noexcept {  // some of them
+    constexpr std::size_t kStride = 16;
+    for (std::size_t i = 0; i < updated.size(); i += kStride) add(updated[i]);
+  }
   std::span<const Vec3> sample() const noexcept {
     return std::span(places).first(std::min(kPlaces, static_cast<std::size_t>(count)));
   }
