@@ -30,8 +30,8 @@ class Events final : public Method {
   StepReport step(Step now, BudgetTracker& tracker) override;
   std::size_t memory_bytes() const noexcept override;
   std::size_t foresee(Step now, std::span<StepsAhead> steps) const noexcept override;
-  Near near_box(const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const override;
-  bool along(const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
+  Near near_box(Step now, const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const override;
+  bool along(Step now, const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
              PortionVisitor& visitor) const override;
   double cell_size() const noexcept override { return plan_.cell_size; }
 
@@ -100,6 +100,10 @@ class Events final : public Method {
   bool replan(Step now, BudgetTracker& tracker);
   bool plan_outdated(double off, double cancelled) noexcept;
   bool survey(Step now, BudgetTracker& tracker);
+  Vec3 frame_velocity() const noexcept;
+  double seconds_between(Step begin, Step end) const noexcept {
+    return static_cast<double>(end - begin) * options_.time_step;
+  }
   void all_are_due();
   void place_all_anew();
   bool prepare(Step now);
@@ -128,6 +132,7 @@ class Events final : public Method {
   struct GridRay;
   void append_loose(std::vector<BodyIndex>& bodies) const;
   void append_in_cells(const QuantumBox& box, std::vector<BodyIndex>& bodies) const;
+  Lattice lattice_at(Step now) const noexcept;
   bool walk_slabs(const GridRay& ray, std::vector<BodyIndex>& portion, PortionVisitor& visitor) const;
 
   // events_pairs.cpp
@@ -159,6 +164,7 @@ class Events final : public Method {
   SortedSpheres sorted_;
   QuantumBox extent_ = kNothing;  // around all boxes that are in the grid, or have been since all were placed anew
   Lattice lattice_;
+  Step lattice_from_ = 0;  // at which it was made
   TimingWheel wheel_;
   OverlapList overlaps_;
   std::vector<PairEvent> overlaps_ahead_;  // of pairs tested ahead for the next step, at which they surely touch

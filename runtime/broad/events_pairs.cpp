@@ -35,9 +35,11 @@ void Events::test(Step now, std::span<const PairEvent> events) {
   }
 }
 
+// Relative to the lattice, like that of every other body.
 double Events::reach_of(const Motion& m, double duration) const noexcept {
   constexpr double kOutward = 1 + 1e-9;  // for what is rounded here
-  const double travel = duration * (std::sqrt(dot(m.velocity, m.velocity)) + m.drift + duration * m.acceleration / 2);
+  const Vec3 velocity = m.velocity - lattice_.velocity();
+  const double travel = duration * (std::sqrt(dot(velocity, velocity)) + m.drift + duration * m.acceleration / 2);
   return travel * kOutward + motion_slack(m, m, duration) + 2 * options_.position_slack;
 }
 

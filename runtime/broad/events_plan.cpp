@@ -9,9 +9,10 @@ constexpr double kCrowding = 4;                         // lines read per entry 
 constexpr double kStepsToTell = 3;                      // fewer do not tell how often bounds are cancelled
 constexpr double kNearlyAll = 0.9;                      // cancelled at each step so far: one is enough
 constexpr double kStepsCounted = 256;                   // that tell how often bounds are cancelled
-constexpr unsigned kPlansKept = 8;      // a plan that fits is made anew after as many updates of all windows
-constexpr double kFewPairs = 1e-3;      // per body: too few to say anything about the prediction
-constexpr std::size_t kAskedAhead = 8;  // bodies, to see whether the next bounds are known
+constexpr unsigned kPlansKept = 8;       // a plan that fits is made anew after as many updates of all windows
+constexpr double kFarthestWay = 0x1p20;  // spacings, which cells are not much smaller than
+constexpr double kFewPairs = 1e-3;       // per body: too few to say anything about the prediction
+constexpr std::size_t kAskedAhead = 8;   // bodies, to see whether the next bounds are known
 
 }  // namespace
 
@@ -63,15 +64,29 @@ bool Events::replan(Step now, BudgetTracker& tracker) {
     }
   }
   correction_ = std::clamp(correction_ * off, 0.05, 50.0);
+  const Vec3 velocity = frame_velocity();
+  means_.refer_to(velocity);
   plan_ = plan_window(means_, n, spacing_, options_.time_step, correction_, options_.window, cancelled);
   cancelled_ = cancelled;
   if (tells || other_number) {
     planned_at_ = now;
     cancellations_ = 0;
   }
-  lattice_ = Lattice(lattice_.origin(), plan_.cell_size, 2 * options_.position_slack);
+  lattice_.move_to(seconds_between(lattice_from_, now));
+  lattice_ = Lattice(lattice_.origin(), velocity, plan_.cell_size, 2 * options_.position_slack);
+  lattice_from_ = now;
   means_ = {};
+  means_.frame = velocity;
   return true;
+}
+
+// Of the lattice. Static bodies have windows without end only where they stay in the same cells. Rounding stays below a
+// quantum where a window's way is within the lattice's range.
+Vec3 Events::frame_velocity() const noexcept {
+  if (pool_.any_static()) return {};
+  const Vec3 velocity = means_.crowd_velocity();
+  const double way = std::sqrt(dot(velocity, velocity)) * seconds_between(0, kLongestWindow);
+  return way < kFarthestWay * spacing_ ? velocity : Vec3{};
 }
 
 // `off`: pairs seen to pairs predicted. Bounds that are cancelled more often than they were, or less, count as well.
@@ -111,7 +126,8 @@ bool Events::survey(Step now, BudgetTracker& tracker) {
     centers.push_back(motion.position);
   }
   surveyed_.clear();
-  lattice_ = Lattice(centers.empty() ? Vec3{} : centers.front(), 1, 0);
+  lattice_ = Lattice(centers.empty() ? Vec3{} : centers.front(), {}, 1, 0);
+  lattice_from_ = now;
   spacing_ = mean_spacing(centers, n);
   planned_bodies_ = n;
   crowding_ = correction_ = 1;

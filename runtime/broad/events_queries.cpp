@@ -96,11 +96,18 @@ void Events::append_in_cells(const QuantumBox& box, std::vector<BodyIndex>& bodi
   }
 }
 
-Near Events::near_box(const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const {
+Lattice Events::lattice_at(Step now) const noexcept {
+  Lattice lattice = lattice_;
+  lattice.move_to(seconds_between(lattice_from_, now));
+  return lattice;
+}
+
+Near Events::near_box(Step now, const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const {
+  const Lattice lattice = lattice_at(now);
   QuantumBox box{};
   for (std::size_t d = 0; d < 3; ++d) {
-    box.lower[d] = quantum_below(lattice_.quantum(lower[d], d));
-    box.upper[d] = quantum_above(lattice_.quantum(upper[d], d));
+    box.lower[d] = quantum_below(lattice.quantum(lower[d], d));
+    box.upper[d] = quantum_above(lattice.quantum(upper[d], d));
   }
   append_loose(bodies);
   if (sorting_) return sorted_.append_near(lower, upper, bodies) ? Near::some : Near::untold;
@@ -156,12 +163,13 @@ bool Events::walk_slabs(const GridRay& ray, std::vector<BodyIndex>& portion, Por
   return true;
 }
 
-bool Events::along(const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
+bool Events::along(Step now, const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
                    PortionVisitor& visitor) const {
   if (few_ || sorting_) return false;
-  GridRay ray{{}, way, 0, lattice_.quanta(length)};
+  const Lattice lattice = lattice_at(now);
+  GridRay ray{{}, way, 0, lattice.quanta(length)};
   for (std::size_t d = 0; d < 3; ++d) {
-    ray.origin[d] = lattice_.quantum(origin[d], d);
+    ray.origin[d] = lattice.quantum(origin[d], d);
     if (!(std::fabs(ray.origin[d]) <= kFarOrigin)) return false;
     if (std::fabs(way[d]) > std::fabs(way[ray.axis])) ray.axis = d;
   }

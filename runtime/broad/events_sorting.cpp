@@ -52,6 +52,7 @@ void Events::step_by_sorting(Step now) {
   rebuilt_round_ = round_;
   all_are_due();
   motions_.resize(kBlock);
+  lattice_.move_to(seconds_between(lattice_from_, now));
   sorted_.begin(due_.size(), lattice_.origin(), spacing_);
   for (std::size_t done = 0; done < due_.size();) {
     auto block = std::span(due_).subspan(done, std::min(kBlock, due_.size() - done));

@@ -56,7 +56,7 @@ Step Events::window_end(Step from, const Motion& motion) noexcept {
 
 // The same for a body, whose bounds may have been cancelled again and again.
 Step Events::window_end(Step from, BodyIndex body, const Motion& motion) noexcept {
-  if (pool_.is_static(body)) return kNeverStep;
+  if (pool_.is_static(body) && !lattice_.moves()) return kNeverStep;
   const Step end = window_end(from, motion);
   return any_short_ ? std::min(end, from + windows_[body].lasting) : end;
 }
@@ -212,6 +212,7 @@ void Events::refuse(BodyIndex body) {
 // Where `from` is a later step than now, bodies whose bounds do not reach it are left to the next step.
 void Events::update_windows(Step now, Step from, std::span<const BodyIndex> bodies, Found found) {
   motions_.resize(kBlock);
+  lattice_.move_to(seconds_between(lattice_from_, now));
   WindowUpdate update;
   update.now = now;
   update.from = from;

@@ -22,6 +22,7 @@ class Sequence {
     hostile_ = chance(0.5);
     filtered_ = chance(0.5);
     ball_ = draw_.uniform(1, 4) * std::cbrt(static_cast<double>(crowd));
+    if (chance(0.3)) wind_ = draw_.uniform(0, 200) * draw_.direction();
   }
 
   void run(int steps) {
@@ -63,8 +64,8 @@ class Sequence {
 
   Motion random_motion() {
     Motion m;
-    m.position = draw_.in_ball(ball_);
-    m.velocity = draw_.uniform(0, 10) * draw_.direction();
+    m.position = draw_.in_ball(ball_) + now_ * wind_;
+    m.velocity = draw_.uniform(0, 10) * draw_.direction() + wind_;
     m.radius = chance(0.02) ? 2 * ball_ : draw_.uniform(0, 1.2);
     m.acceleration = draw_.uniform(0, 10);
     if (chance(0.5)) m.expiry = now_ + draw_.uniform(0, 0.3);
@@ -252,6 +253,7 @@ class Sequence {
   test::Draw draw_;
   std::size_t crowd_;
   bool hostile_ = false, filtered_ = false, restless_ = false;  // restless: no bound lasts for longer than a step
+  Vec3 wind_{};                                                 // all fly with it
   BodyIndex excluded_ = 0;
   double ball_ = 1, now_ = -kStep;
   int mode_ = 0;
