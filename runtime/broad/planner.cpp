@@ -1,6 +1,7 @@
-#include "events.h"
+#include "planner.h"
 
-// When to update all windows anew, and how long their windows are then.
+#include <cmath>
+
 namespace orchard::runtime::detail {
 namespace {
 
@@ -12,31 +13,20 @@ constexpr double kStepsCounted = 256;                   // that tell how often b
 constexpr unsigned kPlansKept = 8;       // a plan that fits is made anew after as many updates of all windows
 constexpr double kFarthestWay = 0x1p20;  // spacings, which cells are not much smaller than
 constexpr double kFewPairs = 1e-3;       // per body: too few to say anything about the prediction
-constexpr std::size_t kAskedAhead = 8;   // bodies, to see whether the next bounds are known
 
 }  // namespace
 
-bool Events::crowded(const GridCounts& counts) const noexcept {
+bool Planner::crowded(const GridCounts& counts) const noexcept {
   return plan_.roomy && counts.bodies >= pool_.size() &&
          static_cast<double>(counts.lines_read) > kCrowding * static_cast<double>(counts.entries);
 }
 
-// When most bodies are due it is cheaper to start afresh; it also lets the plan follow the bodies.
-bool Events::worth_a_rebuild(std::size_t due) const noexcept {
+Planner::Outcome Planner::replan(Step now, const GridCounts& counts, BudgetTracker& tracker) {
   const std::size_t n = pool_.size();
-  if (rounds_run_out()) return true;  // what is updated seldom has to stay comparable
-  if (due == 0 || n == 0) return false;
-  return 2 * due >= n || n > 2 * planned_bodies_ || crowded(grid_.counts());
-}
-
-// False if a budget ended the survey before it was complete: it goes on at the next call.
-bool Events::replan(Step now, BudgetTracker& tracker) {
-  const std::size_t n = pool_.size();
-  const bool too_crowded = crowded(grid_.counts()) && n <= 2 * planned_bodies_;
-  const bool other_number = n > 2 * planned_bodies_ || 2 * n < planned_bodies_;
-  if (!too_crowded && other_number && !survey(now, tracker)) return false;
-  GridCounts counts = grid_.take_counts();
-  if (sorting_) counts.bodies = n, counts.pairs = sorted_.boxes_met();
+  surveyed_now_ = false;
+  const bool too_crowded = crowded(counts) && !many_more_bodies();
+  const bool other_number = many_more_bodies() || 2 * n < planned_bodies_;
+  if (!too_crowded && other_number && !survey(now, tracker)) return Outcome::interrupted;
   double off = 1;  // pairs seen to pairs predicted
   if (counts.bodies > 0) {
     const double seen = static_cast<double>(counts.pairs) / static_cast<double>(counts.bodies);
@@ -50,12 +40,12 @@ bool Events::replan(Step now, BudgetTracker& tracker) {
     crowding_ *= 2;  // bodies in clusters: what counts is how dense these are
     spacing_ /= 2;
   } else if (!other_number) {
-    if (!plan_outdated(off, cancelled)) {
+    if (!outdated(off, cancelled)) {
       if (steps > kStepsCounted) {  // what was long ago counts less and less
         cancellations_ /= 2;
         planned_at_ = now - (now - planned_at_) / 2;
       }
-      return true;
+      return Outcome::same;
     }
     if (means_.sample().size() >= kSmallSample) {  // bodies may have come closer, or gone apart
       const double before = spacing_;
@@ -72,33 +62,31 @@ bool Events::replan(Step now, BudgetTracker& tracker) {
     planned_at_ = now;
     cancellations_ = 0;
   }
-  lattice_.move_to(seconds_between(lattice_from_, now));
-  lattice_ = Lattice(lattice_.origin(), velocity, plan_.cell_size, 2 * options_.position_slack);
-  lattice_from_ = now;
   means_ = {};
   means_.frame = velocity;
-  return true;
+  return Outcome::anew;
 }
 
-// Of the lattice. Static bodies have windows without end only where they stay in the same cells. Rounding stays below a
+// Static bodies have windows without end only where they stay in the same cells. Rounding stays below a
 // quantum where a window's way is within the lattice's range.
-Vec3 Events::frame_velocity() const noexcept {
+Vec3 Planner::frame_velocity() const noexcept {
   if (pool_.any_static()) return {};
   const Vec3 velocity = means_.crowd_velocity();
-  const double way = std::sqrt(dot(velocity, velocity)) * seconds_between(0, kLongestWindow);
+  const double way = std::sqrt(dot(velocity, velocity)) * kLongestWindow * options_.time_step;
   return way < kFarthestWay * spacing_ ? velocity : Vec3{};
 }
 
 // `off`: pairs seen to pairs predicted. Bounds that are cancelled more often than they were, or less, count as well.
-bool Events::plan_outdated(double off, double cancelled) noexcept {
+bool Planner::outdated(double off, double cancelled) noexcept {
   constexpr double kSeldom = 0.005;  // a share that makes no difference
   const bool fits = 0.5 < off && off < 2;
   const bool as_often = std::max(cancelled, cancelled_) < kSeldom + 2 * std::min(cancelled, cancelled_);
   return !fits || !as_often || plans_++ % kPlansKept == 1;
 }
 
+// False if a budget ended it before it was complete.
 // How bodies lie and move, from a sample. What a budget interrupts goes on with the bodies after those seen.
-bool Events::survey(Step now, BudgetTracker& tracker) {
+bool Planner::survey(Step now, BudgetTracker& tracker) {
   const std::size_t n = pool_.size(), wanted = std::clamp(n / 8, kSmallSample, kSample);
   const std::size_t stride = std::max<std::size_t>(1, n / wanted);
   if (surveyed_.empty()) survey_next_ = 0;
@@ -126,8 +114,8 @@ bool Events::survey(Step now, BudgetTracker& tracker) {
     centers.push_back(motion.position);
   }
   surveyed_.clear();
-  lattice_ = Lattice(centers.empty() ? Vec3{} : centers.front(), {}, 1, 0);
-  lattice_from_ = now;
+  surveyed_now_ = true;
+  origin_ = centers.empty() ? Vec3{} : centers.front();
   spacing_ = mean_spacing(centers, n);
   planned_bodies_ = n;
   crowding_ = correction_ = 1;
@@ -135,89 +123,11 @@ bool Events::survey(Step now, BudgetTracker& tracker) {
   return true;
 }
 
-void Events::all_are_due() {
-  if (due_.capacity() > 2 * pool_.size()) give_back(due_);
-  due_.clear();
-  due_.reserve(pool_.size());
-  for (BodyIndex body = 0; body < pool_.slots(); ++body) {
-    if (pool_.alive(body)) due_.push_back(body);
-  }
-}
-
-void Events::place_all_anew() {
-  if (sorting_) sorted_.release();
-  sorting_ = false;
-  rebuilt_round_ = round_;
-  wheel_.clear_bodies();
-  std::fill(places_.begin(), places_.end(), Place::nowhere);
-  oversized_.clear();
-  extent_ = kNothing;
-  all_are_due();
-  any_short_ = any_short_ && std::any_of(windows_.begin(), windows_.end(),
-                                         [](const Window& window) { return window.lasting < kLastsAsEver; });
-  voted_ = kNeverStep;
-  votes_ = 0;
-  few_ = pool_.slots() <= BoxList::kMaxBodies;
-  if (few_) {
-    list_.reset(pool_.slots());
-    grid_.release();
-    give_back(boxes_);
-  } else {
-    list_.release();
-    grid_.reset(plan_.lines);
-    grow(boxes_, pool_.slots());
-  }
-}
-
-// The majority's vote, if there is one: what differs is paired off.
-void Events::vote(Step end, std::size_t bodies) noexcept {
-  if (end == voted_) {
-    votes_ += bodies;
-  } else if (bodies > votes_) {
-    voted_ = end;
-    votes_ = bodies - votes_;
-  } else {
-    votes_ -= bodies;
-  }
-}
-
 // Of the bodies, so that both steps take the same time: of the near pairs only those among them are found ahead.
-double Events::share_ahead() const noexcept {
+double Planner::share_ahead() const noexcept {
   constexpr double kUpdate = 60, kNearPair = 100;  // nanoseconds of one machine
   const double pairs = kNearPair * plan_.pairs_per_body;
   return pairs < 1 ? 0.5 : (std::sqrt(kUpdate * kUpdate + 2 * pairs * (kUpdate + pairs)) - kUpdate) / (2 * pairs);
-}
-
-// A step ahead of the common expiry: the present bounds have answered for this step, and hold no longer than that. If
-// the next ones are known already, half of the work is done now, in updates with windows that begin at the common
-// expiry.
-bool Events::prepare(Step now) {
-  const Step from = now + 1;
-  common_expiry_ = kNeverStep;
-  std::array<BodyIndex, kSample> sample;
-  std::size_t count = 0;
-  const std::size_t stride = std::max<std::size_t>(1, pool_.slots() / kAskedAhead);
-  for (std::size_t body = 0; body < pool_.slots() && count < kAskedAhead; body += stride) {
-    if (pool_.alive(static_cast<BodyIndex>(body))) sample[count++] = static_cast<BodyIndex>(body);
-  }
-  motions_.resize(kBlock);
-  pool_.ask(now, std::span(sample).first(count), std::span(motions_).first(count));
-  if (2 * known_at(from, std::span(sample).first(count)) < count) return false;
-
-  common_expiry_ = from;
-  prepared_ = preparing_ = true;
-  ++round_;
-  BudgetTracker unlimited;
-  replan(now, unlimited);
-  place_all_anew();
-  wheel_.clear_events();
-  const auto ahead = static_cast<std::size_t>(share_ahead() * static_cast<double>(due_.size()));
-  near_.clear();
-  make_room_for_spheres();
-  update_windows(now, from, std::span(due_).first(ahead), Found::tested);
-  due_.erase(due_.begin(), due_.begin() + static_cast<std::ptrdiff_t>(ahead));
-  preparing_ = false;
-  return true;
 }
 
 }  // namespace orchard::runtime::detail
