@@ -119,9 +119,10 @@ WindowPlan plan_window(const MotionMeans& means, std::size_t bodies, double spac
     consider(std::min(fixed_window, kLongestWindow));
     return best;
   }
-  for (double window = 1; window < static_cast<double>(kLongestWindow);
-       window = std::max(window + 1, window * kWindowGrowth)) {
+  double window = 1;
+  while (window < static_cast<double>(kLongestWindow)) {
     consider(static_cast<Step>(window));
+    window = std::max(window + 1, window * kWindowGrowth);
   }
   return best;
 }
