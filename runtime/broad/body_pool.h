@@ -115,6 +115,7 @@ class BodyPool {
   bool alive(BodyIndex body) const noexcept { return generations_[body] % 2 != 0; }
   bool is_static(BodyIndex body) const noexcept { return !static_slot_.empty() && static_slot_[body] != kNoSlot; }
   bool any_static() const noexcept { return !static_slot_.empty(); }
+  std::size_t statics() const noexcept { return static_motions_.size() - free_slots_.size(); }
   BodyFilter filter(BodyIndex body) const noexcept { return filters_.empty() ? BodyFilter{} : filters_[body]; }
   // Whether some pairs are none.
   bool filters_pairs() const noexcept { return any_static() || !filters_.empty() || pair_filter_; }

@@ -96,12 +96,17 @@ struct VectorDoubles {
 
 }  // namespace
 
-Lattice::Lattice(const Vec3& origin, double cell_size, double slack) noexcept
-    : origin_(origin), per_length_(kQuanta / cell_size) {
+Lattice::Lattice(const Vec3& origin, const Vec3& velocity, double cell_size, double slack) noexcept
+    : first_(origin), velocity_(velocity), per_length_(kQuanta / cell_size), slack_(slack) {
+  move_to(0);
+}
+
+void Lattice::move_to(double seconds) noexcept {
+  origin_ = first_ + seconds * velocity_;
   double size = 0;
-  for (const double x : origin) size = std::max(size, std::fabs(x));
+  for (const double x : origin_) size = std::max(size, std::fabs(x));
   margin_ =
-      kRoundingQuanta + 8 * kMotionSlack * (size * per_length_ + kLastQuantum) + (slack + kMinLength) * per_length_;
+      kRoundingQuanta + 8 * kMotionSlack * (size * per_length_ + kLastQuantum) + (slack_ + kMinLength) * per_length_;
 }
 
 double Lattice::quantum(double coordinate, std::size_t axis) const noexcept {
@@ -139,7 +144,7 @@ ORCHARD_INLINE void Lattice::make_four(const Motion* motions, const double* dura
   typename Kind::Mask inside = zero <= zero;
   for (std::size_t d = 0; d < 3; ++d) {
     const Numbers begin = all(kMiddle) + (of.position[d] - all(origin_[d])) * per_length;
-    const Numbers way = of.velocity[d] * time * per_length;
+    const Numbers way = (of.velocity[d] - all(velocity_[d])) * time * per_length;
     lower[d] = begin + least(zero, way - wide) - radius;
     upper[d] = begin + most(zero, way + wide) + radius;
     inside = inside & (zero <= lower[d]) & (upper[d] <= last);

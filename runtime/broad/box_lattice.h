@@ -46,14 +46,18 @@ struct BoxBlock {
   }
 };
 
-// Where quanta lie in space. Monotone, and outward: boxes that meet in space meet in quanta.
+// Where quanta lie in space. Monotone, and outward: boxes that meet in space meet in quanta. It may move with a crowd
+// that flies all the same way: what meets in space meets there at the same time.
 class Lattice {
  public:
   Lattice() = default;
   // slack: what positions may be wrong by
-  Lattice(const Vec3& origin, double cell_size, double slack) noexcept;
+  Lattice(const Vec3& origin, const Vec3& velocity, double cell_size, double slack) noexcept;
 
-  const Vec3& origin() const noexcept { return origin_; }
+  void move_to(double seconds) noexcept;                   // since it was made
+  const Vec3& origin() const noexcept { return origin_; }  // where it has moved to
+  const Vec3& velocity() const noexcept { return velocity_; }
+  bool moves() const noexcept { return velocity_ != Vec3{}; }
   // Where a point lies along an axis, to less than a quantum if it lies within the lattice.
   double quantum(double coordinate, std::size_t axis) const noexcept;
   double quanta(double length) const noexcept { return length * per_length_; }
@@ -74,9 +78,11 @@ class Lattice {
   bool boxes_vectors(std::span<const Motion> motions, std::span<const double> durations,
                      BoxBlock& boxes) const noexcept;
 
-  Vec3 origin_{};
+  Vec3 first_{}, origin_{};  // where it was made, and where it is
+  Vec3 velocity_{};
   double per_length_ = 1;  // quanta
-  double margin_ = 0;      // quanta: rounding here, and kMotionSlack
+  double slack_ = 0;
+  double margin_ = 0;  // quanta: rounding here, and kMotionSlack
 };
 
 }  // namespace orchard::runtime::detail

@@ -16,6 +16,24 @@ MotionSource values_of(const std::vector<Motion>& values) {
   };
 }
 
+MotionSource values_of(const MotionArrays& arrays) {
+  return [&arrays](double, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kNever = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const BodyIndex body = bodies[i];
+      const auto at = [body](std::span<const float> of) { return body < of.size() ? double{of[body]} : 0.0; };
+      Motion& motion = motions[i];
+      motion.position = {body < arrays.x.size() ? double{arrays.x[body]} : kNaN, at(arrays.y), at(arrays.z)};
+      motion.velocity = {at(arrays.vx), at(arrays.vy), at(arrays.vz)};
+      motion.radius = at(arrays.radius);
+      motion.acceleration = at(arrays.acceleration);
+      motion.drift = at(arrays.drift);
+      motion.half_space = {};
+      motion.expiry = body < arrays.expiry.size() ? arrays.expiry[body] : kNever;
+    }
+  };
+}
+
 bool is_valid(const BroadPhaseOptions& options) noexcept {
   constexpr double kMinStep = 1e-20, kMaxStep = 1e20;
   const double step = options.time_step;
@@ -56,6 +74,8 @@ Step BroadPhase::step_reported() const noexcept {
 
 // While we slept, the caller's time went on: the change counts from the first step after it.
 void BroadPhase::wake_for_change() {
+  if (state_->woken) return;
+  state_->woken = true;
   state_->next = std::min(state_->next, step_reported() + 1);
   note_next_step();
 }
@@ -93,6 +113,7 @@ Advance BroadPhase::process(double t_now, const WorkBudget* budget) {
 
 Advance BroadPhase::process_steps(double t_now, const WorkBudget* budget) {
   State& state = *state_;
+  state.woken = false;
   std::vector<BodyIndex>& bodies_refused = state.pool.refused();
   bodies_refused.clear();
   const auto refused = [&]() -> std::span<const BodyIndex> {

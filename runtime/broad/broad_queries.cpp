@@ -92,9 +92,10 @@ struct BodyQueries::AllHits final : detail::PortionVisitor {
   }
 };
 
-double BodyQueries::time() const noexcept {
-  return world_->state_->pool.clock.time(std::max<detail::Step>(0, world_->step_reported()));
-}
+// That queries are about.
+std::int64_t BodyQueries::step() const noexcept { return std::max<detail::Step>(0, world_->step_reported()); }
+
+double BodyQueries::time() const noexcept { return world_->state_->pool.clock.time(step()); }
 
 bool BodyQueries::begin(bool valid) {
   refused_ = !valid || !world_->valid();
@@ -124,7 +125,7 @@ std::span<const BodyIndex> BodyQueries::new_ones(std::span<const BodyIndex> bodi
 template <typename Use>
 void BodyQueries::use_motions(std::span<const BodyIndex> bodies, const QueryFilter& filter, const Use& use) {
   std::span<const BodyIndex> rest = new_ones(bodies, filter);
-  const detail::Step now = std::max<detail::Step>(0, world_->step_reported());
+  const detail::Step now = step();
   motions_.resize(kAskedAtOnce);
   while (!rest.empty()) {
     const std::size_t count = std::min(kAskedAtOnce, rest.size());
@@ -145,7 +146,8 @@ std::span<const BodyIndex> BodyQueries::everybody() {
 template <typename Hits>
 void BodyQueries::walk(const Line& line, Hits& hits) {
   const detail::Method& method = *world_->state_->method;
-  if (!method.along(line.origin, line.way, line.length, candidates_, hits)) hits.visit(everybody(), line.length);
+  if (!method.along(step(), line.origin, line.way, line.length, candidates_, hits))
+    hits.visit(everybody(), line.length);
 }
 
 std::optional<BodyHit> BodyQueries::first_hit(const Ray& ray, const QueryFilter& filter) {
@@ -192,7 +194,7 @@ std::span<const BodyIndex> BodyQueries::touching(const Vec3& lower, const Vec3& 
                                                  const Touches& touches) {
   const double spare = kRounding * std::max(max_coordinate(lower), max_coordinate(upper));
   const Vec3 wider = {spare, spare, spare};
-  const Near near = world_->state_->method->near_box(lower - wider, upper + wider, candidates_);
+  const Near near = world_->state_->method->near_box(step(), lower - wider, upper + wider, candidates_);
   use_motions(near == Near::untold ? everybody() : candidates_, filter, [&](BodyIndex body, const Motion& motion) {
     if (touches(motion)) found_.push_back(body);
   });
@@ -235,7 +237,8 @@ std::span<const NearBody> BodyQueries::nearest(const Vec3& point, std::size_t k,
   for (Near covered = Near::some; covered == Near::some; reach *= 2) {
     const Vec3 wide = {reach + 2 * spare, reach + 2 * spare, reach + 2 * spare};
     candidates_.clear();
-    covered = reach > 0 && reach < kMaxNumber ? method.near_box(point - wide, point + wide, candidates_) : Near::untold;
+    covered = reach > 0 && reach < kMaxNumber ? method.near_box(step(), point - wide, point + wide, candidates_)
+                                              : Near::untold;
     use_motions(covered == Near::untold ? everybody() : candidates_, filter, note);
     if (near_.size() < k) continue;
     std::nth_element(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(k) - 1, near_.end(), nearer);

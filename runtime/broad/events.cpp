@@ -1,74 +1,53 @@
+// More than 300 lines: what a step does, and when all is made anew, is one thought.
 #include "events.h"
+
+#include <cmath>
 
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr double kManyPairs = 0.5;     // per body: so many are worth a note of each body's sphere
-constexpr std::uint8_t kPatience = 2;  // bounds that last for a step at most, one after the other, that mean nothing
-constexpr std::size_t kChangesKept = 1024;  // room for as many changes in a step stays allocated
+constexpr double kManyPairs = 0.5;                    // per body: so many are worth a note of each body's sphere
+constexpr std::size_t kMinBodiesAtCommonExpiry = 32;  // that are worth a step more
+constexpr Step kMinStepsBeforeCommonExpiry = 4;       // half of an update ahead of each would be half an update more
+constexpr std::size_t kAskedAhead = 8;                // bodies, to see whether the next bounds are known
+constexpr Step kNotSorted = 256;                      // steps for which nothing is sorted once that has not suited
 
 }  // namespace
 
-void Events::make_room() {
-  const std::size_t n = pool_.slots();
-  if (windows_.size() >= n) return;
-  grow(places_, n);
-  grow(pending_, n);
-  overlaps_.make_room(n);
-  grow(windows_, n);  // last: it tells that there is room in all of them
-}
+Events::Events(BodyPool& pool, const BroadPhaseOptions& options)
+    : pool_(pool),
+      options_(options),
+      windows_(pool_, options_.window),
+      boxes_(options_.vectors),
+      refusals_(pool_, windows_, boxes_, overlaps_, changes_),
+      planner_(pool_, options_),
+      pairs_(pool_, options_, windows_, wheel_, overlaps_, refusals_),
+      updates_({pool_, changes_, windows_, boxes_, wheel_, overlaps_, refusals_, planner_, pairs_}, options_),
+      budgeted_({pool_, changes_, windows_, boxes_, wheel_, overlaps_, refusals_, planner_, pairs_}, updates_) {}
 
 void Events::changed(BodyIndex body) {
-  make_room();
-  if (pending_[body]) return;
-  changed_.push_back(body);
-  pending_[body] = 1;
+  const std::size_t n = pool_.slots();
+  if (windows_.size() < n) {
+    boxes_.make_room(n);
+    changes_.make_room(n);
+    overlaps_.make_room(n);
+    windows_.make_room(n);  // last: it tells that there is room in all of them
+  }
+  changes_.note(body);
 }
 
 void Events::removed(BodyIndex body) noexcept {
-  if (windows_[body].length > 0) ++cancellations_;
-  take_away(body);
-  backlog_.leave(body);
-  pending_[body] = 0;
+  if (windows_[body].length > 0) planner_.note_cancelled();
+  boxes_.take_away(body);
+  budgeted_.leave(body);
+  changes_.forget(body);
   windows_[body] = {.end = kNeverStep};  // no next update, until the slot's next body
-  void_events(body);
-}
-
-void Events::void_events(BodyIndex body) noexcept {
-  windows_[body].updated = round_ + 1;
-  windows_[body].length = 0;
+  windows_.void_events(body);
   overlaps_.mark(body, OverlapList::kUpdated);
 }
 
-// Its bounds have ended before their time. Now and then that says nothing of the next ones, which may hold for as long
-// as any. Only where bounds last for no more than a step again and again a long window is of no use.
-void Events::note_cancelled(Window& window, Step now) noexcept {
-  if (window.length == 0 || window.end < 0 || window.end == kNeverStep) return;
-  ++cancellations_;
-  const Step lasted = now - (window.end - window.length);
-  if (lasted < 0) return;
-  if (lasted > 1) return window.rely_longer();
-  window.lasting = window.lasting > kLastsAsEver - kPatience ? window.lasting - 1 : 1;
-  any_short_ = any_short_ || window.lasting == 1;
-}
-
-void Events::take_away(BodyIndex body) noexcept {
-  if (places_[body] == Place::inside) few_ ? list_.remove(body) : grid_.remove(body, boxes_[body]);
-  if (places_[body] == Place::oversized) std::erase(oversized_, body);
-  places_[body] = Place::nowhere;
-}
-
-// In the order of the timing wheel bodies are all over memory: what is needed next is loaded ahead.
-void Events::take_away_due() noexcept {
-  constexpr std::size_t kBoxAhead = 24, kLineAhead = 12;
-  const std::size_t lines = few_ ? 0 : due_.size();
-  for (std::size_t i = 0; i < due_.size(); ++i) {
-    if (i + kBoxAhead < lines) prefetch(&boxes_[due_[i + kBoxAhead]]);
-    if (i + kLineAhead < lines && places_[due_[i + kLineAhead]] == Place::inside) {
-      grid_.prepare_removal(boxes_[due_[i + kLineAhead]]);
-    }
-    take_away(due_[i]);
-  }
+void Events::note_cancelled(BodyIndex body, Step now) {
+  if (windows_.note_cancelled(body, now)) planner_.note_cancelled();
 }
 
 void Events::collect_due(Step now) {
@@ -76,106 +55,235 @@ void Events::collect_due(Step now) {
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     if (i + kAhead < entries_.size()) {
       const BodyIndex body = entries_[i + kAhead];
-      prefetch(&windows_[body]), prefetch(&places_[body]), prefetch(&pending_[body]);
+      prefetch(&windows_[body]), prefetch(boxes_.at(body)), prefetch(changes_.at(body));
     }
     Window& window = windows_[entries_[i]];
-    if (window.end != now || pending_[entries_[i]]) continue;  // updated since
+    if (window.end != now || changes_.has(entries_[i])) continue;  // updated since
     window.end = kUpdateDue;
     window.rely_longer();
     due_.push_back(entries_[i]);
   }
-  for (const BodyIndex body : changed_) {
-    if (!pending_[body]) continue;
-    pending_[body] = 0;
-    note_cancelled(windows_[body], now);
+  changes_.take([&](BodyIndex body) {
+    note_cancelled(body, now);
+    due_.push_back(body);
+  });
+}
+
+// After a step by sorting: all windows were of one step.
+void Events::collect_all(Step now) {
+  for (BodyIndex body = 0; body < pool_.slots(); ++body) {
+    if (changes_.has(body)) {
+      changes_.forget(body);
+      note_cancelled(body, now);
+    } else if (windows_[body].end == now) {
+      windows_[body].rely_longer();
+    } else {
+      continue;
+    }
     due_.push_back(body);
   }
-  changed_.clear();
-  if (changed_.capacity() > kChangesKept) changed_.shrink_to_fit();  // not what adding all bodies took
+  changes_.forget_all();
 }
 
 // What has not been updated for this step yet is in due_ already; the rest changed since, or was added.
 void Events::complete_due(Step now) {
-  std::erase_if(due_, [&](BodyIndex body) { return !pool_.alive(body) || pending_[body]; });
-  for (const BodyIndex body : changed_) {
-    if (!pending_[body]) continue;
-    take_away(body);
-    pending_[body] = 0;
-    note_cancelled(windows_[body], now);
+  std::erase_if(due_, [&](BodyIndex body) { return !pool_.alive(body) || changes_.has(body); });
+  changes_.take([&](BodyIndex body) {
+    boxes_.take_away(body);
+    note_cancelled(body, now);
     due_.push_back(body);
-  }
-  changed_.clear();
+  });
 }
 
-void Events::make_room_for_spheres() {
-  if (plan_.window == 1 || plan_.pairs_per_body >= kManyPairs) {
-    grow(spheres_, pool_.slots());
-  } else {
-    give_back(spheres_);
+// When most bodies are due it is cheaper to start afresh; it also lets the plan follow the bodies.
+bool Events::worth_a_rebuild(std::size_t due) const noexcept {
+  const std::size_t n = pool_.size();
+  if (windows_.rounds_run_out()) return true;  // what is updated seldom has to stay comparable
+  if (due == 0 || n == 0) return false;
+  return 2 * due >= n || planner_.many_more_bodies() || planner_.crowded(boxes_.counts());
+}
+
+// False if a budget interrupted it.
+bool Events::replan(Step now, BudgetTracker& tracker) {
+  GridCounts counts = boxes_.counts();
+  if (sorting_) counts = {.bodies = pool_.size(), .pairs = sorted_.boxes_met()};
+  const Planner::Outcome outcome = planner_.replan(now, counts, tracker);
+  if (outcome == Planner::Outcome::interrupted) return false;
+  boxes_.begin_counts();
+  if (outcome == Planner::Outcome::same) return true;
+  const Vec3* const surveyed = planner_.surveyed_origin();
+  boxes_.set_lattice(surveyed != nullptr ? *surveyed : boxes_.lattice_at(now).origin(), planner_.velocity(),
+                     planner_.plan().cell_size, 2 * options_.position_slack, options_.time_step, now);
+  windows_.plan(planner_.plan().window, boxes_.moves());
+  return true;
+}
+
+void Events::all_are_due() {
+  if (due_.capacity() > 2 * pool_.size()) give_back(due_);
+  due_.clear();
+  due_.reserve(pool_.size());
+  for (BodyIndex body = 0; body < pool_.slots(); ++body) {
+    if (pool_.alive(body)) due_.push_back(body);
   }
+}
+
+void Events::place_all_anew() {
+  if (sorting_) sorted_.release();
+  sorting_ = false;
+  wheel_.clear_bodies();
+  windows_.begin_anew();
+  boxes_.make_anew(pool_.slots(), planner_.plan().lines);
+  all_are_due();
+}
+
+void Events::note_spheres() {
+  const WindowPlan& plan = planner_.plan();
+  pairs_.note_spheres(plan.window == 1 || plan.pairs_per_body >= kManyPairs, pool_.slots());
 }
 
 void Events::make_room_for_boxes() {
-  if (few_) {
-    list_.grow(pool_.slots());
-  } else {
-    grow(boxes_, pool_.slots());
-  }
-  if (!spheres_.empty()) make_room_for_spheres();
+  boxes_.make_room_for_boxes(pool_.slots());
+  pairs_.make_room_for_spheres(pool_.slots());
 }
 
 // Everything that is due, and what a budget left over before.
 void Events::step_in_full(Step now, bool completing) {
-  if (!backlog_.empty()) {
-    for (const BodyIndex body : due_) backlog_.leave(body);  // changed while it waited: one update is enough
-    backlog_.take_all(due_, waiting_);
+  if (!budgeted_.nothing_left()) {
+    for (const BodyIndex body : due_) budgeted_.leave(body);  // changed while it waited: one update is enough
+    budgeted_.take_all(due_, waiting_);
   }
   bool all_anew = completing;
-  BudgetTracker unlimited;
   if (!completing) {
-    all_anew = outgrown() || worth_a_rebuild(due_.size());
+    all_anew = sorting_ || boxes_.outgrown(pool_.slots()) || worth_a_rebuild(due_.size());
     if (all_anew) {
+      BudgetTracker unlimited;
       replan(now, unlimited);
+      if (worth_sorting(now)) return step_by_sorting(now);
       place_all_anew();
       wheel_.clear_events();  // updates of all windows void them
     } else {
       make_room_for_boxes();
-      take_away_due();
+      boxes_.take_away(due_);
     }
   }
   make_room_for_boxes();
   if (all_anew) {
     overlaps_.begin_anew();
-    make_room_for_spheres();
+    note_spheres();
   }
-  update_windows(now, now, due_, Found::tested);
-  test_due(now);
+  updates_.update(now, now, due_);
+  std::erase_if(waiting_, [&](const PairEvent& event) { return !windows_.valid(event); });
+  pairs_.test(now, waiting_);
+  pairs_.take_overlaps_ahead();
   if (!all_anew) return;
-  const bool lasts = plan_.window >= kMinStepsBeforeCommonExpiry;
-  common_expiry_ = lasts && pool_.size() >= kMinBodiesAtCommonExpiry && 4 * votes_ > pool_.size() ? voted_ : kNeverStep;
+  const bool lasts = planner_.plan().window >= kMinStepsBeforeCommonExpiry;
+  const bool common = pool_.size() >= kMinBodiesAtCommonExpiry && 4 * windows_.votes() > pool_.size();
+  common_expiry_ = lasts && common ? windows_.voted() : kNeverStep;
 }
 
-// What the updates have left of it.
-void Events::test_due(Step now) {
-  std::erase_if(waiting_, [&](const PairEvent& event) { return !valid(event); });
-  test(now, waiting_);
-  for (const PairEvent& event : overlaps_ahead_) {
-    if (valid(event)) overlaps_.add(event.pair);
+// A rebuild forgets all boxes. It has to be where there are many more bodies than planned for; where it is a matter of
+// speed, only if no budget has interrupted for as long as a window lasts: else nothing would ever be finished.
+unsigned Events::step_within(Step now, BudgetTracker& tracker) {
+  const bool calm = now - interrupted_at_ > kLongestWindow;
+  const bool has_to = sorting_ || boxes_.outgrown(pool_.slots()) || windows_.rounds_run_out();
+  const bool anew = has_to || planner_.many_more_bodies() || (calm && worth_a_rebuild(due_.size()));
+  budgeted_.join(due_, waiting_);
+  due_.clear();
+  if (anew) {
+    if (!replan(now, tracker)) return pool_.next_class(0);
+    place_all_anew();
+    budgeted_.postpone(due_);
+    due_.clear();
+    common_expiry_ = kNeverStep;
   }
-  overlaps_ahead_.clear();
+  make_room_for_boxes();
+  return budgeted_.work(now, tracker);
+}
+
+// Static bodies have windows without end, which are worth keeping if there are many.
+bool Events::worth_sorting(Step now) const noexcept {
+  return planner_.plan().window == 1 && pool_.slots() > BoxList::kMaxBodies && now >= sorts_from_ &&
+         2 * pool_.statics() <= pool_.size();
+}
+
+void Events::begin_sorting() {
+  sorting_ = true;
+  common_expiry_ = kNeverStep;
+  wheel_.clear();
+  pairs_.forget_all();
+  pairs_.note_spheres(false, 0);
+  boxes_.make_anew(pool_.slots(), 0);
+  boxes_.begin_counts();
+}
+
+void Events::step_by_sorting(Step now) {
+  if (!sorting_) begin_sorting();
+  windows_.begin_anew();
+  all_are_due();
+  sorted_.begin(due_.size(), boxes_.lattice_at(now).origin(), planner_.spacing());
+  for (std::size_t done = 0; done < due_.size(); done += kBlock) {
+    auto block = std::span(due_).subspan(done, std::min(kBlock, due_.size() - done));
+    const std::span<const Motion> motions = updates_.ask_valid(now, block);
+    for (const BodyIndex body : block) windows_.set(body, now, now + 1);
+    planner_.note(motions);
+    sorted_.add(block, motions);
+  }
+  sorted_.find(options_.vectors);
+  if (pool_.filters_pairs()) sorted_.drop_pairs([&](const BodyPair& pair) { return !pool_.may_pair(pair); });
+  overlaps_.assign(sorted_.pairs(), pool_.slots());
+  if (!sorted_.suits()) sorts_from_ = now + kNotSorted;
+}
+
+// A step ahead of the common expiry: the present bounds have answered for this step, and hold no longer than that. If
+// the next ones are known already, half of the work is done now, in updates with windows that begin at the common
+// expiry.
+bool Events::prepare(Step now) {
+  const Step from = now + 1;
+  common_expiry_ = kNeverStep;
+  std::array<BodyIndex, kAskedAhead> sample;
+  std::size_t count = 0;
+  const std::size_t stride = std::max<std::size_t>(1, pool_.slots() / kAskedAhead);
+  for (std::size_t body = 0; body < pool_.slots() && count < kAskedAhead; body += stride) {
+    if (pool_.alive(static_cast<BodyIndex>(body))) sample[count++] = static_cast<BodyIndex>(body);
+  }
+  if (!updates_.know_mostly(now, from, std::span(sample).first(count))) return false;
+
+  common_expiry_ = from;
+  prepared_ = true;
+  pairs_.work_ahead(true);
+  windows_.begin_round();
+  BudgetTracker unlimited;
+  replan(now, unlimited);
+  place_all_anew();
+  wheel_.clear_events();
+  const auto ahead = static_cast<std::size_t>(planner_.share_ahead() * static_cast<double>(due_.size()));
+  note_spheres();
+  updates_.update(now, from, std::span(due_).first(ahead));
+  due_.erase(due_.begin(), due_.begin() + static_cast<std::ptrdiff_t>(ahead));
+  pairs_.work_ahead(false);
+  return true;
 }
 
 // Nothing is left to plan for, nor to wake up for.
 void Events::forget_all() noexcept {
   wheel_.clear();
   overlaps_.clear();
-  overlaps_ahead_.clear();
-  doubtful_.clear();
-  changed_.clear();
+  pairs_.forget_all();
+  changes_.forget_all();
   due_.clear();
-  surveyed_.clear();
+  planner_.forget_survey();
   prepared_ = false;
   common_expiry_ = kNeverStep;
+}
+
+void Events::begin(Step now) {
+  windows_.begin_round();
+  entries_.clear();
+  waiting_.clear();
+  wheel_.take(now, entries_, waiting_);
+  if (prepared_) return complete_due(now);
+  due_.clear();
+  sorting_ ? collect_all(now) : collect_due(now);
 }
 
 StepReport Events::step(Step now, BudgetTracker& tracker) {
@@ -183,41 +291,32 @@ StepReport Events::step(Step now, BudgetTracker& tracker) {
     forget_all();
     return {kNeverStep, {}};
   }
-  ++round_;
-  entries_.clear();
-  waiting_.clear();
-  wheel_.take(now, entries_, waiting_);
-  const bool completing = prepared_ && !outgrown();
-  limited_ = tracker.limited();
-  for (const PairEvent& event : doubtful_) overlaps_.drop(event.pair);
-  doubtful_.clear();
-  if (prepared_) {
-    complete_due(now);
-  } else {
-    due_.clear();
-    collect_due(now);
-  }
+  pairs_.begin_step(tracker.limited());
+  begin(now);
+  const bool completing = prepared_ && !boxes_.outgrown(pool_.slots());
   prepared_ = false;
-  near_.clear();
-  unsigned incomplete_from = kNoClass;
-  if (limited_) {
-    waiting_.insert(waiting_.end(), overlaps_ahead_.begin(), overlaps_ahead_.end());
-    overlaps_ahead_.clear();
-    incomplete_from = step_within(now, tracker);
-    if (incomplete_from != kNoClass) interrupted_at_ = now;
-    keep_doubtful();
-  } else {
+  if (!tracker.limited()) {
     step_in_full(now, completing);
+    overlaps_.update(pool_.slots());
+    return end(now, kNoClass, tracker);
   }
+  pairs_.take_overlaps_ahead(waiting_);
+  const unsigned incomplete_from = step_within(now, tracker);
+  if (incomplete_from != kNoClass) interrupted_at_ = now;
+  pairs_.keep_doubtful();
   overlaps_.update(pool_.slots());
+  return end(now, incomplete_from, tracker);
+}
+
+StepReport Events::end(Step now, unsigned incomplete_from, const BudgetTracker& tracker) {
   StepReport report{now + 1, overlaps_.pairs()};
   if (incomplete_from != kNoClass) {
     report.incomplete_from = incomplete_from;
-    report.left_over = std::max<std::size_t>(1, backlog_.size());
+    report.left_over = budgeted_.left_over();
     return report;
   }
-  if (now + 1 == common_expiry_ && !limited_ && prepare(now)) return report;
-  if (!changed_.empty() || !report.pairs.empty()) return report;
+  if (now + 1 == common_expiry_ && !tracker.limited() && prepare(now)) return report;
+  if (!changes_.empty() || !report.pairs.empty() || sorting_) return report;
   report.next = wheel_.next_after(now);
   if (common_expiry_ != kNeverStep && common_expiry_ - 1 > now) report.next = std::min(report.next, common_expiry_ - 1);
   return report;
@@ -225,6 +324,7 @@ StepReport Events::step(Step now, BudgetTracker& tracker) {
 
 std::size_t Events::foresee(Step now, std::span<StepsAhead> steps) const noexcept {
   const std::size_t known = std::min<std::size_t>(steps.size(), kWheelSteps - 2);
+  if (sorting_ && known > 0) steps[0].updates += pool_.size();
   for (std::size_t i = 0; i < known; ++i) {
     const Step step = now + 1 + static_cast<Step>(i);
     steps[i].updates += wheel_.bodies_due(step);
@@ -234,12 +334,32 @@ std::size_t Events::foresee(Step now, std::span<StepsAhead> steps) const noexcep
   return known;
 }
 
+// New ones, cancelled ones, those that wait for a budget, and those that are updated at the step after this one: they
+// have no box, or an old one, and may be anywhere.
+void Events::append_loose(std::vector<BodyIndex>& bodies) const {
+  changes_.append_to(bodies);
+  budgeted_.append_bodies(bodies);
+  if (prepared_) bodies.insert(bodies.end(), due_.begin(), due_.end());
+}
+
+Near Events::near_box(Step now, const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const {
+  append_loose(bodies);
+  if (!sorting_) return boxes_.near_box(now, lower, upper, bodies);
+  return sorted_.append_near(lower, upper, bodies) ? Near::some : Near::untold;
+}
+
+bool Events::along(Step now, const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
+                   PortionVisitor& visitor) const {
+  portion.clear();
+  append_loose(portion);
+  return !sorting_ && boxes_.along(now, origin, way, length, portion, visitor);
+}
+
 std::size_t Events::memory_bytes() const noexcept {
-  return sizeof(*this) + bytes_of(boxes_) + bytes_of(windows_) + bytes_of(places_) + bytes_of(pending_) +
-         bytes_of(changed_) + bytes_of(entries_) + bytes_of(oversized_) + overlaps_.memory_bytes() +
-         bytes_of(overlaps_ahead_) + bytes_of(doubtful_) + bytes_of(due_) + bytes_of(spheres_) + bytes_of(waiting_) +
-         bytes_of(tests_) + bytes_of(near_) + bytes_of(motions_) + bytes_of(surveyed_) + backlog_.memory_bytes() +
-         list_.memory_bytes() + grid_.memory_bytes() + wheel_.memory_bytes() - sizeof(wheel_);
+  return sizeof(*this) + changes_.memory_bytes() + windows_.memory_bytes() + boxes_.memory_bytes() +
+         wheel_.memory_bytes() - sizeof(wheel_) + overlaps_.memory_bytes() + planner_.memory_bytes() +
+         pairs_.memory_bytes() + updates_.memory_bytes() + budgeted_.memory_bytes() + sorted_.memory_bytes() +
+         bytes_of(due_) + bytes_of(entries_) + bytes_of(waiting_);
 }
 
 std::unique_ptr<Method> make_events(BodyPool& pool, const BroadPhaseOptions& options) {

@@ -43,18 +43,17 @@ class Method {
     return 0;
   }
 
-  // For queries about the last step that was processed, or one after it before anything is due. What they hand over may
-  // be far away, gone, or come up twice.
-  // Appends all bodies whose spheres may meet the box.
-  virtual Near near_box(const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const {
-    (void)lower, (void)upper, (void)bodies;
+  // For queries about `now`: the last step that was processed, or one after it before anything is due. What they hand
+  // over may be far away, gone, or come up twice. Appends all bodies whose spheres may meet the box.
+  virtual Near near_box(Step now, const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const {
+    (void)now, (void)lower, (void)upper, (void)bodies;
     return Near::untold;
   }
   // Visits all bodies whose spheres origin + t way may meet, |way| = 1 and 0 <= t <= length. `portion` is for its use.
   // False: it may be any body, and nobody has been visited.
-  virtual bool along(const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
+  virtual bool along(Step now, const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
                      PortionVisitor& visitor) const {
-    (void)origin, (void)way, (void)length, (void)portion, (void)visitor;
+    (void)now, (void)origin, (void)way, (void)length, (void)portion, (void)visitor;
     return false;
   }
   virtual double cell_size() const noexcept { return 0; }  // a length to begin a search with; 0: none

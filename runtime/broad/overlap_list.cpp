@@ -45,6 +45,20 @@ void OverlapList::sort(std::vector<BodyPair>& pairs, std::size_t slots) {
   }
 }
 
+// By the first body, and in each row by the second one.
+void OverlapList::assign(std::span<const BodyPair> pairs, std::size_t slots) {
+  clear();
+  begins_.assign(slots + 2, 0);
+  for (const BodyPair& pair : pairs) ++begins_[pair.a + 2];
+  for (std::size_t body = 1; body <= slots; ++body) begins_[body + 1] += begins_[body];
+  pairs_.resize(pairs.size());
+  for (const BodyPair& pair : pairs) pairs_[begins_[pair.a + 1]++] = pair;
+  for (std::size_t body = 0; body < slots; ++body) {
+    const auto begin = pairs_.begin() + begins_[body], end = pairs_.begin() + begins_[body + 1];
+    if (end - begin > 1) std::sort(begin, end);
+  }
+}
+
 void OverlapList::clear_marks() noexcept {
   if (first_marked_ <= last_marked_) {
     std::fill(marks_.begin() + first_marked_, marks_.begin() + last_marked_ + 1, std::uint8_t{0});

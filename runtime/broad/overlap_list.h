@@ -24,6 +24,8 @@ class OverlapList {
     last_marked_ = std::max(last_marked_, body);
     refuses_ = refuses_ || what == kRefused;
   }
+  // The list is these from now on, in any order, each once; what was said of the step under way is void.
+  void assign(std::span<const BodyPair> pairs, std::size_t slots);
   void begin_anew() noexcept;  // until the end of the step nothing counts but what is added from now on
   // Moves the pairs for which it holds out of the list, at once.
   template <typename Leaves>

@@ -6,6 +6,11 @@
 
 namespace orchard::runtime::detail {
 
+// Tables of 2^bits lines: the line of a cell is the sum of its coordinates times these, modulo their number. Cells that
+// share one are never within three of each other along every axis.
+inline constexpr unsigned kMinLineBits = 6, kMaxLineBits = 28;
+std::array<std::uint32_t, 3> line_factors(unsigned bits) noexcept;  // the first one is 1
+
 inline constexpr std::uint32_t kMaxCellsPerAxis = 4;  // that a body's box may take; the grid has at least as many
 
 // Seven boxes clipped to a cell, quantised to 5 bits a coordinate, with their bodies' ids: one cache line. All seven

@@ -11,8 +11,7 @@ namespace {
 // first one is added as it is. Found by trying at random such that cells that share a line lie far apart: about as far
 // as is possible in space, and in each plane of two axes from 2^10 lines on, but nowhere less than four cells along
 // some axis, so that the cells of one body never share a line.
-constexpr unsigned kMinLineBits = 6;
-constexpr std::array<std::array<std::uint32_t, 2>, 23> kLineFactors = {{
+constexpr std::array<std::array<std::uint32_t, 2>, kMaxLineBits - kMinLineBits + 1> kLineFactors = {{
     {4u, 16u},
     {25u, 5u},
     {13u, 173u},
@@ -37,7 +36,6 @@ constexpr std::array<std::array<std::uint32_t, 2>, 23> kLineFactors = {{
     {14447183u, 113607059u},
     {47377195u, 86274897u},
 }};
-constexpr unsigned kMaxLineBits = kMinLineBits + static_cast<unsigned>(kLineFactors.size()) - 1;
 
 // No two cells of a box share a line.
 constexpr bool sets_apart(unsigned bits, const std::array<std::uint32_t, 2>& factors) {
@@ -65,11 +63,15 @@ static_assert(all_set_apart());
 
 }  // namespace
 
+std::array<std::uint32_t, 3> line_factors(unsigned bits) noexcept {
+  return {1, kLineFactors[bits - kMinLineBits][0], kLineFactors[bits - kMinLineBits][1]};
+}
+
 void SweptGrid::reset(std::size_t lines) {
   const auto nearest = static_cast<std::size_t>(std::max(1.0, 0.7 * static_cast<double>(lines)));
   const unsigned bits = std::clamp(static_cast<unsigned>(std::bit_width(nearest)), kMinLineBits, kMaxLineBits);
   mask_ = (1u << bits) - 1;
-  factors_ = {1, kLineFactors[bits - kMinLineBits][0], kLineFactors[bits - kMinLineBits][1]};
+  factors_ = line_factors(bits);
   overflow_.clear();
   free_overflow_ = 0;
   // All lines are written in order: those that have not been used for long come faster this way than one by one later.

@@ -17,6 +17,8 @@ double extent(const MotionMeans& mean, double duration) noexcept {
   return 2 * mean.radius + spread + std::max(spread, mean.speed * duration);
 }
 
+double speed_per_axis(const Vec3& v) noexcept { return (std::fabs(v[0]) + std::fabs(v[1]) + std::fabs(v[2])) / 3; }
+
 // For how many of a window's steps a bound holds, on average.
 double lasting(double window, double cancelled) noexcept {
   return cancelled > 0 ? (1 - std::pow(1 - cancelled, window)) / cancelled : window;
@@ -28,12 +30,39 @@ void MotionMeans::add(const Motion& m) noexcept {
   // Of all seen so far each is among the places with the same chance, as far as a multiplication mixes.
   const auto seen = static_cast<std::uint64_t>(count);
   const std::uint64_t place = seen < kPlaces ? seen : ((seen * 0x9e3779b97f4a7c15u) >> 32) % (seen + 1);
-  if (place < kPlaces) places[place] = m.position;
+  if (place < kPlaces) places[place] = m.position, velocities[place] = m.velocity;
   count += 1;
   radius += m.radius;
-  speed += (std::fabs(m.velocity[0]) + std::fabs(m.velocity[1]) + std::fabs(m.velocity[2])) / 3;
+  speed += speed_per_axis(m.velocity - frame);
   drift += m.drift;
   acceleration += m.acceleration;
+}
+
+double MotionMeans::mean_speed(const Vec3& relative_to) const noexcept {
+  double sum = 0;
+  for (std::size_t i = 0; i < sampled(); ++i) sum += speed_per_axis(velocities[i] - relative_to);
+  return sum / static_cast<double>(std::max<std::size_t>(1, sampled()));
+}
+
+// The median along each axis: a few that fly elsewhere do not matter.
+Vec3 MotionMeans::crowd_velocity() const noexcept {
+  constexpr double kMuchSlower = 0.5;
+  const std::size_t n = sampled();
+  if (n == 0) return {};
+  Vec3 median{};
+  std::array<double, kPlaces> along;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < n; ++i) along[i] = velocities[i][axis];
+    std::nth_element(along.begin(), along.begin() + n / 2, along.begin() + n);
+    median[axis] = along[n / 2];
+  }
+  return mean_speed(median) < kMuchSlower * mean_speed({}) ? median : Vec3{};
+}
+
+void MotionMeans::refer_to(const Vec3& velocity) noexcept {
+  if (velocity == frame) return;
+  speed = count * mean_speed(velocity);
+  frame = velocity;
 }
 
 double mean_spacing(std::span<const Vec3> sample, std::size_t bodies) {
@@ -90,9 +119,10 @@ WindowPlan plan_window(const MotionMeans& means, std::size_t bodies, double spac
     consider(std::min(fixed_window, kLongestWindow));
     return best;
   }
-  for (double window = 1; window < static_cast<double>(kLongestWindow);
-       window = std::max(window + 1, window * kWindowGrowth)) {
+  double window = 1;
+  while (window < static_cast<double>(kLongestWindow)) {
     consider(static_cast<Step>(window));
+    window = std::max(window + 1, window * kWindowGrowth);
   }
   return best;
 }

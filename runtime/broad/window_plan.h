@@ -9,12 +9,22 @@ struct MotionMeans {
   static constexpr std::size_t kPlaces = 48;
 
   double count = 0, radius = 0, speed = 0, drift = 0, acceleration = 0;  // sums; speed per axis
-  std::array<Vec3, kPlaces> places{};                                    // where some of them are, no matter which
+  std::array<Vec3, kPlaces> places{}, velocities{};                      // of some of them, no matter which
+  Vec3 frame{};                                                          // whose velocity speeds are relative to
 
   void add(const Motion& motion) noexcept;
-  std::span<const Vec3> sample() const noexcept {
-    return std::span(places).first(std::min(kPlaces, static_cast<std::size_t>(count)));
+  void add(std::span<const Motion> updated) noexcept {  // some of them
+    constexpr std::size_t kStride = 16;
+    for (std::size_t i = 0; i < updated.size(); i += kStride) add(updated[i]);
   }
+  // The velocity that most of them have about in common; 0 unless they are much slower relative to it.
+  Vec3 crowd_velocity() const noexcept;
+  void refer_to(const Vec3& velocity) noexcept;  // speeds are relative to it from now on
+  std::span<const Vec3> sample() const noexcept { return std::span(places).first(sampled()); }
+
+ private:
+  std::size_t sampled() const noexcept { return std::min(kPlaces, static_cast<std::size_t>(count)); }
+  double mean_speed(const Vec3& relative_to) const noexcept;  // of the sample, per axis
 };
 
 struct WindowPlan {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "any_broad_phase.h"
+#include "oracles.h"
 #include "orchard/runtime/motion_helpers.h"
 #include "worlds.h"
 
@@ -103,6 +104,75 @@ TEST(KeptInFloat, CoversTheRoundingsOfEveryStep) {
     }
   }
   EXPECT_TRUE(needed);
+}
+
+// A crowd in floats, array by array, and as it is in motions.
+struct FloatCrowd {
+  std::array<std::vector<float>, 9> numbers;
+  std::vector<double> expiry;
+  MotionArrays arrays;
+  std::vector<Motion> motions;
+
+  explicit FloatCrowd(std::size_t bodies) : expiry(bodies), motions(bodies) {
+    for (std::vector<float>& of : numbers) of.resize(bodies);
+    arrays = {numbers[0], numbers[1], numbers[2], numbers[3], numbers[4],
+              numbers[5], numbers[6], numbers[7], numbers[8], expiry};
+  }
+  void put(std::size_t i, const Motion& m) {
+    for (std::size_t d = 0; d < 3; ++d) {
+      numbers[d][i] = static_cast<float>(m.position[d]), numbers[3 + d][i] = static_cast<float>(m.velocity[d]);
+    }
+    numbers[6][i] = static_cast<float>(m.radius), numbers[7][i] = static_cast<float>(m.acceleration);
+    numbers[8][i] = static_cast<float>(m.drift);
+    expiry[i] = m.expiry;
+    const auto number = [&](std::size_t k) { return static_cast<double>(numbers[k][i]); };
+    motions[i] = {{number(0), number(1), number(2)},
+                  {number(3), number(4), number(5)},
+                  number(6),
+                  number(7),
+                  number(8),
+                  {},
+                  m.expiry};
+  }
+};
+
+TEST(MotionArrays, AreAskedAndAnsweredAsTheSameMotionsAre) {
+  constexpr std::size_t kBodies = 400;
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    test::Draw draw(seed);
+    const test::MovingBodies bodies({.bodies = kBodies, .ball = 20, .period = 0.3, .staggered = seed % 2 == 1}, seed);
+    FloatCrowd crowd(kBodies);
+    const BroadPhaseOptions options{.time_step = 0.01, .position_slack = float_slack(64)};
+    BroadPhase of_arrays(values_of(crowd.arrays), options), of_motions(values_of(crowd.motions), options);
+    for (std::size_t i = 0; i < kBodies; ++i) of_arrays.add(), of_motions.add();
+    for (int step = 0; step < 100; ++step) {
+      for (BodyIndex i = 0; i < kBodies; ++i) {
+        Motion m = bodies.motion(i, 0.01 * step);
+        m.drift = 0x1p-20 * (1 + length(m.velocity)), m.acceleration *= 1.001;  // for what is rounded
+        crowd.put(i, m);
+      }
+      const Advance a = of_arrays.advance(0.01 * step), b = of_motions.advance(0.01 * step);
+      const std::vector<BodyPair> found(a.pairs.begin(), a.pairs.end());
+      ASSERT_EQ(found, std::vector<BodyPair>(b.pairs.begin(), b.pairs.end())) << "seed " << seed << ' ' << step;
+      ASSERT_EQ(found, test::touching_pairs(crowd.motions)) << "seed " << seed << ' ' << step;
+    }
+    EXPECT_EQ(of_arrays.motions_asked(), of_motions.motions_asked());
+  }
+}
+
+TEST(MotionArrays, MayBeLeftOutAndRefuseBodiesBeyondTheirEnd) {
+  std::vector<float> x = {0, 1.5f, 9}, radius = {1, 1, 1};
+  MotionArrays arrays{.x = x, .radius = radius};
+  BroadPhase world(values_of(arrays), {});
+  for (int i = 0; i < 4; ++i) world.add();
+  Advance now = world.advance(0);
+  EXPECT_EQ(std::vector<BodyPair>(now.pairs.begin(), now.pairs.end()), (std::vector<BodyPair>{{0, 1}}));
+  EXPECT_EQ(std::vector<BodyIndex>(now.refused.begin(), now.refused.end()), (std::vector<BodyIndex>{3}));
+  x.push_back(8), radius.push_back(1);
+  arrays = {.x = x, .radius = radius};
+  now = world.advance(0.01);
+  EXPECT_EQ(std::vector<BodyPair>(now.pairs.begin(), now.pairs.end()), (std::vector<BodyPair>{{0, 1}, {2, 3}}));
+  EXPECT_TRUE(now.refused.empty());
 }
 
 }  // namespace

@@ -34,7 +34,8 @@ TEST_P(Queries, AreAnsweredAsByAskingEveryBody) {
                                      .period = draw.uniform(0.1, 0.6),
                                      .half_spaces = 0.3,
                                      .staggered = seed % 2 == 0,
-                                     .end = 0.6},
+                                     .end = 0.6,
+                                     .wind = seed % 5 == 3 ? Vec3{30, -10, 5} : Vec3{}},
                                     seed);
     BroadPhase world = test::make_broad_phase(bodies.source(), {.method = GetParam(), .common = {.time_step = kStep}});
     for (std::size_t i = 0; i < n; ++i) world.add();

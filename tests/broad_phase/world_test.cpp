@@ -72,7 +72,9 @@ TEST(BroadPhase, ReportsWhatOverlapsAtEachStepInThousandsOfWorlds) {
   for (std::uint64_t seed = 1000; seed < 4000; ++seed) {
     test::Draw draw(seed);
     const std::size_t n = seed % 500 == 0 ? 300 : seed % 50 == 0 ? 100 : 2 + seed % 28;
-    const MovingBodies bodies(random_shape(draw, n), seed);
+    WorldShape shape = random_shape(draw, n);
+    if (seed % 3 == 0) shape.wind = std::pow(10, draw.uniform(0, 5)) * draw.direction();
+    const MovingBodies bodies(shape, seed);
     BroadPhaseOptions options{.time_step = draw.uniform(0.008, 0.03)};
     if (seed % 4 == 0) options.window = static_cast<std::uint32_t>(1 + seed % 40);
     if (seed % 5 == 0) options.vectors = false;
@@ -104,6 +106,35 @@ TEST(BroadPhase, ReportsEveryOverlapThatLastsForATimeStep) {
     }
   }
   EXPECT_GT(overlaps, 300);
+}
+
+// What counts is how fast they are relative to each other; static bodies among them do no harm.
+TEST(BroadPhase, AsksACrowdThatFliesTheSameWayAboutAsSeldomAsOneAtRest) {
+  const auto asked = [](const Vec3& wind, bool statics) {
+    const MovingBodies bodies({.bodies = 400, .ball = 75, .period = 1, .end = 3, .wind = wind}, 1);
+    BroadPhase world(bodies.source(), {});
+    for (std::size_t i = 0; i < bodies.size(); ++i) world.add();
+    std::vector<Motion> places;
+    std::size_t found = 0, there = 0;
+    for (int step = 0; step < 300; ++step) {
+      const double t = 0.01 * step;
+      if (statics && step % 30 == 29) {  // in the way
+        places.emplace_back().position = bodies.motion(static_cast<BodyIndex>(step), t + 0.1).position;
+        places.back().radius = 1;
+        world.add_static(places.back());
+      }
+      found += world.advance(t).pairs.size();
+      there += bodies.touching(t).size();
+      for (const Motion& place : places) {
+        for (BodyIndex i = 0; i < bodies.size(); ++i) there += spheres_touch(place, bodies.motion(i, t));
+      }
+    }
+    EXPECT_EQ(found, there);
+    return static_cast<double>(world.motions_asked());
+  };
+  const double at_rest = asked({}, false);
+  EXPECT_LT(asked({1000, -300, 50}, false), 1.3 * at_rest);
+  EXPECT_GT(asked({1000, -300, 50}, true), at_rest);
 }
 
 TEST(BroadPhase, SleepsWhileNothingCanHappen) {

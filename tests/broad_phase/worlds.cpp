@@ -18,7 +18,7 @@ MovingBodies::MovingBodies(const WorldShape& shape, std::uint64_t seed) {
   for (std::size_t i = 0; i < shape.bodies; ++i) {
     Body body{draw.uniform(shape.min_radius, shape.max_radius), {}, {}};
     Vec3 position = draw.in_ball(shape.ball);
-    Vec3 velocity = draw.uniform(shape.min_speed, shape.max_speed) * draw.direction();
+    Vec3 velocity = draw.uniform(shape.min_speed, shape.max_speed) * draw.direction() + shape.wind;
     const bool cut = draw.uniform(0, 1) < shape.half_spaces;
     double begin = shape.staggered ? -draw.uniform(0, shape.period) : 0;
     while (begin <= shape.end) {

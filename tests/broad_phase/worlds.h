@@ -27,6 +27,7 @@ struct WorldShape {
   bool extreme = false;         // accelerations of length M, not below
   bool staggered = false;       // the periods of different bodies start at different times
   double end = 1;               // motions are known up to here
+  Vec3 wind{};                  // a velocity that all have besides
 };
 
 // Piecewise constant accelerations: positions are exact at any time, to rounding.

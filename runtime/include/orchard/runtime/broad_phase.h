@@ -63,6 +63,20 @@ using MotionSource = std::function<void(double time, std::span<const BodyIndex> 
 // advance() at every step then, which costs nothing while the broad phase sleeps. `values` outlives the broad phase.
 MotionSource values_of(const std::vector<Motion>& values);
 
+// What an application knows of its bodies, by BodyIndex, that keeps it in floats, array by array: a third of the memory
+// of as many motions, all of which an update of all windows passes through. Positions are as long as there are bodies:
+// one beyond the end of `x` is refused. Each of the others is as long, or empty: all 0, and `expiry` never. Floats are
+// off by their last place. position_slack = float_slack() covers positions that are rounded to float when they are put
+// here, kept_in_float() says what M and drift are where the state itself is kept so (motion_helpers.h).
+struct MotionArrays {
+  std::span<const float> x{}, y{}, z{};     // positions
+  std::span<const float> vx{}, vy{}, vz{};  // velocities
+  std::span<const float> radius{}, acceleration{}, drift{};
+  std::span<const double> expiry{};
+};
+// As of the time of advance(), as above. `arrays` outlives the broad phase; its spans may become others between calls.
+MotionSource values_of(const MotionArrays& arrays);
+
 // A body that has not kept its bounds: `promise`, given at promise_time, does not allow what was given at `time`.
 struct BrokenPromise {
   BodyId body;

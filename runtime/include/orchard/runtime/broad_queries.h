@@ -73,6 +73,7 @@ class BodyQueries {
   struct Line;  // from a point in a direction of length 1
   struct FirstHit;
   struct AllHits;
+  std::int64_t step() const noexcept;
   bool begin(bool valid);
   std::span<const BodyIndex> new_ones(std::span<const BodyIndex> bodies, const QueryFilter& filter);
   template <typename Use>

@@ -1,9 +1,9 @@
 #include <cmath>
 
-#include "events.h"
+#include "box_index.h"
 
-// Which bodies a query may concern, by the boxes in the grid: these hold each sphere from the step of its update to the
-// end of its window. Bodies that have no such box, or an old one, are handed over in any case: the *loose* ones.
+// Which bodies a query may concern, by the boxes: these hold each sphere from the step of its update to the end of its
+// window.
 namespace orchard::runtime::detail {
 namespace {
 
@@ -47,7 +47,7 @@ double cells_in(const QuantumBox& box) noexcept {
 }  // namespace
 
 // In quanta, from `begin` to `end` along a direction of length 1.
-struct Events::GridRay {
+struct BoxIndex::GridRay {
   std::array<double, 3> origin, way;
   double begin, end;
   std::size_t axis = 0;  // along which it is fastest
@@ -72,17 +72,7 @@ struct Events::GridRay {
   }
 };
 
-// New ones, cancelled ones, those that wait for a budget, and those that are updated at the step after this one.
-void Events::append_loose(std::vector<BodyIndex>& bodies) const {
-  for (const BodyIndex body : changed_) {
-    if (pending_[body]) bodies.push_back(body);
-  }
-  backlog_.append_bodies(bodies);
-  if (prepared_) bodies.insert(bodies.end(), due_.begin(), due_.end());
-}
-
-// Loose ones may be among them.
-void Events::append_in_cells(const QuantumBox& box, std::vector<BodyIndex>& bodies) const {
+void BoxIndex::append_in_cells(const QuantumBox& box, std::vector<BodyIndex>& bodies) const {
   std::array<std::uint32_t, 3> cell{};
   const auto first = [&](std::size_t d) { return box.lower[d] >> kQuantumBits; };
   const auto last = [&](std::size_t d) { return box.upper[d] >> kQuantumBits; };
@@ -96,20 +86,22 @@ void Events::append_in_cells(const QuantumBox& box, std::vector<BodyIndex>& bodi
   }
 }
 
-Near Events::near_box(const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const {
+std::size_t BoxIndex::fewest_cells() const noexcept { return std::max(kFewCells, places_.size()); }
+
+Near BoxIndex::near_box(Step now, const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const {
+  const Lattice lattice = lattice_at(now);
   QuantumBox box{};
   for (std::size_t d = 0; d < 3; ++d) {
-    box.lower[d] = quantum_below(lattice_.quantum(lower[d], d));
-    box.upper[d] = quantum_above(lattice_.quantum(upper[d], d));
+    box.lower[d] = quantum_below(lattice.quantum(lower[d], d));
+    box.upper[d] = quantum_above(lattice.quantum(upper[d], d));
   }
-  append_loose(bodies);
   if (few_) {
     list_.append_meeting(box, bodies);
     return box.lower == kEverything.lower && box.upper == kEverything.upper ? Near::all : Near::some;
   }
   const QuantumBox inside = common(box, extent_);
   const double cells = cells_in(inside);
-  if (cells > static_cast<double>(std::max(kFewCells, pool_.size()))) {
+  if (cells > static_cast<double>(fewest_cells())) {
     for (BodyIndex body = 0; body < places_.size(); ++body) {
       if (places_[body] == Place::inside && boxes_[body].meets(box)) bodies.push_back(body);
     }
@@ -127,7 +119,8 @@ Near Events::near_box(const Vec3& lower, const Vec3& upper, std::vector<BodyInde
 
 // Slab after slab of cells across the axis along which the ray is fastest: it crosses few cells in each. False if the
 // visitor has had enough.
-bool Events::walk_slabs(const GridRay& ray, std::vector<BodyIndex>& portion, PortionVisitor& visitor) const {
+bool BoxIndex::walk_slabs(const Lattice& lattice, const GridRay& ray, std::vector<BodyIndex>& portion,
+                          PortionVisitor& visitor) const {
   const std::size_t m = ray.axis;
   const auto slab_at = [&](double t) {
     return static_cast<std::int64_t>(std::floor(std::clamp(ray.at(m, t), 0.0, double{kLastQuantum}) / kQuanta));
@@ -149,23 +142,22 @@ bool Events::walk_slabs(const GridRay& ray, std::vector<BodyIndex>& portion, Por
     append_in_cells(box, portion);
     if (slab == last) break;
     if (portion.size() < kPortion) continue;
-    if (!visitor.visit(portion, time_at(far - spare) / lattice_.quanta(1))) return false;
+    if (!visitor.visit(portion, time_at(far - spare) / lattice.quanta(1))) return false;
     portion.clear();
   }
   return true;
 }
 
-bool Events::along(const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
-                   PortionVisitor& visitor) const {
+bool BoxIndex::along(Step now, const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
+                     PortionVisitor& visitor) const {
   if (few_) return false;
-  GridRay ray{{}, way, 0, lattice_.quanta(length)};
+  const Lattice lattice = lattice_at(now);
+  GridRay ray{{}, way, 0, lattice.quanta(length)};
   for (std::size_t d = 0; d < 3; ++d) {
-    ray.origin[d] = lattice_.quantum(origin[d], d);
+    ray.origin[d] = lattice.quantum(origin[d], d);
     if (!(std::fabs(ray.origin[d]) <= kFarOrigin)) return false;
     if (std::fabs(way[d]) > std::fabs(way[ray.axis])) ray.axis = d;
   }
-  portion.clear();
-  append_loose(portion);
   for (const BodyIndex body : oversized_) {
     if (ray.meets(boxes_[body])) portion.push_back(body);
   }
@@ -173,8 +165,8 @@ bool Events::along(const Vec3& origin, const Vec3& way, double length, std::vect
   if (any) ray.clip(extent_);
   if (any && ray.begin <= ray.end) {
     const double slabs = std::fabs(ray.at(ray.axis, ray.end) - ray.at(ray.axis, ray.begin)) / kQuanta;
-    if (kCellsPerSlab * slabs <= static_cast<double>(std::max(kFewCells, pool_.size()))) {
-      if (!walk_slabs(ray, portion, visitor)) return true;
+    if (kCellsPerSlab * slabs <= static_cast<double>(fewest_cells())) {
+      if (!walk_slabs(lattice, ray, portion, visitor)) return true;
     } else {
       for (BodyIndex body = 0; body < places_.size(); ++body) {
         if (places_[body] == Place::inside && ray.meets(boxes_[body])) portion.push_back(body);

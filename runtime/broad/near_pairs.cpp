@@ -1,7 +1,7 @@
-#include "events.h"
+#include "near_pairs.h"
+
 #include "horn.h"
 
-// Testing near pairs: they overlap, or get an event.
 namespace orchard::runtime::detail {
 namespace {
 
@@ -9,12 +9,23 @@ constexpr double kEventResolution = 0.125;  // of a step: no need to know better
 
 }  // namespace
 
-bool Events::valid(const PairEvent& event) const noexcept {
-  const Round created = event.created;
-  return !is_later(windows_[event.pair.a].updated, created) && !is_later(windows_[event.pair.b].updated, created);
+void Refusals::refuse(BodyIndex body) {
+  pool_.refuse(body);
+  boxes_.take_away(body);
+  windows_[body].end = kUpdateDue;
+  windows_.void_events(body);
+  overlaps_.mark(body, OverlapList::kUpdated);
+  overlaps_.mark(body, OverlapList::kRefused);
+  changes_.note(body);
 }
 
-void Events::test(Step now, std::span<const PairEvent> events) {
+void NearPairs::begin_step(bool within_budget) {
+  within_budget_ = within_budget;
+  for (const PairEvent& event : doubtful_) overlaps_.drop(event.pair);
+  doubtful_.clear();
+}
+
+void NearPairs::test(Step now, std::span<const PairEvent> events) {
   motions_.resize(kBlock);
   std::array<BodyIndex, kBlock> bodies;
   while (!events.empty()) {
@@ -27,23 +38,34 @@ void Events::test(Step now, std::span<const PairEvent> events) {
     for (std::size_t i = 0; i < count; ++i) {
       const Motion &a = motions_[2 * i], &b = motions_[2 * i + 1];
       const bool valid_a = is_valid(a), valid_b = is_valid(b);
-      if (!valid_a) refuse(events[i].pair.a);
-      if (!valid_b) refuse(events[i].pair.b);
+      if (!valid_a) refusals_.refuse(events[i].pair.a);
+      if (!valid_b) refusals_.refuse(events[i].pair.b);
       if (valid_a && valid_b) settle(now, events[i], a, b);
     }
     events = events.subspan(count);
   }
 }
 
-double Events::reach_of(const Motion& m, double duration) const noexcept {
+void NearPairs::note_spheres(bool wanted, std::size_t slots) {
+  if (wanted) {
+    grow(spheres_, slots);
+  } else {
+    give_back(spheres_);
+  }
+}
+
+// Relative to the lattice, like that of every other body.
+void NearPairs::note_sphere(BodyIndex body, const Motion& m, const Vec3& frame, double duration) noexcept {
   constexpr double kOutward = 1 + 1e-9;  // for what is rounded here
-  const double travel = duration * (std::sqrt(dot(m.velocity, m.velocity)) + m.drift + duration * m.acceleration / 2);
-  return travel * kOutward + motion_slack(m, m, duration) + 2 * options_.position_slack;
+  const Vec3 velocity = m.velocity - frame;
+  const double travel = duration * (std::sqrt(dot(velocity, velocity)) + m.drift + duration * m.acceleration / 2);
+  spheres_[body] = {m.position, m.radius,
+                    travel * kOutward + motion_slack(m, m, duration) + 2 * options_.position_slack};
 }
 
 // A pair that both have just been updated: true if nothing is to be done but what this does. It is found anew at the
 // end of the earlier window, and until then the spheres surely overlap, or surely do not.
-bool Events::settle_by_spheres(Step now, const BodyPair& pair) {
+bool NearPairs::settle_by_spheres(Step now, const BodyPair& pair) {
   const Sphere &a = spheres_[pair.a], &b = spheres_[pair.b];
   const Vec3 apart = b.center - a.center;
   const double squared = dot(apart, apart), radii = a.radius + b.radius, reach = a.reach + b.reach;
@@ -53,33 +75,57 @@ bool Events::settle_by_spheres(Step now, const BodyPair& pair) {
   const double sure = radii - reach;
   if (!over && !(sure > 0 && squared < sure * sure)) return false;
   if (!pool_.may_pair(pair)) return true;
-  if (preparing_) {
-    overlaps_ahead_.emplace_back(pair, round_);
+  if (ahead_) {
+    overlaps_ahead_.emplace_back(pair, windows_.round());
   } else {
     overlaps_.add(pair);
   }
   return true;
 }
 
-void Events::test_near(Step now) {
-  if (pool_.filters_pairs()) drop_what_is_none();
+void NearPairs::test_near(Step now, std::span<const BodyPair> pairs) {
   tests_.clear();
-  for (const BodyPair& pair : near_) {
-    const bool known = !spheres_.empty() && windows_[pair.a].updated == round_ && windows_[pair.b].updated == round_;
-    if (!known || !settle_by_spheres(now, pair)) tests_.emplace_back(pair, round_);
+  const Round round = windows_.round();
+  for (const BodyPair& pair : pairs) {
+    const bool known = !spheres_.empty() && windows_[pair.a].updated == round && windows_[pair.b].updated == round;
+    if (!known || !settle_by_spheres(now, pair)) tests_.emplace_back(pair, round);
   }
-  near_.clear();
   test(now, tests_);
 }
 
+void NearPairs::take_overlaps_ahead() {
+  for (const PairEvent& event : overlaps_ahead_) {
+    if (windows_.valid(event)) overlaps_.add(event.pair);
+  }
+  overlaps_ahead_.clear();
+}
+
+void NearPairs::take_overlaps_ahead(std::vector<PairEvent>& events) {
+  events.insert(events.end(), overlaps_ahead_.begin(), overlaps_ahead_.end());
+  overlaps_ahead_.clear();
+}
+
+// Of what was added in this step, the pairs of which no test has come after the last update of both bodies.
+void NearPairs::keep_doubtful() {
+  sure_.clear();
+  for (const PairEvent& event : doubtful_) {
+    if (windows_.valid(event)) sure_.push_back(event.pair);
+  }
+  std::sort(sure_.begin(), sure_.end());
+  std::erase_if(doubtful_,
+                [&](const PairEvent& event) { return std::binary_search(sure_.begin(), sure_.end(), event.pair); });
+  sure_.clear();
+}
+
 // Both motions are of this step: they overlap, surely for a while, or they cannot for a while.
-void Events::settle(Step now, const PairEvent& event, const Motion& a, const Motion& b) {
+void NearPairs::settle(Step now, const PairEvent& event, const Motion& a, const Motion& b) {
   const BodyPair& pair = event.pair;
   if (!pool_.may_pair(pair)) return;  // what waited for its test while that changed
   const Clock& clock = pool_.clock;
   const double slack = 4 * options_.position_slack;  // of two bodies, now and later
   // Until the next update of one of them, or a bound expires.
-  const Step left = std::min({known_until(pair.a, now), known_until(pair.b, now), now + kLongestWindow}) - now;
+  const Step left =
+      std::min({windows_.known_until(pair.a, now), windows_.known_until(pair.b, now), now + kLongestWindow}) - now;
   const double expiry = std::min(a.expiry, b.expiry);
   const bool in_time = expiry >= clock.time(now + left + 1);  // mostly, and sooner said
   const Step safe = in_time ? left : clock.last_before_expiry(expiry) - now;
@@ -94,21 +140,31 @@ void Events::settle(Step now, const PairEvent& event, const Motion& a, const Mot
   const double contact = earliest_contact(a, b, seconds, kEventResolution * options_.time_step, slack);
   Step ahead = contact <= seconds ? std::max<Step>(1, clock.steps_before(contact)) : kNeverStep;
   if (safe < left) ahead = std::min(ahead, std::max<Step>(0, safe) + 1);
-  if (ahead < left) wheel_.add({pair, round_}, now + ahead);
+  if (ahead < left) wheel_.add({pair, windows_.round()}, now + ahead);
 }
 
 // What has been updated ahead is of the next step: this one has been reported already.
-void Events::settle_touching(Step now, const PairEvent& event, Step left, Step sure) {
-  const PairEvent next{event.pair, round_, !preparing_ || sure > 0};
-  if (preparing_) {
+void NearPairs::settle_touching(Step now, const PairEvent& event, Step left, Step sure) {
+  const PairEvent next{event.pair, windows_.round(), !ahead_ || sure > 0};
+  if (ahead_) {
     if (next.parting) overlaps_ahead_.push_back(next);
   } else if (!event.parting) {
     overlaps_.add(event.pair);
-    if (limited_) doubtful_.push_back(next);
+    if (within_budget_) doubtful_.push_back(next);
   }
   // A pair with a body that waits is tested at the next step in any case.
   const bool waits = windows_[event.pair.a].end == kUpdateDue || windows_[event.pair.b].end == kUpdateDue;
   if (sure + 1 < left && !waits) wheel_.add(next, now + sure + 1);
+}
+
+void NearPairs::forget_all() noexcept {
+  overlaps_ahead_.clear();
+  doubtful_.clear();
+}
+
+std::size_t NearPairs::memory_bytes() const noexcept {
+  return bytes_of(spheres_) + bytes_of(overlaps_ahead_) + bytes_of(doubtful_) + bytes_of(tests_) + bytes_of(motions_) +
+         bytes_of(sure_);
 }
 
 }  // namespace orchard::runtime::detail

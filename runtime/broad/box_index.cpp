@@ -1,0 +1,165 @@
+#include "box_index.h"
+
+namespace orchard::runtime::detail {
+namespace {
+
+// Cells along an axis, less one; 0 if the boxes fit into the grid.
+std::uint32_t excess_cells(const BoxBlock& boxes, std::size_t count) noexcept {
+  std::uint32_t excess = 0;
+  for (std::size_t d = 0; d < 3; ++d) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t more = (boxes.upper[d][i] >> kQuantumBits) - (boxes.lower[d][i] >> kQuantumBits);
+      excess |= more < kMaxCellsPerAxis ? 0 : more;
+    }
+  }
+  return excess;
+}
+
+bool cells_fit(const QuantumBox& box) noexcept {
+  bool fit = true;
+  for (std::size_t d = 0; d < 3; ++d) {
+    fit = fit && (box.upper[d] >> kQuantumBits) - (box.lower[d] >> kQuantumBits) < kMaxCellsPerAxis;
+  }
+  return fit;
+}
+
+}  // namespace
+
+void BoxIndex::make_room_for_boxes(std::size_t slots) {
+  if (few_) {
+    list_.grow(slots);
+  } else {
+    grow(boxes_, slots);
+  }
+}
+
+void BoxIndex::make_anew(std::size_t slots, std::size_t lines) {
+  std::fill(places_.begin(), places_.end(), Place::nowhere);
+  oversized_.clear();
+  extent_ = kNothing;
+  few_ = lines > 0 && slots <= BoxList::kMaxBodies;
+  if (few_) {
+    list_.reset(slots);
+  } else {
+    list_.release();
+  }
+  if (few_ || lines == 0) {
+    grid_.release();
+    give_back(boxes_);
+  } else {
+    grid_.reset(lines);
+    grow(boxes_, slots);
+  }
+}
+
+void BoxIndex::set_lattice(const Vec3& origin, const Vec3& velocity, double cell_size, double slack, double time_step,
+                           Step now) noexcept {
+  lattice_ = Lattice(origin, velocity, cell_size, slack);
+  lattice_from_ = now;
+  time_step_ = time_step;
+}
+
+Lattice BoxIndex::lattice_at(Step now) const noexcept {
+  Lattice lattice = lattice_;
+  lattice.move_to(static_cast<double>(now - lattice_from_) * time_step_);
+  return lattice;
+}
+
+void BoxIndex::take_away(BodyIndex body) noexcept {
+  if (places_[body] == Place::inside) few_ ? list_.remove(body) : grid_.remove(body, boxes_[body]);
+  if (places_[body] == Place::oversized) std::erase(oversized_, body);
+  places_[body] = Place::nowhere;
+}
+
+// In the order of the timing wheel bodies are all over memory: what is needed next is loaded ahead.
+void BoxIndex::take_away(std::span<const BodyIndex> bodies) noexcept {
+  constexpr std::size_t kBoxAhead = 24, kLineAhead = 12;
+  const std::size_t lines = few_ ? 0 : bodies.size();
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (i + kBoxAhead < lines) prefetch(&boxes_[bodies[i + kBoxAhead]]);
+    if (i + kLineAhead < lines && places_[bodies[i + kLineAhead]] == Place::inside) {
+      grid_.prepare_removal(boxes_[bodies[i + kLineAhead]]);
+    }
+    take_away(bodies[i]);
+  }
+}
+
+bool BoxIndex::note(std::span<const BodyIndex> bodies, const BoxBlock& boxes) noexcept {
+  for (const BodyIndex body : bodies) places_[body] = Place::inside;
+  if (few_) return true;
+  for (std::size_t i = 0; i < bodies.size(); ++i) boxes_[bodies[i]] = boxes.get(i);
+  if (excess_cells(boxes, bodies.size()) == 0) {
+    note_extent(boxes, bodies.size());
+    return true;
+  }
+  bool fit = true;
+  for (const BodyIndex body : bodies) fit = note_again(body, boxes_[body]) && fit;
+  return fit;
+}
+
+bool BoxIndex::note_again(BodyIndex body, const QuantumBox& box) noexcept {
+  const bool fits = cells_fit(box);
+  boxes_[body] = box;
+  places_[body] = fits ? Place::inside : Place::oversized;
+  if (fits) extent_.include(box);
+  return fits;
+}
+
+// Mostly none of them lies outside. By fours, whose boxes are all made: those after the last body are somewhere in the
+// world. Quanta are below 2^31: what is outside shows in the highest bit of a difference.
+void BoxIndex::note_extent(const BoxBlock& boxes, std::size_t count) noexcept {
+  constexpr std::size_t kFour = 4;
+  std::array<std::uint32_t, kFour> outside{};
+  for (std::size_t d = 0; d < 3; ++d) {
+    const std::uint32_t lower = extent_.lower[d], upper = extent_.upper[d];
+    for (std::size_t i = 0; i < count; i += kFour) {
+      for (std::size_t k = 0; k < kFour; ++k) {
+        outside[k] |= (boxes.lower[d][i + k] - lower) | (upper - boxes.upper[d][i + k]);
+      }
+    }
+  }
+  if ((outside[0] | outside[1] | outside[2] | outside[3]) >> 31 == 0) return;
+  for (std::size_t i = 0; i < count; ++i) extent_.include(boxes.get(i));
+}
+
+void BoxIndex::insert(Queue& queue, std::span<const BodyIndex> bodies, BoxBlock& boxes, std::vector<BodyPair>& pairs) {
+  if (few_) return list_.insert(bodies, boxes, vectors_, pairs);
+  const auto oversized = [&](BodyIndex body) { return places_[body] == Place::oversized; };
+  if (oversized_.empty() && std::none_of(bodies.begin(), bodies.end(), oversized)) {
+    return grid_.insert(queue, bodies, boxes, boxes_, vectors_, pairs);
+  }
+  std::array<BodyIndex, kBlock> in_grid;
+  std::size_t count = 0;
+  for (const BodyIndex body : bodies) {
+    if (oversized(body)) continue;
+    boxes.set(count, boxes_[body]);
+    in_grid[count++] = body;
+  }
+  grid_.insert(queue, std::span(in_grid).first(count), boxes, boxes_, vectors_, pairs);
+  meet_oversized(bodies, pairs);
+}
+
+void BoxIndex::finish(Queue& queue, std::vector<BodyPair>& pairs) {
+  if (!few_) grid_.finish(queue, boxes_, vectors_, pairs);
+}
+
+// Bodies as large as several cells are compared with everything: (their number) x (the number of all) per window.
+void BoxIndex::meet_oversized(std::span<const BodyIndex> bodies, std::vector<BodyPair>& pairs) {
+  const auto compare = [&](BodyIndex body, BodyIndex other) {
+    if (boxes_[other].meets(boxes_[body])) pairs.push_back({std::min(body, other), std::max(body, other)});
+  };
+  for (const BodyIndex body : bodies) {
+    if (places_[body] != Place::inside) continue;
+    for (const BodyIndex large : oversized_) compare(body, large);
+  }
+  for (const BodyIndex body : bodies) {
+    if (places_[body] != Place::oversized) continue;
+    for (BodyIndex other = 0; other < places_.size(); ++other) {
+      if (places_[other] == Place::inside) compare(body, other);
+    }
+    for (const BodyIndex large : oversized_) compare(body, large);
+    oversized_.push_back(body);
+  }
+}
+
+}  // namespace orchard::runtime::detail

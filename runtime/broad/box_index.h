@@ -1,0 +1,78 @@
+#pragma once
+#include "box_list.h"
+#include "method.h"
+#include "swept_grid.h"
+
+namespace orchard::runtime::detail {
+
+// The boxes around all that bodies' bounds allow until their windows end, where other boxes and queries find them: a
+// list of few bodies, or the grid of many.
+class BoxIndex {
+ public:
+  explicit BoxIndex(bool vectors) : vectors_(vectors) {}
+  // Boxes on their way into the grid: finish() before anything else happens to it.
+  using Queue = SweptGrid::Queue;
+
+  void make_room(std::size_t slots) { grow(places_, slots); }
+  void make_room_for_boxes(std::size_t slots);
+  bool few() const noexcept { return few_; }
+  bool outgrown(std::size_t slots) const noexcept { return few_ && slots > BoxList::kMaxBodies; }
+  const void* at(BodyIndex body) const noexcept { return &places_[body]; }  // to load it ahead
+
+  // Empties it, and makes it for so many slots, or lines. `lines` 0: for none, until it is made anew.
+  void make_anew(std::size_t slots, std::size_t lines);
+  // The lattice of all boxes from now on; it moves at `velocity`.
+  void set_lattice(const Vec3& origin, const Vec3& velocity, double cell_size, double slack, double time_step,
+                   Step now) noexcept;
+  Lattice lattice_at(Step now) const noexcept;
+  const Vec3& velocity() const noexcept { return lattice_.velocity(); }
+  bool moves() const noexcept { return lattice_.moves(); }
+
+  void take_away(BodyIndex body) noexcept;
+  void take_away(std::span<const BodyIndex> bodies) noexcept;
+  // Takes note of bodies' boxes, which insert() puts where they belong; false if some do not fit into the grid.
+  bool note(std::span<const BodyIndex> bodies, const BoxBlock& boxes) noexcept;
+  bool fits(BodyIndex body) const noexcept { return few_ || places_[body] == Place::inside; }
+  bool note_again(BodyIndex body, const QuantumBox& box) noexcept;  // of one that does not fit: another box for it
+  // `boxes` are those that were noted, or noted again. Appends the pairs whose boxes meet, of each and all before.
+  void insert(Queue& queue, std::span<const BodyIndex> bodies, BoxBlock& boxes, std::vector<BodyPair>& pairs);
+  void finish(Queue& queue, std::vector<BodyPair>& pairs);
+
+  const GridCounts& counts() const noexcept { return grid_.counts(); }
+  void begin_counts() noexcept { grid_.take_counts(); }
+  void discount_pairs(std::size_t pairs) noexcept { grid_.discount_pairs(pairs); }
+
+  // As in Method.
+  Near near_box(Step now, const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const;
+  bool along(Step now, const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
+             PortionVisitor& visitor) const;
+  std::size_t memory_bytes() const noexcept {
+    return bytes_of(places_) + bytes_of(boxes_) + bytes_of(oversized_) + list_.memory_bytes() + grid_.memory_bytes();
+  }
+
+ private:
+  enum class Place : std::uint8_t { nowhere, inside, oversized };
+  static constexpr QuantumBox kNothing = {{kLastQuantum, kLastQuantum, kLastQuantum}, {0, 0, 0}};
+
+  void note_extent(const BoxBlock& boxes, std::size_t count) noexcept;
+  void meet_oversized(std::span<const BodyIndex> bodies, std::vector<BodyPair>& pairs);
+  struct GridRay;
+  void append_in_cells(const QuantumBox& box, std::vector<BodyIndex>& bodies) const;
+  bool walk_slabs(const Lattice& lattice, const GridRay& ray, std::vector<BodyIndex>& portion,
+                  PortionVisitor& visitor) const;
+  std::size_t fewest_cells() const noexcept;  // that are worth reading rather than all boxes
+
+  const bool vectors_;
+  std::vector<Place> places_;      // by body
+  std::vector<QuantumBox> boxes_;  // of those in the grid
+  std::vector<BodyIndex> oversized_;
+  bool few_ = true;
+  BoxList list_;
+  SweptGrid grid_;
+  QuantumBox extent_ = kNothing;  // around all boxes that are in the grid, or have been since it was made anew
+  Lattice lattice_;
+  double time_step_ = 0;
+  Step lattice_from_ = 0;  // at which it was made
+};
+
+}  // namespace orchard::runtime::detail

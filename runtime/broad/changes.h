@@ -1,0 +1,44 @@
+#pragma once
+#include "body_pool.h"
+
+namespace orchard::runtime::detail {
+
+// The bodies that are new, or whose bounds hold no longer, since the last step: each once, as they came.
+class Changes {
+ public:
+  void make_room(std::size_t slots) { grow(pending_, slots); }
+  void note(BodyIndex body) {  // there is room for it
+    if (pending_[body]) return;
+    changed_.push_back(body);
+    pending_[body] = 1;
+  }
+  void forget(BodyIndex body) noexcept { pending_[body] = 0; }
+  void forget_all() noexcept { changed_.clear(); }  // of bodies that have been forgotten, or are gone
+  bool has(BodyIndex body) const noexcept { return pending_[body] != 0; }
+  const std::uint8_t* at(BodyIndex body) const noexcept { return &pending_[body]; }  // to load it ahead
+  bool empty() const noexcept { return changed_.empty(); }
+  void append_to(std::vector<BodyIndex>& bodies) const {
+    for (const BodyIndex body : changed_) {
+      if (pending_[body]) bodies.push_back(body);
+    }
+  }
+  // Each leaves, and is used.
+  template <typename Use>
+  void take(const Use& use) {
+    constexpr std::size_t kKept = 1024;  // room for as many stays allocated, not what adding all bodies took
+    for (const BodyIndex body : changed_) {
+      if (!pending_[body]) continue;
+      pending_[body] = 0;
+      use(body);
+    }
+    changed_.clear();
+    if (changed_.capacity() > kKept) changed_.shrink_to_fit();
+  }
+  std::size_t memory_bytes() const noexcept { return bytes_of(pending_) + bytes_of(changed_); }
+
+ private:
+  std::vector<std::uint8_t> pending_;  // by body
+  std::vector<BodyIndex> changed_;
+};
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,80 @@
+#pragma once
+#include "box_index.h"
+#include "changes.h"
+#include "overlap_list.h"
+#include "windows.h"
+
+namespace orchard::runtime::detail {
+
+// What becomes of a body whose motion is not valid: it is in no pair until it has been asked again.
+class Refusals {
+ public:
+  Refusals(BodyPool& pool, Windows& windows, BoxIndex& boxes, OverlapList& overlaps, Changes& changes)
+      : pool_(pool), windows_(windows), boxes_(boxes), overlaps_(overlaps), changes_(changes) {}
+  void refuse(BodyIndex body);
+
+ private:
+  BodyPool& pool_;
+  Windows& windows_;
+  BoxIndex& boxes_;
+  OverlapList& overlaps_;
+  Changes& changes_;
+};
+
+// Tests pairs that are near: they overlap, for a while or for sure up to a step, or get an event at the first step at
+// which they can.
+class NearPairs {
+ public:
+  static constexpr std::size_t kTestsAtOnce = kBlock / 2;
+
+  NearPairs(BodyPool& pool, const BroadPhaseOptions& options, Windows& windows, TimingWheel& wheel,
+            OverlapList& overlaps, Refusals& refusals)
+      : pool_(pool), options_(options), windows_(windows), wheel_(wheel), overlaps_(overlaps), refusals_(refusals) {}
+
+  // ahead: for the next step, from the motions of this one. within_budget: what overlaps may be doubted.
+  void begin_step(bool within_budget);
+  void work_ahead(bool ahead) noexcept { ahead_ = ahead; }
+  void test(Step now, std::span<const PairEvent> events);
+  // Pairs that window updates of this round have found.
+  void test_near(Step now, std::span<const BodyPair> pairs);
+  // What was found to overlap a step ahead: it does, unless a body has been updated since.
+  void take_overlaps_ahead();
+  void take_overlaps_ahead(std::vector<PairEvent>& events);
+  void keep_doubtful();  // at the end of a step within a budget
+
+  // What a window update takes note of where many pairs are near: most of them need no other test.
+  void note_spheres(bool wanted, std::size_t slots);
+  void make_room_for_spheres(std::size_t slots) {
+    if (!spheres_.empty()) grow(spheres_, slots);
+  }
+  void note_sphere(BodyIndex body, const Motion& motion, const Vec3& frame, double duration) noexcept;
+  bool notes_spheres() const noexcept { return !spheres_.empty(); }
+
+  void forget_all() noexcept;
+  std::size_t memory_bytes() const noexcept;
+
+ private:
+  struct Sphere {
+    Vec3 center;
+    double radius, reach;  // reach: as far as the centre may get until the body's window ends, and all slack
+  };
+  bool settle_by_spheres(Step now, const BodyPair& pair);
+  void settle(Step now, const PairEvent& event, const Motion& a, const Motion& b);
+  void settle_touching(Step now, const PairEvent& event, Step left, Step sure);
+
+  BodyPool& pool_;
+  const BroadPhaseOptions& options_;
+  Windows& windows_;
+  TimingWheel& wheel_;
+  OverlapList& overlaps_;
+  Refusals& refusals_;
+  bool ahead_ = false, within_budget_ = false;
+  std::vector<Sphere> spheres_;            // by body; empty unless many pairs are near
+  std::vector<PairEvent> overlaps_ahead_;  // of pairs tested ahead for the next step, at which they surely touch
+  std::vector<PairEvent> doubtful_;  // reported within a budget, before another update that may not have found them yet
+  std::vector<PairEvent> tests_;     // of the call under way; kept for its memory, as the next one
+  std::vector<Motion> motions_;
+  std::vector<BodyPair> sure_;
+};
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,135 @@
+#include "planner.h"
+
+#include <cmath>
+
+#include "box_list.h"
+
+namespace orchard::runtime::detail {
+namespace {
+
+constexpr std::size_t kSmallSample = 16, kSample = 48;  // bodies that the first plan asks: of few, and of many
+constexpr double kCrowding = 4;                         // lines read per entry from which on the cells are too large
+constexpr double kStepsToTell = 3;                      // fewer do not tell how often bounds are cancelled
+constexpr double kNearlyAll = 0.9;                      // of many, at each step so far: one step is enough
+constexpr double kStepsCounted = 256;                   // that tell how often bounds are cancelled
+constexpr unsigned kPlansKept = 8;       // a plan that fits is made anew after as many updates of all windows
+constexpr double kFarthestWay = 0x1p20;  // spacings, which cells are not much smaller than
+constexpr double kFewPairs = 1e-3;       // per body: too few to say anything about the prediction
+
+}  // namespace
+
+bool Planner::crowded(const GridCounts& counts) const noexcept {
+  return plan_.roomy && counts.bodies >= pool_.size() &&
+         static_cast<double>(counts.lines_read) > kCrowding * static_cast<double>(counts.entries);
+}
+
+Planner::Outcome Planner::replan(Step now, const GridCounts& counts, BudgetTracker& tracker) {
+  const std::size_t n = pool_.size();
+  surveyed_now_ = false;
+  const bool too_crowded = crowded(counts) && !many_more_bodies();
+  const bool other_number = many_more_bodies() || 2 * n < planned_bodies_;
+  if (!too_crowded && other_number && !survey(now, tracker)) return Outcome::interrupted;
+  double off = 1;  // pairs seen to pairs predicted
+  if (counts.bodies > 0) {
+    const double seen = static_cast<double>(counts.pairs) / static_cast<double>(counts.bodies);
+    off = (seen + kFewPairs) / (plan_.pairs_per_body + kFewPairs);
+  }
+  const double steps = static_cast<double>(std::max<Step>(1, now - planned_at_));
+  const double share = std::min(1.0, static_cast<double>(cancellations_) / (steps * static_cast<double>(n)));
+  const bool tells = steps >= kStepsToTell || (share > kNearlyAll && n > BoxList::kMaxBodies);
+  const double cancelled = tells ? share : cancelled_;
+  if (too_crowded) {
+    crowding_ *= 2;  // bodies in clusters: what counts is how dense these are
+    spacing_ /= 2;
+  } else if (!other_number) {
+    if (!outdated(off, cancelled)) {
+      if (steps > kStepsCounted) {  // what was long ago counts less and less
+        cancellations_ /= 2;
+        planned_at_ = now - (now - planned_at_) / 2;
+      }
+      return Outcome::same;
+    }
+    if (means_.sample().size() >= kSmallSample) {  // bodies may have come closer, or gone apart
+      const double before = spacing_;
+      spacing_ = mean_spacing(means_.sample(), n) / crowding_;
+      if (before > 0) off *= std::pow(spacing_ / before, 3);
+    }
+  }
+  correction_ = std::clamp(correction_ * off, 0.05, 50.0);
+  const Vec3 velocity = frame_velocity();
+  means_.refer_to(velocity);
+  plan_ = plan_window(means_, n, spacing_, options_.time_step, correction_, options_.window, cancelled);
+  cancelled_ = cancelled;
+  if (tells || other_number) {
+    planned_at_ = now;
+    cancellations_ = 0;
+  }
+  means_ = {};
+  means_.frame = velocity;
+  return Outcome::anew;
+}
+
+// Static bodies have windows without end only where they stay in the same cells. Rounding stays below a
+// quantum where a window's way is within the lattice's range.
+Vec3 Planner::frame_velocity() const noexcept {
+  if (pool_.any_static()) return {};
+  const Vec3 velocity = means_.crowd_velocity();
+  const double way = std::sqrt(dot(velocity, velocity)) * kLongestWindow * options_.time_step;
+  return way < kFarthestWay * spacing_ ? velocity : Vec3{};
+}
+
+// `off`: pairs seen to pairs predicted. Bounds that are cancelled more often than they were, or less, count as well.
+bool Planner::outdated(double off, double cancelled) noexcept {
+  constexpr double kSeldom = 0.005;  // a share that makes no difference
+  const bool fits = 0.5 < off && off < 2;
+  const bool as_often = std::max(cancelled, cancelled_) < kSeldom + 2 * std::min(cancelled, cancelled_);
+  return !fits || !as_often || plans_++ % kPlansKept == 1;
+}
+
+// False if a budget ended it before it was complete.
+// How bodies lie and move, from a sample. What a budget interrupts goes on with the bodies after those seen.
+bool Planner::survey(Step now, BudgetTracker& tracker) {
+  const std::size_t n = pool_.size(), wanted = std::clamp(n / 8, kSmallSample, kSample);
+  const std::size_t stride = std::max<std::size_t>(1, n / wanted);
+  if (surveyed_.empty()) survey_next_ = 0;
+  std::vector<BodyIndex> sample;
+  std::size_t seen = 0;
+  for (; survey_next_ < pool_.slots() && surveyed_.size() + sample.size() < wanted; ++survey_next_) {
+    if (pool_.alive(survey_next_) && seen++ % stride == 0) sample.push_back(survey_next_);
+  }
+  while (!sample.empty()) {
+    if (tracker.spent()) {
+      survey_next_ = sample.front();
+      return false;
+    }
+    const std::size_t count = tracker.grant(sample.size());
+    surveyed_.resize(surveyed_.size() + count);
+    pool_.ask(now, std::span(sample).first(count), std::span(surveyed_).last(count));
+    tracker.count(count);
+    sample.erase(sample.begin(), sample.begin() + static_cast<std::ptrdiff_t>(count));
+  }
+  std::vector<Vec3> centers;
+  means_ = {};
+  for (const Motion& motion : surveyed_) {
+    if (!is_valid(motion)) continue;
+    means_.add(motion);
+    centers.push_back(motion.position);
+  }
+  surveyed_.clear();
+  surveyed_now_ = true;
+  origin_ = centers.empty() ? Vec3{} : centers.front();
+  spacing_ = mean_spacing(centers, n);
+  planned_bodies_ = n;
+  crowding_ = correction_ = 1;
+  plans_ = 0;
+  return true;
+}
+
+// Of the bodies, so that both steps take the same time: of the near pairs only those among them are found ahead.
+double Planner::share_ahead() const noexcept {
+  constexpr double kUpdate = 60, kNearPair = 100;  // nanoseconds of one machine
+  const double pairs = kNearPair * plan_.pairs_per_body;
+  return pairs < 1 ? 0.5 : (std::sqrt(kUpdate * kUpdate + 2 * pairs * (kUpdate + pairs)) - kUpdate) / (2 * pairs);
+}
+
+}  // namespace orchard::runtime::detail

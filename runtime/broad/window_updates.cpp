@@ -1,0 +1,207 @@
+#include "window_updates.h"
+
+namespace orchard::runtime::detail {
+namespace {
+
+constexpr std::size_t kNearAtOnce = 1024;  // near pairs that are tested together
+
+}  // namespace
+
+struct WindowUpdates::Block {
+  Step now;                              // the motions are of this step,
+  Step from;                             // and count from this one
+  Lattice lattice;                       // at `now`
+  std::array<Step, kBlock> ends;         // of the bodies' windows
+  std::array<double, kBlock> durations;  // until then, of which the last step is not
+  BoxBlock boxes;
+  BoxIndex::Queue queue;
+};
+
+// True if all windows end at the same step.
+bool WindowUpdates::set_ends(Block& block, std::span<const BodyIndex> bodies) {
+  Windows& windows = parts_.windows;
+  const auto duration = [&](Step end) {
+    return end == kNeverStep ? 0 : static_cast<double>(end - 1 - block.now) * options_.time_step;
+  };
+  const Step planned = windows.end_of(block.from, motions_[0]);
+  const Step common = windows.end_of(block.from, bodies[0], motions_[0]);
+  bool same = !parts_.pool.any_static();
+  for (std::size_t i = 0; i < bodies.size(); ++i) same = same && motions_[i].expiry == motions_[0].expiry;
+  for (std::size_t i = 0; windows.any_short() && same && i < bodies.size(); ++i) {
+    same = std::min(planned, block.from + windows[bodies[i]].lasting) == common;
+  }
+  block.ends.fill(common);
+  block.durations.fill(duration(common));
+  for (std::size_t i = 0; !same && i < bodies.size(); ++i) {
+    block.ends[i] = windows.end_of(block.from, bodies[i], motions_[i]);
+    block.durations[i] = duration(block.ends[i]);
+  }
+  return same;
+}
+
+// Makes the boxes of a block of bodies, until the ends of their windows. Does nothing and returns false if a motion is
+// not valid.
+bool WindowUpdates::place(Block& block, std::span<const BodyIndex> bodies) {
+  const auto motions = std::span(std::as_const(motions_)).first(bodies.size());
+  bool same = set_ends(block, bodies);
+  bool valid =
+      same || std::none_of(motions.begin(), motions.end(), [](const Motion& m) { return std::isnan(m.expiry); });
+  const auto durations = std::span(block.durations).first(bodies.size());
+  valid = block.lattice.boxes(motions, durations, block.boxes, options_.vectors) && valid;
+  const auto is_one = [](const Motion& motion) { return is_valid(motion); };
+  if (!valid && !std::all_of(motions.begin(), motions.end(), is_one)) return false;
+
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    parts_.windows.set(bodies[i], block.from, block.ends[i]);
+    parts_.overlaps.mark(bodies[i], OverlapList::kUpdated);
+  }
+  for (std::size_t i = 0; parts_.pairs.notes_spheres() && i < bodies.size(); ++i) {
+    parts_.pairs.note_sphere(bodies[i], motions[i], block.lattice.velocity(), block.durations[i]);
+  }
+  parts_.planner.note(motions);
+  same = note_boxes(block, bodies) && same;
+  if (same) {
+    if (block.ends[0] != kNeverStep) parts_.wheel.set_due(bodies, block.ends[0]);
+    parts_.windows.vote(block.ends[0], bodies.size());
+    return true;
+  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Step end = parts_.windows[bodies[i]].end;
+    if (end != kNeverStep) parts_.wheel.set_due(bodies.subspan(i, 1), end);
+    parts_.windows.vote(end, 1);
+  }
+  return true;
+}
+
+// False if a window had to be cut short.
+bool WindowUpdates::note_boxes(Block& block, std::span<const BodyIndex> bodies) {
+  if (parts_.boxes.note(bodies, block.boxes)) return true;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (!parts_.boxes.fits(bodies[i])) shrink(block, bodies[i], i);
+  }
+  return false;
+}
+
+// Faster than the others: update it again sooner, until its box takes few enough cells.
+void WindowUpdates::shrink(Block& block, BodyIndex body, std::size_t i) {
+  Window& window = parts_.windows[body];
+  Step steps = window.end == kNeverStep ? 1 : window.end - block.from;
+  BoxBlock box;
+  for (bool fits = false; steps > 1 && !fits;) {
+    steps = (steps + 1) / 2;
+    window.end = block.from + steps;
+    window.length = static_cast<std::uint8_t>(steps);
+    const double duration = static_cast<double>(window.end - 1 - block.now) * options_.time_step;
+    block.lattice.boxes({&motions_[i], 1}, {&duration, 1}, box, options_.vectors);
+    fits = parts_.boxes.note_again(body, box.get(0));
+    block.boxes.set(i, box.get(0));
+  }
+}
+
+// Moves those whose new bounds are known up to `from`, with their motions, to the front; returns how many.
+std::size_t WindowUpdates::known_at(Step from, std::span<BodyIndex> bodies) noexcept {
+  std::size_t front = 0;
+  double known = std::numeric_limits<double>::infinity();  // an expiry that is late enough
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const double expiry = motions_[i].expiry;
+    if (expiry != known && !parts_.pool.is_static(bodies[i])) {
+      if (parts_.pool.clock.last_before_expiry(expiry) < from) continue;
+      known = expiry;
+    }
+    if (front < i) {
+      std::swap(bodies[front], bodies[i]);
+      motions_[front] = motions_[i];
+    }
+    ++front;
+  }
+  return front;
+}
+
+bool WindowUpdates::know_mostly(Step now, Step from, std::span<BodyIndex> bodies) {
+  motions_.resize(std::max(kBlock, bodies.size()));
+  parts_.pool.ask(now, bodies, std::span(motions_).first(bodies.size()));
+  return 2 * known_at(from, bodies) >= bodies.size();
+}
+
+// Moves those whose motions are valid, with these, to the front; returns how many.
+std::size_t WindowUpdates::refuse_invalid(std::span<BodyIndex> bodies) {
+  std::size_t front = 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (!is_valid(motions_[i])) {
+      parts_.refusals.refuse(bodies[i]);
+      continue;
+    }
+    if (front < i) {
+      bodies[front] = bodies[i];
+      motions_[front] = motions_[i];
+    }
+    ++front;
+  }
+  return front;
+}
+
+std::span<const Motion> WindowUpdates::ask_valid(Step now, std::span<BodyIndex>& bodies) {
+  motions_.resize(kBlock);
+  parts_.pool.ask(now, bodies, std::span(motions_).first(bodies.size()));
+  bodies = bodies.first(refuse_invalid(bodies));
+  return std::span(motions_).first(bodies.size());
+}
+
+void WindowUpdates::find(Step now, Step from, std::span<const BodyIndex> bodies, bool tested) {
+  motions_.resize(kBlock);
+  near_.clear();
+  Block update;
+  update.now = now;
+  update.from = from;
+  update.lattice = parts_.boxes.lattice_at(now);
+  std::array<BodyIndex, kBlock> known;
+  for (std::size_t done = 0; done < bodies.size();) {
+    auto block = bodies.subspan(done, std::min(kBlock, bodies.size() - done));
+    parts_.pool.ask(now, block, std::span(motions_).first(block.size()));
+    done += block.size();
+    if (from > now) {
+      std::copy(block.begin(), block.end(), known.begin());
+      const std::size_t front = known_at(from, std::span(known).first(block.size()));
+      for (std::size_t i = front; i < block.size(); ++i) parts_.changes.note(known[i]);
+      block = std::span(known).first(front);
+      if (block.empty()) continue;
+    }
+    if (!place(update, block)) {
+      if (block.data() != known.data()) std::copy(block.begin(), block.end(), known.begin());
+      block = std::span(known).first(refuse_invalid(std::span(known).first(block.size())));
+      if (block.empty()) continue;
+      place(update, block);
+    }
+    parts_.boxes.insert(update.queue, block, update.boxes, near_);
+    if (tested && near_.size() >= kNearAtOnce) {
+      parts_.boxes.finish(update.queue, near_);
+      test_near(now);
+    }
+  }
+  parts_.boxes.finish(update.queue, near_);
+}
+
+void WindowUpdates::test_near(Step now) {
+  if (parts_.pool.filters_pairs()) drop_what_is_none();
+  parts_.pairs.test_near(now, near_);
+  near_.clear();
+}
+
+void WindowUpdates::update(Step now, Step from, std::span<const BodyIndex> bodies) {
+  find(now, from, bodies, true);
+  test_near(now);
+}
+
+std::span<const BodyPair> WindowUpdates::find_near(Step now, std::span<const BodyIndex> bodies) {
+  find(now, now, bodies, false);
+  if (parts_.pool.filters_pairs()) drop_what_is_none();
+  return near_;
+}
+
+// Pairs that the filters exclude. The plan does not count them: they cost next to nothing.
+void WindowUpdates::drop_what_is_none() {
+  const BodyPool& pool = parts_.pool;
+  parts_.boxes.discount_pairs(std::erase_if(near_, [&](const BodyPair& pair) { return !pool.may_pair(pair); }));
+}
+
+}  // namespace orchard::runtime::detail

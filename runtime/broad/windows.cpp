@@ -1,0 +1,67 @@
+#include "windows.h"
+
+namespace orchard::runtime::detail {
+namespace {
+
+constexpr double kLongerWindow = 0.4;  // a window may exceed the plan's by as much of it: one update, not two
+constexpr std::uint8_t kPatience = 2;  // bounds that last for a step at most, one after the other, that mean nothing
+
+}  // namespace
+
+void Windows::begin_anew() noexcept {
+  rebuilt_round_ = round_;
+  any_short_ = any_short_ && std::any_of(windows_.begin(), windows_.end(),
+                                         [](const Window& window) { return window.lasting < kLastsAsEver; });
+  voted_ = kNeverStep;
+  votes_ = 0;
+}
+
+// Until a bound expires windows are equal parts.
+Step Windows::end_of(Step from, const Motion& motion) noexcept {
+  if (from == last_from_ && motion.expiry == last_expiry_) return last_end_;
+  const Step last = pool_.clock.last_before_expiry(motion.expiry);
+  Step window = planned_;
+  if (last < from + 64 * planned_) {
+    const double steps = static_cast<double>(std::max<Step>(0, last - from) + 1);
+    const double longer = fixed_ > 0 ? 0 : kLongerWindow;
+    const double parts = std::max(1.0, std::ceil(steps / static_cast<double>(planned_) - longer));
+    window = std::min(kLongestWindow - 1, static_cast<Step>(std::ceil(steps / parts)));
+  }
+  last_from_ = from;
+  last_expiry_ = motion.expiry;
+  return last_end_ = from + window;
+}
+
+// The same for a body, whose bounds may have been cancelled again and again.
+Step Windows::end_of(Step from, BodyIndex body, const Motion& motion) noexcept {
+  if (pool_.is_static(body) && !statics_end_) return kNeverStep;
+  const Step end = end_of(from, motion);
+  return any_short_ ? std::min(end, from + windows_[body].lasting) : end;
+}
+
+// Its bounds have ended before their time. Now and then that says nothing of the next ones, which may hold for as long
+// as any. Only where bounds last for no more than a step again and again a long window is of no use.
+bool Windows::note_cancelled(BodyIndex body, Step now) noexcept {
+  Window& window = windows_[body];
+  if (window.length == 0 || window.end < 0 || window.end == kNeverStep) return false;
+  const Step lasted = now - (window.end - window.length);
+  if (lasted > 1) window.rely_longer();
+  if (lasted < 0 || lasted > 1) return true;
+  window.lasting = window.lasting > kLastsAsEver - kPatience ? window.lasting - 1 : 1;
+  any_short_ = any_short_ || window.lasting == 1;
+  return true;
+}
+
+// The majority's vote, if there is one: what differs is paired off.
+void Windows::vote(Step end, std::size_t bodies) noexcept {
+  if (end == voted_) {
+    votes_ += bodies;
+  } else if (bodies > votes_) {
+    voted_ = end;
+    votes_ = bodies - votes_;
+  } else {
+    votes_ -= bodies;
+  }
+}
+
+}  // namespace orchard::runtime::detail

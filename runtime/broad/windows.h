@@ -1,0 +1,83 @@
+#pragma once
+#include "timing_wheel.h"
+
+namespace orchard::runtime::detail {
+
+inline constexpr Step kUpdateDue = -1;  // a window's end while its body waits for a window update
+inline constexpr std::uint8_t kLastsAsEver = static_cast<std::uint8_t>(kLongestWindow - 1);
+
+struct Window {
+  Step end = 0;                         // the step of the next update
+  Round updated = 0;                    // the round of the last update: events of earlier rounds are void
+  std::uint8_t length = 0;              // steps; 0: not known
+  std::uint8_t lasting = kLastsAsEver;  // steps that bounds are relied on for, at most
+
+  void rely_longer() noexcept { lasting = lasting < kLastsAsEver / 4 ? lasting * 4 : kLastsAsEver; }
+};
+
+// Of each body, up to when the bounds it was asked for are relied on, and the rounds in which windows are updated.
+class Windows {
+ public:
+  // fixed: 0, or the most steps that a window has.
+  Windows(const BodyPool& pool, Step fixed) : pool_(pool), fixed_(fixed) {}
+
+  void make_room(std::size_t slots) { grow(windows_, slots); }
+  std::size_t size() const noexcept { return windows_.size(); }
+  Window& operator[](BodyIndex body) noexcept { return windows_[body]; }
+  const Window& operator[](BodyIndex body) const noexcept { return windows_[body]; }
+
+  Round round() const noexcept { return round_; }
+  void begin_round() noexcept { ++round_; }
+  void begin_anew() noexcept;  // all are updated in this round
+  bool rounds_run_out() const noexcept { return is_later(round_, rebuilt_round_ + kFarthestRound); }
+
+  // From now on, so many steps; static bodies' windows end, too, or never.
+  void plan(Step window, bool statics_end) noexcept { planned_ = window, statics_end_ = statics_end; }
+  // The first step at which the bound does not hold or which another update is due at.
+  Step end_of(Step from, const Motion& motion) noexcept;
+  Step end_of(Step from, BodyIndex body, const Motion& motion) noexcept;  // where some are short
+  bool any_short() const noexcept { return any_short_; }
+  void set(BodyIndex body, Step from, Step end) noexcept {
+    Window& window = windows_[body];
+    window.end = end;
+    window.updated = round_;
+    window.length = static_cast<std::uint8_t>(end == kNeverStep ? 0 : end - from);
+  }
+
+  bool valid(const PairEvent& event) const noexcept {
+    const Round created = event.created;
+    return !is_later(windows_[event.pair.a].updated, created) && !is_later(windows_[event.pair.b].updated, created);
+  }
+  void void_events(BodyIndex body) noexcept {
+    windows_[body].updated = round_ + 1;
+    windows_[body].length = 0;
+  }
+  // Up to the next update of its window. One that waits for it is known by its present motion only, which holds on its
+  // own.
+  Step known_until(BodyIndex body, Step now) const noexcept {
+    const Step end = windows_[body].end;
+    return end == kUpdateDue ? now + kLongestWindow : end;
+  }
+  bool note_cancelled(BodyIndex body, Step now) noexcept;  // false if it had no bounds yet
+
+  // The step at which the most windows end, if these are many.
+  void vote(Step end, std::size_t bodies) noexcept;
+  Step voted() const noexcept { return voted_; }
+  std::size_t votes() const noexcept { return votes_; }
+  std::size_t memory_bytes() const noexcept { return bytes_of(windows_); }
+
+ private:
+  const BodyPool& pool_;
+  const Step fixed_;
+  std::vector<Window> windows_;  // by body
+  bool any_short_ = false;       // of bodies whose bounds are cancelled again and again
+  Round round_ = 0, rebuilt_round_ = 0;
+  Step planned_ = 1;
+  bool statics_end_ = false;
+  Step voted_ = kNeverStep;
+  std::size_t votes_ = 0;
+  Step last_from_ = -1, last_end_ = 1;  // what was asked last is mostly asked again
+  double last_expiry_ = 0;
+};
+
+}  // namespace orchard::runtime::detail
