@@ -88,6 +88,7 @@ Body& Detector::State::take_in(BodyId id, std::span<const BodyPart> parts, const
   body.importance = with.importance;
   body.suggest = with.suggest && options.watch;
   body.continuous_speed = with.continuous_speed;
+  any_continuous = any_continuous || with.continuous_speed > 0;
   body.min_reach = with.reach;
   for (const BodyPart& part : parts) {
     PartRecord& taken = body.parts.emplace_back();

@@ -74,7 +74,9 @@ struct Detector::State {
 
   Step answered = -1;  // up to which steps have been answered
   std::size_t count = 0;
-  bool failed = false;  // out of memory
+  bool failed = false;          // out of memory
+  bool any_continuous = false;  // bodies, ever
+  bool interrupted = false;     // the broad phase, at the step before
   // For foresee(), smoothed: of what the timing wheel has as meeting, the share that overlaps; of the pairs that
   // overlap, the share that does no more at the next step; what a pair costs.
   double share_of_meetings = 0.5, share_that_part = 0.1, work_per_pair = 200;

@@ -112,7 +112,8 @@ std::size_t Detector::foresee(std::span<StepLoad> loads) const noexcept {
 void Detector::State::run(double time, const FrameBudget& given, Frame& frame) {
   events.clear(), refused.clear(), broken.clear();
   queries.prepare(shapes, shape_count,
-                  options.executor.run == nullptr ? 1 : std::max<std::size_t>(1, options.executor.concurrency) * 4);
+                  options.executor.run == nullptr ? 1 : std::max<std::size_t>(1, options.executor.concurrency) * 4,
+                  any_continuous);
   StepBudget budget(given);
   const double steps = std::floor((time - clock.start) / clock.time_step + detail::kStepSlack);
   const Step end = static_cast<Step>(std::max(-1.0, steps));
@@ -169,6 +170,7 @@ void Detector::State::run_to(Step last, Step end, StepBudget& budget, Frame& fra
     const bool found = !now.pairs.empty() || now.incomplete_from != kNoClass;
     const Step step = found ? std::llround((now.time - clock.start) / clock.time_step) : stop;
     if (found || under_way || halves.next() <= step) answer(step, now, share, frame);
+    interrupted = now.incomplete_from != kNoClass;
     budget.spend(share.spent());
     frame.cut = share.cut();
     answered = step;
@@ -237,7 +239,7 @@ void Detector::State::answer(Step step, const Advance& now, StepBudget& budget, 
   } else {
     budget.spend(rounds.answer_all(records, open, step));
   }
-  rounds.sweep_all(records, open, budget);
+  rounds.sweep_all(records, open, step, budget);
   learn(budget.spent() - before);
   report(step, frame);
   ++frame.steps;

@@ -18,13 +18,13 @@ void Places::place(BodyIndex body, std::uint32_t part, PlacedPart& placed_part) 
   placed_part.shape = nullptr;
 }
 
-void Places::place_before(BodyIndex body, std::uint32_t part, PlacedPart& placed_part) const noexcept {
+void Places::place_before(BodyIndex body, std::uint32_t part, Step now, PlacedPart& placed_part) const noexcept {
   if (is_half_space(body)) {
     placed_part.shape = nullptr;
     return;
   }
   const Body& of = (*bodies_)[body];
-  const bool moves = !of.is_static && !of.frozen;
+  const bool moves = !of.is_static && of.asked == now;  // one that falls asleep has come here first
   const Pose& pose = moves ? bodies_->before(body) : bodies_->state(body).pose;
   place_at(pose, is_rigid(pose), of.parts[part], placed_part);
 }

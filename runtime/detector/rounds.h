@@ -17,7 +17,7 @@ class Rounds {
   // As far as the budget goes. What is not answered has the answer maybe and is not Record::answered.
   void answer_within(RecordTable& records, std::span<const std::uint32_t> open, Step now, StepBudget& budget);
   // What happened between the step before and this one, for the records that can be swept.
-  void sweep_all(RecordTable& records, std::span<const std::uint32_t> open, StepBudget& budget);
+  void sweep_all(RecordTable& records, std::span<const std::uint32_t> open, Step now, StepBudget& budget);
   std::size_t memory_bytes() const noexcept { return bytes_of(tasks_) + bytes_of(order_) + bytes_of(sweeps_); }
 
   void use(const Executor& executor) noexcept { executor_ = &executor; }
@@ -37,7 +37,7 @@ class Rounds {
   void place(const Record& record, std::uint32_t part_a, std::uint32_t part_b, PlacedPair& pair) const noexcept;
   void answer_coherently(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept;
   void answer(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept;
-  void sweep_one(Record& record, QueryPool::Scratch& scratch, std::uint64_t most) const noexcept;
+  void sweep_one(Record& record, Step now, QueryPool::Scratch& scratch, std::uint64_t most) const noexcept;
   void make_tasks(const RecordTable& records, std::span<const std::uint32_t> open);
   void begin_tasks(StepBudget& budget, RecordTable& records);
   void order_open(std::size_t begin, std::size_t end, std::uint32_t min_waited, const RecordTable& records);

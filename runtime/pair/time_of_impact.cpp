@@ -89,9 +89,9 @@ class Search {
   void compare_leaves(const Scratch::TimedPair& top, Critical& critical) noexcept;
   double without_turning() const noexcept;
   void report(const Critical& critical) noexcept;
-  void find_contact() noexcept;
+  void find_contact(PairAccess::BudgetTracker& tracker) noexcept;
   bool advance(PairAccess::BudgetTracker& tracker) noexcept;
-  bool touching(double time) noexcept;
+  bool touching(PairAccess::BudgetTracker& tracker, double time) noexcept;
   const TreeView& first() const noexcept { return PairAccess::first(narrow_).tree; }
   const TreeView& second() const noexcept { return PairAccess::second(narrow_).tree; }
 
@@ -117,13 +117,8 @@ bool Search::prepare() noexcept {
   Scratch* const scratch = workspace_.scratch();
   narrow_.bind(pair_.a(), pair_.b());
   const TreeView &a = pair_.a().tree, &b = pair_.b().tree;
-  if (scratch == nullptr || a.ball_slabs.empty() || b.ball_slabs.empty()) return false;
-  const std::size_t deepest = std::size_t{kBlockWidth} * (a.triangle_tree_depth + b.triangle_tree_depth + 1) + 1;
-  if (deepest > scratch->timed_room) {
-    scratch->timed.reset(new (std::nothrow) Scratch::TimedPair[deepest]);
-    scratch->timed_room = scratch->timed ? deepest : 0;
-  }
-  return scratch->timed != nullptr;
+  return scratch != nullptr && !a.ball_slabs.empty() && !b.ball_slabs.empty() &&
+         scratch->reserve_timed(pair_.a(), pair_.b());
 }
 
 // False where nothing can be said.
@@ -303,29 +298,34 @@ void Search::report(const Critical& critical) noexcept {
   std::swap(result_.triangle_a, result_.triangle_b);
 }
 
-bool Search::touching(double time) noexcept {
-  return closer_than(workspace_, pair_, a_.at(time), b_.at(time), options_.margin) == Answer::yes;
+// False where the budget ends it.
+bool Search::touching(PairAccess::BudgetTracker& tracker, double time) noexcept {
+  if (tracker.exhausted()) return false;
+  const std::uint64_t left = options_.budget.pair_tests - tracker.spent();
+  const Answer answer = closer_within(workspace_, pair_, {a_.at(time), b_.at(time)}, options_.margin, {left});
+  tracker.spend(options_.margin > 0 ? workspace_.distance.work() : workspace_.narrow.work());
+  return answer == Answer::yes;
 }
 
 // From a time at which they nearly touch: when they do, if they do soon.
-void Search::find_contact() noexcept {
+void Search::find_contact(PairAccess::BudgetTracker& tracker) noexcept {
   const double begin = result_.t0, end = options_.end;
   double step = 0, miss = begin;
   for (int i = 0; i < kProbes; ++i) {
     const double time = std::min(end, begin + step);
-    if (touching(time)) {
+    if (touching(tracker, time)) {
       result_.t1 = time;
       break;
     }
-    if (time >= end || step > (end - options_.begin) / 16) return;
+    if (tracker.exhausted() || time >= end || step > (end - options_.begin) / 16) return;
     miss = time;
     step = step > 0 ? 2 * step : soon_ / 4;
   }
   if (!(result_.t1 <= end)) return;
   result_.answer = Answer::yes;
-  for (int i = 0; i < kHalvings && result_.t1 - miss > 1e-15 * std::fabs(end); ++i) {
+  for (int i = 0; i < kHalvings && result_.t1 - miss > 1e-15 * std::fabs(end) && !tracker.exhausted(); ++i) {
     const double middle = miss + (result_.t1 - miss) / 2;
-    (touching(middle) ? result_.t1 : miss) = middle;
+    (touching(tracker, middle) ? result_.t1 : miss) = middle;
   }
 }
 
@@ -385,8 +385,8 @@ Impact Search::run() noexcept {
   while (!result_.finished && !tracker.exhausted() && advance(tracker)) {
   }
   if (near_ > 0 && result_.answer == Answer::maybe) {
-    result_.finished = true;
-    find_contact();
+    find_contact(tracker);
+    result_.finished = result_.answer == Answer::yes || !tracker.exhausted();
   }
   result_.work = tracker.spent();
   return result_;
