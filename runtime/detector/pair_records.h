@@ -13,7 +13,8 @@ struct Record {
   std::uint32_t deformed = 0;                                      // and changes of their shapes
   bool coherent = false;  // one tree each: `trees` knows what the last answer was
   TreePair trees;
-  Vec3 apart_by{};  // from centre to centre, at the step before
+  Vec3 apart_by{};     // from centre to centre,
+  Step apart_at = -1;  // at that step
   bool allowed = false;
   bool touching = false;
   bool apart = false;   // the broad phase says no at this step

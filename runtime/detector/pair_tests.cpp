@@ -18,6 +18,20 @@ void Places::place(BodyIndex body, std::uint32_t part, PlacedPart& placed_part) 
   placed_part.shape = nullptr;
 }
 
+void Places::place_sphere(BodyIndex body, std::uint32_t part, PlacedPart& placed_part) const noexcept {
+  if (is_half_space(body)) {
+    placed_part.shape = nullptr;
+    return;
+  }
+  const Body& of = (*bodies_)[body];
+  const PartRecord& record = of.parts[part];
+  const Pose& pose = bodies_->state(body).pose;
+  placed_part.shape = &(*shapes_)[record.shape];
+  placed_part.rigid = of.rigid;
+  placed_part.center = transform(pose, record.center);
+  placed_part.reach = record.reach * pose.scale;
+}
+
 void Places::place_before(BodyIndex body, std::uint32_t part, Step now, PlacedPart& placed_part) const noexcept {
   if (is_half_space(body)) {
     placed_part.shape = nullptr;

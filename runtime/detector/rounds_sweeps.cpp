@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <limits>
 
 #include "rounds.h"
@@ -44,6 +45,10 @@ void Rounds::sweep_one(Record& record, Step now, QueryPool::Scratch& scratch, st
   } else {
     leave_open(record);
   }
+}
+
+bool Rounds::sweeps(const RecordTable& records, std::span<const std::uint32_t> open) noexcept {
+  return std::any_of(open.begin(), open.end(), [&](std::uint32_t index) { return records[index].swept; });
 }
 
 void Rounds::sweep_all(RecordTable& records, std::span<const std::uint32_t> open, Step now, StepBudget& budget) {

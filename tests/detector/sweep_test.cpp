@@ -303,6 +303,32 @@ TEST(Sweeps, TellNothingWrongWithinABudget) {
   }
 }
 
+// Where the budget has not sufficed to ask who is where, nothing that flies on is said to have met nobody.
+TEST(Sweeps, AreNotSilentAboutWhatAnInterruptedStepHasNotSeen) {
+  const PackedSphereTree wall = test::build_tree(test::box({-5, -5, -0.001}, {5, 5, 0.001}));
+  std::vector<BodyState> states(101);
+  for (BodyState& state : states) state.expiry = 0;
+  Detector detector(states_of(states), {.time_step = kStep});
+  const BodyId id = detector.add_static({{detector.add_shape(wall), {}}}, {});
+  const ShapeId ball = detector.add_sphere(0.01);
+  for (int i = 0; i < 100; ++i) detector.add_body({{ball, {}}}, {.continuous_speed = 110});
+  for (int step = 0; step < 3; ++step) {
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      states[i].pose.translation = {0.08 * double(i) - 4, 0, step < 2 ? 1.0 : -1.0};
+    }
+    const Frame frame = detector.step(step * kStep, {.work = step < 2 ? 1 : FrameBudget{}.work});
+    if (step < 2) {
+      EXPECT_NE(frame.incomplete_from, kNoClass);
+      continue;
+    }
+    std::size_t told = 0;
+    for (const PairEvent& event : frame.events) {
+      told += (event.a == id || event.b == id) && event.verdict.answer != Answer::no;
+    }
+    EXPECT_EQ(told, 100u);
+  }
+}
+
 // The step on which a body is put to sleep leads somewhere, too; and it does not move after that.
 TEST(Sweeps, SeeTheLastStepBeforeSleep) {
   const PackedSphereTree wall = test::build_tree(test::box({-5, -5, -0.001}, {5, 5, 0.001}));
