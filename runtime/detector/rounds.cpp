@@ -30,14 +30,14 @@ void take_in(Record& record, const Verdict& verdict, std::uint32_t part_a, std::
   record.verdict.work = work;
 }
 
-void Rounds::place(const Record& record, std::uint32_t part_a, std::uint32_t part_b, PlacedPair& pair) const noexcept {
+void Rounds::place(const Record& record, std::uint32_t part_a, std::uint32_t part_b, PartPair& pair) const noexcept {
   places_->place(record.pair.a, part_a, pair.a);
   places_->place(record.pair.b, part_b, pair.b);
   if (pair.b.shape == nullptr) pair.half = places_->half_space(record.pair.b);
 }
 
 // Unless they pass each other so fast that looking for what lasts would not pay.
-bool Rounds::is_slow(Record& record, const PlacedPair& pair, Step now) noexcept {
+bool Rounds::is_slow(Record& record, const PartPair& pair, Step now) noexcept {
   const Vec3 way = pair.b.center - pair.a.center, change = way - record.apart_by;
   const double slow =
       kSlow * std::min(pair.a.reach, pair.b.reach) * static_cast<double>(std::max<Step>(1, now - record.apart_at));
@@ -49,7 +49,7 @@ bool Rounds::is_slow(Record& record, const PlacedPair& pair, Step now) noexcept 
 // Two bodies of one tree each, as most are: what the last step found is where this one begins.
 void Rounds::answer_coherently(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept {
   forget_answer(record);
-  PlacedPair pair;
+  PartPair pair;
   place(record, 0, 0, pair);
   const std::uint64_t before = scratch.work++;
   const bool slow = is_slow(record, pair, now);
@@ -73,7 +73,7 @@ void Rounds::answer_coherently(Record& record, Step now, QueryPool::Scratch& scr
 void Rounds::answer(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept {
   if (record.coherent) return answer_coherently(record, now, scratch);
   forget_answer(record);
-  PlacedPair pair;
+  PartPair pair;
   const std::uint32_t parts_a = places_->parts(record.pair.a), parts_b = places_->parts(record.pair.b);
   if (pair.b.shape == nullptr && is_half_space(record.pair.b)) pair.half = places_->half_space(record.pair.b);
   const std::uint64_t before = scratch.work;

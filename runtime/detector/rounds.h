@@ -42,8 +42,8 @@ class Rounds {
     std::uint64_t work = 0;  // of the last piece
     Verdict verdict;
   };
-  static bool is_slow(Record& record, const PlacedPair& pair, Step now) noexcept;
-  void place(const Record& record, std::uint32_t part_a, std::uint32_t part_b, PlacedPair& pair) const noexcept;
+  static bool is_slow(Record& record, const PartPair& pair, Step now) noexcept;
+  void place(const Record& record, std::uint32_t part_a, std::uint32_t part_b, PartPair& pair) const noexcept;
   void answer_coherently(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept;
   void answer(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept;
   void sweep_one(Record& record, Step now, QueryPool::Scratch& scratch, std::uint64_t most) const noexcept;

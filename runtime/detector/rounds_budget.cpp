@@ -37,7 +37,7 @@ void Rounds::make_tasks(RecordTable& records, std::span<const std::uint32_t> ope
     Record& record = records[index];
     forget_answer(record);
     const std::uint32_t parts_a = places_->parts(record.pair.a), parts_b = places_->parts(record.pair.b);
-    PlacedPair pair;
+    PartPair pair;
     if (is_half_space(record.pair.b)) pair.half = places_->half_space(record.pair.b);
     for (std::uint32_t i = 0; i < parts_a; ++i) {
       places_->place_sphere(record.pair.a, i, pair.a);
@@ -66,7 +66,7 @@ void Rounds::sort_tasks(const RecordTable& records) {
 
 // What can be told without a search.
 void Rounds::begin_one(Task& task, Record& record, QueryPool::Scratch& scratch) const noexcept {
-  PlacedPair pair;
+  PartPair pair;
   place(record, task.part_a, task.part_b, pair);
   NarrowPhase& narrow = scratch.workspace.narrow;
   const double bound = task.verdict.separation_bound;
@@ -92,7 +92,7 @@ void Rounds::begin_one(Task& task, Record& record, QueryPool::Scratch& scratch) 
 }
 
 void Rounds::decide(Task& task, Record& record, std::uint64_t most, QueryPool::Scratch& scratch) const noexcept {
-  PlacedPair pair;
+  PartPair pair;
   place(record, task.part_a, task.part_b, pair);
   const double bound = task.verdict.separation_bound;
   NarrowPhase& narrow = scratch.workspace.narrow;
@@ -185,7 +185,7 @@ void Rounds::refine_class(std::size_t begin, std::size_t end, StepBudget& budget
 
 void Rounds::refine_one(Task& task, const Record& record, std::uint64_t slice,
                         std::chrono::nanoseconds time) const noexcept {
-  PlacedPair pair;
+  PartPair pair;
   place(record, task.part_a, task.part_b, pair);
   NarrowPhase& query = *task.query;
   if (!task.started) {

@@ -16,7 +16,7 @@ void leave_open(Record& record) noexcept {
 }  // namespace
 
 void Rounds::sweep_one(Record& record, Step now, QueryPool::Scratch& scratch, std::uint64_t most) const noexcept {
-  PlacedPair from, to;
+  PartPair from, to;
   const bool half = is_half_space(record.pair.b);
   if (half) from.half = to.half = places_->half_space(record.pair.b);
   Swept first;

@@ -37,7 +37,7 @@ Travel travel_of(const PlacedPart& from, const PlacedPart& to) noexcept {
 // Two shapes that have, or are around, trees.
 class PairSweep {
  public:
-  PairSweep(Workspace& workspace, const PlacedPair& from, const PlacedPair& to, std::uint64_t most,
+  PairSweep(Workspace& workspace, const PartPair& from, const PartPair& to, std::uint64_t most,
             std::uint64_t& work) noexcept
       : workspace_(workspace),
         from_(from),
@@ -87,7 +87,7 @@ class PairSweep {
   }
 
   void touch(const Impact& impact) noexcept {
-    PlacedPair now = from_;
+    PartPair now = from_;
     now.a.pose = a_.at(impact.t1), now.b.pose = b_.at(impact.t1);
     result_.answer = Answer::yes;
     result_.to = impact.t1;
@@ -106,7 +106,7 @@ class PairSweep {
   }
 
   Workspace& workspace_;
-  const PlacedPair& from_;
+  const PartPair& from_;
   std::uint64_t most_;
   std::uint64_t& work_;
   Travel a_, b_;
@@ -115,7 +115,7 @@ class PairSweep {
 };
 
 // The height over the plane shrinks no faster than the centre sinks, and what turns about it.
-Swept sweep_to_half_space(Workspace& workspace, const PlacedPair& from, const PlacedPair& to, std::uint64_t most,
+Swept sweep_to_half_space(Workspace& workspace, const PartPair& from, const PartPair& to, std::uint64_t most,
                           std::uint64_t& work) noexcept {
   Swept result;
   const Travel travel = travel_of(from.a, to.a);
@@ -126,7 +126,7 @@ Swept sweep_to_half_space(Workspace& workspace, const PlacedPair& from, const Pl
                           ? 0
                           : length(cross(Vec3(travel.spin), normal)) * from.a.reach;
   const double sinking = turn - dot(Vec3(travel.velocity), normal) + kRounding * speed;
-  PlacedPair now = from;
+  PartPair now = from;
   double time = 0;
   bool certain = true;
   for (int step = 0; step < kMaxSteps && work < most; ++step) {
@@ -160,7 +160,7 @@ Swept sweep_to_half_space(Workspace& workspace, const PlacedPair& from, const Pl
 
 }  // namespace
 
-Swept sweep(Workspace& workspace, const PlacedPair& from, const PlacedPair& to, std::uint64_t most,
+Swept sweep(Workspace& workspace, const PartPair& from, const PartPair& to, std::uint64_t most,
             std::uint64_t& work) noexcept {
   const bool half = from.b.shape == nullptr;
   if (!can_travel(from.a, to.a) || (!half && !can_travel(from.b, to.b))) {

@@ -14,7 +14,7 @@ struct Swept {
 // centre of the part's sphere: by time_of_impact(), a round shape being a segment with its radius as margin; towards a
 // half-space by advancing along its normal. Ends once `work`, which it increases, has reached `most`, less than
 // kMaxOvershoot beyond; what is not known by then is maybe, as are poses that are not rigid, or of two scales.
-Swept sweep(Workspace& workspace, const PlacedPair& from, const PlacedPair& to, std::uint64_t most,
+Swept sweep(Workspace& workspace, const PartPair& from, const PartPair& to, std::uint64_t most,
             std::uint64_t& work) noexcept;
 
 }  // namespace orchard::runtime::detail
