@@ -15,13 +15,17 @@ using detail::StepBudget;
 
 namespace {
 
-constexpr double kSmoothing = 0.1;               // of what foresee() goes by
-constexpr double kSlower = 0.5, kFaster = 0.05;  // of times: what takes longer than foreseen is believed at once
+constexpr double kSmoothing = 0.1;              // of what foresee() goes by
+constexpr double kSlower = 0.5, kFaster = 0.1;  // of times: what takes longer than foreseen is believed sooner
+// No time is believed to have more than doubled, or grown by so much: else one step that the machine interrupts, for
+// milliseconds, would rule many that follow.
+constexpr double kMaxGrowthOfPair = 20, kMaxGrowthOfBroad = 5000;  // ns
 
 double nanoseconds(std::chrono::nanoseconds time) noexcept { return static_cast<double>(time.count()); }
 
-void learn_time(double& mean, double value) noexcept {
-  mean += (value > mean ? kSlower : kFaster) * (std::max(0.0, value) - mean);
+void learn_time(double& mean, double value, double max_growth) noexcept {
+  const double believed = std::clamp(value, 0.0, std::max(2 * mean, mean + max_growth));
+  mean += (believed > mean ? kSlower : kFaster) * (believed - mean);
 }
 
 }  // namespace
@@ -169,7 +173,7 @@ void Detector::State::run_to(Step last, Step end, StepBudget& budget, Frame& fra
       const StepBudget::Stopwatch watch(share.timed());
       now = broad.advance(time, work);
       if (share.timed() && now.incomplete_from != kNoClass)
-        learn_time(broad_excess, watch.passed() - nanoseconds(work.time));
+        learn_time(broad_excess, watch.passed() - nanoseconds(work.time), kMaxGrowthOfBroad);
       if (now.incomplete_from != kNoClass) share.cut_broad(now.work);
     }
     const std::uint64_t asked = (broad.motions_asked() - before) * kMotionWork;
@@ -278,8 +282,8 @@ void Detector::State::answer_within(Step step, const StepBudget::Stopwatch& watc
   report(step, frame);
   if (!budget.timed()) return;
   budget.give_back(report_time);
-  learn_time(before_pair, begun / known);
-  learn_time(after_pair, (folded + rest.passed() - swept) / known);
+  learn_time(before_pair, begun / known, kMaxGrowthOfPair);
+  learn_time(after_pair, (folded + rest.passed() - swept) / known, kMaxGrowthOfPair);
 }
 
 }  // namespace orchard::runtime

@@ -17,7 +17,7 @@ TEST(Threads, GiveTheSameFramesWhateverTheirNumber) {
   for (const test::Scene& scene : test::every_scene(more ? 60 : 24, more ? 200 : 12, 1 + orchard::test::first_seed())) {
     for (const std::uint64_t work : {FrameBudget{}.work, std::uint64_t{5000}}) {
       std::vector<double> serial;
-      for (const std::size_t threads : {0, 1, 2, 3}) {
+      for (const std::size_t threads : {0u, 1u, 2u, 3u}) {
         test::ThreadPool pool(std::max<std::size_t>(threads, 1));
         DetectorOptions options;
         if (threads > 0) options.executor = pool.executor();
