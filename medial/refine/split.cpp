@@ -68,7 +68,7 @@ class Splitter {
  private:
   // Where the ends are of different sheets, the exact ball may be next to one of them; dividing there leads nowhere.
   ExactBall middle(BallSolver& solver, const ExactBall& a, const ExactBall& b) const {
-    const ExactBall exact = solver.between(a, b, 0.5);
+    ExactBall exact = solver.between(a, b, 0.5);
     const Point straight = 0.5 * (a.center + b.center);
     const double apart = (a.center - b.center).norm();
     if ((exact.center - straight).norm() <= kMaxAside * apart || !surface_.inside(straight)) return exact;

@@ -119,7 +119,7 @@ function(orchard_add_module name)
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE $<BUILD_INTERFACE:orchard_flags> ${ARG_PRIVATE})
   if(name MATCHES "^(runtime|broad_phase_methods)$")  # file by file, so that a game links no more than it uses
     orchard_precompile_once(${target} runtime PIC HEADERS ${ORCHARD_STANDARD_HEADERS})
-    if(ORCHARD_SANITIZE AND name STREQUAL "runtime")  # where nobody links it but its tests
+    if((ORCHARD_SANITIZE OR ORCHARD_SANITIZE_THREADS) AND name STREQUAL "runtime")  # where nobody links it but its tests
       orchard_unite(${target} APART ${ARG_APART})
     endif()
   else()

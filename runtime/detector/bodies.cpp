@@ -88,6 +88,16 @@ Motion BodyTable::motion_of(BodyIndex index, double time_step) const noexcept {
   return motion;
 }
 
+bool BodyTable::surely_apart(const BodyPair& pair, double time_step) const noexcept {
+  const Body &a = bodies_[pair.a], &b = bodies_[pair.b];
+  const Pose &at_a = states_[pair.a].pose, &at_b = states_[pair.b].pose;
+  const double reach =
+      a.reach * at_a.scale + b.reach * at_b.scale + (a.continuous_speed + b.continuous_speed) * time_step;
+  const Vec3 way = Vec3(at_b.translation) - Vec3(at_a.translation);
+  const double square = dot(way, way);
+  return a.rigid && b.rigid && std::isfinite(square) && square > reach * reach;
+}
+
 std::size_t BodyTable::memory_bytes() const noexcept {
   std::size_t bytes =
       bytes_of(bodies_) + bytes_of(states_) + bytes_of(before_) + bytes_of(asking_) + bytes_of(answers_);

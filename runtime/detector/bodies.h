@@ -68,6 +68,8 @@ class BodyTable {
   std::span<const BodyIndex> ask(Step step, double time, std::span<const BodyIndex> bodies);
   // As the broad phase wants it. Not valid if the state is not.
   Motion motion_of(BodyIndex body, double time_step) const noexcept;
+  // Whether the spheres of motion_of() do not touch, where both states are known.
+  bool surely_apart(const BodyPair& pair, double time_step) const noexcept;
   std::size_t memory_bytes() const noexcept;
 
  private:

@@ -88,6 +88,7 @@ Body& Detector::State::take_in(BodyId id, std::span<const BodyPart> parts, const
   body.importance = with.importance;
   body.suggest = with.suggest && options.watch;
   body.continuous_speed = with.continuous_speed;
+  any_continuous = any_continuous || with.continuous_speed > 0;
   body.min_reach = with.reach;
   for (const BodyPart& part : parts) {
     PartRecord& taken = body.parts.emplace_back();
@@ -308,8 +309,8 @@ std::size_t Detector::memory_bytes() const noexcept {
   return sizeof(State) + s.shapes.memory_bytes() + s.bodies.memory_bytes() + s.halves.memory_bytes() +
          s.broad.memory_bytes() + s.monitor.memory_bytes() + s.records.memory_bytes() + s.queries.memory_bytes() +
          s.rounds.memory_bytes() +
-         bytes(s.due, s.involved, s.everyone, s.refused, s.broken, s.plane_pairs, s.pairs, s.kept_pairs, s.open,
-               s.events);
+         bytes(s.due, s.involved, s.everyone, s.refused, s.broken, s.plane_pairs, s.pairs, s.kept_pairs, s.body_pairs,
+               s.open, s.events);
 }
 
 }  // namespace orchard::runtime

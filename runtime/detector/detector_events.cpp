@@ -84,9 +84,12 @@ void Detector::State::open_records(Step step) {
     const bool continuous = a.continuous_speed > 0 || b.continuous_speed > 0;
     const std::uint32_t jumps = a.jumps + b.jumps;
     const auto known_before = [&](const Body& body) {
-      return body.is_static || body.frozen || body.known_before == step - 1;
+      return body.is_static || (body.frozen && body.asked < step) || body.known_before == step - 1;
     };
     record.swept = continuous && record.jumps == jumps && known_before(a) && known_before(b);
+    // As spheres reach as far as a step leads, who was not asked for at the step before had nothing near then: unless
+    // the broad phase could not tell.
+    record.unseen = continuous && record.jumps == jumps && !record.swept && interrupted;
     if (record.jumps != jumps && record.touching) {
       record.verdict = Verdict{};
       record.verdict.separation_bound = std::numeric_limits<double>::infinity();

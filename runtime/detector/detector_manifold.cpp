@@ -3,7 +3,7 @@
 namespace orchard::runtime {
 
 using detail::is_half_space;
-using detail::PlacedPair;
+using detail::PartPair;
 
 // The places of the last step are still known.
 Manifold Detector::State::manifold(const PairEvent& event, const ContactOptions& with) noexcept {
@@ -12,7 +12,7 @@ Manifold Detector::State::manifold(const PairEvent& event, const ContactOptions&
     return result;
   }
   if (event.part_a >= places.parts(event.a.index) || event.part_b >= places.parts(event.b.index)) return result;
-  PlacedPair pair;
+  PartPair pair;
   places.place(event.a.index, event.part_a, pair.a);
   places.place(event.b.index, event.part_b, pair.b);
   const bool half = is_half_space(event.b.index);

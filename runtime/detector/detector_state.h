@@ -43,6 +43,8 @@ struct Detector::State {
   void watch(Step step);
   bool keeps_more(const detail::Body& body, Step step, const Motion& motion) const noexcept;
   void answer(Step step, const Advance& now, detail::StepBudget& budget, Frame& frame);
+  void answer_within(Step step, const detail::StepBudget::Stopwatch& watch, detail::StepBudget& budget, Frame& frame);
+  std::chrono::nanoseconds time_for_broad(const detail::StepBudget& budget) const noexcept;
   void gather(Step step, const Advance& now);
   void match(Step step, Frame& frame);
   void open_records(Step step);
@@ -74,16 +76,21 @@ struct Detector::State {
 
   Step answered = -1;  // up to which steps have been answered
   std::size_t count = 0;
-  bool failed = false;  // out of memory
+  bool failed = false;          // out of memory
+  bool any_continuous = false;  // bodies, ever
+  bool interrupted = false;     // the broad phase, at the step before
   // For foresee(), smoothed: of what the timing wheel has as meeting, the share that overlaps; of the pairs that
   // overlap, the share that does no more at the next step; what a pair costs.
   double share_of_meetings = 0.5, share_that_part = 0.1, work_per_pair = 200;
+  // Where budgets are in time: what a step does in any case, in ns for each pair, before and after choosing whom to
+  // answer; and by how much the broad phase exceeds its part.
+  double before_pair = 200, after_pair = 100, broad_excess = 0;
   double meetings = 0;  // that the timing wheel had for the step under way
   std::size_t known_pairs = 0, fresh_pairs = 0, parted_pairs = 0;
 
   // Of the step under way; kept for their memory.
   std::vector<BodyIndex> due, involved, everyone, refused, broken;
-  std::vector<BodyPair> plane_pairs, pairs, kept_pairs;
+  std::vector<BodyPair> plane_pairs, pairs, kept_pairs, body_pairs;
   std::vector<std::uint32_t> open;
   std::vector<PairEvent> events;
 };

@@ -15,7 +15,18 @@ using detail::StepBudget;
 
 namespace {
 
-constexpr double kSmoothing = 0.1;  // of what foresee() goes by
+constexpr double kSmoothing = 0.1;              // of what foresee() goes by
+constexpr double kSlower = 0.5, kFaster = 0.1;  // of times: what takes longer than foreseen is believed sooner
+// No time is believed to have more than doubled, or grown by so much: else one step that the machine interrupts, for
+// milliseconds, would rule many that follow.
+constexpr double kMaxGrowthOfPair = 20, kMaxGrowthOfBroad = 5000;  // ns
+
+double nanoseconds(std::chrono::nanoseconds time) noexcept { return static_cast<double>(time.count()); }
+
+void learn_time(double& mean, double value, double max_growth) noexcept {
+  const double believed = std::clamp(value, 0.0, std::max(2 * mean, mean + max_growth));
+  mean += (believed > mean ? kSlower : kFaster) * (believed - mean);
+}
 
 }  // namespace
 
@@ -112,7 +123,8 @@ std::size_t Detector::foresee(std::span<StepLoad> loads) const noexcept {
 void Detector::State::run(double time, const FrameBudget& given, Frame& frame) {
   events.clear(), refused.clear(), broken.clear();
   queries.prepare(shapes, shape_count,
-                  options.executor.run == nullptr ? 1 : std::max<std::size_t>(1, options.executor.concurrency) * 4);
+                  options.executor.run == nullptr ? 1 : std::max<std::size_t>(1, options.executor.concurrency) * 4,
+                  any_continuous);
   StepBudget budget(given);
   const double steps = std::floor((time - clock.start) / clock.time_step + detail::kStepSlack);
   const Step end = static_cast<Step>(std::max(-1.0, steps));
@@ -156,9 +168,12 @@ void Detector::State::run_to(Step last, Step end, StepBudget& budget, Frame& fra
     } else {
       WorkBudget work;
       if (budget.limited_in_work()) work.work = std::max<std::uint64_t>(1, share.left() / (2 * kMotionWork));
-      work.time = share.time_left() / 2;
+      if (share.timed()) work.time = time_for_broad(share);
       if (share.replay() != nullptr) work.replay = share.replay()->broad;
+      const StepBudget::Stopwatch watch(share.timed());
       now = broad.advance(time, work);
+      if (share.timed() && now.incomplete_from != kNoClass)
+        learn_time(broad_excess, watch.passed() - nanoseconds(work.time), kMaxGrowthOfBroad);
       if (now.incomplete_from != kNoClass) share.cut_broad(now.work);
     }
     const std::uint64_t asked = (broad.motions_asked() - before) * kMotionWork;
@@ -169,16 +184,24 @@ void Detector::State::run_to(Step last, Step end, StepBudget& budget, Frame& fra
     const bool found = !now.pairs.empty() || now.incomplete_from != kNoClass;
     const Step step = found ? std::llround((now.time - clock.start) / clock.time_step) : stop;
     if (found || under_way || halves.next() <= step) answer(step, now, share, frame);
+    interrupted = now.incomplete_from != kNoClass;
     budget.spend(share.spent());
     frame.cut = share.cut();
     answered = step;
   }
 }
 
+// Half of what is left for choosing: not of what each step does in any case, for every pair and to end the broad phase.
+std::chrono::nanoseconds Detector::State::time_for_broad(const StepBudget& budget) const noexcept {
+  const double in_any_case = (before_pair + after_pair) * static_cast<double>(records.known().size());
+  const double time = (nanoseconds(budget.time_left()) - in_any_case) / 2 - broad_excess;
+  return std::chrono::nanoseconds(static_cast<std::int64_t>(std::max(0.0, time)));
+}
+
 // The pairs of the step, in ascending order: the broad phase's, those with half-spaces, and those known before that an
 // interrupted broad phase may have left out.
 void Detector::State::gather(Step step, const Advance& now) {
-  plane_pairs.clear(), pairs.clear(), kept_pairs.clear();
+  plane_pairs.clear(), pairs.clear(), kept_pairs.clear(), body_pairs.clear();
   due.clear();
   halves.due(step, due);
   if (!due.empty()) {
@@ -186,26 +209,21 @@ void Detector::State::gather(Step step, const Advance& now) {
     halves.update_windows(step, clock, due, bodies, clock.time_step, options.position_slack, plane_pairs);
   }
   if (now.incomplete_from != kNoClass) {
+    auto reported = now.pairs.begin();
     for (const auto& known : records.known()) {
       if (is_half_space(known.pair.b)) continue;
+      while (reported != now.pairs.end() && *reported < known.pair) ++reported;
+      if (reported != now.pairs.end() && *reported == known.pair) continue;
       const Record& record = records[known.record];
-      if (!contains(record.a) || !contains(record.b)) continue;
-      if (std::binary_search(now.pairs.begin(), now.pairs.end(), known.pair)) continue;
-      kept_pairs.push_back(known.pair);
+      if (contains(record.a) && contains(record.b)) kept_pairs.push_back(known.pair);
     }
     involved.clear();
     for (const BodyPair& pair : kept_pairs) involved.push_back(pair.a), involved.push_back(pair.b);
     bodies.ask(step, clock.time(step), involved);
-    std::erase_if(kept_pairs, [&](const BodyPair& pair) {
-      const Motion a = bodies.motion_of(pair.a, clock.time_step), b = bodies.motion_of(pair.b, clock.time_step);
-      return is_valid(a) && is_valid(b) && !spheres_touch(a, b);
-    });
+    std::erase_if(kept_pairs, [&](const BodyPair& pair) { return bodies.surely_apart(pair, clock.time_step); });
   }
-  std::merge(now.pairs.begin(), now.pairs.end(), plane_pairs.begin(), plane_pairs.end(), std::back_inserter(pairs));
-  if (!kept_pairs.empty()) {
-    pairs.insert(pairs.end(), kept_pairs.begin(), kept_pairs.end());
-    std::sort(pairs.begin(), pairs.end());
-  }
+  std::merge(now.pairs.begin(), now.pairs.end(), kept_pairs.begin(), kept_pairs.end(), std::back_inserter(body_pairs));
+  std::merge(body_pairs.begin(), body_pairs.end(), plane_pairs.begin(), plane_pairs.end(), std::back_inserter(pairs));
   involved.clear();
   for (const BodyPair& pair : pairs) {
     involved.push_back(pair.a);
@@ -227,20 +245,45 @@ void Detector::State::learn(std::uint64_t work) noexcept {
 }
 
 void Detector::State::answer(Step step, const Advance& now, StepBudget& budget, Frame& frame) {
+  const StepBudget::Stopwatch watch(budget.timed());
   gather(step, now);
   match(step, frame);
   open_records(step);
   rounds.use(options.executor);
   const std::uint64_t before = budget.spent();
-  if (budget.limited()) {
-    rounds.answer_within(records, open, step, budget);
-  } else {
+  if (!budget.limited()) {
     budget.spend(rounds.answer_all(records, open, step));
+    rounds.sweep_all(records, open, step, budget);
+    learn(budget.spent() - before);
+    report(step, frame);
+  } else {
+    answer_within(step, watch, budget, frame);
+    learn(budget.spent() - before);
   }
-  rounds.sweep_all(records, open, budget);
-  learn(budget.spent() - before);
-  report(step, frame);
   ++frame.steps;
+}
+
+// With time set aside for what follows, and half of the rest for sweeps if there are any.
+void Detector::State::answer_within(Step step, const StepBudget::Stopwatch& watch, StepBudget& budget, Frame& frame) {
+  const double known = static_cast<double>(std::max<std::size_t>(1, records.known().size()));
+  const StepBudget::Part report_time{0, std::chrono::nanoseconds(static_cast<std::int64_t>(after_pair * known))};
+  if (budget.timed()) budget.set_aside(report_time);
+  rounds.begin_within(records, open, step);
+  const double begun = watch.passed();
+  const StepBudget::Part for_sweeps = rounds.sweeps(records, open) ? budget.half() : StepBudget::Part{};
+  budget.set_aside(for_sweeps);
+  rounds.answer_within(records, budget);
+  budget.give_back(for_sweeps);
+  const StepBudget::Stopwatch rest(budget.timed());
+  rounds.fold(records, open, step);
+  const double folded = rest.passed();
+  rounds.sweep_all(records, open, step, budget);
+  const double swept = rest.passed();
+  report(step, frame);
+  if (!budget.timed()) return;
+  budget.give_back(report_time);
+  learn_time(before_pair, begun / known, kMaxGrowthOfPair);
+  learn_time(after_pair, (folded + rest.passed() - swept) / known, kMaxGrowthOfPair);
 }
 
 }  // namespace orchard::runtime

@@ -13,11 +13,13 @@ struct Record {
   std::uint32_t deformed = 0;                                      // and changes of their shapes
   bool coherent = false;  // one tree each: `trees` knows what the last answer was
   TreePair trees;
-  Vec3 apart_by{};  // from centre to centre, at the step before
+  Vec3 apart_by{};     // from centre to centre,
+  Step apart_at = -1;  // at that step
   bool allowed = false;
   bool touching = false;
-  bool apart = false;  // the broad phase says no at this step
-  bool swept = false;  // at the step before both poses were known: a sweep may start there
+  bool apart = false;   // the broad phase says no at this step
+  bool swept = false;   // at the step before both poses were known: a sweep may start there
+  bool unseen = false;  // they were not, and should have been: nobody knows what was in between
   std::uint8_t importance = 0;
   std::uint32_t nos = 0;     // certain ones in a row, while touching
   std::uint32_t waited = 0;  // steps without a certain answer

@@ -18,18 +18,32 @@ void Places::place(BodyIndex body, std::uint32_t part, PlacedPart& placed_part) 
   placed_part.shape = nullptr;
 }
 
-void Places::place_before(BodyIndex body, std::uint32_t part, PlacedPart& placed_part) const noexcept {
+void Places::place_sphere(BodyIndex body, std::uint32_t part, PlacedPart& placed_part) const noexcept {
   if (is_half_space(body)) {
     placed_part.shape = nullptr;
     return;
   }
   const Body& of = (*bodies_)[body];
-  const bool moves = !of.is_static && !of.frozen;
+  const PartRecord& record = of.parts[part];
+  const Pose& pose = bodies_->state(body).pose;
+  placed_part.shape = &(*shapes_)[record.shape];
+  placed_part.rigid = of.rigid;
+  placed_part.center = transform(pose, record.center);
+  placed_part.reach = record.reach * pose.scale;
+}
+
+void Places::place_before(BodyIndex body, std::uint32_t part, Step now, PlacedPart& placed_part) const noexcept {
+  if (is_half_space(body)) {
+    placed_part.shape = nullptr;
+    return;
+  }
+  const Body& of = (*bodies_)[body];
+  const bool moves = !of.is_static && of.asked == now;  // one that falls asleep has come here first
   const Pose& pose = moves ? bodies_->before(body) : bodies_->state(body).pose;
   place_at(pose, is_rigid(pose), of.parts[part], placed_part);
 }
 
-double sphere_gap(const PlacedPair& pair) noexcept {
+double sphere_gap(const PartPair& pair) noexcept {
   constexpr double kRounding = 1e-11;  // of rotations that are rotations to kRigidTolerance, and of coordinates
   if (pair.b.shape == nullptr) {
     const double height = dot(pair.half.normal, pair.a.center) - pair.half.offset;
@@ -40,7 +54,7 @@ double sphere_gap(const PlacedPair& pair) noexcept {
   return std::isfinite(gap) ? gap : 0;
 }
 
-Verdict unasked(const PlacedPair& pair) noexcept {
+Verdict unasked(const PartPair& pair) noexcept {
   Verdict verdict;
   const double gap = sphere_gap(pair);
   verdict.answer = gap > 0 ? Answer::no : Answer::maybe;
@@ -60,7 +74,7 @@ Verdict unasked(const PlacedPair& pair) noexcept {
   return verdict;
 }
 
-Verdict solid_verdict(Verdict verdict, const PlacedPair& pair) noexcept {
+Verdict solid_verdict(Verdict verdict, const PartPair& pair) noexcept {
   const bool solid = pair.a.shape->kind == ShapeKind::box || pair.b.shape->kind == ShapeKind::box;
   if (solid && verdict.answer == Answer::no &&
       inside_box(*pair.a.shape, pair.a.pose, *pair.b.shape, pair.b.pose, verdict.contact)) {
@@ -70,7 +84,7 @@ Verdict solid_verdict(Verdict verdict, const PlacedPair& pair) noexcept {
   return verdict;
 }
 
-Verdict answer_exactly(NarrowPhase& narrow, const PlacedPair& pair, std::uint64_t& work, std::uint64_t most) noexcept {
+Verdict answer_exactly(NarrowPhase& narrow, const PartPair& pair, std::uint64_t& work, std::uint64_t most) noexcept {
   if (!pair.a.rigid || (pair.b.shape != nullptr && !pair.b.rigid)) return unknown_verdict();
   if (pair.simple()) {
     work += kSimplePairWork;

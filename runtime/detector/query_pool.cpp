@@ -1,13 +1,15 @@
 #include "query_pool.h"
 
+#include "pair/workspace_scratch.h"
+
 namespace orchard::runtime::detail {
 
-void QueryPool::prepare(const ShapeTable& shapes, std::size_t shape_count, std::size_t jobs) {
-  const bool more = seen_shapes_ < shape_count;
+void QueryPool::prepare(const ShapeTable& shapes, std::size_t shape_count, std::size_t jobs, bool sweeps) {
+  const bool more = seen_shapes_ < shape_count || (sweeps && !sweeps_);
+  sweeps_ = sweeps_ || sweeps;
   for (; seen_shapes_ < shape_count; ++seen_shapes_) {
     const Shape& shape = shapes[static_cast<ShapeId>(seen_shapes_)];
-    if (shape.has_tree() &&
-        (deepest_.tree.blocks.empty() || deepest_.tree.triangle_tree_depth <= shape.tree.triangle_tree_depth)) {
+    if (deepest_.tree.blocks.empty() || deepest_.tree.triangle_tree_depth <= shape.tree.triangle_tree_depth) {
       deepest_ = shape.prepared;
     }
   }
@@ -17,6 +19,9 @@ void QueryPool::prepare(const ShapeTable& shapes, std::size_t shape_count, std::
   for (std::size_t i = more ? 0 : before; i < scratches_.size(); ++i) {
     scratches_[i]->workspace.narrow.bind(deepest_, deepest_);
     scratches_[i]->workspace.distance.bind(deepest_, deepest_);
+    if (!sweeps_) continue;
+    Workspace::Scratch* const scratch = scratches_[i]->workspace.scratch();
+    if (scratch != nullptr) scratch->reserve_timed(deepest_, deepest_);
   }
   for (std::size_t i = 0; more && i < pool_.size(); ++i) pool_[i]->bind(deepest_, deepest_);
 }
@@ -33,7 +38,11 @@ NarrowPhase* QueryPool::take(std::size_t most) {
 std::size_t QueryPool::memory_bytes() const noexcept {
   const std::size_t stack = (std::size_t{kBlockWidth} * (2 * deepest_.tree.triangle_tree_depth + 1) + 1) * 48;
   const std::size_t lists = 3 * (kRoom + std::size_t{kBlockWidth} * kBlockWidth) * 8;
-  return scratches_.size() * (sizeof(Scratch) + 2 * stack) + pool_.size() * (sizeof(NarrowPhase) + stack + lists);
+  const std::size_t timed = (std::size_t{kBlockWidth} * (2 * deepest_.tree.triangle_tree_depth + 1) + 1) *
+                            sizeof(Workspace::Scratch::TimedPair);
+  const std::size_t sweeps = sweeps_ ? sizeof(Workspace::Scratch) + timed : 0;
+  return scratches_.size() * (sizeof(Scratch) + 2 * stack + sweeps) +
+         pool_.size() * (sizeof(NarrowPhase) + stack + lists);
 }
 
 }  // namespace orchard::runtime::detail

@@ -11,8 +11,9 @@ namespace orchard::runtime::detail {
 // What a thread needs while it answers; and the queries that a budget has left unfinished within a step.
 class QueryPool {
  public:
-  // Room for `jobs` jobs at once and pairs of these shapes, so that no query allocates.
-  void prepare(const ShapeTable& shapes, std::size_t shape_count, std::size_t jobs);
+  // Room for `jobs` jobs at once and pairs of these shapes, so that no query, and if there are sweeps, none of these,
+  // allocates.
+  void prepare(const ShapeTable& shapes, std::size_t shape_count, std::size_t jobs, bool sweeps);
   std::size_t jobs() const noexcept { return scratches_.size(); }
 
   struct Scratch {
@@ -31,6 +32,7 @@ class QueryPool {
   std::vector<std::unique_ptr<Scratch>> scratches_;
   std::vector<std::unique_ptr<NarrowPhase>> pool_;
   std::size_t used_ = 0, seen_shapes_ = 0;
+  bool sweeps_ = false;
   PreparedTree deepest_;  // of all shapes: a query that has been bound to it allocates for no other
 };
 

@@ -6,6 +6,10 @@
 
 namespace orchard::runtime::detail {
 
+// What a record knows before anything is asked: nobody's parts are near. And what two of its parts add to that.
+void forget_answer(Record& record) noexcept;
+void take_in(Record& record, const Verdict& verdict, std::uint32_t part_a, std::uint32_t part_b) noexcept;
+
 // Answers records at one step.
 class Rounds {
  public:
@@ -14,38 +18,46 @@ class Rounds {
 
   // Every record's part pairs to their end. Returns the work.
   std::uint64_t answer_all(RecordTable& records, std::span<const std::uint32_t> open, Step now);
-  // As far as the budget goes. What is not answered has the answer maybe and is not Record::answered.
-  void answer_within(RecordTable& records, std::span<const std::uint32_t> open, Step now, StepBudget& budget);
+  // The same as far as the budget goes, in three parts: what is done in any case; what the budget allows; and what that
+  // makes of the records. What is not answered has the answer maybe and is not Record::answered.
+  void begin_within(RecordTable& records, std::span<const std::uint32_t> open, Step now);
+  void answer_within(RecordTable& records, StepBudget& budget);
+  void fold(RecordTable& records, std::span<const std::uint32_t> open, Step now);
+  static bool sweeps(const RecordTable& records, std::span<const std::uint32_t> open) noexcept;  // there are
   // What happened between the step before and this one, for the records that can be swept.
-  void sweep_all(RecordTable& records, std::span<const std::uint32_t> open, StepBudget& budget);
-  std::size_t memory_bytes() const noexcept { return bytes_of(tasks_) + bytes_of(order_) + bytes_of(sweeps_); }
+  void sweep_all(RecordTable& records, std::span<const std::uint32_t> open, Step now, StepBudget& budget);
+  std::size_t memory_bytes() const noexcept {
+    return bytes_of(tasks_) + bytes_of(schedule_) + bytes_of(sorted_) + bytes_of(order_) + bytes_of(sweeps_);
+  }
 
   void use(const Executor& executor) noexcept { executor_ = &executor; }
 
  private:
   struct Task {
-    std::uint32_t sequence = 0;  // in the order of pairs, then of parts
     std::uint32_t record = 0, part_a = 0, part_b = 0;
-    std::uint8_t importance = 0;
-    std::uint32_t waited = 0;
     bool done = false, simple = false;
+    bool slow = false;     // what the last step found may be of use
     bool started = false;  // `query` has been
     NarrowPhase* query = nullptr;
     std::uint64_t work = 0;  // of the last piece
     Verdict verdict;
   };
-  void place(const Record& record, std::uint32_t part_a, std::uint32_t part_b, PlacedPair& pair) const noexcept;
+  static bool is_slow(Record& record, const PartPair& pair, Step now) noexcept;
+  void place(const Record& record, std::uint32_t part_a, std::uint32_t part_b, PartPair& pair) const noexcept;
   void answer_coherently(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept;
   void answer(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept;
-  void sweep_one(Record& record, QueryPool::Scratch& scratch, std::uint64_t most) const noexcept;
-  void make_tasks(const RecordTable& records, std::span<const std::uint32_t> open);
-  void begin_tasks(StepBudget& budget, RecordTable& records);
-  void order_open(std::size_t begin, std::size_t end, std::uint32_t min_waited, const RecordTable& records);
-  void refine_once(std::uint64_t slice, bool by_level, std::uint64_t most, StepBudget& budget, RecordTable& records);
+  void sweep_one(Record& record, Step now, QueryPool::Scratch& scratch, std::uint64_t most) const noexcept;
+  void make_tasks(RecordTable& records, std::span<const std::uint32_t> open, Step now);
+  void sort_tasks(const RecordTable& records);
+  void begin_one(Task& task, Record& record, QueryPool::Scratch& scratch) const noexcept;
+  void decide(Task& task, Record& record, std::uint64_t most, QueryPool::Scratch& scratch) const noexcept;
+  template <typename Piece>
+  void once_each(std::span<const std::uint32_t> tasks, StepBudget& budget, RecordTable& records, Piece&& piece);
+  void decide_class(std::size_t begin, std::size_t end, StepBudget& budget, RecordTable& records);
+  void order_open(std::size_t begin, std::size_t end, const RecordTable& records);
   void refine_class(std::size_t begin, std::size_t end, StepBudget& budget, RecordTable& records);
-  void refine_one(Task& task, const Record& record, std::uint64_t slice, bool by_level,
-                  std::chrono::nanoseconds time) const noexcept;
-  void fold(RecordTable& records, std::span<const std::uint32_t> open, Step now);
+  void refine_once(std::uint64_t slice, StepBudget& budget, RecordTable& records);
+  void refine_one(Task& task, const Record& record, std::uint64_t slice, std::chrono::nanoseconds time) const noexcept;
   static constexpr std::size_t kJobsPerThread = 4;  // some pairs cost a hundred times what others do
   static constexpr std::size_t kMinPerJob = 8;
   template <typename Work>
@@ -55,8 +67,11 @@ class Rounds {
   QueryPool* queries_;
   const Executor* executor_;
   std::size_t max_unfinished_;
-  std::vector<Task> tasks_;
+  std::vector<Task> tasks_;                       // in the order of pairs, then of parts
+  std::vector<std::uint32_t> schedule_, sorted_;  // of tasks
   std::vector<std::uint32_t> order_, sweeps_;
+  std::size_t begun_ = 0;  // of schedule_
+  std::int64_t lead_ = 0;  // of the work on what begins
 };
 
 // work(begin, end, scratch) for consecutive parts of 0 .. count - 1; the cutting depends on nothing but `count` and the

@@ -1,22 +1,33 @@
+#include <algorithm>
 #include <limits>
 
 #include "rounds.h"
 
 namespace orchard::runtime::detail {
+namespace {
 
-void Rounds::sweep_one(Record& record, QueryPool::Scratch& scratch, std::uint64_t most) const noexcept {
-  PlacedPair from, to;
+// Nobody knows what was in between.
+void leave_open(Record& record) noexcept {
+  if (record.verdict.answer == Answer::yes) return;
+  record.verdict.answer = Answer::maybe;
+  record.answered = -1;
+}
+
+}  // namespace
+
+void Rounds::sweep_one(Record& record, Step now, QueryPool::Scratch& scratch, std::uint64_t most) const noexcept {
+  PartPair from, to;
   const bool half = is_half_space(record.pair.b);
   if (half) from.half = to.half = places_->half_space(record.pair.b);
   Swept first;
   first.from = first.to = 2;
   for (std::uint32_t i = 0; i < places_->parts(record.pair.a); ++i) {
-    places_->place_before(record.pair.a, i, from.a);
+    places_->place_before(record.pair.a, i, now, from.a);
     places_->place(record.pair.a, i, to.a);
     for (std::uint32_t j = 0; j < places_->parts(record.pair.b); ++j) {
-      places_->place_before(record.pair.b, j, from.b);
+      places_->place_before(record.pair.b, j, now, from.b);
       places_->place(record.pair.b, j, to.b);
-      const Swept swept = sweep(scratch.workspace.narrow, scratch.workspace.distance, from, to, most, scratch.work);
+      const Swept swept = sweep(scratch.workspace, from, to, most, scratch.work);
       if (swept.answer == Answer::no) continue;
       const bool better = swept.answer != first.answer ? swept.answer > first.answer : swept.from < first.from;
       if (!better) continue;
@@ -32,15 +43,19 @@ void Rounds::sweep_one(Record& record, QueryPool::Scratch& scratch, std::uint64_
   if (first.answer == Answer::yes) {
     record.verdict = first.verdict;
   } else {
-    record.verdict.answer = Answer::maybe;
-    record.answered = -1;
+    leave_open(record);
   }
 }
 
-void Rounds::sweep_all(RecordTable& records, std::span<const std::uint32_t> open, StepBudget& budget) {
+bool Rounds::sweeps(const RecordTable& records, std::span<const std::uint32_t> open) noexcept {
+  return std::any_of(open.begin(), open.end(), [&](std::uint32_t index) { return records[index].swept; });
+}
+
+void Rounds::sweep_all(RecordTable& records, std::span<const std::uint32_t> open, Step now, StepBudget& budget) {
   sweeps_.clear();
   for (const std::uint32_t index : open) {
     if (records[index].swept) sweeps_.push_back(index);
+    if (records[index].unseen) leave_open(records[index]);
   }
   if (sweeps_.empty()) return;
   std::size_t done = 0;
@@ -49,17 +64,12 @@ void Rounds::sweep_all(RecordTable& records, std::span<const std::uint32_t> open
     const std::uint64_t most = budget.left();
     for (std::size_t job = 0; job < queries_->jobs(); ++job) queries_->scratch(job).work = 0;
     in_parallel(count, [&](std::size_t begin, std::size_t end, QueryPool::Scratch& scratch) {
-      for (std::size_t i = begin; i < end; ++i) sweep_one(records[sweeps_[done + i]], scratch, most);
+      for (std::size_t i = begin; i < end; ++i) sweep_one(records[sweeps_[done + i]], now, scratch, most);
     });
     for (std::size_t job = 0; job < queries_->jobs(); ++job) budget.spend(queries_->scratch(job).work);
     done += count;
   }
-  for (; done < sweeps_.size(); ++done) {  // nobody knows what was in between
-    Record& record = records[sweeps_[done]];
-    if (record.verdict.answer == Answer::yes) continue;
-    record.verdict.answer = Answer::maybe;
-    record.answered = -1;
-  }
+  for (; done < sweeps_.size(); ++done) leave_open(records[sweeps_[done]]);
 }
 
 }  // namespace orchard::runtime::detail

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "orchard/runtime/shape_trees.h"
+
 namespace orchard::runtime::detail {
 namespace {
 
@@ -71,8 +73,8 @@ bool is_point(const Vec3& p) noexcept { return is_coordinate(p[0]) && is_coordin
 ShapeId ShapeTable::add(Shape&& shape) {
   shapes_.push_back(std::move(shape));
   Shape& kept = shapes_.back();
-  if (kept.kind == ShapeKind::box) kept.tree = kept.box;
-  if (kept.has_tree()) kept.prepared = PreparedTree(kept.tree);
+  if (kept.kind != ShapeKind::tree) kept.tree = kept.own;
+  kept.prepared = PreparedTree(kept.tree);
   return static_cast<ShapeId>(shapes_.size() - 1);
 }
 
@@ -94,6 +96,7 @@ ShapeId ShapeTable::add_round(const Vec3& p, const Vec3& q, double radius) {
   Shape shape;
   shape.kind = ShapeKind::round;
   shape.p = p, shape.q = q, shape.radius = radius;
+  shape.own = segment_tree(p, q);
   shape.center = 0.5 * (p + q);
   shape.reach = (0.5 * length(q - p) + radius) * (1 + 1e-15) + 1e-15 * (length(p) + length(q));
   return add(std::move(shape));
@@ -106,9 +109,9 @@ ShapeId ShapeTable::add_box(const Vec3& half_lengths) {
   }
   Shape shape;
   shape.kind = ShapeKind::box;
-  shape.box = box_tree(half_lengths);
-  for (std::size_t i = 0; i < 3; ++i) shape.p[i] = double{shape.box.vertices[7][i]};
-  shape.reach = shape.box.bounding_radius;
+  shape.own = box_tree(half_lengths);
+  for (std::size_t i = 0; i < 3; ++i) shape.p[i] = double{shape.own.vertices[7][i]};
+  shape.reach = shape.own.bounding_radius;
   shape.pieces = {shape.p};
   return add(std::move(shape));
 }

@@ -16,8 +16,8 @@ enum class ShapeKind : std::uint8_t {
 
 struct Shape {
   ShapeKind kind = ShapeKind::tree;
-  PackedSphereTree box;      // what the tree of a box views
-  TreeView tree;             // of trees and boxes
+  PackedSphereTree own;      // what the tree of a box, or of a round shape's segment, views
+  TreeView tree;             // the surface; of a round shape the segment, for sweeps
   PreparedTree prepared;     // the same
   Vec3 p{}, q{};             // of a box: p is half of its lengths
   double radius = 0;         // of round shapes

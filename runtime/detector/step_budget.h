@@ -11,6 +11,18 @@ namespace orchard::runtime::detail {
 class StepBudget {
  public:
   using Clock = std::chrono::steady_clock;
+  // Looks at the clock only if it `runs`.
+  class Stopwatch {
+   public:
+    explicit Stopwatch(bool runs) noexcept : runs_(runs), begin_(runs ? Clock::now() : Clock::time_point{}) {}
+    double passed() const noexcept {  // ns
+      return runs_ ? std::chrono::duration<double, std::nano>(Clock::now() - begin_).count() : 0;
+    }
+
+   private:
+    bool runs_;
+    Clock::time_point begin_;
+  };
   explicit StepBudget(const FrameBudget& budget) noexcept
       : left_(budget.work), limited_(budget.work != FrameBudget{}.work), replay_(budget.replay) {
     if (replay_ != nullptr) return;
@@ -44,17 +56,40 @@ class StepBudget {
   // Where the step is cut short: as the clock says, or as another run's clock said. For one thread.
   const StepCut* replay() const noexcept { return replay_; }
   const StepCut& cut() const noexcept { return cut_; }
-  bool may_begin(std::uint64_t pair) noexcept { return may_go_on(&StepCut::begun, pair); }
-  bool may_refine() noexcept { return left_ > 0 && may_go_on(&StepCut::refined, refined_); }
-  bool may_sweep(std::uint64_t pair) noexcept { return left_ > 0 && may_go_on(&StepCut::swept, pair); }
+  bool may_go_on() noexcept { return left_ > 0 && reaches(&StepCut::begun, begun_); }  // with beginning
+  bool may_begin() noexcept {
+    const bool may = reaches(&StepCut::begun, begun_);
+    begun_ += may ? 1 : 0;
+    return may;
+  }
+  bool may_refine() noexcept { return left_ > 0 && reaches(&StepCut::refined, refined_); }
+  bool may_sweep(std::uint64_t pair) noexcept { return left_ > 0 && reaches(&StepCut::swept, pair); }
   std::uint64_t piece(std::uint64_t slice) const noexcept {
     return replay_ == nullptr ? slice : std::min(slice, replay_->refined - refined_ - 1);
   }
   void refined(std::uint64_t work) noexcept { refined_ += work + 1; }
   void cut_broad(std::uint64_t work) noexcept { cut_.broad = work; }
 
+  bool timed() const noexcept { return timed_; }
+  // Sets a part of what is left aside, until it is given back. Time as well, or only time.
+  struct Part {
+    std::uint64_t work = 0;
+    std::chrono::nanoseconds time{};
+  };
+  Part half() const noexcept {
+    return {limited_ ? left_ / 2 : 0, timed_ ? time_left() / 2 : std::chrono::nanoseconds{}};
+  }
+  void set_aside(const Part& part) noexcept {
+    left_ -= part.work;
+    deadline_ -= part.time;
+  }
+  void give_back(const Part& part) noexcept {
+    left_ += part.work;
+    deadline_ += part.time;
+  }
+
  private:
-  bool may_go_on(std::uint64_t StepCut::*stage, std::uint64_t done) noexcept {
+  bool reaches(std::uint64_t StepCut::*stage, std::uint64_t done) noexcept {
     const bool stop = replay_ != nullptr ? done >= replay_->*stage : late();
     if (stop) cut_.*stage = std::min(cut_.*stage, done);
     return !stop;
@@ -65,7 +100,7 @@ class StepBudget {
   Clock::time_point deadline_{};
   const StepCut* replay_;
   StepCut cut_;
-  std::uint64_t refined_ = 0;
+  std::uint64_t begun_ = 0, refined_ = 0;
 };
 
 }  // namespace orchard::runtime::detail

@@ -5,99 +5,136 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr int kMaxDistanceQueries = 512;  // at a pair's distance, in a sweep
-constexpr double kCloseness = 1e-5;       // of the smaller part's size: nearer than that, time passes in steps of it
+constexpr double kCloseness = 1e-5;  // of the smaller size above 0: nearer than that is told from a contact by probing
+constexpr int kMaxSteps = 512;       // towards a half-space
+constexpr double kSkip = 4;          // closenesses passed over where a graze is not told from a contact,
+constexpr double kSkipGrowth = 4;    // and times that, each time,
+constexpr double kMinSkip = 1e-9;    // but so much of the way at least,
+constexpr double kMaxSkip = 1.0 / 64;  // and so much of it at most the first time
+constexpr double kRounding = 1e-9;     // of speeds
 
 Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-// The rotation by `angle` about the unit axis, after `from`.
-std::array<double, 9> turned(const std::array<double, 9>& from, const Vec3& axis, double angle) noexcept {
-  const double s = std::sin(angle), c = std::cos(angle);
-  std::array<double, 9> result{};
-  for (std::size_t column = 0; column < 3; ++column) {
-    const Vec3 v = {from[column], from[3 + column], from[6 + column]};
-    const Vec3 w = c * v + s * cross(axis, v) + ((1 - c) * dot(axis, v)) * axis;
-    for (std::size_t row = 0; row < 3; ++row) result[3 * row + column] = w[row];
-  }
-  return result;
+double margin_of(const PlacedPart& part) noexcept {
+  return part.shape->kind == ShapeKind::round ? part.shape->radius * part.pose.scale : 0;
 }
 
-}  // namespace
+// No point of the part moves faster.
+double speed_of(const Travel& travel, double reach) noexcept {
+  return (length(Vec3(travel.velocity)) + length(Vec3(travel.spin)) * reach) * (1 + kRounding);
+}
 
-PoseWay::PoseWay(const PlacedPart& from, const PlacedPart& to) noexcept : from_(from.pose), to_(to.pose) {
-  center_ = from.shape->center;
-  begin_ = transform(from_, center_);
-  way_ = Vec3(transform(to_, center_)) - begin_;
-  // r = to * from^T, whose axis is its skew part's, or for half a turn its symmetric part's.
-  std::array<double, 9> r{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      for (std::size_t k = 0; k < 3; ++k) r[3 * i + j] += to_.rotation[3 * i + k] * from_.rotation[3 * j + k];
+bool can_travel(const PlacedPart& from, const PlacedPart& to) noexcept {
+  return from.rigid && to.rigid && is_rigid(from.pose) && is_rigid(to.pose) && from.pose.scale == to.pose.scale;
+}
+
+Travel travel_of(const PlacedPart& from, const PlacedPart& to) noexcept {
+  return travel_between(from.pose, to.pose, from.shape->center);
+}
+
+// Two shapes that have, or are around, trees.
+class PairSweep {
+ public:
+  PairSweep(Workspace& workspace, const PartPair& from, const PartPair& to, std::uint64_t most,
+            std::uint64_t& work) noexcept
+      : workspace_(workspace),
+        from_(from),
+        most_(most),
+        work_(work),
+        a_(travel_of(from.a, to.a)),
+        b_(travel_of(from.b, to.b)),
+        pair_(from.a.shape->prepared, from.b.shape->prepared) {}
+
+  Swept run() noexcept {
+    const double speed = speed_of(a_, from_.a.reach) + speed_of(b_, from_.b.reach);
+    if (speed == 0 || starts_inside()) return result_;
+    ImpactOptions options;
+    options.margin = margin_of(from_.a) + margin_of(from_.b);
+    const auto [smaller, larger] = std::minmax(from_.a.reach, from_.b.reach);
+    options.tolerance = kCloseness * (smaller > 0 ? smaller : larger);
+    double skip = std::clamp(kSkip * options.tolerance / speed, kMinSkip, kMaxSkip);
+    result_.answer = Answer::maybe;
+    for (bool certain = true; work_ < most_; certain = false, skip *= kSkipGrowth) {
+      work_ += kPairWork;
+      options.budget.pair_tests = most_ - std::min(work_, most_);
+      const Impact impact = time_of_impact(workspace_, pair_, a_, b_, options);
+      work_ += impact.work;
+      if (certain) result_.from = impact.t0;
+      if (impact.answer == Answer::yes) return touch(impact), result_;
+      if (impact.answer == Answer::no) {
+        if (certain) result_.answer = Answer::no;
+        return result_;
+      }
+      // So near that nobody knows; later they may be nearer still.
+      options.begin = impact.t0 + skip;
+      if (!impact.finished || impact.refused || !(options.begin < options.end)) return result_;
     }
+    return result_;
   }
-  const Vec3 skew = {r[7] - r[5], r[2] - r[6], r[3] - r[1]};
-  const double sine = 0.5 * length(skew), cosine = 0.5 * (r[0] + r[4] + r[8] - 1);
-  angle_ = std::atan2(sine, cosine);
-  if (sine > 1e-8) {
-    axis_ = (0.5 / sine) * skew;
-    axis_ = (1 / length(axis_)) * axis_;
-  } else if (cosine < 0) {
-    std::size_t largest = 0;
-    for (std::size_t i = 1; i < 3; ++i) largest = r[4 * i] > r[4 * largest] ? i : largest;
-    for (std::size_t i = 0; i < 3; ++i) axis_[i] = r[3 * largest + i] + (i == largest ? 1 : 0);
-    axis_ = (1 / length(axis_)) * axis_;
-  } else {
-    angle_ = sine;  // too small for its axis to matter: the ends differ by less than 1e-8 of the size
-    axis_ = sine > 0 ? (0.5 / sine) * skew : Vec3{0, 0, 1};
+
+ private:
+  // A box is solid, and what lies wholly in it touches it although the surfaces are apart.
+  bool starts_inside() noexcept {
+    if (from_.a.shape->kind != ShapeKind::box && from_.b.shape->kind != ShapeKind::box) return false;
+    const Verdict verdict = answer_exactly(workspace_.narrow, from_, work_, most_);
+    if (verdict.answer == Answer::no) return false;
+    result_.answer = verdict.answer;
+    result_.to = 0;
+    result_.verdict = verdict;
+    return true;
   }
-  speed_ = (length(way_) + angle_ * from.reach) * (1 + 1e-9);
-}
 
-Pose PoseWay::at(double time) const noexcept {
-  if (time <= 0) return from_;
-  if (time >= 1) return to_;
-  Pose pose = from_;
-  pose.rotation = turned(from_.rotation, axis_, time * angle_);
-  const auto arm = rotate(pose, center_);
-  for (std::size_t i = 0; i < 3; ++i) pose.translation[i] = begin_[i] + time * way_[i] - pose.scale * arm[i];
-  return is_rigid(pose) ? pose : made_rigid(pose).value_or(from_);
-}
+  void touch(const Impact& impact) noexcept {
+    PartPair now = from_;
+    now.a.pose = a_.at(impact.t1), now.b.pose = b_.at(impact.t1);
+    result_.answer = Answer::yes;
+    result_.to = impact.t1;
+    result_.verdict = work_ < most_ ? answer_exactly(workspace_.narrow, now, work_, most_) : unknown_verdict();
+    if (result_.verdict.answer == Answer::yes) return;
+    // Rounding, or the end of the budget: what the search knows of the place.
+    const Vec3 way = Vec3(impact.on_b) - Vec3(impact.on_a);
+    const double size = length(way);
+    result_.verdict = Verdict{};
+    result_.verdict.answer = Answer::yes;
+    result_.verdict.separation_bound = 0;
+    result_.verdict.contact.center = impact.on_a;
+    result_.verdict.contact.normal = size > 0 ? (1 / size) * way : Vec3{0, 0, 1};
+    result_.verdict.contact.triangle_a = impact.triangle_a;
+    result_.verdict.contact.triangle_b = impact.triangle_b;
+  }
 
-Swept sweep(NarrowPhase& narrow, DistanceQuery& distance, const PlacedPair& from, const PlacedPair& to,
-            std::uint64_t most, std::uint64_t& work) noexcept {
+  Workspace& workspace_;
+  const PartPair& from_;
+  std::uint64_t most_;
+  std::uint64_t& work_;
+  Travel a_, b_;
+  TreePair pair_;
+  Swept result_;
+};
+
+// The height over the plane shrinks no faster than the centre sinks, and what turns about it.
+Swept sweep_to_half_space(Workspace& workspace, const PartPair& from, const PartPair& to, std::uint64_t most,
+                          std::uint64_t& work) noexcept {
   Swept result;
-  const bool half = from.b.shape == nullptr;
-  if (!is_rigid(from.a.pose) || !is_rigid(to.a.pose) || (!half && (!is_rigid(from.b.pose) || !is_rigid(to.b.pose)))) {
-    result.answer = Answer::maybe;
-    return result;
-  }
-  const PoseWay a(from.a, to.a), b(half ? from.a : from.b, half ? from.a : to.b);
-  const double speed = a.speed() + b.speed();
-  const double near = kCloseness * (half ? from.a.reach : std::min(from.a.reach, from.b.reach));
-  if (!(speed > 0)) return result;
-  PlacedPair now = from;
-  const auto apart = [&]() -> double {
-    if (half) return work += kSimplePairWork, half_space_distance(*now.a.shape, now.a.pose, now.half);
-    if (now.simple()) {
-      work += kSimplePairWork;
-      return simple_distance(*now.a.shape, now.a.pose, *now.b.shape, now.b.pose);
-    }
-    distance.bind(now.a.shape->prepared, now.b.shape->prepared);
-    distance.start(now.a.pose, now.b.pose, {.relative = 0.1, .absolute = near});
-    distance.refine({.pair_tests = most - work});
-    work += distance.work();
-    return distance.lower();
-  };
+  const Travel travel = travel_of(from.a, to.a);
+  const Vec3& normal = from.half.normal;
+  const double speed = speed_of(travel, from.a.reach), near = kCloseness * from.a.reach;
+  if (speed == 0) return result;
+  const double turn = from.a.shape->kind == ShapeKind::round && from.a.shape->p == from.a.shape->q
+                          ? 0
+                          : length(cross(Vec3(travel.spin), normal)) * from.a.reach;
+  const double sinking = turn - dot(Vec3(travel.velocity), normal) + kRounding * speed;
+  PartPair now = from;
   double time = 0;
   bool certain = true;
-  for (int query = 0; query < kMaxDistanceQueries && work < most; ++query) {
-    now.a.pose = a.at(time);
-    if (!half) now.b.pose = b.at(time);
-    const double gap = apart();
-    if (gap <= near && work < most) {
-      const Verdict verdict = answer_exactly(narrow, now, work, most);
+  for (int step = 0; step < kMaxSteps && work < most; ++step) {
+    now.a.pose = travel.at(time);
+    work += kSimplePairWork;
+    const double gap = half_space_distance(*now.a.shape, now.a.pose, now.half);
+    if (gap <= near) {
+      const Verdict verdict = answer_exactly(workspace.narrow, now, work, most);
       if (verdict.answer == Answer::yes) {
         if (certain) result.from = time;
         result.answer = Answer::yes;
@@ -106,19 +143,32 @@ Swept sweep(NarrowPhase& narrow, DistanceQuery& distance, const PlacedPair& from
         return result;
       }
     }
-    if (time >= 1) {
-      result.answer = certain ? Answer::no : Answer::maybe;
-      return result;
-    }
     if (gap < near && certain) {
       certain = false;
       result.from = time;
     }
-    time = std::min(1.0, time + std::max(gap, near) / speed);
+    if (time >= 1 || (gap >= near && !(sinking * (1 - time) >= gap))) {
+      result.answer = certain ? Answer::no : Answer::maybe;
+      return result;
+    }
+    time = std::min(1.0, time + (gap >= near ? gap / sinking : near / speed));
   }
   if (certain) result.from = time;
   result.answer = Answer::maybe;
   return result;
+}
+
+}  // namespace
+
+Swept sweep(Workspace& workspace, const PartPair& from, const PartPair& to, std::uint64_t most,
+            std::uint64_t& work) noexcept {
+  const bool half = from.b.shape == nullptr;
+  if (!can_travel(from.a, to.a) || (!half && !can_travel(from.b, to.b))) {
+    Swept unknown;
+    unknown.answer = Answer::maybe;
+    return unknown;
+  }
+  return half ? sweep_to_half_space(workspace, from, to, most, work) : PairSweep(workspace, from, to, most, work).run();
 }
 
 }  // namespace orchard::runtime::detail

@@ -23,17 +23,20 @@ Verdict collide(Workspace& workspace, const TreePair& pair, const Pose& a, const
 }
 
 Answer closer_than(Workspace& workspace, const TreePair& pair, const Pose& a, const Pose& b, double margin) noexcept {
+  return closer_within(workspace, pair, {a, b}, margin, {});
+}
+
+Answer closer_within(Workspace& workspace, const TreePair& pair, const PosePair& poses, double margin,
+                     const Budget& budget) noexcept {
   if (!(margin >= 0)) return Answer::maybe;
   if (margin == 0) {
     workspace.narrow.bind(pair.a(), pair.b());
-    workspace.narrow.start(a, b);
-    while (!workspace.narrow.finished()) workspace.narrow.refine_exactly();
-    return workspace.narrow.answer();
+    return collide(workspace.narrow, poses.a, poses.b, budget).answer;
   }
   DistanceQuery& query = workspace.distance;
   query.bind(pair.a(), pair.b());
-  query.start_within(a, b, margin);
-  query.refine();
+  query.start_within(poses.a, poses.b, margin);
+  query.refine(budget);
   if (query.lower() > margin) return Answer::no;
   return query.upper() <= margin && std::isfinite(query.upper()) ? Answer::yes : Answer::maybe;
 }

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "orchard/runtime/body_pair.h"
+#include "coherent_pair.h"
 #include "pair_access.h"
 #include "tree/tree_nodes.h"
 #include "triangle_pair.h"
@@ -53,24 +53,37 @@ struct Coherence {
   const Pose &a, &b;
   TreePair::Memory& memory = pair.memory_;
 
-  Verdict collide() noexcept {
+  Pose relative{};
+  double moved = 0;  // since `memory` saw them
+
+  // False: nothing can be remembered of these.
+  bool place() noexcept {
     const PreparedTree &first = pair.a(), &second = pair.b();
     if (first.tree.ball_slabs.empty() || second.tree.ball_slabs.empty() || !is_rigid(a) || !is_rigid(b)) {
       pair.forget();
-      return runtime::collide(workspace, pair, a, b);
+      return false;
     }
-    const Pose relative = compose(inverse(a), b);
-    const double moved = memory.seen ? displacement(second, memory.relative, relative) + slack(first, second, a, b) : 0;
-    if (memory.seen && moved < memory.clearance * kMargin) {
+    relative = compose(inverse(a), b);
+    moved = memory.seen ? displacement(second, memory.relative, relative) + slack(first, second, a, b) : 0;
+    return true;
+  }
+
+  std::optional<Verdict> recall() noexcept {
+    if (!memory.seen) return std::nullopt;
+    if (moved < memory.clearance * kMargin) {
       ++memory.answers;
       return apart((memory.clearance * kMargin - moved) * a.scale);
     }
-    const double step = memory.seen ? moved / (memory.answers + 1) : 0;
-    const Verdict verdict = decide(step);
+    if (memory.triangle_a == kNoTriangle || !same_triangles_meet()) return std::nullopt;
+    keep_place();
+    return workspace.narrow.verdict();
+  }
+
+  void keep_place() noexcept {
+    memory.clearance = 0;
     memory.relative = relative;
     memory.answers = 0;
     memory.seen = true;
-    return verdict;
   }
 
   static Verdict apart(double lower) noexcept {
@@ -81,11 +94,10 @@ struct Coherence {
     return verdict;
   }
 
-  Verdict decide(double step) noexcept {
-    memory.clearance = 0;
-    if (memory.triangle_a != kNoTriangle) {
-      if (same_triangles_meet()) return workspace.narrow.verdict();
-    }
+  Verdict search(const Budget& budget) noexcept {
+    const double step = memory.seen ? moved / (memory.answers + 1) : 0;
+    keep_place();
+    std::uint64_t spent = 0;
     if (memory.wait > 0) {
       --memory.wait;
     } else if (step > 0) {
@@ -93,18 +105,28 @@ struct Coherence {
       DistanceQuery& query = workspace.distance;
       query.bind(pair.a(), pair.b());
       query.start_within(a, b, ahead);
-      query.refine();
-      if (query.lower() > ahead) {
+      // Half of what is limited: the answer itself comes first.
+      query.refine(unlimited(budget) ? Budget{} : Budget{budget.pair_tests / 2 + 1});
+      spent = query.work();
+      if (query.finished() && query.lower() > ahead) {
         memory.clearance = query.lower() / a.scale;
         memory.triangle_a = memory.triangle_b = kNoTriangle;
         memory.misses = 0;
-        return apart(query.lower());
+        Verdict verdict = apart(query.lower());
+        verdict.work = spent;
+        return verdict;
       }
       if (memory.misses < kMaxMisses) ++memory.misses;
       memory.wait = static_cast<std::uint8_t>(1u << memory.misses);
     }
-    return remember(runtime::collide(workspace, pair, a, b));
+    Budget rest = budget;
+    if (!unlimited(budget)) rest.pair_tests -= std::min(spent, rest.pair_tests);
+    Verdict verdict = remember(runtime::collide(workspace, pair, a, b, rest));
+    verdict.work += spent;
+    return verdict;
   }
+
+  static bool unlimited(const Budget& budget) noexcept { return budget.pair_tests == Budget{}.pair_tests; }
 
   // Whether the triangles that met last still do, by the very test of the last level.
   bool same_triangles_meet() noexcept {
@@ -133,8 +155,23 @@ struct Coherence {
   }
 };
 
+std::optional<Verdict> CoherentPair::recall(Workspace& workspace, TreePair& pair, const Pose& a,
+                                            const Pose& b) noexcept {
+  Coherence coherence{workspace, pair, a, b};
+  return coherence.place() ? coherence.recall() : std::nullopt;
+}
+
+Verdict CoherentPair::search(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b,
+                             const Budget& budget) noexcept {
+  Coherence coherence{workspace, pair, a, b};
+  return coherence.place() ? coherence.search(budget) : collide(workspace, pair, a, b, budget);
+}
+
 Verdict collide_coherently(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept {
-  return Coherence{workspace, pair, a, b}.collide();
+  Coherence coherence{workspace, pair, a, b};
+  if (!coherence.place()) return collide(workspace, pair, a, b);
+  const std::optional<Verdict> known = coherence.recall();
+  return known ? *known : coherence.search({});
 }
 
 }  // namespace orchard::runtime

@@ -26,6 +26,7 @@ namespace {
 constexpr double kMinTolerance = 1e-9;  // of the bodies' size
 constexpr double kRounding = 1e-12;     // of lengths in double
 constexpr double kShorter = 1 - 1e-9;   // of a step: its own rounding
+constexpr double kEnough = 0.5;         // of the earliest time found: what may meet later than that is not looked at
 constexpr double kMaxQuantity = 1e18;   // of speeds and reaches, in the first tree's units: floats hold their products
 constexpr int kFineSteps = 12;          // nearer than the tolerance
 constexpr int kProbes = 24;             // for a contact after the last certified time
@@ -63,12 +64,20 @@ double reach_of(const PreparedTree& tree, const Vec3& center) noexcept {
   return (length(minus(center, {root.x[0], root.y[0], root.z[0]})) + double{root.radius[0]}) * (1 + kRounding);
 }
 
-struct Critical {  // the triangles that could meet first
-  double time;
+struct Critical {     // triangles that could meet nearly first
+  double time;        // nothing meets before
+  double cut = time;  // what surely does not meet before is left out, and counts for `time` with what is known of it
   double distance = std::numeric_limits<double>::infinity();
   double rate = 0;
   Vec3 on_first{}, on_second{};
   std::uint32_t triangle_first = kNoTriangle, triangle_second = kNoTriangle;
+  double left_out = std::numeric_limits<double>::infinity();
+  // Whether what meets at that time at the earliest need not be looked at.
+  bool leaves(double earliest) noexcept {
+    if (earliest < cut) return false;
+    left_out = std::min(left_out, earliest);
+    return true;
+  }
 };
 
 class Search {
@@ -85,13 +94,18 @@ class Search {
   bool prepare() noexcept;
   bool place(double time) noexcept;
   bool find_critical(PairAccess::BudgetTracker& tracker, Critical& critical) noexcept;
-  void expand(const Scratch::TimedPair& top, std::size_t& size, double best) noexcept;
+  void expand(const Scratch::TimedPair& top, std::size_t& size, Critical& critical) noexcept;
   void compare_leaves(const Scratch::TimedPair& top, Critical& critical) noexcept;
+  struct Speeds {  // of two leaves: how fast anything comes closer, and how far they reach from where they turn about
+    double fastest, first_reach, second_reach;
+  };
+  void compare_triangles(const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows, std::uint32_t row,
+                         const Speeds& speeds, Critical& critical) noexcept;
   double without_turning() const noexcept;
   void report(const Critical& critical) noexcept;
-  void find_contact() noexcept;
+  void find_contact(PairAccess::BudgetTracker& tracker) noexcept;
   bool advance(PairAccess::BudgetTracker& tracker) noexcept;
-  bool touching(double time) noexcept;
+  bool touching(PairAccess::BudgetTracker& tracker, double time) noexcept;
   const TreeView& first() const noexcept { return PairAccess::first(narrow_).tree; }
   const TreeView& second() const noexcept { return PairAccess::second(narrow_).tree; }
 
@@ -117,13 +131,8 @@ bool Search::prepare() noexcept {
   Scratch* const scratch = workspace_.scratch();
   narrow_.bind(pair_.a(), pair_.b());
   const TreeView &a = pair_.a().tree, &b = pair_.b().tree;
-  if (scratch == nullptr || a.ball_slabs.empty() || b.ball_slabs.empty()) return false;
-  const std::size_t deepest = std::size_t{kBlockWidth} * (a.triangle_tree_depth + b.triangle_tree_depth + 1) + 1;
-  if (deepest > scratch->timed_room) {
-    scratch->timed.reset(new (std::nothrow) Scratch::TimedPair[deepest]);
-    scratch->timed_room = scratch->timed ? deepest : 0;
-  }
-  return scratch->timed != nullptr;
+  return scratch != nullptr && !a.ball_slabs.empty() && !b.ball_slabs.empty() &&
+         scratch->reserve_timed(pair_.a(), pair_.b());
 }
 
 // False where nothing can be said.
@@ -204,13 +213,13 @@ bool Search::find_critical(PairAccess::BudgetTracker& tracker, Critical& critica
       return false;
     }
     const Scratch::TimedPair top = stack[--size];
-    if (double{top.time} >= critical.time) continue;
+    if (critical.leaves(double{top.time})) continue;
     const std::uint32_t a = detail::ball_slab_child(first(), top.a), b = detail::ball_slab_child(second(), top.b);
     if (a & b & kLeafBit) {
       compare_leaves(top, critical);
       tracker.spend(std::uint64_t{kLeafPairTests} * kTriangleTestCost);
     } else {
-      expand(top, size, critical.time);
+      expand(top, size, critical);
       tracker.spend(kBlockWidth);
     }
   }
@@ -218,7 +227,7 @@ bool Search::find_critical(PairAccess::BudgetTracker& tracker, Critical& critica
 }
 
 // In place of a pair, those of its children that may meet in time, the earliest last.
-void Search::expand(const Scratch::TimedPair& top, std::size_t& size, double best) noexcept {
+void Search::expand(const Scratch::TimedPair& top, std::size_t& size, Critical& critical) noexcept {
   Scratch::TimedPair* const stack = workspace_.scratch()->timed.get();
   const detail::Placement& placement = PairAccess::placement(narrow_);
   const std::uint32_t a = detail::ball_slab_child(first(), top.a), b = detail::ball_slab_child(second(), top.b);
@@ -238,7 +247,7 @@ void Search::expand(const Scratch::TimedPair& top, std::size_t& size, double bes
   for (std::uint32_t left = times.used; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
     const float time = top.time > 0 ? std::max(times.time[lane], top.time) : times.time[lane];
-    if (double{time} >= best) continue;
+    if (critical.leaves(double{time})) continue;
     std::size_t at = size++;
     for (; at > begin && stack[at - 1].time < time; --at) stack[at] = stack[at - 1];
     const std::uint32_t node = block * kBlockWidth + lane;
@@ -258,37 +267,65 @@ void Search::compare_leaves(const Scratch::TimedPair& top, Critical& critical) n
   const double first_reach = reach(p, first_turn_.center), second_reach = reach(top.second, second_turn_.center);
   const double fastest = length(velocity_) + speed_ + (first_turn_.spin + first_turn_.turning) * first_reach +
                          (second_turn_.spin + second_turn_.turning) * second_reach;
-  const double reach_in_time = fastest * (1 + kRounding) * critical.time + margin_;
+  // Before that no gap closes, whatever its direction.
+  const auto earliest = [&](float lower) {
+    const double gap = double{lower} - margin_;
+    return gap > 0 ? gap / (fastest * (1 + kRounding)) : 0;
+  };
+  const double reach_in_time = fastest * (1 + kRounding) * critical.cut + margin_;
   detail::TriangleGaps gaps;
   detail::triangle_gaps(lanes, rows, PairAccess::placement(narrow_), direction_,
                         static_cast<float>(std::min(reach_in_time * (1 + 1e-6), 1e30)), gaps);
+  // The nearest first: each makes fewer of the others worth a look.
+  std::array<std::uint8_t, std::size_t{kBlockWidth} * kBlockWidth> order;
+  std::size_t count = 0;
+  const auto lower_of = [&](std::uint8_t i) { return gaps.lower[i / kBlockWidth][i % kBlockWidth]; };
   for (std::uint32_t row = 0; row < kBlockWidth && rows.triangle[row] != kNoTriangle; ++row) {
     for (std::uint32_t lane = 0; lane < kBlockWidth && lanes.triangle[lane] != kNoTriangle; ++lane) {
-      const double lower = double{gaps.lower[row][lane]} - margin_;
-      if (lower > 0 && lower >= fastest * (1 + kRounding) * critical.time) continue;
-      const detail::TrianglePoints a = detail::points_of(lanes, lane),
-                                   b = detail::moved_points_of(rows, row, PairAccess::relative(narrow_));
-      const detail::NearestPoints nearest = detail::nearest_points(a, b);
-      const Vec3 way = minus(nearest.on_b, nearest.on_a);
-      const double size = length(way);
-      double gap = -1, rate = fastest;
-      if (size > 0) {
-        const Vec3 u = along({0, 0, 0}, way, 1 / size);
-        const auto [low, high] = std::pair(std::min({dot(u, b[0]), dot(u, b[1]), dot(u, b[2])}),
-                                           std::max({dot(u, a[0]), dot(u, a[1]), dot(u, a[2])}));
-        gap = low - high - margin_ - error_;
-        rate = speed_ - dot(velocity_, u) + first_turn_.rate(u, first_reach) + second_turn_.rate(u, second_reach) +
-               kRounding * fastest;
-      }
-      const double time = gap > 0 ? (rate > 0 ? gap / rate : std::numeric_limits<double>::infinity()) : 0;
-      if (time >= critical.time) continue;
-      critical = {time, nearest.distance, rate, nearest.on_a, nearest.on_b, lanes.triangle[lane], rows.triangle[row]};
-      if (gap <= 0 && detail::triangles_intersect(a, b, &critical.on_first)) {
-        critical.distance = 0, critical.on_second = critical.on_first;
-      }
-      for (std::size_t i = 0; i < 3; ++i) direction_[i] = size > 0 ? static_cast<float>(way[i] / size) : 0;
+      const float lower = gaps.lower[row][lane];
+      if (critical.leaves(earliest(lower))) continue;
+      std::size_t at = count++;
+      for (; at > 0 && lower_of(order[at - 1]) > lower; --at) order[at] = order[at - 1];
+      order[at] = static_cast<std::uint8_t>(kBlockWidth * row + lane);
     }
   }
+  for (std::size_t i = 0; i < count && !critical.leaves(earliest(lower_of(order[i]))); ++i) {
+    compare_triangles(lanes, order[i] % kBlockWidth, rows, order[i] / kBlockWidth, {fastest, first_reach, second_reach},
+                      critical);
+  }
+}
+
+void Search::compare_triangles(const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows,
+                               std::uint32_t row, const Speeds& speeds, Critical& critical) noexcept {
+  const detail::TrianglePoints a = detail::points_of(lanes, lane),
+                               b = detail::moved_points_of(rows, row, PairAccess::relative(narrow_));
+  const detail::NearestPoints nearest = detail::nearest_points(a, b);
+  const Vec3 way = minus(nearest.on_b, nearest.on_a);
+  const double size = length(way);
+  double gap = -1, rate = speeds.fastest;
+  if (size > 0) {
+    const Vec3 u = along({0, 0, 0}, way, 1 / size);
+    const auto [low, high] = std::pair(std::min({dot(u, b[0]), dot(u, b[1]), dot(u, b[2])}),
+                                       std::max({dot(u, a[0]), dot(u, a[1]), dot(u, a[2])}));
+    gap = low - high - margin_ - error_;
+    rate = speed_ - dot(velocity_, u) + first_turn_.rate(u, speeds.first_reach) +
+           second_turn_.rate(u, speeds.second_reach) + kRounding * speeds.fastest;
+  }
+  const double time = gap > 0 ? (rate > 0 ? gap / rate : std::numeric_limits<double>::infinity()) : 0;
+  if (time >= critical.time) return;
+  critical = {time,
+              kEnough * time,
+              nearest.distance,
+              rate,
+              nearest.on_a,
+              nearest.on_b,
+              lanes.triangle[lane],
+              rows.triangle[row],
+              critical.left_out};
+  if (gap <= 0 && detail::triangles_intersect(a, b, &critical.on_first)) {
+    critical.distance = 0, critical.on_second = critical.on_first;
+  }
+  for (std::size_t i = 0; i < 3; ++i) direction_[i] = size > 0 ? static_cast<float>(way[i] / size) : 0;
 }
 
 void Search::report(const Critical& critical) noexcept {
@@ -303,29 +340,34 @@ void Search::report(const Critical& critical) noexcept {
   std::swap(result_.triangle_a, result_.triangle_b);
 }
 
-bool Search::touching(double time) noexcept {
-  return closer_than(workspace_, pair_, a_.at(time), b_.at(time), options_.margin) == Answer::yes;
+// False where the budget ends it.
+bool Search::touching(PairAccess::BudgetTracker& tracker, double time) noexcept {
+  if (tracker.exhausted()) return false;
+  const std::uint64_t left = options_.budget.pair_tests - tracker.spent();
+  const Answer answer = closer_within(workspace_, pair_, {a_.at(time), b_.at(time)}, options_.margin, {left});
+  tracker.spend(options_.margin > 0 ? workspace_.distance.work() : workspace_.narrow.work());
+  return answer == Answer::yes;
 }
 
 // From a time at which they nearly touch: when they do, if they do soon.
-void Search::find_contact() noexcept {
+void Search::find_contact(PairAccess::BudgetTracker& tracker) noexcept {
   const double begin = result_.t0, end = options_.end;
   double step = 0, miss = begin;
   for (int i = 0; i < kProbes; ++i) {
     const double time = std::min(end, begin + step);
-    if (touching(time)) {
+    if (touching(tracker, time)) {
       result_.t1 = time;
       break;
     }
-    if (time >= end || step > (end - options_.begin) / 16) return;
+    if (tracker.exhausted() || time >= end || step > (end - options_.begin) / 16) return;
     miss = time;
     step = step > 0 ? 2 * step : soon_ / 4;
   }
   if (!(result_.t1 <= end)) return;
   result_.answer = Answer::yes;
-  for (int i = 0; i < kHalvings && result_.t1 - miss > 1e-15 * std::fabs(end); ++i) {
+  for (int i = 0; i < kHalvings && result_.t1 - miss > 1e-15 * std::fabs(end) && !tracker.exhausted(); ++i) {
     const double middle = miss + (result_.t1 - miss) / 2;
-    (touching(middle) ? result_.t1 : miss) = middle;
+    (touching(tracker, middle) ? result_.t1 : miss) = middle;
   }
 }
 
@@ -344,6 +386,7 @@ bool Search::advance(PairAccess::BudgetTracker& tracker) noexcept {
     // What happens exactly at the end counts: one more than what is left.
     critical = Critical{std::nextafter(left, std::numeric_limits<double>::infinity())};
     all = find_critical(tracker, critical);
+    critical.time = std::min(critical.time, critical.left_out);
   }
   const bool found = critical.triangle_first != kNoTriangle;
   if (skip ? critical.time > left : all && !found) {
@@ -385,8 +428,8 @@ Impact Search::run() noexcept {
   while (!result_.finished && !tracker.exhausted() && advance(tracker)) {
   }
   if (near_ > 0 && result_.answer == Answer::maybe) {
-    result_.finished = true;
-    find_contact();
+    find_contact(tracker);
+    result_.finished = result_.answer == Answer::yes || !tracker.exhausted();
   }
   result_.work = tracker.spent();
   return result_;

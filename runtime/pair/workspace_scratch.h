@@ -2,6 +2,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <new>
 
 #include "orchard/runtime/body_pair.h"
 #include "pair_walk.h"
@@ -30,6 +31,21 @@ struct Workspace::Scratch {
   };
   std::unique_ptr<TimedPair[]> timed;
   std::size_t timed_room = 0;
+  // For time_of_impact() of these, and of what is no deeper. False: there is no memory.
+  bool reserve_timed(const PreparedTree& a, const PreparedTree& b) noexcept {
+    const std::size_t deepest =
+        std::size_t{kBlockWidth} * (a.tree.triangle_tree_depth + b.tree.triangle_tree_depth + 1) + 1;
+    if (deepest > timed_room) {
+      timed.reset(new (std::nothrow) TimedPair[deepest]);
+      timed_room = timed ? deepest : 0;
+    }
+    return timed != nullptr;
+  }
 };
+
+// closer_than() within a budget, whose end makes "maybe" of what is not known by then. The work is that of
+// workspace.narrow if the margin is 0, else that of workspace.distance.
+Answer closer_within(Workspace& workspace, const TreePair& pair, const PosePair& poses, double margin,
+                     const Budget& budget) noexcept;
 
 }  // namespace orchard::runtime

@@ -469,7 +469,7 @@ TEST(DetectorBudget, GoesToTheMoreImportantFirstAndThenRound) {
   std::vector<int> certain(20);
   for (int step = 0; step < 40; ++step) {
     for (BodyId id : bodies) w.states[id.index].pose.translation[1] += id.index % 2 == 0 ? 1e-4 : 0;
-    for (const PairEvent& event : w.step({.work = 2000}).events) {
+    for (const PairEvent& event : w.step({.work = 1000}).events) {
       certain[event.a.index] += event.verdict.answer == Answer::yes;
     }
   }
@@ -481,6 +481,25 @@ TEST(DetectorBudget, GoesToTheMoreImportantFirstAndThenRound) {
     most = std::max(most, certain[static_cast<std::size_t>(i)]);
   }
   EXPECT_LT(most, 40);  // the budget did not suffice for all
+}
+
+TEST(DetectorBudget, WhatTheLastStepFoundCostsNextToNothing) {
+  World w;
+  const ShapeId torus = w.detector.add_shape(w.torus);
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < 24; ++i) {
+    bodies.push_back(w.detector.add_body({{torus, {}}}));
+    // Pairs that touch, and pairs that are nearly as close and do not.
+    w.put(bodies.back(), {10.0 * (i / 2), i % 4 == 1 ? 0.3 : 0, i % 4 == 3 ? 0.7 : 0});
+  }
+  Frame frame;
+  for (int step = 0; step < 12; ++step) {
+    for (const BodyId id : bodies) w.states[id.index].pose.translation[2] += id.index % 2 == 0 ? 1e-6 : 0;
+    const std::uint64_t enough = frame.pairs * (kPairWork + 4 * kMotionWork);
+    frame = w.step(step < 4 ? FrameBudget{} : FrameBudget{.work = enough});
+    EXPECT_EQ(frame.pairs, 12u);
+    EXPECT_EQ(frame.certain, frame.pairs) << step;
+  }
 }
 
 TEST(DetectorBudget, InTimeAnswersWhatItReachesAndTellsTheRest) {

@@ -91,4 +91,20 @@ std::pair<std::size_t, std::size_t> SceneRun::numbers(const PairEvent& event) co
   return std::minmax({number(event.a), number(event.b)});
 }
 
+void append(std::vector<double>& all, const Frame& frame) {
+  all.push_back(static_cast<double>(frame.work));
+  all.push_back(static_cast<double>(frame.certain));
+  all.push_back(frame.worst_bound);
+  for (const PairEvent& event : frame.events) {
+    const Verdict& v = event.verdict;
+    all.insert(all.end(),
+               {static_cast<double>(event.change), static_cast<double>(event.a.index),
+                static_cast<double>(event.b.index), static_cast<double>(event.part_a),
+                static_cast<double>(event.part_b), event.time, static_cast<double>(v.answer), v.separation_bound,
+                v.lower_bound, static_cast<double>(v.level), static_cast<double>(v.work), v.contact.radius});
+    all.insert(all.end(), v.contact.center.begin(), v.contact.center.end());
+    all.insert(all.end(), v.contact.normal.begin(), v.contact.normal.end());
+  }
+}
+
 }  // namespace orchard::runtime::test

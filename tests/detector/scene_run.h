@@ -44,4 +44,7 @@ class SceneRun {
   std::map<std::uint64_t, std::size_t> numbers_;
 };
 
+// All numbers of a frame's events, and of the frame: for comparing runs.
+void append(std::vector<double>& all, const Frame& frame);
+
 }  // namespace orchard::runtime::test

@@ -6,7 +6,6 @@
 #include "scene_oracle.h"
 #include "scene_run.h"
 #include "support/effort.h"
-#include "thread_pool.h"
 
 // Every scene against brute force over all pairs at every step.
 namespace orchard::runtime {
@@ -143,43 +142,6 @@ TEST(Detector, WithinABudgetOnlySaysWhatIsTrue) {
   }
 }
 
-// Bytes of an event that mean something.
-void append(std::vector<double>& all, const Frame& frame) {
-  all.push_back(static_cast<double>(frame.work));
-  all.push_back(static_cast<double>(frame.certain));
-  all.push_back(frame.worst_bound);
-  for (const PairEvent& event : frame.events) {
-    const Verdict& v = event.verdict;
-    all.insert(all.end(),
-               {static_cast<double>(event.change), static_cast<double>(event.a.index),
-                static_cast<double>(event.b.index), static_cast<double>(event.part_a),
-                static_cast<double>(event.part_b), event.time, static_cast<double>(v.answer), v.separation_bound,
-                v.lower_bound, static_cast<double>(v.level), static_cast<double>(v.work), v.contact.radius});
-    all.insert(all.end(), v.contact.center.begin(), v.contact.center.end());
-    all.insert(all.end(), v.contact.normal.begin(), v.contact.normal.end());
-  }
-}
-
-TEST(Detector, SaysTheSameWithAnyNumberOfThreads) {
-  for (const Case& c : cases()) {
-    for (const std::uint64_t work : {FrameBudget{}.work, std::uint64_t{5000}}) {
-      std::vector<double> serial;
-      for (const std::size_t threads : {0, 1, 2, 3}) {
-        test::ThreadPool pool(std::max<std::size_t>(threads, 1));
-        DetectorOptions options;
-        if (threads > 0) options.executor = pool.executor();
-        SceneRun run(*c.scene, options);
-        std::vector<double> all;
-        for (int step = 0; step < c.scene->steps; ++step) append(all, run.step(step, {.work = work}));
-        if (threads == 0) serial = all;
-        ASSERT_EQ(all.size(), serial.size()) << c.scene->name;
-        ASSERT_EQ(std::memcmp(all.data(), serial.data(), all.size() * sizeof(double)), 0)
-            << c.scene->name << " with " << threads << " threads";
-      }
-    }
-  }
-}
-
 // A clock ends each run elsewhere, within the broad phase or at any pair, but for the replay.
 TEST(Detector, ReplaysWhatABudgetInTimeHasCutShort) {
   std::size_t cuts = 0;
@@ -190,14 +152,14 @@ TEST(Detector, ReplaysWhatABudgetInTimeHasCutShort) {
     SceneRun run(*c.scene, {}), replay(*c.scene, {});
     for (int step = 0; step < steps; ++step) {
       const Frame frame = run.step(step, {.time = std::chrono::microseconds(1 + 5 * step)});
-      append(first, frame);
+      test::append(first, frame);
       taken.push_back(frame.cut);
       cuts += frame.cut != StepCut{};
     }
     for (int step = 0; step < steps; ++step) {
       const auto at = static_cast<std::size_t>(step);
       const Frame frame = replay.step(step, {.replay = &taken[at]});
-      append(again, frame);
+      test::append(again, frame);
       EXPECT_EQ(frame.cut, taken[at]) << c.scene->name << ", step " << step;
     }
     ASSERT_EQ(first.size(), again.size()) << c.scene->name;

@@ -263,7 +263,7 @@ TEST(SimplifiedMedialMesh, IsTheSameWhateverTheNumberOfThreads) {
   const MedialMesh axis = built_axis(surface, 300);
   const SimplifyOptions options{.vertices = 40, .samples = 500, .check = 500, .search = 20'000, .rounds = 1};
   const std::string all = to_ma(simplify_medial_mesh(surface, axis, options).mesh);
-  for (const std::size_t threads : {1, 7}) {
+  for (const std::size_t threads : {std::size_t{1}, std::size_t{7}}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     EXPECT_EQ(to_ma(simplify_medial_mesh(surface, axis, options).mesh), all) << threads << " threads";
   }

@@ -57,8 +57,9 @@ struct BodyOptions {
   // Two bodies may touch if each one's mask has a bit of the other's group (BodyFilter::category). Others are no pair
   // in the broad phase already, and cost nothing.
   std::uint32_t group = 1, mask = 0xffffffffu;
-  // Above 0: also what happens between two steps is found, by a sweep from pose to pose. It is a promise that relative
-  // to whatever the body may meet no origin moves faster. Lengths per second.
+  // Above 0: also what happens between two steps is found, by time_of_impact() from pose to pose: of each part the
+  // centre straight, the rotation by the smallest angle. It is a promise that relative to whatever the body may meet no
+  // origin moves faster. Lengths per second. Where the scale changes within a step, nobody knows: "possible".
   double continuous_speed = 0;
   // The body, whatever its parts do, lies within this distance of its origin at scale 1: saves a new window update
   // whenever an articulated body stretches. 0: as far as the parts reach.
@@ -81,7 +82,7 @@ struct DetectorOptions {
   bool watch = false;
   // An "end" comes after so many steps in a row with a certain "no"; at least 1. What trembles at contact may use more.
   std::uint32_t steps_to_end = 1;
-  // Pairs of trees that a budget may leave unfinished within a step, at most; what exceeds it is reported as possible.
+  // Pairs of trees that may be gone on with after a first piece at once; what exceeds it is reported as possible.
   std::size_t max_unfinished = 4096;
   Executor executor{};  // of narrow-phase work; the same answers with any
   // Called from within step(), whenever the broad phase is given a body's motion. It throws nothing.
@@ -91,7 +92,7 @@ struct DetectorOptions {
 // How far a step got that a budget in time cut short.
 struct StepCut {
   std::uint64_t broad = kWholeStep;    // WorkBudget::replay
-  std::uint64_t begun = kWholeStep;    // pairs of parts
+  std::uint64_t begun = kWholeStep;    // beginnings of pairs of parts, and first searches
   std::uint64_t refined = kWholeStep;  // their work, and 1 for each piece of it
   std::uint64_t swept = kWholeStep;    // pairs
   friend bool operator==(const StepCut&, const StepCut&) = default;
@@ -99,9 +100,11 @@ struct StepCut {
 
 // Whichever ends first. Work is counted as Budget::pair_tests is; a motion that the broad phase asks for counts as
 // kMotionWork, beginning a pair as kPairWork, one with a simple shape as kSimplePairWork. The broad phase gets half of
-// a limited budget at most. A step exceeds `work` by less than kMaxOvershoot, one pair of leaves, but for what each
-// step does in any case: one unit of the broad phase (WorkBudget). Only a budget in counted work gives the same answers
-// on every machine; what a clock has cut short can be replayed.
+// a limited budget at most, sweeps half of what it leaves. Of a budget in time, what a step does in any case is
+// foreseen from the steps before, and set aside; where that alone takes longer, nothing keeps the step to its budget. A
+// step exceeds `work` by less than kMaxOvershoot, one pair of leaves, but for what each step does in any case: one unit
+// of the broad phase (WorkBudget). Only a budget in counted work gives the same answers on every machine; what a clock
+// has cut short can be replayed.
 struct FrameBudget {
   std::uint64_t work = std::numeric_limits<std::uint64_t>::max();
   std::chrono::nanoseconds time = std::chrono::nanoseconds::max();
@@ -171,9 +174,11 @@ struct StepLoad {
 // parts of one body are never a pair, nor are two static bodies. Trees are their surfaces, as for NarrowPhase; the
 // simple shapes (sphere, capsule, box, half-space) are solid.
 //
-// Refinement (7.3): by class of importance. Within a class those that have waited longest for a certain answer come
-// first: half of what is left goes straight to their triangles, one after the other. Then round: a level of spheres for
-// each pair before any gets more, then slices of exact work, each four times the last.
+// Refinement (7.3): by class of importance, and within a class those first that have waited longest for a certain
+// answer. All pairs begin with what tells most of them at next to no cost: spheres, roots, what the last step found.
+// At the same time, with a share that no budget takes from them, the others go straight to their triangles, one after
+// the other, in pieces; who is not finished then gets further ones, each four times the last. Bounds of pairs that are
+// not certain are those of their spheres, or better. So under any budget every pair gets its turn.
 //
 // Deterministic: same calls, same states, same budget in work: same frames, with any executor. A pair's answer without
 // budget does not depend on other pairs. Allocates nothing once warm: once as many bodies, pairs and kinds of pairs as

@@ -1,0 +1,19 @@
+#pragma once
+#include <optional>
+
+#include "orchard/runtime/body_pair.h"
+
+namespace orchard::runtime {
+
+// collide_coherently() in two parts, for whoever has many pairs and not enough time.
+struct CoherentPair {
+  // What is known without a search: that a clearance has lasted, or that the triangles that met last still do. Nothing
+  // if that does not tell. Some 100 ns.
+  static std::optional<Verdict> recall(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept;
+  // The rest of collide_coherently(), to be asked after recall() has told nothing. "Maybe" where the budget ends it,
+  // which it exceeds by less than one pair of leaves; Verdict::work is all of the search's.
+  static Verdict search(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b,
+                        const Budget& budget = {}) noexcept;
+};
+
+}  // namespace orchard::runtime

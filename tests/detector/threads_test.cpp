@@ -1,0 +1,87 @@
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "orchard/runtime/batch.h"
+#include "scene_run.h"
+#include "support/effort.h"
+#include "thread_pool.h"
+
+// What runs on an executor's threads, and nothing else: for the thread sanitizer, under which a test costs thirty times
+// what it does otherwise.
+namespace orchard::runtime {
+namespace {
+
+TEST(Threads, GiveTheSameFramesWhateverTheirNumber) {
+  const bool more = orchard::test::more() > 1;
+  for (const test::Scene& scene : test::every_scene(more ? 60 : 24, more ? 200 : 12, 1 + orchard::test::first_seed())) {
+    for (const std::uint64_t work : {FrameBudget{}.work, std::uint64_t{5000}}) {
+      std::vector<double> serial;
+      for (const std::size_t threads : {0u, 1u, 2u, 3u}) {
+        test::ThreadPool pool(std::max<std::size_t>(threads, 1));
+        DetectorOptions options;
+        if (threads > 0) options.executor = pool.executor();
+        test::SceneRun run(scene, options);
+        std::vector<double> all;
+        for (int step = 0; step < scene.steps; ++step) test::append(all, run.step(step, {.work = work}));
+        if (threads == 0) serial = all;
+        ASSERT_EQ(all.size(), serial.size()) << scene.name;
+        ASSERT_EQ(std::memcmp(all.data(), serial.data(), all.size() * sizeof(double)), 0)
+            << scene.name << " with " << threads << " threads";
+      }
+    }
+  }
+}
+
+// Where the clock ends a step no two runs are the same, but the pairs that are certain are all the same.
+TEST(Threads, AreRightWhereverTheClockEndsAStep) {
+  const test::Scene scene = test::falling_pile(40, 12, 3);
+  test::ThreadPool pool(2);
+  DetectorOptions options;
+  options.executor = pool.executor();
+  test::SceneRun exact(scene, {}), run(scene, options);
+  for (int step = 0; step < scene.steps; ++step) {
+    std::map<std::pair<std::size_t, std::size_t>, bool> touching;
+    for (const PairEvent& event : exact.step(step).events) {
+      touching[exact.numbers(event)] = event.verdict.answer == Answer::yes;
+    }
+    for (const PairEvent& event : run.step(step, {.time = std::chrono::microseconds(30 * step)}).events) {
+      if (event.verdict.answer != Answer::yes) continue;
+      EXPECT_TRUE(touching[run.numbers(event)]) << step;
+    }
+  }
+}
+
+TEST(Threads, ShareTreesInBatches) {
+  const PackedSphereTree tree = test::build_tree(test::torus(10, 6, 1, 0.4));
+  const PreparedTree prepared(tree);
+  const TreePair pair(prepared, prepared);
+  std::vector<std::array<double, 9>> ra, rb;
+  std::vector<std::array<double, 3>> ta, tb;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    test::Draw draw(seed);
+    const Pose a = draw.pose(0), b = draw.pose(draw.uniform(0, 2.8));
+    ra.push_back(a.rotation), rb.push_back(b.rotation);
+    ta.push_back(a.translation), tb.push_back(b.translation);
+  }
+  const PoseArrays a{ra, ta, {}}, b{rb, tb, {}};
+  std::vector<Answer> serial;
+  for (const std::size_t threads : {1u, 3u}) {
+    test::ThreadPool pool(threads);
+    std::vector<Workspace> workspaces(threads);
+    std::vector<Verdict> verdicts(ra.size());
+    std::vector<Distance> distances(ra.size());
+    collide(workspaces, pool.executor(), std::span(&pair, 1), a, b, verdicts);
+    distance(workspaces, pool.executor(), std::span(&pair, 1), a, b, distances);
+    std::vector<Answer> answers;
+    for (std::size_t i = 0; i < verdicts.size(); ++i) {
+      answers.push_back(verdicts[i].answer);
+      EXPECT_EQ(distances[i].lower > 0, verdicts[i].answer == Answer::no) << i;
+    }
+    if (threads == 1) serial = answers;
+    EXPECT_EQ(answers, serial);
+  }
+}
+
+}  // namespace
+}  // namespace orchard::runtime
