@@ -91,6 +91,7 @@ struct AxisFile {
 };
 std::vector<AxisFile> read_axes(const std::vector<fs::path>& files) {
   std::vector<AxisFile> axes;
+  axes.reserve(files.size());
   for (const fs::path& file : files) axes.push_back({file, read_ma(file)});
   return axes;
 }

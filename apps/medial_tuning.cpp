@@ -145,7 +145,7 @@ std::vector<TuningFlag> refining_flags() {
                       [](T& t, double x) { t.refinement.tolerance = x / 100; }),
                  no_refining),
       idle_where(whole("reach-rounds", "6", 0, 100,
-                       "Times that sheets reach for what they leave open by more than 1.6 border losses: 0 leaves out "
+                       "Times that sheets reach for what they leave open by more than 1.5 border losses: 0 leaves out "
                        "blunt edges and ridges that the points do not show",
                        [](T& t, double x) { t.refinement.reach_rounds = static_cast<int>(x); }),
                  no_refining),

@@ -73,7 +73,9 @@ std::vector<PosePair> flight_poses(const runtime::TreeView& a, const runtime::Tr
     const Pose turned = random_rotation(random);
     const Vec3 way = random_direction(random), aside = perpendicular(random, way);
     const double off = reach * std::sqrt(random.uniform()), half = std::sqrt(reach * reach - off * off);
-    for (double t = -half + kStep * reach * random.uniform(); t < half; t += kStep * reach) {
+    const double begin = -half + kStep * reach * random.uniform();
+    for (int step = 0; begin + step * kStep * reach < half; ++step) {
+      const double t = begin + step * kStep * reach;
       const PosePair poses_now{pose_a, centered(turned, ball_b.center, off * aside + t * way)};
       poses.push_back(poses_now);
       if (pair.start(poses_now.a, poses_now.b) != runtime::Answer::no && pair.refine_exactly() != runtime::Answer::no)

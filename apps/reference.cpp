@@ -65,7 +65,7 @@ std::string markdown_reference(const CLI::App& app) {
 }
 
 std::string manual_page(const CLI::App& app, const std::string& version) {
-  const std::string name = app.get_name();
+  const std::string& name = app.get_name();
   std::string text = fmt::format(
       ".TH ORCHARD 1 \"\" \"{0} {1}\" \"User Commands\"\n.SH NAME\n{0} \\- sphere\\-trees, medial axes and collision "
       "answers from triangle meshes\n.SH SYNOPSIS\n.B {0}\n.I COMMAND\n[options]\n.SH DESCRIPTION\n{2}.\n",

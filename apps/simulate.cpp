@@ -77,6 +77,7 @@ double percentile(std::vector<double> values, double part) {
 
 json microseconds(const std::vector<FrameRecord>& frames, double (*seconds)(const FrameRecord&)) {
   std::vector<double> values;
+  values.reserve(frames.size());
   for (const FrameRecord& frame : frames) values.push_back(1e6 * seconds(frame));
   return {{"p50", percentile(values, 0.5)},
           {"p99", percentile(values, 0.99)},

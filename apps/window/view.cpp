@@ -106,7 +106,9 @@ void place(vtkActor* actor, const runtime::Pose& pose) {
   vtkNew<vtkMatrix4x4> matrix;
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column)
-      matrix->SetElement(row, column, pose.scale * pose.rotation[static_cast<std::size_t>(3 * row + column)]);
+      matrix->SetElement(
+          row, column,
+          pose.scale * pose.rotation[3 * static_cast<std::size_t>(row) + static_cast<std::size_t>(column)]);
     matrix->SetElement(row, 3, pose.translation[static_cast<std::size_t>(row)]);
   }
   actor->SetUserMatrix(matrix);

@@ -30,17 +30,37 @@ class Splitter {
   Splitter(const Surface& surface, BallComplex& complex, const SplitOptions& options, SplitErrors& known)
       : surface_(surface), complex_(complex), options_(options), known_(known) {}
 
-  // Of each edge, how far the balls on it and on the triangles whose longest edge it is are off.
+  // What was beyond the tolerance when dividing ended is not divided another time: its error becomes a negative one.
+  void give_up_what_is_left() {
+    for (std::vector<double>* errors : {&known_.edges.errors, &known_.triangles.errors}) {
+      for (double& error : *errors) {
+        if (error > options_.tolerance) error = -error;
+      }
+    }
+  }
+
+  // Of each edge, how far the balls on it and on the triangles whose longest edge it is are off; those that were given
+  // up count for nothing.
   std::vector<double> errors() {
     measure(known_.edges, complex_.edges, [this](const auto& edge) { return error_of_edge(edge); });
     measure(known_.triangles, complex_.triangles, [this](const auto& triangle) { return error_of_triangle(triangle); });
     std::vector<double> error = known_.edges.errors;
+    given_up_.assign(error.size(), 0);
+    for (Index e = 0; e < error.size(); ++e) given_up_[e] = error[e] < 0 ? 1 : 0;
     for (Index t = 0; t < complex_.triangles.size(); ++t) {
-      if (known_.triangles.errors[t] <= options_.tolerance) continue;
-      double& worst = error[longest_edge(complex_.triangles[t])];
-      worst = std::max(worst, known_.triangles.errors[t]);
+      const double of_triangle = known_.triangles.errors[t];
+      if (std::abs(of_triangle) <= options_.tolerance) continue;
+      const Index longest = longest_edge(complex_.triangles[t]);
+      error[longest] = std::max(error[longest], of_triangle);
+      if (of_triangle < 0) given_up_[longest] = 1;
     }
     return error;
+  }
+
+  Index count_undivided(const std::vector<double>& error) const {
+    Index count = 0;
+    for (Index e = 0; e < error.size(); ++e) count += error[e] > options_.tolerance || given_up_[e] != 0 ? 1 : 0;
+    return count;
   }
 
   // Returns how many edges were divided.
@@ -131,6 +151,7 @@ class Splitter {
   BallComplex& complex_;
   const SplitOptions& options_;
   SplitErrors& known_;
+  std::vector<std::uint8_t> given_up_;  // edges that were left, or the longest of triangles that were
 };
 
 }  // namespace
@@ -139,10 +160,10 @@ SplitReport split_nonlinear(const Surface& surface, BallComplex& complex, const 
                             SplitErrors& known, const Progress& progress) {
   SplitReport report;
   Splitter splitter(surface, complex, options, known);
+  splitter.give_up_what_is_left();
   for (int round = 0;; ++round) {
     const std::vector<double> errors = splitter.errors();
-    report.undivided = static_cast<Index>(
-        std::count_if(errors.begin(), errors.end(), [&](double error) { return error > options.tolerance; }));
+    report.undivided = splitter.count_undivided(errors);
     if (round == options.max_rounds || report.undivided == 0) break;
     const Index divided = splitter.divide(errors);
     if (divided == 0) break;

@@ -17,7 +17,7 @@ struct SplitReport {
   Index divided = 0, undivided = 0;
 };
 
-// The errors of cells, sorted, so that no cell is looked at twice.
+// The errors of sorted cells, so that no cell is looked at twice; negative ones of what earlier calls gave up.
 template <class Cell>
 struct CellErrors {
   std::vector<Cell> cells;
@@ -33,7 +33,7 @@ struct SplitErrors {
 // Divides edges until the balls that are interpolated on edges and triangles neither protrude nor fall short by more
 // than the tolerance: they are looked at at the quarters of edges and the middles of triangles, and every ten
 // tolerances of long ones. A triangle's error counts for its longest edge. New vertices are exact where that is
-// possible. Deterministic; parallel.
+// possible; what `known` has as left by an earlier call is left again. Deterministic; parallel.
 SplitReport split_nonlinear(const Surface& surface, BallComplex& complex, const SplitOptions& options,
                             SplitErrors& known, const Progress& progress);
 

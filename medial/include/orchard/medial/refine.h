@@ -31,7 +31,7 @@ struct RefineReport {
   Index small_pieces = 0;      // edges and triangles of spikes and flakes, taken away
   Index notches = 0;           // triangles that fill notches of borders
   Index edge_vertices = 0;     // vertices of radius 0 on sharp edges
-  Index reached_places = 0;    // of the surface, left open by more than 1.6 border_loss
+  Index reached_places = 0;    // of the surface, left open by more than 1.5 border_loss
   Index divided = 0;           // edges
   Index undivided = 0;         // edges beyond the tolerance that are left, as short as they get or after max_rounds
   Index degenerate = 0;        // vertices merged with others at their place, and flat triangles taken away
