@@ -144,11 +144,12 @@ std::vector<TuningFlag> refining_flags() {
                       "Percent of the diagonal that balls between two vertices may be off: less makes more vertices",
                       [](T& t, double x) { t.refinement.tolerance = x / 100; }),
                  no_refining),
-      idle_where(whole("reach-rounds", "6", 0, 100,
-                       "Times that sheets reach for what they leave open by more than 1.5 border losses: 0 leaves out "
-                       "blunt edges and ridges that the points do not show",
-                       [](T& t, double x) { t.refinement.reach_rounds = static_cast<int>(x); }),
-                 no_refining),
+      idle_where(
+          whole("reach-rounds", "6", 0, 100,
+                "Times that sheets reach for what they leave open by more than 1.35 border losses: 0 leaves out blunt "
+                "edges and ridges that no point shows",
+                [](T& t, double x) { t.refinement.reach_rounds = static_cast<int>(x); }),
+          no_refining),
       idle_where(real("sharp-angle", "40.1", 0, 180, "Degrees from which a convex edge is one that sheets reach to",
                       [](T& t, double x) { t.refinement.sharp_angle = std::min(x * kRadians, std::numbers::pi); }),
                  no_refining)};

@@ -16,12 +16,12 @@ namespace {
 class OpenPlaceReacher {
  public:
   OpenPlaceReacher(const Surface& surface, BallComplex& complex, BallSolver& solver,
-                   const Reconstruction& reconstruction, const BorderOptions& options)
+                   const Reconstruction& reconstruction, double left, const BorderOptions& options)
       : sheets_(surface, complex, options),
         solver_(solver),
         edges_(surface, options.sharp_angle),
         reconstruction_(reconstruction),
-        level_(std::max(options.level, options.tolerance)) {}
+        left_(left) {}
 
   Index run(std::span<const UncoveredPlace> places) {
     Index reached = 0;
@@ -32,8 +32,7 @@ class OpenPlaceReacher {
   }
 
  private:
-  static constexpr double kLeft = 1;         // border losses: what a new ball leaves open of its place
-  static constexpr double kSlack = 1.15;     // of that: what will do
+  static constexpr double kSlack = 1.15;     // of what a ball is to leave open: what will do
   static constexpr double kTouching = 1e-3;  // of a ball's radius: how far it may hold something of the surface
   static constexpr int kSteps = 20;          // of bisection, and of shrinking
   static constexpr int kAttempts = 4;        // each from half as far in as the last
@@ -45,9 +44,8 @@ class OpenPlaceReacher {
     const std::vector<Index> candidates = edges_at(cell, foot.center);
     if (candidates.empty()) return false;
     ClosestPoint on_edge = ExactBall::nowhere();
-    const ExactBall ball = edges_.nearest(place.position, level_, on_edge)
-                               ? ball_on_edge(on_edge)
-                               : ball_at(place.position, foot.center, kLeft * level_);
+    const ExactBall ball = edges_.nearest(place.position, left_, on_edge) ? ball_on_edge(on_edge)
+                                                                          : ball_at(place.position, foot.center, left_);
     // Where no triangle leads all the way, one may lead half of it.
     return attach(ball, candidates) || attach(ball_at(place.position, foot.center, place.value / 2), candidates);
   }
@@ -153,15 +151,15 @@ class OpenPlaceReacher {
   SharpEdges edges_;
   std::vector<Fin> fins_;
   const Reconstruction& reconstruction_;
-  const double level_;  // mesh units: the border loss, where balls in between may not fall short by more
+  const double left_;  // mesh units: what a new ball leaves open of its place
 };
 
 }  // namespace
 
 Index reach_open_places(const Surface& surface, BallComplex& complex, BallSolver& solver,
-                        const Reconstruction& reconstruction, std::span<const UncoveredPlace> places,
+                        const Reconstruction& reconstruction, std::span<const UncoveredPlace> places, double left,
                         const BorderOptions& options) {
-  return OpenPlaceReacher(surface, complex, solver, reconstruction, options).run(places);
+  return OpenPlaceReacher(surface, complex, solver, reconstruction, left, options).run(places);
 }
 
 }  // namespace orchard::detail

@@ -35,7 +35,7 @@ constexpr int kBorderPasses = 3;      // of filling notches and reaching edges: 
 constexpr double kMinLength = 1e-3;   // diagonals: shorter edges are not divided
 constexpr std::size_t kEnough = 24;   // seeds of a vertex: coalesced ones have hundreds
 constexpr int kLevelSteps = 5;        // of bisection for the place where an edge crosses the level
-constexpr double kOpen = 1.5;         // of the border loss: places left open by more are reached for
+constexpr double kOpen = 1.35;        // of the border loss: places left open by more are reached for
 constexpr double kResolution = 0.1;   // spacings, of looking for these
 constexpr double kApart = 0.5;        // spacings, between two that are reached for at once
 constexpr double kCoincident = 1e-6;  // diagonals: vertices that are nearer are one
@@ -274,12 +274,15 @@ class Refiner {
   // Where balls leave the surface open by more than borders may; what is added is divided, too.
   void reach_open_places() {
     const detail::BorderOptions border = border_options();
-    detail::UncoveredSearch search(surface_, kOpen * std::max(level_, border.tolerance), kResolution * border.spacing);
+    const double limit = std::max(kOpen * std::max(level_, border.tolerance),
+                                  options_.reach_detail * border.spacing * border.spacing / diagonal_);
+    detail::UncoveredSearch search(surface_, limit, kResolution * border.spacing);
     BallSolver solver = this->solver();
     for (int round = 0; round < options_.reach_rounds; ++round) {
       const detail::Reconstruction reconstruction(complex_.mesh());
       const std::vector<detail::UncoveredPlace> places = search.find(reconstruction, kApart * border.spacing);
-      const Index reached = detail::reach_open_places(surface_, complex_, solver, reconstruction, places, border);
+      const Index reached =
+          detail::reach_open_places(surface_, complex_, solver, reconstruction, places, limit / kOpen, border);
       if (reached == 0) break;
       report_.reached_places += reached;
       report_.notches += detail::fill_notches(surface_, complex_, solver, border);
@@ -322,6 +325,8 @@ void check(const RefineOptions& options) {
   if (!(options.sharp_angle >= 0 && options.sharp_angle <= std::numbers::pi))
     throw InputError("sharp angle: between 0 and pi");
   if (options.max_rounds < 0) throw InputError("rounds of refining: not negative");
+  if (!(options.reach_detail >= 0 && std::isfinite(options.reach_detail)))
+    throw InputError("detail that is reached for: a finite number, not negative");
   if (options.reach_rounds < 0) throw InputError("rounds of reaching for open places: not negative");
 }
 

@@ -20,6 +20,9 @@ struct RefineOptions {
   int max_rounds = 6;
   // Of reaching for what is left open of the surface. At least 0.
   int reach_rounds = 6;
+  // What the points can show, in squares of their spacing over the diagonal, as what a chord cuts off a curve is: what
+  // is left open by less is not reached for. With 5,000 points it is about the border loss. At least 0: anything.
+  double reach_detail = 7;
 };
 
 // What refining did.
@@ -31,7 +34,7 @@ struct RefineReport {
   Index small_pieces = 0;      // edges and triangles of spikes and flakes, taken away
   Index notches = 0;           // triangles that fill notches of borders
   Index edge_vertices = 0;     // vertices of radius 0 on sharp edges
-  Index reached_places = 0;    // of the surface, left open by more than 1.5 border_loss
+  Index reached_places = 0;    // of the surface, left open by more than borders may
   Index divided = 0;           // edges
   Index undivided = 0;         // edges beyond the tolerance that are left, as short as they get or after max_rounds
   Index degenerate = 0;        // vertices merged with others at their place, and flat triangles taken away
@@ -51,10 +54,10 @@ struct RefinedAxis {
 // sheets are cut where their borders lose border_loss; spikes and flakes go that hang on the rest by one vertex and
 // reach no farther from it than twice its radius, but for what the topology needs; notches between the teeth of their
 // borders are filled, and those that end at sharp convex edges are extended onto these; what is interpolated too
-// coarsely is divided, with exact balls for new vertices; where the surface is then left open by more than 1.6
-// border_loss, triangles reach for it from the nearest edges; and at last vertices at one place are merged, and
-// triangles without area taken away. All by divisions, collapses, free extensions and contractions under the link
-// condition, so the topology is that of `axis`.
+// coarsely is divided, with exact balls for new vertices; where the surface is then left open by more than 1.35
+// border_loss and reach_detail, triangles reach for it from the nearest edges; and at last vertices at one place are
+// merged, and triangles without area taken away. All by divisions, collapses, free extensions and contractions under
+// the link condition, so the topology is that of `axis`.
 //
 // Vertices have the radius that is the distance of their centre to the surface, up to rounding. Deterministic;
 // parallel. O(n log n) for n vertices, and some nearest-point queries each. `sampling` has the points of `axis`. Throws
