@@ -12,7 +12,7 @@ namespace orchard::runtime::detail {
 namespace {
 
 constexpr double kSpare = 1 + 0x1p-12;    // of a cell: more than what coordinates within the grid are rounded by
-constexpr double kMiddle = 0x1p30;        // cells: the origin's; beyond twice as many there is no other
+constexpr double kOriginCell = 0x1p30;        // cells: the origin's; beyond twice as many there is no other
 constexpr double kCellsPerSpacing = 2;    // smaller cells do not have fewer bodies
 constexpr std::size_t kLargeShare = 256;  // one in so many bodies may be larger than a cell
 constexpr std::size_t kMaxTests = 64;     // for each body and pair: with more of them boxes are the better choice
@@ -91,8 +91,8 @@ void SortedSpheres::begin(std::size_t bodies, const Vec3& origin, double spacing
 
 // Monotone. What lies too far away is taken for nearer: neighbours remain neighbours.
 std::uint32_t SortedSpheres::coordinate(double x, std::size_t axis) const noexcept {
-  const double cells = (x - origin_[axis]) * per_length_ + kMiddle;
-  return static_cast<std::uint32_t>(std::clamp(cells, 1.0, 2 * kMiddle));
+  const double cells = (x - origin_[axis]) * per_length_ + kOriginCell;
+  return static_cast<std::uint32_t>(std::clamp(cells, 1.0, 2 * kOriginCell));
 }
 
 std::uint32_t SortedSpheres::line_of(const Vec3& center) const noexcept {
