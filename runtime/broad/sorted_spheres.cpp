@@ -12,7 +12,7 @@ namespace orchard::runtime::detail {
 namespace {
 
 constexpr double kSpare = 1 + 0x1p-12;    // of a cell: more than what coordinates within the grid are rounded by
-constexpr double kOriginCell = 0x1p30;        // cells: the origin's; beyond twice as many there is no other
+constexpr double kOriginCell = 0x1p30;    // cells: the origin's; beyond twice as many there is no other
 constexpr double kCellsPerSpacing = 2;    // smaller cells do not have fewer bodies
 constexpr std::size_t kLargeShare = 256;  // one in so many bodies may be larger than a cell
 constexpr std::size_t kMaxTests = 64;     // for each body and pair: with more of them boxes are the better choice
