@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 #include "orchard/geometry/error.h"
 #include "refine/open_places.h"
+#include "refine/refiner.h"
 
 namespace orchard {
 namespace {
@@ -21,7 +23,7 @@ class MedialBuilder {
       finish_axis();
       return std::move(build_);
     }
-    const bool own = input.sampling || input.diagram;
+    const int rounds = input.sampling || input.diagram ? 0 : options_.open_rounds;
     if (input.diagram) {
       build_.sampling = std::move(input.diagram->sampling);
       build_.diagram = std::move(input.diagram->diagram);
@@ -30,10 +32,7 @@ class MedialBuilder {
       make_diagram(std::move(input.sampling));
     }
     make_axis();
-    if (!options_.refine) return std::move(build_);
-    const int rounds = own ? 0 : options_.open_rounds;
-    for (int round = 0; round < rounds && add_open_places(); ++round) make_axis();
-    refine();
+    if (options_.refine) refine(rounds);
     return std::move(build_);
   }
 
@@ -96,12 +95,26 @@ class MedialBuilder {
     stage("pruning", [&] { build_.axis = prune(build_.axis, options_.prune); });
   }
 
-  // Those that the refined axis leaves open where it does not reach for them; and makes the diagram anew. False if
-  // there are none.
-  bool add_open_places() {
-    RefineOptions as_sampled = *options_.refine;
-    as_sampled.reach_rounds = 0;
-    const MedialAxis refined = refined_axis(as_sampled).axis;
+  // Before sheets reach for places left open, such places become points in so many rounds.
+  void refine(int rounds) {
+    std::optional<detail::Refiner> refiner;
+    for (int round = 0;; ++round) {
+      stage("refining", [&] {
+        refiner.emplace(surface_, build_.sampling, build_.axis, *options_.refine, progress_);
+        refiner->refine();
+      });
+      if (round == rounds || !add_open_places(refiner->mesh())) break;
+      make_axis();
+    }
+    stage("refining", [&] {
+      RefinedAxis refined = refiner->finish();
+      build_.axis = std::move(refined.axis);
+      build_.refinement = refined.report;
+    });
+  }
+
+  // Those that a medial mesh leaves open; and makes the diagram anew. False if there are none.
+  bool add_open_places(const MedialMesh& refined) {
     SurfaceSampling added;
     stage("open places", [&] {
       const double limit = options_.refine->border_loss * surface_.bounding_box().diagonal().norm();
@@ -122,17 +135,6 @@ class MedialBuilder {
     build_.gap_repair.points_added += added_before;
     build_.gap_repair.points_removed += removed_before;
     return true;
-  }
-
-  RefinedAxis refined_axis(const RefineOptions& options) {
-    RefinedAxis refined;
-    stage("refining", [&] { refined = refine_axis(surface_, build_.sampling, build_.axis, options, progress_); });
-    return refined;
-  }
-  void refine() {
-    RefinedAxis refined = refined_axis(*options_.refine);
-    build_.axis = std::move(refined.axis);
-    build_.refinement = refined.report;
   }
 
   const Surface& surface_;

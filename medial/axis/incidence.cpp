@@ -1,6 +1,8 @@
 #include "incidence.h"
 
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
 namespace orchard::detail {
 namespace {
@@ -11,6 +13,32 @@ std::vector<Index> with_cells(const Rows& rows, std::size_t count) {
     if (rows[i].size() == count) found.push_back(i);
   }
   return found;
+}
+
+// By their first corner, then among the few that have it.
+template <class Cell>
+void sort_and_deduplicate(std::vector<Cell>& cells) {
+  Index count = 0;
+  for (Cell& corners : cells) {
+    std::sort(corners.begin(), corners.end());
+    count = std::max(count, corners[0] + 1);
+  }
+  std::vector<Index> end(count, 0);
+  for (const Cell& corners : cells) ++end[corners[0]];
+  Index sum = 0;
+  for (Index& e : end) {
+    sum += e;
+    e = sum - e;
+  }
+  std::vector<Cell> sorted(cells.size());
+  for (const Cell& corners : cells) sorted[end[corners[0]]++] = corners;
+  auto begin = sorted.begin();
+  for (const Index e : end) {
+    std::sort(begin, sorted.begin() + e);
+    begin = sorted.begin() + e;
+  }
+  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+  cells = std::move(sorted);
 }
 
 }  // namespace
@@ -55,27 +83,32 @@ void complete_cells(std::vector<std::array<Index, 2>>& edges, std::vector<std::a
     edges.push_back({a, c});
     edges.push_back({b, c});
   }
-  const auto sort_and_deduplicate = [](auto& cells) {
-    for (auto& corners : cells) std::sort(corners.begin(), corners.end());
-    std::sort(cells.begin(), cells.end());
-    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  };
   sort_and_deduplicate(edges);
   sort_and_deduplicate(triangles);
 }
 
-Index index_of_edge(const std::vector<std::array<Index, 2>>& edges, Index a, Index b) {
+EdgeNumbers::EdgeNumbers(const std::vector<std::array<Index, 2>>& edges, Index vertices)
+    : edges_(edges), begin_(std::size_t{vertices} + 1, 0) {
+  for (const auto& [a, b] : edges) ++begin_[a + 1];
+  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+}
+
+Index EdgeNumbers::operator()(Index a, Index b) const {
   const std::array<Index, 2> edge{std::min(a, b), std::max(a, b)};
-  return static_cast<Index>(std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin());
+  const auto found = std::lower_bound(edges_.begin() + begin_[edge[0]], edges_.begin() + begin_[edge[0] + 1], edge);
+  return static_cast<Index>(found - edges_.begin());
 }
 
 CellIncidence::CellIncidence(const std::vector<std::array<Index, 2>>& edges,
                              const std::vector<std::array<Index, 3>>& triangles, Index vertices) {
   std::vector<std::array<Index, 2>> at_edge, at_vertex;
+  at_edge.reserve(3 * triangles.size());
+  at_vertex.reserve(2 * edges.size());
+  const EdgeNumbers edge(edges, vertices);
   sides.reserve(triangles.size());
   for (Index t = 0; t < triangles.size(); ++t) {
     const auto& [a, b, c] = triangles[t];
-    sides.push_back({index_of_edge(edges, a, b), index_of_edge(edges, a, c), index_of_edge(edges, b, c)});
+    sides.push_back({edge(a, b), edge(a, c), edge(b, c)});
     for (const Index side : sides.back()) at_edge.push_back({side, t});
   }
   for (Index e = 0; e < edges.size(); ++e) {

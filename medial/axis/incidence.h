@@ -15,13 +15,24 @@ Rows rows_of(const std::vector<std::array<Index, 2>>& pairs, Index count);
 // The only living cell of a row; kNone if there is none, or more than one.
 Index only(std::span<const Index> row, const std::vector<std::uint8_t>& alive);
 
-// Sorts the corners of edges and triangles, then these; drops repeated ones and adds the edges of triangles.
+// Sorts the corners of edges and triangles, then these; drops repeated ones and adds the edges of triangles. O(n) where
+// vertices have few cells.
 void complete_cells(std::vector<std::array<Index, 2>>& edges, std::vector<std::array<Index, 3>>& triangles);
 
-// The number of an edge that there is, of sorted ones.
-Index index_of_edge(const std::vector<std::array<Index, 2>>& edges, Index a, Index b);
+// The numbers of sorted edges, by their corners, which are below `vertices`. `edges` must outlive it, unchanged. O(n).
+class EdgeNumbers {
+ public:
+  EdgeNumbers(const std::vector<std::array<Index, 2>>& edges, Index vertices);
 
-// Of complete cells with corners below `vertices`; lists of cells are ascending. O(n log n).
+  // Of an edge that there is. O(log d) for d edges at its lower corner.
+  Index operator()(Index a, Index b) const;
+
+ private:
+  const std::vector<std::array<Index, 2>>& edges_;
+  std::vector<Index> begin_;  // for each lower corner, and the end
+};
+
+// Of complete cells with corners below `vertices`; lists of cells are ascending. O(n) where vertices have few cells.
 struct CellIncidence {
   CellIncidence(const std::vector<std::array<Index, 2>>& edges, const std::vector<std::array<Index, 3>>& triangles,
                 Index vertices);

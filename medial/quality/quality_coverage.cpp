@@ -40,13 +40,13 @@ MaxOverTriangles max_coverage(const Surface& surface, const Reconstruction& reco
   for (Index t = 0; t < surface.mesh().triangles.size(); ++t) triangles.push_back(surface.corners(t));
   return max_over_triangles(triangles, known, kAccuracy * diagonal, kMaxParts, [&](const Corners& corners) {
     PieceValue piece{.value = 0, .bound = 0, .place = (corners[0] + corners[1] + corners[2]) / 3};
-    Sphere ball;
-    piece.value = reconstruction.distance(piece.place, ball);
-    // The distance is 1-Lipschitz, and to a single ball it is convex.
-    double reach = 0, at_corners = -ball.radius;
+    const Reconstruction::Nearest nearest = reconstruction.nearest(piece.place);
+    piece.value = nearest.distance;
+    // The distance is 1-Lipschitz, and to a single cell it is convex.
+    double reach = 0, at_corners = piece.value;
     for (const Point& corner : corners) {
       reach = std::max(reach, (corner - piece.place).norm());
-      at_corners = std::max(at_corners, (corner - ball.center).norm() - ball.radius);
+      at_corners = std::max(at_corners, reconstruction.distance_to_cell(nearest.cell, corner));
     }
     piece.bound = std::min(piece.value + reach, at_corners);
     return piece;

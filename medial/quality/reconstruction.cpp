@@ -101,6 +101,8 @@ Reconstruction::Reconstruction(const MedialMesh& mesh) {
   triangles_ = cells.triangles;
   edges_ = cells.edges;
   corners_ = std::move(cells.corners);
+  balls_.reserve(mesh.size());
+  for (Index v = 0; v < mesh.size(); ++v) balls_.push_back(vertex_ball(mesh, v));
   tree_ = SupportTree(std::move(cells.items));
 }
 
@@ -139,19 +141,25 @@ double Reconstruction::distance_between(double enough, double bound, const Point
   return tree_.min(query, bound, value_of, enough);
 }
 
-std::array<Index, 3> Reconstruction::nearest_cell(const Point& query, Sphere& ball) const {
-  Index cell = 0;
-  tree_.min(query, std::numeric_limits<double>::infinity(),
-            [&](Index item, const SupportTree::Item& balls, double best) {
-              Sphere found;
-              const double value = evaluate(item, balls, query, best, found);
-              if (value < best) {
-                ball = found;
-                cell = item;
-              }
-              return value;
-            });
-  return corners_[cell];
+Reconstruction::Nearest Reconstruction::nearest(const Point& query, double enough) const {
+  Nearest nearest;
+  const auto value_of = [&](Index item, const SupportTree::Item& balls, double best) {
+    Sphere found;
+    const double value = evaluate(item, balls, query, best, found);
+    if (value < best) {
+      nearest.ball = found;
+      nearest.cell = item;
+    }
+    return value;
+  };
+  nearest.distance = tree_.min(query, nearest.distance, value_of, enough);
+  return nearest;
+}
+
+double Reconstruction::distance_to_cell(Index cell, const Point& query) const {
+  const auto& [a, b, c] = corners_[cell];
+  Sphere ball;
+  return evaluate(cell, {balls_[a], balls_[b], balls_[c]}, query, std::numeric_limits<double>::infinity(), ball);
 }
 
 }  // namespace orchard::detail

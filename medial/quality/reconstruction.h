@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "orchard/medial/medial_mesh.h"
@@ -22,9 +23,21 @@ class Reconstruction {
   double distance_below(double bound, const Point& query, Sphere& ball) const;
   // The same, but any value below `enough`, with its ball, will do where there are such.
   double distance_between(double enough, double bound, const Point& query, Sphere& ball) const;
-  // The corners of the cell that has the ball of distance(query, ball); smaller cells repeat their last. Precondition:
-  // there is one.
-  std::array<Index, 3> nearest_cell(const Point& query, Sphere& ball) const;
+
+  // distance(query), with its ball and the cell that has it: a triangle, or an edge or a vertex that no larger cell
+  // holds.
+  struct Nearest {
+    double distance = std::numeric_limits<double>::infinity();
+    Sphere ball{Point::Zero(), 0};
+    Index cell = kNone;  // if there is none
+  };
+  // Any below `enough` will do where there are such.
+  Nearest nearest(const Point& query, double enough = -std::numeric_limits<double>::infinity()) const;
+  // The vertices of a cell; smaller ones repeat their last.
+  const std::array<Index, 3>& corners_of(Index cell) const { return corners_[cell]; }
+  // The least |query - centre| - radius over the balls of one cell. They are those in the convex hull of its corners'
+  // balls, so it is a convex function of the query: nowhere on a triangle is it more than at the corners.
+  double distance_to_cell(Index cell, const Point& query) const;
 
  private:
   // The least for an item, and the ball; a value that is `best` or more need not be exact.
@@ -32,6 +45,7 @@ class Reconstruction {
 
   Index triangles_ = 0, edges_ = 0;  // items are triangles, edges and vertices that no larger cell holds, in this order
   std::vector<std::array<Index, 3>> corners_;  // of each item
+  std::vector<Sphere> balls_;                  // of each vertex
   SupportTree tree_;
 };
 

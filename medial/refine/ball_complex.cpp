@@ -6,8 +6,6 @@
 #include <tuple>
 #include <utility>
 
-#include "../axis/incidence.h"
-
 namespace orchard::detail {
 namespace {
 
@@ -155,14 +153,13 @@ MedialMesh BallComplex::mesh() const {
 
 void BallComplex::complete() { complete_cells(edges, triangles); }
 
-Index BallComplex::edge_of(Index a, Index b) const { return index_of_edge(edges, a, b); }
-
 void subdivide(BallComplex& complex, const std::vector<Index>& cut) {
   std::vector<Triangle> triangles;
   triangles.reserve(complex.triangles.size() * 2);
   TriangleCutter cutter(complex, triangles);
+  const EdgeNumbers edge = complex.edge_numbers();
   for (const auto& [a, b, c] : complex.triangles)
-    cutter.cut({a, b, c}, {cut[complex.edge_of(b, c)], cut[complex.edge_of(a, c)], cut[complex.edge_of(a, b)]});
+    cutter.cut({a, b, c}, {cut[edge(b, c)], cut[edge(a, c)], cut[edge(a, b)]});
   std::vector<Edge> edges;
   edges.reserve(complex.edges.size() * 2);
   for (Index e = 0; e < complex.edges.size(); ++e) {

@@ -2,6 +2,7 @@
 #include <array>
 #include <vector>
 
+#include "../axis/incidence.h"
 #include "exact_ball.h"
 #include "orchard/medial/medial_mesh.h"
 
@@ -17,8 +18,7 @@ struct BallComplex {
   MedialMesh mesh() const;
   // Sorts edges and triangles, drops repeated ones and adds the edges of triangles.
   void complete();
-  // The number of an edge that there is.
-  Index edge_of(Index a, Index b) const;
+  EdgeNumbers edge_numbers() const { return {edges, size()}; }
 };
 
 // Cuts edges in two, and with them the triangles at them: the same topology. cut[e] is the vertex that divides edge e,

@@ -15,9 +15,10 @@ Borders find_borders(const BallComplex& complex) {
   Borders borders;
   std::vector<std::uint8_t> count(complex.edges.size(), 0);
   borders.inner.assign(complex.size(), 0);
+  const EdgeNumbers edge = complex.edge_numbers();
   for (const auto& [a, b, c] : complex.triangles) {
-    for (const Index edge : {complex.edge_of(a, b), complex.edge_of(a, c), complex.edge_of(b, c)}) {
-      if (count[edge] < 3) ++count[edge];
+    for (const Index e : {edge(a, b), edge(a, c), edge(b, c)}) {
+      if (count[e] < 3) ++count[e];
     }
     borders.inner[a] += angle_at(complex, a, b, c);
     borders.inner[b] += angle_at(complex, b, a, c);

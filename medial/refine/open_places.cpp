@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "../gaps/point_tree.h"
@@ -17,16 +18,19 @@ constexpr double kSeparation = 0.1;  // mean spacings
 
 }  // namespace
 
-SurfaceSampling open_places(const Surface& surface, const MedialAxis& axis, const SurfaceSampling& sampling,
+SurfaceSampling open_places(const Surface& surface, const MedialMesh& mesh, const SurfaceSampling& sampling,
                             double limit) {
   const SurfaceSampling probes =
       sample_surface(surface, {.face_points = kProbes * sampling.size(), .edge_points = 0, .iterations = 0});
-  const MedialMesh mesh = medial_mesh(axis);
   const Reconstruction reconstruction(mesh);
   std::vector<std::uint8_t> open(probes.size());
   tbb::parallel_for(tbb::blocked_range<Index>(0, probes.size(), 128), [&](const auto& range) {
-    for (Index i = range.begin(); i != range.end(); ++i)
-      open[i] = reconstruction.distance(probes.points[i]) > limit ? 1 : 0;
+    Sphere ball;
+    for (Index i = range.begin(); i != range.end(); ++i) {
+      const double distance =
+          reconstruction.distance_between(limit, std::numeric_limits<double>::infinity(), probes.points[i], ball);
+      open[i] = distance > limit ? 1 : 0;
+    }
   });
   const double separation = kSeparation * std::sqrt(surface.report().area / sampling.size());
   PointTree tree(surface.bounding_box());

@@ -18,6 +18,7 @@ class OpenPlaceReacher {
   OpenPlaceReacher(const Surface& surface, BallComplex& complex, BallSolver& solver,
                    const Reconstruction& reconstruction, double left, const BorderOptions& options)
       : sheets_(surface, complex, options),
+        edge_numbers_(complex.edge_numbers()),
         solver_(solver),
         edges_(surface, options.sharp_angle),
         reconstruction_(reconstruction),
@@ -39,15 +40,15 @@ class OpenPlaceReacher {
   static constexpr double kAt = 1e-9;        // bounding radii: what rounding puts beside a vertex or an edge
 
   bool reach(const UncoveredPlace& place) {
-    Sphere foot;
-    const std::array<Index, 3> cell = reconstruction_.nearest_cell(place.position, foot);
-    const std::vector<Index> candidates = edges_at(cell, foot.center);
+    const Reconstruction::Nearest nearest = reconstruction_.nearest(place.position);
+    const Point& foot = nearest.ball.center;
+    const std::vector<Index> candidates = edges_at(reconstruction_.corners_of(nearest.cell), foot);
     if (candidates.empty()) return false;
     ClosestPoint on_edge = ExactBall::nowhere();
-    const ExactBall ball = edges_.nearest(place.position, left_, on_edge) ? ball_on_edge(on_edge)
-                                                                          : ball_at(place.position, foot.center, left_);
+    const ExactBall ball =
+        edges_.nearest(place.position, left_, on_edge) ? ball_on_edge(on_edge) : ball_at(place.position, foot, left_);
     // Where no triangle leads all the way, one may lead half of it.
-    return attach(ball, candidates) || attach(ball_at(place.position, foot.center, place.value / 2), candidates);
+    return attach(ball, candidates) || attach(ball_at(place.position, foot, place.value / 2), candidates);
   }
 
   bool attach(const ExactBall& ball, std::vector<Index> candidates) {
@@ -118,8 +119,7 @@ class OpenPlaceReacher {
     }
     for (std::size_t i = 0; i < 3; ++i) {
       if (cell[i] == cell[(i + 1) % 3]) continue;
-      const Index e =
-          sheets_.complex.edge_of(std::min(cell[i], cell[(i + 1) % 3]), std::max(cell[i], cell[(i + 1) % 3]));
+      const Index e = edge_numbers_(cell[i], cell[(i + 1) % 3]);
       if (apart(place, e) <= at) return {e};
       edges.push_back(e);
     }
@@ -147,6 +147,7 @@ class OpenPlaceReacher {
   }
 
   SheetExtension sheets_;
+  const EdgeNumbers edge_numbers_;  // of the edges as they were
   BallSolver& solver_;
   SharpEdges edges_;
   std::vector<Fin> fins_;

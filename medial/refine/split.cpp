@@ -14,12 +14,18 @@ namespace {
 template <class Cell, class Measure>
 void measure(CellErrors<Cell>& known, const std::vector<Cell>& now, Measure&& of) {
   std::vector<double> found(now.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, now.size(), 256), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      const auto at = std::lower_bound(known.cells.begin(), known.cells.end(), now[i]);
-      const bool is_known = at != known.cells.end() && *at == now[i];
-      found[i] = is_known ? known.errors[static_cast<std::size_t>(at - known.cells.begin())] : of(now[i]);
+  std::vector<std::size_t> unknown;
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    while (at < known.cells.size() && known.cells[at] < now[i]) ++at;
+    if (at < known.cells.size() && known.cells[at] == now[i]) {
+      found[i] = known.errors[at];
+    } else {
+      unknown.push_back(i);
     }
+  }
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, unknown.size(), 128), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) found[unknown[i]] = of(now[unknown[i]]);
   });
   known.cells = now;
   known.errors = std::move(found);
@@ -45,12 +51,14 @@ class Splitter {
     measure(known_.edges, complex_.edges, [this](const auto& edge) { return error_of_edge(edge); });
     measure(known_.triangles, complex_.triangles, [this](const auto& triangle) { return error_of_triangle(triangle); });
     std::vector<double> error = known_.edges.errors;
+    const EdgeNumbers edge_numbers = complex_.edge_numbers();
     given_up_.assign(error.size(), 0);
     for (Index e = 0; e < error.size(); ++e) given_up_[e] = error[e] < 0 ? 1 : 0;
     for (Index t = 0; t < complex_.triangles.size(); ++t) {
       const double of_triangle = known_.triangles.errors[t];
       if (std::abs(of_triangle) <= options_.tolerance) continue;
-      const Index longest = longest_edge(complex_.triangles[t]);
+      const auto [a, b] = longest_edge(complex_.triangles[t]);
+      const Index longest = edge_numbers(a, b);
       error[longest] = std::max(error[longest], of_triangle);
       if (of_triangle < 0) given_up_[longest] = 1;
     }
@@ -98,11 +106,10 @@ class Splitter {
   double length(const std::array<Index, 2>& edge) const {
     return (complex_.balls[edge[0]].center - complex_.balls[edge[1]].center).norm();
   }
-  Index longest_edge(const std::array<Index, 3>& t) const {
+  std::array<Index, 2> longest_edge(const std::array<Index, 3>& t) const {
     const std::array<std::array<Index, 2>, 3> sides{{{t[0], t[1]}, {t[0], t[2]}, {t[1], t[2]}}};
-    const auto longest = std::max_element(sides.begin(), sides.end(),
-                                          [&](const auto& a, const auto& b) { return length(a) < length(b); });
-    return complex_.edge_of((*longest)[0], (*longest)[1]);
+    return *std::max_element(sides.begin(), sides.end(),
+                             [&](const auto& a, const auto& b) { return length(a) < length(b); });
   }
   // Along an edge both the interpolated radius and the distance change by no more than the way, so short ones are
   // right.

@@ -3,7 +3,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <limits>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -15,12 +14,22 @@ namespace orchard::detail {
 namespace {
 
 constexpr std::size_t kBlock = 64;  // parts that one task looks at
+constexpr double kEnough = 0.5;     // of the limit: nearer cells are no better at covering parts that reach farther
 
-// The distance to one ball is convex, so over a triangle it is nowhere larger than here.
-double max_distance_at(const Corners& corners, const Sphere& ball) {
-  double value = -ball.radius;
-  for (const Point& corner : corners) value = std::max(value, (corner - ball.center).norm() - ball.radius);
-  return value;
+bool is_before(const Point& a, const Point& b) {
+  return std::tuple(a.x(), a.y(), a.z()) < std::tuple(b.x(), b.y(), b.z());
+}
+
+// Each once, as parts that are points.
+std::vector<Corners> corners_of(const std::vector<Corners>& parts) {
+  std::vector<Point> points;
+  for (const Corners& part : parts) points.insert(points.end(), part.begin(), part.end());
+  std::sort(points.begin(), points.end(), is_before);
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  std::vector<Corners> corners;
+  corners.reserve(points.size());
+  for (const Point& point : points) corners.push_back({point, point, point});
+  return corners;
 }
 
 }  // namespace
@@ -28,38 +37,41 @@ double max_distance_at(const Corners& corners, const Sphere& ball) {
 struct UncoveredSearch::Block {
   std::span<const Corners> parts;
   std::vector<UncoveredPlace> places;
-  std::vector<Corners> open;
+  std::vector<Corners> open, not_covered;  // of what is in `parts`: the parts of it that may be open, and it
 };
 
 UncoveredSearch::UncoveredSearch(const Surface& surface, double limit, double resolution)
     : surface_(surface), limit_(limit), resolution_(resolution) {
-  const TriangleMesh& mesh = surface.mesh();
-  std::vector<std::uint8_t> is_used(mesh.vertices.size(), 0);
-  for (Index t = 0; t < mesh.triangles.size(); ++t) {
-    parts_.push_back(surface.corners(t));
-    for (const Index v : mesh.triangles[t]) is_used[v] = 1;
-  }
-  for (Index v = 0; v < mesh.vertices.size(); ++v) {
-    if (is_used[v]) parts_.push_back({mesh.vertices[v], mesh.vertices[v], mesh.vertices[v]});
-  }
+  const auto triangles = static_cast<Index>(surface.mesh().triangles.size());
+  parts_.reserve(triangles);
+  for (Index t = 0; t < triangles; ++t) parts_.push_back(surface.corners(t));
 }
 
 void UncoveredSearch::look_at(const Reconstruction& reconstruction, Block& block) const {
-  Sphere ball{Point::Zero(), -std::numeric_limits<double>::infinity()};  // the last one found: often near the next part
+  Index cell = kNone;  // the last one found: often near the next part
+  // The distance to one cell is convex.
+  const auto cell_covers = [&](const Corners& corners) {
+    return cell != kNone && std::all_of(corners.begin(), corners.end(), [&](const Point& corner) {
+             return reconstruction.distance_to_cell(cell, corner) <= limit_;
+           });
+  };
   std::vector<Corners> parts;
   for (const Corners& given : block.parts) {
+    const std::size_t open_before = block.open.size();
     parts.push_back(given);
     while (!parts.empty()) {
       const Corners corners = parts.back();
       parts.pop_back();
-      if (max_distance_at(corners, ball) <= limit_) continue;
+      if (cell_covers(corners)) continue;
       const Point middle = (corners[0] + corners[1] + corners[2]) / 3;
       double reach = 0;
       for (const Point& corner : corners) reach = std::max(reach, (corner - middle).norm());
-      const double value =
-          reconstruction.distance_between(limit_ - reach, std::numeric_limits<double>::infinity(), middle, ball);
+      const double enough = reach < limit_ ? limit_ - reach : kEnough * limit_;
+      const Reconstruction::Nearest nearest = reconstruction.nearest(middle, enough);
+      const double value = nearest.distance;
+      cell = nearest.cell;
       // The distance to all of them is 1-Lipschitz.
-      if (value + reach <= limit_ || max_distance_at(corners, ball) <= limit_) continue;
+      if (value + reach <= limit_ || cell_covers(corners)) continue;
       if (value > limit_) block.places.push_back({value, middle});
       if (reach <= resolution_) {
         block.open.push_back(corners);
@@ -69,23 +81,39 @@ void UncoveredSearch::look_at(const Reconstruction& reconstruction, Block& block
       parts.push_back(a);
       parts.push_back(b);
     }
+    if (block.open.size() > open_before) block.not_covered.push_back(given);
   }
 }
 
-std::vector<UncoveredPlace> UncoveredSearch::find(const Reconstruction& reconstruction, double apart) {
-  std::vector<Block> blocks((parts_.size() + kBlock - 1) / kBlock);
+UncoveredSearch::Block UncoveredSearch::look_at_all(const Reconstruction& reconstruction,
+                                                    const std::vector<Corners>& parts) const {
+  std::vector<Block> blocks((parts.size() + kBlock - 1) / kBlock);
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
     const std::size_t begin = i * kBlock;
-    blocks[i].parts = std::span(parts_).subspan(begin, std::min(kBlock, parts_.size() - begin));
+    blocks[i].parts = std::span(parts).subspan(begin, std::min(kBlock, parts.size() - begin));
     look_at(reconstruction, blocks[i]);
   });
-  std::vector<UncoveredPlace> all;
-  std::vector<Corners> open;
+  const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  Block all{.parts = parts, .places = {}, .open = {}, .not_covered = {}};
   for (const Block& block : blocks) {
-    all.insert(all.end(), block.places.begin(), block.places.end());
-    open.insert(open.end(), block.open.begin(), block.open.end());
+    append(all.places, block.places);
+    append(all.open, block.open);
+    append(all.not_covered, block.not_covered);
   }
-  parts_ = std::move(open);
+  return all;
+}
+
+std::vector<UncoveredPlace> UncoveredSearch::find(const Reconstruction& reconstruction, double apart) {
+  Block found = look_at_all(reconstruction, parts_);
+  std::vector<UncoveredPlace> all = std::move(found.places);
+  if (first_) {
+    // Of parts that are too small to be divided only the middles were looked at; corners of the surface stand out.
+    const Block corners = look_at_all(reconstruction, corners_of(found.not_covered));
+    all.insert(all.end(), corners.places.begin(), corners.places.end());
+    found.open.insert(found.open.end(), corners.open.begin(), corners.open.end());
+    first_ = false;
+  }
+  parts_ = std::move(found.open);
   // Position decides between equals, so that the result depends on nothing else.
   std::sort(all.begin(), all.end(), [](const UncoveredPlace& a, const UncoveredPlace& b) {
     const auto key = [](const UncoveredPlace& place) {

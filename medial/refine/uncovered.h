@@ -28,10 +28,12 @@ class UncoveredSearch {
  private:
   struct Block;  // what one task looks at
   void look_at(const Reconstruction& reconstruction, Block& block) const;
+  Block look_at_all(const Reconstruction& reconstruction, const std::vector<std::array<Point, 3>>& parts) const;
 
   const Surface& surface_;
   const double limit_, resolution_;
   std::vector<std::array<Point, 3>> parts_;  // triangles, or points: three times the same
+  bool first_ = true;                        // the parts are all triangles of the surface
 };
 
 }  // namespace orchard::detail

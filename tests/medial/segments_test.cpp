@@ -8,6 +8,7 @@
 #include "orchard/geometry/random.h"
 #include "orchard/medial/build.h"
 #include "quality/reconstruction.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 
 namespace orchard {
@@ -165,6 +166,47 @@ TEST(Reconstruction, FindsTheNearestOfAllCells) {
     for (const auto& [a, b] : mesh.edges) take(detail::nearest_ball(query, ball(a), ball(b)));
     for (const auto& [a, b, c] : mesh.triangles) take(detail::nearest_ball(query, ball(a), ball(b), ball(c)));
     EXPECT_NEAR(reconstruction.distance(query), min, 1e-12);
+    const detail::Reconstruction::Nearest nearest = reconstruction.nearest(query);
+    EXPECT_NEAR(nearest.distance, min, 1e-12);
+    EXPECT_NEAR(reconstruction.distance_to_cell(nearest.cell, query), min, 1e-12);
+    const auto& corners = reconstruction.corners_of(nearest.cell);
+    const bool is_vertex = corners[0] == corners[1], is_edge = !is_vertex && corners[1] == corners[2];
+    const Sphere found = is_vertex ? ball(corners[0])
+                         : is_edge ? detail::nearest_ball(query, ball(corners[0]), ball(corners[1]))
+                                   : detail::nearest_ball(query, ball(corners[0]), ball(corners[1]), ball(corners[2]));
+    EXPECT_NEAR((query - found.center).norm() - found.radius, min, 1e-12);
+    EXPECT_LT(reconstruction.nearest(query, min + 0.2).distance, min + 0.2);
+  }
+}
+
+// So what holds at the corners of a triangle holds on all of it.
+TEST(Reconstruction, DistanceToOneCellIsConvex) {
+  const auto cases = static_cast<Index>(2'000 * test::more());
+  for (Index i = 0; i < cases; ++i) {
+    Random random(test::first_seed() + 5, i);
+    const auto place = [&](double size) {
+      return Point(random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size));
+    };
+    MedialMesh mesh;
+    const Index corners = 1 + i % 3;
+    // Flat and tiny cells, and balls in balls, too.
+    const double size = i % 5 == 0 ? 1e-6 : 1, radius = i % 7 == 0 ? 3 : 0.5;
+    for (Index v = 0; v < corners; ++v) {
+      mesh.centers.push_back(place(size));
+      mesh.radii.push_back(random.uniform(0, radius));
+    }
+    if (i % 11 == 0 && corners == 3) mesh.centers[2] = 0.25 * mesh.centers[0] + 0.75 * mesh.centers[1];
+    if (corners == 2) mesh.edges.push_back({0, 1});
+    if (corners == 3) mesh.triangles.push_back({0, 1, 2});
+    complete(mesh);
+    const detail::Reconstruction reconstruction(mesh);
+    const std::array<Point, 3> at{place(2), place(2), place(2)};
+    double max = -1e9;
+    for (const Point& corner : at) max = std::max(max, reconstruction.distance_to_cell(0, corner));
+    for (int k = 0; k < 20; ++k) {
+      const double u = random.uniform(0, 1), v = random.uniform(0, 1 - u);
+      EXPECT_LE(reconstruction.distance_to_cell(0, u * at[0] + v * at[1] + (1 - u - v) * at[2]), max + 1e-9) << i;
+    }
   }
 }
 

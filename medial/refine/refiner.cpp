@@ -1,0 +1,243 @@
+#include "refiner.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "../axis_triangles.h"
+#include "axis_of_balls.h"
+#include "cut_at_level.h"
+#include "drop_degenerate.h"
+#include "extend_sheets.h"
+#include "orchard/geometry/angle.h"
+#include "orchard/geometry/error.h"
+#include "orchard/medial/quality.h"
+#include "small_pieces.h"
+
+namespace orchard::detail {
+namespace {
+
+constexpr const char* kStage = "refining the axis";
+// Contacts merge where the ball between them would lose this much of what a border may lose: fine enough to see on
+// which side of the level a vertex is.
+constexpr double kMerging = 0.25;
+constexpr int kBorderPasses = 3;      // of filling notches and reaching edges: the last ones find next to nothing
+constexpr double kMinLength = 1e-3;   // diagonals: shorter edges are not divided
+constexpr std::size_t kEnough = 24;   // seeds of a vertex: coalesced ones have hundreds
+constexpr double kOpen = 1.35;        // of the border loss: places left open by more are reached for
+constexpr double kResolution = 0.1;   // spacings, of looking for these
+constexpr double kApart = 0.5;        // spacings, between two that are reached for at once
+constexpr double kCoincident = 1e-6;  // diagonals: vertices that are nearer are one
+
+void check(const RefineOptions& options) {
+  if (!(options.border_loss >= 0 && std::isfinite(options.border_loss)))
+    throw InputError("border loss: a finite number of diagonals, not negative");
+  if (!(options.tolerance > 0 && std::isfinite(options.tolerance)))
+    throw InputError("refining tolerance: a finite number of diagonals above 0");
+  if (!(options.sharp_angle >= 0 && options.sharp_angle <= std::numbers::pi))
+    throw InputError("sharp angle: between 0 and pi");
+  if (options.max_rounds < 0) throw InputError("rounds of refining: not negative");
+  if (!(options.reach_detail >= 0 && std::isfinite(options.reach_detail)))
+    throw InputError("detail that is reached for: a finite number, not negative");
+  if (options.reach_rounds < 0) throw InputError("rounds of reaching for open places: not negative");
+}
+
+}  // namespace
+
+Refiner::Refiner(const Surface& surface, const SurfaceSampling& sampling, const MedialAxis& axis,
+                 const RefineOptions& options, const Progress& progress)
+    : surface_(surface),
+      sampling_(sampling),
+      axis_(axis),
+      options_(options),
+      progress_(progress),
+      diagonal_(surface.bounding_box().diagonal().norm()),
+      level_(std::max(options.border_loss, std::numeric_limits<double>::min()) * diagonal_) {
+  check(options);
+}
+
+void Refiner::refine() {
+  report_.vertices_before = axis_.size();
+  make_complex();
+  find_balls();
+  report_progress(progress_, kStage, 0.25);
+  drop_folded();
+  report_.border_cuts = cut_at_level(surface_, complex_, level_, kMerging * level_);
+  report_.small_pieces = drop_small_pieces(complex_);
+  report_progress(progress_, kStage, 0.45);
+  mend_borders();
+  report_.small_pieces += drop_small_pieces(complex_);
+  report_progress(progress_, kStage, 0.6);
+  divide();
+}
+
+RefinedAxis Refiner::finish() {
+  reach();
+  report_.degenerate = drop_degenerate(complex_, kCoincident * diagonal_);
+  report_progress(progress_, kStage, 1);
+  return result();
+}
+
+BallSolver Refiner::solver() const { return {surface_, kMerging * level_}; }
+
+ClosestPoint Refiner::place(Index point) const {
+  return {.position = sampling_.points[point],
+          .distance = 0,
+          .triangle = sampling_.triangles[point],
+          .feature = sampling_.features[point]};
+}
+
+void Refiner::make_complex() {
+  AxisTriangles triangles = axis_triangles(axis_);
+  face_of_triangle_ = std::move(triangles.face_of_triangle);
+  complex_.balls.resize(triangles.mesh.size());
+  for (Index v = 0; v < triangles.mesh.size(); ++v) complex_.balls[v].center = triangles.mesh.centers[v];
+  complex_.edges = std::move(triangles.mesh.edges);
+  complex_.triangles = std::move(triangles.mesh.triangles);
+}
+
+// What is downhill from the forming points; for the middle of a face, from its two points.
+void Refiner::find_balls() {
+  std::vector<Index> face_of_middle(complex_.size() - axis_.size(), kNone);
+  for (Index t = 0; t < complex_.triangles.size(); ++t) {
+    for (const Index v : complex_.triangles[t]) {
+      if (v >= axis_.size()) face_of_middle[v - axis_.size()] = face_of_triangle_[t];
+    }
+  }
+  tbb::parallel_for(tbb::blocked_range<Index>(0, complex_.size(), 64), [&](const auto& range) {
+    BallSolver solver = this->solver();
+    std::vector<ClosestPoint> seeds;
+    for (Index v = range.begin(); v != range.end(); ++v) {
+      seeds.clear();
+      if (v < axis_.size()) {
+        for (const Index point : axis_.forming_points[v].first(std::min(kEnough, axis_.forming_points[v].size())))
+          seeds.push_back(place(point));
+      } else {
+        for (const Index point : points_of(face_of_middle[v - axis_.size()])) seeds.push_back(place(point));
+      }
+      complex_.balls[v] = solver.solve(complex_.balls[v].center, seeds);
+    }
+  });
+}
+
+const std::array<Index, 2>& Refiner::points_of(Index face) const {
+  return face < axis_.faces.size() ? axis_.face_points[face] : axis_.wall_points[face - axis_.faces.size()];
+}
+
+std::span<const Index> Refiner::corners_of(Index face) const {
+  return face < axis_.faces.size() ? axis_.faces[face] : axis_.walls[face - axis_.faces.size()];
+}
+
+// Whether the two points of a face have, seen from its middle, contacts between which nothing is lost: such a face
+// folds onto its sheet, or stands on the surface.
+bool Refiner::folded(Index face, BallSolver& solver) const {
+  Point middle = Point::Zero();
+  for (const Index v : corners_of(face)) middle += axis_.centers[v];
+  middle /= static_cast<double>(corners_of(face).size());
+  const auto& [p, q] = points_of(face);
+  const ClosestPoint a = solver.descend(middle, place(p)), b = solver.descend(middle, place(q));
+  const double angle = angle_between(a.position - middle, b.position - middle);
+  return BallSolver::loss(std::min(a.distance, b.distance), angle) < level_;
+}
+
+void Refiner::drop_folded() {
+  std::vector<std::uint8_t> folded_faces(axis_.faces.size() + axis_.walls.size(), 0);
+  tbb::parallel_for(tbb::blocked_range<Index>(0, static_cast<Index>(folded_faces.size()), 128), [&](const auto& range) {
+    BallSolver solver = this->solver();
+    for (Index face = range.begin(); face != range.end(); ++face) folded_faces[face] = folded(face, solver) ? 1 : 0;
+  });
+  // Edges go with all of their triangles, vertices with all of their edges; those without triangles stay.
+  std::vector<std::uint8_t> has(complex_.edges.size(), 0);
+  Doomed doomed{.edges = std::vector<std::uint8_t>(complex_.edges.size(), 1),
+                .vertices = std::vector<std::uint8_t>(complex_.size(), 1)};
+  const EdgeNumbers edge = complex_.edge_numbers();
+  for (Index t = 0; t < complex_.triangles.size(); ++t) {
+    const auto& [a, b, c] = complex_.triangles[t];
+    for (const Index e : {edge(a, b), edge(a, c), edge(b, c)}) {
+      has[e] = 1;
+      if (!folded_faces[face_of_triangle_[t]]) doomed.edges[e] = 0;
+    }
+  }
+  for (Index e = 0; e < complex_.edges.size(); ++e) {
+    if (!has[e]) doomed.edges[e] = 0;
+    if (doomed.edges[e]) continue;
+    for (const Index v : complex_.edges[e]) doomed.vertices[v] = 0;
+  }
+  const std::size_t before = complex_.triangles.size();
+  collapse(complex_, doomed, std::vector<double>(complex_.size(), 0));
+  report_.folded_triangles = static_cast<Index>(before - complex_.triangles.size());
+}
+
+BorderOptions Refiner::border_options() const {
+  return {.level = level_,
+          .tolerance = options_.tolerance * diagonal_,
+          .spacing = std::sqrt(surface_.report().area / sampling_.size()),
+          .merging = kMerging * level_,
+          .sharp_angle = options_.sharp_angle};
+}
+
+void Refiner::mend_borders() {
+  const BorderOptions border = border_options();
+  BallSolver solver = this->solver();
+  for (int pass = 0; pass < kBorderPasses; ++pass) {
+    const Index notches = fill_notches(surface_, complex_, solver, border);
+    const Index seams = extend_to_seams(surface_, complex_, border);
+    Index reached = extend_to_edges(surface_, complex_, border);
+    reached += follow_edges(surface_, complex_, border);
+    reached += extend_to_corners(surface_, complex_, border);
+    report_.notches += notches;
+    report_.edge_vertices += reached;
+    if (notches == 0 && seams == 0 && reached == 0) break;
+  }
+}
+
+void Refiner::divide() {
+  const SplitReport split = split_nonlinear(surface_, complex_,
+                                            {.tolerance = options_.tolerance * diagonal_,
+                                             .merging = kMerging * level_,
+                                             .min_length = kMinLength * diagonal_,
+                                             .max_rounds = options_.max_rounds},
+                                            split_errors_, progress_);
+  report_.divided += split.divided;
+  report_.undivided = split.undivided;
+}
+
+// Where balls leave the surface open by more than borders may; what is added is divided, too.
+void Refiner::reach() {
+  const BorderOptions border = border_options();
+  const double limit = std::max(kOpen * std::max(level_, border.tolerance),
+                                options_.reach_detail * border.spacing * border.spacing / diagonal_);
+  UncoveredSearch search(surface_, limit, kResolution * border.spacing);
+  BallSolver solver = this->solver();
+  for (int round = 0; round < options_.reach_rounds; ++round) {
+    const Reconstruction reconstruction(complex_.mesh());
+    const std::vector<UncoveredPlace> places = search.find(reconstruction, kApart * border.spacing);
+    const Index reached = reach_open_places(surface_, complex_, solver, reconstruction, places, limit / kOpen, border);
+    if (reached == 0) break;
+    report_.reached_places += reached;
+    report_.notches += fill_notches(surface_, complex_, solver, border);
+    report_.edge_vertices += follow_edges(surface_, complex_, border);
+    divide();
+  }
+}
+
+RefinedAxis Refiner::result() {
+  RefinedAxis refined;
+  refined.axis = axis_of_balls(surface_, complex_);
+  refined.axis.stems = axis_.stems;
+  refined.axis.bridges = axis_.bridges;
+  refined.axis.left_out = axis_.left_out;
+  report_.vertices = refined.axis.size();
+  report_.inexact = static_cast<Index>(
+      std::count_if(complex_.balls.begin(), complex_.balls.end(), [](const ExactBall& ball) { return !ball.exact; }));
+  report_.border_length = border_length(medial_mesh(refined.axis)) / diagonal_;
+  refined.report = report_;
+  return refined;
+}
+
+}  // namespace orchard::detail

@@ -1,0 +1,56 @@
+#pragma once
+#include <array>
+#include <span>
+#include <vector>
+
+#include "ball_complex.h"
+#include "borders.h"
+#include "orchard/medial/refine.h"
+#include "split.h"
+
+namespace orchard::detail {
+
+// The steps of refine_axis(), for who looks at what the first ones make before the last ones run. What is given by
+// reference must outlive it, unchanged. The surface must be a solid.
+class Refiner {
+ public:
+  // Throws InputError if an option is out of range.
+  Refiner(const Surface& surface, const SurfaceSampling& sampling, const MedialAxis& axis, const RefineOptions& options,
+          const Progress& progress);
+
+  // All steps but reaching for places left open. To be called once, first.
+  void refine();
+  // What there is so far.
+  MedialMesh mesh() const { return complex_.mesh(); }
+  // Reaches for places left open, takes degenerate cells away, and gives the result. To be called once, last.
+  RefinedAxis finish();
+
+ private:
+  BallSolver solver() const;
+  ClosestPoint place(Index point) const;
+  const std::array<Index, 2>& points_of(Index face) const;
+  std::span<const Index> corners_of(Index face) const;
+  bool folded(Index face, BallSolver& solver) const;
+  BorderOptions border_options() const;
+
+  void make_complex();
+  void find_balls();
+  void drop_folded();
+  void mend_borders();
+  void divide();
+  void reach();
+  RefinedAxis result();
+
+  const Surface& surface_;
+  const SurfaceSampling& sampling_;
+  const MedialAxis& axis_;
+  const RefineOptions& options_;
+  const Progress& progress_;
+  const double diagonal_, level_;  // mesh units
+  BallComplex complex_;
+  SplitErrors split_errors_;
+  std::vector<Index> face_of_triangle_;  // of the axis as it came
+  RefineReport report_;
+};
+
+}  // namespace orchard::detail
