@@ -25,6 +25,10 @@ Index extend_to_edges(const Surface& surface, BallComplex& complex, const Border
 // vertices.
 Index extend_to_corners(const Surface& surface, BallComplex& complex, const BorderOptions& options);
 
+// Fills sheets between places next to each other on sharp convex edges, where thin parts of the solid leave them in
+// strips. Returns the number of new triangles.
+Index fill_along_edges(const Surface& surface, BallComplex& complex, const BorderOptions& options);
+
 // Bends the borders between places of sharp convex edges onto these, and into their corners. Returns the number of new
 // vertices.
 Index follow_edges(const Surface& surface, BallComplex& complex, const BorderOptions& options);

@@ -14,7 +14,7 @@ namespace {
 class EdgeReacher {
  public:
   EdgeReacher(const Surface& surface, BallComplex& complex, const BorderOptions& options)
-      : sheets_(surface, complex, options) {}
+      : sheets_(surface, complex, options), edges_(surface, options.sharp_angle) {}
 
   Index run() {
     const Index before = sheets_.complex.size();
@@ -93,11 +93,12 @@ class EdgeReacher {
   }
 
   // Whether the strip from an edge to two ends, or one, is right, and its sheet not there yet.
-  bool fits(Index e, const End& x, const End& y) const {
+  bool fits(Index e, const End& x, const End& y) {
     const ExactBall &p = sheets_.complex.balls[sheets_.complex.edges[e][0]],
                     &q = sheets_.complex.balls[sheets_.complex.edges[e][1]];
     const Vector along = q.center - p.center, between = y.ball.center - x.ball.center;
     if (between.norm() > kMaxAlong * (along.norm() + sheets_.options.spacing)) return false;
+    if (!edges_.goes_between(x.ball.center, y.ball.center)) return false;
     const Point middle = 0.5 * (p.center + q.center);
     const auto around = [&](const Point& place) -> Vector {
       const Vector from = place - middle;
@@ -128,6 +129,7 @@ class EdgeReacher {
   }
 
   SheetExtension sheets_;
+  SharpEdges edges_;
   std::vector<std::vector<End>> ends_;  // of each vertex
 };
 

@@ -194,6 +194,8 @@ void Refiner::mend_borders() {
     report_.edge_vertices += reached;
     if (notches == 0 && seams == 0 && reached == 0) break;
   }
+  report_.notches += fill_along_edges(surface_, complex_, border);
+  report_.edge_vertices += follow_edges(surface_, complex_, border);
 }
 
 void Refiner::divide() {
@@ -221,6 +223,7 @@ void Refiner::reach() {
     if (reached == 0) break;
     report_.reached_places += reached;
     report_.notches += fill_notches(surface_, complex_, solver, border);
+    report_.notches += fill_along_edges(surface_, complex_, border);
     report_.edge_vertices += follow_edges(surface_, complex_, border);
     divide();
   }

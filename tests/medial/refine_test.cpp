@@ -154,6 +154,25 @@ double mean_gap(const Surface& surface, const MedialAxis& axis) {
   return sum / places.size();
 }
 
+// Where the points see only strips of the sheets between a bar's middle and its edges, what is between these is filled.
+TEST(RefineAxis, SheetsOfABarThinnerThanThePointsSpacingAreNotTorn) {
+  for (const Vector& size : {Vector(10, 0.25, 0.2), Vector(10, 0.2, 0.2), Vector(8, 0.3, 0.15)}) {
+    const Surface bar(test::box(Point::Zero(), size));
+    const double edges = 4 * size.sum(), diagonal = bar.bounding_box().diagonal().norm();
+    for (std::uint64_t seed = 1; seed <= 3 * test::more(); ++seed) {
+      SCOPED_TRACE(seed);
+      const MedialBuild build =
+          build_medial_axis(bar, {.sampling = {.face_points = 300, .edge_points = 0, .seed = test::first_seed() + seed},
+                                  .refine = RefineOptions{}});
+      EXPECT_EQ(topology(medial_mesh(build.axis)), (Topology{1, 0, 0}));
+      const double length = build.refinement.border_length * diagonal;
+      // Torn into strips they had more than twice as much.
+      EXPECT_GT(length, 0.95 * edges);
+      EXPECT_LT(length, 1.7 * edges);
+    }
+  }
+}
+
 TEST(RefineAxis, PointsAtOpenPlacesCloseThem) {
   const Surface surface(test::extruded(test::thin_bridge(0.05), 1));
   MedialBuildOptions options = options_for(300);

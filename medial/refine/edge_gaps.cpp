@@ -1,0 +1,80 @@
+#include "edge_gaps.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "sharp_edges.h"
+
+namespace orchard::detail {
+namespace {
+
+constexpr double kAt = 1e-9;  // bounding radii: what rounding puts beside an edge
+
+using MeshEdge = std::array<Index, 2>;  // vertices of the mesh, ascending
+
+// What is on one edge of the mesh.
+struct Row {
+  std::vector<std::pair<double, Index>> places;  // how far along, and the vertex; ascending
+  std::vector<int> along;                        // edges of the complex from a place to the next one
+
+  // An edge of the complex starts at one of them and ends at the other; `along` is summed up when all are there.
+  void add_edge(const std::pair<double, Index>& a, const std::pair<double, Index>& b) {
+    const auto number = [&](const std::pair<double, Index>& place) {
+      return static_cast<std::size_t>(std::lower_bound(places.begin(), places.end(), place) - places.begin());
+    };
+    const std::size_t i = number(a), k = number(b);
+    ++along[std::min(i, k)];
+    --along[std::max(i, k)];
+  }
+};
+
+std::map<MeshEdge, Row> rows_on_edges(const Surface& surface, const BallComplex& complex, double sharp_angle) {
+  const std::vector<Point>& vertices = surface.mesh().vertices;
+  const auto place = [&](const MeshEdge& edge, Index v) {
+    const Point& start = vertices[edge[0]];
+    return std::pair((vertices[edge[1]] - start).dot(complex.balls[v].center - start), v);
+  };
+  SharpEdges edges(surface, sharp_angle);
+  std::map<MeshEdge, Row> rows;
+  std::vector<std::vector<MeshEdge>> edges_of(complex.size());
+  for (Index v = 0; v < complex.size(); ++v) {
+    if (complex.balls[v].radius > 0) continue;
+    edges.all_at(complex.balls[v].center, kAt * surface.bounding_radius(), edges_of[v]);
+    for (const MeshEdge& edge : edges_of[v]) rows[edge].places.push_back(place(edge, v));
+  }
+  for (auto& [edge, row] : rows) {
+    std::sort(row.places.begin(), row.places.end());
+    row.along.assign(row.places.size(), 0);
+  }
+  for (const auto& [a, b] : complex.edges) {
+    for (const MeshEdge& edge : edges_of[a]) {
+      const bool is_on_it = std::find(edges_of[b].begin(), edges_of[b].end(), edge) != edges_of[b].end();
+      if (is_on_it) rows.at(edge).add_edge(place(edge, a), place(edge, b));
+    }
+  }
+  for (auto& [edge, row] : rows) std::partial_sum(row.along.begin(), row.along.end(), row.along.begin());
+  return rows;
+}
+
+}  // namespace
+
+std::vector<std::array<Index, 2>> gaps_on_edges(const Surface& surface, const BallComplex& complex,
+                                                double sharp_angle) {
+  std::vector<std::array<Index, 2>> gaps;
+  std::map<Index, std::vector<Index>> nearest;  // to a vertex of the mesh, on each sharp edge
+  for (const auto& [edge, row] : rows_on_edges(surface, complex, sharp_angle)) {
+    for (std::size_t i = 0; i + 1 < row.places.size(); ++i) {
+      if (row.along[i] == 0) gaps.push_back({row.places[i].second, row.places[i + 1].second});
+    }
+    nearest[edge[0]].push_back(row.places.front().second);
+    nearest[edge[1]].push_back(row.places.back().second);
+  }
+  for (const auto& [corner, places] : nearest) {
+    if (places.size() == 2 && places[0] != places[1]) gaps.push_back({places[0], places[1]});
+  }
+  return gaps;
+}
+
+}  // namespace orchard::detail
