@@ -18,6 +18,7 @@
 #include "orchard/geometry/error.h"
 #include "orchard/medial/quality.h"
 #include "small_pieces.h"
+#include "solve_again.h"
 
 namespace orchard::detail {
 namespace {
@@ -65,6 +66,7 @@ void Refiner::refine() {
   report_.vertices_before = axis_.size();
   make_complex();
   find_balls();
+  solve_outliers_again(surface_, complex_, kMerging * level_);
   report_progress(progress_, kStage, 0.25);
   drop_folded();
   report_.border_cuts = cut_at_level(surface_, complex_, level_, kMerging * level_);

@@ -5,6 +5,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -15,6 +16,7 @@
 #include "known_axes.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/outside_solid.h"
+#include "orchard/geometry/random.h"
 #include "orchard/geometry/surface.h"
 #include "orchard/medial/build.h"
 #include "orchard/medial/medial_mesh.h"
@@ -22,6 +24,7 @@
 #include "outlines.h"
 #include "quality/reconstruction.h"
 #include "refine/free_extension.h"
+#include "refine/solve_again.h"
 #include "support/brute_distance.h"
 #include "support/effort.h"
 #include "support/shapes.h"
@@ -152,6 +155,44 @@ double mean_gap(const Surface& surface, const MedialAxis& axis) {
   double sum = 0;
   for (const Point& place : places.points) sum += std::max(reconstruction.distance(place), 0.0);
   return sum / places.size();
+}
+
+// A sheet of 5 x 5 balls in the middle of a plate, of which some inside are where they do not belong.
+TEST(SolveOutliersAgain, BringsBallsThatStandOutBackIntoTheirSheet) {
+  const Surface plate(test::box(Point::Zero(), {4, 4, 0.2}));
+  for (std::uint64_t seed = 0; seed < 50 * test::more(); ++seed) {
+    Random random(test::first_seed(), seed);
+    detail::BallComplex complex;
+    detail::BallSolver solver(plate, 1e-6);
+    const Index side = 5;
+    for (Index v = 0; v < side * side; ++v) {
+      const Point place(1 + v % side * 0.5 + random.uniform(-0.1, 0.1), 1 + v / side * 0.5, 0.1);
+      const std::array<ClosestPoint, 2> seeds{plate.closest(place + Vector(0, 0, 0.05)),
+                                              plate.closest(place - Vector(0, 0, 0.05))};
+      complex.balls.push_back(solver.solve(place, seeds));
+      ASSERT_TRUE(complex.balls.back().exact);
+      if (v % side + 1 == side || v / side + 1 == side) continue;
+      complex.triangles.push_back({v, v + 1, v + side});
+      complex.triangles.push_back({v + 1, v + side, v + side + 1});
+    }
+    complex.complete();
+    const detail::BallComplex right = complex;
+    const Index spoilt = side + 1 + static_cast<Index>(random.uniform(0, 3)) * (side + 1);
+    if (seed % 2 == 0) {
+      complex.balls[spoilt].exact = false;
+    } else {
+      complex.balls[spoilt].center.z() = 1e-4;
+      complex.balls[spoilt].radius = 1e-4;
+    }
+    EXPECT_EQ(detail::solve_outliers_again(plate, complex, 1e-6), 1u);
+    for (Index v = 0; v < complex.size(); ++v) {
+      EXPECT_TRUE(complex.balls[v].exact);
+      EXPECT_NEAR(complex.balls[v].center.z(), 0.1, 1e-9);
+      EXPECT_NEAR(complex.balls[v].radius, 0.1, 1e-9);
+      EXPECT_LT((complex.balls[v].center - right.balls[v].center).norm(), 0.5);
+    }
+    EXPECT_EQ(detail::solve_outliers_again(plate, complex, 1e-6), 0u);
+  }
 }
 
 // Where the points see only strips of the sheets between a bar's middle and its edges, what is between these is filled.

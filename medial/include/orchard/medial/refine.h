@@ -32,7 +32,7 @@ struct RefineReport {
   Index folded_triangles = 0;  // taken away: their two points have one contact
   Index border_cuts = 0;       // edges cut where the loss passes border_loss
   Index small_pieces = 0;      // edges and triangles of spikes and flakes, taken away
-  Index notches = 0;           // triangles that fill notches of borders
+  Index notches = 0;           // triangles that fill notches of borders, and what is open along sharp edges
   Index edge_vertices = 0;     // vertices of radius 0 on sharp edges
   Index reached_places = 0;    // of the surface, left open by more than borders may
   Index divided = 0;           // edges
@@ -50,14 +50,15 @@ struct RefinedAxis {
 };
 
 // The refined axis: every vertex is moved to the centre of a ball of the medial axis of the mesh itself, which touches
-// the surface where the forming points stand for and holds nothing of it; cells that fold onto others are taken away;
-// sheets are cut where their borders lose border_loss; spikes and flakes go that hang on the rest by one vertex and
-// reach no farther from it than twice its radius, but for what the topology needs; notches between the teeth of their
-// borders are filled, and those that end at sharp convex edges are extended onto these; what is interpolated too
-// coarsely is divided, with exact balls for new vertices; where the surface is then left open by more than 1.35
-// border_loss and reach_detail, triangles reach for it from the nearest edges; and at last vertices at one place are
-// merged, and triangles without area taken away. All by divisions, collapses, free extensions and contractions under
-// the link condition, so the topology is that of `axis`.
+// the surface where the forming points stand for and holds nothing of it, or, inside a sheet where none is found or one
+// that stands out, to such a ball between its neighbours; cells that fold onto others are taken away; sheets are cut
+// where their borders lose border_loss; spikes and flakes go that hang on the rest by one vertex and reach no farther
+// from it than twice its radius, but for what the topology needs; notches between the teeth of their borders are
+// filled, those that end at sharp convex edges are extended onto these, and what is open between such ends on one edge
+// is filled; what is interpolated too coarsely is divided, with exact balls for new vertices; where the surface is then
+// left open by more than 1.35 border_loss and reach_detail, triangles reach for it from the nearest edges; and at last
+// vertices at one place are merged, and triangles without area taken away. All by divisions, collapses, free extensions
+// and contractions under the link condition, so the topology is that of `axis`.
 //
 // Vertices have the radius that is the distance of their centre to the surface, up to rounding. Deterministic;
 // parallel. O(n log n) for n vertices, and some nearest-point queries each. `sampling` has the points of `axis`. Throws
