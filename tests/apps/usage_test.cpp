@@ -89,6 +89,12 @@ TEST(Usage, ListsAreRefusedForAnyItemThatIsMissingOrNone) {
   }
 }
 
+TEST(Usage, ASweepHasEachValueOnce) {
+  const Workplace here;
+  const std::string ball = here.add("ball.obj", test::icosphere(1)), out = (here / "out").string();
+  expect_refused(here, {"medial", ball, "-o", out, "--sweep", "samples=200,400, 200"}, "200 is there twice");
+}
+
 TEST(Usage, ListsTakeBlanksAroundItemsAndComeAgain) {
   const Workplace here;
   const std::string ball = here.add("ball.obj", test::icosphere(1));
