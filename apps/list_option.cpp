@@ -28,7 +28,7 @@ CLI::Validator each_item(const std::function<std::string(const std::string&)>& f
     const auto items = list_items(text);
     if (!items) return fmt::format("\"{}\": {}", text, kEmptyItem);
     for (const std::string& item : *items)
-      if (const std::string what = fault(item); !what.empty()) return what;
+      if (std::string what = fault(item); !what.empty()) return what;
     return std::string();
   };
   return {check, said};

@@ -50,8 +50,10 @@ TEST(Usage, ErrorsAreOneLineAndNameTheHelp) {
 }
 
 // Refused before anything is done, and so without any file.
-void expect_refused(const Workplace& here, const std::vector<std::string>& arguments, const std::string& named) {
+void expect_refused(const Workplace& here, const std::vector<std::string>& arguments, const std::string& named,
+                    const std::string& why = {}) {
   const Finished run = here.run(arguments);
+  EXPECT_NE(run.err.find(why), std::string::npos) << why << ": " << run.err;
   EXPECT_EQ(run.exit_code, 2) << named;
   EXPECT_TRUE(test::is_one_line_error(run.err)) << named << ": " << run.err;
   EXPECT_NE(run.err.find(named), std::string::npos) << named << ": " << run.err;
@@ -78,10 +80,9 @@ TEST(Usage, ListsAreRefusedForAnyItemThatIsMissingOrNone) {
                                     std::string(","), std::string(" "), std::string()}) {
       std::vector<std::string> arguments = command;
       arguments.insert(arguments.end(), {option, key + list});
-      expect_refused(here, arguments, option);
-      expect_refused(here, arguments, "empty");
+      expect_refused(here, arguments, option, "empty");
     }
-    for (const char* item : {"-7", "nan", "inf", "1e9", "7.5", "99999999999999999999", "0x10", "7 8", "\t7x"}) {
+    for (const char* item : {"-7", "nan", "7.5", "99999999999999999999", "7 8"}) {
       std::vector<std::string> arguments = command;
       arguments.insert(arguments.end(), {option, key + first + "," + item});
       expect_refused(here, arguments, option);
