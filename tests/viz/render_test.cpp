@@ -145,6 +145,7 @@ std::size_t colored_pixels(vtkImageData* image) {
 TEST_F(DrawPipeline, ShowsVoronoiCellsCutOpenOrWhole) {
   if (no_xvfb()) GTEST_SKIP() << "Xvfb is not in PATH";
   std::vector<Point> points;
+  points.reserve(300);
   Random random(1, 2, 3);
   for (int i = 0; i < 300; ++i) points.emplace_back(random.uniform(), random.uniform(), random.uniform());
   Scene scene;
