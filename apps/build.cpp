@@ -83,6 +83,7 @@ void check(const BuildCommand& command) {
   std::vector<fs::path> inputs = command.source.files();
   if (inputs.size() > 1) throw InputError("--points, --diagram and --from-axis exclude each other");
   refuse_idle_options(command);
+  require_sizes(command.options);
   tree_options(command);  // whether the numbers fit together
   for (const fs::path& file : inputs) check_input(file);
   inputs.push_back(command.mesh);

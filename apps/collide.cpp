@@ -18,7 +18,7 @@ namespace {
 using nlohmann::json;
 using runtime::Answer;
 
-// "tx ty tz qw qx qy qz"; a quaternion of any length but zero.
+// "tx ty tz qw qx qy qz", or with commas between them; a quaternion of any length but zero.
 runtime::Pose parse_pose(const std::string& text, const char* option) {
   if (text.empty()) return {};
   const auto fail = [&] {
@@ -30,9 +30,11 @@ runtime::Pose parse_pose(const std::string& text, const char* option) {
   const char* at = text.data();
   const char* const end = at + text.size();
   const auto skip_blanks = [&] {
-    while (at != end && (*at == ' ' || *at == '\t' || *at == ',')) ++at;
+    while (at != end && (*at == ' ' || *at == '\t')) ++at;
   };
   for (double& value : v) {
+    skip_blanks();
+    if (&value != &v.front() && at != end && *at == ',') ++at;
     skip_blanks();
     const auto [next, error] = std::from_chars(at, end, value);
     if (error != std::errc() || !std::isfinite(value)) fail();

@@ -9,6 +9,7 @@
 
 #include "a_number.h"
 #include "command_list.h"
+#include "list_option.h"
 #include "tree_options.h"
 
 namespace orchard::apps {
@@ -110,10 +111,8 @@ void add_build(CLI::App& app, Request& request) {
   command.add_flag("--report", build.page,
                    "Write a page (.html) as well: picture, tables, plots, options, repairs, times, certificate");
   command.add_flag("--cost", build.cost, "Say what it will cost in time and memory, and build nothing");
-  command
-      .add_option("--export", build.exports, "More files: json (spheres by level), urdf (a link's collision spheres)")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"sph", "json", "urdf"}));
+  add_list(command, "--export", build.exports, "More files: json (spheres by level), urdf (a link's collision spheres)",
+           {"sph", "json", "urdf"});
   command.add_option("--export-level", build.export_level, "Level of the urdf's spheres (default: the last)");
   command.add_option("--up", build.up, "The mesh's axis that points up in the picture and in ParaView")
       ->check(CLI::IsMember({"x", "y", "z"}))
@@ -122,6 +121,8 @@ void add_build(CLI::App& app, Request& request) {
   command.footer("Example:\n  orchard build data/lamp.obj -o out/lamp --picture");
   command.callback([&request, &command] {
     request.build.given = given_of(command);
+    SphereTreeOptions& options = request.build.options;
+    if (!options.spheres.empty()) options.depth = static_cast<Index>(options.spheres.size());
     request.run = [&request] { orchard::apps::build(request.build); };
   });
 }
@@ -231,8 +232,7 @@ void add_voronoi(CLI::App& app, Request& request) {
   command.add_flag("--compare", voronoi.compare, "Run all four algorithms on the same points")->excludes(algorithm);
   auto* folder = command.add_option("-o,--output", voronoi.folder,
                                     "Folder for the cells, for ParaView, and for the points of a mesh");
-  command.add_option("--cells", voronoi.cells, "Write the cells of these points alone, counted from 0: 3,14,15")
-      ->delimiter(',')
+  add_list(command, "--cells", voronoi.cells, "Write the cells of these points alone, counted from 0: 3,14,15")
       ->needs(folder);
   command.add_option("--box", voronoi.box, "Clip the cells to this box: x y z of its lower and upper corner")
       ->expected(6)
@@ -386,12 +386,9 @@ void add_view(CLI::App& app, Request& request) {
           "points (.xyz)")
       ->required();
   command.add_option("-o,--output", view.picture, "The picture, a .png file; with --window, where the key s saves to");
-  command
-      .add_option(
-          "--level", view.levels,
-          "Level of the trees, 0 for the root; several, such as 1,2,3, make a panel each (default: the deepest)")
-      ->delimiter(',')
-      ->check(CLI::Range(0, 1'000'000));
+  add_list(command, "--level", view.levels,
+           "Level of the trees, 0 for the root; several, such as 1,2,3, make a panel each (default: the deepest)", 0,
+           1'000'000);
   command.add_option("--camera", view.camera,
                      "Where the eye is: degrees from the front to the right, and upward (default: 34,23)");
   command.add_option("--up", view.up, "The axis that points up")
@@ -484,6 +481,15 @@ void add_simulate(CLI::App& app, Request& request) {
   command.callback([&request] { request.run = [&request] { orchard::apps::simulate(request.simulate); }; });
 }
 
+// An empty word, as a script's unset variable leaves one, is never what anybody means, nor the same as no option at
+// all.
+void refuse_empty_values(CLI::App& app) {
+  const CLI::Validator named([](std::string& value) { return value.empty() ? "the value is empty" : ""; }, "");
+  for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    for (CLI::Option* option : command->get_options())
+      if (option->get_expected_min() > 0) option->check(named);
+}
+
 }  // namespace
 
 void add_commands(CLI::App& app, Request& request) {
@@ -500,6 +506,7 @@ void add_commands(CLI::App& app, Request& request) {
   add_reference(app, request);
   add_profile(app, request);
   add_simulate(app, request);
+  refuse_empty_values(app);
 }
 
 }  // namespace orchard::apps

@@ -134,11 +134,11 @@ std::string short_name(const Compared& compared, const std::vector<Compared>& al
 
 std::string chart(const std::vector<Compared>& all, const std::string& title, double radius) {
   std::vector<plot::Plot> plots;
-  const auto add = [&](const std::string& figure, const auto& value) {
+  const auto add = [&](const std::string& figure, const std::string& over, const auto& value) {
     plot::Plot& plot = plots.emplace_back();
     plot.title = title + ": " + figure;
     plot.x_label = "level";
-    plot.y_label = figure;
+    plot.y_label = over;
     plot.log_y = true;
     for (const Compared& compared : all) {
       plot::Series& series = plot.series.emplace_back();
@@ -151,9 +151,10 @@ std::string chart(const std::vector<Compared>& all, const std::string& title, do
       }
     }
   };
-  add("mean inaccuracy / R", [&](const LevelRow& row) { return row.mean / radius; });
-  add("max inaccuracy / R", [&](const LevelRow& row) { return row.max / radius; });
-  add("volume outside / solid's", [](const LevelRow& row) { return row.outside; });
+  const std::string over_radius = "over the bounding radius";
+  add("mean inaccuracy", over_radius, [&](const LevelRow& row) { return row.mean / radius; });
+  add("maximum inaccuracy", over_radius, [&](const LevelRow& row) { return row.max / radius; });
+  add("volume outside", "over the solid's volume", [](const LevelRow& row) { return row.outside; });
   return plot::to_svg(plots, 3);
 }
 
@@ -172,7 +173,7 @@ void compare(const CompareCommand& command) {
   bar.clear();
   if (!command.plot.empty()) {
     const Writing writing;
-    write_file(command.plot, chart(all, command.mesh.filename().string(), radius));
+    write_file(command.plot, chart(all, command.mesh.stem().string(), radius));
   }
   if (command.output.json) {
     json report = to_json(all, radius);

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
+#include "list_option.h"
 #include "medial_run.h"
 #include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
@@ -20,17 +22,6 @@ struct Dimension {
   std::vector<std::string> values;
 };
 
-std::vector<std::string> split(const std::string& text, char at) {
-  std::vector<std::string> parts;
-  std::size_t begin = 0;
-  for (;;) {
-    const std::size_t end = text.find(at, begin);
-    parts.push_back(text.substr(begin, end - begin));
-    if (end == std::string::npos) return parts;
-    begin = end + 1;
-  }
-}
-
 Dimension parse(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) throw InputError("--sweep " + text + ": expected NAME=VALUE,VALUE,..");
@@ -43,10 +34,14 @@ Dimension parse(const std::string& text) {
     for (const TuningFlag& f : flags) names += (names.empty() ? "" : ", ") + f.name;
     throw InputError("--sweep: no flag is called " + name + "; there are " + names);
   }
-  Dimension dimension{.flag = &*flag, .values = split(text.substr(equals + 1), ',')};
+  auto values = list_items(text.substr(equals + 1));
+  if (!values) throw InputError(fmt::format("--sweep {}: {}", text, kEmptyItem));
+  Dimension dimension{.flag = &*flag, .values = std::move(*values)};
   for (const std::string& value : dimension.values) {
     if (const std::string fault = flag->fault(value); !fault.empty())
       throw InputError(fmt::format("--sweep {}: {}", name, fault));
+    if (std::count(dimension.values.begin(), dimension.values.end(), value) > 1)
+      throw InputError(fmt::format("--sweep {}: {} is there twice", text, value));
   }
   return dimension;
 }

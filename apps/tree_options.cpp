@@ -10,6 +10,7 @@
 #include <string>
 
 #include "a_number.h"
+#include "list_option.h"
 
 namespace orchard::apps {
 namespace {
@@ -128,16 +129,9 @@ void add_tree_options(CLI::App& command, SphereTreeOptions& options) {
               "above 64 for tightened only")
           ->check(CLI::Range(2, static_cast<int>(kMaxBranching)))
           ->capture_default_str();
-  command
-      .add_option_function<std::vector<Index>>(
-          "--spheres",
-          [&options](const std::vector<Index>& spheres) {
-            options.spheres = spheres;
-            options.depth = static_cast<Index>(spheres.size());
-          },
-          "tightened: N1,N2,.. spheres on each level at most, in place of --depth and --branching; children go where "
-          "they help, up to 64 to a sphere")
-      ->delimiter(',')
+  add_list(command, "--spheres", options.spheres,
+           "tightened: N1,N2,.. spheres on each level at most, in place of --depth and --branching; children go where "
+           "they help, up to 64 to a sphere")
       ->excludes(depth)
       ->excludes(branching);
   add_choice(

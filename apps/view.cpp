@@ -104,6 +104,8 @@ void view(const ViewCommand& command) {
   if (!command.picture.empty() && lower_extension(command.picture) != ".png")
     throw InputError(command.picture.string() + ": pictures are .png files");
   PipelinePicture picture = picture_of(command);
+  if (const std::string missing = renderer_missing(); !missing.empty())
+    throw InputError((command.window ? "no window can be opened: " : "no picture can be made: ") + missing);
   for (const std::filesystem::path& file : command.files) check_input(file);
   if (!command.picture.empty()) check_output(command.picture, command.files);
 
@@ -126,7 +128,9 @@ void view(const ViewCommand& command) {
 #else
 
 void view(const ViewCommand&) {
-  throw Error("this program was built without VTK, and so without \"view\"; tools/install-packages gets it");
+  throw InputError(
+      "view: this program was built without VTK, which draws: get it (tools/install-packages), and configure and build "
+      "again with ORCHARD_VIZ=ON");
 }
 
 #endif

@@ -15,6 +15,10 @@ namespace {
 constexpr double kSamplesPerLeaf = 20;
 constexpr double kGrowthFactor = 1.1;  // of dissertation 6.3.2
 
+TightenOptions tightening_options(const SphereTreeOptions& o) {
+  return {o.depth, o.branching, o.spheres, o.effort, o.objective, o.refinement, o.seed};
+}
+
 class TreeBuilder {
  public:
   TreeBuilder(const Surface& surface, const SphereTreeOptions& options, const Progress& progress)
@@ -85,8 +89,7 @@ class TreeBuilder {
         break;
       case TreeMethod::tightened:
         stage("tightening", [&] {
-          const TightenOptions tightening{o.depth, o.branching, o.spheres, o.effort, o.objective, o.refinement, o.seed};
-          keep(tightened_tree(surface_, build_.medial->axis, tightening, progress_), build_.tightening);
+          keep(tightened_tree(surface_, build_.medial->axis, tightening_options(o), progress_), build_.tightening);
         });
         break;
     }
@@ -160,8 +163,15 @@ Index samples_needed(const SphereTreeOptions& options) {
   return static_cast<Index>(std::clamp(kSamplesPerLeaf * leaves, min, 200'000.0));
 }
 
+void require_sizes(const SphereTreeOptions& options) {
+  if (options.method == TreeMethod::tightened) return require_sizes(tightening_options(options));
+  if (options.branching < 2 || options.branching > kMaxFanOut)
+    throw InputError("branching must lie between 2 and " + std::to_string(kMaxFanOut));
+}
+
 SphereTreeBuild build_sphere_tree(const Surface& surface, const SphereTreeOptions& options, const Progress& progress,
                                   MedialBuildInput input) {
+  require_sizes(options);
   return TreeBuilder(surface, options, progress).run(std::move(input));
 }
 

@@ -68,7 +68,9 @@ class Rays {
     }
     return cell;
   }
-  std::size_t index(int x, int y) const { return static_cast<std::size_t>(y * per_axis_ + x); }
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(per_axis_) + static_cast<std::size_t>(x);
+  }
 
   void sort_into_cells(const std::vector<Eigen::Vector2d>& places) {
     begin_.assign(index(0, per_axis_) + 1, 0);

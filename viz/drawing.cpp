@@ -148,8 +148,6 @@ std::optional<std::string> run_somewhere(const Drawing& drawing) {
   return reasons + ", and " + *failure;
 }
 
-constexpr const char* kNoRenderer = "the program orchard-render is neither beside this one nor in PATH";
-
 // What `work` says, or why it could not.
 template <class Work>
 PictureStatus tried(const Work& work) {
@@ -166,11 +164,23 @@ PictureStatus tried(const Work& work) {
 
 }  // namespace
 
+std::string renderer_missing(const PipelinePicture& picture) {
+  const fs::path renderer = find_renderer(picture);
+  if (renderer.empty())
+    return "the program that draws, orchard-render, is neither beside this one nor in PATH: build it (cmake --build "
+           "--preset release --target orchard_render), install it with the package orchard-tools, or name it in the "
+           "variable "
+           "ORCHARD_RENDER";
+  if (access(renderer.c_str(), X_OK) == 0) return {};
+  return renderer.string() + ", named as the program that draws (ORCHARD_RENDER), " +
+         (fs::exists(renderer) ? "cannot be run" : "is not there") + ": name orchard-render, or none, to find it";
+}
+
 PictureStatus detail::draw(const fs::path& png, const PipelinePicture& picture, const std::vector<std::string>& more,
                            const WriteScene& write) {
   return tried([&]() -> PictureStatus {
+    if (std::string missing = renderer_missing(picture); !missing.empty()) return {false, std::move(missing)};
     const fs::path renderer = find_renderer(picture);
-    if (renderer.empty()) return {false, kNoRenderer};
     const TemporaryFolder folder;
     write(folder.path() / kPrefix);
     report_progress(picture.progress, "picture", 0);
@@ -184,8 +194,8 @@ PictureStatus detail::draw(const fs::path& png, const PipelinePicture& picture, 
 PictureStatus detail::show(const fs::path& png, const PipelinePicture& picture, const std::vector<std::string>& more,
                            const WriteScene& write) {
   return tried([&]() -> PictureStatus {
+    if (std::string missing = renderer_missing(picture); !missing.empty()) return {false, std::move(missing)};
     const fs::path renderer = find_renderer(picture);
-    if (renderer.empty()) return {false, kNoRenderer};
     if (variable("DISPLAY").empty()) return {false, "DISPLAY is not set: there is no screen to show it on"};
     const TemporaryFolder folder;
     write(folder.path() / kPrefix);

@@ -50,6 +50,7 @@ struct Request {
   bool window = false;
   int level = -1;         // that the window begins with
   double opacity = 0.16;  // of meshes beside other things
+  bool whole = false;     // Voronoi cells, which their box cuts open
 };
 
 // The size of print, at most `pixels`, in which `text` is not wider than `width`; all in pixels.
@@ -146,7 +147,8 @@ void render(const Request& request) {
   const Vector3d backward = looking(request.direction).backward;
   Panels content = make_panels(request.vtm, {.line_width = 1.5 * kOversampling,
                                              .backward = {backward.x(), backward.y(), backward.z()},
-                                             .opacity = request.opacity});
+                                             .opacity = request.opacity,
+                                             .whole = request.whole});
   Direction behind = request.direction;
   behind.azimuth += 180;
   View view = make_view(request.direction, content.extents), back = make_view(behind, content.extents);
@@ -214,6 +216,7 @@ constexpr const char* kUsage =
     "  --elevation A  degrees above its middle, -80 to 80 (23)\n"
     "  --title TEXT   above the panels\n"
     "  --opacity A    of meshes in a scene that has more than them, 0 to 1 (0.16)\n"
+    "  --whole        all Voronoi cells of a scene, not those of the half away from the eye: where a box has cut them\n"
     "  --window       a window instead of a picture, of a scene; s saves what it shows to PICTURE.png\n"
     "  --level K      of the trees, that the window begins with (the last)\n";
 
@@ -230,8 +233,8 @@ Request parse(const std::vector<std::string>& arguments) {
   request.vtm = arguments.at(0);
   request.png = arguments.at(1);
   for (std::size_t i = 2; i < arguments.size(); i += 2) {
-    if (arguments[i] == "--window") {
-      request.window = true;
+    if (arguments[i] == "--window" || arguments[i] == "--whole") {
+      (arguments[i] == "--window" ? request.window : request.whole) = true;
       --i;
       continue;
     }

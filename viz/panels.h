@@ -40,6 +40,7 @@ struct PanelOptions {
   double line_width = 1;             // of the model's edges, in pixels
   std::array<double, 3> backward{};  // a unit vector towards the eye
   double opacity = 0.16;             // of meshes, where a scene has more than them
+  bool whole = false;                // Voronoi cells are not cut open: their box does so
 };
 
 // Panels for the files that a .vtm of write_pipeline() opens, by the names that it gives them; where there is a block

@@ -16,7 +16,7 @@ PictureStatus draw_medial_errors(const fs::path& png, const MedialErrorsPicture&
   return detail::draw(png, picture, {}, [&](const fs::path& prefix) {
     std::vector<NamedFile> files;
     const auto add = [&](const std::string& name, const std::string& ending) {
-      const fs::path file = with_ending(prefix, ending);
+      fs::path file = with_ending(prefix, ending);
       files.push_back({name, file.filename()});
       return file;
     };

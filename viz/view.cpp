@@ -18,7 +18,7 @@ class SceneFiles {
   explicit SceneFiles(const fs::path& prefix) : prefix_(prefix) {}
 
   fs::path add(const std::string& name, const char* ending) {
-    const fs::path file = with_ending(prefix_, "-" + std::to_string(files_.size()) + ending);
+    fs::path file = with_ending(prefix_, "-" + std::to_string(files_.size()) + ending);
     // Two files of one name are two blocks.
     std::string block = name;
     for (int i = 2; std::any_of(files_.begin(), files_.end(), [&](const NamedFile& f) { return f.name == block; }); ++i)

@@ -24,7 +24,8 @@ Panels view_panels(const ViewParts& parts, const PanelOptions& options) {
   const auto add = [&](const ViewParts& seen, int level) -> vtkRenderer* {
     Panel& panel =
         result.panels.emplace_back(Panel{make_renderer(result.size), caption_of(seen, level), detail_of(seen, level)});
-    add_still_parts(panel.renderer, seen, result.size, options.line_width, options.opacity, options.backward);
+    add_still_parts(panel.renderer, seen, result.size, options.line_width, options.opacity,
+                    options.whole ? std::nullopt : std::optional(options.backward));
     return panel.renderer;
   };
   for (const ViewParts& seen : one_diagram_each(parts)) {

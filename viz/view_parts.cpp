@@ -58,9 +58,12 @@ bool is_wrong(vtkUnstructuredGrid* grid) {
          kRounding * grid->GetLength();
 }
 
-// The polyhedra of the half that is away from the eye, each drawn in towards its middle.
-Data cut_open(vtkUnstructuredGrid* grid, const Eigen::Vector3d& backward) {
-  const double middle = Eigen::Vector3d(grid->GetCenter()).dot(backward);
+using Backward = std::optional<std::array<double, 3>>;
+
+// The polyhedra of the half that is away from the eye, or all of them, each drawn in towards its middle.
+Data parted(vtkUnstructuredGrid* grid, const Backward& backward) {
+  const Eigen::Vector3d to_eye = backward ? Eigen::Vector3d(backward->data()) : Eigen::Vector3d::Zero();
+  const double middle = Eigen::Vector3d(grid->GetCenter()).dot(to_eye);
   vtkDataArray* inaccuracy = require_array(grid->GetCellData(), "inaccuracy", grid->GetNumberOfCells());
   const double max = inaccuracy->GetRange()[1];
   const bool wrong = is_wrong(grid);
@@ -73,7 +76,7 @@ Data cut_open(vtkUnstructuredGrid* grid, const Eigen::Vector3d& backward) {
     grid->GetCellPoints(i, corners);
     Eigen::Vector3d center = Eigen::Vector3d::Zero();
     for (const vtkIdType id : *corners) center += corner(grid, id) / static_cast<double>(corners->GetNumberOfIds());
-    if (center.dot(backward) > middle) continue;
+    if (center.dot(to_eye) > middle) continue;
     Color color = cell_color(i);
     if (wrong) color = wrong_color(std::sqrt(inaccuracy->GetComponent(i, 0) / max));
     grid->GetFaceStream(i, stream);
@@ -96,8 +99,8 @@ Data cut_open(vtkUnstructuredGrid* grid, const Eigen::Vector3d& backward) {
   return result;
 }
 
-vtkSmartPointer<vtkActor> make_cells(vtkUnstructuredGrid* grid, const Eigen::Vector3d& backward, double line_width) {
-  auto actor = make_actor(cut_open(grid, backward), kStone);
+vtkSmartPointer<vtkActor> make_cells(vtkUnstructuredGrid* grid, const Backward& backward, double line_width) {
+  auto actor = make_actor(parted(grid, backward), kStone);
   vtkMapper* mapper = actor->GetMapper();
   mapper->ScalarVisibilityOn();
   mapper->SetScalarModeToUseCellFieldData();
@@ -188,12 +191,10 @@ double size_of(const ViewParts& parts) {
 }
 
 std::vector<vtkSmartPointer<vtkActor>> add_still_parts(vtkRenderer* renderer, const ViewParts& parts, double size,
-                                                       double line_width, double opacity,
-                                                       const std::array<double, 3>& backward) {
+                                                       double line_width, double opacity, const Backward& backward) {
   for (const auto& part : parts.points) renderer->AddActor(make_points(part.second, size));
   for (const auto& part : parts.axes) renderer->AddActor(make_axis(part.second, line_width));
-  for (const auto& part : parts.cells)
-    renderer->AddActor(make_cells(part.second, Eigen::Vector3d(backward.data()), line_width));
+  for (const auto& part : parts.cells) renderer->AddActor(make_cells(part.second, backward, line_width));
   std::vector<vtkSmartPointer<vtkActor>> glass;
   for (const auto& part : parts.meshes) {
     if (parts.meshes_alone()) {

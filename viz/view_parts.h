@@ -1,7 +1,9 @@
 #pragma once
 #include <vtkUnstructuredGrid.h>
 
+#include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,10 +33,11 @@ ViewParts view_parts(const Blocks& blocks);
 double size_of(const ViewParts& parts);
 std::vector<Extent> extents_of(const ViewParts& parts);
 
-// What is seen whatever the level. Of meshes beside other things the faces' actors come back, for their opacity.
+// What is seen whatever the level, cells cut open towards `backward`, if that is given. Of meshes beside other things
+// the faces' actors come back, for their opacity.
 std::vector<vtkSmartPointer<vtkActor>> add_still_parts(vtkRenderer* renderer, const ViewParts& parts, double size,
                                                        double line_width, double opacity,
-                                                       const std::array<double, 3>& backward);
+                                                       const std::optional<std::array<double, 3>>& backward);
 // The spheres of a level: one tree's by branch, several trees' by tree.
 std::vector<vtkSmartPointer<vtkActor>> level_actors(const NamedParts<Data>& trees);
 

@@ -158,7 +158,7 @@ void write_multiblock(const std::filesystem::path& vtm, std::span<const NamedFil
 std::vector<NamedFile> write_pipeline(const std::filesystem::path& prefix, const PipelineValues& values) {
   std::vector<NamedFile> files;
   const auto add = [&](const std::string& name, const std::string& ending) {
-    const std::filesystem::path file = with_ending(prefix, ending);
+    std::filesystem::path file = with_ending(prefix, ending);
     files.push_back({name, file.filename()});
     return file;
   };

@@ -47,7 +47,7 @@ class Scene {
     const View view = make_view(request.direction, extents_of(parts_));
     renderer_ = make_renderer(size_of(parts_));
     glass_ = add_still_parts(renderer_, parts_, size_of(parts_), 1.5, request.opacity,
-                             {view.backward.x(), view.backward.y(), view.backward.z()});
+                             std::array{view.backward.x(), view.backward.y(), view.backward.z()});
     opacity_ = request.opacity;
     add_text(caption_, 0.96, 18, true);
     add_text(help_, 0.02, 13, false);

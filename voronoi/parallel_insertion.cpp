@@ -128,7 +128,7 @@ class Pass {
     auto& free = workspace_.free_vertices;
     const std::size_t taken = workspace_.vertices.size() - free.size();
     const double per_point = static_cast<double>(taken) / static_cast<double>(inserted);
-    for (std::uint8_t r = 0; r < parts_.size(); ++r) {
+    for (std::size_t r = 0; r < parts_.size(); ++r) {
       auto& [points, left, room, start] = parts_[r];
       const std::size_t wanted = static_cast<std::size_t>(per_point * static_cast<double>(points.size())) + kRoom;
       const std::size_t recycled = std::min(wanted, free.size()), before = workspace_.vertices.size();
@@ -137,7 +137,7 @@ class Pass {
       workspace_.resize(before + wanted - recycled);
       for (std::size_t v = workspace_.vertices.size(); v-- > before;) room.push_back(static_cast<Index>(v));
       region_of_.resize(workspace_.vertices.size());
-      for (const Index v : room) region_of_[v] = r;
+      for (const Index v : room) region_of_[v] = static_cast<std::uint8_t>(r);
     }
   }
   void insert(Inserter& inserter, std::uint8_t r) {

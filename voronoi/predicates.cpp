@@ -219,9 +219,10 @@ Sign volume_sign_of_middle(const std::array<Point, 4>& points, const Point& a, c
   const auto& [p, q, r, s] = points;
   const auto [to_a, to_b, to_c, to_q, to_r, to_s] = integer_vectors(p, a, b, c, q, r, s);
   // All four times as far from p.
-  const auto from_middle = [&](const SharpVector<ExactInteger>& v) {
-    return SharpVector<ExactInteger>{4 * v.x - to_q.x - to_r.x - to_s.x, 4 * v.y - to_q.y - to_r.y - to_s.y,
-                                     4 * v.z - to_q.z - to_r.z - to_s.z};
+  const SharpVector<ExactInteger> to_middle{to_q.x + to_r.x + to_s.x, to_q.y + to_r.y + to_s.y,
+                                            to_q.z + to_r.z + to_s.z};
+  const auto from_middle = [&to_middle](const SharpVector<ExactInteger>& v) {
+    return SharpVector<ExactInteger>{4 * v.x - to_middle.x, 4 * v.y - to_middle.y, 4 * v.z - to_middle.z};
   };
   return exact_sign(sharp_volume(std::array{from_middle(to_a), from_middle(to_b), from_middle(to_c)}));
 }

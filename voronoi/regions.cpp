@@ -45,7 +45,7 @@ Regions::Regions(const Workspace& workspace, std::span<const Index> waiting, std
   };
   std::array<Part, 2u << kMaxHalvings> parts;
   parts[1] = {sample(waiting, kPoints << halvings), sample(near, kVertices << halvings)};
-  for (unsigned node = 1; node < 1u << halvings; ++node) {
+  for (std::size_t node = 1; node < std::size_t{1} << halvings; ++node) {
     const Cut cut = cuts_[node] = best_cut(workspace, parts[node].points, parts[node].vertices);
     Part &low = parts[2 * node], &high = parts[2 * node + 1];
     for (const Index p : parts[node].points) (cut.is_beyond(workspace.points[p]) ? high : low).points.push_back(p);

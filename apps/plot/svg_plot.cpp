@@ -2,6 +2,7 @@
 #include "svg_plot.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -9,6 +10,7 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 
 #include "orchard/geometry/xml_escaped.h"
 
@@ -130,9 +132,34 @@ const char* dashes_of_line(std::size_t line) {
   return kDashes[(line + line / std::size(kColors)) % std::size(kDashes)];
 }
 
+// What tells points of one line from those of another where they lie upon each other, by the coordinates of corners in
+// units of a mark's size; none: a circle.
+constexpr std::array<std::string_view, 6> kMarks{"",
+                                                 "-.9,-.9 .9,-.9 .9,.9 -.9,.9",
+                                                 "0,-1.25 1.1,.75 -1.1,.75",
+                                                 "0,-1.3 1.3,0 0,1.3 -1.3,0",
+                                                 "0,1.25 1.1,-.75 -1.1,-.75",
+                                                 "-.4,-1.2 .4,-1.2 .4,-.4 1.2,-.4 1.2,.4 .4,.4 .4,1.2 -.4,1.2 -.4,.4 "
+                                                 "-1.2,.4 -1.2,-.4 -.4,-.4"};
+constexpr double kMarkSize = 3;
+
 struct Look {
   const char *color, *dashes;
+  std::size_t mark = 0;
+  bool hollow = false;
 };
+
+// On a line, whose other dots keep clear of it.
+void draw_mark(std::ostream& out, double x, double y, const Look& look) {
+  const std::string style = std::string("fill=\"") + (look.hollow ? "white" : look.color) + "\" stroke=\"" +
+                            (look.hollow ? look.color : "white") + "\"";
+  if (kMarks[look.mark].empty()) {
+    out << "<circle cx=\"" << x << "\" cy=\"" << y << "\" r=\"" << kMarkSize << "\" " << style << "/>\n";
+    return;
+  }
+  out << "<polygon transform=\"translate(" << x << ' ' << y << ") scale(" << kMarkSize << ")\" points=\""
+      << kMarks[look.mark] << "\" stroke-width=\"" << 1 / kMarkSize << "\" " << style << "/>\n";
+}
 
 std::string dashes_of(const Look& look) {
   return *look.dashes == 0 ? std::string() : " stroke-dasharray=\"" + std::string(look.dashes) + "\"";
@@ -166,9 +193,7 @@ void draw_series(std::ostream& out, const Series& series, const Axis& x, const A
   out << "\"/>\n";
   if (count > kMaxMarks) return;
   for (std::size_t i = 0; i < count; ++i)
-    if (x.shows(series.x[i]) && y.shows(series.y[i]))
-      out << "<circle cx=\"" << x.place(series.x[i]) << "\" cy=\"" << y.place(series.y[i]) << "\" r=\"2.5\" fill=\""
-          << color << "\"/>\n";
+    if (x.shows(series.x[i]) && y.shows(series.y[i])) draw_mark(out, x.place(series.x[i]), y.place(series.y[i]), look);
 }
 
 // Where a plot's frame is.
@@ -238,7 +263,10 @@ void see_all(const Plot& plot, Axis& x, Axis& y) {
     if (series.x.size() > 1) x.see(end_of_bars(series.x, plot.log_x));
   }
   for (const double level : plot.levels) y.see(level);
-  if (!plot.x_names.empty()) x.see(0), x.see(static_cast<double>(plot.x_names.size() - 1));
+  if (plot.x_names.empty()) return;
+  constexpr double kBeside = 0.12;  // so that no mark lies on the frame
+  x.see(-kBeside);
+  x.see(static_cast<double>(plot.x_names.size() - 1) + kBeside);
 }
 
 // Room for the widest number of the scale, and for what it counts.
@@ -253,6 +281,7 @@ void draw_legend(std::ostream& out, const Series& series, const Look& look, doub
   if (series.kind == Series::Kind::line) {
     const std::string style = "stroke-width=\"1.8\" stroke=\"" + color + "\"" + dashes_of(look);
     line(out, left, row - 4, left + 26, row - 4, style.c_str());
+    if (series.x.size() <= kMaxMarks) draw_mark(out, left + 13, row - 4, look);
   } else {
     rectangle(out, left + 8, row - 8, 9, 9, "fill=\"" + color + "\"");
   }
@@ -266,8 +295,10 @@ std::vector<Look> looks_of(const Plot& plot) {
   std::size_t lines = 0;
   for (const Series& series : plot.series) {
     const bool line = series.kind == Series::Kind::line;
-    const char* dashes = series.dashed ? kDashed : line && !compared ? dashes_of_line(lines++) : "";
-    looks.push_back({kColors[looks.size() % std::size(kColors)], dashes});
+    const std::size_t place = series.look.value_or(looks.size()), nth = series.look.value_or(lines);
+    const char* dashes = series.dashed ? kDashed : line && !compared ? dashes_of_line(nth) : "";
+    lines += line && !series.dashed;
+    looks.push_back({kColors[place % std::size(kColors)], dashes, place % kMarks.size(), series.dashed});
   }
   return looks;
 }

@@ -1,5 +1,7 @@
 #pragma once
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,7 +14,8 @@ struct Series {
   std::string name;                        // for the legend; empty: none
   std::vector<double> x, y;
   Kind kind = Kind::points;
-  bool dashed = false;  // of a line: for what others are compared with
+  bool dashed = false;                // of a line: for what others are compared with; its marks are hollow
+  std::optional<std::size_t> look{};  // which colour, dashes and mark, for the same in all pictures; else by its place
 };
 
 struct Plot {

@@ -208,6 +208,7 @@ Plot degrade(const char* scene, std::size_t bodies, int frames, const PackedSphe
     std::printf("| ");
     for (std::size_t level = 0; level < stopped.size(); ++level) {
       std::printf("%zu ", stopped[level]);
+      if (level >= plot.x_names.size()) plot.x_names.push_back(std::to_string(level));
       bars.x.push_back(static_cast<double>(level));
       bars.y.push_back(static_cast<double>(stopped[level]));
       csv << scene << ",1/" << part << ',' << level << ',' << stopped[level] << '\n';

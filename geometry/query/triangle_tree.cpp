@@ -203,7 +203,7 @@ ClosestPoint TriangleTree::closest(const Point& point, NearestTriangles& nearest
 }
 
 ClosestPoint TriangleTree::closest_within(const Point& point, double distance) const {
-  const ClosestPoint none{.position = Point::Zero(), .distance = std::numeric_limits<double>::infinity()};
+  ClosestPoint none{.position = Point::Zero(), .distance = std::numeric_limits<double>::infinity()};
   if (!(distance >= 0)) return none;
   Candidates candidates(*this, point);
   const double radius = scale_ * distance;

@@ -130,6 +130,7 @@ std::vector<Child> ChildBuilder::fitted(const Portion& portion, const Parts& par
 // As many as wanted, from a family of another size.
 std::vector<Child> ChildBuilder::resized(const Portion& portion, const std::vector<Child>& family, Index wanted) const {
   std::vector<FittedBall> start;
+  start.reserve(family.size());
   for (const Child& child : family) start.push_back(start_at(child.sphere.center));
   return shared_out(portion, {&start, 1}, wanted);
 }

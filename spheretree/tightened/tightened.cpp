@@ -24,22 +24,6 @@ detail::Work work_for(Effort effort) {
   return {1, 6, 2, 24, {2, 1}};
 }
 
-void require_in_range(const TightenOptions& options) {
-  const auto require = [](bool holds, const std::string& what) {
-    if (!holds) throw InputError(what);
-  };
-  const std::string max = std::to_string(kMaxBranching);
-  require(options.branching >= 2 && options.branching <= kMaxBranching, "branching must lie between 2 and " + max);
-  const std::vector<Index>& spheres = options.spheres;
-  if (spheres.empty()) return;
-  require(spheres.size() == options.depth, "spheres: there must be one number for each level");
-  require(spheres[0] >= 2 && spheres[0] <= kMaxBranching, "spheres: the first level's must lie between 2 and " + max);
-  for (std::size_t i = 1; i < spheres.size(); ++i)
-    require(spheres[i] > spheres[i - 1] && spheres[i] / kMaxFanOut <= spheres[i - 1],
-            "spheres: each level must have more than the one above, and at most " + std::to_string(kMaxFanOut) +
-                " times as many");
-}
-
 // The mesh in the frame, where the search is.
 struct Framed {
   explicit Framed(const Surface& given) : frame(given.bounding_box()), surface(frame.in(given.mesh())) {
@@ -53,9 +37,25 @@ struct Framed {
 
 }  // namespace
 
+void require_sizes(const TightenOptions& options) {
+  const auto require = [](bool holds, const std::string& what) {
+    if (!holds) throw InputError(what);
+  };
+  const std::string max = std::to_string(kMaxBranching);
+  require(options.branching >= 2 && options.branching <= kMaxBranching, "branching must lie between 2 and " + max);
+  const std::vector<Index>& spheres = options.spheres;
+  if (spheres.empty()) return;
+  require(spheres.size() == options.depth, "spheres: there must be one number for each level");
+  require(spheres[0] >= 2 && spheres[0] <= kMaxBranching, "spheres: the first level's must lie between 2 and " + max);
+  for (std::size_t i = 1; i < spheres.size(); ++i)
+    require(spheres[i] > spheres[i - 1] && spheres[i] <= std::uint64_t{kMaxFanOut} * spheres[i - 1],
+            "spheres: each level must have more than the one above, and at most " + std::to_string(kMaxFanOut) +
+                " times as many");
+}
+
 TightenBuild tightened_tree(const Surface& surface, const MedialAxis& axis, const TightenOptions& options,
                             const Progress& progress) {
-  require_in_range(options);
+  require_sizes(options);
   if (axis.size() == 0) throw InputError("the medial axis has no vertex: sample the surface more densely");
   const Framed framed(surface);
   const detail::Samples samples = detail::surface_samples(surface, axis, framed.frame);

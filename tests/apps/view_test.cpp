@@ -1,4 +1,8 @@
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
 
 #include "program.h"
 #include "support/shapes.h"
@@ -90,6 +94,36 @@ TEST(View, RefusesWhatItCannotDraw) {
     EXPECT_TRUE(test::is_one_line_error(run.err)) << run.err;
     EXPECT_NE(run.err.find(named), std::string::npos) << run.err;
   }
+  EXPECT_FALSE(here.files("").contains("view.png"));
+}
+
+// A program in a folder of its own, so that orchard-render is nowhere beside it.
+TEST(View, SaysInOneLineWhatIsMissingToDraw) {
+  const Workplace here;
+  const std::string mesh = here.add("ball.obj", test::icosphere(1));
+  std::filesystem::create_directory(here / "bin");
+  std::filesystem::copy_file(ORCHARD_PROGRAM, here / "bin/orchard");
+  const std::string err = (here / "err").string();
+  const auto refused = [&](const std::vector<std::string>& more, const std::string& variable) {
+    std::string command = "PATH=/nowhere " + variable + " " + (here / "bin/orchard").string() + " view " + mesh;
+    for (const std::string& word : more) command += " " + word;
+    const int status = std::system((command + " > " + (here / "out").string() + " 2> " + err).c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 2);
+    std::string line = here.files("").at("err");
+    EXPECT_TRUE(test::is_one_line_error(line)) << line;
+    return line;
+  };
+  const std::vector<std::string> picture{"-o", (here / "view.png").string()};
+  for (const std::vector<std::string>& more : {picture, std::vector<std::string>{"--window"}})
+    for (const char* part : {"orchard-render, is neither beside this one nor in PATH", "--target orchard_render",
+                             "orchard-tools", "ORCHARD_RENDER"}) {
+      const std::string line = refused(more, "ORCHARD_RENDER=");
+      EXPECT_NE(line.find(part), std::string::npos) << line;
+    }
+  const std::string none = (here / "none").string();
+  EXPECT_NE(refused(picture, "ORCHARD_RENDER=" + none).find(none + ", named as"), std::string::npos);
+  EXPECT_NE(refused(picture, "ORCHARD_RENDER=" + none).find("is not there"), std::string::npos);
+  EXPECT_NE(refused(picture, "ORCHARD_RENDER=" + mesh).find("cannot be run"), std::string::npos);
   EXPECT_FALSE(here.files("").contains("view.png"));
 }
 

@@ -7,11 +7,15 @@
 #include <vtkPNGReader.h>
 #include <vtkSmartPointer.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <set>
 
 #include "child_process.h"
+#include "orchard/geometry/random.h"
+#include "orchard/viz/view.h"
+#include "orchard/voronoi/highest_first.h"
 #include "values.h"
 
 namespace orchard {
@@ -124,6 +128,36 @@ TEST_F(DrawPipeline, MakesFewerPanelsOfFewerValuesAndChoosesTheWidth) {
   ASSERT_TRUE(draw_pipeline(png_, request));
   EXPECT_GT(read_png(png_)->GetDimensions()[0], 3 * one / 2);
   EXPECT_EQ(read_png(png_)->GetDimensions()[1], 200);
+}
+
+std::size_t colored_pixels(vtkImageData* image) {
+  std::size_t count = 0;
+  const int* size = image->GetDimensions();
+  for (int y = 0; y < size[1]; ++y) {
+    for (int x = 0; x < size[0]; ++x) {
+      const auto* pixel = static_cast<const unsigned char*>(image->GetScalarPointer(x, y, 0));
+      count += std::max({pixel[0], pixel[1], pixel[2]}) - std::min({pixel[0], pixel[1], pixel[2]}) > 30;
+    }
+  }
+  return count;
+}
+
+TEST_F(DrawPipeline, ShowsVoronoiCellsCutOpenOrWhole) {
+  if (no_xvfb()) GTEST_SKIP() << "Xvfb is not in PATH";
+  std::vector<Point> points;
+  points.reserve(300);
+  Random random(1, 2, 3);
+  for (int i = 0; i < 300; ++i) points.emplace_back(random.uniform(), random.uniform(), random.uniform());
+  Scene scene;
+  scene.diagrams.push_back({"cells", highest_first_voronoi(points).diagram});
+  PipelinePicture request = picture();
+  request.height = 300;
+  request.elevation = 0.9;
+  ASSERT_TRUE(draw_view(png_, scene, request));
+  const std::size_t cut = colored_pixels(read_png(png_));
+  request.renderer = script(std::string("exec ") + ORCHARD_RENDERER + " \"$@\" --whole");
+  ASSERT_TRUE(draw_view(png_, scene, request));
+  EXPECT_GT(static_cast<double>(colored_pixels(read_png(png_))), 1.1 * static_cast<double>(cut));
 }
 
 TEST_F(DrawPipeline, GoesOnToXvfbWhereTheDisplayDoesNotServe) {

@@ -60,6 +60,10 @@ AnnealingOptions annealing_options(const SphereTreeOptions& options);
 // 10,000 (20,000 with high effort) at least and 200,000 at most.
 Index samples_needed(const SphereTreeOptions& options);
 
+// Throws InputError for a branching or numbers of spheres that are out of the method's range; building does so before
+// anything else.
+void require_sizes(const SphereTreeOptions& options);
+
 // Everything that one run from a surface to a packed tree made, and how long each stage took.
 struct SphereTreeBuild {
   // Of the options, those that build_sphere_tree_within() chooses by itself.

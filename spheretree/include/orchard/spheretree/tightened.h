@@ -48,6 +48,9 @@ struct TightenBuild {
   TightenReport report;
 };
 
+// Throws InputError for a branching or numbers of spheres out of range.
+void require_sizes(const TightenOptions& options);
+
 // Builds the tightest trees: each level is solved as a whole, with branching^level balls for the whole surface and
 // every ball free to choose its parent. A parent so has one to twice `branching` children, and the load balances
 // itself. Balls are fitted to surface points, so that max |p - c| + sd(c) is small over the centre c, improved
@@ -56,8 +59,8 @@ struct TightenBuild {
 // holds, and the search goes on with nothing uncovered. The surface points are those of the axis: 20 or more for each
 // ball of the last level. The result is conservative and, since work is counted and not timed, the same on any number
 // of threads. The search runs on the mesh as it is in a frame of its own (tightened/canonical_frame.h), so that a mesh
-// that is scaled or moved with its axis gets the same tree but for the last digits. Throws InputError for a branching
-// or numbers of spheres out of range or an axis without vertices.
+// that is scaled or moved with its axis gets the same tree but for the last digits. Throws InputError as
+// require_sizes() does, and for an axis without vertices.
 TightenBuild tightened_tree(const Surface& surface, const MedialAxis& axis, const TightenOptions& options = {},
                             const Progress& progress = {});
 

@@ -33,6 +33,10 @@ struct PictureStatus {
   explicit operator bool() const { return made; }
 };
 
+// Why nothing can be drawn or shown, in one line that says what to do: orchard-render is not there, or cannot be run.
+// Empty where it can.
+std::string renderer_missing(const PipelinePicture& picture = {});
+
 // Draws a .png. Uses the display of $DISPLAY; where that is unset or does not serve, starts Xvfb from PATH for the time
 // of the picture. Never throws for want of a display, a renderer, a writable file or time, never prints, and leaves
 // neither processes nor temporary files behind; not when it throws Cancelled either, which is all that it throws. Safe

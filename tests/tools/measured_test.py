@@ -1,0 +1,69 @@
+"""What a script measured for a page stays, and the page's tables with it, when a drawing fails at the end.
+
+measured_test.py SOURCE, with a copy of tools/ and docs/ in a folder of its own and programs that are played.
+"""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+PROGRAM = """#!/bin/sh
+case $1 in
+  medial)
+    folder=$4
+    mkdir -p "$folder"
+    printf 'v 0 0 0 1\\nv 1 0 0 1\\nv 0 1 0 1\\nf 0 1 2\\n' > "$folder/lamp.ma"
+    cp "$folder/lamp.ma" "$folder/lamp-simplified.ma"
+    echo '{"seconds_of_few_balls": {"simplifying": 1}, "simplified": {"hausdorff_max": 0.25}}'
+    ;;
+  *) echo "no screen" >&2; exit 1 ;;
+esac
+"""
+EVALUATOR = """#!/bin/sh
+echo '{"vertices": 4321, "hausdorff_max_pct": 1.5, "hausdorff_mean_pct": 0.5, "gap_max_pct": 1, "protrusion_max_pct": 0,
+       "topology_equal": true, "diagonal": 2}'
+"""
+
+
+def script(file, text):
+    file.write_text(text)
+    file.chmod(0o755)
+    return file
+
+
+def fails_while_drawing(source, tool, arguments, data, row):
+    with tempfile.TemporaryDirectory() as name:
+        root = pathlib.Path(name)
+        for folder in ("tools", "docs", "data"):
+            (root / folder).mkdir()
+        (root / "docs/images").mkdir()
+        for file in (tool, "measured.py"):
+            shutil.copy(source / "tools" / file, root / "tools")
+        shutil.copy(source / "docs/medial-quality.md", root / "docs")
+        mesh = root / "data/lamp.obj"
+        mesh.write_text("v 0 0 0\n")
+        orchard, evaluator = script(root / "orchard", PROGRAM), script(root / "evaluator", EVALUATOR)
+        script(root / "xvfb-run", "#!/bin/sh\nshift\nexec \"$@\"\n")
+        done = subprocess.run([sys.executable, root / "tools" / tool, evaluator, "--orchard", orchard,
+                               *[mesh if word == "MESH" else word for word in arguments]],
+                              env={**os.environ, "PATH": f"{root}:{os.environ['PATH']}"}, capture_output=True, text=True)
+        assert done.returncode != 0 and "no screen" in done.stderr, f"{tool}: {done.stdout}{done.stderr}"
+        measured = json.loads((root / "docs" / data).read_text())
+        assert "lamp" in measured["models"], f"{tool} lost what it measured"
+        page = (root / "docs/medial-quality.md").read_text()
+        assert row in page, f"{tool} did not write its table"
+        for part in page.split("<!-- begin: ")[1:]:
+            assert f"<!-- end: {part.split(' -->')[0]} -->" in part, f"{tool} broke a mark"
+
+
+def main():
+    source = pathlib.Path(sys.argv[1])
+    fails_while_drawing(source, "raw-and-refined", ["--drawn", "MESH"], "raw-and-refined.json", "| lamp | raw | 4321 |")
+    fails_while_drawing(source, "few-balls", [], "few-balls.json", "1.500 / 0.500, says 0.250")
+
+
+if __name__ == "__main__":
+    main()
