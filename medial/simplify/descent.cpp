@@ -91,8 +91,8 @@ void Descent::look_closer(Stage& stage, int round) const {
   std::vector<FitSample> others =
       fit_samples(surface_, options_.samples, options_.seed + static_cast<std::uint64_t>(round) + 1);
   Assignment feet;
-  feet.find(stage.mesh, others);
   const double enough = kNotable * stage.feet.worst();
+  feet.find_off(stage.mesh, others, enough);
   for (std::size_t i = 0; i < others.size(); ++i) {
     if (std::abs(feet.feet[i].value) < enough) continue;
     stage.samples.push_back(others[i]);

@@ -14,6 +14,7 @@ namespace orchard::detail {
 namespace {
 
 constexpr double kFirstDamping = 1e-3, kMinDamping = 1e-6, kMaxDamping = 1e3;
+constexpr std::size_t kInTurn = 64;  // samples that one task takes, one after the other
 constexpr double kFloor = 1e-3;  // share of the weight that small distances keep at high powers
 
 class Fitter {
@@ -32,7 +33,11 @@ class Fitter {
         equations_(mesh) {}
 
   void run() {
-    feet_.find(mesh_, samples_);
+    if (feet_.feet.size() == samples_.size()) {
+      feet_.walk(samples_, walker_);
+    } else {
+      feet_.find(mesh_, samples_);
+    }
     protrusions_ = protruding();
     scale_ = std::max(feet_.max, 1e-300);
     for (const Protrusion& protrusion : protrusions_) scale_ = std::max(scale_, protrusion.value);
@@ -155,6 +160,26 @@ void Assignment::find(const ContractibleMesh& mesh, std::span<const FitSample> s
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, samples.size(), 256), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i)
       feet[i] = finder.find(samples[i].position, guess ? &feet[i] : nullptr).below(samples[i].depth);
+  });
+  find_max();
+}
+
+void Assignment::find_off(const ContractibleMesh& mesh, std::span<const FitSample> samples, double enough) {
+  const FootFinder finder(mesh);
+  const FootWalker walker(mesh);
+  feet.resize(samples.size());
+  tbb::parallel_for(std::size_t{0}, (samples.size() + kInTurn - 1) / kInTurn, [&](std::size_t block) {
+    const std::size_t begin = block * kInTurn, end = std::min(samples.size(), begin + kInTurn);
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto& [position, normal, weight, depth] = samples[i];
+      if (i == begin) {
+        feet[i] = finder.find(position).below(depth);
+        continue;
+      }
+      const Foot near = walker.walk(position, feet[i - 1]);
+      const double slack = near.value + depth + enough;
+      feet[i] = finder.find(position, &near, slack < 2 * enough ? std::max(0.0, slack) : 0).below(depth);
+    }
   });
   find_max();
 }

@@ -148,10 +148,10 @@ FootFinder::FootFinder(const ContractibleMesh& mesh) : mesh_(mesh), cells_(mesh.
   tree_ = SupportTree(std::move(items));
 }
 
-Foot FootFinder::find(const Point& query, const Foot* guess) const {
+Foot FootFinder::find(const Point& query, const Foot* guess, double slack) const {
   Foot best{.value = std::numeric_limits<double>::infinity()};
   if (guess != nullptr) best = foot_on(mesh_, guess->corners, query);
-  tree_.min(query, best.value, [&](Index item, const SupportTree::Item&, double min) {
+  tree_.min(query, best.value - slack, [&](Index item, const SupportTree::Item&, double min) {
     const double bound = bound_on(mesh_, cells_[item], query);
     if (bound >= min) return bound;
     const Foot foot = foot_on(mesh_, cells_[item], query);

@@ -46,8 +46,9 @@ class FootFinder {
  public:
   explicit FootFinder(const ContractibleMesh& mesh);
 
-  // `guess`, if its corners are a cell of the mesh, is where to look first: that saves most of the time.
-  Foot find(const Point& query, const Foot* guess = nullptr) const;
+  // `guess`, if its corners are a cell of the mesh, is where to look first: that saves most of the time. What is found
+  // instead, if anything, is nearer by more than `slack`, which saves more.
+  Foot find(const Point& query, const Foot* guess = nullptr, double slack = 0) const;
 
  private:
   const ContractibleMesh& mesh_;
