@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 #include <vector>
 
 #include "orchard/geometry/surface.h"
@@ -25,15 +26,16 @@ SearchedMax max_dent(const Surface& surface, const Reconstruction& reconstructio
 // A place of the reconstruction's boundary inside the solid.
 struct Dent {
   Point place;
-  double depth;    // mesh units
-  Vector outward;  // unit, to the nearest place of the surface
+  double depth = 0;  // mesh units
+  Vector outward;    // unit, to the nearest place of the surface
 };
 
-// Places of the boundary that are deeper than `min_depth`, the deepest first: where there are any, one at least in each
-// cube whose half diagonal is half of it, unless that takes dividing more than `max_cubes`. Parallel,
-// deterministic.
-std::vector<Dent> dents_deeper_than(const Surface& surface, const Reconstruction& reconstruction, double min_depth,
-                                    Index max_cubes);
+// Places of the boundary that are deeper than `min_depth`, the deepest first, as far as they are seen from the centres
+// of these balls of the solid: where the reconstruction does not hold one as deep as it is, the way straight out of the
+// ball around its centre ends at its boundary, from ball to ball. Places in reach of none are missed; a search of cubes
+// finds fewer in ten times the time. One query of each kind for each ball. Parallel, deterministic.
+std::vector<Dent> dents_seen_from(std::span<const Sphere> balls, const Surface& surface,
+                                  const Reconstruction& reconstruction, double min_depth);
 
 // How far the reconstruction reaches out of the solid at most: that is attained. `upper` bounds how far any ball
 // reaches beyond the place of the surface that is nearest to its centre, which is no less than what protrudes, and more

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "boundary_reach.h"
@@ -13,8 +14,9 @@ namespace {
 
 constexpr double kShareAbove = 0.02;  // of what was found: not searched for more
 constexpr int kMaxLevels = 40;        // then a cube is as small as rounding
-constexpr double kFineness = 0.5;     // of the depth searched for: half diagonals of the cubes that are collected from
 constexpr std::size_t kBlock = 64;    // cubes that one task divides
+constexpr int kMaxWayOut = 50;        // balls on the way out of the reconstruction
+constexpr double kOut = 1e-6;         // of the diagonal: a way out ends this near to the boundary
 constexpr double kRounding = 1e-12;   // of the coordinates: more than a bound is off by
 
 struct Cube {
@@ -43,15 +45,10 @@ class DentSearch {
     cubes_ = {first_cube(box)};
   }
 
-  SearchedMax max(double accuracy) {
+  SearchedMax run(double accuracy) {
     while (more_cubes()) {
-      const auto found = divide([](std::vector<Place>& places, const Place& place) {
-        if (places.empty()) places.push_back(place);
-        if (place.depth > places.front().depth) places.front() = place;
-      });
-      for (const Place& place : found) {
-        if (place.depth > found_.depth) found_ = place;
-      }
+      const Place found = divide();
+      if (found.depth > found_.depth) found_ = found;
       const double enough = found_.depth + std::max(accuracy, kShareAbove * found_.depth);
       std::erase_if(cubes_, [&](const Cube& cube) {
         const bool done = cube.bound <= enough;
@@ -64,15 +61,6 @@ class DentSearch {
             .upper = std::max(open_, found_.depth) + rounding_,
             .place = found_.place,
             .ball = found_.ball};
-  }
-
-  std::vector<Place> all() {
-    std::vector<Place> places;
-    for (bool fine = false; !fine && more_cubes();) {
-      places = divide([](std::vector<Place>& list, const Place& place) { list.push_back(place); });
-      fine = std::sqrt(3.0) * half_ <= kFineness * found_.depth;
-    }
-    return places;
   }
 
  private:
@@ -89,13 +77,12 @@ class DentSearch {
     return cube;
   }
 
-  // Puts the parts that may hold places deeper than what was found in place of all cubes, and returns such places.
-  // What was found stays the same for all parts, so that their order does not matter.
-  template <class Take>
-  std::vector<Place> divide(const Take& take) {
+  // Puts the parts that may hold places deeper than what was found in place of all cubes, and returns the deepest such
+  // place. What was found stays the same for all parts, so that their order does not matter.
+  Place divide() {
     struct Result {
       std::vector<Cube> parts;
-      std::vector<Place> places;
+      Place deepest;
     };
     half_ *= 0.5;
     std::vector<Result> results((cubes_.size() + kBlock - 1) / kBlock);
@@ -105,23 +92,21 @@ class DentSearch {
       for (std::size_t i = block * kBlock; i < end; ++i) {
         for (int part = 0; part < 8; ++part) {
           const Vector step(part & 1 ? half_ : -half_, part & 2 ? half_ : -half_, part & 4 ? half_ : -half_);
-          look_at(cubes_[i], cubes_[i].center + step, result.parts,
-                  [&](const Place& place) { take(result.places, place); });
+          look_at(cubes_[i], cubes_[i].center + step, result.parts, result.deepest);
         }
       }
     });
     cubes_.clear();
-    std::vector<Place> places;
+    Place deepest;
     for (const Result& result : results) {
       cubes_.insert(cubes_.end(), result.parts.begin(), result.parts.end());
-      places.insert(places.end(), result.places.begin(), result.places.end());
+      if (result.deepest.depth > deepest.depth) deepest = result.deepest;
     }
-    return places;
+    return deepest;
   }
 
   // A part of a cube: nothing of the boundary is in it if the reconstruction holds it wholly, or has nothing in it.
-  template <class Take>
-  void look_at(const Cube& whole, const Point& center, std::vector<Cube>& parts, const Take& take) const {
+  void look_at(const Cube& whole, const Point& center, std::vector<Cube>& parts, Place& deepest) const {
     const double reach = std::sqrt(3.0) * half_ + rounding_;
     Cube cube{.center = center, .bound = whole.bound, .ball = whole.ball, .triangle = whole.triangle};
     const double at_most = (center - cube.ball.center).norm() - cube.ball.radius;
@@ -139,20 +124,19 @@ class DentSearch {
     if (at_most > 0 || depth + at_most > found_.depth) {
       const double gap = reconstruction_.distance_between(-reach, std::min(at_most, reach), center, cube.ball);
       if (!(std::abs(gap) < reach)) return;
-      if (gap >= 0 && depth + gap > found_.depth) take_boundary(center, cube.ball, take);
+      if (gap >= 0 && depth + gap > found_.depth) take_boundary(center, cube.ball, deepest);
     }
     parts.push_back(cube);
   }
 
   // The place of the boundary that is nearest to a point outside the reconstruction.
-  template <class Take>
-  void take_boundary(const Point& from, const Sphere& ball, const Take& take) const {
+  void take_boundary(const Point& from, const Sphere& ball, Place& deepest) const {
     const Vector way = from - ball.center;
     const double length = way.norm();
     if (!(length > 0)) return;
     const Point place = ball.center + ball.radius / length * way;
     const double depth = -surface_.signed_distance(place);
-    if (depth > found_.depth) take(Place{depth, place, ball});
+    if (depth > std::max(found_.depth, deepest.depth)) deepest = {depth, place, ball};
   }
 
   const Surface& surface_;
@@ -167,22 +151,48 @@ class DentSearch {
   Place found_;
 };
 
+// Straight out of the nearest ball, from ball to ball, until none holds the place; nothing if that does not end.
+bool go_out(const Reconstruction& reconstruction, Point& at, Sphere ball, double gap, double arrived) {
+  for (int step = 0; step < kMaxWayOut; ++step) {
+    const Vector way = at - ball.center;
+    const double length = way.norm();
+    if (!(length > 0)) return false;
+    at = ball.center + ball.radius / length * way;
+    if (gap > 0) return true;
+    gap = reconstruction.distance_below(arrived, at, ball);
+    if (gap > -arrived) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 SearchedMax max_dent(const Surface& surface, const Reconstruction& reconstruction, double known, double accuracy,
                      Index max_cubes) {
-  return DentSearch(surface, reconstruction, known, max_cubes).max(accuracy);
+  return DentSearch(surface, reconstruction, known, max_cubes).run(accuracy);
 }
 
-std::vector<Dent> dents_deeper_than(const Surface& surface, const Reconstruction& reconstruction, double min_depth,
-                                    Index max_cubes) {
-  std::vector<Dent> dents;
-  for (const Place& place : DentSearch(surface, reconstruction, min_depth, max_cubes).all()) {
-    const ClosestPoint nearest = surface.closest(place.place);
-    dents.push_back({place.place, place.depth, (nearest.position - place.place) / nearest.distance});
-  }
-  std::stable_sort(dents.begin(), dents.end(), [](const Dent& a, const Dent& b) { return a.depth > b.depth; });
-  return dents;
+std::vector<Dent> dents_seen_from(std::span<const Sphere> balls, const Surface& surface,
+                                  const Reconstruction& reconstruction, double min_depth) {
+  const double arrived = kOut * (surface.bounding_box().max() - surface.bounding_box().min()).norm();
+  std::vector<Dent> found(balls.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, balls.size(), kBlock), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      const auto& [center, radius] = balls[i];
+      if (radius <= min_depth) continue;
+      Sphere ball;
+      const double gap =
+          reconstruction.distance_between(min_depth - radius, std::numeric_limits<double>::infinity(), center, ball);
+      Point place = center;
+      if (gap < min_depth - radius || !go_out(reconstruction, place, ball, gap, arrived)) continue;
+      ClosestPoint nearest;
+      const double depth = -surface.signed_distance(place, nearest);
+      if (depth > min_depth) found[i] = {place, depth, (nearest.position - place) / nearest.distance};
+    }
+  });
+  std::erase_if(found, [](const Dent& dent) { return !(dent.depth > 0); });
+  std::stable_sort(found.begin(), found.end(), [](const Dent& a, const Dent& b) { return a.depth > b.depth; });
+  return found;
 }
 
 }  // namespace orchard::detail

@@ -1,6 +1,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "../axis/incidence.h"
 #include "quality_parts.h"
@@ -32,8 +33,12 @@ MaxOverTriangles max_coverage(const Surface& surface, const Reconstruction& reco
                               double diagonal) {
   const std::vector<Point>& vertices = surface.mesh().vertices;
   std::vector<double> at_vertices(vertices.size());
-  tbb::parallel_for(std::size_t{0}, vertices.size(),
-                    [&](std::size_t v) { at_vertices[v] = reconstruction.distance(vertices[v]); });
+  // Any ball that is nearer than what is known shows that the maximum is elsewhere.
+  tbb::parallel_for(std::size_t{0}, vertices.size(), [&](std::size_t v) {
+    Sphere ball;
+    at_vertices[v] =
+        reconstruction.distance_between(known.max, std::numeric_limits<double>::infinity(), vertices[v], ball);
+  });
   const auto farthest = std::max_element(at_vertices.begin(), at_vertices.end());
   if (*farthest > known.max) known = {*farthest, 0, vertices[static_cast<std::size_t>(farthest - at_vertices.begin())]};
   std::vector<Corners> triangles;

@@ -36,13 +36,13 @@ double fourth(double value) {
 // What protrudes around edges.
 class ProtrusionCost {
  public:
-  ProtrusionCost(const Surface& surface, const ContractibleMesh& mesh)
-      : surface_(surface), mesh_(mesh), inside_(mesh.size()) {}
+  ProtrusionCost(const Surface& surface, const ContractibleMesh& mesh, const LookOptions& look)
+      : surface_(surface), mesh_(mesh), look_(look), inside_(mesh.size()) {}
 
   // The sum of the fourth powers, how much larger it gets by contracting an edge to this ball.
   double added(Index a, Index b, const Ball4& ball) {
     double before = 0, after = 0;
-    for (const Protrusion& place : places_around(mesh_, a, b, kLookSpacing * surface_.bounding_radius())) {
+    for (const Protrusion& place : places_around(mesh_, a, b, look_)) {
       before += fourth(value(place, place.ball(mesh_)));
       Ball4 moved = Ball4::Zero();
       for (std::size_t k = 0; k < 3; ++k) {
@@ -70,6 +70,7 @@ class ProtrusionCost {
 
   const Surface& surface_;
   const ContractibleMesh& mesh_;
+  const LookOptions look_;
   std::vector<InsideBall> inside_;  // for each vertex
 };
 
@@ -104,7 +105,7 @@ class SampledContraction {
       : mesh_(mesh),
         samples_(samples),
         feet_(feet),
-        protrusion_(surface, mesh),
+        protrusion_(surface, mesh, LookOptions(surface, samples[0].weight)),
         at_(mesh.size()),
         blocked_(mesh.size()) {
     stamp_.assign(mesh.size(), 0);

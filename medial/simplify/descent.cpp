@@ -21,8 +21,7 @@ constexpr double kShrink = 0.6;      // vertices left by one pass of contraction
 constexpr double kMoved = 0.08;      // share of the vertices that the first round moves
 constexpr double kNotable = 0.6;     // of the largest distance: places that are as far off become samples
 constexpr double kInvisible = 2e-4;  // diagonals: dents so deep are not looked for
-constexpr Index kSearchesPerRound = 4;       // of a round: the share of the cubes of the last search
-constexpr std::size_t kSamplesPerDent = 10;  // of the surface, for each dent at most that becomes one
+constexpr std::size_t kSamplesPerDent = 50;  // of the surface, for each dent at most that becomes one
 constexpr FitOptions kBetween[] = {{.power = 4, .steps = 1, .middles = false}};
 constexpr FitOptions kAtEnd[] = {{.power = 2, .steps = 2}, {.power = 4, .steps = 4}, {.power = 8, .steps = 6}};
 constexpr FitOptions kAfterInsertion[] = {{.power = 4, .steps = 2, .middles = false}};
@@ -37,7 +36,10 @@ Descent::Descent(const Surface& surface, const MedialMesh& mesh, const SimplifyO
       progress_(progress),
       diagonal_(surface.bounding_box().diagonal().norm()),
       vertices_before_(mesh.size()),
-      whole_(mesh) {}
+      whole_(mesh) {
+  axis_balls_.reserve(mesh.size());
+  for (Index v = 0; v < mesh.size(); ++v) axis_balls_.push_back({mesh.centers[v], mesh.radii[v]});
+}
 
 Stage Descent::start() const { return {whole_, fit_samples(surface_, options_.samples, options_.seed), {}}; }
 
@@ -66,10 +68,11 @@ Stage Descent::finished(Stage stage) const {
   const Index count = stage.mesh.living();
   refine(stage, kAtEnd);
   stage.feet.find(stage.mesh, stage.samples);
+  look_closer(stage, 0);
   double share = kMoved;
+  bool improved = false;
   for (int round = 0; round < options_.rounds; ++round) {
     report_progress(progress_, "simplifying the axis: moving vertices", static_cast<double>(round) / options_.rounds);
-    look_closer(stage, round);
     Stage next = stage;
     const Index moved = std::max(Index{1}, static_cast<Index>(share * count));
     if (insert_at_worst(surface_, next.mesh, next.samples, next.feet, moved) == 0) break;
@@ -78,8 +81,12 @@ Stage Descent::finished(Stage stage) const {
     if (next.mesh.living() > count) break;
     refine(next, kAfterMoving);
     next.feet.find(next.mesh, next.samples);
+    look_closer(next, round + 1);
     if (next.feet.worst() < stage.feet.worst()) {
       stage = std::move(next);
+      improved = true;
+    } else if (improved) {
+      break;  // what worked once and then does not hardly ever does later
     } else {
       share /= 2;
     }
@@ -105,8 +112,7 @@ void Descent::look_closer(Stage& stage, int round) const {
 // What the envelope leaves open below the surface: no place of the surface is as far from it as the bottom of a dent is
 // from the surface.
 void Descent::add_dents(Stage& stage, double min_depth) const {
-  std::vector<Dent> dents =
-      dents_deeper_than(surface_, Reconstruction(stage.mesh.mesh()), min_depth, options_.search / kSearchesPerRound);
+  std::vector<Dent> dents = dents_seen_from(axis_balls_, surface_, Reconstruction(stage.mesh.mesh()), min_depth);
   const std::size_t max = options_.samples / kSamplesPerDent;
   if (dents.size() > max) dents.resize(max);
   std::vector<FitSample> samples;
@@ -124,7 +130,7 @@ SimplifiedMedialMesh Descent::measured(const Stage& stage) const {
   result.mesh = stage.mesh.mesh();
   result.report.vertices_before = vertices_before_;
   result.report.vertices = result.mesh.size();
-  measure_two_sided(surface_, result.mesh, options_, result.report);
+  measure_two_sided(surface_, result.mesh, axis_balls_, options_, result.report);
   return result;
 }
 

@@ -39,6 +39,7 @@ class Descent {
   const double diagonal_;
   Index vertices_before_ = 0;
   ContractibleMesh whole_;
+  std::vector<Sphere> axis_balls_;  // of the mesh at the beginning
 };
 
 }  // namespace orchard::detail

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kFirstDamping = 1e-3, kMinDamping = 1e-6, kMaxDamping = 1e3;
 constexpr std::size_t kInTurn = 64;  // samples that one task takes, one after the other
-constexpr double kFloor = 1e-3;  // share of the weight that small distances keep at high powers
+constexpr double kFloor = 1e-3;      // share of the weight that small distances keep at high powers
 
 class Fitter {
  public:
@@ -27,7 +27,7 @@ class Fitter {
         feet_(feet),
         options_(options),
         walker_(mesh),
-        places_(options.middles ? places_to_look(mesh, kLookSpacing * surface.bounding_radius())
+        places_(options.middles ? places_to_look(mesh, LookOptions(surface, samples[0].weight))
                                 : std::vector<Protrusion>()),
         inside_(places_.size()),
         equations_(mesh) {}

@@ -123,6 +123,9 @@ FootWalker::FootWalker(const ContractibleMesh& mesh) : mesh_(mesh), cells_(mesh.
 }
 
 Foot FootWalker::walk(const Point& query, const Foot& start) const {
+  const Foot here = foot_on(mesh_, start.corners, query);
+  // Inside a triangle it is the best around.
+  if (*std::min_element(here.weights.begin(), here.weights.end()) > 0) return here;
   return walk_from(mesh_, query, start, [&](Index corner, const auto& look_at) {
     for (const Index cell : at_[corner]) look_at(cells_[cell]);
   });

@@ -31,8 +31,9 @@ class FootWalker {
  public:
   explicit FootWalker(const ContractibleMesh& mesh);
 
-  // The best ball of the cells around the heaviest corner of `start`, and so on from there while it gets better. Its
-  // corners are a cell of the mesh. Many times as fast as a search of all, and mostly the same.
+  // The best ball of the cell of `start` if it is inside a triangle; else of the cells around its heaviest corner, and
+  // so on from there while it gets better. Its corners are a cell of the mesh. Many times as fast as a search of all,
+  // and mostly the same.
   Foot walk(const Point& query, const Foot& start) const;
 
  private:

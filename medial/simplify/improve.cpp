@@ -35,7 +35,7 @@ class Insertion {
     std::vector<Place> places;
     for (std::size_t i = 0; i < samples_.size(); ++i)
       places.push_back({std::abs(feet_.feet[i].value), feet_.feet[i], &samples_[i]});
-    const auto balls = places_to_look(mesh_, std::numeric_limits<double>::infinity());
+    const auto balls = places_to_look(mesh_, LookOptions());
     std::vector<InsideBall> known(balls.size());
     for (const Protrusion& protrusion : find_protrusions(surface, mesh_, balls, known))
       places.push_back({protrusion.value, {protrusion.corners, protrusion.weights, -protrusion.value}, nullptr});

@@ -13,12 +13,12 @@ namespace {
 
 class Places {
  public:
-  Places(const ContractibleMesh& mesh, double spacing) : mesh_(mesh), spacing_(spacing) {}
+  Places(const ContractibleMesh& mesh, const LookOptions& options) : mesh_(mesh), options_(options) {}
 
   void add_vertex(Index v) { add({v, v, v}, {1, 0, 0}); }
   void add_edge(Index a, Index b) {
     const double length = (mesh_.ball(a) - mesh_.ball(b)).head<3>().norm();
-    const int count = static_cast<int>(std::clamp(std::ceil(length / spacing_), 1.0, 3.0));
+    const int count = static_cast<int>(std::clamp(std::ceil(length / options_.spacing), 1.0, 3.0));
     for (int k = 1; k <= count; ++k) {
       const double share = static_cast<double>(k) / (count + 1);
       add({a, b, a}, {1 - share, share, 0});
@@ -30,17 +30,18 @@ class Places {
 
  private:
   void add(const std::array<Index, 3>& corners, const std::array<double, 3>& weights) {
-    result.push_back({corners, weights, 0, Vector::Zero()});
+    const Protrusion place{corners, weights, 0, Vector::Zero()};
+    if (place.ball(mesh_)[3] <= options_.max_radius) result.push_back(place);
   }
 
   const ContractibleMesh& mesh_;
-  const double spacing_;
+  const LookOptions options_;
 };
 
 }  // namespace
 
-std::vector<Protrusion> places_to_look(const ContractibleMesh& mesh, double spacing) {
-  Places places(mesh, spacing);
+std::vector<Protrusion> places_to_look(const ContractibleMesh& mesh, const LookOptions& options) {
+  Places places(mesh, options);
   for (Index v = 0; v < mesh.size(); ++v) {
     if (!mesh.alive(v)) continue;
     places.add_vertex(v);
@@ -54,8 +55,8 @@ std::vector<Protrusion> places_to_look(const ContractibleMesh& mesh, double spac
   return std::move(places.result);
 }
 
-std::vector<Protrusion> places_around(const ContractibleMesh& mesh, Index a, Index b, double spacing) {
-  Places places(mesh, spacing);
+std::vector<Protrusion> places_around(const ContractibleMesh& mesh, Index a, Index b, const LookOptions& options) {
+  Places places(mesh, options);
   for (const Index v : {a, b}) {
     if (v == b && a == b) break;
     const Index done = v == a ? kNone : a;

@@ -1,5 +1,7 @@
 #pragma once
 #include <array>
+#include <cmath>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -9,6 +11,7 @@
 namespace orchard::detail {
 
 inline constexpr double kLookSpacing = 0.04;      // bounding radii, of balls of edges that are looked at
+inline constexpr double kThick = 8.0;             // of the samples' spacing: radii of balls that samples see enough of
 inline constexpr double kProtrusionWeight = 4.0;  // of a ball that protrudes, in samples
 
 // A ball of a medial mesh that reaches out of the solid: what it takes of which corners, how far it reaches (mesh
@@ -25,12 +28,25 @@ struct Protrusion {
   }
 };
 
-// Balls to look at: those of the vertices, at even steps of at most `spacing` (mesh units) inside edges, but three at
-// most, and in the middles of triangles. Values are not known.
-std::vector<Protrusion> places_to_look(const ContractibleMesh& mesh, double spacing);
+// Where to look at balls; mesh units.
+struct LookOptions {
+  double spacing = std::numeric_limits<double>::infinity();     // of balls inside edges, at most; three at most
+  double max_radius = std::numeric_limits<double>::infinity();  // of balls; larger ones are left out
+
+  // As much as samples of the surface need beside them, each of which stands for so much of its area: what protrudes of
+  // balls much thicker than the samples are apart has some of them inside.
+  LookOptions(const Surface& surface, double share)
+      : spacing(kLookSpacing * surface.bounding_radius()),
+        max_radius(kThick * std::sqrt(surface.report().area * share)) {}
+  LookOptions() = default;
+};
+
+// Balls to look at: those of the vertices, at even steps inside edges, and in the middles of triangles. Values are not
+// known.
+std::vector<Protrusion> places_to_look(const ContractibleMesh& mesh, const LookOptions& options);
 
 // The same for all cells at one of two vertices, or both.
-std::vector<Protrusion> places_around(const ContractibleMesh& mesh, Index a, Index b, double spacing);
+std::vector<Protrusion> places_around(const ContractibleMesh& mesh, Index a, Index b, const LookOptions& options);
 
 // A ball inside the solid, with nothing of the surface in it: what it holds needs no test of being inside. That is true
 // whatever becomes of the medial mesh, so it is worth keeping from one look at a place to the next.

@@ -1,10 +1,13 @@
 #pragma once
+#include <span>
+
 #include "orchard/medial/simplify.h"
 
 namespace orchard::detail {
 
-// Fills in the distances of a report, as medial_quality() measures them, from options.check places of the surface.
-void measure_two_sided(const Surface& surface, const MedialMesh& mesh, const SimplifyOptions& options,
-                       SimplifyReport& report);
+// Fills in the distances of a report, as medial_quality() measures them, from options.check places of the surface and
+// from the centres of balls that the solid holds.
+void measure_two_sided(const Surface& surface, const MedialMesh& mesh, std::span<const Sphere> inscribed,
+                       const SimplifyOptions& options, SimplifyReport& report);
 
 }  // namespace orchard::detail

@@ -16,6 +16,7 @@
 #include "orchard/geometry/random.h"
 #include "orchard/medial/build.h"
 #include "orchard/medial/topology.h"
+#include "quality/boundary_reach.h"
 #include "quality/reconstruction.h"
 #include "simplify/contractible_mesh.h"
 #include "simplify/foot.h"
@@ -281,6 +282,37 @@ double brute_value(const std::vector<Ball4>& balls, const Point& query) {
     }
   }
   return least;
+}
+
+// Most of a refined axis is contracted away: the balls that were there see what the envelope lost, none sees more than
+// there is, and nothing of it while the axis is whole.
+TEST(SimplifiedMedialMesh, HasItsDentsSeenFromTheBallsThatItHad) {
+  const Surface surface(shapes::torus(1.0, 0.4, 24, 12));
+  const MedialMesh axis = built_axis(surface, 600);
+  std::vector<Sphere> balls;
+  for (Index v = 0; v < axis.size(); ++v) balls.push_back({axis.centers[v], axis.radii[v]});
+  const double diagonal = surface.bounding_box().diagonal().norm(), known = 1e-2 * diagonal;
+  EXPECT_TRUE(detail::dents_seen_from(balls, surface, detail::Reconstruction(axis), known).empty());
+  for (int seed = 0; seed < 3; ++seed) {
+    Random random(static_cast<std::uint64_t>(seed), 7);
+    ContractibleMesh mesh(axis);
+    while (mesh.living() > 12) {
+      const auto edge = some_edge(mesh, random);
+      ASSERT_TRUE(edge);
+      const auto [a, b] = *edge;
+      mesh.contract(a, b, mesh.ball(a));
+    }
+    const detail::Reconstruction left(mesh.mesh());
+    const auto dents = detail::dents_seen_from(balls, surface, left, known);
+    const auto searched = detail::max_dent(surface, left, known, 1e-3 * diagonal, 200'000);
+    ASSERT_FALSE(dents.empty());
+    EXPECT_LE(dents.front().depth, searched.upper);
+    EXPECT_GE(dents.front().depth, 0.8 * searched.max);
+    for (const auto& [place, depth, outward] : dents) {
+      EXPECT_NEAR(surface.signed_distance(place), -depth, 1e-12 * diagonal);
+      EXPECT_NEAR(left.distance(place), 0, 1e-5 * diagonal);
+    }
+  }
 }
 
 TEST(FootFinder, FindsTheBallThatBruteForceFinds) {

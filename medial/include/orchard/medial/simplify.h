@@ -17,8 +17,8 @@ struct SimplifyOptions {
   double error = 0;        // where vertices is 0: the two-sided distance allowed, over the diagonal; above 0
   Index samples = 10'000;  // places of the surface that balls are fitted to
   Index check = 20'000;    // places from which the distance is measured at the end
-  Index search = 250'000;  // cubes and cells at most in which dents and what protrudes are searched, each time
-  int rounds = 3;          // of moving vertices from where they are spared to where the distance is largest
+  Index search = 60'000;   // cubes and cells at most in which dents and what protrudes are searched, each time
+  int rounds = 3;          // at most, of moving vertices from where they are spared to where the distance is largest
   std::uint64_t seed = 1;
 };
 
@@ -26,7 +26,8 @@ struct SimplifyReport {
   Index vertices_before = 0, vertices = 0;
   // Measured on the result, over the diagonal, as medial_quality() defines them. coverage.max is a bound, proved for
   // the whole surface, and hausdorff.max no less; what protrudes, and dents of the envelope, are searched by branch and
-  // bound, how deep places of the surface lie in the envelope is measured at samples.
+  // bound, dents from the centres of the balls of the mesh given, too; how deep places of the surface lie in the
+  // envelope is measured at samples.
   Spread hausdorff, coverage, protrusion;
   double dent_upper = 0;  // proved: no place of the envelope's boundary is deeper in the solid
 };
