@@ -47,12 +47,18 @@ class OpenPlaceReacher {
     ClosestPoint on_edge = ExactBall::nowhere();
     const ExactBall ball =
         edges_.nearest(place.position, left_, on_edge) ? ball_on_edge(on_edge) : ball_at(place.position, foot, left_);
-    // Where no triangle leads all the way, one may lead half of it.
-    return attach(ball, candidates) || attach(ball_at(place.position, foot, place.value / 2), candidates);
+    if (attach(ball, candidates)) return true;
+    // Where no triangle leads all the way, one may lead half of it, or one from farther back.
+    const ExactBall half = ball_at(place.position, foot, place.value / 2);
+    const std::vector<Index> around = edges_around(reconstruction_.corners_of(nearest.cell));
+    if (attach(half, candidates) || attach(ball, around) || attach(half, around)) return true;
+    // Better a ball beside the axis, which is counted as inexact, than a hole.
+    const ExactBall beside = solver_.at(on_way(place.position, foot, left_));
+    return attach(beside, candidates) || attach(beside, around);
   }
 
   bool attach(const ExactBall& ball, std::vector<Index> candidates) {
-    if (!ball.exact) return false;
+    if (ball.count == 0) return false;
     const auto value = [&](Index e) {
       return std::pair(sheets_.at.triangles_at[e].size() == 1 ? 0 : 1, apart(ball.center, e));
     };
@@ -70,18 +76,24 @@ class OpenPlaceReacher {
     return vertex != kNone;
   }
 
-  // An exact ball that leaves a place open by hardly more than `left`; none that is exact where none is found. It is
-  // looked for at what is nearest to the way from the place to the centre of its nearest ball: the farther in, the more
-  // is left open.
-  ExactBall ball_at(const Point& place, const Point& inside, double left) {
+  // The centre of the largest ball on the way from a place to the centre of its nearest ball that leaves the place open
+  // by no more than `left`: the farther in, the more is left open.
+  Point on_way(const Point& place, const Point& inside, double left) const {
     const double length = (inside - place).norm();
     double from = 0, to = 1;
     for (int step = 0; step < kSteps; ++step) {
       const double t = 0.5 * (from + to);
       (t * length - sheets_.surface.distance(place + t * (inside - place)) > left ? to : from) = t;
     }
-    for (int attempt = 0; attempt < kAttempts; ++attempt, from /= 2) {
-      const Point start = place + from * (inside - place);
+    return place + from * (inside - place);
+  }
+
+  // An exact ball that leaves a place open by hardly more than `left`; one without contacts where none is found.
+  ExactBall ball_at(const Point& place, const Point& inside, double left) {
+    const Vector way = on_way(place, inside, left) - place;
+    double part = 1;
+    for (int attempt = 0; attempt < kAttempts; ++attempt, part /= 2) {
+      const Point start = place + part * way;
       const ExactBall ball = ball_touching(sheets_.surface.closest(start), start);
       if (ball.exact && (ball.center - place).norm() - ball.radius <= kSlack * left) return ball;
     }
@@ -123,6 +135,18 @@ class OpenPlaceReacher {
       if (apart(place, e) <= at) return {e};
       edges.push_back(e);
     }
+    return edges;
+  }
+
+  // All edges at the corners of a cell, each once.
+  std::vector<Index> edges_around(const std::array<Index, 3>& cell) const {
+    std::vector<Index> edges;
+    for (const Index v : cell) {
+      const auto row = sheets_.at.edges_at[v];
+      edges.insert(edges.end(), row.begin(), row.end());
+    }
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     return edges;
   }
 
