@@ -121,37 +121,58 @@ TEST(RayBlock, KeepsEveryTriangleAndBallSlabOnTheRayOnEveryMachine) {
   });
 }
 
+BallSlabBlock random_ball_slabs(Draw& draw) {
+  BallSlabBlock lanes;
+  for (std::uint32_t i = 0; i < kBlockWidth; ++i) {
+    const auto n = draw.direction();
+    lanes.x[i] = static_cast<float>(draw.uniform(-3, 3)), lanes.y[i] = static_cast<float>(draw.uniform(-3, 3));
+    lanes.z[i] = static_cast<float>(draw.uniform(-3, 3));
+    lanes.nx[i] = static_cast<float>(n[0]), lanes.ny[i] = static_cast<float>(n[1]);
+    lanes.nz[i] = static_cast<float>(n[2]);
+    lanes.radius[i] = static_cast<float>(draw.uniform(0.01, 1));
+    lanes.height[i] = lanes.radius[i] * static_cast<float>(draw.uniform(0, 0.3));
+  }
+  lanes.radius[7] = -1;
+  return lanes;
+}
+
+Closing random_closing(Draw& draw, std::uint64_t seed) {
+  Closing closing;
+  const auto v = draw.direction(), a = draw.direction(), b = draw.direction();
+  const double speed = draw.uniform(0, 4);
+  for (std::size_t i = 0; i < 3; ++i) {
+    closing.velocity[i] = static_cast<float>(speed * v[i]);
+    closing.first.axis[i] = static_cast<float>(a[i]), closing.second.axis[i] = static_cast<float>(b[i]);
+    closing.first.center[i] = static_cast<float>(draw.uniform(-0.5, 0.5));
+    closing.second.center[i] = static_cast<float>(draw.uniform(-0.5, 0.5));
+  }
+  closing.first.spin = static_cast<float>(seed % 3 == 0 ? 0 : draw.uniform(0, 2));
+  closing.second.spin = static_cast<float>(seed % 2 == 0 ? 0 : draw.uniform(0, 2));
+  return closing;
+}
+
+// A place after some time of turning.
+Vec3 turned(const Turning& t, const Vec3& p, double time) {
+  const double angle = double{t.spin} * time;
+  const Vec3 k = {double{t.axis[0]}, double{t.axis[1]}, double{t.axis[2]}},
+             q = {p[0] - double{t.center[0]}, p[1] - double{t.center[1]}, p[2] - double{t.center[2]}};
+  const double c = std::cos(angle), s = std::sin(angle), d = (k[0] * q[0] + k[1] * q[1] + k[2] * q[2]) * (1 - c);
+  return Vec3{double{t.center[0]} + c * q[0] + s * (k[1] * q[2] - k[2] * q[1]) + d * k[0],
+              double{t.center[1]} + c * q[1] + s * (k[2] * q[0] - k[0] * q[2]) + d * k[1],
+              double{t.center[2]} + c * q[2] + s * (k[0] * q[1] - k[1] * q[0]) + d * k[2]};
+}
+
 // Until the time that is told, no two points of the ball slabs meet: corners of triangles in them, moved and turned.
 TEST(BallSlabTimes, AreNotLaterThanAnyContactOnEveryMachine) {
   on_every_machine([] {
     int met = 0, late = 0;
     for (std::uint64_t seed = 0; seed < 400; ++seed) {
       Draw draw(seed);
-      BallSlabBlock lanes;
-      for (std::uint32_t i = 0; i < kBlockWidth; ++i) {
-        const auto n = draw.direction();
-        lanes.x[i] = static_cast<float>(draw.uniform(-3, 3)), lanes.y[i] = static_cast<float>(draw.uniform(-3, 3));
-        lanes.z[i] = static_cast<float>(draw.uniform(-3, 3));
-        lanes.nx[i] = static_cast<float>(n[0]), lanes.ny[i] = static_cast<float>(n[1]);
-        lanes.nz[i] = static_cast<float>(n[2]);
-        lanes.radius[i] = static_cast<float>(draw.uniform(0.01, 1));
-        lanes.height[i] = lanes.radius[i] * static_cast<float>(draw.uniform(0, 0.3));
-      }
-      lanes.radius[7] = -1;
+      const BallSlabBlock lanes = random_ball_slabs(draw);
       const auto m = draw.direction();
       const BallSlab single = {
           0, 0, 0, static_cast<float>(m[0]), static_cast<float>(m[1]), static_cast<float>(m[2]), 0.5f, 0.1f};
-      Closing closing;
-      const auto v = draw.direction(), a = draw.direction(), b = draw.direction();
-      const double speed = draw.uniform(0, 4);
-      for (std::size_t i = 0; i < 3; ++i) {
-        closing.velocity[i] = static_cast<float>(speed * v[i]);
-        closing.first.axis[i] = static_cast<float>(a[i]), closing.second.axis[i] = static_cast<float>(b[i]);
-        closing.first.center[i] = static_cast<float>(draw.uniform(-0.5, 0.5));
-        closing.second.center[i] = static_cast<float>(draw.uniform(-0.5, 0.5));
-      }
-      closing.first.spin = static_cast<float>(seed % 3 == 0 ? 0 : draw.uniform(0, 2));
-      closing.second.spin = static_cast<float>(seed % 2 == 0 ? 0 : draw.uniform(0, 2));
+      const Closing closing = random_closing(draw, seed);
       const Placement placement = still(8);
       BallSlabTimes times, plain;
       ball_slab_times(single, lanes, &placement, closing, placement.margin, times);
@@ -159,15 +180,6 @@ TEST(BallSlabTimes, AreNotLaterThanAnyContactOnEveryMachine) {
       ASSERT_TRUE(same_bits(times.time, plain.time) && same_bits(times.x, plain.x)) << seed;
       ASSERT_EQ(times.used, 0x7fu);
       // As far as the axes go: the gap of two balls' centres along a line must not close before.
-      const auto turned = [](const Turning& t, const Vec3& p, double time) {
-        const double angle = double{t.spin} * time;
-        const Vec3 k = {double{t.axis[0]}, double{t.axis[1]}, double{t.axis[2]}},
-                   q = {p[0] - double{t.center[0]}, p[1] - double{t.center[1]}, p[2] - double{t.center[2]}};
-        const double c = std::cos(angle), s = std::sin(angle), d = (k[0] * q[0] + k[1] * q[1] + k[2] * q[2]) * (1 - c);
-        return Vec3{double{t.center[0]} + c * q[0] + s * (k[1] * q[2] - k[2] * q[1]) + d * k[0],
-                    double{t.center[1]} + c * q[1] + s * (k[2] * q[0] - k[0] * q[2]) + d * k[1],
-                    double{t.center[2]} + c * q[2] + s * (k[0] * q[1] - k[1] * q[0]) + d * k[2]};
-      };
       for (std::uint32_t lane = 0; lane < 7; ++lane) {
         if (!(times.time[lane] > 0)) continue;
         ++late;
