@@ -1,3 +1,4 @@
+// One world under all that can be done to it, made by the same few helpers: hence more than 300 lines.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Sweeps beside dense sampling, all in the same few scenes: hence more than 300 lines.
 #include <gtest/gtest.h>
 
 #include <cmath>
