@@ -15,6 +15,15 @@ std::vector<Index> with_cells(const Rows& rows, std::size_t count) {
   return found;
 }
 
+// Where the cells with each first corner start, of `count`, when they are in its order.
+template <class Cell>
+std::vector<Index> starts_of(const std::vector<Cell>& cells, Index count) {
+  std::vector<Index> starts(count, 0);
+  for (const Cell& cell : cells) ++starts[cell[0]];
+  std::exclusive_scan(starts.begin(), starts.end(), starts.begin(), Index{0});
+  return starts;
+}
+
 // By their first corner, then among the few that have it.
 template <class Cell>
 void sort_and_deduplicate(std::vector<Cell>& cells) {
@@ -23,13 +32,7 @@ void sort_and_deduplicate(std::vector<Cell>& cells) {
     std::sort(corners.begin(), corners.end());
     count = std::max(count, corners[0] + 1);
   }
-  std::vector<Index> end(count, 0);
-  for (const Cell& corners : cells) ++end[corners[0]];
-  Index sum = 0;
-  for (Index& e : end) {
-    sum += e;
-    e = sum - e;
-  }
+  std::vector<Index> end = starts_of(cells, count);  // while they are filled
   std::vector<Cell> sorted(cells.size());
   for (const Cell& corners : cells) sorted[end[corners[0]]++] = corners;
   auto begin = sorted.begin();
@@ -44,13 +47,7 @@ void sort_and_deduplicate(std::vector<Cell>& cells) {
 }  // namespace
 
 Rows rows_of(const std::vector<std::array<Index, 2>>& pairs, Index count) {
-  std::vector<Index> ends(count, 0);  // of the rows, while they are filled; repeated items among them
-  for (const auto& pair : pairs) ++ends[pair[0]];
-  Index sum = 0;
-  for (Index& end : ends) {
-    sum += end;
-    end = sum - end;
-  }
+  std::vector<Index> ends = starts_of(pairs, count);  // of the rows, while they are filled; repeated items among them
   std::vector<Index> items(pairs.size());
   for (const auto& pair : pairs) items[ends[pair[0]]++] = pair[1];
   Rows result;

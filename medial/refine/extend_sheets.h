@@ -34,8 +34,9 @@ Index fill_along_edges(const Surface& surface, BallComplex& complex, const Borde
 Index follow_edges(const Surface& surface, BallComplex& complex, const BorderOptions& options);
 
 // Reaches for places that the balls leave open, by triangles from the edges nearest to them, borders before others:
-// their third ball leaves `left` (mesh units) open there, and where a place is on a sharp edge nothing. Triangles side
-// by side are joined. `reconstruction` is that of the complex as it is. Returns the number of places reached.
+// their third ball leaves `left` (mesh units) open there, and where a place is on a sharp edge nothing; where none may
+// be, it leaves half of it open, or comes from farther back, or is beside the axis and inexact. Triangles side by side
+// are joined. `reconstruction` is that of the complex as it is. Returns the number of places reached.
 Index reach_open_places(const Surface& surface, BallComplex& complex, BallSolver& solver,
                         const Reconstruction& reconstruction, std::span<const UncoveredPlace> places, double left,
                         const BorderOptions& options);
