@@ -38,7 +38,7 @@ class OneSided {
     found_ = {.max = 0, .upper = 0, .place = from.vertices.front()};
     for (const Point& vertex : from.vertices) found_.max = std::max(found_.max, to.closest(vertex).distance);
     found_ = detail::max_over_triangles(cells, found_, accuracy, kMaxPlaces,
-                                        [&](const Corners& corners) { return evaluate(corners); });
+                                        [&](const Corners& corners, Index, double) { return evaluate(corners); });
     measure_mean(cells);
   }
 

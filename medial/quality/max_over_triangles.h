@@ -37,9 +37,10 @@ inline std::pair<Corners, Corners> halves(const Corners& corners) {
 
 // What is known of a function on a triangle.
 struct PieceValue {
-  double value;  // that it has at `place`
+  double value;  // that it has at `place`; minus infinity where it is not known
   double bound;  // that it has nowhere more of
   Point place;
+  Index cell = kNone;  // what is nearest to the place, if the function is a distance
 };
 
 // The largest value of a function on triangles, by branch and bound.
@@ -49,20 +50,23 @@ struct MaxOverTriangles {
   Point place;   // where it is attained
 };
 
-// `evaluate(corners)` gives the PieceValue of a triangle or a part of one. Parts are halved until none can have more
-// than `accuracy` above what was found, or `max_parts` were looked at. `known`: a value that the function has at
-// known.place. The triangles themselves in parallel; the same result for any number of threads.
+// `evaluate(corners, cell, enough)` gives the PieceValue of a triangle or a part of one; `cell`: that of the triangle
+// which it is half of, or kNone; values and bounds of at most `enough` need not be looked for. Parts are halved until
+// none can have more than `accuracy` above what was found, or `max_parts` were looked at. `known`: a value that the
+// function has at known.place. The triangles themselves in parallel; the same result for any number of threads.
 template <class Evaluate>
 MaxOverTriangles max_over_triangles(std::span<const Corners> triangles, MaxOverTriangles known, double accuracy,
                                     std::size_t max_parts, const Evaluate& evaluate) {
   struct Part {
     Corners corners;
     double bound;
+    Index cell;
     bool operator<(const Part& other) const { return bound < other.bound; }
   };
   std::vector<PieceValue> first(triangles.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, triangles.size(), 256), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) first[i] = evaluate(triangles[i]);
+    for (std::size_t i = range.begin(); i != range.end(); ++i)
+      first[i] = evaluate(triangles[i], kNone, known.max + accuracy);
   });
   const auto take = [&](const PieceValue& piece) {
     if (piece.value > known.max) known.max = piece.value, known.place = piece.place;
@@ -70,24 +74,24 @@ MaxOverTriangles max_over_triangles(std::span<const Corners> triangles, MaxOverT
   for (const PieceValue& piece : first) take(piece);
   std::priority_queue<Part> queue;
   double closed = known.max;  // nowhere more where nothing is looked for any more
-  const auto put = [&](const Corners& corners, double bound) {
+  const auto put = [&](const Corners& corners, double bound, Index cell) {
     if (bound > known.max + accuracy) {
-      queue.push({corners, bound});
+      queue.push({corners, bound, cell});
     } else {
       closed = std::max(closed, bound);
     }
   };
-  for (std::size_t i = 0; i < triangles.size(); ++i) put(triangles[i], first[i].bound);
+  for (std::size_t i = 0; i < triangles.size(); ++i) put(triangles[i], first[i].bound, first[i].cell);
   std::size_t parts = triangles.size();
   while (!queue.empty() && queue.top().bound > known.max + accuracy && parts < max_parts) {
     const Part part = queue.top();
     queue.pop();
     const auto [a, b] = halves(part.corners);
     for (const Corners& half : {a, b}) {
-      const PieceValue piece = evaluate(half);
+      const PieceValue piece = evaluate(half, part.cell, known.max + accuracy);
       ++parts;
       take(piece);
-      put(half, std::min(piece.bound, part.bound));
+      put(half, std::min(piece.bound, part.bound), piece.cell);
     }
   }
   known.upper = std::max({known.max, closed, queue.empty() ? closed : queue.top().bound});

@@ -27,6 +27,27 @@ TriangleMesh borders_of(const MedialMesh& mesh) {
   return borders;
 }
 
+// The distance to one cell is convex, so that it is nowhere more than at the corners; to all of them it is 1-Lipschitz.
+// `cell`: the one nearest to the middle of the whole that this is half of, which will mostly do.
+PieceValue coverage_of(const Corners& corners, const Reconstruction& reconstruction, Index cell, double enough) {
+  const auto max_to_cell = [&](Index of) {
+    return std::max({reconstruction.distance_to_cell(of, corners[0]), reconstruction.distance_to_cell(of, corners[1]),
+                     reconstruction.distance_to_cell(of, corners[2])});
+  };
+  PieceValue piece{.value = -std::numeric_limits<double>::infinity(),
+                   .bound = cell == kNone ? std::numeric_limits<double>::infinity() : max_to_cell(cell),
+                   .place = (corners[0] + corners[1] + corners[2]) / 3,
+                   .cell = cell};
+  if (piece.bound <= enough) return piece;
+  const Reconstruction::Nearest nearest = reconstruction.nearest(piece.place);
+  piece.value = nearest.distance;
+  piece.cell = nearest.cell;
+  double reach = 0;
+  for (const Point& corner : corners) reach = std::max(reach, (corner - piece.place).norm());
+  piece.bound = std::min({piece.bound, piece.value + reach, max_to_cell(nearest.cell)});
+  return piece;
+}
+
 }  // namespace
 
 MaxOverTriangles max_coverage(const Surface& surface, const Reconstruction& reconstruction, MaxOverTriangles known,
@@ -43,19 +64,10 @@ MaxOverTriangles max_coverage(const Surface& surface, const Reconstruction& reco
   if (*farthest > known.max) known = {*farthest, 0, vertices[static_cast<std::size_t>(farthest - at_vertices.begin())]};
   std::vector<Corners> triangles;
   for (Index t = 0; t < surface.mesh().triangles.size(); ++t) triangles.push_back(surface.corners(t));
-  return max_over_triangles(triangles, known, kAccuracy * diagonal, kMaxParts, [&](const Corners& corners) {
-    PieceValue piece{.value = 0, .bound = 0, .place = (corners[0] + corners[1] + corners[2]) / 3};
-    const Reconstruction::Nearest nearest = reconstruction.nearest(piece.place);
-    piece.value = nearest.distance;
-    // The distance is 1-Lipschitz, and to a single cell it is convex.
-    double reach = 0, at_corners = piece.value;
-    for (const Point& corner : corners) {
-      reach = std::max(reach, (corner - piece.place).norm());
-      at_corners = std::max(at_corners, reconstruction.distance_to_cell(nearest.cell, corner));
-    }
-    piece.bound = std::min(piece.value + reach, at_corners);
-    return piece;
-  });
+  return max_over_triangles(triangles, known, kAccuracy * diagonal, kMaxParts,
+                            [&](const Corners& corners, Index cell, double enough) {
+                              return coverage_of(corners, reconstruction, cell, enough);
+                            });
 }
 
 Spread inner_coverage(const MedialMesh& mesh, std::span<const SurfaceReach> reaches, double diagonal) {

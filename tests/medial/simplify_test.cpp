@@ -223,7 +223,7 @@ TEST(SimplifiedMedialMesh, NamesTheLeastNumberThatTheTopologyAllows) {
 
 TEST(SimplifiedMedialMesh, IsRefusedWhatItCannotDo) {
   const Surface box(test::known_box({1, 2, 3}).solid);
-  const MedialMesh axis = built_axis(box, 200);
+  const MedialMesh axis = built_axis(box, 60);
   EXPECT_NE(
       message_for(box, axis, {.samples = 1500, .check = 2000, .search = 20'000, .rounds = 2}).find("error above 0"),
       std::string::npos);
