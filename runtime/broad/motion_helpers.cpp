@@ -42,9 +42,10 @@ Motion rocket_motion(const Rocket& r, double time, double horizon) noexcept {
 }
 
 Motion vehicle_motion(const Vehicle& v, double time, double horizon) noexcept {
+  constexpr Vec3 not_given{};
   const double centripetal = v.max_speed * v.max_speed / v.min_turn_radius;
   Motion motion = bounded(v.position, v.velocity, v.radius, std::hypot(centripetal, v.max_drive), time + horizon);
-  if (v.max_drive == 0 && v.to_center != Vec3{}) {
+  if (v.max_drive == 0 && v.to_center != not_given) {
     keep_to_side(motion, v.to_center, quarter_turn_time(v.max_speed / v.min_turn_radius), time, horizon);
   }
   return motion;
