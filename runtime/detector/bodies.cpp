@@ -10,7 +10,7 @@ StateSource states_of(const std::vector<BodyState>& values) {
 
 namespace detail {
 
-bool set_local(PartRecord& part, const Shape& shape, const Pose& local) noexcept {
+bool set_local(PartPlace& part, const Shape& shape, const Pose& local) noexcept {
   if (!is_rigid(local)) return false;
   part.local = local;
   part.at_origin = local == Pose{};
@@ -35,8 +35,11 @@ Body& BodyTable::take_in(BodyId id, std::size_t count) {
   body.parts.clear();
   body.parts.reserve(count);  // nothing throws from here on
   std::vector<PartRecord> parts = std::move(body.parts);
+  std::vector<PartBefore> parts_before = std::move(body.parts_before);
   body = Body{};
   body.parts = std::move(parts);
+  body.parts_before = std::move(parts_before);
+  body.parts_before.clear();
   body.id = id;
   return body;
 }
@@ -101,7 +104,7 @@ bool BodyTable::surely_apart(const BodyPair& pair, double time_step) const noexc
 std::size_t BodyTable::memory_bytes() const noexcept {
   std::size_t bytes =
       bytes_of(bodies_) + bytes_of(states_) + bytes_of(before_) + bytes_of(asking_) + bytes_of(answers_);
-  for (const Body& body : bodies_) bytes += bytes_of(body.parts);
+  for (const Body& body : bodies_) bytes += bytes_of(body.parts) + bytes_of(body.parts_before);
   return bytes;
 }
 

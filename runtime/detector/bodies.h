@@ -8,15 +8,25 @@ namespace orchard::runtime::detail {
 inline constexpr BodyIndex kFirstHalfSpace = 0xf0000000u;
 inline bool is_half_space(BodyIndex index) noexcept { return index >= kFirstHalfSpace && index != kNoIndex; }
 
-struct PartRecord {
-  ShapeId shape = kNoShape;
+inline constexpr Step kNotAsked = -2;  // not the step before any step
+
+// Where a part is in its body's frame.
+struct PartPlace {
   bool at_origin = true;  // `local` changes nothing
   Pose local{};
-  Vec3 center{};     // of a sphere around it, in the body's frame,
-  double reach = 0;  // and its radius there
+  Vec3 center{};     // of a sphere around it,
+  double reach = 0;  // and its radius
 };
 
-inline constexpr Step kNotAsked = -2;  // not the step before any step
+struct PartRecord : PartPlace {
+  ShapeId shape = kNoShape;
+};
+
+// Where it was up to a step, that one included.
+struct PartBefore {
+  PartPlace place;
+  Step until = kNotAsked;
+};
 
 struct Body {
   BodyId id = kNoBody;  // kNoBody: no body has this index now
@@ -37,12 +47,14 @@ struct Body {
   std::uint32_t jumps = 0;        // teleports
   std::uint32_t deformed = 0;     // changes of its shapes' trees
   std::uint32_t filters = 0;      // grows with changes of group, mask, sleep
+  Step stretched = kNotAsked;     // the step after which parts went farther out than ever before
   std::vector<PartRecord> parts;
+  std::vector<PartBefore> parts_before;  // of each part; empty until one moves
 };
 
 // The parts of `body`, ready for the broad phase: a sphere around all of them, around the body's origin.
 double reach_of(std::span<const PartRecord> parts) noexcept;
-bool set_local(PartRecord& part, const Shape& shape, const Pose& local) noexcept;  // false: not rigid
+bool set_local(PartPlace& part, const Shape& shape, const Pose& local) noexcept;  // false: not rigid
 
 // Which bodies there are and, per step, where: asked for at most once a step. Indices are the broad phase's.
 class BodyTable {

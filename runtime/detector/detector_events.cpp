@@ -88,8 +88,9 @@ void Detector::State::open_records(Step step) {
     };
     record.swept = continuous && record.jumps == jumps && known_before(a) && known_before(b);
     // As spheres reach as far as a step leads, who was not asked for at the step before had nothing near then: unless
-    // the broad phase could not tell.
-    record.unseen = continuous && record.jumps == jumps && !record.swept && interrupted;
+    // the broad phase could not tell, or its parts go farther now.
+    const bool sphere_fell_short = interrupted || a.stretched == step - 1 || b.stretched == step - 1;
+    record.unseen = continuous && record.jumps == jumps && !record.swept && sphere_fell_short;
     if (record.jumps != jumps && record.touching) {
       record.verdict = Verdict{};
       record.verdict.separation_bound = std::numeric_limits<double>::infinity();

@@ -2,8 +2,9 @@
 
 namespace orchard::runtime::detail {
 
-void Places::place_at(const Pose& pose, bool rigid, const PartRecord& part, PlacedPart& placed_part) const noexcept {
-  placed_part.shape = &(*shapes_)[part.shape];
+void Places::place_at(const Pose& pose, bool rigid, ShapeId shape, const PartPlace& part,
+                      PlacedPart& placed_part) const noexcept {
+  placed_part.shape = &(*shapes_)[shape];
   placed_part.pose = part.at_origin || !rigid ? pose : placed(pose, part.local);
   placed_part.rigid = rigid;
   placed_part.center = transform(pose, part.center);
@@ -13,7 +14,8 @@ void Places::place_at(const Pose& pose, bool rigid, const PartRecord& part, Plac
 void Places::place(BodyIndex body, std::uint32_t part, PlacedPart& placed_part) const noexcept {
   if (!is_half_space(body)) {
     const Body& of = (*bodies_)[body];
-    return place_at(bodies_->state(body).pose, of.rigid, of.parts[part], placed_part);
+    const PartRecord& record = of.parts[part];
+    return place_at(bodies_->state(body).pose, of.rigid, record.shape, record, placed_part);
   }
   placed_part.shape = nullptr;
 }
@@ -40,7 +42,10 @@ void Places::place_before(BodyIndex body, std::uint32_t part, Step now, PlacedPa
   const Body& of = (*bodies_)[body];
   const bool moves = !of.is_static && of.asked == now;  // one that falls asleep has come here first
   const Pose& pose = moves ? bodies_->before(body) : bodies_->state(body).pose;
-  place_at(pose, is_rigid(pose), of.parts[part], placed_part);
+  const PartRecord& record = of.parts[part];
+  const bool was_elsewhere = !of.parts_before.empty() && of.parts_before[part].until == now - 1;
+  const PartPlace& place = was_elsewhere ? of.parts_before[part].place : record;
+  place_at(pose, is_rigid(pose), record.shape, place, placed_part);
 }
 
 double sphere_gap(const PartPair& pair) noexcept {

@@ -40,7 +40,7 @@ class Places {
   const BodyTable& bodies() const noexcept { return *bodies_; }
 
  private:
-  void place_at(const Pose& pose, bool rigid, const PartRecord& part, PlacedPart& placed) const noexcept;
+  void place_at(const Pose& pose, bool rigid, ShapeId shape, const PartPlace& part, PlacedPart& placed) const noexcept;
   const ShapeTable* shapes_;
   const BodyTable* bodies_;
   const HalfSpaces* halves_;

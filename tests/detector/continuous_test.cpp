@@ -4,6 +4,7 @@
 
 #include "orchard/runtime/detector.h"
 #include "support.h"
+#include "support/effort.h"
 
 // Bodies that are found between two steps.
 namespace orchard::runtime {
@@ -124,6 +125,73 @@ TEST(Continuous, TreesThatTurnAreSweptAsWell) {
   const Frame after = detector.step(2 * kStep);
   ASSERT_EQ(after.events.size(), 1u);
   EXPECT_EQ(after.events[0].change, PairChange::end);
+}
+
+// The same motion, given by the body's pose or by a joint, meets the same at the same time.
+TEST(Continuous, JointsThatMoveBetweenTwoStepsAreSweptLikeBodies) {
+  const PackedSphereTree blade = test::build_tree(test::box({-2, -0.05, -0.05}, {2, 0.05, 0.05}));
+  const PackedSphereTree post = test::build_tree(test::box({-0.1, -0.1, -1}, {0.1, 0.1, 1}));
+  test::Draw draw(orchard::test::first_seed() + 61);
+  const auto cases = static_cast<int>(100 * orchard::test::more());
+  int hits = 0;
+  for (int i = 0; i < cases; ++i) {
+    const auto any_pose = [&] {
+      const double angle = draw.uniform(-1.2, 1.2);
+      return *pose_from_quaternion({std::cos(angle / 2), 0, 0, std::sin(angle / 2)},
+                                   {draw.uniform(-1.5, 1.5), draw.uniform(-1.5, 1.5), 0});
+    };
+    const Pose from = any_pose(), to = any_pose();
+    const auto events_of = [&](bool by_joint, double speed) {
+      std::vector<BodyState> states(2);
+      Detector detector(states_of(states), {.time_step = kStep});
+      const BodyId id = detector.add_body({{detector.add_shape(blade), {}}}, {.continuous_speed = speed, .reach = 5});
+      detector.add_static({{detector.add_shape(post), {}}}, {});
+      states[id.index].expiry = 0;
+      std::vector<PairEvent> events;
+      int step = 0;
+      for (const Pose& pose : {from, to, to}) {
+        if (by_joint) {
+          EXPECT_TRUE(detector.set_local(id, 0, {}));  // only what was so at the step counts
+          EXPECT_TRUE(detector.set_local(id, 0, pose));
+        } else {
+          states[id.index].pose = pose;
+        }
+        const Frame frame = detector.step(step++ * kStep);
+        events.insert(events.end(), frame.events.begin(), frame.events.end());
+      }
+      return events;
+    };
+    const double speed = 5 / kStep;
+    const auto by_body = events_of(false, speed), by_joint = events_of(true, speed);
+    ASSERT_EQ(by_joint.size(), by_body.size()) << i;
+    for (std::size_t k = 0; k < by_body.size(); ++k) {
+      ASSERT_EQ(by_joint[k].change, by_body[k].change) << i;
+      ASSERT_EQ(std::isnan(by_joint[k].impact_to), std::isnan(by_body[k].impact_to)) << i;
+      if (std::isnan(by_body[k].impact_to)) continue;
+      ASSERT_NEAR(by_joint[k].impact_to, by_body[k].impact_to, 1e-4 * kStep) << i;
+    }
+    if (by_joint.size() > events_of(true, 0).size()) ++hits;
+  }
+  EXPECT_GT(hits, cases / 50);  // that only the sweep can see
+}
+
+// What a joint takes farther out than ever, from where the detector was not looking: nobody knows what was in between.
+TEST(Continuous, APartThatIsStretchedIntoTheUnknownIsPossible) {
+  int asked = 0;
+  const StateSource at_rest = [&](double, std::span<const BodyIndex> bodies, std::span<BodyState> states) {
+    for (std::size_t i = 0; i < bodies.size(); ++i) states[i] = BodyState{};
+    ++asked;
+  };
+  Detector detector(at_rest, {.time_step = kStep});
+  const BodyId id = detector.add_body({{detector.add_sphere(0.1), {}}}, {.continuous_speed = 1});
+  detector.add_static({{detector.add_sphere(0.5), {}}}, {.translation = {0, 0, 3}});
+  int step = 0;
+  for (; step < 4; ++step) EXPECT_TRUE(detector.step(step * kStep).events.empty());
+  ASSERT_EQ(asked, 1);
+  EXPECT_TRUE(detector.set_local(id, 0, {.translation = {0, 0, 6}}));
+  const Frame frame = detector.step(step * kStep);
+  ASSERT_EQ(frame.events.size(), 1u);
+  EXPECT_EQ(frame.events[0].change, PairChange::possible);
 }
 
 TEST(Continuous, ABudgetIsKeptAndWhatItLeavesOpenIsPossible) {

@@ -57,9 +57,10 @@ struct BodyOptions {
   // Two bodies may touch if each one's mask has a bit of the other's group (BodyFilter::category). Others are no pair
   // in the broad phase already, and cost nothing.
   std::uint32_t group = 1, mask = 0xffffffffu;
-  // Above 0: also what happens between two steps is found, by time_of_impact() from pose to pose: of each part the
-  // centre straight, the rotation by the smallest angle. It is a promise that relative to whatever the body may meet no
-  // origin moves faster. Lengths per second. Where the scale changes within a step, nobody knows: "possible".
+  // Above 0: also what happens between two steps is found, by time_of_impact() from pose to pose, those of the body and
+  // of its parts: of each part the centre straight, the rotation by the smallest angle. It is a promise that relative
+  // to whatever the body may meet no origin moves faster. Lengths per second. Where the scale changes within a step,
+  // nobody knows: "possible".
   double continuous_speed = 0;
   // The body, whatever its parts do, lies within this distance of its origin at scale 1: saves a new window update
   // whenever an articulated body stretches. 0: as far as the parts reach.
