@@ -1,5 +1,9 @@
 #include "build.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <string>
 
@@ -12,6 +16,11 @@
 #include "parallel_insertion.h"
 
 namespace orchard::detail {
+namespace {
+
+constexpr Index kSlice = 1u << 14;  // points or vertices that a thread looks at at once
+
+}  // namespace
 
 Box checked_box(std::span<const Point> points) {
   Box box;
@@ -77,17 +86,20 @@ void finish(Workspace& workspace, const Frame& frame, std::span<const Index> ori
   }
   free.clear();
   vertices.resize(end);
-  for (VoronoiVertex& vertex : vertices) {
-    if (vertex.forming_points[3] == kInfinitePoint) {
-      vertex.radius = std::numeric_limits<double>::infinity();
-    } else {
-      vertex.center = frame.outward(vertex.center);
-      vertex.radius = frame.outward(std::sqrt(vertex.radius));
+  tbb::parallel_for(tbb::blocked_range<Index>(0, end, kSlice), [&](const auto& range) {
+    for (Index v = range.begin(); v < range.end(); ++v) {
+      VoronoiVertex& vertex = vertices[v];
+      if (vertex.forming_points[3] == kInfinitePoint) {
+        vertex.radius = std::numeric_limits<double>::infinity();
+      } else {
+        vertex.center = frame.outward(vertex.center);
+        vertex.radius = frame.outward(std::sqrt(vertex.radius));
+      }
+      if (original_of.empty()) continue;
+      for (Index& point : vertex.forming_points)
+        if (point != kInfinitePoint) point = original_of[point];
     }
-    if (original_of.empty()) continue;
-    for (Index& point : vertex.forming_points)
-      if (point != kInfinitePoint) point = original_of[point];
-  }
+  });
 }
 
 void add_counts(const InsertionCounts& counts, InsertionReport& report) {
@@ -196,11 +208,12 @@ VoronoiBuild build_voronoi(std::span<const Point> points, Search search, std::st
   const Box box = checked_box(points);
   const Frame frame(box);
   const double radius = points.empty() ? 0 : box.diagonal().norm() / 2;
-  report.duplicates = coincident_points(points, tolerance::kCoincidentPoints * radius);
+  std::vector<Index> original_of;
+  tbb::parallel_invoke([&] { report.duplicates = coincident_points(points, tolerance::kCoincidentPoints * radius); },
+                       [&] { original_of = insertion_order(points, box); });
 
   if (points.size() - report.duplicates.size() >= 4) {
     // The points are worked on in the order of insertion, so that neighbours in space are neighbours in memory.
-    std::vector<Index> original_of = insertion_order(points, box);
     if (!report.duplicates.empty()) {
       std::vector<bool> left_out(points.size(), false);
       for (const auto& pair : report.duplicates) left_out[pair[0]] = true;
@@ -209,8 +222,11 @@ VoronoiBuild build_voronoi(std::span<const Point> points, Search search, std::st
     Workspace workspace;
     set_scale(workspace, frame, box);
     workspace.set_exact(exact || (search == Search::highest_first && workspace.too_noisy()));
-    workspace.points.reserve(points.size());
-    for (Index i : original_of) workspace.points.push_back(frame.inward(points[i]));
+    workspace.points.resize(original_of.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, original_of.size(), kSlice), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i < range.end(); ++i)
+        workspace.points[i] = frame.inward(points[original_of[i]]);
+    });
     if (insert_with_all_means(workspace, search, stage, progress, original_of, report)) {
       report.dimension = 3;
       finish(workspace, frame, original_of);

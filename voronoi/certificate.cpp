@@ -3,6 +3,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <atomic>
@@ -40,7 +41,7 @@ constexpr double kBlurred = 0x1p-44;
 constexpr std::size_t kMaxSuspects = 512, kOfDent = 4;
 
 // Vertices that a thread looks at at once.
-constexpr Index kBlock = 1u << 14;
+constexpr Index kBlock = 1u << 14, kHullBlock = 1u << 10;
 
 // Of mending and looking at what is new.
 constexpr int kRounds = 24;
@@ -145,17 +146,25 @@ class Certifier {
     }
     return true;
   }
-  // By several threads where there are many. Nothing changes on the way but a vertex that is looked at itself.
   bool look_at_each(bool (Certifier::*good)(Index)) {
-    const auto count = static_cast<Index>(workspace_.vertices.size());
-    const bool alone = workspace_.points.size() < large_set() || first_new_ > 0;
-    const Index block = alone ? std::max<Index>(count, 1) : kBlock;
+    return look_in_blocks(static_cast<Index>(workspace_.vertices.size()), kBlock, [&](Certifier& part, Index v) {
+      return workspace_.is_free(v) || !is_new(v) || (part.*good)(v);
+    });
+  }
+  // good(part, i) for all i below the count, until one is not; by several threads where there are many. Nothing changes
+  // on the way but a vertex that is looked at itself.
+  template <class Good>
+  bool look_in_blocks(Index count, Index block, const Good& good) {
+    if (workspace_.points.size() < large_set() || first_new_ > 0) {
+      for (Index i = 0; i < count; ++i)
+        if (!good(*this, i)) return false;
+      return found_.suspects.size() <= kMaxSuspects + kOfDent;
+    }
     std::vector<Findings> found((count + block - 1) / block);
     tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t b) {
       Certifier part(*this, Part{});
       const Index begin = static_cast<Index>(b) * block, end = std::min(count, begin + block);
-      for (Index v = begin; v < end && part.found_.good; ++v)
-        if (!workspace_.is_free(v) && is_new(v)) part.found_.good = (part.*good)(v);
+      for (Index i = begin; i < end && part.found_.good; ++i) part.found_.good = good(part, i);
       found[b] = std::move(part.found_);
     });
     for (const Findings& each : found) found_.add(each);
@@ -170,9 +179,9 @@ class Certifier {
   // After mending: what is around an edge of the hull may have changed, though the facets next to it have not.
   bool look_at_hull() {
     found_.suspects.clear();
-    for (Index v = 0; v < workspace_.vertices.size(); ++v)
-      if (!workspace_.is_free(v) && workspace_.at_infinity(v) && !are_facets_good(v)) return false;
-    return true;
+    const std::vector<Index> hull = hull_vertices();
+    return look_in_blocks(static_cast<Index>(hull.size()), kHullBlock,
+                          [&](Certifier& part, Index i) { return part.are_facets_good(hull[i]); });
   }
 
   // Once more, where bounds that suffice for each facet are too much for all of them: with own spheres where those of
@@ -199,8 +208,10 @@ class Certifier {
   void find_fattest() {
     found_.max_volume = 0;
     found_.fattest = kNone;
-    for (Index v = 0; v < workspace_.vertices.size(); ++v)
-      if (!workspace_.is_free(v) && !workspace_.at_infinity(v)) note_volume(v, six_volumes(v).value);
+    look_in_blocks(static_cast<Index>(workspace_.vertices.size()), kBlock, [&](Certifier& part, Index v) {
+      if (!workspace_.is_free(v) && !workspace_.at_infinity(v)) part.note_volume(v, six_volumes(v).value);
+      return true;
+    });
   }
   Determinant six_volumes(Index v) const {
     const Point& last = corner(v, 3);
@@ -405,17 +416,33 @@ class Certifier {
     note_hull_points();
     std::sort(found_.suspects.begin(), found_.suspects.end());
     found_.suspects.erase(std::unique(found_.suspects.begin(), found_.suspects.end()), found_.suspects.end());
-    return std::all_of(found_.suspects.begin(), found_.suspects.end(), [this](Index v) {
-      return add(workspace_.at_infinity(v) ? farthest_beyond(v) : deepest_within(v));
+    std::vector<double> intrusions(found_.suspects.size());
+    tbb::parallel_for(std::size_t{0}, intrusions.size(), [&](std::size_t s) {
+      const Index v = found_.suspects[s];
+      intrusions[s] = workspace_.at_infinity(v) ? farthest_beyond(v) : deepest_within(v);
     });
+    return std::all_of(intrusions.begin(), intrusions.end(), [this](double intrusion) { return add(intrusion); });
   }
   void note_hull_points() {
-    std::vector<bool> on_hull(workspace_.points.size(), false);
-    for (Index v = 0; v < workspace_.vertices.size(); ++v)
-      if (!workspace_.is_free(v) && workspace_.at_infinity(v))
-        for (unsigned i = 0; i < 3; ++i) on_hull[workspace_.vertices[v].forming_points[i]] = true;
-    for (Index p = 0; p < on_hull.size(); ++p)
-      if (on_hull[p]) hull_points_.push_back(p);
+    for (const Index v : hull_vertices()) {
+      const auto& corner = workspace_.vertices[v].forming_points;
+      hull_points_.insert(hull_points_.end(), corner.begin(), corner.begin() + 3);
+    }
+    std::sort(hull_points_.begin(), hull_points_.end());
+    hull_points_.erase(std::unique(hull_points_.begin(), hull_points_.end()), hull_points_.end());
+  }
+  // Ascending.
+  std::vector<Index> hull_vertices() const {
+    const auto count = static_cast<Index>(workspace_.vertices.size());
+    std::vector<std::vector<Index>> blocks((count + kBlock - 1) / kBlock);
+    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+      const Index begin = static_cast<Index>(b) * kBlock, end = std::min(count, begin + kBlock);
+      for (Index v = begin; v < end; ++v)
+        if (!workspace_.is_free(v) && workspace_.at_infinity(v)) blocks[b].push_back(v);
+    });
+    std::vector<Index> hull;
+    for (const auto& block : blocks) hull.insert(hull.end(), block.begin(), block.end());
+    return hull;
   }
   double farthest_beyond(Index v) const {
     Vector normal;
@@ -429,14 +456,20 @@ class Certifier {
     const Point &p0 = corner(v, 0), &p1 = corner(v, 1), &p2 = corner(v, 2), &p3 = corner(v, 3);
     Vector center;
     if (!sharp_circumcenter(p0, p1, p2, p3, center)) return diameter_;
-    double power = 0;
-    for (Index i = 0; i < workspace_.points.size(); ++i) {
-      const Point& p = workspace_.points[i];
-      if (!forming_[i]) continue;
-      const Vector from_p0 = p - p0;
-      const double by_center = 2 * center.dot(from_p0) - from_p0.squaredNorm();
-      if (by_center > power && inside_sphere(p, p0, p1, p2, p3) == Sign::positive) power = by_center;
-    }
+    const auto count = static_cast<Index>(workspace_.points.size());
+    const double power = tbb::parallel_reduce(
+        tbb::blocked_range<Index>(0, count, kBlock), 0.0,
+        [&](const auto& range, double max) {
+          for (Index i = range.begin(); i < range.end(); ++i) {
+            if (!forming_[i]) continue;
+            const Point& p = workspace_.points[i];
+            const Vector from_p0 = p - p0;
+            const double by_center = 2 * center.dot(from_p0) - from_p0.squaredNorm();
+            if (by_center > max && inside_sphere(p, p0, p1, p2, p3) == Sign::positive) max = by_center;
+          }
+          return max;
+        },
+        [](double a, double b) { return std::max(a, b); });
     return power / std::min(center.norm(), diameter_ / 2);
   }
 

@@ -42,8 +42,9 @@ class Inserter {
   // To be called at the end; false, as above, if there are points that do not fit even now.
   bool insert_deferred();
   // Between enter() and leave(): where vertices may be replaced, by several threads that have an inserter each. The
-  // walk to the first point starts from `start`, which must be owned.
-  void enter(const Territory& territory, Index start);
+  // walk to the first point starts from the first of `starts`, and where a walk leads nowhere, it is made again from
+  // the one nearest to the point. They must be owned, and live until then.
+  void enter(const Territory& territory, std::span<const Index> starts);
   // Only without doubts that take more than leaving vertices alone, and only if all that changes is owned; else false,
   // with the diagram as it was.
   bool insert_within(Index point);
@@ -70,6 +71,7 @@ class Inserter {
   void insert_constrained(Index start, const Point& q);
   bool too_doubtful() const;
   Index locate(const Point& q) const;
+  Index nearest_start(const Point& q) const;
   Index walk(const Point& q) const;
   Index highest_nearby(Index v, const Point& q) const;
   Index step_by_orientation(Index v, const Point& q) const;
@@ -94,6 +96,7 @@ class Inserter {
   Cavity cavity_;
   InsertionCounts counts_;
   const char* failure_ = "";
+  std::span<const Index> starts_;
   Index last_ = 0;  // where the walk to the next point starts
   std::vector<Candidate> queue_;
   std::vector<Index> deferred_;

@@ -1,5 +1,8 @@
 #include "insertion_order.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -15,8 +18,9 @@ constexpr unsigned kCurveBits = 3 * kBits;
 constexpr unsigned kRoundShift = 3;  // each round holds about 7/8 of the points that remain
 constexpr unsigned kMaxRound = 15;
 constexpr std::size_t kMinRound = 64;
-constexpr std::size_t kCrowded = 16;  // points of one round in one cell that are ordered by a finer grid
-constexpr int kFinest = 4;            // grids within grids: the last one resolves a double
+constexpr std::size_t kCrowded = 16;      // points of one round in one cell that are ordered by a finer grid
+constexpr std::size_t kBatch = 1u << 13;  // points that a thread looks at at once
+constexpr int kFinest = 4;                // grids within grids: the last one resolves a double
 
 // The position on a Hilbert curve of a cell of the 2^kBits grid, by Skilling's transform (2004).
 std::uint64_t hilbert(std::array<std::uint32_t, 3> x) {
@@ -95,14 +99,16 @@ std::vector<Index> insertion_order(std::span<const Point> points, const Box& box
   for (std::size_t left = points.size(); left > kMinRound && rounds < kMaxRound; left >>= kRoundShift) ++rounds;
 
   std::vector<Item> items(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    // A point stays in the last round but for one time in eight, and so on downwards.
-    std::uint64_t bits = Random(0, 0x40b3u, i).bits();
-    unsigned round = rounds;
-    for (; round > 0 && (bits & ((1u << kRoundShift) - 1)) == 0; bits >>= kRoundShift) --round;
-    items[i].key = (static_cast<std::uint64_t>(round) << kCurveBits) | hilbert(cell_of(points[i], box, side));
-    items[i].point = static_cast<Index>(i);
-  }
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, items.size(), kBatch), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      // A point stays in the last round but for one time in eight, and so on downwards.
+      std::uint64_t bits = Random(0, 0x40b3u, i).bits();
+      unsigned round = rounds;
+      for (; round > 0 && (bits & ((1u << kRoundShift) - 1)) == 0; bits >>= kRoundShift) --round;
+      items[i].key = (static_cast<std::uint64_t>(round) << kCurveBits) | hilbert(cell_of(points[i], box, side));
+      items[i].point = static_cast<Index>(i);
+    }
+  });
   radix_sort(items, kCurveBits + 4);
   order_crowds(items, points, kFinest);
   std::vector<Index> order(points.size());

@@ -3,26 +3,46 @@
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <numeric>
 
 #include "regions.h"
 
 namespace orchard::detail {
 
-void Inserter::enter(const Territory& territory, Index start) {
+void Inserter::enter(const Territory& territory, std::span<const Index> starts) {
   territory_ = territory;
   cavity_.enter(territory);
-  last_ = start;
+  starts_ = starts;
+  last_ = starts.front();
 }
 
 bool Inserter::insert_within(Index point) {
   const Point q = workspace_.points[point];
   last_ = walk(q);
+  if (!territory_.owns(last_) && !(workspace_.power(last_, q) > 0)) {
+    // The end of a pocket of the territory: from elsewhere there may be a way.
+    last_ = nearest_start(q);
+    last_ = walk(q);
+  }
   if (!territory_.owns(last_)) return false;
   cavity_.begin(point);
   return insert_directly(last_, q);
+}
+
+Index Inserter::nearest_start(const Point& q) const {
+  Index nearest = last_;
+  double min = std::numeric_limits<double>::infinity();
+  for (const Index v : starts_) {
+    if (workspace_.is_free(v)) continue;
+    const double distance = (workspace_.points[workspace_.vertices[v].forming_points[0]] - q).squaredNorm();
+    if (distance < min) min = distance, nearest = v;
+  }
+  return nearest;
 }
 
 void Inserter::leave() {
@@ -41,8 +61,10 @@ std::atomic<std::size_t> large = 50000;
 
 // Parts of a large set: as many points are worth another pass, and as many in each half another cut.
 constexpr std::size_t kWorthPass = 12, kWorthHalving = 2;
-constexpr int kPasses = 3;
+constexpr int kPasses = 4;
 constexpr std::size_t kRoom = 64;          // vertices beyond what the points of a region should need
+constexpr double kMaxDenser = 2;           // of vertices for each point of a region, in terms of those of all
+constexpr std::size_t kStarts = 64;        // vertices of a region that a walk may start from
 constexpr std::size_t kSample = 1u << 17;  // vertices to choose the first cuts by
 constexpr Index kGrain = 1u << 14;         // vertices that a thread looks at at once
 
@@ -53,10 +75,10 @@ class Pass {
   Pass(Workspace& workspace, std::vector<std::uint8_t>& region_of, std::span<const Index> waiting, Index end)
       : workspace_(workspace), region_of_(region_of), regions_(workspace, waiting, vertices_near(), halvings(waiting)) {
     parts_.resize(regions_.count());
-    for (const Index p : waiting) parts_[regions_.of(workspace_.points[p])].waiting.push_back(p);
+    find_regions_of_points();
+    for (const Index p : waiting) parts_[region_of_point_[p]].waiting.push_back(p);
     find_regions_of_vertices();
-    for (std::uint8_t r = 0; r < regions_.count(); ++r) find_start(r);
-    give_room(end - waiting.size());
+    give_room(end);
   }
 
   // What could not be inserted, ascending.
@@ -70,15 +92,15 @@ class Pass {
       left.insert(left.end(), part.left.begin(), part.left.end());
       workspace_.free_vertices.insert(workspace_.free_vertices.end(), part.room.begin(), part.room.end());
     }
-    std::sort(left.begin(), left.end());
+    tbb::parallel_sort(left.begin(), left.end());
     return left;
   }
 
  private:
   struct Part {
     std::vector<Index> waiting, left;
-    std::vector<Index> room;  // free vertices
-    Index start = kNone;      // one of its vertices
+    std::vector<Index> room;    // free vertices
+    std::vector<Index> starts;  // some of its own
   };
 
   static unsigned halvings(std::span<const Index> waiting) {
@@ -92,18 +114,20 @@ class Pass {
     std::vector<Index> near;
     const std::size_t step = region_of_.empty() ? workspace_.vertices.size() / kSample + 1 : 1;
     for (std::size_t v = 0; v < workspace_.vertices.size(); v += step)
-      if (!workspace_.is_free(static_cast<Index>(v)) && (region_of_.empty() || region_of_[v] == Territory::kMixed))
+      if ((region_of_.empty() || region_of_[v] == Territory::kMixed) && !workspace_.is_free(static_cast<Index>(v)))
         near.push_back(static_cast<Index>(v));
     return near;
   }
 
-  void find_regions_of_vertices() {
-    std::vector<std::uint8_t> of_point(workspace_.points.size());
-    tbb::parallel_for(tbb::blocked_range<Index>(0, static_cast<Index>(of_point.size()), kGrain),
+  void find_regions_of_points() {
+    region_of_point_.resize(workspace_.points.size());
+    tbb::parallel_for(tbb::blocked_range<Index>(0, static_cast<Index>(region_of_point_.size()), kGrain),
                       [&](const auto& range) {
                         for (Index p = range.begin(); p < range.end(); ++p)
-                          of_point[p] = regions_.of(workspace_.points[p]);
+                          region_of_point_[p] = regions_.of(workspace_.points[p]);
                       });
+  }
+  void find_regions_of_vertices() {
     region_of_.resize(workspace_.vertices.size());
     tbb::parallel_for(tbb::blocked_range<Index>(0, static_cast<Index>(region_of_.size()), kGrain),
                       [&](const auto& range) {
@@ -111,30 +135,48 @@ class Pass {
                           const auto& corner = workspace_.vertices[v].forming_points;
                           region_of_[v] = Territory::kMixed;
                           if (workspace_.is_free(v)) continue;
-                          const std::uint8_t first = of_point[corner[0]];
-                          if (of_point[corner[1]] == first && of_point[corner[2]] == first &&
-                              (corner[3] == kInfinitePoint || of_point[corner[3]] == first))
+                          const std::uint8_t first = region_of_point_[corner[0]];
+                          if (region_of_point_[corner[1]] == first && region_of_point_[corner[2]] == first &&
+                              (corner[3] == kInfinitePoint || region_of_point_[corner[3]] == first))
                             region_of_[v] = first;
                         }
                       });
   }
-  void find_start(std::uint8_t r) {
-    const auto first = std::find(region_of_.begin(), region_of_.end(), r);
-    if (first != region_of_.end()) parts_[r].start = static_cast<Index>(first - region_of_.begin());
+  // Evenly over the numbers, of which neighbours in space mostly have neighbouring ones.
+  void find_starts(std::uint8_t r) {
+    const std::size_t step = region_of_.size() / (kStarts * parts_.size()) + 1;
+    for (std::size_t v = 0; v < region_of_.size(); ++v)
+      if (region_of_[v] == r && !workspace_.is_free(static_cast<Index>(v))) {
+        parts_[r].starts.push_back(static_cast<Index>(v));
+        v += step;
+      }
   }
 
-  // As many vertices for each point as the others have taken: free ones first.
-  void give_room(std::size_t inserted) {
+  // As many vertices for each point as the others have taken, of all or of this region: free ones first.
+  void give_room(Index end) {
     auto& free = workspace_.free_vertices;
-    const std::size_t taken = workspace_.vertices.size() - free.size();
-    const double per_point = static_cast<double>(taken) / static_cast<double>(inserted);
+    std::array<std::size_t, 256> inserted{}, taken{};
+    for (Index p = 0; p < end; ++p) ++inserted[region_of_point_[p]];
+    for (const std::uint8_t r : region_of_) ++taken[r];
+    std::size_t waiting = 0;
+    for (const Part& part : parts_) waiting += part.waiting.size();
+    const double of_all =
+        static_cast<double>(workspace_.vertices.size() - free.size()) / static_cast<double>(end - waiting);
+    std::vector<std::size_t> wanted(parts_.size());
     for (std::size_t r = 0; r < parts_.size(); ++r) {
-      auto& [points, left, room, start] = parts_[r];
-      const std::size_t wanted = static_cast<std::size_t>(per_point * static_cast<double>(points.size())) + kRoom;
-      const std::size_t recycled = std::min(wanted, free.size()), before = workspace_.vertices.size();
+      const std::size_t points = parts_[r].waiting.size();
+      const double here = static_cast<double>(taken[r]) / static_cast<double>(inserted[r] - points + 1);
+      wanted[r] =
+          static_cast<std::size_t>(std::clamp(here, of_all, kMaxDenser * of_all) * static_cast<double>(points)) + kRoom;
+    }
+    workspace_.bring_in(workspace_.vertices.size() + std::accumulate(wanted.begin(), wanted.end(), std::size_t{0}) -
+                        free.size());
+    for (std::size_t r = 0; r < parts_.size(); ++r) {
+      std::vector<Index>& room = parts_[r].room;
+      const std::size_t recycled = std::min(wanted[r], free.size()), before = workspace_.vertices.size();
       room.assign(free.end() - static_cast<std::ptrdiff_t>(recycled), free.end());
       free.resize(free.size() - recycled);
-      workspace_.resize(before + wanted - recycled);
+      workspace_.resize(before + wanted[r] - recycled);
       for (std::size_t v = workspace_.vertices.size(); v-- > before;) room.push_back(static_cast<Index>(v));
       region_of_.resize(workspace_.vertices.size());
       for (const Index v : room) region_of_[v] = static_cast<std::uint8_t>(r);
@@ -142,11 +184,12 @@ class Pass {
   }
   void insert(Inserter& inserter, std::uint8_t r) {
     Part& part = parts_[r];
-    if (part.start == kNone) {
+    find_starts(r);
+    if (part.starts.empty()) {
       part.left = std::move(part.waiting);
       return;
     }
-    inserter.enter({region_of_.data(), r, &part.room}, part.start);
+    inserter.enter({region_of_.data(), r, &part.room}, part.starts);
     for (const Index p : part.waiting)
       if (!inserter.insert_within(p)) part.left.push_back(p);
     inserter.leave();
@@ -155,6 +198,7 @@ class Pass {
   Workspace& workspace_;
   std::vector<std::uint8_t>& region_of_;
   Regions regions_;
+  std::vector<std::uint8_t> region_of_point_;
   std::vector<Part> parts_;
 };
 

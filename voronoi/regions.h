@@ -31,7 +31,8 @@ class Regions {
     bool is_beyond(const Point& p) const { return normal.dot(p) > offset; }
   };
 
-  Cut best_cut(const Workspace& workspace, std::span<const Index> waiting, std::span<const Index> near) const;
+  struct Sample;
+  static Cut best_cut(const Sample& sample);
 
   unsigned halvings_;
   std::array<Cut, 1u << kMaxHalvings> cuts_{};  // of node n: halves 2 n and 2 n + 1, from 1 on

@@ -1,6 +1,10 @@
 #include "workspace.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 namespace orchard::detail {
@@ -20,6 +24,16 @@ void move_infinity_last(VoronoiVertex& vertex) {
 }
 
 }  // namespace
+
+void Workspace::bring_in(std::size_t count) {
+  constexpr std::size_t kPage = 4096;
+  auto* const room = reinterpret_cast<std::byte*>(vertices.data());
+  const std::size_t begin = vertices.size() * sizeof(VoronoiVertex) / kPage + 1,
+                    end = std::min(count, vertices.capacity()) * sizeof(VoronoiVertex) / kPage;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(std::min(begin, end), end, kPage / 16), [room](const auto& pages) {
+    for (std::size_t page = pages.begin(); page < pages.end(); ++page) room[page * kPage] = std::byte{0};
+  });
+}
 
 void Workspace::set_scale(const Box& box, double rounding) {
   const int exponent = std::ilogb(box.diagonal().norm());

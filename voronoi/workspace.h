@@ -126,6 +126,8 @@ class Workspace {
     vertices.resize(count);
     state_.resize(count);
   }
+  // Has the system map the room for so many vertices, by several threads: that takes longer than to fill it.
+  void bring_in(std::size_t count);
   void clear() {
     vertices.clear();
     state_.clear();
