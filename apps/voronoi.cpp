@@ -77,8 +77,9 @@ Run run(const std::vector<Point>& points, VoronoiAlgorithm algorithm, const Prog
   result.diagram = std::move(build.diagram);
   result.report = std::move(build.report);
   validate(result.diagram);
-  result.inaccuracy = inaccuracy(result.diagram);
-  result.corners = corner_inaccuracy(result.diagram);
+  const auto [segments, corners] = inaccuracies(result.diagram, progress);
+  result.inaccuracy = segments;
+  result.corners = corners;
   return result;
 }
 

@@ -63,4 +63,23 @@ void NearestPoint::search(Index index, const Point& q, double& best) const {
   if (far_distance < best) search(far, q, best);
 }
 
+bool NearestPoint::within(const Point& q, double squared_radius, std::size_t max, std::vector<Point>& found) const {
+  found.clear();
+  if (!points_.empty()) collect(0, q, squared_radius, max, found);
+  return found.size() <= max;
+}
+
+void NearestPoint::collect(Index index, const Point& q, double squared_radius, std::size_t max,
+                           std::vector<Point>& found) const {
+  const Node& node = nodes_[index];
+  if (node.right == kNone) {
+    for (Index i = node.begin; i < node.end; ++i)
+      if ((points_[i] - q).squaredNorm() <= squared_radius) found.push_back(points_[i]);
+    return;
+  }
+  for (const Index child : {index + 1, node.right})
+    if (found.size() <= max && squared_distance_bound(child, q) <= squared_radius)
+      collect(child, q, squared_radius, max, found);
+}
+
 }  // namespace orchard::detail

@@ -16,6 +16,9 @@ class NearestPoint {
   // The squared distance from q to the nearest point, or the limit if no point is nearer than that.
   double squared_distance(const Point& q, double limit) const;
 
+  // The points within the ball go to `found`; false if these are more than `max`: then they are not all there.
+  bool within(const Point& q, double squared_radius, std::size_t max, std::vector<Point>& found) const;
+
  private:
   struct Node {
     Eigen::Matrix3d axes;      // rows
@@ -27,6 +30,7 @@ class NearestPoint {
   void build(Index begin, Index end);
   double squared_distance_bound(Index node, const Point& q) const;
   void search(Index node, const Point& q, double& best) const;
+  void collect(Index node, const Point& q, double squared_radius, std::size_t max, std::vector<Point>& found) const;
 
   std::vector<Point> points_;
   std::vector<Node> nodes_;

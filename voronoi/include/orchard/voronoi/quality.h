@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "orchard/geometry/progress.h"
 #include "orchard/voronoi/diagram.h"
 
 namespace orchard {
@@ -18,7 +19,7 @@ struct VoronoiInaccuracy {
 //   Samples: at 1/4, 2/4 and 3/4 of the segment from the cell's point to the corner, so three for each point of each
 //   vertex that counts. The ends do not count: at the corner itself four distances are equal but for round-off.
 // The exact diagram has none, up to round-off of the corners: zero nearly always, since a sample is nearer to its own
-// point by more than that. O(log n) a sample on points of surfaces: 100,000 points take a few seconds of processor
+// point by more than that. O(log n) a corner on points of surfaces: 100,000 points take a few seconds of processor
 // time. These run in parallel, with the same result for any number of threads.
 VoronoiInaccuracy inaccuracy(const VoronoiDiagram& diagram);
 
@@ -26,6 +27,13 @@ VoronoiInaccuracy inaccuracy(const VoronoiDiagram& diagram);
 // round-off, about 1e-16 of the diagonal. Up to O(n) a corner where many points are equally far from it, as the centre
 // of a sphere is from points on it.
 VoronoiInaccuracy corner_inaccuracy(const VoronoiDiagram& diagram);
+
+struct VoronoiInaccuracies {
+  VoronoiInaccuracy segments, corners;  // inaccuracy() and corner_inaccuracy()
+};
+
+// Both, at the price of one. Throws Cancelled if `progress` says so.
+VoronoiInaccuracies inaccuracies(const VoronoiDiagram& diagram, const Progress& progress = {});
 
 // For each point, the mean of inaccuracy() over the samples of its cell alone; 0 for a cell without any.
 std::vector<double> cell_inaccuracies(const VoronoiDiagram& diagram);
