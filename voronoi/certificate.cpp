@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <thread>
 #include <utility>
 
 #include "cavity.h"
@@ -83,8 +84,13 @@ struct Findings {
 
 class Certifier {
  public:
-  Certifier(Workspace& workspace, const std::vector<std::uint8_t>& forming, Index first_new, Mender* mender)
-      : workspace_(workspace), forming_(forming), first_new_(first_new), mender_(workspace.exact() ? nullptr : mender) {
+  Certifier(Workspace& workspace, const std::vector<std::uint8_t>& forming, Index first_new, Mender* mender,
+            const std::function<void(double)>& report)
+      : workspace_(workspace),
+        forming_(forming),
+        first_new_(first_new),
+        mender_(workspace.exact() ? nullptr : mender),
+        report_(report) {
     for (const Point& p : workspace.points) box_.extend(p);
     diameter_ = box_.diagonal().norm();
     max_ = tolerance::kVoronoiIntrusion * diameter_ / 2;
@@ -107,7 +113,8 @@ class Certifier {
         share_(whole.share_),
         small_share_(whole.small_share_),
         mender_(whole.mender_),
-        looks_at_changed_(whole.looks_at_changed_) {}
+        looks_at_changed_(whole.looks_at_changed_),
+        report_(whole.report_) {}
 
   Certificate run() {
     if (!look_at_all()) return {};
@@ -161,14 +168,21 @@ class Certifier {
       return found_.suspects.size() <= kMaxSuspects + kOfDent;
     }
     std::vector<Findings> found((count + block - 1) / block);
+    const std::thread::id caller = std::this_thread::get_id();
     tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t b) {
+      if (report_ && std::this_thread::get_id() == caller) report_(share_done(static_cast<double>(looked_at_)));
       Certifier part(*this, Part{});
       const Index begin = static_cast<Index>(b) * block, end = std::min(count, begin + block);
       for (Index i = begin; i < end && part.found_.good; ++i) part.found_.good = good(part, i);
       found[b] = std::move(part.found_);
+      looked_at_ += end - begin;
     });
     for (const Findings& each : found) found_.add(each);
     return found_.good && found_.suspects.size() <= kMaxSuspects + kOfDent;
+  }
+  // Each of all vertices is looked at twice at first, and some again later.
+  double share_done(double looked_at) const {
+    return std::min(looked_at / (2 * static_cast<double>(workspace_.vertices.size())), 1.0);
   }
   bool look_at_changed(const std::vector<Index>& changed) {
     for (const auto good : {&Certifier::is_oriented, &Certifier::are_facets_good})
@@ -524,6 +538,8 @@ class Certifier {
   Mender* mender_;
   std::size_t doubtful_ = 0;
   bool looks_at_changed_ = false, mended_ = false;
+  const std::function<void(double)>& report_;
+  std::atomic<std::size_t> looked_at_ = 0;
 };
 
 }  // namespace
@@ -549,10 +565,11 @@ std::size_t count(const std::vector<std::uint8_t>& forming) {
 
 std::size_t count_forming(const Workspace& workspace) { return count(forming_points(workspace)); }
 
-Certificate certify(Workspace& workspace, std::size_t points, Index first_new, Mender* mender) {
+Certificate certify(Workspace& workspace, std::size_t points, Index first_new, Mender* mender,
+                    const std::function<void(double)>& report) {
   const std::vector<std::uint8_t> forming = forming_points(workspace);
   if (count(forming) != points) return {};
-  return Certifier(workspace, forming, first_new, mender).run();
+  return Certifier(workspace, forming, first_new, mender, report).run();
 }
 
 }  // namespace orchard::detail

@@ -1,4 +1,6 @@
 #pragma once
+#include <functional>
+
 #include "mend.h"
 #include "workspace.h"
 
@@ -43,7 +45,11 @@ struct Certificate {
 //
 // With a mender, facets that spoil it are mended, and what is new is looked at in the same way, until nothing is left;
 // what was mended away still counts in the intrusion. Not with exact signs.
-Certificate certify(Workspace& workspace, std::size_t points, Index first_new = 0, Mender* mender = nullptr);
+//
+// For a large set, `report` is called now and then, from the calling thread, with the part done of the first look at
+// all vertices, which is nearly all there is to do; what it throws ends the look.
+Certificate certify(Workspace& workspace, std::size_t points, Index first_new = 0, Mender* mender = nullptr,
+                    const std::function<void(double)>& report = {});
 
 // How many points form vertices.
 std::size_t count_forming(const Workspace& workspace);

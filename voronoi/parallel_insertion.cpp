@@ -9,6 +9,8 @@
 #include <array>
 #include <atomic>
 #include <numeric>
+#include <thread>
+#include <utility>
 
 #include "regions.h"
 
@@ -64,6 +66,7 @@ constexpr std::size_t kWorthPass = 12, kWorthHalving = 2;
 constexpr int kPasses = 4;
 constexpr std::size_t kRoom = 64;          // vertices beyond what the points of a region should need
 constexpr double kMaxDenser = 2;           // of vertices for each point of a region, in terms of those of all
+constexpr std::size_t kReport = 256;       // points of a region that make progress
 constexpr std::size_t kStarts = 64;        // vertices of a region that a walk may start from
 constexpr std::size_t kSample = 1u << 17;  // vertices to choose the first cuts by
 constexpr Index kGrain = 1u << 14;         // vertices that a thread looks at at once
@@ -72,8 +75,13 @@ class Pass {
  public:
   // `region_of`: by vertex, as the last pass left it; empty for the first. `end`: all points before it have been
   // inserted but for those that wait.
-  Pass(Workspace& workspace, std::vector<std::uint8_t>& region_of, std::span<const Index> waiting, Index end)
-      : workspace_(workspace), region_of_(region_of), regions_(workspace, waiting, vertices_near(), halvings(waiting)) {
+  Pass(Workspace& workspace, std::vector<std::uint8_t>& region_of, std::span<const Index> waiting, Index end,
+       const std::function<void(std::size_t)>& report)
+      : workspace_(workspace),
+        region_of_(region_of),
+        regions_(workspace, waiting, vertices_near(), halvings(waiting)),
+        report_(report),
+        inserted_(end - waiting.size()) {
     parts_.resize(regions_.count());
     find_regions_of_points();
     for (const Index p : waiting) parts_[region_of_point_[p]].waiting.push_back(p);
@@ -190,9 +198,18 @@ class Pass {
       return;
     }
     inserter.enter({region_of_.data(), r, &part.room}, part.starts);
-    for (const Index p : part.waiting)
-      if (!inserter.insert_within(p)) part.left.push_back(p);
+    std::size_t fresh = 0;
+    for (const Index p : part.waiting) {
+      if (!inserter.insert_within(p))
+        part.left.push_back(p);
+      else if (++fresh == kReport)
+        note(std::exchange(fresh, 0));
+    }
     inserter.leave();
+  }
+  void note(std::size_t fresh) {
+    const std::size_t inserted = inserted_ += fresh;
+    if (std::this_thread::get_id() == caller_) report_(inserted);
   }
 
   Workspace& workspace_;
@@ -200,6 +217,9 @@ class Pass {
   Regions regions_;
   std::vector<std::uint8_t> region_of_point_;
   std::vector<Part> parts_;
+  const std::function<void(std::size_t)>& report_;
+  const std::thread::id caller_ = std::this_thread::get_id();
+  std::atomic<std::size_t> inserted_;
 };
 
 }  // namespace
@@ -208,11 +228,12 @@ std::size_t large_set() { return large; }
 
 void use_large_set(std::size_t points) { large = points; }
 
-void insert_in_regions(Workspace& workspace, Inserter& inserter, std::vector<Index>& waiting, Index end) {
+void insert_in_regions(Workspace& workspace, Inserter& inserter, std::vector<Index>& waiting, Index end,
+                       const std::function<void(std::size_t)>& report) {
   inserter.leave();
   std::vector<std::uint8_t> region_of;
   for (int pass = 0; pass < kPasses && waiting.size() >= large / kWorthPass; ++pass)
-    waiting = Pass(workspace, region_of, waiting, end).run(inserter);
+    waiting = Pass(workspace, region_of, waiting, end, report).run(inserter);
   inserter.start_anywhere();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "insertion.h"
@@ -18,7 +19,10 @@ void use_large_set(std::size_t points);
 // for the regions and what happens in each do not.
 //
 // `waiting`, ascending, becomes what is left for one thread: all other points before `end` are in the diagram then. The
-// inserter is the one that made the diagram so far; its next walk starts anywhere.
-void insert_in_regions(Workspace& workspace, Inserter& inserter, std::vector<Index>& waiting, Index end);
+// inserter is the one that made the diagram so far; its next walk starts anywhere. `report` is called now and then,
+// from the calling thread, with the number of points before `end` that are in the diagram; what it throws ends the
+// insertion.
+void insert_in_regions(Workspace& workspace, Inserter& inserter, std::vector<Index>& waiting, Index end,
+                       const std::function<void(std::size_t)>& report);
 
 }  // namespace orchard::detail

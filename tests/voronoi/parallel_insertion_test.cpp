@@ -137,10 +137,34 @@ TEST(ParallelInsertion, LeavesFewPointsForOneThread) {
     for (Index i = 4; i < points.size() / 8; ++i) ASSERT_TRUE(inserter.insert(i));
     std::vector<Index> waiting(points.size() - points.size() / 8);
     std::iota(waiting.begin(), waiting.end(), static_cast<Index>(points.size() / 8));
-    insert_in_regions(workspace, inserter, waiting, static_cast<Index>(points.size()));
+    insert_in_regions(workspace, inserter, waiting, static_cast<Index>(points.size()), [](std::size_t) {});
     EXPECT_LT(waiting.size(), points.size() / 8);
     EXPECT_TRUE(std::is_sorted(waiting.begin(), waiting.end()));
   }
+}
+
+TEST(ParallelInsertion, ReportsProgressFromTheCallingThreadWithoutJumps) {
+  const LargeSet large(5000);
+  // With more threads the calling one may be the last to get work.
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+  std::vector<double> fractions{0};
+  highest_first_voronoi(test::uniform_points(20000, 1), [&](std::string_view, double fraction) {
+    fractions.push_back(fraction);
+    return true;
+  });
+  EXPECT_EQ(fractions.back(), 1);
+  for (std::size_t i = 1; i < fractions.size(); ++i) {
+    EXPECT_GE(fractions[i], fractions[i - 1]);
+    EXPECT_LE(fractions[i], fractions[i - 1] + 0.05);
+  }
+}
+
+TEST(ParallelInsertion, StopsWhenItsProgressIsDeclined) {
+  const LargeSet large(5000);
+  for (const double last : {0.4, 0.7, 0.9})
+    EXPECT_THROW(highest_first_voronoi(test::uniform_points(20000, 1),
+                                       [&](std::string_view, double fraction) { return fraction < last; }),
+                 Cancelled);
 }
 
 TEST(ParallelInsertion, ChangesNothingButTheOrderOfTheVertices) {
