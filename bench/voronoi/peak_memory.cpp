@@ -22,11 +22,11 @@ double status_bytes(const std::string& field) {
   return 0;
 }
 
-double measure(const std::function<void()>& run) {
+double measure(const std::function<void()>& run, bool warm) {
   // What the parent freed must neither be reused unseen nor what the run frees be kept: large blocks are mapped anew.
   mallopt(M_MMAP_THRESHOLD, 1 << 16);
   mallopt(M_TRIM_THRESHOLD, 1 << 16);
-  run();  // brings the program's own pages in
+  if (warm) run();  // brings the program's own pages in
   malloc_trim(0);
   std::ofstream("/proc/self/clear_refs") << "5";  // the peak starts from here
   const double before = status_bytes("VmRSS");
@@ -36,13 +36,13 @@ double measure(const std::function<void()>& run) {
 
 }  // namespace
 
-double peak_bytes(const std::function<void()>& run) {
+double peak_bytes(const std::function<void()>& run, bool warm) {
   int channel[2];
   if (pipe(channel) != 0) return 0;
   std::fflush(stdout);
   const pid_t child = fork();
   if (child == 0) {
-    const double bytes = measure(run);
+    const double bytes = measure(run, warm);
     const bool written = write(channel[1], &bytes, sizeof bytes) == sizeof bytes;
     _exit(written ? 0 : 1);
   }

@@ -1,10 +1,11 @@
 // Highest-first against CGAL's sequential Delaunay triangulation on the same points in the same run: seconds of
 // processor time (the best of several), their ratio, growth from the set of a tenth of the size, how the insertions
 // were decided, the certificate's part of the time, the inaccuracy, and bytes a point at the peak. Then insertion into
-// a diagram, and the metric on 100,000 points. voronoi_bench [largest number of points] [part of a set's name, or
-// insert_points] [folder of the models]
+// a diagram, and the metric on 100,000 points. All by one thread. voronoi_bench [largest number of points] [part of a
+// set's name, or insert_points, or growth: two sets alone, of 50,000 to 5,000,000 points] [folder of the models]
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <chrono>
@@ -70,10 +71,11 @@ class Table {
   }
 
   void add(const std::string& name, const test::Points& points) {
-    const int runs = points.size() > 200000 ? 2 : points.size() > 20000 ? 5 : 15;
+    const bool huge = points.size() > 1000000;
+    const int runs = huge ? 1 : points.size() > 200000 ? 2 : points.size() > 20000 ? 5 : 15;
     std::vector<Kernel::Point_3> cgal_points;
     for (const Point& p : points) cgal_points.emplace_back(p.x(), p.y(), p.z());
-    const double bytes = bench::peak_bytes([&] { highest_first_voronoi(points); });
+    const double bytes = bench::peak_bytes([&] { highest_first_voronoi(points); }, !huge);
     VoronoiBuild build;
     double ours = 1e300, cgal = 1e300;
     for (int i = 0; i < runs; ++i) {  // alternating, so that both meet the same machine
@@ -95,7 +97,8 @@ class Table {
                 name.c_str(), points.size(), ours, cgal, cgal / ours, n / ours / 1000, growth(name, n, ours).c_str(),
                 percent(report.certified_insertions), percent(report.settled_insertions),
                 percent(report.exact_insertions), percent(report.constrained_insertions),
-                report.exact_signs ? "yes" : "no", 100 * certificate_seconds(diagram, report.exact_signs) / ours,
+                report.exact_signs ? "yes" : "no",
+                n > 1000000 ? std::nan("") : 100 * certificate_seconds(diagram, report.exact_signs) / ours,
                 2 * inaccurate / box.diagonal().norm(), static_cast<double>(diagram.vertices.size()) / n, bytes / n);
     std::fflush(stdout);
   }
@@ -140,7 +143,7 @@ void insertion(const char* name, const test::Points& points, std::size_t last) {
 void metric(const char* name, const test::Points& points) {
   const VoronoiDiagram diagram = highest_first_voronoi(points).diagram;
   VoronoiInaccuracy result;
-  const double time = seconds([&] { result = inaccuracy(diagram); });
+  const double time = seconds([&] { result = inaccuracies(diagram).segments; });
   std::printf("%-20s %7zu points: %.2f s of processor time, %llu samples, mean %.1e\n", name, points.size(), time,
               static_cast<unsigned long long>(result.samples), result.mean);
 }
@@ -151,7 +154,16 @@ int main(int argc, char** argv) {
   const std::size_t max = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 500000;
   const char* part = argc > 2 ? argv[2] : "";
   const std::string data = argc > 3 ? argv[3] : "data";
+  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   Table table;
+  if (std::string(part) == "growth") {
+    for (const std::size_t n : {50000u, 500000u, 5000000u}) {
+      if (n > max) continue;
+      table.add("uniform", test::uniform_points(n, 1));
+      table.add("bumpy sphere", test::bumpy_sphere_points(n, 1));
+    }
+    return 0;
+  }
   const auto set = [&](const std::string& name, std::size_t n, const std::function<test::Points()>& make) {
     if (n <= max && name.find(part) != std::string::npos) table.add(name, make());
   };
