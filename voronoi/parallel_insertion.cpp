@@ -64,8 +64,8 @@ std::atomic<std::size_t> large = 50000;
 // Parts of a large set: as many points are worth another pass, and as many in each half another cut.
 constexpr std::size_t kWorthPass = 12, kWorthHalving = 2;
 constexpr int kPasses = 4;
-constexpr std::size_t kRoom = 64;          // vertices beyond what the points of a region should need
-constexpr double kMaxDenser = 2;           // of vertices for each point of a region, in terms of those of all
+constexpr std::size_t kRoom = 64;          // vertices of a region beyond that
+constexpr double kRoomier = 1.03125;       // how much room there is, in terms of what the points should need
 constexpr std::size_t kReport = 256;       // points of a region that make progress
 constexpr std::size_t kStarts = 64;        // vertices of a region that a walk may start from
 constexpr std::size_t kSample = 1u << 17;  // vertices to choose the first cuts by
@@ -160,7 +160,7 @@ class Pass {
       }
   }
 
-  // As many vertices for each point as the others have taken, of all or of this region: free ones first.
+  // As many vertices for each point as the others have taken, more where theirs are denser: free ones first.
   void give_room(Index end) {
     auto& free = workspace_.free_vertices;
     std::array<std::size_t, 256> inserted{}, taken{};
@@ -170,13 +170,16 @@ class Pass {
     for (const Part& part : parts_) waiting += part.waiting.size();
     const double of_all =
         static_cast<double>(workspace_.vertices.size() - free.size()) / static_cast<double>(end - waiting);
-    std::vector<std::size_t> wanted(parts_.size());
+    // Vertices that are mixed are nobody's: only how the regions differ is told by what they own.
+    std::vector<double> shares(parts_.size());
     for (std::size_t r = 0; r < parts_.size(); ++r) {
-      const std::size_t points = parts_[r].waiting.size();
-      const double here = static_cast<double>(taken[r]) / static_cast<double>(inserted[r] - points + 1);
-      wanted[r] =
-          static_cast<std::size_t>(std::clamp(here, of_all, kMaxDenser * of_all) * static_cast<double>(points)) + kRoom;
+      const auto points = static_cast<double>(parts_[r].waiting.size());
+      shares[r] = points * static_cast<double>(taken[r]) / (static_cast<double>(inserted[r]) - points + 1);
     }
+    const double per_share = kRoomier * of_all * static_cast<double>(waiting) /
+                             std::max(std::accumulate(shares.begin(), shares.end(), 0.0), 1.0);
+    std::vector<std::size_t> wanted(parts_.size());
+    for (std::size_t r = 0; r < parts_.size(); ++r) wanted[r] = static_cast<std::size_t>(per_share * shares[r]) + kRoom;
     workspace_.bring_in(workspace_.vertices.size() + std::accumulate(wanted.begin(), wanted.end(), std::size_t{0}) -
                         free.size());
     for (std::size_t r = 0; r < parts_.size(); ++r) {
