@@ -40,12 +40,14 @@ std::vector<Index> LevelBalls::held_only_by(std::span<const Index> balls) const 
   for (Index b : balls)
     for (Index s : balls_[b].samples) ++count[s];
   std::vector<Index> only;
-  for (Index b : balls)
+  for (Index b : balls) {
+    const auto before = static_cast<std::ptrdiff_t>(only.size());
     for (Index s : balls_[b].samples) {
       if (count[s] == holders_[s]) only.push_back(s);
       count[s] = 0;
     }
-  std::sort(only.begin(), only.end());
+    std::inplace_merge(only.begin(), only.begin() + before, only.end());
+  }
   return only;
 }
 
