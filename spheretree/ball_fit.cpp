@@ -51,43 +51,27 @@ Vector BallFitter::Terms<kRoom>::start_weights() {
   return gradient(top);
 }
 
-// Of the term that is highest with each gradient's part in `along` taken off, the first of several.
-template <std::size_t kRoom>
-std::size_t BallFitter::Terms<kRoom>::highest_without(const Vector& along) const {
-  Lanes max = value[0] - (along.x() * x[0] + along.y() * y[0] + along.z() * z[0]), at{}, block{};
-  for (std::size_t b = 1; b * kLanes < count; ++b) {
-    block += 1;
-    const Lanes score = value[b] - (along.x() * x[b] + along.y() * y[b] + along.z() * z[b]);
-    const auto higher = score > max;
-    max = higher ? score : max;
-    at = higher ? block : at;
-  }
-  const auto index = [&](std::size_t k) { return kLanes * static_cast<std::size_t>(at[k]) + k; };
-  std::size_t best = 0;
-  for (std::size_t k = 1; k < kLanes; ++k)
-    if (max[k] > max[best] || (max[k] == max[best] && index(k) < index(best))) best = k;
-  return index(best);
-}
-
 // One step of maximising sum w_i value_i - t/2 |sum w_i gradient_i|^2 + .. over weights that sum to one: weight moves
 // from the least to the most wanted term. Returns how far apart these were; `sum` is over the terms of both kinds.
 template <std::size_t kRoom>
 double BallFitter::Terms<kRoom>::shift_weight(Vector& sum, double t) {
-  const Vector along = t * sum;
-  const auto score = [&](std::size_t i) {
-    const Vector g = gradient(i);
-    return value[i / kLanes][i % kLanes] - (along.x() * g.x() + along.y() * g.y() + along.z() * g.z());
-  };
-  const std::size_t up = highest_without(along);
-  std::size_t place = 0;
-  double lowest = score(weighted[0]);
-  for (std::size_t k = 1; k < weighted_count; ++k) {
-    const double other = score(weighted[k]);
-    if (other < lowest || (other == lowest && weighted[k] < weighted[place])) lowest = other, place = k;
+  const double tx = t * sum.x(), ty = t * sum.y(), tz = t * sum.z();
+  double scores[kRoom];
+  for (std::size_t b = 0; b * kLanes < count; ++b) {
+    const Lanes score = value[b] - (tx * x[b] + ty * y[b] + tz * z[b]);
+    for (std::size_t k = 0; k < kLanes; ++k) scores[kLanes * b + k] = score[k];
+  }
+  std::size_t up = 0, place = 0;
+  double highest = -kInfinity, lowest = kInfinity;
+  for (std::size_t i = 0; i < count; ++i)
+    if (scores[i] > highest) highest = scores[i], up = i;
+  for (std::size_t k = 0; k < weighted_count; ++k) {
+    const double score = scores[weighted[k]];
+    if (score < lowest || (score == lowest && weighted[k] < weighted[place])) lowest = score, place = k;
   }
   const std::size_t down = weighted[place];
   if (up == down) return 0;
-  const double apart = score(up) - lowest;
+  const double apart = highest - lowest;
   const Vector change = gradient(up) - gradient(down);
   const double curvature = t * change.squaredNorm();
   const bool all = curvature * weight[down] <= apart;

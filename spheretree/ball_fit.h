@@ -66,7 +66,6 @@ class BallFitter {
 
    private:
     Vector gradient(std::size_t i) const;
-    std::size_t highest_without(const Vector& along) const;
   };
   static constexpr std::size_t kMaxFar = 40;  // farthest points that a step looks at
   static constexpr std::size_t kMaxCuts = 12;
