@@ -13,6 +13,8 @@ constexpr int kDualSteps = 24;
 constexpr double kWorthwhile = 2e-4;
 // Steps below this part of the radius change nothing that matters.
 constexpr double kMinStep = 1e-4;
+// What a known point of the surface may be off by, as a fraction of its distance; if it is by more, we look again.
+constexpr double kSurely = 1 + 1e-9;
 
 }  // namespace
 
@@ -34,14 +36,19 @@ void BallFitter::Terms<kRoom>::fill_up() {
 }
 
 template <std::size_t kRoom>
+Vector BallFitter::Terms<kRoom>::gradient(std::size_t i) const {
+  return {x[i / kLanes][i % kLanes], y[i / kLanes][i % kLanes], z[i / kLanes][i % kLanes]};
+}
+
+template <std::size_t kRoom>
 Vector BallFitter::Terms<kRoom>::start_weights() {
   std::size_t top = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    weight[i] = 0;
+  for (std::size_t i = 0; i < count; ++i)
     if (value[i / kLanes][i % kLanes] > value[top / kLanes][top % kLanes]) top = i;
-  }
+  weighted[0] = top;
   weight[top] = 1;
-  return {x[top / kLanes][top % kLanes], y[top / kLanes][top % kLanes], z[top / kLanes][top % kLanes]};
+  weighted_count = 1;
+  return gradient(top);
 }
 
 // One step of maximising sum w_i value_i - t/2 |sum w_i gradient_i|^2 + .. over weights that sum to one: weight moves
@@ -54,24 +61,31 @@ double BallFitter::Terms<kRoom>::shift_weight(Vector& sum, double t) {
     const Lanes score = value[b] - (tx * x[b] + ty * y[b] + tz * z[b]);
     for (std::size_t k = 0; k < kLanes; ++k) scores[kLanes * b + k] = score[k];
   }
-  std::size_t up = 0, down = 0;
+  std::size_t up = 0, place = 0;
   double highest = -kInfinity, lowest = kInfinity;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < count; ++i)
     if (scores[i] > highest) highest = scores[i], up = i;
-    if (weight[i] > 0 && scores[i] < lowest) lowest = scores[i], down = i;
+  for (std::size_t k = 0; k < weighted_count; ++k) {
+    const double score = scores[weighted[k]];
+    if (score < lowest || (score == lowest && weighted[k] < weighted[place])) lowest = score, place = k;
   }
+  const std::size_t down = weighted[place];
   if (up == down) return 0;
-  const auto gradient = [&](std::size_t i) {
-    return Vector(x[i / kLanes][i % kLanes], y[i / kLanes][i % kLanes], z[i / kLanes][i % kLanes]);
-  };
+  const double apart = highest - lowest;
   const Vector change = gradient(up) - gradient(down);
   const double curvature = t * change.squaredNorm();
-  const bool all = curvature * weight[down] <= highest - lowest;
-  const double amount = all ? weight[down] : (highest - lowest) / curvature;
-  weight[up] += amount;
+  const bool all = curvature * weight[down] <= apart;
+  const double amount = all ? weight[down] : apart / curvature;
   weight[down] = all ? 0 : weight[down] - amount;
+  if (!(weight[down] > 0)) weighted[place] = weighted[--weighted_count];
+  if (amount > 0) {
+    const auto end = weighted + weighted_count;
+    const bool fresh = std::find(weighted, end, up) == end;
+    if (fresh) weighted[weighted_count++] = up;
+    weight[up] = fresh ? amount : weight[up] + amount;
+  }
   sum += amount * change;
-  return highest - lowest;
+  return apart;
 }
 
 template <std::size_t kRoom>
@@ -84,13 +98,21 @@ double BallFitter::Terms<kRoom>::max_after(const Vector& step) const {
   return max;
 }
 
+// The surface is no farther than the point of it that was nearest to the last centre.
+ClosestPoint BallFitter::closest(const Point& center) const {
+  const Cut& last = cuts_.back();
+  const Point known = last.at - last.value * last.gradient;
+  const ClosestPoint nearest = surface_.closest_within(center, (center - known).norm() * kSurely);
+  return nearest.triangle == kNone ? surface_.closest(center) : nearest;
+}
+
 // Within the distance of a centre whose side is known, the side is the same: that spares the question.
 BallFitter::Cut BallFitter::cut_at(const Point& center) const {
   ClosestPoint nearest;
   double center_distance = 0;
   const bool same_side = !cuts_.empty() && (center - cuts_.back().at).norm() < 0.999 * std::abs(cuts_.back().value);
   if (same_side) {
-    nearest = surface_.closest(center);
+    nearest = closest(center);
     center_distance = cuts_.back().value < 0 ? -nearest.distance : nearest.distance;
   } else {
     center_distance = surface_.signed_distance(center, nearest);
@@ -135,9 +157,11 @@ double BallFitter::measure(const Point& center) {
 void BallFitter::linearise_points(const FittedBall& ball, double reach) {
   const double min = std::max(0.0, ball.radius - 2 * reach), squared_min = min * min;
   farthest_.clear();
-  for (std::size_t i = 0; i < point_count_; ++i) {
-    const double squared = squared_[i / kLanes].numbers[i % kLanes];
-    if (squared >= squared_min && squared > 0) farthest_.emplace_back(squared, static_cast<Index>(i));
+  for (std::size_t b = 0; b < squared_.size(); ++b) {
+    const Lanes& four = squared_[b].numbers;
+    if (std::max(std::max(four[0], four[1]), std::max(four[2], four[3])) < squared_min) continue;
+    for (std::size_t k = 0; k < kLanes && kLanes * b + k < point_count_; ++k)
+      if (four[k] >= squared_min && four[k] > 0) farthest_.emplace_back(four[k], static_cast<Index>(kLanes * b + k));
   }
   if (farthest_.size() > kMaxFar) {
     std::nth_element(farthest_.begin(), farthest_.begin() + kMaxFar, farthest_.end(), std::greater<>());

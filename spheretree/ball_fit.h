@@ -54,19 +54,24 @@ class BallFitter {
   template <std::size_t kRoom>
   struct Terms {
     Lanes value[kRoom / kLanes], x[kRoom / kLanes], y[kRoom / kLanes], z[kRoom / kLanes];
-    double weight[kRoom];
-    std::size_t count = 0;
+    double weight[kRoom];         // of those in `weighted`; of all others 0
+    std::size_t weighted[kRoom];  // few of all terms
+    std::size_t count = 0, weighted_count = 0;
 
     void add(double term, const Vector& gradient);
     void fill_up();  // the last four, so that they can be looked at together
     Vector start_weights();
     double shift_weight(Vector& sum, double t);
     double max_after(const Vector& step) const;
+
+   private:
+    Vector gradient(std::size_t i) const;
   };
   static constexpr std::size_t kMaxFar = 40;  // farthest points that a step looks at
   static constexpr std::size_t kMaxCuts = 12;
 
   Cut cut_at(const Point& center) const;
+  ClosestPoint closest(const Point& center) const;
   void take_points(std::span<const Point> points);
   double measure(const Point& center);
   void linearise(const FittedBall& ball, double reach);

@@ -42,7 +42,7 @@ class TreeBuilder {
     if (options_.descent > 0) stage("random descent", [&] { descend(); });
     stage("measuring", [&] {
       measure(build_.tree, surface_, progress_);
-      measure_inaccuracy(build_.octree, surface_, progress_);
+      measure_inaccuracy(build_.octree, surface_, progress_, build_.tree);
     });
     stage("packing and verifying", [&] { require_proof(); });
     return std::move(build_);

@@ -3,6 +3,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
+#include <vector>
 
 #include "orchard/covering/inaccuracy.h"
 #include "orchard/geometry/tolerance.h"
@@ -40,6 +42,11 @@ void measure_node(SphereNode& node, const Surface& surface) {
   node.distance_bound = bound_over_ball(surface, ball, node.center_distance, on_sphere.lower);
 }
 
+bool by_sphere(const SphereNode& a, const SphereNode& b) {
+  const auto numbers = [](const Sphere& s) { return std::array{s.center.x(), s.center.y(), s.center.z(), s.radius}; };
+  return numbers(a.sphere) < numbers(b.sphere);
+}
+
 template <class MeasureNode>
 void for_each_node(SphereTree& tree, const Progress& progress, MeasureNode&& measure_one) {
   const std::size_t count = tree.nodes.size(), slice = std::max<std::size_t>(32, count / 50 + 1);
@@ -55,8 +62,14 @@ void measure(SphereTree& tree, const Surface& surface, const Progress& progress)
   for_each_node(tree, progress, [&](SphereNode& node) { measure_node(node, surface); });
 }
 
-void measure_inaccuracy(SphereTree& tree, const Surface& surface, const Progress& progress) {
-  for_each_node(tree, progress, [&](SphereNode& node) { node.inaccuracy = inaccuracy_of(node, surface).upper; });
+void measure_inaccuracy(SphereTree& tree, const Surface& surface, const Progress& progress, const SphereTree& known) {
+  std::vector<SphereNode> sorted = known.nodes;
+  std::sort(sorted.begin(), sorted.end(), by_sphere);
+  for_each_node(tree, progress, [&](SphereNode& node) {
+    const auto same = std::lower_bound(sorted.begin(), sorted.end(), node, by_sphere);
+    const bool measured = same != sorted.end() && !by_sphere(node, *same);
+    node.inaccuracy = measured ? same->inaccuracy : inaccuracy_of(node, surface).upper;
+  });
 }
 
 }  // namespace orchard

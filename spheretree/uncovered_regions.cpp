@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "orchard/covering/path_forest.h"
 #include "orchard/geometry/tolerance.h"
@@ -43,11 +44,20 @@ class Prober {
   Prober(const Surface& surface, Index triangle, std::span<const PathBall> balls, const PathForest& forest, double step)
       : corners_(surface.corners(triangle)), normal_(surface.normal(triangle)), balls_(balls), step_(step) {
     forest.gather(corners_, near_);
+    children_.assign(near_.balls.size(), {0, 0});
+    for (Index i = 0; i < near_.balls.size(); ++i) {
+      const Index parent = near_.balls[i].parent;
+      if (parent == kNone) {
+        ++roots_;
+      } else {
+        if (children_[parent].count++ == 0) children_[parent].first = i;
+      }
+    }
   }
 
-  void try_point(const Point& point, UncoveredRegion& region) const {
+  void try_point(const Point& point, UncoveredRegion& region) {
     const Point inside = closest_point_of_triangle(point, corners_[0], corners_[1], corners_[2]).position;
-    const double distance = path_distance(inside, near_.balls);
+    const double distance = distance_beyond(inside, region.distance);
     if (distance <= region.distance) return;
     region.distance = distance;
     region.farthest = inside;
@@ -55,7 +65,7 @@ class Prober {
 
   // An uncovered region between an arc and an edge of the triangle has no corner off its border: look outward from the
   // arc.
-  void try_outward(const UncoveredArc& arc, UncoveredRegion& region) const {
+  void try_outward(const UncoveredArc& arc, UncoveredRegion& region) {
     Vector out = arc.middle - balls_[arc.ball].center;
     out -= out.dot(normal_) * normal_;
     const double length = out.norm();
@@ -65,15 +75,49 @@ class Prober {
   }
 
  private:
+  struct Children {
+    Index first, count;
+  };
+
+  // path_distance() from the balls near the triangle; where that is not above `limit`, anything that is not.
+  double distance_beyond(const Point& point, double limit) {
+    double min = std::numeric_limits<double>::infinity();
+    if (last_ != kNone) {
+      min = -min;
+      for (Index i = last_; i != kNone; i = near_.balls[i].parent) min = std::max(min, excess(i, point));
+    }
+    for (Index root = 0; root < roots_ && min > limit; ++root)
+      descend(root, point, -std::numeric_limits<double>::infinity(), limit, min);
+    return min;
+  }
+
+  double excess(Index ball, const Point& point) const {
+    return (point - near_.balls[ball].center).norm() - near_.balls[ball].radius;
+  }
+
+  // A path's excess only grows downwards: what is not below the least found so far can be left out.
+  void descend(Index ball, const Point& point, double above, double limit, double& min) {
+    const double here = std::max(above, excess(ball, point));
+    if (here >= min) return;
+    if (near_.balls[ball].leaf) {
+      min = here;
+      last_ = ball;
+    }
+    const auto [first, count] = children_[ball];
+    for (Index child = first; child < first + count && min > limit; ++child) descend(child, point, here, limit, min);
+  }
+
   std::array<Point, 3> corners_;
   Vector normal_;
   std::span<const PathBall> balls_;
   const double step_;
-  NearBalls near_;
+  NearBalls near_;                  // roots first, children of one ball side by side
+  std::vector<Children> children_;  // of each
+  Index roots_ = 0;
+  Index last_ = kNone;  // the leaf that decided the last distance: it is near the next point as well
 };
 
-std::vector<UncoveredRegion> uncovered_regions_of(const UncoveredTriangle& uncovered, const Prober& prober,
-                                                  double near) {
+std::vector<UncoveredRegion> uncovered_regions_of(const UncoveredTriangle& uncovered, Prober prober, double near) {
   std::vector<UncoveredRegion> regions;
   for (const auto& arcs : joined_arcs(uncovered.cover, near)) {
     UncoveredRegion region{{}, arcs[0]->middle, 0};

@@ -19,10 +19,16 @@ LevelBalls::LevelBalls(PathRegions regions, std::vector<LevelBall> balls, Index 
 
 void LevelBalls::find_samples(LevelBall& ball) const {
   ball.samples.clear();
+  append_samples(ball, 0);
+}
+
+// Of those from `first` on.
+void LevelBalls::append_samples(LevelBall& ball, Index first) const {
   const double limit = ball.radius * ball.radius * kInside;
   const std::vector<Point>& points = regions_.samples().points;
-  for (Index s : regions_.samples_in(ball.path_region))
-    if ((points[s] - ball.center).squaredNorm() <= limit) ball.samples.push_back(s);
+  const std::vector<Index>& all = regions_.samples_in(ball.path_region);
+  for (auto s = std::lower_bound(all.begin(), all.end(), first); s != all.end(); ++s)
+    if ((points[*s] - ball.center).squaredNorm() <= limit) ball.samples.push_back(*s);
 }
 
 void LevelBalls::recount() {
@@ -40,12 +46,14 @@ std::vector<Index> LevelBalls::held_only_by(std::span<const Index> balls) const 
   for (Index b : balls)
     for (Index s : balls_[b].samples) ++count[s];
   std::vector<Index> only;
-  for (Index b : balls)
+  for (Index b : balls) {
+    const auto before = static_cast<std::ptrdiff_t>(only.size());
     for (Index s : balls_[b].samples) {
       if (count[s] == holders_[s]) only.push_back(s);
       count[s] = 0;
     }
-  std::sort(only.begin(), only.end());
+    std::inplace_merge(only.begin(), only.begin() + before, only.end());
+  }
   return only;
 }
 
@@ -103,9 +111,9 @@ void LevelBalls::add_samples(const Samples& more) {
   for (Index s = 0; s < more.size(); ++s) regions_.add_sample(more.points[s], more.starts[s]);
   holders_.resize(regions_.samples().size(), 0);
   for (LevelBall& ball : balls_) {
-    find_samples(ball);
-    for (auto s = std::lower_bound(ball.samples.begin(), ball.samples.end(), old); s != ball.samples.end(); ++s)
-      ++holders_[*s];
+    const std::size_t before = ball.samples.size();
+    append_samples(ball, old);
+    for (std::size_t i = before; i < ball.samples.size(); ++i) ++holders_[ball.samples[i]];
   }
 }
 

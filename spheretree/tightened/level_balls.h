@@ -42,6 +42,7 @@ class LevelBalls {
   void add_samples(const Samples& more);
 
  private:
+  void append_samples(LevelBall& ball, Index first) const;
   void recount();
 
   PathRegions regions_;

@@ -17,36 +17,56 @@ class TakerSearch {
  public:
   TakerSearch(const LevelBalls& balls, const LevelObjective& objective, double bounding_radius)
       : balls_(balls), objective_(objective), bounding_radius_(bounding_radius) {
-    for (const LevelBall& ball : balls.all()) slopes_.push_back(objective.slope(ball));
+    for (auto* numbers : {&x_, &y_, &z_, &radii_, &slopes_}) numbers->resize(balls.size());
+    for (Index b = 0; b < balls.size(); ++b) {
+      const LevelBall& ball = balls[b];
+      x_[b] = ball.center.x(), y_[b] = ball.center.y(), z_[b] = ball.center.z();
+      radii_[b] = ball.radius;
+      slopes_[b] = objective.slope(ball);
+    }
   }
 
-  // Of the balls in whose path region all the points lie.
+  // Of the balls in whose path region all the points lie; the first, if there are several. The last point, which is
+  // an uncovered region's farthest, says which to begin at.
   Taker cheapest(std::span<const Point> points) const {
+    if (balls_.size() == 0) return {};
+    const Point& p = points.back();
+    const auto dx = x_ - p.x(), dy = y_ - p.y(), dz = z_ - p.z();
+    const Eigen::ArrayXd min_rises = slopes_ * ((dx * dx + (dy * dy + dz * dz)).sqrt() - radii_);
+    Eigen::Index first = 0;
+    min_rises.minCoeff(&first);
     Taker best;
-    for (Index b = 0; b < balls_.size(); ++b) {
-      const LevelBall& ball = balls_[b];
-      FittedBall grown = ball;
-      const auto too_dear = [&](const Point& p) {
-        grown.radius = std::max(grown.radius, (p - ball.center).norm());
-        return slopes_[b] * (grown.radius - ball.radius) > best.rise * (1 + 1e-3);
-      };
-      if (std::any_of(points.begin(), points.end(), too_dear)) continue;
-      const double growth = grown.radius - ball.radius;
-      if (!std::all_of(points.begin(), points.end(),
-                       [&](const Point& p) { return balls_.regions().holds(ball.path_region, p); }))
-        continue;
-      const double rise =
-          (growth > 0 ? objective_.cost(grown) - objective_.cost(ball) : 0) + kTakerTie * growth / bounding_radius_;
-      if (rise < best.rise) best = {b, rise};
-    }
+    consider(static_cast<Index>(first), points, best);
+    for (Index b = 0; b < balls_.size(); ++b)
+      if (b != first && !surely_above(min_rises[b], best)) consider(b, points, best);
     return best;
   }
 
  private:
+  static bool surely_above(double min_rise, const Taker& best) { return min_rise > best.rise * (1 + 1e-3); }
+
+  void consider(Index b, std::span<const Point> points, Taker& best) const {
+    const LevelBall& ball = balls_[b];
+    FittedBall grown = ball;
+    const auto too_dear = [&](const Point& p) {
+      grown.radius = std::max(grown.radius, (p - ball.center).norm());
+      return surely_above(slopes_[b] * (grown.radius - ball.radius), best);
+    };
+    if (std::any_of(points.begin(), points.end(), too_dear)) return;
+    const double growth = grown.radius - ball.radius;
+    if (!std::all_of(points.begin(), points.end(),
+                     [&](const Point& p) { return balls_.regions().holds(ball.path_region, p); }))
+      return;
+    const double rise =
+        (growth > 0 ? objective_.cost(grown) - objective_.cost(ball) : 0) + kTakerTie * growth / bounding_radius_;
+    if (rise < best.rise || (rise == best.rise && b < best.ball)) best = {b, rise};
+  }
+
   const LevelBalls& balls_;
   const LevelObjective& objective_;
   double bounding_radius_;
-  std::vector<double> slopes_;  // of each ball's cost, by its radius
+  Eigen::ArrayXd x_, y_, z_, radii_;  // of the balls
+  Eigen::ArrayXd slopes_;             // of each ball's cost, by its radius
 };
 
 }  // namespace

@@ -118,42 +118,79 @@ class Proposal {
   // unused, or the balls are so loose that another round would not make them worthwhile.
   bool share_out() {
     trial_.needs.resize(trial_.balls.size());
+    gather_freed();
     const int rounds = few() ? kRoundsOfFew : kRounds;
-    bool all_used = true;
-    for (int round = 1; round <= rounds; ++round) {
-      if (!divide_freed()) return false;
-      const int evaluations = round == rounds ? kLastEvaluations : kFirstEvaluations;
-      all_used = true;
-      double hoped = 0;
-      for (std::size_t i = 0; i < trial_.balls.size(); ++i) {
-        LevelBall& ball = trial_.balls[i];
-        if (trial_.needs[i].empty()) {
-          all_used = false;
-          start_anew(ball, freed_);
-          continue;
-        }
-        static_cast<FittedBall&>(ball) = fitter_.fit(trial_.needs[i], ball, evaluations);
-        FittedBall tighter = ball;
-        if (round < rounds) tighter.radius -= kHoped * ball.looseness();
-        hoped += objective_.cost(tighter);
-        if (hoped >= trial_.max_cost) return false;
-      }
+    for (int round = 1; round <= rounds; ++round)
+      if (!divide_freed() || !fit_all(round == rounds)) return false;
+    return std::none_of(trial_.needs.begin(), trial_.needs.end(), [](const auto& list) { return list.empty(); });
+  }
+
+  // Fits each ball to what it needs, the loosest first: where a trial is to fail, it is mostly by these.
+  bool fit_all(bool last) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < trial_.balls.size(); ++i) {
+      if (trial_.needs[i].empty())
+        start_anew(trial_.balls[i], freed_);
+      else
+        order.push_back(i);
     }
-    return all_used;
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return looseness_[a] > looseness_[b] || (looseness_[a] == looseness_[b] && a < b);
+    });
+    double hoped = 0;
+    for (std::size_t i : order) {
+      LevelBall& ball = trial_.balls[i];
+      static_cast<FittedBall&>(ball) = fitter_.fit(trial_.needs[i], ball, last ? kLastEvaluations : kFirstEvaluations);
+      FittedBall tighter = ball;
+      if (!last) tighter.radius -= kHoped * ball.looseness();
+      hoped += objective_.cost(tighter);
+      if (hoped >= trial_.max_cost) return false;
+    }
+    return true;
+  }
+
+  void gather_freed() {
+    const auto count = static_cast<Eigen::Index>(freed_.size());
+    for (auto* numbers : {&x_, &y_, &z_, &loose_, &min_, &owner_}) numbers->resize(count);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const Point& p = samples_.points[freed_[static_cast<std::size_t>(k)]];
+      x_[k] = p.x(), y_[k] = p.y(), z_[k] = p.z();
+    }
+  }
+
+  // For each sample given up, 0 if it lies in a path region, else infinity.
+  const Eigen::ArrayXd& barred(Index path_region) {
+    const auto known =
+        std::find_if(barred_.begin(), barred_.end(), [&](const auto& b) { return b.first == path_region; });
+    if (known != barred_.end()) return known->second;
+    Eigen::ArrayXd& bars = barred_.emplace_back(path_region, Eigen::ArrayXd(x_.size())).second;
+    for (Eigen::Index k = 0; k < bars.size(); ++k)
+      bars[k] = regions_.holds_sample(path_region, freed_[static_cast<std::size_t>(k)]) ? 0 : kInfinity;
+    return bars;
   }
 
   // Has each sample go to the ball that gets least loose by it.
   bool divide_freed() {
-    for (auto& list : trial_.needs) list.clear();
-    for (Index s : freed_) {
-      double min = kInfinity;
-      Index at = kNone;
-      for (Index i = 0; i < trial_.balls.size(); ++i) {
-        const double loose = trial_.balls[i].looseness_with(samples_.points[s]);
-        if (loose < min && regions_.holds_sample(trial_.balls[i].path_region, s)) min = loose, at = i;
+    min_.setConstant(kInfinity);
+    for (Index i = 0; i < trial_.balls.size(); ++i) {
+      const LevelBall& ball = trial_.balls[i];
+      const auto dx = x_ - ball.center.x(), dy = y_ - ball.center.y(), dz = z_ - ball.center.z();
+      // As looseness_with() has it.
+      loose_ = (dx * dx + (dy * dy + dz * dz)).sqrt() + ball.center_distance + barred(ball.path_region);
+      for (Eigen::Index k = 0; k < loose_.size(); ++k) {
+        const bool less = loose_[k] < min_[k];
+        min_[k] = less ? loose_[k] : min_[k];
+        owner_[k] = less ? i : owner_[k];
       }
-      if (at == kNone) return false;
-      trial_.needs[at].push_back(samples_.points[s]);
+    }
+    if (!(min_ < kInfinity).all()) return false;
+    for (auto& list : trial_.needs) list.clear();
+    looseness_.assign(trial_.balls.size(), -kInfinity);
+    for (std::size_t k = 0; k < freed_.size(); ++k) {
+      const auto at = static_cast<Eigen::Index>(k);
+      const auto owner = static_cast<std::size_t>(owner_[at]);
+      trial_.needs[owner].push_back(samples_.points[freed_[k]]);
+      looseness_[owner] = std::max(looseness_[owner], min_[at]);
     }
     return true;
   }
@@ -166,7 +203,12 @@ class Proposal {
   Random random_;
   LevelTrial trial_;
   BallFitter fitter_;
-  std::vector<Index> freed_;  // samples that only the chosen balls hold
+  std::vector<Index> freed_;                              // samples that only the chosen balls hold
+  Eigen::ArrayXd x_, y_, z_;                              // where they are
+  std::vector<std::pair<Index, Eigen::ArrayXd>> barred_;  // by path region
+  Eigen::ArrayXd loose_;                                  // how loose each makes one of the trial's balls
+  Eigen::ArrayXd min_, owner_;     // the least of these, and the ball (whole numbers, as wide as the rest)
+  std::vector<double> looseness_;  // of the trial's balls, with what each owns
 };
 
 }  // namespace

@@ -68,5 +68,17 @@ TEST(Measure, TheInaccuracyAloneIsTheSame) {
   }
 }
 
+TEST(Measure, TakesTheNumbersOfSpheresThatAreKnown) {
+  const Surface surface(u_shape(0.3));
+  SphereTree whole = octree(surface), part = whole, known = whole;
+  measure(whole, surface);
+  measure(known, surface);
+  known.nodes.resize(known.nodes.size() / 2);
+  for (SphereNode& node : known.nodes) node.inaccuracy += 1;
+  measure_inaccuracy(part, surface, {}, known);
+  for (std::size_t i = 0; i < whole.nodes.size(); ++i)
+    EXPECT_EQ(part.nodes[i].inaccuracy, whole.nodes[i].inaccuracy + (i < known.nodes.size() ? 1 : 0));
+}
+
 }  // namespace
 }  // namespace orchard

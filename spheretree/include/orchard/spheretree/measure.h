@@ -10,6 +10,8 @@ namespace orchard {
 void measure(SphereTree& tree, const Surface& surface, const Progress& progress = {});
 
 // Fills the inaccuracy alone, with the same numbers, in about half the time: for trees that are only compared with.
-void measure_inaccuracy(SphereTree& tree, const Surface& surface, const Progress& progress = {});
+// `known`: a tree of the same surface that is measured; where it has the same sphere, its number is taken.
+void measure_inaccuracy(SphereTree& tree, const Surface& surface, const Progress& progress = {},
+                        const SphereTree& known = {});
 
 }  // namespace orchard
