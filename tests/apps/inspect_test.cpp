@@ -38,7 +38,7 @@ TEST(Inspect, ReportsWhatAMeshIs) {
     EXPECT_EQ(report["boundary_loops"], loops) << name;
     EXPECT_EQ(report["genus"], genus) << name;
     EXPECT_EQ(report["solid"], solid) << name;
-    EXPECT_EQ(report["faults"] == "", solid) << name;
+    EXPECT_EQ(report["faults"].get<std::string>().empty(), solid) << name;
     EXPECT_EQ(report["repair"]["solid"], repairable) << name;
     EXPECT_EQ(report["self_intersections"], 0) << name;
     for (const char* key :

@@ -42,8 +42,9 @@ TEST(Values, ListsAreRefusedForAnyItemThatIsMissingOrNone) {
   for (const auto& [command, option, good, key] : lists) {
     const std::size_t comma = good.find(',');
     const std::string first = good.substr(0, comma), second = good.substr(comma + 1);
-    for (const std::string& list : {first + ",," + second, good + ",", "," + good, first + ", ," + second,
-                                    std::string(","), std::string(" "), std::string()}) {
+    const auto joined = [&](const char* between) { return std::string(first).append(between).append(second); };
+    for (const std::string& list :
+         {joined(",,"), good + ",", "," + good, joined(", ,"), std::string(","), std::string(" "), std::string()}) {
       std::vector<std::string> arguments = command;
       arguments.insert(arguments.end(), {option, key + list});
       expect_refused(here, arguments, option, "empty");
