@@ -215,8 +215,9 @@ VoronoiBuild build_voronoi(std::span<const Point> points, Search search, std::st
   const Frame frame(box);
   const double radius = points.empty() ? 0 : box.diagonal().norm() / 2;
   std::vector<Index> original_of;
-  tbb::parallel_invoke([&] { report.duplicates = coincident_points(points, tolerance::kCoincidentPoints * radius); },
-                       [&] { original_of = insertion_order(points, box); });
+  tbb::parallel_invoke(
+      [&] { build.report.duplicates = coincident_points(points, tolerance::kCoincidentPoints * radius); },
+      [&] { original_of = insertion_order(points, box); });
 
   if (points.size() - report.duplicates.size() >= 4) {
     // The points are worked on in the order of insertion, so that neighbours in space are neighbours in memory.

@@ -105,7 +105,7 @@ std::vector<Index> insertion_order(std::span<const Point> points, const Box& box
       std::uint64_t bits = Random(0, 0x40b3u, i).bits();
       unsigned round = rounds;
       for (; round > 0 && (bits & ((1u << kRoundShift) - 1)) == 0; bits >>= kRoundShift) --round;
-      items[i].key = (static_cast<std::uint64_t>(round) << kCurveBits) | hilbert(cell_of(points[i], box, side));
+      items[i].key = round * (std::uint64_t{1} << kCurveBits) | hilbert(cell_of(points[i], box, side));
       items[i].point = static_cast<Index>(i);
     }
   });

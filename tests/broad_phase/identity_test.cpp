@@ -13,8 +13,8 @@ constexpr double kStep = 0.01;
 
 TEST(BodyIds, OfBodiesRemovedAreRefusedForGood) {
   BroadPhase world({}, {});
-  std::vector<BodyId> ids;
-  for (int i = 0; i < 5; ++i) ids.push_back(world.add_static(Motion{}));
+  std::vector<BodyId> ids(5);
+  for (BodyId& id : ids) id = world.add_static(Motion{});
   EXPECT_TRUE(world.remove(ids[3]));
   EXPECT_FALSE(world.remove(ids[3]));  // twice
   EXPECT_EQ(world.size(), 4u);

@@ -11,6 +11,7 @@ namespace orchard::runtime {
 namespace {
 
 constexpr double kDt = 1e-4;  // the simulations' step: their own error is of its order
+constexpr Vec3 kNoHalfSpace{};
 
 double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
 
@@ -52,12 +53,13 @@ TEST(RocketMotion, HoldsForAnyThrottleAndRudderWithinTheBounds) {
     test::Draw draw(seed);
     Rocket rocket{draw.in_ball(10), 5 * draw.direction(), 1, draw.direction(), draw.uniform(0, 8), draw.uniform(0, 5)};
     const Motion motion = rocket_motion(rocket, 3, 1);
-    with_half_space += motion.half_space != Vec3{};
+    with_half_space += motion.half_space != kNoHalfSpace;
     EXPECT_GT(motion.expiry, 3.49);
     EXPECT_LE(motion.expiry, 4);
     Watch watch(motion, 3);
     Vec3 position = rocket.position, velocity = rocket.velocity, axis = rocket.axis, side = across(axis, draw);
-    for (double t = 0; t < 1; t += kDt) {
+    for (int i = 0; kDt * i < 1; ++i) {
+      const double t = kDt * i;
       if (draw.uniform(0, 1) < 0.001 && seed % 2 == 0) side = across(axis, draw);  // another way
       const Vec3 a = (seed % 3 == 0 ? 1 : draw.uniform(0, 1)) * rocket.max_thrust * axis;
       watch.see(3 + t, position, a);
@@ -82,11 +84,12 @@ TEST(VehicleMotion, HoldsInATurnNoTighterThanAnnounced) {
     if (seed % 4 == 0) vehicle.to_center = {};
     if (seed % 4 == 1) vehicle.max_drive = 3, vehicle.max_speed = 8 + 3;
     const Motion motion = vehicle_motion(vehicle, 0, 1);
-    with_half_space += motion.half_space != Vec3{};
+    with_half_space += motion.half_space != kNoHalfSpace;
     Watch watch(motion, 0);
     Vec3 position = vehicle.position;
     double speed = 8, sharpness = 1;
-    for (double t = 0; t < 1; t += kDt) {
+    for (int i = 0; kDt * i < 1; ++i) {
+      const double t = kDt * i;
       if (draw.uniform(0, 1) < 0.002) sharpness = draw.uniform(0, 1);  // the same side, as tight as allowed at most
       const double drive = seed % 4 == 1 ? (seed % 8 == 1 ? 3 : -3) : 0;
       const double turning = sharpness * speed / vehicle.min_turn_radius;
@@ -127,10 +130,13 @@ TEST(DraggedMotion, HoldsForTheJerkAnnounced) {
     const double step = draw.uniform(0.01, 0.05), now = 2;
     const Dragged dragged{moved(now - 2 * step, 0), moved(now - step, 0), moved(now, 0), step, 1, jerk};
     const Motion motion = dragged_motion(dragged, now, 0.3);
-    with_half_space += motion.half_space != Vec3{};
+    with_half_space += motion.half_space != kNoHalfSpace;
     EXPECT_LE(length(motion.velocity - moved(now, 1)), motion.drift + 1e-9) << seed;
     Watch watch(motion, now);
-    for (double t = 0; t < 0.3; t += 0.001) watch.see(now + t, moved(now + t, 0), moved(now + t, 2));
+    for (int i = 0; i < 300; ++i) {
+      const double t = now + 0.001 * i;
+      watch.see(t, moved(t, 0), moved(t, 2));
+    }
   }
   EXPECT_GT(with_half_space, 20);
 }
@@ -147,10 +153,11 @@ TEST(SpringMotion, HoldsWhereverTheCursorGoesWithinItsReach) {
                                 draw.uniform(0, 3),
                                 draw.uniform(0, 1)};
     const Motion motion = spring_motion(dragged, 0, 0.2);
-    with_half_space += motion.half_space != Vec3{};
+    with_half_space += motion.half_space != kNoHalfSpace;
     Watch watch(motion, 0);
     Vec3 position = dragged.position, velocity = dragged.velocity, cursor = dragged.cursor;
-    for (double t = 0; t < 0.2; t += kDt) {
+    for (int i = 0; kDt * i < 0.2; ++i) {
+      const double t = kDt * i;
       if (draw.uniform(0, 1) < 0.005) cursor = dragged.cursor + dragged.cursor_reach * draw.direction();
       const Vec3 a = dragged.stiffness * (cursor - position) - dragged.damping * velocity;
       watch.see(t, position, a);

@@ -179,7 +179,7 @@ void TableScene::fall(std::size_t i) {
 }
 
 void TableScene::change_some() {
-  const auto count = static_cast<std::size_t>(spec_.share * static_cast<double>(size()) + 0.5);
+  const auto count = static_cast<std::size_t>(std::lround(spec_.share * static_cast<double>(size())));
   std::vector<BodyIndex>& changed = spec_.kind == SceneKind::replaced ? replaced_ : broken_;
   for (std::size_t k = 0; k < count; ++k) changed.push_back(static_cast<BodyIndex>(draw_.bits() % size()));
   std::sort(changed.begin(), changed.end());

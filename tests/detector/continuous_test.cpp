@@ -200,8 +200,8 @@ TEST(Continuous, ABudgetIsKeptAndWhatItLeavesOpenIsPossible) {
   Detector detector(states_of(states), {.time_step = kStep});
   const ShapeId shape = detector.add_shape(wall);
   detector.add_static({{shape, {}}}, {});
-  std::vector<BodyId> ids;
-  for (int i = 0; i < 20; ++i) ids.push_back(detector.add_body({{shape, {.scale = 0.05}}}, {.continuous_speed = 1e3}));
+  std::vector<BodyId> ids(20);
+  for (BodyId& id : ids) id = detector.add_body({{shape, {.scale = 0.05}}}, {.continuous_speed = 1e3});
   for (BodyState& state : states) state.expiry = 0;
   std::size_t possible = 0;
   for (const std::uint64_t work : {2000u, 4000u, 20'000u}) {

@@ -297,9 +297,9 @@ TEST(SimplifiedMedialMesh, HasItsDentsSeenFromTheBallsThatItHad) {
   complete(half);
   const detail::Reconstruction envelope(half);
   std::vector<Sphere> left, lost;
-  for (double z = 0.5; z <= 3.5; z += 0.25) {
-    for (double y = 0.5; y <= 1.5; y += 0.25) left.push_back({at(y, z), 0.5});
-    for (double y = 1.75; y <= 3.5; y += 0.25) lost.push_back({at(y, z), 0.5});
+  for (int k = 2; k <= 14; ++k) {
+    for (int j = 2; j <= 6; ++j) left.push_back({at(0.25 * j, 0.25 * k), 0.5});
+    for (int j = 7; j <= 14; ++j) lost.push_back({at(0.25 * j, 0.25 * k), 0.5});
   }
   EXPECT_TRUE(detail::dents_seen_from(left, plate, envelope, 0.1).empty());
   const auto dents = detail::dents_seen_from(lost, plate, envelope, 0.1);

@@ -45,9 +45,11 @@ std::vector<std::pair<std::string, test::Points>> sets() {
   result.emplace_back("grid", test::grid_points(14));
   result.emplace_back("turned box lattice", test::turned(test::box_lattice_points(18), 5));
   test::Points clusters;
-  for (int c = 0; c < 4; ++c)
-    for (const Point& p : test::uniform_points(500, static_cast<std::uint64_t>(6 + c)))
-      clusters.push_back(p * std::pow(0.05, c) + Vector(c, c % 2, c * c));
+  for (const std::uint64_t c : {0u, 1u, 2u, 3u}) {
+    const auto number = static_cast<double>(c);
+    for (const Point& p : test::uniform_points(500, 6 + c))
+      clusters.push_back(p * std::pow(0.05, number) + Vector(number, c % 2 == 0 ? 0 : 1, number * number));
+  }
   result.emplace_back("clusters", clusters);
   return result;
 }
