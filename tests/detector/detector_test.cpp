@@ -21,7 +21,7 @@ struct World {
   Detector detector;
   int steps = 0;
 
-  explicit World(DetectorOptions options = {}) : detector(make(options)) {}
+  explicit World(const DetectorOptions& options = {}) : detector(make(options)) {}
   Detector make(DetectorOptions options) {
     options.time_step = kStep;
     for (BodyState& state : states) state.expiry = 0;  // asked for at every step
@@ -490,7 +490,8 @@ TEST(DetectorBudget, WhatTheLastStepFoundCostsNextToNothing) {
   for (int i = 0; i < 24; ++i) {
     bodies.push_back(w.detector.add_body({{torus, {}}}));
     // Pairs that touch, and pairs that are nearly as close and do not.
-    w.put(bodies.back(), {10.0 * (i / 2), i % 4 == 1 ? 0.3 : 0, i % 4 == 3 ? 0.7 : 0});
+    const int place = i / 2;
+    w.put(bodies.back(), {10.0 * place, i % 4 == 1 ? 0.3 : 0, i % 4 == 3 ? 0.7 : 0});
   }
   Frame frame;
   for (int step = 0; step < 12; ++step) {
@@ -516,7 +517,7 @@ TEST(DetectorBudget, InTimeAnswersWhatItReachesAndTellsTheRest) {
 TEST(DetectorLoad, IsForeseenFromTheEventsOfTheBroadPhase) {
   // Pairs that fly towards each other and begin to overlap one after the other.
   constexpr int kPairs = 30;
-  std::vector<BodyState> states(2 * kPairs);
+  std::vector<BodyState> states(std::size_t{2} * kPairs);
   Detector detector(
       [&](double time, std::span<const BodyIndex> bodies, std::span<BodyState> given) {
         for (std::size_t i = 0; i < bodies.size(); ++i) {

@@ -204,7 +204,8 @@ Scene falling_pile(std::size_t bodies, int steps, std::uint64_t seed) {
   for (std::size_t i = 0; i < bodies; ++i) {
     Ball ball = random_ball(draw, 0.1, 0.5);
     const auto at = [&](std::size_t k) { return 1.5 * (static_cast<double>(k) - 0.5 * static_cast<double>(side - 1)); };
-    ball.place = ball.place + Vec3{at(i % side), at(i / side % side), 1 + 1.5 * static_cast<double>(i / side / side)};
+    const std::size_t layer = i / side / side;
+    ball.place = ball.place + Vec3{at(i % side), at(i / side % side), 1 + 1.5 * static_cast<double>(layer)};
     ball.spin *= 0.3;
     solver.balls.push_back(ball);
   }
