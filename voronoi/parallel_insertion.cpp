@@ -64,6 +64,7 @@ std::atomic<std::size_t> large = 50000;
 // Parts of a large set: as many points are worth another pass, and as many in each half another cut.
 constexpr std::size_t kWorthPass = 12, kWorthHalving = 2;
 constexpr int kPasses = 4;
+constexpr double kMaxLeft = 0.75;          // of a pass's points: where more are left, cavities span the set
 constexpr std::size_t kRoom = 64;          // vertices of a region beyond that
 constexpr double kRoomier = 1.03125;       // how much room there is, in terms of what the points should need
 constexpr std::size_t kReport = 256;       // points of a region that make progress
@@ -235,8 +236,11 @@ void insert_in_regions(Workspace& workspace, Inserter& inserter, std::vector<Ind
                        const std::function<void(std::size_t)>& report) {
   inserter.leave();
   std::vector<std::uint8_t> region_of;
-  for (int pass = 0; pass < kPasses && waiting.size() >= large / kWorthPass; ++pass)
+  for (int pass = 0; pass < kPasses && waiting.size() >= large / kWorthPass; ++pass) {
+    const auto before = static_cast<double>(waiting.size());
     waiting = Pass(workspace, region_of, waiting, end, report).run(inserter);
+    if (static_cast<double>(waiting.size()) > kMaxLeft * before) break;
+  }
   inserter.start_anywhere();
 }
 
