@@ -65,8 +65,8 @@ std::atomic<std::size_t> large = 50000;
 constexpr std::size_t kWorthPass = 12, kWorthHalving = 2;
 constexpr int kPasses = 4;
 constexpr double kMaxLeft = 0.75;          // of a pass's points: where more are left, cavities span the set
-constexpr std::size_t kRoom = 64;          // vertices of a region beyond that
 constexpr double kRoomier = 1.03125;       // how much room there is, in terms of what the points should need
+constexpr std::size_t kRoom = 64;          // vertices of a region beyond that
 constexpr std::size_t kReport = 256;       // points of a region that make progress
 constexpr std::size_t kStarts = 64;        // vertices of a region that a walk may start from
 constexpr std::size_t kSample = 1u << 17;  // vertices to choose the first cuts by

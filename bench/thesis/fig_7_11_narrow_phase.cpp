@@ -5,7 +5,6 @@
 // are of the same mesh and get the calls of the first one's flight. Each call is made four times with every engine, all
 // in turn; the first is not counted, and the fastest of the others is. The clock is read after each level, 25 ns a
 // time. One experiment with many tables, hence more than 300 lines.
-// One run makes all of these figures, hence more than 300 lines.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

@@ -7,7 +7,6 @@
 // percentile), without what the step before found. Frames are drawn by nobody here, so the other time is that of the
 // dynamics alone. All times are the processor's for this thread, so that nothing else that the machine does is in them.
 // One experiment with many tables, hence more than 300 lines.
-// One run makes all of these figures, hence more than 300 lines.
 #include <time.h>
 
 #include <algorithm>
