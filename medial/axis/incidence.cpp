@@ -1,6 +1,7 @@
 #include "incidence.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -44,6 +45,16 @@ void sort_and_deduplicate(std::vector<Cell>& cells) {
   cells = std::move(sorted);
 }
 
+// Adds what is not there yet.
+template <class Cell>
+void merge_sorted(std::vector<Cell>& cells, const std::vector<Cell>& more) {
+  if (more.empty()) return;
+  std::vector<Cell> all;
+  all.reserve(cells.size() + more.size());
+  std::set_union(cells.begin(), cells.end(), more.begin(), more.end(), std::back_inserter(all));
+  cells = std::move(all);
+}
+
 }  // namespace
 
 Rows rows_of(const std::vector<std::array<Index, 2>>& pairs, Index count) {
@@ -82,6 +93,13 @@ void complete_cells(std::vector<std::array<Index, 2>>& edges, std::vector<std::a
   }
   sort_and_deduplicate(edges);
   sort_and_deduplicate(triangles);
+}
+
+void insert_cells(std::vector<std::array<Index, 2>>& edges, std::vector<std::array<Index, 3>>& triangles,
+                  std::vector<std::array<Index, 2>> more_edges, std::vector<std::array<Index, 3>> more_triangles) {
+  complete_cells(more_edges, more_triangles);
+  merge_sorted(edges, more_edges);
+  merge_sorted(triangles, more_triangles);
 }
 
 EdgeNumbers::EdgeNumbers(const std::vector<std::array<Index, 2>>& edges, Index vertices)

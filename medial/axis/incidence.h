@@ -19,6 +19,10 @@ Index only(std::span<const Index> row, const std::vector<std::uint8_t>& alive);
 // vertices have few cells.
 void complete_cells(std::vector<std::array<Index, 2>>& edges, std::vector<std::array<Index, 3>>& triangles);
 
+// Adds triangles and their edges, and edges, to complete cells, which stay so. Sorts only what is added.
+void insert_cells(std::vector<std::array<Index, 2>>& edges, std::vector<std::array<Index, 3>>& triangles,
+                  std::vector<std::array<Index, 2>> more_edges, std::vector<std::array<Index, 3>> more_triangles);
+
 // The numbers of sorted edges, by their corners, which are below `vertices`. `edges` must outlive it, unchanged. O(n).
 class EdgeNumbers {
  public:

@@ -19,7 +19,6 @@ class TriangleCutter {
 
   void cut(const Triangle& corners, const Triangle& middle) {
     const auto cuts = std::count_if(middle.begin(), middle.end(), [](Index m) { return m != kNone; });
-    if (cuts == 0) out_.push_back(corners);
     if (cuts == 3) {
       out_.push_back(middle);
       for (std::size_t i = 0; i < 3; ++i) out_.push_back({corners[i], middle[(i + 1) % 3], middle[(i + 2) % 3]});
@@ -154,26 +153,38 @@ MedialMesh BallComplex::mesh() const {
 void BallComplex::complete() { complete_cells(edges, triangles); }
 
 void subdivide(BallComplex& complex, const std::vector<Index>& cut) {
-  std::vector<Triangle> triangles;
-  triangles.reserve(complex.triangles.size() * 2);
-  TriangleCutter cutter(complex, triangles);
+  std::vector<std::uint8_t> at_cut(complex.size(), 0);  // vertices at edges that are cut: few, mostly
+  for (Index e = 0; e < complex.edges.size(); ++e) {
+    if (cut[e] == kNone) continue;
+    for (const Index v : complex.edges[e]) at_cut[v] = 1;
+  }
+  std::vector<Triangle> kept, pieces;
+  kept.reserve(complex.triangles.size());
+  TriangleCutter cutter(complex, pieces);
   const EdgeNumbers edge = complex.edge_numbers();
-  for (const auto& [a, b, c] : complex.triangles)
-    cutter.cut({a, b, c}, {cut[edge(b, c)], cut[edge(a, c)], cut[edge(a, b)]});
-  std::vector<Edge> edges;
-  edges.reserve(complex.edges.size() * 2);
+  for (const auto& [a, b, c] : complex.triangles) {
+    Triangle middle{kNone, kNone, kNone};
+    if (at_cut[a] + at_cut[b] + at_cut[c] > 1) middle = {cut[edge(b, c)], cut[edge(a, c)], cut[edge(a, b)]};
+    if (middle == Triangle{kNone, kNone, kNone}) {
+      kept.push_back({a, b, c});
+    } else {
+      cutter.cut({a, b, c}, middle);
+    }
+  }
+  std::vector<Edge> edges, halves;
+  edges.reserve(complex.edges.size());
   for (Index e = 0; e < complex.edges.size(); ++e) {
     const auto& [a, b] = complex.edges[e];
     if (cut[e] == kNone) {
       edges.push_back({a, b});
     } else {
-      edges.push_back({a, cut[e]});
-      edges.push_back({b, cut[e]});
+      halves.push_back({a, cut[e]});
+      halves.push_back({b, cut[e]});
     }
   }
-  complex.triangles = std::move(triangles);
+  insert_cells(edges, kept, std::move(halves), std::move(pieces));
+  complex.triangles = std::move(kept);
   complex.edges = std::move(edges);
-  complex.complete();
 }
 
 void collapse(BallComplex& complex, const Doomed& doomed, const std::vector<double>& value_of_vertex) {

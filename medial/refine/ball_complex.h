@@ -9,6 +9,7 @@
 namespace orchard::detail {
 
 // A medial mesh whose vertices know their contacts. Edges are sorted and each there once, those of triangles included.
+// Complete: triangles as well.
 struct BallComplex {
   std::vector<ExactBall> balls;
   std::vector<std::array<Index, 2>> edges;
@@ -21,8 +22,8 @@ struct BallComplex {
   EdgeNumbers edge_numbers() const { return {edges, size()}; }
 };
 
-// Cuts edges in two, and with them the triangles at them: the same topology. cut[e] is the vertex that divides edge e,
-// which is in `complex.balls` already, or kNone. O(n log n).
+// Cuts edges of a complete complex in two, and with them the triangles at them: the same topology. cut[e] is the vertex
+// that divides edge e, which is in `complex.balls` already, or kNone. O(n) and O(log n) for each cut.
 void subdivide(BallComplex& complex, const std::vector<Index>& cut);
 
 // What may be taken away, by edges and vertices; a triangle may go if one of its edges may. Nothing else does.

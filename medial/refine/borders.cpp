@@ -20,15 +20,11 @@ Borders find_borders(const BallComplex& complex) {
     for (const Index e : {edge(a, b), edge(a, c), edge(b, c)}) {
       if (count[e] < 3) ++count[e];
     }
-    borders.inner[a] += angle_at(complex, a, b, c);
-    borders.inner[b] += angle_at(complex, b, a, c);
-    borders.inner[c] += angle_at(complex, c, a, b);
   }
   borders.next.assign(complex.size(), {kNone, kNone});
   std::vector<std::uint8_t> branching(complex.size(), 0);
   for (Index e = 0; e < complex.edges.size(); ++e) {
     const auto& [a, b] = complex.edges[e];
-    if (count[e] == 1) borders.edges.push_back(e);
     for (const auto& [v, other] : {std::pair{a, b}, std::pair{b, a}}) {
       if (count[e] == 1) {
         auto& next = borders.next[v];
@@ -46,6 +42,14 @@ Borders find_borders(const BallComplex& complex) {
   }
   for (Index v = 0; v < complex.size(); ++v) {
     if (branching[v] || borders.next[v][1] == kNone) borders.next[v] = {kNone, kNone};
+  }
+  const auto add_angle = [&](Index at, Index a, Index b) {
+    if (borders.next[at][0] != kNone) borders.inner[at] += angle_at(complex, at, a, b);
+  };
+  for (const auto& [a, b, c] : complex.triangles) {
+    add_angle(a, b, c);
+    add_angle(b, a, c);
+    add_angle(c, a, b);
   }
   return borders;
 }

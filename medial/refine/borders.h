@@ -17,11 +17,10 @@ struct BorderOptions {
 // Tolerances that cells added at borders may be off by: what is a little off is divided later.
 inline constexpr double kBorderSlack = 4;
 
-// The edges of one triangle, and what is at their ends.
+// What is at the ends of the edges of one triangle.
 struct Borders {
   std::vector<std::array<Index, 2>> next;  // of each vertex with just two border edges on one sheet: its neighbours
-  std::vector<double> inner;               // radians: the sum of the triangles' angles there
-  std::vector<Index> edges;                // those with one triangle
+  std::vector<double> inner;               // radians: the sum of the triangles' angles at such a vertex
 };
 
 Borders find_borders(const BallComplex& complex);

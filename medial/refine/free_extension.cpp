@@ -55,8 +55,7 @@ Index FreeExtension::finish() {
       if (v >= first_new_) v = number[v - first_new_];
     }
   }
-  complex_.triangles.insert(complex_.triangles.end(), added_.begin(), added_.end());
-  if (!added_.empty()) complex_.complete();
+  insert_cells(complex_.edges, complex_.triangles, {}, added_);
   return static_cast<Index>(added_.size());
 }
 

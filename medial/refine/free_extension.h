@@ -6,8 +6,8 @@
 
 namespace orchard::detail {
 
-// Adds triangles to a complex that change no topology: those that meet it in one edge, their third vertex being new, or
-// in two edges. What is added could be collapsed again from its free edges on.
+// Adds triangles to a complete complex that change no topology: those that meet it in one edge, their third vertex
+// being new, or in two edges. What is added could be collapsed again from its free edges on.
 class FreeExtension {
  public:
   explicit FreeExtension(BallComplex& complex) : complex_(complex), first_new_(complex.size()) {}

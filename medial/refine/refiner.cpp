@@ -172,6 +172,7 @@ void Refiner::drop_folded() {
   }
   const std::size_t before = complex_.triangles.size();
   collapse(complex_, doomed, std::vector<double>(complex_.size(), 0));
+  complex_.complete();  // triangles came in the order of the axis's faces
   report_.folded_triangles = static_cast<Index>(before - complex_.triangles.size());
 }
 
