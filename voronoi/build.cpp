@@ -131,7 +131,7 @@ void make_room(Workspace& workspace, std::size_t inserted) {
 Index end_of_stage(std::size_t begin, std::size_t count) {
   std::size_t end = count;
   if (count >= large_set())
-    while (end / 8 > begin && end >= large_set() / 2) end /= 8;
+    while (end / 8 > begin && end >= large_set() / 4) end /= 8;
   return static_cast<Index>(end);
 }
 
@@ -140,7 +140,7 @@ Outcome insert_all(Workspace& workspace, Search search, std::string_view stage, 
                    InsertionCounts& counts, Index& at, const char*& reason) {
   workspace.clear();
   make_room(workspace, 0);
-  Inserter inserter(workspace, search);
+  Inserter inserter(workspace, search, workspace.points.size());
   const std::array<Index, 4> first = spanning_points(workspace.points);
   if (!inserter.start(first)) return Outcome::flat;
   if (workspace.exact()) workspace.forget_noise();

@@ -41,8 +41,13 @@ constexpr double kBlurred = 0x1p-44;
 // Vertices that are held against all points one by one; where there are more, exact signs are cheaper.
 constexpr std::size_t kMaxSuspects = 512, kOfDent = 4;
 
-// Vertices that a thread looks at at once.
+// Vertices that a thread looks at at once. That is worth while for sets that are too small for regions.
 constexpr Index kBlock = 1u << 14, kHullBlock = 1u << 10;
+constexpr std::size_t kWorthThreads = 2;
+
+// How many vertices ahead of the one that is looked at points are fetched into the cache, and the vertices whose facets
+// are looked at together.
+constexpr Index kAhead = 8, kBatch = 64;
 
 // Of mending and looking at what is new.
 constexpr int kRounds = 24;
@@ -52,6 +57,38 @@ constexpr std::size_t kMaxDoubts = 16, kMaxDoubtsOneIn = 64;
 
 // Of a squared size: far more than any stored sphere is off, where all that matters is to look at a few vertices more.
 constexpr double kAbout = 0x1p-20;
+
+// The facet between a vertex and its neighbour `slot`, and the point that this one has instead of a shared one.
+struct Facet {
+  Index v, u;
+  unsigned slot;
+  Index across;
+};
+
+// Where one of four numbers is, without branches: it is as good as random.
+std::size_t index_of(const std::array<Index, 4>& numbers, Index number) {
+  return std::size_t{numbers[1] == number} + 2 * std::size_t{numbers[2] == number} +
+         3 * std::size_t{numbers[3] == number};
+}
+
+// The plane of three points, for many points that are held against it.
+class FacetPlane {
+ public:
+  FacetPlane(const Point& a, const Point& b, const Point& c) : origin_(a), normal_((b - a).cross(c - a)) {
+    const Vector ab = (b - a).cwiseAbs(), ac = (c - a).cwiseAbs();
+    for (int x = 0, y = 1, z = 2; x < 3; y = z, z = x++) magnitude_[x] = ab[y] * ac[z] + ab[z] * ac[y];
+  }
+  // Whether volume_sign(p, a, b, c) is positive, as far as doubles tell: the same 8 roundings as in volume(), and one
+  // for what is of second order.
+  bool is_certainly_above(const Point& p) const {
+    const Vector to_origin = origin_ - p;
+    return to_origin.dot(normal_) > 9 * kRounding * to_origin.cwiseAbs().dot(magnitude_);
+  }
+
+ private:
+  Point origin_;
+  Vector normal_, magnitude_;  // and what its roundings are relative to
+};
 
 // What the facet of three points takes off, where that is more than its share.
 struct Loss {
@@ -128,8 +165,7 @@ class Certifier {
  private:
   const Point& corner(Index v, unsigned i) const { return workspace_.points[workspace_.vertices[v].forming_points[i]]; }
   unsigned slot_of(Index v, Index neighbor) const {
-    const auto& neighbors = workspace_.vertices[v].neighbors;
-    return neighbors[0] == neighbor ? 0 : neighbors[1] == neighbor ? 1 : neighbors[2] == neighbor ? 2 : 3;
+    return static_cast<unsigned>(index_of(workspace_.vertices[v].neighbors, neighbor));
   }
 
   bool is_new(Index v) const {
@@ -140,7 +176,7 @@ class Certifier {
 
   // All that is new; and where facets are in doubt, what they are mended by.
   bool look_at_all() {
-    if (!look_at_each(&Certifier::is_oriented) || !look_at_each(&Certifier::are_facets_good)) return false;
+    if (!look_at_each_oriented() || !look_at_each_facet()) return false;
     for (int round = 0; !found_.doubts.empty(); ++round) {
       doubtful_ += found_.doubts.size();
       if (round == kRounds || doubtful_ > kMaxDoubts + workspace_.vertices.size() / kMaxDoubtsOneIn) return false;
@@ -153,16 +189,29 @@ class Certifier {
     }
     return true;
   }
-  bool look_at_each(bool (Certifier::*good)(Index)) {
-    return look_in_blocks(static_cast<Index>(workspace_.vertices.size()), kBlock, [&](Certifier& part, Index v) {
-      return workspace_.is_free(v) || !is_new(v) || (part.*good)(v);
+  bool look_at_each_oriented() {
+    const auto count = static_cast<Index>(workspace_.vertices.size());
+    return look_in_blocks(count, kBlock, [&](Certifier& part, Index v) {
+      for (const Index point : workspace_.vertices[std::min(v + kAhead, count - 1)].forming_points)
+        __builtin_prefetch(workspace_.points.data() + point);
+      return workspace_.is_free(v) || !is_new(v) || part.is_oriented(v);
+    });
+  }
+  bool look_at_each_facet() {
+    const auto count = static_cast<Index>(workspace_.vertices.size());
+    return look_in_blocks((count + kBatch - 1) / kBatch, kBlock / kBatch, [&](Certifier& part, Index batch) {
+      const Index begin = batch * kBatch, end = std::min(count, begin + kBatch);
+      if (first_new_ == 0) return part.are_all_facets_good(begin, end);
+      for (Index v = begin; v < end; ++v)
+        if (!workspace_.is_free(v) && is_new(v) && !part.are_facets_good(v)) return false;
+      return true;
     });
   }
   // good(part, i) for all i below the count, until one is not; by several threads where there are many. Nothing changes
   // on the way but a vertex that is looked at itself.
   template <class Good>
   bool look_in_blocks(Index count, Index block, const Good& good) {
-    if (workspace_.points.size() < large_set() || first_new_ > 0) {
+    if (workspace_.points.size() < large_set() / kWorthThreads || first_new_ > 0) {
       for (Index i = 0; i < count; ++i)
         if (!good(*this, i)) return false;
       return found_.suspects.size() <= kMaxSuspects + kOfDent;
@@ -175,7 +224,7 @@ class Certifier {
       const Index begin = static_cast<Index>(b) * block, end = std::min(count, begin + block);
       for (Index i = begin; i < end && part.found_.good; ++i) part.found_.good = good(part, i);
       found[b] = std::move(part.found_);
-      looked_at_ += end - begin;
+      looked_at_ += std::size_t{end - begin} * (kBlock / block);
     });
     for (const Findings& each : found) found_.add(each);
     return found_.good && found_.suspects.size() <= kMaxSuspects + kOfDent;
@@ -292,12 +341,44 @@ class Certifier {
   }
 
   bool are_facets_good(Index v) {
-    const bool outside = workspace_.at_infinity(v);
     for (unsigned i = 0; i < 4; ++i) {
       const Index u = workspace_.vertices[v].neighbors[i];
-      if (u < v && is_new(u) && !looks_at_changed_) continue;  // seen from there
-      if (outside != workspace_.at_infinity(u)) continue;      // a facet of the hull: its edges will be looked at
-      if (!(outside ? is_hull_convex(v, i) : do_spheres_agree(v, i, u)) && !doubt(v, u)) return false;
+      if (u < v && is_new(u) && !looks_at_changed_) continue;                // seen from there
+      if (workspace_.at_infinity(v) != workspace_.at_infinity(u)) continue;  // of the hull: its edges will be looked at
+      if (!is_facet_good(v, i, u)) return false;
+    }
+    return true;
+  }
+  bool is_facet_good(Index v, unsigned i, Index u) {
+    return (workspace_.at_infinity(v) ? is_hull_convex(v, i) : do_spheres_agree(v, i, u)) || doubt(v, u);
+  }
+
+  // The same facets of some vertices, where all are new. Waiting for memory and mispredicted branches would be most of
+  // the time, so all facets are listed first, without branches, then the points across, which are in the cache when
+  // their distances are asked for.
+  bool are_all_facets_good(Index begin, Index end) {
+    std::size_t listed = 0, count = 0;
+    std::array<Facet, std::size_t{4} * kBatch> facets;
+    for (Index v = begin; v < end; ++v)
+      for (unsigned i = 0; i < 4; ++i) {
+        const Index u = workspace_.vertices[v].neighbors[i];
+        __builtin_prefetch(workspace_.vertices.data() + u);
+        facets[listed] = {v, u, i, 0};
+        listed += (u > v) & (u != kNone);
+      }
+    for (std::size_t f = 0; f < listed; ++f) {
+      const auto [v, u, i, none] = facets[f];
+      const VoronoiVertex& next = workspace_.vertices[u];
+      const Index across = next.forming_points[index_of(next.neighbors, v)];
+      __builtin_prefetch(workspace_.points.data() + across);
+      facets[count] = {v, u, i, across};
+      count += (across != kInfinitePoint) & (workspace_.vertices[v].forming_points[i] != kInfinitePoint);
+    }
+    for (std::size_t f = 0; f < count; ++f) {
+      const auto [v, u, i, across] = facets[f];
+      const bool apart = workspace_.power(v, workspace_.points[across]) < -workspace_.power_bound(v);
+      if (apart && !workspace_.shares_sphere(v) && !workspace_.shares_sphere(u)) continue;
+      if (!is_facet_good(v, i, u)) return false;
     }
     return true;
   }
@@ -385,13 +466,15 @@ class Certifier {
   bool is_hull_convex(Index v, unsigned i) {
     const unsigned j = (i + 1) % 3, k = (i + 2) % 3;
     const Point &b = corner(v, j), &c = corner(v, k);
+    const FacetPlane plane(corner(v, 0), corner(v, 1), corner(v, 2));
     bool flat = false;
     Index behind = workspace_.vertices[v].forming_points[i];
     for (Index t = workspace_.vertices[v].neighbors[3], from = v; !workspace_.at_infinity(t);) {
       const VoronoiVertex& vertex = workspace_.vertices[t];
-      const unsigned apex = slot_of(t, from);
-      const Point& p = corner(t, apex);
-      const Sign below = volume_sign(p, corner(v, 0), corner(v, 1), corner(v, 2));
+      const std::size_t apex = index_of(vertex.neighbors, from);
+      const Point& p = workspace_.points[vertex.forming_points[apex]];
+      const Sign below =
+          plane.is_certainly_above(p) ? Sign::positive : volume_sign(p, corner(v, 0), corner(v, 1), corner(v, 2));
       if (below == Sign::positive) {
         if (flat) return false;
       } else {
@@ -399,10 +482,9 @@ class Certifier {
         if (same_side_of_line(b, c, corner(v, i), p) != Sign::negative) return false;
         if (below == Sign::negative && (workspace_.exact() || !is_dent_shallow(v, i, p, b, c))) return false;
       }
-      const auto next = std::find(vertex.forming_points.begin(), vertex.forming_points.end(), behind);
-      behind = vertex.forming_points[apex];
       from = t;
-      t = vertex.neighbors[static_cast<std::size_t>(next - vertex.forming_points.begin())];
+      t = vertex.neighbors[index_of(vertex.forming_points, behind)];
+      behind = vertex.forming_points[apex];
     }
     return true;
   }

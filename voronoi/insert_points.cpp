@@ -52,7 +52,7 @@ bool insert_into_copy(Workspace& workspace, const Insertion& insertion, bool exa
   if (exact) workspace.forget_noise();
   const std::size_t before = detail::count_forming(workspace);
   if (exact && !detail::certify(workspace, before).holds) return false;
-  detail::Inserter inserter(workspace, detail::Search::highest_first);
+  detail::Inserter inserter(workspace, detail::Search::highest_first, insertion.order.size());
   for (const Index point : insertion.order)
     if (!inserter.insert(point)) return false;
   if (!inserter.insert_deferred()) return false;

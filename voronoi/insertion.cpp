@@ -12,6 +12,10 @@ namespace {
 // exact signs.
 constexpr std::uint64_t kMaxDoubtful = 16, kMaxDoubtfulOneIn = 4;
 
+// From how many deferred points on, and with fewer than one in how many inserted, trying all of them once more is not
+// worth it: the time would grow with the square of their number.
+constexpr std::size_t kManyDeferred = 32, kWorthRepeating = 8;
+
 }  // namespace
 
 InsertionCounts& InsertionCounts::operator+=(const InsertionCounts& other) {
@@ -70,18 +74,27 @@ bool Inserter::insert(Index point) {
 
 bool Inserter::insert_deferred() {
   while (!deferred_.empty()) {
-    if (std::erase_if(deferred_, [this](Index point) { return insert_now(point); }) > 0) continue;
-    const Index point = deferred_.back();
-    const Point q = workspace_.points[point];
-    if (!insert_by_value(point, q, true) && !insert_sparsely(point, q)) return false;
-    deferred_.pop_back();
+    const std::size_t before = deferred_.size();
+    const std::size_t inserted = std::erase_if(deferred_, [this](Index point) { return insert_now(point); });
+    const bool many = before > kManyDeferred;
+    if (inserted > (many ? before / kWorthRepeating : 0)) continue;
+    // One goes in whatever it overrules, and others may fit then; of many, each is tried only once more.
+    for (std::size_t left = many ? deferred_.size() : 1; left > 0; --left) {
+      const Index point = deferred_.back();
+      if (!(many && insert_now(point)) && !insert_anyhow(point)) return false;
+      deferred_.pop_back();
+    }
   }
   return true;
 }
 
+bool Inserter::insert_anyhow(Index point) {
+  const Point q = workspace_.points[point];
+  return insert_by_value(point, q, true) || insert_sparsely(point, q);
+}
+
 bool Inserter::too_doubtful() const {
-  return counts_.exact + counts_.constrained + deferred_.size() >=
-         kMaxDoubtful + workspace_.points.size() / kMaxDoubtfulOneIn;
+  return counts_.exact + counts_.constrained + deferred_.size() >= kMaxDoubtful + expected_ / kMaxDoubtfulOneIn;
 }
 
 bool Inserter::insert_now(Index point) {

@@ -30,7 +30,9 @@ struct InsertionCounts {
 // Inserts points one by one into the diagram of a workspace.
 class Inserter {
  public:
-  Inserter(Workspace& workspace, Search search) : workspace_(workspace), search_(search), cavity_(workspace) {}
+  // `expected`: about how many points it is to insert. How many of them may be in doubt hangs on that.
+  Inserter(Workspace& workspace, Search search, std::size_t expected)
+      : workspace_(workspace), search_(search), expected_(expected), cavity_(workspace) {}
 
   // Makes the diagram of four points; false if they are nearly coplanar.
   bool start(const std::array<Index, 4>& points);
@@ -70,6 +72,7 @@ class Inserter {
   bool insert_sparsely(Index point, const Point& q);
   void insert_constrained(Index start, const Point& q);
   bool too_doubtful() const;
+  bool insert_anyhow(Index point);
   Index locate(const Point& q) const;
   Index nearest_start(const Point& q) const;
   Index walk(const Point& q) const;
@@ -92,6 +95,7 @@ class Inserter {
 
   Workspace& workspace_;
   Search search_;
+  std::size_t expected_;
   Territory territory_;
   Cavity cavity_;
   InsertionCounts counts_;

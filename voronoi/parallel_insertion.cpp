@@ -59,10 +59,10 @@ void Inserter::start_anywhere() {
 
 namespace {
 
-std::atomic<std::size_t> large = 50000;
+std::atomic<std::size_t> large = 100000;
 
 // Parts of a large set: as many points are worth another pass, and as many in each half another cut.
-constexpr std::size_t kWorthPass = 12, kWorthHalving = 2;
+constexpr std::size_t kWorthPass = 24, kWorthHalving = 4;
 constexpr int kPasses = 4;
 constexpr double kMaxLeft = 0.75;          // of a pass's points: where more are left, cavities span the set
 constexpr double kRoomier = 1.03125;       // how much room there is, in terms of what the points should need
@@ -92,7 +92,8 @@ class Pass {
 
   // What could not be inserted, ascending.
   std::vector<Index> run(Inserter& inserter) {
-    tbb::enumerable_thread_specific<Inserter> inserters([this] { return Inserter(workspace_, Search::highest_first); });
+    tbb::enumerable_thread_specific<Inserter> inserters(
+        [this] { return Inserter(workspace_, Search::highest_first, 0); });
     tbb::parallel_for(std::size_t{0}, parts_.size(),
                       [&](std::size_t r) { insert(inserters.local(), static_cast<std::uint8_t>(r)); });
     for (const Inserter& each : inserters) inserter.add(each.counts());

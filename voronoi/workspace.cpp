@@ -43,7 +43,7 @@ void Workspace::set_scale(const Box& box, double rounding) {
   per_min_bound_ = std::ldexp(1.0, 100 - 2 * exponent);
   for (unsigned i = 0; i + 1 < bounds_.size(); ++i)
     bounds_[i] = std::ldexp(1.0, 2 * exponent - 100 + 2 * static_cast<int>(i));
-  bounds_.back() = std::numeric_limits<double>::infinity();
+  bounds_[kUnknownError] = bounds_[kNotSettled] = std::numeric_limits<double>::infinity();
 }
 
 void Workspace::adopt(std::span<const VoronoiVertex> finished, const Frame& frame, std::size_t more) {

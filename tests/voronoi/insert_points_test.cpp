@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "build.h"
+#include "frame.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/tolerance.h"
 #include "orchard/voronoi/algorithms.h"
@@ -90,6 +92,36 @@ TEST(InsertPoints, LooksAtTheNewPointsOnlyAndMendsWhereSignsContradict) {
       report.certified_insertions + report.settled_insertions + report.exact_insertions + report.constrained_insertions,
       points.size() - part);
   EXPECT_LT(inaccuracy(diagram).max, tolerance::kVoronoiIntrusion * test::bounding_radius(points));
+}
+
+// Flat tetrahedra at the hull have spheres so large that rounding moves their powers by more than the points' box.
+TEST(InsertPoints, HoldsNoSignForCertainBeforeAVertexIsSettled) {
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    const test::Points points = test::turned(test::box_face_points(600, seed), seed);
+    const VoronoiDiagram diagram = detail::build_voronoi(points, detail::Search::highest_first, "", {}, true).diagram;
+    const Box box = detail::checked_box(points);
+    const detail::Frame frame(box);
+    double largest = 0;
+    for (const Point& query : test::turned(test::uniform_points(8, seed), seed)) {
+      detail::Workspace workspace;
+      set_scale(workspace, frame, box);
+      for (const Point& p : points) workspace.points.push_back(frame.inward(p));
+      workspace.adopt(diagram.vertices, frame, 0);
+      workspace.set_exact(true);
+      workspace.forget_noise();
+      const Point q = frame.inward(query);
+      for (Index v = 0; v < workspace.vertices.size(); ++v) {
+        if (workspace.at_infinity(v)) continue;
+        largest = std::max(largest, workspace.vertices[v].radius);
+        const auto corner = [&](unsigned i) -> const Point& {
+          return workspace.points[workspace.vertices[v].forming_points[i]];
+        };
+        ASSERT_EQ(workspace.sign(v, q), detail::inside_sphere(q, corner(0), corner(1), corner(2), corner(3)))
+            << "vertex " << v << ", seed " << seed;
+      }
+    }
+    EXPECT_GT(largest, 1e30);
+  }
 }
 
 TEST(InsertPoints, LeavesOutWhatIsThereAlready) {

@@ -60,7 +60,7 @@ bool same_bytes(const VoronoiDiagram& a, const VoronoiDiagram& b) {
 }
 
 TEST(ParallelInsertion, GivesTheSameBytesOnOneTwoAndFourThreads) {
-  const LargeSet large(100);
+  const LargeSet large(200);
   for (const auto& [name, points] : sets()) {
     std::vector<VoronoiBuild> builds;
     for (const std::size_t threads : {1u, 2u, 4u}) {
@@ -78,7 +78,7 @@ TEST(ParallelInsertion, GivesTheSameBytesOnOneTwoAndFourThreads) {
 }
 
 TEST(ParallelInsertion, InsertsEveryPointOnceAndIsCertified) {
-  const LargeSet large(100);
+  const LargeSet large(200);
   for (const auto& [name, points] : sets()) {
     const auto [diagram, report] = highest_first_voronoi(points);
     EXPECT_NO_THROW(validate(diagram)) << name;
@@ -95,7 +95,7 @@ TEST(ParallelInsertion, InsertsEveryPointOnceAndIsCertified) {
 }
 
 TEST(ParallelInsertion, HasExactlyTheFormingPointsOfTheExactDiagram) {
-  const LargeSet large(40);
+  const LargeSet large(80);
   for (std::uint64_t seed = test::first_seed(); seed < test::first_seed() + 60 * test::more(); ++seed) {
     const std::size_t n = 50 + 13 * (seed % 40);
     const test::Points points = seed % 3 == 0   ? test::uniform_points(n, seed)
@@ -112,7 +112,7 @@ TEST(ParallelInsertion, IsRightOnShakenSets) {
   if (const char* asked = std::getenv("ORCHARD_SHAKEN_SETS")) {
     ASSERT_EQ(std::sscanf(asked, "%llu:%llu", &first, &count), 2) << "ORCHARD_SHAKEN_SETS=FIRST:COUNT";
   }
-  const LargeSet large(24);
+  const LargeSet large(48);
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     const test::ShakenSet set = test::shaken_set(seed);
     const VoronoiDiagram diagram = highest_first_voronoi(set.points).diagram;
@@ -126,7 +126,7 @@ TEST(ParallelInsertion, IsRightOnShakenSets) {
 }
 
 TEST(ParallelInsertion, LeavesFewPointsForOneThread) {
-  const LargeSet large(5000);
+  const LargeSet large(10000);
   for (const test::Points& points : {test::uniform_points(20000, 1), test::bumpy_sphere_points(20000, 1)}) {
     Box box;
     for (const Point& p : points) box.extend(p);
@@ -134,7 +134,7 @@ TEST(ParallelInsertion, LeavesFewPointsForOneThread) {
     Workspace workspace;
     set_scale(workspace, frame, box);
     for (const Index i : insertion_order(points, box)) workspace.points.push_back(frame.inward(points[i]));
-    Inserter inserter(workspace, Search::highest_first);
+    Inserter inserter(workspace, Search::highest_first, workspace.points.size());
     ASSERT_TRUE(inserter.start({0, 1, 2, 3}));
     for (Index i = 4; i < points.size() / 8; ++i) ASSERT_TRUE(inserter.insert(i));
     std::vector<Index> waiting(points.size() - points.size() / 8);
@@ -146,7 +146,7 @@ TEST(ParallelInsertion, LeavesFewPointsForOneThread) {
 }
 
 TEST(ParallelInsertion, ReportsProgressFromTheCallingThreadWithoutJumps) {
-  const LargeSet large(5000);
+  const LargeSet large(10000);
   // With more threads the calling one may be the last to get work.
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
   std::vector<double> fractions{0};
@@ -162,7 +162,7 @@ TEST(ParallelInsertion, ReportsProgressFromTheCallingThreadWithoutJumps) {
 }
 
 TEST(ParallelInsertion, StopsWhenItsProgressIsDeclined) {
-  const LargeSet large(5000);
+  const LargeSet large(10000);
   for (const double last : {0.4, 0.7, 0.9})
     EXPECT_THROW(highest_first_voronoi(test::uniform_points(20000, 1),
                                        [&](std::string_view, double fraction) { return fraction < last; }),
@@ -172,7 +172,7 @@ TEST(ParallelInsertion, StopsWhenItsProgressIsDeclined) {
 TEST(ParallelInsertion, ChangesNothingButTheOrderOfTheVertices) {
   const test::Points points = test::uniform_points(2000, 1);
   const VoronoiDiagram small = highest_first_voronoi(points).diagram;
-  const LargeSet large(500);
+  const LargeSet large(1000);
   const VoronoiDiagram other = highest_first_voronoi(points).diagram;
   EXPECT_EQ(test::quadruples(small), test::quadruples(other));
   EXPECT_FALSE(same_bytes(small, other)) << "else it shows nothing";
