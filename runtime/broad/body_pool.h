@@ -134,6 +134,14 @@ class BodyPool {
 
   // motions[i] is that of bodies[i] at the step.
   void ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions);
+  // The same, as one of some threads that ask at once, each with memory of its own, and neither counted nor checked.
+  struct Answers {
+    std::vector<BodyIndex> moving;
+    std::vector<Motion> motions;
+  };
+  void ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions, Answers& answers) const;
+  void count_asked(std::uint64_t motions) noexcept { asked_ += motions; }
+  bool asks_user_filter() const noexcept { return static_cast<bool>(pair_filter_); }
   void check_promises(BrokenPromiseListener listener, double position_slack) {
     check_ = std::make_unique<PromiseCheck>(std::move(listener), position_slack);
   }
@@ -152,8 +160,6 @@ class BodyPool {
  private:
   static constexpr std::uint32_t kNoSlot = 0xffffffffu;
 
-  void ask_source(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions);
-
   MotionSource source_;
   std::unique_ptr<PromiseCheck> check_;
   std::vector<std::uint32_t> generations_;  // by body; odd while there is one: each body has an odd number of its own
@@ -163,8 +169,8 @@ class BodyPool {
   std::vector<std::uint32_t> static_slot_;  // empty until there is a static body
   std::vector<Motion> static_motions_;
   std::vector<std::uint32_t> free_slots_;
-  std::vector<BodyIndex> free_, moving_, refused_;
-  std::vector<Motion> answers_;
+  std::vector<BodyIndex> free_, refused_;
+  Answers answers_;
   std::size_t size_ = 0;
   std::uint64_t asked_ = 0;
   void make_class(std::uint8_t importance) {

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "orchard/runtime/executor.h"
 #include "orchard/runtime/promise.h"
 
 namespace orchard::runtime {
@@ -103,6 +104,10 @@ struct BroadPhaseOptions {
   // hears of each broken promise, once: what was given instead counts from then on. Without it they are counted.
   bool validate = false;
   BrokenPromiseListener broken{};
+  // Updates of all windows of many bodies are cut into jobs of it. The same reports with any, or none; but the source
+  // is called by several jobs at once then, each about its own bodies, and throws nothing. Steps within a budget, and
+  // `validate`, take no part.
+  Executor executor{};
 };
 
 // Times are at most so many time steps before and after 0 (348 years at a step of 0.01 seconds): beyond, rounding would
