@@ -154,6 +154,7 @@ void WindowUpdates::find(Step now, Step from, std::span<const BodyIndex> bodies,
   std::array<BodyIndex, kBlock> known;
   for (std::size_t done = 0; done < bodies.size();) {
     auto block = bodies.subspan(done, std::min(kBlock, bodies.size() - done));
+    parts_.pool.load_ahead(bodies.subspan(done + block.size(), std::min(kBlock, bodies.size() - done - block.size())));
     parts_.pool.ask(now, block, std::span(motions_).first(block.size()));
     done += block.size();
     if (from > now) {
