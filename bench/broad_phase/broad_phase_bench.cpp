@@ -1,6 +1,6 @@
 // The broad phase against a rebuilt spatial hash, sweep and prune, FCL and Bullet on the same moving spheres, in one
 // run:
-//   broad_phase_bench [table|variations|worst|budgets] [most bodies]
+//   broad_phase_bench [table|variations|worst|budgets|threads] [most bodies]
 // 300 steps of 0.01 s. Times are of detection only, the motion is the application's; of each step the fastest of some
 // runs, summed. All have to report the same pairs at every step.
 #include <cmath>
@@ -12,6 +12,7 @@
 #include "measure.h"
 #include "rivals.h"
 #include "spatial_hash.h"
+#include "thread_pool.h"
 
 namespace {
 
@@ -23,8 +24,8 @@ constexpr int kSteps = 300;
 
 using Make = std::function<std::function<std::span<const BodyPair>(const Scene&)>(Scene&, Result&)>;
 
-Result measure(const SceneShape& shape, int runs, int steps, const Make& make) {
-  const Stopwatch watch(shape.bodies >= 10000);
+Result measure(const SceneShape& shape, int runs, int steps, const Make& make, bool wall_clock = false) {
+  const Stopwatch watch(shape.bodies >= 10000 && !wall_clock);
   Result best;
   for (int run = 0; run < runs; ++run) {
     Scene scene(shape, 7);
@@ -201,6 +202,34 @@ int budgets(std::size_t bodies) {
   return 0;
 }
 
+// By the wall's clock, of each step the fastest run.
+int threads(std::size_t most) {
+  bool right = true;
+  std::printf("| bodies | density | no executor, ms | 1 thread | 2 threads | worst later step, ms | on 2 threads |\n");
+  std::printf("|---|---|---|---|---|---|---|\n");
+  for (std::size_t n = 10000; n <= most; n *= 10) {
+    for (const double density : {1.0, 10.0}) {
+      const SceneShape shape{.bodies = n, .density = density};
+      const int runs = n <= 100000 ? 7 : 2, steps = n <= 100000 ? kSteps : 120;
+      const Result none = measure(shape, runs, steps, ours({}), true);
+      std::printf("| %zu | %.0f | %.3f | ", n, density, 1e3 * none.total());
+      Result shared;
+      for (const std::size_t count : {1u, 2u}) {
+        orchard::runtime::test::ThreadPool pool(count);
+        BroadPhaseOptions options;
+        options.executor = pool.executor();
+        shared = measure(shape, runs, steps, ours(options), true);
+        right = same("with threads", shared, none) && right;
+        std::printf("%.3f: %.2f times as fast | ", 1e3 * shared.total(), none.total() / shared.total());
+      }
+      std::printf("%.3f | %.3f: %.2f times |\n", 1e3 * none.worst(1), 1e3 * shared.worst(1),
+                  none.worst(1) / shared.worst(1));
+      std::fflush(stdout);
+    }
+  }
+  return right ? 0 : 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -210,6 +239,7 @@ int main(int argc, char** argv) {
   if (what == "variations") return variations(most);
   if (what == "worst") return worst(most);
   if (what == "budgets") return budgets(most);
-  std::fprintf(stderr, "usage: broad_phase_bench [table|variations|worst|budgets] [most bodies]\n");
+  if (what == "threads") return threads(most);
+  std::fprintf(stderr, "usage: broad_phase_bench [table|variations|worst|budgets|threads] [most bodies]\n");
   return 2;
 }

@@ -99,12 +99,6 @@ unsigned BodyPool::next_class(unsigned from) const noexcept {
   return from < in_class_.size() ? from : kNoClass;
 }
 
-void BodyPool::ask_source(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
-  const double time = clock.time(step);
-  source_(time, bodies, motions);
-  for (std::size_t i = 0; check_ && i < bodies.size(); ++i) check_->given(id_of(bodies[i]), motions[i], time);
-}
-
 void BodyPool::ask_all(Step step) {
   constexpr std::size_t kAtOnce = 64;
   std::array<BodyIndex, kAtOnce> bodies;
@@ -112,8 +106,7 @@ void BodyPool::ask_all(Step step) {
   std::size_t count = 0;
   const auto ask_them = [&] {
     if (count == 0) return;
-    asked_ += count;
-    ask_source(step, std::span(bodies).first(count), std::span(motions).first(count));
+    ask(step, std::span(bodies).first(count), std::span(motions).first(count));
     count = 0;
   };
   for (BodyIndex body = 0; body < slots(); ++body) {
@@ -124,34 +117,73 @@ void BodyPool::ask_all(Step step) {
   ask_them();
 }
 
-void BodyPool::ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
-  assert(bodies.size() == motions.size());
-  asked_ += bodies.size();
-  if (static_slot_.empty()) {
-    ask_source(step, bodies, motions);
-    return;
+void BodyPool::ask_moving(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions) const {
+  arrays_ != nullptr ? read(bodies, motions) : source_(clock.time(step), bodies, motions);
+}
+
+// Array by array: which are left out is not asked for each body.
+void BodyPool::read(std::span<const BodyIndex> bodies, std::span<Motion> motions) const noexcept {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kNever = std::numeric_limits<double>::infinity();
+  const std::size_t n = bodies.size();
+  const auto put = [&](auto of, double missing, const auto& at) {
+    std::size_t i = 0;
+    for (; i < n && bodies[i] < of.size(); ++i) at(motions[i]) = static_cast<double>(of[bodies[i]]);
+    for (; i < n; ++i) at(motions[i]) = bodies[i] < of.size() ? static_cast<double>(of[bodies[i]]) : missing;
+  };
+  const MotionArrays& a = *arrays_;
+  put(a.x, kNaN, [](Motion& m) -> double& { return m.position[0]; });
+  put(a.y, 0, [](Motion& m) -> double& { return m.position[1]; });
+  put(a.z, 0, [](Motion& m) -> double& { return m.position[2]; });
+  put(a.vx, 0, [](Motion& m) -> double& { return m.velocity[0]; });
+  put(a.vy, 0, [](Motion& m) -> double& { return m.velocity[1]; });
+  put(a.vz, 0, [](Motion& m) -> double& { return m.velocity[2]; });
+  put(a.radius, 0, [](Motion& m) -> double& { return m.radius; });
+  put(a.acceleration, 0, [](Motion& m) -> double& { return m.acceleration; });
+  put(a.drift, 0, [](Motion& m) -> double& { return m.drift; });
+  put(a.expiry, kNever, [](Motion& m) -> double& { return m.expiry; });
+  for (Motion& motion : motions.first(n)) motion.half_space = {};
+}
+
+void BodyPool::load(std::span<const BodyIndex> bodies) const noexcept {
+  const MotionArrays& a = *arrays_;
+  for (const std::span<const float> of : {a.x, a.y, a.z, a.vx, a.vy, a.vz, a.radius, a.acceleration, a.drift}) {
+    for (std::size_t i = 0; i < bodies.size() && bodies[i] < of.size(); ++i) prefetch_to_read(&of[bodies[i]]);
   }
-  moving_.clear();
+  for (std::size_t i = 0; i < bodies.size() && bodies[i] < a.expiry.size(); ++i) prefetch_to_read(&a.expiry[bodies[i]]);
+}
+
+void BodyPool::ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
+  asked_ += bodies.size();
+  ask(step, bodies, motions, answers_);
+  for (std::size_t i = 0; check_ && i < bodies.size(); ++i) {
+    if (!is_static(bodies[i])) check_->given(id_of(bodies[i]), motions[i], clock.time(step));
+  }
+}
+
+void BodyPool::ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions, Answers& answers) const {
+  assert(bodies.size() == motions.size());
+  if (static_slot_.empty()) return ask_moving(step, bodies, motions);
+  answers.moving.clear();
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const std::uint32_t slot = static_slot_[bodies[i]];
     if (slot == kNoSlot) {
-      moving_.push_back(bodies[i]);
+      answers.moving.push_back(bodies[i]);
     } else {
       motions[i] = static_motions_[slot];
     }
   }
-  if (moving_.empty()) return;
-  answers_.resize(moving_.size());
-  ask_source(step, moving_, answers_);
+  if (answers.moving.empty()) return;
+  answers.motions.resize(answers.moving.size());
+  ask_moving(step, answers.moving, answers.motions);
   for (std::size_t i = 0, next = 0; i < bodies.size(); ++i) {
-    if (static_slot_[bodies[i]] == kNoSlot) motions[i] = answers_[next++];
+    if (static_slot_[bodies[i]] == kNoSlot) motions[i] = answers.motions[next++];
   }
 }
 
 std::size_t BodyPool::memory_bytes() const noexcept {
   return bytes_of(in_class_) + bytes_of(generations_) + bytes_of(importance_) + bytes_of(filters_) +
          bytes_of(static_slot_) + bytes_of(static_motions_) + bytes_of(free_slots_) + bytes_of(free_) +
-         bytes_of(moving_) + bytes_of(refused_) + bytes_of(answers_) +
+         bytes_of(answers_.moving) + bytes_of(refused_) + bytes_of(answers_.motions) +
          (check_ ? sizeof(*check_) + check_->memory_bytes() : 0);
 }
 

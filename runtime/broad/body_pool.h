@@ -93,7 +93,9 @@ void grow(std::vector<T>& v, std::size_t size) {
 // Which bodies there are, and where to ask for their motions.
 class BodyPool {
  public:
-  BodyPool(MotionSource source, const Clock& steps) : clock(steps), source_(std::move(source)) {}
+  // Motions come from the source, or from arrays unless these are null.
+  BodyPool(MotionSource source, const MotionArrays* arrays, const Clock& steps)
+      : clock(steps), source_(std::move(source)), arrays_(arrays) {}
 
   const Clock clock;
 
@@ -134,6 +136,18 @@ class BodyPool {
 
   // motions[i] is that of bodies[i] at the step.
   void ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions);
+  // The same, as one of some threads that ask at once, each with memory of its own, and neither counted nor checked.
+  struct Answers {
+    std::vector<BodyIndex> moving;
+    std::vector<Motion> motions;
+  };
+  void ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions, Answers& answers) const;
+  // Starts loading what ask() will need soon, where it is known to be too much for the cache.
+  void load_ahead(std::span<const BodyIndex> bodies) const noexcept {
+    if (arrays_ != nullptr && slots() > kMaxInCache) load(bodies);
+  }
+  void count_asked(std::uint64_t motions) noexcept { asked_ += motions; }
+  bool asks_user_filter() const noexcept { return static_cast<bool>(pair_filter_); }
   void check_promises(BrokenPromiseListener listener, double position_slack) {
     check_ = std::make_unique<PromiseCheck>(std::move(listener), position_slack);
   }
@@ -145,16 +159,20 @@ class BodyPool {
   // Bodies whose motions were not valid when they were asked for, in the course of a call of advance().
   void refuse(BodyIndex body) { refused_.push_back(body); }
   std::vector<BodyIndex>& refused() noexcept { return refused_; }
-  bool has_source() const noexcept { return static_cast<bool>(source_); }
+  bool has_source() const noexcept { return source_ || arrays_ != nullptr; }
   std::uint64_t asked() const noexcept { return asked_; }
   std::size_t memory_bytes() const noexcept;
 
  private:
   static constexpr std::uint32_t kNoSlot = 0xffffffffu;
+  static constexpr std::size_t kMaxInCache = 16384;  // bodies, of 44 bytes each
 
-  void ask_source(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions);
+  void ask_moving(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions) const;
+  void read(std::span<const BodyIndex> bodies, std::span<Motion> motions) const noexcept;
+  void load(std::span<const BodyIndex> bodies) const noexcept;
 
   MotionSource source_;
+  const MotionArrays* arrays_;
   std::unique_ptr<PromiseCheck> check_;
   std::vector<std::uint32_t> generations_;  // by body; odd while there is one: each body has an odd number of its own
   std::vector<std::uint8_t> importance_;
@@ -163,8 +181,8 @@ class BodyPool {
   std::vector<std::uint32_t> static_slot_;  // empty until there is a static body
   std::vector<Motion> static_motions_;
   std::vector<std::uint32_t> free_slots_;
-  std::vector<BodyIndex> free_, moving_, refused_;
-  std::vector<Motion> answers_;
+  std::vector<BodyIndex> free_, refused_;
+  Answers answers_;
   std::size_t size_ = 0;
   std::uint64_t asked_ = 0;
   void make_class(std::uint8_t importance) {
@@ -204,6 +222,14 @@ void give_back(std::vector<T>& v) noexcept {
 inline void prefetch(const void* where) noexcept {
 #ifdef __GNUC__
   __builtin_prefetch(where, 1);
+#else
+  (void)where;
+#endif
+}
+
+inline void prefetch_to_read(const void* where) noexcept {
+#ifdef __GNUC__
+  __builtin_prefetch(where, 0);
 #else
   (void)where;
 #endif

@@ -33,7 +33,7 @@ void BoxIndex::make_room_for_boxes(std::size_t slots) {
   }
 }
 
-void BoxIndex::make_anew(std::size_t slots, std::size_t lines) {
+void BoxIndex::make_anew(std::size_t slots, std::size_t lines, const Executor& executor) {
   std::fill(places_.begin(), places_.end(), Place::nowhere);
   oversized_.clear();
   extent_ = kNothing;
@@ -47,7 +47,7 @@ void BoxIndex::make_anew(std::size_t slots, std::size_t lines) {
     grid_.release();
     give_back(boxes_);
   } else {
-    grid_.reset(lines);
+    grid_.reset(lines, executor);
     grow(boxes_, slots);
   }
 }
@@ -89,7 +89,7 @@ bool BoxIndex::note(std::span<const BodyIndex> bodies, const BoxBlock& boxes) no
   if (few_) return true;
   for (std::size_t i = 0; i < bodies.size(); ++i) boxes_[bodies[i]] = boxes.get(i);
   if (excess_cells(boxes, bodies.size()) == 0) {
-    note_extent(boxes, bodies.size());
+    note_extent(boxes, bodies.size(), extent_);
     return true;
   }
   bool fit = true;
@@ -105,13 +105,25 @@ bool BoxIndex::note_again(BodyIndex body, const QuantumBox& box) noexcept {
   return fits;
 }
 
+bool BoxIndex::all_fit(const BoxBlock& boxes, std::size_t count) noexcept { return excess_cells(boxes, count) == 0; }
+
+bool BoxIndex::fits(const QuantumBox& box) noexcept { return cells_fit(box); }
+
+void BoxIndex::note_fitting(std::span<const BodyIndex> bodies, const BoxBlock& boxes, QuantumBox& extent) noexcept {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    boxes_[bodies[i]] = boxes.get(i);
+    places_[bodies[i]] = Place::inside;
+  }
+  note_extent(boxes, bodies.size(), extent);
+}
+
 // Mostly none of them lies outside. By fours, whose boxes are all made: those after the last body are somewhere in the
 // world. Quanta are below 2^31: what is outside shows in the highest bit of a difference.
-void BoxIndex::note_extent(const BoxBlock& boxes, std::size_t count) noexcept {
+void BoxIndex::note_extent(const BoxBlock& boxes, std::size_t count, QuantumBox& extent) noexcept {
   constexpr std::size_t kFour = 4;
   std::array<std::uint32_t, kFour> outside{};
   for (std::size_t d = 0; d < 3; ++d) {
-    const std::uint32_t lower = extent_.lower[d], upper = extent_.upper[d];
+    const std::uint32_t lower = extent.lower[d], upper = extent.upper[d];
     for (std::size_t i = 0; i < count; i += kFour) {
       for (std::size_t k = 0; k < kFour; ++k) {
         outside[k] |= (boxes.lower[d][i + k] - lower) | (upper - boxes.upper[d][i + k]);
@@ -119,7 +131,7 @@ void BoxIndex::note_extent(const BoxBlock& boxes, std::size_t count) noexcept {
     }
   }
   if ((outside[0] | outside[1] | outside[2] | outside[3]) >> 31 == 0) return;
-  for (std::size_t i = 0; i < count; ++i) extent_.include(boxes.get(i));
+  for (std::size_t i = 0; i < count; ++i) extent.include(boxes.get(i));
 }
 
 void BoxIndex::insert(Queue& queue, std::span<const BodyIndex> bodies, BoxBlock& boxes, std::vector<BodyPair>& pairs) {

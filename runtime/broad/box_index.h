@@ -20,7 +20,7 @@ class BoxIndex {
   const void* at(BodyIndex body) const noexcept { return &places_[body]; }  // to load it ahead
 
   // Empties it, and makes it for so many slots, or lines. `lines` 0: for none, until it is made anew.
-  void make_anew(std::size_t slots, std::size_t lines);
+  void make_anew(std::size_t slots, std::size_t lines, const Executor& executor);
   // The lattice of all boxes from now on; it moves at `velocity`.
   void set_lattice(const Vec3& origin, const Vec3& velocity, double cell_size, double slack, double time_step,
                    Step now) noexcept;
@@ -38,6 +38,24 @@ class BoxIndex {
   void insert(Queue& queue, std::span<const BodyIndex> bodies, BoxBlock& boxes, std::vector<BodyPair>& pairs);
   void finish(Queue& queue, std::vector<BodyPair>& pairs);
 
+  // The same for many, in jobs that may run at once. They go into the grid, and none but the first of these is to be
+  // used meanwhile:
+  bool shares() const noexcept { return !few_; }
+  static bool all_fit(const BoxBlock& boxes, std::size_t count) noexcept;
+  static bool fits(const QuantumBox& box) noexcept;
+  // takes note of boxes that fit, and has `extent` include them;
+  void note_fitting(std::span<const BodyIndex> bodies, const BoxBlock& boxes, QuantumBox& extent) noexcept;
+  void scatter(std::span<const BodyIndex> bodies, const BoxBlock& boxes, SweptGrid::VisitsByPart& visits) const {
+    grid_.scatter(bodies, boxes, boxes_, vectors_, visits);
+  }
+  void insert_part(std::span<const SweptGrid::Visit> visits, std::vector<BodyPair>& pairs, GridCounts& counts) {
+    grid_.insert_part(visits, boxes_, vectors_, pairs, counts);
+  }
+  // and at the end of all jobs.
+  void include(const QuantumBox& extent) noexcept { extent_.include(extent); }
+  void count(const GridCounts& counts) noexcept { grid_.count(counts); }
+  static constexpr QuantumBox nothing() noexcept { return kNothing; }
+
   const GridCounts& counts() const noexcept { return grid_.counts(); }
   void begin_counts() noexcept { grid_.take_counts(); }
   void discount_pairs(std::size_t pairs) noexcept { grid_.discount_pairs(pairs); }
@@ -54,7 +72,7 @@ class BoxIndex {
   enum class Place : std::uint8_t { nowhere, inside, oversized };
   static constexpr QuantumBox kNothing = {{kLastQuantum, kLastQuantum, kLastQuantum}, {0, 0, 0}};
 
-  void note_extent(const BoxBlock& boxes, std::size_t count) noexcept;
+  static void note_extent(const BoxBlock& boxes, std::size_t count, QuantumBox& extent) noexcept;
   void meet_oversized(std::span<const BodyIndex> bodies, std::vector<BodyPair>& pairs);
   struct GridRay;
   void append_in_cells(const QuantumBox& box, std::vector<BodyIndex>& bodies) const;

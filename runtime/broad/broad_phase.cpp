@@ -16,24 +16,6 @@ MotionSource values_of(const std::vector<Motion>& values) {
   };
 }
 
-MotionSource values_of(const MotionArrays& arrays) {
-  return [&arrays](double, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
-    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kNever = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-      const BodyIndex body = bodies[i];
-      const auto at = [body](std::span<const float> of) { return body < of.size() ? double{of[body]} : 0.0; };
-      Motion& motion = motions[i];
-      motion.position = {body < arrays.x.size() ? double{arrays.x[body]} : kNaN, at(arrays.y), at(arrays.z)};
-      motion.velocity = {at(arrays.vx), at(arrays.vy), at(arrays.vz)};
-      motion.radius = at(arrays.radius);
-      motion.acceleration = at(arrays.acceleration);
-      motion.drift = at(arrays.drift);
-      motion.half_space = {};
-      motion.expiry = body < arrays.expiry.size() ? arrays.expiry[body] : kNever;
-    }
-  };
-}
-
 bool is_valid(const BroadPhaseOptions& options) noexcept {
   constexpr double kMinStep = 1e-20, kMaxStep = 1e20;
   const double step = options.time_step;
@@ -45,11 +27,16 @@ bool is_valid(const BroadPhaseOptions& options) noexcept {
 BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& options)
     : BroadPhase(std::move(source), options, detail::make_events) {}
 
-BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& wanted, const detail::MakeMethod& make) {
+BroadPhase BroadPhase::reading(const MotionArrays& arrays, const BroadPhaseOptions& options) {
+  return {nullptr, options, detail::make_events, &arrays};
+}
+
+BroadPhase::BroadPhase(MotionSource source, const BroadPhaseOptions& wanted, const detail::MakeMethod& make,
+                       const MotionArrays* arrays) {
   const bool valid = is_valid(wanted);
   const BroadPhaseOptions options = valid ? wanted : BroadPhaseOptions{};
   state_ = std::make_unique<State>(
-      State{detail::BodyPool(std::move(source), detail::Clock{options.start, options.time_step}), nullptr});
+      State{detail::BodyPool(std::move(source), arrays, detail::Clock{options.start, options.time_step}), nullptr});
   max_time_ = valid ? kMaxSteps * options.time_step : -1;
   state_->method = make(state_->pool, options);
   if (options.validate) state_->pool.check_promises(options.broken, options.position_slack);

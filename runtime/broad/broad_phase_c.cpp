@@ -137,8 +137,17 @@ orchard_body_filter orchard_default_filter(void) {
 }
 orchard_broad_phase_options orchard_default_broad_phase(void) {
   const rt::BroadPhaseOptions options;
-  return {options.time_step, options.start, options.window, as_int(options.vectors), options.position_slack, 0,
-          nullptr,           nullptr};
+  return {options.time_step,
+          options.start,
+          options.window,
+          as_int(options.vectors),
+          options.position_slack,
+          0,
+          nullptr,
+          nullptr,
+          nullptr,
+          nullptr,
+          1};
 }
 
 orchard_broad_phase* orchard_broad_phase_new(orchard_motion_source source, void* context,
@@ -151,6 +160,7 @@ orchard_broad_phase* orchard_broad_phase_new(orchard_motion_source source, void*
         options.position_slack = with->position_slack;
         options.validate = with->validate != 0;
         options.broken = listener_of(with->broken, with->broken_context);
+        options.executor = {with->run, with->run_context, with->concurrency};
         return std::make_unique<orchard_broad_phase>(source_of(source, context), options).release();
       },
       []() -> orchard_broad_phase* { return nullptr; });

@@ -120,10 +120,11 @@ bool Events::replan(Step now, BudgetTracker& tracker) {
 
 void Events::all_are_due() {
   if (due_.capacity() > 2 * pool_.size()) give_back(due_);
-  due_.clear();
-  due_.reserve(pool_.size());
-  for (BodyIndex body = 0; body < pool_.slots(); ++body) {
-    if (pool_.alive(body)) due_.push_back(body);
+  due_.resize(pool_.size());
+  std::size_t count = 0;
+  for (BodyIndex body = 0; count < due_.size(); ++body) {
+    due_[count] = body;
+    count += pool_.alive(body) ? 1 : 0;
   }
 }
 
@@ -132,7 +133,7 @@ void Events::place_all_anew() {
   sorting_ = false;
   wheel_.clear_bodies();
   windows_.begin_anew();
-  boxes_.make_anew(pool_.slots(), planner_.plan().lines);
+  boxes_.make_anew(pool_.slots(), planner_.plan().lines, options_.executor);
   all_are_due();
 }
 
@@ -171,7 +172,7 @@ void Events::step_in_full(Step now, bool completing) {
     overlaps_.begin_anew();
     note_spheres();
   }
-  updates_.update(now, now, due_);
+  all_anew ? updates_.update_all(now, now, due_) : updates_.update(now, now, due_);
   std::erase_if(waiting_, [&](const PairEvent& event) { return !windows_.valid(event); });
   pairs_.test(now, waiting_);
   pairs_.take_overlaps_ahead();
@@ -212,7 +213,7 @@ void Events::begin_sorting() {
   wheel_.clear();
   pairs_.forget_all();
   pairs_.note_spheres(false, 0);
-  boxes_.make_anew(pool_.slots(), 0);
+  boxes_.make_anew(pool_.slots(), 0, options_.executor);
   boxes_.begin_counts();
 }
 
@@ -258,7 +259,7 @@ bool Events::prepare(Step now) {
   wheel_.clear_events();
   const auto ahead = static_cast<std::size_t>(planner_.share_ahead() * static_cast<double>(due_.size()));
   note_spheres();
-  updates_.update(now, from, std::span(due_).first(ahead));
+  updates_.update_all(now, from, std::span(due_).first(ahead));
   due_.erase(due_.begin(), due_.begin() + static_cast<std::ptrdiff_t>(ahead));
   pairs_.work_ahead(false);
   return true;

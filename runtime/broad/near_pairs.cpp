@@ -19,10 +19,95 @@ void Refusals::refuse(BodyIndex body) {
   changes_.note(body);
 }
 
+// Where what is settled goes: at once,
+struct NearPairs::Sink {
+  NearPairs& of;
+  bool may_pair(const BodyPair& pair) const { return of.pool_.may_pair(pair); }
+  void touches(const BodyPair& pair) const { of.overlaps_.add(pair); }
+  void parts(const BodyPair& pair) const { of.overlaps_.drop(pair); }
+  void ahead(const PairEvent& event) const { of.overlaps_ahead_.push_back(event); }
+  void doubtful(const PairEvent& event) const { of.doubtful_.push_back(event); }
+  void later(const PairEvent& event, Step step) const { of.wheel_.add(event, step); }
+};
+
+// or when all jobs are done: of new pairs, without a budget.
+struct NearPairs::KeptSink {
+  Outcome& outcome;
+  static bool may_pair(const BodyPair&) { return true; }
+  void touches(const BodyPair& pair) const { outcome.touching.push_back(pair); }
+  static void parts(const BodyPair&) {}
+  void ahead(const PairEvent& event) const { outcome.ahead.push_back(event); }
+  static void doubtful(const PairEvent&) {}
+  void later(const PairEvent& event, Step step) const { outcome.later.push_back({event, step}); }
+};
+
 void NearPairs::begin_step(bool within_budget) {
   within_budget_ = within_budget;
   for (const PairEvent& event : doubtful_) overlaps_.drop(event.pair);
   doubtful_.clear();
+}
+
+// A pair that both have just been updated: true if nothing is to be done but what this does. It is found anew at the
+// end of the earlier window, and until then the spheres surely overlap, or surely do not.
+template <typename To>
+bool NearPairs::settle_by_spheres(Step now, const BodyPair& pair, To to) const {
+  const Sphere &a = spheres_[pair.a], &b = spheres_[pair.b];
+  const Vec3 apart = b.center - a.center;
+  const double squared = dot(apart, apart), radii = a.radius + b.radius, reach = a.reach + b.reach;
+  const bool touching = squared <= radii * radii;  // as spheres_touch()
+  const bool over = std::min(windows_[pair.a].end, windows_[pair.b].end) <= now + 1;
+  if (!touching) return over || squared > (radii + reach) * (radii + reach);
+  const double sure = radii - reach;
+  if (!over && !(sure > 0 && squared < sure * sure)) return false;
+  if (!to.may_pair(pair)) return true;
+  if (ahead_) {
+    to.ahead({pair, windows_.round()});
+  } else {
+    to.touches(pair);
+  }
+  return true;
+}
+
+// What has been updated ahead is of the next step: this one has been reported already.
+template <typename To>
+void NearPairs::settle_touching(Step now, const PairEvent& event, Step left, Step sure, To to) const {
+  const PairEvent next{event.pair, windows_.round(), !ahead_ || sure > 0};
+  if (ahead_) {
+    if (next.parting) to.ahead(next);
+  } else if (!event.parting) {
+    to.touches(event.pair);
+    if (within_budget_) to.doubtful(next);
+  }
+  // A pair with a body that waits is tested at the next step in any case.
+  const bool waits = windows_[event.pair.a].end == kUpdateDue || windows_[event.pair.b].end == kUpdateDue;
+  if (sure + 1 < left && !waits) to.later(next, now + sure + 1);
+}
+
+// Both motions are of this step: they overlap, surely for a while, or they cannot for a while.
+template <typename To>
+void NearPairs::settle(Step now, const PairEvent& event, const Motion& a, const Motion& b, To to) const {
+  const BodyPair& pair = event.pair;
+  if (!to.may_pair(pair)) return;  // what waited for its test while that changed
+  const Clock& clock = pool_.clock;
+  const double slack = 4 * options_.position_slack;  // of two bodies, now and later
+  // Until the next update of one of them, or a bound expires.
+  const Step left =
+      std::min({windows_.known_until(pair.a, now), windows_.known_until(pair.b, now), now + kLongestWindow}) - now;
+  const double expiry = std::min(a.expiry, b.expiry);
+  const bool in_time = expiry >= clock.time(now + left + 1);  // mostly, and sooner said
+  const Step safe = in_time ? left : clock.last_before_expiry(expiry) - now;
+  const Step whole = std::max<Step>(0, std::min(left - 1, safe));
+  const double seconds = static_cast<double>(whole) * options_.time_step;
+  if (spheres_touch(a, b)) {
+    const double lasts = whole > 0 ? overlap_lasts(a, b, seconds, slack) : 0;
+    return settle_touching(now, event, left, lasts < seconds ? clock.steps_within(lasts) : whole, to);
+  }
+  if (event.parting) to.parts(pair);
+  if (left <= 1) return;
+  const double contact = earliest_contact(a, b, seconds, kEventResolution * options_.time_step, slack);
+  Step ahead = contact <= seconds ? std::max<Step>(1, clock.steps_before(contact)) : kNeverStep;
+  if (safe < left) ahead = std::min(ahead, std::max<Step>(0, safe) + 1);
+  if (ahead < left) to.later({pair, windows_.round()}, now + ahead);
 }
 
 void NearPairs::test(Step now, std::span<const PairEvent> events) {
@@ -34,13 +119,17 @@ void NearPairs::test(Step now, std::span<const PairEvent> events) {
       bodies[2 * i] = events[i].pair.a;
       bodies[2 * i + 1] = events[i].pair.b;
     }
+    for (const PairEvent& event : events.subspan(count, std::min(kTestsAtOnce, events.size() - count))) {
+      const std::array<BodyIndex, 2> next = {event.pair.a, event.pair.b};
+      pool_.load_ahead(next);
+    }
     pool_.ask(now, std::span(bodies).first(2 * count), std::span(motions_).first(2 * count));
     for (std::size_t i = 0; i < count; ++i) {
       const Motion &a = motions_[2 * i], &b = motions_[2 * i + 1];
       const bool valid_a = is_valid(a), valid_b = is_valid(b);
       if (!valid_a) refusals_.refuse(events[i].pair.a);
       if (!valid_b) refusals_.refuse(events[i].pair.b);
-      if (valid_a && valid_b) settle(now, events[i], a, b);
+      if (valid_a && valid_b) settle(now, events[i], a, b, Sink{*this});
     }
     events = events.subspan(count);
   }
@@ -63,34 +152,56 @@ void NearPairs::note_sphere(BodyIndex body, const Motion& m, const Vec3& frame, 
                     travel * kOutward + motion_slack(m, m, duration) + 2 * options_.position_slack};
 }
 
-// A pair that both have just been updated: true if nothing is to be done but what this does. It is found anew at the
-// end of the earlier window, and until then the spheres surely overlap, or surely do not.
-bool NearPairs::settle_by_spheres(Step now, const BodyPair& pair) {
-  const Sphere &a = spheres_[pair.a], &b = spheres_[pair.b];
-  const Vec3 apart = b.center - a.center;
-  const double squared = dot(apart, apart), radii = a.radius + b.radius, reach = a.reach + b.reach;
-  const bool touching = squared <= radii * radii;  // as spheres_touch()
-  const bool over = std::min(windows_[pair.a].end, windows_[pair.b].end) <= now + 1;
-  if (!touching) return over || squared > (radii + reach) * (radii + reach);
-  const double sure = radii - reach;
-  if (!over && !(sure > 0 && squared < sure * sure)) return false;
-  if (!pool_.may_pair(pair)) return true;
-  if (ahead_) {
-    overlaps_ahead_.emplace_back(pair, windows_.round());
-  } else {
-    overlaps_.add(pair);
-  }
-  return true;
-}
-
 void NearPairs::test_near(Step now, std::span<const BodyPair> pairs) {
   tests_.clear();
   const Round round = windows_.round();
   for (const BodyPair& pair : pairs) {
     const bool known = !spheres_.empty() && windows_[pair.a].updated == round && windows_[pair.b].updated == round;
-    if (!known || !settle_by_spheres(now, pair)) tests_.emplace_back(pair, round);
+    if (!known || !settle_by_spheres(now, pair, Sink{*this})) tests_.emplace_back(pair, round);
   }
   test(now, tests_);
+}
+
+void NearPairs::test_near(Step now, std::span<const BodyPair> pairs, Outcome& outcome) const {
+  const KeptSink to{outcome};
+  const Round round = windows_.round();
+  std::vector<PairEvent>& tests = outcome.tests;
+  tests.clear();
+  for (const BodyPair& pair : pairs) {
+    const bool known = !spheres_.empty() && windows_[pair.a].updated == round && windows_[pair.b].updated == round;
+    if (!known || !settle_by_spheres(now, pair, to)) tests.emplace_back(pair, round);
+  }
+  outcome.motions.resize(kBlock);
+  std::array<BodyIndex, kBlock> bodies;
+  for (std::size_t done = 0; done < tests.size();) {
+    const auto some = std::span(std::as_const(tests)).subspan(done, std::min(kTestsAtOnce, tests.size() - done));
+    done += some.size();
+    for (std::size_t i = 0; i < some.size(); ++i) bodies[2 * i] = some[i].pair.a, bodies[2 * i + 1] = some[i].pair.b;
+    const std::size_t count = 2 * some.size();
+    for (std::size_t i = done; i < std::min(tests.size(), done + kTestsAtOnce); ++i) {
+      const std::array<BodyIndex, 2> next = {tests[i].pair.a, tests[i].pair.b};
+      pool_.load_ahead(next);
+    }
+    pool_.ask(now, std::span(bodies).first(count), std::span(outcome.motions).first(count), outcome.answers);
+    outcome.asked += count;
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      const Motion &a = outcome.motions[2 * i], &b = outcome.motions[2 * i + 1];
+      const bool valid_a = is_valid(a), valid_b = is_valid(b);
+      if (!valid_a) outcome.refused.push_back(some[i].pair.a);
+      if (!valid_b) outcome.refused.push_back(some[i].pair.b);
+      if (valid_a && valid_b) settle(now, some[i], a, b, to);
+    }
+  }
+}
+
+void NearPairs::take(Outcome& outcome) {
+  for (const BodyPair& pair : outcome.touching) overlaps_.add(pair);
+  for (const Outcome::Later& later : outcome.later) wheel_.add(later.event, later.step);
+  overlaps_ahead_.insert(overlaps_ahead_.end(), outcome.ahead.begin(), outcome.ahead.end());
+  for (const BodyIndex body : outcome.refused) refusals_.refuse(body);
+  pool_.count_asked(outcome.asked);
+  outcome.touching.clear(), outcome.later.clear(), outcome.ahead.clear(), outcome.refused.clear();
+  outcome.asked = 0;
 }
 
 void NearPairs::take_overlaps_ahead() {
@@ -115,46 +226,6 @@ void NearPairs::keep_doubtful() {
   std::erase_if(doubtful_,
                 [&](const PairEvent& event) { return std::binary_search(sure_.begin(), sure_.end(), event.pair); });
   sure_.clear();
-}
-
-// Both motions are of this step: they overlap, surely for a while, or they cannot for a while.
-void NearPairs::settle(Step now, const PairEvent& event, const Motion& a, const Motion& b) {
-  const BodyPair& pair = event.pair;
-  if (!pool_.may_pair(pair)) return;  // what waited for its test while that changed
-  const Clock& clock = pool_.clock;
-  const double slack = 4 * options_.position_slack;  // of two bodies, now and later
-  // Until the next update of one of them, or a bound expires.
-  const Step left =
-      std::min({windows_.known_until(pair.a, now), windows_.known_until(pair.b, now), now + kLongestWindow}) - now;
-  const double expiry = std::min(a.expiry, b.expiry);
-  const bool in_time = expiry >= clock.time(now + left + 1);  // mostly, and sooner said
-  const Step safe = in_time ? left : clock.last_before_expiry(expiry) - now;
-  const Step whole = std::max<Step>(0, std::min(left - 1, safe));
-  const double seconds = static_cast<double>(whole) * options_.time_step;
-  if (spheres_touch(a, b)) {
-    const double lasts = whole > 0 ? overlap_lasts(a, b, seconds, slack) : 0;
-    return settle_touching(now, event, left, lasts < seconds ? clock.steps_within(lasts) : whole);
-  }
-  if (event.parting) overlaps_.drop(pair);
-  if (left <= 1) return;
-  const double contact = earliest_contact(a, b, seconds, kEventResolution * options_.time_step, slack);
-  Step ahead = contact <= seconds ? std::max<Step>(1, clock.steps_before(contact)) : kNeverStep;
-  if (safe < left) ahead = std::min(ahead, std::max<Step>(0, safe) + 1);
-  if (ahead < left) wheel_.add({pair, windows_.round()}, now + ahead);
-}
-
-// What has been updated ahead is of the next step: this one has been reported already.
-void NearPairs::settle_touching(Step now, const PairEvent& event, Step left, Step sure) {
-  const PairEvent next{event.pair, windows_.round(), !ahead_ || sure > 0};
-  if (ahead_) {
-    if (next.parting) overlaps_ahead_.push_back(next);
-  } else if (!event.parting) {
-    overlaps_.add(event.pair);
-    if (within_budget_) doubtful_.push_back(next);
-  }
-  // A pair with a body that waits is tested at the next step in any case.
-  const bool waits = windows_[event.pair.a].end == kUpdateDue || windows_[event.pair.b].end == kUpdateDue;
-  if (sure + 1 < left && !waits) wheel_.add(next, now + sure + 1);
 }
 
 void NearPairs::forget_all() noexcept {

@@ -37,6 +37,28 @@ class NearPairs {
   void test(Step now, std::span<const PairEvent> events);
   // Pairs that window updates of this round have found.
   void test_near(Step now, std::span<const BodyPair> pairs);
+  // The same as one of some jobs that run at once: what becomes of the pairs, which the filters have let pass, is kept
+  // until all are done, and taken over then.
+  struct Outcome {
+    struct Later {
+      PairEvent event;
+      Step step;
+    };
+    std::vector<BodyPair> touching;
+    std::vector<PairEvent> ahead;
+    std::vector<Later> later;
+    std::vector<BodyIndex> refused;
+    std::uint64_t asked = 0;
+    std::vector<PairEvent> tests;  // and what the job works with
+    std::vector<Motion> motions;
+    BodyPool::Answers answers;
+    std::size_t memory_bytes() const noexcept {
+      return bytes_of(touching) + bytes_of(ahead) + bytes_of(later) + bytes_of(refused) + bytes_of(tests) +
+             bytes_of(motions) + bytes_of(answers.moving) + bytes_of(answers.motions);
+    }
+  };
+  void test_near(Step now, std::span<const BodyPair> pairs, Outcome& outcome) const;
+  void take(Outcome& outcome);
   // What was found to overlap a step ahead: it does, unless a body has been updated since.
   void take_overlaps_ahead();
   void take_overlaps_ahead(std::vector<PairEvent>& events);
@@ -58,9 +80,14 @@ class NearPairs {
     Vec3 center;
     double radius, reach;  // reach: as far as the centre may get until the body's window ends, and all slack
   };
-  bool settle_by_spheres(Step now, const BodyPair& pair);
-  void settle(Step now, const PairEvent& event, const Motion& a, const Motion& b);
-  void settle_touching(Step now, const PairEvent& event, Step left, Step sure);
+  struct Sink;
+  struct KeptSink;
+  template <typename To>
+  bool settle_by_spheres(Step now, const BodyPair& pair, To to) const;
+  template <typename To>
+  void settle(Step now, const PairEvent& event, const Motion& a, const Motion& b, To to) const;
+  template <typename To>
+  void settle_touching(Step now, const PairEvent& event, Step left, Step sure, To to) const;
 
   BodyPool& pool_;
   const BroadPhaseOptions& options_;

@@ -24,6 +24,9 @@ class OverlapList {
     last_marked_ = std::max(last_marked_, body);
     refuses_ = refuses_ || what == kRefused;
   }
+  void mark_updated(std::span<const BodyIndex> bodies) noexcept {
+    for (std::size_t i = 0; !anew_ && i < bodies.size(); ++i) mark(bodies[i], kUpdated);
+  }
   // The list is these from now on, in any order, each once; what was said of the step under way is void.
   void assign(std::span<const BodyPair> pairs, std::size_t slots);
   void begin_anew() noexcept;  // until the end of the step nothing counts but what is added from now on

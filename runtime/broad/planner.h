@@ -15,6 +15,10 @@ class Planner {
   void note_cancelled() noexcept { ++cancellations_; }     // bounds, or a body removed
   void note(std::span<const Motion> updated) noexcept { means_.add(updated); }
 
+  void note_sample(std::span<const Motion> sampled) noexcept {  // what note() would have taken
+    for (const Motion& motion : sampled) means_.add(motion);
+  }
+
   bool crowded(const GridCounts& counts) const noexcept;
   bool many_more_bodies() const noexcept { return pool_.size() > 2 * planned_bodies_; }
   enum class Outcome : std::uint8_t {

@@ -1,3 +1,4 @@
+// More than 300 lines: one inner loop, compiled for each machine.
 #include "swept_grid.h"
 
 #include <bit>
@@ -22,6 +23,12 @@ ORCHARD_INLINE std::uint64_t entry_of(std::uint32_t from, std::uint32_t below) n
 }
 ORCHARD_INLINE std::uint64_t query_of(std::uint32_t from, std::uint32_t below) noexcept {
   return entry_of(kMaxEntry - below, kMaxEntry - from) | kGuards;
+}
+
+ORCHARD_INLINE std::uint64_t query_from(std::uint64_t entry) noexcept {
+  constexpr std::uint64_t field = (std::uint64_t{1} << 3 * kFieldBits) - 1;
+  return query_of(static_cast<std::uint32_t>(entry & field),
+                  static_cast<std::uint32_t>(entry >> 3 * kFieldBits & field));
 }
 
 // Which of a line's entries meet the query, as bits: kSpread of them for each entry.
@@ -78,11 +85,9 @@ ORCHARD_INLINE std::uint64_t met_among(const CellLine& line, std::uint64_t query
 }  // namespace
 
 struct SweptGrid::Insertion {
-  Queue& queue;
-  std::span<const BodyIndex> bodies;  // none: the last ones get in
-  const BoxBlock* block;
   std::span<const QuantumBox> boxes;
   std::vector<BodyPair>& pairs;
+  GridCounts& counts;
 };
 
 // Of the entries hit, those whose box really meets the body's, and in this cell first. Without branches that depend on
@@ -110,26 +115,27 @@ void SweptGrid::report(const Insertion& insertion, const CellLine& line, std::ui
 }
 
 template <typename Kind>
-ORCHARD_INLINE void SweptGrid::insert_in_line(const Insertion& insertion, const Visit& visit) {
+ORCHARD_INLINE void SweptGrid::insert_in_line(const Insertion& insertion, const Visit& visit, std::uint64_t query) {
   // Nothing is written before all seven entries have been read together: that would have to wait for the small writes.
   CellLine& first = lines_[visit.line];
   const auto body = static_cast<BodyIndex>(visit.entry >> kIdShift);
   const std::uint32_t count = first.count, more = first.overflow;
-  const std::uint64_t hits = met_among<Kind>(first, visit.query, count);
+  const std::uint64_t hits = met_among<Kind>(first, query, count);
   if (hits != 0) report<Kind::kSpread>(insertion, first, hits, body, visit.steps);
   if (more == 0 && count < first.entries.size()) [[likely]] {
     first.entries[count] = visit.entry;
     first.count = count + 1;
     return;
   }
+  Overflow& overflow = overflow_[part_of(visit.line)];
   for (std::uint32_t next = more; next != 0;) {
-    const CellLine& line = overflow_[next - 1];
-    ++counts_.lines_read;
-    const std::uint64_t met = met_among<Kind>(line, visit.query, line.count);
+    const CellLine& line = overflow.lines[next - 1];
+    ++insertion.counts.lines_read;
+    const std::uint64_t met = met_among<Kind>(line, query, line.count);
     if (met != 0) report<Kind::kSpread>(insertion, line, met, body, visit.steps);
     next = line.overflow;
   }
-  append(first, visit.entry);
+  append(first, visit.entry, overflow);
 }
 
 // Loops without branches that depend on the data.
@@ -160,53 +166,54 @@ ORCHARD_INLINE void SweptGrid::encode(Batch& batch, std::span<const BodyIndex> b
   }
   batch.axes = axes;
   for (std::size_t i = 0; i < lanes; ++i) batch.line[i] = all_line[i] & mask_;
-  batch.count = bodies.size();
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
+  batch.count = std::min(bodies.size(), kBlock);  // GCC does not know that there are no more
+  for (std::size_t i = 0; i < batch.count; ++i) {
     batch.bodies[i] = bodies[i];
     batch.entry[i] = entry_of(all_from[i], all_below[i]) | std::uint64_t{bodies[i]} << kIdShift;
     batch.query[i] = query_of(all_from[i], all_below[i]);
-    prefetch(&lines_[batch.line[i]]);  // they are all over memory
   }
 }
 
 template <typename Kind>
-ORCHARD_INLINE void SweptGrid::flush(const Insertion& insertion) {
-  Queue& queue = insertion.queue;
-  for (std::size_t k = 0; k < queue.visits_waiting_; ++k) insert_in_line<Kind>(insertion, queue.visits_[k]);
-  counts_.entries += queue.visits_waiting_;
-  counts_.lines_read += queue.visits_waiting_;
+ORCHARD_INLINE void SweptGrid::flush(const Insertion& insertion, Queue& queue) {
+  for (std::size_t k = 0; k < queue.visits_waiting_; ++k) {
+    insert_in_line<Kind>(insertion, queue.visits_[k], query_from(queue.visits_[k].entry));
+  }
+  insertion.counts.entries += queue.visits_waiting_;
+  insertion.counts.lines_read += queue.visits_waiting_;
   queue.visits_waiting_ = 0;
 }
 
 // The batch that waited: first every body in its first cell, then the visits left from the batch before; bodies that
 // take several cells leave visits to the others.
 template <typename Kind>
-ORCHARD_INLINE void SweptGrid::insert_waiting(const Insertion& insertion) {
-  const Batch& batch = insertion.queue.batches_[insertion.queue.current_];
+ORCHARD_INLINE void SweptGrid::insert_waiting(const Insertion& insertion, Queue& queue) {
+  const Batch& batch = queue.batches_[queue.current_];
   std::array<std::uint32_t, kBlock> rest;
   std::size_t rests = 0;
   for (std::uint32_t i = 0; i < batch.count; ++i) {
-    insert_in_line<Kind>(insertion, {batch.entry[i], batch.query[i], batch.line[i], {0, 0, 0}});
+    insert_in_line<Kind>(insertion, {batch.entry[i], batch.line[i], {0, 0, 0}}, batch.query[i]);
     rest[rests] = i;
     rests += batch.axes[i] != 0;
   }
-  counts_.bodies += batch.count;
-  counts_.entries += batch.count;
-  counts_.lines_read += batch.count;
-  flush<Kind>(insertion);
-  for (std::size_t k = 0; k < rests; ++k) leave_visits<Kind>(insertion, batch, rest[k]);
+  insertion.counts.bodies += batch.count;
+  insertion.counts.entries += batch.count;
+  insertion.counts.lines_read += batch.count;
+  flush<Kind>(insertion, queue);
+  for (std::size_t k = 0; k < rests; ++k) {
+    if (queue.visits_waiting_ + kMaxVisits > queue.visits_.size()) flush<Kind>(insertion, queue);
+    Visit* const begin = queue.visits_.data() + queue.visits_waiting_;
+    const Visit* const end = visits_of(batch, rest[k], insertion.boxes, begin);
+    for (const Visit* visit = begin; visit != end; ++visit) prefetch(&lines_[visit->line]);
+    queue.visits_waiting_ += static_cast<std::size_t>(end - begin);
+  }
 }
 
-// To all cells of a body's box but the first.
-template <typename Kind>
-ORCHARD_INLINE void SweptGrid::leave_visits(const Insertion& insertion, const Batch& batch, std::uint32_t i) {
-  Queue& queue = insertion.queue;
-  if (queue.visits_waiting_ + kMaxVisits > queue.visits_.size()) flush<Kind>(insertion);
+// To all cells of a body's box but the first; returns where they end.
+ORCHARD_INLINE SweptGrid::Visit* SweptGrid::visits_of(const Batch& batch, std::uint32_t i,
+                                                      std::span<const QuantumBox> boxes, Visit* visits) const noexcept {
   const std::uint32_t axes = batch.axes[i];
-  if (axes >= 8) {
-    leave_many_visits(queue, batch.bodies[i], insertion.boxes[batch.bodies[i]]);
-    return;
-  }
+  if (axes >= 8) return many_visits_of(batch.bodies[i], boxes[batch.bodies[i]], visits);
   const std::uint64_t id = std::uint64_t{batch.bodies[i]} << kIdShift;
   for (std::uint32_t corner = axes; corner != 0; corner = (corner - 1) & axes) {
     const Steps steps = {static_cast<std::uint8_t>(corner & 1), static_cast<std::uint8_t>(corner >> 1 & 1),
@@ -217,13 +224,12 @@ ORCHARD_INLINE void SweptGrid::leave_visits(const Insertion& insertion, const Ba
       below |= batch.below[steps[d]][d][i];
       line += batch.lines[steps[d]][d][i];
     }
-    line &= mask_;
-    prefetch(&lines_[line]);
-    queue.visits_[queue.visits_waiting_++] = {entry_of(from, below) | id, query_of(from, below), line, steps};
+    *visits++ = {entry_of(from, below) | id, line & mask_, steps};
   }
+  return visits;
 }
 
-void SweptGrid::leave_many_visits(Queue& queue, BodyIndex body, const QuantumBox& box) const noexcept {
+SweptGrid::Visit* SweptGrid::many_visits_of(BodyIndex body, const QuantumBox& box, Visit* visits) const noexcept {
   Cell first, count;
   for (std::size_t d = 0; d < 3; ++d) {
     first[d] = box.lower[d] >> kQuantumBits;
@@ -240,61 +246,122 @@ void SweptGrid::leave_many_visits(Queue& queue, BodyIndex body, const QuantumBox
           from |= (box.lower[i] > begin ? box.lower[i] - begin : 0) << kFieldBits * i;
           below |= (box.upper[i] < end ? end - box.upper[i] : 0) << kFieldBits * i;
         }
-        queue.visits_[queue.visits_waiting_++] = {entry_of(from, below) | std::uint64_t{body} << kIdShift,
-                                                  query_of(from, below), line_of(cell), steps};
+        *visits++ = {entry_of(from, below) | std::uint64_t{body} << kIdShift, line_of(cell), steps};
       }
     }
   }
+  return visits;
 }
 
+// block null: the last ones get in.
 template <typename Kind>
-ORCHARD_INLINE void SweptGrid::advance(const Insertion& insertion) {
-  Queue& queue = insertion.queue;
+ORCHARD_INLINE void SweptGrid::advance(const Insertion& insertion, Queue& queue, std::span<const BodyIndex> bodies,
+                                       const BoxBlock* block) {
   Batch& next = queue.batches_[1 - queue.current_];
-  if (insertion.block != nullptr) encode(next, insertion.bodies, *insertion.block);
-  insert_waiting<Kind>(insertion);
-  if (insertion.block != nullptr) {
+  if (block != nullptr) {
+    encode(next, bodies, *block);
+    for (std::size_t i = 0; i < next.count; ++i) prefetch(&lines_[next.line[i]]);  // they are all over memory
+  }
+  insert_waiting<Kind>(insertion, queue);
+  if (block != nullptr) {
     queue.current_ = 1 - queue.current_;
   } else {
-    flush<Kind>(insertion);
+    flush<Kind>(insertion, queue);
     queue.batches_[queue.current_].count = 0;
   }
 }
 
-void SweptGrid::advance_plain(const Insertion& insertion) { advance<PlainCompare>(insertion); }
-
-void SweptGrid::advance_vectors(const Insertion& insertion) {
+// work.template operator()<Kind>() for the comparison that suits the machine. Without comparisons of 64 bits vectors
+// are no faster.
+template <typename Work>
+void SweptGrid::with_best_compare(const Work& work) {
 #if defined(ORCHARD_MACHINES)
   const Machine chosen = machine();
   if (chosen == Machine::avx512) {
-    return work_with_avx512([&]() ORCHARD_INLINE_LAMBDA { advance<WideCompare>(insertion); });
+    return work_with_avx512([&]() ORCHARD_INLINE_LAMBDA { work.template operator()<WideCompare>(); });
   }
   if (chosen == Machine::avx2) {
-    return work_with_avx2([&]() ORCHARD_INLINE_LAMBDA { advance<HalvesCompare>(insertion); });
+    return work_with_avx2([&]() ORCHARD_INLINE_LAMBDA { work.template operator()<HalvesCompare>(); });
   }
-  advance<PlainCompare>(insertion);  // without comparisons of 64 bits vectors are no faster
+  work.template operator()<PlainCompare>();
 #elif defined(ORCHARD_VECTORS) && defined(__AVX512BW__)
-  advance<WideCompare>(insertion);
+  work.template operator()<WideCompare>();
 #elif defined(ORCHARD_VECTORS) && (defined(__AVX2__) || defined(__aarch64__))
-  advance<HalvesCompare>(insertion);
+  work.template operator()<HalvesCompare>();
 #else
-  advance<PlainCompare>(insertion);
+  work.template operator()<PlainCompare>();
 #endif
 }
 
-void SweptGrid::run(const Insertion& insertion, bool vectors) {
-  const std::size_t before = insertion.pairs.size();
-  vectors ? advance_vectors(insertion) : advance_plain(insertion);
-  counts_.pairs += insertion.pairs.size() - before;
+void SweptGrid::run(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock* block,
+                    std::span<const QuantumBox> boxes, bool vectors, std::vector<BodyPair>& pairs) {
+  const std::size_t before = pairs.size();
+  const Insertion insertion{boxes, pairs, counts_};
+  if (vectors) {
+    with_best_compare([&]<typename Kind>() ORCHARD_INLINE_LAMBDA { advance<Kind>(insertion, queue, bodies, block); });
+  } else {
+    advance<PlainCompare>(insertion, queue, bodies, block);
+  }
+  counts_.pairs += pairs.size() - before;
 }
 
 void SweptGrid::insert(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock& block,
                        std::span<const QuantumBox> boxes, bool vectors, std::vector<BodyPair>& pairs) {
-  run({queue, bodies, &block, boxes, pairs}, vectors);
+  run(queue, bodies, &block, boxes, vectors, pairs);
 }
 
 void SweptGrid::finish(Queue& queue, std::span<const QuantumBox> boxes, bool vectors, std::vector<BodyPair>& pairs) {
-  run({queue, {}, nullptr, boxes, pairs}, vectors);
+  run(queue, {}, nullptr, boxes, vectors, pairs);
+}
+
+ORCHARD_INLINE void SweptGrid::scatter_block(std::span<const BodyIndex> bodies, const BoxBlock& block,
+                                             std::span<const QuantumBox> boxes, VisitsByPart& visits) const {
+  Batch batch;
+  encode(batch, bodies, block);
+  std::array<Visit, kMaxVisits> rest;
+  for (std::uint32_t i = 0; i < batch.count; ++i) {
+    visits[part_of(batch.line[i])].push_back({batch.entry[i], batch.line[i], {0, 0, 0}});
+    if (batch.axes[i] == 0) continue;
+    const Visit* const end = visits_of(batch, i, boxes, rest.data());
+    for (const Visit* visit = rest.data(); visit != end; ++visit) visits[part_of(visit->line)].push_back(*visit);
+  }
+}
+
+void SweptGrid::scatter(std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const QuantumBox> boxes,
+                        bool vectors, VisitsByPart& visits) const {
+  if (!vectors) return scatter_block(bodies, block, boxes, visits);
+  per_machine([&]() ORCHARD_INLINE_LAMBDA { scatter_block(bodies, block, boxes, visits); });
+}
+
+template <typename Kind>
+ORCHARD_INLINE void SweptGrid::insert_visits(const Insertion& insertion, std::span<const Visit> visits) {
+  constexpr std::size_t kAhead = 8;
+  for (std::size_t k = 0; k < visits.size(); ++k) {
+    if (k + kAhead < visits.size()) prefetch(&lines_[visits[k + kAhead].line]);
+    const Visit& visit = visits[k];
+    insert_in_line<Kind>(insertion, visit, query_from(visit.entry));
+  }
+  insertion.counts.entries += visits.size();
+  insertion.counts.lines_read += visits.size();
+}
+
+void SweptGrid::insert_part(std::span<const Visit> visits, std::span<const QuantumBox> boxes, bool vectors,
+                            std::vector<BodyPair>& pairs, GridCounts& counts) {
+  const std::size_t before = pairs.size();
+  const Insertion insertion{boxes, pairs, counts};
+  if (vectors) {
+    with_best_compare([&]<typename Kind>() ORCHARD_INLINE_LAMBDA { insert_visits<Kind>(insertion, visits); });
+  } else {
+    insert_visits<PlainCompare>(insertion, visits);
+  }
+  counts.pairs += pairs.size() - before;
+}
+
+void SweptGrid::count(const GridCounts& counts) noexcept {
+  counts_.bodies += counts.bodies;
+  counts_.entries += counts.entries;
+  counts_.lines_read += counts.lines_read;
+  counts_.pairs += counts.pairs;
 }
 
 }  // namespace orchard::runtime::detail

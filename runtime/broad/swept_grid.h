@@ -3,6 +3,7 @@
 
 #include "body_pool.h"
 #include "box_lattice.h"
+#include "orchard/runtime/executor.h"
 
 namespace orchard::runtime::detail {
 
@@ -36,9 +37,18 @@ class SweptGrid {
   // Bodies on their way into the grid: their lines are being loaded while others are inserted. Lives for some
   // insertions, and is finished before anything else happens to the grid.
   class Queue;
+  // The lines are in this many parts, each with what overflows of its own: boxes can be put in by several threads.
+  static constexpr std::size_t kParts = 8;
+  using Steps = std::array<std::uint8_t, 3>;  // from a body's first cell
+  struct Visit {                              // of a body to one of its cells
+    std::uint64_t entry;
+    std::uint32_t line;
+    Steps steps;
+  };
+  using VisitsByPart = std::array<std::vector<Visit>, kParts>;
 
   // Empties the grid. At least `lines` lines, rounded up to a power of two.
-  void reset(std::size_t lines);
+  void reset(std::size_t lines, const Executor& executor);
   void release();  // its memory, too
 
   // Adds bodies[i] with block's box i, at most kBlock of them, and appends the pairs whose boxes meet, of each body in
@@ -47,13 +57,22 @@ class SweptGrid {
   void insert(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const QuantumBox> boxes,
               bool vectors, std::vector<BodyPair>& pairs);
   void finish(Queue& queue, std::span<const QuantumBox> boxes, bool vectors, std::vector<BodyPair>& pairs);
+  // The same in two steps, for many bodies: the visits that block's bodies make, at any number of threads, appended;
+  void scatter(std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const QuantumBox> boxes,
+               bool vectors, VisitsByPart& visits) const;
+  // and visits to one part, in the order in which they are to be made, at one thread for each part at most.
+  void insert_part(std::span<const Visit> visits, std::span<const QuantumBox> boxes, bool vectors,
+                   std::vector<BodyPair>& pairs, GridCounts& counts);
+  void count(const GridCounts& counts) noexcept;  // of such an insertion
   void remove(BodyIndex body, const QuantumBox& box) noexcept;
   void prepare_removal(const QuantumBox& box) const noexcept;  // starts loading
 
   // Those that have entries in the cell, and in others that share its line; a body as often as it has.
   template <typename Visit>
   void visit_cell(const std::array<std::uint32_t, 3>& cell, const Visit& visit) const {
-    for (const CellLine* line = &lines_[line_of(cell)];; line = &overflow_[line->overflow - 1]) {
+    const std::uint32_t first = line_of(cell);
+    const std::vector<CellLine>& more = overflow_[part_of(first)].lines;
+    for (const CellLine* line = &lines_[first];; line = &more[line->overflow - 1]) {
       for (std::uint32_t i = 0; i < line->count; ++i) visit(static_cast<BodyIndex>(line->entries[i] >> kIdShift));
       if (line->overflow == 0) return;
     }
@@ -63,46 +82,51 @@ class SweptGrid {
   const GridCounts& counts() const noexcept { return counts_; }  // of insertions, since they were taken
   void discount_pairs(std::uint64_t pairs) noexcept { counts_.pairs -= std::min(pairs, counts_.pairs); }
   GridCounts take_counts() noexcept { return std::exchange(counts_, {}); }
-  std::size_t memory_bytes() const noexcept { return bytes_of(lines_) + bytes_of(overflow_); }
+  std::size_t memory_bytes() const noexcept;
 
  private:
   static constexpr std::size_t kMaxVisits = kMaxCellsPerAxis * kMaxCellsPerAxis * kMaxCellsPerAxis - 1;  // a body's
   struct Insertion;
   using Cell = std::array<std::uint32_t, 3>;
-  using Steps = std::array<std::uint8_t, 3>;  // from a body's first cell
-  struct Visit {                              // to one of a body's cells
-    std::uint64_t entry, query;
-    std::uint32_t line;
-    Steps steps;
-  };
   struct Batch;
   std::uint32_t line_of(const Cell& cell) const noexcept {
     return (cell[0] * factors_[0] + cell[1] * factors_[1] + cell[2] * factors_[2]) & mask_;
   }
   void encode(Batch& batch, std::span<const BodyIndex> bodies, const BoxBlock& block) const noexcept;
   template <typename Kind>
-  void advance(const Insertion& insertion);
+  void advance(const Insertion& insertion, Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock* block);
   template <typename Kind>
-  void insert_waiting(const Insertion& insertion);
+  void insert_waiting(const Insertion& insertion, Queue& queue);
+  Visit* visits_of(const Batch& batch, std::uint32_t i, std::span<const QuantumBox> boxes,
+                   Visit* visits) const noexcept;
+  Visit* many_visits_of(BodyIndex body, const QuantumBox& box, Visit* visits) const noexcept;
   template <typename Kind>
-  void leave_visits(const Insertion& insertion, const Batch& batch, std::uint32_t i);
+  void flush(const Insertion& insertion, Queue& queue);
+  template <typename Work>
+  static void with_best_compare(const Work& work);
+  void run(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock* block, std::span<const QuantumBox> boxes,
+           bool vectors, std::vector<BodyPair>& pairs);
   template <typename Kind>
-  void flush(const Insertion& insertion);
-  void run(const Insertion& insertion, bool vectors);
-  void advance_plain(const Insertion& insertion);
-  void advance_vectors(const Insertion& insertion);
-  template <typename Kind>
-  void insert_in_line(const Insertion& insertion, const Visit& visit);
+  void insert_in_line(const Insertion& insertion, const Visit& visit, std::uint64_t query);
   template <int kSpread>
   void report(const Insertion& insertion, const CellLine& line, std::uint64_t hits, BodyIndex body, Steps steps);
-  void leave_many_visits(Queue& queue, BodyIndex body, const QuantumBox& box) const noexcept;
-  void append(CellLine& line, std::uint64_t entry);
-  void remove_from(CellLine& line, BodyIndex body) noexcept;
-  void free_last(CellLine& line) noexcept;
+  void scatter_block(std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const QuantumBox> boxes,
+                     VisitsByPart& visits) const;
+  template <typename Kind>
+  void insert_visits(const Insertion& insertion, std::span<const Visit> visits);
+  struct Overflow {
+    std::vector<CellLine> lines;
+    std::uint32_t free = 0;  // 1 + index
+  };
+  std::size_t part_of(std::uint32_t line) const noexcept { return line >> part_shift_; }
+  static void append(CellLine& line, std::uint64_t entry, Overflow& more);
+  static void remove_from(CellLine& line, BodyIndex body, Overflow& more) noexcept;
+  static void free_last(CellLine& line, Overflow& more) noexcept;
 
-  std::vector<CellLine> lines_, overflow_;
-  std::uint32_t free_overflow_ = 0;  // 1 + index
+  std::vector<CellLine> lines_;
+  std::array<Overflow, kParts> overflow_;
   std::uint32_t mask_ = 0;
+  unsigned part_shift_ = 0;
   std::array<std::uint32_t, 3> factors_{};
   GridCounts counts_;
 };

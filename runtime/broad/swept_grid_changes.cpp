@@ -67,41 +67,54 @@ std::array<std::uint32_t, 3> line_factors(unsigned bits) noexcept {
   return {1, kLineFactors[bits - kMinLineBits][0], kLineFactors[bits - kMinLineBits][1]};
 }
 
-void SweptGrid::reset(std::size_t lines) {
+// All lines are written in order: those that have not been used for long come faster this way than one by one later.
+void SweptGrid::reset(std::size_t lines, const Executor& executor) {
+  constexpr std::size_t kMinToShare = std::size_t{1} << 14;  // that are worth waking other threads for
   const auto nearest = static_cast<std::size_t>(std::max(1.0, 0.7 * static_cast<double>(lines)));
   const unsigned bits = std::clamp(static_cast<unsigned>(std::bit_width(nearest)), kMinLineBits, kMaxLineBits);
   mask_ = (1u << bits) - 1;
+  part_shift_ = bits - static_cast<unsigned>(std::bit_width(kParts - 1));
   factors_ = line_factors(bits);
-  overflow_.clear();
-  free_overflow_ = 0;
-  // All lines are written in order: those that have not been used for long come faster this way than one by one later.
+  for (Overflow& more : overflow_) more.lines.clear(), more.free = 0;
   const std::size_t wanted = std::size_t{1} << bits;
   if (lines_.capacity() > 4 * wanted) give_back(lines_);
-  lines_.assign(wanted, CellLine{});
+  if (wanted < kMinToShare || lines_.size() != wanted) return lines_.assign(wanted, CellLine{});
+  auto clear = [&](std::size_t part) {
+    const std::size_t size = wanted / kParts;
+    std::fill_n(lines_.begin() + static_cast<std::ptrdiff_t>(part * size), size, CellLine{});
+  };
+  run_jobs(executor, kParts, clear);
 }
 
 void SweptGrid::release() {
   give_back(lines_);
-  give_back(overflow_);
+  for (Overflow& more : overflow_) give_back(more.lines);
 }
 
-void SweptGrid::append(CellLine& first, std::uint64_t entry) {
+std::size_t SweptGrid::memory_bytes() const noexcept {
+  std::size_t bytes = bytes_of(lines_);
+  for (const Overflow& more : overflow_) bytes += bytes_of(more.lines);
+  return bytes;
+}
+
+void SweptGrid::append(CellLine& first, std::uint64_t entry, Overflow& overflow) {
+  std::vector<CellLine>& lines = overflow.lines;
   CellLine* line = &first;
-  while (line->overflow != 0) line = &overflow_[line->overflow - 1];
+  while (line->overflow != 0) line = &lines[line->overflow - 1];
   if (line->count == line->entries.size()) {
-    std::uint32_t more = free_overflow_;
+    std::uint32_t more = overflow.free;
     if (more != 0) {
-      free_overflow_ = overflow_[more - 1].overflow;
-      overflow_[more - 1] = CellLine{};
+      overflow.free = lines[more - 1].overflow;
+      lines[more - 1] = CellLine{};
       line->overflow = more;
-      line = &overflow_[more - 1];
+      line = &lines[more - 1];
     } else {
       const bool inner = line != &first;
-      const std::size_t index = inner ? static_cast<std::size_t>(line - overflow_.data()) : 0;
-      grow(overflow_, overflow_.size() + 1);
-      more = static_cast<std::uint32_t>(overflow_.size());
-      (inner ? overflow_[index] : first).overflow = more;
-      line = &overflow_.back();
+      const std::size_t index = inner ? static_cast<std::size_t>(line - lines.data()) : 0;
+      grow(lines, lines.size() + 1);
+      more = static_cast<std::uint32_t>(lines.size());
+      (inner ? lines[index] : first).overflow = more;
+      line = &lines.back();
     }
   }
   line->entries[line->count++] = entry;
@@ -117,14 +130,15 @@ void SweptGrid::remove(BodyIndex body, const QuantumBox& box) noexcept {
   for (cell[2] = box.lower[2] >> kQuantumBits; cell[2] <= box.upper[2] >> kQuantumBits; ++cell[2]) {
     for (cell[1] = box.lower[1] >> kQuantumBits; cell[1] <= box.upper[1] >> kQuantumBits; ++cell[1]) {
       for (cell[0] = box.lower[0] >> kQuantumBits; cell[0] <= box.upper[0] >> kQuantumBits; ++cell[0]) {
-        remove_from(lines_[line_of(cell)], body);
+        const std::uint32_t line = line_of(cell);
+        remove_from(lines_[line], body, overflow_[part_of(line)]);
       }
     }
   }
 }
 
 // The last entry of the chain takes the place.
-void SweptGrid::remove_from(CellLine& first, BodyIndex body) noexcept {
+void SweptGrid::remove_from(CellLine& first, BodyIndex body, Overflow& overflow) noexcept {
   CellLine *line = &first, *found = nullptr, *before_last = nullptr;
   std::uint32_t index = 0;
   for (;;) {
@@ -133,19 +147,19 @@ void SweptGrid::remove_from(CellLine& first, BodyIndex body) noexcept {
     }
     if (line->overflow == 0) break;
     before_last = line;
-    line = &overflow_[line->overflow - 1];
+    line = &overflow.lines[line->overflow - 1];
   }
   assert(found != nullptr);
   if (found == nullptr) return;
   found->entries[index] = line->entries[--line->count];
-  if (line->count == 0 && before_last != nullptr) free_last(*before_last);
+  if (line->count == 0 && before_last != nullptr) free_last(*before_last, overflow);
 }
 
-void SweptGrid::free_last(CellLine& before) noexcept {
+void SweptGrid::free_last(CellLine& before, Overflow& overflow) noexcept {
   const std::uint32_t freed = before.overflow;
   before.overflow = 0;
-  overflow_[freed - 1].overflow = free_overflow_;
-  free_overflow_ = freed;
+  overflow.lines[freed - 1].overflow = overflow.free;
+  overflow.free = freed;
 }
 
 }  // namespace orchard::runtime::detail

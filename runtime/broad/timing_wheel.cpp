@@ -40,31 +40,38 @@ void TimingWheel::clear_bodies() noexcept {
 }
 
 void TimingWheel::clear_events() noexcept {
-  for (Bucket& bucket : buckets_) bucket.event = kNone;
-  nodes_.clear();
-  free_node_ = kNone;
+  for (Bucket& bucket : buckets_) bucket.events = kNone, bucket.in_first = kEventsInPart;
+  parts_.clear();
+  free_part_ = kNone;
 }
 
 void TimingWheel::clear() noexcept {
   buckets_.fill({});
   busy_.fill(0);
   lines_.clear();
-  nodes_.clear();
-  free_line_ = free_node_ = kNone;
+  parts_.clear();
+  free_line_ = free_part_ = kNone;
+}
+
+void TimingWheel::add_part(Bucket& bucket) {
+  std::uint32_t part = free_part_;
+  if (part == kNone) {
+    part = static_cast<std::uint32_t>(parts_.size());
+    grow(parts_, parts_.size() + 1);
+  } else {
+    free_part_ = parts_[part].next;
+  }
+  parts_[part].next = bucket.events;
+  bucket.events = part;
+  bucket.in_first = 0;
 }
 
 void TimingWheel::add(const PairEvent& event, Step step) {
-  const std::size_t bucket = bucket_of(step);
-  std::uint32_t node = free_node_;
-  if (node == kNone) {
-    node = static_cast<std::uint32_t>(nodes_.size());
-    grow(nodes_, nodes_.size() + 1);
-  } else {
-    free_node_ = nodes_[node].next;
-  }
-  nodes_[node] = {event, buckets_[bucket].event};
-  buckets_[bucket].event = node;
-  mark(bucket);
+  const std::size_t index = bucket_of(step);
+  Bucket& bucket = buckets_[index];
+  if (bucket.in_first == kEventsInPart) add_part(bucket);
+  parts_[bucket.events].events[bucket.in_first++] = event;
+  mark(index);
 }
 
 void TimingWheel::take(Step step, std::vector<BodyIndex>& bodies, std::vector<PairEvent>& events) {
@@ -80,12 +87,15 @@ void TimingWheel::take(Step step, std::vector<BodyIndex>& bodies, std::vector<Pa
     free_line_ = line;
     line = next;
   }
-  for (std::uint32_t node = bucket.event; node != kNone;) {
-    events.push_back(nodes_[node].event);
-    const std::uint32_t next = nodes_[node].next;
-    nodes_[node].next = free_node_;
-    free_node_ = node;
-    node = next;
+  std::uint32_t count = bucket.in_first;
+  for (std::uint32_t part = bucket.events; part != kNone; count = kEventsInPart) {  // the last one added comes first
+    Events& some = parts_[part];
+    const std::uint32_t next = some.next;
+    if (next != kNone) prefetch(&parts_[next]);
+    while (count > 0) events.push_back(some.events[--count]);
+    some.next = free_part_;
+    free_part_ = part;
+    part = next;
   }
   bucket = Bucket{};
   busy_[index / 64] &= ~(std::uint64_t{1} << (index % 64));
@@ -101,8 +111,10 @@ std::size_t TimingWheel::bodies_due(Step step) const noexcept {
 
 std::size_t TimingWheel::events_due(Step step) const noexcept {
   std::size_t count = 0;
-  for (std::uint32_t node = buckets_[bucket_of(step)].event; node != kNone; node = nodes_[node].next) {
-    count += nodes_[node].event.parting == 0;
+  const Bucket& bucket = buckets_[bucket_of(step)];
+  std::uint32_t here = bucket.in_first;
+  for (std::uint32_t part = bucket.events; part != kNone; part = parts_[part].next, here = kEventsInPart) {
+    for (std::uint32_t i = 0; i < here; ++i) count += parts_[part].events[i].parting == 0;
   }
   return count;
 }
@@ -120,6 +132,6 @@ Step TimingWheel::next_after(Step now) const noexcept {
   return kNeverStep;
 }
 
-std::size_t TimingWheel::memory_bytes() const noexcept { return sizeof(*this) + bytes_of(lines_) + bytes_of(nodes_); }
+std::size_t TimingWheel::memory_bytes() const noexcept { return sizeof(*this) + bytes_of(lines_) + bytes_of(parts_); }
 
 }  // namespace orchard::runtime::detail

@@ -50,23 +50,27 @@ class TimingWheel {
     std::uint32_t next;
     std::array<BodyIndex, 3> ids;  // kNoIndex from the first one that is missing
   };
-  struct Node {
-    PairEvent event;
+  static constexpr std::uint32_t kEventsInPart = 5;
+  struct alignas(64) Events {  // a part of a list, one cache line; all parts but a list's first one are full
+    std::array<PairEvent, kEventsInPart> events;
     std::uint32_t next;
   };
+  static_assert(sizeof(Events) == 64);
   struct Bucket {
-    std::uint32_t bodies = kNone, event = kNone;
+    std::uint32_t bodies = kNone, events = kNone;
+    std::uint32_t in_first = kEventsInPart;  // events in the first part; as if full where there is none
   };
 
   void add_line(std::uint32_t& head, const std::array<BodyIndex, 3>& ids);
+  void add_part(Bucket& bucket);
   static std::size_t bucket_of(Step step) noexcept { return static_cast<std::size_t>(step & (kWheelSteps - 1)); }
   void mark(std::size_t bucket) noexcept { busy_[bucket / 64] |= std::uint64_t{1} << (bucket % 64); }
 
   std::array<Bucket, kWheelSteps> buckets_{};
   std::array<std::uint64_t, kWheelSteps / 64> busy_{};  // a bit per bucket with anything in it, or once had
   std::vector<Bodies> lines_;
-  std::vector<Node> nodes_;
-  std::uint32_t free_line_ = kNone, free_node_ = kNone;
+  std::vector<Events> parts_;
+  std::uint32_t free_line_ = kNone, free_part_ = kNone;
 };
 
 }  // namespace orchard::runtime::detail

@@ -13,8 +13,8 @@ struct MotionMeans {
   Vec3 frame{};                                                          // whose velocity speeds are relative to
 
   void add(const Motion& motion) noexcept;
-  void add(std::span<const Motion> updated) noexcept {  // some of them
-    constexpr std::size_t kStride = 16;
+  static constexpr std::size_t kStride = 16;  // of those updated, one in so many is looked at
+  void add(std::span<const Motion> updated) noexcept {
     for (std::size_t i = 0; i < updated.size(); i += kStride) add(updated[i]);
   }
   // The velocity that most of them have about in common; 0 unless they are much slower relative to it.

@@ -7,49 +7,45 @@ constexpr std::size_t kNearAtOnce = 1024;  // near pairs that are tested togethe
 
 }  // namespace
 
-struct WindowUpdates::Block {
-  Step now;                              // the motions are of this step,
-  Step from;                             // and count from this one
-  Lattice lattice;                       // at `now`
-  std::array<Step, kBlock> ends;         // of the bodies' windows
-  std::array<double, kBlock> durations;  // until then, of which the last step is not
-  BoxBlock boxes;
-  BoxIndex::Queue queue;
-};
-
 // True if all windows end at the same step.
-bool WindowUpdates::set_ends(Block& block, std::span<const BodyIndex> bodies) {
-  Windows& windows = parts_.windows;
+bool WindowUpdates::set_ends(Block& block, std::span<const BodyIndex> bodies,
+                             std::span<const Motion> motions) const noexcept {
+  const Windows& windows = parts_.windows;
   const auto duration = [&](Step end) {
     return end == kNeverStep ? 0 : static_cast<double>(end - 1 - block.now) * options_.time_step;
   };
-  const Step planned = windows.end_of(block.from, motions_[0]);
-  const Step common = windows.end_of(block.from, bodies[0], motions_[0]);
+  const Step planned = windows.end_of(block.from, motions[0], block.last);
+  const Step common = windows.end_of(block.from, bodies[0], motions[0], block.last);
   bool same = !parts_.pool.any_static();
-  for (std::size_t i = 0; i < bodies.size(); ++i) same = same && motions_[i].expiry == motions_[0].expiry;
+  for (std::size_t i = 0; i < bodies.size(); ++i) same = same && motions[i].expiry == motions[0].expiry;
   for (std::size_t i = 0; windows.any_short() && same && i < bodies.size(); ++i) {
     same = std::min(planned, block.from + windows[bodies[i]].lasting) == common;
   }
   block.ends.fill(common);
   block.durations.fill(duration(common));
   for (std::size_t i = 0; !same && i < bodies.size(); ++i) {
-    block.ends[i] = windows.end_of(block.from, bodies[i], motions_[i]);
+    block.ends[i] = windows.end_of(block.from, bodies[i], motions[i], block.last);
     block.durations[i] = duration(block.ends[i]);
   }
   return same;
+}
+
+// Boxes until the ends of the windows; false if a motion is not valid.
+bool WindowUpdates::make_boxes(Block& block, std::span<const Motion> motions, bool same_ends) const noexcept {
+  const auto no_expiry = [](const Motion& motion) { return std::isnan(motion.expiry); };
+  bool valid = same_ends || std::none_of(motions.begin(), motions.end(), no_expiry);
+  const auto durations = std::span(block.durations).first(motions.size());
+  valid = block.lattice.boxes(motions, durations, block.boxes, options_.vectors) && valid;
+  const auto is_one = [](const Motion& motion) { return is_valid(motion); };
+  return valid || std::all_of(motions.begin(), motions.end(), is_one);
 }
 
 // Makes the boxes of a block of bodies, until the ends of their windows. Does nothing and returns false if a motion is
 // not valid.
 bool WindowUpdates::place(Block& block, std::span<const BodyIndex> bodies) {
   const auto motions = std::span(std::as_const(motions_)).first(bodies.size());
-  bool same = set_ends(block, bodies);
-  bool valid =
-      same || std::none_of(motions.begin(), motions.end(), [](const Motion& m) { return std::isnan(m.expiry); });
-  const auto durations = std::span(block.durations).first(bodies.size());
-  valid = block.lattice.boxes(motions, durations, block.boxes, options_.vectors) && valid;
-  const auto is_one = [](const Motion& motion) { return is_valid(motion); };
-  if (!valid && !std::all_of(motions.begin(), motions.end(), is_one)) return false;
+  bool same = set_ends(block, bodies, motions);
+  if (!make_boxes(block, motions, same)) return false;
 
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     parts_.windows.set(bodies[i], block.from, block.ends[i]);
@@ -99,18 +95,18 @@ void WindowUpdates::shrink(Block& block, BodyIndex body, std::size_t i) {
 }
 
 // Moves those whose new bounds are known up to `from`, with their motions, to the front; returns how many.
-std::size_t WindowUpdates::known_at(Step from, std::span<BodyIndex> bodies) noexcept {
+std::size_t WindowUpdates::known_at(Step from, std::span<BodyIndex> bodies, std::span<Motion> motions) const noexcept {
   std::size_t front = 0;
   double known = std::numeric_limits<double>::infinity();  // an expiry that is late enough
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const double expiry = motions_[i].expiry;
+    const double expiry = motions[i].expiry;
     if (expiry != known && !parts_.pool.is_static(bodies[i])) {
       if (parts_.pool.clock.last_before_expiry(expiry) < from) continue;
       known = expiry;
     }
     if (front < i) {
       std::swap(bodies[front], bodies[i]);
-      motions_[front] = motions_[i];
+      motions[front] = motions[i];
     }
     ++front;
   }
@@ -120,7 +116,7 @@ std::size_t WindowUpdates::known_at(Step from, std::span<BodyIndex> bodies) noex
 bool WindowUpdates::know_mostly(Step now, Step from, std::span<BodyIndex> bodies) {
   motions_.resize(std::max(kBlock, bodies.size()));
   parts_.pool.ask(now, bodies, std::span(motions_).first(bodies.size()));
-  return 2 * known_at(from, bodies) >= bodies.size();
+  return 2 * known_at(from, bodies, motions_) >= bodies.size();
 }
 
 // Moves those whose motions are valid, with these, to the front; returns how many.
@@ -154,14 +150,16 @@ void WindowUpdates::find(Step now, Step from, std::span<const BodyIndex> bodies,
   update.now = now;
   update.from = from;
   update.lattice = parts_.boxes.lattice_at(now);
+  BoxIndex::Queue queue;
   std::array<BodyIndex, kBlock> known;
   for (std::size_t done = 0; done < bodies.size();) {
     auto block = bodies.subspan(done, std::min(kBlock, bodies.size() - done));
+    parts_.pool.load_ahead(bodies.subspan(done + block.size(), std::min(kBlock, bodies.size() - done - block.size())));
     parts_.pool.ask(now, block, std::span(motions_).first(block.size()));
     done += block.size();
     if (from > now) {
       std::copy(block.begin(), block.end(), known.begin());
-      const std::size_t front = known_at(from, std::span(known).first(block.size()));
+      const std::size_t front = known_at(from, std::span(known).first(block.size()), motions_);
       for (std::size_t i = front; i < block.size(); ++i) parts_.changes.note(known[i]);
       block = std::span(known).first(front);
       if (block.empty()) continue;
@@ -172,13 +170,13 @@ void WindowUpdates::find(Step now, Step from, std::span<const BodyIndex> bodies,
       if (block.empty()) continue;
       place(update, block);
     }
-    parts_.boxes.insert(update.queue, block, update.boxes, near_);
+    parts_.boxes.insert(queue, block, update.boxes, near_);
     if (tested && near_.size() >= kNearAtOnce) {
-      parts_.boxes.finish(update.queue, near_);
+      parts_.boxes.finish(queue, near_);
       test_near(now);
     }
   }
-  parts_.boxes.finish(update.queue, near_);
+  parts_.boxes.finish(queue, near_);
 }
 
 void WindowUpdates::test_near(Step now) {

@@ -1,4 +1,6 @@
 #pragma once
+#include <memory>
+
 #include "near_pairs.h"
 #include "planner.h"
 
@@ -19,36 +21,63 @@ class WindowUpdates {
     Planner& planner;
     NearPairs& pairs;
   };
-  WindowUpdates(const Parts& parts, const BroadPhaseOptions& options) : parts_(parts), options_(options) {}
+  WindowUpdates(const Parts& parts, const BroadPhaseOptions& options);
+  ~WindowUpdates();
 
   // The bodies' windows begin at `from`, from the motions at `now`. Where it is a later step, bodies whose bounds do
   // not reach it are left to it as changed ones. What is near is tested.
   void update(Step now, Step from, std::span<const BodyIndex> bodies);
-  // The same, untested: what is near.
+  // The same where all windows begin anew: many bodies by the executor's jobs.
+  void update_all(Step now, Step from, std::span<const BodyIndex> bodies);
+  // The same as update(), untested: what is near.
   std::span<const BodyPair> find_near(Step now, std::span<const BodyIndex> bodies);
   // Whether at least half of the bodies know at `now` what holds at `from`.
   bool know_mostly(Step now, Step from, std::span<BodyIndex> bodies);
   // Asks for the motions of at most kBlock bodies, and moves those whose motions are valid to the front.
   std::span<const Motion> ask_valid(Step now, std::span<BodyIndex>& bodies);
 
-  std::size_t memory_bytes() const noexcept { return bytes_of(motions_) + bytes_of(near_); }
+  std::size_t memory_bytes() const noexcept;
 
  private:
   struct Block;
   void find(Step now, Step from, std::span<const BodyIndex> bodies, bool tested);
   void test_near(Step now);
-  std::size_t known_at(Step from, std::span<BodyIndex> bodies) noexcept;
+  std::size_t known_at(Step from, std::span<BodyIndex> bodies, std::span<Motion> motions) const noexcept;
   std::size_t refuse_invalid(std::span<BodyIndex> bodies);
   bool place(Block& block, std::span<const BodyIndex> bodies);
-  bool set_ends(Block& block, std::span<const BodyIndex> bodies);
+  bool set_ends(Block& block, std::span<const BodyIndex> bodies, std::span<const Motion> motions) const noexcept;
+  bool make_boxes(Block& block, std::span<const Motion> motions, bool same_ends) const noexcept;
   bool note_boxes(Block& block, std::span<const BodyIndex> bodies);
   void shrink(Block& block, BodyIndex body, std::size_t i);
   void drop_what_is_none();
 
+  // Many at once (window_updates_shared.cpp).
+  struct Chunk;
+  struct GridPart;
+  struct Shared;
+  void place_chunk(Chunk& chunk, Block& block, std::span<const BodyIndex> bodies) const;
+  void place_shared(Chunk& chunk, Block& block, std::span<BodyIndex> bodies, std::span<Motion> motions) const;
+  void fold(Chunk& chunk);
+  void find_in_part(Step now, std::size_t index);
+  void update_wave(Step now, Step from, std::span<const BodyIndex> bodies);
+  template <typename Job>
+  void run_all(std::size_t count, const Job& job);
+
   const Parts parts_;
   const BroadPhaseOptions& options_;
-  std::vector<Motion> motions_;  // of the block under way
-  std::vector<BodyPair> near_;   // untested yet
+  std::vector<Motion> motions_;     // of the block under way
+  std::vector<BodyPair> near_;      // untested yet
+  std::unique_ptr<Shared> shared_;  // null until there are many
+};
+
+struct WindowUpdates::Block {
+  Step now;                              // the motions are of this step,
+  Step from;                             // and count from this one
+  Lattice lattice;                       // at `now`
+  std::array<Step, kBlock> ends;         // of the bodies' windows
+  std::array<double, kBlock> durations;  // until then, of which the last step is not
+  BoxBlock boxes;
+  Windows::LastEnd last;
 };
 
 }  // namespace orchard::runtime::detail

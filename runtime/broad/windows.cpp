@@ -17,8 +17,8 @@ void Windows::begin_anew() noexcept {
 }
 
 // Until a bound expires windows are equal parts.
-Step Windows::end_of(Step from, const Motion& motion) noexcept {
-  if (from == last_from_ && motion.expiry == last_expiry_) return last_end_;
+Step Windows::end_of(Step from, const Motion& motion, LastEnd& before) const noexcept {
+  if (from == before.from && motion.expiry == before.expiry) return before.end;
   const Step last = pool_.clock.last_before_expiry(motion.expiry);
   Step window = planned_;
   if (last < from + 64 * planned_) {
@@ -27,15 +27,14 @@ Step Windows::end_of(Step from, const Motion& motion) noexcept {
     const double parts = std::max(1.0, std::ceil(steps / static_cast<double>(planned_) - longer));
     window = std::min(kLongestWindow - 1, static_cast<Step>(std::ceil(steps / parts)));
   }
-  last_from_ = from;
-  last_expiry_ = motion.expiry;
-  return last_end_ = from + window;
+  before = {from, from + window, motion.expiry};
+  return before.end;
 }
 
 // The same for a body, whose bounds may have been cancelled again and again.
-Step Windows::end_of(Step from, BodyIndex body, const Motion& motion) noexcept {
+Step Windows::end_of(Step from, BodyIndex body, const Motion& motion, LastEnd& last) const noexcept {
   if (pool_.is_static(body) && !statics_end_) return kNeverStep;
-  const Step end = end_of(from, motion);
+  const Step end = end_of(from, motion, last);
   return any_short_ ? std::min(end, from + windows_[body].lasting) : end;
 }
 

@@ -33,9 +33,13 @@ class Windows {
 
   // From now on, so many steps; static bodies' windows end, too, or never.
   void plan(Step window, bool statics_end) noexcept { planned_ = window, statics_end_ = statics_end; }
+  struct LastEnd {  // what was asked last is mostly asked again
+    Step from = -1, end = 1;
+    double expiry = 0;
+  };
   // The first step at which the bound does not hold or which another update is due at.
-  Step end_of(Step from, const Motion& motion) noexcept;
-  Step end_of(Step from, BodyIndex body, const Motion& motion) noexcept;  // where some are short
+  Step end_of(Step from, const Motion& motion, LastEnd& last) const noexcept;
+  Step end_of(Step from, BodyIndex body, const Motion& motion, LastEnd& last) const noexcept;  // where some are short
   bool any_short() const noexcept { return any_short_; }
   void set(BodyIndex body, Step from, Step end) noexcept {
     Window& window = windows_[body];
@@ -76,8 +80,6 @@ class Windows {
   bool statics_end_ = false;
   Step voted_ = kNeverStep;
   std::size_t votes_ = 0;
-  Step last_from_ = -1, last_end_ = 1;  // what was asked last is mostly asked again
-  double last_expiry_ = 0;
 };
 
 }  // namespace orchard::runtime::detail

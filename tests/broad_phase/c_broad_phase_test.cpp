@@ -229,6 +229,34 @@ TEST(CBroadPhase, TakesChangesAndTellsOfBrokenPromises) {
   EXPECT_EQ(orchard_broad_phase_move_static(w, a, &far), 0);  // it is not static
 }
 
+void run_backwards(void* context, size_t count, void (*job)(void* data, size_t index), void* data) {
+  ++*static_cast<std::size_t*>(context);
+  while (count > 0) job(data, --count);
+}
+
+TEST(CBroadPhase, CutsUpdatesOfManyBodiesIntoJobs) {
+  std::vector<orchard_motion> values(20000);
+  test::Draw draw(3);
+  for (orchard_motion& value : values) {
+    Motion m;
+    m.position = draw.in_ball(60), m.radius = 1;
+    value = in_c(m);
+  }
+  std::size_t batches = 0;
+  std::vector<std::vector<std::uint32_t>> reports;
+  for (const bool jobs : {false, true}) {
+    orchard_broad_phase_options options = orchard_default_broad_phase();
+    if (jobs) options.run = run_backwards, options.run_context = &batches, options.concurrency = 2;
+    const World world = made(from_values, &values, options);
+    for (std::size_t i = 0; i < values.size(); ++i) orchard_broad_phase_add(world.get(), 0, nullptr);
+    const orchard_advance now = orchard_broad_phase_advance(world.get(), 0, nullptr);
+    reports.emplace_back(now.pairs, now.pairs + 2 * now.pair_count);
+    EXPECT_EQ(batches > 0, jobs);
+  }
+  EXPECT_GT(reports[0].size(), 1000u);
+  EXPECT_EQ(reports[0], reports[1]);
+}
+
 TEST(CBroadPhase, RefusesWhatIsNone) {
   orchard_broad_phase_free(nullptr);
   orchard_broad_phase_options options = orchard_default_broad_phase();

@@ -143,7 +143,7 @@ TEST(MotionArrays, AreAskedAndAnsweredAsTheSameMotionsAre) {
     const test::MovingBodies bodies({.bodies = kBodies, .ball = 20, .period = 0.3, .staggered = seed % 2 == 1}, seed);
     FloatCrowd crowd(kBodies);
     const BroadPhaseOptions options{.time_step = 0.01, .position_slack = float_slack(64)};
-    BroadPhase of_arrays(values_of(crowd.arrays), options), of_motions(values_of(crowd.motions), options);
+    BroadPhase of_arrays = BroadPhase::reading(crowd.arrays, options), of_motions(values_of(crowd.motions), options);
     for (std::size_t i = 0; i < kBodies; ++i) of_arrays.add(), of_motions.add();
     for (int step = 0; step < 100; ++step) {
       for (BodyIndex i = 0; i < kBodies; ++i) {
@@ -163,7 +163,7 @@ TEST(MotionArrays, AreAskedAndAnsweredAsTheSameMotionsAre) {
 TEST(MotionArrays, MayBeLeftOutAndRefuseBodiesBeyondTheirEnd) {
   std::vector<float> x = {0, 1.5f, 9}, radius = {1, 1, 1};
   MotionArrays arrays{.x = x, .radius = radius};
-  BroadPhase world(values_of(arrays), {});
+  BroadPhase world = BroadPhase::reading(arrays);
   for (int i = 0; i < 4; ++i) world.add();
   Advance now = world.advance(0);
   EXPECT_EQ(std::vector<BodyPair>(now.pairs.begin(), now.pairs.end()), (std::vector<BodyPair>{{0, 1}}));

@@ -67,7 +67,7 @@ TEST(SweptGrid, SpreadsWorldsOfAnyShapeEvenly) {
   for (const std::array<double, 3>& cells : shapes) {
     test::Draw draw(1);
     SweptGrid grid;
-    grid.reset(kBodies / 2);
+    grid.reset(kBodies / 2, {});
     SweptGrid::Queue queue;
     std::vector<QuantumBox> boxes(kBodies);
     std::vector<BodyPair> pairs;

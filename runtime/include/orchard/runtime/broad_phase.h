@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "orchard/runtime/executor.h"
 #include "orchard/runtime/promise.h"
 
 namespace orchard::runtime {
@@ -63,19 +64,18 @@ using MotionSource = std::function<void(double time, std::span<const BodyIndex> 
 // advance() at every step then, which costs nothing while the broad phase sleeps. `values` outlives the broad phase.
 MotionSource values_of(const std::vector<Motion>& values);
 
-// What an application knows of its bodies, by BodyIndex, that keeps it in floats, array by array: a third of the memory
-// of as many motions, all of which an update of all windows passes through. Positions are as long as there are bodies:
-// one beyond the end of `x` is refused. Each of the others is as long, or empty: all 0, and `expiry` never. Floats are
-// off by their last place. position_slack = float_slack() covers positions that are rounded to float when they are put
-// here, kept_in_float() says what M and drift are where the state itself is kept so (motion_helpers.h).
+// What an application knows of its bodies, by BodyIndex, that keeps it in floats, array by array, as of the time of
+// advance(), as above: a third of the memory of as many motions, all of which an update of all windows passes through.
+// BroadPhase::reading() takes them without a call in between. Positions are as long as there
+// are bodies: one beyond the end of `x` is refused. Each of the others is as long, or empty: all 0, and `expiry` never.
+// Floats are off by their last place. position_slack = float_slack() covers positions that are rounded to float when
+// they are put here, kept_in_float() says what M and drift are where the state itself is kept so (motion_helpers.h).
 struct MotionArrays {
   std::span<const float> x{}, y{}, z{};     // positions
   std::span<const float> vx{}, vy{}, vz{};  // velocities
   std::span<const float> radius{}, acceleration{}, drift{};
   std::span<const double> expiry{};
 };
-// As of the time of advance(), as above. `arrays` outlives the broad phase; its spans may become others between calls.
-MotionSource values_of(const MotionArrays& arrays);
 
 // A body that has not kept its bounds: `promise`, given at promise_time, does not allow what was given at `time`.
 struct BrokenPromise {
@@ -103,6 +103,10 @@ struct BroadPhaseOptions {
   // hears of each broken promise, once: what was given instead counts from then on. Without it they are counted.
   bool validate = false;
   BrokenPromiseListener broken{};
+  // Updates of all windows of many bodies are cut into jobs of it. The same reports with any, or none; but the source
+  // is called by several jobs at once then, each about its own bodies, and throws nothing. Steps within a budget, and
+  // `validate`, take no part.
+  Executor executor{};
 };
 
 // Times are at most so many time steps before and after 0 (348 years at a step of 0.01 seconds): beyond, rounding would
@@ -185,6 +189,8 @@ class BroadPhase {
   // Keeps an event for each near pair, at the first step at which its two bounds can touch. Without a source there can
   // be static bodies only.
   explicit BroadPhase(MotionSource source, const BroadPhaseOptions& options = {});
+  // The same with motions in arrays. `arrays` outlives the broad phase; its spans may become others between calls.
+  static BroadPhase reading(const MotionArrays& arrays, const BroadPhaseOptions& options = {});
   BroadPhase(BroadPhase&&) noexcept;
   BroadPhase& operator=(BroadPhase&&) noexcept;
   ~BroadPhase();
@@ -243,7 +249,8 @@ class BroadPhase {
   friend class BodyQueries;  // broad_queries.h
   friend BroadPhase detail::make_broad_phase(MotionSource source, const BroadPhaseOptions& options,
                                              const detail::MakeMethod& make);
-  BroadPhase(MotionSource source, const BroadPhaseOptions& options, const detail::MakeMethod& make);
+  BroadPhase(MotionSource source, const BroadPhaseOptions& options, const detail::MakeMethod& make,
+             const MotionArrays* arrays = nullptr);
   Advance process(double t_now, const WorkBudget* budget);
   Advance process_steps(double t_now, const WorkBudget* budget);
   BodyId take_in(std::uint8_t importance, const BodyFilter& filter, const Motion* place);

@@ -1,0 +1,222 @@
+#include <new>
+
+#include "../guarded.h"
+#include "window_updates.h"
+
+// Window updates of many bodies, all of whose windows begin anew, by jobs that may run at once. Bodies come in waves.
+// Of a wave each job first makes the boxes of a chunk, and notes which lines of the grid they go to; then each puts
+// those of all chunks into one part of the lines, and tests what it finds near. How that is cut depends on the number
+// of bodies alone, and everything that has an order is put together in that of the chunks, or of the parts: so nothing
+// depends on the executor. One thread gains by it, too: a part of the lines stays in the cache.
+namespace orchard::runtime::detail {
+namespace {
+
+constexpr std::size_t kMinBodies = 16384;  // that are worth it
+constexpr std::size_t kChunks = 8;         // in a wave
+constexpr std::size_t kMaxChunk = 4096;    // bodies
+constexpr std::size_t kSampledEvery = 64;  // of which one says how bodies move: there are enough
+
+}  // namespace
+
+struct WindowUpdates::Chunk {
+  struct Run {
+    Step end;
+    std::size_t bodies;
+  };
+  SweptGrid::VisitsByPart visits;
+  std::vector<BodyIndex> placed;   // in order
+  std::vector<Run> runs;           // of these, those one after the other whose windows end together
+  std::vector<BodyIndex> unknown;  // what holds from the later step on
+  std::vector<BodyIndex> rest;     // not valid, or too large: updated one by one
+  std::vector<Motion> sampled;     // for the plan
+  QuantumBox extent;
+  BodyPool::Answers answers;
+  std::uint64_t asked;
+
+  void clear() noexcept {
+    for (auto& part : visits) part.clear();
+    placed.clear(), runs.clear(), unknown.clear(), rest.clear(), sampled.clear();
+    extent = BoxIndex::nothing();
+    asked = 0;
+  }
+  std::size_t memory_bytes() const noexcept {
+    std::size_t bytes = bytes_of(placed) + bytes_of(runs) + bytes_of(unknown) + bytes_of(rest) + bytes_of(sampled) +
+                        bytes_of(answers.moving) + bytes_of(answers.motions);
+    for (const auto& part : visits) bytes += bytes_of(part);
+    return bytes;
+  }
+};
+
+struct WindowUpdates::GridPart {
+  std::vector<BodyPair> near;
+  GridCounts counts;
+  NearPairs::Outcome outcome;
+};
+
+struct WindowUpdates::Shared {
+  std::array<Chunk, kChunks> chunks;
+  std::array<GridPart, SweptGrid::kParts> parts;
+  std::vector<BodyIndex> rest;
+};
+
+WindowUpdates::WindowUpdates(const Parts& parts, const BroadPhaseOptions& options) : parts_(parts), options_(options) {}
+WindowUpdates::~WindowUpdates() = default;
+
+std::size_t WindowUpdates::memory_bytes() const noexcept {
+  std::size_t bytes = bytes_of(motions_) + bytes_of(near_);
+  if (!shared_) return bytes;
+  bytes += sizeof(Shared) + bytes_of(shared_->rest);
+  for (const Chunk& chunk : shared_->chunks) bytes += chunk.memory_bytes();
+  for (const GridPart& part : shared_->parts) bytes += bytes_of(part.near) + part.outcome.memory_bytes();
+  return bytes;
+}
+
+// Nothing may be thrown through an executor: lack of memory is told when all jobs have ended.
+template <typename Job>
+void WindowUpdates::run_all(std::size_t count, const Job& job) {
+  if (options_.executor.run == nullptr) {
+    for (std::size_t i = 0; i < count; ++i) job(i);
+    return;
+  }
+  std::array<bool, std::max(kChunks, 1 + SweptGrid::kParts)> done{};
+  auto guarded_job = [&](std::size_t i) { done[i] = guarded([&] { return job(i), true; }, [] { return false; }); };
+  run_jobs(options_.executor, count, guarded_job);
+  if (std::all_of(done.begin(), done.begin() + static_cast<std::ptrdiff_t>(count), [](bool d) { return d; })) return;
+#if defined(__cpp_exceptions) || defined(_CPPUNWIND)
+  throw std::bad_alloc();
+#endif
+}
+
+// Those of a block that can be placed now; the others are left to the rest.
+void WindowUpdates::place_shared(Chunk& chunk, Block& block, std::span<BodyIndex> bodies,
+                                 std::span<Motion> motions) const {
+  std::size_t count = bodies.size();
+  const auto leave_unless = [&](const auto& good) {
+    std::size_t front = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!good(i)) {
+        chunk.rest.push_back(bodies[i]);
+        continue;
+      }
+      bodies[front] = bodies[i];
+      motions[front++] = motions[i];
+    }
+    count = front;
+  };
+  bool same = true;
+  for (bool fit = false; !fit && count > 0;) {
+    same = set_ends(block, bodies.first(count), motions.first(count));
+    const bool valid = make_boxes(block, motions.first(count), same);
+    fit = valid && BoxIndex::all_fit(block.boxes, count);
+    if (!valid) {
+      leave_unless([&](std::size_t i) { return is_valid(motions[i]); });
+    } else if (!fit) {
+      leave_unless([&](std::size_t i) { return BoxIndex::fits(block.boxes.get(i)); });
+    }
+  }
+  bodies = bodies.first(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    parts_.windows.set(bodies[i], block.from, block.ends[i]);
+    if (parts_.pairs.notes_spheres()) {
+      parts_.pairs.note_sphere(bodies[i], motions[i], block.lattice.velocity(), block.durations[i]);
+    }
+    const bool runs_on = !chunk.runs.empty() && chunk.runs.back().end == block.ends[i];
+    if (!runs_on) chunk.runs.push_back({block.ends[i], 0});
+    ++chunk.runs.back().bodies;
+  }
+  if (count > 0 && chunk.placed.size() >= kSampledEvery * chunk.sampled.size()) chunk.sampled.push_back(motions[0]);
+  chunk.placed.insert(chunk.placed.end(), bodies.begin(), bodies.end());
+  parts_.boxes.note_fitting(bodies, block.boxes, chunk.extent);
+  parts_.boxes.scatter(bodies, block.boxes, chunk.visits);
+}
+
+void WindowUpdates::place_chunk(Chunk& chunk, Block& block, std::span<const BodyIndex> bodies) const {
+  chunk.clear();
+  std::array<BodyIndex, kBlock> ids;
+  std::array<Motion, kBlock> answers;
+  for (std::size_t done = 0; done < bodies.size(); done += kBlock) {
+    const auto some = bodies.subspan(done, std::min(kBlock, bodies.size() - done));
+    auto known = std::span(ids).first(some.size());
+    const auto motions = std::span(answers).first(some.size());
+    std::copy(some.begin(), some.end(), known.begin());
+    parts_.pool.ask(block.now, known, motions, chunk.answers);
+    chunk.asked += some.size();
+    if (block.from > block.now) {
+      const std::size_t front = known_at(block.from, known, motions);
+      chunk.unknown.insert(chunk.unknown.end(), known.begin() + static_cast<std::ptrdiff_t>(front), known.end());
+      known = known.first(front);
+    }
+    place_shared(chunk, block, known, motions.first(known.size()));
+  }
+}
+
+// What one job has to do for all.
+void WindowUpdates::fold(Chunk& chunk) {
+  std::span<const BodyIndex> placed = chunk.placed;
+  parts_.overlaps.mark_updated(placed);
+  for (const Chunk::Run& run : chunk.runs) {
+    if (run.end != kNeverStep) parts_.wheel.set_due(placed.first(run.bodies), run.end);
+    parts_.windows.vote(run.end, run.bodies);
+    placed = placed.subspan(run.bodies);
+  }
+  for (const BodyIndex body : chunk.unknown) parts_.changes.note(body);
+  parts_.planner.note_sample(chunk.sampled);
+  parts_.boxes.include(chunk.extent);
+  parts_.boxes.count({.bodies = chunk.placed.size()});
+  parts_.pool.count_asked(chunk.asked);
+  shared_->rest.insert(shared_->rest.end(), chunk.rest.begin(), chunk.rest.end());
+}
+
+void WindowUpdates::find_in_part(Step now, std::size_t index) {
+  GridPart& part = shared_->parts[index];
+  part.near.clear();
+  part.counts = {};
+  for (const Chunk& chunk : shared_->chunks) parts_.boxes.insert_part(chunk.visits[index], part.near, part.counts);
+  const BodyPool& pool = parts_.pool;
+  if (pool.asks_user_filter()) return;
+  if (pool.filters_pairs()) {
+    part.counts.pairs -= std::erase_if(part.near, [&](const BodyPair& pair) { return !pool.may_pair(pair); });
+  }
+  parts_.pairs.test_near(now, part.near, part.outcome);
+}
+
+void WindowUpdates::update_wave(Step now, Step from, std::span<const BodyIndex> bodies) {
+  const std::size_t share = (bodies.size() + kChunks - 1) / kChunks;
+  const std::size_t size = (share + kBlock - 1) / kBlock * kBlock;
+  Block update;
+  update.now = now;
+  update.from = from;
+  update.lattice = parts_.boxes.lattice_at(now);
+  run_all(kChunks, [&](std::size_t i) {
+    const std::size_t begin = std::min(bodies.size(), i * size), end = std::min(bodies.size(), begin + size);
+    Block block = update;
+    place_chunk(shared_->chunks[i], block, bodies.subspan(begin, end - begin));
+  });
+  run_all(1 + SweptGrid::kParts, [&](std::size_t i) {  // what a part's job uses is none of what folding changes
+    if (i > 0) return find_in_part(now, i - 1);
+    for (Chunk& chunk : shared_->chunks) fold(chunk);
+  });
+  for (GridPart& part : shared_->parts) {
+    parts_.boxes.count(part.counts);
+    if (parts_.pool.asks_user_filter()) {  // it is asked by one thread
+      near_.insert(near_.end(), part.near.begin(), part.near.end());
+      test_near(now);
+    } else {
+      parts_.pairs.take(part.outcome);
+    }
+  }
+}
+
+void WindowUpdates::update_all(Step now, Step from, std::span<const BodyIndex> bodies) {
+  const bool many = bodies.size() >= kMinBodies && parts_.boxes.shares() && parts_.pool.promises() == nullptr;
+  if (!many) return update(now, from, bodies);
+  if (!shared_) shared_ = std::make_unique<Shared>();
+  near_.clear();
+  shared_->rest.clear();
+  for (std::size_t done = 0; done < bodies.size(); done += kChunks * kMaxChunk) {
+    update_wave(now, from, bodies.subspan(done, std::min(kChunks * kMaxChunk, bodies.size() - done)));
+  }
+  if (!shared_->rest.empty()) update(now, from, shared_->rest);
+}
+
+}  // namespace orchard::runtime::detail
