@@ -8,6 +8,10 @@ namespace {
 
 // A sample that decided a radius is inside, whatever the rounding.
 constexpr double kInside = 1 + 1e-12;
+// Balls that are apart by less, as a part of their radii, count as meeting.
+constexpr double kMeeting = 1 + 1e-9;
+constexpr std::size_t kMostApart = 16;                 // balls that are fitted side by side
+constexpr std::uint64_t kNaming = 0x9e3779b97f4a7c15;  // odd, with bits all over
 
 }  // namespace
 
@@ -57,9 +61,14 @@ std::vector<Index> LevelBalls::held_only_by(std::span<const Index> balls) const 
   return only;
 }
 
-void LevelBalls::append_held_alone(Index ball, std::vector<Point>& points) const {
-  for (Index s : balls_[ball].samples)
-    if (holders_[s] == 1) points.push_back(regions_.samples().points[s]);
+std::uint64_t LevelBalls::append_held_alone(Index ball, std::vector<Point>& points) const {
+  std::uint64_t name = 0;
+  for (Index s : balls_[ball].samples) {
+    if (holders_[s] != 1) continue;
+    points.push_back(regions_.samples().points[s]);
+    name = (name ^ (s + std::uint64_t{1})) * kNaming;
+  }
+  return name;
 }
 
 std::vector<Index> LevelBalls::loosest_first() const {
@@ -70,10 +79,25 @@ std::vector<Index> LevelBalls::loosest_first() const {
   return order;
 }
 
+std::vector<Index> LevelBalls::take_apart(std::vector<Index>& order) const {
+  std::vector<Index> apart, left;
+  for (Index b : order) {
+    const auto meets = [&](Index other) {
+      const double reach = (balls_[b].radius + balls_[other].radius) * kMeeting;
+      return (balls_[b].center - balls_[other].center).squaredNorm() <= reach * reach;
+    };
+    const bool free = apart.size() < kMostApart && std::none_of(apart.begin(), apart.end(), meets);
+    (free ? apart : left).push_back(b);
+  }
+  order = std::move(left);
+  return apart;
+}
+
 void LevelBalls::replace(Index index, const FittedBall& by) {
   LevelBall& ball = balls_[index];
   for (Index s : ball.samples) --holders_[s];
   static_cast<FittedBall&>(ball) = by;
+  ball.fitted_to = 0;
   find_samples(ball);
   for (Index s : ball.samples) ++holders_[s];
 }
@@ -101,6 +125,7 @@ bool LevelBalls::try_replace(std::span<const Index> balls, std::vector<LevelBall
 void LevelBalls::set_radii(std::span<const double> radii) {
   for (Index b = 0; b < size(); ++b) {
     balls_[b].radius = radii[b];
+    balls_[b].fitted_to = 0;
     find_samples(balls_[b]);
   }
   recount();

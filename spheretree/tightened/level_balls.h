@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -8,8 +9,9 @@
 namespace orchard::detail {
 
 struct LevelBall : FittedBall {
-  Index path_region = kNone;   // that the ball answers for a part of
-  std::vector<Index> samples;  // inside the ball and its path region, ascending
+  Index path_region = kNone;    // that the ball answers for a part of
+  std::vector<Index> samples;   // inside the ball and its path region, ascending
+  std::uint64_t fitted_to = 0;  // names the samples that it was last tightened to, if nothing has changed it since
 };
 
 // The balls of a level as they are now, with the books that the search and the closing need at every step: which
@@ -28,12 +30,15 @@ class LevelBalls {
   void find_samples(LevelBall& ball) const;
   // Samples that only these balls hold, ascending.
   std::vector<Index> held_only_by(std::span<const Index> balls) const;
-  // Appends the samples that only this ball holds.
-  void append_held_alone(Index ball, std::vector<Point>& points) const;
+  // Appends the samples that only this ball holds; returns a number that names them.
+  std::uint64_t append_held_alone(Index ball, std::vector<Point>& points) const;
   // The balls' numbers, the loosest first.
   std::vector<Index> loosest_first() const;
+  // Moves balls from `order` to the result, from its begin on, no two of which meet: they have no sample in common.
+  std::vector<Index> take_apart(std::vector<Index>& order) const;
 
   void replace(Index ball, const FittedBall& by);
+  void set_fitted_to(Index ball, std::uint64_t samples) { balls_[ball].fitted_to = samples; }
   // Puts other balls, whose samples are known, in the place of some, and leaves these in `by`. Does nothing, and
   // returns false, if a sample would be lost or a path region would get too many balls.
   bool try_replace(std::span<const Index> balls, std::vector<LevelBall>& by);

@@ -1,5 +1,7 @@
 #include "level_closing.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 
 #include "takers.h"
@@ -69,6 +71,23 @@ class TakerSearch {
   Eigen::ArrayXd slopes_;             // of each ball's cost, by its radius
 };
 
+// Each ball to what it has taken in and to the samples that it alone holds. Balls that are apart share no sample.
+void fit_again(const Surface& surface, std::vector<std::vector<Point>>& taken, LevelBalls& balls) {
+  std::vector<Index> order;
+  for (Index b = 0; b < balls.size(); ++b)
+    if (!taken[b].empty()) order.push_back(b);
+  while (!order.empty()) {
+    const std::vector<Index> batch = balls.take_apart(order);
+    std::vector<FittedBall> fitted(batch.size());
+    tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {
+      std::vector<Point>& points = taken[batch[i]];
+      balls.append_held_alone(batch[i], points);
+      fitted[i] = BallFitter(surface).fit(points, balls[batch[i]], kTakerEvaluations);
+    });
+    for (std::size_t i = 0; i < batch.size(); ++i) balls.replace(batch[i], fitted[i]);
+  }
+}
+
 }  // namespace
 
 void take_in(const Surface& surface, const LevelObjective& objective, const std::vector<UncoveredRegion>& uncovered,
@@ -93,12 +112,7 @@ void take_in(const Surface& surface, const LevelObjective& objective, const std:
     for (const Point& p : region.corners) add_sample((1 - kInward) * p + kInward * region.farthest, taker);
   }
   balls.add_samples(fresh);
-  BallFitter fitter(surface);
-  for (Index b = 0; b < balls.size(); ++b) {
-    if (taken[b].empty()) continue;
-    balls.append_held_alone(b, taken[b]);
-    balls.replace(b, fitter.fit(taken[b], balls[b], kTakerEvaluations));
-  }
+  fit_again(surface, taken, balls);
 }
 
 }  // namespace orchard::detail

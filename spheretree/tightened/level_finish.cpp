@@ -17,6 +17,7 @@ namespace {
 constexpr int kTighteningRounds = 4;
 constexpr int kTakingRounds = 8;
 constexpr int kClosedRounds = 4;  // of the search that never uncovers anything
+constexpr int kTightenings = 2;   // of the closed level, before that search
 
 class Finish {
  public:
@@ -80,7 +81,7 @@ class Finish {
       balls.push_back({partial_.last()[b].sphere, solver_.balls()[b].path_region});
     LevelCover cover(surface_, upper, std::move(path_ends), std::move(balls));
     solver_.take_radii(cover);
-    solver_.tighten(cover);
+    for (int k = 0; k < kTightenings; ++k) solver_.tighten(cover);
     for (int round = 0; round < kClosedRounds && options_.closed_trials > 0; ++round) {
       report_progress(options_.progress, "tightening", 0.5 + 0.5 * round / kClosedRounds);
       solver_.search(cover, options_.closed_trials / kClosedRounds);

@@ -6,7 +6,7 @@ namespace orchard::detail {
 namespace {
 
 // Large balls need few samples for each to be judged by.
-constexpr Index kEnoughSamplesPerBall = 500;
+constexpr Index kEnoughSamplesPerBall = 64, kFewestSamples = 4000;
 // Radii that differ by less, as a fraction of R, are the same.
 constexpr double kAsLarge = 1e-6;
 
@@ -45,7 +45,7 @@ Samples surface_samples(const Surface& surface, const MedialAxis& axis, const Ca
   return samples;
 }
 
-Index enough_samples(Index balls) { return std::max<Index>(2000, kEnoughSamplesPerBall * balls); }
+Index enough_samples(Index balls) { return std::max<Index>(kFewestSamples, kEnoughSamplesPerBall * balls); }
 
 Samples samples_for(const Samples& all, const PartialTree& partial, Index enough) {
   const Index stride = std::max<Index>(1, all.size() / enough);

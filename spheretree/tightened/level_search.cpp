@@ -37,14 +37,26 @@ void LevelSearch::run(LevelBalls& balls, Index trials, LevelCover* cover, const 
   std::vector<LevelTrial> batch(kBatch);
   for (Index done = 0; done < trials; done += kBatch) {
     report_progress(progress, "searching", static_cast<double>(done) / trials);
+    want(balls);
     tbb::parallel_for(Index{0}, kBatch, [&](Index i) { batch[i] = propose(balls, trials_ + i, cover); });
     trials_ += kBatch;
     apply(batch, balls, cover);
   }
 }
 
+// Trials begin where the cost is, and the less where they have failed already.
+void LevelSearch::want(const LevelBalls& balls) {
+  failures_.resize(balls.size(), 0);
+  wanted_.resize(balls.size());
+  double sum = 0;
+  for (Index b = 0; b < balls.size(); ++b) {
+    sum += objective_.cost(balls[b]) / (1.0 + failures_[b]);
+    wanted_[b] = sum;
+  }
+}
+
 LevelTrial LevelSearch::propose(const LevelBalls& balls, std::uint64_t number, const LevelCover* cover) const {
-  LevelTrial trial = propose_trial(surface_, balls, objective_, cover != nullptr, Random(seed_, 200 + level_, number));
+  LevelTrial trial = propose_trial(surface_, balls, objective_, wanted_, Random(seed_, 200 + level_, number));
   if (trial.balls.empty()) return trial;
   if (cover != nullptr && !close_trial(surface_, balls, objective_, *cover, trial)) trial.balls.clear();
   for (LevelBall& ball : trial.balls) balls.find_samples(ball);
@@ -52,16 +64,18 @@ LevelTrial LevelSearch::propose(const LevelBalls& balls, std::uint64_t number, c
 }
 
 // A trial counts only if what it was judged by is still there: no earlier trial of the batch changed it.
-void LevelSearch::apply(std::vector<LevelTrial>& batch, LevelBalls& balls, LevelCover* cover) const {
+void LevelSearch::apply(std::vector<LevelTrial>& batch, LevelBalls& balls, LevelCover* cover) {
   std::vector<char> taken(balls.size(), 0);
   std::vector<Sphere> changed;
   for (LevelTrial& trial : batch) {
+    ++failures_[trial.chosen[0]];
     const bool free = std::none_of(trial.chosen.begin(), trial.chosen.end(), [&](Index b) { return taken[b] != 0; });
     if (trial.balls.empty() || !free || (cover != nullptr && meets_any(trial, balls, changed))) continue;
     if (!balls.try_replace(trial.chosen, trial.balls)) continue;
     for (const LevelBall& old : trial.balls) changed.push_back(sphere_of(old));
     for (Index b : trial.chosen) {
       taken[b] = 1;
+      failures_[b] = 0;
       changed.push_back(sphere_of(balls[b]));
       if (cover != nullptr) cover->replace(b, {changed.back(), balls[b].path_region});
     }

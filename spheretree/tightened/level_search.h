@@ -24,14 +24,17 @@ class LevelSearch {
 
  private:
   void run(LevelBalls& balls, Index trials, LevelCover* cover, const Progress& progress);
+  void want(const LevelBalls& balls);
   LevelTrial propose(const LevelBalls& balls, std::uint64_t number, const LevelCover* cover) const;
-  void apply(std::vector<LevelTrial>& batch, LevelBalls& balls, LevelCover* cover) const;
+  void apply(std::vector<LevelTrial>& batch, LevelBalls& balls, LevelCover* cover);
 
   const Surface& surface_;
   LevelObjective objective_;
   std::uint64_t seed_;
-  Index level_;               // for the random numbers
-  std::uint64_t trials_ = 0;  // so far
+  Index level_;                  // for the random numbers
+  std::uint64_t trials_ = 0;     // so far
+  std::vector<Index> failures_;  // trials that began at each ball since it was last changed by one
+  std::vector<double> wanted_;   // as propose_trial() takes it
 };
 
 }  // namespace orchard::detail

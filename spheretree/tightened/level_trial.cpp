@@ -10,22 +10,25 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kRounds = 2, kRoundsOfFew = 3;  // of sharing out
 constexpr int kFirstEvaluations = 5, kLastEvaluations = 12;
-constexpr double kLoosestShare = 0.5;  // of trials in a closed level that begin at one of the very loosest balls
-constexpr double kMoveShare = 0.35;    // of trials that move a cheap ball to a dear place
-constexpr Index kFewForMoves = 8;      // balls, up to which there is no such move
-constexpr Index kFew = 128;            // balls, up to which more is put at stake at a time
-constexpr double kWorthwhile = 1e-6;   // part of the cost that must go
+constexpr double kWantedShare = 0.7;  // of trials that begin where the caller wants; the others at any loose ball
+constexpr double kMoveShare = 0.35;   // of trials that move a cheap ball to a dear place
+constexpr double kStayShare = 0.3,
+                 kOneAnewShare = 0.45;  // of the others, in which none or one ball starts anew, not two
+constexpr Index kFewForMoves = 8;       // balls, up to which there is no such move
+constexpr Index kFew = 128;             // balls, up to which more is put at stake at a time
+constexpr double kWorthwhile = 1e-6;    // part of the cost that must go
 // By what part balls may become less loose in the last round.
 constexpr double kHoped = 0.3;
 
 class Proposal {
  public:
-  Proposal(const Surface& surface, const LevelBalls& balls, const LevelObjective& objective, bool closed, Random random)
+  Proposal(const Surface& surface, const LevelBalls& balls, const LevelObjective& objective,
+           std::span<const double> wanted, Random random)
       : balls_(balls),
         regions_(balls.regions()),
         samples_(regions_.samples()),
         objective_(objective),
-        closed_(closed),
+        wanted_(wanted),
         random_(random),
         fitter_(surface) {}
 
@@ -40,18 +43,29 @@ class Proposal {
   }
 
  private:
-  // A ball, loose ones more often, and some neighbours; perhaps also a tight one from anywhere that is to move here,
+  // A ball, dear ones more often, and some neighbours; perhaps also a tight one from anywhere that is to move here,
   // with the neighbours that must stand in for it.
   void choose() {
-    const bool among_loosest = closed_ && random_.uniform() < kLoosestShare;
-    trial_.chosen.push_back(pick(among_loosest ? 1 + balls_.size() / 2 : 1 + random_.below(3), true));
-    add_neighbors(trial_.chosen[0], 1 + random_.below(few() ? 5 : 3));
+    const bool as_wanted = random_.uniform() < kWantedShare;
+    trial_.chosen.push_back(as_wanted ? pick_wanted() : pick(1 + random_.below(3), true));
+    add_neighbors(trial_.chosen[0], few_neighbors(few() ? 5 : 3));
     if (balls_.size() <= kFewForMoves || random_.uniform() >= kMoveShare) return;
     const Index cheap = pick(few() ? 4 : 8, false);
     if (is_chosen(cheap)) return;
     trial_.moved = static_cast<Index>(trial_.chosen.size());
     trial_.chosen.push_back(cheap);
-    add_neighbors(cheap, 1 + random_.below(3));
+    add_neighbors(cheap, few_neighbors(3));
+  }
+
+  Index pick_wanted() {
+    const auto at = std::upper_bound(wanted_.begin(), wanted_.end(), random_.uniform() * wanted_.back());
+    return std::min(static_cast<Index>(at - wanted_.begin()), balls_.size() - 1);
+  }
+
+  // One to `max`, mostly one: trials of few balls cost little and succeed most.
+  std::size_t few_neighbors(std::size_t max) {
+    const std::size_t one = random_.below(max), other = random_.below(max);
+    return 1 + std::min(one, other);
   }
 
   // The loosest, or the tightest, of some balls at random.
@@ -99,9 +113,10 @@ class Proposal {
       const std::vector<Index>& there = balls_[trial_.chosen[0]].samples;
       start_anew(trial_.balls[trial_.moved], there.empty() ? freed_ : there);
     }
-    const double share = moves ? (few() ? 0.15 : 0) : random_.uniform() < 0.3 ? 1.0 : 0.4;
-    for (std::size_t i = 0; i < trial_.balls.size(); ++i)
-      if (i != trial_.moved && random_.uniform() < share) start_anew(trial_.balls[i], freed_);
+    if (moves) return;
+    const double which = random_.uniform();
+    const int anew = which < kStayShare ? 0 : which < kStayShare + kOneAnewShare ? 1 : 2;
+    for (int k = 0; k < anew; ++k) start_anew(trial_.balls[random_.below(trial_.balls.size())], freed_);
   }
 
   // Near one of the samples, in one of its path regions.
@@ -199,7 +214,7 @@ class Proposal {
   const PathRegions& regions_;
   const Samples& samples_;
   const LevelObjective& objective_;
-  const bool closed_;
+  const std::span<const double> wanted_;
   Random random_;
   LevelTrial trial_;
   BallFitter fitter_;
@@ -213,9 +228,9 @@ class Proposal {
 
 }  // namespace
 
-LevelTrial propose_trial(const Surface& surface, const LevelBalls& balls, const LevelObjective& objective, bool closed,
-                         Random random) {
-  return Proposal(surface, balls, objective, closed, random).run();
+LevelTrial propose_trial(const Surface& surface, const LevelBalls& balls, const LevelObjective& objective,
+                         std::span<const double> wanted, Random random) {
+  return Proposal(surface, balls, objective, wanted, random).run();
 }
 
 }  // namespace orchard::detail

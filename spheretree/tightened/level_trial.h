@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 #include <vector>
 
 #include "level_balls.h"
@@ -17,9 +18,9 @@ struct LevelTrial {
 };
 
 // A few neighbouring balls give up what only they hold, some start anew, and they share it out again. The trial has
-// balls if the objective falls and every sample is held; their samples are not found yet. `closed`: the level is, and
-// what growth has left loose is to be seen to. Only `random` decides which trial it is.
-LevelTrial propose_trial(const Surface& surface, const LevelBalls& balls, const LevelObjective& objective, bool closed,
-                         Random random);
+// balls if the objective falls and every sample is held; their samples are not found yet. `wanted`: how much each ball
+// is wanted as the one that a trial begins at, summed up over the balls. Only `random` decides which trial it is.
+LevelTrial propose_trial(const Surface& surface, const LevelBalls& balls, const LevelObjective& objective,
+                         std::span<const double> wanted, Random random);
 
 }  // namespace orchard::detail

@@ -18,7 +18,7 @@ namespace {
 constexpr Index kSamplesPerBall = 8;
 // The search in closed levels looks at every triangle in reach: of fine meshes it gets less.
 constexpr double kFewTriangles = 4000;
-constexpr double kSearchShare = 0.1;  // of the trials, in each searching round
+constexpr double kSearchShare = 0.15;  // of the trials, in each searching round
 
 // The starts of a first level are tried on so many samples, and with so many trials for each ball.
 constexpr Index kExploringSamples = 800, kExploringTrials = 8;
@@ -26,7 +26,7 @@ constexpr Index kExploredBalls = 800;  // in all starts together, at most: with 
 
 constexpr std::uint64_t kComparingRays = 4000;  // for the outside volume of what is compared
 
-Index trials_for(Index balls, const Work& work) { return static_cast<Index>(work.trials * (300 + 14.0 * balls)); }
+Index trials_for(Index balls, const Work& work) { return static_cast<Index>(work.trials * (300 + 9.0 * balls)); }
 
 // High powers at the top: what is loose there is loose all the way down. The more trials, the lower the sum, at the
 // cost of the largest ball unless the cap is lower too.
@@ -102,7 +102,7 @@ bool Tightener::build_level(Index level, std::vector<TightenReport::Level>& repo
   LevelOptions level_options;
   level_options.balls = static_cast<Index>(wanted);
   level_options.max_children = level == 1                 ? level_options.balls
-                               : options_.spheres.empty() ? 2 * options_.branching
+                               : options_.spheres.empty() ? std::max(kMaxFanOut, 2 * options_.branching)
                                                           : kMaxFanOut;
   level_options.cost = cost_for(options_.objective, level, options_.depth, options_.effort);
   level_options.level = level;

@@ -44,7 +44,7 @@ TEST(TightenedTree, KeepsToTheBudgetOfEachLevelAndOfEachNode) {
     ASSERT_EQ(counts.size(), 3);
     EXPECT_LE(counts[1], branching);
     EXPECT_LE(counts[2], branching * branching);
-    for (const SphereNode& node : tree.nodes) EXPECT_LE(node.child_count, std::min(64u, 2 * branching));
+    for (const SphereNode& node : tree.nodes) EXPECT_LE(node.child_count, std::max(kMaxFanOut, 2 * branching));
   }
 }
 
@@ -112,10 +112,11 @@ TEST(TightenedTree, RefinesOnlyWhatIsNotAccurateEnough) {
   const Surface surface(u_shape(0.3));
   const MedialAxis axis = axis_of(surface, 3000);
   TightenOptions options{.depth = 3, .effort = Effort::low};
-  options.refinement.error = 0.15 * surface.bounding_radius();
+  options.refinement.error = 0.08 * surface.bounding_radius();
   SphereTree tree = tightened_tree(surface, axis, options).tree;
   expect_conservative(tree, surface, "U");
   measure(tree, surface);
+  ASSERT_EQ(tree.depth(), 3);
   Index leaves_above = 0;
   for (const SphereNode& node : tree.nodes) {
     leaves_above += node.child_count == 0 && node.level < tree.depth();

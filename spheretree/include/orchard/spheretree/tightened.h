@@ -17,7 +17,7 @@ enum class Effort { low, standard, high };
 enum class Objective { balanced, maximum, mean, volume };
 
 inline constexpr Index kMaxBranching = 1024;
-inline constexpr Index kMaxFanOut = 64;  // children of a node where its level's spheres are divided by need
+inline constexpr Index kMaxFanOut = 64;  // children of a node, as its level's spheres are divided by need
 
 struct TightenOptions {
   Index depth = 3;      // levels below the root at most
@@ -52,15 +52,15 @@ struct TightenBuild {
 void require_sizes(const TightenOptions& options);
 
 // Builds the tightest trees: each level is solved as a whole, with branching^level balls for the whole surface and
-// every ball free to choose its parent. A parent so has one to twice `branching` children, and the load balances
-// itself. Balls are fitted to surface points, so that max |p - c| + sd(c) is small over the centre c, improved
-// by Lloyd's iteration and large-neighbourhood search, and closed with the boundary lemma: each uncovered region is
-// given to the ball that it costs least, until there is none. Then each ball is fitted again to exactly what it alone
-// holds, and the search goes on with nothing uncovered. The surface points are those of the axis: 20 or more for each
-// ball of the last level. The result is conservative and, since work is counted and not timed, the same on any number
-// of threads. The search runs on the mesh as it is in a frame of its own (tightened/canonical_frame.h), so that a mesh
-// that is scaled or moved with its axis gets the same tree but for the last digits. Throws InputError as
-// require_sizes() does, and for an axis without vertices.
+// every ball free to choose its parent. A parent so has as many children as it is worth, kMaxFanOut at most (or twice
+// `branching`, if that is more), and the load balances itself. Balls are fitted to surface points, so that max |p - c|
+// + sd(c) is small over the centre c, improved by Lloyd's iteration and large-neighbourhood search, and closed with the
+// boundary lemma: each uncovered region is given to the ball that it costs least, until there is none. Then each ball
+// is fitted again to exactly what it alone holds, and the search goes on with nothing uncovered. The surface points are
+// those of the axis: 20 or more for each ball of the last level. The result is conservative and, since work is counted
+// and not timed, the same on any number of threads. The search runs on the mesh as it is in a frame of its own
+// (tightened/canonical_frame.h), so that a mesh that is scaled or moved with its axis gets the same tree but for the
+// last digits. Throws InputError as require_sizes() does, and for an axis without vertices.
 TightenBuild tightened_tree(const Surface& surface, const MedialAxis& axis, const TightenOptions& options = {},
                             const Progress& progress = {});
 
