@@ -156,10 +156,10 @@ Reconstruction::Nearest Reconstruction::nearest(const Point& query, double enoug
   return nearest;
 }
 
-double Reconstruction::distance_to_cell(Index cell, const Point& query) const {
+double Reconstruction::distance_to_cell(Index cell, const Point& query, double best) const {
   const auto& [a, b, c] = corners_[cell];
   Sphere ball;
-  return evaluate(cell, {balls_[a], balls_[b], balls_[c]}, query, std::numeric_limits<double>::infinity(), ball);
+  return evaluate(cell, {balls_[a], balls_[b], balls_[c]}, query, best, ball);
 }
 
 }  // namespace orchard::detail

@@ -37,7 +37,9 @@ class Reconstruction {
   const std::array<Index, 3>& corners_of(Index cell) const { return corners_[cell]; }
   // The least |query - centre| - radius over the balls of one cell. They are those in the convex hull of its corners'
   // balls, so it is a convex function of the query: nowhere on a triangle is it more than at the corners.
-  double distance_to_cell(Index cell, const Point& query) const;
+  // At least `best`, but not exact, where it is not below.
+  double distance_to_cell(Index cell, const Point& query, double best = std::numeric_limits<double>::infinity()) const;
+  Index cells() const { return static_cast<Index>(corners_.size()); }
 
  private:
   // The least for an item, and the ball; a value that is `best` or more need not be exact.

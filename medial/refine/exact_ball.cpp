@@ -11,15 +11,31 @@
 namespace orchard::detail {
 namespace {
 
-constexpr int kMaxSteps = 12;     // of Newton's method, from one set of contacts
-constexpr int kMaxRounds = 8;     // of contacts that come nearer than those held
-constexpr double kEqual = 1e-11;  // bounding radii: distances that are the same
-constexpr double kRank = 0.03;    // of the widest contacts: normals that differ by less do not say where to go
+constexpr int kMaxSteps = 12;       // of Newton's method, from one set of contacts
+constexpr int kMaxRounds = 8;       // of contacts that come nearer than those held
+constexpr double kEqual = 1e-11;    // bounding radii: distances that are the same
+constexpr double kTouching = 1e-9;  // of a distance to a contact: what rounding may put between it and the surface
+constexpr double kRank = 0.03;      // of the widest contacts: normals that differ by less do not say where to go
+
+// The place of the surface that is nearest: no farther than the contacts of balls.
+ClosestPoint closest_from(const Surface& surface, const Point& place, std::initializer_list<const ExactBall*> balls) {
+  double far = std::numeric_limits<double>::infinity();
+  for (const ExactBall* ball : balls) {
+    for (const ClosestPoint& contact : ball->touching()) far = std::min(far, (contact.position - place).squaredNorm());
+  }
+  const ClosestPoint nearest = surface.closest_within(place, (1 + kTouching) * std::sqrt(far));
+  return nearest.triangle != kNone ? nearest : surface.closest(place);
+}
 
 }  // namespace
 
 double ball_error(const Surface& surface, const Point& center, double radius, double reach) {
-  const double distance = surface.distance(center);
+  return ball_error(surface, center, radius, reach, {});
+}
+
+double ball_error(const Surface& surface, const Point& center, double radius, double reach,
+                  std::initializer_list<const ExactBall*> between) {
+  const double distance = closest_from(surface, center, between).distance;
   if (distance <= reach && !surface.inside(center)) return radius + distance;
   return std::abs(radius - distance);
 }
@@ -87,8 +103,8 @@ bool BallSolver::converge(Point& center) {
 }
 
 bool BallSolver::add_violator(const Point& center, double radius) {
-  const ClosestPoint nearest = surface_.closest(center);
-  if (nearest.distance >= radius - kEqual * surface_.bounding_radius()) return false;
+  const ClosestPoint nearest = surface_.closest_within(center, radius - kEqual * surface_.bounding_radius());
+  if (nearest.triangle == kNone) return false;
   contacts_.push_back({nearest});
   return true;
 }
@@ -171,7 +187,7 @@ ExactBall BallSolver::between(const ExactBall& a, const ExactBall& b, double t) 
   contacts_.clear();
   for (const ClosestPoint& contact : a.touching()) contacts_.push_back({contact, 1});
   for (const ClosestPoint& contact : b.touching()) contacts_.push_back({contact, 2});
-  contacts_.push_back({surface_.closest(start)});
+  contacts_.push_back({closest_from(surface_, start, {&a, &b})});
   merge(start);
   std::stable_partition(contacts_.begin(), contacts_.end(), [](const Held& contact) { return contact.of == 3; });
   const auto common = static_cast<std::size_t>(

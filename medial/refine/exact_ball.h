@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <initializer_list>
 #include <span>
 #include <vector>
 
@@ -30,6 +31,9 @@ struct ExactBall {
 // How far an interpolated ball protrudes from the solid or falls short of its surface. Somewhere within `reach` of its
 // centre the solid is, so only a centre that is as near to the surface can be outside.
 double ball_error(const Surface& surface, const Point& center, double radius, double reach);
+// The same of one between these balls: the surface is no farther than their contacts, which saves looking for it.
+double ball_error(const Surface& surface, const Point& center, double radius, double reach,
+                  std::initializer_list<const ExactBall*> between);
 
 // Finds the ball of the medial axis that is nearest to a given one, by Newton's method: the contacts are held, the
 // centre moves as little as makes their distances equal, and what comes nearer than they do becomes a contact, too.

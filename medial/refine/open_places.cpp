@@ -4,7 +4,6 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "../gaps/point_tree.h"
@@ -25,11 +24,13 @@ SurfaceSampling open_places(const Surface& surface, const MedialMesh& mesh, cons
   const Reconstruction reconstruction(mesh);
   std::vector<std::uint8_t> open(probes.size());
   tbb::parallel_for(tbb::blocked_range<Index>(0, probes.size(), 128), [&](const auto& range) {
-    Sphere ball;
+    Index cell = kNone;  // the last one found: often near the next probe
     for (Index i = range.begin(); i != range.end(); ++i) {
-      const double distance =
-          reconstruction.distance_between(limit, std::numeric_limits<double>::infinity(), probes.points[i], ball);
-      open[i] = distance > limit ? 1 : 0;
+      const Point& probe = probes.points[i];
+      if (cell != kNone && reconstruction.distance_to_cell(cell, probe, limit) < limit) continue;
+      const Reconstruction::Nearest nearest = reconstruction.nearest(probe, limit);
+      cell = nearest.cell;
+      open[i] = nearest.distance > limit ? 1 : 0;
     }
   });
   const double separation = kSeparation * std::sqrt(surface.report().area / sampling.size());

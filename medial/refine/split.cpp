@@ -118,7 +118,8 @@ class Splitter {
     const double reach = (length(edge) + std::abs(a.radius - b.radius)) / 2;
     if (reach <= options_.tolerance) return 0;
     const auto error_at = [&](double t) {
-      return ball_error(surface_, (1 - t) * a.center + t * b.center, (1 - t) * a.radius + t * b.radius, length(edge));
+      return ball_error(surface_, (1 - t) * a.center + t * b.center, (1 - t) * a.radius + t * b.radius, length(edge),
+                        {&a, &b});
     };
     const int parts = parts_of(length(edge));
     double worst = error_at(0.5);
@@ -134,7 +135,7 @@ class Splitter {
     const auto error_at = [&](double u, double v) {
       const double w = 1 - u - v;
       return ball_error(surface_, u * a.center + v * b.center + w * c.center,
-                        u * a.radius + v * b.radius + w * c.radius, longest);
+                        u * a.radius + v * b.radius + w * c.radius, longest, {&a, &b, &c});
     };
     const int parts = parts_of(longest);
     double worst = error_at(1.0 / 3, 1.0 / 3);

@@ -27,7 +27,8 @@ class UncoveredSearch {
 
  private:
   struct Block;  // what one task looks at
-  void look_at(const Reconstruction& reconstruction, Block& block) const;
+  class Walk;
+  void look_at(const Reconstruction& reconstruction, const Walk& walk, Block& block) const;
   Block look_at_all(const Reconstruction& reconstruction, const std::vector<std::array<Point, 3>>& parts) const;
 
   const Surface& surface_;
