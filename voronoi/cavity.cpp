@@ -112,8 +112,7 @@ void Cavity::note_facets() {
     const unsigned slot = boundary_.items()[f] % 4;
     const VoronoiVertex& deleted = workspace_.vertices[inside];
     const Index outside = deleted.neighbors[slot];
-    const auto& across = workspace_.vertices[outside].neighbors;
-    const int back = (across[1] == inside) + 2 * (across[2] == inside) + 3 * (across[3] == inside);
+    const std::size_t back = index_of(workspace_.vertices[outside].neighbors, inside);
     const auto& [a, b, c] = kOthers[slot];
     const auto& corner = deleted.forming_points;
     facets_[f] = {inside,

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "cavity.h"
+#include "hull_edges.h"
 #include "line_sum.h"
 #include "orchard/geometry/tolerance.h"
 #include "parallel_insertion.h"
@@ -65,31 +66,6 @@ struct Facet {
   Index across;
 };
 
-// Where one of four numbers is, without branches: it is as good as random.
-std::size_t index_of(const std::array<Index, 4>& numbers, Index number) {
-  return std::size_t{numbers[1] == number} + 2 * std::size_t{numbers[2] == number} +
-         3 * std::size_t{numbers[3] == number};
-}
-
-// The plane of three points, for many points that are held against it.
-class FacetPlane {
- public:
-  FacetPlane(const Point& a, const Point& b, const Point& c) : origin_(a), normal_((b - a).cross(c - a)) {
-    const Vector ab = (b - a).cwiseAbs(), ac = (c - a).cwiseAbs();
-    for (int x = 0, y = 1, z = 2; x < 3; y = z, z = x++) magnitude_[x] = ab[y] * ac[z] + ab[z] * ac[y];
-  }
-  // Whether volume_sign(p, a, b, c) is positive, as far as doubles tell: the same 8 roundings as in volume(), and one
-  // for what is of second order.
-  bool is_certainly_above(const Point& p) const {
-    const Vector to_origin = origin_ - p;
-    return to_origin.dot(normal_) > 9 * kRounding * to_origin.cwiseAbs().dot(magnitude_);
-  }
-
- private:
-  Point origin_;
-  Vector normal_, magnitude_;  // and what its roundings are relative to
-};
-
 // What the facet of three points takes off, where that is more than its share.
 struct Loss {
   double intrusion;
@@ -103,6 +79,7 @@ struct Findings {
   Index fattest = kNone;
   std::vector<Loss> losses;
   std::vector<Index> suspects;
+  std::vector<Index> hull;   // vertices at infinity
   std::vector<Index> lossy;  // that share a sphere farther from their own than a facet's share
   std::vector<Doubt> doubts;
 
@@ -114,6 +91,7 @@ struct Findings {
     if (next.max_volume > max_volume) max_volume = next.max_volume, fattest = next.fattest;
     losses.insert(losses.end(), next.losses.begin(), next.losses.end());
     suspects.insert(suspects.end(), next.suspects.begin(), next.suspects.end());
+    hull.insert(hull.end(), next.hull.begin(), next.hull.end());
     lossy.insert(lossy.end(), next.lossy.begin(), next.lossy.end());
     doubts.insert(doubts.end(), next.doubts.begin(), next.doubts.end());
   }
@@ -176,7 +154,10 @@ class Certifier {
 
   // All that is new; and where facets are in doubt, what they are mended by.
   bool look_at_all() {
-    if (!look_at_each_oriented() || !look_at_each_facet()) return false;
+    found_.hull.clear();
+    if (!look_at_each_oriented() || !look_at_each_facet() || !look_at_edges(found_.hull)) return false;
+    std::stable_sort(found_.doubts.begin(), found_.doubts.end(),
+                     [](const Doubt& a, const Doubt& b) { return a.vertex < b.vertex; });
     for (int round = 0; !found_.doubts.empty(); ++round) {
       doubtful_ += found_.doubts.size();
       if (round == kRounds || doubtful_ > kMaxDoubts + workspace_.vertices.size() / kMaxDoubtsOneIn) return false;
@@ -197,14 +178,31 @@ class Certifier {
       return workspace_.is_free(v) || !is_new(v) || part.is_oriented(v);
     });
   }
+  // Those of the hull aside.
   bool look_at_each_facet() {
     const auto count = static_cast<Index>(workspace_.vertices.size());
     return look_in_blocks((count + kBatch - 1) / kBatch, kBlock / kBatch, [&](Certifier& part, Index batch) {
       const Index begin = batch * kBatch, end = std::min(count, begin + kBatch);
       if (first_new_ == 0) return part.are_all_facets_good(begin, end);
       for (Index v = begin; v < end; ++v)
-        if (!workspace_.is_free(v) && is_new(v) && !part.are_facets_good(v)) return false;
+        if (!workspace_.is_free(v) && is_new(v) && !workspace_.at_infinity(v) && !part.are_facets_good(v)) return false;
       return true;
+    });
+  }
+  // The edges between the facets of vertices at infinity, ascending, that are seen from there.
+  bool look_at_edges(const std::vector<Index>& hull) {
+    const auto count = static_cast<Index>(hull.size());
+    return look_in_blocks((count + kBatch - 1) / kBatch, kHullBlock / kBatch, [&](Certifier& part, Index batch) {
+      std::vector<HullEdge> edges;
+      for (Index i = batch * kBatch; i < std::min(count, (batch + 1) * kBatch); ++i)
+        for (unsigned slot = 0; slot < 3; ++slot) {
+          const Index v = hull[i], u = workspace_.vertices[v].neighbors[slot];
+          if (u > v || !is_new(u)) edges.push_back({v, u, slot});
+        }
+      note_convex(workspace_, edges);
+      return std::all_of(edges.begin(), edges.end(), [&part](const HullEdge& edge) {
+        return edge.convex || part.is_facet_good(edge.v, edge.slot, edge.u);
+      });
     });
   }
   // good(part, i) for all i below the count, until one is not; by several threads where there are many. Nothing changes
@@ -242,9 +240,7 @@ class Certifier {
   // After mending: what is around an edge of the hull may have changed, though the facets next to it have not.
   bool look_at_hull() {
     found_.suspects.clear();
-    const std::vector<Index> hull = hull_vertices();
-    return look_in_blocks(static_cast<Index>(hull.size()), kHullBlock,
-                          [&](Certifier& part, Index i) { return part.are_facets_good(hull[i]); });
+    return look_at_edges(hull_vertices());
   }
 
   // Once more, where bounds that suffice for each facet are too much for all of them: with own spheres where those of
@@ -293,6 +289,7 @@ class Certifier {
   bool is_oriented(Index v) {
     const Point &p0 = corner(v, 0), &p1 = corner(v, 1), &p2 = corner(v, 2);
     if (workspace_.at_infinity(v)) {
+      found_.hull.push_back(v);
       Vector normal;
       return sharp_normal(p0, p1, p2, normal);
     }
@@ -304,13 +301,17 @@ class Certifier {
     note_volume(v, det.value);
     workspace_.settle(v);
     double apart = from_told_sphere(v);
+    if (apart > kTold * max_ && !workspace_.shares_sphere(v)) apart = std::min(apart, from_seen_sphere(v));
     if (apart > kTold * max_) {
       Vector center;
       if (!own_center(v, center)) return false;
+      const bool shared = workspace_.shares_sphere(v);
       apart = from_sphere(v, center);
-      if (apart > (workspace_.shares_sphere(v) ? kGiven : kTold) * max_) {
+      if (apart > (shared ? kGiven : kTold) * max_) {
         workspace_.place_sharply(v, center);
         apart = std::min(from_told_sphere(v), from_sphere(v, center));
+      } else if (!shared) {
+        workspace_.note_own_center(v, center);
       }
     }
     if (apart > small_share_ && workspace_.shares_sphere(v)) found_.lossy.push_back(v);
@@ -330,6 +331,27 @@ class Certifier {
     if (workspace_.exact()) return 0;
     if (workspace_.shares_sphere(v)) return diameter_;
     return workspace_.power_bound(v) / std::sqrt(workspace_.vertices[v].radius);
+  }
+  // The same by how far its forming points are off its sphere: often a much better bound. Where the own centre is off
+  // by d, 2 a . d is the power of a, a forming point relative to the last one; so d is the three powers times the cross
+  // products of the other two, over twice six times the volume. 8 roundings bound the error of a power.
+  double from_seen_sphere(Index v) const {
+    const Point& last = corner(v, 3);
+    const std::array<Vector, 3> to{corner(v, 0) - last, corner(v, 1) - last, corner(v, 2) - last};
+    const Vector to_center = workspace_.vertices[v].center - last;
+    const std::array<double, 3> lengths{to[0].norm(), to[1].norm(), to[2].norm()};
+    const Determinant det = volume(to[0], to[1], to[2]);
+    const double radius = to_center.norm();
+    double sum = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+      const double power = std::abs(to[i].dot(2 * to_center - to[i]));
+      const double cross = to[j].cross(to[k]).norm() + 8 * kRounding * lengths[j] * lengths[k];
+      sum += (power + 8 * kRounding * lengths[i] * (2 * radius + lengths[i])) * cross;
+    }
+    const double apart = sum / (2 * (std::abs(det.value) - det.bound));
+    // The radius of the own sphere is three quarters of this at least.
+    return apart >= 0 && apart <= radius / 4 ? 4 * apart * std::min(2.0, diameter_ / (0.75 * radius)) : diameter_;
   }
   bool own_center(Index v, Vector& center) const {
     return sharp_circumcenter(corner(v, 0), corner(v, 1), corner(v, 2), corner(v, 3), center);
@@ -353,9 +375,9 @@ class Certifier {
     return (workspace_.at_infinity(v) ? is_hull_convex(v, i) : do_spheres_agree(v, i, u)) || doubt(v, u);
   }
 
-  // The same facets of some vertices, where all are new. Waiting for memory and mispredicted branches would be most of
-  // the time, so all facets are listed first, without branches, then the points across, which are in the cache when
-  // their distances are asked for.
+  // The same facets of some vertices, those of the hull aside, where all are new. Waiting for memory and mispredicted
+  // branches would be most of the time, so all facets are listed first, without branches, then the points across, which
+  // are in the cache when their distances are asked for.
   bool are_all_facets_good(Index begin, Index end) {
     std::size_t listed = 0, count = 0;
     std::array<Facet, std::size_t{4} * kBatch> facets;
@@ -372,7 +394,8 @@ class Certifier {
       const Index across = next.forming_points[index_of(next.neighbors, v)];
       __builtin_prefetch(workspace_.points.data() + across);
       facets[count] = {v, u, i, across};
-      count += (across != kInfinitePoint) & (workspace_.vertices[v].forming_points[i] != kInfinitePoint);
+      const auto& corners = workspace_.vertices[v].forming_points;
+      count += (across != kInfinitePoint) & (corners[i] != kInfinitePoint) & (corners[3] != kInfinitePoint);
     }
     for (std::size_t f = 0; f < count; ++f) {
       const auto [v, u, i, across] = facets[f];
@@ -466,15 +489,13 @@ class Certifier {
   bool is_hull_convex(Index v, unsigned i) {
     const unsigned j = (i + 1) % 3, k = (i + 2) % 3;
     const Point &b = corner(v, j), &c = corner(v, k);
-    const FacetPlane plane(corner(v, 0), corner(v, 1), corner(v, 2));
     bool flat = false;
     Index behind = workspace_.vertices[v].forming_points[i];
     for (Index t = workspace_.vertices[v].neighbors[3], from = v; !workspace_.at_infinity(t);) {
       const VoronoiVertex& vertex = workspace_.vertices[t];
       const std::size_t apex = index_of(vertex.neighbors, from);
       const Point& p = workspace_.points[vertex.forming_points[apex]];
-      const Sign below =
-          plane.is_certainly_above(p) ? Sign::positive : volume_sign(p, corner(v, 0), corner(v, 1), corner(v, 2));
+      const Sign below = volume_sign(p, corner(v, 0), corner(v, 1), corner(v, 2));
       if (below == Sign::positive) {
         if (flat) return false;
       } else {

@@ -82,8 +82,19 @@ void Workspace::place_sharply(Index v, const Vector& center) {
   const Point& origin = points[vertex.forming_points[0]];
   vertex.center = origin + center;
   vertex.radius = (vertex.center - origin).squaredNorm();
-  const double rounding = 64 * kRounding * (vertex.radius + std::sqrt(vertex.radius) * vertex.center.lpNorm<1>());
-  set_error_class(v, error_class(rounding), false, state_[v] & 3u);
+  set_error_class(v, error_class(rounding_of_power(vertex)), false, state_[v] & 3u);
+}
+
+void Workspace::note_own_center(Index v, const Vector& center) {
+  const VoronoiVertex& vertex = vertices[v];
+  const double apart = (points[vertex.forming_points[0]] + center - vertex.center).norm();
+  const double bound = 4 * apart * std::sqrt(vertex.radius) + rounding_of_power(vertex);
+  if (bound < power_bound(v)) set_error_class(v, error_class(bound), false, state_[v] & 3u);
+}
+
+// Of one whose centre is right but for some roundings.
+double Workspace::rounding_of_power(const VoronoiVertex& vertex) const {
+  return 64 * kRounding * (vertex.radius + std::sqrt(vertex.radius) * vertex.center.lpNorm<1>());
 }
 
 // Whether the centre that it has is that of its forming points, as far as doubles can tell.

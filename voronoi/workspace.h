@@ -23,6 +23,12 @@ enum class Placing : std::uint8_t {
 // What an insertion knows of a vertex so far.
 enum class Mark : std::uint8_t { unseen, deleted, kept, wanted };
 
+// Where one of four numbers is, without branches: it is as good as random.
+inline std::size_t index_of(const std::array<Index, 4>& numbers, Index number) {
+  return std::size_t{numbers[1] == number} + 2 * std::size_t{numbers[2] == number} +
+         3 * std::size_t{numbers[3] == number};
+}
+
 // A diagram under construction. Its vertices differ from the finished ones: `radius` holds the square of the radius,
 // and no number at infinity, where the infinite point always comes last. Freed vertices have no neighbours.
 //
@@ -115,6 +121,8 @@ class Workspace {
   // Gives a finite vertex the sphere of its forming points, to some roundings, if they have one.
   void place_sharply(Index v);
   void place_sharply(Index v, const Vector& center);  // which is relative to its first point
+  // Leaves it where it is, with the bound that follows from how far it is off that centre.
+  void note_own_center(Index v, const Vector& center);
   bool settled(Index v) const { return error_class_of(v) != kNotSettled; }
 
   static constexpr std::uint8_t kUnknownError = 63, kNotSettled = 62;
@@ -152,6 +160,7 @@ class Workspace {
   bool has_own_center(Index v) const;
   Placing place_again(Index v, VoronoiVertex& placed, std::uint8_t& error) const;
   double residual(const VoronoiVertex& vertex) const;
+  double rounding_of_power(const VoronoiVertex& vertex) const;
 
   static constexpr unsigned kShared = 1u << 8;
   std::vector<std::uint16_t> state_;                 // mark, error class above, kShared

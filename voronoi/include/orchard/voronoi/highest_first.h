@@ -12,7 +12,7 @@ namespace orchard {
 // tolerance::kVoronoiIntrusion of the bounding radius for up to 512 points (a 512th of that for each point more).
 // Points within tolerance::kCoincidentPoints of the bounding radius of an earlier point form no vertex. Points that all
 // lie in a plane, up to rounding, or are fewer than four have a diagram without vertices; report.dimension tells.
-// Deterministic; from 50,000 points on by several threads, with the same result on any number of them. Throws
+// Deterministic; from 100,000 points on by several threads, with the same result on any number of them. Throws
 // InputError for coordinates that are not finite or beyond 1e100, or if all points lie within
 // 1e-100 and are not one. About O(n log n) on surface points; at the peak 66 bytes a vertex and 32 a point beside the
 // caller's points.
