@@ -77,11 +77,17 @@ class BudgetTracker {
   bool late_ = false;
 };
 
-// Of a vector that grows body by body. By an eighth at a time: twice the room would be half the memory.
+// Of a vector that grows one by one, by an eighth at a time: twice the room would be half the memory. What comes all at
+// once gets the room that it takes.
 template <typename T>
 void make_room(std::vector<T>& v, std::size_t size) {
   constexpr std::size_t kMinRoom = 32;
-  if (v.capacity() < size) v.reserve(std::max(kMinRoom, size + size / 8));
+  if (v.capacity() < size) v.reserve(std::max({kMinRoom, size, v.capacity() + v.capacity() / 8}));
+}
+template <typename T>
+void append(std::vector<T>& v, const T& value) {
+  if (v.size() == v.capacity()) v.reserve(std::max<std::size_t>(64, v.size() + v.size() / 16));
+  v.push_back(value);
 }
 template <typename T>
 void grow(std::vector<T>& v, std::size_t size) {

@@ -5,6 +5,8 @@
 namespace orchard::runtime::detail {
 namespace {
 
+constexpr double kMaxFloat = 0x1p120;       // what is below is finite in float
+constexpr double kMinFloat = 0x1p-126;      // below, floats are rounded by more than their last place
 constexpr double kEventResolution = 0.125;  // of a step: no need to know better when a pair can touch
 
 }  // namespace
@@ -25,7 +27,7 @@ struct NearPairs::Sink {
   bool may_pair(const BodyPair& pair) const { return of.pool_.may_pair(pair); }
   void touches(const BodyPair& pair) const { of.overlaps_.add(pair); }
   void parts(const BodyPair& pair) const { of.overlaps_.drop(pair); }
-  void ahead(const PairEvent& event) const { of.overlaps_ahead_.push_back(event); }
+  void ahead(const BodyPair& pair) const { of.note_ahead(pair); }
   void doubtful(const PairEvent& event) const { of.doubtful_.push_back(event); }
   void later(const PairEvent& event, Step step) const { of.wheel_.add(event, step); }
 };
@@ -36,7 +38,7 @@ struct NearPairs::KeptSink {
   static bool may_pair(const BodyPair&) { return true; }
   void touches(const BodyPair& pair) const { outcome.touching.push_back(pair); }
   static void parts(const BodyPair&) {}
-  void ahead(const PairEvent& event) const { outcome.ahead.push_back(event); }
+  void ahead(const BodyPair& pair) const { outcome.ahead.push_back(pair); }
   static void doubtful(const PairEvent&) {}
   void later(const PairEvent& event, Step step) const { outcome.later.push_back({event, step}); }
 };
@@ -51,17 +53,26 @@ void NearPairs::begin_step(bool within_budget) {
 // end of the earlier window, and until then the spheres surely overlap, or surely do not.
 template <typename To>
 bool NearPairs::settle_by_spheres(Step now, const BodyPair& pair, To to) const {
+  constexpr double kRounding = 0x1p-21;  // of the largest number, of two spheres: a float's last place eight times
   const Sphere &a = spheres_[pair.a], &b = spheres_[pair.b];
-  const Vec3 apart = b.center - a.center;
-  const double squared = dot(apart, apart), radii = a.radius + b.radius, reach = a.reach + b.reach;
-  const bool touching = squared <= radii * radii;  // as spheres_touch()
+  double squared = 0, largest = double{a.radius} + b.radius;
+  for (std::size_t d = 0; d < 3; ++d) {
+    const double apart = double{b.center[d]} - a.center[d];
+    squared += apart * apart;
+    largest += std::fabs(double{a.center[d]}) + std::fabs(double{b.center[d]});
+  }
+  const double radii = double{a.radius} + b.radius, reach = double{a.reach} + b.reach,
+               off = kRounding * largest + kMinFloat;
+  if (!(largest < kMaxFloat)) return false;
+  const auto below = [&](double length) { return length > 0 && squared < length * length; };
+  const bool touching = below(radii - off);
+  if (!touching && below(radii + off)) return false;  // as spheres_touch() says
   const bool over = std::min(windows_[pair.a].end, windows_[pair.b].end) <= now + 1;
-  if (!touching) return over || squared > (radii + reach) * (radii + reach);
-  const double sure = radii - reach;
-  if (!over && !(sure > 0 && squared < sure * sure)) return false;
+  if (!touching) return over || !below(radii + reach + off);
+  if (!over && !below(radii - reach - off)) return false;
   if (!to.may_pair(pair)) return true;
   if (ahead_) {
-    to.ahead({pair, windows_.round()});
+    to.ahead(pair);
   } else {
     to.touches(pair);
   }
@@ -73,7 +84,7 @@ template <typename To>
 void NearPairs::settle_touching(Step now, const PairEvent& event, Step left, Step sure, To to) const {
   const PairEvent next{event.pair, windows_.round(), !ahead_ || sure > 0};
   if (ahead_) {
-    if (next.parting) to.ahead(next);
+    if (next.parting) to.ahead(event.pair);
   } else if (!event.parting) {
     to.touches(event.pair);
     if (within_budget_) to.doubtful(next);
@@ -144,12 +155,15 @@ void NearPairs::note_spheres(bool wanted, std::size_t slots) {
 }
 
 // Relative to the lattice, like that of every other body.
-void NearPairs::note_sphere(BodyIndex body, const Motion& m, const Vec3& frame, double duration) noexcept {
-  constexpr double kOutward = 1 + 1e-9;  // for what is rounded here
-  const Vec3 velocity = m.velocity - frame;
+void NearPairs::note_sphere(BodyIndex body, const Motion& m, const Lattice& lattice, double duration) noexcept {
+  constexpr double kOutward = 1 + 1e-6;  // for what is rounded here
+  const Vec3 velocity = m.velocity - lattice.velocity(), center = m.position - lattice.origin();
   const double travel = duration * (std::sqrt(dot(velocity, velocity)) + m.drift + duration * m.acceleration / 2);
-  spheres_[body] = {m.position, m.radius,
-                    travel * kOutward + motion_slack(m, m, duration) + 2 * options_.position_slack};
+  const double reach = travel + motion_slack(m, m, duration) + 2 * options_.position_slack;
+  const auto in_float = [](double x) { return static_cast<float>(x); };
+  spheres_[body] = {{in_float(center[0]), in_float(center[1]), in_float(center[2])},
+                    in_float(m.radius),
+                    in_float(reach * kOutward + kMinFloat)};
 }
 
 void NearPairs::test_near(Step now, std::span<const BodyPair> pairs) {
@@ -197,7 +211,7 @@ void NearPairs::test_near(Step now, std::span<const BodyPair> pairs, Outcome& ou
 void NearPairs::take(Outcome& outcome) {
   for (const BodyPair& pair : outcome.touching) overlaps_.add(pair);
   for (const Outcome::Later& later : outcome.later) wheel_.add(later.event, later.step);
-  overlaps_ahead_.insert(overlaps_ahead_.end(), outcome.ahead.begin(), outcome.ahead.end());
+  for (const BodyPair& pair : outcome.ahead) note_ahead(pair);
   for (const BodyIndex body : outcome.refused) refusals_.refuse(body);
   pool_.count_asked(outcome.asked);
   outcome.touching.clear(), outcome.later.clear(), outcome.ahead.clear(), outcome.refused.clear();
@@ -205,14 +219,14 @@ void NearPairs::take(Outcome& outcome) {
 }
 
 void NearPairs::take_overlaps_ahead() {
-  for (const PairEvent& event : overlaps_ahead_) {
-    if (windows_.valid(event)) overlaps_.add(event.pair);
+  for (const BodyPair& pair : overlaps_ahead_) {
+    if (windows_.valid({pair, ahead_round_})) overlaps_.add(pair);
   }
   overlaps_ahead_.clear();
 }
 
 void NearPairs::take_overlaps_ahead(std::vector<PairEvent>& events) {
-  events.insert(events.end(), overlaps_ahead_.begin(), overlaps_ahead_.end());
+  for (const BodyPair& pair : overlaps_ahead_) events.emplace_back(pair, ahead_round_);
   overlaps_ahead_.clear();
 }
 

@@ -45,7 +45,7 @@ class NearPairs {
       Step step;
     };
     std::vector<BodyPair> touching;
-    std::vector<PairEvent> ahead;
+    std::vector<BodyPair> ahead;
     std::vector<Later> later;
     std::vector<BodyIndex> refused;
     std::uint64_t asked = 0;
@@ -69,17 +69,21 @@ class NearPairs {
   void make_room_for_spheres(std::size_t slots) {
     if (!spheres_.empty()) grow(spheres_, slots);
   }
-  void note_sphere(BodyIndex body, const Motion& motion, const Vec3& frame, double duration) noexcept;
+  void note_sphere(BodyIndex body, const Motion& motion, const Lattice& lattice, double duration) noexcept;
   bool notes_spheres() const noexcept { return !spheres_.empty(); }
 
   void forget_all() noexcept;
   std::size_t memory_bytes() const noexcept;
 
  private:
-  struct Sphere {
-    Vec3 center;
-    double radius, reach;  // reach: as far as the centre may get until the body's window ends, and all slack
+  struct Sphere {                 // in a third of the memory of a motion's part, and off by its rounding
+    std::array<float, 3> center;  // from the lattice's origin
+    float radius, reach;          // reach: as far as the centre may get until the body's window ends, and all slack
   };
+  void note_ahead(const BodyPair& pair) {
+    ahead_round_ = windows_.round();
+    append(overlaps_ahead_, pair);
+  }
   struct Sink;
   struct KeptSink;
   template <typename To>
@@ -96,8 +100,9 @@ class NearPairs {
   OverlapList& overlaps_;
   Refusals& refusals_;
   bool ahead_ = false, within_budget_ = false;
-  std::vector<Sphere> spheres_;            // by body; empty unless many pairs are near
-  std::vector<PairEvent> overlaps_ahead_;  // of pairs tested ahead for the next step, at which they surely touch
+  std::vector<Sphere> spheres_;           // by body; empty unless many pairs are near
+  std::vector<BodyPair> overlaps_ahead_;  // of pairs tested ahead for the next step, at which they surely touch,
+  Round ahead_round_ = 0;                 // in this round
   std::vector<PairEvent> doubtful_;  // reported within a budget, before another update that may not have found them yet
   std::vector<PairEvent> tests_;     // of the call under way; kept for its memory, as the next one
   std::vector<Motion> motions_;

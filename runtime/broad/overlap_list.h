@@ -14,9 +14,9 @@ class OverlapList {
   std::span<const BodyPair> pairs() const noexcept { return pairs_; }
 
   // Of the step under way, in any order, any number of times.
-  void add(const BodyPair& pair) { (anew_ ? pairs_ : added_).push_back(pair); }  // it touches
-  void drop(const BodyPair& pair) { dropped_.push_back(pair); }                  // it does not, unless it is added, too
-  void make_room(std::size_t slots) { grow(marks_, slots); }                     // bodies that are marked are below
+  void add(const BodyPair& pair) { append(anew_ ? pairs_ : added_, pair); }  // it touches
+  void drop(const BodyPair& pair) { dropped_.push_back(pair); }              // it does not, unless it is added, too
+  void make_room(std::size_t slots) { grow(marks_, slots); }                 // bodies that are marked are below
   void mark(BodyIndex body, std::uint8_t what) noexcept {
     if (anew_ && what == kUpdated) return;
     marks_[body] |= what;

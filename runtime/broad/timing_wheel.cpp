@@ -48,8 +48,8 @@ void TimingWheel::clear_events() noexcept {
 void TimingWheel::clear() noexcept {
   buckets_.fill({});
   busy_.fill(0);
-  lines_.clear();
-  parts_.clear();
+  give_back(lines_);
+  give_back(parts_);
   free_line_ = free_part_ = kNone;
 }
 
@@ -92,7 +92,7 @@ void TimingWheel::take(Step step, std::vector<BodyIndex>& bodies, std::vector<Pa
     Events& some = parts_[part];
     const std::uint32_t next = some.next;
     if (next != kNone) prefetch(&parts_[next]);
-    while (count > 0) events.push_back(some.events[--count]);
+    while (count > 0) append(events, some.events[--count]);
     some.next = free_part_;
     free_part_ = part;
     part = next;

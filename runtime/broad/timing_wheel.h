@@ -32,7 +32,7 @@ class TimingWheel {
   void set_due(std::span<const BodyIndex> bodies, Step step);
   void clear_bodies() noexcept;
   void clear_events() noexcept;
-  void clear() noexcept;  // of everything
+  void clear() noexcept;  // of everything, its memory, too
   void add(const PairEvent& event, Step step);
 
   // Moves everything due at the step to the ends of the vectors.

@@ -3,7 +3,7 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr std::size_t kNearAtOnce = 1024;  // near pairs that are tested together
+constexpr std::size_t kNearAtOnce = 512;  // near pairs that are tested together
 
 }  // namespace
 
@@ -52,7 +52,7 @@ bool WindowUpdates::place(Block& block, std::span<const BodyIndex> bodies) {
     parts_.overlaps.mark(bodies[i], OverlapList::kUpdated);
   }
   for (std::size_t i = 0; parts_.pairs.notes_spheres() && i < bodies.size(); ++i) {
-    parts_.pairs.note_sphere(bodies[i], motions[i], block.lattice.velocity(), block.durations[i]);
+    parts_.pairs.note_sphere(bodies[i], motions[i], block.lattice, block.durations[i]);
   }
   parts_.planner.note(motions);
   same = note_boxes(block, bodies) && same;

@@ -118,7 +118,7 @@ void WindowUpdates::place_shared(Chunk& chunk, Block& block, std::span<BodyIndex
   for (std::size_t i = 0; i < count; ++i) {
     parts_.windows.set(bodies[i], block.from, block.ends[i]);
     if (parts_.pairs.notes_spheres()) {
-      parts_.pairs.note_sphere(bodies[i], motions[i], block.lattice.velocity(), block.durations[i]);
+      parts_.pairs.note_sphere(bodies[i], motions[i], block.lattice, block.durations[i]);
     }
     const bool runs_on = !chunk.runs.empty() && chunk.runs.back().end == block.ends[i];
     if (!runs_on) chunk.runs.push_back({block.ends[i], 0});
