@@ -121,14 +121,13 @@ void add_tree_options(CLI::App& command, SphereTreeOptions& options) {
   auto* depth = command.add_option("--depth", options.depth, "Levels below the root at most")
                     ->check(CLI::Range(1, 20))
                     ->capture_default_str();
-  auto* branching =
-      command
-          .add_option(
-              "--branching", options.branching,
-              "Children of a sphere at most; tightened and merging: on average, up to twice and three times as many; "
-              "above 64 for tightened only")
-          ->check(CLI::Range(2, static_cast<int>(kMaxBranching)))
-          ->capture_default_str();
+  auto* branching = command
+                        .add_option("--branching", options.branching,
+                                    "Children of a sphere at most; on average with tightened, where a sphere has as "
+                                    "many as it is worth, and merging, up to three times as many; "
+                                    "above 64 for tightened only")
+                        ->check(CLI::Range(2, static_cast<int>(kMaxBranching)))
+                        ->capture_default_str();
   add_list(command, "--spheres", options.spheres,
            "tightened: N1,N2,.. spheres on each level at most, in place of --depth and --branching; children go where "
            "they help, up to 64 to a sphere")

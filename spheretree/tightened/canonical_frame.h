@@ -15,7 +15,7 @@ class CanonicalFrame {
   static CanonicalFrame without_lattice(const Box& box);
 
   Point in(const Point& point) const { return snapped(point, kLattice); }
-  // For what is known less exactly: a coarser lattice.
+  // For what is known less exactly, as points are that were relaxed: a coarser lattice.
   Point roughly_in(const Point& point) const { return snapped(point, kCoarseLattice); }
   TriangleMesh in(const TriangleMesh& mesh) const;
   Refinement in(const Refinement& refinement) const;
@@ -24,7 +24,7 @@ class CanonicalFrame {
   Sphere out(const Sphere& ball) const;
 
  private:
-  static constexpr double kLattice = 0x1p-22, kCoarseLattice = 0x1p-14;
+  static constexpr double kLattice = 0x1p-22, kCoarseLattice = 0x1p-10;
   // How far the lattice moves a point: half the diagonal of a cell, and roundings.
   static constexpr double kMoved = 0.9 * kLattice;
   Point snapped(const Point& point, double lattice) const;

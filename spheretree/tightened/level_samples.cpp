@@ -1,45 +1,69 @@
 #include "level_samples.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <numeric>
 
 namespace orchard::detail {
 namespace {
 
 // Large balls need few samples for each to be judged by.
 constexpr Index kEnoughSamplesPerBall = 64, kFewestSamples = 4000;
-// Radii that differ by less, as a fraction of R, are the same.
-constexpr double kAsLarge = 1e-6;
+constexpr int kShrinks = 12;             // of the ball that touches the surface in a sample
+constexpr double kEmpty = 1 - 1e-3;      // a ball whose centre is as far from the surface, in radii, touches it
+constexpr double kSmallestStart = 0.01;  // radius of such a ball, in R
 
-// The largest of the balls that touch each surface point; of balls that are as large but for rounding, as where many
-// points lie on one sphere, the first by its place, whatever their order.
-std::vector<Index> poles(const MedialAxis& axis, const CanonicalFrame& frame, double bounding_radius) {
-  const auto before = [&](Index a, Index b) {
-    const Point p = frame.roughly_in(axis.centers[a]), q = frame.roughly_in(axis.centers[b]);
-    return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
-  };
-  std::vector<Index> pole(axis.points.size(), kNone);
-  for (Index v = 0; v < axis.size(); ++v)
-    for (Index p : axis.forming_points[v]) {
-      const double larger = pole[p] == kNone ? bounding_radius : axis.radii[v] - axis.radii[pole[p]];
-      if (larger > kAsLarge * bounding_radius || (larger > -kAsLarge * bounding_radius && before(v, pole[p])))
-        pole[p] = v;
-    }
-  return pole;
+// The centre of the largest ball in the solid that touches the surface there, shrunk from R.
+Point touching_center(const Surface& surface, const Point& point, const Vector& outward) {
+  double radius = surface.bounding_radius();
+  const double min = kSmallestStart * radius;
+  for (int k = 0; k < kShrinks; ++k) {
+    const Point center = point - radius * outward;
+    const ClosestPoint nearest = surface.closest_within(center, kEmpty * radius);
+    if (nearest.triangle == kNone) break;
+    const Vector across = point - nearest.position;
+    const double along = outward.dot(across);
+    if (!(along > 0)) break;
+    const double smaller = across.squaredNorm() / (2 * along);
+    if (!(smaller < radius)) break;
+    radius = std::max(smaller, min);
+    if (radius == min) break;
+  }
+  return point - radius * outward;
+}
+
+// The points without those that repair added, which come out otherwise with the last digits of the others; but all, if
+// there are hardly others, as in an imported axis.
+std::vector<Index> sampled_points(const MedialAxis& axis) {
+  std::vector<Index> all(axis.points.size()), sampled;
+  std::iota(all.begin(), all.end(), Index{0});
+  for (Index p : all)
+    if (axis.origins.size() != all.size() || axis.origins[p] != PointOrigin::repair) sampled.push_back(p);
+  return 2 * sampled.size() < all.size() ? all : sampled;
 }
 
 }  // namespace
 
 Samples surface_samples(const Surface& surface, const MedialAxis& axis, const CanonicalFrame& frame) {
-  const std::vector<Index> pole = poles(axis, frame, surface.bounding_radius());
+  const std::vector<Index> sampled = sampled_points(axis);
+  const auto count = static_cast<Index>(sampled.size());
   Samples samples;
-  for (Index p = 0; p < axis.points.size(); ++p) {
-    samples.points.push_back(frame.in(axis.points[p]));
-    samples.starts.push_back(frame.roughly_in(pole[p] == kNone ? axis.points[p] : axis.centers[pole[p]]));
-  }
+  samples.points.resize(count);
+  samples.starts.resize(count);
+  tbb::parallel_for(Index{0}, count, [&](Index p) {
+    const Index from = sampled[p];
+    // Edges' points are evenly spaced, without relaxation: they are known to the last digits.
+    const bool exact = axis.origins.size() == axis.points.size() && axis.origins[from] == PointOrigin::edge;
+    const Point& point = axis.points[from];
+    const ClosestPoint on = surface.closest(exact ? frame.in(point) : frame.roughly_in(point));
+    samples.points[p] = on.position;
+    samples.starts[p] = touching_center(surface, on.position, surface.pseudonormal(on.triangle, on.feature));
+  });
   if (surface.mesh().vertices.size() > axis.points.size()) return samples;
   for (Index v = 0; v < surface.mesh().vertices.size(); ++v) {
     if (surface.triangles_around(v).empty()) continue;
-    samples.points.push_back(frame.in(surface.mesh().vertices[v]));
+    samples.points.push_back(surface.mesh().vertices[v]);
     samples.starts.push_back(samples.points.back());
   }
   return samples;

@@ -11,8 +11,9 @@ struct Samples {
   Index size() const { return static_cast<Index>(points.size()); }
 };
 
-// The axis's surface points, each with the centre of the largest medial ball that touches it, and the mesh's corners if
-// they are not too many; both in the frame.
+// The axis's surface points, each with the centre of the largest ball in the solid that touches it, and the mesh's
+// corners if they are not too many. `surface` is the one in the frame. Relaxed points are taken roughly and put back on
+// it, so that the same come out whatever the frame in which the axis was made.
 Samples surface_samples(const Surface& surface, const MedialAxis& axis, const CanonicalFrame& frame);
 
 // About so many of them, or a few more: every k-th, without those that a leaf holds.

@@ -58,7 +58,7 @@ TightenBuild tightened_tree(const Surface& surface, const MedialAxis& axis, cons
   require_sizes(options);
   if (axis.size() == 0) throw InputError("the medial axis has no vertex: sample the surface more densely");
   const Framed framed(surface);
-  const detail::Samples samples = detail::surface_samples(surface, axis, framed.frame);
+  const detail::Samples samples = detail::surface_samples(framed.surface, axis, framed.frame);
   const Sphere root = framed.frame.in(surface.bounding_ball());
   TightenOptions own = options;
   own.refinement = framed.frame.in(options.refinement);

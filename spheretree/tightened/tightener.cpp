@@ -24,9 +24,19 @@ constexpr double kSearchShare = 0.15;  // of the trials, in each searching round
 constexpr Index kExploringSamples = 800, kExploringTrials = 8;
 constexpr Index kExploredBalls = 800;  // in all starts together, at most: with many balls, one start is like another
 
+constexpr double kLogOfPlaces =
+    18;  // binary, of the places on the last level of a tree whose nodes all had so many children
+
 constexpr std::uint64_t kComparingRays = 4000;  // for the outside volume of what is compared
 
 Index trials_for(Index balls, const Work& work) { return static_cast<Index>(work.trials * (300 + 9.0 * balls)); }
+
+// As many as it is worth. Yet the text format has room for as many below every node: it is to stay small.
+Index max_children(const TightenOptions& options) {
+  if (!options.spheres.empty()) return kMaxFanOut;
+  const auto roomy = static_cast<Index>(std::exp2(kLogOfPlaces / options.depth));
+  return std::max(2 * options.branching, std::min(kMaxFanOut, roomy));
+}
 
 // High powers at the top: what is loose there is loose all the way down. The more trials, the lower the sum, at the
 // cost of the largest ball unless the cap is lower too.
@@ -101,9 +111,7 @@ bool Tightener::build_level(Index level, std::vector<TightenReport::Level>& repo
   if (refined == 0 || (wanted <= refined && level > 1)) return false;
   LevelOptions level_options;
   level_options.balls = static_cast<Index>(wanted);
-  level_options.max_children = level == 1                 ? level_options.balls
-                               : options_.spheres.empty() ? std::max(kMaxFanOut, 2 * options_.branching)
-                                                          : kMaxFanOut;
+  level_options.max_children = level == 1 ? level_options.balls : max_children(options_);
   level_options.cost = cost_for(options_.objective, level, options_.depth, options_.effort);
   level_options.level = level;
   level_options.seed = options_.seed;

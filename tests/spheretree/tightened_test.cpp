@@ -252,6 +252,24 @@ TEST(TightenedTree, IsTheSameForAMeshThatIsScaledOrMoved) {
   }
 }
 
+TEST(TightenedTree, IsTheSameWhereEvenTheAxisIsMadeInAnotherFrame) {
+  const TriangleMesh mesh = u_shape(0.3);
+  const auto tree_in = [&](double factor, const Vector& offset) {
+    const Surface surface(transformed(mesh, factor, offset));
+    return tightened_tree(surface, axis_of(surface, 1000), {.depth = 2, .effort = Effort::low}).tree;
+  };
+  const SphereTree tree = tree_in(1, Vector::Zero());
+  for (const auto& [factor, offset] : {std::pair{1000.0, Vector(0, 0, 0)}, {2.54, Vector(10, -7, 3)}}) {
+    const SphereTree other = tree_in(factor, offset);
+    ASSERT_EQ(tree.nodes.size(), other.nodes.size()) << factor;
+    for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+      EXPECT_EQ(tree.nodes[i].parent, other.nodes[i].parent);
+      const double radius = factor * tree.nodes[i].sphere.radius;
+      EXPECT_NEAR(other.nodes[i].sphere.radius, radius, 1e-9 * radius) << factor;
+    }
+  }
+}
+
 TEST(TightenedTree, StopsWhenCancelled) {
   const Surface surface(torus(24, 12));
   const MedialAxis axis = axis_of(surface);

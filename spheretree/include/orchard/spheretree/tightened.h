@@ -52,15 +52,17 @@ struct TightenBuild {
 void require_sizes(const TightenOptions& options);
 
 // Builds the tightest trees: each level is solved as a whole, with branching^level balls for the whole surface and
-// every ball free to choose its parent. A parent so has as many children as it is worth, kMaxFanOut at most (or twice
-// `branching`, if that is more), and the load balances itself. Balls are fitted to surface points, so that max |p - c|
-// + sd(c) is small over the centre c, improved by Lloyd's iteration and large-neighbourhood search, and closed with the
-// boundary lemma: each uncovered region is given to the ball that it costs least, until there is none. Then each ball
-// is fitted again to exactly what it alone holds, and the search goes on with nothing uncovered. The surface points are
-// those of the axis: 20 or more for each ball of the last level. The result is conservative and, since work is counted
-// and not timed, the same on any number of threads. The search runs on the mesh as it is in a frame of its own
-// (tightened/canonical_frame.h), so that a mesh that is scaled or moved with its axis gets the same tree but for the
-// last digits. Throws InputError as require_sizes() does, and for an axis without vertices.
+// every ball free to choose its parent. A parent so has as many children as it is worth, kMaxFanOut at most with up to
+// three levels, fewer with more, and at least up to twice `branching`; the load balances itself. Balls are fitted to
+// surface points, so that max |p - c| + sd(c) is small over the centre c, improved by Lloyd's iteration and large-
+// neighbourhood search, and closed with the boundary lemma: each uncovered region is given to the ball that it costs
+// least, until there is none. Then each ball is fitted again to exactly what it alone holds, and at high effort the
+// search goes on with nothing uncovered. The surface points are those of the axis, 20 or more for each ball of the last
+// level, but for those that gap repair added. The result is conservative and, since work is counted and not timed, the
+// same on any number of threads. The search runs on the mesh as it is in a frame of its own
+// (tightened/canonical_frame.h), so that a mesh that is scaled or moved gets the same tree but for the last digits,
+// unless a surface point is as near to the border between two lattice points as its digits reach. Throws InputError as
+// require_sizes() does, and for an axis without vertices.
 TightenBuild tightened_tree(const Surface& surface, const MedialAxis& axis, const TightenOptions& options = {},
                             const Progress& progress = {});
 
