@@ -1,5 +1,8 @@
 #include "front_block.h"
 
+#include <bit>
+#include <cmath>
+
 #include "ball_slab_pair.h"
 #include "eight.h"
 #include "machine.h"
@@ -10,6 +13,7 @@
 namespace orchard::runtime::detail {
 namespace {
 
+constexpr int kReflections = 4;
 constexpr float kUnitError = 0x1p-18f;  // vectors are of length 1 to within 1e-6: so much of a gap may not be there
 
 template <typename Kind>
@@ -55,6 +59,29 @@ ORCHARD_INLINE float least_of(const typename Kind::Floats& v) noexcept {
   return lanes[0];
 }
 
+// The corner that is least far along u.
+template <typename Kind>
+ORCHARD_INLINE std::array<float, 3> extreme(const typename Eight<Kind>::Vectors (&corner)[3],
+                                            const std::array<float, 3>& u) noexcept {
+  using E = Eight<Kind>;
+  using Floats = typename E::Floats;
+  using Vectors = typename E::Vectors;
+  const Vectors axis = {E::all(u[0]), E::all(u[1]), E::all(u[2])};
+  Floats least = E::dot(axis, corner[0]);
+  Vectors at = corner[0];
+  for (std::size_t k = 1; k < 3; ++k) {
+    const Floats along = E::dot(axis, corner[k]);
+    const auto less = along < least;
+    least = Kind::choose(less, along, least);
+    at = {Kind::choose(less, corner[k].x, at.x), Kind::choose(less, corner[k].y, at.y),
+          Kind::choose(less, corner[k].z, at.z)};
+  }
+  const auto lane = static_cast<std::uint32_t>(std::countr_zero(Kind::bits(least <= E::all(least_of<Kind>(least)))));
+  std::array<float, kBlockWidth> x, y, z;
+  store(at.x, x), store(at.y, y), store(at.z, z);
+  return {x[lane % kBlockWidth], y[lane % kBlockWidth], z[lane % kBlockWidth]};
+}
+
 template <typename Kind>
 ORCHARD_INLINE LeafAxis find_leaf_axis(const LeafPair& pair, const Placement& placement,
                                        const std::array<float, 3>& given, float enough) noexcept {
@@ -69,21 +96,39 @@ ORCHARD_INLINE LeafAxis find_leaf_axis(const LeafPair& pair, const Placement& pl
   const auto facing = [&](float x, float y, float z) -> std::array<float, 3> {
     return x * dx + y * dy + z * dz < 0 ? std::array<float, 3>{-x, -y, -z} : std::array<float, 3>{x, y, z};
   };
-  const float length = __builtin_sqrtf(dx * dx + dy * dy + dz * dz) + kMinDistance;
+  const float length = std::sqrt(dx * dx + dy * dy + dz * dz) + kMinDistance;
   const std::array<float, 3> axes[] = {
       given, {dx / length, dy / length, dz / length}, facing(p.nx, p.ny, p.nz), facing(q.nx, q.ny, q.nz)};
   LeafAxis best = {-1, given};
-  bool first = true;
-  for (const std::array<float, 3>& u : axes) {
+  const auto try_axis = [&](const std::array<float, 3>& u, bool first) ORCHARD_INLINE_LAMBDA {
     const Vectors axis = {E::all(u[0]), E::all(u[1]), E::all(u[2])};
     const auto along = [&](const Vectors& v) ORCHARD_INLINE_LAMBDA -> Floats { return E::dot(axis, v); };
     const Floats near = E::larger(E::larger(along(lane[0]), along(lane[1])), along(lane[2]));
     const Floats far = E::smaller(E::smaller(along(row[0]), along(row[1])), along(row[2]));
     const float apart = least_of<Kind>(far) + least_of<Kind>(-near) - 2 * placement.margin;
     const float gap = apart - (apart < 0 ? -apart : apart) * kUnitError;
-    if (first || best.gap < gap) best = {gap, u};
-    if (best.gap >= enough) break;
+    const bool better = first || best.gap < gap;
+    if (better) best = {gap, u};
+    return better;
+  };
+  bool first = true;
+  for (const std::array<float, 3>& u : axes) {
+    try_axis(u, first);
     first = false;
+    if (best.gap >= enough) return best;
+  }
+  // As long as it gets better, reflected in the line through the points that are in the way (Chung and Wang 1996).
+  for (int turn = 0; turn < kReflections && best.gap <= 0; ++turn) {
+    const std::array<float, 3> u = best.u, last = extreme<Kind>(lane, {-u[0], -u[1], -u[2]}),
+                               next = extreme<Kind>(row, u);
+    const float x = next[0] - last[0], y = next[1] - last[1], z = next[2] - last[2];
+    const float square = x * x + y * y + z * z, over = u[0] * x + u[1] * y + u[2] * z;
+    if (!(square > 0)) break;
+    const float factor = 2 * over / square;
+    std::array<float, 3> v = {u[0] - factor * x, u[1] - factor * y, u[2] - factor * z};
+    const float size = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + kMinDistance;
+    v = {v[0] / size, v[1] / size, v[2] / size};
+    if (!try_axis(v, false)) break;
   }
   return best;
 }
