@@ -22,7 +22,8 @@ using detail::Vec3;
 namespace {
 
 constexpr float kUnused = std::numeric_limits<float>::infinity();
-constexpr float kUnknown = -kUnused;     // of a gap: whatever the motion
+constexpr float kUnknown = -kUnused;  // of a gap: whatever the motion
+constexpr float kFarSteps = 16;  // last motions: what is farther than these is kept as one bound where room is short
 constexpr std::uint32_t kMostOpen = 64;  // more to look at than that, and the roots are the shorter way
 constexpr double kAxisError = 4e-6;      // of a motion
 
@@ -65,6 +66,7 @@ void FrontWalk::begin() noexcept {
   front_.relative_ = relative_;
   front_.rest_ = std::numeric_limits<double>::infinity();
   front_.used_ = front_.free_count_ = 0;
+  if (front_.crowded_ && enough_ > 0) far_ = kFarSteps * enough_;
   leaf_count_ = node_count_ = 0;
   add(0, 0, kUnknown, {1, 0, 0});
   see_to(0);
@@ -94,9 +96,9 @@ bool FrontWalk::advance() noexcept {
   }
   const double moved = size_of(way) + swing * double{root.radius[0]};
   const double error = double{placement_.margin} + kAxisError * (moved + size_of(middle) * swing);
+  enough_ = static_cast<float>(moved);
   front_.rest_ -= moved + error;
   if (!(front_.rest_ > 0) || !std::isfinite(moved)) return false;
-  enough_ = static_cast<float>(moved);
   shift.swing = static_cast<float>(swing * (1 + 1e-6));
   shift.error = static_cast<float>(error * (1 + 1e-6));
   front_.relative_ = relative_;
@@ -237,12 +239,17 @@ void FrontWalk::expand(const BallSlabPair& pair, bool open_second) noexcept {
 
 void FrontWalk::add(std::uint32_t a, std::uint32_t b, float gap, const Axis& u) noexcept {
   std::uint32_t slot = front_.used_;
+  if (gap > far_) {
+    front_.rest_ = std::min(front_.rest_, double{gap});
+    return;
+  }
   if (front_.free_count_ > 0) {
     slot = front_.free_[--front_.free_count_];
   } else if (slot < PairFront::kRoom) {
     if (slot % kBlockWidth == 0) front_.blocks_[slot / kBlockWidth].gap.fill(kUnused);
     ++front_.used_;
   } else {
+    front_.crowded_ = true;
     front_.rest_ = std::min(front_.rest_, double{gap});
     return;
   }

@@ -2,6 +2,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "budget_tracker.h"
 #include "orchard/runtime/narrow_phase.h"
@@ -53,6 +54,7 @@ class FrontWalk {
   PairAccess::BudgetTracker* tracker_ = nullptr;
   BallSlabPair* stack_;
   std::size_t stack_size_ = 0;
+  float far_ = std::numeric_limits<float>::infinity();          // gaps above it are kept as one bound
   float enough_ = 0;                                            // of a gap between leaves: as much as the last motion
   std::array<std::uint16_t, PairFront::kRoom> leaves_, nodes_;  // slots without a gap
   std::uint32_t leaf_count_ = 0, node_count_ = 0;

@@ -30,7 +30,10 @@ struct FrontBlock {
 class PairFront {
  public:
   static constexpr std::uint32_t kRoom = 1024;  // pairs; what does not fit is kept as one bound
-  void clear() noexcept { first_ = second_ = nullptr; }
+  void clear() noexcept {
+    first_ = second_ = nullptr;
+    crowded_ = false;
+  }
 
  private:
   friend class FrontWalk;
@@ -41,7 +44,8 @@ class PairFront {
   Pose relative_;           // of the second tree in the first one's frame, when the gaps held
   double rest_ = 0;         // lower bound on the distance of what is in no block, likewise
   std::uint32_t used_ = 0;  // lanes that have ever been filled
-  std::uint32_t free_count_ = 0, built_ = 0;
+  std::uint32_t free_count_ = 0;
+  bool crowded_ = false;                     // there has been no room for some
   std::array<std::uint16_t, kRoom> free_{};  // lanes among them that are free again
   std::array<detail::FrontBlock, kBlocks> blocks_{};
 };
