@@ -14,6 +14,7 @@
 #include "orchard/runtime/contacts.h"
 #include "orchard/runtime/shape_query.h"
 #include "orchard/runtime/time_of_impact.h"
+#include "pair/coherent_pair.h"
 #include "rival.h"
 #include "support.h"
 
@@ -81,38 +82,78 @@ struct Bodies {
   PreparedTree prepared;
   TreePair pair;
   Workspace workspace;
+  PairFront front;
   double radius = 0;
   std::array<double, 3> middle{};
   std::vector<std::unique_ptr<PairRival>> rivals;
 };
 
-// A pair that moves by a degree and 0.5 % of R a step, from the poses of one class on.
-void coherent(Bodies& bodies, const std::vector<Query>& starts, int pose_class, int steps) {
-  std::vector<Query> queries;
-  std::vector<bool> first;
-  for (const Query& start : starts) {
-    if (start.pose_class != pose_class) continue;
-    test::Draw draw(queries.size());
-    Pose b = start.b;
-    const auto axis = draw.direction(), way = draw.direction();
-    const double half = 0.5 * 0.0174532925;
-    const Pose turn = *pose_from_quaternion(
-        {std::cos(half), std::sin(half) * axis[0], std::sin(half) * axis[1], std::sin(half) * axis[2]}, {0, 0, 0});
-    for (int step = 0; step < steps; ++step) {
-      queries.push_back({start.a, b, pose_class});
-      first.push_back(step == 0);
-      const auto at = transform(b, bodies.middle);
-      b.rotation = compose(turn, b).rotation;
-      if (const auto rigid = made_rigid(b)) b = *rigid;
-      const auto moved = rotate(b, bodies.middle);
-      for (std::size_t i = 0; i < 3; ++i) b.translation[i] = at[i] - moved[i] + 0.005 * bodies.radius * way[i];
+// A pair that moves from the poses of one class on.
+struct Motion {
+  Motion(const Bodies& bodies, const std::vector<Query>& starts, int pose_class, double degrees, double share) {
+    constexpr int steps = 100;
+    for (const Query& start : starts) {
+      if (start.pose_class != pose_class) continue;
+      test::Draw draw(queries.size());
+      Pose b = start.b;
+      const auto axis = draw.direction(), way = draw.direction();
+      const double half = 0.5 * 0.0174532925 * degrees;
+      const Pose turn = *pose_from_quaternion(
+          {std::cos(half), std::sin(half) * axis[0], std::sin(half) * axis[1], std::sin(half) * axis[2]}, {0, 0, 0});
+      for (int step = 0; step < steps; ++step) {
+        queries.push_back({start.a, b, pose_class});
+        first.push_back(step == 0);
+        const auto at = transform(b, bodies.middle);
+        b.rotation = compose(turn, b).rotation;
+        if (const auto rigid = made_rigid(b)) b = *rigid;
+        const auto moved = rotate(b, bodies.middle);
+        for (std::size_t i = 0; i < 3; ++i) b.translation[i] = at[i] - moved[i] + share * bodies.radius * way[i];
+      }
     }
   }
-  bodies.place(queries);
+  std::vector<Query> queries;
+  std::vector<bool> first;
+};
+
+// How coherent answers come about, and what each way costs: remembered, or searched.
+void print_ways(Bodies& bodies, const Motion& motion, const std::vector<double>& times) {
+  static constexpr const char* names[] = {"no, remembered", "no, searched", "yes, remembered", "yes, searched"};
+  std::size_t count[4] = {};
+  double time[4] = {};
   TreePair pair = bodies.pair;
+  pair.use(&bodies.front);
+  for (std::size_t i = 0; i < motion.queries.size(); ++i) {
+    if (motion.first[i]) pair.forget();
+    const Query& q = motion.queries[i];
+    const auto known = CoherentPair::recall(bodies.workspace, pair, q.a, q.b);
+    const Verdict verdict = known ? *known : CoherentPair::search(bodies.workspace, pair, q.a, q.b);
+    const std::size_t way = (verdict.answer == Answer::yes ? 2u : 0u) + (known ? 0u : 1u);
+    ++count[way];
+    time[way] += times[i];
+  }
+  std::printf("  with a front:");
+  for (std::size_t way = 0; way < 4; ++way) {
+    if (count[way] == 0) continue;
+    std::printf("  %s %.0f %% (%.3f us)", names[way],
+                100.0 * static_cast<double>(count[way]) / static_cast<double>(motion.queries.size()),
+                time[way] / static_cast<double>(count[way]));
+  }
+  std::printf("\n");
+}
+
+// Adds the sums of the times of "with a front", "coherently", "each anew" and of FCL to `sums`.
+void coherent(Bodies& bodies, const Motion& motion, const std::string& title, std::array<double, 4>& sums) {
+  const std::vector<Query>& queries = motion.queries;
+  bodies.place(queries);
+  TreePair pair = bodies.pair, with_front = bodies.pair;
+  with_front.use(&bodies.front);
   std::vector<Engine> engines;
+  engines.push_back({"orchard, coherently, with a front", [&](std::size_t i) {
+                       if (motion.first[i]) with_front.forget();
+                       collide_coherently(bodies.workspace, with_front, queries[i].a, queries[i].b);
+                     }});
   engines.push_back({"orchard, coherently", [&](std::size_t i) {
-                       if (first[i]) pair.forget();
+                       if (motion.first[i]) pair.forget();
                        collide_coherently(bodies.workspace, pair, queries[i].a, queries[i].b);
                      }});
   engines.push_back({"orchard, each anew",
@@ -124,8 +165,23 @@ void coherent(Bodies& bodies, const std::vector<Query>& starts, int pose_class, 
   if (!bodies.rivals.empty()) {
     engines.push_back({bodies.rivals[0]->name(), [&](std::size_t i) { bodies.rivals[0]->collide(i); }});
   }
-  print((std::string("in motion, from ") + kClassNames[static_cast<std::size_t>(pose_class)]).c_str(), engines,
-        queries.size(), ours);
+  print(title.c_str(), engines, queries.size(), ours);
+  print_ways(bodies, motion, engines[0].best);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t engine = i < 3 ? i : ours;
+    if (engine < engines.size()) sums[i] += mean(engines[engine].best);
+  }
+}
+
+void coherent_classes(Bodies& bodies, const std::vector<Query>& starts) {
+  std::array<double, 4> sums{}, slow{};
+  for (int c = 0; c < kClasses; ++c) {
+    const std::string name = kClassNames[static_cast<std::size_t>(c)];
+    coherent(bodies, Motion(bodies, starts, c, 1, 0.005), "in motion, from " + name, sums);
+  }
+  std::printf("in motion, all classes: of FCL's mean: with a front %.3f, without %.3f, each anew %.3f\n",
+              sums[0] / sums[3], sums[1] / sums[3], sums[2] / sums[3]);
+  coherent(bodies, Motion(bodies, starts, 3, 0.1, 0.0005), "at a tenth of that speed, from gap 0.1 % R", slow);
 }
 
 // FCL's is exact whatever relative error it is allowed: it does not heed it.
@@ -276,8 +332,10 @@ void making(const PackedSphereTree& tree) {
   const auto start = Clock::now();
   const PreparedTree again(tree);
   const std::chrono::duration<double, std::micro> prepare = Clock::now() - start;
-  std::printf("a pair has %zu bytes and binds in %.0f ns; a tree is prepared in %.0f us (fingerprint %04x)\n",
-              sizeof(TreePair), least, prepare.count(), static_cast<unsigned>(again.fingerprint & 0xffff));
+  std::printf(
+      "a pair has %zu bytes, its front, if any, %zu; it binds in %.0f ns; a tree is prepared in %.0f us (fingerprint "
+      "%04x)\n",
+      sizeof(TreePair), sizeof(PairFront), least, prepare.count(), static_cast<unsigned>(again.fingerprint & 0xffff));
 }
 
 }  // namespace
@@ -296,7 +354,7 @@ int main(int argc, char** argv) {
     making(tree);
     Bodies bodies(tree);
     const auto starts = approaches(tree, count, 1000);
-    for (int c = 0; c < kClasses; ++c) coherent(bodies, starts, c, 100);
+    coherent_classes(bodies, starts);
     distances(bodies, starts);
     contact_points(bodies, starts);
     impacts(bodies, starts);

@@ -2,7 +2,9 @@
 #include <cmath>
 
 #include "coherent_pair.h"
+#include "front_walk.h"
 #include "pair_access.h"
+#include "rigid_pair.h"
 #include "tree/tree_nodes.h"
 #include "triangle_pair.h"
 #include "vector_functions.h"
@@ -19,7 +21,9 @@ namespace {
 // it was asked for in vain, half as often.
 constexpr double kAhead = 8;            // steps that a clearance is asked for
 constexpr std::uint8_t kMaxMisses = 6;  // 2^6 tests without asking
-constexpr double kMargin = 1 - 1e-9;    // the rounding of a few operations
+constexpr std::size_t kTriangles = 3;   // witnesses that are tried by themselves, before their leaves are
+constexpr std::uint8_t kFrontsBeforeRoots = 4;
+constexpr double kMargin = 1 - 1e-9;  // the rounding of a few operations
 
 double size_of(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
 
@@ -54,12 +58,13 @@ struct Coherence {
   TreePair::Memory& memory = pair.memory_;
 
   Pose relative{};
-  double moved = 0;  // since `memory` saw them
+  double moved = 0;     // since `memory` saw them
+  bool placed = false;  // the workspace's NarrowPhase is bound and placed
 
   // False: nothing can be remembered of these.
   bool place() noexcept {
     const PreparedTree &first = pair.a(), &second = pair.b();
-    if (first.tree.ball_slabs.empty() || second.tree.ball_slabs.empty() || !is_rigid(a) || !is_rigid(b)) {
+    if (first.tree.ball_slabs.empty() || second.tree.ball_slabs.empty() || !rigid()) {
       pair.forget();
       return false;
     }
@@ -68,13 +73,19 @@ struct Coherence {
     return true;
   }
 
+  bool rigid() const noexcept {  // both, side by side
+    double places = 0;
+    for (std::size_t i = 0; i < 3; ++i) places += std::fabs(a.translation[i]) + std::fabs(b.translation[i]);
+    return std::isfinite(places) && detail::PoseLanes(a, b).rotate();
+  }
+
   std::optional<Verdict> recall() noexcept {
     if (!memory.seen) return std::nullopt;
     if (moved < memory.clearance * kMargin) {
       ++memory.answers;
       return apart((memory.clearance * kMargin - moved) * a.scale);
     }
-    if (memory.triangle_a == kNoTriangle || !same_triangles_meet()) return std::nullopt;
+    if (memory.witness_count == 0 || !witnesses_meet()) return std::nullopt;
     keep_place();
     return workspace.narrow.verdict();
   }
@@ -95,6 +106,8 @@ struct Coherence {
   }
 
   Verdict search(const Budget& budget) noexcept {
+    if (memory.witness_count > 0) return search_after_yes(budget);
+    if (pair.front_ != nullptr) return search_front(budget);
     const double step = memory.seen ? moved / (memory.answers + 1) : 0;
     keep_place();
     std::uint64_t spent = 0;
@@ -110,7 +123,7 @@ struct Coherence {
       spent = query.work();
       if (query.finished() && query.lower() > ahead) {
         memory.clearance = query.lower() / a.scale;
-        memory.triangle_a = memory.triangle_b = kNoTriangle;
+        memory.witness_count = 0;
         memory.misses = 0;
         Verdict verdict = apart(query.lower());
         verdict.work = spent;
@@ -128,28 +141,101 @@ struct Coherence {
 
   static bool unlimited(const Budget& budget) noexcept { return budget.pair_tests == Budget{}.pair_tests; }
 
-  // Whether the triangles that met last still do, by the very test of the last level.
-  bool same_triangles_meet() noexcept {
+  // Near the triangles that met last; else everywhere, without a front, which would be of no use where they still meet.
+  Verdict search_after_yes(const Budget& budget) noexcept {
     NarrowPhase& narrow = workspace.narrow;
-    narrow.bind(pair.a(), pair.b());
-    if (!PairAccess::place_only(narrow, a, b)) return false;
-    const bool exchanged = PairAccess::exchanged(narrow);
-    const std::uint32_t first = exchanged ? memory.triangle_b : memory.triangle_a,
-                        second = exchanged ? memory.triangle_a : memory.triangle_b;
-    detail::TrianglePoints q = detail::points_of(PairAccess::second(narrow).tree, second);
-    for (Vec3& point : q) point = transform(PairAccess::relative(narrow), point);
-    Vec3 witness{};
-    if (!detail::triangles_intersect(detail::points_of(PairAccess::first(narrow).tree, first), q, &witness)) {
-      return false;
+    keep_place();
+    if (!place_narrow()) return remember(runtime::collide(workspace, pair, a, b, budget));
+    Budget rest = budget;
+    if (!leaves_meet(rest.pair_tests)) {
+      if (pair.front_ != nullptr) pair.front_->clear();
+      PairAccess::search(narrow, rest);
     }
-    PairAccess::say_yes(narrow, first, second, witness);
-    return true;
+    memory.close = true;
+    return remember(narrow.verdict());
+  }
+
+  bool place_narrow() noexcept {
+    if (placed) return true;
+    workspace.narrow.bind(pair.a(), pair.b());
+    placed = PairAccess::has_last_level(workspace.narrow) && PairAccess::place_only(workspace.narrow, a, b);
+    return placed;
+  }
+
+  // On from the front, if it holds. The roots come first where they have decided before, or nothing is known, and now
+  // and then, since they may decide again.
+  Verdict search_front(const Budget& budget) noexcept {
+    NarrowPhase& narrow = workspace.narrow;
+    keep_place();
+    if (!place_narrow()) return remember(runtime::collide(workspace, pair, a, b, budget));
+    FrontWalk walk(*pair.front_, narrow);
+    const bool tried = memory.close && memory.wait > 0;
+    if (!tried || !walk.resume()) {
+      narrow.start(a, b);
+      memory.close = !narrow.finished();
+      if (!memory.close) return remember(narrow.verdict());
+      PairAccess::place_now(narrow);
+      if (tried || !walk.resume()) walk.begin();
+      memory.wait = kFrontsBeforeRoots;
+    }
+    --memory.wait;
+    walk.run(budget);
+    return remember(narrow.verdict());
+  }
+
+  // Whether triangles that met in the last answers still do, by the very test of the last level.
+  bool witnesses_meet() noexcept {
+    if (!place_narrow()) return false;
+    const std::size_t count = std::min<std::size_t>(memory.witness_count, kTriangles);
+    for (std::size_t i = 0; i < count; ++i) {
+      const TreePair::Witness witness = memory.witnesses[i];
+      if (!PairAccess::test_two(workspace.narrow, place_of(witness))) continue;
+      std::copy_backward(memory.witnesses.begin(), memory.witnesses.begin() + static_cast<std::ptrdiff_t>(i),
+                         memory.witnesses.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+      memory.witnesses[0] = witness;
+      return true;
+    }
+    return false;
+  }
+
+  PairAccess::Place place_of(const TreePair::Witness& w) const noexcept {
+    if (PairAccess::exchanged(workspace.narrow)) return {w.b, w.a, w.lane_b, w.lane_a};
+    return {w.a, w.b, w.lane_a, w.lane_b};
+  }
+
+  // The same of the leaves that they are in, which takes from the tests that are left. Precondition: placed.
+  bool leaves_meet(std::uint64_t& left) noexcept {
+    for (std::size_t i = 0; i < memory.witness_count; ++i) {
+      const TreePair::Witness& w = memory.witnesses[i];
+      const auto before = memory.witnesses.begin() + static_cast<std::ptrdiff_t>(i);
+      if (std::any_of(memory.witnesses.begin(), before,
+                      [&w](const TreePair::Witness& v) { return v.a == w.a && v.b == w.b; })) {
+        continue;
+      }
+      if (left == 0) return false;
+      constexpr std::uint64_t tests = std::uint64_t{kLeafPairTests} * kTriangleTestCost;
+      PairAccess::add_work(workspace.narrow, tests);
+      left -= std::min(left, tests);
+      const PairAccess::Place place = place_of(w);
+      if (PairAccess::test_leaves(workspace.narrow, place.first, place.second)) return true;
+    }
+    return false;
   }
 
   Verdict remember(const Verdict& verdict) noexcept {
-    const bool yes = verdict.answer == Answer::yes;
-    memory.triangle_a = yes ? verdict.contact.triangle_a : kNoTriangle;
-    memory.triangle_b = yes ? verdict.contact.triangle_b : kNoTriangle;
+    if (verdict.answer == Answer::yes) {
+      memory.witness_count =
+          static_cast<std::uint8_t>(std::min<std::size_t>(memory.witness_count + 1u, TreePair::kWitnesses));
+      std::copy_backward(memory.witnesses.begin(), memory.witnesses.begin() + memory.witness_count - 1,
+                         memory.witnesses.begin() + memory.witness_count);
+      const PairAccess::Place& place = PairAccess::meeting(workspace.narrow);
+      memory.witnesses[0] = {place.first, place.second, place.lane_first, place.lane_second};
+      if (PairAccess::exchanged(workspace.narrow)) {
+        memory.witnesses[0] = {place.second, place.first, place.lane_second, place.lane_first};
+      }
+    } else {
+      memory.witness_count = 0;
+    }
     memory.clearance = verdict.answer == Answer::no ? verdict.lower_bound / a.scale : 0;
     return verdict;
   }

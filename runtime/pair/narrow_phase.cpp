@@ -240,19 +240,43 @@ void NarrowPhase::finish(Answer answer) noexcept {
 
 Contact NarrowPhase::contact() const noexcept {
   if (answer_ == Answer::no || refused_) return {};
+  Contact contact;
+  std::array<double, 3> normal{};
+  if (answer_ == Answer::yes) {
+    contact.center = witness_;
+    normal = triangle_normal();
+    contact.triangle_a = exchanged_ ? triangle_second_ : triangle_first_;
+    contact.triangle_b = exchanged_ ? triangle_first_ : triangle_second_;
+  }
+  // A "yes" whose triangles say nothing about a direction has that of the spheres.
+  if (answer_ != Answer::yes || !(length(normal) > 0)) add_ball(contact, normal);
+  for (std::size_t i = 0; i < 3; ++i) contact.center[i] += first_.tree.origin[i];
+  if (exchanged_) {
+    for (double& component : normal) component = 0 - component;
+  }
+  contact.center = transform(first_pose_, contact.center);
+  contact.radius *= first_pose_.scale;
+  contact.normal = rotate(first_pose_, normal);
+  return contact;
+}
+
+// The ball around the common part of the best pair's spheres, unless triangles meet, and the direction from one to the
+// other.
+void NarrowPhase::add_ball(Contact& contact, std::array<double, 3>& normal) const noexcept {
   const auto [a, b] = best_.pair;
   const auto p = detail::center_of(first_.tree, a);
   const Pose relative = placed_ ? relative_ : relative_pose();
   const auto q = transform(relative, detail::center_of(second_.tree, b));
-  const double ra = detail::block_of(first_.tree, a).radius[a % kBlockWidth];
-  const double rb = detail::block_of(second_.tree, b).radius[b % kBlockWidth] * relative.scale;
   const std::array<double, 3> way = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
   const double distance = length(way);
-
+  normal = {1, 0, 0};
+  for (std::size_t i = 0; i < 3 && distance > 0; ++i) normal[i] = way[i] / distance;
+  if (answer_ == Answer::yes) return;
+  const double ra = detail::block_of(first_.tree, a).radius[a % kBlockWidth];
+  const double rb = detail::block_of(second_.tree, b).radius[b % kBlockWidth] * relative.scale;
   // The smallest ball around the common part of two balls: one of them if it is less than half cut off, otherwise the
   // ball on the circle in which the spheres cut each other, `at` away from p.
   const double at = distance > 0 ? (distance * distance + ra * ra - rb * rb) / (2 * distance) : 0;
-  Contact contact;
   double share = 0;  // of the way from p to q
   if (distance == 0 || at <= 0 || at >= distance) {
     contact.radius = std::min(ra, rb);
@@ -261,26 +285,7 @@ Contact NarrowPhase::contact() const noexcept {
     contact.radius = std::sqrt(std::max(0.0, ra * ra - at * at));
     share = at / distance;
   }
-  std::array<double, 3> center{}, normal = {1, 0, 0};
-  for (std::size_t i = 0; i < 3; ++i) {
-    center[i] = p[i] + share * way[i];
-    if (distance > 0) normal[i] = way[i] / distance;
-  }
-  if (answer_ == Answer::yes) {
-    center = witness_;
-    if (const auto by_triangles = triangle_normal(); length(by_triangles) > 0) normal = by_triangles;
-    contact.radius = 0;
-    contact.triangle_a = exchanged_ ? triangle_second_ : triangle_first_;
-    contact.triangle_b = exchanged_ ? triangle_first_ : triangle_second_;
-  }
-  for (std::size_t i = 0; i < 3; ++i) center[i] += first_.tree.origin[i];
-  if (exchanged_) {
-    for (double& component : normal) component = 0 - component;
-  }
-  contact.center = transform(first_pose_, center);
-  contact.radius *= first_pose_.scale;
-  contact.normal = rotate(first_pose_, normal);
-  return contact;
+  for (std::size_t i = 0; i < 3; ++i) contact.center[i] = p[i] + share * way[i];
 }
 
 // From the first solid to the second one: the first triangle's outward normal less the second one's. Zero if unknown.

@@ -96,15 +96,23 @@ bool NarrowPhase::test_triangles(const BallSlabPair& pair) noexcept {
   for (; left != 0; left &= left - 1) {
     const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
     const std::uint32_t row = bit / kBlockWidth, lane = bit % kBlockWidth;
-    if (!detail::triangles_intersect(detail::points_of(lanes, lane), detail::moved_points_of(rows, row, relative_),
-                                     &witness_)) {
-      continue;
-    }
-    triangle_first_ = lanes.triangle[lane];
-    triangle_second_ = rows.triangle[row];
-    return true;
+    if (test_two(pair.a, lane, pair.b, row)) return true;
   }
   return false;
+}
+
+// Of the leaves in these ball slabs, these triangles.
+bool NarrowPhase::test_two(std::uint32_t a, std::uint32_t lane, std::uint32_t b, std::uint32_t row) noexcept {
+  const TriangleBlock& lanes = first_.tree.triangle_blocks[child_of(first_.tree, a) & ~kLeafBit];
+  const TriangleBlock& rows = second_.tree.triangle_blocks[child_of(second_.tree, b) & ~kLeafBit];
+  if (!detail::triangles_intersect(detail::points_of(lanes, lane), detail::moved_points_of(rows, row, relative_),
+                                   &witness_)) {
+    return false;
+  }
+  triangle_first_ = lanes.triangle[lane];
+  triangle_second_ = rows.triangle[row];
+  meeting_ = {a, b, static_cast<std::uint8_t>(lane), static_cast<std::uint8_t>(row)};
+  return true;
 }
 
 }  // namespace orchard::runtime

@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "orchard/runtime/narrow_phase.h"
+#include "tree/ball_slab_block.h"
 
 namespace orchard::runtime {
 
@@ -9,6 +10,7 @@ namespace orchard::runtime {
 // other's frame, and what covers its rounding.
 struct PairAccess {
   using BudgetTracker = NarrowPhase::BudgetTracker;
+  using BallSlabPair = NarrowPhase::BallSlabPair;
 
   // Prepares for queries in the first tree's frame, whatever the roots say. False where nothing can be said.
   static bool place(NarrowPhase& pair, const Pose& a, const Pose& b) noexcept {
@@ -26,10 +28,13 @@ struct PairAccess {
     pair.separation_bound_ = std::numeric_limits<double>::infinity();
     pair.keep(a, b);
     if (!pair.in_range()) return false;
-    pair.refused_ = false;
+    pair.refused_ = pair.finished_ = false;
+    pair.answer_ = Answer::maybe;
     pair.place();
     return true;
   }
+  // After start() that has left the bodies to deeper levels.
+  static void place_now(NarrowPhase& pair) noexcept { pair.place(); }
   // Precondition of what follows: place() gave true.
   static const PreparedTree& first(const NarrowPhase& pair) noexcept { return pair.first_; }
   static const PreparedTree& second(const NarrowPhase& pair) noexcept { return pair.second_; }
@@ -39,15 +44,38 @@ struct PairAccess {
   static const detail::Placement& placement(const NarrowPhase& pair) noexcept { return pair.placement_; }
   static bool exchanged(const NarrowPhase& pair) noexcept { return pair.exchanged_; }
   static double exact_error(const NarrowPhase& pair) noexcept { return pair.exact_error_; }  // in the world
-  // That these triangles, of the first and of the second tree, meet, was found out without the pair.
-  static void say_yes(NarrowPhase& pair, std::uint32_t first, std::uint32_t second,
-                      const std::array<double, 3>& witness) noexcept {
-    pair.exact_started_ = true;
-    pair.triangle_first_ = first, pair.triangle_second_ = second;
-    pair.witness_ = witness;
-    pair.finish(Answer::yes);
+  using Place = NarrowPhase::Place;
+  // Whether these triangles of the first and of the second tree meet, by the test of the last level: then that is said.
+  static bool test_two(NarrowPhase& pair, const Place& p) noexcept {
+    return say_yes_if(pair, pair.test_two(p.first, p.lane_first, p.second, p.lane_second));
   }
+  // The same of all triangles of two leaves.
+  static bool test_leaves(NarrowPhase& pair, std::uint32_t first, std::uint32_t second) noexcept {
+    const detail::BallSlab slab =
+        detail::ball_slab_at(pair.second_.tree.ball_slabs[second / kBlockWidth], second % kBlockWidth);
+    return say_yes_if(pair, pair.test_triangles({first, second, detail::moved(slab, pair.placement_)}));
+  }
+  static const Place& meeting(const NarrowPhase& pair) noexcept { return pair.meeting_; }  // after "yes"
+  // All of the last level, after place_only().
+  static void search(NarrowPhase& pair, const Budget& budget) noexcept { pair.refine_last(budget); }
+  // That none do, and how far apart they are at least, in the world.
+  static void say_no(NarrowPhase& pair, double lower) noexcept {
+    pair.exact_started_ = true;
+    pair.finish(Answer::no);
+    pair.lower_bound_ = lower;
+  }
+  static void add_work(NarrowPhase& pair, std::uint64_t work) noexcept { pair.work_ += work; }
+  static bool has_last_level(const NarrowPhase& pair) noexcept { return pair.has_last_level(); }
+  static BallSlabPair* stack(const NarrowPhase& pair) noexcept { return pair.stack_.get(); }
   static bool has_triangles(const NarrowPhase& pair) noexcept { return pair.has_triangles(); }
+
+ private:
+  static bool say_yes_if(NarrowPhase& pair, bool meet) noexcept {
+    if (!meet) return false;
+    pair.exact_started_ = true;
+    pair.finish(Answer::yes);
+    return true;
+  }
 };
 
 }  // namespace orchard::runtime

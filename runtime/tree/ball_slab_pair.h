@@ -34,6 +34,26 @@ struct BallSlabPair {
         h(load<Floats>(lanes.height)),
         s(E::all(single.radius)),
         k(E::all(single.height)) {
+    place_lanes(placement, result);
+  }
+  // The same with one of eight for each lane.
+  template <typename Result>
+  ORCHARD_INLINE BallSlabPair(const BallSlabBlock& singles, const BallSlabBlock& lanes, const Placement* placement,
+                              Result& result) noexcept
+      : c{load<Floats>(lanes.x), load<Floats>(lanes.y), load<Floats>(lanes.z)},
+        n{load<Floats>(lanes.nx), load<Floats>(lanes.ny), load<Floats>(lanes.nz)},
+        place{load<Floats>(singles.x), load<Floats>(singles.y), load<Floats>(singles.z)},
+        m{load<Floats>(singles.nx), load<Floats>(singles.ny), load<Floats>(singles.nz)},
+        r(load<Floats>(lanes.radius)),
+        h(load<Floats>(lanes.height)),
+        s(load<Floats>(singles.radius)),
+        k(load<Floats>(singles.height)) {
+    place_lanes(placement, result);
+  }
+
+ private:
+  template <typename Result>
+  ORCHARD_INLINE void place_lanes(const Placement* placement, Result& result) noexcept {
     result.used = Kind::bits(E::all(0.0f) <= r);
     if (placement != nullptr) {
       c = E::move(*placement, c);
@@ -47,7 +67,6 @@ struct BallSlabPair {
     find_gaps();
   }
 
- private:
   // How far each reaches along a unit vector: across the planes, height times the cosine; along them, at most the
   // radius times the sine. The axes tried: both normals, the line of the centres, and the balls.
   ORCHARD_INLINE void find_gaps() noexcept {

@@ -6,6 +6,7 @@
 #include "orchard/runtime/collide.h"
 #include "orchard/runtime/distance.h"
 #include "orchard/runtime/narrow_phase.h"
+#include "orchard/runtime/pair_front.h"
 #include "orchard/runtime/prepared_tree.h"
 
 // Many pairs of bodies, cheaply: a TreePair is a few words and is made in some 50 ns; what a query needs while it runs
@@ -29,21 +30,39 @@ class TreePair {
 
   const PreparedTree& a() const noexcept { return *a_; }
   const PreparedTree& b() const noexcept { return *b_; }
-  void forget() noexcept { memory_ = {}; }  // as if never asked before
+  // From now on collide_coherently() begins where it ended before, and keeps in `front` where that is: for pairs that
+  // stay close. Null: no more. The front outlives the pair, its copies share it, and only one of them is asked at a
+  // time.
+  void use(PairFront* front) noexcept {
+    front_ = front;
+    if (front != nullptr) front->clear();
+  }
+  void forget() noexcept {  // as if never asked before
+    memory_ = {};
+    if (front_ != nullptr) front_->clear();
+  }
 
  private:
   friend struct Coherence;
+  static constexpr std::size_t kWitnesses = 6;
+  struct Witness {  // triangles that met: ball slabs of leaves of both trees, and which of these
+    std::uint32_t a, b;
+    std::uint8_t lane_a, lane_b;
+  };
   struct Memory {
-    Pose relative;         // of b in a's frame, when `clearance` was certified
-    double clearance = 0;  // in a's units; 0: none
-    std::uint32_t triangle_a = kNoTriangle, triangle_b = kNoTriangle;  // that met last
-    std::uint32_t answers = 0;                                         // given since then, without a test
+    Pose relative;                              // of b in a's frame, when `clearance` was certified
+    double clearance = 0;                       // in a's units; 0: none
+    std::array<Witness, kWitnesses> witnesses;  // in the answers since the last "no", the last ones first
+    std::uint32_t answers = 0;                  // given since then, without a test
+    std::uint8_t witness_count = 0;
     std::uint8_t misses = 0;  // clearances that were asked for in vain, in a row
     std::uint8_t wait = 0;    // tests until one is asked for again
     bool seen = false;
+    bool close = false;  // the roots did not decide the last search
   };
   const PreparedTree* a_ = nullptr;
   const PreparedTree* b_ = nullptr;
+  PairFront* front_ = nullptr;
   Memory memory_;
 };
 static_assert(sizeof(TreePair) <= 256);
@@ -74,7 +93,8 @@ Verdict collide(Workspace& workspace, const TreePair& pair, const Pose& a, const
 
 // The same answer for a pair that is asked about again and again while it moves a little each time, at a fraction of
 // the cost: the triangles that met last are tried first, and a "no" holds as long as the pair has moved less, its
-// farthest point counted, than the clearance that was certified with it. Yes and no are those of collide() without a
+// farthest point counted, than the clearance that was certified with it. With a front (TreePair::use()), what is looked
+// at besides begins where the last search ended. Yes and no are those of collide() without a
 // budget; where several triangles meet, which ones are named, and bounds and work, depend on what was asked before.
 // Where nothing has to be looked at, the workspace stays as it is.
 Verdict collide_coherently(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept;

@@ -210,6 +210,8 @@ class NarrowPhase {
   bool refine_ball_slabs(BudgetTracker& tracker) noexcept;
   void expand(const BallSlabPair& pair, bool second) noexcept;
   bool test_triangles(const BallSlabPair& pair) noexcept;
+  bool test_two(std::uint32_t a, std::uint32_t lane, std::uint32_t b, std::uint32_t row) noexcept;
+  void add_ball(Contact& contact, std::array<double, 3>& normal) const noexcept;
   std::array<double, 3> triangle_normal() const noexcept;
   static NodePair pair_at(std::uint32_t row, std::uint32_t lane, std::uint32_t bit, bool lanes_are_second) noexcept {
     const NodePair pair{row + bit / kBlockWidth, lane + bit % kBlockWidth};
@@ -244,6 +246,11 @@ class NarrowPhase {
   detail::LevelState level_state_{};
   Best level_best_, leaf_best_, best_;
   std::uint32_t triangle_first_ = kNoTriangle, triangle_second_ = kNoTriangle;
+  struct Place {  // of two triangles that meet: ball slabs of leaves, and which triangles of these
+    std::uint32_t first, second;
+    std::uint8_t lane_first, lane_second;
+  };
+  Place meeting_{};
   std::array<double, 3> witness_{};
 
   Answer answer_ = Answer::no;

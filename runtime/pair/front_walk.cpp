@@ -1,0 +1,287 @@
+#include "front_walk.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "pair_walk.h"
+#include "vector_functions.h"
+
+// Rounding of gaps that close. A gap was certified, rounding included, for the second body as the double pose placed it
+// then. Since then a point x of it has moved by (turn x + by), which is known to within 20 u D for numbers rounded to
+// float, u = 2^-24 and D as in narrow_phase.cpp, now or then; vectors are of length 1 to within 1e-6; and taking the
+// sum from the gap costs u of it. Placement::margin is more than 96 u D of now, and D then is at most D now and the
+// motion.
+namespace orchard::runtime {
+
+using detail::BallSlabAxes;
+using detail::LeafAxis;
+using detail::Vec3;
+
+namespace {
+
+constexpr float kUnused = std::numeric_limits<float>::infinity();
+constexpr float kUnknown = -kUnused;  // of a gap: whatever the motion
+constexpr float kFarSteps = 16;  // last motions: what is farther than these is kept as one bound where room is short
+constexpr std::uint32_t kMostOpen = 64;  // more to look at than that, and the roots are the shorter way
+constexpr double kAxisError = 4e-6;      // of a motion
+
+double size_of(const Vec3& v) noexcept { return std::sqrt(detail::dot(v, v)); }
+
+}  // namespace
+
+FrontWalk::FrontWalk(PairFront& front, NarrowPhase& narrow) noexcept
+    : front_(front),
+      narrow_(narrow),
+      first_(PairAccess::first(narrow).tree),
+      second_(PairAccess::second(narrow).tree),
+      placement_(PairAccess::placement(narrow)),
+      relative_(PairAccess::relative(narrow)),
+      stack_(PairAccess::stack(narrow)) {}
+
+void FrontWalk::run(const Budget& budget) noexcept {
+  PairAccess::BudgetTracker tracker(budget);
+  tracker_ = &tracker;
+  Outcome outcome = settle_leaves();
+  if (outcome == Outcome::apart) outcome = settle_nodes();
+  tracker_ = nullptr;
+  PairAccess::add_work(narrow_, tracker.spent());
+  if (outcome != Outcome::apart) return;
+  const double scale = PairAccess::first_pose(narrow_).scale;
+  const double least = std::min(front_.rest_, double{detail::least_gap(front_.blocks_.data(), block_count())});
+  PairAccess::say_no(narrow_, std::max(0.0, least * scale * (1 - 1e-12) - PairAccess::exact_error(narrow_)));
+}
+
+bool FrontWalk::fits() const noexcept {
+  return front_.first_ == first_.ball_slabs.data() && front_.second_ == second_.ball_slabs.data() &&
+         front_.fingerprints_[0] == PairAccess::first(narrow_).fingerprint &&
+         front_.fingerprints_[1] == PairAccess::second(narrow_).fingerprint;
+}
+
+void FrontWalk::begin() noexcept {
+  front_.first_ = first_.ball_slabs.data(), front_.second_ = second_.ball_slabs.data();
+  front_.fingerprints_[0] = PairAccess::first(narrow_).fingerprint;
+  front_.fingerprints_[1] = PairAccess::second(narrow_).fingerprint;
+  front_.relative_ = relative_;
+  front_.rest_ = std::numeric_limits<double>::infinity();
+  front_.used_ = front_.free_count_ = 0;
+  if (front_.crowded_ && enough_ > 0) far_ = kFarSteps * enough_;
+  leaf_count_ = node_count_ = 0;
+  add(0, 0, kUnknown, {1, 0, 0});
+  see_to(0);
+}
+
+// Takes from all gaps what the motion since may have closed. False: nothing worth a look is left of the front.
+bool FrontWalk::advance() noexcept {
+  leaf_count_ = node_count_ = 0;
+  const Pose& before = front_.relative_;
+  detail::Shift shift{};
+  double square = 0;
+  std::array<double, 9> turn{};
+  for (std::size_t i = 0; i < 9; ++i) {
+    turn[i] = relative_.scale * relative_.rotation[i] - before.scale * before.rotation[i];
+    square += turn[i] * turn[i];
+    shift.turn[i] = static_cast<float>(turn[i]);
+  }
+  // As in coherence.cpp: two rotations differ by one about an axis.
+  const double swing = std::sqrt(relative_.scale == before.scale ? square / 2 : square);
+  const BallSlabBlock& root = second_.ball_slabs[0];
+  const Vec3 middle = {root.x[0], root.y[0], root.z[0]};
+  Vec3 way{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double by = relative_.translation[i] - before.translation[i];
+    way[i] = turn[3 * i] * middle[0] + turn[3 * i + 1] * middle[1] + turn[3 * i + 2] * middle[2] + by;
+    shift.by[i] = static_cast<float>(by);
+  }
+  const double moved = size_of(way) + swing * double{root.radius[0]};
+  const double error = double{placement_.margin} + kAxisError * (moved + size_of(middle) * swing);
+  enough_ = static_cast<float>(moved);
+  front_.rest_ -= moved + error;
+  if (!(front_.rest_ > 0) || !std::isfinite(moved)) return false;
+  shift.swing = static_cast<float>(swing * (1 + 1e-6));
+  shift.error = static_cast<float>(error * (1 + 1e-6));
+  front_.relative_ = relative_;
+  std::array<std::uint8_t, PairFront::kBlocks> open;
+  detail::close_gaps(shift, front_.blocks_.data(), block_count(), open.data());
+  for (std::uint32_t block = 0; block < block_count(); ++block) {
+    for (std::uint32_t left = open[block]; left != 0; left &= left - 1) {
+      see_to(block * kBlockWidth + static_cast<std::uint32_t>(std::countr_zero(left)));
+    }
+  }
+  return leaf_count_ + node_count_ <= kMostOpen;
+}
+
+void FrontWalk::see_to(std::uint32_t slot) noexcept {
+  const detail::FrontBlock& block = front_.blocks_[slot / kBlockWidth];
+  const std::uint32_t lane = slot % kBlockWidth;
+  (is_leaf_pair(block.a[lane], block.b[lane]) ? leaves_[leaf_count_++] : nodes_[node_count_++]) =
+      static_cast<std::uint16_t>(slot);
+}
+
+std::uint32_t FrontWalk::block_count() const noexcept { return (front_.used_ + kBlockWidth - 1) / kBlockWidth; }
+
+FrontWalk::Outcome FrontWalk::settle_leaves() noexcept {
+  for (std::uint32_t i = 0; i < leaf_count_; ++i) {
+    if (tracker_->exhausted()) return Outcome::interrupted;
+    detail::FrontBlock& block = front_.blocks_[leaves_[i] / kBlockWidth];
+    const std::uint32_t lane = leaves_[i] % kBlockWidth;
+    LeafAxis axis = {0, {block.ux[lane], block.uy[lane], block.uz[lane]}};
+    if (leaves_meet({block.a[lane], block.b[lane], moved_slab(block.b[lane])}, axis)) return Outcome::meeting;
+    block.gap[lane] = axis.gap;
+    block.ux[lane] = axis.u[0], block.uy[lane] = axis.u[1], block.uz[lane] = axis.u[2];
+  }
+  return Outcome::apart;
+}
+
+// Eight at a time: those that are apart along another direction stay, the others make room for what is below them.
+FrontWalk::Outcome FrontWalk::settle_nodes() noexcept {
+  BallSlabBlock firsts, seconds;
+  BallSlabAxes axes;
+  for (std::uint32_t from = 0; from < node_count_; from += kBlockWidth) {
+    const std::uint32_t count = std::min(node_count_ - from, kBlockWidth);
+    for (std::uint32_t i = 0; i < kBlockWidth; ++i) {
+      const std::uint32_t slot = nodes_[from + (i < count ? i : 0)];
+      const detail::FrontBlock& block = front_.blocks_[slot / kBlockWidth];
+      const auto copy = [i](BallSlabBlock& to, const TreeView& tree, std::uint32_t node) {
+        const BallSlabBlock& of = tree.ball_slabs[node / kBlockWidth];
+        const std::uint32_t lane = node % kBlockWidth;
+        to.x[i] = of.x[lane], to.y[i] = of.y[lane], to.z[i] = of.z[lane];
+        to.nx[i] = of.nx[lane], to.ny[i] = of.ny[lane], to.nz[i] = of.nz[lane];
+        to.radius[i] = of.radius[lane], to.height[i] = of.height[lane];
+      };
+      copy(firsts, first_, block.a[slot % kBlockWidth]);
+      copy(seconds, second_, block.b[slot % kBlockWidth]);
+    }
+    detail::ball_slab_pair_axes(firsts, seconds, placement_, placement_.margin, axes);
+    tracker_->spend(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t slot = nodes_[from + i], lane = slot % kBlockWidth;
+      detail::FrontBlock& block = front_.blocks_[slot / kBlockWidth];
+      if ((axes.meeting >> i & 1) == 0) {
+        block.gap[lane] = axes.gap[i];
+        block.ux[lane] = axes.ux[i], block.uy[lane] = axes.uy[i], block.uz[lane] = axes.uz[i];
+        continue;
+      }
+      if (tracker_->exhausted()) return Outcome::interrupted;
+      const BallSlabPair pair = {block.a[lane], block.b[lane], axes.slab(i)};
+      release(slot);
+      if (const Outcome outcome = walk(pair); outcome != Outcome::apart) return outcome;
+    }
+  }
+  return Outcome::apart;
+}
+
+// Depth first, as NarrowPhase does; what is apart joins the front.
+FrontWalk::Outcome FrontWalk::walk(const BallSlabPair& from) noexcept {
+  stack_[stack_size_++] = from;
+  while (stack_size_ > 0) {
+    if (tracker_->exhausted()) return keep_stack(), Outcome::interrupted;
+    const BallSlabPair pair = stack_[--stack_size_];
+    const std::uint32_t a = detail::ball_slab_child(first_, pair.a), b = detail::ball_slab_child(second_, pair.b);
+    if (a & b & kLeafBit) {
+      LeafAxis axis = {0, {1, 0, 0}};
+      const bool meet = leaves_meet(pair, axis);
+      add(pair.a, pair.b, axis.gap, axis.u);
+      if (meet) return keep_stack(), Outcome::meeting;
+      continue;
+    }
+    const float radius = first_.ball_slabs[pair.a / kBlockWidth].radius[pair.a % kBlockWidth];
+    expand(pair, (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && radius < pair.second.radius));
+  }
+  return Outcome::apart;
+}
+
+bool FrontWalk::leaves_meet(const BallSlabPair& pair, LeafAxis& axis) noexcept {
+  const TriangleBlock& lanes = first_.triangle_blocks[detail::ball_slab_child(first_, pair.a) & ~kLeafBit];
+  const TriangleBlock& rows = second_.triangle_blocks[detail::ball_slab_child(second_, pair.b) & ~kLeafBit];
+  const detail::LeafPair leaves = {
+      lanes, rows, detail::ball_slab_at(first_.ball_slabs[pair.a / kBlockWidth], pair.a % kBlockWidth), pair.second};
+  axis = detail::leaf_axis(leaves, placement_, axis.u, enough_);
+  tracker_->spend(kBlockWidth);
+  if (axis.gap > 0) return false;
+  tracker_->spend(std::uint64_t{kLeafPairTests} * kTriangleTestCost);
+  return PairAccess::test_leaves(narrow_, pair.a, pair.b);
+}
+
+void FrontWalk::expand(const BallSlabPair& pair, bool open_second) noexcept {
+  const std::uint32_t block = detail::ball_slab_child(open_second ? second_ : first_, open_second ? pair.b : pair.a);
+  BallSlabAxes axes;
+  if (open_second) {
+    detail::ball_slab_axes(detail::ball_slab_at(first_.ball_slabs[pair.a / kBlockWidth], pair.a % kBlockWidth),
+                           second_.ball_slabs[block], &placement_, placement_.margin, axes);
+  } else {
+    detail::ball_slab_axes(pair.second, first_.ball_slabs[block], nullptr, placement_.margin, axes);
+  }
+  tracker_->spend(static_cast<std::uint64_t>(std::bit_width(axes.used)));
+  const std::size_t begin = stack_size_;
+  std::uint32_t order[kBlockWidth], count = 0;
+  for (std::uint32_t left = axes.used; left != 0; left &= left - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+    const std::uint32_t node = block * kBlockWidth + lane;
+    if ((axes.meeting >> lane & 1) == 0) {  // vectors point from the single one to the eight
+      const float sign = open_second ? 1.0f : -1.0f;
+      add(open_second ? pair.a : node, open_second ? node : pair.b, axes.gap[lane],
+          {sign * axes.ux[lane], sign * axes.uy[lane], sign * axes.uz[lane]});
+      continue;
+    }
+    std::uint32_t at = count++;
+    for (; at > 0 && axes.gap[order[at - 1]] < axes.gap[lane]; --at) order[at] = order[at - 1];
+    order[at] = lane;
+  }
+  stack_size_ = begin;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t node = block * kBlockWidth + order[i];
+    stack_[stack_size_++] =
+        open_second ? BallSlabPair{pair.a, node, axes.slab(order[i])} : BallSlabPair{node, pair.b, pair.second};
+  }
+}
+
+void FrontWalk::add(std::uint32_t a, std::uint32_t b, float gap, const Axis& u) noexcept {
+  std::uint32_t slot = front_.used_;
+  if (gap > far_) {
+    front_.rest_ = std::min(front_.rest_, double{gap});
+    return;
+  }
+  if (front_.free_count_ > 0) {
+    slot = front_.free_[--front_.free_count_];
+  } else if (slot < PairFront::kRoom) {
+    if (slot % kBlockWidth == 0) front_.blocks_[slot / kBlockWidth].gap.fill(kUnused);
+    ++front_.used_;
+  } else {
+    front_.crowded_ = true;
+    front_.rest_ = std::min(front_.rest_, double{gap});
+    return;
+  }
+  detail::FrontBlock& block = front_.blocks_[slot / kBlockWidth];
+  const std::uint32_t lane = slot % kBlockWidth;
+  const BallSlabBlock& of = second_.ball_slabs[b / kBlockWidth];
+  const std::uint32_t at = b % kBlockWidth;
+  block.x[lane] = of.x[at], block.y[lane] = of.y[at], block.z[lane] = of.z[at], block.radius[lane] = of.radius[at];
+  block.ux[lane] = u[0], block.uy[lane] = u[1], block.uz[lane] = u[2];
+  block.gap[lane] = gap;
+  block.a[lane] = a, block.b[lane] = b;
+}
+
+// What a search that has ended has not come to.
+void FrontWalk::keep_stack() noexcept {
+  while (stack_size_ > 0) {
+    const BallSlabPair& pair = stack_[--stack_size_];
+    add(pair.a, pair.b, kUnknown, {1, 0, 0});
+  }
+}
+
+void FrontWalk::release(std::uint32_t slot) noexcept {
+  front_.blocks_[slot / kBlockWidth].gap[slot % kBlockWidth] = kUnused;
+  front_.free_[front_.free_count_++] = static_cast<std::uint16_t>(slot);
+}
+
+bool FrontWalk::is_leaf_pair(std::uint32_t a, std::uint32_t b) const noexcept {
+  return (detail::ball_slab_child(first_, a) & detail::ball_slab_child(second_, b) & kLeafBit) != 0;
+}
+
+detail::BallSlab FrontWalk::moved_slab(std::uint32_t b) const noexcept {
+  return detail::moved(detail::ball_slab_at(second_.ball_slabs[b / kBlockWidth], b % kBlockWidth), placement_);
+}
+
+}  // namespace orchard::runtime

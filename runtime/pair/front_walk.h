@@ -1,0 +1,63 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "budget_tracker.h"
+#include "orchard/runtime/narrow_phase.h"
+#include "orchard/runtime/pair_front.h"
+#include "pair_access.h"
+#include "tree/front_block.h"
+
+namespace orchard::runtime {
+
+// The last level of a NarrowPhase that begins where a front says, and leaves the front where it ends. It finds the
+// same answer, since every two triangles that are not seen to be apart are tested by the same predicates.
+class FrontWalk {
+ public:
+  // Precondition: `narrow` is placed (PairAccess), and has a last level.
+  FrontWalk(PairFront& front, NarrowPhase& narrow) noexcept;
+
+  // Before run(): whether the front is of these trees, and most of it still holds; it is brought up to now. Else
+  // begin().
+  bool resume() noexcept { return fits() && advance(); }
+  void begin() noexcept;  // with the roots, of which nothing is known
+  // Yes and no are said to `narrow`; where the budget ends it, the front knows how far it got.
+  void run(const Budget& budget) noexcept;
+
+ private:
+  using BallSlabPair = PairAccess::BallSlabPair;
+  using Axis = std::array<float, 3>;
+  enum class Outcome : std::uint8_t { apart, meeting, interrupted };
+
+  bool fits() const noexcept;
+  bool advance() noexcept;
+  void see_to(std::uint32_t slot) noexcept;
+  std::uint32_t block_count() const noexcept;
+  Outcome settle_leaves() noexcept;
+  Outcome settle_nodes() noexcept;
+  Outcome walk(const BallSlabPair& from) noexcept;
+  bool leaves_meet(const BallSlabPair& pair, detail::LeafAxis& axis) noexcept;
+  void expand(const BallSlabPair& pair, bool open_second) noexcept;
+  void add(std::uint32_t a, std::uint32_t b, float gap, const Axis& u) noexcept;
+  void keep_stack() noexcept;
+  void release(std::uint32_t slot) noexcept;
+  bool is_leaf_pair(std::uint32_t a, std::uint32_t b) const noexcept;
+  detail::BallSlab moved_slab(std::uint32_t b) const noexcept;
+
+  PairFront& front_;
+  NarrowPhase& narrow_;
+  const TreeView &first_, &second_;
+  const detail::Placement& placement_;
+  const Pose& relative_;
+  PairAccess::BudgetTracker* tracker_ = nullptr;
+  BallSlabPair* stack_;
+  std::size_t stack_size_ = 0;
+  float far_ = std::numeric_limits<float>::infinity();          // gaps above it are kept as one bound
+  float enough_ = 0;                                            // of a gap between leaves: as much as the last motion
+  std::array<std::uint16_t, PairFront::kRoom> leaves_, nodes_;  // slots without a gap
+  std::uint32_t leaf_count_ = 0, node_count_ = 0;
+};
+
+}  // namespace orchard::runtime

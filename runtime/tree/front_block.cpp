@@ -1,0 +1,208 @@
+#include "front_block.h"
+
+#include <bit>
+#include <cmath>
+
+#include "ball_slab_pair.h"
+#include "eight.h"
+#include "machine.h"
+
+// Rounding. Ball slabs: as in ball_slab_block.cpp. Leaves: u . p of points placed to within sigma, with |p| <= D and
+// |u|_1 <= 1.74, is off by less than 1.74 sigma + 7 u D, and the difference of two such by less than twice the margin
+// (narrow_phase.cpp, (5)). Gaps that close: Shift::error.
+namespace orchard::runtime::detail {
+namespace {
+
+constexpr int kReflections = 4;
+constexpr float kUnitError = 0x1p-18f;  // vectors are of length 1 to within 1e-6: so much of a gap may not be there
+
+template <typename Kind>
+ORCHARD_INLINE void keep_axes(const BallSlabPair<Kind>& pair, float margin, BallSlabAxes& result) noexcept {
+  using E = Eight<Kind>;
+  using Floats = typename E::Floats;
+  const Floats zero = E::all(0.0f), length = pair.distance + E::all(kMinDistance);
+  const auto oriented = [&](const Floats& over, const Floats& v)
+                            ORCHARD_INLINE_LAMBDA -> Floats { return Kind::choose(over < zero, -v, v); };
+  const auto by_m = pair.by_n < pair.by_m;
+  const Floats best = Kind::choose(by_m, pair.by_m, pair.by_n);
+  const auto by_line = best < pair.by_line;
+  const auto axis = [&](const Floats& n, const Floats& m, const Floats& d) ORCHARD_INLINE_LAMBDA -> Floats {
+    return Kind::choose(by_line, d / length, Kind::choose(by_m, oriented(pair.over_m, m), oriented(pair.over_n, n)));
+  };
+  store(axis(pair.n.x, pair.m.x, pair.d.x), result.ux);
+  store(axis(pair.n.y, pair.m.y, pair.d.y), result.uy);
+  store(axis(pair.n.z, pair.m.z, pair.d.z), result.uz);
+  const Floats gap = Kind::choose(by_line, pair.by_line, best) - E::all(margin);
+  store(gap, result.gap);
+  result.meeting = result.used & ~Kind::bits(zero < gap);
+}
+
+template <typename Kind>
+ORCHARD_INLINE void find_axes(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement,
+                              float margin, BallSlabAxes& result) noexcept {
+  keep_axes<Kind>(BallSlabPair<Kind>(single, lanes, placement, result), margin, result);
+}
+
+template <typename Kind>
+ORCHARD_INLINE void find_pair_axes(const BallSlabBlock& firsts, const BallSlabBlock& seconds,
+                                   const Placement& placement, float margin, BallSlabAxes& result) noexcept {
+  keep_axes<Kind>(BallSlabPair<Kind>(firsts, seconds, &placement, result), margin, result);
+}
+
+template <typename Kind>
+ORCHARD_INLINE float least_of(const typename Kind::Floats& v) noexcept {
+  std::array<float, kBlockWidth> lanes;
+  store(v, lanes);
+  for (std::uint32_t half = kBlockWidth / 2; half > 0; half /= 2) {
+    for (std::uint32_t i = 0; i < half; ++i) lanes[i] = lanes[i + half] < lanes[i] ? lanes[i + half] : lanes[i];
+  }
+  return lanes[0];
+}
+
+// The corner that is least far along u.
+template <typename Kind>
+ORCHARD_INLINE std::array<float, 3> extreme(const typename Eight<Kind>::Vectors (&corner)[3],
+                                            const std::array<float, 3>& u) noexcept {
+  using E = Eight<Kind>;
+  using Floats = typename E::Floats;
+  using Vectors = typename E::Vectors;
+  const Vectors axis = {E::all(u[0]), E::all(u[1]), E::all(u[2])};
+  Floats least = E::dot(axis, corner[0]);
+  Vectors at = corner[0];
+  for (std::size_t k = 1; k < 3; ++k) {
+    const Floats along = E::dot(axis, corner[k]);
+    const auto less = along < least;
+    least = Kind::choose(less, along, least);
+    at = {Kind::choose(less, corner[k].x, at.x), Kind::choose(less, corner[k].y, at.y),
+          Kind::choose(less, corner[k].z, at.z)};
+  }
+  const auto lane = static_cast<std::uint32_t>(std::countr_zero(Kind::bits(least <= E::all(least_of<Kind>(least)))));
+  std::array<float, kBlockWidth> x, y, z;
+  store(at.x, x), store(at.y, y), store(at.z, z);
+  return {x[lane % kBlockWidth], y[lane % kBlockWidth], z[lane % kBlockWidth]};
+}
+
+template <typename Kind>
+ORCHARD_INLINE LeafAxis find_leaf_axis(const LeafPair& pair, const Placement& placement,
+                                       const std::array<float, 3>& given, float enough) noexcept {
+  using E = Eight<Kind>;
+  using Floats = typename E::Floats;
+  using Vectors = typename E::Vectors;
+  const Vectors lane[3] = {E::corner(pair.lanes, 0), E::corner(pair.lanes, 1), E::corner(pair.lanes, 2)};
+  const Vectors row[3] = {E::move(placement, E::corner(pair.rows, 0)), E::move(placement, E::corner(pair.rows, 1)),
+                          E::move(placement, E::corner(pair.rows, 2))};
+  const BallSlab &p = pair.lane_slab, &q = pair.row_slab;
+  const float dx = q.x - p.x, dy = q.y - p.y, dz = q.z - p.z;
+  const auto facing = [&](float x, float y, float z) -> std::array<float, 3> {
+    return x * dx + y * dy + z * dz < 0 ? std::array<float, 3>{-x, -y, -z} : std::array<float, 3>{x, y, z};
+  };
+  const float length = std::sqrt(dx * dx + dy * dy + dz * dz) + kMinDistance;
+  const std::array<float, 3> axes[] = {
+      given, {dx / length, dy / length, dz / length}, facing(p.nx, p.ny, p.nz), facing(q.nx, q.ny, q.nz)};
+  LeafAxis best = {-1, given};
+  const auto try_axis = [&](const std::array<float, 3>& u, bool first) ORCHARD_INLINE_LAMBDA {
+    const Vectors axis = {E::all(u[0]), E::all(u[1]), E::all(u[2])};
+    const auto along = [&](const Vectors& v) ORCHARD_INLINE_LAMBDA -> Floats { return E::dot(axis, v); };
+    const Floats near = E::larger(E::larger(along(lane[0]), along(lane[1])), along(lane[2]));
+    const Floats far = E::smaller(E::smaller(along(row[0]), along(row[1])), along(row[2]));
+    const float apart = least_of<Kind>(far) + least_of<Kind>(-near) - 2 * placement.margin;
+    const float gap = apart - (apart < 0 ? -apart : apart) * kUnitError;
+    const bool better = first || best.gap < gap;
+    if (better) best = {gap, u};
+    return better;
+  };
+  bool first = true;
+  for (const std::array<float, 3>& u : axes) {
+    try_axis(u, first);
+    first = false;
+    if (best.gap >= enough) return best;
+  }
+  // As long as it gets better, reflected in the line through the points that are in the way (Chung and Wang 1996).
+  for (int turn = 0; turn < kReflections && best.gap <= 0; ++turn) {
+    const std::array<float, 3> u = best.u, last = extreme<Kind>(lane, {-u[0], -u[1], -u[2]}),
+                               next = extreme<Kind>(row, u);
+    const float x = next[0] - last[0], y = next[1] - last[1], z = next[2] - last[2];
+    const float square = x * x + y * y + z * z, over = u[0] * x + u[1] * y + u[2] * z;
+    if (!(square > 0)) break;
+    const float factor = 2 * over / square;
+    std::array<float, 3> v = {u[0] - factor * x, u[1] - factor * y, u[2] - factor * z};
+    const float size = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + kMinDistance;
+    v = {v[0] / size, v[1] / size, v[2] / size};
+    if (!try_axis(v, false)) break;
+  }
+  return best;
+}
+
+template <typename Kind>
+ORCHARD_INLINE void take_from_gaps(const Shift& shift, FrontBlock* blocks, std::uint32_t count,
+                                   std::uint8_t* open) noexcept {
+  using E = Eight<Kind>;
+  using Floats = typename E::Floats;
+  using Vectors = typename E::Vectors;
+  const Floats swing = E::all(shift.swing), error = E::all(shift.error), zero = E::all(0.0f);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    FrontBlock& block = blocks[i];
+    const Vectors c = {load<Floats>(block.x), load<Floats>(block.y), load<Floats>(block.z)};
+    const Vectors u = {load<Floats>(block.ux), load<Floats>(block.uy), load<Floats>(block.uz)};
+    const Vectors turned = E::turn(shift.turn, c);
+    const Vectors way = {turned.x + E::all(shift.by[0]), turned.y + E::all(shift.by[1]),
+                         turned.z + E::all(shift.by[2])};
+    const Floats gap = load<Floats>(block.gap) + E::dot(u, way) - (load<Floats>(block.radius) * swing + error);
+    store(gap, block.gap);
+    open[i] = static_cast<std::uint8_t>(~Kind::bits(zero < gap));
+  }
+}
+
+template <typename Kind>
+ORCHARD_INLINE float find_least_gap(const FrontBlock* blocks, std::uint32_t count) noexcept {
+  using E = Eight<Kind>;
+  using Floats = typename E::Floats;
+  Floats least = load<Floats>(blocks[0].gap);
+  for (std::uint32_t i = 1; i < count; ++i) least = E::smaller(least, load<Floats>(blocks[i].gap));
+  return least_of<Kind>(least);
+}
+
+}  // namespace
+
+void ball_slab_axes(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
+                    BallSlabAxes& result) noexcept {
+  PerMachine<find_axes<Widest>, find_axes<Base>>::call(single, lanes, placement, margin, result);
+}
+void ball_slab_axes_scalar(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
+                           BallSlabAxes& result) noexcept {
+  find_axes<PlainFloats>(single, lanes, placement, margin, result);
+}
+
+void ball_slab_pair_axes(const BallSlabBlock& firsts, const BallSlabBlock& seconds, const Placement& placement,
+                         float margin, BallSlabAxes& result) noexcept {
+  PerMachine<find_pair_axes<Widest>, find_pair_axes<Base>>::call(firsts, seconds, placement, margin, result);
+}
+void ball_slab_pair_axes_scalar(const BallSlabBlock& firsts, const BallSlabBlock& seconds, const Placement& placement,
+                                float margin, BallSlabAxes& result) noexcept {
+  find_pair_axes<PlainFloats>(firsts, seconds, placement, margin, result);
+}
+
+LeafAxis leaf_axis(const LeafPair& pair, const Placement& placement, const std::array<float, 3>& given,
+                   float enough) noexcept {
+  return PerMachine<find_leaf_axis<Widest>, find_leaf_axis<Base>>::call(pair, placement, given, enough);
+}
+LeafAxis leaf_axis_scalar(const LeafPair& pair, const Placement& placement, const std::array<float, 3>& given,
+                          float enough) noexcept {
+  return find_leaf_axis<PlainFloats>(pair, placement, given, enough);
+}
+
+void close_gaps(const Shift& shift, FrontBlock* blocks, std::uint32_t count, std::uint8_t* open) noexcept {
+  PerMachine<take_from_gaps<Widest>, take_from_gaps<Base>>::call(shift, blocks, count, open);
+}
+void close_gaps_scalar(const Shift& shift, FrontBlock* blocks, std::uint32_t count, std::uint8_t* open) noexcept {
+  take_from_gaps<PlainFloats>(shift, blocks, count, open);
+}
+
+float least_gap(const FrontBlock* blocks, std::uint32_t count) noexcept {
+  return PerMachine<find_least_gap<Widest>, find_least_gap<Base>>::call(blocks, count);
+}
+float least_gap_scalar(const FrontBlock* blocks, std::uint32_t count) noexcept {
+  return find_least_gap<PlainFloats>(blocks, count);
+}
+
+}  // namespace orchard::runtime::detail

@@ -1,0 +1,58 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "ball_slab_block.h"
+#include "orchard/runtime/pair_front.h"
+
+// The inner loops of a front (pair_front.h): along which unit vectors ball slabs and leaves are apart, and what is left
+// of such gaps after the second body has moved.
+namespace orchard::runtime::detail {
+
+// Ball slabs as in BallSlabGaps, and the vectors, of length 1 to within 1e-6, along which they have their gaps: from
+// the single one to the eight, or from the first one of each two to the second one.
+struct BallSlabAxes : BallSlabGaps {
+  alignas(32) Lanes ux, uy, uz;
+};
+
+// As ball_slab_gaps().
+void ball_slab_axes(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
+                    BallSlabAxes& result) noexcept;
+// Eight of the first tree and eight of the second one, which are moved, lane by lane.
+void ball_slab_pair_axes(const BallSlabBlock& firsts, const BallSlabBlock& seconds, const Placement& placement,
+                         float margin, BallSlabAxes& result) noexcept;
+
+// How far all triangles of one leaf are from all of another one along a direction, at least; below 0: how far they may
+// overlap along it.
+struct LeafAxis {
+  float gap;
+  std::array<float, 3> u;
+};
+// The first with a gap of at least `enough`, or the best, of a given direction, the line of their ball slabs' centres
+// and both ball slabs' normals.
+LeafAxis leaf_axis(const LeafPair& pair, const Placement& placement, const std::array<float, 3>& given,
+                   float enough) noexcept;
+
+// How the second body has moved: a point x of its own frame by turn * x + by, and two points `d` apart by up to swing *
+// d differently; `error` is to be taken from every gap.
+struct Shift {
+  std::array<float, 9> turn;
+  std::array<float, 3> by;
+  float swing, error;
+};
+// Takes from each gap how much the two come closer along its vector at most; open[i]: bits of the lanes of blocks[i]
+// that have no gap left.
+void close_gaps(const Shift& shift, FrontBlock* blocks, std::uint32_t count, std::uint8_t* open) noexcept;
+float least_gap(const FrontBlock* blocks, std::uint32_t count) noexcept;  // of `count` > 0 blocks
+
+// The same, one number at a time, for the tests.
+void ball_slab_axes_scalar(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
+                           BallSlabAxes& result) noexcept;
+void ball_slab_pair_axes_scalar(const BallSlabBlock& firsts, const BallSlabBlock& seconds, const Placement& placement,
+                                float margin, BallSlabAxes& result) noexcept;
+LeafAxis leaf_axis_scalar(const LeafPair& pair, const Placement& placement, const std::array<float, 3>& given,
+                          float enough) noexcept;
+void close_gaps_scalar(const Shift& shift, FrontBlock* blocks, std::uint32_t count, std::uint8_t* open) noexcept;
+float least_gap_scalar(const FrontBlock* blocks, std::uint32_t count) noexcept;
+
+}  // namespace orchard::runtime::detail
