@@ -212,11 +212,16 @@ void Refiner::divide() {
   report_.undivided = split.undivided;
 }
 
+double Refiner::left_open() const {
+  const BorderOptions border = border_options();
+  return std::max(kOpen * std::max(level_, border.tolerance),
+                  options_.reach_detail * border.spacing * border.spacing / diagonal_);
+}
+
 // Where balls leave the surface open by more than borders may; what is added is divided, too.
 void Refiner::reach() {
   const BorderOptions border = border_options();
-  const double limit = std::max(kOpen * std::max(level_, border.tolerance),
-                                options_.reach_detail * border.spacing * border.spacing / diagonal_);
+  const double limit = left_open();
   UncoveredSearch search(surface_, limit, kResolution * border.spacing);
   BallSolver solver = this->solver();
   for (int round = 0; round < options_.reach_rounds; ++round) {

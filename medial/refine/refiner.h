@@ -22,6 +22,8 @@ class Refiner {
   void refine();
   // What there is so far.
   MedialMesh mesh() const { return complex_.mesh(); }
+  // Mesh units: what is left open by less is not reached for.
+  double left_open() const;
   // Reaches for places left open, takes degenerate cells away, and gives the result. To be called once, last.
   RefinedAxis finish();
 
