@@ -17,6 +17,8 @@ class CanonicalFrame {
   Point in(const Point& point) const { return snapped(point, kLattice); }
   // For what is known less exactly, as points are that were relaxed: a coarser lattice.
   Point roughly_in(const Point& point) const { return snapped(point, kCoarseLattice); }
+  // What is in the frame already, on the lattice.
+  static Point on_lattice(const Point& point) { return kLattice * (point / kLattice).array().round().matrix(); }
   TriangleMesh in(const TriangleMesh& mesh) const;
   Refinement in(const Refinement& refinement) const;
   // A ball that holds all that the ball holds, and what the lattice drew into it.

@@ -56,9 +56,10 @@ Samples surface_samples(const Surface& surface, const MedialAxis& axis, const Ca
     // Edges' points are evenly spaced, without relaxation: they are known to the last digits.
     const bool exact = axis.origins.size() == axis.points.size() && axis.origins[from] == PointOrigin::edge;
     const Point& point = axis.points[from];
-    const ClosestPoint on = surface.closest(exact ? frame.in(point) : frame.roughly_in(point));
-    samples.points[p] = on.position;
-    samples.starts[p] = touching_center(surface, on.position, surface.pseudonormal(on.triangle, on.feature));
+    const Point about = exact ? frame.in(point) : surface.closest(frame.roughly_in(point)).position;
+    samples.points[p] = CanonicalFrame::on_lattice(about);
+    const ClosestPoint on = surface.closest(samples.points[p]);
+    samples.starts[p] = touching_center(surface, samples.points[p], surface.pseudonormal(on.triangle, on.feature));
   });
   if (surface.mesh().vertices.size() > axis.points.size()) return samples;
   for (Index v = 0; v < surface.mesh().vertices.size(); ++v) {

@@ -253,7 +253,7 @@ TEST(TightenedTree, IsTheSameForAMeshThatIsScaledOrMoved) {
 }
 
 TEST(TightenedTree, IsTheSameWhereEvenTheAxisIsMadeInAnotherFrame) {
-  const TriangleMesh mesh = u_shape(0.3);
+  const TriangleMesh mesh = torus(24, 12);
   const auto tree_in = [&](double factor, const Vector& offset) {
     const Surface surface(transformed(mesh, factor, offset));
     return tightened_tree(surface, axis_of(surface, 1000), {.depth = 2, .effort = Effort::low}).tree;
