@@ -46,7 +46,8 @@ struct SimplifiedMedialMesh {
 // Deterministic, whatever the number of threads; parallel. O(n log n) for n vertices, and some nearest-ball queries for
 // each sample. Throws InputError unless surface.solid(), validate(mesh) passes and options are in range; if no
 // contraction leads to so few vertices, since the topology needs more: the error names the least number that was
-// reached, and that which is proved to be needed if it is less; or if no number of vertices leads to options.error: it names what was reached.
+// reached, and that which is proved to be needed if it is less; or if no number of vertices leads to options.error: it
+// names what was reached.
 SimplifiedMedialMesh simplify_medial_mesh(const Surface& surface, const MedialMesh& mesh,
                                           const SimplifyOptions& options, const Progress& progress = {});
 
