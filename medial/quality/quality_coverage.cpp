@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kAccuracy = 1e-5;            // of the diagonal: to which the maximum is searched
 constexpr std::size_t kMaxParts = 1'000'000;  // of the surface's triangles that are looked at
+constexpr std::size_t kBlock = 256;           // vertices or triangles that one task takes, one after the other
 constexpr double kOnBorder = 1e-9;            // of the diagonal: what rounding puts beside a border
 
 // The borders of sheets, the free ends of wires and the balls without edges, as flat triangles.
@@ -27,24 +28,52 @@ TriangleMesh borders_of(const MedialMesh& mesh) {
   return borders;
 }
 
-// The distance to one cell is convex, so that it is nowhere more than at the corners; to all of them it is 1-Lipschitz.
-// `cell`: the one nearest to the middle of the whole that this is half of, which will mostly do.
+// The distance to one cell is convex, so that it is nowhere more than at the corners.
+double max_to_cell(const Reconstruction& reconstruction, Index cell, const Corners& corners) {
+  return std::max({reconstruction.distance_to_cell(cell, corners[0]), reconstruction.distance_to_cell(cell, corners[1]),
+                   reconstruction.distance_to_cell(cell, corners[2])});
+}
+
+struct Near {
+  double distance;
+  Index cell;
+};
+
+// The nearest cell, or any that is nearer than `enough`: `guess` (kNone: none) if it is.
+Near near_cell(const Reconstruction& reconstruction, const Point& place, Index guess, double enough) {
+  if (guess != kNone) {
+    const double distance = reconstruction.distance_to_cell(guess, place);
+    if (distance < enough) return {distance, guess};
+  }
+  const Reconstruction::Nearest nearest = reconstruction.nearest(place, enough);
+  return {nearest.distance, nearest.cell};
+}
+
+// `visit(i, cell)` in parallel; in blocks, within which one sees the cell that the one before left.
+template <class Visit>
+void for_each_in_turn(std::size_t count, const Visit& visit) {
+  tbb::parallel_for(std::size_t{0}, (count + kBlock - 1) / kBlock, [&](std::size_t block) {
+    Index cell = kNone;
+    const std::size_t end = std::min(count, (block + 1) * kBlock);
+    for (std::size_t i = block * kBlock; i < end; ++i) visit(i, cell);
+  });
+}
+
+// To all cells the distance is 1-Lipschitz. `cell`: the one nearest to the middle of the whole that this is half of,
+// which will mostly do.
 PieceValue coverage_of(const Corners& corners, const Reconstruction& reconstruction, Index cell, double enough) {
-  const auto max_to_cell = [&](Index of) {
-    return std::max({reconstruction.distance_to_cell(of, corners[0]), reconstruction.distance_to_cell(of, corners[1]),
-                     reconstruction.distance_to_cell(of, corners[2])});
-  };
-  PieceValue piece{.value = -std::numeric_limits<double>::infinity(),
-                   .bound = cell == kNone ? std::numeric_limits<double>::infinity() : max_to_cell(cell),
-                   .place = (corners[0] + corners[1] + corners[2]) / 3,
-                   .cell = cell};
+  PieceValue piece{
+      .value = -std::numeric_limits<double>::infinity(),
+      .bound = cell == kNone ? std::numeric_limits<double>::infinity() : max_to_cell(reconstruction, cell, corners),
+      .place = (corners[0] + corners[1] + corners[2]) / 3,
+      .cell = cell};
   if (piece.bound <= enough) return piece;
   const Reconstruction::Nearest nearest = reconstruction.nearest(piece.place);
   piece.value = nearest.distance;
   piece.cell = nearest.cell;
   double reach = 0;
   for (const Point& corner : corners) reach = std::max(reach, (corner - piece.place).norm());
-  piece.bound = std::min({piece.bound, piece.value + reach, max_to_cell(nearest.cell)});
+  piece.bound = std::min({piece.bound, piece.value + reach, max_to_cell(reconstruction, nearest.cell, corners)});
   return piece;
 }
 
@@ -53,21 +82,41 @@ PieceValue coverage_of(const Corners& corners, const Reconstruction& reconstruct
 MaxOverTriangles max_coverage(const Surface& surface, const Reconstruction& reconstruction, MaxOverTriangles known,
                               double diagonal) {
   const std::vector<Point>& vertices = surface.mesh().vertices;
-  std::vector<double> at_vertices(vertices.size());
-  // Any ball that is nearer than what is known shows that the maximum is elsewhere.
-  tbb::parallel_for(std::size_t{0}, vertices.size(), [&](std::size_t v) {
-    Sphere ball;
-    at_vertices[v] =
-        reconstruction.distance_between(known.max, std::numeric_limits<double>::infinity(), vertices[v], ball);
+  std::vector<Near> at_vertices(vertices.size());
+  for_each_in_turn(vertices.size(), [&](std::size_t v, Index& cell) {
+    at_vertices[v] = near_cell(reconstruction, vertices[v], cell, known.max);
+    cell = at_vertices[v].cell;
   });
-  const auto farthest = std::max_element(at_vertices.begin(), at_vertices.end());
-  if (*farthest > known.max) known = {*farthest, 0, vertices[static_cast<std::size_t>(farthest - at_vertices.begin())]};
+  const auto farthest = std::max_element(at_vertices.begin(), at_vertices.end(),
+                                         [](const Near& a, const Near& b) { return a.distance < b.distance; });
+  if (farthest->distance > known.max)
+    known = {farthest->distance, 0, vertices[static_cast<std::size_t>(farthest - at_vertices.begin())]};
+  // What the cell of a corner comes near enough to needs no search.
+  const double enough = known.max + kAccuracy * diagonal;
+  std::vector<double> bounds(surface.mesh().triangles.size());
+  for_each_in_turn(bounds.size(), [&](std::size_t t, Index&) {
+    const Corners corners = surface.corners(static_cast<Index>(t));
+    bounds[t] = std::numeric_limits<double>::infinity();
+    for (const Index v : surface.mesh().triangles[t]) {
+      if (bounds[t] > enough)
+        bounds[t] = std::min(bounds[t], max_to_cell(reconstruction, at_vertices[v].cell, corners));
+    }
+  });
   std::vector<Corners> triangles;
-  for (Index t = 0; t < surface.mesh().triangles.size(); ++t) triangles.push_back(surface.corners(t));
-  return max_over_triangles(triangles, known, kAccuracy * diagonal, kMaxParts,
-                            [&](const Corners& corners, Index cell, double enough) {
-                              return coverage_of(corners, reconstruction, cell, enough);
-                            });
+  double closed = known.max;
+  for (std::size_t t = 0; t < bounds.size(); ++t) {
+    if (bounds[t] > enough) {
+      triangles.push_back(surface.corners(static_cast<Index>(t)));
+    } else {
+      closed = std::max(closed, bounds[t]);
+    }
+  }
+  MaxOverTriangles found = max_over_triangles(triangles, known, kAccuracy * diagonal, kMaxParts,
+                                              [&](const Corners& corners, Index cell, double limit) {
+                                                return coverage_of(corners, reconstruction, cell, limit);
+                                              });
+  found.upper = std::max(found.upper, closed);
+  return found;
 }
 
 Spread inner_coverage(const MedialMesh& mesh, std::span<const SurfaceReach> reaches, double diagonal) {

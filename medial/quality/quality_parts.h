@@ -48,10 +48,8 @@ struct BallReach {
   bool outside = false;
 };
 BallReach reach_of(const Surface& surface, const Sphere& ball);
-// `inscribed`: balls of the solid, if any are known, from which dents are seen faster than they are searched.
 void measure_reconstruction(const Surface& surface, const MedialMesh& mesh, std::span<const SurfaceSample> samples,
-                            const QualityBalls& balls, const QualityOptions& options, MedialQuality& quality,
-                            std::span<const Sphere> inscribed = {});
+                            const QualityBalls& balls, const QualityOptions& options, MedialQuality& quality);
 // quality_coverage.cpp
 // The largest distance of the surface from the reconstruction; `known`: what samples found.
 MaxOverTriangles max_coverage(const Surface& surface, const Reconstruction& reconstruction, MaxOverTriangles known,

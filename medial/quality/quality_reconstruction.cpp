@@ -168,8 +168,7 @@ BallReach reach_of(const Surface& surface, const Sphere& ball) {
 }
 
 void measure_reconstruction(const Surface& surface, const MedialMesh& mesh, std::span<const SurfaceSample> samples,
-                            const QualityBalls& balls, const QualityOptions& options, MedialQuality& quality,
-                            std::span<const Sphere> inscribed) {
+                            const QualityBalls& balls, const QualityOptions& options, MedialQuality& quality) {
   const Reconstruction reconstruction(mesh);
   const std::vector<SurfaceReach> reaches = reach_of(surface, reconstruction, samples, quality.diagonal);
   quality.coverage = spread_over(reaches, &SurfaceReach::uncovered);
@@ -209,10 +208,6 @@ void measure_reconstruction(const Surface& surface, const MedialMesh& mesh, std:
   quality.protrusion_upper = beyond.upper;
   quality.hausdorff = {.max = std::max({to.max, from.max, quality.protrusion.max, open.max}),
                        .mean = 0.5 * (to.mean + from.mean)};
-  if (!inscribed.empty()) {
-    const std::vector<Dent> dents = dents_seen_from(inscribed, surface, reconstruction, quality.hausdorff.max);
-    if (!dents.empty()) quality.hausdorff.max = dents.front().depth;
-  }
   const SearchedMax dent =
       max_dent(surface, reconstruction, quality.hausdorff.max, kDentAccuracy * quality.diagonal, options.search);
   quality.hausdorff.max = dent.max;

@@ -1,6 +1,8 @@
 #include "contractible_mesh.h"
 
 #include <algorithm>
+#include <iterator>
+#include <limits>
 
 namespace orchard::detail {
 namespace {
@@ -165,6 +167,31 @@ bool ContractibleMesh::take_free_triangle() {
     }
   }
   return false;
+}
+
+bool ContractibleMesh::fold() {
+  double min = std::numeric_limits<double>::infinity();
+  std::array<Index, 3> best{kNone, kNone, kNone};
+  std::vector<Index> common;
+  for (Index v = 0; v < size(); ++v) {
+    for (const Index a : neighbors_[v]) {
+      for (const Index b : neighbors_[v]) {
+        const double distance = (balls_[a] - balls_[b]).squaredNorm();
+        if (b <= a || distance >= min || adjacent(a, b)) continue;
+        common.clear();
+        std::set_intersection(neighbors_[a].begin(), neighbors_[a].end(), neighbors_[b].begin(), neighbors_[b].end(),
+                              std::back_inserter(common));
+        if (common.size() > 1) continue;
+        min = distance;
+        best = {v, a, b};
+      }
+    }
+  }
+  const auto [v, a, b] = best;
+  if (v == kNone) return false;
+  add_triangle(v, a, b);
+  contract(a, b, 0.5 * (balls_[a] + balls_[b]));
+  return true;
 }
 
 MedialMesh ContractibleMesh::mesh() const {

@@ -49,6 +49,12 @@ class ContractibleMesh {
   // are elementary collapses, until there is one. False if there is nothing left to take.
   bool make_contractible();
 
+  // For meshes without an edge that may be contracted, such as rings that share a vertex: lays one edge onto another
+  // with which it shares a vertex, the nearest two, so that there is one vertex less: an elementary expansion, a
+  // triangle between the two, and a contraction. False if no two may be: where the others ends have more than that
+  // vertex in common.
+  bool fold();
+
   // The living cells, vertices numbered anew in their order.
   MedialMesh mesh() const;
   // For each of its cells that no larger one holds, its corners by the numbers here; missing ones repeat the first.

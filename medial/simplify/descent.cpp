@@ -27,6 +27,27 @@ constexpr FitOptions kAtEnd[] = {{.power = 2, .steps = 2}, {.power = 4, .steps =
 constexpr FitOptions kAfterInsertion[] = {{.power = 4, .steps = 2, .middles = false}};
 constexpr FitOptions kAfterMoving[] = {{.power = 4, .steps = 2}, {.power = 8, .steps = 5}};
 
+// The vertices of a mesh, so that most of them are neighbours of the one before.
+std::vector<Index> in_depth_first_order(const ContractibleMesh& mesh) {
+  std::vector<Index> order, stack;
+  std::vector<std::uint8_t> seen(mesh.size(), 0);
+  order.reserve(mesh.size());
+  for (Index start = 0; start < mesh.size(); ++start) {
+    stack.push_back(start);
+    while (!stack.empty()) {
+      const Index v = stack.back();
+      stack.pop_back();
+      if (seen[v]) continue;
+      seen[v] = 1;
+      order.push_back(v);
+      for (const Index other : mesh.neighbors(v)) {
+        if (!seen[other]) stack.push_back(other);
+      }
+    }
+  }
+  return order;
+}
+
 }  // namespace
 
 Descent::Descent(const Surface& surface, const MedialMesh& mesh, const SimplifyOptions& options,
@@ -38,7 +59,7 @@ Descent::Descent(const Surface& surface, const MedialMesh& mesh, const SimplifyO
       vertices_before_(mesh.size()),
       whole_(mesh) {
   axis_balls_.reserve(mesh.size());
-  for (Index v = 0; v < mesh.size(); ++v) axis_balls_.push_back({mesh.centers[v], mesh.radii[v]});
+  for (const Index v : in_depth_first_order(whole_)) axis_balls_.push_back({mesh.centers[v], mesh.radii[v]});
 }
 
 Stage Descent::start() const { return {whole_, fit_samples(surface_, options_.samples, options_.seed), {}}; }
@@ -51,7 +72,10 @@ void Descent::go_down(Stage& stage, Index count) const {
   while (stage.mesh.living() > count) {
     const Index before = stage.mesh.living();
     contract(stage, std::max(count, static_cast<Index>(kShrink * before)));
-    if (stage.mesh.living() == before && !stage.mesh.make_contractible()) break;
+    if (stage.mesh.living() == before) {
+      if (!stage.mesh.make_contractible() && !stage.mesh.fold()) break;
+      stage.feet.feet.clear();  // some may be gone
+    }
     refine(stage, kBetween);
   }
 }
@@ -112,7 +136,8 @@ void Descent::look_closer(Stage& stage, int round) const {
 // What the envelope leaves open below the surface: no place of the surface is as far from it as the bottom of a dent is
 // from the surface.
 void Descent::add_dents(Stage& stage, double min_depth) const {
-  std::vector<Dent> dents = dents_seen_from(axis_balls_, surface_, Reconstruction(stage.mesh.mesh()), min_depth);
+  std::vector<Dent> dents = dents_seen_from(balls_beyond(stage.mesh, axis_balls_, min_depth), surface_,
+                                            Reconstruction(stage.mesh.mesh()), min_depth);
   const std::size_t max = options_.samples / kSamplesPerDent;
   if (dents.size() > max) dents.resize(max);
   std::vector<FitSample> samples;

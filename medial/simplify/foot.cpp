@@ -1,5 +1,7 @@
 #include "foot.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +10,7 @@ namespace orchard::detail {
 namespace {
 
 constexpr int kMaxHops = 6;
+constexpr std::size_t kBallsInTurn = 64;  // that one task takes, one after the other
 
 // Along a segment the distance is convex: sqrt(h^2 + (t - q)^2) - r(t), least where the slope of the root is that of
 // the radius. Returns the share of b.
@@ -162,6 +165,26 @@ Foot FootFinder::find(const Point& query, const Foot* guess, double slack) const
     return foot.value;
   });
   return best;
+}
+
+std::vector<Sphere> balls_beyond(const ContractibleMesh& mesh, std::span<const Sphere> balls, double depth) {
+  const FootFinder finder(mesh);
+  const FootWalker walker(mesh);
+  std::vector<std::uint8_t> beyond(balls.size(), 0);
+  tbb::parallel_for(std::size_t{0}, (balls.size() + kBallsInTurn - 1) / kBallsInTurn, [&](std::size_t block) {
+    const std::size_t begin = block * kBallsInTurn, end = std::min(balls.size(), begin + kBallsInTurn);
+    Foot foot;
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto& [center, radius] = balls[i];
+      foot = i == begin ? finder.find(center) : walker.walk(center, foot);
+      beyond[i] = foot.value >= depth - radius ? 1 : 0;
+    }
+  });
+  std::vector<Sphere> result;
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    if (beyond[i]) result.push_back(balls[i]);
+  }
+  return result;
 }
 
 }  // namespace orchard::detail

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <span>
 #include <vector>
 
 #include "../quality/support_tree.h"
@@ -41,6 +42,10 @@ class FootWalker {
   std::vector<std::array<Index, 3>> cells_;
   Rows at_;  // numbers of cells at each vertex
 };
+
+// Those of these balls that stick out of the mesh's, as far as these are found at once, by more than `depth`: most are
+// inside of one. Fastest where balls follow each other along the axis. Parallel, deterministic.
+std::vector<Sphere> balls_beyond(const ContractibleMesh& mesh, std::span<const Sphere> balls, double depth);
 
 // Finds feet while the mesh stays as it is.
 class FootFinder {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "descent.h"
+#include "least_vertices.h"
 #include "orchard/geometry/error.h"
 
 namespace orchard {
@@ -41,6 +42,15 @@ SimplifiedMedialMesh finish(const Surface& surface, const MedialMesh& whole, con
     return descent.measured({ContractibleMesh(single), {}, {}});
   }
   return descent.measured(descent.finished(std::move(stage)));
+}
+
+std::string too_few(Index wanted, Index reached, Index least) {
+  const std::string start = std::to_string(wanted) + " vertices are fewer than ";
+  if (reached == least) return start + "the topology of the axis allows; at least " + std::to_string(least);
+  return start + (wanted < least ? "the topology of the axis allows: " : "this axis was brought down to: ") +
+         "contractions led to " + std::to_string(reached) +
+         ", no complex with these loops and cavities has fewer than " + std::to_string(least) + "; at least " +
+         std::to_string(reached);
 }
 
 // The fewest vertices whose two-sided distance is within the limit, to a fiftieth, by bisection of their number: as a
@@ -124,11 +134,8 @@ SimplifiedMedialMesh simplify_medial_mesh(const Surface& surface, const MedialMe
   const Descent descent(surface, mesh, options, progress);
   Stage stage = descent.start();
   descent.go_down(stage, options.vertices);
-  if (stage.mesh.living() > options.vertices) {
-    throw InputError(std::to_string(options.vertices) +
-                     " vertices are fewer than the topology of the axis allows; at least " +
-                     std::to_string(stage.mesh.living()));
-  }
+  if (stage.mesh.living() > options.vertices)
+    throw InputError(too_few(options.vertices, stage.mesh.living(), detail::least_vertices(mesh)));
   SimplifiedMedialMesh result = finish(surface, mesh, descent, std::move(stage));
   report_progress(progress, kStage, 1);
   return result;

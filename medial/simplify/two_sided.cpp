@@ -3,25 +3,63 @@
 #include <algorithm>
 #include <vector>
 
+#include "../quality/boundary_reach.h"
 #include "../quality/quality_parts.h"
 #include "fit_samples.h"
+#include "foot.h"
 
 namespace orchard::detail {
+namespace {
+
+constexpr double kBallAccuracy = 1e-5, kHollowAccuracy = 1e-4;  // diagonals: to which maxima are searched
+
+Spread spread_among(std::span<const SurfaceReach> reaches, double SurfaceReach::*value) {
+  std::vector<double> values;
+  values.reserve(reaches.size());
+  for (const SurfaceReach& reach : reaches) values.push_back(reach.*value);
+  return spread_of(values);
+}
+
+double max_protrusion_at(const Surface& surface, const QualityBalls& balls) {
+  double max = 0;
+  for (const auto* at : {&balls.vertices, &balls.edges, &balls.triangles}) {
+    for (const Sphere& ball : *at) max = std::max(max, reach_of(surface, ball).beyond);
+  }
+  return max;
+}
+
+constexpr Index kBallShare = 4;  // of what is searched: hardly any ball protrudes farther than all that were looked at
+
+}  // namespace
 
 void measure_two_sided(const Surface& surface, const MedialMesh& mesh, std::span<const Sphere> inscribed,
                        const SimplifyOptions& options, SimplifyReport& report) {
   std::vector<SurfaceSample> samples;
   for (const FitSample& sample : fit_samples(surface, options.check, options.seed + 1))
     samples.push_back({sample.position, sample.normal});
-  MedialQuality quality;
-  const double diagonal = quality.diagonal = surface.bounding_box().diagonal().norm();
-  measure_reconstruction(surface, mesh, samples, quality_balls(mesh, QualityOptions{}.cells),
-                         {.search = options.search, .worst_places = 0}, quality, inscribed);
-  report.coverage = {quality.coverage_upper / diagonal, quality.coverage.mean / diagonal};
-  report.protrusion = {quality.protrusion.max / diagonal, quality.protrusion.mean / diagonal};
-  report.dent_upper = quality.dent_upper / diagonal;
-  report.hausdorff = {std::max(quality.hausdorff.max, quality.coverage_upper) / diagonal,
-                      quality.hausdorff.mean / diagonal};
+  const double diagonal = surface.bounding_box().diagonal().norm();
+  const Reconstruction reconstruction(mesh);
+  const std::vector<SurfaceReach> reaches = reach_of(surface, reconstruction, samples, diagonal);
+  const Spread uncovered = spread_among(reaches, &SurfaceReach::uncovered);
+  const Spread to = spread_among(reaches, &SurfaceReach::to_boundary);
+  const Spread from = spread_among(reaches, &SurfaceReach::from_boundary);
+  const MaxOverTriangles open =
+      max_coverage(surface, reconstruction, {.max = uncovered.max, .upper = 0, .place = Point::Zero()}, diagonal);
+  Spread beyond = spread_among(reaches, &SurfaceReach::beyond);
+  beyond.max = std::max(beyond.max, max_protrusion_at(surface, quality_balls(mesh, QualityOptions{}.cells)));
+  double max = std::max({to.max, from.max, beyond.max, open.upper});
+  // Searches take longest; only what is more than all that is known is searched for.
+  const std::vector<Dent> dents =
+      dents_seen_from(balls_beyond(ContractibleMesh(mesh), inscribed, max), surface, reconstruction, max);
+  if (!dents.empty()) max = dents.front().depth;
+  const double protrusion =
+      max_protrusion(surface, mesh, max, kBallAccuracy * diagonal, options.search / kBallShare).max;
+  if (protrusion > max) max = beyond.max = protrusion;
+  const SearchedMax dent = max_dent(surface, reconstruction, max, kHollowAccuracy * diagonal, options.search);
+  report.coverage = {open.upper / diagonal, uncovered.mean / diagonal};
+  report.protrusion = {beyond.max / diagonal, beyond.mean / diagonal};
+  report.dent_upper = dent.upper / diagonal;
+  report.hausdorff = {dent.max / diagonal, 0.5 * (to.mean + from.mean) / diagonal};
 }
 
 }  // namespace orchard::detail

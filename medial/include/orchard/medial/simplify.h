@@ -26,8 +26,8 @@ struct SimplifyReport {
   Index vertices_before = 0, vertices = 0;
   // Measured on the result, over the diagonal, as medial_quality() defines them. coverage.max is a bound, proved for
   // the whole surface, and hausdorff.max no less; what protrudes, and dents of the envelope, are searched by branch and
-  // bound, dents from the centres of the balls of the mesh given, too; how deep places of the surface lie in the
-  // envelope is measured at samples.
+  // bound where they may be more than that, dents from the centres of the balls of the mesh given, too; how deep places
+  // of the surface lie in the envelope is measured at samples. protrusion.max is what was found.
   Spread hausdorff, coverage, protrusion;
   double dent_upper = 0;  // proved: no place of the envelope's boundary is deeper in the solid
 };
@@ -45,8 +45,9 @@ struct SimplifiedMedialMesh {
 //
 // Deterministic, whatever the number of threads; parallel. O(n log n) for n vertices, and some nearest-ball queries for
 // each sample. Throws InputError unless surface.solid(), validate(mesh) passes and options are in range; if no
-// contraction leads to so few vertices, since the topology needs more: the error names the least number; or if no
-// number of vertices leads to options.error: it names what was reached.
+// contraction leads to so few vertices, since the topology needs more: the error names the least number that was
+// reached, and that which is proved to be needed if it is less; or if no number of vertices leads to options.error: it
+// names what was reached.
 SimplifiedMedialMesh simplify_medial_mesh(const Surface& surface, const MedialMesh& mesh,
                                           const SimplifyOptions& options, const Progress& progress = {});
 
