@@ -1,3 +1,5 @@
+// What becomes of one point after the other, from its place in the diagram to the doubts that it leaves: one thought,
+// hence more than 300 lines.
 #include "insertion.h"
 
 #include <algorithm>

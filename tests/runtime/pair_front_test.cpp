@@ -1,5 +1,5 @@
 // Fronts: the loops that they are made of, one number at a time and by every machine, and what a pair answers with one,
-// step by step, against queries that know of nothing before.
+// step by step, against queries that know of nothing before: one journey and its judges, hence more than 300 lines.
 #include "orchard/runtime/pair_front.h"
 
 #include <gtest/gtest.h>
