@@ -86,6 +86,23 @@ std::vector<Triangle> placed_triangles(const PackedSphereTree& tree, const Pose&
   return result;
 }
 
+std::vector<Triangle> triangles_below(const PackedSphereTree& tree, std::uint32_t node,
+                                      const std::vector<Triangle>& placed) {
+  const std::uint32_t child = tree.ball_slabs[node / kBlockWidth].child[node % kBlockWidth];
+  std::vector<Triangle> result;
+  if (child & kLeafBit) {
+    for (const std::uint32_t t : tree.triangle_blocks[child & ~kLeafBit].triangle) {
+      if (t != kNoTriangle) result.push_back(placed[t]);
+    }
+    return result;
+  }
+  for (std::uint32_t lane = 0; lane < kBlockWidth && tree.ball_slabs[child].radius[lane] >= 0; ++lane) {
+    const auto more = triangles_below(tree, child * kBlockWidth + lane, placed);
+    result.insert(result.end(), more.begin(), more.end());
+  }
+  return result;
+}
+
 bool triangles_intersect(const Triangle& a, const Triangle& b) {
   std::array<Point, 3> ea{}, eb{};
   for (std::size_t i = 0; i < 3; ++i) {

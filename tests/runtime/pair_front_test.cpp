@@ -1,5 +1,5 @@
 // Fronts: the loops that they are made of, one number at a time and by every machine, and what a pair answers with one,
-// step by step, against queries that know of nothing before: one journey and its judges, hence more than 300 lines.
+// step by step, against queries that know of nothing before.
 #include "orchard/runtime/pair_front.h"
 
 #include <gtest/gtest.h>
@@ -174,22 +174,6 @@ detail::Placement placement_of(const Pose& pose, double size) {
   return p;
 }
 
-std::vector<Triangle> below(const PackedSphereTree& tree, std::uint32_t node, const std::vector<Triangle>& placed) {
-  const std::uint32_t child = tree.ball_slabs[node / kBlockWidth].child[node % kBlockWidth];
-  std::vector<Triangle> result;
-  if (child & kLeafBit) {
-    for (const std::uint32_t t : tree.triangle_blocks[child & ~kLeafBit].triangle) {
-      if (t != kNoTriangle) result.push_back(placed[t]);
-    }
-    return result;
-  }
-  for (std::uint32_t lane = 0; lane < kBlockWidth && tree.ball_slabs[child].radius[lane] >= 0; ++lane) {
-    const auto more = below(tree, child * kBlockWidth + lane, placed);
-    result.insert(result.end(), more.begin(), more.end());
-  }
-  return result;
-}
-
 // How far all of one are beyond all of the other one along a vector, over its length.
 long double apart_along(const std::vector<Triangle>& p, const std::vector<Triangle>& q, const std::array<float, 3>& u) {
   const auto along = [&u](const auto& x) {
@@ -240,7 +224,8 @@ TEST(FrontBlock, GivesTheSameBitsOnEveryMachineAndGapsThatAreThere) {
       const std::uint32_t node_b = block_b * kBlockWidth + lane;
       if (b.ball_slabs[block_b].radius[lane] < 0) return;
       const std::array<float, 3> u = {found.ux[lane], found.uy[lane], found.uz[lane]};
-      ASSERT_LE(found.gap[lane], apart_along(below(a, node_a, of_a), below(b, node_b, of_b), u)) << seed;
+      ASSERT_LE(found.gap[lane], apart_along(triangles_below(a, node_a, of_a), triangles_below(b, node_b, of_b), u))
+          << seed;
       gaps += found.gap[lane] > 0;
     };
     for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
@@ -260,7 +245,8 @@ TEST(FrontBlock, GivesTheSameBitsOnEveryMachineAndGapsThatAreThere) {
       ASSERT_EQ(again.u, leaf.u) << seed;
     });
     if (HasFatalFailure()) return;
-    ASSERT_LE(leaf.gap, apart_along(below(a, node_a, of_a), below(b, node_b, of_b), leaf.u)) << seed;
+    ASSERT_LE(leaf.gap, apart_along(triangles_below(a, node_a, of_a), triangles_below(b, node_b, of_b), leaf.u))
+        << seed;
     leaves += leaf.gap > 0;
   }
   EXPECT_GT(gaps, 100);

@@ -50,6 +50,10 @@ PackedSphereTree build_tree(const Mesh& mesh, const TreeOptions& options = {});
 using Triangle = std::array<std::array<long double, 3>, 3>;
 std::vector<Triangle> placed_triangles(const PackedSphereTree& tree, const Pose& pose);
 
+// Those of the placed triangles that are below a node of the tree's ball slabs.
+std::vector<Triangle> triangles_below(const PackedSphereTree& tree, std::uint32_t node,
+                                      const std::vector<Triangle>& placed);
+
 bool triangles_intersect(const Triangle& a, const Triangle& b);       // separating axes, long double
 long double triangle_distance(const Triangle& a, const Triangle& b);  // 0 if they intersect
 bool surfaces_intersect(const std::vector<Triangle>& a, const std::vector<Triangle>& b);

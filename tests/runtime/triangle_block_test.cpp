@@ -49,23 +49,6 @@ PackedSphereTree random_triangles(Draw& draw, std::uint32_t count) {
   return tree;
 }
 
-std::vector<test::Triangle> triangles_below(const PackedSphereTree& tree, std::uint32_t node,
-                                            const std::vector<test::Triangle>& placed) {
-  const std::uint32_t child = tree.ball_slabs[node / kBlockWidth].child[node % kBlockWidth];
-  std::vector<test::Triangle> result;
-  if (child & kLeafBit) {
-    for (const std::uint32_t t : tree.triangle_blocks[child & ~kLeafBit].triangle) {
-      if (t != kNoTriangle) result.push_back(placed[t]);
-    }
-    return result;
-  }
-  for (std::uint32_t lane = 0; lane < kBlockWidth && tree.ball_slabs[child].radius[lane] >= 0; ++lane) {
-    const auto more = triangles_below(tree, child * kBlockWidth + lane, placed);
-    result.insert(result.end(), more.begin(), more.end());
-  }
-  return result;
-}
-
 TEST(BallSlabBlock, GivesTheSameBitsWithAndWithoutVectorsAndNeverAGapAboveTheDistance) {
   int apart = 0, tight = 0;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
@@ -94,7 +77,7 @@ TEST(BallSlabBlock, GivesTheSameBitsWithAndWithoutVectorsAndNeverAGapAboveTheDis
       ASSERT_EQ(gaps.used >> lane & 1, b.ball_slabs[1].radius[lane] >= 0 ? 1u : 0u);
       if ((gaps.used >> lane & 1) == 0) continue;
       ASSERT_EQ(gaps.meeting >> lane & 1, gaps.gap[lane] <= 0 ? 1u : 0u);
-      const auto distance = test::surface_distance(others, triangles_below(b, kBlockWidth + lane, placed));
+      const auto distance = test::surface_distance(others, test::triangles_below(b, kBlockWidth + lane, placed));
       ASSERT_LE(gaps.gap[lane], distance) << seed;
       apart += gaps.gap[lane] > 0;
       tight += distance > 0 && gaps.gap[lane] > 0.5 * static_cast<double>(distance);
