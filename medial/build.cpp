@@ -12,8 +12,9 @@
 namespace orchard {
 namespace {
 
-// Of the points: where fewer places are open, reaching closes them nearly as well as points, in a fraction of the time.
-constexpr double kFewOpen = 1.0 / 16;
+// Of the points: where fewer are added by gap repair and for open places, hardly any part is thinner than the spacing,
+// and reaching closes such places nearly as well as points, in a fraction of the time.
+constexpr double kFewAdded = 1.0 / 16;
 constexpr double kAlmost = 3;  // border losses: where no less is reached for, points are needed
 
 class MedialBuilder {
@@ -123,8 +124,11 @@ class MedialBuilder {
     SurfaceSampling added;
     const double limit = options_.refine->border_loss * surface_.bounding_box().diagonal().norm();
     stage("open places", [&] { added = detail::open_places(surface_, refiner.mesh(), build_.sampling, limit); });
+    if (added.size() == 0) return false;
+    const auto& origins = build_.sampling.origins;
+    const auto needed = added.size() + std::count(origins.begin(), origins.end(), PointOrigin::repair);
     const bool is_reached = options_.refine->reach_rounds > 0 && refiner.left_open() <= kAlmost * limit;
-    if (added.size() <= (is_reached ? kFewOpen * build_.sampling.size() : 0)) return false;
+    if (is_reached && static_cast<double>(needed) <= kFewAdded * build_.sampling.size()) return false;
     build_.open_places += added.size();
     SurfaceSampling all = std::move(build_.sampling);
     const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
