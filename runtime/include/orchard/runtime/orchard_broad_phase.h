@@ -64,7 +64,8 @@ typedef struct orchard_broad_phase_options {
   orchard_promise_listener broken; /* null: broken promises are only counted */
   void* broken_context;
   /* Updates of all windows of many bodies as jobs: run(run_context, count, job, data) calls job(data, i) for each i <
-   * count, on any threads, and returns when all have returned. The source is called by several at once then. Null: none */
+   * count, on any threads, and returns when all have returned. The source is called by several at once then. Null: none
+   */
   void (*run)(void* context, size_t count, void (*job)(void* data, size_t index), void* data);
   void* run_context;
   size_t concurrency; /* jobs that may run at once */
