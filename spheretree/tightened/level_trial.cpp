@@ -14,6 +14,8 @@ constexpr double kWantedShare = 0.7;  // of trials that begin where the caller w
 constexpr double kMoveShare = 0.35;   // of trials that move a cheap ball to a dear place
 constexpr double kStayShare = 0.3,
                  kOneAnewShare = 0.45;  // of the others, in which none or one ball starts anew, not two
+constexpr double kAllAnewShare = 0.3,
+                 kEachAnewShare = 0.4;  // of very few balls, all start anew, or each does
 constexpr Index kFewForMoves = 8;       // balls, up to which there is no such move
 constexpr Index kFew = 128;             // balls, up to which more is put at stake at a time
 constexpr double kWorthwhile = 1e-6;    // part of the cost that must go
@@ -46,10 +48,10 @@ class Proposal {
   // A ball, dear ones more often, and some neighbours; perhaps also a tight one from anywhere that is to move here,
   // with the neighbours that must stand in for it.
   void choose() {
-    const bool as_wanted = random_.uniform() < kWantedShare;
+    const bool as_wanted = !very_few() && random_.uniform() < kWantedShare;
     trial_.chosen.push_back(as_wanted ? pick_wanted() : pick(1 + random_.below(3), true));
-    add_neighbors(trial_.chosen[0], few_neighbors(few() ? 5 : 3));
-    if (balls_.size() <= kFewForMoves || random_.uniform() >= kMoveShare) return;
+    add_neighbors(trial_.chosen[0], very_few() ? 1 + random_.below(5) : few_neighbors(few() ? 5 : 3));
+    if (very_few() || random_.uniform() >= kMoveShare) return;
     const Index cheap = pick(few() ? 4 : 8, false);
     if (is_chosen(cheap)) return;
     trial_.moved = static_cast<Index>(trial_.chosen.size());
@@ -91,6 +93,8 @@ class Proposal {
   }
 
   bool few() const { return balls_.size() <= kFew; }
+  // So few that a level is caught in what is nearly best unless most of them are at stake at a time.
+  bool very_few() const { return balls_.size() <= kFewForMoves; }
 
   bool is_chosen(Index ball) const {
     return std::find(trial_.chosen.begin(), trial_.chosen.end(), ball) != trial_.chosen.end();
@@ -115,6 +119,12 @@ class Proposal {
     }
     if (moves) return;
     const double which = random_.uniform();
+    if (very_few()) {
+      const double share = which < kAllAnewShare ? 1.0 : kEachAnewShare;
+      for (LevelBall& ball : trial_.balls)
+        if (random_.uniform() < share) start_anew(ball, freed_);
+      return;
+    }
     const int anew = which < kStayShare ? 0 : which < kStayShare + kOneAnewShare ? 1 : 2;
     for (int k = 0; k < anew; ++k) start_anew(trial_.balls[random_.below(trial_.balls.size())], freed_);
   }
