@@ -14,7 +14,7 @@ namespace {
 
 // Of the points: where fewer are added by gap repair and for open places, hardly any part is thinner than the spacing,
 // and reaching closes such places nearly as well as points, in a fraction of the time.
-constexpr double kFewAdded = 1.0 / 16;
+constexpr double kFewAdded = 1.0 / 32;
 constexpr double kAlmost = 3;  // border losses: where no less is reached for, points are needed
 
 class MedialBuilder {
