@@ -1,9 +1,8 @@
 #include "least_vertices.h"
 
-#include <algorithm>
-#include <array>
-#include <utility>
 #include <vector>
+
+#include "orchard/geometry/disjoint_sets.h"
 
 namespace orchard::detail {
 namespace {
@@ -31,22 +30,14 @@ std::int64_t edges_of(std::int64_t triangles) {
   return pairs(corners) + ends + (at_next > pairs(ends) ? 1 : 0);
 }
 
-Index root_of(std::vector<Index>& parent, Index v) {
-  while (parent[v] != v) v = parent[v] = parent[parent[v]];
-  return v;
-}
-
 // One for each component.
 std::vector<MedialMesh> components_of(const MedialMesh& mesh) {
-  std::vector<Index> parent(mesh.size()), component(mesh.size(), kNone), number(mesh.size());
-  for (Index v = 0; v < mesh.size(); ++v) parent[v] = v;
-  for (const auto& [a, b] : mesh.edges) {
-    const Index p = root_of(parent, a), q = root_of(parent, b);
-    parent[std::max(p, q)] = std::min(p, q);
-  }
+  DisjointSets joined(mesh.size());
+  for (const auto& [a, b] : mesh.edges) joined.unite(a, b);
+  std::vector<Index> component(mesh.size(), kNone), number(mesh.size());
   std::vector<MedialMesh> parts;
   for (Index v = 0; v < mesh.size(); ++v) {
-    const Index root = root_of(parent, v);  // the lowest of the component, so met first
+    const Index root = joined.root(v);  // the lowest of the component, so met first
     if (root == v) {
       component[v] = static_cast<Index>(parts.size());
       parts.emplace_back();

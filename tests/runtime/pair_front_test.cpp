@@ -13,6 +13,7 @@
 #include "every_machine.h"
 #include "orchard/runtime/body_pair.h"
 #include "pair/coherent_pair.h"
+#include "placement.h"
 #include "support/effort.h"
 #include "tree/front_block.h"
 
@@ -160,18 +161,6 @@ TEST(PairFront, AllocatesNothingAndMayBeSharedByPairsOfOtherTrees) {
     }
   }
   EXPECT_EQ(allocations, before);
-}
-
-detail::Placement placement_of(const Pose& pose, double size) {
-  detail::Placement p{};
-  for (std::size_t i = 0; i < 9; ++i) {
-    p.turn[i] = static_cast<float>(pose.rotation[i]);
-    p.rotation[i] = static_cast<float>(pose.rotation[i] * pose.scale);
-  }
-  for (std::size_t i = 0; i < 3; ++i) p.translation[i] = static_cast<float>(pose.translation[i]);
-  p.scale = static_cast<float>(pose.scale);
-  p.margin = static_cast<float>(size * 128 * 0x1p-24);
-  return p;
 }
 
 // How far all of one are beyond all of the other one along a vector, over its length.

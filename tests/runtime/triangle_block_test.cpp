@@ -7,6 +7,7 @@
 #include "every_machine.h"
 #include "orchard/runtime/vec3.h"
 #include "pair/support_map.h"
+#include "placement.h"
 #include "support.h"
 #include "tree/ball_slab_block.h"
 
@@ -15,18 +16,7 @@ namespace {
 
 using test::Draw;
 using test::on_every_machine;
-
-Placement placement_of(const Pose& pose, double size) {
-  Placement p{};
-  for (std::size_t i = 0; i < 9; ++i) {
-    p.turn[i] = static_cast<float>(pose.rotation[i]);
-    p.rotation[i] = static_cast<float>(pose.rotation[i] * pose.scale);
-  }
-  for (std::size_t i = 0; i < 3; ++i) p.translation[i] = static_cast<float>(pose.translation[i]);
-  p.scale = static_cast<float>(pose.scale);
-  p.margin = static_cast<float>(size * 128 * 0x1p-24);
-  return p;
-}
+using test::placement_of;
 
 // A tree of few random triangles, flat ones, needles and points among them, not far from the origin.
 PackedSphereTree random_triangles(Draw& draw, std::uint32_t count) {
