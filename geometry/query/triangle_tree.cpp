@@ -54,7 +54,9 @@ Float4 TriangleTree::squared_distances(const Query& query, const Node& node) {
   Float4 d[3];
   for (int axis = 0; axis < 3; ++axis)
     d[axis] = max(max(node.lower[axis] - query.p[axis], query.p[axis] - node.upper[axis]), broadcast(0));
-  return dot(d, d);
+  const Float4 along = dot(query.p, node.normal);
+  const Float4 beyond = max(max(node.low - along, along - node.high), broadcast(0));
+  return max(dot(d, d), beyond * beyond);
 }
 
 Float4 TriangleTree::squared_distances(const Query& query, const Leaf& leaf) {

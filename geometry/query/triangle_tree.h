@@ -17,10 +17,11 @@ struct NearestTriangles {
   bool complete = false;  // there was room for all
 };
 
-// A four-wide tree of boxes over the triangles of a mesh, for distance queries. Boxes and flattened triangles are
-// floats around the centre of the mesh, scaled to size one; they only sort out which triangles can matter. Those few
-// are then measured by closest_point_of_triangle, so an answer is what a loop over all triangles would give, bit for
-// bit.
+// A four-wide tree over the triangles of a mesh, for distance queries. What bounds a child is a box, and a slab across
+// the mean normal of its triangles: a sheet that is oblique to the axes is far thinner than its box. Bounds and
+// flattened triangles are floats around the centre of the mesh, scaled to size one; they only sort out which triangles
+// can matter. Those few are then measured by closest_point_of_triangle, so an answer is what a loop over all triangles
+// would give, bit for bit.
 class TriangleTree {
  public:
   // Keeps a reference to `mesh`. Precondition: at least one triangle.
@@ -39,7 +40,8 @@ class TriangleTree {
  private:
   struct Node {
     Float4 lower[3], upper[3];
-    Index child[4];  // into nodes_, or kLeaf + an index into leaves_
+    Float4 normal[3], low, high;  // of length one or 0: what it spans along it
+    Index child[4];               // into nodes_, or kLeaf + an index into leaves_
   };
   // Triangle k has its longest edge on the first axis of a frame (origin, u, v, n): corners (0, 0), (base, 0), (foot,
   // height).

@@ -100,6 +100,9 @@ Index TriangleTree::Builder::add_node(Range range, int depth) {
     nodes_[node].upper[axis] = -nodes_[node].lower[axis];
   }
   for (int k = 0; k < 4; ++k) nodes_[node].child[k] = kNone;
+  for (Float4* zero : {&nodes_[node].normal[0], &nodes_[node].normal[1], &nodes_[node].normal[2], &nodes_[node].low,
+                       &nodes_[node].high})
+    *zero = Float4{};
   for (std::size_t i = 0; i < count; ++i) {
     const Box3f box = bounds(parts[i]);
     const Index child = parts[i].size() > kLeafSize ? add_node(parts[i], depth + 1) : add_leaf(parts[i]);
@@ -108,8 +111,32 @@ Index TriangleTree::Builder::add_node(Range range, int depth) {
       nodes_[node].upper[axis][i] = box.max()[axis];
     }
     nodes_[node].child[i] = child;
+    add_slab(parts[i], nodes_[node], i);
   }
   return node;
+}
+
+// Across the mean normal, by area. Any direction is right; where there is none, the slab says nothing.
+void TriangleTree::Builder::add_slab(Range range, Node& node, std::size_t lane) const {
+  Vector sum = Vector::Zero();
+  for (Index i = range.begin; i < range.end; ++i) {
+    const auto& [a, b, c] = mesh_.triangles[order_[i]];
+    const Point& p = mesh_.vertices[a];
+    sum += (scale_ * (mesh_.vertices[b] - p)).cross(scale_ * (mesh_.vertices[c] - p));
+  }
+  const double length = sum.norm();
+  const Eigen::Vector3f normal =
+      length > 0 ? Eigen::Vector3f((sum / length).cast<float>()) : Eigen::Vector3f(Eigen::Vector3f::Zero());
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (Index i = range.begin; i < range.end; ++i) {
+    for (const Index vertex : mesh_.triangles[order_[i]]) {
+      const double along = normal.cast<double>().dot(scale_ * (mesh_.vertices[vertex] - center_));
+      low = std::min(low, along), high = std::max(high, along);
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis) node.normal[axis][lane] = normal[axis];
+  node.low[lane] = rounded_down(low);
+  node.high[lane] = rounded_up(high);
 }
 
 int TriangleTree::Builder::bin_of(Index triangle, int axis, const Box3f& centers) const {

@@ -32,6 +32,7 @@ class TriangleTree::Builder {
   Split best_split(Range range, const Box3f& centers) const;
   int bin_of(Index triangle, int axis, const Box3f& centers) const;
   Box3f bounds(Range range) const;
+  void add_slab(Range range, Node& node, std::size_t lane) const;
   void flatten(Index triangle, Leaf& leaf, int lane) const;
 
   const TriangleMesh& mesh_;

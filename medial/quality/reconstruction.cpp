@@ -142,7 +142,10 @@ double Reconstruction::distance_between(double enough, double bound, const Point
 }
 
 Reconstruction::Nearest Reconstruction::nearest(const Point& query, double enough) const {
-  Nearest nearest;
+  return nearest_from({}, query, enough);
+}
+
+Reconstruction::Nearest Reconstruction::nearest_from(Nearest nearest, const Point& query, double enough) const {
   const auto value_of = [&](Index item, const SupportTree::Item& balls, double best) {
     Sphere found;
     const double value = evaluate(item, balls, query, best, found);

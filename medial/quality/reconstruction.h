@@ -33,6 +33,8 @@ class Reconstruction {
   };
   // Any below `enough` will do where there are such.
   Nearest nearest(const Point& query, double enough = -std::numeric_limits<double>::infinity()) const;
+  // The same, where a cell is known already: it comes back unless one is nearer. Its ball is not looked at.
+  Nearest nearest_from(Nearest known, const Point& query, double enough) const;
   // The vertices of a cell; smaller ones repeat their last.
   const std::array<Index, 3>& corners_of(Index cell) const { return corners_[cell]; }
   // The least |query - centre| - radius over the balls of one cell. They are those in the convex hull of its corners'

@@ -17,25 +17,34 @@ constexpr double kEqual = 1e-11;    // bounding radii: distances that are the sa
 constexpr double kTouching = 1e-9;  // of a distance to a contact: what rounding may put between it and the surface
 constexpr double kRank = 0.03;      // of the widest contacts: normals that differ by less do not say where to go
 
-// The place of the surface that is nearest: no farther than the contacts of balls.
-ClosestPoint closest_from(const Surface& surface, const Point& place, std::initializer_list<const ExactBall*> balls) {
-  double far = std::numeric_limits<double>::infinity();
+using Balls = std::initializer_list<const ExactBall*>;
+
+double nearest_contact(const Point& place, Balls balls) {
+  double squared = std::numeric_limits<double>::infinity();
   for (const ExactBall* ball : balls) {
-    for (const ClosestPoint& contact : ball->touching()) far = std::min(far, (contact.position - place).squaredNorm());
+    for (const ClosestPoint& contact : ball->touching())
+      squared = std::min(squared, (contact.position - place).squaredNorm());
   }
-  const ClosestPoint nearest = surface.closest_within(place, (1 + kTouching) * std::sqrt(far));
+  return (1 + kTouching) * std::sqrt(squared);
+}
+
+// The place of the surface that is nearest: no farther than the contacts of balls.
+ClosestPoint closest_from(const Surface& surface, const Point& place, double contact) {
+  const ClosestPoint nearest = surface.closest_within(place, contact);
   return nearest.triangle != kNone ? nearest : surface.closest(place);
 }
 
 }  // namespace
 
 double ball_error(const Surface& surface, const Point& center, double radius, double reach) {
-  return ball_error(surface, center, radius, reach, {});
+  return ball_error(surface, center, radius, reach, {}, 0);
 }
 
-double ball_error(const Surface& surface, const Point& center, double radius, double reach,
-                  std::initializer_list<const ExactBall*> between) {
-  const double distance = closest_from(surface, center, between).distance;
+double ball_error(const Surface& surface, const Point& center, double radius, double reach, Balls between,
+                  double fine) {
+  const double contact = nearest_contact(center, between), inner = radius - fine;
+  if (contact < radius + fine && inner > reach && surface.closest_within(center, inner).triangle == kNone) return 0;
+  const double distance = closest_from(surface, center, contact).distance;
   if (distance <= reach && !surface.inside(center)) return radius + distance;
   return std::abs(radius - distance);
 }
@@ -187,7 +196,7 @@ ExactBall BallSolver::between(const ExactBall& a, const ExactBall& b, double t) 
   contacts_.clear();
   for (const ClosestPoint& contact : a.touching()) contacts_.push_back({contact, 1});
   for (const ClosestPoint& contact : b.touching()) contacts_.push_back({contact, 2});
-  contacts_.push_back({closest_from(surface_, start, {&a, &b})});
+  contacts_.push_back({closest_from(surface_, start, nearest_contact(start, {&a, &b}))});
   merge(start);
   std::stable_partition(contacts_.begin(), contacts_.end(), [](const Held& contact) { return contact.of == 3; });
   const auto common = static_cast<std::size_t>(

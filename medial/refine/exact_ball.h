@@ -31,9 +31,10 @@ struct ExactBall {
 // How far an interpolated ball protrudes from the solid or falls short of its surface. Somewhere within `reach` of its
 // centre the solid is, so only a centre that is as near to the surface can be outside.
 double ball_error(const Surface& surface, const Point& center, double radius, double reach);
-// The same of one between these balls: the surface is no farther than their contacts, which saves looking for it.
+// The same of one between these balls: the surface is no farther than their contacts, which saves looking for it. What
+// is at most `fine` may come out as 0: that nothing is nearer than this is found sooner than what is nearest.
 double ball_error(const Surface& surface, const Point& center, double radius, double reach,
-                  std::initializer_list<const ExactBall*> between);
+                  std::initializer_list<const ExactBall*> between, double fine);
 
 // Finds the ball of the medial axis that is nearest to a given one, by Newton's method: the contacts are held, the
 // centre moves as little as makes their distances equal, and what comes nearer than they do becomes a contact, too.

@@ -117,15 +117,16 @@ class Splitter {
     const ExactBall &a = complex_.balls[edge[0]], &b = complex_.balls[edge[1]];
     const double reach = (length(edge) + std::abs(a.radius - b.radius)) / 2;
     if (reach <= options_.tolerance) return 0;
-    const auto error_at = [&](double t) {
+    const auto error_at = [&](double t, double fine) {
       return ball_error(surface_, (1 - t) * a.center + t * b.center, (1 - t) * a.radius + t * b.radius, length(edge),
-                        {&a, &b});
+                        {&a, &b}, fine);
     };
     const int parts = parts_of(length(edge));
-    double worst = error_at(0.5);
-    if (parts == kMinParts && worst < kSmall * options_.tolerance) return worst;  // nor is it much at the quarters
+    const double small = kSmall * options_.tolerance;
+    double worst = error_at(0.5, small);
+    if (parts == kMinParts && worst < small) return worst;  // nor is it much at the quarters
     for (int i = 1; i < parts; ++i) {
-      if (2 * i != parts) worst = std::max(worst, error_at(static_cast<double>(i) / parts));
+      if (2 * i != parts) worst = std::max(worst, error_at(static_cast<double>(i) / parts, options_.tolerance));
     }
     return worst;
   }
@@ -135,7 +136,7 @@ class Splitter {
     const auto error_at = [&](double u, double v) {
       const double w = 1 - u - v;
       return ball_error(surface_, u * a.center + v * b.center + w * c.center,
-                        u * a.radius + v * b.radius + w * c.radius, longest, {&a, &b, &c});
+                        u * a.radius + v * b.radius + w * c.radius, longest, {&a, &b, &c}, options_.tolerance);
     };
     const int parts = parts_of(longest);
     double worst = error_at(1.0 / 3, 1.0 / 3);

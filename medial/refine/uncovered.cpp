@@ -111,7 +111,10 @@ void UncoveredSearch::look_at(const Reconstruction& reconstruction, const Walk& 
       const double enough = reach < limit_ ? limit_ - reach : kEnough * limit_;
       double value = cell == kNone ? std::numeric_limits<double>::infinity() : walk.run(cell, middle);
       if (!(value < enough)) {
-        const Reconstruction::Nearest nearest = reconstruction.nearest(middle, enough);
+        Reconstruction::Nearest nearest;
+        nearest.distance = value;
+        nearest.cell = cell;
+        nearest = reconstruction.nearest_from(nearest, middle, enough);
         value = nearest.distance;
         cell = nearest.cell;
       }
