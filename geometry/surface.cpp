@@ -197,6 +197,12 @@ void Surface::require_inside() const {
 
 const std::vector<std::array<Index, 2>>& Surface::self_intersections() const { return data_->self_intersections(); }
 
+void Surface::visit_nearest(const Point& query, const std::function<double(Index)>& visit) const {
+  data_->tree.visit_nearest(query, visit);
+}
+double Surface::max_reach(const std::array<Sphere, 3>& balls, const Point& middle, double enough) const {
+  return data_->tree.max_reach(balls, middle, enough);
+}
 void Surface::triangles_near(const Sphere& ball, std::vector<Index>& out) const { data_->tree.near(ball, out); }
 void Surface::triangles_overlapping(const std::array<Point, 3>& triangle, std::vector<Index>& out) const {
   data_->tree.overlapping(triangle, out);

@@ -215,6 +215,23 @@ ClosestPoint TriangleTree::closest_within(const Point& point, double distance) c
   return best.distance <= distance ? best : none;
 }
 
+void TriangleTree::visit_nearest(const Point& point, const std::function<double(Index)>& visit) const {
+  Query query;
+  if (!localize(point, query)) {
+    for (Index t = 0; t < mesh_.triangles.size(); ++t) visit(t);
+    return;
+  }
+  float limit = std::numeric_limits<float>::max();
+  visit_leaves(query, limit, [&](const Leaf& leaf) {
+    const Float4 squared = squared_distances(query, leaf);
+    for (int k = 0; k < 4; ++k) {
+      if (!(squared[k] <= limit) || leaf.triangle[k] == kNone) continue;
+      const double radius = scale_ * visit(leaf.triangle[k]);
+      if (radius < 1e15) limit = squared_limit(static_cast<float>(radius));
+    }
+  });
+}
+
 void TriangleTree::near(const Sphere& ball, std::vector<Index>& out) const {
   out.clear();
   const auto add_if_near = [&](Index triangle) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "orchard/geometry/surface.h"
@@ -34,6 +35,8 @@ class TriangleTree {
   // How often the surface winds around the query: exact if the mesh is closed and consistently oriented and the query
   // is not on it. Precondition: the query lies in the mesh's box.
   int winding_number(const Point& query) const;
+  void visit_nearest(const Point& query, const std::function<double(Index)>& visit) const;         // see Surface
+  double max_reach(const std::array<Sphere, 3>& balls, const Point& middle, double enough) const;  // see Surface
   void near(const Sphere& ball, std::vector<Index>& out) const;                           // ascending; cleared first
   void overlapping(const std::array<Point, 3>& triangle, std::vector<Index>& out) const;  // ascending; cleared first
 
@@ -57,6 +60,7 @@ class TriangleTree {
   class Candidates;
   class TriangleQuery;
   class Ray;
+  class Reach;
 
   bool localize(const Point& point, Query& query) const;
   static Float4 squared_distances(const Query& query, const Node& node);

@@ -15,12 +15,10 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kShareAbove = 0.02;        // of what was found: not searched for more
-constexpr int kMaxLevels = 100;             // of halving: then a cell is as small as rounding
-constexpr std::size_t kFewTriangles = 500;  // of a surface that may all be asked
-constexpr double kSmall = 0.1;              // of the distance to the surface: the reach of cells that ask others
-constexpr std::size_t kBlock = 64;          // cells that one task looks at
-constexpr double kRounding = 1e-12;         // of the coordinates: more than a bound is off by
+constexpr double kShareAbove = 0.02;  // of what was found: not searched for more
+constexpr int kMaxLevels = 100;       // of halving: then a cell is as small as rounding
+constexpr std::size_t kBlock = 64;    // cells that one task looks at
+constexpr double kRounding = 1e-12;   // of the coordinates: more than a bound is off by
 
 // Balls interpolated linearly on up to three; edges and vertices repeat their last.
 struct Cell {
@@ -95,9 +93,8 @@ class ProtrusionSearch {
     std::vector<SearchedMax> results((cells.size() + kBlock - 1) / kBlock, found_);
     tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t block) {
       const std::size_t end = std::min(cells.size(), (block + 1) * kBlock);
-      std::vector<Index> near;
       for (std::size_t i = block * kBlock; i < end; ++i)
-        cells[i].bound = std::min(cells[i].bound, bound_of(cells[i], before, near, results[block]));
+        cells[i].bound = std::min(cells[i].bound, bound_of(cells[i], before, results[block]));
     });
     for (const SearchedMax& result : results) {
       if (result.max > found_.max) found_ = result;
@@ -107,7 +104,7 @@ class ProtrusionSearch {
   // Of r + signed distance over the cell. The signed distance is 1-Lipschitz; and where all centres are inside, the
   // distance to each triangle is convex, so no less than its tangent at the middle says, which is linear as r is: what
   // that leaves is largest at a corner. Where balls touch flat faces the tangents are exact.
-  double bound_of(const Cell& cell, double known, std::vector<Index>& near, SearchedMax& found) const {
+  double bound_of(const Cell& cell, double known, SearchedMax& found) const {
     const auto& [a, b, c] = cell.balls;
     const Sphere middle{(a.center + b.center + c.center) / 3, (a.radius + b.radius + c.radius) / 3};
     const double depth = surface_.signed_distance(middle.center);
@@ -123,32 +120,8 @@ class ProtrusionSearch {
       const BallReach attained = reach_of(surface_, middle);
       if (attained.beyond > found.max) found = {attained.beyond, 0, attained.farthest, middle};
     }
-    const double share = surface_.mesh().triangles.size() <= kFewTriangles ? 1 : kSmall;
-    if (reach > 0 && reach < -share * depth)
-      bound = std::min(bound, bound_by_tangents(cell, {middle.center, -depth}, known, near));
+    if (reach < -depth) bound = std::min(bound, surface_.max_reach(cell.balls, middle.center, known) + rounding_);
     return bound;
-  }
-
-  // `inside`: around the middle of the cell, up to the surface. Triangles farther than those that are looked at are the
-  // nearest of no centre in the cell, or no ball of it reaches beyond them by more than is known.
-  double bound_by_tangents(const Cell& cell, const Sphere& inside, double known, std::vector<Index>& near) const {
-    double reach = 0, max_radius = 0;
-    for (const Sphere& ball : cell.balls) {
-      reach = std::max(reach, (ball.center - inside.center).norm());
-      max_radius = std::max(max_radius, ball.radius);
-    }
-    const double farthest = std::min(inside.radius + 2 * reach, max_radius + reach - known) + rounding_;
-    double bound = known;
-    if (farthest < inside.radius) return bound;
-    surface_.triangles_near({inside.center, farthest}, near);
-    for (const Index t : near) {
-      const auto [p, q, r] = surface_.corners(t);
-      const ClosestPoint closest = closest_point_of_triangle(inside.center, p, q, r);
-      const Vector tangent = (inside.center - closest.position) / closest.distance;
-      for (const Sphere& ball : cell.balls)
-        bound = std::max(bound, ball.radius - closest.distance - tangent.dot(ball.center - inside.center));
-    }
-    return bound + rounding_;
   }
 
   const Surface& surface_;

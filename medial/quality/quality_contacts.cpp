@@ -19,12 +19,13 @@ class ContactSearch {
       : center_(center), direction_(direction), cosine_(std::cos(angle)) {}
 
   double nearest() const { return nearest_; }
+  double limit() const { return (1 - kPrecision) * nearest_; }  // what is farther is not looked for
 
   // The cone is convex: a piece whose corners are inside it is inside. Of a piece across its border the nearest point
   // counts if that is outside, else halves are looked at.
   void look_at(const Point& a, const Point& b, const Point& c) {
     const ClosestPoint closest = closest_point_of_triangle(center_, a, b, c);
-    if (closest.distance >= (1 - kPrecision) * nearest_) return;
+    if (closest.distance >= limit()) return;
     if (in_cone(a) && in_cone(b) && in_cone(c)) return;
     if (!in_cone(closest.position)) {
       nearest_ = closest.distance;
@@ -62,20 +63,14 @@ class ContactSearch {
 
 }  // namespace
 
-double second_contact_distance(const Surface& surface, const Point& center, const Vector& direction, double angle,
-                               double reach) {
-  const double max = (center - surface.bounding_ball().center).norm() + surface.bounding_radius();
-  std::vector<Index> triangles;
-  for (;; reach *= 1.5) {
-    reach = std::min(reach, max);
-    surface.triangles_near({center, reach}, triangles);
-    ContactSearch search(center, direction, angle);
-    for (const Index triangle : triangles) {
-      const auto [a, b, c] = surface.corners(triangle);
-      search.look_at(a, b, c);
-    }
-    if (search.nearest() <= reach || reach >= max) return search.nearest();
-  }
+double second_contact_distance(const Surface& surface, const Point& center, const Vector& direction, double angle) {
+  ContactSearch search(center, direction, angle);
+  surface.visit_nearest(center, [&](Index triangle) {
+    const auto [a, b, c] = surface.corners(triangle);
+    search.look_at(a, b, c);
+    return search.limit();
+  });
+  return search.nearest();
 }
 
 double off_centre(const Surface& surface, const Sphere& ball, double contact_angle, double diagonal) {
@@ -83,8 +78,7 @@ double off_centre(const Surface& surface, const Sphere& ball, double contact_ang
   const ClosestPoint first = surface.closest(ball.center);
   if (!(first.distance > 0)) return -1;
   const Vector direction = (first.position - ball.center) / first.distance;
-  const double reach = 1.05 * std::max(ball.radius, first.distance);
-  const double second = second_contact_distance(surface, ball.center, direction, contact_angle, reach);
+  const double second = second_contact_distance(surface, ball.center, direction, contact_angle);
   return std::isfinite(second) ? std::abs(second - ball.radius) / ball.radius : -1;
 }
 

@@ -65,9 +65,8 @@ double off_centre(const Surface& surface, const Sphere& ball, double contact_ang
 void measure_contacts(const Surface& surface, const QualityBalls& balls, const QualityOptions& options,
                       MedialQuality& quality);
 // The distance from `center` to the part of the surface that is seen at `angle` or more from `direction` (unit), up to
-// one in a thousand. `reach`: where to look first.
-double second_contact_distance(const Surface& surface, const Point& center, const Vector& direction, double angle,
-                               double reach);
+// one in a thousand; infinity where there is none.
+double second_contact_distance(const Surface& surface, const Point& center, const Vector& direction, double angle);
 // quality_economy.cpp
 Economy measure_economy(const Surface& surface, const MedialMesh& mesh, const QualityOptions& options, double diagonal);
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -73,6 +74,16 @@ class Surface {
   int winding_number(const Point& query) const;
   // Those of the mesh (self_intersections.h), found at the first call.
   const std::vector<std::array<Index, 2>>& self_intersections() const;
+  // A bound on how far any ball that is interpolated linearly on these three reaches beyond the place of the surface
+  // that is nearest to its centre, whatever the side: of radius less distance. Not below `enough`: what is no more than
+  // that is not looked at closely. `middle`, a place between the centres, is where the distance is linearised: the
+  // bound is the better the smaller the three's triangle is beside the distance. A few log n; infinity where the balls
+  // are far outside the surface or far larger.
+  double max_reach(const std::array<Sphere, 3>& balls, const Point& middle, double enough) const;
+  // Calls visit(triangle) for the triangles that are no farther from the query than it returned last, near ones first
+  // as far as a tree of boxes tells: for searches of the nearest place that is not just any. Those beyond may come,
+  // too.
+  void visit_nearest(const Point& query, const std::function<double(Index)>& visit) const;
   // Triangles that touch the closed ball, ascending; `out` is cleared first.
   void triangles_near(const Sphere& ball, std::vector<Index>& out) const;
   // Triangles that share a point with the closed triangle, ascending; `out` is cleared first. Exact, as triangles_meet.
