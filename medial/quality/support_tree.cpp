@@ -1,85 +1,235 @@
 #include "support_tree.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <algorithm>
-#include <limits>
-#include <numeric>
+#include <utility>
 
 namespace orchard::detail {
 namespace {
 
-constexpr Index kLeaf = 4;
-constexpr double kRounding = 1e-13;  // of the coordinates: more than a bound is off by
+using Float4 = float __attribute__((vector_size(16)));
 
-Eigen::Vector4d in_four(const Sphere& ball) { return {ball.center.x(), ball.center.y(), ball.center.z(), ball.radius}; }
+constexpr float kSlack = 1e-5f;    // a bound takes some forty roundings of 6e-8 beside numbers of size one
+constexpr double kFar = 1e12;      // sizes: from there on squares may be no floats
+constexpr float kNoFloat = 1e18f;  // instead of what is larger
+
+Float4 broadcast(float x) { return Float4{x, x, x, x}; }
+Float4 abs(Float4 x) { return x < broadcast(0) ? -x : x; }
+Float4 square_root(Float4 a) { return Float4{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])}; }
 
 }  // namespace
 
-SupportTree::SupportTree(std::vector<Item> items) : items_(std::move(items)), numbers_(items_.size()) {
-  if (items_.empty()) return;
-  std::iota(numbers_.begin(), numbers_.end(), Index{0});
-  nodes_.emplace_back();
-  build(0, 0, static_cast<Index>(items_.size()));
-  std::vector<Item> sorted;
-  sorted.reserve(items_.size());
-  for (const Index number : numbers_) sorted.push_back(items_[number]);
-  items_ = std::move(sorted);
-}
-
-double SupportTree::bound(const Node& node, const Point& query) {
-  const Vector way = query - node.middle.head<3>();
-  const double length = way.norm();
-  if (!(length > 0)) return -std::numeric_limits<double>::infinity();
-  Eigen::Vector4d support;
-  support << way / length, 1.0;
-  const double added = (support.transpose() * node.half_axes).cwiseAbs().sum();
-  return length - node.middle[3] - added - node.slack;
-}
-
-void SupportTree::build(Index at, Index first, Index count) {
-  Eigen::Vector4d mean = Eigen::Vector4d::Zero();
-  Eigen::Matrix4d spread = Eigen::Matrix4d::Zero();
-  const auto visit = [&](const auto& look_at) {
-    for (Index i = first; i < first + count; ++i) {
-      for (const Sphere& ball : items_[numbers_[i]]) look_at(in_four(ball));
+// In two along the longest axis, and each of these along its longest; four items at most are children themselves.
+class SupportTree::Builder {
+ public:
+  explicit Builder(SupportTree& tree) : tree_(tree), order_(tree.items_.size()) {
+    for (Index i = 0; i < order_.size(); ++i) {
+      std::array<Eigen::Vector4d, 3>& balls = order_[i].balls;
+      std::transform(tree.items_[i].begin(), tree.items_[i].end(), balls.begin(), [&](const Sphere& ball) {
+        const Point local = tree.scale_ * (ball.center - tree.center_);
+        return Eigen::Vector4d(local.x(), local.y(), local.z(), tree.scale_ * ball.radius);
+      });
+      order_[i].number = i;
     }
-  };
-  visit([&](const Eigen::Vector4d& ball) { mean += ball / (3.0 * count); });
-  visit([&](const Eigen::Vector4d& ball) { spread += (ball - mean) * (ball - mean).transpose(); });
-  const Eigen::Matrix4d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(spread).eigenvectors();
-  Eigen::Vector4d low = Eigen::Vector4d::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  visit([&](const Eigen::Vector4d& ball) {
-    const Eigen::Vector4d place = axes.transpose() * (ball - mean);
-    low = low.cwiseMin(place);
-    high = high.cwiseMax(place);
-  });
-  Node node;
-  node.middle = mean + axes * (0.5 * (low + high));
-  node.half_axes = axes * (0.5 * (high - low)).asDiagonal();
-  node.slack = kRounding * (node.middle.norm() + (high - low).norm());
-  if (count <= kLeaf) {
-    node.first = first;
-    node.count = count;
-    nodes_[at] = node;
-    return;
   }
-  const Eigen::Vector4d longest = axes.col(3);  // of the largest eigenvalue
-  const auto begin = numbers_.begin() + first;
-  const Index half = count / 2;
-  const auto along = [&](Index item) {
-    const Item& balls = items_[item];
-    return longest.dot(in_four(balls[0]) + in_four(balls[1]) + in_four(balls[2]));
+
+  void run() {
+    const auto count = static_cast<Index>(order_.size());
+    build(0, count, box_of(0, count));
+    std::vector<Item> sorted;
+    sorted.reserve(count);
+    for (const Local& item : order_) {
+      sorted.push_back(tree_.items_[item.number]);
+      tree_.numbers_.push_back(item.number);
+    }
+    tree_.items_ = std::move(sorted);
+  }
+
+ private:
+  struct Local {
+    std::array<Eigen::Vector4d, 3> balls;
+    Index number;
   };
-  std::nth_element(begin, begin + half, begin + count, [&](Index a, Index b) {
-    const double x = along(a), y = along(b);
-    return x != y ? x < y : a < b;
-  });
-  node.first = static_cast<Index>(nodes_.size());
-  nodes_[at] = node;
-  nodes_.resize(nodes_.size() + 2);
-  const Index children = node.first;
-  build(children, first, half);
-  build(children + 1, first + half, count - half);
+  struct Box {  // half axes are columns
+    Eigen::Vector4d middle;
+    Eigen::Matrix4d half_axes;
+  };
+
+  // In the plane of the three, along its longest side: the other two half axes are none.
+  static Box box_of(const Local& item) {
+    std::array<Eigen::Vector4d, 3> balls = item.balls;
+    const auto squared = [&](std::size_t k) { return (balls[(k + 1) % 3] - balls[k]).squaredNorm(); };
+    std::size_t longest = 0;
+    for (const std::size_t k : {1u, 2u})
+      if (squared(k) > squared(longest)) longest = k;
+    std::rotate(balls.begin(), balls.begin() + static_cast<std::ptrdiff_t>(longest), balls.end());
+    Box box{balls[0], Eigen::Matrix4d::Zero()};
+    const Eigen::Vector4d side = balls[1] - balls[0], other = balls[2] - balls[0];
+    const double length = side.squaredNorm();
+    if (!(length > 0)) return box;
+    const double foot = std::clamp(other.dot(side) / length, 0.0, 1.0);
+    const Eigen::Vector4d up = other - foot * side;
+    box.half_axes.col(0) = 0.5 * side;
+    box.half_axes.col(1) = 0.5 * up;
+    box.middle += 0.5 * (side + up);
+    return box;
+  }
+
+  // Those of the plane of one, and any others: few items lie in nearly one plane.
+  Eigen::Matrix4d axes_of_first(Index first) const {
+    const auto& balls = order_[first].balls;
+    Eigen::Matrix<double, 4, 2> sides;
+    sides << balls[1] - balls[0], balls[2] - balls[0];
+    return Eigen::HouseholderQR<Eigen::Matrix<double, 4, 2>>(sides).householderQ();
+  }
+
+  Eigen::Matrix4d main_axes(Index first, Index count) const {
+    const Eigen::Vector4d origin = order_[first].balls[0];
+    Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+    Eigen::Matrix4d spread = Eigen::Matrix4d::Zero();
+    for (Index i = first; i < first + count; ++i) {
+      for (const Eigen::Vector4d& ball : order_[i].balls) {
+        const Eigen::Vector4d way = ball - origin;
+        sum += way;
+        spread.noalias() += way * way.transpose();
+      }
+    }
+    spread -= sum * sum.transpose() / (3.0 * count);
+    return Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(spread).eigenvectors();
+  }
+
+  Box box_of(Index first, Index count) const {
+    if (count == 1) return box_of(order_[first]);
+    const auto visit = [&](const auto& look_at) {
+      for (Index i = first; i < first + count; ++i) {
+        for (const Eigen::Vector4d& ball : order_[i].balls) look_at(ball);
+      }
+    };
+    const Eigen::Vector4d origin = order_[first].balls[0];
+    const Eigen::Matrix4d axes = count <= 4 ? axes_of_first(first) : main_axes(first, count);
+    Eigen::Vector4d low = Eigen::Vector4d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+    visit([&](const Eigen::Vector4d& ball) {
+      const Eigen::Vector4d place = axes.transpose() * (ball - origin);
+      low = low.cwiseMin(place);
+      high = high.cwiseMax(place);
+    });
+    return {origin + axes * (0.5 * (low + high)), axes * (0.5 * (high - low)).asDiagonal()};
+  }
+
+  // Orders a range so that its first half comes first along the longest of the axes.
+  void halve(Index first, Index count, const Eigen::Matrix4d& axes) {
+    Eigen::Vector4d low = Eigen::Vector4d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+    const auto begin = order_.begin() + first;
+    const auto place = [](const Local& item) -> Eigen::Vector4d {
+      return item.balls[0] + item.balls[1] + item.balls[2];
+    };
+    for (Index i = 0; i < count; ++i) {
+      const Eigen::Vector4d along = axes.transpose() * place(begin[i]);
+      low = low.cwiseMin(along);
+      high = high.cwiseMax(along);
+    }
+    // An axis' extent grows with its own length, too.
+    int longest = 0;
+    (high - low).cwiseQuotient(axes.colwise().norm().transpose().cwiseMax(1e-300)).maxCoeff(&longest);
+    const Eigen::Vector4d along = axes.col(longest);
+    std::nth_element(begin, begin + count / 2, begin + count, [&](const Local& a, const Local& b) {
+      const double x = along.dot(place(a)), y = along.dot(place(b));
+      return x != y ? x < y : a.number < b.number;
+    });
+  }
+
+  Index build(Index first, Index count, const Box& box) {
+    const auto at = static_cast<Index>(tree_.nodes_.size());
+    tree_.nodes_.emplace_back(Node{});
+    std::array<Index, 5> begin{first, first, first, first, first + count};
+    if (count <= 4) {
+      for (Index k = 0; k < 4; ++k) begin[k] = first + std::min(k, count);
+    } else {
+      halve(first, count, box.half_axes);
+      begin[2] = first + count / 2;
+      for (const Index k : {0u, 2u}) {
+        const Index size = begin[k + 2] - begin[k];
+        halve(begin[k], size, box.half_axes);
+        begin[k + 1] = begin[k] + size / 2;
+      }
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Index size = begin[k + 1] - begin[k];
+      tree_.nodes_[at].child[k] = kNone;
+      if (size == 0) continue;
+      const Box child = box_of(begin[k], size);
+      const Index number = size == 1 ? kItem + begin[k] : build(begin[k], size, child);
+      put(child, number, tree_.nodes_[at], k);
+    }
+    return at;
+  }
+
+  static void put(const Box& box, Index child, Node& node, std::size_t lane) {
+    for (int row = 0; row < 4; ++row) {
+      node.middle[row][lane] = static_cast<float>(box.middle[row]);
+      for (int column = 0; column < 4; ++column)
+        node.half_axes[column][row][lane] = static_cast<float>(box.half_axes(row, column));
+    }
+    node.child[lane] = child;
+  }
+
+  SupportTree& tree_;
+  std::vector<Local> order_;
+};
+
+SupportTree::SupportTree(std::vector<Item> items) : items_(std::move(items)) {
+  if (items_.empty()) return;
+  Eigen::AlignedBox3d centers;
+  double size = 0;
+  for (const Item& item : items_) {
+    for (const Sphere& ball : item) {
+      centers.extend(ball.center);
+      size = std::max(size, std::abs(ball.radius));
+    }
+  }
+  center_ = centers.center();
+  size = std::max(size, centers.sizes().maxCoeff());
+  if (size > 0) scale_ = std::ldexp(1.0, -std::ilogb(size) - 1);
+  Builder builder(*this);
+  nodes_.reserve(items_.size() / 2 + 1);
+  builder.run();
+}
+
+SupportTree::Query SupportTree::localized(const Point& query) const {
+  const Point local = scale_ * (query - center_);
+  const double size = local.cwiseAbs().maxCoeff();
+  Query result;
+  for (int axis = 0; axis < 3; ++axis) result.place[axis] = broadcast(static_cast<float>(local[axis]));
+  result.slack = size < kFar ? kSlack * (1 + static_cast<float>(size)) : std::numeric_limits<float>::infinity();
+  return result;
+}
+
+float SupportTree::limit_of(double value) const {
+  const double local = scale_ * value;
+  return local < kFar ? static_cast<float>(local) : kNoFloat;
+}
+
+// The nearest is to be popped first.
+void SupportTree::push_children(const Node& node, const Query& query, float limit, Entry* stack, std::size_t& size) {
+  const Float4 x = query.place[0] - node.middle[0], y = query.place[1] - node.middle[1],
+               z = query.place[2] - node.middle[2];
+  const Float4 length = square_root(x * x + y * y + z * z);
+  const Float4 inverse = broadcast(1) / length;
+  const Float4 u = x * inverse, v = y * inverse, w = z * inverse;
+  Float4 added = broadcast(query.slack);
+  for (const Float4* half_axis : {node.half_axes[0], node.half_axes[1], node.half_axes[2], node.half_axes[3]})
+    added += abs(u * half_axis[0] + v * half_axis[1] + w * half_axis[2] + half_axis[3]);
+  const Float4 bounds = length - node.middle[3] - added;
+  const std::size_t first = size;
+  for (int k = 0; k < 4; ++k) {
+    // At the middle itself there is no direction, and no bound.
+    if (node.child[k] == kNone || bounds[k] >= limit) continue;
+    const float bound = bounds[k] < limit ? bounds[k] : -std::numeric_limits<float>::infinity();
+    std::size_t at = size++;
+    for (; at > first && stack[at - 1].bound < bound; --at) stack[at] = stack[at - 1];
+    stack[at] = {bound, node.child[k]};
+  }
 }
 
 }  // namespace orchard::detail
