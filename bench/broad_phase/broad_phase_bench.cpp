@@ -32,7 +32,7 @@ Result measure(const SceneShape& shape, int runs, int steps, const Make& make, b
     Result result;
     const auto find = make(scene, result);
     for (int step = 0; step < steps; ++step) {
-      const double begin = watch.now();
+      const double begin = watch.begin();
       const auto pairs = find(scene);
       result.steps.push_back(watch.since(begin));
       result.pairs.push_back(checksum(pairs));

@@ -38,7 +38,7 @@ Result measure(const SceneSpec& spec, int runs, int steps, const std::function<F
     Result result;
     const Finder finder = make(scene);
     for (int step = 0; step < steps; ++step, scene.next_step()) {
-      const double begin = watch.now();
+      const double begin = watch.begin();
       const auto pairs = finder.find(scene);
       result.steps.push_back(watch.since(begin));
       result.pairs.push_back(checksum(pairs));
