@@ -76,7 +76,8 @@ void Events::collect_due(Step now) {
     window.rely_longer();
     due_.push_back(entries_[i]);
   }
-  changes_.take([&](BodyIndex body) {
+  const auto load = [&](BodyIndex body) { prefetch(&windows_[body]); };
+  changes_.take(load, [&](BodyIndex body) {
     note_cancelled(body, now);
     due_.push_back(body);
   });
@@ -101,7 +102,8 @@ void Events::collect_all(Step now) {
 // What has not been updated for this step yet is in due_ already; the rest changed since, or was added.
 void Events::complete_due(Step now) {
   std::erase_if(due_, [&](BodyIndex body) { return !pool_.alive(body) || changes_.has(body); });
-  changes_.take([&](BodyIndex body) {
+  const auto load = [&](BodyIndex body) { prefetch(&windows_[body]); };
+  changes_.take(load, [&](BodyIndex body) {
     boxes_.take_away(body);
     note_cancelled(body, now);
     due_.push_back(body);
