@@ -50,10 +50,8 @@ bool WindowUpdates::place(Block& block, std::span<const BodyIndex> bodies) {
   bool same = set_ends(block, bodies, motions);
   if (!make_boxes(block, motions, same)) return false;
 
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    parts_.windows.set(bodies[i], block.from, block.ends[i]);
-    parts_.overlaps.mark(bodies[i], OverlapList::kUpdated);
-  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) parts_.windows.set(bodies[i], block.from, block.ends[i]);
+  parts_.overlaps.mark_updated(bodies);
   for (std::size_t i = 0; parts_.pairs.notes_spheres() && i < bodies.size(); ++i) {
     parts_.pairs.note_sphere(bodies[i], motions[i], block.lattice, block.durations[i]);
   }
