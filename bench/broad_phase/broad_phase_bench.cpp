@@ -222,7 +222,7 @@ int threads(std::size_t most) {
   for (std::size_t n = 10000; n <= most; n *= 10) {
     for (const double density : {1.0, 10.0}) {
       const SceneShape shape{.bodies = n, .density = density};
-      const int runs = n <= 100000 ? 7 : 2, steps = n <= 100000 ? kSteps : 120;
+      const int runs = n <= 100000 ? 15 : 2, steps = n <= 100000 ? kSteps : 120;
       orchard::runtime::test::ThreadPool one(1), two(2);
       const auto with = [](const orchard::runtime::Executor& executor) {
         BroadPhaseOptions options;

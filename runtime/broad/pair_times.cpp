@@ -108,8 +108,9 @@ ORCHARD_INLINE Numbers lasting(const FourPairs& p, double slack) noexcept {
   return Kind::least(p.limit, Kind::choose(better, tangent, sure));
 }
 
-// horn_contact(), of those that are open.
-ORCHARD_INLINE Numbers contact(const FourPairs& p, Mask open, double resolution, double slack) noexcept {
+// horn_contact(), of those that are apart now.
+ORCHARD_INLINE Numbers contact(const FourPairs& p, const Mask& apart_now, double resolution, double slack) noexcept {
+  Mask open = apart_now;
   const Numbers never = all_of(std::numeric_limits<double>::infinity()), radius = p.radii + (p.slack + all_of(slack));
   Numbers t = all_of(0), found = never, gap = p.distance - radius, slope = p.parting - p.growth;
   for (int round = 0;;) {
@@ -162,29 +163,39 @@ ORCHARD_INLINE bool find_four(const Motion* motions, const double* limits, doubl
 
 ORCHARD_INLINE bool find_by_fours(std::span<const Motion> motions, std::span<const double> limits, double resolution,
                                   double slack, PairTimes& times) noexcept {
-  std::size_t i = 0;
-  for (; i + 4 <= limits.size(); i += 4) {
-    if (!find_four(&motions[2 * i], &limits[i], resolution, slack, &times.seconds[i], &times.touching[i])) return false;
+  std::array<Motion, 8> rest;
+  std::array<double, 4> rest_limits;
+  for (std::size_t i = 0; i < limits.size(); i += 4) {
+    const Motion* some = &motions[2 * i];
+    const double* until = &limits[i];
+    if (i + 4 > limits.size()) {
+      rest = {};
+      rest_limits = {};
+      std::copy(motions.begin() + static_cast<std::ptrdiff_t>(2 * i), motions.end(), rest.begin());
+      std::copy(limits.begin() + static_cast<std::ptrdiff_t>(i), limits.end(), rest_limits.begin());
+      some = rest.data();
+      until = rest_limits.data();
+    }
+    if (!find_four(some, until, resolution, slack, &times.seconds[i], &times.touching[i])) return false;
   }
-  if (i == limits.size()) return true;
-  std::array<Motion, 8> rest{};
-  std::array<double, 4> rest_limits{};
-  std::copy(motions.begin() + static_cast<std::ptrdiff_t>(2 * i), motions.end(), rest.begin());
-  std::copy(limits.begin() + static_cast<std::ptrdiff_t>(i), limits.end(), rest_limits.begin());
-  return find_four(rest.data(), rest_limits.data(), resolution, slack, &times.seconds[i], &times.touching[i]);
+  return true;
 }
 
 }  // namespace
 
 bool find_pair_times_at_once(std::span<const Motion> motions, std::span<const double> limits, double resolution,
                              double slack, PairTimes& times) noexcept {
-#ifdef ORCHARD_MACHINES
-  if (machine() < Machine::avx2) return false;
-#endif
   const auto timeless = [](const Motion& motion) { return std::isnan(motion.expiry); };
   if (std::any_of(motions.begin(), motions.end(), timeless)) return false;
   bool valid = false;
-  per_machine([&]() ORCHARD_INLINE_LAMBDA { valid = find_by_fours(motions, limits, resolution, slack, times); });
+  const auto work = [&]() ORCHARD_INLINE_LAMBDA { valid = find_by_fours(motions, limits, resolution, slack, times); };
+#ifdef ORCHARD_MACHINES
+  const Machine chosen = machine();
+  if (chosen < Machine::avx2) return false;
+  chosen == Machine::avx512 ? work_with_avx512(work) : work_with_avx2(work);
+#else
+  work();
+#endif
   return valid;
 }
 #else

@@ -148,8 +148,8 @@ struct SweptGrid::Insertion {
 // Of the entries hit, those whose box really meets the body's, and in this cell first. Without branches that depend on
 // the boxes: in dense worlds nobody can tell.
 template <int kSpread>
-ORCHARD_INLINE void SweptGrid::report(const Insertion& insertion, const CellLine& line, std::uint64_t hits,
-                                      BodyIndex body, Steps steps) {
+void SweptGrid::report(const Insertion& insertion, const CellLine& line, std::uint64_t hits, BodyIndex body,
+                       Steps steps) {
   const BoxInCell box(insertion.boxes[body], steps);
   std::array<BodyPair, 8> found;
   std::size_t count = 0;
