@@ -141,7 +141,8 @@ double SpatialHash::best_cell_size(const std::vector<State>& states, const std::
     for (const Vec3& p : state) farthest = std::max({farthest, std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])});
   }
   int slower = 0;
-  for (double size = std::max(3 * widest, 8 * radius); size >= 0.5 * radius && slower < kSlowerInTurn; size /= 1.25) {
+  double size = std::max(3 * widest, 8 * radius);
+  while (size >= 0.5 * radius && slower < kSlowerInTurn) {
     double entries = 0;
     for (const double r : radii) entries += std::pow(1 + 2 * r / size, 3);
     if (entries > kMaxEntries * static_cast<double>(radii.size()) || farthest > 0.9 * kMiddle * size) break;
@@ -153,6 +154,7 @@ double SpatialHash::best_cell_size(const std::vector<State>& states, const std::
     }
     slower = sum > kMuchSlower * least ? slower + 1 : 0;
     if (sum < least) least = sum, best = size;
+    size /= 1.25;
   }
   return best;
 }

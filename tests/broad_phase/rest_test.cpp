@@ -12,8 +12,8 @@ TEST(BroadPhase, AsksBodiesAtRestOnceUntilTheyAreCancelled) {
   for (const std::size_t side : {5u, 8u}) {
     std::vector<Motion> values(side * side * side);
     for (std::size_t i = 0; i < values.size(); ++i) {
-      values[i].position = {0.9 * static_cast<double>(i % side), 0.9 * static_cast<double>(i / side % side),
-                            0.9 * static_cast<double>(i / (side * side))};
+      const std::size_t x = i % side, y = i / side % side, z = i / (side * side);
+      values[i].position = 0.9 * Vec3{static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
       values[i].radius = 0.5;
     }
     BroadPhase world(values_of(values), {.time_step = kStep});
