@@ -24,24 +24,38 @@ constexpr int kSteps = 300;
 
 using Make = std::function<std::function<std::span<const BodyPair>(const Scene&)>(Scene&, Result&)>;
 
-Result measure(const SceneShape& shape, int runs, int steps, const Make& make, bool wall_clock = false) {
+Result measure_once(const SceneShape& shape, int steps, const Make& make, bool wall_clock) {
   const Stopwatch watch(shape.bodies >= 10000 && !wall_clock);
-  Result best;
-  for (int run = 0; run < runs; ++run) {
-    Scene scene(shape, 7);
-    Result result;
-    const auto find = make(scene, result);
-    for (int step = 0; step < steps; ++step) {
-      const double begin = watch.now();
-      const auto pairs = find(scene);
-      result.steps.push_back(watch.since(begin));
-      result.pairs.push_back(checksum(pairs));
-      scene.next_step();
-    }
-    find(scene);  // lets it note its memory
-    best.keep_fastest(result);
+  Scene scene(shape, 7);
+  Result result;
+  const auto find = make(scene, result);
+  for (int step = 0; step < steps; ++step) {
+    const double begin = watch.begin();
+    const auto pairs = find(scene);
+    result.steps.push_back(watch.since(begin));
+    result.pairs.push_back(checksum(pairs));
+    scene.next_step();
   }
-  best.whole = steps == kSteps;
+  find(scene);  // lets it note its memory
+  result.whole = steps == kSteps;
+  return result;
+}
+
+Result measure(const SceneShape& shape, int runs, int steps, const Make& make) {
+  Result best;
+  for (int run = 0; run < runs; ++run) best.keep_fastest(measure_once(shape, steps, make, false));
+  return best;
+}
+
+// They take turns, so that other work on the machine is shared.
+std::vector<Result> measure_in_turn(const SceneShape& shape, int runs, int steps, const std::vector<Make>& makes,
+                                    bool wall_clock = false) {
+  std::vector<Result> best(makes.size());
+  for (int run = 0; run < runs; ++run) {
+    for (std::size_t k = 0; k < makes.size(); ++k) {
+      best[k].keep_fastest(measure_once(shape, steps, makes[k], wall_clock));
+    }
+  }
   return best;
 }
 
@@ -73,14 +87,12 @@ Make rival(const std::function<std::unique_ptr<Rival>(const Scene&)>& make) {
 
 double spacing_of(const SceneShape& shape) { return 200 * std::cbrt(4 * 3.14159265358979 / 3 / (100 * shape.density)); }
 
-Result hash_result(const SceneShape& shape, int runs, double& cell) {
-  if (cell == 0) {
-    const Scene scene(shape, 7);
-    cell = SpatialHash::best_cell_size(scene.positions(), scene.radii(), spacing_of(shape), {});
-  }
-  return measure(shape, runs, kSteps, rival([cell](const Scene& scene) {
-                   return std::make_unique<SpatialHash>(scene.positions(), scene.radii(), SpatialHash::Options{cell});
-                 }));
+Make tuned_hash(const SceneShape& shape) {
+  const Scene scene(shape, 7);
+  const double cell = SpatialHash::best_cell_size(scene.positions(), scene.radii(), spacing_of(shape), {});
+  return rival([cell](const Scene& s) {
+    return std::make_unique<SpatialHash>(s.positions(), s.radii(), SpatialHash::Options{cell});
+  });
 }
 
 int runs_for(std::size_t bodies) { return bodies <= 1000 ? 15 : bodies <= 10000 ? 5 : 3; }
@@ -95,8 +107,8 @@ int table(std::size_t most) {
     for (const double density : {1.0, 10.0}) {
       const SceneShape shape{.bodies = n, .density = density};
       const int runs = runs_for(n);
-      double cell = 0;
-      const Result hash = hash_result(shape, runs, cell), own = measure(shape, runs, kSteps, ours({}));
+      const auto results = measure_in_turn(shape, runs, kSteps, {tuned_hash(shape), ours({})});
+      const Result &hash = results[0], &own = results[1];
       right = same("orchard", own, hash) && right;
       std::printf("| %zu | %.0f | %.3f | %.3f: %.1f times | ", n, density, 1e3 * own.total(), 1e3 * hash.total(),
                   hash.total() / own.total());
@@ -143,8 +155,8 @@ int variations(std::size_t most) {
     for (const Case& c : {Case{"100 times as dense", 100, 1, 1}, Case{"4 times as fast", 1, 4, 1},
                           Case{"10 times M", 1, 1, 10}, Case{"all three", 100, 4, 10}}) {
       const SceneShape shape{.bodies = n, .density = c.density, .speed = c.speed, .acceleration = c.acceleration};
-      double cell = 0;
-      const Result hash = hash_result(shape, runs_for(n), cell), own = measure(shape, runs_for(n), kSteps, ours({}));
+      const auto results = measure_in_turn(shape, runs_for(n), kSteps, {tuned_hash(shape), ours({})});
+      const Result &hash = results[0], &own = results[1];
       const Result fixed = measure(shape, 1, kSteps, ours({.window = 100}));
       right = same("orchard", own, hash) && same("fixed window", fixed, hash) && right;
       std::printf("| %zu | %s | %.3f | %.3f: %.1f times | %.1f times |\n", n, c.name, 1e3 * own.total(),
@@ -165,8 +177,8 @@ int worst(std::size_t most) {
     for (const double density : {1.0, 10.0}) {
       for (const bool staggered : {false, true}) {
         const SceneShape shape{.bodies = n, .density = density, .staggered = staggered};
-        double cell = 0;
-        const Result hash = hash_result(shape, runs_for(n), cell), own = measure(shape, runs_for(n), kSteps, ours({}));
+        const auto results = measure_in_turn(shape, runs_for(n), kSteps, {tuned_hash(shape), ours({})});
+        const Result &hash = results[0], &own = results[1];
         right = same("orchard", own, hash) && right;
         std::printf(
             "| %zu | %.0f | %s | %.4f | %.4f: %.2f times | %.4f | %.4f: %.2f times | %.3f | %.3f: %.1f times |\n", n,
@@ -210,17 +222,20 @@ int threads(std::size_t most) {
   for (std::size_t n = 10000; n <= most; n *= 10) {
     for (const double density : {1.0, 10.0}) {
       const SceneShape shape{.bodies = n, .density = density};
-      const int runs = n <= 100000 ? 7 : 2, steps = n <= 100000 ? kSteps : 120;
-      const Result none = measure(shape, runs, steps, ours({}), true);
-      std::printf("| %zu | %.0f | %.3f | ", n, density, 1e3 * none.total());
-      Result shared;
-      for (const std::size_t count : {1u, 2u}) {
-        orchard::runtime::test::ThreadPool pool(count);
+      const int runs = n <= 100000 ? 15 : 2, steps = n <= 100000 ? kSteps : 120;
+      orchard::runtime::test::ThreadPool one(1), two(2);
+      const auto with = [](const orchard::runtime::Executor& executor) {
         BroadPhaseOptions options;
-        options.executor = pool.executor();
-        shared = measure(shape, runs, steps, ours(options), true);
-        right = same("with threads", shared, none) && right;
-        std::printf("%.3f: %.2f times as fast | ", 1e3 * shared.total(), none.total() / shared.total());
+        options.executor = executor;
+        return ours(options);
+      };
+      const auto results =
+          measure_in_turn(shape, runs, steps, {ours({}), with(one.executor()), with(two.executor())}, true);
+      const Result &none = results[0], &shared = results[2];
+      std::printf("| %zu | %.0f | %.3f | ", n, density, 1e3 * none.total());
+      for (const Result& result : {results[1], results[2]}) {
+        right = same("with threads", result, none) && right;
+        std::printf("%.3f: %.2f times as fast | ", 1e3 * result.total(), none.total() / result.total());
       }
       std::printf("%.3f | %.3f: %.2f times |\n", 1e3 * none.worst(1), 1e3 * shared.worst(1),
                   none.worst(1) / shared.worst(1));

@@ -3,6 +3,8 @@
 //   broad_phase_scenes [most bodies [part of a scene's name]]
 // Times are of detection only, with what the application has to tell (cancel, remove, add); of each step the fastest of
 // some runs. Our inner loops are those of each machine that this one can be. All report the same pairs at every step.
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
@@ -30,28 +32,24 @@ struct Finder {
   std::function<std::size_t()> memory_bytes = [] { return std::size_t{0}; };
 };
 
-Result measure(const SceneSpec& spec, int runs, int steps, const std::function<Finder(const TableScene&)>& make) {
+Result measure(const SceneSpec& spec, int steps, const std::function<Finder(const TableScene&)>& make) {
   const Stopwatch watch(spec.bodies >= 3000);
-  Result best;
-  for (int run = 0; run < runs; ++run) {
-    TableScene scene(spec, kSeed);
-    Result result;
-    const Finder finder = make(scene);
-    for (int step = 0; step < steps; ++step, scene.next_step()) {
-      const double begin = watch.now();
-      const auto pairs = finder.find(scene);
-      result.steps.push_back(watch.since(begin));
-      result.pairs.push_back(checksum(pairs));
-      result.memory = std::max(result.memory, finder.memory_bytes());
-    }
-    best.keep_fastest(result);
+  TableScene scene(spec, kSeed);
+  Result result;
+  const Finder finder = make(scene);
+  for (int step = 0; step < steps; ++step, scene.next_step()) {
+    const double begin = watch.begin();
+    const auto pairs = finder.find(scene);
+    result.steps.push_back(watch.since(begin));
+    result.pairs.push_back(checksum(pairs));
+    result.memory = std::max(result.memory, finder.memory_bytes());
   }
-  best.whole = steps == spec.steps;
-  return best;
+  result.whole = steps == spec.steps;
+  return result;
 }
 
-Result ours(const SceneSpec& spec, int runs) {
-  return measure(spec, runs, spec.steps, [](const TableScene& scene) -> Finder {
+Result ours(const SceneSpec& spec) {
+  return measure(spec, spec.steps, [](const TableScene& scene) -> Finder {
     auto world = std::make_shared<SceneWorld>(scene, BroadPhase(scene.source(), {.time_step = TableScene::kStep}));
     return {[world](const TableScene& s) { return world->step(s).pairs; },
             [world] { return world->world().memory_bytes(); }};
@@ -61,8 +59,8 @@ Result ours(const SceneSpec& spec, int runs) {
 using MakeRival =
     std::function<std::unique_ptr<Rival>(const std::vector<Vec3>& positions, const std::vector<double>& radii)>;
 
-Result rival(const SceneSpec& spec, int runs, int steps, const MakeRival& make) {
-  return measure(spec, runs, steps, [&](const TableScene& scene) -> Finder {
+Result rival(const SceneSpec& spec, int steps, const MakeRival& make) {
+  return measure(spec, steps, [&](const TableScene& scene) -> Finder {
     std::shared_ptr<Rival> it = make(scene.positions(), scene.radii());
     auto pairs = std::make_shared<std::vector<BodyPair>>();
     return {[it, pairs](const TableScene&) {
@@ -94,7 +92,7 @@ bool print_trees(const SceneSpec& spec, const Result& hash, const Result& own) {
   bool right = true;
   const auto other = [&](const char* name, const MakeRival& make) {
     const int steps = std::min(spec.steps, 100);
-    const Result r = rival(spec, 1, steps, make);
+    const Result r = rival(spec, steps, make);
     right = same(name, r, hash) && right;
     double part = 0;  // of our time, for the same steps
     for (int i = 0; i < steps; ++i) part += own.steps[static_cast<std::size_t>(i)];
@@ -115,30 +113,44 @@ bool print_trees(const SceneSpec& spec, const Result& hash, const Result& own) {
   return right;
 }
 
-bool print_row(const SceneSpec& spec) {
-  const int runs = spec.bodies <= 1000 ? 9 : spec.bodies <= 10000 ? 3 : spec.bodies <= 100000 ? 2 : 1;
+// The hash's, and ours with the inner loops of each machine. They take turns, so that other work on this one is shared.
+struct Row {
+  Result hash;
+  std::vector<Result> own;
+};
+
+Row measure_row(const SceneSpec& spec, std::span<const machines::Machine> kinds) {
+  const int runs = spec.bodies <= 1000 ? 15 : spec.bodies <= 10000 ? 7 : spec.bodies <= 100000 ? 3 : 1;
   const double cell = best_cell_size(spec);
-  const Result hash = rival(spec, runs, spec.steps, [cell](const auto& positions, const auto& radii) {
-    return std::make_unique<SpatialHash>(positions, radii, SpatialHash::Options{cell});
-  });
-  std::printf("| %s | %zu | %.4f | %.4f |", spec.name, spec.bodies, mean_ms(hash), 1e3 * hash.worst(1));
-  Result own;
-  bool right = true;
-  std::string ratios;
-  for (const machines::Machine m : {machines::Machine::base, machines::Machine::avx2, machines::Machine::avx512}) {
-    if (m > machines::best_machine()) {
-      ratios += " - |";
-      continue;
+  Row row;
+  row.own.resize(kinds.size());
+  for (int run = 0; run < runs; ++run) {
+    row.hash.keep_fastest(rival(spec, spec.steps, [cell](const auto& positions, const auto& radii) {
+      return std::make_unique<SpatialHash>(positions, radii, SpatialHash::Options{cell});
+    }));
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+      machines::use_machine(kinds[k]);
+      row.own[k].keep_fastest(ours(spec));
     }
-    machines::use_machine(m);
-    own = ours(spec, runs);
-    right = same("orchard", own, hash) && right;
-    char ratio[32];
-    std::snprintf(ratio, sizeof ratio, " %.2f |", hash.total() / own.total());
-    ratios += ratio;
   }
-  std::printf(" %.4f | %.4f |%s %.2f | %.0f |", mean_ms(own), 1e3 * own.worst(1), ratios.c_str(),
-              hash.worst(1) / own.worst(1), static_cast<double>(own.memory) / static_cast<double>(spec.bodies));
+  return row;
+}
+
+bool print_row(const SceneSpec& spec) {
+  constexpr std::array kAll = {machines::Machine::base, machines::Machine::avx2, machines::Machine::avx512};
+  const std::size_t can = static_cast<std::size_t>(
+      std::count_if(kAll.begin(), kAll.end(), [](machines::Machine m) { return m <= machines::best_machine(); }));
+  const Row row = measure_row(spec, std::span(kAll).first(can));
+  const Result &hash = row.hash, &own = row.own.back();
+  bool right = true;
+  for (const Result& result : row.own) right = same("orchard", result, hash) && right;
+  std::printf("| %s | %zu | %.4f | %.4f | %.4f | %.4f |", spec.name, spec.bodies, mean_ms(hash), 1e3 * hash.worst(1),
+              mean_ms(own), 1e3 * own.worst(1));
+  for (std::size_t k = 0; k < kAll.size(); ++k) {
+    k < can ? std::printf(" %.2f |", hash.total() / row.own[k].total()) : std::printf(" - |");
+  }
+  std::printf(" %.2f | %.0f |", hash.worst(1) / own.worst(1),
+              static_cast<double>(own.memory) / static_cast<double>(spec.bodies));
   right = print_trees(spec, hash, own) && right;
   std::printf("\n");
   std::fflush(stdout);

@@ -128,24 +128,33 @@ double SpatialHash::best_cell_size(const std::vector<Vec3>& positions, const std
   return best;
 }
 
+// From large cells to small ones, which take a hundred times as long where bodies are small for the distances between
+// them, and many gigabytes of a million bodies: not tried once smaller ones have only been slower for a while.
 double SpatialHash::best_cell_size(const std::vector<State>& states, const std::vector<double>& radii) {
   constexpr double kMaxEntries = 40;  // a body: cells so small are not worth trying
+  constexpr double kMuchSlower = 2;
+  constexpr int kSlowerInTurn = 3;  // sizes, much slower than the best one, after which smaller ones are left out
   double radius = 0, widest = 0, farthest = 0, best = 0, least = 1e300;
   for (const double r : radii) radius += r / static_cast<double>(radii.size());
   for (const State& state : states) {
     widest = std::max(widest, even_spacing(state));
     for (const Vec3& p : state) farthest = std::max({farthest, std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])});
   }
-  for (double size = 0.5 * radius; size < std::max(3 * widest, 8 * radius); size *= 1.25) {
+  int slower = 0;
+  double size = std::max(3 * widest, 8 * radius);
+  while (size >= 0.5 * radius && slower < kSlowerInTurn) {
     double entries = 0;
     for (const double r : radii) entries += std::pow(1 + 2 * r / size, 3);
-    if (entries > kMaxEntries * static_cast<double>(radii.size()) || farthest > 0.9 * kMiddle * size) continue;
+    if (entries > kMaxEntries * static_cast<double>(radii.size()) || farthest > 0.9 * kMiddle * size) break;
     double sum = 0;
     for (const State& state : states) {
       SpatialHash hash(state, radii, {size});
       sum += fastest_of(hash, 3);
+      if (sum > kMuchSlower * least) break;
     }
+    slower = sum > kMuchSlower * least ? slower + 1 : 0;
     if (sum < least) least = sum, best = size;
+    size /= 1.25;
   }
   return best;
 }

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "../machine.h"
-#include "../vector_support.h"
+#include "four_motions.h"
 #include "horn.h"
 
 namespace orchard::runtime::detail {
@@ -49,33 +49,11 @@ struct PlainDoubles {
 };
 
 #ifdef ORCHARD_VECTORS
-struct VectorDoubles {
-  using Numbers __attribute__((vector_size(32))) = double;
-  using Mask __attribute__((vector_size(32))) = std::int64_t;
+struct VectorMotions : VectorDoubles {
   using Columns = MotionColumns<Numbers>;
-  ORCHARD_INLINE static Numbers choose(const Mask& mask, const Numbers& a, const Numbers& b) noexcept {
-    return mask ? a : b;
-  }
-  ORCHARD_INLINE static Numbers at(const double* from) noexcept {
-    Numbers result;
-    std::memcpy(&result, from, sizeof result);
-    return result;
-  }
-  // Four numbers of each of four motions, transposed.
-  ORCHARD_INLINE static std::array<Numbers, 4> transposed(const Motion* m, std::size_t first) noexcept {
-    const auto row = [&](std::size_t i)
-                         ORCHARD_INLINE_LAMBDA { return at(reinterpret_cast<const double*>(m + i) + first); };
-    const Numbers a = row(0), b = row(1), c = row(2), d = row(3);
-    const Numbers ab02 = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab13 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-    const Numbers cd02 = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd13 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-    return {__builtin_shufflevector(ab02, cd02, 0, 1, 4, 5), __builtin_shufflevector(ab13, cd13, 0, 1, 4, 5),
-            __builtin_shufflevector(ab02, cd02, 2, 3, 6, 7), __builtin_shufflevector(ab13, cd13, 2, 3, 6, 7)};
-  }
   ORCHARD_INLINE static Columns columns(const Motion* m) noexcept {
-    static_assert(offsetof(Motion, velocity) == 24 && offsetof(Motion, radius) == 48 &&
-                  offsetof(Motion, acceleration) == 56 && offsetof(Motion, drift) == 64 &&
-                  offsetof(Motion, half_space) == 72);
-    const std::array<Numbers, 4> first = transposed(m, 0), second = transposed(m, 4);
+    const std::array<Numbers, 4> first = transposed(m, kPositionAndVelocity),
+                                 second = transposed(m, kVelocityAndRadius);
     const auto squares = [&](std::size_t i)
                              ORCHARD_INLINE_LAMBDA { return at(&m[i].drift) * at(&m[i].drift); };  // and half-space
     return {{first[0], first[1], first[2]},
@@ -85,7 +63,6 @@ struct VectorDoubles {
             Numbers{m[0].drift, m[1].drift, m[2].drift, m[3].drift},
             (squares(0) + squares(1)) + (squares(2) + squares(3))};
   }
-  ORCHARD_INLINE static bool all(const Mask& mask) noexcept { return (mask[0] & mask[1] & mask[2] & mask[3]) != 0; }
   ORCHARD_INLINE static void truncate(const Numbers& a, std::uint32_t* to) noexcept {
     using Integers __attribute__((vector_size(16))) = std::int32_t;
     const Integers integers = __builtin_convertvector(a, Integers);
@@ -185,7 +162,7 @@ bool Lattice::boxes_plain(std::span<const Motion> motions, std::span<const doubl
 bool Lattice::boxes_vectors(std::span<const Motion> motions, std::span<const double> durations,
                             BoxBlock& boxes) const noexcept {
   bool good = false;
-  detail::per_machine([&]() ORCHARD_INLINE_LAMBDA { good = make_all<VectorDoubles>(motions, durations, boxes); });
+  detail::per_machine([&]() ORCHARD_INLINE_LAMBDA { good = make_all<VectorMotions>(motions, durations, boxes); });
   return good;
 }
 #else

@@ -22,11 +22,14 @@ class Changes {
       if (pending_[body]) bodies.push_back(body);
     }
   }
-  // Each leaves, and is used.
-  template <typename Use>
-  void take(const Use& use) {
+  // Each leaves, and is used; load(body) is called some bodies ahead.
+  template <typename Load, typename Use>
+  void take(const Load& load, const Use& use) {
     constexpr std::size_t kKept = 1024;  // room for as many stays allocated, not what adding all bodies took
-    for (const BodyIndex body : changed_) {
+    constexpr std::size_t kAhead = 16;
+    for (std::size_t i = 0; i < changed_.size(); ++i) {
+      if (i + kAhead < changed_.size()) load(changed_[i + kAhead]);
+      const BodyIndex body = changed_[i];
       if (!pending_[body]) continue;
       pending_[body] = 0;
       use(body);

@@ -36,14 +36,27 @@ void Events::changed(BodyIndex body) {
   changes_.note(body);
 }
 
-void Events::removed(BodyIndex body) noexcept {
-  if (windows_[body].length > 0) planner_.note_cancelled();
-  boxes_.take_away(body);
+// Their boxes are all over memory: they are taken out together, at the next step.
+void Events::removed(BodyIndex body) {
+  if (gone_.size() >= windows_.size()) take_away_gone();
+  append(gone_, body);
   budgeted_.leave(body);
   changes_.forget(body);
-  windows_[body] = {.end = kNeverStep};  // no next update, until the slot's next body
-  windows_.void_events(body);
   overlaps_.mark(body, OverlapList::kUpdated);
+}
+
+void Events::take_away_gone() noexcept {
+  constexpr std::size_t kAhead = 16, kKept = 1024;
+  boxes_.take_away(gone_);
+  for (std::size_t i = 0; i < gone_.size(); ++i) {
+    if (i + kAhead < gone_.size()) prefetch(&windows_[gone_[i + kAhead]]);
+    const BodyIndex body = gone_[i];
+    if (windows_[body].length > 0) planner_.note_cancelled();
+    windows_[body] = {.end = kNeverStep};  // no next update, until the slot's next body
+    windows_.void_events(body);
+  }
+  gone_.clear();
+  if (gone_.capacity() > kKept) give_back(gone_);
 }
 
 void Events::note_cancelled(BodyIndex body, Step now) {
@@ -63,7 +76,8 @@ void Events::collect_due(Step now) {
     window.rely_longer();
     due_.push_back(entries_[i]);
   }
-  changes_.take([&](BodyIndex body) {
+  const auto load = [&](BodyIndex body) { prefetch(&windows_[body]); };
+  changes_.take(load, [&](BodyIndex body) {
     note_cancelled(body, now);
     due_.push_back(body);
   });
@@ -88,7 +102,8 @@ void Events::collect_all(Step now) {
 // What has not been updated for this step yet is in due_ already; the rest changed since, or was added.
 void Events::complete_due(Step now) {
   std::erase_if(due_, [&](BodyIndex body) { return !pool_.alive(body) || changes_.has(body); });
-  changes_.take([&](BodyIndex body) {
+  const auto load = [&](BodyIndex body) { prefetch(&windows_[body]); };
+  changes_.take(load, [&](BodyIndex body) {
     boxes_.take_away(body);
     note_cancelled(body, now);
     due_.push_back(body);
@@ -288,6 +303,7 @@ void Events::begin(Step now) {
 }
 
 StepReport Events::step(Step now, BudgetTracker& tracker) {
+  take_away_gone();
   if (pool_.size() == 0) {
     forget_all();
     return {kNeverStep, {}};
@@ -357,7 +373,7 @@ bool Events::along(Step now, const Vec3& origin, const Vec3& way, double length,
 }
 
 std::size_t Events::memory_bytes() const noexcept {
-  return sizeof(*this) + changes_.memory_bytes() + windows_.memory_bytes() + boxes_.memory_bytes() +
+  return sizeof(*this) + changes_.memory_bytes() + bytes_of(gone_) + windows_.memory_bytes() + boxes_.memory_bytes() +
          wheel_.memory_bytes() - sizeof(wheel_) + overlaps_.memory_bytes() + planner_.memory_bytes() +
          pairs_.memory_bytes() + updates_.memory_bytes() + budgeted_.memory_bytes() + sorted_.memory_bytes() +
          bytes_of(due_) + bytes_of(entries_) + bytes_of(waiting_);

@@ -23,7 +23,7 @@ class Events final : public Method {
   Events(BodyPool& pool, const BroadPhaseOptions& options);
 
   void changed(BodyIndex body) override;
-  void removed(BodyIndex body) noexcept override;
+  void removed(BodyIndex body) override;
   void reclassified(BodyIndex body) override { budgeted_.reclassified(body); }
   StepReport step(Step now, BudgetTracker& tracker) override;
   std::size_t memory_bytes() const noexcept override;
@@ -34,6 +34,7 @@ class Events final : public Method {
   double cell_size() const noexcept override { return planner_.plan().cell_size; }
 
  private:
+  void take_away_gone() noexcept;
   void forget_all() noexcept;
   void begin(Step now);
   void collect_due(Step now);
@@ -60,6 +61,7 @@ class Events final : public Method {
   BodyPool& pool_;
   const BroadPhaseOptions options_;
   Changes changes_;
+  std::vector<BodyIndex> gone_;  // since the last step, whatever has their indices now
   Windows windows_;
   BoxIndex boxes_;
   TimingWheel wheel_;

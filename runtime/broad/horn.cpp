@@ -7,7 +7,6 @@ namespace orchard::runtime {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr int kMaxRounds = 100;  // a grazing contact halves the gap per round; stopping early is early, not late
 
 double largest(const Vec3& v) noexcept { return std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])}); }
 
@@ -86,9 +85,14 @@ double overlap_lasts(const Motion& a, const Motion& b, double limit, double slac
   return std::min(limit, sure);
 }
 
+double tightened(const Motion& a, const Motion& b, double contact, double limit, double slack) noexcept {
+  const double tight = std::max({contact, half_space_contact(a, b, slack), half_space_contact(b, a, slack)});
+  return tight <= limit ? tight : kNever;
+}
+
 double horn_contact(const HornPair& pair, double limit, double resolution) noexcept {
   double t = 0;
-  for (int round = 0; round < kMaxRounds; ++round) {
+  for (int round = 0; round < kMaxHornRounds; ++round) {
     const Vec3 apart = pair.offset + t * pair.velocity;
     const double distance = std::sqrt(dot(apart, apart));
     const double gap = distance - (pair.radius + t * (pair.growth + t * pair.acceleration / 2));
@@ -108,10 +112,8 @@ double earliest_contact(const Motion& a, const Motion& b, double limit, double r
   const double slack = detail::motion_slack(a, b, limit) + more;
   const detail::HornPair pair{b.position - a.position, b.velocity - a.velocity, a.radius + b.radius + slack,
                               a.drift + b.drift, a.acceleration + b.acceleration};
-  double contact = detail::horn_contact(pair, limit, resolution);
-  if (!(contact <= limit)) return kNever;
-  contact = std::max({contact, half_space_contact(a, b, slack), half_space_contact(b, a, slack)});
-  return contact <= limit ? contact : kNever;
+  const double contact = detail::horn_contact(pair, limit, resolution);
+  return contact <= limit ? detail::tightened(a, b, contact, limit, slack) : kNever;
 }
 
 }  // namespace orchard::runtime

@@ -9,8 +9,15 @@ struct HornPair {
   double radius, growth, acceleration;
 };
 
+inline constexpr int kMaxHornRounds =
+    100;  // a grazing contact halves the gap per round; stopping early is early, not late
+
 // The first such t in [0, limit], never late and less than `resolution` early; infinity if there is none.
 double horn_contact(const HornPair& pair, double limit, double resolution) noexcept;
+
+// A contact at a time not after the limit, by the two bodies' half-spaces: not before both allow it, and infinity if
+// that is after the limit. `slack`: with that for rounding.
+double tightened(const Motion& a, const Motion& b, double contact, double limit, double slack) noexcept;
 
 // The first t >= 0 with gap + slope t - acceleration t^2 / 2 <= 0; infinity if there is none. acceleration >= 0.
 double first_closing(double gap, double slope, double acceleration) noexcept;

@@ -33,7 +33,7 @@ class Method {
   // The body is new or its bounds hold no longer; to be asked for at the next step that is processed.
   virtual void changed(BodyIndex body) = 0;
   // Called while the body pool still has it.
-  virtual void removed(BodyIndex body) noexcept = 0;
+  virtual void removed(BodyIndex body) = 0;
   virtual void reclassified(BodyIndex body) = 0;  // the body pool has its new importance
   virtual StepReport step(Step now, BudgetTracker& tracker) = 0;
   virtual std::size_t memory_bytes() const noexcept = 0;

@@ -1,6 +1,7 @@
 #include "near_pairs.h"
 
 #include "horn.h"
+#include "pair_times.h"
 
 namespace orchard::runtime::detail {
 namespace {
@@ -30,6 +31,7 @@ struct NearPairs::Sink {
   void ahead(const BodyPair& pair) const { of.note_ahead(pair); }
   void doubtful(const PairEvent& event) const { of.doubtful_.push_back(event); }
   void later(const PairEvent& event, Step step) const { of.wheel_.add(event, step); }
+  void refuses(BodyIndex body) const { of.refusals_.refuse(body); }
 };
 
 // or when all jobs are done: of new pairs, without a budget.
@@ -41,6 +43,7 @@ struct NearPairs::KeptSink {
   void ahead(const BodyPair& pair) const { outcome.ahead.push_back(pair); }
   static void doubtful(const PairEvent&) {}
   void later(const PairEvent& event, Step step) const { outcome.later.push_back({event, step}); }
+  void refuses(BodyIndex body) const { outcome.refused.push_back(body); }
 };
 
 void NearPairs::begin_step(bool within_budget) {
@@ -94,34 +97,81 @@ void NearPairs::settle_touching(Step now, const PairEvent& event, Step left, Ste
   if (sure + 1 < left && !waits) to.later(next, now + sure + 1);
 }
 
-// Both motions are of this step: they overlap, surely for a while, or they cannot for a while.
-template <typename To>
-void NearPairs::settle(Step now, const PairEvent& event, const Motion& a, const Motion& b, To to) const {
-  const BodyPair& pair = event.pair;
-  if (!to.may_pair(pair)) return;  // what waited for its test while that changed
+// For how many whole steps both motions hold, until the next update of one of them, or until a bound expires.
+NearPairs::Horizon NearPairs::horizon_of(Step now, const BodyPair& pair, const Motion& a,
+                                         const Motion& b) const noexcept {
   const Clock& clock = pool_.clock;
-  const double slack = 4 * options_.position_slack;  // of two bodies, now and later
-  // Until the next update of one of them, or a bound expires.
-  const Step left =
+  Horizon horizon;
+  horizon.left =
       std::min({windows_.known_until(pair.a, now), windows_.known_until(pair.b, now), now + kLongestWindow}) - now;
   const double expiry = std::min(a.expiry, b.expiry);
-  const bool in_time = expiry >= clock.time(now + left + 1);  // mostly, and sooner said
-  const Step safe = in_time ? left : clock.last_before_expiry(expiry) - now;
-  const Step whole = std::max<Step>(0, std::min(left - 1, safe));
-  const double seconds = static_cast<double>(whole) * options_.time_step;
-  if (spheres_touch(a, b)) {
-    const double lasts = whole > 0 ? overlap_lasts(a, b, seconds, slack) : 0;
-    return settle_touching(now, event, left, lasts < seconds ? clock.steps_within(lasts) : whole, to);
-  }
-  if (event.parting) to.parts(pair);
-  if (left <= 1) return;
-  const double contact = earliest_contact(a, b, seconds, kEventResolution * options_.time_step, slack);
-  Step ahead = contact <= seconds ? std::max<Step>(1, clock.steps_before(contact)) : kNeverStep;
-  if (safe < left) ahead = std::min(ahead, std::max<Step>(0, safe) + 1);
-  if (ahead < left) to.later({pair, windows_.round()}, now + ahead);
+  const bool in_time = expiry >= clock.time(now + horizon.left + 1);  // mostly, and sooner said
+  horizon.safe = in_time ? horizon.left : clock.last_before_expiry(expiry) - now;
+  horizon.whole = std::max<Step>(0, std::min(horizon.left - 1, horizon.safe));
+  return horizon;
 }
 
-void NearPairs::test(Step now, std::span<const PairEvent> events) {
+// They overlap, surely for a while, or they cannot for a while.
+template <typename To>
+void NearPairs::settle(Step now, const PairEvent& event, const Horizon& horizon, bool touching, double seconds,
+                       To to) const {
+  const Clock& clock = pool_.clock;
+  const double limit = static_cast<double>(horizon.whole) * options_.time_step;
+  if (touching) {
+    return settle_touching(now, event, horizon.left, seconds < limit ? clock.steps_within(seconds) : horizon.whole, to);
+  }
+  if (event.parting) to.parts(event.pair);
+  if (horizon.left <= 1) return;
+  Step ahead = seconds <= limit ? std::max<Step>(1, clock.steps_before(seconds)) : kNeverStep;
+  if (horizon.safe < horizon.left) ahead = std::min(ahead, std::max<Step>(0, horizon.safe) + 1);
+  if (ahead < horizon.left) to.later({event.pair, windows_.round()}, now + ahead);
+}
+
+// Those with a motion that is not valid leave; returns how many stay, at the front.
+template <typename To>
+std::size_t NearPairs::refuse_invalid(std::span<PairEvent> events, std::span<Motion> motions, To to) {
+  std::size_t front = 0;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const Motion a = motions[2 * i], b = motions[2 * i + 1];
+    const bool valid_a = is_valid(a), valid_b = is_valid(b);
+    if (!valid_a) to.refuses(events[i].pair.a);
+    if (!valid_b) to.refuses(events[i].pair.b);
+    if (!valid_a || !valid_b) continue;
+    events[front] = events[i];
+    motions[2 * front] = a, motions[2 * front + 1] = b;
+    ++front;
+  }
+  return front;
+}
+
+// Pair i, of at most kTestsAtOnce, has the motions 2 i and 2 i + 1 at this step.
+template <typename To>
+void NearPairs::settle_all(Step now, std::span<PairEvent> events, std::span<Motion> motions, To to) const {
+  const double slack = 4 * options_.position_slack;  // of two bodies, now and later
+  const double resolution = kEventResolution * options_.time_step;
+  std::array<Horizon, kTestsAtOnce> horizons;
+  std::array<double, kTestsAtOnce> limits;
+  const auto find_horizons = [&] {
+    for (std::size_t i = 0; i < events.size(); ++i) {
+      horizons[i] = horizon_of(now, events[i].pair, motions[2 * i], motions[2 * i + 1]);
+      limits[i] = static_cast<double>(horizons[i].whole) * options_.time_step;
+    }
+  };
+  PairTimes times;
+  find_horizons();
+  if (!options_.vectors || !find_pair_times_at_once(motions.first(2 * events.size()),
+                                                    std::span(limits).first(events.size()), resolution, slack, times)) {
+    events = events.first(refuse_invalid(events, motions, to));
+    find_horizons();
+    find_pair_times(motions.first(2 * events.size()), std::span(limits).first(events.size()), resolution, slack, times);
+  }
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    if (!to.may_pair(events[i].pair)) continue;  // what waited for its test while that changed
+    settle(now, events[i], horizons[i], times.touching[i], times.seconds[i], to);
+  }
+}
+
+void NearPairs::test(Step now, std::span<PairEvent> events) {
   motions_.resize(kBlock);
   std::array<BodyIndex, kBlock> bodies;
   while (!events.empty()) {
@@ -135,13 +185,7 @@ void NearPairs::test(Step now, std::span<const PairEvent> events) {
       pool_.load_ahead(next);
     }
     pool_.ask(now, std::span(bodies).first(2 * count), std::span(motions_).first(2 * count));
-    for (std::size_t i = 0; i < count; ++i) {
-      const Motion &a = motions_[2 * i], &b = motions_[2 * i + 1];
-      const bool valid_a = is_valid(a), valid_b = is_valid(b);
-      if (!valid_a) refusals_.refuse(events[i].pair.a);
-      if (!valid_b) refusals_.refuse(events[i].pair.b);
-      if (valid_a && valid_b) settle(now, events[i], a, b, Sink{*this});
-    }
+    settle_all(now, events.first(count), motions_, Sink{*this});
     events = events.subspan(count);
   }
 }
@@ -188,7 +232,7 @@ void NearPairs::test_near(Step now, std::span<const BodyPair> pairs, Outcome& ou
   outcome.motions.resize(kBlock);
   std::array<BodyIndex, kBlock> bodies;
   for (std::size_t done = 0; done < tests.size();) {
-    const auto some = std::span(std::as_const(tests)).subspan(done, std::min(kTestsAtOnce, tests.size() - done));
+    const auto some = std::span(tests).subspan(done, std::min(kTestsAtOnce, tests.size() - done));
     done += some.size();
     for (std::size_t i = 0; i < some.size(); ++i) bodies[2 * i] = some[i].pair.a, bodies[2 * i + 1] = some[i].pair.b;
     const std::size_t count = 2 * some.size();
@@ -198,13 +242,7 @@ void NearPairs::test_near(Step now, std::span<const BodyPair> pairs, Outcome& ou
     }
     pool_.ask(now, std::span(bodies).first(count), std::span(outcome.motions).first(count), outcome.answers);
     outcome.asked += count;
-    for (std::size_t i = 0; i < some.size(); ++i) {
-      const Motion &a = outcome.motions[2 * i], &b = outcome.motions[2 * i + 1];
-      const bool valid_a = is_valid(a), valid_b = is_valid(b);
-      if (!valid_a) outcome.refused.push_back(some[i].pair.a);
-      if (!valid_b) outcome.refused.push_back(some[i].pair.b);
-      if (valid_a && valid_b) settle(now, some[i], a, b, to);
-    }
+    settle_all(now, some, outcome.motions, to);
   }
 }
 

@@ -34,7 +34,7 @@ class NearPairs {
   // ahead: for the next step, from the motions of this one. within_budget: what overlaps may be doubted.
   void begin_step(bool within_budget);
   void work_ahead(bool ahead) noexcept { ahead_ = ahead; }
-  void test(Step now, std::span<const PairEvent> events);
+  void test(Step now, std::span<PairEvent> events);  // which may change their order
   // Pairs that window updates of this round have found.
   void test_near(Step now, std::span<const BodyPair> pairs);
   // The same as one of some jobs that run at once: what becomes of the pairs, which the filters have let pass, is kept
@@ -88,8 +88,17 @@ class NearPairs {
   struct KeptSink;
   template <typename To>
   bool settle_by_spheres(Step now, const BodyPair& pair, To to) const;
+  struct Horizon {
+    Step left, safe;  // steps until the next update of one of the bodies, and for which both bounds hold
+    Step whole;       // up to which both are known
+  };
+  Horizon horizon_of(Step now, const BodyPair& pair, const Motion& a, const Motion& b) const noexcept;
   template <typename To>
-  void settle(Step now, const PairEvent& event, const Motion& a, const Motion& b, To to) const;
+  static std::size_t refuse_invalid(std::span<PairEvent> events, std::span<Motion> motions, To to);
+  template <typename To>
+  void settle_all(Step now, std::span<PairEvent> events, std::span<Motion> motions, To to) const;
+  template <typename To>
+  void settle(Step now, const PairEvent& event, const Horizon& horizon, bool touching, double seconds, To to) const;
   template <typename To>
   void settle_touching(Step now, const PairEvent& event, Step left, Step sure, To to) const;
 

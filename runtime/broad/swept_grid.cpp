@@ -76,6 +76,61 @@ struct WideCompare {
 };
 #endif
 
+// A body's box, and one of its cells. Quanta are below 2^31: the difference of two that are apart is negative.
+#ifdef ORCHARD_VECTORS
+class BoxInCell {
+ public:
+  ORCHARD_INLINE BoxInCell(const QuantumBox& box, const std::array<std::uint8_t, 3>& steps) noexcept {
+    for (std::size_t d = 0; d < 3; ++d) {
+      lower_[d] = box.lower[d];
+      upper_[d] = box.upper[d];
+      cell_[d] = (box.lower[d] >> kQuantumBits) + steps[d];
+    }
+    lower_[3] = upper_[3] = kLastQuantum;  // the fourth numbers: such that nothing is apart there, nor elsewhere
+    cell_[3] = kLastQuantum >> kQuantumBits;
+    lower_last_ = __builtin_shufflevector(lower_, Numbers{}, 4, 0, 1, 2);
+  }
+  // Whether the other box meets it, and the lower corner of what they have in common lies in the cell.
+  ORCHARD_INLINE bool meets_here(const QuantumBox& other) const noexcept {
+    static_assert(offsetof(QuantumBox, upper) == 12 && sizeof(QuantumBox) == 24);
+    Numbers first, last;  // lower[0], [1], [2], upper[0] and lower[2], upper[0], [1], [2]
+    std::memcpy(&first, &other, sizeof first);
+    std::memcpy(&last, reinterpret_cast<const char*>(&other) + 8, sizeof last);
+    const Numbers apart = (upper_ - first) | (last - lower_last_);
+    const auto larger = reinterpret_cast<Signed>(lower_) > reinterpret_cast<Signed>(first);
+    const Numbers corner = larger ? lower_ : first;
+    const Numbers wrong = (apart & 0x80000000u) | ((corner >> kQuantumBits) ^ cell_);
+    const auto halves = reinterpret_cast<Halves>(wrong);
+    return (halves[0] | halves[1]) == 0;
+  }
+
+ private:
+  using Numbers __attribute__((vector_size(16))) = std::uint32_t;
+  using Signed __attribute__((vector_size(16))) = std::int32_t;
+  using Halves __attribute__((vector_size(16))) = std::uint64_t;
+  Numbers lower_, upper_, cell_, lower_last_;
+};
+#else
+class BoxInCell {
+ public:
+  BoxInCell(const QuantumBox& box, const std::array<std::uint8_t, 3>& steps) noexcept : box_(box) {
+    for (std::size_t d = 0; d < 3; ++d) cell_[d] = (box.lower[d] >> kQuantumBits) + steps[d];
+  }
+  bool meets_here(const QuantumBox& other) const noexcept {
+    std::uint32_t apart = 0, elsewhere = 0;
+    for (std::size_t d = 0; d < 3; ++d) {
+      apart |= (other.upper[d] - box_.lower[d]) | (box_.upper[d] - other.lower[d]);
+      elsewhere |= (std::max(box_.lower[d], other.lower[d]) >> kQuantumBits) ^ cell_[d];
+    }
+    return (apart >> 31 | elsewhere) == 0;
+  }
+
+ private:
+  const QuantumBox box_;
+  std::array<std::uint32_t, 3> cell_;
+};
+#endif
+
 // The bits of the first entries: the others are of no meaning.
 template <typename Kind>
 ORCHARD_INLINE std::uint64_t met_among(const CellLine& line, std::uint64_t query, std::uint32_t count) noexcept {
@@ -91,25 +146,18 @@ struct SweptGrid::Insertion {
 };
 
 // Of the entries hit, those whose box really meets the body's, and in this cell first. Without branches that depend on
-// the boxes: in dense worlds nobody can tell. Quanta are below 2^31: the difference of two that are apart is negative.
+// the boxes: in dense worlds nobody can tell.
 template <int kSpread>
 void SweptGrid::report(const Insertion& insertion, const CellLine& line, std::uint64_t hits, BodyIndex body,
                        Steps steps) {
-  const QuantumBox box = insertion.boxes[body];
+  const BoxInCell box(insertion.boxes[body], steps);
   std::array<BodyPair, 8> found;
   std::size_t count = 0;
   for (; hits != 0; hits &= hits - 1) {
     const std::uint64_t entry = line.entries[static_cast<std::size_t>(std::countr_zero(hits)) / kSpread];
     const auto other = static_cast<BodyIndex>(entry >> kIdShift);
-    const QuantumBox& theirs = insertion.boxes[other];
-    std::uint32_t apart = 0, elsewhere = 0;
-    for (std::size_t d = 0; d < 3; ++d) {
-      const std::uint32_t cell = (box.lower[d] >> kQuantumBits) + steps[d];
-      apart |= (theirs.upper[d] - box.lower[d]) | (box.upper[d] - theirs.lower[d]);
-      elsewhere |= (std::max(box.lower[d], theirs.lower[d]) >> kQuantumBits) ^ cell;
-    }
     found[count] = {std::min(body, other), std::max(body, other)};
-    count += (apart >> 31 | elsewhere) == 0;
+    count += box.meets_here(insertion.boxes[other]);
   }
   if (count > 0) insertion.pairs.insert(insertion.pairs.end(), found.begin(), found.begin() + count);
 }

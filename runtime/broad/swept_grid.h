@@ -120,6 +120,9 @@ class SweptGrid {
   };
   std::size_t part_of(std::uint32_t line) const noexcept { return line >> part_shift_; }
   static void append(CellLine& line, std::uint64_t entry, Overflow& more);
+  template <typename Use>
+  void for_each_line(const QuantumBox& box, const Use& use) const;
+  static std::uint32_t find_in(const CellLine& line, BodyIndex body) noexcept;
   static void remove_from(CellLine& line, BodyIndex body, Overflow& more) noexcept;
   static void free_last(CellLine& line, Overflow& more) noexcept;
 

@@ -120,21 +120,33 @@ void SweptGrid::append(CellLine& first, std::uint64_t entry, Overflow& overflow)
   line->entries[line->count++] = entry;
 }
 
-void SweptGrid::prepare_removal(const QuantumBox& box) const noexcept {
-  prefetch(
-      &lines_[line_of({box.lower[0] >> kQuantumBits, box.lower[1] >> kQuantumBits, box.lower[2] >> kQuantumBits})]);
-}
-
-void SweptGrid::remove(BodyIndex body, const QuantumBox& box) noexcept {
+template <typename Use>
+void SweptGrid::for_each_line(const QuantumBox& box, const Use& use) const {
   Cell cell;
   for (cell[2] = box.lower[2] >> kQuantumBits; cell[2] <= box.upper[2] >> kQuantumBits; ++cell[2]) {
     for (cell[1] = box.lower[1] >> kQuantumBits; cell[1] <= box.upper[1] >> kQuantumBits; ++cell[1]) {
       for (cell[0] = box.lower[0] >> kQuantumBits; cell[0] <= box.upper[0] >> kQuantumBits; ++cell[0]) {
-        const std::uint32_t line = line_of(cell);
-        remove_from(lines_[line], body, overflow_[part_of(line)]);
+        use(line_of(cell));
       }
     }
   }
+}
+
+void SweptGrid::prepare_removal(const QuantumBox& box) const noexcept {
+  for_each_line(box, [&](std::uint32_t line) { prefetch(&lines_[line]); });
+}
+
+void SweptGrid::remove(BodyIndex body, const QuantumBox& box) noexcept {
+  for_each_line(box, [&](std::uint32_t line) { remove_from(lines_[line], body, overflow_[part_of(line)]); });
+}
+
+// Of the line's entries, without branches that depend on where it is; their number: none.
+std::uint32_t SweptGrid::find_in(const CellLine& line, BodyIndex body) noexcept {
+  std::uint32_t found = 1u << line.count;
+  for (std::uint32_t i = 0; i < line.entries.size(); ++i) {
+    found |= static_cast<std::uint32_t>(line.entries[i] >> kIdShift == body) << i;
+  }
+  return static_cast<std::uint32_t>(std::countr_zero(found));
 }
 
 // The last entry of the chain takes the place.
@@ -142,8 +154,9 @@ void SweptGrid::remove_from(CellLine& first, BodyIndex body, Overflow& overflow)
   CellLine *line = &first, *found = nullptr, *before_last = nullptr;
   std::uint32_t index = 0;
   for (;;) {
-    for (std::uint32_t i = 0; found == nullptr && i < line->count; ++i) {
-      if (line->entries[i] >> kIdShift == body) found = line, index = i;
+    if (found == nullptr) {
+      index = find_in(*line, body);
+      if (index < line->count) found = line;
     }
     if (line->overflow == 0) break;
     before_last = line;

@@ -4,10 +4,24 @@
 #include <cassert>
 
 namespace orchard::runtime::detail {
+namespace {
+
+bool successive(std::span<const BodyIndex> bodies) noexcept {
+  BodyIndex off = 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) off |= bodies[i] ^ (bodies[0] + static_cast<BodyIndex>(i));
+  return off == 0;
+}
+
+}  // namespace
 
 void TimingWheel::set_due(std::span<const BodyIndex> bodies, Step step) {
+  constexpr std::size_t kMinRun = 8;
   const std::size_t bucket = bucket_of(step);
   std::uint32_t& head = buckets_[bucket].bodies;
+  mark(bucket);
+  if (bodies.size() >= kMinRun && successive(bodies)) {
+    return add_line(head, {bodies[0], kRun, static_cast<BodyIndex>(bodies.size())});
+  }
   std::size_t done = 0;
   if (head != kNone) {  // what its last part has room for
     for (BodyIndex& id : lines_[head].ids) {
@@ -18,7 +32,6 @@ void TimingWheel::set_due(std::span<const BodyIndex> bodies, Step step) {
     const auto at = [&](std::size_t i) { return i < bodies.size() ? bodies[i] : kNoIndex; };
     add_line(head, {at(done), at(done + 1), at(done + 2)});
   }
-  mark(bucket);
 }
 
 void TimingWheel::add_line(std::uint32_t& head, const std::array<BodyIndex, 3>& ids) {
@@ -79,8 +92,12 @@ void TimingWheel::take(Step step, std::vector<BodyIndex>& bodies, std::vector<Pa
   Bucket& bucket = buckets_[index];
   for (std::uint32_t line = bucket.bodies; line != kNone;) {
     Bodies& part = lines_[line];
-    for (const BodyIndex body : part.ids) {
-      if (body != kNoIndex) bodies.push_back(body);
+    if (part.ids[1] == kRun) {
+      for (BodyIndex i = 0; i < part.ids[2]; ++i) bodies.push_back(part.ids[0] + i);
+    } else {
+      for (const BodyIndex body : part.ids) {
+        if (body != kNoIndex) bodies.push_back(body);
+      }
     }
     const std::uint32_t next = part.next;
     part.next = free_line_;
@@ -104,7 +121,12 @@ void TimingWheel::take(Step step, std::vector<BodyIndex>& bodies, std::vector<Pa
 std::size_t TimingWheel::bodies_due(Step step) const noexcept {
   std::size_t count = 0;
   for (std::uint32_t line = buckets_[bucket_of(step)].bodies; line != kNone; line = lines_[line].next) {
-    for (const BodyIndex body : lines_[line].ids) count += body != kNoIndex;
+    const std::array<BodyIndex, 3>& ids = lines_[line].ids;
+    if (ids[1] == kRun) {
+      count += ids[2];
+    } else {
+      for (const BodyIndex body : ids) count += body != kNoIndex;
+    }
   }
   return count;
 }

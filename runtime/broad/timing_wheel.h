@@ -46,9 +46,11 @@ class TimingWheel {
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffffu;
-  struct Bodies {  // a part of a list: short, as a step may have one body only
+  static constexpr BodyIndex kRun = kNoIndex - 1;  // bodies with successive indices, as in updates of all windows
+  struct Bodies {                                  // a part of a list: short, as a step may have one body only
     std::uint32_t next;
-    std::array<BodyIndex, 3> ids;  // kNoIndex from the first one that is missing
+    std::array<BodyIndex, 3>
+        ids;  // kNoIndex from the first one that is missing; or a run: its first one, kRun, how many
   };
   static constexpr std::uint32_t kEventsInPart = 5;
   struct alignas(64) Events {  // a part of a list, one cache line; all parts but a list's first one are full

@@ -16,7 +16,10 @@ bool WindowUpdates::set_ends(Block& block, std::span<const BodyIndex> bodies,
   };
   const Step planned = windows.end_of(block.from, motions[0], block.last);
   const Step common = windows.end_of(block.from, bodies[0], motions[0], block.last);
-  bool same = !parts_.pool.any_static();
+  // Whether one may rest and another not, or some may rest as long as they are cancelled again and again.
+  const bool may_rest = windows.may_never_end() && motions[0].expiry == std::numeric_limits<double>::infinity();
+  bool same = !parts_.pool.any_static() && !(may_rest && windows.any_short());
+  for (std::size_t i = 0; may_rest && same && i < bodies.size(); ++i) same = rests(motions[i]) == rests(motions[0]);
   for (std::size_t i = 0; i < bodies.size(); ++i) same = same && motions[i].expiry == motions[0].expiry;
   for (std::size_t i = 0; windows.any_short() && same && i < bodies.size(); ++i) {
     same = std::min(planned, block.from + windows[bodies[i]].lasting) == common;
@@ -47,10 +50,8 @@ bool WindowUpdates::place(Block& block, std::span<const BodyIndex> bodies) {
   bool same = set_ends(block, bodies, motions);
   if (!make_boxes(block, motions, same)) return false;
 
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    parts_.windows.set(bodies[i], block.from, block.ends[i]);
-    parts_.overlaps.mark(bodies[i], OverlapList::kUpdated);
-  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) parts_.windows.set(bodies[i], block.from, block.ends[i]);
+  parts_.overlaps.mark_updated(bodies);
   for (std::size_t i = 0; parts_.pairs.notes_spheres() && i < bodies.size(); ++i) {
     parts_.pairs.note_sphere(bodies[i], motions[i], block.lattice, block.durations[i]);
   }

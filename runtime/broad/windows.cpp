@@ -33,7 +33,9 @@ Step Windows::end_of(Step from, const Motion& motion, LastEnd& before) const noe
 
 // The same for a body, whose bounds may have been cancelled again and again.
 Step Windows::end_of(Step from, BodyIndex body, const Motion& motion, LastEnd& last) const noexcept {
-  if (pool_.is_static(body) && !statics_end_) return kNeverStep;
+  if (!all_end_ && (pool_.is_static(body) || (rests(motion) && windows_[body].lasting == kLastsAsEver))) {
+    return kNeverStep;
+  }
   const Step end = end_of(from, motion, last);
   return any_short_ ? std::min(end, from + windows_[body].lasting) : end;
 }
@@ -42,8 +44,10 @@ Step Windows::end_of(Step from, BodyIndex body, const Motion& motion, LastEnd& l
 // as any. Only where bounds last for no more than a step again and again a long window is of no use.
 bool Windows::note_cancelled(BodyIndex body, Step now) noexcept {
   Window& window = windows_[body];
-  if (window.length == 0 || window.end < 0 || window.end == kNeverStep) return false;
-  const Step lasted = now - (window.end - window.length);
+  if (window.length == 0 || window.end < 0) return false;
+  const Step lasted = window.end == kNeverStep
+                          ? static_cast<std::uint16_t>(static_cast<std::uint16_t>(now) - window.began)
+                          : now - (window.end - window.length);
   if (lasted > 1) window.rely_longer();
   if (lasted < 0 || lasted > 1) return true;
   window.lasting = window.lasting > kLastsAsEver - kPatience ? window.lasting - 1 : 1;

@@ -9,11 +9,18 @@ inline constexpr std::uint8_t kLastsAsEver = static_cast<std::uint8_t>(kLongestW
 struct Window {
   Step end = 0;                         // the step of the next update
   Round updated = 0;                    // the round of the last update: events of earlier rounds are void
-  std::uint8_t length = 0;              // steps; 0: not known
+  std::uint8_t length = 0;              // steps; 0: not known; of a window without end as if it were the longest one
   std::uint8_t lasting = kLastsAsEver;  // steps that bounds are relied on for, at most
+  std::uint16_t began = 0;              // the last bits of the step
 
   void rely_longer() noexcept { lasting = lasting < kLastsAsEver / 4 ? lasting * 4 : kLastsAsEver; }
 };
+
+// It will never move, unless it is cancelled.
+inline bool rests(const Motion& motion) noexcept {
+  return motion.expiry == std::numeric_limits<double>::infinity() && motion.velocity == Vec3{} &&
+         motion.acceleration == 0 && motion.drift == 0;
+}
 
 // Of each body, up to when the bounds it was asked for are relied on, and the rounds in which windows are updated.
 class Windows {
@@ -31,8 +38,8 @@ class Windows {
   void begin_anew() noexcept;  // all are updated in this round
   bool rounds_run_out() const noexcept { return is_later(round_, rebuilt_round_ + kFarthestRound); }
 
-  // From now on, so many steps; static bodies' windows end, too, or never.
-  void plan(Step window, bool statics_end) noexcept { planned_ = window, statics_end_ = statics_end; }
+  // From now on, so many steps; windows of bodies at rest end, too, or never.
+  void plan(Step window, bool all_end) noexcept { planned_ = window, all_end_ = all_end; }
   struct LastEnd {  // what was asked last is mostly asked again
     Step from = -1, end = 1;
     double expiry = 0;
@@ -41,11 +48,15 @@ class Windows {
   Step end_of(Step from, const Motion& motion, LastEnd& last) const noexcept;
   Step end_of(Step from, BodyIndex body, const Motion& motion, LastEnd& last) const noexcept;  // where some are short
   bool any_short() const noexcept { return any_short_; }
+  bool may_never_end() const noexcept { return !all_end_; }
   void set(BodyIndex body, Step from, Step end) noexcept {
     Window& window = windows_[body];
     window.end = end;
     window.updated = round_;
-    window.length = static_cast<std::uint8_t>(end == kNeverStep ? 0 : end - from);
+    window.began = static_cast<std::uint16_t>(from);
+    window.length = end != kNeverStep       ? static_cast<std::uint8_t>(end - from)
+                    : pool_.is_static(body) ? std::uint8_t{0}
+                                            : kLastsAsEver;
   }
 
   bool valid(const PairEvent& event) const noexcept {
@@ -77,7 +88,7 @@ class Windows {
   bool any_short_ = false;       // of bodies whose bounds are cancelled again and again
   Round round_ = 0, rebuilt_round_ = 0;
   Step planned_ = 1;
-  bool statics_end_ = false;
+  bool all_end_ = false;
   Step voted_ = kNeverStep;
   std::size_t votes_ = 0;
 };

@@ -21,6 +21,7 @@ class Sequence {
       : draw_(seed), crowd_(crowd), world_(test::make_broad_phase(values_of(values_), options)) {
     hostile_ = chance(0.5);
     filtered_ = chance(0.5);
+    settled_ = chance(0.5);
     ball_ = draw_.uniform(1, 4) * std::cbrt(static_cast<double>(crowd));
     if (chance(0.3)) wind_ = draw_.uniform(0, 200) * draw_.direction();
   }
@@ -68,7 +69,12 @@ class Sequence {
     m.velocity = draw_.uniform(0, 10) * draw_.direction() + wind_;
     m.radius = chance(0.02) ? 2 * ball_ : draw_.uniform(0, 1.2);
     m.acceleration = draw_.uniform(0, 10);
-    if (chance(0.5)) m.expiry = now_ + draw_.uniform(0, 0.3);
+    if (settled_ && chance(0.6)) {  // for good, or so it says
+      m.velocity = {};
+      m.acceleration = 0;
+    } else if (chance(0.5)) {
+      m.expiry = now_ + draw_.uniform(0, 0.3);
+    }
     return m;
   }
 
@@ -252,8 +258,9 @@ class Sequence {
 
   test::Draw draw_;
   std::size_t crowd_;
-  bool hostile_ = false, filtered_ = false, restless_ = false;  // restless: no bound lasts for longer than a step
-  Vec3 wind_{};                                                 // all fly with it
+  bool hostile_ = false, filtered_ = false, restless_ = false,
+       settled_ = false;  // restless: no bound lasts for longer than a step
+  Vec3 wind_{};           // all fly with it
   BodyIndex excluded_ = 0;
   double ball_ = 1, now_ = -kStep;
   int mode_ = 0;
