@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "orchard/geometry/random.h"
 #include "orchard/medial/build.h"
@@ -176,6 +177,41 @@ TEST(Reconstruction, FindsTheNearestOfAllCells) {
                                    : detail::nearest_ball(query, ball(corners[0]), ball(corners[1]), ball(corners[2]));
     EXPECT_NEAR((query - found.center).norm() - found.radius, min, 1e-12);
     EXPECT_LT(reconstruction.nearest(query, min + 0.2).distance, min + 0.2);
+  }
+}
+
+// Sheets, crumbs, coincident and huge balls, in any size and place; from centres of boxes, near and far.
+TEST(Reconstruction, FindsTheNearestInTreesOfAnyShape) {
+  const auto cases = 60 * test::more();
+  for (std::uint64_t seed = test::first_seed(); seed < test::first_seed() + cases; ++seed) {
+    Random random(seed, 78);
+    const double size = std::pow(10, random.uniform(-6, 6));
+    const auto point = [&] { return Point(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)); };
+    const Vector offset = (seed % 3 == 0 ? 100.0 : 0.0) * point();
+    MedialMesh mesh;
+    const auto count = static_cast<Index>(1 + random.below(seed % 5 == 0 ? 6 : 400));
+    for (Index i = 0; i < count; ++i) {
+      Point center = point();
+      if (seed % 2 == 0) center.z() = 0.1 * center.x() * center.y();
+      if (i > 0 && random.below(20) == 0) center = (mesh.centers.back() - size * offset) / size;
+      mesh.centers.push_back(size * (center + offset));
+      mesh.radii.push_back(size * random.uniform(0, random.below(50) == 0 ? 3.0 : 0.2));
+    }
+    for (Index i = 0; i + 2 < count / 2; ++i) mesh.triangles.push_back({i, i + 1, i + 2});
+    for (Index i = count / 2; i + 1 < count; i += 2) mesh.edges.push_back({i, i + 1});
+    complete(mesh);
+    const detail::Reconstruction reconstruction(mesh);
+    for (int i = 0; i < 30; ++i) {
+      Point query = size * (1.5 * point() + offset);
+      if (i % 5 == 0) query = mesh.centers[random.below(count)];
+      if (i == 1) query = size * 1e7 * point();
+      if (i == 2) query = size * 1e18 * point();
+      double min = std::numeric_limits<double>::infinity();
+      for (Index cell = 0; cell < reconstruction.cells(); ++cell)
+        min = std::min(min, reconstruction.distance_to_cell(cell, query));
+      const double rounding = 1e-14 * (std::abs(min) + query.norm() + 100 * size);
+      ASSERT_NEAR(reconstruction.distance(query), min, rounding) << "seed " << seed << ", query " << i;
+    }
   }
 }
 
