@@ -1,5 +1,7 @@
 #include "bodies.h"
 
+#include "pair/pose_change.h"
+
 namespace orchard::runtime {
 
 StateSource states_of(const std::vector<BodyState>& values) {
@@ -30,6 +32,8 @@ Body& BodyTable::take_in(BodyId id, std::size_t count) {
   grow(bodies_, slots);
   grow(states_, slots);
   grow(before_, slots);
+  grow(whereabouts_, slots);
+  ++whereabouts_[id.index].changes;
   grow(asking_, slots), asking_.clear();  // room for asking everyone
   Body& body = bodies_[id.index];
   body.parts.clear();
@@ -42,6 +46,39 @@ Body& BodyTable::take_in(BodyId id, std::size_t count) {
   body.parts_before.clear();
   body.id = id;
   return body;
+}
+
+// A sum that is not rounded down, so that it never says too little.
+void BodyTable::add_turn(Whereabouts& where, double way) noexcept {
+  constexpr double kUp = 1 + 0x1p-52;
+  if (way != 0) where.turned = (where.turned + way * (1 + 1e-9)) * kUp;
+  if (std::isfinite(where.turned)) return;
+  where.turned = 0;
+  ++where.changes;
+}
+
+void BodyTable::moved(BodyIndex index, const Pose& before) noexcept {
+  const Body& body = bodies_[index];
+  const Pose& now = states_[index].pose;
+  Whereabouts& where = whereabouts_[index];
+  const bool one = body.parts.size() == 1;
+  const double reach = one ? body.parts[0].reach : body.reach;
+  where.middle = one ? transform(now, body.parts[0].center) : Vec3(now.translation);
+  double size = reach * now.scale;
+  for (std::size_t i = 0; i < 3; ++i) size += std::fabs(now.translation[i]) + std::fabs(where.middle[i]);
+  where.slack = 1e-14 * size;
+  const double change = pose_change(before, now);
+  add_turn(where, change == 0 ? 0 : (change + 4 * kRigidTolerance * (now.scale + before.scale)) * reach);
+  if (!body.rigid || !std::isfinite(size)) ++where.changes;
+}
+
+void BodyTable::part_moved(BodyIndex index, std::size_t part, const PartPlace& before, const Shape& shape) noexcept {
+  const Pose& pose = states_[index].pose;
+  const PartPlace& now = bodies_[index].parts[part];
+  const double way =
+      length(now.center - before.center) + (pose_change(before.local, now.local) + 8 * kRigidTolerance) * shape.reach;
+  add_turn(whereabouts_[index], way * pose.scale);
+  moved(index, pose);
 }
 
 void BodyTable::leave(BodyIndex body) noexcept { bodies_[body].id = kNoBody; }
@@ -63,9 +100,11 @@ std::span<const BodyIndex> BodyTable::ask(Step step, double time, std::span<cons
   for (std::size_t i = 0; i < asking_.size(); ++i) {
     Body& body = bodies_[asking_[i]];
     BodyState& state = states_[asking_[i]];
-    if (body.moved < 0 || !(state.pose == answers[i].pose)) body.moved = step;
+    const bool same = body.moved >= 0 && state.pose == answers[i].pose;
+    if (!same) body.moved = step;
     state = answers[i];
     body.rigid = is_rigid(state.pose);
+    if (!same) moved(asking_[i], before_[asking_[i]]);
     if (body.asleep) {
       body.frozen = true;
       state.velocity = state.half_space = {};
@@ -102,8 +141,8 @@ bool BodyTable::surely_apart(const BodyPair& pair, double time_step) const noexc
 }
 
 std::size_t BodyTable::memory_bytes() const noexcept {
-  std::size_t bytes =
-      bytes_of(bodies_) + bytes_of(states_) + bytes_of(before_) + bytes_of(asking_) + bytes_of(answers_);
+  std::size_t bytes = bytes_of(bodies_) + bytes_of(states_) + bytes_of(before_) + bytes_of(asking_) +
+                      bytes_of(answers_) + bytes_of(whereabouts_);
   for (const Body& body : bodies_) bytes += bytes_of(body.parts) + bytes_of(body.parts_before);
   return bytes;
 }

@@ -135,6 +135,7 @@ BodyId Detector::add_static(std::span<const BodyPart> parts, const Pose& pose, c
     body.is_static = true;
     body.moved = s.answered + 1;
     s.bodies.state(id.index).pose = pose;
+    s.bodies.moved(id.index, pose);
     s.halves.forget(id.index);
     if (s.broad.move_static(id, s.place_of(body))) return id;
     remove(id);  // too large
@@ -214,6 +215,7 @@ bool Detector::move_static(BodyId body, const Pose& pose) {
     s.bodies.state(body.index).pose = before;
     return false;
   }
+  s.bodies.moved(body.index, before);
   s.changed(*found);
   return true;
 }
@@ -228,7 +230,9 @@ bool Detector::set_local(BodyId body, std::size_t part, const Pose& local) {
   found->parts_before.resize(found->parts.size());
   detail::PartBefore& before = found->parts_before[part];
   if (before.until != s.answered) before = {record, s.answered};
+  const detail::PartPlace place_before = record;
   static_cast<detail::PartPlace&>(record) = place;
+  s.bodies.part_moved(body.index, part, place_before, s.shapes[record.shape]);
   s.changed(*found);
   const double reach = detail::reach_of(found->parts);
   if (reach <= found->reach) return true;
@@ -285,6 +289,7 @@ bool Detector::shape_changed(ShapeId shape) {
     const auto uses = [shape](const PartRecord& part) { return part.shape == shape; };
     if (body.id != kNoBody && std::any_of(body.parts.begin(), body.parts.end(), uses)) {
       s.changed(body);
+      s.bodies.deformed(i);
       ++body.deformed;
     }
   }
@@ -317,7 +322,7 @@ std::size_t Detector::memory_bytes() const noexcept {
          s.broad.memory_bytes() + s.monitor.memory_bytes() + s.records.memory_bytes() + s.queries.memory_bytes() +
          s.rounds.memory_bytes() +
          bytes(s.due, s.involved, s.everyone, s.refused, s.broken, s.plane_pairs, s.pairs, s.kept_pairs, s.body_pairs,
-               s.open, s.events);
+               s.open, s.events, s.ended);
 }
 
 }  // namespace orchard::runtime

@@ -6,10 +6,11 @@
 namespace orchard::runtime {
 
 using detail::Body;
+using detail::is_half_space;
 using detail::Record;
 
-void Detector::State::note(Record& record, Step step, PairChange change) {
-  PairEvent& event = events.emplace_back();
+void Detector::State::note(const Record& record, Step step, PairChange change, std::vector<PairEvent>& to) {
+  PairEvent& event = to.emplace_back();
   event.change = change;
   event.a = record.a, event.b = record.b;
   event.part_a = record.part_a, event.part_b = record.part_b;
@@ -18,6 +19,31 @@ void Detector::State::note(Record& record, Step step, PairChange change) {
   if (!record.impact) return;
   event.impact_from = clock.time(step) + (record.impact_from - 1) * clock.time_step;
   event.impact_to = clock.time(step) + (record.impact_to - 1) * clock.time_step;
+}
+
+// Whether they are as far apart as at the last certain "no", but for less than what was between them then.
+bool Detector::State::clear(const detail::RecordTable::Known& known) const noexcept {
+  const detail::Clearance now = clearance_now(known.pair), &then = known.clearance;
+  const double moved = detail::length(now.way - then.way) + (now.turned - then.turned);
+  return now.changes == then.changes && moved + now.distance < then.distance * (1 - 1e-9);
+}
+
+// Of two bodies as they are, with what their middles may be off by in place of a distance.
+detail::Clearance Detector::State::clearance_now(const BodyPair& pair) const noexcept {
+  const detail::Whereabouts& a = bodies.whereabouts(pair.a);
+  if (is_half_space(pair.b)) return {a.slack, -1.0 * a.middle, a.turned, a.changes};
+  const detail::Whereabouts& b = bodies.whereabouts(pair.b);
+  return {a.slack + b.slack, b.middle - a.middle, a.turned + b.turned, a.changes + b.changes};
+}
+
+// After a certain "no". What is swept is asked at each step.
+void Detector::State::keep_clearance(detail::RecordTable::Known& known, const Record& record) const noexcept {
+  const Body &a = places.body(record.pair.a), &b = places.body(record.pair.b);
+  const bool lasts = record.verdict.answer == Answer::no && !record.touching && !(a.continuous_speed > 0) &&
+                     !(b.continuous_speed > 0) && a.rigid && b.rigid && std::isfinite(record.verdict.lower_bound);
+  if (!lasts) return;
+  known.clearance = clearance_now(known.pair);
+  known.clearance.distance = std::max(0.0, record.verdict.lower_bound - known.clearance.distance);
 }
 
 void Detector::State::match(Step step, Frame& frame) {
@@ -33,10 +59,10 @@ void Detector::State::match(Step step, Frame& frame) {
     record.verdict.separation_bound = std::numeric_limits<double>::infinity();
     if (there && record.touching && ++record.nos < options.steps_to_end) {
       record.apart = true;
-      note(record, step, PairChange::stay);
+      note(record, step, PairChange::stay, ended);
       return true;
     }
-    if (record.touching) note(record, step, PairChange::end);
+    if (record.touching) note(record, step, PairChange::end, ended);
     return false;
   };
   const auto fresh = [&](Record& record) {
@@ -51,7 +77,13 @@ void Detector::State::match(Step step, Frame& frame) {
     if (record.coherent) record.trees = TreePair(of_a.prepared, of_b.prepared);
   };
   records.match(
-      pairs, [this](BodyIndex index) { return id_of(index); }, gone, fresh);
+      pairs, [this](BodyIndex index) { return id_of(index); },
+      [&](const detail::RecordTable::Known& known) {
+        const bool apart = clear(known);
+        frame.certain += apart;
+        return apart;
+      },
+      gone, fresh);
   frame.pairs += pairs.size();
 }
 
@@ -75,9 +107,9 @@ bool Detector::State::reusable(const Record& record) const noexcept {
 // Which records have to be asked about.
 void Detector::State::open_records(Step step) {
   open.clear();
-  for (const auto& known : records.known()) {
+  for (const std::uint32_t active : records.active()) {
+    const auto& known = records(active);
     Record& record = records[known.record];
-    if (record.apart) continue;
     const Body &a = places.body(record.pair.a), &b = places.body(record.pair.b);
     record.importance = std::max(a.importance, b.importance);
     if (!allowed(record)) continue;
@@ -95,7 +127,7 @@ void Detector::State::open_records(Step step) {
       record.verdict = Verdict{};
       record.verdict.separation_bound = std::numeric_limits<double>::infinity();
       record.impact = false;
-      note(record, step, PairChange::end);
+      note(record, step, PairChange::end, ended);
       record.touching = false;
       record.answered = -1;
     }
@@ -119,40 +151,47 @@ void Detector::State::begin_or_end(Record& record, Step step, Frame& frame) {
   }
   if (answer == Answer::yes) {
     record.nos = 0;
-    note(record, step, record.touching ? PairChange::stay : PairChange::begin);
+    note(record, step, record.touching ? PairChange::stay : PairChange::begin, events);
     record.touching = true;
   } else if (record.touching) {
     record.nos = answer == Answer::no ? record.nos + 1 : 0;
     const bool end = record.nos >= options.steps_to_end;
-    note(record, step, end ? PairChange::end : PairChange::stay);
+    note(record, step, end ? PairChange::end : PairChange::stay, events);
     if (end) record.touching = false, record.nos = 0;
   } else if (answer == Answer::maybe) {
-    note(record, step, PairChange::possible);
+    note(record, step, PairChange::possible, events);
   }
 }
 
+// In ascending order of pairs; what has ended of a pair comes before what has begun.
 void Detector::State::report(Step step, Frame& frame) {
-  for (const auto& known : records.known()) {
+  const auto by_pair = [](const PairEvent& p, const PairEvent& q) {
+    return p.a.index != q.a.index ? p.a.index < q.a.index : p.b.index < q.b.index;
+  };
+  // Teleports come after all others.
+  if (!std::is_sorted(ended.begin(), ended.end(), by_pair)) std::sort(ended.begin(), ended.end(), by_pair);
+  auto next = ended.cbegin();
+  const auto up_to = [&](const BodyPair& pair) {
+    for (; next != ended.cend() && !(pair < BodyPair{next->a.index, next->b.index}); ++next) events.push_back(*next);
+  };
+  for (const std::uint32_t active : records.active()) {
+    auto& known = records(active);
     Record& record = records[known.record];
-    if (record.apart) continue;
+    if (next != ended.cend()) up_to(known.pair);
     if (record.allowed) {
       begin_or_end(record, step, frame);
+      keep_clearance(known, record);
     } else {
       ++frame.certain;  // that nothing is asked
       if (!record.touching) continue;
       record.touching = record.impact = false;
       record.verdict = Verdict{};
       record.answered = -1;
-      note(record, step, PairChange::end);
+      note(record, step, PairChange::end, events);
     }
   }
-  const auto by_pair = [](const PairEvent& p, const PairEvent& q) {
-    if (p.time != q.time) return p.time < q.time;
-    if (p.a.index != q.a.index) return p.a.index < q.a.index;
-    if (p.b.index != q.b.index) return p.b.index < q.b.index;
-    return p.change == PairChange::end && q.change != PairChange::end;
-  };
-  if (!std::is_sorted(events.begin(), events.end(), by_pair)) std::sort(events.begin(), events.end(), by_pair);
+  events.insert(events.end(), next, ended.cend());
+  ended.clear();
 }
 
 }  // namespace orchard::runtime

@@ -52,7 +52,10 @@ struct Detector::State {
   bool allowed(detail::Record& record);
   void learn(std::uint64_t work) noexcept;
   void report(Step step, Frame& frame);
-  void note(detail::Record& record, Step step, PairChange change);
+  bool clear(const detail::RecordTable::Known& known) const noexcept;
+  detail::Clearance clearance_now(const BodyPair& pair) const noexcept;
+  void keep_clearance(detail::RecordTable::Known& known, const detail::Record& record) const noexcept;
+  void note(const detail::Record& record, Step step, PairChange change, std::vector<PairEvent>& to);
   void begin_or_end(detail::Record& record, Step step, Frame& frame);
   Manifold manifold(const PairEvent& event, const ContactOptions& with) noexcept;
   void motions(double time, std::span<const BodyIndex> asked, std::span<Motion> motions);
@@ -93,6 +96,7 @@ struct Detector::State {
   std::vector<BodyPair> plane_pairs, pairs, kept_pairs, body_pairs;
   std::vector<std::uint32_t> open;
   std::vector<PairEvent> events;
+  std::vector<PairEvent> ended;  // in match() and open_records(), until report() merges them in
 };
 
 }  // namespace orchard::runtime

@@ -121,7 +121,7 @@ std::size_t Detector::foresee(std::span<StepLoad> loads) const noexcept {
 }
 
 void Detector::State::run(double time, const FrameBudget& given, Frame& frame) {
-  events.clear(), refused.clear(), broken.clear();
+  events.clear(), ended.clear(), refused.clear(), broken.clear();
   queries.prepare(shapes, shape_count,
                   options.executor.run == nullptr ? 1 : std::max<std::size_t>(1, options.executor.concurrency) * 4,
                   any_continuous);

@@ -4,6 +4,7 @@
 #include "coherent_pair.h"
 #include "front_walk.h"
 #include "pair_access.h"
+#include "pose_change.h"
 #include "rigid_pair.h"
 #include "tree/tree_nodes.h"
 #include "triangle_pair.h"
@@ -32,14 +33,8 @@ double displacement(const PreparedTree& tree, const Pose& before, const Pose& no
   const BallSlabBlock& root = tree.tree.ball_slabs[0];
   Vec3 middle = {root.x[0], root.y[0], root.z[0]};
   for (std::size_t i = 0; i < 3; ++i) middle[i] += tree.tree.origin[i];
-  double square = 0;
-  for (std::size_t i = 0; i < 9; ++i) {
-    const double change = now.scale * now.rotation[i] - before.scale * before.rotation[i];
-    square += change * change;
-  }
-  // Two rotations differ by an angle about an axis, so that a vector changes by at most 1 / sqrt(2) of that norm.
-  const double turn = std::sqrt(now.scale == before.scale ? square / 2 : square);
-  return size_of(minus(transform(now, middle), transform(before, middle))) + turn * double{root.radius[0]};
+  return size_of(minus(transform(now, middle), transform(before, middle))) +
+         detail::pose_change(before, now) * double{root.radius[0]};
 }
 
 // What poses may be off by, in the first body's units: as NarrowPhase's error.
