@@ -5,6 +5,7 @@
 namespace orchard::runtime::detail {
 namespace {
 
+constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
 constexpr double kSlow = 0.005;  // of the smaller body's size, per step
 
 }  // namespace
@@ -72,6 +73,8 @@ void Rounds::answer_coherently(Record& record, Step now, QueryPool::Scratch& scr
 
 void Rounds::answer(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept {
   if (record.coherent) return answer_coherently(record, now, scratch);
+  const Verdict last = record.verdict;
+  const std::uint32_t last_a = record.part_a, last_b = record.part_b;
   forget_answer(record);
   PartPair pair;
   const std::uint32_t parts_a = places_->parts(record.pair.a), parts_b = places_->parts(record.pair.b);
@@ -84,7 +87,9 @@ void Rounds::answer(Record& record, Step now, QueryPool::Scratch& scratch) const
       places_->place(record.pair.b, j, pair.b);
       const double gap = sphere_gap(pair);
       ++scratch.work;
-      const Verdict verdict = gap > 0 ? unasked(pair) : answer_exactly(scratch.workspace.narrow, pair, scratch.work);
+      const std::uint32_t guess = i == last_a && j == last_b ? nearest_triangle(last, pair) : kNoTriangle;
+      const Verdict verdict =
+          gap > 0 ? unasked(pair) : answer_exactly(scratch.workspace.narrow, pair, scratch.work, kNoLimit, guess);
       take_in(record, verdict, i, j);
       known = known && verdict.answer != Answer::maybe;
     }

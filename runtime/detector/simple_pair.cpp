@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "orchard/runtime/shape_query.h"
+#include "pair/segment_query.h"
 
 namespace orchard::runtime::detail {
 namespace {
@@ -102,9 +102,9 @@ Verdict of_rounds(const Round& a, const Round& b) noexcept {
 }
 
 // The normal from the tree to the round shape.
-Verdict of_tree(const Shape& shape, const Pose& pose, const Round& round) noexcept {
+Verdict of_tree(const Shape& shape, const Pose& pose, const Round& round, std::uint32_t guess) noexcept {
   if (shape.tree.ball_slabs.empty()) return unknown_verdict();
-  const SurfacePoint near = nearest_point_to_segment(shape.tree, pose, round.p, round.q, round.radius);
+  const SurfacePoint near = nearest_point_to_segment(shape.tree, pose, round.p, round.q, round.radius, guess);
   if (near.triangle != kNoTriangle) {
     const Vec3 core = nearest_of_segment(round.p, round.q, near.point);
     Verdict verdict = yes_at(near.point, unit(core - Vec3(near.point), {0, 0, 1}));
@@ -133,10 +133,11 @@ Verdict unknown_verdict() noexcept {
   return verdict;
 }
 
-Verdict test_simple(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) noexcept {
+Verdict test_simple(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
+                    std::uint32_t guess) noexcept {
   if (!a.has_tree() && !b.has_tree()) return of_rounds(Round(a, pose_a), Round(b, pose_b));
-  if (a.has_tree()) return of_tree(a, pose_a, Round(b, pose_b));
-  Verdict verdict = of_tree(b, pose_b, Round(a, pose_a));
+  if (a.has_tree()) return of_tree(a, pose_a, Round(b, pose_b), guess);
+  Verdict verdict = of_tree(b, pose_b, Round(a, pose_a), guess);
   exchange(verdict.contact);
   return verdict;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "segment_query.h"
 #include "tree_walk.h"
 #include "triangle_distance.h"
 
@@ -147,9 +148,10 @@ class Caster {
   Frame frame_;
 };
 
-// The surface point nearest to a segment within `limit`, or the first one found, if `any` will do.
+// The surface point nearest to a segment within `limit`, or the first one found, if `any` will do; `guess` is looked at
+// first.
 SurfacePoint search_outward(const TreeView& tree, const Pose& pose, const Vec3& p, const Vec3& q, double limit,
-                            bool any) noexcept {
+                            bool any, std::uint32_t guess = kNoTriangle) noexcept {
   SurfacePoint best;
   if (tree.ball_slabs.empty()) return best;
   const SurfacePoint unknown{0, {}, kNoTriangle};
@@ -175,6 +177,7 @@ SurfacePoint search_outward(const TreeView& tree, const Pose& pose, const Vec3& 
     }
     return !any;
   };
+  if (guess < tree.triangles.size()) compare(points_of(tree, guess), guess, true);
   const double size = length(from) + length(to) + length(tree.origin) + tree.bounding_radius;
   if (size <= kFloatReach) {
     walk_outward(
@@ -204,6 +207,12 @@ bool can_ask(const TreeView& tree, const Pose& pose, const std::array<double, 3>
 SurfacePoint nearest_point_to_segment(const TreeView& tree, const Pose& pose, const std::array<double, 3>& p,
                                       const std::array<double, 3>& q, double limit) noexcept {
   return search_outward(tree, pose, p, q, limit, false);
+}
+
+SurfacePoint detail::nearest_point_to_segment(const TreeView& tree, const Pose& pose, const std::array<double, 3>& p,
+                                              const std::array<double, 3>& q, double limit,
+                                              std::uint32_t guess) noexcept {
+  return search_outward(tree, pose, p, q, limit, false, guess);
 }
 
 SurfacePoint nearest_point(const TreeView& tree, const Pose& pose, const std::array<double, 3>& center,
