@@ -2,11 +2,13 @@
 
 #include <algorithm>
 
+#include "pair/coherent_pair.h"
+
 namespace orchard::runtime::detail {
 namespace {
 
 constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
-constexpr double kSlow = 0.005;  // of the smaller body's size, per step
+constexpr double kSlow = 0.02;  // of the smaller body's size, per step
 
 }  // namespace
 
@@ -56,16 +58,16 @@ void Rounds::answer_coherently(Record& record, Step now, QueryPool::Scratch& scr
   const bool slow = is_slow(record, pair, now);
   record.verdict = unasked(pair);
   if (record.verdict.answer != Answer::no) {
-    if (slow) {
-      const double bound = record.verdict.separation_bound;
-      Verdict verdict = collide_coherently(scratch.workspace, record.trees, pair.a.pose, pair.b.pose);
-      scratch.work += kPairWork + verdict.work;
-      if (verdict.answer == Answer::no) verdict = solid_verdict(verdict, pair);
-      record.verdict = verdict;
-      record.verdict.separation_bound = std::min(verdict.separation_bound, bound);
-    } else {
-      record.verdict = answer_exactly(scratch.workspace.narrow, pair, scratch.work);
+    const double bound = record.verdict.separation_bound;
+    std::optional<Verdict> known;
+    if (slow || record.touching)
+      known = CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose, pair.b.pose);
+    if (!known) {
+      known = CoherentPair::search(scratch.workspace, record.trees, pair.a.pose, pair.b.pose, {}, !slow);
     }
+    scratch.work += kPairWork + known->work;
+    record.verdict = known->answer == Answer::no ? solid_verdict(*known, pair) : *known;
+    record.verdict.separation_bound = std::min(known->separation_bound, bound);
   }
   if (record.verdict.answer != Answer::maybe) record.answered = now;
   record.verdict.work = scratch.work - before;

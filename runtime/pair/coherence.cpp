@@ -100,7 +100,7 @@ struct Coherence {
     return verdict;
   }
 
-  Verdict search(const Budget& budget) noexcept {
+  Verdict search(const Budget& budget, bool fast) noexcept {
     if (memory.witness_count > 0) return search_after_yes(budget);
     if (pair.front_ != nullptr) return search_front(budget);
     const double step = memory.seen ? moved / (memory.answers + 1) : 0;
@@ -108,7 +108,7 @@ struct Coherence {
     std::uint64_t spent = 0;
     if (memory.wait > 0) {
       --memory.wait;
-    } else if (step > 0) {
+    } else if (step > 0 && !fast) {
       const double ahead = kAhead * step * a.scale;
       DistanceQuery& query = workspace.distance;
       query.bind(pair.a(), pair.b());
@@ -242,17 +242,17 @@ std::optional<Verdict> CoherentPair::recall(Workspace& workspace, TreePair& pair
   return coherence.place() ? coherence.recall() : std::nullopt;
 }
 
-Verdict CoherentPair::search(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b,
-                             const Budget& budget) noexcept {
+Verdict CoherentPair::search(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b, const Budget& budget,
+                             bool fast) noexcept {
   Coherence coherence{workspace, pair, a, b};
-  return coherence.place() ? coherence.search(budget) : collide(workspace, pair, a, b, budget);
+  return coherence.place() ? coherence.search(budget, fast) : collide(workspace, pair, a, b, budget);
 }
 
 Verdict collide_coherently(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept {
   Coherence coherence{workspace, pair, a, b};
   if (!coherence.place()) return collide(workspace, pair, a, b);
   const std::optional<Verdict> known = coherence.recall();
-  return known ? *known : coherence.search({});
+  return known ? *known : coherence.search({}, false);
 }
 
 }  // namespace orchard::runtime

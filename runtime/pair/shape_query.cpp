@@ -149,9 +149,9 @@ class Caster {
 };
 
 // The surface point nearest to a segment within `limit`, or the first one found, if `any` will do; `guess` is looked at
-// first.
+// first, and is enough where it meets the segment. `beyond`: see NearestToSegment.
 SurfacePoint search_outward(const TreeView& tree, const Pose& pose, const Vec3& p, const Vec3& q, double limit,
-                            bool any, std::uint32_t guess = kNoTriangle) noexcept {
+                            bool any, std::uint32_t guess = kNoTriangle, double* beyond = nullptr) noexcept {
   SurfacePoint best;
   if (tree.ball_slabs.empty()) return best;
   const SurfacePoint unknown{0, {}, kNoTriangle};
@@ -161,7 +161,7 @@ SurfacePoint search_outward(const TreeView& tree, const Pose& pose, const Vec3& 
   if (!within_reach(from) || !within_reach(to)) return unknown;
   const Segment segment(from, to);
   const bool point = from == to;
-  double least = limit / pose.scale;
+  double least = limit / pose.scale, rest = std::numeric_limits<double>::infinity();
   std::array<float, 3> direction{};
   // False once nothing nearer is wanted.
   const auto compare = [&](const TrianglePoints& t, std::uint32_t triangle, bool may_meet) {
@@ -169,6 +169,9 @@ SurfacePoint search_outward(const TreeView& tree, const Pose& pose, const Vec3& 
     const NearestPoints near = may_meet && segment_meets(from, to, t, common) ? NearestPoints{0, common, common}
                                : point                                        ? nearest_points(from, t)
                                                                               : nearest_points(from, to, t);
+    if (near.distance > least && beyond != nullptr) {
+      rest = std::min(rest, near.distance - kParallelError * (longest_edge(t) + std::sqrt(segment.square)));
+    }
     if (near.distance > least || (near.distance == least && triangle > best.triangle)) return true;
     least = near.distance;
     best = {least * pose.scale, near.on_b, triangle};
@@ -177,15 +180,22 @@ SurfacePoint search_outward(const TreeView& tree, const Pose& pose, const Vec3& 
     }
     return !any;
   };
-  if (guess < tree.triangles.size()) compare(points_of(tree, guess), guess, true);
+  if (guess < tree.triangles.size()) {
+    compare(points_of(tree, guess), guess, true);
+    if (best.triangle == guess && least == 0) {
+      best.point = frame.leave(best.point);
+      return best;
+    }
+  }
   const double size = length(from) + length(to) + length(tree.origin) + tree.bounding_radius;
   if (size <= kFloatReach) {
-    walk_outward(
+    const float others = walk_outward(
         tree, shape_of(tree, segment), [&] { return least; },
         [&]() -> const std::array<float, 3>& { return direction; },
         [&](const TriangleBlock& block, std::uint32_t lane, bool may_meet) {
           return compare(points_of(block, lane), block.triangle[lane], may_meet);
         });
+    rest = std::min(rest, double{others});
   } else {
     walk(
         tree, segment, frame.rounding(segment), [&] { return least; },
@@ -193,8 +203,10 @@ SurfacePoint search_outward(const TreeView& tree, const Pose& pose, const Vec3& 
           return each_triangle(
               block, [&](const TrianglePoints& t, std::uint32_t triangle) { return compare(t, triangle, true); });
         });
+    rest = 0;
   }
   if (best.triangle != kNoTriangle) best.point = frame.leave(best.point);
+  if (beyond != nullptr) *beyond = std::max(0.0, rest - kRounding * size) * pose.scale;
   return best;
 }
 
@@ -209,10 +221,12 @@ SurfacePoint nearest_point_to_segment(const TreeView& tree, const Pose& pose, co
   return search_outward(tree, pose, p, q, limit, false);
 }
 
-SurfacePoint detail::nearest_point_to_segment(const TreeView& tree, const Pose& pose, const std::array<double, 3>& p,
-                                              const std::array<double, 3>& q, double limit,
-                                              std::uint32_t guess) noexcept {
-  return search_outward(tree, pose, p, q, limit, false, guess);
+detail::NearestToSegment detail::nearest_to_segment(const TreeView& tree, const Pose& pose,
+                                                    const std::array<double, 3>& p, const std::array<double, 3>& q,
+                                                    double limit, std::uint32_t guess) noexcept {
+  NearestToSegment result;
+  result.point = search_outward(tree, pose, p, q, limit, false, guess, &result.beyond);
+  return result;
 }
 
 SurfacePoint nearest_point(const TreeView& tree, const Pose& pose, const std::array<double, 3>& center,
