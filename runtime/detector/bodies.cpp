@@ -1,5 +1,7 @@
 #include "bodies.h"
 
+#include <algorithm>
+
 #include "pair/pose_change.h"
 
 namespace orchard::runtime {
@@ -34,6 +36,7 @@ Body& BodyTable::take_in(BodyId id, std::size_t count) {
   grow(before_, slots);
   grow(whereabouts_, slots);
   ++whereabouts_[id.index].changes;
+  whereabouts_[id.index].generation = id.generation;
   grow(asking_, slots), asking_.clear();  // room for asking everyone
   Body& body = bodies_[id.index];
   body.parts.clear();
@@ -83,36 +86,40 @@ void BodyTable::part_moved(BodyIndex index, std::size_t part, const PartPlace& b
 
 void BodyTable::leave(BodyIndex body) noexcept { bodies_[body].id = kNoBody; }
 
-std::span<const BodyIndex> BodyTable::ask(Step step, double time, std::span<const BodyIndex> bodies) {
+void BodyTable::ask(Step step, double time, std::span<const BodyIndex> bodies, const Executor& executor) {
   asking_.clear();
   for (const BodyIndex index : bodies) {
     Body& body = bodies_[index];
     if (body.asked == step || body.is_static || body.frozen) continue;
     body.known_before = body.asked;
-    before_[index] = states_[index].pose;
     body.asked = step;
     asking_.push_back(index);
   }
-  if (asking_.empty()) return {};
+  if (asking_.empty()) return;
   if (answers_.size() < asking_.size()) grow(answers_, asking_.size());
-  const auto answers = std::span(answers_).first(asking_.size());
-  source_(time, asking_, answers);
-  for (std::size_t i = 0; i < asking_.size(); ++i) {
-    Body& body = bodies_[asking_[i]];
-    BodyState& state = states_[asking_[i]];
-    const bool same = body.moved >= 0 && state.pose == answers[i].pose;
-    if (!same) body.moved = step;
-    state = answers[i];
-    body.rigid = is_rigid(state.pose);
-    if (!same) moved(asking_[i], before_[asking_[i]]);
-    if (body.asleep) {
-      body.frozen = true;
-      state.velocity = state.half_space = {};
-      state.acceleration = state.drift = 0;
-      state.expiry = std::numeric_limits<double>::infinity();
-    }
-  }
-  return asking_;
+  source_(time, asking_, std::span(answers_).first(asking_.size()));
+  constexpr std::size_t kPerJob = 256;
+  auto take_some = [&](std::size_t job) {
+    const std::size_t end = std::min(asking_.size(), (job + 1) * kPerJob);
+    for (std::size_t i = job * kPerJob; i < end; ++i) take_answer(step, asking_[i], answers_[i]);
+  };
+  run_jobs(executor, (asking_.size() + kPerJob - 1) / kPerJob, take_some);
+}
+
+void BodyTable::take_answer(Step step, BodyIndex index, const BodyState& answer) noexcept {
+  Body& body = bodies_[index];
+  BodyState& state = states_[index];
+  before_[index] = state.pose;
+  const bool same = body.moved >= 0 && state.pose == answer.pose;
+  if (!same) body.moved = step;
+  state = answer;
+  body.rigid = is_rigid(state.pose);
+  if (!same) moved(index, before_[index]);
+  if (!body.asleep) return;
+  body.frozen = true;
+  state.velocity = state.half_space = {};
+  state.acceleration = state.drift = 0;
+  state.expiry = std::numeric_limits<double>::infinity();
 }
 
 Motion BodyTable::motion_of(BodyIndex index, double time_step) const noexcept {

@@ -26,8 +26,9 @@ bool are_valid(const BodyOptions& options) noexcept {
 
 BodyFilter filter_of(std::uint32_t group, std::uint32_t mask) noexcept { return {group, mask, 0}; }
 
-BroadPhaseOptions broad_options(const DetectorOptions& options) noexcept {
+BroadPhaseOptions broad_options(const DetectorOptions& options, const Executor& executor) noexcept {
   BroadPhaseOptions result;
+  result.executor = executor;
   result.time_step = options.time_step;
   result.start = options.start;
   result.position_slack = options.position_slack;
@@ -44,8 +45,16 @@ Detector::State::State(StateSource source, const DetectorOptions& wanted)
       places(shapes, bodies, halves),
       broad([this](double time, std::span<const BodyIndex> asked,
                    std::span<Motion> answers) { motions(time, asked, answers); },
-            broad_options(wanted)),
+            broad_options(wanted, {run_for_broad, this, 1})),
       rounds(places, queries, options.executor, wanted.max_unfinished) {}
+
+// Jobs of the broad phase ask for motions; they may do so at once where all answers are there already.
+void Detector::State::run_for_broad(void* context, std::size_t count, Executor::Job job, void* data) {
+  const State& state = *static_cast<const State*>(context);
+  const Executor& executor = state.options.executor;
+  if (state.all_asked && executor.run != nullptr) return executor.run(executor.context, count, job, data);
+  for (std::size_t i = 0; i < count; ++i) job(data, i);
+}
 
 Detector::Detector(StateSource source, const DetectorOptions& options)
     : state_(std::make_unique<State>(std::move(source), options)) {}
@@ -321,8 +330,8 @@ std::size_t Detector::memory_bytes() const noexcept {
   return sizeof(State) + s.shapes.memory_bytes() + s.bodies.memory_bytes() + s.halves.memory_bytes() +
          s.broad.memory_bytes() + s.monitor.memory_bytes() + s.records.memory_bytes() + s.queries.memory_bytes() +
          s.rounds.memory_bytes() +
-         bytes(s.due, s.involved, s.everyone, s.refused, s.broken, s.plane_pairs, s.pairs, s.kept_pairs, s.body_pairs,
-               s.open, s.events, s.ended);
+         bytes(s.due, s.involved, s.involved_at, s.clear_before_match, s.everyone, s.refused, s.broken, s.plane_pairs,
+               s.pairs, s.kept_pairs, s.body_pairs, s.open, s.events, s.ended, s.marks, s.tallies);
 }
 
 }  // namespace orchard::runtime

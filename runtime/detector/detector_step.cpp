@@ -32,7 +32,7 @@ void learn_time(double& mean, double value, double max_growth) noexcept {
 
 // For the broad phase. Whoever watches has asked for everybody by now.
 void Detector::State::motions(double time, std::span<const BodyIndex> asked, std::span<Motion> answers) {
-  bodies.ask(std::llround((time - clock.start) / clock.time_step), time, asked);
+  if (!all_asked) bodies.ask(std::llround((time - clock.start) / clock.time_step), time, asked, options.executor);
   for (std::size_t i = 0; i < asked.size(); ++i) {
     answers[i] = bodies.motion_of(asked[i], clock.time_step);
     if (!options.watch) continue;
@@ -47,6 +47,20 @@ void Detector::State::motions(double time, std::span<const BodyIndex> asked, std
   for (std::size_t i = 0; i < asked.size(); ++i) options.promised(time, asked[i], answers[i]);
 }
 
+// So that the broad phase's jobs may run at once, where it updates many windows.
+void Detector::State::ask_all(Step step, const StepsAhead& next) {
+  constexpr std::size_t kMinUpdates = 1024;
+  all_asked = false;
+  const bool many = next.updates >= kMinUpdates && 2 * next.updates >= bodies.slots();
+  if (!many || options.executor.run == nullptr || options.watch || options.promised) return;
+  everyone.clear();
+  for (BodyIndex i = 0; i < bodies.slots(); ++i) {
+    if (bodies[i].id != kNoBody) everyone.push_back(i);
+  }
+  bodies.ask(step, clock.time(step), everyone, options.executor);
+  all_asked = true;
+}
+
 // 4.4: before the broad phase relies on anything at this step, everybody's state is compared with what it relies on.
 void Detector::State::watch(Step step) {
   const double time = clock.time(step);
@@ -54,7 +68,7 @@ void Detector::State::watch(Step step) {
   for (BodyIndex i = 0; i < bodies.slots(); ++i) {
     if (bodies[i].id != kNoBody && !bodies[i].is_static && !bodies[i].frozen) everyone.push_back(i);
   }
-  bodies.ask(step, time, everyone);
+  bodies.ask(step, time, everyone, options.executor);
   for (const BodyIndex i : everyone) {
     Body& body = bodies[i];
     const Motion motion = bodies.motion_of(i, clock.time_step);
@@ -121,7 +135,7 @@ std::size_t Detector::foresee(std::span<StepLoad> loads) const noexcept {
 }
 
 void Detector::State::run(double time, const FrameBudget& given, Frame& frame) {
-  events.clear(), ended.clear(), refused.clear(), broken.clear();
+  event_count = 0, ended.clear(), refused.clear(), broken.clear();
   queries.prepare(shapes, shape_count,
                   options.executor.run == nullptr ? 1 : std::max<std::size_t>(1, options.executor.concurrency) * 4,
                   any_continuous);
@@ -147,7 +161,7 @@ void Detector::State::run(double time, const FrameBudget& given, Frame& frame) {
                                                                          : clock.time(std::max(next, answered + 1)));
   std::sort(refused.begin(), refused.end());
   refused.erase(std::unique(refused.begin(), refused.end()), refused.end());
-  frame.events = events, frame.refused = refused, frame.broken = broken;
+  frame.events = std::span(events).first(event_count), frame.refused = refused, frame.broken = broken;
 }
 
 // The steps up to `last` that have anything. `end`: the last step of this call, among which the budget is shared.
@@ -164,7 +178,9 @@ void Detector::State::run_to(Step last, Step end, StepBudget& budget, Frame& fra
     Advance now{};
     StepBudget share(budget.share(static_cast<std::uint64_t>(end - answered)));
     if (!budget.limited()) {
+      if (stop == answered + 1) ask_all(stop, next);
       now = broad.advance(time);
+      all_asked = false;
     } else {
       WorkBudget work;
       if (budget.limited_in_work()) work.work = std::max<std::uint64_t>(1, share.left() / (2 * kMotionWork));
@@ -205,7 +221,7 @@ void Detector::State::gather(Step step, const Advance& now) {
   due.clear();
   halves.due(step, due);
   if (!due.empty()) {
-    bodies.ask(step, clock.time(step), due);
+    bodies.ask(step, clock.time(step), due, options.executor);
     halves.update_windows(step, clock, due, bodies, clock.time_step, options.position_slack, plane_pairs);
   }
   if (now.incomplete_from != kNoClass) {
@@ -225,11 +241,17 @@ void Detector::State::gather(Step step, const Advance& now) {
   std::merge(now.pairs.begin(), now.pairs.end(), kept_pairs.begin(), kept_pairs.end(), std::back_inserter(body_pairs));
   std::merge(body_pairs.begin(), body_pairs.end(), plane_pairs.begin(), plane_pairs.end(), std::back_inserter(pairs));
   involved.clear();
+  detail::grow(involved_at, bodies.slots());
+  const auto involve = [&](BodyIndex body) {
+    if (involved_at[body] == step + 1) return;
+    involved_at[body] = step + 1;
+    involved.push_back(body);
+  };
   for (const BodyPair& pair : pairs) {
-    involved.push_back(pair.a);
-    if (!is_half_space(pair.b)) involved.push_back(pair.b);
+    involve(pair.a);
+    if (!is_half_space(pair.b)) involve(pair.b);
   }
-  bodies.ask(step, clock.time(step), involved);
+  bodies.ask(step, clock.time(step), involved, options.executor);
   for (const BodyIndex body : involved) {
     if (!bodies[body].rigid) refused.push_back(body);
   }

@@ -17,7 +17,6 @@ struct Record {
   Step apart_at = -1;  // at that step
   bool allowed = false;
   bool touching = false;
-  bool apart = false;   // the broad phase says no at this step
   bool swept = false;   // at the step before both poses were known: a sweep may start there
   bool unseen = false;  // they were not, and should have been: nobody knows what was in between
   std::uint8_t importance = 0;
@@ -45,6 +44,7 @@ class RecordTable {
   struct Known {  // no larger than a line of memory: most pairs of a step are asked no more than this
     BodyPair pair;
     std::uint32_t record;
+    std::uint32_t generations;  // of both bodies: others have others
     Clearance clearance;
   };
 
@@ -55,14 +55,12 @@ class RecordTable {
   Record& operator[](std::uint32_t record) noexcept { return records_[record]; }
   const Record& operator[](std::uint32_t record) const noexcept { return records_[record]; }
 
-  // Those of `pairs`, which ascend, become the known ones; asks clear(known) of each that has been one and has a
-  // clearance; calls gone(record) for each that is not among them, or whose bodies are others by
-  // now, and keeps it if that says true; fresh(record) for each new one.
-  template <typename IdOf, typename Clear, typename Gone, typename Fresh>
-  void match(std::span<const BodyPair> pairs, IdOf&& id_of, Clear&& clear, Gone&& gone, Fresh&& fresh);
-  // For those that have ended: known() afterwards is without them.
-  template <typename Ended>
-  void drop(Ended&& ended);
+  // Those of `pairs`, which ascend, become the known ones; asks clear(known) of each that has been one; calls
+  // gone(record) for each that is not among them, or whose bodies are others by now, as the sum of their generations
+  // tells, and keeps it if that says true; fresh(record) for each new one.
+  template <typename IdOf, typename Generations, typename Clear, typename Gone, typename Fresh>
+  void match(std::span<const BodyPair> pairs, IdOf&& id_of, Generations&& generations, Clear&& clear, Gone&& gone,
+             Fresh&& fresh);
   std::size_t memory_bytes() const noexcept {
     return bytes_of(records_) + bytes_of(free_) + bytes_of(known_) + bytes_of(next_) + bytes_of(active_);
   }
@@ -85,8 +83,9 @@ class RecordTable {
   std::vector<std::uint32_t> active_;  // of known_
 };
 
-template <typename IdOf, typename Clear, typename Gone, typename Fresh>
-void RecordTable::match(std::span<const BodyPair> pairs, IdOf&& id_of, Clear&& clear, Gone&& gone, Fresh&& fresh) {
+template <typename IdOf, typename Generations, typename Clear, typename Gone, typename Fresh>
+void RecordTable::match(std::span<const BodyPair> pairs, IdOf&& id_of, Generations&& generations, Clear&& clear,
+                        Gone&& gone, Fresh&& fresh) {
   next_.clear();
   active_.clear();
   const auto keep_active = [this](const Known& known) {
@@ -99,6 +98,7 @@ void RecordTable::match(std::span<const BodyPair> pairs, IdOf&& id_of, Clear&& c
     const Known known = known_[old++];
     if (gone(records_[known.record])) {
       next_.push_back(known);
+      next_.back().clearance.distance = 0;
     } else {
       free_.push_back(known.record);
     }
@@ -106,17 +106,15 @@ void RecordTable::match(std::span<const BodyPair> pairs, IdOf&& id_of, Clear&& c
   for (const BodyPair& pair : pairs) {
     while (old < known_.size() && known_[old].pair < pair) leave();
     if (old < known_.size() && known_[old].pair == pair) {
-      if (known_[old].clearance.distance > 0 && clear(known_[old])) {
+      if (clear(known_[old])) {
         next_.push_back(known_[old++]);
         continue;
       }
-      Record& record = records_[known_[old].record];
-      if (record.a == id_of(pair.a) && record.b == id_of(pair.b)) {
-        record.apart = false;
+      if (known_[old].generations == generations(pair)) {
         keep_active(known_[old++]);
         continue;
       }
-      gone(record);  // of a body that is no more: it cannot stay
+      gone(records_[known_[old].record]);  // of a body that is no more: it cannot stay
       free_.push_back(known_[old++].record);
     }
     const std::uint32_t index = take();
@@ -124,19 +122,10 @@ void RecordTable::match(std::span<const BodyPair> pairs, IdOf&& id_of, Clear&& c
     record.pair = pair;
     record.a = id_of(pair.a), record.b = id_of(pair.b);
     fresh(record);
-    keep_active({pair, index, {}});
+    keep_active({pair, index, generations(pair), {}});
   }
   while (old < known_.size()) leave();
   std::swap(known_, next_);
-}
-
-template <typename Ended>
-void RecordTable::drop(Ended&& ended) {
-  std::erase_if(known_, [&](const Known& known) {
-    if (!ended(records_[known.record])) return false;
-    free_.push_back(known.record);
-    return true;
-  });
 }
 
 }  // namespace orchard::runtime::detail
