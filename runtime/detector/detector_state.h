@@ -43,7 +43,7 @@ struct Detector::State {
   void run(double time, const FrameBudget& budget, Frame& frame);
   void run_to(Step last, Step end, detail::StepBudget& budget, Frame& frame);
   void watch(Step step);
-  void ask_all(Step step, const StepsAhead& next);
+  void ask_all(Step step);
   bool keeps_more(const detail::Body& body, Step step, const Motion& motion) const noexcept;
   void answer(Step step, const Advance& now, detail::StepBudget& budget, Frame& frame);
   void answer_within(Step step, const detail::StepBudget::Stopwatch& watch, detail::StepBudget& budget, Frame& frame);

@@ -47,11 +47,12 @@ void Detector::State::motions(double time, std::span<const BodyIndex> asked, std
   for (std::size_t i = 0; i < asked.size(); ++i) options.promised(time, asked[i], answers[i]);
 }
 
-// So that the broad phase's jobs may run at once, where it updates many windows.
-void Detector::State::ask_all(Step step, const StepsAhead& next) {
-  constexpr std::size_t kMinUpdates = 1024;
+// So that the broad phase's jobs may run at once. Where most bodies were in pairs at the last step, nearly everybody is
+// asked about this one anyway.
+void Detector::State::ask_all(Step step) {
+  constexpr std::size_t kMinBodies = 1024;
   all_asked = false;
-  const bool many = next.updates >= kMinUpdates && 2 * next.updates >= bodies.slots();
+  const bool many = involved.size() >= kMinBodies && 2 * involved.size() >= bodies.slots();
   if (!many || options.executor.run == nullptr || options.watch || options.promised) return;
   everyone.clear();
   for (BodyIndex i = 0; i < bodies.slots(); ++i) {
@@ -178,7 +179,7 @@ void Detector::State::run_to(Step last, Step end, StepBudget& budget, Frame& fra
     Advance now{};
     StepBudget share(budget.share(static_cast<std::uint64_t>(end - answered)));
     if (!budget.limited()) {
-      if (stop == answered + 1) ask_all(stop, next);
+      if (stop == answered + 1) ask_all(stop);
       now = broad.advance(time);
       all_asked = false;
     } else {
