@@ -129,6 +129,7 @@ struct Wanted {
 
 std::vector<Scene> scenes_of(const Wanted& wanted) {
   std::vector<Scene> scenes = runtime::test::every_scene(wanted.bodies, wanted.steps, 1);
+  scenes.push_back(runtime::test::chain(wanted.bodies, wanted.steps, 1));
   std::erase_if(scenes, [&](const Scene& scene) {
     return !scene.locals.empty() || (!wanted.scene.empty() && scene.name != wanted.scene);
   });

@@ -46,7 +46,8 @@ Detector::State::State(StateSource source, const DetectorOptions& wanted)
       broad([this](double time, std::span<const BodyIndex> asked,
                    std::span<Motion> answers) { motions(time, asked, answers); },
             broad_options(wanted, {run_for_broad, this, 1})),
-      rounds(places, queries, options.executor, wanted.max_unfinished) {}
+      fronts(wanted.max_fronts),
+      rounds(places, queries, options.executor, wanted.max_unfinished, fronts) {}
 
 // Jobs of the broad phase ask for motions; they may do so at once where all answers are there already.
 void Detector::State::run_for_broad(void* context, std::size_t count, Executor::Job job, void* data) {
@@ -329,7 +330,7 @@ std::size_t Detector::memory_bytes() const noexcept {
   const auto bytes = [](const auto&... v) { return (detail::bytes_of(v) + ...); };
   return sizeof(State) + s.shapes.memory_bytes() + s.bodies.memory_bytes() + s.halves.memory_bytes() +
          s.broad.memory_bytes() + s.monitor.memory_bytes() + s.records.memory_bytes() + s.queries.memory_bytes() +
-         s.rounds.memory_bytes() +
+         s.fronts.memory_bytes() + s.rounds.memory_bytes() +
          bytes(s.due, s.involved, s.involved_at, s.clear_before_match, s.everyone, s.refused, s.broken, s.plane_pairs,
                s.pairs, s.kept_pairs, s.body_pairs, s.open, s.events, s.ended, s.marks, s.tallies);
 }

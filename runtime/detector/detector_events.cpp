@@ -56,6 +56,7 @@ void Detector::State::match(Step step, Frame& frame) {
       return true;
     }
     if (record.touching) describe(record, step, PairChange::end, ended.emplace_back());
+    fronts.give_back(record);
     return false;
   };
   const auto fresh = [&](Record& record) {

@@ -94,6 +94,7 @@ struct Detector::State {
   std::uint32_t filter_version = 0;
   detail::RecordTable records;
   detail::QueryPool queries;
+  detail::FrontPool fronts;
   detail::Rounds rounds;
 
   Step answered = -1;      // up to which steps have been answered

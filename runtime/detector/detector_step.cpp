@@ -139,7 +139,7 @@ void Detector::State::run(double time, const FrameBudget& given, Frame& frame) {
   event_count = 0, ended.clear(), refused.clear(), broken.clear();
   queries.prepare(shapes, shape_count,
                   options.executor.run == nullptr ? 1 : std::max<std::size_t>(1, options.executor.concurrency) * 4,
-                  any_continuous);
+                  any_continuous, options.max_fronts);
   StepBudget budget(given);
   const double steps = std::floor((time - clock.start) / clock.time_step + detail::kStepSlack);
   const Step end = static_cast<Step>(std::max(-1.0, steps));

@@ -4,6 +4,8 @@
 
 namespace orchard::runtime::detail {
 
+inline constexpr std::uint32_t kNoFront = 0xffffffffu;
+
 // What is remembered of a pair while its spheres overlap, or until its touch has ended.
 struct Record {
   BodyPair pair{};
@@ -13,8 +15,10 @@ struct Record {
   std::uint32_t deformed = 0;                                      // and changes of their shapes
   bool coherent = false;  // one tree each: `trees` knows what the last answer was
   TreePair trees;
-  Vec3 apart_by{};     // from centre to centre,
-  Step apart_at = -1;  // at that step
+  std::uint32_t front = kNoFront;  // that `trees` has of the FrontPool
+  std::uint8_t costly = 0;         // searches of late, see there
+  Vec3 apart_by{};                 // from centre to centre,
+  Step apart_at = -1;              // at that step
   bool allowed = false;
   bool touching = false;
   bool swept = false;   // at the step before both poses were known: a sweep may start there

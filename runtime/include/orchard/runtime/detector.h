@@ -85,6 +85,9 @@ struct DetectorOptions {
   std::uint32_t steps_to_end = 1;
   // Pairs of trees that may be gone on with after a first piece at once; what exceeds it is reported as possible.
   std::size_t max_unfinished = 4096;
+  // Pairs of large trees that stay close, and are expensive to search each time, get a front each (PairFront, 43 KB):
+  // so many at most, made when first needed. 0: none.
+  std::size_t max_fronts = 64;
   Executor executor{};  // of narrow-phase work; the same answers with any
   // Called from within step(), whenever the broad phase is given a body's motion. It throws nothing.
   PromiseListener promised{};
