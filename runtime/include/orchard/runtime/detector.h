@@ -88,7 +88,9 @@ struct DetectorOptions {
   // Pairs of large trees that stay close, and are expensive to search each time, get a front each (PairFront, 43 KB):
   // so many at most, made when first needed. 0: none.
   std::size_t max_fronts = 64;
-  Executor executor{};  // of narrow-phase work; the same answers with any
+  // Pairs, poses, events, and where many bodies are in pairs the broad phase's windows; the same answers with any.
+  // Sources and filters are called in the thread that calls step(), all the same.
+  Executor executor{};
   // Called from within step(), whenever the broad phase is given a body's motion. It throws nothing.
   PromiseListener promised{};
 };
