@@ -78,8 +78,9 @@ void BodyTable::moved(BodyIndex index, const Pose& before) noexcept {
 void BodyTable::part_moved(BodyIndex index, std::size_t part, const PartPlace& before, const Shape& shape) noexcept {
   const Pose& pose = states_[index].pose;
   const PartPlace& now = bodies_[index].parts[part];
+  const double rounding = 4 * kRigidTolerance * (now.local.scale + before.local.scale);
   const double way =
-      length(now.center - before.center) + (pose_change(before.local, now.local) + 8 * kRigidTolerance) * shape.reach;
+      length(now.center - before.center) + (pose_change(before.local, now.local) + rounding) * shape.reach;
   add_turn(whereabouts_[index], way * pose.scale);
   moved(index, pose);
 }

@@ -57,6 +57,7 @@ void Detector::State::match(Step step, Frame& frame) {
     }
     if (record.touching) describe(record, step, PairChange::end, ended.emplace_back());
     fronts.give_back(record);
+    large_pairs -= record.large;
     return false;
   };
   const auto fresh = [&](Record& record) {
@@ -68,7 +69,10 @@ void Detector::State::match(Step step, Frame& frame) {
     if (a.parts.size() != 1 || b.parts.size() != 1) return;
     const detail::Shape &of_a = shapes[a.parts[0].shape], &of_b = shapes[b.parts[0].shape];
     record.coherent = of_a.has_tree() && of_b.has_tree();
-    if (record.coherent) record.trees = TreePair(of_a.prepared, of_b.prepared);
+    if (!record.coherent) return;
+    record.trees = TreePair(of_a.prepared, of_b.prepared);
+    record.large = detail::FrontPool::are_large(record.trees);
+    large_pairs += record.large;
   };
   records.match(
       pairs, [this](BodyIndex index) { return id_of(index); },
@@ -82,6 +86,7 @@ void Detector::State::match(Step step, Frame& frame) {
         return apart;
       },
       gone, fresh);
+  fronts.prepare(large_pairs);
   frame.pairs += pairs.size();
 }
 

@@ -95,6 +95,7 @@ struct Detector::State {
   detail::RecordTable records;
   detail::QueryPool queries;
   detail::FrontPool fronts;
+  std::size_t large_pairs = 0;  // among the records
   detail::Rounds rounds;
 
   Step answered = -1;      // up to which steps have been answered

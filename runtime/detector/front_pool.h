@@ -13,6 +13,11 @@ class FrontPool {
   explicit FrontPool(std::size_t most) noexcept : most_(most) {}
   std::size_t most() const noexcept { return most_; }
 
+  // Whether a search of these can be so expensive. A pair has to be counted from the beginning, so that a step that
+  // only asks allocates nothing.
+  static bool are_large(const TreePair& trees) noexcept;
+  void prepare(std::size_t large_pairs);  // with so many there may be as many fronts, up to most()
+
   // Takes a search's work into account. True: the pair is to have a front.
   static bool wants(Record& record, std::uint64_t work) noexcept;
   // To those records, as far as there are fronts, or some of whoever has not searched for long.

@@ -16,6 +16,7 @@ struct Record {
   bool coherent = false;  // one tree each: `trees` knows what the last answer was
   TreePair trees;
   std::uint32_t front = kNoFront;  // that `trees` has of the FrontPool
+  bool large = false;              // trees, so that a front may be of use
   std::uint8_t costly = 0;         // searches of late, see there
   Vec3 apart_by{};                 // from centre to centre,
   Step apart_at = -1;              // at that step
