@@ -2,6 +2,8 @@
 //   detector_bench frames BODIES STEPS     a table; rivals that are not installed are left out
 //   detector_bench threads BODIES STEPS
 //   detector_bench budgets BODIES STEPS
+//   detector_bench own BODIES STEPS        the detector alone, ten times, for a profiler
+// Of all scenes, or with one argument more of that one alone.
 #include <sys/resource.h>
 #include <time.h>
 
@@ -119,20 +121,43 @@ Run run_rival(const Scene& scene, bench::FrameRival& rival) {
   return run;
 }
 
-std::vector<Scene> scenes_of(std::size_t bodies, int steps) {
-  std::vector<Scene> scenes = runtime::test::every_scene(bodies, steps, 1);
-  std::erase_if(scenes, [](const Scene& scene) { return !scene.locals.empty(); });
+struct Wanted {
+  std::size_t bodies = 1000;
+  int steps = 100;
+  std::string scene;  // empty: all
+};
+
+std::vector<Scene> scenes_of(const Wanted& wanted) {
+  std::vector<Scene> scenes = runtime::test::every_scene(wanted.bodies, wanted.steps, 1);
+  scenes.push_back(runtime::test::chain(wanted.bodies, wanted.steps, 1));
+  std::erase_if(scenes, [&](const Scene& scene) {
+    return !scene.locals.empty() || (!wanted.scene.empty() && scene.name != wanted.scene);
+  });
   return scenes;
 }
 
-void frames(std::size_t bodies, int steps) {
+void own(const Wanted& wanted) {
+  for (const Scene& scene : scenes_of(wanted)) {
+    double least = std::numeric_limits<double>::infinity();
+    std::uint64_t work = 0;
+    for (int round = 0; round < 10; ++round) {
+      const Run run = run_orchard(scene, {});
+      least = std::min(least, run.processor);
+      work = run.work;
+    }
+    const int timed = wanted.steps - 1;
+    std::printf("%s: %.3f ms a frame, work %.0f\n", scene.name.c_str(), least / timed, double(work) / timed);
+  }
+}
+
+void frames(const Wanted& wanted) {
   std::printf(
       "| scene | bodies | pairs a frame | touching | orchard, ms a frame | FCL float | FCL double | Bullet |\n");
   std::printf("|---|---|---|---|---|---|---|---|\n");
-  for (const Scene& scene : scenes_of(bodies, steps)) {
+  for (const Scene& scene : scenes_of(wanted)) {
     const Run ours = run_orchard(scene, {});
-    const int timed = steps - 1;
-    std::printf("| %s | %zu | %.0f | %.0f | %.3f |", scene.name.c_str(), bodies, double(ours.pairs) / timed,
+    const int timed = wanted.steps - 1;
+    std::printf("| %s | %zu | %.0f | %.0f | %.3f |", scene.name.c_str(), wanted.bodies, double(ours.pairs) / timed,
                 double(ours.touching) / timed, ours.processor / timed);
     for (auto* make : {bench::fcl_frames_float, bench::fcl_frames_double, bench::bullet_frames}) {
       const auto rival = make(scene);
@@ -153,16 +178,17 @@ void frames(std::size_t bodies, int steps) {
   }
 }
 
-void threads(std::size_t bodies, int steps) {
+void threads(const Wanted& wanted) {
   std::printf("| scene | bodies | ms a frame | with 2 threads |\n|---|---|---|---|\n");
   runtime::test::ThreadPool pool(2);
-  for (const Scene& scene : scenes_of(bodies, steps)) {
+  for (const Scene& scene : scenes_of(wanted)) {
     double one = 1e300, two = 1e300;
     for (int round = 0; round < 2; ++round) {
       one = std::min(one, run_orchard(scene, {}).ms);
       two = std::min(two, run_orchard(scene, pool.executor()).ms);
     }
-    std::printf("| %s | %zu | %.3f | %.2f times as fast |\n", scene.name.c_str(), bodies, one / (steps - 1), one / two);
+    std::printf("| %s | %zu | %.3f | %.2f times as fast |\n", scene.name.c_str(), wanted.bodies,
+                one / (wanted.steps - 1), one / two);
     std::fflush(stdout);
   }
 }
@@ -174,32 +200,32 @@ long preempted() {
 }
 
 // The budget is half of what a frame takes in the mean without one.
-void budgets(std::size_t bodies, int steps) {
+void budgets(const Wanted& wanted) {
   std::printf(
       "| scene | bodies | work a frame | budget | most beyond it | certain | budget, ms | p50 | p99 | p99.9 | max | "
       "preempted "
       "frames | certain |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-  for (const Scene& scene : scenes_of(bodies, steps)) {
+  for (const Scene& scene : scenes_of(wanted)) {
     const Run full = run_orchard(scene, {});
-    const std::uint64_t work = full.work / static_cast<std::uint64_t>(2 * (steps - 1));
+    const std::uint64_t work = full.work / static_cast<std::uint64_t>(2 * (wanted.steps - 1));
     OrchardFrames counted(scene, {});
     std::int64_t beyond = std::numeric_limits<std::int64_t>::min();
     std::uint64_t certain = 0, pairs = 0;
     Clock::duration time{};
-    for (int step = 0; step < steps; ++step) {
+    for (int step = 0; step < wanted.steps; ++step) {
       const runtime::Frame frame = counted.step(step, {.work = work}, time);
       beyond = std::max(beyond, static_cast<std::int64_t>(frame.work) - static_cast<std::int64_t>(work));
       certain += frame.certain, pairs += frame.pairs;
     }
-    std::printf("| %s | %zu | %.0f | %llu | %lld | %.1f %% |", scene.name.c_str(), bodies,
-                double(full.work) / (steps - 1), static_cast<unsigned long long>(work), static_cast<long long>(beyond),
-                100.0 * double(certain) / double(std::max<std::uint64_t>(pairs, 1)));
-    const double limit = std::max(0.05, full.ms / (2 * (steps - 1)));
+    std::printf("| %s | %zu | %.0f | %llu | %lld | %.1f %% |", scene.name.c_str(), wanted.bodies,
+                double(full.work) / (wanted.steps - 1), static_cast<unsigned long long>(work),
+                static_cast<long long>(beyond), 100.0 * double(certain) / double(std::max<std::uint64_t>(pairs, 1)));
+    const double limit = std::max(0.05, full.ms / (2 * (wanted.steps - 1)));
     OrchardFrames timed(scene, {});
     std::vector<double> calm;
     int disturbed = 0;
     certain = pairs = 0;
-    for (int step = 0; step < steps; ++step) {
+    for (int step = 0; step < wanted.steps; ++step) {
       const long before = preempted();
       const runtime::Frame frame =
           timed.step(step, {.time = std::chrono::nanoseconds(static_cast<std::int64_t>(limit * 1e6))}, time);
@@ -226,11 +252,14 @@ void budgets(std::size_t bodies, int steps) {
 
 int main(int argc, char** argv) {
   const std::string what = argc > 1 ? argv[1] : "";
-  const std::size_t bodies = argc > 2 ? static_cast<std::size_t>(std::max(1, std::atoi(argv[2]))) : 1000;
-  const int steps = argc > 3 ? std::max(3, std::atoi(argv[3])) : 100;
-  if (what == "frames") return frames(bodies, steps), 0;
-  if (what == "threads") return threads(bodies, steps), 0;
-  if (what == "budgets") return budgets(bodies, steps), 0;
-  std::fprintf(stderr, "usage: detector_bench frames|threads|budgets [BODIES [STEPS]]\n");
+  Wanted wanted;
+  if (argc > 2) wanted.bodies = static_cast<std::size_t>(std::max(1, std::atoi(argv[2])));
+  if (argc > 3) wanted.steps = std::max(3, std::atoi(argv[3]));
+  if (argc > 4) wanted.scene = argv[4];
+  if (what == "frames") return frames(wanted), 0;
+  if (what == "threads") return threads(wanted), 0;
+  if (what == "budgets") return budgets(wanted), 0;
+  if (what == "own") return own(wanted), 0;
+  std::fprintf(stderr, "usage: detector_bench frames|threads|budgets|own [BODIES [STEPS [SCENE]]]\n");
   return 2;
 }

@@ -1,5 +1,9 @@
 #include "bodies.h"
 
+#include <algorithm>
+
+#include "pair/pose_change.h"
+
 namespace orchard::runtime {
 
 StateSource states_of(const std::vector<BodyState>& values) {
@@ -30,6 +34,9 @@ Body& BodyTable::take_in(BodyId id, std::size_t count) {
   grow(bodies_, slots);
   grow(states_, slots);
   grow(before_, slots);
+  grow(whereabouts_, slots);
+  ++whereabouts_[id.index].changes;
+  whereabouts_[id.index].generation = id.generation;
   grow(asking_, slots), asking_.clear();  // room for asking everyone
   Body& body = bodies_[id.index];
   body.parts.clear();
@@ -44,36 +51,76 @@ Body& BodyTable::take_in(BodyId id, std::size_t count) {
   return body;
 }
 
+// A sum that is not rounded down, so that it never says too little.
+void BodyTable::add_turn(Whereabouts& where, double way) noexcept {
+  constexpr double kUp = 1 + 0x1p-52;
+  if (way != 0) where.turned = (where.turned + way * (1 + 1e-9)) * kUp;
+  if (std::isfinite(where.turned)) return;
+  where.turned = 0;
+  ++where.changes;
+}
+
+void BodyTable::moved(BodyIndex index, const Pose& before) noexcept {
+  const Body& body = bodies_[index];
+  const Pose& now = states_[index].pose;
+  Whereabouts& where = whereabouts_[index];
+  const bool one = body.parts.size() == 1;
+  const double reach = one ? body.parts[0].reach : body.reach;
+  where.middle = one ? transform(now, body.parts[0].center) : Vec3(now.translation);
+  double size = reach * now.scale;
+  for (std::size_t i = 0; i < 3; ++i) size += std::fabs(now.translation[i]) + std::fabs(where.middle[i]);
+  where.slack = 1e-14 * size;
+  const double change = pose_change(before, now);
+  add_turn(where, change == 0 ? 0 : (change + 4 * kRigidTolerance * (now.scale + before.scale)) * reach);
+  if (!body.rigid || !std::isfinite(size)) ++where.changes;
+}
+
+void BodyTable::part_moved(BodyIndex index, std::size_t part, const PartPlace& before, const Shape& shape) noexcept {
+  const Pose& pose = states_[index].pose;
+  const PartPlace& now = bodies_[index].parts[part];
+  const double rounding = 4 * kRigidTolerance * (now.local.scale + before.local.scale);
+  const double way =
+      length(now.center - before.center) + (pose_change(before.local, now.local) + rounding) * shape.reach;
+  add_turn(whereabouts_[index], way * pose.scale);
+  moved(index, pose);
+}
+
 void BodyTable::leave(BodyIndex body) noexcept { bodies_[body].id = kNoBody; }
 
-std::span<const BodyIndex> BodyTable::ask(Step step, double time, std::span<const BodyIndex> bodies) {
+void BodyTable::ask(Step step, double time, std::span<const BodyIndex> bodies, const Executor& executor) {
   asking_.clear();
   for (const BodyIndex index : bodies) {
     Body& body = bodies_[index];
     if (body.asked == step || body.is_static || body.frozen) continue;
     body.known_before = body.asked;
-    before_[index] = states_[index].pose;
     body.asked = step;
     asking_.push_back(index);
   }
-  if (asking_.empty()) return {};
+  if (asking_.empty()) return;
   if (answers_.size() < asking_.size()) grow(answers_, asking_.size());
-  const auto answers = std::span(answers_).first(asking_.size());
-  source_(time, asking_, answers);
-  for (std::size_t i = 0; i < asking_.size(); ++i) {
-    Body& body = bodies_[asking_[i]];
-    BodyState& state = states_[asking_[i]];
-    if (body.moved < 0 || !(state.pose == answers[i].pose)) body.moved = step;
-    state = answers[i];
-    body.rigid = is_rigid(state.pose);
-    if (body.asleep) {
-      body.frozen = true;
-      state.velocity = state.half_space = {};
-      state.acceleration = state.drift = 0;
-      state.expiry = std::numeric_limits<double>::infinity();
-    }
-  }
-  return asking_;
+  source_(time, asking_, std::span(answers_).first(asking_.size()));
+  constexpr std::size_t kPerJob = 256;
+  auto take_some = [&](std::size_t job) {
+    const std::size_t end = std::min(asking_.size(), (job + 1) * kPerJob);
+    for (std::size_t i = job * kPerJob; i < end; ++i) take_answer(step, asking_[i], answers_[i]);
+  };
+  run_jobs(executor, (asking_.size() + kPerJob - 1) / kPerJob, take_some);
+}
+
+void BodyTable::take_answer(Step step, BodyIndex index, const BodyState& answer) noexcept {
+  Body& body = bodies_[index];
+  BodyState& state = states_[index];
+  before_[index] = state.pose;
+  const bool same = body.moved >= 0 && state.pose == answer.pose;
+  if (!same) body.moved = step;
+  state = answer;
+  body.rigid = is_rigid(state.pose);
+  if (!same) moved(index, before_[index]);
+  if (!body.asleep) return;
+  body.frozen = true;
+  state.velocity = state.half_space = {};
+  state.acceleration = state.drift = 0;
+  state.expiry = std::numeric_limits<double>::infinity();
 }
 
 Motion BodyTable::motion_of(BodyIndex index, double time_step) const noexcept {
@@ -102,8 +149,8 @@ bool BodyTable::surely_apart(const BodyPair& pair, double time_step) const noexc
 }
 
 std::size_t BodyTable::memory_bytes() const noexcept {
-  std::size_t bytes =
-      bytes_of(bodies_) + bytes_of(states_) + bytes_of(before_) + bytes_of(asking_) + bytes_of(answers_);
+  std::size_t bytes = bytes_of(bodies_) + bytes_of(states_) + bytes_of(before_) + bytes_of(asking_) +
+                      bytes_of(answers_) + bytes_of(whereabouts_);
   for (const Body& body : bodies_) bytes += bytes_of(body.parts) + bytes_of(body.parts_before);
   return bytes;
 }

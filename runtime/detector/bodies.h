@@ -52,6 +52,16 @@ struct Body {
   std::vector<PartBefore> parts_before;  // of each part; empty until one moves
 };
 
+// What tells whether a body may have come closer to another one, and nothing else: it is looked at for each pair of a
+// step. Points of the body are where `middle` is, but for what they have turned about it.
+struct Whereabouts {
+  Vec3 middle{};                 // in the world; of its only part, or its origin
+  double slack = 0;              // what `middle` may be off by
+  double turned = 0;             // the way of any point about the middle up to now, at most, from step to step
+  std::uint32_t changes = 0;     // since what was known before says nothing of now
+  std::uint32_t generation = 0;  // of the body that has the index
+};
+
 // The parts of `body`, ready for the broad phase: a sphere around all of them, around the body's origin.
 double reach_of(std::span<const PartRecord> parts) noexcept;
 bool set_local(PartPlace& part, const Shape& shape, const Pose& local) noexcept;  // false: not rigid
@@ -74,10 +84,15 @@ class BodyTable {
   BodyState& state(BodyIndex body) noexcept { return states_[body]; }
   const BodyState& state(BodyIndex body) const noexcept { return states_[body]; }
   const Pose& before(BodyIndex body) const noexcept { return before_[body]; }
+  const Whereabouts& whereabouts(BodyIndex body) const noexcept { return whereabouts_[body]; }
+  // Who calls for what ask() does not see: another pose of a body at rest, another place of a part, other triangles.
+  void moved(BodyIndex body, const Pose& before) noexcept;
+  void part_moved(BodyIndex body, std::size_t part, const PartPlace& before, const Shape& shape) noexcept;
+  void deformed(BodyIndex body) noexcept { ++whereabouts_[body].changes; }
 
-  // Makes all their states those of the step; a body may come up twice. Returns those that had to be asked, in the
-  // order given, valid until the next call.
-  std::span<const BodyIndex> ask(Step step, double time, std::span<const BodyIndex> bodies);
+  // Makes all their states those of the step; a body may come up twice. What follows from many answers is worked out by
+  // jobs of `executor`.
+  void ask(Step step, double time, std::span<const BodyIndex> bodies, const Executor& executor = {});
   // As the broad phase wants it. Not valid if the state is not.
   Motion motion_of(BodyIndex body, double time_step) const noexcept;
   // Whether the spheres of motion_of() do not touch, where both states are known.
@@ -85,10 +100,13 @@ class BodyTable {
   std::size_t memory_bytes() const noexcept;
 
  private:
+  static void add_turn(Whereabouts& where, double way) noexcept;
+  void take_answer(Step step, BodyIndex index, const BodyState& answer) noexcept;
   StateSource source_;
   std::vector<Body> bodies_;
   std::vector<BodyState> states_;
   std::vector<Pose> before_;  // at the step asked before
+  std::vector<Whereabouts> whereabouts_;
   std::vector<BodyIndex> asking_;
   std::vector<BodyState> answers_;
 };

@@ -26,8 +26,9 @@ bool are_valid(const BodyOptions& options) noexcept {
 
 BodyFilter filter_of(std::uint32_t group, std::uint32_t mask) noexcept { return {group, mask, 0}; }
 
-BroadPhaseOptions broad_options(const DetectorOptions& options) noexcept {
+BroadPhaseOptions broad_options(const DetectorOptions& options, const Executor& executor) noexcept {
   BroadPhaseOptions result;
+  result.executor = executor;
   result.time_step = options.time_step;
   result.start = options.start;
   result.position_slack = options.position_slack;
@@ -44,8 +45,17 @@ Detector::State::State(StateSource source, const DetectorOptions& wanted)
       places(shapes, bodies, halves),
       broad([this](double time, std::span<const BodyIndex> asked,
                    std::span<Motion> answers) { motions(time, asked, answers); },
-            broad_options(wanted)),
-      rounds(places, queries, options.executor, wanted.max_unfinished) {}
+            broad_options(wanted, {run_for_broad, this, 1})),
+      fronts(wanted.max_fronts),
+      rounds(places, queries, options.executor, wanted.max_unfinished, fronts) {}
+
+// Jobs of the broad phase ask for motions; they may do so at once where all answers are there already.
+void Detector::State::run_for_broad(void* context, std::size_t count, Executor::Job job, void* data) {
+  const State& state = *static_cast<const State*>(context);
+  const Executor& executor = state.options.executor;
+  if (state.all_asked && executor.run != nullptr) return executor.run(executor.context, count, job, data);
+  for (std::size_t i = 0; i < count; ++i) job(data, i);
+}
 
 Detector::Detector(StateSource source, const DetectorOptions& options)
     : state_(std::make_unique<State>(std::move(source), options)) {}
@@ -135,6 +145,7 @@ BodyId Detector::add_static(std::span<const BodyPart> parts, const Pose& pose, c
     body.is_static = true;
     body.moved = s.answered + 1;
     s.bodies.state(id.index).pose = pose;
+    s.bodies.moved(id.index, pose);
     s.halves.forget(id.index);
     if (s.broad.move_static(id, s.place_of(body))) return id;
     remove(id);  // too large
@@ -214,6 +225,7 @@ bool Detector::move_static(BodyId body, const Pose& pose) {
     s.bodies.state(body.index).pose = before;
     return false;
   }
+  s.bodies.moved(body.index, before);
   s.changed(*found);
   return true;
 }
@@ -228,7 +240,9 @@ bool Detector::set_local(BodyId body, std::size_t part, const Pose& local) {
   found->parts_before.resize(found->parts.size());
   detail::PartBefore& before = found->parts_before[part];
   if (before.until != s.answered) before = {record, s.answered};
+  const detail::PartPlace place_before = record;
   static_cast<detail::PartPlace&>(record) = place;
+  s.bodies.part_moved(body.index, part, place_before, s.shapes[record.shape]);
   s.changed(*found);
   const double reach = detail::reach_of(found->parts);
   if (reach <= found->reach) return true;
@@ -285,6 +299,7 @@ bool Detector::shape_changed(ShapeId shape) {
     const auto uses = [shape](const PartRecord& part) { return part.shape == shape; };
     if (body.id != kNoBody && std::any_of(body.parts.begin(), body.parts.end(), uses)) {
       s.changed(body);
+      s.bodies.deformed(i);
       ++body.deformed;
     }
   }
@@ -315,9 +330,9 @@ std::size_t Detector::memory_bytes() const noexcept {
   const auto bytes = [](const auto&... v) { return (detail::bytes_of(v) + ...); };
   return sizeof(State) + s.shapes.memory_bytes() + s.bodies.memory_bytes() + s.halves.memory_bytes() +
          s.broad.memory_bytes() + s.monitor.memory_bytes() + s.records.memory_bytes() + s.queries.memory_bytes() +
-         s.rounds.memory_bytes() +
-         bytes(s.due, s.involved, s.everyone, s.refused, s.broken, s.plane_pairs, s.pairs, s.kept_pairs, s.body_pairs,
-               s.open, s.events);
+         s.fronts.memory_bytes() + s.rounds.memory_bytes() +
+         bytes(s.due, s.involved, s.involved_at, s.clear_before_match, s.everyone, s.refused, s.broken, s.plane_pairs,
+               s.pairs, s.kept_pairs, s.body_pairs, s.open, s.events, s.ended, s.marks, s.tallies);
 }
 
 }  // namespace orchard::runtime

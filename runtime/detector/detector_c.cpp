@@ -74,7 +74,8 @@ orchard_detector_options orchard_default_detector(void) {
           options.max_unfinished,
           nullptr,
           nullptr,
-          1};
+          1,
+          options.max_fronts};
 }
 
 orchard_detector* orchard_detector_new(orchard_state_source source, void* context,
@@ -88,6 +89,7 @@ orchard_detector* orchard_detector_new(orchard_state_source source, void* contex
     options.watch = with->watch != 0;
     options.steps_to_end = with->steps_to_end;
     options.max_unfinished = with->max_unfinished;
+    options.max_fronts = with->max_fronts;
     options.executor = {with->run, with->run_context, with->concurrency};
     orchard_detector* const self = made.get();
     made->detector =

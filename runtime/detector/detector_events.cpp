@@ -2,25 +2,45 @@
 
 #include "detector_state.h"
 
-// From pairs of spheres to records, and from answers to events.
+// From pairs of spheres to records.
 namespace orchard::runtime {
 
 using detail::Body;
+using detail::is_half_space;
 using detail::Record;
 
-void Detector::State::note(Record& record, Step step, PairChange change) {
-  PairEvent& event = events.emplace_back();
-  event.change = change;
-  event.a = record.a, event.b = record.b;
-  event.part_a = record.part_a, event.part_b = record.part_b;
-  event.time = clock.time(step);
-  event.verdict = record.verdict;
-  if (!record.impact) return;
-  event.impact_from = clock.time(step) + (record.impact_from - 1) * clock.time_step;
-  event.impact_to = clock.time(step) + (record.impact_to - 1) * clock.time_step;
+// Whether they are as far apart as at the last certain "no", but for less than what was between them then.
+bool Detector::State::clear(const detail::RecordTable::Known& known) const noexcept {
+  const detail::Clearance now = clearance_now(known.pair), &then = known.clearance;
+  const double left = then.distance * (1 - 1e-9) - now.distance - (now.turned - then.turned);
+  const Vec3 moved = now.way - then.way;
+  return now.changes == then.changes && left > 0 && dot(moved, moved) < left * left * (1 - 1e-9);
+}
+
+// Of two bodies as they are, with what their middles may be off by in place of a distance.
+detail::Clearance Detector::State::clearance_now(const BodyPair& pair) const noexcept {
+  const detail::Whereabouts& a = bodies.whereabouts(pair.a);
+  if (is_half_space(pair.b)) return {a.slack, -1.0 * a.middle, a.turned, a.changes};
+  const detail::Whereabouts& b = bodies.whereabouts(pair.b);
+  return {a.slack + b.slack, b.middle - a.middle, a.turned + b.turned, a.changes + b.changes};
+}
+
+// For match(), by jobs: it is most of what a step costs where most pairs are clear. Of pairs that are no more, too.
+void Detector::State::find_clear() {
+  const auto known = records.known();
+  if (clear_before_match.size() < known.size()) detail::grow(clear_before_match, known.size());
+  constexpr std::size_t kPerJob = 1024;
+  auto look_at_some = [&](std::size_t job) {
+    const std::size_t end = std::min(known.size(), (job + 1) * kPerJob);
+    for (std::size_t i = job * kPerJob; i < end; ++i) {
+      clear_before_match[i] = known[i].clearance.distance > 0 && clear(known[i]) ? 1 : 0;
+    }
+  };
+  run_jobs(options.executor, (known.size() + kPerJob - 1) / kPerJob, look_at_some);
 }
 
 void Detector::State::match(Step step, Frame& frame) {
+  find_clear();
   known_pairs = records.known().size();
   fresh_pairs = parted_pairs = 0;
   const auto gone = [&](Record& record) {
@@ -32,11 +52,12 @@ void Detector::State::match(Step step, Frame& frame) {
     record.verdict.answer = there ? Answer::no : Answer::maybe;
     record.verdict.separation_bound = std::numeric_limits<double>::infinity();
     if (there && record.touching && ++record.nos < options.steps_to_end) {
-      record.apart = true;
-      note(record, step, PairChange::stay);
+      describe(record, step, PairChange::stay, ended.emplace_back());
       return true;
     }
-    if (record.touching) note(record, step, PairChange::end);
+    if (record.touching) describe(record, step, PairChange::end, ended.emplace_back());
+    fronts.give_back(record);
+    large_pairs -= record.large;
     return false;
   };
   const auto fresh = [&](Record& record) {
@@ -48,10 +69,24 @@ void Detector::State::match(Step step, Frame& frame) {
     if (a.parts.size() != 1 || b.parts.size() != 1) return;
     const detail::Shape &of_a = shapes[a.parts[0].shape], &of_b = shapes[b.parts[0].shape];
     record.coherent = of_a.has_tree() && of_b.has_tree();
-    if (record.coherent) record.trees = TreePair(of_a.prepared, of_b.prepared);
+    if (!record.coherent) return;
+    record.trees = TreePair(of_a.prepared, of_b.prepared);
+    record.large = detail::FrontPool::are_large(record.trees);
+    large_pairs += record.large;
   };
   records.match(
-      pairs, [this](BodyIndex index) { return id_of(index); }, gone, fresh);
+      pairs, [this](BodyIndex index) { return id_of(index); },
+      [this](const BodyPair& pair) {
+        const std::uint32_t first = bodies.whereabouts(pair.a).generation;
+        return is_half_space(pair.b) ? first : first + bodies.whereabouts(pair.b).generation;
+      },
+      [&](const detail::RecordTable::Known& known) {
+        const bool apart = clear_before_match[static_cast<std::size_t>(&known - records.known().data())] != 0;
+        frame.certain += apart;
+        return apart;
+      },
+      gone, fresh);
+  fronts.prepare(large_pairs);
   frame.pairs += pairs.size();
 }
 
@@ -64,95 +99,6 @@ bool Detector::State::allowed(Record& record) {
   record.filters_a = a.filters, record.filters_b = b.filters;
   record.allowed = (a.mask & b.group) != 0 && (b.mask & a.group) != 0 && (!filter || filter(record.a, record.b));
   return record.allowed;
-}
-
-// Neither has moved since the last certain answer.
-bool Detector::State::reusable(const Record& record) const noexcept {
-  const Body &a = places.body(record.pair.a), &b = places.body(record.pair.b);
-  return record.answered >= 0 && std::max(a.moved, b.moved) <= record.answered && !record.impact;
-}
-
-// Which records have to be asked about.
-void Detector::State::open_records(Step step) {
-  open.clear();
-  for (const auto& known : records.known()) {
-    Record& record = records[known.record];
-    if (record.apart) continue;
-    const Body &a = places.body(record.pair.a), &b = places.body(record.pair.b);
-    record.importance = std::max(a.importance, b.importance);
-    if (!allowed(record)) continue;
-    const bool continuous = a.continuous_speed > 0 || b.continuous_speed > 0;
-    const std::uint32_t jumps = a.jumps + b.jumps;
-    const auto known_before = [&](const Body& body) {
-      return body.is_static || (body.frozen && body.asked < step) || body.known_before == step - 1;
-    };
-    record.swept = continuous && record.jumps == jumps && known_before(a) && known_before(b);
-    // As spheres reach as far as a step leads, who was not asked for at the step before had nothing near then: unless
-    // the broad phase could not tell, or its parts go farther now.
-    const bool sphere_fell_short = interrupted || a.stretched == step - 1 || b.stretched == step - 1;
-    record.unseen = continuous && record.jumps == jumps && !record.swept && sphere_fell_short;
-    if (record.jumps != jumps && record.touching) {
-      record.verdict = Verdict{};
-      record.verdict.separation_bound = std::numeric_limits<double>::infinity();
-      record.impact = false;
-      note(record, step, PairChange::end);
-      record.touching = false;
-      record.answered = -1;
-    }
-    record.jumps = jumps;
-    if (record.deformed != a.deformed + b.deformed) {
-      record.deformed = a.deformed + b.deformed;
-      record.trees.forget();
-    }
-    if (!reusable(record)) open.push_back(known.record);
-  }
-}
-
-void Detector::State::begin_or_end(Record& record, Step step, Frame& frame) {
-  const Answer answer = record.verdict.answer;
-  if (answer == Answer::maybe) {
-    ++record.waited;
-    frame.worst_bound = std::max(frame.worst_bound, record.verdict.separation_bound);
-  } else {
-    record.waited = 0;
-    ++frame.certain;
-  }
-  if (answer == Answer::yes) {
-    record.nos = 0;
-    note(record, step, record.touching ? PairChange::stay : PairChange::begin);
-    record.touching = true;
-  } else if (record.touching) {
-    record.nos = answer == Answer::no ? record.nos + 1 : 0;
-    const bool end = record.nos >= options.steps_to_end;
-    note(record, step, end ? PairChange::end : PairChange::stay);
-    if (end) record.touching = false, record.nos = 0;
-  } else if (answer == Answer::maybe) {
-    note(record, step, PairChange::possible);
-  }
-}
-
-void Detector::State::report(Step step, Frame& frame) {
-  for (const auto& known : records.known()) {
-    Record& record = records[known.record];
-    if (record.apart) continue;
-    if (record.allowed) {
-      begin_or_end(record, step, frame);
-    } else {
-      ++frame.certain;  // that nothing is asked
-      if (!record.touching) continue;
-      record.touching = record.impact = false;
-      record.verdict = Verdict{};
-      record.answered = -1;
-      note(record, step, PairChange::end);
-    }
-  }
-  const auto by_pair = [](const PairEvent& p, const PairEvent& q) {
-    if (p.time != q.time) return p.time < q.time;
-    if (p.a.index != q.a.index) return p.a.index < q.a.index;
-    if (p.b.index != q.b.index) return p.b.index < q.b.index;
-    return p.change == PairChange::end && q.change != PairChange::end;
-  };
-  if (!std::is_sorted(events.begin(), events.end(), by_pair)) std::sort(events.begin(), events.end(), by_pair);
 }
 
 }  // namespace orchard::runtime

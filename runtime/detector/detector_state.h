@@ -37,10 +37,13 @@ struct Detector::State {
   void changed(detail::Body& body) noexcept { body.moved = answered + 1; }
   Motion place_of(const detail::Body& body) const noexcept;  // of a static one
 
+  static void run_for_broad(void* context, std::size_t count, Executor::Job job, void* data);
+
   // detector_step.cpp
   void run(double time, const FrameBudget& budget, Frame& frame);
   void run_to(Step last, Step end, detail::StepBudget& budget, Frame& frame);
   void watch(Step step);
+  void ask_all(Step step);
   bool keeps_more(const detail::Body& body, Step step, const Motion& motion) const noexcept;
   void answer(Step step, const Advance& now, detail::StepBudget& budget, Frame& frame);
   void answer_within(Step step, const detail::StepBudget::Stopwatch& watch, detail::StepBudget& budget, Frame& frame);
@@ -52,8 +55,27 @@ struct Detector::State {
   bool allowed(detail::Record& record);
   void learn(std::uint64_t work) noexcept;
   void report(Step step, Frame& frame);
-  void note(detail::Record& record, Step step, PairChange change);
-  void begin_or_end(detail::Record& record, Step step, Frame& frame);
+  bool clear(const detail::RecordTable::Known& known) const noexcept;
+  void find_clear();
+  detail::Clearance clearance_now(const BodyPair& pair) const noexcept;
+  void keep_clearance(detail::RecordTable::Known& known, const detail::Record& record) const noexcept;
+  void describe(const detail::Record& record, Step step, PairChange change, PairEvent& event) const noexcept;
+  enum class Outcome : std::uint8_t {  // the events, and none
+    begin = static_cast<std::uint8_t>(PairChange::begin),
+    stay = static_cast<std::uint8_t>(PairChange::stay),
+    end = static_cast<std::uint8_t>(PairChange::end),
+    possible = static_cast<std::uint8_t>(PairChange::possible),
+    nothing
+  };
+  struct Tally {  // of a job's records, and where their events are to be
+    std::size_t events = 0, certain = 0;
+    double worst_bound = 0;
+    std::size_t ended_from = 0, events_from = 0;
+  };
+  Outcome begin_or_end(detail::Record& record) const noexcept;
+  bool opens(detail::Record& record, Step step, bool& over) noexcept;
+  void tally(std::size_t job, Tally& tally) noexcept;
+  void write_events(std::size_t job, Step step, std::size_t ended_to) noexcept;
   Manifold manifold(const PairEvent& event, const ContactOptions& with) noexcept;
   void motions(double time, std::span<const BodyIndex> asked, std::span<Motion> motions);
   void note_refused(std::span<const BodyIndex> more);
@@ -72,9 +94,12 @@ struct Detector::State {
   std::uint32_t filter_version = 0;
   detail::RecordTable records;
   detail::QueryPool queries;
+  detail::FrontPool fronts;
+  std::size_t large_pairs = 0;  // among the records
   detail::Rounds rounds;
 
-  Step answered = -1;  // up to which steps have been answered
+  Step answered = -1;      // up to which steps have been answered
+  bool all_asked = false;  // everybody's state is that of the step that the broad phase is at
   std::size_t count = 0;
   bool failed = false;          // out of memory
   bool any_continuous = false;  // bodies, ever
@@ -90,9 +115,15 @@ struct Detector::State {
 
   // Of the step under way; kept for their memory.
   std::vector<BodyIndex> due, involved, everyone, refused, broken;
+  std::vector<Step> involved_at;                 // by body: 1 more than the last step at which it was in a pair
+  std::vector<std::uint8_t> clear_before_match;  // of records.known()
   std::vector<BodyPair> plane_pairs, pairs, kept_pairs, body_pairs;
   std::vector<std::uint32_t> open;
-  std::vector<PairEvent> events;
+  std::vector<std::uint8_t> marks;  // of records.active()
+  std::vector<Tally> tallies;
+  std::vector<PairEvent> events;  // event_count of them
+  std::size_t event_count = 0;
+  std::vector<PairEvent> ended;  // in match() and open_records(), until report() merges them in
 };
 
 }  // namespace orchard::runtime

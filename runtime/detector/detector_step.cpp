@@ -7,7 +7,6 @@
 // A step: the broad phase, then the pairs it reports, in the order of the dissertation's Fig. 3.2.
 namespace orchard::runtime {
 
-using detail::Body;
 using detail::is_half_space;
 using detail::kNeverStep;
 using detail::Record;
@@ -29,61 +28,6 @@ void learn_time(double& mean, double value, double max_growth) noexcept {
 }
 
 }  // namespace
-
-// For the broad phase. Whoever watches has asked for everybody by now.
-void Detector::State::motions(double time, std::span<const BodyIndex> asked, std::span<Motion> answers) {
-  bodies.ask(std::llround((time - clock.start) / clock.time_step), time, asked);
-  for (std::size_t i = 0; i < asked.size(); ++i) {
-    answers[i] = bodies.motion_of(asked[i], clock.time_step);
-    if (!options.watch) continue;
-    Body& body = bodies[asked[i]];
-    if (body.suggest && !body.frozen && answers[i].radius >= 0) {
-      answers[i] = monitor.suggest(asked[i], time, answers[i].radius);
-    }
-    body.told_radius = answers[i].radius;
-    monitor.promised(asked[i], time, answers[i]);
-  }
-  if (!options.promised) return;
-  for (std::size_t i = 0; i < asked.size(); ++i) options.promised(time, asked[i], answers[i]);
-}
-
-// 4.4: before the broad phase relies on anything at this step, everybody's state is compared with what it relies on.
-void Detector::State::watch(Step step) {
-  const double time = clock.time(step);
-  everyone.clear();
-  for (BodyIndex i = 0; i < bodies.slots(); ++i) {
-    if (bodies[i].id != kNoBody && !bodies[i].is_static && !bodies[i].frozen) everyone.push_back(i);
-  }
-  bodies.ask(step, time, everyone);
-  for (const BodyIndex i : everyone) {
-    Body& body = bodies[i];
-    const Motion motion = bodies.motion_of(i, clock.time_step);
-    if (!is_valid(motion)) continue;  // refused soon
-    const bool given = !body.suggest || dot(motion.velocity, motion.velocity) > 0;
-    bool kept =
-        given ? monitor.observe(i, time, motion.position, motion.velocity) : monitor.observe(i, time, motion.position);
-    if (kept && !keeps_more(body, step, motion)) {
-      kept = false;
-      monitor.count_broken(i);
-    }
-    if (kept) continue;
-    broken.push_back(i);
-    update_again(body);
-  }
-}
-
-// Besides the monitor's promise: what half-spaces rely on, the size, and the speed of what is continuous.
-bool Detector::State::keeps_more(const Body& body, Step step, const Motion& motion) const noexcept {
-  if (!halves.promise_kept(body.id.index, clock.time(step), motion)) return false;
-  if (body.told_radius >= 0 && motion.radius > body.told_radius) return false;
-  if (!(body.continuous_speed > 0) || body.known_before != step - 1) return true;
-  const Vec3 way = motion.position - Vec3(bodies.before(body.id.index).translation);
-  return detail::length(way) <= body.continuous_speed * clock.time_step * (1 + 1e-9);
-}
-
-void Detector::State::note_refused(std::span<const BodyIndex> more) {
-  refused.insert(refused.end(), more.begin(), more.end());
-}
 
 Frame Detector::step(double time, const FrameBudget& budget) noexcept {
   State& s = *state_;
@@ -121,10 +65,10 @@ std::size_t Detector::foresee(std::span<StepLoad> loads) const noexcept {
 }
 
 void Detector::State::run(double time, const FrameBudget& given, Frame& frame) {
-  events.clear(), refused.clear(), broken.clear();
+  event_count = 0, ended.clear(), refused.clear(), broken.clear();
   queries.prepare(shapes, shape_count,
                   options.executor.run == nullptr ? 1 : std::max<std::size_t>(1, options.executor.concurrency) * 4,
-                  any_continuous);
+                  any_continuous, options.max_fronts);
   StepBudget budget(given);
   const double steps = std::floor((time - clock.start) / clock.time_step + detail::kStepSlack);
   const Step end = static_cast<Step>(std::max(-1.0, steps));
@@ -147,7 +91,7 @@ void Detector::State::run(double time, const FrameBudget& given, Frame& frame) {
                                                                          : clock.time(std::max(next, answered + 1)));
   std::sort(refused.begin(), refused.end());
   refused.erase(std::unique(refused.begin(), refused.end()), refused.end());
-  frame.events = events, frame.refused = refused, frame.broken = broken;
+  frame.events = std::span(events).first(event_count), frame.refused = refused, frame.broken = broken;
 }
 
 // The steps up to `last` that have anything. `end`: the last step of this call, among which the budget is shared.
@@ -164,7 +108,9 @@ void Detector::State::run_to(Step last, Step end, StepBudget& budget, Frame& fra
     Advance now{};
     StepBudget share(budget.share(static_cast<std::uint64_t>(end - answered)));
     if (!budget.limited()) {
+      if (stop == answered + 1) ask_all(stop);
       now = broad.advance(time);
+      all_asked = false;
     } else {
       WorkBudget work;
       if (budget.limited_in_work()) work.work = std::max<std::uint64_t>(1, share.left() / (2 * kMotionWork));
@@ -205,7 +151,7 @@ void Detector::State::gather(Step step, const Advance& now) {
   due.clear();
   halves.due(step, due);
   if (!due.empty()) {
-    bodies.ask(step, clock.time(step), due);
+    bodies.ask(step, clock.time(step), due, options.executor);
     halves.update_windows(step, clock, due, bodies, clock.time_step, options.position_slack, plane_pairs);
   }
   if (now.incomplete_from != kNoClass) {
@@ -225,11 +171,17 @@ void Detector::State::gather(Step step, const Advance& now) {
   std::merge(now.pairs.begin(), now.pairs.end(), kept_pairs.begin(), kept_pairs.end(), std::back_inserter(body_pairs));
   std::merge(body_pairs.begin(), body_pairs.end(), plane_pairs.begin(), plane_pairs.end(), std::back_inserter(pairs));
   involved.clear();
+  detail::grow(involved_at, bodies.slots());
+  const auto involve = [&](BodyIndex body) {
+    if (involved_at[body] == step + 1) return;
+    involved_at[body] = step + 1;
+    involved.push_back(body);
+  };
   for (const BodyPair& pair : pairs) {
-    involved.push_back(pair.a);
-    if (!is_half_space(pair.b)) involved.push_back(pair.b);
+    involve(pair.a);
+    if (!is_half_space(pair.b)) involve(pair.b);
   }
-  bodies.ask(step, clock.time(step), involved);
+  bodies.ask(step, clock.time(step), involved, options.executor);
   for (const BodyIndex body : involved) {
     if (!bodies[body].rigid) refused.push_back(body);
   }

@@ -4,6 +4,8 @@
 
 namespace orchard::runtime::detail {
 
+inline constexpr std::uint32_t kNoFront = 0xffffffffu;
+
 // What is remembered of a pair while its spheres overlap, or until its touch has ended.
 struct Record {
   BodyPair pair{};
@@ -13,11 +15,13 @@ struct Record {
   std::uint32_t deformed = 0;                                      // and changes of their shapes
   bool coherent = false;  // one tree each: `trees` knows what the last answer was
   TreePair trees;
-  Vec3 apart_by{};     // from centre to centre,
-  Step apart_at = -1;  // at that step
+  std::uint32_t front = kNoFront;  // that `trees` has of the FrontPool
+  bool large = false;              // trees, so that a front may be of use
+  std::uint8_t costly = 0;         // searches of late, see there
+  Vec3 apart_by{};                 // from centre to centre,
+  Step apart_at = -1;              // at that step
   bool allowed = false;
   bool touching = false;
-  bool apart = false;   // the broad phase says no at this step
   bool swept = false;   // at the step before both poses were known: a sweep may start there
   bool unseen = false;  // they were not, and should have been: nobody knows what was in between
   std::uint8_t importance = 0;
@@ -30,27 +34,40 @@ struct Record {
   bool impact = false;
 };
 
+// A certain "no" that lasts: the two are `distance` apart, at least, as long as their middles are this way from each
+// other and they have turned so far; see Whereabouts.
+struct Clearance {
+  double distance = 0;  // 0: none
+  Vec3 way{};
+  double turned = 0;
+  std::uint32_t changes = 0;
+};
+
 // The pairs of the step before and their records, in ascending order of pairs.
 class RecordTable {
  public:
-  struct Known {
+  struct Known {  // no larger than a line of memory: most pairs of a step are asked no more than this
     BodyPair pair;
     std::uint32_t record;
+    std::uint32_t generations;  // of both bodies: others have others
+    Clearance clearance;
   };
 
   std::span<const Known> known() const noexcept { return known_; }
+  // Those of them that match() has not found to be clear.
+  std::span<const std::uint32_t> active() const noexcept { return active_; }
+  Known& operator()(std::uint32_t active) noexcept { return known_[active]; }
   Record& operator[](std::uint32_t record) noexcept { return records_[record]; }
   const Record& operator[](std::uint32_t record) const noexcept { return records_[record]; }
 
-  // Those of `pairs`, which ascend, become the known ones; calls gone(record) for each that is not among them, or whose
-  // bodies are others by now, and keeps it if that says true; fresh(record) for each new one.
-  template <typename IdOf, typename Gone, typename Fresh>
-  void match(std::span<const BodyPair> pairs, IdOf&& id_of, Gone&& gone, Fresh&& fresh);
-  // For those that have ended: known() afterwards is without them.
-  template <typename Ended>
-  void drop(Ended&& ended);
+  // Those of `pairs`, which ascend, become the known ones; asks clear(known) of each that has been one; calls
+  // gone(record) for each that is not among them, or whose bodies are others by now, as the sum of their generations
+  // tells, and keeps it if that says true; fresh(record) for each new one.
+  template <typename IdOf, typename Generations, typename Clear, typename Gone, typename Fresh>
+  void match(std::span<const BodyPair> pairs, IdOf&& id_of, Generations&& generations, Clear&& clear, Gone&& gone,
+             Fresh&& fresh);
   std::size_t memory_bytes() const noexcept {
-    return bytes_of(records_) + bytes_of(free_) + bytes_of(known_) + bytes_of(next_);
+    return bytes_of(records_) + bytes_of(free_) + bytes_of(known_) + bytes_of(next_) + bytes_of(active_);
   }
 
  private:
@@ -68,16 +85,25 @@ class RecordTable {
   std::vector<Record> records_;
   std::vector<std::uint32_t> free_;
   std::vector<Known> known_, next_;
+  std::vector<std::uint32_t> active_;  // of known_
 };
 
-template <typename IdOf, typename Gone, typename Fresh>
-void RecordTable::match(std::span<const BodyPair> pairs, IdOf&& id_of, Gone&& gone, Fresh&& fresh) {
+template <typename IdOf, typename Generations, typename Clear, typename Gone, typename Fresh>
+void RecordTable::match(std::span<const BodyPair> pairs, IdOf&& id_of, Generations&& generations, Clear&& clear,
+                        Gone&& gone, Fresh&& fresh) {
   next_.clear();
+  active_.clear();
+  const auto keep_active = [this](const Known& known) {
+    active_.push_back(static_cast<std::uint32_t>(next_.size()));
+    next_.push_back(known);
+    next_.back().clearance.distance = 0;
+  };
   std::size_t old = 0;
   const auto leave = [&] {
     const Known known = known_[old++];
     if (gone(records_[known.record])) {
       next_.push_back(known);
+      next_.back().clearance.distance = 0;
     } else {
       free_.push_back(known.record);
     }
@@ -85,13 +111,15 @@ void RecordTable::match(std::span<const BodyPair> pairs, IdOf&& id_of, Gone&& go
   for (const BodyPair& pair : pairs) {
     while (old < known_.size() && known_[old].pair < pair) leave();
     if (old < known_.size() && known_[old].pair == pair) {
-      Record& record = records_[known_[old].record];
-      if (record.a == id_of(pair.a) && record.b == id_of(pair.b)) {
-        record.apart = false;
+      if (clear(known_[old])) {
         next_.push_back(known_[old++]);
         continue;
       }
-      gone(record);  // of a body that is no more: it cannot stay
+      if (known_[old].generations == generations(pair)) {
+        keep_active(known_[old++]);
+        continue;
+      }
+      gone(records_[known_[old].record]);  // of a body that is no more: it cannot stay
       free_.push_back(known_[old++].record);
     }
     const std::uint32_t index = take();
@@ -99,19 +127,10 @@ void RecordTable::match(std::span<const BodyPair> pairs, IdOf&& id_of, Gone&& go
     record.pair = pair;
     record.a = id_of(pair.a), record.b = id_of(pair.b);
     fresh(record);
-    next_.push_back({pair, index});
+    keep_active({pair, index, generations(pair), {}});
   }
   while (old < known_.size()) leave();
   std::swap(known_, next_);
-}
-
-template <typename Ended>
-void RecordTable::drop(Ended&& ended) {
-  std::erase_if(known_, [&](const Known& known) {
-    if (!ended(records_[known.record])) return false;
-    free_.push_back(known.record);
-    return true;
-  });
 }
 
 }  // namespace orchard::runtime::detail

@@ -89,12 +89,18 @@ Verdict solid_verdict(Verdict verdict, const PartPair& pair) noexcept {
   return verdict;
 }
 
-Verdict answer_exactly(NarrowPhase& narrow, const PartPair& pair, std::uint64_t& work, std::uint64_t most) noexcept {
+std::uint32_t nearest_triangle(const Verdict& verdict, const PartPair& pair) noexcept {
+  if (verdict.answer != Answer::yes || pair.b.shape == nullptr) return kNoTriangle;
+  return pair.a.shape->has_tree() ? verdict.contact.triangle_a : verdict.contact.triangle_b;
+}
+
+Verdict answer_exactly(NarrowPhase& narrow, const PartPair& pair, std::uint64_t& work, std::uint64_t most,
+                       std::uint32_t guess) noexcept {
   if (!pair.a.rigid || (pair.b.shape != nullptr && !pair.b.rigid)) return unknown_verdict();
   if (pair.simple()) {
     work += kSimplePairWork;
     return pair.b.shape == nullptr ? test_half_space(*pair.a.shape, pair.a.pose, pair.half)
-                                   : test_simple(*pair.a.shape, pair.a.pose, *pair.b.shape, pair.b.pose);
+                                   : test_simple(*pair.a.shape, pair.a.pose, *pair.b.shape, pair.b.pose, guess);
   }
   narrow.bind(pair.a.shape->prepared, pair.b.shape->prepared);
   narrow.start(pair.a.pose, pair.b.pose);

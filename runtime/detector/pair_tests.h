@@ -51,9 +51,13 @@ double sphere_gap(const PartPair& pair) noexcept;
 // What is known of two parts that nothing was asked about.
 Verdict unasked(const PartPair& pair) noexcept;
 
+// A triangle of the tree that a simple shape was nearest to, as its last answer says: where looking for it begins.
+std::uint32_t nearest_triangle(const Verdict& verdict, const PartPair& pair) noexcept;
+
 // The whole answer, unless `work`, which it increases by what it costs, reaches `most`. `narrow` is only scratch.
 Verdict answer_exactly(NarrowPhase& narrow, const PartPair& pair, std::uint64_t& work,
-                       std::uint64_t most = std::numeric_limits<std::uint64_t>::max()) noexcept;
+                       std::uint64_t most = std::numeric_limits<std::uint64_t>::max(),
+                       std::uint32_t guess = kNoTriangle) noexcept;
 
 // What is known of two trees whose surfaces have been asked about: of solid boxes these do not tell everything.
 Verdict solid_verdict(Verdict verdict, const PartPair& pair) noexcept;

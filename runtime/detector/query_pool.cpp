@@ -4,7 +4,8 @@
 
 namespace orchard::runtime::detail {
 
-void QueryPool::prepare(const ShapeTable& shapes, std::size_t shape_count, std::size_t jobs, bool sweeps) {
+void QueryPool::prepare(const ShapeTable& shapes, std::size_t shape_count, std::size_t jobs, bool sweeps,
+                        std::size_t fronts) {
   const bool more = seen_shapes_ < shape_count || (sweeps && !sweeps_);
   sweeps_ = sweeps_ || sweeps;
   for (; seen_shapes_ < shape_count; ++seen_shapes_) {
@@ -14,7 +15,10 @@ void QueryPool::prepare(const ShapeTable& shapes, std::size_t shape_count, std::
     }
   }
   const std::size_t before = scratches_.size();
-  while (scratches_.size() < jobs) scratches_.push_back(std::make_unique<Scratch>());
+  while (scratches_.size() < jobs) {
+    scratches_.push_back(std::make_unique<Scratch>());
+    scratches_.back()->wanting.reserve(fronts);
+  }
   if (deepest_.tree.blocks.empty()) return;
   for (std::size_t i = more ? 0 : before; i < scratches_.size(); ++i) {
     scratches_[i]->workspace.narrow.bind(deepest_, deepest_);

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 
+#include "pair/coherent_pair.h"
+
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr double kSlow = 0.005;  // of the smaller body's size, per step
+constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
+constexpr double kSlow = 0.02;  // of the smaller body's size, per step
 
 }  // namespace
 
@@ -47,7 +50,8 @@ bool Rounds::is_slow(Record& record, const PartPair& pair, Step now) noexcept {
 }
 
 // Two bodies of one tree each, as most are: what the last step found is where this one begins.
-void Rounds::answer_coherently(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept {
+void Rounds::answer_coherently(std::uint32_t index, Record& record, Step now,
+                               QueryPool::Scratch& scratch) const noexcept {
   forget_answer(record);
   PartPair pair;
   place(record, 0, 0, pair);
@@ -55,23 +59,26 @@ void Rounds::answer_coherently(Record& record, Step now, QueryPool::Scratch& scr
   const bool slow = is_slow(record, pair, now);
   record.verdict = unasked(pair);
   if (record.verdict.answer != Answer::no) {
-    if (slow) {
-      const double bound = record.verdict.separation_bound;
-      Verdict verdict = collide_coherently(scratch.workspace, record.trees, pair.a.pose, pair.b.pose);
-      scratch.work += kPairWork + verdict.work;
-      if (verdict.answer == Answer::no) verdict = solid_verdict(verdict, pair);
-      record.verdict = verdict;
-      record.verdict.separation_bound = std::min(verdict.separation_bound, bound);
-    } else {
-      record.verdict = answer_exactly(scratch.workspace.narrow, pair, scratch.work);
+    const double bound = record.verdict.separation_bound;
+    std::optional<Verdict> known;
+    if (slow || record.touching)
+      known = CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose, pair.b.pose);
+    if (!known) {
+      known = CoherentPair::search(scratch.workspace, record.trees, pair.a.pose, pair.b.pose, {}, !slow);
+      if (slow && known->answer == Answer::no) note_search(index, record, known->work, scratch);
     }
+    scratch.work += kPairWork + known->work;
+    record.verdict = known->answer == Answer::no ? solid_verdict(*known, pair) : *known;
+    record.verdict.separation_bound = std::min(known->separation_bound, bound);
   }
   if (record.verdict.answer != Answer::maybe) record.answered = now;
   record.verdict.work = scratch.work - before;
 }
 
-void Rounds::answer(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept {
-  if (record.coherent) return answer_coherently(record, now, scratch);
+void Rounds::answer(std::uint32_t index, Record& record, Step now, QueryPool::Scratch& scratch) const noexcept {
+  if (record.coherent) return answer_coherently(index, record, now, scratch);
+  const Verdict last = record.verdict;
+  const std::uint32_t last_a = record.part_a, last_b = record.part_b;
   forget_answer(record);
   PartPair pair;
   const std::uint32_t parts_a = places_->parts(record.pair.a), parts_b = places_->parts(record.pair.b);
@@ -84,7 +91,9 @@ void Rounds::answer(Record& record, Step now, QueryPool::Scratch& scratch) const
       places_->place(record.pair.b, j, pair.b);
       const double gap = sphere_gap(pair);
       ++scratch.work;
-      const Verdict verdict = gap > 0 ? unasked(pair) : answer_exactly(scratch.workspace.narrow, pair, scratch.work);
+      const std::uint32_t guess = i == last_a && j == last_b ? nearest_triangle(last, pair) : kNoTriangle;
+      const Verdict verdict =
+          gap > 0 ? unasked(pair) : answer_exactly(scratch.workspace.narrow, pair, scratch.work, kNoLimit, guess);
       take_in(record, verdict, i, j);
       known = known && verdict.answer != Answer::maybe;
     }
@@ -97,11 +106,27 @@ void Rounds::answer(Record& record, Step now, QueryPool::Scratch& scratch) const
 std::uint64_t Rounds::answer_all(RecordTable& records, std::span<const std::uint32_t> open, Step now) {
   for (std::size_t job = 0; job < queries_->jobs(); ++job) queries_->scratch(job).work = 0;
   in_parallel(open.size(), [&](std::size_t begin, std::size_t end, QueryPool::Scratch& scratch) {
-    for (std::size_t i = begin; i < end; ++i) answer(records[open[i]], now, scratch);
+    for (std::size_t i = begin; i < end; ++i) answer(open[i], records[open[i]], now, scratch);
   });
   std::uint64_t work = 0;
   for (std::size_t job = 0; job < queries_->jobs(); ++job) work += queries_->scratch(job).work;
+  give_fronts(records, now);
   return work;
+}
+
+void Rounds::note_search(std::uint32_t index, Record& record, std::uint64_t work,
+                         QueryPool::Scratch& scratch) noexcept {
+  if (scratch.wanting.capacity() == 0 || !FrontPool::wants(record, work)) return;
+  if (scratch.wanting.size() < scratch.wanting.capacity()) scratch.wanting.push_back(index);
+}
+
+// Jobs take the pairs in their order, and what a job leaves out for want of room would not get a front anyway.
+void Rounds::give_fronts(RecordTable& records, Step now) {
+  for (std::size_t job = 0; job < queries_->jobs(); ++job) {
+    auto& wanting = queries_->scratch(job).wanting;
+    fronts_->give(records, wanting, now);
+    wanting.clear();
+  }
 }
 
 }  // namespace orchard::runtime::detail

@@ -1,5 +1,5 @@
 #pragma once
-#include "pair_records.h"
+#include "front_pool.h"
 #include "query_pool.h"
 #include "step_budget.h"
 #include "sweep.h"
@@ -13,8 +13,9 @@ void take_in(Record& record, const Verdict& verdict, std::uint32_t part_a, std::
 // Answers records at one step.
 class Rounds {
  public:
-  Rounds(const Places& places, QueryPool& queries, const Executor& executor, std::size_t max_unfinished) noexcept
-      : places_(&places), queries_(&queries), executor_(&executor), max_unfinished_(max_unfinished) {}
+  Rounds(const Places& places, QueryPool& queries, const Executor& executor, std::size_t max_unfinished,
+         FrontPool& fronts) noexcept
+      : places_(&places), queries_(&queries), executor_(&executor), max_unfinished_(max_unfinished), fronts_(&fronts) {}
 
   // Every record's part pairs to their end. Returns the work.
   std::uint64_t answer_all(RecordTable& records, std::span<const std::uint32_t> open, Step now);
@@ -44,8 +45,12 @@ class Rounds {
   };
   static bool is_slow(Record& record, const PartPair& pair, Step now) noexcept;
   void place(const Record& record, std::uint32_t part_a, std::uint32_t part_b, PartPair& pair) const noexcept;
-  void answer_coherently(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept;
-  void answer(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept;
+  // Gives the pairs fronts whose last searches were the most expensive.
+  void give_fronts(RecordTable& records, Step now);
+  static void note_search(std::uint32_t index, Record& record, std::uint64_t work,
+                          QueryPool::Scratch& scratch) noexcept;
+  void answer_coherently(std::uint32_t index, Record& record, Step now, QueryPool::Scratch& scratch) const noexcept;
+  void answer(std::uint32_t index, Record& record, Step now, QueryPool::Scratch& scratch) const noexcept;
   void sweep_one(Record& record, Step now, QueryPool::Scratch& scratch, std::uint64_t most) const noexcept;
   void make_tasks(RecordTable& records, std::span<const std::uint32_t> open, Step now);
   void sort_tasks(const RecordTable& records);
@@ -67,10 +72,12 @@ class Rounds {
   QueryPool* queries_;
   const Executor* executor_;
   std::size_t max_unfinished_;
+  FrontPool* fronts_;
   std::vector<Task> tasks_;                       // in the order of pairs, then of parts
   std::vector<std::uint32_t> schedule_, sorted_;  // of tasks
   std::vector<std::uint32_t> order_, sweeps_;
   std::size_t begun_ = 0;  // of schedule_
+  Step now_ = -1;
   std::int64_t lead_ = 0;  // of the work on what begins
 };
 

@@ -99,6 +99,7 @@ void Rounds::decide(Task& task, Record& record, std::uint64_t most, QueryPool::S
   Verdict verdict;
   if (task.slow) {
     verdict = CoherentPair::search(scratch.workspace, record.trees, pair.a.pose, pair.b.pose, {most});
+    if (verdict.answer != Answer::yes) note_search(task.record, record, verdict.work, scratch);
   } else {
     narrow.bind(pair.a.shape->prepared, pair.b.shape->prepared);
     verdict = collide(narrow, pair.a.pose, pair.b.pose, {most});
@@ -121,6 +122,7 @@ void Rounds::once_each(std::span<const std::uint32_t> tasks, StepBudget& budget,
       if (alone ? budget.may_begin() : !budget.late()) piece(task, records[task.record], scratch);
     }
   });
+  give_fronts(records, now_);
   for (const std::uint32_t index : tasks) {
     const Task& task = tasks_[index];
     budget.spend(task.work);
@@ -239,6 +241,7 @@ void Rounds::fold(RecordTable& records, std::span<const std::uint32_t> open, Ste
 
 void Rounds::begin_within(RecordTable& records, std::span<const std::uint32_t> open, Step now) {
   make_tasks(records, open, now);
+  now_ = now;
   sort_tasks(records);
   begun_ = 0;
   lead_ = 0;

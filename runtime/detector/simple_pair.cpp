@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "orchard/runtime/shape_query.h"
+#include "pair/segment_query.h"
 
 namespace orchard::runtime::detail {
 namespace {
@@ -71,6 +71,45 @@ Vec3 way_out(const Shape& box, const Pose& pose, const Vec3& point) noexcept {
   return rotate(pose, way);
 }
 
+struct NearestOfBox {  // in the box's frame at scale 1
+  Vec3 on_segment, on_box;
+  double distance = 0;
+};
+
+// Of a solid box and the segment from p to q. The square of the distance along the segment is convex, and quadratic
+// between the places where a coordinate enters or leaves the box.
+NearestOfBox nearest_of_box(const Vec3& half, const Vec3& p, const Vec3& q) noexcept {
+  const Vec3 way = q - p;
+  const auto slope = [&](double t, double& square) {  // half of it; `square`: how fast it grows
+    double sum = square = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double x = p[i] + t * way[i], beyond = x - std::clamp(x, -half[i], half[i]);
+      sum += beyond * way[i];
+      if (beyond != 0) square += way[i] * way[i];
+    }
+    return sum;
+  };
+  double low = 0, high = 1, square = 0;
+  if (slope(0, square) >= 0) high = 0;
+  if (slope(1, square) <= 0) low = 1;
+  for (std::size_t i = 0; i < 3 && low < high; ++i) {
+    for (const double side : {-half[i], half[i]}) {
+      const double t = (side - p[i]) / way[i];
+      if (t > low && t < high) (slope(t, square) < 0 ? low : high) = t;
+    }
+  }
+  double t = low >= 1 ? 1 : high;
+  if (low < high) {
+    const double middle = 0.5 * (low + high), rise = slope(middle, square);
+    t = square > 0 ? std::clamp(middle - rise / square, low, high) : middle;
+  }
+  NearestOfBox near;
+  near.on_segment = t == 1 ? q : point_of(p, q, t);
+  for (std::size_t i = 0; i < 3; ++i) near.on_box[i] = std::clamp(near.on_segment[i], -half[i], half[i]);
+  near.distance = length(near.on_segment - near.on_box);
+  return near;
+}
+
 Verdict yes_at(const Vec3& center, const Vec3& normal) noexcept {
   Verdict verdict;
   verdict.answer = Answer::yes;
@@ -101,10 +140,22 @@ Verdict of_rounds(const Round& a, const Round& b) noexcept {
   return yes_at(near.on_a + 0.5 * (from + to) * normal, normal);
 }
 
+// The normal from the box to the round shape.
+Verdict of_box(const Shape& box, const Pose& pose, const Round& round) noexcept {
+  const NearestOfBox near = nearest_of_box(box.p, in_box(pose, round.p), in_box(pose, round.q));
+  const double distance = near.distance * pose.scale;
+  if (!std::isfinite(distance)) return unknown_verdict();
+  if (distance > round.radius) return no_with(distance - round.radius);
+  const Vec3 at = transform(pose, near.on_box);
+  if (distance > 0) return yes_at(at, rotate(pose, unit(near.on_segment - near.on_box, {0, 0, 1})));
+  return yes_at(at, way_out(box, pose, at));
+}
+
 // The normal from the tree to the round shape.
-Verdict of_tree(const Shape& shape, const Pose& pose, const Round& round) noexcept {
+Verdict of_tree(const Shape& shape, const Pose& pose, const Round& round, std::uint32_t guess) noexcept {
+  if (shape.kind == ShapeKind::box) return of_box(shape, pose, round);
   if (shape.tree.ball_slabs.empty()) return unknown_verdict();
-  const SurfacePoint near = nearest_point_to_segment(shape.tree, pose, round.p, round.q, round.radius);
+  const auto [near, beyond] = nearest_to_segment(shape.tree, pose, round.p, round.q, round.radius, guess);
   if (near.triangle != kNoTriangle) {
     const Vec3 core = nearest_of_segment(round.p, round.q, near.point);
     Verdict verdict = yes_at(near.point, unit(core - Vec3(near.point), {0, 0, 1}));
@@ -112,10 +163,8 @@ Verdict of_tree(const Shape& shape, const Pose& pose, const Round& round) noexce
     return verdict;
   }
   if (near.distance == 0) return unknown_verdict();
-  if (shape.kind == ShapeKind::box && holds(shape, pose, round.p)) {
-    return yes_at(round.p, way_out(shape, pose, round.p));
-  }
-  Verdict verdict = no_with(0);
+  const double size = beyond + round.radius + length(round.p) + length(round.q) + length(Vec3(pose.translation));
+  Verdict verdict = no_with(std::max(0.0, beyond - round.radius - kSimpleRounding * size));
   verdict.separation_bound = length(round.p - Vec3(transform(pose, shape.center))) + shape.reach * pose.scale;
   return verdict;
 }
@@ -133,10 +182,11 @@ Verdict unknown_verdict() noexcept {
   return verdict;
 }
 
-Verdict test_simple(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) noexcept {
+Verdict test_simple(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
+                    std::uint32_t guess) noexcept {
   if (!a.has_tree() && !b.has_tree()) return of_rounds(Round(a, pose_a), Round(b, pose_b));
-  if (a.has_tree()) return of_tree(a, pose_a, Round(b, pose_b));
-  Verdict verdict = of_tree(b, pose_b, Round(a, pose_a));
+  if (a.has_tree()) return of_tree(a, pose_a, Round(b, pose_b), guess);
+  Verdict verdict = of_tree(b, pose_b, Round(a, pose_a), guess);
   exchange(verdict.contact);
   return verdict;
 }

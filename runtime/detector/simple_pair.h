@@ -7,8 +7,10 @@ namespace orchard::runtime::detail {
 
 Verdict unknown_verdict() noexcept;
 
-// At least one of the two is round. The poses are rigid here, and in test_half_space().
-Verdict test_simple(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) noexcept;
+// At least one of the two is round. The poses are rigid here, and in test_half_space(). `guess`: the tree's triangle
+// that may be the nearest one, or none; it changes nothing but the time.
+Verdict test_simple(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
+                    std::uint32_t guess = kNoTriangle) noexcept;
 
 // `b` is the half-space; the normal of a contact points into it.
 Verdict test_half_space(const Shape& a, const Pose& pose, const HalfSpace& b) noexcept;

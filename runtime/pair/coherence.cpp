@@ -4,6 +4,7 @@
 #include "coherent_pair.h"
 #include "front_walk.h"
 #include "pair_access.h"
+#include "pose_change.h"
 #include "rigid_pair.h"
 #include "tree/tree_nodes.h"
 #include "triangle_pair.h"
@@ -32,14 +33,8 @@ double displacement(const PreparedTree& tree, const Pose& before, const Pose& no
   const BallSlabBlock& root = tree.tree.ball_slabs[0];
   Vec3 middle = {root.x[0], root.y[0], root.z[0]};
   for (std::size_t i = 0; i < 3; ++i) middle[i] += tree.tree.origin[i];
-  double square = 0;
-  for (std::size_t i = 0; i < 9; ++i) {
-    const double change = now.scale * now.rotation[i] - before.scale * before.rotation[i];
-    square += change * change;
-  }
-  // Two rotations differ by an angle about an axis, so that a vector changes by at most 1 / sqrt(2) of that norm.
-  const double turn = std::sqrt(now.scale == before.scale ? square / 2 : square);
-  return size_of(minus(transform(now, middle), transform(before, middle))) + turn * double{root.radius[0]};
+  return size_of(minus(transform(now, middle), transform(before, middle))) +
+         detail::pose_change(before, now) * double{root.radius[0]};
 }
 
 // What poses may be off by, in the first body's units: as NarrowPhase's error.
@@ -105,7 +100,7 @@ struct Coherence {
     return verdict;
   }
 
-  Verdict search(const Budget& budget) noexcept {
+  Verdict search(const Budget& budget, bool fast) noexcept {
     if (memory.witness_count > 0) return search_after_yes(budget);
     if (pair.front_ != nullptr) return search_front(budget);
     const double step = memory.seen ? moved / (memory.answers + 1) : 0;
@@ -113,7 +108,7 @@ struct Coherence {
     std::uint64_t spent = 0;
     if (memory.wait > 0) {
       --memory.wait;
-    } else if (step > 0) {
+    } else if (step > 0 && !fast) {
       const double ahead = kAhead * step * a.scale;
       DistanceQuery& query = workspace.distance;
       query.bind(pair.a(), pair.b());
@@ -247,17 +242,17 @@ std::optional<Verdict> CoherentPair::recall(Workspace& workspace, TreePair& pair
   return coherence.place() ? coherence.recall() : std::nullopt;
 }
 
-Verdict CoherentPair::search(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b,
-                             const Budget& budget) noexcept {
+Verdict CoherentPair::search(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b, const Budget& budget,
+                             bool fast) noexcept {
   Coherence coherence{workspace, pair, a, b};
-  return coherence.place() ? coherence.search(budget) : collide(workspace, pair, a, b, budget);
+  return coherence.place() ? coherence.search(budget, fast) : collide(workspace, pair, a, b, budget);
 }
 
 Verdict collide_coherently(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept {
   Coherence coherence{workspace, pair, a, b};
   if (!coherence.place()) return collide(workspace, pair, a, b);
   const std::optional<Verdict> known = coherence.recall();
-  return known ? *known : coherence.search({});
+  return known ? *known : coherence.search({}, false);
 }
 
 }  // namespace orchard::runtime

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "segment_query.h"
 #include "tree_walk.h"
 #include "triangle_distance.h"
 
@@ -36,6 +37,21 @@ Crossing crossing(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcep
   if (mixed) return Crossing::none;
   if (side_p == 0 || side_q == 0 || a == 0 || b == 0 || c == 0) return Crossing::unclear;
   return side_p > 0 ? Crossing::leaving : Crossing::entering;
+}
+
+// Exactly, as triangles_intersect() says of the segment, which most triangles lie across or beside.
+bool segment_meets(const Vec3& from, const Vec3& to, const TrianglePoints& t, Vec3& common) noexcept {
+  const int p = orientation(t[0], t[1], t[2], from), q = orientation(t[0], t[1], t[2], to);
+  if (p * q > 0) return false;
+  if (p == 0 && q == 0) return triangles_intersect({from, to, to}, t, &common);
+  const int a = orientation(from, to, t[0], t[1]), b = orientation(from, to, t[1], t[2]);
+  if (a * b < 0) return false;
+  const int c = orientation(from, to, t[2], t[0]);
+  if (a * c < 0 || b * c < 0) return false;
+  const Vec3 normal = cross(minus(t[1], t[0]), minus(t[2], t[0]));
+  const double hp = std::fabs(dot(normal, minus(from, t[0]))), hq = std::fabs(dot(normal, minus(to, t[0])));
+  common = detail::along(from, minus(to, from), hp + hq > 0 ? std::clamp(hp / (hp + hq), 0.0, 1.0) : 0);
+  return true;
 }
 
 double winding_angle(const TreeView& tree, const Vec3& point) noexcept {
@@ -72,10 +88,9 @@ class Caster {
     if (!within_reach(from) || !std::isfinite(course.speed)) return unknown;
     if (ray.longest < 0) return std::nullopt;
     const TreeView& tree = frame_.tree;
-    Query query{course, from, from, 0, {}, {}};
+    Query query{course, from, from, 0, {}};
     query.end = course.speed > 0 ? std::min(course.steps(ray.longest), reach_beyond(tree, from) / course.speed) : 0;
     query.to = settled(detail::along(from, course.step, query.end));
-    query.shape = {from, query.to, query.to};
     const double length_of_ray = query.end * course.speed;
     const Vec3 way = course.speed > 0 ? detail::along({0, 0, 0}, course.step, 1 / course.speed) : Vec3{1, 0, 0};
     const Line line = line_of(tree, from, way, length_of_ray);
@@ -117,30 +132,15 @@ class Caster {
     const Course& course;
     Vec3 from, to;
     double end;
-    TrianglePoints shape;
     Best best;
 
     // Whether the triangle is the nearest so far; of equally near ones the first in the tree's own order.
     bool offer(const TrianglePoints& t, std::uint32_t triangle) noexcept {
       Vec3 common{};
-      if (!meets(t, common)) return false;
+      if (!segment_meets(from, to, t, common)) return false;
       const double steps = std::clamp(course.steps_to(minus(common, from)), 0.0, end);
       if (steps > best.steps || (steps == best.steps && triangle > best.triangle)) return false;
       best = {steps, common, triangle};
-      return true;
-    }
-    // Exactly, as triangles_intersect() says of the segment; most triangles lie across it.
-    bool meets(const TrianglePoints& t, Vec3& common) const noexcept {
-      const int p = orientation(t[0], t[1], t[2], from), q = orientation(t[0], t[1], t[2], to);
-      if (p * q > 0) return false;
-      if (p == 0 && q == 0) return triangles_intersect(shape, t, &common);
-      const int a = orientation(from, to, t[0], t[1]), b = orientation(from, to, t[1], t[2]);
-      if (a * b < 0) return false;
-      const int c = orientation(from, to, t[2], t[0]);
-      if (a * c < 0 || b * c < 0) return false;
-      const Vec3 normal = cross(minus(t[1], t[0]), minus(t[2], t[0]));
-      const double hp = std::fabs(dot(normal, minus(from, t[0]))), hq = std::fabs(dot(normal, minus(to, t[0])));
-      common = detail::along(from, minus(to, from), hp + hq > 0 ? std::clamp(hp / (hp + hq), 0.0, 1.0) : 0);
       return true;
     }
   };
@@ -148,9 +148,10 @@ class Caster {
   Frame frame_;
 };
 
-// The surface point nearest to a segment within `limit`, or the first one found, if `any` will do.
+// The surface point nearest to a segment within `limit`, or the first one found, if `any` will do; `guess` is looked at
+// first, and is enough where it meets the segment. `beyond`: see NearestToSegment.
 SurfacePoint search_outward(const TreeView& tree, const Pose& pose, const Vec3& p, const Vec3& q, double limit,
-                            bool any) noexcept {
+                            bool any, std::uint32_t guess = kNoTriangle, double* beyond = nullptr) noexcept {
   SurfacePoint best;
   if (tree.ball_slabs.empty()) return best;
   const SurfacePoint unknown{0, {}, kNoTriangle};
@@ -159,15 +160,18 @@ SurfacePoint search_outward(const TreeView& tree, const Pose& pose, const Vec3& 
   const Vec3 from = frame.enter(p), to = frame.enter(q);
   if (!within_reach(from) || !within_reach(to)) return unknown;
   const Segment segment(from, to);
-  const TrianglePoints shape = {from, to, to};
   const bool point = from == to;
-  double least = limit / pose.scale;
+  double least = limit / pose.scale, rest = std::numeric_limits<double>::infinity();
   std::array<float, 3> direction{};
   // False once nothing nearer is wanted.
   const auto compare = [&](const TrianglePoints& t, std::uint32_t triangle, bool may_meet) {
-    NearestPoints near = point ? nearest_points(from, t) : nearest_points(from, to, t);
     Vec3 common{};
-    if (may_meet && triangles_intersect(shape, t, &common)) near = {0, common, common};
+    const NearestPoints near = may_meet && segment_meets(from, to, t, common) ? NearestPoints{0, common, common}
+                               : point                                        ? nearest_points(from, t)
+                                                                              : nearest_points(from, to, t);
+    if (near.distance > least && beyond != nullptr) {
+      rest = std::min(rest, near.distance - kParallelError * (longest_edge(t) + std::sqrt(segment.square)));
+    }
     if (near.distance > least || (near.distance == least && triangle > best.triangle)) return true;
     least = near.distance;
     best = {least * pose.scale, near.on_b, triangle};
@@ -176,14 +180,22 @@ SurfacePoint search_outward(const TreeView& tree, const Pose& pose, const Vec3& 
     }
     return !any;
   };
+  if (guess < tree.triangles.size()) {
+    compare(points_of(tree, guess), guess, true);
+    if (best.triangle == guess && least == 0) {
+      best.point = frame.leave(best.point);
+      return best;
+    }
+  }
   const double size = length(from) + length(to) + length(tree.origin) + tree.bounding_radius;
   if (size <= kFloatReach) {
-    walk_outward(
+    const float others = walk_outward(
         tree, shape_of(tree, segment), [&] { return least; },
         [&]() -> const std::array<float, 3>& { return direction; },
         [&](const TriangleBlock& block, std::uint32_t lane, bool may_meet) {
           return compare(points_of(block, lane), block.triangle[lane], may_meet);
         });
+    rest = std::min(rest, double{others});
   } else {
     walk(
         tree, segment, frame.rounding(segment), [&] { return least; },
@@ -191,8 +203,10 @@ SurfacePoint search_outward(const TreeView& tree, const Pose& pose, const Vec3& 
           return each_triangle(
               block, [&](const TrianglePoints& t, std::uint32_t triangle) { return compare(t, triangle, true); });
         });
+    rest = 0;
   }
   if (best.triangle != kNoTriangle) best.point = frame.leave(best.point);
+  if (beyond != nullptr) *beyond = std::max(0.0, rest - kRounding * size) * pose.scale;
   return best;
 }
 
@@ -205,6 +219,14 @@ bool can_ask(const TreeView& tree, const Pose& pose, const std::array<double, 3>
 SurfacePoint nearest_point_to_segment(const TreeView& tree, const Pose& pose, const std::array<double, 3>& p,
                                       const std::array<double, 3>& q, double limit) noexcept {
   return search_outward(tree, pose, p, q, limit, false);
+}
+
+detail::NearestToSegment detail::nearest_to_segment(const TreeView& tree, const Pose& pose,
+                                                    const std::array<double, 3>& p, const std::array<double, 3>& q,
+                                                    double limit, std::uint32_t guess) noexcept {
+  NearestToSegment result;
+  result.point = search_outward(tree, pose, p, q, limit, false, guess, &result.beyond);
+  return result;
 }
 
 SurfacePoint nearest_point(const TreeView& tree, const Pose& pose, const std::array<double, 3>& center,

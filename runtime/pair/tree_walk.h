@@ -249,10 +249,11 @@ inline FloatShape shape_of(const TreeView& tree, const Segment& s) noexcept {
 
 // Calls visit(triangle block, lane, whether it may meet the segment) for the triangles that may be within limit() of
 // the segment, nearest ball slabs of a block and nearest triangles of a leaf first, until it returns false;
-// `direction()` is a unit vector that may tell triangles apart.
+// `direction()` is a unit vector that may tell triangles apart. Returns how far from the segment all others are, at
+// least, if it has not returned false.
 template <typename Limit, typename Direction, typename Visit>
-void walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit, Direction&& direction,
-                  Visit&& visit) noexcept {
+float walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit, Direction&& direction,
+                   Visit&& visit) noexcept {
   struct Entry {
     float gap;
     std::uint32_t child;
@@ -261,10 +262,15 @@ void walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit, 
   std::size_t size = 0;
   BallSlabGaps gaps;
   TriangleGaps lower;
+  float beyond = std::numeric_limits<float>::infinity();
+  const auto leave_out = [&](float gap) { beyond = std::min(beyond, gap); };
   stack[size++] = {0, tree.ball_slabs[0].child[0]};
   while (size > 0) {
     const Entry entry = stack[--size];
-    if (double{entry.gap} > limit()) continue;
+    if (double{entry.gap} > limit()) {
+      leave_out(entry.gap);
+      continue;
+    }
     if (entry.child & kLeafBit) {
       const TriangleBlock& block = tree.triangle_blocks[entry.child & ~kLeafBit];
       auto& row = lower.lower[0];
@@ -275,7 +281,12 @@ void walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit, 
       }
       std::uint32_t left = 0;
       for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
-        left |= std::uint32_t{block.triangle[lane] != kNoTriangle && double{row[lane]} <= limit()} << lane;
+        if (block.triangle[lane] == kNoTriangle) break;
+        if (double{row[lane]} > limit()) {
+          leave_out(row[lane]);
+        } else {
+          left |= 1u << lane;
+        }
       }
       while (left != 0) {
         auto nearest = static_cast<std::uint32_t>(std::countr_zero(left));
@@ -284,8 +295,11 @@ void walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit, 
           if (row[lane] < row[nearest]) nearest = lane;
         }
         left &= ~(1u << nearest);
-        if (double{row[nearest]} > limit()) break;
-        if (!visit(block, nearest, row[nearest] <= 0)) return;
+        if (double{row[nearest]} > limit()) {
+          leave_out(row[nearest]);
+          break;
+        }
+        if (!visit(block, nearest, row[nearest] <= 0)) return 0;
       }
       continue;
     }
@@ -294,12 +308,16 @@ void walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit, 
     const std::size_t begin = size;
     for (std::uint32_t left = gaps.used; left != 0; left &= left - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-      if (double{gaps.gap[lane]} > limit()) continue;
+      if (double{gaps.gap[lane]} > limit()) {
+        leave_out(gaps.gap[lane]);
+        continue;
+      }
       std::size_t place = size++;
       for (; place > begin && stack[place - 1].gap < gaps.gap[lane]; --place) stack[place] = stack[place - 1];
       stack[place] = {gaps.gap[lane], block.child[lane]};
     }
   }
+  return beyond;
 }
 
 }  // namespace orchard::runtime::detail

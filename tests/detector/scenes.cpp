@@ -344,6 +344,40 @@ Scene clusters(std::size_t bodies, int steps, std::uint64_t seed) {
   return scene;
 }
 
+// Rings linked in each other, one across the next, that sway slowly: close all the time, and seldom touching.
+Scene chain(std::size_t bodies, int steps, std::uint64_t seed) {
+  Scene scene;
+  scene.name = "chain", scene.steps = steps;
+  Draw draw(seed);
+  scene.shapes.push_back(tree_shape(torus(64, 16, 0.75, 0.12)));
+  add_bodies(scene, bodies);
+  struct Sway {
+    Vec3 axis, way;
+    double rate, phase;
+  };
+  std::vector<Sway> sways;
+  for (std::size_t i = 0; i < bodies; ++i) {
+    sways.push_back({draw.direction(), draw.direction(), draw.uniform(8, 24), draw.uniform(0, 6)});
+  }
+  const double c = std::sqrt(0.5);
+  for (int step = 0; step < steps; ++step) {
+    auto& poses = scene.poses.emplace_back();
+    for (std::size_t i = 0; i < bodies; ++i) {
+      const Sway& sway = sways[i];
+      const double at = std::sin(sway.rate * step * scene.dt + sway.phase), half = 0.03 * at, s = std::sin(half);
+      const Vec3 place = Vec3{1.2 * static_cast<double>(i), 0, 0} + 0.03 * at * sway.way;
+      const Pose across = i % 2 == 0 ? Pose{} : *pose_from_quaternion({c, c, 0, 0}, {});
+      const Pose turn =
+          *pose_from_quaternion({std::cos(half), s * sway.axis[0], s * sway.axis[1], s * sway.axis[2]}, {});
+      Pose pose = compose(turn, across);
+      pose = made_rigid(pose).value_or(pose);
+      pose.translation = place;
+      poses.push_back(pose);
+    }
+  }
+  return scene;
+}
+
 std::vector<Scene> every_scene(std::size_t bodies, int steps, std::uint64_t seed) {
   std::vector<Scene> scenes;
   scenes.push_back(flight(bodies, steps, seed));

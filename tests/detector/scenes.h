@@ -56,6 +56,8 @@ Scene robot_arm(std::size_t obstacles, int steps, std::uint64_t seed);
 Scene bouncing_box(std::size_t bodies, int steps, std::uint64_t seed);
 Scene conveyor(std::size_t bodies, int steps, std::uint64_t seed);
 Scene clusters(std::size_t bodies, int steps, std::uint64_t seed);
+// Of rings of 2,048 triangles each, and so none of every_scene(): brute force takes too long.
+Scene chain(std::size_t bodies, int steps, std::uint64_t seed);
 std::vector<Scene> every_scene(std::size_t bodies, int steps, std::uint64_t seed);
 
 }  // namespace orchard::runtime::test

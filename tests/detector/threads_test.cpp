@@ -33,6 +33,23 @@ TEST(Threads, GiveTheSameFramesWhateverTheirNumber) {
   }
 }
 
+// So many that the broad phase's jobs run at once, too: at the step at which all promises expire.
+TEST(Threads, ShareWhatTheBroadPhaseDoes) {
+  const test::Scene scene = test::falling_pile(4200, 11, 5 + orchard::test::first_seed());
+  std::vector<double> serial;
+  for (const std::size_t threads : {1u, 2u}) {
+    test::ThreadPool pool(threads);
+    DetectorOptions options;
+    if (threads > 1) options.executor = pool.executor();
+    test::SceneRun run(scene, options);
+    std::vector<double> all;
+    for (int step = 0; step < scene.steps; ++step) test::append(all, run.step(step));
+    if (threads == 1) serial = all;
+    ASSERT_EQ(all.size(), serial.size());
+    ASSERT_EQ(std::memcmp(all.data(), serial.data(), all.size() * sizeof(double)), 0);
+  }
+}
+
 // Where the clock ends a step no two runs are the same, but the pairs that are certain are all the same.
 TEST(Threads, AreRightWhereverTheClockEndsAStep) {
   const test::Scene scene = test::falling_pile(40, 12, 3);

@@ -85,7 +85,12 @@ struct DetectorOptions {
   std::uint32_t steps_to_end = 1;
   // Pairs of trees that may be gone on with after a first piece at once; what exceeds it is reported as possible.
   std::size_t max_unfinished = 4096;
-  Executor executor{};  // of narrow-phase work; the same answers with any
+  // Pairs of large trees that stay close, and are expensive to search each time, get a front each (PairFront, 43 KB):
+  // so many at most, made as such pairs come near each other. 0: none.
+  std::size_t max_fronts = 64;
+  // Pairs, poses, events, and where many bodies are in pairs the broad phase's windows; the same answers with any.
+  // Sources and filters are called in the thread that calls step(), all the same.
+  Executor executor{};
   // Called from within step(), whenever the broad phase is given a body's motion. It throws nothing.
   PromiseListener promised{};
 };

@@ -55,6 +55,7 @@ typedef struct orchard_detector_options {
   orchard_run_jobs run; /* null: serial */
   void* run_context;
   size_t concurrency;
+  size_t max_fronts; /* 43 KB each, for pairs of large trees that stay close */
 } orchard_detector_options;
 
 typedef enum orchard_pair_change {

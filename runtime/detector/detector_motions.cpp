@@ -1,0 +1,78 @@
+#include "detector_state.h"
+
+// Where bodies are, and what the broad phase may rely on.
+namespace orchard::runtime {
+
+using detail::Body;
+
+// For the broad phase. Whoever watches has asked for everybody by now.
+void Detector::State::motions(double time, std::span<const BodyIndex> asked, std::span<Motion> answers) {
+  if (!all_asked) bodies.ask(std::llround((time - clock.start) / clock.time_step), time, asked, options.executor);
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    answers[i] = bodies.motion_of(asked[i], clock.time_step);
+    if (!options.watch) continue;
+    Body& body = bodies[asked[i]];
+    if (body.suggest && !body.frozen && answers[i].radius >= 0) {
+      answers[i] = monitor.suggest(asked[i], time, answers[i].radius);
+    }
+    body.told_radius = answers[i].radius;
+    monitor.promised(asked[i], time, answers[i]);
+  }
+  if (!options.promised) return;
+  for (std::size_t i = 0; i < asked.size(); ++i) options.promised(time, asked[i], answers[i]);
+}
+
+// So that the broad phase's jobs may run at once. Where most bodies were in pairs at the last step, nearly everybody is
+// asked about this one anyway.
+void Detector::State::ask_all(Step step) {
+  constexpr std::size_t kMinBodies = 1024;
+  all_asked = false;
+  const bool many = involved.size() >= kMinBodies && 2 * involved.size() >= bodies.slots();
+  if (!many || options.executor.run == nullptr || options.watch || options.promised) return;
+  everyone.clear();
+  for (BodyIndex i = 0; i < bodies.slots(); ++i) {
+    if (bodies[i].id != kNoBody) everyone.push_back(i);
+  }
+  bodies.ask(step, clock.time(step), everyone, options.executor);
+  all_asked = true;
+}
+
+// 4.4: before the broad phase relies on anything at this step, everybody's state is compared with what it relies on.
+void Detector::State::watch(Step step) {
+  const double time = clock.time(step);
+  everyone.clear();
+  for (BodyIndex i = 0; i < bodies.slots(); ++i) {
+    if (bodies[i].id != kNoBody && !bodies[i].is_static && !bodies[i].frozen) everyone.push_back(i);
+  }
+  bodies.ask(step, time, everyone, options.executor);
+  for (const BodyIndex i : everyone) {
+    Body& body = bodies[i];
+    const Motion motion = bodies.motion_of(i, clock.time_step);
+    if (!is_valid(motion)) continue;  // refused soon
+    const bool given = !body.suggest || dot(motion.velocity, motion.velocity) > 0;
+    bool kept =
+        given ? monitor.observe(i, time, motion.position, motion.velocity) : monitor.observe(i, time, motion.position);
+    if (kept && !keeps_more(body, step, motion)) {
+      kept = false;
+      monitor.count_broken(i);
+    }
+    if (kept) continue;
+    broken.push_back(i);
+    update_again(body);
+  }
+}
+
+// Besides the monitor's promise: what half-spaces rely on, the size, and the speed of what is continuous.
+bool Detector::State::keeps_more(const Body& body, Step step, const Motion& motion) const noexcept {
+  if (!halves.promise_kept(body.id.index, clock.time(step), motion)) return false;
+  if (body.told_radius >= 0 && motion.radius > body.told_radius) return false;
+  if (!(body.continuous_speed > 0) || body.known_before != step - 1) return true;
+  const Vec3 way = motion.position - Vec3(bodies.before(body.id.index).translation);
+  return detail::length(way) <= body.continuous_speed * clock.time_step * (1 + 1e-9);
+}
+
+void Detector::State::note_refused(std::span<const BodyIndex> more) {
+  refused.insert(refused.end(), more.begin(), more.end());
+}
+
+}  // namespace orchard::runtime

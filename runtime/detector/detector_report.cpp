@@ -1,0 +1,200 @@
+#include <algorithm>
+
+#include "detector_state.h"
+
+// Which records have to be asked about, and from answers to events: by jobs, since most of it is waiting for memory.
+namespace orchard::runtime {
+
+using detail::Body;
+using detail::Record;
+
+namespace {
+
+constexpr std::size_t kPerJob = 512;  // records
+
+}  // namespace
+
+void Detector::State::describe(const Record& record, Step step, PairChange change, PairEvent& event) const noexcept {
+  event = PairEvent{};
+  event.change = change;
+  event.a = record.a, event.b = record.b;
+  event.part_a = record.part_a, event.part_b = record.part_b;
+  event.time = clock.time(step);
+  event.verdict = record.verdict;
+  if (!record.impact) return;
+  event.impact_from = clock.time(step) + (record.impact_from - 1) * clock.time_step;
+  event.impact_to = clock.time(step) + (record.impact_to - 1) * clock.time_step;
+}
+
+// Neither has moved since the last certain answer.
+bool Detector::State::reusable(const Record& record) const noexcept {
+  const Body &a = places.body(record.pair.a), &b = places.body(record.pair.b);
+  return record.answered >= 0 && std::max(a.moved, b.moved) <= record.answered && !record.impact;
+}
+
+// Whether it has to be asked about. Changes nothing else; a touch of what has been teleported is over.
+bool Detector::State::opens(Record& record, Step step, bool& over) noexcept {
+  const Body &a = places.body(record.pair.a), &b = places.body(record.pair.b);
+  record.importance = std::max(a.importance, b.importance);
+  if (!record.allowed) return false;
+  const bool continuous = a.continuous_speed > 0 || b.continuous_speed > 0;
+  const std::uint32_t jumps = a.jumps + b.jumps;
+  const auto known_before = [&](const Body& body) {
+    return body.is_static || (body.frozen && body.asked < step) || body.known_before == step - 1;
+  };
+  record.swept = continuous && record.jumps == jumps && known_before(a) && known_before(b);
+  // As spheres reach as far as a step leads, who was not asked for at the step before had nothing near then: unless
+  // the broad phase could not tell, or its parts go farther now.
+  const bool sphere_fell_short = interrupted || a.stretched == step - 1 || b.stretched == step - 1;
+  record.unseen = continuous && record.jumps == jumps && !record.swept && sphere_fell_short;
+  over = record.jumps != jumps && record.touching;
+  if (over) record.answered = -1;
+  record.jumps = jumps;
+  if (record.deformed != a.deformed + b.deformed) {
+    record.deformed = a.deformed + b.deformed;
+    record.trees.forget();
+  }
+  return !reusable(record);
+}
+
+void Detector::State::open_records(Step step) {
+  open.clear();
+  const auto active = records.active();
+  detail::grow(marks, active.size());
+  enum : std::uint8_t { kOpens = 1, kOver = 2 };
+  // The application's own filter belongs to this thread.
+  for (const std::uint32_t at : active) {
+    if (filter) allowed(records[records(at).record]);
+  }
+  auto look_at_some = [&](std::size_t job) {
+    const std::size_t end = std::min(active.size(), (job + 1) * kPerJob);
+    for (std::size_t i = job * kPerJob; i < end; ++i) {
+      Record& record = records[records(active[i]).record];
+      allowed(record);
+      bool over = false;
+      const bool asked = opens(record, step, over);
+      marks[i] = static_cast<std::uint8_t>((asked ? kOpens : 0) | (over ? kOver : 0));
+    }
+  };
+  run_jobs(options.executor, (active.size() + kPerJob - 1) / kPerJob, look_at_some);
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    const std::uint32_t index = records(active[i]).record;
+    if ((marks[i] & kOver) != 0) {
+      Record& record = records[index];
+      record.verdict = Verdict{};
+      record.verdict.separation_bound = std::numeric_limits<double>::infinity();
+      record.impact = false;
+      describe(record, step, PairChange::end, ended.emplace_back());
+      record.touching = false;
+    }
+    if ((marks[i] & kOpens) != 0) open.push_back(index);
+  }
+}
+
+// After a certain "no". What is swept is asked at each step.
+void Detector::State::keep_clearance(detail::RecordTable::Known& known, const Record& record) const noexcept {
+  const Body &a = places.body(record.pair.a), &b = places.body(record.pair.b);
+  const bool lasts = record.verdict.answer == Answer::no && !record.touching && !(a.continuous_speed > 0) &&
+                     !(b.continuous_speed > 0) && a.rigid && b.rigid && std::isfinite(record.verdict.lower_bound);
+  if (!lasts) return;
+  known.clearance = clearance_now(known.pair);
+  known.clearance.distance = std::max(0.0, record.verdict.lower_bound - known.clearance.distance);
+}
+
+// What the answer makes of the pair, and which event that is.
+Detector::State::Outcome Detector::State::begin_or_end(Record& record) const noexcept {
+  const Answer answer = record.verdict.answer;
+  if (!record.allowed) {
+    if (!record.touching) return Outcome::nothing;
+    record.touching = record.impact = false;
+    record.verdict = Verdict{};
+    record.answered = -1;
+    return Outcome::end;
+  }
+  record.waited = answer == Answer::maybe ? record.waited + 1 : 0;
+  if (answer == Answer::yes) {
+    record.nos = 0;
+    const bool before = record.touching;
+    record.touching = true;
+    return before ? Outcome::stay : Outcome::begin;
+  }
+  if (!record.touching) return answer == Answer::maybe ? Outcome::possible : Outcome::nothing;
+  record.nos = answer == Answer::no ? record.nos + 1 : 0;
+  if (record.nos < options.steps_to_end) return Outcome::stay;
+  record.touching = false, record.nos = 0;
+  return Outcome::end;
+}
+
+void Detector::State::tally(std::size_t job, Tally& tally) noexcept {
+  const auto active = records.active();
+  const std::size_t end = std::min(active.size(), (job + 1) * kPerJob);
+  tally = {};
+  for (std::size_t i = job * kPerJob; i < end; ++i) {
+    auto& known = records(active[i]);
+    Record& record = records[known.record];
+    // Of what is not allowed it is certain that nothing is asked.
+    const bool maybe = record.allowed && record.verdict.answer == Answer::maybe;
+    tally.certain += !maybe;
+    if (maybe) tally.worst_bound = std::max(tally.worst_bound, record.verdict.separation_bound);
+    const Outcome outcome = begin_or_end(record);
+    marks[i] = static_cast<std::uint8_t>(outcome);
+    tally.events += outcome != Outcome::nothing;
+    if (record.allowed) keep_clearance(known, record);
+  }
+}
+
+// The events of a job's records, and of those that have ended among them, which come first.
+void Detector::State::write_events(std::size_t job, Step step, std::size_t ended_to) noexcept {
+  const auto active = records.active();
+  const std::size_t end = std::min(active.size(), (job + 1) * kPerJob);
+  std::size_t next = tallies[job].ended_from, to = tallies[job].events_from;
+  for (std::size_t i = job * kPerJob; i < end; ++i) {
+    const auto& known = records(active[i]);
+    for (; next < ended_to && !(known.pair < BodyPair{ended[next].a.index, ended[next].b.index}); ++next) {
+      events[to++] = ended[next];
+    }
+    const auto outcome = static_cast<Outcome>(marks[i]);
+    if (outcome == Outcome::nothing) continue;
+    describe(records[known.record], step, static_cast<PairChange>(outcome), events[to++]);
+  }
+  for (; next < ended_to; ++next) events[to++] = ended[next];
+}
+
+// In ascending order of pairs; what has ended of a pair comes before what has begun.
+void Detector::State::report(Step step, Frame& frame) {
+  const auto pair_of = [](const PairEvent& event) { return BodyPair{event.a.index, event.b.index}; };
+  const auto by_pair = [&](const PairEvent& p, const PairEvent& q) { return pair_of(p) < pair_of(q); };
+  // Teleports come after all others.
+  if (!std::is_sorted(ended.begin(), ended.end(), by_pair)) std::sort(ended.begin(), ended.end(), by_pair);
+  const auto active = records.active();
+  detail::grow(marks, active.size());
+  const std::size_t jobs = std::max<std::size_t>(1, (active.size() + kPerJob - 1) / kPerJob);
+  detail::grow(tallies, jobs);
+  auto tally_some = [&](std::size_t job) { tally(job, tallies[job]); };
+  run_jobs(options.executor, jobs, tally_some);
+  std::size_t written = event_count;
+  for (std::size_t job = 0; job < jobs; ++job) {
+    Tally& of = tallies[job];
+    frame.certain += of.certain;
+    frame.worst_bound = std::max(frame.worst_bound, of.worst_bound);
+    of.events_from = written;
+    if (job > 0) {
+      const BodyPair first = records(active[job * kPerJob]).pair;
+      const auto from = std::partition_point(ended.begin(), ended.end(),
+                                             [&](const PairEvent& event) { return pair_of(event) < first; });
+      of.ended_from = static_cast<std::size_t>(from - ended.begin());
+      of.events_from += of.ended_from - tallies[job - 1].ended_from;
+    }
+    written = of.events_from + of.events;
+  }
+  written += ended.size() - tallies[jobs - 1].ended_from;
+  detail::grow(events, written);
+  auto write_some = [&](std::size_t job) {
+    write_events(job, step, job + 1 < jobs ? tallies[job + 1].ended_from : ended.size());
+  };
+  run_jobs(options.executor, jobs, write_some);
+  event_count = written;
+  ended.clear();
+}
+
+}  // namespace orchard::runtime
