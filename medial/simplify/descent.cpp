@@ -17,6 +17,7 @@ namespace {
 // samples, which see more, have what is left.
 constexpr Index kBySlabs = 3, kMinBySlabs = 1000;
 constexpr double kFree = 1e-5;       // diagonals: contractions that move a ball no farther from its planes cost nothing
+constexpr double kGuarded = 5e-4;    // diagonals: quadrics take no sample farther off while they can do without
 constexpr double kShrink = 0.6;      // vertices left by one pass of contractions
 constexpr double kMoved = 0.08;      // share of the vertices that the first round moves
 constexpr double kNotable = 0.6;     // of the largest distance: places that are as far off become samples
@@ -65,10 +66,11 @@ Descent::Descent(const Surface& surface, const MedialMesh& mesh, const SimplifyO
 Stage Descent::start() const { return {whole_, fit_samples(surface_, options_.samples, options_.seed), {}}; }
 
 void Descent::go_down(Stage& stage, Index count) const {
-  contract_by_slabs(stage.mesh, std::max({count, kBySlabs * std::min(count, stage.mesh.living()), kMinBySlabs}), count,
-                    kFree * diagonal_);
-  stage.feet.feet.clear();
+  stage.feet = contract_by_slabs(surface_, stage.mesh, stage.samples,
+                                 std::max({count, kBySlabs * std::min(count, stage.mesh.living()), kMinBySlabs}), count,
+                                 kFree * diagonal_, kGuarded * diagonal_);
   refine(stage, kBetween);
+  for (int round = 0; round < 2 && stage.mesh.living() > count; ++round) put_back(stage);
   while (stage.mesh.living() > count) {
     const Index before = stage.mesh.living();
     contract(stage, std::max(count, static_cast<Index>(kShrink * before)));
@@ -78,6 +80,13 @@ void Descent::go_down(Stage& stage, Index count) const {
     }
     refine(stage, kBetween);
   }
+}
+
+// Vertices where slabs, which see neither slivers nor the ends of narrow borders, lost the most.
+void Descent::put_back(Stage& stage) const {
+  const Index max = std::max(Index{1}, static_cast<Index>(kMoved * stage.mesh.living()));
+  insert_at_worst(surface_, stage.mesh, stage.samples, stage.feet, max);
+  refine(stage, kBetween);
 }
 
 void Descent::contract(Stage& stage, Index count) const {

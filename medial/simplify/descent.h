@@ -27,6 +27,7 @@ class Descent {
   SimplifiedMedialMesh measured(const Stage& stage) const;
 
  private:
+  void put_back(Stage& stage) const;
   void contract(Stage& stage, Index count) const;
   // Looks at other places of the surface, new ones in each round, and adds those that are off the most to the samples.
   void look_closer(Stage& stage, int round) const;

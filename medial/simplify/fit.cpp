@@ -17,6 +17,12 @@ constexpr double kFirstDamping = 1e-3, kMinDamping = 1e-6, kMaxDamping = 1e3;
 constexpr std::size_t kInTurn = 64;  // samples that one task takes, one after the other
 constexpr double kFloor = 1e-3;      // share of the weight that small distances keep at high powers
 
+LookOptions look_options(const Surface& surface, std::span<const FitSample> samples, const FitOptions& options) {
+  LookOptions look(surface, samples[0].weight);
+  look.cells = options.middles;
+  return look;
+}
+
 class Fitter {
  public:
   Fitter(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples, Assignment& feet,
@@ -27,8 +33,7 @@ class Fitter {
         feet_(feet),
         options_(options),
         walker_(mesh),
-        places_(options.middles ? places_to_look(mesh, LookOptions(surface, samples[0].weight))
-                                : std::vector<Protrusion>()),
+        places_(places_to_look(mesh, look_options(surface, samples, options))),
         inside_(places_.size()),
         equations_(mesh) {}
 

@@ -45,10 +45,12 @@ std::vector<Protrusion> places_to_look(const ContractibleMesh& mesh, const LookO
   for (Index v = 0; v < mesh.size(); ++v) {
     if (!mesh.alive(v)) continue;
     places.add_vertex(v);
+    if (!options.cells) continue;
     for (const Index other : mesh.neighbors(v)) {
       if (v < other) places.add_edge(v, other);
     }
   }
+  if (!options.cells) return std::move(places.result);
   for (const auto& cell : mesh.maximal_cells()) {
     if (cell[2] != cell[0]) places.add_triangle(cell);
   }

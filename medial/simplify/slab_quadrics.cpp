@@ -7,6 +7,10 @@
 #include <functional>
 #include <queue>
 #include <tuple>
+#include <utility>
+#include <vector>
+
+#include "feet_by_vertex.h"
 
 namespace orchard::detail {
 namespace {
@@ -71,7 +75,13 @@ struct Cone {
 
 class Contraction {
  public:
-  explicit Contraction(ContractibleMesh& mesh) : mesh_(mesh), origin_(mesh.size() > 0 ? mesh.ball(0) : Ball4::Zero()) {
+  Contraction(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples, Assignment& feet,
+              double limit)
+      : surface_(surface),
+        mesh_(mesh),
+        origin_(mesh.size() > 0 ? mesh.ball(0) : Ball4::Zero()),
+        feet_(mesh, samples, feet),
+        limit_(limit) {
     origin_[3] = 0;
   }
 
@@ -79,12 +89,15 @@ class Contraction {
     quadrics_.resize(mesh_.size());
     stamp_.assign(mesh_.size(), 0);
     for (const auto& cell : mesh_.maximal_cells()) add_cell(cell);
-    for (Index v = 0; v < mesh_.size(); ++v) {
-      for (const Index other : mesh_.neighbors(v)) {
-        if (v < other) offer(v, other);
+    offer_all();
+    while (mesh_.living() > free_target) {
+      if (queue_.empty()) {
+        if (mesh_.living() <= target || !waiting_) break;
+        waiting_ = false;
+        limit_ *= 2;
+        offer_all();
       }
-    }
-    while (mesh_.living() > free_target && !queue_.empty()) {
+      if (queue_.empty()) break;
       const auto [cost, a, b, stamp] = queue_.top();
       queue_.pop();
       if (!mesh_.alive(a) || !mesh_.alive(b) || stamp != stamp_[a] + stamp_[b]) continue;
@@ -196,6 +209,13 @@ class Contraction {
     return {found, cost + kSpread * length * length * length * length};
   }
 
+  void offer_all() {
+    for (Index v = 0; v < mesh_.size(); ++v) {
+      for (const Index other : mesh_.neighbors(v)) {
+        if (v < other) offer(v, other);
+      }
+    }
+  }
   void offer(Index a, Index b) {
     const auto [p, q] = std::minmax(a, b);
     queue_.emplace(best(p, q).second, p, q, stamp_[p] + stamp_[q]);
@@ -203,8 +223,14 @@ class Contraction {
 
   void contract(Index a, Index b) {
     const Ball4 ball = best(a, b).first + origin_;
+    const std::vector<Index> seen = feet_.at_either(a, b);
+    if (too_far(a, b, ball, seen)) {
+      waiting_ = true;
+      return;
+    }
     quadrics_[a] += quadrics_[b];
     mesh_.contract(a, b, ball);
+    feet_.contract(a, b, seen);
     stamp_[a] += stamp_[b] + 1;  // above what any edge at a was offered with
     for (const Index other : mesh_.neighbors(a)) offer(a, other);
     // What the link condition stood against may be free now.
@@ -215,8 +241,30 @@ class Contraction {
     }
   }
 
+  // Whether the ball would protrude beyond the limit, or one of these samples be beyond it, and farther off than it is.
+  bool too_far(Index a, Index b, const Ball4& ball, std::span<const Index> samples) {
+    if (ball[3] > limit_ && surface_.closest_within(ball.head<3>(), ball[3] - limit_).triangle != kNone) return true;
+    const Ball4 of_a = mesh_.ball(a), of_b = mesh_.ball(b);
+    mesh_.set_ball(a, ball);
+    mesh_.set_ball(b, ball);
+    const bool result = std::any_of(samples.begin(), samples.end(), [&](Index i) {
+      const FitSample& sample = feet_.sample(i);
+      const Foot& foot = feet_.foot(i);
+      double value = foot_on(mesh_, foot.corners, sample.position).value + sample.depth;
+      if (value > limit_) value = walk_to_foot(mesh_, sample.position, foot).value + sample.depth;
+      return std::abs(value) > std::max(limit_, std::abs(foot.value));
+    });
+    mesh_.set_ball(a, of_a);
+    mesh_.set_ball(b, of_b);
+    return result;
+  }
+
+  const Surface& surface_;
   ContractibleMesh& mesh_;
   Ball4 origin_;  // quadrics lose digits far from 0
+  FeetByVertex feet_;
+  double limit_;
+  bool waiting_ = false;  // an edge, for a higher limit
   std::vector<Quadric> quadrics_;
   std::vector<Index> stamp_;  // grows with each change of a vertex
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
@@ -224,8 +272,12 @@ class Contraction {
 
 }  // namespace
 
-void contract_by_slabs(ContractibleMesh& mesh, Index target, Index free_target, double free_distance) {
-  Contraction(mesh).run(target, free_target, free_distance);
+Assignment contract_by_slabs(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples,
+                             Index target, Index free_target, double free_distance, double min_limit) {
+  Assignment feet;
+  feet.find(mesh, samples);
+  Contraction(surface, mesh, samples, feet, min_limit).run(target, free_target, free_distance);
+  return feet;
 }
 
 }  // namespace orchard::detail
