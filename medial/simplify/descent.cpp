@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "../quality/boundary_reach.h"
+#include "climb.h"
 #include "contract_by_samples.h"
 #include "improve.h"
 #include "slab_quadrics.h"
@@ -70,7 +71,6 @@ void Descent::go_down(Stage& stage, Index count) const {
                                  std::max({count, kBySlabs * std::min(count, stage.mesh.living()), kMinBySlabs}), count,
                                  kFree * diagonal_, kGuarded * diagonal_);
   refine(stage, kBetween);
-  for (int round = 0; round < 2 && stage.mesh.living() > count; ++round) put_back(stage);
   while (stage.mesh.living() > count) {
     const Index before = stage.mesh.living();
     contract(stage, std::max(count, static_cast<Index>(kShrink * before)));
@@ -80,13 +80,6 @@ void Descent::go_down(Stage& stage, Index count) const {
     }
     refine(stage, kBetween);
   }
-}
-
-// Vertices where slabs, which see neither slivers nor the ends of narrow borders, lost the most.
-void Descent::put_back(Stage& stage) const {
-  const Index max = std::max(Index{1}, static_cast<Index>(kMoved * stage.mesh.living()));
-  insert_at_worst(surface_, stage.mesh, stage.samples, stage.feet, max);
-  refine(stage, kBetween);
 }
 
 void Descent::contract(Stage& stage, Index count) const {
@@ -133,12 +126,12 @@ void Descent::look_closer(Stage& stage, int round) const {
   Assignment feet;
   const double enough = kNotable * stage.feet.worst();
   feet.find_off(stage.mesh, others, enough);
+  std::vector<FitSample> off;
   for (std::size_t i = 0; i < others.size(); ++i) {
-    if (std::abs(feet.feet[i].value) < enough) continue;
-    stage.samples.push_back(others[i]);
-    stage.feet.feet.push_back(feet.feet[i]);
-    stage.feet.max = std::max(stage.feet.max, std::abs(feet.feet[i].value));
+    if (std::abs(feet.feet[i].value) >= enough) off.push_back(others[i]);
   }
+  climb(surface_, stage.mesh, std::sqrt(surface_.report().area / options_.samples), off);
+  add(stage, off);
   if (enough > kInvisible * diagonal_) add_dents(stage, enough);
 }
 
@@ -152,6 +145,10 @@ void Descent::add_dents(Stage& stage, double min_depth) const {
   std::vector<FitSample> samples;
   samples.reserve(dents.size());
   for (const Dent& dent : dents) samples.push_back({dent.place, dent.outward, 1.0 / options_.samples, dent.depth});
+  add(stage, samples);
+}
+
+void Descent::add(Stage& stage, std::span<const FitSample> samples) const {
   Assignment feet;
   feet.find(stage.mesh, samples);
   stage.samples.insert(stage.samples.end(), samples.begin(), samples.end());

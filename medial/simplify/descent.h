@@ -27,11 +27,11 @@ class Descent {
   SimplifiedMedialMesh measured(const Stage& stage) const;
 
  private:
-  void put_back(Stage& stage) const;
   void contract(Stage& stage, Index count) const;
   // Looks at other places of the surface, new ones in each round, and adds those that are off the most to the samples.
   void look_closer(Stage& stage, int round) const;
   void add_dents(Stage& stage, double min_depth) const;
+  void add(Stage& stage, std::span<const FitSample> samples) const;
   void refine(Stage& stage, std::span<const FitOptions> passes) const;
 
   const Surface& surface_;

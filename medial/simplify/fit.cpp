@@ -38,11 +38,7 @@ class Fitter {
         equations_(mesh) {}
 
   void run() {
-    if (feet_.feet.size() == samples_.size()) {
-      feet_.walk(samples_, walker_);
-    } else {
-      feet_.find(mesh_, samples_);
-    }
+    feet_.find(mesh_, samples_);
     protrusions_ = protruding();
     scale_ = std::max(feet_.max, 1e-300);
     for (const Protrusion& protrusion : protrusions_) scale_ = std::max(scale_, protrusion.value);

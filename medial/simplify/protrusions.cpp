@@ -31,7 +31,7 @@ class Places {
  private:
   void add(const std::array<Index, 3>& corners, const std::array<double, 3>& weights) {
     const Protrusion place{corners, weights, 0, Vector::Zero()};
-    if (place.ball(mesh_)[3] <= options_.max_radius) result.push_back(place);
+    if (corners[0] == corners[1] || place.ball(mesh_)[3] <= options_.max_radius) result.push_back(place);
   }
 
   const ContractibleMesh& mesh_;

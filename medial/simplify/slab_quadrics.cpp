@@ -5,19 +5,24 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
+#include <optional>
 #include <queue>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "feet_by_vertex.h"
+#include "protrusions.h"
 
 namespace orchard::detail {
 namespace {
 
-constexpr double kPull = 1e-4;     // of the trace: towards the middle of the edge, where planes leave a way open
-constexpr double kSpread = 1e-6;   // weight of an edge's length, so that short ones go first among equals
-constexpr double kBorder = 1.0;    // weight of the square over a border edge
+constexpr double kPull = 1e-4;    // of the trace: towards the middle of the edge, where planes leave a way open
+constexpr double kSpread = 1e-6;  // weight of an edge's length, so that short ones go first among equals
+constexpr double kBorder = 1.0;   // weight of the square over a border edge
+constexpr double kAsWhole = 2.0;  // of how far the whole mesh is off: as well as nothing was contracted
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr double kFarthest = 2.0;  // edge lengths from its middle that a new ball may be
 
 // The weighted squared distances to planes: x A x - 2 b x + c.
@@ -76,33 +81,30 @@ struct Cone {
 class Contraction {
  public:
   Contraction(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples, Assignment& feet,
-              double limit)
+              double free_distance, double limit)
       : surface_(surface),
         mesh_(mesh),
         origin_(mesh.size() > 0 ? mesh.ball(0) : Ball4::Zero()),
         feet_(mesh, samples, feet),
-        limit_(limit) {
+        free_distance_(free_distance),
+        limit_(limit),
+        min_length_(kLookSpacing * surface.bounding_radius()) {
     origin_[3] = 0;
   }
 
-  void run(Index target, Index free_target, double free_distance) {
+  void run(Index target, Index free_target) {
     quadrics_.resize(mesh_.size());
     stamp_.assign(mesh_.size(), 0);
     for (const auto& cell : mesh_.maximal_cells()) add_cell(cell);
     offer_all();
     while (mesh_.living() > free_target) {
-      if (queue_.empty()) {
-        if (mesh_.living() <= target || !waiting_) break;
-        waiting_ = false;
-        limit_ *= 2;
-        offer_all();
-      }
+      if (queue_.empty() && !offer_again(target)) break;
       if (queue_.empty()) break;
       const auto [cost, a, b, stamp] = queue_.top();
       queue_.pop();
       if (!mesh_.alive(a) || !mesh_.alive(b) || stamp != stamp_[a] + stamp_[b]) continue;
       if (!mesh_.adjacent(a, b) || !mesh_.may_contract(a, b)) continue;
-      if (mesh_.living() <= target && distance_of(a, b) > free_distance) continue;
+      if (mesh_.living() <= target && distance_of(a, b) > free_distance_) continue;
       contract(a, b);
     }
   }
@@ -209,6 +211,14 @@ class Contraction {
     return {found, cost + kSpread * length * length * length * length};
   }
 
+  // What was too far, with a higher limit. False: no more.
+  bool offer_again(Index target) {
+    if (!waiting_ || mesh_.living() <= target) return false;
+    waiting_ = false;
+    limit_ *= 2;
+    offer_all();
+    return true;
+  }
   void offer_all() {
     for (Index v = 0; v < mesh_.size(); ++v) {
       for (const Index other : mesh_.neighbors(v)) {
@@ -222,12 +232,13 @@ class Contraction {
   }
 
   void contract(Index a, Index b) {
-    const Ball4 ball = best(a, b).first + origin_;
     const std::vector<Index> seen = feet_.at_either(a, b);
-    if (too_far(a, b, ball, seen)) {
+    const std::optional<Ball4> found = ball_within_limit(a, b, seen);
+    if (!found) {
       waiting_ = true;
       return;
     }
+    const Ball4 ball = *found;
     quadrics_[a] += quadrics_[b];
     mesh_.contract(a, b, ball);
     feet_.contract(a, b, seen);
@@ -241,9 +252,32 @@ class Contraction {
     }
   }
 
+  // The best ball if it is within the limit; else an end, where that is as good: along a straight border or seam both
+  // ends cost nothing, but from one of them the sheet folds over.
+  std::optional<Ball4> ball_within_limit(Index a, Index b, std::span<const Index> samples) {
+    const Ball4 ball = best(a, b).first + origin_;
+    if (!too_far(a, b, ball, samples)) return ball;
+    Quadric sum = quadrics_[a];
+    sum += quadrics_[b];
+    for (const Index end : {a, b}) {
+      const Ball4& other = mesh_.ball(end);
+      if (other == ball || sum.at(local(end)) > free_distance_ * free_distance_ * sum.weight()) continue;
+      if (!too_far(a, b, other, samples)) return other;
+    }
+    return std::nullopt;
+  }
+
   // Whether the ball would protrude beyond the limit, or one of these samples be beyond it, and farther off than it is.
   bool too_far(Index a, Index b, const Ball4& ball, std::span<const Index> samples) {
-    if (ball[3] > limit_ && surface_.closest_within(ball.head<3>(), ball[3] - limit_).triangle != kNone) return true;
+    if (limit_ == kNoLimit) return false;
+    if (protrudes(ball)) return true;
+    for (const Index v : {a, b}) {
+      for (const Index other : mesh_.neighbors(v)) {
+        if (other == a || other == b) continue;
+        const Ball4& end = mesh_.ball(other);
+        if ((end - ball).head<3>().norm() > min_length_ && protrudes(0.5 * (ball + end))) return true;
+      }
+    }
     const Ball4 of_a = mesh_.ball(a), of_b = mesh_.ball(b);
     mesh_.set_ball(a, ball);
     mesh_.set_ball(b, ball);
@@ -259,12 +293,18 @@ class Contraction {
     return result;
   }
 
+  bool protrudes(const Ball4& ball) const {
+    return ball[3] > limit_ && surface_.closest_within(ball.head<3>(), ball[3] - limit_).triangle != kNone;
+  }
+
   const Surface& surface_;
   ContractibleMesh& mesh_;
   Ball4 origin_;  // quadrics lose digits far from 0
   FeetByVertex feet_;
+  const double free_distance_;
   double limit_;
-  bool waiting_ = false;  // an edge, for a higher limit
+  const double min_length_;  // of edges in whose middle is looked
+  bool waiting_ = false;     // an edge, for a higher limit
   std::vector<Quadric> quadrics_;
   std::vector<Index> stamp_;  // grows with each change of a vertex
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
@@ -276,7 +316,19 @@ Assignment contract_by_slabs(const Surface& surface, ContractibleMesh& mesh, std
                              Index target, Index free_target, double free_distance, double min_limit) {
   Assignment feet;
   feet.find(mesh, samples);
-  Contraction(surface, mesh, samples, feet, min_limit).run(target, free_target, free_distance);
+  const double enough = kAsWhole * feet.max;
+  Contraction(surface, mesh, samples, feet, free_distance, min_limit).run(target, target);
+  if (mesh.living() <= free_target) return feet;
+  // Without a guard sheets may fold over on the way, and unfold when their corners alone are left; or they do not.
+  ContractibleMesh free_mesh = mesh;
+  Assignment free_feet = feet;
+  Contraction(surface, free_mesh, samples, free_feet, free_distance, kNoLimit).run(mesh.living(), free_target);
+  free_feet.find(free_mesh, samples);
+  if (free_feet.max <= enough) {
+    mesh = std::move(free_mesh);
+    return free_feet;
+  }
+  Contraction(surface, mesh, samples, feet, free_distance, min_limit).run(mesh.living(), free_target);
   return feet;
 }
 
