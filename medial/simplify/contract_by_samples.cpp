@@ -37,12 +37,6 @@ double fourth(double value) {
   return square * square;
 }
 
-LookOptions look_options(const Surface& surface, double share) {
-  LookOptions look(surface, share);
-  if (getenv("INF")) look.max_radius = std::numeric_limits<double>::infinity();
-  return look;
-}
-
 // What protrudes around edges.
 class ProtrusionCost {
  public:
@@ -96,7 +90,7 @@ class SampledContraction {
                      Assignment& feet)
       : mesh_(mesh),
         feet_(mesh, samples, feet),
-        protrusion_(surface, mesh, look_options(surface, samples[0].weight), kNegligible * feet.max),
+        protrusion_(surface, mesh, LookOptions(surface, samples[0].weight), kNegligible * feet.max),
         blocked_(mesh.size()) {
     stamp_.assign(mesh.size(), 0);
   }
@@ -205,7 +199,6 @@ class SampledContraction {
 
   // An edge that the link condition stands against, with what it costs at least.
   void offer_opened(Index a, Index b, double min_cost) {
-    if (getenv("NOOPEN")) return;
     const Index stamp = stamp_[a] + stamp_[b];
     Known& opened = opened_[key(a, b)];
     if (opened.stamp == stamp) return;

@@ -4,11 +4,13 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <optional>
 #include <queue>
 #include <tuple>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -103,7 +105,7 @@ class Contraction {
       const auto [cost, a, b, stamp] = queue_.top();
       queue_.pop();
       if (!mesh_.alive(a) || !mesh_.alive(b) || stamp != stamp_[a] + stamp_[b]) continue;
-      if (!mesh_.adjacent(a, b) || !mesh_.may_contract(a, b)) continue;
+      if (!mesh_.adjacent(a, b) || waiting_.contains(key(a, b)) || !mesh_.may_contract(a, b)) continue;
       if (mesh_.living() <= target && distance_of(a, b) > free_distance_) continue;
       contract(a, b);
     }
@@ -111,6 +113,8 @@ class Contraction {
 
  private:
   using Entry = std::tuple<double, Index, Index, Index>;
+
+  static std::uint64_t key(Index a, Index b) { return std::uint64_t{a} << 32 | b; }
 
   Ball4 local(Index vertex) const { return mesh_.ball(vertex) - origin_; }
 
@@ -213,8 +217,8 @@ class Contraction {
 
   // What was too far, with a higher limit. False: no more.
   bool offer_again(Index target) {
-    if (!waiting_ || mesh_.living() <= target) return false;
-    waiting_ = false;
+    if (waiting_.empty() || mesh_.living() <= target) return false;
+    waiting_.clear();
     limit_ *= 2;
     offer_all();
     return true;
@@ -235,7 +239,7 @@ class Contraction {
     const std::vector<Index> seen = feet_.at_either(a, b);
     const std::optional<Ball4> found = ball_within_limit(a, b, seen);
     if (!found) {
-      waiting_ = true;
+      waiting_.insert(key(a, b));
       return;
     }
     const Ball4 ball = *found;
@@ -303,8 +307,8 @@ class Contraction {
   FeetByVertex feet_;
   const double free_distance_;
   double limit_;
-  const double min_length_;  // of edges in whose middle is looked
-  bool waiting_ = false;     // an edge, for a higher limit
+  const double min_length_;                    // of edges in whose middle is looked
+  std::unordered_set<std::uint64_t> waiting_;  // edges, by their ends, for a higher limit
   std::vector<Quadric> quadrics_;
   std::vector<Index> stamp_;  // grows with each change of a vertex
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
