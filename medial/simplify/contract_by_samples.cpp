@@ -17,7 +17,7 @@
 
 #include "feet_by_vertex.h"
 #include "opened_link.h"
-#include "protrusions.h"
+#include "protrusion_cost.h"
 
 namespace orchard::detail {
 namespace {
@@ -30,58 +30,6 @@ constexpr double kToMiddle = 1e-3;   // of the trace: towards the middle of the 
 struct Candidate {
   double cost = 0;
   Ball4 ball = Ball4::Zero();
-};
-
-double fourth(double value) {
-  const double square = value * value;
-  return square * square;
-}
-
-// What protrudes around edges.
-class ProtrusionCost {
- public:
-  // What protrudes no farther than `negligible` counts as nothing.
-  ProtrusionCost(const Surface& surface, const ContractibleMesh& mesh, const LookOptions& look, double negligible)
-      : surface_(surface), mesh_(mesh), look_(look), negligible_(negligible), inside_(mesh.size()) {}
-
-  // The sum of the fourth powers, how much larger it gets by contracting an edge to this ball.
-  double added(Index a, Index b, const Ball4& ball) {
-    double before = 0, after = 0;
-    for (const Protrusion& place : places_around(mesh_, a, b, look_)) {
-      before += fourth(value(place, place.ball(mesh_)));
-      Ball4 moved = Ball4::Zero();
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Index corner = place.corners[k];
-        moved += place.weights[k] * (corner == a || corner == b ? ball : mesh_.ball(corner));
-      }
-      after += fourth(value(place, moved));
-    }
-    return after - before;
-  }
-
- private:
-  double value(const Protrusion& place, const Ball4& ball) {
-    Vector outward;
-    InsideBall& known = known_at(place, ball.head<3>());
-    const Ball4 less = ball4(ball.head<3>(), ball[3] - negligible_);
-    if (less[3] < 0 || known.holds(Sphere{less.head<3>(), less[3]})) return 0;
-    const double protrusion = protrusion_of(surface_, less, known, outward);
-    return protrusion > 0 ? protrusion + negligible_ : 0;
-  }
-  // Of a corner of the place's cell, one that holds it if there is any.
-  InsideBall& known_at(const Protrusion& place, const Point& center) {
-    for (const Index corner : place.corners) {
-      if (inside_[corner].holds(center)) return inside_[corner];
-    }
-    const auto heaviest = std::max_element(place.weights.begin(), place.weights.end()) - place.weights.begin();
-    return inside_[place.corners[static_cast<std::size_t>(heaviest)]];
-  }
-
-  const Surface& surface_;
-  const ContractibleMesh& mesh_;
-  const LookOptions look_;
-  const double negligible_;
-  std::vector<InsideBall> inside_;  // for each vertex
 };
 
 class SampledContraction {

@@ -31,7 +31,7 @@ struct Protrusion {
 // Where to look at balls; mesh units.
 struct LookOptions {
   double spacing = std::numeric_limits<double>::infinity();     // of balls inside edges, at most; three at most
-  double max_radius = std::numeric_limits<double>::infinity();  // of balls; larger ones are left out
+  double max_radius = std::numeric_limits<double>::infinity();  // of balls inside cells; larger ones are left out
   bool cells = true;  // inside edges and triangles, too, not at vertices alone
 
   // As much as samples of the surface need beside them, each of which stands for so much of its area: what protrudes of
