@@ -10,8 +10,8 @@
 namespace orchard::detail {
 namespace {
 
-constexpr int kHalvings = 4;         // of the step
-constexpr int kSteps = 4;            // at most of each length
+constexpr int kHalvings = 3;         // lengths of the step, each half of the one before
+constexpr int kSteps = 2;            // at most of each length
 constexpr double kOnePlace = 0.125;  // of the first step: places so near to each other are one
 
 class Climber {

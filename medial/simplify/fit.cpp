@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kFirstDamping = 1e-3, kMinDamping = 1e-6, kMaxDamping = 1e3;
 constexpr std::size_t kInTurn = 64;  // samples that one task takes, one after the other
+constexpr double kSlack = 0.2;       // of the largest distance: feet nearer by less are not searched for
 constexpr double kFloor = 1e-3;      // share of the weight that small distances keep at high powers
 
 LookOptions look_options(const Surface& surface, std::span<const FitSample> samples, const FitOptions& options) {
@@ -38,7 +39,9 @@ class Fitter {
         equations_(mesh) {}
 
   void run() {
-    feet_.find(mesh_, samples_);
+    // Contractions follow feet to places nearby; what came to protrude there from elsewhere is seen by a search alone.
+    if (feet_.feet.size() == samples_.size()) feet_.walk(samples_, walker_);
+    feet_.find(mesh_, samples_, kSlack * feet_.max);
     protrusions_ = protruding();
     scale_ = std::max(feet_.max, 1e-300);
     for (const Protrusion& protrusion : protrusions_) scale_ = std::max(scale_, protrusion.value);
@@ -154,13 +157,13 @@ class Fitter {
 
 }  // namespace
 
-void Assignment::find(const ContractibleMesh& mesh, std::span<const FitSample> samples) {
+void Assignment::find(const ContractibleMesh& mesh, std::span<const FitSample> samples, double slack) {
   const FootFinder finder(mesh);
   const bool guess = feet.size() == samples.size();
   feet.resize(samples.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, samples.size(), 256), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i)
-      feet[i] = finder.find(samples[i].position, guess ? &feet[i] : nullptr).below(samples[i].depth);
+      feet[i] = finder.find(samples[i].position, guess ? &feet[i] : nullptr, guess ? slack : 0).below(samples[i].depth);
   });
   find_max();
 }
