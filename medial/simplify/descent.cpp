@@ -17,12 +17,13 @@ namespace {
 // How far quadrics lead: to so many times the vertices wanted, but no fewer than so many. They are fast, and the
 // samples, which see more, have what is left.
 constexpr Index kBySlabs = 3, kMinBySlabs = 1000;
-constexpr double kFree = 1e-5;       // diagonals: contractions that move a ball no farther from its planes cost nothing
-constexpr double kGuarded = 5e-4;    // diagonals: quadrics take no sample farther off while they can do without
-constexpr double kShrink = 0.6;      // vertices left by one pass of contractions
-constexpr double kMoved = 0.08;      // share of the vertices that the first round moves
-constexpr double kNotable = 0.6;     // of the largest distance: places that are as far off become samples
-constexpr double kInvisible = 2e-4;  // diagonals: dents so deep are not looked for
+constexpr double kFree = 1e-5;     // diagonals: contractions that move a ball no farther from its planes cost nothing
+constexpr double kGuarded = 5e-4;  // diagonals: quadrics take no sample farther off while they can do without
+constexpr double kShrink = 0.6;    // vertices left by one pass of contractions
+constexpr double kMoved = 0.08;    // share of the vertices that the first round moves
+constexpr double kWorthwhile = 0.02;  // of the largest distance: rounds that gain less, two in turn, are the last
+constexpr double kNotable = 0.6;      // of the largest distance: places that are as far off become samples
+constexpr double kInvisible = 2e-4;   // diagonals: dents so deep are not looked for
 constexpr std::size_t kSamplesPerDent = 50;  // of the surface, for each dent at most that becomes one
 constexpr FitOptions kBetween[] = {{.power = 4, .steps = 1, .middles = false}};
 constexpr FitOptions kAtEnd[] = {{.power = 2, .steps = 2}, {.power = 4, .steps = 4}, {.power = 8, .steps = 6}};
@@ -96,7 +97,7 @@ Stage Descent::finished(Stage stage) const {
   stage.feet.find(stage.mesh, stage.samples);
   look_closer(stage, 0);
   double share = kMoved;
-  bool improved = false;
+  bool failed = false;
   for (int round = 0; round < options_.rounds; ++round) {
     report_progress(progress_, "simplifying the axis: moving vertices", static_cast<double>(round) / options_.rounds);
     Stage next = stage;
@@ -108,14 +109,12 @@ Stage Descent::finished(Stage stage) const {
     refine(next, kAfterMoving);
     next.feet.find(next.mesh, next.samples);
     look_closer(next, round + 1);
-    if (next.feet.worst() < stage.feet.worst()) {
-      stage = std::move(next);
-      improved = true;
-    } else if (improved) {
-      break;  // what worked once and then does not hardly ever does later
-    } else {
-      share /= 2;
-    }
+    const double gain = 1 - next.feet.worst() / stage.feet.worst();
+    if (gain > 0) stage = std::move(next);
+    const bool enough = gain < kWorthwhile;
+    if (enough && failed) break;
+    failed = enough;
+    if (enough) share /= 2;  // fewer may find their places where many were in each other's way
   }
   return stage;
 }
