@@ -109,6 +109,10 @@ Stage Descent::finished(Stage stage) const {
     refine(next, kAfterMoving);
     next.feet.find(next.mesh, next.samples);
     look_closer(next, round + 1);
+    // Judged at the same places, and known from now on, whichever stays.
+    const std::vector<FitSample> found(next.samples.begin() + static_cast<std::ptrdiff_t>(stage.samples.size()),
+                                       next.samples.end());
+    add(stage, found);
     const double gain = 1 - next.feet.worst() / stage.feet.worst();
     if (gain > 0) stage = std::move(next);
     const bool enough = gain < kWorthwhile;
