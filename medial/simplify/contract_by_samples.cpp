@@ -1,3 +1,4 @@
+// The search with its moves and what each costs: one object, hence a little more than 300 lines.
 #include "contract_by_samples.h"
 
 #include <tbb/blocked_range.h>
