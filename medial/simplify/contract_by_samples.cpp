@@ -1,3 +1,4 @@
+// The search with its moves and what each costs: one object, hence a little more than 300 lines.
 #include "contract_by_samples.h"
 
 #include <tbb/blocked_range.h>
@@ -15,12 +16,16 @@
 #include <utility>
 #include <vector>
 
-#include "protrusions.h"
+#include "feet_by_vertex.h"
+#include "opened_link.h"
+#include "protrusion_cost.h"
 
 namespace orchard::detail {
 namespace {
 
-constexpr double kToMiddle = 1e-3;  // of the trace: towards the middle of the edge
+constexpr double kNegligible = 0.1;  // of the largest distance: what protrudes no more costs next to nothing
+constexpr double kExpected = 0.5;    // of what an edge cost before: it is looked at again when its turn comes with that
+constexpr double kToMiddle = 1e-3;   // of the trace: towards the middle of the edge
 
 // An edge, and the ball that its ends may become.
 struct Candidate {
@@ -28,88 +33,15 @@ struct Candidate {
   Ball4 ball = Ball4::Zero();
 };
 
-double fourth(double value) {
-  const double square = value * value;
-  return square * square;
-}
-
-// What protrudes around edges.
-class ProtrusionCost {
- public:
-  ProtrusionCost(const Surface& surface, const ContractibleMesh& mesh, const LookOptions& look)
-      : surface_(surface), mesh_(mesh), look_(look), inside_(mesh.size()) {}
-
-  // The sum of the fourth powers, how much larger it gets by contracting an edge to this ball.
-  double added(Index a, Index b, const Ball4& ball) {
-    double before = 0, after = 0;
-    for (const Protrusion& place : places_around(mesh_, a, b, look_)) {
-      before += fourth(value(place, place.ball(mesh_)));
-      Ball4 moved = Ball4::Zero();
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Index corner = place.corners[k];
-        moved += place.weights[k] * (corner == a || corner == b ? ball : mesh_.ball(corner));
-      }
-      after += fourth(value(place, moved));
-    }
-    return after - before;
-  }
-
- private:
-  double value(const Protrusion& place, const Ball4& ball) {
-    Vector outward;
-    return protrusion_of(surface_, ball, known_at(place, ball.head<3>()), outward);
-  }
-  // Of a corner of the place's cell, one that holds it if there is any.
-  InsideBall& known_at(const Protrusion& place, const Point& center) {
-    for (const Index corner : place.corners) {
-      if (inside_[corner].holds(center)) return inside_[corner];
-    }
-    const auto heaviest = std::max_element(place.weights.begin(), place.weights.end()) - place.weights.begin();
-    return inside_[place.corners[static_cast<std::size_t>(heaviest)]];
-  }
-
-  const Surface& surface_;
-  const ContractibleMesh& mesh_;
-  const LookOptions look_;
-  std::vector<InsideBall> inside_;  // for each vertex
-};
-
-// The foot's cell after b became a.
-void follow(Foot& foot, Index a, Index b) {
-  std::size_t of_a = 3, of_b = 3;
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (foot.corners[k] == a && of_a == 3) of_a = k;
-    if (foot.corners[k] == b && of_b == 3) of_b = k;
-  }
-  if (of_b == 3) return;
-  for (Index& corner : foot.corners) {
-    if (corner == b) corner = a;
-  }
-  if (of_a == 3) return;
-  // Smaller cells repeat their first corner.
-  Index other = kNone;
-  double share = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (foot.corners[k] == a) continue;
-    other = foot.corners[k];
-    share = foot.weights[k];
-  }
-  foot.corners = {a, other == kNone ? a : other, a};
-  foot.weights = {1 - share, share, 0};
-}
-
 class SampledContraction {
  public:
   SampledContraction(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples,
                      Assignment& feet)
       : mesh_(mesh),
-        samples_(samples),
-        feet_(feet),
-        protrusion_(surface, mesh, LookOptions(surface, samples[0].weight)),
-        at_(mesh.size()),
+        feet_(mesh, samples, feet),
+        protrusion_(surface, mesh, LookOptions(surface, samples[0].weight), kNegligible * feet.max),
         blocked_(mesh.size()) {
     stamp_.assign(mesh.size(), 0);
-    for (Index i = 0; i < samples.size(); ++i) enter(i);
   }
 
   void run(Index target) {
@@ -117,17 +49,24 @@ class SampledContraction {
     while (mesh_.living() > target && !turns_.empty()) {
       const Turn turn = turns_.top();
       turns_.pop();
-      const auto& [cost, a, b, stamp, whole] = turn;
+      const auto& [cost, a, b, stamp, kind] = turn;
       if (!mesh_.alive(a) || !mesh_.alive(b) || !mesh_.adjacent(a, b)) continue;
       if (stamp != stamp_[a] + stamp_[b]) {
         offer(a, b);
+      } else if (kind == Kind::expected) {
+        look_opened(a, b);
+      } else if (kind == Kind::opened) {
+        contract_opened(a, b);
       } else if (!mesh_.may_contract(a, b)) {
-        offered_.erase(std::uint64_t{a} << 32 | b);
+        offered_[key(a, b)].stamp = kNone;
         blocked_[a].push_back(b);
         blocked_[b].push_back(a);
-      } else if (!whole) {
-        const double added = protrusion_.added(a, b, candidate(a, b).ball);
-        turns_.emplace(cost + kProtrusionWeight * samples_[0].weight * added, a, b, stamp, true);
+        offer_opened(a, b, cost);
+      } else if (kind == Kind::of_samples) {
+        const Candidate found = candidate(a, b);
+        double& protruding = offered_[key(a, b)].cost;
+        protruding = protrusion_cost(a, b, found.ball);
+        turns_.emplace(found.cost + protruding, a, b, stamp, Kind::whole);
       } else {
         contract(a, b);
       }
@@ -135,9 +74,18 @@ class SampledContraction {
   }
 
  private:
-  // Cost, edge, the sum of its ends' stamps when that was found, and whether what protrudes is in it, which is looked
-  // at only of those whose turn comes, since it takes longest.
-  using Turn = std::tuple<double, Index, Index, Index, bool>;
+  // Whether what protrudes is in a cost, which is looked at only of those whose turn comes, since it takes longest; and
+  // what has to be taken away before, which is looked for of those only that the link condition stands against.
+  enum class Kind : std::uint8_t { of_samples, whole, expected, opened };
+  // Cost, edge, the sum of its ends' stamps when that was found.
+  using Turn = std::tuple<double, Index, Index, Index, Kind>;
+
+  // An edge's stamps when it was looked at, and what was found, which may have changed since.
+  struct Known {
+    Index stamp = kNone;
+    double cost = 0;
+  };
+  static std::uint64_t key(Index a, Index b) { return std::uint64_t{a} << 32 | b; }
 
   // A foot as a function of the common ball: what it has of others, and its share.
   struct Part {
@@ -162,28 +110,28 @@ class SampledContraction {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, edges.size(), 32), [&](const auto& range) {
       for (std::size_t i = range.begin(); i != range.end(); ++i) costs[i] = candidate(edges[i][0], edges[i][1]).cost;
     });
-    for (std::size_t i = 0; i < edges.size(); ++i) turns_.emplace(costs[i], edges[i][0], edges[i][1], 0, false);
+    for (std::size_t i = 0; i < edges.size(); ++i)
+      turns_.emplace(costs[i], edges[i][0], edges[i][1], 0, Kind::of_samples);
   }
   // Not again what is offered as it is now.
   void offer(Index a, Index b) {
     const auto [p, q] = std::minmax(a, b);
     const Index stamp = stamp_[p] + stamp_[q];
-    const auto [offered, first] = offered_.try_emplace(std::uint64_t{p} << 32 | q, stamp);
-    if (!first && offered->second == stamp) return;
-    offered->second = stamp;
-    turns_.emplace(candidate(p, q).cost, p, q, stamp, false);
+    Known& offered = offered_[key(p, q)];
+    if (offered.stamp == stamp) return;
+    offered.stamp = stamp;
+    turns_.emplace(candidate(p, q).cost + kExpected * std::max(0.0, offered.cost), p, q, stamp, Kind::of_samples);
   }
 
   Candidate candidate(Index a, Index b) const {
-    std::vector<Index> seen;
-    std::set_union(at_[a].begin(), at_[a].end(), at_[b].begin(), at_[b].end(), std::back_inserter(seen));
+    const std::vector<Index> seen = feet_.at_either(a, b);
     const Ball4 middle = 0.5 * (mesh_.ball(a) + mesh_.ball(b));
     std::vector<Part> parts;
     parts.reserve(seen.size());
     double before = 0;
     for (const Index i : seen) {
       parts.push_back(part(i, a, b));
-      before += samples_[i].weight * fourth(feet_.feet[i].value);
+      before += feet_.sample(i).weight * fourth(feet_.foot(i).value);
     }
     Candidate best{.cost = std::numeric_limits<double>::infinity()};
     for (const Ball4& ball : {optimum(parts, middle), middle, mesh_.ball(a), mesh_.ball(b)}) {
@@ -194,18 +142,86 @@ class SampledContraction {
     return best;
   }
 
-  void contract(Index a, Index b) {
-    std::vector<Index> seen;
-    std::set_union(at_[a].begin(), at_[a].end(), at_[b].begin(), at_[b].end(), std::back_inserter(seen));
-    const Ball4 ball = candidate(a, b).ball;
-    for (const Index i : seen) leave(i);
-    mesh_.contract(a, b, ball);
-    for (const Index i : seen) {
-      Foot& foot = feet_.feet[i];
-      follow(foot, a, b);
-      foot = walk_to_foot(mesh_, samples_[i].position, foot).below(samples_[i].depth);
-      enter(i);
+  double protrusion_cost(Index a, Index b, const Ball4& ball) {
+    return kProtrusionWeight * feet_.sample(0).weight * protrusion_.added(a, b, ball);
+  }
+
+  // An edge that the link condition stands against, with what it costs at least.
+  void offer_opened(Index a, Index b, double min_cost) {
+    const Index stamp = stamp_[a] + stamp_[b];
+    Known& opened = opened_[key(a, b)];
+    if (opened.stamp == stamp) return;
+    opened.stamp = stamp;
+    const double expected = kExpected * opened.cost;
+    if (expected > min_cost) {
+      turns_.emplace(expected, a, b, stamp, Kind::expected);
+    } else {
+      look_opened(a, b);
     }
+  }
+  // What it costs to take triangles away and to contract the edge then. Nothing is changed in the end.
+  void look_opened(Index a, Index b) {
+    const auto collapses = open_link(mesh_, a, b);
+    if (!collapses) return;
+    const auto moved = samples_on(*collapses);
+    double cost = 0;
+    for (const auto& [i, foot] : moved) cost -= feet_.sample(i).weight * fourth(foot.value);
+    move_feet(moved);
+    for (const auto& [i, foot] : moved) cost += feet_.sample(i).weight * fourth(feet_.foot(i).value);
+    const Candidate found = candidate(a, b);
+    cost += found.cost + protrusion_cost(a, b, found.ball);
+    undo(mesh_, *collapses);
+    for (const auto& [i, foot] : moved) feet_.set_foot(i, foot);
+    opened_[key(a, b)].cost = cost;
+    turns_.emplace(cost, a, b, stamp_[a] + stamp_[b], Kind::opened);
+  }
+  void contract_opened(Index a, Index b) {
+    const auto collapses = open_link(mesh_, a, b);
+    if (!collapses) return;
+    move_feet(samples_on(*collapses));
+    for (const auto& [p, q, r] : *collapses) {
+      for (const Index v : {p, q, r}) ++stamp_[v];
+    }
+    contract(a, b);
+    for (const auto& [p, q, r] : *collapses) {
+      for (const Index v : {p, q, r}) {
+        if (mesh_.alive(v)) offer_around(v);
+      }
+    }
+  }
+  // Samples whose foot is on what was taken away, and their feet.
+  std::vector<std::pair<Index, Foot>> samples_on(std::span<const Collapse> collapses) const {
+    std::vector<std::pair<Index, Foot>> result;
+    for (const auto& [a, b, c] : collapses) {
+      for (const Index i : feet_.at(a)) {
+        const Foot& foot = feet_.foot(i);
+        const auto has = [&](Index v) {
+          return std::find(foot.corners.begin(), foot.corners.end(), v) != foot.corners.end();
+        };
+        const bool gone = has(b) && (has(c) || foot.corners[2] == foot.corners[0] ||
+                                     foot.corners[2] == foot.corners[1] || foot.corners[1] == foot.corners[0]);
+        if (gone) result.emplace_back(i, foot);
+      }
+    }
+    std::sort(result.begin(), result.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+    result.erase(
+        std::unique(result.begin(), result.end(), [](const auto& x, const auto& y) { return x.first == y.first; }),
+        result.end());
+    return result;
+  }
+  void move_feet(const std::vector<std::pair<Index, Foot>>& moved) {
+    for (const auto& [i, foot] : moved) {
+      const auto heaviest = std::max_element(foot.weights.begin(), foot.weights.end()) - foot.weights.begin();
+      const Index corner = foot.corners[static_cast<std::size_t>(heaviest)];
+      const Foot at{.corners = {corner, corner, corner}, .weights = {1, 0, 0}};
+      feet_.set_foot(i, walk_to_foot(mesh_, feet_.sample(i).position, at).below(feet_.sample(i).depth));
+    }
+  }
+  void contract(Index a, Index b) {
+    const std::vector<Index> seen = feet_.at_either(a, b);
+    const Ball4 ball = candidate(a, b).ball;
+    mesh_.contract(a, b, ball);
+    feet_.contract(a, b, seen);
     // What the neighbours cost may have changed; it is found anew when their turn comes.
     stamp_[a] += stamp_[b] + 1;
     std::vector<Index> around(mesh_.neighbors(a).begin(), mesh_.neighbors(a).end());
@@ -213,34 +229,23 @@ class SampledContraction {
     for (const Index other : around) offer(a, other);
     around.push_back(a);
     around.push_back(b);
-    for (const Index v : around) {
-      const std::vector<Index> ends = std::exchange(blocked_[v], {});
-      for (const Index end : ends) {
-        if (mesh_.alive(v) && mesh_.alive(end) && mesh_.adjacent(v, end)) offer(v, end);
-      }
+    for (const Index v : around) offer_blocked(v);
+  }
+  // Edges that were held, for they may be free.
+  void offer_blocked(Index v) {
+    const std::vector<Index> ends = std::exchange(blocked_[v], {});
+    for (const Index end : ends) {
+      if (mesh_.alive(v) && mesh_.alive(end) && mesh_.adjacent(v, end)) offer(v, end);
     }
   }
-
-  void enter(Index sample) {
-    visit_corners(
-        sample, [&](std::vector<Index>& own) { own.insert(std::lower_bound(own.begin(), own.end(), sample), sample); });
-  }
-  void leave(Index sample) {
-    visit_corners(sample,
-                  [&](std::vector<Index>& own) { own.erase(std::lower_bound(own.begin(), own.end(), sample)); });
-  }
-  template <class Change>
-  void visit_corners(Index sample, const Change& change) {
-    const Foot& foot = feet_.feet[sample];
-    const auto& [a, b, c] = foot.corners;  // those of no weight, too: they may become others
-    change(at_[a]);
-    if (b != a) change(at_[b]);
-    if (c != a && c != b) change(at_[c]);
+  void offer_around(Index v) {
+    for (const Index other : mesh_.neighbors(v)) offer(v, other);
+    offer_blocked(v);
   }
 
   Part part(Index sample, Index a, Index b) const {
-    const Foot& foot = feet_.feet[sample];
-    Part part{&samples_[sample], Ball4::Zero(), 0};
+    const Foot& foot = feet_.foot(sample);
+    Part part{&feet_.sample(sample), Ball4::Zero(), 0};
     for (std::size_t k = 0; k < 3; ++k) {
       if (foot.corners[k] == a || foot.corners[k] == b) {
         part.share += foot.weights[k];
@@ -279,13 +284,13 @@ class SampledContraction {
   }
 
   ContractibleMesh& mesh_;
-  const std::span<const FitSample> samples_;
-  Assignment& feet_;
+  FeetByVertex feet_;
   ProtrusionCost protrusion_;
-  std::vector<std::vector<Index>> at_;                // samples of each vertex, ascending
-  std::vector<std::vector<Index>> blocked_;           // other ends of edges that the link condition stood against
-  std::unordered_map<std::uint64_t, Index> offered_;  // edges, by their ends, with the stamps they were offered with
-  std::vector<Index> stamp_;                          // grows with each change around a vertex
+  std::vector<std::vector<Index>> blocked_;  // other ends of edges that the link condition stood against
+  // By edge: when it was offered, and what protruded; when it was looked at for what may be taken away, and what that
+  // cost.
+  std::unordered_map<std::uint64_t, Known> offered_, opened_;
+  std::vector<Index> stamp_;  // grows with each change around a vertex
   std::priority_queue<Turn, std::vector<Turn>, std::greater<>> turns_;
 };
 

@@ -139,6 +139,15 @@ Index ContractibleMesh::extend(Index a, Index b, const Ball4& ball) {
   return end;
 }
 
+Index ContractibleMesh::collapse(Index a, Index b) {
+  const auto at =
+      std::find_if(triangles_at_[a].begin(), triangles_at_[a].end(), [&](Index t) { return holds(triangles_[t], b); });
+  const Index c = third(triangles_[*at], a, b);
+  remove_triangle(*at);
+  part(a, b);
+  return c;
+}
+
 bool ContractibleMesh::has_contractible_edge() const {
   for (Index v = 0; v < size(); ++v) {
     for (const Index other : neighbors_[v]) {

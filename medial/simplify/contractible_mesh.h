@@ -45,6 +45,11 @@ class ContractibleMesh {
   // A new vertex, joined to one, or by a triangle to an edge's two. Returns its number.
   Index extend(Index a, const Ball4& ball);
   Index extend(Index a, Index b, const Ball4& ball);
+  // Takes away an edge, and the only triangle at it: an elementary collapse. Returns the third corner.
+  // Precondition: count_triangles_at(a, b) == 1.
+  Index collapse(Index a, Index b);
+  // A triangle on two edges, and the edge that they lack: undoes collapse(a, b), which returned c.
+  void expand(Index a, Index b, Index c) { add_triangle(a, b, c); }
   // For meshes without an edge that may be contracted: takes triangles away, each with an edge that has no other, which
   // are elementary collapses, until there is one. False if there is nothing left to take.
   bool make_contractible();

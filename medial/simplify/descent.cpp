@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "../quality/boundary_reach.h"
+#include "climb.h"
 #include "contract_by_samples.h"
 #include "improve.h"
 #include "slab_quadrics.h"
@@ -16,11 +17,13 @@ namespace {
 // How far quadrics lead: to so many times the vertices wanted, but no fewer than so many. They are fast, and the
 // samples, which see more, have what is left.
 constexpr Index kBySlabs = 3, kMinBySlabs = 1000;
-constexpr double kFree = 1e-5;       // diagonals: contractions that move a ball no farther from its planes cost nothing
-constexpr double kShrink = 0.6;      // vertices left by one pass of contractions
-constexpr double kMoved = 0.08;      // share of the vertices that the first round moves
-constexpr double kNotable = 0.6;     // of the largest distance: places that are as far off become samples
-constexpr double kInvisible = 2e-4;  // diagonals: dents so deep are not looked for
+constexpr double kFree = 1e-5;     // diagonals: contractions that move a ball no farther from its planes cost nothing
+constexpr double kGuarded = 5e-4;  // diagonals: quadrics take no sample farther off while they can do without
+constexpr double kShrink = 0.6;    // vertices left by one pass of contractions
+constexpr double kMoved = 0.08;    // share of the vertices that the first round moves
+constexpr double kWorthwhile = 0.02;  // of the largest distance: rounds that gain less, two in turn, are the last
+constexpr double kNotable = 0.6;      // of the largest distance: places that are as far off become samples
+constexpr double kInvisible = 2e-4;   // diagonals: dents so deep are not looked for
 constexpr std::size_t kSamplesPerDent = 50;  // of the surface, for each dent at most that becomes one
 constexpr FitOptions kBetween[] = {{.power = 4, .steps = 1, .middles = false}};
 constexpr FitOptions kAtEnd[] = {{.power = 2, .steps = 2}, {.power = 4, .steps = 4}, {.power = 8, .steps = 6}};
@@ -65,9 +68,9 @@ Descent::Descent(const Surface& surface, const MedialMesh& mesh, const SimplifyO
 Stage Descent::start() const { return {whole_, fit_samples(surface_, options_.samples, options_.seed), {}}; }
 
 void Descent::go_down(Stage& stage, Index count) const {
-  contract_by_slabs(stage.mesh, std::max({count, kBySlabs * std::min(count, stage.mesh.living()), kMinBySlabs}), count,
-                    kFree * diagonal_);
-  stage.feet.feet.clear();
+  stage.feet = contract_by_slabs(surface_, stage.mesh, stage.samples,
+                                 std::max({count, kBySlabs * std::min(count, stage.mesh.living()), kMinBySlabs}), count,
+                                 kFree * diagonal_, kGuarded * diagonal_);
   refine(stage, kBetween);
   while (stage.mesh.living() > count) {
     const Index before = stage.mesh.living();
@@ -94,7 +97,7 @@ Stage Descent::finished(Stage stage) const {
   stage.feet.find(stage.mesh, stage.samples);
   look_closer(stage, 0);
   double share = kMoved;
-  bool improved = false;
+  bool failed = false;
   for (int round = 0; round < options_.rounds; ++round) {
     report_progress(progress_, "simplifying the axis: moving vertices", static_cast<double>(round) / options_.rounds);
     Stage next = stage;
@@ -106,14 +109,16 @@ Stage Descent::finished(Stage stage) const {
     refine(next, kAfterMoving);
     next.feet.find(next.mesh, next.samples);
     look_closer(next, round + 1);
-    if (next.feet.worst() < stage.feet.worst()) {
-      stage = std::move(next);
-      improved = true;
-    } else if (improved) {
-      break;  // what worked once and then does not hardly ever does later
-    } else {
-      share /= 2;
-    }
+    // Judged at the same places, and known from now on, whichever stays.
+    const std::vector<FitSample> found(next.samples.begin() + static_cast<std::ptrdiff_t>(stage.samples.size()),
+                                       next.samples.end());
+    add(stage, found);
+    const double gain = 1 - next.feet.worst() / stage.feet.worst();
+    if (gain > 0) stage = std::move(next);
+    const bool enough = gain < kWorthwhile;
+    if (enough && failed) break;
+    failed = enough;
+    if (enough) share /= 2;  // fewer may find their places where many were in each other's way
   }
   return stage;
 }
@@ -124,12 +129,12 @@ void Descent::look_closer(Stage& stage, int round) const {
   Assignment feet;
   const double enough = kNotable * stage.feet.worst();
   feet.find_off(stage.mesh, others, enough);
+  std::vector<FitSample> off;
   for (std::size_t i = 0; i < others.size(); ++i) {
-    if (std::abs(feet.feet[i].value) < enough) continue;
-    stage.samples.push_back(others[i]);
-    stage.feet.feet.push_back(feet.feet[i]);
-    stage.feet.max = std::max(stage.feet.max, std::abs(feet.feet[i].value));
+    if (std::abs(feet.feet[i].value) >= enough) off.push_back(others[i]);
   }
+  climb(surface_, stage.mesh, std::sqrt(surface_.report().area / options_.samples), off);
+  add(stage, off);
   if (enough > kInvisible * diagonal_) add_dents(stage, enough);
 }
 
@@ -143,6 +148,10 @@ void Descent::add_dents(Stage& stage, double min_depth) const {
   std::vector<FitSample> samples;
   samples.reserve(dents.size());
   for (const Dent& dent : dents) samples.push_back({dent.place, dent.outward, 1.0 / options_.samples, dent.depth});
+  add(stage, samples);
+}
+
+void Descent::add(Stage& stage, std::span<const FitSample> samples) const {
   Assignment feet;
   feet.find(stage.mesh, samples);
   stage.samples.insert(stage.samples.end(), samples.begin(), samples.end());

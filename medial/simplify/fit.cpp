@@ -15,7 +15,14 @@ namespace {
 
 constexpr double kFirstDamping = 1e-3, kMinDamping = 1e-6, kMaxDamping = 1e3;
 constexpr std::size_t kInTurn = 64;  // samples that one task takes, one after the other
+constexpr double kSlack = 0.2;       // of the largest distance: feet nearer by less are not searched for
 constexpr double kFloor = 1e-3;      // share of the weight that small distances keep at high powers
+
+LookOptions look_options(const Surface& surface, std::span<const FitSample> samples, const FitOptions& options) {
+  LookOptions look(surface, samples[0].weight);
+  look.cells = options.middles;
+  return look;
+}
 
 class Fitter {
  public:
@@ -27,17 +34,14 @@ class Fitter {
         feet_(feet),
         options_(options),
         walker_(mesh),
-        places_(options.middles ? places_to_look(mesh, LookOptions(surface, samples[0].weight))
-                                : std::vector<Protrusion>()),
+        places_(places_to_look(mesh, look_options(surface, samples, options))),
         inside_(places_.size()),
         equations_(mesh) {}
 
   void run() {
-    if (feet_.feet.size() == samples_.size()) {
-      feet_.walk(samples_, walker_);
-    } else {
-      feet_.find(mesh_, samples_);
-    }
+    // Contractions follow feet to places nearby; what came to protrude there from elsewhere is seen by a search alone.
+    if (feet_.feet.size() == samples_.size()) feet_.walk(samples_, walker_);
+    feet_.find(mesh_, samples_, kSlack * feet_.max);
     protrusions_ = protruding();
     scale_ = std::max(feet_.max, 1e-300);
     for (const Protrusion& protrusion : protrusions_) scale_ = std::max(scale_, protrusion.value);
@@ -153,13 +157,13 @@ class Fitter {
 
 }  // namespace
 
-void Assignment::find(const ContractibleMesh& mesh, std::span<const FitSample> samples) {
+void Assignment::find(const ContractibleMesh& mesh, std::span<const FitSample> samples, double slack) {
   const FootFinder finder(mesh);
   const bool guess = feet.size() == samples.size();
   feet.resize(samples.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, samples.size(), 256), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i)
-      feet[i] = finder.find(samples[i].position, guess ? &feet[i] : nullptr).below(samples[i].depth);
+      feet[i] = finder.find(samples[i].position, guess ? &feet[i] : nullptr, guess ? slack : 0).below(samples[i].depth);
   });
   find_max();
 }

@@ -16,8 +16,8 @@ struct Assignment {
   double max_protrusion = 0;  // as the last fit() left it, of the balls that it looked at
 
   double worst() const { return std::max(max, max_protrusion); }
-  // Deterministic; parallel.
-  void find(const ContractibleMesh& mesh, std::span<const FitSample> samples);
+  // `slack` (mesh units) saves time: values may be too large by so much. Deterministic; parallel.
+  void find(const ContractibleMesh& mesh, std::span<const FitSample> samples, double slack = 0);
   // Those whose value is `enough` or more, or its negative or less; the others are somewhere between. Several times as
   // fast, and more so where samples follow each other over the surface.
   void find_off(const ContractibleMesh& mesh, std::span<const FitSample> samples, double enough);

@@ -135,6 +135,8 @@ Foot FootWalker::walk(const Point& query, const Foot& start) const {
 }
 
 Foot walk_to_foot(const ContractibleMesh& mesh, const Point& query, const Foot& start) {
+  const Foot here = foot_on(mesh, start.corners, query);
+  if (*std::min_element(here.weights.begin(), here.weights.end()) > 0) return here;
   return walk_from(mesh, query, start, [&](Index corner, const auto& look_at) {
     for (const Index t : mesh.triangles_at(corner)) look_at(mesh.triangle(t));
     for (const Index other : mesh.neighbors(corner)) {

@@ -31,7 +31,7 @@ class Places {
  private:
   void add(const std::array<Index, 3>& corners, const std::array<double, 3>& weights) {
     const Protrusion place{corners, weights, 0, Vector::Zero()};
-    if (place.ball(mesh_)[3] <= options_.max_radius) result.push_back(place);
+    if (corners[0] == corners[1] || place.ball(mesh_)[3] <= options_.max_radius) result.push_back(place);
   }
 
   const ContractibleMesh& mesh_;
@@ -45,10 +45,12 @@ std::vector<Protrusion> places_to_look(const ContractibleMesh& mesh, const LookO
   for (Index v = 0; v < mesh.size(); ++v) {
     if (!mesh.alive(v)) continue;
     places.add_vertex(v);
+    if (!options.cells) continue;
     for (const Index other : mesh.neighbors(v)) {
       if (v < other) places.add_edge(v, other);
     }
   }
+  if (!options.cells) return std::move(places.result);
   for (const auto& cell : mesh.maximal_cells()) {
     if (cell[2] != cell[0]) places.add_triangle(cell);
   }

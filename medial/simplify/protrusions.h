@@ -31,7 +31,8 @@ struct Protrusion {
 // Where to look at balls; mesh units.
 struct LookOptions {
   double spacing = std::numeric_limits<double>::infinity();     // of balls inside edges, at most; three at most
-  double max_radius = std::numeric_limits<double>::infinity();  // of balls; larger ones are left out
+  double max_radius = std::numeric_limits<double>::infinity();  // of balls inside cells; larger ones are left out
+  bool cells = true;  // inside edges and triangles, too, not at vertices alone
 
   // As much as samples of the surface need beside them, each of which stands for so much of its area: what protrudes of
   // balls much thicker than the samples are apart has some of them inside.
@@ -55,6 +56,7 @@ struct InsideBall {
   double radius = 0;  // 0: none is known
 
   bool holds(const Point& place) const { return (place - center).norm() < kSure * radius; }
+  bool holds(const Sphere& ball) const { return (ball.center - center).norm() + ball.radius < kSure * radius; }
 
  private:
   static constexpr double kSure = 1 - 1e-9;  // rounding

@@ -4,98 +4,65 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
+#include <limits>
+#include <optional>
 #include <queue>
 #include <tuple>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include "feet_by_vertex.h"
+#include "protrusions.h"
+#include "slab_planes.h"
 
 namespace orchard::detail {
 namespace {
 
-constexpr double kPull = 1e-4;     // of the trace: towards the middle of the edge, where planes leave a way open
-constexpr double kSpread = 1e-6;   // weight of an edge's length, so that short ones go first among equals
-constexpr double kBorder = 1.0;    // weight of the square over a border edge
+constexpr double kPull = 1e-4;    // of the trace: towards the middle of the edge, where planes leave a way open
+constexpr double kSpread = 1e-6;  // weight of an edge's length, so that short ones go first among equals
+constexpr double kBorder = 1.0;   // weight of the square over a border edge
+constexpr double kAsWhole = 2.0;  // of how far the whole mesh is off: as well as nothing was contracted
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr double kFarthest = 2.0;  // edge lengths from its middle that a new ball may be
-
-// The weighted squared distances to planes: x A x - 2 b x + c.
-struct Quadric {
-  Eigen::Matrix4d a = Eigen::Matrix4d::Zero();
-  Ball4 b = Ball4::Zero();
-  double c = 0;
-
-  Quadric& operator+=(const Quadric& other) {
-    a += other.a;
-    b += other.b;
-    c += other.c;
-    return *this;
-  }
-  // Of balls that touch the plane with this outward normal that `on` touches.
-  void add_plane(const Vector& normal, const Ball4& on, double weight) {
-    Ball4 row;
-    row << normal, 1;
-    const double side = row.dot(on);
-    a += weight * row * row.transpose();
-    b += weight * side * row;
-    c += weight * side * side;
-  }
-  double at(const Ball4& x) const { return std::max(0.0, x.dot(a * x) - 2 * b.dot(x) + c); }
-  double weight() const { return a(3, 3); }  // of all planes, whose rows end in 1
-};
-
-// Any unit vector at right angles to one.
-Vector across(const Vector& unit) {
-  Vector other = Vector::Zero();
-  Index axis = 0;
-  for (Index k = 1; k < 3; ++k) {
-    if (std::abs(unit[k]) < std::abs(unit[axis])) axis = k;
-  }
-  other[axis] = 1;
-  return unit.cross(other).normalized();
-}
-
-// The cone around two balls. A plane that touches both along `out`, a unit vector at right angles to `unit`, has the
-// normal `normal(out)`.
-struct Cone {
-  Ball4 a, b;
-  Vector unit = Vector::Zero();  // from a to b
-  double length = 0, slope = 0;  // a length of 0: no cone
-
-  Cone(const Ball4& first, const Ball4& second) : a(first), b(second) {
-    const Vector along = (b - a).head<3>();
-    length = along.norm();
-    if (!(length > 0)) return;
-    unit = along / length;
-    slope = (b[3] - a[3]) / length;
-  }
-  Vector normal(const Vector& out) const { return std::sqrt(1 - slope * slope) * out - slope * unit; }
-};
 
 class Contraction {
  public:
-  explicit Contraction(ContractibleMesh& mesh) : mesh_(mesh), origin_(mesh.size() > 0 ? mesh.ball(0) : Ball4::Zero()) {
+  Contraction(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples, Assignment& feet,
+              double free_distance, double limit)
+      : surface_(surface),
+        mesh_(mesh),
+        origin_(mesh.size() > 0 ? mesh.ball(0) : Ball4::Zero()),
+        feet_(mesh, samples, feet),
+        free_distance_(free_distance),
+        limit_(limit),
+        min_length_(kLookSpacing * surface.bounding_radius()) {
     origin_[3] = 0;
   }
 
-  void run(Index target, Index free_target, double free_distance) {
+  void run(Index target, Index free_target) {
     quadrics_.resize(mesh_.size());
     stamp_.assign(mesh_.size(), 0);
     for (const auto& cell : mesh_.maximal_cells()) add_cell(cell);
-    for (Index v = 0; v < mesh_.size(); ++v) {
-      for (const Index other : mesh_.neighbors(v)) {
-        if (v < other) offer(v, other);
-      }
-    }
-    while (mesh_.living() > free_target && !queue_.empty()) {
+    offer_all();
+    while (mesh_.living() > free_target) {
+      if (queue_.empty() && !offer_again(target)) break;
+      if (queue_.empty()) break;
       const auto [cost, a, b, stamp] = queue_.top();
       queue_.pop();
       if (!mesh_.alive(a) || !mesh_.alive(b) || stamp != stamp_[a] + stamp_[b]) continue;
-      if (!mesh_.adjacent(a, b) || !mesh_.may_contract(a, b)) continue;
-      if (mesh_.living() <= target && distance_of(a, b) > free_distance) continue;
+      if (!mesh_.adjacent(a, b) || waiting_.contains(key(a, b)) || !mesh_.may_contract(a, b)) continue;
+      if (mesh_.living() <= target && distance_of(a, b) > free_distance_) continue;
       contract(a, b);
     }
   }
 
  private:
   using Entry = std::tuple<double, Index, Index, Index>;
+
+  static std::uint64_t key(Index a, Index b) { return std::uint64_t{a} << 32 | b; }
 
   Ball4 local(Index vertex) const { return mesh_.ball(vertex) - origin_; }
 
@@ -196,15 +163,37 @@ class Contraction {
     return {found, cost + kSpread * length * length * length * length};
   }
 
+  // What was too far, with a higher limit. False: no more.
+  bool offer_again(Index target) {
+    if (waiting_.empty() || mesh_.living() <= target) return false;
+    waiting_.clear();
+    limit_ *= 2;
+    offer_all();
+    return true;
+  }
+  void offer_all() {
+    for (Index v = 0; v < mesh_.size(); ++v) {
+      for (const Index other : mesh_.neighbors(v)) {
+        if (v < other) offer(v, other);
+      }
+    }
+  }
   void offer(Index a, Index b) {
     const auto [p, q] = std::minmax(a, b);
     queue_.emplace(best(p, q).second, p, q, stamp_[p] + stamp_[q]);
   }
 
   void contract(Index a, Index b) {
-    const Ball4 ball = best(a, b).first + origin_;
+    const std::vector<Index> seen = feet_.at_either(a, b);
+    const std::optional<Ball4> found = ball_within_limit(a, b, seen);
+    if (!found) {
+      waiting_.insert(key(a, b));
+      return;
+    }
+    const Ball4 ball = *found;
     quadrics_[a] += quadrics_[b];
     mesh_.contract(a, b, ball);
+    feet_.contract(a, b, seen);
     stamp_[a] += stamp_[b] + 1;  // above what any edge at a was offered with
     for (const Index other : mesh_.neighbors(a)) offer(a, other);
     // What the link condition stood against may be free now.
@@ -215,8 +204,59 @@ class Contraction {
     }
   }
 
+  // The best ball if it is within the limit; else an end, where that is as good: along a straight border or seam both
+  // ends cost nothing, but from one of them the sheet folds over.
+  std::optional<Ball4> ball_within_limit(Index a, Index b, std::span<const Index> samples) {
+    const Ball4 ball = best(a, b).first + origin_;
+    if (!too_far(a, b, ball, samples)) return ball;
+    Quadric sum = quadrics_[a];
+    sum += quadrics_[b];
+    for (const Index end : {a, b}) {
+      const Ball4& other = mesh_.ball(end);
+      if (other == ball || sum.at(local(end)) > free_distance_ * free_distance_ * sum.weight()) continue;
+      if (!too_far(a, b, other, samples)) return other;
+    }
+    return std::nullopt;
+  }
+
+  // Whether the ball would protrude beyond the limit, or one of these samples be beyond it, and farther off than it is.
+  bool too_far(Index a, Index b, const Ball4& ball, std::span<const Index> samples) {
+    if (limit_ == kNoLimit) return false;
+    if (protrudes(ball)) return true;
+    for (const Index v : {a, b}) {
+      for (const Index other : mesh_.neighbors(v)) {
+        if (other == a || other == b) continue;
+        const Ball4& end = mesh_.ball(other);
+        if ((end - ball).head<3>().norm() > min_length_ && protrudes(0.5 * (ball + end))) return true;
+      }
+    }
+    const Ball4 of_a = mesh_.ball(a), of_b = mesh_.ball(b);
+    mesh_.set_ball(a, ball);
+    mesh_.set_ball(b, ball);
+    const bool result = std::any_of(samples.begin(), samples.end(), [&](Index i) {
+      const FitSample& sample = feet_.sample(i);
+      const Foot& foot = feet_.foot(i);
+      double value = foot_on(mesh_, foot.corners, sample.position).value + sample.depth;
+      if (value > limit_) value = walk_to_foot(mesh_, sample.position, foot).value + sample.depth;
+      return std::abs(value) > std::max(limit_, std::abs(foot.value));
+    });
+    mesh_.set_ball(a, of_a);
+    mesh_.set_ball(b, of_b);
+    return result;
+  }
+
+  bool protrudes(const Ball4& ball) const {
+    return ball[3] > limit_ && surface_.closest_within(ball.head<3>(), ball[3] - limit_).triangle != kNone;
+  }
+
+  const Surface& surface_;
   ContractibleMesh& mesh_;
   Ball4 origin_;  // quadrics lose digits far from 0
+  FeetByVertex feet_;
+  const double free_distance_;
+  double limit_;
+  const double min_length_;                    // of edges in whose middle is looked
+  std::unordered_set<std::uint64_t> waiting_;  // edges, by their ends, for a higher limit
   std::vector<Quadric> quadrics_;
   std::vector<Index> stamp_;  // grows with each change of a vertex
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
@@ -224,8 +264,24 @@ class Contraction {
 
 }  // namespace
 
-void contract_by_slabs(ContractibleMesh& mesh, Index target, Index free_target, double free_distance) {
-  Contraction(mesh).run(target, free_target, free_distance);
+Assignment contract_by_slabs(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples,
+                             Index target, Index free_target, double free_distance, double min_limit) {
+  Assignment feet;
+  feet.find(mesh, samples);
+  const double enough = kAsWhole * feet.max;
+  Contraction(surface, mesh, samples, feet, free_distance, min_limit).run(target, target);
+  if (mesh.living() <= free_target) return feet;
+  // Without a guard sheets may fold over on the way, and unfold when their corners alone are left; or they do not.
+  ContractibleMesh free_mesh = mesh;
+  Assignment free_feet = feet;
+  Contraction(surface, free_mesh, samples, free_feet, free_distance, kNoLimit).run(mesh.living(), free_target);
+  free_feet.find(free_mesh, samples);
+  if (free_feet.max <= enough) {
+    mesh = std::move(free_mesh);
+    return free_feet;
+  }
+  Contraction(surface, mesh, samples, feet, free_distance, min_limit).run(mesh.living(), free_target);
+  return feet;
 }
 
 }  // namespace orchard::detail

@@ -1,5 +1,7 @@
 #pragma once
-#include "contractible_mesh.h"
+#include <span>
+
+#include "fit.h"
 
 namespace orchard::detail {
 
@@ -11,6 +13,12 @@ namespace orchard::detail {
 // touch the slabs and cones around its vertices. A border of a sheet is a place where the envelope ends, which these
 // planes do not see; so each border edge adds the plane that touches it from beyond the sheet: a ball that moves in
 // from a border whose sheet ends at radius 0 pays what the solid loses there. O(n log n).
-void contract_by_slabs(ContractibleMesh& mesh, Index target, Index free_target, double free_distance);
+//
+// A mean over planes hides a small one beside large sheets, so samples of the surface stand guard: a contraction that
+// takes one of them farther off than a limit, or whose ball protrudes farther, waits until no other is left; then the
+// limit, `min_limit` (mesh units) at first, is doubled. Below `target` they stand guard only if what is left without
+// one is off. Returns the samples' feet, as far as these are found nearby.
+Assignment contract_by_slabs(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples,
+                             Index target, Index free_target, double free_distance, double min_limit);
 
 }  // namespace orchard::detail

@@ -18,7 +18,7 @@ struct SimplifyOptions {
   Index samples = 10'000;  // places of the surface that balls are fitted to
   Index check = 20'000;    // places from which the distance is measured at the end
   Index search = 60'000;   // cubes and cells at most in which dents and what protrudes are searched, each time
-  int rounds = 3;          // at most, of moving vertices from where they are spared to where the distance is largest
+  int rounds = 4;          // at most, of moving vertices from where they are spared to where the distance is largest
   std::uint64_t seed = 1;
 };
 

@@ -1,0 +1,43 @@
+#include "protrusion_cost.h"
+
+#include <algorithm>
+
+namespace orchard::detail {
+
+ProtrusionCost::ProtrusionCost(const Surface& surface, const ContractibleMesh& mesh, const LookOptions& look,
+                               double negligible)
+    : surface_(surface), mesh_(mesh), look_(look), negligible_(negligible), inside_(mesh.size()) {}
+
+double ProtrusionCost::added(Index a, Index b, const Ball4& ball) {
+  double before = 0, after = 0;
+  for (const Protrusion& place : places_around(mesh_, a, b, look_)) {
+    before += fourth(value(place, place.ball(mesh_)));
+    Ball4 moved = Ball4::Zero();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index corner = place.corners[k];
+      moved += place.weights[k] * (corner == a || corner == b ? ball : mesh_.ball(corner));
+    }
+    after += fourth(value(place, moved));
+  }
+  return after - before;
+}
+
+double ProtrusionCost::value(const Protrusion& place, const Ball4& ball) {
+  const Ball4 less = ball4(ball.head<3>(), ball[3] - negligible_);
+  InsideBall& known = known_at(place, ball.head<3>());
+  if (less[3] < 0 || known.holds(Sphere{less.head<3>(), less[3]})) return 0;
+  Vector outward;
+  const double protrusion = protrusion_of(surface_, less, known, outward);
+  return protrusion > 0 ? protrusion + negligible_ : 0;
+}
+
+// Of a corner of the place's cell, one that holds it if there is any.
+InsideBall& ProtrusionCost::known_at(const Protrusion& place, const Point& center) {
+  for (const Index corner : place.corners) {
+    if (inside_[corner].holds(center)) return inside_[corner];
+  }
+  const auto heaviest = std::max_element(place.weights.begin(), place.weights.end()) - place.weights.begin();
+  return inside_[place.corners[static_cast<std::size_t>(heaviest)]];
+}
+
+}  // namespace orchard::detail
