@@ -28,10 +28,6 @@ struct orchard_pair {
   rt::PairFront front;
 };
 
-struct orchard_workspace {
-  rt::Workspace workspace;
-};
-
 namespace {
 
 using rt::detail::pose_of;

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 
+#include "orchard/runtime/body_pair.h"
 #include "orchard/runtime/mapped_tree.h"
 #include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/orchard.h"
@@ -14,7 +15,13 @@ struct orchard_tree {
   orchard::runtime::PreparedTree prepared;
 };
 
+struct orchard_workspace {
+  orchard::runtime::Workspace workspace;
+};
+
 namespace orchard::runtime::detail {
+
+inline Workspace& workspace_of(orchard_workspace* workspace) noexcept { return workspace->workspace; }
 
 inline Pose pose_of(const orchard_pose& from) noexcept {
   Pose pose;

@@ -319,4 +319,33 @@ TEST(CInterface, SignsDistancesByWhetherTheSurfacesMeet) {
   orchard_workspace_free(workspace);
 }
 
+TEST(CInterface, TellsWhichPartsOfARobotTouch) {
+  const Tree link(box({-1, -0.1, -0.1}, {1, 0.1, 0.1}));
+  const std::vector<const orchard_tree*> parts(4, link.tree);
+  orchard_self_collision* const arm = orchard_self_collision_new(parts.data(), parts.size());
+  orchard_workspace* const workspace = orchard_workspace_new();
+  std::vector<orchard_pose> poses(4, orchard_identity());
+  for (int i = 0; i < 4; ++i) poses[static_cast<size_t>(i)].translation[0] = 1.95 * i;  // neighbours overlap
+  orchard_touch touches[2];
+  EXPECT_EQ(orchard_self_collision_all(arm, workspace, poses.data(), touches, 2), 3u);
+  EXPECT_EQ(touches[1].part_a, 1u);
+  EXPECT_EQ(touches[1].part_b, 2u);
+  EXPECT_EQ(touches[1].answer, ORCHARD_YES);
+  EXPECT_NE(touches[1].triangle_a, ORCHARD_NO_TRIANGLE);
+  orchard_self_collision_allow_touching(arm, workspace, poses.data());
+  EXPECT_EQ(orchard_self_collision_first(arm, workspace, poses.data()).answer, ORCHARD_NO);
+  EXPECT_EQ(orchard_self_collision_allow(arm, 2, 1, 0), 1);
+  EXPECT_EQ(orchard_self_collision_allow(arm, 4, 1, 1), 0);
+  const orchard_touch first = orchard_self_collision_first(arm, workspace, poses.data());
+  EXPECT_EQ(first.part_a, 1u);
+  EXPECT_EQ(first.part_b, 2u);
+  poses[3].scale = 0;  // no pose: of its pairs that may not touch nothing is known
+  EXPECT_EQ(orchard_self_collision_all(arm, workspace, poses.data(), touches, 2), 3u);
+  EXPECT_EQ(touches[0].answer, ORCHARD_MAYBE);
+  EXPECT_EQ(touches[0].part_b, 3u);
+  orchard_workspace_free(workspace);
+  orchard_self_collision_free(arm);
+  orchard_self_collision_free(nullptr);
+}
+
 }  // namespace

@@ -1,6 +1,6 @@
 /* The run-time for programs in C and for languages that call C. A thin cover of the C++ headers beside it, which say
  * more: tree_file.h, narrow_phase.h, collide.h, distance.h, shape_query.h, body_pair.h, contacts.h, time_of_impact.h,
- * shape_trees.h, batch.h. Many bodies: orchard_broad_phase.h, orchard_detector.h.
+ * shape_trees.h, batch.h, self_collision.h. Many bodies: orchard_broad_phase.h, orchard_detector.h.
  *
  * Link orchard::runtime and the C++ standard library. No function throws or exits. Pointers must not be null unless it
  * says so. Trees are only read by queries: any number of pairs in any number of threads may share one; a pair belongs
@@ -224,6 +224,32 @@ void orchard_closer_than_all(orchard_workspace* const* workspaces, size_t worksp
                              const orchard_executor* executor, const orchard_tree* const* a,
                              const orchard_pose* poses_a, const orchard_tree* const* b, const orchard_pose* poses_b,
                              size_t count, double margin, int* closer);
+
+/* Does a robot touch itself, or what stands around it? Parts 0 .. count - 1, a tree each; pairs that may touch are not
+ * asked about: none at first. Belongs to one thread at a time; queries allocate nothing. Null if there is no memory. */
+typedef struct orchard_self_collision orchard_self_collision;
+orchard_self_collision* orchard_self_collision_new(const orchard_tree* const* parts, size_t count);
+void orchard_self_collision_free(orchard_self_collision* self); /* null is fine */
+/* Whether two parts may touch from now on: 1, or 0 and nothing is changed if there is no such part. */
+int orchard_self_collision_allow(orchard_self_collision* self, size_t a, size_t b, int allowed);
+/* Allows the pairs that touch, or might, where the parts are now: those that always do at rest. `poses`, here and
+ * below: one for every part. */
+void orchard_self_collision_allow_touching(orchard_self_collision* self, orchard_workspace* workspace,
+                                           const orchard_pose* poses);
+
+typedef struct orchard_touch {
+  orchard_answer answer; /* yes: these parts touch; maybe: nothing is known of them; no: there is no such pair */
+  size_t part_a, part_b;
+  double contact_center[3], contact_radius, contact_normal[3];
+  uint32_t triangle_a, triangle_b; /* ORCHARD_NO_TRIANGLE unless the answer is yes */
+} orchard_touch;
+/* The first pair of parts, in order, that touch though they may not; without one, the first of which nothing is known.
+ */
+orchard_touch orchard_self_collision_first(orchard_self_collision* self, orchard_workspace* workspace,
+                                           const orchard_pose* poses);
+/* All of these, in order: their number, and as many of them as there is room for. */
+size_t orchard_self_collision_all(orchard_self_collision* self, orchard_workspace* workspace, const orchard_pose* poses,
+                                  orchard_touch* touches, size_t room);
 
 #ifdef __cplusplus
 }
