@@ -77,7 +77,7 @@ class TriangleTree::Reach {
   // The distance and its gradient, of length one or less.
   Float4 beyond(Float4 distance, const Float4* gradient) const {
     Float4 most = broadcast(-std::numeric_limits<float>::infinity());
-    for (std::size_t k = 0; k < 3; ++k) most = max(most, radius_[k] - dot(gradient, way_[k].data()));
+    for (std::size_t k = 0; k < 3; ++k) most = max(most, radius_[k] - dot(gradient, way_[k]));
     return most - distance;
   }
   Float4 beyond_plane(Float4 offset, const Float4* normal) const {
@@ -93,8 +93,8 @@ class TriangleTree::Reach {
   bool usable_ = false;
   // In the tree's coordinates: the middle, the way from there to each ball's centre, radii with slack.
   Float4 place_[3];
-  std::array<std::array<Float4, 3>, 3> way_;
-  std::array<Float4, 3> radius_;
+  Float4 way_[3][3];
+  Float4 radius_[3];
 };
 
 double TriangleTree::max_reach(const std::array<Sphere, 3>& balls, const Point& middle, double enough) const {
