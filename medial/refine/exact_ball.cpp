@@ -126,9 +126,10 @@ ExactBall BallSolver::finished(const Point& center, bool exact) {
   ball.radius = contacts_.front().distance;
   ball.exact = exact;
   double widest = 0;
-  for (int i = 0; i < ball.count; ++i) {
-    for (int k = 0; k < i; ++k)
-      widest = std::max(widest, angle_between(ball.contacts[i].position - center, ball.contacts[k].position - center));
+  const std::span<const ClosestPoint> contacts = ball.touching();
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k)
+      widest = std::max(widest, angle_between(contacts[i].position - center, contacts[k].position - center));
   }
   ball.loss = loss(ball.radius, widest);
   return ball;
@@ -163,7 +164,7 @@ ExactBall BallSolver::solve(const Point& start, std::span<const ClosestPoint> se
   for (const ClosestPoint& seed : seeds) contacts_.push_back({seed});
   merge(start);
   if (contacts_.size() >= 2) {
-    const ExactBall ball = solve_held(start);
+    ExactBall ball = solve_held(start);
     if (ball.exact) return ball;
   }
   // Seldom needed, and dear: the nearest place of all.
