@@ -36,16 +36,22 @@ inline std::chrono::nanoseconds time_of(std::uint64_t nanoseconds) noexcept {
   return nanoseconds < longest ? std::chrono::nanoseconds(nanoseconds) : std::chrono::nanoseconds::max();
 }
 
+// Where answers in C have a contact: a verdict's and a touch's fields are alike.
+template <typename InC>
+void put_contact(const Contact& contact, InC& result) noexcept {
+  std::copy_n(contact.center.begin(), 3, result.contact_center);
+  std::copy_n(contact.normal.begin(), 3, result.contact_normal);
+  result.contact_radius = contact.radius;
+  result.triangle_a = contact.triangle_a;
+  result.triangle_b = contact.triangle_b;
+}
+
 inline orchard_verdict verdict_of(const Verdict& v) noexcept {
   orchard_verdict result{};
   result.answer = static_cast<orchard_answer>(v.answer);
   result.separation_bound = v.separation_bound;
   result.lower_bound = v.lower_bound;
-  std::copy_n(v.contact.center.begin(), 3, result.contact_center);
-  std::copy_n(v.contact.normal.begin(), 3, result.contact_normal);
-  result.contact_radius = v.contact.radius;
-  result.triangle_a = v.contact.triangle_a;
-  result.triangle_b = v.contact.triangle_b;
+  put_contact(v.contact, result);
   result.level = v.level;
   result.work = v.work;
   return result;

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -37,11 +36,7 @@ orchard_touch touch_of(const rt::SelfCollision::Touch& from) noexcept {
   result.answer = static_cast<orchard_answer>(from.answer);
   result.part_a = from.part_a;
   result.part_b = from.part_b;
-  std::copy_n(from.contact.center.begin(), 3, result.contact_center);
-  std::copy_n(from.contact.normal.begin(), 3, result.contact_normal);
-  result.contact_radius = from.contact.radius;
-  result.triangle_a = from.contact.triangle_a;
-  result.triangle_b = from.contact.triangle_b;
+  rt::detail::put_contact(from.contact, result);
   return result;
 }
 
