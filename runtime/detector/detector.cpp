@@ -59,6 +59,13 @@ void Detector::State::run_for_broad(void* context, std::size_t count, Executor::
 
 Detector::Detector(StateSource source, const DetectorOptions& options)
     : state_(std::make_unique<State>(std::move(source), options)) {}
+Detector::Detector(const DetectorOptions& options) {
+  auto kept = std::make_unique<detail::KeptStates>();
+  const auto fill = [states = kept.get()](double time, std::span<const BodyIndex> bodies,
+                                          std::span<BodyState> answers) { states->fill(time, bodies, answers); };
+  state_ = std::make_unique<State>(fill, options);
+  state_->kept_states = std::move(kept);
+}
 Detector::Detector(Detector&&) noexcept = default;
 Detector& Detector::operator=(Detector&&) noexcept = default;
 Detector::~Detector() = default;
@@ -74,6 +81,12 @@ ShapeId counted(std::size_t& count, ShapeId shape) noexcept {
 
 ShapeId Detector::add_shape(const TreeView& tree) {
   return counted(state_->shape_count, state_->shapes.add_tree(tree));
+}
+ShapeId Detector::load_shape(const char* path, LoadStatus* status) {
+  PackedSphereTree tree;
+  const LoadStatus loaded = load_file(path, tree);
+  if (status != nullptr) *status = loaded;
+  return loaded == LoadStatus::ok ? counted(state_->shape_count, state_->shapes.add_tree(std::move(tree))) : kNoShape;
 }
 ShapeId Detector::add_sphere(double radius, const Vec3& center) { return add_capsule(center, center, radius); }
 ShapeId Detector::add_capsule(const Vec3& p, const Vec3& q, double radius) {
@@ -118,6 +131,7 @@ BodyId Detector::add_body(std::span<const BodyPart> parts, const BodyOptions& op
     const BodyId id = s.broad.add(options.importance, filter_of(options.group, options.mask));
     if (id == kNoBody) return id;
     s.take_in(id, parts, options);
+    if (s.kept_states) s.kept_states->put(id.index, s.last_time(), {});
     s.monitor.forget(id.index);
     s.halves.update_again(id.index);
     return id;
@@ -274,8 +288,11 @@ bool Detector::sleep(BodyId body) {
   if (found == nullptr || found->is_static) return false;
   if (found->asleep) return true;
   found->asleep = true;
-  state_->update_again(*found);
-  return true;
+  return state_->or_fail([&] {
+    if (state_->kept_states) state_->keep(*found, state(body));
+    state_->update_again(*found);
+    return true;
+  });
 }
 
 bool Detector::wake(BodyId body) {
@@ -318,6 +335,10 @@ void Detector::set_filter(PairFilter filter) {
 
 void Detector::set_executor(const Executor& executor) noexcept { state_->options.executor = executor; }
 bool Detector::contains(BodyId body) const noexcept { return state_->contains(body); }
+double Detector::reach(ShapeId shape) const noexcept {
+  const detail::ShapeTable& shapes = state_->shapes;
+  return shapes.contains(shape) ? (detail::length(shapes[shape].center) + shapes[shape].reach) * (1 + 1e-15) : 0;
+}
 std::size_t Detector::size() const noexcept { return state_->count; }
 bool Detector::valid() const noexcept { return state_->valid; }
 std::uint64_t Detector::promises_broken() const noexcept { return state_->monitor.broken(); }
@@ -328,9 +349,9 @@ std::uint64_t Detector::promises_broken(BodyId body) const noexcept {
 std::size_t Detector::memory_bytes() const noexcept {
   const State& s = *state_;
   const auto bytes = [](const auto&... v) { return (detail::bytes_of(v) + ...); };
-  return sizeof(State) + s.shapes.memory_bytes() + s.bodies.memory_bytes() + s.halves.memory_bytes() +
-         s.broad.memory_bytes() + s.monitor.memory_bytes() + s.records.memory_bytes() + s.queries.memory_bytes() +
-         s.fronts.memory_bytes() + s.rounds.memory_bytes() +
+  return sizeof(State) + (s.kept_states ? s.kept_states->memory_bytes() : 0) + s.shapes.memory_bytes() +
+         s.bodies.memory_bytes() + s.halves.memory_bytes() + s.broad.memory_bytes() + s.monitor.memory_bytes() +
+         s.records.memory_bytes() + s.queries.memory_bytes() + s.fronts.memory_bytes() + s.rounds.memory_bytes() +
          bytes(s.due, s.involved, s.involved_at, s.clear_before_match, s.everyone, s.refused, s.broken, s.plane_pairs,
                s.pairs, s.kept_pairs, s.body_pairs, s.open, s.events, s.ended, s.marks, s.tallies);
 }

@@ -29,19 +29,28 @@ rt::BodyOptions options_of(const orchard_body_options& from) noexcept {
   return {from.importance, from.group, from.mask, from.continuous_speed, from.reach, from.suggest != 0};
 }
 
+rt::BodyState state_of(const orchard_body_state& from) noexcept {
+  return {pose_of(from.pose), vector_of(from.velocity),   from.acceleration,
+          from.drift,         vector_of(from.half_space), from.expiry};
+}
+
+orchard_body_state state_of(const rt::BodyState& from) noexcept {
+  orchard_body_state result{};
+  std::copy(from.pose.rotation.begin(), from.pose.rotation.end(), result.pose.rotation);
+  std::copy(from.pose.translation.begin(), from.pose.translation.end(), result.pose.translation);
+  result.pose.scale = from.pose.scale;
+  std::copy(from.velocity.begin(), from.velocity.end(), result.velocity);
+  std::copy(from.half_space.begin(), from.half_space.end(), result.half_space);
+  result.acceleration = from.acceleration, result.drift = from.drift, result.expiry = from.expiry;
+  return result;
+}
+
 void fill(orchard_detector& detector, double time, std::span<const rt::BodyIndex> bodies,
           std::span<rt::BodyState> states) {
   if (detector.answers.size() < bodies.size()) detector.answers.resize(bodies.size() + bodies.size() / 8);
   orchard_body_state* const answers = detector.answers.data();
   detector.source(detector.context, time, bodies.data(), bodies.size(), answers);
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    states[i].pose = pose_of(answers[i].pose);
-    states[i].velocity = vector_of(answers[i].velocity);
-    states[i].acceleration = answers[i].acceleration;
-    states[i].drift = answers[i].drift;
-    states[i].half_space = vector_of(answers[i].half_space);
-    states[i].expiry = answers[i].expiry;
-  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) states[i] = state_of(answers[i]);
 }
 
 std::span<const rt::BodyPart> parts_of(orchard_detector& detector, const orchard_part* parts, std::size_t count) {
@@ -63,6 +72,8 @@ constexpr orchard_body kNobody = {ORCHARD_NO_BODY, 0};
 extern "C" {
 
 orchard_body_options orchard_default_body(void) { return {0, 1, 0xffffffffu, 0, 0, 0}; }
+
+orchard_body_state orchard_default_state(void) { return state_of(rt::BodyState{}); }
 
 orchard_detector_options orchard_default_detector(void) {
   const rt::DetectorOptions options;
@@ -92,6 +103,10 @@ orchard_detector* orchard_detector_new(orchard_state_source source, void* contex
     options.max_fronts = with->max_fronts;
     options.executor = {with->run, with->run_context, with->concurrency};
     orchard_detector* const self = made.get();
+    if (source == nullptr) {
+      made->detector = std::make_unique<rt::Detector>(options);
+      return made.release();
+    }
     made->detector =
         std::make_unique<rt::Detector>([self](double time, std::span<const rt::BodyIndex> bodies,
                                               std::span<rt::BodyState> states) { fill(*self, time, bodies, states); },
@@ -104,6 +119,12 @@ void orchard_detector_free(orchard_detector* detector) { delete detector; }
 
 orchard_shape orchard_detector_add_tree(orchard_detector* detector, const orchard_tree* tree) {
   return guarded(rt::kNoShape, [&] { return detector->detector->add_shape(tree->view); });
+}
+orchard_shape orchard_detector_load(orchard_detector* detector, const char* path, const char** error) {
+  rt::LoadStatus status = rt::LoadStatus::out_of_memory;
+  const orchard_shape shape = guarded(rt::kNoShape, [&] { return detector->detector->load_shape(path, &status); });
+  if (error != nullptr) *error = shape == rt::kNoShape ? rt::message(status) : nullptr;
+  return shape;
 }
 orchard_shape orchard_detector_add_sphere(orchard_detector* detector, double radius, const double center[3]) {
   return guarded(rt::kNoShape, [&] { return detector->detector->add_sphere(radius, vector_of(center)); });
@@ -159,6 +180,12 @@ int orchard_detector_set_importance(orchard_detector* detector, orchard_body bod
 int orchard_detector_set_groups(orchard_detector* detector, orchard_body body, uint32_t group, uint32_t mask) {
   return guarded(0, [&] { return int{detector->detector->set_groups(id_of(body), group, mask)}; });
 }
+int orchard_detector_set_state(orchard_detector* detector, orchard_body body, const orchard_body_state* state) {
+  return guarded(0, [&] { return int{detector->detector->set_state(id_of(body), state_of(*state))}; });
+}
+int orchard_detector_set_velocity(orchard_detector* detector, orchard_body body, const double velocity[3]) {
+  return guarded(0, [&] { return int{detector->detector->set_velocity(id_of(body), vector_of(velocity))}; });
+}
 int orchard_detector_sleep(orchard_detector* detector, orchard_body body) {
   return guarded(0, [&] { return int{detector->detector->sleep(id_of(body))}; });
 }
@@ -178,6 +205,13 @@ int orchard_detector_set_filter(orchard_detector* detector, orchard_pair_filter 
 }
 
 size_t orchard_detector_size(const orchard_detector* detector) { return detector->detector->size(); }
+
+orchard_body_state orchard_detector_state(const orchard_detector* detector, orchard_body body) {
+  return state_of(detector->detector->state(id_of(body)));
+}
+int orchard_detector_moves(const orchard_detector* detector, orchard_body body) {
+  return int{detector->detector->moves(id_of(body))};
+}
 
 orchard_frame orchard_detector_step(orchard_detector* detector, double time, orchard_budget budget) {
   const rt::Frame& frame = detector->frame =

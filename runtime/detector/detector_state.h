@@ -1,4 +1,5 @@
 #pragma once
+#include "kept_states.h"
 #include "orchard/runtime/detector.h"
 #include "orchard/runtime/motion_monitor.h"
 #include "rounds.h"
@@ -38,6 +39,10 @@ struct Detector::State {
   Motion place_of(const detail::Body& body) const noexcept;  // of a static one
 
   static void run_for_broad(void* context, std::size_t count, Executor::Job job, void* data);
+
+  // kept_states.cpp
+  double last_time() const noexcept;  // that of the last step, or of the first one
+  void keep(const detail::Body& body, BodyState state);
 
   // detector_step.cpp
   void run(double time, const FrameBudget& budget, Frame& frame);
@@ -85,6 +90,7 @@ struct Detector::State {
   detail::Clock clock;
   detail::ShapeTable shapes;
   std::size_t shape_count = 0;
+  std::unique_ptr<detail::KeptStates> kept_states;  // null: the application has them
   detail::BodyTable bodies;
   detail::HalfSpaces halves;
   detail::Places places;

@@ -73,7 +73,7 @@ bool is_point(const Vec3& p) noexcept { return is_coordinate(p[0]) && is_coordin
 ShapeId ShapeTable::add(Shape&& shape) {
   shapes_.push_back(std::move(shape));
   Shape& kept = shapes_.back();
-  if (kept.kind != ShapeKind::tree) kept.tree = kept.own;
+  if (!kept.own.blocks.empty()) kept.tree = kept.own;
   kept.prepared = PreparedTree(kept.tree);
   return static_cast<ShapeId>(shapes_.size() - 1);
 }
@@ -81,6 +81,18 @@ ShapeId ShapeTable::add(Shape&& shape) {
 ShapeId ShapeTable::add_tree(const TreeView& tree) {
   if (structure_fault(tree) != nullptr) return kNoShape;
   Shape shape;
+  describe(tree, shape);
+  return add(std::move(shape));
+}
+
+ShapeId ShapeTable::add_tree(PackedSphereTree&& tree) {
+  Shape shape;
+  shape.own = std::move(tree);
+  describe(shape.own, shape);
+  return add(std::move(shape));
+}
+
+void ShapeTable::describe(const TreeView& tree, Shape& shape) {
   shape.tree = tree;
   const SiblingBlock& root = tree.blocks[0];
   shape.center = Vec3{double{root.x[0]}, double{root.y[0]}, double{root.z[0]}} + tree.origin;
@@ -88,7 +100,6 @@ ShapeId ShapeTable::add_tree(const TreeView& tree) {
   shape.reach = double{root.radius[0]} + tree.vertex_error;
   shape.reach += 1e-15 * (shape.reach + length(shape.center));
   shape.pieces = pieces_of(tree);
-  return add(std::move(shape));
 }
 
 ShapeId ShapeTable::add_round(const Vec3& p, const Vec3& q, double radius) {

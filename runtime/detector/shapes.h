@@ -16,7 +16,7 @@ enum class ShapeKind : std::uint8_t {
 
 struct Shape {
   ShapeKind kind = ShapeKind::tree;
-  PackedSphereTree own;      // what the tree of a box, or of a round shape's segment, views
+  PackedSphereTree own;      // what `tree` views, if it is that of a box, of a round shape's segment, or of a file
   TreeView tree;             // the surface; of a round shape the segment, for sweeps
   PreparedTree prepared;     // the same
   Vec3 p{}, q{};             // of a box: p is half of its lengths
@@ -31,6 +31,7 @@ struct Shape {
 class ShapeTable {
  public:
   ShapeId add_tree(const TreeView& tree);
+  ShapeId add_tree(PackedSphereTree&& tree);
   ShapeId add_round(const Vec3& p, const Vec3& q, double radius);
   ShapeId add_box(const Vec3& half_lengths);
 
@@ -39,6 +40,7 @@ class ShapeTable {
   std::size_t memory_bytes() const noexcept;
 
  private:
+  static void describe(const TreeView& tree, Shape& shape);
   ShapeId add(Shape&& shape);
   std::deque<Shape> shapes_;
 };

@@ -135,4 +135,37 @@ TEST(CDetector, HasTheOtherCallsToo) {
   EXPECT_EQ(orchard_detector_refused(w.detector, 0), a.index);
 }
 
+TEST(CDetector, KeepsStatesWhereThereIsNoSource) {
+  const orchard_detector_options options = orchard_default_detector();
+  orchard_detector* const detector = orchard_detector_new(nullptr, nullptr, &options);
+  const char* error = nullptr;
+  EXPECT_EQ(orchard_detector_load(detector, "no such file", &error), ORCHARD_NO_SHAPE);
+  EXPECT_NE(error, nullptr);
+  const double center[3] = {0, 0, 0};
+  const orchard_part part = {orchard_detector_add_sphere(detector, 1, center), orchard_identity()};
+  const orchard_body_options with = orchard_default_body();
+  const orchard_body a = orchard_detector_add_body(detector, &part, 1, &with),
+                     b = orchard_detector_add_body(detector, &part, 1, &with);
+  orchard_pose place = orchard_identity();
+  place.translation[1] = 50;
+  const orchard_body still = orchard_detector_add_static(detector, &part, 1, &place, &with);
+  orchard_body_state state = orchard_default_state();
+  state.pose.translation[0] = 10;
+  state.velocity[0] = -100;
+  EXPECT_EQ(orchard_detector_set_state(detector, b, &state), 1);
+  EXPECT_EQ(orchard_detector_set_state(detector, still, &state), 0);
+  EXPECT_EQ(orchard_detector_step(detector, 0, kNoLimit).events, 0u);
+  EXPECT_EQ(orchard_detector_step(detector, 0.07, kNoLimit).events, 0u);
+  EXPECT_EQ(orchard_detector_step(detector, 0.09, kNoLimit).events, 2u);  // at 0.08 and at 0.09
+  EXPECT_NEAR(orchard_detector_state(detector, b).pose.translation[0], 1, 1e-12);
+  const double velocity[3] = {0, 100, 0};
+  EXPECT_EQ(orchard_detector_set_velocity(detector, a, velocity), 1);
+  EXPECT_EQ(orchard_detector_step(detector, 0.11, kNoLimit).events, 2u);  // stays, and ends
+  EXPECT_EQ(orchard_detector_state(detector, a).velocity[1], 100);
+  EXPECT_NEAR(orchard_detector_state(detector, b).pose.translation[0], -1, 1e-12);
+  EXPECT_EQ(orchard_detector_moves(detector, a), 1);
+  EXPECT_EQ(orchard_detector_moves(detector, still), 0);
+  orchard_detector_free(detector);
+}
+
 }  // namespace

@@ -62,6 +62,8 @@ void push(const std::array<double, 3>& place, const std::array<double, 3>& norma
 extern std::size_t count;
 extern bool running;
 extern double now;
+extern std::vector<BodyState> starts;
 extern std::vector<Pose> bent;
+Vec3 reflected(const Vec3& velocity, const Vec3& normal);
 void move(std::vector<BodyState>& states, double time);
 void respond(const PairEvent& event);

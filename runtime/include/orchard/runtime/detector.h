@@ -11,16 +11,16 @@
 #include "orchard/runtime/contacts.h"
 #include "orchard/runtime/executor.h"
 #include "orchard/runtime/narrow_phase.h"
+#include "orchard/runtime/tree_file.h"
 
 // The whole detector of the dissertation's Fig. 3.2 in one object: broad phase, narrow phase, and a schedule that keeps
 // to a budget.
 //
-//   Detector world(states_of(states), {.time_step = 1.0 / 60});     // states: a vector of BodyState, by BodyIndex
-//   const ShapeId hull = world.add_shape(tree);
-//   const BodyId ship = world.add_body({{hull}});
+//   Detector world({.time_step = 1.0 / 60});
+//   const ShapeId hull = world.load_shape("hull.orchard");
+//   const BodyId ship = world.add_body(hull, {.velocity = {1, 0, 0}});
 //   while (running) {
-//     move(states, time);
-//     for (const PairEvent& event : world.step(time, {.work = 100'000}).events) respond(event);
+//     for (const PairEvent& event : world.step(time, {.work = 100'000}).events) respond(event);    // set_velocity(..)
 //   }
 namespace orchard::runtime {
 
@@ -49,7 +49,8 @@ struct BodyState {
 // step() only, in the thread that called this.
 using StateSource = std::function<void(double time, std::span<const BodyIndex> bodies, std::span<BodyState> states)>;
 
-// For an application that keeps all states as values, by BodyIndex, as of the time it calls step() with.
+// For an application that keeps all states as values, by BodyIndex, as of the time it calls step() with. The vector is
+// larger than any index of a body that moves.
 StateSource states_of(const std::vector<BodyState>& values);
 
 struct BodyOptions {
@@ -193,6 +194,9 @@ struct StepLoad {
 // belongs to one thread at a time.
 class Detector {
  public:
+  // The detector keeps the states of bodies, and moves them: see set_state().
+  explicit Detector(const DetectorOptions& options = {});
+  // The application knows where its bodies are, and is asked when something depends on it.
   explicit Detector(StateSource source, const DetectorOptions& options = {});
   Detector(Detector&&) noexcept;
   Detector& operator=(Detector&&) noexcept;
@@ -201,6 +205,8 @@ class Detector {
   // Shapes. kNoShape if structure_fault(tree), or a number is not finite, or a length is negative (a half-length of 0
   // is a flat box). Trees outlive the detector, unchanged but for what FlexibleTree does between steps.
   ShapeId add_shape(const TreeView& tree);
+  // A tree of its own. kNoShape if there is no such file, or no tree in it; `status` says why.
+  ShapeId load_shape(const char* path, LoadStatus* status = nullptr);
   ShapeId add_sphere(double radius, const Vec3& center = {});
   ShapeId add_capsule(const Vec3& p, const Vec3& q, double radius);  // the points within `radius` of the segment
   ShapeId add_box(const Vec3& half_lengths);                         // around the origin, along the axes
@@ -211,6 +217,8 @@ class Detector {
   BodyId add_body(std::initializer_list<BodyPart> parts, const BodyOptions& options = {}) {
     return add_body(std::span(parts.begin(), parts.size()), options);
   }
+  // Of one part, where the detector keeps the states (else kNoBody): there, and moving on, from the last step on.
+  BodyId add_body(ShapeId shape, const BodyState& state, const BodyOptions& options = {});
   // Never asked for.
   BodyId add_static(std::span<const BodyPart> parts, const Pose& pose, const BodyOptions& options = {});
   BodyId add_static(std::initializer_list<BodyPart> parts, const Pose& pose, const BodyOptions& options = {}) {
@@ -225,11 +233,17 @@ class Detector {
   bool cancel(BodyId body);    // the promise last given holds no longer
   bool teleport(BodyId body);  // the source gives the new place from now on; a touch ends, and no sweep leads there
   bool move_static(BodyId body, const Pose& pose);
+  // Where the detector keeps the states. From the time of the last step on (before the first one: from `start`) the
+  // body is there, and goes straight on at `velocity` without turning, until it is told otherwise. Without `watch` this
+  // cancels what was promised; with it, only what does not hold is. A body that sleeps sleeps on, there.
+  bool set_state(BodyId body, const BodyState& state);
+  bool set_velocity(BodyId body, const Vec3& velocity);              // from where it is now
   bool set_local(BodyId body, std::size_t part, const Pose& local);  // articulated bodies: at any time
   bool set_importance(BodyId body, std::uint8_t importance);
   bool set_groups(BodyId body, std::uint32_t group, std::uint32_t mask);
   // It does not move until wake(): its source is asked once more, at the next step, and then no more. Pairs of it with
-  // what does not move either keep their answers at no cost.
+  // what does not move either keep their answers at no cost. Where the detector keeps the states it stops where it is,
+  // and wakes at rest.
   bool sleep(BodyId body);
   bool wake(BodyId body);
   bool asleep(BodyId body) const noexcept;
@@ -239,6 +253,12 @@ class Detector {
   void set_filter(PairFilter filter);
   void set_executor(const Executor& executor) noexcept;
 
+  // At the time of the last step, where the detector keeps the states; else as of when it was asked for last. What is
+  // static, half-spaces included, is at rest.
+  BodyState state(BodyId body) const noexcept;
+  bool moves(BodyId body) const noexcept;  // neither static nor a half-space
+  // No point of the shape is farther from the shape's origin. 0: no such shape.
+  double reach(ShapeId shape) const noexcept;
   bool contains(BodyId body) const noexcept;
   std::size_t size() const noexcept;  // bodies, half-spaces included
   bool valid() const noexcept;        // the options are

@@ -88,13 +88,18 @@ typedef struct orchard_frame {
 orchard_body_options orchard_default_body(void);
 orchard_detector_options orchard_default_detector(void);
 
-/* Null if there is no memory. The source's context outlives it. */
+orchard_body_state orchard_default_state(void); /* at rest at the origin for ever */
+
+/* Null if there is no memory. The source's context outlives it. Without a source (null) the detector keeps the states
+ * and moves the bodies: see orchard_detector_set_state. */
 orchard_detector* orchard_detector_new(orchard_state_source source, void* context,
                                        const orchard_detector_options* options);
 void orchard_detector_free(orchard_detector* detector); /* null is fine */
 
 /* ORCHARD_NO_SHAPE, or a body whose index is ORCHARD_NO_BODY: what was handed over is not valid, or no memory. */
 orchard_shape orchard_detector_add_tree(orchard_detector* detector, const orchard_tree* tree);
+/* A tree of the detector's own; `error`, unless null, gets a sentence if there is none, else null. */
+orchard_shape orchard_detector_load(orchard_detector* detector, const char* path, const char** error);
 orchard_shape orchard_detector_add_sphere(orchard_detector* detector, double radius, const double center[3]);
 orchard_shape orchard_detector_add_capsule(orchard_detector* detector, const double p[3], const double q[3],
                                            double radius);
@@ -114,10 +119,16 @@ int orchard_detector_move_static(orchard_detector* detector, orchard_body body, 
 int orchard_detector_set_local(orchard_detector* detector, orchard_body body, size_t part, const orchard_pose* local);
 int orchard_detector_set_importance(orchard_detector* detector, orchard_body body, uint8_t importance);
 int orchard_detector_set_groups(orchard_detector* detector, orchard_body body, uint32_t group, uint32_t mask);
+/* Of detectors without a source: from the time of the last step on the body is there, and goes straight on. */
+int orchard_detector_set_state(orchard_detector* detector, orchard_body body, const orchard_body_state* state);
+int orchard_detector_set_velocity(orchard_detector* detector, orchard_body body, const double velocity[3]);
 int orchard_detector_sleep(orchard_detector* detector, orchard_body body);
 int orchard_detector_wake(orchard_detector* detector, orchard_body body);
 int orchard_detector_set_filter(orchard_detector* detector, orchard_pair_filter filter, void* context); /* or null */
 size_t orchard_detector_size(const orchard_detector* detector);
+/* At the last step without a source, else as of when it was asked for last; what is static is at rest. */
+orchard_body_state orchard_detector_state(const orchard_detector* detector, orchard_body body);
+int orchard_detector_moves(const orchard_detector* detector, orchard_body body); /* neither static nor a half-space */
 
 orchard_frame orchard_detector_step(orchard_detector* detector, double time, orchard_budget budget);
 /* Of the last step; index < events. */

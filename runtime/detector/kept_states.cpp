@@ -1,0 +1,70 @@
+#include "kept_states.h"
+
+#include "detector_state.h"
+
+namespace orchard::runtime {
+namespace detail {
+
+void KeptStates::put(BodyIndex body, double time, const BodyState& state) {
+  grow(told_, std::size_t{body} + 1);
+  told_[body] = {state, time};
+}
+
+BodyState KeptStates::at(double time, BodyIndex body) const noexcept {
+  const Told& told = told_[body];
+  BodyState state = told.state;
+  state.pose.translation = Vec3(state.pose.translation) + (time - told.time) * state.velocity;
+  return state;
+}
+
+void KeptStates::fill(double time, std::span<const BodyIndex> bodies, std::span<BodyState> states) const noexcept {
+  for (std::size_t i = 0; i < bodies.size(); ++i) states[i] = at(time, bodies[i]);
+}
+
+}  // namespace detail
+
+double Detector::State::last_time() const noexcept { return clock.time(std::max<Step>(answered, 0)); }
+
+// What sleeps is at rest.
+void Detector::State::keep(const detail::Body& body, BodyState state) {
+  if (body.asleep) state.velocity = {};
+  kept_states->put(body.id.index, last_time(), state);
+}
+
+BodyId Detector::add_body(ShapeId shape, const BodyState& state, const BodyOptions& options) {
+  if (!state_->kept_states) return kNoBody;
+  const BodyId id = add_body({{shape}}, options);
+  if (id != kNoBody) set_state(id, state);
+  return id;
+}
+
+bool Detector::set_state(BodyId body, const BodyState& state) {
+  State& s = *state_;
+  detail::Body* found = s.find(body);
+  if (found == nullptr || !s.kept_states || !moves(body)) return false;
+  found->frozen = false;
+  return s.or_fail([&] {
+    s.keep(*found, state);
+    if (!s.options.watch || found->asleep) s.update_again(*found);
+    return true;
+  });
+}
+
+bool Detector::set_velocity(BodyId body, const Vec3& velocity) {
+  BodyState now = state(body);
+  now.velocity = velocity;
+  return set_state(body, now);
+}
+
+BodyState Detector::state(BodyId body) const noexcept {
+  const State& s = *state_;
+  if (!s.contains(body) || detail::is_half_space(body.index)) return {};
+  if (s.kept_states && !s.bodies[body.index].is_static) return s.kept_states->at(s.last_time(), body.index);
+  return s.bodies.state(body.index);
+}
+
+bool Detector::moves(BodyId body) const noexcept {
+  return state_->contains(body) && !detail::is_half_space(body.index) && !state_->bodies[body.index].is_static;
+}
+
+}  // namespace orchard::runtime

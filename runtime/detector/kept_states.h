@@ -1,0 +1,25 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "orchard/runtime/detector.h"
+
+namespace orchard::runtime::detail {
+
+// Of an application that leaves its bodies' states to the detector: each goes straight on from when it was told.
+class KeptStates {
+ public:
+  void put(BodyIndex body, double time, const BodyState& state);
+  BodyState at(double time, BodyIndex body) const noexcept;
+  void fill(double time, std::span<const BodyIndex> bodies, std::span<BodyState> states) const noexcept;
+  std::size_t memory_bytes() const noexcept { return told_.capacity() * sizeof(Told); }
+
+ private:
+  struct Told {
+    BodyState state;
+    double time = 0;
+  };
+  std::vector<Told> told_;  // by BodyIndex
+};
+
+}  // namespace orchard::runtime::detail
