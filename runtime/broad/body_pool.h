@@ -241,6 +241,14 @@ inline void prefetch_to_read(const void* where) noexcept {
 #endif
 }
 
+// All lines of an object.
+template <typename T>
+void prefetch_all(const T& object) noexcept {
+  constexpr std::size_t kLine = 64;
+  const char* const begin = reinterpret_cast<const char*>(&object);
+  for (std::size_t at = 0; at < sizeof(T); at += kLine) prefetch(begin + at);
+}
+
 template <typename T>
 std::size_t bytes_of(const std::vector<T>& v) noexcept {
   return v.capacity() * sizeof(T);

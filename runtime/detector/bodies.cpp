@@ -89,7 +89,10 @@ void BodyTable::leave(BodyIndex body) noexcept { bodies_[body].id = kNoBody; }
 
 void BodyTable::ask(Step step, double time, std::span<const BodyIndex> bodies, const Executor& executor) {
   asking_.clear();
-  for (const BodyIndex index : bodies) {
+  constexpr std::size_t kAhead = 8;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (i + kAhead < bodies.size()) prefetch_all(bodies_[bodies[i + kAhead]]);
+    const BodyIndex index = bodies[i];
     Body& body = bodies_[index];
     if (body.asked == step || body.is_static || body.frozen) continue;
     body.known_before = body.asked;
@@ -102,7 +105,15 @@ void BodyTable::ask(Step step, double time, std::span<const BodyIndex> bodies, c
   constexpr std::size_t kPerJob = 256;
   auto take_some = [&](std::size_t job) {
     const std::size_t end = std::min(asking_.size(), (job + 1) * kPerJob);
-    for (std::size_t i = job * kPerJob; i < end; ++i) take_answer(step, asking_[i], answers_[i]);
+    for (std::size_t i = job * kPerJob; i < end; ++i) {
+      if (i + kAhead < end) {
+        const BodyIndex ahead = asking_[i + kAhead];
+        prefetch_all(bodies_[ahead]), prefetch_all(states_[ahead]), prefetch_all(before_[ahead]);
+        prefetch(&whereabouts_[ahead]);
+      }
+      if (i + kAhead / 2 < end) prefetch_part(asking_[i + kAhead / 2]);
+      take_answer(step, asking_[i], answers_[i]);
+    }
   };
   run_jobs(executor, (asking_.size() + kPerJob - 1) / kPerJob, take_some);
 }

@@ -84,6 +84,15 @@ class BodyTable {
   BodyState& state(BodyIndex body) noexcept { return states_[body]; }
   const BodyState& state(BodyIndex body) const noexcept { return states_[body]; }
   const Pose& before(BodyIndex body) const noexcept { return before_[body]; }
+  // For loops over pairs, whose bodies are anywhere: first the one, some pairs later the other.
+  void prefetch_body(BodyIndex body) const noexcept {
+    prefetch_all(bodies_[body]);
+    prefetch_all(states_[body].pose);
+  }
+  void prefetch_whereabouts(BodyIndex body) const noexcept { prefetch_all(whereabouts_[body]); }
+  void prefetch_part(BodyIndex body) const noexcept {
+    if (!bodies_[body].parts.empty()) prefetch_all(bodies_[body].parts[0]);
+  }
   const Whereabouts& whereabouts(BodyIndex body) const noexcept { return whereabouts_[body]; }
   // Who calls for what ask() does not see: another pose of a body at rest, another place of a part, other triangles.
   void moved(BodyIndex body, const Pose& before) noexcept;

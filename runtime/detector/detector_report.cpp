@@ -11,6 +11,7 @@ using detail::Record;
 namespace {
 
 constexpr std::size_t kPerJob = 512;  // records
+constexpr std::size_t kAhead = 8;     // of which so many are on their way from memory
 
 }  // namespace
 
@@ -69,6 +70,11 @@ void Detector::State::open_records(Step step) {
   auto look_at_some = [&](std::size_t job) {
     const std::size_t end = std::min(active.size(), (job + 1) * kPerJob);
     for (std::size_t i = job * kPerJob; i < end; ++i) {
+      if (i + kAhead < end) {
+        const auto& next = records(active[i + kAhead]);
+        detail::prefetch_all(records[next.record]);
+        places.prefetch_bodies(next.pair);
+      }
       Record& record = records[records(active[i]).record];
       allowed(record);
       bool over = false;
@@ -130,6 +136,13 @@ void Detector::State::tally(std::size_t job, Tally& tally) noexcept {
   const std::size_t end = std::min(active.size(), (job + 1) * kPerJob);
   tally = {};
   for (std::size_t i = job * kPerJob; i < end; ++i) {
+    if (i + kAhead < end) {
+      const auto& next = records(active[i + kAhead]);
+      detail::prefetch_all(records[next.record]);
+      places.prefetch_bodies(next.pair);
+      bodies.prefetch_whereabouts(next.pair.a);
+      if (!detail::is_half_space(next.pair.b)) bodies.prefetch_whereabouts(next.pair.b);
+    }
     auto& known = records(active[i]);
     Record& record = records[known.record];
     // Of what is not allowed it is certain that nothing is asked.

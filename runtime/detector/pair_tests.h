@@ -36,6 +36,14 @@ class Places {
   void place_sphere(BodyIndex body, std::uint32_t part, PlacedPart& placed) const noexcept;
   // At the step before `now`; only of bodies that have been asked for then, or rest since before.
   void place_before(BodyIndex body, std::uint32_t part, Step now, PlacedPart& placed) const noexcept;
+  void prefetch_bodies(const BodyPair& pair) const noexcept {
+    bodies_->prefetch_body(pair.a);
+    if (!is_half_space(pair.b)) bodies_->prefetch_body(pair.b);
+  }
+  void prefetch_parts(const BodyPair& pair) const noexcept {
+    bodies_->prefetch_part(pair.a);
+    if (!is_half_space(pair.b)) bodies_->prefetch_part(pair.b);
+  }
   const HalfSpace& half_space(BodyIndex index) const noexcept { return halves_->half_space(index); }
   const BodyTable& bodies() const noexcept { return *bodies_; }
 

@@ -18,9 +18,12 @@ using detail::Vec3;
 
 namespace {
 
-// A clearance costs some three tests: it is asked for where it lasts for more steps than that, and after each time that
-// it was asked for in vain, half as often.
-constexpr double kAhead = 8;            // steps that a clearance is asked for
+// A search that leaves a clearance goes on below what is closer than that, so it costs more the more is asked for, and
+// many times as much where most of both bodies is so close. After each time that it was asked for in vain, it is half
+// as often.
+constexpr double kMinAhead = 2;        // steps that a clearance is asked for,
+constexpr std::uint8_t kMaxAhead = 6;  // and how many more at most, one more each time that it is had
+constexpr double kAlmost = 1 - 1e-3;
 constexpr std::uint8_t kMaxMisses = 6;  // 2^6 tests without asking
 constexpr std::size_t kTriangles = 3;   // witnesses that are tried by themselves, before their leaves are
 constexpr std::uint8_t kFrontsBeforeRoots = 4;
@@ -105,32 +108,44 @@ struct Coherence {
     if (pair.front_ != nullptr) return search_front(budget);
     const double step = memory.seen ? moved / (memory.answers + 1) : 0;
     keep_place();
-    std::uint64_t spent = 0;
     if (memory.wait > 0) {
       --memory.wait;
     } else if (step > 0 && !fast) {
-      const double ahead = kAhead * step * a.scale;
-      DistanceQuery& query = workspace.distance;
-      query.bind(pair.a(), pair.b());
-      query.start_within(a, b, ahead);
+      return search_wide(step, budget);
+    }
+    return remember(runtime::collide(workspace, pair, a, b, budget));
+  }
+
+  // For a clearance that lasts some steps.
+  Verdict search_wide(double step, const Budget& budget) noexcept {
+    NarrowPhase& narrow = workspace.narrow;
+    narrow.bind(pair.a(), pair.b());
+    narrow.start(a, b);
+    std::uint64_t spent = 0;
+    if (!narrow.finished() && PairAccess::has_last_level(narrow)) {
       // Half of what is limited: the answer itself comes first.
-      query.refine(unlimited(budget) ? Budget{} : Budget{budget.pair_tests / 2 + 1});
-      spent = query.work();
-      if (query.finished() && query.lower() > ahead) {
-        memory.clearance = query.lower() / a.scale;
-        memory.witness_count = 0;
-        memory.misses = 0;
-        Verdict verdict = apart(query.lower());
-        verdict.work = spent;
-        return verdict;
-      }
+      const Budget half = unlimited(budget) ? Budget{} : Budget{budget.pair_tests / 2 + 1};
+      PairAccess::search_wide(narrow, (kMinAhead + memory.ahead) * step * a.scale, half);
+      spent = narrow.work();
+    }
+    Verdict verdict = narrow.verdict();
+    if (!narrow.finished()) {
+      const Budget rest = unlimited(budget) ? budget : Budget{budget.pair_tests - std::min(spent, budget.pair_tests)};
+      verdict = runtime::collide(workspace, pair, a, b, rest);
+      verdict.work += spent;
+    }
+    remember(verdict);
+    const double lasts = memory.clearance / step;
+    if (lasts > kMinAhead * kAlmost) {
+      const bool more = lasts > (kMinAhead + memory.ahead) * kAlmost;
+      if (!more) memory.ahead = static_cast<std::uint8_t>(lasts > kMinAhead ? lasts - kMinAhead : 0);
+      if (more && memory.ahead < kMaxAhead) ++memory.ahead;
+      memory.misses = 0;
+    } else {
+      memory.ahead = 0;
       if (memory.misses < kMaxMisses) ++memory.misses;
       memory.wait = static_cast<std::uint8_t>(1u << memory.misses);
     }
-    Budget rest = budget;
-    if (!unlimited(budget)) rest.pair_tests -= std::min(spent, rest.pair_tests);
-    Verdict verdict = remember(runtime::collide(workspace, pair, a, b, rest));
-    verdict.work += spent;
     return verdict;
   }
 

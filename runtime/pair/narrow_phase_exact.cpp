@@ -3,6 +3,7 @@
 #include "budget_tracker.h"
 #include "orchard/runtime/narrow_phase.h"
 #include "tree/ball_slab_block.h"
+#include "tree/front_block.h"
 
 // The last level: depth first through the two trees of triangles, the larger ball slab of a pair opened first and the
 // deepest overlap looked at first, so that a "yes" comes early.
@@ -40,6 +41,7 @@ bool NarrowPhase::refine_ball_slabs(BudgetTracker& tracker) noexcept {
     const BallSlabPair pair = stack_[--stack_size_];
     const std::uint32_t a = child_of(first_.tree, pair.a), b = child_of(second_.tree, pair.b);
     if (a & b & kLeafBit) {
+      if (wide_ > 0 && leaves_apart(pair, tracker)) continue;
       const std::uint64_t before = triangle_tests_;
       const bool meet = test_triangles(pair);
       tracker.spend((triangle_tests_ - before) * kTriangleTestCost);
@@ -63,9 +65,9 @@ void NarrowPhase::expand(const BallSlabPair& pair, bool second) noexcept {
   BallSlabGaps gaps;
   if (second) {
     detail::ball_slab_gaps(detail::ball_slab_at(block_of(first_.tree, pair.a), pair.a % kBlockWidth),
-                           tree.ball_slabs[block], &placement_, placement_.margin, gaps);
+                           tree.ball_slabs[block], &placement_, placement_.margin + wide_, gaps);
   } else {
-    detail::ball_slab_gaps(pair.second, tree.ball_slabs[block], nullptr, placement_.margin, gaps);
+    detail::ball_slab_gaps(pair.second, tree.ball_slabs[block], nullptr, placement_.margin + wide_, gaps);
   }
   pair_tests_ += static_cast<std::uint64_t>(std::bit_width(gaps.used));
   std::uint32_t order[kBlockWidth], count = 0;
@@ -77,9 +79,26 @@ void NarrowPhase::expand(const BallSlabPair& pair, bool second) noexcept {
   }
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t node = block * kBlockWidth + order[i];
-    stack_[stack_size_++] =
-        second ? BallSlabPair{pair.a, node, gaps.slab(order[i])} : BallSlabPair{node, pair.b, pair.second};
+    stack_[stack_size_++] = second ? BallSlabPair{pair.a, node, gaps.slab(order[i]), gaps.gap[order[i]] + wide_}
+                                   : BallSlabPair{node, pair.b, pair.second, gaps.gap[order[i]] + wide_};
   }
+}
+
+// Of leaves: along a direction that tells how far apart they are.
+bool NarrowPhase::leaves_apart(const BallSlabPair& pair, BudgetTracker& tracker) noexcept {
+  constexpr double kRounding = 1e-6;  // of a few sums of numbers up to gap and width
+  const double by_slabs = double{pair.gap} - kRounding * (double{pair.gap} + double{wide_});
+  if (by_slabs > 0) {
+    least_gap_ = std::min(least_gap_, by_slabs);
+    return true;
+  }
+  const TriangleBlock& lanes = first_.tree.triangle_blocks[child_of(first_.tree, pair.a) & ~kLeafBit];
+  const TriangleBlock& rows = second_.tree.triangle_blocks[child_of(second_.tree, pair.b) & ~kLeafBit];
+  const detail::BallSlab slab = detail::ball_slab_at(block_of(first_.tree, pair.a), pair.a % kBlockWidth);
+  const float gap = detail::leaf_axis({lanes, rows, slab, pair.second}, placement_, {1, 0, 0}, wide_).gap;
+  tracker.spend(kBlockWidth);
+  least_gap_ = std::min(least_gap_, std::max(0.0, double{gap}));
+  return gap > 0;
 }
 
 bool NarrowPhase::test_triangles(const BallSlabPair& pair) noexcept {

@@ -168,7 +168,7 @@ TEST(Coherent, GivesTheAnswersOfFreshQueriesForLessWork) {
   const auto all = bodies();
   const auto trees = prepared(all);
   Workspace workspace, fresh;
-  int yes = 0, no = 0, looked = 0;
+  int yes = 0, no = 0, looked = 0, bounds = 0;
   const std::uint64_t begin = orchard::test::first_seed();
   for (std::uint64_t seed = begin; seed < begin + 60 * orchard::test::more(); ++seed) {
     Draw draw(seed);
@@ -197,6 +197,11 @@ TEST(Coherent, GivesTheAnswersOfFreshQueriesForLessWork) {
       if (again.answer == Answer::no) {
         const Distance measured = distance(fresh, TreePair(trees[i], trees[j]), a, b);
         ASSERT_LE(again.lower_bound, measured.upper) << seed << " " << step;
+        bounds += again.lower_bound > 0;
+        if (orchard::test::more() > 1 && seed % 4 == 0 && step == 20) {
+          const auto of_a = placed_triangles(all[i].tree, a), of_b = placed_triangles(all[j].tree, b);
+          ASSERT_LE(again.lower_bound, surface_distance(of_a, of_b) * (1 + 1e-12L)) << seed;
+        }
       }
       (again.answer == Answer::yes ? yes : no) += 1;
       looked += again.work > 0;
@@ -205,6 +210,7 @@ TEST(Coherent, GivesTheAnswersOfFreshQueriesForLessWork) {
   EXPECT_GT(yes, 500);
   EXPECT_GT(no, 500);
   EXPECT_LT(looked, (yes + no) / 2);
+  EXPECT_GT(bounds, no / 2);
 }
 
 // Jobs on threads of the test's own.

@@ -57,6 +57,7 @@ class TreePair {
     std::uint8_t witness_count = 0;
     std::uint8_t misses = 0;  // clearances that were asked for in vain, in a row
     std::uint8_t wait = 0;    // tests until one is asked for again
+    std::uint8_t ahead = 0;   // steps more than the fewest that it is asked for
     bool seen = false;
     bool close = false;  // the roots did not decide the last search
   };
