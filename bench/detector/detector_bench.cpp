@@ -1,9 +1,9 @@
 // Whole frames of every scene: the detector against other libraries, with one and with two threads, and within budgets.
-//   detector_bench frames BODIES STEPS     a table; rivals that are not installed are left out
+//   detector_bench frames BODIES STEPS            a table; rivals that are not installed are left out
 //   detector_bench threads BODIES STEPS
-//   detector_bench budgets BODIES STEPS
-//   detector_bench own BODIES STEPS        the detector alone, ten times, for a profiler
-// Of all scenes, or with one argument more of that one alone.
+//   detector_bench budgets BODIES STEPS all FRAMES    so many frames of steps that are played forth and back
+//   detector_bench own BODIES STEPS               the detector alone, ten times, for a profiler
+// Of all scenes, or with a scene's name after the steps of that one alone.
 #include <sys/resource.h>
 #include <time.h>
 
@@ -61,9 +61,20 @@ class OrchardFrames {
 
   double processor = 0;  // of the last step, in ms
 
-  runtime::Frame step(int step, const runtime::FrameBudget& budget, Clock::duration& time) {
+  // Frames beyond the recording play it back, then forth again.
+  runtime::Frame step(int frame_number, const runtime::FrameBudget& budget, Clock::duration& time) {
+    const int period = 2 * (scene_.steps - 1), phase = frame_number % period;
+    const bool back = phase >= scene_.steps - 1 && frame_number >= scene_.steps;
+    const int step = phase < scene_.steps ? phase : period - phase;
+    const double now = frame_number * scene_.dt;
+    const auto state_of = [&](std::size_t i) {
+      if (back) return scene_.state_backwards(step, now, i, 8);
+      runtime::BodyState state = scene_.state(step, i, 8);
+      state.expiry += now - step * scene_.dt;
+      return state;
+    };
     for (std::size_t i = 0; i < ids_.size(); ++i) {
-      if (ids_[i] != runtime::kNoBody) values_[ids_[i].index] = scene_.state(step, i, 8);
+      if (ids_[i] != runtime::kNoBody) values_[ids_[i].index] = state_of(i);
     }
     const auto begin = Clock::now();
     const double before = processor_ms();
@@ -74,13 +85,13 @@ class OrchardFrames {
         ids_[i] = scene_.bodies[i].is_static
                       ? detector_->add_static({part}, scene_.poses[static_cast<std::size_t>(step)][i])
                       : detector_->add_body({part}, scene_.bodies[i].options);
-        values_[ids_[i].index] = scene_.state(step, i, 8);
+        values_[ids_[i].index] = state_of(i);
       } else if (!there && ids_[i] != runtime::kNoBody) {
         detector_->remove(ids_[i]);
         ids_[i] = runtime::kNoBody;
       }
     }
-    const runtime::Frame frame = detector_->step(step * scene_.dt, budget);
+    const runtime::Frame frame = detector_->step(now, budget);
     processor = processor_ms() - before;
     time = Clock::now() - begin;
     return frame;
@@ -124,20 +135,29 @@ Run run_rival(const Scene& scene, bench::FrameRival& rival) {
 struct Wanted {
   std::size_t bodies = 1000;
   int steps = 100;
-  std::string scene;  // empty: all
+  std::string scene = "all";
+  int frames = 0;  // 0: as many as steps
 };
 
-std::vector<Scene> scenes_of(const Wanted& wanted) {
-  std::vector<Scene> scenes = runtime::test::every_scene(wanted.bodies, wanted.steps, 1);
-  scenes.push_back(runtime::test::chain(wanted.bodies, wanted.steps, 1));
-  std::erase_if(scenes, [&](const Scene& scene) {
-    return !scene.locals.empty() || (!wanted.scene.empty() && scene.name != wanted.scene);
-  });
-  return scenes;
+// One at a time: a recording of 100,000 bodies takes some 10 MB a step.
+template <typename Visit>
+void for_scenes(const Wanted& wanted, Visit&& visit) {
+  struct Maker {
+    const char* name;
+    Scene (*make)(std::size_t, int, std::uint64_t);
+    std::uint64_t seed;
+  };
+  using namespace runtime::test;
+  for (const auto& [name, make, seed] :
+       {Maker{"flight", flight, 1}, Maker{"falling pile", falling_pile, 2}, Maker{"asteroid field", asteroid_field, 3},
+        Maker{"bouncing box", bouncing_box, 5}, Maker{"conveyor", conveyor, 6}, Maker{"clusters", clusters, 7},
+        Maker{"chain", chain, 1}}) {
+    if (wanted.scene == "all" || wanted.scene == name) visit(make(wanted.bodies, wanted.steps, seed));
+  }
 }
 
 void own(const Wanted& wanted) {
-  for (const Scene& scene : scenes_of(wanted)) {
+  for_scenes(wanted, [&](const Scene& scene) {
     double least = std::numeric_limits<double>::infinity();
     std::uint64_t work = 0;
     for (int round = 0; round < 10; ++round) {
@@ -147,14 +167,14 @@ void own(const Wanted& wanted) {
     }
     const int timed = wanted.steps - 1;
     std::printf("%s: %.3f ms a frame, work %.0f\n", scene.name.c_str(), least / timed, double(work) / timed);
-  }
+  });
 }
 
 void frames(const Wanted& wanted) {
   std::printf(
       "| scene | bodies | pairs a frame | touching | orchard, ms a frame | FCL float | FCL double | Bullet |\n");
   std::printf("|---|---|---|---|---|---|---|---|\n");
-  for (const Scene& scene : scenes_of(wanted)) {
+  for_scenes(wanted, [&](const Scene& scene) {
     const Run ours = run_orchard(scene, {});
     const int timed = wanted.steps - 1;
     std::printf("| %s | %zu | %.0f | %.0f | %.3f |", scene.name.c_str(), wanted.bodies, double(ours.pairs) / timed,
@@ -175,77 +195,95 @@ void frames(const Wanted& wanted) {
     }
     std::printf("\n");
     std::fflush(stdout);
-  }
+  });
 }
 
 void threads(const Wanted& wanted) {
   std::printf("| scene | bodies | ms a frame | with 2 threads |\n|---|---|---|---|\n");
   runtime::test::ThreadPool pool(2);
-  for (const Scene& scene : scenes_of(wanted)) {
+  for_scenes(wanted, [&](const Scene& scene) {
     double one = 1e300, two = 1e300;
-    for (int round = 0; round < 2; ++round) {
+    for (int round = 0; round < 3; ++round) {
       one = std::min(one, run_orchard(scene, {}).ms);
       two = std::min(two, run_orchard(scene, pool.executor()).ms);
     }
     std::printf("| %s | %zu | %.3f | %.2f times as fast |\n", scene.name.c_str(), wanted.bodies,
                 one / (wanted.steps - 1), one / two);
     std::fflush(stdout);
-  }
+  });
 }
 
-long preempted() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return usage.ru_nivcsw;
+// Whether the machine took the thread away since, as far as it tells: by its own count, or by the clock's.
+class Preemption {
+ public:
+  bool happened(Clock::duration time, double processor) const {
+    constexpr double kNoise = 0.02;  // ms between two clocks
+    return switches() != before_ || milliseconds(time) > processor + kNoise;
+  }
+
+ private:
+  static long switches() {
+    rusage usage{};
+    getrusage(RUSAGE_THREAD, &usage);
+    return usage.ru_nivcsw;
+  }
+  long before_ = switches();
+};
+
+double percent(std::uint64_t part, std::uint64_t whole) {
+  return 100.0 * double(part) / double(std::max<std::uint64_t>(whole, 1));
+}
+
+void budget_in_work(const Scene& scene, int count, std::uint64_t work) {
+  OrchardFrames frames(scene, {});
+  std::int64_t beyond = std::numeric_limits<std::int64_t>::min();
+  std::uint64_t certain = 0, pairs = 0;
+  Clock::duration time{};
+  for (int i = 0; i < count; ++i) {
+    const runtime::Frame frame = frames.step(i, {.work = work}, time);
+    beyond = std::max(beyond, static_cast<std::int64_t>(frame.work) - static_cast<std::int64_t>(work));
+    certain += frame.certain, pairs += frame.pairs;
+  }
+  std::printf(" %llu | %lld | %.1f %% |", static_cast<unsigned long long>(work), static_cast<long long>(beyond),
+              percent(certain, pairs));
+  std::fflush(stdout);
+}
+
+void budget_in_time(const Scene& scene, int count, double limit) {
+  OrchardFrames frames(scene, {});
+  std::vector<double> calm, disturbed;
+  std::uint64_t certain = 0, pairs = 0;
+  Clock::duration time{};
+  for (int i = 0; i < count; ++i) {
+    const Preemption preemption;
+    const runtime::Frame frame =
+        frames.step(i, {.time = std::chrono::nanoseconds(static_cast<std::int64_t>(limit * 1e6))}, time);
+    if (i == 0) continue;
+    certain += frame.certain, pairs += frame.pairs;
+    (preemption.happened(time, frames.processor) ? disturbed : calm).push_back(milliseconds(time));
+  }
+  std::sort(calm.begin(), calm.end());
+  const auto at = [&](double share) {
+    return calm.empty() ? 0.0 : calm[std::min(calm.size() - 1, static_cast<std::size_t>(share * double(calm.size())))];
+  };
+  const double worst = disturbed.empty() ? 0 : *std::max_element(disturbed.begin(), disturbed.end());
+  std::printf(" %.3f | %.3f | %.3f | %.3f | %.3f | %zu (%.3f) | %.1f %% |\n", limit, at(0.5), at(0.99), at(0.999),
+              at(1), disturbed.size(), worst, percent(certain, pairs));
+  std::fflush(stdout);
 }
 
 // The budget is half of what a frame takes in the mean without one.
 void budgets(const Wanted& wanted) {
   std::printf(
-      "| scene | bodies | work a frame | budget | most beyond it | certain | budget, ms | p50 | p99 | p99.9 | max | "
-      "preempted "
-      "frames | certain |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-  for (const Scene& scene : scenes_of(wanted)) {
+      "| scene | bodies | frames | work a frame | budget | most beyond it | certain | budget, ms | p50 | p99 | p99.9 | "
+      "max | preempted (max) | certain |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  for_scenes(wanted, [&](const Scene& scene) {
+    const int timed = wanted.steps - 1, count = std::max(wanted.frames, wanted.steps);
     const Run full = run_orchard(scene, {});
-    const std::uint64_t work = full.work / static_cast<std::uint64_t>(2 * (wanted.steps - 1));
-    OrchardFrames counted(scene, {});
-    std::int64_t beyond = std::numeric_limits<std::int64_t>::min();
-    std::uint64_t certain = 0, pairs = 0;
-    Clock::duration time{};
-    for (int step = 0; step < wanted.steps; ++step) {
-      const runtime::Frame frame = counted.step(step, {.work = work}, time);
-      beyond = std::max(beyond, static_cast<std::int64_t>(frame.work) - static_cast<std::int64_t>(work));
-      certain += frame.certain, pairs += frame.pairs;
-    }
-    std::printf("| %s | %zu | %.0f | %llu | %lld | %.1f %% |", scene.name.c_str(), wanted.bodies,
-                double(full.work) / (wanted.steps - 1), static_cast<unsigned long long>(work),
-                static_cast<long long>(beyond), 100.0 * double(certain) / double(std::max<std::uint64_t>(pairs, 1)));
-    const double limit = std::max(0.05, full.ms / (2 * (wanted.steps - 1)));
-    OrchardFrames timed(scene, {});
-    std::vector<double> calm;
-    int disturbed = 0;
-    certain = pairs = 0;
-    for (int step = 0; step < wanted.steps; ++step) {
-      const long before = preempted();
-      const runtime::Frame frame =
-          timed.step(step, {.time = std::chrono::nanoseconds(static_cast<std::int64_t>(limit * 1e6))}, time);
-      if (step == 0) continue;
-      certain += frame.certain, pairs += frame.pairs;
-      if (preempted() != before) {
-        ++disturbed;
-      } else {
-        calm.push_back(milliseconds(time));
-      }
-    }
-    std::sort(calm.begin(), calm.end());
-    const auto at = [&](double share) {
-      return calm.empty() ? 0.0
-                          : calm[std::min(calm.size() - 1, static_cast<std::size_t>(share * double(calm.size())))];
-    };
-    std::printf(" %.3f | %.3f | %.3f | %.3f | %.3f | %d | %.1f %% |\n", limit, at(0.5), at(0.99), at(0.999), at(1),
-                disturbed, 100.0 * double(certain) / double(std::max<std::uint64_t>(pairs, 1)));
-    std::fflush(stdout);
-  }
+    std::printf("| %s | %zu | %d | %.0f |", scene.name.c_str(), wanted.bodies, count, double(full.work) / timed);
+    budget_in_work(scene, count, full.work / static_cast<std::uint64_t>(2 * timed));
+    budget_in_time(scene, count, std::max(0.05, full.ms / (2 * timed)));
+  });
 }
 
 }  // namespace
@@ -256,10 +294,11 @@ int main(int argc, char** argv) {
   if (argc > 2) wanted.bodies = static_cast<std::size_t>(std::max(1, std::atoi(argv[2])));
   if (argc > 3) wanted.steps = std::max(3, std::atoi(argv[3]));
   if (argc > 4) wanted.scene = argv[4];
+  if (argc > 5) wanted.frames = std::atoi(argv[5]);
   if (what == "frames") return frames(wanted), 0;
   if (what == "threads") return threads(wanted), 0;
   if (what == "budgets") return budgets(wanted), 0;
   if (what == "own") return own(wanted), 0;
-  std::fprintf(stderr, "usage: detector_bench frames|threads|budgets|own [BODIES [STEPS [SCENE]]]\n");
+  std::fprintf(stderr, "usage: detector_bench frames|threads|budgets|own [BODIES [STEPS [SCENE|all [FRAMES]]]]\n");
   return 2;
 }

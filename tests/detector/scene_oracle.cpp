@@ -1,5 +1,6 @@
 #include "scene_oracle.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace orchard::runtime::test {
@@ -119,31 +120,43 @@ Meeting meeting(const Solid& a, const ScenePlane& plane) {
 
 }  // namespace
 
+// The boxes of all parts, along x.
 StepTruth SceneOracle::at(int step) const {
   const Scene& scene = *scene_;
-  std::vector<std::vector<Solid>> bodies(scene.bodies.size());
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const SceneBody& body = scene.bodies[i];
-    if (step < body.birth || step >= body.death) continue;
-    for (std::size_t k = 0; k < body.parts.size(); ++k) {
-      const Pose pose = compose(scene.poses[static_cast<std::size_t>(step)][i], scene.local(step, i, k));
-      bodies[i].push_back(solid_of(scene.shapes[body.parts[k]], made_rigid(pose).value()));
-    }
-  }
+  struct Part {
+    std::size_t body, shape;
+    Pose pose;
+    Solid box;  // without its triangles: there may be a hundred thousand bodies
+  };
+  std::vector<Part> parts;
   StepTruth truth;
   const auto note = [&](Meeting meets, std::size_t a, std::size_t b) {
     if (meets == Meeting::yes) truth.touching.insert({a, b});
     if (meets == Meeting::close) truth.close.insert({a, b});
   };
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    for (std::size_t j = i + 1; j < bodies.size(); ++j) {
-      if (scene.bodies[i].is_static && scene.bodies[j].is_static) continue;
-      for (const Solid& p : bodies[i]) {
-        for (const Solid& q : bodies[j]) note(meeting(p, q), i, j);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const SceneBody& body = scene.bodies[i];
+    if (step < body.birth || step >= body.death) continue;
+    for (std::size_t k = 0; k < body.parts.size(); ++k) {
+      const Pose pose =
+          made_rigid(compose(scene.poses[static_cast<std::size_t>(step)][i], scene.local(step, i, k))).value();
+      Solid solid = solid_of(scene.shapes[body.parts[k]], pose);
+      for (std::size_t p = 0; p < scene.planes.size() && !body.is_static; ++p) {
+        note(meeting(solid, scene.planes[p]), i, scene.bodies.size() + p);
       }
+      solid.triangles = std::vector<Triangle>();  // of its memory, too
+      parts.push_back({i, body.parts[k], pose, std::move(solid)});
     }
-    for (std::size_t k = 0; k < scene.planes.size() && !scene.bodies[i].is_static; ++k) {
-      for (const Solid& p : bodies[i]) note(meeting(p, scene.planes[k]), i, bodies.size() + k);
+  }
+  std::sort(parts.begin(), parts.end(), [](const Part& p, const Part& q) { return p.box.lower[0] < q.box.lower[0]; });
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const Part& p = parts[i];
+    for (std::size_t j = i + 1; j < parts.size() && parts[j].box.lower[0] <= p.box.upper[0] + kRounding; ++j) {
+      const Part& q = parts[j];
+      const auto [a, b] = std::minmax(p.body, q.body);
+      if (a == b || (scene.bodies[a].is_static && scene.bodies[b].is_static) || boxes_apart(p.box, q.box)) continue;
+      const auto solid = [&](const Part& part) { return solid_of(scene.shapes[part.shape], part.pose); };
+      note(a == p.body ? meeting(solid(p), solid(q)) : meeting(solid(q), solid(p)), a, b);
     }
   }
   return truth;

@@ -142,6 +142,28 @@ TEST(Detector, WithinABudgetOnlySaysWhatIsTrue) {
   }
 }
 
+// 10,000; with ORCHARD_MORE 100,000.
+TEST(Detector, AnswersAWholeAsteroidField) {
+  const Scene scene = test::asteroid_field(kMore ? 100'000 : 10'000, kMore ? 3 : 4, 3 + orchard::test::first_seed());
+  const test::SceneOracle oracle(scene);
+  SceneRun run(scene, {}, Promises::known), within(scene, {}, Promises::known);
+  for (int step = 0; step < scene.steps; ++step) {
+    const auto truth = oracle.at(step);
+    const Answers answers = answers_of(run, run.step(step));
+    ASSERT_TRUE(answers.maybe.empty());
+    ASSERT_GT(truth.touching.size(), scene.bodies.size() / 20);
+    ASSERT_EQ(answers.yes, truth.touching) << "step " << step;
+    const std::uint64_t work = 10 * scene.bodies.size();
+    const Frame frame = within.step(step, {.work = work});
+    EXPECT_LT(frame.work, work + kMaxOvershoot + 2 * kMotionWork);
+    const Answers known = answers_of(within, frame);
+    EXPECT_TRUE(without(known.yes, truth.touching).empty());
+    if (frame.incomplete_from == kNoClass) {
+      EXPECT_TRUE(without(without(truth.touching, known.yes), known.maybe).empty());
+    }
+  }
+}
+
 // A clock ends each run elsewhere, within the broad phase or at any pair, but for the replay.
 TEST(Detector, ReplaysWhatABudgetInTimeHasCutShort) {
   std::size_t cuts = 0;

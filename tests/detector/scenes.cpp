@@ -151,18 +151,31 @@ void add_bodies(Scene& scene, std::size_t count) {
 // Forward differences: then the position n steps later is off by at most M (n dt)^2 / 2, with M the largest second
 // difference over dt^2 on the way.
 BodyState Scene::state(int step, std::size_t body, int horizon) const {
+  BodyState state = promised(step, 1, steps - 1, body, horizon);
+  if (!bodies[body].is_static) state.expiry = std::min(steps - 1, step + horizon) * dt;
+  return state;
+}
+
+BodyState Scene::state_backwards(int step, double time, std::size_t body, int horizon) const {
+  BodyState state = promised(step, -1, 0, body, horizon);
+  if (!bodies[body].is_static) state.expiry = time + std::min(step, horizon) * dt;
+  return state;
+}
+
+// Steps go by `way` up to `end`.
+BodyState Scene::promised(int step, int way, int end, std::size_t body, int horizon) const {
   const auto place = [&](int k) { return Vec3(poses[static_cast<std::size_t>(k)][body].translation); };
   BodyState state;
   state.pose = poses[static_cast<std::size_t>(step)][body];
   if (bodies[body].is_static) return state;
-  const int last = std::min(steps - 1, step + horizon);
-  const int from = std::min(step, steps - 2);  // the last velocity is the one before
-  state.velocity = (1 / dt) * (place(from + 1) - place(from));
-  for (int k = step + 1; k <= std::min(last, steps - 2); ++k) {  // the last one is for the velocity then
-    const Vec3 change = place(k + 1) - 2.0 * place(k) + place(k - 1);
+  const int from = step == end ? end - way : step;  // the last velocity is the one before
+  state.velocity = (1 / dt) * (place(from + way) - place(from));
+  const int known = std::min(horizon, std::abs(end - step) - 1);  // the last one is for the velocity then
+  for (int k = 1; k <= known; ++k) {
+    const int at = step + k * way;
+    const Vec3 change = place(at + 1) - 2.0 * place(at) + place(at - 1);
     state.acceleration = std::max(state.acceleration, length(change) / (dt * dt) * (1 + 1e-9) + 1e-9);
   }
-  state.expiry = last * dt;
   return state;
 }
 

@@ -44,8 +44,13 @@ struct Scene {
                ? Pose{}
                : locals[static_cast<std::size_t>(step)][body][part];
   }
-  // What can be promised at the step, knowing the rest of the recording: kept for `horizon` steps.
+  // What can be promised at the step, knowing the rest of the recording: kept for `horizon` steps. Played backwards,
+  // the recorded step is at `time`, and those before it come next.
   BodyState state(int step, std::size_t body, int horizon) const;
+  BodyState state_backwards(int step, double time, std::size_t body, int horizon) const;
+
+ private:
+  BodyState promised(int step, int way, int end, std::size_t body, int horizon) const;
 };
 
 // Each with about that many bodies, all deterministic.
