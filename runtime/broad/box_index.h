@@ -40,7 +40,8 @@ class BoxIndex {
 
   // The same for many, in jobs that may run at once. They go into the grid, and none but the first of these is to be
   // used meanwhile:
-  bool shares() const noexcept { return !few_; }
+  // Only while none is oversized: of these the grid knows nothing.
+  bool shares() const noexcept { return !few_ && oversized_.empty(); }
   static bool all_fit(const BoxBlock& boxes, std::size_t count) noexcept;
   static bool fits(const QuantumBox& box) noexcept;
   // takes note of boxes that fit, and has `extent` include them;

@@ -37,7 +37,7 @@ Body& BodyTable::take_in(BodyId id, std::size_t count) {
   grow(whereabouts_, slots);
   ++whereabouts_[id.index].changes;
   whereabouts_[id.index].generation = id.generation;
-  grow(asking_, slots), asking_.clear();  // room for asking everyone
+  make_room(asking_, slots);  // for asking everyone
   Body& body = bodies_[id.index];
   body.parts.clear();
   body.parts.reserve(count);  // nothing throws from here on

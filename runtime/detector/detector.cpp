@@ -132,7 +132,7 @@ BodyId Detector::add_body(std::span<const BodyPart> parts, const BodyOptions& op
     if (id == kNoBody) return id;
     s.take_in(id, parts, options);
     if (s.kept_states) s.kept_states->put(id.index, s.last_time(), {});
-    s.monitor.forget(id.index);
+    if (s.options.watch) s.monitor.forget(id.index);
     s.halves.update_again(id.index);
     return id;
   });

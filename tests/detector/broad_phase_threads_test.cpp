@@ -127,9 +127,12 @@ std::vector<BodyPair> by_sweep(const Crowd& crowd, const World& world, double ti
 
 TEST(BroadPhaseThreads, GiveThePairsOfASweepWhateverTheirNumber) {
   constexpr int kSteps = 17;  // in which most bounds end together twice
-  const std::uint64_t worlds = orchard::test::more();
-  for (std::uint64_t seed = 1; seed <= worlds; ++seed) {
-    const Crowd crowd(orchard::test::first_seed() + seed);
+  // In the first of these worlds a common expiry is prepared with boxes that are too large for the grid, and so many
+  // bodies left to its own step that they are updated by jobs.
+  std::vector<std::uint64_t> seeds = {1'000'000'004};
+  for (std::uint64_t i = 1; i <= orchard::test::more(); ++i) seeds.push_back(orchard::test::first_seed() + i);
+  for (const std::uint64_t seed : seeds) {
+    const Crowd crowd(seed);
     for (const World& world : {World{.statics = true, .filters = true}, World{.user_filter = true}}) {
       const auto serial = reports(crowd, world, {}, kSteps);
       std::size_t pairs = 0;
@@ -139,7 +142,7 @@ TEST(BroadPhaseThreads, GiveThePairsOfASweepWhateverTheirNumber) {
       }
       EXPECT_GT(pairs, 1000u);
       for (const std::size_t threads : {2u, 3u}) {
-        if (threads == 2 && worlds == 1) continue;  // the thread sanitizer takes its time
+        if (threads == 2 && orchard::test::more() == 1) continue;  // the thread sanitizer takes its time
         test::ThreadPool pool(threads);
         ASSERT_TRUE(reports(crowd, world, pool.executor(), kSteps) == serial) << seed << ", " << threads << " threads";
       }
