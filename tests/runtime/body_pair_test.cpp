@@ -25,6 +25,7 @@ bool same_verdict(const Verdict& p, const Verdict& q) {
 
 std::vector<PreparedTree> prepared(const std::vector<Body>& bodies) {
   std::vector<PreparedTree> result;
+  result.reserve(bodies.size());
   for (const Body& body : bodies) result.emplace_back(body.tree);
   return result;
 }
@@ -89,7 +90,7 @@ TEST(TreePair, AllocatesNothingOnceTheWorkspaceIsWarm) {
 TEST(TreePair, AnswersMirroredAndForCopiesInAnotherPlace) {
   const auto all = bodies();
   const auto trees = prepared(all);
-  const Body again = all[3];  // a copy with arrays of its own
+  Body again = all[3];  // a copy with arrays of its own
   const PreparedTree copy(again.tree);
   EXPECT_EQ(copy.fingerprint, trees[3].fingerprint);
   Workspace workspace;
@@ -263,8 +264,8 @@ TEST(SelfCollision, LeavesOutWhatIsAllowedToTouch) {
   const std::vector<PreparedTree> parts(4, PreparedTree(link));
   SelfCollision arm(parts);
   Workspace workspace;
-  std::vector<Pose> rest;
-  for (int i = 0; i < 4; ++i) rest.push_back(Pose{.translation = {1.95 * i, 0, 0}});  // neighbours overlap
+  std::vector<Pose> rest(4);
+  for (int i = 0; i < 4; ++i) rest[static_cast<std::size_t>(i)].translation = {1.95 * i, 0, 0};  // neighbours overlap
   EXPECT_EQ(arm.first(workspace, rest).answer, Answer::yes);
   arm.allow_touching(workspace, rest);
   EXPECT_TRUE(arm.allowed.allowed(1, 2));
