@@ -277,7 +277,7 @@ void contract_by_slabs(const Surface& surface, ContractibleMesh& mesh, std::span
   const std::vector<FitSample> guards = thinned(samples);
   Assignment feet;
   feet.find(mesh, guards);
-  const double enough = kAsWhole * feet.max;
+  const double enough = std::max(kAsWhole * feet.max, free_distance);
   Contraction(surface, mesh, guards, feet, free_distance, min_limit).run(target, target);
   if (mesh.living() <= free_target) return;
   // Without a guard sheets may fold over on the way, and unfold when their corners alone are left; or they do not.
