@@ -23,9 +23,8 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kNegligible = 0.1;  // of the largest distance: what protrudes no more costs next to nothing
-constexpr double kExpected = 0.5;    // of what an edge cost before: it is looked at again when its turn comes with that
-constexpr double kToMiddle = 1e-3;   // of the trace: towards the middle of the edge
+constexpr double kExpected = 0.5;   // of what an edge cost before: it is looked at again when its turn comes with that
+constexpr double kToMiddle = 1e-3;  // of the trace: towards the middle of the edge
 
 // An edge, and the ball that its ends may become.
 struct Candidate {

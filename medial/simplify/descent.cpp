@@ -16,7 +16,7 @@ namespace {
 
 // How far quadrics lead: to so many times the vertices wanted, but no fewer than so many. They are fast, and the
 // samples, which see more, have what is left.
-constexpr Index kBySlabs = 3, kMinBySlabs = 1000;
+constexpr Index kBySlabs = 2, kMinBySlabs = 1000;
 constexpr double kFree = 1e-5;     // diagonals: contractions that move a ball no farther from its planes cost nothing
 constexpr double kGuarded = 5e-4;  // diagonals: quadrics take no sample farther off while they can do without
 constexpr double kShrink = 0.6;    // vertices left by one pass of contractions
@@ -25,10 +25,12 @@ constexpr double kWorthwhile = 0.02;  // of the largest distance: rounds that ga
 constexpr double kNotable = 0.6;      // of the largest distance: places that are as far off become samples
 constexpr double kInvisible = 2e-4;   // diagonals: dents so deep are not looked for
 constexpr std::size_t kSamplesPerDent = 50;  // of the surface, for each dent at most that becomes one
+constexpr std::size_t kBallsPerLook = 3;     // balls of the axis of which one looks for dents
 constexpr FitOptions kBetween[] = {{.power = 4, .steps = 1, .middles = false}};
-constexpr FitOptions kAtEnd[] = {{.power = 2, .steps = 2}, {.power = 4, .steps = 4}, {.power = 8, .steps = 6}};
-constexpr FitOptions kAfterInsertion[] = {{.power = 4, .steps = 2, .middles = false}};
-constexpr FitOptions kAfterMoving[] = {{.power = 4, .steps = 2}, {.power = 8, .steps = 5}};
+constexpr FitOptions kAtEnd[] = {
+    {.power = 2, .steps = 2}, {.power = 4, .steps = 4, .search = false}, {.power = 8, .steps = 6, .search = false}};
+constexpr FitOptions kAfterInsertion[] = {{.power = 4, .steps = 2, .search = false, .middles = false}};
+constexpr FitOptions kAfterMoving[] = {{.power = 4, .steps = 2}, {.power = 8, .steps = 5, .search = false}};
 
 // The vertices of a mesh, so that most of them are neighbours of the one before.
 std::vector<Index> in_depth_first_order(const ContractibleMesh& mesh) {
@@ -68,9 +70,11 @@ Descent::Descent(const Surface& surface, const MedialMesh& mesh, const SimplifyO
 Stage Descent::start() const { return {whole_, fit_samples(surface_, options_.samples, options_.seed), {}}; }
 
 void Descent::go_down(Stage& stage, Index count) const {
-  stage.feet = contract_by_slabs(surface_, stage.mesh, stage.samples,
-                                 std::max({count, kBySlabs * std::min(count, stage.mesh.living()), kMinBySlabs}), count,
-                                 kFree * diagonal_, kGuarded * diagonal_);
+  contract_by_slabs(surface_, stage.mesh, stage.samples,
+                    std::max({count, kBySlabs * std::min(count, stage.mesh.living()), kMinBySlabs}), count,
+                    kFree * diagonal_, kGuarded * diagonal_);
+  stage.feet = {};
+  stage.feet.find(stage.mesh, stage.samples);
   refine(stage, kBetween);
   while (stage.mesh.living() > count) {
     const Index before = stage.mesh.living();
@@ -94,7 +98,7 @@ void Descent::refine(Stage& stage, std::span<const FitOptions> passes) const {
 Stage Descent::finished(Stage stage) const {
   const Index count = stage.mesh.living();
   refine(stage, kAtEnd);
-  stage.feet.find(stage.mesh, stage.samples);
+  stage.feet.find_off(stage.mesh, stage.samples, kNotable * stage.feet.max);
   look_closer(stage, 0);
   double share = kMoved;
   bool failed = false;
@@ -107,7 +111,7 @@ Stage Descent::finished(Stage stage) const {
     contract(next, count);
     if (next.mesh.living() > count) break;
     refine(next, kAfterMoving);
-    next.feet.find(next.mesh, next.samples);
+    next.feet.find_off(next.mesh, next.samples, kNotable * next.feet.max);
     look_closer(next, round + 1);
     // Judged at the same places, and known from now on, whichever stays.
     const std::vector<FitSample> found(next.samples.begin() + static_cast<std::ptrdiff_t>(stage.samples.size()),
@@ -135,13 +139,16 @@ void Descent::look_closer(Stage& stage, int round) const {
   }
   climb(surface_, stage.mesh, std::sqrt(surface_.report().area / options_.samples), off);
   add(stage, off);
-  if (enough > kInvisible * diagonal_) add_dents(stage, enough);
+  if (enough > kInvisible * diagonal_) add_dents(stage, round, enough);
 }
 
 // What the envelope leaves open below the surface: no place of the surface is as far from it as the bottom of a dent is
 // from the surface.
-void Descent::add_dents(Stage& stage, double min_depth) const {
-  std::vector<Dent> dents = dents_seen_from(balls_beyond(stage.mesh, axis_balls_, min_depth), surface_,
+void Descent::add_dents(Stage& stage, int round, double min_depth) const {
+  std::vector<Sphere> balls;  // others in each round: a dent is seen from many
+  for (std::size_t i = static_cast<std::size_t>(round) % kBallsPerLook; i < axis_balls_.size(); i += kBallsPerLook)
+    balls.push_back(axis_balls_[i]);
+  std::vector<Dent> dents = dents_seen_from(balls_beyond(stage.mesh, balls, min_depth), surface_,
                                             Reconstruction(stage.mesh.mesh()), min_depth);
   const std::size_t max = options_.samples / kSamplesPerDent;
   if (dents.size() > max) dents.resize(max);

@@ -30,7 +30,7 @@ class Descent {
   void contract(Stage& stage, Index count) const;
   // Looks at other places of the surface, new ones in each round, and adds those that are off the most to the samples.
   void look_closer(Stage& stage, int round) const;
-  void add_dents(Stage& stage, double min_depth) const;
+  void add_dents(Stage& stage, int round, double min_depth) const;
   void add(Stage& stage, std::span<const FitSample> samples) const;
   void refine(Stage& stage, std::span<const FitOptions> passes) const;
 

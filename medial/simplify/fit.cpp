@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kFirstDamping = 1e-3, kMinDamping = 1e-6, kMaxDamping = 1e3;
 constexpr std::size_t kInTurn = 64;  // samples that one task takes, one after the other
-constexpr double kSlack = 0.2;       // of the largest distance: feet nearer by less are not searched for
+constexpr double kExact = 0.5;       // of the largest distance: smaller ones need not be exact
 constexpr double kFloor = 1e-3;      // share of the weight that small distances keep at high powers
 
 LookOptions look_options(const Surface& surface, std::span<const FitSample> samples, const FitOptions& options) {
@@ -39,9 +39,10 @@ class Fitter {
         equations_(mesh) {}
 
   void run() {
-    // Contractions follow feet to places nearby; what came to protrude there from elsewhere is seen by a search alone.
-    if (feet_.feet.size() == samples_.size()) feet_.walk(samples_, walker_);
-    feet_.find(mesh_, samples_, kSlack * feet_.max);
+    const bool known = feet_.feet.size() == samples_.size();
+    if (known) feet_.walk(samples_, walker_);
+    if (options_.search || !known) feet_.find_off(mesh_, samples_, kExact * feet_.max);
+    negligible_ = 0.02 * feet_.max;
     protrusions_ = protruding();
     scale_ = std::max(feet_.max, 1e-300);
     for (const Protrusion& protrusion : protrusions_) scale_ = std::max(scale_, protrusion.value);
@@ -88,7 +89,7 @@ class Fitter {
   }
   double ball_weight() const { return kProtrusionWeight * samples_[0].weight; }
 
-  std::vector<Protrusion> protruding() { return find_protrusions(surface_, mesh_, places_, inside_); }
+  std::vector<Protrusion> protruding() { return find_protrusions(surface_, mesh_, places_, negligible_, inside_); }
 
   // The distance |p - c| - r changes by -(u, 1) * (dc, dr); where p is outside, and as near as c is thick, the
   // curvature of |p - c| counts, too.
@@ -131,6 +132,7 @@ class Fitter {
       ball[3] = std::max(ball[3], 0.0);
       mesh_.set_ball(v, ball);
     }
+    walker_.follow_mesh();
   }
 
   std::vector<Ball4> balls() const {
@@ -147,23 +149,22 @@ class Fitter {
   const std::span<const FitSample> samples_;
   Assignment& feet_;
   const FitOptions options_;
-  const FootWalker walker_;
+  FootWalker walker_;
   const std::vector<Protrusion> places_;  // values not known
   std::vector<InsideBall> inside_;        // for each of them
   NormalEquations equations_;
   std::vector<Protrusion> protrusions_;
-  double scale_ = 1;
+  double scale_ = 1, negligible_ = 0;
 };
 
 }  // namespace
 
-void Assignment::find(const ContractibleMesh& mesh, std::span<const FitSample> samples, double slack) {
+void Assignment::find(const ContractibleMesh& mesh, std::span<const FitSample> samples) {
   const FootFinder finder(mesh);
-  const bool guess = feet.size() == samples.size();
   feet.resize(samples.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, samples.size(), 256), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i)
-      feet[i] = finder.find(samples[i].position, guess ? &feet[i] : nullptr, guess ? slack : 0).below(samples[i].depth);
+      feet[i] = finder.find(samples[i].position).below(samples[i].depth);
   });
   find_max();
 }
@@ -171,16 +172,17 @@ void Assignment::find(const ContractibleMesh& mesh, std::span<const FitSample> s
 void Assignment::find_off(const ContractibleMesh& mesh, std::span<const FitSample> samples, double enough) {
   const FootFinder finder(mesh);
   const FootWalker walker(mesh);
+  const bool known = feet.size() == samples.size();
   feet.resize(samples.size());
   tbb::parallel_for(std::size_t{0}, (samples.size() + kInTurn - 1) / kInTurn, [&](std::size_t block) {
     const std::size_t begin = block * kInTurn, end = std::min(samples.size(), begin + kInTurn);
     for (std::size_t i = begin; i < end; ++i) {
       const auto& [position, normal, weight, depth] = samples[i];
-      if (i == begin) {
+      if (i == begin && !known) {
         feet[i] = finder.find(position).below(depth);
         continue;
       }
-      const Foot near = walker.walk(position, feet[i - 1]);
+      const Foot near = walker.walk(position, feet[known ? i : i - 1]);
       const double slack = near.value + depth + enough;
       feet[i] = finder.find(position, &near, slack < 2 * enough ? std::max(0.0, slack) : 0).below(depth);
     }

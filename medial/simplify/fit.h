@@ -16,10 +16,11 @@ struct Assignment {
   double max_protrusion = 0;  // as the last fit() left it, of the balls that it looked at
 
   double worst() const { return std::max(max, max_protrusion); }
-  // `slack` (mesh units) saves time: values may be too large by so much. Deterministic; parallel.
-  void find(const ContractibleMesh& mesh, std::span<const FitSample> samples, double slack = 0);
-  // Those whose value is `enough` or more, or its negative or less; the others are somewhere between. Several times as
-  // fast, and more so where samples follow each other over the surface.
+  // Deterministic; parallel.
+  void find(const ContractibleMesh& mesh, std::span<const FitSample> samples);
+  // Exact where the value is `enough` or more, or its negative or less; the others are somewhere between. Begins where
+  // the feet are, if there is one for each sample; else faster where samples follow each other over the surface.
+  // Several times as fast. Deterministic; parallel.
   void find_off(const ContractibleMesh& mesh, std::span<const FitSample> samples, double enough);
   // Near where the feet are.
   void walk(std::span<const FitSample> samples, const FootWalker& walker);
@@ -31,6 +32,8 @@ struct Assignment {
 struct FitOptions {
   double power = 2;  // of the distances whose weighted sum is made small; at least 2
   int steps = 5;
+  // Contractions follow feet to places nearby; what came to protrude there from elsewhere is seen by a search alone.
+  bool search = true;
   bool middles = true;  // look at balls in the middles of cells, too, which protrude where no sample is
 };
 

@@ -72,11 +72,11 @@ std::vector<FitSample> fit_samples(const Surface& surface, Index count, std::uin
   for (const SurfaceSample& sample : quality_samples(surface, count, seed))
     samples.push_back({sample.position, sample.normal, 0});
   std::vector<Pointed> corners = pointed_corners(surface);
-  if (corners.size() > count / 2) corners.resize(count / 2);
+  if (corners.size() > count / 4) corners.resize(count / 4);
   for (const Pointed& corner : corners) samples.push_back(corner.sample);
   std::vector<FitSample> edges;
   add_edges(surface, 2 * std::sqrt(surface.report().area / count), edges);
-  thin_out(edges, count / 2);
+  thin_out(edges, count / 4);
   samples.insert(samples.end(), edges.begin(), edges.end());
   for (FitSample& sample : samples) sample.weight = 1.0 / count;
   return samples;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "../quality/support_tree.h"
-#include "contractible_mesh.h"
+#include "cell_geometry.h"
 
 namespace orchard::detail {
 
@@ -27,10 +27,16 @@ Foot foot_on(const ContractibleMesh& mesh, const std::array<Index, 3>& corners, 
 // Like FootWalker::walk(), for meshes whose cells change.
 Foot walk_to_foot(const ContractibleMesh& mesh, const Point& query, const Foot& start);
 
-// Finds feet near where they were while the mesh keeps its cells, whatever its balls do.
+// The maximal cells of a mesh, in its order.
+std::vector<CellBalls> balls_of_cells(const ContractibleMesh& mesh);
+
+// Finds feet near where they were while the mesh keeps its cells.
 class FootWalker {
  public:
   explicit FootWalker(const ContractibleMesh& mesh);
+
+  // After balls of the mesh moved.
+  void follow_mesh();
 
   // The best ball of the cell of `start` if it is inside a triangle; else of the cells around its heaviest corner, and
   // so on from there while it gets better. Its corners are a cell of the mesh. Many times as fast as a search of all,
@@ -38,8 +44,10 @@ class FootWalker {
   Foot walk(const Point& query, const Foot& start) const;
 
  private:
+  Foot foot_of(const Point& query, const Foot& start) const;
+
   const ContractibleMesh& mesh_;
-  std::vector<std::array<Index, 3>> cells_;
+  std::vector<CellBalls> cells_;
   Rows at_;  // numbers of cells at each vertex
 };
 
@@ -58,7 +66,7 @@ class FootFinder {
 
  private:
   const ContractibleMesh& mesh_;
-  std::vector<std::array<Index, 3>> cells_;
+  std::vector<CellBalls> cells_;
   SupportTree tree_;
 };
 

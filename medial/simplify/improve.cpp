@@ -37,7 +37,7 @@ class Insertion {
       places.push_back({std::abs(feet_.feet[i].value), feet_.feet[i], &samples_[i]});
     const auto balls = places_to_look(mesh_, LookOptions());
     std::vector<InsideBall> known(balls.size());
-    for (const Protrusion& protrusion : find_protrusions(surface, mesh_, balls, known))
+    for (const Protrusion& protrusion : find_protrusions(surface, mesh_, balls, kWorst * feet_.max, known))
       places.push_back({protrusion.value, {protrusion.corners, protrusion.weights, -protrusion.value}, nullptr});
     double worst = 0;
     for (const Place& place : places) worst = std::max(worst, place.value);

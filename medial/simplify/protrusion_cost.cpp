@@ -23,12 +23,8 @@ double ProtrusionCost::added(Index a, Index b, const Ball4& ball) {
 }
 
 double ProtrusionCost::value(const Protrusion& place, const Ball4& ball) {
-  const Ball4 less = ball4(ball.head<3>(), ball[3] - negligible_);
-  InsideBall& known = known_at(place, ball.head<3>());
-  if (less[3] < 0 || known.holds(Sphere{less.head<3>(), less[3]})) return 0;
   Vector outward;
-  const double protrusion = protrusion_of(surface_, less, known, outward);
-  return protrusion > 0 ? protrusion + negligible_ : 0;
+  return protrusion_of(surface_, ball, negligible_, known_at(place, ball.head<3>()), outward);
 }
 
 // Of a corner of the place's cell, one that holds it if there is any.

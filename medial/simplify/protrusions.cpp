@@ -74,29 +74,31 @@ std::vector<Protrusion> places_around(const ContractibleMesh& mesh, Index a, Ind
   return std::move(places.result);
 }
 
-double protrusion_of(const Surface& surface, const Ball4& ball, InsideBall& known, Vector& outward) {
+double protrusion_of(const Surface& surface, const Ball4& ball, double negligible, InsideBall& known, Vector& outward) {
   const Point center = ball.head<3>();
+  if (known.holds(Sphere{center, std::max(0.0, ball[3] - negligible)})) return 0;
   ClosestPoint nearest;
   double depth = 0;
   if (known.holds(center)) {
     nearest = surface.closest_within(center, ball[3]);
-    if (nearest.triangle == kNone) return 0;
-    depth = -nearest.distance;
+    depth = nearest.triangle == kNone ? -ball[3] : -nearest.distance;
   } else {
     depth = surface.signed_distance(center, nearest);
-    if (depth < 0) known = {center, -depth};
   }
+  if (depth < 0) known = {center, -depth};
+  if (!(depth + ball[3] > negligible)) return 0;
   outward = nearest.distance > 0 ? Vector((depth > 0 ? 1.0 : -1.0) / nearest.distance * (center - nearest.position))
                                  : surface.pseudonormal(nearest.triangle, nearest.feature);
-  return std::max(0.0, depth + ball[3]);
+  return depth + ball[3];
 }
 
 std::vector<Protrusion> find_protrusions(const Surface& surface, const ContractibleMesh& mesh,
-                                         const std::vector<Protrusion>& places, std::span<InsideBall> known) {
+                                         const std::vector<Protrusion>& places, double negligible,
+                                         std::span<InsideBall> known) {
   std::vector<Protrusion> result = places;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, result.size(), 64), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i)
-      result[i].value = protrusion_of(surface, result[i].ball(mesh), known[i], result[i].outward);
+      result[i].value = protrusion_of(surface, result[i].ball(mesh), negligible, known[i], result[i].outward);
   });
   std::erase_if(result, [](const Protrusion& protrusion) { return !(protrusion.value > 0); });
   return result;

@@ -12,6 +12,7 @@ namespace orchard::detail {
 
 inline constexpr double kLookSpacing = 0.04;      // bounding radii, of balls of edges that are looked at
 inline constexpr double kThick = 8.0;             // of the samples' spacing: radii of balls that samples see enough of
+inline constexpr double kNegligible = 0.1;        // of the largest distance: what protrudes no more counts as nothing
 inline constexpr double kProtrusionWeight = 4.0;  // of a ball that protrudes, in samples
 
 // A ball of a medial mesh that reaches out of the solid: what it takes of which corners, how far it reaches (mesh
@@ -62,12 +63,14 @@ struct InsideBall {
   static constexpr double kSure = 1 - 1e-9;  // rounding
 };
 
-// How far a ball reaches out of the solid, and the way there. `known` becomes a ball around the centre unless it holds
-// it already.
-double protrusion_of(const Surface& surface, const Ball4& ball, InsideBall& known, Vector& outward);
+// How far a ball reaches out of the solid, and the way there; 0 if that is no more than `negligible`. `known` becomes a
+// ball around the centre unless it holds all that counts already, so that nothing has to be looked for while the ball
+// moves by less than `negligible`.
+double protrusion_of(const Surface& surface, const Ball4& ball, double negligible, InsideBall& known, Vector& outward);
 
-// Those of `places` that protrude; known: one for each place. Parallel.
+// Those of `places` that protrude by more than `negligible`; known: one for each place. Parallel.
 std::vector<Protrusion> find_protrusions(const Surface& surface, const ContractibleMesh& mesh,
-                                         const std::vector<Protrusion>& places, std::span<InsideBall> known);
+                                         const std::vector<Protrusion>& places, double negligible,
+                                         std::span<InsideBall> known);
 
 }  // namespace orchard::detail

@@ -26,7 +26,8 @@ constexpr double kSpread = 1e-6;  // weight of an edge's length, so that short o
 constexpr double kBorder = 1.0;   // weight of the square over a border edge
 constexpr double kAsWhole = 2.0;  // of how far the whole mesh is off: as well as nothing was contracted
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-constexpr double kFarthest = 2.0;  // edge lengths from its middle that a new ball may be
+constexpr std::size_t kGuards = 4;  // samples of which one guards
+constexpr double kFarthest = 2.0;   // edge lengths from its middle that a new ball may be
 
 class Contraction {
  public:
@@ -262,26 +263,33 @@ class Contraction {
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
 };
 
+// Every so manieth of the samples: they stand for all.
+std::vector<FitSample> thinned(std::span<const FitSample> samples) {
+  std::vector<FitSample> result;
+  for (std::size_t i = 0; i < samples.size(); i += kGuards) result.push_back(samples[i]);
+  return result;
+}
+
 }  // namespace
 
-Assignment contract_by_slabs(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples,
-                             Index target, Index free_target, double free_distance, double min_limit) {
+void contract_by_slabs(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples, Index target,
+                       Index free_target, double free_distance, double min_limit) {
+  const std::vector<FitSample> guards = thinned(samples);
   Assignment feet;
-  feet.find(mesh, samples);
-  const double enough = kAsWhole * feet.max;
-  Contraction(surface, mesh, samples, feet, free_distance, min_limit).run(target, target);
-  if (mesh.living() <= free_target) return feet;
+  feet.find(mesh, guards);
+  const double enough = std::max(kAsWhole * feet.max, free_distance);
+  Contraction(surface, mesh, guards, feet, free_distance, min_limit).run(target, target);
+  if (mesh.living() <= free_target) return;
   // Without a guard sheets may fold over on the way, and unfold when their corners alone are left; or they do not.
   ContractibleMesh free_mesh = mesh;
   Assignment free_feet = feet;
-  Contraction(surface, free_mesh, samples, free_feet, free_distance, kNoLimit).run(mesh.living(), free_target);
-  free_feet.find(free_mesh, samples);
+  Contraction(surface, free_mesh, guards, free_feet, free_distance, kNoLimit).run(mesh.living(), free_target);
+  free_feet.find(free_mesh, guards);
   if (free_feet.max <= enough) {
     mesh = std::move(free_mesh);
-    return free_feet;
+    return;
   }
-  Contraction(surface, mesh, samples, feet, free_distance, min_limit).run(mesh.living(), free_target);
-  return feet;
+  Contraction(surface, mesh, guards, feet, free_distance, min_limit).run(mesh.living(), free_target);
 }
 
 }  // namespace orchard::detail

@@ -18,7 +18,7 @@ namespace orchard::detail {
 // takes one of them farther off than a limit, or whose ball protrudes farther, waits until no other is left; then the
 // limit, `min_limit` (mesh units) at first, is doubled. Below `target` they stand guard only if what is left without
 // one is off. Returns the samples' feet, as far as these are found nearby.
-Assignment contract_by_slabs(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples,
-                             Index target, Index free_target, double free_distance, double min_limit);
+void contract_by_slabs(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples, Index target,
+                       Index free_target, double free_distance, double min_limit);
 
 }  // namespace orchard::detail

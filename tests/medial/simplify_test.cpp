@@ -21,8 +21,10 @@
 #include "quality/boundary_reach.h"
 #include "quality/reconstruction.h"
 #include "simplify/contractible_mesh.h"
+#include "simplify/fit.h"
 #include "simplify/foot.h"
 #include "simplify/least_vertices.h"
+#include "simplify/protrusions.h"
 #include "support/effort.h"
 #include "support/shapes.h"
 
@@ -182,6 +184,16 @@ TEST(SimplifiedMedialMesh, IsTheTwelveBallsOfABox) {
   EXPECT_LT(result.report.hausdorff.mean, 1e-5);
   EXPECT_EQ(std::count_if(result.mesh.radii.begin(), result.mesh.radii.end(), [](double r) { return r < 1e-4; }), 8);
   EXPECT_EQ(topology(result.mesh), (Topology{1, 0, 0}));
+}
+
+// An exact axis, that no sample is off at all: what quadrics leave off by rounding must not count as worse than that.
+TEST(SimplifiedMedialMesh, IsTheTwelveBallsOfABoxFromManyVertices) {
+  const Surface surface(test::known_box({1, 1.3, 2}).solid);
+  const SimplifiedMedialMesh result =
+      simplify_medial_mesh(surface, built_axis(surface, 5000),
+                           {.vertices = 12, .samples = 1500, .check = 2000, .search = 20'000, .rounds = 2});
+  EXPECT_EQ(result.mesh.size(), 12u);
+  EXPECT_LT(result.report.hausdorff.max, 3e-4);
 }
 
 TEST(SimplifiedMedialMesh, OfOneVertexIsTheLargestInscribedBall) {
@@ -446,6 +458,84 @@ TEST(FootFinder, FindsTheBallThatBruteForceFinds) {
       EXPECT_NEAR(foot.value, brute, 2e-3);
       const Ball4 at = foot.ball(contractible);
       EXPECT_NEAR((query - at.head<3>()).norm() - at[3], foot.value, 1e-12);
+    }
+  }
+}
+
+MedialMesh moved(MedialMesh mesh, double by, Random& random) {
+  for (Index v = 0; v < mesh.size(); ++v) {
+    mesh.centers[v] += by * Point(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    mesh.radii[v] = std::max(0.0, mesh.radii[v] + by * random.uniform(-1, 1));
+  }
+  return mesh;
+}
+
+TEST(FootWalker, FollowsBallsThatMove) {
+  Random random(11, 1);
+  const Surface surface(test::known_l_shape(8).solid);
+  const MedialMesh axis = built_axis(surface, 300);
+  ContractibleMesh mesh(axis);
+  detail::FootWalker walker(mesh);
+  const MedialMesh other = moved(axis, 0.1, random);
+  for (Index v = 0; v < other.size(); ++v) mesh.set_ball(v, detail::ball4(other.centers[v], other.radii[v]));
+  walker.follow_mesh();
+  const detail::FootWalker fresh(mesh);
+  for (const detail::FitSample& sample : detail::fit_samples(surface, 300, 1)) {
+    const detail::Foot start{.corners = {0, 0, 0}};
+    const detail::Foot foot = walker.walk(sample.position, start);
+    EXPECT_EQ(foot.value, fresh.walk(sample.position, start).value);
+    EXPECT_NEAR(foot.value, detail::foot_on(mesh, foot.corners, sample.position).value, 1e-12);
+  }
+}
+
+// Whether or not feet of the mesh are known, if only by the ball of any one vertex.
+TEST(Assignment, FindsAllThatIsOff) {
+  const Surface surface(test::known_l_shape(8).solid);
+  const MedialMesh axis = built_axis(surface, 300);
+  for (std::uint64_t k = 0; k < 20 * test::more(); ++k) {
+    const std::uint64_t seed = test::first_seed() + k;
+    Random random(seed, 12);
+    const ContractibleMesh mesh(moved(axis, random.uniform(0.01, 0.3), random));
+    const auto samples = detail::fit_samples(surface, 200, seed);
+    detail::Assignment exact, from_neighbors, from_anywhere;
+    exact.find(mesh, samples);
+    const double enough = random.uniform(0.1, 0.9) * exact.max;
+    from_neighbors.find_off(mesh, samples, enough);
+    from_anywhere.feet.assign(samples.size(), {.corners = {1, 1, 1}});
+    from_anywhere.find_off(mesh, samples, enough);
+    for (const auto* found : {&from_neighbors, &from_anywhere}) {
+      EXPECT_NEAR(found->max, exact.max, 1e-12);
+      for (std::size_t i = 0; i < samples.size(); ++i) {
+        const double value = exact.feet[i].value, other = found->feet[i].value;
+        EXPECT_GE(other, value - 1e-12);
+        EXPECT_NEAR(other, value, std::abs(value) >= enough ? 1e-12 : 2 * enough);
+        if (std::abs(value) < enough) {
+          EXPECT_LT(std::abs(other), enough);
+        }
+      }
+    }
+  }
+}
+
+// However small the ball is, and whatever was known of places nearby.
+TEST(Protrusion, IsThatOfTheBall) {
+  const Surface surface(test::box({0, 0, 0}, {2, 2, 2}));
+  for (std::uint64_t k = 0; k < 20 * test::more(); ++k) {
+    Random random(test::first_seed() + k, 13);
+    detail::InsideBall known;
+    for (int look = 0; look < 50; ++look) {
+      const Point center(random.uniform(-0.5, 2.5), random.uniform(-0.5, 2.5), random.uniform(-0.5, 2.5));
+      const double radius = random.uniform(0, 1) < 0.2 ? 0 : random.uniform(0, 0.6);
+      const double negligible = random.uniform(0, 1) < 0.5 ? 0 : random.uniform(0, 0.3);
+      Vector outward;
+      const double found = detail::protrusion_of(surface, detail::ball4(center, radius), negligible, known, outward);
+      const double protrusion = radius + surface.signed_distance(center);
+      if (protrusion > negligible + 1e-9) {
+        EXPECT_NEAR(found, protrusion, 1e-9);
+        EXPECT_NEAR(surface.signed_distance(center + radius * outward), protrusion, 1e-9);
+      } else if (protrusion < negligible - 1e-9) {
+        EXPECT_EQ(found, 0);
+      }
     }
   }
 }
