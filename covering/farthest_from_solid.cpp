@@ -3,6 +3,7 @@
 #include <limits>
 #include <vector>
 
+#include "half_angle.h"
 #include "orchard/covering/inaccuracy.h"
 
 namespace orchard {
@@ -115,8 +116,8 @@ class Search {
     const Vector out = center - ball_.center, to_y = y - ball_.center;
     const double away = out.norm(), reach = half * kHalfDiagonal, length = to_y.norm();
     if (away <= reach) return std::numeric_limits<double>::infinity();
-    const double angle = std::atan2(out.cross(to_y).norm(), out.dot(to_y)) + std::asin(reach / away);
-    const double half_chord = std::sin(std::min(angle, kPi) / 2);
+    const double half_chord =
+        detail::HalfAngle::between(out, away, to_y, length).half_chord_with(detail::HalfAngle::of_sine(reach / away));
     // The squared distance is convex in the distance from the ball's centre: the ends suffice.
     const auto squared = [&](double r) {
       return (r - length) * (r - length) + 4 * r * length * half_chord * half_chord;
@@ -125,7 +126,6 @@ class Search {
     return std::sqrt(std::max(squared(nearest), squared(farthest))) + kRounding * (away + reach + length);
   }
 
-  static constexpr double kPi = 3.14159265358979323846;
   static constexpr double kRounding = 1e-13;  // of the lengths in a bound: a few hundred times what they are off by
   static constexpr double kHalfDiagonal = 1.7320508075688774;
   const Surface& surface_;

@@ -6,6 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "half_angle.h"
+
 namespace orchard {
 namespace {
 
@@ -118,13 +120,12 @@ class Search {
   double farthest(const Point& y, const Vector& middle, double chord) const {
     const Vector to_y = y - sphere_.center;
     const double length = to_y.norm(), r = sphere_.radius;
-    const double angle =
-        std::atan2(middle.cross(to_y).norm(), middle.dot(to_y)) + 2 * std::asin(std::min(1.0, chord / 2));
-    if (angle >= kPi) return r + length;
-    return std::sqrt(std::max(0.0, r * r + length * length - 2 * r * length * std::cos(angle)));
+    const double sine = std::min(1.0, chord / 2);
+    const detail::HalfAngle cap{sine, std::sqrt((1 - sine) * (1 + sine))};
+    const double half_chord = detail::HalfAngle::between(middle, 1, to_y, length).half_chord_with(cap);
+    return std::sqrt((r - length) * (r - length) + 4 * r * length * half_chord * half_chord);
   }
 
-  static constexpr double kPi = 3.14159265358979323846;
   const Surface& surface_;
   const Sphere sphere_;
   const double radius_;  // R

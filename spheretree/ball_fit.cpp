@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "wide.h"
+
 namespace orchard::detail {
 namespace {
 
@@ -198,6 +200,15 @@ Vector BallFitter::best_step(double t) {
 }
 
 FittedBall BallFitter::fit(std::span<const Point> points, const FittedBall& start, int evaluations) {
+  return wide() ? fit_wide(points, start, evaluations) : fit_here(points, start, evaluations);
+}
+
+ORCHARD_FOR_AVX2 FittedBall BallFitter::fit_wide(std::span<const Point> points, const FittedBall& start,
+                                                 int evaluations) {
+  return fit_here(points, start, evaluations);
+}
+
+FittedBall BallFitter::fit_here(std::span<const Point> points, const FittedBall& start, int evaluations) {
   take_points(points);
   cuts_.assign(1, {start.center, start.center_distance, start.slope});
   if (start.slope.isZero(0)) cuts_.clear(), cuts_.push_back(cut_at(start.center));

@@ -22,7 +22,8 @@ struct FittedBall {
 // term is linearised at the points that are farthest or may become so within the step, the second by the gradients of
 // sd at the centres visited; a step that does not help shrinks the next one. Finds a local minimum. Keeps scratch: one
 // fitter per thread.
-class BallFitter {
+// Hidden: what a shared library could replace is not inlined.
+class [[gnu::visibility("hidden")]] BallFitter {
  public:
   explicit BallFitter(const Surface& surface) : surface_(surface) {}
 
@@ -37,7 +38,8 @@ class BallFitter {
 
  private:
   static constexpr std::size_t kLanes = 4;
-  using Lanes = double __attribute__((vector_size(32)));  // side by side (a GCC and Clang extension)
+  // Side by side (a GCC and Clang extension). The alignment is that of code for SSE: see wide.h.
+  using Lanes = double __attribute__((vector_size(32), aligned(16)));
   struct FourPoints {
     Lanes x, y, z;
   };
@@ -70,6 +72,8 @@ class BallFitter {
   static constexpr std::size_t kMaxFar = 40;  // farthest points that a step looks at
   static constexpr std::size_t kMaxCuts = 12;
 
+  FittedBall fit_here(std::span<const Point> points, const FittedBall& start, int evaluations);
+  FittedBall fit_wide(std::span<const Point> points, const FittedBall& start, int evaluations);
   Cut cut_at(const Point& center) const;
   ClosestPoint closest(const Point& center) const;
   void take_points(std::span<const Point> points);

@@ -15,26 +15,36 @@ constexpr int kProbes = 14;  // outward from the middle of an arc, each twice as
 // Uncovered regions below this part of the last growth are left to it.
 constexpr double kLeftToGrowth = 0.4;
 
-bool bounds_same(const std::vector<Point>& corners, const UncoveredArc& arc, double near) {
-  return std::any_of(corners.begin(), corners.end(),
+struct ArcGroup {
+  std::vector<const UncoveredArc*> arcs;
+  std::vector<Point> corners;
+  Box box;  // of the corners
+};
+
+// Most groups are told apart by their boxes.
+bool bounds_same(const ArcGroup& group, const UncoveredArc& arc, double near) {
+  const auto apart = [&](const Point& end) {
+    return group.box.squaredExteriorDistance(end) > near * near * (1 + 1e-9);
+  };
+  if (apart(arc.begin) && apart(arc.end)) return false;
+  return std::any_of(group.corners.begin(), group.corners.end(),
                      [&](const Point& p) { return (p - arc.begin).norm() <= near || (p - arc.end).norm() <= near; });
 }
 
-std::vector<std::vector<const UncoveredArc*>> joined_arcs(const TriangleCover& cover, double near) {
-  std::vector<std::vector<const UncoveredArc*>> groups;
-  std::vector<std::vector<Point>> corners;
+std::vector<ArcGroup> joined_arcs(const TriangleCover& cover, double near) {
+  std::vector<ArcGroup> groups;
   for (const UncoveredArc& arc : cover.arcs) {
-    std::vector<const UncoveredArc*> group{&arc};
-    std::vector<Point> points{arc.begin, arc.middle, arc.end};
+    ArcGroup joined{{&arc}, {arc.begin, arc.middle, arc.end}, {}};
+    for (const Point& corner : joined.corners) joined.box.extend(corner);
     for (std::size_t i = groups.size(); i-- > 0;) {
-      if (!bounds_same(corners[i], arc, near)) continue;
-      group.insert(group.end(), groups[i].begin(), groups[i].end());
-      points.insert(points.end(), corners[i].begin(), corners[i].end());
+      const ArcGroup& group = groups[i];
+      if (!bounds_same(group, arc, near)) continue;
+      joined.arcs.insert(joined.arcs.end(), group.arcs.begin(), group.arcs.end());
+      joined.corners.insert(joined.corners.end(), group.corners.begin(), group.corners.end());
+      joined.box.extend(group.box);
       groups.erase(groups.begin() + static_cast<std::ptrdiff_t>(i));
-      corners.erase(corners.begin() + static_cast<std::ptrdiff_t>(i));
     }
-    groups.push_back(std::move(group));
-    corners.push_back(std::move(points));
+    groups.push_back(std::move(joined));
   }
   return groups;
 }
@@ -119,7 +129,7 @@ class Prober {
 
 std::vector<UncoveredRegion> uncovered_regions_of(const UncoveredTriangle& uncovered, Prober prober, double near) {
   std::vector<UncoveredRegion> regions;
-  for (const auto& arcs : joined_arcs(uncovered.cover, near)) {
+  for (const auto& [arcs, corners, box] : joined_arcs(uncovered.cover, near)) {
     UncoveredRegion region{{}, arcs[0]->middle, 0};
     Point middle = Point::Zero();
     for (const UncoveredArc* arc : arcs) {

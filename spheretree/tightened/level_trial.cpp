@@ -1,7 +1,10 @@
 #include "level_trial.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+
+#include "wide.h"
 
 // The numbers below were tuned on four models of 700 to 2000 triangles; none of them matters much.
 namespace orchard::detail {
@@ -21,6 +24,31 @@ constexpr Index kFew = 128;             // balls, up to which more is put at sta
 constexpr double kWorthwhile = 1e-6;    // part of the cost that must go
 // By what part balls may become less loose in the last round.
 constexpr double kHoped = 0.3;
+
+// What a trial's ball is offered: the samples that were given up, and how loose the balls so far would get by each.
+struct Offered {
+  std::size_t count;
+  const double *x, *y, *z;
+  const double* barred;  // 0, or infinity for samples that the ball may not own
+  double *min, *owner;   // the least looseness, and the ball (whole numbers, as wide as the rest)
+};
+
+// Gives the ball the samples that it gets less loose by than the balls so far; looseness as looseness_with() has it.
+inline void divide(const FittedBall& ball, Index number, const Offered& to) {
+  const double cx = ball.center.x(), cy = ball.center.y(), cz = ball.center.z(), distance = ball.center_distance;
+  const double* __restrict x = to.x, * __restrict y = to.y, * __restrict z = to.z, * __restrict barred = to.barred;
+  double* __restrict min = to.min, * __restrict owner = to.owner;
+  for (std::size_t k = 0; k < to.count; ++k) {
+    const double dx = x[k] - cx, dy = y[k] - cy, dz = z[k] - cz;
+    const double loose = std::sqrt(dx * dx + (dy * dy + dz * dz)) + distance + barred[k];
+    const double old = min[k], owned = owner[k];  // both are read in any case, so that the loop has no branch
+    const bool less = loose < old;
+    min[k] = less ? loose : old;
+    owner[k] = less ? number : owned;
+  }
+}
+
+ORCHARD_FOR_AVX2 void divide_wide(const FittedBall& ball, Index number, const Offered& to) { divide(ball, number, to); }
 
 class Proposal {
  public:
@@ -176,7 +204,7 @@ class Proposal {
 
   void gather_freed() {
     const auto count = static_cast<Eigen::Index>(freed_.size());
-    for (auto* numbers : {&x_, &y_, &z_, &loose_, &min_, &owner_}) numbers->resize(count);
+    for (auto* numbers : {&x_, &y_, &z_, &min_, &owner_}) numbers->resize(count);
     for (Eigen::Index k = 0; k < count; ++k) {
       const Point& p = samples_.points[freed_[static_cast<std::size_t>(k)]];
       x_[k] = p.x(), y_[k] = p.y(), z_[k] = p.z();
@@ -199,14 +227,9 @@ class Proposal {
     min_.setConstant(kInfinity);
     for (Index i = 0; i < trial_.balls.size(); ++i) {
       const LevelBall& ball = trial_.balls[i];
-      const auto dx = x_ - ball.center.x(), dy = y_ - ball.center.y(), dz = z_ - ball.center.z();
-      // As looseness_with() has it.
-      loose_ = (dx * dx + (dy * dy + dz * dz)).sqrt() + ball.center_distance + barred(ball.path_region);
-      for (Eigen::Index k = 0; k < loose_.size(); ++k) {
-        const bool less = loose_[k] < min_[k];
-        min_[k] = less ? loose_[k] : min_[k];
-        owner_[k] = less ? i : owner_[k];
-      }
+      const double* bars = barred(ball.path_region).data();
+      (wide() ? divide_wide : divide)(
+          ball, i, {freed_.size(), x_.data(), y_.data(), z_.data(), bars, min_.data(), owner_.data()});
     }
     if (!(min_ < kInfinity).all()) return false;
     for (auto& list : trial_.needs) list.clear();
@@ -231,9 +254,8 @@ class Proposal {
   std::vector<Index> freed_;                              // samples that only the chosen balls hold
   Eigen::ArrayXd x_, y_, z_;                              // where they are
   std::vector<std::pair<Index, Eigen::ArrayXd>> barred_;  // by path region
-  Eigen::ArrayXd loose_;                                  // how loose each makes one of the trial's balls
-  Eigen::ArrayXd min_, owner_;     // the least of these, and the ball (whole numbers, as wide as the rest)
-  std::vector<double> looseness_;  // of the trial's balls, with what each owns
+  Eigen::ArrayXd min_, owner_;                            // as in Offered
+  std::vector<double> looseness_;                         // of the trial's balls, with what each owns
 };
 
 }  // namespace
