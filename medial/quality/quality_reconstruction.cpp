@@ -153,9 +153,10 @@ std::vector<SurfaceReach> reach_of(const Surface& surface, const Reconstruction&
 // The point of a ball beyond the ball's nearest surface point is the farthest outside wherever the surface is flat or
 // convex there; it is a point of the ball in any case, so what it gives is attained.
 BallReach reach_of(const Surface& surface, const Sphere& ball) {
-  ClosestPoint nearest;
-  const double depth = surface.signed_distance(ball.center, nearest);
-  BallReach reach{.beyond = 0, .farthest = ball.center, .outside = depth > 0};
+  BallReach reach{.beyond = 0, .farthest = ball.center, .outside = false, .nearest = {}};
+  const double depth = surface.signed_distance(ball.center, reach.nearest);
+  const ClosestPoint& nearest = reach.nearest;
+  reach.outside = depth > 0;
   if (!(depth + ball.radius > 0)) return reach;  // distance is 1-Lipschitz: all of the ball is inside
   if (!(nearest.distance > 0)) {
     reach.beyond = std::max(0.0, ball.radius);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -191,8 +192,10 @@ TEST(MedialQuality, RefusesWhatItCannotJudge) {
 TEST(SecondContact, IsTheFarSideOfASlab) {
   const Surface surface(test::box({0, 0, 0}, {1, 10, 10}));
   const double angle = std::numbers::pi / 6;
-  EXPECT_NEAR(detail::second_contact_distance(surface, {0.5, 5, 5}, {-1, 0, 0}, angle), 0.5, 1e-3);
-  EXPECT_NEAR(detail::second_contact_distance(surface, {0.47, 5, 5}, {-1, 0, 0}, angle), 0.53, 1e-3);
+  for (const double likely : {0.1, 0.51, 0.6, std::numeric_limits<double>::infinity()}) {
+    EXPECT_NEAR(detail::second_contact_distance(surface, {0.5, 5, 5}, {-1, 0, 0}, angle, likely), 0.5, 1e-3);
+    EXPECT_NEAR(detail::second_contact_distance(surface, {0.47, 5, 5}, {-1, 0, 0}, angle, likely), 0.53, 1e-3);
+  }
 }
 
 TEST(MedialStability, IsSmallForAThickPlateAndTheSameEveryTime) {
