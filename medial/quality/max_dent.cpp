@@ -108,22 +108,27 @@ class DentSearch {
   // A part of a cube: nothing of the boundary is in it if the reconstruction holds it wholly, or has nothing in it.
   void look_at(const Cube& whole, const Point& center, std::vector<Cube>& parts, Place& deepest) const {
     const double reach = std::sqrt(3.0) * half_ + rounding_;
+    const auto farthest_from = [&](const Point& place) {
+      return ((center - place).cwiseAbs() + Vector::Constant(half_)).norm() + rounding_;
+    };
+    const auto holds_all = [&](const Sphere& ball) { return farthest_from(ball.center) < ball.radius; };
     Cube cube{.center = center, .bound = whole.bound, .ball = whole.ball, .triangle = whole.triangle};
+    if (holds_all(cube.ball)) return;
     const double at_most = (center - cube.ball.center).norm() - cube.ball.radius;
-    if (at_most < -reach) return;
+    // No place is deeper than it is far from any place of the surface.
     const auto [a, b, c] = surface_.corners(whole.triangle);
-    cube.bound = std::min(cube.bound, closest_point_of_triangle(center, a, b, c).distance + reach);
+    cube.bound = std::min(cube.bound, farthest_from(closest_point_of_triangle(center, a, b, c).position));
     if (cube.bound <= found_.depth) return;
     ClosestPoint nearest;
     const double depth = -surface_.signed_distance(center, nearest);
     cube.triangle = nearest.triangle;
-    cube.bound = std::min(cube.bound, depth + reach);
+    cube.bound = std::min({cube.bound, depth + reach, farthest_from(nearest.position)});
     if (cube.bound <= found_.depth) return;
     // Searching for the deepest ball takes longest. Where the one of the whole cube ends in this part, too, it can but
     // tell of a place that is deeper than what was found.
     if (at_most > 0 || depth + at_most > found_.depth) {
       const double gap = reconstruction_.distance_between(-reach, std::min(at_most, reach), center, cube.ball);
-      if (!(std::abs(gap) < reach)) return;
+      if (!(std::abs(gap) < reach) || holds_all(cube.ball)) return;
       if (gap >= 0 && depth + gap > found_.depth) take_boundary(center, cube.ball, deepest);
     }
     parts.push_back(cube);
