@@ -10,6 +10,8 @@
 namespace orchard::detail {
 namespace {
 
+// Triangles: from here on the tree outgrows the caches, and disks save more than they cost.
+constexpr std::size_t kFine = 32'768;
 constexpr int kStack = 128;  // three entries a level; the builder keeps the tree below 40 levels
 // Everything computed in floats is off by less than kSlack * (distance + size of the mesh): thirteen roundings of 6e-8
 // at worst, of the query, of what is stored and of three products each, and half as much again.
@@ -41,7 +43,7 @@ bool better(const ClosestPoint& a, const ClosestPoint& b) {
 
 }  // namespace
 
-TriangleTree::TriangleTree(const TriangleMesh& mesh) : mesh_(mesh) {
+TriangleTree::TriangleTree(const TriangleMesh& mesh) : mesh_(mesh), is_fine_(mesh.triangles.size() >= kFine) {
   Box box;
   for (const auto& corners : mesh.triangles)
     for (const Index v : corners) box.extend(mesh.vertices[v]);
@@ -58,22 +60,20 @@ bool TriangleTree::localize(const Point& point, Query& query) const {
   return true;
 }
 
-Float4 TriangleTree::middle(const Node& node, int axis) {
-  return broadcast(0.5f) * (node.lower[axis] + node.upper[axis]);
-}
-
-Float4 TriangleTree::squared_distances(const Query& query, const Node& node) {
+Float4 TriangleTree::squared_distances(const Query& query, const Node& node) const {
   Float4 d[3];
   for (int axis = 0; axis < 3; ++axis)
     d[axis] = max(max(node.lower[axis] - query.p[axis], query.p[axis] - node.upper[axis]), broadcast(0));
   const Float4 along = dot(query.p, node.normal);
   const Float4 beyond = max(max(node.low - along, along - node.high), broadcast(0));
+  const Float4 squared = max(dot(d, d), beyond * beyond);
+  if (!is_fine_) return squared;
   Float4 across[3];
   for (int axis = 0; axis < 3; ++axis) across[axis] = query.p[axis] - middle(node, axis);
   const Float4 above = dot(across, node.normal);
   for (int axis = 0; axis < 3; ++axis) across[axis] -= above * node.normal[axis];
   const Float4 beside = max(square_root(dot(across, across)) - node.radius, broadcast(0));
-  return max(dot(d, d), beyond * beyond + beside * beside);
+  return max(squared, beyond * beyond + beside * beside);
 }
 
 Float4 TriangleTree::squared_distances(const Query& query, const Leaf& leaf) {
@@ -131,7 +131,7 @@ void TriangleTree::visit_leaves(const Query& query, const float& limit, Visit vi
       for (; at > first && stack[static_cast<std::size_t>(at - 1)].squared < squared[k]; --at)
         stack[static_cast<std::size_t>(at)] = stack[static_cast<std::size_t>(at - 1)];
       stack[static_cast<std::size_t>(at)] = {squared[k], node.child[k]};
-      prefetch(node.child[k]);
+      if (is_fine_) prefetch(node.child[k]);
     }
   }
 }

@@ -65,8 +65,11 @@ class TriangleTree {
   class Reach;
 
   bool localize(const Point& point, Query& query) const;
-  static Float4 middle(const Node& node, int axis);  // of each child's box
-  static Float4 squared_distances(const Query& query, const Node& node);
+  // Of each child's box.
+  static Float4 middle(const Node& node, int axis) {
+    return Float4{0.5f, 0.5f, 0.5f, 0.5f} * (node.lower[axis] + node.upper[axis]);
+  }
+  Float4 squared_distances(const Query& query, const Node& node) const;
   static Float4 squared_distances(const Query& query, const Leaf& leaf);
   void prefetch(Index child) const;
   void find_candidates(const Point& point, Candidates& candidates) const;
@@ -76,6 +79,7 @@ class TriangleTree {
   ClosestPoint measure(const Point& query, Index triangle) const;
 
   const TriangleMesh& mesh_;
+  bool is_fine_;
   Point center_ = Point::Zero();
   double scale_ = 1;  // a power of two
   std::vector<Node> nodes_;
