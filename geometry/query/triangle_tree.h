@@ -19,7 +19,8 @@ struct NearestTriangles {
 };
 
 // A four-wide tree over the triangles of a mesh, for distance queries. What bounds a child is a box, and a slab across
-// the mean normal of its triangles: a sheet that is oblique to the axes is far thinner than its box. Bounds and
+// the mean normal of its triangles, cut to a disk around the box's middle: a sheet that is oblique to the axes is far
+// thinner than its box, and from a place above it the box alone could not tell it from what lies beside it. Bounds and
 // flattened triangles are floats around the centre of the mesh, scaled to size one; they only sort out which triangles
 // can matter. Those few are then measured by closest_point_of_triangle, so an answer is what a loop over all triangles
 // would give, bit for bit.
@@ -44,6 +45,7 @@ class TriangleTree {
   struct Node {
     Float4 lower[3], upper[3];
     Float4 normal[3], low, high;  // of length one or 0: what it spans along it
+    Float4 radius;                // and across it, around the box's middle
     Index child[4];               // into nodes_, or kLeaf + an index into leaves_
   };
   // Triangle k has its longest edge on the first axis of a frame (origin, u, v, n): corners (0, 0), (base, 0), (foot,
@@ -63,8 +65,13 @@ class TriangleTree {
   class Reach;
 
   bool localize(const Point& point, Query& query) const;
-  static Float4 squared_distances(const Query& query, const Node& node);
+  // Of each child's box.
+  static Float4 middle(const Node& node, int axis) {
+    return Float4{0.5f, 0.5f, 0.5f, 0.5f} * (node.lower[axis] + node.upper[axis]);
+  }
+  Float4 squared_distances(const Query& query, const Node& node) const;
   static Float4 squared_distances(const Query& query, const Leaf& leaf);
+  void prefetch(Index child) const;
   void find_candidates(const Point& point, Candidates& candidates) const;
   template <class Visit>
   void visit_leaves(const Query& query, const float& limit, Visit visit) const;
@@ -72,6 +79,7 @@ class TriangleTree {
   ClosestPoint measure(const Point& query, Index triangle) const;
 
   const TriangleMesh& mesh_;
+  bool is_fine_;
   Point center_ = Point::Zero();
   double scale_ = 1;  // a power of two
   std::vector<Node> nodes_;

@@ -101,7 +101,7 @@ Index TriangleTree::Builder::add_node(Range range, int depth) {
   }
   for (int k = 0; k < 4; ++k) nodes_[node].child[k] = kNone;
   for (Float4* zero : {&nodes_[node].normal[0], &nodes_[node].normal[1], &nodes_[node].normal[2], &nodes_[node].low,
-                       &nodes_[node].high})
+                       &nodes_[node].high, &nodes_[node].radius})
     *zero = Float4{};
   for (std::size_t i = 0; i < count; ++i) {
     const Box3f box = bounds(parts[i]);
@@ -116,7 +116,7 @@ Index TriangleTree::Builder::add_node(Range range, int depth) {
   return node;
 }
 
-// Across the mean normal, by area. Any direction is right; where there is none, the slab says nothing.
+// Across the mean normal, by area, and a disk. Any direction is right; where there is none, the slab says nothing.
 void TriangleTree::Builder::add_slab(Range range, Node& node, std::size_t lane) const {
   Vector sum = Vector::Zero();
   for (Index i = range.begin; i < range.end; ++i) {
@@ -127,16 +127,23 @@ void TriangleTree::Builder::add_slab(Range range, Node& node, std::size_t lane) 
   const double length = sum.norm();
   const Eigen::Vector3f normal =
       length > 0 ? Eigen::Vector3f((sum / length).cast<float>()) : Eigen::Vector3f(Eigen::Vector3f::Zero());
-  double low = std::numeric_limits<double>::infinity(), high = -low;
+  const Vector across = normal.cast<double>();
+  Point middle;
+  for (int axis = 0; axis < 3; ++axis) middle[axis] = TriangleTree::middle(node, axis)[lane];
+  double low = std::numeric_limits<double>::infinity(), high = -low, squared = 0;
   for (Index i = range.begin; i < range.end; ++i) {
     for (const Index vertex : mesh_.triangles[order_[i]]) {
-      const double along = normal.cast<double>().dot(scale_ * (mesh_.vertices[vertex] - center_));
+      const Point place = scale_ * (mesh_.vertices[vertex] - center_);
+      const double along = across.dot(place);
       low = std::min(low, along), high = std::max(high, along);
+      const Vector offset = place - middle;
+      squared = std::max(squared, (offset - across.dot(offset) * across).squaredNorm());
     }
   }
   for (int axis = 0; axis < 3; ++axis) node.normal[axis][lane] = normal[axis];
   node.low[lane] = rounded_down(low);
   node.high[lane] = rounded_up(high);
+  node.radius[lane] = rounded_up(std::sqrt(squared));
 }
 
 int TriangleTree::Builder::bin_of(Index triangle, int axis, const Box3f& centers) const {

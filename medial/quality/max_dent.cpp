@@ -108,25 +108,48 @@ class DentSearch {
   // A part of a cube: nothing of the boundary is in it if the reconstruction holds it wholly, or has nothing in it.
   void look_at(const Cube& whole, const Point& center, std::vector<Cube>& parts, Place& deepest) const {
     const double reach = std::sqrt(3.0) * half_ + rounding_;
+    const auto farthest_from = [&](const Point& place) {
+      return ((center - place).cwiseAbs() + Vector::Constant(half_)).norm() + rounding_;
+    };
+    const auto holds_all = [&](const Sphere& ball) { return farthest_from(ball.center) < ball.radius; };
     Cube cube{.center = center, .bound = whole.bound, .ball = whole.ball, .triangle = whole.triangle};
+    if (holds_all(cube.ball)) return;
     const double at_most = (center - cube.ball.center).norm() - cube.ball.radius;
-    if (at_most < -reach) return;
+    // No place is deeper than it is far from any place of the surface.
     const auto [a, b, c] = surface_.corners(whole.triangle);
-    cube.bound = std::min(cube.bound, closest_point_of_triangle(center, a, b, c).distance + reach);
-    if (cube.bound <= found_.depth) return;
+    cube.bound = std::min(cube.bound, farthest_from(closest_point_of_triangle(center, a, b, c).position));
+    if (cube.bound <= found_.depth || is_held_or_shallow(cube)) return;
     ClosestPoint nearest;
     const double depth = -surface_.signed_distance(center, nearest);
     cube.triangle = nearest.triangle;
-    cube.bound = std::min(cube.bound, depth + reach);
+    cube.bound = std::min({cube.bound, depth + reach, farthest_from(nearest.position)});
     if (cube.bound <= found_.depth) return;
+    if (cube.triangle != whole.triangle && is_held_or_shallow(cube)) return;
     // Searching for the deepest ball takes longest. Where the one of the whole cube ends in this part, too, it can but
     // tell of a place that is deeper than what was found.
     if (at_most > 0 || depth + at_most > found_.depth) {
       const double gap = reconstruction_.distance_between(-reach, std::min(at_most, reach), center, cube.ball);
-      if (!(std::abs(gap) < reach)) return;
+      if (!(std::abs(gap) < reach) || holds_all(cube.ball)) return;
       if (gap >= 0 && depth + gap > found_.depth) take_boundary(center, cube.ball, deepest);
+      if (is_held_or_shallow(cube)) return;
     }
     parts.push_back(cube);
+  }
+
+  // Whether each place of a cube is in its ball, or no deeper than what was found. How far it is from the triangle,
+  // which is no less than its depth, and how far beyond the ball are convex functions of the place, and so is their
+  // sum, which is nowhere more than at the corners: where that is less than what was found, one or the other holds. A
+  // cube across the surface is held by no ball, and along the surface this is what spares its parts.
+  bool is_held_or_shallow(const Cube& cube) const {
+    const auto [a, b, c] = surface_.corners(cube.triangle);
+    for (int corner = 0; corner < 8; ++corner) {
+      const Point place =
+          cube.center + Vector(corner & 1 ? half_ : -half_, corner & 2 ? half_ : -half_, corner & 4 ? half_ : -half_);
+      const double beyond = (place - cube.ball.center).norm() - cube.ball.radius;
+      if (!(beyond < found_.depth)) return false;
+      if (!(beyond + closest_point_of_triangle(place, a, b, c).distance + 2 * rounding_ < found_.depth)) return false;
+    }
+    return true;
   }
 
   // The place of the boundary that is nearest to a point outside the reconstruction.

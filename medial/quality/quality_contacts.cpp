@@ -10,13 +10,15 @@ namespace orchard::detail {
 namespace {
 
 constexpr double kPrecision = 1e-3;  // of the distance to the second contact
+constexpr double kLikely = 1.02;     // times the radius: where the second contact of a medial ball is, and room
 constexpr double kTinyBall = 1e-6;   // of the diagonal: its contacts are rounding
 
 // The nearest point, outside a cone around the first contact, of triangles given one after the other.
 class ContactSearch {
  public:
-  ContactSearch(const Point& center, const Vector& direction, double angle)
-      : center_(center), direction_(direction), cosine_(std::cos(angle)) {}
+  // Looks for what is nearer than `limit`.
+  ContactSearch(const Point& center, const Vector& direction, double angle, double limit)
+      : center_(center), direction_(direction), cosine_(std::cos(angle)), nearest_(limit) {}
 
   double nearest() const { return nearest_; }
   double limit() const { return (1 - kPrecision) * nearest_; }  // what is farther is not looked for
@@ -24,9 +26,9 @@ class ContactSearch {
   // The cone is convex: a piece whose corners are inside it is inside. Of a piece across its border the nearest point
   // counts if that is outside, else halves are looked at.
   void look_at(const Point& a, const Point& b, const Point& c) {
+    if (in_cone(a) && in_cone(b) && in_cone(c)) return;
     const ClosestPoint closest = closest_point_of_triangle(center_, a, b, c);
     if (closest.distance >= limit()) return;
-    if (in_cone(a) && in_cone(b) && in_cone(c)) return;
     if (!in_cone(closest.position)) {
       nearest_ = closest.distance;
       return;
@@ -58,43 +60,50 @@ class ContactSearch {
   Point center_;
   Vector direction_;
   double cosine_;
-  double nearest_ = std::numeric_limits<double>::infinity();
+  double nearest_;
 };
 
 }  // namespace
 
-double second_contact_distance(const Surface& surface, const Point& center, const Vector& direction, double angle) {
-  ContactSearch search(center, direction, angle);
-  surface.visit_nearest(center, [&](Index triangle) {
-    const auto [a, b, c] = surface.corners(triangle);
-    search.look_at(a, b, c);
-    return search.limit();
-  });
-  return search.nearest();
+double second_contact_distance(const Surface& surface, const Point& center, const Vector& direction, double angle,
+                               double likely) {
+  for (const double limit : {likely, std::numeric_limits<double>::infinity()}) {
+    ContactSearch search(center, direction, angle, limit);
+    surface.visit_nearest(center, [&](Index triangle) {
+      const auto [a, b, c] = surface.corners(triangle);
+      search.look_at(a, b, c);
+      return search.limit();
+    });
+    if (search.nearest() < limit) return search.nearest();
+  }
+  return std::numeric_limits<double>::infinity();
 }
 
-double off_centre(const Surface& surface, const Sphere& ball, double contact_angle, double diagonal) {
-  if (!(ball.radius > kTinyBall * diagonal)) return -1;
-  const ClosestPoint first = surface.closest(ball.center);
-  if (!(first.distance > 0)) return -1;
+double off_centre(const Surface& surface, const Sphere& ball, const ClosestPoint& first, double contact_angle,
+                  double diagonal) {
+  if (!(ball.radius > kTinyBall * diagonal) || !(first.distance > 0)) return -1;
   const Vector direction = (first.position - ball.center) / first.distance;
-  const double second = second_contact_distance(surface, ball.center, direction, contact_angle);
+  const double second = second_contact_distance(surface, ball.center, direction, contact_angle,
+                                                kLikely * std::max(ball.radius, first.distance));
   return std::isfinite(second) ? std::abs(second - ball.radius) / ball.radius : -1;
 }
 
 void measure_contacts(const Surface& surface, const QualityBalls& balls, const QualityOptions& options,
                       MedialQuality& quality) {
   const std::size_t count = balls.vertices.size();
+  std::vector<ClosestPoint> first(count);
   std::vector<double> radius_error(count);
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-    radius_error[i] = std::abs(balls.vertices[i].radius - surface.distance(balls.vertices[i].center));
+    first[i] = surface.closest(balls.vertices[i].center);
+    radius_error[i] = std::abs(balls.vertices[i].radius - first[i].distance);
   });
   quality.radius_error = spread_of(radius_error);
 
   const std::size_t chosen = std::min<std::size_t>(count, options.contact_cells);
   std::vector<double> off(chosen, -1);
-  tbb::parallel_for(std::size_t{0}, chosen, [&](std::size_t i) {
-    off[i] = off_centre(surface, balls.vertices[i * count / chosen], options.contact_angle, quality.diagonal);
+  tbb::parallel_for(std::size_t{0}, chosen, [&](std::size_t k) {
+    const std::size_t i = k * count / chosen;
+    off[k] = off_centre(surface, balls.vertices[i], first[i], options.contact_angle, quality.diagonal);
   });
   std::erase(off, -1.0);
   quality.centredness = spread_of(off);

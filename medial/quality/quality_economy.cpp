@@ -9,6 +9,8 @@
 namespace orchard::detail {
 namespace {
 
+constexpr std::size_t kCluster = 64;  // samples that are looked at together
+
 // Balls that, enlarged by the error, keep within it of the solid: those that protrude no more.
 std::vector<Sphere> admissible_balls(const Surface& surface, const MedialMesh& mesh, Index max, double error) {
   const std::size_t count = mesh.centers.size(), chosen = std::min<std::size_t>(count, max);
@@ -27,20 +29,45 @@ std::vector<Sphere> admissible_balls(const Surface& surface, const MedialMesh& m
   return balls;
 }
 
-// The samples within `error` of each ball, found in columns of samples sorted along x.
+// Samples that lie close to each other.
+struct Cluster {
+  std::size_t begin, end;
+  Box box;
+};
+
+// Halves samples along the longest side of their box until few are left.
+void add_clusters(std::vector<SurfaceSample>& samples, std::size_t begin, std::size_t end,
+                  std::vector<Cluster>& clusters) {
+  Box box;
+  for (std::size_t i = begin; i < end; ++i) box.extend(samples[i].position);
+  if (end - begin <= kCluster) {
+    clusters.push_back({begin, end, box});
+    return;
+  }
+  int axis = 0;
+  box.sizes().maxCoeff(&axis);
+  const std::size_t middle = begin + (end - begin) / 2;
+  const auto at = [&](std::size_t i) { return samples.begin() + static_cast<std::ptrdiff_t>(i); };
+  std::nth_element(at(begin), at(middle), at(end), [axis](const SurfaceSample& a, const SurfaceSample& b) {
+    return a.position[axis] < b.position[axis];
+  });
+  add_clusters(samples, begin, middle, clusters);
+  add_clusters(samples, middle, end, clusters);
+}
+
+// The samples within `error` of each ball; puts those next to each other that lie close to each other.
 std::vector<std::vector<Index>> samples_of_balls(const std::vector<Sphere>& balls, std::vector<SurfaceSample>& samples,
                                                  double error) {
-  std::sort(samples.begin(), samples.end(),
-            [](const SurfaceSample& a, const SurfaceSample& b) { return a.position.x() < b.position.x(); });
+  std::vector<Cluster> clusters;
+  add_clusters(samples, 0, samples.size(), clusters);
   std::vector<std::vector<Index>> covered(balls.size());
   tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t i) {
     const Point& center = balls[i].center;
     const double reach = balls[i].radius + error, squared = reach * reach;
-    auto sample = std::lower_bound(samples.begin(), samples.end(), center.x() - reach,
-                                   [](const SurfaceSample& s, double x) { return s.position.x() < x; });
-    for (; sample != samples.end() && sample->position.x() <= center.x() + reach; ++sample) {
-      if ((sample->position - center).squaredNorm() <= squared) {
-        covered[i].push_back(static_cast<Index>(sample - samples.begin()));
+    for (const Cluster& cluster : clusters) {
+      if (cluster.box.squaredExteriorDistance(center) > squared) continue;
+      for (std::size_t k = cluster.begin; k < cluster.end; ++k) {
+        if ((samples[k].position - center).squaredNorm() <= squared) covered[i].push_back(static_cast<Index>(k));
       }
     }
   });

@@ -15,10 +15,11 @@ BallErrors ball_errors(const Surface& surface, std::span<const Sphere> balls, co
   if (options.contact_cells > 0) errors.centredness.resize(balls.size());
   tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t i) {
     const Sphere& ball = balls[i];
-    errors.radius_error[i] = std::abs(ball.radius - surface.distance(ball.center)) / diagonal;
-    errors.protrusion[i] = detail::reach_of(surface, ball).beyond / diagonal;
+    const detail::BallReach reach = detail::reach_of(surface, ball);
+    errors.radius_error[i] = std::abs(ball.radius - reach.nearest.distance) / diagonal;
+    errors.protrusion[i] = reach.beyond / diagonal;
     if (options.contact_cells > 0)
-      errors.centredness[i] = detail::off_centre(surface, ball, options.contact_angle, diagonal);
+      errors.centredness[i] = detail::off_centre(surface, ball, reach.nearest, options.contact_angle, diagonal);
   });
   return errors;
 }

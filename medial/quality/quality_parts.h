@@ -46,6 +46,7 @@ struct BallReach {
   double beyond = 0;
   Point farthest = Point::Zero();
   bool outside = false;
+  ClosestPoint nearest;  // of the surface to the centre
 };
 BallReach reach_of(const Surface& surface, const Sphere& ball);
 void measure_reconstruction(const Surface& surface, const MedialMesh& mesh, std::span<const SurfaceSample> samples,
@@ -60,13 +61,16 @@ Spread inner_coverage(const MedialMesh& mesh, std::span<const SurfaceReach> reac
 // The `count` worst of `places`, whichever their order, no two within `apart` of each other.
 std::vector<WorstPlace> worst_of(std::vector<WorstPlace> places, Index count, double apart);
 // quality_contacts.cpp
-// |distance to the second contact - radius| over the radius; -1 if the ball has none, or is a point.
-double off_centre(const Surface& surface, const Sphere& ball, double contact_angle, double diagonal);
+// |distance to the second contact - radius| over the radius; -1 if the ball has none, or is a point. `first`: the
+// surface's place nearest to the centre.
+double off_centre(const Surface& surface, const Sphere& ball, const ClosestPoint& first, double contact_angle,
+                  double diagonal);
 void measure_contacts(const Surface& surface, const QualityBalls& balls, const QualityOptions& options,
                       MedialQuality& quality);
 // The distance from `center` to the part of the surface that is seen at `angle` or more from `direction` (unit), up to
-// one in a thousand; infinity where there is none.
-double second_contact_distance(const Surface& surface, const Point& center, const Vector& direction, double angle);
+// one in a thousand; infinity where there is none. Fastest where it is `likely` or a little less.
+double second_contact_distance(const Surface& surface, const Point& center, const Vector& direction, double angle,
+                               double likely);
 // quality_economy.cpp
 Economy measure_economy(const Surface& surface, const MedialMesh& mesh, const QualityOptions& options, double diagonal);
 

@@ -14,7 +14,6 @@ namespace {
 constexpr double kArrived = 1e-6;  // of the diagonal: a march ends this near to the boundary
 constexpr int kMaxSteps = 50;
 constexpr std::size_t kBlock = 64;                                  // samples that one task takes, one after the other
-constexpr double kSlack = 1e-9;                                     // above what rounding can do to a bound
 constexpr double kProtrusionAccuracy = 1e-5, kDentAccuracy = 1e-4;  // diagonals: to which maxima are searched
 
 // How far along a unit direction a point inside a ball is from leaving it.
@@ -63,11 +62,17 @@ void tighten(std::span<const SurfaceSample> samples, std::vector<SurfaceReach>& 
   });
 }
 
-// Outward along the normal, from ball to ball, until none holds the point.
+// Outward along the normal, from ball to ball, until none holds the point. `cell`: one that may be near, or kNone; then
+// the nearest one.
 SurfaceReach reach_at(const Surface& surface, const Reconstruction& reconstruction, const SurfaceSample& sample,
-                      double bound, double diagonal) {
+                      Index& cell, double diagonal) {
   SurfaceReach reach;
-  double depth = -reconstruction.distance_below(bound, sample.position, reach.ball);
+  Reconstruction::Nearest nearest;
+  if (cell != kNone) nearest = reconstruction.nearest_in(cell, sample.position);
+  nearest = reconstruction.nearest_from(nearest, sample.position, -std::numeric_limits<double>::infinity());
+  cell = nearest.cell;
+  reach.ball = nearest.ball;
+  double depth = -nearest.distance;
   reach.distance = -depth;
   reach.farthest = sample.position;
   if (depth < 0) {
@@ -137,14 +142,9 @@ std::vector<SurfaceReach> reach_of(const Surface& surface, const Reconstruction&
   const std::size_t blocks = (samples.size() + kBlock - 1) / kBlock;
   tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
     const std::size_t end = std::min(samples.size(), (block + 1) * kBlock);
-    double bound = std::numeric_limits<double>::infinity();
-    for (std::size_t i = block * kBlock; i < end; ++i) {
-      reaches[i] = reach_at(surface, reconstruction, samples[i], bound, diagonal);
-      if (i + 1 == end) break;
-      // The distance is 1-Lipschitz, and samples follow each other over the surface.
-      const double step = (samples[i + 1].position - samples[i].position).norm();
-      bound = reaches[i].distance + (1 + kSlack) * step + kSlack * diagonal;
-    }
+    Index cell = kNone;
+    for (std::size_t i = block * kBlock; i < end; ++i)
+      reaches[i] = reach_at(surface, reconstruction, samples[i], cell, diagonal);
   });
   tighten(samples, reaches, diagonal);
   return reaches;
@@ -153,9 +153,10 @@ std::vector<SurfaceReach> reach_of(const Surface& surface, const Reconstruction&
 // The point of a ball beyond the ball's nearest surface point is the farthest outside wherever the surface is flat or
 // convex there; it is a point of the ball in any case, so what it gives is attained.
 BallReach reach_of(const Surface& surface, const Sphere& ball) {
-  ClosestPoint nearest;
-  const double depth = surface.signed_distance(ball.center, nearest);
-  BallReach reach{.beyond = 0, .farthest = ball.center, .outside = depth > 0};
+  BallReach reach{.beyond = 0, .farthest = ball.center, .outside = false, .nearest = {}};
+  const double depth = surface.signed_distance(ball.center, reach.nearest);
+  const ClosestPoint& nearest = reach.nearest;
+  reach.outside = depth > 0;
   if (!(depth + ball.radius > 0)) return reach;  // distance is 1-Lipschitz: all of the ball is inside
   if (!(nearest.distance > 0)) {
     reach.beyond = std::max(0.0, ball.radius);

@@ -2,40 +2,42 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <utility>
 
-#include "orchard/geometry/random.h"
+#include "orchard/geometry/error.h"
 #include "orchard/medial/quality.h"
+#include "smooth_noise.h"
 
 namespace orchard {
 namespace {
 
-constexpr std::uint64_t kNoiseStage = 0x6e6f69;
 constexpr double kHysteresis = 0.1745;  // radians, 10 degrees: a part at the threshold does not count as lost
 
-// Each vertex moved to a random place in a ball around it.
-TriangleMesh with_noise(TriangleMesh mesh, double max, std::uint64_t seed) {
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    Random random(seed, kNoiseStage, i);
-    Vector step;
-    do {
-      step = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
-    } while (step.squaredNorm() > 1);
-    mesh.vertices[i] += max * step;
-  }
+// Of the noise's lattice: edges no longer than this show the whole of it.
+constexpr double kMaxEdge = 0.5;
+
+// Where points are on the same surface in other triangles.
+void find_again(const Surface& surface, SurfaceSampling& points) {
+  tbb::parallel_for(Index{0}, points.size(), [&](Index i) {
+    const ClosestPoint closest = surface.closest(points.points[i]);
+    points.triangles[i] = closest.triangle;
+    points.features[i] = closest.feature;
+  });
+}
+
+TriangleMesh moved_by(const detail::SmoothNoise& noise, double max, TriangleMesh mesh) {
+  tbb::parallel_for(std::size_t{0}, mesh.vertices.size(), [&](std::size_t i) {
+    const Point place = mesh.vertices[i];
+    mesh.vertices[i] = place + max * noise(place);
+  });
   return mesh;
 }
 
-// The points of the build, without those that gap repair added, where the moved mesh has them.
-SurfaceSampling carried_along(const MedialBuild& build, const Surface& from, const Surface& to) {
-  SurfaceSampling sampling = build.sampling;
-  const Index own = build.points - build.gap_repair.points_removed;
-  sampling.points.resize(own);
-  sampling.triangles.resize(own);
-  sampling.features.resize(own);
-  sampling.origins.resize(own);
-  for (Index i = 0; i < own; ++i) {
+// The points where the moved mesh has them.
+SurfaceSampling carried_along(SurfaceSampling sampling, const Surface& from, const Surface& to) {
+  for (Index i = 0; i < sampling.size(); ++i) {
     const auto [a, b, c] = from.corners(sampling.triangles[i]);
     const auto [p, q, r] = to.corners(sampling.triangles[i]);
     const Vector u = b - a, v = c - a, normal = u.cross(v), place = sampling.points[i] - a;
@@ -132,11 +134,19 @@ MedialStability summary(std::vector<double> distances, double noise) {
 std::optional<MedialStability> medial_stability(const Surface& surface, const MedialBuild& build,
                                                 const MedialBuildOptions& options, const StabilityOptions& stability,
                                                 const Progress& progress) {
-  const double noise = stability.noise * surface.bounding_box().diagonal().norm();
-  const Surface moved(with_noise(surface.mesh(), noise, stability.seed));
+  if (!(stability.correlation > 0)) throw InputError("stability: the noise's correlation is a length above 0");
+  const double diagonal = surface.bounding_box().diagonal().norm();
+  const double noise = stability.noise * diagonal, correlation = stability.correlation * diagonal;
+  TriangleMesh mesh = detail::with_short_edges(surface.mesh(), kMaxEdge * correlation);
+  SurfaceSampling sampling = build.sampling;
+  std::optional<Surface> divided;
+  if (mesh.triangles.size() > surface.mesh().triangles.size()) {
+    find_again(divided.emplace(mesh), sampling);
+  }
+  const Surface moved(moved_by({surface.bounding_box(), correlation, stability.seed}, noise, std::move(mesh)));
   if (!moved.solid()) return std::nullopt;
   MedialBuildInput points;
-  points.sampling = carried_along(build, surface, moved);
+  points.sampling = carried_along(std::move(sampling), divided ? *divided : surface, moved);
   const MedialBuild other = build_medial_axis(moved, options, progress, std::move(points));
   const Part a = wide_part(build.axis, 2 * stability.object_angle);
   const Part b = wide_part(other.axis, 2 * stability.object_angle);

@@ -159,6 +159,14 @@ Reconstruction::Nearest Reconstruction::nearest_from(Nearest nearest, const Poin
   return nearest;
 }
 
+Reconstruction::Nearest Reconstruction::nearest_in(Index cell, const Point& query) const {
+  const auto& [a, b, c] = corners_[cell];
+  Nearest result{.distance = 0, .ball = {Point::Zero(), 0}, .cell = cell};
+  result.distance =
+      evaluate(cell, {balls_[a], balls_[b], balls_[c]}, query, std::numeric_limits<double>::infinity(), result.ball);
+  return result;
+}
+
 double Reconstruction::distance_to_cell(Index cell, const Point& query, double best) const {
   const auto& [a, b, c] = corners_[cell];
   Sphere ball;

@@ -31,9 +31,11 @@ class Reconstruction {
     Sphere ball{Point::Zero(), 0};
     Index cell = kNone;  // if there is none
   };
-  // Any below `enough` will do where there are such.
+  // The nearest of all; any below `enough` will do where there are such.
   Nearest nearest(const Point& query, double enough = -std::numeric_limits<double>::infinity()) const;
-  // The same, where a cell is known already: it comes back unless one is nearer. Its ball is not looked at.
+  // Of one cell.
+  Nearest nearest_in(Index cell, const Point& query) const;
+  // The nearest of all, where a cell is known already: it comes back unless one is nearer. Its ball is not looked at.
   Nearest nearest_from(Nearest known, const Point& query, double enough) const;
   // The vertices of a cell; smaller ones repeat their last.
   const std::array<Index, 3>& corners_of(Index cell) const { return corners_[cell]; }

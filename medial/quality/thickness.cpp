@@ -9,7 +9,8 @@
 namespace orchard {
 namespace {
 
-constexpr double kTouching = 1e-3;  // of the bounding radius: a ball this near touches
+constexpr double kTouching = 1e-3;   // of the bounding radius: a ball this near touches
+constexpr std::size_t kBlock = 256;  // vertices that one task takes, one after the other
 
 }  // namespace
 
@@ -19,11 +20,29 @@ std::vector<double> medial_radii_at_surface(const Surface& surface, const Medial
   const detail::BallTree tree(std::move(boxes), mesh.radii);
   const auto& vertices = surface.mesh().vertices;
   std::vector<double> result(vertices.size(), 0);
-  tbb::parallel_for(std::size_t{0}, vertices.size(), [&](std::size_t i) {
-    const auto distance = [&](Index ball) { return (vertices[i] - mesh.centers[ball]).norm() - mesh.radii[ball]; };
-    const double nearest = tree.min(vertices[i], std::numeric_limits<double>::infinity(), distance, 1, 0);
-    const double touching = std::max(nearest, 0.0) + kTouching * surface.bounding_radius();
-    result[i] = tree.max_radius(vertices[i], touching, 0, [&](Index ball) { return distance(ball) <= touching; });
+  tbb::parallel_for(std::size_t{0}, (vertices.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
+    // Those of the vertex before, which is often near: they bound what is looked for.
+    Index nearest_ball = kNone, largest_ball = kNone;
+    const std::size_t end = std::min(vertices.size(), (block + 1) * kBlock);
+    for (std::size_t i = block * kBlock; i < end; ++i) {
+      const auto distance = [&](Index ball) { return (vertices[i] - mesh.centers[ball]).norm() - mesh.radii[ball]; };
+      double nearest = nearest_ball == kNone ? std::numeric_limits<double>::infinity() : distance(nearest_ball);
+      double best = nearest;
+      const auto value = [&](Index ball) {
+        const double found = distance(ball);
+        if (found < best) best = found, nearest_ball = ball;
+        return found;
+      };
+      nearest = tree.min(vertices[i], nearest, value, 1, 0);
+      const double touching = std::max(nearest, 0.0) + kTouching * surface.bounding_radius();
+      const auto accept = [&](Index ball) {
+        if (!(distance(ball) <= touching)) return false;
+        largest_ball = ball;
+        return true;
+      };
+      const double known = largest_ball != kNone && accept(largest_ball) ? mesh.radii[largest_ball] : 0;
+      result[i] = tree.max_radius(vertices[i], touching, known, accept);
+    }
   });
   return result;
 }

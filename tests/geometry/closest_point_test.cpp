@@ -7,6 +7,7 @@
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/random.h"
 #include "orchard/geometry/surface.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 #include "surface_queries.h"
 
@@ -75,6 +76,28 @@ TEST(Surface, FindsTheSameClosestPointAsALoopOverAllTriangles) {
       ASSERT_EQ(found.triangle, expected.triangle) << name << " at " << query.transpose();
       ASSERT_EQ(found.feature, expected.feature) << name << " at " << query.transpose();
       ASSERT_EQ(found.position, expected.position) << name << " at " << query.transpose();
+    }
+  }
+}
+
+// Bounds of large trees have one term more. Places deep inside are nearly as far from many triangles.
+TEST(Surface, FindsTheSameClosestPointOnAFineMesh) {
+  for (std::uint64_t seed = test::first_seed(); seed < test::first_seed() + 2 * test::more(); ++seed) {
+    Random random(seed, 5);
+    TriangleMesh mesh = test::torus(256, 130);
+    const double noise = seed % 2 == 0 ? 0 : 1e-3;
+    for (Point& vertex : mesh.vertices) {
+      for (int axis = 0; axis < 3; ++axis) vertex[axis] += noise * random.uniform(-1, 1);
+    }
+    const Surface surface(mesh);
+    const Box& box = surface.bounding_box();
+    for (int i = 0; i < 20; ++i) {
+      Point query;
+      for (int axis = 0; axis < 3; ++axis) query[axis] = random.uniform(box.min()[axis], box.max()[axis]);
+      const ClosestPoint expected = closest_by_brute_force(surface, query), found = surface.closest(query);
+      EXPECT_EQ(found.distance, expected.distance);
+      EXPECT_EQ(found.position, expected.position);
+      EXPECT_EQ(found.triangle, expected.triangle);
     }
   }
 }

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
 
 #include "known_axes.h"
 #include "orchard/geometry/error.h"
@@ -14,6 +16,7 @@
 #include "orchard/medial/axis_distance.h"
 #include "quality/boundary_reach.h"
 #include "quality/quality_parts.h"
+#include "quality/smooth_noise.h"
 #include "support/effort.h"
 #include "support/shapes.h"
 
@@ -189,8 +192,10 @@ TEST(MedialQuality, RefusesWhatItCannotJudge) {
 TEST(SecondContact, IsTheFarSideOfASlab) {
   const Surface surface(test::box({0, 0, 0}, {1, 10, 10}));
   const double angle = std::numbers::pi / 6;
-  EXPECT_NEAR(detail::second_contact_distance(surface, {0.5, 5, 5}, {-1, 0, 0}, angle), 0.5, 1e-3);
-  EXPECT_NEAR(detail::second_contact_distance(surface, {0.47, 5, 5}, {-1, 0, 0}, angle), 0.53, 1e-3);
+  for (const double likely : {0.1, 0.51, 0.6, std::numeric_limits<double>::infinity()}) {
+    EXPECT_NEAR(detail::second_contact_distance(surface, {0.5, 5, 5}, {-1, 0, 0}, angle, likely), 0.5, 1e-3);
+    EXPECT_NEAR(detail::second_contact_distance(surface, {0.47, 5, 5}, {-1, 0, 0}, angle, likely), 0.53, 1e-3);
+  }
 }
 
 TEST(MedialStability, IsSmallForAThickPlateAndTheSameEveryTime) {
@@ -207,6 +212,48 @@ TEST(MedialStability, IsSmallForAThickPlateAndTheSameEveryTime) {
   const std::optional<MedialStability> again = medial_stability(surface, build, options);
   EXPECT_EQ(stability->hausdorff, again->hausdorff);
   EXPECT_EQ(stability->mean, again->mean);
+}
+
+// The same solid from the same points, in 12 triangles and in 3072: the noise must not know.
+TEST(MedialStability, IsTheSolidsHoweverFineItsTriangles) {
+  const TriangleMesh coarse = test::box({0, 0, 0}, {1, 2, 3});
+  const Surface surface(coarse), fine(detail::with_short_edges(coarse, 0.25));
+  ASSERT_GT(fine.mesh().triangles.size(), 1000u);
+  const MedialBuildOptions options{.sampling = {.face_points = 1600, .edge_points = 400}};
+  const MedialBuild build = build_medial_axis(surface, options);
+  SurfaceSampling points = build.sampling;
+  for (Index i = 0; i < points.size(); ++i) {
+    const ClosestPoint closest = fine.closest(points.points[i]);
+    points.triangles[i] = closest.triangle;
+    points.features[i] = closest.feature;
+  }
+  MedialBuildInput input;
+  input.sampling = points;
+  const MedialBuild fine_build = build_medial_axis(fine, options, {}, std::move(input));
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    const auto few = medial_stability(surface, build, options, {.seed = seed});
+    const auto many = medial_stability(fine, fine_build, options, {.seed = seed});
+    ASSERT_TRUE(few && many);
+    EXPECT_NEAR(few->mean, many->mean, 0.05 * many->mean);
+    EXPECT_NEAR(few->percentile99, many->percentile99, 0.1 * many->percentile99);
+    EXPECT_NEAR(few->hausdorff, many->hausdorff, 0.25 * many->hausdorff);
+  }
+}
+
+TEST(MedialStability, IsTheSameInAnyUnitAndNeedsACorrelation) {
+  const TriangleMesh mesh = test::torus(24, 12);
+  const MedialBuildOptions options{.sampling = {.face_points = 800, .edge_points = 0}};
+  const auto stability_of = [&](double scale) {
+    const Surface surface(test::transformed(mesh, scale, Vector::Zero()));
+    return medial_stability(surface, build_medial_axis(surface, options), options, {.seed = 7});
+  };
+  const auto here = stability_of(1), there = stability_of(1024);
+  ASSERT_TRUE(here && there);
+  EXPECT_EQ(here->hausdorff, there->hausdorff);
+  EXPECT_EQ(here->percentile99, there->percentile99);
+  EXPECT_EQ(here->mean, there->mean);
+  const Surface surface(mesh);
+  EXPECT_THROW(medial_stability(surface, build_medial_axis(surface, options), options, {.correlation = 0}), InputError);
 }
 
 // A cylinder's axis is one long edge with nothing but its ends to show for it; with noise it is many short ones.

@@ -108,8 +108,12 @@ struct SurfaceErrors {
 SurfaceErrors surface_errors(const Surface& surface, const MedialMesh& mesh, std::span<const Point> points,
                              std::span<const Vector> normals);
 
+// The noise is a smooth random field: independent displacements on a lattice, interpolated in between. It does not know
+// the mesh's triangles, which are divided where they are too long for it: a solid's figure is that of the solid,
+// however fine its mesh is, and no noise crumples a mesh whose triangles are no larger than it.
 struct StabilityOptions {
-  double noise = 0.001;          // every vertex moves by at most this, in diagonals
+  double noise = 0.001;       // every place of the surface moves by at most this, in diagonals
+  double correlation = 0.05;  // above 0: spacing of the lattice, in diagonals; farther apart, places move on their own
   double object_angle = 1.0472;  // radians, 60 degrees: half the angle between the contacts
   std::uint64_t seed = 1;
 };
@@ -119,7 +123,8 @@ struct MedialStability {
   double hausdorff = 0, percentile99 = 0, mean = 0;
 };
 
-// Of the medial axis of the mesh and that of the mesh with noise, both built with `options`; only what has a larger
+// Of the medial axis of the mesh and that of the mesh with noise, both built with `options`, the other one from the
+// points of the first, which move with the mesh, those that were added to the sampling included; only what has a larger
 // object angle is compared (with what has one at most 10 degrees smaller).
 // Nothing if the noise makes the mesh no solid, or if an axis has no such part.
 std::optional<MedialStability> medial_stability(const Surface& surface, const MedialBuild& build,
