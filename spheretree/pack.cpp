@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "orchard/geometry/error.h"
@@ -105,14 +106,15 @@ class Packer {
   // A leaf lists the triangles that touch every ball on its path: all that its path region meets, and few more.
   void list_triangles() {
     std::vector<std::vector<Index>> touching(tree_.nodes.size());
+    std::vector<Index> near;
     for (std::size_t i = 0; i < tree_.nodes.size(); ++i) {
       const SphereNode& node = tree_.nodes[i];
-      const Sphere ball = packed_ball(places_[i]);
+      surface_.triangles_near(packed_ball(places_[i]), near);
       if (i == 0) {
-        surface_.triangles_near(ball, touching[0]);
+        touching[0] = near;
       } else {
-        for (Index triangle : touching[node.parent])
-          if (touches(ball, triangle)) touching[i].push_back(triangle);
+        const auto& above = touching[node.parent];
+        std::set_intersection(above.begin(), above.end(), near.begin(), near.end(), std::back_inserter(touching[i]));
       }
       if (i > 0 && i + 1 == last_child(node.parent) + 1) touching[node.parent] = {};
       if (node.child_count > 0) continue;
@@ -129,11 +131,6 @@ class Packer {
     const Point center = origin_ + Vector(block.x[at.lane], block.y[at.lane], block.z[at.lane]);
     const double radius = block.radius[at.lane];
     return {center, radius + slack(radius + center.norm())};
-  }
-
-  bool touches(const Sphere& ball, Index triangle) const {
-    const auto [a, b, c] = surface_.corners(triangle);
-    return closest_point_of_triangle(ball.center, a, b, c).distance <= ball.radius;
   }
 
   const SphereTree& tree_;

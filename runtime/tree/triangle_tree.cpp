@@ -176,16 +176,20 @@ class Builder {
   std::size_t halve(const Range& part) {
     const std::array<Vec3, 3> axes = axes_of(covariance(part));
     const std::size_t size = part.size(), half = multiple_of_width(size / 2);
-    if (tree_.triangle_tree_depth >= kCostlyDepth) return sort_along(axes[0], part), part.begin + half;
+    if (tree_.triangle_tree_depth >= kCostlyDepth) {
+      put_in_order(along(axes[0], part), part);
+      return part.begin + half;
+    }
     for (std::size_t i = part.begin; i < part.end; ++i) extents_[order_[i]] = extent_of(order_[i], axes);
     std::tuple<double, std::size_t, std::size_t, std::size_t> best = {kInfinity, 0, 0,
                                                                       half};  // cost, unevenness, axis, at
     std::vector<double> behind(size);
+    std::array<std::vector<Place>, 3> places;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      sort_along(axes[axis], part);
+      places[axis] = along(axes[axis], part);
       Extent extent = kNothing;
       for (std::size_t i = size; i-- > 0;) {
-        extent.add(extents_[order_[part.begin + i]]);
+        extent.add(extents_[places[axis][i].triangle]);
         behind[i] = extent.area() * static_cast<double>(size - i);
       }
       extent = kNothing;
@@ -194,18 +198,32 @@ class Builder {
           const double cost = extent.area() * static_cast<double>(i) + behind[i];
           best = std::min(best, {cost, i > half ? i - half : half - i, axis, i});
         }
-        extent.add(extents_[order_[part.begin + i]]);
+        extent.add(extents_[places[axis][i].triangle]);
       }
     }
-    sort_along(axes[std::get<2>(best)], part);
+    put_in_order(places[std::get<2>(best)], part);
     return part.begin + std::get<3>(best);
   }
 
-  void sort_along(const Vec3& axis, const Range& part) {
-    const auto at = [this](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
-    std::sort(at(part.begin), at(part.end), [this, &axis](std::uint32_t a, std::uint32_t b) {
-      return std::pair(dot(axis, centroids_[a]), a) < std::pair(dot(axis, centroids_[b]), b);
-    });
+  // Where a triangle's centroid is along an axis; equal ones go by their numbers.
+  struct Place {
+    double at;
+    std::uint32_t triangle;
+    bool operator<(const Place& other) const {
+      return at < other.at || (!(other.at < at) && triangle < other.triangle);
+    }
+  };
+  std::vector<Place> along(const Vec3& axis, const Range& part) const {
+    std::vector<Place> places(part.size());
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      const std::uint32_t triangle = order_[part.begin + i];
+      places[i] = {dot(axis, centroids_[triangle]), triangle};
+    }
+    std::sort(places.begin(), places.end());
+    return places;
+  }
+  void put_in_order(const std::vector<Place>& places, const Range& part) {
+    for (std::size_t i = 0; i < places.size(); ++i) order_[part.begin + i] = places[i].triangle;
   }
 
   // Of the corners, scaled to be free of overflow.

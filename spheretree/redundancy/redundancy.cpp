@@ -1,6 +1,7 @@
 #include "orchard/spheretree/redundancy.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 
 #include "orchard/covering/path_forest.h"
@@ -61,16 +62,15 @@ class Remover {
  private:
   void list_triangles() {
     touching_.resize(tree_.nodes.size());
+    std::vector<Index> near;
     for (Index i = 0; i < tree_.nodes.size(); ++i) {
       const SphereNode& node = tree_.nodes[i];
-      const double limit = node.sphere.radius * (1 + 1e-9);
+      surface_.triangles_near({node.sphere.center, node.sphere.radius * (1 + 1e-9)}, near);
       if (i == 0) {
-        surface_.triangles_near({node.sphere.center, limit}, touching_[0]);
-        continue;
-      }
-      for (Index triangle : touching_[node.parent]) {
-        const auto [a, b, c] = surface_.corners(triangle);
-        if (closest_point_of_triangle(node.sphere.center, a, b, c).distance <= limit) touching_[i].push_back(triangle);
+        touching_[0] = near;
+      } else {
+        const auto& above = touching_[node.parent];
+        std::set_intersection(above.begin(), above.end(), near.begin(), near.end(), std::back_inserter(touching_[i]));
       }
     }
   }
