@@ -6,6 +6,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -173,12 +174,15 @@ TEST(SimplifiedMedialMesh, IsTwoBallsForACapsule) {
   }
 }
 
+SimplifiedMedialMesh in_twelve_balls(const std::array<double, 3>& sides, Index points) {
+  const Surface surface(test::known_box(sides).solid);
+  return simplify_medial_mesh(surface, built_axis(surface, points),
+                              {.vertices = 12, .samples = 1500, .check = 2000, .search = 20'000, .rounds = 2});
+}
+
 // Its corners, with radius 0, and those of the rectangle in the middle.
 TEST(SimplifiedMedialMesh, IsTheTwelveBallsOfABox) {
-  const Surface surface(test::known_box({1, 2, 3}).solid);
-  const SimplifiedMedialMesh result =
-      simplify_medial_mesh(surface, built_axis(surface, 300),
-                           {.vertices = 12, .samples = 1500, .check = 2000, .search = 20'000, .rounds = 2});
+  const SimplifiedMedialMesh result = in_twelve_balls({1, 2, 3}, 300);
   EXPECT_EQ(result.mesh.size(), 12u);
   EXPECT_LT(result.report.hausdorff.max, 3e-4);
   EXPECT_LT(result.report.hausdorff.mean, 1e-5);
@@ -188,10 +192,7 @@ TEST(SimplifiedMedialMesh, IsTheTwelveBallsOfABox) {
 
 // An exact axis, that no sample is off at all: what quadrics leave off by rounding must not count as worse than that.
 TEST(SimplifiedMedialMesh, IsTheTwelveBallsOfABoxFromManyVertices) {
-  const Surface surface(test::known_box({1, 1.3, 2}).solid);
-  const SimplifiedMedialMesh result =
-      simplify_medial_mesh(surface, built_axis(surface, 5000),
-                           {.vertices = 12, .samples = 1500, .check = 2000, .search = 20'000, .rounds = 2});
+  const SimplifiedMedialMesh result = in_twelve_balls({1, 1.3, 2}, 5000);
   EXPECT_EQ(result.mesh.size(), 12u);
   EXPECT_LT(result.report.hausdorff.max, 3e-4);
 }
