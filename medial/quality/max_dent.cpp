@@ -131,7 +131,8 @@ class DentSearch {
       const double gap = reconstruction_.distance_between(-reach, std::min(at_most, reach), center, cube.ball);
       if (!(std::abs(gap) < reach) || holds_all(cube.ball)) return;
       if (gap >= 0 && depth + gap > found_.depth) take_boundary(center, cube.ball, deepest);
-      if (is_held_or_shallow(cube)) return;
+      const bool other_ball = cube.ball.center != whole.ball.center || cube.ball.radius != whole.ball.radius;
+      if (other_ball && is_held_or_shallow(cube)) return;
     }
     parts.push_back(cube);
   }
@@ -142,7 +143,11 @@ class DentSearch {
   // cube across the surface is held by no ball, and along the surface this is what spares its parts.
   bool is_held_or_shallow(const Cube& cube) const {
     const auto [a, b, c] = surface_.corners(cube.triangle);
-    for (int corner = 0; corner < 8; ++corner) {
+    // The corner farthest from the ball comes first, which tells soonest.
+    const Vector away = cube.center - cube.ball.center;
+    const int first = (away.x() > 0 ? 1 : 0) | (away.y() > 0 ? 2 : 0) | (away.z() > 0 ? 4 : 0);
+    for (int k = 0; k < 8; ++k) {
+      const int corner = first ^ k;
       const Point place =
           cube.center + Vector(corner & 1 ? half_ : -half_, corner & 2 ? half_ : -half_, corner & 4 ? half_ : -half_);
       const double beyond = (place - cube.ball.center).norm() - cube.ball.radius;
