@@ -191,7 +191,7 @@ class Contraction {
       waiting_.insert(key(a, b));
       return;
     }
-    const Ball4 ball = *found;
+    const Ball4& ball = *found;
     quadrics_[a] += quadrics_[b];
     mesh_.contract(a, b, ball);
     feet_.contract(a, b, seen);
