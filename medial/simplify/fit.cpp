@@ -16,6 +16,7 @@ namespace {
 constexpr double kFirstDamping = 1e-3, kMinDamping = 1e-6, kMaxDamping = 1e3;
 constexpr std::size_t kInTurn = 64;  // samples that one task takes, one after the other
 constexpr double kExact = 0.5;       // of the largest distance: smaller ones need not be exact
+constexpr double kHardly = 0.02;     // of the largest distance: balls that protrude by no more are left alone
 constexpr double kFloor = 1e-3;      // share of the weight that small distances keep at high powers
 
 LookOptions look_options(const Surface& surface, std::span<const FitSample> samples, const FitOptions& options) {
@@ -42,7 +43,7 @@ class Fitter {
     const bool known = feet_.feet.size() == samples_.size();
     if (known) feet_.walk(samples_, walker_);
     if (options_.search || !known) feet_.find_off(mesh_, samples_, kExact * feet_.max);
-    negligible_ = 0.02 * feet_.max;
+    negligible_ = kHardly * feet_.max;
     protrusions_ = protruding();
     scale_ = std::max(feet_.max, 1e-300);
     for (const Protrusion& protrusion : protrusions_) scale_ = std::max(scale_, protrusion.value);

@@ -39,7 +39,8 @@ struct FitOptions {
 
 // Moves the balls of a medial mesh, which keeps its cells, so that the boundary of its envelope comes to the samples,
 // and no vertex' ball protrudes: Levenberg-Marquardt steps with every sample held by its foot; powers above 2 by
-// reweighting. `feet` are cells of the mesh, or none; they are found anew, and then followed. Deterministic; parallel.
+// reweighting. `feet` are cells of the mesh, or none; they are searched for if there are none, or options.search, and
+// followed. Deterministic; parallel.
 void fit(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples, Assignment& feet,
          const FitOptions& options);
 

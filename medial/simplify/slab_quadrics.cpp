@@ -26,7 +26,7 @@ constexpr double kSpread = 1e-6;  // weight of an edge's length, so that short o
 constexpr double kBorder = 1.0;   // weight of the square over a border edge
 constexpr double kAsWhole = 2.0;  // of how far the whole mesh is off: as well as nothing was contracted
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-constexpr std::size_t kGuards = 4;  // samples of which one guards
+constexpr std::size_t kGuards = 4;  // of so many samples one stands guard, which tells as much of slabs
 constexpr double kFarthest = 2.0;   // edge lengths from its middle that a new ball may be
 
 class Contraction {
@@ -263,7 +263,7 @@ class Contraction {
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
 };
 
-// Every so manieth of the samples: they stand for all.
+// Samples that stand guard for all.
 std::vector<FitSample> thinned(std::span<const FitSample> samples) {
   std::vector<FitSample> result;
   for (std::size_t i = 0; i < samples.size(); i += kGuards) result.push_back(samples[i]);

@@ -14,10 +14,10 @@ namespace orchard::detail {
 // planes do not see; so each border edge adds the plane that touches it from beyond the sheet: a ball that moves in
 // from a border whose sheet ends at radius 0 pays what the solid loses there. O(n log n).
 //
-// A mean over planes hides a small one beside large sheets, so samples of the surface stand guard: a contraction that
-// takes one of them farther off than a limit, or whose ball protrudes farther, waits until no other is left; then the
-// limit, `min_limit` (mesh units) at first, is doubled. Below `target` they stand guard only if what is left without
-// one is off. Returns the samples' feet, as far as these are found nearby.
+// A mean over planes hides a small one beside large sheets, so every fourth sample of the surface stands guard: a
+// contraction that takes one of them farther off than a limit, or whose ball protrudes farther, waits until no other is
+// left; then the limit, `min_limit` (mesh units) at first, is doubled. Below `target` they stand guard only if what is
+// left without one is off.
 void contract_by_slabs(const Surface& surface, ContractibleMesh& mesh, std::span<const FitSample> samples, Index target,
                        Index free_target, double free_distance, double min_limit);
 
