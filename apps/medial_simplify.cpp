@@ -39,15 +39,16 @@ json to_json(const SimplifyReport& report) {
           {"coverage_mean", 100 * report.coverage.mean},
           {"protrusion_max", 100 * report.protrusion.max},
           {"protrusion_mean", 100 * report.protrusion.mean},
-          {"dent_upper", 100 * report.dent_upper}};
+          {"hausdorff_upper", 100 * report.upper}};
 }
 
 std::string to_csv(const std::vector<SimplifiedMedialMesh>& curve) {
-  std::string text = "vertices,edges,triangles,hausdorff_max,hausdorff_mean,coverage_max,protrusion_max\n";
+  std::string text =
+      "vertices,edges,triangles,hausdorff_max,hausdorff_mean,hausdorff_upper,coverage_max,protrusion_max\n";
   for (const auto& [mesh, report] : curve)
-    text += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g},{:.6g}\n", report.vertices, mesh.edges.size(),
+    text += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", report.vertices, mesh.edges.size(),
                         mesh.triangles.size(), 100 * report.hausdorff.max, 100 * report.hausdorff.mean,
-                        100 * report.coverage.max, 100 * report.protrusion.max);
+                        100 * report.upper, 100 * report.coverage.max, 100 * report.protrusion.max);
   return text;
 }
 
@@ -79,12 +80,14 @@ std::string lost_of(const EnvelopeMesh& envelope) {
 
 void print(const FewBalls& few) {
   const auto row = [](const SimplifyReport& report) {
-    fmt::print("  {:>7} {:>12.3f} {:>10.4f} {:>10.3f} {:>12.3f}\n", report.vertices, 100 * report.hausdorff.max,
-               100 * report.hausdorff.mean, 100 * report.coverage.max, 100 * report.protrusion.max);
+    fmt::print("  {:>7} {:>12.3f} {:>8.3f} {:>10.4f} {:>10.3f} {:>12.3f}\n", report.vertices,
+               100 * report.hausdorff.max, 100 * report.upper, 100 * report.hausdorff.mean, 100 * report.coverage.max,
+               100 * report.protrusion.max);
   };
   if (few.simplified || !few.curve.empty()) {
     fmt::print("in few balls: distance of surface and envelope, % of the diagonal\n");
-    fmt::print("  {:>7} {:>12} {:>10} {:>10} {:>12}\n", "balls", "two-sided", "mean", "coverage", "protrusion");
+    fmt::print("  {:>7} {:>12} {:>8} {:>10} {:>10} {:>12}\n", "balls", "two-sided", "proven", "mean", "coverage",
+               "protrusion");
   }
   for (const auto& [mesh, report] : few.curve) row(report);
   if (few.simplified) row(few.simplified->report);

@@ -53,8 +53,8 @@ std::string too_few(Index wanted, Index reached, Index least) {
          std::to_string(reached);
 }
 
-// The fewest vertices whose two-sided distance is within the limit, to a fiftieth, by bisection of their number: as a
-// rule the distance falls with it. To tell 20,000 from 20,001 would take as long as all that comes before.
+// The fewest vertices whose two-sided distance is proved to be within the limit, to a fiftieth, by bisection of their
+// number: as a rule the distance falls with it. To tell 20,000 from 20,001 would take as long as all that comes before.
 class FewestWithin {
  public:
   FewestWithin(const Surface& surface, const MedialMesh& mesh, const SimplifyOptions& options, const Progress& progress)
@@ -73,8 +73,8 @@ class FewestWithin {
     while (low <= high && !(best && high - low < low / kFiftieth)) {
       report_progress(progress_, kStage, progress_of(low, high));
       SimplifiedMedialMesh result = finish(surface_, mesh_, descent_, stage_of(next));
-      min = std::min(min, result.report.hausdorff.max);
-      if (result.report.hausdorff.max <= options_.error) {
+      min = std::min(min, result.report.upper);
+      if (result.report.upper <= options_.error) {
         high = next - 1;
         const bool fewest = result.report.vertices > next || next == 1;  // the topology allows no less
         best = std::move(result);
@@ -86,8 +86,8 @@ class FewestWithin {
     }
     if (!best) {
       throw InputError("error " + percent(options_.error) +
-                       " of the diagonal: no number of vertices of this axis comes nearer than " + percent(min) +
-                       "; allow more, or refine the axis further");
+                       " of the diagonal: no number of vertices of this axis is proved to come nearer than " +
+                       percent(min) + "; allow more, or refine the axis further");
     }
     return std::move(*best);
   }

@@ -28,8 +28,6 @@ double max_protrusion_at(const Surface& surface, const QualityBalls& balls) {
   return max;
 }
 
-constexpr Index kBallShare = 4;  // of what is searched: hardly any ball protrudes farther than all that were looked at
-
 }  // namespace
 
 void measure_two_sided(const Surface& surface, const MedialMesh& mesh, std::span<const Sphere> inscribed,
@@ -52,13 +50,12 @@ void measure_two_sided(const Surface& surface, const MedialMesh& mesh, std::span
   const std::vector<Dent> dents =
       dents_seen_from(balls_beyond(ContractibleMesh(mesh), inscribed, max), surface, reconstruction, max);
   if (!dents.empty()) max = dents.front().depth;
-  const double protrusion =
-      max_protrusion(surface, mesh, max, kBallAccuracy * diagonal, options.search / kBallShare).max;
-  if (protrusion > max) max = beyond.max = protrusion;
+  const SearchedMax ball = max_protrusion(surface, mesh, max, kBallAccuracy * diagonal, options.search);
+  if (ball.max > max) max = beyond.max = ball.max;
   const SearchedMax dent = max_dent(surface, reconstruction, max, kHollowAccuracy * diagonal, options.search);
   report.coverage = {open.upper / diagonal, uncovered.mean / diagonal};
   report.protrusion = {beyond.max / diagonal, beyond.mean / diagonal};
-  report.dent_upper = dent.upper / diagonal;
+  report.upper = std::max({dent.max, open.upper, ball.upper, dent.upper}) / diagonal;
   report.hausdorff = {dent.max / diagonal, 0.5 * (to.mean + from.mean) / diagonal};
 }
 

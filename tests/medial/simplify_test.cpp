@@ -350,7 +350,7 @@ TEST(SimplifiedMedialMesh, IsRefusedWhatItCannotDo) {
       message_for(box, axis, {.samples = 1500, .check = 2000, .search = 20'000, .rounds = 2}).find("error above 0"),
       std::string::npos);
   EXPECT_NE(message_for(box, axis, {.error = 1e-12, .samples = 1500, .check = 2000, .search = 20'000, .rounds = 2})
-                .find("comes nearer"),
+                .find("come nearer"),
             std::string::npos);
   EXPECT_NE(message_for(Surface(test::open_box()), axis, {.vertices = 5}).find("solid"), std::string::npos);
 }
@@ -362,10 +362,51 @@ TEST(SimplifiedMedialMesh, IsWithinTheErrorAskedFor) {
       simplify_medial_mesh(surface, axis, {.error = 0.04, .samples = 500, .check = 500, .search = 20'000, .rounds = 1});
   const SimplifiedMedialMesh fine =
       simplify_medial_mesh(surface, axis, {.error = 0.02, .samples = 500, .check = 500, .search = 20'000, .rounds = 1});
-  EXPECT_LE(coarse.report.hausdorff.max, 0.04);
-  EXPECT_LE(fine.report.hausdorff.max, 0.02);
+  EXPECT_LE(coarse.report.upper, 0.04);
+  EXPECT_LE(fine.report.upper, 0.02);
   EXPECT_LT(coarse.mesh.size(), fine.mesh.size());
   EXPECT_LT(fine.mesh.size(), axis.size() / 2);
+}
+
+// The distance from the surface of the farthest of random places of the envelope's boundary.
+double max_attained(const Surface& surface, const MedialMesh& mesh, Random& random) {
+  const detail::Reconstruction reconstruction(mesh);
+  double attained = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const auto& corners = mesh.triangles[random.below(mesh.triangles.size())];
+    double u = random.uniform(), v = random.uniform();
+    if (u + v > 1) u = 1 - u, v = 1 - v;
+    const Point center =
+        (1 - u - v) * mesh.centers[corners[0]] + u * mesh.centers[corners[1]] + v * mesh.centers[corners[2]];
+    const double radius =
+        (1 - u - v) * mesh.radii[corners[0]] + u * mesh.radii[corners[1]] + v * mesh.radii[corners[2]];
+    const Vector way(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    const Point place = center + radius * way.normalized();
+    if (reconstruction.distance(place) > -1e-9) attained = std::max(attained, surface.distance(place));
+  }
+  return attained;
+}
+
+// Few balls leave dents between the samples that they fit.
+TEST(SimplifiedMedialMesh, IsNowhereFartherOffThanIsProven) {
+  const Surface box(test::known_box({1, 2, 3}).solid), bend(test::known_l_shape(8).solid);
+  const std::vector<Index> counts{60, 30, 16};
+  for (std::uint64_t seed = test::first_seed(), end = seed + test::more(); seed < end; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed, 5);
+    for (const Surface* solid : {&box, &bend}) {
+      const double diagonal = solid->bounding_box().diagonal().norm();
+      for (const auto& [mesh, report] :
+           simplify_to_each(*solid, built_axis(*solid, 200), counts,
+                            {.samples = 300, .check = 300, .search = 400'000, .rounds = 1, .seed = seed})) {
+        EXPECT_LE(report.hausdorff.max, report.upper);
+        EXPECT_LE(max_attained(*solid, mesh, random), report.upper * diagonal + 1e-9);
+        if (solid == &box) {  // no crevices
+          EXPECT_LE(report.upper, report.hausdorff.max + std::max(1e-4, 0.02 * report.hausdorff.max) + 1e-9);
+        }
+      }
+    }
+  }
 }
 
 TEST(SimplifiedMedialMesh, KeepsTheTopologyAllTheWayDown) {

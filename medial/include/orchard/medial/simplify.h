@@ -13,12 +13,12 @@ namespace orchard {
 // The medial mesh in as few balls as you like: its envelope, the union of the balls, cones and slabs of its vertices,
 // edges and triangles, stays as near to the surface as so many can.
 struct SimplifyOptions {
-  Index vertices = 0;      // at most so many; 0: as few as `error` allows, to a fiftieth
-  double error = 0;        // where vertices is 0: the two-sided distance allowed, over the diagonal; above 0
-  Index samples = 10'000;  // places of the surface that balls are fitted to
-  Index check = 20'000;    // places from which the distance is measured at the end
-  Index search = 60'000;   // cubes and cells at most in which dents and what protrudes are searched, each time
-  int rounds = 4;          // at most, of moving vertices from where they are spared to where the distance is largest
+  Index vertices = 0;        // at most so many; 0: as few as `error` allows, to a fiftieth
+  double error = 0;          // where vertices is 0: the two-sided distance allowed, over the diagonal, proved; above 0
+  Index samples = 10'000;    // places of the surface that balls are fitted to
+  Index check = 20'000;      // places from which the distance is measured at the end
+  Index search = 1'000'000;  // cubes and cells at most in which dents and what protrudes are searched, each time
+  int rounds = 4;            // at most, of moving vertices from where they are spared to where the distance is largest
   std::uint64_t seed = 1;
 };
 
@@ -29,7 +29,10 @@ struct SimplifyReport {
   // bound where they may be more than that, dents from the centres of the balls of the mesh given, too; how deep places
   // of the surface lie in the envelope is measured at samples. protrusion.max is what was found.
   Spread hausdorff, coverage, protrusion;
-  double dent_upper = 0;  // proved: no place of the envelope's boundary is deeper in the solid
+  // Proved, over the diagonal: no place of the surface is farther from the envelope, none of the envelope's boundary
+  // from the surface. At least hausdorff.max; 2 % or 1e-4 more, unless the searches did not come to
+  // their end, or a ball closes a crevice.
+  double upper = 0;
 };
 
 struct SimplifiedMedialMesh {
