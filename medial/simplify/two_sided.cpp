@@ -11,6 +11,7 @@
 namespace orchard::detail {
 namespace {
 
+constexpr double kOfError = 0.02;  // of an error asked for: as near to it as what is less need be told from it
 constexpr double kBallAccuracy = 1e-5, kHollowAccuracy = 1e-4;  // diagonals: to which maxima are searched
 
 Spread spread_among(std::span<const SurfaceReach> reaches, double SurfaceReach::*value) {
@@ -27,6 +28,21 @@ double max_protrusion_at(const Surface& surface, const QualityBalls& balls) {
   }
   return max;
 }
+
+// What is searched for. Where an error is asked for, less does not matter: that it is less is soon proved, by how much
+// takes long.
+class Searched {
+ public:
+  Searched(const SimplifyOptions& options, double diagonal)
+      : diagonal_(diagonal), error_(options.vertices == 0 ? options.error * diagonal : 0) {}
+  double above(double found) const { return std::max(found, (1 - 2 * kOfError) * error_); }
+  double accuracy(double share) const {
+    return error_ > 0 ? std::min(share * diagonal_, kOfError * error_) : share * diagonal_;
+  }
+
+ private:
+  double diagonal_, error_;
+};
 
 }  // namespace
 
@@ -50,13 +66,17 @@ void measure_two_sided(const Surface& surface, const MedialMesh& mesh, std::span
   const std::vector<Dent> dents =
       dents_seen_from(balls_beyond(ContractibleMesh(mesh), inscribed, max), surface, reconstruction, max);
   if (!dents.empty()) max = dents.front().depth;
-  const SearchedMax ball = max_protrusion(surface, mesh, max, kBallAccuracy * diagonal, options.search);
-  if (ball.max > max) max = beyond.max = ball.max;
-  const SearchedMax dent = max_dent(surface, reconstruction, max, kHollowAccuracy * diagonal, options.search);
+  const Searched searched(options, diagonal);
+  const SearchedMax ball =
+      max_protrusion(surface, mesh, searched.above(max), searched.accuracy(kBallAccuracy), options.search);
+  if (ball.max > searched.above(max)) max = beyond.max = ball.max;
+  const SearchedMax dent =
+      max_dent(surface, reconstruction, searched.above(max), searched.accuracy(kHollowAccuracy), options.search);
+  if (dent.max > searched.above(max)) max = dent.max;
   report.coverage = {open.upper / diagonal, uncovered.mean / diagonal};
   report.protrusion = {beyond.max / diagonal, beyond.mean / diagonal};
-  report.upper = std::max({dent.max, open.upper, ball.upper, dent.upper}) / diagonal;
-  report.hausdorff = {dent.max / diagonal, 0.5 * (to.mean + from.mean) / diagonal};
+  report.upper = std::max({max, open.upper, ball.upper, dent.upper}) / diagonal;
+  report.hausdorff = {max / diagonal, 0.5 * (to.mean + from.mean) / diagonal};
 }
 
 }  // namespace orchard::detail
