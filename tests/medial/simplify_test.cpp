@@ -410,7 +410,7 @@ TEST(SimplifiedMedialMesh, IsNowhereFartherOffThanIsProven) {
                             {.samples = 300, .check = 300, .search = 400'000, .rounds = 1, .seed = seed})) {
         EXPECT_LE(report.hausdorff.max, report.upper);
         EXPECT_LE(max_attained(*solid, mesh, random), report.upper * diagonal + 1e-9);
-        if (solid == &box && report.hausdorff.max > 1e-3) {  // no crevices, and soon searched
+        if (solid == &box && report.hausdorff.max > 2e-3) {  // no crevices, and soon searched
           EXPECT_LE(report.upper, report.hausdorff.max + std::max(1e-4, 0.02 * report.hausdorff.max) + 1e-9);
         }
       }
