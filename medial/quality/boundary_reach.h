@@ -16,12 +16,13 @@ struct SearchedMax {
 };
 
 // How deep inside the solid the boundary of the reconstruction lies where it lies deepest: dents, slits and gaps
-// between sheets, which samples of the surface may all miss. Searched is above `known` only, in cubes around the solid
-// that are divided until none can have more than the larger of `accuracy` (mesh units) and 2 % above what was found, or
-// until `max_cubes` were: `upper` says then how much is left open. Parallel, and the same for any number of threads.
-// About one query of each kind for each cube: some (D / known)^2 of them, D being the diagonal.
+// between sheets, which samples of the surface may all miss. Searched is above `known` only, deep down in cubes
+// (deep_dents.h), below the surface along its normals (shell_dents.h), both divided until none can have more than the
+// larger of `accuracy` (mesh units) and 2 % above what was found, or until `max_parts` were: `upper` says then how much
+// is left open. Parallel, and the same for any number of threads. A query of each kind for each part: some tens of
+// thousands of parts on most meshes, whose number grows slowly as `known` falls.
 SearchedMax max_dent(const Surface& surface, const Reconstruction& reconstruction, double known, double accuracy,
-                     Index max_cubes);
+                     Index max_parts);
 
 // A place of the reconstruction's boundary inside the solid.
 struct Dent {

@@ -18,7 +18,7 @@ namespace orchard {
 struct QualityOptions {
   Index surface_samples = 100'000;  // for coverage and protrusion
   Index cells = 200'000;            // of each kind (vertices, edges, triangles) that are looked at, evenly chosen
-  Index search = 250'000;           // cubes and cells at most in which the largest dent and protrusion are searched
+  Index search = 250'000;           // parts at most in which the largest dent and protrusion are searched
   Index contact_cells = 10'000;     // vertices whose second contact is searched
   double contact_angle = 0.5235987755982988;  // radians, 30 degrees: half the opening of the first contact's cone
   double economy_error = 0.01;                // of the diagonal

@@ -17,7 +17,7 @@ struct SimplifyOptions {
   double error = 0;          // where vertices is 0: the two-sided distance allowed, over the diagonal, proved; above 0
   Index samples = 10'000;    // places of the surface that balls are fitted to
   Index check = 20'000;      // places from which the distance is measured at the end
-  Index search = 1'000'000;  // cubes and cells at most in which dents and what protrudes are searched, each time
+  Index search = 1'000'000;  // parts at most in which dents and what protrudes are searched, each time
   int rounds = 4;            // at most, of moving vertices from where they are spared to where the distance is largest
   std::uint64_t seed = 1;
 };
@@ -30,8 +30,8 @@ struct SimplifyReport {
   // of the surface lie in the envelope is measured at samples. protrusion.max is what was found.
   Spread hausdorff, coverage, protrusion;
   // Proved, over the diagonal: no place of the surface is farther from the envelope, none of the envelope's boundary
-  // from the surface. At least hausdorff.max; 2 % or 1e-4 more, unless the searches did not come to their end, which
-  // they hardly do below some 5e-4, or a ball closes a crevice. Where options.error counts, what is less than it is not
+  // from the surface. At least hausdorff.max; 2 % or 1e-4 more, unless the searches did not come to their end, or a
+  // ball closes a crevice. Where options.error counts, what is less than it is not
   // searched for, and this is no less than nearly so much.
   double upper = 0;
 };
