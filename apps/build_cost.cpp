@@ -19,7 +19,7 @@ struct Rates {
   double triangle_once = 0;  // seconds for each triangle
 };
 
-constexpr double kSecondsPerTriangle = 4.5e-5, kSecondsPerPoint = 9e-5;
+constexpr double kSecondsPerTriangle = 4.5e-5, kSecondsPerPoint = 4.5e-5;
 constexpr double kBytes = 2.4e7, kBytesPerPoint = 2000, kBytesPerSphere = 1000;
 constexpr double kSecondsPerTrial = 1e-4;  // of --descent, and sphere
 
@@ -52,7 +52,7 @@ Rates rates(const SphereTreeOptions& options) {
   const int effort = as_number(options.effort);
   switch (options.method) {
     case TreeMethod::tightened: {
-      constexpr double kSphere[] = {0.0085, 0.0135, 0.22}, kTriangle[] = {3e-6, 6e-6, 1e-4};
+      constexpr double kSphere[] = {0.0022, 0.0038, 0.048}, kTriangle[] = {0, 3e-7, 4.2e-5};
       return {kSphere[effort], kTriangle[effort], 0};
     }
     case TreeMethod::annealing: {
@@ -61,7 +61,7 @@ Rates rates(const SphereTreeOptions& options) {
       return {kSearch[effort], 0, kLevel[effort] * options.depth};
     }
     case TreeMethod::merging:
-      return {0.002, 3e-6, 0};
+      return {0.0015, 5e-7, 0};
     case TreeMethod::octree:
       return {0.0013, 6e-7, 0};
   }

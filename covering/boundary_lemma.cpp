@@ -23,11 +23,20 @@ namespace orchard {
 namespace detail {
 namespace {
 
+// Far more than the roundings of a distance.
+constexpr double kSurelyInside = 1 - 0x1p-40;
 // From this many balls at one triangle on, circles meet their neighbours through a tree of boxes. Below, looking at all
 // is faster.
 constexpr std::size_t kManyBalls = 48;
 
 }  // namespace
+
+bool surely_holds(const PathBall& ball, const std::array<Point, 3>& triangle) {
+  const double limit = ball.radius * kSurelyInside;
+  return ball.radius > 0 && std::all_of(triangle.begin(), triangle.end(), [&](const Point& corner) {
+           return (corner - ball.center).squaredNorm() <= limit * limit;
+         });
+}
 
 LemmaScratch& LemmaScratch::of_this_thread() {
   thread_local LemmaScratch scratch;
@@ -164,16 +173,6 @@ TriangleCover check(const TrianglePlane& plane, std::span<const PathBall> balls,
     own.pointers[i] = &own.circles[i];
   }
   return LemmaCheck(plane, balls, own.pointers, want).run();
-}
-
-// Balls are convex: a ball that holds the corners holds the triangle. Far more than the roundings of a distance.
-constexpr double kSurelyInside = 1 - 0x1p-40;
-
-bool surely_holds(const PathBall& ball, const std::array<Point, 3>& triangle) {
-  const double limit = ball.radius * kSurelyInside;
-  return ball.radius > 0 && std::all_of(triangle.begin(), triangle.end(), [&](const Point& corner) {
-           return (corner - ball.center).squaredNorm() <= limit * limit;
-         });
 }
 
 // The first leaf with a path of balls that hold the triangle with room for all roundings; kNone without one. That is

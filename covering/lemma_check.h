@@ -9,6 +9,9 @@
 
 namespace orchard::detail {
 
+// Balls are convex: a ball that holds the corners, here with room for all roundings, holds the triangle.
+bool surely_holds(const PathBall& ball, const std::array<Point, 3>& triangle);
+
 // What one ball has to do with one triangle: lines 4 and 5 of the dissertation's Figure 5.17, which do not depend on
 // any other ball and so can be kept while others change (5.3.3).
 struct CircleInPlane {

@@ -10,11 +10,10 @@ constexpr double kDearer = 8;
 
 }  // namespace
 
-std::vector<Taking> find_takers(const std::vector<UncoveredRegion>& uncovered, const CheapestTaker& cheapest) {
+std::vector<Taking> find_takers(const std::vector<UncoveredRegion>& uncovered, const CheapestTakers& cheapest) {
   std::vector<Taking> takings(uncovered.size());
   tbb::parallel_for(std::size_t{0}, uncovered.size(), [&](std::size_t i) {
-    const Taker whole = cheapest(uncovered[i].points());
-    const Taker farthest = cheapest({&uncovered[i].farthest, 1});
+    const auto [whole, farthest] = cheapest(uncovered[i]);
     const bool together = whole.rise <= kDearer * farthest.rise;  // true if both are infinite, too: none takes it
     takings[i] = {together ? whole.ball : farthest.ball, together};
   });

@@ -1,7 +1,6 @@
 #pragma once
 #include <functional>
 #include <limits>
-#include <span>
 #include <vector>
 
 #include "uncovered_regions.h"
@@ -20,8 +19,13 @@ struct Taker {
   double rise = std::numeric_limits<double>::infinity();  // of its cost
 };
 
-// Of the balls that can hold all the points, the one that they cost least; called by several threads.
-using CheapestTaker = std::function<Taker(std::span<const Point>)>;
+// Of the balls that can hold an uncovered region's points(), and of those that can hold its farthest one alone, the one
+// that this costs least.
+struct Takers {
+  Taker whole, farthest;
+};
+
+using CheapestTakers = std::function<Takers(const UncoveredRegion&)>;  // called by several threads
 
 struct Taking {
   Index ball = kNone;  // none: no ball can hold even the farthest point
@@ -32,6 +36,6 @@ struct Taking {
 // farthest point alone does, or no ball can hold it. Then it is a long sliver, or lies across the border of a path
 // region, and will fall apart: only its farthest point goes, to the ball that this costs least. Parallel over the
 // regions.
-std::vector<Taking> find_takers(const std::vector<UncoveredRegion>& uncovered, const CheapestTaker& cheapest);
+std::vector<Taking> find_takers(const std::vector<UncoveredRegion>& uncovered, const CheapestTakers& cheapest);
 
 }  // namespace orchard::detail

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sort_indices.h"
 #include "triangle_tree_builder.h"
 
 namespace orchard::detail {
@@ -281,7 +282,7 @@ void TriangleTree::near(const Sphere& ball, std::vector<Index>& out) const {
           add_if_near(leaf.triangle[k]);
       }
     });
-    std::sort(out.begin(), out.end());
+    sort_indices(out);
   } else {
     for (Index t = 0; t < mesh_.triangles.size(); ++t) add_if_near(t);
   }

@@ -14,6 +14,9 @@ namespace {
 
 using Point2 = Eigen::Vector2d;
 
+// A squared distance that is not in range by more surely is not, whatever its roundings.
+constexpr double kSurely = 1 + 1e-9;
+
 class ClusterRelaxation {
  public:
   ClusterRelaxation(const Surface& surface, const Clusters& clusters, Index cluster, std::vector<Index> members,
@@ -123,11 +126,19 @@ class ClusterRelaxation {
   Point2 force(std::size_t i, const CellHash& grid) const {
     const Point2& p = positions_[i];
     Point2 sum = Point2::Zero();
+    // Collected without a branch: whether a point is near cannot be predicted, and that costs more than the test.
+    thread_local std::vector<Index> near;
+    std::size_t count = 0;
     grid.visit_block(cells_[i], 2, [&](Index j) {
-      const Point2 away = p - positions_[j];
+      if (count == near.size()) near.resize(2 * count + 1);
+      near[count] = j;
+      count += static_cast<std::size_t>((p - positions_[j]).squaredNorm() <= radius_ * radius_ * kSurely);
+    });
+    for (std::size_t k = 0; k < count; ++k) {
+      const Point2 away = p - positions_[near[k]];
       const double distance = away.norm();
       if (distance > 0 && distance < radius_) sum += (1 / distance - 1 / radius_) * away;
-    });
+    }
     const double area_weight = (radius_ / spacing_) * (radius_ / spacing_), line_weight = line_density_ * radius_;
     edge_grid_.visit(cells_[i], [&](Index entry) {
       const Edge& edge = edges_[edge_in_cell_[entry]];

@@ -61,9 +61,10 @@ class Closer {
  private:
   // Adds the uncovered regions to what the nodes that they cost least have to hold; returns these nodes, ascending.
   std::vector<Index> give(const std::vector<UncoveredRegion>& uncovered) {
-    const std::vector<Taking> takings = find_takers(uncovered, [&](std::span<const Point> points) {
-      Taker best;
-      descend(0, points, best);
+    const std::vector<Taking> takings = find_takers(uncovered, [&](const UncoveredRegion& region) {
+      Takers best;
+      descend(0, {&region.farthest, 1}, best.farthest);
+      if (best.farthest.ball != kNone) descend(0, region.points(), best.whole);
       return best;
     });
     std::vector<char> marked(tree_.nodes.size(), 0);

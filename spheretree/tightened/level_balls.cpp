@@ -17,7 +17,11 @@ constexpr std::uint64_t kNaming = 0x9e3779b97f4a7c15;  // odd, with bits all ove
 
 LevelBalls::LevelBalls(PathRegions regions, std::vector<LevelBall> balls, Index max_children)
     : regions_(std::move(regions)), balls_(std::move(balls)), max_children_(max_children) {
-  for (LevelBall& ball : balls_) find_samples(ball);
+  places_.resize(size());
+  for (Index b = 0; b < size(); ++b) {
+    place(b);
+    find_samples(balls_[b]);
+  }
   recount();
 }
 
@@ -97,6 +101,7 @@ void LevelBalls::replace(Index index, const FittedBall& by) {
   LevelBall& ball = balls_[index];
   for (Index s : ball.samples) --holders_[s];
   static_cast<FittedBall&>(ball) = by;
+  place(index);
   ball.fitted_to = 0;
   find_samples(ball);
   for (Index s : ball.samples) ++holders_[s];
@@ -111,6 +116,7 @@ bool LevelBalls::try_replace(std::span<const Index> balls, std::vector<LevelBall
       --children_[old.path_region];
       ++children_[by[i].path_region];
       std::swap(old, by[i]);
+      place(balls[i]);
     }
   };
   swap_in();
@@ -125,6 +131,7 @@ bool LevelBalls::try_replace(std::span<const Index> balls, std::vector<LevelBall
 void LevelBalls::set_radii(std::span<const double> radii) {
   for (Index b = 0; b < size(); ++b) {
     balls_[b].radius = radii[b];
+    place(b);
     balls_[b].fitted_to = 0;
     find_samples(balls_[b]);
   }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ball_fit.h"
+#include "ball_places.h"
 #include "path_regions.h"
 
 namespace orchard::detail {
@@ -25,6 +26,7 @@ class LevelBalls {
   const PathRegions& regions() const { return regions_; }
   const std::vector<LevelBall>& all() const { return balls_; }
   const LevelBall& operator[](Index ball) const { return balls_[ball]; }
+  const BallPlaces& places() const { return places_; }
   Index size() const { return static_cast<Index>(balls_.size()); }
 
   void find_samples(LevelBall& ball) const;
@@ -49,9 +51,11 @@ class LevelBalls {
  private:
   void append_samples(LevelBall& ball, Index first) const;
   void recount();
+  void place(Index ball) { places_.set(ball, balls_[ball]); }
 
   PathRegions regions_;
   std::vector<LevelBall> balls_;
+  BallPlaces places_;
   Index max_children_;
   std::vector<Index> holders_;   // how many balls hold each sample
   std::vector<Index> children_;  // how many balls lie in each path region

@@ -13,38 +13,54 @@ namespace {
 // go again.
 constexpr double kInward = 0.1;
 
-// Finds the ball that given points cost least. The objective is convex in the looseness: a rise is at least the slope
-// times the growth, which spares most balls.
+// Finds the balls that an uncovered region costs least. Few path regions hold its points, and only balls in these come
+// into question. The objective is convex in the looseness: a rise is at least the slope times the growth, which spares
+// most of them.
 class TakerSearch {
  public:
   TakerSearch(const LevelBalls& balls, const LevelObjective& objective, double bounding_radius)
-      : balls_(balls), objective_(objective), bounding_radius_(bounding_radius) {
-    for (auto* numbers : {&x_, &y_, &z_, &radii_, &slopes_}) numbers->resize(balls.size());
+      : balls_(balls), objective_(objective), bounding_radius_(bounding_radius), balls_in_(balls.regions().size()) {
     for (Index b = 0; b < balls.size(); ++b) {
-      const LevelBall& ball = balls[b];
-      x_[b] = ball.center.x(), y_[b] = ball.center.y(), z_[b] = ball.center.z();
-      radii_[b] = ball.radius;
-      slopes_[b] = objective.slope(ball);
+      slopes_.push_back(objective.slope(balls[b]));
+      balls_in_[balls[b].path_region].push_back(b);
     }
   }
 
-  // Of the balls in whose path region all the points lie; the first, if there are several. The last point, which is
-  // an uncovered region's farthest, says which to begin at.
-  Taker cheapest(std::span<const Point> points) const {
-    if (balls_.size() == 0) return {};
-    const Point& p = points.back();
-    const auto dx = x_ - p.x(), dy = y_ - p.y(), dz = z_ - p.z();
-    const Eigen::ArrayXd min_rises = slopes_ * ((dx * dx + (dy * dy + dz * dz)).sqrt() - radii_);
-    Eigen::Index first = 0;
-    min_rises.minCoeff(&first);
-    Taker best;
-    consider(static_cast<Index>(first), points, best);
-    for (Index b = 0; b < balls_.size(); ++b)
-      if (b != first && !surely_above(min_rises[b], best)) consider(b, points, best);
+  Takers cheapest(const UncoveredRegion& uncovered) const {
+    Takers best;
+    std::vector<Index> path_regions = balls_.regions().regions_around(uncovered.farthest);
+    best.farthest = cheapest({&uncovered.farthest, 1}, path_regions);
+    std::erase_if(path_regions, [&](Index r) {
+      return !std::all_of(uncovered.corners.begin(), uncovered.corners.end(),
+                          [&](const Point& p) { return balls_.regions().holds(r, p); });
+    });
+    if (!path_regions.empty()) best.whole = cheapest(uncovered.points(), path_regions);
     return best;
   }
 
  private:
+  struct Candidate {
+    double min_rise;
+    Index ball;
+  };
+
+  // Of the balls in these path regions; the first, if there are several. The last point, which is an uncovered region's
+  // farthest, says which to begin at.
+  Taker cheapest(std::span<const Point> points, std::span<const Index> path_regions) const {
+    std::vector<Candidate> candidates;
+    for (Index r : path_regions)
+      for (Index b : balls_in_[r])
+        candidates.push_back({slopes_[b] * ((points.back() - balls_[b].center).norm() - balls_[b].radius), b});
+    Taker best;
+    if (candidates.empty()) return best;
+    std::iter_swap(candidates.begin(),
+                   std::min_element(candidates.begin(), candidates.end(),
+                                    [](auto& one, auto& other) { return one.min_rise < other.min_rise; }));
+    for (const auto& [min_rise, b] : candidates)
+      if (!surely_above(min_rise, best)) consider(b, points, best);
+    return best;
+  }
+
   static bool surely_above(double min_rise, const Taker& best) { return min_rise > best.rise * (1 + 1e-3); }
 
   void consider(Index b, std::span<const Point> points, Taker& best) const {
@@ -56,9 +72,6 @@ class TakerSearch {
     };
     if (std::any_of(points.begin(), points.end(), too_dear)) return;
     const double growth = grown.radius - ball.radius;
-    if (!std::all_of(points.begin(), points.end(),
-                     [&](const Point& p) { return balls_.regions().holds(ball.path_region, p); }))
-      return;
     const double rise =
         (growth > 0 ? objective_.cost(grown) - objective_.cost(ball) : 0) + kTakerTie * growth / bounding_radius_;
     if (rise < best.rise || (rise == best.rise && b < best.ball)) best = {b, rise};
@@ -67,8 +80,8 @@ class TakerSearch {
   const LevelBalls& balls_;
   const LevelObjective& objective_;
   double bounding_radius_;
-  Eigen::ArrayXd x_, y_, z_, radii_;  // of the balls
-  Eigen::ArrayXd slopes_;             // of each ball's cost, by its radius
+  std::vector<double> slopes_;                // of each ball's cost, by its radius
+  std::vector<std::vector<Index>> balls_in_;  // each path region, ascending
 };
 
 // Each ball to what it has taken in and to the samples that it alone holds. Balls that are apart share no sample.
@@ -94,7 +107,7 @@ void take_in(const Surface& surface, const LevelObjective& objective, const std:
              bool hold, LevelBalls& balls) {
   const TakerSearch search(balls, objective, surface.bounding_radius());
   const std::vector<Taking> takings =
-      find_takers(uncovered, [&](std::span<const Point> points) { return search.cheapest(points); });
+      find_takers(uncovered, [&](const UncoveredRegion& region) { return search.cheapest(region); });
   std::vector<std::vector<Point>> taken(balls.size());
   Samples fresh;
   const auto add_sample = [&](const Point& point, Index ball) {

@@ -34,23 +34,29 @@ void LevelSearch::run_covering(LevelBalls& balls, Index trials, LevelCover& cove
 
 void LevelSearch::run(LevelBalls& balls, Index trials, LevelCover* cover, const Progress& progress) {
   if (balls.size() < 2) return;
+  find_costs(balls);
   std::vector<LevelTrial> batch(kBatch);
   for (Index done = 0; done < trials; done += kBatch) {
     report_progress(progress, "searching", static_cast<double>(done) / trials);
-    want(balls);
+    want();
     tbb::parallel_for(Index{0}, kBatch, [&](Index i) { batch[i] = propose(balls, trials_ + i, cover); });
     trials_ += kBatch;
     apply(batch, balls, cover);
   }
 }
 
-// Trials begin where the cost is, and the less where they have failed already.
-void LevelSearch::want(const LevelBalls& balls) {
+void LevelSearch::find_costs(const LevelBalls& balls) {
   failures_.resize(balls.size(), 0);
-  wanted_.resize(balls.size());
+  costs_.resize(balls.size());
+  for (Index b = 0; b < balls.size(); ++b) costs_[b] = objective_.cost(balls[b]);
+}
+
+// Trials begin where the cost is, and the less where they have failed already.
+void LevelSearch::want() {
+  wanted_.resize(costs_.size());
   double sum = 0;
-  for (Index b = 0; b < balls.size(); ++b) {
-    sum += objective_.cost(balls[b]) / (1.0 + failures_[b]);
+  for (std::size_t b = 0; b < costs_.size(); ++b) {
+    sum += costs_[b] / (1.0 + failures_[b]);
     wanted_[b] = sum;
   }
 }
@@ -76,6 +82,7 @@ void LevelSearch::apply(std::vector<LevelTrial>& batch, LevelBalls& balls, Level
     for (Index b : trial.chosen) {
       taken[b] = 1;
       failures_[b] = 0;
+      costs_[b] = objective_.cost(balls[b]);
       changed.push_back(sphere_of(balls[b]));
       if (cover != nullptr) cover->replace(b, {changed.back(), balls[b].path_region});
     }

@@ -24,7 +24,8 @@ class LevelSearch {
 
  private:
   void run(LevelBalls& balls, Index trials, LevelCover* cover, const Progress& progress);
-  void want(const LevelBalls& balls);
+  void find_costs(const LevelBalls& balls);
+  void want();
   LevelTrial propose(const LevelBalls& balls, std::uint64_t number, const LevelCover* cover) const;
   void apply(std::vector<LevelTrial>& batch, LevelBalls& balls, LevelCover* cover);
 
@@ -34,6 +35,7 @@ class LevelSearch {
   Index level_;                  // for the random numbers
   std::uint64_t trials_ = 0;     // so far
   std::vector<Index> failures_;  // trials that began at each ball since it was last changed by one
+  std::vector<double> costs_;    // of the balls
   std::vector<double> wanted_;   // as propose_trial() takes it
 };
 

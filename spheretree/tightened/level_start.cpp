@@ -15,6 +15,36 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kRounds = 8;  // of Lloyd's iteration
 constexpr int kStartEvaluations = 8;
 
+// Finds the largest of numbers, the first if there are several, that never rise: a heap of what they once were.
+class LargestFirst {
+ public:
+  explicit LargestFirst(const std::vector<double>& now) : now_(now) {
+    for (Index i = 0; i < now.size(); ++i) heap_.push_back({now[i], i});
+    std::make_heap(heap_.begin(), heap_.end(), after);
+  }
+
+  Index largest() {
+    while (heap_.front().value != now_[heap_.front().index]) {
+      std::pop_heap(heap_.begin(), heap_.end(), after);
+      heap_.back().value = now_[heap_.back().index];
+      std::push_heap(heap_.begin(), heap_.end(), after);
+    }
+    return heap_.front().index;
+  }
+
+ private:
+  struct Entry {
+    double value;  // as it was when the entry was last looked at
+    Index index;
+  };
+  static bool after(const Entry& one, const Entry& other) {
+    return one.value < other.value || (one.value == other.value && one.index > other.index);
+  }
+
+  const std::vector<double>& now_;
+  std::vector<Entry> heap_;
+};
+
 // While this runs, a ball's samples are those that it owns: every sample has one owner. A radius below 0 marks a ball
 // that owns none.
 class LevelStart {
@@ -52,6 +82,7 @@ class LevelStart {
   void seed() {
     const BallFitter fitter(surface_);
     std::vector<double> min(samples_.size(), kInfinity);
+    LargestFirst by_min(min);
     Index next = static_cast<Index>(Random(options_.seed, 100 + options_.level).below(samples_.size()));
     for (Index seeds = 0; seeds < samples_.size() && balls_.size() < options_.balls; ++seeds) {
       LevelBall ball;
@@ -64,7 +95,7 @@ class LevelStart {
         balls_.push_back(ball);
       }
       min[next] = -kInfinity;
-      next = static_cast<Index>(std::max_element(min.begin(), min.end()) - min.begin());
+      next = by_min.largest();
     }
   }
 

@@ -25,6 +25,15 @@ constexpr double kWorthwhile = 1e-6;    // part of the cost that must go
 // By what part balls may become less loose in the last round.
 constexpr double kHoped = 0.3;
 
+// Neighbours are the nearest ones after each distance was multiplied by a number from the first to the second.
+constexpr double kNearer = 0.8, kFarther = 1.25;
+
+// The generator when so many more numbers were drawn. Compilers make one step of it.
+Random after(Index draws, Random random) {
+  for (Index i = 0; i < draws; ++i) random.bits();
+  return random;
+}
+
 // What a trial's ball is offered: the samples that were given up, and how loose the balls so far would get by each.
 struct Offered {
   std::size_t count;
@@ -108,12 +117,14 @@ class Proposal {
     return best;
   }
 
+  // Every other ball has a number of its own that its distance is multiplied by; few of them are looked at.
   void add_neighbors(Index of, std::size_t how_many) {
     std::vector<std::pair<double, Index>> near;
-    for (Index b = 0; b < balls_.size(); ++b) {
+    for (Index b : balls_.places().nearest(of, how_many, kNearer, kFarther)) {
       const double apart = (balls_[b].center - balls_[of].center).norm() - 0.5 * balls_[b].radius;
-      if (b != of) near.emplace_back(apart * random_.uniform(0.8, 1.25), b);
+      near.emplace_back(apart * after(b < of ? b : b - 1, random_).uniform(kNearer, kFarther), b);
     }
+    random_ = after(balls_.size() - 1, random_);
     how_many = std::min(how_many, near.size());
     std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(how_many), near.end());
     for (std::size_t i = 0; i < how_many; ++i)

@@ -5,9 +5,21 @@
 #include <algorithm>
 
 namespace orchard::detail {
+namespace {
+
+// A point this far outside a path's last ball, in squares of its radius, is not in it, whatever the rounding.
+constexpr double kInQuestion = 1 + 1e-9;
+
+}  // namespace
 
 PathRegions::PathRegions(const Samples& samples, std::vector<std::vector<Sphere>> paths)
     : paths_(std::move(paths)), samples_in_(paths_.size()) {
+  for (auto* numbers : {&x_, &y_, &z_, &limits_}) numbers->resize(size());
+  for (Index r = 0; r < size(); ++r) {
+    const Sphere& last = paths_[r].back();
+    x_[r] = last.center.x(), y_[r] = last.center.y(), z_[r] = last.center.z();
+    limits_[r] = last.radius * last.radius * kInQuestion;
+  }
   std::vector<std::vector<Index>> regions(samples.size());
   tbb::parallel_for(Index{0}, samples.size(), [&](Index s) { regions[s] = regions_around(samples.points[s]); });
   for (Index s = 0; s < samples.size(); ++s)
@@ -30,8 +42,10 @@ void PathRegions::add_sample(const Point& point, const Point& start) { append(po
 
 std::vector<Index> PathRegions::regions_around(const Point& point) const {
   std::vector<Index> regions;
+  thread_local Eigen::ArrayXd beyond;
+  beyond = (x_ - point.x()).square() + (y_ - point.y()).square() + (z_ - point.z()).square() - limits_;
   for (Index r = 0; r < size(); ++r)
-    if (holds(r, point)) regions.push_back(r);
+    if (beyond[r] <= 0 && holds(r, point)) regions.push_back(r);
   return regions;
 }
 

@@ -11,7 +11,8 @@ namespace orchard::detail {
 // as the paths were given, samples in the order in which they came; samples are never taken out.
 class PathRegions {
  public:
-  // paths[r]: the balls from the root down whose common part is path region r. Samples in no path region are left out.
+  // paths[r]: the balls from the root down, at least one, whose common part is path region r. Samples in no path region
+  // are left out.
   PathRegions(const Samples& samples, std::vector<std::vector<Sphere>> paths);
 
   Index size() const { return static_cast<Index>(paths_.size()); }
@@ -20,15 +21,17 @@ class PathRegions {
   const std::vector<Index>& regions_of(Index sample) const { return regions_of_[sample]; }            // ascending
   bool holds(Index path_region, const Point& point) const;
   bool holds_sample(Index path_region, Index sample) const;
+  std::vector<Index> regions_around(const Point& point) const;  // those that hold it, ascending
 
   // Also takes samples that lie in no path region.
   void add_sample(const Point& point, const Point& start);
 
  private:
-  std::vector<Index> regions_around(const Point& point) const;
   void append(const Point& point, const Point& start, std::vector<Index> regions);
 
   std::vector<std::vector<Sphere>> paths_;
+  Eigen::ArrayXd x_, y_, z_,
+      limits_;  // of the last balls of the paths: centres, squares of the radii and a little more
   Samples samples_;
   std::vector<std::vector<Index>> samples_in_;  // each path region
   std::vector<std::vector<Index>> regions_of_;  // each sample

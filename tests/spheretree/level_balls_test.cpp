@@ -2,9 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "orchard/geometry/random.h"
+#include "support/effort.h"
+
 namespace orchard {
 namespace {
 
+using detail::BallPlaces;
 using detail::LevelBall;
 using detail::LevelBalls;
 using detail::PathRegions;
@@ -110,6 +116,58 @@ TEST(LevelBalls, TakeTheNewSamplesThatTheyHold) {
   const std::vector<Index> first{0}, last{2};
   EXPECT_EQ(balls.held_only_by(first), (std::vector<Index>{0, 5}));
   EXPECT_EQ(balls.held_only_by(last), (std::vector<Index>{4, 7}));
+}
+
+// Against a look at all of them, with multipliers drawn anew each time.
+TEST(BallPlaces, NameAllBallsThatMayBeAmongTheNearest) {
+  for (std::uint64_t k = 0; k < 300 * test::more(); ++k) {
+    const std::uint64_t seed = test::first_seed() + k;
+    Random random(seed, 7);
+    const Index count = 2 + static_cast<Index>(random.below(seed % 3 == 0 ? 600 : 40));
+    std::vector<LevelBall> balls(count);
+    BallPlaces places;
+    places.resize(count);
+    for (Index b = 0; b < count; ++b) {
+      balls[b].center = Point(random.uniform(), random.uniform(), random.uniform());
+      if (seed % 5 == 0) balls[b].center = (4 * balls[b].center).array().floor();  // many distances are equal
+      balls[b].radius = random.uniform(0, seed % 2 == 0 ? 0.1 : 2);
+      places.set(b, balls[b]);
+    }
+    const Index of = static_cast<Index>(random.below(balls.size() | 1)) % count;
+    const std::size_t wanted = 1 + random.below(8);
+    const std::vector<Index> named = places.nearest(of, wanted, 0.8, 1.25);
+    EXPECT_TRUE(std::is_sorted(named.begin(), named.end()));
+    EXPECT_TRUE(std::find(named.begin(), named.end(), of) == named.end());
+    EXPECT_GE(named.size(), std::min<std::size_t>(wanted, count - 1));
+    for (int draw = 0; draw < 4; ++draw) {
+      std::vector<std::pair<double, Index>> near;
+      for (Index b = 0; b < count; ++b) {
+        const double apart = (balls[b].center - balls[of].center).norm() - 0.5 * balls[b].radius;
+        const double factor = draw == 0 ? (random.below(2) == 0 ? 0.8 : 1.25) : random.uniform(0.8, 1.25);
+        if (b != of) near.emplace_back(apart * factor, b);
+      }
+      std::sort(near.begin(), near.end());
+      for (std::size_t i = 0; i < std::min(wanted, near.size()); ++i)
+        EXPECT_TRUE(std::binary_search(named.begin(), named.end(), near[i].second)) << "seed " << seed;
+    }
+  }
+}
+
+// Few balls are named where many are far away: the search asks this before every trial.
+TEST(BallPlaces, NameFewBallsOfMany) {
+  constexpr Index kCount = 4000;
+  BallPlaces places;
+  places.resize(kCount);
+  Random random(1, 8);
+  for (Index b = 0; b < kCount; ++b) {
+    LevelBall ball;
+    ball.center = Point(random.uniform(), random.uniform(), random.uniform());
+    ball.radius = 0.05;
+    places.set(b, ball);
+  }
+  std::size_t named = 0;
+  for (Index b = 0; b < 100; ++b) named += places.nearest(b, 3, 0.8, 1.25).size();
+  EXPECT_LT(named, 100u * 40u);
 }
 
 }  // namespace
