@@ -58,7 +58,8 @@ class Table {
   void print() const {
     std::printf("%-36s %9s %9s %9s %9s %9s %9s %9s\n", "", "normal", "", "within", "depth", "within", "", "time");
     std::printf("%-36s %9s %9s %9s %9s %9s %9s %9s\n", "", "mean", "max", "10 deg", "median", "5 %", "20 %", "us");
-    for (const auto& [name, score] : scores_) {
+    for (const auto& entry : scores_) {
+      const Score& score = entry.second;
       const auto share = [](const std::vector<double>& v, const auto& holds) {
         return v.empty() ? 0.0
                          : 100.0 * static_cast<double>(std::count_if(v.begin(), v.end(), holds)) /
@@ -69,7 +70,7 @@ class Table {
       };
       std::vector<double> ratios = score.depth_ratios;
       std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2), ratios.end());
-      std::printf("%-36s %9.2f %9.2f %7.1f %% %9.3f %7.1f %% %7.1f %% %9.2f\n", name.c_str(), mean(score.angles),
+      std::printf("%-36s %9.2f %9.2f %7.1f %% %9.3f %7.1f %% %7.1f %% %9.2f\n", entry.first.c_str(), mean(score.angles),
                   score.angles.empty() ? 0 : *std::max_element(score.angles.begin(), score.angles.end()),
                   share(score.angles, [](double a) { return a <= 10; }), ratios[ratios.size() / 2], off_by(0.05),
                   off_by(0.2), mean(score.times));
@@ -106,6 +107,7 @@ class Rivals {
 void compare(int poses, std::uint64_t seed) {
   const auto all = orchard::runtime::test::bodies();
   std::vector<PreparedTree> trees;
+  trees.reserve(all.size());
   for (const auto& body : all) trees.emplace_back(body.tree);
   Workspace workspace;
   Rivals rivals(all);

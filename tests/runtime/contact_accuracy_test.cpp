@@ -16,6 +16,7 @@ using namespace orchard::runtime::test;
 TEST(ContactAccuracy, ComesCloseToTheLeastWayOutOfManyDirections) {
   const auto all = bodies();
   std::vector<PreparedTree> trees;
+  trees.reserve(all.size());
   for (const Body& body : all) trees.emplace_back(body.tree);
   Workspace workspace;
   // 500 of them take minutes.
