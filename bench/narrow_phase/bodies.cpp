@@ -1,5 +1,6 @@
 #include "bodies.h"
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -41,7 +42,25 @@ bool touches(NarrowPhase& pair, const Pose& a, const Pose& b) {
   return pair.refine_exactly() == Answer::yes;
 }
 
+std::array<double, 3> unit_or_zero(std::array<double, 3> v) {
+  const double size = std::hypot(v[0], v[1], v[2]);
+  for (double& x : v) x = size > 0 ? x / size : 0;
+  return v;
+}
+
 }  // namespace
+
+void ResponseSum::add(const std::array<double, 3>& normal, double depth) {
+  for (std::size_t i = 0; i < 3; ++i) sum_.normal[i] += normal[i];
+  if (sum_.count++ == 0 || depth > sum_.depth) sum_.depth = depth, sum_.deepest_normal = normal;
+}
+
+ContactResponse ResponseSum::result() const {
+  ContactResponse result = sum_;
+  result.normal = unit_or_zero(sum_.normal);
+  result.deepest_normal = unit_or_zero(sum_.deepest_normal);
+  return result;
+}
 
 PackedSphereTree read_body(const std::string& path) {
   PackedSphereTree tree;

@@ -50,10 +50,11 @@ struct AnyContact final : btCollisionWorld::ContactResultCallback {
 };
 
 struct AllContacts final : btCollisionWorld::ContactResultCallback {
-  std::size_t found = 0;
-  btScalar addSingleResult(btManifoldPoint&, const btCollisionObjectWrapper*, int, int, const btCollisionObjectWrapper*,
-                           int, int) override {
-    ++found;
+  ResponseSum sum;
+  btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper*, int, int,
+                           const btCollisionObjectWrapper*, int, int) override {
+    const btVector3& n = point.m_normalWorldOnB;
+    sum.add({double{n.x()}, double{n.y()}, double{n.z()}}, -double{point.getDistance()});
     return 0;
   }
 };
@@ -80,12 +81,13 @@ class Bullet final : public PairRival {
   }
 
   bool finds_contacts() const override { return true; }
-  std::size_t contacts(std::size_t query) override {
+  std::size_t contacts(std::size_t query) override { return response(query).count; }
+  ContactResponse response(std::size_t query) override {
     a_.object.setWorldTransform(poses_[query].first);
     b_.object.setWorldTransform(poses_[query].second);
     AllContacts contacts;
     world_.contactPairTest(&a_.object, &b_.object, contacts);
-    return contacts.found;
+    return contacts.sum.result();
   }
   bool casts_rays() const override { return true; }
   double cast_ray(const std::array<double, 3>& from, const std::array<double, 3>& to) override {

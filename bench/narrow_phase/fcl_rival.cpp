@@ -47,6 +47,18 @@ class Fcl final : public PairRival {
     fcl::collide(a_.get(), poses_[query].first, b_.get(), poses_[query].second, request, result);
     return result.numContacts();
   }
+  ContactResponse response(std::size_t query) override {
+    fcl::CollisionRequest<S> request(100000, true);
+    fcl::CollisionResult<S> result;
+    fcl::collide(a_.get(), poses_[query].first, b_.get(), poses_[query].second, request, result);
+    ResponseSum sum;
+    for (std::size_t i = 0; i < result.numContacts(); ++i) {
+      const auto& contact = result.getContact(i);
+      sum.add({double(contact.normal[0]), double(contact.normal[1]), double(contact.normal[2])},
+              double(contact.penetration_depth));
+    }
+    return sum.result();
+  }
   bool moves() const override { return sizeof(S) == sizeof(double); }
   double time_of_impact(std::size_t query, const runtime::Pose& to, double tolerance) override {
     if constexpr (sizeof(S) == sizeof(double)) {  // in float its motions do not compile

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "pair_walk.h"
 #include "vector_functions.h"
 
 // Rounding of gaps that close. A gap was certified, rounding included, for the second body as the double pose placed it
@@ -104,22 +103,14 @@ bool FrontWalk::advance() noexcept {
   front_.relative_ = relative_;
   std::array<std::uint8_t, PairFront::kBlocks> open;
   detail::close_gaps(shift, front_.blocks_.data(), block_count(), open.data());
-  for (std::uint32_t block = 0; block < block_count(); ++block) {
+  const std::uint32_t count = block_count();
+  for (std::uint32_t block = 0; block < count; ++block) {
     for (std::uint32_t left = open[block]; left != 0; left &= left - 1) {
       see_to(block * kBlockWidth + static_cast<std::uint32_t>(std::countr_zero(left)));
     }
   }
   return leaf_count_ + node_count_ <= kMostOpen;
 }
-
-void FrontWalk::see_to(std::uint32_t slot) noexcept {
-  const detail::FrontBlock& block = front_.blocks_[slot / kBlockWidth];
-  const std::uint32_t lane = slot % kBlockWidth;
-  (is_leaf_pair(block.a[lane], block.b[lane]) ? leaves_[leaf_count_++] : nodes_[node_count_++]) =
-      static_cast<std::uint16_t>(slot);
-}
-
-std::uint32_t FrontWalk::block_count() const noexcept { return (front_.used_ + kBlockWidth - 1) / kBlockWidth; }
 
 FrontWalk::Outcome FrontWalk::settle_leaves() noexcept {
   for (std::uint32_t i = 0; i < leaf_count_; ++i) {
@@ -274,10 +265,6 @@ void FrontWalk::keep_stack() noexcept {
 void FrontWalk::release(std::uint32_t slot) noexcept {
   front_.blocks_[slot / kBlockWidth].gap[slot % kBlockWidth] = kUnused;
   front_.free_[front_.free_count_++] = static_cast<std::uint16_t>(slot);
-}
-
-bool FrontWalk::is_leaf_pair(std::uint32_t a, std::uint32_t b) const noexcept {
-  return (detail::ball_slab_child(first_, a) & detail::ball_slab_child(second_, b) & kLeafBit) != 0;
 }
 
 detail::BallSlab FrontWalk::moved_slab(std::uint32_t b) const noexcept {

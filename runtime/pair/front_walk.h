@@ -8,6 +8,7 @@
 #include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/pair_front.h"
 #include "pair_access.h"
+#include "pair_walk.h"
 #include "tree/front_block.h"
 
 namespace orchard::runtime {
@@ -33,8 +34,17 @@ class FrontWalk {
 
   bool fits() const noexcept;
   bool advance() noexcept;
-  void see_to(std::uint32_t slot) noexcept;
-  std::uint32_t block_count() const noexcept;
+  // Inline: in position-independent code compilers put nothing else into its caller.
+  void see_to(std::uint32_t slot) noexcept {
+    const detail::FrontBlock& block = front_.blocks_[slot / kBlockWidth];
+    const std::uint32_t lane = slot % kBlockWidth;
+    (is_leaf_pair(block.a[lane], block.b[lane]) ? leaves_[leaf_count_++] : nodes_[node_count_++]) =
+        static_cast<std::uint16_t>(slot);
+  }
+  std::uint32_t block_count() const noexcept { return (front_.used_ + kBlockWidth - 1) / kBlockWidth; }
+  bool is_leaf_pair(std::uint32_t a, std::uint32_t b) const noexcept {
+    return (detail::ball_slab_child(first_, a) & detail::ball_slab_child(second_, b) & kLeafBit) != 0;
+  }
   Outcome settle_leaves() noexcept;
   Outcome settle_nodes() noexcept;
   Outcome walk(const BallSlabPair& from) noexcept;
@@ -43,7 +53,6 @@ class FrontWalk {
   void add(std::uint32_t a, std::uint32_t b, float gap, const Axis& u) noexcept;
   void keep_stack() noexcept;
   void release(std::uint32_t slot) noexcept;
-  bool is_leaf_pair(std::uint32_t a, std::uint32_t b) const noexcept;
   detail::BallSlab moved_slab(std::uint32_t b) const noexcept;
 
   PairFront& front_;
