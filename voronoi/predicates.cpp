@@ -142,7 +142,9 @@ bool is_exact_in_doubles(int bits, double extent, const Point& q, const Points&.
   // below the extent.
   const double rounder = 0x1.8p53 / static_cast<double>(1 << bits) * below;
   const auto is_whole = [rounder](double x) { return (std::abs(x) + rounder) - rounder == std::abs(x); };
-  const auto is_multiple = [&is_whole](const Point& p) { return is_whole(p.x()) & is_whole(p.y()) & is_whole(p.z()); };
+  const auto is_multiple = [&is_whole](const Point& p) {
+    return is_whole(p.x()) && is_whole(p.y()) && is_whole(p.z());
+  };
   return is_multiple(q) && (is_multiple(points) && ...);
 }
 constexpr int kVolumeBits = 16;  // 6 products of three differences: below 2^51
