@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
 
 #include "exact_integer.h"
 #include "twofold.h"
@@ -128,6 +131,30 @@ Determinant inside_sphere_fast(const Vector& a, const Vector& b, const Vector& c
   return {lifted(aa, bb, cc, dd, bcd, cda, dab, abc), 16 * kRounding * magnitude};
 }
 
+// Whether the doubles of a determinant of this degree are exact: all coordinates are multiples of a unit of which no
+// difference is more than 2^bits, so that every product and sum on the way is a whole number of units below 2^53.
+// Nearly all points of a grid are, next to each other: much sooner told than any sharper arithmetic tells that they are
+// on one plane or sphere. `extent` is the largest difference from q.
+template <class... Points>
+bool is_exact_in_doubles(int bits, double extent, const Point& q, const Points&... points) {
+  const double below = std::bit_cast<double>(std::bit_cast<std::uint64_t>(extent) & (std::uint64_t{0x7ff} << 52));
+  // Adding it to what is not negative rounds to multiples of the unit, or of more: 2^(1 - bits) times the power of two
+  // below the extent.
+  const double rounder = 0x1.8p53 / static_cast<double>(1 << bits) * below;
+  const auto is_whole = [rounder](double x) { return (std::abs(x) + rounder) - rounder == std::abs(x); };
+  const auto is_multiple = [&is_whole](const Point& p) {
+    return is_whole(p.x()) && is_whole(p.y()) && is_whole(p.z());
+  };
+  return is_multiple(q) && (is_multiple(points) && ...);
+}
+constexpr int kVolumeBits = 16;  // 6 products of three differences: below 2^51
+constexpr int kSphereBits = 9;   // 72 products of five: below 2^52
+
+template <class... Vectors>
+double largest_coordinate(const Vectors&... vectors) {
+  return std::max({vectors.cwiseAbs().maxCoeff()...});
+}
+
 template <class Number>
 Number sharp_volume(const std::array<SharpVector<Number>, 3>& v) {
   return v[0].dot(v[1].cross(v[2]));
@@ -206,9 +233,15 @@ constexpr bool kFused = false;
 }  // namespace
 
 Sign volume_sign(const Point& q, const Point& a, const Point& b, const Point& c, double indifferent) {
-  const Determinant fast = volume(a - q, b - q, c - q);
+  const Vector qa = a - q, qb = b - q, qc = c - q;
+  const Determinant fast = volume(qa, qb, qc);
   const Sign sign = sign_of(fast.value, fast.bound + indifferent);
   if (sign != Sign::uncertain || std::abs(fast.value) + fast.bound < indifferent) return sign;
+  if (indifferent == 0) {
+    // Every product of the determinant has a factor 0, as where all four points share a coordinate.
+    if (fast.bound == 0) return Sign::uncertain;
+    if (is_exact_in_doubles(kVolumeBits, largest_coordinate(qa, qb, qc), q, a, b, c)) return sign_of(fast.value, 0);
+  }
   const Sign sharp = sign_of(kFused ? fused_volume(q, a, b, c) : sharp_volume(twofold_vectors(q, a, b, c)).high,
                              fast.bound * kSharper + indifferent);
   if (sharp != Sign::uncertain || indifferent > 0) return sharp;
@@ -237,8 +270,11 @@ Sign same_side_of_line(const Point& a, const Point& b, const Point& p, const Poi
 }
 
 Sign inside_sphere(const Point& q, const Point& a, const Point& b, const Point& c, const Point& d) {
-  const Determinant fast = inside_sphere_fast(a - q, b - q, c - q, d - q);
+  const Vector qa = a - q, qb = b - q, qc = c - q, qd = d - q;
+  const Determinant fast = inside_sphere_fast(qa, qb, qc, qd);
   if (fast.sign() != Sign::uncertain) return fast.sign();
+  if (is_exact_in_doubles(kSphereBits, largest_coordinate(qa, qb, qc, qd), q, a, b, c, d))
+    return sign_of(fast.value, 0);
   const Sign sharp =
       sign_of(kFused ? fused_inside_sphere(q, a, b, c, d) : sharp_inside_sphere(twofold_vectors(q, a, b, c, d)).high,
               fast.bound * kSharper);

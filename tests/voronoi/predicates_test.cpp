@@ -46,6 +46,34 @@ TEST(Predicates, HaveTheSignsOfExactArithmetic) {
   EXPECT_GT(zero, 1000) << "the sets are not awkward enough";
 }
 
+// As far from the origin as points of a frame, apart by as many units as doubles can multiply without rounding, by a
+// few more and by a few less; and one coordinate that is half a unit off.
+TEST(Predicates, HaveTheSignsOfExactArithmeticWhereDoublesAreJustExact) {
+  int zero = 0;
+  for (int bits = 2; bits <= 20; ++bits)
+    for (const double offset : {0.0, -3.0, 3.0})
+      for (std::uint64_t trial = 0; trial < 1000; ++trial) {
+        Random random(1, static_cast<std::uint64_t>(bits), trial);
+        const double unit = 0x1p-44;
+        // Few values of each coordinate, the extreme ones among them, so that many points are on one plane or sphere.
+        const auto coordinate = [&] {
+          const std::uint64_t most = (std::uint64_t{1} << bits) - 1;
+          return offset + unit * static_cast<double>(std::array{std::uint64_t{0}, most, most / 2}[random.below(3)]);
+        };
+        std::array<Point, 5> p;
+        for (Point& q : p) q = Point(coordinate(), coordinate(), coordinate());
+        if (trial % 2 == 1) p[random.below(5)].z() += unit / 2;
+        const auto volume = CGAL::orientation(cgal(p[0]), cgal(p[1]), cgal(p[2]), cgal(p[3]));
+        ASSERT_EQ(static_cast<int>(volume_sign(p[0], p[1], p[2], p[3])), static_cast<int>(volume)) << bits;
+        if (volume == CGAL::ZERO) continue;
+        if (volume == CGAL::NEGATIVE) std::swap(p[0], p[1]);
+        const auto inside = CGAL::side_of_oriented_sphere(cgal(p[0]), cgal(p[1]), cgal(p[2]), cgal(p[3]), cgal(p[4]));
+        ASSERT_EQ(static_cast<int>(inside_sphere(p[4], p[0], p[1], p[2], p[3])), static_cast<int>(inside)) << bits;
+        zero += inside == CGAL::ON_ORIENTED_BOUNDARY;
+      }
+  EXPECT_GT(zero, 1000) << "the points are not awkward enough";
+}
+
 TEST(VolumeSign, IsUncertainWhereTheVolumeIsNotFartherFromZeroThanAsked) {
   // Four points of a line but for 2^-36: the volume, -2^-72, is far below the rounding of the products.
   const Point p(0, 0, 0), a(1, 1, 1), b(2, 2, 2 + 0x1p-36), c(3, 3 + 0x1p-36, 3);
