@@ -23,7 +23,7 @@ SearchedMax max_dent(const Surface& surface, const Reconstruction& reconstructio
   const double deep = std::max(kDeep * std::max(known, accuracy), kMinDeep * diagonal);
   SearchedMax in_cubes = max_deep_dent(surface, reconstruction, deep, std::max(accuracy, kOfDeep * deep), max_parts);
   if (in_cubes.max > deep) {  // searched again as finely as was asked for
-    const SearchedMax again = max_deep_dent(surface, reconstruction, in_cubes.max, accuracy, max_parts);
+    SearchedMax again = max_deep_dent(surface, reconstruction, in_cubes.max, accuracy, max_parts);
     if (again.max > in_cubes.max) return again;
     in_cubes.upper = again.upper;
     return in_cubes;

@@ -255,16 +255,16 @@ class ShellSearch {
 
   // Whether a cell holds all places of these columns from one depth to the other.
   bool is_held(std::span<const NormalColumn> columns, const Depths& depths, Hint& hint) const {
-    const auto& [from, to, slack] = depths;
     Point middle = Point::Zero();
-    for (const NormalColumn& column : columns) middle += column.foot + from * column.inward;
+    for (const NormalColumn& column : columns) middle += column.foot + depths.from * column.inward;
     middle /= static_cast<double>(columns.size());
     const auto all_in = [&](const auto& holds) {
       return std::all_of(columns.begin(), columns.end(), [&](const NormalColumn& column) {
-        return holds(Point(column.foot + from * column.inward)) && holds(Point(column.foot + to * column.inward));
+        return holds(Point(column.foot + depths.from * column.inward)) &&
+               holds(Point(column.foot + depths.to * column.inward));
       });
     };
-    return holds_all(middle, slack, hint, all_in);
+    return holds_all(middle, depths.slack, hint, all_in);
   }
 
   // Looks for a ball or a cell near `middle` of which all_in(holds) is so.
@@ -334,9 +334,9 @@ class ShellSearch {
     for (std::size_t i = 0; i < count; ++i) reach = std::max(reach, (corners[i] - middle).norm());
     ClosestPoint nearest;
     if (reach + piece.slack - surface_.signed_distance(middle, nearest) < level) return true;
-    const auto [a, b, c] = surface_.corners(nearest.triangle);
+    const auto triangle = surface_.corners(nearest.triangle);
     return std::all_of(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(count), [&](const Point& corner) {
-      return closest_point_of_triangle(corner, a, b, c).distance + piece.slack < level;
+      return closest_point_of_triangle(corner, triangle[0], triangle[1], triangle[2]).distance + piece.slack < level;
     });
   }
 
