@@ -61,12 +61,25 @@ std::string about_coverage(const WorstPlace& place, const Surface& surface, cons
   return more_points(origin);
 }
 
+std::string about_dent(const AxisOrigin& origin) {
+  if (!origin.tuning.refine) return "no --raw, or " + more_points(origin);
+  return more_points(origin);
+}
+
 }  // namespace
 
 std::string advice(const WorstPlace& place, const Surface& surface, const AxisOrigin& origin) {
   if (!origin.built) return "nothing here: the axis is a file";
   if (origin.cuts_itself) return "--wrap, since the mesh cuts itself";
-  return place.kind == WorstKind::protrusion ? about_protrusion(place, origin) : about_coverage(place, surface, origin);
+  switch (place.kind) {
+    case WorstKind::protrusion:
+      return about_protrusion(place, origin);
+    case WorstKind::coverage:
+      return about_coverage(place, surface, origin);
+    case WorstKind::dent:
+      break;
+  }
+  return about_dent(origin);
 }
 
 }  // namespace orchard::apps

@@ -23,7 +23,17 @@ std::string cell(double value, const MedialMeasure& measure) {
   return *measure.unit == '\0' ? fmt::format("{:.0f}", value) : fmt::format("{:.5f}", value);
 }
 
-const char* kind_name(WorstKind kind) { return kind == WorstKind::protrusion ? "protrusion" : "coverage"; }
+const char* kind_name(WorstKind kind) {
+  switch (kind) {
+    case WorstKind::protrusion:
+      return "protrusion";
+    case WorstKind::coverage:
+      return "coverage";
+    case WorstKind::dent:
+      break;
+  }
+  return "dent";
+}
 
 // "1 0 0 right" says more in a line than four rows.
 void print_topologies(const std::vector<JudgedAxis>& axes, const std::vector<std::size_t>& widths) {

@@ -209,9 +209,13 @@ void measure_reconstruction(const Surface& surface, const MedialMesh& mesh, std:
   quality.protrusion_upper = beyond.upper;
   quality.hausdorff = {.max = std::max({to.max, from.max, quality.protrusion.max, open.max}),
                        .mean = 0.5 * (to.mean + from.mean)};
-  const SearchedMax dent =
-      max_dent(surface, reconstruction, quality.hausdorff.max, kDentAccuracy * quality.diagonal, options.search);
-  quality.hausdorff.max = dent.max;
+  // Samples tell how deep dents are that they see, not where.
+  const double placed = std::max(quality.protrusion.max, open.max);
+  const SearchedMax dent = max_dent(surface, reconstruction, placed, kDentAccuracy * quality.diagonal, options.search);
+  std::vector<WorstPlace> dents;
+  if (dent.max > std::max(negligible, placed))
+    dents.push_back({WorstKind::dent, dent.max, dent.place, outward_at(surface, dent.place), dent.ball});
+  quality.hausdorff.max = std::max(quality.hausdorff.max, dent.max);
   quality.dent_upper = dent.upper;
 
   const double apart = options.places_apart * quality.diagonal;
@@ -219,6 +223,7 @@ void measure_reconstruction(const Surface& surface, const MedialMesh& mesh, std:
   for (WorstPlace& place : quality.worst) place.outward = outward_at(surface, place.position);
   const auto max_open = worst_of(std::move(uncovered), options.worst_places, apart);
   quality.worst.insert(quality.worst.end(), max_open.begin(), max_open.end());
+  quality.worst.insert(quality.worst.end(), dents.begin(), dents.end());
 }
 
 }  // namespace orchard::detail

@@ -345,11 +345,12 @@ class ShellSearch {
     Point place = Point::Zero();
     for (const NormalColumn& column : piece.in_use()) place += column.foot / static_cast<double>(piece.count);
     place += piece.from * axis.direction;
+    // From outside, the nearest place of the reconstruction is on its boundary, wherever the way has come to.
     const double arrived = accuracy_ * kArrived;
-    for (int step = 0; step < kMaxSteps; ++step) {
+    for (int step = 1;; ++step) {
       const auto near = reconstruction_.nearest_from(reconstruction_.nearest_in(hint.cell, place), place, 0);
       if (!(near.distance > 0)) return;
-      if (near.distance < arrived) {
+      if (near.distance < arrived || step == kMaxSteps) {
         take_boundary(place, near, found);
         return;
       }

@@ -461,7 +461,7 @@ TEST(MedialQuality, NoBallReachesFartherOutThanIsProven) {
 // plate's side.
 TEST(MedialQuality, HausdorffSeesHowDeepASlitIs) {
   const Surface plate(test::known_box({1, 4, 4}).solid);
-  constexpr double kHalfWidth = 0.45;
+  constexpr double kHalfWidth = 0.48;
   const auto at = [](double y, double z) { return Point(0.5, y, z); };
   const double low = 2 - kHalfWidth, high = 2 + kHalfWidth;
   MedialMesh halves{.centers = {at(0.5, 0.5), at(low, 0.5), at(low, 3.5), at(0.5, 3.5),  //
@@ -477,7 +477,12 @@ TEST(MedialQuality, HausdorffSeesHowDeepASlitIs) {
   EXPECT_GE(dent.upper, exact);
   const MedialQuality quality = medial_quality(plate, halves, kFew);
   EXPECT_GE(quality.dent_upper, exact / quality.diagonal);
-  EXPECT_GE(quality.hausdorff.max, dent.max / quality.diagonal);
+  EXPECT_GE(quality.hausdorff.max, 0.98 * dent.max / quality.diagonal);
+  const WorstPlace& bottom = quality.worst.back();  // what is farthest off has a place
+  EXPECT_EQ(bottom.kind, WorstKind::dent);
+  EXPECT_NEAR(bottom.value, quality.hausdorff.max, 0.02 * bottom.value);
+  EXPECT_NEAR(-plate.signed_distance(bottom.position), bottom.value * quality.diagonal, 1e-9);
+  EXPECT_NEAR(bottom.position.y(), 2, 0.1);
 }
 
 TEST(AxisDistance, IsThatOfSheetsNotOfVertices) {

@@ -50,13 +50,14 @@ MedialPieces medial_pieces(const MedialMesh& mesh);
 // The length of the edges that have one triangle, in mesh units: the borders of sheets, walls included. O(n log n).
 double border_length(const MedialMesh& mesh);
 
-enum class WorstKind : std::uint8_t { protrusion, coverage };
+enum class WorstKind : std::uint8_t { protrusion, coverage, dent };
 
-// Where a metric is worst.
+// Where a metric is worst. A dent is a place of the reconstruction's boundary deep in the solid, and given where it is
+// what the Hausdorff distance is largest at.
 struct WorstPlace {
   WorstKind kind = WorstKind::protrusion;
   double value = 0;                  // over D
-  Point position = Point::Zero();    // of the reconstruction, farthest outside; or of the surface, left uncovered
+  Point position = Point::Zero();    // of the reconstruction, farthest outside or inside; or of the surface, uncovered
   Vector outward = Vector::Zero();   // the surface's unit normal there
   Sphere ball = {Point::Zero(), 0};  // of the reconstruction: that which protrudes; or the nearest one
 };

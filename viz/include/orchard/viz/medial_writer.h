@@ -30,7 +30,7 @@ void write_thickness(const std::filesystem::path& vtp, const Surface& surface, c
 void write_medial_mesh(const std::filesystem::path& vtp, const MedialMesh& mesh, const ViewArrays& of_vertices = {});
 
 // One vertex per place, in order. Point arrays: number (from 1 on, as reports have it), measure (0 protrusion, 1
-// coverage), value (in % of the diagonal), outward (the surface's normal there).
+// coverage, 2 dent), value (in % of the diagonal), outward (the surface's normal there).
 void write_worst_places(const std::filesystem::path& vtp, const std::vector<WorstPlace>& places);
 
 // A polyline for each arc. Point arrays: radius; vertex (of the axis). Cell arrays: kind (0 curve, 1 border, 2
