@@ -325,9 +325,11 @@ class ShellSearch {
     std::array<Point, 8> corners;
     std::size_t count = 0;
     Point middle = Point::Zero();
-    for (const auto& [foot, inward, top] : piece.in_use()) {
-      for (const double depth : {piece.from, std::min(top, piece.to)})
-        middle += corners[count++] = foot + depth * inward;
+    // Columns that go less deep than others are taken to go as deep: the hull of the ends of each would be too small
+    // where others go beyond piece.to.
+    const double to = max_depth(piece);
+    for (const NormalColumn& column : piece.in_use()) {
+      for (const double depth : {piece.from, to}) middle += corners[count++] = column.foot + depth * column.inward;
     }
     middle /= static_cast<double>(count);
     double reach = 0;
