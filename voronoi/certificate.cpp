@@ -387,7 +387,8 @@ class Certifier {
       __builtin_prefetch(workspace_.points.data() + across);
       facets[count] = {v, u, i, across};
       const auto& corners = workspace_.vertices[v].forming_points;
-      count += (across != kInfinitePoint) & (corners[i] != kInfinitePoint) & (corners[3] != kInfinitePoint);
+      count += std::size_t{across != kInfinitePoint} & std::size_t{corners[i] != kInfinitePoint} &
+               std::size_t{corners[3] != kInfinitePoint};
     }
     for (std::size_t f = 0; f < count; ++f) {
       const auto [v, u, i, across] = facets[f];
