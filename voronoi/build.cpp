@@ -5,6 +5,7 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "certificate.h"
@@ -116,15 +117,40 @@ namespace {
 enum class Outcome { done, flat, failed };
 
 // Room that is not used is never touched, so it costs no memory, but moving to a larger room does: at worst half of the
-// vertices may be there twice without adding to the peak. Of the points, the first eighth and the first half are random
-// samples of all, and tell how many vertices there will be. There are more per point, the more points there are.
-void make_room(Workspace& workspace, std::size_t inserted) {
-  const std::size_t count = workspace.points.size(), vertices = workspace.vertices.size();
-  if (inserted == 0) workspace.reserve(2 * count + 64);
-  if (inserted == count / 8) workspace.reserve(std::max(8 * count, 11 * vertices) + 64);
-  if (inserted == count / 2 && 2.1 * static_cast<double>(vertices) > static_cast<double>(workspace.vertices.capacity()))
-    workspace.reserve(5 * (vertices / 2));
-}
+// vertices may be there twice without adding to the peak. Of the points, the first 64th, eighth and half are random
+// samples of all, and tell how many vertices there will be: each time that the points become twice as many, they become
+// twice as many on surfaces, or a little more, and up to four times on curves.
+class Room {
+ public:
+  explicit Room(Workspace& workspace) : workspace_(workspace) {}
+
+  // To be called before each insertion with the number of points so far.
+  void make(std::size_t inserted) {
+    const std::size_t count = workspace_.points.size();
+    if (inserted == 0) workspace_.reserve(2 * count + 64);
+    if (inserted == count / 64) sample_ = vertices();
+    if (inserted == count / 8) {
+      const double expected = vertices() * growth(8);
+      workspace_.reserve(std::max(8 * count, static_cast<std::size_t>(1.375 * expected)) + 64);
+      sample_ = vertices();
+    }
+    if (inserted == count / 2) {
+      const double expected = vertices() * std::sqrt(growth(4));
+      if (1.05 * expected > static_cast<double>(workspace_.vertices.capacity()))
+        workspace_.reserve(static_cast<std::size_t>(1.25 * expected));
+    }
+  }
+
+ private:
+  double vertices() const { return static_cast<double>(workspace_.vertices.size()); }
+  // How many times as many vertices there are as at the last sample, of so many times fewer points.
+  double growth(double times) const {
+    return sample_ > 0 ? std::clamp(vertices() / sample_, times, times * times) : times;
+  }
+
+  Workspace& workspace_;
+  double sample_ = 0;  // vertices, or 0 if there was none
+};
 
 // The point before which those from `begin` on are inserted next. The last rounds of insertion_order(), where they are
 // large, are for many threads, each when all before it are in.
@@ -139,7 +165,8 @@ Index end_of_stage(std::size_t begin, std::size_t count) {
 Outcome insert_all(Workspace& workspace, Search search, std::string_view stage, const Progress& progress,
                    InsertionCounts& counts, Index& at, const char*& reason) {
   workspace.clear();
-  make_room(workspace, 0);
+  Room room(workspace);
+  room.make(0);
   Inserter inserter(workspace, search, workspace.points.size());
   const std::array<Index, 4> first = spanning_points(workspace.points);
   if (!inserter.start(first)) return Outcome::flat;
@@ -155,12 +182,12 @@ Outcome insert_all(Workspace& workspace, Search search, std::string_view stage, 
     for (Index i = begin; i < end; ++i)
       if (std::find(first.begin(), first.end(), i) == first.end()) stage_points.push_back(i);
     if (begin > 0) {
-      make_room(workspace, begin);
+      room.make(begin);
       insert_in_regions(workspace, inserter, stage_points, end, report);
     }
     std::size_t inserted = end - stage_points.size();
     for (const Index i : stage_points) {
-      if (begin == 0) make_room(workspace, i);
+      if (begin == 0) room.make(i);
       if (++inserted % step == 0) report(inserted);
       if (inserter.insert(i)) continue;
       at = i;

@@ -301,7 +301,7 @@ class Certifier {
     note_volume(v, det.value);
     workspace_.settle(v);
     double apart = from_told_sphere(v);
-    if (apart > kTold * max_ && !workspace_.shares_sphere(v)) apart = std::min(apart, from_seen_sphere(v));
+    if (apart > kTold * max_ && !workspace_.shares_sphere(v)) apart = std::min(apart, from_seen_sphere(v, det));
     if (apart > kTold * max_) {
       Vector center;
       if (!own_center(v, center)) return false;
@@ -311,7 +311,7 @@ class Certifier {
         workspace_.place_sharply(v, center);
         apart = std::min(from_told_sphere(v), from_sphere(v, center));
       } else if (!shared) {
-        workspace_.note_own_center(v, center);
+        workspace_.note_own_center(v, (corner(v, 0) + center - workspace_.vertices[v].center).norm());
       }
     }
     if (apart > small_share_ && workspace_.shares_sphere(v)) found_.lossy.push_back(v);
@@ -332,26 +332,18 @@ class Certifier {
     if (workspace_.shares_sphere(v)) return diameter_;
     return workspace_.power_bound(v) / std::sqrt(workspace_.vertices[v].radius);
   }
-  // The same by how far its forming points are off its sphere: often a much better bound. Where the own centre is off
-  // by d, 2 a . d is the power of a, a forming point relative to the last one; so d is the three powers times the cross
-  // products of the other two, over twice six times the volume. 8 roundings bound the error of a power.
-  double from_seen_sphere(Index v) const {
-    const Point& last = corner(v, 3);
-    const std::array<Vector, 3> to{corner(v, 0) - last, corner(v, 1) - last, corner(v, 2) - last};
-    const Vector to_center = workspace_.vertices[v].center - last;
-    const std::array<double, 3> lengths{to[0].norm(), to[1].norm(), to[2].norm()};
-    const Determinant det = volume(to[0], to[1], to[2]);
-    const double radius = to_center.norm();
-    double sum = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
-      const double power = std::abs(to[i].dot(2 * to_center - to[i]));
-      const double cross = to[j].cross(to[k]).norm() + 8 * kRounding * lengths[j] * lengths[k];
-      sum += (power + 8 * kRounding * lengths[i] * (2 * radius + lengths[i])) * cross;
-    }
-    const double apart = sum / (2 * (std::abs(det.value) - det.bound));
-    // The radius of the own sphere is three quarters of this at least.
-    return apart >= 0 && apart <= radius / 4 ? 4 * apart * std::min(2.0, diameter_ / (0.75 * radius)) : diameter_;
+  // The same by how far its forming points are off its sphere: often a much better bound, which is noted then. The
+  // determinant is six_volumes(v).
+  double from_seen_sphere(Index v, const Determinant& det) {
+    const VoronoiVertex& vertex = workspace_.vertices[v];
+    const double radius = std::sqrt(vertex.radius);
+    // As below, the radius of the own sphere being three quarters of this at least.
+    const double times = 4 * std::min(2.0, diameter_ / (0.75 * radius));
+    const double off = off_circumcenter(vertex.center, corner(v, 3), corner(v, 0), corner(v, 1), corner(v, 2), det,
+                                        kTold * max_ / times);
+    if (!(off <= radius / 8)) return diameter_;
+    if (off * times <= kTold * max_) workspace_.note_own_center(v, off);
+    return off * times;
   }
   bool own_center(Index v, Vector& center) const {
     return sharp_circumcenter(corner(v, 0), corner(v, 1), corner(v, 2), corner(v, 3), center);
@@ -395,7 +387,8 @@ class Certifier {
       __builtin_prefetch(workspace_.points.data() + across);
       facets[count] = {v, u, i, across};
       const auto& corners = workspace_.vertices[v].forming_points;
-      count += (across != kInfinitePoint) & (corners[i] != kInfinitePoint) & (corners[3] != kInfinitePoint);
+      count += std::size_t{across != kInfinitePoint} & std::size_t{corners[i] != kInfinitePoint} &
+               std::size_t{corners[3] != kInfinitePoint};
     }
     for (std::size_t f = 0; f < count; ++f) {
       const auto [v, u, i, across] = facets[f];

@@ -12,9 +12,6 @@
 namespace orchard::detail {
 namespace {
 
-// A few dozen operations of 2^-104 relative error each, in terms of the error bound of the same formula in doubles.
-constexpr double kSharper = 0x1p-48;
-
 // How many times the error of a divisor it must be, for the quotient to be right to a few roundings of a double.
 constexpr double kDivisible = 0x1p46;
 

@@ -85,10 +85,9 @@ void Workspace::place_sharply(Index v, const Vector& center) {
   set_error_class(v, error_class(rounding_of_power(vertex)), false, state_[v] & 3u);
 }
 
-void Workspace::note_own_center(Index v, const Vector& center) {
+void Workspace::note_own_center(Index v, double off) {
   const VoronoiVertex& vertex = vertices[v];
-  const double apart = (points[vertex.forming_points[0]] + center - vertex.center).norm();
-  const double bound = 4 * apart * std::sqrt(vertex.radius) + rounding_of_power(vertex);
+  const double bound = 4 * off * std::sqrt(vertex.radius) + rounding_of_power(vertex);
   if (bound < power_bound(v)) set_error_class(v, error_class(bound), false, state_[v] & 3u);
 }
 

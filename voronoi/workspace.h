@@ -121,8 +121,8 @@ class Workspace {
   // Gives a finite vertex the sphere of its forming points, to some roundings, if they have one.
   void place_sharply(Index v);
   void place_sharply(Index v, const Vector& center);  // which is relative to its first point
-  // Leaves it where it is, with the bound that follows from how far it is off that centre.
-  void note_own_center(Index v, const Vector& center);
+  // Leaves it where it is, with the bound that follows from how far, at most, it is off that centre.
+  void note_own_center(Index v, double off);
   bool settled(Index v) const { return error_class_of(v) != kNotSettled; }
 
   static constexpr std::uint8_t kUnknownError = 63, kNotSettled = 62;

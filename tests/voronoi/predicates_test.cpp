@@ -1,11 +1,16 @@
 #include "predicates.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Exact_rational.h>
+#include <CGAL/Simple_cartesian.h>
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "orchard/geometry/random.h"
+#include "support/effort.h"
 #include "voronoi/point_sets.h"
 
 namespace orchard::detail {
@@ -108,6 +113,49 @@ TEST(SharpCircumcenter, IsEquallyFarFromItsPoints) {
   }
   Vector center;
   EXPECT_FALSE(sharp_circumcenter(Point(0, 0, 0), Point(1, 0, 0), Point(0, 1, 0), Point(1, 1, 0), center));
+}
+
+// The distance from a circumcentre, rounded once at the end.
+double exact_distance(const Point& center, const std::array<Point, 4>& p) {
+  using Rational = CGAL::Simple_cartesian<CGAL::Exact_rational>;
+  const auto exact = [](const Point& q) { return Rational::Point_3(q.x(), q.y(), q.z()); };
+  const auto own = CGAL::circumcenter(exact(p[0]), exact(p[1]), exact(p[2]), exact(p[3]));
+  return std::sqrt(CGAL::to_double(CGAL::squared_distance(own, exact(center))));
+}
+
+// Needles next to each other on the curve (t, t^2, t^3), off the origin, as thin as a millionth or less, and centres
+// that are off by a few roundings or by much more.
+TEST(OffCircumcenter, BoundsTheDistanceAndIsSharpWhereItHasToBe) {
+  int sharp = 0;
+  const int trials = 2000 * static_cast<int>(test::more());
+  for (int trial = 0; trial < trials; ++trial) {
+    Random random(1, 13, test::first_seed() + static_cast<std::uint64_t>(trial));
+    const double s = random.uniform(), t = random.uniform(), step = std::pow(10, -6 * random.uniform());
+    const auto on_curve = [](double at) { return Point(0.25 + at, at * at, at * at * at - 0.5); };
+    std::array<Point, 4> p{on_curve(s), on_curve(s + step), on_curve(t), on_curve(t + step)};
+    const Determinant volume6 = volume(p[1] - p[0], p[2] - p[0], p[3] - p[0]);
+    const RelativeCenter relative =
+        circumcenter(LengthedVector(p[1] - p[0]), LengthedVector(p[2] - p[0]), LengthedVector(p[3] - p[0]));
+    if (volume6.sign() == Sign::uncertain || !relative.reliable()) continue;
+    Point center = p[0] + relative.center;
+    if (trial % 4 == 0) center.y() += std::pow(10, -12 * random.uniform());
+    const double distance = exact_distance(center, p);
+    const auto off = [&](double enough) { return off_circumcenter(center, p[0], p[1], p[2], p[3], volume6, enough); };
+    const double slack = 1 + 0x1p-48;
+    ASSERT_GE(off(std::numeric_limits<double>::infinity()) * slack, distance) << trial;
+    for (const double times : {0.5, 2.0, 16.0}) ASSERT_GE(off(times * distance) * slack, distance) << trial;
+    ASSERT_GE(off(0) * slack, distance) << trial;
+    if (!(relative.condition < 1e7)) continue;
+    ASSERT_LE(off(0), 2 * distance) << trial;
+    sharp += off(std::numeric_limits<double>::infinity()) > 4 * distance;
+  }
+  EXPECT_GT(sharp, trials / 8) << "doubles suffice nearly always";
+}
+
+TEST(OffCircumcenter, IsInfiniteWhereTheVolumeIsInDoubt) {
+  const Point q(0, 0, 0), a(1, 0, 0), b(0, 1, 0), c(1, 1, 0);
+  EXPECT_EQ(off_circumcenter(Point(0.5, 0.5, 0), q, a, b, c, volume(a - q, b - q, c - q), 1),
+            std::numeric_limits<double>::infinity());
 }
 
 }  // namespace
