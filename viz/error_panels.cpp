@@ -58,6 +58,14 @@ void describe(Panel& panel, Worst worst, double max) {
   panel.labels = std::move(worst.labels);
 }
 
+// A dent is of the reconstruction, below the surface: it is numbered where the surface is drawn.
+void add_dents(Panel& panel, const Worst& dents) {
+  for (const Label& label : dents.labels) {
+    panel.detail += "; deepest dent: " + label.text;
+    panel.labels.push_back(label);
+  }
+}
+
 Panel coverage_panel(vtkPolyData* mesh, vtkPolyData* points, vtkPolyData* places, double size, double line_width) {
   Panel panel{make_renderer(size), "surface left uncovered", {}};
   const vtkIdType count = points->GetNumberOfPoints();
@@ -80,6 +88,7 @@ Panel coverage_panel(vtkPolyData* mesh, vtkPolyData* points, vtkPolyData* places
   panel.renderer->AddActor(make_spheres(dots));
   panel.renderer->AddActor(edges(mesh, kFeatureAngle, line_width, 0.6));
   describe(panel, worst_of(places, 1), max);
+  add_dents(panel, worst_of(places, 2));
   return panel;
 }
 
