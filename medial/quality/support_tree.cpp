@@ -23,10 +23,9 @@ Float4 square_root(Float4 a) { return Float4{std::sqrt(a[0]), std::sqrt(a[1]), s
 // In two along the longest axis, and each of these along its longest; four items at most are children themselves.
 class SupportTree::Builder {
  public:
-  explicit Builder(SupportTree& tree) : tree_(tree), order_(tree.items_.size()) {
+  explicit Builder(SupportTree& tree) : tree_(tree), balls_(tree.items_.size()), order_(tree.items_.size()) {
     for (Index i = 0; i < order_.size(); ++i) {
-      std::array<Eigen::Vector4d, 3>& balls = order_[i].balls;
-      std::transform(tree.items_[i].begin(), tree.items_[i].end(), balls.begin(), [&](const Sphere& ball) {
+      std::transform(tree.items_[i].begin(), tree.items_[i].end(), balls_[i].begin(), [&](const Sphere& ball) {
         const Point local = tree.scale_ * (ball.center - tree.center_);
         return Eigen::Vector4d(local.x(), local.y(), local.z(), tree.scale_ * ball.radius);
       });
@@ -39,17 +38,19 @@ class SupportTree::Builder {
     build(0, count, box_of(0, count));
     std::vector<Item> sorted;
     sorted.reserve(count);
-    for (const Local& item : order_) {
-      sorted.push_back(tree_.items_[item.number]);
-      tree_.numbers_.push_back(item.number);
+    tree_.numbers_.reserve(count);
+    for (const Entry& entry : order_) {
+      sorted.push_back(tree_.items_[entry.number]);
+      tree_.numbers_.push_back(entry.number);
     }
     tree_.items_ = std::move(sorted);
   }
 
  private:
-  struct Local {
-    std::array<Eigen::Vector4d, 3> balls;
-    Index number;
+  using Balls = std::array<Eigen::Vector4d, 3>;
+  struct Entry {  // of an item; small, since they are what sorting moves
+    double along = 0;
+    Index number = 0;
   };
   struct Box {  // half axes are columns
     Eigen::Vector4d middle;
@@ -57,8 +58,7 @@ class SupportTree::Builder {
   };
 
   // In the plane of the three, along its longest side: the other two half axes are none.
-  static Box box_of(const Local& item) {
-    std::array<Eigen::Vector4d, 3> balls = item.balls;
+  static Box box_of(Balls balls) {
     const auto squared = [&](std::size_t k) { return (balls[(k + 1) % 3] - balls[k]).squaredNorm(); };
     std::size_t longest = 0;
     for (const std::size_t k : {1u, 2u})
@@ -78,18 +78,18 @@ class SupportTree::Builder {
 
   // Those of the plane of one, and any others: few items lie in nearly one plane.
   Eigen::Matrix4d axes_of_first(Index first) const {
-    const auto& balls = order_[first].balls;
+    const Balls& balls = balls_at(first);
     Eigen::Matrix<double, 4, 2> sides;
     sides << balls[1] - balls[0], balls[2] - balls[0];
     return Eigen::HouseholderQR<Eigen::Matrix<double, 4, 2>>(sides).householderQ();
   }
 
   Eigen::Matrix4d main_axes(Index first, Index count) const {
-    const Eigen::Vector4d origin = order_[first].balls[0];
+    const Eigen::Vector4d origin = balls_at(first)[0];
     Eigen::Vector4d sum = Eigen::Vector4d::Zero();
     Eigen::Matrix4d spread = Eigen::Matrix4d::Zero();
     for (Index i = first; i < first + count; ++i) {
-      for (const Eigen::Vector4d& ball : order_[i].balls) {
+      for (const Eigen::Vector4d& ball : balls_at(i)) {
         const Eigen::Vector4d way = ball - origin;
         sum += way;
         spread.noalias() += way * way.transpose();
@@ -100,13 +100,13 @@ class SupportTree::Builder {
   }
 
   Box box_of(Index first, Index count) const {
-    if (count == 1) return box_of(order_[first]);
+    if (count == 1) return box_of(balls_at(first));
     const auto visit = [&](const auto& look_at) {
       for (Index i = first; i < first + count; ++i) {
-        for (const Eigen::Vector4d& ball : order_[i].balls) look_at(ball);
+        for (const Eigen::Vector4d& ball : balls_at(i)) look_at(ball);
       }
     };
-    const Eigen::Vector4d origin = order_[first].balls[0];
+    const Eigen::Vector4d origin = balls_at(first)[0];
     const Eigen::Matrix4d axes = count <= 4 ? axes_of_first(first) : main_axes(first, count);
     Eigen::Vector4d low = Eigen::Vector4d::Constant(std::numeric_limits<double>::infinity()), high = -low;
     visit([&](const Eigen::Vector4d& ball) {
@@ -120,12 +120,12 @@ class SupportTree::Builder {
   // Orders a range so that its first half comes first along the longest of the axes.
   void halve(Index first, Index count, const Eigen::Matrix4d& axes) {
     Eigen::Vector4d low = Eigen::Vector4d::Constant(std::numeric_limits<double>::infinity()), high = -low;
-    const auto begin = order_.begin() + first;
-    const auto place = [](const Local& item) -> Eigen::Vector4d {
-      return item.balls[0] + item.balls[1] + item.balls[2];
+    const auto place = [&](Index i) -> Eigen::Vector4d {
+      const Balls& balls = balls_at(i);
+      return balls[0] + balls[1] + balls[2];
     };
-    for (Index i = 0; i < count; ++i) {
-      const Eigen::Vector4d along = axes.transpose() * place(begin[i]);
+    for (Index i = first; i < first + count; ++i) {
+      const Eigen::Vector4d along = axes.transpose() * place(i);
       low = low.cwiseMin(along);
       high = high.cwiseMax(along);
     }
@@ -133,9 +133,10 @@ class SupportTree::Builder {
     int longest = 0;
     (high - low).cwiseQuotient(axes.colwise().norm().transpose().cwiseMax(1e-300)).maxCoeff(&longest);
     const Eigen::Vector4d along = axes.col(longest);
-    std::nth_element(begin, begin + count / 2, begin + count, [&](const Local& a, const Local& b) {
-      const double x = along.dot(place(a)), y = along.dot(place(b));
-      return x != y ? x < y : a.number < b.number;
+    for (Index i = first; i < first + count; ++i) order_[i].along = along.dot(place(i));
+    const auto begin = order_.begin() + first;
+    std::nth_element(begin, begin + count / 2, begin + count, [](const Entry& a, const Entry& b) {
+      return a.along != b.along ? a.along < b.along : a.number < b.number;
     });
   }
 
@@ -174,8 +175,11 @@ class SupportTree::Builder {
     node.child[lane] = child;
   }
 
+  const Balls& balls_at(Index i) const { return balls_[order_[i].number]; }
+
   SupportTree& tree_;
-  std::vector<Local> order_;
+  std::vector<Balls> balls_;  // of each item, in the tree's own units
+  std::vector<Entry> order_;
 };
 
 SupportTree::SupportTree(std::vector<Item> items) : items_(std::move(items)) {

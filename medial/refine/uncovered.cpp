@@ -3,12 +3,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <limits>
 #include <span>
 #include <tuple>
 #include <utility>
 
-#include "../axis/incidence.h"
 #include "../gaps/point_tree.h"
 #include "../quality/max_over_triangles.h"
 
@@ -16,7 +14,7 @@ namespace orchard::detail {
 namespace {
 
 constexpr std::size_t kBlock = 64;  // parts that one task looks at
-constexpr double kEnough = 0.5;     // of the limit: nearer cells are no better at covering parts that reach farther
+constexpr double kEnough = 0.1;     // of the limit: nearer cells are no better at covering parts that reach farther
 
 bool is_before(const Point& a, const Point& b) {
   return std::tuple(a.x(), a.y(), a.z()) < std::tuple(b.x(), b.y(), b.z());
@@ -36,46 +34,6 @@ std::vector<Corners> corners_of(const std::vector<Corners>& parts) {
 
 }  // namespace
 
-// From cell to cell of a reconstruction, downhill on the distance to a place: to one that is near in most cases, at a
-// fraction of what the nearest of all costs.
-class UncoveredSearch::Walk {
- public:
-  explicit Walk(const Reconstruction& reconstruction) : reconstruction_(reconstruction) {
-    std::vector<std::array<Index, 2>> pairs;
-    pairs.reserve(std::size_t{3} * reconstruction.cells());
-    Index vertices = 0;
-    for (Index cell = 0; cell < reconstruction.cells(); ++cell) {
-      for (const Index v : reconstruction.corners_of(cell)) {
-        pairs.push_back({v, cell});
-        vertices = std::max(vertices, v + 1);
-      }
-    }
-    cells_at_ = rows_of(pairs, vertices);
-  }
-
-  // From `cell` to the one at which it ends; the distance to that.
-  double run(Index& cell, const Point& place) const {
-    double best = reconstruction_.distance_to_cell(cell, place);
-    for (bool nearer = true; nearer;) {
-      nearer = false;
-      for (const Index v : reconstruction_.corners_of(cell)) {
-        for (const Index next : cells_at_[v]) {
-          const double distance = reconstruction_.distance_to_cell(next, place, best);
-          if (!(distance < best)) continue;
-          best = distance;
-          cell = next;
-          nearer = true;
-        }
-      }
-    }
-    return best;
-  }
-
- private:
-  const Reconstruction& reconstruction_;
-  Rows cells_at_;  // of each vertex
-};
-
 struct UncoveredSearch::Block {
   std::span<const Corners> parts;
   std::vector<UncoveredPlace> places;
@@ -89,7 +47,7 @@ UncoveredSearch::UncoveredSearch(const Surface& surface, double limit, double re
   for (Index t = 0; t < triangles; ++t) parts_.push_back(surface.corners(t));
 }
 
-void UncoveredSearch::look_at(const Reconstruction& reconstruction, const Walk& walk, Block& block) const {
+void UncoveredSearch::look_at(const Reconstruction& reconstruction, Block& block) const {
   Index cell = kNone;  // the last one found: often near the next part
   // The distance to one cell is convex.
   const auto cell_covers = [&](const Corners& corners) {
@@ -109,15 +67,12 @@ void UncoveredSearch::look_at(const Reconstruction& reconstruction, const Walk& 
       double reach = 0;
       for (const Point& corner : corners) reach = std::max(reach, (corner - middle).norm());
       const double enough = reach < limit_ ? limit_ - reach : kEnough * limit_;
-      double value = cell == kNone ? std::numeric_limits<double>::infinity() : walk.run(cell, middle);
-      if (!(value < enough)) {
-        Reconstruction::Nearest nearest;
-        nearest.distance = value;
-        nearest.cell = cell;
-        nearest = reconstruction.nearest_from(nearest, middle, enough);
-        value = nearest.distance;
-        cell = nearest.cell;
-      }
+      Reconstruction::Nearest nearest;
+      if (cell != kNone)
+        nearest = {.distance = reconstruction.distance_to_cell(cell, middle), .ball = {}, .cell = cell};
+      if (!(nearest.distance < enough)) nearest = reconstruction.nearest_from(nearest, middle, enough);
+      cell = nearest.cell;
+      const double value = nearest.distance;
       // The distance to all of them is 1-Lipschitz.
       if (value + reach <= limit_ || cell_covers(corners)) continue;
       if (value > limit_) block.places.push_back({value, middle});
@@ -135,12 +90,11 @@ void UncoveredSearch::look_at(const Reconstruction& reconstruction, const Walk& 
 
 UncoveredSearch::Block UncoveredSearch::look_at_all(const Reconstruction& reconstruction,
                                                     const std::vector<Corners>& parts) const {
-  const Walk walk(reconstruction);
   std::vector<Block> blocks((parts.size() + kBlock - 1) / kBlock);
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
     const std::size_t begin = i * kBlock;
     blocks[i].parts = std::span(parts).subspan(begin, std::min(kBlock, parts.size() - begin));
-    look_at(reconstruction, walk, blocks[i]);
+    look_at(reconstruction, blocks[i]);
   });
   const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
   Block all{.parts = parts, .places = {}, .open = {}, .not_covered = {}};

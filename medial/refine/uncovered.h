@@ -27,8 +27,7 @@ class UncoveredSearch {
 
  private:
   struct Block;  // what one task looks at
-  class Walk;
-  void look_at(const Reconstruction& reconstruction, const Walk& walk, Block& block) const;
+  void look_at(const Reconstruction& reconstruction, Block& block) const;
   Block look_at_all(const Reconstruction& reconstruction, const std::vector<std::array<Point, 3>>& parts) const;
 
   const Surface& surface_;
