@@ -2,6 +2,8 @@
 // (machine.h), and which nothing else uses.
 #include "ball_slab_block.h"
 
+#include <bit>
+
 #include "ball_slab_pair.h"
 #include "eight.h"
 #include "machine.h"
@@ -57,18 +59,22 @@ ORCHARD_INLINE Box<Kind> box_of(const typename Eight<Kind>::Vectors (&corner)[3]
   return {{x.low - margin, y.low - margin, z.low - margin}, {x.high + margin, y.high + margin, z.high + margin}};
 }
 
-// Triangles that do not reach between the planes of the other leaf's ball slab.
+// Of eight triangles in their boxes, grown by the margin, those that may reach into a ball slab: between its planes, and
+// into the cube around its ball.
 template <typename Kind>
-ORCHARD_INLINE std::uint32_t outside(const typename Eight<Kind>::Vectors (&corner)[3], const BallSlab& slab,
-                                     float margin) noexcept {
+ORCHARD_INLINE std::uint32_t reaching(const typename Eight<Kind>::Vectors (&corner)[3], const Box<Kind>& box,
+                                      const BallSlab& slab, float margin) noexcept {
   using E = Eight<Kind>;
   using Vectors = typename E::Vectors;
   const Vectors n = {E::all(slab.nx), E::all(slab.ny), E::all(slab.nz)};
   const Vectors center = {E::all(slab.x), E::all(slab.y), E::all(slab.z)};
   const auto height = [&](std::size_t k) ORCHARD_INLINE_LAMBDA { return E::dot(n, E::minus(corner[k], center)); };
   const Extent<Kind> e = extent<Kind>(height(0), height(1), height(2));
-  const auto limit = E::all(slab.height + margin);
-  return Kind::bits((limit < e.low) | (e.high < -limit));
+  const auto limit = E::all(slab.height + margin), radius = E::all(slab.radius + margin);
+  const auto beside = [&](const auto& low, const auto& high, const auto& at)
+                          ORCHARD_INLINE_LAMBDA { return (at + radius < low) | (high < at - radius); };
+  return 0xffu & ~Kind::bits((limit < e.low) | (e.high < -limit) | beside(box.low.x, box.high.x, center.x) |
+                             beside(box.low.y, box.high.y, center.y) | beside(box.low.z, box.high.z, center.z));
 }
 
 // Vectors that were made eight at a time, to be taken one by one.
@@ -87,27 +93,26 @@ struct OneByOne {
 
 // For each row the lanes whose boxes, grown by the margin, meet its own; all of them together.
 template <typename Kind>
-ORCHARD_INLINE std::uint32_t find_near(const typename Eight<Kind>::Vectors (&lane)[3],
-                                       const typename Eight<Kind>::Vectors (&row)[3], const LeafPair& pair,
-                                       float margin, std::uint32_t (&near)[kBlockWidth]) noexcept {
+ORCHARD_INLINE std::uint32_t find_near(const Box<Kind>& lane_box, std::uint32_t lanes, const Box<Kind>& row_box,
+                                       std::uint32_t rows, std::uint32_t (&near)[kBlockWidth]) noexcept {
   using E = Eight<Kind>;
-  // Heights are along normals that are unit to 1e-6, so a margin for ball slabs serves here, too.
-  const std::uint32_t rows = ~outside<Kind>(row, pair.lane_slab, margin) & 0xffu;
-  const std::uint32_t lanes = ~outside<Kind>(lane, pair.row_slab, margin) & 0xffu;
-  if (rows == 0 || lanes == 0) return 0;
-  const Box<Kind> lane_box = box_of<Kind>(lane, E::all(margin)), row_boxes = box_of<Kind>(row, E::all(0.0f));
-  const OneByOne<Kind> lows(row_boxes.low), highs(row_boxes.high);
-  std::uint32_t any = 0;
-  for (std::uint32_t r = 0; r < kBlockWidth; ++r) {
-    near[r] = 0;
-    if ((rows >> r & 1) == 0 || pair.rows.triangle[r] == kNoTriangle) continue;
+  const OneByOne<Kind> lows(row_box.low), highs(row_box.high);
+  std::uint32_t found = 0;
+  for (; rows != 0; rows &= rows - 1) {
+    const auto r = static_cast<std::uint32_t>(std::countr_zero(rows));
     const typename E::Vectors low = lows[r], high = highs[r];
     near[r] = lanes & ~Kind::bits((lane_box.high.x < low.x) | (high.x < lane_box.low.x) |  //
                                   (lane_box.high.y < low.y) | (high.y < lane_box.low.y) |  //
                                   (lane_box.high.z < low.z) | (high.z < lane_box.low.z));
-    any |= near[r];
+    found |= std::uint32_t{near[r] != 0} << r;
   }
-  return any;
+  return found;
+}
+
+ORCHARD_INLINE std::uint32_t used_lanes(const TriangleBlock& block) noexcept {
+  std::uint32_t used = 0;
+  for (std::uint32_t i = 0; i < kBlockWidth; ++i) used |= std::uint32_t{block.triangle[i] != kNoTriangle} << i;
+  return used;
 }
 
 // The eight lanes' triangles, and their planes.
@@ -159,10 +164,18 @@ ORCHARD_INLINE std::uint64_t find_candidates(const LeafPair& pair, const Placeme
   using Floats = typename E::Floats;
   using Vectors = typename E::Vectors;
   Vectors lane[3] = {E::corner(pair.lanes, 0), E::corner(pair.lanes, 1), E::corner(pair.lanes, 2)};
+  const Box<Kind> lane_box = box_of<Kind>(lane, E::all(placement.margin));
+  const std::uint32_t lanes_left = reaching<Kind>(lane, lane_box, pair.row_slab, placement.margin);
+  if (lanes_left == 0) return 0;
   Vectors row[3] = {E::move(placement, E::corner(pair.rows, 0)), E::move(placement, E::corner(pair.rows, 1)),
                     E::move(placement, E::corner(pair.rows, 2))};
+  const Box<Kind> row_box = box_of<Kind>(row, E::all(0.0f));
+  const std::uint32_t rows_left = reaching<Kind>(row, row_box, pair.lane_slab, placement.margin);
+  if (rows_left == 0) return 0;
   std::uint32_t near[kBlockWidth];
-  if (find_near<Kind>(lane, row, pair, placement.margin, near) == 0) return 0;
+  const std::uint32_t found =
+      find_near<Kind>(lane_box, lanes_left & used_lanes(pair.lanes), row_box, rows_left & used_lanes(pair.rows), near);
+  if (found == 0) return 0;
 
   const Floats unit = E::all(placement.unit), margin = E::all(placement.margin * placement.unit);
   for (std::size_t k = 0; k < 3; ++k) lane[k] = E::times(lane[k], unit), row[k] = E::times(row[k], unit);
@@ -174,7 +187,7 @@ ORCHARD_INLINE std::uint64_t find_candidates(const LeafPair& pair, const Placeme
     return E::larger(E::size(E::dot(normal, edge[0])), E::size(E::dot(normal, edge[1]))) +
            (E::one_norm(normal) * margin + E::all(kMinRoom));
   };
-  const Lanes<Kind> lanes = {{lane[0], lane[1], lane[2]},
+  const Lanes<Kind> planes = {{lane[0], lane[1], lane[2]},
                              {lane_edge[0], E::minus(lane[2], lane[1]), lane_edge[1]},
                              lane_normal,
                              own_height(lane_normal, lane_edge)};
@@ -183,14 +196,11 @@ ORCHARD_INLINE std::uint64_t find_candidates(const LeafPair& pair, const Placeme
   const OneByOne<Kind> normals(row_normal),
       corners[3] = {OneByOne<Kind>(row[0]), OneByOne<Kind>(row[1]), OneByOne<Kind>(row[2])};
   std::uint64_t result = 0;
-  for (std::uint32_t r = 0; r < kBlockWidth; ++r) {
-    if (near[r] == 0) continue;
+  for (std::uint32_t left_rows = found; left_rows != 0; left_rows &= left_rows - 1) {
+    const auto r = static_cast<std::uint32_t>(std::countr_zero(left_rows));
     const Vectors p[3] = {corners[0][r], corners[1][r], corners[2][r]};
-    const std::uint32_t left = not_apart<Kind>(near[r], lanes, p, normals[r], E::all(row_limit[r]), margin);
+    const std::uint32_t left = not_apart<Kind>(near[r], planes, p, normals[r], E::all(row_limit[r]), margin);
     result |= std::uint64_t{left} << (8 * r);
-  }
-  for (std::uint32_t l = 1; l < kBlockWidth; ++l) {
-    if (pair.lanes.triangle[l] == kNoTriangle) result &= ~(std::uint64_t{0x0101010101010101u} << l);
   }
   return result;
 }
