@@ -16,6 +16,9 @@
 #pragma GCC diagnostic ignored "-Wpsabi"  // no vector crosses a call
 #ifdef __SSE2__
 #include <emmintrin.h>
+#if __has_builtin(__builtin_shufflevector)
+#define ORCHARD_SIGNS_OF_HALVES 1  // signs of four are one instruction everywhere
+#endif
 #endif
 #else
 #define ORCHARD_INLINE inline
@@ -101,11 +104,19 @@ struct VectorFloats {
     return result;
   }
   ORCHARD_INLINE static std::uint32_t bits(const Mask& mask) noexcept {
+#ifdef ORCHARD_SIGNS_OF_HALVES
+    const auto half = [](const auto& v) ORCHARD_INLINE_LAMBDA {
+      return static_cast<std::uint32_t>(_mm_movemask_ps(reinterpret_cast<__m128>(v)));
+    };
+    return half(__builtin_shufflevector(mask, mask, 0, 1, 2, 3)) | half(__builtin_shufflevector(mask, mask, 4, 5, 6, 7))
+                                                                       << 4;
+#else
     using Bytes __attribute__((vector_size(8))) = std::uint8_t;
     const Bytes narrow = __builtin_convertvector(mask & 1, Bytes);
     std::uint64_t bytes;
     std::memcpy(&bytes, &narrow, sizeof bytes);
     return static_cast<std::uint32_t>((bytes * 0x0102040810204080u) >> 56);
+#endif
   }
 };
 #endif
@@ -188,6 +199,10 @@ ORCHARD_INLINE void store(const Vector& from, Array& to) noexcept {
 
 template <typename Vector, typename T>
 ORCHARD_INLINE Vector spread(T value) noexcept {
+  if constexpr (requires(Vector v) { v.low; }) {  // of which compilers make one instruction, not of the copies
+    const decltype(Vector::low) half = {value, value, value, value};
+    return {half, half};
+  }
   std::array<T, sizeof(Vector) / sizeof(T)> copies;
   for (T& copy : copies) copy = value;
   return load<Vector>(copies);

@@ -59,18 +59,18 @@ ORCHARD_INLINE Box<Kind> box_of(const typename Eight<Kind>::Vectors (&corner)[3]
   return {{x.low - margin, y.low - margin, z.low - margin}, {x.high + margin, y.high + margin, z.high + margin}};
 }
 
-// Of eight triangles in their boxes, grown by the margin, those that may reach into a ball slab: between its planes, and
-// into the cube around its ball.
+// Of eight triangles in their boxes, grown by the margin, those that may reach into a ball slab: between its planes,
+// and into the cube around its ball.
 template <typename Kind>
 ORCHARD_INLINE std::uint32_t reaching(const typename Eight<Kind>::Vectors (&corner)[3], const Box<Kind>& box,
-                                      const BallSlab& slab, float margin) noexcept {
+                                      const BallSlab& slab, const typename Kind::Floats& margin) noexcept {
   using E = Eight<Kind>;
   using Vectors = typename E::Vectors;
   const Vectors n = {E::all(slab.nx), E::all(slab.ny), E::all(slab.nz)};
   const Vectors center = {E::all(slab.x), E::all(slab.y), E::all(slab.z)};
   const auto height = [&](std::size_t k) ORCHARD_INLINE_LAMBDA { return E::dot(n, E::minus(corner[k], center)); };
   const Extent<Kind> e = extent<Kind>(height(0), height(1), height(2));
-  const auto limit = E::all(slab.height + margin), radius = E::all(slab.radius + margin);
+  const auto limit = E::all(slab.height) + margin, radius = E::all(slab.radius) + margin;
   const auto beside = [&](const auto& low, const auto& high, const auto& at)
                           ORCHARD_INLINE_LAMBDA { return (at + radius < low) | (high < at - radius); };
   return 0xffu & ~Kind::bits((limit < e.low) | (e.high < -limit) | beside(box.low.x, box.high.x, center.x) |
@@ -164,20 +164,21 @@ ORCHARD_INLINE std::uint64_t find_candidates(const LeafPair& pair, const Placeme
   using Floats = typename E::Floats;
   using Vectors = typename E::Vectors;
   Vectors lane[3] = {E::corner(pair.lanes, 0), E::corner(pair.lanes, 1), E::corner(pair.lanes, 2)};
-  const Box<Kind> lane_box = box_of<Kind>(lane, E::all(placement.margin));
-  const std::uint32_t lanes_left = reaching<Kind>(lane, lane_box, pair.row_slab, placement.margin);
+  const Floats reach = E::all(placement.margin);
+  const Box<Kind> lane_box = box_of<Kind>(lane, reach);
+  const std::uint32_t lanes_left = reaching<Kind>(lane, lane_box, pair.row_slab, reach);
   if (lanes_left == 0) return 0;
   Vectors row[3] = {E::move(placement, E::corner(pair.rows, 0)), E::move(placement, E::corner(pair.rows, 1)),
                     E::move(placement, E::corner(pair.rows, 2))};
   const Box<Kind> row_box = box_of<Kind>(row, E::all(0.0f));
-  const std::uint32_t rows_left = reaching<Kind>(row, row_box, pair.lane_slab, placement.margin);
+  const std::uint32_t rows_left = reaching<Kind>(row, row_box, pair.lane_slab, reach);
   if (rows_left == 0) return 0;
   std::uint32_t near[kBlockWidth];
   const std::uint32_t found =
       find_near<Kind>(lane_box, lanes_left & used_lanes(pair.lanes), row_box, rows_left & used_lanes(pair.rows), near);
   if (found == 0) return 0;
 
-  const Floats unit = E::all(placement.unit), margin = E::all(placement.margin * placement.unit);
+  const Floats unit = E::all(placement.unit), margin = reach * unit;
   for (std::size_t k = 0; k < 3; ++k) lane[k] = E::times(lane[k], unit), row[k] = E::times(row[k], unit);
   const Vectors lane_edge[2] = {E::minus(lane[1], lane[0]), E::minus(lane[2], lane[0])};
   const Vectors row_edge[2] = {E::minus(row[1], row[0]), E::minus(row[2], row[0])};
@@ -188,9 +189,9 @@ ORCHARD_INLINE std::uint64_t find_candidates(const LeafPair& pair, const Placeme
            (E::one_norm(normal) * margin + E::all(kMinRoom));
   };
   const Lanes<Kind> planes = {{lane[0], lane[1], lane[2]},
-                             {lane_edge[0], E::minus(lane[2], lane[1]), lane_edge[1]},
-                             lane_normal,
-                             own_height(lane_normal, lane_edge)};
+                              {lane_edge[0], E::minus(lane[2], lane[1]), lane_edge[1]},
+                              lane_normal,
+                              own_height(lane_normal, lane_edge)};
   std::array<float, kBlockWidth> row_limit;
   store(own_height(row_normal, row_edge), row_limit);
   const OneByOne<Kind> normals(row_normal),
