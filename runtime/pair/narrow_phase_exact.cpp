@@ -72,10 +72,10 @@ bool NarrowPhase::find_children(const BallSlabPair& pair, std::uint32_t a, std::
       (a & kLeafBit) != 0 ||
       ((b & kLeafBit) == 0 && block_of(first_.tree, pair.a).radius[pair.a % kBlockWidth] < pair.second.radius);
   if (second) {
-    detail::ball_slab_gaps(detail::ball_slab_at(block_of(first_.tree, pair.a), pair.a % kBlockWidth),
-                           second_.tree.ball_slabs[b], &placement_, placement_.margin + wide_, gaps);
+    detail::meeting_ball_slabs(detail::ball_slab_at(block_of(first_.tree, pair.a), pair.a % kBlockWidth),
+                               second_.tree.ball_slabs[b], &placement_, placement_.margin + wide_, gaps);
   } else {
-    detail::ball_slab_gaps(pair.second, first_.tree.ball_slabs[a], nullptr, placement_.margin + wide_, gaps);
+    detail::meeting_ball_slabs(pair.second, first_.tree.ball_slabs[a], nullptr, placement_.margin + wide_, gaps);
   }
   return second;
 }

@@ -67,12 +67,14 @@ ORCHARD_INLINE std::uint64_t find_candidates(const LeafPair& pair, const Placeme
   Vectors lane[3] = {E::corner(pair.lanes, 0), E::corner(pair.lanes, 1), E::corner(pair.lanes, 2)};
   const Floats reach = E::all(placement.margin);
   const Box<Kind> lane_box = box_of<Kind>(lane, reach);
-  const std::uint32_t lanes_left = reaching<Kind>(lane, lane_box, pair.row_slab, reach);
+  const std::uint32_t lanes_left = E::kAll & ~Kind::bits(beyond_planes<Kind>(lane, pair.row_slab, reach) |
+                                                         beside_ball<Kind>(lane_box, pair.row_slab, reach));
   if (lanes_left == 0) return 0;
   Vectors row[3] = {E::move(placement, E::corner(pair.rows, 0)), E::move(placement, E::corner(pair.rows, 1)),
                     E::move(placement, E::corner(pair.rows, 2))};
   const Box<Kind> row_box = box_of<Kind>(row, E::all(0.0f));
-  const std::uint32_t rows_left = reaching<Kind>(row, row_box, pair.lane_slab, reach);
+  const std::uint32_t rows_left = E::kAll & ~Kind::bits(beyond_planes<Kind>(row, pair.lane_slab, reach) |
+                                                        beside_ball<Kind>(row_box, pair.lane_slab, reach));
   if (rows_left == 0) return 0;
   std::uint32_t near[kBlockWidth];
   const std::uint32_t found =
@@ -174,6 +176,11 @@ void ball_slab_gaps(const BallSlab& single, const BallSlabBlock& lanes, const Pl
   PerMachine<find_gaps<Widest>, find_gaps<Base>>::call(single, lanes, placement, margin, result);
 }
 
+void meeting_ball_slabs(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
+                        BallSlabGaps& result) noexcept {
+  ball_slab_gaps(single, lanes, placement, margin, result);
+}
+
 void triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows, const Placement& placement,
                    const std::array<float, 3>& direction, float reach, TriangleGaps& result) noexcept {
   PerMachine<find_triangle_gaps<Widest>, find_triangle_gaps<Base>>::call(lanes, rows, placement, direction, reach,
@@ -187,6 +194,11 @@ std::uint64_t triangle_candidates(const LeafPair& pair, const Placement& placeme
 void ball_slab_gaps(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
                     BallSlabGaps& result) noexcept {
   ball_slab_gaps_scalar(single, lanes, placement, margin, result);
+}
+
+void meeting_ball_slabs(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
+                        BallSlabGaps& result) noexcept {
+  meeting_ball_slabs_scalar(single, lanes, placement, margin, result);
 }
 
 void triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows, const Placement& placement,

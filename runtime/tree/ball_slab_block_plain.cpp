@@ -1,4 +1,5 @@
 #include <bit>
+#include <cmath>
 
 #include "ball_slab_block.h"
 #include "ball_slab_pair.h"
@@ -11,6 +12,31 @@ namespace {
 
 using E = Eight<OneFloat>;
 using Vectors = E::Vectors;
+
+// The balls alone, as BallSlabPair finds their gap.
+bool balls_apart(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
+                 std::uint32_t i) noexcept {
+  const Vectors own = {lanes.x[i], lanes.y[i], lanes.z[i]};
+  const Vectors d = E::minus(placement != nullptr ? E::move(*placement, own) : own, {single.x, single.y, single.z});
+  const float radius = placement != nullptr ? lanes.radius[i] * placement->scale : lanes.radius[i];
+  return std::sqrt(E::dot(d, d)) - (radius + single.radius) - margin > 0;
+}
+
+ORCHARD_INLINE void find_gaps(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement,
+                              float margin, bool only_meeting, BallSlabGaps& result) noexcept {
+  std::uint32_t used = 0, meeting = 0;
+  for (std::uint32_t i = 0; i < kBlockWidth; ++i) {
+    if (!(lanes.radius[i] >= 0)) continue;
+    used |= 1u << i;
+    if (only_meeting && balls_apart(single, lanes, placement, margin, i)) continue;
+    const BallSlabPair<OneFloat> pair(single, lanes, placement, result, i);
+    const float gap = E::larger(E::larger(pair.by_n, pair.by_m), pair.by_line) - margin;
+    result.gap[i] = gap;
+    meeting |= std::uint32_t{gap <= 0} << i;
+  }
+  result.used = used;
+  result.meeting = meeting;
+}
 
 struct Triangle {
   Vectors corner[3];
@@ -30,8 +56,9 @@ struct Leaf {
         t.corner[k] = E::corner(block, k, i);
         if (placement != nullptr) t.corner[k] = E::move(*placement, t.corner[k]);
       }
+      if (beyond_planes<OneFloat>(t.corner, other, margin)) continue;
       t.box = box_of<OneFloat>(t.corner, grown);
-      left |= reaching<OneFloat>(t.corner, t.box, other, margin) << i;
+      if (!beside_ball<OneFloat>(t.box, other, margin)) left |= 1u << i;
     }
   }
 };
@@ -55,16 +82,12 @@ Lanes<OneFloat> planes_of(const Triangle& t, float unit, float margin) noexcept 
 
 void ball_slab_gaps_scalar(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
                            BallSlabGaps& result) noexcept {
-  std::uint32_t used = 0, meeting = 0;
-  for (std::uint32_t i = 0; i < kBlockWidth; ++i) {
-    const BallSlabPair<OneFloat> pair(single, lanes, placement, result, i);
-    const float gap = E::larger(E::larger(pair.by_n, pair.by_m), pair.by_line) - margin;
-    result.gap[i] = gap;
-    used |= result.used << i;
-    meeting |= std::uint32_t{gap <= 0} << i;
-  }
-  result.used = used;
-  result.meeting = used & meeting;
+  find_gaps(single, lanes, placement, margin, false, result);
+}
+
+void meeting_ball_slabs_scalar(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement,
+                               float margin, BallSlabGaps& result) noexcept {
+  find_gaps(single, lanes, placement, margin, true, result);
 }
 
 std::uint64_t triangle_candidates_scalar(const LeafPair& pair, const Placement& placement) noexcept {

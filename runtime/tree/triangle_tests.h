@@ -43,24 +43,33 @@ ORCHARD_INLINE Box<Kind> box_of(const typename Eight<Kind>::Vectors (&corner)[3]
   return {{x.low - margin, y.low - margin, z.low - margin}, {x.high + margin, y.high + margin, z.high + margin}};
 }
 
-// Of eight triangles in their boxes, grown by the margin, those that may reach into a ball slab: between its planes,
-// and into the cube around its ball.
+// Triangles that do not reach between the planes of a ball slab, as a mask.
 template <typename Kind>
-ORCHARD_INLINE std::uint32_t reaching(const typename Eight<Kind>::Vectors (&corner)[3], const Box<Kind>& box,
-                                      const BallSlab& slab, const typename Kind::Floats& margin) noexcept {
+ORCHARD_INLINE auto beyond_planes(const typename Eight<Kind>::Vectors (&corner)[3], const BallSlab& slab,
+                                  const typename Kind::Floats& margin) noexcept {
   using E = Eight<Kind>;
   using Vectors = typename E::Vectors;
   const Vectors n = {E::all(slab.nx), E::all(slab.ny), E::all(slab.nz)};
   const Vectors center = {E::all(slab.x), E::all(slab.y), E::all(slab.z)};
   const auto height = [&](std::size_t k) ORCHARD_INLINE_LAMBDA { return E::dot(n, E::minus(corner[k], center)); };
   const Extent<Kind> e = extent<Kind>(height(0), height(1), height(2));
-  const auto limit = E::all(slab.height) + margin, radius = E::all(slab.radius) + margin;
-  const auto beside = [&](const auto& low, const auto& high, const auto& at)
-                          ORCHARD_INLINE_LAMBDA { return (at + radius < low) | (high < at - radius); };
-  const std::uint32_t between = E::kAll & ~Kind::bits((limit < e.low) | (e.high < -limit));
-  if (E::kCount == 1 && between == 0) return 0;
-  return between & ~Kind::bits(beside(box.low.x, box.high.x, center.x) | beside(box.low.y, box.high.y, center.y) |
-                               beside(box.low.z, box.high.z, center.z));
+  const auto limit = E::all(slab.height) + margin;
+  return (limit < e.low) | (e.high < -limit);
+}
+
+// Boxes that do not meet the cube around a ball slab's ball, as a mask.
+template <typename Kind>
+ORCHARD_INLINE auto beside_ball(const Box<Kind>& box, const BallSlab& slab,
+                                const typename Kind::Floats& margin) noexcept {
+  using E = Eight<Kind>;
+  using Floats = typename E::Floats;
+  const Floats radius = E::all(slab.radius) + margin;
+  const auto beside = [&](const Floats& low, const Floats& high, float center) ORCHARD_INLINE_LAMBDA {
+    const Floats at = E::all(center);
+    return (at + radius < low) | (high < at - radius);
+  };
+  return beside(box.low.x, box.high.x, slab.x) | beside(box.low.y, box.high.y, slab.y) |
+         beside(box.low.z, box.high.z, slab.z);
 }
 
 // The eight lanes' triangles, and their planes.
