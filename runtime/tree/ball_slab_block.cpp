@@ -1,6 +1,7 @@
 #include "ball_slab_block.h"
 
 #include <bit>
+#include <limits>
 
 #include "ball_slab_pair.h"
 #include "eight.h"
@@ -121,27 +122,42 @@ ORCHARD_INLINE void find_triangle_gaps(const TriangleBlock& lanes, const Triangl
   };
   const Vectors lane[3] = {lane_corner(0), lane_corner(1), lane_corner(2)};
   const Vectors row[3] = {row_corner(0), row_corner(1), row_corner(2)};
-  const Vectors lane_normal = normal_of<Kind>(lane), row_normal = normal_of<Kind>(row),
-                lane_middle = middle_of<Kind>(lane);
-  const Vectors given = {E::all(direction[0]), E::all(direction[1]), E::all(direction[2])};
-  const OneByOne<Kind> normals(row_normal),
-      corners[3] = {OneByOne<Kind>(row[0]), OneByOne<Kind>(row[1]), OneByOne<Kind>(row[2])};
-  const Floats margin = E::all(2 * placement.margin * placement.unit);
+  const OneByOne<Kind> corners[3] = {OneByOne<Kind>(row[0]), OneByOne<Kind>(row[1]), OneByOne<Kind>(row[2])};
+  const Floats margin = E::all(2 * placement.margin * placement.unit), limit = E::all(reach);
+  const Floats infinite = E::all(std::numeric_limits<float>::infinity());
   const Box<Kind> lane_box = box_of<Kind>(lane, E::all(0.0f)), row_boxes = box_of<Kind>(row, E::all(0.0f));
   const OneByOne<Kind> lows(row_boxes.low), highs(row_boxes.high);
+  Floats beyond = infinite;
+  std::uint32_t open = 0;  // rows that boxes do not settle
   for (std::uint32_t r = 0; r < kBlockWidth; ++r) {
-    if (rows.triangle[r] == kNoTriangle) break;
+    result.near[r] = 0;
+    if (rows.triangle[r] == kNoTriangle) continue;
     const Floats by_boxes = (gap_between<Kind>(lane_box, lows[r], highs[r]) - margin) * whole;
-    if (Kind::bits(by_boxes <= E::all(reach)) == 0) {
-      store(by_boxes, result.lower[r]);
-      continue;
-    }
-    const Vectors p[3] = {corners[0][r], corners[1][r], corners[2][r]};
-    const Vectors line = normalised<Kind>(E::minus(lane_middle, middle_of<Kind>(p)));
-    const Floats gap = E::larger(E::larger(gap_along<Kind>(normals[r], lane, p), gap_along<Kind>(lane_normal, lane, p)),
-                                 E::larger(gap_along<Kind>(line, lane, p), gap_along<Kind>(given, lane, p)));
-    store(E::larger((gap - margin) * whole, by_boxes), result.lower[r]);
+    store(by_boxes, result.lower[r]);
+    const bool settled = Kind::bits(by_boxes <= limit) == 0;
+    open |= std::uint32_t{!settled} << r;
+    beyond = E::smaller(beyond, settled ? by_boxes : infinite);
   }
+  if (open != 0) {
+    const Vectors lane_normal = normal_of<Kind>(lane), lane_middle = middle_of<Kind>(lane);
+    const OneByOne<Kind> normals(normal_of<Kind>(row));
+    const Vectors given = {E::all(direction[0]), E::all(direction[1]), E::all(direction[2])};
+    const std::uint32_t used = used_lanes(lanes);
+    for (; open != 0; open &= open - 1) {
+      const auto r = static_cast<std::uint32_t>(std::countr_zero(open));
+      const Vectors p[3] = {corners[0][r], corners[1][r], corners[2][r]};
+      const Vectors line = normalised<Kind>(E::minus(lane_middle, middle_of<Kind>(p)));
+      const Floats gap =
+          E::larger(E::larger(gap_along<Kind>(normals[r], lane, p), gap_along<Kind>(lane_normal, lane, p)),
+                    E::larger(gap_along<Kind>(line, lane, p), gap_along<Kind>(given, lane, p)));
+      const Floats lower = E::larger((gap - margin) * whole, load<Floats>(result.lower[r]));
+      store(lower, result.lower[r]);
+      const auto near = lower <= limit;
+      result.near[r] = used & Kind::bits(near);
+      beyond = E::smaller(beyond, Kind::choose(near, infinite, lower));
+    }
+  }
+  result.beyond = least_of<Kind>(beyond);  // what is not used repeats the first lane
 }
 
 }  // namespace

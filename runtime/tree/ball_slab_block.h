@@ -56,6 +56,8 @@ std::uint64_t triangle_candidates_scalar(const LeafPair& pair, const Placement& 
 // anything.
 struct TriangleGaps {
   alignas(32) std::array<std::array<float, kBlockWidth>, kBlockWidth> lower;  // [row][lane]
+  std::array<std::uint32_t, kBlockWidth> near;  // [row], bits: lanes that are no farther than `reach`
+  float beyond;                                 // the least of all others, or infinite
 };
 // `direction`: one more axis to try, of length 1 at most. Rows that are all farther than `reach` get no closer bounds
 // than need be to see that.

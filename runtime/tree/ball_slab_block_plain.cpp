@@ -1,5 +1,6 @@
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "ball_slab_block.h"
 #include "ball_slab_pair.h"
@@ -134,6 +135,9 @@ void triangle_gaps_scalar(const TriangleBlock& lanes, const TriangleBlock& rows,
   Lane lane[kBlockWidth];
   for (std::uint32_t l = 0; l < kBlockWidth; ++l) lane[l] = lane_of(lanes, l, false);
   const Vectors given = {direction[0], direction[1], direction[2]};
+  const auto used = [&](std::uint32_t l) { return l < kBlockWidth && lanes.triangle[l] != kNoTriangle; };
+  result.near = {};
+  result.beyond = std::numeric_limits<float>::infinity();
   for (std::uint32_t r = 0; r < kBlockWidth && rows.triangle[r] != kNoTriangle; ++r) {
     const Lane row = lane_of(rows, r, true);
     bool within = false;
@@ -148,6 +152,14 @@ void triangle_gaps_scalar(const TriangleBlock& lanes, const TriangleBlock& rows,
       const float gap =
           E::larger(E::larger(along(row.normal), along(lane[l].normal)), E::larger(along(line), along(given)));
       result.lower[r][l] = E::larger((gap - margin) * placement.whole, result.lower[r][l]);
+    }
+    for (std::uint32_t l = 0; used(l); ++l) {
+      const float lower = result.lower[r][l];
+      if (lower <= reach) {
+        result.near[r] |= 1u << l;
+      } else {
+        result.beyond = E::smaller(result.beyond, lower);
+      }
     }
   }
 }

@@ -76,4 +76,15 @@ struct Eight {
   }
 };
 
+// Of all eight.
+template <typename Kind>
+ORCHARD_INLINE float least_of(const typename Kind::Floats& v) noexcept {
+  std::array<float, kBlockWidth> lanes;
+  store(v, lanes);
+  for (std::uint32_t half = kBlockWidth / 2; half > 0; half /= 2) {
+    for (std::uint32_t i = 0; i < half; ++i) lanes[i] = lanes[i + half] < lanes[i] ? lanes[i + half] : lanes[i];
+  }
+  return lanes[0];
+}
+
 }  // namespace orchard::runtime::detail

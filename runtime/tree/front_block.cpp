@@ -49,16 +49,6 @@ ORCHARD_INLINE void find_pair_axes(const BallSlabBlock& firsts, const BallSlabBl
   keep_axes<Kind>(BallSlabPair<Kind>(firsts, seconds, &placement, result), margin, result);
 }
 
-template <typename Kind>
-ORCHARD_INLINE float least_of(const typename Kind::Floats& v) noexcept {
-  std::array<float, kBlockWidth> lanes;
-  store(v, lanes);
-  for (std::uint32_t half = kBlockWidth / 2; half > 0; half /= 2) {
-    for (std::uint32_t i = 0; i < half; ++i) lanes[i] = lanes[i + half] < lanes[i] ? lanes[i + half] : lanes[i];
-  }
-  return lanes[0];
-}
-
 // The corner that is least far along u.
 template <typename Kind>
 ORCHARD_INLINE std::array<float, 3> extreme(const typename Eight<Kind>::Vectors (&corner)[3],
