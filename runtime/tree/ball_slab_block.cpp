@@ -122,8 +122,19 @@ ORCHARD_INLINE void find_triangle_gaps(const TriangleBlock& lanes, const Triangl
   };
   const Vectors lane[3] = {lane_corner(0), lane_corner(1), lane_corner(2)};
   const Vectors row[3] = {row_corner(0), row_corner(1), row_corner(2)};
-  const OneByOne<Kind> corners[3] = {OneByOne<Kind>(row[0]), OneByOne<Kind>(row[1]), OneByOne<Kind>(row[2])};
+  const Vectors given = {E::all(direction[0]), E::all(direction[1]), E::all(direction[2])};
   const Floats margin = E::all(2 * placement.margin * placement.unit), limit = E::all(reach);
+  // All of them together, along the direction that has parted others.
+  const Extent<Kind> lane_extent = extent_along<Kind>(given, lane), row_extent = extent_along<Kind>(given, row);
+  const Floats apart = E::larger(E::all(least_of<Kind>(row_extent.low)) + E::all(least_of<Kind>(-lane_extent.high)),
+                                 E::all(least_of<Kind>(lane_extent.low)) + E::all(least_of<Kind>(-row_extent.high)));
+  const Floats all_beyond = (apart - margin) * whole;
+  if (Kind::bits(all_beyond <= limit) == 0) {
+    for (std::uint32_t r = 0; r < kBlockWidth; ++r) store(all_beyond, result.lower[r]), result.near[r] = 0;
+    result.beyond = result.lower[0][0];
+    return;
+  }
+  const OneByOne<Kind> corners[3] = {OneByOne<Kind>(row[0]), OneByOne<Kind>(row[1]), OneByOne<Kind>(row[2])};
   const Floats infinite = E::all(std::numeric_limits<float>::infinity());
   const Box<Kind> lane_box = box_of<Kind>(lane, E::all(0.0f)), row_boxes = box_of<Kind>(row, E::all(0.0f));
   const OneByOne<Kind> lows(row_boxes.low), highs(row_boxes.high);
@@ -141,7 +152,6 @@ ORCHARD_INLINE void find_triangle_gaps(const TriangleBlock& lanes, const Triangl
   if (open != 0) {
     const Vectors lane_normal = normal_of<Kind>(lane), lane_middle = middle_of<Kind>(lane);
     const OneByOne<Kind> normals(normal_of<Kind>(row));
-    const Vectors given = {E::all(direction[0]), E::all(direction[1]), E::all(direction[2])};
     const std::uint32_t used = used_lanes(lanes);
     for (; open != 0; open &= open - 1) {
       const auto r = static_cast<std::uint32_t>(std::countr_zero(open));

@@ -79,6 +79,31 @@ Lanes<OneFloat> planes_of(const Triangle& t, float unit, float margin) noexcept 
           own_height<OneFloat>(normal, edge, margin)};
 }
 
+// All triangles of a leaf, moved by `placement` unless it is null, in units of Placement::whole.
+struct Corners {
+  Triangle triangle[kBlockWidth];
+  std::uint32_t count = 0;
+
+  Corners(const TriangleBlock& block, const Placement* placement, float unit) noexcept {
+    for (; count < kBlockWidth && block.triangle[count] != kNoTriangle; ++count) {
+      Triangle& t = triangle[count];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vectors corner = E::corner(block, k, count);
+        t.corner[k] = E::times(placement != nullptr ? E::move(*placement, corner) : corner, unit);
+      }
+      t.box = box_of<OneFloat>(t.corner, 0);
+    }
+  }
+  Extent<OneFloat> along(const Vectors& axis) const noexcept {
+    Extent<OneFloat> all = extent_along<OneFloat>(axis, triangle[0].corner);
+    for (std::uint32_t i = 1; i < count; ++i) {
+      const Extent<OneFloat> own = extent_along<OneFloat>(axis, triangle[i].corner);
+      all = {E::smaller(all.low, own.low), E::larger(all.high, own.high)};
+    }
+    return all;
+  }
+};
+
 }  // namespace
 
 void ball_slab_gaps_scalar(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
@@ -117,44 +142,43 @@ std::uint64_t triangle_candidates_scalar(const LeafPair& pair, const Placement& 
 
 void triangle_gaps_scalar(const TriangleBlock& lanes, const TriangleBlock& rows, const Placement& placement,
                           const std::array<float, 3>& direction, float reach, TriangleGaps& result) noexcept {
-  struct Lane {
-    Vectors corner[3], normal, middle;
-    Box<OneFloat> box;
-  };
   const float margin = 2 * placement.margin * placement.unit;
-  const auto lane_of = [&](const TriangleBlock& block, std::uint32_t i, bool moved) -> Lane {
-    Lane t;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vectors corner = E::corner(block, k, i);
-      t.corner[k] = E::times(moved ? E::move(placement, corner) : corner, placement.unit);
-    }
-    t.normal = normal_of<OneFloat>(t.corner), t.middle = middle_of<OneFloat>(t.corner);
-    t.box = box_of<OneFloat>(t.corner, 0);
-    return t;
-  };
-  Lane lane[kBlockWidth];
-  for (std::uint32_t l = 0; l < kBlockWidth; ++l) lane[l] = lane_of(lanes, l, false);
   const Vectors given = {direction[0], direction[1], direction[2]};
-  const auto used = [&](std::uint32_t l) { return l < kBlockWidth && lanes.triangle[l] != kNoTriangle; };
+  const Corners lane(lanes, nullptr, placement.unit), row(rows, &placement, placement.unit);
+  const Extent<OneFloat> lane_extent = lane.along(given), row_extent = row.along(given);
+  const float all_beyond =
+      (E::larger(row_extent.low - lane_extent.high, lane_extent.low - row_extent.high) - margin) * placement.whole;
   result.near = {};
+  if (!(all_beyond <= reach)) {
+    for (auto& lower : result.lower) lower.fill(all_beyond);
+    result.beyond = all_beyond;
+    return;
+  }
   result.beyond = std::numeric_limits<float>::infinity();
-  for (std::uint32_t r = 0; r < kBlockWidth && rows.triangle[r] != kNoTriangle; ++r) {
-    const Lane row = lane_of(rows, r, true);
+  std::uint32_t made = 0;  // of what lanes have
+  Vectors normal[kBlockWidth], middle[kBlockWidth];
+  for (std::uint32_t r = 0; r < row.count; ++r) {
+    const Box<OneFloat> row_box = box_of<OneFloat>(row.triangle[r].corner, 0);
     bool within = false;
-    for (std::uint32_t l = 0; l < kBlockWidth; ++l) {
-      const float gap = (gap_between<OneFloat>(lane[l].box, row.box.low, row.box.high) - margin) * placement.whole;
-      result.lower[r][l] = gap;
-      within = within || gap <= reach;
+    for (std::uint32_t l = 0; l < lane.count; ++l) {
+      result.lower[r][l] =
+          (gap_between<OneFloat>(lane.triangle[l].box, row_box.low, row_box.high) - margin) * placement.whole;
+      within = within || result.lower[r][l] <= reach;
     }
-    for (std::uint32_t l = 0; l < kBlockWidth && within; ++l) {
-      const auto along = [&](const Vectors& axis) { return gap_along<OneFloat>(axis, lane[l].corner, row.corner); };
-      const Vectors line = normalised<OneFloat>(E::minus(lane[l].middle, row.middle));
-      const float gap =
-          E::larger(E::larger(along(row.normal), along(lane[l].normal)), E::larger(along(line), along(given)));
-      result.lower[r][l] = E::larger((gap - margin) * placement.whole, result.lower[r][l]);
-    }
-    for (std::uint32_t l = 0; used(l); ++l) {
-      const float lower = result.lower[r][l];
+    const auto& p = row.triangle[r].corner;
+    const Vectors row_normal = within ? normal_of<OneFloat>(p) : Vectors{}, row_middle = middle_of<OneFloat>(p);
+    for (std::uint32_t l = 0; l < lane.count; ++l) {
+      float& lower = result.lower[r][l];
+      if (within) {
+        const auto& t = lane.triangle[l].corner;
+        if ((made >> l & 1) == 0)
+          normal[l] = normal_of<OneFloat>(t), middle[l] = middle_of<OneFloat>(t), made |= 1u << l;
+        const auto along = [&](const Vectors& axis) { return gap_along<OneFloat>(axis, t, p); };
+        const Vectors line = normalised<OneFloat>(E::minus(middle[l], row_middle));
+        const float gap =
+            E::larger(E::larger(along(row_normal), along(normal[l])), E::larger(along(line), along(given)));
+        lower = E::larger((gap - margin) * placement.whole, lower);
+      }
       if (lower <= reach) {
         result.near[r] |= 1u << l;
       } else {

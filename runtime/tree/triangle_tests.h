@@ -144,6 +144,13 @@ ORCHARD_INLINE typename Eight<Kind>::Vectors middle_of(const typename Eight<Kind
   return {(t[0].x + t[1].x + t[2].x) * third, (t[0].y + t[1].y + t[2].y) * third, (t[0].z + t[1].z + t[2].z) * third};
 }
 
+template <typename Kind>
+ORCHARD_INLINE Extent<Kind> extent_along(const typename Eight<Kind>::Vectors& axis,
+                                         const typename Eight<Kind>::Vectors (&t)[3]) noexcept {
+  using E = Eight<Kind>;
+  return extent<Kind>(E::dot(axis, t[0]), E::dot(axis, t[1]), E::dot(axis, t[2]));
+}
+
 // Between triangles, along the axes of a box.
 template <typename Kind>
 ORCHARD_INLINE typename Kind::Floats gap_between(const Box<Kind>& a, const typename Eight<Kind>::Vectors& low,
