@@ -112,6 +112,15 @@ struct VectorFloats {
     for (std::size_t i = 0; i < 8; ++i) result[i] = __builtin_sqrtf(a[i]);
     return result;
   }
+#ifdef ORCHARD_SIGNS_OF_HALVES
+  // The least of eight, halves against halves, as least_of() does it elsewhere.
+  ORCHARD_INLINE static float least(const Floats& a) noexcept {
+    const auto smaller = [](const auto& p, const auto& q) ORCHARD_INLINE_LAMBDA { return q < p ? q : p; };
+    const auto four = smaller(__builtin_shufflevector(a, a, 0, 1, 2, 3), __builtin_shufflevector(a, a, 4, 5, 6, 7));
+    const auto two = smaller(four, __builtin_shufflevector(four, four, 2, 3, 2, 3));
+    return smaller(two, __builtin_shufflevector(two, two, 1, 1, 1, 1))[0];
+  }
+#endif
   ORCHARD_INLINE static std::uint32_t bits(const Mask& mask) noexcept {
 #ifdef ORCHARD_SIGNS_OF_HALVES
     const auto half = [](const auto& v) ORCHARD_INLINE_LAMBDA {

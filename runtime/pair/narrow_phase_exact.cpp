@@ -108,7 +108,7 @@ bool NarrowPhase::leaves_apart(const BallSlabPair& pair, BudgetTracker& tracker)
   const TriangleBlock& lanes = first_.tree.triangle_blocks[child_of(first_.tree, pair.a) & ~kLeafBit];
   const TriangleBlock& rows = second_.tree.triangle_blocks[child_of(second_.tree, pair.b) & ~kLeafBit];
   const detail::BallSlab slab = detail::ball_slab_at(block_of(first_.tree, pair.a), pair.a % kBlockWidth);
-  const float gap = detail::leaf_axis({lanes, rows, slab, pair.second}, placement_, {1, 0, 0}, wide_).gap;
+  const float gap = detail::leaf_axis({lanes, rows, slab, pair.second}, placement_, nullptr, wide_).gap;
   tracker.spend(kBlockWidth);
   least_gap_ = std::min(least_gap_, std::max(0.0, double{gap}));
   return gap > 0;

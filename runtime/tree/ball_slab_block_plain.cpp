@@ -27,16 +27,16 @@ ORCHARD_INLINE void find_gaps(const BallSlab& single, const BallSlabBlock& lanes
                               float margin, bool only_meeting, BallSlabGaps& result) noexcept {
   std::uint32_t used = 0, meeting = 0;
   for (std::uint32_t i = 0; i < kBlockWidth; ++i) {
-    if (!(lanes.radius[i] >= 0)) continue;
-    used |= 1u << i;
-    if (only_meeting && balls_apart(single, lanes, placement, margin, i)) continue;
+    const bool in_use = lanes.radius[i] >= 0;
+    used |= std::uint32_t{in_use} << i;
+    if (only_meeting && (!in_use || balls_apart(single, lanes, placement, margin, i))) continue;
     const BallSlabPair<OneFloat> pair(single, lanes, placement, result, i);
     const float gap = E::larger(E::larger(pair.by_n, pair.by_m), pair.by_line) - margin;
     result.gap[i] = gap;
     meeting |= std::uint32_t{gap <= 0} << i;
   }
   result.used = used;
-  result.meeting = meeting;
+  result.meeting = used & meeting;
 }
 
 struct Triangle {
