@@ -51,7 +51,8 @@ struct Leaf {
 
   Leaf(const TriangleBlock& block, const Placement* placement, const BallSlab& other, float grown,
        float margin) noexcept {
-    for (std::uint32_t i = 0; i < kBlockWidth && block.triangle[i] != kNoTriangle; ++i) {
+    for (std::uint32_t i = 0; i < kBlockWidth; ++i) {
+      if (block.triangle[i] == kNoTriangle) continue;
       Triangle& t = triangle[i];
       for (std::size_t k = 0; k < 3; ++k) {
         t.corner[k] = E::corner(block, k, i);
@@ -79,16 +80,16 @@ Lanes<OneFloat> planes_of(const Triangle& t, float unit, float margin) noexcept 
           own_height<OneFloat>(normal, edge, margin)};
 }
 
-// All triangles of a leaf, moved by `placement` unless it is null, in units of Placement::whole.
+// All triangles of a leaf, moved by `placement` unless it is null, in units of Placement::whole. Unused places repeat
+// the first one.
 struct Corners {
   Triangle triangle[kBlockWidth];
-  std::uint32_t count = 0;
 
   Corners(const TriangleBlock& block, const Placement* placement, float unit) noexcept {
-    for (; count < kBlockWidth && block.triangle[count] != kNoTriangle; ++count) {
-      Triangle& t = triangle[count];
+    for (std::uint32_t i = 0; i < kBlockWidth; ++i) {
+      Triangle& t = triangle[i];
       for (std::size_t k = 0; k < 3; ++k) {
-        const Vectors corner = E::corner(block, k, count);
+        const Vectors corner = E::corner(block, k, i);
         t.corner[k] = E::times(placement != nullptr ? E::move(*placement, corner) : corner, unit);
       }
       t.box = box_of<OneFloat>(t.corner, 0);
@@ -96,7 +97,7 @@ struct Corners {
   }
   Extent<OneFloat> along(const Vectors& axis) const noexcept {
     Extent<OneFloat> all = extent_along<OneFloat>(axis, triangle[0].corner);
-    for (std::uint32_t i = 1; i < count; ++i) {
+    for (std::uint32_t i = 1; i < kBlockWidth; ++i) {
       const Extent<OneFloat> own = extent_along<OneFloat>(axis, triangle[i].corner);
       all = {E::smaller(all.low, own.low), E::larger(all.high, own.high)};
     }
@@ -126,15 +127,18 @@ std::uint64_t triangle_candidates_scalar(const LeafPair& pair, const Placement& 
   std::uint64_t result = 0;
   for (std::uint32_t left_rows = rows.left; left_rows != 0; left_rows &= left_rows - 1) {
     const auto r = static_cast<std::uint32_t>(std::countr_zero(left_rows));
-    Lanes<OneFloat> row;
-    bool row_made = false;
+    std::uint32_t near = 0;
     for (std::uint32_t left = lanes.left; left != 0; left &= left - 1) {
       const auto l = static_cast<std::uint32_t>(std::countr_zero(left));
-      if (!meet(lanes.triangle[l].box, rows.triangle[r].box)) continue;
+      if (meet(lanes.triangle[l].box, rows.triangle[r].box)) near |= 1u << l;
+    }
+    if (near == 0) continue;
+    const Lanes<OneFloat> row = planes_of(rows.triangle[r], placement.unit, margin);
+    for (; near != 0; near &= near - 1) {
+      const auto l = static_cast<std::uint32_t>(std::countr_zero(near));
       if ((made >> l & 1) == 0) planes[l] = planes_of(lanes.triangle[l], placement.unit, margin), made |= 1u << l;
-      if (!row_made) row = planes_of(rows.triangle[r], placement.unit, margin), row_made = true;
-      const std::uint64_t near = not_apart<OneFloat>(1, planes[l], row.corner, row.normal, row.limit, margin);
-      result |= near << (kBlockWidth * r + l);
+      const std::uint64_t left = not_apart<OneFloat>(1, planes[l], row.corner, row.normal, row.limit, margin);
+      result |= left << (kBlockWidth * r + l);
     }
   }
   return result;
@@ -157,28 +161,32 @@ void triangle_gaps_scalar(const TriangleBlock& lanes, const TriangleBlock& rows,
   result.beyond = std::numeric_limits<float>::infinity();
   std::uint32_t made = 0;  // of what lanes have
   Vectors normal[kBlockWidth], middle[kBlockWidth];
-  for (std::uint32_t r = 0; r < row.count; ++r) {
+  for (std::uint32_t r = 0; r < kBlockWidth; ++r) {
+    if (rows.triangle[r] == kNoTriangle) continue;
     const Box<OneFloat> row_box = box_of<OneFloat>(row.triangle[r].corner, 0);
     bool within = false;
-    for (std::uint32_t l = 0; l < lane.count; ++l) {
+    for (std::uint32_t l = 0; l < kBlockWidth; ++l) {
       result.lower[r][l] =
           (gap_between<OneFloat>(lane.triangle[l].box, row_box.low, row_box.high) - margin) * placement.whole;
       within = within || result.lower[r][l] <= reach;
     }
     const auto& p = row.triangle[r].corner;
     const Vectors row_normal = within ? normal_of<OneFloat>(p) : Vectors{}, row_middle = middle_of<OneFloat>(p);
-    for (std::uint32_t l = 0; l < lane.count; ++l) {
+    for (std::uint32_t l = 0; l < kBlockWidth; ++l) {
       float& lower = result.lower[r][l];
       if (within) {
         const auto& t = lane.triangle[l].corner;
-        if ((made >> l & 1) == 0)
-          normal[l] = normal_of<OneFloat>(t), middle[l] = middle_of<OneFloat>(t), made |= 1u << l;
+        if ((made >> l & 1) == 0) {
+          normal[l] = normal_of<OneFloat>(t), middle[l] = middle_of<OneFloat>(t);
+          made |= 1u << l;
+        }
         const auto along = [&](const Vectors& axis) { return gap_along<OneFloat>(axis, t, p); };
         const Vectors line = normalised<OneFloat>(E::minus(middle[l], row_middle));
         const float gap =
             E::larger(E::larger(along(row_normal), along(normal[l])), E::larger(along(line), along(given)));
         lower = E::larger((gap - margin) * placement.whole, lower);
       }
+      if (lanes.triangle[l] == kNoTriangle) continue;
       if (lower <= reach) {
         result.near[r] |= 1u << l;
       } else {

@@ -46,7 +46,8 @@ struct Eight {
     }
   }
   ORCHARD_INLINE static Floats all(float value) noexcept { return spread<Floats>(value); }
-  // Of two comparisons, not of one: then compilers see a minimum and a maximum, an instruction each.
+  // Of two comparisons, not of one: then compilers see a minimum and a maximum, an instruction each. Where one is not a
+  // number, both give the second one.
   ORCHARD_INLINE static Floats smaller(const Floats& a, const Floats& b) noexcept { return Kind::choose(a < b, a, b); }
   ORCHARD_INLINE static Floats larger(const Floats& a, const Floats& b) noexcept { return Kind::choose(b < a, a, b); }
   ORCHARD_INLINE static Floats size(const Floats& a) noexcept { return larger(a, -a); }
