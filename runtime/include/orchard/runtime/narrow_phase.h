@@ -51,8 +51,8 @@ enum class Answer : std::uint8_t {
 };
 
 // Whichever ends first. Work is counted in tests of two spheres or two ball slabs; a test of two triangles counts as
-// kTriangleTestCost. A call with pair_tests > 0 always gets somewhere: it overshoots by less than a row of eight tests
-// or one pair of leaves (kLeafPairTests triangle tests).
+// kTriangleTestCost. A call with pair_tests > 0 always gets somewhere: it overshoots by less than two rows of eight
+// tests or one pair of leaves (kLeafPairTests triangle tests).
 struct Budget {
   std::uint64_t pair_tests = std::numeric_limits<std::uint64_t>::max();
   std::chrono::nanoseconds time = std::chrono::nanoseconds::max();  // steady clock, read once per kClockInterval tests
