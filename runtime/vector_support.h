@@ -16,6 +16,9 @@
 #pragma GCC diagnostic ignored "-Wpsabi"  // no vector crosses a call
 #ifdef __SSE2__
 #include <emmintrin.h>
+#if __has_builtin(__builtin_shufflevector)
+#define ORCHARD_SIGNS_OF_HALVES 1  // signs of four are one instruction everywhere
+#endif
 #endif
 #else
 #define ORCHARD_INLINE inline
@@ -88,6 +91,15 @@ struct PlainFloats {
   }
 };
 
+// One float at a time, where what the others need not be told of is worth a branch.
+struct OneFloat {
+  using Floats = float;
+  using Mask = bool;
+  static float choose(bool mask, float a, float b) noexcept { return mask ? a : b; }
+  static float root(float a) noexcept { return std::sqrt(a); }
+  static std::uint32_t bits(bool mask) noexcept { return mask ? 1 : 0; }
+};
+
 #ifdef ORCHARD_VECTORS
 struct VectorFloats {
   using Floats __attribute__((vector_size(32))) = float;
@@ -100,12 +112,29 @@ struct VectorFloats {
     for (std::size_t i = 0; i < 8; ++i) result[i] = __builtin_sqrtf(a[i]);
     return result;
   }
+#ifdef ORCHARD_SIGNS_OF_HALVES
+  // The least of eight, halves against halves, as least_of() does it elsewhere.
+  ORCHARD_INLINE static float least(const Floats& a) noexcept {
+    const auto smaller = [](const auto& p, const auto& q) ORCHARD_INLINE_LAMBDA { return q < p ? q : p; };
+    const auto four = smaller(__builtin_shufflevector(a, a, 0, 1, 2, 3), __builtin_shufflevector(a, a, 4, 5, 6, 7));
+    const auto two = smaller(four, __builtin_shufflevector(four, four, 2, 3, 2, 3));
+    return smaller(two, __builtin_shufflevector(two, two, 1, 1, 1, 1))[0];
+  }
+#endif
   ORCHARD_INLINE static std::uint32_t bits(const Mask& mask) noexcept {
+#ifdef ORCHARD_SIGNS_OF_HALVES
+    const auto half = [](const auto& v) ORCHARD_INLINE_LAMBDA {
+      return static_cast<std::uint32_t>(_mm_movemask_ps(reinterpret_cast<__m128>(v)));
+    };
+    return half(__builtin_shufflevector(mask, mask, 0, 1, 2, 3)) | half(__builtin_shufflevector(mask, mask, 4, 5, 6, 7))
+                                                                       << 4;
+#else
     using Bytes __attribute__((vector_size(8))) = std::uint8_t;
     const Bytes narrow = __builtin_convertvector(mask & 1, Bytes);
     std::uint64_t bytes;
     std::memcpy(&bytes, &narrow, sizeof bytes);
     return static_cast<std::uint32_t>((bytes * 0x0102040810204080u) >> 56);
+#endif
   }
 };
 #endif
@@ -188,6 +217,10 @@ ORCHARD_INLINE void store(const Vector& from, Array& to) noexcept {
 
 template <typename Vector, typename T>
 ORCHARD_INLINE Vector spread(T value) noexcept {
+  if constexpr (requires(Vector v) { v.low; }) {  // of which compilers make one instruction, not of the copies
+    const decltype(Vector::low) half = {value, value, value, value};
+    return {half, half};
+  }
   std::array<T, sizeof(Vector) / sizeof(T)> copies;
   for (T& copy : copies) copy = value;
   return load<Vector>(copies);

@@ -184,15 +184,12 @@ void DistanceQuery::compare_leaves(const BallSlabPair& pair) noexcept {
   const float least = std::max(0.0f, pair.lower);
   std::array<std::uint8_t, std::size_t{kBlockWidth} * kBlockWidth> order;
   std::size_t count = 0;
-  float left_out = std::numeric_limits<float>::infinity();
+  float left_out = gaps.beyond;
   const auto lower_of = [&](std::uint8_t i) { return gaps.lower[i / kBlockWidth][i % kBlockWidth]; };
-  for (std::uint32_t row = 0; row < kBlockWidth && rows.triangle[row] != kNoTriangle; ++row) {
-    for (std::uint32_t lane = 0; lane < kBlockWidth && lanes.triangle[lane] != kNoTriangle; ++lane) {
+  for (std::uint32_t row = 0; row < kBlockWidth; ++row) {
+    for (std::uint32_t left = gaps.near[row]; left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
       const float lower = gaps.lower[row][lane];
-      if (lower > reach) {
-        left_out = std::min(left_out, lower);
-        continue;
-      }
       std::size_t at = count++;
       for (; at > 0 && lower_of(order[at - 1]) > lower; --at) order[at] = order[at - 1];
       order[at] = static_cast<std::uint8_t>(kBlockWidth * row + lane);

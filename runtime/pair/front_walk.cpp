@@ -118,7 +118,8 @@ FrontWalk::Outcome FrontWalk::settle_leaves() noexcept {
     detail::FrontBlock& block = front_.blocks_[leaves_[i] / kBlockWidth];
     const std::uint32_t lane = leaves_[i] % kBlockWidth;
     LeafAxis axis = {0, {block.ux[lane], block.uy[lane], block.uz[lane]}};
-    if (leaves_meet({block.a[lane], block.b[lane], moved_slab(block.b[lane])}, axis)) return Outcome::meeting;
+    const std::array<float, 3> last = axis.u;
+    if (leaves_meet({block.a[lane], block.b[lane], moved_slab(block.b[lane])}, &last, axis)) return Outcome::meeting;
     block.gap[lane] = axis.gap;
     block.ux[lane] = axis.u[0], block.uy[lane] = axis.u[1], block.uz[lane] = axis.u[2];
   }
@@ -171,8 +172,8 @@ FrontWalk::Outcome FrontWalk::walk(const BallSlabPair& from) noexcept {
     const BallSlabPair pair = stack_[--stack_size_];
     const std::uint32_t a = detail::ball_slab_child(first_, pair.a), b = detail::ball_slab_child(second_, pair.b);
     if (a & b & kLeafBit) {
-      LeafAxis axis = {0, {1, 0, 0}};
-      const bool meet = leaves_meet(pair, axis);
+      LeafAxis axis;
+      const bool meet = leaves_meet(pair, nullptr, axis);
       add(pair.a, pair.b, axis.gap, axis.u);
       if (meet) return keep_stack(), Outcome::meeting;
       continue;
@@ -183,12 +184,12 @@ FrontWalk::Outcome FrontWalk::walk(const BallSlabPair& from) noexcept {
   return Outcome::apart;
 }
 
-bool FrontWalk::leaves_meet(const BallSlabPair& pair, LeafAxis& axis) noexcept {
+bool FrontWalk::leaves_meet(const BallSlabPair& pair, const Axis* last, LeafAxis& axis) noexcept {
   const TriangleBlock& lanes = first_.triangle_blocks[detail::ball_slab_child(first_, pair.a) & ~kLeafBit];
   const TriangleBlock& rows = second_.triangle_blocks[detail::ball_slab_child(second_, pair.b) & ~kLeafBit];
   const detail::LeafPair leaves = {
       lanes, rows, detail::ball_slab_at(first_.ball_slabs[pair.a / kBlockWidth], pair.a % kBlockWidth), pair.second};
-  axis = detail::leaf_axis(leaves, placement_, axis.u, enough_);
+  axis = detail::leaf_axis(leaves, placement_, last, enough_);
   tracker_->spend(kBlockWidth);
   if (axis.gap > 0) return false;
   tracker_->spend(std::uint64_t{kLeafPairTests} * kTriangleTestCost);

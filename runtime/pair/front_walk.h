@@ -48,7 +48,7 @@ class FrontWalk {
   Outcome settle_leaves() noexcept;
   Outcome settle_nodes() noexcept;
   Outcome walk(const BallSlabPair& from) noexcept;
-  bool leaves_meet(const BallSlabPair& pair, detail::LeafAxis& axis) noexcept;
+  bool leaves_meet(const BallSlabPair& pair, const Axis* last, detail::LeafAxis& axis) noexcept;
   void expand(const BallSlabPair& pair, bool open_second) noexcept;
   void add(std::uint32_t a, std::uint32_t b, float gap, const Axis& u) noexcept;
   void keep_stack() noexcept;

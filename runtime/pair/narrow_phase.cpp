@@ -148,9 +148,10 @@ bool NarrowPhase::bind(const PreparedTree& a, const PreparedTree& b) noexcept {
   lower_bound_ = 0;
   inner_.clear(), leaves_.clear(), next_.clear();
   settled_leaves_ = 0;
-  // An expanded pair leaves up to eight in its place, one level deeper in one of the trees.
+  // Two expanded pairs leave up to eight each in their place, one level deeper in one of the trees; what lies below
+  // them is no deeper than they were, so that no depth ever has more than these.
   const std::size_t deepest =
-      std::size_t{kBlockWidth} * (a.tree.triangle_tree_depth + b.tree.triangle_tree_depth + 1) + 1;
+      2 * std::size_t{kBlockWidth} * (a.tree.triangle_tree_depth + b.tree.triangle_tree_depth + 1) + 1;
   if (!has_triangles() || deepest <= stack_room_) return true;
   stack_.reset(new (std::nothrow) BallSlabPair[deepest]);
   stack_room_ = stack_ ? deepest : 0;

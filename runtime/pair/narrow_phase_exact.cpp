@@ -48,27 +48,40 @@ bool NarrowPhase::refine_ball_slabs(BudgetTracker& tracker) noexcept {
       if (meet) return true;
       continue;
     }
-    const bool second =
-        (a & kLeafBit) != 0 ||
-        ((b & kLeafBit) == 0 && block_of(first_.tree, pair.a).radius[pair.a % kBlockWidth] < pair.second.radius);
+    const bool two = stack_size_ > 0 && (child_of(first_.tree, stack_[stack_size_ - 1].a) &
+                                         child_of(second_.tree, stack_[stack_size_ - 1].b) & kLeafBit) == 0;
     const std::uint64_t before = pair_tests_;
-    expand(pair, second);
+    BallSlabGaps gaps[2];
+    const bool second = find_children(pair, a, b, gaps[0]);
+    if (two) {
+      const BallSlabPair other = stack_[--stack_size_];
+      const std::uint32_t oa = child_of(first_.tree, other.a), ob = child_of(second_.tree, other.b);
+      const bool other_second = find_children(other, oa, ob, gaps[1]);
+      push_children(other, other_second, other_second ? ob : oa, gaps[1]);
+    }
+    push_children(pair, second, second ? b : a, gaps[0]);
     tracker.spend(pair_tests_ - before);
   }
   return true;
 }
 
 // In place of a pair, those of its children that may meet, the deepest last.
-void NarrowPhase::expand(const BallSlabPair& pair, bool second) noexcept {
-  const TreeView& tree = (second ? second_ : first_).tree;
-  const std::uint32_t block = child_of(tree, second ? pair.b : pair.a);
-  BallSlabGaps gaps;
+bool NarrowPhase::find_children(const BallSlabPair& pair, std::uint32_t a, std::uint32_t b,
+                                BallSlabGaps& gaps) noexcept {
+  const bool second =
+      (a & kLeafBit) != 0 ||
+      ((b & kLeafBit) == 0 && block_of(first_.tree, pair.a).radius[pair.a % kBlockWidth] < pair.second.radius);
   if (second) {
-    detail::ball_slab_gaps(detail::ball_slab_at(block_of(first_.tree, pair.a), pair.a % kBlockWidth),
-                           tree.ball_slabs[block], &placement_, placement_.margin + wide_, gaps);
+    detail::meeting_ball_slabs(detail::ball_slab_at(block_of(first_.tree, pair.a), pair.a % kBlockWidth),
+                               second_.tree.ball_slabs[b], &placement_, placement_.margin + wide_, gaps);
   } else {
-    detail::ball_slab_gaps(pair.second, tree.ball_slabs[block], nullptr, placement_.margin + wide_, gaps);
+    detail::meeting_ball_slabs(pair.second, first_.tree.ball_slabs[a], nullptr, placement_.margin + wide_, gaps);
   }
+  return second;
+}
+
+void NarrowPhase::push_children(const BallSlabPair& pair, bool second, std::uint32_t block,
+                                const BallSlabGaps& gaps) noexcept {
   pair_tests_ += static_cast<std::uint64_t>(std::bit_width(gaps.used));
   std::uint32_t order[kBlockWidth], count = 0;
   for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {
@@ -95,7 +108,7 @@ bool NarrowPhase::leaves_apart(const BallSlabPair& pair, BudgetTracker& tracker)
   const TriangleBlock& lanes = first_.tree.triangle_blocks[child_of(first_.tree, pair.a) & ~kLeafBit];
   const TriangleBlock& rows = second_.tree.triangle_blocks[child_of(second_.tree, pair.b) & ~kLeafBit];
   const detail::BallSlab slab = detail::ball_slab_at(block_of(first_.tree, pair.a), pair.a % kBlockWidth);
-  const float gap = detail::leaf_axis({lanes, rows, slab, pair.second}, placement_, {1, 0, 0}, wide_).gap;
+  const float gap = detail::leaf_axis({lanes, rows, slab, pair.second}, placement_, nullptr, wide_).gap;
   tracker.spend(kBlockWidth);
   least_gap_ = std::min(least_gap_, std::max(0.0, double{gap}));
   return gap > 0;

@@ -37,6 +37,12 @@ void ball_slab_gaps(const BallSlab& single, const BallSlabBlock& lanes, const Pl
 void ball_slab_gaps_scalar(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
                            BallSlabGaps& result) noexcept;
 
+// The same where only those that meet matter: of the others the result holds anything.
+void meeting_ball_slabs(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
+                        BallSlabGaps& result) noexcept;
+void meeting_ball_slabs_scalar(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement,
+                               float margin, BallSlabGaps& result) noexcept;
+
 struct LeafPair {
   const TriangleBlock &lanes, &rows;  // of the first tree and, to be moved, of the second
   BallSlab lane_slab, row_slab;       // around them, both in the first tree's frame
@@ -50,6 +56,8 @@ std::uint64_t triangle_candidates_scalar(const LeafPair& pair, const Placement& 
 // anything.
 struct TriangleGaps {
   alignas(32) std::array<std::array<float, kBlockWidth>, kBlockWidth> lower;  // [row][lane]
+  std::array<std::uint32_t, kBlockWidth> near;  // [row], bits: lanes that are no farther than `reach`
+  float beyond;                                 // the least of all others, or infinite
 };
 // `direction`: one more axis to try, of length 1 at most. Rows that are all farther than `reach` get no closer bounds
 // than need be to see that.

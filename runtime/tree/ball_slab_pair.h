@@ -22,19 +22,20 @@ struct BallSlabPair {
   Floats distance;             // of the centres
   Floats by_n, by_m, by_line;  // gaps along both normals; along the line of the centres, or between the balls
 
-  // `placement` moves the lanes unless it is null. The lanes as they are tested go to `result`.
+  // `placement` moves the lanes unless it is null. The lanes as they are tested go to `result`. `lane`: which one,
+  // where Kind is of one.
   template <typename Result>
   ORCHARD_INLINE BallSlabPair(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement,
-                              Result& result) noexcept
-      : c{load<Floats>(lanes.x), load<Floats>(lanes.y), load<Floats>(lanes.z)},
-        n{load<Floats>(lanes.nx), load<Floats>(lanes.ny), load<Floats>(lanes.nz)},
+                              Result& result, std::uint32_t lane = 0) noexcept
+      : c{E::at(lanes.x, lane), E::at(lanes.y, lane), E::at(lanes.z, lane)},
+        n{E::at(lanes.nx, lane), E::at(lanes.ny, lane), E::at(lanes.nz, lane)},
         place{E::all(single.x), E::all(single.y), E::all(single.z)},
         m{E::all(single.nx), E::all(single.ny), E::all(single.nz)},
-        r(load<Floats>(lanes.radius)),
-        h(load<Floats>(lanes.height)),
+        r(E::at(lanes.radius, lane)),
+        h(E::at(lanes.height, lane)),
         s(E::all(single.radius)),
         k(E::all(single.height)) {
-    place_lanes(placement, result);
+    place_lanes(placement, result, lane);
   }
   // The same with one of eight for each lane.
   template <typename Result>
@@ -48,12 +49,12 @@ struct BallSlabPair {
         h(load<Floats>(lanes.height)),
         s(load<Floats>(singles.radius)),
         k(load<Floats>(singles.height)) {
-    place_lanes(placement, result);
+    place_lanes(placement, result, 0);
   }
 
  private:
   template <typename Result>
-  ORCHARD_INLINE void place_lanes(const Placement* placement, Result& result) noexcept {
+  ORCHARD_INLINE void place_lanes(const Placement* placement, Result& result, std::uint32_t lane) noexcept {
     result.used = Kind::bits(E::all(0.0f) <= r);
     if (placement != nullptr) {
       c = E::move(*placement, c);
@@ -61,9 +62,9 @@ struct BallSlabPair {
       r = r * E::all(placement->scale);
       h = h * E::all(placement->scale);
     }
-    store(c.x, result.x), store(c.y, result.y), store(c.z, result.z);
-    store(n.x, result.nx), store(n.y, result.ny), store(n.z, result.nz);
-    store(r, result.radius), store(h, result.height);
+    E::put(c.x, result.x, lane), E::put(c.y, result.y, lane), E::put(c.z, result.z, lane);
+    E::put(n.x, result.nx, lane), E::put(n.y, result.ny, lane), E::put(n.z, result.nz, lane);
+    E::put(r, result.radius, lane), E::put(h, result.height, lane);
     find_gaps();
   }
 

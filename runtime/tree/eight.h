@@ -7,7 +7,7 @@
 #include "vector_support.h"
 
 // Eight numbers, and eight vectors, at a time: what the inner loops over ball slabs and triangles are made of. `Kind`
-// is PlainFloats or VectorFloats.
+// is PlainFloats or VectorFloats; or OneFloat, for one of the eight.
 namespace orchard::runtime::detail {
 
 // What PerMachine (machine.h) is given: for the widest vectors there are, and for those that every machine has.
@@ -27,9 +27,29 @@ struct Eight {
     Floats x, y, z;
   };
 
+  static constexpr std::size_t kCount = sizeof(Floats) / sizeof(float);
+  static constexpr std::uint32_t kAll = (1u << kCount) - 1;
+
+  // All of eight, or the one of them that is asked for.
+  ORCHARD_INLINE static Floats at(const std::array<float, kBlockWidth>& from, std::uint32_t lane) noexcept {
+    if constexpr (kCount == 1) {
+      return from[lane];
+    } else {
+      return load<Floats>(from);
+    }
+  }
+  ORCHARD_INLINE static void put(const Floats& value, std::array<float, kBlockWidth>& to, std::uint32_t lane) noexcept {
+    if constexpr (kCount == 1) {
+      to[lane] = value;
+    } else {
+      store(value, to);
+    }
+  }
   ORCHARD_INLINE static Floats all(float value) noexcept { return spread<Floats>(value); }
+  // Of two comparisons, not of one: then compilers see a minimum and a maximum, an instruction each. Where one is not a
+  // number, both give the second one.
   ORCHARD_INLINE static Floats smaller(const Floats& a, const Floats& b) noexcept { return Kind::choose(a < b, a, b); }
-  ORCHARD_INLINE static Floats larger(const Floats& a, const Floats& b) noexcept { return Kind::choose(a < b, b, a); }
+  ORCHARD_INLINE static Floats larger(const Floats& a, const Floats& b) noexcept { return Kind::choose(b < a, a, b); }
   ORCHARD_INLINE static Floats size(const Floats& a) noexcept { return larger(a, -a); }
   ORCHARD_INLINE static Floats dot(const Vectors& a, const Vectors& b) noexcept {
     return a.x * b.x + a.y * b.y + a.z * b.z;
@@ -52,9 +72,21 @@ struct Eight {
     const Vectors turned = turn(p.rotation, v);
     return {turned.x + all(p.translation[0]), turned.y + all(p.translation[1]), turned.z + all(p.translation[2])};
   }
-  ORCHARD_INLINE static Vectors corner(const TriangleBlock& block, std::size_t k) noexcept {
-    return {load<Floats>(block.corner[k][0]), load<Floats>(block.corner[k][1]), load<Floats>(block.corner[k][2])};
+  ORCHARD_INLINE static Vectors corner(const TriangleBlock& block, std::size_t k, std::uint32_t lane = 0) noexcept {
+    return {at(block.corner[k][0], lane), at(block.corner[k][1], lane), at(block.corner[k][2], lane)};
   }
 };
+
+// Of all eight.
+template <typename Kind>
+ORCHARD_INLINE float least_of(const typename Kind::Floats& v) noexcept {
+  if constexpr (requires { Kind::least(v); }) return Kind::least(v);
+  std::array<float, kBlockWidth> lanes;
+  store(v, lanes);
+  for (std::uint32_t half = kBlockWidth / 2; half > 0; half /= 2) {
+    for (std::uint32_t i = 0; i < half; ++i) lanes[i] = lanes[i + half] < lanes[i] ? lanes[i + half] : lanes[i];
+  }
+  return lanes[0];
+}
 
 }  // namespace orchard::runtime::detail

@@ -49,16 +49,6 @@ ORCHARD_INLINE void find_pair_axes(const BallSlabBlock& firsts, const BallSlabBl
   keep_axes<Kind>(BallSlabPair<Kind>(firsts, seconds, &placement, result), margin, result);
 }
 
-template <typename Kind>
-ORCHARD_INLINE float least_of(const typename Kind::Floats& v) noexcept {
-  std::array<float, kBlockWidth> lanes;
-  store(v, lanes);
-  for (std::uint32_t half = kBlockWidth / 2; half > 0; half /= 2) {
-    for (std::uint32_t i = 0; i < half; ++i) lanes[i] = lanes[i + half] < lanes[i] ? lanes[i + half] : lanes[i];
-  }
-  return lanes[0];
-}
-
 // The corner that is least far along u.
 template <typename Kind>
 ORCHARD_INLINE std::array<float, 3> extreme(const typename Eight<Kind>::Vectors (&corner)[3],
@@ -84,7 +74,7 @@ ORCHARD_INLINE std::array<float, 3> extreme(const typename Eight<Kind>::Vectors 
 
 template <typename Kind>
 ORCHARD_INLINE LeafAxis find_leaf_axis(const LeafPair& pair, const Placement& placement,
-                                       const std::array<float, 3>& given, float enough) noexcept {
+                                       const std::array<float, 3>* given, float enough) noexcept {
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
   using Vectors = typename E::Vectors;
@@ -98,8 +88,8 @@ ORCHARD_INLINE LeafAxis find_leaf_axis(const LeafPair& pair, const Placement& pl
   };
   const float length = std::sqrt(dx * dx + dy * dy + dz * dz) + kMinDistance;
   const std::array<float, 3> axes[] = {
-      given, {dx / length, dy / length, dz / length}, facing(p.nx, p.ny, p.nz), facing(q.nx, q.ny, q.nz)};
-  LeafAxis best = {-1, given};
+      {dx / length, dy / length, dz / length}, facing(p.nx, p.ny, p.nz), facing(q.nx, q.ny, q.nz)};
+  LeafAxis best = {-1, axes[0]};
   const auto try_axis = [&](const std::array<float, 3>& u, bool first) ORCHARD_INLINE_LAMBDA {
     const Vectors axis = {E::all(u[0]), E::all(u[1]), E::all(u[2])};
     const auto along = [&](const Vectors& v) ORCHARD_INLINE_LAMBDA -> Floats { return E::dot(axis, v); };
@@ -112,6 +102,11 @@ ORCHARD_INLINE LeafAxis find_leaf_axis(const LeafPair& pair, const Placement& pl
     return better;
   };
   bool first = true;
+  if (given != nullptr) {
+    try_axis(*given, true);
+    first = false;
+    if (best.gap >= enough) return best;
+  }
   for (const std::array<float, 3>& u : axes) {
     try_axis(u, first);
     first = false;
@@ -182,11 +177,11 @@ void ball_slab_pair_axes_scalar(const BallSlabBlock& firsts, const BallSlabBlock
   find_pair_axes<PlainFloats>(firsts, seconds, placement, margin, result);
 }
 
-LeafAxis leaf_axis(const LeafPair& pair, const Placement& placement, const std::array<float, 3>& given,
+LeafAxis leaf_axis(const LeafPair& pair, const Placement& placement, const std::array<float, 3>* given,
                    float enough) noexcept {
   return PerMachine<find_leaf_axis<Widest>, find_leaf_axis<Base>>::call(pair, placement, given, enough);
 }
-LeafAxis leaf_axis_scalar(const LeafPair& pair, const Placement& placement, const std::array<float, 3>& given,
+LeafAxis leaf_axis_scalar(const LeafPair& pair, const Placement& placement, const std::array<float, 3>* given,
                           float enough) noexcept {
   return find_leaf_axis<PlainFloats>(pair, placement, given, enough);
 }

@@ -28,9 +28,9 @@ struct LeafAxis {
   float gap;
   std::array<float, 3> u;
 };
-// The first with a gap of at least `enough`, or the best, of a given direction, the line of their ball slabs' centres
-// and both ball slabs' normals.
-LeafAxis leaf_axis(const LeafPair& pair, const Placement& placement, const std::array<float, 3>& given,
+// The first with a gap of at least `enough`, or the best, of a given direction (none if it is null), the line of their
+// ball slabs' centres, both ball slabs' normals and what follows from the best of these.
+LeafAxis leaf_axis(const LeafPair& pair, const Placement& placement, const std::array<float, 3>* given,
                    float enough) noexcept;
 
 // How the second body has moved: a point x of its own frame by turn * x + by, and two points `d` apart by up to swing *
@@ -50,7 +50,7 @@ void ball_slab_axes_scalar(const BallSlab& single, const BallSlabBlock& lanes, c
                            BallSlabAxes& result) noexcept;
 void ball_slab_pair_axes_scalar(const BallSlabBlock& firsts, const BallSlabBlock& seconds, const Placement& placement,
                                 float margin, BallSlabAxes& result) noexcept;
-LeafAxis leaf_axis_scalar(const LeafPair& pair, const Placement& placement, const std::array<float, 3>& given,
+LeafAxis leaf_axis_scalar(const LeafPair& pair, const Placement& placement, const std::array<float, 3>* given,
                           float enough) noexcept;
 void close_gaps_scalar(const Shift& shift, FrontBlock* blocks, std::uint32_t count, std::uint8_t* open) noexcept;
 float least_gap_scalar(const FrontBlock* blocks, std::uint32_t count) noexcept;

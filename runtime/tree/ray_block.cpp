@@ -39,7 +39,8 @@ ORCHARD_INLINE std::uint32_t find_ball_slabs(const FloatRay& ray, const BallSlab
   const Floats steep = E::larger(E::size(slope), E::all(kMinSlope));
   const Floats rise = Kind::choose(slope < zero, -height, height);
   const Floats low = (rise - h) / steep, high = (rise + h) / steep;
-  const Floats enter = E::larger(middle - half, low - E::size(low) * E::all(kGrazing));
+  // An infinite `low` makes no number of the first: larger() gives the second one then.
+  const Floats enter = E::larger(low - E::size(low) * E::all(kGrazing), middle - half);
   const Floats leave = E::smaller(middle + half, high + E::size(high) * E::all(kGrazing));
   store(enter, entries);
   // Written so that what is not a number, from infinite quotients, counts as met.

@@ -62,6 +62,21 @@ TEST(BallSlabBlock, GivesTheSameBitsWithAndWithoutVectorsAndNeverAGapAboveTheDis
       ASSERT_EQ(std::pair(still.used, still.meeting), std::pair(plain_still.used, plain_still.meeting));
     });
     if (HasFatalFailure()) return;
+    on_every_machine([&] {
+      BallSlabGaps meeting, plain_meeting;
+      meeting_ball_slabs(single, b.ball_slabs[1], &placement, placement.margin, meeting);
+      meeting_ball_slabs_scalar(single, b.ball_slabs[1], &placement, placement.margin, plain_meeting);
+      for (const BallSlabGaps& found : {meeting, plain_meeting}) {
+        ASSERT_EQ(std::pair(found.used, found.meeting), std::pair(plain.used, plain.meeting)) << seed;
+        for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
+          if ((found.meeting >> lane & 1) == 0) continue;
+          ASSERT_EQ(found.gap[lane], plain.gap[lane]) << seed;
+          const BallSlab slab = found.slab(lane), expected = plain.slab(lane);
+          ASSERT_EQ(std::memcmp(&slab, &expected, sizeof slab), 0) << seed;
+        }
+      }
+    });
+    if (HasFatalFailure()) return;
     const auto placed = test::placed_triangles(b, pose), others = test::placed_triangles(a, Pose{});
     for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
       ASSERT_EQ(gaps.used >> lane & 1, b.ball_slabs[1].radius[lane] >= 0 ? 1u : 0u);

@@ -15,6 +15,7 @@ namespace orchard::runtime {
 namespace detail {
 
 struct BlockHits;
+struct BallSlabGaps;
 
 // The second tree's frame in the first one's, in float, and what covers the rounding.
 struct Placement {
@@ -50,8 +51,8 @@ enum class Answer : std::uint8_t {
 };
 
 // Whichever ends first. Work is counted in tests of two spheres or two ball slabs; a test of two triangles counts as
-// kTriangleTestCost. A call with pair_tests > 0 always gets somewhere: it overshoots by less than a row of eight tests
-// or one pair of leaves (kLeafPairTests triangle tests).
+// kTriangleTestCost. A call with pair_tests > 0 always gets somewhere: it overshoots by less than two rows of eight
+// tests or one pair of leaves (kLeafPairTests triangle tests).
 struct Budget {
   std::uint64_t pair_tests = std::numeric_limits<std::uint64_t>::max();
   std::chrono::nanoseconds time = std::chrono::nanoseconds::max();  // steady clock, read once per kClockInterval tests
@@ -209,7 +210,9 @@ class NarrowPhase {
   void give_up_spheres() noexcept;
   void start_exact() noexcept;
   bool refine_ball_slabs(BudgetTracker& tracker) noexcept;
-  void expand(const BallSlabPair& pair, bool second) noexcept;
+  bool find_children(const BallSlabPair& pair, std::uint32_t a, std::uint32_t b, detail::BallSlabGaps& gaps) noexcept;
+  void push_children(const BallSlabPair& pair, bool second, std::uint32_t block,
+                     const detail::BallSlabGaps& gaps) noexcept;
   bool test_triangles(const BallSlabPair& pair) noexcept;
   bool leaves_apart(const BallSlabPair& pair, BudgetTracker& tracker) noexcept;
   bool test_two(std::uint32_t a, std::uint32_t lane, std::uint32_t b, std::uint32_t row) noexcept;
