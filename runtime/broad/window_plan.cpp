@@ -11,7 +11,12 @@ constexpr double kCostOfUpdate = 600, kCostPerBody = 25, kCostPerCell = 12, kCos
 constexpr double kCellPerSpacing = 1.7;  // smaller cells: more of them per body; larger: more bodies in each
 constexpr double kLinesPerVolume = 1.9;  // a ball fills 52 % of its box
 constexpr double kMostLines = 0.5;       // for each body
-constexpr double kWindowGrowth = 1.4;    // between the windows tried
+// Of the distances from the bodies of a sample to the next in it, half of the points of so many dimensions, spread
+// evenly one in each unit of space, have another one nearer than this.
+constexpr std::array<double, 3> kNearest = {0.347, 0.470, 0.549};
+constexpr double kClustered = 0.6;           // that distance, to what it would be were they spread evenly: they are not
+constexpr std::size_t kMinClustered = 2000;  // bodies, of which it is worth looking at
+constexpr double kWindowGrowth = 1.4;        // between the windows tried
 
 // Of the box of a mean body, along each axis.
 Vec3 box_of(const MotionMeans& mean, double duration) noexcept {
@@ -73,8 +78,28 @@ void MotionMeans::refer_to(const Vec3& velocity) noexcept {
   }
 }
 
-Spread spread_of(std::span<const Vec3> sample, std::size_t bodies) {
-  const std::size_t n = std::min(sample.size(), MotionMeans::kPlaces);
+namespace {
+
+// The spacing of most of them, where they lie in clusters.
+double spacing_in_clusters(std::span<const Vec3> sample, std::size_t bodies, std::size_t axes) {
+  std::array<double, MotionMeans::kPlaces> nearest{};
+  for (std::size_t i = 0; i < sample.size(); ++i) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < sample.size(); ++k) {
+      const Vec3 apart = sample[k] - sample[i];
+      least = std::min(least, k == i ? least : dot(apart, apart));
+    }
+    nearest[i] = least;
+  }
+  const auto middle = nearest.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
+  std::nth_element(nearest.begin(), middle, nearest.begin() + static_cast<std::ptrdiff_t>(sample.size()));
+  const double share = static_cast<double>(sample.size()) / static_cast<double>(bodies);
+  return std::sqrt(*middle) / kNearest[axes - 1] * std::pow(share, 1 / static_cast<double>(axes));
+}
+
+// With spacing and thin of bodies spread evenly.
+Spread spread_evenly(std::span<const Vec3> sample, std::size_t bodies) {
+  const std::size_t n = sample.size();
   Spread spread;
   if (n > 0) spread.middle = sample[0];
   if (n < 2) return spread;
@@ -106,6 +131,18 @@ Spread spread_of(std::span<const Vec3> sample, std::size_t bodies) {
   if (spread.spacing <= middle) return spread;
   spread.thin[axes[1]] = true;
   spread.spacing = longest / there;
+  return spread;
+}
+
+}  // namespace
+
+Spread spread_of(std::span<const Vec3> sample, std::size_t bodies) {
+  const auto some = sample.first(std::min(sample.size(), MotionMeans::kPlaces));
+  Spread spread = spread_evenly(some, bodies);
+  if (some.size() < MotionMeans::kPlaces || bodies < kMinClustered) return spread;
+  const auto thin = static_cast<std::size_t>(std::count(spread.thin.begin(), spread.thin.end(), true));
+  const double clustered = spacing_in_clusters(some, bodies, 3 - thin);
+  if (clustered < kClustered * spread.spacing) spread.spacing = clustered;
   return spread;
 }
 
