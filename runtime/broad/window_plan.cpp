@@ -16,6 +16,7 @@ constexpr double kMostLines = 0.5;       // for each body
 constexpr std::array<double, 3> kNearest = {0.347, 0.470, 0.549};
 constexpr double kClustered = 0.6;           // that distance, to what it would be were they spread evenly: they are not
 constexpr std::size_t kMinClustered = 2000;  // bodies, of which it is worth looking at
+constexpr double kWorthLonger = 0.9;         // cost: a long window makes the step at which it ends a slow one
 constexpr double kWindowGrowth = 1.4;        // between the windows tried
 
 // Of the box of a mean body, along each axis.
@@ -173,7 +174,7 @@ WindowPlan plan_window(const MotionMeans& means, std::size_t bodies, const Sprea
     const double cost = (kCostOfUpdate / static_cast<double>(bodies) + kCostPerBody +
                          kCostPerCell * cells * (1 + occupancy / 2) + kCostPerPair * pairs) /
                         lasting(static_cast<double>(window), cancelled);
-    if (cost >= least) return;
+    if (cost >= (window > best.window ? least * kWorthLonger : least)) return;
     least = cost;
     const double lines = std::min(kMostLines, kLinesPerVolume / in_cell) * static_cast<double>(bodies);
     best = {cell, window, static_cast<std::size_t>(lines) + 1, pairs, cell > longest};
