@@ -11,8 +11,8 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr double kMiddle = 0x1p30;          // the origin's quantum
-constexpr double kRoundingQuanta = 0x1p-8;  // covers some roundings of numbers below 2^32
+constexpr double kMiddle = 0x1p30 + kQuanta / 2;  // the origin's quantum: in the middle of a cell
+constexpr double kRoundingQuanta = 0x1p-8;        // covers some roundings of numbers below 2^32
 
 // Four bodies' motions by coordinate.
 template <typename Numbers>

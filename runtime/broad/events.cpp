@@ -126,7 +126,7 @@ bool Events::replan(Step now, BudgetTracker& tracker) {
   if (outcome == Planner::Outcome::interrupted) return false;
   boxes_.begin_counts();
   if (outcome == Planner::Outcome::same) return true;
-  const Vec3* const surveyed = planner_.surveyed_origin();
+  const Vec3* const surveyed = planner_.surveyed_middle();
   boxes_.set_lattice(surveyed != nullptr ? *surveyed : boxes_.lattice_at(now).origin(), planner_.velocity(),
                      planner_.plan().cell_size, 2 * options_.position_slack, options_.time_step, now);
   windows_.plan(planner_.plan().window, boxes_.moves());

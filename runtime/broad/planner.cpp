@@ -40,7 +40,7 @@ Planner::Outcome Planner::replan(Step now, const GridCounts& counts, BudgetTrack
   const double cancelled = tells ? share : cancelled_;
   if (too_crowded) {
     crowding_ *= 2;  // bodies in clusters: what counts is how dense these are
-    spacing_ /= 2;
+    spread_.spacing /= 2;
   } else if (!other_number) {
     if (!outdated(off, cancelled)) {
       if (steps > kStepsCounted) {  // what was long ago counts less and less
@@ -50,15 +50,16 @@ Planner::Outcome Planner::replan(Step now, const GridCounts& counts, BudgetTrack
       return Outcome::same;
     }
     if (means_.sample().size() >= kSmallSample) {  // bodies may have come closer, or gone apart
-      const double before = spacing_;
-      spacing_ = mean_spacing(means_.sample(), n) / crowding_;
-      if (before > 0) off *= std::pow(spacing_ / before, 3);
+      const double before = spread_.spacing;
+      spread_ = spread_of(means_.sample(), n);
+      spread_.spacing /= crowding_;
+      if (before > 0) off *= std::pow(spread_.spacing / before, 3);
     }
   }
   correction_ = std::clamp(correction_ * off, 0.05, 50.0);
   const Vec3 velocity = frame_velocity();
   means_.refer_to(velocity);
-  plan_ = plan_window(means_, n, spacing_, options_.time_step, correction_, options_.window, cancelled);
+  plan_ = plan_window(means_, n, spread_, options_.time_step, correction_, options_.window, cancelled);
   cancelled_ = cancelled;
   if (tells || other_number) {
     planned_at_ = now;
@@ -75,7 +76,7 @@ Vec3 Planner::frame_velocity() const noexcept {
   if (pool_.any_static()) return {};
   const Vec3 velocity = means_.crowd_velocity();
   const double way = std::sqrt(dot(velocity, velocity)) * kLongestWindow * options_.time_step;
-  return way < kFarthestWay * spacing_ ? velocity : Vec3{};
+  return way < kFarthestWay * spread_.spacing ? velocity : Vec3{};
 }
 
 // `off`: pairs seen to pairs predicted. Bounds that are cancelled more often than they were, or less, count as well.
@@ -117,8 +118,7 @@ bool Planner::survey(Step now, BudgetTracker& tracker) {
   }
   surveyed_.clear();
   surveyed_now_ = true;
-  origin_ = centers.empty() ? Vec3{} : centers.front();
-  spacing_ = mean_spacing(centers, n);
+  spread_ = spread_of(centers, n);
   planned_bodies_ = n;
   crowding_ = correction_ = 1;
   plans_ = 0;

@@ -10,9 +10,9 @@ class Planner {
   Planner(BodyPool& pool, const BroadPhaseOptions& options) : pool_(pool), options_(options) {}
 
   const WindowPlan& plan() const noexcept { return plan_; }
-  double spacing() const noexcept { return spacing_; }     // of the bodies, about
-  Vec3 velocity() const noexcept { return means_.frame; }  // of the crowd, if all fly the same way
-  void note_cancelled() noexcept { ++cancellations_; }     // bounds, or a body removed
+  double spacing() const noexcept { return spread_.spacing; }  // of the bodies, about
+  Vec3 velocity() const noexcept { return means_.frame; }      // of the crowd, if all fly the same way
+  void note_cancelled() noexcept { ++cancellations_; }         // bounds, or a body removed
   void note(std::span<const Motion> updated) noexcept { means_.add(updated); }
 
   void note_sample(std::span<const Motion> sampled) noexcept {  // what note() would have taken
@@ -29,7 +29,7 @@ class Planner {
   // `counts`: of the grid since the last call.
   Outcome replan(Step now, const GridCounts& counts, BudgetTracker& tracker);
   // Where the bodies are, if there has been a survey within the last call.
-  const Vec3* surveyed_origin() const noexcept { return surveyed_now_ ? &origin_ : nullptr; }
+  const Vec3* surveyed_middle() const noexcept { return surveyed_now_ ? &spread_.middle : nullptr; }
   void forget_survey() noexcept { surveyed_.clear(); }
   // Of the bodies, so that two steps take the same time if so many are updated ahead.
   double share_ahead() const noexcept;
@@ -44,7 +44,8 @@ class Planner {
   const BroadPhaseOptions& options_;
   WindowPlan plan_;
   MotionMeans means_;
-  double spacing_ = 0, crowding_ = 1, correction_ = 1;
+  Spread spread_;
+  double crowding_ = 1, correction_ = 1;
   std::size_t cancellations_ = 0;  // since the plan was made
   double cancelled_ = 0;           // the share of the bodies at each step that it was made for
   Step planned_at_ = 0;
@@ -53,7 +54,6 @@ class Planner {
   std::vector<Motion> surveyed_;  // the sample of a survey under way
   BodyIndex survey_next_ = 0;
   bool surveyed_now_ = false;
-  Vec3 origin_{};
 };
 
 }  // namespace orchard::runtime::detail

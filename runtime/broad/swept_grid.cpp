@@ -139,31 +139,43 @@ ORCHARD_INLINE std::uint64_t met_among(const CellLine& line, std::uint64_t query
 
 }  // namespace
 
+// What is found waits on the stack for room in the vector.
 struct SweptGrid::Insertion {
+  static constexpr std::size_t kFound = 256;
+
   std::span<const QuantumBox> boxes;
   std::vector<BodyPair>& pairs;
   GridCounts& counts;
+  std::array<BodyPair, kFound> found;
+  std::size_t count = 0;
+
+  Insertion(std::span<const QuantumBox> all, std::vector<BodyPair>& to, GridCounts& of) noexcept
+      : boxes(all), pairs(to), counts(of) {}
+  void hand_over() {
+    pairs.insert(pairs.end(), found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
+    counts.pairs += count;
+    count = 0;
+  }
 };
 
 // Of the entries hit, those whose box really meets the body's, and in this cell first. Without branches that depend on
 // the boxes: in dense worlds nobody can tell.
 template <int kSpread>
-void SweptGrid::report(const Insertion& insertion, const CellLine& line, std::uint64_t hits, BodyIndex body,
-                       Steps steps) {
+void SweptGrid::report(Insertion& insertion, const CellLine& line, std::uint64_t hits, BodyIndex body, Steps steps) {
   const BoxInCell box(insertion.boxes[body], steps);
-  std::array<BodyPair, 8> found;
-  std::size_t count = 0;
+  if (insertion.count + line.entries.size() > Insertion::kFound) insertion.hand_over();
+  std::size_t count = insertion.count;
   for (; hits != 0; hits &= hits - 1) {
     const std::uint64_t entry = line.entries[static_cast<std::size_t>(std::countr_zero(hits)) / kSpread];
     const auto other = static_cast<BodyIndex>(entry >> kIdShift);
-    found[count] = {std::min(body, other), std::max(body, other)};
+    insertion.found[count] = {std::min(body, other), std::max(body, other)};
     count += box.meets_here(insertion.boxes[other]);
   }
-  if (count > 0) insertion.pairs.insert(insertion.pairs.end(), found.begin(), found.begin() + count);
+  insertion.count = count;
 }
 
 template <typename Kind>
-ORCHARD_INLINE void SweptGrid::insert_in_line(const Insertion& insertion, const Visit& visit, std::uint64_t query) {
+ORCHARD_INLINE void SweptGrid::insert_in_line(Insertion& insertion, const Visit& visit, std::uint64_t query) {
   // Nothing is written before all seven entries have been read together: that would have to wait for the small writes.
   CellLine& first = lines_[visit.line];
   const auto body = static_cast<BodyIndex>(visit.entry >> kIdShift);
@@ -223,7 +235,7 @@ ORCHARD_INLINE void SweptGrid::encode(Batch& batch, std::span<const BodyIndex> b
 }
 
 template <typename Kind>
-ORCHARD_INLINE void SweptGrid::flush(const Insertion& insertion, Queue& queue) {
+ORCHARD_INLINE void SweptGrid::flush(Insertion& insertion, Queue& queue) {
   for (std::size_t k = 0; k < queue.visits_waiting_; ++k) {
     insert_in_line<Kind>(insertion, queue.visits_[k], query_from(queue.visits_[k].entry));
   }
@@ -235,7 +247,7 @@ ORCHARD_INLINE void SweptGrid::flush(const Insertion& insertion, Queue& queue) {
 // The batch that waited: first every body in its first cell, then the visits left from the batch before; bodies that
 // take several cells leave visits to the others.
 template <typename Kind>
-ORCHARD_INLINE void SweptGrid::insert_waiting(const Insertion& insertion, Queue& queue) {
+ORCHARD_INLINE void SweptGrid::insert_waiting(Insertion& insertion, Queue& queue) {
   const Batch& batch = queue.batches_[queue.current_];
   std::array<std::uint32_t, kBlock> rest;
   std::size_t rests = 0;
@@ -303,7 +315,7 @@ SweptGrid::Visit* SweptGrid::many_visits_of(BodyIndex body, const QuantumBox& bo
 
 // block null: the last ones get in.
 template <typename Kind>
-ORCHARD_INLINE void SweptGrid::advance(const Insertion& insertion, Queue& queue, std::span<const BodyIndex> bodies,
+ORCHARD_INLINE void SweptGrid::advance(Insertion& insertion, Queue& queue, std::span<const BodyIndex> bodies,
                                        const BoxBlock* block) {
   Batch& next = queue.batches_[1 - queue.current_];
   if (block != nullptr) {
@@ -343,14 +355,13 @@ void SweptGrid::with_best_compare(const Work& work) {
 
 void SweptGrid::run(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock* block,
                     std::span<const QuantumBox> boxes, bool vectors, std::vector<BodyPair>& pairs) {
-  const std::size_t before = pairs.size();
-  const Insertion insertion{boxes, pairs, counts_};
+  Insertion insertion(boxes, pairs, counts_);
   if (vectors) {
     with_best_compare([&]<typename Kind>() ORCHARD_INLINE_LAMBDA { advance<Kind>(insertion, queue, bodies, block); });
   } else {
     advance<PlainCompare>(insertion, queue, bodies, block);
   }
-  counts_.pairs += pairs.size() - before;
+  insertion.hand_over();
 }
 
 void SweptGrid::insert(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock& block,
@@ -382,7 +393,7 @@ void SweptGrid::scatter(std::span<const BodyIndex> bodies, const BoxBlock& block
 }
 
 template <typename Kind>
-ORCHARD_INLINE void SweptGrid::insert_visits(const Insertion& insertion, std::span<const Visit> visits) {
+ORCHARD_INLINE void SweptGrid::insert_visits(Insertion& insertion, std::span<const Visit> visits) {
   constexpr std::size_t kAhead = 8;
   for (std::size_t k = 0; k < visits.size(); ++k) {
     if (k + kAhead < visits.size()) prefetch(&lines_[visits[k + kAhead].line]);
@@ -395,14 +406,13 @@ ORCHARD_INLINE void SweptGrid::insert_visits(const Insertion& insertion, std::sp
 
 void SweptGrid::insert_part(std::span<const Visit> visits, std::span<const QuantumBox> boxes, bool vectors,
                             std::vector<BodyPair>& pairs, GridCounts& counts) {
-  const std::size_t before = pairs.size();
-  const Insertion insertion{boxes, pairs, counts};
+  Insertion insertion(boxes, pairs, counts);
   if (vectors) {
     with_best_compare([&]<typename Kind>() ORCHARD_INLINE_LAMBDA { insert_visits<Kind>(insertion, visits); });
   } else {
     insert_visits<PlainCompare>(insertion, visits);
   }
-  counts.pairs += pairs.size() - before;
+  insertion.hand_over();
 }
 
 void SweptGrid::count(const GridCounts& counts) noexcept {

@@ -94,26 +94,26 @@ class SweptGrid {
   }
   void encode(Batch& batch, std::span<const BodyIndex> bodies, const BoxBlock& block) const noexcept;
   template <typename Kind>
-  void advance(const Insertion& insertion, Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock* block);
+  void advance(Insertion& insertion, Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock* block);
   template <typename Kind>
-  void insert_waiting(const Insertion& insertion, Queue& queue);
+  void insert_waiting(Insertion& insertion, Queue& queue);
   Visit* visits_of(const Batch& batch, std::uint32_t i, std::span<const QuantumBox> boxes,
                    Visit* visits) const noexcept;
   Visit* many_visits_of(BodyIndex body, const QuantumBox& box, Visit* visits) const noexcept;
   template <typename Kind>
-  void flush(const Insertion& insertion, Queue& queue);
+  void flush(Insertion& insertion, Queue& queue);
   template <typename Work>
   static void with_best_compare(const Work& work);
   void run(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock* block, std::span<const QuantumBox> boxes,
            bool vectors, std::vector<BodyPair>& pairs);
   template <typename Kind>
-  void insert_in_line(const Insertion& insertion, const Visit& visit, std::uint64_t query);
+  void insert_in_line(Insertion& insertion, const Visit& visit, std::uint64_t query);
   template <int kSpread>
-  void report(const Insertion& insertion, const CellLine& line, std::uint64_t hits, BodyIndex body, Steps steps);
+  void report(Insertion& insertion, const CellLine& line, std::uint64_t hits, BodyIndex body, Steps steps);
   void scatter_block(std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const QuantumBox> boxes,
                      VisitsByPart& visits) const;
   template <typename Kind>
-  void insert_visits(const Insertion& insertion, std::span<const Visit> visits);
+  void insert_visits(Insertion& insertion, std::span<const Visit> visits);
   struct Overflow {
     std::vector<CellLine> lines;
     std::uint32_t free = 0;  // 1 + index

@@ -10,11 +10,21 @@ namespace {
 constexpr double kCostOfUpdate = 600, kCostPerBody = 25, kCostPerCell = 12, kCostPerPair = 120;
 constexpr double kCellPerSpacing = 1.7;  // smaller cells: more of them per body; larger: more bodies in each
 constexpr double kLinesPerVolume = 1.9;  // a ball fills 52 % of its box
-constexpr double kWindowGrowth = 1.4;    // between the windows tried
+constexpr double kMostLines = 0.5;       // for each body
+// Of the distances from the bodies of a sample to the next in it, half of the points of so many dimensions, spread
+// evenly one in each unit of space, have another one nearer than this.
+constexpr std::array<double, 3> kNearest = {0.347, 0.470, 0.549};
+constexpr double kClustered = 0.6;           // that distance, to what it would be were they spread evenly: they are not
+constexpr std::size_t kMinClustered = 2000;  // bodies, of which it is worth looking at
+constexpr double kWorthLonger = 0.9;         // cost: a long window makes the step at which it ends a slow one
+constexpr double kWindowGrowth = 1.4;        // between the windows tried
 
-double extent(const MotionMeans& mean, double duration) noexcept {
+// Of the box of a mean body, along each axis.
+Vec3 box_of(const MotionMeans& mean, double duration) noexcept {
   const double spread = duration * (mean.drift + duration * mean.acceleration / 2);
-  return 2 * mean.radius + spread + std::max(spread, mean.speed * duration);
+  Vec3 box;
+  for (std::size_t d = 0; d < 3; ++d) box[d] = 2 * mean.radius + spread + std::max(spread, mean.speed[d] * duration);
+  return box;
 }
 
 double speed_per_axis(const Vec3& v) noexcept { return (std::fabs(v[0]) + std::fabs(v[1]) + std::fabs(v[2])) / 3; }
@@ -33,7 +43,7 @@ void MotionMeans::add(const Motion& m) noexcept {
   if (place < kPlaces) places[place] = m.position, velocities[place] = m.velocity;
   count += 1;
   radius += m.radius;
-  speed += speed_per_axis(m.velocity - frame);
+  for (std::size_t d = 0; d < 3; ++d) speed[d] += std::fabs(m.velocity[d] - frame[d]);
   drift += m.drift;
   acceleration += m.acceleration;
 }
@@ -61,13 +71,39 @@ Vec3 MotionMeans::crowd_velocity() const noexcept {
 
 void MotionMeans::refer_to(const Vec3& velocity) noexcept {
   if (velocity == frame) return;
-  speed = count * mean_speed(velocity);
   frame = velocity;
+  speed = {};
+  const double each = count / static_cast<double>(std::max<std::size_t>(1, sampled()));
+  for (std::size_t i = 0; i < sampled(); ++i) {
+    for (std::size_t d = 0; d < 3; ++d) speed[d] += each * std::fabs(velocities[i][d] - velocity[d]);
+  }
 }
 
-double mean_spacing(std::span<const Vec3> sample, std::size_t bodies) {
-  const std::size_t n = std::min(sample.size(), MotionMeans::kPlaces);
-  if (n < 2) return 0;
+namespace {
+
+// The spacing of most of them, where they lie in clusters.
+double spacing_in_clusters(std::span<const Vec3> sample, std::size_t bodies, std::size_t axes) {
+  std::array<double, MotionMeans::kPlaces> nearest{};
+  for (std::size_t i = 0; i < sample.size(); ++i) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < sample.size(); ++k) {
+      const Vec3 apart = sample[k] - sample[i];
+      least = std::min(least, k == i ? least : dot(apart, apart));
+    }
+    nearest[i] = least;
+  }
+  const auto middle = nearest.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
+  std::nth_element(nearest.begin(), middle, nearest.begin() + static_cast<std::ptrdiff_t>(sample.size()));
+  const double share = static_cast<double>(sample.size()) / static_cast<double>(bodies);
+  return std::sqrt(*middle) / kNearest[axes - 1] * std::pow(share, 1 / static_cast<double>(axes));
+}
+
+// With spacing and thin of bodies spread evenly.
+Spread spread_evenly(std::span<const Vec3> sample, std::size_t bodies) {
+  const std::size_t n = sample.size();
+  Spread spread;
+  if (n > 0) spread.middle = sample[0];
+  if (n < 2) return spread;
   Vec3 lower{}, upper{};
   std::array<double, MotionMeans::kPlaces> sorted;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -75,6 +111,8 @@ double mean_spacing(std::span<const Vec3> sample, std::size_t bodies) {
     std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n));
     lower[axis] = sorted[n / 8];
     upper[axis] = sorted[n - 1 - n / 8];
+    spread.extent[axis] = sorted[n - 1] - sorted[0];
+    spread.middle[axis] = (sorted[0] + sorted[n - 1]) / 2;
   }
   double inside = 0;
   for (const Vec3& p : sample.first(n)) {
@@ -83,37 +121,63 @@ double mean_spacing(std::span<const Vec3> sample, std::size_t bodies) {
     inside += in;
   }
   const double there = std::max(inside, 1.0) / static_cast<double>(n) * static_cast<double>(bodies);
-  Vec3 extent = upper - lower;
-  std::sort(extent.begin(), extent.end());
-  // An axis along which the world is thinner than the spacing does not set bodies apart.
-  const double in_space = std::cbrt(extent[0] * extent[1] * extent[2] / there);
-  if (in_space <= extent[0]) return in_space;
-  const double in_plane = std::sqrt(extent[1] * extent[2] / there);
-  return in_plane <= extent[1] ? in_plane : extent[2] / there;
+  std::array<std::size_t, 3> axes = {0, 1, 2};
+  const Vec3 extent = upper - lower;
+  std::sort(axes.begin(), axes.end(), [&](std::size_t a, std::size_t b) { return extent[a] < extent[b]; });
+  const double shortest = extent[axes[0]], middle = extent[axes[1]], longest = extent[axes[2]];
+  spread.spacing = std::cbrt(shortest * middle * longest / there);
+  if (spread.spacing <= shortest) return spread;
+  spread.thin[axes[0]] = true;
+  spread.spacing = std::sqrt(middle * longest / there);
+  if (spread.spacing <= middle) return spread;
+  spread.thin[axes[1]] = true;
+  spread.spacing = longest / there;
+  return spread;
 }
 
-WindowPlan plan_window(const MotionMeans& means, std::size_t bodies, double spacing, double time_step,
+}  // namespace
+
+Spread spread_of(std::span<const Vec3> sample, std::size_t bodies) {
+  const auto some = sample.first(std::min(sample.size(), MotionMeans::kPlaces));
+  Spread spread = spread_evenly(some, bodies);
+  if (some.size() < MotionMeans::kPlaces || bodies < kMinClustered) return spread;
+  const auto thin = static_cast<std::size_t>(std::count(spread.thin.begin(), spread.thin.end(), true));
+  const double clustered = spacing_in_clusters(some, bodies, 3 - thin);
+  if (clustered < kClustered * spread.spacing) spread.spacing = clustered;
+  return spread;
+}
+
+WindowPlan plan_window(const MotionMeans& means, std::size_t bodies, const Spread& spread, double time_step,
                        double correction, Step fixed_window, double cancelled) noexcept {
   MotionMeans mean = means;
   const double n = std::max(1.0, means.count);
-  for (double* sum : {&mean.radius, &mean.speed, &mean.drift, &mean.acceleration}) *sum /= n;
+  for (double* sum : {&mean.radius, &mean.drift, &mean.acceleration}) *sum /= n;
+  for (double& sum : mean.speed) sum /= n;
+  double spacing = spread.spacing;
   if (!(spacing > 0) || !std::isfinite(spacing)) spacing = std::max(4 * mean.radius, 1e-300);
 
   WindowPlan best;
   double least = std::numeric_limits<double>::infinity();
   const auto consider = [&](Step window) {
-    const double length = extent(mean, static_cast<double>(window - 1) * time_step);
-    const double cell = std::max(kCellPerSpacing * spacing, length);
-    const double along = 1 + length / cell, cells = along * along * along;
-    const double share = cell / spacing, occupancy = cells * share * share * share / 7;
-    const double reach = 2 * length / spacing, pairs = correction * reach * reach * reach / 2;
+    const Vec3 box = box_of(mean, static_cast<double>(window - 1) * time_step);
+    const double longest = std::max({box[0], box[1], box[2]});
+    const double cell = std::max(kCellPerSpacing * spacing, longest), share = cell / spacing;
+    double cells = 1, pairs = correction / 2, in_cell = 1;  // of a body; bodies whose box begins in a cell
+    for (std::size_t d = 0; d < 3; ++d) {
+      // A cell's middle is in the world's: what is thin fits in there.
+      if (!spread.thin[d] || spread.extent[d] + box[d] > cell) cells *= 1 + box[d] / cell;
+      if (spread.thin[d]) continue;
+      pairs *= 2 * box[d] / spacing;
+      in_cell *= share;
+    }
+    const double occupancy = cells * in_cell / 7;
     const double cost = (kCostOfUpdate / static_cast<double>(bodies) + kCostPerBody +
                          kCostPerCell * cells * (1 + occupancy / 2) + kCostPerPair * pairs) /
                         lasting(static_cast<double>(window), cancelled);
-    if (cost >= least) return;
+    if (cost >= (window > best.window ? least * kWorthLonger : least)) return;
     least = cost;
-    const double lines = std::min(0.5, kLinesPerVolume / (share * share * share)) * static_cast<double>(bodies);
-    best = {cell, window, static_cast<std::size_t>(lines) + 1, pairs, cell > length};
+    const double lines = std::min(kMostLines, kLinesPerVolume / in_cell) * static_cast<double>(bodies);
+    best = {cell, window, static_cast<std::size_t>(lines) + 1, pairs, cell > longest};
   };
   if (fixed_window > 0) {
     consider(std::min(fixed_window, kLongestWindow));

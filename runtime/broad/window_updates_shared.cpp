@@ -7,11 +7,12 @@
 // Of a wave each job first makes the boxes of a chunk, and notes which lines of the grid they go to; then each puts
 // those of all chunks into one part of the lines, and tests what it finds near. How that is cut depends on the number
 // of bodies alone, and everything that has an order is put together in that of the chunks, or of the parts: so nothing
-// depends on the executor. One thread gains by it, too: a part of the lines stays in the cache.
+// depends on the executor. One thread gains by it, too, where all lines do not fit into its cache and a part of them
+// does.
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr std::size_t kMinBodies = 4096;   // that are worth it
+constexpr std::size_t kMinBodies = 16384;  // that are worth it
 constexpr std::size_t kChunks = 8;         // in a wave
 constexpr std::size_t kMaxChunk = 4096;    // bodies
 constexpr std::size_t kSampledEvery = 64;  // of which one says how bodies move: there are enough
