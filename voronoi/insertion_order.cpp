@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "large_pages.h"
 #include "orchard/geometry/random.h"
 
 namespace orchard::detail {
@@ -62,7 +63,9 @@ struct Item {
 // Stable, by the low bits of the key.
 void radix_sort(std::vector<Item>& items, unsigned bits) {
   constexpr unsigned kDigit = 10;
-  std::vector<Item> other(items.size());
+  std::vector<Item> other;
+  reserve_large(other, items.size());
+  other.resize(items.size());
   std::vector<std::size_t> start(1u << kDigit);
   for (unsigned shift = 0; shift < bits; shift += kDigit) {
     std::fill(start.begin(), start.end(), 0);
@@ -98,7 +101,9 @@ std::vector<Index> insertion_order(std::span<const Point> points, const Box& box
   unsigned rounds = 0;
   for (std::size_t left = points.size(); left > kMinRound && rounds < kMaxRound; left >>= kRoundShift) ++rounds;
 
-  std::vector<Item> items(points.size());
+  std::vector<Item> items;
+  reserve_large(items, points.size());
+  items.resize(points.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, items.size(), kBatch), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       // A point stays in the last round but for one time in eight, and so on downwards.

@@ -141,10 +141,8 @@ class Workspace {
     state_.clear();
     free_vertices.clear();
   }
-  void reserve(std::size_t count) {
-    vertices.reserve(count);
-    state_.reserve(count);
-  }
+  // Room for so many vertices, of which so many are likely to be used.
+  void reserve(std::size_t count, std::size_t used);
 
  private:
   Sign side_of_plane(Index v, const Point& q) const;
