@@ -65,8 +65,13 @@ bool Cavity::delete_nearer_in(std::size_t first) {
   for (std::size_t i = first; i < deleted_.size(); ++i) {
     deleted_.ensure_room();
     seen_.ensure_room();
-    const std::array<Index, 4> neighbors = workspace_.vertices[deleted_.items()[i]].neighbors;
-    for (const Index u : neighbors) __builtin_prefetch(&workspace_.vertices[u]);
+    const VoronoiVertex& vertex = workspace_.vertices[deleted_.items()[i]];
+    const std::array<Index, 4> neighbors = vertex.neighbors;
+    for (const Index u : neighbors) workspace_.prefetch(u);
+    for (const Index p : vertex.forming_points) {
+      __builtin_prefetch(workspace_.points.data() + p);
+      __builtin_prefetch(&known_local(p));
+    }
     if constexpr (!kWhole) {
       left_territory_ = !(territory_.owns(neighbors[0]) && territory_.owns(neighbors[1]) &&
                           territory_.owns(neighbors[2]) && territory_.owns(neighbors[3]));
