@@ -65,10 +65,10 @@ bool Cavity::delete_nearer_in(std::size_t first) {
   for (std::size_t i = first; i < deleted_.size(); ++i) {
     deleted_.ensure_room();
     seen_.ensure_room();
-    const VoronoiVertex& vertex = workspace_.vertices[deleted_.items()[i]];
-    const std::array<Index, 4> neighbors = vertex.neighbors;
-    for (const Index u : neighbors) workspace_.prefetch(u);
-    for (const Index p : vertex.forming_points) {
+    const std::array<Index, 4> neighbors = workspace_.vertices[deleted_.items()[i]].neighbors;
+    const VoronoiVertex& ahead = workspace_.vertices[deleted_.items()[std::min(i + 4, deleted_.size() - 1)]];
+    for (const Index u : ahead.neighbors) workspace_.prefetch(u);
+    for (const Index p : ahead.forming_points) {
       __builtin_prefetch(workspace_.points.data() + p);
       __builtin_prefetch(&known_local(p));
     }
