@@ -15,7 +15,7 @@ constexpr std::uint32_t kFacetBits = 7;
 constexpr std::uint32_t kFacetMask = (1u << kFacetBits) - 1;
 
 // How many deleted vertices ahead of the one whose neighbours are looked at memory is fetched into the cache.
-constexpr std::size_t kAhead = 4;
+constexpr std::size_t kFetchAhead = 4;
 
 }  // namespace
 
@@ -70,7 +70,7 @@ bool Cavity::delete_nearer_in(std::size_t first) {
     deleted_.ensure_room();
     seen_.ensure_room();
     const std::array<Index, 4> neighbors = workspace_.vertices[deleted_.items()[i]].neighbors;
-    fetch_around(deleted_.items()[std::min(i + kAhead, deleted_.size() - 1)]);
+    fetch_around(deleted_.items()[std::min(i + kFetchAhead, deleted_.size() - 1)]);
     if constexpr (!kWhole) {
       left_territory_ = !(territory_.owns(neighbors[0]) && territory_.owns(neighbors[1]) &&
                           territory_.owns(neighbors[2]) && territory_.owns(neighbors[3]));
