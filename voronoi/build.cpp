@@ -12,6 +12,7 @@
 #include "coincident.h"
 #include "frame.h"
 #include "insertion_order.h"
+#include "large_pages.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/tolerance.h"
 #include "parallel_insertion.h"
@@ -122,22 +123,26 @@ enum class Outcome { done, flat, failed };
 // twice as many on surfaces, or a little more, and up to four times on curves.
 class Room {
  public:
+  // Of what is expected, so much may be used: regions have some room beyond what they need.
+  static constexpr double kSpare = 1.0625;
+
   explicit Room(Workspace& workspace) : workspace_(workspace) {}
 
   // To be called before each insertion with the number of points so far.
   void make(std::size_t inserted) {
     const std::size_t count = workspace_.points.size();
-    if (inserted == 0) workspace_.reserve(2 * count + 64);
+    if (inserted == 0) workspace_.reserve(2 * count + 64, count * 5 / 8);
     if (inserted == count / 64) sample_ = vertices();
     if (inserted == count / 8) {
       const double expected = vertices() * growth(8);
-      workspace_.reserve(std::max(8 * count, static_cast<std::size_t>(1.375 * expected)) + 64);
+      workspace_.reserve(std::max(8 * count, static_cast<std::size_t>(1.375 * expected)) + 64,
+                         static_cast<std::size_t>(kSpare * expected));
       sample_ = vertices();
     }
     if (inserted == count / 2) {
       const double expected = vertices() * std::sqrt(growth(4));
       if (1.05 * expected > static_cast<double>(workspace_.vertices.capacity()))
-        workspace_.reserve(static_cast<std::size_t>(1.25 * expected));
+        workspace_.reserve(static_cast<std::size_t>(1.25 * expected), static_cast<std::size_t>(kSpare * expected));
     }
   }
 
@@ -256,6 +261,7 @@ VoronoiBuild build_voronoi(std::span<const Point> points, Search search, std::st
     Workspace workspace;
     set_scale(workspace, frame, box);
     workspace.set_exact(exact || (search == Search::highest_first && workspace.too_noisy()));
+    reserve_large(workspace.points, original_of.size());
     workspace.points.resize(original_of.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, original_of.size(), kSlice), [&](const auto& range) {
       for (std::size_t i = range.begin(); i < range.end(); ++i)

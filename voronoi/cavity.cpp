@@ -14,12 +14,15 @@ constexpr Index kFew = 64;
 constexpr std::uint32_t kFacetBits = 7;
 constexpr std::uint32_t kFacetMask = (1u << kFacetBits) - 1;
 
+// How many deleted vertices ahead of the one whose neighbours are looked at memory is fetched into the cache.
+constexpr std::size_t kFetchAhead = 4;
+
 }  // namespace
 
 void Cavity::end() {
   for (Index v : deleted_.items()) workspace_.set_mark(v, Mark::unseen);
   for (Index v : seen_.items()) workspace_.set_mark(v, Mark::unseen);
-  for (const LocalPoint& local : local_points_) known_local(local.point) = kNone;
+  for (const Index point : local_points_.items()) known_local(point) = kNone;
   deleted_.clear();
   seen_.clear();
   facets_.clear();
@@ -35,12 +38,13 @@ void Cavity::begin(Index new_point) {
   if (local_of_.size() != workspace_.points.size() + 1) local_of_.assign(workspace_.points.size() + 1, kNone);
 }
 
-Index Cavity::make_local(Index point) {
-  const auto fresh = static_cast<Index>(local_points_.size());
-  known_local(point) = fresh;
-  local_points_.push_back(
-      {point == kInfinitePoint ? LengthedVector() : LengthedVector(workspace_.points[point] - position_), point});
-  return fresh;
+void Cavity::measure_local_points() {
+  from_new_.resize(local_points_.size());
+  for (std::size_t i = 0; i < from_new_.size(); ++i) {
+    const Index point = local_points_.items()[i];
+    from_new_[i] =
+        point == kInfinitePoint ? LengthedVector() : LengthedVector(workspace_.points[point] - position_);
+  }
 }
 
 // The time goes into mispredicted branches here if one is not careful: whether a neighbour has been seen, and on which
@@ -66,7 +70,7 @@ bool Cavity::delete_nearer_in(std::size_t first) {
     deleted_.ensure_room();
     seen_.ensure_room();
     const std::array<Index, 4> neighbors = workspace_.vertices[deleted_.items()[i]].neighbors;
-    for (const Index u : neighbors) __builtin_prefetch(&workspace_.vertices[u]);
+    fetch_around(deleted_.items()[std::min(i + kFetchAhead, deleted_.size() - 1)]);
     if constexpr (!kWhole) {
       left_territory_ = !(territory_.owns(neighbors[0]) && territory_.owns(neighbors[1]) &&
                           territory_.owns(neighbors[2]) && territory_.owns(neighbors[3]));
@@ -87,6 +91,16 @@ bool Cavity::delete_nearer_in(std::size_t first) {
     }
   }
   return certain;
+}
+
+// What is asked for once this vertex is looked at: its neighbours now, its forming points by note_facets().
+void Cavity::fetch_around(Index v) const {
+  const VoronoiVertex& vertex = workspace_.vertices[v];
+  for (const Index u : vertex.neighbors) workspace_.prefetch(u);
+  for (const Index p : vertex.forming_points) {
+    __builtin_prefetch(workspace_.points.data() + p);
+    __builtin_prefetch(local_of_.data() + static_cast<Index>(p + 1));
+  }
 }
 
 bool Cavity::widen() {
@@ -115,6 +129,7 @@ void Cavity::note_facets() {
     const std::size_t back = index_of(workspace_.vertices[outside].neighbors, inside);
     const auto& [a, b, c] = kOthers[slot];
     const auto& corner = deleted.forming_points;
+    local_points_.ensure_room();
     facets_[f] = {inside,
                   outside,
                   {local(corner[a]), local(corner[b]), local(corner[c])},
@@ -124,6 +139,7 @@ void Cavity::note_facets() {
                   false,
                   Placing::failed};
   }
+  measure_local_points();
 }
 
 // Deleting a tetrahedron v next to a ball-shaped cavity D keeps it a ball iff v touches D in a disk: in one facet and
@@ -151,6 +167,7 @@ bool Cavity::legal(Index v) const {
 
 void Cavity::delete_legally(Index v) {
   delete_vertex(v);
+  local_points_.ensure_room();
   for (Index point : workspace_.vertices[v].forming_points) local(point);
   const auto count = static_cast<Index>(local_points_.size());
   if (count <= edge_limit_) return note_edges(v);
@@ -190,9 +207,9 @@ bool Cavity::place_vertices() {
     vertex.forming_points = workspace_.vertices[facet.inside].forming_points;
     const bool at_infinity = vertex.forming_points[kOthers[facet.slot][2]] == kInfinitePoint;
     vertex.forming_points[facet.slot] = new_point_;
-    const LengthedVector& a = local_points_[facet.local[0]].from_new;
-    const LengthedVector& b = local_points_[facet.local[1]].from_new;
-    const LengthedVector& c = local_points_[facet.local[2]].from_new;
+    const LengthedVector& a = from_new_[facet.local[0]];
+    const LengthedVector& b = from_new_[facet.local[1]];
+    const LengthedVector& c = from_new_[facet.local[2]];
     facet.placing = at_infinity ? workspace_.place_at_infinity(vertex, facet.error_class, a, b)
                                 : workspace_.place(vertex, facet.error_class, position_, a, b, c);
     facet.visible = facet.placing != Placing::failed || side_of_facet(facet.inside, facet.slot) == Sign::positive;
@@ -316,9 +333,9 @@ bool Cavity::doubts_are_harmless() const {
     const double power = workspace_.power(facet.outside, position_);
     if (!(power > 0) || facet.placing == Placing::shared) continue;  // at infinity neither
     if (workspace_.harmless(power, fresh_[f], facet.error_class)) continue;
-    const Vector& a = local_points_[facet.local[0]].from_new.vector;
-    const Vector& b = local_points_[facet.local[1]].from_new.vector;
-    const Vector& c = local_points_[facet.local[2]].from_new.vector;
+    const Vector& a = from_new_[facet.local[0]].vector;
+    const Vector& b = from_new_[facet.local[1]].vector;
+    const Vector& c = from_new_[facet.local[2]].vector;
     const double height = a.dot(b.cross(c)) / (b - a).cross(c - a).norm();
     if (!(power <= 2 * workspace_.harmless_intrusion() * height)) return false;
   }

@@ -121,11 +121,6 @@ class Cavity {
   std::span<const Index> created() const { return slots_; }
 
  private:
-  struct LocalPoint {
-    LengthedVector from_new;
-    Index point;
-  };
-
   // An edge of one facet that waits for the other one, in a list of those that wait at the same corner.
   struct Link {
     Index far, next, facet;  // the edge's other corner; the facet is kNone once the other one has come
@@ -133,17 +128,22 @@ class Cavity {
     bool outward;            // whether the facet runs along the edge to its other corner
   };
 
+  // The number of a local point, a new one if it has none yet; without branches, after local_points_.ensure_room().
   Index local(Index point) {
-    const Index known = known_local(point);
-    return known != kNone ? known : make_local(point);
+    Index& known = known_local(point);
+    const bool fresh = known == kNone;
+    known = fresh ? static_cast<Index>(local_points_.size()) : known;
+    local_points_.push_if(point, fresh);
+    return known;
   }
-  Index make_local(Index point);
+  void measure_local_points();
   bool delete_nearer_around(std::size_t first);
   template <bool kWhole>
   bool delete_nearer_in(std::size_t first);
   // The infinite point, being the highest number, wraps around to the first place.
   Index& known_local(Index point) { return local_of_[static_cast<Index>(point + 1)]; }
   Index known_local(Index point) const { return local_of_[static_cast<Index>(point + 1)]; }
+  void fetch_around(Index v) const;
   void choose_slots();
   bool link_few();
   bool link_many();
@@ -156,11 +156,12 @@ class Cavity {
   Point position_ = Point::Zero();
   Placing worst_ = Placing::good;
   List deleted_, seen_, boundary_;  // boundary: 4 * deleted vertex + the neighbour across
+  List local_points_;               // the points of the boundary, the one at infinity included
   std::vector<Index> slots_, stack_;
   std::vector<Facet> facets_;
   std::vector<VoronoiVertex> fresh_;      // of each facet; its new neighbours are facets until replace()
   std::vector<std::uint8_t> reached_;     // by facet
-  std::vector<LocalPoint> local_points_;  // the points of the boundary, the one at infinity included
+  std::vector<LengthedVector> from_new_;  // from the new point to each local one
   std::vector<Index> local_of_;           // of the infinite point and each other: into local_points_ or kNone
   EdgeTable edges_;
   std::vector<Index> degrees_, waiting_;  // by local point

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "large_pages.h"
 #include "orchard/geometry/random.h"
 
 namespace orchard::detail {
@@ -22,25 +23,24 @@ constexpr std::size_t kCrowded = 16;      // points of one round in one cell tha
 constexpr std::size_t kBatch = 1u << 13;  // points that a thread looks at at once
 constexpr int kFinest = 4;                // grids within grids: the last one resolves a double
 
-// The position on a Hilbert curve of a cell of the 2^kBits grid, by Skilling's transform (2004).
+// The position on a Hilbert curve of a cell of the 2^kBits grid, by Skilling's transform (2004). Without branches: the
+// bits are as good as random.
 std::uint64_t hilbert(std::array<std::uint32_t, 3> x) {
   for (std::uint32_t bit = 1u << (kBits - 1); bit > 1; bit >>= 1) {
     const std::uint32_t low = bit - 1;
     for (std::uint32_t& coordinate : x) {
-      if (coordinate & bit) {
-        x[0] ^= low;
-      } else {
-        const std::uint32_t swap = (x[0] ^ coordinate) & low;
-        x[0] ^= swap;
-        coordinate ^= swap;
-      }
+      // Where it is set, the low bits of the first coordinate are turned over; else they are swapped with its own.
+      const std::uint32_t set = 0u - std::uint32_t{(coordinate & bit) != 0};
+      const std::uint32_t swap = (x[0] ^ coordinate) & low & ~set;
+      x[0] ^= swap | (low & set);
+      coordinate ^= swap;
     }
   }
   x[1] ^= x[0];
   x[2] ^= x[1];
   std::uint32_t flip = 0;
   for (std::uint32_t bit = 1u << (kBits - 1); bit > 1; bit >>= 1)
-    if (x[2] & bit) flip ^= bit - 1;
+    flip ^= (bit - 1) & (0u - std::uint32_t{(x[2] & bit) != 0});
   std::uint64_t position = 0;
   for (unsigned bit = kBits; bit-- > 0;)
     for (const std::uint32_t coordinate : x) position = (position << 1) | (((coordinate ^ flip) >> bit) & 1u);
@@ -62,7 +62,9 @@ struct Item {
 // Stable, by the low bits of the key.
 void radix_sort(std::vector<Item>& items, unsigned bits) {
   constexpr unsigned kDigit = 10;
-  std::vector<Item> other(items.size());
+  std::vector<Item> other;
+  reserve_large(other, items.size());
+  other.resize(items.size());
   std::vector<std::size_t> start(1u << kDigit);
   for (unsigned shift = 0; shift < bits; shift += kDigit) {
     std::fill(start.begin(), start.end(), 0);
@@ -98,7 +100,9 @@ std::vector<Index> insertion_order(std::span<const Point> points, const Box& box
   unsigned rounds = 0;
   for (std::size_t left = points.size(); left > kMinRound && rounds < kMaxRound; left >>= kRoundShift) ++rounds;
 
-  std::vector<Item> items(points.size());
+  std::vector<Item> items;
+  reserve_large(items, points.size());
+  items.resize(points.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, items.size(), kBatch), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       // A point stays in the last round but for one time in eight, and so on downwards.

@@ -44,6 +44,7 @@ Index Inserter::walk(const Point& q) const {
   for (std::size_t steps = 0; steps < patience; ++steps) {
     if (here > workspace_.power_bound(v)) return v;
     Index next = kNone;
+    for (const Index u : workspace_.vertices[v].neighbors) workspace_.prefetch(u);
     for (Index u : workspace_.vertices[v].neighbors) {
       if (u == came_from || !territory_.may_read(u)) continue;
       double power = workspace_.power(u, q);

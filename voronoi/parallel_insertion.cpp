@@ -12,6 +12,7 @@
 #include <thread>
 #include <utility>
 
+#include "large_pages.h"
 #include "regions.h"
 
 namespace orchard::detail {
@@ -237,6 +238,7 @@ void insert_in_regions(Workspace& workspace, Inserter& inserter, std::vector<Ind
                        const std::function<void(std::size_t)>& report) {
   inserter.leave();
   std::vector<std::uint8_t> region_of;
+  reserve_large(region_of, workspace.vertices.capacity());
   for (int pass = 0; pass < kPasses && waiting.size() >= large / kWorthPass; ++pass) {
     const auto before = static_cast<double>(waiting.size());
     waiting = Pass(workspace, region_of, waiting, end, report).run(inserter);

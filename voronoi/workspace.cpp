@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "large_pages.h"
+
 namespace orchard::detail {
 namespace {
 
@@ -24,6 +26,18 @@ void move_infinity_last(VoronoiVertex& vertex) {
 }
 
 }  // namespace
+
+void Workspace::reserve(std::size_t count, std::size_t used) {
+  const auto move = [count, used](auto& items) {
+    if (count <= items.capacity()) return;
+    auto before = std::exchange(items, {});
+    items.reserve(count);
+    use_large_pages(items.data(), std::min(used, count) * sizeof(before[0]));
+    items.assign(before.begin(), before.end());
+  };
+  move(vertices);
+  move(state_);
+}
 
 void Workspace::bring_in(std::size_t count) {
   constexpr std::size_t kPage = 4096;
@@ -48,7 +62,7 @@ void Workspace::set_scale(const Box& box, double rounding) {
 
 void Workspace::adopt(std::span<const VoronoiVertex> finished, const Frame& frame, std::size_t more) {
   clear();
-  reserve(finished.size() + more);
+  reserve(finished.size() + more, finished.size());
   state_.assign(finished.size(), kNotSettled << 2);
   for (const VoronoiVertex& old : finished) {
     VoronoiVertex& vertex = vertices.emplace_back(old);

@@ -54,6 +54,10 @@ class Workspace {
   // For a diagram all of whose signs are exact: the input has no noise.
   void forget_noise() { noise_ = 0; }
 
+  void prefetch(Index v) const {
+    __builtin_prefetch(vertices.data() + v);
+    __builtin_prefetch(state_.data() + v);
+  }
   bool at_infinity(Index v) const { return vertices[v].forming_points[3] == kInfinitePoint; }
   bool is_free(Index v) const { return vertices[v].neighbors[0] == kNone; }
   Mark mark(Index v) const { return static_cast<Mark>(state_[v] & 3u); }
@@ -141,10 +145,8 @@ class Workspace {
     state_.clear();
     free_vertices.clear();
   }
-  void reserve(std::size_t count) {
-    vertices.reserve(count);
-    state_.reserve(count);
-  }
+  // Room for so many vertices, of which so many are likely to be used.
+  void reserve(std::size_t count, std::size_t used);
 
  private:
   Sign side_of_plane(Index v, const Point& q) const;
