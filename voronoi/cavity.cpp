@@ -42,8 +42,7 @@ void Cavity::measure_local_points() {
   from_new_.resize(local_points_.size());
   for (std::size_t i = 0; i < from_new_.size(); ++i) {
     const Index point = local_points_.items()[i];
-    from_new_[i] =
-        point == kInfinitePoint ? LengthedVector() : LengthedVector(workspace_.points[point] - position_);
+    from_new_[i] = point == kInfinitePoint ? LengthedVector() : LengthedVector(workspace_.points[point] - position_);
   }
 }
 
