@@ -123,9 +123,6 @@ enum class Outcome { done, flat, failed };
 // twice as many on surfaces, or a little more, and up to four times on curves.
 class Room {
  public:
-  // Of what is expected, so much may be used: regions have some room beyond what they need.
-  static constexpr double kSpare = 1.0625;
-
   explicit Room(Workspace& workspace) : workspace_(workspace) {}
 
   // To be called before each insertion with the number of points so far.
@@ -136,13 +133,13 @@ class Room {
     if (inserted == count / 8) {
       const double expected = vertices() * growth(8);
       workspace_.reserve(std::max(8 * count, static_cast<std::size_t>(1.375 * expected)) + 64,
-                         static_cast<std::size_t>(kSpare * expected));
+                         static_cast<std::size_t>(expected));
       sample_ = vertices();
     }
     if (inserted == count / 2) {
       const double expected = vertices() * std::sqrt(growth(4));
       if (1.05 * expected > static_cast<double>(workspace_.vertices.capacity()))
-        workspace_.reserve(static_cast<std::size_t>(1.25 * expected), static_cast<std::size_t>(kSpare * expected));
+        workspace_.reserve(static_cast<std::size_t>(1.25 * expected), static_cast<std::size_t>(expected));
     }
   }
 

@@ -44,6 +44,7 @@ void Workspace::bring_in(std::size_t count) {
   auto* const room = reinterpret_cast<std::byte*>(vertices.data());
   const std::size_t begin = vertices.size() * sizeof(VoronoiVertex) / kPage + 1,
                     end = std::min(count, vertices.capacity()) * sizeof(VoronoiVertex) / kPage;
+  if (begin < end) use_large_pages(room + begin * kPage, (end - begin) * kPage);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(std::min(begin, end), end, kPage / 16), [room](const auto& pages) {
     for (std::size_t page = pages.begin(); page < pages.end(); ++page) room[page * kPage] = std::byte{0};
   });
