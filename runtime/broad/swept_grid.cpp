@@ -4,15 +4,13 @@
 #include <bit>
 #include <cstring>
 
-#include "../machine.h"
-#include "../vector_support.h"
+#include "line_compare.h"
 
 namespace orchard::runtime::detail {
 namespace {
 
 constexpr std::uint32_t kFieldBits = kQuantumBits + 1;
-constexpr std::uint64_t kGuards = 0x820820820u;  // bit 5 of each of six fields
-constexpr std::uint32_t kMaxEntry = 0x1f7dfu;    // three fields, each of them kQuanta - 1
+constexpr std::uint32_t kMaxEntry = 0x1f7dfu;  // three fields, each of them kQuanta - 1
 static_assert(kIdShift == 6 * kFieldBits);
 static_assert(kMaxBodies < (1u << (64 - kIdShift)));
 
@@ -30,51 +28,6 @@ ORCHARD_INLINE std::uint64_t query_from(std::uint64_t entry) noexcept {
   return query_of(static_cast<std::uint32_t>(entry & field),
                   static_cast<std::uint32_t>(entry >> 3 * kFieldBits & field));
 }
-
-// Which of a line's entries meet the query, as bits: kSpread of them for each entry.
-struct PlainCompare {
-  static constexpr int kSpread = 1;
-  static std::uint64_t meeting(const CellLine& line, std::uint64_t query) noexcept {
-    std::uint64_t bits = 0;
-    for (std::uint32_t i = 0; i < 7; ++i) {
-      bits |= std::uint64_t{((query - line.entries[i]) & kGuards) == kGuards} << i;
-    }
-    return bits;
-  }
-};
-
-#ifdef ORCHARD_VECTORS
-// For machines with vectors of 32 bytes: of twice as many GCC keeps parts in memory.
-struct HalvesCompare {
-  static constexpr int kSpread = 1;
-  using Words __attribute__((vector_size(32))) = std::uint64_t;
-  using Two __attribute__((vector_size(16))) = std::uint64_t;
-  ORCHARD_INLINE static Words at(const CellLine& line, std::size_t byte) noexcept {
-    Words result;
-    std::memcpy(&result, reinterpret_cast<const char*>(&line) + byte, sizeof result);
-    return result;
-  }
-  ORCHARD_INLINE static std::uint64_t meeting(const CellLine& line, std::uint64_t query) noexcept {
-    const Words first = at(line, 0), second = at(line, 32);  // the eighth is the counters
-    const Words met_first = reinterpret_cast<Words>(((query - first) & kGuards) == kGuards) & Words{1, 2, 4, 8};
-    const Words met_second = reinterpret_cast<Words>(((query - second) & kGuards) == kGuards) & Words{16, 32, 64, 0};
-    const Words met = met_first | met_second;
-    const Two both = __builtin_shufflevector(met, met, 0, 1) | __builtin_shufflevector(met, met, 2, 3);
-    return both[0] | both[1];
-  }
-};
-
-struct WideCompare {
-  static constexpr int kSpread = 8;
-  using Words __attribute__((vector_size(64))) = std::uint64_t;
-  using Bytes __attribute__((vector_size(8))) = std::uint8_t;
-  ORCHARD_INLINE static std::uint64_t meeting(const CellLine& line, std::uint64_t query) noexcept {
-    const Words entries = load<Words>(line);                    // the eighth is the counters
-    const auto hit = ((query - entries) & kGuards) == kGuards;  // numbers are spread
-    return std::bit_cast<std::uint64_t>(__builtin_convertvector(-hit, Bytes));
-  }
-};
-#endif
 
 // A body's box, and one of its cells. Quanta are below 2^31: the difference of two that are apart is negative.
 #ifdef ORCHARD_VECTORS
@@ -329,28 +282,6 @@ ORCHARD_INLINE void SweptGrid::advance(Insertion& insertion, Queue& queue, std::
     flush<Kind>(insertion, queue);
     queue.batches_[queue.current_].count = 0;
   }
-}
-
-// work.template operator()<Kind>() for the comparison that suits the machine. Without comparisons of 64 bits vectors
-// are no faster.
-template <typename Work>
-void SweptGrid::with_best_compare(const Work& work) {
-#if defined(ORCHARD_MACHINES)
-  const Machine chosen = machine();
-  if (chosen == Machine::avx512) {
-    return work_with_avx512([&]() ORCHARD_INLINE_LAMBDA { work.template operator()<WideCompare>(); });
-  }
-  if (chosen == Machine::avx2) {
-    return work_with_avx2([&]() ORCHARD_INLINE_LAMBDA { work.template operator()<HalvesCompare>(); });
-  }
-  work.template operator()<PlainCompare>();
-#elif defined(ORCHARD_VECTORS) && defined(__AVX512BW__)
-  work.template operator()<WideCompare>();
-#elif defined(ORCHARD_VECTORS) && (defined(__AVX2__) || defined(__aarch64__))
-  work.template operator()<HalvesCompare>();
-#else
-  work.template operator()<PlainCompare>();
-#endif
 }
 
 void SweptGrid::run(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock* block,

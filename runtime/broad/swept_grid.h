@@ -64,7 +64,7 @@ class SweptGrid {
   void insert_part(std::span<const Visit> visits, std::span<const QuantumBox> boxes, bool vectors,
                    std::vector<BodyPair>& pairs, GridCounts& counts);
   void count(const GridCounts& counts) noexcept;  // of such an insertion
-  void remove(BodyIndex body, const QuantumBox& box) noexcept;
+  void remove(std::span<const BodyIndex> bodies, std::span<const QuantumBox> boxes, bool vectors) noexcept;
   void prepare_removal(const QuantumBox& box) const noexcept;  // starts loading
 
   // Those that have entries in the cell, and in others that share its line; a body as often as it has.
@@ -102,8 +102,6 @@ class SweptGrid {
   Visit* many_visits_of(BodyIndex body, const QuantumBox& box, Visit* visits) const noexcept;
   template <typename Kind>
   void flush(Insertion& insertion, Queue& queue);
-  template <typename Work>
-  static void with_best_compare(const Work& work);
   void run(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock* block, std::span<const QuantumBox> boxes,
            bool vectors, std::vector<BodyPair>& pairs);
   template <typename Kind>
@@ -122,7 +120,9 @@ class SweptGrid {
   static void append(CellLine& line, std::uint64_t entry, Overflow& more);
   template <typename Use>
   void for_each_line(const QuantumBox& box, const Use& use) const;
-  static std::uint32_t find_in(const CellLine& line, BodyIndex body) noexcept;
+  template <typename Kind>
+  void remove_all(std::span<const BodyIndex> bodies, std::span<const QuantumBox> boxes) noexcept;
+  template <typename Kind>
   static void remove_from(CellLine& line, BodyIndex body, Overflow& more) noexcept;
   static void free_last(CellLine& line, Overflow& more) noexcept;
 

@@ -1,7 +1,7 @@
 #include <bit>
 #include <cassert>
 
-#include "swept_grid.h"
+#include "line_compare.h"
 
 // Making room in the grid, and taking boxes out of it.
 namespace orchard::runtime::detail {
@@ -121,7 +121,7 @@ void SweptGrid::append(CellLine& first, std::uint64_t entry, Overflow& overflow)
 }
 
 template <typename Use>
-void SweptGrid::for_each_line(const QuantumBox& box, const Use& use) const {
+ORCHARD_INLINE void SweptGrid::for_each_line(const QuantumBox& box, const Use& use) const {
   Cell cell;
   for (cell[2] = box.lower[2] >> kQuantumBits; cell[2] <= box.upper[2] >> kQuantumBits; ++cell[2]) {
     for (cell[1] = box.lower[1] >> kQuantumBits; cell[1] <= box.upper[1] >> kQuantumBits; ++cell[1]) {
@@ -136,27 +136,16 @@ void SweptGrid::prepare_removal(const QuantumBox& box) const noexcept {
   for_each_line(box, [&](std::uint32_t line) { prefetch(&lines_[line]); });
 }
 
-void SweptGrid::remove(BodyIndex body, const QuantumBox& box) noexcept {
-  for_each_line(box, [&](std::uint32_t line) { remove_from(lines_[line], body, overflow_[part_of(line)]); });
-}
-
-// Of the line's entries, without branches that depend on where it is; their number: none.
-std::uint32_t SweptGrid::find_in(const CellLine& line, BodyIndex body) noexcept {
-  std::uint32_t found = 1u << line.count;
-  for (std::uint32_t i = 0; i < line.entries.size(); ++i) {
-    found |= static_cast<std::uint32_t>(line.entries[i] >> kIdShift == body) << i;
-  }
-  return static_cast<std::uint32_t>(std::countr_zero(found));
-}
-
 // The last entry of the chain takes the place.
-void SweptGrid::remove_from(CellLine& first, BodyIndex body, Overflow& overflow) noexcept {
+template <typename Kind>
+ORCHARD_INLINE void SweptGrid::remove_from(CellLine& first, BodyIndex body, Overflow& overflow) noexcept {
   CellLine *line = &first, *found = nullptr, *before_last = nullptr;
   std::uint32_t index = 0;
   for (;;) {
-    if (found == nullptr) {
-      index = find_in(*line, body);
-      if (index < line->count) found = line;
+    if (found == nullptr) {  // without branches that depend on where it is
+      const std::uint32_t none = line->count, bits = 1u << none | static_cast<std::uint32_t>(Kind::of(*line, body));
+      index = static_cast<std::uint32_t>(std::countr_zero(bits));
+      if (index < none) found = line;
     }
     if (line->overflow == 0) break;
     before_last = line;
@@ -166,6 +155,21 @@ void SweptGrid::remove_from(CellLine& first, BodyIndex body, Overflow& overflow)
   if (found == nullptr) return;
   found->entries[index] = line->entries[--line->count];
   if (line->count == 0 && before_last != nullptr) free_last(*before_last, overflow);
+}
+
+template <typename Kind>
+ORCHARD_INLINE void SweptGrid::remove_all(std::span<const BodyIndex> bodies,
+                                          std::span<const QuantumBox> boxes) noexcept {
+  for (const BodyIndex body : bodies) {
+    for_each_line(boxes[body], [&](std::uint32_t line) ORCHARD_INLINE_LAMBDA {
+      remove_from<Kind>(lines_[line], body, overflow_[part_of(line)]);
+    });
+  }
+}
+
+void SweptGrid::remove(std::span<const BodyIndex> bodies, std::span<const QuantumBox> boxes, bool vectors) noexcept {
+  if (!vectors) return remove_all<PlainCompare>(bodies, boxes);
+  with_best_compare([&]<typename Kind>() ORCHARD_INLINE_LAMBDA { remove_all<Kind>(bodies, boxes); });
 }
 
 void SweptGrid::free_last(CellLine& before, Overflow& overflow) noexcept {
