@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "command_line.h"
+#include "freed_memory.h"
 #include "interrupt.h"
 #include "orchard/geometry/error.h"
 #include "standard_streams.h"
@@ -45,6 +46,7 @@ int run(Request& request) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_freed_memory();
   catch_interrupts();
   occupy_standard_streams();
   CLI::App app{"orchard: from a triangle mesh to its medial axis, its sphere-tree and collision answers", "orchard"};

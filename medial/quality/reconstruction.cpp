@@ -26,28 +26,21 @@ double min_along(const Point& query, const std::array<Sphere, 3>& balls) {
   return min;
 }
 
-// The cells that no larger one holds: triangles, edges, vertices.
-struct Cells {
-  std::vector<SupportTree::Item> items;
-  std::vector<std::array<Index, 3>> corners;
-  Index triangles = 0, edges = 0;
-};
-
-Cells max_cells(const MedialMesh& mesh) {
+// The cells that no larger one holds: triangles, edges, vertices; smaller ones repeat their last corner.
+std::vector<std::array<Index, 3>> max_cells(const MedialMesh& mesh) {
   const CellIncidence at(mesh.edges, mesh.triangles, mesh.size());
-  const std::vector<Index> bare = at.bare_edges();
-  Cells cells{.items = {},
-              .corners = {},
-              .triangles = static_cast<Index>(mesh.triangles.size()),
-              .edges = static_cast<Index>(bare.size())};
-  const auto add = [&](Index a, Index b, Index c) {
-    cells.items.push_back({vertex_ball(mesh, a), vertex_ball(mesh, b), vertex_ball(mesh, c)});
-    cells.corners.push_back({a, b, c});
-  };
-  for (const auto& [a, b, c] : mesh.triangles) add(a, b, c);
-  for (const Index e : bare) add(mesh.edges[e][0], mesh.edges[e][1], mesh.edges[e][1]);
-  for (const Index v : at.lone_vertices()) add(v, v, v);
+  std::vector<std::array<Index, 3>> cells = mesh.triangles;
+  for (const Index e : at.bare_edges()) cells.push_back({mesh.edges[e][0], mesh.edges[e][1], mesh.edges[e][1]});
+  for (const Index v : at.lone_vertices()) cells.push_back({v, v, v});
   return cells;
+}
+
+int dimension(const std::array<Index, 3>& cell) { return cell[0] == cell[1] ? 0 : cell[1] == cell[2] ? 1 : 2; }
+
+// As they are in max_cells() of a complete mesh.
+bool is_before(const std::array<Index, 3>& a, const std::array<Index, 3>& b) {
+  const int of_a = dimension(a), of_b = dimension(b);
+  return of_a != of_b ? of_a > of_b : a < b;
 }
 
 }  // namespace
@@ -96,26 +89,91 @@ Sphere nearest_ball(const Point& query, const Sphere& a, const Sphere& b, const 
   return best;
 }
 
-Reconstruction::Reconstruction(const MedialMesh& mesh) {
-  Cells cells = max_cells(mesh);
-  triangles_ = cells.triangles;
-  edges_ = cells.edges;
-  corners_ = std::move(cells.corners);
+Reconstruction::Reconstruction(const MedialMesh& mesh) : first_(part_of(mesh, max_cells(mesh))) {
   balls_.reserve(mesh.size());
   for (Index v = 0; v < mesh.size(); ++v) balls_.push_back(vertex_ball(mesh, v));
-  tree_ = SupportTree(std::move(cells.items));
 }
 
-double Reconstruction::evaluate(Index item, const SupportTree::Item& balls, const Point& query, double best,
-                                Sphere& ball) const {
-  if (item < triangles_) {
+// Numbers the cells, too.
+Reconstruction::Part Reconstruction::part_of(const MedialMesh& mesh, const std::vector<std::array<Index, 3>>& cells) {
+  Part part;
+  part.first = this->cells();
+  part.size = static_cast<Index>(cells.size());
+  std::vector<SupportTree::Item> items;
+  items.reserve(cells.size());
+  for (const auto& cell : cells) {
+    const auto& [a, b, c] = cell;
+    items.push_back({vertex_ball(mesh, a), vertex_ball(mesh, b), vertex_ball(mesh, c)});
+    part.triangles += dimension(cell) == 2 ? 1 : 0;
+    part.edges += dimension(cell) == 1 ? 1 : 0;
+  }
+  corners_.insert(corners_.end(), cells.begin(), cells.end());
+  part.tree = SupportTree(std::move(items));
+  return part;
+}
+
+void Reconstruction::change(const MedialMesh& mesh) {
+  const std::vector<std::array<Index, 3>> now = max_cells(mesh);
+  std::vector<std::uint8_t> moved(mesh.size(), 1);
+  for (Index v = 0; v < std::min<Index>(mesh.size(), static_cast<Index>(balls_.size())); ++v)
+    moved[v] = mesh.centers[v] != balls_[v].center || mesh.radii[v] != balls_[v].radius ? 1 : 0;
+  const auto is_new = [&](const std::array<Index, 3>& cell) {
+    return std::any_of(cell.begin(), cell.end(), [&](Index v) { return moved[v] != 0; });
+  };
+  corners_.resize(first_.size);
+  std::vector<std::uint8_t> gone(corners_.size(), 1);
+  std::vector<std::array<Index, 3>> fresh;
+  std::size_t old = 0;
+  for (const auto& cell : now) {
+    while (old < gone.size() && is_before(corners_[old], cell)) ++old;
+    // What is gone stays so: its balls may be other ones.
+    if (old < gone.size() && corners_[old] == cell && !is_new(cell) && (gone_.empty() || !gone_[old])) {
+      gone[old] = 0;
+    } else {
+      fresh.push_back(cell);
+    }
+  }
+  gone_ = std::move(gone);
+  changed_ = part_of(mesh, fresh);
+  balls_.resize(mesh.size());
+  for (Index v = 0; v < mesh.size(); ++v) balls_[v] = vertex_ball(mesh, v);
+}
+
+double Reconstruction::evaluate(const Part& part, Index item, const SupportTree::Item& balls, const Point& query,
+                                double best, Sphere& ball) {
+  if (item < part.triangles) {
     const double bound = min_along(query, balls);
     if (bound >= best) return bound;
     ball = nearest_ball(query, balls[0], balls[1], balls[2]);
   } else {
-    ball = item - triangles_ < edges_ ? nearest_ball(query, balls[0], balls[1]) : balls[0];
+    ball = item - part.triangles < part.edges ? nearest_ball(query, balls[0], balls[1]) : balls[0];
   }
   return distance_to(query, ball);
+}
+
+double Reconstruction::evaluate(Index cell, const Point& query, double best, Sphere& ball) const {
+  const auto& [a, b, c] = corners_[cell];
+  const Part& part = cell < first_.size ? first_ : changed_;
+  return evaluate(part, cell - part.first, {balls_[a], balls_[b], balls_[c]}, query, best, ball);
+}
+
+template <class Improved>
+double Reconstruction::search(const Point& query, double best, double enough, const Improved& improved) const {
+  const auto value_in = [&](const Part& part, Index item, const SupportTree::Item& balls, double least) {
+    Sphere ball;
+    const double value = evaluate(part, item, balls, query, least, ball);
+    if (value < least) improved(part.first + item, ball);
+    return value;
+  };
+  const auto value_of_first = [&](Index item, const SupportTree::Item& balls, double least) {
+    return !gone_.empty() && gone_[item] ? least : value_in(first_, item, balls, least);
+  };
+  best = first_.tree.min(query, best, value_of_first, enough);
+  if (changed_.size == 0 || best < enough) return best;
+  return changed_.tree.min(
+      query, best,
+      [&](Index item, const SupportTree::Item& balls, double least) { return value_in(changed_, item, balls, least); },
+      enough);
 }
 
 double Reconstruction::distance(const Point& query) const {
@@ -132,13 +190,7 @@ double Reconstruction::distance_below(double bound, const Point& query, Sphere& 
 }
 
 double Reconstruction::distance_between(double enough, double bound, const Point& query, Sphere& ball) const {
-  const auto value_of = [&](Index item, const SupportTree::Item& balls, double best) {
-    Sphere found;
-    const double value = evaluate(item, balls, query, best, found);
-    if (value < best) ball = found;
-    return value;
-  };
-  return tree_.min(query, bound, value_of, enough);
+  return search(query, bound, enough, [&](Index, const Sphere& found) { ball = found; });
 }
 
 Reconstruction::Nearest Reconstruction::nearest(const Point& query, double enough) const {
@@ -146,31 +198,22 @@ Reconstruction::Nearest Reconstruction::nearest(const Point& query, double enoug
 }
 
 Reconstruction::Nearest Reconstruction::nearest_from(Nearest nearest, const Point& query, double enough) const {
-  const auto value_of = [&](Index item, const SupportTree::Item& balls, double best) {
-    Sphere found;
-    const double value = evaluate(item, balls, query, best, found);
-    if (value < best) {
-      nearest.ball = found;
-      nearest.cell = item;
-    }
-    return value;
-  };
-  nearest.distance = tree_.min(query, nearest.distance, value_of, enough);
+  nearest.distance = search(query, nearest.distance, enough, [&](Index cell, const Sphere& found) {
+    nearest.ball = found;
+    nearest.cell = cell;
+  });
   return nearest;
 }
 
 Reconstruction::Nearest Reconstruction::nearest_in(Index cell, const Point& query) const {
-  const auto& [a, b, c] = corners_[cell];
   Nearest result{.distance = 0, .ball = {Point::Zero(), 0}, .cell = cell};
-  result.distance =
-      evaluate(cell, {balls_[a], balls_[b], balls_[c]}, query, std::numeric_limits<double>::infinity(), result.ball);
+  result.distance = evaluate(cell, query, std::numeric_limits<double>::infinity(), result.ball);
   return result;
 }
 
 double Reconstruction::distance_to_cell(Index cell, const Point& query, double best) const {
-  const auto& [a, b, c] = corners_[cell];
   Sphere ball;
-  return evaluate(cell, {balls_[a], balls_[b], balls_[c]}, query, best, ball);
+  return evaluate(cell, query, best, ball);
 }
 
 }  // namespace orchard::detail

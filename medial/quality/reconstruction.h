@@ -14,6 +14,10 @@ class Reconstruction {
  public:
   explicit Reconstruction(const MedialMesh& mesh);
 
+  // Makes it that of a mesh of which most cells are those of the mesh before, vertices by the same numbers: O(n), with
+  // a tree of what is new alone. Cells get other numbers.
+  void change(const MedialMesh& mesh);
+
   // The least |query - centre| - radius over all those balls: the distance to the union outside, and minus the depth in
   // the deepest single ball inside, which is at most the depth in the union. 1-Lipschitz.
   double distance(const Point& query) const;
@@ -43,16 +47,29 @@ class Reconstruction {
   // balls, so it is a convex function of the query: nowhere on a triangle is it more than at the corners.
   // At least `best`, but not exact, where it is not below.
   double distance_to_cell(Index cell, const Point& query, double best = std::numeric_limits<double>::infinity()) const;
+  // Numbers of cells are below it. Before a change there are so many.
   Index cells() const { return static_cast<Index>(corners_.size()); }
 
  private:
-  // The least for an item, and the ball; a value that is `best` or more need not be exact.
-  double evaluate(Index item, const SupportTree::Item& balls, const Point& query, double best, Sphere& ball) const;
+  // Some of the cells, from number `first` on: triangles, edges and vertices that no larger cell holds, in this order.
+  struct Part {
+    Index first = 0, size = 0, triangles = 0, edges = 0;
+    SupportTree tree;
+  };
 
-  Index triangles_ = 0, edges_ = 0;  // items are triangles, edges and vertices that no larger cell holds, in this order
-  std::vector<std::array<Index, 3>> corners_;  // of each item
+  Part part_of(const MedialMesh& mesh, const std::vector<std::array<Index, 3>>& cells);
+  // The least of `best` and what is found, which improved(value, cell, ball) is told.
+  template <class Improved>
+  double search(const Point& query, double best, double enough, const Improved& improved) const;
+  // The least for a cell, and the ball; a value that is `best` or more need not be exact.
+  static double evaluate(const Part& part, Index item, const SupportTree::Item& balls, const Point& query, double best,
+                         Sphere& ball);
+  double evaluate(Index cell, const Point& query, double best, Sphere& ball) const;
+
+  std::vector<std::array<Index, 3>> corners_;  // of each cell
   std::vector<Sphere> balls_;                  // of each vertex
-  SupportTree tree_;
+  Part first_, changed_;                       // what there was first, and what came by changes
+  std::vector<std::uint8_t> gone_;             // of what there was first; nothing before a change
 };
 
 // The ball of a cell that comes nearest to `query`, for cells of one, two or three vertices.

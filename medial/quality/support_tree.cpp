@@ -117,8 +117,13 @@ class SupportTree::Builder {
     return {origin + axes * (0.5 * (low + high)), axes * (0.5 * (high - low)).asDiagonal()};
   }
 
-  // Orders a range so that its first half comes first along the longest of the axes.
-  void halve(Index first, Index count, const Eigen::Matrix4d& axes) {
+  // Of how many items the first half is: nodes of items are to be full, which makes them the fewest.
+  static Index half_of(Index count) { return std::min(count, (count / 2 + 2) / 4 * 4); }
+
+  // Orders a range so that its first half comes first along the longest of the axes. Returns the half's size.
+  Index halve(Index first, Index count, const Eigen::Matrix4d& axes) {
+    const Index half = half_of(count);
+    if (half == 0 || half == count) return half;
     Eigen::Vector4d low = Eigen::Vector4d::Constant(std::numeric_limits<double>::infinity()), high = -low;
     const auto place = [&](Index i) -> Eigen::Vector4d {
       const Balls& balls = balls_at(i);
@@ -135,9 +140,10 @@ class SupportTree::Builder {
     const Eigen::Vector4d along = axes.col(longest);
     for (Index i = first; i < first + count; ++i) order_[i].along = along.dot(place(i));
     const auto begin = order_.begin() + first;
-    std::nth_element(begin, begin + count / 2, begin + count, [](const Entry& a, const Entry& b) {
+    std::nth_element(begin, begin + half, begin + count, [](const Entry& a, const Entry& b) {
       return a.along != b.along ? a.along < b.along : a.number < b.number;
     });
+    return half;
   }
 
   Index build(Index first, Index count, const Box& box) {
@@ -147,13 +153,8 @@ class SupportTree::Builder {
     if (count <= 4) {
       for (Index k = 0; k < 4; ++k) begin[k] = first + std::min(k, count);
     } else {
-      halve(first, count, box.half_axes);
-      begin[2] = first + count / 2;
-      for (const Index k : {0u, 2u}) {
-        const Index size = begin[k + 2] - begin[k];
-        halve(begin[k], size, box.half_axes);
-        begin[k + 1] = begin[k] + size / 2;
-      }
+      begin[2] = first + halve(first, count, box.half_axes);
+      for (const Index k : {0u, 2u}) begin[k + 1] = begin[k] + halve(begin[k], begin[k + 2] - begin[k], box.half_axes);
     }
     for (std::size_t k = 0; k < 4; ++k) {
       const Index size = begin[k + 1] - begin[k];
@@ -196,7 +197,7 @@ SupportTree::SupportTree(std::vector<Item> items) : items_(std::move(items)) {
   size = std::max(size, centers.sizes().maxCoeff());
   if (size > 0) scale_ = std::ldexp(1.0, -std::ilogb(size) - 1);
   Builder builder(*this);
-  nodes_.reserve(items_.size() / 2 + 1);
+  nodes_.reserve(items_.size() * 5 / 12 + 1);  // the most there can be
   builder.run();
 }
 

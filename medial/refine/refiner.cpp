@@ -224,8 +224,10 @@ void Refiner::reach() {
   const double limit = left_open();
   UncoveredSearch search(surface_, limit, kResolution * border.spacing);
   BallSolver solver = this->solver();
+  if (options_.reach_rounds == 0) return;
+  Reconstruction reconstruction(complex_.mesh());
   for (int round = 0; round < options_.reach_rounds; ++round) {
-    const Reconstruction reconstruction(complex_.mesh());
+    if (round > 0) reconstruction.change(complex_.mesh());
     const std::vector<UncoveredPlace> places = search.find(reconstruction, kApart * border.spacing);
     const Index reached = reach_open_places(surface_, complex_, solver, reconstruction, places, limit / kOpen, border);
     if (reached == 0) break;

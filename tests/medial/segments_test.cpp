@@ -215,6 +215,61 @@ TEST(Reconstruction, FindsTheNearestInTreesOfAnyShape) {
   }
 }
 
+// Cells and vertices come, go, and move, more than once.
+TEST(Reconstruction, AfterChangesIsThatOfTheMeshAsItIs) {
+  const auto cases = 60 * test::more();
+  for (std::uint64_t seed = test::first_seed(); seed < test::first_seed() + cases; ++seed) {
+    Random random(seed, 79);
+    const auto point = [&] { return Point(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)); };
+    MedialMesh mesh;
+    const auto add_vertices = [&](Index count) {
+      for (Index i = 0; i < count; ++i) {
+        mesh.centers.push_back(point());
+        mesh.radii.push_back(random.uniform(0, 0.2));
+      }
+    };
+    const auto any_vertex = [&] { return static_cast<Index>(random.below(mesh.size())); };
+    const auto add_cells = [&](Index count) {
+      for (Index i = 0; i < count; ++i) {
+        const Index a = any_vertex(), b = any_vertex(), c = any_vertex();
+        if (a == b || b == c || a == c) continue;
+        if (random.below(3) == 0) {
+          mesh.edges.push_back({a, b});
+        } else {
+          mesh.triangles.push_back({a, b, c});
+        }
+      }
+    };
+    add_vertices(seed % 7 == 0 ? 0 : static_cast<Index>(1 + random.below(60)));
+    if (mesh.size() > 0) add_cells(static_cast<Index>(random.below(60)));
+    complete(mesh);
+    detail::Reconstruction reconstruction(mesh);
+    for (int change = 0; change < 4; ++change) {
+      add_vertices(static_cast<Index>(random.below(5) + (mesh.size() == 0 ? 1 : 0)));
+      add_cells(static_cast<Index>(random.below(8)));
+      complete(mesh);
+      if (random.below(2) == 0 && !mesh.triangles.empty()) mesh.triangles.erase(mesh.triangles.begin());
+      if (random.below(3) == 0) mesh.radii[any_vertex()] *= 0.5;
+      if (random.below(3) == 0) mesh.centers[any_vertex()] = point();
+      reconstruction.change(mesh);
+      const detail::Reconstruction anew(mesh);
+      for (int i = 0; i < 30; ++i) {
+        const Point query = 1.5 * point();
+        const detail::Reconstruction::Nearest nearest = reconstruction.nearest(query);
+        ASSERT_NEAR(nearest.distance, anew.distance(query), 1e-12) << "seed " << seed << ", change " << change;
+        ASSERT_NEAR(nearest.distance, reconstruction.distance_to_cell(nearest.cell, query), 1e-12) << "seed " << seed;
+        const auto& [a, b, c] = reconstruction.corners_of(nearest.cell);
+        MedialMesh cell{.centers = {mesh.centers[a], mesh.centers[b], mesh.centers[c]},
+                        .radii = {mesh.radii[a], mesh.radii[b], mesh.radii[c]},
+                        .edges = {},
+                        .triangles = {{0, 1, 2}}};
+        complete(cell);
+        ASSERT_NEAR(nearest.distance, detail::Reconstruction(cell).distance(query), 1e-12) << "seed " << seed;
+      }
+    }
+  }
+}
+
 // So what holds at the corners of a triangle holds on all of it.
 TEST(Reconstruction, DistanceToOneCellIsConvex) {
   const auto cases = static_cast<Index>(2'000 * test::more());
