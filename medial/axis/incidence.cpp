@@ -8,6 +8,8 @@
 namespace orchard::detail {
 namespace {
 
+constexpr Index kShortRow = 16;
+
 std::vector<Index> with_cells(const Rows& rows, std::size_t count) {
   std::vector<Index> found;
   for (Index i = 0; i < rows.size(); ++i) {
@@ -53,6 +55,19 @@ void merge_sorted(std::vector<Cell>& cells, const std::vector<Cell>& more) {
   all.reserve(cells.size() + more.size());
   std::set_union(cells.begin(), cells.end(), more.begin(), more.end(), std::back_inserter(all));
   cells = std::move(all);
+}
+
+// Rows of what for_each() adds, (row, item), items ascending and each once; it is called twice.
+template <class ForEach>
+Rows rows_of_ascending(Index count, const ForEach& for_each) {
+  Rows rows;
+  rows.offsets.assign(std::size_t{count} + 2, 0);  // one on, so that filling moves starts to ends
+  for_each([&](Index row, Index) { ++rows.offsets[row + 2]; });
+  std::partial_sum(rows.offsets.begin(), rows.offsets.end(), rows.offsets.begin());
+  rows.items.resize(rows.offsets.back());
+  for_each([&](Index row, Index item) { rows.items[rows.offsets[row + 1]++] = item; });
+  rows.offsets.pop_back();
+  return rows;
 }
 
 }  // namespace
@@ -108,29 +123,40 @@ EdgeNumbers::EdgeNumbers(const std::vector<std::array<Index, 2>>& edges, Index v
   std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
 }
 
+// Rows are short: to count what is before it is faster than to divide them, which nobody can predict.
 Index EdgeNumbers::operator()(Index a, Index b) const {
-  const std::array<Index, 2> edge{std::min(a, b), std::max(a, b)};
-  const auto found = std::lower_bound(edges_.begin() + begin_[edge[0]], edges_.begin() + begin_[edge[0] + 1], edge);
-  return static_cast<Index>(found - edges_.begin());
+  const Index low = std::min(a, b), high = std::max(a, b);
+  const Index begin = begin_[low], end = begin_[low + 1];
+  const auto is_before = [&](const std::array<Index, 2>& edge) { return edge[1] < high; };
+  if (end - begin > kShortRow) {
+    const auto found = std::partition_point(edges_.begin() + begin, edges_.begin() + end, is_before);
+    return static_cast<Index>(found - edges_.begin());
+  }
+  Index e = begin;
+  for (Index i = begin; i < end; ++i) e += is_before(edges_[i]) ? 1 : 0;
+  return e;
 }
 
 CellIncidence::CellIncidence(const std::vector<std::array<Index, 2>>& edges,
                              const std::vector<std::array<Index, 3>>& triangles, Index vertices) {
-  std::vector<std::array<Index, 2>> at_edge, at_vertex;
-  at_edge.reserve(3 * triangles.size());
-  at_vertex.reserve(2 * edges.size());
   const EdgeNumbers edge(edges, vertices);
   sides.reserve(triangles.size());
-  for (Index t = 0; t < triangles.size(); ++t) {
-    const auto& [a, b, c] = triangles[t];
-    sides.push_back({edge(a, b), edge(a, c), edge(b, c)});
-    for (const Index side : sides.back()) at_edge.push_back({side, t});
-  }
-  for (Index e = 0; e < edges.size(); ++e) {
-    for (const Index vertex : edges[e]) at_vertex.push_back({vertex, e});
-  }
-  triangles_at = rows_of(at_edge, static_cast<Index>(edges.size()));
-  edges_at = rows_of(at_vertex, vertices);
+  for (const auto& [a, b, c] : triangles) sides.push_back({edge(a, b), edge(a, c), edge(b, c)});
+  triangles_at = rows_of_ascending(static_cast<Index>(edges.size()), [&](const auto& add) {
+    for (Index t = 0; t < sides.size(); ++t) {
+      const auto& [ab, ac, bc] = sides[t];
+      add(ab, t);
+      if (ac != ab) add(ac, t);
+      if (bc != ab && bc != ac) add(bc, t);
+    }
+  });
+  edges_at = rows_of_ascending(vertices, [&](const auto& add) {
+    for (Index e = 0; e < edges.size(); ++e) {
+      const auto& [a, b] = edges[e];
+      add(a, e);
+      if (b != a) add(b, e);
+    }
+  });
 }
 
 std::vector<Index> CellIncidence::border_edges() const { return with_cells(triangles_at, 1); }

@@ -28,10 +28,19 @@ double min_along(const Point& query, const std::array<Sphere, 3>& balls) {
 
 // The cells that no larger one holds: triangles, edges, vertices; smaller ones repeat their last corner.
 std::vector<std::array<Index, 3>> max_cells(const MedialMesh& mesh) {
-  const CellIncidence at(mesh.edges, mesh.triangles, mesh.size());
+  const EdgeNumbers edge(mesh.edges, mesh.size());
+  std::vector<std::uint8_t> has_triangle(mesh.edges.size(), 0), has_edge(mesh.size(), 0);
+  for (const auto& [a, b, c] : mesh.triangles)
+    has_triangle[edge(a, b)] = has_triangle[edge(a, c)] = has_triangle[edge(b, c)] = 1;
   std::vector<std::array<Index, 3>> cells = mesh.triangles;
-  for (const Index e : at.bare_edges()) cells.push_back({mesh.edges[e][0], mesh.edges[e][1], mesh.edges[e][1]});
-  for (const Index v : at.lone_vertices()) cells.push_back({v, v, v});
+  for (Index e = 0; e < mesh.edges.size(); ++e) {
+    const auto& [a, b] = mesh.edges[e];
+    has_edge[a] = has_edge[b] = 1;
+    if (!has_triangle[e]) cells.push_back({a, b, b});
+  }
+  for (Index v = 0; v < mesh.size(); ++v) {
+    if (!has_edge[v]) cells.push_back({v, v, v});
+  }
   return cells;
 }
 

@@ -75,10 +75,10 @@ void Refiner::refine() {
   mend_borders();
   report_.small_pieces += drop_small_pieces(complex_);
   report_progress(progress_, kStage, 0.6);
-  divide();
 }
 
 RefinedAxis Refiner::finish() {
+  divide();
   reach();
   report_.degenerate = drop_degenerate(complex_, kCoincident * diagonal_);
   report_progress(progress_, kStage, 1);

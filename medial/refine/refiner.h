@@ -18,13 +18,13 @@ class Refiner {
   Refiner(const Surface& surface, const SurfaceSampling& sampling, const MedialAxis& axis, const RefineOptions& options,
           const Progress& progress);
 
-  // All steps but reaching for places left open. To be called once, first.
+  // All steps but dividing what is not linear and reaching for places left open. To be called once, first.
   void refine();
   // What there is so far.
   MedialMesh mesh() const { return complex_.mesh(); }
   // Mesh units: what is left open by less is not reached for.
   double left_open() const;
-  // Reaches for places left open, takes degenerate cells away, and gives the result. To be called once, last.
+  // Divides, reaches, takes degenerate cells away, and gives the result. To be called once, last.
   RefinedAxis finish();
 
  private:
