@@ -103,10 +103,11 @@ class MedialBuilder {
   // Before sheets reach for places left open, such places become points in so many rounds.
   void refine(int rounds) {
     std::optional<detail::Refiner> refiner;
+    detail::FoundBalls found;
     for (int round = 0;; ++round) {
       stage("refining", [&] {
         refiner.emplace(surface_, build_.sampling, build_.axis, *options_.refine, progress_);
-        refiner->refine();
+        refiner->refine(rounds > 0 ? &found : nullptr);
       });
       if (round == rounds || !add_open_places(*refiner)) break;
       make_axis();

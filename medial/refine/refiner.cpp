@@ -62,10 +62,10 @@ Refiner::Refiner(const Surface& surface, const SurfaceSampling& sampling, const 
   check(options);
 }
 
-void Refiner::refine() {
+void Refiner::refine(FoundBalls* found) {
   report_.vertices_before = axis_.size();
   make_complex();
-  find_balls();
+  find_balls(found);
   solve_outliers_again(surface_, complex_, kMerging * level_);
   report_progress(progress_, kStage, 0.25);
   drop_folded();
@@ -103,28 +103,42 @@ void Refiner::make_complex() {
   complex_.triangles = std::move(triangles.mesh.triangles);
 }
 
-// What is downhill from the forming points; for the middle of a face, from its two points.
-void Refiner::find_balls() {
+// Where the ball of a vertex is looked for: its forming points; for the middle of a face, its two points.
+void Refiner::seeds_of(Index vertex, const std::vector<Index>& face_of_middle, std::vector<ClosestPoint>& seeds) const {
+  seeds.clear();
+  const auto add = [&](Index point) { seeds.push_back(place(point)); };
+  if (vertex < axis_.size()) {
+    const std::span<const Index> points = axis_.forming_points[vertex];
+    std::for_each_n(points.begin(), std::min(kEnough, points.size()), add);
+  } else {
+    for (const Index point : points_of(face_of_middle[vertex - axis_.size()])) add(point);
+  }
+}
+
+void Refiner::find_balls(FoundBalls* found) {
   std::vector<Index> face_of_middle(complex_.size() - axis_.size(), kNone);
   for (Index t = 0; t < complex_.triangles.size(); ++t) {
     for (const Index v : complex_.triangles[t]) {
       if (v >= axis_.size()) face_of_middle[v - axis_.size()] = face_of_triangle_[t];
     }
   }
+  std::vector<Point> starts;
+  for (const ExactBall& ball : complex_.balls) starts.push_back(ball.center);
   tbb::parallel_for(tbb::blocked_range<Index>(0, complex_.size(), 64), [&](const auto& range) {
     BallSolver solver = this->solver();
     std::vector<ClosestPoint> seeds;
     for (Index v = range.begin(); v != range.end(); ++v) {
-      seeds.clear();
-      if (v < axis_.size()) {
-        for (const Index point : axis_.forming_points[v].first(std::min(kEnough, axis_.forming_points[v].size())))
-          seeds.push_back(place(point));
-      } else {
-        for (const Index point : points_of(face_of_middle[v - axis_.size()])) seeds.push_back(place(point));
-      }
-      complex_.balls[v] = solver.solve(complex_.balls[v].center, seeds);
+      seeds_of(v, face_of_middle, seeds);
+      const ExactBall* known = found ? found->find(starts[v], seeds) : nullptr;
+      complex_.balls[v] = known ? *known : solver.solve(starts[v], seeds);
     }
   });
+  if (!found) return;
+  std::vector<ClosestPoint> seeds;
+  for (Index v = 0; v < complex_.size(); ++v) {
+    seeds_of(v, face_of_middle, seeds);
+    found->add(starts[v], seeds, complex_.balls[v]);
+  }
 }
 
 const std::array<Index, 2>& Refiner::points_of(Index face) const {

@@ -5,6 +5,7 @@
 
 #include "ball_complex.h"
 #include "borders.h"
+#include "found_balls.h"
 #include "orchard/medial/refine.h"
 #include "split.h"
 
@@ -18,8 +19,9 @@ class Refiner {
   Refiner(const Surface& surface, const SurfaceSampling& sampling, const MedialAxis& axis, const RefineOptions& options,
           const Progress& progress);
 
-  // All steps but dividing what is not linear and reaching for places left open. To be called once, first.
-  void refine();
+  // All steps but dividing what is not linear and reaching for places left open. To be called once, first. Takes
+  // balls from `found`, if given, and adds those that it has to find.
+  void refine(FoundBalls* found = nullptr);
   // What there is so far.
   MedialMesh mesh() const { return complex_.mesh(); }
   // Mesh units: what is left open by less is not reached for.
@@ -36,7 +38,8 @@ class Refiner {
   BorderOptions border_options() const;
 
   void make_complex();
-  void find_balls();
+  void seeds_of(Index vertex, const std::vector<Index>& face_of_middle, std::vector<ClosestPoint>& seeds) const;
+  void find_balls(FoundBalls* found);
   void drop_folded();
   void mend_borders();
   void divide();

@@ -24,6 +24,7 @@
 #include "orchard/medial/topology.h"
 #include "outlines.h"
 #include "quality/reconstruction.h"
+#include "refine/found_balls.h"
 #include "refine/free_extension.h"
 #include "refine/solve_again.h"
 #include "support/brute_distance.h"
@@ -249,6 +250,66 @@ TEST(RefineAxis, RepairPassesAreThoseOfTheLastRound) {
   }
   EXPECT_LT(build.points, at) << "points of earlier rounds lie between";
   EXPECT_EQ(repair_passes(build), expected);
+}
+
+// Later rounds take balls from earlier ones.
+TEST(RefineAxis, OfSeveralRoundsIsThatOfTheirLastDiagram) {
+  for (std::uint64_t seed = test::first_seed(); seed < test::first_seed() + 2 * test::more(); ++seed) {
+    SCOPED_TRACE(seed);
+    const Surface surface(test::extruded(test::thin_bridge(0.05), 1));
+    MedialBuildOptions options = options_for(300);
+    options.sampling.seed = seed;
+    options.open_rounds = 2;
+    const MedialBuild rounds = build_medial_axis(surface, options);
+    ASSERT_GT(rounds.open_places, 0u);
+    MedialBuildInput last;
+    last.diagram = {rounds.diagram, rounds.sampling};
+    const MedialBuild once = build_medial_axis(surface, options, {}, last);
+    EXPECT_EQ(rounds.axis.centers, once.axis.centers);
+    EXPECT_EQ(rounds.axis.radii, once.axis.radii);
+    EXPECT_EQ(rounds.axis.faces.items, once.axis.faces.items);
+  }
+}
+
+TEST(FoundBalls, AreFoundByTheirStartAndAllSeeds) {
+  std::mt19937 random(static_cast<unsigned>(test::first_seed()));
+  const auto number = [&] { return static_cast<double>(random() % 5); };  // many are the same
+  const auto contact = [&] {
+    ClosestPoint place = detail::ExactBall::nowhere();
+    place.position = {number(), 0, 0};
+    place.triangle = random() % 2;
+    return place;
+  };
+  struct Known {
+    Point start;
+    std::vector<ClosestPoint> seeds;
+    double radius;
+  };
+  detail::FoundBalls found;
+  std::vector<Known> all;
+  const auto is_same = [](const ClosestPoint& a, const ClosestPoint& b) {
+    return a.position == b.position && a.triangle == b.triangle;
+  };
+  for (int i = 0; i < 5'000; ++i) {
+    Known asked{.start = {number(), number(), number()}, .seeds = {}, .radius = i + 1.0};
+    for (auto count = random() % 4; count > 0; --count) asked.seeds.push_back(contact());
+    const auto same = std::find_if(all.begin(), all.end(), [&](const Known& other) {
+      return other.start == asked.start &&
+             std::equal(other.seeds.begin(), other.seeds.end(), asked.seeds.begin(), asked.seeds.end(), is_same);
+    });
+    const detail::ExactBall* ball = found.find(asked.start, asked.seeds);
+    ASSERT_EQ(ball != nullptr, same != all.end()) << i;
+    if (ball) {
+      ASSERT_EQ(ball->radius, same->radius) << i;
+      continue;
+    }
+    detail::ExactBall made;
+    made.radius = asked.radius;
+    found.add(asked.start, asked.seeds, made);
+    all.push_back(asked);
+  }
+  EXPECT_GT(all.size(), 500u);
+  EXPECT_LT(all.size(), 5'000u);
 }
 
 TEST(RefineAxis, OwnPointsAreLeftAsTheyAre) {

@@ -74,13 +74,16 @@ class Program:
         self.lines = []
         threading.Thread(target=lambda: self.lines.extend(iter(self.process.stdout.readline, "")), daemon=True).start()
 
+    def has_said(self, pattern, after=0):
+        """The number of lines up to the first one that matches; 0 if there is none."""
+        return next((i for i, line in enumerate(self.lines[after:], after + 1) if re.search(pattern, line)), 0)
+
     def says(self, pattern, after=0):
-        """The number of lines up to the first one that matches."""
+        """The same once there is one."""
         end = time.time() + PATIENCE
         while time.time() < end:
-            for i, line in enumerate(self.lines[after:], after):
-                if re.search(pattern, line):
-                    return i + 1
+            if found := self.has_said(pattern, after):
+                return found
             assert self.process.poll() is None or self.lines[after:], f"it ended: {self.lines}"
             time.sleep(0.05)
         raise AssertionError(f"it did not say {pattern!r} after line {after} of {self.lines}")
@@ -107,7 +110,13 @@ def main():
         while not (window := screen.find("orchard")):
             assert time.time() < end, "there is no window"
             time.sleep(0.1)
-        time.sleep(1)  # until it listens
+        end = time.time() + PATIENCE
+        while not program.has_said(r"level 0: .*1 sphere\b", at):  # a window is there before it listens
+            assert time.time() < end, "it does not listen"
+            screen.press(window, "0")
+            time.sleep(1)
+        screen.press(window, "Up")
+        at = program.says(r"level 1: .*spheres", at)
         screen.press(window, "Up")
         at = program.says(r"level 2: .*spheres", at)
         screen.press(window, "0")
