@@ -1,5 +1,8 @@
 #include "ray_block.h"
 
+#include <bit>
+#include <utility>
+
 #include "eight.h"
 #include "machine.h"
 
@@ -71,7 +74,111 @@ ORCHARD_INLINE std::uint32_t find_triangles(const FloatRay& ray, const TriangleB
   return used & ~Kind::bits(missed);
 }
 
+// `Nodes` says which nodes of a block are met, and where.
+template <typename Kind, typename Nodes>
+ORCHARD_INLINE RayLeaf find_leaf(const Nodes& nodes, std::span<const TriangleBlock> leaves, RayWalk& walk) noexcept {
+  const float end = walk.end;
+  std::size_t size = walk.size;
+  RayEntries entries;
+  while (size > 0) {
+    const RayWalk::Entry entry = walk.stack[--size];
+    if (entry.enter > end) continue;
+    std::uint32_t child = entry.child;
+    bool met = true;
+    while ((child & kLeafBit) == 0) {
+      const auto& block = nodes.blocks[child];
+      std::uint32_t left = nodes.met(block, end, entries);
+      met = left != 0;
+      if (!met) break;
+      auto nearest = static_cast<std::uint32_t>(std::countr_zero(left));
+      const std::size_t first = size;
+      for (left &= left - 1; left != 0; left &= left - 1) {
+        auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+        if (entries[lane] < entries[nearest]) std::swap(lane, nearest);
+        std::size_t place = size++;
+        for (; place > first && walk.stack[place - 1].enter < entries[lane]; --place) {
+          walk.stack[place] = walk.stack[place - 1];
+        }
+        walk.stack[place] = {entries[lane], block.child[lane]};
+      }
+      child = block.child[nearest];
+    }
+    if (!met) continue;
+    const TriangleBlock& block = leaves[child & ~kLeafBit];
+    const std::uint32_t some = find_triangles<Kind>(walk.ray, block);
+    if (some == 0) continue;
+    walk.size = size;
+    return {&block, some};
+  }
+  walk.size = 0;
+  return {};
+}
+
+template <typename Kind>
+struct BallSlabs {
+  const FloatRay& ray;
+  float begin;
+  std::span<const BallSlabBlock> blocks;
+  ORCHARD_INLINE std::uint32_t met(const BallSlabBlock& block, float end, RayEntries& entries) const noexcept {
+    return find_ball_slabs<Kind>(ray, block, begin, end, entries);
+  }
+};
+
+// The ray against boxes: where it crosses their planes. The near ones are looked at from `margin` further on, the far
+// ones from `margin` further back, which covers all rounding: what is in doubt is as much as the planes' own places.
+template <typename Kind>
+struct Boxes {
+  using E = Eight<Kind>;
+  using Floats = typename E::Floats;
+  Floats near_from[3], far_from[3], inverse[3], begin;
+  std::size_t near_side[3], far_side[3];
+  std::span<const BoxBlock> blocks;
+
+  ORCHARD_INLINE Boxes(const RayWalk& walk, std::span<const BoxBlock> of) noexcept
+      : begin(E::all(walk.begin)), blocks(of) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const float d = walk.ray.direction[i], o = walk.ray.origin[i], margin = walk.ray.margin;
+      const bool down = d < 0;
+      const float size = down ? -d : d;
+      inverse[i] = E::all((down ? -1.0f : 1.0f) / (size < kMinSlope ? kMinSlope : size));
+      near_from[i] = E::all(down ? o - margin : o + margin);
+      far_from[i] = E::all(down ? o + margin : o - margin);
+      near_side[i] = down ? i + 3 : i, far_side[i] = down ? i : i + 3;
+    }
+  }
+  ORCHARD_INLINE std::uint32_t met(const BoxBlock& block, float end, RayEntries& entries) const noexcept {
+    const BoxBlock::Lanes* const planes = block.low.data();  // and those of `high`
+    const auto at = [&](std::size_t side, const Floats& from, std::size_t i)
+                        ORCHARD_INLINE_LAMBDA { return (load<Floats>(planes[side]) - from) * inverse[i]; };
+    const Floats enter = E::larger(E::larger(at(near_side[0], near_from[0], 0), at(near_side[1], near_from[1], 1)),
+                                   E::larger(at(near_side[2], near_from[2], 2), begin));
+    const Floats leave = E::smaller(E::smaller(at(far_side[0], far_from[0], 0), at(far_side[1], far_from[1], 1)),
+                                    E::smaller(at(far_side[2], far_from[2], 2), E::all(end)));
+    store(enter, entries);
+    return Kind::bits(enter <= leave);
+  }
+};
+
+template <typename Kind>
+ORCHARD_INLINE RayLeaf find_leaf_of_tree(const TreeView& tree, RayWalk& walk) noexcept {
+  return find_leaf<Kind>(BallSlabs<Kind>{walk.ray, walk.begin, tree.ball_slabs}, tree.triangle_blocks, walk);
+}
+
+template <typename Kind>
+ORCHARD_INLINE RayLeaf find_leaf_of_boxes(std::span<const BoxBlock> boxes, std::span<const TriangleBlock> leaves,
+                                          RayWalk& walk) noexcept {
+  return find_leaf<Kind>(Boxes<Kind>(walk, boxes), leaves, walk);
+}
+
 }  // namespace
+
+RayLeaf next_leaf(const TreeView& tree, RayWalk& walk) noexcept {
+  return PerMachine<find_leaf_of_tree<Widest>, find_leaf_of_tree<Base>>::call(tree, walk);
+}
+
+RayLeaf next_leaf(std::span<const BoxBlock> boxes, std::span<const TriangleBlock> leaves, RayWalk& walk) noexcept {
+  return PerMachine<find_leaf_of_boxes<Widest>, find_leaf_of_boxes<Base>>::call(boxes, leaves, walk);
+}
 
 std::uint32_t ray_ball_slabs_scalar(const FloatRay& ray, const BallSlabBlock& ball_slabs, float begin, float end,
                                     RayEntries& entries) noexcept {

@@ -1,8 +1,11 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "orchard/runtime/packed_tree.h"
+#include "orchard/runtime/ray_index.h"
 
 // A ray against eight ball slabs and against eight triangles at a time. Both may let through what the ray misses, but
 // keep everything that it meets.
@@ -15,6 +18,35 @@ struct FloatRay {
   std::array<float, 3> origin{}, direction{};
   float margin = 0;
 };
+
+// A walk along a ray through the leaves of a tree, kept from one leaf to the next.
+struct RayWalk {
+  static constexpr std::size_t kRoom = std::size_t{kBlockWidth} * (kTriangleTreeDepthLimit + 1) + 1;
+  struct Entry {
+    float enter;  // the s at which the ray enters the node, not too late
+    std::uint32_t child;
+  };
+
+  RayWalk(const FloatRay& of, float from, float to, std::uint32_t first) noexcept : ray(of), begin(from), end(to) {
+    stack[0] = {begin, first};
+  }
+
+  const FloatRay& ray;
+  float begin, end;      // the part of the ray that is looked at; `end` may be made smaller between two leaves
+  std::size_t size = 1;  // entries of the stack
+  std::array<Entry, kRoom> stack;
+};
+
+// Eight triangles at most, and the bits of those that the ray's line may meet.
+struct RayLeaf {
+  const TriangleBlock* block = nullptr;
+  std::uint32_t some = 0;
+};
+
+// The next leaf on the ray of which triangles may be met, the nearest node of a block first; without a block where
+// there is none.
+RayLeaf next_leaf(const TreeView& tree, RayWalk& walk) noexcept;
+RayLeaf next_leaf(std::span<const BoxBlock> boxes, std::span<const TriangleBlock> leaves, RayWalk& walk) noexcept;
 
 // The s at which the ray enters each ball slab, not too late; bits of the ball slabs that it meets between begin and
 // end.

@@ -1,0 +1,190 @@
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "orchard/runtime/ray_index.h"
+#include "orchard/runtime/shape_query.h"
+#include "ray_walk.h"
+#include "segment_meets.h"
+
+namespace orchard::runtime {
+
+using namespace detail;
+
+struct detail::RayIndexAccess {
+  static Frame frame(const RayIndex& of, const Pose& pose) noexcept { return {of.origin_, of.bounding_radius_, pose}; }
+  static Ball ball(const RayIndex& of) noexcept { return {of.middle_, of.radius_}; }
+  static std::span<const BoxBlock> boxes(const RayIndex& of) noexcept { return of.boxes_; }
+  static std::span<const TriangleBlock> leaves(const RayIndex& of) noexcept { return of.leaves_; }
+};
+
+namespace {
+
+// The nearest triangle so far on the segment from `from` to `to`, the course's first `end` steps.
+struct Nearest {
+  const Course& course;
+  Vec3 from, to;
+  double end;
+  double steps = std::numeric_limits<double>::infinity();
+  Vec3 point{};
+  std::uint32_t triangle = kNoTriangle;
+
+  // Whether the triangle is nearer; of equally near ones the first in the tree's own order.
+  bool offer(const TrianglePoints& t, std::uint32_t number) noexcept {
+    Vec3 common{};
+    if (!segment_meets(from, to, t, common)) return false;
+    const double at = std::clamp(course.steps_to(minus(common, from)), 0.0, end);
+    if (at > steps || (at == steps && number > triangle)) return false;
+    steps = at, point = common, triangle = number;
+    return true;
+  }
+};
+
+// The triangles of a tree, as Caster goes through them.
+struct TreeTriangles {
+  const TreeView& tree;
+
+  Frame frame(const Pose& pose) const noexcept { return {tree, pose}; }
+  Ball ball() const noexcept { return ball_around(tree); }
+  template <typename Visit>
+  void along(const Line& line, Visit&& visit) const noexcept {
+    walk_ray(tree, line, visit);
+  }
+  template <typename Visit>
+  void near(const Segment& segment, double rounding, Visit&& visit) const noexcept {
+    walk(tree, segment, rounding, [] { return 0.0; }, visit);
+  }
+};
+
+struct IndexTriangles {
+  const RayIndex& index;
+
+  Frame frame(const Pose& pose) const noexcept { return RayIndexAccess::frame(index, pose); }
+  Ball ball() const noexcept { return RayIndexAccess::ball(index); }
+  template <typename Visit>
+  void along(const Line& line, Visit&& visit) const noexcept {
+    const auto boxes = RayIndexAccess::boxes(index);
+    const auto leaves = RayIndexAccess::leaves(index);
+    RayWalk walk(line.ray, line.begin, line.end, 0);
+    for (RayLeaf leaf = next_leaf(boxes, leaves, walk); leaf.block != nullptr; leaf = next_leaf(boxes, leaves, walk)) {
+      walk.end = visit(*leaf.block, leaf.some, walk.end);
+    }
+  }
+  template <typename Visit>
+  void near(const Segment&, double, Visit&& visit) const noexcept {
+    for (const TriangleBlock& block : RayIndexAccess::leaves(index)) visit(block);
+  }
+};
+
+// The first triangle along rays in one body's frame.
+template <typename Triangles>
+class Caster {
+ public:
+  Caster(const Triangles& triangles, const Pose& pose) noexcept
+      : triangles_(triangles), frame_(triangles.frame(pose)), ball_(triangles.ball()) {}
+
+  std::optional<RayHit> cast(const Ray& ray) const noexcept {
+    const RayHit unknown{0, ray.origin, kNoTriangle};
+    if (std::isnan(ray.longest)) return unknown;
+    const Vec3 from = frame_.enter(ray.origin);
+    const Course course(frame_, ray.direction);
+    if (!within_reach(from) || !std::isfinite(course.speed)) return unknown;
+    if (ray.longest < 0) return std::nullopt;
+    Nearest nearest{course, from, from, 0};
+    if (course.speed > 0) {
+      const double reach = reach_beyond(ball_, frame_.bounding_radius, from);
+      nearest.end = std::min(course.steps(ray.longest), reach / course.speed);
+    }
+    nearest.to = settled(detail::along(from, course.step, nearest.end));
+    const Vec3 way = course.speed > 0 ? detail::along({0, 0, 0}, course.step, 1 / course.speed) : Vec3{1, 0, 0};
+    const Line line = line_of(ball_, from, way, nearest.end * course.speed);
+    if (line.misses) return std::nullopt;
+    if (line.in_float) {
+      look_along(line, nearest);
+    } else {
+      look_near(nearest);
+    }
+    if (nearest.triangle == kNoTriangle) return std::nullopt;
+    return RayHit{std::min(course.along(nearest.steps), ray.longest), frame_.leave(nearest.point), nearest.triangle};
+  }
+
+ private:
+  void look_along(const Line& line, Nearest& nearest) const noexcept {
+    triangles_.along(line, [&](const TriangleBlock& block, std::uint32_t some, float end) {
+      for (std::uint32_t left = some; left != 0; left &= left - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+        if (!nearest.offer(points_of(block, lane), block.triangle[lane])) continue;
+        const double rounding = kRounding * (one_norm(nearest.from) + frame_.bounding_radius);
+        const double s = nearest.steps * nearest.course.speed;
+        end = std::min(end, static_cast<float>(s + rounding - line.at) + line.ray.margin);
+      }
+      return end;
+    });
+  }
+
+  void look_near(Nearest& nearest) const noexcept {  // where floats do not reach
+    const Segment whole(nearest.from, nearest.to);
+    triangles_.near(whole, frame_.rounding(whole), [&](const TriangleBlock& block) {
+      return each_triangle(block, [&](const TrianglePoints& t, std::uint32_t triangle) {
+        nearest.offer(t, triangle);
+        return true;
+      });
+    });
+  }
+
+  Triangles triangles_;
+  Frame frame_;
+  Ball ball_;
+};
+
+template <typename Triangles>
+std::optional<RayHit> cast_one(const Triangles& triangles, const Pose& pose, const Ray& ray) noexcept {
+  if (!is_rigid(pose)) return RayHit{0, ray.origin, kNoTriangle};
+  return Caster<Triangles>(triangles, pose).cast(ray);
+}
+
+template <typename Triangles>
+void cast_all(const Triangles& triangles, const Pose& pose, std::span<const Ray> rays,
+              std::span<std::optional<RayHit>> hits) noexcept {
+  if (!is_rigid(pose)) {
+    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = RayHit{0, rays[i].origin, kNoTriangle};
+    return;
+  }
+  const Caster<Triangles> caster(triangles, pose);
+  for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = caster.cast(rays[i]);
+}
+
+}  // namespace
+
+std::optional<RayHit> cast_ray(const TreeView& tree, const Pose& pose, const std::array<double, 3>& origin,
+                               const std::array<double, 3>& direction, double longest) noexcept {
+  if (tree.ball_slabs.empty()) return std::nullopt;
+  return cast_one(TreeTriangles{tree}, pose, {origin, direction, longest});
+}
+
+void cast_rays(const TreeView& tree, const Pose& pose, std::span<const Ray> rays,
+               std::span<std::optional<RayHit>> hits) noexcept {
+  if (tree.ball_slabs.empty()) {
+    std::fill_n(hits.begin(), rays.size(), std::nullopt);
+    return;
+  }
+  cast_all(TreeTriangles{tree}, pose, rays, hits);
+}
+
+std::optional<RayHit> cast_ray(const RayIndex& index, const Pose& pose, const std::array<double, 3>& origin,
+                               const std::array<double, 3>& direction, double longest) noexcept {
+  if (index.empty()) return std::nullopt;
+  return cast_one(IndexTriangles{index}, pose, {origin, direction, longest});
+}
+
+void cast_rays(const RayIndex& index, const Pose& pose, std::span<const Ray> rays,
+               std::span<std::optional<RayHit>> hits) noexcept {
+  if (index.empty()) {
+    std::fill_n(hits.begin(), rays.size(), std::nullopt);
+    return;
+  }
+  cast_all(IndexTriangles{index}, pose, rays, hits);
+}
+
+}  // namespace orchard::runtime
