@@ -15,8 +15,7 @@ using namespace detail;
 struct detail::RayIndexAccess {
   static Frame frame(const RayIndex& of, const Pose& pose) noexcept { return {of.origin_, of.bounding_radius_, pose}; }
   static Ball ball(const RayIndex& of) noexcept { return {of.middle_, of.radius_}; }
-  static std::span<const BoxBlock> boxes(const RayIndex& of) noexcept { return of.boxes_; }
-  static std::span<const TriangleBlock> leaves(const RayIndex& of) noexcept { return of.leaves_; }
+  static BoxTree tree(const RayIndex& of) noexcept { return {of.boxes_, of.leaves_, of.sizes_}; }
 };
 
 namespace {
@@ -64,16 +63,16 @@ struct IndexTriangles {
   Ball ball() const noexcept { return RayIndexAccess::ball(index); }
   template <typename Visit>
   void along(const Line& line, Visit&& visit) const noexcept {
-    const auto boxes = RayIndexAccess::boxes(index);
-    const auto leaves = RayIndexAccess::leaves(index);
+    const BoxTree tree = RayIndexAccess::tree(index);
+    const BoxRay ray(line.ray);
     RayWalk walk(line.ray, line.begin, line.end, 0);
-    for (RayLeaf leaf = next_leaf(boxes, leaves, walk); leaf.block != nullptr; leaf = next_leaf(boxes, leaves, walk)) {
+    for (RayLeaf leaf = next_leaf(tree, ray, walk); leaf.block != nullptr; leaf = next_leaf(tree, ray, walk)) {
       walk.end = visit(*leaf.block, leaf.some, walk.end);
     }
   }
   template <typename Visit>
   void near(const Segment&, double, Visit&& visit) const noexcept {
-    for (const TriangleBlock& block : RayIndexAccess::leaves(index)) visit(block);
+    for (const TriangleBlock& block : RayIndexAccess::tree(index).leaves) visit(block);
   }
 };
 
@@ -94,10 +93,10 @@ class Caster {
     Nearest nearest{course, from, from, 0};
     if (course.speed > 0) {
       const double reach = reach_beyond(ball_, frame_.bounding_radius, from);
-      nearest.end = std::min(course.steps(ray.longest), reach / course.speed);
+      nearest.end = std::min(course.steps(ray.longest), reach * course.slowness);
     }
     nearest.to = settled(detail::along(from, course.step, nearest.end));
-    const Vec3 way = course.speed > 0 ? detail::along({0, 0, 0}, course.step, 1 / course.speed) : Vec3{1, 0, 0};
+    const Vec3 way = course.speed > 0 ? detail::along({0, 0, 0}, course.step, course.slowness) : Vec3{1, 0, 0};
     const Line line = line_of(ball_, from, way, nearest.end * course.speed);
     if (line.misses) return std::nullopt;
     if (line.in_float) {

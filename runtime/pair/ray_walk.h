@@ -28,18 +28,19 @@ struct Course {
     for (std::size_t i = 0; i < 3; ++i) way[i] = scaled(direction[i], -power);
     step = rotate(frame.back, way);
     speed = length(step);
+    slowness = speed > 0 ? 1 / speed : 0;
   }
   // A factor of the direction in steps, and back.
   double steps(double along) const noexcept {
     if (!(along > 0) || !std::isfinite(along)) return along;
     const int p = exponent_of(along), q = exponent_of(scale);
-    const double ratio = scaled(along, -p) / scaled(scale, -q);
-    return scaled(ratio, p - q + power);
+    const double part = scaled(along, -p);
+    return scaled(scale == 1 ? part : part / scaled(scale, -q), p - q + power);
   }
   double along(double steps) const noexcept { return scaled(steps * scale, -power); }
-  double steps_to(const Vec3& place) const noexcept { return speed > 0 ? dot(place, step) / (speed * speed) : 0; }
+  double steps_to(const Vec3& place) const noexcept { return dot(place, step) * slowness * slowness; }
 
-  double scale, speed = 0;
+  double scale, speed = 0, slowness = 0;
   int power = 0;
   Vec3 step{};
 };
@@ -56,7 +57,7 @@ inline Ball ball_around(const TreeView& tree) noexcept {
 
 // From a point to outside of everything.
 inline double reach_beyond(const Ball& ball, double bounding_radius, const Vec3& point) noexcept {
-  return length(minus(point, ball.middle)) + 2 * ball.radius + kRounding * bounding_radius;
+  return one_norm(minus(point, ball.middle)) + 2 * ball.radius + kRounding * bounding_radius;
 }
 
 // A ray for the float tests, or the verdict that there is none: past the whole tree.

@@ -12,13 +12,16 @@
 // Half the length of what a ball cuts off the line is the root of a difference of squares, and kGrazing of the greater
 // of them covers its rounding. Triangles: corners relative to a point of the line nearby are off by at most the margin,
 // and longer than L nowhere. A product of three such vectors, one of them of length 1, is off by less than 4 L margin +
-// 16 u L^2.
+// 16 u L^2. Sheared onto a plane, by slopes of at most 1, their two components are at most 2 L and off by less than two
+// margins and 4 u L, so a product of two of them by less than 4 * 2 L * (2 margin + 4 u L) + 3 u * 8 L^2 < 16 L margin +
+// 64 u L^2.
 namespace orchard::runtime::detail {
 namespace {
 
 constexpr float kGrazing = 0x1p-20f;
 constexpr float kMinSlope = 1e-12f;  // a ray along a slab: s is below 1e19 then, times this less than every margin
 constexpr float kProductError = 0x1p-20f;
+constexpr float kShearedError = 0x1p-18f;
 constexpr float kMinRoom = 1e-33f;  // covers what underflows in a product
 
 template <typename Kind>
@@ -51,6 +54,12 @@ ORCHARD_INLINE std::uint32_t find_ball_slabs(const FloatRay& ray, const BallSlab
   return Kind::bits(zero <= radius) & ~Kind::bits(missed);
 }
 
+ORCHARD_INLINE std::uint32_t used_lanes(const TriangleBlock& block) noexcept {
+  std::uint32_t used = 0;
+  for (std::uint32_t i = 0; i < kBlockWidth; ++i) used |= std::uint32_t{block.triangle[i] != kNoTriangle} << i;
+  return used;
+}
+
 template <typename Kind>
 ORCHARD_INLINE std::uint32_t find_triangles(const FloatRay& ray, const TriangleBlock& block) noexcept {
   using E = Eight<Kind>;
@@ -69,43 +78,41 @@ ORCHARD_INLINE std::uint32_t find_triangles(const FloatRay& ray, const TriangleB
   const Floats p = E::dot(d, E::cross(a, b)), q = E::dot(d, E::cross(b, c)), r = E::dot(d, E::cross(c, a));
   const Floats least = E::smaller(E::smaller(p, q), r), most = E::larger(E::larger(p, q), r);
   const auto missed = (least < -room) & (room < most);
-  std::uint32_t used = 0;
-  for (std::uint32_t i = 0; i < kBlockWidth; ++i) used |= std::uint32_t{block.triangle[i] != kNoTriangle} << i;
-  return used & ~Kind::bits(missed);
+  return used_lanes(block) & ~Kind::bits(missed);
 }
 
-// `Nodes` says which nodes of a block are met, and where.
-template <typename Kind, typename Nodes>
+// `Nodes` says which nodes of a block are met, and where, and which triangles of a leaf.
+template <typename Nodes>
 ORCHARD_INLINE RayLeaf find_leaf(const Nodes& nodes, std::span<const TriangleBlock> leaves, RayWalk& walk) noexcept {
   const float end = walk.end;
   std::size_t size = walk.size;
   RayEntries entries;
   while (size > 0) {
-    const RayWalk::Entry entry = walk.stack[--size];
+    RayWalk::Entry entry = walk.stack[--size];
     if (entry.enter > end) continue;
-    std::uint32_t child = entry.child;
     bool met = true;
-    while ((child & kLeafBit) == 0) {
-      const auto& block = nodes.blocks[child];
+    while ((entry.child & kLeafBit) == 0) {
+      const auto& block = nodes.blocks[entry.child];
       std::uint32_t left = nodes.met(block, end, entries);
       met = left != 0;
       if (!met) break;
-      auto nearest = static_cast<std::uint32_t>(std::countr_zero(left));
+      auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+      entry = nodes.entry(block, entries, lane);
       const std::size_t first = size;
       for (left &= left - 1; left != 0; left &= left - 1) {
-        auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-        if (entries[lane] < entries[nearest]) std::swap(lane, nearest);
+        lane = static_cast<std::uint32_t>(std::countr_zero(left));
+        RayWalk::Entry other = nodes.entry(block, entries, lane);
+        if (other.enter < entry.enter) std::swap(entry, other);
         std::size_t place = size++;
-        for (; place > first && walk.stack[place - 1].enter < entries[lane]; --place) {
+        for (; place > first && walk.stack[place - 1].enter < other.enter; --place) {
           walk.stack[place] = walk.stack[place - 1];
         }
-        walk.stack[place] = {entries[lane], block.child[lane]};
+        walk.stack[place] = other;
       }
-      child = block.child[nearest];
     }
     if (!met) continue;
-    const TriangleBlock& block = leaves[child & ~kLeafBit];
-    const std::uint32_t some = find_triangles<Kind>(walk.ray, block);
+    const TriangleBlock& block = leaves[entry.child & ~kLeafBit];
+    const std::uint32_t some = nodes.triangles(block, entry);
     if (some == 0) continue;
     walk.size = size;
     return {&block, some};
@@ -122,52 +129,84 @@ struct BallSlabs {
   ORCHARD_INLINE std::uint32_t met(const BallSlabBlock& block, float end, RayEntries& entries) const noexcept {
     return find_ball_slabs<Kind>(ray, block, begin, end, entries);
   }
+  ORCHARD_INLINE static RayWalk::Entry entry(const BallSlabBlock& block, const RayEntries& entries,
+                                             std::uint32_t lane) noexcept {
+    return {entries[lane], block.child[lane]};
+  }
+  ORCHARD_INLINE std::uint32_t triangles(const TriangleBlock& block, const RayWalk::Entry&) const noexcept {
+    return find_triangles<Kind>(ray, block);
+  }
 };
 
 // The ray against boxes: where it crosses their planes. The near ones are looked at from `margin` further on, the far
 // ones from `margin` further back, which covers all rounding: what is in doubt is as much as the planes' own places.
+// Triangles are sheared along the ray onto a plane across the axis that it is steepest to.
 template <typename Kind>
 struct Boxes {
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
-  Floats near_from[3], far_from[3], inverse[3], begin;
-  std::size_t near_side[3], far_side[3];
+  const BoxTree& tree;
+  const BoxRay& own;
+  const FloatRay& ray;
   std::span<const BoxBlock> blocks;
+  Floats near_from[3], far_from[3], inverse[3], begin;
 
-  ORCHARD_INLINE Boxes(const RayWalk& walk, std::span<const BoxBlock> of) noexcept
-      : begin(E::all(walk.begin)), blocks(of) {
+  ORCHARD_INLINE Boxes(const BoxTree& of, const BoxRay& box_ray, const RayWalk& walk) noexcept
+      : tree(of), own(box_ray), ray(walk.ray), blocks(of.boxes), begin(E::all(walk.begin)) {
     for (std::size_t i = 0; i < 3; ++i) {
-      const float d = walk.ray.direction[i], o = walk.ray.origin[i], margin = walk.ray.margin;
-      const bool down = d < 0;
-      const float size = down ? -d : d;
-      inverse[i] = E::all((down ? -1.0f : 1.0f) / (size < kMinSlope ? kMinSlope : size));
-      near_from[i] = E::all(down ? o - margin : o + margin);
-      far_from[i] = E::all(down ? o + margin : o - margin);
-      near_side[i] = down ? i + 3 : i, far_side[i] = down ? i : i + 3;
+      near_from[i] = E::all(own.near_from[i]), far_from[i] = E::all(own.far_from[i]);
+      inverse[i] = E::all(own.inverse[i]);
     }
   }
+
   ORCHARD_INLINE std::uint32_t met(const BoxBlock& block, float end, RayEntries& entries) const noexcept {
     const BoxBlock::Lanes* const planes = block.low.data();  // and those of `high`
     const auto at = [&](std::size_t side, const Floats& from, std::size_t i)
                         ORCHARD_INLINE_LAMBDA { return (load<Floats>(planes[side]) - from) * inverse[i]; };
-    const Floats enter = E::larger(E::larger(at(near_side[0], near_from[0], 0), at(near_side[1], near_from[1], 1)),
-                                   E::larger(at(near_side[2], near_from[2], 2), begin));
-    const Floats leave = E::smaller(E::smaller(at(far_side[0], far_from[0], 0), at(far_side[1], far_from[1], 1)),
-                                    E::smaller(at(far_side[2], far_from[2], 2), E::all(end)));
+    const Floats enter = E::larger(E::larger(at(own.near_side[0], near_from[0], 0), at(own.near_side[1], near_from[1], 1)),
+                                   E::larger(at(own.near_side[2], near_from[2], 2), begin));
+    const Floats leave = E::smaller(E::smaller(at(own.far_side[0], far_from[0], 0), at(own.far_side[1], far_from[1], 1)),
+                                    E::smaller(at(own.far_side[2], far_from[2], 2), E::all(end)));
     store(enter, entries);
     return Kind::bits(enter <= leave);
+  }
+
+  ORCHARD_INLINE static RayWalk::Entry entry(const BoxBlock& block, const RayEntries& entries,
+                                             std::uint32_t lane) noexcept {
+    return {entries[lane], block.child[lane]};
+  }
+
+  // From where the ray enters the leaf's box, or from no more than the margin beside it: no corner is farther than the
+  // box's diagonal and some margins.
+  ORCHARD_INLINE std::uint32_t triangles(const TriangleBlock& block, const RayWalk::Entry& leaf) const noexcept {
+    const float reach = tree.sizes[leaf.child & ~kLeafBit] + 8 * ray.margin;
+    const Floats room = E::all(reach * (16 * ray.margin + reach * kShearedError) + kMinRoom);
+    Floats x[3], y[3];
+    const auto from = [&](std::size_t i)
+                          ORCHARD_INLINE_LAMBDA { return E::all(ray.origin[i] + leaf.enter * ray.direction[i]); };
+    const auto [u, v, w] = own.axis;
+    const Floats from_x = from(u), from_y = from(v), from_z = from(w);
+    const Floats shear_x = E::all(own.shear[0]), shear_y = E::all(own.shear[1]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Floats z = load<Floats>(block.corner[k][w]) - from_z;
+      x[k] = (load<Floats>(block.corner[k][u]) - from_x) - shear_x * z;
+      y[k] = (load<Floats>(block.corner[k][v]) - from_y) - shear_y * z;
+    }
+    const Floats p = x[0] * y[1] - y[0] * x[1], q = x[1] * y[2] - y[1] * x[2], r = x[2] * y[0] - y[2] * x[0];
+    const Floats least = E::smaller(E::smaller(p, q), r), most = E::larger(E::larger(p, q), r);
+    const std::uint32_t some = E::kAll & ~Kind::bits((least < -room) & (room < most));
+    return some == 0 ? 0 : some & used_lanes(block);
   }
 };
 
 template <typename Kind>
 ORCHARD_INLINE RayLeaf find_leaf_of_tree(const TreeView& tree, RayWalk& walk) noexcept {
-  return find_leaf<Kind>(BallSlabs<Kind>{walk.ray, walk.begin, tree.ball_slabs}, tree.triangle_blocks, walk);
+  return find_leaf(BallSlabs<Kind>{walk.ray, walk.begin, tree.ball_slabs}, tree.triangle_blocks, walk);
 }
 
 template <typename Kind>
-ORCHARD_INLINE RayLeaf find_leaf_of_boxes(std::span<const BoxBlock> boxes, std::span<const TriangleBlock> leaves,
-                                          RayWalk& walk) noexcept {
-  return find_leaf<Kind>(Boxes<Kind>(walk, boxes), leaves, walk);
+ORCHARD_INLINE RayLeaf find_leaf_of_boxes(const BoxTree& tree, const BoxRay& ray, RayWalk& walk) noexcept {
+  return find_leaf(Boxes<Kind>(tree, ray, walk), tree.leaves, walk);
 }
 
 }  // namespace
@@ -176,8 +215,25 @@ RayLeaf next_leaf(const TreeView& tree, RayWalk& walk) noexcept {
   return PerMachine<find_leaf_of_tree<Widest>, find_leaf_of_tree<Base>>::call(tree, walk);
 }
 
-RayLeaf next_leaf(std::span<const BoxBlock> boxes, std::span<const TriangleBlock> leaves, RayWalk& walk) noexcept {
-  return PerMachine<find_leaf_of_boxes<Widest>, find_leaf_of_boxes<Base>>::call(boxes, leaves, walk);
+RayLeaf next_leaf(const BoxTree& tree, const BoxRay& ray, RayWalk& walk) noexcept {
+  return PerMachine<find_leaf_of_boxes<Widest>, find_leaf_of_boxes<Base>>::call(tree, ray, walk);
+}
+
+BoxRay::BoxRay(const FloatRay& ray) noexcept {
+  std::array<float, 3> size{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const float d = ray.direction[i], o = ray.origin[i];
+    const bool down = d < 0;
+    size[i] = down ? -d : d;
+    const float margin = down ? -ray.margin : ray.margin;
+    inverse[i] = (down ? -1.0f : 1.0f) / (size[i] < kMinSlope ? kMinSlope : size[i]);
+    near_from[i] = o + margin, far_from[i] = o - margin;
+    near_side[i] = static_cast<std::uint8_t>(down ? i + 3 : i), far_side[i] = static_cast<std::uint8_t>(down ? i : i + 3);
+  }
+  const bool x = size[0] > size[1] && size[0] > size[2], y = !x && size[1] > size[2];
+  axis = {static_cast<std::uint8_t>(x ? 1 : 0), static_cast<std::uint8_t>(x || y ? 2 : 1),
+          static_cast<std::uint8_t>(x ? 0 : y ? 1 : 2)};
+  for (std::size_t i = 0; i < 2; ++i) shear[i] = ray.direction[axis[i]] * inverse[axis[2]];
 }
 
 std::uint32_t ray_ball_slabs_scalar(const FloatRay& ray, const BallSlabBlock& ball_slabs, float begin, float end,

@@ -37,6 +37,23 @@ struct RayWalk {
   std::array<Entry, kRoom> stack;
 };
 
+// What a ray index holds.
+struct BoxTree {
+  std::span<const BoxBlock> boxes;
+  std::span<const TriangleBlock> leaves;
+  std::span<const float> sizes;  // of the leaves' boxes: the diagonals
+};
+
+// A ray for the tests against boxes and their triangles.
+struct BoxRay {
+  explicit BoxRay(const FloatRay& ray) noexcept;
+
+  std::array<float, 3> near_from, far_from, inverse;  // for the planes met first and last, across each axis
+  std::array<std::uint8_t, 3> near_side, far_side;    // which these are, of low[0], .., high[2]
+  std::array<std::uint8_t, 3> axis;                   // the last one is the ray's steepest
+  std::array<float, 2> shear;                         // along the ray, onto a plane across that one
+};
+
 // Eight triangles at most, and the bits of those that the ray's line may meet.
 struct RayLeaf {
   const TriangleBlock* block = nullptr;
@@ -46,7 +63,7 @@ struct RayLeaf {
 // The next leaf on the ray of which triangles may be met, the nearest node of a block first; without a block where
 // there is none.
 RayLeaf next_leaf(const TreeView& tree, RayWalk& walk) noexcept;
-RayLeaf next_leaf(std::span<const BoxBlock> boxes, std::span<const TriangleBlock> leaves, RayWalk& walk) noexcept;
+RayLeaf next_leaf(const BoxTree& tree, const BoxRay& ray, RayWalk& walk) noexcept;
 
 // The s at which the ray enters each ball slab, not too late; bits of the ball slabs that it meets between begin and
 // end.

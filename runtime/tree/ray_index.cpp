@@ -1,6 +1,7 @@
 #include "orchard/runtime/ray_index.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <tuple>
 
@@ -11,6 +12,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // Levels below which parts are halved by number: 31 more are enough for every count, and kTriangleTreeDepthLimit is 64.
 constexpr std::uint32_t kCostlyDepth = 32;
 
+constexpr double kOutward = 1 + 0x1p-23;  // more than what rounding to float takes away
+
 struct Box {
   std::array<float, 3> low = {kInfinity, kInfinity, kInfinity}, high = {-kInfinity, -kInfinity, -kInfinity};
 
@@ -18,6 +21,10 @@ struct Box {
     for (std::size_t i = 0; i < 3; ++i) {
       low[i] = std::min(low[i], other.low[i]), high[i] = std::max(high[i], other.high[i]);
     }
+  }
+  float diagonal() const {  // not less than it is
+    const double x = double{high[0]} - low[0], y = double{high[1]} - low[1], z = double{high[2]} - low[2];
+    return static_cast<float>(std::sqrt(x * x + y * y + z * z) * kOutward);
   }
   double half_area() const {
     const double x = double{high[0]} - low[0], y = double{high[1]} - low[1], z = double{high[2]} - low[2];
@@ -34,8 +41,9 @@ struct Part {
 // Booth 1990), along each of the axes; the widest parts of a node again until there are eight.
 class Builder {
  public:
-  Builder(const TreeView& tree, std::vector<BoxBlock>& boxes, std::vector<TriangleBlock>& leaves)
-      : tree_(tree), boxes_(boxes), leaves_(leaves), box_(tree.triangles.size()), first_(tree.triangles.size()) {
+  Builder(const TreeView& tree, std::vector<BoxBlock>& boxes, std::vector<TriangleBlock>& leaves,
+          std::vector<float>& sizes)
+      : tree_(tree), boxes_(boxes), leaves_(leaves), sizes_(sizes), box_(tree.triangles.size()), first_(tree.triangles.size()) {
     const std::size_t count = tree.triangles.size();
     for (std::size_t t = 0; t < count; ++t) {
       for (const std::uint32_t corner : tree.triangles[t]) box_[t].add({tree.vertices[corner], tree.vertices[corner]});
@@ -89,6 +97,7 @@ class Builder {
   }
 
   void add_leaf(const Part& part) {
+    sizes_.push_back(box_of(part).diagonal());
     TriangleBlock& block = leaves_.emplace_back();
     for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
       const bool used = lane < part.size();
@@ -172,6 +181,7 @@ class Builder {
   const TreeView& tree_;
   std::vector<BoxBlock>& boxes_;
   std::vector<TriangleBlock>& leaves_;
+  std::vector<float>& sizes_;
   std::uint32_t depth_ = 0;
   std::vector<Box> box_;                             // by triangle
   std::array<std::vector<std::uint32_t>, 3> order_;  // triangles along each axis, part by part
@@ -187,11 +197,13 @@ RayIndex::RayIndex(const TreeView& tree) : origin_(tree.origin), bounding_radius
   const BallSlabBlock& root = tree.ball_slabs[0];
   middle_ = {double{root.x[0]}, double{root.y[0]}, double{root.z[0]}};
   radius_ = double{root.radius[0]};
-  Builder(tree, boxes_, leaves_).build();
+  Builder(tree, boxes_, leaves_, sizes_).build();
+  boxes_.shrink_to_fit(), leaves_.shrink_to_fit(), sizes_.shrink_to_fit();
 }
 
 std::size_t RayIndex::bytes() const noexcept {
-  return boxes_.capacity() * sizeof(BoxBlock) + leaves_.capacity() * sizeof(TriangleBlock);
+  return boxes_.capacity() * sizeof(BoxBlock) + leaves_.capacity() * sizeof(TriangleBlock) +
+         sizes_.capacity() * sizeof(float);
 }
 
 }  // namespace orchard::runtime

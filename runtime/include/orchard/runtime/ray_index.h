@@ -45,6 +45,7 @@ class RayIndex {
   double radius_ = 0, bounding_radius_ = 0;    // of that ball; the tree's
   std::vector<BoxBlock> boxes_;                // block 0 holds the children of the root
   std::vector<TriangleBlock> leaves_;
+  std::vector<float> sizes_;  // of the leaves' boxes: the diagonals, rounded up
 };
 
 // As of the tree that the index was made of: see shape_query.h. Where the ray begins so far away that floats do not
