@@ -29,11 +29,12 @@ struct Nearest {
   Vec3 point{};
   std::uint32_t triangle = kNoTriangle;
 
-  // Whether the triangle is nearer; of equally near ones the first in the tree's own order.
-  bool offer(const TrianglePoints& t, std::uint32_t number) noexcept {
+  // Whether the triangle is nearer; of equally near ones the first in the tree's own order. `sure`: that the line runs
+  // through it.
+  bool offer(const TrianglePoints& t, std::uint32_t number, bool sure) noexcept {
     Vec3 common{};
-    if (!segment_meets(from, to, t, common)) return false;
-    const double at = std::clamp(course.steps_to(minus(common, from)), 0.0, end);
+    if (!(sure ? segment_passes(from, to, t, common) : segment_meets(from, to, t, common))) return false;
+    const double at = less_of(more_of(course.steps_to(minus(common, from)), 0), end);
     if (at > steps || (at == steps && number > triangle)) return false;
     steps = at, point = common, triangle = number;
     return true;
@@ -67,7 +68,7 @@ struct IndexTriangles {
     const BoxRay ray(line.ray);
     RayWalk walk(line.ray, line.begin, line.end, 0);
     for (RayLeaf leaf = next_leaf(tree, ray, walk); leaf.block != nullptr; leaf = next_leaf(tree, ray, walk)) {
-      walk.end = visit(*leaf.block, leaf.some, walk.end);
+      walk.end = visit(leaf, walk.end);
     }
   }
   template <typename Visit>
@@ -93,7 +94,7 @@ class Caster {
     Nearest nearest{course, from, from, 0};
     if (course.speed > 0) {
       const double reach = reach_beyond(ball_, frame_.bounding_radius, from);
-      nearest.end = std::min(course.steps(ray.longest), reach * course.slowness);
+      nearest.end = less_of(course.steps(ray.longest), reach * course.slowness);
     }
     nearest.to = settled(detail::along(from, course.step, nearest.end));
     const Vec3 way = course.speed > 0 ? detail::along({0, 0, 0}, course.step, course.slowness) : Vec3{1, 0, 0};
@@ -105,18 +106,20 @@ class Caster {
       look_near(nearest);
     }
     if (nearest.triangle == kNoTriangle) return std::nullopt;
-    return RayHit{std::min(course.along(nearest.steps), ray.longest), frame_.leave(nearest.point), nearest.triangle};
+    return RayHit{less_of(course.along(nearest.steps), ray.longest), frame_.leave(nearest.point), nearest.triangle};
   }
 
  private:
   void look_along(const Line& line, Nearest& nearest) const noexcept {
-    triangles_.along(line, [&](const TriangleBlock& block, std::uint32_t some, float end) {
-      for (std::uint32_t left = some; left != 0; left &= left - 1) {
+    triangles_.along(line, [&](const RayLeaf& leaf, float end) {
+      for (std::uint32_t left = leaf.some; left != 0; left &= left - 1) {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-        if (!nearest.offer(points_of(block, lane), block.triangle[lane])) continue;
+        const bool sure = (leaf.sure >> lane & 1) != 0;
+        if (!nearest.offer(points_of(*leaf.block, lane), leaf.block->triangle[lane], sure)) continue;
         const double rounding = kRounding * (one_norm(nearest.from) + frame_.bounding_radius);
         const double s = nearest.steps * nearest.course.speed;
-        end = std::min(end, static_cast<float>(s + rounding - line.at) + line.ray.margin);
+        const float behind = static_cast<float>(s + rounding - line.at) + line.ray.margin;
+        end = behind < end ? behind : end;
       }
       return end;
     });
@@ -126,7 +129,7 @@ class Caster {
     const Segment whole(nearest.from, nearest.to);
     triangles_.near(whole, frame_.rounding(whole), [&](const TriangleBlock& block) {
       return each_triangle(block, [&](const TrianglePoints& t, std::uint32_t triangle) {
-        nearest.offer(t, triangle);
+        nearest.offer(t, triangle, false);
         return true;
       });
     });

@@ -22,7 +22,7 @@ inline double one_norm(const Vec3& v) noexcept { return std::fabs(v[0]) + std::f
 // A ray in the body's frame, by steps of about one unit: directions of every length are as good as unit vectors.
 struct Course {
   Course(const Frame& frame, const Vec3& direction) noexcept : scale(frame.pose.scale) {
-    const double largest = std::max({std::fabs(direction[0]), std::fabs(direction[1]), std::fabs(direction[2])});
+    const double largest = largest_size(direction);
     power = largest > 0 && std::isfinite(largest) ? exponent_of(largest) : 0;
     Vec3 way{};
     for (std::size_t i = 0; i < 3; ++i) way[i] = scaled(direction[i], -power);
@@ -64,45 +64,44 @@ inline double reach_beyond(const Ball& ball, double bounding_radius, const Vec3&
 struct Line {
   FloatRay ray;
   double at = 0;             // of s = 0, along the ray from its origin
-  float begin = 0, end = 0;  // in s
+  float begin = 0, end = 0;  // in s, which is above 0
   bool misses = false, in_float = true;
 };
 
-// From `from` along the unit vector `way`, for `length_of_ray`, through what is in `ball`.
+// From `from` along the unit vector `way`, for `length_of_ray`, through what is in `ball`; its s = 0 is before it.
 inline Line line_of(const Ball& ball, const Vec3& from, const Vec3& way, double length_of_ray) noexcept {
   constexpr double unit = 0x1p-24;
   Line line;
-  line.at = dot(minus(ball.middle, from), way);
-  const Vec3 origin = along(from, way, line.at);
-  const double middle = one_norm(ball.middle);
-  const double error = kRounding * (one_norm(from) + std::fabs(line.at) + middle + ball.radius);
+  const Vec3 to_middle = minus(ball.middle, from);
+  const double ahead = dot(to_middle, way), middle = one_norm(ball.middle);
+  const double error = kRounding * (2 * one_norm(to_middle) + 2 * middle + ball.radius);
   const double size = middle + 2 * ball.radius + error;
   if (!(size <= kFloatReach)) {
     line.in_float = false;
     return line;
   }
-  const double margin = std::max(48 * unit * size + 2 * error, 1e-15);
-  const Vec3 aside = minus(origin, ball.middle);
-  const double reach = ball.radius + margin;
-  line.misses = dot(aside, aside) > reach * reach * (1 + kRounding);
+  const double margin = more_of(48 * unit * size + 2 * error, 1e-15), reach = ball.radius + margin;
+  const Vec3 aside = along(to_middle, way, -ahead);
+  const double before = reach + 3 * margin;
+  line.at = ahead - before;
   for (std::size_t i = 0; i < 3; ++i) {
-    line.ray.origin[i] = static_cast<float>(origin[i]);
+    line.ray.origin[i] = static_cast<float>(ball.middle[i] - aside[i] - before * way[i]);
     line.ray.direction[i] = static_cast<float>(way[i]);
   }
   line.ray.margin = static_cast<float>(margin * (1 + 4 * unit));
-  line.begin = static_cast<float>(std::max(-line.at, -ball.radius - 2 * margin) - margin);
-  line.end = static_cast<float>(std::min(length_of_ray - line.at, ball.radius + 2 * margin) + margin);
-  line.misses = line.misses || line.end < line.begin;
+  line.begin = static_cast<float>(more_of(-line.at, 2 * margin) - margin);
+  line.end = static_cast<float>(less_of(length_of_ray - line.at, 2 * before) + margin);
+  line.misses = (dot(aside, aside) > reach * reach * (1 + kRounding)) | (line.end < line.begin);
   return line;
 }
 
-// Calls visit(triangle block, bits of the triangles that the line may meet, end) for the leaves on the ray, the nearest
-// ball slab of a block first. visit() returns up to which s the ray goes on from there.
+// Calls visit(leaf, end) for the leaves on the ray of which triangles may be met, the nearest ball slab of a block first.
+// visit() returns up to which s the ray goes on from there, or something below 0.
 template <typename Visit>
 void walk_ray(const TreeView& tree, const Line& line, Visit&& visit) noexcept {
   RayWalk walk(line.ray, line.begin, line.end, tree.ball_slabs[0].child[0]);
   for (RayLeaf leaf = next_leaf(tree, walk); leaf.block != nullptr; leaf = next_leaf(tree, walk)) {
-    walk.end = visit(*leaf.block, leaf.some, walk.end);
+    walk.end = visit(leaf, walk.end);
   }
 }
 

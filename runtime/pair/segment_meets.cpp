@@ -1,6 +1,5 @@
 #include "segment_meets.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "vector_functions.h"
@@ -16,15 +15,27 @@ namespace {
 constexpr double kPlainError = 64 * 0x1p-53;
 constexpr double kLeast = 0x1p-900;
 
-double largest(const Vec3& v) noexcept { return std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])}); }
-
 bool within_range(double ab, double abc) noexcept {
-  return ab > kLeast && abc > kLeast && ab < 1 / kLeast && abc < 1 / kLeast;
+  return less_of(ab, abc) > kLeast && more_of(ab, abc) < 1 / kLeast;
 }
+
+// Of a segment's ends over a triangle's plane, times twice its area; `clear` where their signs are certain.
+struct Heights {
+  double from, to;
+  bool clear;
+  Heights(const Vec3& begin, const Vec3& end, const TrianglePoints& t) noexcept {
+    const Vec3 edge = minus(t[1], t[0]), other = minus(t[2], t[0]), normal = cross(edge, other);
+    const Vec3 back = minus(begin, t[0]), ahead = minus(end, t[0]);
+    from = dot(normal, back), to = dot(normal, ahead);
+    const double ab = largest_size(edge) * largest_size(other), abc = ab * more_of(largest_size(back), largest_size(ahead));
+    clear = (less_of(std::fabs(from), std::fabs(to)) > kPlainError * abc) & within_range(ab, abc);
+  }
+  bool differ() const noexcept { return (from > 0) != (to > 0); }
+};
 
 Vec3 crossing(const Vec3& from, const Vec3& way, double height_from, double height_to) noexcept {
   const double hp = std::fabs(height_from), hq = std::fabs(height_to);
-  return along(from, way, hp + hq > 0 ? std::clamp(hp / (hp + hq), 0.0, 1.0) : 0);
+  return along(from, way, hp + hq > 0 ? less_of(hp / (hp + hq), 1) : 0);
 }
 
 // The same by exact signs, and on common planes as triangles_intersect() does it.
@@ -43,22 +54,26 @@ bool meets_exactly(const Vec3& from, const Vec3& to, const TrianglePoints& t, Ve
 
 }  // namespace
 
+bool segment_passes(const Vec3& from, const Vec3& to, const TrianglePoints& t, Vec3& common) noexcept {
+  const Heights heights(from, to, t);
+  if (!heights.clear) return meets_exactly(from, to, t, common);
+  if (!heights.differ()) return false;
+  common = crossing(from, minus(to, from), heights.from, heights.to);
+  return true;
+}
+
 bool segment_meets(const Vec3& from, const Vec3& to, const TrianglePoints& t, Vec3& common) noexcept {
   // Most are plain: no sign is in doubt.
-  const Vec3 way = minus(to, from), edge = minus(t[1], t[0]), other = minus(t[2], t[0]), normal = cross(edge, other);
-  const Vec3 back = minus(from, t[0]), ahead = minus(to, t[0]);
-  const double height_from = dot(normal, back), height_to = dot(normal, ahead);
-  const double ab = largest(edge) * largest(other), reach = std::max(largest(back), largest(ahead));
-  const Vec3 a = minus(t[0], from), b = minus(t[1], from), c = minus(t[2], from);
+  const Heights heights(from, to, t);
+  if (heights.clear && !heights.differ()) return false;
+  const Vec3 way = minus(to, from), a = minus(t[0], from), b = minus(t[1], from), c = minus(t[2], from);
   const double p = dot(way, cross(a, b)), q = dot(way, cross(b, c)), r = dot(way, cross(c, a));
-  const double far = std::max({largest(a), largest(b), largest(c)}), size = far * far * largest(way);
-  const double height_error = kPlainError * ab * reach, error = kPlainError * size;
-  const bool heights_clear = std::min(std::fabs(height_from), std::fabs(height_to)) > height_error;
-  const double least = std::min({p, q, r}), most = std::max({p, q, r});
-  if (heights_clear && within_range(ab, ab * reach) && within_range(far * far, size)) {
-    if ((height_from > 0) == (height_to > 0) || (least < -error && most > error)) return false;
-    if (least > error || most < -error) {
-      common = crossing(from, way, height_from, height_to);
+  const double far = more_of(more_of(largest_size(a), largest_size(b)), largest_size(c)), size = far * far * largest_size(way);
+  const double least = less_of(less_of(p, q), r), most = more_of(more_of(p, q), r), error = kPlainError * size;
+  if (heights.clear && within_range(far * far, size)) {
+    if ((least < -error) & (most > error)) return false;
+    if ((least > error) | (most < -error)) {
+      common = crossing(from, way, heights.from, heights.to);
       return true;
     }
   }

@@ -7,4 +7,7 @@ namespace orchard::runtime::detail {
 // as a triangle. If so, `common` is such a point, up to rounding.
 bool segment_meets(const Vec3& from, const Vec3& to, const TrianglePoints& t, Vec3& common) noexcept;
 
+// The same where the segment's line certainly runs through the triangle's inside.
+bool segment_passes(const Vec3& from, const Vec3& to, const TrianglePoints& t, Vec3& common) noexcept;
+
 }  // namespace orchard::runtime::detail

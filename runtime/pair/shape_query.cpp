@@ -168,9 +168,9 @@ bool contains(const TreeView& solid, const Pose& pose, const std::array<double, 
     const Line line = line_of(ball, p, way, reach);
     if (line.misses) return false;
     if (line.in_float) {
-      walk_ray(solid, line, [&](const TriangleBlock& block, std::uint32_t some, float end) {
-        for (std::uint32_t left = some; left != 0; left &= left - 1) {
-          count(points_of(block, static_cast<std::uint32_t>(std::countr_zero(left))));
+      walk_ray(solid, line, [&](const RayLeaf& leaf, float end) {
+        for (std::uint32_t left = leaf.some; left != 0; left &= left - 1) {
+          count(points_of(*leaf.block, static_cast<std::uint32_t>(std::countr_zero(left))));
         }
         return clear ? end : -std::numeric_limits<float>::infinity();
       });

@@ -1,7 +1,8 @@
 #include "ray_block.h"
 
+#include <algorithm>
 #include <bit>
-#include <utility>
+#include <cstring>
 
 #include "eight.h"
 #include "machine.h"
@@ -19,7 +20,6 @@ namespace orchard::runtime::detail {
 namespace {
 
 constexpr float kGrazing = 0x1p-20f;
-constexpr float kMinSlope = 1e-12f;  // a ray along a slab: s is below 1e19 then, times this less than every margin
 constexpr float kProductError = 0x1p-20f;
 constexpr float kShearedError = 0x1p-18f;
 constexpr float kMinRoom = 1e-33f;  // covers what underflows in a product
@@ -46,11 +46,11 @@ ORCHARD_INLINE std::uint32_t find_ball_slabs(const FloatRay& ray, const BallSlab
   const Floats rise = Kind::choose(slope < zero, -height, height);
   const Floats low = (rise - h) / steep, high = (rise + h) / steep;
   // An infinite `low` makes no number of the first: larger() gives the second one then.
-  const Floats enter = E::larger(low - E::size(low) * E::all(kGrazing), middle - half);
+  const Floats enter = E::larger(E::larger(low - E::size(low) * E::all(kGrazing), middle - half), E::all(begin));
   const Floats leave = E::smaller(middle + half, high + E::size(high) * E::all(kGrazing));
   store(enter, entries);
   // Written so that what is not a number, from infinite quotients, counts as met.
-  const auto missed = (inside < zero) | (leave < enter) | (leave < E::all(begin)) | (E::all(end) < enter);
+  const auto missed = (inside < zero) | (leave < enter) | (E::all(end) < enter);
   return Kind::bits(zero <= radius) & ~Kind::bits(missed);
 }
 
@@ -60,8 +60,20 @@ ORCHARD_INLINE std::uint32_t used_lanes(const TriangleBlock& block) noexcept {
   return used;
 }
 
+// From the products of each two neighbouring corners, off by less than `room`: on which side of the edges the line is.
 template <typename Kind>
-ORCHARD_INLINE std::uint32_t find_triangles(const FloatRay& ray, const TriangleBlock& block) noexcept {
+ORCHARD_INLINE RayLeaf told_apart(const TriangleBlock& block, const typename Kind::Floats& p,
+                                  const typename Kind::Floats& q, const typename Kind::Floats& r,
+                                  const typename Kind::Floats& room) noexcept {
+  using E = Eight<Kind>;
+  const auto least = E::smaller(E::smaller(p, q), r), most = E::larger(E::larger(p, q), r);
+  const std::uint32_t some = E::kAll & ~Kind::bits((least < -room) & (room < most));
+  if (some == 0) return {&block, 0, 0};
+  return {&block, some & used_lanes(block), Kind::bits((room < least) | (most < -room))};
+}
+
+template <typename Kind>
+ORCHARD_INLINE RayLeaf find_triangles(const FloatRay& ray, const TriangleBlock& block) noexcept {
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
   using Vectors = typename E::Vectors;
@@ -76,46 +88,49 @@ ORCHARD_INLINE std::uint32_t find_triangles(const FloatRay& ray, const TriangleB
   const Floats longest = E::larger(E::larger(E::one_norm(a), E::one_norm(b)), E::one_norm(c));
   const Floats room = longest * (E::all(4 * ray.margin) + longest * E::all(kProductError)) + E::all(kMinRoom);
   const Floats p = E::dot(d, E::cross(a, b)), q = E::dot(d, E::cross(b, c)), r = E::dot(d, E::cross(c, a));
-  const Floats least = E::smaller(E::smaller(p, q), r), most = E::larger(E::larger(p, q), r);
-  const auto missed = (least < -room) & (room < most);
-  return used_lanes(block) & ~Kind::bits(missed);
+  return told_apart<Kind>(block, p, q, r, room);
+}
+
+// Leaves the smaller one where it is and returns the other, without a branch.
+ORCHARD_INLINE std::uint64_t put_in_order(std::uint64_t& least, std::uint64_t other) noexcept {
+  const std::uint64_t change = (least ^ other) & (0 - std::uint64_t{other < least});
+  least ^= change;
+  return other ^ change;
 }
 
 // `Nodes` says which nodes of a block are met, and where, and which triangles of a leaf.
 template <typename Nodes>
 ORCHARD_INLINE RayLeaf find_leaf(const Nodes& nodes, std::span<const TriangleBlock> leaves, RayWalk& walk) noexcept {
   const float end = walk.end;
-  std::size_t size = walk.size;
+  std::uint64_t* const bottom = walk.stack.data();
+  std::uint64_t* top = bottom + walk.size;
   RayEntries entries;
-  while (size > 0) {
-    RayWalk::Entry entry = walk.stack[--size];
-    if (entry.enter > end) continue;
-    bool met = true;
-    while ((entry.child & kLeafBit) == 0) {
-      const auto& block = nodes.blocks[entry.child];
+  while (top > bottom) {
+    std::uint64_t next = *--top;
+    if (RayWalk::enter_of(next) > end) continue;
+    std::uint32_t child = RayWalk::child_of(next);
+    while ((child & kLeafBit) == 0) {
+      const auto& block = nodes.blocks[child];
       std::uint32_t left = nodes.met(block, end, entries);
-      met = left != 0;
-      if (!met) break;
-      auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-      entry = nodes.entry(block, entries, lane);
-      const std::size_t first = size;
-      for (left &= left - 1; left != 0; left &= left - 1) {
-        lane = static_cast<std::uint32_t>(std::countr_zero(left));
-        RayWalk::Entry other = nodes.entry(block, entries, lane);
-        if (other.enter < entry.enter) std::swap(entry, other);
-        std::size_t place = size++;
-        for (; place > first && walk.stack[place - 1].enter < other.enter; --place) {
-          walk.stack[place] = walk.stack[place - 1];
-        }
-        walk.stack[place] = other;
-      }
+      if (left == 0) break;
+      const auto at = [&](std::uint32_t bits) ORCHARD_INLINE_LAMBDA {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits)) % kBlockWidth;
+        return RayWalk::entry(entries[lane], block.child[lane]);
+      };
+      // The nearest one goes on, the others wait. No branch tells one from two, which nobody predicts.
+      next = at(left);
+      left &= left - 1;
+      const std::uint64_t none = 0 - std::uint64_t{left == 0};
+      *top = put_in_order(next, at(left) | none);
+      top += left != 0;
+      for (left &= left - 1; left != 0; left &= left - 1) *top++ = put_in_order(next, at(left));
+      child = RayWalk::child_of(next);
     }
-    if (!met) continue;
-    const TriangleBlock& block = leaves[entry.child & ~kLeafBit];
-    const std::uint32_t some = nodes.triangles(block, entry);
-    if (some == 0) continue;
-    walk.size = size;
-    return {&block, some};
+    if ((child & kLeafBit) == 0) continue;
+    const RayLeaf leaf = nodes.triangles(leaves[child & ~kLeafBit], next);
+    if (leaf.some == 0) continue;
+    walk.size = static_cast<std::size_t>(top - bottom);
+    return leaf;
   }
   walk.size = 0;
   return {};
@@ -129,11 +144,7 @@ struct BallSlabs {
   ORCHARD_INLINE std::uint32_t met(const BallSlabBlock& block, float end, RayEntries& entries) const noexcept {
     return find_ball_slabs<Kind>(ray, block, begin, end, entries);
   }
-  ORCHARD_INLINE static RayWalk::Entry entry(const BallSlabBlock& block, const RayEntries& entries,
-                                             std::uint32_t lane) noexcept {
-    return {entries[lane], block.child[lane]};
-  }
-  ORCHARD_INLINE std::uint32_t triangles(const TriangleBlock& block, const RayWalk::Entry&) const noexcept {
+  ORCHARD_INLINE RayLeaf triangles(const TriangleBlock& block, std::uint64_t) const noexcept {
     return find_triangles<Kind>(ray, block);
   }
 };
@@ -159,10 +170,16 @@ struct Boxes {
     }
   }
 
+  ORCHARD_INLINE static Floats load_at(const std::byte* planes) noexcept {
+    Floats result;
+    std::memcpy(&result, planes, sizeof result);
+    return result;
+  }
+
   ORCHARD_INLINE std::uint32_t met(const BoxBlock& block, float end, RayEntries& entries) const noexcept {
-    const BoxBlock::Lanes* const planes = block.low.data();  // and those of `high`
+    const auto* const bytes = reinterpret_cast<const std::byte*>(&block);
     const auto at = [&](std::size_t side, const Floats& from, std::size_t i)
-                        ORCHARD_INLINE_LAMBDA { return (load<Floats>(planes[side]) - from) * inverse[i]; };
+                        ORCHARD_INLINE_LAMBDA { return (load_at(bytes + side) - from) * inverse[i]; };
     const Floats enter = E::larger(E::larger(at(own.near_side[0], near_from[0], 0), at(own.near_side[1], near_from[1], 1)),
                                    E::larger(at(own.near_side[2], near_from[2], 2), begin));
     const Floats leave = E::smaller(E::smaller(at(own.far_side[0], far_from[0], 0), at(own.far_side[1], far_from[1], 1)),
@@ -171,19 +188,15 @@ struct Boxes {
     return Kind::bits(enter <= leave);
   }
 
-  ORCHARD_INLINE static RayWalk::Entry entry(const BoxBlock& block, const RayEntries& entries,
-                                             std::uint32_t lane) noexcept {
-    return {entries[lane], block.child[lane]};
-  }
-
   // From where the ray enters the leaf's box, or from no more than the margin beside it: no corner is farther than the
   // box's diagonal and some margins.
-  ORCHARD_INLINE std::uint32_t triangles(const TriangleBlock& block, const RayWalk::Entry& leaf) const noexcept {
-    const float reach = tree.sizes[leaf.child & ~kLeafBit] + 8 * ray.margin;
+  ORCHARD_INLINE RayLeaf triangles(const TriangleBlock& block, std::uint64_t leaf) const noexcept {
+    const float reach = tree.sizes[RayWalk::child_of(leaf) & ~kLeafBit] + 8 * ray.margin;
     const Floats room = E::all(reach * (16 * ray.margin + reach * kShearedError) + kMinRoom);
     Floats x[3], y[3];
+    const float enter = RayWalk::enter_of(leaf);
     const auto from = [&](std::size_t i)
-                          ORCHARD_INLINE_LAMBDA { return E::all(ray.origin[i] + leaf.enter * ray.direction[i]); };
+                          ORCHARD_INLINE_LAMBDA { return E::all(ray.origin[i] + enter * ray.direction[i]); };
     const auto [u, v, w] = own.axis;
     const Floats from_x = from(u), from_y = from(v), from_z = from(w);
     const Floats shear_x = E::all(own.shear[0]), shear_y = E::all(own.shear[1]);
@@ -193,9 +206,7 @@ struct Boxes {
       y[k] = (load<Floats>(block.corner[k][v]) - from_y) - shear_y * z;
     }
     const Floats p = x[0] * y[1] - y[0] * x[1], q = x[1] * y[2] - y[1] * x[2], r = x[2] * y[0] - y[2] * x[0];
-    const Floats least = E::smaller(E::smaller(p, q), r), most = E::larger(E::larger(p, q), r);
-    const std::uint32_t some = E::kAll & ~Kind::bits((least < -room) & (room < most));
-    return some == 0 ? 0 : some & used_lanes(block);
+    return told_apart<Kind>(block, p, q, r, room);
   }
 };
 
@@ -219,29 +230,12 @@ RayLeaf next_leaf(const BoxTree& tree, const BoxRay& ray, RayWalk& walk) noexcep
   return PerMachine<find_leaf_of_boxes<Widest>, find_leaf_of_boxes<Base>>::call(tree, ray, walk);
 }
 
-BoxRay::BoxRay(const FloatRay& ray) noexcept {
-  std::array<float, 3> size{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const float d = ray.direction[i], o = ray.origin[i];
-    const bool down = d < 0;
-    size[i] = down ? -d : d;
-    const float margin = down ? -ray.margin : ray.margin;
-    inverse[i] = (down ? -1.0f : 1.0f) / (size[i] < kMinSlope ? kMinSlope : size[i]);
-    near_from[i] = o + margin, far_from[i] = o - margin;
-    near_side[i] = static_cast<std::uint8_t>(down ? i + 3 : i), far_side[i] = static_cast<std::uint8_t>(down ? i : i + 3);
-  }
-  const bool x = size[0] > size[1] && size[0] > size[2], y = !x && size[1] > size[2];
-  axis = {static_cast<std::uint8_t>(x ? 1 : 0), static_cast<std::uint8_t>(x || y ? 2 : 1),
-          static_cast<std::uint8_t>(x ? 0 : y ? 1 : 2)};
-  for (std::size_t i = 0; i < 2; ++i) shear[i] = ray.direction[axis[i]] * inverse[axis[2]];
-}
-
 std::uint32_t ray_ball_slabs_scalar(const FloatRay& ray, const BallSlabBlock& ball_slabs, float begin, float end,
                                     RayEntries& entries) noexcept {
   return find_ball_slabs<PlainFloats>(ray, ball_slabs, begin, end, entries);
 }
 
-std::uint32_t ray_triangles_scalar(const FloatRay& ray, const TriangleBlock& block) noexcept {
+RayLeaf ray_triangles_scalar(const FloatRay& ray, const TriangleBlock& block) noexcept {
   return find_triangles<PlainFloats>(ray, block);
 }
 
@@ -250,7 +244,7 @@ std::uint32_t ray_ball_slabs(const FloatRay& ray, const BallSlabBlock& ball_slab
   return PerMachine<find_ball_slabs<Widest>, find_ball_slabs<Base>>::call(ray, ball_slabs, begin, end, entries);
 }
 
-std::uint32_t ray_triangles(const FloatRay& ray, const TriangleBlock& block) noexcept {
+RayLeaf ray_triangles(const FloatRay& ray, const TriangleBlock& block) noexcept {
   return PerMachine<find_triangles<Widest>, find_triangles<Base>>::call(ray, block);
 }
 
