@@ -20,21 +20,18 @@ struct detail::RayIndexAccess {
 
 namespace {
 
-// The nearest triangle so far on the segment from `from` to `to`, the course's first `end` steps.
+// The nearest triangle so far.
 struct Nearest {
-  const Course& course;
-  Vec3 from, to;
-  double end;
   double steps = std::numeric_limits<double>::infinity();
   Vec3 point{};
   std::uint32_t triangle = kNoTriangle;
 
   // Whether the triangle is nearer; of equally near ones the first in the tree's own order. `sure`: that the line runs
   // through it.
-  bool offer(const TrianglePoints& t, std::uint32_t number, bool sure) noexcept {
+  bool offer(const RayStart& ray, const TrianglePoints& t, std::uint32_t number, bool sure) noexcept {
     Vec3 common{};
-    if (!(sure ? segment_passes(from, to, t, common) : segment_meets(from, to, t, common))) return false;
-    const double at = less_of(more_of(course.steps_to(minus(common, from)), 0), end);
+    if (!(sure ? segment_passes(ray.from, ray.to, t, common) : segment_meets(ray.from, ray.to, t, common))) return false;
+    const double at = less_of(more_of(ray.steps_to(common), 0), ray.end);
     if (at > steps || (at == steps && number > triangle)) return false;
     steps = at, point = common, triangle = number;
     return true;
@@ -85,54 +82,71 @@ class Caster {
       : triangles_(triangles), frame_(triangles.frame(pose)), ball_(triangles.ball()) {}
 
   std::optional<RayHit> cast(const Ray& ray) const noexcept {
-    const RayHit unknown{0, ray.origin, kNoTriangle};
-    if (std::isnan(ray.longest)) return unknown;
-    const Vec3 from = frame_.enter(ray.origin);
-    const Course course(frame_, ray.direction);
-    if (!within_reach(from) || !std::isfinite(course.speed)) return unknown;
-    if (ray.longest < 0) return std::nullopt;
-    Nearest nearest{course, from, from, 0};
-    if (course.speed > 0) {
-      const double reach = reach_beyond(ball_, frame_.bounding_radius, from);
-      nearest.end = less_of(course.steps(ray.longest), reach * course.slowness);
+    const Direction direction(ray.direction, frame_.pose.scale);
+    const double steps = direction.steps(ray.longest);
+    return cast(ray, direction, start_of(frame_, ball_, ray.origin, direction.way, steps));
+  }
+
+  // What is before the walk for several rays at once.
+  void cast(std::span<const Ray> rays, std::span<std::optional<RayHit>> hits) const noexcept {
+    RayStarts starts;
+    std::size_t first = 0;
+    for (; first + RayStarts::kCount <= rays.size(); first += RayStarts::kCount) {
+      for (std::size_t i = 0; i < RayStarts::kCount; ++i) {
+        const Ray& ray = rays[first + i];
+        const Direction direction(ray.direction, frame_.pose.scale);
+        for (std::size_t k = 0; k < 3; ++k) {
+          starts.origin[k][i] = ray.origin[k], starts.way[k][i] = direction.way[k];
+        }
+        starts.steps[i] = direction.steps(ray.longest), starts.power[i] = direction.power;
+      }
+      find_starts(frame_, ball_, starts);
+      for (std::size_t i = 0; i < RayStarts::kCount; ++i) {
+        const Direction direction(frame_.pose.scale, starts.power[i]);
+        hits[first + i] = cast(rays[first + i], direction, starts.at_lane(i));
+      }
     }
-    nearest.to = settled(detail::along(from, course.step, nearest.end));
-    const Vec3 way = course.speed > 0 ? detail::along({0, 0, 0}, course.step, course.slowness) : Vec3{1, 0, 0};
-    const Line line = line_of(ball_, from, way, nearest.end * course.speed);
-    if (line.misses) return std::nullopt;
-    if (line.in_float) {
-      look_along(line, nearest);
-    } else {
-      look_near(nearest);
-    }
-    if (nearest.triangle == kNoTriangle) return std::nullopt;
-    return RayHit{less_of(course.along(nearest.steps), ray.longest), frame_.leave(nearest.point), nearest.triangle};
+    for (; first < rays.size(); ++first) hits[first] = cast(rays[first]);
   }
 
  private:
-  void look_along(const Line& line, Nearest& nearest) const noexcept {
-    triangles_.along(line, [&](const RayLeaf& leaf, float end) {
+  std::optional<RayHit> cast(const Ray& ray, const Direction& direction, const RayStart& start) const noexcept {
+    if (std::isnan(ray.longest) || !within_reach(start.from) || !std::isfinite(start.speed)) {
+      return RayHit{0, ray.origin, kNoTriangle};
+    }
+    if (ray.longest < 0 || start.line.misses) return std::nullopt;
+    const Nearest nearest = start.line.in_float ? nearest_along(start) : nearest_of_all(start);
+    if (nearest.triangle == kNoTriangle) return std::nullopt;
+    return RayHit{less_of(direction.along(nearest.steps), ray.longest), frame_.leave(nearest.point), nearest.triangle};
+  }
+
+  Nearest nearest_along(const RayStart& ray) const noexcept {
+    Nearest nearest;
+    triangles_.along(ray.line, [&](const RayLeaf& leaf, float end) {
       for (std::uint32_t left = leaf.some; left != 0; left &= left - 1) {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
         const bool sure = (leaf.sure >> lane & 1) != 0;
-        if (!nearest.offer(points_of(*leaf.block, lane), leaf.block->triangle[lane], sure)) continue;
-        const double rounding = kRounding * (one_norm(nearest.from) + frame_.bounding_radius);
-        const double s = nearest.steps * nearest.course.speed;
-        const float behind = static_cast<float>(s + rounding - line.at) + line.ray.margin;
+        if (!nearest.offer(ray, points_of(*leaf.block, lane), leaf.block->triangle[lane], sure)) continue;
+        const double rounding = kRounding * (one_norm(ray.from) + frame_.bounding_radius);
+        const double s = nearest.steps * ray.speed;
+        const float behind = static_cast<float>(s + rounding - ray.line.at) + ray.line.ray.margin;
         end = behind < end ? behind : end;
       }
       return end;
     });
+    return nearest;
   }
 
-  void look_near(Nearest& nearest) const noexcept {  // where floats do not reach
-    const Segment whole(nearest.from, nearest.to);
+  Nearest nearest_of_all(const RayStart& ray) const noexcept {  // where floats do not reach
+    Nearest nearest;
+    const Segment whole(ray.from, ray.to);
     triangles_.near(whole, frame_.rounding(whole), [&](const TriangleBlock& block) {
       return each_triangle(block, [&](const TrianglePoints& t, std::uint32_t triangle) {
-        nearest.offer(t, triangle, false);
+        nearest.offer(ray, t, triangle, false);
         return true;
       });
     });
+    return nearest;
   }
 
   Triangles triangles_;
@@ -153,8 +167,7 @@ void cast_all(const Triangles& triangles, const Pose& pose, std::span<const Ray>
     for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = RayHit{0, rays[i].origin, kNoTriangle};
     return;
   }
-  const Caster<Triangles> caster(triangles, pose);
-  for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = caster.cast(rays[i]);
+  Caster<Triangles>(triangles, pose).cast(rays, hits);
 }
 
 }  // namespace
