@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cmath>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -79,7 +79,8 @@ class EmbreeScene {
     rtcIntersect1(scene_, &context, &query);
     return along(query);
   }
-  void cast(const std::vector<Ray>& rays, bool coherent, std::vector<RTCRayHit>& queries, std::vector<float>& hits) const {
+  void cast(const std::vector<Ray>& rays, bool coherent, std::vector<RTCRayHit>& queries,
+            std::vector<float>& hits) const {
     for (std::size_t i = 0; i < rays.size(); ++i) queries[i] = query_of(rays[i]);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -168,7 +169,8 @@ void measure(const char* name, const TreeView& tree, std::size_t count) {
     std::size_t hit = 0, differ = 0;
     for (std::size_t i = 0; i < count; ++i) {
       hit += hits[0][i].has_value();
-      bool same = hits[0][i].has_value() == (robust[i] <= static_cast<float>(rays[i].longest) && std::isfinite(robust[i]));
+      bool same =
+          hits[0][i].has_value() == (robust[i] <= static_cast<float>(rays[i].longest) && std::isfinite(robust[i]));
       for (const auto& of : hits) {
         same = same && of[i].has_value() == hits[0][i].has_value() &&
                (!of[i] || (of[i]->along == hits[0][i]->along && of[i]->triangle == hits[0][i]->triangle));

@@ -30,7 +30,8 @@ struct Nearest {
   // through it.
   bool offer(const RayStart& ray, const TrianglePoints& t, std::uint32_t number, bool sure) noexcept {
     Vec3 common{};
-    if (!(sure ? segment_passes(ray.from, ray.to, t, common) : segment_meets(ray.from, ray.to, t, common))) return false;
+    if (!(sure ? segment_passes(ray.from, ray.to, t, common) : segment_meets(ray.from, ray.to, t, common)))
+      return false;
     const double at = less_of(more_of(ray.steps_to(common), 0), ray.end);
     if (at > steps || (at == steps && number > triangle)) return false;
     steps = at, point = common, triangle = number;
@@ -50,7 +51,8 @@ struct TreeTriangles {
   }
   template <typename Visit>
   void near(const Segment& segment, double rounding, Visit&& visit) const noexcept {
-    walk(tree, segment, rounding, [] { return 0.0; }, visit);
+    walk(
+        tree, segment, rounding, [] { return 0.0; }, visit);
   }
 };
 

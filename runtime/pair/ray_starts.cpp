@@ -9,9 +9,8 @@ ORCHARD_INLINE void make_all(const Frame& given, const Ball& ball, RayStarts& st
   const Frame frame = {given.origin, given.bounding_radius, pose, given.back};
   const Ball around = ball;  // copies, which no row can be part of
   for (std::size_t i = 0; i < RayStarts::kCount; ++i) {
-    const RayStart start =
-        start_of(frame, around, {starts.origin[0][i], starts.origin[1][i], starts.origin[2][i]},
-                 {starts.way[0][i], starts.way[1][i], starts.way[2][i]}, starts.steps[i]);
+    const RayStart start = start_of(frame, around, {starts.origin[0][i], starts.origin[1][i], starts.origin[2][i]},
+                                    {starts.way[0][i], starts.way[1][i], starts.way[2][i]}, starts.steps[i]);
     for (std::size_t k = 0; k < 3; ++k) {
       starts.from[k][i] = start.from[k], starts.to[k][i] = start.to[k], starts.step[k][i] = start.step[k];
       starts.line_origin[k][i] = start.line.ray.origin[k], starts.direction[k][i] = start.line.ray.direction[k];

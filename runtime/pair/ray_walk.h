@@ -89,8 +89,8 @@ inline Line line_of(const Ball& ball, const Vec3& from, const Vec3& way, double 
   return line;
 }
 
-// A ray in the body's frame: the segment from `from` to `to`, its first `end` steps, which ends beyond everything if the
-// ray does not end before.
+// A ray in the body's frame: the segment from `from` to `to`, its first `end` steps, which ends beyond everything if
+// the ray does not end before.
 struct RayStart {
   Vec3 from{}, to{}, step{};
   double speed = 0, slowness = 0;  // the step's length, and 1 over it or 0
@@ -148,8 +148,8 @@ struct RayStarts {
 };
 void find_starts(const Frame& frame, const Ball& ball, RayStarts& starts) noexcept;
 
-// Calls visit(leaf, end) for the leaves on the ray of which triangles may be met, the nearest ball slab of a block first.
-// visit() returns up to which s the ray goes on from there, or something below 0.
+// Calls visit(leaf, end) for the leaves on the ray of which triangles may be met, the nearest ball slab of a block
+// first. visit() returns up to which s the ray goes on from there, or something below 0.
 template <typename Visit>
 void walk_ray(const TreeView& tree, const Line& line, Visit&& visit) noexcept {
   RayWalk walk(line.ray, line.begin, line.end, tree.ball_slabs[0].child[0]);

@@ -15,9 +15,7 @@ namespace {
 constexpr double kPlainError = 64 * 0x1p-53;
 constexpr double kLeast = 0x1p-900;
 
-bool within_range(double ab, double abc) noexcept {
-  return less_of(ab, abc) > kLeast && more_of(ab, abc) < 1 / kLeast;
-}
+bool within_range(double ab, double abc) noexcept { return less_of(ab, abc) > kLeast && more_of(ab, abc) < 1 / kLeast; }
 
 // Of a segment's ends over a triangle's plane, times twice its area; `clear` where their signs are certain.
 struct Heights {
@@ -27,7 +25,8 @@ struct Heights {
     const Vec3 edge = minus(t[1], t[0]), other = minus(t[2], t[0]), normal = cross(edge, other);
     const Vec3 back = minus(begin, t[0]), ahead = minus(end, t[0]);
     from = dot(normal, back), to = dot(normal, ahead);
-    const double ab = largest_size(edge) * largest_size(other), abc = ab * more_of(largest_size(back), largest_size(ahead));
+    const double ab = largest_size(edge) * largest_size(other),
+                 abc = ab * more_of(largest_size(back), largest_size(ahead));
     clear = (less_of(std::fabs(from), std::fabs(to)) > kPlainError * abc) & within_range(ab, abc);
   }
   bool differ() const noexcept { return (from > 0) != (to > 0); }
@@ -68,7 +67,8 @@ bool segment_meets(const Vec3& from, const Vec3& to, const TrianglePoints& t, Ve
   if (heights.clear && !heights.differ()) return false;
   const Vec3 way = minus(to, from), a = minus(t[0], from), b = minus(t[1], from), c = minus(t[2], from);
   const double p = dot(way, cross(a, b)), q = dot(way, cross(b, c)), r = dot(way, cross(c, a));
-  const double far = more_of(more_of(largest_size(a), largest_size(b)), largest_size(c)), size = far * far * largest_size(way);
+  const double far = more_of(more_of(largest_size(a), largest_size(b)), largest_size(c)),
+               size = far * far * largest_size(way);
   const double least = less_of(less_of(p, q), r), most = more_of(more_of(p, q), r), error = kPlainError * size;
   if (heights.clear && within_range(far * far, size)) {
     if ((least < -error) & (most > error)) return false;

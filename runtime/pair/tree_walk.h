@@ -99,9 +99,7 @@ struct Frame {  // the body's, with its coordinates relative to the tree's origi
   Frame(const TreeView& tree, const Pose& body) noexcept : Frame(tree.origin, tree.bounding_radius, body) {}
   Vec3 enter(const Vec3& world) const noexcept { return settled(minus(transform(back, world), origin)); }
   Vec3 leave(const Vec3& local) const noexcept { return transform(pose, along(local, origin, 1)); }
-  double rounding(const Segment& s) const noexcept {
-    return kRounding * (length(s.p) + length(s.d) + bounding_radius);
-  }
+  double rounding(const Segment& s) const noexcept { return kRounding * (length(s.p) + length(s.d) + bounding_radius); }
   std::array<double, 3> origin;
   double bounding_radius;
   const Pose& pose;

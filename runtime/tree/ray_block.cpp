@@ -14,8 +14,8 @@
 // of them covers its rounding. Triangles: corners relative to a point of the line nearby are off by at most the margin,
 // and longer than L nowhere. A product of three such vectors, one of them of length 1, is off by less than 4 L margin +
 // 16 u L^2. Sheared onto a plane, by slopes of at most 1, their two components are at most 2 L and off by less than two
-// margins and 4 u L, so a product of two of them by less than 4 * 2 L * (2 margin + 4 u L) + 3 u * 8 L^2 < 16 L margin +
-// 64 u L^2.
+// margins and 4 u L, so a product of two of them by less than 4 * 2 L * (2 margin + 4 u L) + 3 u * 8 L^2 < 16 L margin
+// + 64 u L^2.
 namespace orchard::runtime::detail {
 namespace {
 
@@ -180,10 +180,12 @@ struct Boxes {
     const auto* const bytes = reinterpret_cast<const std::byte*>(&block);
     const auto at = [&](std::size_t side, const Floats& from, std::size_t i)
                         ORCHARD_INLINE_LAMBDA { return (load_at(bytes + side) - from) * inverse[i]; };
-    const Floats enter = E::larger(E::larger(at(own.near_side[0], near_from[0], 0), at(own.near_side[1], near_from[1], 1)),
-                                   E::larger(at(own.near_side[2], near_from[2], 2), begin));
-    const Floats leave = E::smaller(E::smaller(at(own.far_side[0], far_from[0], 0), at(own.far_side[1], far_from[1], 1)),
-                                    E::smaller(at(own.far_side[2], far_from[2], 2), E::all(end)));
+    const Floats enter =
+        E::larger(E::larger(at(own.near_side[0], near_from[0], 0), at(own.near_side[1], near_from[1], 1)),
+                  E::larger(at(own.near_side[2], near_from[2], 2), begin));
+    const Floats leave =
+        E::smaller(E::smaller(at(own.far_side[0], far_from[0], 0), at(own.far_side[1], far_from[1], 1)),
+                   E::smaller(at(own.far_side[2], far_from[2], 2), E::all(end)));
     store(enter, entries);
     return Kind::bits(enter <= leave);
   }

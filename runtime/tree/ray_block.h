@@ -96,8 +96,8 @@ struct RayLeaf {
 RayLeaf next_leaf(const TreeView& tree, RayWalk& walk) noexcept;
 RayLeaf next_leaf(const BoxTree& tree, const BoxRay& ray, RayWalk& walk) noexcept;
 
-// The s at which the ray enters each ball slab, not too late, but not below `begin`; bits of the ball slabs that it meets between begin and
-// end.
+// The s at which the ray enters each ball slab, not too late, but not below `begin`; bits of the ball slabs that it
+// meets between begin and end.
 using RayEntries = std::array<float, kBlockWidth>;
 std::uint32_t ray_ball_slabs(const FloatRay& ray, const BallSlabBlock& ball_slabs, float begin, float end,
                              RayEntries& entries) noexcept;

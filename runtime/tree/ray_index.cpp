@@ -43,7 +43,12 @@ class Builder {
  public:
   Builder(const TreeView& tree, std::vector<BoxBlock>& boxes, std::vector<TriangleBlock>& leaves,
           std::vector<float>& sizes)
-      : tree_(tree), boxes_(boxes), leaves_(leaves), sizes_(sizes), box_(tree.triangles.size()), first_(tree.triangles.size()) {
+      : tree_(tree),
+        boxes_(boxes),
+        leaves_(leaves),
+        sizes_(sizes),
+        box_(tree.triangles.size()),
+        first_(tree.triangles.size()) {
     const std::size_t count = tree.triangles.size();
     for (std::size_t t = 0; t < count; ++t) {
       for (const std::uint32_t corner : tree.triangles[t]) box_[t].add({tree.vertices[corner], tree.vertices[corner]});
@@ -54,9 +59,8 @@ class Builder {
       order.resize(count);
       for (std::size_t t = 0; t < count; ++t) order[t] = static_cast<std::uint32_t>(t);
       const auto middle = [&](std::uint32_t t) { return double{box_[t].low[axis]} + box_[t].high[axis]; };
-      std::sort(order.begin(), order.end(), [&](std::uint32_t p, std::uint32_t q) {
-        return std::tuple(middle(p), p) < std::tuple(middle(q), q);
-      });
+      std::sort(order.begin(), order.end(),
+                [&](std::uint32_t p, std::uint32_t q) { return std::tuple(middle(p), p) < std::tuple(middle(q), q); });
     }
   }
 
@@ -132,9 +136,7 @@ class Builder {
     return parts;
   }
 
-  double area_of(const Part& part) const {
-    return part.size() <= kBlockWidth ? -1 : box_of(part).half_area();
-  }
+  double area_of(const Part& part) const { return part.size() <= kBlockWidth ? -1 : box_of(part).half_area(); }
 
   // What it costs to look at so many triangles, in leaves of eight of which one in four lanes is empty.
   static double cost_of(std::size_t triangles) { return static_cast<double>((triangles + 3) / 4); }
@@ -143,8 +145,8 @@ class Builder {
   std::size_t halve(const Part& part) {
     const std::size_t size = part.size();
     // cost, unevenness, axis, size of the first part
-    std::tuple<double, std::size_t, std::size_t, std::size_t> best = {
-        std::numeric_limits<double>::infinity(), 0, 0, size / 2};
+    std::tuple<double, std::size_t, std::size_t, std::size_t> best = {std::numeric_limits<double>::infinity(), 0, 0,
+                                                                      size / 2};
     for (std::size_t axis = 0; axis < 3 && depth_ < kCostlyDepth; ++axis) {
       const std::uint32_t* const order = order_[axis].data() + part.begin;
       Box box;
