@@ -54,7 +54,7 @@ inline Ball ball_around(const TreeView& tree) noexcept {
 
 // From a point to outside of everything.
 inline double reach_beyond(const Ball& ball, double bounding_radius, const Vec3& point) noexcept {
-  return one_norm(minus(point, ball.middle)) + 2 * ball.radius + kRounding * bounding_radius;
+  return length(minus(point, ball.middle)) + 2 * ball.radius + kRounding * bounding_radius;
 }
 
 // A ray for the float tests, or the verdict that there is none: past the whole tree.

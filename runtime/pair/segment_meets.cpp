@@ -37,11 +37,34 @@ Vec3 crossing(const Vec3& from, const Vec3& way, double height_from, double heig
   return along(from, way, hp + hq > 0 ? less_of(hp / (hp + hq), 1) : 0);
 }
 
+// The first point of a segment that it has in common with a triangle in whose plane it runs, or which is flat: its
+// begin, or where it meets the boundary. Where it runs along an edge, that is at a corner. Exact but for rounding.
+Vec3 first_common(const Vec3& from, const Vec3& to, const TrianglePoints& t, const Vec3& any) noexcept {
+  if (triangles_intersect({from, from, from}, t, nullptr)) return from;
+  const TrianglePoints segment = {from, to, to};
+  const Vec3 way = minus(to, from);
+  Vec3 first = any;
+  const auto offer = [&](const Vec3& point) {
+    if (dot(minus(point, from), way) < dot(minus(first, from), way)) first = point;
+  };
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 &a = t[i], &b = t[(i + 1) % 3];
+    Vec3 common{};
+    if (triangles_intersect(segment, {a, b, b}, &common)) offer(common);
+    if (triangles_intersect(segment, {a, a, a}, nullptr)) offer(a);
+  }
+  return first;
+}
+
 // The same by exact signs, and on common planes as triangles_intersect() does it.
 bool meets_exactly(const Vec3& from, const Vec3& to, const TrianglePoints& t, Vec3& common) noexcept {
   const int p = orientation(t[0], t[1], t[2], from), q = orientation(t[0], t[1], t[2], to);
   if (p * q > 0) return false;
-  if (p == 0 && q == 0) return triangles_intersect({from, to, to}, t, &common);
+  if (p == 0 && q == 0) {
+    if (!triangles_intersect({from, to, to}, t, &common)) return false;
+    common = first_common(from, to, t, common);
+    return true;
+  }
   const int a = orientation(from, to, t[0], t[1]), b = orientation(from, to, t[1], t[2]);
   if (a * b < 0) return false;
   const int c = orientation(from, to, t[2], t[0]);

@@ -17,7 +17,7 @@ namespace {
 
 using namespace orchard::runtime::test;
 
-using Int = __int128;
+using Int = std::int64_t;  // coordinates are below 16: nothing here reaches 2^40
 using IntVec = std::array<Int, 3>;
 
 IntVec wide(const Lattice& v) { return {v[0], v[1], v[2]}; }
@@ -55,18 +55,24 @@ Fraction meets_segment(const IntVec& p, const IntVec& d, const IntVec& a, const 
   return Fraction::of(std::max(Int{0}, std::min(s, t)), square);
 }
 
-// `at` over `scale` is in the triangle's plane.
-bool holds(const std::array<IntVec, 3>& v, const IntVec& normal, const IntVec& at, Int scale) {
+// Of `at` over `scale` in the triangle's plane: 1 inside, 0 on the boundary, -1 outside.
+int place(const std::array<IntVec, 3>& v, const IntVec& normal, const IntVec& at, Int scale) {
+  int least = 1;
   for (std::size_t k = 0; k < 3; ++k) {
     const IntVec &a = v[k], &b = v[(k + 1) % 3];
     const IntVec from = {at[0] - scale * a[0], at[1] - scale * a[1], at[2] - scale * a[2]};
-    const Int side = dot(normal, cross(minus(b, a), from));
-    if (scale > 0 ? side < 0 : side > 0) return false;
+    const Int side = dot(normal, cross(minus(b, a), from)) * (scale > 0 ? 1 : -1);
+    least = std::min(least, side > 0 ? 1 : side < 0 ? -1 : 0);
   }
-  return true;
+  return least;
 }
 
-Fraction meets_triangle(const IntVec& p, const IntVec& d, const LatticeTriangle& triangle) {
+struct Met {
+  Fraction t;
+  bool grazed = false;  // at the boundary, or along the plane
+};
+
+Met meets_triangle(const IntVec& p, const IntVec& d, const LatticeTriangle& triangle) {
   const std::array<IntVec, 3> v = {wide(triangle[0]), wide(triangle[1]), wide(triangle[2])};
   const IntVec normal = cross(minus(v[1], v[0]), minus(v[2], v[0]));
   const Int height = dot(normal, minus(v[0], p)), slope = dot(normal, d);
@@ -74,14 +80,15 @@ Fraction meets_triangle(const IntVec& p, const IntVec& d, const LatticeTriangle&
     const Fraction t = Fraction::of(height, slope);
     if (t.num < 0) return {};
     const IntVec at = {p[0] * slope + height * d[0], p[1] * slope + height * d[1], p[2] * slope + height * d[2]};
-    return holds(v, normal, at, slope) ? t : Fraction{};
+    const int where = place(v, normal, at, slope);
+    return where < 0 ? Met{} : Met{t, where == 0};
   }
   if (height != 0) return {};
-  if (!zero(normal) && holds(v, normal, p, 1)) return {0, 1};
-  Fraction first;
+  if (!zero(normal) && place(v, normal, p, 1) >= 0) return {{0, 1}, true};
+  Met first;
   for (std::size_t k = 0; k < 3; ++k) {
     const Fraction t = meets_segment(p, d, v[k], v[(k + 1) % 3]);
-    if (t.before(first)) first = t;
+    if (t.before(first.t)) first = {t, true};
   }
   return first;
 }
@@ -91,8 +98,50 @@ bool same(const std::optional<RayHit>& a, const std::optional<RayHit>& b) {
          (!a || (a->along == b->along && a->triangle == b->triangle && a->point == b->point));
 }
 
-// In the way of lattices: from and to points of it, so that many rays run through corners, along edges and in planes,
-// along axes, and some nowhere.
+struct LatticeRay {
+  Ray ray;
+  Fraction first;
+  std::vector<Fraction> each;  // of the triangles
+  int pace = 0;                // of the direction: a power of two
+  bool clear = true;           // no rounding of the ray's end can change what it meets
+};
+
+// Between points of the lattice, so that many run through corners, along edges and in planes, along axes, or nowhere;
+// two in three end at the second point.
+LatticeRay lattice_ray(Draw& draw, const LatticeMesh& mesh, const PackedSphereTree& tree, int power, int kind) {
+  Lattice p{}, q{};
+  for (Lattice* v : {&p, &q}) {
+    for (std::int64_t& x : *v) x = static_cast<std::int64_t>(draw.bits() % 16) - 4;
+  }
+  if (kind % 5 == 0) q = mesh[draw.bits() % mesh.size()][draw.bits() % 3];
+  if (kind % 7 == 0) q[draw.bits() % 3] = p[draw.bits() % 3];
+  const IntVec d = minus(wide(q), wide(p));
+  LatticeRay result;
+  const int pace = result.pace = static_cast<int>(draw.bits() % 40) - 20;
+  const double unit = std::ldexp(1, power);
+  const BallSlabBlock& root = tree.ball_slabs[0];
+  const std::array<float, 3> middle = {root.x[0], root.y[0], root.z[0]};
+  double away = 0, size = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    result.ray.origin[i] = static_cast<double>(p[i]) * unit;
+    result.ray.direction[i] = std::ldexp(static_cast<double>(d[i]), pace);
+    const double from_middle = static_cast<double>(p[i]) - (double{middle[i]} + tree.origin[i]) / unit;
+    away += from_middle * from_middle, size += static_cast<double>(d[i] * d[i]);
+  }
+  const bool ends = kind % 3 != 0;
+  if (ends) result.ray.longest = std::ldexp(1, power - pace);
+  // Beyond everything rays end where that is, rounded.
+  const bool exact = ends && std::sqrt(size) < 0.999 * (std::sqrt(away) + 2 * double{root.radius[0]} / unit);
+  for (const LatticeTriangle& t : mesh) {
+    Met met = meets_triangle(wide(p), d, t);
+    if (ends && met.t.any() && met.t.num > met.t.den) met = {};
+    result.each.push_back(met.t);
+    result.clear = result.clear && (exact || !met.grazed);
+    if (met.t.before(result.first)) result.first = met.t;
+  }
+  return result;
+}
+
 TEST(RayIndex, AndTreeSayWhatIntegersSayAtEverySizeOnEveryMachine) {
   const std::uint64_t begin = orchard::test::first_seed();
   on_every_machine([begin] {
@@ -103,50 +152,22 @@ TEST(RayIndex, AndTreeSayWhatIntegersSayAtEverySizeOnEveryMachine) {
       const int power = kMinPower + static_cast<int>(draw.bits() % (kMaxPower - kMinPower + 1));
       const PackedSphereTree tree = tree_of(mesh, power);
       const RayIndex index(tree);
-      const double unit = std::ldexp(1, power);
       std::vector<Ray> rays;
-      std::vector<Fraction> truths;
-      std::vector<std::vector<Fraction>> each;
-      for (int r = 0; r < 21; ++r) {
-        Lattice p{}, q{};
-        for (Lattice* v : {&p, &q}) {
-          for (std::int64_t& x : *v) x = static_cast<std::int64_t>(draw.bits() % 16) - 4;
-        }
-        if (r % 5 == 0) q = mesh[draw.bits() % mesh.size()][draw.bits() % 3];
-        if (r % 7 == 0) q[draw.bits() % 3] = p[draw.bits() % 3];
-        const IntVec d = minus(wide(q), wide(p));
-        const int pace = static_cast<int>(draw.bits() % 40) - 20;  // the direction's own power
-        Ray ray;
-        for (std::size_t i = 0; i < 3; ++i) {
-          ray.origin[i] = static_cast<double>(p[i]) * unit;
-          ray.direction[i] = std::ldexp(static_cast<double>(d[i]), pace);
-        }
-        const bool ends = r % 3 == 0;  // at q
-        if (ends) ray.longest = std::ldexp(1, power - pace);
-        Fraction first;
-        std::vector<Fraction> all;
-        for (const LatticeTriangle& t : mesh) {
-          Fraction met = meets_triangle(wide(p), d, t);
-          if (ends && met.any() && met.num > met.den) met = {};
-          all.push_back(met);
-          if (met.before(first)) first = met;
-        }
-        rays.push_back(ray), truths.push_back(first), each.push_back(std::move(all));
-        rays.back().longest = ray.longest;
-        const auto by_tree = cast_ray(tree, {}, ray.origin, ray.direction, ray.longest);
-        const auto by_index = cast_ray(index, {}, ray.origin, ray.direction, ray.longest);
-        ASSERT_EQ(by_tree.has_value(), first.any()) << seed << " " << r << " 2^" << power;
-        ASSERT_TRUE(same(by_tree, by_index)) << seed << " " << r << " 2^" << power;
-        if (!first.any()) {
-          ++misses;
-          continue;
-        }
-        ++hits;
-        ASSERT_NEAR(std::ldexp(by_tree->along, pace - power), first.value(), 1e-12) << seed << " " << r;
-        const auto& found = each.back()[by_tree->triangle];
-        ASSERT_TRUE(found.any() && found == first) << seed << " " << r;
-        ties += std::count_if(each.back().begin(), each.back().end(),
-                              [&first](const Fraction& t) { return t.any() && t == first; }) > 1;
+      for (int kind = 0; kind < 21; ++kind) {
+        const LatticeRay lattice = lattice_ray(draw, mesh, tree, power, kind);
+        const Ray& ray = lattice.ray;
+        rays.push_back(ray);
+        const auto hit = cast_ray(tree, {}, ray.origin, ray.direction, ray.longest);
+        ASSERT_TRUE(same(hit, cast_ray(index, {}, ray.origin, ray.direction, ray.longest))) << seed << " " << kind;
+        if (!lattice.clear) continue;
+        ASSERT_EQ(hit.has_value(), lattice.first.any()) << seed << " " << kind << " 2^" << power;
+        (hit ? hits : misses) += 1;
+        if (!hit) continue;
+        const auto& found = lattice.each[hit->triangle];
+        ASSERT_TRUE(found.any() && found == lattice.first) << seed << " " << kind;
+        ASSERT_NEAR(std::ldexp(hit->along, lattice.pace - power), lattice.first.value(), 1e-12) << seed << " " << kind;
+        ties += std::count_if(lattice.each.begin(), lattice.each.end(),
+                              [&lattice](const Fraction& t) { return t.any() && t == lattice.first; }) > 1;
       }
       std::vector<std::optional<RayHit>> of_tree(rays.size()), of_index(rays.size());
       cast_rays(tree, {}, rays, of_tree);
@@ -156,9 +177,9 @@ TEST(RayIndex, AndTreeSayWhatIntegersSayAtEverySizeOnEveryMachine) {
         ASSERT_TRUE(same(one, of_tree[r]) && same(one, of_index[r])) << seed << " " << r;
       }
     }
-    EXPECT_GT(hits, 300);
-    EXPECT_GT(misses, 300);
-    EXPECT_GT(ties, 100);
+    EXPECT_GT(hits, 200);
+    EXPECT_GT(misses, 200);
+    EXPECT_GT(ties, 30);
   });
 }
 
