@@ -85,7 +85,8 @@ inline Line line_of(const Ball& ball, const Vec3& from, const Vec3& way, double 
   line.begin = static_cast<float>(more_of(-line.at, 2 * margin) - margin);
   line.end = static_cast<float>(less_of(length_of_ray - line.at, 2 * before) + margin);
   line.in_float = size <= kFloatReach;
-  line.misses = line.in_float & ((dot(aside, aside) > reach * reach * (1 + kRounding)) | (line.end < line.begin));
+  const bool beside = dot(aside, aside) > reach * reach * (1 + kRounding), none = line.end < line.begin;
+  line.misses = line.in_float & (beside | none);
   return line;
 }
 

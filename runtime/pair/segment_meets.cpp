@@ -27,7 +27,8 @@ struct Heights {
     from = dot(normal, back), to = dot(normal, ahead);
     const double ab = largest_size(edge) * largest_size(other),
                  abc = ab * more_of(largest_size(back), largest_size(ahead));
-    clear = (less_of(std::fabs(from), std::fabs(to)) > kPlainError * abc) & within_range(ab, abc);
+    const bool certain = less_of(std::fabs(from), std::fabs(to)) > kPlainError * abc, ordinary = within_range(ab, abc);
+    clear = certain & ordinary;
   }
   bool differ() const noexcept { return (from > 0) != (to > 0); }
 };

@@ -88,7 +88,7 @@ inline Vec3 settled(Vec3 v) noexcept {
 }
 
 inline bool within_reach(const Vec3& v) noexcept {  // false for what is not a number
-  return (std::fabs(v[0]) <= kFarthest) & (std::fabs(v[1]) <= kFarthest) & (std::fabs(v[2]) <= kFarthest);
+  return std::fabs(v[0]) <= kFarthest && std::fabs(v[1]) <= kFarthest && std::fabs(v[2]) <= kFarthest;
 }
 
 struct Frame {  // the body's, with its coordinates relative to the tree's origin
