@@ -13,7 +13,7 @@
 namespace orchard::runtime::detail {
 
 // The points origin + s direction, in the tree's frame, the direction of length 1: the true ray is nowhere farther than
-// `margin` from it, where |s| is at most the tree's size, the rounding of a ball slab's and a triangle's own test
+// `margin` from it, where |s| is at most twice the tree's size, the rounding of a ball slab's and a triangle's own test
 // included.
 struct FloatRay {
   std::array<float, 3> origin{}, direction{};

@@ -12,6 +12,7 @@
 #include "orchard/runtime/distance.h"
 #include "orchard/runtime/mapped_tree.h"
 #include "orchard/runtime/self_collision.h"
+#include "orchard/runtime/ray_index.h"
 #include "orchard/runtime/shape_query.h"
 #include "orchard/runtime/shape_trees.h"
 #include "orchard/runtime/time_of_impact.h"
