@@ -237,10 +237,21 @@ int orchard_contains(const orchard_tree* tree, const orchard_pose* pose, const d
 
 int orchard_cast_ray(const orchard_tree* tree, const orchard_pose* pose, const double origin[3],
                      const double direction[3], double longest, double* along) {
-  const auto hit = rt::cast_ray(tree->view, pose_of(*pose), vector_of(origin), vector_of(direction), longest);
+  const rt::Pose placed = pose_of(*pose);
+  const auto from = vector_of(origin), way = vector_of(direction);
+  const auto hit = tree->rays.empty() ? rt::cast_ray(tree->view, placed, from, way, longest)
+                                      : rt::cast_ray(tree->rays, placed, from, way, longest);
   if (hit && along != nullptr) *along = hit->along;
   if (!hit) return 0;
   return hit->triangle == rt::kNoTriangle ? -1 : 1;
+}
+
+int orchard_index_rays(orchard_tree* tree) {
+  const auto work = [tree] {
+    tree->rays = rt::RayIndex(tree->view);
+    return 1;
+  };
+  return rt::detail::guarded(work, [] { return 0; });
 }
 
 int orchard_nearest_point(const orchard_tree* tree, const orchard_pose* pose, const double center[3], double limit,
@@ -373,7 +384,12 @@ void orchard_cast_rays(const orchard_tree* tree, const orchard_pose* pose, const
     for (size_t i = 0; i < some; ++i) {
       rays[i] = {vector_of(origins + 3 * (begin + i)), vector_of(directions + 3 * (begin + i)), longest};
     }
-    rt::cast_rays(tree->view, placed, std::span(rays).first(some), hits);
+    const auto portion = std::span(rays).first(some);
+    if (tree->rays.empty()) {
+      rt::cast_rays(tree->view, placed, portion, hits);
+    } else {
+      rt::cast_rays(tree->rays, placed, portion, hits);
+    }
     for (size_t i = 0; i < some; ++i) {
       hit[begin + i] = !hits[i] ? 0 : hits[i]->triangle == rt::kNoTriangle ? -1 : 1;
       along[begin + i] = hits[i] ? hits[i]->along : 0;

@@ -6,6 +6,7 @@
 #include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/orchard.h"
 #include "orchard/runtime/prepared_tree.h"
+#include "orchard/runtime/ray_index.h"
 
 // What both C interfaces share.
 struct orchard_tree {
@@ -13,6 +14,7 @@ struct orchard_tree {
   orchard::runtime::PackedSphereTree loaded;
   orchard::runtime::TreeView view;
   orchard::runtime::PreparedTree prepared;
+  orchard::runtime::RayIndex rays;  // empty unless asked for
 };
 
 struct orchard_workspace {

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "ray_walk.h"
+#include "segment_meets.h"
 #include "segment_query.h"
-#include "tree_walk.h"
 #include "triangle_distance.h"
 
 namespace orchard::runtime {
@@ -39,21 +40,6 @@ Crossing crossing(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcep
   return side_p > 0 ? Crossing::leaving : Crossing::entering;
 }
 
-// Exactly, as triangles_intersect() says of the segment, which most triangles lie across or beside.
-bool segment_meets(const Vec3& from, const Vec3& to, const TrianglePoints& t, Vec3& common) noexcept {
-  const int p = orientation(t[0], t[1], t[2], from), q = orientation(t[0], t[1], t[2], to);
-  if (p * q > 0) return false;
-  if (p == 0 && q == 0) return triangles_intersect({from, to, to}, t, &common);
-  const int a = orientation(from, to, t[0], t[1]), b = orientation(from, to, t[1], t[2]);
-  if (a * b < 0) return false;
-  const int c = orientation(from, to, t[2], t[0]);
-  if (a * c < 0 || b * c < 0) return false;
-  const Vec3 normal = cross(minus(t[1], t[0]), minus(t[2], t[0]));
-  const double hp = std::fabs(dot(normal, minus(from, t[0]))), hq = std::fabs(dot(normal, minus(to, t[0])));
-  common = detail::along(from, minus(to, from), hp + hq > 0 ? std::clamp(hp / (hp + hq), 0.0, 1.0) : 0);
-  return true;
-}
-
 double winding_angle(const TreeView& tree, const Vec3& point) noexcept {
   double sum = 0;
   for (const TriangleBlock& block : tree.triangle_blocks) {
@@ -68,85 +54,6 @@ double winding_angle(const TreeView& tree, const Vec3& point) noexcept {
   }
   return sum;
 }
-
-double reach_beyond(const TreeView& tree, const Vec3& point) noexcept {  // from the point to outside of everything
-  const BallSlabBlock& root = tree.ball_slabs[0];
-  return length(minus(point, {root.x[0], root.y[0], root.z[0]})) + 2 * double{root.radius[0]} +
-         kRounding * tree.bounding_radius;
-}
-
-// The first triangle along rays in one body's frame.
-class Caster {
- public:
-  Caster(const TreeView& tree, const Pose& pose) noexcept : frame_(tree, pose) {}
-
-  std::optional<RayHit> cast(const Ray& ray) const noexcept {
-    const RayHit unknown{0, ray.origin, kNoTriangle};
-    if (std::isnan(ray.longest)) return unknown;
-    const Vec3 from = frame_.enter(ray.origin);
-    const Course course(frame_, ray.direction);
-    if (!within_reach(from) || !std::isfinite(course.speed)) return unknown;
-    if (ray.longest < 0) return std::nullopt;
-    const TreeView& tree = frame_.tree;
-    Query query{course, from, from, 0, {}};
-    query.end = course.speed > 0 ? std::min(course.steps(ray.longest), reach_beyond(tree, from) / course.speed) : 0;
-    query.to = settled(detail::along(from, course.step, query.end));
-    const double length_of_ray = query.end * course.speed;
-    const Vec3 way = course.speed > 0 ? detail::along({0, 0, 0}, course.step, 1 / course.speed) : Vec3{1, 0, 0};
-    const Line line = line_of(tree, from, way, length_of_ray);
-    if (line.misses) return std::nullopt;
-    if (line.in_float) {
-      const double rounding = kRounding * (length(from) + tree.bounding_radius);
-      walk_ray(tree, line, [&](const TriangleBlock& block, std::uint32_t some, float end) {
-        for (std::uint32_t left = some; left != 0; left &= left - 1) {
-          const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-          if (!query.offer(points_of(block, lane), block.triangle[lane])) continue;
-          const double s = query.best.steps * course.speed;
-          end = std::min(end, static_cast<float>(s + rounding - line.at) + line.ray.margin);
-        }
-        return end;
-      });
-    } else {
-      const Segment whole(from, query.to);
-      walk(
-          tree, whole, frame_.rounding(whole), [] { return 0.0; },
-          [&](const TriangleBlock& block) {
-            return each_triangle(block, [&](const TrianglePoints& t, std::uint32_t triangle) {
-              query.offer(t, triangle);
-              return true;
-            });
-          });
-    }
-    if (query.best.triangle == kNoTriangle) return std::nullopt;
-    return RayHit{std::min(course.along(query.best.steps), ray.longest), frame_.leave(query.best.point),
-                  query.best.triangle};
-  }
-
- private:
-  struct Best {
-    double steps = std::numeric_limits<double>::infinity();
-    Vec3 point{};
-    std::uint32_t triangle = kNoTriangle;
-  };
-  struct Query {
-    const Course& course;
-    Vec3 from, to;
-    double end;
-    Best best;
-
-    // Whether the triangle is the nearest so far; of equally near ones the first in the tree's own order.
-    bool offer(const TrianglePoints& t, std::uint32_t triangle) noexcept {
-      Vec3 common{};
-      if (!segment_meets(from, to, t, common)) return false;
-      const double steps = std::clamp(course.steps_to(minus(common, from)), 0.0, end);
-      if (steps > best.steps || (steps == best.steps && triangle > best.triangle)) return false;
-      best = {steps, common, triangle};
-      return true;
-    }
-  };
-
-  Frame frame_;
-};
 
 // The surface point nearest to a segment within `limit`, or the first one found, if `any` will do; `guess` is looked at
 // first, and is enough where it meets the segment. `beyond`: see NearestToSegment.
@@ -241,35 +148,14 @@ Answer touches_capsule(const TreeView& tree, const Pose& pose, const std::array<
   return found.distance == 0 ? Answer::maybe : Answer::no;
 }
 
-std::optional<RayHit> cast_ray(const TreeView& tree, const Pose& pose, const std::array<double, 3>& origin,
-                               const std::array<double, 3>& direction, double longest) noexcept {
-  if (tree.ball_slabs.empty()) return std::nullopt;
-  if (!is_rigid(pose)) return RayHit{0, origin, kNoTriangle};
-  return Caster(tree, pose).cast({origin, direction, longest});
-}
-
-void cast_rays(const TreeView& tree, const Pose& pose, std::span<const Ray> rays,
-               std::span<std::optional<RayHit>> hits) noexcept {
-  const bool rigid = is_rigid(pose);
-  const Caster caster(tree, pose);
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (tree.ball_slabs.empty()) {
-      hits[i] = std::nullopt;
-    } else if (rigid) {
-      hits[i] = caster.cast(rays[i]);
-    } else {
-      hits[i] = RayHit{0, rays[i].origin, kNoTriangle};
-    }
-  }
-}
-
 bool contains(const TreeView& solid, const Pose& pose, const std::array<double, 3>& point) noexcept {
   if (solid.ball_slabs.empty()) return false;
   if (!is_rigid(pose)) return true;
   const Frame frame(solid, pose);
   const Vec3 p = frame.enter(point);
   if (!within_reach(p)) return true;
-  const double reach = reach_beyond(solid, p);
+  const Ball ball = ball_around(solid);
+  const double reach = reach_beyond(ball, solid.bounding_radius, p);
   for (int ray = 0; ray < kRays; ++ray) {
     const Vec3 way = ray_direction(ray), q = settled(along(p, way, reach));
     int winding = 0;
@@ -279,12 +165,12 @@ bool contains(const TreeView& solid, const Pose& pose, const std::array<double, 
       winding += (kind == Crossing::leaving) - (kind == Crossing::entering);
       clear = clear && kind != Crossing::unclear;
     };
-    const Line line = line_of(solid, p, way, reach);
+    const Line line = line_of(ball, p, way, reach);
     if (line.misses) return false;
     if (line.in_float) {
-      walk_ray(solid, line, [&](const TriangleBlock& block, std::uint32_t some, float end) {
-        for (std::uint32_t left = some; left != 0; left &= left - 1) {
-          count(points_of(block, static_cast<std::uint32_t>(std::countr_zero(left))));
+      walk_ray(solid, line, [&](const RayLeaf& leaf, float end) {
+        for (std::uint32_t left = leaf.some; left != 0; left &= left - 1) {
+          count(points_of(*leaf.block, static_cast<std::uint32_t>(std::countr_zero(left))));
         }
         return clear ? end : -std::numeric_limits<float>::infinity();
       });

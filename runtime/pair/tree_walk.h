@@ -1,4 +1,3 @@
-// Templates that every walk through one tree is an instance of: hence a header of more than 300 lines.
 #pragma once
 #include <algorithm>
 #include <bit>
@@ -9,11 +8,10 @@
 #include "orchard/runtime/shape_query.h"
 #include "tree/ball_slab_block.h"
 #include "tree/point_block.h"
-#include "tree/ray_block.h"
 #include "tree/tree_nodes.h"
 #include "vector_functions.h"
 
-// How queries about one tree go through its triangles: along a ray, or outward from a point or segment.
+// How queries about one tree go through its triangles, outward from a point or segment; along a ray: ray_walk.h.
 namespace orchard::runtime::detail {
 
 // Ball slabs are left out only beyond this much more than need be, for the rounding of a few operations.
@@ -94,110 +92,19 @@ inline bool within_reach(const Vec3& v) noexcept {  // false for what is not a n
 }
 
 struct Frame {  // the body's, with its coordinates relative to the tree's origin
-  explicit Frame(const TreeView& view, const Pose& body) noexcept : tree(view), pose(body), back(inverse(body)) {}
-  Vec3 enter(const Vec3& world) const noexcept { return settled(minus(transform(back, world), tree.origin)); }
-  Vec3 leave(const Vec3& local) const noexcept { return transform(pose, along(local, tree.origin, 1)); }
-  double rounding(const Segment& s) const noexcept {
-    return kRounding * (length(s.p) + length(s.d) + tree.bounding_radius);
-  }
-  const TreeView& tree;
+  Frame(const std::array<double, 3>& tree_origin, double tree_radius, const Pose& body) noexcept
+      : origin(tree_origin), bounding_radius(tree_radius), pose(body), back(inverse(body)) {}
+  Frame(const std::array<double, 3>& tree_origin, double tree_radius, const Pose& body, const Pose& inverse_of_body)
+      : origin(tree_origin), bounding_radius(tree_radius), pose(body), back(inverse_of_body) {}
+  Frame(const TreeView& tree, const Pose& body) noexcept : Frame(tree.origin, tree.bounding_radius, body) {}
+  Vec3 enter(const Vec3& world) const noexcept { return settled(minus(transform(back, world), origin)); }
+  Vec3 leave(const Vec3& local) const noexcept { return transform(pose, along(local, origin, 1)); }
+  double rounding(const Segment& s) const noexcept { return kRounding * (length(s.p) + length(s.d) + bounding_radius); }
+  std::array<double, 3> origin;
+  double bounding_radius;
   const Pose& pose;
   Pose back;
 };
-
-// A ray in the body's frame, by steps of about one unit: directions of every length are as good as unit vectors.
-struct Course {
-  Course(const Frame& frame, const Vec3& direction) noexcept : scale(frame.pose.scale) {
-    const double largest = std::max({std::fabs(direction[0]), std::fabs(direction[1]), std::fabs(direction[2])});
-    power = largest > 0 && std::isfinite(largest) ? std::ilogb(largest) : 0;
-    Vec3 way{};
-    for (std::size_t i = 0; i < 3; ++i) way[i] = std::ldexp(direction[i], -power);
-    step = rotate(frame.back, way);
-    speed = length(step);
-  }
-  // A factor of the direction in steps, and back.
-  double steps(double along) const noexcept {
-    if (!std::isfinite(along)) return along;
-    int p = 0, q = 0;
-    const double ratio = std::frexp(along, &p) / std::frexp(scale, &q);
-    return std::ldexp(ratio, p - q + power);
-  }
-  double along(double steps) const noexcept { return std::ldexp(steps * scale, -power); }
-  double steps_to(const Vec3& place) const noexcept { return speed > 0 ? dot(place, step) / (speed * speed) : 0; }
-
-  double scale, speed = 0;
-  int power = 0;
-  Vec3 step{};
-};
-
-// A ray for the float tests, or the verdict that there is none: past the whole tree.
-struct Line {
-  FloatRay ray;
-  double at = 0;             // of s = 0, along the ray from its origin
-  float begin = 0, end = 0;  // in s
-  bool misses = false, in_float = true;
-};
-
-// From `from` along the unit vector `way`, for `length`.
-inline Line line_of(const TreeView& tree, const Vec3& from, const Vec3& way, double length_of_ray) noexcept {
-  constexpr double unit = 0x1p-24;
-  const BallSlabBlock& root = tree.ball_slabs[0];
-  const Vec3 middle = {root.x[0], root.y[0], root.z[0]};
-  const double radius = double{root.radius[0]};
-  Line line;
-  line.at = dot(minus(middle, from), way);
-  const Vec3 origin = along(from, way, line.at);
-  const double error = kRounding * (length(from) + std::fabs(line.at) + length(middle) + radius);
-  const double size = length(middle) + 2 * radius + error;
-  if (!(size <= kFloatReach)) {
-    line.in_float = false;
-    return line;
-  }
-  const double margin = std::max(48 * unit * size + 2 * error, 1e-15);
-  line.misses = length(minus(origin, middle)) > radius + margin;
-  for (std::size_t i = 0; i < 3; ++i) {
-    line.ray.origin[i] = static_cast<float>(origin[i]);
-    line.ray.direction[i] = static_cast<float>(way[i]);
-  }
-  line.ray.margin = static_cast<float>(margin * (1 + 4 * unit));
-  line.begin = static_cast<float>(std::max(-line.at, -radius - 2 * margin) - margin);
-  line.end = static_cast<float>(std::min(length_of_ray - line.at, radius + 2 * margin) + margin);
-  line.misses = line.misses || line.end < line.begin;
-  return line;
-}
-
-// Calls visit(triangle block, bits of the triangles that the line may meet) for the leaves on the ray, the nearest
-// ball slab of a block first. visit() returns up to which s the ray goes on from there.
-template <typename Visit>
-void walk_ray(const TreeView& tree, const Line& line, Visit&& visit) noexcept {
-  struct Entry {
-    float enter;
-    std::uint32_t child;
-  };
-  std::array<Entry, kWalkRoom> stack;
-  std::size_t size = 0;
-  float end = line.end;
-  RayEntries entries;
-  stack[size++] = {line.begin, tree.ball_slabs[0].child[0]};
-  while (size > 0) {
-    const Entry entry = stack[--size];
-    if (entry.enter > end) continue;
-    if (entry.child & kLeafBit) {
-      const TriangleBlock& block = tree.triangle_blocks[entry.child & ~kLeafBit];
-      const std::uint32_t some = ray_triangles(line.ray, block);
-      if (some != 0) end = visit(block, some, end);
-      continue;
-    }
-    const BallSlabBlock& block = tree.ball_slabs[entry.child];
-    const std::size_t begin = size;
-    for (std::uint32_t left = ray_ball_slabs(line.ray, block, line.begin, end, entries); left != 0; left &= left - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-      std::size_t place = size++;
-      for (; place > begin && stack[place - 1].enter < entries[lane]; --place) stack[place] = stack[place - 1];
-      stack[place] = {entries[lane], block.child[lane]};
-    }
-  }
-}
 
 // A point or segment as a ball slab, a triangle and what they need to be asked about in float.
 struct FloatShape {

@@ -11,6 +11,7 @@
 #include "orchard/runtime/detector.h"
 #include "orchard/runtime/distance.h"
 #include "orchard/runtime/mapped_tree.h"
+#include "orchard/runtime/ray_index.h"
 #include "orchard/runtime/self_collision.h"
 #include "orchard/runtime/shape_query.h"
 #include "orchard/runtime/shape_trees.h"

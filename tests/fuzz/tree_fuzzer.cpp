@@ -9,6 +9,7 @@
 
 #include "orchard/runtime/distance.h"
 #include "orchard/runtime/narrow_phase.h"
+#include "orchard/runtime/ray_index.h"
 #include "orchard/runtime/shape_query.h"
 #include "orchard/runtime/tree_file.h"
 
@@ -41,6 +42,7 @@ void query(const TreeView& tree) {
   const std::array<double, 3> near = tree.origin, far = {tree.origin[0] + size, tree.origin[1], tree.origin[2] - size};
   nearest_point_to_segment(tree, Pose{}, near, far);
   cast_ray(tree, Pose{}, far, {-1, 0.1, 1});
+  cast_ray(RayIndex(tree), Pose{}, far, {-1, 0.1, 1});
   contains(tree, Pose{}, near);
 }
 

@@ -240,6 +240,15 @@ TEST(CInterface, AsksManyThingsAtOnce) {
   EXPECT_EQ(hit[1], 0);
   EXPECT_EQ(hit[2], 1);
   EXPECT_EQ(along[2], 4);
+  ASSERT_EQ(orchard_index_rays(cube.tree), 1);
+  for (int& h : hit) h = 7;
+  orchard_cast_rays(cube.tree, &still, origins[0], directions[0], 100, 3, hit, along);
+  EXPECT_EQ(hit[0], 1);
+  EXPECT_EQ(along[0], 4);
+  EXPECT_EQ(hit[1], 0);
+  EXPECT_EQ(hit[2], 1);
+  EXPECT_EQ(orchard_cast_ray(cube.tree, &still, origins[2], directions[2], 100, along), 1);
+  EXPECT_EQ(along[0], 4);
 
   std::vector<orchard_pose> a(100, still), b;
   const std::vector<const orchard_tree*> trees(100, cube.tree);

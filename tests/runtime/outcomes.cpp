@@ -5,6 +5,7 @@
 
 #include "bodies.h"
 #include "orchard/runtime/contacts.h"
+#include "orchard/runtime/ray_index.h"
 #include "orchard/runtime/shape_query.h"
 #include "orchard/runtime/time_of_impact.h"
 #include "support/effort.h"
@@ -43,6 +44,9 @@ int main() {
       DistanceQuery distance(a, b);
       const PreparedTree first(a), second(b);
       const TreePair pair(first, second);
+      const RayIndex index(a);
+      std::vector<Ray> rays;
+      std::vector<std::optional<RayHit>> hits(8);
       Digest digest;
       for (std::uint64_t seed = 0; seed < 12 * orchard::test::more(); ++seed) {
         Draw draw(seed);
@@ -70,6 +74,12 @@ int main() {
         digest.add(near.distance), digest.add(std::uint64_t{near.triangle});
         const auto hit = cast_ray(a, pose_a, pose_b.translation, draw.direction());
         digest.add(hit ? hit->along : -1);
+        rays.push_back({pose_b.translation, draw.direction()});
+        if (rays.size() == 8) {
+          cast_rays(index, pose_a, rays, hits);
+          for (const auto& one : hits) digest.add(one ? one->along : -1);
+          rays.clear();
+        }
       }
       std::printf("%s / %s: %016llx\n", all[i].name.c_str(), all[j].name.c_str(),
                   static_cast<unsigned long long>(digest.value()));

@@ -108,8 +108,8 @@ TEST(RayBlock, KeepsEveryTriangleAndBallSlabOnTheRayOnEveryMachine) {
         }
       }
       for (const TriangleBlock& block : tree.triangle_blocks) {
-        const std::uint32_t some = ray_triangles(ray, block);
-        ASSERT_EQ(some, ray_triangles_scalar(ray, block)) << seed;
+        const std::uint32_t some = ray_triangles(ray, block).some;
+        ASSERT_EQ(some, ray_triangles_scalar(ray, block).some) << seed;
         for (std::uint32_t lane = 0; lane < kBlockWidth && block.triangle[lane] != kNoTriangle; ++lane) {
           const bool aimed = &tree.triangles[block.triangle[lane]] == &t;
           ASSERT_TRUE(!aimed || (some >> lane & 1)) << seed;

@@ -115,6 +115,10 @@ int orchard_contains(const orchard_tree* tree, const orchard_pose* pose, const d
 int orchard_cast_ray(const orchard_tree* tree, const orchard_pose* pose, const double origin[3],
                      const double direction[3], double longest, double* along);
 
+/* From now on rays against this tree take about half of their time, for some 60 bytes a triangle: 1, or 0 and nothing
+ * is changed if there is no memory. Answers stay the same. No other thread may ask about the tree meanwhile. */
+int orchard_index_rays(orchard_tree* tree);
+
 /* The point of the surface nearest to `center`, if it is within `limit`: 1, 0, or -1 as above. Null: not wanted. */
 int orchard_nearest_point(const orchard_tree* tree, const orchard_pose* pose, const double center[3], double limit,
                           double* distance, double point[3], uint32_t* triangle);
