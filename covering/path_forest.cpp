@@ -54,4 +54,34 @@ void PathForest::descend(Index ball, const Point& point, double above, double& m
   for (Index child : children_[ball]) descend(child, point, excess, min);
 }
 
+bool surely_holds(const Sphere& ball, const Box& box) {
+  // Less than what surely_holds() of a triangle leaves, so that it is true of all triangles in the box.
+  constexpr double kSurelyInside = 1 - 0x1p-32;
+  const double limit = ball.radius * kSurelyInside;
+  const Vector farthest = (box.max() - ball.center).cwiseMax(ball.center - box.min());
+  return ball.radius > 0 && farthest.squaredNorm() <= limit * limit;
+}
+
+bool HoldingPath::holds(const Box& box) {
+  const auto is_around = [&](Index ball) {
+    return surely_holds(Sphere{forest_.balls()[ball].center, forest_.balls()[ball].radius}, box);
+  };
+  Index up = last_;
+  while (up != kNone && is_around(up)) up = forest_.balls()[up].parent;
+  if (last_ != kNone && up == kNone) return true;
+  const std::span<const Index> roots = forest_.roots();
+  return std::any_of(roots.begin(), roots.end(), [&](Index root) { return descend(root, box); });
+}
+
+bool HoldingPath::descend(Index ball, const Box& box) {
+  const PathBall& own = forest_.balls()[ball];
+  if (!surely_holds(Sphere{own.center, own.radius}, box)) return false;
+  if (own.leaf) {
+    last_ = ball;
+    return true;
+  }
+  const std::span<const Index> children = forest_.children(ball);
+  return std::any_of(children.begin(), children.end(), [&](Index child) { return descend(child, box); });
+}
+
 }  // namespace orchard

@@ -8,10 +8,10 @@
 #include "orchard/geometry/angle.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/min_ball.h"
-#include "orchard/geometry/self_intersections.h"
 #include "orchard/geometry/tolerance.h"
 #include "query/sheets.h"
 #include "query/triangle_tree.h"
+#include "repair/self_intersections_of_tree.h"
 
 namespace orchard {
 namespace {
@@ -94,7 +94,7 @@ struct Surface::Data {
 
   // Many surfaces are never asked for either.
   const std::vector<std::array<Index, 2>>& self_intersections() const {
-    std::call_once(cuts_found_, [&] { cuts_ = orchard::self_intersections(mesh); });
+    std::call_once(cuts_found_, [&] { cuts_ = detail::self_intersections(mesh, tree); });
     return cuts_;
   }
   const detail::Sheets& sheets() const {
@@ -204,6 +204,10 @@ double Surface::max_reach(const std::array<Sphere, 3>& balls, const Point& middl
   return data_->tree.max_reach(balls, middle, enough);
 }
 void Surface::triangles_near(const Sphere& ball, std::vector<Index>& out) const { data_->tree.near(ball, out); }
+void Surface::triangles_near(const Sphere& ball, const std::function<bool(const Box&)>& is_out,
+                             std::vector<Index>& out) const {
+  data_->tree.near(ball, is_out, out);
+}
 void Surface::triangles_overlapping(const std::array<Point, 3>& triangle, std::vector<Index>& out) const {
   data_->tree.overlapping(triangle, out);
 }

@@ -1,7 +1,9 @@
 #include "ball_fit.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "wide.h"
@@ -59,14 +61,21 @@ template <std::size_t kRoom>
 double BallFitter::Terms<kRoom>::shift_weight(Vector& sum, double t) {
   const double tx = t * sum.x(), ty = t * sum.y(), tz = t * sum.z();
   double scores[kRoom];
+  // The highest of each lane, and its block: the first, if there are several.
+  Lanes lane_highest = Lanes{} - kInfinity, lane_block{};
   for (std::size_t b = 0; b * kLanes < count; ++b) {
     const Lanes score = value[b] - (tx * x[b] + ty * y[b] + tz * z[b]);
+    const auto higher = score > lane_highest;
+    lane_highest = higher ? score : lane_highest;
+    lane_block = higher ? Lanes{} + static_cast<double>(b) : lane_block;
     for (std::size_t k = 0; k < kLanes; ++k) scores[kLanes * b + k] = score[k];
   }
   std::size_t up = 0, place = 0;
   double highest = -kInfinity, lowest = kInfinity;
-  for (std::size_t i = 0; i < count; ++i)
-    if (scores[i] > highest) highest = scores[i], up = i;
+  for (std::size_t k = 0; k < kLanes; ++k) {
+    const std::size_t i = kLanes * static_cast<std::size_t>(lane_block[k]) + k;
+    if (lane_highest[k] > highest || (lane_highest[k] == highest && i < up)) highest = lane_highest[k], up = i;
+  }
   for (std::size_t k = 0; k < weighted_count; ++k) {
     const double score = scores[weighted[k]];
     if (score < lowest || (score == lowest && weighted[k] < weighted[place])) lowest = score, place = k;
@@ -158,25 +167,30 @@ double BallFitter::measure(const Point& center) {
 
 void BallFitter::linearise_points(const FittedBall& ball, double reach) {
   const double min = std::max(0.0, ball.radius - 2 * reach), squared_min = min * min;
-  farthest_.clear();
+  if (farthest_.size() < point_count_) farthest_.resize(point_count_);
+  std::size_t count = 0;
   for (std::size_t b = 0; b < squared_.size(); ++b) {
     const Lanes& four = squared_[b].numbers;
     if (std::max(std::max(four[0], four[1]), std::max(four[2], four[3])) < squared_min) continue;
-    for (std::size_t k = 0; k < kLanes && kLanes * b + k < point_count_; ++k)
-      if (four[k] >= squared_min && four[k] > 0) farthest_.emplace_back(four[k], static_cast<Index>(kLanes * b + k));
+    const std::size_t end = std::min(kLanes, point_count_ - kLanes * b);
+    for (std::size_t k = 0; k < end; ++k) {  // without a branch: what is not far is written over
+      farthest_[count] = {std::bit_cast<std::uint64_t>(four[k]), static_cast<Index>(kLanes * b + k)};
+      count += static_cast<std::size_t>((four[k] >= squared_min) & (four[k] > 0));
+    }
   }
-  if (farthest_.size() > kMaxFar) {
-    std::nth_element(farthest_.begin(), farthest_.begin() + kMaxFar, farthest_.end(), std::greater<>());
-    farthest_.resize(kMaxFar);
+  std::span<Far> farthest(farthest_.data(), count);
+  if (count > kMaxFar) {
+    std::nth_element(farthest.begin(), farthest.begin() + kMaxFar, farthest.end(), farther);
+    farthest = farthest.first(kMaxFar);
   }
   far_.count = 0;
-  for (const auto& [squared, i] : farthest_) {
+  for (const auto& [bits, i] : farthest) {
     const FourPoints& four = points_[i / kLanes];
     const std::size_t lane = i % kLanes;
-    const double length = std::sqrt(squared);
+    const double length = std::sqrt(std::bit_cast<double>(bits));
     far_.add(length, (ball.center - Point(four.x[lane], four.y[lane], four.z[lane])) / length);
   }
-  if (farthest_.empty()) far_.add(ball.radius, Vector::Zero());
+  if (farthest.empty()) far_.add(ball.radius, Vector::Zero());
   far_.fill_up();
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -69,6 +70,14 @@ class [[gnu::visibility("hidden")]] BallFitter {
    private:
     Vector gradient(std::size_t i) const;
   };
+  // A point by its squared distance, a number above 0, whose bits are in the same order.
+  struct Far {
+    std::uint64_t squared;
+    Index point;
+  };
+  static bool farther(const Far& a, const Far& b) {  // without branches, which nobody could predict
+    return (a.squared > b.squared) | ((a.squared == b.squared) & (a.point > b.point));
+  }
   static constexpr std::size_t kMaxFar = 40;  // farthest points that a step looks at
   static constexpr std::size_t kMaxCuts = 12;
 
@@ -88,7 +97,7 @@ class [[gnu::visibility("hidden")]] BallFitter {
   std::size_t point_count_ = 0;
   std::vector<FourPoints> points_;
   std::vector<FourNumbers> squared_, measured_;  // distances of the points from the best centre, from the last one
-  std::vector<std::pair<double, Index>> farthest_;
+  std::vector<Far> farthest_;                    // room for all points
   Terms<kMaxFar> far_;
   Terms<kMaxCuts> near_;
 };

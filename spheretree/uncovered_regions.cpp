@@ -181,13 +181,20 @@ std::vector<UncoveredRegion> find_deep_uncovered_regions(const Surface& surface,
   return uncovered;
 }
 
-std::vector<Index> triangles_to_recheck(const Surface& surface, const Coverage& before,
-                                        std::span<const Sphere> changed) {
+std::vector<Index> triangles_to_check(const Surface& surface, std::span<const PathBall> balls) {
+  return triangles_to_recheck(surface, {}, {&surface.bounding_ball(), 1}, balls);
+}
+
+std::vector<Index> triangles_to_recheck(const Surface& surface, const Coverage& before, std::span<const Sphere> changed,
+                                        std::span<const PathBall> balls) {
+  const PathForest forest(balls);
   std::vector<char> marked(surface.mesh().triangles.size(), 0);
   for (const UncoveredTriangle& uncovered : before.uncovered) marked[uncovered.triangle] = 1;
   std::vector<Index> near;
+  HoldingPath path(forest);
   for (const Sphere& ball : changed) {
-    surface.triangles_near(ball, near);
+    surface.triangles_near(
+        ball, [&](const Box& box) { return path.holds(box); }, near);
     for (Index triangle : near) marked[triangle] = 1;
   }
   std::vector<Index> triangles;

@@ -31,9 +31,12 @@ std::vector<UncoveredRegion> find_uncovered_regions(const Surface& surface, cons
 std::vector<UncoveredRegion> find_deep_uncovered_regions(const Surface& surface, const Coverage& coverage,
                                                          std::span<const PathBall> balls);
 
-// The triangles that may be uncovered after a change, ascending: those that were before, and those near the balls as
-// they were before they changed.
-std::vector<Index> triangles_to_recheck(const Surface& surface, const Coverage& before,
-                                        std::span<const Sphere> changed);
+// The triangles that may be uncovered, ascending: all but most of those that one path surely holds.
+std::vector<Index> triangles_to_check(const Surface& surface, std::span<const PathBall> balls);
+
+// The same after a change: of those that were uncovered before it, and of those near the balls as they were before they
+// changed.
+std::vector<Index> triangles_to_recheck(const Surface& surface, const Coverage& before, std::span<const Sphere> changed,
+                                        std::span<const PathBall> balls);
 
 }  // namespace orchard::detail

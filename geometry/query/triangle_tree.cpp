@@ -17,6 +17,8 @@ constexpr int kStack = 128;  // three entries a level; the builder keeps the tre
 // Everything computed in floats is off by less than kSlack * (distance + size of the mesh): thirteen roundings of 6e-8
 // at worst, of the query, of what is stored and of three products each, and half as much again.
 constexpr float kSlack = 1.25e-6f;
+// Of the mesh's coordinates: more than the roundings of a difference to the centre and of a sum with it.
+constexpr double kBoxRoom = 0x1p-48;
 
 // What the squared float distance of a box or triangle may be at most if it matters beside one at float distance d:
 // either may be off.
@@ -104,10 +106,10 @@ void TriangleTree::prefetch(Index child) const {
   for (std::size_t line = 0; line < (is_leaf ? sizeof(Leaf) : sizeof(Node)); line += 64) __builtin_prefetch(at + line);
 }
 
-// Calls visit(leaf) for every leaf that may hold something within the squared `limit`, near ones first. visit may lower
-// it.
-template <class Visit>
-void TriangleTree::visit_leaves(const Query& query, const float& limit, Visit visit) const {
+// Calls visit(leaf) for every leaf that may hold something within the squared `limit`, near ones first, but for those
+// below a node's child that is_out(node, lane) is true of. visit may lower the limit.
+template <class Visit, class IsOut>
+void TriangleTree::visit_leaves(const Query& query, const float& limit, Visit visit, IsOut is_out) const {
   struct Entry {
     float squared;
     Index child;
@@ -127,7 +129,7 @@ void TriangleTree::visit_leaves(const Query& query, const float& limit, Visit vi
     if (!any_at_most(squared, limit)) continue;
     const int first = top;
     for (int k = 0; k < 4; ++k) {
-      if (!(squared[k] <= limit)) continue;
+      if (!(squared[k] <= limit) || is_out(node, k)) continue;
       int at = top++;
       for (; at > first && stack[static_cast<std::size_t>(at - 1)].squared < squared[k]; --at)
         stack[static_cast<std::size_t>(at)] = stack[static_cast<std::size_t>(at - 1)];
@@ -135,6 +137,11 @@ void TriangleTree::visit_leaves(const Query& query, const float& limit, Visit vi
       if (is_fine_) prefetch(node.child[k]);
     }
   }
+}
+
+template <class Visit>
+void TriangleTree::visit_leaves(const Query& query, const float& limit, Visit visit) const {
+  visit_leaves(query, limit, visit, [](const Node&, int) { return false; });
 }
 
 std::array<Point, 3> TriangleTree::corners(Index triangle) const {
@@ -261,7 +268,19 @@ void TriangleTree::visit_nearest(const Point& point, const std::function<double(
   });
 }
 
-void TriangleTree::near(const Sphere& ball, std::vector<Index>& out) const {
+// In the mesh's frame, with room for the roundings on the way there and back.
+Box TriangleTree::box_around(const Node& node, int lane) const {
+  Point lower, upper;
+  for (int axis = 0; axis < 3; ++axis) {
+    lower[axis] = center_[axis] + double{node.lower[axis][lane]} / scale_;
+    upper[axis] = center_[axis] + double{node.upper[axis][lane]} / scale_;
+  }
+  const Vector room = Vector::Constant(kBoxRoom * (center_.cwiseAbs().maxCoeff() + 1 / scale_));
+  return {lower - room, upper + room};
+}
+
+template <class IsOut>
+void TriangleTree::near_where(const Sphere& ball, IsOut is_out, std::vector<Index>& out) const {
   out.clear();
   const auto add_if_near = [&](Index triangle) {
     if (measure(ball.center, triangle).distance <= ball.radius) out.push_back(triangle);
@@ -272,7 +291,7 @@ void TriangleTree::near(const Sphere& ball, std::vector<Index>& out) const {
     const float limit = squared_limit(static_cast<float>(radius));
     const float sure = static_cast<float>(radius) * (1 - 4 * kSlack) - 4 * kSlack;
     const float sure_squared = sure > 0 ? sure * sure : -1.0f;
-    visit_leaves(query, limit, [&](const Leaf& leaf) {
+    const auto visit = [&](const Leaf& leaf) {
       const Float4 squared = squared_distances(query, leaf);
       for (int k = 0; k < 4; ++k) {
         if (squared[k] > limit || leaf.triangle[k] == kNone) continue;
@@ -281,11 +300,23 @@ void TriangleTree::near(const Sphere& ball, std::vector<Index>& out) const {
         else
           add_if_near(leaf.triangle[k]);
       }
-    });
+    };
+    visit_leaves(query, limit, visit, is_out);
     sort_indices(out);
   } else {
     for (Index t = 0; t < mesh_.triangles.size(); ++t) add_if_near(t);
   }
+}
+
+void TriangleTree::near(const Sphere& ball, std::vector<Index>& out) const {
+  near_where(
+      ball, [](const Node&, int) { return false; }, out);
+}
+
+void TriangleTree::near(const Sphere& ball, const std::function<bool(const Box&)>& is_out,
+                        std::vector<Index>& out) const {
+  near_where(
+      ball, [&](const Node& node, int lane) { return is_out(box_around(node, lane)); }, out);
 }
 
 }  // namespace orchard::detail

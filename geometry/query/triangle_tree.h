@@ -38,8 +38,12 @@ class TriangleTree {
   int winding_number(const Point& query) const;
   void visit_nearest(const Point& query, const std::function<double(Index)>& visit) const;         // see Surface
   double max_reach(const std::array<Sphere, 3>& balls, const Point& middle, double enough) const;  // see Surface
-  void near(const Sphere& ball, std::vector<Index>& out) const;                           // ascending; cleared first
+  void near(const Sphere& ball, std::vector<Index>& out) const;  // ascending; cleared first
+  void near(const Sphere& ball, const std::function<bool(const Box&)>& is_out,
+            std::vector<Index>& out) const;                                               // see Surface
   void overlapping(const std::array<Point, 3>& triangle, std::vector<Index>& out) const;  // ascending; cleared first
+  // Every two triangles whose boxes meet, once, and some others. Linear in their number where the mesh is well shaped.
+  void visit_pairs(const std::function<void(Index, Index)>& visit) const;
 
  private:
   struct Node {
@@ -60,6 +64,7 @@ class TriangleTree {
   };
   class Builder;
   class Candidates;
+  class Pairs;
   class TriangleQuery;
   class Ray;
   class Reach;
@@ -73,8 +78,13 @@ class TriangleTree {
   static Float4 squared_distances(const Query& query, const Leaf& leaf);
   void prefetch(Index child) const;
   void find_candidates(const Point& point, Candidates& candidates) const;
+  template <class Visit, class IsOut>
+  void visit_leaves(const Query& query, const float& limit, Visit visit, IsOut is_out) const;
   template <class Visit>
   void visit_leaves(const Query& query, const float& limit, Visit visit) const;
+  template <class IsOut>
+  void near_where(const Sphere& ball, IsOut is_out, std::vector<Index>& out) const;
+  Box box_around(const Node& node, int lane) const;
   std::array<Point, 3> corners(Index triangle) const;
   ClosestPoint measure(const Point& query, Index triangle) const;
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace orchard::detail {
 namespace {
@@ -55,42 +54,44 @@ TriangleTree::Builder::Builder(const TriangleMesh& mesh, const Point& center, do
 
 void TriangleTree::Builder::run() {
   const std::size_t count = mesh_.triangles.size();
-  boxes_.resize(count);
-  centers_.resize(count);
+  order_.resize(count);
   for (std::size_t t = 0; t < count; ++t) {
+    Item& item = order_[t];
+    item.triangle = static_cast<Index>(t);
     for (const Index vertex : mesh_.triangles[t]) {
       const Point p = scale_ * (mesh_.vertices[vertex] - center_);
-      boxes_[t].extend(p.unaryExpr([](double x) { return rounded_down(x); }).cast<float>());
-      boxes_[t].extend(p.unaryExpr([](double x) { return rounded_up(x); }).cast<float>());
+      item.box.extend(p.unaryExpr([](double x) { return rounded_down(x); }).cast<float>());
+      item.box.extend(p.unaryExpr([](double x) { return rounded_up(x); }).cast<float>());
     }
-    centers_[t] = boxes_[t].center();
+    item.center = item.box.center();
   }
-  order_.resize(count);
-  std::iota(order_.begin(), order_.end(), Index{0});
   leaves_.reserve(count / 2 + 1);
   add_node({0, static_cast<Index>(count)}, 0);
 }
 
 TriangleTree::Builder::Box3f TriangleTree::Builder::bounds(Range range) const {
   Box3f box;
-  for (Index i = range.begin; i < range.end; ++i) box.extend(boxes_[order_[i]]);
+  for (Index i = range.begin; i < range.end; ++i) box.extend(order_[i].box);
   return box;
 }
 
 Index TriangleTree::Builder::add_node(Range range, int depth) {
   std::array<Range, 4> parts{range};
+  std::array<Box3f, 4> boxes{bounds(range)};
   std::size_t count = 1;
   while (count < 4) {
     std::size_t widest = 4;
     float widest_area = -1;
     for (std::size_t i = 0; i < count; ++i) {
-      const float area = parts[i].size() > kLeafSize ? half_area(bounds(parts[i])) : -1;
+      const float area = parts[i].size() > kLeafSize ? half_area(boxes[i]) : -1;
       if (area > widest_area) widest = i, widest_area = area;
     }
     if (widest == 4) break;
     const Index middle = split(parts[widest], depth);
-    parts[count++] = {middle, parts[widest].end};
+    parts[count] = {middle, parts[widest].end};
     parts[widest].end = middle;
+    for (const std::size_t changed : {widest, count}) boxes[changed] = bounds(parts[changed]);
+    ++count;
   }
 
   const auto node = static_cast<Index>(nodes_.size());
@@ -104,7 +105,7 @@ Index TriangleTree::Builder::add_node(Range range, int depth) {
                        &nodes_[node].high, &nodes_[node].radius})
     *zero = Float4{};
   for (std::size_t i = 0; i < count; ++i) {
-    const Box3f box = bounds(parts[i]);
+    const Box3f& box = boxes[i];
     const Index child = parts[i].size() > kLeafSize ? add_node(parts[i], depth + 1) : add_leaf(parts[i]);
     for (int axis = 0; axis < 3; ++axis) {
       nodes_[node].lower[axis][i] = box.min()[axis];
@@ -120,7 +121,7 @@ Index TriangleTree::Builder::add_node(Range range, int depth) {
 void TriangleTree::Builder::add_slab(Range range, Node& node, std::size_t lane) const {
   Vector sum = Vector::Zero();
   for (Index i = range.begin; i < range.end; ++i) {
-    const auto& [a, b, c] = mesh_.triangles[order_[i]];
+    const auto& [a, b, c] = mesh_.triangles[order_[i].triangle];
     const Point& p = mesh_.vertices[a];
     sum += (scale_ * (mesh_.vertices[b] - p)).cross(scale_ * (mesh_.vertices[c] - p));
   }
@@ -132,7 +133,7 @@ void TriangleTree::Builder::add_slab(Range range, Node& node, std::size_t lane) 
   for (int axis = 0; axis < 3; ++axis) middle[axis] = TriangleTree::middle(node, axis)[lane];
   double low = std::numeric_limits<double>::infinity(), high = -low, squared = 0;
   for (Index i = range.begin; i < range.end; ++i) {
-    for (const Index vertex : mesh_.triangles[order_[i]]) {
+    for (const Index vertex : mesh_.triangles[order_[i].triangle]) {
       const Point place = scale_ * (mesh_.vertices[vertex] - center_);
       const double along = across.dot(place);
       low = std::min(low, along), high = std::max(high, along);
@@ -146,9 +147,9 @@ void TriangleTree::Builder::add_slab(Range range, Node& node, std::size_t lane) 
   node.radius[lane] = rounded_up(std::sqrt(squared));
 }
 
-int TriangleTree::Builder::bin_of(Index triangle, int axis, const Box3f& centers) const {
+int TriangleTree::Builder::bin_of(const Item& item, int axis, const Box3f& centers) {
   const float low = centers.min()[axis], width = centers.max()[axis] - low;
-  return std::min(kBins - 1, static_cast<int>(kBins * ((centers_[triangle][axis] - low) / width)));
+  return std::min(kBins - 1, static_cast<int>(kBins * ((item.center[axis] - low) / width)));
 }
 
 TriangleTree::Builder::Split TriangleTree::Builder::best_split(Range range, const Box3f& centers) const {
@@ -159,7 +160,7 @@ TriangleTree::Builder::Split TriangleTree::Builder::best_split(Range range, cons
     std::array<Index, kBins> counts{};
     for (Index i = range.begin; i < range.end; ++i) {
       const auto bin = static_cast<std::size_t>(bin_of(order_[i], axis, centers));
-      boxes[bin].extend(boxes_[order_[i]]);
+      boxes[bin].extend(order_[i].box);
       ++counts[bin];
     }
     std::array<float, kBins> above{};
@@ -186,25 +187,26 @@ TriangleTree::Builder::Split TriangleTree::Builder::best_split(Range range, cons
 // Orders the range so that its two halves are [begin, result) and [result, end), neither empty.
 Index TriangleTree::Builder::split(Range range, int depth) {
   Box3f centers;
-  for (Index i = range.begin; i < range.end; ++i) centers.extend(centers_[order_[i]]);
+  for (Index i = range.begin; i < range.end; ++i) centers.extend(order_[i].center);
   const auto begin = order_.begin() + range.begin, end = order_.begin() + range.end;
   const Split best = depth < kDepthOfHalving ? best_split(range, centers) : Split{};
   if (best.axis >= 0) {
-    const auto middle = std::partition(begin, end, [&](Index t) { return bin_of(t, best.axis, centers) <= best.bin; });
+    const auto middle =
+        std::partition(begin, end, [&](const Item& item) { return bin_of(item, best.axis, centers) <= best.bin; });
     return static_cast<Index>(middle - order_.begin());
   }
   int axis = 0;
   centers.sizes().maxCoeff(&axis);
   const Index middle = range.begin + range.size() / 2;
   std::nth_element(begin, order_.begin() + middle, end,
-                   [&](Index a, Index b) { return centers_[a][axis] < centers_[b][axis]; });
+                   [&](const Item& a, const Item& b) { return a.center[axis] < b.center[axis]; });
   return middle;
 }
 
 Index TriangleTree::Builder::add_leaf(Range range) {
   Leaf leaf{};
   for (int k = 0; k < 4; ++k) leaf.triangle[k] = kNone;
-  for (Index i = range.begin; i < range.end; ++i) flatten(order_[i], leaf, static_cast<int>(i - range.begin));
+  for (Index i = range.begin; i < range.end; ++i) flatten(order_[i].triangle, leaf, static_cast<int>(i - range.begin));
   leaves_.push_back(leaf);
   return kLeaf + static_cast<Index>(leaves_.size() - 1);
 }

@@ -29,8 +29,14 @@ class TriangleTree::Builder {
   Index add_node(Range range, int depth);
   Index add_leaf(Range range);
   Index split(Range range, int depth);
+  // A triangle as the order has it: what splitting reads lies side by side.
+  struct Item {
+    Box3f box;  // rounded outward
+    Eigen::Vector3f center;
+    Index triangle;
+  };
   Split best_split(Range range, const Box3f& centers) const;
-  int bin_of(Index triangle, int axis, const Box3f& centers) const;
+  static int bin_of(const Item& item, int axis, const Box3f& centers);
   Box3f bounds(Range range) const;
   void add_slab(Range range, Node& node, std::size_t lane) const;
   void flatten(Index triangle, Leaf& leaf, int lane) const;
@@ -40,9 +46,7 @@ class TriangleTree::Builder {
   double scale_;
   std::vector<Node>& nodes_;
   std::vector<Leaf>& leaves_;
-  std::vector<Box3f> boxes_;              // of each triangle, rounded outward
-  std::vector<Eigen::Vector3f> centers_;  // of boxes_
-  std::vector<Index> order_;
+  std::vector<Item> order_;
 };
 
 }  // namespace orchard::detail

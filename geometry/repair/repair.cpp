@@ -42,7 +42,8 @@ MeshRepairReport repair_mesh(TriangleMesh& mesh, const RepairMeshOptions& option
   } else if (before.components > 1) {
     detail::orient_parts(mesh, report);
   }
-  const MeshReport after = check_mesh(mesh);
+  const bool untouched = before.solid() && before.components <= 1;
+  const MeshReport after = untouched ? before : check_mesh(mesh);
   report.solid = after.solid();
   report.faults = after.faults();
   // Else the faults name vertices, and the user knows those by their numbers in the file.

@@ -1,33 +1,24 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Intersections_3/Segment_3_Triangle_3.h>
 #include <CGAL/Intersections_3/Triangle_3_Triangle_3.h>
-#include <CGAL/box_intersection_d.h>
 
 #include <algorithm>
 
 #include "orchard/geometry/self_intersections.h"
+#include "query/triangle_tree.h"
 #include "same_place.h"
+#include "self_intersections_of_tree.h"
 
 namespace orchard {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-class Box3 : public CGAL::Box_intersection_d::Box_d<double, 3, CGAL::Box_intersection_d::ID_NONE> {
- public:
-  Box3(const CGAL::Bbox_3& box, Index triangle) : Box_d(box), triangle_(triangle) {}
-  Index id() const { return triangle_; }
-
- private:
-  Index triangle_;
-};
-
 class PairTest {
  public:
   explicit PairTest(const TriangleMesh& mesh) : mesh_(mesh), place_(first_at_place(mesh)) {}
 
   bool degenerate(Index t) const { return Kernel().is_degenerate_3_object()(triangle(t)); }
-  CGAL::Bbox_3 box(Index t) const { return triangle(t).bbox(); }
 
   bool meet(Index a, Index b) const {
     const auto p = places(a), q = places(b);
@@ -70,13 +61,17 @@ class PairTest {
 }  // namespace
 
 std::vector<std::array<Index, 2>> self_intersections(const TriangleMesh& mesh) {
+  if (mesh.triangles.empty()) return {};
+  return detail::self_intersections(mesh, detail::TriangleTree(mesh));
+}
+
+std::vector<std::array<Index, 2>> detail::self_intersections(const TriangleMesh& mesh, const TriangleTree& tree) {
   const PairTest test(mesh);
-  std::vector<Box3> boxes;
-  for (Index t = 0; t < mesh.triangles.size(); ++t)
-    if (!test.degenerate(t)) boxes.emplace_back(test.box(t), t);
+  std::vector<char> takes_part(mesh.triangles.size());
+  for (Index t = 0; t < mesh.triangles.size(); ++t) takes_part[t] = !test.degenerate(t);
   std::vector<std::array<Index, 2>> pairs;
-  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box3& a, const Box3& b) {
-    if (test.meet(a.id(), b.id())) pairs.push_back({std::min(a.id(), b.id()), std::max(a.id(), b.id())});
+  tree.visit_pairs([&](Index a, Index b) {
+    if (takes_part[a] && takes_part[b] && test.meet(a, b)) pairs.push_back({std::min(a, b), std::max(a, b)});
   });
   std::sort(pairs.begin(), pairs.end());
   return pairs;

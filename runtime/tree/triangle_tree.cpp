@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "orchard/runtime/packed_tree.h"
+#include "places_along.h"
 #include "principal_axes.h"
 
 // The tree of triangles: cut in two along a principal direction, eight children a node, leaves of up to eight
@@ -15,6 +16,7 @@ namespace orchard::runtime {
 namespace {
 
 using detail::axes_of, detail::cross, detail::dot, detail::minus, detail::Vec3;
+using detail::PlaceAlong, detail::sort_along;
 
 // To a float and back, through memory: where GCC 12 makes vectors of several such lines (-O2 and above) it leaves both
 // conversions out, and a ball slab would be measured from another centre than the one that is stored.
@@ -46,6 +48,19 @@ struct Range {
   std::size_t size() const { return end - begin; }
 };
 
+// A range and what is measured of it, once.
+struct Part : Range {
+  Vec3 middle{};
+  double radius = 0;           // of a small ball around the middle
+  std::array<Vec3, 3> axes{};  // principal ones of the corners, the longest first
+};
+
+// A triangle as the order has it: what the loops over a part read lies side by side.
+struct Triangle {
+  std::array<std::array<float, 3>, 3> corners;
+  std::uint32_t number;
+};
+
 struct BallSlab {
   Vec3 center, normal;
   double radius, height;
@@ -55,14 +70,14 @@ class Builder {
  public:
   explicit Builder(PackedSphereTree& tree) : tree_(tree) {
     order_.resize(tree.triangles.size());
-    extents_.resize(order_.size());
+    centroids_.resize(order_.size());
     for (std::size_t t = 0; t < order_.size(); ++t) {
-      order_[t] = static_cast<std::uint32_t>(t);
-      Vec3 sum{};
+      order_[t].number = static_cast<std::uint32_t>(t);
+      Vec3& sum = centroids_[t];
       for (std::size_t k = 0; k < 3; ++k) {
-        for (std::size_t i = 0; i < 3; ++i) sum[i] += corner(order_[t], k)[i] / 3;
+        order_[t].corners[k] = tree.vertices[tree.triangles[t][k]];
+        for (std::size_t i = 0; i < 3; ++i) sum[i] += double{order_[t].corners[k][i]} / 3;
       }
-      centroids_.push_back(sum);
     }
   }
 
@@ -71,7 +86,7 @@ class Builder {
     tree_.triangle_blocks.clear();
     tree_.triangle_tree_depth = 0;
     if (order_.empty()) return;
-    std::vector<Range> level = {{0, order_.size()}}, next;
+    std::vector<Part> level = {measured({0, order_.size()})}, next;
     add_block();
     place(0, 0, level[0]);
     std::vector<std::pair<std::size_t, std::uint32_t>> places = {{0, 0}}, next_places;
@@ -84,14 +99,9 @@ class Builder {
   }
 
  private:
-  Vec3 corner(std::uint32_t triangle, std::size_t k) const {
-    const auto& v = tree_.vertices[tree_.triangles[triangle][k]];
-    return {double{v[0]}, double{v[1]}, double{v[2]}};
-  }
-
   void add_block() { tree_.ball_slabs.emplace_back().radius.fill(-1); }
 
-  void expand(const Range& node, const std::pair<std::size_t, std::uint32_t>& at, std::vector<Range>& next,
+  void expand(const Part& node, const std::pair<std::size_t, std::uint32_t>& at, std::vector<Part>& next,
               std::vector<std::pair<std::size_t, std::uint32_t>>& next_places) {
     std::uint32_t& child = tree_.ball_slabs[at.first].child[at.second];
     if (node.size() <= kBlockWidth) {
@@ -101,7 +111,7 @@ class Builder {
     }
     const std::size_t block = tree_.ball_slabs.size();
     child = static_cast<std::uint32_t>(block);
-    const std::vector<Range> parts = split(node);
+    const std::vector<Part> parts = split(node);
     add_block();
     for (std::uint32_t lane = 0; lane < parts.size(); ++lane) {
       place(block, lane, parts[lane]);
@@ -114,33 +124,33 @@ class Builder {
     TriangleBlock& block = tree_.triangle_blocks.emplace_back();
     for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
       const bool used = lane < leaf.size();
-      const std::uint32_t t = order_[leaf.begin + (used ? lane : 0)];
-      block.triangle[lane] = used ? t : kNoTriangle;
+      const Triangle& t = order_[leaf.begin + (used ? lane : 0)];
+      block.triangle[lane] = used ? t.number : kNoTriangle;
       for (std::size_t k = 0; k < 3; ++k) {
-        for (std::size_t i = 0; i < 3; ++i) block.corner[k][i][lane] = tree_.vertices[tree_.triangles[t][k]][i];
+        for (std::size_t i = 0; i < 3; ++i) block.corner[k][i][lane] = t.corners[k][i];
       }
     }
   }
 
   // Halves the widest part until there are eight; what fits a leaf stays whole.
-  std::vector<Range> split(const Range& node) {
-    std::vector<Range> parts = {node};
+  std::vector<Part> split(const Part& node) {
+    std::vector<Part> parts = {node};
     std::vector<double> widths = {1};
     while (parts.size() < kBlockWidth) {
       const auto widest = static_cast<std::size_t>(std::max_element(widths.begin(), widths.end()) - widths.begin());
       if (widths[widest] < 0) break;
-      const Range whole = parts[widest];
+      const Part whole = parts[widest];
       const std::size_t middle = halve(whole);
-      parts[widest] = {whole.begin, middle};
+      parts[widest] = measured({whole.begin, middle});
       const auto behind = static_cast<std::ptrdiff_t>(widest) + 1;
-      parts.insert(parts.begin() + behind, {middle, whole.end});
+      parts.insert(parts.begin() + behind, measured({middle, whole.end}));
       widths[widest] = width_of(parts[widest]);
       widths.insert(widths.begin() + behind, width_of(parts[widest + 1]));
     }
     return parts;
   }
 
-  double width_of(const Range& part) const { return part.size() <= kBlockWidth ? -1 : ball_of(part).second; }
+  static double width_of(const Part& part) { return part.size() <= kBlockWidth ? -1 : part.radius; }
 
   struct Extent {
     Vec3 low, high;  // along the part's principal axes
@@ -157,14 +167,15 @@ class Builder {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   static constexpr Extent kNothing = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
 
-  Extent extent_of(std::uint32_t triangle, const std::array<Vec3, 3>& axes) const {
+  static Extent extent_of(const Triangle& triangle, const std::array<Vec3, 3>& axes) {
     Extent extent = kNothing;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3 p = corner(triangle, k), along = {dot(axes[0], p), dot(axes[1], p), dot(axes[2], p)};
+    for (const auto& corner : triangle.corners) {
+      const Vec3 p = as_doubles(corner), along = {dot(axes[0], p), dot(axes[1], p), dot(axes[2], p)};
       extent.add({along, along});
     }
     return extent;
   }
+  static Vec3 as_doubles(const std::array<float, 3>& p) { return {double{p[0]}, double{p[1]}, double{p[2]}}; }
 
   static std::size_t multiple_of_width(std::size_t count) {
     return (count + kBlockWidth - 1) / kBlockWidth * kBlockWidth;
@@ -173,72 +184,75 @@ class Builder {
   // Across a principal axis, where the boxes of the two parts, times their triangles, are smallest (MacDonald and Booth
   // 1990), the more even parts of equal ones; far down in half, which limits the depth. At a multiple of eight
   // triangles, so that leaves are full.
-  std::size_t halve(const Range& part) {
-    const std::array<Vec3, 3> axes = axes_of(covariance(part));
+  std::size_t halve(const Part& part) {
     const std::size_t size = part.size(), half = multiple_of_width(size / 2);
     if (tree_.triangle_tree_depth >= kCostlyDepth) {
-      put_in_order(along(axes[0], part), part);
+      find_places(part, 0);
+      put_in_order(places_[0], part);
       return part.begin + half;
     }
-    for (std::size_t i = part.begin; i < part.end; ++i) extents_[order_[i]] = extent_of(order_[i], axes);
+    extents_.resize(size);
+    for (std::size_t i = 0; i < size; ++i) extents_[i] = extent_of(order_[part.begin + i], part.axes);
     std::tuple<double, std::size_t, std::size_t, std::size_t> best = {kInfinity, 0, 0,
                                                                       half};  // cost, unevenness, axis, at
-    std::vector<double> behind(size);
-    std::array<std::vector<Place>, 3> places;
+    behind_.resize(size);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      places[axis] = along(axes[axis], part);
+      find_places(part, axis);
+      const std::vector<PlaceAlong>& places = places_[axis];
       Extent extent = kNothing;
       for (std::size_t i = size; i-- > 0;) {
-        extent.add(extents_[places[axis][i].triangle]);
-        behind[i] = extent.area() * static_cast<double>(size - i);
+        extent.add(extents_[places[i].from]);
+        if (i % kBlockWidth == 0) behind_[i] = extent.area() * static_cast<double>(size - i);
       }
       extent = kNothing;
       for (std::size_t i = 0; i < size; ++i) {
         if (i > 0 && i % kBlockWidth == 0) {
-          const double cost = extent.area() * static_cast<double>(i) + behind[i];
+          const double cost = extent.area() * static_cast<double>(i) + behind_[i];
           best = std::min(best, {cost, i > half ? i - half : half - i, axis, i});
         }
-        extent.add(extents_[places[axis][i].triangle]);
+        extent.add(extents_[places[i].from]);
       }
     }
-    put_in_order(places[std::get<2>(best)], part);
+    put_in_order(places_[std::get<2>(best)], part);
     return part.begin + std::get<3>(best);
   }
 
-  // Where a triangle's centroid is along an axis; equal ones go by their numbers.
-  struct Place {
-    double at;
-    std::uint32_t triangle;
-    bool operator<(const Place& other) const {
-      return at < other.at || (!(other.at < at) && triangle < other.triangle);
-    }
-  };
-  std::vector<Place> along(const Vec3& axis, const Range& part) const {
-    std::vector<Place> places(part.size());
+  // Where the centroids are along a principal axis, in their order; equal ones go by their triangles' numbers.
+  void find_places(const Part& part, std::size_t axis) {
+    std::vector<PlaceAlong>& places = places_[axis];
+    places.resize(part.size());
     for (std::size_t i = 0; i < part.size(); ++i) {
-      const std::uint32_t triangle = order_[part.begin + i];
-      places[i] = {dot(axis, centroids_[triangle]), triangle};
+      const std::uint32_t number = order_[part.begin + i].number;
+      places[i] = {dot(part.axes[axis], centroids_[number]), number, static_cast<std::uint32_t>(i)};
     }
-    std::sort(places.begin(), places.end());
-    return places;
+    sort_along(places, sorted_);
   }
-  void put_in_order(const std::vector<Place>& places, const Range& part) {
-    for (std::size_t i = 0; i < places.size(); ++i) order_[part.begin + i] = places[i].triangle;
+  void put_in_order(const std::vector<PlaceAlong>& places, const Range& part) {
+    before_.assign(order_.begin() + static_cast<std::ptrdiff_t>(part.begin),
+                   order_.begin() + static_cast<std::ptrdiff_t>(part.end));
+    for (std::size_t i = 0; i < places.size(); ++i) order_[part.begin + i] = before_[places[i].from];
+  }
+
+  Part measured(const Range& range) const {
+    Part part;
+    static_cast<Range&>(part) = range;
+    find_ball(part);
+    part.axes = axes_of(covariance(part));
+    return part;
   }
 
   // Of the corners, scaled to be free of overflow.
-  std::array<double, 6> covariance(const Range& part) const {
-    const auto [center, radius] = ball_of(part);
+  std::array<double, 6> covariance(const Part& part) const {
     std::array<double, 6> m{};
-    if (!(radius > 0)) return m;
+    if (!(part.radius > 0)) return m;
     Vec3 mean{};
     const double share = 1 / (3 * static_cast<double>(part.size()));
-    each_corner(part, [&, &middle = center, &size = radius](const Vec3& p) {
-      for (std::size_t i = 0; i < 3; ++i) mean[i] += (p[i] - middle[i]) / size * share;
+    each_corner(part, [&](const Vec3& p) {
+      for (std::size_t i = 0; i < 3; ++i) mean[i] += (p[i] - part.middle[i]) / part.radius * share;
     });
-    each_corner(part, [&, &middle = center, &size = radius](const Vec3& p) {
-      Vec3 d = minus(p, middle);
-      for (std::size_t i = 0; i < 3; ++i) d[i] = d[i] / size - mean[i];
+    each_corner(part, [&](const Vec3& p) {
+      Vec3 d = minus(p, part.middle);
+      for (std::size_t i = 0; i < 3; ++i) d[i] = d[i] / part.radius - mean[i];
       m[0] += d[0] * d[0], m[1] += d[1] * d[1], m[2] += d[2] * d[2];
       m[3] += d[0] * d[1], m[4] += d[0] * d[2], m[5] += d[1] * d[2];
     });
@@ -248,12 +262,12 @@ class Builder {
   template <typename Visit>
   void each_corner(const Range& part, Visit&& visit) const {
     for (std::size_t i = part.begin; i < part.end; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) visit(corner(order_[i], k));
+      for (const auto& corner : order_[i].corners) visit(as_doubles(corner));
     }
   }
 
   // A small ball (Ritter's): from a long chord, grown to reach every corner.
-  std::pair<Vec3, double> ball_of(const Range& part) const {
+  void find_ball(Part& part) const {
     const auto farthest = [&](const Vec3& from) {
       Vec3 best = from;
       double most = -1;
@@ -263,7 +277,7 @@ class Builder {
       });
       return best;
     };
-    const Vec3 p = farthest(corner(order_[part.begin], 0)), q = farthest(p), chord = minus(q, p);
+    const Vec3 p = farthest(as_doubles(order_[part.begin].corners[0])), q = farthest(p), chord = minus(q, p);
     Vec3 center = {(p[0] + q[0]) / 2, (p[1] + q[1]) / 2, (p[2] + q[2]) / 2};
     double radius = std::sqrt(dot(chord, chord)) / 2;
     each_corner(part, [&](const Vec3& x) {
@@ -274,7 +288,8 @@ class Builder {
       for (std::size_t i = 0; i < 3; ++i) center[i] += d[i] * ((grown - radius) / distance);
       radius = grown;
     });
-    return {center, radius};
+    part.middle = center;
+    part.radius = radius;
   }
 
   // Between the planes across `normal`, centred between them.
@@ -298,19 +313,20 @@ class Builder {
 
   // The flatter one of the ball slab across the corners' thinnest direction and the one along the surface's mean
   // normal.
-  BallSlab ball_slab_of(const Range& part) const {
-    const Vec3 middle = ball_of(part).first;
+  BallSlab ball_slab_of(const Part& part) const {
     Vec3 mean{};
     for (std::size_t i = part.begin; i < part.end; ++i) {
-      const Vec3 a = corner(order_[i], 0), n = cross(minus(corner(order_[i], 1), a), minus(corner(order_[i], 2), a));
+      const auto& corners = order_[i].corners;
+      const Vec3 a = as_doubles(corners[0]);
+      const Vec3 n = cross(minus(as_doubles(corners[1]), a), minus(as_doubles(corners[2]), a));
       for (std::size_t k = 0; k < 3; ++k) mean[k] += n[k];
     }
-    const BallSlab thin = ball_slab_across(part, middle, direction(axes_of(covariance(part))[2]));
-    const BallSlab facing = ball_slab_across(part, middle, direction(mean));
+    const BallSlab thin = ball_slab_across(part, part.middle, direction(part.axes[2]));
+    const BallSlab facing = ball_slab_across(part, part.middle, direction(mean));
     return facing.height <= thin.height ? facing : thin;
   }
 
-  void place(std::size_t block_index, std::uint32_t lane, const Range& part) {
+  void place(std::size_t block_index, std::uint32_t lane, const Part& part) {
     const BallSlab slab = ball_slab_of(part);
     BallSlabBlock& block = tree_.ball_slabs[block_index];
     block.x[lane] = static_cast<float>(slab.center[0]);
@@ -325,9 +341,14 @@ class Builder {
   }
 
   PackedSphereTree& tree_;
-  std::vector<std::uint32_t> order_;
-  std::vector<Vec3> centroids_;
-  std::vector<Extent> extents_;  // of triangles, while their part is halved
+  std::vector<Triangle> order_;
+  std::vector<Vec3> centroids_;  // by the triangles' numbers
+  // While a part is halved:
+  std::vector<Triangle> before_;  // as it was ordered
+  std::vector<Extent> extents_;   // of its triangles
+  std::vector<double> behind_;    // what a cut costs behind it
+  std::array<std::vector<PlaceAlong>, 3> places_;
+  std::vector<PlaceAlong> sorted_;
 };
 
 }  // namespace
@@ -340,17 +361,20 @@ void index_triangles(PackedSphereTree& tree) {
   for (const auto& triangle : tree.triangles) {
     for (const std::uint32_t vertex : triangle) used[vertex] = true;
   }
-  for (std::uint32_t i = 0; i < kSupportCount; ++i) {
-    const Vec3 direction = support_direction(i);
-    double most = -std::numeric_limits<double>::infinity(), largest = 0;
-    for (std::size_t v = 0; v < tree.vertices.size(); ++v) {
-      if (!used[v]) continue;
-      const Vec3 p = {double{tree.vertices[v][0]}, double{tree.vertices[v][1]}, double{tree.vertices[v][2]}};
-      most = std::max(most, dot(direction, p));
-      largest = std::max({largest, std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])});
-    }
-    most += 1e-15 * 3 * largest;  // the sum's rounding
-    tree.supports.push_back(std::nextafter(static_cast<float>(most), std::numeric_limits<float>::infinity()));
+  std::array<double, kSupportCount> most;
+  most.fill(-std::numeric_limits<double>::infinity());
+  std::array<Vec3, kSupportCount> directions;
+  for (std::uint32_t i = 0; i < kSupportCount; ++i) directions[i] = support_direction(i);
+  double largest = 0;
+  for (std::size_t v = 0; v < tree.vertices.size(); ++v) {
+    if (!used[v]) continue;
+    const Vec3 p = {double{tree.vertices[v][0]}, double{tree.vertices[v][1]}, double{tree.vertices[v][2]}};
+    largest = std::max({largest, std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])});
+    for (std::size_t i = 0; i < kSupportCount; ++i) most[i] = std::max(most[i], dot(directions[i], p));
+  }
+  for (const double reach : most) {
+    const double above_all = reach + 1e-15 * 3 * largest;  // the sum's rounding
+    tree.supports.push_back(std::nextafter(static_cast<float>(above_all), std::numeric_limits<float>::infinity()));
   }
 }
 

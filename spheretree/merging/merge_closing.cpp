@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "ball_fit.h"
 #include "orchard/covering/coverage.h"
@@ -36,19 +35,20 @@ class Closer {
 
   ClosingReport run() {
     ClosingReport report;
-    std::vector<Index> triangles(surface_.mesh().triangles.size());
-    std::iota(triangles.begin(), triangles.end(), Index{0});
+    Coverage coverage;
+    std::vector<Sphere> changed;
     for (; report.rounds < kRounds; ++report.rounds) {
       const std::vector<PathBall> balls = path_balls(tree_);
-      const Coverage coverage = surface_coverage(surface_, triangles, balls);
+      const std::vector<Index> triangles = report.rounds == 0
+                                               ? triangles_to_check(surface_, balls)
+                                               : triangles_to_recheck(surface_, coverage, changed, balls);
+      coverage = surface_coverage(surface_, triangles, balls);
       const std::vector<UncoveredRegion> uncovered = find_deep_uncovered_regions(surface_, coverage, balls);
       if (report.rounds == 0) report.uncovered_regions = static_cast<Index>(uncovered.size());
       if (uncovered.empty()) break;
       const std::vector<Index> takers = give(uncovered);
-      std::vector<Sphere> changed;
-      changed.reserve(takers.size());
+      changed.clear();
       for (Index node : takers) changed.push_back(tree_.nodes[node].sphere);
-      triangles = triangles_to_recheck(surface_, coverage, changed);
       tbb::parallel_for(std::size_t{0}, takers.size(), [&](std::size_t i) { refit(takers[i]); });
     }
     const Index last = tree_.depth();

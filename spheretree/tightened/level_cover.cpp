@@ -16,6 +16,20 @@ bool apart(const Sphere& ball, const Point& center, double reach) {
   return (ball.center - center).squaredNorm() > limit * limit;
 }
 
+bool within(const Sphere& where, const Point& point) { return (point - where.center).norm() <= where.radius; }
+
+// Most triangles that only one ball of a level holds have no leaf near them once it is gone: nothing of such a triangle
+// is covered, and no circle bounds what is open. Appends its corners in the sphere. Not told where none is: then the
+// triangle may reach into the sphere or not.
+bool wholly_open(const std::array<Point, 3>& corners, const Sphere& where, std::span<const PathBall> near,
+                 std::vector<OpenArc>& arcs) {
+  if (std::any_of(near.begin(), near.end(), [](const PathBall& ball) { return ball.leaf; })) return false;
+  const std::size_t before = arcs.size();
+  for (const Point& corner : corners)
+    if (within(where, corner)) arcs.push_back({corner, corner});
+  return arcs.size() > before;
+}
+
 }  // namespace
 
 LevelCover::LevelCover(const Surface& surface, std::span<const PathBall> upper, std::vector<Index> path_ends,
@@ -70,6 +84,40 @@ void LevelCover::gather(const std::array<Point, 3>& corners, const Sphere& where
   }
 }
 
+// Balls that meet it, in path regions that may.
+std::vector<Index> LevelCover::others_near(Index ball) const {
+  const Sphere& sphere = balls_[ball].sphere;
+  std::vector<Index> others;
+  for (Index r = 0; r < path_ends_.size(); ++r) {
+    if (path_ends_[r] == kNone) continue;
+    const PathBall& end = upper_.balls()[path_ends_[r]];
+    if (apart({end.center, end.radius}, sphere.center, sphere.radius)) continue;
+    for (Index b : balls_in_[r])
+      if (b != ball && !apart(balls_[b].sphere, sphere.center, sphere.radius)) others.push_back(b);
+  }
+  return others;
+}
+
+bool LevelCover::path_holds(Index path_region, const Box& box) const {
+  for (Index node = path_ends_[path_region]; node != kNone; node = upper_.balls()[node].parent)
+    if (!surely_holds(Sphere{upper_.balls()[node].center, upper_.balls()[node].radius}, box)) return false;
+  return true;
+}
+
+void LevelCover::triangles_near(Index ball, std::vector<Index>& triangles) const {
+  std::vector<Index> others = others_near(ball);
+  const auto is_held = [&](const Box& box) {
+    for (std::size_t i = 0; i < others.size(); ++i) {
+      const PlacedBall& other = balls_[others[i]];
+      if (!surely_holds(other.sphere, box) || !path_holds(other.path_region, box)) continue;
+      std::swap(others[0], others[i]);  // boxes near each other come one after the other
+      return true;
+    }
+    return false;
+  };
+  surface_.triangles_near(balls_[ball].sphere, is_held, triangles);
+}
+
 void LevelCover::triangles_resting_on(std::span<const Index> balls, Scratch& scratch,
                                       std::vector<Index>& triangles) const {
   triangles.clear();
@@ -93,13 +141,17 @@ void LevelCover::open_arcs(std::span<const Index> triangles, const Sphere& where
   for (Index triangle : triangles) {
     const auto corners = surface_.corners(triangle);
     gather(corners, where, change, scratch.near);
+    if (wholly_open(corners, where, scratch.near.balls, arcs)) {
+      scratch.open.push_back(triangle);
+      continue;
+    }
     const TriangleCover cover = cover_of_triangle(corners, where, scratch.near.balls);
     if (cover.covered) continue;
     scratch.open.push_back(triangle);
     const std::size_t before = arcs.size();
     for (const UncoveredArc& arc : cover.arcs) arcs.push_back({arc.begin, arc.end});
     for (const Point& corner : corners) {
-      if ((corner - where.center).norm() > where.radius) continue;
+      if (!within(where, corner)) continue;
       if (path_distance(corner, scratch.near.balls) > -margin_) arcs.push_back({corner, corner});
     }
     if (arcs.size() == before) arcs.push_back({cover.witness, cover.witness});

@@ -46,9 +46,8 @@ class LevelCover {
 
   // The triangles that would not be covered without these balls, ascending. Precondition: they are with them.
   void triangles_resting_on(std::span<const Index> balls, Scratch& scratch, std::vector<Index>& triangles) const;
-  void triangles_near(const Sphere& sphere, std::vector<Index>& triangles) const {
-    surface_.triangles_near(sphere, triangles);
-  }
+  // Those near a ball, ascending, but for most of those that one path without that ball surely holds.
+  void triangles_near(Index ball, std::vector<Index>& triangles) const;
   // Appends what of some triangles is uncovered inside the closed sphere after the change; or says whether nothing is.
   void open_arcs(std::span<const Index> triangles, const Sphere& where, const Change& change, Scratch& scratch,
                  std::vector<OpenArc>& arcs) const;
@@ -56,6 +55,8 @@ class LevelCover {
 
  private:
   void gather(const std::array<Point, 3>& corners, const Sphere& where, const Change& change, NearBalls& near) const;
+  std::vector<Index> others_near(Index ball) const;
+  bool path_holds(Index path_region, const Box& box) const;
 
   const Surface& surface_;
   const double margin_;

@@ -1,7 +1,6 @@
 #include "level_finish.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "level_cover.h"
 #include "orchard/covering/coverage.h"
@@ -27,14 +26,16 @@ class Finish {
   // Finds uncovered regions and has the balls take them in, until only those are left that the last growth fills. In
   // the first rounds, the search goes on with what was found among its samples.
   void take_in_uncovered(TightenReport::Level& report) {
-    std::vector<Index> triangles(surface_.mesh().triangles.size());
-    std::iota(triangles.begin(), triangles.end(), Index{0});
+    Coverage coverage;
+    std::vector<Sphere> changed_balls;
     const int rounds = options_.searching_rounds + kTighteningRounds + kTakingRounds;
     for (int round = 0; round < rounds; ++round) {
       report_progress(options_.progress, "tightening", 0.5 * round / rounds);
       take_balls();
       const std::vector<PathBall> balls = path_balls(partial_.tree());
-      const Coverage coverage = surface_coverage(surface_, triangles, balls);
+      const std::vector<Index> triangles = round == 0 ? triangles_to_check(surface_, balls)
+                                                      : triangles_to_recheck(surface_, coverage, changed_balls, balls);
+      coverage = surface_coverage(surface_, triangles, balls);
       const std::vector<UncoveredRegion> uncovered = find_deep_uncovered_regions(surface_, coverage, balls);
       if (round == 0) report.uncovered_regions = static_cast<Index>(uncovered.size());
       if (uncovered.empty()) return;
@@ -47,7 +48,7 @@ class Finish {
         solver_.search(options_.search_trials);
         solver_.tighten();
       }
-      triangles = triangles_to_recheck(surface_, coverage, changed(before));
+      changed_balls = changed(before);
     }
   }
 

@@ -1,5 +1,6 @@
 #include "level_tightening.h"
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <optional>
@@ -11,18 +12,26 @@ namespace {
 
 constexpr int kSampleEvaluations = 14, kSurfaceEvaluations = 10;
 
-// The ball fitted to the surface that it alone covers; nothing if that is not worth while, or would uncover any.
-std::optional<FittedBall> tighter_on_surface(const Surface& surface, const LevelBall& ball, const LevelCover& cover,
-                                             Index number) {
-  const PlacedBall old = cover.balls()[number];
-  const std::span<const Index> gone(&number, 1);
+// What a thread works in, kept from one ball to the next for the room that its lists have.
+struct Worker {
+  explicit Worker(const Surface& surface) : fitter(surface) {}
+  BallFitter fitter;
   LevelCover::Scratch scratch;
   std::vector<Index> near;
   std::vector<OpenArc> arcs;
-  cover.triangles_near(old.sphere, near);
-  cover.open_arcs(near, old.sphere, {gone, {}}, scratch, arcs);
-  if (arcs.empty()) return {};
-  FittedBall fitted = BallFitter(surface).fit(ends_of(arcs), ball, kSurfaceEvaluations);
+};
+
+// The ball fitted to the surface that it alone covers; nothing if that is not worth while, or would uncover any.
+std::optional<FittedBall> tighter_on_surface(const Surface& surface, const LevelBall& ball, const LevelCover& cover,
+                                             Index number, Worker& worker) {
+  const PlacedBall old = cover.balls()[number];
+  const std::span<const Index> gone(&number, 1);
+  LevelCover::Scratch& scratch = worker.scratch;
+  worker.arcs.clear();
+  cover.triangles_near(number, worker.near);
+  cover.open_arcs(worker.near, old.sphere, {gone, {}}, scratch, worker.arcs);
+  if (worker.arcs.empty()) return {};
+  FittedBall fitted = worker.fitter.fit(ends_of(worker.arcs), ball, kSurfaceEvaluations);
   fitted.radius += tolerance::kCoverMargin * surface.bounding_radius();
   if (fitted.looseness() > ball.looseness() * (1 - kWorthwhileTightening)) return {};
   const PlacedBall fresh{{fitted.center, fitted.radius}, old.path_region};
@@ -34,6 +43,7 @@ std::optional<FittedBall> tighter_on_surface(const Surface& surface, const Level
 
 std::vector<Point> ends_of(const std::vector<OpenArc>& arcs) {
   std::vector<Point> points;
+  points.reserve(2 * arcs.size());
   for (const OpenArc& arc : arcs) points.insert(points.end(), {arc.begin, arc.end});
   return points;
 }
@@ -44,6 +54,7 @@ void tighten_to_samples(const Surface& surface, LevelBalls& balls) {
     FittedBall ball;
     std::uint64_t samples = 0;
   };
+  tbb::enumerable_thread_specific<BallFitter> fitters([&surface] { return BallFitter(surface); });
   std::vector<Index> order = balls.loosest_first();
   while (!order.empty()) {
     const std::vector<Index> batch = balls.take_apart(order);
@@ -53,7 +64,7 @@ void tighten_to_samples(const Surface& surface, LevelBalls& balls) {
       std::vector<Point> points;
       fits[i] = {ball, balls.append_held_alone(batch[i], points)};
       if (points.empty() || fits[i].samples == ball.fitted_to) return;
-      fits[i].ball = BallFitter(surface).fit(points, ball, kSampleEvaluations);
+      fits[i].ball = fitters.local().fit(points, ball, kSampleEvaluations);
     });
     for (std::size_t i = 0; i < batch.size(); ++i) {
       if (fits[i].ball.looseness() < balls[batch[i]].looseness()) balls.replace(batch[i], fits[i].ball);
@@ -63,12 +74,13 @@ void tighten_to_samples(const Surface& surface, LevelBalls& balls) {
 }
 
 void tighten_to_surface(const Surface& surface, LevelBalls& balls, LevelCover& cover) {
+  tbb::enumerable_thread_specific<Worker> workers([&surface] { return Worker(surface); });
   std::vector<Index> order = balls.loosest_first();
   while (!order.empty()) {
     const std::vector<Index> batch = balls.take_apart(order);
     std::vector<std::optional<FittedBall>> tighter(batch.size());
     tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {
-      tighter[i] = tighter_on_surface(surface, balls[batch[i]], cover, batch[i]);
+      tighter[i] = tighter_on_surface(surface, balls[batch[i]], cover, batch[i], workers.local());
     });
     for (std::size_t i = 0; i < batch.size(); ++i) {
       if (!tighter[i]) continue;

@@ -5,7 +5,10 @@
 
 #include <algorithm>
 
+#include "orchard/covering/path_forest.h"
 #include "orchard/geometry/random.h"
+#include "support.h"
+#include "support/effort.h"
 #include "support/shapes.h"
 
 namespace orchard {
@@ -63,6 +66,73 @@ TEST(Coverage, DoesNotDependOnTheThreadCount) {
   EXPECT_FALSE(results[0].empty());
   EXPECT_EQ(results[0], results[1]);
   EXPECT_EQ(results[0], results[2]);
+}
+
+// Whether all corners lie in all balls from some leaf up, with so much room in parts of the radius.
+bool some_path_holds(std::span<const PathBall> balls, const Box& box, double room) {
+  const auto holds = [&](const PathBall& ball) {
+    for (int corner = 0; corner < 8; ++corner) {
+      const Point at = box.corner(static_cast<Box::CornerType>(corner));
+      if (!((at - ball.center).norm() <= ball.radius * (1 - room))) return false;
+    }
+    return true;
+  };
+  for (Index leaf = 0; leaf < balls.size(); ++leaf) {
+    if (!balls[leaf].leaf) continue;
+    Index up = leaf;
+    while (up != kNone && holds(balls[up])) up = balls[up].parent;
+    if (up == kNone) return true;
+  }
+  return false;
+}
+
+TEST(HoldingPath, HoldsBoxesThatLieInAllBallsOfAPathAndNoOthers) {
+  Index held = 0, open = 0;
+  for (std::uint64_t k = 0; k < 200 * test::more(); ++k) {
+    Random random(test::first_seed() + k, 31);
+    const test::Triangle triangle = test::random_triangle(random);
+    const std::vector<PathBall> balls = test::random_forest(random, triangle, random.uniform(0.3, 2));
+    const PathForest forest(balls);
+    HoldingPath path(forest);
+    for (int i = 0; i < 50; ++i) {
+      const Point middle = test::point_of(triangle, random.uniform(), random.uniform());
+      const Vector half = test::random_vector(random, 0.3 * random.uniform()).cwiseAbs();
+      const Box box(middle - half, middle + half);
+      const bool holds = path.holds(box);
+      ++(holds ? held : open);
+      EXPECT_TRUE(!holds || some_path_holds(balls, box, 0)) << "seed " << k;
+      EXPECT_TRUE(holds || !some_path_holds(balls, box, 1e-9)) << "seed " << k;
+    }
+  }
+  EXPECT_GT(held, 100u);
+  EXPECT_GT(open, 100u);
+}
+
+// What is left out of a check because a path holds a box around it would have been found to be covered.
+TEST(HoldingPath, LeavesOutOnlyTrianglesThatAreCovered) {
+  const Surface surface(test::torus(60, 30));
+  Index left_out = 0;
+  for (std::uint64_t k = 0; k < 10 * test::more(); ++k) {
+    Random random(test::first_seed() + k, 32);
+    std::vector<PathBall> balls{{surface.bounding_ball().center, surface.bounding_radius() * 1.1, kNone, false}};
+    for (int i = 0; i < 60; ++i) {
+      const auto corners = surface.corners(static_cast<Index>(random.below(surface.mesh().triangles.size())));
+      balls.push_back({corners[0], surface.bounding_radius() * random.uniform(0.05, 0.5), 0, true});
+    }
+    const PathForest forest(balls);
+    HoldingPath path(forest);
+    std::vector<Index> to_check;
+    surface.triangles_near(
+        surface.bounding_ball(), [&](const Box& box) { return path.holds(box); }, to_check);
+    left_out += static_cast<Index>(surface.mesh().triangles.size() - to_check.size());
+    const auto names = [](const Coverage& coverage) {
+      std::vector<Index> triangles;
+      for (const UncoveredTriangle& u : coverage.uncovered) triangles.push_back(u.triangle);
+      return triangles;
+    };
+    EXPECT_EQ(names(surface_coverage(surface, to_check, balls)), names(surface_coverage(surface, balls)));
+  }
+  EXPECT_GT(left_out, 1000u);
 }
 
 }  // namespace

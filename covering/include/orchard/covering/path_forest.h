@@ -21,6 +21,7 @@ class PathForest {
 
   std::span<const PathBall> balls() const { return balls_; }
   PathBall& ball(Index i) { return balls_[i]; }
+  std::span<const Index> roots() const { return roots_; }
   std::span<const Index> children(Index i) const { return children_[i]; }
 
   // Gathers the balls whose whole path comes near the triangle. A ball that is left out does not touch the triangle,
@@ -37,5 +38,23 @@ class PathForest {
   std::vector<Index> roots_;
   Rows children_;
 };
+
+// Tells whether one path of balls surely holds a box, and so covers whatever triangles lie in it: cover_of_triangle()
+// says that they are covered. For boxes that lie near each other, one after the other: the last path is tried first.
+// One thread at a time. Keeps a reference to the forest.
+class HoldingPath {
+ public:
+  explicit HoldingPath(const PathForest& forest) : forest_(forest) {}
+  bool holds(const Box& box);
+
+ private:
+  bool descend(Index ball, const Box& box);
+
+  const PathForest& forest_;
+  Index last_ = kNone;  // the leaf of the last path that held anything
+};
+
+// Whether the ball surely holds the box, with room for all roundings.
+bool surely_holds(const Sphere& ball, const Box& box);
 
 }  // namespace orchard

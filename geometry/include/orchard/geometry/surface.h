@@ -86,6 +86,9 @@ class Surface {
   void visit_nearest(const Point& query, const std::function<double(Index)>& visit) const;
   // Triangles that touch the closed ball, ascending; `out` is cleared first.
   void triangles_near(const Sphere& ball, std::vector<Index>& out) const;
+  // The same, but for triangles in boxes that `is_out` is true of: it is asked about boxes around ever fewer triangles,
+  // and where it is true of one, none of these is looked at. It may be true of the boxes of any triangles.
+  void triangles_near(const Sphere& ball, const std::function<bool(const Box&)>& is_out, std::vector<Index>& out) const;
   // Triangles that share a point with the closed triangle, ascending; `out` is cleared first. Exact, as triangles_meet.
   void triangles_overlapping(const std::array<Point, 3>& triangle, std::vector<Index>& out) const;
 
