@@ -10,6 +10,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -73,14 +74,39 @@ Point rational_circumcenter(const std::array<Point, 4>& p) {
   return {CGAL::to_double(center.x()), CGAL::to_double(center.y()), CGAL::to_double(center.z())};
 }
 
+// A power of two, about the largest component: divided by it, products of several neither overflow nor vanish, and no
+// digit changes.
+double binary_size(const Vector& v) {
+  const double largest = v.cwiseAbs().maxCoeff();
+  return largest > 0 && std::isfinite(largest) ? std::ldexp(1.0, std::ilogb(largest)) : 1;
+}
+
+double length(const Vector& v) {
+  const double unit = binary_size(v);
+  return (v / unit).norm() * unit;
+}
+
 void place_finite(VoronoiVertex& vertex, std::span<const Point> points) {
   std::array<Point, 4> p;
   for (unsigned i = 0; i < 4; ++i) p[i] = points[vertex.forming_points[i]];
-  const auto from = [&](unsigned i) { return detail::LengthedVector(p[i] - p[3]); };
+  double unit = 0;
+  for (unsigned i = 0; i < 3; ++i) unit = std::max(unit, binary_size(p[i] - p[3]));
+  const auto from = [&](unsigned i) { return detail::LengthedVector((p[i] - p[3]) / unit); };
   const auto relative = detail::circumcenter(from(0), from(1), from(2));
   const bool good = relative.condition < kWellConditioned;
-  vertex.center = good ? Point(p[3] + relative.center) : rational_circumcenter(p);
-  vertex.radius = (vertex.center - p[3]).norm();
+  vertex.center = good ? Point(p[3] + relative.center * unit) : rational_circumcenter(p);
+  vertex.radius = length(vertex.center - p[3]);
+}
+
+// Of the triangle from a to b and c, with rational numbers: not of length 1.
+Vector rational_normal(const Point& a, const Point& b, const Point& c) {
+  using Rational = CGAL::Simple_cartesian<CGAL::Exact_rational>;
+  const auto exact = [](const Point& q) { return Rational::Point_3(q.x(), q.y(), q.z()); };
+  const auto normal = CGAL::cross_product(exact(b) - exact(a), exact(c) - exact(a));
+  const auto largest = std::max({CGAL::abs(normal.x()), CGAL::abs(normal.y()), CGAL::abs(normal.z())});
+  if (largest == 0) return Vector::Zero();
+  const auto part = [&](const CGAL::Exact_rational& x) { return CGAL::to_double(CGAL::Exact_rational(x / largest)); };
+  return {part(normal.x()), part(normal.y()), part(normal.z())};
 }
 
 void place_at_infinity(VoronoiVertex& vertex, std::span<const Point> points) {
@@ -91,8 +117,10 @@ void place_at_infinity(VoronoiVertex& vertex, std::span<const Point> points) {
     std::swap(corner[i], corner[3]);
     std::swap(corner[0], corner[1]);
   }
-  const Point& a = points[corner[0]];
-  vertex.center = (points[corner[1]] - a).cross(points[corner[2]] - a).normalized();
+  const Point &a = points[corner[0]], &b = points[corner[1]], &c = points[corner[2]];
+  const Vector u = (b - a) / binary_size(b - a), v = (c - a) / binary_size(c - a), normal = u.cross(v);
+  const bool good = u.norm() * v.norm() < kWellConditioned * normal.norm();
+  vertex.center = (good ? normal : rational_normal(a, b, c)).normalized();
   vertex.radius = std::numeric_limits<double>::infinity();
 }
 

@@ -11,7 +11,8 @@ namespace orchard::runtime::detail {
 using Step = std::int64_t;
 inline constexpr Step kNeverStep = std::numeric_limits<Step>::max();
 
-// Times of steps. Comparing a time with a step's allows for kStepSlack steps of rounding, in the safe direction.
+// Times of steps. Comparing a time with a step's allows for kStepSlack steps, and for rounding, in the safe direction:
+// far from zero rounding is the larger one, up to 1e-3 steps at kMaxSteps.
 inline constexpr double kStepSlack = 1e-6;
 inline constexpr double kTimeRounding = 0x1p-50;  // relative: of a few operations on times
 
@@ -19,14 +20,30 @@ struct Clock {
   double start, time_step;
 
   double time(Step step) const noexcept { return start + static_cast<double>(step) * time_step; }
-  // The number of steps whose time, counted from now, lies before `seconds`; at least 0.
-  Step steps_before(double seconds) const noexcept {
-    const double steps = std::ceil(seconds / time_step - kStepSlack);
+  // In seconds: what the times of two steps up to this one, and their difference, are off by at most.
+  double rounding(Step step) const noexcept {
+    return kTimeRounding * (std::fabs(start) + static_cast<double>(step) * time_step);
+  }
+  // From when on a time is taken for the step's.
+  double earliest(Step step) const noexcept { return time(step) - (kStepSlack * time_step + rounding(step)); }
+  // The last step that is not after a time, below 0 before the first one. With room for rounding here: of what is taken
+  // for a step's time that step is the last one.
+  Step step_at(double time) const noexcept {
+    const double passed = time - start, slack = 2 * kTimeRounding * (std::fabs(start) + std::fabs(passed));
+    return static_cast<Step>(std::floor((passed + slack) / time_step + kStepSlack));
+  }
+  // At least as long as what lies between the times of two steps.
+  double seconds_between(Step from, Step to) const noexcept {
+    return from == to ? 0 : static_cast<double>(to - from) * time_step + rounding(to);
+  }
+  // The number of steps after `now` whose time lies before `seconds` after it; at least 0.
+  Step steps_before(double seconds, Step now) const noexcept {
+    const double steps = std::ceil((seconds * (1 - kTimeRounding) - rounding(now)) / time_step - kStepSlack);
     return steps < 1e15 ? static_cast<Step>(std::max(0.0, steps)) : kNeverStep;
   }
-  // The number of steps after now that are surely not later than `seconds` from now.
-  Step steps_within(double seconds) const noexcept {
-    return static_cast<Step>(std::max(0.0, seconds / time_step - kStepSlack));
+  // The number of steps after `now` that are surely not later than `seconds` after it.
+  Step steps_within(double seconds, Step now) const noexcept {
+    return static_cast<Step>(std::max(0.0, (seconds * (1 - kTimeRounding) - rounding(now)) / time_step - kStepSlack));
   }
   // The last step at which a bound that expires at `expiry` holds. An application that means a step's time gets this
   // step, although it may have computed the time in another way.

@@ -54,9 +54,7 @@ BroadPhase::~BroadPhase() = default;
 
 // The last one not after what everything has been reported up to; -1: none yet.
 Step BroadPhase::step_reported() const noexcept {
-  const detail::Clock& clock = state_->pool.clock;
-  const double passed = (seen_time_ - clock.start) / clock.time_step + detail::kStepSlack;
-  return passed >= 0 ? static_cast<Step>(passed) : -1;
+  return std::isinf(seen_time_) ? -1 : std::max<Step>(-1, state_->pool.clock.step_at(seen_time_));
 }
 
 // While we slept, the caller's time went on: the change counts from the first step after it.
@@ -71,7 +69,7 @@ void BroadPhase::note_next_step() {
   const detail::Clock& clock = state_->pool.clock;
   const bool any = state_->next != kNeverStep;
   next_time_ = any ? clock.time(state_->next) : std::numeric_limits<double>::infinity();
-  wake_time_ = next_time_ - detail::kStepSlack * clock.time_step;
+  wake_time_ = any ? clock.earliest(state_->next) : next_time_;
   if (state_->pool.promises() != nullptr) wake_time_ = -std::numeric_limits<double>::infinity();  // updated always
 }
 
@@ -111,8 +109,7 @@ Advance BroadPhase::process_steps(double t_now, const WorkBudget* budget) {
   const detail::Clock& clock = state.pool.clock;
   std::uint64_t work = 0;
   const bool validating = state.pool.promises() != nullptr;
-  const double rounding = detail::kStepSlack * clock.time_step;
-  while (t_now >= next_time_ - rounding) {
+  while (state.next != kNeverStep && t_now >= clock.earliest(state.next)) {
     const Step now = state.next;
     if (validating) validate_up_to(now);
     detail::BudgetTracker tracker = budget ? detail::BudgetTracker(*budget) : detail::BudgetTracker();
@@ -219,9 +216,7 @@ void BroadPhase::set_pair_filter(PairFilter filter) {
 std::size_t BroadPhase::foresee(double time, std::span<StepsAhead> steps) const noexcept {
   for (StepsAhead& step : steps) step = {};
   if (!(std::fabs(time) <= max_time_)) return 0;
-  const detail::Clock& clock = state_->pool.clock;
-  const Step now = static_cast<Step>(std::floor((time - clock.start) / clock.time_step + detail::kStepSlack));
-  return state_->method->foresee(now, steps);
+  return state_->method->foresee(state_->pool.clock.step_at(time), steps);
 }
 
 std::size_t BroadPhase::size() const noexcept { return valid() ? state_->pool.size() : 0; }

@@ -116,13 +116,14 @@ template <typename To>
 void NearPairs::settle(Step now, const PairEvent& event, const Horizon& horizon, bool touching, double seconds,
                        To to) const {
   const Clock& clock = pool_.clock;
-  const double limit = static_cast<double>(horizon.whole) * options_.time_step;
+  const double limit = clock.seconds_between(now, now + horizon.whole);
   if (touching) {
-    return settle_touching(now, event, horizon.left, seconds < limit ? clock.steps_within(seconds) : horizon.whole, to);
+    const Step sure = seconds < limit ? clock.steps_within(seconds, now) : horizon.whole;
+    return settle_touching(now, event, horizon.left, sure, to);
   }
   if (event.parting) to.parts(event.pair);
   if (horizon.left <= 1) return;
-  Step ahead = seconds <= limit ? std::max<Step>(1, clock.steps_before(seconds)) : kNeverStep;
+  Step ahead = seconds <= limit ? std::max<Step>(1, clock.steps_before(seconds, now)) : kNeverStep;
   if (horizon.safe < horizon.left) ahead = std::min(ahead, std::max<Step>(0, horizon.safe) + 1);
   if (ahead < horizon.left) to.later({event.pair, windows_.round()}, now + ahead);
 }
@@ -154,7 +155,7 @@ void NearPairs::settle_all(Step now, std::span<PairEvent> events, std::span<Moti
   const auto find_horizons = [&] {
     for (std::size_t i = 0; i < events.size(); ++i) {
       horizons[i] = horizon_of(now, events[i].pair, motions[2 * i], motions[2 * i + 1]);
-      limits[i] = static_cast<double>(horizons[i].whole) * options_.time_step;
+      limits[i] = pool_.clock.seconds_between(now, now + horizons[i].whole);
     }
   };
   PairTimes times;

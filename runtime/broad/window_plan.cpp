@@ -11,6 +11,7 @@ constexpr double kCostOfUpdate = 600, kCostPerBody = 25, kCostPerCell = 12, kCos
 constexpr double kCellPerSpacing = 1.7;  // smaller cells: more of them per body; larger: more bodies in each
 constexpr double kLinesPerVolume = 1.9;  // a ball fills 52 % of its box
 constexpr double kMostLines = 0.5;       // for each body
+constexpr double kMostCells = 0x1p24;    // along the world, as a sample shows it: a quarter of the lattice's
 // Of the distances from the bodies of a sample to the next in it, half of the points of so many dimensions, spread
 // evenly one in each unit of space, have another one nearer than this.
 constexpr std::array<double, 3> kNearest = {0.347, 0.470, 0.549};
@@ -126,10 +127,11 @@ Spread spread_evenly(std::span<const Vec3> sample, std::size_t bodies) {
   std::sort(axes.begin(), axes.end(), [&](std::size_t a, std::size_t b) { return extent[a] < extent[b]; });
   const double shortest = extent[axes[0]], middle = extent[axes[1]], longest = extent[axes[2]];
   spread.spacing = std::cbrt(shortest * middle * longest / there);
-  if (spread.spacing <= shortest) return spread;
+  // An axis without extent is thin, too: of products with 0 nothing follows.
+  if (spread.spacing <= shortest && shortest > 0) return spread;
   spread.thin[axes[0]] = true;
   spread.spacing = std::sqrt(middle * longest / there);
-  if (spread.spacing <= middle) return spread;
+  if (spread.spacing <= middle && middle > 0) return spread;
   spread.thin[axes[1]] = true;
   spread.spacing = longest / there;
   return spread;
@@ -155,12 +157,15 @@ WindowPlan plan_window(const MotionMeans& means, std::size_t bodies, const Sprea
   for (double& sum : mean.speed) sum /= n;
   double spacing = spread.spacing;
   if (!(spacing > 0) || !std::isfinite(spacing)) spacing = std::max(4 * mean.radius, 1e-300);
+  // Where clusters are tiny in their world, cells as small as these would leave the others outside of the lattice, and
+  // those are compared with everything.
+  const double least_cell = *std::max_element(spread.extent.begin(), spread.extent.end()) / kMostCells;
 
   WindowPlan best;
   double least = std::numeric_limits<double>::infinity();
   const auto consider = [&](Step window) {
     const Vec3 box = box_of(mean, static_cast<double>(window - 1) * time_step);
-    const double longest = std::max({box[0], box[1], box[2]});
+    const double longest = std::max({box[0], box[1], box[2], least_cell});
     const double cell = std::max(kCellPerSpacing * spacing, longest), share = cell / spacing;
     double cells = 1, pairs = correction / 2, in_cell = 1;  // of a body; bodies whose box begins in a cell
     for (std::size_t d = 0; d < 3; ++d) {

@@ -12,7 +12,7 @@ bool WindowUpdates::set_ends(Block& block, std::span<const BodyIndex> bodies,
                              std::span<const Motion> motions) const noexcept {
   const Windows& windows = parts_.windows;
   const auto duration = [&](Step end) {
-    return end == kNeverStep ? 0 : static_cast<double>(end - 1 - block.now) * options_.time_step;
+    return end == kNeverStep ? 0 : parts_.pool.clock.seconds_between(block.now, end - 1);
   };
   const Step planned = windows.end_of(block.from, motions[0], block.last);
   const Step common = windows.end_of(block.from, bodies[0], motions[0], block.last);
@@ -88,7 +88,7 @@ void WindowUpdates::shrink(Block& block, BodyIndex body, std::size_t i) {
     steps = (steps + 1) / 2;
     window.end = block.from + steps;
     window.length = static_cast<std::uint8_t>(steps);
-    const double duration = static_cast<double>(window.end - 1 - block.now) * options_.time_step;
+    const double duration = parts_.pool.clock.seconds_between(block.now, window.end - 1);
     block.lattice.boxes({&motions_[i], 1}, {&duration, 1}, box, options_.vectors);
     fits = parts_.boxes.note_again(body, box.get(0));
     block.boxes.set(i, box.get(0));

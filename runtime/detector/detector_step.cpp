@@ -70,8 +70,7 @@ void Detector::State::run(double time, const FrameBudget& given, Frame& frame) {
                   options.executor.run == nullptr ? 1 : std::max<std::size_t>(1, options.executor.concurrency) * 4,
                   any_continuous, options.max_fronts);
   StepBudget budget(given);
-  const double steps = std::floor((time - clock.start) / clock.time_step + detail::kStepSlack);
-  const Step end = static_cast<Step>(std::max(-1.0, steps));
+  const Step end = std::max<Step>(-1, clock.step_at(time));
   const std::uint64_t asked_before = broad.motions_asked();
   if (options.watch) {
     while (answered < end) {

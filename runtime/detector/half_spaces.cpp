@@ -97,7 +97,7 @@ void HalfSpaces::update_windows(Step now, const Clock& clock, std::span<const Bo
     const bool rests = table[body].frozen;
     const Step last = rests ? kNeverStep : clock.last_before_expiry(motion.expiry);
     const Step known = last >= kNeverStep - 1 ? kNeverStep - 1 : std::max(now, last) + 1;
-    const Step free = clock.steps_before(std::min(seconds, 1e12 * time_step));
+    const Step free = clock.steps_before(std::min(seconds, 1e12 * time_step), now);
     const Step safe = now + std::max<Step>(1, free);
     due_[body] = meets ? now + 1 : std::min(known, safe);
   }

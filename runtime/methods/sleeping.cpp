@@ -72,7 +72,7 @@ void Sleeping::find(Step now) {
     end_ = std::min(end_, known_[body].end);
     if (known_[body].valid) present_.push_back(body);
   }
-  const double duration = static_cast<double>(end_ - 1 - now) * pool_.clock.time_step;
+  const double duration = pool_.clock.seconds_between(now, end_ - 1);
   bounds_.clear();
   for (const BodyIndex body : present_) {
     const double age = static_cast<double>(now - known_[body].asked) * pool_.clock.time_step;
@@ -110,7 +110,7 @@ StepReport Sleeping::sleep(Step now) {
   const BoundContact& first = found_->earliest;
   if (first.time == kNoContact) return {end_, reported_};
   known_[present_[first.a]].asked = known_[present_[first.b]].asked = -1;  // to be rebuilt when we wake
-  return {std::min(end_, now + std::max<Step>(1, pool_.clock.steps_before(first.time))), reported_};
+  return {std::min(end_, now + std::max<Step>(1, pool_.clock.steps_before(first.time, now))), reported_};
 }
 
 StepReport Sleeping::step(Step now, BudgetTracker& tracker) {

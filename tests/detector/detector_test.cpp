@@ -410,6 +410,24 @@ TEST(DetectorBodies, WithStatesThatAreNotValidAreRefusedAndTheOthersAnswered) {
   EXPECT_EQ(frame.events[0].a, bodies[2]);
 }
 
+TEST(Detector, AnswersEachStepWhenItIsAskedFarFromTimeZero) {
+  for (const double start : {1.7e9, -1.7e9, 0.99 * kMaxSteps * kStep, -0.99 * kMaxSteps * kStep}) {
+    DetectorOptions options;
+    options.time_step = kStep;
+    options.start = start;
+    std::vector<BodyState> states(2);
+    for (BodyState& state : states) state.expiry = -INFINITY;  // asked for at every step
+    Detector detector(states_of(states), options);
+    const ShapeId ball = detector.add_sphere(1);
+    for (int i = 0; i < 2; ++i) detector.add_body({{ball}});
+    for (int k = 0; k < 200; ++k) {
+      const Frame frame = detector.step(start + kStep * k);
+      ASSERT_EQ(frame.time, start + kStep * k) << k;
+      ASSERT_EQ(frame.events.size(), 1u) << k;
+    }
+  }
+}
+
 TEST(Detector, SaysWhenThereIsNoMemory) {
   for (const bool in_step : {false, true}) {
     World w;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "voronoi/point_sets.h"
@@ -88,6 +89,33 @@ TEST(ExactVoronoi, PointsUnboundedEdgesAwayFromAllPoints) {
     EXPECT_NEAR(vertex.center.norm(), 1, 1e-14);
     const Index on = vertex.forming_points[0] == kInfinitePoint ? vertex.forming_points[1] : vertex.forming_points[0];
     for (const Point& p : points) EXPECT_LT((p - points[on]).dot(vertex.center), 1e-12);
+  }
+}
+
+// Neither products of large or small coordinates nor hulls that are almost an edge cost a position.
+TEST(ExactVoronoi, PlacesVerticesAtEverySizeAndOfNeedles) {
+  const test::Points usual = test::uniform_points(40, 3);
+  const VoronoiDiagram expected = exact_voronoi(usual).diagram;
+  for (const int exponent : {-325, -200, 200, 325}) {
+    const double scale = std::ldexp(1.0, exponent);
+    const VoronoiDiagram diagram = exact_voronoi(test::moved(usual, scale, Vector::Zero())).diagram;
+    ASSERT_EQ(diagram.vertices.size(), expected.vertices.size());
+    for (std::size_t v = 0; v < expected.vertices.size(); ++v) {
+      const VoronoiVertex &vertex = diagram.vertices[v], &same = expected.vertices[v];
+      ASSERT_EQ(vertex.forming_points, same.forming_points);
+      ASSERT_EQ(vertex.center, same.at_infinity() ? same.center : Point(scale * same.center)) << exponent;
+      ASSERT_EQ(vertex.radius, scale * same.radius) << exponent;
+    }
+  }
+  test::Points needle;  // three columns, the points of each on a line but for roundings
+  for (int i = 0; i < 12; ++i) {
+    const double a = 2 * M_PI * (i % 3) / 3;
+    needle.push_back({1 + std::cos(a) + 4e-16 * (i / 3 % 2), std::sin(a), i / 3.0});
+  }
+  for (const VoronoiVertex& vertex : exact_voronoi(needle).diagram.vertices) {
+    if (vertex.at_infinity()) {
+      EXPECT_NEAR(vertex.center.norm(), 1, 1e-14);
+    }
   }
 }
 
