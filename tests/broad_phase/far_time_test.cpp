@@ -9,12 +9,12 @@
 namespace orchard::runtime {
 namespace {
 
-constexpr double kStep = 0.01;
+constexpr double kFarStep = 0.01;
 constexpr double kSinceThe1970s = 1.7e9;  // seconds
 
 std::vector<double> starts() {
   std::vector<double> all = {0, kSinceThe1970s};
-  for (const double share : {0.1, 0.5, 0.9, 0.99}) all.push_back(share * kMaxSteps * kStep);
+  for (const double share : {0.1, 0.5, 0.9, 0.99}) all.push_back(share * kMaxSteps * kFarStep);
   for (std::size_t i = all.size(); i-- > 1;) all.push_back(-all[i]);
   return all;
 }
@@ -27,7 +27,7 @@ TEST(FarTimes, TouchesAtTheMomentOfAStepAreNotMissed) {
     for (std::uint64_t seed = first; seed < first + count; ++seed) {
       test::Draw draw(seed);
       const int step = static_cast<int>(2 + draw.bits() % 8);
-      const double contact = start + kStep * step - start + kStep * draw.uniform(-5e-4, 5e-4), speed = 3;
+      const double contact = start + kFarStep * step - start + kFarStep * draw.uniform(-5e-4, 5e-4), speed = 3;
       const auto state = [&](BodyIndex body, double time) {
         Motion motion;
         motion.radius = 0.5;
@@ -38,10 +38,10 @@ TEST(FarTimes, TouchesAtTheMomentOfAStepAreNotMissed) {
       const MotionSource source = [&](double time, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
         for (std::size_t i = 0; i < bodies.size(); ++i) motions[i] = state(bodies[i], time);
       };
-      BroadPhase world(source, {.time_step = kStep, .start = start});
+      BroadPhase world(source, {.time_step = kFarStep, .start = start});
       world.add(), world.add();
       for (int k = 0; k < kSteps; ++k) {
-        const double time = start + kStep * k;
+        const double time = start + kFarStep * k;
         const Advance now = world.advance(time);
         ASSERT_EQ(!now.pairs.empty(), spheres_touch(state(0, time), state(1, time))) << start << " " << seed;
         if (!now.pairs.empty()) {
@@ -56,13 +56,13 @@ TEST(FarTimes, AChangeCountsFromTheNextStep) {
   for (const double start : starts()) {
     std::vector<Motion> values(2);
     for (Motion& motion : values) motion.radius = 1;
-    BroadPhase world(values_of(values), {.time_step = kStep, .start = start});
+    BroadPhase world(values_of(values), {.time_step = kFarStep, .start = start});
     const BodyId body = world.add();
     world.add();
     for (int k = 0; k < 200; ++k) {
-      const Advance now = world.advance(start + kStep * k);
+      const Advance now = world.advance(start + kFarStep * k);
       ASSERT_EQ(now.pairs.size(), 1u) << start;
-      ASSERT_EQ(now.time, start + kStep * k) << start << ": a step that has been answered before";
+      ASSERT_EQ(now.time, start + kFarStep * k) << start << ": a step that has been answered before";
       ASSERT_TRUE(world.cancel(body));
     }
   }

@@ -11,7 +11,7 @@
 namespace orchard::runtime {
 namespace {
 
-constexpr double kStep = 0.01;
+constexpr double kOddStep = 0.01;
 constexpr double kThin = 1e-9;  // bodies stay where they are along such an axis
 
 struct Cost {
@@ -24,7 +24,7 @@ Cost cost_of(std::size_t bodies, double radius, double speed, std::uint64_t seed
              const std::function<Vec3(test::Draw&)>& place) {
   test::Draw draw(seed);
   std::vector<Motion> motions(bodies);
-  BroadPhase world(values_of(motions), {.time_step = kStep});
+  BroadPhase world(values_of(motions), {.time_step = kOddStep});
   for (Motion& motion : motions) {
     motion.radius = radius;
     motion.velocity = draw.in_ball(speed);
@@ -34,10 +34,10 @@ Cost cost_of(std::size_t bodies, double radius, double speed, std::uint64_t seed
   }
   Cost cost;
   for (int step = 0; step < 40; ++step) {
-    const Advance now = world.advance(kStep * step);
+    const Advance now = world.advance(kOddStep * step);
     EXPECT_EQ(std::vector<BodyPair>(now.pairs.begin(), now.pairs.end()), test::touching_pairs(motions)) << step;
     cost.bytes = std::max(cost.bytes, world.memory_bytes());
-    for (Motion& motion : motions) motion.position = motion.position + kStep * motion.velocity;
+    for (Motion& motion : motions) motion.position = motion.position + kOddStep * motion.velocity;
   }
   cost.asked = world.motions_asked();
   return cost;
