@@ -227,7 +227,7 @@ void Events::begin_sorting() {
   common_expiry_ = kNeverStep;
   wheel_.clear();
   pairs_.forget_all();
-  pairs_.note_spheres(false, 0);
+  pairs_.release_spheres();
   boxes_.make_anew(pool_.slots(), 0, options_.executor);
   boxes_.begin_counts();
 }

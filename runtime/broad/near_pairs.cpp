@@ -195,9 +195,11 @@ void NearPairs::note_spheres(bool wanted, std::size_t slots) {
   if (wanted) {
     grow(spheres_, slots);
   } else {
-    give_back(spheres_);
+    spheres_.clear();  // their room stays: the next plan may want them again
   }
 }
+
+void NearPairs::release_spheres() noexcept { give_back(spheres_); }
 
 // Relative to the lattice, like that of every other body.
 void NearPairs::note_sphere(BodyIndex body, const Motion& m, const Lattice& lattice, double duration) noexcept {

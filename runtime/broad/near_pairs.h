@@ -66,6 +66,7 @@ class NearPairs {
 
   // What a window update takes note of where many pairs are near: most of them need no other test.
   void note_spheres(bool wanted, std::size_t slots);
+  void release_spheres() noexcept;  // and their memory
   void make_room_for_spheres(std::size_t slots) {
     if (!spheres_.empty()) grow(spheres_, slots);
   }
