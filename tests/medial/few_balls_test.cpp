@@ -118,24 +118,28 @@ TEST(OpenLink, KeepsTheTopologyAndCanBeUndone) {
 }
 
 // A mean over planes does not show that a sheet folds over beside a large one: without the guard the faucet's envelope
-// leaves the surface by 2.3 % of the diagonal.
+// leaves the surface by some 2 % of the diagonal, if not on every axis.
 TEST(SlabQuadrics, TakeNoSampleFarWhileOthersAreLeft) {
   const Surface surface = bundled("faucet");
   const double diagonal = surface.bounding_box().diagonal().norm();
-  const MedialMesh axis = axis_of(surface, 600);
   const std::vector<FitSample> samples = detail::fit_samples(surface, 10'000, 1);
-  const auto max_after = [&](double min_limit) {
-    ContractibleMesh mesh(axis);
-    detail::contract_by_slabs(surface, mesh, samples, 500, 500, 1e-5 * diagonal, min_limit);
-    EXPECT_EQ(mesh.living(), 500u);
-    EXPECT_EQ(topology(mesh.mesh()), topology(axis));
-    Assignment feet;  // of all cells, not of those nearby
-    feet.find(mesh, samples);
-    return feet.max / diagonal;
-  };
-  const double guarded = max_after(5e-4 * diagonal);
+  double guarded = 0, unguarded = 0;
+  for (const Index points : {550u, 600u, 650u}) {
+    const MedialMesh axis = axis_of(surface, points);
+    const auto max_after = [&](double min_limit) {
+      ContractibleMesh mesh(axis);
+      detail::contract_by_slabs(surface, mesh, samples, 500, 500, 1e-5 * diagonal, min_limit);
+      EXPECT_EQ(mesh.living(), 500u);
+      EXPECT_EQ(topology(mesh.mesh()), topology(axis));
+      Assignment feet;  // of all cells, not of those nearby
+      feet.find(mesh, samples);
+      return feet.max / diagonal;
+    };
+    guarded = std::max(guarded, max_after(5e-4 * diagonal));
+    unguarded = std::max(unguarded, max_after(std::numeric_limits<double>::infinity()));
+  }
   EXPECT_LT(guarded, 0.008);
-  EXPECT_LT(guarded, 0.5 * max_after(std::numeric_limits<double>::infinity()));
+  EXPECT_LT(guarded, 0.5 * unguarded);
 }
 
 // A ball in a cube: the corners are farthest from it, and inside the faces' middles are in it deepest.
