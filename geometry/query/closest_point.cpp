@@ -37,10 +37,49 @@ Foot on_edge(const Point& p, const Point& q, const Vector& a, const Vector& b, i
   return {offset, offset.squaredNorm(), position, static_cast<Feature>(static_cast<int>(Feature::edge0) + i)};
 }
 
+// Of how far the corners are: a foot in the interior that is farther than this from the edges is nearer than they are,
+// whatever was rounded (a dozen roundings of 1.1e-16, squared roots of which matter: 1e-8 and room).
+constexpr double kClear = 1e-5;
+
+// The nearest point of a triangle's plane, by its longest edge and the height over it, which stays accurate on needles.
+struct PlaneFoot {
+  PlaneFoot(const std::array<Point, 3>& corners, const std::array<Vector, 3>& seen) {
+    std::size_t longest = 0;
+    double base_squared = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double squared = (corners[(i + 1) % 3] - corners[i]).squaredNorm();
+      if (squared > base_squared || i == 0) longest = i, base_squared = squared;
+    }
+    const Vector& start = seen[longest];
+    const Vector base = corners[(longest + 1) % 3] - corners[longest];
+    const Vector side = corners[(longest + 2) % 3] - corners[longest];
+    const double foot_of_apex = side.dot(base) / base_squared;
+    Vector height = side - foot_of_apex * base;
+    height -= (height.dot(base) / base_squared) * base;
+    const double height_squared = height.squaredNorm();
+    const double x = -start.dot(base) / base_squared, y = -start.dot(height) / height_squared;
+    const double weight = x - foot_of_apex * y;  // of the end of the base; y is the apex's
+    const double least = std::min({y, weight, 1 - weight - y});
+    inside = y > 0 && weight > 0 && weight + y < 1;  // false for NaN: no area
+    if (!inside) return;
+    const Vector shift = x * base + y * height;
+    foot = {start + shift, 0, corners[longest] + shift, Feature::face};
+    foot.squared = foot.offset.squaredNorm();
+    // No other height is less than that over the longest edge.
+    to_edges_squared = least * least * height_squared;
+    size_squared = base_squared + start.squaredNorm();
+  }
+
+  Foot foot;
+  bool inside = false;
+  double to_edges_squared = 0;  // the foot's squared distance to the edges, at least
+  double size_squared = 0;      // of the triangle, and of how far it is
+};
+
 }  // namespace
 
-// The first case, the interior, is solved on the longest edge and the height over it, which stays accurate on needles;
-// the edges are measured in any case, so a poor interior foot cannot hide a better one.
+// The edges are measured too, but where the foot in the plane is clearly inside, so a poor one cannot hide a better
+// one.
 ClosestPoint closest_point_of_triangle(const Point& query, const Point& a, const Point& b, const Point& c) {
   const std::array<Point, 3> corners{a, b, c};
   const std::array<Vector, 3> seen{a - query, b - query, c - query};
@@ -48,32 +87,21 @@ ClosestPoint closest_point_of_triangle(const Point& query, const Point& a, const
   // What rounding the coordinates can move a point by: nearer feet than that are told apart by nothing.
   const double snap = 8 * std::numeric_limits<double>::epsilon() * std::max({max(query), max(a), max(b), max(c)});
 
+  const PlaneFoot in_plane(corners, seen);
+  const auto result = [](const Foot& foot) {
+    return ClosestPoint{foot.position, std::sqrt(foot.squared), kNone, foot.feature};
+  };
+  if (in_plane.to_edges_squared > std::max(kClear * kClear * in_plane.size_squared, 16 * snap * snap))
+    return result(in_plane.foot);
   Foot best = on_edge(a, b, seen[0], seen[1], 0, snap);
-  std::size_t longest = 0;
-  double longest_squared = (b - a).squaredNorm();
   for (std::size_t i = 1; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3;
     const Foot foot = on_edge(corners[i], corners[j], seen[i], seen[j], static_cast<int>(i), snap);
     if (foot.squared < best.squared) best = foot;
-    const double squared = (corners[j] - corners[i]).squaredNorm();
-    if (squared > longest_squared) longest = i, longest_squared = squared;
   }
-
-  const Vector& start = seen[longest];
-  const Vector base = corners[(longest + 1) % 3] - corners[longest];
-  const Vector side = corners[(longest + 2) % 3] - corners[longest];
-  const double foot_of_apex = side.dot(base) / longest_squared;
-  Vector height = side - foot_of_apex * base;
-  height -= (height.dot(base) / longest_squared) * base;
-  const double x = -start.dot(base) / longest_squared, y = -start.dot(height) / height.squaredNorm();
-  const double weight = x - foot_of_apex * y;   // of the end of the base; y is the apex's
-  if (y > 0 && weight > 0 && weight + y < 1) {  // false for NaN: no area
-    const Vector shift = x * base + y * height, offset = start + shift;
-    const double squared = offset.squaredNorm();
-    if (squared < best.squared && (offset - best.offset).squaredNorm() > snap * snap)
-      best = {offset, squared, corners[longest] + shift, Feature::face};
-  }
-  return {best.position, std::sqrt(best.squared), kNone, best.feature};
+  const bool is_inside = in_plane.inside && in_plane.foot.squared < best.squared &&
+                         (in_plane.foot.offset - best.offset).squaredNorm() > snap * snap;
+  return result(is_inside ? in_plane.foot : best);
 }
 
 }  // namespace orchard

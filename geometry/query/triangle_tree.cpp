@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -34,10 +35,15 @@ Float4 clamp_unit(Float4 x) { return min(max(x, broadcast(0)), broadcast(1)); }
 Float4 square_root(Float4 a) { return Float4{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])}; }
 Float4 dot(const Float4* a, const Float4* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-bool any_at_most(Float4 x, float limit) {
-  using Half = long long __attribute__((vector_size(16)));
-  const auto is = (Half)(x <= broadcast(limit));
-  return (is[0] | is[1]) != 0;
+// Bit k: whether x[k] is at most the limit.
+unsigned at_most(Float4 x, float limit) {
+#ifdef __SSE__
+  return static_cast<unsigned>(__builtin_ia32_movmskps((Float4)(x <= broadcast(limit))));
+#else
+  unsigned bits = 0;
+  for (int k = 0; k < 4; ++k) bits |= (x[k] <= limit ? 1u : 0u) << k;
+  return bits;
+#endif
 }
 
 bool better(const ClosestPoint& a, const ClosestPoint& b) {
@@ -126,10 +132,10 @@ void TriangleTree::visit_leaves(const Query& query, const float& limit, Visit vi
     }
     const Node& node = nodes_[entry.child];
     const Float4 squared = squared_distances(query, node);
-    if (!any_at_most(squared, limit)) continue;
     const int first = top;
-    for (int k = 0; k < 4; ++k) {
-      if (!(squared[k] <= limit) || is_out(node, k)) continue;
+    for (unsigned bits = at_most(squared, limit); bits != 0; bits &= bits - 1) {
+      const int k = std::countr_zero(bits);
+      if (is_out(node, k)) continue;
       int at = top++;
       for (; at > first && stack[static_cast<std::size_t>(at - 1)].squared < squared[k]; --at)
         stack[static_cast<std::size_t>(at)] = stack[static_cast<std::size_t>(at - 1)];
@@ -218,9 +224,10 @@ void TriangleTree::find_candidates(const Point& point, Candidates& candidates) c
   if (localize(point, query)) {
     visit_leaves(query, candidates.limit, [&](const Leaf& leaf) {
       const Float4 squared = squared_distances(query, leaf);
-      if (!any_at_most(squared, candidates.limit)) return;
-      for (int k = 0; k < 4; ++k)
+      for (unsigned bits = at_most(squared, candidates.limit); bits != 0; bits &= bits - 1) {
+        const int k = std::countr_zero(bits);
         if (squared[k] <= candidates.limit && leaf.triangle[k] != kNone) candidates.add(squared[k], leaf.triangle[k]);
+      }
     });
   } else {
     for (Index t = 0; t < mesh_.triangles.size(); ++t) candidates.add(0, t);

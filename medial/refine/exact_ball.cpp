@@ -28,6 +28,12 @@ double nearest_contact(const Point& place, Balls balls) {
   return (1 + kTouching) * std::sqrt(squared);
 }
 
+// For which a with loss(radius, a) = loss the ends of unit vectors at this angle are so far apart, squared: 4 sin^2(a / 2).
+double narrow_for(double radius, double loss) {
+  const double part = loss / radius;
+  return 4 * part * (2 + part) / ((1 + part) * (1 + part));
+}
+
 // The place of the surface that is nearest: no farther than the contacts of balls.
 ClosestPoint closest_from(const Surface& surface, const Point& place, double contact) {
   const ClosestPoint nearest = surface.closest_within(place, contact);
@@ -59,12 +65,13 @@ void BallSolver::merge(const Point& center) {
   for (Held& contact : contacts_) static_cast<ClosestPoint&>(contact) = descend(center, contact);
   std::stable_sort(contacts_.begin(), contacts_.end(),
                    [](const Held& a, const Held& b) { return a.distance < b.distance; });
+  const double narrow = narrow_for(contacts_.empty() ? 0 : contacts_.front().distance, merging_);
+  const auto seen = [&](const Held& contact) -> Vector { return (contact.position - center) / contact.distance; };
   std::size_t kept = 0;
   for (const Held& contact : contacts_) {
     const auto end = contacts_.begin() + static_cast<std::ptrdiff_t>(kept);
     const auto stands_for_it = std::find_if(contacts_.begin(), end, [&](const Held& other) {
-      const double angle = angle_between(contact.position - center, other.position - center);
-      return loss(contacts_.front().distance, angle) < merging_;
+      return !(other.distance > 0) || (seen(contact) - seen(other)).squaredNorm() < narrow;
     });
     if (stands_for_it != end) {
       stands_for_it->of |= contact.of;

@@ -14,7 +14,8 @@ namespace orchard::detail {
 namespace {
 
 constexpr std::size_t kBlock = 64;  // parts that one task looks at
-constexpr double kEnough = 0.1;     // of the limit: nearer cells are no better at covering parts that reach farther
+constexpr std::size_t kRecent = 8;  // cells
+constexpr double kEnough = 0.5;     // of the limit: nearer cells are no better at covering parts that reach farther
 
 bool is_before(const Point& a, const Point& b) {
   return std::tuple(a.x(), a.y(), a.z()) < std::tuple(b.x(), b.y(), b.z());
@@ -32,6 +33,47 @@ std::vector<Corners> corners_of(const std::vector<Corners>& parts) {
   return corners;
 }
 
+// Cells that were found last: what is looked at next is often near one of them, and asking them all costs a tenth of a
+// search.
+class RecentCells {
+ public:
+  explicit RecentCells(const Reconstruction& reconstruction) : reconstruction_(reconstruction) {}
+
+  void add(Index cell) {
+    const auto end = cells_.begin() + static_cast<std::ptrdiff_t>(count_);
+    auto at = std::find(cells_.begin(), end, cell);
+    if (at == end) at = count_ < cells_.size() ? cells_.begin() + static_cast<std::ptrdiff_t>(count_++) : end - 1;
+    *at = cell;
+    std::rotate(cells_.begin(), at, at + 1);
+  }
+  // Whether one of them comes within `limit` of all of a triangle: the distance to one cell is convex.
+  bool cover(const Corners& corners, double limit) {
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (!std::all_of(corners.begin(), corners.end(), [&](const Point& corner) {
+            return reconstruction_.distance_to_cell(cells_[i], corner, limit) <= limit;
+          }))
+        continue;
+      add(cells_[i]);
+      return true;
+    }
+    return false;
+  }
+  // The nearest of them.
+  Reconstruction::Nearest nearest(const Point& query, double enough) const {
+    Reconstruction::Nearest nearest;
+    for (std::size_t i = 0; i < count_ && !(nearest.distance < enough); ++i) {
+      const double distance = reconstruction_.distance_to_cell(cells_[i], query, nearest.distance);
+      if (distance < nearest.distance) nearest = {.distance = distance, .ball = {}, .cell = cells_[i]};
+    }
+    return nearest;
+  }
+
+ private:
+  const Reconstruction& reconstruction_;
+  std::array<Index, kRecent> cells_{};  // the last one first
+  std::size_t count_ = 0;
+};
+
 }  // namespace
 
 struct UncoveredSearch::Block {
@@ -48,13 +90,7 @@ UncoveredSearch::UncoveredSearch(const Surface& surface, double limit, double re
 }
 
 void UncoveredSearch::look_at(const Reconstruction& reconstruction, Block& block) const {
-  Index cell = kNone;  // the last one found: often near the next part
-  // The distance to one cell is convex.
-  const auto cell_covers = [&](const Corners& corners) {
-    return cell != kNone && std::all_of(corners.begin(), corners.end(), [&](const Point& corner) {
-             return reconstruction.distance_to_cell(cell, corner) <= limit_;
-           });
-  };
+  RecentCells recent(reconstruction);
   std::vector<Corners> parts;
   for (const Corners& given : block.parts) {
     const std::size_t open_before = block.open.size();
@@ -62,19 +98,17 @@ void UncoveredSearch::look_at(const Reconstruction& reconstruction, Block& block
     while (!parts.empty()) {
       const Corners corners = parts.back();
       parts.pop_back();
-      if (cell_covers(corners)) continue;
+      if (recent.cover(corners, limit_)) continue;
       const Point middle = (corners[0] + corners[1] + corners[2]) / 3;
       double reach = 0;
       for (const Point& corner : corners) reach = std::max(reach, (corner - middle).norm());
       const double enough = reach < limit_ ? limit_ - reach : kEnough * limit_;
-      Reconstruction::Nearest nearest;
-      if (cell != kNone)
-        nearest = {.distance = reconstruction.distance_to_cell(cell, middle), .ball = {}, .cell = cell};
+      Reconstruction::Nearest nearest = recent.nearest(middle, enough);
       if (!(nearest.distance < enough)) nearest = reconstruction.nearest_from(nearest, middle, enough);
-      cell = nearest.cell;
+      if (nearest.cell != kNone) recent.add(nearest.cell);
       const double value = nearest.distance;
       // The distance to all of them is 1-Lipschitz.
-      if (value + reach <= limit_ || cell_covers(corners)) continue;
+      if (value + reach <= limit_ || recent.cover(corners, limit_)) continue;
       if (value > limit_) block.places.push_back({value, middle});
       if (reach <= resolution_) {
         block.open.push_back(corners);
