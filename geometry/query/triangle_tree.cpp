@@ -69,14 +69,15 @@ bool TriangleTree::localize(const Point& point, Query& query) const {
   return true;
 }
 
-Float4 TriangleTree::squared_distances(const Query& query, const Node& node) const {
+// Of children beyond the squared `limit` it may be less than it could.
+Float4 TriangleTree::squared_distances(const Query& query, const Node& node, float limit) const {
   Float4 d[3];
   for (int axis = 0; axis < 3; ++axis)
     d[axis] = max(max(node.lower[axis] - query.p[axis], query.p[axis] - node.upper[axis]), broadcast(0));
   const Float4 along = dot(query.p, node.normal);
   const Float4 beyond = max(max(node.low - along, along - node.high), broadcast(0));
   const Float4 squared = max(dot(d, d), beyond * beyond);
-  if (!is_fine_) return squared;
+  if (!is_fine_ || at_most(squared, limit) == 0) return squared;
   Float4 across[3];
   for (int axis = 0; axis < 3; ++axis) across[axis] = query.p[axis] - middle(node, axis);
   const Float4 above = dot(across, node.normal);
@@ -131,7 +132,7 @@ void TriangleTree::visit_leaves(const Query& query, const float& limit, Visit vi
       continue;
     }
     const Node& node = nodes_[entry.child];
-    const Float4 squared = squared_distances(query, node);
+    const Float4 squared = squared_distances(query, node, limit);
     const int first = top;
     for (unsigned bits = at_most(squared, limit); bits != 0; bits &= bits - 1) {
       const int k = std::countr_zero(bits);

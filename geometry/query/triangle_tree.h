@@ -74,7 +74,7 @@ class TriangleTree {
   static Float4 middle(const Node& node, int axis) {
     return Float4{0.5f, 0.5f, 0.5f, 0.5f} * (node.lower[axis] + node.upper[axis]);
   }
-  Float4 squared_distances(const Query& query, const Node& node) const;
+  Float4 squared_distances(const Query& query, const Node& node, float limit) const;
   static Float4 squared_distances(const Query& query, const Leaf& leaf);
   void prefetch(Index child) const;
   void find_candidates(const Point& point, Candidates& candidates) const;
