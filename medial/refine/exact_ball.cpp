@@ -28,7 +28,8 @@ double nearest_contact(const Point& place, Balls balls) {
   return (1 + kTouching) * std::sqrt(squared);
 }
 
-// For which a with loss(radius, a) = loss the ends of unit vectors at this angle are so far apart, squared: 4 sin^2(a / 2).
+// For which a with loss(radius, a) = loss the ends of unit vectors at this angle are so far apart, squared: 4 sin^2(a /
+// 2).
 double narrow_for(double radius, double loss) {
   const double part = loss / radius;
   return 4 * part * (2 + part) / ((1 + part) * (1 + part));

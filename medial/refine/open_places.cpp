@@ -8,6 +8,7 @@
 
 #include "../gaps/point_tree.h"
 #include "../quality/reconstruction.h"
+#include "recent_cells.h"
 
 namespace orchard::detail {
 namespace {
@@ -24,12 +25,12 @@ SurfaceSampling open_places(const Surface& surface, const MedialMesh& mesh, cons
   const Reconstruction reconstruction(mesh);
   std::vector<std::uint8_t> open(probes.size());
   tbb::parallel_for(tbb::blocked_range<Index>(0, probes.size(), 128), [&](const auto& range) {
-    Index cell = kNone;  // the last one found: often near the next probe
+    RecentCells recent(reconstruction);
     for (Index i = range.begin(); i != range.end(); ++i) {
       const Point& probe = probes.points[i];
-      if (cell != kNone && reconstruction.distance_to_cell(cell, probe, limit) < limit) continue;
+      if (recent.cover({&probe, 1}, limit)) continue;
       const Reconstruction::Nearest nearest = reconstruction.nearest(probe, limit);
-      cell = nearest.cell;
+      if (nearest.cell != kNone) recent.add(nearest.cell);
       open[i] = nearest.distance > limit ? 1 : 0;
     }
   });
