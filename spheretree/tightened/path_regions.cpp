@@ -7,19 +7,17 @@
 namespace orchard::detail {
 namespace {
 
-// A point this far outside a path's last ball, in squares of its radius, is not in it, whatever the rounding.
+// A point this far outside a path's last ball, in radii, is not in it, whatever the rounding.
 constexpr double kInQuestion = 1 + 1e-9;
+// Sides of a grid's cells, in mean radii of the balls: a point is then asked about few of them.
+constexpr double kCellSide = 1;
+constexpr double kMostCells = 64;  // along the grid's longest side
 
 }  // namespace
 
 PathRegions::PathRegions(const Samples& samples, std::vector<std::vector<Sphere>> paths)
     : paths_(std::move(paths)), samples_in_(paths_.size()) {
-  for (auto* numbers : {&x_, &y_, &z_, &limits_}) numbers->resize(size());
-  for (Index r = 0; r < size(); ++r) {
-    const Sphere& last = paths_[r].back();
-    x_[r] = last.center.x(), y_[r] = last.center.y(), z_[r] = last.center.z();
-    limits_[r] = last.radius * last.radius * kInQuestion;
-  }
+  make_grid();
   std::vector<std::vector<Index>> regions(samples.size());
   tbb::parallel_for(Index{0}, samples.size(), [&](Index s) { regions[s] = regions_around(samples.points[s]); });
   for (Index s = 0; s < samples.size(); ++s)
@@ -40,12 +38,44 @@ bool PathRegions::holds_sample(Index path_region, Index sample) const {
 
 void PathRegions::add_sample(const Point& point, const Point& start) { append(point, start, regions_around(point)); }
 
+void PathRegions::make_grid() {
+  if (size() == 0) return near_.resize(1);
+  Box box;
+  double mean_radius = 0;
+  for (const auto& path : paths_) {
+    const Sphere& ball = path.back();
+    box.extend(ball.center);
+    mean_radius += ball.radius / size();
+  }
+  corner_ = box.min() - Vector::Constant(mean_radius);
+  const Vector sides = box.sizes() + Vector::Constant(2 * mean_radius);
+  cell_side_ = std::max(kCellSide * mean_radius, sides.maxCoeff() / kMostCells);
+  for (int k = 0; k < 3; ++k) cells_[k] = static_cast<Index>(sides[k] / cell_side_) + 1;
+  near_.resize(std::size_t{cells_[0]} * cells_[1] * cells_[2]);
+  for (Index r = 0; r < size(); ++r) {
+    const Sphere& ball = paths_[r].back();
+    const Vector reach = Vector::Constant(ball.radius * kInQuestion);
+    const Cell first = cell_at(ball.center - reach), last = cell_at(ball.center + reach);
+    Cell cell;
+    for (cell[2] = first[2]; cell[2] <= last[2]; ++cell[2])
+      for (cell[1] = first[1]; cell[1] <= last[1]; ++cell[1])
+        for (cell[0] = first[0]; cell[0] <= last[0]; ++cell[0]) near_[place_of(cell)].push_back(r);
+  }
+}
+
+PathRegions::Cell PathRegions::cell_at(const Point& point) const {
+  Cell cell;
+  for (int k = 0; k < 3; ++k) {
+    const double at = (point[k] - corner_[k]) / cell_side_;
+    cell[k] = static_cast<Index>(std::clamp(at, 0.0, cells_[k] - 1.0));
+  }
+  return cell;
+}
+
 std::vector<Index> PathRegions::regions_around(const Point& point) const {
   std::vector<Index> regions;
-  thread_local Eigen::ArrayXd beyond;
-  beyond = (x_ - point.x()).square() + (y_ - point.y()).square() + (z_ - point.z()).square() - limits_;
-  for (Index r = 0; r < size(); ++r)
-    if (beyond[r] <= 0 && holds(r, point)) regions.push_back(r);
+  for (Index r : near_[place_of(cell_at(point))])
+    if (holds(r, point)) regions.push_back(r);
   return regions;
 }
 

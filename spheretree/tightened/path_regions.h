@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <span>
 #include <vector>
 
@@ -27,11 +28,18 @@ class PathRegions {
   void add_sample(const Point& point, const Point& start);
 
  private:
+  using Cell = std::array<Index, 3>;
+  void make_grid();
+  Cell cell_at(const Point& point) const;  // the nearest one of a point outside
+  Index place_of(const Cell& cell) const { return cell[0] + cells_[0] * (cell[1] + cells_[1] * cell[2]); }
   void append(const Point& point, const Point& start, std::vector<Index> regions);
 
   std::vector<std::vector<Sphere>> paths_;
-  Eigen::ArrayXd x_, y_, z_,
-      limits_;  // of the last balls of the paths: centres, squares of the radii and a little more
+  // A grid around the last balls of the paths, and which of these meet each cell, ascending.
+  Point corner_ = Point::Zero();
+  double cell_side_ = 1;
+  Cell cells_{1, 1, 1};
+  std::vector<std::vector<Index>> near_;
   Samples samples_;
   std::vector<std::vector<Index>> samples_in_;  // each path region
   std::vector<std::vector<Index>> regions_of_;  // each sample
