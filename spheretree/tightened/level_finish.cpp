@@ -11,12 +11,8 @@
 namespace orchard::detail {
 namespace {
 
-// Rounds of taking uncovered regions in: those that search come first, then those that only tighten, then those that
-// do neither.
-constexpr int kTighteningRounds = 4;
-constexpr int kTakingRounds = 8;
+constexpr int kTakingRounds = 8;  // of taking uncovered regions in, after those that search and those that only tighten
 constexpr int kClosedRounds = 4;  // of the search that never uncovers anything
-constexpr int kTightenings = 2;   // of the closed level, before that search
 
 class Finish {
  public:
@@ -28,7 +24,7 @@ class Finish {
   void take_in_uncovered(TightenReport::Level& report) {
     Coverage coverage;
     std::vector<Sphere> changed_balls;
-    const int rounds = options_.searching_rounds + kTighteningRounds + kTakingRounds;
+    const int rounds = options_.searching_rounds + options_.tightening_rounds + kTakingRounds;
     for (int round = 0; round < rounds; ++round) {
       report_progress(options_.progress, "tightening", 0.5 * round / rounds);
       take_balls();
@@ -43,7 +39,7 @@ class Finish {
       const std::vector<LevelBall> before = solver_.balls();
       const bool search = round < options_.searching_rounds;
       solver_.take_in(uncovered, !search);
-      if (round < options_.searching_rounds + kTighteningRounds) solver_.tighten();
+      if (round < options_.searching_rounds + options_.tightening_rounds) solver_.tighten();
       if (search) {
         solver_.search(options_.search_trials);
         solver_.tighten();
@@ -82,7 +78,7 @@ class Finish {
       balls.push_back({partial_.last()[b].sphere, solver_.balls()[b].path_region});
     LevelCover cover(surface_, upper, std::move(path_ends), std::move(balls));
     solver_.take_radii(cover);
-    for (int k = 0; k < kTightenings; ++k) solver_.tighten(cover);
+    for (int k = 0; k < options_.tightenings; ++k) solver_.tighten(cover);
     for (int round = 0; round < kClosedRounds && options_.closed_trials > 0; ++round) {
       report_progress(options_.progress, "tightening", 0.5 + 0.5 * round / kClosedRounds);
       solver_.search(cover, options_.closed_trials / kClosedRounds);

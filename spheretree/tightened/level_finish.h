@@ -7,10 +7,12 @@
 namespace orchard::detail {
 
 struct FinishOptions {
-  int searching_rounds = 8;  // of taking in what is open: the search among the samples goes on in these
-  Index search_trials = 0;   // in each of them
-  Index closed_trials = 0;   // afterwards, of the search that never uncovers anything
-  Progress progress;         // called with a fraction of the finish
+  int searching_rounds = 8;   // of taking in what is open: the search among the samples goes on in these
+  int tightening_rounds = 4;  // those after them, in which balls may still let go of what they took in
+  int tightenings = 2;        // of the closed level
+  Index search_trials = 0;    // in each of the searching rounds
+  Index closed_trials = 0;    // afterwards, of the search that never uncovers anything
+  Progress progress;          // called with a fraction of the finish
 };
 
 // Turns the solver's balls, which hold its samples, into the last level of the tree, which covers the surface. Fills in

@@ -16,8 +16,12 @@ namespace {
 
 // A level is as coarse as its samples allow.
 constexpr Index kSamplesPerBall = 8;
+// Where samples end it, a level that has not so many times the balls of the one above is left out: it would cost more
+// than all above and be hardly tighter.
+constexpr double kWorthALevel = 1.5;
 // The search in closed levels looks at every triangle in reach: of fine meshes it gets less.
 constexpr double kFewTriangles = 4000;
+constexpr int kTighteningRounds = 4;   // of closing a level, after those that search
 constexpr double kSearchShare = 0.15;  // of the trials, in each searching round
 
 // The starts of a first level are tried on so many samples, and with so many trials for each ball.
@@ -27,9 +31,21 @@ constexpr Index kExploredBalls = 800;  // in all starts together, at most: with 
 constexpr double kLogOfPlaces =
     18;  // binary, of the places on the last level of a tree whose nodes all had so many children
 
+// A level of more balls than this gets no more trials than one of so many, and fewer rounds: each ball then counts the
+// less, and the levels below balls that are small against the triangles gain little by a search.
+constexpr double kFullySearchedBalls = 1000;
+// Below this share of a full search, the rounds that only tighten are left out, too; what they let go of is open again.
+constexpr double kTighteningShare = 0.5;
+constexpr double kTightenedTwiceShare = 0.1;  // below it, a closed level is tightened once, not twice
+
 constexpr std::uint64_t kComparingRays = 4000;  // for the outside volume of what is compared
 
-Index trials_for(Index balls, const Work& work) { return static_cast<Index>(work.trials * (300 + 9.0 * balls)); }
+// Of a full search, that a level of so many balls gets.
+double search_share(Index balls) { return std::min(1.0, kFullySearchedBalls / std::max<Index>(1, balls)); }
+
+Index trials_for(Index balls, const Work& work) {
+  return static_cast<Index>(search_share(balls) * work.trials * (300 + 9.0 * balls));
+}
 
 // As many as it is worth. Yet the text format has room for as many below every node: it is to stay small.
 Index max_children(const TightenOptions& options) {
@@ -109,6 +125,7 @@ bool Tightener::build_level(Index level, std::vector<TightenReport::Level>& repo
   const double allowed = options_.spheres.empty() ? options_.branching * refined : options_.spheres[level - 1];
   const double wanted = std::min(static_cast<double>(max), allowed);
   if (refined == 0 || (wanted <= refined && level > 1)) return false;
+  if (wanted < allowed && wanted < kWorthALevel * refined) return false;
   LevelOptions level_options;
   level_options.balls = static_cast<Index>(wanted);
   level_options.max_children = level == 1 ? level_options.balls : max_children(options_);
@@ -188,8 +205,12 @@ Tightener::Candidate Tightener::candidate(LevelOptions& options, std::vector<Lev
   solver.tighten();
   const auto middle = std::chrono::steady_clock::now();
   const double fineness = static_cast<double>(surface_.mesh().triangles.size()) / kFewTriangles;
-  const double closed_trials = work_.closed_trials / std::max(1.0, fineness);
-  FinishOptions finish{work_.searching_rounds, static_cast<Index>(kSearchShare * trials),
+  const double share = search_share(options.balls);
+  const double closed_trials = share * work_.closed_trials / std::max(1.0, fineness);
+  FinishOptions finish{static_cast<int>(share * work_.searching_rounds),
+                       share < kTighteningShare ? 0 : kTighteningRounds,
+                       share < kTightenedTwiceShare ? 1 : 2,
+                       static_cast<Index>(kSearchShare * trials),
                        static_cast<Index>(closed_trials * static_cast<double>(solver.balls().size())),
                        [&](std::string_view stage, double fraction) { return progress(stage, 0.4 + 0.6 * fraction); }};
   finish_level(surface_, solver, result.partial, finish, result.report);
