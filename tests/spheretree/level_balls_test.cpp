@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "orchard/geometry/random.h"
 #include "support/effort.h"
@@ -52,6 +53,30 @@ TEST(PathRegions, HoldTheSamplesInAllBallsOfTheirPath) {
   EXPECT_TRUE(regions.holds(1, Point(11, 0, 0)));
   EXPECT_FALSE(regions.holds(0, Point(11, 0, 0)));
   EXPECT_FALSE(regions.holds_sample(0, 2));
+}
+
+// Against every path region, for balls of very different sizes and points that are in none.
+TEST(PathRegions, AroundAPointAreAllThatHoldIt) {
+  const std::uint64_t first = test::first_seed();
+  for (std::uint64_t seed = first; seed < first + 10 * test::more(); ++seed) {
+    Random random(seed, 1);
+    const auto place = [&](double reach) {
+      return Point(random.uniform(-reach, reach), random.uniform(-reach, reach), 0.1 * random.uniform(-reach, reach));
+    };
+    std::vector<std::vector<Sphere>> paths;
+    const std::size_t count = 1 + random.below(200);
+    for (std::size_t r = 0; r < count; ++r)
+      paths.push_back({{place(3), 8}, {place(10), std::exp(random.uniform(-4, 2))}});
+    const PathRegions regions({}, paths);
+    for (int i = 0; i < 200; ++i) {
+      const Sphere& some = paths[random.below(count)].back();
+      const Point point = i % 2 == 0 ? place(20) : Point(some.center + some.radius * Vector::UnitX());
+      std::vector<Index> holding;
+      for (Index r = 0; r < count; ++r)
+        if (regions.holds(r, point)) holding.push_back(r);
+      ASSERT_EQ(regions.regions_around(point), holding) << "seed " << seed;
+    }
+  }
 }
 
 TEST(LevelBalls, HoldSamplesOfTheirOwnPathRegionOnly) {

@@ -66,6 +66,18 @@ TEST(TightenedTree, GoesAsDeepAsAskedWithAnyBranching) {
   }
 }
 
+// So many levels and balls are asked for that the samples end them.
+TEST(TightenedTree, GoesNoDeeperThanItsSamplesMakeWorthWhile) {
+  const Surface surface(torus(24, 12));
+  const SphereTree tree =
+      tightened_tree(surface, axis_of(surface, 1500), {.depth = 7, .branching = 5, .effort = Effort::low}).tree;
+  expect_conservative(tree, surface, "torus");
+  EXPECT_GE(tree.depth(), 3);
+  EXPECT_LT(tree.depth(), 7);
+  const auto counts = level_counts(tree);
+  for (std::size_t level = 1; level < counts.size(); ++level) EXPECT_GT(counts[level], 1.3 * counts[level - 1]);
+}
+
 TEST(TightenedTree, HasNoSphereOfNoSizeAndOnceThinnedNoneThatCanGo) {
   const Surface surface(u_shape(0.3));
   SphereTree tree = tightened_tree(surface, axis_of(surface, 2000), {.depth = 2, .effort = Effort::low}).tree;

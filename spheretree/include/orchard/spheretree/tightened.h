@@ -20,7 +20,9 @@ inline constexpr Index kMaxBranching = 1024;
 inline constexpr Index kMaxFanOut = 64;  // children of a node, as its level's spheres are divided by need
 
 struct TightenOptions {
-  Index depth = 3;      // levels below the root at most
+  // Levels below the root at most: there are fewer where the surface points do not suffice for another level with half
+  // as many spheres again as the one above.
+  Index depth = 3;
   Index branching = 8;  // a level has at most this many times the nodes of the one above; 2..kMaxBranching
   // How many spheres each level may have, in place of `branching`; empty, or `depth` numbers, each above the one before
   // and at most kMaxFanOut times it, the first one between 2 and kMaxBranching. Spheres go where they help: a parent
@@ -57,12 +59,12 @@ void require_sizes(const TightenOptions& options);
 // surface points, so that max |p - c| + sd(c) is small over the centre c, improved by Lloyd's iteration and large-
 // neighbourhood search, and closed with the boundary lemma: each uncovered region is given to the ball that it costs
 // least, until there is none. Then each ball is fitted again to exactly what it alone holds, and at high effort the
-// search goes on with nothing uncovered. The surface points are those of the axis, 20 or more for each ball of the last
-// level, but for those that gap repair added. The result is conservative and, since work is counted and not timed, the
-// same on any number of threads. The search runs on the mesh as it is in a frame of its own
-// (tightened/canonical_frame.h), so that a mesh that is scaled or moved gets the same tree but for the last digits,
-// unless a surface point is as near to the border between two lattice points as its digits reach. Throws InputError as
-// require_sizes() does, and for an axis without vertices.
+// search goes on with nothing uncovered. A level of more than 1000 balls is searched no longer than one of 1000. The
+// surface points are those of the axis, 20 or more for each ball of the last level, but for those that gap repair
+// added. The result is conservative and, since work is counted and not timed, the same on any number of threads. The
+// search runs on the mesh as it is in a frame of its own (tightened/canonical_frame.h), so that a mesh that is scaled
+// or moved gets the same tree but for the last digits, unless a surface point is as near to the border between two
+// lattice points as its digits reach. Throws InputError as require_sizes() does, and for an axis without vertices.
 TightenBuild tightened_tree(const Surface& surface, const MedialAxis& axis, const TightenOptions& options = {},
                             const Progress& progress = {});
 
