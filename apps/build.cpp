@@ -235,6 +235,9 @@ void build(const BuildCommand& command) {
   fmt::print("{}: {} triangles in {} clusters (flat parts), bounding radius {:.6g}\n", command.mesh.string(),
              surface.mesh().triangles.size(), surface.clusters().count(), surface.bounding_radius());
   print_build(result, surface.bounding_radius(), wrap_distance);
+  if (const Index depth = result.tree.depth(); depth < options.depth && options.method == TreeMethod::tightened)
+    fmt::print("{} of {} levels: for the next one nothing is left to refine, or there are too few --samples\n", depth,
+               options.depth);
   outputs.print();
   fmt::print("{}\n", certified);
   if (!doubts.empty()) fmt::print("{}\n", doubts);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 namespace orchard::apps {
 namespace {
@@ -27,20 +29,32 @@ double bytes_per_triangle(TreeMethod method) { return method == TreeMethod::anne
 
 int as_number(Effort effort) { return effort == Effort::low ? 0 : effort == Effort::standard ? 1 : 2; }
 
-double count(const SphereTreeOptions& options, Index levels) {
-  double spheres = options.spheres.empty() ? 0 : 1;
-  for (const Index of_level : options.spheres) spheres += of_level;
-  if (spheres > 0) return spheres;
-  for (Index level = 0; level <= levels; ++level) spheres += std::pow(static_cast<double>(options.branching), level);
-  return spheres;
+// Of a tightened level, which has a ball for every eight surface points at most: those beyond a thousand are searched
+// less, and cost so much of what the others do.
+constexpr double kPointsPerBall = 8, kFullySearched = 1000, kCostBeyond = 0.3;
+
+// Of each level below the root, at most. points: as of estimated_cost().
+std::vector<double> counts(const SphereTreeOptions& options, double points) {
+  std::vector<double> levels(options.spheres.begin(), options.spheres.end());
+  for (Index level = 1; options.spheres.empty() && level <= options.depth; ++level)
+    levels.push_back(std::pow(static_cast<double>(options.branching), level));
+  if (options.method == TreeMethod::tightened && points > 0)
+    for (double& level : levels) level = std::min(level, std::max(1.0, points / kPointsPerBall));
+  return levels;
 }
 
 // What takes time: spheres, or, where simulated annealing searches for the children of one, those searches. On a level
 // of the octree about four times as many cubes hold surface as above, not eight; annealing left 19 to 33 spheres of 64
 // on level 2.
-double steps(const SphereTreeOptions& options) {
+double steps(const SphereTreeOptions& options, double points) {
   const bool octree = options.method == TreeMethod::octree, annealing = options.method == TreeMethod::annealing;
-  if (!octree && !annealing) return count(options, options.depth);
+  if (!octree && !annealing) {
+    const double beyond = options.method == TreeMethod::tightened ? kCostBeyond : 1;
+    double result = 1;
+    for (const double level : counts(options, points))
+      result += std::min(level, kFullySearched) + beyond * std::max(0.0, level - kFullySearched);
+    return result;
+  }
   const double first = octree ? 12 : static_cast<double>(options.branching);
   double result = 1;
   for (Index level = 1; level <= options.depth - (annealing ? 1 : 0); ++level)
@@ -79,8 +93,9 @@ std::string of_time(double seconds) {
 BuildCost estimated_cost(const SphereTreeOptions& options, double points, double triangles) {
   BuildCost cost;
   cost.points = points;
-  cost.spheres = count(options, options.depth);
-  const double spheres = steps(options);
+  const std::vector<double> levels = counts(options, points);
+  cost.spheres = std::accumulate(levels.begin(), levels.end(), 1.0);
+  const double spheres = steps(options, points);
   const Rates rate = rates(options);
   const double of_triangle = kSecondsPerTriangle + rate.triangle * std::sqrt(spheres) + rate.triangle_once;
   cost.seconds =
