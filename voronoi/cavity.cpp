@@ -17,6 +17,8 @@ constexpr std::uint32_t kFacetMask = (1u << kFacetBits) - 1;
 // How many deleted vertices ahead of the one whose neighbours are looked at memory is fetched into the cache.
 constexpr std::size_t kFetchAhead = 4;
 
+constexpr unsigned kLanes = 4;  // facets that are placed at once
+
 }  // namespace
 
 void Cavity::end() {
@@ -197,32 +199,73 @@ Sign Cavity::side_of_facet(Index v, unsigned i) const {
 }
 
 bool Cavity::place_vertices() {
-  if (fresh_.size() < facets_.size()) fresh_.resize(facets_.size());
+  // The last four may reach beyond the last facet.
+  if (fresh_.size() < facets_.size() + kLanes - 1) fresh_.resize(facets_.size() + kLanes - 1);
   bool visible = true;
   worst_ = Placing::good;
-  for (std::size_t f = 0; f < facets_.size(); ++f) {
-    Facet& facet = facets_[f];
-    VoronoiVertex& vertex = fresh_[f];
-    vertex.forming_points = workspace_.vertices[facet.inside].forming_points;
-    const bool at_infinity = vertex.forming_points[kOthers[facet.slot][2]] == kInfinitePoint;
-    vertex.forming_points[facet.slot] = new_point_;
-    const LengthedVector& a = from_new_[facet.local[0]];
-    const LengthedVector& b = from_new_[facet.local[1]];
-    const LengthedVector& c = from_new_[facet.local[2]];
-    facet.placing = at_infinity ? workspace_.place_at_infinity(vertex, facet.error_class, a, b)
-                                : workspace_.place(vertex, facet.error_class, position_, a, b, c);
-    facet.visible = facet.placing != Placing::failed || side_of_facet(facet.inside, facet.slot) == Sign::positive;
-    if ((facet.placing != Placing::good || workspace_.poor(vertex, facet.error_class)) && !at_infinity &&
-        facet.visible && !workspace_.exact()) {
-      if (workspace_.share_sphere(vertex, facet.error_class, facet.outside, position_))
-        facet.placing = Placing::shared;
-      else if (facet.placing == Placing::good && workspace_.sign(facet.outside, position_) == Sign::uncertain)
-        facet.placing = Placing::thin;
+  const bool in_lanes = can_place_four();
+  for (std::size_t first = 0; first < facets_.size(); first += kLanes) {
+    const std::size_t end = std::min(first + kLanes, facets_.size());
+    FourQualities qualities;
+    qualities.good = 0;
+    if (in_lanes) place_spheres(first, end, qualities);
+    for (unsigned lane = 0; lane < end - first; ++lane) {
+      const std::size_t f = first + lane;
+      note_forming_points(f);
+      if (((qualities.good >> lane) & 1u) != 0) {
+        facets_[f].error_class = static_cast<std::uint8_t>(qualities.error_class[lane]);
+        facets_[f].placing = Placing::good;
+        facets_[f].visible = true;
+        continue;
+      }
+      visible &= place_vertex(f, in_lanes, qualities[lane]);
+      worst_ = std::max(worst_, facets_[f].placing);
     }
-    visible = visible && facet.visible;
-    worst_ = std::max(worst_, facet.placing);
   }
   return visible;
+}
+
+inline void Cavity::note_forming_points(std::size_t f) {
+  fresh_[f].forming_points = workspace_.vertices[facets_[f].inside].forming_points;
+  fresh_[f].forming_points[facets_[f].slot] = new_point_;
+}
+
+// Of four facets at once. Those at infinity have a point without a place, so that they are never good.
+inline void Cavity::place_spheres(std::size_t first, std::size_t end, FourQualities& qualities) {
+  FourTriangles triangles;
+  for (unsigned lane = 0; lane < kLanes; ++lane) {
+    const auto& [a, b, c] = facets_[std::min(first + lane, end - 1)].local;
+    triangles.a[lane] = &from_new_[a];
+    triangles.b[lane] = &from_new_[b];
+    triangles.c[lane] = &from_new_[c];
+  }
+  place_four(position_, workspace_.placing_limits(), triangles, &fresh_[first], qualities);
+  // With exact signs more is thin.
+  if (workspace_.exact()) qualities.good = 0;
+}
+
+// True if the facet is visible. `placed`: what its sphere is like, if it has one already.
+bool Cavity::place_vertex(std::size_t f, bool has_sphere, const PlacedQuality& placed) {
+  Facet& facet = facets_[f];
+  VoronoiVertex& vertex = fresh_[f];
+  const bool at_infinity = vertex.forming_points[kOthers[facet.slot][2]] == kInfinitePoint;
+  const LengthedVector& a = from_new_[facet.local[0]];
+  const LengthedVector& b = from_new_[facet.local[1]];
+  if (at_infinity)
+    facet.placing = workspace_.place_at_infinity(vertex, facet.error_class, a, b);
+  else if (has_sphere)
+    facet.placing = workspace_.judge(placed, facet.error_class);
+  else
+    facet.placing = workspace_.place(vertex, facet.error_class, position_, a, b, from_new_[facet.local[2]]);
+  facet.visible = facet.placing != Placing::failed || side_of_facet(facet.inside, facet.slot) == Sign::positive;
+  if ((facet.placing != Placing::good || workspace_.poor(vertex, facet.error_class)) && !at_infinity && facet.visible &&
+      !workspace_.exact()) {
+    if (workspace_.share_sphere(vertex, facet.error_class, facet.outside, position_))
+      facet.placing = Placing::shared;
+    else if (facet.placing == Placing::good && workspace_.sign(facet.outside, position_) == Sign::uncertain)
+      facet.placing = Placing::thin;
+  }
+  return facet.visible;
 }
 
 bool Cavity::link_vertices() {

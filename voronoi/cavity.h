@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "edge_table.h"
+#include "placed_sphere.h"
 #include "territory.h"
 #include "workspace.h"
 
@@ -137,6 +138,9 @@ class Cavity {
     return known;
   }
   void measure_local_points();
+  void note_forming_points(std::size_t f);
+  void place_spheres(std::size_t first, std::size_t end, FourQualities& qualities);
+  bool place_vertex(std::size_t f, bool has_sphere, const PlacedQuality& placed);
   bool delete_nearer_around(std::size_t first);
   template <bool kWhole>
   bool delete_nearer_in(std::size_t first);
