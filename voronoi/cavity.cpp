@@ -27,7 +27,8 @@ void Cavity::end() {
   for (const Index point : local_points_.items()) known_local(point) = kNone;
   deleted_.clear();
   seen_.clear();
-  facets_.clear();
+  boundary_.clear();
+  is_boundary_noted_ = false;
   local_points_.clear();
   edge_limit_ = 0;
 }
@@ -41,8 +42,8 @@ void Cavity::begin(Index new_point) {
 }
 
 void Cavity::measure_local_points() {
-  from_new_.resize(local_points_.size());
-  for (std::size_t i = 0; i < from_new_.size(); ++i) {
+  if (from_new_.size() < local_points_.size()) from_new_.resize(local_points_.size());
+  for (std::size_t i = 0; i < local_points_.size(); ++i) {
     const Index point = local_points_.items()[i];
     from_new_[i] = point == kInfinitePoint ? LengthedVector() : LengthedVector(workspace_.points[point] - position_);
   }
@@ -56,7 +57,9 @@ bool Cavity::delete_nearer(Index start) {
     return false;
   }
   delete_vertex(start);
-  return delete_nearer_around(0);
+  const bool certain = delete_nearer_around(0);
+  is_boundary_noted_ = true;
+  return certain;
 }
 
 bool Cavity::delete_nearer_around(std::size_t first) {
@@ -70,15 +73,19 @@ bool Cavity::delete_nearer_in(std::size_t first) {
   for (std::size_t i = first; i < deleted_.size(); ++i) {
     deleted_.ensure_room();
     seen_.ensure_room();
-    const std::array<Index, 4> neighbors = workspace_.vertices[deleted_.items()[i]].neighbors;
+    boundary_.ensure_room();
+    const Index v = deleted_.items()[i];
+    const std::array<Index, 4> neighbors = workspace_.vertices[v].neighbors;
     fetch_around(deleted_.items()[std::min(i + kFetchAhead, deleted_.size() - 1)]);
     if constexpr (!kWhole) {
       left_territory_ = !(territory_.owns(neighbors[0]) && territory_.owns(neighbors[1]) &&
                           territory_.owns(neighbors[2]) && territory_.owns(neighbors[3]));
       if (left_territory_) return false;
     }
-    for (const Index u : neighbors) {
-      const bool unseen = workspace_.mark(u) == Mark::unseen;
+    for (unsigned slot = 0; slot < 4; ++slot) {
+      const Index u = neighbors[slot];
+      const Mark mark = workspace_.mark(u);
+      const bool unseen = mark == Mark::unseen;
       const double power = workspace_.power(u, q), bound = workspace_.power_bound(u);
       bool nearer = power > bound;
       if (unseen && !(std::abs(power) > bound)) [[unlikely]] {
@@ -89,6 +96,8 @@ bool Cavity::delete_nearer_in(std::size_t first) {
       workspace_.add_mark(u, unseen, nearer ? Mark::deleted : Mark::kept);
       deleted_.push_if(u, unseen & nearer);
       seen_.push_if(u, unseen & !nearer);
+      // Nothing that is kept now will be deleted by this search.
+      boundary_.push_if(4 * v + slot, (mark == Mark::kept) | (unseen & !nearer));
     }
   }
   return certain;
@@ -114,13 +123,17 @@ bool Cavity::widen() {
   return deleted_.size() > before;
 }
 
-void Cavity::note_facets() {
+void Cavity::note_boundary() {
   boundary_.clear();
   for (const Index v : deleted_.items()) {
     boundary_.ensure_room();
     for (unsigned i = 0; i < 4; ++i)
       boundary_.push_if(4 * v + i, workspace_.mark(workspace_.vertices[v].neighbors[i]) != Mark::deleted);
   }
+}
+
+void Cavity::note_facets() {
+  if (!is_boundary_noted_) note_boundary();
   facets_.resize(boundary_.size());
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     const Index inside = boundary_.items()[f] / 4;
