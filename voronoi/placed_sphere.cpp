@@ -53,7 +53,8 @@ struct FourClasses {
 constexpr double kMaxSteps = 0x1p120;
 
 ORCHARD_AVX2 FourClasses error_classes(__m256d steps) {
-  const __m256i exponent = _mm256_sub_epi64(_mm256_srli_epi64(_mm256_castpd_si256(steps), 52), _mm256_set1_epi64x(1023));
+  const __m256i exponent =
+      _mm256_sub_epi64(_mm256_srli_epi64(_mm256_castpd_si256(steps), 52), _mm256_set1_epi64x(1023));
   const __m256i up = _mm256_add_epi64(_mm256_srli_epi64(exponent, 1), _mm256_set1_epi64x(1));
   const __m256i number = _mm256_and_si256(up, _mm256_castpd_si256(less(_mm256_set1_pd(1), steps)));
   const __m256i biased = _mm256_add_epi64(_mm256_slli_epi64(number, 1), _mm256_set1_epi64x(1023));
@@ -101,8 +102,8 @@ bool can_place_four() { return kFourLanes; }
   __m256d squared_radius = dot(from_new, from_new);
   const __m256d r = _mm256_sqrt_pd(squared_radius);
   const __m256d sum = absolute(center.x) + absolute(center.y) + absolute(center.z);
-  const __m256d error = (_mm256_set1_pd(4 * RelativeCenter::kCenterError) * condition +
-                         _mm256_set1_pd(16 * kRounding) + _mm256_set1_pd(8) * shake) *
+  const __m256d error = (_mm256_set1_pd(4 * RelativeCenter::kCenterError) * condition + _mm256_set1_pd(16 * kRounding) +
+                         _mm256_set1_pd(8) * shake) *
                             squared_radius +
                         _mm256_set1_pd(8 * kRounding) * r * sum;
   const __m256d steps = error * _mm256_set1_pd(1 / limits.min_bound);

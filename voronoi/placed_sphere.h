@@ -63,7 +63,8 @@ struct FourQualities {
   unsigned good;                            // a bit for each that is good by the limits
   PlacedQuality operator[](unsigned i) const { return {volume6[i], condition[i], shake[i], error[i]}; }
 };
-bool can_place_four();  // whether the machine has vectors of four doubles (AVX2), without which place_four() does nothing
+bool can_place_four();  // whether the machine has vectors of four doubles (AVX2), without which place_four() does
+                        // nothing
 void place_four(const Point& new_point, const PlacingLimits& limits, const FourTriangles& triangles,
                 VoronoiVertex* vertices, FourQualities& qualities);
 
