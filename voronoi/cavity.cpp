@@ -17,6 +17,8 @@ constexpr std::uint32_t kFacetMask = (1u << kFacetBits) - 1;
 // How many deleted vertices ahead of the one whose neighbours are looked at memory is fetched into the cache.
 constexpr std::size_t kFetchAhead = 4;
 
+constexpr unsigned kLanes = 4;  // facets that are placed at once
+
 }  // namespace
 
 void Cavity::end() {
@@ -25,7 +27,8 @@ void Cavity::end() {
   for (const Index point : local_points_.items()) known_local(point) = kNone;
   deleted_.clear();
   seen_.clear();
-  facets_.clear();
+  boundary_.clear();
+  is_boundary_noted_ = false;
   local_points_.clear();
   edge_limit_ = 0;
 }
@@ -39,8 +42,8 @@ void Cavity::begin(Index new_point) {
 }
 
 void Cavity::measure_local_points() {
-  from_new_.resize(local_points_.size());
-  for (std::size_t i = 0; i < from_new_.size(); ++i) {
+  if (from_new_.size() < local_points_.size()) from_new_.resize(local_points_.size());
+  for (std::size_t i = 0; i < local_points_.size(); ++i) {
     const Index point = local_points_.items()[i];
     from_new_[i] = point == kInfinitePoint ? LengthedVector() : LengthedVector(workspace_.points[point] - position_);
   }
@@ -54,7 +57,9 @@ bool Cavity::delete_nearer(Index start) {
     return false;
   }
   delete_vertex(start);
-  return delete_nearer_around(0);
+  const bool certain = delete_nearer_around(0);
+  is_boundary_noted_ = true;
+  return certain;
 }
 
 bool Cavity::delete_nearer_around(std::size_t first) {
@@ -68,15 +73,19 @@ bool Cavity::delete_nearer_in(std::size_t first) {
   for (std::size_t i = first; i < deleted_.size(); ++i) {
     deleted_.ensure_room();
     seen_.ensure_room();
-    const std::array<Index, 4> neighbors = workspace_.vertices[deleted_.items()[i]].neighbors;
+    boundary_.ensure_room();
+    const Index v = deleted_.items()[i];
+    const std::array<Index, 4> neighbors = workspace_.vertices[v].neighbors;
     fetch_around(deleted_.items()[std::min(i + kFetchAhead, deleted_.size() - 1)]);
     if constexpr (!kWhole) {
       left_territory_ = !(territory_.owns(neighbors[0]) && territory_.owns(neighbors[1]) &&
                           territory_.owns(neighbors[2]) && territory_.owns(neighbors[3]));
       if (left_territory_) return false;
     }
-    for (const Index u : neighbors) {
-      const bool unseen = workspace_.mark(u) == Mark::unseen;
+    for (unsigned slot = 0; slot < 4; ++slot) {
+      const Index u = neighbors[slot];
+      const Mark mark = workspace_.mark(u);
+      const bool unseen = mark == Mark::unseen;
       const double power = workspace_.power(u, q), bound = workspace_.power_bound(u);
       bool nearer = power > bound;
       if (unseen && !(std::abs(power) > bound)) [[unlikely]] {
@@ -87,6 +96,8 @@ bool Cavity::delete_nearer_in(std::size_t first) {
       workspace_.add_mark(u, unseen, nearer ? Mark::deleted : Mark::kept);
       deleted_.push_if(u, unseen & nearer);
       seen_.push_if(u, unseen & !nearer);
+      // Nothing that is kept now will be deleted by this search.
+      boundary_.push_if(4 * v + slot, (mark == Mark::kept) | (unseen & !nearer));
     }
   }
   return certain;
@@ -112,13 +123,17 @@ bool Cavity::widen() {
   return deleted_.size() > before;
 }
 
-void Cavity::note_facets() {
+void Cavity::note_boundary() {
   boundary_.clear();
   for (const Index v : deleted_.items()) {
     boundary_.ensure_room();
     for (unsigned i = 0; i < 4; ++i)
       boundary_.push_if(4 * v + i, workspace_.mark(workspace_.vertices[v].neighbors[i]) != Mark::deleted);
   }
+}
+
+void Cavity::note_facets() {
+  if (!is_boundary_noted_) note_boundary();
   facets_.resize(boundary_.size());
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     const Index inside = boundary_.items()[f] / 4;
@@ -197,32 +212,73 @@ Sign Cavity::side_of_facet(Index v, unsigned i) const {
 }
 
 bool Cavity::place_vertices() {
-  if (fresh_.size() < facets_.size()) fresh_.resize(facets_.size());
+  // The last four may reach beyond the last facet.
+  if (fresh_.size() < facets_.size() + kLanes - 1) fresh_.resize(facets_.size() + kLanes - 1);
   bool visible = true;
   worst_ = Placing::good;
-  for (std::size_t f = 0; f < facets_.size(); ++f) {
-    Facet& facet = facets_[f];
-    VoronoiVertex& vertex = fresh_[f];
-    vertex.forming_points = workspace_.vertices[facet.inside].forming_points;
-    const bool at_infinity = vertex.forming_points[kOthers[facet.slot][2]] == kInfinitePoint;
-    vertex.forming_points[facet.slot] = new_point_;
-    const LengthedVector& a = from_new_[facet.local[0]];
-    const LengthedVector& b = from_new_[facet.local[1]];
-    const LengthedVector& c = from_new_[facet.local[2]];
-    facet.placing = at_infinity ? workspace_.place_at_infinity(vertex, facet.error_class, a, b)
-                                : workspace_.place(vertex, facet.error_class, position_, a, b, c);
-    facet.visible = facet.placing != Placing::failed || side_of_facet(facet.inside, facet.slot) == Sign::positive;
-    if ((facet.placing != Placing::good || workspace_.poor(vertex, facet.error_class)) && !at_infinity &&
-        facet.visible && !workspace_.exact()) {
-      if (workspace_.share_sphere(vertex, facet.error_class, facet.outside, position_))
-        facet.placing = Placing::shared;
-      else if (facet.placing == Placing::good && workspace_.sign(facet.outside, position_) == Sign::uncertain)
-        facet.placing = Placing::thin;
+  const bool in_lanes = can_place_four();
+  for (std::size_t first = 0; first < facets_.size(); first += kLanes) {
+    const std::size_t end = std::min(first + kLanes, facets_.size());
+    FourQualities qualities;
+    qualities.good = 0;
+    if (in_lanes) place_spheres(first, end, qualities);
+    for (unsigned lane = 0; lane < end - first; ++lane) {
+      const std::size_t f = first + lane;
+      note_forming_points(f);
+      if (((qualities.good >> lane) & 1u) != 0) {
+        facets_[f].error_class = static_cast<std::uint8_t>(qualities.error_class[lane]);
+        facets_[f].placing = Placing::good;
+        facets_[f].visible = true;
+        continue;
+      }
+      visible &= place_vertex(f, in_lanes, qualities[lane]);
+      worst_ = std::max(worst_, facets_[f].placing);
     }
-    visible = visible && facet.visible;
-    worst_ = std::max(worst_, facet.placing);
   }
   return visible;
+}
+
+inline void Cavity::note_forming_points(std::size_t f) {
+  fresh_[f].forming_points = workspace_.vertices[facets_[f].inside].forming_points;
+  fresh_[f].forming_points[facets_[f].slot] = new_point_;
+}
+
+// Of four facets at once. Those at infinity have a point without a place, so that they are never good.
+inline void Cavity::place_spheres(std::size_t first, std::size_t end, FourQualities& qualities) {
+  FourTriangles triangles;
+  for (unsigned lane = 0; lane < kLanes; ++lane) {
+    const auto& [a, b, c] = facets_[std::min(first + lane, end - 1)].local;
+    triangles.a[lane] = &from_new_[a];
+    triangles.b[lane] = &from_new_[b];
+    triangles.c[lane] = &from_new_[c];
+  }
+  place_four(position_, workspace_.placing_limits(), triangles, &fresh_[first], qualities);
+  // With exact signs more is thin.
+  if (workspace_.exact()) qualities.good = 0;
+}
+
+// True if the facet is visible. `placed`: what its sphere is like, if it has one already.
+bool Cavity::place_vertex(std::size_t f, bool has_sphere, const PlacedQuality& placed) {
+  Facet& facet = facets_[f];
+  VoronoiVertex& vertex = fresh_[f];
+  const bool at_infinity = vertex.forming_points[kOthers[facet.slot][2]] == kInfinitePoint;
+  const LengthedVector& a = from_new_[facet.local[0]];
+  const LengthedVector& b = from_new_[facet.local[1]];
+  if (at_infinity)
+    facet.placing = workspace_.place_at_infinity(vertex, facet.error_class, a, b);
+  else if (has_sphere)
+    facet.placing = workspace_.judge(placed, facet.error_class);
+  else
+    facet.placing = workspace_.place(vertex, facet.error_class, position_, a, b, from_new_[facet.local[2]]);
+  facet.visible = facet.placing != Placing::failed || side_of_facet(facet.inside, facet.slot) == Sign::positive;
+  if ((facet.placing != Placing::good || workspace_.poor(vertex, facet.error_class)) && !at_infinity && facet.visible &&
+      !workspace_.exact()) {
+    if (workspace_.share_sphere(vertex, facet.error_class, facet.outside, position_))
+      facet.placing = Placing::shared;
+    else if (facet.placing == Placing::good && workspace_.sign(facet.outside, position_) == Sign::uncertain)
+      facet.placing = Placing::thin;
+  }
+  return facet.visible;
 }
 
 bool Cavity::link_vertices() {

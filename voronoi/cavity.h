@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "edge_table.h"
+#include "placed_sphere.h"
 #include "territory.h"
 #include "workspace.h"
 
@@ -77,6 +78,7 @@ class Cavity {
   void delete_vertex(Index v) {
     workspace_.set_mark(v, Mark::deleted);
     deleted_.push(v);
+    is_boundary_noted_ = false;
   }
   // Marks a vertex as seen but not deleted.
   void add_seen(Index v, Mark mark) {
@@ -136,7 +138,11 @@ class Cavity {
     local_points_.push_if(point, fresh);
     return known;
   }
+  void note_boundary();
   void measure_local_points();
+  void note_forming_points(std::size_t f);
+  void place_spheres(std::size_t first, std::size_t end, FourQualities& qualities);
+  bool place_vertex(std::size_t f, bool has_sphere, const PlacedQuality& placed);
   bool delete_nearer_around(std::size_t first);
   template <bool kWhole>
   bool delete_nearer_in(std::size_t first);
@@ -156,6 +162,7 @@ class Cavity {
   Point position_ = Point::Zero();
   Placing worst_ = Placing::good;
   List deleted_, seen_, boundary_;  // boundary: 4 * deleted vertex + the neighbour across
+  bool is_boundary_noted_ = false;  // by delete_nearer(), and nothing was deleted since
   List local_points_;               // the points of the boundary, the one at infinity included
   std::vector<Index> slots_, stack_;
   std::vector<Facet> facets_;

@@ -197,11 +197,11 @@ class Certifier {
       for (Index i = batch * kBatch; i < std::min(count, (batch + 1) * kBatch); ++i)
         for (unsigned slot = 0; slot < 3; ++slot) {
           const Index v = hull[i], u = workspace_.vertices[v].neighbors[slot];
-          if (u > v || !is_new(u)) edges.push_back({v, u, slot});
+          if (u > v || !is_new(u)) edges.push_back({.v = v, .u = u, .slot = slot});
         }
       note_convex(workspace_, edges);
       return std::all_of(edges.begin(), edges.end(), [&part](const HullEdge& edge) {
-        return edge.convex || part.is_facet_good(edge.v, edge.slot, edge.u);
+        return edge.convex || part.is_hull_convex(edge.v, edge.slot, edge.doubtful) || part.doubt(edge.v, edge.u);
       });
     });
   }
@@ -290,8 +290,7 @@ class Certifier {
     const Point &p0 = corner(v, 0), &p1 = corner(v, 1), &p2 = corner(v, 2);
     if (workspace_.at_infinity(v)) {
       found_.hull.push_back(v);
-      Vector normal;
-      return sharp_normal(p0, p1, p2, normal);
+      return is_triangle(p0, p1, p2);
     }
     const Point& p3 = corner(v, 3);
     const Determinant det = six_volumes(v);
@@ -317,6 +316,17 @@ class Certifier {
     if (apart > small_share_ && workspace_.shares_sphere(v)) found_.lossy.push_back(v);
     found_.given = std::max(found_.given, apart);
     return apart <= kGiven * max_;
+  }
+
+  // Whether three points are not on one line.
+  static bool is_triangle(const Point& a, const Point& b, const Point& c) {
+    const Vector ab = b - a, ac = c - a;
+    // Of a component's two products: two roundings in the factors of each, one in the product, one in the difference of
+    // both; and as many for what is of second order.
+    constexpr double kRoundings = 2 * 8 * kRounding;
+    const double largest_product = ab.lpNorm<Eigen::Infinity>() * ac.lpNorm<Eigen::Infinity>();
+    Vector normal;
+    return ab.cross(ac).lpNorm<Eigen::Infinity>() > kRoundings * largest_product || sharp_normal(a, b, c, normal);
   }
 
   // How far the sphere that a vertex was given is from that of its forming points, at most, where points may be.
@@ -364,7 +374,10 @@ class Certifier {
     return true;
   }
   bool is_facet_good(Index v, unsigned i, Index u) {
-    return (workspace_.at_infinity(v) ? is_hull_convex(v, i) : do_spheres_agree(v, i, u)) || doubt(v, u);
+    const VoronoiVertex& vertex = workspace_.vertices[v];
+    return (workspace_.at_infinity(v) ? is_hull_convex(v, i, HullPlace::first(vertex, v, i))
+                                      : do_spheres_agree(v, i, u)) ||
+           doubt(v, u);
   }
 
   // The same facets of some vertices, those of the hull aside, where all are new. Waiting for memory and mispredicted
@@ -478,15 +491,15 @@ class Certifier {
 
   // At the edge of the hull between the facets of v and its neighbour i: around the edge, from the one to the other,
   // all points must be below the facet of v. The first one that is not, by a rounding, must be opposite to the facet,
-  // and so must be all that follow, or else the vertices there go around the edge more than once.
-  bool is_hull_convex(Index v, unsigned i) {
+  // and so must be all that follow, or else the vertices there go around the edge more than once. What is before the
+  // place is below the facet.
+  bool is_hull_convex(Index v, unsigned i, HullPlace place) {
     const unsigned j = (i + 1) % 3, k = (i + 2) % 3;
     const Point &b = corner(v, j), &c = corner(v, k);
     bool flat = false;
-    Index behind = workspace_.vertices[v].forming_points[i];
-    for (Index t = workspace_.vertices[v].neighbors[3], from = v; !workspace_.at_infinity(t);) {
-      const VoronoiVertex& vertex = workspace_.vertices[t];
-      const std::size_t apex = index_of(vertex.neighbors, from);
+    while (!workspace_.at_infinity(place.at)) {
+      const VoronoiVertex& vertex = workspace_.vertices[place.at];
+      const std::size_t apex = index_of(vertex.neighbors, place.from);
       const Point& p = workspace_.points[vertex.forming_points[apex]];
       const Sign below = volume_sign(p, corner(v, 0), corner(v, 1), corner(v, 2));
       if (below == Sign::positive) {
@@ -496,9 +509,7 @@ class Certifier {
         if (same_side_of_line(b, c, corner(v, i), p) != Sign::negative) return false;
         if (below == Sign::negative && (workspace_.exact() || !is_dent_shallow(v, i, p, b, c))) return false;
       }
-      from = t;
-      t = vertex.neighbors[index_of(vertex.forming_points, behind)];
-      behind = vertex.forming_points[apex];
+      place = {vertex.neighbors[index_of(vertex.forming_points, place.behind)], place.at, vertex.forming_points[apex]};
     }
     return true;
   }

@@ -32,7 +32,7 @@ class FacetPlane {
 
 struct Walk {
   FacetPlane plane;
-  Index at, from, behind;  // a vertex, the one before it, and the point that this one has instead of a shared one
+  HullPlace place;
   HullEdge* edge;
 };
 
@@ -42,22 +42,23 @@ void note_convex(const Workspace& workspace, std::span<HullEdge> edges) {
   const auto begin = [&workspace](HullEdge& edge) {
     const VoronoiVertex& vertex = workspace.vertices[edge.v];
     const auto corner = [&](unsigned i) -> const Point& { return workspace.points[vertex.forming_points[i]]; };
-    return Walk{
-        {corner(0), corner(1), corner(2)}, vertex.neighbors[3], edge.v, vertex.forming_points[edge.slot], &edge};
+    return Walk{{corner(0), corner(1), corner(2)}, HullPlace::first(vertex, edge.v, edge.slot), &edge};
   };
   // False at the end of the walk.
   const auto step = [&workspace](Walk& walk) {
-    const VoronoiVertex& vertex = workspace.vertices[walk.at];
+    HullPlace& place = walk.place;
+    const VoronoiVertex& vertex = workspace.vertices[place.at];
     if (vertex.forming_points[3] == kInfinitePoint) {
       walk.edge->convex = true;
       return false;
     }
-    const Index across = vertex.forming_points[index_of(vertex.neighbors, walk.from)];
-    if (!walk.plane.is_certainly_above(workspace.points[across])) return false;
-    walk.from = walk.at;
-    walk.at = vertex.neighbors[index_of(vertex.forming_points, walk.behind)];
-    walk.behind = across;
-    __builtin_prefetch(&workspace.vertices[walk.at]);
+    const Index across = vertex.forming_points[index_of(vertex.neighbors, place.from)];
+    if (!walk.plane.is_certainly_above(workspace.points[across])) {
+      walk.edge->doubtful = place;
+      return false;
+    }
+    place = {vertex.neighbors[index_of(vertex.forming_points, place.behind)], place.at, across};
+    __builtin_prefetch(&workspace.vertices[place.at]);
     return true;
   };
   std::array<Walk, kWalks> walks;

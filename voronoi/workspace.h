@@ -8,6 +8,7 @@
 
 #include "frame.h"
 #include "orchard/voronoi/diagram.h"
+#include "placed_sphere.h"
 #include "predicates.h"
 
 namespace orchard::detail {
@@ -98,6 +99,11 @@ class Workspace {
   // centre worth having, and the volume a . (b x c) is positive.
   Placing place(VoronoiVertex& vertex, std::uint8_t& error_class, const Point& new_point, const LengthedVector& a,
                 const LengthedVector& b, const LengthedVector& c) const;
+  // What place() comes to, for a sphere that placed_sphere() or place_four() placed with this noise. The class is set
+  // where the centre is worth anything.
+  Placing judge(const PlacedQuality& placed, std::uint8_t& error_class) const;
+  // What is good by these judge() calls good, and it is not poor.
+  PlacingLimits placing_limits() const { return {noise_, kThin, good_center_, bounds_[0]}; }
   // The same at infinity, beyond the facet of the new point, a and b.
   Placing place_at_infinity(VoronoiVertex& vertex, std::uint8_t& error_class, const LengthedVector& a,
                             const LengthedVector& b) const;
@@ -195,24 +201,17 @@ inline std::uint8_t Workspace::error_class(double bound) const {
 
 inline Placing Workspace::place(VoronoiVertex& vertex, std::uint8_t& error, const Point& new_point,
                                 const LengthedVector& a, const LengthedVector& b, const LengthedVector& c) const {
-  const RelativeCenter relative = circumcenter(a, b, c);
-  // The reciprocal of the smallest height of the tetrahedron's corners at the new point: how far input noise is
-  // magnified.
-  const double per_height = relative.max_face / std::abs(relative.volume6);
-  const double shake = noise_ * per_height;
-  if (!relative.reliable() || !(shake < 0.125)) return Placing::failed;
-  vertex.center = new_point + relative.center;
-  // From the rounded centre, so that the new point at least is on the sphere.
-  vertex.radius = (vertex.center - new_point).squaredNorm();
-  const double r = std::sqrt(vertex.radius);
-  // A centre off by e changes the power of a point about as far as the radius by less than 4 r e; e is kCenterError *
-  // condition * r plus the rounding of the sum above plus what the input's noise does; and the power itself takes some
-  // ten roundings of r^2.
-  error =
-      error_class((4 * RelativeCenter::kCenterError * relative.condition + 16 * kRounding + 8 * shake) * vertex.radius +
-                  8 * kRounding * r * vertex.center.lpNorm<1>());
-  if (!(relative.volume6 > 0)) return Placing::failed;
-  const bool thin = exact_ ? !(relative.condition < kSharpCondition) : !(shake < kThin);
+  const PlacedSphere placed = placed_sphere(new_point, noise_, a, b, c);
+  vertex.center = placed.center;
+  vertex.radius = placed.squared_radius;
+  return judge(placed.quality, error);
+}
+
+inline Placing Workspace::judge(const PlacedQuality& placed, std::uint8_t& error) const {
+  if (!placed.reliable() || !(placed.shake < 0.125)) return Placing::failed;
+  error = error_class(placed.error);
+  if (!(placed.volume6 > 0)) return Placing::failed;
+  const bool thin = exact_ ? !(placed.condition < kSharpCondition) : !(placed.shake < kThin);
   return thin ? Placing::thin : Placing::good;
 }
 

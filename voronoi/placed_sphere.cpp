@@ -1,0 +1,133 @@
+#include "placed_sphere.h"
+
+#include <cstddef>
+
+#if defined(__GNUC__) && defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+namespace orchard::detail {
+
+#if defined(__GNUC__) && defined(__x86_64__)
+namespace {
+
+// Center and radius of a vertex, and vector and square of a point, are four doubles side by side.
+static_assert(offsetof(VoronoiVertex, radius) == offsetof(VoronoiVertex, center) + 3 * sizeof(double));
+static_assert(offsetof(LengthedVector, squared) == offsetof(LengthedVector, vector) + 3 * sizeof(double));
+
+// Everything below is inlined into place_four(): functions for several machines do not mix otherwise.
+#define ORCHARD_AVX2 [[gnu::target("avx2"), gnu::always_inline]] inline
+
+// Rows become columns.
+ORCHARD_AVX2 void transpose(__m256d& a, __m256d& b, __m256d& c, __m256d& d) {
+  const __m256d low_ab = _mm256_unpacklo_pd(a, b), high_ab = _mm256_unpackhi_pd(a, b);
+  const __m256d low_cd = _mm256_unpacklo_pd(c, d), high_cd = _mm256_unpackhi_pd(c, d);
+  a = _mm256_permute2f128_pd(low_ab, low_cd, 0x20);
+  b = _mm256_permute2f128_pd(high_ab, high_cd, 0x20);
+  c = _mm256_permute2f128_pd(low_ab, low_cd, 0x31);
+  d = _mm256_permute2f128_pd(high_ab, high_cd, 0x31);
+}
+
+struct FourVectors {
+  __m256d x, y, z;
+};
+
+ORCHARD_AVX2 FourVectors cross(const FourVectors& a, const FourVectors& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+ORCHARD_AVX2 __m256d dot(const FourVectors& a, const FourVectors& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+ORCHARD_AVX2 __m256d absolute(__m256d a) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a); }
+
+// Whether all of these hold in a lane: the sign of its number.
+ORCHARD_AVX2 __m256d less(__m256d a, __m256d b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
+template <class... More>
+ORCHARD_AVX2 __m256d all(__m256d first, More... more) {
+  ((first = _mm256_and_pd(first, more)), ...);
+  return first;
+}
+
+struct FourClasses {
+  __m256i number;  // of the smallest power of four that is not below
+  __m256d factor;  // that power, where it is no more than kMaxSteps
+};
+constexpr double kMaxSteps = 0x1p120;
+
+ORCHARD_AVX2 FourClasses error_classes(__m256d steps) {
+  const __m256i exponent =
+      _mm256_sub_epi64(_mm256_srli_epi64(_mm256_castpd_si256(steps), 52), _mm256_set1_epi64x(1023));
+  const __m256i up = _mm256_add_epi64(_mm256_srli_epi64(exponent, 1), _mm256_set1_epi64x(1));
+  const __m256i number = _mm256_and_si256(up, _mm256_castpd_si256(less(_mm256_set1_pd(1), steps)));
+  const __m256i biased = _mm256_add_epi64(_mm256_slli_epi64(number, 1), _mm256_set1_epi64x(1023));
+  return {number, _mm256_castsi256_pd(_mm256_slli_epi64(biased, 52))};
+}
+
+struct FourLengthed {
+  FourVectors vector;
+  __m256d squared, length;
+};
+
+ORCHARD_AVX2 FourLengthed load(const std::array<const LengthedVector*, 4>& v) {
+  FourLengthed four{{_mm256_loadu_pd(v[0]->vector.data()), _mm256_loadu_pd(v[1]->vector.data()),
+                     _mm256_loadu_pd(v[2]->vector.data())},
+                    _mm256_loadu_pd(v[3]->vector.data()),
+                    _mm256_set_pd(v[3]->length, v[2]->length, v[1]->length, v[0]->length)};
+  transpose(four.vector.x, four.vector.y, four.vector.z, four.squared);
+  return four;
+}
+
+#undef ORCHARD_AVX2
+
+const bool kFourLanes = __builtin_cpu_supports("avx2");
+
+}  // namespace
+
+bool can_place_four() { return kFourLanes; }
+
+// As placed_sphere(), in the same order of operations.
+[[gnu::target("avx2")]] void place_four(const Point& new_point, const PlacingLimits& limits,
+                                        const FourTriangles& triangles, VoronoiVertex* vertices,
+                                        FourQualities& qualities) {
+  const FourLengthed a = load(triangles.a), b = load(triangles.b), c = load(triangles.c);
+  const FourVectors bc = cross(b.vector, c.vector), ca = cross(c.vector, a.vector), ab = cross(a.vector, b.vector);
+  const __m256d volume6 = dot(a.vector, bc), absolute_volume = absolute(volume6);
+  const __m256d condition = a.length * b.length * c.length / absolute_volume;
+  const __m256d max_face = _mm256_sqrt_pd(_mm256_max_pd(_mm256_max_pd(dot(bc, bc), dot(ca, ca)), dot(ab, ab)));
+  const __m256d shake = _mm256_set1_pd(limits.noise) * (max_face / absolute_volume);
+  const __m256d scale = _mm256_set1_pd(0.5) / volume6;
+  const FourVectors q{_mm256_set1_pd(new_point.x()), _mm256_set1_pd(new_point.y()), _mm256_set1_pd(new_point.z())};
+  FourVectors center{q.x + (a.squared * bc.x + b.squared * ca.x + c.squared * ab.x) * scale,
+                     q.y + (a.squared * bc.y + b.squared * ca.y + c.squared * ab.y) * scale,
+                     q.z + (a.squared * bc.z + b.squared * ca.z + c.squared * ab.z) * scale};
+  const FourVectors from_new{center.x - q.x, center.y - q.y, center.z - q.z};
+  __m256d squared_radius = dot(from_new, from_new);
+  const __m256d r = _mm256_sqrt_pd(squared_radius);
+  const __m256d sum = absolute(center.x) + absolute(center.y) + absolute(center.z);
+  const __m256d error = (_mm256_set1_pd(4 * RelativeCenter::kCenterError) * condition + _mm256_set1_pd(16 * kRounding) +
+                         _mm256_set1_pd(8) * shake) *
+                            squared_radius +
+                        _mm256_set1_pd(8 * kRounding) * r * sum;
+  const __m256d steps = error * _mm256_set1_pd(1 / limits.min_bound);
+  const FourClasses classes = error_classes(steps);
+  const __m256d bound = classes.factor * _mm256_set1_pd(limits.min_bound);
+  const __m256d good =
+      all(less(condition * _mm256_set1_pd(RelativeCenter::kCenterError), _mm256_set1_pd(0.125)),
+          less(shake, _mm256_set1_pd(limits.max_shake)), less(_mm256_setzero_pd(), volume6),
+          less(bound, _mm256_set1_pd(limits.max_poverty) * squared_radius), less(steps, _mm256_set1_pd(kMaxSteps)));
+  qualities.good = static_cast<unsigned>(_mm256_movemask_pd(good));
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(qualities.error_class.data()), classes.number);
+  _mm256_storeu_pd(qualities.volume6.data(), volume6);
+  _mm256_storeu_pd(qualities.condition.data(), condition);
+  _mm256_storeu_pd(qualities.shake.data(), shake);
+  _mm256_storeu_pd(qualities.error.data(), error);
+  transpose(center.x, center.y, center.z, squared_radius);
+  _mm256_storeu_pd(vertices[0].center.data(), center.x);
+  _mm256_storeu_pd(vertices[1].center.data(), center.y);
+  _mm256_storeu_pd(vertices[2].center.data(), center.z);
+  _mm256_storeu_pd(vertices[3].center.data(), squared_radius);
+}
+#else
+bool can_place_four() { return false; }
+void place_four(const Point&, const PlacingLimits&, const FourTriangles&, VoronoiVertex*, FourQualities&) {}
+#endif
+
+}  // namespace orchard::detail
