@@ -1,14 +1,19 @@
 #include "downhill.h"
 
+#include <algorithm>
+
 namespace orchard::detail {
 
 ClosestPoint Downhill::descend(const Point& from, ClosestPoint place) {
   constexpr int kMaxWalk = 1000;  // triangles; a step always comes nearer, so this is but a guard
   place.distance = (place.position - from).norm();
+  measured_.clear();
   for (int step = 0; step < kMaxWalk; ++step) {
     surface_.triangles_at(place.triangle, place.feature, around_);
     ClosestPoint best = place;
     for (const Index next : around_) {
+      // What was measured before came no nearer than the place.
+      if (std::find(measured_.begin(), measured_.end(), next) != measured_.end()) continue;
       const auto [a, b, c] = surface_.corners(next);
       ClosestPoint found = closest_point_of_triangle(from, a, b, c);
       found.triangle = next;
@@ -16,6 +21,8 @@ ClosestPoint Downhill::descend(const Point& from, ClosestPoint place) {
     }
     if (!(best.distance < place.distance)) break;
     place = best;
+    if (place.feature == Feature::face) break;  // nothing else is around it
+    measured_.swap(around_);
   }
   return place;
 }

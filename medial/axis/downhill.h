@@ -15,7 +15,7 @@ class Downhill {
 
  private:
   const Surface& surface_;
-  std::vector<Index> around_;
+  std::vector<Index> around_, measured_;  // of a step, and of the one before
 };
 
 }  // namespace orchard::detail
