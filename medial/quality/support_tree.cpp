@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 namespace orchard::detail {
@@ -17,6 +18,19 @@ constexpr float kNoFloat = 1e18f;  // instead of what is larger
 Float4 broadcast(float x) { return Float4{x, x, x, x}; }
 Float4 abs(Float4 x) { return x < broadcast(0) ? -x : x; }
 Float4 square_root(Float4 a) { return Float4{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])}; }
+
+// Bit k: whether x[k] is below the limit, or not a number: at the middle of a box itself there is no direction, and no
+// bound.
+unsigned below(Float4 x, float limit) {
+  const auto is_below = ~(x >= broadcast(limit));
+#ifdef __SSE__
+  return static_cast<unsigned>(__builtin_ia32_movmskps((Float4)is_below));
+#else
+  unsigned bits = 0;
+  for (int k = 0; k < 4; ++k) bits |= (is_below[k] != 0 ? 1u : 0u) << k;
+  return bits;
+#endif
+}
 
 }  // namespace
 
@@ -215,8 +229,17 @@ float SupportTree::limit_of(double value) const {
   return local < kFar ? static_cast<float>(local) : kNoFloat;
 }
 
+// What is pushed is looked at soon.
+void SupportTree::prefetch(Index child) const {
+  const bool is_item = child >= kItem;
+  const char* at =
+      is_item ? reinterpret_cast<const char*>(&items_[child - kItem]) : reinterpret_cast<const char*>(&nodes_[child]);
+  for (std::size_t line = 0; line < (is_item ? sizeof(Item) : sizeof(Node)); line += 64) __builtin_prefetch(at + line);
+}
+
 // The nearest is to be popped first.
-void SupportTree::push_children(const Node& node, const Query& query, float limit, Entry* stack, std::size_t& size) {
+void SupportTree::push_children(const Node& node, const Query& query, float limit, Entry* stack,
+                                std::size_t& size) const {
   const Float4 x = query.place[0] - node.middle[0], y = query.place[1] - node.middle[1],
                z = query.place[2] - node.middle[2];
   const Float4 length = square_root(x * x + y * y + z * z);
@@ -227,13 +250,14 @@ void SupportTree::push_children(const Node& node, const Query& query, float limi
     added += abs(u * half_axis[0] + v * half_axis[1] + w * half_axis[2] + half_axis[3]);
   const Float4 bounds = length - node.middle[3] - added;
   const std::size_t first = size;
-  for (int k = 0; k < 4; ++k) {
-    // At the middle itself there is no direction, and no bound.
-    if (node.child[k] == kNone || bounds[k] >= limit) continue;
+  for (unsigned bits = below(bounds, limit); bits != 0; bits &= bits - 1) {
+    const int k = std::countr_zero(bits);
+    if (node.child[k] == kNone) continue;
     const float bound = bounds[k] < limit ? bounds[k] : -std::numeric_limits<float>::infinity();
     std::size_t at = size++;
     for (; at > first && stack[at - 1].bound < bound; --at) stack[at] = stack[at - 1];
     stack[at] = {bound, node.child[k]};
+    prefetch(node.child[k]);
   }
 }
 

@@ -75,7 +75,8 @@ class SupportTree {
 
   Query localized(const Point& query) const;
   float limit_of(double value) const;
-  static void push_children(const Node& node, const Query& query, float limit, Entry* stack, std::size_t& size);
+  void prefetch(Index child) const;
+  void push_children(const Node& node, const Query& query, float limit, Entry* stack, std::size_t& size) const;
 
   Point center_ = Point::Zero();
   double scale_ = 1;            // a power of two
