@@ -7,6 +7,8 @@
 
 namespace orchard::detail {
 
+struct BallDepth;  // quality_parts.h
+
 // A maximum that was searched by branch and bound; lengths in mesh units.
 struct SearchedMax {
   double max = 0;               // attained, or what was known before
@@ -43,7 +45,8 @@ std::vector<Dent> dents_seen_from(std::span<const Sphere> balls, const Surface& 
 // where a ball closes a crevice and ends in the solid again. Cells are halved until that is within the larger of
 // `accuracy` and 2 % above what was attained, or until `max_cells` were looked at. Parallel, and the same for any
 // number of threads.
-SearchedMax max_protrusion(const Surface& surface, const MedialMesh& mesh, double known, double accuracy,
-                           Index max_cells);
+// `depths` saves a query for each triangle if it has those of the middles of all of them.
+SearchedMax max_protrusion(const Surface& surface, const MedialMesh& mesh, std::span<const BallDepth> depths,
+                           double known, double accuracy, Index max_cells);
 
 }  // namespace orchard::detail

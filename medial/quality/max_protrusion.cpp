@@ -23,10 +23,12 @@ constexpr double kRounding = 1e-12;   // of the coordinates: more than a bound i
 // Balls interpolated linearly on up to three; edges and vertices repeat their last.
 struct Cell {
   std::array<Sphere, 3> balls;
+  const BallDepth* depth = nullptr;  // of the middle, where it is known
   double bound = std::numeric_limits<double>::infinity();
 };
 
-std::vector<Cell> cells_of(const MedialMesh& mesh) {
+// `depths`: of the middles of all triangles, or of some others, which are not used.
+std::vector<Cell> cells_of(const MedialMesh& mesh, std::span<const BallDepth> depths) {
   const CellIncidence at(mesh.edges, mesh.triangles, mesh.size());
   std::vector<Cell> cells;
   const auto add = [&](Index a, Index b, Index c) {
@@ -36,6 +38,7 @@ std::vector<Cell> cells_of(const MedialMesh& mesh) {
     cells.push_back(cell);
   };
   for (const auto& [a, b, c] : mesh.triangles) add(a, b, c);
+  for (std::size_t t = 0; t < cells.size() && depths.size() == cells.size(); ++t) cells[t].depth = &depths[t];
   for (const Index e : at.bare_edges()) add(mesh.edges[e][0], mesh.edges[e][1], mesh.edges[e][1]);
   for (const Index v : at.lone_vertices()) add(v, v, v);
   return cells;
@@ -51,7 +54,7 @@ std::array<Cell, 2> halves_of(const Cell& cell) {
   }
   const Sphere &a = cell.balls[longest], &b = cell.balls[(longest + 1) % 3], &c = cell.balls[(longest + 2) % 3];
   const Sphere middle{0.5 * (a.center + b.center), 0.5 * (a.radius + b.radius)};
-  return {Cell{{a, middle, c}, cell.bound}, Cell{{middle, b, c}, cell.bound}};
+  return {Cell{{a, middle, c}, nullptr, cell.bound}, Cell{{middle, b, c}, nullptr, cell.bound}};
 }
 
 class ProtrusionSearch {
@@ -107,7 +110,8 @@ class ProtrusionSearch {
   double bound_of(const Cell& cell, double known, SearchedMax& found) const {
     const auto& [a, b, c] = cell.balls;
     const Sphere middle{(a.center + b.center + c.center) / 3, (a.radius + b.radius + c.radius) / 3};
-    const double depth = surface_.signed_distance(middle.center);
+    const BallDepth middle_depth = cell.depth ? *cell.depth : depth_of(surface_, middle);
+    const double depth = middle_depth.signed_distance;
     double reach = 0, bound = -std::numeric_limits<double>::infinity();
     for (const Sphere& ball : cell.balls) {
       const double length = (ball.center - middle.center).norm();
@@ -117,7 +121,7 @@ class ProtrusionSearch {
     bound += rounding_;
     if (bound <= known) return bound;
     if (depth + middle.radius > found.max) {
-      const BallReach attained = reach_of(surface_, middle);
+      const BallReach attained = reach_of(surface_, middle, middle_depth);
       if (attained.beyond > found.max) found = {attained.beyond, 0, attained.farthest, middle};
     }
     if (reach < -depth) bound = std::min(bound, surface_.max_reach(cell.balls, middle.center, known) + rounding_);
@@ -133,9 +137,9 @@ class ProtrusionSearch {
 
 }  // namespace
 
-SearchedMax max_protrusion(const Surface& surface, const MedialMesh& mesh, double known, double accuracy,
-                           Index max_cells) {
-  return ProtrusionSearch(surface, known, accuracy, max_cells).run(cells_of(mesh));
+SearchedMax max_protrusion(const Surface& surface, const MedialMesh& mesh, std::span<const BallDepth> depths,
+                           double known, double accuracy, Index max_cells) {
+  return ProtrusionSearch(surface, known, accuracy, max_cells).run(cells_of(mesh, depths));
 }
 
 }  // namespace orchard::detail

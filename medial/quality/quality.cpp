@@ -42,17 +42,17 @@ std::vector<SurfaceSample> quality_samples(const Surface& surface, Index count, 
 
 QualityBalls quality_balls(const MedialMesh& mesh, Index max) {
   QualityBalls balls;
-  const auto middle = [&](const auto& corners) {
+  const auto add_middle = [&](const auto& corners) {
     Sphere ball;
-    for (const Index corner : corners) {
-      ball.center += mesh.centers[corner] / static_cast<double>(corners.size());
-      ball.radius += mesh.radii[corner] / static_cast<double>(corners.size());
-    }
-    return ball;
+    for (const Index corner : corners) ball.center += mesh.centers[corner], ball.radius += mesh.radii[corner];
+    const double count = static_cast<double>(corners.size());
+    balls.all.push_back({ball.center / count, ball.radius / count});
   };
-  evenly(mesh.centers.size(), max, [&](std::size_t i) { balls.vertices.push_back({mesh.centers[i], mesh.radii[i]}); });
-  evenly(mesh.edges.size(), max, [&](std::size_t i) { balls.edges.push_back(middle(mesh.edges[i])); });
-  evenly(mesh.triangles.size(), max, [&](std::size_t i) { balls.triangles.push_back(middle(mesh.triangles[i])); });
+  evenly(mesh.centers.size(), max, [&](std::size_t i) { balls.all.push_back({mesh.centers[i], mesh.radii[i]}); });
+  balls.vertices = balls.all.size();
+  evenly(mesh.edges.size(), max, [&](std::size_t i) { add_middle(mesh.edges[i]); });
+  balls.edges = balls.all.size() - balls.vertices;
+  evenly(mesh.triangles.size(), max, [&](std::size_t i) { add_middle(mesh.triangles[i]); });
   return balls;
 }
 
@@ -79,9 +79,10 @@ MedialQuality medial_quality(const Surface& surface, const MedialMesh& mesh, con
   report_progress(progress, "quality: reconstruction", 0.2);
   const auto samples = detail::quality_samples(surface, options.surface_samples, options.seed);
   const detail::QualityBalls balls = detail::quality_balls(mesh, options.cells);
-  detail::measure_reconstruction(surface, mesh, samples, balls, options, quality);
+  const std::vector<detail::BallDepth> depths = detail::depths_of(surface, balls.all);
+  detail::measure_reconstruction(surface, mesh, samples, balls, depths, options, quality);
   report_progress(progress, "quality: contacts", 0.5);
-  detail::measure_contacts(surface, balls, options, quality);
+  detail::measure_contacts(surface, balls.at_vertices(), depths, options, quality);
   report_progress(progress, "quality: economy", 0.8);
   quality.economy = detail::measure_economy(surface, mesh, options, quality.diagonal);
   quality.balls = mesh.size();

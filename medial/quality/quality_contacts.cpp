@@ -88,22 +88,19 @@ double off_centre(const Surface& surface, const Sphere& ball, const ClosestPoint
   return std::isfinite(second) ? std::abs(second - ball.radius) / ball.radius : -1;
 }
 
-void measure_contacts(const Surface& surface, const QualityBalls& balls, const QualityOptions& options,
-                      MedialQuality& quality) {
-  const std::size_t count = balls.vertices.size();
-  std::vector<ClosestPoint> first(count);
-  std::vector<double> radius_error(count);
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-    first[i] = surface.closest(balls.vertices[i].center);
-    radius_error[i] = std::abs(balls.vertices[i].radius - first[i].distance);
-  });
+void measure_contacts(const Surface& surface, std::span<const Sphere> balls, std::span<const BallDepth> depths,
+                      const QualityOptions& options, MedialQuality& quality) {
+  std::vector<double> radius_error;
+  radius_error.reserve(balls.size());
+  for (std::size_t i = 0; i < balls.size(); ++i)
+    radius_error.push_back(std::abs(balls[i].radius - depths[i].nearest.distance));
   quality.radius_error = spread_of(radius_error);
 
-  const std::size_t chosen = std::min<std::size_t>(count, options.contact_cells);
+  const std::size_t chosen = std::min<std::size_t>(balls.size(), options.contact_cells);
   std::vector<double> off(chosen, -1);
   tbb::parallel_for(std::size_t{0}, chosen, [&](std::size_t k) {
-    const std::size_t i = k * count / chosen;
-    off[k] = off_centre(surface, balls.vertices[i], first[i], options.contact_angle, quality.diagonal);
+    const std::size_t i = k * balls.size() / chosen;
+    off[k] = off_centre(surface, balls[i], depths[i].nearest, options.contact_angle, quality.diagonal);
   });
   std::erase(off, -1.0);
   quality.centredness = spread_of(off);

@@ -15,11 +15,11 @@ BallErrors ball_errors(const Surface& surface, std::span<const Sphere> balls, co
   if (options.contact_cells > 0) errors.centredness.resize(balls.size());
   tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t i) {
     const Sphere& ball = balls[i];
-    const detail::BallReach reach = detail::reach_of(surface, ball);
-    errors.radius_error[i] = std::abs(ball.radius - reach.nearest.distance) / diagonal;
-    errors.protrusion[i] = reach.beyond / diagonal;
+    const detail::BallDepth depth = detail::depth_of(surface, ball);
+    errors.radius_error[i] = std::abs(ball.radius - depth.nearest.distance) / diagonal;
+    errors.protrusion[i] = detail::reach_of(surface, ball, depth).beyond / diagonal;
     if (options.contact_cells > 0)
-      errors.centredness[i] = detail::off_centre(surface, ball, reach.nearest, options.contact_angle, diagonal);
+      errors.centredness[i] = detail::off_centre(surface, ball, depth.nearest, options.contact_angle, diagonal);
   });
   return errors;
 }
@@ -28,8 +28,9 @@ std::vector<double> ball_protrusions(const Surface& surface, std::span<const Sph
   if (!surface.solid()) throw InputError("balls are judged by a solid: the mesh must be closed and oriented");
   const double diagonal = surface.bounding_box().diagonal().norm();
   std::vector<double> protrusions(balls.size());
-  tbb::parallel_for(std::size_t{0}, balls.size(),
-                    [&](std::size_t i) { protrusions[i] = detail::reach_of(surface, balls[i]).beyond / diagonal; });
+  tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t i) {
+    protrusions[i] = detail::reach_of(surface, balls[i], detail::depth_of(surface, balls[i])).beyond / diagonal;
+  });
   return protrusions;
 }
 

@@ -19,9 +19,34 @@ std::vector<SurfaceSample> quality_samples(const Surface& surface, Index count, 
 
 // Balls at vertices, at the middles of edges and of triangles, evenly chosen.
 struct QualityBalls {
-  std::vector<Sphere> vertices, edges, triangles;
+  std::vector<Sphere> all;              // those at vertices first, then those of edges
+  std::size_t vertices = 0, edges = 0;  // how many these are
+
+  std::span<const Sphere> at_vertices() const { return std::span(all).first(vertices); }
 };
 QualityBalls quality_balls(const MedialMesh& mesh, Index max);
+
+// protruding_balls.cpp
+// How deep in the solid a ball's centre is.
+struct BallDepth {
+  double signed_distance = 0;  // negative inside
+  ClosestPoint nearest;        // of the surface
+  bool outside() const { return signed_distance > 0; }
+};
+BallDepth depth_of(const Surface& surface, const Sphere& ball);
+std::vector<BallDepth> depths_of(const Surface& surface, std::span<const Sphere> balls);
+// How far a ball reaches outside the solid, and where to: no farther than its radius and the signed distance of its
+// centre together.
+struct BallReach {
+  double beyond = 0;
+  Point farthest = Point::Zero();
+};
+BallReach reach_of(const Surface& surface, const Sphere& ball, const BallDepth& depth);
+// Of the places `known` and of where these balls protrude by more than `negligible`, the `count` worst: see worst_of().
+// Fast, since the far sides of few balls are looked at.
+std::vector<WorstPlace> worst_protrusions(const Surface& surface, std::span<const Sphere> balls,
+                                          std::span<const BallDepth> depths, std::vector<WorstPlace> known, Index count,
+                                          double apart, double negligible);
 
 Spread spread_of(std::span<const double> values);
 
@@ -41,16 +66,9 @@ struct SurfaceReach {
 // Fastest where samples follow each other over the surface.
 std::vector<SurfaceReach> reach_of(const Surface& surface, const Reconstruction& reconstruction,
                                    std::span<const SurfaceSample> samples, double diagonal);
-// How far a ball reaches outside the solid, where to, and whether its centre is outside.
-struct BallReach {
-  double beyond = 0;
-  Point farthest = Point::Zero();
-  bool outside = false;
-  ClosestPoint nearest;  // of the surface to the centre
-};
-BallReach reach_of(const Surface& surface, const Sphere& ball);
 void measure_reconstruction(const Surface& surface, const MedialMesh& mesh, std::span<const SurfaceSample> samples,
-                            const QualityBalls& balls, const QualityOptions& options, MedialQuality& quality);
+                            const QualityBalls& balls, std::span<const BallDepth> depths, const QualityOptions& options,
+                            MedialQuality& quality);
 // quality_coverage.cpp
 // The largest distance of the surface from the reconstruction; `known`: what samples found.
 MaxOverTriangles max_coverage(const Surface& surface, const Reconstruction& reconstruction, MaxOverTriangles known,
@@ -65,8 +83,8 @@ std::vector<WorstPlace> worst_of(std::vector<WorstPlace> places, Index count, do
 // surface's place nearest to the centre.
 double off_centre(const Surface& surface, const Sphere& ball, const ClosestPoint& first, double contact_angle,
                   double diagonal);
-void measure_contacts(const Surface& surface, const QualityBalls& balls, const QualityOptions& options,
-                      MedialQuality& quality);
+void measure_contacts(const Surface& surface, std::span<const Sphere> balls, std::span<const BallDepth> depths,
+                      const QualityOptions& options, MedialQuality& quality);
 // The distance from `center` to the part of the surface that is seen at `angle` or more from `direction` (unit), up to
 // one in a thousand; infinity where there is none. Fastest where it is `likely` or a little less.
 double second_contact_distance(const Surface& surface, const Point& center, const Vector& direction, double angle,

@@ -104,21 +104,10 @@ SurfaceReach reach_at(const Surface& surface, const Reconstruction& reconstructi
   return reach;
 }
 
-// Returns the fraction of centres outside; adds to `places` where balls protrude.
-double look_at(const Surface& surface, const std::vector<Sphere>& balls, std::vector<WorstPlace>& places) {
-  std::vector<BallReach> reaches(balls.size());
-  tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t i) { reaches[i] = reach_of(surface, balls[i]); });
-  std::size_t outside = 0;
-  for (std::size_t i = 0; i < balls.size(); ++i) {
-    outside += reaches[i].outside ? 1 : 0;
-    if (reaches[i].beyond > 0) {
-      places.push_back({.kind = WorstKind::protrusion,
-                        .value = reaches[i].beyond,
-                        .position = reaches[i].farthest,
-                        .ball = balls[i]});
-    }
-  }
-  return balls.empty() ? 0 : static_cast<double>(outside) / static_cast<double>(balls.size());
+double fraction_outside(std::span<const BallDepth> depths) {
+  if (depths.empty()) return 0;
+  const auto outside = std::count_if(depths.begin(), depths.end(), [](const BallDepth& d) { return d.outside(); });
+  return static_cast<double>(outside) / static_cast<double>(depths.size());
 }
 
 Vector outward_at(const Surface& surface, const Point& position) {
@@ -150,26 +139,9 @@ std::vector<SurfaceReach> reach_of(const Surface& surface, const Reconstruction&
   return reaches;
 }
 
-// The point of a ball beyond the ball's nearest surface point is the farthest outside wherever the surface is flat or
-// convex there; it is a point of the ball in any case, so what it gives is attained.
-BallReach reach_of(const Surface& surface, const Sphere& ball) {
-  BallReach reach{.beyond = 0, .farthest = ball.center, .outside = false, .nearest = {}};
-  const double depth = surface.signed_distance(ball.center, reach.nearest);
-  const ClosestPoint& nearest = reach.nearest;
-  reach.outside = depth > 0;
-  if (!(depth + ball.radius > 0)) return reach;  // distance is 1-Lipschitz: all of the ball is inside
-  if (!(nearest.distance > 0)) {
-    reach.beyond = std::max(0.0, ball.radius);
-    return reach;
-  }
-  const Vector outward = (depth > 0 ? 1.0 : -1.0) / nearest.distance * (ball.center - nearest.position);
-  reach.farthest = ball.center + ball.radius * outward;
-  reach.beyond = std::max(0.0, surface.signed_distance(reach.farthest));
-  return reach;
-}
-
 void measure_reconstruction(const Surface& surface, const MedialMesh& mesh, std::span<const SurfaceSample> samples,
-                            const QualityBalls& balls, const QualityOptions& options, MedialQuality& quality) {
+                            const QualityBalls& balls, std::span<const BallDepth> depths, const QualityOptions& options,
+                            MedialQuality& quality) {
   const Reconstruction reconstruction(mesh);
   const std::vector<SurfaceReach> reaches = reach_of(surface, reconstruction, samples, quality.diagonal);
   quality.coverage = spread_over(reaches, &SurfaceReach::uncovered);
@@ -196,12 +168,17 @@ void measure_reconstruction(const Surface& surface, const MedialMesh& mesh, std:
   }
   quality.coverage.max = open.max;
   quality.coverage_upper = open.upper;
-  quality.outside_vertices = look_at(surface, balls.vertices, protruding);
-  quality.outside_edges = look_at(surface, balls.edges, protruding);
-  quality.outside_triangles = look_at(surface, balls.triangles, protruding);
-  for (const WorstPlace& place : protruding) quality.protrusion.max = std::max(quality.protrusion.max, place.value);
-  const SearchedMax beyond =
-      max_protrusion(surface, mesh, quality.protrusion.max, kProtrusionAccuracy * quality.diagonal, options.search);
+  quality.outside_vertices = fraction_outside(depths.first(balls.vertices));
+  quality.outside_edges = fraction_outside(depths.subspan(balls.vertices, balls.edges));
+  const std::span<const BallDepth> of_triangles = depths.subspan(balls.vertices + balls.edges);
+  quality.outside_triangles = fraction_outside(of_triangles);
+  const double apart = options.places_apart * quality.diagonal;
+  const auto worst_protruding = [&](Index count) {
+    return worst_protrusions(surface, balls.all, depths, protruding, count, apart, negligible);
+  };
+  for (const WorstPlace& place : worst_protruding(1)) quality.protrusion.max = place.value;
+  const SearchedMax beyond = max_protrusion(surface, mesh, of_triangles, quality.protrusion.max,
+                                            kProtrusionAccuracy * quality.diagonal, options.search);
   if (beyond.max > std::max(negligible, quality.protrusion.max)) {
     protruding.push_back({WorstKind::protrusion, beyond.max, beyond.place, Vector::Zero(), beyond.ball});
     quality.protrusion.max = beyond.max;
@@ -218,8 +195,7 @@ void measure_reconstruction(const Surface& surface, const MedialMesh& mesh, std:
   quality.hausdorff.max = std::max(quality.hausdorff.max, dent.max);
   quality.dent_upper = dent.upper;
 
-  const double apart = options.places_apart * quality.diagonal;
-  quality.worst = worst_of(std::move(protruding), options.worst_places, apart);
+  quality.worst = worst_protruding(options.worst_places);
   for (WorstPlace& place : quality.worst) place.outward = outward_at(surface, place.position);
   const auto max_open = worst_of(std::move(uncovered), options.worst_places, apart);
   quality.worst.insert(quality.worst.end(), max_open.begin(), max_open.end());

@@ -21,12 +21,13 @@ Spread spread_among(std::span<const SurfaceReach> reaches, double SurfaceReach::
   return spread_of(values);
 }
 
-double max_protrusion_at(const Surface& surface, const QualityBalls& balls) {
-  double max = 0;
-  for (const auto* at : {&balls.vertices, &balls.edges, &balls.triangles}) {
-    for (const Sphere& ball : *at) max = std::max(max, reach_of(surface, ball).beyond);
+// No less than `known`.
+double max_protrusion_at(const Surface& surface, const QualityBalls& balls, double known) {
+  for (const Sphere& ball : balls.all) {
+    const BallDepth depth = depth_of(surface, ball);
+    if (depth.signed_distance + ball.radius > known) known = std::max(known, reach_of(surface, ball, depth).beyond);
   }
-  return max;
+  return known;
 }
 
 // What is searched for. Where an error is asked for, less does not matter: that it is less is soon proved, by how much
@@ -60,7 +61,7 @@ void measure_two_sided(const Surface& surface, const MedialMesh& mesh, std::span
   const MaxOverTriangles open =
       max_coverage(surface, reconstruction, {.max = uncovered.max, .upper = 0, .place = Point::Zero()}, diagonal);
   Spread beyond = spread_among(reaches, &SurfaceReach::beyond);
-  beyond.max = std::max(beyond.max, max_protrusion_at(surface, quality_balls(mesh, QualityOptions{}.cells)));
+  beyond.max = max_protrusion_at(surface, quality_balls(mesh, QualityOptions{}.cells), beyond.max);
   double max = std::max({to.max, from.max, beyond.max, open.upper});
   // Searches take longest; only what is more than all that is known is searched for.
   const std::vector<Dent> dents =
@@ -68,7 +69,7 @@ void measure_two_sided(const Surface& surface, const MedialMesh& mesh, std::span
   if (!dents.empty()) max = dents.front().depth;
   const Searched searched(options, diagonal);
   const SearchedMax ball =
-      max_protrusion(surface, mesh, searched.above(max), searched.accuracy(kBallAccuracy), options.search);
+      max_protrusion(surface, mesh, {}, searched.above(max), searched.accuracy(kBallAccuracy), options.search);
   if (ball.max > searched.above(max)) max = beyond.max = ball.max;
   const SearchedMax dent =
       max_dent(surface, reconstruction, searched.above(max), searched.accuracy(kHollowAccuracy), options.search);
