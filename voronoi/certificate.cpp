@@ -200,8 +200,10 @@ class Certifier {
           if (u > v || !is_new(u)) edges.push_back({.v = v, .u = u, .slot = slot});
         }
       note_convex(workspace_, edges);
+      std::erase_if(edges, [](const HullEdge& edge) { return edge.convex; });
+      walk_to_doubt(workspace_, edges);
       return std::all_of(edges.begin(), edges.end(), [&part](const HullEdge& edge) {
-        return edge.convex || part.is_hull_convex(edge.v, edge.slot, edge.doubtful) || part.doubt(edge.v, edge.u);
+        return part.is_hull_convex(edge.v, edge.slot, edge.doubtful) || part.doubt(edge.v, edge.u);
       });
     });
   }

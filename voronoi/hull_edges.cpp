@@ -30,6 +30,11 @@ class FacetPlane {
   Vector normal_, magnitude_;  // and what its roundings are relative to
 };
 
+FacetPlane plane_of(const Workspace& workspace, Index v) {
+  const auto& corner = workspace.vertices[v].forming_points;
+  return {workspace.points[corner[0]], workspace.points[corner[1]], workspace.points[corner[2]]};
+}
+
 struct Walk {
   FacetPlane plane;
   HullPlace place;
@@ -39,19 +44,23 @@ struct Walk {
 }  // namespace
 
 void note_convex(const Workspace& workspace, std::span<HullEdge> edges) {
+  for (const HullEdge& edge : edges) __builtin_prefetch(&workspace.vertices[edge.u]);
+  for (HullEdge& edge : edges) {
+    const VoronoiVertex& next = workspace.vertices[edge.u];
+    const Index across = next.forming_points[index_of(next.neighbors, edge.v)];
+    edge.convex = plane_of(workspace, edge.v).is_certainly_above(workspace.points[across]);
+  }
+}
+
+void walk_to_doubt(const Workspace& workspace, std::span<HullEdge> edges) {
   const auto begin = [&workspace](HullEdge& edge) {
-    const VoronoiVertex& vertex = workspace.vertices[edge.v];
-    const auto corner = [&](unsigned i) -> const Point& { return workspace.points[vertex.forming_points[i]]; };
-    return Walk{{corner(0), corner(1), corner(2)}, HullPlace::first(vertex, edge.v, edge.slot), &edge};
+    return Walk{plane_of(workspace, edge.v), HullPlace::first(workspace.vertices[edge.v], edge.v, edge.slot), &edge};
   };
   // False at the end of the walk.
   const auto step = [&workspace](Walk& walk) {
     HullPlace& place = walk.place;
     const VoronoiVertex& vertex = workspace.vertices[place.at];
-    if (vertex.forming_points[3] == kInfinitePoint) {
-      walk.edge->convex = true;
-      return false;
-    }
+    if (vertex.forming_points[3] == kInfinitePoint) return false;
     const Index across = vertex.forming_points[index_of(vertex.neighbors, place.from)];
     if (!walk.plane.is_certainly_above(workspace.points[across])) {
       walk.edge->doubtful = place;

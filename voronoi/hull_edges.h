@@ -20,11 +20,14 @@ struct HullEdge {
   Index v, u;
   unsigned slot;
   bool convex = false;
-  HullPlace doubtful{};  // where the first point is that is not below the facet of v beyond doubt, if it is not convex
+  HullPlace doubtful{};
 };
 
-// Notes which edges are convex beyond doubt: around the edge, from the facet of v to that of its neighbour, doubles
-// show that all points are below the facet of v. The vertices, oriented positively, turn by less than 180 degrees then.
+// Notes which edges are convex beyond doubt: doubles show that the neighbour's third point is below the facet of v.
 void note_convex(const Workspace& workspace, std::span<HullEdge> edges);
+
+// Of edges that are not: notes around the edge, from the facet of v to that of its neighbour, where the first point is
+// that is not below the facet of v beyond doubt.
+void walk_to_doubt(const Workspace& workspace, std::span<HullEdge> edges);
 
 }  // namespace orchard::detail
