@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "cavity.h"
+#include "four_tetrahedra.h"
 #include "hull_edges.h"
 #include "line_sum.h"
 #include "orchard/geometry/tolerance.h"
@@ -64,6 +65,44 @@ struct Facet {
   Index v, u;
   unsigned slot;
   Index across;
+};
+
+// What is seen of a finite vertex before anything follows from it: its orientation, and how far the sphere that it was
+// given is from its own, at most, with its own centre, relative to its first point, where that had to be found.
+struct Look {
+  Determinant negative;  // of six times its volume, the other way around
+  double apart = 0;
+  bool has_center = false;
+  Vector center;
+};
+
+// Vertices of a batch, listed without branches.
+class BatchList {
+ public:
+  std::span<const Index> items() const { return {items_.data(), count_}; }
+  void clear() { count_ = 0; }
+  void push_if(Index v, bool condition) {
+    items_[count_] = v;
+    count_ += condition;
+  }
+  template <class Keep>
+  void keep_if(const Keep& keep) {
+    const std::size_t before = std::exchange(count_, 0);
+    for (std::size_t i = 0; i < before; ++i) push_if(items_[i], keep(items_[i]));
+  }
+  // The last one again for those that the last four lack.
+  template <class Take>
+  void for_each_four(const Take& take) const {
+    for (std::size_t first = 0; first < count_; first += 4) {
+      std::array<Index, 4> four;
+      for (std::size_t lane = 0; lane < 4; ++lane) four[lane] = items_[std::min(first + lane, count_ - 1)];
+      take(four);
+    }
+  }
+
+ private:
+  std::array<Index, kBatch + 1> items_;
+  std::size_t count_ = 0;
 };
 
 // What the facet of three points takes off, where that is more than its share.
@@ -172,10 +211,15 @@ class Certifier {
   }
   bool look_at_each_oriented() {
     const auto count = static_cast<Index>(workspace_.vertices.size());
-    return look_in_blocks(count, kBlock, [&](Certifier& part, Index v) {
-      for (const Index point : workspace_.vertices[std::min(v + kAhead, count - 1)].forming_points)
-        __builtin_prefetch(workspace_.points.data() + point);
-      return workspace_.is_free(v) || !is_new(v) || part.is_oriented(v);
+    return look_in_blocks((count + kBatch - 1) / kBatch, kBlock / kBatch, [&](Certifier& part, Index batch) {
+      const Index begin = batch * kBatch, end = std::min(count, begin + kBatch);
+      for (Index v = end; v < std::min(count, end + kBatch); ++v)
+        for (const Index point : workspace_.vertices[v].forming_points)
+          __builtin_prefetch(workspace_.points.data() + point);
+      if (first_new_ == 0 && can_take_four()) return part.are_all_oriented(begin, end);
+      for (Index v = begin; v < end; ++v)
+        if (!workspace_.is_free(v) && is_new(v) && !part.is_oriented(v)) return false;
+      return true;
     });
   }
   // Those of the hull aside.
@@ -288,24 +332,34 @@ class Certifier {
 
   // And whether the sphere that it was given is its own, nearly. What doubles could not place well is placed anew, and
   // so is what was given a neighbour's sphere and is too far from it.
-  bool is_oriented(Index v) {
-    const Point &p0 = corner(v, 0), &p1 = corner(v, 1), &p2 = corner(v, 2);
-    if (workspace_.at_infinity(v)) {
-      found_.hull.push_back(v);
-      return is_triangle(p0, p1, p2);
-    }
-    const Point& p3 = corner(v, 3);
-    const Determinant det = six_volumes(v);
+  bool is_oriented(Index v) { return workspace_.at_infinity(v) ? is_hull_facet(v) : is_oriented(v, look(v)); }
+  bool is_hull_facet(Index v) {
+    found_.hull.push_back(v);
+    return is_triangle(corner(v, 0), corner(v, 1), corner(v, 2));
+  }
+  Look look(Index v) {
+    Look seen;
+    seen.negative = six_volumes(v);
+    if (seen.negative.sign() == Sign::positive) return seen;
+    workspace_.settle(v);
+    seen.apart = from_told_sphere(v);
+    if (has_to_be_seen(v, seen)) seen.apart = std::min(seen.apart, from_seen_sphere(v, seen.negative));
+    if (seen.apart > kTold * max_) seen.has_center = own_center(v, seen.center);
+    return seen;
+  }
+  bool has_to_be_seen(Index v, const Look& seen) const {
+    return seen.apart > kTold * max_ && !workspace_.shares_sphere(v);
+  }
+  bool is_oriented(Index v, const Look& seen) {
+    const auto& [det, told, has_center, center] = seen;
     if (det.sign() == Sign::positive ||
-        (det.sign() == Sign::uncertain && volume_sign(p3, p0, p1, p2) != Sign::negative))
+        (det.sign() == Sign::uncertain &&
+         volume_sign(corner(v, 3), corner(v, 0), corner(v, 1), corner(v, 2)) != Sign::negative))
       return false;
     note_volume(v, det.value);
-    workspace_.settle(v);
-    double apart = from_told_sphere(v);
-    if (apart > kTold * max_ && !workspace_.shares_sphere(v)) apart = std::min(apart, from_seen_sphere(v, det));
+    double apart = told;
     if (apart > kTold * max_) {
-      Vector center;
-      if (!own_center(v, center)) return false;
+      if (!has_center) return false;
       const bool shared = workspace_.shares_sphere(v);
       apart = from_sphere(v, center);
       if (apart > (shared ? kGiven : kTold) * max_) {
@@ -318,6 +372,72 @@ class Certifier {
     if (apart > small_share_ && workspace_.shares_sphere(v)) found_.lossy.push_back(v);
     found_.given = std::max(found_.given, apart);
     return apart <= kGiven * max_;
+  }
+
+  // The same of some vertices, where all are new, with the same bits. Each is a long chain of sums with branches as
+  // good as random at its ends: so what has to be found is listed first, then found for four at once.
+  bool are_all_oriented(Index begin, Index end) {
+    std::array<Look, kBatch> seen;
+    BatchList list;
+    for (Index v = begin; v < end; ++v) list.push_if(v, !workspace_.is_free(v) & !workspace_.at_infinity(v));
+    look_at_four(list, begin, seen);
+    list.keep_if([&](Index v) {
+      const Look& look = seen[v - begin];
+      return (look.negative.sign() == Sign::negative) & has_to_be_seen(v, look);
+    });
+    see_four_spheres(list, begin, seen);
+    for (Index v = begin; v < end; ++v) list.push_if(v, seen[v - begin].apart > kTold * max_);
+    find_four_centers(list, begin, seen);
+    for (Index v = begin; v < end; ++v) {
+      if (workspace_.is_free(v)) continue;
+      if (!(workspace_.at_infinity(v) ? is_hull_facet(v) : is_oriented(v, seen[v - begin]))) return false;
+    }
+    return true;
+  }
+  FourTetrahedra tetrahedra(const std::array<Index, 4>& four) const {
+    FourTetrahedra corners;
+    for (unsigned i = 0; i < 4; ++i)
+      for (unsigned lane = 0; lane < 4; ++lane) corners[i][lane] = &corner(four[lane], i);
+    return corners;
+  }
+  void look_at_four(const BatchList& list, Index begin, std::array<Look, kBatch>& seen) {
+    list.for_each_four([&](const std::array<Index, 4>& four) {
+      const FourDeterminants volumes = four_volumes(tetrahedra(four));
+      for (unsigned lane = 0; lane < 4; ++lane) seen[four[lane] - begin].negative = volumes[lane];
+    });
+    for (const Index v : list.items()) {
+      workspace_.settle(v);
+      seen[v - begin].apart = from_told_sphere(v);
+    }
+  }
+  void see_four_spheres(BatchList& list, Index begin, std::array<Look, kBatch>& seen) {
+    list.for_each_four([&](const std::array<Index, 4>& four) {
+      FourCenters centers;
+      for (unsigned lane = 0; lane < 4; ++lane) {
+        centers.center[lane] = &workspace_.vertices[four[lane]].center;
+        centers.enough[lane] = kTold * max_ / apart_per_off(four[lane]);
+      }
+      const std::array<double, 4> off = off_four_circumcenters(centers, tetrahedra(four));
+      for (unsigned lane = 0; lane < 4; ++lane) {
+        double& apart = seen[four[lane] - begin].apart;
+        apart = std::min(apart, apart_by(four[lane], off[lane]));
+      }
+    });
+    list.clear();
+  }
+  void find_four_centers(const BatchList& list, Index begin, std::array<Look, kBatch>& seen) {
+    list.for_each_four([&](const std::array<Index, 4>& four) {
+      std::array<Vector, 4> centers;
+      const unsigned found = four_sharp_circumcenters(tetrahedra(four), centers);
+      for (unsigned lane = 0; lane < 4; ++lane) {
+        Look& look = seen[four[lane] - begin];
+        look.has_center = ((found >> lane) & 1u) != 0;
+        if (look.has_center)
+          look.center = centers[lane];
+        else
+          look.has_center = own_center(four[lane], look.center);
+      }
+    });
   }
 
   // Whether three points are not on one line.
@@ -347,15 +467,20 @@ class Certifier {
   // The same by how far its forming points are off its sphere: often a much better bound, which is noted then. The
   // determinant is six_volumes(v).
   double from_seen_sphere(Index v, const Determinant& det) {
-    const VoronoiVertex& vertex = workspace_.vertices[v];
-    const double radius = std::sqrt(vertex.radius);
-    // As below, the radius of the own sphere being three quarters of this at least.
-    const double times = 4 * std::min(2.0, diameter_ / (0.75 * radius));
-    const double off = off_circumcenter(vertex.center, corner(v, 3), corner(v, 0), corner(v, 1), corner(v, 2), det,
-                                        kTold * max_ / times);
-    if (!(off <= radius / 8)) return diameter_;
-    if (off * times <= kTold * max_) workspace_.note_own_center(v, off);
-    return off * times;
+    const double off = off_circumcenter(workspace_.vertices[v].center, corner(v, 3), corner(v, 0), corner(v, 1),
+                                        corner(v, 2), det, kTold * max_ / apart_per_off(v));
+    return apart_by(v, off);
+  }
+  // As in from_sphere(), the radius of the own sphere being three quarters of this at least.
+  double apart_per_off(Index v) const {
+    return 4 * std::min(2.0, diameter_ / (0.75 * std::sqrt(workspace_.vertices[v].radius)));
+  }
+  // By how far the centre is off, at most.
+  double apart_by(Index v, double off) {
+    if (!(off <= std::sqrt(workspace_.vertices[v].radius) / 8)) return diameter_;
+    const double apart = off * apart_per_off(v);
+    if (apart <= kTold * max_) workspace_.note_own_center(v, off);
+    return apart;
   }
   bool own_center(Index v, Vector& center) const {
     return sharp_circumcenter(corner(v, 0), corner(v, 1), corner(v, 2), corner(v, 3), center);
