@@ -355,25 +355,27 @@ bool Cavity::link_many() {
   return open == 0;
 }
 
+// Without branches: on grids nearly every point comes here.
 bool Cavity::is_ball() {
+  bool loses_point = false;
   for (Index v : deleted_.items())
     for (Index point : workspace_.vertices[v].forming_points)
-      if (known_local(point) == kNone && point != new_point_) return false;
+      loses_point |= (known_local(point) == kNone) & (point != new_point_);
+  if (loses_point) return false;
   // Two facets on each edge and the right number of facets for one sphere: several pieces, or a piece with a handle,
   // would have to touch themselves in points to get there, so one piece is a sphere that does not.
   reached_.assign(facets_.size(), false);
   reached_[0] = true;
-  stack_.assign(1, 0);
-  std::size_t count = 0;
-  while (!stack_.empty()) {
-    const Index f = stack_.back();
-    stack_.pop_back();
-    ++count;
+  queue_.resize(facets_.size() + 1);
+  queue_[0] = 0;
+  std::size_t count = 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Index f = queue_[i];
     for (const std::uint8_t k : kOthers[facets_[f].slot]) {
       const Index next = fresh_[f].neighbors[k];
-      if (reached_[next]) continue;
+      queue_[count] = next;
+      count += 1u - reached_[next];
       reached_[next] = true;
-      stack_.push_back(next);
     }
   }
   return count == facets_.size();

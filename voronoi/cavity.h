@@ -164,7 +164,7 @@ class Cavity {
   List deleted_, seen_, boundary_;  // boundary: 4 * deleted vertex + the neighbour across
   bool is_boundary_noted_ = false;  // by delete_nearer(), and nothing was deleted since
   List local_points_;               // the points of the boundary, the one at infinity included
-  std::vector<Index> slots_, stack_;
+  std::vector<Index> slots_, queue_;
   std::vector<Facet> facets_;
   std::vector<VoronoiVertex> fresh_;      // of each facet; its new neighbours are facets until replace()
   std::vector<std::uint8_t> reached_;     // by facet

@@ -559,6 +559,7 @@ class Certifier {
   // Across the facet between v and its neighbour i, u.
   bool do_spheres_agree(Index v, unsigned i, Index u) {
     workspace_.settle(u);
+    if (!workspace_.exact() && is_same_sphere(v, u)) return true;  // as on grids most are: nothing is lost
     const Point& across = corner(u, slot_of(u, v));
     const bool own = !workspace_.shares_sphere(v) && !workspace_.shares_sphere(u);
     if (own && (workspace_.power(v, across) < -workspace_.power_bound(v) ||
@@ -581,6 +582,8 @@ class Certifier {
     note_loss(lost, v, i);
     return true;
   }
+
+  bool is_same_sphere(Index v, Index u) const { return workspace_.vertices[v].center == workspace_.vertices[u].center; }
 
   // The unit normal of a facet, and by what angle it may be off.
   static double normal(const Point& a, const Point& b, const Point& c, Vector& result) {
@@ -605,8 +608,8 @@ class Certifier {
   double intrusion_added(Index v, Index u, const Point& origin, const Vector& normal, double blur, const Vector& up,
                          double height) const {
     const VoronoiVertex &from = workspace_.vertices[v], &to = workspace_.vertices[u];
+    if (is_same_sphere(v, u)) return 0;
     const Vector step = to.center - from.center;
-    if (step == Vector::Zero()) return 0;
     const double radius = std::sqrt(from.radius), reach = std::min(2 * radius, diameter_);
     const double along = normal.dot(step), above = up.dot(step), length = step.norm();
     const double sideways = (step - along * normal - above * up).norm() + (2 * blur + 8 * kRounding) * length;
