@@ -12,7 +12,6 @@
 
 #include "cavity.h"
 #include "four_tetrahedra.h"
-#include "hull_edges.h"
 #include "line_sum.h"
 #include "orchard/geometry/tolerance.h"
 #include "parallel_insertion.h"
@@ -65,6 +64,12 @@ struct Facet {
   Index v, u;
   unsigned slot;
   Index across;
+};
+
+// The edge of the hull between the facets of a vertex at infinity and of its neighbour `slot`.
+struct HullEdge {
+  Index v, u;
+  unsigned slot;
 };
 
 // What is seen of a finite vertex before anything follows from it: its orientation, and how far the sphere that it was
@@ -174,7 +179,7 @@ class Certifier {
     if (!look_at_all()) return {};
     if (found_.intrusion > max_sum_ && (!look_closer() || found_.intrusion > max_sum_)) return {};
     if (mended_) find_fattest();
-    if (found_.fattest != kNone && !covers_once()) return {};
+    if (found_.fattest == kNone ? !found_.hull.empty() : !covers_once()) return {};
     if (!are_suspects_innocent()) return {};
     return {true, 2 * (found_.intrusion + found_.given) / diameter_};
   }
@@ -237,17 +242,18 @@ class Certifier {
   bool look_at_edges(const std::vector<Index>& hull) {
     const auto count = static_cast<Index>(hull.size());
     return look_in_blocks((count + kBatch - 1) / kBatch, kHullBlock / kBatch, [&](Certifier& part, Index batch) {
-      std::vector<HullEdge> edges;
+      // Listed first, so that the vertices across are in the cache when they are asked for.
+      std::array<HullEdge, std::size_t{3} * kBatch> edges;
+      std::size_t listed = 0;
       for (Index i = batch * kBatch; i < std::min(count, (batch + 1) * kBatch); ++i)
         for (unsigned slot = 0; slot < 3; ++slot) {
           const Index v = hull[i], u = workspace_.vertices[v].neighbors[slot];
-          if (u > v || !is_new(u)) edges.push_back({.v = v, .u = u, .slot = slot});
+          __builtin_prefetch(workspace_.vertices.data() + u);
+          edges[listed] = {v, u, slot};
+          listed += (u > v) | !is_new(u);
         }
-      note_convex(workspace_, edges);
-      std::erase_if(edges, [](const HullEdge& edge) { return edge.convex; });
-      walk_to_doubt(workspace_, edges);
-      return std::all_of(edges.begin(), edges.end(), [&part](const HullEdge& edge) {
-        return part.is_hull_convex(edge.v, edge.slot, edge.doubtful) || part.doubt(edge.v, edge.u);
+      return std::all_of(edges.begin(), edges.begin() + listed, [&part](const HullEdge& edge) {
+        return part.is_hull_convex(edge.v, edge.slot) || part.doubt(edge.v, edge.u);
       });
     });
   }
@@ -501,10 +507,7 @@ class Certifier {
     return true;
   }
   bool is_facet_good(Index v, unsigned i, Index u) {
-    const VoronoiVertex& vertex = workspace_.vertices[v];
-    return (workspace_.at_infinity(v) ? is_hull_convex(v, i, HullPlace::first(vertex, v, i))
-                                      : do_spheres_agree(v, i, u)) ||
-           doubt(v, u);
+    return (workspace_.at_infinity(v) ? is_hull_convex(v, i) : do_spheres_agree(v, i, u)) || doubt(v, u);
   }
 
   // The same facets of some vertices, those of the hull aside, where all are new. Waiting for memory and mispredicted
@@ -619,29 +622,16 @@ class Certifier {
            radius;
   }
 
-  // At the edge of the hull between the facets of v and its neighbour i: around the edge, from the one to the other,
-  // all points must be below the facet of v. The first one that is not, by a rounding, must be opposite to the facet,
-  // and so must be all that follow, or else the vertices there go around the edge more than once. What is before the
-  // place is below the facet.
-  bool is_hull_convex(Index v, unsigned i, HullPlace place) {
-    const unsigned j = (i + 1) % 3, k = (i + 2) % 3;
-    const Point &b = corner(v, j), &c = corner(v, k);
-    bool flat = false;
-    while (!workspace_.at_infinity(place.at)) {
-      const VoronoiVertex& vertex = workspace_.vertices[place.at];
-      const std::size_t apex = index_of(vertex.neighbors, place.from);
-      const Point& p = workspace_.points[vertex.forming_points[apex]];
-      const Sign below = volume_sign(p, corner(v, 0), corner(v, 1), corner(v, 2));
-      if (below == Sign::positive) {
-        if (flat) return false;
-      } else {
-        flat = true;
-        if (same_side_of_line(b, c, corner(v, i), p) != Sign::negative) return false;
-        if (below == Sign::negative && (workspace_.exact() || !is_dent_shallow(v, i, p, b, c))) return false;
-      }
-      place = {vertex.neighbors[index_of(vertex.forming_points, place.behind)], place.at, vertex.forming_points[apex]};
-    }
-    return true;
+  // At the edge of the hull between the facets of v and its neighbour i: this one's third point must be below the facet
+  // of v, or, by a rounding, not, but opposite to it.
+  bool is_hull_convex(Index v, unsigned i) {
+    const Point &b = corner(v, (i + 1) % 3), &c = corner(v, (i + 2) % 3);
+    const Index u = workspace_.vertices[v].neighbors[i];
+    const Point& p = corner(u, slot_of(u, v));
+    const Sign below = volume_sign(p, corner(v, 0), corner(v, 1), corner(v, 2));
+    if (below == Sign::positive) return true;
+    if (same_side_of_line(b, c, corner(v, i), p) != Sign::negative) return false;
+    return below == Sign::uncertain || (!workspace_.exact() && is_dent_shallow(v, i, p, b, c));
   }
 
   // Where p is above the facet of v, beyond the edge from b to c: the hull's other points may be above the facet by as
