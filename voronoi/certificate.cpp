@@ -46,9 +46,10 @@ constexpr std::size_t kMaxSuspects = 512, kOfDent = 4;
 constexpr Index kBlock = 1u << 14, kHullBlock = 1u << 10;
 constexpr std::size_t kWorthThreads = 2;
 
-// How many vertices ahead of the one that is looked at points are fetched into the cache, and the vertices whose facets
-// are looked at together.
-constexpr Index kAhead = 8, kBatch = 64;
+// Vertices that are looked at together, while the points of the next ones are fetched into the cache; where there are
+// no more points than that, they all are there.
+constexpr Index kBatch = 64;
+constexpr std::size_t kCached = 1u << 13;
 
 // Of mending and looking at what is new.
 constexpr int kRounds = 24;
@@ -76,7 +77,7 @@ struct HullEdge {
 // given is from its own, at most, with its own centre, relative to its first point, where that had to be found.
 struct Look {
   Determinant negative;  // of six times its volume, the other way around
-  double apart = 0;
+  double radius = 0, apart = 0;
   bool has_center = false;
   Vector center;
 };
@@ -218,9 +219,10 @@ class Certifier {
     const auto count = static_cast<Index>(workspace_.vertices.size());
     return look_in_blocks((count + kBatch - 1) / kBatch, kBlock / kBatch, [&](Certifier& part, Index batch) {
       const Index begin = batch * kBatch, end = std::min(count, begin + kBatch);
-      for (Index v = end; v < std::min(count, end + kBatch); ++v)
-        for (const Index point : workspace_.vertices[v].forming_points)
-          __builtin_prefetch(workspace_.points.data() + point);
+      if (workspace_.points.size() > kCached)
+        for (Index v = end; v < std::min(count, end + kBatch); ++v)
+          for (const Index point : workspace_.vertices[v].forming_points)
+            __builtin_prefetch(workspace_.points.data() + point);
       if (first_new_ == 0 && can_take_four()) return part.are_all_oriented(begin, end);
       for (Index v = begin; v < end; ++v)
         if (!workspace_.is_free(v) && is_new(v) && !part.is_oriented(v)) return false;
@@ -357,15 +359,16 @@ class Certifier {
     return seen.apart > kTold * max_ && !workspace_.shares_sphere(v);
   }
   bool is_oriented(Index v, const Look& seen) {
-    const auto& [det, told, has_center, center] = seen;
+    const Determinant& det = seen.negative;
     if (det.sign() == Sign::positive ||
         (det.sign() == Sign::uncertain &&
          volume_sign(corner(v, 3), corner(v, 0), corner(v, 1), corner(v, 2)) != Sign::negative))
       return false;
     note_volume(v, det.value);
-    double apart = told;
+    double apart = seen.apart;
     if (apart > kTold * max_) {
-      if (!has_center) return false;
+      if (!seen.has_center) return false;
+      const Vector& center = seen.center;
       const bool shared = workspace_.shares_sphere(v);
       apart = from_sphere(v, center);
       if (apart > (shared ? kGiven : kTold) * max_) {
@@ -413,20 +416,24 @@ class Certifier {
     });
     for (const Index v : list.items()) {
       workspace_.settle(v);
-      seen[v - begin].apart = from_told_sphere(v);
+      Look& look = seen[v - begin];
+      look.radius = std::sqrt(workspace_.vertices[v].radius);
+      look.apart = from_told_sphere(v, look.radius);
     }
   }
   void see_four_spheres(BatchList& list, Index begin, std::array<Look, kBatch>& seen) {
     list.for_each_four([&](const std::array<Index, 4>& four) {
       FourCenters centers;
+      std::array<double, 4> per_off;
       for (unsigned lane = 0; lane < 4; ++lane) {
+        per_off[lane] = apart_per_off(seen[four[lane] - begin].radius);
         centers.center[lane] = &workspace_.vertices[four[lane]].center;
-        centers.enough[lane] = kTold * max_ / apart_per_off(four[lane]);
+        centers.enough[lane] = kTold * max_ / per_off[lane];
       }
       const std::array<double, 4> off = off_four_circumcenters(centers, tetrahedra(four));
       for (unsigned lane = 0; lane < 4; ++lane) {
-        double& apart = seen[four[lane] - begin].apart;
-        apart = std::min(apart, apart_by(four[lane], off[lane]));
+        Look& look = seen[four[lane] - begin];
+        look.apart = std::min(look.apart, apart_by(four[lane], off[lane], look.radius, per_off[lane]));
       }
     });
     list.clear();
@@ -465,26 +472,27 @@ class Certifier {
     return own_center(v, center) ? from_sphere(v, center) : diameter_;
   }
   // The same as far as its error bound tells.
-  double from_told_sphere(Index v) const {
+  double from_told_sphere(Index v) const { return from_told_sphere(v, std::sqrt(workspace_.vertices[v].radius)); }
+  double from_told_sphere(Index v, double radius) const {
     if (workspace_.exact()) return 0;
     if (workspace_.shares_sphere(v)) return diameter_;
-    return workspace_.power_bound(v) / std::sqrt(workspace_.vertices[v].radius);
+    return workspace_.power_bound(v) / radius;
   }
   // The same by how far its forming points are off its sphere: often a much better bound, which is noted then. The
   // determinant is six_volumes(v).
   double from_seen_sphere(Index v, const Determinant& det) {
-    const double off = off_circumcenter(workspace_.vertices[v].center, corner(v, 3), corner(v, 0), corner(v, 1),
-                                        corner(v, 2), det, kTold * max_ / apart_per_off(v));
-    return apart_by(v, off);
+    const double radius = std::sqrt(workspace_.vertices[v].radius), per_off = apart_per_off(radius);
+    return apart_by(v,
+                    off_circumcenter(workspace_.vertices[v].center, corner(v, 3), corner(v, 0), corner(v, 1),
+                                     corner(v, 2), det, kTold * max_ / per_off),
+                    radius, per_off);
   }
   // As in from_sphere(), the radius of the own sphere being three quarters of this at least.
-  double apart_per_off(Index v) const {
-    return 4 * std::min(2.0, diameter_ / (0.75 * std::sqrt(workspace_.vertices[v].radius)));
-  }
+  double apart_per_off(double radius) const { return 4 * std::min(2.0, diameter_ / (0.75 * radius)); }
   // By how far the centre is off, at most.
-  double apart_by(Index v, double off) {
-    if (!(off <= std::sqrt(workspace_.vertices[v].radius) / 8)) return diameter_;
-    const double apart = off * apart_per_off(v);
+  double apart_by(Index v, double off, double radius, double per_off) {
+    if (!(off <= radius / 8)) return diameter_;
+    const double apart = off * per_off;
     if (apart <= kTold * max_) workspace_.note_own_center(v, off);
     return apart;
   }
