@@ -723,9 +723,8 @@ class Certifier {
   }
 
   // Whether a point in the fattest of the tetrahedra looked at is in no other, and below all facets of the hull. All
-  // tetrahedra being oriented positively, there are then nowhere two on top of each other. And the hull, convex at
-  // every edge, does not go around a vertex twice: a ray from the point leaves the tetrahedra at every facet of the
-  // hull that it meets, and it starts in one of them only, so that it meets one facet.
+  // tetrahedra being oriented positively, there are then nowhere two on top of each other, and the hull goes around
+  // them once (see certify()).
   bool covers_once() const {
     const std::array<Point, 4> inner{corner(found_.fattest, 0), corner(found_.fattest, 1), corner(found_.fattest, 2),
                                      corner(found_.fattest, 3)};
