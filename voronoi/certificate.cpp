@@ -389,7 +389,7 @@ class Certifier {
     std::array<Look, kBatch> seen;
     BatchList list;
     for (Index v = begin; v < end; ++v) list.push_if(v, !workspace_.is_free(v) & !workspace_.at_infinity(v));
-    look_at_four(list, begin, seen);
+    look_at_each(list, begin, seen);
     list.keep_if([&](Index v) {
       const Look& look = seen[v - begin];
       return (look.negative.sign() == Sign::negative) & has_to_be_seen(v, look);
@@ -409,14 +409,11 @@ class Certifier {
       for (unsigned lane = 0; lane < 4; ++lane) corners[i][lane] = &corner(four[lane], i);
     return corners;
   }
-  void look_at_four(const BatchList& list, Index begin, std::array<Look, kBatch>& seen) {
-    list.for_each_four([&](const std::array<Index, 4>& four) {
-      const FourDeterminants volumes = four_volumes(tetrahedra(four));
-      for (unsigned lane = 0; lane < 4; ++lane) seen[four[lane] - begin].negative = volumes[lane];
-    });
+  void look_at_each(const BatchList& list, Index begin, std::array<Look, kBatch>& seen) {
     for (const Index v : list.items()) {
       workspace_.settle(v);
       Look& look = seen[v - begin];
+      look.negative = six_volumes(v);
       look.radius = std::sqrt(workspace_.vertices[v].radius);
       look.apart = from_told_sphere(v, look.radius);
     }

@@ -115,16 +115,6 @@ const bool kFourSharpLanes = __builtin_cpu_supports("avx2") && __builtin_cpu_sup
 
 bool can_take_four() { return kFourSharpLanes; }
 
-[[gnu::target("avx2,fma")]] FourDeterminants four_volumes(const FourTetrahedra& tetrahedra) {
-  const FourVectors q = load_four(tetrahedra[3]);
-  const FourVolumes volume =
-      volumes(load_four(tetrahedra[0]) - q, load_four(tetrahedra[1]) - q, load_four(tetrahedra[2]) - q);
-  FourDeterminants result;
-  _mm256_storeu_pd(result.value.data(), volume.value);
-  _mm256_storeu_pd(result.bound.data(), volume.bound);
-  return result;
-}
-
 // As off_circumcenter(), in the same order of operations.
 [[gnu::target("avx2,fma")]] std::array<double, 4> off_four_circumcenters(const FourCenters& centers,
                                                                          const FourTetrahedra& tetrahedra) {
@@ -183,7 +173,6 @@ bool can_take_four() { return kFourSharpLanes; }
 }
 #else
 bool can_take_four() { return false; }
-FourDeterminants four_volumes(const FourTetrahedra&) { return {}; }
 std::array<double, 4> off_four_circumcenters(const FourCenters&, const FourTetrahedra&) { return {}; }
 unsigned four_sharp_circumcenters(const FourTetrahedra&, std::array<Vector, 4>&) { return 0; }
 #endif
