@@ -9,11 +9,6 @@
 namespace orchard::detail {
 namespace {
 
-// The table for linking up to kFew local points: a sphere with that many corners has 2 * kFew - 4 facets.
-constexpr Index kFew = 64;
-constexpr std::uint32_t kFacetBits = 7;
-constexpr std::uint32_t kFacetMask = (1u << kFacetBits) - 1;
-
 // How many deleted vertices ahead of the one whose neighbours are looked at memory is fetched into the cache.
 constexpr std::size_t kFetchAhead = 4;
 
@@ -283,23 +278,22 @@ bool Cavity::place_vertex(std::size_t f, bool has_sphere, const PlacedQuality& p
 
 bool Cavity::link_vertices() {
   if (facets_.size() + 4 != 2 * local_points_.size()) return false;
-  return local_points_.size() <= kFew ? link_few() : link_many();
+  if (local_points_.size() <= kFewPoints) return link_by(few_links_);
+  return local_points_.size() <= kManyPoints ? link_by(many_links_) : link_by_lists();
 }
 
 // Facets that meet in an edge run along it in opposite directions. Without branches on the way: all edges go into the
 // table, then each looks for its opposite.
-bool Cavity::link_few() {
-  if (link_table_.empty() || ++link_round_ >> (32 - kFacetBits) != 0) {
-    link_table_.assign(std::size_t{kFew} * kFew, 0);
-    link_round_ = 1;
-  }
-  const std::uint32_t round = link_round_ << kFacetBits;
-  std::uint32_t* const table = link_table_.data();
+template <unsigned kPoints, unsigned kStride>
+bool Cavity::link_by(LinkTable<kPoints, kStride>& links) {
+  using Table = LinkTable<kPoints, kStride>;
+  const std::uint32_t round = links.begin();
+  std::uint32_t* const table = links.entries.data();
   bool good = true;
   for (std::uint32_t f = 0; f < facets_.size(); ++f) {
     const auto& [a, b, c] = facets_[f].local;
-    for (const Index edge : {b * kFew + c, c * kFew + a, a * kFew + b}) {
-      good &= (table[edge] ^ round) > kFacetMask;  // no other facet has it in this direction
+    for (const Index edge : {b * kStride + c, c * kStride + a, a * kStride + b}) {
+      good &= (table[edge] ^ round) > Table::kFacetMask;  // no other facet has it in this direction
       table[edge] = round | f;
     }
   }
@@ -309,19 +303,19 @@ bool Cavity::link_few() {
     const auto& other = kOthers[facet.slot];
     auto& neighbors = fresh_[f].neighbors;
     neighbors[facet.slot] = facet.outside;
-    const std::uint32_t across_a = table[c * kFew + b] ^ round, across_b = table[a * kFew + c] ^ round,
-                        across_c = table[b * kFew + a] ^ round;
-    good &= (across_a | across_b | across_c) <= kFacetMask;
-    neighbors[other[0]] = across_a & kFacetMask;
-    neighbors[other[1]] = across_b & kFacetMask;
-    neighbors[other[2]] = across_c & kFacetMask;
+    const std::uint32_t across_a = table[c * kStride + b] ^ round, across_b = table[a * kStride + c] ^ round,
+                        across_c = table[b * kStride + a] ^ round;
+    good &= (across_a | across_b | across_c) <= Table::kFacetMask;
+    neighbors[other[0]] = across_a & Table::kFacetMask;
+    neighbors[other[1]] = across_b & Table::kFacetMask;
+    neighbors[other[2]] = across_c & Table::kFacetMask;
   }
   return good;
 }
 
 // Each edge waits at its corner of fewer facets, of which there are few for most edges of any sphere: a planar graph
 // has fewer than three edges a corner. Without hashing.
-bool Cavity::link_many() {
+bool Cavity::link_by_lists() {
   degrees_.assign(local_points_.size(), 0);
   for (const Facet& facet : facets_)
     for (const Index corner : facet.local) ++degrees_[corner];
@@ -355,25 +349,27 @@ bool Cavity::link_many() {
   return open == 0;
 }
 
+// Without branches: on grids nearly every point comes here.
 bool Cavity::is_ball() {
+  bool loses_point = false;
   for (Index v : deleted_.items())
     for (Index point : workspace_.vertices[v].forming_points)
-      if (known_local(point) == kNone && point != new_point_) return false;
+      loses_point |= (known_local(point) == kNone) & (point != new_point_);
+  if (loses_point) return false;
   // Two facets on each edge and the right number of facets for one sphere: several pieces, or a piece with a handle,
   // would have to touch themselves in points to get there, so one piece is a sphere that does not.
   reached_.assign(facets_.size(), false);
   reached_[0] = true;
-  stack_.assign(1, 0);
-  std::size_t count = 0;
-  while (!stack_.empty()) {
-    const Index f = stack_.back();
-    stack_.pop_back();
-    ++count;
+  queue_.resize(facets_.size() + 1);
+  queue_[0] = 0;
+  std::size_t count = 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Index f = queue_[i];
     for (const std::uint8_t k : kOthers[facets_[f].slot]) {
       const Index next = fresh_[f].neighbors[k];
-      if (reached_[next]) continue;
+      queue_[count] = next;
+      count += 1u - reached_[next];
       reached_[next] = true;
-      stack_.push_back(next);
     }
   }
   return count == facets_.size();

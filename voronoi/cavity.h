@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -130,6 +131,26 @@ class Cavity {
     bool outward;            // whether the facet runs along the edge to its other corner
   };
 
+  // For each directed edge between so many local points the facet that has it, and the round in which that was written:
+  // a sphere with that many corners has twice as many facets but for four.
+  template <unsigned kPoints, unsigned kStride>
+  struct LinkTable {
+    static constexpr unsigned kFacetBits = std::bit_width(2 * kPoints - 1);
+    static constexpr std::uint32_t kFacetMask = (1u << kFacetBits) - 1;
+    std::vector<std::uint32_t> entries;
+    std::uint32_t round = 0;
+
+    // The next round, in the place where it is kept.
+    std::uint32_t begin() {
+      if (entries.empty() || ++round >> (32 - kFacetBits) != 0) {
+        entries.assign(std::size_t{kPoints} * kStride, 0);
+        round = 1;
+      }
+      return round << kFacetBits;
+    }
+  };
+  static constexpr unsigned kFewPoints = 64, kManyPoints = 256;
+
   // The number of a local point, a new one if it has none yet; without branches, after local_points_.ensure_room().
   Index local(Index point) {
     Index& known = known_local(point);
@@ -151,8 +172,9 @@ class Cavity {
   Index known_local(Index point) const { return local_of_[static_cast<Index>(point + 1)]; }
   void fetch_around(Index v) const;
   void choose_slots();
-  bool link_few();
-  bool link_many();
+  template <unsigned kPoints, unsigned kStride>
+  bool link_by(LinkTable<kPoints, kStride>& links);
+  bool link_by_lists();
   void note_edges(Index v);
 
   Workspace& workspace_;
@@ -164,7 +186,7 @@ class Cavity {
   List deleted_, seen_, boundary_;  // boundary: 4 * deleted vertex + the neighbour across
   bool is_boundary_noted_ = false;  // by delete_nearer(), and nothing was deleted since
   List local_points_;               // the points of the boundary, the one at infinity included
-  std::vector<Index> slots_, stack_;
+  std::vector<Index> slots_, queue_;
   std::vector<Facet> facets_;
   std::vector<VoronoiVertex> fresh_;      // of each facet; its new neighbours are facets until replace()
   std::vector<std::uint8_t> reached_;     // by facet
@@ -173,8 +195,8 @@ class Cavity {
   EdgeTable edges_;
   std::vector<Index> degrees_, waiting_;  // by local point
   std::vector<Link> links_;
-  std::vector<std::uint32_t> link_table_;  // for each directed edge between few local points: round and facet
-  std::uint32_t link_round_ = 0;
+  LinkTable<kFewPoints, kFewPoints> few_links_;
+  LinkTable<kManyPoints, kManyPoints + 16> many_links_;  // rows of a power of two would share a few lines of the cache
   Index edge_limit_ = 0;  // local points that the edge table was set up for, in the constrained search
 };
 

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "cavity.h"
-#include "hull_edges.h"
+#include "four_tetrahedra.h"
 #include "line_sum.h"
 #include "orchard/geometry/tolerance.h"
 #include "parallel_insertion.h"
@@ -46,9 +46,10 @@ constexpr std::size_t kMaxSuspects = 512, kOfDent = 4;
 constexpr Index kBlock = 1u << 14, kHullBlock = 1u << 10;
 constexpr std::size_t kWorthThreads = 2;
 
-// How many vertices ahead of the one that is looked at points are fetched into the cache, and the vertices whose facets
-// are looked at together.
-constexpr Index kAhead = 8, kBatch = 64;
+// Vertices that are looked at together, while the points of the next ones are fetched into the cache; where there are
+// no more points than that, they all are there.
+constexpr Index kBatch = 64;
+constexpr std::size_t kCached = 1u << 13;
 
 // Of mending and looking at what is new.
 constexpr int kRounds = 24;
@@ -64,6 +65,50 @@ struct Facet {
   Index v, u;
   unsigned slot;
   Index across;
+};
+
+// The edge of the hull between the facets of a vertex at infinity and of its neighbour `slot`.
+struct HullEdge {
+  Index v, u;
+  unsigned slot;
+};
+
+// What is seen of a finite vertex before anything follows from it: its orientation, and how far the sphere that it was
+// given is from its own, at most, with its own centre, relative to its first point, where that had to be found.
+struct Look {
+  Determinant negative;  // of six times its volume, the other way around
+  double radius = 0, apart = 0;
+  bool has_center = false;
+  Vector center;
+};
+
+// Vertices of a batch, listed without branches.
+class BatchList {
+ public:
+  std::span<const Index> items() const { return {items_.data(), count_}; }
+  void clear() { count_ = 0; }
+  void push_if(Index v, bool condition) {
+    items_[count_] = v;
+    count_ += condition;
+  }
+  template <class Keep>
+  void keep_if(const Keep& keep) {
+    const std::size_t before = std::exchange(count_, 0);
+    for (std::size_t i = 0; i < before; ++i) push_if(items_[i], keep(items_[i]));
+  }
+  // The last one again for those that the last four lack.
+  template <class Take>
+  void for_each_four(const Take& take) const {
+    for (std::size_t first = 0; first < count_; first += 4) {
+      std::array<Index, 4> four;
+      for (std::size_t lane = 0; lane < 4; ++lane) four[lane] = items_[std::min(first + lane, count_ - 1)];
+      take(four);
+    }
+  }
+
+ private:
+  std::array<Index, kBatch + 1> items_;
+  std::size_t count_ = 0;
 };
 
 // What the facet of three points takes off, where that is more than its share.
@@ -135,7 +180,7 @@ class Certifier {
     if (!look_at_all()) return {};
     if (found_.intrusion > max_sum_ && (!look_closer() || found_.intrusion > max_sum_)) return {};
     if (mended_) find_fattest();
-    if (found_.fattest != kNone && !covers_once()) return {};
+    if (found_.fattest == kNone ? !found_.hull.empty() : !covers_once()) return {};
     if (!are_suspects_innocent()) return {};
     return {true, 2 * (found_.intrusion + found_.given) / diameter_};
   }
@@ -172,10 +217,16 @@ class Certifier {
   }
   bool look_at_each_oriented() {
     const auto count = static_cast<Index>(workspace_.vertices.size());
-    return look_in_blocks(count, kBlock, [&](Certifier& part, Index v) {
-      for (const Index point : workspace_.vertices[std::min(v + kAhead, count - 1)].forming_points)
-        __builtin_prefetch(workspace_.points.data() + point);
-      return workspace_.is_free(v) || !is_new(v) || part.is_oriented(v);
+    return look_in_blocks((count + kBatch - 1) / kBatch, kBlock / kBatch, [&](Certifier& part, Index batch) {
+      const Index begin = batch * kBatch, end = std::min(count, begin + kBatch);
+      if (workspace_.points.size() > kCached)
+        for (Index v = end; v < std::min(count, end + kBatch); ++v)
+          for (const Index point : workspace_.vertices[v].forming_points)
+            __builtin_prefetch(workspace_.points.data() + point);
+      if (first_new_ == 0 && can_take_four()) return part.are_all_oriented(begin, end);
+      for (Index v = begin; v < end; ++v)
+        if (!workspace_.is_free(v) && is_new(v) && !part.is_oriented(v)) return false;
+      return true;
     });
   }
   // Those of the hull aside.
@@ -193,15 +244,18 @@ class Certifier {
   bool look_at_edges(const std::vector<Index>& hull) {
     const auto count = static_cast<Index>(hull.size());
     return look_in_blocks((count + kBatch - 1) / kBatch, kHullBlock / kBatch, [&](Certifier& part, Index batch) {
-      std::vector<HullEdge> edges;
+      // Listed first, so that the vertices across are in the cache when they are asked for.
+      std::array<HullEdge, std::size_t{3} * kBatch> edges;
+      std::size_t listed = 0;
       for (Index i = batch * kBatch; i < std::min(count, (batch + 1) * kBatch); ++i)
         for (unsigned slot = 0; slot < 3; ++slot) {
           const Index v = hull[i], u = workspace_.vertices[v].neighbors[slot];
-          if (u > v || !is_new(u)) edges.push_back({.v = v, .u = u, .slot = slot});
+          __builtin_prefetch(workspace_.vertices.data() + u);
+          edges[listed] = {v, u, slot};
+          listed += (u > v) | !is_new(u);
         }
-      note_convex(workspace_, edges);
-      return std::all_of(edges.begin(), edges.end(), [&part](const HullEdge& edge) {
-        return edge.convex || part.is_hull_convex(edge.v, edge.slot, edge.doubtful) || part.doubt(edge.v, edge.u);
+      return std::all_of(edges.begin(), edges.begin() + listed, [&part](const HullEdge& edge) {
+        return part.is_hull_convex(edge.v, edge.slot) || part.doubt(edge.v, edge.u);
       });
     });
   }
@@ -286,24 +340,35 @@ class Certifier {
 
   // And whether the sphere that it was given is its own, nearly. What doubles could not place well is placed anew, and
   // so is what was given a neighbour's sphere and is too far from it.
-  bool is_oriented(Index v) {
-    const Point &p0 = corner(v, 0), &p1 = corner(v, 1), &p2 = corner(v, 2);
-    if (workspace_.at_infinity(v)) {
-      found_.hull.push_back(v);
-      return is_triangle(p0, p1, p2);
-    }
-    const Point& p3 = corner(v, 3);
-    const Determinant det = six_volumes(v);
+  bool is_oriented(Index v) { return workspace_.at_infinity(v) ? is_hull_facet(v) : is_oriented(v, look(v)); }
+  bool is_hull_facet(Index v) {
+    found_.hull.push_back(v);
+    return is_triangle(corner(v, 0), corner(v, 1), corner(v, 2));
+  }
+  Look look(Index v) {
+    Look seen;
+    seen.negative = six_volumes(v);
+    if (seen.negative.sign() == Sign::positive) return seen;
+    workspace_.settle(v);
+    seen.apart = from_told_sphere(v);
+    if (has_to_be_seen(v, seen)) seen.apart = std::min(seen.apart, from_seen_sphere(v, seen.negative));
+    if (seen.apart > kTold * max_) seen.has_center = own_center(v, seen.center);
+    return seen;
+  }
+  bool has_to_be_seen(Index v, const Look& seen) const {
+    return seen.apart > kTold * max_ && !workspace_.shares_sphere(v);
+  }
+  bool is_oriented(Index v, const Look& seen) {
+    const Determinant& det = seen.negative;
     if (det.sign() == Sign::positive ||
-        (det.sign() == Sign::uncertain && volume_sign(p3, p0, p1, p2) != Sign::negative))
+        (det.sign() == Sign::uncertain &&
+         volume_sign(corner(v, 3), corner(v, 0), corner(v, 1), corner(v, 2)) != Sign::negative))
       return false;
     note_volume(v, det.value);
-    workspace_.settle(v);
-    double apart = from_told_sphere(v);
-    if (apart > kTold * max_ && !workspace_.shares_sphere(v)) apart = std::min(apart, from_seen_sphere(v, det));
+    double apart = seen.apart;
     if (apart > kTold * max_) {
-      Vector center;
-      if (!own_center(v, center)) return false;
+      if (!seen.has_center) return false;
+      const Vector& center = seen.center;
       const bool shared = workspace_.shares_sphere(v);
       apart = from_sphere(v, center);
       if (apart > (shared ? kGiven : kTold) * max_) {
@@ -316,6 +381,73 @@ class Certifier {
     if (apart > small_share_ && workspace_.shares_sphere(v)) found_.lossy.push_back(v);
     found_.given = std::max(found_.given, apart);
     return apart <= kGiven * max_;
+  }
+
+  // The same of some vertices, where all are new, with the same bits. Each is a long chain of sums with branches as
+  // good as random at its ends: so what has to be found is listed first, then found for four at once.
+  bool are_all_oriented(Index begin, Index end) {
+    std::array<Look, kBatch> seen;
+    BatchList list;
+    for (Index v = begin; v < end; ++v) list.push_if(v, !workspace_.is_free(v) & !workspace_.at_infinity(v));
+    look_at_each(list, begin, seen);
+    list.keep_if([&](Index v) {
+      const Look& look = seen[v - begin];
+      return (look.negative.sign() == Sign::negative) & has_to_be_seen(v, look);
+    });
+    see_four_spheres(list, begin, seen);
+    for (Index v = begin; v < end; ++v) list.push_if(v, seen[v - begin].apart > kTold * max_);
+    find_four_centers(list, begin, seen);
+    for (Index v = begin; v < end; ++v) {
+      if (workspace_.is_free(v)) continue;
+      if (!(workspace_.at_infinity(v) ? is_hull_facet(v) : is_oriented(v, seen[v - begin]))) return false;
+    }
+    return true;
+  }
+  FourTetrahedra tetrahedra(const std::array<Index, 4>& four) const {
+    FourTetrahedra corners;
+    for (unsigned i = 0; i < 4; ++i)
+      for (unsigned lane = 0; lane < 4; ++lane) corners[i][lane] = &corner(four[lane], i);
+    return corners;
+  }
+  void look_at_each(const BatchList& list, Index begin, std::array<Look, kBatch>& seen) {
+    for (const Index v : list.items()) {
+      workspace_.settle(v);
+      Look& look = seen[v - begin];
+      look.negative = six_volumes(v);
+      look.radius = std::sqrt(workspace_.vertices[v].radius);
+      look.apart = from_told_sphere(v, look.radius);
+    }
+  }
+  void see_four_spheres(BatchList& list, Index begin, std::array<Look, kBatch>& seen) {
+    list.for_each_four([&](const std::array<Index, 4>& four) {
+      FourCenters centers;
+      std::array<double, 4> per_off;
+      for (unsigned lane = 0; lane < 4; ++lane) {
+        per_off[lane] = apart_per_off(seen[four[lane] - begin].radius);
+        centers.center[lane] = &workspace_.vertices[four[lane]].center;
+        centers.enough[lane] = kTold * max_ / per_off[lane];
+      }
+      const std::array<double, 4> off = off_four_circumcenters(centers, tetrahedra(four));
+      for (unsigned lane = 0; lane < 4; ++lane) {
+        Look& look = seen[four[lane] - begin];
+        look.apart = std::min(look.apart, apart_by(four[lane], off[lane], look.radius, per_off[lane]));
+      }
+    });
+    list.clear();
+  }
+  void find_four_centers(const BatchList& list, Index begin, std::array<Look, kBatch>& seen) {
+    list.for_each_four([&](const std::array<Index, 4>& four) {
+      std::array<Vector, 4> centers;
+      const unsigned found = four_sharp_circumcenters(tetrahedra(four), centers);
+      for (unsigned lane = 0; lane < 4; ++lane) {
+        Look& look = seen[four[lane] - begin];
+        look.has_center = ((found >> lane) & 1u) != 0;
+        if (look.has_center)
+          look.center = centers[lane];
+        else
+          look.has_center = own_center(four[lane], look.center);
+      }
+    });
   }
 
   // Whether three points are not on one line.
@@ -337,23 +469,29 @@ class Certifier {
     return own_center(v, center) ? from_sphere(v, center) : diameter_;
   }
   // The same as far as its error bound tells.
-  double from_told_sphere(Index v) const {
+  double from_told_sphere(Index v) const { return from_told_sphere(v, std::sqrt(workspace_.vertices[v].radius)); }
+  double from_told_sphere(Index v, double radius) const {
     if (workspace_.exact()) return 0;
     if (workspace_.shares_sphere(v)) return diameter_;
-    return workspace_.power_bound(v) / std::sqrt(workspace_.vertices[v].radius);
+    return workspace_.power_bound(v) / radius;
   }
   // The same by how far its forming points are off its sphere: often a much better bound, which is noted then. The
   // determinant is six_volumes(v).
   double from_seen_sphere(Index v, const Determinant& det) {
-    const VoronoiVertex& vertex = workspace_.vertices[v];
-    const double radius = std::sqrt(vertex.radius);
-    // As below, the radius of the own sphere being three quarters of this at least.
-    const double times = 4 * std::min(2.0, diameter_ / (0.75 * radius));
-    const double off = off_circumcenter(vertex.center, corner(v, 3), corner(v, 0), corner(v, 1), corner(v, 2), det,
-                                        kTold * max_ / times);
+    const double radius = std::sqrt(workspace_.vertices[v].radius), per_off = apart_per_off(radius);
+    return apart_by(v,
+                    off_circumcenter(workspace_.vertices[v].center, corner(v, 3), corner(v, 0), corner(v, 1),
+                                     corner(v, 2), det, kTold * max_ / per_off),
+                    radius, per_off);
+  }
+  // As in from_sphere(), the radius of the own sphere being three quarters of this at least.
+  double apart_per_off(double radius) const { return 4 * std::min(2.0, diameter_ / (0.75 * radius)); }
+  // By how far the centre is off, at most.
+  double apart_by(Index v, double off, double radius, double per_off) {
     if (!(off <= radius / 8)) return diameter_;
-    if (off * times <= kTold * max_) workspace_.note_own_center(v, off);
-    return off * times;
+    const double apart = off * per_off;
+    if (apart <= kTold * max_) workspace_.note_own_center(v, off);
+    return apart;
   }
   bool own_center(Index v, Vector& center) const {
     return sharp_circumcenter(corner(v, 0), corner(v, 1), corner(v, 2), corner(v, 3), center);
@@ -374,10 +512,7 @@ class Certifier {
     return true;
   }
   bool is_facet_good(Index v, unsigned i, Index u) {
-    const VoronoiVertex& vertex = workspace_.vertices[v];
-    return (workspace_.at_infinity(v) ? is_hull_convex(v, i, HullPlace::first(vertex, v, i))
-                                      : do_spheres_agree(v, i, u)) ||
-           doubt(v, u);
+    return (workspace_.at_infinity(v) ? is_hull_convex(v, i) : do_spheres_agree(v, i, u)) || doubt(v, u);
   }
 
   // The same facets of some vertices, those of the hull aside, where all are new. Waiting for memory and mispredicted
@@ -432,6 +567,7 @@ class Certifier {
   // Across the facet between v and its neighbour i, u.
   bool do_spheres_agree(Index v, unsigned i, Index u) {
     workspace_.settle(u);
+    if (!workspace_.exact() && is_same_sphere(v, u)) return true;  // as on grids most are: nothing is lost
     const Point& across = corner(u, slot_of(u, v));
     const bool own = !workspace_.shares_sphere(v) && !workspace_.shares_sphere(u);
     if (own && (workspace_.power(v, across) < -workspace_.power_bound(v) ||
@@ -454,6 +590,8 @@ class Certifier {
     note_loss(lost, v, i);
     return true;
   }
+
+  bool is_same_sphere(Index v, Index u) const { return workspace_.vertices[v].center == workspace_.vertices[u].center; }
 
   // The unit normal of a facet, and by what angle it may be off.
   static double normal(const Point& a, const Point& b, const Point& c, Vector& result) {
@@ -478,8 +616,8 @@ class Certifier {
   double intrusion_added(Index v, Index u, const Point& origin, const Vector& normal, double blur, const Vector& up,
                          double height) const {
     const VoronoiVertex &from = workspace_.vertices[v], &to = workspace_.vertices[u];
+    if (is_same_sphere(v, u)) return 0;
     const Vector step = to.center - from.center;
-    if (step == Vector::Zero()) return 0;
     const double radius = std::sqrt(from.radius), reach = std::min(2 * radius, diameter_);
     const double along = normal.dot(step), above = up.dot(step), length = step.norm();
     const double sideways = (step - along * normal - above * up).norm() + (2 * blur + 8 * kRounding) * length;
@@ -489,29 +627,16 @@ class Certifier {
            radius;
   }
 
-  // At the edge of the hull between the facets of v and its neighbour i: around the edge, from the one to the other,
-  // all points must be below the facet of v. The first one that is not, by a rounding, must be opposite to the facet,
-  // and so must be all that follow, or else the vertices there go around the edge more than once. What is before the
-  // place is below the facet.
-  bool is_hull_convex(Index v, unsigned i, HullPlace place) {
-    const unsigned j = (i + 1) % 3, k = (i + 2) % 3;
-    const Point &b = corner(v, j), &c = corner(v, k);
-    bool flat = false;
-    while (!workspace_.at_infinity(place.at)) {
-      const VoronoiVertex& vertex = workspace_.vertices[place.at];
-      const std::size_t apex = index_of(vertex.neighbors, place.from);
-      const Point& p = workspace_.points[vertex.forming_points[apex]];
-      const Sign below = volume_sign(p, corner(v, 0), corner(v, 1), corner(v, 2));
-      if (below == Sign::positive) {
-        if (flat) return false;
-      } else {
-        flat = true;
-        if (same_side_of_line(b, c, corner(v, i), p) != Sign::negative) return false;
-        if (below == Sign::negative && (workspace_.exact() || !is_dent_shallow(v, i, p, b, c))) return false;
-      }
-      place = {vertex.neighbors[index_of(vertex.forming_points, place.behind)], place.at, vertex.forming_points[apex]};
-    }
-    return true;
+  // At the edge of the hull between the facets of v and its neighbour i: this one's third point must be below the facet
+  // of v, or, by a rounding, not, but opposite to it.
+  bool is_hull_convex(Index v, unsigned i) {
+    const Point &b = corner(v, (i + 1) % 3), &c = corner(v, (i + 2) % 3);
+    const Index u = workspace_.vertices[v].neighbors[i];
+    const Point& p = corner(u, slot_of(u, v));
+    const Sign below = volume_sign(p, corner(v, 0), corner(v, 1), corner(v, 2));
+    if (below == Sign::positive) return true;
+    if (same_side_of_line(b, c, corner(v, i), p) != Sign::negative) return false;
+    return below == Sign::uncertain || (!workspace_.exact() && is_dent_shallow(v, i, p, b, c));
   }
 
   // Where p is above the facet of v, beyond the edge from b to c: the hull's other points may be above the facet by as
@@ -595,9 +720,8 @@ class Certifier {
   }
 
   // Whether a point in the fattest of the tetrahedra looked at is in no other, and below all facets of the hull. All
-  // tetrahedra being oriented positively, there are then nowhere two on top of each other. And the hull, convex at
-  // every edge, does not go around a vertex twice: a ray from the point leaves the tetrahedra at every facet of the
-  // hull that it meets, and it starts in one of them only, so that it meets one facet.
+  // tetrahedra being oriented positively, there are then nowhere two on top of each other, and the hull goes around
+  // them once (see certify()).
   bool covers_once() const {
     const std::array<Point, 4> inner{corner(found_.fattest, 0), corner(found_.fattest, 1), corner(found_.fattest, 2),
                                      corner(found_.fattest, 3)};

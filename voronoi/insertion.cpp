@@ -14,6 +14,10 @@ namespace {
 // exact signs.
 constexpr std::uint64_t kMaxDoubtful = 16, kMaxDoubtfulOneIn = 4;
 
+// How many points may be deferred before any is inserted: then what was there is exact and thin, as where rounding has
+// put points off planes, and nothing will fit that is not.
+constexpr std::size_t kHopeless = 32;
+
 // From how many deferred points on, and with fewer than one in how many inserted, trying all of them once more is not
 // worth it: the time would grow with the square of their number.
 constexpr std::size_t kManyDeferred = 32, kWorthRepeating = 8;
@@ -96,6 +100,7 @@ bool Inserter::insert_anyhow(Index point) {
 }
 
 bool Inserter::too_doubtful() const {
+  if (deferred_.size() >= kHopeless && counts_.inserted() == 0) return true;
   return counts_.exact + counts_.constrained + deferred_.size() >= kMaxDoubtful + expected_ / kMaxDoubtfulOneIn;
 }
 

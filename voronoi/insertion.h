@@ -24,6 +24,7 @@ struct InsertionCounts {
   std::uint64_t constrained = 0;  // the constrained search decided
   std::uint64_t coplanar = 0;     // vertices with an approximate position
 
+  std::uint64_t inserted() const { return certified + settled + exact + constrained; }
   InsertionCounts& operator+=(const InsertionCounts& other);
 };
 

@@ -2,9 +2,7 @@
 
 #include <cstddef>
 
-#if defined(__GNUC__) && defined(__x86_64__)
-#include <immintrin.h>
-#endif
+#include "four_vectors.h"
 
 namespace orchard::detail {
 
@@ -14,29 +12,6 @@ namespace {
 // Center and radius of a vertex, and vector and square of a point, are four doubles side by side.
 static_assert(offsetof(VoronoiVertex, radius) == offsetof(VoronoiVertex, center) + 3 * sizeof(double));
 static_assert(offsetof(LengthedVector, squared) == offsetof(LengthedVector, vector) + 3 * sizeof(double));
-
-// Everything below is inlined into place_four(): functions for several machines do not mix otherwise.
-#define ORCHARD_AVX2 [[gnu::target("avx2"), gnu::always_inline]] inline
-
-// Rows become columns.
-ORCHARD_AVX2 void transpose(__m256d& a, __m256d& b, __m256d& c, __m256d& d) {
-  const __m256d low_ab = _mm256_unpacklo_pd(a, b), high_ab = _mm256_unpackhi_pd(a, b);
-  const __m256d low_cd = _mm256_unpacklo_pd(c, d), high_cd = _mm256_unpackhi_pd(c, d);
-  a = _mm256_permute2f128_pd(low_ab, low_cd, 0x20);
-  b = _mm256_permute2f128_pd(high_ab, high_cd, 0x20);
-  c = _mm256_permute2f128_pd(low_ab, low_cd, 0x31);
-  d = _mm256_permute2f128_pd(high_ab, high_cd, 0x31);
-}
-
-struct FourVectors {
-  __m256d x, y, z;
-};
-
-ORCHARD_AVX2 FourVectors cross(const FourVectors& a, const FourVectors& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-ORCHARD_AVX2 __m256d dot(const FourVectors& a, const FourVectors& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-ORCHARD_AVX2 __m256d absolute(__m256d a) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a); }
 
 // Whether all of these hold in a lane: the sign of its number.
 ORCHARD_AVX2 __m256d less(__m256d a, __m256d b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
@@ -74,8 +49,6 @@ ORCHARD_AVX2 FourLengthed load(const std::array<const LengthedVector*, 4>& v) {
   transpose(four.vector.x, four.vector.y, four.vector.z, four.squared);
   return four;
 }
-
-#undef ORCHARD_AVX2
 
 const bool kFourLanes = __builtin_cpu_supports("avx2");
 

@@ -12,9 +12,6 @@
 namespace orchard::detail {
 namespace {
 
-// How many times the error of a divisor it must be, for the quotient to be right to a few roundings of a double.
-constexpr double kDivisible = 0x1p46;
-
 Sign exact_sign(const ExactInteger& number) { return static_cast<Sign>(number.sign()); }
 
 // A vector of Twofold or exact integer coordinates.

@@ -15,6 +15,9 @@ struct Twofold {
 // A few dozen operations of 2^-104 relative error each, in terms of the error bound of the same formula in doubles.
 inline constexpr double kSharper = 0x1p-48;
 
+// How many times the error of a divisor it must be, for the quotient to be right to a few roundings of a double.
+inline constexpr double kDivisible = 0x1p46;
+
 // The exact sum (Knuth), difference and product (Dekker, by the fused operation) of two doubles.
 inline Twofold exact_sum(double a, double b) {
   const double sum = a + b, b_part = sum - a;

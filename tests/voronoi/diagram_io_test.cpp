@@ -1,6 +1,7 @@
 #include "orchard/voronoi/diagram_io.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -17,7 +18,8 @@ class VorFile : public ::testing::Test {
  protected:
   void SetUp() override {
     file_ = std::filesystem::temp_directory_path() /
-            ("orchard-" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + ".vor");
+            ("orchard-" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + "-" +
+             std::to_string(::getpid()) + ".vor");  // other processes may run the same test
   }
   void TearDown() override { std::filesystem::remove(file_); }
   VoronoiDiagram read(const std::string& text) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "build.h"
@@ -143,6 +144,21 @@ TEST(InsertPoints, TakesPointsFarOutsideTheDiagram) {
   points.insert(points.end(), far.begin(), far.end());
   validate(diagram);
   EXPECT_EQ(quadruples(diagram), quadruples(exact_voronoi(points).diagram));
+}
+
+// The cell of the last point has faces with nearly all others: whichever way its new vertices are joined, by tables for
+// few and for some corners, or by lists.
+TEST(InsertPoints, JoinsTheNewVerticesOfAPointWithHundredsOfNeighbours) {
+  for (const Index around : {50u, 200u, 700u}) {
+    test::Points points = test::sphere_points(around, 9);
+    for (std::size_t i = 0; i < points.size(); ++i) points[i] *= 1 + 1e-4 * std::sin(static_cast<double>(i));
+    points.emplace_back(0.01, 0.02, 0.03);
+    VoronoiDiagram diagram = highest_first_voronoi(first(points, around)).diagram;
+    insert_points(diagram, rest(points, around));
+    validate(diagram);
+    EXPECT_EQ(quadruples(diagram), quadruples(exact_voronoi(points).diagram));
+    EXPECT_GT(vertices_of_points(diagram)[around].size(), 2 * around - around / 10);
+  }
 }
 
 TEST(InsertPoints, MakesADiagramOfFlatPoints) {

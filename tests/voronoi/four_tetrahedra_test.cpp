@@ -1,0 +1,95 @@
+#include "four_tetrahedra.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <random>
+
+#include "support/effort.h"
+
+namespace orchard::detail {
+namespace {
+
+bool equal_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
+
+// Of any size, some of them nearly or exactly flat, some with few digits, so that products are exact.
+std::array<Point, 4> random_tetrahedron(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto vector = [&] { return Vector(unit(random), unit(random), unit(random)); };
+  const double size = std::pow(10, 3 * unit(random)), off = std::pow(10, -16 * std::abs(unit(random)));
+  const Point middle = vector();
+  std::array<Point, 4> corners;
+  for (Point& corner : corners) corner = middle + size * vector();
+  switch (random() % 4) {
+    case 0:
+      corners[random() % 4] = corners[0] + unit(random) * (corners[1] - corners[0]) +
+                              unit(random) * (corners[2] - corners[0]) + off * vector();
+      break;
+    case 1:
+      for (Point& corner : corners) corner = (4 * corner / size).array().round();
+      break;
+    default:
+      break;
+  }
+  return corners;
+}
+
+// Near the circumcentre mostly, as centres are that are looked at.
+Point random_center(const std::array<Point, 4>& corners, std::mt19937_64& random) {
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const Vector off = std::pow(10, -18 * std::abs(unit(random))) * Vector(unit(random), unit(random), unit(random));
+  Vector center;
+  return sharp_circumcenter(corners[0], corners[1], corners[2], corners[3], center)
+             ? Point(corners[0] + center + center.norm() * off)
+             : Point(off);
+}
+
+TEST(FourTetrahedra, AreLookedAtWithTheSameBitsAsOneByOne) {
+  if (!can_take_four()) GTEST_SKIP() << "this machine has no vectors of four doubles";
+  std::mt19937_64 random(test::first_seed());
+  std::uniform_real_distribution<double> unit(-1, 1);
+  int sufficed = 0, was_too_much = 0, found_at_once = 0, left = 0;
+  for (std::uint64_t round = 0; round < 10'000 * test::more(); ++round) {
+    std::array<std::array<Point, 4>, 4> corners;
+    std::array<Point, 4> center;
+    FourTetrahedra four;
+    FourCenters centers;
+    for (unsigned i = 0; i < 4; ++i) {
+      corners[i] = random_tetrahedron(random);
+      center[i] = random_center(corners[i], random);
+      centers.center[i] = &center[i];
+      centers.enough[i] = std::pow(10, -18 * std::abs(unit(random)));
+      for (unsigned k = 0; k < 4; ++k) four[k][i] = &corners[i][k];
+    }
+    const std::array<double, 4> off = off_four_circumcenters(centers, four);
+    std::array<Vector, 4> sharp;
+    const unsigned found = four_sharp_circumcenters(four, sharp);
+    for (unsigned i = 0; i < 4; ++i) {
+      const auto& [a, b, c, d] = corners[i];
+      const Determinant one = volume(a - d, b - d, c - d);
+      if (one.sign() != Sign::uncertain) {
+        ASSERT_TRUE(equal_bits(off[i], off_circumcenter(center[i], d, a, b, c, one, centers.enough[i])));
+        ++(off[i] <= centers.enough[i] ? sufficed : was_too_much);
+      }
+      Vector alone;
+      const bool is_found = sharp_circumcenter(a, b, c, d, alone);
+      if (((found >> i) & 1u) == 0) {
+        ++left;
+        continue;
+      }
+      ++found_at_once;
+      ASSERT_TRUE(is_found);
+      for (int axis = 0; axis < 3; ++axis) ASSERT_TRUE(equal_bits(sharp[i][axis], alone[axis]));
+    }
+  }
+  EXPECT_GT(sufficed, 1000);
+  EXPECT_GT(was_too_much, 1000);
+  EXPECT_GT(found_at_once, 1000);
+  EXPECT_GT(left, 100);
+}
+
+}  // namespace
+}  // namespace orchard::detail

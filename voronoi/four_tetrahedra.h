@@ -1,0 +1,25 @@
+#pragma once
+#include <array>
+
+#include "predicates.h"
+
+// What predicates.h tells of a tetrahedron, bit for bit, for four tetrahedra at once.
+namespace orchard::detail {
+
+// The corners of each: by corner, then by tetrahedron.
+using FourTetrahedra = std::array<std::array<const Point*, 4>, 4>;
+
+bool can_take_four();  // whether the machine has vectors of four doubles and the fused operation (AVX2 and FMA),
+                       // without which the rest does nothing
+
+// off_circumcenter() from 3, of 0, 1 and 2; where the sign of the volume is in doubt, what it returns is meaningless.
+struct FourCenters {
+  std::array<const Point*, 4> center;
+  std::array<double, 4> enough;
+};
+std::array<double, 4> off_four_circumcenters(const FourCenters& centers, const FourTetrahedra& tetrahedra);
+
+// sharp_circumcenter() from 0, of 1, 2 and 3. A bit for each center that it found, which leaves the rest to that.
+unsigned four_sharp_circumcenters(const FourTetrahedra& tetrahedra, std::array<Vector, 4>& centers);
+
+}  // namespace orchard::detail
