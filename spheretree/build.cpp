@@ -96,7 +96,10 @@ class TreeBuilder {
     const SphereTreeOptions& o = options_;
     switch (o.method) {
       case TreeMethod::octree:
-        stage("octree", [&] { build_.tree = octree(surface_, {o.depth, o.refinement, o.branching}, progress_); });
+        stage("octree", [&] {
+          const bool is_plain = o.branching == 8 && o.refinement.error == 0 && o.refinement.regions.empty();
+          build_.tree = is_plain ? build_.octree : octree(surface_, {o.depth, o.refinement, o.branching}, progress_);
+        });
         break;
       case TreeMethod::merging:
         stage("merging", [&] {
