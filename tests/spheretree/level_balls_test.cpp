@@ -98,7 +98,7 @@ TEST(LevelBalls, KnowWhatOnlySomeOfThemHold) {
 
 TEST(LevelBalls, CountAgainWhenOneIsReplaced) {
   LevelBalls balls = three_balls();
-  balls.replace(1, {Point(5, 0, 0), 0.5, 0});  // lets 1 and 3 go
+  balls.replace(1, balls.fitted(1, {Point(5, 0, 0), 0.5, 0}));  // lets 1 and 3 go
   const std::vector<Index> first{0}, last{2};
   EXPECT_EQ(balls.held_only_by(first), (std::vector<Index>{0, 1}));
   EXPECT_EQ(balls.held_only_by(last), (std::vector<Index>{3, 4}));
