@@ -7,9 +7,8 @@
 namespace orchard::detail {
 namespace {
 
-// Large balls need few samples for each to be judged by; balls of levels that have few of them a little more.
-constexpr Index kEnoughSamplesPerBall = 64, kSamplesPerBallOfFew = 250;
-constexpr Index kFewestSamples = 2000, kMostSamplesOfFew = 4000;
+// Large balls need few samples for each to be judged by.
+constexpr Index kEnoughSamplesPerBall = 64, kFewestSamples = 4000;
 constexpr int kShrinks = 12;             // of the ball that touches the surface in a sample
 constexpr double kEmpty = 1 - 1e-3;      // a ball whose centre is as far from the surface, in radii, touches it
 constexpr double kSmallestStart = 0.01;  // radius of such a ball, in R
@@ -67,10 +66,7 @@ Samples surface_samples(const Surface& surface, const SurfaceSampling& sampling,
   return samples;
 }
 
-Index enough_samples(Index balls) {
-  const Index of_few = std::clamp(kSamplesPerBallOfFew * balls, kFewestSamples, kMostSamplesOfFew);
-  return std::max(of_few, kEnoughSamplesPerBall * balls);
-}
+Index enough_samples(Index balls) { return std::max<Index>(kFewestSamples, kEnoughSamplesPerBall * balls); }
 
 Samples samples_for(const Samples& all, const PartialTree& partial, Index enough) {
   const Index stride = std::max<Index>(1, all.size() / enough);
