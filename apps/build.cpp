@@ -54,6 +54,20 @@ std::vector<std::string> names_of(const BuildCommand& command) {
   return names;
 }
 
+bool is_given(const BuildCommand& command, const std::string& option) {
+  return std::find(command.given.begin(), command.given.end(), option) != command.given.end();
+}
+
+// Whether anything tells of the medial axis, which a tightened tree could do without, or is to.
+bool shows_axis(const BuildCommand& command) {
+  const auto tunes = [&](const TuningFlag& flag) {
+    return flag.step != TuningStep::points && is_given(command, flag.name);
+  };
+  const std::vector<TuningFlag>& flags = tuning_flags();
+  return command.views || command.picture || command.page || command.output.json || !command.source.diagram.empty() ||
+         std::any_of(flags.begin(), flags.end(), tunes);
+}
+
 // Everything that the tree is built with.
 SphereTreeOptions tree_options(const BuildCommand& command) {
   SphereTreeOptions options = command.options;
@@ -63,6 +77,7 @@ SphereTreeOptions tree_options(const BuildCommand& command) {
   if (!tuning.samples) tuning.samples = samples_needed(options);
   options.medial = build_options(tuning);
   options.seed = options.medial.sampling.seed;
+  options.axis = shows_axis(command);
   return options;
 }
 
@@ -77,8 +92,7 @@ void check(const BuildCommand& command) {
       throw InputError(fmt::format("--export-level {}: with --depth {} the tree has levels 0 to {}",
                                    *command.export_level, command.options.depth, command.options.depth));
   }
-  const bool up_given = std::find(command.given.begin(), command.given.end(), "up") != command.given.end();
-  if (up_given && !command.views && !command.picture && !command.page)
+  if (is_given(command, "up") && !command.views && !command.picture && !command.page)
     throw InputError("--up has no effect with --no-views and without --picture or --report: nothing is drawn");
   std::vector<fs::path> inputs = command.source.files();
   if (inputs.size() > 1) throw InputError("--points, --diagram and --from-axis exclude each other");

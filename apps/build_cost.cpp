@@ -21,9 +21,14 @@ struct Rates {
   double triangle_once = 0;  // seconds for each triangle
 };
 
-constexpr double kSecondsPerTriangle = 4.5e-5, kSecondsPerPoint = 4.5e-5;
+constexpr double kSecondsPerTriangle = 4.5e-5;
+constexpr double kSecondsPerPoint = 4.5e-5, kWithoutAxis = 1.5e-5;
 constexpr double kBytes = 2.4e7, kBytesPerPoint = 2000, kBytesPerSphere = 1000;
 constexpr double kSecondsPerTrial = 1e-4;  // of --descent, and sphere
+
+double seconds_per_point(const SphereTreeOptions& options) {
+  return options.method == TreeMethod::tightened && !options.axis ? kWithoutAxis : kSecondsPerPoint;
+}
 
 double bytes_per_triangle(TreeMethod method) { return method == TreeMethod::annealing ? 1300 : 560; }
 
@@ -98,8 +103,8 @@ BuildCost estimated_cost(const SphereTreeOptions& options, double points, double
   const double spheres = steps(options, points);
   const Rates rate = rates(options);
   const double of_triangle = kSecondsPerTriangle + rate.triangle * std::sqrt(spheres) + rate.triangle_once;
-  cost.seconds =
-      points * kSecondsPerPoint + spheres * (rate.step + options.descent * kSecondsPerTrial) + triangles * of_triangle;
+  cost.seconds = points * seconds_per_point(options) + spheres * (rate.step + options.descent * kSecondsPerTrial) +
+                 triangles * of_triangle;
   cost.bytes =
       kBytes + points * kBytesPerPoint + spheres * kBytesPerSphere + triangles * bytes_per_triangle(options.method);
   return cost;
@@ -113,7 +118,7 @@ std::string in_words(const BuildCost& cost, const SphereTreeOptions& options, bo
                       std::max(0.1, cost.bytes / 1e9));
   if (cost.seconds < kWorthAWord) return text;
   const bool searches = options.method == TreeMethod::tightened || options.method == TreeMethod::annealing;
-  const bool points_cost_most = cost.points * kSecondsPerPoint > cost.seconds / 2;
+  const bool points_cost_most = cost.points * seconds_per_point(options) > cost.seconds / 2;
   if (points_cost_most) return text + "; fewer --samples take less";
   return text + (searches && options.effort != Effort::low
                      ? "; --effort low, a smaller --depth or --branching take less"

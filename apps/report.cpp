@@ -170,8 +170,9 @@ json build_json(const Surface& surface, const SphereTreeOptions& options, const 
       {"objective", name(options.objective)},  {"closing", options.closing == MergeClosing::refit ? "refit" : "growth"},
       {"redundant", name(options.redundancy)}, {"seed", result.seed}};
   if (!options.spheres.empty()) report["options"]["spheres"] = options.spheres;
-  if (result.medial) report["options"]["samples"] = result.medial->points;
+  if (result.points > 0) report["options"]["samples"] = result.points;
   if (result.medial) report.update(axis_json(*result.medial, result.axis_components));
+  if (!result.medial && result.points > 0) report["surface_points"] = result.points;
   report["covering"] = {{"rounds", result.cover.rounds},
                         {"triangles_uncovered_before", result.cover.triangles_uncovered},
                         {"max_growth_over_radius", result.cover.max_growth}};
@@ -216,6 +217,7 @@ void print_build(const SphereTreeBuild& result, double bounding_radius, double w
     fmt::print("\n");
   }
   if (result.medial) print_axis(*result.medial, result.axis_components);
+  if (!result.medial && result.points > 0) fmt::print("{} surface points\n", result.points);
   fmt::print("{} redundant spheres removed\n", result.redundancy.removed);
   double total = 0;
   fmt::print("seconds:");

@@ -25,9 +25,9 @@ namespace {
 
 // Far more than the roundings of a distance.
 constexpr double kSurelyInside = 1 - 0x1p-40;
-// From this many balls at one triangle on, circles meet their neighbours through a tree of boxes. Below, looking at all
-// is faster.
-constexpr std::size_t kManyBalls = 48;
+// From this many balls at one triangle on, circles meet their neighbours through a grid. Below, looking at all is
+// faster.
+constexpr std::size_t kManyBalls = 16;
 
 }  // namespace
 
@@ -95,7 +95,8 @@ bool LemmaCheck::find_useful(TriangleCover& result) {
   if (own_.all.size() < kManyBalls) return false;
   own_.disks.assign(balls_.size(), {});
   for (Index i : own_.all) own_.disks[i] = disk(i);
-  tree_ = std::make_unique<DiskTree>(own_.disks);
+  own_.grid.build(own_.disks, plane_.box());
+  uses_grid_ = true;
   return false;
 }
 
@@ -145,8 +146,8 @@ void LemmaCheck::subtract_covered(Index ball) {
 }
 
 std::span<const Index> LemmaCheck::candidates(Index ball) {
-  if (!tree_) return own_.all;
-  tree_->meeting(box_of(disk(ball)).intersection(plane_.box()), own_.near);
+  if (!uses_grid_) return own_.all;
+  own_.grid.meeting(disk(ball), own_.near);
   return own_.near;
 }
 

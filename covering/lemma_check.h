@@ -1,9 +1,8 @@
 #pragma once
-#include <memory>
 #include <span>
 #include <vector>
 
-#include "disk_tree.h"
+#include "disk_grid.h"
 #include "orchard/covering/boundary_lemma.h"
 #include "triangle_plane.h"
 
@@ -29,6 +28,7 @@ struct LemmaScratch {
   std::vector<char> rests_on;
   std::vector<Index> all, near;
   std::vector<Disk> disks;
+  DiskGrid grid;  // of disks
   CircleIntervals needed;
   std::vector<CircleIntervals> covering;  // of the present circle, by each ball's path region
   std::vector<Index> made_for;            // the circle that covering[i] was made for
@@ -59,7 +59,7 @@ class LemmaCheck {
   std::span<CircleInPlane* const> circles_;
   Want want_;
   LemmaScratch& own_;
-  std::unique_ptr<DiskTree> tree_;  // where there are many
+  bool uses_grid_ = false;  // where there are many
 };
 
 }  // namespace orchard::detail

@@ -23,15 +23,22 @@ PathForest::PathForest(std::span<const PathBall> balls) : balls_(balls.begin(), 
 }
 
 void PathForest::gather(const std::array<Point, 3>& triangle, NearBalls& near) const {
+  gather(triangle, {Point::Zero(), std::numeric_limits<double>::infinity()}, near);
+}
+
+void PathForest::gather(const std::array<Point, 3>& triangle, const Sphere& where, NearBalls& near) const {
   near.balls.clear();
   near.original.clear();
   const Point centroid = (triangle[0] + triangle[1] + triangle[2]) / 3;
   double reach = 0;
   for (const Point& corner : triangle) reach = std::max(reach, (corner - centroid).norm());
+  const auto apart = [](const PathBall& ball, const Point& center, double radius) {
+    const double limit = (ball.radius + radius) * (1 + 1e-9);
+    return (ball.center - center).squaredNorm() > limit * limit;
+  };
   const auto visit = [&](Index ball, Index parent) {
     const PathBall& candidate = balls_[ball];
-    const double limit = (candidate.radius + reach) * (1 + 1e-9);
-    if ((candidate.center - centroid).squaredNorm() > limit * limit) return;
+    if (apart(candidate, where.center, where.radius) || apart(candidate, centroid, reach)) return;
     near.balls.push_back({candidate.center, candidate.radius, parent, candidate.leaf});
     near.original.push_back(ball);
   };
@@ -52,6 +59,16 @@ void PathForest::descend(Index ball, const Point& point, double above, double& m
   if (excess >= min) return;
   if (balls_[ball].leaf) min = excess;
   for (Index child : children_[ball]) descend(child, point, excess, min);
+}
+
+bool PathForest::within(const Point& point, double limit) const {
+  return std::any_of(roots_.begin(), roots_.end(), [&](Index root) { return within(root, point, limit); });
+}
+
+bool PathForest::within(Index ball, const Point& point, double limit) const {
+  if ((point - balls_[ball].center).norm() - balls_[ball].radius > limit) return false;
+  const std::span<const Index> below = children(ball);
+  return balls_[ball].leaf || std::any_of(below.begin(), below.end(), [&](Index i) { return within(i, point, limit); });
 }
 
 bool surely_holds(const Sphere& ball, const Box& box) {

@@ -115,10 +115,10 @@ Disk TrianglePlane::project(const Point& center, double ball_radius) const {
   if (!(radius > height)) return disk;
   disk.center = {offset.dot(x_axis_), offset.dot(y_axis_)};
   const double in_plane = std::sqrt((radius - height) * (radius + height));
-  const double fuzz = rounding(disk.center, in_plane);
-  if ((disk.center - centroid_).norm() > in_plane + size_ + fuzz) return disk;
+  disk.fuzz = rounding(disk.center, in_plane);
+  if ((disk.center - centroid_).norm() > in_plane + size_ + disk.fuzz) return disk;
   disk.radius = in_plane;
-  disk.holds_region = holds_region(disk, fuzz);
+  disk.holds_region = holds_region(disk, disk.fuzz);
   return disk;
 }
 
@@ -129,11 +129,11 @@ bool TrianglePlane::holds_region(const Disk& disk, double fuzz) const {
 }
 
 bool TrianglePlane::certainly_inside(const Point2& point, const Disk& disk) const {
-  return (point - disk.center).norm() <= disk.radius - rounding(disk.center, disk.radius);
+  return (point - disk.center).norm() <= disk.radius - disk.fuzz;
 }
 
 void TrianglePlane::clip_to_region(const Disk& disk, CircleIntervals& needed) const {
-  const double fuzz = rounding(disk.center, disk.radius);
+  const double fuzz = disk.fuzz;
   needed.set_all();
   for (const HalfPlane& side : sides_) {
     const double room = side.offset + fuzz - side.normal.dot(disk.center);
@@ -151,7 +151,7 @@ void TrianglePlane::clip_to_region(const Disk& disk, CircleIntervals& needed) co
 }
 
 Arc TrianglePlane::inside_of(const Disk& circle, const Disk& other) const {
-  const double s = other.radius - rounding(circle.center, circle.radius) - rounding(other.center, other.radius);
+  const double s = other.radius - circle.fuzz - other.fuzz;
   if (s <= 0) return Arc::none();
   return arc_inside(other.center - circle.center, circle.radius, s);
 }

@@ -17,6 +17,7 @@ struct Disk {
   Point2 center = Point2::Zero();
   double radius = -1;
   bool holds_region = false;  // certainly
+  double fuzz = 0;            // what roundings may add up to where it is compared
 };
 
 // The region that is to be covered, in coordinates of its plane around the triangle's first corner, so that an offset

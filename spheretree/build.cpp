@@ -30,7 +30,7 @@ class TreeBuilder {
 
   SphereTreeBuild run(MedialBuildInput input) {
     stage("octree to compare with", [&] { build_.octree = octree(surface_, {.depth = options_.depth}, progress_); });
-    if (needs_axis(options_.method)) make_axis(std::move(input));
+    if (needs_axis(options_.method)) start_from(std::move(input));
     make_tree();
     stage("covering", [&] {
       const bool grows = options_.method == TreeMethod::merging && options_.closing == MergeClosing::growth;
@@ -54,14 +54,34 @@ class TreeBuilder {
     time_stage(build_.seconds, name, std::forward<Function>(function));
   }
 
-  void make_axis(MedialBuildInput input) {
+  // Points of the surface, and the axis unless the tree does without.
+  void start_from(MedialBuildInput input) {
     MedialBuildOptions medial = options_.medial;
     if (options_.samples_by_need) {
       const Index samples = samples_needed(options_);
       medial.sampling.edge_points = samples / 5;
       medial.sampling.face_points = samples - samples / 5;
     }
-    build_.medial = build_medial_axis(surface_, medial, progress_, std::move(input));
+    if (options_.method == TreeMethod::tightened && !options_.axis && !input.mesh)
+      take_points(medial.sampling, std::move(input));
+    else
+      make_axis(medial, std::move(input));
+  }
+
+  void take_points(const SamplingOptions& sampling, MedialBuildInput input) {
+    if (!surface_.solid())
+      throw InputError("a tightened tree needs a solid: " + surface_.report().faults() + "; repair the mesh first");
+    stage("surface points", [&] {
+      sampling_ = input.sampling  ? std::move(*input.sampling)
+                  : input.diagram ? std::move(input.diagram->sampling)
+                                  : sample_surface(surface_, sampling, progress_);
+    });
+    build_.points = sampling_.size();
+  }
+
+  void make_axis(const MedialBuildOptions& options, MedialBuildInput input) {
+    build_.medial = build_medial_axis(surface_, options, progress_, std::move(input));
+    build_.points = build_.medial->points;
     build_.seconds.insert(build_.seconds.end(), build_.medial->seconds.begin(), build_.medial->seconds.end());
     connected_components(build_.medial->axis, build_.axis_components);
   }
@@ -76,7 +96,10 @@ class TreeBuilder {
     const SphereTreeOptions& o = options_;
     switch (o.method) {
       case TreeMethod::octree:
-        stage("octree", [&] { build_.tree = octree(surface_, {o.depth, o.refinement, o.branching}, progress_); });
+        stage("octree", [&] {
+          const bool is_plain = o.branching == 8 && o.refinement.error == 0 && o.refinement.regions.empty();
+          build_.tree = is_plain ? build_.octree : octree(surface_, {o.depth, o.refinement, o.branching}, progress_);
+        });
         break;
       case TreeMethod::merging:
         stage("merging", [&] {
@@ -89,7 +112,8 @@ class TreeBuilder {
         break;
       case TreeMethod::tightened:
         stage("tightening", [&] {
-          keep(tightened_tree(surface_, build_.medial->axis, tightening_options(o), progress_), build_.tightening);
+          const SurfaceSampling& points = build_.medial ? build_.medial->sampling : sampling_;
+          keep(tightened_tree(surface_, points, tightening_options(o), progress_), build_.tightening);
         });
         break;
     }
@@ -116,6 +140,7 @@ class TreeBuilder {
   const Surface& surface_;
   const SphereTreeOptions& options_;
   const Progress& progress_;
+  SurfaceSampling sampling_;  // where there is no axis
   SphereTreeBuild build_;
 };
 

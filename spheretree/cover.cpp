@@ -24,8 +24,10 @@ class Grower {
  public:
   Grower(SphereTree& tree, double margin) : tree_(tree), margin_(margin) {}
 
+  // The first of those that cost least. None costs more than the path that is cheapest at every step: most others are
+  // told by that.
   double cost_of_best_path(const Points& points) {
-    best_cost_ = std::numeric_limits<double>::infinity();
+    best_cost_ = std::nextafter(cost_of_greedy_path(points), std::numeric_limits<double>::infinity());
     best_leaf_ = kNone;
     descend(0, 0, points);
     return best_cost_;
@@ -47,14 +49,33 @@ class Grower {
  private:
   double reach(Index node, const Points& points) const {
     double farthest = 0;
-    for (const Point& point : points) farthest = std::max(farthest, (point - tree_.nodes[node].sphere.center).norm());
-    return farthest;
+    const Point& center = tree_.nodes[node].sphere.center;
+    for (const Point& point : points) farthest = std::max(farthest, (point - center).squaredNorm());
+    return std::sqrt(farthest);
+  }
+
+  double cost_with(Index index, double cost_above, const Points& points) const {
+    const double radius = tree_.nodes[index].sphere.radius;
+    return cost_above + std::max(0.0, reach(index, points) + margin_ - radius) / radius;
+  }
+
+  double cost_of_greedy_path(const Points& points) const {
+    double cost = cost_with(0, 0, points);
+    for (Index index = 0; tree_.nodes[index].child_count > 0;) {
+      const SphereNode& node = tree_.nodes[index];
+      double least = std::numeric_limits<double>::infinity();
+      for (Index child = node.first_child; child < node.first_child + node.child_count; ++child) {
+        const double with_child = cost_with(child, cost, points);
+        if (with_child < least || child == node.first_child) least = with_child, index = child;
+      }
+      cost = least;
+    }
+    return cost;
   }
 
   void descend(Index index, double cost_above, const Points& points) {
     const SphereNode& node = tree_.nodes[index];
-    const double growth = std::max(0.0, reach(index, points) + margin_ - node.sphere.radius);
-    const double cost = cost_above + growth / node.sphere.radius;
+    const double cost = cost_with(index, cost_above, points);
     if (cost >= best_cost_) return;
     if (node.child_count == 0) {
       best_cost_ = cost;

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "orchard/geometry/error.h"
@@ -23,6 +26,36 @@ struct Interval {
 struct Crossing {
   double at;
   int rise;
+};
+
+// What each ray meets.
+template <class Item>
+class ByRay {
+ public:
+  explicit ByRay(std::size_t rays) : begin_(rays + 1, 0) {}
+  void add(Index ray, const Item& item) {
+    found_.push_back({ray, item});
+    ++begin_[ray + 1];
+  }
+
+  // Once, when all is there: then rows can be looked at.
+  template <class Before>
+  void sort(const Before& before) {
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    items_.resize(found_.size());
+    std::vector<Index> next(begin_.begin(), begin_.end() - 1);
+    for (const auto& [ray, item] : found_) items_[next[ray]++] = item;
+    for (std::size_t ray = 0; ray + 1 < begin_.size(); ++ray)
+      std::sort(items_.begin() + begin_[ray], items_.begin() + begin_[ray + 1], before);
+  }
+  std::span<const Item> operator[](std::size_t ray) const {
+    return {items_.data() + begin_[ray], items_.data() + begin_[ray + 1]};
+  }
+
+ private:
+  std::vector<std::pair<Index, Item>> found_;
+  std::vector<Index> begin_;
+  std::vector<Item> items_;
 };
 
 // Rays along the z axis of a frame whose z axis is the longest of a box, sorted into cells across it.
@@ -103,8 +136,8 @@ double left_of(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::
   return turned ? -area : area;
 }
 
-std::vector<std::vector<Crossing>> crossings(const Surface& surface, const Rays& rays) {
-  std::vector<std::vector<Crossing>> found(rays.size());
+ByRay<Crossing> crossings(const Surface& surface, const Rays& rays) {
+  ByRay<Crossing> found(rays.size());
   for (Index t = 0; t < surface.mesh().triangles.size(); ++t) {
     const auto corners = surface.corners(t);
     const std::array<Eigen::Vector2d, 3> flat{rays.across(corners[0]), rays.across(corners[1]),
@@ -118,31 +151,29 @@ std::vector<std::vector<Crossing>> crossings(const Surface& surface, const Rays&
       const double at =
           (a * rays.along(corners[0]) + b * rays.along(corners[1]) + c * rays.along(corners[2])) / (a + b + c);
       // Counter-clockwise from above is a triangle that faces up: the ray leaves there.
-      found[ray].push_back({at, a > 0 ? -1 : 1});
+      found.add(ray, {at, a > 0 ? -1 : 1});
     });
   }
-  for (auto& list : found)
-    std::sort(list.begin(), list.end(), [](const Crossing& x, const Crossing& y) { return x.at < y.at; });
+  found.sort([](const Crossing& x, const Crossing& y) { return x.at < y.at; });
   return found;
 }
 
-std::vector<std::vector<Interval>> chords(std::span<const Sphere> balls, const Rays& rays) {
-  std::vector<std::vector<Interval>> found(rays.size());
+ByRay<Interval> chords(std::span<const Sphere> balls, const Rays& rays) {
+  ByRay<Interval> found(rays.size());
   for (const Sphere& ball : balls) {
     const Eigen::Vector2d center = rays.across(ball.center), reach = Eigen::Vector2d::Constant(ball.radius);
     rays.for_each_near(center - reach, center + reach, [&](Index ray) {
       const double squared = ball.radius * ball.radius - (rays[ray] - center).squaredNorm();
       if (squared <= 0) return;
       const double half = std::sqrt(squared), at = rays.along(ball.center);
-      found[ray].push_back({at - half, at + half});
+      found.add(ray, {at - half, at + half});
     });
   }
-  for (auto& list : found)
-    std::sort(list.begin(), list.end(), [](const Interval& x, const Interval& y) { return x.begin < y.begin; });
+  found.sort([](const Interval& x, const Interval& y) { return x.begin < y.begin; });
   return found;
 }
 
-double length_inside(const std::vector<Crossing>& crossings, double begin, double end) {
+double length_inside(std::span<const Crossing> crossings, double begin, double end) {
   double length = 0;
   int winding = 0;
   for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
@@ -153,7 +184,7 @@ double length_inside(const std::vector<Crossing>& crossings, double begin, doubl
 }
 
 // What of the chords' union is outside.
-double length_outside(const std::vector<Interval>& chords, const std::vector<Crossing>& crossings) {
+double length_outside(std::span<const Interval> chords, std::span<const Crossing> crossings) {
   double length = 0;
   for (std::size_t i = 0; i < chords.size();) {
     Interval joined = chords[i++];

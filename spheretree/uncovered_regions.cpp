@@ -127,10 +127,12 @@ class Prober {
   Index last_ = kNone;  // the leaf that decided the last distance: it is near the next point as well
 };
 
-std::vector<UncoveredRegion> uncovered_regions_of(const UncoveredTriangle& uncovered, Prober prober, double near) {
+// Of those whose distance is not above `beyond`, it stays at that, and nobody knows where they are farthest.
+std::vector<UncoveredRegion> uncovered_regions_of(const UncoveredTriangle& uncovered, Prober prober, double near,
+                                                  double beyond) {
   std::vector<UncoveredRegion> regions;
   for (const auto& [arcs, corners, box] : joined_arcs(uncovered.cover, near)) {
-    UncoveredRegion region{{}, arcs[0]->middle, 0};
+    UncoveredRegion region{{}, arcs[0]->middle, beyond};
     Point middle = Point::Zero();
     for (const UncoveredArc* arc : arcs) {
       for (const Point& p : {arc->begin, arc->middle, arc->end}) {
@@ -143,9 +145,24 @@ std::vector<UncoveredRegion> uncovered_regions_of(const UncoveredTriangle& uncov
     regions.push_back(std::move(region));
   }
   if (regions.empty()) {
-    regions.push_back({{uncovered.cover.witness}, uncovered.cover.witness, 0});
+    regions.push_back({{uncovered.cover.witness}, uncovered.cover.witness, beyond});
     prober.try_point(uncovered.cover.witness, regions.back());
   }
+  return regions;
+}
+
+std::vector<UncoveredRegion> find_regions(const Surface& surface, const Coverage& coverage,
+                                          std::span<const PathBall> balls, double near, double beyond) {
+  const PathForest forest(balls);
+  const std::size_t count = coverage.uncovered.size();
+  std::vector<std::vector<UncoveredRegion>> found(count);
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    const UncoveredTriangle& uncovered = coverage.uncovered[i];
+    found[i] = uncovered_regions_of(uncovered, Prober(surface, uncovered.triangle, balls, forest, near), near, beyond);
+  });
+  std::vector<UncoveredRegion> regions;
+  for (auto& list : found)
+    for (UncoveredRegion& region : list) regions.push_back(std::move(region));
   return regions;
 }
 
@@ -159,25 +176,14 @@ std::vector<Point> UncoveredRegion::points() const {
 
 std::vector<UncoveredRegion> find_uncovered_regions(const Surface& surface, const Coverage& coverage,
                                                     std::span<const PathBall> balls, double near) {
-  const PathForest forest(balls);
-  const std::size_t count = coverage.uncovered.size();
-  std::vector<std::vector<UncoveredRegion>> found(count);
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-    const UncoveredTriangle& uncovered = coverage.uncovered[i];
-    found[i] = uncovered_regions_of(uncovered, Prober(surface, uncovered.triangle, balls, forest, near), near);
-  });
-  std::vector<UncoveredRegion> regions;
-  for (auto& list : found)
-    for (UncoveredRegion& region : list) regions.push_back(std::move(region));
-  return regions;
+  return find_regions(surface, coverage, balls, near, 0);
 }
 
 std::vector<UncoveredRegion> find_deep_uncovered_regions(const Surface& surface, const Coverage& coverage,
                                                          std::span<const PathBall> balls) {
-  const double radius = surface.bounding_radius();
-  auto uncovered = find_uncovered_regions(surface, coverage, balls, tolerance::kCoverMargin * radius);
-  std::erase_if(uncovered,
-                [&](const UncoveredRegion& region) { return region.distance <= kLeftToGrowth * kLastGrowth * radius; });
+  const double radius = surface.bounding_radius(), left_to_growth = kLeftToGrowth * kLastGrowth * radius;
+  auto uncovered = find_regions(surface, coverage, balls, tolerance::kCoverMargin * radius, left_to_growth);
+  std::erase_if(uncovered, [&](const UncoveredRegion& region) { return region.distance <= left_to_growth; });
   return uncovered;
 }
 

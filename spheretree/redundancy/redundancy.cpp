@@ -9,6 +9,9 @@
 namespace orchard {
 namespace {
 
+// A point this far outside all paths, in R, is uncovered, whatever the rounding.
+constexpr double kBeyondDoubt = 1e-9;
+
 // Takes nodes out as long as the path rule stays certified. Only triangles that a path region of a removed leaf touches
 // can become uncovered.
 class Remover {
@@ -88,7 +91,21 @@ class Remover {
     return leaves;
   }
 
+  // Most leaves hold the surface nearest to their centre alone: that tells of them without a proof.
+  bool surely_uncovered(const std::vector<Index>& leaves) const {
+    const double beyond_doubt = kBeyondDoubt * surface_.bounding_radius();
+    return std::any_of(leaves.begin(), leaves.end(), [&](Index leaf) {
+      const Point& center = tree_.nodes[leaf].sphere.center;
+      const auto& triangles = touching_[leaf];
+      return std::any_of(triangles.begin(), triangles.end(), [&](Index triangle) {
+        const auto [a, b, c] = surface_.corners(triangle);
+        return !forest_.within(closest_point_of_triangle(center, a, b, c).position, beyond_doubt);
+      });
+    });
+  }
+
   bool still_covered(const std::vector<Index>& leaves) {
+    if (surely_uncovered(leaves)) return false;
     std::vector<Index> triangles;
     for (Index leaf : leaves) triangles.insert(triangles.end(), touching_[leaf].begin(), touching_[leaf].end());
     std::sort(triangles.begin(), triangles.end());

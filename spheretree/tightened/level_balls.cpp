@@ -32,11 +32,7 @@ void LevelBalls::find_samples(LevelBall& ball) const {
 
 // Of those from `first` on.
 void LevelBalls::append_samples(LevelBall& ball, Index first) const {
-  const double limit = ball.radius * ball.radius * kInside;
-  const std::vector<Point>& points = regions_.samples().points;
-  const std::vector<Index>& all = regions_.samples_in(ball.path_region);
-  for (auto s = std::lower_bound(all.begin(), all.end(), first); s != all.end(); ++s)
-    if ((points[*s] - ball.center).squaredNorm() <= limit) ball.samples.push_back(*s);
+  regions_.append_samples(ball.path_region, first, ball.center, ball.radius * ball.radius * kInside, ball.samples);
 }
 
 void LevelBalls::recount() {
@@ -97,14 +93,19 @@ std::vector<Index> LevelBalls::take_apart(std::vector<Index>& order) const {
   return apart;
 }
 
-void LevelBalls::replace(Index index, const FittedBall& by) {
-  LevelBall& ball = balls_[index];
-  for (Index s : ball.samples) --holders_[s];
-  static_cast<FittedBall&>(ball) = by;
-  place(index);
-  ball.fitted_to = 0;
-  find_samples(ball);
-  for (Index s : ball.samples) ++holders_[s];
+LevelBall LevelBalls::fitted(Index ball, const FittedBall& to) const {
+  LevelBall fitted;
+  static_cast<FittedBall&>(fitted) = to;
+  fitted.path_region = balls_[ball].path_region;
+  find_samples(fitted);
+  return fitted;
+}
+
+void LevelBalls::replace(Index ball, LevelBall by) {
+  for (Index s : balls_[ball].samples) --holders_[s];
+  for (Index s : by.samples) ++holders_[s];
+  balls_[ball] = std::move(by);
+  place(ball);
 }
 
 bool LevelBalls::try_replace(std::span<const Index> balls, std::vector<LevelBall>& by) {

@@ -39,7 +39,10 @@ class LevelBalls {
   // Moves balls from `order` to the result, from its begin on, no two of which meet: they have no sample in common.
   std::vector<Index> take_apart(std::vector<Index>& order) const;
 
-  void replace(Index ball, const FittedBall& by);
+  // The ball as it would be in its path region, fitted to something else, with its samples.
+  LevelBall fitted(Index ball, const FittedBall& to) const;
+  // By what fitted() gave.
+  void replace(Index ball, LevelBall by);
   void set_fitted_to(Index ball, std::uint64_t samples) { balls_[ball].fitted_to = samples; }
   // Puts other balls, whose samples are known, in the place of some, and leaves these in `by`. Does nothing, and
   // returns false, if a sample would be lost or a path region would get too many balls.

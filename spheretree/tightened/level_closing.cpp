@@ -91,13 +91,13 @@ void fit_again(const Surface& surface, std::vector<std::vector<Point>>& taken, L
     if (!taken[b].empty()) order.push_back(b);
   while (!order.empty()) {
     const std::vector<Index> batch = balls.take_apart(order);
-    std::vector<FittedBall> fitted(batch.size());
+    std::vector<LevelBall> fitted(batch.size());
     tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {
       std::vector<Point>& points = taken[batch[i]];
       balls.append_held_alone(batch[i], points);
-      fitted[i] = BallFitter(surface).fit(points, balls[batch[i]], kTakerEvaluations);
+      fitted[i] = balls.fitted(batch[i], BallFitter(surface).fit(points, balls[batch[i]], kTakerEvaluations));
     });
-    for (std::size_t i = 0; i < batch.size(); ++i) balls.replace(batch[i], fitted[i]);
+    for (std::size_t i = 0; i < batch.size(); ++i) balls.replace(batch[i], std::move(fitted[i]));
   }
 }
 

@@ -66,7 +66,7 @@ bool LevelCover::in_path_region(Index path_region, const Point& point) const {
 // The balls near the part of the triangle in the sphere, parents first.
 void LevelCover::gather(const std::array<Point, 3>& corners, const Sphere& where, const Change& change,
                         NearBalls& near) const {
-  upper_.gather(corners, near);
+  upper_.gather(corners, where, near);
   const Point middle = (corners[0] + corners[1] + corners[2]) / 3;
   double reach = 0;
   for (const Point& corner : corners) reach = std::max(reach, (corner - middle).norm());

@@ -3,7 +3,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <numeric>
 
 namespace orchard::detail {
 namespace {
@@ -33,20 +32,17 @@ Point touching_center(const Surface& surface, const Point& point, const Vector& 
   return point - radius * outward;
 }
 
-// The points without those that repair added, which come out otherwise with the last digits of the others; but all, if
-// there are hardly others, as in an imported axis.
-std::vector<Index> sampled_points(const MedialAxis& axis) {
-  std::vector<Index> all(axis.points.size()), sampled;
-  std::iota(all.begin(), all.end(), Index{0});
-  for (Index p : all)
-    if (axis.origins.size() != all.size() || axis.origins[p] != PointOrigin::repair) sampled.push_back(p);
-  return 2 * sampled.size() < all.size() ? all : sampled;
+std::vector<Index> without_repair(const SurfaceSampling& sampling) {
+  std::vector<Index> sampled;
+  for (Index p = 0; p < sampling.size(); ++p)
+    if (sampling.origins[p] != PointOrigin::repair) sampled.push_back(p);
+  return sampled;
 }
 
 }  // namespace
 
-Samples surface_samples(const Surface& surface, const MedialAxis& axis, const CanonicalFrame& frame) {
-  const std::vector<Index> sampled = sampled_points(axis);
+Samples surface_samples(const Surface& surface, const SurfaceSampling& sampling, const CanonicalFrame& frame) {
+  const std::vector<Index> sampled = without_repair(sampling);
   const auto count = static_cast<Index>(sampled.size());
   Samples samples;
   samples.points.resize(count);
@@ -54,14 +50,14 @@ Samples surface_samples(const Surface& surface, const MedialAxis& axis, const Ca
   tbb::parallel_for(Index{0}, count, [&](Index p) {
     const Index from = sampled[p];
     // Edges' points are evenly spaced, without relaxation: they are known to the last digits.
-    const bool exact = axis.origins.size() == axis.points.size() && axis.origins[from] == PointOrigin::edge;
-    const Point& point = axis.points[from];
+    const bool exact = sampling.origins[from] == PointOrigin::edge;
+    const Point& point = sampling.points[from];
     const Point about = exact ? frame.in(point) : surface.closest(frame.roughly_in(point)).position;
     samples.points[p] = CanonicalFrame::on_lattice(about);
     const ClosestPoint on = surface.closest(samples.points[p]);
     samples.starts[p] = touching_center(surface, samples.points[p], surface.pseudonormal(on.triangle, on.feature));
   });
-  if (surface.mesh().vertices.size() > axis.points.size()) return samples;
+  if (surface.mesh().vertices.size() > sampled.size()) return samples;
   for (Index v = 0; v < surface.mesh().vertices.size(); ++v) {
     if (surface.triangles_around(v).empty()) continue;
     samples.points.push_back(surface.mesh().vertices[v]);

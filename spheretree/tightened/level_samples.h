@@ -1,6 +1,6 @@
 #pragma once
 #include "canonical_frame.h"
-#include "orchard/medial/axis.h"
+#include "orchard/geometry/sampling.h"
 #include "partial_tree.h"
 
 namespace orchard::detail {
@@ -11,10 +11,11 @@ struct Samples {
   Index size() const { return static_cast<Index>(points.size()); }
 };
 
-// The axis's surface points, each with the centre of the largest ball in the solid that touches it, and the mesh's
-// corners if they are not too many. `surface` is the one in the frame. Relaxed points are taken roughly and put back on
-// it, so that the same come out whatever the frame in which the axis was made.
-Samples surface_samples(const Surface& surface, const MedialAxis& axis, const CanonicalFrame& frame);
+// The surface points but for those that gap repair added, which come out otherwise with the last digits of the others:
+// each with the centre of the largest ball in the solid that touches it; and the mesh's corners if they are not too
+// many. `surface` is the one in the frame. Relaxed points are taken roughly and put back on it, so that the same come
+// out whatever the frame in which they were sampled.
+Samples surface_samples(const Surface& surface, const SurfaceSampling& sampling, const CanonicalFrame& frame);
 
 // About so many of them, or a few more: every k-th, without those that a leaf holds.
 Samples samples_for(const Samples& all, const PartialTree& partial, Index enough);

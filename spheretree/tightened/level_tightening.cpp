@@ -51,7 +51,7 @@ std::vector<Point> ends_of(const std::vector<OpenArc>& arcs) {
 // Balls that are apart share no sample: what one of them lets go of is none of the others' business.
 void tighten_to_samples(const Surface& surface, LevelBalls& balls) {
   struct Fit {
-    FittedBall ball;
+    std::optional<LevelBall> tighter;
     std::uint64_t samples = 0;
   };
   tbb::enumerable_thread_specific<BallFitter> fitters([&surface] { return BallFitter(surface); });
@@ -62,12 +62,13 @@ void tighten_to_samples(const Surface& surface, LevelBalls& balls) {
     tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {
       const LevelBall& ball = balls[batch[i]];
       std::vector<Point> points;
-      fits[i] = {ball, balls.append_held_alone(batch[i], points)};
+      fits[i].samples = balls.append_held_alone(batch[i], points);
       if (points.empty() || fits[i].samples == ball.fitted_to) return;
-      fits[i].ball = fitters.local().fit(points, ball, kSampleEvaluations);
+      const FittedBall fitted = fitters.local().fit(points, ball, kSampleEvaluations);
+      if (fitted.looseness() < ball.looseness()) fits[i].tighter = balls.fitted(batch[i], fitted);
     });
     for (std::size_t i = 0; i < batch.size(); ++i) {
-      if (fits[i].ball.looseness() < balls[batch[i]].looseness()) balls.replace(batch[i], fits[i].ball);
+      if (fits[i].tighter) balls.replace(batch[i], std::move(*fits[i].tighter));
       balls.set_fitted_to(batch[i], fits[i].samples);
     }
   }
@@ -78,14 +79,15 @@ void tighten_to_surface(const Surface& surface, LevelBalls& balls, LevelCover& c
   std::vector<Index> order = balls.loosest_first();
   while (!order.empty()) {
     const std::vector<Index> batch = balls.take_apart(order);
-    std::vector<std::optional<FittedBall>> tighter(batch.size());
+    std::vector<std::optional<LevelBall>> tighter(batch.size());
     tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {
-      tighter[i] = tighter_on_surface(surface, balls[batch[i]], cover, batch[i], workers.local());
+      const auto fitted = tighter_on_surface(surface, balls[batch[i]], cover, batch[i], workers.local());
+      if (fitted) tighter[i] = balls.fitted(batch[i], *fitted);
     });
     for (std::size_t i = 0; i < batch.size(); ++i) {
       if (!tighter[i]) continue;
       cover.replace(batch[i], {{tighter[i]->center, tighter[i]->radius}, balls[batch[i]].path_region});
-      balls.replace(batch[i], *tighter[i]);
+      balls.replace(batch[i], std::move(*tighter[i]));
     }
   }
 }

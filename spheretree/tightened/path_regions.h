@@ -20,6 +20,10 @@ class PathRegions {
   const Samples& samples() const { return samples_; }
   const std::vector<Index>& samples_in(Index path_region) const { return samples_in_[path_region]; }  // ascending
   const std::vector<Index>& regions_of(Index sample) const { return regions_of_[sample]; }            // ascending
+  // Appends those of the path region's samples, from number `first` on, whose squared distance from the center is at
+  // most so much.
+  void append_samples(Index path_region, Index first, const Point& center, double squared_radius,
+                      std::vector<Index>& samples) const;
   bool holds(Index path_region, const Point& point) const;
   bool holds_sample(Index path_region, Index sample) const;
   std::vector<Index> regions_around(const Point& point) const;  // those that hold it, ascending
@@ -33,6 +37,9 @@ class PathRegions {
   Cell cell_at(const Point& point) const;  // the nearest one of a point outside
   Index place_of(const Cell& cell) const { return cell[0] + cells_[0] * (cell[1] + cells_[1] * cell[2]); }
   void append(const Point& point, const Point& start, std::vector<Index> regions);
+  struct Coordinates {
+    std::vector<double> x, y, z;
+  };
 
   std::vector<std::vector<Sphere>> paths_;
   // A grid around the last balls of the paths, and which of these meet each cell, ascending.
@@ -42,6 +49,7 @@ class PathRegions {
   std::vector<std::vector<Index>> near_;
   Samples samples_;
   std::vector<std::vector<Index>> samples_in_;  // each path region
+  std::vector<Coordinates> places_in_;          // of these
   std::vector<std::vector<Index>> regions_of_;  // each sample
 };
 

@@ -53,12 +53,12 @@ void require_sizes(const TightenOptions& options) {
                 " times as many");
 }
 
-TightenBuild tightened_tree(const Surface& surface, const MedialAxis& axis, const TightenOptions& options,
+TightenBuild tightened_tree(const Surface& surface, const SurfaceSampling& sampling, const TightenOptions& options,
                             const Progress& progress) {
   require_sizes(options);
-  if (axis.size() == 0) throw InputError("the medial axis has no vertex: sample the surface more densely");
   const Framed framed(surface);
-  const detail::Samples samples = detail::surface_samples(framed.surface, axis, framed.frame);
+  const detail::Samples samples = detail::surface_samples(framed.surface, sampling, framed.frame);
+  if (samples.size() == 0) throw InputError("a tightened tree needs surface points");
   const Sphere root = framed.frame.in(surface.bounding_ball());
   TightenOptions own = options;
   own.refinement = framed.frame.in(options.refinement);

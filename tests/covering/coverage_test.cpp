@@ -68,6 +68,44 @@ TEST(Coverage, DoesNotDependOnTheThreadCount) {
   EXPECT_EQ(results[0], results[2]);
 }
 
+TEST(PathForest, TellsWhetherAPathComesWithinADistance) {
+  for (std::uint64_t k = 0; k < 100 * test::more(); ++k) {
+    Random random(test::first_seed() + k, 33);
+    const test::Triangle triangle = test::random_triangle(random);
+    const PathForest forest(test::random_forest(random, triangle, random.uniform(0.1, 1)));
+    for (int i = 0; i < 50; ++i) {
+      const Point point = test::random_vector(random, 2);
+      const double distance = forest.distance(point);
+      EXPECT_TRUE(forest.within(point, distance)) << "seed " << k;
+      EXPECT_FALSE(forest.within(point, distance - 1e-12)) << "seed " << k;
+    }
+  }
+}
+
+// A point of the part is in a path of the balls gathered where it is in any.
+TEST(PathForest, GathersWhatHoldsAPartOfATriangle) {
+  std::size_t all = 0, some = 0, inside = 0;
+  for (std::uint64_t k = 0; k < 200 * test::more(); ++k) {
+    Random random(test::first_seed() + k, 34);
+    const test::Triangle triangle = test::random_triangle(random);
+    const PathForest forest(test::random_forest(random, triangle, random.uniform(0.1, 1)));
+    const Sphere where{test::point_of(triangle, random.uniform(), random.uniform()), random.uniform(0.05, 0.5)};
+    NearBalls whole, part;
+    forest.gather(triangle, whole);
+    forest.gather(triangle, where, part);
+    all += whole.balls.size();
+    some += part.balls.size();
+    for (int i = 0; i < 100; ++i) {
+      const Point point = test::point_of(triangle, random.uniform(), random.uniform());
+      if ((point - where.center).norm() > where.radius) continue;
+      ++inside;
+      EXPECT_EQ(path_distance(point, whole.balls) <= 0, path_distance(point, part.balls) <= 0) << "seed " << k;
+    }
+  }
+  EXPECT_LT(some, all);
+  EXPECT_GT(inside, 1000u);
+}
+
 // Whether all corners lie in all balls from some leaf up, with so much room in parts of the radius.
 bool some_path_holds(std::span<const PathBall> balls, const Box& box, double room) {
   const auto holds = [&](const PathBall& ball) {

@@ -57,6 +57,31 @@ TEST(BuildSphereTree, TakesAsManyPointsAsTheTreeNeedsUnlessTold) {
   EXPECT_NEAR(build_sphere_tree(surface, options).medial->points, 5000, 50);
 }
 
+TEST(BuildSphereTree, TightensTheSameTreeWithAndWithoutAnAxis) {
+  for (const double gap : {0.02, 0.2}) {  // the narrow one gets points by gap repair, which do not count
+    const Surface surface(test::u_shape(gap));
+    SphereTreeOptions options = small(TreeMethod::tightened);
+    const SphereTreeBuild with = build_sphere_tree(surface, options);
+    options.axis = false;
+    const SphereTreeBuild without = build_sphere_tree(surface, options);
+    EXPECT_TRUE(test::same_tree(with.tree, without.tree));
+    EXPECT_TRUE(with.medial.has_value());
+    EXPECT_FALSE(without.medial.has_value());
+    EXPECT_EQ(with.points, without.points);
+  }
+  SphereTreeOptions merging = small(TreeMethod::merging);
+  merging.axis = false;
+  EXPECT_TRUE(build_sphere_tree(Surface(test::u_shape(0.2)), merging).medial.has_value());
+}
+
+TEST(BuildSphereTree, WithoutAnAxisRefusesWhatIsNotSolid) {
+  TriangleMesh open = test::l_shape();
+  open.triangles.pop_back();
+  SphereTreeOptions options = small(TreeMethod::tightened);
+  options.axis = false;
+  EXPECT_THROW(build_sphere_tree(Surface(open), options), InputError);
+}
+
 TEST(BuildSphereTree, BuildsFromAForeignAxis) {
   const Surface surface(test::u_shape(0.2));
   MedialMesh foreign = medial_mesh(build_medial_axis(surface, {.sampling = {.face_points = 400}}).axis);

@@ -55,6 +55,29 @@ TEST(PathRegions, HoldTheSamplesInAllBallsOfTheirPath) {
   EXPECT_FALSE(regions.holds_sample(0, 2));
 }
 
+TEST(PathRegions, NameTheSamplesNearACenter) {
+  for (std::uint64_t k = 0; k < 20 * test::more(); ++k) {
+    Random random(test::first_seed() + k, 61);
+    const auto anywhere = [&] { return Point(random.uniform(), random.uniform(), random.uniform()); };
+    Samples samples;
+    const auto count = static_cast<Index>(random.below(1000));
+    for (Index s = 0; s < count; ++s) samples.points.push_back(anywhere());
+    samples.starts = samples.points;
+    const std::vector<Sphere> everywhere{{Point(0.5, 0.5, 0.5), 1}}, half{everywhere[0], {Point(0, 0, 0), 0.9}};
+    const PathRegions regions(samples, {everywhere, half});
+    for (const Index region : {0u, 1u}) {
+      const Point center = anywhere();
+      const double squared = random.uniform();
+      const auto first = static_cast<Index>(random.below(count + 1));
+      std::vector<Index> found{9}, wanted{9};
+      regions.append_samples(region, first, center, squared, found);
+      for (Index s : regions.samples_in(region))
+        if (s >= first && (samples.points[s] - center).squaredNorm() <= squared) wanted.push_back(s);
+      EXPECT_EQ(found, wanted) << "seed " << k;
+    }
+  }
+}
+
 // Against every path region, for balls of very different sizes and points that are in none.
 TEST(PathRegions, AroundAPointAreAllThatHoldIt) {
   const std::uint64_t first = test::first_seed();
@@ -98,7 +121,7 @@ TEST(LevelBalls, KnowWhatOnlySomeOfThemHold) {
 
 TEST(LevelBalls, CountAgainWhenOneIsReplaced) {
   LevelBalls balls = three_balls();
-  balls.replace(1, {Point(5, 0, 0), 0.5, 0});  // lets 1 and 3 go
+  balls.replace(1, balls.fitted(1, {Point(5, 0, 0), 0.5, 0}));  // lets 1 and 3 go
   const std::vector<Index> first{0}, last{2};
   EXPECT_EQ(balls.held_only_by(first), (std::vector<Index>{0, 1}));
   EXPECT_EQ(balls.held_only_by(last), (std::vector<Index>{3, 4}));

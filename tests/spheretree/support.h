@@ -14,9 +14,12 @@
 
 namespace orchard::test {
 
+inline SurfaceSampling points_of(const Surface& surface, Index points = 600, std::uint64_t seed = 1) {
+  return sample_surface(surface, {.face_points = points, .edge_points = points / 4, .iterations = 10, .seed = seed});
+}
+
 inline MedialAxis axis_of(const Surface& surface, Index points = 600, std::uint64_t seed = 1) {
-  const SurfaceSampling sampling =
-      sample_surface(surface, {.face_points = points, .edge_points = points / 4, .iterations = 10, .seed = seed});
+  const SurfaceSampling sampling = points_of(surface, points, seed);
   return medial_axis(surface, sampling, exact_voronoi(sampling.points).diagram);
 }
 

@@ -27,7 +27,7 @@ std::vector<Index> level_counts(const SphereTree& tree) {
 TEST(TightenedTree, IsConservativeOnEveryShape) {
   for (const Shape& shape : shapes()) {
     const Surface surface(shape.mesh);
-    const SphereTree tree = tightened_tree(surface, axis_of(surface, 1000), {.depth = 2, .effort = Effort::low}).tree;
+    const SphereTree tree = tightened_tree(surface, points_of(surface, 1000), {.depth = 2, .effort = Effort::low}).tree;
     EXPECT_EQ(tree.depth(), 2) << shape.name;
     expect_conservative(tree, surface, shape.name);
   }
@@ -35,10 +35,10 @@ TEST(TightenedTree, IsConservativeOnEveryShape) {
 
 TEST(TightenedTree, KeepsToTheBudgetOfEachLevelAndOfEachNode) {
   const Surface surface(u_shape(0.3));
-  const MedialAxis axis = axis_of(surface, 3000);
+  const SurfaceSampling points = points_of(surface, 3000);
   for (const Index branching : {2u, 5u, 8u, 17u}) {
     const SphereTree tree =
-        tightened_tree(surface, axis, {.depth = 2, .branching = branching, .effort = Effort::low}).tree;
+        tightened_tree(surface, points, {.depth = 2, .branching = branching, .effort = Effort::low}).tree;
     expect_conservative(tree, surface, "U");
     const auto counts = level_counts(tree);
     ASSERT_EQ(counts.size(), 3);
@@ -50,10 +50,10 @@ TEST(TightenedTree, KeepsToTheBudgetOfEachLevelAndOfEachNode) {
 
 TEST(TightenedTree, GoesAsDeepAsAskedWithAnyBranching) {
   const Surface surface(torus(24, 12));
-  const MedialAxis axis = axis_of(surface, 1500);
+  const SurfaceSampling points = points_of(surface, 1500);
   for (const auto& [branching, depth] : {std::pair<Index, Index>{2, 6}, {4, 4}, {64, 1}}) {
     const SphereTree tree =
-        tightened_tree(surface, axis, {.depth = depth, .branching = branching, .effort = Effort::low}).tree;
+        tightened_tree(surface, points, {.depth = depth, .branching = branching, .effort = Effort::low}).tree;
     expect_conservative(tree, surface, "torus");
     EXPECT_EQ(tree.depth(), depth);
     const auto counts = level_counts(tree);
@@ -70,7 +70,7 @@ TEST(TightenedTree, GoesAsDeepAsAskedWithAnyBranching) {
 TEST(TightenedTree, GoesNoDeeperThanItsSamplesMakeWorthWhile) {
   const Surface surface(torus(24, 12));
   const SphereTree tree =
-      tightened_tree(surface, axis_of(surface, 1500), {.depth = 7, .branching = 5, .effort = Effort::low}).tree;
+      tightened_tree(surface, points_of(surface, 1500), {.depth = 7, .branching = 5, .effort = Effort::low}).tree;
   expect_conservative(tree, surface, "torus");
   EXPECT_GE(tree.depth(), 3);
   EXPECT_LT(tree.depth(), 7);
@@ -80,7 +80,7 @@ TEST(TightenedTree, GoesNoDeeperThanItsSamplesMakeWorthWhile) {
 
 TEST(TightenedTree, HasNoSphereOfNoSizeAndOnceThinnedNoneThatCanGo) {
   const Surface surface(u_shape(0.3));
-  SphereTree tree = tightened_tree(surface, axis_of(surface, 2000), {.depth = 2, .effort = Effort::low}).tree;
+  SphereTree tree = tightened_tree(surface, points_of(surface, 2000), {.depth = 2, .effort = Effort::low}).tree;
   remove_redundant(tree, surface);
   for (const SphereNode& node : tree.nodes) EXPECT_GT(node.sphere.radius, 0.01 * surface.bounding_radius());
   for (Index node = 1; node < tree.nodes.size(); ++node) {
@@ -98,9 +98,9 @@ TEST(TightenedTree, HasNoSphereOfNoSizeAndOnceThinnedNoneThatCanGo) {
 TEST(TightenedTree, FitsTighterThanMerging) {
   for (const TriangleMesh& mesh : {torus(32, 16), l_shape(), u_shape(0.3)}) {
     const Surface surface(mesh);
-    const MedialAxis axis = axis_of(surface, 3000);
-    SphereTree tight = tightened_tree(surface, axis, {.depth = 2, .effort = Effort::low}).tree;
-    SphereTree merged = merge_tree(surface, axis, {.depth = 2, .closing = MergeClosing::growth}).tree;
+    const SurfaceSampling points = points_of(surface, 3000);
+    SphereTree tight = tightened_tree(surface, points, {.depth = 2, .effort = Effort::low}).tree;
+    SphereTree merged = merge_tree(surface, axis_of(surface, 3000), {.depth = 2, .closing = MergeClosing::growth}).tree;
     cover(merged, surface);
     measure(tight, surface);
     measure(merged, surface);
@@ -115,17 +115,17 @@ TEST(TightenedTree, FitsTighterThanMerging) {
 
 TEST(TightenedTree, ABallOfABallIsAlmostExact) {
   const Surface surface(icosphere(3));
-  SphereTree tree = tightened_tree(surface, axis_of(surface, 1000), {.depth = 1, .branching = 2}).tree;
+  SphereTree tree = tightened_tree(surface, points_of(surface, 1000), {.depth = 1, .branching = 2}).tree;
   measure(tree, surface);
   for (const SphereNode& node : tree.nodes) EXPECT_LT(node.inaccuracy, 0.02 * surface.bounding_radius());
 }
 
 TEST(TightenedTree, RefinesOnlyWhatIsNotAccurateEnough) {
   const Surface surface(u_shape(0.3));
-  const MedialAxis axis = axis_of(surface, 3000);
+  const SurfaceSampling points = points_of(surface, 3000);
   TightenOptions options{.depth = 3, .effort = Effort::low};
   options.refinement.error = 0.08 * surface.bounding_radius();
-  SphereTree tree = tightened_tree(surface, axis, options).tree;
+  SphereTree tree = tightened_tree(surface, points, options).tree;
   expect_conservative(tree, surface, "U");
   measure(tree, surface);
   ASSERT_EQ(tree.depth(), 3);
@@ -140,11 +140,11 @@ TEST(TightenedTree, RefinesOnlyWhatIsNotAccurateEnough) {
 
 TEST(TightenedTree, RefinesARegionMore) {
   const Surface surface(box(Point(0, 0, 0), Point(10, 1, 1)));
-  const MedialAxis axis = axis_of(surface, 3000);
+  const SurfaceSampling points = points_of(surface, 3000);
   TightenOptions options{.depth = 3, .effort = Effort::low};
   options.refinement.error = 100;
   options.refinement.regions.push_back({{Point(10, 0.5, 0.5), 0.5}, 1e-3});
-  const SphereTree tree = tightened_tree(surface, axis, options).tree;
+  const SphereTree tree = tightened_tree(surface, points, options).tree;
   expect_conservative(tree, surface, "bar");
   EXPECT_EQ(tree.depth(), 3);
   for (const SphereNode& node : tree.nodes) {
@@ -155,12 +155,12 @@ TEST(TightenedTree, RefinesARegionMore) {
 
 TEST(TightenedTree, EveryObjectiveIsConservativeAndLowersWhatItIsFor) {
   const Surface surface(u_shape(0.3));
-  const MedialAxis axis = axis_of(surface, 3000);
+  const SurfaceSampling points = points_of(surface, 3000);
   struct Figures {
     double mean, max, outside;
   };
   const auto figures = [&](Objective objective) {
-    SphereTree tree = tightened_tree(surface, axis, {.depth = 2, .effort = Effort::low, .objective = objective}).tree;
+    SphereTree tree = tightened_tree(surface, points, {.depth = 2, .effort = Effort::low, .objective = objective}).tree;
     expect_conservative(tree, surface, "U");
     measure(tree, surface);
     std::vector<Sphere> spheres;
@@ -178,11 +178,11 @@ TEST(TightenedTree, EveryObjectiveIsConservativeAndLowersWhatItIsFor) {
 
 TEST(TightenedTree, IsTheSameOnOneTwoAndSevenThreads) {
   const Surface surface(u_shape(0.3));
-  const MedialAxis axis = axis_of(surface, 1000);
+  const SurfaceSampling points = points_of(surface, 1000);
   std::vector<SphereTree> trees;
   for (const std::size_t threads : {1u, 2u, 7u}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    trees.push_back(tightened_tree(surface, axis, {.depth = 2, .branching = 3}).tree);
+    trees.push_back(tightened_tree(surface, points, {.depth = 2, .branching = 3}).tree);
   }
   EXPECT_TRUE(same_tree(trees[0], trees[1]));
   EXPECT_TRUE(same_tree(trees[0], trees[2]));
@@ -190,28 +190,28 @@ TEST(TightenedTree, IsTheSameOnOneTwoAndSevenThreads) {
 
 TEST(TightenedTree, AnotherSeedIsAnotherTree) {
   const Surface surface(u_shape(0.3));
-  const MedialAxis axis = axis_of(surface, 1000);
+  const SurfaceSampling points = points_of(surface, 1000);
   TightenOptions options{.depth = 2, .effort = Effort::low};
-  const SphereTree one = tightened_tree(surface, axis, options).tree;
-  EXPECT_TRUE(same_tree(one, tightened_tree(surface, axis, options).tree));
+  const SphereTree one = tightened_tree(surface, points, options).tree;
+  EXPECT_TRUE(same_tree(one, tightened_tree(surface, points, options).tree));
   options.seed = 2;
-  EXPECT_FALSE(same_tree(one, tightened_tree(surface, axis, options).tree));
+  EXPECT_FALSE(same_tree(one, tightened_tree(surface, points, options).tree));
 }
 
 TEST(TightenedTree, RefusesABranchingThatIsNoBranching) {
   const Surface surface(torus(24, 12));
-  const MedialAxis axis = axis_of(surface);
-  EXPECT_THROW(tightened_tree(surface, axis, {.branching = 1}), InputError);
-  EXPECT_THROW(tightened_tree(surface, axis, {.branching = 1025}), InputError);
-  EXPECT_THROW(tightened_tree(surface, MedialAxis{}), InputError);
+  const SurfaceSampling points = points_of(surface);
+  EXPECT_THROW(tightened_tree(surface, points, {.branching = 1}), InputError);
+  EXPECT_THROW(tightened_tree(surface, points, {.branching = 1025}), InputError);
+  EXPECT_THROW(tightened_tree(surface, SurfaceSampling{}), InputError);
 }
 
 TEST(TightenedTree, KeepsToTheNumbersOfSpheresGivenForEachLevel) {
   const Surface surface(u_shape(0.3));
-  const MedialAxis axis = axis_of(surface, 2000);
+  const SurfaceSampling points = points_of(surface, 2000);
   TightenOptions options{.depth = 2, .effort = Effort::low};
   options.spheres = {5, 40};
-  const SphereTree tree = tightened_tree(surface, axis, options).tree;
+  const SphereTree tree = tightened_tree(surface, points, options).tree;
   expect_conservative(tree, surface, "U");
   const auto counts = level_counts(tree);
   ASSERT_EQ(counts.size(), 3u);
@@ -220,14 +220,14 @@ TEST(TightenedTree, KeepsToTheNumbersOfSpheresGivenForEachLevel) {
   EXPECT_GT(counts[2], 30u);
   for (const std::vector<Index>& wrong : {std::vector<Index>{5}, {1, 40}, {5, 5}, {5, 400}, {2000, 3000}}) {
     options.spheres = wrong;
-    EXPECT_THROW(tightened_tree(surface, axis, options), InputError);
+    EXPECT_THROW(tightened_tree(surface, points, options), InputError);
   }
 }
 
 TEST(TightenedTree, MakesOneLevelOfMoreSpheresThanALevelUsuallyHas) {
   const Surface surface(torus(24, 12));
   const SphereTree tree =
-      tightened_tree(surface, axis_of(surface, 1500), {.depth = 1, .branching = 100, .effort = Effort::low}).tree;
+      tightened_tree(surface, points_of(surface, 1500), {.depth = 1, .branching = 100, .effort = Effort::low}).tree;
   expect_conservative(tree, surface, "torus");
   EXPECT_GT(tree.nodes[0].child_count, 64u);
   EXPECT_LE(tree.nodes[0].child_count, 100u);
@@ -239,12 +239,10 @@ TEST(TightenedTree, IsTheSameForAMeshThatIsScaledOrMoved) {
     Vector offset;
   };
   const TriangleMesh mesh = u_shape(0.3);
-  const MedialAxis axis = axis_of(Surface(mesh), 1000);
+  const SurfaceSampling points = points_of(Surface(mesh), 1000);
   const auto tree_in = [&](const Frame& frame) {
-    MedialAxis moved = axis;
-    for (auto* points : {&moved.points, &moved.centers})
-      for (Point& point : *points) point = frame.factor * point + frame.offset;
-    for (double& radius : moved.radii) radius *= frame.factor;
+    SurfaceSampling moved = points;
+    for (Point& point : moved.points) point = frame.factor * point + frame.offset;
     const Surface surface(transformed(mesh, frame.factor, frame.offset));
     const SphereTree tree = tightened_tree(surface, moved, {.depth = 2, .effort = Effort::low}).tree;
     expect_conservative(tree, surface, "moved U");
@@ -264,11 +262,11 @@ TEST(TightenedTree, IsTheSameForAMeshThatIsScaledOrMoved) {
   }
 }
 
-TEST(TightenedTree, IsTheSameWhereEvenTheAxisIsMadeInAnotherFrame) {
+TEST(TightenedTree, IsTheSameWhereEvenThePointsAreSampledInAnotherFrame) {
   const TriangleMesh mesh = torus(24, 12);
   const auto tree_in = [&](double factor, const Vector& offset) {
     const Surface surface(transformed(mesh, factor, offset));
-    return tightened_tree(surface, axis_of(surface, 1000), {.depth = 2, .effort = Effort::low}).tree;
+    return tightened_tree(surface, points_of(surface, 1000), {.depth = 2, .effort = Effort::low}).tree;
   };
   const SphereTree tree = tree_in(1, Vector::Zero());
   for (const auto& [factor, offset] : {std::pair{1000.0, Vector(0, 0, 0)}, {2.54, Vector(10, -7, 3)}}) {
@@ -284,8 +282,8 @@ TEST(TightenedTree, IsTheSameWhereEvenTheAxisIsMadeInAnotherFrame) {
 
 TEST(TightenedTree, StopsWhenCancelled) {
   const Surface surface(torus(24, 12));
-  const MedialAxis axis = axis_of(surface);
-  EXPECT_THROW(tightened_tree(surface, axis, {}, [](std::string_view, double) { return false; }), Cancelled);
+  const SurfaceSampling points = points_of(surface);
+  EXPECT_THROW(tightened_tree(surface, points, {}, [](std::string_view, double) { return false; }), Cancelled);
 }
 
 }  // namespace

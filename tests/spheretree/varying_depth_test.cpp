@@ -42,7 +42,7 @@ std::vector<Named> varying_trees(const Surface& surface) {
   std::vector<Named> trees;
   trees.push_back({"octree", octree(surface, {.depth = 3, .refinement = refinement})});
   trees.push_back({"annealing", annealed_tree(surface, annealing).tree});
-  trees.push_back({"tightened", tightened_tree(surface, axis, tightening).tree});
+  trees.push_back({"tightened", tightened_tree(surface, points_of(surface), tightening).tree});
   for (const MergeClosing closing : {MergeClosing::refit, MergeClosing::growth}) {
     trees.push_back({"merging", merge_tree(surface, axis, {.refinement = refinement, .closing = closing}).tree});
     cover(trees.back().tree, surface);

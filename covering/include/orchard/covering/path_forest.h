@@ -27,12 +27,17 @@ class PathForest {
   // Gathers the balls whose whole path comes near the triangle. A ball that is left out does not touch the triangle,
   // and neither do the path regions below it. `near` is cleared first.
   void gather(const std::array<Point, 3>& triangle, NearBalls& near) const;
+  // Only those near the part of the triangle in the sphere, too.
+  void gather(const std::array<Point, 3>& triangle, const Sphere& where, NearBalls& near) const;
 
   // path_distance() over all balls, without a look at most of them.
   double distance(const Point& point) const;
+  // Whether that is at most so much.
+  bool within(const Point& point, double limit) const;
 
  private:
   void descend(Index ball, const Point& point, double above, double& min) const;
+  bool within(Index ball, const Point& point, double limit) const;
 
   std::vector<PathBall> balls_;
   std::vector<Index> roots_;

@@ -45,12 +45,15 @@ struct SphereTreeOptions {
   Index descent = 0;       // trials of random descent for each node, after any method
   std::uint64_t seed = 1;  // of the tree's own random choices; medial.sampling has its own
   MedialBuildOptions medial{};
+  // tightened: whether to make a medial axis, too. The tree is the same without, and there sooner, for it is fitted to
+  // surface points alone; other methods have an axis or not, whatever this says.
+  bool axis = true;
   // Whether to take samples_needed() surface points, a fifth of them along edges, in place of the numbers in
   // medial.sampling: a deep tree needs more than an axis does.
   bool samples_by_need = true;
 };
 
-// Whether the method starts from a medial axis.
+// Whether the method starts from a medial axis, or from the surface points of one.
 bool needs_axis(TreeMethod method);
 
 // What the annealing runs with: the dissertation's schedule with high effort, otherwise a share of it, and the tuning.
@@ -70,7 +73,8 @@ struct SphereTreeBuild {
   TreeMethod method = TreeMethod::tightened;
   Effort effort = Effort::standard;
   std::uint64_t seed = 1;
-  std::optional<MedialBuild> medial;  // empty for an octree or annealing, which need no axis
+  Index points = 0;                   // of the surface, that it started from; without those of gap repair
+  std::optional<MedialBuild> medial;  // empty for an octree, annealing, and where options.axis did without
   Index axis_components = 0;
   SphereTree tree;
   SphereTree octree;  // of the same depth, to compare with: measured for its inaccuracy alone

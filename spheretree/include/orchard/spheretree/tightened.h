@@ -1,6 +1,6 @@
 #pragma once
 #include "orchard/geometry/progress.h"
-#include "orchard/medial/axis.h"
+#include "orchard/geometry/sampling.h"
 #include "orchard/spheretree/refinement.h"
 #include "orchard/spheretree/tree.h"
 
@@ -59,13 +59,13 @@ void require_sizes(const TightenOptions& options);
 // surface points, so that max |p - c| + sd(c) is small over the centre c, improved by Lloyd's iteration and large-
 // neighbourhood search, and closed with the boundary lemma: each uncovered region is given to the ball that it costs
 // least, until there is none. Then each ball is fitted again to exactly what it alone holds, and at high effort the
-// search goes on with nothing uncovered. A level of more than 1000 balls is searched no longer than one of 1000. The
-// surface points are those of the axis, 20 or more for each ball of the last level, but for those that gap repair
-// added. The result is conservative and, since work is counted and not timed, the same on any number of threads. The
+// search goes on with nothing uncovered. A level of more than 1000 balls is searched no longer than one of 1000. There
+// should be 20 surface points or more for each ball of the last level; those that gap repair added are left out. The
+// result is conservative and, since work is counted and not timed, the same on any number of threads. The
 // search runs on the mesh as it is in a frame of its own (tightened/canonical_frame.h), so that a mesh that is scaled
 // or moved gets the same tree but for the last digits, unless a surface point is as near to the border between two
-// lattice points as its digits reach. Throws InputError as require_sizes() does, and for an axis without vertices.
-TightenBuild tightened_tree(const Surface& surface, const MedialAxis& axis, const TightenOptions& options = {},
+// lattice points as its digits reach. Throws InputError as require_sizes() does, and where there are no points.
+TightenBuild tightened_tree(const Surface& surface, const SurfaceSampling& sampling, const TightenOptions& options = {},
                             const Progress& progress = {});
 
 }  // namespace orchard
