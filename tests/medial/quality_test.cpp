@@ -438,12 +438,17 @@ TEST(MedialQuality, NoBallReachesFartherOutThanIsProven) {
     Random random(seed, 8);
     const MedialMesh mesh = random_mesh(random);
     for (const Surface* solid : {&box, &bend}) {
-      const detail::SearchedMax most = detail::max_protrusion(*solid, mesh, 0, kAccuracy, kSearch);
+      const detail::QualityBalls balls = detail::quality_balls(mesh, kSearch);
+      const auto of_triangles = std::span(balls.all).subspan(balls.vertices + balls.edges);
+      const detail::SearchedMax most =
+          detail::max_protrusion(*solid, mesh, detail::depths_of(*solid, of_triangles), 0, kAccuracy, kSearch);
+      const detail::SearchedMax same = detail::max_protrusion(*solid, mesh, {}, 0, kAccuracy, kSearch);
+      EXPECT_EQ(std::pair(most.max, most.upper), std::pair(same.max, same.upper));
       double bound = 0, attained = 0;
       for (int i = 0; i < 4000; ++i) {
         const Sphere ball = random_ball(mesh, random);
         bound = std::max(bound, ball.radius + solid->signed_distance(ball.center));
-        attained = std::max(attained, detail::reach_of(*solid, ball).beyond);
+        attained = std::max(attained, detail::reach_of(*solid, ball, detail::depth_of(*solid, ball)).beyond);
       }
       EXPECT_LE(bound, most.upper);
       EXPECT_GE(most.max, attained - std::max(kAccuracy, 0.02 * most.max));
@@ -452,6 +457,38 @@ TEST(MedialQuality, NoBallReachesFartherOutThanIsProven) {
       }
       if (solid == &box) {  // beside a flat or convex surface, what is proven is what is attained
         EXPECT_LE(most.upper, most.max + std::max(kAccuracy, 0.02 * most.max) + 1e-9);
+      }
+    }
+  }
+}
+
+TEST(MedialQuality, WorstProtrusionsAreTheSameAsWhereAllBallsAreLookedAt) {
+  const Surface bend(test::known_l_shape(8).solid);
+  constexpr double kNegligible = 1e-9;
+  for (std::uint64_t seed = test::first_seed(), end = seed + 20 * test::more(); seed < end; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed, 9);
+    const MedialMesh mesh = random_mesh(random);
+    std::vector<Sphere> balls;
+    const int count = 1 + static_cast<int>(2000 * random.uniform());
+    for (int i = 0; i < count; ++i) balls.push_back(random_ball(mesh, random));
+    const std::vector<WorstPlace> known{
+        {WorstKind::protrusion, 0.1 * random.uniform(), balls[0].center, Vector::Zero(), balls[0]}};
+    const std::vector<detail::BallDepth> depths = detail::depths_of(bend, balls);
+    std::vector<WorstPlace> all = known;
+    for (std::size_t i = 0; i < balls.size(); ++i) {
+      const detail::BallReach reach = detail::reach_of(bend, balls[i], depths[i]);
+      if (reach.beyond > kNegligible)
+        all.push_back({WorstKind::protrusion, reach.beyond, reach.farthest, Vector::Zero(), balls[i]});
+    }
+    const double apart = 0.5 * random.uniform();
+    for (const Index wanted : {0u, 1u, 5u, 50u}) {
+      const auto right = detail::worst_of(all, wanted, apart);
+      const auto found = detail::worst_protrusions(bend, balls, depths, known, wanted, apart, kNegligible);
+      ASSERT_EQ(found.size(), right.size());
+      for (std::size_t i = 0; i < right.size(); ++i) {
+        EXPECT_EQ(found[i].value, right[i].value);
+        EXPECT_EQ(found[i].position, right[i].position);
       }
     }
   }
