@@ -6,8 +6,9 @@
 
 namespace orchard::apps {
 
-// What a certified tree may still be worse for than it need be, in a line that says what to do about it; empty if
-// nothing is known: cell faces that cross gaps after the repair, an axis in more or fewer pieces than the solid.
+// What is wrong with the medial axis of a certified tree, and whether the tree may be worse for it, in a line that says
+// what to do about it; empty if nothing is known: cell faces that cross gaps after the repair, an axis in more or fewer
+// pieces than the solid.
 std::string build_doubts(const SolidMesh& solid, const SphereTreeBuild& result);
 
 }  // namespace orchard::apps
