@@ -21,10 +21,10 @@ struct Rates {
   double triangle_once = 0;  // seconds for each triangle
 };
 
-constexpr double kSecondsPerTriangle = 4.5e-5;
+constexpr double kSecondsPerTriangle = 1.3e-5;
 constexpr double kSecondsPerPoint = 4.5e-5, kWithoutAxis = 1.5e-5;
 constexpr double kBytes = 2.4e7, kBytesPerPoint = 2000, kBytesPerSphere = 1000;
-constexpr double kSecondsPerTrial = 1e-4;  // of --descent, and sphere
+constexpr double kSecondsPerTrial = 3e-5;  // of --descent, and sphere
 
 double seconds_per_point(const SphereTreeOptions& options) {
   return options.method == TreeMethod::tightened && !options.axis ? kWithoutAxis : kSecondsPerPoint;
@@ -71,18 +71,18 @@ Rates rates(const SphereTreeOptions& options) {
   const int effort = as_number(options.effort);
   switch (options.method) {
     case TreeMethod::tightened: {
-      constexpr double kSphere[] = {0.0022, 0.0038, 0.048}, kTriangle[] = {0, 3e-7, 4.2e-5};
+      constexpr double kSphere[] = {0.0018, 0.003, 0.048}, kTriangle[] = {0, 3e-7, 4.2e-5};
       return {kSphere[effort], kTriangle[effort], 0};
     }
     case TreeMethod::annealing: {
       // Every level divides all triangles among its searches.
-      constexpr double kSearch[] = {0.1, 0.25, 1.5}, kLevel[] = {1.9e-4, 6e-4, 3e-3};
+      constexpr double kSearch[] = {0.04, 0.08, 0.5}, kLevel[] = {9e-5, 2.5e-4, 1.2e-3};
       return {kSearch[effort], 0, kLevel[effort] * options.depth};
     }
     case TreeMethod::merging:
-      return {0.0015, 5e-7, 0};
+      return {0.0009, 1e-7, 0};
     case TreeMethod::octree:
-      return {0.0013, 6e-7, 0};
+      return {0.0004, 0, 0};
   }
   return {};
 }
