@@ -197,9 +197,9 @@ TEST(Build, SaysBeforehandWhatALongOneWillCost) {
   const std::string mesh = here.add("ball.obj", test::icosphere(1)), out = (here / "out").string();
   // Long for all that can be known; the error makes it short.
   const Finished run =
-      here.run({"build", mesh, "-o", out, "--method", "octree", "--depth", "7", "--error", "1000", "--no-views"});
+      here.run({"build", mesh, "-o", out, "--method", "octree", "--depth", "8", "--error", "1000", "--no-views"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const std::size_t cost = run.out.find("up to 2396745 spheres: about");
+  const std::size_t cost = run.out.find("up to 19173961 spheres: about");
   ASSERT_NE(cost, std::string::npos) << run.out;
   EXPECT_LT(cost, run.out.find("level  spheres"));
   EXPECT_NE(run.out.find("GB of memory"), std::string::npos) << run.out;
