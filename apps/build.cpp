@@ -182,7 +182,7 @@ void write_page(const BuildCommand& command, BuildPage page, const std::string& 
 
 BuildCost cost_of(const BuildCommand& command, const SphereTreeOptions& options, const Surface& surface) {
   const auto& sampling = options.medial.sampling;
-  const double points = needs_axis(options.method) && command.source.axis.empty()
+  const double points = samples_surface(options.method) && command.source.axis.empty()
                             ? static_cast<double>(sampling.face_points) + static_cast<double>(sampling.edge_points)
                             : 0;
   return estimated_cost(options, points, static_cast<double>(surface.mesh().triangles.size()));

@@ -102,10 +102,10 @@ void refuse_idle_options(const BuildCommand& command) {
     throw InputError(fmt::format("--{} has no effect on --method {}, which builds from no medial axis; it is for {}",
                                  option, name(method), names_of({TreeMethod::tightened, TreeMethod::merging})));
   };
-  if (!needs_axis(method) && !sources.empty()) refuse_without_axis(sources.front());
+  if (!samples_surface(method) && !sources.empty()) refuse_without_axis(sources.front());
   for (const TuningFlag& flag : tuning_flags()) {
     if (!among(flag.name, command.given) || flag.name == "seed") continue;
-    if (!needs_axis(method)) refuse_without_axis(flag.name);
+    if (!samples_surface(method)) refuse_without_axis(flag.name);
     refuse_replaced(flag, sources);
     refuse_disabled(flag, {command.tuning});
   }

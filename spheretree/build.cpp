@@ -30,7 +30,7 @@ class TreeBuilder {
 
   SphereTreeBuild run(MedialBuildInput input) {
     stage("octree to compare with", [&] { build_.octree = octree(surface_, {.depth = options_.depth}, progress_); });
-    if (needs_axis(options_.method)) start_from(std::move(input));
+    if (samples_surface(options_.method)) start_from(std::move(input));
     make_tree();
     stage("covering", [&] {
       const bool grows = options_.method == TreeMethod::merging && options_.closing == MergeClosing::growth;
@@ -178,7 +178,7 @@ AnnealingOptions annealing_options(const SphereTreeOptions& o) {
   return annealing;
 }
 
-bool needs_axis(TreeMethod method) { return method == TreeMethod::tightened || method == TreeMethod::merging; }
+bool samples_surface(TreeMethod method) { return method == TreeMethod::tightened || method == TreeMethod::merging; }
 
 Index samples_needed(const SphereTreeOptions& options) {
   if (options.method != TreeMethod::tightened) return 5000;

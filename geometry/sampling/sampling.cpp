@@ -190,11 +190,11 @@ void validate(const SurfaceSampling& sampling, const Surface& surface) {
   const double max = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
   const double tolerance = tolerance::kOnTriangle * surface.bounding_radius() + 1e-15 * max;
   for (std::size_t i = 0; i < count; ++i) {
-    const std::string name = "surface point " + std::to_string(i);
-    if (sampling.triangles[i] >= surface.mesh().triangles.size()) throw Error(name + " names no triangle");
+    const auto name = [i] { return "surface point " + std::to_string(i); };
+    if (sampling.triangles[i] >= surface.mesh().triangles.size()) throw Error(name() + " names no triangle");
     const auto [a, b, c] = surface.corners(sampling.triangles[i]);
     if (!(closest_point_of_triangle(sampling.points[i], a, b, c).distance <= tolerance))
-      throw Error(name + " is not on its triangle");
+      throw Error(name() + " is not on its triangle");
   }
 }
 

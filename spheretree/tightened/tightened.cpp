@@ -56,6 +56,7 @@ void require_sizes(const TightenOptions& options) {
 TightenBuild tightened_tree(const Surface& surface, const SurfaceSampling& sampling, const TightenOptions& options,
                             const Progress& progress) {
   require_sizes(options);
+  validate(sampling, surface);
   const Framed framed(surface);
   const detail::Samples samples = detail::surface_samples(framed.surface, sampling, framed.frame);
   if (samples.size() == 0) throw InputError("a tightened tree needs surface points");

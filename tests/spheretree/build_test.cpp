@@ -27,7 +27,7 @@ TEST(BuildSphereTree, ProvesWhatItReturnsWhateverTheMethod) {
     EXPECT_TRUE(build.certificate.ok());
     EXPECT_TRUE(verify(surface, build.packed).ok());
     EXPECT_EQ(build.packed.node_count, build.tree.nodes.size());
-    EXPECT_EQ(build.medial.has_value(), needs_axis(method));
+    EXPECT_EQ(build.medial.has_value(), samples_surface(method));
     test::expect_conservative(build.tree, surface, "L");
   }
 }

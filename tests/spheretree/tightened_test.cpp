@@ -203,7 +203,16 @@ TEST(TightenedTree, RefusesABranchingThatIsNoBranching) {
   const SurfaceSampling points = points_of(surface);
   EXPECT_THROW(tightened_tree(surface, points, {.branching = 1}), InputError);
   EXPECT_THROW(tightened_tree(surface, points, {.branching = 1025}), InputError);
+}
+
+TEST(TightenedTree, RefusesPointsThatAreNoneOrNotOfTheSurface) {
+  const Surface surface(torus(24, 12));
+  const SurfaceSampling points = points_of(surface);
   EXPECT_THROW(tightened_tree(surface, SurfaceSampling{}), InputError);
+  SurfaceSampling torn = points, lost = points;
+  torn.origins.pop_back();
+  lost.points.front() *= 2;
+  for (const SurfaceSampling& wrong : {torn, lost}) EXPECT_THROW(tightened_tree(surface, wrong), Error);
 }
 
 TEST(TightenedTree, KeepsToTheNumbersOfSpheresGivenForEachLevel) {

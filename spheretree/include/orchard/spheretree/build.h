@@ -53,8 +53,8 @@ struct SphereTreeOptions {
   bool samples_by_need = true;
 };
 
-// Whether the method starts from a medial axis, or from the surface points of one.
-bool needs_axis(TreeMethod method);
+// Whether the method starts from points of the surface, or from a medial axis made of them.
+bool samples_surface(TreeMethod method);
 
 // What the annealing runs with: the dissertation's schedule with high effort, otherwise a share of it, and the tuning.
 AnnealingOptions annealing_options(const SphereTreeOptions& options);
