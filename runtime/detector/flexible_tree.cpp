@@ -80,7 +80,7 @@ void FlexibleTree::link_ball_slabs() {
     const BallSlabBlock& block = tree_.ball_slabs[node / kBlockWidth];
     const std::uint32_t lane = node % kBlockWidth, child = block.child[lane];
     ball_slabs_[node].radius = block.radius[lane];
-    ball_slabs_[node].height = block.height[lane];
+    ball_slabs_[node].sides = {block.height[lane], block.width[lane], block.length[lane]};
     if (child & kLeafBit) {
       slab_of_block_[child & ~kLeafBit] = node;
       continue;
@@ -260,7 +260,7 @@ void FlexibleTree::refit_spheres() noexcept {
 }
 
 void FlexibleTree::refit_ball_slabs() noexcept {
-  constexpr double kNormalLength = 1 + 1e-6;  // of a ball slab's normal, at most
+  constexpr double kNormalLength = 1 + 2e-6;  // of a ball slab's normals, at most
   for (std::size_t level = dirty_slabs_.size(); level-- > 0;) {
     for (const std::uint32_t index : dirty_slabs_[level]) {
       Node& node = ball_slabs_[index];
@@ -278,7 +278,9 @@ void FlexibleTree::refit_ball_slabs() noexcept {
       const bool changed = enlarged != node.enlarged;
       node.enlarged = enlarged;
       block.radius[lane] = raised(node.radius, enlarged);
-      block.height[lane] = raised(node.height, enlarged * kNormalLength);
+      block.height[lane] = raised(node.sides[0], enlarged * kNormalLength);
+      block.width[lane] = raised(node.sides[1], enlarged * kNormalLength);
+      block.length[lane] = raised(node.sides[2], enlarged * kNormalLength);
       if (changed && node.parent != kNone) mark(ball_slabs_, dirty_slabs_, node.parent);
     }
     dirty_slabs_[level].clear();

@@ -36,7 +36,9 @@ class StepBudget {
   std::uint64_t left() const noexcept { return left_; }
   void spend(std::uint64_t work) noexcept {
     spent_ += work;
-    if (limited_) left_ -= std::min(work, left_);
+    if (!limited_) return;
+    const std::uint64_t within = std::min(work, left_);
+    left_ -= within, beyond_ += work - within;
   }
   std::uint64_t spent() const noexcept { return spent_; }
   bool late() const noexcept { return timed_ && Clock::now() >= deadline_; }
@@ -84,7 +86,8 @@ class StepBudget {
     deadline_ -= part.time;
   }
   void give_back(const Part& part) noexcept {
-    left_ += part.work;
+    const std::uint64_t overshoot = std::min(beyond_, part.work);  // comes out of it, or overshoots would add up
+    left_ += part.work - overshoot, beyond_ -= overshoot;
     deadline_ += part.time;
   }
 
@@ -95,7 +98,7 @@ class StepBudget {
     return !stop;
   }
 
-  std::uint64_t left_, spent_ = 0;
+  std::uint64_t left_, beyond_ = 0, spent_ = 0;  // beyond_: spent when nothing was left
   bool limited_, timed_ = false;
   Clock::time_point deadline_{};
   const StepCut* replay_;

@@ -7,6 +7,7 @@
 
 #include "budget_tracker.h"
 #include "tree/ball_slab_block.h"
+#include "tree/node_box.h"
 #include "triangle_distance.h"
 
 // Depth first through the two trees of triangles, the nearest pair of ball slabs first, leaving out what is not nearer
@@ -24,6 +25,10 @@ float float_above(double value) noexcept {
 
 std::uint32_t child_of(const TreeView& tree, std::uint32_t node) noexcept {
   return tree.ball_slabs[node / kBlockWidth].child[node % kBlockWidth];
+}
+
+float radius_of(const TreeView& tree, std::uint32_t node) noexcept {
+  return tree.ball_slabs[node / kBlockWidth].radius[node % kBlockWidth];
 }
 
 }  // namespace
@@ -82,8 +87,7 @@ void DistanceQuery::begin(const Pose& a, const Pose& b, double limit) noexcept {
     enough_ = std::max(0.0, (limit - error) / scale * (1 - 4 * kRounding));
   }
   find_cut();
-  const TreeView& second = pair_.second_.tree;
-  stack_[stack_size_++] = {0, 0, 0, detail::moved(detail::ball_slab_at(second.ball_slabs[0], 0), pair_.placement_)};
+  stack_[stack_size_++] = {0, 0, 0};
 }
 
 // What is farther need not be looked at.
@@ -112,8 +116,8 @@ void DistanceQuery::refine(const Budget& budget) noexcept {
       tracker.spend(std::uint64_t{kLeafPairTests} * kTriangleTestCost);
       continue;
     }
-    const float radius = first.ball_slabs[pair.a / kBlockWidth].radius[pair.a % kBlockWidth];
-    const bool open_second = (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && radius < pair.second.radius);
+    const float radius = radius_of(first, pair.a), other = radius_of(second, pair.b) * pair_.placement_.scale;
+    const bool open_second = (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && radius < other);
     expand(pair, open_second ? b : a, open_second);
     tracker.spend(kBlockWidth);
   }
@@ -131,10 +135,11 @@ void DistanceQuery::leave_the_rest() noexcept {
 
 // Every ball slab holds triangles, so two are no farther apart than the farthest points of their ball slabs.
 bool DistanceQuery::surely_near(const BallSlabPair& pair) noexcept {
-  const detail::BallSlab p =
-      detail::ball_slab_at(pair_.first_.tree.ball_slabs[pair.a / kBlockWidth], pair.a % kBlockWidth);
-  const detail::BallSlab& q = pair.second;
-  const double x = double{q.x} - double{p.x}, y = double{q.y} - double{p.y}, z = double{q.z} - double{p.z};
+  const detail::NodeBox p =
+      detail::node_box_at(pair_.first_.tree.ball_slabs[pair.a / kBlockWidth], pair.a % kBlockWidth);
+  const detail::NodeBox q = pair_.moved_box(pair.b);
+  const double x = double{q.center[0]} - double{p.center[0]}, y = double{q.center[1]} - double{p.center[1]},
+               z = double{q.center[2]} - double{p.center[2]};
   const double farthest =
       std::sqrt(x * x + y * y + z * z) + double{p.radius} + double{q.radius} + double{pair_.placement_.margin};
   if (farthest > enough_) return false;
@@ -145,20 +150,24 @@ bool DistanceQuery::surely_near(const BallSlabPair& pair) noexcept {
 
 // In place of a pair, those of its children that may be nearer than the best, the nearest last.
 void DistanceQuery::expand(const BallSlabPair& pair, std::uint32_t block, bool second) noexcept {
-  const TreeView &first = pair_.first_.tree, &tree = (second ? pair_.second_ : pair_.first_).tree;
+  const TreeView &first = pair_.first_.tree, &other = pair_.second_.tree;
   const detail::Placement& placement = pair_.placement_;
-  detail::BallSlabGaps gaps;
+  const auto box = [](const TreeView& tree, std::uint32_t node) {
+    return detail::node_box_at(tree.ball_slabs[node / kBlockWidth], node % kBlockWidth);
+  };
+  detail::BoxGaps gaps;
   if (second) {
-    detail::ball_slab_gaps(detail::ball_slab_at(first.ball_slabs[pair.a / kBlockWidth], pair.a % kBlockWidth),
-                           tree.ball_slabs[block], &placement, placement.margin, gaps);
+    detail::box_gaps(detail::moved_back(box(first, pair.a), placement), other.ball_slabs[block], placement.scale,
+                     placement.box_margin, gaps);
   } else {
-    detail::ball_slab_gaps(pair.second, tree.ball_slabs[block], nullptr, placement.margin, gaps);
+    detail::box_gaps(detail::moved(box(other, pair.b), placement), first.ball_slabs[block], 1, placement.box_margin,
+                     gaps);
   }
   const std::size_t begin = stack_size_;
   for (std::uint32_t left = gaps.used; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
     // Overlapping ball slabs keep their depth for the order: the deepest first.
-    const float lower = pair.lower > 0 ? std::max(gaps.gap[lane], pair.lower) : gaps.gap[lane];
+    const float gap = gaps.gap[lane], lower = pair.lower > 0 ? std::max(gap, pair.lower) : gap;
     if (!may_be_nearer(std::max(0.0, double{lower}))) {
       min_lower_ = std::min(min_lower_, std::max(0.0, double{lower}));
       continue;
@@ -166,8 +175,7 @@ void DistanceQuery::expand(const BallSlabPair& pair, std::uint32_t block, bool s
     std::size_t at = stack_size_++;
     for (; at > begin && stack_[at - 1].lower < lower; --at) stack_[at] = stack_[at - 1];
     const std::uint32_t node = block * kBlockWidth + lane;
-    stack_[at] =
-        second ? BallSlabPair{lower, pair.a, node, gaps.slab(lane)} : BallSlabPair{lower, node, pair.b, pair.second};
+    stack_[at] = second ? BallSlabPair{lower, pair.a, node} : BallSlabPair{lower, node, pair.b};
   }
 }
 
@@ -176,7 +184,7 @@ void DistanceQuery::compare_leaves(const BallSlabPair& pair) noexcept {
   const TreeView &first = pair_.first_.tree, &second = pair_.second_.tree;
   const TriangleBlock& lanes = first.triangle_blocks[child_of(first, pair.a) & ~kLeafBit];
   const TriangleBlock& rows = second.triangle_blocks[child_of(second, pair.b) & ~kLeafBit];
-  const float radii = first.ball_slabs[pair.a / kBlockWidth].radius[pair.a % kBlockWidth] + pair.second.radius;
+  const float radii = radius_of(first, pair.a) + radius_of(second, pair.b) * pair_.placement_.scale;
   if (limit_ < kSmallMargin * double{radii}) return find_within(pair, lanes, rows);
   detail::TriangleGaps gaps;
   const float reach = float_above(std::min(cut_, 1e30));
@@ -214,9 +222,10 @@ void DistanceQuery::find_within(const BallSlabPair& pair, const TriangleBlock& l
                                 const TriangleBlock& rows) noexcept {
   detail::Placement near = pair_.placement_;
   near.margin = float_above((double{near.margin} + limit_) * (1 + 1e-6));
-  const detail::BallSlab lane_slab =
-      detail::ball_slab_at(pair_.first_.tree.ball_slabs[pair.a / kBlockWidth], pair.a % kBlockWidth);
-  std::uint64_t left = detail::triangle_candidates({lanes, rows, lane_slab, pair.second}, near);
+  const detail::NodeBox lane_box =
+      detail::node_box_at(pair_.first_.tree.ball_slabs[pair.a / kBlockWidth], pair.a % kBlockWidth);
+  const detail::NodeBox row_box = pair_.moved_box(pair.b);
+  std::uint64_t left = detail::triangle_candidates({lanes, rows, lane_box, row_box}, near);
   min_lower_ = std::min(min_lower_, limit_);
   for (; left != 0 && nearest_ > enough_; left &= left - 1) {
     const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));

@@ -119,7 +119,7 @@ FrontWalk::Outcome FrontWalk::settle_leaves() noexcept {
     const std::uint32_t lane = leaves_[i] % kBlockWidth;
     LeafAxis axis = {0, {block.ux[lane], block.uy[lane], block.uz[lane]}};
     const std::array<float, 3> last = axis.u;
-    if (leaves_meet({block.a[lane], block.b[lane], moved_slab(block.b[lane])}, &last, axis)) return Outcome::meeting;
+    if (leaves_meet({block.a[lane], block.b[lane]}, &last, axis)) return Outcome::meeting;
     block.gap[lane] = axis.gap;
     block.ux[lane] = axis.u[0], block.uy[lane] = axis.u[1], block.uz[lane] = axis.u[2];
   }
@@ -156,7 +156,7 @@ FrontWalk::Outcome FrontWalk::settle_nodes() noexcept {
         continue;
       }
       if (tracker_->exhausted()) return Outcome::interrupted;
-      const BallSlabPair pair = {block.a[lane], block.b[lane], axes.slab(i)};
+      const BallSlabPair pair = {block.a[lane], block.b[lane]};
       release(slot);
       if (const Outcome outcome = walk(pair); outcome != Outcome::apart) return outcome;
     }
@@ -179,7 +179,8 @@ FrontWalk::Outcome FrontWalk::walk(const BallSlabPair& from) noexcept {
       continue;
     }
     const float radius = first_.ball_slabs[pair.a / kBlockWidth].radius[pair.a % kBlockWidth];
-    expand(pair, (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && radius < pair.second.radius));
+    const float other = second_.ball_slabs[pair.b / kBlockWidth].radius[pair.b % kBlockWidth] * placement_.scale;
+    expand(pair, (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && radius < other));
   }
   return Outcome::apart;
 }
@@ -187,8 +188,11 @@ FrontWalk::Outcome FrontWalk::walk(const BallSlabPair& from) noexcept {
 bool FrontWalk::leaves_meet(const BallSlabPair& pair, const Axis* last, LeafAxis& axis) noexcept {
   const TriangleBlock& lanes = first_.triangle_blocks[detail::ball_slab_child(first_, pair.a) & ~kLeafBit];
   const TriangleBlock& rows = second_.triangle_blocks[detail::ball_slab_child(second_, pair.b) & ~kLeafBit];
-  const detail::LeafPair leaves = {
-      lanes, rows, detail::ball_slab_at(first_.ball_slabs[pair.a / kBlockWidth], pair.a % kBlockWidth), pair.second};
+  const auto box = [](const TreeView& tree, std::uint32_t node) {
+    return detail::node_box_at(tree.ball_slabs[node / kBlockWidth], node % kBlockWidth);
+  };
+  const detail::NodeBox lane_box = box(first_, pair.a), row_box = detail::moved(box(second_, pair.b), placement_);
+  const detail::LeafPair leaves = {lanes, rows, lane_box, row_box};
   axis = detail::leaf_axis(leaves, placement_, last, enough_);
   tracker_->spend(kBlockWidth);
   if (axis.gap > 0) return false;
@@ -203,7 +207,7 @@ void FrontWalk::expand(const BallSlabPair& pair, bool open_second) noexcept {
     detail::ball_slab_axes(detail::ball_slab_at(first_.ball_slabs[pair.a / kBlockWidth], pair.a % kBlockWidth),
                            second_.ball_slabs[block], &placement_, placement_.margin, axes);
   } else {
-    detail::ball_slab_axes(pair.second, first_.ball_slabs[block], nullptr, placement_.margin, axes);
+    detail::ball_slab_axes(moved_slab(pair.b), first_.ball_slabs[block], nullptr, placement_.margin, axes);
   }
   tracker_->spend(static_cast<std::uint64_t>(std::bit_width(axes.used)));
   const std::size_t begin = stack_size_;
@@ -224,8 +228,7 @@ void FrontWalk::expand(const BallSlabPair& pair, bool open_second) noexcept {
   stack_size_ = begin;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t node = block * kBlockWidth + order[i];
-    stack_[stack_size_++] =
-        open_second ? BallSlabPair{pair.a, node, axes.slab(order[i])} : BallSlabPair{node, pair.b, pair.second};
+    stack_[stack_size_++] = open_second ? BallSlabPair{pair.a, node} : BallSlabPair{node, pair.b};
   }
 }
 

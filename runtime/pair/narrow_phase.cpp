@@ -7,6 +7,7 @@
 #include <cstring>
 #include <new>
 
+#include "tree/node_box.h"
 #include "tree/tree_nodes.h"
 
 // Rounding. Let c be the true place of a centre of the second tree in the first one's frame, c' the one computed in
@@ -28,6 +29,13 @@
 //      A height over a ball slab's middle plane is off by at most sigma + 22 u |c' - a|, an extent, which is at most
 //      the sum of the radii, by 35 u of itself but for the square of its sine, which kSineError covers, and the sums by
 //      4 u D: margin = sigma + 96 u D leaves room, also for two moved points and eight roundings of a triangle test.
+//  (6) Gaps between boxes: one of them is turned into the other one's axes, in the first tree's units, and (1) holds
+//  for
+//      either with sigma + 16 u D. Along a unit vector v the points of a box reach at most the sum of its half sizes
+//      times |v . axis|, and besides what the axes lack to be orthonormal (to 1e-6, so 17 u each) times the radius: 51
+//      u. An axis is within 10 u of the true one, a product of axes within 25 u, a cosine thus within 30 u, and the sum
+//      of three of them, times half sizes of at most a radius each, within 60 u of a radius: 111 u for a radius and so
+//      for D. A height is off by sigma + 22 u D, the rest by 6 u D: box_margin = 2 sigma + 192 u D leaves room.
 namespace orchard::runtime {
 
 using detail::length;
@@ -207,7 +215,9 @@ void NarrowPhase::place() noexcept {
   };
   placement_.slack = rounded_up(sigma + 8 * kFloatUnit * size);
   placement_.margin = rounded_up(2 * sigma + 96 * kFloatUnit * size);
+  placement_.box_margin = rounded_up(2 * sigma + 192 * kFloatUnit * size);
   const int exponent = 1 + std::ilogb(std::max(size, kMinSize));
+  detail::find_rows(placement_);
   placement_.unit = static_cast<float>(std::ldexp(1, -exponent));
   placement_.whole = static_cast<float>(std::ldexp(1, exponent));
 }

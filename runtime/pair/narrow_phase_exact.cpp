@@ -4,12 +4,13 @@
 #include "orchard/runtime/narrow_phase.h"
 #include "tree/ball_slab_block.h"
 #include "tree/front_block.h"
+#include "tree/node_box.h"
 
 // The last level: depth first through the two trees of triangles, the larger ball slab of a pair opened first and the
 // deepest overlap looked at first, so that a "yes" comes early.
 namespace orchard::runtime {
 
-using detail::BallSlabGaps;
+using detail::BoxGaps;
 
 namespace {
 
@@ -30,8 +31,46 @@ void NarrowPhase::start_exact() noexcept {
   next_.clear();
   settled_leaves_ = 0;
   roots_pending_ = false;
-  stack_[0] = {0, 0, detail::moved(detail::ball_slab_at(second_.tree.ball_slabs[0], 0), placement_)};
+  stack_[0] = {0, 0};
   stack_size_ = 1;
+}
+
+detail::NodeBox NarrowPhase::moved_box(std::uint32_t node) const noexcept {
+  return detail::moved(detail::node_box_at(block_of(second_.tree, node), node % kBlockWidth), placement_);
+}
+
+// The larger node's children against the other node, in the children's frame. True if they are the second tree's.
+inline bool NarrowPhase::find_children(const BallSlabPair& pair, std::uint32_t a, std::uint32_t b,
+                                       BoxGaps& gaps) noexcept {
+  const BallSlabBlock &of_a = block_of(first_.tree, pair.a), &of_b = block_of(second_.tree, pair.b);
+  const std::uint32_t lane_a = pair.a % kBlockWidth, lane_b = pair.b % kBlockWidth;
+  const bool second =
+      (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && of_a.radius[lane_a] < of_b.radius[lane_b] * placement_.scale);
+  if (second) {
+    detail::meeting_boxes(detail::moved_back(detail::node_box_at(of_a, lane_a), placement_), second_.tree.ball_slabs[b],
+                          placement_.scale, placement_.box_margin + wide_, gaps);
+  } else {
+    detail::meeting_boxes(moved_box(pair.b), first_.tree.ball_slabs[a], 1, placement_.box_margin + wide_, gaps);
+  }
+  return second;
+}
+
+// In place of a pair, those of its children that may meet, the deepest last.
+inline void NarrowPhase::push_children(const BallSlabPair& pair, bool second, std::uint32_t block,
+                                       const BoxGaps& gaps) noexcept {
+  pair_tests_ += static_cast<std::uint64_t>(std::bit_width(gaps.used));
+  std::uint32_t order[kBlockWidth], count = 0;
+  for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+    std::uint32_t at = count++;
+    for (; at > 0 && gaps.gap[order[at - 1]] < gaps.gap[lane]; --at) order[at] = order[at - 1];
+    order[at] = lane;
+  }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t node = block * kBlockWidth + order[i];
+    const float gap = gaps.gap[order[i]] + wide_;
+    stack_[stack_size_++] = second ? BallSlabPair{pair.a, node, gap} : BallSlabPair{node, pair.b, gap};
+  }
 }
 
 // False if interrupted. Ends at the first pair of triangles that meet.
@@ -51,7 +90,7 @@ bool NarrowPhase::refine_ball_slabs(BudgetTracker& tracker) noexcept {
     const bool two = stack_size_ > 0 && (child_of(first_.tree, stack_[stack_size_ - 1].a) &
                                          child_of(second_.tree, stack_[stack_size_ - 1].b) & kLeafBit) == 0;
     const std::uint64_t before = pair_tests_;
-    BallSlabGaps gaps[2];
+    BoxGaps gaps[2];
     const bool second = find_children(pair, a, b, gaps[0]);
     if (two) {
       const BallSlabPair other = stack_[--stack_size_];
@@ -65,38 +104,6 @@ bool NarrowPhase::refine_ball_slabs(BudgetTracker& tracker) noexcept {
   return true;
 }
 
-// In place of a pair, those of its children that may meet, the deepest last.
-bool NarrowPhase::find_children(const BallSlabPair& pair, std::uint32_t a, std::uint32_t b,
-                                BallSlabGaps& gaps) noexcept {
-  const bool second =
-      (a & kLeafBit) != 0 ||
-      ((b & kLeafBit) == 0 && block_of(first_.tree, pair.a).radius[pair.a % kBlockWidth] < pair.second.radius);
-  if (second) {
-    detail::meeting_ball_slabs(detail::ball_slab_at(block_of(first_.tree, pair.a), pair.a % kBlockWidth),
-                               second_.tree.ball_slabs[b], &placement_, placement_.margin + wide_, gaps);
-  } else {
-    detail::meeting_ball_slabs(pair.second, first_.tree.ball_slabs[a], nullptr, placement_.margin + wide_, gaps);
-  }
-  return second;
-}
-
-void NarrowPhase::push_children(const BallSlabPair& pair, bool second, std::uint32_t block,
-                                const BallSlabGaps& gaps) noexcept {
-  pair_tests_ += static_cast<std::uint64_t>(std::bit_width(gaps.used));
-  std::uint32_t order[kBlockWidth], count = 0;
-  for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {
-    const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-    std::uint32_t at = count++;
-    for (; at > 0 && gaps.gap[order[at - 1]] < gaps.gap[lane]; --at) order[at] = order[at - 1];
-    order[at] = lane;
-  }
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t node = block * kBlockWidth + order[i];
-    stack_[stack_size_++] = second ? BallSlabPair{pair.a, node, gaps.slab(order[i]), gaps.gap[order[i]] + wide_}
-                                   : BallSlabPair{node, pair.b, pair.second, gaps.gap[order[i]] + wide_};
-  }
-}
-
 // Of leaves: along a direction that tells how far apart they are.
 bool NarrowPhase::leaves_apart(const BallSlabPair& pair, BudgetTracker& tracker) noexcept {
   constexpr double kRounding = 1e-6;  // of a few sums of numbers up to gap and width
@@ -107,8 +114,9 @@ bool NarrowPhase::leaves_apart(const BallSlabPair& pair, BudgetTracker& tracker)
   }
   const TriangleBlock& lanes = first_.tree.triangle_blocks[child_of(first_.tree, pair.a) & ~kLeafBit];
   const TriangleBlock& rows = second_.tree.triangle_blocks[child_of(second_.tree, pair.b) & ~kLeafBit];
-  const detail::BallSlab slab = detail::ball_slab_at(block_of(first_.tree, pair.a), pair.a % kBlockWidth);
-  const float gap = detail::leaf_axis({lanes, rows, slab, pair.second}, placement_, nullptr, wide_).gap;
+  const detail::NodeBox box = detail::node_box_at(block_of(first_.tree, pair.a), pair.a % kBlockWidth);
+  const detail::NodeBox other = moved_box(pair.b);
+  const float gap = detail::leaf_axis({lanes, rows, box, other}, placement_, nullptr, wide_).gap;
   tracker.spend(kBlockWidth);
   least_gap_ = std::min(least_gap_, std::max(0.0, double{gap}));
   return gap > 0;
@@ -123,8 +131,9 @@ bool NarrowPhase::test_triangles(const BallSlabPair& pair) noexcept {
     return count;
   };
   triangle_tests_ += used(lanes) * used(rows);
-  const detail::BallSlab lane_slab = detail::ball_slab_at(block_of(first_.tree, pair.a), pair.a % kBlockWidth);
-  std::uint64_t left = detail::triangle_candidates({lanes, rows, lane_slab, pair.second}, placement_);
+  const detail::NodeBox lane_box = detail::node_box_at(block_of(first_.tree, pair.a), pair.a % kBlockWidth);
+  const detail::NodeBox row_box = moved_box(pair.b);
+  std::uint64_t left = detail::triangle_candidates({lanes, rows, lane_box, row_box}, placement_);
   for (; left != 0; left &= left - 1) {
     const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
     const std::uint32_t row = bit / kBlockWidth, lane = bit % kBlockWidth;

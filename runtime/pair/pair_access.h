@@ -52,9 +52,7 @@ struct PairAccess {
   }
   // The same of all triangles of two leaves.
   static bool test_leaves(NarrowPhase& pair, std::uint32_t first, std::uint32_t second) noexcept {
-    const detail::BallSlab slab =
-        detail::ball_slab_at(pair.second_.tree.ball_slabs[second / kBlockWidth], second % kBlockWidth);
-    return say_yes_if(pair, pair.test_triangles({first, second, detail::moved(slab, pair.placement_)}));
+    return say_yes_if(pair, pair.test_triangles({first, second}));
   }
   static const Place& meeting(const NarrowPhase& pair) noexcept { return pair.meeting_; }  // after "yes"
   // All of the last level, after place_only().

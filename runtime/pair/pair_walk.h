@@ -8,6 +8,7 @@
 
 #include "orchard/runtime/prepared_tree.h"
 #include "tree/ball_slab_block.h"
+#include "tree/node_box.h"
 
 // Depth first through the two trees of triangles of a pair, to every pair of triangles that meet.
 namespace orchard::runtime::detail {
@@ -27,15 +28,15 @@ struct PlacedPair {
       result.placement.translation[i] = static_cast<float>(result.relative.translation[i]);
       size += std::fabs(by[i]);
     }
-    // A margin has at most 108 u for each unit of the translation's length (narrow_phase.cpp).
+    // A margin has at most 108 u for each unit of the translation's length, or 204 u (narrow_phase.cpp).
     result.placement.margin += static_cast<float>(size * 0x1p-17);
+    result.placement.box_margin += static_cast<float>(size * 0x1p-16);
     return result;
   }
 };
 
-struct WalkPair {  // ball slabs that may meet, the second one moved
+struct WalkPair {  // nodes that may meet
   std::uint32_t a, b;
-  BallSlab second;
 };
 
 class WalkStack {
@@ -66,36 +67,36 @@ void walk_candidates(const PlacedPair& pair, const WalkStack& room, Visit&& visi
   const TreeView &first = pair.first.tree, &second = pair.second.tree;
   WalkPair* const stack = room.data();
   std::size_t size = 0;
-  stack[size++] = {0, 0, moved(ball_slab_at(second.ball_slabs[0], 0), pair.placement)};
-  BallSlabGaps gaps;
+  stack[size++] = {0, 0};
+  BoxGaps gaps;
   while (size > 0) {
     const WalkPair top = stack[--size];
     const std::uint32_t a = ball_slab_child(first, top.a), b = ball_slab_child(second, top.b);
-    const BallSlabBlock& own = first.ball_slabs[top.a / kBlockWidth];
-    const std::uint32_t lane_of_own = top.a % kBlockWidth;
+    const BallSlabBlock &of_a = first.ball_slabs[top.a / kBlockWidth], &of_b = second.ball_slabs[top.b / kBlockWidth];
+    const std::uint32_t lane_a = top.a % kBlockWidth, lane_b = top.b % kBlockWidth;
     if (a & b & kLeafBit) {
       const TriangleBlock &lanes = first.triangle_blocks[a & ~kLeafBit], &rows = second.triangle_blocks[b & ~kLeafBit];
-      std::uint64_t left =
-          triangle_candidates({lanes, rows, ball_slab_at(own, lane_of_own), top.second}, pair.placement);
-      for (; left != 0; left &= left - 1) {
+      const NodeBox lane_box = node_box_at(of_a, lane_a), row_box = moved(node_box_at(of_b, lane_b), pair.placement);
+      const LeafPair leaves = {lanes, rows, lane_box, row_box};
+      for (std::uint64_t left = triangle_candidates(leaves, pair.placement); left != 0; left &= left - 1) {
         const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
         visit(lanes, bit % kBlockWidth, rows, bit / kBlockWidth);
       }
       continue;
     }
-    const bool open_second =
-        (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && own.radius[lane_of_own] < top.second.radius);
+    const bool open_second = (a & kLeafBit) != 0 ||
+                             ((b & kLeafBit) == 0 && of_a.radius[lane_a] < of_b.radius[lane_b] * pair.placement.scale);
     const std::uint32_t block = open_second ? b : a;
     if (open_second) {
-      ball_slab_gaps(ball_slab_at(own, lane_of_own), second.ball_slabs[block], &pair.placement, pair.placement.margin,
-                     gaps);
+      meeting_boxes(moved_back(node_box_at(of_a, lane_a), pair.placement), second.ball_slabs[block],
+                    pair.placement.scale, pair.placement.box_margin, gaps);
     } else {
-      ball_slab_gaps(top.second, first.ball_slabs[block], nullptr, pair.placement.margin, gaps);
+      meeting_boxes(moved(node_box_at(of_b, lane_b), pair.placement), first.ball_slabs[block], 1,
+                    pair.placement.box_margin, gaps);
     }
     for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-      const std::uint32_t node = block * kBlockWidth + lane;
-      stack[size++] = open_second ? WalkPair{top.a, node, gaps.slab(lane)} : WalkPair{node, top.b, top.second};
+      const std::uint32_t node = block * kBlockWidth + static_cast<std::uint32_t>(std::countr_zero(left));
+      stack[size++] = open_second ? WalkPair{top.a, node} : WalkPair{node, top.b};
     }
   }
 }

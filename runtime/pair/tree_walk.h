@@ -7,6 +7,7 @@
 
 #include "orchard/runtime/shape_query.h"
 #include "tree/ball_slab_block.h"
+#include "tree/node_box.h"
 #include "tree/point_block.h"
 #include "tree/tree_nodes.h"
 #include "vector_functions.h"
@@ -106,10 +107,10 @@ struct Frame {  // the body's, with its coordinates relative to the tree's origi
   Pose back;
 };
 
-// A point or segment as a ball slab, a triangle and what they need to be asked about in float.
+// A point or segment as a box, a triangle and what they need to be asked about in float.
 struct FloatShape {
   bool point = false;
-  BallSlab slab{};
+  NodeBox box{};
   TriangleBlock rows{};
   Placement placement{};
 };
@@ -134,8 +135,10 @@ inline FloatShape shape_of(const TreeView& tree, const Segment& s) noexcept {
     normal = along({0, 0, 0}, normal, 1 / length(normal));
   }
   const auto f = [](double x) { return static_cast<float>(x); };
-  shape.slab = {f(middle[0]), f(middle[1]), f(middle[2]),         f(normal[0]),
-                f(normal[1]), f(normal[2]), f(half * (1 + 1e-6)), f(half * 1e-6)};
+  const Vec3 second = half > 0 ? along({0, 0, 0}, cross(s.d, normal), 0.5 / half) : Vec3{0, 1, 0};
+  const float thin = f(half * 1e-6), reach = f(half * (1 + 1e-6));
+  const auto four = [f](const Vec3& v) -> std::array<float, 4> { return {f(v[0]), f(v[1]), f(v[2]), 0}; };
+  shape.box = {four(middle), four(normal), four(second), reach, thin, thin, reach};
   const Vec3 end = along(s.p, s.d, 1);
   for (std::size_t i = 0; i < 3; ++i) {
     shape.rows.corner[0][i].fill(f(s.p[i]));
@@ -149,6 +152,7 @@ inline FloatShape shape_of(const TreeView& tree, const Segment& s) noexcept {
   p.translation = {};
   p.scale = 1;
   p.margin = f(std::max(128 * unit * size, 1e-15) * (1 + 4 * unit));
+  p.box_margin = f(std::max(256 * unit * size, 1e-15) * (1 + 4 * unit));
   const int exponent = 1 + std::ilogb(std::max(size, 1e-18));
   p.unit = f(std::ldexp(1, -exponent)), p.whole = f(std::ldexp(1, exponent));
   return shape;
@@ -167,7 +171,7 @@ float walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit,
   };
   std::array<Entry, kWalkRoom> stack;
   std::size_t size = 0;
-  BallSlabGaps gaps;
+  BoxGaps gaps;
   TriangleGaps lower;
   float beyond = std::numeric_limits<float>::infinity();
   const auto leave_out = [&](float gap) { beyond = std::min(beyond, gap); };
@@ -182,7 +186,7 @@ float walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit,
       const TriangleBlock& block = tree.triangle_blocks[entry.child & ~kLeafBit];
       auto& row = lower.lower[0];
       if (shape.point) {
-        point_gaps({shape.slab.x, shape.slab.y, shape.slab.z}, block, shape.placement, row);
+        point_gaps({shape.box.center[0], shape.box.center[1], shape.box.center[2]}, block, shape.placement, row);
       } else {
         triangle_gaps(block, shape.rows, shape.placement, direction(), std::numeric_limits<float>::infinity(), lower);
       }
@@ -211,7 +215,7 @@ float walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit,
       continue;
     }
     const BallSlabBlock& block = tree.ball_slabs[entry.child];
-    ball_slab_gaps(shape.slab, block, nullptr, shape.placement.margin, gaps);
+    box_gaps(shape.box, block, 1, shape.placement.box_margin, gaps);
     const std::size_t begin = size;
     for (std::uint32_t left = gaps.used; left != 0; left &= left - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));

@@ -11,17 +11,6 @@
 namespace orchard::runtime::detail {
 namespace {
 
-template <typename Kind>
-ORCHARD_INLINE void find_gaps(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement,
-                              float margin, BallSlabGaps& result) noexcept {
-  using E = Eight<Kind>;
-  using Floats = typename E::Floats;
-  const BallSlabPair<Kind> pair(single, lanes, placement, result);
-  const Floats gap = E::larger(E::larger(pair.by_n, pair.by_m), pair.by_line) - E::all(margin);
-  store(gap, result.gap);
-  result.meeting = result.used & Kind::bits(gap <= E::all(0.0f));
-}
-
 // Vectors that were made eight at a time, to be taken one by one.
 template <typename Kind>
 struct OneByOne {
@@ -67,16 +56,13 @@ ORCHARD_INLINE std::uint64_t find_candidates(const LeafPair& pair, const Placeme
   using Vectors = typename E::Vectors;
   Vectors lane[3] = {E::corner(pair.lanes, 0), E::corner(pair.lanes, 1), E::corner(pair.lanes, 2)};
   const Floats reach = E::all(placement.margin);
-  const Box<Kind> lane_box = box_of<Kind>(lane, reach);
-  const std::uint32_t lanes_left = E::kAll & ~Kind::bits(beyond_planes<Kind>(lane, pair.row_slab, reach) |
-                                                         beside_ball<Kind>(lane_box, pair.row_slab, reach));
+  const std::uint32_t lanes_left = E::kAll & ~Kind::bits(beyond_box<Kind>(lane, pair.row_box, reach));
   if (lanes_left == 0) return 0;
   Vectors row[3] = {E::move(placement, E::corner(pair.rows, 0)), E::move(placement, E::corner(pair.rows, 1)),
                     E::move(placement, E::corner(pair.rows, 2))};
-  const Box<Kind> row_box = box_of<Kind>(row, E::all(0.0f));
-  const std::uint32_t rows_left = E::kAll & ~Kind::bits(beyond_planes<Kind>(row, pair.lane_slab, reach) |
-                                                        beside_ball<Kind>(row_box, pair.lane_slab, reach));
+  const std::uint32_t rows_left = E::kAll & ~Kind::bits(beyond_box<Kind>(row, pair.lane_box, reach));
   if (rows_left == 0) return 0;
+  const Box<Kind> lane_box = box_of<Kind>(lane, reach), row_box = box_of<Kind>(row, E::all(0.0f));
   std::uint32_t near[kBlockWidth];
   const std::uint32_t found =
       find_near<Kind>(lane_box, lanes_left & used_lanes(pair.lanes), row_box, rows_left & used_lanes(pair.rows), near);
@@ -197,16 +183,6 @@ TrianglePoints moved_points_of(const TriangleBlock& block, std::uint32_t lane, c
 
 // Without vectors the compiler's own are slower than one number at a time that stops early.
 #ifdef ORCHARD_VECTORS
-void ball_slab_gaps(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
-                    BallSlabGaps& result) noexcept {
-  PerMachine<find_gaps<Widest>, find_gaps<Base>>::call(single, lanes, placement, margin, result);
-}
-
-void meeting_ball_slabs(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
-                        BallSlabGaps& result) noexcept {
-  ball_slab_gaps(single, lanes, placement, margin, result);
-}
-
 void triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows, const Placement& placement,
                    const std::array<float, 3>& direction, float reach, TriangleGaps& result) noexcept {
   PerMachine<find_triangle_gaps<Widest>, find_triangle_gaps<Base>>::call(lanes, rows, placement, direction, reach,
@@ -217,16 +193,6 @@ std::uint64_t triangle_candidates(const LeafPair& pair, const Placement& placeme
   return PerMachine<find_candidates<Widest>, find_candidates<Base>>::call(pair, placement);
 }
 #else
-void ball_slab_gaps(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
-                    BallSlabGaps& result) noexcept {
-  ball_slab_gaps_scalar(single, lanes, placement, margin, result);
-}
-
-void meeting_ball_slabs(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
-                        BallSlabGaps& result) noexcept {
-  meeting_ball_slabs_scalar(single, lanes, placement, margin, result);
-}
-
 void triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows, const Placement& placement,
                    const std::array<float, 3>& direction, float reach, TriangleGaps& result) noexcept {
   triangle_gaps_scalar(lanes, rows, placement, direction, reach, result);

@@ -2,12 +2,13 @@
 #include <array>
 #include <cstdint>
 
+#include "node_box.h"
 #include "orchard/runtime/narrow_phase.h"
 #include "orchard/runtime/packed_tree.h"
 #include "orchard/runtime/pose.h"
 #include "pair/triangle_pair.h"
 
-// The inner loops of the exact level and of distances: one ball slab against eight, and eight triangles against eight.
+// The inner loops of the exact level and of distances over triangles: eight against eight.
 // Every function has a twin that does the same, operation for operation, one number at a time: what the tests compare
 // with, and all that some compilers get.
 namespace orchard::runtime::detail {
@@ -18,34 +19,9 @@ inline BallSlab ball_slab_at(const BallSlabBlock& b, std::uint32_t i) noexcept {
 
 BallSlab moved(const BallSlab& slab, const Placement& placement) noexcept;
 
-// Eight ball slabs as they were tested, in the first tree's frame, and how far each is from the single one.
-struct BallSlabGaps {
-  using Lanes = std::array<float, kBlockWidth>;
-  alignas(32) Lanes x, y, z, nx, ny, nz, radius, height;
-  alignas(32) Lanes gap;  // certified lower bound on the distance; negative: they may meet, the lower the deeper
-  std::uint32_t used;     // bits: lanes that hold a ball slab
-  std::uint32_t meeting;  // bits: those with gap <= 0
-
-  BallSlab slab(std::uint32_t i) const noexcept {
-    return {x[i], y[i], z[i], nx[i], ny[i], nz[i], radius[i], height[i]};
-  }
-};
-
-// `placement` moves the lanes unless it is null; `margin` (Placement::margin) covers all rounding.
-void ball_slab_gaps(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
-                    BallSlabGaps& result) noexcept;
-void ball_slab_gaps_scalar(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
-                           BallSlabGaps& result) noexcept;
-
-// The same where only those that meet matter: of the others the result holds anything.
-void meeting_ball_slabs(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
-                        BallSlabGaps& result) noexcept;
-void meeting_ball_slabs_scalar(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement,
-                               float margin, BallSlabGaps& result) noexcept;
-
 struct LeafPair {
   const TriangleBlock &lanes, &rows;  // of the first tree and, to be moved, of the second
-  BallSlab lane_slab, row_slab;       // around them, both in the first tree's frame
+  const NodeBox &lane_box, &row_box;  // around them, both in the first tree's frame
 };
 
 // Bit 8 * row + lane: pairs that may share a point. Never leaves out a pair that does.

@@ -14,42 +14,17 @@ namespace {
 using E = Eight<OneFloat>;
 using Vectors = E::Vectors;
 
-// The balls alone, as BallSlabPair finds their gap.
-bool balls_apart(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
-                 std::uint32_t i) noexcept {
-  const Vectors own = {lanes.x[i], lanes.y[i], lanes.z[i]};
-  const Vectors d = E::minus(placement != nullptr ? E::move(*placement, own) : own, {single.x, single.y, single.z});
-  const float radius = placement != nullptr ? lanes.radius[i] * placement->scale : lanes.radius[i];
-  return std::sqrt(E::dot(d, d)) - (radius + single.radius) - margin > 0;
-}
-
-ORCHARD_INLINE void find_gaps(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement,
-                              float margin, bool only_meeting, BallSlabGaps& result) noexcept {
-  std::uint32_t used = 0, meeting = 0;
-  for (std::uint32_t i = 0; i < kBlockWidth; ++i) {
-    const bool in_use = lanes.radius[i] >= 0;
-    used |= std::uint32_t{in_use} << i;
-    if (only_meeting && (!in_use || balls_apart(single, lanes, placement, margin, i))) continue;
-    const BallSlabPair<OneFloat> pair(single, lanes, placement, result, i);
-    const float gap = E::larger(E::larger(pair.by_n, pair.by_m), pair.by_line) - margin;
-    result.gap[i] = gap;
-    meeting |= std::uint32_t{gap <= 0} << i;
-  }
-  result.used = used;
-  result.meeting = used & meeting;
-}
-
 struct Triangle {
   Vectors corner[3];
   Box<OneFloat> box;
 };
 
-// Those of a leaf, `placement` moves them unless it is null, that may reach into the other one's ball slab.
+// Those of a leaf, `placement` moves them unless it is null, that may reach into the other one's box.
 struct Leaf {
   Triangle triangle[kBlockWidth];
   std::uint32_t left = 0;
 
-  Leaf(const TriangleBlock& block, const Placement* placement, const BallSlab& other, float grown,
+  Leaf(const TriangleBlock& block, const Placement* placement, const NodeBox& other, float grown,
        float margin) noexcept {
     for (std::uint32_t i = 0; i < kBlockWidth; ++i) {
       if (block.triangle[i] == kNoTriangle) continue;
@@ -58,9 +33,9 @@ struct Leaf {
         t.corner[k] = E::corner(block, k, i);
         if (placement != nullptr) t.corner[k] = E::move(*placement, t.corner[k]);
       }
-      if (beyond_planes<OneFloat>(t.corner, other, margin)) continue;
+      if (beyond_box<OneFloat>(t.corner, other, margin)) continue;
       t.box = box_of<OneFloat>(t.corner, grown);
-      if (!beside_ball<OneFloat>(t.box, other, margin)) left |= 1u << i;
+      left |= 1u << i;
     }
   }
 };
@@ -107,20 +82,10 @@ struct Corners {
 
 }  // namespace
 
-void ball_slab_gaps_scalar(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
-                           BallSlabGaps& result) noexcept {
-  find_gaps(single, lanes, placement, margin, false, result);
-}
-
-void meeting_ball_slabs_scalar(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement,
-                               float margin, BallSlabGaps& result) noexcept {
-  find_gaps(single, lanes, placement, margin, true, result);
-}
-
 std::uint64_t triangle_candidates_scalar(const LeafPair& pair, const Placement& placement) noexcept {
-  const Leaf lanes(pair.lanes, nullptr, pair.row_slab, placement.margin, placement.margin);
+  const Leaf lanes(pair.lanes, nullptr, pair.row_box, placement.margin, placement.margin);
   if (lanes.left == 0) return 0;
-  const Leaf rows(pair.rows, &placement, pair.lane_slab, 0, placement.margin);
+  const Leaf rows(pair.rows, &placement, pair.lane_box, 0, placement.margin);
   const float margin = placement.margin * placement.unit;
   Lanes<OneFloat> planes[kBlockWidth];
   std::uint32_t made = 0;

@@ -1,8 +1,7 @@
 #pragma once
 #include "eight.h"
 
-// One ball slab against eight: what the gaps (ball_slab_block.cpp) and the times (ball_slab_time.cpp) of such are made
-// of.
+// One ball slab against eight: what the axes (front_block.cpp) and the times (ball_slab_time.cpp) of such are made of.
 namespace orchard::runtime::detail {
 
 // Added to the square of a sine before its root: a cosine of two float normals is good to some 50 u, u = 2^-24.

@@ -81,14 +81,14 @@ ORCHARD_INLINE LeafAxis find_leaf_axis(const LeafPair& pair, const Placement& pl
   const Vectors lane[3] = {E::corner(pair.lanes, 0), E::corner(pair.lanes, 1), E::corner(pair.lanes, 2)};
   const Vectors row[3] = {E::move(placement, E::corner(pair.rows, 0)), E::move(placement, E::corner(pair.rows, 1)),
                           E::move(placement, E::corner(pair.rows, 2))};
-  const BallSlab &p = pair.lane_slab, &q = pair.row_slab;
-  const float dx = q.x - p.x, dy = q.y - p.y, dz = q.z - p.z;
+  const NodeBox &p = pair.lane_box, &q = pair.row_box;
+  const float dx = q.center[0] - p.center[0], dy = q.center[1] - p.center[1], dz = q.center[2] - p.center[2];
   const auto facing = [&](float x, float y, float z) -> std::array<float, 3> {
     return x * dx + y * dy + z * dz < 0 ? std::array<float, 3>{-x, -y, -z} : std::array<float, 3>{x, y, z};
   };
   const float length = std::sqrt(dx * dx + dy * dy + dz * dz) + kMinDistance;
   const std::array<float, 3> axes[] = {
-      {dx / length, dy / length, dz / length}, facing(p.nx, p.ny, p.nz), facing(q.nx, q.ny, q.nz)};
+      {dx / length, dy / length, dz / length}, facing(p.n[0], p.n[1], p.n[2]), facing(q.n[0], q.n[1], q.n[2])};
   LeafAxis best = {-1, axes[0]};
   const auto try_axis = [&](const std::array<float, 3>& u, bool first) ORCHARD_INLINE_LAMBDA {
     const Vectors axis = {E::all(u[0]), E::all(u[1]), E::all(u[2])};

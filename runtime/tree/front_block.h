@@ -9,13 +9,23 @@
 // of such gaps after the second body has moved.
 namespace orchard::runtime::detail {
 
-// Ball slabs as in BallSlabGaps, and the vectors, of length 1 to within 1e-6, along which they have their gaps: from
-// the single one to the eight, or from the first one of each two to the second one.
-struct BallSlabAxes : BallSlabGaps {
+// Eight ball slabs as they were tested, in the first tree's frame, how far each is from the single one, and the
+// vectors, of length 1 to within 1e-6, along which they have their gaps: from the single one to the eight, or from the
+// first one of each two to the second one.
+struct BallSlabAxes {
+  using Lanes = std::array<float, kBlockWidth>;
+  alignas(32) Lanes x, y, z, nx, ny, nz, radius, height;
+  alignas(32) Lanes gap;  // certified lower bound on the distance; negative: they may meet, the lower the deeper
   alignas(32) Lanes ux, uy, uz;
+  std::uint32_t used;     // bits: lanes that hold a ball slab
+  std::uint32_t meeting;  // bits: those with gap <= 0
+
+  BallSlab slab(std::uint32_t i) const noexcept {
+    return {x[i], y[i], z[i], nx[i], ny[i], nz[i], radius[i], height[i]};
+  }
 };
 
-// As ball_slab_gaps().
+// `placement` moves the lanes unless it is null; `margin` (Placement::margin) covers all rounding.
 void ball_slab_axes(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
                     BallSlabAxes& result) noexcept;
 // Eight of the first tree and eight of the second one, which are moved, lane by lane.

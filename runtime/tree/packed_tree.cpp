@@ -7,7 +7,7 @@
 namespace orchard::runtime {
 namespace {
 
-constexpr double kNormalTolerance = 1e-6;  // on the square of a ball slab's normal, which is rounded to float
+constexpr double kNormalTolerance = 1e-6;  // on products of a ball slab's normals, which are rounded to float
 
 // Comparisons are written so that a NaN fails them.
 bool in_range(float value) noexcept { return std::fabs(value) <= kCoordinateLimit; }
@@ -116,13 +116,19 @@ const char* triangle_fault(const TreeView& tree) noexcept {
 }
 
 const char* ball_slab_fault(const BallSlabBlock& block, std::uint32_t lane) noexcept {
-  for (const auto* values : {&block.x, &block.y, &block.z, &block.radius, &block.height}) {
+  for (const auto* values : {&block.x, &block.y, &block.z, &block.radius, &block.height, &block.width, &block.length}) {
     if (!in_range((*values)[lane])) return "a ball slab is not finite or out of range";
   }
-  if (!(block.radius[lane] >= 0 && block.height[lane] >= 0)) return "a ball slab has a negative size";
-  double square = 0;
-  for (const auto* n : {&block.nx, &block.ny, &block.nz}) square += double{(*n)[lane]} * (*n)[lane];
-  return std::fabs(square - 1) <= kNormalTolerance ? nullptr : "a ball slab's normal is not a unit vector";
+  for (const auto* sizes : {&block.radius, &block.height, &block.width, &block.length}) {
+    if (!((*sizes)[lane] >= 0)) return "a ball slab has a negative size";
+  }
+  const std::array<double, 3> n = {block.nx[lane], block.ny[lane], block.nz[lane]},
+                              m = {block.mx[lane], block.my[lane], block.mz[lane]};
+  const auto dot = [](const auto& p, const auto& q) { return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]; };
+  if (!(std::fabs(dot(n, n) - 1) <= kNormalTolerance && std::fabs(dot(m, m) - 1) <= kNormalTolerance)) {
+    return "a ball slab's normal is not a unit vector";
+  }
+  return std::fabs(dot(n, m)) <= kNormalTolerance ? nullptr : "a ball slab's normals are not at right angles";
 }
 
 const char* triangle_block_fault(const TreeView& tree, const TriangleBlock& block) noexcept {

@@ -18,7 +18,7 @@ namespace orchard::runtime {
 namespace {
 
 constexpr std::array<unsigned char, 8> kMagic = {0x89, 'O', 'R', 'C', 'H', '\r', '\n', 0x1a};
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
 constexpr std::size_t kAlignment = 64;
 constexpr std::size_t kSections = 7;
 constexpr std::size_t kHeaderSize = 320;

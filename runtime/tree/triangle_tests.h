@@ -1,6 +1,7 @@
 #pragma once
 #include "ball_slab_pair.h"
 #include "eight.h"
+#include "node_box.h"
 
 // What the inner loops over triangles (ball_slab_block.cpp, ball_slab_block_plain.cpp) are made of.
 //
@@ -43,33 +44,29 @@ ORCHARD_INLINE Box<Kind> box_of(const typename Eight<Kind>::Vectors (&corner)[3]
   return {{x.low - margin, y.low - margin, z.low - margin}, {x.high + margin, y.high + margin, z.high + margin}};
 }
 
-// Triangles that do not reach between the planes of a ball slab, as a mask.
+// Triangles that do not reach between two planes, as a mask.
 template <typename Kind>
-ORCHARD_INLINE auto beyond_planes(const typename Eight<Kind>::Vectors (&corner)[3], const BallSlab& slab,
-                                  const typename Kind::Floats& margin) noexcept {
+ORCHARD_INLINE auto beyond_planes(const typename Eight<Kind>::Vectors (&from)[3], float nx, float ny, float nz,
+                                  float height, const typename Kind::Floats& margin) noexcept {
   using E = Eight<Kind>;
-  using Vectors = typename E::Vectors;
-  const Vectors n = {E::all(slab.nx), E::all(slab.ny), E::all(slab.nz)};
-  const Vectors center = {E::all(slab.x), E::all(slab.y), E::all(slab.z)};
-  const auto height = [&](std::size_t k) ORCHARD_INLINE_LAMBDA { return E::dot(n, E::minus(corner[k], center)); };
-  const Extent<Kind> e = extent<Kind>(height(0), height(1), height(2));
-  const auto limit = E::all(slab.height) + margin;
+  const typename E::Vectors n = {E::all(nx), E::all(ny), E::all(nz)};
+  const Extent<Kind> e = extent<Kind>(E::dot(n, from[0]), E::dot(n, from[1]), E::dot(n, from[2]));
+  const auto limit = E::all(height) + margin;
   return (limit < e.low) | (e.high < -limit);
 }
 
-// Boxes that do not meet the cube around a ball slab's ball, as a mask.
+// Triangles that do not reach into a box, as far as its planes tell, as a mask.
 template <typename Kind>
-ORCHARD_INLINE auto beside_ball(const Box<Kind>& box, const BallSlab& slab,
-                                const typename Kind::Floats& margin) noexcept {
+ORCHARD_INLINE auto beyond_box(const typename Eight<Kind>::Vectors (&corner)[3], const NodeBox& b,
+                               const typename Kind::Floats& margin) noexcept {
   using E = Eight<Kind>;
-  using Floats = typename E::Floats;
-  const Floats radius = E::all(slab.radius) + margin;
-  const auto beside = [&](const Floats& low, const Floats& high, float center) ORCHARD_INLINE_LAMBDA {
-    const Floats at = E::all(center);
-    return (at + radius < low) | (high < at - radius);
-  };
-  return beside(box.low.x, box.high.x, slab.x) | beside(box.low.y, box.high.y, slab.y) |
-         beside(box.low.z, box.high.z, slab.z);
+  const typename E::Vectors center = {E::all(b.center[0]), E::all(b.center[1]), E::all(b.center[2])};
+  const typename E::Vectors from[3] = {E::minus(corner[0], center), E::minus(corner[1], center),
+                                       E::minus(corner[2], center)};
+  const std::array<float, 3> l = third_normal(b);
+  return beyond_planes<Kind>(from, b.n[0], b.n[1], b.n[2], b.height, margin) |
+         beyond_planes<Kind>(from, b.m[0], b.m[1], b.m[2], b.width, margin) |
+         beyond_planes<Kind>(from, l[0], l[1], l[2], b.length, margin);
 }
 
 // The eight lanes' triangles, and their planes.

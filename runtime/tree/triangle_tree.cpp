@@ -40,6 +40,31 @@ float above(double value) {  // at least `value`, rounding of a few operations i
   return std::nextafter(static_cast<float>(value * (1 + 1e-14)), std::numeric_limits<float>::infinity());
 }
 
+Vec3 along(const Vec3& from, const Vec3& way, double by) {
+  return {from[0] + by * way[0], from[1] + by * way[1], from[2] + by * way[2]};
+}
+
+// As queries find it, in float.
+Vec3 float_cross(const Vec3& p, const Vec3& q) {
+  Vec3 result{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    result[i] = rounded(rounded(p[j] * q[k]) - rounded(p[k] * q[j]));
+  }
+  return result;
+}
+
+// Cosines and sines of the directions tried for a box within its first plane, an eighth of a quarter turn from each
+// other: more make it hardly smaller. Written out, as libraries differ in last digits.
+constexpr std::array<std::array<double, 2>, 8> kBoxTurns = {{{1, 0},
+                                                             {0.9807852804032304, 0.19509032201612825},
+                                                             {0.9238795325112867, 0.3826834323650898},
+                                                             {0.8314696123025452, 0.5555702330196022},
+                                                             {0.7071067811865476, 0.7071067811865476},
+                                                             {0.5555702330196022, 0.8314696123025452},
+                                                             {0.3826834323650898, 0.9238795325112867},
+                                                             {0.19509032201612825, 0.9807852804032304}}};
+
 // Levels below which parts are halved by number: 31 more are enough for every count, and kTriangleTreeDepthLimit is 64.
 constexpr std::uint32_t kCostlyDepth = 32;
 
@@ -64,6 +89,8 @@ struct Triangle {
 struct BallSlab {
   Vec3 center, normal;
   double radius, height;
+  Vec3 second, third;  // normals of the box
+  double width, length;
 };
 
 class Builder {
@@ -294,26 +321,21 @@ class Builder {
 
   // Between the planes across `normal`, centred between them.
   BallSlab ball_slab_across(const Range& part, const Vec3& middle, const Vec3& normal) const {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
+    double low = kInfinity, high = -kInfinity;
     each_corner(part, [&](const Vec3& p) {
       const double h = dot(normal, minus(p, middle));
       low = std::min(low, h), high = std::max(high, h);
     });
-    BallSlab slab{middle, normal, 0, 0};
-    for (std::size_t i = 0; i < 3; ++i) {
-      slab.center[i] = rounded(middle[i] + (low + high) / 2 * normal[i]);
-    }
-    each_corner(part, [&](const Vec3& p) {
-      const Vec3 d = minus(p, slab.center);
-      slab.radius = std::max(slab.radius, std::sqrt(dot(d, d)));
-      slab.height = std::max(slab.height, std::fabs(dot(normal, d)));
-    });
+    BallSlab slab{};
+    slab.normal = normal;
+    slab.center = along(middle, normal, (low + high) / 2);
+    slab.height = (high - low) / 2;
     return slab;
   }
 
   // The flatter one of the ball slab across the corners' thinnest direction and the one along the surface's mean
   // normal.
-  BallSlab ball_slab_of(const Part& part) const {
+  BallSlab ball_slab_of(const Part& part) {
     Vec3 mean{};
     for (std::size_t i = part.begin; i < part.end; ++i) {
       const auto& corners = order_[i].corners;
@@ -323,7 +345,54 @@ class Builder {
     }
     const BallSlab thin = ball_slab_across(part, part.middle, direction(part.axes[2]));
     const BallSlab facing = ball_slab_across(part, part.middle, direction(mean));
-    return facing.height <= thin.height ? facing : thin;
+    BallSlab slab = facing.height <= thin.height ? facing : thin;
+    find_box(part, slab);
+    return slab;
+  }
+
+  // The other two pairs of planes: across the directions, among a few, that make the smallest box, which is centred
+  // between all of them. Everything is measured last, from what is stored.
+  void find_box(const Range& part, BallSlab& slab) {
+    std::size_t least = 0;
+    for (std::size_t i = 1; i < 3; ++i) {
+      if (std::fabs(slab.normal[i]) < std::fabs(slab.normal[least])) least = i;
+    }
+    Vec3 axis{};
+    axis[least] = 1;
+    const Vec3 u = direction(cross(slab.normal, axis)), v = cross(slab.normal, u);
+    across_.clear();
+    each_corner(part, [&](const Vec3& p) {
+      const Vec3 d = minus(p, slab.center);
+      across_.push_back({dot(u, d), dot(v, d)});
+    });
+    std::array<double, 2> turn{}, middle{};
+    double smallest = kInfinity;
+    for (const auto& [c, s] : kBoxTurns) {
+      std::array<double, 2> low = {kInfinity, kInfinity}, high = {-kInfinity, -kInfinity};
+      for (const auto& [x, y] : across_) {
+        const double p = c * x + s * y, q = c * y - s * x;
+        low = {std::min(low[0], p), std::min(low[1], q)}, high = {std::max(high[0], p), std::max(high[1], q)};
+      }
+      const double width = high[0] - low[0], length = high[1] - low[1];
+      const double area = width * length + 2 * slab.height * (width + length);
+      if (area >= smallest) continue;
+      smallest = area;
+      turn = {c, s}, middle = {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2};
+    }
+    const auto in_plane = [&](double x, double y) { return along(along({}, u, x), v, y); };
+    const Vec3 second = in_plane(turn[0], turn[1]), third = in_plane(-turn[1], turn[0]);
+    slab.center = along(along(slab.center, second, middle[0]), third, middle[1]);
+    for (double& x : slab.center) x = rounded(x);
+    slab.second = direction(second);
+    slab.third = float_cross(slab.normal, slab.second);
+    slab.radius = slab.height = slab.width = slab.length = 0;
+    each_corner(part, [&](const Vec3& p) {
+      const Vec3 d = minus(p, slab.center);
+      slab.radius = std::max(slab.radius, std::sqrt(dot(d, d)));
+      slab.height = std::max(slab.height, std::fabs(dot(slab.normal, d)));
+      slab.width = std::max(slab.width, std::fabs(dot(slab.second, d)));
+      slab.length = std::max(slab.length, std::fabs(dot(slab.third, d)));
+    });
   }
 
   void place(std::size_t block_index, std::uint32_t lane, const Part& part) {
@@ -335,9 +404,14 @@ class Builder {
     block.nx[lane] = static_cast<float>(slab.normal[0]);
     block.ny[lane] = static_cast<float>(slab.normal[1]);
     block.nz[lane] = static_cast<float>(slab.normal[2]);
+    block.mx[lane] = static_cast<float>(slab.second[0]);
+    block.my[lane] = static_cast<float>(slab.second[1]);
+    block.mz[lane] = static_cast<float>(slab.second[2]);
     block.radius[lane] = above(slab.radius);
     // What cancels in a height is of the size of the distances from the centre.
     block.height[lane] = above(slab.height + 1e-15 * slab.radius);
+    block.width[lane] = above(slab.width + 1e-15 * slab.radius);
+    block.length[lane] = above(slab.length + 1e-15 * slab.radius);
   }
 
   PackedSphereTree& tree_;
@@ -349,6 +423,7 @@ class Builder {
   std::vector<double> behind_;    // what a cut costs behind it
   std::array<std::vector<PlaceAlong>, 3> places_;
   std::vector<PlaceAlong> sorted_;
+  std::vector<std::array<double, 2>> across_;  // corners, while a box is looked for
 };
 
 }  // namespace

@@ -198,8 +198,8 @@ TEST(FrontBlock, GivesTheSameBitsOnEveryMachineAndGapsThatAreThere) {
     detail::ball_slab_pair_axes_scalar(a.ball_slabs[block_a], b.ball_slabs[block_b], placement, placement.margin,
                                        plain_pair);
     const auto same = [](const detail::BallSlabAxes& p, const detail::BallSlabAxes& q) {
-      return std::memcmp(&p, &q, offsetof(detail::BallSlabGaps, used)) == 0 && p.used == q.used &&
-             p.meeting == q.meeting && p.ux == q.ux && p.uy == q.uy && p.uz == q.uz;
+      return std::memcmp(&p, &q, offsetof(detail::BallSlabAxes, used)) == 0 && p.used == q.used &&
+             p.meeting == q.meeting;
     };
     on_every_machine([&] {
       detail::ball_slab_axes(single, b.ball_slabs[block_b], &placement, placement.margin, axes);
@@ -224,8 +224,10 @@ TEST(FrontBlock, GivesTheSameBitsOnEveryMachineAndGapsThatAreThere) {
     const std::uint32_t node_a = block_a * kBlockWidth, node_b = block_b * kBlockWidth;
     const std::uint32_t leaf_a = a.ball_slabs[block_a].child[0], leaf_b = b.ball_slabs[block_b].child[0];
     if ((leaf_a & leaf_b & kLeafBit) == 0) continue;
-    const detail::LeafPair pair = {a.triangle_blocks[leaf_a & ~kLeafBit], b.triangle_blocks[leaf_b & ~kLeafBit], single,
-                                   detail::moved(detail::ball_slab_at(b.ball_slabs[block_b], 0), placement)};
+    const detail::NodeBox lane_box = detail::node_box_at(a.ball_slabs[block_a], 0),
+                          row_box = detail::moved(detail::node_box_at(b.ball_slabs[block_b], 0), placement);
+    const detail::LeafPair pair = {a.triangle_blocks[leaf_a & ~kLeafBit], b.triangle_blocks[leaf_b & ~kLeafBit],
+                                   lane_box, row_box};
     const float enough = static_cast<float>(draw.uniform(0, 0.3));
     constexpr std::array<float, 3> given = {0, 0.6f, 0.8f};
     const std::array<float, 3>* const direction = draw.bits() % 2 == 0 ? &given : nullptr;

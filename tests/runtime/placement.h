@@ -16,6 +16,8 @@ inline detail::Placement placement_of(const Pose& pose, double size) {
   for (std::size_t i = 0; i < 3; ++i) p.translation[i] = static_cast<float>(pose.translation[i]);
   p.scale = static_cast<float>(pose.scale);
   p.margin = static_cast<float>(size * 128 * 0x1p-24);
+  p.box_margin = static_cast<float>(size * 256 * 0x1p-24);
+  detail::find_rows(p);
   return p;
 }
 

@@ -40,7 +40,7 @@ TEST(TreeFile, ReportsEveryAlteredByte) {
 
 TEST(TreeFile, RefusesOtherVersionsAndTrailingBytes) {
   auto newer = serialize(sample_tree());
-  put(newer, 8, std::uint32_t{4});
+  put(newer, 8, std::uint32_t{5});
   seal(newer);
   EXPECT_EQ(load_or_keep(newer), LoadStatus::version_newer);
   auto older = serialize(sample_tree());
@@ -132,6 +132,15 @@ Changes unsafe_triangle_changes() {
       {"second root slab", [](auto& t) { t.ball_slabs[0].radius[1] = 1; }},
       {"slab behind an empty lane", [](auto& t) { t.ball_slabs[1].radius[0] = -1; }},
       {"normal too long", [](auto& t) { t.ball_slabs[1].nx[0] += 0.01f; }},
+      {"second normal too long", [](auto& t) { t.ball_slabs[1].mx[0] += 1.01f; }},
+      {"normals not at right angles",
+       [](auto& t) {
+         auto& block = t.ball_slabs[1];
+         block.mx[0] = block.nx[0], block.my[0] = block.ny[0], block.mz[0] = block.nz[0];
+       }},
+      {"slab with a negative width", [](auto& t) { t.ball_slabs[1].width[0] = -1; }},
+      {"slab with an infinite length",
+       [](auto& t) { t.ball_slabs[1].length[0] = std::numeric_limits<float>::infinity(); }},
       {"slab its own child", [](auto& t) { t.ball_slabs[0].child[0] = 0; }},
       {"slab child beyond the end", [](auto& t) { t.ball_slabs[1].child[0] = 1u << 20; }},
       {"triangle block beyond the end", [](auto& t) { t.ball_slabs[1].child[0] = kLeafBit | (1u << 20); }},
@@ -188,7 +197,7 @@ TEST(TreeFile, RefusesWhateverIsNotZeroWhereNothingBelongs) {
     std::fill_n(meant.begin() + std::ptrdiff_t(begin), size, true);
   };
   mark(0, 92), mark(96, 7 * 24);
-  const std::size_t sizes[] = {224, 12, 12, 4, 288, 320, 4};
+  const std::size_t sizes[] = {224, 12, 12, 4, 448, 320, 4};
   for (std::size_t i = 0; i < 7; ++i) {
     const std::size_t at = kTableAt + 24 * i;
     mark(get<std::uint64_t>(file, at + 8), get<std::uint64_t>(file, at + 16) * sizes[i]);

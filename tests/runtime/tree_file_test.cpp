@@ -59,13 +59,13 @@ TEST(TreeFile, PutsEverySectionWhereTheFormatSays) {
   const PackedSphereTree tree = sample_tree();
   auto file = serialize(tree);
   EXPECT_EQ(std::memcmp(file.data(), "\x89ORCH\r\n\x1a", 8), 0);
-  EXPECT_EQ(get<std::uint32_t>(file, 8), 3u);
+  EXPECT_EQ(get<std::uint32_t>(file, 8), 4u);
   EXPECT_EQ(get<std::uint32_t>(file, 12), kHeaderSize);
   EXPECT_EQ(get<std::uint64_t>(file, kFileSizeAt), file.size());
   const std::size_t counts[] = {tree.blocks.size(),         tree.vertices.size(),   tree.triangles.size(),
                                 tree.leaf_triangles.size(), tree.ball_slabs.size(), tree.triangle_blocks.size(),
                                 tree.supports.size()};
-  const std::uint32_t sizes[] = {224, 12, 12, 4, 288, 320, 4};
+  const std::uint32_t sizes[] = {224, 12, 12, 4, 448, 320, 4};
   for (std::size_t i = 0; i < 7; ++i) {
     const std::size_t at = kTableAt + 24 * i;
     EXPECT_EQ(get<std::uint32_t>(file, at), i + 1);

@@ -8,7 +8,8 @@
 
 #include "orchard/runtime/packed_tree.h"
 #include "support.h"
-#include "tree/places_along.h"  // private
+#include "tree/node_box.h"  // private
+#include "tree/places_along.h"
 
 namespace orchard::runtime {
 namespace {
@@ -104,6 +105,10 @@ TEST(TriangleTree, HoldsEveryTriangleInEveryBallSlabAboveItAsStored) {
             ASSERT_LE(std::sqrt(x * x + y * y + z * z), p.radius[lane]) << seed << " block " << b;
             ASSERT_LE(std::fabs(p.nx[lane] * x + p.ny[lane] * y + p.nz[lane] * z), p.height[lane])
                 << seed << " block " << b;
+            ASSERT_LE(std::fabs(p.mx[lane] * x + p.my[lane] * y + p.mz[lane] * z), p.width[lane])
+                << seed << " block " << b;
+            const auto l = detail::third_normal(detail::node_box_at(p, static_cast<std::uint32_t>(lane)));
+            ASSERT_LE(std::fabs(l[0] * x + l[1] * y + l[2] * z), p.length[lane]) << seed << " block " << b;
           }
         }
       }

@@ -56,7 +56,6 @@ class DistanceQuery {
   struct BallSlabPair {
     float lower;
     std::uint32_t a, b;
-    detail::BallSlab second;
   };
 
   bool make_room() noexcept;

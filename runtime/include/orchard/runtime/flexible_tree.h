@@ -49,7 +49,8 @@ class FlexibleTree {
   struct Node {
     std::uint32_t parent = kNone;
     std::uint32_t level = 0;
-    float radius = 0, height = 0;  // at rest; height: of ball slabs
+    float radius = 0;              // at rest, as
+    std::array<float, 3> sides{};  // height, width and length of a ball slab
     double enlarged = 0;
     bool used = false, dirty = false;
   };

@@ -15,7 +15,8 @@ namespace orchard::runtime {
 namespace detail {
 
 struct BlockHits;
-struct BallSlabGaps;
+struct BoxGaps;
+struct NodeBox;
 
 // The second tree's frame in the first one's, in float, and what covers the rounding.
 struct Placement {
@@ -23,10 +24,13 @@ struct Placement {
   std::array<float, 9> turn;      // without
   std::array<float, 3> translation;
   float scale;
-  float slack;      // to add to a sum of radii
-  float margin;     // to take from a gap between ball slabs
-  float unit = 1;   // a power of two: times this, every coordinate of the pair's frame is at most 1
-  float whole = 1;  // 1 / unit
+  float slack;           // to add to a sum of radii
+  float margin;          // to take from a gap between ball slabs
+  float unit = 1;        // a power of two: times this, every coordinate of the pair's frame is at most 1
+  float whole = 1;       // 1 / unit
+  float box_margin = 0;  // to take from a gap between boxes
+  // Of `turn` again, by fours: find_rows().
+  alignas(16) std::array<std::array<float, 4>, 3> rows{}, columns{};
 };
 
 // One ball slab, in the first tree's frame.
@@ -178,9 +182,8 @@ class NarrowPhase {
     std::size_t pair = 0;
     std::uint32_t outer = 0, inner = 0;
   };
-  struct BallSlabPair {  // ball slabs that may meet, the second one moved
+  struct BallSlabPair {  // ball slabs that may meet
     std::uint32_t a, b;
-    detail::BallSlab second;
     float gap = 0;  // above 0: they are farther apart than that, and are here for how far
   };
   struct Best {
@@ -210,9 +213,9 @@ class NarrowPhase {
   void give_up_spheres() noexcept;
   void start_exact() noexcept;
   bool refine_ball_slabs(BudgetTracker& tracker) noexcept;
-  bool find_children(const BallSlabPair& pair, std::uint32_t a, std::uint32_t b, detail::BallSlabGaps& gaps) noexcept;
-  void push_children(const BallSlabPair& pair, bool second, std::uint32_t block,
-                     const detail::BallSlabGaps& gaps) noexcept;
+  bool find_children(const BallSlabPair& pair, std::uint32_t a, std::uint32_t b, detail::BoxGaps& gaps) noexcept;
+  void push_children(const BallSlabPair& pair, bool second, std::uint32_t block, const detail::BoxGaps& gaps) noexcept;
+  detail::NodeBox moved_box(std::uint32_t node) const noexcept;  // of the second tree, in the first one's frame
   bool test_triangles(const BallSlabPair& pair) noexcept;
   bool leaves_apart(const BallSlabPair& pair, BudgetTracker& tracker) noexcept;
   bool test_two(std::uint32_t a, std::uint32_t lane, std::uint32_t b, std::uint32_t row) noexcept;

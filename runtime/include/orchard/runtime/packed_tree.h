@@ -58,15 +58,19 @@ constexpr std::uint32_t last_linked_block(std::uint32_t branching) noexcept {
 
 // Eight ball slabs side by side: nodes of the tree of triangles below the spheres. A ball slab is the part of a ball
 // between two parallel planes, the same distance from its centre; every triangle below the node lies in it, in every
-// node above it.
+// node above it. With two more pairs of planes, across the first ones and each other, it is also an oriented box: the
+// third pair's normal is the first one's times the second one's (cross product in float).
 struct alignas(32) BallSlabBlock {
   std::array<float, kBlockWidth> x{}, y{}, z{};     // centre
   std::array<float, kBlockWidth> nx{}, ny{}, nz{};  // normal of the planes: unit to 1e-6
   std::array<float, kBlockWidth> radius{};          // of the ball; -1 in lanes that hold no node
   std::array<float, kBlockWidth> height{};          // |normal * (point - centre)| of every point is at most this
+  std::array<float, kBlockWidth> mx{}, my{}, mz{};  // normal of the second pair: unit, and across the first, to 1e-6
+  std::array<float, kBlockWidth> width{};           // as height, along the second normal,
+  std::array<float, kBlockWidth> length{};          // and along the third one
   std::array<std::uint32_t, kBlockWidth> child{};   // block of the first child; with kLeafBit set, a triangle block
 };
-static_assert(sizeof(BallSlabBlock) == 288 && alignof(BallSlabBlock) == 32);
+static_assert(sizeof(BallSlabBlock) == 448 && alignof(BallSlabBlock) == 32);
 
 // Up to eight triangles side by side, as the exact level reads them.
 struct alignas(32) TriangleBlock {
