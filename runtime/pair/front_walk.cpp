@@ -14,7 +14,7 @@
 // motion.
 namespace orchard::runtime {
 
-using detail::BallSlabAxes;
+using detail::BoxAxes;
 using detail::LeafAxis;
 using detail::Vec3;
 
@@ -27,6 +27,10 @@ constexpr std::uint32_t kMostOpen = 64;  // more to look at than that, and the r
 constexpr double kAxisError = 4e-6;      // of a motion
 
 double size_of(const Vec3& v) noexcept { return std::sqrt(detail::dot(v, v)); }
+
+detail::NodeBox box_of(const TreeView& tree, std::uint32_t node) noexcept {
+  return detail::node_box_at(tree.ball_slabs[node / kBlockWidth], node % kBlockWidth);
+}
 
 }  // namespace
 
@@ -129,7 +133,7 @@ FrontWalk::Outcome FrontWalk::settle_leaves() noexcept {
 // Eight at a time: those that are apart along another direction stay, the others make room for what is below them.
 FrontWalk::Outcome FrontWalk::settle_nodes() noexcept {
   BallSlabBlock firsts, seconds;
-  BallSlabAxes axes;
+  BoxAxes axes;
   for (std::uint32_t from = 0; from < node_count_; from += kBlockWidth) {
     const std::uint32_t count = std::min(node_count_ - from, kBlockWidth);
     for (std::uint32_t i = 0; i < kBlockWidth; ++i) {
@@ -140,12 +144,14 @@ FrontWalk::Outcome FrontWalk::settle_nodes() noexcept {
         const std::uint32_t lane = node % kBlockWidth;
         to.x[i] = of.x[lane], to.y[i] = of.y[lane], to.z[i] = of.z[lane];
         to.nx[i] = of.nx[lane], to.ny[i] = of.ny[lane], to.nz[i] = of.nz[lane];
+        to.mx[i] = of.mx[lane], to.my[i] = of.my[lane], to.mz[i] = of.mz[lane];
         to.radius[i] = of.radius[lane], to.height[i] = of.height[lane];
+        to.width[i] = of.width[lane], to.length[i] = of.length[lane];
       };
       copy(firsts, first_, block.a[slot % kBlockWidth]);
       copy(seconds, second_, block.b[slot % kBlockWidth]);
     }
-    detail::ball_slab_pair_axes(firsts, seconds, placement_, placement_.margin, axes);
+    detail::box_pair_axes(firsts, seconds, placement_, placement_.box_margin, axes);
     tracker_->spend(count);
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t slot = nodes_[from + i], lane = slot % kBlockWidth;
@@ -188,10 +194,7 @@ FrontWalk::Outcome FrontWalk::walk(const BallSlabPair& from) noexcept {
 bool FrontWalk::leaves_meet(const BallSlabPair& pair, const Axis* last, LeafAxis& axis) noexcept {
   const TriangleBlock& lanes = first_.triangle_blocks[detail::ball_slab_child(first_, pair.a) & ~kLeafBit];
   const TriangleBlock& rows = second_.triangle_blocks[detail::ball_slab_child(second_, pair.b) & ~kLeafBit];
-  const auto box = [](const TreeView& tree, std::uint32_t node) {
-    return detail::node_box_at(tree.ball_slabs[node / kBlockWidth], node % kBlockWidth);
-  };
-  const detail::NodeBox lane_box = box(first_, pair.a), row_box = detail::moved(box(second_, pair.b), placement_);
+  const detail::NodeBox lane_box = box_of(first_, pair.a), row_box = detail::moved(box_of(second_, pair.b), placement_);
   const detail::LeafPair leaves = {lanes, rows, lane_box, row_box};
   axis = detail::leaf_axis(leaves, placement_, last, enough_);
   tracker_->spend(kBlockWidth);
@@ -202,12 +205,14 @@ bool FrontWalk::leaves_meet(const BallSlabPair& pair, const Axis* last, LeafAxis
 
 void FrontWalk::expand(const BallSlabPair& pair, bool open_second) noexcept {
   const std::uint32_t block = detail::ball_slab_child(open_second ? second_ : first_, open_second ? pair.b : pair.a);
-  BallSlabAxes axes;
+  BoxAxes axes;
+  const float margin = placement_.box_margin;
   if (open_second) {
-    detail::ball_slab_axes(detail::ball_slab_at(first_.ball_slabs[pair.a / kBlockWidth], pair.a % kBlockWidth),
-                           second_.ball_slabs[block], &placement_, placement_.margin, axes);
+    detail::box_axes(detail::moved_back(box_of(first_, pair.a), placement_), second_.ball_slabs[block], &placement_,
+                     margin, axes);
   } else {
-    detail::ball_slab_axes(moved_slab(pair.b), first_.ball_slabs[block], nullptr, placement_.margin, axes);
+    detail::box_axes(detail::moved(box_of(second_, pair.b), placement_), first_.ball_slabs[block], nullptr, margin,
+                     axes);
   }
   tracker_->spend(static_cast<std::uint64_t>(std::bit_width(axes.used)));
   const std::size_t begin = stack_size_;
@@ -269,10 +274,6 @@ void FrontWalk::keep_stack() noexcept {
 void FrontWalk::release(std::uint32_t slot) noexcept {
   front_.blocks_[slot / kBlockWidth].gap[slot % kBlockWidth] = kUnused;
   front_.free_[front_.free_count_++] = static_cast<std::uint16_t>(slot);
-}
-
-detail::BallSlab FrontWalk::moved_slab(std::uint32_t b) const noexcept {
-  return detail::moved(detail::ball_slab_at(second_.ball_slabs[b / kBlockWidth], b % kBlockWidth), placement_);
 }
 
 }  // namespace orchard::runtime

@@ -53,7 +53,6 @@ class FrontWalk {
   void add(std::uint32_t a, std::uint32_t b, float gap, const Axis& u) noexcept;
   void keep_stack() noexcept;
   void release(std::uint32_t slot) noexcept;
-  detail::BallSlab moved_slab(std::uint32_t b) const noexcept;
 
   PairFront& front_;
   NarrowPhase& narrow_;

@@ -6,7 +6,6 @@ namespace orchard::runtime::detail {
 
 // Added to the square of a sine before its root: a cosine of two float normals is good to some 50 u, u = 2^-24.
 inline constexpr float kSineError = 0x1p-17f;
-inline constexpr float kMinDistance = 1e-18f;  // keeps a quotient finite; far below every margin
 
 template <typename Kind>
 struct BallSlabPair {
@@ -35,20 +34,6 @@ struct BallSlabPair {
         s(E::all(single.radius)),
         k(E::all(single.height)) {
     place_lanes(placement, result, lane);
-  }
-  // The same with one of eight for each lane.
-  template <typename Result>
-  ORCHARD_INLINE BallSlabPair(const BallSlabBlock& singles, const BallSlabBlock& lanes, const Placement* placement,
-                              Result& result) noexcept
-      : c{load<Floats>(lanes.x), load<Floats>(lanes.y), load<Floats>(lanes.z)},
-        n{load<Floats>(lanes.nx), load<Floats>(lanes.ny), load<Floats>(lanes.nz)},
-        place{load<Floats>(singles.x), load<Floats>(singles.y), load<Floats>(singles.z)},
-        m{load<Floats>(singles.nx), load<Floats>(singles.ny), load<Floats>(singles.nz)},
-        r(load<Floats>(lanes.radius)),
-        h(load<Floats>(lanes.height)),
-        s(load<Floats>(singles.radius)),
-        k(load<Floats>(singles.height)) {
-    place_lanes(placement, result, 0);
   }
 
  private:

@@ -19,6 +19,8 @@ using Widest = PlainFloats;
 using Base = PlainFloats;
 #endif
 
+inline constexpr float kMinDistance = 1e-18f;  // keeps a quotient finite; far below every margin
+
 template <typename Kind>
 struct Eight {
   using Floats = typename Kind::Floats;

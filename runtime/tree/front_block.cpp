@@ -3,11 +3,11 @@
 #include <bit>
 #include <cmath>
 
-#include "ball_slab_pair.h"
+#include "box_pair.h"
 #include "eight.h"
 #include "machine.h"
 
-// Rounding. Ball slabs: as in ball_slab_block.cpp. Leaves: u . p of points placed to within sigma, with |p| <= D and
+// Rounding. Boxes: as for their gaps. Leaves: u . p of points placed to within sigma, with |p| <= D and
 // |u|_1 <= 1.74, is off by less than 1.74 sigma + 7 u D, and the difference of two such by less than twice the margin
 // (narrow_phase.cpp, (5)). Gaps that close: Shift::error.
 namespace orchard::runtime::detail {
@@ -17,36 +17,34 @@ constexpr int kReflections = 4;
 constexpr float kUnitError = 0x1p-18f;  // vectors are of length 1 to within 1e-6: so much of a gap may not be there
 
 template <typename Kind>
-ORCHARD_INLINE void keep_axes(const BallSlabPair<Kind>& pair, float margin, BallSlabAxes& result) noexcept {
+ORCHARD_INLINE void find_axes_of(const Boxes<Kind>& p, const Boxes<Kind>& q, const Placement* turned, float margin,
+                                 BoxAxes& result) noexcept {
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
-  const Floats zero = E::all(0.0f), length = pair.distance + E::all(kMinDistance);
-  const auto oriented = [&](const Floats& over, const Floats& v)
-                            ORCHARD_INLINE_LAMBDA -> Floats { return Kind::choose(over < zero, -v, v); };
-  const auto by_m = pair.by_n < pair.by_m;
-  const Floats best = Kind::choose(by_m, pair.by_m, pair.by_n);
-  const auto by_line = best < pair.by_line;
-  const auto axis = [&](const Floats& n, const Floats& m, const Floats& d) ORCHARD_INLINE_LAMBDA -> Floats {
-    return Kind::choose(by_line, d / length, Kind::choose(by_m, oriented(pair.over_m, m), oriented(pair.over_n, n)));
-  };
-  store(axis(pair.n.x, pair.m.x, pair.d.x), result.ux);
-  store(axis(pair.n.y, pair.m.y, pair.d.y), result.uy);
-  store(axis(pair.n.z, pair.m.z, pair.d.z), result.uz);
-  const Floats gap = Kind::choose(by_line, pair.by_line, best) - E::all(margin);
+  const BoxPair<Kind> pair(p, q);
+  const Floats far = pair.distance + E::all(kMinDistance);
+  BestAxis<Kind> best = {pair.ball_gap, {pair.d.x / far, pair.d.y / far, pair.d.z / far}};
+  pair.find(best);
+  if (turned != nullptr) best.u = E::turn(turned->turn, best.u);
+  store(best.u.x, result.ux), store(best.u.y, result.uy), store(best.u.z, result.uz);
+  const Floats gap = best.gap - E::all(margin);
   store(gap, result.gap);
-  result.meeting = result.used & ~Kind::bits(zero < gap);
+  result.used = Kind::bits(E::all(0.0f) <= q.radius);
+  result.meeting = result.used & ~Kind::bits(E::all(0.0f) < gap);
 }
 
 template <typename Kind>
-ORCHARD_INLINE void find_axes(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement,
-                              float margin, BallSlabAxes& result) noexcept {
-  keep_axes<Kind>(BallSlabPair<Kind>(single, lanes, placement, result), margin, result);
+ORCHARD_INLINE void find_axes(const NodeBox& single, const BallSlabBlock& lanes, const Placement* placement,
+                              float margin, BoxAxes& result) noexcept {
+  const float scale = placement != nullptr ? placement->scale : 1;
+  find_axes_of<Kind>(Boxes<Kind>::of(single), Boxes<Kind>::of(lanes, scale, 0), placement, margin, result);
 }
 
 template <typename Kind>
 ORCHARD_INLINE void find_pair_axes(const BallSlabBlock& firsts, const BallSlabBlock& seconds,
-                                   const Placement& placement, float margin, BallSlabAxes& result) noexcept {
-  keep_axes<Kind>(BallSlabPair<Kind>(firsts, seconds, &placement, result), margin, result);
+                                   const Placement& placement, float margin, BoxAxes& result) noexcept {
+  find_axes_of<Kind>(Boxes<Kind>::of(firsts, 1, 0), Boxes<Kind>::of(seconds, 1, 0).moved(placement), nullptr, margin,
+                     result);
 }
 
 // The corner that is least far along u.
@@ -159,21 +157,21 @@ ORCHARD_INLINE float find_least_gap(const FrontBlock* blocks, std::uint32_t coun
 
 }  // namespace
 
-void ball_slab_axes(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
-                    BallSlabAxes& result) noexcept {
+void box_axes(const NodeBox& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
+              BoxAxes& result) noexcept {
   PerMachine<find_axes<Widest>, find_axes<Base>>::call(single, lanes, placement, margin, result);
 }
-void ball_slab_axes_scalar(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
-                           BallSlabAxes& result) noexcept {
+void box_axes_scalar(const NodeBox& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
+                     BoxAxes& result) noexcept {
   find_axes<PlainFloats>(single, lanes, placement, margin, result);
 }
 
-void ball_slab_pair_axes(const BallSlabBlock& firsts, const BallSlabBlock& seconds, const Placement& placement,
-                         float margin, BallSlabAxes& result) noexcept {
+void box_pair_axes(const BallSlabBlock& firsts, const BallSlabBlock& seconds, const Placement& placement, float margin,
+                   BoxAxes& result) noexcept {
   PerMachine<find_pair_axes<Widest>, find_pair_axes<Base>>::call(firsts, seconds, placement, margin, result);
 }
-void ball_slab_pair_axes_scalar(const BallSlabBlock& firsts, const BallSlabBlock& seconds, const Placement& placement,
-                                float margin, BallSlabAxes& result) noexcept {
+void box_pair_axes_scalar(const BallSlabBlock& firsts, const BallSlabBlock& seconds, const Placement& placement,
+                          float margin, BoxAxes& result) noexcept {
   find_pair_axes<PlainFloats>(firsts, seconds, placement, margin, result);
 }
 

@@ -5,32 +5,22 @@
 #include "ball_slab_block.h"
 #include "orchard/runtime/pair_front.h"
 
-// The inner loops of a front (pair_front.h): along which unit vectors ball slabs and leaves are apart, and what is left
+// The inner loops of a front (pair_front.h): along which unit vectors nodes and leaves are apart, and what is left
 // of such gaps after the second body has moved.
 namespace orchard::runtime::detail {
 
-// Eight ball slabs as they were tested, in the first tree's frame, how far each is from the single one, and the
-// vectors, of length 1 to within 1e-6, along which they have their gaps: from the single one to the eight, or from the
-// first one of each two to the second one.
-struct BallSlabAxes {
-  using Lanes = std::array<float, kBlockWidth>;
-  alignas(32) Lanes x, y, z, nx, ny, nz, radius, height;
-  alignas(32) Lanes gap;  // certified lower bound on the distance; negative: they may meet, the lower the deeper
+// How far eight nodes are from the single one, and the vectors, of length 1 to within 1e-6, along which they have their
+// gaps: in the first tree's frame, from the single one to the eight, or from the first one of each two to the second.
+struct BoxAxes : BoxGaps {
   alignas(32) Lanes ux, uy, uz;
-  std::uint32_t used;     // bits: lanes that hold a ball slab
-  std::uint32_t meeting;  // bits: those with gap <= 0
-
-  BallSlab slab(std::uint32_t i) const noexcept {
-    return {x[i], y[i], z[i], nx[i], ny[i], nz[i], radius[i], height[i]};
-  }
 };
 
-// `placement` moves the lanes unless it is null; `margin` (Placement::margin) covers all rounding.
-void ball_slab_axes(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
-                    BallSlabAxes& result) noexcept;
-// Eight of the first tree and eight of the second one, which are moved, lane by lane.
-void ball_slab_pair_axes(const BallSlabBlock& firsts, const BallSlabBlock& seconds, const Placement& placement,
-                         float margin, BallSlabAxes& result) noexcept;
+// As box_gaps(). `placement`: where lanes and single one are in the second tree's frame, else null.
+void box_axes(const NodeBox& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
+              BoxAxes& result) noexcept;
+// Eight of the first tree and eight of the second one, lane by lane.
+void box_pair_axes(const BallSlabBlock& firsts, const BallSlabBlock& seconds, const Placement& placement, float margin,
+                   BoxAxes& result) noexcept;
 
 // How far all triangles of one leaf are from all of another one along a direction, at least; below 0: how far they may
 // overlap along it.
@@ -56,10 +46,10 @@ void close_gaps(const Shift& shift, FrontBlock* blocks, std::uint32_t count, std
 float least_gap(const FrontBlock* blocks, std::uint32_t count) noexcept;  // of `count` > 0 blocks
 
 // The same, one number at a time, for the tests.
-void ball_slab_axes_scalar(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
-                           BallSlabAxes& result) noexcept;
-void ball_slab_pair_axes_scalar(const BallSlabBlock& firsts, const BallSlabBlock& seconds, const Placement& placement,
-                                float margin, BallSlabAxes& result) noexcept;
+void box_axes_scalar(const NodeBox& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
+                     BoxAxes& result) noexcept;
+void box_pair_axes_scalar(const BallSlabBlock& firsts, const BallSlabBlock& seconds, const Placement& placement,
+                          float margin, BoxAxes& result) noexcept;
 LeafAxis leaf_axis_scalar(const LeafPair& pair, const Placement& placement, const std::array<float, 3>* given,
                           float enough) noexcept;
 void close_gaps_scalar(const Shift& shift, FrontBlock* blocks, std::uint32_t count, std::uint8_t* open) noexcept;
