@@ -69,7 +69,6 @@ SurfacePoint search_outward(const TreeView& tree, const Pose& pose, const Vec3& 
   const Segment segment(from, to);
   const bool point = from == to;
   double least = limit / pose.scale, rest = std::numeric_limits<double>::infinity();
-  std::array<float, 3> direction{};
   // False once nothing nearer is wanted.
   const auto compare = [&](const TrianglePoints& t, std::uint32_t triangle, bool may_meet) {
     Vec3 common{};
@@ -82,9 +81,6 @@ SurfacePoint search_outward(const TreeView& tree, const Pose& pose, const Vec3& 
     if (near.distance > least || (near.distance == least && triangle > best.triangle)) return true;
     least = near.distance;
     best = {least * pose.scale, near.on_b, triangle};
-    for (std::size_t i = 0; i < 3 && least > 0; ++i) {
-      direction[i] = static_cast<float>((near.on_b[i] - near.on_a[i]) / least);
-    }
     return !any;
   };
   if (guess < tree.triangles.size()) {
@@ -98,7 +94,6 @@ SurfacePoint search_outward(const TreeView& tree, const Pose& pose, const Vec3& 
   if (size <= kFloatReach) {
     const float others = walk_outward(
         tree, shape_of(tree, segment), [&] { return least; },
-        [&]() -> const std::array<float, 3>& { return direction; },
         [&](const TriangleBlock& block, std::uint32_t lane, bool may_meet) {
           return compare(points_of(block, lane), block.triangle[lane], may_meet);
         });

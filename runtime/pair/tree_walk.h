@@ -9,6 +9,7 @@
 #include "tree/ball_slab_block.h"
 #include "tree/node_box.h"
 #include "tree/point_block.h"
+#include "tree/segment_block.h"
 #include "tree/tree_nodes.h"
 #include "vector_functions.h"
 
@@ -107,11 +108,11 @@ struct Frame {  // the body's, with its coordinates relative to the tree's origi
   Pose back;
 };
 
-// A point or segment as a box, a triangle and what they need to be asked about in float.
+// A point or segment in float, as a box, too, and what they need to be asked about in float.
 struct FloatShape {
   bool point = false;
+  std::array<float, 3> from{}, to{};
   NodeBox box{};
-  TriangleBlock rows{};
   Placement placement{};
 };
 
@@ -140,13 +141,7 @@ inline FloatShape shape_of(const TreeView& tree, const Segment& s) noexcept {
   const auto four = [f](const Vec3& v) -> std::array<float, 4> { return {f(v[0]), f(v[1]), f(v[2]), 0}; };
   shape.box = {four(middle), four(normal), four(second), reach, thin, thin, reach};
   const Vec3 end = along(s.p, s.d, 1);
-  for (std::size_t i = 0; i < 3; ++i) {
-    shape.rows.corner[0][i].fill(f(s.p[i]));
-    shape.rows.corner[1][i].fill(f(end[i]));
-    shape.rows.corner[2][i].fill(f(end[i]));
-  }
-  shape.rows.triangle.fill(kNoTriangle);
-  shape.rows.triangle[0] = 0;
+  for (std::size_t i = 0; i < 3; ++i) shape.from[i] = f(s.p[i]), shape.to[i] = f(end[i]);
   Placement& p = shape.placement;
   p.rotation = p.turn = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   p.translation = {};
@@ -159,12 +154,10 @@ inline FloatShape shape_of(const TreeView& tree, const Segment& s) noexcept {
 }
 
 // Calls visit(triangle block, lane, whether it may meet the segment) for the triangles that may be within limit() of
-// the segment, nearest ball slabs of a block and nearest triangles of a leaf first, until it returns false;
-// `direction()` is a unit vector that may tell triangles apart. Returns how far from the segment all others are, at
-// least, if it has not returned false.
-template <typename Limit, typename Direction, typename Visit>
-float walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit, Direction&& direction,
-                   Visit&& visit) noexcept {
+// the segment, nearest ball slabs of a block and nearest triangles of a leaf first, until it returns false. Returns how
+// far from the segment all others are, at least, if it has not returned false.
+template <typename Limit, typename Visit>
+float walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit, Visit&& visit) noexcept {
   struct Entry {
     float gap;
     std::uint32_t child;
@@ -172,7 +165,7 @@ float walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit,
   std::array<Entry, kWalkRoom> stack;
   std::size_t size = 0;
   BoxGaps gaps;
-  TriangleGaps lower;
+  std::array<float, kBlockWidth> row;
   float beyond = std::numeric_limits<float>::infinity();
   const auto leave_out = [&](float gap) { beyond = std::min(beyond, gap); };
   stack[size++] = {0, tree.ball_slabs[0].child[0]};
@@ -184,11 +177,10 @@ float walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit,
     }
     if (entry.child & kLeafBit) {
       const TriangleBlock& block = tree.triangle_blocks[entry.child & ~kLeafBit];
-      auto& row = lower.lower[0];
       if (shape.point) {
-        point_gaps({shape.box.center[0], shape.box.center[1], shape.box.center[2]}, block, shape.placement, row);
+        point_gaps(shape.from, block, shape.placement, row);
       } else {
-        triangle_gaps(block, shape.rows, shape.placement, direction(), std::numeric_limits<float>::infinity(), lower);
+        segment_gaps(shape.from, shape.to, block, shape.placement, row);
       }
       std::uint32_t left = 0;
       for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {

@@ -7,11 +7,14 @@
 
 #include "bodies.h"
 #include "every_machine.h"
+#include "pair/segment_meets.h"
 #include "pair/triangle_distance.h"
+#include "support/effort.h"
 #include "tree/ball_slab_block.h"
 #include "tree/ball_slab_time.h"
 #include "tree/point_block.h"
 #include "tree/ray_block.h"
+#include "tree/segment_block.h"
 
 namespace orchard::runtime::detail {
 namespace {
@@ -55,6 +58,46 @@ TEST(PointBlock, BoundsTheDistanceFromBelowAndCloselyAtEveryScaleOnEveryMachine)
           const double truth = nearest_points(Vec3{p[0], p[1], p[2]}, points_of(block, i)).distance;
           ASSERT_LE(double{lower[i]}, truth) << seed;
           close += double{lower[i]} > truth - 3 * double{placement.margin} - 1e-3 * truth;
+          ++all;
+        }
+      }
+    }
+    EXPECT_GT(close, all * 9 / 10);
+  });
+}
+
+TEST(SegmentBlock, BoundsTheDistanceFromBelowAndCloselyAtEveryScaleOnEveryMachine) {
+  on_every_machine([] {
+    int close = 0, all = 0;
+    const std::uint64_t begin = orchard::test::first_seed();
+    for (std::uint64_t seed = begin; seed < begin + 120 * orchard::test::more(); ++seed) {
+      const double scale = std::ldexp(1, static_cast<int>(seed % 4) * 30 - 45);
+      const auto tree = test::build_tree(
+          test::scaled(seed % 2 == 0 ? test::torus(12, 7, 1, 0.3) : test::soup(seed, 40), scale), {.bounds = false});
+      Draw draw(seed);
+      const Placement placement = still(4 * scale);
+      const double reach = seed % 3 == 0 ? 0 : draw.uniform(0, 1);
+      for (const TriangleBlock& block : tree.triangle_blocks) {
+        std::array<float, 3> p{}, q{};
+        for (std::size_t i = 0; i < 3; ++i) {
+          const double middle = draw.uniform(-1.5, 1.5), half = reach * draw.uniform(-1, 1);
+          p[i] = static_cast<float>((middle - half) * scale), q[i] = static_cast<float>((middle + half) * scale);
+        }
+        if (seed % 5 == 0) {  // along an edge of the first triangle, and in its plane
+          for (std::size_t i = 0; i < 3; ++i) q[i] = p[i] + 0.5f * (block.corner[1][i][0] - block.corner[0][i][0]);
+        }
+        SegmentGaps lower, plain;
+        segment_gaps(p, q, block, placement, lower);
+        segment_gaps_scalar(p, q, block, placement, plain);
+        ASSERT_TRUE(same_bits(lower, plain)) << seed;
+        for (std::uint32_t i = 0; i < kBlockWidth && block.triangle[i] != kNoTriangle; ++i) {
+          const Vec3 from = {p[0], p[1], p[2]}, to = {q[0], q[1], q[2]};
+          const TrianglePoints triangle = points_of(block, i);
+          Vec3 common{};
+          const double truth =
+              segment_meets(from, to, triangle, common) ? 0 : nearest_points(from, to, triangle).distance;
+          ASSERT_LE(double{lower[i]}, truth + kParallelError * 8 * scale) << seed;
+          close += double{lower[i]} > truth - 6 * double{placement.margin} - 1e-3 * truth;
           ++all;
         }
       }
