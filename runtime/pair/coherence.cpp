@@ -71,6 +71,8 @@ struct Coherence {
     return true;
   }
 
+  bool knows_nothing() const noexcept { return memory.witness_count == 0 && pair.front_ == nullptr; }
+
   bool rigid() const noexcept {  // both, side by side
     double places = 0;
     for (std::size_t i = 0; i < 3; ++i) places += std::fabs(a.translation[i]) + std::fabs(b.translation[i]);
@@ -78,8 +80,7 @@ struct Coherence {
   }
 
   std::optional<Verdict> recall() noexcept {
-    if (!memory.seen) return std::nullopt;
-    if (moved < memory.clearance * kMargin) {
+    if (memory.seen && moved < memory.clearance * kMargin) {
       ++memory.answers;
       return apart((memory.clearance * kMargin - moved) * a.scale);
     }
@@ -113,6 +114,12 @@ struct Coherence {
     } else if (step > 0 && !fast) {
       return search_wide(step, budget);
     }
+    return remember(runtime::collide(workspace, pair, a, b, budget));
+  }
+
+  // Of bodies that pass each other fast, and did not touch: where they are is not worth remembering.
+  Verdict search_once(const Budget& budget) noexcept {
+    memory.seen = false;
     return remember(runtime::collide(workspace, pair, a, b, budget));
   }
 
@@ -260,6 +267,7 @@ std::optional<Verdict> CoherentPair::recall(Workspace& workspace, TreePair& pair
 Verdict CoherentPair::search(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b, const Budget& budget,
                              bool fast) noexcept {
   Coherence coherence{workspace, pair, a, b};
+  if (fast && coherence.knows_nothing()) return coherence.search_once(budget);
   return coherence.place() ? coherence.search(budget, fast) : collide(workspace, pair, a, b, budget);
 }
 
