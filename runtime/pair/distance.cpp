@@ -17,6 +17,7 @@ namespace orchard::runtime {
 namespace {
 
 constexpr double kRounding = 1e-12;     // of distances in double, relative to them
+constexpr float kSumRounding = 1e-6f;   // of a few float sums
 constexpr double kSmallMargin = 0.125;  // of two leaves' radii: then most of their triangles are farther apart
 
 float float_above(double value) noexcept {
@@ -65,7 +66,6 @@ void DistanceQuery::start_within(const Pose& a, const Pose& b, double limit) noe
 
 void DistanceQuery::begin(const Pose& a, const Pose& b, double limit) noexcept {
   pair_.start(a, b);
-  pair_.keep(a, b);  // which start() does not where the roots decide
   lower_ = pair_.lower_bound();
   work_ = 0;
   stack_size_ = 0;
@@ -75,12 +75,13 @@ void DistanceQuery::begin(const Pose& a, const Pose& b, double limit) noexcept {
   upper_ = std::numeric_limits<double>::infinity();
   limit_ = std::numeric_limits<double>::infinity();
   enough_ = 0;
-  finished_ = !has_room() || pair_.refused() || !pair_.in_range();
+  finished_ = !has_room() || pair_.refused() || lower_ > limit;  // or the roots are enough
+  if (finished_) return;
+  pair_.keep(a, b);  // which start() does not where the roots decide
+  finished_ = !pair_.in_range();
   if (finished_) return;
   pair_.place();
   if (limit < std::numeric_limits<double>::infinity()) {
-    finished_ = lower_ > limit;  // the roots are enough
-    if (finished_) return;
     // Beyond the limit by what the bounds lose to rounding when they are reported, so that "farther" is certain.
     const double error = pair_.exact_error_, scale = pair_.first_pose_.scale;
     limit_ = (limit + 2 * error) / scale * (1 + 4 * kRounding);
@@ -135,6 +136,9 @@ void DistanceQuery::leave_the_rest() noexcept {
 
 // Every ball slab holds triangles, so two are no farther apart than the farthest points of their ball slabs.
 bool DistanceQuery::surely_near(const BallSlabPair& pair) noexcept {
+  const double radii = double{radius_of(pair_.first_.tree, pair.a)} +
+                       double{radius_of(pair_.second_.tree, pair.b)} * double{pair_.placement_.scale};
+  if (radii > enough_) return false;
   const detail::NodeBox p =
       detail::node_box_at(pair_.first_.tree.ball_slabs[pair.a / kBlockWidth], pair.a % kBlockWidth);
   const detail::NodeBox q = pair_.moved_box(pair.b);
@@ -155,19 +159,22 @@ void DistanceQuery::expand(const BallSlabPair& pair, std::uint32_t block, bool s
   const auto box = [](const TreeView& tree, std::uint32_t node) {
     return detail::node_box_at(tree.ball_slabs[node / kBlockWidth], node % kBlockWidth);
   };
+  const bool limited = limit_ < double{kCoordinateLimit};
+  const float reach = limited ? float_above(limit_) : 0, margin = placement.box_margin + reach;
   detail::BoxGaps gaps;
   if (second) {
     detail::box_gaps(detail::moved_back(box(first, pair.a), placement), other.ball_slabs[block], placement.scale,
-                     placement.box_margin, gaps);
+                     margin, gaps);
   } else {
-    detail::box_gaps(detail::moved(box(other, pair.b), placement), first.ball_slabs[block], 1, placement.box_margin,
-                     gaps);
+    detail::box_gaps(detail::moved(box(other, pair.b), placement), first.ball_slabs[block], 1, margin, gaps);
   }
   const std::size_t begin = stack_size_;
-  for (std::uint32_t left = gaps.used; left != 0; left &= left - 1) {
+  if (limited && gaps.meeting != gaps.used) min_lower_ = std::min(min_lower_, limit_);
+  for (std::uint32_t left = limited ? gaps.meeting : gaps.used; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-    // Overlapping ball slabs keep their depth for the order: the deepest first.
-    const float gap = gaps.gap[lane], lower = pair.lower > 0 ? std::max(gap, pair.lower) : gap;
+    // Overlapping boxes keep their depth for the order: the deepest first.
+    const float sum = gaps.gap[lane] + reach, gap = limited ? sum - std::fabs(sum) * kSumRounding : sum;
+    const float lower = pair.lower > 0 ? std::max(gap, pair.lower) : gap;
     if (!may_be_nearer(std::max(0.0, double{lower}))) {
       min_lower_ = std::min(min_lower_, std::max(0.0, double{lower}));
       continue;
