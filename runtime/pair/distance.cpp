@@ -28,6 +28,12 @@ std::uint32_t child_of(const TreeView& tree, std::uint32_t node) noexcept {
   return tree.ball_slabs[node / kBlockWidth].child[node % kBlockWidth];
 }
 
+// Compares as the float does; of 32 bits.
+std::uint64_t ordered(float value) noexcept {
+  const auto bits = std::bit_cast<std::uint32_t>(value);
+  return bits ^ ((bits >> 31) != 0 ? 0xffffffffu : 0x80000000u);
+}
+
 float radius_of(const TreeView& tree, std::uint32_t node) noexcept {
   return tree.ball_slabs[node / kBlockWidth].radius[node % kBlockWidth];
 }
@@ -197,27 +203,27 @@ void DistanceQuery::compare_leaves(const BallSlabPair& pair) noexcept {
   const float reach = float_above(std::min(cut_, 1e30));
   detail::triangle_gaps(lanes, rows, pair_.placement_, direction_, reach, gaps);
   const float least = std::max(0.0f, pair.lower);
-  std::array<std::uint8_t, std::size_t{kBlockWidth} * kBlockWidth> order;
-  std::size_t count = 0;
   float left_out = gaps.beyond;
-  const auto lower_of = [&](std::uint8_t i) { return gaps.lower[i / kBlockWidth][i % kBlockWidth]; };
+  std::array<std::uint64_t, std::size_t{kBlockWidth} * kBlockWidth> left;  // triangles to be looked at
+  std::size_t count = 0;
   for (std::uint32_t row = 0; row < kBlockWidth; ++row) {
-    for (std::uint32_t left = gaps.near[row]; left != 0; left &= left - 1) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-      const float lower = gaps.lower[row][lane];
-      std::size_t at = count++;
-      for (; at > 0 && lower_of(order[at - 1]) > lower; --at) order[at] = order[at - 1];
-      order[at] = static_cast<std::uint8_t>(kBlockWidth * row + lane);
+    for (std::uint32_t near = gaps.near[row]; near != 0; near &= near - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
+      left[count++] = ordered(gaps.lower[row][lane]) << 32 | (kBlockWidth * row + lane);
     }
   }
-  for (std::size_t i = 0; i < count; ++i) {
-    const float lower = lower_of(order[i]);
-    // The rest of the pair is no nearer than this one and than its ball slabs.
+  for (; count > 0; --count) {  // few are: no need to sort them all
+    auto nearest = std::min_element(left.begin(), left.begin() + static_cast<std::ptrdiff_t>(count));
+    const auto row = static_cast<std::uint32_t>(*nearest) / kBlockWidth,
+               lane = static_cast<std::uint32_t>(*nearest) % kBlockWidth;
+    const float lower = gaps.lower[row][lane];
+    // The rest of the pair is no nearer than this one and than its boxes.
     if (nearest_ <= enough_ || !may_be_nearer(double{std::max(lower, least)})) {
       left_out = std::min(left_out, lower);
       break;
     }
-    compare_triangles(lanes, order[i] % kBlockWidth, rows, order[i] / kBlockWidth, lower <= 0);
+    *nearest = left[count - 1];
+    compare_triangles(lanes, lane, rows, row, lower <= 0);
   }
   if (left_out < std::numeric_limits<float>::infinity()) {
     min_lower_ = std::min(min_lower_, double{std::max(left_out, least)});

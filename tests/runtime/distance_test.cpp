@@ -8,8 +8,10 @@
 
 #include "allocation.h"
 #include "bodies.h"
+#include "every_machine.h"
 #include "machine.h"
 #include "pair/triangle_distance.h"
+#include "support/effort.h"
 #include "tree/ball_slab_block.h"
 
 namespace orchard::runtime {
@@ -118,6 +120,35 @@ TEST(TriangleDistance, AgreesWithBruteForceAlsoForNeedlesAndParallelEdges) {
     const double found = detail::nearest_points(a, b).distance;
     ASSERT_GE(found, truth - 1e-12) << seed;
     ASSERT_LE(found, truth + detail::kParallelError * (detail::longest_edge(a) + detail::longest_edge(b))) << seed;
+  }
+}
+
+// Also where several places are equally near, and where triangles and segments are points: the first one counts.
+TEST(TriangleDistance, IsTheSameOnEveryMachine) {
+  const std::uint64_t begin = orchard::test::first_seed();
+  for (std::uint64_t seed = begin; seed < begin + 4000 * orchard::test::more(); ++seed) {
+    Draw draw(seed);
+    const auto coordinate = [&]() -> double {
+      return seed % 2 == 0 ? static_cast<double>(draw.bits() % 4) : draw.uniform(-1, 1);
+    };
+    const auto point = [&]() -> detail::Vec3 { return {coordinate(), coordinate(), coordinate()}; };
+    detail::TrianglePoints a = {point(), point(), point()}, b = {point(), point(), point()};
+    if (seed % 8 == 2) b[1] = b[0];
+    if (seed % 16 == 2) b[2] = b[0];
+    const detail::Vec3 p = point(), q = seed % 8 == 4 ? p : point();
+    std::array<detail::NearestPoints, 3> first{};
+    bool any = false;
+    on_every_machine([&] {
+      const std::array<detail::NearestPoints, 3> found = {detail::nearest_points(a, b), detail::nearest_points(p, b),
+                                                          detail::nearest_points(p, q, b)};
+      if (!any) first = found, any = true;
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        ASSERT_EQ(found[i].distance, first[i].distance) << seed << " " << i;
+        ASSERT_EQ(found[i].on_a, first[i].on_a) << seed << " " << i;
+        ASSERT_EQ(found[i].on_b, first[i].on_b) << seed << " " << i;
+      }
+    });
+    if (HasFatalFailure()) return;
   }
 }
 
