@@ -1,6 +1,6 @@
 // The narrow phase against other libraries at the same poses in the same run, from touching bounding spheres to shallow
 // penetration:  narrow_phase_bench [-n approaches] body.obj|body.orchard ..
-// Times are in microseconds of one thread; of each query the best of several passes, all engines in turn.
+// Times are in microseconds of one thread; of each query the best of several passes through all, all engines in turn.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -24,25 +24,33 @@ struct Engine {
   std::vector<double> times = {};  // per query
 };
 
-double seconds_of(const std::function<void(std::size_t)>& run, std::size_t query, int repeats) {
-  const auto start = std::chrono::steady_clock::now();
-  for (int i = 0; i < repeats; ++i) run(query);
-  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-  return time.count() / repeats;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+// What the clock itself takes, which short queries take hardly longer than.
+double clock_seconds() {
+  double least = 1;
+  for (int i = 0; i < 1000; ++i) least = std::min(least, seconds_since(Clock::now()));
+  return least;
 }
 
-// Short queries are repeated, since the clock alone takes some 30 ns; long ones get fewer passes.
-double best_microseconds(const std::function<void(std::size_t)>& run, std::size_t query) {
-  seconds_of(run, query, 1);  // cold
-  double best = seconds_of(run, query, 1);
-  const int passes = best < 1e-4 ? 5 : 2, repeats = best < 2e-6 ? 32 : best < 2e-5 ? 4 : 1;
-  for (int pass = 0; pass < passes; ++pass) best = std::min(best, seconds_of(run, query, repeats));
-  return best * 1e6;
-}
-
+// A pass asks every query once: one that is asked again at once takes all its branches as foreseen, as none does that
+// is asked for an answer. Engines that are slow get fewer passes.
 void measure(std::vector<Engine>& engines, std::size_t queries) {
-  for (std::size_t i = 0; i < queries; ++i) {
-    for (Engine& engine : engines) engine.times.push_back(best_microseconds(engine.run, i));
+  constexpr int passes = 7, slow_passes = 2;
+  constexpr double slow = 1e-4;
+  const double clock = clock_seconds();
+  for (Engine& engine : engines) engine.times.assign(queries, 1e300);
+  for (int pass = 0; pass < passes; ++pass) {
+    for (Engine& engine : engines) {
+      if (pass >= slow_passes && *std::max_element(engine.times.begin(), engine.times.end()) > 1e6 * slow) continue;
+      for (std::size_t i = 0; i < queries; ++i) {
+        const auto start = Clock::now();
+        engine.run(i);
+        engine.times[i] = std::min(engine.times[i], 1e6 * std::max(0.0, seconds_since(start) - clock));
+      }
+    }
   }
 }
 
