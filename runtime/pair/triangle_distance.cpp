@@ -26,7 +26,7 @@ struct OneDouble {
     return lane == 0 ? x : lane == 1 ? y : z;
   }
   static double choose(bool mask, double a, double b) noexcept { return mask ? a : b; }
-  static bool negated(bool mask) noexcept { return !mask; }
+  static bool none_of(bool a, bool b, bool c) noexcept { return !(a || b || c); }
 };
 #ifdef ORCHARD_VECTORS
 struct FourDoubles {
@@ -39,7 +39,7 @@ struct FourDoubles {
   ORCHARD_INLINE static Numbers choose(const Mask& mask, const Numbers& a, const Numbers& b) noexcept {
     return mask ? a : b;
   }
-  ORCHARD_INLINE static Mask negated(const Mask& mask) noexcept { return ~mask; }
+  ORCHARD_INLINE static Mask none_of(const Mask& a, const Mask& b, const Mask& c) noexcept { return ~(a | b | c); }
 };
 #endif
 
@@ -125,7 +125,7 @@ struct Near {
     const auto beside = [&](std::size_t i) ORCHARD_INLINE_LAMBDA {
       return dot(cross(all(edge[i]), minus(point, all(t[i]))), normal) < Kind::all(0);
     };
-    const auto inside = Kind::negated(beside(0) | beside(1) | beside(2));
+    const auto inside = Kind::none_of(beside(0), beside(1), beside(2));
     const Three on = along(point, normal, dot(minus(all(t[0]), point), normal) / Kind::all(size));
     const Three d = minus(on, point);
     put(on, dot(d, d), inside & (dot(d, d) < square));
