@@ -1,5 +1,6 @@
 #include <algorithm>
-#include <iterator>
+#include <span>
+#include <vector>
 
 #include "detector_state.h"
 #include "guarded.h"
@@ -21,6 +22,12 @@ constexpr double kSlower = 0.5, kFaster = 0.1;  // of times: what takes longer t
 constexpr double kMaxGrowthOfPair = 20, kMaxGrowthOfBroad = 5000;  // ns
 
 double nanoseconds(std::chrono::nanoseconds time) noexcept { return static_cast<double>(time.count()); }
+
+// Of ascending ones, `more` mostly being none or few.
+void merge_into(std::span<const BodyPair> some, std::span<const BodyPair> more, std::vector<BodyPair>& all) {
+  all.resize(some.size() + more.size());
+  std::merge(some.begin(), some.end(), more.begin(), more.end(), all.begin());
+}
 
 void learn_time(double& mean, double value, double max_growth) noexcept {
   const double believed = std::clamp(value, 0.0, std::max(2 * mean, mean + max_growth));
@@ -146,7 +153,7 @@ std::chrono::nanoseconds Detector::State::time_for_broad(const StepBudget& budge
 // The pairs of the step, in ascending order: the broad phase's, those with half-spaces, and those known before that an
 // interrupted broad phase may have left out.
 void Detector::State::gather(Step step, const Advance& now) {
-  plane_pairs.clear(), pairs.clear(), kept_pairs.clear(), body_pairs.clear();
+  plane_pairs.clear(), kept_pairs.clear();
   due.clear();
   halves.due(step, due);
   if (!due.empty()) {
@@ -167,8 +174,8 @@ void Detector::State::gather(Step step, const Advance& now) {
     bodies.ask(step, clock.time(step), involved);
     std::erase_if(kept_pairs, [&](const BodyPair& pair) { return bodies.surely_apart(pair, clock.time_step); });
   }
-  std::merge(now.pairs.begin(), now.pairs.end(), kept_pairs.begin(), kept_pairs.end(), std::back_inserter(body_pairs));
-  std::merge(body_pairs.begin(), body_pairs.end(), plane_pairs.begin(), plane_pairs.end(), std::back_inserter(pairs));
+  merge_into(now.pairs, kept_pairs, body_pairs);
+  merge_into(body_pairs, plane_pairs, pairs);
   involved.clear();
   detail::grow(involved_at, bodies.slots());
   const auto involve = [&](BodyIndex body) {
