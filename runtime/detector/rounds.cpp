@@ -64,7 +64,7 @@ void Rounds::answer_coherently(std::uint32_t index, Record& record, Step now,
     if (slow || record.touching)
       known = CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose, pair.b.pose);
     if (!known) {
-      known = CoherentPair::search(scratch.workspace, record.trees, pair.a.pose, pair.b.pose, {}, !slow);
+      known = CoherentPair::search(scratch.workspace, record.trees, pair.a.pose, pair.b.pose);
       if (slow && known->answer == Answer::no) note_search(index, record, known->work, scratch);
     }
     scratch.work += kPairWork + known->work;

@@ -18,14 +18,7 @@ using detail::Vec3;
 
 namespace {
 
-// A search that leaves a clearance goes on below what is closer than that, so it costs more the more is asked for, and
-// many times as much where most of both bodies is so close. After each time that it was asked for in vain, it is half
-// as often.
-constexpr double kMinAhead = 2;        // steps that a clearance is asked for,
-constexpr std::uint8_t kMaxAhead = 6;  // and how many more at most, one more each time that it is had
-constexpr double kAlmost = 1 - 1e-3;
-constexpr std::uint8_t kMaxMisses = 6;  // 2^6 tests without asking
-constexpr std::size_t kTriangles = 3;   // witnesses that are tried by themselves, before their leaves are
+constexpr std::size_t kTriangles = 3;  // witnesses that are tried by themselves, before their leaves are
 constexpr std::uint8_t kFrontsBeforeRoots = 4;
 constexpr double kMargin = 1 - 1e-9;  // the rounding of a few operations
 
@@ -55,23 +48,7 @@ struct Coherence {
   const Pose &a, &b;
   TreePair::Memory& memory = pair.memory_;
 
-  Pose relative{};
-  double moved = 0;     // since `memory` saw them
   bool placed = false;  // the workspace's NarrowPhase is bound and placed
-
-  // False: nothing can be remembered of these.
-  bool place() noexcept {
-    const PreparedTree &first = pair.a(), &second = pair.b();
-    if (first.tree.ball_slabs.empty() || second.tree.ball_slabs.empty() || !rigid()) {
-      pair.forget();
-      return false;
-    }
-    relative = compose(inverse(a), b);
-    moved = memory.seen ? displacement(second, memory.relative, relative) + slack(first, second, a, b) : 0;
-    return true;
-  }
-
-  bool knows_nothing() const noexcept { return memory.witness_count == 0 && pair.front_ == nullptr; }
 
   bool rigid() const noexcept {  // both, side by side
     double places = 0;
@@ -80,20 +57,19 @@ struct Coherence {
   }
 
   std::optional<Verdict> recall() noexcept {
-    if (memory.seen && moved < memory.clearance * kMargin) {
-      ++memory.answers;
-      return apart((memory.clearance * kMargin - moved) * a.scale);
+    if (!(memory.clearance > 0) && memory.witness_count == 0) return std::nullopt;
+    if (!rigid()) {
+      pair.forget();
+      return std::nullopt;
+    }
+    if (memory.clearance > 0) {
+      const double moved =
+          displacement(pair.b(), memory.relative, compose(inverse(a), b)) + slack(pair.a(), pair.b(), a, b);
+      const double left = memory.clearance * kMargin - moved;
+      if (left > 0) return apart(left * a.scale);
     }
     if (memory.witness_count == 0 || !witnesses_meet()) return std::nullopt;
-    keep_place();
     return workspace.narrow.verdict();
-  }
-
-  void keep_place() noexcept {
-    memory.clearance = 0;
-    memory.relative = relative;
-    memory.answers = 0;
-    memory.seen = true;
   }
 
   static Verdict apart(double lower) noexcept {
@@ -104,64 +80,15 @@ struct Coherence {
     return verdict;
   }
 
-  Verdict search(const Budget& budget, bool fast) noexcept {
+  Verdict search(const Budget& budget) noexcept {
     if (memory.witness_count > 0) return search_after_yes(budget);
     if (pair.front_ != nullptr) return search_front(budget);
-    const double step = memory.seen ? moved / (memory.answers + 1) : 0;
-    keep_place();
-    if (memory.wait > 0) {
-      --memory.wait;
-    } else if (step > 0 && !fast) {
-      return search_wide(step, budget);
-    }
     return remember(runtime::collide(workspace, pair, a, b, budget));
   }
-
-  // Of bodies that pass each other fast, and did not touch: where they are is not worth remembering.
-  Verdict search_once(const Budget& budget) noexcept {
-    memory.seen = false;
-    return remember(runtime::collide(workspace, pair, a, b, budget));
-  }
-
-  // For a clearance that lasts some steps.
-  Verdict search_wide(double step, const Budget& budget) noexcept {
-    NarrowPhase& narrow = workspace.narrow;
-    narrow.bind(pair.a(), pair.b());
-    narrow.start(a, b);
-    std::uint64_t spent = 0;
-    if (!narrow.finished() && PairAccess::has_last_level(narrow)) {
-      // Half of what is limited: the answer itself comes first.
-      const Budget half = unlimited(budget) ? Budget{} : Budget{budget.pair_tests / 2 + 1};
-      PairAccess::search_wide(narrow, (kMinAhead + memory.ahead) * step * a.scale, half);
-      spent = narrow.work();
-    }
-    Verdict verdict = narrow.verdict();
-    if (!narrow.finished()) {
-      const Budget rest = unlimited(budget) ? budget : Budget{budget.pair_tests - std::min(spent, budget.pair_tests)};
-      verdict = runtime::collide(workspace, pair, a, b, rest);
-      verdict.work += spent;
-    }
-    remember(verdict);
-    const double lasts = memory.clearance / step;
-    if (lasts > kMinAhead * kAlmost) {
-      const bool more = lasts > (kMinAhead + memory.ahead) * kAlmost;
-      if (!more) memory.ahead = static_cast<std::uint8_t>(lasts > kMinAhead ? lasts - kMinAhead : 0);
-      if (more && memory.ahead < kMaxAhead) ++memory.ahead;
-      memory.misses = 0;
-    } else {
-      memory.ahead = 0;
-      if (memory.misses < kMaxMisses) ++memory.misses;
-      memory.wait = static_cast<std::uint8_t>(1u << memory.misses);
-    }
-    return verdict;
-  }
-
-  static bool unlimited(const Budget& budget) noexcept { return budget.pair_tests == Budget{}.pair_tests; }
 
   // Near the triangles that met last; else everywhere, without a front, which would be of no use where they still meet.
   Verdict search_after_yes(const Budget& budget) noexcept {
     NarrowPhase& narrow = workspace.narrow;
-    keep_place();
     if (!place_narrow()) return remember(runtime::collide(workspace, pair, a, b, budget));
     Budget rest = budget;
     if (!leaves_meet(rest.pair_tests)) {
@@ -175,7 +102,7 @@ struct Coherence {
   bool place_narrow() noexcept {
     if (placed) return true;
     workspace.narrow.bind(pair.a(), pair.b());
-    placed = PairAccess::has_last_level(workspace.narrow) && PairAccess::place_only(workspace.narrow, a, b);
+    placed = PairAccess::has_last_level(workspace.narrow) && rigid() && PairAccess::place_only(workspace.narrow, a, b);
     return placed;
   }
 
@@ -183,7 +110,6 @@ struct Coherence {
   // and then, since they may decide again.
   Verdict search_front(const Budget& budget) noexcept {
     NarrowPhase& narrow = workspace.narrow;
-    keep_place();
     if (!place_narrow()) return remember(runtime::collide(workspace, pair, a, b, budget));
     FrontWalk walk(*pair.front_, narrow);
     const bool tried = memory.close && memory.wait > 0;
@@ -253,29 +179,27 @@ struct Coherence {
     } else {
       memory.witness_count = 0;
     }
-    memory.clearance = verdict.answer == Answer::no ? verdict.lower_bound / a.scale : 0;
+    const bool have_triangles = !pair.a().tree.ball_slabs.empty() && !pair.b().tree.ball_slabs.empty();
+    memory.clearance = verdict.answer == Answer::no && have_triangles ? verdict.lower_bound / a.scale : 0;
+    if (memory.clearance > 0) memory.relative = compose(inverse(a), b);
     return verdict;
   }
 };
 
 std::optional<Verdict> CoherentPair::recall(Workspace& workspace, TreePair& pair, const Pose& a,
                                             const Pose& b) noexcept {
-  Coherence coherence{workspace, pair, a, b};
-  return coherence.place() ? coherence.recall() : std::nullopt;
+  return Coherence{workspace, pair, a, b}.recall();
 }
 
-Verdict CoherentPair::search(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b, const Budget& budget,
-                             bool fast) noexcept {
-  Coherence coherence{workspace, pair, a, b};
-  if (fast && coherence.knows_nothing()) return coherence.search_once(budget);
-  return coherence.place() ? coherence.search(budget, fast) : collide(workspace, pair, a, b, budget);
+Verdict CoherentPair::search(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b,
+                             const Budget& budget) noexcept {
+  return Coherence{workspace, pair, a, b}.search(budget);
 }
 
 Verdict collide_coherently(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept {
   Coherence coherence{workspace, pair, a, b};
-  if (!coherence.place()) return collide(workspace, pair, a, b);
   const std::optional<Verdict> known = coherence.recall();
-  return known ? *known : coherence.search({}, false);
+  return known ? *known : coherence.search({});
 }
 
 }  // namespace orchard::runtime

@@ -11,10 +11,9 @@ struct CoherentPair {
   // if that does not tell. Some 100 ns.
   static std::optional<Verdict> recall(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept;
   // The rest of collide_coherently(), to be asked after recall() has told nothing. "Maybe" where the budget ends it,
-  // which it exceeds by less than one pair of leaves; Verdict::work is all of the search's. Of bodies that pass each
-  // other `fast` no clearance is looked for, as it would not last.
-  static Verdict search(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b, const Budget& budget = {},
-                        bool fast = false) noexcept;
+  // which it exceeds by less than one pair of leaves; Verdict::work is all of the search's.
+  static Verdict search(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b,
+                        const Budget& budget = {}) noexcept;
 };
 
 }  // namespace orchard::runtime

@@ -3,7 +3,6 @@
 #include "budget_tracker.h"
 #include "orchard/runtime/narrow_phase.h"
 #include "tree/ball_slab_block.h"
-#include "tree/front_block.h"
 #include "tree/node_box.h"
 
 // The last level: depth first through the two trees of triangles, the larger ball slab of a pair opened first and the
@@ -48,9 +47,9 @@ inline bool NarrowPhase::find_children(const BallSlabPair& pair, std::uint32_t a
       (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && of_a.radius[lane_a] < of_b.radius[lane_b] * placement_.scale);
   if (second) {
     detail::meeting_boxes(detail::moved_back(detail::node_box_at(of_a, lane_a), placement_), second_.tree.ball_slabs[b],
-                          placement_.scale, placement_.box_margin + wide_, gaps);
+                          placement_.scale, placement_.box_margin, gaps);
   } else {
-    detail::meeting_boxes(moved_box(pair.b), first_.tree.ball_slabs[a], 1, placement_.box_margin + wide_, gaps);
+    detail::meeting_boxes(moved_box(pair.b), first_.tree.ball_slabs[a], 1, placement_.box_margin, gaps);
   }
   return second;
 }
@@ -68,8 +67,7 @@ inline void NarrowPhase::push_children(const BallSlabPair& pair, bool second, st
   }
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t node = block * kBlockWidth + order[i];
-    const float gap = gaps.gap[order[i]] + wide_;
-    stack_[stack_size_++] = second ? BallSlabPair{pair.a, node, gap} : BallSlabPair{node, pair.b, gap};
+    stack_[stack_size_++] = second ? BallSlabPair{pair.a, node} : BallSlabPair{node, pair.b};
   }
 }
 
@@ -80,7 +78,6 @@ bool NarrowPhase::refine_ball_slabs(BudgetTracker& tracker) noexcept {
     const BallSlabPair pair = stack_[--stack_size_];
     const std::uint32_t a = child_of(first_.tree, pair.a), b = child_of(second_.tree, pair.b);
     if (a & b & kLeafBit) {
-      if (wide_ > 0 && leaves_apart(pair, tracker)) continue;
       const std::uint64_t before = triangle_tests_;
       const bool meet = test_triangles(pair);
       tracker.spend((triangle_tests_ - before) * kTriangleTestCost);
@@ -102,24 +99,6 @@ bool NarrowPhase::refine_ball_slabs(BudgetTracker& tracker) noexcept {
     tracker.spend(pair_tests_ - before);
   }
   return true;
-}
-
-// Of leaves: along a direction that tells how far apart they are.
-bool NarrowPhase::leaves_apart(const BallSlabPair& pair, BudgetTracker& tracker) noexcept {
-  constexpr double kRounding = 1e-6;  // of a few sums of numbers up to gap and width
-  const double by_slabs = double{pair.gap} - kRounding * (double{pair.gap} + double{wide_});
-  if (by_slabs > 0) {
-    least_gap_ = std::min(least_gap_, by_slabs);
-    return true;
-  }
-  const TriangleBlock& lanes = first_.tree.triangle_blocks[child_of(first_.tree, pair.a) & ~kLeafBit];
-  const TriangleBlock& rows = second_.tree.triangle_blocks[child_of(second_.tree, pair.b) & ~kLeafBit];
-  const detail::NodeBox box = detail::node_box_at(block_of(first_.tree, pair.a), pair.a % kBlockWidth);
-  const detail::NodeBox other = moved_box(pair.b);
-  const float gap = detail::leaf_axis({lanes, rows, box, other}, placement_, nullptr, wide_).gap;
-  tracker.spend(kBlockWidth);
-  least_gap_ = std::min(least_gap_, std::max(0.0, double{gap}));
-  return gap > 0;
 }
 
 bool NarrowPhase::test_triangles(const BallSlabPair& pair) noexcept {

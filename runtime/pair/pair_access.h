@@ -57,20 +57,6 @@ struct PairAccess {
   static const Place& meeting(const NarrowPhase& pair) noexcept { return pair.meeting_; }  // after "yes"
   // All of the last level, after place_only().
   static void search(NarrowPhase& pair, const Budget& budget) noexcept { pair.refine_last(budget); }
-  // The last level from its beginning, and after a "no" a bound on how far apart they are, up to about `wide`, in the
-  // world. Precondition: the roots have not told.
-  static void search_wide(NarrowPhase& pair, double wide, const Budget& budget) noexcept {
-    pair.exact_started_ = false;
-    const auto own = static_cast<float>(wide / pair.first_pose_.scale);
-    pair.wide_ = own < kCoordinateLimit ? own : 0;
-    pair.least_gap_ = double{pair.wide_} * (1 - 1e-6);  // a float sum rounds
-    pair.refine_last(budget);
-    if (pair.finished_ && pair.answer_ == Answer::no && pair.wide_ > 0) {
-      const double least = pair.least_gap_ * pair.first_pose_.scale * (1 - 1e-12) - pair.exact_error_;
-      pair.lower_bound_ = std::max(pair.lower_bound_, least);
-    }
-    pair.wide_ = 0;
-  }
   // That none do, and how far apart they are at least, in the world.
   static void say_no(NarrowPhase& pair, double lower) noexcept {
     pair.exact_started_ = true;

@@ -53,13 +53,9 @@ class TreePair {
     Pose relative;                              // of b in a's frame, when `clearance` was certified
     double clearance = 0;                       // in a's units; 0: none
     std::array<Witness, kWitnesses> witnesses;  // in the answers since the last "no", the last ones first
-    std::uint32_t answers = 0;                  // given since then, without a test
     std::uint8_t witness_count = 0;
-    std::uint8_t misses = 0;  // clearances that were asked for in vain, in a row
-    std::uint8_t wait = 0;    // tests until one is asked for again
-    std::uint8_t ahead = 0;   // steps more than the fewest that it is asked for
-    bool seen = false;
-    bool close = false;  // the roots did not decide the last search
+    std::uint8_t wait = 0;  // searches on from the front until the roots are asked first
+    bool close = false;     // the roots did not decide the last search
   };
   const PreparedTree* a_ = nullptr;
   const PreparedTree* b_ = nullptr;

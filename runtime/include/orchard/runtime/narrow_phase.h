@@ -184,7 +184,6 @@ class NarrowPhase {
   };
   struct BallSlabPair {  // ball slabs that may meet
     std::uint32_t a, b;
-    float gap = 0;  // above 0: they are farther apart than that, and are here for how far
   };
   struct Best {
     double bound = std::numeric_limits<double>::infinity();
@@ -217,7 +216,6 @@ class NarrowPhase {
   void push_children(const BallSlabPair& pair, bool second, std::uint32_t block, const detail::BoxGaps& gaps) noexcept;
   detail::NodeBox moved_box(std::uint32_t node) const noexcept;  // of the second tree, in the first one's frame
   bool test_triangles(const BallSlabPair& pair) noexcept;
-  bool leaves_apart(const BallSlabPair& pair, BudgetTracker& tracker) noexcept;
   bool test_two(std::uint32_t a, std::uint32_t lane, std::uint32_t b, std::uint32_t row) noexcept;
   void add_ball(Contact& contact, std::array<double, 3>& normal) const noexcept;
   std::array<double, 3> triangle_normal() const noexcept;
@@ -251,8 +249,6 @@ class NarrowPhase {
   std::unique_ptr<BallSlabPair[]> stack_;  // the last level's, deepest first; room for the trees' depths
   std::size_t stack_size_ = 0, stack_room_ = 0;
   bool exact_started_ = false;
-  float wide_ = 0;  // the last level leaves out what is farther apart than that, in the first tree's units
-  double least_gap_ = std::numeric_limits<double>::infinity();  // of leaves within it
   detail::LevelState level_state_{};
   Best level_best_, leaf_best_, best_;
   std::uint32_t triangle_first_ = kNoTriangle, triangle_second_ = kNoTriangle;
