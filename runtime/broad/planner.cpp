@@ -94,9 +94,11 @@ bool Planner::survey(Step now, BudgetTracker& tracker) {
   const std::size_t stride = std::max<std::size_t>(1, n / wanted);
   if (surveyed_.empty()) survey_next_ = 0;
   std::vector<BodyIndex> sample;
-  std::size_t seen = 0;
+  std::size_t skipped = stride - 1;
   for (; survey_next_ < pool_.slots() && surveyed_.size() + sample.size() < wanted; ++survey_next_) {
-    if (pool_.alive(survey_next_) && seen++ % stride == 0) sample.push_back(survey_next_);
+    if (!pool_.alive(survey_next_) || ++skipped < stride) continue;
+    skipped = 0;
+    sample.push_back(survey_next_);
   }
   while (!sample.empty()) {
     if (tracker.spent()) {

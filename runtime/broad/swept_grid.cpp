@@ -10,34 +10,29 @@ namespace orchard::runtime::detail {
 namespace {
 
 constexpr std::uint32_t kFieldBits = kQuantumBits + 1;
-constexpr std::uint32_t kMaxEntry = 0x1f7dfu;  // three fields, each of them kQuanta - 1
 static_assert(kIdShift == 6 * kFieldBits);
 static_assert(kMaxBodies < (1u << (64 - kIdShift)));
 
 // A box clipped to a cell, in three fields each: how far it begins from the cell's lower end, and ends from its upper
-// end. As an entry or as a query: entry's field <= query's field in all six means that they meet.
+// end. As a query these change places: two boxes meet if of each axis one's way to its begin and the other's from its
+// end make less than a cell together.
 ORCHARD_INLINE std::uint64_t entry_of(std::uint32_t from, std::uint32_t below) noexcept {
   return std::uint64_t{below} << 3 * kFieldBits | from;
 }
-ORCHARD_INLINE std::uint64_t query_of(std::uint32_t from, std::uint32_t below) noexcept {
-  return entry_of(kMaxEntry - below, kMaxEntry - from) | kGuards;
-}
-
 ORCHARD_INLINE std::uint64_t query_from(std::uint64_t entry) noexcept {
   constexpr std::uint64_t field = (std::uint64_t{1} << 3 * kFieldBits) - 1;
-  return query_of(static_cast<std::uint32_t>(entry & field),
-                  static_cast<std::uint32_t>(entry >> 3 * kFieldBits & field));
+  return (entry & field) << 3 * kFieldBits | (entry >> 3 * kFieldBits & field);
 }
 
 // A body's box, and one of its cells. Quanta are below 2^31: the difference of two that are apart is negative.
 #ifdef ORCHARD_VECTORS
 class BoxInCell {
  public:
-  ORCHARD_INLINE BoxInCell(const QuantumBox& box, const std::array<std::uint8_t, 3>& steps) noexcept {
-    for (std::size_t d = 0; d < 3; ++d) {
+  ORCHARD_INLINE BoxInCell(const QuantumBox& box, std::uint8_t steps) noexcept {
+    for (std::uint32_t d = 0; d < 3; ++d) {
       lower_[d] = box.lower[d];
       upper_[d] = box.upper[d];
-      cell_[d] = (box.lower[d] >> kQuantumBits) + steps[d];
+      cell_[d] = (box.lower[d] >> kQuantumBits) + (steps >> 2 * d & 3u);
     }
     lower_[3] = upper_[3] = kLastQuantum;  // the fourth numbers: such that nothing is apart there, nor elsewhere
     cell_[3] = kLastQuantum >> kQuantumBits;
@@ -66,8 +61,8 @@ class BoxInCell {
 #else
 class BoxInCell {
  public:
-  BoxInCell(const QuantumBox& box, const std::array<std::uint8_t, 3>& steps) noexcept : box_(box) {
-    for (std::size_t d = 0; d < 3; ++d) cell_[d] = (box.lower[d] >> kQuantumBits) + steps[d];
+  BoxInCell(const QuantumBox& box, std::uint8_t steps) noexcept : box_(box) {
+    for (std::uint32_t d = 0; d < 3; ++d) cell_[d] = (box.lower[d] >> kQuantumBits) + (steps >> 2 * d & 3u);
   }
   bool meets_here(const QuantumBox& other) const noexcept {
     std::uint32_t apart = 0, elsewhere = 0;
@@ -83,12 +78,6 @@ class BoxInCell {
   std::array<std::uint32_t, 3> cell_;
 };
 #endif
-
-// The bits of the first entries: the others are of no meaning.
-template <typename Kind>
-ORCHARD_INLINE std::uint64_t met_among(const CellLine& line, std::uint64_t query, std::uint32_t count) noexcept {
-  return Kind::meeting(line, query) & ((std::uint64_t{1} << (Kind::kSpread * static_cast<int>(count))) - 1);
-}
 
 }  // namespace
 
@@ -113,13 +102,12 @@ struct SweptGrid::Insertion {
 
 // Of the entries hit, those whose box really meets the body's, and in this cell first. Without branches that depend on
 // the boxes: in dense worlds nobody can tell.
-template <int kSpread>
 void SweptGrid::report(Insertion& insertion, const CellLine& line, std::uint64_t hits, BodyIndex body, Steps steps) {
   const BoxInCell box(insertion.boxes[body], steps);
   if (insertion.count + line.entries.size() > Insertion::kFound) insertion.hand_over();
   std::size_t count = insertion.count;
   for (; hits != 0; hits &= hits - 1) {
-    const std::uint64_t entry = line.entries[static_cast<std::size_t>(std::countr_zero(hits)) / kSpread];
+    const std::uint64_t entry = line.entries[static_cast<std::size_t>(std::countr_zero(hits))];
     const auto other = static_cast<BodyIndex>(entry >> kIdShift);
     insertion.found[count] = {std::min(body, other), std::max(body, other)};
     count += box.meets_here(insertion.boxes[other]);
@@ -132,20 +120,20 @@ ORCHARD_INLINE void SweptGrid::insert_in_line(Insertion& insertion, const Visit&
   // Nothing is written before all seven entries have been read together: that would have to wait for the small writes.
   CellLine& first = lines_[visit.line];
   const auto body = static_cast<BodyIndex>(visit.entry >> kIdShift);
-  const std::uint32_t count = first.count, more = first.overflow;
-  const std::uint64_t hits = met_among<Kind>(first, query, count);
-  if (hits != 0) report<Kind::kSpread>(insertion, first, hits, body, visit.steps);
-  if (more == 0 && count < first.entries.size()) [[likely]] {
+  const std::uint32_t count = first.count;
+  const std::uint64_t hits = Kind::meeting(first, query);
+  if (hits != 0) report(insertion, first, hits, body, visit.steps);
+  if (count < first.entries.size()) [[likely]] {
     first.entries[count] = visit.entry;
     first.count = count + 1;
     return;
   }
   Overflow& overflow = overflow_[part_of(visit.line)];
-  for (std::uint32_t next = more; next != 0;) {
+  for (std::uint32_t next = first.overflow; next != 0;) {
     const CellLine& line = overflow.lines[next - 1];
     ++insertion.counts.lines_read;
-    const std::uint64_t met = met_among<Kind>(line, query, line.count);
-    if (met != 0) report<Kind::kSpread>(insertion, line, met, body, visit.steps);
+    const std::uint64_t met = Kind::meeting(line, query);
+    if (met != 0) report(insertion, line, met, body, visit.steps);
     next = line.overflow;
   }
   append(first, visit.entry, overflow);
@@ -154,92 +142,115 @@ ORCHARD_INLINE void SweptGrid::insert_in_line(Insertion& insertion, const Visit&
 // Loops without branches that depend on the data.
 ORCHARD_INLINE void SweptGrid::encode(Batch& batch, std::span<const BodyIndex> bodies,
                                       const BoxBlock& block) const noexcept {
-  using Numbers = std::array<std::uint32_t, kBlock>;
   const std::size_t lanes = lanes_for(bodies.size());
-  Numbers all_from{}, all_below{}, all_line{}, axes{};
+  Numbers all_from{}, all_below{}, all_line{}, axes{}, ids;
+  std::uint32_t any = 0;
+  batch.count = std::min(bodies.size(), kBlock);  // GCC does not know that there are no more
+  for (std::size_t i = 0; i < batch.count; ++i) ids[i] = bodies[i];
+  for (std::size_t i = batch.count; i < lanes; ++i) ids[i] = 0;
   for (std::uint32_t d = 0; d < 3; ++d) {
     const std::uint32_t field = kFieldBits * d, factor = factors_[d];
-    Numbers from, below, line, next_below, next_line;
+    std::array<std::uint64_t, kBlock> change;
     for (std::size_t i = 0; i < lanes; ++i) {
       const std::uint32_t lower = block.lower[d][i], upper = block.upper[d][i];
       const std::uint32_t cell = lower >> kQuantumBits, last = upper >> kQuantumBits;
-      from[i] = (lower & (kQuanta - 1)) << field;
-      next_below[i] = (~upper & (kQuanta - 1)) << field;
-      below[i] = last > cell ? 0 : next_below[i];
-      line[i] = cell * factor;
-      next_line[i] = last * factor;
+      const std::uint32_t from = (lower & (kQuanta - 1)) << field, below = (~upper & (kQuanta - 1)) << field;
+      all_from[i] |= from;
+      all_below[i] |= last > cell ? 0 : below;
+      all_line[i] += cell * factor;
       axes[i] |= (last > cell ? 1u : 0u) << d | (last > cell + 1 ? 8u : 0u);
-      all_from[i] |= from[i];
-      all_below[i] |= below[i];
-      all_line[i] += line[i];
+      change[i] = entry_of(from, below);
     }
-    batch.from[d] = from;
-    batch.below[0][d] = below, batch.below[1][d] = next_below;
-    batch.lines[0][d] = line, batch.lines[1][d] = next_line;
+    batch.change[d] = change;
   }
-  batch.axes = axes;
-  for (std::size_t i = 0; i < lanes; ++i) batch.line[i] = all_line[i] & mask_;
-  batch.count = std::min(bodies.size(), kBlock);  // GCC does not know that there are no more
+  for (std::size_t i = 0; i < lanes; ++i) {
+    batch.entries[i] = entry_of(all_from[i], all_below[i]) | std::uint64_t{ids[i]} << kIdShift;
+    batch.queries[i] = entry_of(all_below[i], all_from[i]);
+  }
+  for (std::size_t i = 0; i < lanes; ++i) batch.lines[i] = all_line[i] & mask_;
+  for (std::size_t i = 0; i < lanes; ++i) batch.steps[i] = 0;
+  for (std::size_t i = 0; i < lanes; ++i) any |= axes[i];
+  batch.larges = 0;
+  batch.end = batch.count;
+  if ((any & 8) != 0) {
+    for (std::size_t i = 0; i < batch.count; ++i) {
+      batch.large[batch.larges] = ids[i];
+      batch.larges += axes[i] >> 3;
+      axes[i] = axes[i] >= 8 ? 0 : axes[i];
+    }
+  }
+  if (any != 0) add_corners(batch, axes);
+}
+
+// The other cells of bodies that take two along some axes: mostly it is one axis.
+ORCHARD_INLINE void SweptGrid::add_corners(Batch& batch, const Numbers& axes) const noexcept {
+  std::array<std::uint8_t, kBlock> several;
+  std::size_t count = 0, end = batch.end;
   for (std::size_t i = 0; i < batch.count; ++i) {
-    batch.bodies[i] = bodies[i];
-    batch.entry[i] = entry_of(all_from[i], all_below[i]) | std::uint64_t{bodies[i]} << kIdShift;
-    batch.query[i] = query_of(all_from[i], all_below[i]);
+    several[count] = static_cast<std::uint8_t>(i);
+    count += axes[i] != 0;
   }
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = several[k];
+    const std::uint32_t taken = axes[i];
+    const auto add = [&](std::uint32_t corner) ORCHARD_INLINE_LAMBDA {  // which counts if it is taken
+      std::uint64_t entry = batch.entries[i];
+      std::uint32_t line = batch.lines[i], steps = 0;
+      for (std::uint32_t d = 0; d < 3; ++d) {
+        if ((corner >> d & 1) == 0) continue;
+        entry ^= batch.change[d][i];
+        line += factors_[d];
+        steps |= 1u << 2 * d;
+      }
+      batch.entries[end] = entry;
+      batch.queries[end] = query_from(entry);
+      batch.lines[end] = line & mask_;
+      batch.steps[end] = static_cast<Steps>(steps);
+      end += (corner & ~taken) == 0;
+    };
+    add(1), add(2), add(4);
+    if ((taken & (taken - 1)) != 0) add(3), add(5), add(6), add(7);
+  }
+  batch.end = end;
 }
 
+// Mostly a visit meets nobody, and there is room: what is different is put off until the others are in.
 template <typename Kind>
-ORCHARD_INLINE void SweptGrid::flush(Insertion& insertion, Queue& queue) {
-  for (std::size_t k = 0; k < queue.visits_waiting_; ++k) {
-    insert_in_line<Kind>(insertion, queue.visits_[k], query_from(queue.visits_[k].entry));
+ORCHARD_INLINE void SweptGrid::insert_batch(Insertion& insertion, Batch& batch) {
+  std::array<std::uint16_t, Batch::kMaxVisits> put_off;
+  std::size_t rest = 0;
+  CellLine* const lines = lines_.data();
+  for (std::size_t k = 0; k < batch.end; ++k) {
+    CellLine& line = lines[batch.lines[k]];
+    const std::uint64_t hits = Kind::meeting(line, batch.queries[k]);
+    const std::uint32_t count = line.count;
+    if (hits != 0 || count >= line.entries.size()) [[unlikely]] {
+      put_off[rest++] = static_cast<std::uint16_t>(k);
+      continue;
+    }
+    line.entries[count] = batch.entries[k];
+    line.count = count + 1;
   }
-  insertion.counts.entries += queue.visits_waiting_;
-  insertion.counts.lines_read += queue.visits_waiting_;
-  queue.visits_waiting_ = 0;
-}
-
-// The batch that waited: first every body in its first cell, then the visits left from the batch before; bodies that
-// take several cells leave visits to the others.
-template <typename Kind>
-ORCHARD_INLINE void SweptGrid::insert_waiting(Insertion& insertion, Queue& queue) {
-  const Batch& batch = queue.batches_[queue.current_];
-  std::array<std::uint32_t, kBlock> rest;
-  std::size_t rests = 0;
-  for (std::uint32_t i = 0; i < batch.count; ++i) {
-    insert_in_line<Kind>(insertion, {batch.entry[i], batch.line[i], {0, 0, 0}}, batch.query[i]);
-    rest[rests] = i;
-    rests += batch.axes[i] != 0;
+  for (std::size_t i = 0; i < rest; ++i) {
+    const std::size_t k = put_off[i];
+    insert_in_line<Kind>(insertion, {batch.entries[k], batch.lines[k], batch.steps[k]}, batch.queries[k]);
   }
   insertion.counts.bodies += batch.count;
-  insertion.counts.entries += batch.count;
-  insertion.counts.lines_read += batch.count;
-  flush<Kind>(insertion, queue);
-  for (std::size_t k = 0; k < rests; ++k) {
-    if (queue.visits_waiting_ + kMaxVisits > queue.visits_.size()) flush<Kind>(insertion, queue);
-    Visit* const begin = queue.visits_.data() + queue.visits_waiting_;
-    const Visit* const end = visits_of(batch, rest[k], insertion.boxes, begin);
-    for (const Visit* visit = begin; visit != end; ++visit) prefetch(&lines_[visit->line]);
-    queue.visits_waiting_ += static_cast<std::size_t>(end - begin);
-  }
+  insertion.counts.entries += batch.end;
+  insertion.counts.lines_read += batch.end;
+  if (batch.larges > 0) insert_large<Kind>(insertion, batch);
 }
 
-// To all cells of a body's box but the first; returns where they end.
-ORCHARD_INLINE SweptGrid::Visit* SweptGrid::visits_of(const Batch& batch, std::uint32_t i,
-                                                      std::span<const QuantumBox> boxes, Visit* visits) const noexcept {
-  const std::uint32_t axes = batch.axes[i];
-  if (axes >= 8) return many_visits_of(batch.bodies[i], boxes[batch.bodies[i]], visits);
-  const std::uint64_t id = std::uint64_t{batch.bodies[i]} << kIdShift;
-  for (std::uint32_t corner = axes; corner != 0; corner = (corner - 1) & axes) {
-    const Steps steps = {static_cast<std::uint8_t>(corner & 1), static_cast<std::uint8_t>(corner >> 1 & 1),
-                         static_cast<std::uint8_t>(corner >> 2)};
-    std::uint32_t from = 0, below = 0, line = 0;
-    for (std::size_t d = 0; d < 3; ++d) {
-      if (steps[d] == 0) from |= batch.from[d][i];
-      below |= batch.below[steps[d]][d][i];
-      line += batch.lines[steps[d]][d][i];
-    }
-    *visits++ = {entry_of(from, below) | id, line & mask_, steps};
+// In all cells but the first one.
+template <typename Kind>
+ORCHARD_INLINE void SweptGrid::insert_large(Insertion& insertion, const Batch& batch) {
+  std::array<Visit, kMaxVisits> visits;
+  for (std::size_t i = 0; i < batch.larges; ++i) {
+    const BodyIndex body = batch.large[i];
+    const Visit* const end = many_visits_of(body, insertion.boxes[body], visits.data());
+    for (const Visit* visit = visits.data(); visit != end; ++visit) prefetch(&lines_[visit->line]);
+    insert_visits<Kind>(insertion, std::span(visits.data(), end));
   }
-  return visits;
 }
 
 SweptGrid::Visit* SweptGrid::many_visits_of(BodyIndex body, const QuantumBox& box, Visit* visits) const noexcept {
@@ -248,7 +259,7 @@ SweptGrid::Visit* SweptGrid::many_visits_of(BodyIndex body, const QuantumBox& bo
     first[d] = box.lower[d] >> kQuantumBits;
     count[d] = (box.upper[d] >> kQuantumBits) - first[d] + 1;
   }
-  Steps steps;
+  Cell steps;
   for (steps[2] = 0; steps[2] < count[2]; ++steps[2]) {
     for (steps[1] = 0; steps[1] < count[1]; ++steps[1]) {
       for (steps[0] = steps[1] == 0 && steps[2] == 0; steps[0] < count[0]; ++steps[0]) {
@@ -259,7 +270,8 @@ SweptGrid::Visit* SweptGrid::many_visits_of(BodyIndex body, const QuantumBox& bo
           from |= (box.lower[i] > begin ? box.lower[i] - begin : 0) << kFieldBits * i;
           below |= (box.upper[i] < end ? end - box.upper[i] : 0) << kFieldBits * i;
         }
-        *visits++ = {entry_of(from, below) | std::uint64_t{body} << kIdShift, line_of(cell), steps};
+        *visits++ = {entry_of(from, below) | std::uint64_t{body} << kIdShift, line_of(cell),
+                     static_cast<Steps>(steps[0] | steps[1] << 2 | steps[2] << 4)};
       }
     }
   }
@@ -270,17 +282,16 @@ SweptGrid::Visit* SweptGrid::many_visits_of(BodyIndex body, const QuantumBox& bo
 template <typename Kind>
 ORCHARD_INLINE void SweptGrid::advance(Insertion& insertion, Queue& queue, std::span<const BodyIndex> bodies,
                                        const BoxBlock* block) {
-  Batch& next = queue.batches_[1 - queue.current_];
+  Batch &next = queue.batches_[1 - queue.current_], &waiting = queue.batches_[queue.current_];
   if (block != nullptr) {
     encode(next, bodies, *block);
-    for (std::size_t i = 0; i < next.count; ++i) prefetch(&lines_[next.line[i]]);  // they are all over memory
+    for (std::size_t i = 0; i < next.end; ++i) prefetch(&lines_[next.lines[i]]);  // they are all over memory
   }
-  insert_waiting<Kind>(insertion, queue);
+  insert_batch<Kind>(insertion, waiting);
   if (block != nullptr) {
     queue.current_ = 1 - queue.current_;
   } else {
-    flush<Kind>(insertion, queue);
-    queue.batches_[queue.current_].count = 0;
+    waiting.count = waiting.end = waiting.larges = 0;
   }
 }
 
@@ -308,11 +319,12 @@ ORCHARD_INLINE void SweptGrid::scatter_block(std::span<const BodyIndex> bodies, 
                                              std::span<const QuantumBox> boxes, VisitsByPart& visits) const {
   Batch batch;
   encode(batch, bodies, block);
+  for (std::size_t k = 0; k < batch.end; ++k) {
+    visits[part_of(batch.lines[k])].push_back({batch.entries[k], batch.lines[k], batch.steps[k]});
+  }
   std::array<Visit, kMaxVisits> rest;
-  for (std::uint32_t i = 0; i < batch.count; ++i) {
-    visits[part_of(batch.line[i])].push_back({batch.entry[i], batch.line[i], {0, 0, 0}});
-    if (batch.axes[i] == 0) continue;
-    const Visit* const end = visits_of(batch, i, boxes, rest.data());
+  for (std::size_t i = 0; i < batch.larges; ++i) {
+    const Visit* const end = many_visits_of(batch.large[i], boxes[batch.large[i]], rest.data());
     for (const Visit* visit = rest.data(); visit != end; ++visit) visits[part_of(visit->line)].push_back(*visit);
   }
 }

@@ -154,6 +154,7 @@ ORCHARD_INLINE void SweptGrid::remove_from(CellLine& first, BodyIndex body, Over
   assert(found != nullptr);
   if (found == nullptr) return;
   found->entries[index] = line->entries[--line->count];
+  line->entries[line->count] = kGuards;
   if (line->count == 0 && before_last != nullptr) free_last(*before_last, overflow);
 }
 
