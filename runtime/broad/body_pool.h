@@ -113,6 +113,13 @@ void grow(std::vector<T>& v, std::size_t size) {
   v.resize(size);
 }
 
+// Whether each index is one above that before it.
+inline bool successive(std::span<const BodyIndex> bodies) noexcept {
+  BodyIndex off = 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) off |= bodies[i] ^ (bodies[0] + static_cast<BodyIndex>(i));
+  return off == 0;
+}
+
 // Which bodies there are, and where to ask for their motions.
 class BodyPool {
  public:

@@ -2,6 +2,7 @@
 #include "events.h"
 
 #include <cmath>
+#include <numeric>
 
 namespace orchard::runtime::detail {
 namespace {
@@ -136,6 +137,7 @@ bool Events::replan(Step now, BudgetTracker& tracker) {
 void Events::all_are_due() {
   if (due_.capacity() > 2 * pool_.size()) give_back(due_);
   due_.resize(pool_.size());
+  if (pool_.size() == pool_.slots()) return std::iota(due_.begin(), due_.end(), BodyIndex{0});
   std::size_t count = 0;
   for (BodyIndex body = 0; count < due_.size(); ++body) {
     due_[count] = body;

@@ -95,6 +95,11 @@ bool Planner::survey(Step now, BudgetTracker& tracker) {
   if (surveyed_.empty()) survey_next_ = 0;
   std::vector<BodyIndex> sample;
   std::size_t skipped = stride - 1;
+  const bool all_alive = pool_.slots() == n;  // no need to look at each
+  for (; all_alive && survey_next_ < n && surveyed_.size() + sample.size() < wanted;) {
+    sample.push_back(survey_next_);
+    survey_next_ += static_cast<BodyIndex>(stride);
+  }
   for (; survey_next_ < pool_.slots() && surveyed_.size() + sample.size() < wanted; ++survey_next_) {
     if (!pool_.alive(survey_next_) || ++skipped < stride) continue;
     skipped = 0;

@@ -116,11 +116,11 @@ void WindowUpdates::place_shared(Chunk& chunk, Block& block, std::span<BodyIndex
     }
   }
   bodies = bodies.first(count);
+  parts_.windows.set(bodies, block.from, std::span(block.ends).first(count));
+  for (std::size_t i = 0; parts_.pairs.notes_spheres() && i < count; ++i) {
+    parts_.pairs.note_sphere(bodies[i], motions[i], block.lattice, block.durations[i]);
+  }
   for (std::size_t i = 0; i < count; ++i) {
-    parts_.windows.set(bodies[i], block.from, block.ends[i]);
-    if (parts_.pairs.notes_spheres()) {
-      parts_.pairs.note_sphere(bodies[i], motions[i], block.lattice, block.durations[i]);
-    }
     const bool runs_on = !chunk.runs.empty() && chunk.runs.back().end == block.ends[i];
     if (!runs_on) chunk.runs.push_back({block.ends[i], 0});
     ++chunk.runs.back().bodies;
