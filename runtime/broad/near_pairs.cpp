@@ -98,12 +98,12 @@ void NearPairs::settle_touching(Step now, const PairEvent& event, Step left, Ste
 }
 
 // For how many whole steps both motions hold, until the next update of one of them, or until a bound expires.
-NearPairs::Horizon NearPairs::horizon_of(Step now, const BodyPair& pair, const Motion& a,
-                                         const Motion& b) const noexcept {
+inline NearPairs::Horizon NearPairs::horizon_of(Step now, const BodyPair& pair, const Motion& a,
+                                                const Motion& b) const noexcept {
   const Clock& clock = pool_.clock;
   Horizon horizon;
-  horizon.left =
-      std::min({windows_.known_until(pair.a, now), windows_.known_until(pair.b, now), now + kLongestWindow}) - now;
+  const Step sooner = std::min(windows_.known_until(pair.a, now), windows_.known_until(pair.b, now));
+  horizon.left = std::min(sooner, now + kLongestWindow) - now;
   const double expiry = std::min(a.expiry, b.expiry);
   const bool in_time = expiry >= clock.time(now + horizon.left + 1);  // mostly, and sooner said
   horizon.safe = in_time ? horizon.left : clock.last_before_expiry(expiry) - now;
@@ -113,10 +113,9 @@ NearPairs::Horizon NearPairs::horizon_of(Step now, const BodyPair& pair, const M
 
 // They overlap, surely for a while, or they cannot for a while.
 template <typename To>
-void NearPairs::settle(Step now, const PairEvent& event, const Horizon& horizon, bool touching, double seconds,
-                       To to) const {
+void NearPairs::settle(Step now, const PairEvent& event, const Horizon& horizon, double limit, bool touching,
+                       double seconds, To to) const {
   const Clock& clock = pool_.clock;
-  const double limit = clock.seconds_between(now, now + horizon.whole);
   if (touching) {
     const Step sure = seconds < limit ? clock.steps_within(seconds, now) : horizon.whole;
     return settle_touching(now, event, horizon.left, sure, to);
@@ -168,7 +167,7 @@ void NearPairs::settle_all(Step now, std::span<PairEvent> events, std::span<Moti
   }
   for (std::size_t i = 0; i < events.size(); ++i) {
     if (!to.may_pair(events[i].pair)) continue;  // what waited for its test while that changed
-    settle(now, events[i], horizons[i], times.touching[i], times.seconds[i], to);
+    settle(now, events[i], horizons[i], limits[i], times.touching[i], times.seconds[i], to);
   }
 }
 
@@ -204,13 +203,16 @@ void NearPairs::release_spheres() noexcept { give_back(spheres_); }
 // Relative to the lattice, like that of every other body.
 void NearPairs::note_sphere(BodyIndex body, const Motion& m, const Lattice& lattice, double duration) noexcept {
   constexpr double kOutward = 1 + 1e-6;  // for what is rounded here
-  const Vec3 velocity = m.velocity - lattice.velocity(), center = m.position - lattice.origin();
-  const double travel = duration * (std::sqrt(dot(velocity, velocity)) + m.drift + duration * m.acceleration / 2);
+  const Vec3 &origin = lattice.origin(), &way = lattice.velocity();
+  const auto square = [](double x) { return x * x; };
+  const double squares =
+      square(m.velocity[0] - way[0]) + square(m.velocity[1] - way[1]) + square(m.velocity[2] - way[2]);
+  const double travel = duration * (std::sqrt(squares) + m.drift + duration * m.acceleration / 2);
   const double reach = travel + motion_slack(m, m, duration) + 2 * options_.position_slack;
-  const auto in_float = [](double x) { return static_cast<float>(x); };
-  spheres_[body] = {{in_float(center[0]), in_float(center[1]), in_float(center[2])},
-                    in_float(m.radius),
-                    in_float(reach * kOutward + kMinFloat)};
+  Sphere& sphere = spheres_[body];
+  for (std::size_t d = 0; d < 3; ++d) sphere.center[d] = static_cast<float>(m.position[d] - origin[d]);
+  sphere.radius = static_cast<float>(m.radius);
+  sphere.reach = static_cast<float>(reach * kOutward + kMinFloat);
 }
 
 void NearPairs::test_near(Step now, std::span<const BodyPair> pairs) {

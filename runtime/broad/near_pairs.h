@@ -99,7 +99,8 @@ class NearPairs {
   template <typename To>
   void settle_all(Step now, std::span<PairEvent> events, std::span<Motion> motions, To to) const;
   template <typename To>
-  void settle(Step now, const PairEvent& event, const Horizon& horizon, bool touching, double seconds, To to) const;
+  void settle(Step now, const PairEvent& event, const Horizon& horizon, double limit, bool touching, double seconds,
+              To to) const;
   template <typename To>
   void settle_touching(Step now, const PairEvent& event, Step left, Step sure, To to) const;
 

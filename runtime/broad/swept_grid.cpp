@@ -28,22 +28,20 @@ ORCHARD_INLINE std::uint64_t query_from(std::uint64_t entry) noexcept {
 #ifdef ORCHARD_VECTORS
 class BoxInCell {
  public:
+  // In the fourth places there are numbers such that nothing is apart there, nor elsewhere.
   ORCHARD_INLINE BoxInCell(const QuantumBox& box, std::uint8_t steps) noexcept {
-    for (std::uint32_t d = 0; d < 3; ++d) {
-      lower_[d] = box.lower[d];
-      upper_[d] = box.upper[d];
-      cell_[d] = (box.lower[d] >> kQuantumBits) + (steps >> 2 * d & 3u);
-    }
-    lower_[3] = upper_[3] = kLastQuantum;  // the fourth numbers: such that nothing is apart there, nor elsewhere
-    cell_[3] = kLastQuantum >> kQuantumBits;
+    constexpr std::uint32_t kAway = kLastQuantum;
+    Numbers first, last;
+    read(box, first, last);
+    lower_ = __builtin_shufflevector(first, Numbers{kAway}, 0, 1, 2, 4);
+    upper_ = __builtin_shufflevector(last, Numbers{kAway}, 1, 2, 3, 4);
+    cell_ = (lower_ >> kQuantumBits) + load<Numbers>(kSteps[steps]);
     lower_last_ = __builtin_shufflevector(lower_, Numbers{}, 4, 0, 1, 2);
   }
   // Whether the other box meets it, and the lower corner of what they have in common lies in the cell.
   ORCHARD_INLINE bool meets_here(const QuantumBox& other) const noexcept {
-    static_assert(offsetof(QuantumBox, upper) == 12 && sizeof(QuantumBox) == 24);
-    Numbers first, last;  // lower[0], [1], [2], upper[0] and lower[2], upper[0], [1], [2]
-    std::memcpy(&first, &other, sizeof first);
-    std::memcpy(&last, reinterpret_cast<const char*>(&other) + 8, sizeof last);
+    Numbers first, last;
+    read(other, first, last);
     const Numbers apart = (upper_ - first) | (last - lower_last_);
     const auto larger = reinterpret_cast<Signed>(lower_) > reinterpret_cast<Signed>(first);
     const Numbers corner = larger ? lower_ : first;
@@ -56,6 +54,18 @@ class BoxInCell {
   using Numbers __attribute__((vector_size(16))) = std::uint32_t;
   using Signed __attribute__((vector_size(16))) = std::int32_t;
   using Halves __attribute__((vector_size(16))) = std::uint64_t;
+  static constexpr auto kSteps = [] {  // along each axis
+    std::array<std::array<std::uint32_t, 4>, 64> all{};
+    for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = {i & 3, i >> 2 & 3, i >> 4, 0};
+    return all;
+  }();
+  // lower[0], [1], [2], upper[0] and lower[2], upper[0], [1], [2]
+  ORCHARD_INLINE static void read(const QuantumBox& box, Numbers& first, Numbers& last) noexcept {
+    static_assert(offsetof(QuantumBox, upper) == 12 && sizeof(QuantumBox) == 24);
+    std::memcpy(&first, &box, sizeof first);
+    std::memcpy(&last, reinterpret_cast<const char*>(&box) + 8, sizeof last);
+  }
+
   Numbers lower_, upper_, cell_, lower_last_;
 };
 #else
