@@ -127,7 +127,6 @@ void SweptGrid::report(Insertion& insertion, const CellLine& line, std::uint64_t
 
 template <typename Kind>
 ORCHARD_INLINE void SweptGrid::insert_in_line(Insertion& insertion, const Visit& visit, std::uint64_t query) {
-  // Nothing is written before all seven entries have been read together: that would have to wait for the small writes.
   CellLine& first = lines_[visit.line];
   const auto body = static_cast<BodyIndex>(visit.entry >> kIdShift);
   const std::uint32_t count = first.count;
@@ -224,22 +223,28 @@ ORCHARD_INLINE void SweptGrid::add_corners(Batch& batch, const Numbers& axes) co
   batch.end = end;
 }
 
-// Mostly a visit meets nobody, and there is room: what is different is put off until the others are in.
+// Mostly a visit meets nobody, and there is room; else nothing is done, and false returned.
+template <typename Kind>
+ORCHARD_INLINE bool SweptGrid::insert_alone(CellLine& line, std::uint64_t entry, std::uint64_t query) noexcept {
+  // Nothing is written before all seven entries have been read together: that would have to wait for the small writes.
+  const std::uint64_t hits = Kind::meeting(line, query);
+  const std::uint32_t count = line.count;
+  if (hits != 0 || count >= line.entries.size()) [[unlikely]]
+    return false;
+  line.entries[count] = entry;
+  line.count = count + 1;
+  return true;
+}
+
+// What meets others is put off until the rest is in.
 template <typename Kind>
 ORCHARD_INLINE void SweptGrid::insert_batch(Insertion& insertion, Batch& batch) {
   std::array<std::uint16_t, Batch::kMaxVisits> put_off;
   std::size_t rest = 0;
   CellLine* const lines = lines_.data();
   for (std::size_t k = 0; k < batch.end; ++k) {
-    CellLine& line = lines[batch.lines[k]];
-    const std::uint64_t hits = Kind::meeting(line, batch.queries[k]);
-    const std::uint32_t count = line.count;
-    if (hits != 0 || count >= line.entries.size()) [[unlikely]] {
-      put_off[rest++] = static_cast<std::uint16_t>(k);
-      continue;
-    }
-    line.entries[count] = batch.entries[k];
-    line.count = count + 1;
+    if (insert_alone<Kind>(lines[batch.lines[k]], batch.entries[k], batch.queries[k])) continue;
+    put_off[rest++] = static_cast<std::uint16_t>(k);
   }
   for (std::size_t i = 0; i < rest; ++i) {
     const std::size_t k = put_off[i];
@@ -329,13 +334,15 @@ ORCHARD_INLINE void SweptGrid::scatter_block(std::span<const BodyIndex> bodies, 
                                              std::span<const QuantumBox> boxes, VisitsByPart& visits) const {
   Batch batch;
   encode(batch, bodies, block);
+  for (Visits& part : visits) part.make_room(batch.end);
   for (std::size_t k = 0; k < batch.end; ++k) {
-    visits[part_of(batch.lines[k])].push_back({batch.entries[k], batch.lines[k], batch.steps[k]});
+    visits[part_of(batch.lines[k])].add({batch.entries[k], batch.lines[k], batch.steps[k]});
   }
   std::array<Visit, kMaxVisits> rest;
   for (std::size_t i = 0; i < batch.larges; ++i) {
     const Visit* const end = many_visits_of(batch.large[i], boxes[batch.large[i]], rest.data());
-    for (const Visit* visit = rest.data(); visit != end; ++visit) visits[part_of(visit->line)].push_back(*visit);
+    for (Visits& part : visits) part.make_room(kMaxVisits);
+    for (const Visit* visit = rest.data(); visit != end; ++visit) visits[part_of(visit->line)].add(*visit);
   }
 }
 
@@ -347,11 +354,23 @@ void SweptGrid::scatter(std::span<const BodyIndex> bodies, const BoxBlock& block
 
 template <typename Kind>
 ORCHARD_INLINE void SweptGrid::insert_visits(Insertion& insertion, std::span<const Visit> visits) {
-  constexpr std::size_t kAhead = 8;
-  for (std::size_t k = 0; k < visits.size(); ++k) {
-    if (k + kAhead < visits.size()) prefetch(&lines_[visits[k + kAhead].line]);
-    const Visit& visit = visits[k];
-    insert_in_line<Kind>(insertion, visit, query_from(visit.entry));
+  constexpr std::size_t kAhead = 8, kAtOnce = 256;
+  std::array<std::uint16_t, kAtOnce> put_off;
+  CellLine* const lines = lines_.data();
+  for (std::size_t begin = 0; begin < visits.size(); begin += kAtOnce) {
+    const auto some = visits.subspan(begin);
+    const std::size_t count = std::min(kAtOnce, some.size());
+    std::size_t rest = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      if (k + kAhead < some.size()) prefetch(&lines[some[k + kAhead].line]);
+      const std::uint64_t entry = some[k].entry;
+      if (insert_alone<Kind>(lines[some[k].line], entry, query_from(entry))) continue;
+      put_off[rest++] = static_cast<std::uint16_t>(k);
+    }
+    for (std::size_t i = 0; i < rest; ++i) {
+      const Visit& visit = some[put_off[i]];
+      insert_in_line<Kind>(insertion, visit, query_from(visit.entry));
+    }
   }
   insertion.counts.entries += visits.size();
   insertion.counts.lines_read += visits.size();

@@ -46,7 +46,22 @@ class SweptGrid {
     std::uint32_t line;
     Steps steps;
   };
-  using VisitsByPart = std::array<std::vector<Visit>, kParts>;
+  // Room that is written without looking at it, once there is enough for a block.
+  class Visits {
+   public:
+    void clear() noexcept { end_ = 0; }
+    void make_room(std::size_t more) {
+      if (all_.size() < end_ + more) all_.resize(end_ + end_ / 8 + more);
+    }
+    void add(const Visit& visit) noexcept { all_[end_++] = visit; }  // there is room
+    std::span<const Visit> visits() const noexcept { return std::span(all_).first(end_); }
+    std::size_t memory_bytes() const noexcept { return bytes_of(all_); }
+
+   private:
+    std::vector<Visit> all_;
+    std::size_t end_ = 0;
+  };
+  using VisitsByPart = std::array<Visits, kParts>;
 
   // Empties the grid. At least `lines` lines, rounded up to a power of two.
   void reset(std::size_t lines, const Executor& executor);
@@ -97,6 +112,8 @@ class SweptGrid {
   void encode(Batch& batch, std::span<const BodyIndex> bodies, const BoxBlock& block) const noexcept;
   template <typename Kind>
   void advance(Insertion& insertion, Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock* block);
+  template <typename Kind>
+  static bool insert_alone(CellLine& line, std::uint64_t entry, std::uint64_t query) noexcept;
   template <typename Kind>
   void insert_batch(Insertion& insertion, Batch& batch);
   template <typename Kind>

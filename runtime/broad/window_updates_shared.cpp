@@ -43,7 +43,7 @@ struct WindowUpdates::Chunk {
   std::size_t memory_bytes() const noexcept {
     std::size_t bytes = bytes_of(placed) + bytes_of(runs) + bytes_of(unknown) + bytes_of(rest) + bytes_of(sampled) +
                         bytes_of(answers.moving) + bytes_of(answers.motions);
-    for (const auto& part : visits) bytes += bytes_of(part);
+    for (const auto& part : visits) bytes += part.memory_bytes();
     return bytes;
   }
 };
@@ -172,7 +172,8 @@ void WindowUpdates::find_in_part(Step now, std::size_t index) {
   GridPart& part = shared_->parts[index];
   part.near.clear();
   part.counts = {};
-  for (const Chunk& chunk : shared_->chunks) parts_.boxes.insert_part(chunk.visits[index], part.near, part.counts);
+  for (const Chunk& chunk : shared_->chunks)
+    parts_.boxes.insert_part(chunk.visits[index].visits(), part.near, part.counts);
   const BodyPool& pool = parts_.pool;
   if (pool.asks_user_filter()) return;
   if (pool.filters_pairs()) {
