@@ -71,39 +71,38 @@ Lattice BoxIndex::lattice_at(Step now) const noexcept {
 }
 
 void BoxIndex::take_away(BodyIndex body) noexcept {
-  if (places_[body] == Place::inside) few_ ? list_.remove(body) : grid_.remove({&body, 1}, boxes_, vectors_);
+  if (places_[body] == Place::inside && few_) list_.remove(body);
+  if (places_[body] == Place::inside && !few_) {
+    SweptGrid::Removals removals;
+    grid_.prepare_removal(body, boxes_[body], removals);
+    grid_.remove(removals, vectors_);
+  }
   if (places_[body] == Place::oversized) std::erase(oversized_, body);
   places_[body] = Place::nowhere;
 }
 
 // In the order of the timing wheel bodies are all over memory: their lines are loaded some bodies ahead.
 void BoxIndex::take_away(std::span<const BodyIndex> bodies) noexcept {
-  constexpr std::size_t kAtOnce = 16;
+  constexpr std::size_t kAtOnce = SweptGrid::Removals::kBodies;
   if (few_) {
     for (const BodyIndex body : bodies) take_away(body);
     return;
   }
-  std::array<std::array<BodyIndex, kAtOnce>, 2> inside;  // of those at hand, and of the next ones
-  std::array<std::size_t, 2> count{};
+  std::array<SweptGrid::Removals, 2> removals;  // of those at hand, and of the next ones
   const auto load = [&](std::size_t begin) {
-    const std::size_t which = begin / kAtOnce % 2, end = std::min(bodies.size(), begin + kAtOnce);
-    count[which] = 0;
+    const std::size_t end = std::min(bodies.size(), begin + kAtOnce);
     for (std::size_t i = begin; i < end; ++i) {
       const BodyIndex body = bodies[i];
       if (i + kAtOnce < bodies.size()) prefetch(&boxes_[bodies[i + kAtOnce]]);
       if (places_[body] == Place::oversized) std::erase(oversized_, body);
-      if (places_[body] == Place::inside) {
-        grid_.prepare_removal(boxes_[body]);
-        inside[which][count[which]++] = body;
-      }
+      if (places_[body] == Place::inside) grid_.prepare_removal(body, boxes_[body], removals[begin / kAtOnce % 2]);
       places_[body] = Place::nowhere;
     }
   };
   load(0);
   for (std::size_t begin = 0; begin < bodies.size(); begin += kAtOnce) {
     load(begin + kAtOnce);
-    const std::size_t which = begin / kAtOnce % 2;
-    grid_.remove(std::span(inside[which]).first(count[which]), boxes_, vectors_);
+    grid_.remove(removals[begin / kAtOnce % 2], vectors_);
   }
 }
 

@@ -80,8 +80,9 @@ class SweptGrid {
   void insert_part(std::span<const Visit> visits, std::span<const QuantumBox> boxes, bool vectors,
                    std::vector<BodyPair>& pairs, GridCounts& counts);
   void count(const GridCounts& counts) noexcept;  // of such an insertion
-  void remove(std::span<const BodyIndex> bodies, std::span<const QuantumBox> boxes, bool vectors) noexcept;
-  void prepare_removal(const QuantumBox& box) const noexcept;  // starts loading
+  class Removals;                                 // of a few bodies at a time
+  void prepare_removal(BodyIndex body, const QuantumBox& box, Removals& removals) const noexcept;  // starts loading
+  void remove(Removals& removals, bool vectors) noexcept;
 
   // Those that have entries in the cell, and in others that share its line; a body as often as it has.
   template <typename Visit>
@@ -135,10 +136,12 @@ class SweptGrid {
   };
   std::size_t part_of(std::uint32_t line) const noexcept { return line >> part_shift_; }
   static void append(CellLine& line, std::uint64_t entry, Overflow& more);
-  template <typename Use>
-  void for_each_line(const QuantumBox& box, const Use& use) const;
+  struct Removal {
+    BodyIndex body;
+    std::uint32_t line;
+  };
   template <typename Kind>
-  void remove_all(std::span<const BodyIndex> bodies, std::span<const QuantumBox> boxes) noexcept;
+  void remove_all(std::span<const Removal> removals) noexcept;
   template <typename Kind>
   static void remove_from(CellLine& line, BodyIndex body, Overflow& more) noexcept;
   static void free_last(CellLine& line, Overflow& more) noexcept;
@@ -163,6 +166,16 @@ struct SweptGrid::Batch {
   std::array<std::array<std::uint64_t, kBlock>, 3> change;  // of an entry, to the next cell along an axis
   std::array<BodyIndex, kBlock> large;                      // bodies that take more than two cells along an axis
   std::size_t count = 0, end = 0, larges = 0;               // bodies, visits, and of the former those
+};
+
+class SweptGrid::Removals {
+ public:
+  static constexpr std::size_t kBodies = 16;
+
+ private:
+  friend class SweptGrid;
+  std::array<Removal, kBodies*(kMaxVisits + 1) + 1> all_;  // what does not count is written, too
+  std::size_t count_ = 0;
 };
 
 class SweptGrid::Queue {
