@@ -100,6 +100,7 @@ struct SweptGrid::Insertion {
   GridCounts& counts;
   std::array<BodyPair, kFound> found;
   std::size_t count = 0;
+  CellLine nowhere;  // for what has no room where it belongs
 
   Insertion(std::span<const QuantumBox> all, std::vector<BodyPair>& to, GridCounts& of) noexcept
       : boxes(all), pairs(to), counts(of) {}
@@ -125,27 +126,22 @@ void SweptGrid::report(Insertion& insertion, const CellLine& line, std::uint64_t
   insertion.count = count;
 }
 
+// Where the line is full: in those that it overflows to.
 template <typename Kind>
-ORCHARD_INLINE void SweptGrid::insert_in_line(Insertion& insertion, const Visit& visit, std::uint64_t query) {
-  CellLine& first = lines_[visit.line];
-  const auto body = static_cast<BodyIndex>(visit.entry >> kIdShift);
-  const std::uint32_t count = first.count;
-  const std::uint64_t hits = Kind::meeting(first, query);
-  if (hits != 0) report(insertion, first, hits, body, visit.steps);
-  if (count < first.entries.size()) [[likely]] {
-    first.entries[count] = visit.entry;
-    first.count = count + 1;
-    return;
-  }
+ORCHARD_INLINE void SweptGrid::insert_beyond(Insertion& insertion, const Visit& visit, std::uint64_t query) {
+  CellLine* line = &lines_[visit.line];
   Overflow& overflow = overflow_[part_of(visit.line)];
-  for (std::uint32_t next = first.overflow; next != 0;) {
-    const CellLine& line = overflow.lines[next - 1];
+  while (line->overflow != 0) {
+    line = &overflow.lines[line->overflow - 1];
     ++insertion.counts.lines_read;
-    const std::uint64_t met = Kind::meeting(line, query);
-    if (met != 0) report(insertion, line, met, body, visit.steps);
-    next = line.overflow;
+    const std::uint64_t met = Kind::meeting(*line, query);
+    if (met != 0) report(insertion, *line, met, static_cast<BodyIndex>(visit.entry >> kIdShift), visit.steps);
   }
-  append(first, visit.entry, overflow);
+  if (line->count < line->entries.size()) {
+    line->entries[line->count++] = visit.entry;
+  } else {
+    append(lines_[visit.line], visit.entry, overflow);
+  }
 }
 
 // Loops without branches that depend on the data.
@@ -223,36 +219,52 @@ ORCHARD_INLINE void SweptGrid::add_corners(Batch& batch, const Numbers& axes) co
   batch.end = end;
 }
 
-// Mostly a visit meets nobody, and there is room; else nothing is done, and false returned.
-template <typename Kind>
-ORCHARD_INLINE bool SweptGrid::insert_alone(CellLine& line, std::uint64_t entry, std::uint64_t query) noexcept {
-  // Nothing is written before all seven entries have been read together: that would have to wait for the small writes.
-  const std::uint64_t hits = Kind::meeting(line, query);
-  const std::uint32_t count = line.count;
-  if (hits != 0 || count >= line.entries.size()) [[unlikely]]
-    return false;
-  line.entries[count] = entry;
-  line.count = count + 1;
-  return true;
+// At most Batch::kMaxVisits of them. What meets others, and what finds its line full, is put off until the rest is in:
+// without branches, as in dense worlds nobody can tell. Entries stay where they are meanwhile.
+template <typename Kind, typename Line, typename Entry, typename Query, typename Of>
+ORCHARD_INLINE void SweptGrid::insert_visits(Insertion& insertion, std::size_t count, const Line& line_at,
+                                             const Entry& entry_at, const Query& query_at, const Of& visit_at) {
+  std::array<std::uint16_t, Batch::kMaxVisits + 1> meeting, full;
+  std::array<std::uint8_t, Batch::kMaxVisits + 1> hits;
+  std::size_t meetings = 0, fulls = 0;
+  CellLine* const lines = lines_.data();
+  CellLine& nowhere = insertion.nowhere;
+  for (std::size_t k = 0; k < count; ++k) {
+    CellLine& line = lines[line_at(k)];
+    // Nothing is written before all seven entries have been read together: that would have to wait for the small
+    // writes.
+    const std::uint64_t met = Kind::meeting(line, query_at(k));
+    const std::uint32_t filled = line.count;
+    const bool room = filled < line.entries.size();
+    *(room ? line.entries.data() + filled : nowhere.entries.data()) = entry_at(k);
+    (room ? line : nowhere).count = filled + 1;
+    hits[meetings] = static_cast<std::uint8_t>(met);
+    meeting[meetings] = static_cast<std::uint16_t>(k);
+    meetings += met != 0;
+    full[fulls] = static_cast<std::uint16_t>(k);
+    fulls += !room;
+  }
+  for (std::size_t i = 0; i < meetings; ++i) {
+    const Visit visit = visit_at(meeting[i]);
+    report(insertion, lines[visit.line], hits[i], static_cast<BodyIndex>(visit.entry >> kIdShift), visit.steps);
+  }
+  for (std::size_t i = 0; i < fulls; ++i) insert_beyond<Kind>(insertion, visit_at(full[i]), query_at(full[i]));
+  insertion.counts.entries += count;
+  insertion.counts.lines_read += count;
 }
 
-// What meets others is put off until the rest is in.
 template <typename Kind>
-ORCHARD_INLINE void SweptGrid::insert_batch(Insertion& insertion, Batch& batch) {
-  std::array<std::uint16_t, Batch::kMaxVisits> put_off;
-  std::size_t rest = 0;
-  CellLine* const lines = lines_.data();
-  for (std::size_t k = 0; k < batch.end; ++k) {
-    if (insert_alone<Kind>(lines[batch.lines[k]], batch.entries[k], batch.queries[k])) continue;
-    put_off[rest++] = static_cast<std::uint16_t>(k);
-  }
-  for (std::size_t i = 0; i < rest; ++i) {
-    const std::size_t k = put_off[i];
-    insert_in_line<Kind>(insertion, {batch.entries[k], batch.lines[k], batch.steps[k]}, batch.queries[k]);
-  }
+ORCHARD_INLINE void SweptGrid::insert_batch(Insertion& insertion, const Batch& batch) {
+  const std::uint32_t* const lines = batch.lines.data();
+  const std::uint64_t *const entries = batch.entries.data(), *const queries = batch.queries.data();
+  const auto line_at = [=](std::size_t k) ORCHARD_INLINE_LAMBDA { return lines[k]; };
+  const auto entry_at = [=](std::size_t k) ORCHARD_INLINE_LAMBDA { return entries[k]; };
+  const auto query_at = [=](std::size_t k) ORCHARD_INLINE_LAMBDA { return queries[k]; };
+  const auto visit_at = [&](std::size_t k) ORCHARD_INLINE_LAMBDA {
+    return Visit{batch.entries[k], batch.lines[k], batch.steps[k]};
+  };
+  insert_visits<Kind>(insertion, batch.end, line_at, entry_at, query_at, visit_at);
   insertion.counts.bodies += batch.count;
-  insertion.counts.entries += batch.end;
-  insertion.counts.lines_read += batch.end;
   if (batch.larges > 0) insert_large<Kind>(insertion, batch);
 }
 
@@ -354,26 +366,17 @@ void SweptGrid::scatter(std::span<const BodyIndex> bodies, const BoxBlock& block
 
 template <typename Kind>
 ORCHARD_INLINE void SweptGrid::insert_visits(Insertion& insertion, std::span<const Visit> visits) {
-  constexpr std::size_t kAhead = 8, kAtOnce = 256;
-  std::array<std::uint16_t, kAtOnce> put_off;
-  CellLine* const lines = lines_.data();
-  for (std::size_t begin = 0; begin < visits.size(); begin += kAtOnce) {
-    const auto some = visits.subspan(begin);
-    const std::size_t count = std::min(kAtOnce, some.size());
-    std::size_t rest = 0;
-    for (std::size_t k = 0; k < count; ++k) {
-      if (k + kAhead < some.size()) prefetch(&lines[some[k + kAhead].line]);
-      const std::uint64_t entry = some[k].entry;
-      if (insert_alone<Kind>(lines[some[k].line], entry, query_from(entry))) continue;
-      put_off[rest++] = static_cast<std::uint16_t>(k);
-    }
-    for (std::size_t i = 0; i < rest; ++i) {
-      const Visit& visit = some[put_off[i]];
-      insert_in_line<Kind>(insertion, visit, query_from(visit.entry));
-    }
+  constexpr std::size_t kAhead = 8;
+  for (; !visits.empty(); visits = visits.subspan(std::min(visits.size(), Batch::kMaxVisits))) {
+    const auto line_at = [&](std::size_t k) ORCHARD_INLINE_LAMBDA {
+      if (k + kAhead < visits.size()) prefetch(&lines_[visits[k + kAhead].line]);
+      return visits[k].line;
+    };
+    const auto entry_at = [&](std::size_t k) ORCHARD_INLINE_LAMBDA { return visits[k].entry; };
+    const auto query_at = [&](std::size_t k) ORCHARD_INLINE_LAMBDA { return query_from(visits[k].entry); };
+    const auto visit_at = [&](std::size_t k) ORCHARD_INLINE_LAMBDA { return visits[k]; };
+    insert_visits<Kind>(insertion, std::min(visits.size(), Batch::kMaxVisits), line_at, entry_at, query_at, visit_at);
   }
-  insertion.counts.entries += visits.size();
-  insertion.counts.lines_read += visits.size();
 }
 
 void SweptGrid::insert_part(std::span<const Visit> visits, std::span<const QuantumBox> boxes, bool vectors,

@@ -113,10 +113,11 @@ class SweptGrid {
   void encode(Batch& batch, std::span<const BodyIndex> bodies, const BoxBlock& block) const noexcept;
   template <typename Kind>
   void advance(Insertion& insertion, Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock* block);
+  template <typename Kind, typename Line, typename Entry, typename Query, typename Of>
+  void insert_visits(Insertion& insertion, std::size_t count, const Line& line_at, const Entry& entry_at,
+                     const Query& query_at, const Of& visit_at);
   template <typename Kind>
-  static bool insert_alone(CellLine& line, std::uint64_t entry, std::uint64_t query) noexcept;
-  template <typename Kind>
-  void insert_batch(Insertion& insertion, Batch& batch);
+  void insert_batch(Insertion& insertion, const Batch& batch);
   template <typename Kind>
   void insert_large(Insertion& insertion, const Batch& batch);
   void add_corners(Batch& batch, const Numbers& axes) const noexcept;
@@ -124,7 +125,7 @@ class SweptGrid {
   void run(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock* block, std::span<const QuantumBox> boxes,
            bool vectors, std::vector<BodyPair>& pairs);
   template <typename Kind>
-  void insert_in_line(Insertion& insertion, const Visit& visit, std::uint64_t query);
+  void insert_beyond(Insertion& insertion, const Visit& visit, std::uint64_t query);
   void report(Insertion& insertion, const CellLine& line, std::uint64_t hits, BodyIndex body, Steps steps);
   void scatter_block(std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const QuantumBox> boxes,
                      VisitsByPart& visits) const;
