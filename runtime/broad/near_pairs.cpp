@@ -97,18 +97,19 @@ void NearPairs::settle_touching(Step now, const PairEvent& event, Step left, Ste
   if (sure + 1 < left && !waits) to.later(next, now + sure + 1);
 }
 
-// For how many whole steps both motions hold, until the next update of one of them, or until a bound expires.
-inline NearPairs::Horizon NearPairs::horizon_of(Step now, const BodyPair& pair, const Motion& a,
-                                                const Motion& b) const noexcept {
+// For how many whole steps both motions hold, until the next update of one of them, or until a bound expires. Written
+// where it stays: as a result it would be copied in pieces of another size than it was written in.
+inline void NearPairs::find_horizon(Step now, const BodyPair& pair, const Motion& a, const Motion& b,
+                                    Horizon& horizon) const noexcept {
   const Clock& clock = pool_.clock;
-  Horizon horizon;
   const Step sooner = std::min(windows_.known_until(pair.a, now), windows_.known_until(pair.b, now));
-  horizon.left = std::min(sooner, now + kLongestWindow) - now;
+  const Step left = std::min(sooner, now + kLongestWindow) - now;
   const double expiry = std::min(a.expiry, b.expiry);
-  const bool in_time = expiry >= clock.time(now + horizon.left + 1);  // mostly, and sooner said
-  horizon.safe = in_time ? horizon.left : clock.last_before_expiry(expiry) - now;
-  horizon.whole = std::max<Step>(0, std::min(horizon.left - 1, horizon.safe));
-  return horizon;
+  const bool in_time = expiry >= clock.time(now + left + 1);  // mostly, and sooner said
+  const Step safe = in_time ? left : clock.last_before_expiry(expiry) - now;
+  horizon.left = left;
+  horizon.safe = safe;
+  horizon.whole = std::max<Step>(0, std::min(left - 1, safe));
 }
 
 // They overlap, surely for a while, or they cannot for a while.
@@ -153,7 +154,7 @@ void NearPairs::settle_all(Step now, std::span<PairEvent> events, std::span<Moti
   std::array<double, kTestsAtOnce> limits;
   const auto find_horizons = [&] {
     for (std::size_t i = 0; i < events.size(); ++i) {
-      horizons[i] = horizon_of(now, events[i].pair, motions[2 * i], motions[2 * i + 1]);
+      find_horizon(now, events[i].pair, motions[2 * i], motions[2 * i + 1], horizons[i]);
       limits[i] = pool_.clock.seconds_between(now, now + horizons[i].whole);
     }
   };

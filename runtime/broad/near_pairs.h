@@ -93,7 +93,7 @@ class NearPairs {
     Step left, safe;  // steps until the next update of one of the bodies, and for which both bounds hold
     Step whole;       // up to which both are known
   };
-  Horizon horizon_of(Step now, const BodyPair& pair, const Motion& a, const Motion& b) const noexcept;
+  void find_horizon(Step now, const BodyPair& pair, const Motion& a, const Motion& b, Horizon& horizon) const noexcept;
   template <typename To>
   static std::size_t refuse_invalid(std::span<PairEvent> events, std::span<Motion> motions, To to);
   template <typename To>
