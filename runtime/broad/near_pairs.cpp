@@ -192,6 +192,15 @@ void NearPairs::test(Step now, std::span<PairEvent> events) {
 }
 
 void NearPairs::note_spheres(bool wanted, std::size_t slots) {
+  constexpr std::uint64_t kTells = 64, kWorthIt = 4;  // pairs compared, and of so many one that is settled
+  constexpr unsigned kInVain = 8;
+  if (in_vain_ > 0) {
+    --in_vain_;
+  } else if (compared_ >= kTells && kWorthIt * settled_ < compared_) {
+    in_vain_ = kInVain;
+  }
+  compared_ = settled_ = 0;
+  wanted = wanted && in_vain_ == 0;
   if (wanted) {
     grow(spheres_, slots);
   } else {
@@ -219,22 +228,30 @@ void NearPairs::note_sphere(BodyIndex body, const Motion& m, const Lattice& latt
 void NearPairs::test_near(Step now, std::span<const BodyPair> pairs) {
   tests_.clear();
   const Round round = windows_.round();
+  std::uint64_t compared = 0;
   for (const BodyPair& pair : pairs) {
     const bool known = !spheres_.empty() && windows_[pair.a].updated == round && windows_[pair.b].updated == round;
+    compared += known;
     if (!known || !settle_by_spheres(now, pair, Sink{*this})) tests_.emplace_back(pair, round);
   }
+  compared_ += compared;
+  settled_ += pairs.size() - tests_.size();
   test(now, tests_);
 }
 
 void NearPairs::test_near(Step now, std::span<const BodyPair> pairs, Outcome& outcome) const {
   const KeptSink to{outcome};
   const Round round = windows_.round();
+  std::uint64_t compared = 0;
   std::vector<PairEvent>& tests = outcome.tests;
   tests.clear();
   for (const BodyPair& pair : pairs) {
     const bool known = !spheres_.empty() && windows_[pair.a].updated == round && windows_[pair.b].updated == round;
+    compared += known;
     if (!known || !settle_by_spheres(now, pair, to)) tests.emplace_back(pair, round);
   }
+  outcome.compared += compared;
+  outcome.settled += pairs.size() - tests.size();
   outcome.motions.resize(kBlock);
   std::array<BodyIndex, kBlock> bodies;
   for (std::size_t done = 0; done < tests.size();) {
@@ -258,8 +275,10 @@ void NearPairs::take(Outcome& outcome) {
   for (const BodyPair& pair : outcome.ahead) note_ahead(pair);
   for (const BodyIndex body : outcome.refused) refusals_.refuse(body);
   pool_.count_asked(outcome.asked);
+  compared_ += outcome.compared;
+  settled_ += outcome.settled;
   outcome.touching.clear(), outcome.later.clear(), outcome.ahead.clear(), outcome.refused.clear();
-  outcome.asked = 0;
+  outcome.asked = outcome.compared = outcome.settled = 0;
 }
 
 void NearPairs::take_overlaps_ahead() {
