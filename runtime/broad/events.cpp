@@ -66,6 +66,7 @@ void Events::note_cancelled(BodyIndex body, Step now) {
 
 void Events::collect_due(Step now) {
   constexpr std::size_t kAhead = 16;
+  make_room(due_, changes_.size());
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     if (i + kAhead < entries_.size()) {
       const BodyIndex body = entries_[i + kAhead];

@@ -105,6 +105,7 @@ struct SweptGrid::Insertion {
   Insertion(std::span<const QuantumBox> all, std::vector<BodyPair>& to, GridCounts& of) noexcept
       : boxes(all), pairs(to), counts(of) {}
   void hand_over() {
+    if (count == 0) return;
     pairs.insert(pairs.end(), found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
     counts.pairs += count;
     count = 0;
@@ -366,7 +367,7 @@ void SweptGrid::scatter(std::span<const BodyIndex> bodies, const BoxBlock& block
 
 template <typename Kind>
 ORCHARD_INLINE void SweptGrid::insert_visits(Insertion& insertion, std::span<const Visit> visits) {
-  constexpr std::size_t kAhead = 8;
+  constexpr std::size_t kAhead = 32;
   for (; !visits.empty(); visits = visits.subspan(std::min(visits.size(), Batch::kMaxVisits))) {
     const auto line_at = [&](std::size_t k) ORCHARD_INLINE_LAMBDA {
       if (k + kAhead < visits.size()) prefetch(&lines_[visits[k + kAhead].line]);

@@ -43,7 +43,10 @@ double lasting(double window, double cancelled) noexcept {
 void MotionMeans::add(const Motion& m) noexcept {
   // Of all seen so far each is among the places with the same chance, as far as a multiplication mixes.
   const auto seen = static_cast<std::uint64_t>(count);
-  const std::uint64_t place = seen < kPlaces ? seen : ((seen * 0x9e3779b97f4a7c15u) >> 32) % (seen + 1);
+  // Few enough of them for 32 bits, whose remainder takes half as long.
+  const std::uint64_t mixed = (seen * 0x9e3779b97f4a7c15u) >> 32;
+  const std::uint64_t place =
+      seen < kPlaces ? seen : static_cast<std::uint32_t>(mixed) % static_cast<std::uint32_t>(seen + 1);
   if (place < kPlaces) places[place] = m.position, velocities[place] = m.velocity;
   count += 1;
   radius += m.radius;
