@@ -24,7 +24,7 @@ struct QuantumBox {
     }
   }
 };
-inline constexpr std::uint32_t kQuantumBits = 5, kQuanta = 1u << kQuantumBits;
+inline constexpr std::uint32_t kQuantumBits = 6, kQuanta = 1u << kQuantumBits;
 inline constexpr std::uint32_t kLastQuantum = 0x7fffffffu;
 
 inline constexpr std::size_t kBlock = 32;  // bodies that are worked on together

@@ -26,7 +26,7 @@ struct PlainCompare {
 };
 
 #ifdef ORCHARD_VECTORS
-inline constexpr std::uint64_t kEntryBits = 0x7f;  // the eighth is the counters
+inline constexpr std::uint64_t kEntriesMask = 0x7f;  // the eighth is the counters
 
 #ifdef __SSE2__
 // For any machine with vectors of two numbers of 64 bits, whose signs are one instruction.
@@ -34,7 +34,7 @@ struct PairsCompare {
   ORCHARD_INLINE static std::uint64_t meeting(const CellLine& line, std::uint64_t query) noexcept {
     const std::uint64_t apart = apart_bits(line, query, 0) | apart_bits(line, query, 1) << 2 |
                                 apart_bits(line, query, 2) << 4 | apart_bits(line, query, 3) << 6;
-    return ~apart & kEntryBits;
+    return ~apart & kEntriesMask;
   }
   ORCHARD_INLINE static std::uint64_t of(const CellLine& line, BodyIndex body) noexcept {
     return PlainCompare::of(line, body);
@@ -69,9 +69,9 @@ struct HalvesCompare {
     const auto signs = [](const Words& w) ORCHARD_INLINE_LAMBDA {
       return static_cast<std::uint64_t>(__builtin_ia32_movmskpd256(reinterpret_cast<Doubles>(-w)));
     };
-    return ~(signs(first) | signs(second) << 4) & kEntryBits;
+    return ~(signs(first) | signs(second) << 4) & kEntriesMask;
 #else
-    return bits_of(first == 0, second == 0) & kEntryBits;
+    return bits_of(first == 0, second == 0) & kEntriesMask;
 #endif
   }
   ORCHARD_INLINE static std::uint64_t of(const CellLine& line, BodyIndex body) noexcept {
@@ -96,7 +96,7 @@ struct WideCompare {
 #if defined(__x86_64__) && !defined(__clang__)
     using Signed __attribute__((vector_size(64))) = long long;
     const Words guards = Words{} + kGuards;
-    return __builtin_ia32_ptestnmq512(reinterpret_cast<Signed>(sum), reinterpret_cast<Signed>(guards), kEntryBits);
+    return __builtin_ia32_ptestnmq512(reinterpret_cast<Signed>(sum), reinterpret_cast<Signed>(guards), kEntriesMask);
 #else
     const Words bits = reinterpret_cast<Words>((sum & kGuards) == 0) & Words{1, 2, 4, 8, 16, 32, 64, 0};
     using Four __attribute__((vector_size(32))) = std::uint64_t;

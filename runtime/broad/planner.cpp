@@ -134,7 +134,7 @@ bool Planner::survey(Step now, BudgetTracker& tracker) {
 
 // Of the bodies, so that both steps take the same time: of the near pairs only those among them are found ahead.
 double Planner::share_ahead() const noexcept {
-  constexpr double kUpdate = 60, kNearPair = 100;  // nanoseconds of one machine
+  constexpr double kUpdate = 30, kNearPair = 80;  // nanoseconds of one machine
   const double pairs = kNearPair * plan_.pairs_per_body;
   return pairs < 1 ? 0.5 : (std::sqrt(kUpdate * kUpdate + 2 * pairs * (kUpdate + pairs)) - kUpdate) / (2 * pairs);
 }

@@ -9,7 +9,9 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr std::uint32_t kFieldBits = kQuantumBits + 1;
+constexpr std::uint32_t kEntryBits = 5, kFieldBits = kEntryBits + 1;
+constexpr std::uint32_t kCoarser = kQuantumBits - kEntryBits;  // bits of a quantum that are left out of entries
+constexpr std::uint32_t kLastInEntry = (1u << kEntryBits) - 1;
 static_assert(kIdShift == 6 * kFieldBits);
 static_assert(kMaxBodies < (1u << (64 - kIdShift)));
 
@@ -160,7 +162,8 @@ ORCHARD_INLINE void SweptGrid::encode(Batch& batch, std::span<const BodyIndex> b
     for (std::size_t i = 0; i < lanes; ++i) {
       const std::uint32_t lower = block.lower[d][i], upper = block.upper[d][i];
       const std::uint32_t cell = lower >> kQuantumBits, last = upper >> kQuantumBits;
-      const std::uint32_t from = (lower & (kQuanta - 1)) << field, below = (~upper & (kQuanta - 1)) << field;
+      const std::uint32_t from = (lower >> kCoarser & kLastInEntry) << field,
+                          below = (~upper >> kCoarser & kLastInEntry) << field;
       all_from[i] |= from;
       all_below[i] |= last > cell ? 0 : below;
       all_line[i] += cell * factor;
@@ -295,8 +298,8 @@ SweptGrid::Visit* SweptGrid::many_visits_of(BodyIndex body, const QuantumBox& bo
         std::uint32_t from = 0, below = 0;
         for (std::uint32_t i = 0; i < 3; ++i) {
           const std::uint32_t begin = cell[i] << kQuantumBits, end = begin + (kQuanta - 1);
-          from |= (box.lower[i] > begin ? box.lower[i] - begin : 0) << kFieldBits * i;
-          below |= (box.upper[i] < end ? end - box.upper[i] : 0) << kFieldBits * i;
+          from |= (box.lower[i] > begin ? (box.lower[i] - begin) >> kCoarser : 0) << kFieldBits * i;
+          below |= (box.upper[i] < end ? (end - box.upper[i]) >> kCoarser : 0) << kFieldBits * i;
         }
         *visits++ = {entry_of(from, below) | std::uint64_t{body} << kIdShift, line_of(cell),
                      static_cast<Steps>(steps[0] | steps[1] << 2 | steps[2] << 4)};

@@ -14,7 +14,7 @@ constexpr std::array<double, 4> kCellPerSpacing = {1, 2.6, 1.65, 1.45};
 constexpr double kMostCellPerSpacing = 1.7;
 constexpr double kLinesPerVolume = 1.9;  // a ball fills 52 % of its box
 constexpr double kMostLines = 0.5;       // for each body
-constexpr double kMostCells = 0x1p24;    // along the world, as a sample shows it: a quarter of the lattice's
+constexpr double kMostCells = 0x1p23;    // along the world, as a sample shows it: a quarter of the lattice's
 // Of the distances from the bodies of a sample to the next in it, half of the points of so many dimensions, spread
 // evenly one in each unit of space, have another one nearer than this.
 constexpr std::array<double, 3> kNearest = {0.347, 0.470, 0.549};
