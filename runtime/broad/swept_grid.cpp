@@ -191,16 +191,29 @@ ORCHARD_INLINE void SweptGrid::encode(Batch& batch, std::span<const BodyIndex> b
   if (any != 0) add_corners(batch, axes);
 }
 
+// As bits. The numbers are small.
+ORCHARD_INLINE std::uint32_t SweptGrid::which_are_not_0(const Numbers& numbers, std::size_t lanes) noexcept {
+  std::uint32_t bits = 0;
+#if defined(ORCHARD_VECTORS) && defined(__SSE2__)
+  using Four __attribute__((vector_size(16))) = std::uint32_t;
+  for (std::size_t i = 0; i < lanes; i += 4) {
+    Four four;
+    std::memcpy(&four, &numbers[i], sizeof four);
+    bits |= static_cast<std::uint32_t>(_mm_movemask_ps(reinterpret_cast<__m128>(-four))) << i;
+  }
+#else
+  for (std::size_t i = 0; i < lanes; ++i) bits |= (numbers[i] != 0 ? 1u : 0u) << i;
+#endif
+  return bits;
+}
+
 // The other cells of bodies that take two along some axes: mostly it is one axis.
 ORCHARD_INLINE void SweptGrid::add_corners(Batch& batch, const Numbers& axes) const noexcept {
-  std::array<std::uint8_t, kBlock> several;
-  std::size_t count = 0, end = batch.end;
-  for (std::size_t i = 0; i < batch.count; ++i) {
-    several[count] = static_cast<std::uint8_t>(i);
-    count += axes[i] != 0;
-  }
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t i = several[k];
+  std::uint32_t several = which_are_not_0(axes, lanes_for(batch.count));
+  if (batch.count < kBlock) several &= (1u << batch.count) - 1;
+  std::size_t end = batch.end;
+  for (; several != 0; several &= several - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(several));
     const std::uint32_t taken = axes[i];
     const auto add = [&](std::uint32_t corner) ORCHARD_INLINE_LAMBDA {  // which counts if it is taken
       std::uint64_t entry = batch.entries[i];

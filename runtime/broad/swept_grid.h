@@ -120,6 +120,7 @@ class SweptGrid {
   void insert_batch(Insertion& insertion, const Batch& batch);
   template <typename Kind>
   void insert_large(Insertion& insertion, const Batch& batch);
+  static std::uint32_t which_are_not_0(const Numbers& numbers, std::size_t lanes) noexcept;
   void add_corners(Batch& batch, const Numbers& axes) const noexcept;
   Visit* many_visits_of(BodyIndex body, const QuantumBox& box, Visit* visits) const noexcept;
   void run(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock* block, std::span<const QuantumBox> boxes,
