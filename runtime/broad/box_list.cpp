@@ -175,7 +175,7 @@ void BoxList::append_meeting(const QuantumBox& box, std::vector<BodyIndex>& bodi
 }
 
 ORCHARD_INLINE void BoxList::make_coarse(const BoxBlock& block, std::size_t count, Group& group) const noexcept {
-  const std::size_t lanes = lanes_for(count);
+  const std::size_t lanes = count > kBlock / 2 ? kBlock : count;  // of one body vectors would be most of the work
   for (std::size_t d = 0; d < 3; ++d) {
     const std::uint32_t from = first_[d], last = kLastCoarse;
     const unsigned shift = shift_;
@@ -209,8 +209,8 @@ ORCHARD_INLINE void BoxList::insert_all(std::span<const BodyIndex> bodies, const
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     std::array<std::uint64_t, 3> lower, upper;
     for (std::size_t d = 0; d < 3; ++d) lower[d] = own.lower[d][i] * kEachByte, upper[d] = own.upper[d][i] * kEachByte;
-    const typename Lanes::Bits near =
-        Lanes::before(Lanes::meeting(own, lower, upper), i);  // of the block, those before it
+    // Of the block, those before it.
+    const typename Lanes::Bits near = i == 0 ? Lanes::kNone : Lanes::before(Lanes::meeting(own, lower, upper), i);
     typename Lanes::Bits all = near;
     for (std::size_t g = 0; g < groups; ++g) Lanes::include(all, Lanes::meeting(groups_[g], lower, upper));
     if (!Lanes::any(all)) [[likely]]
@@ -233,7 +233,8 @@ ORCHARD_INLINE void BoxList::insert_all(std::span<const BodyIndex> bodies, const
 void BoxList::put(std::span<const BodyIndex> bodies, const Group& coarse) noexcept {
   for (const BodyIndex body : bodies) filled_ = std::max<std::size_t>(filled_, body + 1);
   const std::size_t first = bodies[0], last = first + bodies.size() - 1;
-  if (first / kGroup != last / kGroup || !successive(bodies)) {
+  constexpr std::size_t kFew = 8;  // that are not worth copying together
+  if (bodies.size() < kFew || first / kGroup != last / kGroup || !successive(bodies)) {
     for (std::size_t i = 0; i < bodies.size(); ++i) groups_[bodies[i] / kGroup].set(bodies[i] % kGroup, coarse.get(i));
     return;
   }
