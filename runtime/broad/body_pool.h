@@ -18,6 +18,7 @@ inline constexpr double kTimeRounding = 0x1p-50;  // relative: of a few operatio
 
 struct Clock {
   double start, time_step;
+  double per_second = 1 / time_step;  // steps
 
   double time(Step step) const noexcept { return start + static_cast<double>(step) * time_step; }
   // In seconds: what the times of two steps up to this one, and their difference, are off by at most.
@@ -38,12 +39,12 @@ struct Clock {
   }
   // The number of steps after `now` whose time lies before `seconds` after it; at least 0.
   Step steps_before(double seconds, Step now) const noexcept {
-    const double steps = std::ceil((seconds * (1 - kTimeRounding) - rounding(now)) / time_step - kStepSlack);
+    const double steps = std::ceil((seconds * (1 - kTimeRounding) - rounding(now)) * per_second - kStepSlack);
     return steps < 1e15 ? static_cast<Step>(std::max(0.0, steps)) : kNeverStep;
   }
   // The number of steps after `now` that are surely not later than `seconds` after it.
   Step steps_within(double seconds, Step now) const noexcept {
-    return static_cast<Step>(std::max(0.0, (seconds * (1 - kTimeRounding) - rounding(now)) / time_step - kStepSlack));
+    return static_cast<Step>(std::max(0.0, (seconds * (1 - kTimeRounding) - rounding(now)) * per_second - kStepSlack));
   }
   // The last step at which a bound that expires at `expiry` holds. An application that means a step's time gets this
   // step, although it may have computed the time in another way.
@@ -111,6 +112,13 @@ void grow(std::vector<T>& v, std::size_t size) {
   if (v.size() >= size) return;
   make_room(v, size);
   v.resize(size);
+}
+
+// Whether each index is one above that before it.
+inline bool successive(std::span<const BodyIndex> bodies) noexcept {
+  BodyIndex off = 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) off |= bodies[i] ^ (bodies[0] + static_cast<BodyIndex>(i));
+  return off == 0;
 }
 
 // Which bodies there are, and where to ask for their motions.

@@ -3,16 +3,20 @@
 namespace orchard::runtime::detail {
 namespace {
 
-// Cells along an axis, less one; 0 if the boxes fit into the grid.
-std::uint32_t excess_cells(const BoxBlock& boxes, std::size_t count) noexcept {
-  std::uint32_t excess = 0;
+constexpr std::size_t kFour = 4;  // all boxes of which are made, even if there is one body: whatever is in the others
+static_assert((kMaxCellsPerAxis & (kMaxCellsPerAxis - 1)) == 0);
+
+// Whether the boxes fit into the grid. Mostly all do: what is more than fits shows in a sum of bits.
+bool all_cells_fit(const BoxBlock& boxes, std::size_t count) noexcept {
+  std::array<std::uint32_t, kFour> cells{};
   for (std::size_t d = 0; d < 3; ++d) {
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::uint32_t more = (boxes.upper[d][i] >> kQuantumBits) - (boxes.lower[d][i] >> kQuantumBits);
-      excess |= more < kMaxCellsPerAxis ? 0 : more;
+    for (std::size_t i = 0; i < count; i += kFour) {
+      for (std::size_t k = 0; k < kFour; ++k) {
+        cells[k] |= (boxes.upper[d][i + k] >> kQuantumBits) - (boxes.lower[d][i + k] >> kQuantumBits);
+      }
     }
   }
-  return excess;
+  return (cells[0] | cells[1] | cells[2] | cells[3]) < kMaxCellsPerAxis;
 }
 
 bool cells_fit(const QuantumBox& box) noexcept {
@@ -36,6 +40,7 @@ void BoxIndex::make_room_for_boxes(std::size_t slots) {
 void BoxIndex::make_anew(std::size_t slots, std::size_t lines, const Executor& executor) {
   std::fill(places_.begin(), places_.end(), Place::nowhere);
   oversized_.clear();
+  any_oversized_ = false;
   extent_ = kNothing;
   few_ = lines > 0 && slots <= BoxList::kMaxBodies;
   if (few_) {
@@ -66,47 +71,46 @@ Lattice BoxIndex::lattice_at(Step now) const noexcept {
 }
 
 void BoxIndex::take_away(BodyIndex body) noexcept {
-  if (places_[body] == Place::inside) few_ ? list_.remove(body) : grid_.remove({&body, 1}, boxes_, vectors_);
+  if (places_[body] == Place::inside && few_) list_.remove(body);
+  if (places_[body] == Place::inside && !few_) {
+    SweptGrid::Removals removals;
+    grid_.prepare_removal(body, boxes_[body], removals);
+    grid_.remove(removals, vectors_);
+  }
   if (places_[body] == Place::oversized) std::erase(oversized_, body);
   places_[body] = Place::nowhere;
 }
 
 // In the order of the timing wheel bodies are all over memory: their lines are loaded some bodies ahead.
 void BoxIndex::take_away(std::span<const BodyIndex> bodies) noexcept {
-  constexpr std::size_t kAtOnce = 16;
+  constexpr std::size_t kAtOnce = SweptGrid::Removals::kBodies;
   if (few_) {
     for (const BodyIndex body : bodies) take_away(body);
     return;
   }
-  std::array<std::array<BodyIndex, kAtOnce>, 2> inside;  // of those at hand, and of the next ones
-  std::array<std::size_t, 2> count{};
+  std::array<SweptGrid::Removals, 2> removals;  // of those at hand, and of the next ones
   const auto load = [&](std::size_t begin) {
-    const std::size_t which = begin / kAtOnce % 2, end = std::min(bodies.size(), begin + kAtOnce);
-    count[which] = 0;
+    const std::size_t end = std::min(bodies.size(), begin + kAtOnce);
     for (std::size_t i = begin; i < end; ++i) {
       const BodyIndex body = bodies[i];
       if (i + kAtOnce < bodies.size()) prefetch(&boxes_[bodies[i + kAtOnce]]);
       if (places_[body] == Place::oversized) std::erase(oversized_, body);
-      if (places_[body] == Place::inside) {
-        grid_.prepare_removal(boxes_[body]);
-        inside[which][count[which]++] = body;
-      }
+      if (places_[body] == Place::inside) grid_.prepare_removal(body, boxes_[body], removals[begin / kAtOnce % 2]);
       places_[body] = Place::nowhere;
     }
   };
   load(0);
   for (std::size_t begin = 0; begin < bodies.size(); begin += kAtOnce) {
     load(begin + kAtOnce);
-    const std::size_t which = begin / kAtOnce % 2;
-    grid_.remove(std::span(inside[which]).first(count[which]), boxes_, vectors_);
+    grid_.remove(removals[begin / kAtOnce % 2], vectors_);
   }
 }
 
 bool BoxIndex::note(std::span<const BodyIndex> bodies, const BoxBlock& boxes) noexcept {
   for (const BodyIndex body : bodies) places_[body] = Place::inside;
   if (few_) return true;
-  for (std::size_t i = 0; i < bodies.size(); ++i) boxes_[bodies[i]] = boxes.get(i);
-  if (excess_cells(boxes, bodies.size()) == 0) {
+  boxes.store(bodies, boxes_);
+  if (all_cells_fit(boxes, bodies.size())) {
     note_extent(boxes, bodies.size(), extent_);
     return true;
   }
@@ -119,26 +123,24 @@ bool BoxIndex::note_again(BodyIndex body, const QuantumBox& box) noexcept {
   const bool fits = cells_fit(box);
   boxes_[body] = box;
   places_[body] = fits ? Place::inside : Place::oversized;
+  any_oversized_ = any_oversized_ || !fits;
   if (fits) extent_.include(box);
   return fits;
 }
 
-bool BoxIndex::all_fit(const BoxBlock& boxes, std::size_t count) noexcept { return excess_cells(boxes, count) == 0; }
+bool BoxIndex::all_fit(const BoxBlock& boxes, std::size_t count) noexcept { return all_cells_fit(boxes, count); }
 
 bool BoxIndex::fits(const QuantumBox& box) noexcept { return cells_fit(box); }
 
 void BoxIndex::note_fitting(std::span<const BodyIndex> bodies, const BoxBlock& boxes, QuantumBox& extent) noexcept {
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    boxes_[bodies[i]] = boxes.get(i);
-    places_[bodies[i]] = Place::inside;
-  }
+  boxes.store(bodies, boxes_);
+  for (const BodyIndex body : bodies) places_[body] = Place::inside;
   note_extent(boxes, bodies.size(), extent);
 }
 
 // Mostly none of them lies outside. By fours, whose boxes are all made: those after the last body are somewhere in the
 // world. Quanta are below 2^31: what is outside shows in the highest bit of a difference.
 void BoxIndex::note_extent(const BoxBlock& boxes, std::size_t count, QuantumBox& extent) noexcept {
-  constexpr std::size_t kFour = 4;
   std::array<std::uint32_t, kFour> outside{};
   for (std::size_t d = 0; d < 3; ++d) {
     const std::uint32_t lower = extent.lower[d], upper = extent.upper[d];
@@ -154,10 +156,8 @@ void BoxIndex::note_extent(const BoxBlock& boxes, std::size_t count, QuantumBox&
 
 void BoxIndex::insert(Queue& queue, std::span<const BodyIndex> bodies, BoxBlock& boxes, std::vector<BodyPair>& pairs) {
   if (few_) return list_.insert(bodies, boxes, vectors_, pairs);
+  if (!any_oversized_) return grid_.insert(queue, bodies, boxes, boxes_, vectors_, pairs);
   const auto oversized = [&](BodyIndex body) { return places_[body] == Place::oversized; };
-  if (oversized_.empty() && std::none_of(bodies.begin(), bodies.end(), oversized)) {
-    return grid_.insert(queue, bodies, boxes, boxes_, vectors_, pairs);
-  }
   std::array<BodyIndex, kBlock> in_grid;
   std::size_t count = 0;
   for (const BodyIndex body : bodies) {

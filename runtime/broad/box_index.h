@@ -85,6 +85,7 @@ class BoxIndex {
   std::vector<Place> places_;      // by body
   std::vector<QuantumBox> boxes_;  // of those in the grid
   std::vector<BodyIndex> oversized_;
+  bool any_oversized_ = false;  // since it was made anew
   bool few_ = true;
   BoxList list_;
   SweptGrid grid_;

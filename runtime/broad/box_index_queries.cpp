@@ -7,8 +7,9 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr double kSpare = 1;            // quanta: more than all rounding within the lattice comes to
-constexpr double kFarOrigin = 0x1p44;   // quanta: beyond, rounding comes to too many of them
+constexpr double kSpare = 1;           // quanta: more than all rounding within the lattice comes to
+constexpr double kFarOrigin = 0x1p44;  // quanta: beyond, rounding comes to too many of them
+constexpr double kBeyond = std::numeric_limits<double>::infinity();
 constexpr std::size_t kPortion = 16;    // bodies, about, that are visited together
 constexpr std::size_t kFewCells = 64;   // that are read even if there are fewer bodies
 constexpr double kCellsPerSlab = 2.25;  // of a ray, on average at most
@@ -55,7 +56,9 @@ struct BoxIndex::GridRay {
   double at(std::size_t d, double t) const noexcept { return origin[d] + t * way[d]; }
   void clip(const QuantumBox& box) noexcept {
     for (std::size_t d = 0; d < 3; ++d) {
-      const double lower = box.lower[d] - 2 * kSpare, upper = box.upper[d] + 2 * kSpare;
+      // What reaches an end of the lattice may reach beyond it.
+      const double lower = box.lower[d] == 0 ? -kBeyond : box.lower[d] - 2 * kSpare,
+                   upper = box.upper[d] == kLastQuantum ? kBeyond : box.upper[d] + 2 * kSpare;
       if (way[d] == 0) {
         if (!(lower <= origin[d] && origin[d] <= upper)) end = -1;
         continue;

@@ -73,6 +73,41 @@ struct VectorMotions : VectorDoubles {
 
 }  // namespace
 
+void BoxBlock::store(std::span<const std::uint32_t> places, std::span<QuantumBox> to) const noexcept {
+  std::size_t i = 0;
+#ifdef ORCHARD_VECTORS
+  using Four __attribute__((vector_size(16))) = std::uint32_t;
+  using Two __attribute__((vector_size(16))) = std::uint64_t;
+  const auto at = [&](const std::array<std::uint32_t, kBlock>& from) {
+    Four result;
+    std::memcpy(&result, &from[i], sizeof result);
+    return result;
+  };
+  const auto low_halves = [](const Four& a, const Four& b) { return __builtin_shufflevector(a, b, 0, 4, 1, 5); };
+  const auto high_halves = [](const Four& a, const Four& b) { return __builtin_shufflevector(a, b, 2, 6, 3, 7); };
+  const auto put = [&](std::size_t k, const Two& first, std::uint64_t last) {
+    static_assert(sizeof(QuantumBox) == sizeof first + sizeof last);
+    auto* const box = reinterpret_cast<unsigned char*>(&to[places[i + k]]);
+    std::memcpy(box, &first, sizeof first);
+    std::memcpy(box + sizeof first, &last, sizeof last);
+  };
+  for (; i + 4 <= places.size(); i += 4) {
+    const Four x = at(lower[0]), y = at(lower[1]), z = at(lower[2]), end_x = at(upper[0]), end_y = at(upper[1]),
+               end_z = at(upper[2]);
+    const Two begins = reinterpret_cast<Two>(low_halves(x, y)), more_begins = reinterpret_cast<Two>(high_halves(x, y)),
+              rest = reinterpret_cast<Two>(low_halves(z, end_x)),
+              more_rest = reinterpret_cast<Two>(high_halves(z, end_x)),
+              ends = reinterpret_cast<Two>(low_halves(end_y, end_z)),
+              more_ends = reinterpret_cast<Two>(high_halves(end_y, end_z));
+    put(0, __builtin_shufflevector(begins, rest, 0, 2), ends[0]);
+    put(1, __builtin_shufflevector(begins, rest, 1, 3), ends[1]);
+    put(2, __builtin_shufflevector(more_begins, more_rest, 0, 2), more_ends[0]);
+    put(3, __builtin_shufflevector(more_begins, more_rest, 1, 3), more_ends[1]);
+  }
+#endif
+  for (; i < places.size(); ++i) to[places[i]] = get(i);
+}
+
 Lattice::Lattice(const Vec3& origin, const Vec3& velocity, double cell_size, double slack) noexcept
     : first_(origin), velocity_(velocity), per_length_(kQuanta / cell_size), slack_(slack) {
   move_to(0);

@@ -24,7 +24,7 @@ struct QuantumBox {
     }
   }
 };
-inline constexpr std::uint32_t kQuantumBits = 5, kQuanta = 1u << kQuantumBits;
+inline constexpr std::uint32_t kQuantumBits = 6, kQuanta = 1u << kQuantumBits;
 inline constexpr std::uint32_t kLastQuantum = 0x7fffffffu;
 
 inline constexpr std::size_t kBlock = 32;  // bodies that are worked on together
@@ -38,6 +38,7 @@ struct BoxBlock {
   QuantumBox get(std::size_t i) const noexcept {
     return {{lower[0][i], lower[1][i], lower[2][i]}, {upper[0][i], upper[1][i], upper[2][i]}};
   }
+  void store(std::span<const std::uint32_t> places, std::span<QuantumBox> to) const noexcept;  // box i to places[i]
   void set(std::size_t i, const QuantumBox& box) noexcept {
     for (std::size_t d = 0; d < 3; ++d) {
       lower[d][i] = box.lower[d];

@@ -17,6 +17,7 @@ class Changes {
   bool has(BodyIndex body) const noexcept { return pending_[body] != 0; }
   const std::uint8_t* at(BodyIndex body) const noexcept { return &pending_[body]; }  // to load it ahead
   bool empty() const noexcept { return changed_.empty(); }
+  std::size_t size() const noexcept { return changed_.size(); }  // at most
   void append_to(std::vector<BodyIndex>& bodies) const {
     for (const BodyIndex body : changed_) {
       if (pending_[body]) bodies.push_back(body);

@@ -2,6 +2,7 @@
 #include "events.h"
 
 #include <cmath>
+#include <numeric>
 
 namespace orchard::runtime::detail {
 namespace {
@@ -65,6 +66,7 @@ void Events::note_cancelled(BodyIndex body, Step now) {
 
 void Events::collect_due(Step now) {
   constexpr std::size_t kAhead = 16;
+  make_room(due_, changes_.size());
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     if (i + kAhead < entries_.size()) {
       const BodyIndex body = entries_[i + kAhead];
@@ -136,6 +138,7 @@ bool Events::replan(Step now, BudgetTracker& tracker) {
 void Events::all_are_due() {
   if (due_.capacity() > 2 * pool_.size()) give_back(due_);
   due_.resize(pool_.size());
+  if (pool_.size() == pool_.slots()) return std::iota(due_.begin(), due_.end(), BodyIndex{0});
   std::size_t count = 0;
   for (BodyIndex body = 0; count < due_.size(); ++body) {
     due_[count] = body;

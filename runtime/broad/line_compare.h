@@ -9,17 +9,13 @@
 // The seven entries of a cell's line compared at once, for each machine.
 namespace orchard::runtime::detail {
 
-inline constexpr std::uint64_t kGuards = 0x820820820u;  // bit 5 of each of six fields
-
-// meeting(): which of a line's entries meet the query, as bits, kSpread of them for each entry. of(): which are of the
-// body, one bit for each. Of what is not an entry bits mean nothing.
+// meeting(): which of a line's entries meet the query, one bit for each: no field of their sum reaches its guard bit,
+// and places without an entry are nothing but guard bits. of(): which are of the body, one bit for each; of what is not
+// an entry they mean nothing.
 struct PlainCompare {
-  static constexpr int kSpread = 1;
   static std::uint64_t meeting(const CellLine& line, std::uint64_t query) noexcept {
     std::uint64_t bits = 0;
-    for (std::uint32_t i = 0; i < 7; ++i) {
-      bits |= std::uint64_t{((query - line.entries[i]) & kGuards) == kGuards} << i;
-    }
+    for (std::uint32_t i = 0; i < 7; ++i) bits |= std::uint64_t{((query + line.entries[i]) & kGuards) == 0} << i;
     return bits;
   }
   static std::uint64_t of(const CellLine& line, BodyIndex body) noexcept {
@@ -30,9 +26,35 @@ struct PlainCompare {
 };
 
 #ifdef ORCHARD_VECTORS
+inline constexpr std::uint64_t kEntriesMask = 0x7f;  // the eighth is the counters
+
+#ifdef __SSE2__
+// For any machine with vectors of two numbers of 64 bits, whose signs are one instruction.
+struct PairsCompare {
+  ORCHARD_INLINE static std::uint64_t meeting(const CellLine& line, std::uint64_t query) noexcept {
+    const std::uint64_t apart = apart_bits(line, query, 0) | apart_bits(line, query, 1) << 2 |
+                                apart_bits(line, query, 2) << 4 | apart_bits(line, query, 3) << 6;
+    return ~apart & kEntriesMask;
+  }
+  ORCHARD_INLINE static std::uint64_t of(const CellLine& line, BodyIndex body) noexcept {
+    return PlainCompare::of(line, body);
+  }
+
+ private:
+  using Two __attribute__((vector_size(16))) = std::uint64_t;
+  ORCHARD_INLINE static std::uint64_t apart_bits(const CellLine& line, std::uint64_t query, std::size_t part) noexcept {
+    Two entries;
+    std::memcpy(&entries, reinterpret_cast<const char*>(&line) + part * sizeof entries, sizeof entries);
+    const Two minus = -((query + entries) & kGuards);  // below 0 unless it is 0
+    return static_cast<std::uint64_t>(_mm_movemask_pd(reinterpret_cast<__m128d>(minus)));
+  }
+};
+#else
+using PairsCompare = PlainCompare;
+#endif
+
 // For machines with vectors of 32 bytes: of twice as many GCC keeps parts in memory.
 struct HalvesCompare {
-  static constexpr int kSpread = 1;
   using Words __attribute__((vector_size(32))) = std::uint64_t;
   using Two __attribute__((vector_size(16))) = std::uint64_t;
   ORCHARD_INLINE static Words at(const CellLine& line, std::size_t byte) noexcept {
@@ -41,8 +63,16 @@ struct HalvesCompare {
     return result;
   }
   ORCHARD_INLINE static std::uint64_t meeting(const CellLine& line, std::uint64_t query) noexcept {
-    const Words first = at(line, 0), second = at(line, 32);  // the eighth is the counters
-    return bits_of(((query - first) & kGuards) == kGuards, ((query - second) & kGuards) == kGuards);
+    const Words first = (query + at(line, 0)) & kGuards, second = (query + at(line, 32)) & kGuards;
+#if defined(__x86_64__) && !defined(__clang__)
+    using Doubles __attribute__((vector_size(32))) = double;
+    const auto signs = [](const Words& w) ORCHARD_INLINE_LAMBDA {
+      return static_cast<std::uint64_t>(__builtin_ia32_movmskpd256(reinterpret_cast<Doubles>(-w)));
+    };
+    return ~(signs(first) | signs(second) << 4) & kEntriesMask;
+#else
+    return bits_of(first == 0, second == 0) & kEntriesMask;
+#endif
   }
   ORCHARD_INLINE static std::uint64_t of(const CellLine& line, BodyIndex body) noexcept {
     const std::uint64_t id = body;
@@ -60,13 +90,20 @@ struct HalvesCompare {
 };
 
 struct WideCompare {
-  static constexpr int kSpread = 8;
   using Words __attribute__((vector_size(64))) = std::uint64_t;
-  using Bytes __attribute__((vector_size(8))) = std::uint8_t;
   ORCHARD_INLINE static std::uint64_t meeting(const CellLine& line, std::uint64_t query) noexcept {
-    const Words entries = load<Words>(line);                    // the eighth is the counters
-    const auto hit = ((query - entries) & kGuards) == kGuards;  // numbers are spread
-    return std::bit_cast<std::uint64_t>(__builtin_convertvector(-hit, Bytes));
+    const Words sum = query + load<Words>(line);
+#if defined(__x86_64__) && !defined(__clang__)
+    using Signed __attribute__((vector_size(64))) = long long;
+    const Words guards = Words{} + kGuards;
+    return __builtin_ia32_ptestnmq512(reinterpret_cast<Signed>(sum), reinterpret_cast<Signed>(guards), kEntriesMask);
+#else
+    const Words bits = reinterpret_cast<Words>((sum & kGuards) == 0) & Words{1, 2, 4, 8, 16, 32, 64, 0};
+    using Four __attribute__((vector_size(32))) = std::uint64_t;
+    const auto halves = std::bit_cast<std::array<Four, 2>>(bits);
+    const Four met = halves[0] | halves[1];
+    return (met[0] | met[1]) | (met[2] | met[3]);
+#endif
   }
   ORCHARD_INLINE static std::uint64_t of(const CellLine& line, BodyIndex body) noexcept {
     return HalvesCompare::of(line, body);
@@ -74,8 +111,7 @@ struct WideCompare {
 };
 #endif
 
-// work.template operator()<Kind>() for the comparison that suits the machine. Without comparisons of 64 bits vectors
-// are no faster.
+// work.template operator()<Kind>() for the comparison that suits the machine.
 template <typename Work>
 void with_best_compare(const Work& work) {
 #if defined(ORCHARD_MACHINES)
@@ -86,7 +122,7 @@ void with_best_compare(const Work& work) {
   if (chosen == Machine::avx2) {
     return work_with_avx2([&]() ORCHARD_INLINE_LAMBDA { work.template operator()<HalvesCompare>(); });
   }
-  work.template operator()<PlainCompare>();
+  work.template operator()<PairsCompare>();
 #elif defined(ORCHARD_VECTORS) && defined(__AVX512BW__)
   work.template operator()<WideCompare>();
 #elif defined(ORCHARD_VECTORS) && (defined(__AVX2__) || defined(__aarch64__))

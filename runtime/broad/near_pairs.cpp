@@ -97,26 +97,26 @@ void NearPairs::settle_touching(Step now, const PairEvent& event, Step left, Ste
   if (sure + 1 < left && !waits) to.later(next, now + sure + 1);
 }
 
-// For how many whole steps both motions hold, until the next update of one of them, or until a bound expires.
-NearPairs::Horizon NearPairs::horizon_of(Step now, const BodyPair& pair, const Motion& a,
-                                         const Motion& b) const noexcept {
+// For how many whole steps both motions hold, until the next update of one of them, or until a bound expires. Written
+// where it stays: as a result it would be copied in pieces of another size than it was written in.
+inline void NearPairs::find_horizon(Step now, const BodyPair& pair, const Motion& a, const Motion& b,
+                                    Horizon& horizon) const noexcept {
   const Clock& clock = pool_.clock;
-  Horizon horizon;
-  horizon.left =
-      std::min({windows_.known_until(pair.a, now), windows_.known_until(pair.b, now), now + kLongestWindow}) - now;
+  const Step sooner = std::min(windows_.known_until(pair.a, now), windows_.known_until(pair.b, now));
+  const Step left = std::min(sooner, now + kLongestWindow) - now;
   const double expiry = std::min(a.expiry, b.expiry);
-  const bool in_time = expiry >= clock.time(now + horizon.left + 1);  // mostly, and sooner said
-  horizon.safe = in_time ? horizon.left : clock.last_before_expiry(expiry) - now;
-  horizon.whole = std::max<Step>(0, std::min(horizon.left - 1, horizon.safe));
-  return horizon;
+  const bool in_time = expiry >= clock.time(now + left + 1);  // mostly, and sooner said
+  const Step safe = in_time ? left : clock.last_before_expiry(expiry) - now;
+  horizon.left = left;
+  horizon.safe = safe;
+  horizon.whole = std::max<Step>(0, std::min(left - 1, safe));
 }
 
 // They overlap, surely for a while, or they cannot for a while.
 template <typename To>
-void NearPairs::settle(Step now, const PairEvent& event, const Horizon& horizon, bool touching, double seconds,
-                       To to) const {
+void NearPairs::settle(Step now, const PairEvent& event, const Horizon& horizon, double limit, bool touching,
+                       double seconds, To to) const {
   const Clock& clock = pool_.clock;
-  const double limit = clock.seconds_between(now, now + horizon.whole);
   if (touching) {
     const Step sure = seconds < limit ? clock.steps_within(seconds, now) : horizon.whole;
     return settle_touching(now, event, horizon.left, sure, to);
@@ -154,7 +154,7 @@ void NearPairs::settle_all(Step now, std::span<PairEvent> events, std::span<Moti
   std::array<double, kTestsAtOnce> limits;
   const auto find_horizons = [&] {
     for (std::size_t i = 0; i < events.size(); ++i) {
-      horizons[i] = horizon_of(now, events[i].pair, motions[2 * i], motions[2 * i + 1]);
+      find_horizon(now, events[i].pair, motions[2 * i], motions[2 * i + 1], horizons[i]);
       limits[i] = pool_.clock.seconds_between(now, now + horizons[i].whole);
     }
   };
@@ -168,7 +168,7 @@ void NearPairs::settle_all(Step now, std::span<PairEvent> events, std::span<Moti
   }
   for (std::size_t i = 0; i < events.size(); ++i) {
     if (!to.may_pair(events[i].pair)) continue;  // what waited for its test while that changed
-    settle(now, events[i], horizons[i], times.touching[i], times.seconds[i], to);
+    settle(now, events[i], horizons[i], limits[i], times.touching[i], times.seconds[i], to);
   }
 }
 
@@ -192,6 +192,15 @@ void NearPairs::test(Step now, std::span<PairEvent> events) {
 }
 
 void NearPairs::note_spheres(bool wanted, std::size_t slots) {
+  constexpr std::uint64_t kTells = 64, kWorthIt = 4;  // pairs compared, and of so many one that is settled
+  constexpr unsigned kInVain = 8;
+  if (in_vain_ > 0) {
+    --in_vain_;
+  } else if (compared_ >= kTells && kWorthIt * settled_ < compared_) {
+    in_vain_ = kInVain;
+  }
+  compared_ = settled_ = 0;
+  wanted = wanted && in_vain_ == 0;
   if (wanted) {
     grow(spheres_, slots);
   } else {
@@ -204,34 +213,45 @@ void NearPairs::release_spheres() noexcept { give_back(spheres_); }
 // Relative to the lattice, like that of every other body.
 void NearPairs::note_sphere(BodyIndex body, const Motion& m, const Lattice& lattice, double duration) noexcept {
   constexpr double kOutward = 1 + 1e-6;  // for what is rounded here
-  const Vec3 velocity = m.velocity - lattice.velocity(), center = m.position - lattice.origin();
-  const double travel = duration * (std::sqrt(dot(velocity, velocity)) + m.drift + duration * m.acceleration / 2);
+  const Vec3 &origin = lattice.origin(), &way = lattice.velocity();
+  const auto square = [](double x) { return x * x; };
+  const double squares =
+      square(m.velocity[0] - way[0]) + square(m.velocity[1] - way[1]) + square(m.velocity[2] - way[2]);
+  const double travel = duration * (std::sqrt(squares) + m.drift + duration * m.acceleration / 2);
   const double reach = travel + motion_slack(m, m, duration) + 2 * options_.position_slack;
-  const auto in_float = [](double x) { return static_cast<float>(x); };
-  spheres_[body] = {{in_float(center[0]), in_float(center[1]), in_float(center[2])},
-                    in_float(m.radius),
-                    in_float(reach * kOutward + kMinFloat)};
+  Sphere& sphere = spheres_[body];
+  for (std::size_t d = 0; d < 3; ++d) sphere.center[d] = static_cast<float>(m.position[d] - origin[d]);
+  sphere.radius = static_cast<float>(m.radius);
+  sphere.reach = static_cast<float>(reach * kOutward + kMinFloat);
 }
 
 void NearPairs::test_near(Step now, std::span<const BodyPair> pairs) {
   tests_.clear();
   const Round round = windows_.round();
+  std::uint64_t compared = 0;
   for (const BodyPair& pair : pairs) {
     const bool known = !spheres_.empty() && windows_[pair.a].updated == round && windows_[pair.b].updated == round;
+    compared += known;
     if (!known || !settle_by_spheres(now, pair, Sink{*this})) tests_.emplace_back(pair, round);
   }
+  compared_ += compared;
+  settled_ += pairs.size() - tests_.size();
   test(now, tests_);
 }
 
 void NearPairs::test_near(Step now, std::span<const BodyPair> pairs, Outcome& outcome) const {
   const KeptSink to{outcome};
   const Round round = windows_.round();
+  std::uint64_t compared = 0;
   std::vector<PairEvent>& tests = outcome.tests;
   tests.clear();
   for (const BodyPair& pair : pairs) {
     const bool known = !spheres_.empty() && windows_[pair.a].updated == round && windows_[pair.b].updated == round;
+    compared += known;
     if (!known || !settle_by_spheres(now, pair, to)) tests.emplace_back(pair, round);
   }
+  outcome.compared += compared;
+  outcome.settled += pairs.size() - tests.size();
   outcome.motions.resize(kBlock);
   std::array<BodyIndex, kBlock> bodies;
   for (std::size_t done = 0; done < tests.size();) {
@@ -255,8 +275,10 @@ void NearPairs::take(Outcome& outcome) {
   for (const BodyPair& pair : outcome.ahead) note_ahead(pair);
   for (const BodyIndex body : outcome.refused) refusals_.refuse(body);
   pool_.count_asked(outcome.asked);
+  compared_ += outcome.compared;
+  settled_ += outcome.settled;
   outcome.touching.clear(), outcome.later.clear(), outcome.ahead.clear(), outcome.refused.clear();
-  outcome.asked = 0;
+  outcome.asked = outcome.compared = outcome.settled = 0;
 }
 
 void NearPairs::take_overlaps_ahead() {

@@ -48,7 +48,7 @@ class NearPairs {
     std::vector<BodyPair> ahead;
     std::vector<Later> later;
     std::vector<BodyIndex> refused;
-    std::uint64_t asked = 0;
+    std::uint64_t asked = 0, compared = 0, settled = 0;
     std::vector<PairEvent> tests;  // and what the job works with
     std::vector<Motion> motions;
     BodyPool::Answers answers;
@@ -64,7 +64,8 @@ class NearPairs {
   void take_overlaps_ahead(std::vector<PairEvent>& events);
   void keep_doubtful();  // at the end of a step within a budget
 
-  // What a window update takes note of where many pairs are near: most of them need no other test.
+  // What a window update takes note of where many pairs are near: most of them need no other test. Where that was not
+  // so the last time it is tried again some updates of all windows later.
   void note_spheres(bool wanted, std::size_t slots);
   void release_spheres() noexcept;  // and their memory
   void make_room_for_spheres(std::size_t slots) {
@@ -93,13 +94,14 @@ class NearPairs {
     Step left, safe;  // steps until the next update of one of the bodies, and for which both bounds hold
     Step whole;       // up to which both are known
   };
-  Horizon horizon_of(Step now, const BodyPair& pair, const Motion& a, const Motion& b) const noexcept;
+  void find_horizon(Step now, const BodyPair& pair, const Motion& a, const Motion& b, Horizon& horizon) const noexcept;
   template <typename To>
   static std::size_t refuse_invalid(std::span<PairEvent> events, std::span<Motion> motions, To to);
   template <typename To>
   void settle_all(Step now, std::span<PairEvent> events, std::span<Motion> motions, To to) const;
   template <typename To>
-  void settle(Step now, const PairEvent& event, const Horizon& horizon, bool touching, double seconds, To to) const;
+  void settle(Step now, const PairEvent& event, const Horizon& horizon, double limit, bool touching, double seconds,
+              To to) const;
   template <typename To>
   void settle_touching(Step now, const PairEvent& event, Step left, Step sure, To to) const;
 
@@ -110,9 +112,11 @@ class NearPairs {
   OverlapList& overlaps_;
   Refusals& refusals_;
   bool ahead_ = false, within_budget_ = false;
-  std::vector<Sphere> spheres_;           // by body; empty unless many pairs are near
-  std::vector<BodyPair> overlaps_ahead_;  // of pairs tested ahead for the next step, at which they surely touch,
-  Round ahead_round_ = 0;                 // in this round
+  std::vector<Sphere> spheres_;               // by body; empty unless many pairs are near
+  std::uint64_t compared_ = 0, settled_ = 0;  // pairs, by spheres, since spheres_ began
+  unsigned in_vain_ = 0;                      // updates of all windows that take no note of spheres, to come
+  std::vector<BodyPair> overlaps_ahead_;      // of pairs tested ahead for the next step, at which they surely touch,
+  Round ahead_round_ = 0;                     // in this round
   std::vector<PairEvent> doubtful_;  // reported within a budget, before another update that may not have found them yet
   std::vector<PairEvent> tests_;     // of the call under way; kept for its memory, as the next one
   std::vector<Motion> motions_;

@@ -8,7 +8,8 @@ constexpr std::size_t kFewPairs = 64;
 // Looks pairs up that come in ascending order, in steps that double from where the last one was.
 class Finder {
  public:
-  explicit Finder(const std::vector<BodyPair>& sorted) : next_(sorted.begin()), end_(sorted.end()) {}
+  explicit Finder(const std::vector<BodyPair>& sorted)
+      : begin_(sorted.begin()), next_(sorted.begin()), end_(sorted.end()) {}
   bool has(const BodyPair& pair) {
     std::ptrdiff_t step = 1;
     auto first = next_;
@@ -17,9 +18,10 @@ class Finder {
     next_ = std::lower_bound(first, last, pair);
     return next_ != end_ && *next_ == pair;
   }
+  std::uint32_t place() const { return static_cast<std::uint32_t>(next_ - begin_); }  // it has, or would have, there
 
  private:
-  std::vector<BodyPair>::const_iterator next_, end_;
+  std::vector<BodyPair>::const_iterator begin_, next_, end_;
 };
 
 }  // namespace
@@ -82,20 +84,31 @@ void OverlapList::begin_anew() noexcept {
   anew_ = true;
 }
 
-// Both sorted. Leaves what is added and not in the list, and what is dropped and in it.
+// Both sorted. Leaves what is added and not in the list, and what is dropped and in it, and says where.
 void OverlapList::keep_changes() {
   Finder touching(added_), in_list(pairs_), in_list_too(pairs_);
-  std::erase_if(dropped_, [&](const BodyPair& pair) { return touching.has(pair) || !in_list.has(pair); });
-  std::erase_if(added_, [&](const BodyPair& pair) { return in_list_too.has(pair); });
+  const auto keep = [](std::vector<BodyPair>& pairs, std::vector<std::uint32_t>& places, const Finder& finder,
+                       const auto& counts) {
+    places.clear();
+    std::size_t kept = 0;
+    for (const BodyPair pair : pairs) {
+      if (!counts(pair)) continue;
+      pairs[kept++] = pair;
+      places.push_back(finder.place());
+    }
+    pairs.resize(kept);
+  };
+  keep(dropped_, dropped_places_, in_list,
+       [&](const BodyPair& pair) { return !touching.has(pair) && in_list.has(pair); });
+  keep(added_, added_places_, in_list_too, [&](const BodyPair& pair) { return !in_list_too.has(pair); });
 }
 
 void OverlapList::remove_dropped() {
-  auto to = std::lower_bound(pairs_.begin(), pairs_.end(), dropped_.front());
-  auto from = to;
-  for (const BodyPair& pair : dropped_) {
-    const auto next = std::lower_bound(from, pairs_.end(), pair);
-    to = std::move(from, next, to);
-    from = next + 1;
+  const auto begin = pairs_.begin();
+  auto to = begin + dropped_places_.front(), from = to;
+  for (const std::uint32_t place : dropped_places_) {
+    to = std::move(from, begin + place, to);
+    from = begin + place + 1;
   }
   pairs_.erase(std::move(from, pairs_.end(), to), pairs_.end());
 }
@@ -105,10 +118,11 @@ void OverlapList::insert_added() {
   auto from = pairs_.size();
   grow(pairs_, from + added_.size());
   auto to = pairs_.size();
+  auto dropped = dropped_places_.size();  // before the place
   for (auto k = added_.size(); k > 0; --k) {
     const auto begin = pairs_.begin();
-    const auto place = static_cast<std::size_t>(
-        std::lower_bound(begin, begin + static_cast<std::ptrdiff_t>(from), added_[k - 1]) - begin);
+    while (dropped > 0 && dropped_places_[dropped - 1] >= added_places_[k - 1]) --dropped;
+    const std::size_t place = added_places_[k - 1] - dropped;
     std::move_backward(begin + static_cast<std::ptrdiff_t>(place), begin + static_cast<std::ptrdiff_t>(from),
                        begin + static_cast<std::ptrdiff_t>(to));
     to -= from - place + 1;
@@ -149,7 +163,7 @@ void OverlapList::clear() noexcept {
 
 std::size_t OverlapList::memory_bytes() const noexcept {
   return bytes_of(pairs_) + bytes_of(added_) + bytes_of(dropped_) + bytes_of(marks_) + bytes_of(begins_) +
-         bytes_of(ends_);
+         bytes_of(ends_) + bytes_of(added_places_) + bytes_of(dropped_places_);
 }
 
 }  // namespace orchard::runtime::detail

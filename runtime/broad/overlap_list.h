@@ -54,7 +54,8 @@ class OverlapList {
   void insert_added();
 
   std::vector<BodyPair> pairs_, added_, dropped_;
-  std::vector<std::uint8_t> marks_;  // by body
+  std::vector<std::uint32_t> added_places_, dropped_places_;  // in pairs_, before it changes
+  std::vector<std::uint8_t> marks_;                           // by body
   BodyIndex first_marked_ = kNoIndex, last_marked_ = 0;
   bool anew_ = false, refuses_ = false;
   std::vector<std::uint32_t> begins_, ends_;  // by body, while many pairs are sorted

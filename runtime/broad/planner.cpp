@@ -94,9 +94,16 @@ bool Planner::survey(Step now, BudgetTracker& tracker) {
   const std::size_t stride = std::max<std::size_t>(1, n / wanted);
   if (surveyed_.empty()) survey_next_ = 0;
   std::vector<BodyIndex> sample;
-  std::size_t seen = 0;
+  std::size_t skipped = stride - 1;
+  const bool all_alive = pool_.slots() == n;  // no need to look at each
+  for (; all_alive && survey_next_ < n && surveyed_.size() + sample.size() < wanted;) {
+    sample.push_back(survey_next_);
+    survey_next_ += static_cast<BodyIndex>(stride);
+  }
   for (; survey_next_ < pool_.slots() && surveyed_.size() + sample.size() < wanted; ++survey_next_) {
-    if (pool_.alive(survey_next_) && seen++ % stride == 0) sample.push_back(survey_next_);
+    if (!pool_.alive(survey_next_) || ++skipped < stride) continue;
+    skipped = 0;
+    sample.push_back(survey_next_);
   }
   while (!sample.empty()) {
     if (tracker.spent()) {
@@ -125,11 +132,17 @@ bool Planner::survey(Step now, BudgetTracker& tracker) {
   return true;
 }
 
-// Of the bodies, so that both steps take the same time: of the near pairs only those among them are found ahead.
+// Of the bodies, so that both steps take the same time: of the near pairs only those among them are found ahead, and
+// what is done once, with code and grid that have left the cache, is done then.
 double Planner::share_ahead() const noexcept {
-  constexpr double kUpdate = 60, kNearPair = 100;  // nanoseconds of one machine
+  constexpr double kUpdate = 30, kNearPair = 80;  // nanoseconds of one machine
+  constexpr double kOnce = 1250, kOncePerBody = 3.5, kMostOfThem = 1000, kLeastShare = 0.1;
+  const double bodies = static_cast<double>(std::max<std::size_t>(1, pool_.size()));
+  const double once = kOnce + kOncePerBody * std::min(bodies, kMostOfThem);
   const double pairs = kNearPair * plan_.pairs_per_body;
-  return pairs < 1 ? 0.5 : (std::sqrt(kUpdate * kUpdate + 2 * pairs * (kUpdate + pairs)) - kUpdate) / (2 * pairs);
+  const double share =
+      pairs < 1 ? 0.5 : (std::sqrt(kUpdate * kUpdate + 2 * pairs * (kUpdate + pairs)) - kUpdate) / (2 * pairs);
+  return std::max(kLeastShare, share - once / (2 * kUpdate * bodies));
 }
 
 }  // namespace orchard::runtime::detail

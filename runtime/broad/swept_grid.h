@@ -15,11 +15,12 @@ std::array<std::uint32_t, 3> line_factors(unsigned bits) noexcept;  // the first
 inline constexpr std::uint32_t kMaxCellsPerAxis = 4;  // that a body's box may take; the grid has at least as many
 
 // Seven boxes clipped to a cell, quantised to 5 bits a coordinate, with their bodies' ids: one cache line. All seven
-// are compared with another box in one go: per coordinate a guard bit above the 5 catches the borrow of a subtraction.
+// are compared with another box in one go: per coordinate a guard bit above the 5 catches the carry of an addition.
+inline constexpr std::uint64_t kGuards = 0x820820820u;  // bit 5 of each of six fields; an entry that meets nothing
 struct alignas(64) CellLine {
-  std::array<std::uint64_t, 7> entries;
-  std::uint32_t count;
-  std::uint32_t overflow;  // 1 + the index of the line with more entries; 0: none
+  std::array<std::uint64_t, 7> entries = {kGuards, kGuards, kGuards, kGuards, kGuards, kGuards, kGuards};
+  std::uint32_t count = 0;     // entries; the others are kGuards
+  std::uint32_t overflow = 0;  // 1 + the index of the line with more entries; 0: none. A line that has one is full
 };
 static_assert(sizeof(CellLine) == 64);
 inline constexpr std::uint32_t kIdShift = 36;  // of the body in an entry, above its box
@@ -39,13 +40,28 @@ class SweptGrid {
   class Queue;
   // The lines are in this many parts, each with what overflows of its own: boxes can be put in by several threads.
   static constexpr std::size_t kParts = 8;
-  using Steps = std::array<std::uint8_t, 3>;  // from a body's first cell
-  struct Visit {                              // of a body to one of its cells
+  using Steps = std::uint8_t;  // from a body's first cell, along each axis: two bits each, from the lowest ones on
+  struct Visit {               // of a body to one of its cells
     std::uint64_t entry;
     std::uint32_t line;
     Steps steps;
   };
-  using VisitsByPart = std::array<std::vector<Visit>, kParts>;
+  // Room that is written without looking at it, once there is enough for a block.
+  class Visits {
+   public:
+    void clear() noexcept { end_ = 0; }
+    void make_room(std::size_t more) {
+      if (all_.size() < end_ + more) all_.resize(end_ + end_ / 8 + more);
+    }
+    void add(const Visit& visit) noexcept { all_[end_++] = visit; }  // there is room
+    std::span<const Visit> visits() const noexcept { return std::span(all_).first(end_); }
+    std::size_t memory_bytes() const noexcept { return bytes_of(all_); }
+
+   private:
+    std::vector<Visit> all_;
+    std::size_t end_ = 0;
+  };
+  using VisitsByPart = std::array<Visits, kParts>;
 
   // Empties the grid. At least `lines` lines, rounded up to a power of two.
   void reset(std::size_t lines, const Executor& executor);
@@ -64,8 +80,9 @@ class SweptGrid {
   void insert_part(std::span<const Visit> visits, std::span<const QuantumBox> boxes, bool vectors,
                    std::vector<BodyPair>& pairs, GridCounts& counts);
   void count(const GridCounts& counts) noexcept;  // of such an insertion
-  void remove(std::span<const BodyIndex> bodies, std::span<const QuantumBox> boxes, bool vectors) noexcept;
-  void prepare_removal(const QuantumBox& box) const noexcept;  // starts loading
+  class Removals;                                 // of a few bodies at a time
+  void prepare_removal(BodyIndex body, const QuantumBox& box, Removals& removals) const noexcept;  // starts loading
+  void remove(Removals& removals, bool vectors) noexcept;
 
   // Those that have entries in the cell, and in others that share its line; a body as often as it has.
   template <typename Visit>
@@ -88,6 +105,7 @@ class SweptGrid {
   static constexpr std::size_t kMaxVisits = kMaxCellsPerAxis * kMaxCellsPerAxis * kMaxCellsPerAxis - 1;  // a body's
   struct Insertion;
   using Cell = std::array<std::uint32_t, 3>;
+  using Numbers = std::array<std::uint32_t, kBlock>;
   struct Batch;
   std::uint32_t line_of(const Cell& cell) const noexcept {
     return (cell[0] * factors_[0] + cell[1] * factors_[1] + cell[2] * factors_[2]) & mask_;
@@ -95,18 +113,20 @@ class SweptGrid {
   void encode(Batch& batch, std::span<const BodyIndex> bodies, const BoxBlock& block) const noexcept;
   template <typename Kind>
   void advance(Insertion& insertion, Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock* block);
+  template <typename Kind, typename Line, typename Entry, typename Query, typename Of>
+  void insert_visits(Insertion& insertion, std::size_t count, const Line& line_at, const Entry& entry_at,
+                     const Query& query_at, const Of& visit_at);
   template <typename Kind>
-  void insert_waiting(Insertion& insertion, Queue& queue);
-  Visit* visits_of(const Batch& batch, std::uint32_t i, std::span<const QuantumBox> boxes,
-                   Visit* visits) const noexcept;
+  void insert_batch(Insertion& insertion, const Batch& batch);
+  template <typename Kind>
+  void insert_large(Insertion& insertion, const Batch& batch);
+  static std::uint32_t which_are_not_0(const Numbers& numbers, std::size_t lanes) noexcept;
+  void add_corners(Batch& batch, const Numbers& axes) const noexcept;
   Visit* many_visits_of(BodyIndex body, const QuantumBox& box, Visit* visits) const noexcept;
-  template <typename Kind>
-  void flush(Insertion& insertion, Queue& queue);
   void run(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock* block, std::span<const QuantumBox> boxes,
            bool vectors, std::vector<BodyPair>& pairs);
   template <typename Kind>
-  void insert_in_line(Insertion& insertion, const Visit& visit, std::uint64_t query);
-  template <int kSpread>
+  void insert_beyond(Insertion& insertion, const Visit& visit, std::uint64_t query);
   void report(Insertion& insertion, const CellLine& line, std::uint64_t hits, BodyIndex body, Steps steps);
   void scatter_block(std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const QuantumBox> boxes,
                      VisitsByPart& visits) const;
@@ -118,10 +138,12 @@ class SweptGrid {
   };
   std::size_t part_of(std::uint32_t line) const noexcept { return line >> part_shift_; }
   static void append(CellLine& line, std::uint64_t entry, Overflow& more);
-  template <typename Use>
-  void for_each_line(const QuantumBox& box, const Use& use) const;
+  struct Removal {
+    BodyIndex body;
+    std::uint32_t line;
+  };
   template <typename Kind>
-  void remove_all(std::span<const BodyIndex> bodies, std::span<const QuantumBox> boxes) noexcept;
+  void remove_all(std::span<const Removal> removals) noexcept;
   template <typename Kind>
   static void remove_from(CellLine& line, BodyIndex body, Overflow& more) noexcept;
   static void free_last(CellLine& line, Overflow& more) noexcept;
@@ -134,28 +156,34 @@ class SweptGrid {
   GridCounts counts_;
 };
 
-// By body of a block: the visit to its first cell, and by axis what the visits to the other cells are put together
-// from.
+// The visits of a block's bodies: one of each to its first cell, then those to the other cells of bodies that take two
+// along some axes. Bodies that take more are named.
 struct SweptGrid::Batch {
+  static constexpr std::size_t kMaxVisits = 8 * kBlock;
   template <typename T>
-  using ByBody = std::array<T, kBlock>;
-  template <typename T>
-  using ByAxis = std::array<ByBody<T>, 3>;
-  ByBody<BodyIndex> bodies;
-  ByBody<std::uint64_t> entry, query;
-  ByBody<std::uint32_t> line;
-  ByAxis<std::uint32_t> from;                         // the first cell's lower end; 0 for the next one
-  std::array<ByAxis<std::uint32_t>, 2> below, lines;  // of the first cell and the next along the axis; lines add up
-  ByBody<std::uint32_t> axes;  // bit d: several cells along axis d; bit 3: more than two along one
-  std::size_t count = 0;
+  using ByVisit = std::array<T, kMaxVisits + 1>;  // what does not count is written, too
+  ByVisit<std::uint64_t> entries, queries;
+  ByVisit<std::uint32_t> lines;
+  ByVisit<Steps> steps;
+  std::array<std::array<std::uint64_t, kBlock>, 3> change;  // of an entry, to the next cell along an axis
+  std::array<BodyIndex, kBlock> large;                      // bodies that take more than two cells along an axis
+  std::size_t count = 0, end = 0, larges = 0;               // bodies, visits, and of the former those
+};
+
+class SweptGrid::Removals {
+ public:
+  static constexpr std::size_t kBodies = 16;
+
+ private:
+  friend class SweptGrid;
+  std::array<Removal, kBodies*(kMaxVisits + 1) + 1> all_;  // what does not count is written, too
+  std::size_t count_ = 0;
 };
 
 class SweptGrid::Queue {
   friend class SweptGrid;
   std::array<Batch, 2> batches_;
   std::size_t current_ = 0;  // the batch that waits
-  std::array<Visit, 2 * kMaxVisits> visits_;
-  std::size_t visits_waiting_ = 0;
 };
 
 }  // namespace orchard::runtime::detail

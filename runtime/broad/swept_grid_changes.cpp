@@ -120,20 +120,34 @@ void SweptGrid::append(CellLine& first, std::uint64_t entry, Overflow& overflow)
   line->entries[line->count++] = entry;
 }
 
-template <typename Use>
-ORCHARD_INLINE void SweptGrid::for_each_line(const QuantumBox& box, const Use& use) const {
-  Cell cell;
-  for (cell[2] = box.lower[2] >> kQuantumBits; cell[2] <= box.upper[2] >> kQuantumBits; ++cell[2]) {
-    for (cell[1] = box.lower[1] >> kQuantumBits; cell[1] <= box.upper[1] >> kQuantumBits; ++cell[1]) {
-      for (cell[0] = box.lower[0] >> kQuantumBits; cell[0] <= box.upper[0] >> kQuantumBits; ++cell[0]) {
-        use(line_of(cell));
-      }
+// Without branches where a body takes two cells along an axis at most: nobody can tell which do.
+void SweptGrid::prepare_removal(BodyIndex body, const QuantumBox& box, Removals& removals) const noexcept {
+  Cell first, more;  // cells, and how many beyond
+  for (std::size_t d = 0; d < 3; ++d) {
+    first[d] = box.lower[d] >> kQuantumBits;
+    more[d] = (box.upper[d] >> kQuantumBits) - first[d];
+  }
+  const std::uint32_t line = line_of(first);
+  const auto add = [&](std::uint32_t at, bool counts) {
+    removals.all_[removals.count_] = {body, (line + at) & mask_};
+    prefetch(&lines_[(line + at) & mask_]);
+    removals.count_ += counts;
+  };
+  if ((more[0] | more[1] | more[2]) < 2) {
+    const std::uint32_t taken = more[0] | more[1] << 1 | more[2] << 2;
+    for (std::uint32_t corner = 0; corner < 8; ++corner) {
+      std::uint32_t at = 0;
+      for (std::uint32_t d = 0; d < 3; ++d) at += (corner >> d & 1) * factors_[d];
+      add(at, (corner & ~taken) == 0);
+      if (corner == 3 && more[2] == 0) return;
+    }
+    return;
+  }
+  for (std::uint32_t z = 0; z <= more[2]; ++z) {
+    for (std::uint32_t y = 0; y <= more[1]; ++y) {
+      for (std::uint32_t x = 0; x <= more[0]; ++x) add(x * factors_[0] + y * factors_[1] + z * factors_[2], true);
     }
   }
-}
-
-void SweptGrid::prepare_removal(const QuantumBox& box) const noexcept {
-  for_each_line(box, [&](std::uint32_t line) { prefetch(&lines_[line]); });
 }
 
 // The last entry of the chain takes the place.
@@ -154,22 +168,22 @@ ORCHARD_INLINE void SweptGrid::remove_from(CellLine& first, BodyIndex body, Over
   assert(found != nullptr);
   if (found == nullptr) return;
   found->entries[index] = line->entries[--line->count];
+  line->entries[line->count] = kGuards;
   if (line->count == 0 && before_last != nullptr) free_last(*before_last, overflow);
 }
 
 template <typename Kind>
-ORCHARD_INLINE void SweptGrid::remove_all(std::span<const BodyIndex> bodies,
-                                          std::span<const QuantumBox> boxes) noexcept {
-  for (const BodyIndex body : bodies) {
-    for_each_line(boxes[body], [&](std::uint32_t line) ORCHARD_INLINE_LAMBDA {
-      remove_from<Kind>(lines_[line], body, overflow_[part_of(line)]);
-    });
+ORCHARD_INLINE void SweptGrid::remove_all(std::span<const Removal> removals) noexcept {
+  for (const Removal& removal : removals) {
+    remove_from<Kind>(lines_[removal.line], removal.body, overflow_[part_of(removal.line)]);
   }
 }
 
-void SweptGrid::remove(std::span<const BodyIndex> bodies, std::span<const QuantumBox> boxes, bool vectors) noexcept {
-  if (!vectors) return remove_all<PlainCompare>(bodies, boxes);
-  with_best_compare([&]<typename Kind>() ORCHARD_INLINE_LAMBDA { remove_all<Kind>(bodies, boxes); });
+void SweptGrid::remove(Removals& removals, bool vectors) noexcept {
+  const auto all = std::span(std::as_const(removals.all_)).first(removals.count_);
+  removals.count_ = 0;
+  if (!vectors) return remove_all<PlainCompare>(all);
+  with_best_compare([&]<typename Kind>() ORCHARD_INLINE_LAMBDA { remove_all<Kind>(all); });
 }
 
 void SweptGrid::free_last(CellLine& before, Overflow& overflow) noexcept {

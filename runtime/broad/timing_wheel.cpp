@@ -4,16 +4,6 @@
 #include <cassert>
 
 namespace orchard::runtime::detail {
-namespace {
-
-bool successive(std::span<const BodyIndex> bodies) noexcept {
-  BodyIndex off = 0;
-  for (std::size_t i = 0; i < bodies.size(); ++i) off |= bodies[i] ^ (bodies[0] + static_cast<BodyIndex>(i));
-  return off == 0;
-}
-
-}  // namespace
-
 void TimingWheel::set_due(std::span<const BodyIndex> bodies, Step step) {
   constexpr std::size_t kMinRun = 8;
   const std::size_t bucket = bucket_of(step);
@@ -46,14 +36,23 @@ void TimingWheel::add_line(std::uint32_t& head, const std::array<BodyIndex, 3>& 
   head = line;
 }
 
+template <typename Use>
+void TimingWheel::for_each_busy(const Use& use) noexcept {
+  for (std::size_t word = 0; word < busy_.size(); ++word) {
+    for (std::uint64_t bits = busy_[word]; bits != 0; bits &= bits - 1) {
+      use(buckets_[64 * word + static_cast<std::size_t>(std::countr_zero(bits))]);
+    }
+  }
+}
+
 void TimingWheel::clear_bodies() noexcept {
-  for (Bucket& bucket : buckets_) bucket.bodies = kNone;
+  for_each_busy([](Bucket& bucket) { bucket.bodies = kNone; });
   lines_.clear();
   free_line_ = kNone;
 }
 
 void TimingWheel::clear_events() noexcept {
-  for (Bucket& bucket : buckets_) bucket.events = kNone, bucket.in_first = kEventsInPart;
+  for_each_busy([](Bucket& bucket) { bucket.events = kNone, bucket.in_first = kEventsInPart; });
   parts_.clear();
   free_part_ = kNone;
 }

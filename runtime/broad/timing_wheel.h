@@ -63,6 +63,8 @@ class TimingWheel {
     std::uint32_t in_first = kEventsInPart;  // events in the first part; as if full where there is none
   };
 
+  template <typename Use>
+  void for_each_busy(const Use& use) noexcept;  // bucket
   void add_line(std::uint32_t& head, const std::array<BodyIndex, 3>& ids);
   void add_part(Bucket& bucket);
   static std::size_t bucket_of(Step step) noexcept { return static_cast<std::size_t>(step & (kWheelSteps - 1)); }

@@ -8,10 +8,13 @@ namespace {
 // Costs relative to each other, in nanoseconds of one machine (2023, 2 GHz class). Off by a factor of two, the window
 // is off by less, and the time hardly changes: it is flat around the minimum.
 constexpr double kCostOfUpdate = 600, kCostPerBody = 25, kCostPerCell = 12, kCostPerPair = 120;
-constexpr double kCellPerSpacing = 1.7;  // smaller cells: more of them per body; larger: more bodies in each
+// Smaller cells: more of them per body; larger: more bodies in each. By the number of axes that set bodies apart; in
+// space from the first one, where boxes are small, to the second one.
+constexpr std::array<double, 4> kCellPerSpacing = {1, 2.6, 1.65, 1.45};
+constexpr double kMostCellPerSpacing = 1.7;
 constexpr double kLinesPerVolume = 1.9;  // a ball fills 52 % of its box
 constexpr double kMostLines = 0.5;       // for each body
-constexpr double kMostCells = 0x1p24;    // along the world, as a sample shows it: a quarter of the lattice's
+constexpr double kMostCells = 0x1p23;    // along the world, as a sample shows it: a quarter of the lattice's
 // Of the distances from the bodies of a sample to the next in it, half of the points of so many dimensions, spread
 // evenly one in each unit of space, have another one nearer than this.
 constexpr std::array<double, 3> kNearest = {0.347, 0.470, 0.549};
@@ -40,7 +43,10 @@ double lasting(double window, double cancelled) noexcept {
 void MotionMeans::add(const Motion& m) noexcept {
   // Of all seen so far each is among the places with the same chance, as far as a multiplication mixes.
   const auto seen = static_cast<std::uint64_t>(count);
-  const std::uint64_t place = seen < kPlaces ? seen : ((seen * 0x9e3779b97f4a7c15u) >> 32) % (seen + 1);
+  // Few enough of them for 32 bits, whose remainder takes half as long.
+  const std::uint64_t mixed = (seen * 0x9e3779b97f4a7c15u) >> 32;
+  const std::uint64_t place =
+      seen < kPlaces ? seen : static_cast<std::uint32_t>(mixed) % static_cast<std::uint32_t>(seen + 1);
   if (place < kPlaces) places[place] = m.position, velocities[place] = m.velocity;
   count += 1;
   radius += m.radius;
@@ -161,19 +167,26 @@ WindowPlan plan_window(const MotionMeans& means, std::size_t bodies, const Sprea
   // those are compared with everything.
   const double least_cell = *std::max_element(spread.extent.begin(), spread.extent.end()) / kMostCells;
 
+  const auto axes = static_cast<std::size_t>(std::count(spread.thin.begin(), spread.thin.end(), false));
+
   WindowPlan best;
   double least = std::numeric_limits<double>::infinity();
   const auto consider = [&](Step window) {
     const Vec3 box = box_of(mean, static_cast<double>(window - 1) * time_step);
     const double longest = std::max({box[0], box[1], box[2], least_cell});
-    const double cell = std::max(kCellPerSpacing * spacing, longest), share = cell / spacing;
+    const double filled = longest / spacing;
+    const double wanted =
+        axes == 3 ? std::clamp(1.2 + filled, kCellPerSpacing[3], kMostCellPerSpacing) : kCellPerSpacing[axes];
+    const double share = std::max(wanted, filled), cell = share * spacing;
     double cells = 1, pairs = correction / 2, in_cell = 1;  // of a body; bodies whose box begins in a cell
+    double per_line = 1;
     for (std::size_t d = 0; d < 3; ++d) {
       // A cell's middle is in the world's: what is thin fits in there.
       if (!spread.thin[d] || spread.extent[d] + box[d] > cell) cells *= 1 + box[d] / cell;
       if (spread.thin[d]) continue;
       pairs *= 2 * box[d] / spacing;
       in_cell *= share;
+      per_line *= std::max(kMostCellPerSpacing, filled);
     }
     const double occupancy = cells * in_cell / 7;
     const double cost = (kCostOfUpdate / static_cast<double>(bodies) + kCostPerBody +
@@ -181,7 +194,7 @@ WindowPlan plan_window(const MotionMeans& means, std::size_t bodies, const Sprea
                         lasting(static_cast<double>(window), cancelled);
     if (cost >= (window > best.window ? least * kWorthLonger : least)) return;
     least = cost;
-    const double lines = std::min(kMostLines, kLinesPerVolume / in_cell) * static_cast<double>(bodies);
+    const double lines = std::min(kMostLines, kLinesPerVolume / per_line) * static_cast<double>(bodies);
     best = {cell, window, static_cast<std::size_t>(lines) + 1, pairs, cell > longest};
   };
   if (fixed_window > 0) {

@@ -1,5 +1,7 @@
 #include "window_updates.h"
 
+#include <bit>
+
 namespace orchard::runtime::detail {
 namespace {
 
@@ -16,6 +18,20 @@ bool WindowUpdates::set_ends(Block& block, std::span<const BodyIndex> bodies,
   };
   const Step planned = windows.end_of(block.from, motions[0], block.last);
   const Step common = windows.end_of(block.from, bodies[0], motions[0], block.last);
+  std::uint64_t other = 0;  // bits of expiries that differ
+  for (const Motion& motion : motions) {
+    other |= std::bit_cast<std::uint64_t>(motion.expiry) ^ std::bit_cast<std::uint64_t>(motions[0].expiry);
+  }
+  const bool alike = other == 0 && std::isfinite(motions[0].expiry);
+  if (alike && !parts_.pool.any_static() && !windows.any_short()) {
+    if (block.common != common) {
+      block.common = common;
+      block.ends.fill(common);
+      block.durations.fill(duration(common));
+    }
+    return true;
+  }
+  block.common = kUpdateDue;
   // Whether one may rest and another not, or some may rest as long as they are cancelled again and again.
   const bool may_rest = windows.may_never_end() && motions[0].expiry == std::numeric_limits<double>::infinity();
   bool same = !parts_.pool.any_static() && !(may_rest && windows.any_short());
@@ -50,9 +66,10 @@ bool WindowUpdates::place(Block& block, std::span<const BodyIndex> bodies) {
   bool same = set_ends(block, bodies, motions);
   if (!make_boxes(block, motions, same)) return false;
 
-  for (std::size_t i = 0; i < bodies.size(); ++i) parts_.windows.set(bodies[i], block.from, block.ends[i]);
+  parts_.windows.set(bodies, block.from, std::span(block.ends).first(bodies.size()));
   parts_.overlaps.mark_updated(bodies);
-  for (std::size_t i = 0; parts_.pairs.notes_spheres() && i < bodies.size(); ++i) {
+  const bool notes_spheres = parts_.pairs.notes_spheres();
+  for (std::size_t i = 0; notes_spheres && i < bodies.size(); ++i) {
     parts_.pairs.note_sphere(bodies[i], motions[i], block.lattice, block.durations[i]);
   }
   parts_.planner.note(motions);

@@ -43,7 +43,7 @@ struct WindowUpdates::Chunk {
   std::size_t memory_bytes() const noexcept {
     std::size_t bytes = bytes_of(placed) + bytes_of(runs) + bytes_of(unknown) + bytes_of(rest) + bytes_of(sampled) +
                         bytes_of(answers.moving) + bytes_of(answers.motions);
-    for (const auto& part : visits) bytes += bytes_of(part);
+    for (const auto& part : visits) bytes += part.memory_bytes();
     return bytes;
   }
 };
@@ -116,11 +116,11 @@ void WindowUpdates::place_shared(Chunk& chunk, Block& block, std::span<BodyIndex
     }
   }
   bodies = bodies.first(count);
+  parts_.windows.set(bodies, block.from, std::span(block.ends).first(count));
+  for (std::size_t i = 0; parts_.pairs.notes_spheres() && i < count; ++i) {
+    parts_.pairs.note_sphere(bodies[i], motions[i], block.lattice, block.durations[i]);
+  }
   for (std::size_t i = 0; i < count; ++i) {
-    parts_.windows.set(bodies[i], block.from, block.ends[i]);
-    if (parts_.pairs.notes_spheres()) {
-      parts_.pairs.note_sphere(bodies[i], motions[i], block.lattice, block.durations[i]);
-    }
     const bool runs_on = !chunk.runs.empty() && chunk.runs.back().end == block.ends[i];
     if (!runs_on) chunk.runs.push_back({block.ends[i], 0});
     ++chunk.runs.back().bodies;
@@ -172,7 +172,8 @@ void WindowUpdates::find_in_part(Step now, std::size_t index) {
   GridPart& part = shared_->parts[index];
   part.near.clear();
   part.counts = {};
-  for (const Chunk& chunk : shared_->chunks) parts_.boxes.insert_part(chunk.visits[index], part.near, part.counts);
+  for (const Chunk& chunk : shared_->chunks)
+    parts_.boxes.insert_part(chunk.visits[index].visits(), part.near, part.counts);
   const BodyPool& pool = parts_.pool;
   if (pool.asks_user_filter()) return;
   if (pool.filters_pairs()) {

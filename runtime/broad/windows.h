@@ -59,6 +59,10 @@ class Windows {
                                             : kLastsAsEver;
   }
 
+  void set(std::span<const BodyIndex> bodies, Step from, std::span<const Step> ends) noexcept {
+    for (std::size_t i = 0; i < bodies.size(); ++i) set(bodies[i], from, ends[i]);
+  }
+
   bool valid(const PairEvent& event) const noexcept {
     const Round created = event.created;
     return !is_later(windows_[event.pair.a].updated, created) && !is_later(windows_[event.pair.b].updated, created);

@@ -65,6 +65,17 @@ std::string name_of(const testing::TestParamInfo<test::SceneSpec>& info) {
 
 INSTANTIATE_TEST_SUITE_P(Table, EveryScene, testing::ValuesIn(small_scenes()), name_of);
 
+// As many as need no grid.
+TEST_P(EveryScene, IsWhatBruteForceSaysOfFewBodies) {
+  for (const std::size_t bodies : {3u, 70u, 180u}) {
+    test::SceneSpec few = GetParam();
+    few.bodies = bodies;
+    const Reports reports = expected(few, steps());
+    test::on_every_machine([&] { expect_reports(few, {}, reports); });
+    expect_reports(few, {.common = {.vectors = false}}, reports);
+  }
+}
+
 TEST_P(EveryScene, IsWhatBruteForceSaysOnEveryMachine) {
   const Reports reports = expected(GetParam(), steps());
   test::on_every_machine([&] { expect_reports(GetParam(), {}, reports); });
