@@ -9,9 +9,6 @@
 namespace orchard::detail {
 namespace {
 
-// How many deleted vertices ahead of the one whose neighbours are looked at memory is fetched into the cache.
-constexpr std::size_t kFetchAhead = 4;
-
 constexpr unsigned kLanes = 4;  // facets that are placed at once
 
 }  // namespace
@@ -23,7 +20,7 @@ void Cavity::end() {
   deleted_.clear();
   seen_.clear();
   boundary_.clear();
-  is_boundary_noted_ = false;
+  is_boundary_noted_ = undoubted_ = false;
   local_points_.clear();
   edge_limit_ = 0;
 }
@@ -44,80 +41,6 @@ void Cavity::measure_local_points() {
   }
 }
 
-// The time goes into mispredicted branches here if one is not careful: whether a neighbour has been seen, and on which
-// side its sign falls, is as good as random. So every neighbour is tested, and what has been seen is masked out.
-bool Cavity::delete_nearer(Index start) {
-  if (!territory_.owns(start)) {
-    left_territory_ = true;
-    return false;
-  }
-  delete_vertex(start);
-  const bool certain = delete_nearer_around(0);
-  is_boundary_noted_ = true;
-  return certain;
-}
-
-bool Cavity::delete_nearer_around(std::size_t first) {
-  return territory_.whole() ? delete_nearer_in<true>(first) : delete_nearer_in<false>(first);
-}
-
-template <bool kWhole>
-bool Cavity::delete_nearer_in(std::size_t first) {
-  const Point q = position_;
-  bool certain = true;
-  for (std::size_t i = first; i < deleted_.size(); ++i) {
-    deleted_.ensure_room();
-    seen_.ensure_room();
-    boundary_.ensure_room();
-    const Index v = deleted_.items()[i];
-    const std::array<Index, 4> neighbors = workspace_.vertices[v].neighbors;
-    fetch_around(deleted_.items()[std::min(i + kFetchAhead, deleted_.size() - 1)]);
-    if constexpr (!kWhole) {
-      left_territory_ = !(territory_.owns(neighbors[0]) && territory_.owns(neighbors[1]) &&
-                          territory_.owns(neighbors[2]) && territory_.owns(neighbors[3]));
-      if (left_territory_) return false;
-    }
-    for (unsigned slot = 0; slot < 4; ++slot) {
-      const Index u = neighbors[slot];
-      const Mark mark = workspace_.mark(u);
-      const bool unseen = mark == Mark::unseen;
-      const double power = workspace_.power(u, q), bound = workspace_.power_bound(u);
-      bool nearer = power > bound;
-      if (unseen && !(std::abs(power) > bound)) [[unlikely]] {
-        const Sign sign = workspace_.doubtful_sign(u, q, bound);
-        nearer = sign == Sign::positive;
-        certain = certain && sign != Sign::uncertain;
-      }
-      workspace_.add_mark(u, unseen, nearer ? Mark::deleted : Mark::kept);
-      deleted_.push_if(u, unseen & nearer);
-      seen_.push_if(u, unseen & !nearer);
-      // Nothing that is kept now will be deleted by this search.
-      boundary_.push_if(4 * v + slot, (mark == Mark::kept) | (unseen & !nearer));
-    }
-  }
-  return certain;
-}
-
-// What is asked for once this vertex is looked at: its neighbours now, its forming points by note_facets().
-void Cavity::fetch_around(Index v) const {
-  const VoronoiVertex& vertex = workspace_.vertices[v];
-  for (const Index u : vertex.neighbors) workspace_.prefetch(u);
-  for (const Index p : vertex.forming_points) {
-    __builtin_prefetch(workspace_.points.data() + p);
-    __builtin_prefetch(local_of_.data() + static_cast<Index>(p + 1));
-  }
-}
-
-bool Cavity::widen() {
-  const std::size_t before = deleted_.size();
-  for (const Facet& facet : facets_)
-    if (!facet.visible && workspace_.mark(facet.outside) != Mark::deleted &&
-        workspace_.sign(facet.outside, position_) == Sign::uncertain)
-      delete_vertex(facet.outside);
-  delete_nearer_around(before);
-  return deleted_.size() > before;
-}
-
 void Cavity::note_boundary() {
   boundary_.clear();
   for (const Index v : deleted_.items()) {
@@ -135,7 +58,7 @@ void Cavity::note_facets() {
     const unsigned slot = boundary_.items()[f] % 4;
     const VoronoiVertex& deleted = workspace_.vertices[inside];
     const Index outside = deleted.neighbors[slot];
-    const std::size_t back = index_of(workspace_.vertices[outside].neighbors, inside);
+    const std::size_t back = index_of(workspace_.neighbors_now(outside), inside);
     const auto& [a, b, c] = kOthers[slot];
     const auto& corner = deleted.forming_points;
     local_points_.ensure_room();
@@ -247,9 +170,7 @@ inline void Cavity::place_spheres(std::size_t first, std::size_t end, FourQualit
     triangles.b[lane] = &from_new_[b];
     triangles.c[lane] = &from_new_[c];
   }
-  place_four(position_, workspace_.placing_limits(), triangles, &fresh_[first], qualities);
-  // With exact signs more is thin.
-  if (workspace_.exact()) qualities.good = 0;
+  place_four(position_, workspace_.placing_limits(undoubted_), triangles, &fresh_[first], qualities);
 }
 
 // True if the facet is visible. `placed`: what its sphere is like, if it has one already.
@@ -266,8 +187,8 @@ bool Cavity::place_vertex(std::size_t f, bool has_sphere, const PlacedQuality& p
   else
     facet.placing = workspace_.place(vertex, facet.error_class, position_, a, b, from_new_[facet.local[2]]);
   facet.visible = facet.placing != Placing::failed || side_of_facet(facet.inside, facet.slot) == Sign::positive;
-  if ((facet.placing != Placing::good || workspace_.poor(vertex, facet.error_class)) && !at_infinity && facet.visible &&
-      !workspace_.exact()) {
+  if ((facet.placing != Placing::good || workspace_.poor(vertex, facet.error_class)) && !undoubted_ && !at_infinity &&
+      facet.visible && !workspace_.exact()) {
     if (workspace_.share_sphere(vertex, facet.error_class, facet.outside, position_))
       facet.placing = Placing::shared;
     else if (facet.placing == Placing::good && workspace_.sign(facet.outside, position_) == Sign::uncertain)
@@ -455,7 +376,7 @@ Index Cavity::replace() {
     VoronoiVertex& vertex = fresh_[f];
     for (const std::uint8_t k : kOthers[facet.slot]) vertex.neighbors[k] = slots_[vertex.neighbors[k]];
     workspace_.store(slots_[f], vertex, facet.error_class, facet.placing == Placing::shared);
-    workspace_.vertices[facet.outside].neighbors[facet.back] = slots_[f];
+    workspace_.set_neighbor(facet.outside, facet.back, slots_[f]);
     if (facet.placing != Placing::failed && vertex.forming_points[3] != kInfinitePoint) last = slots_[f];
   }
   deleted_.clear();  // their marks went with them

@@ -6,11 +6,27 @@
 #include <vector>
 
 #include "edge_table.h"
+#include "four_vectors.h"
 #include "placed_sphere.h"
 #include "territory.h"
 #include "workspace.h"
 
 namespace orchard::detail {
+
+#if defined(__GNUC__) && defined(__x86_64__)
+// For each set of four items the bytes of those first that are in it.
+struct alignas(16) OrderOfBytes : std::array<std::uint8_t, 16> {};
+inline constexpr std::array<OrderOfBytes, 16> kFirstOfFour = [] {
+  std::array<OrderOfBytes, 16> orders{};
+  for (unsigned bits = 0; bits < 16; ++bits)
+    for (unsigned item = 0, place = 0; item < 4; ++item)
+      if (((bits >> item) & 1u) != 0) {
+        for (unsigned byte = 0; byte < 4; ++byte) orders[bits][4 * place + byte] = std::uint8_t(4 * item + byte);
+        ++place;
+      }
+  return orders;
+}();
+#endif
 
 // The vertices that one new point deletes, what surrounds them, and the new vertices that replace them. As tetrahedra:
 // a cavity, its boundary facets, and the tetrahedra from the new point to these facets.
@@ -34,6 +50,15 @@ class Cavity {
       room_[count_] = item;
       count_ += condition;
     }
+#if defined(__GNUC__) && defined(__x86_64__)
+    // Those of four items that have a bit set, once after ensure_room().
+    ORCHARD_AVX2 void push_four(__m128i items, unsigned bits) {
+      const auto* const order = reinterpret_cast<const __m128i*>(kFirstOfFour[bits].data());
+      _mm_storeu_si128(reinterpret_cast<__m128i*>(room_.data() + count_),
+                       _mm_shuffle_epi8(items, _mm_load_si128(order)));
+      count_ += static_cast<std::size_t>(std::popcount(bits));
+    }
+#endif
 
    private:
     std::vector<Index> room_;
@@ -79,7 +104,7 @@ class Cavity {
   void delete_vertex(Index v) {
     workspace_.set_mark(v, Mark::deleted);
     deleted_.push(v);
-    is_boundary_noted_ = false;
+    is_boundary_noted_ = undoubted_ = false;
   }
   // Marks a vertex as seen but not deleted.
   void add_seen(Index v, Mark mark) {
@@ -165,8 +190,9 @@ class Cavity {
   void place_spheres(std::size_t first, std::size_t end, FourQualities& qualities);
   bool place_vertex(std::size_t f, bool has_sphere, const PlacedQuality& placed);
   bool delete_nearer_around(std::size_t first);
-  template <bool kWhole>
-  bool delete_nearer_in(std::size_t first);
+  bool delete_nearer_one_by_one(std::size_t first);
+  bool delete_nearer_by_four(std::size_t first);
+  bool is_nearer_after_all(Index u, bool& certain);
   // The infinite point, being the highest number, wraps around to the first place.
   Index& known_local(Index point) { return local_of_[static_cast<Index>(point + 1)]; }
   Index known_local(Index point) const { return local_of_[static_cast<Index>(point + 1)]; }
@@ -185,6 +211,7 @@ class Cavity {
   Placing worst_ = Placing::good;
   List deleted_, seen_, boundary_;  // boundary: 4 * deleted vertex + the neighbour across
   bool is_boundary_noted_ = false;  // by delete_nearer(), and nothing was deleted since
+  bool undoubted_ = false;          // and no sign was in doubt, nor is the new point on the sphere of what is kept
   List local_points_;               // the points of the boundary, the one at infinity included
   std::vector<Index> slots_, queue_;
   std::vector<Facet> facets_;

@@ -174,8 +174,7 @@ Sign Workspace::doubtful_sign(Index v, const Point& q, double bound) {
 }
 
 bool Workspace::share_sphere(VoronoiVertex& vertex, std::uint8_t& error, Index v, const Point& new_point) const {
-  const double sphere = kSphereNoise * noise_ * std::sqrt(vertices[v].radius);
-  if (!(std::abs(power(v, new_point)) <= std::min(sphere, power_bound(v)))) return false;  // nor at infinity
+  if (!may_share_sphere(v, new_point)) return false;
   if (!settled(v) || poor(vertices[v], error_class_of(v))) return false;
   vertex.center = vertices[v].center;
   vertex.radius = vertices[v].radius;
