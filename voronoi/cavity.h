@@ -84,6 +84,8 @@ class Cavity {
   void enter(const Territory& territory) { territory_ = territory; }
   // Whether the search came to a vertex that is not to be touched: the point cannot be inserted from here then.
   bool left_territory() const { return left_territory_; }
+  // What it would have deleted then.
+  Index blocker() const { return blocker_; }
   // Whether there are free vertices for all that replace() makes.
   bool has_room() const {
     return territory_.whole() || facets_.size() <= deleted_.size() + territory_.free_vertices->size();
@@ -189,6 +191,7 @@ class Cavity {
   void note_forming_points(std::size_t f);
   void place_spheres(std::size_t first, std::size_t end, FourQualities& qualities);
   bool place_vertex(std::size_t f, bool has_sphere, const PlacedQuality& placed);
+  bool leave_territory(Index blocker);
   bool delete_nearer_around(std::size_t first);
   bool delete_nearer_one_by_one(std::size_t first);
   bool delete_nearer_by_four(std::size_t first);
@@ -206,6 +209,7 @@ class Cavity {
   Workspace& workspace_;
   Territory territory_;
   bool left_territory_ = false;
+  Index blocker_ = kNone;
   Index new_point_ = kNone;
   Point position_ = Point::Zero();
   Placing worst_ = Placing::good;

@@ -12,10 +12,7 @@ constexpr std::size_t kFetchAhead = 4;
 }  // namespace
 
 bool Cavity::delete_nearer(Index start) {
-  if (!territory_.owns(start)) {
-    left_territory_ = true;
-    return false;
-  }
+  if (!territory_.owns(start)) return leave_territory(start);
   delete_vertex(start);
   undoubted_ = true;
   const bool certain = delete_nearer_around(0);
@@ -26,6 +23,12 @@ bool Cavity::delete_nearer(Index start) {
 
 bool Cavity::delete_nearer_around(std::size_t first) {
   return can_place_four() ? delete_nearer_by_four(first) : delete_nearer_one_by_one(first);
+}
+
+bool Cavity::leave_territory(Index blocker) {
+  left_territory_ = true;
+  blocker_ = blocker;
+  return false;
 }
 
 // What is asked for once this vertex is looked at: its neighbours now, its forming points by note_facets().
@@ -70,8 +73,7 @@ bool Cavity::delete_nearer_one_by_one(std::size_t first) {
         else
           nearer = is_nearer_after_all(u, certain);
       }
-      left_territory_ = !owned && nearer;
-      if (left_territory_) return false;
+      if (!owned && nearer) return leave_territory(u);
       workspace_.add_mark(u, unseen & owned, nearer ? Mark::deleted : Mark::kept);
       deleted_.push_if(u, unseen & nearer);
       seen_.push_if(u, unseen & !nearer & owned);
@@ -105,8 +107,8 @@ bool Cavity::delete_nearer_one_by_one(std::size_t first) {
       for (unsigned slot = 0; slot < 4; ++slot)
         if (((after_all >> slot) & 1u) != 0 && is_nearer_after_all(neighbors[slot], certain)) nearer |= 1u << slot;
     }
-    left_territory_ = (nearer & ~owned) != 0;
-    if (left_territory_) return false;
+    if (const unsigned beyond = nearer & ~owned; beyond != 0)
+      return leave_territory(neighbors[std::countr_zero(beyond)]);
     const unsigned kept = unseen & ~nearer;
     workspace_.add_marks(neighbors, nearer, kept & owned);
     const __m128i items = _mm_loadu_si128(reinterpret_cast<const __m128i*>(neighbors.data()));
@@ -128,8 +130,7 @@ bool Cavity::widen() {
     if (facet.visible || workspace_.mark(facet.outside) == Mark::deleted ||
         workspace_.sign(facet.outside, position_) != Sign::uncertain)
       continue;
-    left_territory_ = !territory_.owns(facet.outside);
-    if (left_territory_) return false;
+    if (!territory_.owns(facet.outside)) return leave_territory(facet.outside);
     delete_vertex(facet.outside);
   }
   delete_nearer_around(before);
