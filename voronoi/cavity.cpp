@@ -279,6 +279,30 @@ bool Cavity::is_ball() {
   if (loses_point) return false;
   // Two facets on each edge and the right number of facets for one sphere: several pieces, or a piece with a handle,
   // would have to touch themselves in points to get there, so one piece is a sphere that does not.
+  return facets_.size() <= 64 ? is_one_small_piece() : is_one_piece();
+}
+
+// From one facet to its neighbours and on, each a bit; two at a time, lest each waits for the last.
+bool Cavity::is_one_small_piece() const {
+  std::array<std::uint64_t, 64> around;
+  const auto bit = [](Index f) { return std::uint64_t{1} << f; };
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    const auto& [a, b, c] = kOthers[facets_[f].slot];
+    const auto& neighbors = fresh_[f].neighbors;
+    around[f] = bit(neighbors[a]) | bit(neighbors[b]) | bit(neighbors[c]);
+  }
+  std::uint64_t reached = 1;
+  for (std::uint64_t waiting = 1; waiting != 0;) {
+    const auto first = static_cast<unsigned>(std::countr_zero(waiting)),
+               last = static_cast<unsigned>(63 - std::countl_zero(waiting));
+    const std::uint64_t next = (around[first] | around[last]) & ~reached;
+    reached |= next;
+    waiting = (waiting & ~bit(first) & ~bit(last)) | next;
+  }
+  return static_cast<std::size_t>(std::popcount(reached)) == facets_.size();
+}
+
+bool Cavity::is_one_piece() {
   reached_.assign(facets_.size(), false);
   reached_[0] = true;
   queue_.resize(facets_.size() + 1);

@@ -187,6 +187,8 @@ class Cavity {
     return known;
   }
   void note_boundary();
+  bool is_one_small_piece() const;
+  bool is_one_piece();
   void measure_local_points();
   void note_forming_points(std::size_t f);
   void place_spheres(std::size_t first, std::size_t end, FourQualities& qualities);

@@ -67,6 +67,19 @@ struct Facet {
   Index across;
 };
 
+// A bit for each of four facets across which doubles do not show that nothing is lost.
+#if defined(__GNUC__) && defined(__x86_64__)
+[[gnu::target("avx2")]] unsigned doubtful_of_four(const Workspace& workspace, const Facet* facets) {
+  const auto& [a, b, c, d] = *reinterpret_cast<const std::array<Facet, 4>*>(facets);
+  const std::array<Index, 4> v{a.v, b.v, c.v, d.v}, u{a.u, b.u, c.u, d.u};
+  const Point* const points = workspace.points.data();
+  const FourVectors across = load_four({points + a.across, points + b.across, points + c.across, points + d.across});
+  return ~workspace.agree_four(v, u, across) & 0xf;
+}
+#else
+unsigned doubtful_of_four(const Workspace&, const Facet*) { return 0xf; }
+#endif
+
 // The edge of the hull between the facets of a vertex at infinity and of its neighbour `slot`.
 struct HullEdge {
   Index v, u;
@@ -410,13 +423,16 @@ class Certifier {
     return corners;
   }
   void look_at_each(const BatchList& list, Index begin, std::array<Look, kBatch>& seen) {
-    for (const Index v : list.items()) {
-      workspace_.settle(v);
-      Look& look = seen[v - begin];
-      look.negative = six_volumes(v);
-      look.radius = std::sqrt(workspace_.vertices[v].radius);
-      look.apart = from_told_sphere(v, look.radius);
-    }
+    for (const Index v : list.items()) workspace_.settle(v);
+    list.for_each_four([&](const std::array<Index, 4>& four) {
+      const FourVolumes six = four_volumes(tetrahedra(four));
+      for (unsigned lane = 0; lane < 4; ++lane) {
+        Look& look = seen[four[lane] - begin];
+        look.negative = {six.value[lane], six.bound[lane]};
+        look.radius = std::sqrt(workspace_.vertices[four[lane]].radius);
+        look.apart = from_told_sphere(four[lane], look.radius);
+      }
+    });
   }
   void see_four_spheres(BatchList& list, Index begin, std::array<Look, kBatch>& seen) {
     list.for_each_four([&](const std::array<Index, 4>& four) {
@@ -520,7 +536,7 @@ class Certifier {
   // are in the cache when their distances are asked for.
   bool are_all_facets_good(Index begin, Index end) {
     std::size_t listed = 0, count = 0;
-    std::array<Facet, std::size_t{4} * kBatch> facets;
+    std::array<Facet, std::size_t{4} * kBatch + 4> facets;
     for (Index v = begin; v < end; ++v)
       for (unsigned i = 0; i < 4; ++i) {
         const Index u = workspace_.vertices[v].neighbors[i];
@@ -538,11 +554,16 @@ class Certifier {
       count += std::size_t{across != kInfinitePoint} & std::size_t{corners[i] != kInfinitePoint} &
                std::size_t{corners[3] != kInfinitePoint};
     }
-    for (std::size_t f = 0; f < count; ++f) {
-      const auto [v, u, i, across] = facets[f];
-      const bool apart = workspace_.power(v, workspace_.points[across]) < -workspace_.power_bound(v);
-      if (apart && !workspace_.shares_sphere(v) && !workspace_.shares_sphere(u)) continue;
-      if (!is_facet_good(v, i, u)) return false;
+    for (std::size_t f = 0; f < count; f += 4) {
+      const std::size_t lanes = std::min<std::size_t>(count - f, 4);
+      std::fill(facets.begin() + f + lanes, facets.begin() + f + 4, facets[f]);
+      unsigned doubtful = can_place_four() ? doubtful_of_four(workspace_, &facets[f]) : 0xf;
+      for (doubtful &= (1u << lanes) - 1; doubtful != 0; doubtful &= doubtful - 1) {
+        const auto [v, u, i, across] = facets[f + static_cast<unsigned>(std::countr_zero(doubtful))];
+        const bool apart = workspace_.power(v, workspace_.points[across]) < -workspace_.power_bound(v);
+        if (apart && !workspace_.shares_sphere(v) && !workspace_.shares_sphere(u)) continue;
+        if (!is_facet_good(v, i, u)) return false;
+      }
     }
     return true;
   }

@@ -10,11 +10,11 @@ namespace {
 
 #define ORCHARD_FUSED [[gnu::target("avx2,fma"), gnu::always_inline]] inline
 
-struct FourVolumes {
+struct FourDeterminants {
   __m256d value, bound;
 };
 
-ORCHARD_FUSED FourVolumes volumes(const FourVectors& a, const FourVectors& b, const FourVectors& c) {
+ORCHARD_FUSED FourDeterminants volumes(const FourVectors& a, const FourVectors& b, const FourVectors& c) {
   const __m256d yz = b.y * c.z, zy = b.z * c.y, zx = b.z * c.x, xz = b.x * c.z, xy = b.x * c.y, yx = b.y * c.x;
   const FourVectors magnitude = absolute(a);
   return {a.x * (yz - zy) + a.y * (zx - xz) + a.z * (xy - yx),
@@ -115,6 +115,16 @@ const bool kFourSharpLanes = __builtin_cpu_supports("avx2") && __builtin_cpu_sup
 
 bool can_take_four() { return kFourSharpLanes; }
 
+[[gnu::target("avx2,fma")]] FourVolumes four_volumes(const FourTetrahedra& tetrahedra) {
+  const FourVectors a = load_four(tetrahedra[0]), b = load_four(tetrahedra[1]), c = load_four(tetrahedra[2]),
+                    q = load_four(tetrahedra[3]);
+  const FourDeterminants six = volumes(a - q, b - q, c - q);
+  FourVolumes result;
+  _mm256_storeu_pd(result.value.data(), six.value);
+  _mm256_storeu_pd(result.bound.data(), six.bound);
+  return result;
+}
+
 // As off_circumcenter(), in the same order of operations.
 [[gnu::target("avx2,fma")]] std::array<double, 4> off_four_circumcenters(const FourCenters& centers,
                                                                          const FourTetrahedra& tetrahedra) {
@@ -123,7 +133,7 @@ bool can_take_four() { return kFourSharpLanes; }
   const __m256d enough = _mm256_loadu_pd(centers.enough.data());
   const FourVectors qa = a - q, qb = b - q, qc = c - q, from_q = center - q;
   const FourVectors twice{all_four(2) * from_q.x, all_four(2) * from_q.y, all_four(2) * from_q.z};
-  const FourVolumes volume6 = volumes(qa, qb, qc);
+  const FourDeterminants volume6 = volumes(qa, qb, qc);
   const __m256d aa = dot(qa, qa), bb = dot(qb, qb), cc = dot(qc, qc);
   const FourOffBounds bounds{
       cross(qb, qc),
@@ -173,6 +183,7 @@ bool can_take_four() { return kFourSharpLanes; }
 }
 #else
 bool can_take_four() { return false; }
+FourVolumes four_volumes(const FourTetrahedra&) { return {}; }
 std::array<double, 4> off_four_circumcenters(const FourCenters&, const FourTetrahedra&) { return {}; }
 unsigned four_sharp_circumcenters(const FourTetrahedra&, std::array<Vector, 4>&) { return 0; }
 #endif

@@ -101,6 +101,10 @@ class Workspace {
     unsigned far, near, input;
   };
   ORCHARD_AVX2 FourTests test_four(const std::array<Index, 4>& v, const FourVectors& q, double doubtful_input) const;
+  // A bit for each of four pairs of vertices whose spheres are their own ones and that of the first certainly does not
+  // hold q, or which have the same one.
+  ORCHARD_AVX2 unsigned agree_four(const std::array<Index, 4>& v, const std::array<Index, 4>& u,
+                                   const FourVectors& q) const;
 #endif
   // Whether its sphere is a neighbour's, or may be.
   bool shares_sphere(Index v) const { return (state_[v] & kShared) != 0; }
@@ -196,6 +200,10 @@ class Workspace {
   void reserve(std::size_t count, std::size_t used);
 
  private:
+#if defined(__GNUC__) && defined(__x86_64__)
+  ORCHARD_AVX2 __m256i states(const std::array<Index, 4>& v) const;
+  ORCHARD_AVX2 __m256d bounds(__m256i states) const;
+#endif
   Sign side_of_plane(Index v, const Point& q) const;
   double infinity_bound(Index v, const Vector& from_corner) const;
   Sign sign_at_infinity(Index v, const Point& q);
@@ -233,6 +241,39 @@ class Workspace {
 };
 
 #if defined(__GNUC__) && defined(__x86_64__)
+ORCHARD_AVX2 __m256i Workspace::states(const std::array<Index, 4>& v) const {
+  return _mm256_set_epi64x(state_[v[3]], state_[v[2]], state_[v[1]], state_[v[0]]);
+}
+
+// As in bounds_: powers of four, but for two classes.
+ORCHARD_AVX2 __m256d Workspace::bounds(__m256i states) const {
+  const __m256i error = _mm256_and_si256(_mm256_srli_epi64(states, 2), _mm256_set1_epi64x(63));
+  const __m256i least = _mm256_set1_epi64x(std::bit_cast<std::int64_t>(bounds_[0]));
+  return _mm256_blendv_pd(_mm256_castsi256_pd(_mm256_add_epi64(least, _mm256_slli_epi64(error, 53))),
+                          all_four(std::numeric_limits<double>::infinity()),
+                          _mm256_castsi256_pd(_mm256_cmpgt_epi64(error, _mm256_set1_epi64x(kNotSettled - 1))));
+}
+
+ORCHARD_AVX2 unsigned Workspace::agree_four(const std::array<Index, 4>& v, const std::array<Index, 4>& u,
+                                            const FourVectors& q) const {
+  FourVectors center;
+  __m256d radius, *const rows[] = {&center.x, &center.y, &center.z, &radius};
+  unsigned same = 0;
+  for (unsigned i = 0; i < 4; ++i) {
+    *rows[i] = _mm256_load_pd(vertices[v[i]].center.data());
+    const __m256d other = _mm256_load_pd(vertices[u[i]].center.data());
+    const bool equal = (lanes_of(_mm256_cmp_pd(*rows[i], other, _CMP_EQ_OQ)) & 7u) == 7u;
+    same |= (equal && settled(u[i]) ? 1u : 0u) << i;
+  }
+  transpose(center.x, center.y, center.z, radius);
+  const FourVectors from_q = center - q;
+  const __m256i state = states(v);
+  const __m256d power = radius - dot(from_q, from_q);
+  const unsigned far = lanes_of(_mm256_cmp_pd(power, -bounds(state), _CMP_LT_OQ));
+  const __m256i shared = _mm256_and_si256(_mm256_or_si256(state, states(u)), _mm256_set1_epi64x(kShared));
+  return (far & lanes_equal(shared, 0)) | (exact_ ? 0 : same);
+}
+
 ORCHARD_AVX2 Workspace::FourTests Workspace::test_four(const std::array<Index, 4>& v, const FourVectors& q,
                                                        double doubtful_input) const {
   const auto load = [&](Index u) { return vertices[u].center.data(); };  // the radius is behind it
@@ -241,14 +282,8 @@ ORCHARD_AVX2 Workspace::FourTests Workspace::test_four(const std::array<Index, 4
   transpose(center.x, center.y, center.z, radius);
   const FourVectors from_q = center - q;
   const __m256d power = radius - dot(from_q, from_q);
-  const __m256i state = _mm256_set_epi64x(state_[v[3]], state_[v[2]], state_[v[1]], state_[v[0]]);
-  // As in bounds_: powers of four, but for two classes.
-  const __m256i error = _mm256_and_si256(_mm256_srli_epi64(state, 2), _mm256_set1_epi64x(63));
-  const __m256d finite = _mm256_castsi256_pd(
-      _mm256_add_epi64(_mm256_set1_epi64x(std::bit_cast<std::int64_t>(bounds_[0])), _mm256_slli_epi64(error, 53)));
-  const __m256d bound =
-      _mm256_blendv_pd(finite, all_four(std::numeric_limits<double>::infinity()),
-                       _mm256_castsi256_pd(_mm256_cmpgt_epi64(error, _mm256_set1_epi64x(kNotSettled - 1))));
+  const __m256i state = states(v);
+  const __m256d bound = bounds(state);
   const __m256i mark = _mm256_and_si256(state, _mm256_set1_epi64x(3));
   return {{lanes_equal(mark, static_cast<int>(Mark::unseen)), lanes_equal(mark, static_cast<int>(Mark::kept))},
           lanes_of(_mm256_cmp_pd(power, -bound, _CMP_LT_OQ)),
