@@ -50,27 +50,39 @@ void Cavity::note_boundary() {
   }
 }
 
+// With what changes on the way in variables of its own: stores of bytes may be to anywhere, as far as compilers know,
+// and to wait for a count to come back from memory for each corner is most of the time.
 void Cavity::note_facets() {
   if (!is_boundary_noted_) note_boundary();
-  facets_.resize(boundary_.size());
-  for (std::size_t f = 0; f < facets_.size(); ++f) {
-    const Index inside = boundary_.items()[f] / 4;
-    const unsigned slot = boundary_.items()[f] % 4;
+  const std::size_t count = boundary_.size();
+  facets_.resize(count);
+  Facet* const facets = facets_.data();
+  const Index* const boundary = boundary_.items().data();
+  Index* const points = local_points_.room_for(3 * count);
+  Index* const local_of = local_of_.data();
+  auto known_points = static_cast<Index>(local_points_.size());
+  // The number of a local point, a new one if it has none yet; without branches.
+  const auto local = [points, local_of, &known_points](Index point) {
+    Index& known = local_of[static_cast<Index>(point + 1)];
+    const bool fresh = known == kNone;
+    known = fresh ? known_points : known;
+    points[known_points] = point;
+    known_points += fresh;
+    return known;
+  };
+  for (std::size_t f = 0; f < count; ++f) {
+    const Index inside = boundary[f] / 4;
+    const unsigned slot = boundary[f] % 4;
     const VoronoiVertex& deleted = workspace_.vertices[inside];
     const Index outside = deleted.neighbors[slot];
     const std::size_t back = index_of(workspace_.neighbors_now(outside), inside);
     const auto& [a, b, c] = kOthers[slot];
     const auto& corner = deleted.forming_points;
-    local_points_.ensure_room();
-    facets_[f] = {inside,
-                  outside,
-                  {local(corner[a]), local(corner[b]), local(corner[c])},
-                  static_cast<std::uint8_t>(slot),
-                  static_cast<std::uint8_t>(back),
-                  0,
-                  false,
-                  Placing::failed};
+    const Index of_a = local(corner[a]), of_b = local(corner[b]), of_c = local(corner[c]);
+    facets[f] = {inside, outside, {of_a, of_b, of_c}, static_cast<std::uint8_t>(slot), static_cast<std::uint8_t>(back),
+                 0,      false,   Placing::failed};
   }
+  local_points_.resize(known_points);
   measure_local_points();
 }
 
@@ -397,9 +409,12 @@ Index Cavity::replace() {
   Index last = slots_[0];
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     const Facet& facet = facets_[f];
-    VoronoiVertex& vertex = fresh_[f];
-    for (const std::uint8_t k : kOthers[facet.slot]) vertex.neighbors[k] = slots_[vertex.neighbors[k]];
-    workspace_.store(slots_[f], vertex, facet.error_class, facet.placing == Placing::shared);
+    const VoronoiVertex& vertex = fresh_[f];
+    // One by one into their place: to load what was just stored in parts takes long.
+    workspace_.store_but_neighbors(slots_[f], vertex, facet.error_class, facet.placing == Placing::shared);
+    auto& neighbors = workspace_.vertices[slots_[f]].neighbors;
+    neighbors[facet.slot] = facet.outside;
+    for (const std::uint8_t k : kOthers[facet.slot]) neighbors[k] = slots_[vertex.neighbors[k]];
     workspace_.set_neighbor(facet.outside, facet.back, slots_[f]);
     if (facet.placing != Placing::failed && vertex.forming_points[3] != kInfinitePoint) last = slots_[f];
   }

@@ -45,6 +45,12 @@ class Cavity {
     void ensure_room() {
       if (count_ + 4 > room_.size()) room_.resize(2 * room_.size() + 64);
     }
+    // Where the items are, with room for so many more, and how many there are then.
+    Index* room_for(std::size_t more) {
+      if (count_ + more + 4 > room_.size()) room_.resize(2 * (count_ + more) + 64);
+      return room_.data();
+    }
+    void resize(std::size_t count) { count_ = count; }
     // Up to four times after ensure_room().
     void push_if(Index item, bool condition) {
       room_[count_] = item;

@@ -185,6 +185,12 @@ class Workspace {
     vertices[v] = vertex;
     set_error_class(v, error_class, shared, 0);
   }
+  void store_but_neighbors(Index v, const VoronoiVertex& vertex, std::uint8_t error_class, bool shared) {
+    vertices[v].center = vertex.center;
+    vertices[v].radius = vertex.radius;
+    vertices[v].forming_points = vertex.forming_points;
+    set_error_class(v, error_class, shared, 0);
+  }
   void resize(std::size_t count) {
     vertices.resize(count);
     state_.resize(count);
