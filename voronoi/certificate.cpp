@@ -754,29 +754,36 @@ class Certifier {
     const auto is_middle_below = [&](const Point& a, const Point& b, const Point& c) {
       return volume_sign_of_middle(inner, a, b, c) == Sign::positive;
     };
-    return is_only_in_fattest(rounded, is_below) || is_only_in_fattest(rounded, is_middle_below);
+    const auto is_outside_box = [&](Index v) {
+      const Point low = corner(v, 0).cwiseMin(corner(v, 1)).cwiseMin(corner(v, 2).cwiseMin(corner(v, 3)));
+      const Point high = corner(v, 0).cwiseMax(corner(v, 1)).cwiseMax(corner(v, 2).cwiseMax(corner(v, 3)));
+      return (rounded.array() < low.array()).any() || (rounded.array() > high.array()).any();
+    };
+    return is_only_in_fattest(rounded, is_below, is_outside_box) ||
+           is_only_in_fattest(rounded, is_middle_below, [](Index) { return false; });
   }
 
   // Whether a point, at or next to `about`, is below all facets of the hull and outside of all tetrahedra but the
-  // fattest. is_below(a, b, c) tells on which side of a facet it is.
-  template <class IsBelow>
-  bool is_only_in_fattest(const Point& about, const IsBelow& is_below) const {
+  // fattest. is_below(a, b, c) tells on which side of a facet it is, is_outside_box(v) when that need not be asked.
+  template <class IsBelow, class IsOutsideBox>
+  bool is_only_in_fattest(const Point& about, const IsBelow& is_below, const IsOutsideBox& is_outside_box) const {
     std::atomic<bool> only = true;
     const auto count = static_cast<Index>(workspace_.vertices.size());
     tbb::parallel_for(tbb::blocked_range<Index>(0, count, kBlock), [&](const auto& range) {
       for (Index v = range.begin(); v < range.end() && only; ++v)
-        if (v != found_.fattest && !workspace_.is_free(v) && !is_elsewhere(v, about, is_below)) only = false;
+        if (v != found_.fattest && !workspace_.is_free(v) && !is_elsewhere(v, about, is_below, is_outside_box))
+          only = false;
     });
     return only;
   }
-  template <class IsBelow>
-  bool is_elsewhere(Index v, const Point& about, const IsBelow& is_below) const {
+  template <class IsBelow, class IsOutsideBox>
+  bool is_elsewhere(Index v, const Point& about, const IsBelow& is_below, const IsOutsideBox& is_outside_box) const {
     if (workspace_.at_infinity(v)) return is_below(corner(v, 0), corner(v, 1), corner(v, 2));
     const double doubt = kAbout * (workspace_.vertices[v].radius + diameter_ * diameter_);
     const auto is_beyond = [&](const auto& facet) {
       return is_below(corner(v, facet[0]), corner(v, facet[2]), corner(v, facet[1]));
     };
-    return !(workspace_.power(v, about) > -doubt) ||
+    return !(workspace_.power(v, about) > -doubt) || is_outside_box(v) ||
            std::any_of(Cavity::kOthers.begin(), Cavity::kOthers.end(), is_beyond);
   }
 
