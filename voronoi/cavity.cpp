@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 #include <utility>
 
 namespace orchard::detail {
@@ -249,32 +250,39 @@ bool Cavity::link_by(LinkTable<kPoints, kStride>& links) {
 // Each edge waits at its corner of fewer facets, of which there are few for most edges of any sphere: a planar graph
 // has fewer than three edges a corner. Without hashing.
 bool Cavity::link_by_lists() {
-  degrees_.assign(local_points_.size(), 0);
-  for (const Facet& facet : facets_)
-    for (const Index corner : facet.local) ++degrees_[corner];
+  const auto count = static_cast<Index>(facets_.size());
+  const Facet* const facets = facets_.data();
+  VoronoiVertex* const fresh = fresh_.data();
+  // By how many facets a corner has, then by its number.
+  ranks_.resize(local_points_.size());
+  std::iota(ranks_.begin(), ranks_.end(), std::uint64_t{0});
+  std::uint64_t* const ranks = ranks_.data();
+  for (Index f = 0; f < count; ++f)
+    for (const Index corner : facets[f].local) ranks[corner] += std::uint64_t{1} << 32;
   waiting_.assign(local_points_.size(), kNone);
-  links_.clear();
-  std::size_t open = 0;
-  for (std::size_t f = 0; f < facets_.size(); ++f) {
-    const Facet& facet = facets_[f];
-    fresh_[f].neighbors[facet.slot] = facet.outside;
+  Index* const waiting = waiting_.data();
+  links_.resize(std::size_t{3} * count);
+  Link* const links = links_.data();
+  Index end = 0, open = 0;
+  for (Index f = 0; f < count; ++f) {
+    const auto& local = facets[f].local;
+    const auto& others = kOthers[facets[f].slot];
+    fresh[f].neighbors[facets[f].slot] = facets[f].outside;
     for (unsigned n = 0; n < 3; ++n) {
-      const Index from = facet.local[(n + 1) % 3], to = facet.local[(n + 2) % 3];
-      const bool at_from = std::pair(degrees_[from], from) < std::pair(degrees_[to], to);
+      const Index from = local[(n + 1) % 3], to = local[(n + 2) % 3];
+      const bool at_from = ranks[from] < ranks[to];
       const Index at = at_from ? from : to, far = at_from ? to : from;
-      Index* link = &waiting_[at];
-      while (*link != kNone && links_[*link].far != far) link = &links_[*link].next;
-      const std::uint8_t slot = kOthers[facet.slot][n];
+      Index* link = &waiting[at];
+      while (*link != kNone && links[*link].far != far) link = &links[*link].next;
       if (*link == kNone) {
-        *link = static_cast<Index>(links_.size());
-        links_.push_back({far, kNone, static_cast<Index>(f), slot, at_from});
+        links[*link = end++] = {far, kNone, f, others[n], at_from};
         ++open;
         continue;
       }
-      Link& other = links_[*link];
+      Link& other = links[*link];
       if (other.facet == kNone || other.outward == at_from) return false;
-      fresh_[f].neighbors[slot] = other.facet;
-      fresh_[other.facet].neighbors[other.slot] = static_cast<Index>(f);
+      fresh[f].neighbors[others[n]] = other.facet;
+      fresh[other.facet].neighbors[other.slot] = f;
       other.facet = kNone;
       --open;
     }

@@ -232,7 +232,8 @@ class Cavity {
   std::vector<LengthedVector> from_new_;  // from the new point to each local one
   std::vector<Index> local_of_;           // of the infinite point and each other: into local_points_ or kNone
   EdgeTable edges_;
-  std::vector<Index> degrees_, waiting_;  // by local point
+  std::vector<std::uint64_t> ranks_;  // by local point, and the next likewise
+  std::vector<Index> waiting_;
   std::vector<Link> links_;
   LinkTable<kFewPoints, kFewPoints> few_links_;
   LinkTable<kManyPoints, kManyPoints + 16> many_links_;  // rows of a power of two would share a few lines of the cache
