@@ -204,6 +204,7 @@ class Cavity {
   bool delete_nearer_one_by_one(std::size_t first);
   bool delete_nearer_by_four(std::size_t first);
   bool is_nearer_after_all(Index u, bool& certain);
+  unsigned nearer_after_all(const std::array<Index, 4>& u, unsigned which, bool& certain);
   // The infinite point, being the highest number, wraps around to the first place.
   Index& known_local(Index point) { return local_of_[static_cast<Index>(point + 1)]; }
   Index known_local(Index point) const { return local_of_[static_cast<Index>(point + 1)]; }

@@ -50,6 +50,21 @@ bool Cavity::is_nearer_after_all(Index u, bool& certain) {
   return nearer;
 }
 
+unsigned Cavity::nearer_after_all(const std::array<Index, 4>& u, unsigned which, bool& certain) {
+  const std::array<Sign, 4> signs = workspace_.doubtful_signs(u, which, position_);
+  unsigned nearer = 0;
+  for (; which != 0; which &= which - 1) {
+    const auto i = static_cast<unsigned>(std::countr_zero(which));
+    bool is_nearer = signs[i] == Sign::positive;
+    if (signs[i] == Sign::uncertain)
+      is_nearer = is_nearer_after_all(u[i], certain);
+    else
+      undoubted_ = undoubted_ && (is_nearer || !workspace_.may_share_sphere(u[i], position_));
+    nearer |= (is_nearer ? 1u : 0u) << i;
+  }
+  return nearer;
+}
+
 bool Cavity::delete_nearer_one_by_one(std::size_t first) {
   const Point q = position_;
   const double doubtful_input = workspace_.doubtful_input();
@@ -103,10 +118,8 @@ bool Cavity::delete_nearer_one_by_one(std::size_t first) {
     const unsigned unseen = marks.unseen, doubtful = unseen & ~(far | near);
     unsigned nearer = unseen & near;
     certain &= (doubtful & input) == 0;
-    if (const unsigned after_all = doubtful & ~input; after_all != 0) [[unlikely]] {
-      for (unsigned slot = 0; slot < 4; ++slot)
-        if (((after_all >> slot) & 1u) != 0 && is_nearer_after_all(neighbors[slot], certain)) nearer |= 1u << slot;
-    }
+    if (const unsigned after_all = doubtful & ~input; after_all != 0) [[unlikely]]
+      nearer |= nearer_after_all(neighbors, after_all, certain);
     if (const unsigned beyond = nearer & ~owned; beyond != 0)
       return leave_territory(neighbors[std::countr_zero(beyond)]);
     const unsigned kept = unseen & ~nearer;

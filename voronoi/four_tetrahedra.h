@@ -18,6 +18,9 @@ struct FourVolumes {
 };
 FourVolumes four_volumes(const FourTetrahedra& tetrahedra);
 
+// inside_sphere() of one point: uncertain also where some 104 bits do not tell.
+std::array<Sign, 4> four_inside_spheres(const Point& q, const FourTetrahedra& tetrahedra);
+
 // off_circumcenter() from 3, of 0, 1 and 2; where the sign of the volume is in doubt, what it returns is meaningless.
 struct FourCenters {
   std::array<const Point*, 4> center;

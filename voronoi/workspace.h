@@ -120,6 +120,10 @@ class Workspace {
   // The same where the stored centre does not tell.
   Sign doubtful_sign(Index v, const Point& q, double bound);
 
+  // doubtful_sign() of those of four vertices that have a bit set, as far as it is soon told by their points: uncertain
+  // may stand for any.
+  std::array<Sign, 4> doubtful_signs(const std::array<Index, 4>& v, unsigned which, const Point& q) const;
+
   // How deep a point in a sphere does no harm, unless many such are met on one line (see certificate.h).
   double harmless_intrusion() const { return kIntrusion * scale(); }
   // Whether the error bound of a placed vertex alone, of which input noise over a height is a part (see place()), shows
