@@ -46,12 +46,13 @@ bool Cavity::is_nearer_after_all(Index u, bool& certain) {
   const Sign sign = workspace_.doubtful_sign(u, position_, workspace_.power_bound(u));
   const bool nearer = sign == Sign::positive;
   certain = certain && sign != Sign::uncertain;
-  undoubted_ = undoubted_ && (nearer || !workspace_.may_share_sphere(u, position_));
+  undoubted_ = undoubted_ && (nearer || workspace_.at_infinity(u) || !workspace_.may_share_sphere(u, position_));
   return nearer;
 }
 
 unsigned Cavity::nearer_after_all(const std::array<Index, 4>& u, unsigned which, bool& certain) {
-  const std::array<Sign, 4> signs = workspace_.doubtful_signs(u, which, position_);
+  std::array<Sign, 4> signs{};
+  if ((which & (which - 1)) != 0) signs = workspace_.doubtful_signs(u, which, position_);
   unsigned nearer = 0;
   for (; which != 0; which &= which - 1) {
     const auto i = static_cast<unsigned>(std::countr_zero(which));
