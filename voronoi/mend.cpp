@@ -6,11 +6,11 @@
 namespace orchard::detail {
 namespace {
 
-// Vertices that one insertion may delete: what takes more is no local doubt. But where few doubts are left, in the first
-// rounds, a point may have that many by itself.
+// Vertices that one insertion may delete: what takes more is no local doubt. But where few doubts are left, in the
+// first rounds, a point may have that many by itself.
 constexpr std::size_t kMaxDeleted = 256, kMaxDeletedOfFew = 2048, kFewDoubts = 16;
 constexpr int kFirstRounds = 8;
-constexpr int kStricter = 2;              // bits that a round takes off the intrusion that does no harm
+constexpr int kStricter = 2;  // bits that a round takes off the intrusion that does no harm
 
 // How deep a point is in a sphere through the origin, both relative to it.
 double intrusion_in(const Vector& center, const Vector& point) {
