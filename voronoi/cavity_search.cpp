@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "cavity.h"
+#include "workspace_four.h"
 
 namespace orchard::detail {
 namespace {
@@ -122,7 +123,7 @@ bool Cavity::delete_nearer_one_by_one(std::size_t first) {
     if (const unsigned after_all = doubtful & ~input; after_all != 0) [[unlikely]]
       nearer |= nearer_after_all(neighbors, after_all, certain);
     if (const unsigned beyond = nearer & ~owned; beyond != 0)
-      return leave_territory(neighbors[std::countr_zero(beyond)]);
+      return leave_territory(neighbors[static_cast<std::size_t>(std::countr_zero(beyond))]);
     const unsigned kept = unseen & ~nearer;
     workspace_.add_marks(neighbors, nearer, kept & owned);
     const __m128i items = _mm_loadu_si128(reinterpret_cast<const __m128i*>(neighbors.data()));

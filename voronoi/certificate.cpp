@@ -15,6 +15,7 @@
 #include "line_sum.h"
 #include "orchard/geometry/tolerance.h"
 #include "parallel_insertion.h"
+#include "workspace_four.h"
 
 namespace orchard::detail {
 namespace {
