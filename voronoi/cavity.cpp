@@ -4,13 +4,11 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 #include <utility>
 
 namespace orchard::detail {
 namespace {
-
-// How many deleted vertices ahead of the one whose neighbours are looked at memory is fetched into the cache.
-constexpr std::size_t kFetchAhead = 4;
 
 constexpr unsigned kLanes = 4;  // facets that are placed at once
 
@@ -23,7 +21,7 @@ void Cavity::end() {
   deleted_.clear();
   seen_.clear();
   boundary_.clear();
-  is_boundary_noted_ = false;
+  is_boundary_noted_ = undoubted_ = false;
   local_points_.clear();
   edge_limit_ = 0;
 }
@@ -44,80 +42,6 @@ void Cavity::measure_local_points() {
   }
 }
 
-// The time goes into mispredicted branches here if one is not careful: whether a neighbour has been seen, and on which
-// side its sign falls, is as good as random. So every neighbour is tested, and what has been seen is masked out.
-bool Cavity::delete_nearer(Index start) {
-  if (!territory_.owns(start)) {
-    left_territory_ = true;
-    return false;
-  }
-  delete_vertex(start);
-  const bool certain = delete_nearer_around(0);
-  is_boundary_noted_ = true;
-  return certain;
-}
-
-bool Cavity::delete_nearer_around(std::size_t first) {
-  return territory_.whole() ? delete_nearer_in<true>(first) : delete_nearer_in<false>(first);
-}
-
-template <bool kWhole>
-bool Cavity::delete_nearer_in(std::size_t first) {
-  const Point q = position_;
-  bool certain = true;
-  for (std::size_t i = first; i < deleted_.size(); ++i) {
-    deleted_.ensure_room();
-    seen_.ensure_room();
-    boundary_.ensure_room();
-    const Index v = deleted_.items()[i];
-    const std::array<Index, 4> neighbors = workspace_.vertices[v].neighbors;
-    fetch_around(deleted_.items()[std::min(i + kFetchAhead, deleted_.size() - 1)]);
-    if constexpr (!kWhole) {
-      left_territory_ = !(territory_.owns(neighbors[0]) && territory_.owns(neighbors[1]) &&
-                          territory_.owns(neighbors[2]) && territory_.owns(neighbors[3]));
-      if (left_territory_) return false;
-    }
-    for (unsigned slot = 0; slot < 4; ++slot) {
-      const Index u = neighbors[slot];
-      const Mark mark = workspace_.mark(u);
-      const bool unseen = mark == Mark::unseen;
-      const double power = workspace_.power(u, q), bound = workspace_.power_bound(u);
-      bool nearer = power > bound;
-      if (unseen && !(std::abs(power) > bound)) [[unlikely]] {
-        const Sign sign = workspace_.doubtful_sign(u, q, bound);
-        nearer = sign == Sign::positive;
-        certain = certain && sign != Sign::uncertain;
-      }
-      workspace_.add_mark(u, unseen, nearer ? Mark::deleted : Mark::kept);
-      deleted_.push_if(u, unseen & nearer);
-      seen_.push_if(u, unseen & !nearer);
-      // Nothing that is kept now will be deleted by this search.
-      boundary_.push_if(4 * v + slot, (mark == Mark::kept) | (unseen & !nearer));
-    }
-  }
-  return certain;
-}
-
-// What is asked for once this vertex is looked at: its neighbours now, its forming points by note_facets().
-void Cavity::fetch_around(Index v) const {
-  const VoronoiVertex& vertex = workspace_.vertices[v];
-  for (const Index u : vertex.neighbors) workspace_.prefetch(u);
-  for (const Index p : vertex.forming_points) {
-    __builtin_prefetch(workspace_.points.data() + p);
-    __builtin_prefetch(local_of_.data() + static_cast<Index>(p + 1));
-  }
-}
-
-bool Cavity::widen() {
-  const std::size_t before = deleted_.size();
-  for (const Facet& facet : facets_)
-    if (!facet.visible && workspace_.mark(facet.outside) != Mark::deleted &&
-        workspace_.sign(facet.outside, position_) == Sign::uncertain)
-      delete_vertex(facet.outside);
-  delete_nearer_around(before);
-  return deleted_.size() > before;
-}
-
 void Cavity::note_boundary() {
   boundary_.clear();
   for (const Index v : deleted_.items()) {
@@ -127,27 +51,39 @@ void Cavity::note_boundary() {
   }
 }
 
+// With what changes on the way in variables of its own: stores of bytes may be to anywhere, as far as compilers know,
+// and to wait for a count to come back from memory for each corner is most of the time.
 void Cavity::note_facets() {
   if (!is_boundary_noted_) note_boundary();
-  facets_.resize(boundary_.size());
-  for (std::size_t f = 0; f < facets_.size(); ++f) {
-    const Index inside = boundary_.items()[f] / 4;
-    const unsigned slot = boundary_.items()[f] % 4;
+  const std::size_t count = boundary_.size();
+  facets_.resize(count);
+  Facet* const facets = facets_.data();
+  const Index* const boundary = boundary_.items().data();
+  Index* const points = local_points_.room_for(3 * count);
+  Index* const local_of = local_of_.data();
+  auto known_points = static_cast<Index>(local_points_.size());
+  // The number of a local point, a new one if it has none yet; without branches.
+  const auto local = [points, local_of, &known_points](Index point) {
+    Index& known = local_of[static_cast<Index>(point + 1)];
+    const bool fresh = known == kNone;
+    known = fresh ? known_points : known;
+    points[known_points] = point;
+    known_points += fresh;
+    return known;
+  };
+  for (std::size_t f = 0; f < count; ++f) {
+    const Index inside = boundary[f] / 4;
+    const unsigned slot = boundary[f] % 4;
     const VoronoiVertex& deleted = workspace_.vertices[inside];
     const Index outside = deleted.neighbors[slot];
-    const std::size_t back = index_of(workspace_.vertices[outside].neighbors, inside);
+    const std::size_t back = index_of(workspace_.neighbors_now(outside), inside);
     const auto& [a, b, c] = kOthers[slot];
     const auto& corner = deleted.forming_points;
-    local_points_.ensure_room();
-    facets_[f] = {inside,
-                  outside,
-                  {local(corner[a]), local(corner[b]), local(corner[c])},
-                  static_cast<std::uint8_t>(slot),
-                  static_cast<std::uint8_t>(back),
-                  0,
-                  false,
-                  Placing::failed};
+    const Index of_a = local(corner[a]), of_b = local(corner[b]), of_c = local(corner[c]);
+    facets[f] = {inside, outside, {of_a, of_b, of_c}, static_cast<std::uint8_t>(slot), static_cast<std::uint8_t>(back),
+                 0,      false,   Placing::failed};
   }
+  local_points_.resize(known_points);
   measure_local_points();
 }
 
@@ -247,9 +183,7 @@ inline void Cavity::place_spheres(std::size_t first, std::size_t end, FourQualit
     triangles.b[lane] = &from_new_[b];
     triangles.c[lane] = &from_new_[c];
   }
-  place_four(position_, workspace_.placing_limits(), triangles, &fresh_[first], qualities);
-  // With exact signs more is thin.
-  if (workspace_.exact()) qualities.good = 0;
+  place_four(position_, workspace_.placing_limits(undoubted_), triangles, &fresh_[first], qualities);
 }
 
 // True if the facet is visible. `placed`: what its sphere is like, if it has one already.
@@ -266,8 +200,8 @@ bool Cavity::place_vertex(std::size_t f, bool has_sphere, const PlacedQuality& p
   else
     facet.placing = workspace_.place(vertex, facet.error_class, position_, a, b, from_new_[facet.local[2]]);
   facet.visible = facet.placing != Placing::failed || side_of_facet(facet.inside, facet.slot) == Sign::positive;
-  if ((facet.placing != Placing::good || workspace_.poor(vertex, facet.error_class)) && !at_infinity && facet.visible &&
-      !workspace_.exact()) {
+  if ((facet.placing != Placing::good || workspace_.poor(vertex, facet.error_class)) && !undoubted_ && !at_infinity &&
+      facet.visible && !workspace_.exact()) {
     if (workspace_.share_sphere(vertex, facet.error_class, facet.outside, position_))
       facet.placing = Placing::shared;
     else if (facet.placing == Placing::good && workspace_.sign(facet.outside, position_) == Sign::uncertain)
@@ -316,32 +250,39 @@ bool Cavity::link_by(LinkTable<kPoints, kStride>& links) {
 // Each edge waits at its corner of fewer facets, of which there are few for most edges of any sphere: a planar graph
 // has fewer than three edges a corner. Without hashing.
 bool Cavity::link_by_lists() {
-  degrees_.assign(local_points_.size(), 0);
-  for (const Facet& facet : facets_)
-    for (const Index corner : facet.local) ++degrees_[corner];
+  const auto count = static_cast<Index>(facets_.size());
+  const Facet* const facets = facets_.data();
+  VoronoiVertex* const fresh = fresh_.data();
+  // By how many facets a corner has, then by its number.
+  ranks_.resize(local_points_.size());
+  std::iota(ranks_.begin(), ranks_.end(), std::uint64_t{0});
+  std::uint64_t* const ranks = ranks_.data();
+  for (Index f = 0; f < count; ++f)
+    for (const Index corner : facets[f].local) ranks[corner] += std::uint64_t{1} << 32;
   waiting_.assign(local_points_.size(), kNone);
-  links_.clear();
-  std::size_t open = 0;
-  for (std::size_t f = 0; f < facets_.size(); ++f) {
-    const Facet& facet = facets_[f];
-    fresh_[f].neighbors[facet.slot] = facet.outside;
+  Index* const waiting = waiting_.data();
+  links_.resize(std::size_t{3} * count);
+  Link* const links = links_.data();
+  Index end = 0, open = 0;
+  for (Index f = 0; f < count; ++f) {
+    const auto& local = facets[f].local;
+    const auto& others = kOthers[facets[f].slot];
+    fresh[f].neighbors[facets[f].slot] = facets[f].outside;
     for (unsigned n = 0; n < 3; ++n) {
-      const Index from = facet.local[(n + 1) % 3], to = facet.local[(n + 2) % 3];
-      const bool at_from = std::pair(degrees_[from], from) < std::pair(degrees_[to], to);
+      const Index from = local[(n + 1) % 3], to = local[(n + 2) % 3];
+      const bool at_from = ranks[from] < ranks[to];
       const Index at = at_from ? from : to, far = at_from ? to : from;
-      Index* link = &waiting_[at];
-      while (*link != kNone && links_[*link].far != far) link = &links_[*link].next;
-      const std::uint8_t slot = kOthers[facet.slot][n];
+      Index* link = &waiting[at];
+      while (*link != kNone && links[*link].far != far) link = &links[*link].next;
       if (*link == kNone) {
-        *link = static_cast<Index>(links_.size());
-        links_.push_back({far, kNone, static_cast<Index>(f), slot, at_from});
+        links[*link = end++] = {far, kNone, f, others[n], at_from};
         ++open;
         continue;
       }
-      Link& other = links_[*link];
+      Link& other = links[*link];
       if (other.facet == kNone || other.outward == at_from) return false;
-      fresh_[f].neighbors[slot] = other.facet;
-      fresh_[other.facet].neighbors[other.slot] = static_cast<Index>(f);
+      fresh[f].neighbors[others[n]] = other.facet;
+      fresh[other.facet].neighbors[other.slot] = f;
       other.facet = kNone;
       --open;
     }
@@ -358,6 +299,30 @@ bool Cavity::is_ball() {
   if (loses_point) return false;
   // Two facets on each edge and the right number of facets for one sphere: several pieces, or a piece with a handle,
   // would have to touch themselves in points to get there, so one piece is a sphere that does not.
+  return facets_.size() <= 64 ? is_one_small_piece() : is_one_piece();
+}
+
+// From one facet to its neighbours and on, each a bit; two at a time, lest each waits for the last.
+bool Cavity::is_one_small_piece() const {
+  std::array<std::uint64_t, 64> around;
+  const auto bit = [](Index f) { return std::uint64_t{1} << f; };
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    const auto& [a, b, c] = kOthers[facets_[f].slot];
+    const auto& neighbors = fresh_[f].neighbors;
+    around[f] = bit(neighbors[a]) | bit(neighbors[b]) | bit(neighbors[c]);
+  }
+  std::uint64_t reached = 1;
+  for (std::uint64_t waiting = 1; waiting != 0;) {
+    const auto first = static_cast<unsigned>(std::countr_zero(waiting)),
+               last = static_cast<unsigned>(63 - std::countl_zero(waiting));
+    const std::uint64_t next = (around[first] | around[last]) & ~reached;
+    reached |= next;
+    waiting = (waiting & ~bit(first) & ~bit(last)) | next;
+  }
+  return static_cast<std::size_t>(std::popcount(reached)) == facets_.size();
+}
+
+bool Cavity::is_one_piece() {
   reached_.assign(facets_.size(), false);
   reached_[0] = true;
   queue_.resize(facets_.size() + 1);
@@ -452,10 +417,13 @@ Index Cavity::replace() {
   Index last = slots_[0];
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     const Facet& facet = facets_[f];
-    VoronoiVertex& vertex = fresh_[f];
-    for (const std::uint8_t k : kOthers[facet.slot]) vertex.neighbors[k] = slots_[vertex.neighbors[k]];
-    workspace_.store(slots_[f], vertex, facet.error_class, facet.placing == Placing::shared);
-    workspace_.vertices[facet.outside].neighbors[facet.back] = slots_[f];
+    const VoronoiVertex& vertex = fresh_[f];
+    // One by one into their place: to load what was just stored in parts takes long.
+    workspace_.store_but_neighbors(slots_[f], vertex, facet.error_class, facet.placing == Placing::shared);
+    auto& neighbors = workspace_.vertices[slots_[f]].neighbors;
+    neighbors[facet.slot] = facet.outside;
+    for (const std::uint8_t k : kOthers[facet.slot]) neighbors[k] = slots_[vertex.neighbors[k]];
+    workspace_.set_neighbor(facet.outside, facet.back, slots_[f]);
     if (facet.placing != Placing::failed && vertex.forming_points[3] != kInfinitePoint) last = slots_[f];
   }
   deleted_.clear();  // their marks went with them

@@ -6,11 +6,27 @@
 #include <vector>
 
 #include "edge_table.h"
+#include "four_vectors.h"
 #include "placed_sphere.h"
 #include "territory.h"
 #include "workspace.h"
 
 namespace orchard::detail {
+
+#if defined(__GNUC__) && defined(__x86_64__)
+// For each set of four items the bytes of those first that are in it.
+struct alignas(16) OrderOfBytes : std::array<std::uint8_t, 16> {};
+inline constexpr std::array<OrderOfBytes, 16> kFirstOfFour = [] {
+  std::array<OrderOfBytes, 16> orders{};
+  for (unsigned bits = 0; bits < 16; ++bits)
+    for (unsigned item = 0, place = 0; item < 4; ++item)
+      if (((bits >> item) & 1u) != 0) {
+        for (unsigned byte = 0; byte < 4; ++byte) orders[bits][4 * place + byte] = std::uint8_t(4 * item + byte);
+        ++place;
+      }
+  return orders;
+}();
+#endif
 
 // The vertices that one new point deletes, what surrounds them, and the new vertices that replace them. As tetrahedra:
 // a cavity, its boundary facets, and the tetrahedra from the new point to these facets.
@@ -29,11 +45,26 @@ class Cavity {
     void ensure_room() {
       if (count_ + 4 > room_.size()) room_.resize(2 * room_.size() + 64);
     }
+    // Where the items are, with room for so many more, and how many there are then.
+    Index* room_for(std::size_t more) {
+      if (count_ + more + 4 > room_.size()) room_.resize(2 * (count_ + more) + 64);
+      return room_.data();
+    }
+    void resize(std::size_t count) { count_ = count; }
     // Up to four times after ensure_room().
     void push_if(Index item, bool condition) {
       room_[count_] = item;
       count_ += condition;
     }
+#if defined(__GNUC__) && defined(__x86_64__)
+    // Those of four items that have a bit set, once after ensure_room().
+    ORCHARD_AVX2 void push_four(__m128i items, unsigned bits) {
+      const auto* const order = reinterpret_cast<const __m128i*>(kFirstOfFour[bits].data());
+      _mm_storeu_si128(reinterpret_cast<__m128i*>(room_.data() + count_),
+                       _mm_shuffle_epi8(items, _mm_load_si128(order)));
+      count_ += static_cast<std::size_t>(std::popcount(bits));
+    }
+#endif
 
    private:
     std::vector<Index> room_;
@@ -59,6 +90,8 @@ class Cavity {
   void enter(const Territory& territory) { territory_ = territory; }
   // Whether the search came to a vertex that is not to be touched: the point cannot be inserted from here then.
   bool left_territory() const { return left_territory_; }
+  // What it would have deleted then.
+  Index blocker() const { return blocker_; }
   // Whether there are free vertices for all that replace() makes.
   bool has_room() const {
     return territory_.whole() || facets_.size() <= deleted_.size() + territory_.free_vertices->size();
@@ -79,7 +112,7 @@ class Cavity {
   void delete_vertex(Index v) {
     workspace_.set_mark(v, Mark::deleted);
     deleted_.push(v);
-    is_boundary_noted_ = false;
+    is_boundary_noted_ = undoubted_ = false;
   }
   // Marks a vertex as seen but not deleted.
   void add_seen(Index v, Mark mark) {
@@ -160,13 +193,18 @@ class Cavity {
     return known;
   }
   void note_boundary();
+  bool is_one_small_piece() const;
+  bool is_one_piece();
   void measure_local_points();
   void note_forming_points(std::size_t f);
   void place_spheres(std::size_t first, std::size_t end, FourQualities& qualities);
   bool place_vertex(std::size_t f, bool has_sphere, const PlacedQuality& placed);
+  bool leave_territory(Index blocker);
   bool delete_nearer_around(std::size_t first);
-  template <bool kWhole>
-  bool delete_nearer_in(std::size_t first);
+  bool delete_nearer_one_by_one(std::size_t first);
+  bool delete_nearer_by_four(std::size_t first);
+  bool is_nearer_after_all(Index u, bool& certain);
+  unsigned nearer_after_all(const std::array<Index, 4>& u, unsigned which, bool& certain);
   // The infinite point, being the highest number, wraps around to the first place.
   Index& known_local(Index point) { return local_of_[static_cast<Index>(point + 1)]; }
   Index known_local(Index point) const { return local_of_[static_cast<Index>(point + 1)]; }
@@ -180,11 +218,13 @@ class Cavity {
   Workspace& workspace_;
   Territory territory_;
   bool left_territory_ = false;
+  Index blocker_ = kNone;
   Index new_point_ = kNone;
   Point position_ = Point::Zero();
   Placing worst_ = Placing::good;
   List deleted_, seen_, boundary_;  // boundary: 4 * deleted vertex + the neighbour across
   bool is_boundary_noted_ = false;  // by delete_nearer(), and nothing was deleted since
+  bool undoubted_ = false;          // and no sign was in doubt, nor is the new point on the sphere of what is kept
   List local_points_;               // the points of the boundary, the one at infinity included
   std::vector<Index> slots_, queue_;
   std::vector<Facet> facets_;
@@ -193,7 +233,8 @@ class Cavity {
   std::vector<LengthedVector> from_new_;  // from the new point to each local one
   std::vector<Index> local_of_;           // of the infinite point and each other: into local_points_ or kNone
   EdgeTable edges_;
-  std::vector<Index> degrees_, waiting_;  // by local point
+  std::vector<std::uint64_t> ranks_;  // by local point, and the next likewise
+  std::vector<Index> waiting_;
   std::vector<Link> links_;
   LinkTable<kFewPoints, kFewPoints> few_links_;
   LinkTable<kManyPoints, kManyPoints + 16> many_links_;  // rows of a power of two would share a few lines of the cache

@@ -15,6 +15,7 @@
 #include "line_sum.h"
 #include "orchard/geometry/tolerance.h"
 #include "parallel_insertion.h"
+#include "workspace_four.h"
 
 namespace orchard::detail {
 namespace {
@@ -66,6 +67,19 @@ struct Facet {
   unsigned slot;
   Index across;
 };
+
+// A bit for each of four facets across which doubles do not show that nothing is lost.
+#if defined(__GNUC__) && defined(__x86_64__)
+[[gnu::target("avx2")]] unsigned doubtful_of_four(const Workspace& workspace, const Facet* facets) {
+  const auto& [a, b, c, d] = *reinterpret_cast<const std::array<Facet, 4>*>(facets);
+  const std::array<Index, 4> v{a.v, b.v, c.v, d.v}, u{a.u, b.u, c.u, d.u};
+  const Point* const points = workspace.points.data();
+  const FourVectors across = load_four({points + a.across, points + b.across, points + c.across, points + d.across});
+  return ~workspace.agree_four(v, u, across) & 0xf;
+}
+#else
+unsigned doubtful_of_four(const Workspace&, const Facet*) { return 0xf; }
+#endif
 
 // The edge of the hull between the facets of a vertex at infinity and of its neighbour `slot`.
 struct HullEdge {
@@ -410,13 +424,16 @@ class Certifier {
     return corners;
   }
   void look_at_each(const BatchList& list, Index begin, std::array<Look, kBatch>& seen) {
-    for (const Index v : list.items()) {
-      workspace_.settle(v);
-      Look& look = seen[v - begin];
-      look.negative = six_volumes(v);
-      look.radius = std::sqrt(workspace_.vertices[v].radius);
-      look.apart = from_told_sphere(v, look.radius);
-    }
+    for (const Index v : list.items()) workspace_.settle(v);
+    list.for_each_four([&](const std::array<Index, 4>& four) {
+      const FourVolumes six = four_volumes(tetrahedra(four));
+      for (unsigned lane = 0; lane < 4; ++lane) {
+        Look& look = seen[four[lane] - begin];
+        look.negative = {six.value[lane], six.bound[lane]};
+        look.radius = std::sqrt(workspace_.vertices[four[lane]].radius);
+        look.apart = from_told_sphere(four[lane], look.radius);
+      }
+    });
   }
   void see_four_spheres(BatchList& list, Index begin, std::array<Look, kBatch>& seen) {
     list.for_each_four([&](const std::array<Index, 4>& four) {
@@ -520,7 +537,7 @@ class Certifier {
   // are in the cache when their distances are asked for.
   bool are_all_facets_good(Index begin, Index end) {
     std::size_t listed = 0, count = 0;
-    std::array<Facet, std::size_t{4} * kBatch> facets;
+    std::array<Facet, std::size_t{4} * kBatch + 4> facets;
     for (Index v = begin; v < end; ++v)
       for (unsigned i = 0; i < 4; ++i) {
         const Index u = workspace_.vertices[v].neighbors[i];
@@ -538,11 +555,16 @@ class Certifier {
       count += std::size_t{across != kInfinitePoint} & std::size_t{corners[i] != kInfinitePoint} &
                std::size_t{corners[3] != kInfinitePoint};
     }
-    for (std::size_t f = 0; f < count; ++f) {
-      const auto [v, u, i, across] = facets[f];
-      const bool apart = workspace_.power(v, workspace_.points[across]) < -workspace_.power_bound(v);
-      if (apart && !workspace_.shares_sphere(v) && !workspace_.shares_sphere(u)) continue;
-      if (!is_facet_good(v, i, u)) return false;
+    for (std::size_t f = 0; f < count; f += 4) {
+      const std::size_t lanes = std::min<std::size_t>(count - f, 4);
+      std::fill(facets.begin() + f + lanes, facets.begin() + f + 4, facets[f]);
+      unsigned doubtful = can_place_four() ? doubtful_of_four(workspace_, &facets[f]) : 0xf;
+      for (doubtful &= (1u << lanes) - 1; doubtful != 0; doubtful &= doubtful - 1) {
+        const auto [v, u, i, across] = facets[f + static_cast<unsigned>(std::countr_zero(doubtful))];
+        const bool apart = workspace_.power(v, workspace_.points[across]) < -workspace_.power_bound(v);
+        if (apart && !workspace_.shares_sphere(v) && !workspace_.shares_sphere(u)) continue;
+        if (!is_facet_good(v, i, u)) return false;
+      }
     }
     return true;
   }
@@ -733,29 +755,36 @@ class Certifier {
     const auto is_middle_below = [&](const Point& a, const Point& b, const Point& c) {
       return volume_sign_of_middle(inner, a, b, c) == Sign::positive;
     };
-    return is_only_in_fattest(rounded, is_below) || is_only_in_fattest(rounded, is_middle_below);
+    const auto is_outside_box = [&](Index v) {
+      const Point low = corner(v, 0).cwiseMin(corner(v, 1)).cwiseMin(corner(v, 2).cwiseMin(corner(v, 3)));
+      const Point high = corner(v, 0).cwiseMax(corner(v, 1)).cwiseMax(corner(v, 2).cwiseMax(corner(v, 3)));
+      return (rounded.array() < low.array()).any() || (rounded.array() > high.array()).any();
+    };
+    return is_only_in_fattest(rounded, is_below, is_outside_box) ||
+           is_only_in_fattest(rounded, is_middle_below, [](Index) { return false; });
   }
 
   // Whether a point, at or next to `about`, is below all facets of the hull and outside of all tetrahedra but the
-  // fattest. is_below(a, b, c) tells on which side of a facet it is.
-  template <class IsBelow>
-  bool is_only_in_fattest(const Point& about, const IsBelow& is_below) const {
+  // fattest. is_below(a, b, c) tells on which side of a facet it is, is_outside_box(v) when that need not be asked.
+  template <class IsBelow, class IsOutsideBox>
+  bool is_only_in_fattest(const Point& about, const IsBelow& is_below, const IsOutsideBox& is_outside_box) const {
     std::atomic<bool> only = true;
     const auto count = static_cast<Index>(workspace_.vertices.size());
     tbb::parallel_for(tbb::blocked_range<Index>(0, count, kBlock), [&](const auto& range) {
       for (Index v = range.begin(); v < range.end() && only; ++v)
-        if (v != found_.fattest && !workspace_.is_free(v) && !is_elsewhere(v, about, is_below)) only = false;
+        if (v != found_.fattest && !workspace_.is_free(v) && !is_elsewhere(v, about, is_below, is_outside_box))
+          only = false;
     });
     return only;
   }
-  template <class IsBelow>
-  bool is_elsewhere(Index v, const Point& about, const IsBelow& is_below) const {
+  template <class IsBelow, class IsOutsideBox>
+  bool is_elsewhere(Index v, const Point& about, const IsBelow& is_below, const IsOutsideBox& is_outside_box) const {
     if (workspace_.at_infinity(v)) return is_below(corner(v, 0), corner(v, 1), corner(v, 2));
     const double doubt = kAbout * (workspace_.vertices[v].radius + diameter_ * diameter_);
     const auto is_beyond = [&](const auto& facet) {
       return is_below(corner(v, facet[0]), corner(v, facet[2]), corner(v, facet[1]));
     };
-    return !(workspace_.power(v, about) > -doubt) ||
+    return !(workspace_.power(v, about) > -doubt) || is_outside_box(v) ||
            std::any_of(Cavity::kOthers.begin(), Cavity::kOthers.end(), is_beyond);
   }
 

@@ -10,11 +10,11 @@ namespace {
 
 #define ORCHARD_FUSED [[gnu::target("avx2,fma"), gnu::always_inline]] inline
 
-struct FourVolumes {
+struct FourDeterminants {
   __m256d value, bound;
 };
 
-ORCHARD_FUSED FourVolumes volumes(const FourVectors& a, const FourVectors& b, const FourVectors& c) {
+ORCHARD_FUSED FourDeterminants volumes(const FourVectors& a, const FourVectors& b, const FourVectors& c) {
   const __m256d yz = b.y * c.z, zy = b.z * c.y, zx = b.z * c.x, xz = b.x * c.z, xy = b.x * c.y, yx = b.y * c.x;
   const FourVectors magnitude = absolute(a);
   return {a.x * (yz - zy) + a.y * (zx - xz) + a.z * (xy - yx),
@@ -107,6 +107,40 @@ struct FourOffBounds {
   }
 };
 
+// As inside_sphere_fast() in predicates.cpp.
+struct FourMinors {
+  __m256d value, magnitude;
+};
+ORCHARD_FUSED FourMinors minors(const FourVectors& u, const FourVectors& v) {
+  const __m256d p = u.x * v.y, q = v.x * u.y;
+  return {p - q, absolute(p) + absolute(q)};
+}
+ORCHARD_FUSED FourDeterminants inside_spheres(const FourVectors& a, const FourVectors& b, const FourVectors& c,
+                                              const FourVectors& d) {
+  const FourMinors ab = minors(a, b), bc = minors(b, c), cd = minors(c, d), da = minors(d, a), ac = minors(a, c),
+                   bd = minors(b, d);
+  const __m256d az = absolute(a.z), bz = absolute(b.z), cz = absolute(c.z), dz = absolute(d.z);
+  const __m256d abc = a.z * bc.value - b.z * ac.value + c.z * ab.value,
+                bcd = b.z * cd.value - c.z * bd.value + d.z * bc.value,
+                cda = c.z * da.value + d.z * ac.value + a.z * cd.value,
+                dab = d.z * ab.value + a.z * bd.value + b.z * da.value;
+  const __m256d aa = dot(a, a), bb = dot(b, b), cc = dot(c, c), dd = dot(d, d);
+  const __m256d magnitude = aa * (bz * cd.magnitude + cz * bd.magnitude + dz * bc.magnitude) +
+                            bb * (cz * da.magnitude + dz * ac.magnitude + az * cd.magnitude) +
+                            cc * (dz * ab.magnitude + az * bd.magnitude + bz * da.magnitude) +
+                            dd * (az * bc.magnitude + bz * ac.magnitude + cz * ab.magnitude);
+  return {(cc * dab - dd * abc) + (aa * bcd - bb * cda), all_four(16 * kRounding) * magnitude};
+}
+
+// As sharp_inside_sphere() there.
+ORCHARD_FUSED __m256d sharp_inside_spheres(const FourSharpVectors& a, const FourSharpVectors& b,
+                                           const FourSharpVectors& c, const FourSharpVectors& d) {
+  const FourSharpVectors ab = cross(a, b), cd = cross(c, d);
+  const FourTwofolds first = dot(c, c) * dot(d, ab) - dot(d, d) * dot(c, ab),
+                     second = dot(a, a) * dot(b, cd) - dot(b, b) * dot(a, cd);
+  return (first + second).high;
+}
+
 #undef ORCHARD_FUSED
 
 const bool kFourSharpLanes = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
@@ -114,6 +148,34 @@ const bool kFourSharpLanes = __builtin_cpu_supports("avx2") && __builtin_cpu_sup
 }  // namespace
 
 bool can_take_four() { return kFourSharpLanes; }
+
+[[gnu::target("avx2,fma")]] FourVolumes four_volumes(const FourTetrahedra& tetrahedra) {
+  const FourVectors a = load_four(tetrahedra[0]), b = load_four(tetrahedra[1]), c = load_four(tetrahedra[2]),
+                    q = load_four(tetrahedra[3]);
+  const FourDeterminants six = volumes(a - q, b - q, c - q);
+  FourVolumes result;
+  _mm256_storeu_pd(result.value.data(), six.value);
+  _mm256_storeu_pd(result.bound.data(), six.bound);
+  return result;
+}
+
+[[gnu::target("avx2,fma")]] std::array<Sign, 4> four_inside_spheres(const Point& q, const FourTetrahedra& tetrahedra) {
+  const FourVectors from{all_four(q.x()), all_four(q.y()), all_four(q.z())};
+  const FourVectors a = load_four(tetrahedra[0]), b = load_four(tetrahedra[1]), c = load_four(tetrahedra[2]),
+                    d = load_four(tetrahedra[3]);
+  FourDeterminants det = inside_spheres(a - from, b - from, c - from, d - from);
+  if (lanes_of(_mm256_cmp_pd(absolute(det.value), det.bound, _CMP_GT_OQ)) != 0xf) {
+    det.value =
+        sharp_inside_spheres(differences(a, from), differences(b, from), differences(c, from), differences(d, from));
+    det.bound = all_four(kSharper) * det.bound;
+  }
+  const unsigned inside = lanes_of(_mm256_cmp_pd(det.value, det.bound, _CMP_GT_OQ)),
+                 outside = lanes_of(_mm256_cmp_pd(det.value, -det.bound, _CMP_LT_OQ));
+  std::array<Sign, 4> signs;
+  for (unsigned i = 0; i < 4; ++i)
+    signs[i] = static_cast<Sign>(static_cast<int>((inside >> i) & 1u) - static_cast<int>((outside >> i) & 1u));
+  return signs;
+}
 
 // As off_circumcenter(), in the same order of operations.
 [[gnu::target("avx2,fma")]] std::array<double, 4> off_four_circumcenters(const FourCenters& centers,
@@ -123,7 +185,7 @@ bool can_take_four() { return kFourSharpLanes; }
   const __m256d enough = _mm256_loadu_pd(centers.enough.data());
   const FourVectors qa = a - q, qb = b - q, qc = c - q, from_q = center - q;
   const FourVectors twice{all_four(2) * from_q.x, all_four(2) * from_q.y, all_four(2) * from_q.z};
-  const FourVolumes volume6 = volumes(qa, qb, qc);
+  const FourDeterminants volume6 = volumes(qa, qb, qc);
   const __m256d aa = dot(qa, qa), bb = dot(qb, qb), cc = dot(qc, qc);
   const FourOffBounds bounds{
       cross(qb, qc),
@@ -173,6 +235,8 @@ bool can_take_four() { return kFourSharpLanes; }
 }
 #else
 bool can_take_four() { return false; }
+FourVolumes four_volumes(const FourTetrahedra&) { return {}; }
+std::array<Sign, 4> four_inside_spheres(const Point&, const FourTetrahedra&) { return {}; }
 std::array<double, 4> off_four_circumcenters(const FourCenters&, const FourTetrahedra&) { return {}; }
 unsigned four_sharp_circumcenters(const FourTetrahedra&, std::array<Vector, 4>&) { return 0; }
 #endif

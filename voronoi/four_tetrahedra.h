@@ -12,6 +12,15 @@ using FourTetrahedra = std::array<std::array<const Point*, 4>, 4>;
 bool can_take_four();  // whether the machine has vectors of four doubles and the fused operation (AVX2 and FMA),
                        // without which the rest does nothing
 
+// volume() of the vectors from 3 to 0, 1 and 2.
+struct FourVolumes {
+  std::array<double, 4> value, bound;
+};
+FourVolumes four_volumes(const FourTetrahedra& tetrahedra);
+
+// inside_sphere() of one point: uncertain also where some 104 bits do not tell.
+std::array<Sign, 4> four_inside_spheres(const Point& q, const FourTetrahedra& tetrahedra);
+
 // off_circumcenter() from 3, of 0, 1 and 2; where the sign of the volume is in doubt, what it returns is meaningless.
 struct FourCenters {
   std::array<const Point*, 4> center;

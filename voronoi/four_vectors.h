@@ -3,6 +3,7 @@
 #include <immintrin.h>
 
 #include <array>
+#include <cstdint>
 
 #include "orchard/geometry/mesh.h"
 
@@ -28,6 +29,12 @@ ORCHARD_AVX2 FourVectors cross(const FourVectors& a, const FourVectors& b) {
 }
 ORCHARD_AVX2 __m256d dot(const FourVectors& a, const FourVectors& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 ORCHARD_AVX2 __m256d length(const FourVectors& a) { return _mm256_sqrt_pd(dot(a, a)); }
+
+// A bit for each lane that holds, and for each that is a number.
+ORCHARD_AVX2 unsigned lanes_of(__m256d holds) { return static_cast<unsigned>(_mm256_movemask_pd(holds)); }
+ORCHARD_AVX2 unsigned lanes_equal(__m256i lanes, std::int64_t number) {
+  return lanes_of(_mm256_castsi256_pd(_mm256_cmpeq_epi64(lanes, _mm256_set1_epi64x(number))));
+}
 
 // Rows become columns.
 ORCHARD_AVX2 void transpose(__m256d& a, __m256d& b, __m256d& c, __m256d& d) {

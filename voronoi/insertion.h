@@ -76,6 +76,8 @@ class Inserter {
   bool insert_anyhow(Index point);
   Index locate(const Point& q) const;
   Index nearest_start(const Point& q) const;
+  bool is_blocked(const Point& q) const;
+  bool note_blocker(Index v);  // false
   Index walk(const Point& q) const;
   Index highest_nearby(Index v, const Point& q) const;
   Index step_by_orientation(Index v, const Point& q) const;
@@ -102,6 +104,10 @@ class Inserter {
   InsertionCounts counts_;
   const char* failure_ = "";
   std::span<const Index> starts_;
+  // Vertices not owned that kept points from being inserted of late: they are as they were, and often in the way of the
+  // next point as well, which saves the walk to it and the search.
+  std::array<Index, 4> blockers_{};
+  std::size_t next_blocker_ = 0;
   Index last_ = 0;  // where the walk to the next point starts
   std::vector<Candidate> queue_;
   std::vector<Index> deferred_;

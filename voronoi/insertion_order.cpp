@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <utility>
 
 #include "large_pages.h"
@@ -45,6 +46,55 @@ std::uint64_t hilbert(std::array<std::uint32_t, 3> x) {
   for (unsigned bit = kBits; bit-- > 0;)
     for (const std::uint32_t coordinate : x) position = (position << 1) | (((coordinate ^ flip) >> bit) & 1u);
   return position;
+}
+
+// Of eight cells at once: by coordinate, then by cell.
+constexpr std::size_t kEight = 8;
+using EightCells = std::array<std::array<std::uint32_t, kEight>, 3>;
+
+#if defined(__GNUC__) && defined(__x86_64__)
+[[gnu::target("avx2")]] std::array<std::uint64_t, kEight> eight_hilberts(const EightCells& cells) {
+  using Lanes [[gnu::vector_size(4 * kEight)]] = std::uint32_t;
+  Lanes x[3];
+  static_assert(sizeof x == sizeof cells);
+  std::memcpy(x, cells.data(), sizeof x);
+  for (std::uint32_t bit = 1u << (kBits - 1); bit > 1; bit >>= 1) {
+    const std::uint32_t low = bit - 1;
+    for (Lanes& coordinate : x) {
+      const auto set = reinterpret_cast<Lanes>((coordinate & bit) != 0);
+      const Lanes swap = (x[0] ^ coordinate) & low & ~set;
+      x[0] ^= swap | (low & set);
+      coordinate ^= swap;
+    }
+  }
+  x[1] ^= x[0];
+  x[2] ^= x[1];
+  Lanes flip = x[0] ^ x[0];
+  for (std::uint32_t bit = 1u << (kBits - 1); bit > 1; bit >>= 1)
+    flip ^= (bit - 1) & reinterpret_cast<Lanes>((x[2] & bit) != 0);
+  // The upper and the lower half of the bits.
+  Lanes halves[2] = {flip ^ flip, flip ^ flip};
+  for (unsigned bit = kBits; bit-- > 0;)
+    for (const Lanes& coordinate : x) {
+      Lanes& half = halves[bit < kBits / 2];
+      half = (half << 1) | (((coordinate ^ flip) >> bit) & 1u);
+    }
+  std::array<std::uint64_t, kEight> positions;
+  for (std::size_t i = 0; i < kEight; ++i)
+    positions[i] = std::uint64_t{halves[0][i]} << (kCurveBits / 2) | halves[1][i];
+  return positions;
+}
+const bool kEightLanes = __builtin_cpu_supports("avx2");
+#else
+std::array<std::uint64_t, kEight> eight_hilberts(const EightCells&) { return {}; }
+constexpr bool kEightLanes = false;
+#endif
+
+std::array<std::uint64_t, kEight> hilberts(const EightCells& cells) {
+  if (kEightLanes) return eight_hilberts(cells);
+  std::array<std::uint64_t, kEight> positions;
+  for (std::size_t i = 0; i < kEight; ++i) positions[i] = hilbert({cells[0][i], cells[1][i], cells[2][i]});
+  return positions;
 }
 
 std::array<std::uint32_t, 3> cell_of(const Point& p, const Box& box, double side) {
@@ -104,12 +154,22 @@ std::vector<Index> insertion_order(std::span<const Point> points, const Box& box
   reserve_large(items, points.size());
   items.resize(points.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, items.size(), kBatch), [&](const auto& range) {
+    EightCells cells{};
+    std::array<std::uint64_t, kEight> positions{};
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const std::size_t lane = (i - range.begin()) % kEight;
+      if (lane == 0) {
+        for (std::size_t k = 0; k < std::min(kEight, range.end() - i); ++k) {
+          const std::array<std::uint32_t, 3> cell = cell_of(points[i + k], box, side);
+          for (unsigned axis = 0; axis < 3; ++axis) cells[axis][k] = cell[axis];
+        }
+        positions = hilberts(cells);
+      }
       // A point stays in the last round but for one time in eight, and so on downwards.
       std::uint64_t bits = Random(0, 0x40b3u, i).bits();
       unsigned round = rounds;
       for (; round > 0 && (bits & ((1u << kRoundShift) - 1)) == 0; bits >>= kRoundShift) --round;
-      items[i].key = round * (std::uint64_t{1} << kCurveBits) | hilbert(cell_of(points[i], box, side));
+      items[i].key = round * (std::uint64_t{1} << kCurveBits) | positions[lane];
       items[i].point = static_cast<Index>(i);
     }
   });

@@ -44,8 +44,9 @@ Index Inserter::walk(const Point& q) const {
   for (std::size_t steps = 0; steps < patience; ++steps) {
     if (here > workspace_.power_bound(v)) return v;
     Index next = kNone;
-    for (const Index u : workspace_.vertices[v].neighbors) workspace_.prefetch(u);
-    for (Index u : workspace_.vertices[v].neighbors) {
+    const std::array<Index, 4> neighbors = workspace_.neighbors_now(v);
+    for (const Index u : neighbors) workspace_.prefetch(u);
+    for (const Index u : neighbors) {
       if (u == came_from || !territory_.may_read(u)) continue;
       double power = workspace_.power(u, q);
       if (power > 0 && !workspace_.settled(u)) {
@@ -80,12 +81,13 @@ Index Inserter::walk(const Point& q) const {
 // outside by a rounding, but it is above another facet then.
 Index Inserter::step_by_orientation(Index v, const Point& q) const {
   const VoronoiVertex& vertex = workspace_.vertices[v];
+  const std::array<Index, 4> neighbors = workspace_.neighbors_now(v);
   Index outside = kNone;
   for (unsigned i = 0; i < 4; ++i) {
     const auto& [a, b, c] = Cavity::kOthers[i];
     const auto corner = [&](unsigned k) -> const Point& { return workspace_.points[vertex.forming_points[k]]; };
     if (volume_sign(q, corner(a), corner(b), corner(c)) != Sign::negative) continue;
-    const Index next = vertex.neighbors[i];
+    const Index next = neighbors[i];
     if (!territory_.may_read(next)) continue;
     if (!workspace_.at_infinity(next) || workspace_.sign(next, q) == Sign::positive) return next;
     outside = next;

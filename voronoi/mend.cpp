@@ -6,8 +6,11 @@
 namespace orchard::detail {
 namespace {
 
-constexpr std::size_t kMaxDeleted = 256;  // vertices that one insertion may delete: what takes more is no local doubt
-constexpr int kStricter = 2;              // bits that a round takes off the intrusion that does no harm
+// Vertices that one insertion may delete: what takes more is no local doubt. But where few doubts are left, in the
+// first rounds, a point may have that many by itself.
+constexpr std::size_t kMaxDeleted = 256, kMaxDeletedOfFew = 2048, kFewDoubts = 16;
+constexpr int kFirstRounds = 8;
+constexpr int kStricter = 2;  // bits that a round takes off the intrusion that does no harm
 
 // How deep a point is in a sphere through the origin, both relative to it.
 double intrusion_in(const Vector& center, const Vector& point) {
@@ -19,6 +22,7 @@ double intrusion_in(const Vector& center, const Vector& point) {
 std::vector<Index> Mender::mend(std::span<const Doubt> doubts, int round) {
   changed_.clear();
   harmless_ = std::ldexp(workspace_.harmless_intrusion(), -kStricter * round);
+  max_deleted_ = doubts.size() <= kFewDoubts && round < kFirstRounds ? kMaxDeletedOfFew : kMaxDeleted;
   workspace_.set_exact(true);
   for (const auto& [v, u] : doubts) {
     if (workspace_.is_free(v) || workspace_.is_free(u) || slot_of(v, u) == 4) continue;  // gone with another doubt
@@ -90,7 +94,7 @@ bool Mender::insert_again(Index v, Index u) {
 bool Mender::grow(Index point, const Point& q) {
   for (std::size_t done = 0; done < cavity_.deleted().size();) {
     for (; done < cavity_.deleted().size(); ++done) {
-      if (cavity_.deleted().size() > kMaxDeleted) return false;
+      if (cavity_.deleted().size() > max_deleted_) return false;
       for (const Index next : workspace_.vertices[cavity_.deleted()[done]].neighbors) {
         if (workspace_.mark(next) != Mark::unseen) continue;
         if (is_formed_by(next, point) || intrusion(next, q) > harmless_)

@@ -38,6 +38,7 @@ class Mender {
   Workspace& workspace_;
   Cavity cavity_;
   double harmless_ = 0;
+  std::size_t max_deleted_ = 0;
   std::vector<Index> changed_;
 };
 

@@ -23,19 +23,31 @@ void Inserter::enter(const Territory& territory, std::span<const Index> starts) 
   cavity_.enter(territory);
   starts_ = starts;
   last_ = starts.front();
+  blockers_.fill(kNone);
 }
 
 bool Inserter::insert_within(Index point) {
   const Point q = workspace_.points[point];
+  if (is_blocked(q)) return false;
   last_ = walk(q);
   if (!territory_.owns(last_) && !(workspace_.power(last_, q) > 0)) {
     // The end of a pocket of the territory: from elsewhere there may be a way.
     last_ = nearest_start(q);
     last_ = walk(q);
   }
-  if (!territory_.owns(last_)) return false;
+  if (!territory_.owns(last_)) return note_blocker(last_);
   cavity_.begin(point);
-  return insert_directly(last_, q);
+  return insert_directly(last_, q) || (cavity_.left_territory() && note_blocker(cavity_.blocker()));
+}
+
+bool Inserter::is_blocked(const Point& q) const {
+  return std::any_of(blockers_.begin(), blockers_.end(),
+                     [&](Index v) { return v != kNone && workspace_.power(v, q) > workspace_.power_bound(v); });
+}
+
+bool Inserter::note_blocker(Index v) {
+  if (!territory_.owns(v)) blockers_[next_blocker_++ % blockers_.size()] = v;
+  return false;
 }
 
 Index Inserter::nearest_start(const Point& q) const {
@@ -63,8 +75,9 @@ namespace {
 
 std::atomic<std::size_t> large = 100000;
 
-// Parts of a large set: as many points are worth another pass, and as many in each half another cut.
-constexpr std::size_t kWorthPass = 24, kWorthHalving = 4;
+// Parts of a large set: as many points are worth another pass, and as many in each half another cut. And the part of
+// all points that is: a pass looks at all vertices.
+constexpr std::size_t kWorthPass = 24, kWorthHalving = 1, kWorthPassOneIn = 32;
 constexpr int kPasses = 4;
 constexpr double kMaxLeft = 0.75;          // of a pass's points: where more are left, cavities span the set
 constexpr double kRoomier = 1.03125;       // how much room there is, in terms of what the points should need
@@ -248,7 +261,8 @@ void insert_in_regions(Workspace& workspace, Inserter& inserter, std::vector<Ind
   inserter.leave();
   std::vector<std::uint8_t> region_of;
   reserve_large(region_of, workspace.vertices.capacity());
-  for (int pass = 0; pass < kPasses && waiting.size() >= large / kWorthPass; ++pass) {
+  const std::size_t worth = std::max(large / kWorthPass, std::size_t{end} / kWorthPassOneIn);
+  for (int pass = 0; pass < kPasses && waiting.size() >= worth; ++pass) {
     const auto before = static_cast<double>(waiting.size());
     waiting = Pass(workspace, region_of, waiting, end, report).run(inserter);
     if (static_cast<double>(waiting.size()) > kMaxLeft * before) break;

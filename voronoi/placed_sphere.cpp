@@ -84,8 +84,9 @@ bool can_place_four() { return kFourLanes; }
   const __m256d bound = classes.factor * _mm256_set1_pd(limits.min_bound);
   const __m256d good =
       all(less(condition * _mm256_set1_pd(RelativeCenter::kCenterError), _mm256_set1_pd(0.125)),
-          less(shake, _mm256_set1_pd(limits.max_shake)), less(_mm256_setzero_pd(), volume6),
-          less(bound, _mm256_set1_pd(limits.max_poverty) * squared_radius), less(steps, _mm256_set1_pd(kMaxSteps)));
+          less(condition, _mm256_set1_pd(limits.max_condition)), less(shake, _mm256_set1_pd(limits.max_shake)),
+          less(_mm256_setzero_pd(), volume6), less(bound, _mm256_set1_pd(limits.max_poverty) * squared_radius),
+          less(steps, _mm256_set1_pd(kMaxSteps)));
   qualities.good = static_cast<unsigned>(_mm256_movemask_pd(good));
   _mm256_storeu_si256(reinterpret_cast<__m256i*>(qualities.error_class.data()), classes.number);
   _mm256_storeu_pd(qualities.volume6.data(), volume6);

@@ -46,11 +46,11 @@ inline PlacedSphere placed_sphere(const Point& new_point, double noise, const Le
   return {center, squared_radius, {relative.volume6, relative.condition, shake, error}};
 }
 
-// What tells whether a sphere is good beyond any question, as nearly all are: how thin its tetrahedron may be, and how
-// poor its error bound, in terms of the squared radius. Error bounds are rounded up to a power of four times the least
-// one, which is a power of two; the exponent is their class.
+// What tells whether a sphere is good beyond any question, as nearly all are: how thin its tetrahedron may be, how much
+// it may magnify round-off, and how poor its error bound may be, in terms of the squared radius. Error bounds are
+// rounded up to a power of four times the least one, which is a power of two; the exponent is their class.
 struct PlacingLimits {
-  double noise, max_shake, max_poverty, min_bound;
+  double noise, max_shake, max_condition, max_poverty, min_bound;
 };
 
 // The same, bit for bit, for four times three points at once, which becomes the center and radius of as many vertices.

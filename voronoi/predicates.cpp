@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "exact_integer.h"
+#include "short_integer.h"
 #include "twofold.h"
 
 namespace orchard::detail {
@@ -45,26 +46,18 @@ auto integer_vectors(const Point& q, const Points&... points) {
   return std::array{from_q(points)...};
 }
 
-// Where the differences have few enough digits, as those of neighbours mostly have: the cross and dot products of these
-// in two machine words.
-#ifdef __SIZEOF_INT128__
-__extension__ using TwoWords = __int128;
-#else
-using TwoWords = ExactInteger;
-#endif
-
+// Where the differences have few enough digits: 61 bits each, two words for the products and sums of two, three for
+// volumes and five for the lifted determinant.
 struct ShortVector {
+  using Volume = ShortInteger<3>;
   std::int64_t x, y, z;
 
-  SharpVector<ExactInteger> cross(const ShortVector& o) const {
-    return {ExactInteger(product(y, o.z) - product(z, o.y)), ExactInteger(product(z, o.x) - product(x, o.z)),
-            ExactInteger(product(x, o.y) - product(y, o.x))};
+  std::array<TwoWords, 3> cross(const ShortVector& o) const {
+    return {product(y, o.z) - product(z, o.y), product(z, o.x) - product(x, o.z), product(x, o.y) - product(y, o.x)};
   }
-  ExactInteger dot(const ShortVector& o) const {
-    return ExactInteger(product(x, o.x) + product(y, o.y) + product(z, o.z));
-  }
-  ExactInteger dot(const SharpVector<ExactInteger>& o) const {
-    return ExactInteger(x) * o.x + ExactInteger(y) * o.y + ExactInteger(z) * o.z;
+  TwoWords squared() const { return product(x, x) + product(y, y) + product(z, z); }
+  Volume dot(const std::array<TwoWords, 3>& o) const {
+    return Volume(TwoWords(x)) * Volume(o[0]) + Volume(TwoWords(y)) * Volume(o[1]) + Volume(TwoWords(z)) * Volume(o[2]);
   }
 
  private:
@@ -154,10 +147,10 @@ Number sharp_volume(const std::array<SharpVector<Number>, 3>& v) {
   return v[0].dot(v[1].cross(v[2]));
 }
 
-ExactInteger exact_volume(const Point& q, const Point& a, const Point& b, const Point& c) {
+Sign exact_volume_sign(const Point& q, const Point& a, const Point& b, const Point& c) {
   std::array<ShortVector, 3> v;
-  if (short_vectors(v, q, a, b, c)) return v[0].dot(v[1].cross(v[2]));
-  return sharp_volume(integer_vectors(q, a, b, c));
+  if (short_vectors(v, q, a, b, c)) return static_cast<Sign>(v[0].dot(v[1].cross(v[2])).sign());
+  return exact_sign(sharp_volume(integer_vectors(q, a, b, c)));
 }
 
 template <class Number>
@@ -193,12 +186,15 @@ inline RoundedCenter rounded_center(const Point& q, const Point& a, const Point&
   return {Vector((numerator.x / twice).high, (numerator.y / twice).high, (numerator.z / twice).high), volume6.high};
 }
 
-ExactInteger exact_inside_sphere(const Point& q, const Point& a, const Point& b, const Point& c, const Point& d) {
+Sign exact_inside_sphere(const Point& q, const Point& a, const Point& b, const Point& c, const Point& d) {
   std::array<ShortVector, 4> v;
-  if (!short_vectors(v, q, a, b, c, d)) return sharp_inside_sphere(integer_vectors(q, a, b, c, d));
-  const SharpVector<ExactInteger> ab = v[0].cross(v[1]), cd = v[2].cross(v[3]);
-  return lifted<ExactInteger>(v[0].dot(v[0]), v[1].dot(v[1]), v[2].dot(v[2]), v[3].dot(v[3]), v[1].dot(cd),
-                              v[0].dot(cd), v[3].dot(ab), v[2].dot(ab));
+  if (!short_vectors(v, q, a, b, c, d)) return exact_sign(sharp_inside_sphere(integer_vectors(q, a, b, c, d)));
+  using Lifted = ShortInteger<5>;
+  const std::array<TwoWords, 3> ab = v[0].cross(v[1]), cd = v[2].cross(v[3]);
+  const auto squared = [&v](unsigned i) { return Lifted(v[i].squared()); };
+  return static_cast<Sign>(lifted<Lifted>(squared(0), squared(1), squared(2), squared(3), Lifted(v[1].dot(cd)),
+                                          Lifted(v[0].dot(cd)), Lifted(v[3].dot(ab)), Lifted(v[2].dot(ab)))
+                               .sign());
 }
 
 // The same products and sums with the fused operation as one instruction instead of a call: the same results, twice as
@@ -239,7 +235,7 @@ Sign volume_sign(const Point& q, const Point& a, const Point& b, const Point& c,
   const Sign sharp = sign_of(kFused ? fused_volume(q, a, b, c) : sharp_volume(twofold_vectors(q, a, b, c)).high,
                              fast.bound * kSharper + indifferent);
   if (sharp != Sign::uncertain || indifferent > 0) return sharp;
-  return exact_sign(exact_volume(q, a, b, c));
+  return exact_volume_sign(q, a, b, c);
 }
 
 Sign volume_sign_of_middle(const std::array<Point, 4>& points, const Point& a, const Point& b, const Point& c) {
@@ -273,7 +269,7 @@ Sign inside_sphere(const Point& q, const Point& a, const Point& b, const Point& 
       sign_of(kFused ? fused_inside_sphere(q, a, b, c, d) : sharp_inside_sphere(twofold_vectors(q, a, b, c, d)).high,
               fast.bound * kSharper);
   if (sharp != Sign::uncertain) return sharp;
-  return exact_sign(exact_inside_sphere(q, a, b, c, d));
+  return exact_inside_sphere(q, a, b, c, d);
 }
 
 bool sharp_circumcenter(const Point& q, const Point& a, const Point& b, const Point& c, Vector& center) {

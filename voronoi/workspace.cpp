@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "four_tetrahedra.h"
 #include "large_pages.h"
 
 namespace orchard::detail {
@@ -173,9 +174,26 @@ Sign Workspace::doubtful_sign(Index v, const Point& q, double bound) {
   return sign_from_points(v, q);
 }
 
+std::array<Sign, 4> Workspace::doubtful_signs(const std::array<Index, 4>& v, unsigned which, const Point& q) const {
+  for (unsigned i = 0; i < 4; ++i)
+    if (((which >> i) & 1u) != 0 && (!settled(v[i]) || at_infinity(v[i]))) which &= ~(1u << i);
+  std::array<Sign, 4> signs{};
+  // One alone is told as soon by itself.
+  if (std::popcount(which) < 2 || !can_take_four()) return signs;
+  FourTetrahedra tetrahedra;
+  const auto some = static_cast<unsigned>(std::countr_zero(which));
+  for (unsigned i = 0; i < 4; ++i) {
+    const auto& corner = vertices[v[((which >> i) & 1u) != 0 ? i : some]].forming_points;
+    for (unsigned k = 0; k < 4; ++k) tetrahedra[k][i] = &points[corner[k]];
+  }
+  const std::array<Sign, 4> found = four_inside_spheres(q, tetrahedra);
+  for (unsigned i = 0; i < 4; ++i)
+    if (((which >> i) & 1u) != 0) signs[i] = found[i];
+  return signs;
+}
+
 bool Workspace::share_sphere(VoronoiVertex& vertex, std::uint8_t& error, Index v, const Point& new_point) const {
-  const double sphere = kSphereNoise * noise_ * std::sqrt(vertices[v].radius);
-  if (!(std::abs(power(v, new_point)) <= std::min(sphere, power_bound(v)))) return false;  // nor at infinity
+  if (!may_share_sphere(v, new_point)) return false;
   if (!settled(v) || poor(vertices[v], error_class_of(v))) return false;
   vertex.center = vertices[v].center;
   vertex.radius = vertices[v].radius;

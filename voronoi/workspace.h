@@ -1,11 +1,13 @@
 #pragma once
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
 
+#include "four_vectors.h"
 #include "frame.h"
 #include "orchard/voronoi/diagram.h"
 #include "placed_sphere.h"
@@ -59,17 +61,51 @@ class Workspace {
     __builtin_prefetch(vertices.data() + v);
     __builtin_prefetch(state_.data() + v);
   }
+  // Those of a vertex that others may be giving new neighbours meanwhile, elsewhere (see Territory).
+  std::array<Index, 4> neighbors_now(Index v) const {
+    auto& shared = const_cast<std::array<Index, 4>&>(vertices[v].neighbors);
+    std::array<Index, 4> now;
+    for (unsigned i = 0; i < 4; ++i) now[i] = std::atomic_ref(shared[i]).load(std::memory_order_relaxed);
+    return now;
+  }
+  void set_neighbor(Index v, unsigned slot, Index neighbor) {
+    std::atomic_ref(vertices[v].neighbors[slot]).store(neighbor, std::memory_order_relaxed);
+  }
   bool at_infinity(Index v) const { return vertices[v].forming_points[3] == kInfinitePoint; }
   bool is_free(Index v) const { return vertices[v].neighbors[0] == kNone; }
   Mark mark(Index v) const { return static_cast<Mark>(state_[v] & 3u); }
   void add_mark(Index v, bool condition, Mark mark) {  // to an unseen one
     state_[v] = static_cast<std::uint16_t>(state_[v] | (condition ? unsigned(mark) : 0u));
   }
+  // To unseen ones, of which these have a bit set.
+  void add_marks(const std::array<Index, 4>& v, unsigned deleted, unsigned kept) {
+    static_assert(unsigned(Mark::deleted) == 1 && unsigned(Mark::kept) == 2);
+    for (unsigned i = 0; i < 4; ++i)
+      state_[v[i]] = static_cast<std::uint16_t>(state_[v[i]] | ((deleted >> i) & 1u) | (((kept >> i) & 1u) << 1));
+  }
   void set_mark(Index v, Mark mark) { state_[v] = static_cast<std::uint16_t>((state_[v] & ~3u) | unsigned(mark)); }
 
   // The squared radius minus the squared distance to q by the stored centre; no number at infinity.
   double power(Index v, const Point& q) const { return vertices[v].radius - (vertices[v].center - q).squaredNorm(); }
   double power_bound(Index v) const { return bounds_[error_class_of(v)]; }
+  // Below this many squared radii of its own, the bound of a vertex at a place leaves the doubt in the input: its signs
+  // are uncertain then wherever the bound does not tell. 0 with exact signs.
+  double doubtful_input() const { return exact_ ? 0 : good_center_; }
+#if defined(__GNUC__) && defined(__x86_64__)
+  // What power() and power_bound() tell of four vertices, and their marks: a bit for each. far or near, where the bound
+  // tells; where it does not, input: the bound is below so many squared radii.
+  struct FourTests {
+    struct Marks {
+      unsigned unseen, kept;
+    } marks;
+    unsigned far, near, input;
+  };
+  ORCHARD_AVX2 FourTests test_four(const std::array<Index, 4>& v, const FourVectors& q, double doubtful_input) const;
+  // A bit for each of four pairs of vertices whose spheres are their own ones and that of the first certainly does not
+  // hold q, or which have the same one.
+  ORCHARD_AVX2 unsigned agree_four(const std::array<Index, 4>& v, const std::array<Index, 4>& u,
+                                   const FourVectors& q) const;
+#endif
   // Whether its sphere is a neighbour's, or may be.
   bool shares_sphere(Index v) const { return (state_[v] & kShared) != 0; }
 
@@ -83,6 +119,10 @@ class Workspace {
 
   // The same where the stored centre does not tell.
   Sign doubtful_sign(Index v, const Point& q, double bound);
+
+  // doubtful_sign() of those of four vertices that have a bit set, as far as it is soon told by their points: uncertain
+  // may stand for any.
+  std::array<Sign, 4> doubtful_signs(const std::array<Index, 4>& v, unsigned which, const Point& q) const;
 
   // How deep a point in a sphere does no harm, unless many such are met on one line (see certificate.h).
   double harmless_intrusion() const { return kIntrusion * scale(); }
@@ -102,8 +142,12 @@ class Workspace {
   // What place() comes to, for a sphere that placed_sphere() or place_four() placed with this noise. The class is set
   // where the centre is worth anything.
   Placing judge(const PlacedQuality& placed, std::uint8_t& error_class) const;
-  // What is good by these judge() calls good, and it is not poor.
-  PlacingLimits placing_limits() const { return {noise_, kThin, good_center_, bounds_[0]}; }
+  // What is good by these judge() calls good, and it is not poor, or may be where that does not matter.
+  PlacingLimits placing_limits(bool may_be_poor) const {
+    constexpr double kNone = std::numeric_limits<double>::infinity();
+    return {noise_, exact_ ? kShaken : kThin, exact_ ? kSharpCondition : kNone,
+            exact_ || may_be_poor ? kNone : good_center_, bounds_[0]};
+  }
   // The same at infinity, beyond the facet of the new point, a and b.
   Placing place_at_infinity(VoronoiVertex& vertex, std::uint8_t& error_class, const LengthedVector& a,
                             const LengthedVector& b) const;
@@ -116,6 +160,11 @@ class Workspace {
   // goes: takes over this very sphere and its error bound, so that all vertices of many points on one sphere have the
   // same sign for the next. False, and no change, if not.
   bool share_sphere(VoronoiVertex& vertex, std::uint8_t& error_class, Index v, const Point& new_point) const;
+  // Whether share_sphere() may be true.
+  bool may_share_sphere(Index v, const Point& new_point) const {
+    const double sphere = kSphereNoise * noise_ * std::sqrt(vertices[v].radius);
+    return std::abs(power(v, new_point)) <= std::min(sphere, power_bound(v));  // not at infinity
+  }
   // A length far beyond the points, for vertices whose place is as good as infinite.
   double far() const { return 1024 * scale(); }
   double scale() const { return std::sqrt(squared_scale_); }  // the size of the points' box, to a factor of two
@@ -140,6 +189,12 @@ class Workspace {
     vertices[v] = vertex;
     set_error_class(v, error_class, shared, 0);
   }
+  void store_but_neighbors(Index v, const VoronoiVertex& vertex, std::uint8_t error_class, bool shared) {
+    vertices[v].center = vertex.center;
+    vertices[v].radius = vertex.radius;
+    vertices[v].forming_points = vertex.forming_points;
+    set_error_class(v, error_class, shared, 0);
+  }
   void resize(std::size_t count) {
     vertices.resize(count);
     state_.resize(count);
@@ -155,6 +210,10 @@ class Workspace {
   void reserve(std::size_t count, std::size_t used);
 
  private:
+#if defined(__GNUC__) && defined(__x86_64__)
+  ORCHARD_AVX2 __m256i states(const std::array<Index, 4>& v) const;
+  ORCHARD_AVX2 __m256d bounds(__m256i states) const;
+#endif
   Sign side_of_plane(Index v, const Point& q) const;
   double infinity_bound(Index v, const Vector& from_corner) const;
   Sign sign_at_infinity(Index v, const Point& q);
@@ -175,6 +234,7 @@ class Workspace {
   std::array<double, 64> bounds_{};                  // by error class
   double squared_scale_ = 1, per_min_bound_ = 1;     // powers of two, so that scaled input is treated exactly alike
   static constexpr double kThin = 0x1p-24;           // how far the noise may turn a facet of a good vertex, in radians
+  static constexpr double kShaken = 0.125;           // the same of one that is worth anything
   static constexpr double kSharpCondition = 0x1p12;  // with exact signs: where a centre calls for sharper arithmetic
   // How many times the noise a point may be off a sphere that it is taken to be on: the sphere's centre magnifies the
   // noise of its own points. More, up to the error bound, would make chance a rule where many spheres nearly agree, as
@@ -208,7 +268,7 @@ inline Placing Workspace::place(VoronoiVertex& vertex, std::uint8_t& error, cons
 }
 
 inline Placing Workspace::judge(const PlacedQuality& placed, std::uint8_t& error) const {
-  if (!placed.reliable() || !(placed.shake < 0.125)) return Placing::failed;
+  if (!placed.reliable() || !(placed.shake < kShaken)) return Placing::failed;
   error = error_class(placed.error);
   if (!(placed.volume6 > 0)) return Placing::failed;
   const bool thin = exact_ ? !(placed.condition < kSharpCondition) : !(placed.shake < kThin);
@@ -221,7 +281,7 @@ inline Placing Workspace::place_at_infinity(VoronoiVertex& vertex, std::uint8_t&
   const double length = normal.norm();
   const double condition = a.length * b.length / length;
   const double shake = noise_ * std::max(a.length, b.length) / length;
-  if (!(condition * RelativeCenter::kCenterError < 0.125) || !(shake < 0.125)) return Placing::failed;
+  if (!(condition * RelativeCenter::kCenterError < 0.125) || !(shake < kShaken)) return Placing::failed;
   vertex.center = normal / length;
   vertex.radius = std::numeric_limits<double>::quiet_NaN();
   // Here the class holds the error of a height above the facet, relative to the distance from one of its points.

@@ -67,9 +67,11 @@ TEST(FourTetrahedra, AreLookedAtWithTheSameBitsAsOneByOne) {
     const std::array<double, 4> off = off_four_circumcenters(centers, four);
     std::array<Vector, 4> sharp;
     const unsigned found = four_sharp_circumcenters(four, sharp);
+    const FourVolumes volumes = four_volumes(four);
     for (unsigned i = 0; i < 4; ++i) {
       const auto& [a, b, c, d] = corners[i];
       const Determinant one = volume(a - d, b - d, c - d);
+      ASSERT_TRUE(equal_bits(volumes.value[i], one.value) && equal_bits(volumes.bound[i], one.bound));
       if (one.sign() != Sign::uncertain) {
         ASSERT_TRUE(equal_bits(off[i], off_circumcenter(center[i], d, a, b, c, one, centers.enough[i])));
         ++(off[i] <= centers.enough[i] ? sufficed : was_too_much);
@@ -89,6 +91,38 @@ TEST(FourTetrahedra, AreLookedAtWithTheSameBitsAsOneByOne) {
   EXPECT_GT(was_too_much, 1000);
   EXPECT_GT(found_at_once, 1000);
   EXPECT_GT(left, 100);
+}
+
+TEST(FourTetrahedra, HaveTheSignsOfTheirSpheresOrNone) {
+  if (!can_take_four()) GTEST_SKIP() << "this machine has no vectors of four doubles";
+  std::mt19937_64 random(test::first_seed());
+  std::uniform_real_distribution<double> unit(-1, 1);
+  int certain = 0, uncertain = 0;
+  for (std::uint64_t round = 0; round < 10'000 * test::more(); ++round) {
+    std::array<std::array<Point, 4>, 4> corners;
+    FourTetrahedra four;
+    for (unsigned i = 0; i < 4; ++i) {
+      corners[i] = random_tetrahedron(random);
+      if (round % 2 == 0 && i > 0) corners[i] = corners[0];
+      for (unsigned k = 0; k < 4; ++k) four[k][i] = &corners[i][k];
+    }
+    // On the first sphere, more or less, or one of its points.
+    Point q = corners[0][0];
+    Vector center;
+    if (round % 8 != 0 && sharp_circumcenter(corners[0][0], corners[0][1], corners[0][2], corners[0][3], center)) {
+      const Vector away = Vector(unit(random), unit(random), unit(random)).normalized();
+      q += center + center.norm() * (1 + std::pow(10, -20 * std::abs(unit(random)))) * away;
+    }
+    const std::array<Sign, 4> signs = four_inside_spheres(q, four);
+    for (unsigned i = 0; i < 4; ++i) {
+      const auto& [a, b, c, d] = corners[i];
+      ++(signs[i] == Sign::uncertain ? uncertain : certain);
+      if (signs[i] == Sign::uncertain) continue;
+      ASSERT_EQ(signs[i], inside_sphere(q, a, b, c, d));
+    }
+  }
+  EXPECT_GT(certain, 10'000);
+  EXPECT_GT(uncertain, 1000);
 }
 
 }  // namespace

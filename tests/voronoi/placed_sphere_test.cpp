@@ -42,7 +42,8 @@ std::array<LengthedVector, 3> random_triangle(std::mt19937_64& random) {
 
 TEST(PlacedSpheres, AreTheSameFourAtATimeBitForBitAndGoodOnlyWithinTheLimits) {
   if (!can_place_four()) GTEST_SKIP() << "this machine has no vectors of four doubles";
-  const PlacingLimits limits{.noise = 0x1p-50, .max_shake = 1e-3, .max_poverty = 1e-4, .min_bound = 0x1p-60};
+  const PlacingLimits limits{
+      .noise = 0x1p-50, .max_shake = 1e-3, .max_condition = 1e6, .max_poverty = 1e-4, .min_bound = 0x1p-60};
   std::mt19937_64 random(test::first_seed());
   std::uniform_real_distribution<double> unit(-1, 1);
   int good = 0, not_good = 0;
@@ -72,6 +73,7 @@ TEST(PlacedSpheres, AreTheSameFourAtATimeBitForBitAndGoodOnlyWithinTheLimits) {
       ASSERT_TRUE(one.quality.reliable());
       ASSERT_GT(one.quality.volume6, 0);
       ASSERT_LT(one.quality.shake, limits.max_shake);
+      ASSERT_LT(one.quality.condition, limits.max_condition);
       const double bound = std::ldexp(limits.min_bound, 2 * static_cast<int>(qualities.error_class[i]));
       ASSERT_LE(one.quality.error, bound);
       ASSERT_LT(bound, limits.max_poverty * one.squared_radius);

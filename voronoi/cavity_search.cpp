@@ -1,0 +1,155 @@
+#include <algorithm>
+#include <cmath>
+
+#include "cavity.h"
+#include "workspace_four.h"
+
+namespace orchard::detail {
+namespace {
+
+// How many deleted vertices ahead of the one whose neighbours are looked at memory is fetched into the cache.
+constexpr std::size_t kFetchAhead = 4;
+
+}  // namespace
+
+bool Cavity::delete_nearer(Index start) {
+  if (!territory_.owns(start)) return leave_territory(start);
+  delete_vertex(start);
+  undoubted_ = true;
+  const bool certain = delete_nearer_around(0);
+  is_boundary_noted_ = true;
+  undoubted_ = undoubted_ && certain;
+  return certain;
+}
+
+bool Cavity::delete_nearer_around(std::size_t first) {
+  return can_place_four() ? delete_nearer_by_four(first) : delete_nearer_one_by_one(first);
+}
+
+bool Cavity::leave_territory(Index blocker) {
+  left_territory_ = true;
+  blocker_ = blocker;
+  return false;
+}
+
+// What is asked for once this vertex is looked at: its neighbours now, its forming points by note_facets().
+inline void Cavity::fetch_around(Index v) const {
+  const VoronoiVertex& vertex = workspace_.vertices[v];
+  for (const Index u : vertex.neighbors) workspace_.prefetch(u);
+  for (const Index p : vertex.forming_points) {
+    __builtin_prefetch(workspace_.points.data() + p);
+    __builtin_prefetch(local_of_.data() + static_cast<Index>(p + 1));
+  }
+}
+
+// Where neither the stored centre tells, nor that the doubt is in the input.
+bool Cavity::is_nearer_after_all(Index u, bool& certain) {
+  const Sign sign = workspace_.doubtful_sign(u, position_, workspace_.power_bound(u));
+  const bool nearer = sign == Sign::positive;
+  certain = certain && sign != Sign::uncertain;
+  undoubted_ = undoubted_ && (nearer || workspace_.at_infinity(u) || !workspace_.may_share_sphere(u, position_));
+  return nearer;
+}
+
+unsigned Cavity::nearer_after_all(const std::array<Index, 4>& u, unsigned which, bool& certain) {
+  std::array<Sign, 4> signs{};
+  if ((which & (which - 1)) != 0) signs = workspace_.doubtful_signs(u, which, position_);
+  unsigned nearer = 0;
+  for (; which != 0; which &= which - 1) {
+    const auto i = static_cast<unsigned>(std::countr_zero(which));
+    bool is_nearer = signs[i] == Sign::positive;
+    if (signs[i] == Sign::uncertain)
+      is_nearer = is_nearer_after_all(u[i], certain);
+    else
+      undoubted_ = undoubted_ && (is_nearer || !workspace_.may_share_sphere(u[i], position_));
+    nearer |= (is_nearer ? 1u : 0u) << i;
+  }
+  return nearer;
+}
+
+bool Cavity::delete_nearer_one_by_one(std::size_t first) {
+  const Point q = position_;
+  const double doubtful_input = workspace_.doubtful_input();
+  bool certain = true;
+  for (std::size_t i = first; i < deleted_.size(); ++i) {
+    deleted_.ensure_room();
+    seen_.ensure_room();
+    boundary_.ensure_room();
+    const Index v = deleted_.items()[i];
+    const std::array<Index, 4> neighbors = workspace_.vertices[v].neighbors;
+    fetch_around(deleted_.items()[std::min(i + kFetchAhead, deleted_.size() - 1)]);
+    for (unsigned slot = 0; slot < 4; ++slot) {
+      const Index u = neighbors[slot];
+      const Mark mark = workspace_.mark(u);
+      const bool unseen = mark == Mark::unseen, owned = territory_.owns(u);
+      const double power = workspace_.power(u, q), bound = workspace_.power_bound(u);
+      bool nearer = power > bound;
+      if (unseen && !(std::abs(power) > bound)) {
+        if (bound < doubtful_input * workspace_.vertices[u].radius)
+          certain = false;
+        else
+          nearer = is_nearer_after_all(u, certain);
+      }
+      if (!owned && nearer) return leave_territory(u);
+      workspace_.add_mark(u, unseen & owned, nearer ? Mark::deleted : Mark::kept);
+      deleted_.push_if(u, unseen & nearer);
+      seen_.push_if(u, unseen & !nearer & owned);
+      boundary_.push_if(4 * v + slot, (mark == Mark::kept) | (unseen & !nearer));
+    }
+  }
+  return certain;
+}
+
+// The time goes into mispredicted branches here if one is not careful: whether a neighbour has been seen, and on which
+// side its sign falls, is as good as random. So every neighbour is tested, and what has been seen is masked out.
+#if defined(__GNUC__) && defined(__x86_64__)
+[[gnu::target("avx2")]] bool Cavity::delete_nearer_by_four(std::size_t first) {
+  const FourVectors q{all_four(position_.x()), all_four(position_.y()), all_four(position_.z())};
+  const double doubtful_input = workspace_.doubtful_input();
+  const bool whole = territory_.whole();
+  bool certain = true;
+  for (std::size_t i = first; i < deleted_.size(); ++i) {
+    deleted_.ensure_room();
+    seen_.ensure_room();
+    boundary_.ensure_room();
+    const Index v = deleted_.items()[i];
+    const std::array<Index, 4> neighbors = workspace_.vertices[v].neighbors;
+    fetch_around(deleted_.items()[std::min(i + kFetchAhead, deleted_.size() - 1)]);
+    const unsigned owned = whole ? 0xf : territory_.owned(neighbors);
+    const auto [marks, far, near, input] = workspace_.test_four(neighbors, q, doubtful_input);
+    const unsigned unseen = marks.unseen, doubtful = unseen & ~(far | near);
+    unsigned nearer = unseen & near;
+    certain &= (doubtful & input) == 0;
+    if (const unsigned after_all = doubtful & ~input; after_all != 0) [[unlikely]]
+      nearer |= nearer_after_all(neighbors, after_all, certain);
+    if (const unsigned beyond = nearer & ~owned; beyond != 0)
+      return leave_territory(neighbors[static_cast<std::size_t>(std::countr_zero(beyond))]);
+    const unsigned kept = unseen & ~nearer;
+    workspace_.add_marks(neighbors, nearer, kept & owned);
+    const __m128i items = _mm_loadu_si128(reinterpret_cast<const __m128i*>(neighbors.data()));
+    deleted_.push_four(items, nearer);
+    seen_.push_four(items, kept & owned);
+    // Nothing that is kept now will be deleted by this search.
+    boundary_.push_four(_mm_add_epi32(_mm_set1_epi32(static_cast<int>(4 * v)), _mm_set_epi32(3, 2, 1, 0)),
+                        marks.kept | kept);
+  }
+  return certain;
+}
+#else
+bool Cavity::delete_nearer_by_four(std::size_t first) { return delete_nearer_one_by_one(first); }
+#endif
+
+bool Cavity::widen() {
+  const std::size_t before = deleted_.size();
+  for (const Facet& facet : facets_) {
+    if (facet.visible || workspace_.mark(facet.outside) == Mark::deleted ||
+        workspace_.sign(facet.outside, position_) != Sign::uncertain)
+      continue;
+    if (!territory_.owns(facet.outside)) return leave_territory(facet.outside);
+    delete_vertex(facet.outside);
+  }
+  delete_nearer_around(before);
+  return deleted_.size() > before;
+}
+
+}  // namespace orchard::detail
