@@ -18,6 +18,7 @@ struct Record {
   std::uint32_t front = kNoFront;  // that `trees` has of the FrontPool
   bool large = false;              // trees, so that a front may be of use
   std::uint8_t costly = 0;         // searches of late, see there
+  std::uint8_t roots_wait = 0;     // steps within a budget for which the roots are not asked by themselves
   Vec3 apart_by{};                 // from centre to centre,
   Step apart_at = -1;              // at that step
   bool allowed = false;

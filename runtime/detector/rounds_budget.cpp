@@ -12,9 +12,10 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr std::uint64_t kFirstSlice = 1024;  // tests; each further slice is four times as large
-constexpr std::int64_t kBeginsShare = 16;    // of the work, to 1 for searches, until all have begun
-constexpr std::size_t kAtOnce = 64;          // tasks, so that the turns depend on no number of threads
+constexpr std::uint64_t kFirstSlice = 1024;       // tests; each further slice is four times as large
+constexpr std::int64_t kBeginsShare = 16;         // of the work, to 1 for searches, until all have begun
+constexpr std::size_t kAtOnce = 64;               // tasks, so that the turns depend on no number of threads
+constexpr std::uint8_t kSearchesBeforeRoots = 4;  // of a pair that its roots have not told apart
 
 // By one digit of 256, stable.
 template <typename Digit>
@@ -66,6 +67,12 @@ void Rounds::sort_tasks(const RecordTable& records) {
 
 // What can be told without a search.
 void Rounds::begin_one(Task& task, Record& record, QueryPool::Scratch& scratch) const noexcept {
+  const bool remembers = task.slow && CoherentPair::remembers(record.trees);
+  task.work = task.simple ? 0 : kPairWork;
+  if (!task.simple && !remembers && record.roots_wait > 0) {
+    --record.roots_wait;
+    return;
+  }
   PartPair pair;
   place(record, task.part_a, task.part_b, pair);
   NarrowPhase& narrow = scratch.workspace.narrow;
@@ -75,8 +82,7 @@ void Rounds::begin_one(Task& task, Record& record, QueryPool::Scratch& scratch) 
     task.done = true;
     return;
   }
-  task.work = kPairWork;
-  const auto known = task.slow ? CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose, pair.b.pose)
+  const auto known = remembers ? CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose, pair.b.pose)
                                : std::optional<Verdict>();
   if (known) {
     task.verdict = solid_verdict(*known, pair);
@@ -86,6 +92,7 @@ void Rounds::begin_one(Task& task, Record& record, QueryPool::Scratch& scratch) 
     narrow.start(pair.a.pose, pair.b.pose);
     task.verdict = verdict_of(narrow, pair);
     task.done = narrow.finished();
+    record.roots_wait = task.done ? 0 : kSearchesBeforeRoots;
   }
   task.verdict.separation_bound = std::min(task.verdict.separation_bound, bound);
   task.verdict.work = task.work;

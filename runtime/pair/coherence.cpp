@@ -56,8 +56,12 @@ struct Coherence {
     return std::isfinite(places) && detail::PoseLanes(a, b).rotate();
   }
 
+  static bool remembers(const TreePair& of) noexcept {
+    return of.memory_.clearance > 0 || of.memory_.witness_count > 0;
+  }
+
   std::optional<Verdict> recall() noexcept {
-    if (!(memory.clearance > 0) && memory.witness_count == 0) return std::nullopt;
+    if (!remembers(pair)) return std::nullopt;
     if (!rigid()) {
       pair.forget();
       return std::nullopt;
@@ -190,6 +194,8 @@ std::optional<Verdict> CoherentPair::recall(Workspace& workspace, TreePair& pair
                                             const Pose& b) noexcept {
   return Coherence{workspace, pair, a, b}.recall();
 }
+
+bool CoherentPair::remembers(const TreePair& pair) noexcept { return Coherence::remembers(pair); }
 
 Verdict CoherentPair::search(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b,
                              const Budget& budget) noexcept {

@@ -10,6 +10,8 @@ struct CoherentPair {
   // What is known without a search: that a clearance has lasted, or that the triangles that met last still do. Nothing
   // if that does not tell. Some 100 ns.
   static std::optional<Verdict> recall(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept;
+  // Whether there is anything that recall() could tell by.
+  static bool remembers(const TreePair& pair) noexcept;
   // The rest of collide_coherently(), to be asked after recall() has told nothing. "Maybe" where the budget ends it,
   // which it exceeds by less than one pair of leaves; Verdict::work is all of the search's.
   static Verdict search(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b,
