@@ -209,6 +209,7 @@ class Cavity {
   Index& known_local(Index point) { return local_of_[static_cast<Index>(point + 1)]; }
   Index known_local(Index point) const { return local_of_[static_cast<Index>(point + 1)]; }
   void fetch_around(Index v) const;
+  std::array<Index, 4> neighbors_of_deleted(std::size_t i);
   void choose_slots();
   template <unsigned kPoints, unsigned kStride>
   bool link_by(LinkTable<kPoints, kStride>& links);

@@ -42,6 +42,15 @@ inline void Cavity::fetch_around(Index v) const {
   }
 }
 
+// With room for what becomes of them.
+inline std::array<Index, 4> Cavity::neighbors_of_deleted(std::size_t i) {
+  deleted_.ensure_room();
+  seen_.ensure_room();
+  boundary_.ensure_room();
+  fetch_around(deleted_.items()[std::min(i + kFetchAhead, deleted_.size() - 1)]);
+  return workspace_.vertices[deleted_.items()[i]].neighbors;
+}
+
 // Where neither the stored centre tells, nor that the doubt is in the input.
 bool Cavity::is_nearer_after_all(Index u, bool& certain) {
   const Sign sign = workspace_.doubtful_sign(u, position_, workspace_.power_bound(u));
@@ -72,12 +81,8 @@ bool Cavity::delete_nearer_one_by_one(std::size_t first) {
   const double doubtful_input = workspace_.doubtful_input();
   bool certain = true;
   for (std::size_t i = first; i < deleted_.size(); ++i) {
-    deleted_.ensure_room();
-    seen_.ensure_room();
-    boundary_.ensure_room();
     const Index v = deleted_.items()[i];
-    const std::array<Index, 4> neighbors = workspace_.vertices[v].neighbors;
-    fetch_around(deleted_.items()[std::min(i + kFetchAhead, deleted_.size() - 1)]);
+    const std::array<Index, 4> neighbors = neighbors_of_deleted(i);
     for (unsigned slot = 0; slot < 4; ++slot) {
       const Index u = neighbors[slot];
       const Mark mark = workspace_.mark(u);
@@ -109,12 +114,8 @@ bool Cavity::delete_nearer_one_by_one(std::size_t first) {
   const bool whole = territory_.whole();
   bool certain = true;
   for (std::size_t i = first; i < deleted_.size(); ++i) {
-    deleted_.ensure_room();
-    seen_.ensure_room();
-    boundary_.ensure_room();
     const Index v = deleted_.items()[i];
-    const std::array<Index, 4> neighbors = workspace_.vertices[v].neighbors;
-    fetch_around(deleted_.items()[std::min(i + kFetchAhead, deleted_.size() - 1)]);
+    const std::array<Index, 4> neighbors = neighbors_of_deleted(i);
     const unsigned owned = whole ? 0xf : territory_.owned(neighbors);
     const auto [marks, far, near, input] = workspace_.test_four(neighbors, q, doubtful_input);
     const unsigned unseen = marks.unseen, doubtful = unseen & ~(far | near);

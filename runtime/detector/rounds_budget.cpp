@@ -67,21 +67,22 @@ void Rounds::sort_tasks(const RecordTable& records) {
 
 // What can be told without a search.
 void Rounds::begin_one(Task& task, Record& record, QueryPool::Scratch& scratch) const noexcept {
-  const bool remembers = task.slow && CoherentPair::remembers(record.trees);
-  task.work = task.simple ? 0 : kPairWork;
-  if (!task.simple && !remembers && record.roots_wait > 0) {
-    --record.roots_wait;
-    return;
-  }
   PartPair pair;
-  place(record, task.part_a, task.part_b, pair);
   NarrowPhase& narrow = scratch.workspace.narrow;
   const double bound = task.verdict.separation_bound;
   if (task.simple) {
+    place(record, task.part_a, task.part_b, pair);
     task.verdict = answer_exactly(narrow, pair, task.work);
     task.done = true;
     return;
   }
+  task.work = kPairWork;
+  const bool remembers = task.slow && CoherentPair::remembers(record.trees);
+  if (!remembers && record.roots_wait > 0) {
+    --record.roots_wait;
+    return;
+  }
+  place(record, task.part_a, task.part_b, pair);
   const auto known = remembers ? CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose, pair.b.pose)
                                : std::optional<Verdict>();
   if (known) {

@@ -145,8 +145,7 @@ bool DistanceQuery::surely_near(const BallSlabPair& pair) noexcept {
   const double radii = double{radius_of(pair_.first_.tree, pair.a)} +
                        double{radius_of(pair_.second_.tree, pair.b)} * double{pair_.placement_.scale};
   if (radii > enough_) return false;
-  const detail::NodeBox p =
-      detail::node_box_at(pair_.first_.tree.ball_slabs[pair.a / kBlockWidth], pair.a % kBlockWidth);
+  const detail::NodeBox p = detail::node_box_at(pair_.first_.tree, pair.a);
   const detail::NodeBox q = pair_.moved_box(pair.b);
   const double x = double{q.center[0]} - double{p.center[0]}, y = double{q.center[1]} - double{p.center[1]},
                z = double{q.center[2]} - double{p.center[2]};
@@ -162,17 +161,14 @@ bool DistanceQuery::surely_near(const BallSlabPair& pair) noexcept {
 void DistanceQuery::expand(const BallSlabPair& pair, std::uint32_t block, bool second) noexcept {
   const TreeView &first = pair_.first_.tree, &other = pair_.second_.tree;
   const detail::Placement& placement = pair_.placement_;
-  const auto box = [](const TreeView& tree, std::uint32_t node) {
-    return detail::node_box_at(tree.ball_slabs[node / kBlockWidth], node % kBlockWidth);
-  };
   const bool limited = limit_ < double{kCoordinateLimit};
   const float reach = limited ? float_above(limit_) : 0, margin = placement.box_margin + reach;
   detail::BoxGaps gaps;
   if (second) {
-    detail::box_gaps(detail::moved_back(box(first, pair.a), placement), other.ball_slabs[block], placement.scale,
-                     margin, gaps);
+    detail::box_gaps(detail::moved_back(detail::node_box_at(first, pair.a), placement), other.ball_slabs[block],
+                     placement.scale, margin, gaps);
   } else {
-    detail::box_gaps(detail::moved(box(other, pair.b), placement), first.ball_slabs[block], 1, margin, gaps);
+    detail::box_gaps(pair_.moved_box(pair.b), first.ball_slabs[block], 1, margin, gaps);
   }
   const std::size_t begin = stack_size_;
   if (limited && gaps.meeting != gaps.used) min_lower_ = std::min(min_lower_, limit_);
@@ -235,8 +231,7 @@ void DistanceQuery::find_within(const BallSlabPair& pair, const TriangleBlock& l
                                 const TriangleBlock& rows) noexcept {
   detail::Placement near = pair_.placement_;
   near.margin = float_above((double{near.margin} + limit_) * (1 + 1e-6));
-  const detail::NodeBox lane_box =
-      detail::node_box_at(pair_.first_.tree.ball_slabs[pair.a / kBlockWidth], pair.a % kBlockWidth);
+  const detail::NodeBox lane_box = detail::node_box_at(pair_.first_.tree, pair.a);
   const detail::NodeBox row_box = pair_.moved_box(pair.b);
   std::uint64_t left = detail::triangle_candidates({lanes, rows, lane_box, row_box}, near);
   min_lower_ = std::min(min_lower_, limit_);

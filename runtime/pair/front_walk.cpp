@@ -28,10 +28,6 @@ constexpr double kAxisError = 4e-6;      // of a motion
 
 double size_of(const Vec3& v) noexcept { return std::sqrt(detail::dot(v, v)); }
 
-detail::NodeBox box_of(const TreeView& tree, std::uint32_t node) noexcept {
-  return detail::node_box_at(tree.ball_slabs[node / kBlockWidth], node % kBlockWidth);
-}
-
 }  // namespace
 
 FrontWalk::FrontWalk(PairFront& front, NarrowPhase& narrow) noexcept
@@ -162,7 +158,7 @@ FrontWalk::Outcome FrontWalk::settle_nodes() noexcept {
         continue;
       }
       if (tracker_->exhausted()) return Outcome::interrupted;
-      const BallSlabPair pair = {block.a[lane], block.b[lane]};
+      const NodePair pair = {block.a[lane], block.b[lane]};
       release(slot);
       if (const Outcome outcome = walk(pair); outcome != Outcome::apart) return outcome;
     }
@@ -171,11 +167,11 @@ FrontWalk::Outcome FrontWalk::settle_nodes() noexcept {
 }
 
 // Depth first, as NarrowPhase does; what is apart joins the front.
-FrontWalk::Outcome FrontWalk::walk(const BallSlabPair& from) noexcept {
+FrontWalk::Outcome FrontWalk::walk(const NodePair& from) noexcept {
   stack_[stack_size_++] = from;
   while (stack_size_ > 0) {
     if (tracker_->exhausted()) return keep_stack(), Outcome::interrupted;
-    const BallSlabPair pair = stack_[--stack_size_];
+    const NodePair pair = stack_[--stack_size_];
     const std::uint32_t a = detail::ball_slab_child(first_, pair.a), b = detail::ball_slab_child(second_, pair.b);
     if (a & b & kLeafBit) {
       LeafAxis axis;
@@ -191,10 +187,11 @@ FrontWalk::Outcome FrontWalk::walk(const BallSlabPair& from) noexcept {
   return Outcome::apart;
 }
 
-bool FrontWalk::leaves_meet(const BallSlabPair& pair, const Axis* last, LeafAxis& axis) noexcept {
+bool FrontWalk::leaves_meet(const NodePair& pair, const Axis* last, LeafAxis& axis) noexcept {
   const TriangleBlock& lanes = first_.triangle_blocks[detail::ball_slab_child(first_, pair.a) & ~kLeafBit];
   const TriangleBlock& rows = second_.triangle_blocks[detail::ball_slab_child(second_, pair.b) & ~kLeafBit];
-  const detail::NodeBox lane_box = box_of(first_, pair.a), row_box = detail::moved(box_of(second_, pair.b), placement_);
+  const detail::NodeBox lane_box = detail::node_box_at(first_, pair.a),
+                        row_box = detail::moved(detail::node_box_at(second_, pair.b), placement_);
   const detail::LeafPair leaves = {lanes, rows, lane_box, row_box};
   axis = detail::leaf_axis(leaves, placement_, last, enough_);
   tracker_->spend(kBlockWidth);
@@ -203,16 +200,16 @@ bool FrontWalk::leaves_meet(const BallSlabPair& pair, const Axis* last, LeafAxis
   return PairAccess::test_leaves(narrow_, pair.a, pair.b);
 }
 
-void FrontWalk::expand(const BallSlabPair& pair, bool open_second) noexcept {
+void FrontWalk::expand(const NodePair& pair, bool open_second) noexcept {
   const std::uint32_t block = detail::ball_slab_child(open_second ? second_ : first_, open_second ? pair.b : pair.a);
   BoxAxes axes;
   const float margin = placement_.box_margin;
   if (open_second) {
-    detail::box_axes(detail::moved_back(box_of(first_, pair.a), placement_), second_.ball_slabs[block], &placement_,
-                     margin, axes);
+    detail::box_axes(detail::moved_back(detail::node_box_at(first_, pair.a), placement_), second_.ball_slabs[block],
+                     &placement_, margin, axes);
   } else {
-    detail::box_axes(detail::moved(box_of(second_, pair.b), placement_), first_.ball_slabs[block], nullptr, margin,
-                     axes);
+    detail::box_axes(detail::moved(detail::node_box_at(second_, pair.b), placement_), first_.ball_slabs[block], nullptr,
+                     margin, axes);
   }
   tracker_->spend(static_cast<std::uint64_t>(std::bit_width(axes.used)));
   const std::size_t begin = stack_size_;
@@ -233,7 +230,7 @@ void FrontWalk::expand(const BallSlabPair& pair, bool open_second) noexcept {
   stack_size_ = begin;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t node = block * kBlockWidth + order[i];
-    stack_[stack_size_++] = open_second ? BallSlabPair{pair.a, node} : BallSlabPair{node, pair.b};
+    stack_[stack_size_++] = open_second ? NodePair{pair.a, node} : NodePair{node, pair.b};
   }
 }
 
@@ -266,7 +263,7 @@ void FrontWalk::add(std::uint32_t a, std::uint32_t b, float gap, const Axis& u) 
 // What a search that has ended has not come to.
 void FrontWalk::keep_stack() noexcept {
   while (stack_size_ > 0) {
-    const BallSlabPair& pair = stack_[--stack_size_];
+    const NodePair& pair = stack_[--stack_size_];
     add(pair.a, pair.b, kUnknown, {1, 0, 0});
   }
 }

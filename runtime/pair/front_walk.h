@@ -28,7 +28,7 @@ class FrontWalk {
   void run(const Budget& budget) noexcept;
 
  private:
-  using BallSlabPair = PairAccess::BallSlabPair;
+  using NodePair = PairAccess::NodePair;
   using Axis = std::array<float, 3>;
   enum class Outcome : std::uint8_t { apart, meeting, interrupted };
 
@@ -47,9 +47,9 @@ class FrontWalk {
   }
   Outcome settle_leaves() noexcept;
   Outcome settle_nodes() noexcept;
-  Outcome walk(const BallSlabPair& from) noexcept;
-  bool leaves_meet(const BallSlabPair& pair, const Axis* last, detail::LeafAxis& axis) noexcept;
-  void expand(const BallSlabPair& pair, bool open_second) noexcept;
+  Outcome walk(const NodePair& from) noexcept;
+  bool leaves_meet(const NodePair& pair, const Axis* last, detail::LeafAxis& axis) noexcept;
+  void expand(const NodePair& pair, bool open_second) noexcept;
   void add(std::uint32_t a, std::uint32_t b, float gap, const Axis& u) noexcept;
   void keep_stack() noexcept;
   void release(std::uint32_t slot) noexcept;
@@ -60,7 +60,7 @@ class FrontWalk {
   const detail::Placement& placement_;
   const Pose& relative_;
   PairAccess::BudgetTracker* tracker_ = nullptr;
-  BallSlabPair* stack_;
+  NodePair* stack_;
   std::size_t stack_size_ = 0;
   float far_ = std::numeric_limits<float>::infinity();          // gaps above it are kept as one bound
   float enough_ = 0;                                            // of a gap between leaves: as much as the last motion

@@ -161,7 +161,7 @@ bool NarrowPhase::bind(const PreparedTree& a, const PreparedTree& b) noexcept {
   const std::size_t deepest =
       2 * std::size_t{kBlockWidth} * (a.tree.triangle_tree_depth + b.tree.triangle_tree_depth + 1) + 1;
   if (!has_triangles() || deepest <= stack_room_) return true;
-  stack_.reset(new (std::nothrow) BallSlabPair[deepest]);
+  stack_.reset(new (std::nothrow) NodePair[deepest]);
   stack_room_ = stack_ ? deepest : 0;
   return stack_ != nullptr;
 }

@@ -35,12 +35,11 @@ void NarrowPhase::start_exact() noexcept {
 }
 
 detail::NodeBox NarrowPhase::moved_box(std::uint32_t node) const noexcept {
-  return detail::moved(detail::node_box_at(block_of(second_.tree, node), node % kBlockWidth), placement_);
+  return detail::moved(detail::node_box_at(second_.tree, node), placement_);
 }
 
 // The larger node's children against the other node, in the children's frame. True if they are the second tree's.
-inline bool NarrowPhase::find_children(const BallSlabPair& pair, std::uint32_t a, std::uint32_t b,
-                                       BoxGaps& gaps) noexcept {
+inline bool NarrowPhase::find_children(const NodePair& pair, std::uint32_t a, std::uint32_t b, BoxGaps& gaps) noexcept {
   const BallSlabBlock &of_a = block_of(first_.tree, pair.a), &of_b = block_of(second_.tree, pair.b);
   const std::uint32_t lane_a = pair.a % kBlockWidth, lane_b = pair.b % kBlockWidth;
   const bool second =
@@ -55,7 +54,7 @@ inline bool NarrowPhase::find_children(const BallSlabPair& pair, std::uint32_t a
 }
 
 // In place of a pair, those of its children that may meet, the deepest last.
-inline void NarrowPhase::push_children(const BallSlabPair& pair, bool second, std::uint32_t block,
+inline void NarrowPhase::push_children(const NodePair& pair, bool second, std::uint32_t block,
                                        const BoxGaps& gaps) noexcept {
   pair_tests_ += static_cast<std::uint64_t>(std::bit_width(gaps.used));
   std::uint32_t order[kBlockWidth], count = 0;
@@ -67,7 +66,7 @@ inline void NarrowPhase::push_children(const BallSlabPair& pair, bool second, st
   }
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t node = block * kBlockWidth + order[i];
-    stack_[stack_size_++] = second ? BallSlabPair{pair.a, node} : BallSlabPair{node, pair.b};
+    stack_[stack_size_++] = second ? NodePair{pair.a, node} : NodePair{node, pair.b};
   }
 }
 
@@ -75,7 +74,7 @@ inline void NarrowPhase::push_children(const BallSlabPair& pair, bool second, st
 bool NarrowPhase::refine_ball_slabs(BudgetTracker& tracker) noexcept {
   while (stack_size_ > 0) {
     if (tracker.exhausted()) return false;
-    const BallSlabPair pair = stack_[--stack_size_];
+    const NodePair pair = stack_[--stack_size_];
     const std::uint32_t a = child_of(first_.tree, pair.a), b = child_of(second_.tree, pair.b);
     if (a & b & kLeafBit) {
       const std::uint64_t before = triangle_tests_;
@@ -90,7 +89,7 @@ bool NarrowPhase::refine_ball_slabs(BudgetTracker& tracker) noexcept {
     BoxGaps gaps[2];
     const bool second = find_children(pair, a, b, gaps[0]);
     if (two) {
-      const BallSlabPair other = stack_[--stack_size_];
+      const NodePair other = stack_[--stack_size_];
       const std::uint32_t oa = child_of(first_.tree, other.a), ob = child_of(second_.tree, other.b);
       const bool other_second = find_children(other, oa, ob, gaps[1]);
       push_children(other, other_second, other_second ? ob : oa, gaps[1]);
@@ -101,7 +100,7 @@ bool NarrowPhase::refine_ball_slabs(BudgetTracker& tracker) noexcept {
   return true;
 }
 
-bool NarrowPhase::test_triangles(const BallSlabPair& pair) noexcept {
+bool NarrowPhase::test_triangles(const NodePair& pair) noexcept {
   const TriangleBlock& lanes = first_.tree.triangle_blocks[child_of(first_.tree, pair.a) & ~kLeafBit];
   const TriangleBlock& rows = second_.tree.triangle_blocks[child_of(second_.tree, pair.b) & ~kLeafBit];
   const auto used = [](const TriangleBlock& block) {
@@ -110,7 +109,7 @@ bool NarrowPhase::test_triangles(const BallSlabPair& pair) noexcept {
     return count;
   };
   triangle_tests_ += used(lanes) * used(rows);
-  const detail::NodeBox lane_box = detail::node_box_at(block_of(first_.tree, pair.a), pair.a % kBlockWidth);
+  const detail::NodeBox lane_box = detail::node_box_at(first_.tree, pair.a);
   const detail::NodeBox row_box = moved_box(pair.b);
   std::uint64_t left = detail::triangle_candidates({lanes, rows, lane_box, row_box}, placement_);
   for (; left != 0; left &= left - 1) {

@@ -11,7 +11,7 @@ namespace orchard::runtime {
 // other's frame, and what covers its rounding.
 struct PairAccess {
   using BudgetTracker = NarrowPhase::BudgetTracker;
-  using BallSlabPair = NarrowPhase::BallSlabPair;
+  using NodePair = NarrowPhase::NodePair;
 
   // Prepares for queries in the first tree's frame, whatever the roots say. False where nothing can be said.
   static bool place(NarrowPhase& pair, const Pose& a, const Pose& b) noexcept {
@@ -65,7 +65,7 @@ struct PairAccess {
   }
   static void add_work(NarrowPhase& pair, std::uint64_t work) noexcept { pair.work_ += work; }
   static bool has_last_level(const NarrowPhase& pair) noexcept { return pair.has_last_level(); }
-  static BallSlabPair* stack(const NarrowPhase& pair) noexcept { return pair.stack_.get(); }
+  static NodePair* stack(const NarrowPhase& pair) noexcept { return pair.stack_.get(); }
   static bool has_triangles(const NarrowPhase& pair) noexcept { return pair.has_triangles(); }
 
  private:

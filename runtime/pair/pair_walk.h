@@ -76,7 +76,7 @@ void walk_candidates(const PlacedPair& pair, const WalkStack& room, Visit&& visi
     const std::uint32_t lane_a = top.a % kBlockWidth, lane_b = top.b % kBlockWidth;
     if (a & b & kLeafBit) {
       const TriangleBlock &lanes = first.triangle_blocks[a & ~kLeafBit], &rows = second.triangle_blocks[b & ~kLeafBit];
-      const NodeBox lane_box = node_box_at(of_a, lane_a), row_box = moved(node_box_at(of_b, lane_b), pair.placement);
+      const NodeBox lane_box = node_box_at(first, top.a), row_box = moved(node_box_at(second, top.b), pair.placement);
       const LeafPair leaves = {lanes, rows, lane_box, row_box};
       for (std::uint64_t left = triangle_candidates(leaves, pair.placement); left != 0; left &= left - 1) {
         const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
@@ -88,10 +88,10 @@ void walk_candidates(const PlacedPair& pair, const WalkStack& room, Visit&& visi
                              ((b & kLeafBit) == 0 && of_a.radius[lane_a] < of_b.radius[lane_b] * pair.placement.scale);
     const std::uint32_t block = open_second ? b : a;
     if (open_second) {
-      meeting_boxes(moved_back(node_box_at(of_a, lane_a), pair.placement), second.ball_slabs[block],
+      meeting_boxes(moved_back(node_box_at(first, top.a), pair.placement), second.ball_slabs[block],
                     pair.placement.scale, pair.placement.box_margin, gaps);
     } else {
-      meeting_boxes(moved(node_box_at(of_b, lane_b), pair.placement), first.ball_slabs[block], 1,
+      meeting_boxes(moved(node_box_at(second, top.b), pair.placement), first.ball_slabs[block], 1,
                     pair.placement.box_margin, gaps);
     }
     for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {

@@ -1,7 +1,7 @@
 #pragma once
 #include "eight.h"
 
-// One ball slab against eight: what the axes (front_block.cpp) and the times (ball_slab_time.cpp) of such are made of.
+// One ball slab against eight: what their times (ball_slab_time.cpp) are made of.
 namespace orchard::runtime::detail {
 
 // Added to the square of a sine before its root: a cosine of two float normals is good to some 50 u, u = 2^-24.
@@ -20,25 +20,18 @@ struct BallSlabPair {
   Floats distance;             // of the centres
   Floats by_n, by_m, by_line;  // gaps along both normals; along the line of the centres, or between the balls
 
-  // `placement` moves the lanes unless it is null. The lanes as they are tested go to `result`. `lane`: which one,
-  // where Kind is of one.
+  // `placement` moves the lanes unless it is null. The lanes as they are tested go to `result`.
   template <typename Result>
   ORCHARD_INLINE BallSlabPair(const BallSlab& single, const BallSlabBlock& lanes, const Placement* placement,
-                              Result& result, std::uint32_t lane = 0) noexcept
-      : c{E::at(lanes.x, lane), E::at(lanes.y, lane), E::at(lanes.z, lane)},
-        n{E::at(lanes.nx, lane), E::at(lanes.ny, lane), E::at(lanes.nz, lane)},
+                              Result& result) noexcept
+      : c{load<Floats>(lanes.x), load<Floats>(lanes.y), load<Floats>(lanes.z)},
+        n{load<Floats>(lanes.nx), load<Floats>(lanes.ny), load<Floats>(lanes.nz)},
         place{E::all(single.x), E::all(single.y), E::all(single.z)},
         m{E::all(single.nx), E::all(single.ny), E::all(single.nz)},
-        r(E::at(lanes.radius, lane)),
-        h(E::at(lanes.height, lane)),
+        r(load<Floats>(lanes.radius)),
+        h(load<Floats>(lanes.height)),
         s(E::all(single.radius)),
         k(E::all(single.height)) {
-    place_lanes(placement, result, lane);
-  }
-
- private:
-  template <typename Result>
-  ORCHARD_INLINE void place_lanes(const Placement* placement, Result& result, std::uint32_t lane) noexcept {
     result.used = Kind::bits(E::all(0.0f) <= r);
     if (placement != nullptr) {
       c = E::move(*placement, c);
@@ -46,12 +39,13 @@ struct BallSlabPair {
       r = r * E::all(placement->scale);
       h = h * E::all(placement->scale);
     }
-    E::put(c.x, result.x, lane), E::put(c.y, result.y, lane), E::put(c.z, result.z, lane);
-    E::put(n.x, result.nx, lane), E::put(n.y, result.ny, lane), E::put(n.z, result.nz, lane);
-    E::put(r, result.radius, lane), E::put(h, result.height, lane);
+    store(c.x, result.x), store(c.y, result.y), store(c.z, result.z);
+    store(n.x, result.nx), store(n.y, result.ny), store(n.z, result.nz);
+    store(r, result.radius), store(h, result.height);
     find_gaps();
   }
 
+ private:
   // How far each reaches along a unit vector: across the planes, height times the cosine; along them, at most the
   // radius times the sine. The axes tried: both normals, the line of the centres, and the balls.
   ORCHARD_INLINE void find_gaps() noexcept {

@@ -4,7 +4,7 @@
 #include "eight.h"
 #include "machine.h"
 
-// Gaps are those of ball_slab_axes(), along the same directions. Rates are rounded up: their own rounding is below 40 u
+// Gaps are those of BallSlabPair, along the same directions. Rates are rounded up: their own rounding is below 40 u
 // of the sum of their parts' sizes, u = 2^-24, and kRateError is more.
 namespace orchard::runtime::detail {
 namespace {

@@ -40,13 +40,6 @@ struct Eight {
       return load<Floats>(from);
     }
   }
-  ORCHARD_INLINE static void put(const Floats& value, std::array<float, kBlockWidth>& to, std::uint32_t lane) noexcept {
-    if constexpr (kCount == 1) {
-      to[lane] = value;
-    } else {
-      store(value, to);
-    }
-  }
   ORCHARD_INLINE static Floats all(float value) noexcept { return spread<Floats>(value); }
   // Of two comparisons, not of one: then compilers see a minimum and a maximum, an instruction each. Where one is not a
   // number, both give the second one.

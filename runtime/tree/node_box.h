@@ -26,6 +26,10 @@ inline NodeBox node_box_at(const BallSlabBlock& b, std::uint32_t i) noexcept {
           b.length[i]};
 }
 
+inline NodeBox node_box_at(const TreeView& tree, std::uint32_t node) noexcept {
+  return node_box_at(tree.ball_slabs[node / kBlockWidth], node % kBlockWidth);
+}
+
 inline std::array<float, 3> third_normal(const NodeBox& b) noexcept {
   const auto &n = b.n, &m = b.m;
   return {n[1] * m[2] - n[2] * m[1], n[2] * m[0] - n[0] * m[2], n[0] * m[1] - n[1] * m[0]};

@@ -162,7 +162,7 @@ class NarrowPhase {
   friend class DistanceQuery;
   friend struct PairAccess;  // the other queries of runtime/pair
   using Side = PreparedTree;
-  struct NodePair {
+  struct NodePair {  // of the two trees of spheres, or of triangles
     std::uint32_t a, b;
   };
   class PairList {  // a vector that does not grow by itself
@@ -181,9 +181,6 @@ class NarrowPhase {
   struct Cursor {  // where the level under way continues: lanes; rows
     std::size_t pair = 0;
     std::uint32_t outer = 0, inner = 0;
-  };
-  struct BallSlabPair {  // ball slabs that may meet
-    std::uint32_t a, b;
   };
   struct Best {
     double bound = std::numeric_limits<double>::infinity();
@@ -212,10 +209,10 @@ class NarrowPhase {
   void give_up_spheres() noexcept;
   void start_exact() noexcept;
   bool refine_ball_slabs(BudgetTracker& tracker) noexcept;
-  bool find_children(const BallSlabPair& pair, std::uint32_t a, std::uint32_t b, detail::BoxGaps& gaps) noexcept;
-  void push_children(const BallSlabPair& pair, bool second, std::uint32_t block, const detail::BoxGaps& gaps) noexcept;
+  bool find_children(const NodePair& pair, std::uint32_t a, std::uint32_t b, detail::BoxGaps& gaps) noexcept;
+  void push_children(const NodePair& pair, bool second, std::uint32_t block, const detail::BoxGaps& gaps) noexcept;
   detail::NodeBox moved_box(std::uint32_t node) const noexcept;  // of the second tree, in the first one's frame
-  bool test_triangles(const BallSlabPair& pair) noexcept;
+  bool test_triangles(const NodePair& pair) noexcept;
   bool test_two(std::uint32_t a, std::uint32_t lane, std::uint32_t b, std::uint32_t row) noexcept;
   void add_ball(Contact& contact, std::array<double, 3>& normal) const noexcept;
   std::array<double, 3> triangle_normal() const noexcept;
@@ -246,7 +243,7 @@ class NarrowPhase {
   PairList inner_, leaves_, next_;  // meeting pairs: with an inner node, of two leaves, and of the level under way
   std::size_t settled_leaves_ = 0;
   Cursor cursor_;
-  std::unique_ptr<BallSlabPair[]> stack_;  // the last level's, deepest first; room for the trees' depths
+  std::unique_ptr<NodePair[]> stack_;  // the last level's, deepest first; room for the trees' depths
   std::size_t stack_size_ = 0, stack_room_ = 0;
   bool exact_started_ = false;
   detail::LevelState level_state_{};
