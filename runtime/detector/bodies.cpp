@@ -35,7 +35,9 @@ Body& BodyTable::take_in(BodyId id, std::size_t count) {
   grow(states_, slots);
   grow(before_, slots);
   grow(whereabouts_, slots);
-  ++whereabouts_[id.index].changes;
+  grow(travels_, slots);
+  grow(disturbed_, slots);
+  disturb(id.index);
   whereabouts_[id.index].generation = id.generation;
   make_room(asking_, slots);  // for asking everyone
   Body& body = bodies_[id.index];
@@ -51,13 +53,37 @@ Body& BodyTable::take_in(BodyId id, std::size_t count) {
   return body;
 }
 
-// A sum that is not rounded down, so that it never says too little.
-void BodyTable::add_turn(Whereabouts& where, double way) noexcept {
+void BodyTable::disturb(BodyIndex body) noexcept {
+  ++whereabouts_[body].changes;
+  disturbed_[body] = 1;
+  any_disturbed_.store(true, std::memory_order_relaxed);
+}
+
+void BodyTable::forget_disturbed() noexcept {
+  if (!any_disturbed()) return;
+  std::fill(disturbed_.begin(), disturbed_.end(), std::uint8_t{0});
+  any_disturbed_.store(false, std::memory_order_relaxed);
+}
+
+// Sums that are not rounded down, so that they never say too little.
+void BodyTable::add_travel(BodyIndex body, double way) noexcept {
   constexpr double kUp = 1 + 0x1p-52;
-  if (way != 0) where.turned = (where.turned + way * (1 + 1e-9)) * kUp;
+  double& travel = travels_[body];
+  travel = (travel + way * (1 + 1e-9)) * kUp;
+  if (std::isfinite(travel)) return;
+  travel = 0;
+  disturb(body);
+}
+
+void BodyTable::add_turn(BodyIndex body, double way) noexcept {
+  constexpr double kUp = 1 + 0x1p-52;
+  if (way == 0) return;
+  Whereabouts& where = whereabouts_[body];
+  where.turned = (where.turned + way * (1 + 1e-9)) * kUp;
+  add_travel(body, way);
   if (std::isfinite(where.turned)) return;
   where.turned = 0;
-  ++where.changes;
+  disturb(body);
 }
 
 void BodyTable::moved(BodyIndex index, const Pose& before) noexcept {
@@ -66,13 +92,16 @@ void BodyTable::moved(BodyIndex index, const Pose& before) noexcept {
   Whereabouts& where = whereabouts_[index];
   const bool one = body.parts.size() == 1;
   const double reach = one ? body.parts[0].reach : body.reach;
+  const Vec3 middle_before = where.middle;
   where.middle = one ? transform(now, body.parts[0].center) : Vec3(now.translation);
   double size = reach * now.scale;
   for (std::size_t i = 0; i < 3; ++i) size += std::fabs(now.translation[i]) + std::fabs(where.middle[i]);
   where.slack = 1e-14 * size;
+  where.reach = one && body.rigid && !(body.continuous_speed > 0) ? reach * now.scale : -1;
   const double change = pose_change(before, now);
-  add_turn(where, change == 0 ? 0 : (change + 4 * kRigidTolerance * (now.scale + before.scale)) * reach);
-  if (!body.rigid || !std::isfinite(size)) ++where.changes;
+  add_turn(index, change == 0 ? 0 : (change + 4 * kRigidTolerance * (now.scale + before.scale)) * reach);
+  add_travel(index, length(where.middle - middle_before) + where.slack);
+  if (!body.rigid || !std::isfinite(size)) disturb(index);
 }
 
 void BodyTable::part_moved(BodyIndex index, std::size_t part, const PartPlace& before, const Shape& shape) noexcept {
@@ -81,7 +110,7 @@ void BodyTable::part_moved(BodyIndex index, std::size_t part, const PartPlace& b
   const double rounding = 4 * kRigidTolerance * (now.local.scale + before.local.scale);
   const double way =
       length(now.center - before.center) + (pose_change(before.local, now.local) + rounding) * shape.reach;
-  add_turn(whereabouts_[index], way * pose.scale);
+  add_turn(index, way * pose.scale);
   moved(index, pose);
 }
 
@@ -161,7 +190,7 @@ bool BodyTable::surely_apart(const BodyPair& pair, double time_step) const noexc
 
 std::size_t BodyTable::memory_bytes() const noexcept {
   std::size_t bytes = bytes_of(bodies_) + bytes_of(states_) + bytes_of(before_) + bytes_of(asking_) +
-                      bytes_of(answers_) + bytes_of(whereabouts_);
+                      bytes_of(answers_) + bytes_of(whereabouts_) + bytes_of(travels_) + bytes_of(disturbed_);
   for (const Body& body : bodies_) bytes += bytes_of(body.parts) + bytes_of(body.parts_before);
   return bytes;
 }

@@ -1,4 +1,6 @@
 #pragma once
+#include <atomic>
+
 #include "broad/body_pool.h"
 #include "shapes.h"
 
@@ -54,10 +56,11 @@ struct Body {
 
 // What tells whether a body may have come closer to another one, and nothing else: it is looked at for each pair of a
 // step. Points of the body are where `middle` is, but for what they have turned about it.
-struct Whereabouts {
-  Vec3 middle{};                 // in the world; of its only part, or its origin
-  double slack = 0;              // what `middle` may be off by
-  double turned = 0;             // the way of any point about the middle up to now, at most, from step to step
+struct alignas(64) Whereabouts {
+  Vec3 middle{};      // in the world; of its only part, or its origin
+  double slack = 0;   // what `middle` may be off by, and a thousandth of what the rounding of a gap between spheres may
+  double reach = -1;  // of its only part's sphere; below 0: spheres alone tell nothing
+  double turned = 0;  // the way of any point about the middle up to now, at most, from step to step
   std::uint32_t changes = 0;     // since what was known before says nothing of now
   std::uint32_t generation = 0;  // of the body that has the index
 };
@@ -89,15 +92,21 @@ class BodyTable {
     prefetch_all(bodies_[body]);
     prefetch_all(states_[body].pose);
   }
-  void prefetch_whereabouts(BodyIndex body) const noexcept { prefetch_all(whereabouts_[body]); }
+  void prefetch_whereabouts(BodyIndex body) const noexcept { prefetch(&whereabouts_[body]); }
   void prefetch_part(BodyIndex body) const noexcept {
     if (!bodies_[body].parts.empty()) prefetch_all(bodies_[body].parts[0]);
   }
   const Whereabouts& whereabouts(BodyIndex body) const noexcept { return whereabouts_[body]; }
+  // The way of any of its points up to now, at most: those of the middle, and about it.
+  double travel(BodyIndex body) const noexcept { return travels_[body]; }
+  // Whether Whereabouts::changes of any body, or of this one, have grown since forget_disturbed().
+  bool any_disturbed() const noexcept { return any_disturbed_.load(std::memory_order_relaxed); }
+  bool disturbed(BodyIndex body) const noexcept { return disturbed_[body] != 0; }
+  void forget_disturbed() noexcept;
   // Who calls for what ask() does not see: another pose of a body at rest, another place of a part, other triangles.
   void moved(BodyIndex body, const Pose& before) noexcept;
   void part_moved(BodyIndex body, std::size_t part, const PartPlace& before, const Shape& shape) noexcept;
-  void deformed(BodyIndex body) noexcept { ++whereabouts_[body].changes; }
+  void deformed(BodyIndex body) noexcept { disturb(body); }
 
   // Makes all their states those of the step; a body may come up twice. What follows from many answers is worked out by
   // jobs of `executor`.
@@ -109,13 +118,18 @@ class BodyTable {
   std::size_t memory_bytes() const noexcept;
 
  private:
-  static void add_turn(Whereabouts& where, double way) noexcept;
+  void add_turn(BodyIndex body, double way) noexcept;
+  void add_travel(BodyIndex body, double way) noexcept;
+  void disturb(BodyIndex body) noexcept;
   void take_answer(Step step, BodyIndex index, const BodyState& answer) noexcept;
   StateSource source_;
   std::vector<Body> bodies_;
   std::vector<BodyState> states_;
   std::vector<Pose> before_;  // at the step asked before
   std::vector<Whereabouts> whereabouts_;
+  std::vector<double> travels_;
+  std::vector<std::uint8_t> disturbed_;
+  std::atomic<bool> any_disturbed_ = false;  // set by jobs
   std::vector<BodyIndex> asking_;
   std::vector<BodyState> answers_;
 };

@@ -60,22 +60,23 @@ bool Detector::State::opens(Record& record, Step step, bool& over) noexcept {
 
 void Detector::State::open_records(Step step) {
   open.clear();
-  const auto active = records.active();
   detail::grow(marks, active.size());
   enum : std::uint8_t { kOpens = 1, kOver = 2 };
   // The application's own filter belongs to this thread.
   for (const std::uint32_t at : active) {
-    if (filter) allowed(records[records(at).record]);
+    if (filter) allowed(records[records.known(at).record]);
   }
   auto look_at_some = [&](std::size_t job) {
     const std::size_t end = std::min(active.size(), (job + 1) * kPerJob);
     for (std::size_t i = job * kPerJob; i < end; ++i) {
       if (i + kAhead < end) {
-        const auto& next = records(active[i + kAhead]);
+        const auto& next = records.known(active[i + kAhead]);
         detail::prefetch_all(records[next.record]);
         places.prefetch_bodies(next.pair);
       }
-      Record& record = records[records(active[i]).record];
+      const auto& known = records.known(active[i]);
+      Record& record = records[known.record];
+      if (known.way_at > 0) record.apart_by = known.way, record.apart_at = Step{known.way_at} - 1;
       allowed(record);
       bool over = false;
       const bool asked = opens(record, step, over);
@@ -84,7 +85,7 @@ void Detector::State::open_records(Step step) {
   };
   run_jobs(options.executor, (active.size() + kPerJob - 1) / kPerJob, look_at_some);
   for (std::size_t i = 0; i < active.size(); ++i) {
-    const std::uint32_t index = records(active[i]).record;
+    const std::uint32_t index = records.known(active[i]).record;
     if ((marks[i] & kOver) != 0) {
       Record& record = records[index];
       record.verdict = Verdict{};
@@ -98,13 +99,18 @@ void Detector::State::open_records(Step step) {
 }
 
 // After a certain "no". What is swept is asked at each step.
-void Detector::State::keep_clearance(detail::RecordTable::Known& known, const Record& record) const noexcept {
+void Detector::State::keep_clearance(std::size_t place, const Record& record) noexcept {
   const Body &a = places.body(record.pair.a), &b = places.body(record.pair.b);
   const bool lasts = record.verdict.answer == Answer::no && !record.touching && !(a.continuous_speed > 0) &&
                      !(b.continuous_speed > 0) && a.rigid && b.rigid && std::isfinite(record.verdict.lower_bound);
   if (!lasts) return;
-  known.clearance = clearance_now(known.pair);
-  known.clearance.distance = std::max(0.0, record.verdict.lower_bound - known.clearance.distance);
+  auto& known = records.known(place);
+  const detail::Clearance now = clearance_now(known.pair);
+  known.way = now.way;
+  known.turned = now.turned;
+  known.changes = now.changes;
+  known.distance = std::max(0.0, record.verdict.lower_bound - now.distance);
+  wait_for(place, known.distance - now.distance);
 }
 
 // What the answer makes of the pair, and which event that is.
@@ -132,18 +138,17 @@ Detector::State::Outcome Detector::State::begin_or_end(Record& record) const noe
 }
 
 void Detector::State::tally(std::size_t job, Tally& tally) noexcept {
-  const auto active = records.active();
   const std::size_t end = std::min(active.size(), (job + 1) * kPerJob);
   tally = {};
   for (std::size_t i = job * kPerJob; i < end; ++i) {
     if (i + kAhead < end) {
-      const auto& next = records(active[i + kAhead]);
+      const auto& next = records.known(active[i + kAhead]);
       detail::prefetch_all(records[next.record]);
       places.prefetch_bodies(next.pair);
       bodies.prefetch_whereabouts(next.pair.a);
       if (!detail::is_half_space(next.pair.b)) bodies.prefetch_whereabouts(next.pair.b);
     }
-    auto& known = records(active[i]);
+    auto& known = records.known(active[i]);
     Record& record = records[known.record];
     // Of what is not allowed it is certain that nothing is asked.
     const bool maybe = record.allowed && record.verdict.answer == Answer::maybe;
@@ -152,17 +157,18 @@ void Detector::State::tally(std::size_t job, Tally& tally) noexcept {
     const Outcome outcome = begin_or_end(record);
     marks[i] = static_cast<std::uint8_t>(outcome);
     tally.events += outcome != Outcome::nothing;
-    if (record.allowed) keep_clearance(known, record);
+    known.idle = !record.touching && record.waited == 0;
+    known.way_at = 0;
+    if (record.allowed) keep_clearance(active[i], record);
   }
 }
 
 // The events of a job's records, and of those that have ended among them, which come first.
 void Detector::State::write_events(std::size_t job, Step step, std::size_t ended_to) noexcept {
-  const auto active = records.active();
   const std::size_t end = std::min(active.size(), (job + 1) * kPerJob);
   std::size_t next = tallies[job].ended_from, to = tallies[job].events_from;
   for (std::size_t i = job * kPerJob; i < end; ++i) {
-    const auto& known = records(active[i]);
+    const auto& known = records.known(active[i]);
     for (; next < ended_to && !(known.pair < BodyPair{ended[next].a.index, ended[next].b.index}); ++next) {
       events[to++] = ended[next];
     }
@@ -179,7 +185,6 @@ void Detector::State::report(Step step, Frame& frame) {
   const auto by_pair = [&](const PairEvent& p, const PairEvent& q) { return pair_of(p) < pair_of(q); };
   // Teleports come after all others.
   if (!std::is_sorted(ended.begin(), ended.end(), by_pair)) std::sort(ended.begin(), ended.end(), by_pair);
-  const auto active = records.active();
   detail::grow(marks, active.size());
   const std::size_t jobs = std::max<std::size_t>(1, (active.size() + kPerJob - 1) / kPerJob);
   detail::grow(tallies, jobs);
@@ -192,7 +197,7 @@ void Detector::State::report(Step step, Frame& frame) {
     frame.worst_bound = std::max(frame.worst_bound, of.worst_bound);
     of.events_from = written;
     if (job > 0) {
-      const BodyPair first = records(active[job * kPerJob]).pair;
+      const BodyPair first = records.pair(active[job * kPerJob]);
       const auto from = std::partition_point(ended.begin(), ended.end(),
                                              [&](const PairEvent& event) { return pair_of(event) < first; });
       of.ended_from = static_cast<std::size_t>(from - ended.begin());

@@ -10,7 +10,6 @@ namespace orchard::runtime {
 
 using detail::is_half_space;
 using detail::kNeverStep;
-using detail::Record;
 using detail::StepBudget;
 
 namespace {
@@ -59,7 +58,7 @@ std::size_t Detector::foresee(std::span<StepLoad> loads) const noexcept {
   const std::size_t wanted = std::min(loads.size(), kMaxAhead);
   const double now = s.clock.time(s.answered);
   const std::size_t known = s.valid ? s.broad.foresee(now, std::span(ahead).first(wanted)) : 0;
-  double pairs = static_cast<double>(s.records.known().size());
+  double pairs = static_cast<double>(s.records.size());
   for (std::size_t i = 0; i < known; ++i) {
     pairs += s.share_of_meetings * static_cast<double>(ahead[i].meetings);
     loads[i].time = s.clock.time(s.answered + 1 + static_cast<State::Step>(i));
@@ -90,7 +89,7 @@ void Detector::State::run(double time, const FrameBudget& given, Frame& frame) {
   frame.motions_asked = broad.motions_asked() - asked_before;
   frame.work = budget.spent();
   frame.time = clock.time(std::max<Step>(answered, 0));
-  const Step next = records.known().empty() ? halves.next() : answered + 1;
+  const Step next = records.empty() ? halves.next() : answered + 1;
   frame.next_time =
       options.watch ? clock.time(answered + 1)
                     : std::min(broad.next_time(), next >= kNeverStep - 1 ? std::numeric_limits<double>::infinity()
@@ -104,7 +103,7 @@ void Detector::State::run(double time, const FrameBudget& given, Frame& frame) {
 void Detector::State::run_to(Step last, Step end, StepBudget& budget, Frame& frame) {
   while (answered < last) {
     // What overlapped at the step before may be apart at the next; half-spaces are not the broad phase's.
-    const bool under_way = !records.known().empty();
+    const bool under_way = !records.empty();
     const Step stop = std::min(last, under_way ? answered + 1 : std::max(answered + 1, halves.next()));
     const double time = clock.time(stop);
     const std::uint64_t before = broad.motions_asked();
@@ -145,9 +144,17 @@ void Detector::State::run_to(Step last, Step end, StepBudget& budget, Frame& fra
 
 // Half of what is left for choosing: not of what each step does in any case, for every pair and to end the broad phase.
 std::chrono::nanoseconds Detector::State::time_for_broad(const StepBudget& budget) const noexcept {
-  const double in_any_case = (before_pair + after_pair) * static_cast<double>(records.known().size());
+  const double in_any_case = (before_pair + after_pair) * static_cast<double>(records.size());
   const double time = (nanoseconds(budget.time_left()) - in_any_case) / 2 - broad_excess;
   return std::chrono::nanoseconds(static_cast<std::int64_t>(std::max(0.0, time)));
+}
+
+// Both bodies are those of before.
+bool Detector::State::still_there(const detail::RecordTable::Known& known) const noexcept {
+  const auto there = [this](BodyIndex body) { return bodies[body].id != kNoBody; };
+  const auto generation = [this](BodyIndex body) { return bodies.whereabouts(body).generation; };
+  return there(known.pair.a) && there(known.pair.b) &&
+         known.generations == generation(known.pair.a) + generation(known.pair.b);
 }
 
 // The pairs of the step, in ascending order: the broad phase's, those with half-spaces, and those known before that an
@@ -162,12 +169,12 @@ void Detector::State::gather(Step step, const Advance& now) {
   }
   if (now.incomplete_from != kNoClass) {
     auto reported = now.pairs.begin();
-    for (const auto& known : records.known()) {
-      if (is_half_space(known.pair.b)) continue;
-      while (reported != now.pairs.end() && *reported < known.pair) ++reported;
-      if (reported != now.pairs.end() && *reported == known.pair) continue;
-      const Record& record = records[known.record];
-      if (contains(record.a) && contains(record.b)) kept_pairs.push_back(known.pair);
+    for (std::size_t place = 0; place < records.size(); ++place) {
+      const BodyPair& pair = records.pair(place);
+      if (is_half_space(pair.b)) continue;
+      while (reported != now.pairs.end() && *reported < pair) ++reported;
+      if (reported != now.pairs.end() && *reported == pair) continue;
+      if (still_there(records.known(place))) kept_pairs.push_back(pair);
     }
     involved.clear();
     for (const BodyPair& pair : kept_pairs) involved.push_back(pair.a), involved.push_back(pair.b);
@@ -205,12 +212,12 @@ void Detector::State::learn(std::uint64_t work) noexcept {
 void Detector::State::answer(Step step, const Advance& now, StepBudget& budget, Frame& frame) {
   const StepBudget::Stopwatch watch(budget.timed());
   gather(step, now);
-  match(step, frame);
+  const std::uint64_t by_spheres = match(step, frame);
   open_records(step);
   rounds.use(options.executor);
   const std::uint64_t before = budget.spent();
   if (!budget.limited()) {
-    budget.spend(rounds.answer_all(records, open, step));
+    budget.spend(by_spheres + rounds.answer_all(records, open, step));
     rounds.sweep_all(records, open, step, budget);
     learn(budget.spent() - before);
     report(step, frame);
@@ -223,7 +230,7 @@ void Detector::State::answer(Step step, const Advance& now, StepBudget& budget, 
 
 // With time set aside for what follows, and half of the rest for sweeps if there are any.
 void Detector::State::answer_within(Step step, const StepBudget::Stopwatch& watch, StepBudget& budget, Frame& frame) {
-  const double known = static_cast<double>(std::max<std::size_t>(1, records.known().size()));
+  const double known = static_cast<double>(std::max<std::size_t>(1, records.size()));
   const StepBudget::Part report_time{0, std::chrono::nanoseconds(static_cast<std::int64_t>(after_pair * known))};
   if (budget.timed()) budget.set_aside(report_time);
   rounds.begin_within(records, open, step);

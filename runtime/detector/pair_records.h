@@ -1,4 +1,6 @@
 #pragma once
+#include <limits>
+
 #include "orchard/runtime/body_pair.h"
 #include "pair_tests.h"
 
@@ -6,7 +8,8 @@ namespace orchard::runtime::detail {
 
 inline constexpr std::uint32_t kNoFront = 0xffffffffu;
 
-// What is remembered of a pair while its spheres overlap, or until its touch has ended.
+// What is remembered of a pair that its spheres have not told apart at some step, while it is one, or until its touch
+// has ended.
 struct Record {
   BodyPair pair{};
   BodyId a, b;
@@ -44,94 +47,111 @@ struct Clearance {
   std::uint32_t changes = 0;
 };
 
-// The pairs of the step before and their records, in ascending order of pairs.
+inline constexpr std::uint32_t kNoRecord = 0x7fffffffu;
+
+// The pairs of the step before, in ascending order, what is known of each, and the records of some.
 class RecordTable {
  public:
-  struct Known {  // no larger than a line of memory: most pairs of a step are asked no more than this
+  struct Known {  // no larger than a line of memory: most pairs of a step are asked no more than this, if that
     BodyPair pair;
-    std::uint32_t record;
+    std::uint32_t record : 31;  // or kNoRecord
+    std::uint32_t idle : 1;     // a certain "no" would change nothing of the record but what is remembered here
     std::uint32_t generations;  // of both bodies: others have others
-    Clearance clearance;
+    double distance;            // as in Clearance, in a line with the step
+    Vec3 way;
+    double turned;
+    std::uint32_t changes;
+    std::uint32_t way_at;  // 1 more than the step of `way`, if their spheres told them apart then, or 0
   };
 
-  std::span<const Known> known() const noexcept { return known_; }
-  // Those of them that match() has not found to be clear.
-  std::span<const std::uint32_t> active() const noexcept { return active_; }
-  Known& operator()(std::uint32_t active) noexcept { return known_[active]; }
+  std::size_t size() const noexcept { return pairs_.size(); }
+  bool empty() const noexcept { return pairs_.empty(); }
+  std::size_t kept() const noexcept { return kept_; }  // of them, that match() was not given
+  // By place, in ascending order.
+  const BodyPair& pair(std::size_t place) const noexcept { return pairs_[place]; }
+  Known& known(std::size_t place) noexcept { return known_[slots_[place]]; }
+  const Known& known(std::size_t place) const noexcept { return known_[slots_[place]]; }
+  // As long as the sum of what both have travelled is below that, they are apart.
+  double& until(std::size_t place) noexcept { return until_[place]; }
+  void prefetch_known(std::size_t place) const noexcept { prefetch(&known_[slots_[place]]); }
+
   Record& operator[](std::uint32_t record) noexcept { return records_[record]; }
   const Record& operator[](std::uint32_t record) const noexcept { return records_[record]; }
+  std::uint32_t take();
 
-  // Those of `pairs`, which ascend, become the known ones; asks clear(known) of each that has been one; calls
-  // gone(record) for each that is not among them, or whose bodies are others by now, as the sum of their generations
-  // tells, and keeps it if that says true; fresh(record) for each new one.
-  template <typename IdOf, typename Generations, typename Clear, typename Gone, typename Fresh>
-  void match(std::span<const BodyPair> pairs, IdOf&& id_of, Generations&& generations, Clear&& clear, Gone&& gone,
-             Fresh&& fresh);
+  enum class Same : std::uint8_t { yes, doubtful, no };  // doubtful: nothing is known of how long they are apart
+
+  // The known ones are these from now on, which ascend. Where `each`, asks same(known) about those that have been; else
+  // all are. Calls gone(known) for each that is not among them, or not the same, and keeps the former if that says
+  // true; generations(pair) for each that is new.
+  template <typename IsSame, typename Gone, typename Generations>
+  void match(std::span<const BodyPair> pairs, bool each, IsSame&& same, Gone&& gone, Generations&& generations);
   std::size_t memory_bytes() const noexcept {
-    return bytes_of(records_) + bytes_of(free_) + bytes_of(known_) + bytes_of(next_) + bytes_of(active_);
+    return bytes_of(records_) + bytes_of(free_) + bytes_of(known_) + bytes_of(free_slots_) + bytes_of(pairs_) +
+           bytes_of(slots_) + bytes_of(until_) + bytes_of(next_pairs_) + bytes_of(next_slots_) + bytes_of(next_until_);
   }
 
  private:
-  std::uint32_t take() {
-    if (free_.empty()) {
-      records_.emplace_back();
-      free_.reserve(records_.capacity());
-      return static_cast<std::uint32_t>(records_.size() - 1);
-    }
-    const std::uint32_t record = free_.back();
-    free_.pop_back();
-    records_[record] = Record{};
-    return record;
-  }
+  static constexpr double kNotAPair = std::numeric_limits<double>::infinity();  // at this step, and not asked about
+
+  static std::size_t common(std::span<const BodyPair> a, std::span<const BodyPair> b) noexcept;
+  void keep(std::size_t from, std::size_t count);
+  void keep_one(std::size_t from, double until);
+  void add(const BodyPair& pair, std::uint32_t generations);
+  void leave(std::size_t place) noexcept;
+
   std::vector<Record> records_;
   std::vector<std::uint32_t> free_;
-  std::vector<Known> known_, next_;
-  std::vector<std::uint32_t> active_;  // of known_
+  std::vector<Known> known_;
+  std::vector<std::uint32_t> free_slots_;
+  std::vector<BodyPair> pairs_, next_pairs_;
+  std::vector<std::uint32_t> slots_, next_slots_;  // of known_
+  std::vector<double> until_, next_until_;
+  std::size_t kept_ = 0;  // that gone() wanted to
 };
 
-template <typename IdOf, typename Generations, typename Clear, typename Gone, typename Fresh>
-void RecordTable::match(std::span<const BodyPair> pairs, IdOf&& id_of, Generations&& generations, Clear&& clear,
-                        Gone&& gone, Fresh&& fresh) {
-  next_.clear();
-  active_.clear();
-  const auto keep_active = [this](const Known& known) {
-    active_.push_back(static_cast<std::uint32_t>(next_.size()));
-    next_.push_back(known);
-    next_.back().clearance.distance = 0;
+template <typename IsSame, typename Gone, typename Generations>
+void RecordTable::match(std::span<const BodyPair> pairs, bool each, IsSame&& same, Gone&& gone,
+                        Generations&& generations) {
+  next_pairs_.clear(), next_slots_.clear(), next_until_.clear();
+  each = each || kept_ > 0;
+  kept_ = 0;
+  std::size_t old = 0, now = 0;
+  const auto look_at = [&](std::size_t place) {
+    Known& known = known_[slots_[place]];
+    const Same told = same(known);
+    if (told != Same::no) return keep_one(place, told == Same::yes && until_[place] < kNotAPair ? until_[place] : -1);
+    gone(known);  // of a body that is no more: it cannot stay
+    leave(place);
+    add(pairs_[place], generations(pairs_[place]));
   };
-  std::size_t old = 0;
-  const auto leave = [&] {
-    const Known known = known_[old++];
-    if (gone(records_[known.record])) {
-      next_.push_back(known);
-      next_.back().clearance.distance = 0;
-    } else {
-      free_.push_back(known.record);
-    }
-  };
-  for (const BodyPair& pair : pairs) {
-    while (old < known_.size() && known_[old].pair < pair) leave();
-    if (old < known_.size() && known_[old].pair == pair) {
-      if (clear(known_[old])) {
-        next_.push_back(known_[old++]);
-        continue;
+  while (now < pairs.size()) {
+    const std::size_t run = common(pairs.subspan(now), std::span(pairs_).subspan(old));
+    if (!each) keep(old, run);
+    for (std::size_t i = 0; each && i < run; ++i) look_at(old + i);
+    old += run, now += run;
+    if (now == pairs.size()) break;
+    for (; old < pairs_.size() && pairs_[old] < pairs[now]; ++old) {
+      if (gone(known_[slots_[old]])) {
+        keep_one(old, kNotAPair);
+        ++kept_;
+      } else {
+        leave(old);
       }
-      if (known_[old].generations == generations(pair)) {
-        keep_active(known_[old++]);
-        continue;
-      }
-      gone(records_[known_[old].record]);  // of a body that is no more: it cannot stay
-      free_.push_back(known_[old++].record);
     }
-    const std::uint32_t index = take();
-    Record& record = records_[index];
-    record.pair = pair;
-    record.a = id_of(pair.a), record.b = id_of(pair.b);
-    fresh(record);
-    keep_active({pair, index, generations(pair), {}});
+    for (; now < pairs.size() && (old == pairs_.size() || pairs[now] < pairs_[old]); ++now) {
+      add(pairs[now], generations(pairs[now]));
+    }
   }
-  while (old < known_.size()) leave();
-  std::swap(known_, next_);
+  for (; old < pairs_.size(); ++old) {
+    if (gone(known_[slots_[old]])) {
+      keep_one(old, kNotAPair);
+      ++kept_;
+    } else {
+      leave(old);
+    }
+  }
+  pairs_.swap(next_pairs_), slots_.swap(next_slots_), until_.swap(next_until_);
 }
 
 }  // namespace orchard::runtime::detail
