@@ -35,7 +35,6 @@ Body& BodyTable::take_in(BodyId id, std::size_t count) {
   grow(states_, slots);
   grow(before_, slots);
   grow(whereabouts_, slots);
-  grow(travels_, slots);
   grow(disturbed_, slots);
   disturb(id.index);
   whereabouts_[id.index].generation = id.generation;
@@ -65,22 +64,12 @@ void BodyTable::forget_disturbed() noexcept {
   any_disturbed_.store(false, std::memory_order_relaxed);
 }
 
-// Sums that are not rounded down, so that they never say too little.
-void BodyTable::add_travel(BodyIndex body, double way) noexcept {
-  constexpr double kUp = 1 + 0x1p-52;
-  double& travel = travels_[body];
-  travel = (travel + way * (1 + 1e-9)) * kUp;
-  if (std::isfinite(travel)) return;
-  travel = 0;
-  disturb(body);
-}
-
+// A sum that is not rounded down, so that it never says too little.
 void BodyTable::add_turn(BodyIndex body, double way) noexcept {
   constexpr double kUp = 1 + 0x1p-52;
   if (way == 0) return;
   Whereabouts& where = whereabouts_[body];
   where.turned = (where.turned + way * (1 + 1e-9)) * kUp;
-  add_travel(body, way);
   if (std::isfinite(where.turned)) return;
   where.turned = 0;
   disturb(body);
@@ -92,15 +81,14 @@ void BodyTable::moved(BodyIndex index, const Pose& before) noexcept {
   Whereabouts& where = whereabouts_[index];
   const bool one = body.parts.size() == 1;
   const double reach = one ? body.parts[0].reach : body.reach;
-  const Vec3 middle_before = where.middle;
   where.middle = one ? transform(now, body.parts[0].center) : Vec3(now.translation);
   double size = reach * now.scale;
   for (std::size_t i = 0; i < 3; ++i) size += std::fabs(now.translation[i]) + std::fabs(where.middle[i]);
   where.slack = 1e-14 * size;
-  where.reach = one && body.rigid && !(body.continuous_speed > 0) ? reach * now.scale : -1;
+  const bool tells = one && body.rigid && !(body.continuous_speed > 0);
+  where.reach = tells ? reach * now.scale : std::numeric_limits<double>::infinity();
   const double change = pose_change(before, now);
   add_turn(index, change == 0 ? 0 : (change + 4 * kRigidTolerance * (now.scale + before.scale)) * reach);
-  add_travel(index, length(where.middle - middle_before) + where.slack);
   if (!body.rigid || !std::isfinite(size)) disturb(index);
 }
 
@@ -190,7 +178,7 @@ bool BodyTable::surely_apart(const BodyPair& pair, double time_step) const noexc
 
 std::size_t BodyTable::memory_bytes() const noexcept {
   std::size_t bytes = bytes_of(bodies_) + bytes_of(states_) + bytes_of(before_) + bytes_of(asking_) +
-                      bytes_of(answers_) + bytes_of(whereabouts_) + bytes_of(travels_) + bytes_of(disturbed_);
+                      bytes_of(answers_) + bytes_of(whereabouts_) + bytes_of(disturbed_);
   for (const Body& body : bodies_) bytes += bytes_of(body.parts) + bytes_of(body.parts_before);
   return bytes;
 }

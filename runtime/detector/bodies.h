@@ -59,7 +59,8 @@ struct Body {
 struct alignas(64) Whereabouts {
   Vec3 middle{};      // in the world; of its only part, or its origin
   double slack = 0;   // what `middle` may be off by, and a thousandth of what the rounding of a gap between spheres may
-  double reach = -1;  // of its only part's sphere; below 0: spheres alone tell nothing
+  // Of its only part's sphere; infinite where that tells nothing.
+  double reach = std::numeric_limits<double>::infinity();
   double turned = 0;  // the way of any point about the middle up to now, at most, from step to step
   std::uint32_t changes = 0;     // since what was known before says nothing of now
   std::uint32_t generation = 0;  // of the body that has the index
@@ -97,8 +98,6 @@ class BodyTable {
     if (!bodies_[body].parts.empty()) prefetch_all(bodies_[body].parts[0]);
   }
   const Whereabouts& whereabouts(BodyIndex body) const noexcept { return whereabouts_[body]; }
-  // The way of any of its points up to now, at most: those of the middle, and about it.
-  double travel(BodyIndex body) const noexcept { return travels_[body]; }
   // Whether Whereabouts::changes of any body, or of this one, have grown since forget_disturbed().
   bool any_disturbed() const noexcept { return any_disturbed_.load(std::memory_order_relaxed); }
   bool disturbed(BodyIndex body) const noexcept { return disturbed_[body] != 0; }
@@ -119,7 +118,6 @@ class BodyTable {
 
  private:
   void add_turn(BodyIndex body, double way) noexcept;
-  void add_travel(BodyIndex body, double way) noexcept;
   void disturb(BodyIndex body) noexcept;
   void take_answer(Step step, BodyIndex index, const BodyState& answer) noexcept;
   StateSource source_;
@@ -127,7 +125,6 @@ class BodyTable {
   std::vector<BodyState> states_;
   std::vector<Pose> before_;  // at the step asked before
   std::vector<Whereabouts> whereabouts_;
-  std::vector<double> travels_;
   std::vector<std::uint8_t> disturbed_;
   std::atomic<bool> any_disturbed_ = false;  // set by jobs
   std::vector<BodyIndex> asking_;

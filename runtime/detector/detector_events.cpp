@@ -5,6 +5,11 @@
 
 // From pairs of spheres to records.
 namespace orchard::runtime {
+namespace {
+
+constexpr double kRoundingOfGaps = 1e3;  // in units of Whereabouts::slack
+
+}  // namespace
 
 using detail::Body;
 using detail::is_half_space;
@@ -18,87 +23,84 @@ detail::Clearance Detector::State::clearance_now(const BodyPair& pair) const noe
   return {a.slack + b.slack, b.middle - a.middle, a.turned + b.turned, a.changes + b.changes};
 }
 
-double Detector::State::travel_now(const BodyPair& pair) const noexcept {
-  return bodies.travel(pair.a) + (is_half_space(pair.b) ? 0 : bodies.travel(pair.b));
+// Whether they are as far apart as at the last certain "no", but for less than what was between them then.
+bool Detector::State::clear(const detail::RecordTable::Known& known) const noexcept {
+  const detail::Clearance now = clearance_now(known.pair), &then = known.clearance;
+  const double left = then.distance * (1 - 1e-9) - now.distance - (now.turned - then.turned);
+  const Vec3 moved = now.way - then.way;
+  return now.changes == then.changes && left > 0 && dot(moved, moved) < left * left * (1 - 1e-9);
 }
 
-// How far apart their spheres are, at least; below 0 where these tell nothing. As sphere_gap(), a little less.
-double Detector::State::gap_of(const BodyPair& pair, const detail::Clearance& now) const noexcept {
-  constexpr double kRounding = 1e-11;  // as there
+// Whether the spheres of their only parts are apart; as sphere_gap() says, or not quite. No branches: nobody foresees
+// them.
+bool Detector::State::spheres_apart(const BodyPair& pair) const noexcept {
+  const detail::Whereabouts &a = bodies.whereabouts(pair.a), &b = bodies.whereabouts(pair.b);
+  const Vec3 way = b.middle - a.middle;
+  const double reach = (a.reach + b.reach) + kRoundingOfGaps * (a.slack + b.slack), square = dot(way, way);
+  return static_cast<int>(square > reach * reach * (1 + 1e-14)) & static_cast<int>(std::isfinite(square));
+}
+
+bool Detector::State::sphere_above(const BodyPair& pair) const noexcept {
   const detail::Whereabouts& a = bodies.whereabouts(pair.a);
-  if (!(a.reach >= 0)) return -1;
-  const double slack = (kRounding / 1e-14) * now.distance;
-  if (is_half_space(pair.b)) {
-    const detail::HalfSpace& half = places.half_space(pair.b);
-    return dot(half.normal, a.middle) - half.offset - a.reach - slack - kRounding * std::fabs(half.offset);
-  }
-  const detail::Whereabouts& b = bodies.whereabouts(pair.b);
-  if (!(b.reach >= 0)) return -1;
-  return detail::length(now.way) - a.reach - b.reach - slack;
+  const detail::HalfSpace& half = places.half_space(pair.b);
+  const double height = dot(half.normal, a.middle) - half.offset - a.reach;
+  return height > kRoundingOfGaps * (a.slack + 1e-14 * std::fabs(half.offset)) && std::isfinite(height);
 }
 
-// Until when a distance lasts, from now on.
-void Detector::State::wait_for(std::size_t place, double distance) noexcept {
-  const double now = travel_now(records.pair(place));
-  records.until(place) = distance > 0 ? (now + distance * (1 - 1e-9)) * (1 - 0x1p-50) : -1;
-}
-
-// Whether a pair is apart as far as what was known of it, or its spheres, tell; else it has to be asked about. What was
-// known: they are as far apart as at the last certain "no", but for less than what was between them then.
-Detector::State::Telling Detector::State::look_at(std::size_t place, Step step) noexcept {
-  if (travel_now(records.pair(place)) < records.until(place)) return Telling::known;
-  auto& known = records.known(place);
-  const detail::Clearance now = clearance_now(known.pair);
-  if (known.distance > 0 && now.changes == known.changes) {
-    const double left = known.distance * (1 - 1e-9) - now.distance - (now.turned - known.turned);
-    const Vec3 moved = now.way - known.way;
-    const double square = dot(moved, moved);
-    if (left > 0 && square < left * left * (1 - 1e-9)) {
-      wait_for(place, left - std::sqrt(square));
-      return Telling::known;
+// Those of records.pair(begin .. end - 1) that their spheres do not tell apart, nor what is known of them, or whose
+// records would be changed by that.
+std::size_t Detector::State::find_near(std::size_t begin, std::size_t end, std::uint32_t* near) noexcept {
+  constexpr std::size_t kPairsAhead = 24;
+  std::size_t found = 0, count_near = 0;
+  for (std::size_t place = begin; place < end; ++place) {
+    if (place + kPairsAhead < end) {
+      const BodyIndex ahead = records.pair(place + kPairsAhead).b;
+      if (!is_half_space(ahead)) bodies.prefetch_whereabouts(ahead);
     }
+    const BodyPair pair = records.pair(place);
+    near[found] = static_cast<std::uint32_t>(place);
+    const bool apart = is_half_space(pair.b) ? sphere_above(pair) : spheres_apart(pair);
+    found += static_cast<std::size_t>(records.busy(place)) | static_cast<std::size_t>(!apart);
   }
-  known.distance = 0;
-  records.until(place) = -1;
-  if (known.record != detail::kNoRecord && !known.idle) return Telling::nothing;
-  const double gap = gap_of(known.pair, now);
-  if (!(gap > 0) || !std::isfinite(gap)) return Telling::nothing;
-  known.way = now.way;
-  known.way_at = static_cast<std::uint32_t>(step + 1);
-  known.turned = now.turned;
-  known.changes = now.changes;
-  known.distance = std::max(0.0, gap - now.distance);
-  wait_for(place, known.distance - now.distance);
-  return Telling::spheres;
+  constexpr std::size_t kAhead = 8;
+  for (std::size_t i = 0; i < found; ++i) {
+    if (i + kAhead < found) records.prefetch_known(near[i + kAhead]);
+    auto& known = records.known(near[i]);
+    if (known.clearance.distance > 0 && clear(known)) continue;
+    known.clearance.distance = 0;
+    near[count_near++] = near[i];
+  }
+  return count_near;
 }
 
 // The pairs that have to be asked about, and a record for each of these.
-std::uint64_t Detector::State::find_active(Step step) {
+void Detector::State::find_active() {
   constexpr std::size_t kPerJob = 1024;
-  const std::size_t pair_count = records.size();
-  detail::grow(told, pair_count);
+  const std::size_t among = records.size(), jobs = (among + kPerJob - 1) / kPerJob;
+  detail::grow(active, among);
+  detail::grow(active_of_job, jobs);
   auto look_at_some = [&](std::size_t job) {
-    const std::size_t end = std::min(pair_count, (job + 1) * kPerJob);
-    for (std::size_t place = job * kPerJob; place < end; ++place) told[place] = look_at(place, step);
+    const std::size_t begin = job * kPerJob;
+    active_of_job[job] = find_near(begin, std::min(among, begin + kPerJob), &active[begin]);
   };
-  run_jobs(options.executor, (pair_count + kPerJob - 1) / kPerJob, look_at_some);
-  active.clear();
-  std::uint64_t by_spheres = 0;
-  for (std::size_t place = 0; place < pair_count; ++place) {
-    if (told[place] == Telling::known) continue;
-    by_spheres += told[place] == Telling::spheres;
-    if (told[place] == Telling::spheres) continue;
-    active.push_back(static_cast<std::uint32_t>(place));
-    auto& known = records.known(place);
-    if (known.record == detail::kNoRecord) begin_record(known);
+  run_jobs(options.executor, jobs, look_at_some);
+  active_count = 0;
+  auto kept = records.kept().begin();
+  for (std::size_t job = 0; job < jobs; ++job) {
+    for (std::size_t i = 0; i < active_of_job[job]; ++i) {
+      const std::uint32_t place = active[job * kPerJob + i];
+      while (kept != records.kept().end() && *kept < place) ++kept;
+      if (kept != records.kept().end() && *kept == place) continue;
+      active[active_count++] = place;
+      auto& known = records.known(place);
+      if (known.record == detail::kNoRecord) begin_record(known);
+    }
   }
-  return by_spheres;
 }
 
 void Detector::State::begin_record(detail::RecordTable::Known& known) {
   const std::uint32_t index = records.take();
-  known.record = index & detail::kNoRecord;
-  known.idle = 0;
+  known.record = index;
   Record& record = records[index];
   record.pair = known.pair;
   record.a = id_of(known.pair.a), record.b = id_of(known.pair.b);
@@ -136,9 +138,7 @@ bool Detector::State::parts(const detail::RecordTable::Known& known, Step step) 
   return false;
 }
 
-// Returns what it costs.
-std::uint64_t Detector::State::match(Step step, Frame& frame) {
-  using Same = detail::RecordTable::Same;
+void Detector::State::match(Step step, Frame& frame) {
   known_pairs = records.size();
   fresh_pairs = parted_pairs = 0;
   const auto generations = [this](const BodyPair& pair) {
@@ -148,22 +148,19 @@ std::uint64_t Detector::State::match(Step step, Frame& frame) {
   const auto same = [&](const detail::RecordTable::Known& known) {
     const BodyPair& pair = known.pair;
     const bool disturbed = bodies.disturbed(pair.a) || (!is_half_space(pair.b) && bodies.disturbed(pair.b));
-    if (!disturbed) return Same::yes;
-    return known.generations == generations(pair) ? Same::doubtful : Same::no;
+    return !disturbed || known.generations == generations(pair);
   };
-  records.match(
-      pairs, bodies.any_disturbed(), same,
-      [&](const detail::RecordTable::Known& known) { return parts(known, step); },
-      [&](const BodyPair& pair) {
-        ++fresh_pairs;
-        return generations(pair);
-      });
+  const auto gone = [&](const detail::RecordTable::Known& known) { return parts(known, step); };
+  const auto fresh = [&](const BodyPair& pair) {
+    ++fresh_pairs;
+    return generations(pair);
+  };
+  records.match(pairs, bodies.any_disturbed(), same, gone, fresh);
   bodies.forget_disturbed();
-  const std::uint64_t work = find_active(step);
+  find_active();
   fronts.prepare(large_pairs);
   frame.pairs += pairs.size();
-  frame.certain += records.size() - active.size() - records.kept();
-  return work;
+  frame.certain += pairs.size() - active_count;
 }
 
 bool Detector::State::allowed(Record& record) {

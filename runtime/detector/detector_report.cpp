@@ -60,14 +60,12 @@ bool Detector::State::opens(Record& record, Step step, bool& over) noexcept {
 
 void Detector::State::open_records(Step step) {
   open.clear();
-  detail::grow(marks, active.size());
+  detail::grow(marks, active_count);
   enum : std::uint8_t { kOpens = 1, kOver = 2 };
   // The application's own filter belongs to this thread.
-  for (const std::uint32_t at : active) {
-    if (filter) allowed(records[records.known(at).record]);
-  }
+  for (std::size_t i = 0; filter && i < active_count; ++i) allowed(records[records.known(active[i]).record]);
   auto look_at_some = [&](std::size_t job) {
-    const std::size_t end = std::min(active.size(), (job + 1) * kPerJob);
+    const std::size_t end = std::min(active_count, (job + 1) * kPerJob);
     for (std::size_t i = job * kPerJob; i < end; ++i) {
       if (i + kAhead < end) {
         const auto& next = records.known(active[i + kAhead]);
@@ -76,15 +74,14 @@ void Detector::State::open_records(Step step) {
       }
       const auto& known = records.known(active[i]);
       Record& record = records[known.record];
-      if (known.way_at > 0) record.apart_by = known.way, record.apart_at = Step{known.way_at} - 1;
       allowed(record);
       bool over = false;
       const bool asked = opens(record, step, over);
       marks[i] = static_cast<std::uint8_t>((asked ? kOpens : 0) | (over ? kOver : 0));
     }
   };
-  run_jobs(options.executor, (active.size() + kPerJob - 1) / kPerJob, look_at_some);
-  for (std::size_t i = 0; i < active.size(); ++i) {
+  run_jobs(options.executor, (active_count + kPerJob - 1) / kPerJob, look_at_some);
+  for (std::size_t i = 0; i < active_count; ++i) {
     const std::uint32_t index = records.known(active[i]).record;
     if ((marks[i] & kOver) != 0) {
       Record& record = records[index];
@@ -99,18 +96,13 @@ void Detector::State::open_records(Step step) {
 }
 
 // After a certain "no". What is swept is asked at each step.
-void Detector::State::keep_clearance(std::size_t place, const Record& record) noexcept {
+void Detector::State::keep_clearance(detail::RecordTable::Known& known, const Record& record) const noexcept {
   const Body &a = places.body(record.pair.a), &b = places.body(record.pair.b);
   const bool lasts = record.verdict.answer == Answer::no && !record.touching && !(a.continuous_speed > 0) &&
                      !(b.continuous_speed > 0) && a.rigid && b.rigid && std::isfinite(record.verdict.lower_bound);
   if (!lasts) return;
-  auto& known = records.known(place);
-  const detail::Clearance now = clearance_now(known.pair);
-  known.way = now.way;
-  known.turned = now.turned;
-  known.changes = now.changes;
-  known.distance = std::max(0.0, record.verdict.lower_bound - now.distance);
-  wait_for(place, known.distance - now.distance);
+  known.clearance = clearance_now(known.pair);
+  known.clearance.distance = std::max(0.0, record.verdict.lower_bound - known.clearance.distance);
 }
 
 // What the answer makes of the pair, and which event that is.
@@ -138,7 +130,7 @@ Detector::State::Outcome Detector::State::begin_or_end(Record& record) const noe
 }
 
 void Detector::State::tally(std::size_t job, Tally& tally) noexcept {
-  const std::size_t end = std::min(active.size(), (job + 1) * kPerJob);
+  const std::size_t end = std::min(active_count, (job + 1) * kPerJob);
   tally = {};
   for (std::size_t i = job * kPerJob; i < end; ++i) {
     if (i + kAhead < end) {
@@ -157,15 +149,14 @@ void Detector::State::tally(std::size_t job, Tally& tally) noexcept {
     const Outcome outcome = begin_or_end(record);
     marks[i] = static_cast<std::uint8_t>(outcome);
     tally.events += outcome != Outcome::nothing;
-    known.idle = !record.touching && record.waited == 0;
-    known.way_at = 0;
-    if (record.allowed) keep_clearance(active[i], record);
+    records.set_busy(active[i], record.touching || record.waited > 0);
+    if (record.allowed) keep_clearance(known, record);
   }
 }
 
 // The events of a job's records, and of those that have ended among them, which come first.
 void Detector::State::write_events(std::size_t job, Step step, std::size_t ended_to) noexcept {
-  const std::size_t end = std::min(active.size(), (job + 1) * kPerJob);
+  const std::size_t end = std::min(active_count, (job + 1) * kPerJob);
   std::size_t next = tallies[job].ended_from, to = tallies[job].events_from;
   for (std::size_t i = job * kPerJob; i < end; ++i) {
     const auto& known = records.known(active[i]);
@@ -185,8 +176,8 @@ void Detector::State::report(Step step, Frame& frame) {
   const auto by_pair = [&](const PairEvent& p, const PairEvent& q) { return pair_of(p) < pair_of(q); };
   // Teleports come after all others.
   if (!std::is_sorted(ended.begin(), ended.end(), by_pair)) std::sort(ended.begin(), ended.end(), by_pair);
-  detail::grow(marks, active.size());
-  const std::size_t jobs = std::max<std::size_t>(1, (active.size() + kPerJob - 1) / kPerJob);
+  detail::grow(marks, active_count);
+  const std::size_t jobs = std::max<std::size_t>(1, (active_count + kPerJob - 1) / kPerJob);
   detail::grow(tallies, jobs);
   auto tally_some = [&](std::size_t job) { tally(job, tallies[job]); };
   run_jobs(options.executor, jobs, tally_some);

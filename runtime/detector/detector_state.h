@@ -55,10 +55,9 @@ struct Detector::State {
   std::chrono::nanoseconds time_for_broad(const detail::StepBudget& budget) const noexcept;
   bool still_there(const detail::RecordTable::Known& known) const noexcept;
   void gather(Step step, const Advance& now);
-  std::uint64_t match(Step step, Frame& frame);
-  enum class Telling : std::uint8_t { known, spheres, nothing };  // what tells that a pair is apart
-  Telling look_at(std::size_t place, Step step) noexcept;
-  std::uint64_t find_active(Step step);
+  void match(Step step, Frame& frame);
+  std::size_t find_near(std::size_t begin, std::size_t end, std::uint32_t* near) noexcept;
+  void find_active();
   void begin_record(detail::RecordTable::Known& known);
   bool parts(const detail::RecordTable::Known& known, Step step);
   void open_records(Step step);
@@ -67,10 +66,10 @@ struct Detector::State {
   void learn(std::uint64_t work) noexcept;
   void report(Step step, Frame& frame);
   detail::Clearance clearance_now(const BodyPair& pair) const noexcept;
-  double travel_now(const BodyPair& pair) const noexcept;
-  double gap_of(const BodyPair& pair, const detail::Clearance& now) const noexcept;
-  void wait_for(std::size_t place, double distance) noexcept;
-  void keep_clearance(std::size_t place, const detail::Record& record) noexcept;
+  bool clear(const detail::RecordTable::Known& known) const noexcept;
+  bool spheres_apart(const BodyPair& pair) const noexcept;
+  bool sphere_above(const BodyPair& pair) const noexcept;
+  void keep_clearance(detail::RecordTable::Known& known, const detail::Record& record) const noexcept;
   void describe(const detail::Record& record, Step step, PairChange change, PairEvent& event) const noexcept;
   enum class Outcome : std::uint8_t {  // the events, and none
     begin = static_cast<std::uint8_t>(PairChange::begin),
@@ -129,10 +128,12 @@ struct Detector::State {
   // Of the step under way; kept for their memory.
   std::vector<BodyIndex> due, involved, everyone, refused, broken;
   std::vector<Step> involved_at;                 // by body: 1 more than the last step at which it was in a pair
-  std::vector<Telling> told;  // by place in records
   std::vector<BodyPair> plane_pairs, pairs, kept_pairs, body_pairs;
-  std::vector<std::uint32_t> active, open;  // places in records that have to be looked at; records to be asked about
-  std::vector<std::uint8_t> marks;          // of `active`
+  std::vector<std::uint32_t> active;  // places in `records` that have to be looked at: active_count of them
+  std::vector<std::size_t> active_of_job;
+  std::size_t active_count = 0;
+  std::vector<std::uint32_t> open;  // records to be asked about
+  std::vector<std::uint8_t> marks;  // of `active`
   std::vector<Tally> tallies;
   std::vector<PairEvent> events;  // event_count of them
   std::size_t event_count = 0;

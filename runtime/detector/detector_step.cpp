@@ -212,12 +212,12 @@ void Detector::State::learn(std::uint64_t work) noexcept {
 void Detector::State::answer(Step step, const Advance& now, StepBudget& budget, Frame& frame) {
   const StepBudget::Stopwatch watch(budget.timed());
   gather(step, now);
-  const std::uint64_t by_spheres = match(step, frame);
+  match(step, frame);
   open_records(step);
   rounds.use(options.executor);
   const std::uint64_t before = budget.spent();
   if (!budget.limited()) {
-    budget.spend(by_spheres + rounds.answer_all(records, open, step));
+    budget.spend(rounds.answer_all(records, open, step));
     rounds.sweep_all(records, open, step, budget);
     learn(budget.spent() - before);
     report(step, frame);

@@ -38,13 +38,11 @@ void RecordTable::keep(std::size_t from, std::size_t count) {
   const auto append_some = [](auto& to, const auto& more) { to.insert(to.end(), more.begin(), more.end()); };
   append_some(next_pairs_, some(pairs_));
   append_some(next_slots_, some(slots_));
-  append_some(next_until_, some(until_));
 }
 
-void RecordTable::keep_one(std::size_t from, double until) {
+void RecordTable::keep_one(std::size_t from) {
   next_pairs_.push_back(pairs_[from]);
   next_slots_.push_back(slots_[from]);
-  next_until_.push_back(until);
 }
 
 void RecordTable::add(const BodyPair& pair, std::uint32_t generations) {
@@ -59,17 +57,14 @@ void RecordTable::add(const BodyPair& pair, std::uint32_t generations) {
   Known& known = known_[slot];
   known.pair = pair;
   known.record = kNoRecord;
-  known.idle = 0;
   known.generations = generations;
-  known.distance = 0;
-  known.way_at = 0;
+  known.clearance.distance = 0;
   next_pairs_.push_back(pair);
   next_slots_.push_back(slot);
-  next_until_.push_back(-1);
 }
 
 void RecordTable::leave(std::size_t place) noexcept {
-  const std::uint32_t slot = slots_[place];
+  const std::uint32_t slot = slots_[place] & kSlot;
   if (known_[slot].record != kNoRecord) free_.push_back(known_[slot].record);
   free_slots_.push_back(slot);
 }

@@ -1,6 +1,4 @@
 #pragma once
-#include <limits>
-
 #include "orchard/runtime/body_pair.h"
 #include "pair_tests.h"
 
@@ -47,56 +45,48 @@ struct Clearance {
   std::uint32_t changes = 0;
 };
 
-inline constexpr std::uint32_t kNoRecord = 0x7fffffffu;
+inline constexpr std::uint32_t kNoRecord = 0xffffffffu;
 
 // The pairs of the step before, in ascending order, what is known of each, and the records of some.
 class RecordTable {
  public:
   struct Known {  // no larger than a line of memory: most pairs of a step are asked no more than this, if that
     BodyPair pair;
-    std::uint32_t record : 31;  // or kNoRecord
-    std::uint32_t idle : 1;     // a certain "no" would change nothing of the record but what is remembered here
+    std::uint32_t record;       // or kNoRecord
     std::uint32_t generations;  // of both bodies: others have others
-    double distance;            // as in Clearance, in a line with the step
-    Vec3 way;
-    double turned;
-    std::uint32_t changes;
-    std::uint32_t way_at;  // 1 more than the step of `way`, if their spheres told them apart then, or 0
+    Clearance clearance;
   };
 
   std::size_t size() const noexcept { return pairs_.size(); }
   bool empty() const noexcept { return pairs_.empty(); }
-  std::size_t kept() const noexcept { return kept_; }  // of them, that match() was not given
+  std::span<const std::uint32_t> kept() const noexcept { return kept_places_; }  // those that match() was not given
   // By place, in ascending order.
   const BodyPair& pair(std::size_t place) const noexcept { return pairs_[place]; }
-  Known& known(std::size_t place) noexcept { return known_[slots_[place]]; }
-  const Known& known(std::size_t place) const noexcept { return known_[slots_[place]]; }
-  // As long as the sum of what both have travelled is below that, they are apart.
-  double& until(std::size_t place) noexcept { return until_[place]; }
-  void prefetch_known(std::size_t place) const noexcept { prefetch(&known_[slots_[place]]); }
+  Known& known(std::size_t place) noexcept { return known_[slots_[place] & kSlot]; }
+  const Known& known(std::size_t place) const noexcept { return known_[slots_[place] & kSlot]; }
+  // Whether a certain "no" would change its record.
+  bool busy(std::size_t place) const noexcept { return (slots_[place] & kBusy) != 0; }
+  void set_busy(std::size_t place, bool busy) noexcept { slots_[place] = (slots_[place] & kSlot) | (busy ? kBusy : 0); }
+  void prefetch_known(std::size_t place) const noexcept { prefetch(&known(place)); }
 
   Record& operator[](std::uint32_t record) noexcept { return records_[record]; }
   const Record& operator[](std::uint32_t record) const noexcept { return records_[record]; }
   std::uint32_t take();
 
-  enum class Same : std::uint8_t { yes, doubtful, no };  // doubtful: nothing is known of how long they are apart
-
-  // The known ones are these from now on, which ascend. Where `each`, asks same(known) about those that have been; else
+    // The known ones are these from now on, which ascend. Where `each`, asks same(known) about those that have been; else
   // all are. Calls gone(known) for each that is not among them, or not the same, and keeps the former if that says
   // true; generations(pair) for each that is new.
   template <typename IsSame, typename Gone, typename Generations>
   void match(std::span<const BodyPair> pairs, bool each, IsSame&& same, Gone&& gone, Generations&& generations);
   std::size_t memory_bytes() const noexcept {
     return bytes_of(records_) + bytes_of(free_) + bytes_of(known_) + bytes_of(free_slots_) + bytes_of(pairs_) +
-           bytes_of(slots_) + bytes_of(until_) + bytes_of(next_pairs_) + bytes_of(next_slots_) + bytes_of(next_until_);
+           bytes_of(slots_) + bytes_of(next_pairs_) + bytes_of(next_slots_);
   }
 
  private:
-  static constexpr double kNotAPair = std::numeric_limits<double>::infinity();  // at this step, and not asked about
-
   static std::size_t common(std::span<const BodyPair> a, std::span<const BodyPair> b) noexcept;
   void keep(std::size_t from, std::size_t count);
-  void keep_one(std::size_t from, double until);
+  void keep_one(std::size_t from);
   void add(const BodyPair& pair, std::uint32_t generations);
   void leave(std::size_t place) noexcept;
 
@@ -105,25 +95,27 @@ class RecordTable {
   std::vector<Known> known_;
   std::vector<std::uint32_t> free_slots_;
   std::vector<BodyPair> pairs_, next_pairs_;
-  std::vector<std::uint32_t> slots_, next_slots_;  // of known_
-  std::vector<double> until_, next_until_;
-  std::size_t kept_ = 0;  // that gone() wanted to
+  static constexpr std::uint32_t kBusy = 0x80000000u, kSlot = kBusy - 1;
+  std::vector<std::uint32_t> slots_, next_slots_;  // of known_, and kBusy
+  std::vector<std::uint32_t> kept_places_;
 };
 
 template <typename IsSame, typename Gone, typename Generations>
 void RecordTable::match(std::span<const BodyPair> pairs, bool each, IsSame&& same, Gone&& gone,
                         Generations&& generations) {
-  next_pairs_.clear(), next_slots_.clear(), next_until_.clear();
-  each = each || kept_ > 0;
-  kept_ = 0;
+  next_pairs_.clear(), next_slots_.clear(), kept_places_.clear();
   std::size_t old = 0, now = 0;
   const auto look_at = [&](std::size_t place) {
-    Known& known = known_[slots_[place]];
-    const Same told = same(known);
-    if (told != Same::no) return keep_one(place, told == Same::yes && until_[place] < kNotAPair ? until_[place] : -1);
+    const Known& known = known(place);
+    if (same(known)) return keep_one(place);
     gone(known);  // of a body that is no more: it cannot stay
     leave(place);
     add(pairs_[place], generations(pairs_[place]));
+  };
+  const auto part = [&](std::size_t place) {
+    if (!gone(known(place))) return leave(place);
+    kept_places_.push_back(static_cast<std::uint32_t>(next_pairs_.size()));
+    keep_one(place);
   };
   while (now < pairs.size()) {
     const std::size_t run = common(pairs.subspan(now), std::span(pairs_).subspan(old));
@@ -131,27 +123,13 @@ void RecordTable::match(std::span<const BodyPair> pairs, bool each, IsSame&& sam
     for (std::size_t i = 0; each && i < run; ++i) look_at(old + i);
     old += run, now += run;
     if (now == pairs.size()) break;
-    for (; old < pairs_.size() && pairs_[old] < pairs[now]; ++old) {
-      if (gone(known_[slots_[old]])) {
-        keep_one(old, kNotAPair);
-        ++kept_;
-      } else {
-        leave(old);
-      }
-    }
+    for (; old < pairs_.size() && pairs_[old] < pairs[now]; ++old) part(old);
     for (; now < pairs.size() && (old == pairs_.size() || pairs[now] < pairs_[old]); ++now) {
       add(pairs[now], generations(pairs[now]));
     }
   }
-  for (; old < pairs_.size(); ++old) {
-    if (gone(known_[slots_[old]])) {
-      keep_one(old, kNotAPair);
-      ++kept_;
-    } else {
-      leave(old);
-    }
-  }
-  pairs_.swap(next_pairs_), slots_.swap(next_slots_), until_.swap(next_until_);
+  for (; old < pairs_.size(); ++old) part(old);
+  pairs_.swap(next_pairs_), slots_.swap(next_slots_);
 }
 
 }  // namespace orchard::runtime::detail

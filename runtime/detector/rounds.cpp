@@ -42,11 +42,12 @@ void Rounds::place(const Record& record, std::uint32_t part_a, std::uint32_t par
 // Unless they pass each other so fast that looking for what lasts would not pay.
 bool Rounds::is_slow(Record& record, const PartPair& pair, Step now) noexcept {
   const Vec3 way = pair.b.center - pair.a.center, change = way - record.apart_by;
+  const bool first = record.apart_at < 0;
   const double slow =
       kSlow * std::min(pair.a.reach, pair.b.reach) * static_cast<double>(std::max<Step>(1, now - record.apart_at));
   record.apart_by = way;
   record.apart_at = now;
-  return dot(change, change) <= slow * slow;
+  return first || dot(change, change) <= slow * slow;
 }
 
 // Two bodies of one tree each, as most are: what the last step found is where this one begins.
