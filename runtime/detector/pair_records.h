@@ -106,9 +106,8 @@ void RecordTable::match(std::span<const BodyPair> pairs, bool each, IsSame&& sam
   next_pairs_.clear(), next_slots_.clear(), kept_places_.clear();
   std::size_t old = 0, now = 0;
   const auto look_at = [&](std::size_t place) {
-    const Known& known = known(place);
-    if (same(known)) return keep_one(place);
-    gone(known);  // of a body that is no more: it cannot stay
+    if (same(known(place))) return keep_one(place);
+    gone(known(place));  // of a body that is no more: it cannot stay
     leave(place);
     add(pairs_[place], generations(pairs_[place]));
   };
