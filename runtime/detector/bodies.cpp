@@ -64,6 +64,16 @@ void BodyTable::forget_disturbed() noexcept {
   any_disturbed_.store(false, std::memory_order_relaxed);
 }
 
+void BodyTable::parts_changed(BodyIndex index) noexcept {
+  Body& body = bodies_[index];
+  const PartRecord& first = body.parts[0];
+  body.one = body.parts.size() == 1;
+  body.at_origin = first.at_origin;
+  body.shape = first.shape;
+  body.first_center = first.center;
+  body.first_reach = first.reach;
+}
+
 // A sum that is not rounded down, so that it never says too little.
 void BodyTable::add_turn(BodyIndex body, double way) noexcept {
   constexpr double kUp = 1 + 0x1p-52;
@@ -79,13 +89,12 @@ void BodyTable::moved(BodyIndex index, const Pose& before) noexcept {
   const Body& body = bodies_[index];
   const Pose& now = states_[index].pose;
   Whereabouts& where = whereabouts_[index];
-  const bool one = body.parts.size() == 1;
-  const double reach = one ? body.parts[0].reach : body.reach;
-  where.middle = one ? transform(now, body.parts[0].center) : Vec3(now.translation);
+  const double reach = body.one ? body.first_reach : body.reach;
+  where.middle = body.one ? transform(now, body.first_center) : Vec3(now.translation);
   double size = reach * now.scale;
   for (std::size_t i = 0; i < 3; ++i) size += std::fabs(now.translation[i]) + std::fabs(where.middle[i]);
   where.slack = 1e-14 * size;
-  const bool tells = one && body.rigid && !(body.continuous_speed > 0);
+  const bool tells = body.one && body.rigid && !(body.continuous_speed > 0);
   where.reach = tells ? reach * now.scale : std::numeric_limits<double>::infinity();
   const double change = pose_change(before, now);
   add_turn(index, change == 0 ? 0 : (change + 4 * kRigidTolerance * (now.scale + before.scale)) * reach);
@@ -108,7 +117,10 @@ void BodyTable::ask(Step step, double time, std::span<const BodyIndex> bodies, c
   asking_.clear();
   constexpr std::size_t kAhead = 8;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (i + kAhead < bodies.size()) prefetch_all(bodies_[bodies[i + kAhead]]);
+    if (i + kAhead < bodies.size()) {
+      const Body& ahead = bodies_[bodies[i + kAhead]];
+      prefetch(&ahead.is_static), prefetch(&ahead.asked);
+    }
     const BodyIndex index = bodies[i];
     Body& body = bodies_[index];
     if (body.asked == step || body.is_static || body.frozen) continue;
@@ -125,10 +137,8 @@ void BodyTable::ask(Step step, double time, std::span<const BodyIndex> bodies, c
     for (std::size_t i = job * kPerJob; i < end; ++i) {
       if (i + kAhead < end) {
         const BodyIndex ahead = asking_[i + kAhead];
-        prefetch_all(bodies_[ahead]), prefetch_all(states_[ahead]), prefetch_all(before_[ahead]);
-        prefetch(&whereabouts_[ahead]);
+        prefetch_all(bodies_[ahead]), prefetch_all(states_[ahead]), prefetch_whereabouts(ahead);
       }
-      if (i + kAhead / 2 < end) prefetch_part(asking_[i + kAhead / 2]);
       take_answer(step, asking_[i], answers_[i]);
     }
   };
@@ -138,12 +148,13 @@ void BodyTable::ask(Step step, double time, std::span<const BodyIndex> bodies, c
 void BodyTable::take_answer(Step step, BodyIndex index, const BodyState& answer) noexcept {
   Body& body = bodies_[index];
   BodyState& state = states_[index];
-  before_[index] = state.pose;
-  const bool same = body.moved >= 0 && state.pose == answer.pose;
+  const Pose before = state.pose;
+  if (keeps_before_) before_[index] = before;
+  const bool same = body.moved >= 0 && before == answer.pose;
   if (!same) body.moved = step;
   state = answer;
   body.rigid = is_rigid(state.pose);
-  if (!same) moved(index, before_[index]);
+  if (!same) moved(index, before);
   if (!body.asleep) return;
   body.frozen = true;
   state.velocity = state.half_space = {};

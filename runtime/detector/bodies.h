@@ -30,38 +30,46 @@ struct PartBefore {
   Step until = kNotAsked;
 };
 
-struct Body {
+// By lines of memory: what each pair asks about, what a new pose does, and the rest.
+struct alignas(64) Body {
   BodyId id = kNoBody;  // kNoBody: no body has this index now
   std::uint32_t group = 1, mask = 0;
+  std::uint32_t filters = 0;   // grows with changes of group, mask, sleep
+  std::uint32_t jumps = 0;     // teleports
+  std::uint32_t deformed = 0;  // changes of its shapes' trees
+  ShapeId shape = kNoShape;    // of its first part
   std::uint8_t importance = 0;
   bool is_static = false;
   bool asleep = false;  // wanted by the application
   bool frozen = false;  // asleep, and its state is known: never asked again
   bool suggest = false;
-  bool rigid = true;  // the pose that is known
+  bool rigid = true;           // the pose that is known
+  bool one = false;            // it has one part,
+  bool at_origin = false;      // and that in its own frame
+  Step moved = -1;             // the last step at which the pose was another one than at the time asked before
+  Step stretched = kNotAsked;  // the step after which parts went farther out than ever before
   double continuous_speed = 0;
+
   double min_reach = 0;           // as the application gave it
   double reach = 0;               // what the broad phase has been told of, at scale 1
   double told_radius = -1;        // of the sphere that the broad phase relies on; below 0: none yet
   Step asked = kNotAsked;         // the step that `state` is of
-  Step moved = -1;                // the last step at which the pose was another one than at the time asked before
   Step known_before = kNotAsked;  // the step that `before` is of
-  std::uint32_t jumps = 0;        // teleports
-  std::uint32_t deformed = 0;     // changes of its shapes' trees
-  std::uint32_t filters = 0;      // grows with changes of group, mask, sleep
-  Step stretched = kNotAsked;     // the step after which parts went farther out than ever before
   std::vector<PartRecord> parts;
+
+  Vec3 first_center{};                   // of the first part's sphere,
+  double first_reach = 0;                // and its radius
   std::vector<PartBefore> parts_before;  // of each part; empty until one moves
 };
 
 // What tells whether a body may have come closer to another one, and nothing else: it is looked at for each pair of a
 // step. Points of the body are where `middle` is, but for what they have turned about it.
 struct alignas(64) Whereabouts {
-  Vec3 middle{};      // in the world; of its only part, or its origin
-  double slack = 0;   // what `middle` may be off by, and a thousandth of what the rounding of a gap between spheres may
+  Vec3 middle{};     // in the world; of its only part, or its origin
+  double slack = 0;  // what `middle` may be off by, and a thousandth of what the rounding of a gap between spheres may
   // Of its only part's sphere; infinite where that tells nothing.
   double reach = std::numeric_limits<double>::infinity();
-  double turned = 0;  // the way of any point about the middle up to now, at most, from step to step
+  double turned = 0;             // the way of any point about the middle up to now, at most, from step to step
   std::uint32_t changes = 0;     // since what was known before says nothing of now
   std::uint32_t generation = 0;  // of the body that has the index
 };
@@ -76,7 +84,9 @@ class BodyTable {
   explicit BodyTable(StateSource source) : source_(std::move(source)) {}
 
   bool has_source() const noexcept { return static_cast<bool>(source_); }
-  Body& take_in(BodyId id, std::size_t parts);  // with room for so many
+  Body& take_in(BodyId id, std::size_t parts);           // with room for so many
+  void parts_changed(BodyIndex body) noexcept;           // what is kept of the first one beside it
+  void keep_before() noexcept { keeps_before_ = true; }  // from now on; else before() is anything
   void leave(BodyIndex body) noexcept;
   bool contains(BodyId id) const noexcept {
     return id.index < bodies_.size() && bodies_[id.index].id == id && id != kNoBody;
@@ -90,13 +100,12 @@ class BodyTable {
   const Pose& before(BodyIndex body) const noexcept { return before_[body]; }
   // For loops over pairs, whose bodies are anywhere: first the one, some pairs later the other.
   void prefetch_body(BodyIndex body) const noexcept {
-    prefetch_all(bodies_[body]);
-    prefetch_all(states_[body].pose);
+    prefetch(&bodies_[body]);
+    prefetch_whereabouts(body);
+    prefetch_pose(body);
   }
+  void prefetch_pose(BodyIndex body) const noexcept { prefetch_all(states_[body].pose); }
   void prefetch_whereabouts(BodyIndex body) const noexcept { prefetch(&whereabouts_[body]); }
-  void prefetch_part(BodyIndex body) const noexcept {
-    if (!bodies_[body].parts.empty()) prefetch_all(bodies_[body].parts[0]);
-  }
   const Whereabouts& whereabouts(BodyIndex body) const noexcept { return whereabouts_[body]; }
   // Whether Whereabouts::changes of any body, or of this one, have grown since forget_disturbed().
   bool any_disturbed() const noexcept { return any_disturbed_.load(std::memory_order_relaxed); }
@@ -122,8 +131,10 @@ class BodyTable {
   void take_answer(Step step, BodyIndex index, const BodyState& answer) noexcept;
   StateSource source_;
   std::vector<Body> bodies_;
-  std::vector<BodyState> states_;
+  struct alignas(64) Kept : BodyState {};  // whose pose begins a line of memory
+  std::vector<Kept> states_;
   std::vector<Pose> before_;  // at the step asked before
+  bool keeps_before_ = false;
   std::vector<Whereabouts> whereabouts_;
   std::vector<std::uint8_t> disturbed_;
   std::atomic<bool> any_disturbed_ = false;  // set by jobs

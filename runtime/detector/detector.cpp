@@ -111,13 +111,17 @@ Body& Detector::State::take_in(BodyId id, std::span<const BodyPart> parts, const
   body.importance = with.importance;
   body.suggest = with.suggest && options.watch;
   body.continuous_speed = with.continuous_speed;
-  any_continuous = any_continuous || with.continuous_speed > 0;
+  if (with.continuous_speed > 0) {
+    any_continuous = true;
+    bodies.keep_before();
+  }
   body.min_reach = with.reach;
   for (const BodyPart& part : parts) {
     PartRecord& taken = body.parts.emplace_back();
     taken.shape = part.shape;
     detail::set_local(taken, shapes[part.shape], part.local);
   }
+  bodies.parts_changed(id.index);
   body.reach = std::max(body.min_reach, detail::reach_of(body.parts));
   changed(body);
   body.moved = -1;
@@ -256,6 +260,7 @@ bool Detector::set_local(BodyId body, std::size_t part, const Pose& local) {
   if (before.until != s.answered) before = {record, s.answered};
   const detail::PartPlace place_before = record;
   static_cast<detail::PartPlace&>(record) = place;
+  s.bodies.parts_changed(body.index);
   s.bodies.part_moved(body.index, part, place_before, s.shapes[record.shape]);
   s.changed(*found);
   const double reach = detail::reach_of(found->parts);
@@ -352,8 +357,8 @@ std::size_t Detector::memory_bytes() const noexcept {
   return sizeof(State) + (s.kept_states ? s.kept_states->memory_bytes() : 0) + s.shapes.memory_bytes() +
          s.bodies.memory_bytes() + s.halves.memory_bytes() + s.broad.memory_bytes() + s.monitor.memory_bytes() +
          s.records.memory_bytes() + s.queries.memory_bytes() + s.fronts.memory_bytes() + s.rounds.memory_bytes() +
-         bytes(s.due, s.involved, s.involved_at, s.active, s.active_of_job, s.everyone, s.refused, s.broken, s.plane_pairs,
-               s.pairs, s.kept_pairs, s.body_pairs, s.open, s.events, s.ended, s.marks, s.tallies);
+         bytes(s.due, s.involved, s.involved_at, s.active, s.active_of_job, s.everyone, s.refused, s.broken,
+               s.plane_pairs, s.pairs, s.kept_pairs, s.body_pairs, s.open, s.events, s.ended, s.marks, s.tallies);
 }
 
 }  // namespace orchard::runtime

@@ -108,8 +108,8 @@ void Detector::State::begin_record(detail::RecordTable::Known& known) {
   const Body &a = places.body(record.pair.a), &b = places.body(record.pair.b);
   record.jumps = a.jumps + b.jumps;
   record.deformed = a.deformed + b.deformed;
-  if (a.parts.size() != 1 || b.parts.size() != 1) return;
-  const detail::Shape &of_a = shapes[a.parts[0].shape], &of_b = shapes[b.parts[0].shape];
+  if (!a.one || !b.one) return;
+  const detail::Shape &of_a = shapes[a.shape], &of_b = shapes[b.shape];
   record.coherent = of_a.has_tree() && of_b.has_tree();
   if (!record.coherent) return;
   record.trees = TreePair(of_a.prepared, of_b.prepared);

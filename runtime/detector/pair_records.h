@@ -73,7 +73,7 @@ class RecordTable {
   const Record& operator[](std::uint32_t record) const noexcept { return records_[record]; }
   std::uint32_t take();
 
-    // The known ones are these from now on, which ascend. Where `each`, asks same(known) about those that have been; else
+  // The known ones are these from now on, which ascend. Where `each`, asks same(known) about those that have been; else
   // all are. Calls gone(known) for each that is not among them, or not the same, and keeps the former if that says
   // true; generations(pair) for each that is new.
   template <typename IsSame, typename Gone, typename Generations>

@@ -14,6 +14,15 @@ void Places::place_at(const Pose& pose, bool rigid, ShapeId shape, const PartPla
 void Places::place(BodyIndex body, std::uint32_t part, PlacedPart& placed_part) const noexcept {
   if (!is_half_space(body)) {
     const Body& of = (*bodies_)[body];
+    const Whereabouts& where = bodies_->whereabouts(body);
+    if (of.one && of.at_origin && where.reach < std::numeric_limits<double>::infinity()) {
+      placed_part.shape = &(*shapes_)[of.shape];
+      placed_part.pose = bodies_->state(body).pose;
+      placed_part.rigid = true;
+      placed_part.center = where.middle;
+      placed_part.reach = where.reach;
+      return;
+    }
     const PartRecord& record = of.parts[part];
     return place_at(bodies_->state(body).pose, of.rigid, record.shape, record, placed_part);
   }

@@ -29,7 +29,9 @@ class Places {
     return is_half_space(index) ? halves_->body(index) : (*bodies_)[index];
   }
   std::uint32_t parts(BodyIndex index) const noexcept {
-    return is_half_space(index) ? 1 : static_cast<std::uint32_t>((*bodies_)[index].parts.size());
+    if (is_half_space(index)) return 1;
+    const Body& of = (*bodies_)[index];
+    return of.one ? 1 : static_cast<std::uint32_t>(of.parts.size());
   }
   void place(BodyIndex body, std::uint32_t part, PlacedPart& placed) const noexcept;
   // All but the pose: enough for spheres, and a third of the time.
@@ -39,10 +41,6 @@ class Places {
   void prefetch_bodies(const BodyPair& pair) const noexcept {
     bodies_->prefetch_body(pair.a);
     if (!is_half_space(pair.b)) bodies_->prefetch_body(pair.b);
-  }
-  void prefetch_parts(const BodyPair& pair) const noexcept {
-    bodies_->prefetch_part(pair.a);
-    if (!is_half_space(pair.b)) bodies_->prefetch_part(pair.b);
   }
   const HalfSpace& half_space(BodyIndex index) const noexcept { return halves_->half_space(index); }
   const BodyTable& bodies() const noexcept { return *bodies_; }
