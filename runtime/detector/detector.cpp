@@ -228,6 +228,7 @@ bool Detector::teleport(BodyId body) {
   found->frozen = false;
   found->asked = found->known_before = detail::kNotAsked;
   ++found->jumps;
+  state_->any_jumped = true;
   state_->monitor.forget(body.index);
   state_->update_again(*found);
   return true;

@@ -11,7 +11,6 @@ using detail::Record;
 namespace {
 
 constexpr std::size_t kPerJob = 512;  // records
-constexpr std::size_t kAhead = 8;     // of which so many are on their way from memory
 
 }  // namespace
 
@@ -58,20 +57,20 @@ bool Detector::State::opens(Record& record, Step step, bool& over) noexcept {
   return !reusable(record);
 }
 
+// The application's own filter belongs to this thread.
+void Detector::State::ask_filter() {
+  for (std::size_t i = 0; filter && i < active_count; ++i) allowed(records[records.known(active[i]).record]);
+}
+
 void Detector::State::open_records(Step step) {
   open.clear();
   detail::grow(marks, active_count);
   enum : std::uint8_t { kOpens = 1, kOver = 2 };
-  // The application's own filter belongs to this thread.
-  for (std::size_t i = 0; filter && i < active_count; ++i) allowed(records[records.known(active[i]).record]);
+  ask_filter();
   auto look_at_some = [&](std::size_t job) {
     const std::size_t end = std::min(active_count, (job + 1) * kPerJob);
     for (std::size_t i = job * kPerJob; i < end; ++i) {
-      if (i + kAhead < end) {
-        const auto& next = records.known(active[i + kAhead]);
-        detail::prefetch_all(records[next.record]);
-        places.prefetch_bodies(next.pair);
-      }
+      prefetch_active(i, end);
       const auto& known = records.known(active[i]);
       Record& record = records[known.record];
       allowed(record);
@@ -129,36 +128,64 @@ Detector::State::Outcome Detector::State::begin_or_end(Record& record) const noe
   return Outcome::end;
 }
 
+// What the answer, or that none was asked for, makes of active[i].
+void Detector::State::conclude(std::size_t i, Record& record, Tally& tally) noexcept {
+  // Of what is not allowed it is certain that nothing is asked.
+  const bool maybe = record.allowed && record.verdict.answer == Answer::maybe;
+  tally.certain += !maybe;
+  if (maybe) tally.worst_bound = std::max(tally.worst_bound, record.verdict.separation_bound);
+  const Outcome outcome = begin_or_end(record);
+  marks[i] = static_cast<std::uint8_t>(outcome);
+  tally.events += outcome != Outcome::nothing;
+  records.set_busy(active[i], record.touching || record.waited > 0);
+  if (record.allowed) keep_clearance(records.known(active[i]), record);
+}
+
+// For a loop over `active`: what the next ones need is on its way from memory.
+void Detector::State::prefetch_active(std::size_t i, std::size_t end) const noexcept {
+  constexpr std::size_t kKnown = 12, kRecord = 8, kBodies = 6;  // places ahead
+  if (i + kKnown < end) records.prefetch_known(active[i + kKnown]);
+  if (i + kRecord < end) detail::prefetch_all(records[records.known(active[i + kRecord]).record]);
+  if (i + kBodies < end) places.prefetch_bodies(records.pair(active[i + kBodies]));
+}
+
 void Detector::State::tally(std::size_t job, Tally& tally) noexcept {
-  const std::size_t end = std::min(active_count, (job + 1) * kPerJob);
   tally = {};
-  for (std::size_t i = job * kPerJob; i < end; ++i) {
-    if (i + kAhead < end) {
-      const auto& next = records.known(active[i + kAhead]);
-      detail::prefetch_all(records[next.record]);
-      places.prefetch_bodies(next.pair);
-      bodies.prefetch_whereabouts(next.pair.a);
-      if (!detail::is_half_space(next.pair.b)) bodies.prefetch_whereabouts(next.pair.b);
-    }
-    auto& known = records.known(active[i]);
-    Record& record = records[known.record];
-    // Of what is not allowed it is certain that nothing is asked.
-    const bool maybe = record.allowed && record.verdict.answer == Answer::maybe;
-    tally.certain += !maybe;
-    if (maybe) tally.worst_bound = std::max(tally.worst_bound, record.verdict.separation_bound);
-    const Outcome outcome = begin_or_end(record);
-    marks[i] = static_cast<std::uint8_t>(outcome);
-    tally.events += outcome != Outcome::nothing;
-    records.set_busy(active[i], record.touching || record.waited > 0);
-    if (record.allowed) keep_clearance(known, record);
+  const std::size_t end = first_of_job(job + 1);
+  for (std::size_t i = first_of_job(job); i < end; ++i) {
+    prefetch_active(i, end);
+    conclude(i, records[records.known(active[i]).record], tally);
   }
+}
+
+// Where nothing has to wait for all answers: records are opened, answered and concluded one after the other.
+std::uint64_t Detector::State::answer_one_by_one(Step step) {
+  detail::grow(marks, active_count);
+  job_count = rounds.jobs(active_count);
+  detail::grow(tallies, job_count);
+  ask_filter();
+  return rounds.answer_by(records, job_count, step, [&](std::size_t job, detail::QueryPool::Scratch& scratch) {
+    Tally& tally = tallies[job];
+    tally = {};
+    const std::size_t end = first_of_job(job + 1);
+    for (std::size_t i = first_of_job(job); i < end; ++i) {
+      prefetch_active(i, end);
+      const std::uint32_t index = records.known(active[i]).record;
+      Record& record = records[index];
+      allowed(record);
+      bool over = false;
+      if (opens(record, step, over)) rounds.answer(index, record, step, scratch);
+      conclude(i, record, tally);
+    }
+  });
 }
 
 // The events of a job's records, and of those that have ended among them, which come first.
 void Detector::State::write_events(std::size_t job, Step step, std::size_t ended_to) noexcept {
-  const std::size_t end = std::min(active_count, (job + 1) * kPerJob);
+  const std::size_t end = first_of_job(job + 1);
   std::size_t next = tallies[job].ended_from, to = tallies[job].events_from;
-  for (std::size_t i = job * kPerJob; i < end; ++i) {
+  for (std::size_t i = first_of_job(job); i < end; ++i) {
+    prefetch_active(i, end);
     const auto& known = records.known(active[i]);
     for (; next < ended_to && !(known.pair < BodyPair{ended[next].a.index, ended[next].b.index}); ++next) {
       events[to++] = ended[next];
@@ -170,17 +197,21 @@ void Detector::State::write_events(std::size_t job, Step step, std::size_t ended
   for (; next < ended_to; ++next) events[to++] = ended[next];
 }
 
+void Detector::State::tally_all() {
+  detail::grow(marks, active_count);
+  job_count = std::max<std::size_t>(1, (active_count + kPerJob - 1) / kPerJob);
+  detail::grow(tallies, job_count);
+  auto tally_some = [&](std::size_t job) { tally(job, tallies[job]); };
+  run_jobs(options.executor, job_count, tally_some);
+}
+
 // In ascending order of pairs; what has ended of a pair comes before what has begun.
 void Detector::State::report(Step step, Frame& frame) {
   const auto pair_of = [](const PairEvent& event) { return BodyPair{event.a.index, event.b.index}; };
   const auto by_pair = [&](const PairEvent& p, const PairEvent& q) { return pair_of(p) < pair_of(q); };
   // Teleports come after all others.
   if (!std::is_sorted(ended.begin(), ended.end(), by_pair)) std::sort(ended.begin(), ended.end(), by_pair);
-  detail::grow(marks, active_count);
-  const std::size_t jobs = std::max<std::size_t>(1, (active_count + kPerJob - 1) / kPerJob);
-  detail::grow(tallies, jobs);
-  auto tally_some = [&](std::size_t job) { tally(job, tallies[job]); };
-  run_jobs(options.executor, jobs, tally_some);
+  const std::size_t jobs = job_count;
   std::size_t written = event_count;
   for (std::size_t job = 0; job < jobs; ++job) {
     Tally& of = tallies[job];
@@ -188,7 +219,7 @@ void Detector::State::report(Step step, Frame& frame) {
     frame.worst_bound = std::max(frame.worst_bound, of.worst_bound);
     of.events_from = written;
     if (job > 0) {
-      const BodyPair first = records.pair(active[job * kPerJob]);
+      const BodyPair first = records.pair(active[first_of_job(job)]);
       const auto from = std::partition_point(ended.begin(), ended.end(),
                                              [&](const PairEvent& event) { return pair_of(event) < first; });
       of.ended_from = static_cast<std::size_t>(from - ended.begin());

@@ -85,7 +85,13 @@ struct Detector::State {
   };
   Outcome begin_or_end(detail::Record& record) const noexcept;
   bool opens(detail::Record& record, Step step, bool& over) noexcept;
+  std::size_t first_of_job(std::size_t job) const noexcept { return active_count * job / job_count; }
+  void ask_filter();
+  void conclude(std::size_t i, detail::Record& record, Tally& tally) noexcept;
+  void prefetch_active(std::size_t i, std::size_t end) const noexcept;
   void tally(std::size_t job, Tally& tally) noexcept;
+  void tally_all();
+  std::uint64_t answer_one_by_one(Step step);
   void write_events(std::size_t job, Step step, std::size_t ended_to) noexcept;
   Manifold manifold(const PairEvent& event, const ContactOptions& with) noexcept;
   void motions(double time, std::span<const BodyIndex> asked, std::span<Motion> motions);
@@ -115,6 +121,7 @@ struct Detector::State {
   std::size_t count = 0;
   bool failed = false;          // out of memory
   bool any_continuous = false;  // bodies, ever
+  bool any_jumped = false;      // bodies, since the last step that was answered
   bool interrupted = false;     // the broad phase, at the step before
   // For foresee(), smoothed: of what the timing wheel has as meeting, the share that overlaps; of the pairs that
   // overlap, the share that does no more at the next step; what a pair costs.
@@ -134,7 +141,8 @@ struct Detector::State {
   std::size_t active_count = 0;
   std::vector<std::uint32_t> open;  // records to be asked about
   std::vector<std::uint8_t> marks;  // of `active`
-  std::vector<Tally> tallies;
+  std::vector<Tally> tallies;       // job_count of them
+  std::size_t job_count = 1;
   std::vector<PairEvent> events;  // event_count of them
   std::size_t event_count = 0;
   std::vector<PairEvent> ended;  // in match() and open_records(), until report() merges them in

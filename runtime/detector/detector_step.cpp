@@ -213,17 +213,25 @@ void Detector::State::answer(Step step, const Advance& now, StepBudget& budget, 
   const StepBudget::Stopwatch watch(budget.timed());
   gather(step, now);
   match(step, frame);
-  open_records(step);
   rounds.use(options.executor);
   const std::uint64_t before = budget.spent();
-  if (!budget.limited()) {
-    budget.spend(rounds.answer_all(records, open, step));
-    rounds.sweep_all(records, open, step, budget);
-    learn(budget.spent() - before);
-    report(step, frame);
-  } else {
+  const bool sweeps_or_ends = any_continuous || any_jumped;
+  any_jumped = false;
+  if (budget.limited()) {
+    open_records(step);
     answer_within(step, watch, budget, frame);
     learn(budget.spent() - before);
+  } else {
+    if (sweeps_or_ends) {
+      open_records(step);
+      budget.spend(rounds.answer_all(records, open, step));
+      rounds.sweep_all(records, open, step, budget);
+      tally_all();
+    } else {
+      budget.spend(answer_one_by_one(step));
+    }
+    learn(budget.spent() - before);
+    report(step, frame);
   }
   ++frame.steps;
 }
@@ -244,6 +252,7 @@ void Detector::State::answer_within(Step step, const StepBudget::Stopwatch& watc
   const double folded = rest.passed();
   rounds.sweep_all(records, open, step, budget);
   const double swept = rest.passed();
+  tally_all();
   report(step, frame);
   if (!budget.timed()) return;
   budget.give_back(report_time);

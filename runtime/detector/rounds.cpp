@@ -105,19 +105,16 @@ void Rounds::answer(std::uint32_t index, Record& record, Step now, QueryPool::Sc
 }
 
 std::uint64_t Rounds::answer_all(RecordTable& records, std::span<const std::uint32_t> open, Step now) {
-  for (std::size_t job = 0; job < queries_->jobs(); ++job) queries_->scratch(job).work = 0;
-  in_parallel(open.size(), [&](std::size_t begin, std::size_t end, QueryPool::Scratch& scratch) {
-    for (std::size_t i = begin; i < end; ++i) {        // what a pair needs is all over memory
-      constexpr std::size_t kRecord = 6, kBodies = 4;  // pairs ahead
+  const std::size_t among = jobs(open.size());
+  return answer_by(records, among, now, [&](std::size_t job, QueryPool::Scratch& scratch) {
+    const std::size_t end = open.size() * (job + 1) / among;
+    for (std::size_t i = open.size() * job / among; i < end; ++i) {  // what a pair needs is all over memory
+      constexpr std::size_t kRecord = 6, kBodies = 4;                // pairs ahead
       if (i + kRecord < end) prefetch_all(records[open[i + kRecord]]);
       if (i + kBodies < end) places_->prefetch_bodies(records[open[i + kBodies]].pair);
       answer(open[i], records[open[i]], now, scratch);
     }
   });
-  std::uint64_t work = 0;
-  for (std::size_t job = 0; job < queries_->jobs(); ++job) work += queries_->scratch(job).work;
-  give_fronts(records, now);
-  return work;
 }
 
 void Rounds::note_search(std::uint32_t index, Record& record, std::uint64_t work,

@@ -19,6 +19,12 @@ class Rounds {
 
   // Every record's part pairs to their end. Returns the work.
   std::uint64_t answer_all(RecordTable& records, std::span<const std::uint32_t> open, Step now);
+  // The same by whoever has more to do with each of `count` things: work(job, scratch), where answer() may be called,
+  // for so many jobs, each with its part of them.
+  std::size_t jobs(std::size_t count) const noexcept;
+  template <typename Work>
+  std::uint64_t answer_by(RecordTable& records, std::size_t jobs, Step now, Work&& work);
+  void answer(std::uint32_t index, Record& record, Step now, QueryPool::Scratch& scratch) const noexcept;
   // The same as far as the budget goes, in three parts: what is done in any case; what the budget allows; and what that
   // makes of the records. What is not answered has the answer maybe and is not Record::answered.
   void begin_within(RecordTable& records, std::span<const std::uint32_t> open, Step now);
@@ -50,7 +56,6 @@ class Rounds {
   static void note_search(std::uint32_t index, Record& record, std::uint64_t work,
                           QueryPool::Scratch& scratch) noexcept;
   void answer_coherently(std::uint32_t index, Record& record, Step now, QueryPool::Scratch& scratch) const noexcept;
-  void answer(std::uint32_t index, Record& record, Step now, QueryPool::Scratch& scratch) const noexcept;
   void sweep_one(Record& record, Step now, QueryPool::Scratch& scratch, std::uint64_t most) const noexcept;
   void make_tasks(RecordTable& records, std::span<const std::uint32_t> open, Step now);
   void sort_tasks(const RecordTable& records);
@@ -81,16 +86,31 @@ class Rounds {
   std::int64_t lead_ = 0;  // of the work on what begins
 };
 
-// work(begin, end, scratch) for consecutive parts of 0 .. count - 1; the cutting depends on nothing but `count` and the
-// executor's concurrency, and no answer on the cutting.
+// The cutting depends on nothing but `count` and the executor's concurrency, and no answer on the cutting.
+inline std::size_t Rounds::jobs(std::size_t count) const noexcept {
+  const std::size_t wanted = executor_->run == nullptr ? 1 : executor_->concurrency * kJobsPerThread;
+  return std::clamp<std::size_t>(std::min(wanted, queries_->jobs()), 1, count / kMinPerJob + 1);
+}
+
+// work(begin, end, scratch) for consecutive parts of 0 .. count - 1.
 template <typename Work>
 void Rounds::in_parallel(std::size_t count, Work&& work) const {
-  const std::size_t wanted = executor_->run == nullptr ? 1 : executor_->concurrency * kJobsPerThread;
-  const std::size_t jobs = std::clamp<std::size_t>(std::min(wanted, queries_->jobs()), 1, count / kMinPerJob + 1);
+  const std::size_t among = jobs(count);
   auto job = [&](std::size_t index) {
-    work(count * index / jobs, count * (index + 1) / jobs, queries_->scratch(index));
+    work(count * index / among, count * (index + 1) / among, queries_->scratch(index));
   };
-  run_jobs(*executor_, jobs, job);
+  run_jobs(*executor_, among, job);
+}
+
+template <typename Work>
+std::uint64_t Rounds::answer_by(RecordTable& records, std::size_t jobs, Step now, Work&& work) {
+  for (std::size_t job = 0; job < queries_->jobs(); ++job) queries_->scratch(job).work = 0;
+  auto one = [&](std::size_t job) { work(job, queries_->scratch(job)); };
+  run_jobs(*executor_, jobs, one);
+  std::uint64_t sum = 0;
+  for (std::size_t job = 0; job < queries_->jobs(); ++job) sum += queries_->scratch(job).work;
+  give_fronts(records, now);
+  return sum;
 }
 
 }  // namespace orchard::runtime::detail
