@@ -32,7 +32,6 @@ double reach_of(std::span<const PartRecord> parts) noexcept {
 Body& BodyTable::take_in(BodyId id, std::size_t count) {
   const std::size_t slots = std::size_t{id.index} + 1;
   grow(bodies_, slots);
-  grow(states_, slots);
   grow(before_, slots);
   grow(whereabouts_, slots);
   grow(disturbed_, slots);
@@ -87,7 +86,7 @@ void BodyTable::add_turn(BodyIndex body, double way) noexcept {
 
 void BodyTable::moved(BodyIndex index, const Pose& before) noexcept {
   const Body& body = bodies_[index];
-  const Pose& now = states_[index].pose;
+  const Pose& now = bodies_[index].state.pose;
   Whereabouts& where = whereabouts_[index];
   const double reach = body.one ? body.first_reach : body.reach;
   where.middle = body.one ? transform(now, body.first_center) : Vec3(now.translation);
@@ -102,7 +101,7 @@ void BodyTable::moved(BodyIndex index, const Pose& before) noexcept {
 }
 
 void BodyTable::part_moved(BodyIndex index, std::size_t part, const PartPlace& before, const Shape& shape) noexcept {
-  const Pose& pose = states_[index].pose;
+  const Pose& pose = bodies_[index].state.pose;
   const PartPlace& now = bodies_[index].parts[part];
   const double rounding = 4 * kRigidTolerance * (now.local.scale + before.local.scale);
   const double way =
@@ -137,7 +136,7 @@ void BodyTable::ask(Step step, double time, std::span<const BodyIndex> bodies, c
     for (std::size_t i = job * kPerJob; i < end; ++i) {
       if (i + kAhead < end) {
         const BodyIndex ahead = asking_[i + kAhead];
-        prefetch_all(bodies_[ahead]), prefetch_all(states_[ahead]), prefetch_whereabouts(ahead);
+        prefetch_all(bodies_[ahead]), prefetch_whereabouts(ahead);
       }
       take_answer(step, asking_[i], answers_[i]);
     }
@@ -147,7 +146,7 @@ void BodyTable::ask(Step step, double time, std::span<const BodyIndex> bodies, c
 
 void BodyTable::take_answer(Step step, BodyIndex index, const BodyState& answer) noexcept {
   Body& body = bodies_[index];
-  BodyState& state = states_[index];
+  BodyState& state = bodies_[index].state;
   const Pose before = state.pose;
   if (keeps_before_) before_[index] = before;
   const bool same = body.moved >= 0 && before == answer.pose;
@@ -164,7 +163,7 @@ void BodyTable::take_answer(Step step, BodyIndex index, const BodyState& answer)
 
 Motion BodyTable::motion_of(BodyIndex index, double time_step) const noexcept {
   const Body& body = bodies_[index];
-  const BodyState& state = states_[index];
+  const BodyState& state = bodies_[index].state;
   Motion motion;
   motion.position = state.pose.translation;
   motion.velocity = state.velocity;
@@ -179,7 +178,7 @@ Motion BodyTable::motion_of(BodyIndex index, double time_step) const noexcept {
 
 bool BodyTable::surely_apart(const BodyPair& pair, double time_step) const noexcept {
   const Body &a = bodies_[pair.a], &b = bodies_[pair.b];
-  const Pose &at_a = states_[pair.a].pose, &at_b = states_[pair.b].pose;
+  const Pose &at_a = bodies_[pair.a].state.pose, &at_b = bodies_[pair.b].state.pose;
   const double reach =
       a.reach * at_a.scale + b.reach * at_b.scale + (a.continuous_speed + b.continuous_speed) * time_step;
   const Vec3 way = Vec3(at_b.translation) - Vec3(at_a.translation);
@@ -188,8 +187,8 @@ bool BodyTable::surely_apart(const BodyPair& pair, double time_step) const noexc
 }
 
 std::size_t BodyTable::memory_bytes() const noexcept {
-  std::size_t bytes = bytes_of(bodies_) + bytes_of(states_) + bytes_of(before_) + bytes_of(asking_) +
-                      bytes_of(answers_) + bytes_of(whereabouts_) + bytes_of(disturbed_);
+  std::size_t bytes = bytes_of(bodies_) + bytes_of(before_) + bytes_of(asking_) + bytes_of(answers_) +
+                      bytes_of(whereabouts_) + bytes_of(disturbed_);
   for (const Body& body : bodies_) bytes += bytes_of(body.parts) + bytes_of(body.parts_before);
   return bytes;
 }

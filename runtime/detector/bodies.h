@@ -50,6 +50,8 @@ struct alignas(64) Body {
   Step stretched = kNotAsked;  // the step after which parts went farther out than ever before
   double continuous_speed = 0;
 
+  BodyState state;  // as known last
+
   double min_reach = 0;           // as the application gave it
   double reach = 0;               // what the broad phase has been told of, at scale 1
   double told_radius = -1;        // of the sphere that the broad phase relies on; below 0: none yet
@@ -95,16 +97,15 @@ class BodyTable {
   const Body& operator[](BodyIndex body) const noexcept { return bodies_[body]; }
   std::size_t slots() const noexcept { return bodies_.size(); }
 
-  BodyState& state(BodyIndex body) noexcept { return states_[body]; }
-  const BodyState& state(BodyIndex body) const noexcept { return states_[body]; }
+  BodyState& state(BodyIndex body) noexcept { return bodies_[body].state; }
+  const BodyState& state(BodyIndex body) const noexcept { return bodies_[body].state; }
   const Pose& before(BodyIndex body) const noexcept { return before_[body]; }
   // For loops over pairs, whose bodies are anywhere: first the one, some pairs later the other.
   void prefetch_body(BodyIndex body) const noexcept {
     prefetch(&bodies_[body]);
     prefetch_whereabouts(body);
-    prefetch_pose(body);
+    prefetch_all(bodies_[body].state.pose);
   }
-  void prefetch_pose(BodyIndex body) const noexcept { prefetch_all(states_[body].pose); }
   void prefetch_whereabouts(BodyIndex body) const noexcept { prefetch(&whereabouts_[body]); }
   const Whereabouts& whereabouts(BodyIndex body) const noexcept { return whereabouts_[body]; }
   // Whether Whereabouts::changes of any body, or of this one, have grown since forget_disturbed().
@@ -131,8 +132,6 @@ class BodyTable {
   void take_answer(Step step, BodyIndex index, const BodyState& answer) noexcept;
   StateSource source_;
   std::vector<Body> bodies_;
-  struct alignas(64) Kept : BodyState {};  // whose pose begins a line of memory
-  std::vector<Kept> states_;
   std::vector<Pose> before_;  // at the step asked before
   bool keeps_before_ = false;
   std::vector<Whereabouts> whereabouts_;
