@@ -106,7 +106,9 @@ class BodyTable {
     prefetch_whereabouts(body);
     prefetch_all(bodies_[body].state.pose);
   }
-  void prefetch_whereabouts(BodyIndex body) const noexcept { prefetch(&whereabouts_[body]); }
+  void prefetch_whereabouts(BodyIndex body) const noexcept {  // nothing, of a half-space
+    if (body < whereabouts_.size()) prefetch(&whereabouts_[body]);
+  }
   const Whereabouts& whereabouts(BodyIndex body) const noexcept { return whereabouts_[body]; }
   // Whether Whereabouts::changes of any body, or of this one, have grown since forget_disturbed().
   bool any_disturbed() const noexcept { return any_disturbed_.load(std::memory_order_relaxed); }

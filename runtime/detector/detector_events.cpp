@@ -9,6 +9,15 @@ namespace {
 
 constexpr double kRoundingOfGaps = 1e3;  // in units of Whereabouts::slack
 
+// Whether the spheres of their only parts are apart; as sphere_gap() says, or not quite. No branches: nobody foresees
+// them.
+bool spheres_apart(const detail::Whereabouts& a, const detail::Whereabouts& b) noexcept {
+  const Vec3 way = b.middle - a.middle;
+  const double reach = (a.reach + b.reach) + kRoundingOfGaps * (a.slack + b.slack), square = dot(way, way);
+  return static_cast<int>(square > reach * reach * (1 + 1e-14)) &
+         static_cast<int>(square <= std::numeric_limits<double>::max());
+}
+
 }  // namespace
 
 using detail::Body;
@@ -31,15 +40,6 @@ bool Detector::State::clear(const detail::RecordTable::Known& known) const noexc
   return now.changes == then.changes && left > 0 && dot(moved, moved) < left * left * (1 - 1e-9);
 }
 
-// Whether the spheres of their only parts are apart; as sphere_gap() says, or not quite. No branches: nobody foresees
-// them.
-bool Detector::State::spheres_apart(const BodyPair& pair) const noexcept {
-  const detail::Whereabouts &a = bodies.whereabouts(pair.a), &b = bodies.whereabouts(pair.b);
-  const Vec3 way = b.middle - a.middle;
-  const double reach = (a.reach + b.reach) + kRoundingOfGaps * (a.slack + b.slack), square = dot(way, way);
-  return static_cast<int>(square > reach * reach * (1 + 1e-14)) & static_cast<int>(std::isfinite(square));
-}
-
 bool Detector::State::sphere_above(const BodyPair& pair) const noexcept {
   const detail::Whereabouts& a = bodies.whereabouts(pair.a);
   const detail::HalfSpace& half = places.half_space(pair.b);
@@ -52,15 +52,16 @@ bool Detector::State::sphere_above(const BodyPair& pair) const noexcept {
 std::size_t Detector::State::find_near(std::size_t begin, std::size_t end, std::uint32_t* near) noexcept {
   constexpr std::size_t kPairsAhead = 24;
   std::size_t found = 0, count_near = 0;
-  for (std::size_t place = begin; place < end; ++place) {
-    if (place + kPairsAhead < end) {
-      const BodyIndex ahead = records.pair(place + kPairsAhead).b;
-      if (!is_half_space(ahead)) bodies.prefetch_whereabouts(ahead);
+  for (std::size_t place = begin; place < end;) {
+    const BodyIndex first = records.pair(place).a;
+    const detail::Whereabouts a = bodies.whereabouts(first);
+    for (; place < end && records.pair(place).a == first; ++place) {
+      if (place + kPairsAhead < end) bodies.prefetch_whereabouts(records.pair(place + kPairsAhead).b);
+      const BodyPair& pair = records.pair(place);
+      const bool apart = is_half_space(pair.b) ? sphere_above(pair) : spheres_apart(a, bodies.whereabouts(pair.b));
+      near[found] = static_cast<std::uint32_t>(place);
+      found += static_cast<std::size_t>(records.busy(place)) | static_cast<std::size_t>(!apart);
     }
-    const BodyPair pair = records.pair(place);
-    near[found] = static_cast<std::uint32_t>(place);
-    const bool apart = is_half_space(pair.b) ? sphere_above(pair) : spheres_apart(pair);
-    found += static_cast<std::size_t>(records.busy(place)) | static_cast<std::size_t>(!apart);
   }
   constexpr std::size_t kAhead = 8;
   for (std::size_t i = 0; i < found; ++i) {
@@ -145,17 +146,19 @@ void Detector::State::match(Step step, Frame& frame) {
     const std::uint32_t first = bodies.whereabouts(pair.a).generation;
     return is_half_space(pair.b) ? first : first + bodies.whereabouts(pair.b).generation;
   };
+  const bool any = bodies.any_disturbed();
+  const auto doubted = [&](const BodyPair& pair) {
+    return any && (bodies.disturbed(pair.a) || (!is_half_space(pair.b) && bodies.disturbed(pair.b)));
+  };
   const auto same = [&](const detail::RecordTable::Known& known) {
-    const BodyPair& pair = known.pair;
-    const bool disturbed = bodies.disturbed(pair.a) || (!is_half_space(pair.b) && bodies.disturbed(pair.b));
-    return !disturbed || known.generations == generations(pair);
+    return known.generations == generations(known.pair);
   };
   const auto gone = [&](const detail::RecordTable::Known& known) { return parts(known, step); };
   const auto fresh = [&](const BodyPair& pair) {
     ++fresh_pairs;
     return generations(pair);
   };
-  records.match(pairs, bodies.any_disturbed(), same, gone, fresh);
+  records.match(pairs, doubted, same, gone, fresh);
   bodies.forget_disturbed();
   find_active();
   fronts.prepare(large_pairs);

@@ -67,7 +67,6 @@ struct Detector::State {
   void report(Step step, Frame& frame);
   detail::Clearance clearance_now(const BodyPair& pair) const noexcept;
   bool clear(const detail::RecordTable::Known& known) const noexcept;
-  bool spheres_apart(const BodyPair& pair) const noexcept;
   bool sphere_above(const BodyPair& pair) const noexcept;
   void keep_clearance(detail::RecordTable::Known& known, const detail::Record& record) const noexcept;
   void describe(const detail::Record& record, Step step, PairChange change, PairEvent& event) const noexcept;

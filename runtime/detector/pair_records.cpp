@@ -40,11 +40,6 @@ void RecordTable::keep(std::size_t from, std::size_t count) {
   append_some(next_slots_, some(slots_));
 }
 
-void RecordTable::keep_one(std::size_t from) {
-  next_pairs_.push_back(pairs_[from]);
-  next_slots_.push_back(slots_[from]);
-}
-
 void RecordTable::add(const BodyPair& pair, std::uint32_t generations) {
   std::uint32_t slot = static_cast<std::uint32_t>(known_.size());
   if (free_slots_.empty()) {

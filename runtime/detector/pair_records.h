@@ -73,11 +73,11 @@ class RecordTable {
   const Record& operator[](std::uint32_t record) const noexcept { return records_[record]; }
   std::uint32_t take();
 
-  // The known ones are these from now on, which ascend. Where `each`, asks same(known) about those that have been; else
-  // all are. Calls gone(known) for each that is not among them, or not the same, and keeps the former if that says
-  // true; generations(pair) for each that is new.
-  template <typename IsSame, typename Gone, typename Generations>
-  void match(std::span<const BodyPair> pairs, bool each, IsSame&& same, Gone&& gone, Generations&& generations);
+  // The known ones are these from now on, which ascend. Asks same(pair, known) about those that have been for which
+  // doubted(pair) holds; the others are. Calls gone(known) for each that is not among them, or not the same, and keeps
+  // the former if that says true; generations(pair) for each that is new.
+  template <typename Doubted, typename IsSame, typename Gone, typename Generations>
+  void match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone, Generations&& generations);
   std::size_t memory_bytes() const noexcept {
     return bytes_of(records_) + bytes_of(free_) + bytes_of(known_) + bytes_of(free_slots_) + bytes_of(pairs_) +
            bytes_of(slots_) + bytes_of(next_pairs_) + bytes_of(next_slots_);
@@ -86,7 +86,6 @@ class RecordTable {
  private:
   static std::size_t common(std::span<const BodyPair> a, std::span<const BodyPair> b) noexcept;
   void keep(std::size_t from, std::size_t count);
-  void keep_one(std::size_t from);
   void add(const BodyPair& pair, std::uint32_t generations);
   void leave(std::size_t place) noexcept;
 
@@ -100,26 +99,34 @@ class RecordTable {
   std::vector<std::uint32_t> kept_places_;
 };
 
-template <typename IsSame, typename Gone, typename Generations>
-void RecordTable::match(std::span<const BodyPair> pairs, bool each, IsSame&& same, Gone&& gone,
+template <typename Doubted, typename IsSame, typename Gone, typename Generations>
+void RecordTable::match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone,
                         Generations&& generations) {
   next_pairs_.clear(), next_slots_.clear(), kept_places_.clear();
   std::size_t old = 0, now = 0;
   const auto look_at = [&](std::size_t place) {
-    if (same(known(place))) return keep_one(place);
+    if (same(known(place))) return keep(place, 1);
     gone(known(place));  // of a body that is no more: it cannot stay
     leave(place);
     add(pairs_[place], generations(pairs_[place]));
   };
+  const auto take_over = [&](std::size_t place, std::size_t end) {
+    while (place < end) {
+      std::size_t sure = place;
+      while (sure < end && !doubted(pairs_[sure])) ++sure;
+      keep(place, sure - place);
+      if (sure < end) look_at(sure++);
+      place = sure;
+    }
+  };
   const auto part = [&](std::size_t place) {
     if (!gone(known(place))) return leave(place);
     kept_places_.push_back(static_cast<std::uint32_t>(next_pairs_.size()));
-    keep_one(place);
+    keep(place, 1);
   };
   while (now < pairs.size()) {
     const std::size_t run = common(pairs.subspan(now), std::span(pairs_).subspan(old));
-    if (!each) keep(old, run);
-    for (std::size_t i = 0; each && i < run; ++i) look_at(old + i);
+    take_over(old, old + run);
     old += run, now += run;
     if (now == pairs.size()) break;
     for (; old < pairs_.size() && pairs_[old] < pairs[now]; ++old) part(old);

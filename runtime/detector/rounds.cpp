@@ -70,7 +70,7 @@ void Rounds::answer_coherently(std::uint32_t index, Record& record, Step now,
     }
     scratch.work += kPairWork + known->work;
     record.verdict = known->answer == Answer::no ? solid_verdict(*known, pair) : *known;
-    record.verdict.separation_bound = std::min(known->separation_bound, bound);
+    record.verdict.separation_bound = std::min(record.verdict.separation_bound, bound);
   }
   if (record.verdict.answer != Answer::maybe) record.answered = now;
   record.verdict.work = scratch.work - before;

@@ -19,7 +19,7 @@ using detail::Vec3;
 namespace {
 
 constexpr std::size_t kTriangles = 3;  // witnesses that are tried by themselves, before their leaves are
-constexpr std::uint8_t kFrontsBeforeRoots = 4;
+constexpr std::uint8_t kSearchesBeforeRoots = 4;
 constexpr double kMargin = 1 - 1e-9;  // the rounding of a few operations
 
 double size_of(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
@@ -84,10 +84,20 @@ struct Coherence {
     return verdict;
   }
 
+  // The roots come first, unless they have not decided of late.
   Verdict search(const Budget& budget) noexcept {
     if (memory.witness_count > 0) return search_after_yes(budget);
     if (pair.front_ != nullptr) return search_front(budget);
-    return remember(runtime::collide(workspace, pair, a, b, budget));
+    const bool tried = memory.close && memory.wait > 0;
+    if (tried && place_narrow()) {
+      --memory.wait;
+      PairAccess::search(workspace.narrow, budget);
+      return remember(workspace.narrow.verdict());
+    }
+    const Verdict verdict = runtime::collide(workspace, pair, a, b, budget);
+    memory.close = PairAccess::exact_started(workspace.narrow);
+    memory.wait = kSearchesBeforeRoots;
+    return remember(verdict);
   }
 
   // Near the triangles that met last; else everywhere, without a front, which would be of no use where they still meet.
@@ -123,7 +133,7 @@ struct Coherence {
       if (!memory.close) return remember(narrow.verdict());
       PairAccess::place_now(narrow);
       if (tried || !walk.resume()) walk.begin();
-      memory.wait = kFrontsBeforeRoots;
+      memory.wait = kSearchesBeforeRoots;
     }
     --memory.wait;
     walk.run(budget);

@@ -54,6 +54,7 @@ struct PairAccess {
   static bool test_leaves(NarrowPhase& pair, std::uint32_t first, std::uint32_t second) noexcept {
     return say_yes_if(pair, pair.test_triangles({first, second}));
   }
+  static bool exact_started(const NarrowPhase& pair) noexcept { return pair.exact_started_; }
   static const Place& meeting(const NarrowPhase& pair) noexcept { return pair.meeting_; }  // after "yes"
   // All of the last level, after place_only().
   static void search(NarrowPhase& pair, const Budget& budget) noexcept { pair.refine_last(budget); }
