@@ -20,6 +20,7 @@ namespace {
 
 constexpr std::size_t kTriangles = 3;  // witnesses that are tried by themselves, before their leaves are
 constexpr std::uint8_t kSearchesBeforeRoots = 4;
+constexpr std::uint8_t kInVain = 4;  // answers of roots that told nothing, before they are asked now and then only
 constexpr double kMargin = 1 - 1e-9;  // the rounding of a few operations
 
 double size_of(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
@@ -96,7 +97,8 @@ struct Coherence {
     }
     const Verdict verdict = runtime::collide(workspace, pair, a, b, budget);
     memory.close = PairAccess::exact_started(workspace.narrow);
-    memory.wait = kSearchesBeforeRoots;
+    memory.in_vain = static_cast<std::uint8_t>(memory.close ? std::min<int>(memory.in_vain + 1, kInVain) : 0);
+    memory.wait = memory.in_vain == kInVain ? kSearchesBeforeRoots : 0;
     return remember(verdict);
   }
 

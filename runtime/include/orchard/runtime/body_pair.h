@@ -54,8 +54,9 @@ class TreePair {
     double clearance = 0;                       // in a's units; 0: none
     std::array<Witness, kWitnesses> witnesses;  // in the answers since the last "no", the last ones first
     std::uint8_t witness_count = 0;
-    std::uint8_t wait = 0;  // searches on from the front until the roots are asked first
-    bool close = false;     // the roots did not decide the last search
+    std::uint8_t wait = 0;     // searches until the roots are asked first
+    std::uint8_t in_vain = 0;  // times that the roots were asked and told nothing, in a row
+    bool close = false;        // the roots did not decide the last search
   };
   const PreparedTree* a_ = nullptr;
   const PreparedTree* b_ = nullptr;
