@@ -93,35 +93,32 @@ void Detector::State::find_active() {
       while (kept != records.kept().end() && *kept < place) ++kept;
       if (kept != records.kept().end() && *kept == place) continue;
       active[active_count++] = place;
-      auto& known = records.known(place);
-      if (known.record == detail::kNoRecord) begin_record(known);
+      if (records.known(place).record == detail::kNoRecord) records.take(place);
     }
   }
 }
 
-void Detector::State::begin_record(detail::RecordTable::Known& known) {
-  const std::uint32_t index = records.take();
-  known.record = index;
-  Record& record = records[index];
+// Its record, from the first time on that it is asked for.
+Record& Detector::State::record_of(detail::RecordTable::Known& known) noexcept {
+  if (records.is_begun(known)) return records[known.record];
+  Record& record = records.begin(known);
   record.pair = known.pair;
   record.a = id_of(known.pair.a), record.b = id_of(known.pair.b);
   record.filter_version = filter_version - 1;
   const Body &a = places.body(record.pair.a), &b = places.body(record.pair.b);
   record.jumps = a.jumps + b.jumps;
   record.deformed = a.deformed + b.deformed;
-  if (!a.one || !b.one) return;
+  if (!a.one || !b.one) return record;
   const detail::Shape &of_a = shapes[a.shape], &of_b = shapes[b.shape];
   record.coherent = of_a.has_tree() && of_b.has_tree();
-  if (!record.coherent) return;
+  if (!record.coherent) return record;
   record.trees = TreePair(of_a.prepared, of_b.prepared);
   record.large = detail::FrontPool::are_large(record.trees);
-  large_pairs += record.large;
+  return record;
 }
 
-// Of a pair that is no more. True: its touch goes on for a while.
+// Of a held pair that is no more. True: its touch goes on for a while.
 bool Detector::State::parts(const detail::RecordTable::Known& known, Step step) {
-  ++parted_pairs;
-  if (known.record == detail::kNoRecord) return false;
   Record& record = records[known.record];
   // What the filters exclude is no pair of the broad phase's any more.
   const bool there = contains(record.a) && contains(record.b) && allowed(record);
@@ -141,7 +138,7 @@ bool Detector::State::parts(const detail::RecordTable::Known& known, Step step) 
 
 void Detector::State::match(Step step, Frame& frame) {
   known_pairs = records.size();
-  fresh_pairs = parted_pairs = 0;
+  fresh_pairs = 0;
   const auto generations = [this](const BodyPair& pair) {
     const std::uint32_t first = bodies.whereabouts(pair.a).generation;
     return is_half_space(pair.b) ? first : first + bodies.whereabouts(pair.b).generation;
@@ -159,9 +156,9 @@ void Detector::State::match(Step step, Frame& frame) {
     return generations(pair);
   };
   records.match(pairs, doubted, same, gone, fresh);
+  parted_pairs = known_pairs + fresh_pairs + records.kept().size() - records.size();
   bodies.forget_disturbed();
   find_active();
-  fronts.prepare(large_pairs);
   frame.pairs += pairs.size();
   frame.certain += pairs.size() - active_count;
 }

@@ -59,24 +59,26 @@ bool Detector::State::opens(Record& record, Step step, bool& over) noexcept {
 
 // The application's own filter belongs to this thread.
 void Detector::State::ask_filter() {
-  for (std::size_t i = 0; filter && i < active_count; ++i) allowed(records[records.known(active[i]).record]);
+  for (std::size_t i = 0; filter && i < active_count; ++i) allowed(record_of(records.known(active[i])));
 }
 
 void Detector::State::open_records(Step step) {
   open.clear();
   detail::grow(marks, active_count);
-  enum : std::uint8_t { kOpens = 1, kOver = 2 };
+  enum : std::uint8_t { kOpens = 1, kOver = 2, kLarge = 4 };  // kLarge: and begun now
   ask_filter();
   auto look_at_some = [&](std::size_t job) {
     const std::size_t end = std::min(active_count, (job + 1) * kPerJob);
     for (std::size_t i = job * kPerJob; i < end; ++i) {
       prefetch_active(i, end);
-      const auto& known = records.known(active[i]);
-      Record& record = records[known.record];
+      auto& known = records.known(active[i]);
+      const bool begins = !records.is_begun(known);
+      Record& record = record_of(known);
       allowed(record);
       bool over = false;
       const bool asked = opens(record, step, over);
-      marks[i] = static_cast<std::uint8_t>((asked ? kOpens : 0) | (over ? kOver : 0));
+      marks[i] =
+          static_cast<std::uint8_t>((asked ? kOpens : 0) | (over ? kOver : 0) | (begins && record.large ? kLarge : 0));
     }
   };
   run_jobs(options.executor, (active_count + kPerJob - 1) / kPerJob, look_at_some);
@@ -91,7 +93,9 @@ void Detector::State::open_records(Step step) {
       record.touching = false;
     }
     if ((marks[i] & kOpens) != 0) open.push_back(index);
+    large_pairs += (marks[i] & kLarge) != 0;
   }
+  fronts.prepare(large_pairs);
 }
 
 // After a certain "no". What is swept is asked at each step.
@@ -137,7 +141,8 @@ void Detector::State::conclude(std::size_t i, Record& record, Tally& tally) noex
   const Outcome outcome = begin_or_end(record);
   marks[i] = static_cast<std::uint8_t>(outcome);
   tally.events += outcome != Outcome::nothing;
-  records.set_busy(active[i], record.touching || record.waited > 0);
+  const bool busy = record.touching || record.waited > 0;
+  records.tell(active[i], busy, busy || record.large);
   if (record.allowed) keep_clearance(records.known(active[i]), record);
 }
 
@@ -164,20 +169,26 @@ std::uint64_t Detector::State::answer_one_by_one(Step step) {
   job_count = rounds.jobs(active_count);
   detail::grow(tallies, job_count);
   ask_filter();
-  return rounds.answer_by(records, job_count, step, [&](std::size_t job, detail::QueryPool::Scratch& scratch) {
+  const std::uint64_t work = rounds.answer_by(job_count, [&](std::size_t job, detail::QueryPool::Scratch& scratch) {
     Tally& tally = tallies[job];
     tally = {};
     const std::size_t end = first_of_job(job + 1);
     for (std::size_t i = first_of_job(job); i < end; ++i) {
       prefetch_active(i, end);
-      const std::uint32_t index = records.known(active[i]).record;
-      Record& record = records[index];
+      auto& known = records.known(active[i]);
+      const bool begins = !records.is_begun(known);
+      Record& record = record_of(known);
+      tally.large += begins && record.large;
       allowed(record);
       bool over = false;
-      if (opens(record, step, over)) rounds.answer(index, record, step, scratch);
+      if (opens(record, step, over)) rounds.answer(known.record, record, step, scratch);
       conclude(i, record, tally);
     }
   });
+  for (std::size_t job = 0; job < job_count; ++job) large_pairs += tallies[job].large;
+  fronts.prepare(large_pairs);
+  rounds.give_fronts(records, step);
+  return work;
 }
 
 // The events of a job's records, and of those that have ended among them, which come first.

@@ -58,7 +58,7 @@ struct Detector::State {
   void match(Step step, Frame& frame);
   std::size_t find_near(std::size_t begin, std::size_t end, std::uint32_t* near) noexcept;
   void find_active();
-  void begin_record(detail::RecordTable::Known& known);
+  detail::Record& record_of(detail::RecordTable::Known& known) noexcept;
   bool parts(const detail::RecordTable::Known& known, Step step);
   void open_records(Step step);
   bool reusable(const detail::Record& record) const noexcept;
@@ -77,8 +77,8 @@ struct Detector::State {
     possible = static_cast<std::uint8_t>(PairChange::possible),
     nothing
   };
-  struct Tally {  // of a job's records, and where their events are to be
-    std::size_t events = 0, certain = 0;
+  struct Tally {                                     // of a job's records, and where their events are to be
+    std::size_t events = 0, certain = 0, large = 0;  // large: begun now
     double worst_bound = 0;
     std::size_t ended_from = 0, events_from = 0;
   };

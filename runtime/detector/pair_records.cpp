@@ -4,16 +4,25 @@
 
 namespace orchard::runtime::detail {
 
-std::uint32_t RecordTable::take() {
+void RecordTable::take(std::size_t place) {
+  std::uint32_t record = record_count_;
   if (free_.empty()) {
-    records_.emplace_back();
-    free_.reserve(records_.capacity());
-    return static_cast<std::uint32_t>(records_.size() - 1);
+    if (record / kPiece == pieces_.size()) {
+      pieces_.push_back(std::make_unique_for_overwrite<Piece>());
+      free_.reserve(pieces_.size() * kPiece);
+    }
+    ++record_count_;
+  } else {
+    record = free_.back();
+    free_.pop_back();
   }
-  const std::uint32_t record = free_.back();
-  free_.pop_back();
-  records_[record] = Record{};
-  return record;
+  known(place).record = record & kNoRecord;
+  known(place).begun = 0;
+}
+
+Record& RecordTable::begin(Known& known) noexcept {
+  known.begun = 1;
+  return *::new (pieces_[known.record / kPiece]->memory[known.record % kPiece].data()) Record;
 }
 
 // Of how many pairs the two begin alike: most of them do, from one step to the next.

@@ -1,4 +1,10 @@
 #pragma once
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <new>
+#include <type_traits>
+
 #include "orchard/runtime/body_pair.h"
 #include "pair_tests.h"
 
@@ -45,14 +51,15 @@ struct Clearance {
   std::uint32_t changes = 0;
 };
 
-inline constexpr std::uint32_t kNoRecord = 0xffffffffu;
+inline constexpr std::uint32_t kNoRecord = 0x7fffffffu;
 
 // The pairs of the step before, in ascending order, what is known of each, and the records of some.
 class RecordTable {
  public:
   struct Known {  // no larger than a line of memory: most pairs of a step are asked no more than this, if that
     BodyPair pair;
-    std::uint32_t record;       // or kNoRecord
+    std::uint32_t record : 31;  // or kNoRecord
+    std::uint32_t begun : 1;
     std::uint32_t generations;  // of both bodies: others have others
     Clearance clearance;
   };
@@ -64,14 +71,20 @@ class RecordTable {
   const BodyPair& pair(std::size_t place) const noexcept { return pairs_[place]; }
   Known& known(std::size_t place) noexcept { return known_[slots_[place] & kSlot]; }
   const Known& known(std::size_t place) const noexcept { return known_[slots_[place] & kSlot]; }
-  // Whether a certain "no" would change its record.
+  // Whether a certain "no" would change its record; and whether its end would be noticed.
   bool busy(std::size_t place) const noexcept { return (slots_[place] & kBusy) != 0; }
-  void set_busy(std::size_t place, bool busy) noexcept { slots_[place] = (slots_[place] & kSlot) | (busy ? kBusy : 0); }
+  bool is_held(std::size_t place) const noexcept { return (slots_[place] & (kBusy | kHeld)) != 0; }
+  void tell(std::size_t place, bool busy, bool held) noexcept {
+    slots_[place] = (slots_[place] & kSlot) | (busy ? kBusy : 0) | (held ? kHeld : 0);
+  }
   void prefetch_known(std::size_t place) const noexcept { prefetch(&known(place)); }
 
-  Record& operator[](std::uint32_t record) noexcept { return records_[record]; }
-  const Record& operator[](std::uint32_t record) const noexcept { return records_[record]; }
-  std::uint32_t take();
+  Record& operator[](std::uint32_t record) noexcept { return *place_of(record); }
+  const Record& operator[](std::uint32_t record) const noexcept { return *place_of(record); }
+  // A record for known(place), to be begun by begin(), in any thread.
+  void take(std::size_t place);
+  bool is_begun(const Known& known) const noexcept { return known.begun != 0; }
+  Record& begin(Known& known) noexcept;
 
   // The known ones are these from now on, which ascend. Asks same(pair, known) about those that have been for which
   // doubted(pair) holds; the others are. Calls gone(known) for each that is not among them, or not the same, and keeps
@@ -79,8 +92,8 @@ class RecordTable {
   template <typename Doubted, typename IsSame, typename Gone, typename Generations>
   void match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone, Generations&& generations);
   std::size_t memory_bytes() const noexcept {
-    return bytes_of(records_) + bytes_of(free_) + bytes_of(known_) + bytes_of(free_slots_) + bytes_of(pairs_) +
-           bytes_of(slots_) + bytes_of(next_pairs_) + bytes_of(next_slots_);
+    return pieces_.size() * sizeof(Piece) + bytes_of(pieces_) + bytes_of(free_) + bytes_of(known_) +
+           bytes_of(free_slots_) + bytes_of(pairs_) + bytes_of(slots_) + bytes_of(next_pairs_) + bytes_of(next_slots_);
   }
 
  private:
@@ -89,13 +102,23 @@ class RecordTable {
   void add(const BodyPair& pair, std::uint32_t generations);
   void leave(std::size_t place) noexcept;
 
-  std::vector<Record> records_;
+  // In pieces, so that they stay where they are, and whose memory nobody touches before begin().
+  static constexpr std::size_t kPiece = 256;
+  static_assert(std::is_trivially_destructible_v<Record> && alignof(Record) <= alignof(std::max_align_t));
+  struct Piece {
+    alignas(Record) std::array<std::byte, sizeof(Record)> memory[kPiece];
+  };
+  Record* place_of(std::uint32_t record) const noexcept {
+    return std::launder(reinterpret_cast<Record*>(pieces_[record / kPiece]->memory[record % kPiece].data()));
+  }
+  std::vector<std::unique_ptr<Piece>> pieces_;
+  std::uint32_t record_count_ = 0;  // in use, or free
   std::vector<std::uint32_t> free_;
   std::vector<Known> known_;
   std::vector<std::uint32_t> free_slots_;
   std::vector<BodyPair> pairs_, next_pairs_;
-  static constexpr std::uint32_t kBusy = 0x80000000u, kSlot = kBusy - 1;
-  std::vector<std::uint32_t> slots_, next_slots_;  // of known_, and kBusy
+  static constexpr std::uint32_t kBusy = 0x80000000u, kHeld = 0x40000000u, kSlot = kHeld - 1;
+  std::vector<std::uint32_t> slots_, next_slots_;  // of known_, and flags
   std::vector<std::uint32_t> kept_places_;
 };
 
@@ -106,7 +129,7 @@ void RecordTable::match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSa
   std::size_t old = 0, now = 0;
   const auto look_at = [&](std::size_t place) {
     if (same(known(place))) return keep(place, 1);
-    gone(known(place));  // of a body that is no more: it cannot stay
+    if (is_held(place)) gone(known(place));  // of a body that is no more: it cannot stay
     leave(place);
     add(pairs_[place], generations(pairs_[place]));
   };
@@ -120,7 +143,7 @@ void RecordTable::match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSa
     }
   };
   const auto part = [&](std::size_t place) {
-    if (!gone(known(place))) return leave(place);
+    if (!is_held(place) || !gone(known(place))) return leave(place);
     kept_places_.push_back(static_cast<std::uint32_t>(next_pairs_.size()));
     keep(place, 1);
   };

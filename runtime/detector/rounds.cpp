@@ -106,7 +106,7 @@ void Rounds::answer(std::uint32_t index, Record& record, Step now, QueryPool::Sc
 
 std::uint64_t Rounds::answer_all(RecordTable& records, std::span<const std::uint32_t> open, Step now) {
   const std::size_t among = jobs(open.size());
-  return answer_by(records, among, now, [&](std::size_t job, QueryPool::Scratch& scratch) {
+  const std::uint64_t work = answer_by(among, [&](std::size_t job, QueryPool::Scratch& scratch) {
     const std::size_t end = open.size() * (job + 1) / among;
     for (std::size_t i = open.size() * job / among; i < end; ++i) {  // what a pair needs is all over memory
       constexpr std::size_t kRecord = 6, kBodies = 4;                // pairs ahead
@@ -115,6 +115,8 @@ std::uint64_t Rounds::answer_all(RecordTable& records, std::span<const std::uint
       answer(open[i], records[open[i]], now, scratch);
     }
   });
+  give_fronts(records, now);
+  return work;
 }
 
 void Rounds::note_search(std::uint32_t index, Record& record, std::uint64_t work,

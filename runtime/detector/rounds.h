@@ -23,8 +23,10 @@ class Rounds {
   // for so many jobs, each with its part of them.
   std::size_t jobs(std::size_t count) const noexcept;
   template <typename Work>
-  std::uint64_t answer_by(RecordTable& records, std::size_t jobs, Step now, Work&& work);
+  std::uint64_t answer_by(std::size_t jobs, Work&& work);
   void answer(std::uint32_t index, Record& record, Step now, QueryPool::Scratch& scratch) const noexcept;
+  // Afterwards: gives the pairs fronts whose last searches were the most expensive.
+  void give_fronts(RecordTable& records, Step now);
   // The same as far as the budget goes, in three parts: what is done in any case; what the budget allows; and what that
   // makes of the records. What is not answered has the answer maybe and is not Record::answered.
   void begin_within(RecordTable& records, std::span<const std::uint32_t> open, Step now);
@@ -51,8 +53,6 @@ class Rounds {
   };
   static bool is_slow(Record& record, const PartPair& pair, Step now) noexcept;
   void place(const Record& record, std::uint32_t part_a, std::uint32_t part_b, PartPair& pair) const noexcept;
-  // Gives the pairs fronts whose last searches were the most expensive.
-  void give_fronts(RecordTable& records, Step now);
   static void note_search(std::uint32_t index, Record& record, std::uint64_t work,
                           QueryPool::Scratch& scratch) noexcept;
   void answer_coherently(std::uint32_t index, Record& record, Step now, QueryPool::Scratch& scratch) const noexcept;
@@ -103,13 +103,12 @@ void Rounds::in_parallel(std::size_t count, Work&& work) const {
 }
 
 template <typename Work>
-std::uint64_t Rounds::answer_by(RecordTable& records, std::size_t jobs, Step now, Work&& work) {
+std::uint64_t Rounds::answer_by(std::size_t jobs, Work&& work) {
   for (std::size_t job = 0; job < queries_->jobs(); ++job) queries_->scratch(job).work = 0;
   auto one = [&](std::size_t job) { work(job, queries_->scratch(job)); };
   run_jobs(*executor_, jobs, one);
   std::uint64_t sum = 0;
   for (std::size_t job = 0; job < queries_->jobs(); ++job) sum += queries_->scratch(job).work;
-  give_fronts(records, now);
   return sum;
 }
 
