@@ -14,32 +14,33 @@ inline constexpr std::uint32_t kNoFront = 0xffffffffu;
 
 // What is remembered of a pair that its spheres have not told apart at some step, while it is one, or until its touch
 // has ended.
+// First what is asked of it wherever it comes up.
 struct Record {
   BodyPair pair{};
   BodyId a, b;
   std::uint32_t filters_a = 0, filters_b = 0, filter_version = 0;  // of when it was allowed, or not
   std::uint32_t jumps = 0;                                         // teleports of both, so far
   std::uint32_t deformed = 0;                                      // and changes of their shapes
-  bool coherent = false;  // one tree each: `trees` knows what the last answer was
-  TreePair trees;
-  std::uint32_t front = kNoFront;  // that `trees` has of the FrontPool
-  bool large = false;              // trees, so that a front may be of use
-  std::uint8_t costly = 0;         // searches of late, see there
-  std::uint8_t roots_wait = 0;     // steps within a budget for which the roots are not asked by themselves
-  Vec3 apart_by{};                 // from centre to centre,
-  Step apart_at = -1;              // at that step
+  std::uint32_t nos = 0;                                           // certain ones in a row, while touching
+  std::uint32_t waited = 0;                                        // steps without a certain answer
   bool allowed = false;
   bool touching = false;
+  bool coherent = false;  // one tree each: `trees` knows what the last answer was
+  bool large = false;     // trees, so that a front may be of use
+  bool impact = false;
   bool swept = false;   // at the step before both poses were known: a sweep may start there
   bool unseen = false;  // they were not, and should have been: nobody knows what was in between
   std::uint8_t importance = 0;
-  std::uint32_t nos = 0;     // certain ones in a row, while touching
-  std::uint32_t waited = 0;  // steps without a certain answer
-  Step answered = -1;        // the step of `verdict`, if that is certain
+  std::uint8_t costly = 0;         // searches of late, see there
+  std::uint8_t roots_wait = 0;     // steps within a budget for which the roots are not asked by themselves
+  std::uint32_t front = kNoFront;  // that `trees` has of the FrontPool
+  Step answered = -1;              // the step of `verdict`, if that is certain
   std::uint32_t part_a = 0, part_b = 0;
   Verdict verdict;
+  Vec3 apart_by{};     // from centre to centre,
+  Step apart_at = -1;  // at that step
   double impact_from = 0, impact_to = 0;
-  bool impact = false;
+  TreePair trees;
 };
 
 // A certain "no" that lasts: the two are `distance` apart, at least, as long as their middles are this way from each

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kTriangles = 3;  // witnesses that are tried by themselves, before their leaves are
 constexpr std::uint8_t kSearchesBeforeRoots = 4;
-constexpr std::uint8_t kInVain = 4;  // answers of roots that told nothing, before they are asked now and then only
+constexpr std::uint8_t kInVain = 4;   // answers of roots that told nothing, before they are asked now and then only
 constexpr double kMargin = 1 - 1e-9;  // the rounding of a few operations
 
 double size_of(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
@@ -49,7 +49,7 @@ struct Coherence {
   const Pose &a, &b;
   TreePair::Memory& memory = pair.memory_;
 
-  bool placed = false;  // the workspace's NarrowPhase is bound and placed
+  bool placed = false;  // the workspace's NarrowPhase is bound and placed for triangles
 
   bool rigid() const noexcept {  // both, side by side
     double places = 0;
@@ -115,11 +115,18 @@ struct Coherence {
     return remember(narrow.verdict());
   }
 
-  bool place_narrow() noexcept {
+  bool place_for_triangles() noexcept {
     if (placed) return true;
     workspace.narrow.bind(pair.a(), pair.b());
-    placed = PairAccess::has_last_level(workspace.narrow) && rigid() && PairAccess::place_only(workspace.narrow, a, b);
+    placed = PairAccess::has_last_level(workspace.narrow) && rigid() &&
+             PairAccess::place_for_triangles(workspace.narrow, a, b);
     return placed;
+  }
+
+  bool place_narrow() noexcept {
+    if (!place_for_triangles()) return false;
+    PairAccess::place_now(workspace.narrow);
+    return true;
   }
 
   // On from the front, if it holds. The roots come first where they have decided before, or nothing is known, and now
@@ -144,7 +151,7 @@ struct Coherence {
 
   // Whether triangles that met in the last answers still do, by the very test of the last level.
   bool witnesses_meet() noexcept {
-    if (!place_narrow()) return false;
+    if (!place_for_triangles()) return false;
     const std::size_t count = std::min<std::size_t>(memory.witness_count, kTriangles);
     for (std::size_t i = 0; i < count; ++i) {
       const TreePair::Witness witness = memory.witnesses[i];

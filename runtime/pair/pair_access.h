@@ -22,8 +22,9 @@ struct PairAccess {
     pair.place();
     return true;
   }
-  // The same without a look at the roots. Precondition: both poses are rigid.
-  static bool place_only(NarrowPhase& pair, const Pose& a, const Pose& b) noexcept {
+  // The same without a look at the roots, and only as far as test_two() needs it: place_now() does the
+  // rest. Precondition: both poses are rigid.
+  static bool place_for_triangles(NarrowPhase& pair, const Pose& a, const Pose& b) noexcept {
     pair.reset_counts();
     pair.find_exact_error(pair.arguments_exchanged_ ? b : a, pair.arguments_exchanged_ ? a : b);
     pair.separation_bound_ = std::numeric_limits<double>::infinity();
@@ -31,10 +32,10 @@ struct PairAccess {
     if (!pair.in_range()) return false;
     pair.refused_ = pair.finished_ = false;
     pair.answer_ = Answer::maybe;
-    pair.place();
+    pair.relative_ = pair.relative_pose();
     return true;
   }
-  // After start() that has left the bodies to deeper levels.
+  // After that, or after start() that has left the bodies to deeper levels.
   static void place_now(NarrowPhase& pair) noexcept { pair.place(); }
   // Precondition of what follows: place() gave true.
   static const PreparedTree& first(const NarrowPhase& pair) noexcept { return pair.first_; }
@@ -56,7 +57,7 @@ struct PairAccess {
   }
   static bool exact_started(const NarrowPhase& pair) noexcept { return pair.exact_started_; }
   static const Place& meeting(const NarrowPhase& pair) noexcept { return pair.meeting_; }  // after "yes"
-  // All of the last level, after place_only().
+  // All of the last level.
   static void search(NarrowPhase& pair, const Budget& budget) noexcept { pair.refine_last(budget); }
   // That none do, and how far apart they are at least, in the world.
   static void say_no(NarrowPhase& pair, double lower) noexcept {
