@@ -128,20 +128,30 @@ void BodyTable::ask(Step step, double time, std::span<const BodyIndex> bodies, c
     asking_.push_back(index);
   }
   if (asking_.empty()) return;
-  if (answers_.size() < asking_.size()) grow(answers_, asking_.size());
-  source_(time, asking_, std::span(answers_).first(asking_.size()));
-  constexpr std::size_t kPerJob = 256;
+  // A thread that is alone takes answers while they are in its cache.
+  constexpr std::size_t kAlone = 256;
+  const std::size_t at_once = executor.run == nullptr ? std::min(asking_.size(), kAlone) : asking_.size();
+  if (answers_.size() < at_once) grow(answers_, at_once);
+  for (std::size_t done = 0; done < asking_.size(); done += at_once) {
+    const auto some = std::span(std::as_const(asking_)).subspan(done, std::min(at_once, asking_.size() - done));
+    source_(time, some, std::span(answers_).first(some.size()));
+    take_answers(step, some, executor);
+  }
+}
+
+void BodyTable::take_answers(Step step, std::span<const BodyIndex> bodies, const Executor& executor) {
+  constexpr std::size_t kPerJob = 256, kAhead = 8;
   auto take_some = [&](std::size_t job) {
-    const std::size_t end = std::min(asking_.size(), (job + 1) * kPerJob);
+    const std::size_t end = std::min(bodies.size(), (job + 1) * kPerJob);
     for (std::size_t i = job * kPerJob; i < end; ++i) {
       if (i + kAhead < end) {
-        const BodyIndex ahead = asking_[i + kAhead];
+        const BodyIndex ahead = bodies[i + kAhead];
         prefetch_all(bodies_[ahead]), prefetch_whereabouts(ahead);
       }
-      take_answer(step, asking_[i], answers_[i]);
+      take_answer(step, bodies[i], answers_[i]);
     }
   };
-  run_jobs(executor, (asking_.size() + kPerJob - 1) / kPerJob, take_some);
+  run_jobs(executor, (bodies.size() + kPerJob - 1) / kPerJob, take_some);
 }
 
 void BodyTable::take_answer(Step step, BodyIndex index, const BodyState& answer) noexcept {

@@ -131,6 +131,7 @@ class BodyTable {
  private:
   void add_turn(BodyIndex body, double way) noexcept;
   void disturb(BodyIndex body) noexcept;
+  void take_answers(Step step, std::span<const BodyIndex> bodies, const Executor& executor);
   void take_answer(Step step, BodyIndex index, const BodyState& answer) noexcept;
   StateSource source_;
   std::vector<Body> bodies_;

@@ -88,14 +88,13 @@ Verdict unasked(const PartPair& pair) noexcept {
   return verdict;
 }
 
-Verdict solid_verdict(Verdict verdict, const PartPair& pair) noexcept {
+void make_solid(Verdict& verdict, const PartPair& pair) noexcept {
   const bool solid = pair.a.shape->kind == ShapeKind::box || pair.b.shape->kind == ShapeKind::box;
   if (solid && verdict.answer == Answer::no &&
       inside_box(*pair.a.shape, pair.a.pose, *pair.b.shape, pair.b.pose, verdict.contact)) {
     verdict.answer = Answer::yes;
     verdict.separation_bound = verdict.lower_bound = 0;
   }
-  return verdict;
 }
 
 std::uint32_t nearest_triangle(const Verdict& verdict, const PartPair& pair) noexcept {

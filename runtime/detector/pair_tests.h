@@ -66,7 +66,11 @@ Verdict answer_exactly(NarrowPhase& narrow, const PartPair& pair, std::uint64_t&
                        std::uint32_t guess = kNoTriangle) noexcept;
 
 // What is known of two trees whose surfaces have been asked about: of solid boxes these do not tell everything.
-Verdict solid_verdict(Verdict verdict, const PartPair& pair) noexcept;
+void make_solid(Verdict& verdict, const PartPair& pair) noexcept;
+inline Verdict solid_verdict(Verdict verdict, const PartPair& pair) noexcept {
+  make_solid(verdict, pair);
+  return verdict;
+}
 inline Verdict verdict_of(const NarrowPhase& narrow, const PartPair& pair) noexcept {
   return solid_verdict(narrow.verdict(), pair);
 }

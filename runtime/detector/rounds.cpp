@@ -53,27 +53,28 @@ bool Rounds::is_slow(Record& record, const PartPair& pair, Step now) noexcept {
 // Two bodies of one tree each, as most are: what the last step found is where this one begins.
 void Rounds::answer_coherently(std::uint32_t index, Record& record, Step now,
                                QueryPool::Scratch& scratch) const noexcept {
-  forget_answer(record);
+  record.part_a = record.part_b = 0;
+  record.impact = false;
+  Verdict& verdict = record.verdict;
   PartPair pair;
   place(record, 0, 0, pair);
   const std::uint64_t before = scratch.work++;
   const bool slow = is_slow(record, pair, now);
-  record.verdict = unasked(pair);
-  if (record.verdict.answer != Answer::no) {
-    const double bound = record.verdict.separation_bound;
-    std::optional<Verdict> known;
-    if (slow || record.touching)
-      known = CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose, pair.b.pose);
-    if (!known) {
-      known = CoherentPair::search(scratch.workspace, record.trees, pair.a.pose, pair.b.pose);
-      if (slow && known->answer == Answer::no) note_search(index, record, known->work, scratch);
+  const double apart = length(record.apart_by), reach = pair.a.reach + pair.b.reach;
+  if (!(apart <= reach)) verdict = unasked(pair);
+  if (apart <= reach || verdict.answer != Answer::no) {
+    const double bound = apart <= reach ? apart + pair.a.reach + pair.b.reach : verdict.separation_bound;
+    const bool tries = slow || record.touching;
+    if (!tries || !CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose, pair.b.pose, verdict)) {
+      ::new (&verdict) Verdict(CoherentPair::search(scratch.workspace, record.trees, pair.a.pose, pair.b.pose));
+      if (slow && verdict.answer == Answer::no) note_search(index, record, verdict.work, scratch);
     }
-    scratch.work += kPairWork + known->work;
-    record.verdict = known->answer == Answer::no ? solid_verdict(*known, pair) : *known;
-    record.verdict.separation_bound = std::min(record.verdict.separation_bound, bound);
+    scratch.work += kPairWork + verdict.work;
+    if (verdict.answer == Answer::no) make_solid(verdict, pair);
+    verdict.separation_bound = std::min(verdict.separation_bound, bound);
   }
-  if (record.verdict.answer != Answer::maybe) record.answered = now;
-  record.verdict.work = scratch.work - before;
+  if (verdict.answer != Answer::maybe) record.answered = now;
+  verdict.work = scratch.work - before;
 }
 
 void Rounds::answer(std::uint32_t index, Record& record, Step now, QueryPool::Scratch& scratch) const noexcept {

@@ -83,10 +83,9 @@ void Rounds::begin_one(Task& task, Record& record, QueryPool::Scratch& scratch) 
     return;
   }
   place(record, task.part_a, task.part_b, pair);
-  const auto known = remembers ? CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose, pair.b.pose)
-                               : std::optional<Verdict>();
-  if (known) {
-    task.verdict = solid_verdict(*known, pair);
+  Verdict known;
+  if (remembers && CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose, pair.b.pose, known)) {
+    task.verdict = solid_verdict(known, pair);
     task.done = true;
   } else {
     narrow.bind(pair.a.shape->prepared, pair.b.shape->prepared);

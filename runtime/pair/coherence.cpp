@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 #include "coherent_pair.h"
 #include "front_walk.h"
@@ -61,20 +62,25 @@ struct Coherence {
     return of.memory_.clearance > 0 || of.memory_.witness_count > 0;
   }
 
-  std::optional<Verdict> recall() noexcept {
-    if (!remembers(pair)) return std::nullopt;
+  // Verdicts are made where they stay: copied at once, they would not have left the processor's store queue yet.
+  bool recall(Verdict& verdict) noexcept {
+    if (!remembers(pair)) return false;
     if (!rigid()) {
       pair.forget();
-      return std::nullopt;
+      return false;
     }
     if (memory.clearance > 0) {
       const double moved =
           displacement(pair.b(), memory.relative, compose(inverse(a), b)) + slack(pair.a(), pair.b(), a, b);
       const double left = memory.clearance * kMargin - moved;
-      if (left > 0) return apart(left * a.scale);
+      if (left > 0) {
+        verdict = apart(left * a.scale);
+        return true;
+      }
     }
-    if (memory.witness_count == 0 || !witnesses_meet()) return std::nullopt;
-    return workspace.narrow.verdict();
+    if (memory.witness_count == 0 || !witnesses_meet()) return false;
+    ::new (&verdict) Verdict(workspace.narrow.verdict());
+    return true;
   }
 
   static Verdict apart(double lower) noexcept {
@@ -93,26 +99,35 @@ struct Coherence {
     if (tried && place_narrow()) {
       --memory.wait;
       PairAccess::search(workspace.narrow, budget);
-      return remember(workspace.narrow.verdict());
+      return remembered();
     }
-    const Verdict verdict = runtime::collide(workspace, pair, a, b, budget);
+    collide(budget);
     memory.close = PairAccess::exact_started(workspace.narrow);
     memory.in_vain = static_cast<std::uint8_t>(memory.close ? std::min<int>(memory.in_vain + 1, kInVain) : 0);
     memory.wait = memory.in_vain == kInVain ? kSearchesBeforeRoots : 0;
-    return remember(verdict);
+    return remembered();
+  }
+
+  void collide(const Budget& budget) noexcept {
+    NarrowPhase& narrow = workspace.narrow;
+    narrow.bind(pair.a(), pair.b());
+    answer_exactly(narrow, a, b, budget);
   }
 
   // Near the triangles that met last; else everywhere, without a front, which would be of no use where they still meet.
   Verdict search_after_yes(const Budget& budget) noexcept {
     NarrowPhase& narrow = workspace.narrow;
-    if (!place_narrow()) return remember(runtime::collide(workspace, pair, a, b, budget));
+    if (!place_narrow()) {
+      collide(budget);
+      return remembered();
+    }
     Budget rest = budget;
     if (!leaves_meet(rest.pair_tests)) {
       if (pair.front_ != nullptr) pair.front_->clear();
       PairAccess::search(narrow, rest);
     }
     memory.close = true;
-    return remember(narrow.verdict());
+    return remembered();
   }
 
   bool place_for_triangles() noexcept {
@@ -133,20 +148,23 @@ struct Coherence {
   // and then, since they may decide again.
   Verdict search_front(const Budget& budget) noexcept {
     NarrowPhase& narrow = workspace.narrow;
-    if (!place_narrow()) return remember(runtime::collide(workspace, pair, a, b, budget));
+    if (!place_narrow()) {
+      collide(budget);
+      return remembered();
+    }
     FrontWalk walk(*pair.front_, narrow);
     const bool tried = memory.close && memory.wait > 0;
     if (!tried || !walk.resume()) {
       narrow.start(a, b);
       memory.close = !narrow.finished();
-      if (!memory.close) return remember(narrow.verdict());
+      if (!memory.close) return remembered();
       PairAccess::place_now(narrow);
       if (tried || !walk.resume()) walk.begin();
       memory.wait = kSearchesBeforeRoots;
     }
     --memory.wait;
     walk.run(budget);
-    return remember(narrow.verdict());
+    return remembered();
   }
 
   // Whether triangles that met in the last answers still do, by the very test of the last level.
@@ -188,8 +206,10 @@ struct Coherence {
     return false;
   }
 
-  Verdict remember(const Verdict& verdict) noexcept {
-    if (verdict.answer == Answer::yes) {
+  // The query's verdict.
+  Verdict remembered() noexcept {
+    const Answer answer = workspace.narrow.answer();
+    if (answer == Answer::yes) {
       memory.witness_count =
           static_cast<std::uint8_t>(std::min<std::size_t>(memory.witness_count + 1u, TreePair::kWitnesses));
       std::copy_backward(memory.witnesses.begin(), memory.witnesses.begin() + memory.witness_count - 1,
@@ -203,15 +223,15 @@ struct Coherence {
       memory.witness_count = 0;
     }
     const bool have_triangles = !pair.a().tree.ball_slabs.empty() && !pair.b().tree.ball_slabs.empty();
-    memory.clearance = verdict.answer == Answer::no && have_triangles ? verdict.lower_bound / a.scale : 0;
+    memory.clearance = answer == Answer::no && have_triangles ? workspace.narrow.lower_bound() / a.scale : 0;
     if (memory.clearance > 0) memory.relative = compose(inverse(a), b);
-    return verdict;
+    return workspace.narrow.verdict();
   }
 };
 
-std::optional<Verdict> CoherentPair::recall(Workspace& workspace, TreePair& pair, const Pose& a,
-                                            const Pose& b) noexcept {
-  return Coherence{workspace, pair, a, b}.recall();
+bool CoherentPair::recall(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b,
+                          Verdict& verdict) noexcept {
+  return Coherence{workspace, pair, a, b}.recall(verdict);
 }
 
 bool CoherentPair::remembers(const TreePair& pair) noexcept { return Coherence::remembers(pair); }
@@ -223,8 +243,8 @@ Verdict CoherentPair::search(Workspace& workspace, TreePair& pair, const Pose& a
 
 Verdict collide_coherently(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept {
   Coherence coherence{workspace, pair, a, b};
-  const std::optional<Verdict> known = coherence.recall();
-  return known ? *known : coherence.search({});
+  Verdict known;
+  return coherence.recall(known) ? known : coherence.search({});
 }
 
 }  // namespace orchard::runtime

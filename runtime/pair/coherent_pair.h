@@ -1,15 +1,13 @@
 #pragma once
-#include <optional>
-
 #include "orchard/runtime/body_pair.h"
 
 namespace orchard::runtime {
 
 // collide_coherently() in two parts, for whoever has many pairs and not enough time.
 struct CoherentPair {
-  // What is known without a search: that a clearance has lasted, or that the triangles that met last still do. Nothing
-  // if that does not tell. Some 100 ns.
-  static std::optional<Verdict> recall(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept;
+  // What is known without a search: that a clearance has lasted, or that the triangles that met last still do. False,
+  // and `verdict` as it was, if that does not tell. Some 100 ns.
+  static bool recall(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b, Verdict& verdict) noexcept;
   // Whether there is anything that recall() could tell by.
   static bool remembers(const TreePair& pair) noexcept;
   // The rest of collide_coherently(), to be asked after recall() has told nothing. "Maybe" where the budget ends it,

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "pair_access.h"
+
 namespace orchard::runtime {
 
 namespace {
@@ -43,15 +45,20 @@ Pose placed(const Pose& body, const Pose& local) noexcept {
 
 }  // namespace
 
-Verdict collide(NarrowPhase& pair, const Pose& a, const Pose& b, const Budget& budget, Order order) noexcept {
+void answer_exactly(NarrowPhase& pair, const Pose& a, const Pose& b, const Budget& budget) noexcept {
   pair.start(a, b);
+  while (!pair.finished() && budget.pair_tests > 0) {
+    pair.refine_exactly(budget);
+    if (!unlimited(budget)) break;
+  }
+}
+
+Verdict collide(NarrowPhase& pair, const Pose& a, const Pose& b, const Budget& budget, Order order) noexcept {
   if (order == Order::exact_first) {
-    while (!pair.finished() && budget.pair_tests > 0) {
-      pair.refine_exactly(budget);
-      if (!unlimited(budget)) break;
-    }
+    answer_exactly(pair, a, b, budget);
     return pair.verdict();
   }
+  pair.start(a, b);
   if (unlimited(budget)) {
     while (!pair.finished()) pair.refine();
     return pair.verdict();

@@ -79,4 +79,7 @@ struct PairAccess {
   }
 };
 
+// collide() with Order::exact_first, but for the verdict.
+void answer_exactly(NarrowPhase& pair, const Pose& a, const Pose& b, const Budget& budget) noexcept;
+
 }  // namespace orchard::runtime
