@@ -77,8 +77,30 @@ void Rounds::answer_coherently(std::uint32_t index, Record& record, Step now,
   verdict.work = scratch.work - before;
 }
 
+// Two bodies of one part each, at least one of them a simple shape.
+void Rounds::answer_two_parts(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept {
+  Verdict& verdict = record.verdict;
+  PartPair pair;
+  place(record, 0, 0, pair);
+  const std::uint32_t guess = nearest_triangle(verdict, pair);
+  const std::uint64_t before = scratch.work++;
+  record.part_a = record.part_b = 0;
+  record.impact = false;
+  if (sphere_gap(pair) > 0) {
+    verdict = unasked(pair);
+  } else {
+    ::new (&verdict) Verdict(answer_exactly(scratch.workspace.narrow, pair, scratch.work, kNoLimit, guess));
+  }
+  if (verdict.answer == Answer::yes) verdict.lower_bound = 0;
+  if (verdict.answer != Answer::maybe) record.answered = now;
+  verdict.work = scratch.work - before;
+}
+
 void Rounds::answer(std::uint32_t index, Record& record, Step now, QueryPool::Scratch& scratch) const noexcept {
   if (record.coherent) return answer_coherently(index, record, now, scratch);
+  if (places_->parts(record.pair.a) == 1 && places_->parts(record.pair.b) == 1) {
+    return answer_two_parts(record, now, scratch);
+  }
   const Verdict last = record.verdict;
   const std::uint32_t last_a = record.part_a, last_b = record.part_b;
   forget_answer(record);
