@@ -12,7 +12,7 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr std::size_t kMinBodies = 4096;  // that are worth it
+constexpr std::size_t kMinBodies = 4096;   // that are worth it
 constexpr std::size_t kChunks = 8;         // in a wave
 constexpr std::size_t kMaxChunk = 4096;    // bodies
 constexpr std::size_t kSampledEvery = 64;  // of which one says how bodies move: there are enough

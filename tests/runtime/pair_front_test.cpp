@@ -121,9 +121,10 @@ TEST(PairFront, GoesOnWhereABudgetEndedIt) {
     for (int step = 0; step < 100; ++step) {
       journey.step(step);
       const Pose at = centered(trees[journey.j], journey.b);
-      auto known = CoherentPair::recall(workspace, pair, journey.a, at);
+      Verdict verdict;
+      const bool known = CoherentPair::recall(workspace, pair, journey.a, at, verdict);
       const Budget budget = {.pair_tests = step % 3 == 2 ? Budget{}.pair_tests : 1 + journey.draw.bits() % 400};
-      const Verdict verdict = known ? *known : CoherentPair::search(workspace, pair, journey.a, at, budget);
+      if (!known) verdict = CoherentPair::search(workspace, pair, journey.a, at, budget);
       (verdict.answer == Answer::maybe ? maybe : certain) += 1;
       if (verdict.answer == Answer::maybe) {
         ASSERT_NE(step % 3, 2) << seed << " " << step;
