@@ -12,7 +12,6 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr std::size_t kMinBodies = 4096;   // that are worth it
 constexpr std::size_t kChunks = 8;         // in a wave
 constexpr std::size_t kMaxChunk = 4096;    // bodies
 constexpr std::size_t kSampledEvery = 64;  // of which one says how bodies move: there are enough
@@ -210,7 +209,8 @@ void WindowUpdates::update_wave(Step now, Step from, std::span<const BodyIndex> 
 }
 
 void WindowUpdates::update_all(Step now, Step from, std::span<const BodyIndex> bodies) {
-  const bool many = bodies.size() >= kMinBodies && parts_.boxes.shares() && parts_.pool.promises() == nullptr;
+  const bool many =
+      bodies.size() >= options_.min_bodies_for_jobs && parts_.boxes.shares() && parts_.pool.promises() == nullptr;
   if (!many) return update(now, from, bodies);
   if (!shared_) shared_ = std::make_unique<Shared>();
   near_.clear();

@@ -27,8 +27,10 @@ bool are_valid(const BodyOptions& options) noexcept {
 BodyFilter filter_of(std::uint32_t group, std::uint32_t mask) noexcept { return {group, mask, 0}; }
 
 BroadPhaseOptions broad_options(const DetectorOptions& options, const Executor& executor) noexcept {
+  constexpr std::size_t kMinBodies = 4096;  // fewer than elsewhere: answers leave little in the caches anyway
   BroadPhaseOptions result;
   result.executor = executor;
+  result.min_bodies_for_jobs = kMinBodies;
   result.time_step = options.time_step;
   result.start = options.start;
   result.position_slack = options.position_slack;
