@@ -145,8 +145,8 @@ std::vector<TuningFlag> refining_flags() {
                       [](T& t, double x) { t.refinement.tolerance = x / 100; }),
                  no_refining),
       idle_where(
-          whole("reach-rounds", "6", 0, 100,
-                "Times that sheets reach for what they leave open by more than 1.35 border losses: 0 leaves out blunt "
+          whole("reach-rounds", "9", 0, 100,
+                "Times that sheets reach for what they leave open by more than 1.7 border losses: 0 leaves out blunt "
                 "edges and ridges that no point shows",
                 [](T& t, double x) { t.refinement.reach_rounds = static_cast<int>(x); }),
           no_refining),

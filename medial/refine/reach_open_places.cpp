@@ -37,10 +37,11 @@ class OpenPlaceReacher {
   static constexpr double kTouching = 1e-3;  // of a ball's radius: how far it may hold something of the surface
   static constexpr int kSteps = 20;          // of bisection, and of shrinking
   static constexpr int kAttempts = 4;        // each from half as far in as the last
+  static constexpr int kProbed = 4;          // parts of a side, of the balls between an edge and a new ball
   static constexpr double kAt = 1e-9;        // bounding radii: what rounding puts beside a vertex or an edge
 
   bool reach(const UncoveredPlace& place) {
-    const Reconstruction::Nearest nearest = reconstruction_.nearest(place.position);
+    const Reconstruction::Nearest nearest = reconstruction_.nearest(place.inside);
     const Point& foot = nearest.ball.center;
     const std::vector<Index> candidates = edges_at(reconstruction_.corners_of(nearest.cell), foot);
     if (candidates.empty()) return false;
@@ -167,7 +168,13 @@ class OpenPlaceReacher {
       return radius + sheets_.surface.signed_distance(u * p.center + v * q.center + w * ball.center) >
              kBorderSlack * sheets_.options.tolerance;
     };
-    return !protrudes(0.5, 0, 0.5) && !protrudes(0, 0.5, 0.5) && !protrudes(1.0 / 3, 1.0 / 3, 1.0 / 3);
+    for (int i = 1; i < kProbed; ++i) {
+      for (int k = 0; k <= i; ++k) {
+        const auto part = [](int n) { return static_cast<double>(n) / kProbed; };
+        if (protrudes(part(k), part(i - k), part(kProbed - i))) return false;
+      }
+    }
+    return true;
   }
 
   SheetExtension sheets_;

@@ -12,6 +12,7 @@
 #include "../axis_triangles.h"
 #include "axis_of_balls.h"
 #include "cut_at_level.h"
+#include "dents_below.h"
 #include "drop_degenerate.h"
 #include "extend_sheets.h"
 #include "orchard/geometry/angle.h"
@@ -19,6 +20,7 @@
 #include "orchard/medial/quality.h"
 #include "small_pieces.h"
 #include "solve_again.h"
+#include "spread_flat.h"
 
 namespace orchard::detail {
 namespace {
@@ -30,8 +32,11 @@ constexpr double kMerging = 0.25;
 constexpr int kBorderPasses = 3;      // of filling notches and reaching edges: the last ones find next to nothing
 constexpr double kMinLength = 1e-3;   // diagonals: shorter edges are not divided
 constexpr std::size_t kEnough = 24;   // seeds of a vertex: coalesced ones have hundreds
-constexpr double kOpen = 1.35;        // of the border loss: places left open by more are reached for
+constexpr double kOpen = 1.7;         // of the border loss: places left open by more are reached for
 constexpr double kResolution = 0.1;   // spacings, of looking for these
+constexpr double kDetail = 0.15;      // of what is left open: places open by this more are not missed
+constexpr double kDentWidth = 0.5;    // of what is left open: narrower dents are missed
+constexpr int kDentRounds = 3;        // of looking for these, once nothing is open: some stay where no ball fits
 constexpr double kApart = 0.5;        // spacings, between two that are reached for at once
 constexpr double kCoincident = 1e-6;  // diagonals: vertices that are nearer are one
 
@@ -81,6 +86,7 @@ RefinedAxis Refiner::finish() {
   divide();
   reach();
   report_.degenerate = drop_degenerate(complex_, kCoincident * diagonal_);
+  spread_flat(surface_, complex_, kMerging * level_);
   report_progress(progress_, kStage, 1);
   return result();
 }
@@ -232,18 +238,27 @@ double Refiner::left_open() const {
                   options_.reach_detail * border.spacing * border.spacing / diagonal_);
 }
 
-// Where balls leave the surface open by more than borders may; what is added is divided, too.
+Index Refiner::reach(const Reconstruction& reconstruction, const std::vector<UncoveredPlace>& places,
+                     BallSolver& solver) {
+  return reach_open_places(surface_, complex_, solver, reconstruction, places, left_open() / kOpen, border_options());
+}
+
+// Where balls leave the surface open by more than borders may, then where dents between them are deeper; what is added
+// is divided, too.
 void Refiner::reach() {
-  const BorderOptions border = border_options();
-  const double limit = left_open();
-  UncoveredSearch search(surface_, limit, kResolution * border.spacing);
-  BallSolver solver = this->solver();
   if (options_.reach_rounds == 0) return;
+  const BorderOptions border = border_options();
+  const double limit = left_open(), resolution = kResolution * border.spacing, apart = kApart * border.spacing;
+  UncoveredSearch open(surface_, limit, resolution, kDetail * limit);
+  DentsBelow dents(surface_, limit, kDentWidth * limit);
+  BallSolver solver = this->solver();
   Reconstruction reconstruction(complex_.mesh());
+  int dent_rounds = 0;
   for (int round = 0; round < options_.reach_rounds; ++round) {
     if (round > 0) reconstruction.change(complex_.mesh());
-    const std::vector<UncoveredPlace> places = search.find(reconstruction, kApart * border.spacing);
-    const Index reached = reach_open_places(surface_, complex_, solver, reconstruction, places, limit / kOpen, border);
+    Index reached = reach(reconstruction, open.find(reconstruction, apart), solver);
+    if (reached == 0 && dent_rounds++ < kDentRounds)
+      reached = reach(reconstruction, dents.find(reconstruction, apart), solver);
     if (reached == 0) break;
     report_.reached_places += reached;
     report_.notches += fill_notches(surface_, complex_, solver, border);

@@ -8,6 +8,7 @@
 #include "found_balls.h"
 #include "orchard/medial/refine.h"
 #include "split.h"
+#include "uncovered.h"
 
 namespace orchard::detail {
 
@@ -44,6 +45,7 @@ class Refiner {
   void mend_borders();
   void divide();
   void reach();
+  Index reach(const Reconstruction& reconstruction, const std::vector<UncoveredPlace>& places, BallSolver& solver);
   RefinedAxis result();
 
   const Surface& surface_;

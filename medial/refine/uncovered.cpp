@@ -15,7 +15,8 @@ namespace orchard::detail {
 namespace {
 
 constexpr std::size_t kBlock = 64;  // parts that one task looks at
-constexpr double kEnough = 0.5;     // of the limit: nearer cells are no better at covering parts that reach farther
+constexpr double kEnough =
+    0.5;  // of the limit, or depth: nearer cells are no better at covering parts that reach farther
 
 bool is_before(const Point& a, const Point& b) {
   return std::tuple(a.x(), a.y(), a.z()) < std::tuple(b.x(), b.y(), b.z());
@@ -33,6 +34,14 @@ std::vector<Corners> corners_of(const std::vector<Corners>& parts) {
   return corners;
 }
 
+std::vector<Corners> all_corners(const Surface& surface) {
+  std::vector<Corners> corners;
+  const auto triangles = static_cast<Index>(surface.mesh().triangles.size());
+  corners.reserve(triangles);
+  for (Index t = 0; t < triangles; ++t) corners.push_back(surface.corners(t));
+  return corners;
+}
+
 }  // namespace
 
 struct UncoveredSearch::Block {
@@ -41,11 +50,26 @@ struct UncoveredSearch::Block {
   std::vector<Corners> open, not_covered;  // of what is in `parts`: the parts of it that may be open, and it
 };
 
-UncoveredSearch::UncoveredSearch(const Surface& surface, double limit, double resolution)
-    : surface_(surface), limit_(limit), resolution_(resolution) {
-  const auto triangles = static_cast<Index>(surface.mesh().triangles.size());
-  parts_.reserve(triangles);
-  for (Index t = 0; t < triangles; ++t) parts_.push_back(surface.corners(t));
+UncoveredSearch::UncoveredSearch(const Surface& surface, std::vector<Corners> parts, double depth, double resolution)
+    : surface_(surface),
+      limit_(0),
+      resolution_(resolution),
+      detail_(resolution),
+      depth_(depth),
+      parts_(std::move(parts)) {}
+
+UncoveredSearch::UncoveredSearch(const Surface& surface, double limit, double resolution, double detail)
+    : surface_(surface),
+      limit_(limit),
+      resolution_(resolution),
+      detail_(std::min(detail, resolution)),
+      depth_(0),
+      parts_(all_corners(surface)) {}
+
+// How near a cell is to be to a place so that what reaches that far from there is likely to be covered by it.
+double UncoveredSearch::enough(double reach) const {
+  if (depth_ > 0) return -std::min(reach, kEnough * depth_);
+  return reach < limit_ ? limit_ - reach : kEnough * limit_;
 }
 
 void UncoveredSearch::look_at(const Reconstruction& reconstruction, Block& block) const {
@@ -61,15 +85,16 @@ void UncoveredSearch::look_at(const Reconstruction& reconstruction, Block& block
       const Point middle = (corners[0] + corners[1] + corners[2]) / 3;
       double reach = 0;
       for (const Point& corner : corners) reach = std::max(reach, (corner - middle).norm());
-      const double enough = reach < limit_ ? limit_ - reach : kEnough * limit_;
+      const double enough = this->enough(reach);
       Reconstruction::Nearest nearest = recent.nearest(middle, enough);
       if (!(nearest.distance < enough)) nearest = reconstruction.nearest_from(nearest, middle, enough);
       if (nearest.cell != kNone) recent.add(nearest.cell);
       const double value = nearest.distance;
       // The distance to all of them is 1-Lipschitz.
       if (value + reach <= limit_ || recent.cover(corners, limit_)) continue;
-      if (value > limit_) block.places.push_back({value, middle});
-      if (reach <= resolution_) {
+      if (reach < kEnough * depth_ && surface_.distance(middle) + reach < depth_) continue;
+      if (value > limit_) block.places.push_back({value, middle, middle});
+      if (reach <= (value > limit_ ? resolution_ : detail_)) {
         block.open.push_back(corners);
         continue;
       }

@@ -7,18 +7,23 @@
 
 namespace orchard::detail {
 
-// A place of the surface that the balls of an axis leave open.
+// A place of the surface that the balls of an axis leave open, or that has a dent of theirs below it.
 struct UncoveredPlace {
-  double value = 0;  // mesh units: the distance to the nearest ball
+  double value = 0;  // mesh units: the distance to the nearest ball, or to the dent
   Point position = Point::Zero();
+  Point inside = Point::Zero();  // where the nearest ball is looked for: the place itself, or the dent
 };
 
 // Looks for such places again and again while the axis grows.
 class UncoveredSearch {
  public:
   // For what is left open by more than `limit`; triangles are divided until what is left of them reaches no farther
-  // than `resolution`. Mesh units.
-  UncoveredSearch(const Surface& surface, double limit, double resolution);
+  // than `resolution` if it is open, and than `detail`, which is no more, if it may be: so what is not found is left
+  // open by less than `limit` and `detail`. Mesh units.
+  UncoveredSearch(const Surface& surface, double limit, double resolution, double detail);
+  // For what of `parts`, triangles below the surface, is in no ball and not nearer to the surface than `depth`. They
+  // are divided until what is left of them reaches no farther than `resolution`.
+  UncoveredSearch(const Surface& surface, std::vector<std::array<Point, 3>> parts, double depth, double resolution);
 
   // The worst first, no two within `apart` of each other. After the first time only the parts of the surface that may
   // have been open then are looked at. Parallel, deterministic: a query for every few triangles, and some for each part
@@ -26,14 +31,15 @@ class UncoveredSearch {
   std::vector<UncoveredPlace> find(const Reconstruction& reconstruction, double apart);
 
  private:
+  double enough(double reach) const;
   struct Block;  // what one task looks at
   void look_at(const Reconstruction& reconstruction, Block& block) const;
   Block look_at_all(const Reconstruction& reconstruction, const std::vector<std::array<Point, 3>>& parts) const;
 
   const Surface& surface_;
-  const double limit_, resolution_;
+  const double limit_, resolution_, detail_, depth_;
   std::vector<std::array<Point, 3>> parts_;  // triangles, or points: three times the same
-  bool first_ = true;                        // the parts are all triangles of the surface
+  bool first_ = true;                        // the parts are those that were given
 };
 
 }  // namespace orchard::detail

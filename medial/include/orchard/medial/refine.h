@@ -19,7 +19,7 @@ struct RefineOptions {
   // Of dividing cells; each halves them. At least 0.
   int max_rounds = 6;
   // Of reaching for what is left open of the surface. At least 0.
-  int reach_rounds = 6;
+  int reach_rounds = 9;
   // What the points can show, in squares of their spacing over the diagonal, as what a chord cuts off a curve is: what
   // is left open by less is not reached for. With 5,000 points it is about the border loss. At least 0: anything.
   double reach_detail = 7;
@@ -56,9 +56,10 @@ struct RefinedAxis {
 // from it than twice its radius, but for what the topology needs; notches between the teeth of their borders are
 // filled, those that end at sharp convex edges are extended onto these, and what is open between such ends on one edge
 // is filled; what is interpolated too coarsely is divided, with exact balls for new vertices; where the surface is then
-// left open by more than 1.35 border_loss and reach_detail, triangles reach for it from the nearest edges; and at last
-// vertices at one place are merged, and triangles without area taken away. All by divisions, collapses, free extensions
-// and contractions under the link condition, so the topology is that of `axis`.
+// left open by more than 1.7 border_loss and reach_detail, or balls leave a dent that is a tenth deeper, triangles
+// reach for it from the nearest edges; and at last vertices at one place are merged, and triangles without area taken
+// away, or given some by moving a vertex along its sheet. All by divisions, collapses, free extensions and contractions
+// under the link condition, so the topology is that of `axis`.
 //
 // Vertices have the radius that is the distance of their centre to the surface, up to rounding. Deterministic;
 // parallel. O(n log n) for n vertices, and some nearest-point queries each. `sampling` has the points of `axis`. Throws
