@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 namespace orchard::detail {
 namespace {
@@ -12,13 +13,44 @@ constexpr double kDeep = 1.1;      // times the limit: dents that are deeper are
 constexpr double kDenser = 0.1;    // of how far dents are apart: what is looked at, so that the deepest is not missed
 constexpr double kShallow = 0.9;   // of the limit: nearer to the surface is another part of it
 
+// How much of a triangle's side the plane `depth` below the triangle across loses to that of the triangle across: what
+// is farther out is nearer to that one. Nothing at a reflex edge.
+double lost_at(const Surface& surface, Index triangle, std::size_t edge, double depth) {
+  const Index other = surface.neighbors(triangle)[edge];
+  if (other == kNone) return 0;
+  const Vector along = surface.corners(triangle)[(edge + 1) % 3] - surface.corners(triangle)[edge];
+  const Vector &a = surface.normal(triangle), &b = surface.normal(other);
+  // tan(turn / 2) = sin / (1 + cos).
+  const double sine = a.cross(b).dot(along.normalized()), cosine = a.dot(b);
+  return sine > 0 ? depth * sine / std::max(1 + cosine, std::numeric_limits<double>::min()) : 0;
+}
+
+// What of a triangle is `depth` below its plane and not nearer to those next to it. False if nothing is.
+bool part_below(const Surface& surface, Index triangle, double depth, std::array<Point, 3>& part) {
+  const std::array<Point, 3> corners = surface.corners(triangle);
+  std::array<double, 3> least{};  // barycentric coordinates
+  for (std::size_t i = 0; i < 3; ++i) {
+    // The edge across from corner i.
+    const std::size_t edge = (i + 1) % 3;
+    const double length = (corners[(edge + 1) % 3] - corners[edge]).norm();
+    least[i] = lost_at(surface, triangle, edge, depth) * length / (2 * surface.area(triangle));
+  }
+  if (!(least[0] + least[1] + least[2] < 1)) return false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    part[i] = (1 - least[j] - least[k]) * corners[i] + least[j] * corners[j] + least[k] * corners[k] -
+              depth * surface.normal(triangle);
+  }
+  return true;
+}
+
 std::vector<std::array<Point, 3>> parts_below(const Surface& surface, double depth) {
   std::vector<std::array<Point, 3>> parts;
   const auto triangles = static_cast<Index>(surface.mesh().triangles.size());
   parts.reserve(triangles);
+  std::array<Point, 3> part{Point::Zero(), Point::Zero(), Point::Zero()};
   for (Index t = 0; t < triangles; ++t) {
-    parts.push_back(surface.corners(t));
-    for (Point& corner : parts.back()) corner -= depth * surface.normal(t);
+    if (part_below(surface, t, depth, part)) parts.push_back(part);
   }
   return parts;
 }
