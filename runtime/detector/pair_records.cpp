@@ -31,6 +31,7 @@ std::size_t RecordTable::common(std::span<const BodyPair> a, std::span<const Bod
   const std::size_t count = std::min(a.size(), b.size());
   std::size_t i = 0;
   for (; i + kAtOnce <= count; i += kAtOnce) {
+    static_assert(sizeof(BodyPair) == sizeof(std::uint64_t));
     std::array<std::uint64_t, kAtOnce> of_a, of_b;
     std::memcpy(of_a.data(), &a[i], sizeof of_a);
     std::memcpy(of_b.data(), &b[i], sizeof of_b);
