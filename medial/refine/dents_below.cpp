@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <utility>
 
 namespace orchard::detail {
 namespace {
@@ -60,9 +61,10 @@ std::vector<std::array<Point, 3>> parts_below(const Surface& surface, double dep
 DentsBelow::DentsBelow(const Surface& surface, double limit, double resolution)
     : surface_(surface), limit_(limit), below_(surface, parts_below(surface, limit), kShallow * limit, resolution) {}
 
-// From a place below the surface straight down to the bottom of the dent that it is in.
-UncoveredPlace DentsBelow::bottom_below(const UncoveredPlace& place, const Reconstruction& reconstruction) const {
-  const Vector down = (place.position - surface_.closest(place.position).position).normalized();
+// From a place below the surface straight down, away from what is above it, to the bottom of the dent that it is in.
+UncoveredPlace DentsBelow::bottom_below(const UncoveredPlace& place, const Point& above,
+                                        const Reconstruction& reconstruction) const {
+  const Vector down = (place.position - above).normalized();
   Point bottom = place.position;
   double gap = place.value;
   for (int step = 0; step < kMaxSteps && gap > kArrived * limit_; ++step) {
@@ -77,18 +79,12 @@ UncoveredPlace DentsBelow::bottom_below(const UncoveredPlace& place, const Recon
 std::vector<UncoveredPlace> DentsBelow::find(const Reconstruction& reconstruction, double apart) {
   std::vector<UncoveredPlace> dents;
   for (const UncoveredPlace& place : below_.find(reconstruction, kDenser * apart)) {
-    if (-surface_.signed_distance(place.position) < kShallow * limit_) continue;
-    const UncoveredPlace dent = bottom_below(place, reconstruction);
+    ClosestPoint above;
+    if (-surface_.signed_distance(place.position, above) < kShallow * limit_) continue;
+    const UncoveredPlace dent = bottom_below(place, above.position, reconstruction);
     if (dent.value > kDeep * limit_) dents.push_back(dent);
   }
-  std::stable_sort(dents.begin(), dents.end(),
-                   [](const UncoveredPlace& a, const UncoveredPlace& b) { return a.value > b.value; });
-  std::vector<UncoveredPlace> far_apart;
-  for (const UncoveredPlace& dent : dents) {
-    const auto is_near = [&](const UncoveredPlace& other) { return (other.inside - dent.inside).norm() < apart; };
-    if (std::none_of(far_apart.begin(), far_apart.end(), is_near)) far_apart.push_back(dent);
-  }
-  return far_apart;
+  return worst_apart(std::move(dents), apart, surface_.bounding_box());
 }
 
 }  // namespace orchard::detail

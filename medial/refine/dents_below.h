@@ -19,7 +19,8 @@ class DentsBelow {
   std::vector<UncoveredPlace> find(const Reconstruction& reconstruction, double apart);
 
  private:
-  UncoveredPlace bottom_below(const UncoveredPlace& place, const Reconstruction& reconstruction) const;
+  UncoveredPlace bottom_below(const UncoveredPlace& place, const Point& above,
+                              const Reconstruction& reconstruction) const;
 
   const Surface& surface_;
   const double limit_;

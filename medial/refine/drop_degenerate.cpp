@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "../simplify/contractible_mesh.h"
+#include "flat_triangle.h"
 
 namespace orchard::detail {
 namespace {
 
-constexpr double kFlat = 1e-4;  // of its longest edge: the height of a flat triangle
-constexpr int kMaxPasses = 8;   // what is divided at a corner may be flat, too
+constexpr int kMaxPasses = 8;  // what is divided at a corner may be flat, too
 
 class DegenerateCells {
  public:
@@ -26,6 +26,7 @@ class DegenerateCells {
   }
 
  private:
+  Point center(Index v) const { return mesh_.ball(v).head<3>(); }
   double apart(Index a, Index b) const { return (mesh_.ball(a) - mesh_.ball(b)).head<3>().norm(); }
 
   // What stays of two: what ends on the surface, then what is exact, then what has more contacts.
@@ -66,7 +67,7 @@ class DegenerateCells {
       } else if (apart(a, c) > apart(a, b)) {
         std::swap(b, c);
       }
-      if (is_flat(a, b, c) && divide_at(a, b, c)) divided = true;
+      if (is_flat(center(a), center(b), center(c)) && divide_at(a, b, c)) divided = true;
     }
     return divided;
   }
@@ -75,10 +76,6 @@ class DegenerateCells {
     if (!mesh_.alive(a) || !mesh_.alive(b) || !mesh_.alive(c) || !mesh_.adjacent(a, b)) return false;
     mesh_.opposite(a, b, opposite_);
     return std::find(opposite_.begin(), opposite_.end(), c) != opposite_.end();
-  }
-  bool is_flat(Index a, Index b, Index c) const {
-    const Vector along = (mesh_.ball(b) - mesh_.ball(a)).head<3>(), to = (mesh_.ball(c) - mesh_.ball(a)).head<3>();
-    return along.cross(to).norm() <= kFlat * along.squaredNorm();
   }
   bool divide_at(Index a, Index b, Index c) {
     mesh_.opposite(a, b, opposite_);

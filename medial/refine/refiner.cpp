@@ -238,8 +238,8 @@ double Refiner::left_open() const {
                   options_.reach_detail * border.spacing * border.spacing / diagonal_);
 }
 
-Index Refiner::reach(const Reconstruction& reconstruction, const std::vector<UncoveredPlace>& places,
-                     BallSolver& solver) {
+Index Refiner::reach_for(const Reconstruction& reconstruction, const std::vector<UncoveredPlace>& places,
+                         BallSolver& solver) {
   return reach_open_places(surface_, complex_, solver, reconstruction, places, left_open() / kOpen, border_options());
 }
 
@@ -256,9 +256,9 @@ void Refiner::reach() {
   int dent_rounds = 0;
   for (int round = 0; round < options_.reach_rounds; ++round) {
     if (round > 0) reconstruction.change(complex_.mesh());
-    Index reached = reach(reconstruction, open.find(reconstruction, apart), solver);
+    Index reached = reach_for(reconstruction, open.find(reconstruction, apart), solver);
     if (reached == 0 && dent_rounds++ < kDentRounds)
-      reached = reach(reconstruction, dents.find(reconstruction, apart), solver);
+      reached = reach_for(reconstruction, dents.find(reconstruction, apart), solver);
     if (reached == 0) break;
     report_.reached_places += reached;
     report_.notches += fill_notches(surface_, complex_, solver, border);

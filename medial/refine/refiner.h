@@ -45,7 +45,7 @@ class Refiner {
   void mend_borders();
   void divide();
   void reach();
-  Index reach(const Reconstruction& reconstruction, const std::vector<UncoveredPlace>& places, BallSolver& solver);
+  Index reach_for(const Reconstruction& reconstruction, const std::vector<UncoveredPlace>& places, BallSolver& solver);
   RefinedAxis result();
 
   const Surface& surface_;

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <array>
 
+#include "flat_triangle.h"
+
 namespace orchard::detail {
 namespace {
 
-constexpr double kFlat = 1e-4;   // of its longest edge: the height of a flat triangle
 constexpr double kShift = 3e-4;  // of that edge: how far a vertex goes
 constexpr double kOff = 0.5;     // of the shift: no ball farther than this from where it is looked for
 
@@ -23,10 +24,9 @@ std::array<Index, 3> longest_first(const BallComplex& complex, const std::array<
   return {a, b, c};
 }
 
-bool is_flat(const BallComplex& complex, const std::array<Index, 3>& corners) {
+bool has_no_plane(const BallComplex& complex, const std::array<Index, 3>& corners) {
   const auto [a, b, c] = longest_first(complex, corners);
-  const Vector along = complex.balls[b].center - complex.balls[a].center;
-  return along.cross(complex.balls[c].center - complex.balls[a].center).norm() <= kFlat * along.squaredNorm();
+  return is_flat(complex.balls[a].center, complex.balls[b].center, complex.balls[c].center);
 }
 
 class FlatSpreader {
@@ -37,7 +37,7 @@ class FlatSpreader {
   Index run() {
     Index moved = 0;
     for (const std::array<Index, 3>& corners : complex_.triangles) {
-      if (!is_flat(complex_, corners)) continue;
+      if (!has_no_plane(complex_, corners)) continue;
       const auto [a, b, c] = longest_first(complex_, corners);
       if (move(c, complex_.balls[b].center - complex_.balls[a].center)) ++moved;
     }
@@ -77,7 +77,7 @@ class FlatSpreader {
   std::size_t flat_at(Index v) const {
     std::size_t count = 0;
     for (const Index e : at_.edges_at[v]) {
-      for (const Index t : at_.triangles_at[e]) count += is_flat(complex_, complex_.triangles[t]) ? 1 : 0;
+      for (const Index t : at_.triangles_at[e]) count += has_no_plane(complex_, complex_.triangles[t]) ? 1 : 0;
     }
     return count;
   }

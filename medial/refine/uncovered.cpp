@@ -135,19 +135,22 @@ std::vector<UncoveredPlace> UncoveredSearch::find(const Reconstruction& reconstr
     first_ = false;
   }
   parts_ = std::move(found.open);
-  // Position decides between equals, so that the result depends on nothing else.
+  return worst_apart(std::move(all), apart, surface_.bounding_box());
+}
+
+std::vector<UncoveredPlace> worst_apart(std::vector<UncoveredPlace> all, double apart, const Box& box) {
   std::sort(all.begin(), all.end(), [](const UncoveredPlace& a, const UncoveredPlace& b) {
     const auto key = [](const UncoveredPlace& place) {
       return std::tuple(-place.value, place.position.x(), place.position.y(), place.position.z());
     };
     return key(a) < key(b);
   });
-  PointTree tree(surface_.bounding_box());
+  PointTree tree(box);
   std::vector<UncoveredPlace> places;
   for (const UncoveredPlace& place : all) {
-    const auto is_near = [&](const Point& other) { return (other - place.position).norm() < apart; };
-    if (tree.any_within(place.position, apart, is_near)) continue;
-    tree.add(place.position);
+    const auto is_near = [&](const Point& other) { return (other - place.inside).norm() < apart; };
+    if (tree.any_within(place.inside, apart, is_near)) continue;
+    tree.add(place.inside);
     places.push_back(place);
   }
   return places;

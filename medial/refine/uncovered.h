@@ -14,6 +14,9 @@ struct UncoveredPlace {
   Point inside = Point::Zero();  // where the nearest ball is looked for: the place itself, or the dent
 };
 
+// The worst first, no two with `inside` within `apart` of each other. Of equal ones position decides. O(n log n).
+std::vector<UncoveredPlace> worst_apart(std::vector<UncoveredPlace> places, double apart, const Box& box);
+
 // Looks for such places again and again while the axis grows.
 class UncoveredSearch {
  public:
