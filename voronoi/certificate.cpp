@@ -13,6 +13,7 @@
 #include "cavity.h"
 #include "four_tetrahedra.h"
 #include "line_sum.h"
+#include "orchard/geometry/random.h"
 #include "orchard/geometry/tolerance.h"
 #include "parallel_insertion.h"
 #include "workspace_four.h"
@@ -58,8 +59,9 @@ constexpr int kRounds = 24;
 // How many doubts are still local ones, those of all rounds together: more are made anew sooner than mended.
 constexpr std::size_t kMaxDoubts = 16, kMaxDoubtsOneIn = 64;
 
-// Of a squared size: far more than any stored sphere is off, where all that matters is to look at a few vertices more.
-constexpr double kAbout = 0x1p-20;
+// Rays that are tried: one that meets an edge of the hull tells nothing, but its digits are random.
+constexpr std::uint64_t kRays = 4, kRayStream = 0x5ca1u;
+constexpr double kAside = 0x1p-10;
 
 // The facet between a vertex and its neighbour `slot`, and the point that this one has instead of a shared one.
 struct Facet {
@@ -193,7 +195,7 @@ class Certifier {
   Certificate run() {
     if (!look_at_all()) return {};
     if (found_.intrusion > max_sum_ && (!look_closer() || found_.intrusion > max_sum_)) return {};
-    if (mended_) find_fattest();
+    if (mended_ && !is_tetrahedron(found_.fattest)) find_fattest();
     if (found_.fattest == kNone ? !found_.hull.empty() : !covers_once()) return {};
     if (!are_suspects_innocent()) return {};
     return {true, 2 * (found_.intrusion + found_.given) / diameter_};
@@ -205,6 +207,7 @@ class Certifier {
     return static_cast<unsigned>(index_of(workspace_.vertices[v].neighbors, neighbor));
   }
 
+  bool is_tetrahedron(Index v) const { return v != kNone && !workspace_.is_free(v) && !workspace_.at_infinity(v); }
   bool is_new(Index v) const {
     const auto& p = workspace_.vertices[v].forming_points;
     const auto from = [this](Index point) { return point >= first_new_ && point != kInfinitePoint; };
@@ -365,7 +368,7 @@ class Certifier {
     if (seen.negative.sign() == Sign::positive) return seen;
     workspace_.settle(v);
     seen.apart = from_told_sphere(v);
-    if (has_to_be_seen(v, seen)) seen.apart = std::min(seen.apart, from_seen_sphere(v, seen.negative));
+    if (has_to_be_seen(v, seen)) seen.apart = std::min(seen.apart, from_seen_sphere(v));
     if (seen.apart > kTold * max_) seen.has_center = own_center(v, seen.center);
     return seen;
   }
@@ -387,7 +390,7 @@ class Certifier {
       apart = from_sphere(v, center);
       if (apart > (shared ? kGiven : kTold) * max_) {
         workspace_.place_sharply(v, center);
-        apart = std::min(from_told_sphere(v), from_sphere(v, center));
+        apart = 0;
       } else if (!shared) {
         workspace_.note_own_center(v, (corner(v, 0) + center - workspace_.vertices[v].center).norm());
       }
@@ -437,17 +440,12 @@ class Certifier {
   }
   void see_four_spheres(BatchList& list, Index begin, std::array<Look, kBatch>& seen) {
     list.for_each_four([&](const std::array<Index, 4>& four) {
-      FourCenters centers;
-      std::array<double, 4> per_off;
-      for (unsigned lane = 0; lane < 4; ++lane) {
-        per_off[lane] = apart_per_off(seen[four[lane] - begin].radius);
-        centers.center[lane] = &workspace_.vertices[four[lane]].center;
-        centers.enough[lane] = kTold * max_ / per_off[lane];
-      }
+      std::array<const Point*, 4> centers;
+      for (unsigned lane = 0; lane < 4; ++lane) centers[lane] = &workspace_.vertices[four[lane]].center;
       const std::array<double, 4> off = off_four_circumcenters(centers, tetrahedra(four));
       for (unsigned lane = 0; lane < 4; ++lane) {
         Look& look = seen[four[lane] - begin];
-        look.apart = std::min(look.apart, apart_by(four[lane], off[lane], look.radius, per_off[lane]));
+        look.apart = std::min(look.apart, apart_by(four[lane], off[lane], look.radius));
       }
     });
     list.clear();
@@ -492,21 +490,17 @@ class Certifier {
     if (workspace_.shares_sphere(v)) return diameter_;
     return workspace_.power_bound(v) / radius;
   }
-  // The same by how far its forming points are off its sphere: often a much better bound, which is noted then. The
-  // determinant is six_volumes(v).
-  double from_seen_sphere(Index v, const Determinant& det) {
-    const double radius = std::sqrt(workspace_.vertices[v].radius), per_off = apart_per_off(radius);
-    return apart_by(v,
-                    off_circumcenter(workspace_.vertices[v].center, corner(v, 3), corner(v, 0), corner(v, 1),
-                                     corner(v, 2), det, kTold * max_ / per_off),
-                    radius, per_off);
+  // The same by how far its forming points are off its sphere: often a much better bound, which is noted then.
+  double from_seen_sphere(Index v) {
+    return apart_by(
+        v, off_circumcenter(workspace_.vertices[v].center, corner(v, 3), corner(v, 0), corner(v, 1), corner(v, 2)),
+        std::sqrt(workspace_.vertices[v].radius));
   }
-  // As in from_sphere(), the radius of the own sphere being three quarters of this at least.
-  double apart_per_off(double radius) const { return 4 * std::min(2.0, diameter_ / (0.75 * radius)); }
-  // By how far the centre is off, at most.
-  double apart_by(Index v, double off, double radius, double per_off) {
+  // By how far the centre is off, at most: as in from_sphere(), the radius of the own sphere being three quarters of
+  // this at least.
+  double apart_by(Index v, double off, double radius) {
     if (!(off <= radius / 8)) return diameter_;
-    const double apart = off * per_off;
+    const double apart = off * (4 * std::min(2.0, diameter_ / (0.75 * radius)));
     if (apart <= kTold * max_) workspace_.note_own_center(v, off);
     return apart;
   }
@@ -700,7 +694,16 @@ class Certifier {
     hull_points_.erase(std::unique(hull_points_.begin(), hull_points_.end()), hull_points_.end());
   }
   // Ascending.
-  std::vector<Index> hull_vertices() const {
+  std::vector<Index> hull_vertices() {
+    if (first_new_ > 0) return all_hull_vertices();
+    // All of the hull has been looked at, and what was new since.
+    std::vector<Index>& hull = found_.hull;
+    std::erase_if(hull, [this](Index v) { return workspace_.is_free(v) || !workspace_.at_infinity(v); });
+    std::sort(hull.begin(), hull.end());
+    hull.erase(std::unique(hull.begin(), hull.end()), hull.end());
+    return hull;
+  }
+  std::vector<Index> all_hull_vertices() const {
     const auto count = static_cast<Index>(workspace_.vertices.size());
     std::vector<std::vector<Index>> blocks((count + kBlock - 1) / kBlock);
     tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
@@ -741,12 +744,13 @@ class Certifier {
     return power / std::min(center.norm(), diameter_ / 2);
   }
 
-  // Whether a point in the fattest of the tetrahedra looked at is in no other, and below all facets of the hull. All
-  // tetrahedra being oriented positively, there are then nowhere two on top of each other, and the hull goes around
-  // them once (see certify()).
-  bool covers_once() const {
+  // Whether the middle of the fattest of the tetrahedra looked at is below all facets of the hull, and a ray from there
+  // meets one of them. As all tetrahedra are oriented positively, there are then nowhere two on top of each other, and
+  // the hull goes around them once (see certify()).
+  bool covers_once() {
     const std::array<Point, 4> inner{corner(found_.fattest, 0), corner(found_.fattest, 1), corner(found_.fattest, 2),
                                      corner(found_.fattest, 3)};
+    const std::vector<Index> hull = hull_vertices();
     const Point rounded = (inner[0] + inner[1] + inner[2] + inner[3]) / 4;
     const auto is_below = [&](const Point& a, const Point& b, const Point& c) {
       return volume_sign(rounded, a, b, c) == Sign::positive;
@@ -755,37 +759,30 @@ class Certifier {
     const auto is_middle_below = [&](const Point& a, const Point& b, const Point& c) {
       return volume_sign_of_middle(inner, a, b, c) == Sign::positive;
     };
-    const auto is_outside_box = [&](Index v) {
-      const Point low = corner(v, 0).cwiseMin(corner(v, 1)).cwiseMin(corner(v, 2).cwiseMin(corner(v, 3)));
-      const Point high = corner(v, 0).cwiseMax(corner(v, 1)).cwiseMax(corner(v, 2).cwiseMax(corner(v, 3)));
-      return (rounded.array() < low.array()).any() || (rounded.array() > high.array()).any();
-    };
-    return is_only_in_fattest(rounded, is_below, is_outside_box) ||
-           is_only_in_fattest(rounded, is_middle_below, [](Index) { return false; });
+    return is_encircled_once(hull, rounded, is_below) || is_encircled_once(hull, rounded, is_middle_below);
   }
 
-  // Whether a point, at or next to `about`, is below all facets of the hull and outside of all tetrahedra but the
-  // fattest. is_below(a, b, c) tells on which side of a facet it is, is_outside_box(v) when that need not be asked.
-  template <class IsBelow, class IsOutsideBox>
-  bool is_only_in_fattest(const Point& about, const IsBelow& is_below, const IsOutsideBox& is_outside_box) const {
-    std::atomic<bool> only = true;
-    const auto count = static_cast<Index>(workspace_.vertices.size());
-    tbb::parallel_for(tbb::blocked_range<Index>(0, count, kBlock), [&](const auto& range) {
-      for (Index v = range.begin(); v < range.end() && only; ++v)
-        if (v != found_.fattest && !workspace_.is_free(v) && !is_elsewhere(v, about, is_below, is_outside_box))
-          only = false;
-    });
-    return only;
-  }
-  template <class IsBelow, class IsOutsideBox>
-  bool is_elsewhere(Index v, const Point& about, const IsBelow& is_below, const IsOutsideBox& is_outside_box) const {
-    if (workspace_.at_infinity(v)) return is_below(corner(v, 0), corner(v, 1), corner(v, 2));
-    const double doubt = kAbout * (workspace_.vertices[v].radius + diameter_ * diameter_);
-    const auto is_beyond = [&](const auto& facet) {
-      return is_below(corner(v, facet[0]), corner(v, facet[2]), corner(v, facet[1]));
-    };
-    return !(workspace_.power(v, about) > -doubt) || is_outside_box(v) ||
-           std::any_of(Cavity::kOthers.begin(), Cavity::kOthers.end(), is_beyond);
+  // is_below(a, b, c) tells on which side of a triangle a point at or next to `about` is. The rays go along an axis,
+  // nearly, so that most facets are missed by their boxes, and to points with random digits, so that no edge is met.
+  template <class IsBelow>
+  bool is_encircled_once(const std::vector<Index>& hull, const Point& about, const IsBelow& is_below) const {
+    const auto is_below_facet = [&](Index v) { return is_below(corner(v, 0), corner(v, 1), corner(v, 2)); };
+    if (!std::all_of(hull.begin(), hull.end(), is_below_facet)) return false;
+    const Vector next_to =
+        Vector::Constant(8 * kRounding * box_.min().cwiseAbs().cwiseMax(box_.max().cwiseAbs()).maxCoeff());
+    for (std::uint64_t ray = 0; ray < kRays; ++ray) {
+      Random random(0, kRayStream, ray);
+      const auto aside = [&random] { return kAside * (random.uniform() - 0.5); };
+      const Point end = about + 2 * diameter_ * Vector(1, aside(), aside());
+      const Box reached = Box(about - next_to, about + next_to).merged(Box(end.cwiseMin(about), end.cwiseMax(about)));
+      const auto is_met = [&](Index v) {
+        const Point &a = corner(v, 0), &b = corner(v, 1), &c = corner(v, 2);
+        const Box facet(a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c));
+        return facet.intersects(reached) && !is_below(end, c, b) && !is_below(end, a, c) && !is_below(end, b, a);
+      };
+      if (std::count_if(hull.begin(), hull.end(), is_met) == 1) return true;
+    }
+    return false;
   }
 
   Workspace& workspace_;

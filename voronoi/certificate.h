@@ -31,11 +31,10 @@ struct Certificate {
 // At edges of the hull that are so short, or facets so thin, that a bound from next to them, carried across all points,
 // says nothing, the planes and spheres on both sides are held against all points one by one.
 //
-// That no two tetrahedra lie on top of each other follows from their orientation, if one point is in one of them only
-// and below all facets of the hull. For then a ray from there meets one facet of the hull: together these fill the
-// solid angle of a sphere as often as the tetrahedra cover the point, once. So what is inside is covered once,
-// everywhere, and around an edge of the hull the tetrahedra turn by the angle between its two facets: whether the hull
-// is convex there is told by these alone.
+// That no two tetrahedra lie on top of each other follows from their orientation, if a point is below all facets of the
+// hull and a ray from there meets one of them. For then these fill the solid angle of a sphere once, and as often the
+// tetrahedra cover the point. So what is inside is covered once, everywhere, and around an edge of the hull the
+// tetrahedra turn by the angle between its two facets: whether the hull is convex there is told by these alone.
 //
 // All this is said of the spheres that the vertices have: each must be that of its forming points up to a quarter of
 // the intrusion. Where doubles do not show that, a vertex is given its own sphere with more digits, but for one that

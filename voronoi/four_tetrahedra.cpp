@@ -1,5 +1,7 @@
 #include "four_tetrahedra.h"
 
+#include <limits>
+
 #include "four_vectors.h"
 #include "twofold.h"
 
@@ -73,39 +75,10 @@ ORCHARD_FUSED FourTwofolds dot(const FourSharpVectors& a, const FourSharpVectors
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-// One coordinate of one point's sharp power: what it adds to it.
-ORCHARD_FUSED void add_power(const FourTwofolds& point, const FourTwofolds& twice_center, FourTwofolds& power) {
-  const FourTwofolds rest = exact_differences(twice_center.high, point.high);
-  const __m256d rest_low = rest.low + (twice_center.low - point.low);
-  const FourTwofolds product = exact_products(point.high, rest.high), sum = exact_sums(power.high, product.high);
-  power.high = sum.high;
-  power.low = power.low + ((sum.low + product.low) + (point.high * rest_low + point.low * rest.high));
+// The second where the mask is set.
+ORCHARD_FUSED FourVectors choose(const FourVectors& a, const FourVectors& b, __m256d mask) {
+  return {_mm256_blendv_pd(a.x, b.x, mask), _mm256_blendv_pd(a.y, b.y, mask), _mm256_blendv_pd(a.z, b.z, mask)};
 }
-ORCHARD_FUSED __m256d sharp_powers(const FourSharpVectors& point, const FourSharpVectors& twice_center) {
-  FourTwofolds power{_mm256_setzero_pd(), _mm256_setzero_pd()};
-  add_power(point.x, twice_center.x, power);
-  add_power(point.y, twice_center.y, power);
-  add_power(point.z, twice_center.z, power);
-  return power.high + power.low;
-}
-
-ORCHARD_FUSED FourTwofolds doubled(const FourTwofolds& a) { return {all_four(2) * a.high, all_four(2) * a.low}; }
-ORCHARD_FUSED FourSharpVectors doubled(const FourSharpVectors& a) { return {doubled(a.x), doubled(a.y), doubled(a.z)}; }
-
-// How far a centre is off, at most, by the powers of three points.
-struct FourOffBounds {
-  FourVectors bc, ca, ab, products;
-  __m256d powers_error, divisor;
-
-  ORCHARD_FUSED __m256d of(const FourVectors& power, double sharpness) const {
-    const FourVectors sum{power.x * bc.x + power.y * ca.x + power.z * ab.x,
-                          power.x * bc.y + power.y * ca.y + power.z * ab.y,
-                          power.x * bc.z + power.y * ca.z + power.z * ab.z};
-    return (length(sum) +
-            all_four(16 * kRounding) * (dot(absolute(power), products) + all_four(sharpness) * powers_error)) /
-           divisor;
-  }
-};
 
 // As inside_sphere_fast() in predicates.cpp.
 struct FourMinors {
@@ -178,35 +151,35 @@ bool can_take_four() { return kFourSharpLanes; }
 }
 
 // As off_circumcenter(), in the same order of operations.
-[[gnu::target("avx2,fma")]] std::array<double, 4> off_four_circumcenters(const FourCenters& centers,
+[[gnu::target("avx2,fma")]] std::array<double, 4> off_four_circumcenters(const std::array<const Point*, 4>& centers,
                                                                          const FourTetrahedra& tetrahedra) {
-  const FourVectors q = load_four(tetrahedra[3]), a = load_four(tetrahedra[0]), b = load_four(tetrahedra[1]),
-                    c = load_four(tetrahedra[2]), center = load_four(centers.center);
-  const __m256d enough = _mm256_loadu_pd(centers.enough.data());
-  const FourVectors qa = a - q, qb = b - q, qc = c - q, from_q = center - q;
-  const FourVectors twice{all_four(2) * from_q.x, all_four(2) * from_q.y, all_four(2) * from_q.z};
-  const FourDeterminants volume6 = volumes(qa, qb, qc);
-  const __m256d aa = dot(qa, qa), bb = dot(qb, qb), cc = dot(qc, qc);
-  const FourOffBounds bounds{
-      cross(qb, qc),
-      cross(qc, qa),
-      cross(qa, qb),
-      {all_four(0.5) * (bb + cc), all_four(0.5) * (cc + aa), all_four(0.5) * (aa + bb)},
-      _mm256_sqrt_pd(aa * bb * cc) * (all_four(3) * length(twice) + _mm256_sqrt_pd(all_four(3) * (aa + bb + cc))),
-      all_four(2) * (absolute(volume6.value) - volume6.bound)};
-  __m256d off = bounds.of({dot(qa, twice - qa), dot(qb, twice - qb), dot(qc, twice - qc)}, 1);
-  const __m256d suffices =
-      _mm256_and_pd(_mm256_cmp_pd(all_four(16 * kRounding) * bounds.powers_error, enough * bounds.divisor, _CMP_LT_OQ),
-                    _mm256_cmp_pd(off, enough, _CMP_LE_OQ));
-  if (_mm256_movemask_pd(suffices) != 0xf) {
-    const FourSharpVectors twice_center = doubled(differences(center, q));
-    const FourVectors powers{sharp_powers(differences(a, q), twice_center),
-                             sharp_powers(differences(b, q), twice_center),
-                             sharp_powers(differences(c, q), twice_center)};
-    off = _mm256_blendv_pd(bounds.of(powers, kSharper), off, suffices);
-  }
+  const FourVectors q = load_four(tetrahedra[3]), p1 = load_four(tetrahedra[0]), p2 = load_four(tetrahedra[1]),
+                    p3 = load_four(tetrahedra[2]), center = load_four(centers);
+  const __m256d with_a = squared(p1 - q) * squared(p3 - p2), with_b = squared(p2 - q) * squared(p1 - p3),
+                with_c = squared(p3 - q) * squared(p2 - p1);
+  const __m256d is_b = _mm256_cmp_pd(with_b, with_a, _CMP_LT_OQ);
+  const __m256d is_c = _mm256_cmp_pd(with_c, _mm256_min_pd(with_a, with_b), _CMP_LT_OQ);
+  const FourVectors a_or_b = choose(p1, p2, is_b);
+  const FourVectors a = choose(a_or_b, p3, is_c), b = choose(p2, p1, is_b), c = choose(p3, a_or_b, is_c);
+  const FourVectors first = a - q, middle = b - q, last = c - b;
+  const FourVectors from_q = center - q, from_a = center - a, from_b = center - b, from_c = center - c;
+  const FourVectors power{dot(first, from_q + from_a), dot(middle, from_q + from_b), dot(last, from_b + from_c)};
+  const __m256d squared_radius =
+      _mm256_max_pd(_mm256_max_pd(squared(from_q), squared(from_a)), _mm256_max_pd(squared(from_b), squared(from_c)));
+  const __m256d ff = squared(first), mm = squared(middle), ll = squared(last);
+  const FourVectors ml = cross(middle, last), lf = cross(last, first), fm = cross(first, middle);
+  const FourVectors sum{power.x * ml.x + power.y * lf.x + power.z * fm.x,
+                        power.x * ml.y + power.y * lf.y + power.z * fm.y,
+                        power.x * ml.z + power.y * lf.z + power.z * fm.z};
+  const FourVectors products{all_four(0.5) * (mm + ll), all_four(0.5) * (ll + ff), all_four(0.5) * (ff + mm)};
+  const __m256d powers_error = all_four(3) * _mm256_sqrt_pd(ff * mm * ll * squared_radius);
+  const FourDeterminants volume6 = volumes(first, middle, last);
+  const __m256d divisor = all_four(2) * (absolute(volume6.value) - volume6.bound);
+  const __m256d off =
+      (length(sum) + all_four(16 * kRounding) * (dot(absolute(power), products) + powers_error)) / divisor;
   std::array<double, 4> result;
-  _mm256_storeu_pd(result.data(), off);
+  _mm256_storeu_pd(result.data(), _mm256_blendv_pd(all_four(std::numeric_limits<double>::infinity()), off,
+                                                   _mm256_cmp_pd(divisor, _mm256_setzero_pd(), _CMP_GT_OQ)));
   return result;
 }
 
@@ -237,7 +210,7 @@ bool can_take_four() { return kFourSharpLanes; }
 bool can_take_four() { return false; }
 FourVolumes four_volumes(const FourTetrahedra&) { return {}; }
 std::array<Sign, 4> four_inside_spheres(const Point&, const FourTetrahedra&) { return {}; }
-std::array<double, 4> off_four_circumcenters(const FourCenters&, const FourTetrahedra&) { return {}; }
+std::array<double, 4> off_four_circumcenters(const std::array<const Point*, 4>&, const FourTetrahedra&) { return {}; }
 unsigned four_sharp_circumcenters(const FourTetrahedra&, std::array<Vector, 4>&) { return 0; }
 #endif
 

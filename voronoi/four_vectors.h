@@ -24,10 +24,14 @@ ORCHARD_AVX2 FourVectors absolute(const FourVectors& a) { return {absolute(a.x),
 ORCHARD_AVX2 FourVectors operator-(const FourVectors& a, const FourVectors& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
+ORCHARD_AVX2 FourVectors operator+(const FourVectors& a, const FourVectors& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
 ORCHARD_AVX2 FourVectors cross(const FourVectors& a, const FourVectors& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 ORCHARD_AVX2 __m256d dot(const FourVectors& a, const FourVectors& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+ORCHARD_AVX2 __m256d squared(const FourVectors& a) { return dot(a, a); }
 ORCHARD_AVX2 __m256d length(const FourVectors& a) { return _mm256_sqrt_pd(dot(a, a)); }
 
 // A bit for each lane that holds, and for each that is a number.

@@ -56,11 +56,9 @@ Sign inside_sphere(const Point& q, const Point& a, const Point& b, const Point& 
 // overflows.
 bool sharp_circumcenter(const Point& q, const Point& a, const Point& b, const Point& c, Vector& center);
 
-// How far a point is, at most, from the circumcentre of q, a, b and c, to some roundings: much sooner told than the
-// circumcentre is found. volume6 is volume(a - q, b - q, c - q); infinite where its sign is in doubt. Where doubles
-// show that the distance is no more than `enough`, no sharper bound is sought.
-double off_circumcenter(const Point& center, const Point& q, const Point& a, const Point& b, const Point& c,
-                        const Determinant& volume6, double enough);
+// How far a point is, at most, from the circumcentre of q, a, b and c, as far as doubles tell: much sooner told than
+// the circumcentre is found. Infinite where the sign of the volume is in doubt.
+double off_circumcenter(const Point& center, const Point& q, const Point& a, const Point& b, const Point& c);
 
 // The unit normal of the triangle q, a, b, to a few roundings. False if they are collinear.
 bool sharp_normal(const Point& q, const Point& a, const Point& b, Vector& normal);
