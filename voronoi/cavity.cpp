@@ -76,7 +76,7 @@ void Cavity::note_facets() {
     const unsigned slot = boundary[f] % 4;
     const VoronoiVertex& deleted = workspace_.vertices[inside];
     const Index outside = deleted.neighbors[slot];
-    const std::size_t back = index_of(workspace_.neighbors_now(outside), inside);
+    const std::size_t back = workspace_.slot_now(outside, inside);
     const auto& [a, b, c] = kOthers[slot];
     const auto& corner = deleted.forming_points;
     const Index of_a = local(corner[a]), of_b = local(corner[b]), of_c = local(corner[c]);

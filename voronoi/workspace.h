@@ -63,10 +63,15 @@ class Workspace {
   }
   // Those of a vertex that others may be giving new neighbours meanwhile, elsewhere (see Territory).
   std::array<Index, 4> neighbors_now(Index v) const {
-    auto& shared = const_cast<std::array<Index, 4>&>(vertices[v].neighbors);
-    std::array<Index, 4> now;
-    for (unsigned i = 0; i < 4; ++i) now[i] = std::atomic_ref(shared[i]).load(std::memory_order_relaxed);
-    return now;
+    return {neighbor_now(v, 0), neighbor_now(v, 1), neighbor_now(v, 2), neighbor_now(v, 3)};
+  }
+  Index neighbor_now(Index v, unsigned slot) const {
+    return std::atomic_ref(const_cast<Index&>(vertices[v].neighbors[slot])).load(std::memory_order_relaxed);
+  }
+  // index_of() the neighbor among them, without writing them to memory.
+  std::size_t slot_now(Index v, Index neighbor) const {
+    return std::size_t{neighbor_now(v, 1) == neighbor} + 2 * std::size_t{neighbor_now(v, 2) == neighbor} +
+           3 * std::size_t{neighbor_now(v, 3) == neighbor};
   }
   void set_neighbor(Index v, unsigned slot, Index neighbor) {
     std::atomic_ref(vertices[v].neighbors[slot]).store(neighbor, std::memory_order_relaxed);
