@@ -7,8 +7,9 @@
 namespace orchard::detail {
 namespace {
 
-// How many deleted vertices ahead of the one whose neighbours are looked at memory is fetched into the cache.
-constexpr std::size_t kFetchAhead = 4;
+// How many deleted vertices ahead of the one whose neighbours are looked at memory is fetched into the cache. Where
+// there are no more points than that, it is there.
+constexpr std::size_t kFetchAhead = 4, kAllInCache = 1u << 13;
 
 }  // namespace
 
@@ -32,8 +33,9 @@ bool Cavity::leave_territory(Index blocker) {
   return false;
 }
 
+// Inlined by force: a compiler may take what only fetches for a function without effect, and leave it out.
 // What is asked for once this vertex is looked at: its neighbours now, its forming points by note_facets().
-inline void Cavity::fetch_around(Index v) const {
+[[gnu::always_inline]] inline void Cavity::fetch_around(Index v) const {
   const VoronoiVertex& vertex = workspace_.vertices[v];
   for (const Index u : vertex.neighbors) workspace_.prefetch(u);
   for (const Index p : vertex.forming_points) {
@@ -47,7 +49,7 @@ inline std::array<Index, 4> Cavity::neighbors_of_deleted(std::size_t i) {
   deleted_.ensure_room();
   seen_.ensure_room();
   boundary_.ensure_room();
-  fetch_around(deleted_.items()[std::min(i + kFetchAhead, deleted_.size() - 1)]);
+  if (local_of_.size() > kAllInCache) fetch_around(deleted_.items()[std::min(i + kFetchAhead, deleted_.size() - 1)]);
   return workspace_.vertices[deleted_.items()[i]].neighbors;
 }
 

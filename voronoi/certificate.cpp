@@ -93,7 +93,7 @@ struct HullEdge {
 // given is from its own, at most, with its own centre, relative to its first point, where that had to be found.
 struct Look {
   Determinant negative;  // of six times its volume, the other way around
-  double radius = 0, apart = 0;
+  double apart = 0;
   bool has_center = false;
   Vector center;
 };
@@ -102,23 +102,17 @@ struct Look {
 class BatchList {
  public:
   std::span<const Index> items() const { return {items_.data(), count_}; }
-  void clear() { count_ = 0; }
   void push_if(Index v, bool condition) {
     items_[count_] = v;
     count_ += condition;
   }
-  template <class Keep>
-  void keep_if(const Keep& keep) {
-    const std::size_t before = std::exchange(count_, 0);
-    for (std::size_t i = 0; i < before; ++i) push_if(items_[i], keep(items_[i]));
-  }
-  // The last one again for those that the last four lack.
+  // With the place of the first. The last one again for those that the last four lack.
   template <class Take>
   void for_each_four(const Take& take) const {
     for (std::size_t first = 0; first < count_; first += 4) {
       std::array<Index, 4> four;
       for (std::size_t lane = 0; lane < 4; ++lane) four[lane] = items_[std::min(first + lane, count_ - 1)];
-      take(four);
+      take(first, four);
     }
   }
 
@@ -126,6 +120,47 @@ class BatchList {
   std::array<Index, kBatch + 1> items_;
   std::size_t count_ = 0;
 };
+
+// The same of the vertices of such a list, and their radii.
+struct BatchLooks {
+  std::array<double, kBatch + 4> negative, negative_bound, radius, apart;
+};
+
+// What is seen of four spheres: how far they are from those of their forming points, at most, and what that bounds the
+// error of a power by.
+struct FourSeen {
+  std::array<double, 4> apart, power_bound;
+};
+
+#if defined(__GNUC__) && defined(__x86_64__)
+// As Certifier::from_told_sphere(), with their radii; `far` is what is told of those that share a sphere.
+[[gnu::target("avx2")]] void told_of_four(const Workspace& workspace, const std::array<Index, 4>& v, double far,
+                                          double* radius, double* apart) {
+  const Workspace::FourSpheres spheres = workspace.spheres(v);
+  _mm256_storeu_pd(radius, spheres.radius);
+  const __m256d told = _mm256_blendv_pd(spheres.power_bound / spheres.radius, all_four(far), spheres.shared);
+  _mm256_storeu_pd(apart, workspace.exact() ? _mm256_setzero_pd() : told);
+}
+
+// As Certifier::apart_by() and Workspace::own_power_bound(), by how far the centres are off.
+[[gnu::target("avx2")]] FourSeen apart_of_four(const Workspace& workspace, const std::array<Index, 4>& v,
+                                               const std::array<double, 4>& offs, const std::array<double, 4>& radii,
+                                               double diameter) {
+  const __m256d off = _mm256_loadu_pd(offs.data()), radius = _mm256_loadu_pd(radii.data());
+  const __m256d times = _mm256_min_pd(all_four(diameter) / (all_four(0.75) * radius), all_four(2));
+  const __m256d is_near = _mm256_cmp_pd(off, radius / all_four(8), _CMP_LE_OQ);
+  FourSeen seen;
+  _mm256_storeu_pd(seen.apart.data(), _mm256_blendv_pd(all_four(diameter), off * (all_four(4) * times), is_near));
+  _mm256_storeu_pd(seen.power_bound.data(), workspace.own_power_bounds(v, off));
+  return seen;
+}
+#else
+void told_of_four(const Workspace&, const std::array<Index, 4>&, double, double*, double*) {}
+FourSeen apart_of_four(const Workspace&, const std::array<Index, 4>&, const std::array<double, 4>&,
+                       const std::array<double, 4>&, double) {
+  return {};
+}
+#endif
 
 // What the facet of three points takes off, where that is more than its share.
 struct Loss {
@@ -403,22 +438,25 @@ class Certifier {
   // The same of some vertices, where all are new, with the same bits. Each is a long chain of sums with branches as
   // good as random at its ends: so what has to be found is listed first, then found for four at once.
   bool are_all_oriented(Index begin, Index end) {
-    std::array<Look, kBatch> seen;
     BatchList list;
-    for (Index v = begin; v < end; ++v) list.push_if(v, !workspace_.is_free(v) & !workspace_.at_infinity(v));
-    look_at_each(list, begin, seen);
-    list.keep_if([&](Index v) {
-      const Look& look = seen[v - begin];
-      return (look.negative.sign() == Sign::negative) & has_to_be_seen(v, look);
-    });
-    see_four_spheres(list, begin, seen);
-    for (Index v = begin; v < end; ++v) list.push_if(v, seen[v - begin].apart > kTold * max_);
-    find_four_centers(list, begin, seen);
     for (Index v = begin; v < end; ++v) {
-      if (workspace_.is_free(v)) continue;
-      if (!(workspace_.at_infinity(v) ? is_hull_facet(v) : is_oriented(v, seen[v - begin]))) return false;
+      const bool at_infinity = workspace_.at_infinity(v), is_free = workspace_.is_free(v);
+      list.push_if(v, !is_free & !at_infinity);
+      if (at_infinity && !is_free && !is_hull_facet(v)) return false;
     }
-    return true;
+    for (const Index v : list.items()) workspace_.settle(v);
+    BatchLooks seen;
+    const double far = workspace_.exact() ? 0 : diameter_;
+    list.for_each_four([&](std::size_t first, const std::array<Index, 4>& four) {
+      take_volumes(four_volumes(tetrahedra(four)), first, seen);
+      told_of_four(workspace_, four, far, &seen.radius[first], &seen.apart[first]);
+    });
+    see_four_spheres(list, seen);
+    return are_listed_oriented(list, seen);
+  }
+  static void take_volumes(const FourVolumes& six, std::size_t first, BatchLooks& seen) {
+    std::copy(six.value.begin(), six.value.end(), seen.negative.begin() + first);
+    std::copy(six.bound.begin(), six.bound.end(), seen.negative_bound.begin() + first);
   }
   FourTetrahedra tetrahedra(const std::array<Index, 4>& four) const {
     FourTetrahedra corners;
@@ -426,43 +464,52 @@ class Certifier {
       for (unsigned lane = 0; lane < 4; ++lane) corners[i][lane] = &corner(four[lane], i);
     return corners;
   }
-  void look_at_each(const BatchList& list, Index begin, std::array<Look, kBatch>& seen) {
-    for (const Index v : list.items()) workspace_.settle(v);
-    list.for_each_four([&](const std::array<Index, 4>& four) {
-      const FourVolumes six = four_volumes(tetrahedra(four));
-      for (unsigned lane = 0; lane < 4; ++lane) {
-        Look& look = seen[four[lane] - begin];
-        look.negative = {six.value[lane], six.bound[lane]};
-        look.radius = std::sqrt(workspace_.vertices[four[lane]].radius);
-        look.apart = from_told_sphere(four[lane], look.radius);
-      }
-    });
-  }
-  void see_four_spheres(BatchList& list, Index begin, std::array<Look, kBatch>& seen) {
-    list.for_each_four([&](const std::array<Index, 4>& four) {
+  void see_four_spheres(const BatchList& list, BatchLooks& seen) {
+    const double enough = kTold * max_;
+    BatchList far;  // places in the list
+    for (Index at = 0; at < list.items().size(); ++at)
+      far.push_if(at, (seen.apart[at] > enough) & (seen.negative[at] < -seen.negative_bound[at]) &
+                          !workspace_.shares_sphere(list.items()[at]));
+    far.for_each_four([&](std::size_t, const std::array<Index, 4>& four) {
+      std::array<Index, 4> v;
       std::array<const Point*, 4> centers;
-      for (unsigned lane = 0; lane < 4; ++lane) centers[lane] = &workspace_.vertices[four[lane]].center;
-      const std::array<double, 4> off = off_four_circumcenters(centers, tetrahedra(four));
+      std::array<double, 4> radius;
       for (unsigned lane = 0; lane < 4; ++lane) {
-        Look& look = seen[four[lane] - begin];
-        look.apart = std::min(look.apart, apart_by(four[lane], off[lane], look.radius));
+        v[lane] = list.items()[four[lane]];
+        centers[lane] = &workspace_.vertices[v[lane]].center;
+        radius[lane] = seen.radius[four[lane]];
+      }
+      const FourSeen found =
+          apart_of_four(workspace_, v, off_four_circumcenters(centers, tetrahedra(v)), radius, diameter_);
+      for (unsigned lane = 0; lane < 4; ++lane) {
+        if (found.apart[lane] <= enough) workspace_.note_bound(v[lane], found.power_bound[lane]);
+        seen.apart[four[lane]] = std::min(seen.apart[four[lane]], found.apart[lane]);
       }
     });
-    list.clear();
   }
-  void find_four_centers(const BatchList& list, Index begin, std::array<Look, kBatch>& seen) {
-    list.for_each_four([&](const std::array<Index, 4>& four) {
+  bool are_listed_oriented(const BatchList& list, const BatchLooks& seen) {
+    BatchList rest;  // places in the list
+    for (Index at = 0; at < list.items().size(); ++at) {
+      const bool good = (seen.negative[at] < -seen.negative_bound[at]) & (seen.apart[at] <= kTold * max_);
+      rest.push_if(at, !good);
+      if (!good) continue;
+      note_volume(list.items()[at], seen.negative[at]);
+      found_.given = std::max(found_.given, seen.apart[at]);
+    }
+    bool good = true;
+    rest.for_each_four([&](std::size_t first, const std::array<Index, 4>& four) {
+      std::array<Index, 4> v;
+      for (unsigned lane = 0; lane < 4; ++lane) v[lane] = list.items()[four[lane]];
       std::array<Vector, 4> centers;
-      const unsigned found = four_sharp_circumcenters(tetrahedra(four), centers);
-      for (unsigned lane = 0; lane < 4; ++lane) {
-        Look& look = seen[four[lane] - begin];
-        look.has_center = ((found >> lane) & 1u) != 0;
-        if (look.has_center)
-          look.center = centers[lane];
-        else
-          look.has_center = own_center(four[lane], look.center);
+      const unsigned found = four_sharp_circumcenters(tetrahedra(v), centers);
+      for (unsigned lane = 0; lane < std::min<std::size_t>(rest.items().size() - first, 4); ++lane) {
+        Look look{
+            {seen.negative[four[lane]], seen.negative_bound[four[lane]]}, seen.apart[four[lane]], true, centers[lane]};
+        if (((found >> lane) & 1u) == 0) look.has_center = own_center(v[lane], look.center);
+        good = good && is_oriented(v[lane], look);
       }
     });
+    return good;
   }
 
   // Whether three points are not on one line.

@@ -101,10 +101,8 @@ void Workspace::place_sharply(Index v, const Vector& center) {
   set_error_class(v, error_class(rounding_of_power(vertex)), false, state_[v] & 3u);
 }
 
-void Workspace::note_own_center(Index v, double off) {
-  const VoronoiVertex& vertex = vertices[v];
-  const double bound = 4 * off * std::sqrt(vertex.radius) + rounding_of_power(vertex);
-  if (bound < power_bound(v)) set_error_class(v, error_class(bound), false, state_[v] & 3u);
+double Workspace::own_power_bound(const VoronoiVertex& vertex, double off) const {
+  return 4 * off * std::sqrt(vertex.radius) + rounding_of_power(vertex);
 }
 
 // Of one whose centre is right but for some roundings.

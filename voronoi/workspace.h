@@ -110,6 +110,12 @@ class Workspace {
   // hold q, or which have the same one.
   ORCHARD_AVX2 unsigned agree_four(const std::array<Index, 4>& v, const std::array<Index, 4>& u,
                                    const FourVectors& q) const;
+  // Of four finite vertices; a mask where the sphere is a neighbour's, or may be.
+  struct FourSpheres {
+    __m256d radius, power_bound, shared;
+  };
+  ORCHARD_AVX2 FourSpheres spheres(const std::array<Index, 4>& v) const;
+  ORCHARD_AVX2 __m256d own_power_bounds(const std::array<Index, 4>& v, __m256d off) const;
 #endif
   // Whether its sphere is a neighbour's, or may be.
   bool shares_sphere(Index v) const { return (state_[v] & kShared) != 0; }
@@ -186,7 +192,11 @@ class Workspace {
   void place_sharply(Index v);
   void place_sharply(Index v, const Vector& center);  // which is relative to its first point
   // Leaves it where it is, with the bound that follows from how far, at most, it is off that centre.
-  void note_own_center(Index v, double off);
+  void note_own_center(Index v, double off) { note_bound(v, own_power_bound(vertices[v], off)); }
+  double own_power_bound(const VoronoiVertex& vertex, double off) const;
+  void note_bound(Index v, double bound) {
+    if (bound < power_bound(v)) set_error_class(v, error_class(bound), false, state_[v] & 3u);
+  }
   bool settled(Index v) const { return error_class_of(v) != kNotSettled; }
 
   static constexpr std::uint8_t kUnknownError = 63, kNotSettled = 62;

@@ -43,6 +43,25 @@ ORCHARD_AVX2 unsigned Workspace::agree_four(const std::array<Index, 4>& v, const
   return (far & lanes_equal(shared, 0)) | (exact_ ? 0 : same);
 }
 
+ORCHARD_AVX2 Workspace::FourSpheres Workspace::spheres(const std::array<Index, 4>& v) const {
+  const __m256i state = states(v), shared = _mm256_set1_epi64x(kShared);
+  const __m256d squared_radius =
+      _mm256_set_pd(vertices[v[3]].radius, vertices[v[2]].radius, vertices[v[1]].radius, vertices[v[0]].radius);
+  return {_mm256_sqrt_pd(squared_radius), bounds(state),
+          _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(state, shared), shared))};
+}
+
+// As own_power_bound(), in the same order of operations.
+ORCHARD_AVX2 __m256d Workspace::own_power_bounds(const std::array<Index, 4>& v, __m256d off) const {
+  const auto load = [&](Index u) { return vertices[u].center.data(); };  // the radius is behind it
+  FourVectors center{_mm256_load_pd(load(v[0])), _mm256_load_pd(load(v[1])), _mm256_load_pd(load(v[2]))};
+  __m256d squared_radius = _mm256_load_pd(load(v[3]));
+  transpose(center.x, center.y, center.z, squared_radius);
+  const __m256d radius = _mm256_sqrt_pd(squared_radius);
+  const __m256d sum = absolute(center.x) + absolute(center.y) + absolute(center.z);
+  return all_four(4) * off * radius + all_four(64 * kRounding) * (squared_radius + radius * sum);
+}
+
 ORCHARD_AVX2 Workspace::FourTests Workspace::test_four(const std::array<Index, 4>& v, const FourVectors& q,
                                                        double doubtful_input) const {
   const auto load = [&](Index u) { return vertices[u].center.data(); };  // the radius is behind it
