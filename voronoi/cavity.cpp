@@ -359,6 +359,7 @@ bool Cavity::doubts_are_harmless() const {
 }
 
 Index Cavity::place_flat_vertices() {
+  if (worst_ == Placing::good) return 0;
   Index coplanar = 0;
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     Facet& facet = facets_[f];
@@ -410,14 +411,13 @@ Index Cavity::replace() {
     free.push_back(deleted_.items()[i]);
   }
   if (facets_.size() > deleted_.size()) {
-    const std::size_t more = facets_.size() - deleted_.size(), recycled = std::min(more, free.size());
-    free.resize(free.size() - recycled);
-    if (more > recycled) workspace_.resize(workspace_.vertices.size() + more - recycled);
+    free.resize(free.size() - std::min(facets_.size() - deleted_.size(), free.size()));
   }
   Index last = slots_[0];
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     const Facet& facet = facets_[f];
     const VoronoiVertex& vertex = fresh_[f];
+    if (slots_[f] == workspace_.vertices.size()) workspace_.append();
     // One by one into their place: to load what was just stored in parts takes long.
     workspace_.store_but_neighbors(slots_[f], vertex, facet.error_class, facet.placing == Placing::shared);
     auto& neighbors = workspace_.vertices[slots_[f]].neighbors;

@@ -56,15 +56,24 @@ class Cavity {
       room_[count_] = item;
       count_ += condition;
     }
+    // The items outside of the list, until resize() brings their number back: only items are written then.
+    struct Open {
+      Index* items;
+      std::size_t count;
 #if defined(__GNUC__) && defined(__x86_64__)
-    // Those of four items that have a bit set, once after ensure_room().
-    ORCHARD_AVX2 void push_four(__m128i items, unsigned bits) {
-      const auto* const order = reinterpret_cast<const __m128i*>(kFirstOfFour[bits].data());
-      _mm_storeu_si128(reinterpret_cast<__m128i*>(room_.data() + count_),
-                       _mm_shuffle_epi8(items, _mm_load_si128(order)));
-      count_ += static_cast<std::size_t>(std::popcount(bits));
-    }
+      // Those of four items that have a bit set, where there is room for four.
+      ORCHARD_AVX2 void push_four(__m128i four, unsigned bits) {
+        const auto* const order = reinterpret_cast<const __m128i*>(kFirstOfFour[bits].data());
+        _mm_storeu_si128(reinterpret_cast<__m128i*>(items + count), _mm_shuffle_epi8(four, _mm_load_si128(order)));
+        count += static_cast<std::size_t>(std::popcount(bits));
+      }
 #endif
+    };
+    // The first so many items that were written, and room for so many.
+    Open open(std::size_t count, std::size_t room) {
+      if (room > room_.size()) room_.resize(room);
+      return {room_.data(), count};
+    }
 
    private:
     std::vector<Index> room_;

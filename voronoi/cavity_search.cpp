@@ -109,15 +109,27 @@ bool Cavity::delete_nearer_one_by_one(std::size_t first) {
 
 // The time goes into mispredicted branches here if one is not careful: whether a neighbour has been seen, and on which
 // side its sign falls, is as good as random. So every neighbour is tested, and what has been seen is masked out.
+// And the lists are in variables of their own, for what is in memory has to come back from there each time.
 #if defined(__GNUC__) && defined(__x86_64__)
 [[gnu::target("avx2")]] bool Cavity::delete_nearer_by_four(std::size_t first) {
   const FourVectors q{all_four(position_.x()), all_four(position_.y()), all_four(position_.z())};
   const double doubtful_input = workspace_.doubtful_input();
-  const bool whole = territory_.whole();
+  const bool whole = territory_.whole(), fetches = local_of_.size() > kAllInCache;
   bool certain = true;
-  for (std::size_t i = first; i < deleted_.size(); ++i) {
-    const Index v = deleted_.items()[i];
-    const std::array<Index, 4> neighbors = neighbors_of_deleted(i);
+  Index blocker = kNone;
+  std::size_t room = 2 * (deleted_.size() + seen_.size() + boundary_.size()) + 64;
+  List::Open deleted = deleted_.open(deleted_.size(), room), seen = seen_.open(seen_.size(), room),
+             boundary = boundary_.open(boundary_.size(), room);
+  for (std::size_t i = first; i < deleted.count; ++i) {
+    if (const std::size_t listed = deleted.count + seen.count + boundary.count; listed + 4 > room) {
+      room = 2 * listed;
+      deleted = deleted_.open(deleted.count, room);
+      seen = seen_.open(seen.count, room);
+      boundary = boundary_.open(boundary.count, room);
+    }
+    const Index v = deleted.items[i];
+    if (fetches) fetch_around(deleted.items[std::min(i + kFetchAhead, deleted.count - 1)]);
+    const std::array<Index, 4> neighbors = workspace_.vertices[v].neighbors;
     const unsigned owned = whole ? 0xf : territory_.owned(neighbors);
     const auto [marks, far, near, input] = workspace_.test_four(neighbors, q, doubtful_input);
     const unsigned unseen = marks.unseen, doubtful = unseen & ~(far | near);
@@ -125,18 +137,23 @@ bool Cavity::delete_nearer_one_by_one(std::size_t first) {
     certain &= (doubtful & input) == 0;
     if (const unsigned after_all = doubtful & ~input; after_all != 0) [[unlikely]]
       nearer |= nearer_after_all(neighbors, after_all, certain);
-    if (const unsigned beyond = nearer & ~owned; beyond != 0)
-      return leave_territory(neighbors[static_cast<std::size_t>(std::countr_zero(beyond))]);
+    if (const unsigned beyond = nearer & ~owned; beyond != 0) {
+      blocker = neighbors[static_cast<std::size_t>(std::countr_zero(beyond))];
+      break;
+    }
     const unsigned kept = unseen & ~nearer;
     workspace_.add_marks(neighbors, nearer, kept & owned);
     const __m128i items = _mm_loadu_si128(reinterpret_cast<const __m128i*>(neighbors.data()));
-    deleted_.push_four(items, nearer);
-    seen_.push_four(items, kept & owned);
+    deleted.push_four(items, nearer);
+    seen.push_four(items, kept & owned);
     // Nothing that is kept now will be deleted by this search.
-    boundary_.push_four(_mm_add_epi32(_mm_set1_epi32(static_cast<int>(4 * v)), _mm_set_epi32(3, 2, 1, 0)),
-                        marks.kept | kept);
+    boundary.push_four(_mm_add_epi32(_mm_set1_epi32(static_cast<int>(4 * v)), _mm_set_epi32(3, 2, 1, 0)),
+                       marks.kept | kept);
   }
-  return certain;
+  deleted_.resize(deleted.count);
+  seen_.resize(seen.count);
+  boundary_.resize(boundary.count);
+  return blocker == kNone ? certain : leave_territory(blocker);
 }
 #else
 bool Cavity::delete_nearer_by_four(std::size_t first) { return delete_nearer_one_by_one(first); }

@@ -214,6 +214,10 @@ class Workspace {
     vertices.resize(count);
     state_.resize(count);
   }
+  void append() {
+    vertices.emplace_back();
+    state_.emplace_back();
+  }
   // Has the system map the room for so many vertices, by several threads: that takes longer than to fill it.
   void bring_in(std::size_t count);
   void clear() {
