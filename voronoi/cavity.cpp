@@ -149,21 +149,26 @@ bool Cavity::place_vertices() {
   worst_ = Placing::good;
   const bool in_lanes = can_place_four();
   for (std::size_t first = 0; first < facets_.size(); first += kLanes) {
-    const std::size_t end = std::min(first + kLanes, facets_.size());
+    const std::size_t count = std::min<std::size_t>(facets_.size() - first, kLanes);
     FourQualities qualities;
     qualities.good = 0;
-    if (in_lanes) place_spheres(first, end, qualities);
-    for (unsigned lane = 0; lane < end - first; ++lane) {
-      const std::size_t f = first + lane;
-      note_forming_points(f);
-      if (((qualities.good >> lane) & 1u) != 0) {
-        facets_[f].error_class = static_cast<std::uint8_t>(qualities.error_class[lane]);
-        facets_[f].placing = Placing::good;
-        facets_[f].visible = true;
-        continue;
-      }
-      visible &= place_vertex(f, in_lanes, qualities[lane]);
-      worst_ = std::max(worst_, facets_[f].placing);
+    if (in_lanes)
+      place_spheres(first, first + count, qualities);
+    else
+      qualities.error_class.fill(0);
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      note_forming_points(first + lane);
+      Facet& facet = facets_[first + lane];
+      facet.error_class =
+          ((qualities.good >> lane) & 1u) != 0 ? static_cast<std::uint8_t>(qualities.error_class[lane]) : 0;
+      facet.placing = Placing::good;
+      facet.visible = true;
+    }
+    // Those that are not good beyond any question.
+    for (unsigned rest = ~qualities.good & ((1u << count) - 1); rest != 0; rest &= rest - 1) {
+      const auto lane = static_cast<unsigned>(std::countr_zero(rest));
+      visible &= place_vertex(first + lane, in_lanes, qualities[lane]);
+      worst_ = std::max(worst_, facets_[first + lane].placing);
     }
   }
   return visible;

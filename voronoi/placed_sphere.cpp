@@ -89,10 +89,12 @@ bool can_place_four() { return kFourLanes; }
           less(steps, _mm256_set1_pd(kMaxSteps)));
   qualities.good = static_cast<unsigned>(_mm256_movemask_pd(good));
   _mm256_storeu_si256(reinterpret_cast<__m256i*>(qualities.error_class.data()), classes.number);
-  _mm256_storeu_pd(qualities.volume6.data(), volume6);
-  _mm256_storeu_pd(qualities.condition.data(), condition);
-  _mm256_storeu_pd(qualities.shake.data(), shake);
-  _mm256_storeu_pd(qualities.error.data(), error);
+  if (qualities.good != 0xf) {
+    _mm256_storeu_pd(qualities.volume6.data(), volume6);
+    _mm256_storeu_pd(qualities.condition.data(), condition);
+    _mm256_storeu_pd(qualities.shake.data(), shake);
+    _mm256_storeu_pd(qualities.error.data(), error);
+  }
   transpose(center.x, center.y, center.z, squared_radius);
   _mm256_storeu_pd(vertices[0].center.data(), center.x);
   _mm256_storeu_pd(vertices[1].center.data(), center.y);

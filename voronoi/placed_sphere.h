@@ -58,7 +58,7 @@ struct FourTriangles {
   std::array<const LengthedVector*, 4> a, b, c;
 };
 struct FourQualities {
-  std::array<double, 4> volume6, condition, shake, error;
+  std::array<double, 4> volume6, condition, shake, error;  // unless all are good
   std::array<std::int64_t, 4> error_class;  // where they are good
   unsigned good;                            // a bit for each that is good by the limits
   PlacedQuality operator[](unsigned i) const { return {volume6[i], condition[i], shake[i], error[i]}; }
