@@ -324,7 +324,7 @@ bool Cavity::is_one_small_piece() const {
     reached |= next;
     waiting = (waiting & ~bit(first) & ~bit(last)) | next;
   }
-  return static_cast<std::size_t>(std::popcount(reached)) == facets_.size();
+  return reached == ~std::uint64_t{0} >> (64 - facets_.size());
 }
 
 bool Cavity::is_one_piece() {

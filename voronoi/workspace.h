@@ -26,10 +26,13 @@ enum class Placing : std::uint8_t {
 // What an insertion knows of a vertex so far.
 enum class Mark : std::uint8_t { unseen, deleted, kept, wanted };
 
-// Where one of four numbers is, without branches: it is as good as random.
+// Which of four it is that is told by the second, the third and the fourth, without branches: it is as good as random.
+inline std::size_t index_of_four(bool is_second, bool is_third, bool is_fourth) {
+  return static_cast<std::size_t>(is_second | is_fourth) + 2 * static_cast<std::size_t>(is_third | is_fourth);
+}
+// Where one of four numbers is.
 inline std::size_t index_of(const std::array<Index, 4>& numbers, Index number) {
-  return std::size_t{numbers[1] == number} + 2 * std::size_t{numbers[2] == number} +
-         3 * std::size_t{numbers[3] == number};
+  return index_of_four(numbers[1] == number, numbers[2] == number, numbers[3] == number);
 }
 
 // A diagram under construction. Its vertices differ from the finished ones: `radius` holds the square of the radius,
@@ -70,8 +73,8 @@ class Workspace {
   }
   // index_of() the neighbor among them, without writing them to memory.
   std::size_t slot_now(Index v, Index neighbor) const {
-    return std::size_t{neighbor_now(v, 1) == neighbor} + 2 * std::size_t{neighbor_now(v, 2) == neighbor} +
-           3 * std::size_t{neighbor_now(v, 3) == neighbor};
+    return index_of_four(neighbor_now(v, 1) == neighbor, neighbor_now(v, 2) == neighbor,
+                         neighbor_now(v, 3) == neighbor);
   }
   void set_neighbor(Index v, unsigned slot, Index neighbor) {
     std::atomic_ref(vertices[v].neighbors[slot]).store(neighbor, std::memory_order_relaxed);

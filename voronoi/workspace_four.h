@@ -32,7 +32,7 @@ ORCHARD_AVX2 unsigned Workspace::agree_four(const std::array<Index, 4>& v, const
     *rows[i] = _mm256_load_pd(vertices[v[i]].center.data());
     const __m256d other = _mm256_load_pd(vertices[u[i]].center.data());
     const bool equal = (lanes_of(_mm256_cmp_pd(*rows[i], other, _CMP_EQ_OQ)) & 7u) == 7u;
-    same |= (equal && settled(u[i]) ? 1u : 0u) << i;
+    same |= static_cast<unsigned>(equal & settled(u[i])) << i;
   }
   transpose(center.x, center.y, center.z, radius);
   const FourVectors from_q = center - q;
