@@ -241,7 +241,7 @@ bool Cavity::link_by(LinkTable<kPoints, kStride>& links) {
     const auto& [a, b, c] = facet.local;
     const auto& other = kOthers[facet.slot];
     auto& neighbors = fresh_[f].neighbors;
-    neighbors[facet.slot] = facet.outside;
+    neighbors[facet.slot] = f;
     const std::uint32_t across_a = table[c * kStride + b] ^ round, across_b = table[a * kStride + c] ^ round,
                         across_c = table[b * kStride + a] ^ round;
     good &= (across_a | across_b | across_c) <= Table::kFacetMask;
@@ -272,7 +272,7 @@ bool Cavity::link_by_lists() {
   for (Index f = 0; f < count; ++f) {
     const auto& local = facets[f].local;
     const auto& others = kOthers[facets[f].slot];
-    fresh[f].neighbors[facets[f].slot] = facets[f].outside;
+    fresh[f].neighbors[facets[f].slot] = f;
     for (unsigned n = 0; n < 3; ++n) {
       const Index from = local[(n + 1) % 3], to = local[(n + 2) % 3];
       const bool at_from = ranks[from] < ranks[to];
@@ -312,9 +312,8 @@ bool Cavity::is_one_small_piece() const {
   std::array<std::uint64_t, 64> around;
   const auto bit = [](Index f) { return std::uint64_t{1} << f; };
   for (std::size_t f = 0; f < facets_.size(); ++f) {
-    const auto& [a, b, c] = kOthers[facets_[f].slot];
-    const auto& neighbors = fresh_[f].neighbors;
-    around[f] = bit(neighbors[a]) | bit(neighbors[b]) | bit(neighbors[c]);
+    const auto& [a, b, c, d] = fresh_[f].neighbors;
+    around[f] = bit(a) | bit(b) | bit(c) | bit(d);
   }
   std::uint64_t reached = 1;
   for (std::uint64_t waiting = 1; waiting != 0;) {
@@ -418,16 +417,18 @@ Index Cavity::replace() {
   if (facets_.size() > deleted_.size()) {
     free.resize(free.size() - std::min(facets_.size() - deleted_.size(), free.size()));
   }
-  Index last = slots_[0];
+  const Index* const slots = slots_.data();
+  Index last = slots[0];
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     const Facet& facet = facets_[f];
     const VoronoiVertex& vertex = fresh_[f];
     if (slots_[f] == workspace_.vertices.size()) workspace_.append();
     // One by one into their place: to load what was just stored in parts takes long.
     workspace_.store_but_neighbors(slots_[f], vertex, facet.error_class, facet.placing == Placing::shared);
+    const auto& [a, b, c, d] = vertex.neighbors;
     auto& neighbors = workspace_.vertices[slots_[f]].neighbors;
+    neighbors = {slots[a], slots[b], slots[c], slots[d]};
     neighbors[facet.slot] = facet.outside;
-    for (const std::uint8_t k : kOthers[facet.slot]) neighbors[k] = slots_[vertex.neighbors[k]];
     workspace_.set_neighbor(facet.outside, facet.back, slots_[f]);
     if (facet.placing != Placing::failed && vertex.forming_points[3] != kInfinitePoint) last = slots_[f];
   }

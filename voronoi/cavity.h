@@ -238,7 +238,7 @@ class Cavity {
   List local_points_;               // the points of the boundary, the one at infinity included
   std::vector<Index> slots_, queue_;
   std::vector<Facet> facets_;
-  std::vector<VoronoiVertex> fresh_;      // of each facet; its new neighbours are facets until replace()
+  std::vector<VoronoiVertex> fresh_;      // of each facet; neighbours are facets until replace(), itself for outside
   std::vector<std::uint8_t> reached_;     // by facet
   std::vector<LengthedVector> from_new_;  // from the new point to each local one
   std::vector<Index> local_of_;           // of the infinite point and each other: into local_points_ or kNone

@@ -59,8 +59,8 @@ struct FourTriangles {
 };
 struct FourQualities {
   std::array<double, 4> volume6, condition, shake, error;  // unless all are good
-  std::array<std::int64_t, 4> error_class;  // where they are good
-  unsigned good;                            // a bit for each that is good by the limits
+  std::array<std::int64_t, 4> error_class;                 // where they are good
+  unsigned good;                                           // a bit for each that is good by the limits
   PlacedQuality operator[](unsigned i) const { return {volume6[i], condition[i], shake[i], error[i]}; }
 };
 bool can_place_four();  // whether the machine has vectors of four doubles (AVX2), without which place_four() does
