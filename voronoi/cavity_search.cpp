@@ -135,17 +135,21 @@ bool Cavity::delete_nearer_one_by_one(std::size_t first) {
     const unsigned unseen = marks.unseen, doubtful = unseen & ~(far | near);
     unsigned nearer = unseen & near;
     certain &= (doubtful & input) == 0;
-    if (const unsigned after_all = doubtful & ~input; after_all != 0) [[unlikely]]
+    if (const unsigned after_all = doubtful & ~input; after_all != 0) [[unlikely]] {
       nearer |= nearer_after_all(neighbors, after_all, certain);
+      // Only these are marked if they are kept: others are sooner tested again.
+      const unsigned seen_now = after_all & ~nearer & owned;
+      workspace_.add_marks(neighbors, 0, seen_now);
+      seen.push_four(_mm_loadu_si128(reinterpret_cast<const __m128i*>(neighbors.data())), seen_now);
+    }
     if (const unsigned beyond = nearer & ~owned; beyond != 0) {
       blocker = neighbors[static_cast<std::size_t>(std::countr_zero(beyond))];
       break;
     }
     const unsigned kept = unseen & ~nearer;
-    workspace_.add_marks(neighbors, nearer, kept & owned);
+    workspace_.add_marks(neighbors, nearer, 0);
     const __m128i items = _mm_loadu_si128(reinterpret_cast<const __m128i*>(neighbors.data()));
     deleted.push_four(items, nearer);
-    seen.push_four(items, kept & owned);
     // Nothing that is kept now will be deleted by this search.
     boundary.push_four(_mm_add_epi32(_mm_set1_epi32(static_cast<int>(4 * v)), _mm_set_epi32(3, 2, 1, 0)),
                        marks.kept | kept);
