@@ -87,7 +87,14 @@ unsigned doubtful_of_four(const Workspace&, const Facet*) { return 0xf; }
 struct HullEdge {
   Index v, u;
   unsigned slot;
+  friend bool operator==(const HullEdge&, const HullEdge&) = default;
+  friend bool operator<(const HullEdge& a, const HullEdge& b) { return a.v != b.v ? a.v < b.v : a.slot < b.slot; }
 };
+
+void sort_unique(std::vector<Index>& numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
 
 // What is seen of a finite vertex before anything follows from it: its orientation, and how far the sphere that it was
 // given is from its own, at most, with its own centre, relative to its first point, where that had to be found.
@@ -261,7 +268,9 @@ class Certifier {
       mended_ = true;
       looks_at_changed_ = true;
       const std::vector<Doubt> doubts = std::exchange(found_.doubts, {});
-      if (!look_at_changed(mender_->mend(doubts, round))) return false;
+      const std::vector<Index> changed = mender_->mend(doubts, round);
+      changed_.insert(changed_.end(), changed.begin(), changed.end());
+      if (!look_at_changed(changed)) return false;
       looks_at_changed_ = false;
       if (found_.doubts.empty() && !look_at_hull()) return false;
     }
@@ -345,8 +354,49 @@ class Certifier {
   }
   // After mending: what is around an edge of the hull may have changed, though the facets next to it have not.
   bool look_at_hull() {
-    found_.suspects.clear();
-    return look_at_edges(hull_vertices());
+    if (first_new_ > 0) {
+      found_.suspects.clear();
+      return look_at_edges(hull_vertices());
+    }
+    sort_unique(changed_);
+    forget_changed_suspects();
+    const std::vector<HullEdge> edges = changed_edges();
+    changed_.clear();
+    return std::all_of(edges.begin(), edges.end(), [this](const HullEdge& edge) {
+      return is_hull_convex(edge.v, edge.slot) || doubt(edge.v, edge.u);
+    });
+  }
+  bool has_changed(Index v) const { return std::binary_search(changed_.begin(), changed_.end(), v); }
+  void forget_changed_suspects() {
+    std::vector<Index>& suspects = found_.suspects;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < suspects.size(); i += kOfDent) {
+      const auto dent = suspects.begin() + static_cast<std::ptrdiff_t>(i);
+      const auto is_gone = [this](Index v) { return workspace_.is_free(v) || has_changed(v); };
+      if (std::any_of(dent, dent + kOfDent, is_gone)) continue;
+      std::copy_n(dent, kOfDent, suspects.begin() + static_cast<std::ptrdiff_t>(count));
+      count += kOfDent;
+    }
+    suspects.resize(count);
+  }
+  // Those where one of the facets has changed, or the vertex below it, in the order in which all are looked at.
+  std::vector<HullEdge> changed_edges() const {
+    std::vector<Index> facets;
+    for (const Index v : changed_) {
+      if (workspace_.is_free(v)) continue;
+      if (workspace_.at_infinity(v)) facets.push_back(v);
+      for (const Index u : workspace_.vertices[v].neighbors)
+        if (workspace_.at_infinity(u) && !workspace_.at_infinity(v)) facets.push_back(u);
+    }
+    std::vector<HullEdge> edges;
+    for (const Index v : facets)
+      for (unsigned slot = 0; slot < 3; ++slot) {
+        const Index u = workspace_.vertices[v].neighbors[slot];
+        edges.push_back(v < u ? HullEdge{v, u, slot} : HullEdge{u, v, slot_of(u, v)});
+      }
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    return edges;
   }
 
   // Once more, where bounds that suffice for each facet are too much for all of them: with own spheres where those of
@@ -723,8 +773,7 @@ class Certifier {
   bool are_suspects_innocent() {
     if (found_.suspects.empty()) return true;
     note_hull_points();
-    std::sort(found_.suspects.begin(), found_.suspects.end());
-    found_.suspects.erase(std::unique(found_.suspects.begin(), found_.suspects.end()), found_.suspects.end());
+    sort_unique(found_.suspects);
     std::vector<double> intrusions(found_.suspects.size());
     tbb::parallel_for(std::size_t{0}, intrusions.size(), [&](std::size_t s) {
       const Index v = found_.suspects[s];
@@ -737,18 +786,16 @@ class Certifier {
       const auto& corner = workspace_.vertices[v].forming_points;
       hull_points_.insert(hull_points_.end(), corner.begin(), corner.begin() + 3);
     }
-    std::sort(hull_points_.begin(), hull_points_.end());
-    hull_points_.erase(std::unique(hull_points_.begin(), hull_points_.end()), hull_points_.end());
+    sort_unique(hull_points_);
   }
   // Ascending.
   std::vector<Index> hull_vertices() {
     if (first_new_ > 0) return all_hull_vertices();
     // All of the hull has been looked at, and what was new since.
-    std::vector<Index>& hull = found_.hull;
-    std::erase_if(hull, [this](Index v) { return workspace_.is_free(v) || !workspace_.at_infinity(v); });
-    std::sort(hull.begin(), hull.end());
-    hull.erase(std::unique(hull.begin(), hull.end()), hull.end());
-    return hull;
+    if (!mended_) return found_.hull;
+    std::erase_if(found_.hull, [this](Index v) { return workspace_.is_free(v) || !workspace_.at_infinity(v); });
+    sort_unique(found_.hull);
+    return found_.hull;
   }
   std::vector<Index> all_hull_vertices() const {
     const auto count = static_cast<Index>(workspace_.vertices.size());
@@ -839,6 +886,7 @@ class Certifier {
   double diameter_ = 0, max_ = 0, max_sum_ = 0, share_ = 0, small_share_ = 0;
   Findings found_;
   std::vector<Index> hull_points_;
+  std::vector<Index> changed_;  // by mending, since the hull was looked at
   Mender* mender_;
   std::size_t doubtful_ = 0;
   bool looks_at_changed_ = false, mended_ = false;
