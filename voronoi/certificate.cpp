@@ -70,6 +70,29 @@ struct Facet {
   Index across;
 };
 
+// Four times the spheres on both sides of a facet, a corner of each, and the facet's own.
+struct FourSteps {
+  std::array<const VoronoiVertex*, 4> from, to;
+  std::array<const Point*, 4> from_corner, to_corner, a, b, c;
+};
+
+#if defined(__GNUC__) && defined(__x86_64__)
+ORCHARD_AVX2 void load_spheres(const std::array<const VoronoiVertex*, 4>& v, FourVectors& center,
+                               __m256d& squared_radius) {
+  center = {_mm256_load_pd(v[0]->center.data()), _mm256_load_pd(v[1]->center.data()),
+            _mm256_load_pd(v[2]->center.data())};
+  squared_radius = _mm256_load_pd(v[3]->center.data());  // the radius is behind it
+  transpose(center.x, center.y, center.z, squared_radius);
+}
+// As Certifier::near_power().
+ORCHARD_AVX2 __m256d near_powers(const FourVectors& q, const FourVectors& center, const FourVectors& corner) {
+  const FourVectors from_corner = q - corner, to_center = center - corner;
+  const FourVectors rest{all_four(2) * to_center.x - from_corner.x, all_four(2) * to_center.y - from_corner.y,
+                         all_four(2) * to_center.z - from_corner.z};
+  return dot(from_corner, rest);
+}
+#endif
+
 // A bit for each of four facets across which doubles do not show that nothing is lost.
 #if defined(__GNUC__) && defined(__x86_64__)
 [[gnu::target("avx2")]] unsigned doubtful_of_four(const Workspace& workspace, const Facet* facets) {
@@ -79,8 +102,36 @@ struct Facet {
   const FourVectors across = load_four({points + a.across, points + b.across, points + c.across, points + d.across});
   return ~workspace.agree_four(v, u, across) & 0xf;
 }
+
+// As Certifier::normal() and intrusion_added(), in the same order of operations, by the corners of four facets;
+// infinite where a normal calls for more digits.
+[[gnu::target("avx2")]] std::array<double, 4> added_by_four(const FourSteps& steps, double diameter) {
+  const FourVectors a = load_four(steps.a), ab = load_four(steps.b) - a, ac = load_four(steps.c) - a;
+  FourVectors normal = cross(ab, ac);
+  const __m256d size = length(normal), blur = all_four(8 * kRounding) * length(ab) * length(ac) / size;
+  normal = {normal.x / size, normal.y / size, normal.z / size};
+  FourVectors from{}, to{};
+  __m256d from_squared{}, to_squared{};
+  load_spheres(steps.from, from, from_squared);
+  load_spheres(steps.to, to, to_squared);
+  const FourVectors step = to - from;
+  const __m256d zero = _mm256_setzero_pd(), two = all_four(2), far = all_four(diameter);
+  const __m256d radius = _mm256_sqrt_pd(from_squared), reach = _mm256_min_pd(far, two * radius);
+  const __m256d along = dot(normal, step);
+  const FourVectors aside{step.x - along * normal.x, step.y - along * normal.y, step.z - along * normal.z};
+  const __m256d sideways = length(aside) + (two * blur + all_four(8 * kRounding)) * length(step);
+  const __m256d lost = near_powers(a, from, load_four(steps.from_corner)) -
+                       near_powers(a, to, load_four(steps.to_corner)) +
+                       all_four(16 * kRounding) * (radius + _mm256_sqrt_pd(to_squared) + far) * far;
+  const __m256d added = (_mm256_max_pd(zero, lost) + two * reach * (_mm256_max_pd(zero, -along) + sideways)) / radius;
+  std::array<double, 4> result;
+  _mm256_storeu_pd(result.data(), _mm256_blendv_pd(all_four(std::numeric_limits<double>::infinity()), added,
+                                                   _mm256_cmp_pd(blur, all_four(kBlurred), _CMP_LT_OQ)));
+  return result;
+}
 #else
 unsigned doubtful_of_four(const Workspace&, const Facet*) { return 0xf; }
+std::array<double, 4> added_by_four(const FourSteps&, double) { return {}; }
 #endif
 
 // The edge of the hull between the facets of a vertex at infinity and of its neighbour `slot`.
@@ -650,14 +701,42 @@ class Certifier {
       const std::size_t lanes = std::min<std::size_t>(count - f, 4);
       std::fill(facets.begin() + f + lanes, facets.begin() + f + 4, facets[f]);
       unsigned doubtful = can_place_four() ? doubtful_of_four(workspace_, &facets[f]) : 0xf;
-      for (doubtful &= (1u << lanes) - 1; doubtful != 0; doubtful &= doubtful - 1) {
-        const auto [v, u, i, across] = facets[f + static_cast<unsigned>(std::countr_zero(doubtful))];
+      doubtful &= (1u << lanes) - 1;
+      std::array<double, 4> added;
+      added.fill(std::numeric_limits<double>::infinity());
+      if ((doubtful & (doubtful - 1)) != 0 && can_place_four() && !workspace_.exact()) added = added_across(&facets[f]);
+      for (; doubtful != 0; doubtful &= doubtful - 1) {
+        const auto lane = static_cast<unsigned>(std::countr_zero(doubtful));
+        const auto [v, u, i, across] = facets[f + lane];
         const bool apart = workspace_.power(v, workspace_.points[across]) < -workspace_.power_bound(v);
         if (apart && !workspace_.shares_sphere(v) && !workspace_.shares_sphere(u)) continue;
+        if (added[lane] <= share_ && !is_same_sphere(v, u)) {
+          const bool are_apart_after_all = are_own_spheres(v, u) && are_apart(v, i, u, workspace_.points[across]);
+          if (!are_apart_after_all) found_.intrusion += added[lane];
+          continue;
+        }
         if (!is_facet_good(v, i, u)) return false;
       }
     }
     return true;
+  }
+  // What is added across four facets.
+  std::array<double, 4> added_across(const Facet* facets) {
+    FourSteps steps;
+    for (unsigned lane = 0; lane < 4; ++lane) {
+      const auto& [v, u, i, across] = facets[lane];
+      workspace_.settle(v);
+      workspace_.settle(u);
+      const auto& [a, b, c] = Cavity::kOthers[i];
+      steps.from[lane] = &workspace_.vertices[v];
+      steps.to[lane] = &workspace_.vertices[u];
+      steps.from_corner[lane] = &corner(v, 0);
+      steps.to_corner[lane] = &corner(u, 0);
+      steps.a[lane] = &corner(v, a);
+      steps.b[lane] = &corner(v, b);
+      steps.c[lane] = &corner(v, c);
+    }
+    return added_by_four(steps, diameter_);
   }
 
   bool add(double intrusion) {
@@ -682,10 +761,8 @@ class Certifier {
     workspace_.settle(u);
     if (!workspace_.exact() && is_same_sphere(v, u)) return true;  // as on grids most are: nothing is lost
     const Point& across = corner(u, slot_of(u, v));
-    const bool own = !workspace_.shares_sphere(v) && !workspace_.shares_sphere(u);
-    if (own && (workspace_.power(v, across) < -workspace_.power_bound(v) ||
-                workspace_.power(u, corner(v, i)) < -workspace_.power_bound(u)))
-      return true;
+    const bool own = are_own_spheres(v, u);
+    if (own && are_apart(v, i, u, across)) return true;
     double lost = 2 * diameter_;
     if (!workspace_.exact()) {
       const auto& [a, b, c] = Cavity::kOthers[i];
@@ -702,6 +779,13 @@ class Certifier {
     }
     note_loss(lost, v, i);
     return true;
+  }
+
+  bool are_own_spheres(Index v, Index u) const { return !workspace_.shares_sphere(v) && !workspace_.shares_sphere(u); }
+  // Whether one of them certainly does not hold the point that the other has instead of a shared one.
+  bool are_apart(Index v, unsigned i, Index u, const Point& across) const {
+    return workspace_.power(v, across) < -workspace_.power_bound(v) ||
+           workspace_.power(u, corner(v, i)) < -workspace_.power_bound(u);
   }
 
   bool is_same_sphere(Index v, Index u) const { return workspace_.vertices[v].center == workspace_.vertices[u].center; }
