@@ -877,9 +877,13 @@ class Certifier {
     if (first_new_ > 0) return all_hull_vertices();
     // All of the hull has been looked at, and what was new since.
     if (!mended_) return found_.hull;
-    std::erase_if(found_.hull, [this](Index v) { return workspace_.is_free(v) || !workspace_.at_infinity(v); });
-    sort_unique(found_.hull);
-    return found_.hull;
+    std::vector<Index>& hull = found_.hull;
+    std::erase_if(hull, [this](Index v) { return workspace_.is_free(v) || !workspace_.at_infinity(v); });
+    const auto last_seen = std::is_sorted_until(hull.begin(), hull.end());
+    std::sort(last_seen, hull.end());
+    std::inplace_merge(hull.begin(), last_seen, hull.end());
+    hull.erase(std::unique(hull.begin(), hull.end()), hull.end());
+    return hull;
   }
   std::vector<Index> all_hull_vertices() const {
     const auto count = static_cast<Index>(workspace_.vertices.size());
