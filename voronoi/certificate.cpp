@@ -568,9 +568,11 @@ class Certifier {
   void see_four_spheres(const BatchList& list, BatchLooks& seen) {
     const double enough = kTold * max_;
     BatchList far;  // places in the list
-    for (Index at = 0; at < list.items().size(); ++at)
-      far.push_if(at, (seen.apart[at] > enough) & (seen.negative[at] < -seen.negative_bound[at]) &
-                          !workspace_.shares_sphere(list.items()[at]));
+    for (Index at = 0; at < list.items().size(); ++at) {
+      const bool is_told = seen.apart[at] <= enough, is_positive = seen.negative[at] < -seen.negative_bound[at],
+                 shares = workspace_.shares_sphere(list.items()[at]);
+      far.push_if(at, !is_told & is_positive & !shares);
+    }
     far.for_each_four([&](std::size_t, const std::array<Index, 4>& four) {
       std::array<Index, 4> v;
       std::array<const Point*, 4> centers;
@@ -591,7 +593,8 @@ class Certifier {
   bool are_listed_oriented(const BatchList& list, const BatchLooks& seen) {
     BatchList rest;  // places in the list
     for (Index at = 0; at < list.items().size(); ++at) {
-      const bool good = (seen.negative[at] < -seen.negative_bound[at]) & (seen.apart[at] <= kTold * max_);
+      const bool is_positive = seen.negative[at] < -seen.negative_bound[at], is_near = seen.apart[at] <= kTold * max_;
+      const bool good = is_positive & is_near;
       rest.push_if(at, !good);
       if (!good) continue;
       note_volume(list.items()[at], seen.negative[at]);
