@@ -38,7 +38,8 @@ class TreeBuilder {
   }
 
   SphereTreeBuild run(MedialBuildInput input) {
-    stage("octree to compare with", [&] { build_.octree = octree(framed_.surface(), {.depth = options_.depth}, progress_); });
+    stage("octree to compare with",
+          [&] { build_.octree = octree(framed_.surface(), {.depth = options_.depth}, progress_); });
     if (samples_surface(options_.method)) start_from(std::move(input));
     make_tree();
     stage("covering", [&] {

@@ -82,9 +82,7 @@ Point on_fine_lattice(const Point& point) { return on_lattice(point, kFineLattic
 Point on_coarse_lattice(const Point& point) { return on_lattice(point, kCoarseLattice); }
 
 FramedSurface::FramedSurface(const Surface& given)
-    : given_(given),
-      frame_(given.bounding_box(), kLattice),
-      surface_(frame_.in(given.mesh()), given.ball_kind()) {
+    : given_(given), frame_(given.bounding_box(), kLattice), surface_(frame_.in(given.mesh()), given.ball_kind()) {
   for (const double lattice : kFinerLattices) {
     if (surface_.solid() || !given.solid()) return;
     frame_ = CanonicalFrame(given.bounding_box(), lattice);
