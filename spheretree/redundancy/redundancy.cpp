@@ -1,6 +1,10 @@
 #include "orchard/spheretree/redundancy.h"
 
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <atomic>
 #include <iterator>
 #include <numeric>
 
@@ -11,6 +15,7 @@ namespace {
 
 // A point this far outside all paths, in R, is uncovered, whatever the rounding.
 constexpr double kBeyondDoubt = 1e-9;
+constexpr std::size_t kTogether = 4;  // triangles that are looked at by one thread
 
 // Takes nodes out as long as the path rule stays certified. Only triangles that a path region of a removed leaf touches
 // can become uncovered.
@@ -65,16 +70,16 @@ class Remover {
  private:
   void list_triangles() {
     touching_.resize(tree_.nodes.size());
+    tbb::parallel_for(std::size_t{0}, tree_.nodes.size(), [&](std::size_t i) {
+      const Sphere& ball = tree_.nodes[i].sphere;
+      surface_.triangles_near({ball.center, ball.radius * (1 + 1e-9)}, touching_[i]);
+    });
     std::vector<Index> near;
-    for (Index i = 0; i < tree_.nodes.size(); ++i) {
-      const SphereNode& node = tree_.nodes[i];
-      surface_.triangles_near({node.sphere.center, node.sphere.radius * (1 + 1e-9)}, near);
-      if (i == 0) {
-        touching_[0] = near;
-      } else {
-        const auto& above = touching_[node.parent];
-        std::set_intersection(above.begin(), above.end(), near.begin(), near.end(), std::back_inserter(touching_[i]));
-      }
+    for (Index i = 1; i < tree_.nodes.size(); ++i) {
+      near.swap(touching_[i]);
+      touching_[i].clear();
+      const auto& above = touching_[tree_.nodes[i].parent];
+      std::set_intersection(above.begin(), above.end(), near.begin(), near.end(), std::back_inserter(touching_[i]));
     }
   }
 
@@ -110,12 +115,16 @@ class Remover {
     for (Index leaf : leaves) triangles.insert(triangles.end(), touching_[leaf].begin(), touching_[leaf].end());
     std::sort(triangles.begin(), triangles.end());
     triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
-    for (Index triangle : triangles) {
-      const auto corners = surface_.corners(triangle);
-      forest_.gather(corners, near_);
-      if (!triangle_covered(corners, near_.balls)) return false;
-    }
-    return true;
+    std::atomic<bool> covered = true;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, triangles.size(), kTogether), [&](const auto& range) {
+      NearBalls& near = near_.local();
+      for (std::size_t i = range.begin(); i != range.end() && covered; ++i) {
+        const auto corners = surface_.corners(triangles[i]);
+        forest_.gather(corners, near);
+        if (!triangle_covered(corners, near.balls)) covered = false;
+      }
+    });
+    return covered;
   }
 
   const SphereTree& tree_;
@@ -123,21 +132,20 @@ class Remover {
   PathForest forest_;
   std::vector<Index> leaves_below_;           // that are still there
   std::vector<std::vector<Index>> touching_;  // triangles that touch every ball on a node's path
-  NearBalls near_;
+  tbb::enumerable_thread_specific<NearBalls> near_;
 };
 
 // The nodes of a level that are still there, loosest first.
 std::vector<Index> loosest_first(const SphereTree& tree, const Surface& surface, Index level, const Remover& remover) {
   std::vector<Index> nodes;
+  for (Index i = 0; i < tree.nodes.size(); ++i)
+    if (tree.nodes[i].level == level && !remover.gone(i)) nodes.push_back(i);
   std::vector<double> looseness(tree.nodes.size(), 0);
-  for (Index i = 0; i < tree.nodes.size(); ++i) {
-    const SphereNode& node = tree.nodes[i];
-    if (node.level != level || remover.gone(i)) continue;
-    const double out =
-        surface.solid() ? surface.signed_distance(node.sphere.center) : surface.distance(node.sphere.center);
-    looseness[i] = node.sphere.radius + out;
-    nodes.push_back(i);
-  }
+  tbb::parallel_for(std::size_t{0}, nodes.size(), [&](std::size_t k) {
+    const Sphere& ball = tree.nodes[nodes[k]].sphere;
+    looseness[nodes[k]] =
+        ball.radius + (surface.solid() ? surface.signed_distance(ball.center) : surface.distance(ball.center));
+  });
   std::stable_sort(nodes.begin(), nodes.end(), [&](Index a, Index b) { return looseness[a] > looseness[b]; });
   return nodes;
 }

@@ -231,6 +231,8 @@ std::vector<Tightener::Candidate> Tightener::candidates(LevelOptions options, st
   solve(0);
   others.wait();
   if (failure) std::rethrow_exception(failure);
+  if (results.size() > 1)
+    for (Candidate& result : results) result.looseness = looseness(surface_, result.partial.last());
   return results;
 }
 
@@ -252,7 +254,6 @@ void Tightener::search_and_finish(LevelSolver& solver, const LevelOptions& optio
                        static_cast<Index>(closed_trials * static_cast<double>(solver.balls().size())),
                        [&](std::string_view stage, double fraction) { return progress(stage, 0.4 + 0.6 * fraction); }};
   finish_level(surface_, solver, result.partial, finish, result.report);
-  result.looseness = looseness(surface_, result.partial.last());
   for (const LevelBall& ball : solver.balls()) result.center_distances.push_back(ball.center_distance);
   result.report.balls = static_cast<Index>(solver.balls().size());
   result.report.seconds_search = std::chrono::duration<double>(middle - start).count();
