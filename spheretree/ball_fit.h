@@ -70,13 +70,12 @@ class [[gnu::visibility("hidden")]] BallFitter {
    private:
     Vector gradient(std::size_t i) const;
   };
-  // A point by its squared distance, a number above 0, whose bits are in the same order.
   struct Far {
-    std::uint64_t squared;
+    double squared;
     Index point;
   };
-  static bool farther(const Far& a, const Far& b) {  // without branches, which nobody could predict
-    return (a.squared > b.squared) | ((a.squared == b.squared) & (a.point > b.point));
+  static bool farther(const Far& a, const Far& b) {
+    return a.squared > b.squared || (a.squared == b.squared && a.point > b.point);
   }
   static constexpr std::size_t kMaxFar = 40;  // farthest points that a step looks at
   static constexpr std::size_t kMaxCuts = 12;
@@ -89,6 +88,10 @@ class [[gnu::visibility("hidden")]] BallFitter {
   double measure(const Point& center);
   void linearise(const FittedBall& ball, double reach);
   void linearise_points(const FittedBall& ball, double reach);
+  std::size_t gather_far(double squared_min);
+  std::size_t count_beyond(std::size_t count, double squared) const;
+  std::size_t keep_farthest(std::size_t count, double squared_min, double squared_max);
+  std::size_t keep_farthest_by_order(std::size_t count);
   Vector best_step(double proximity);
   double predicted_looseness(const Vector& step) const { return far_.max_after(step) + near_.max_after(step); }
 
@@ -97,7 +100,9 @@ class [[gnu::visibility("hidden")]] BallFitter {
   std::size_t point_count_ = 0;
   std::vector<FourPoints> points_;
   std::vector<FourNumbers> squared_, measured_;  // distances of the points from the best centre, from the last one
-  std::vector<Far> farthest_;                    // room for all points
+  // Points that are far, in their order, and their squared distances: room for all.
+  std::vector<double> far_squared_;
+  std::vector<Index> far_points_;
   Terms<kMaxFar> far_;
   Terms<kMaxCuts> near_;
 };
