@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <limits>
 
 #include "wide.h"
@@ -13,7 +11,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kDualSteps = 24;
-constexpr int kCounts = 14;  // of points beyond a distance, to find the one that as many are beyond as are wanted
 // A predicted gain below this part of the looseness is not worth another query.
 constexpr double kWorthwhile = 2e-4;
 // Steps below this part of the radius change nothing that matters.
@@ -166,87 +163,17 @@ double BallFitter::measure(const Point& center) {
   return std::sqrt(std::max(std::max(max[0], max[1]), std::max(max[2], max[3]))) * (1 + 0x1p-50);
 }
 
-// Lists the points that are so far off or farther. Returns how many.
-std::size_t BallFitter::gather_far(double squared_min) {
-  const std::size_t room = kLanes * (squared_.size() + 1);
-  if (far_squared_.size() < room) far_squared_.resize(room);
-  if (far_points_.size() < room) far_points_.resize(room);
-  std::size_t count = 0;
-  for (std::size_t b = 0; b < squared_.size(); ++b) {
-    const Lanes& four = squared_[b].numbers;
-    if (std::max(std::max(four[0], four[1]), std::max(four[2], four[3])) < squared_min) continue;
-    const std::size_t end = std::min(kLanes, point_count_ - kLanes * b);
-    for (std::size_t k = 0; k < end; ++k) {  // without a branch: what is not far is written over
-      far_squared_[count] = four[k];
-      far_points_[count] = static_cast<Index>(kLanes * b + k);
-      count += static_cast<std::size_t>((four[k] >= squared_min) & (four[k] > 0));
-    }
-  }
-  return count;
-}
-
-std::size_t BallFitter::count_beyond(std::size_t count, double squared) const {
-  using Counts = std::int64_t __attribute__((vector_size(32), aligned(16)));
-  Counts counts{};
-  for (std::size_t i = 0; i < count; i += kLanes) {
-    Lanes four;
-    std::memcpy(&four, &far_squared_[i], sizeof four);
-    counts -= four > squared;
-  }
-  return static_cast<std::size_t>(counts[0] + counts[1] + counts[2] + counts[3]);
-}
-
-// Of more listed points than kMaxFar, keeps the kMaxFar farthest: those beyond a squared distance that is found by
-// counting, in less time than it takes to put them in order.
-std::size_t BallFitter::keep_farthest(std::size_t count, double squared_min, double squared_max) {
-  for (std::size_t i = count; i % kLanes != 0; ++i) far_squared_[i] = 0;
-  double low = squared_min, high = squared_max;
-  double beyond_low = static_cast<double>(count), beyond_high = 0;
-  for (int k = 0; k < kCounts; ++k) {
-    const double wanted = static_cast<double>(kMaxFar);
-    const double part = k % 3 == 2 ? 0.5 : (beyond_low - wanted) / (beyond_low - beyond_high);
-    const double limit = low + part * (high - low);
-    const std::size_t beyond = count_beyond(count, limit);
-    if (beyond == kMaxFar) {
-      std::size_t kept = 0;
-      for (std::size_t i = 0; i < count; ++i) {
-        const double far = far_squared_[i];
-        far_squared_[kept] = far;
-        far_points_[kept] = far_points_[i];
-        kept += static_cast<std::size_t>(far > limit);
-      }
-      return kept;
-    }
-    (beyond > kMaxFar ? low : high) = limit;
-    (beyond > kMaxFar ? beyond_low : beyond_high) = static_cast<double>(beyond);
-  }
-  return keep_farthest_by_order(count);
-}
-
-// The same where so many are equally far that no distance tells them apart.
-std::size_t BallFitter::keep_farthest_by_order(std::size_t count) {
-  std::vector<Far> far(count);
-  for (std::size_t i = 0; i < count; ++i) far[i] = {far_squared_[i], far_points_[i]};
-  std::nth_element(far.begin(), far.begin() + kMaxFar, far.end(), farther);
-  for (std::size_t i = 0; i < kMaxFar; ++i) {
-    far_squared_[i] = far[i].squared;
-    far_points_[i] = far[i].point;
-  }
-  return kMaxFar;
-}
-
 void BallFitter::linearise_points(const FittedBall& ball, double reach) {
-  const double min = std::max(0.0, ball.radius - 2 * reach), squared_min = min * min;
-  std::size_t count = gather_far(squared_min);
-  if (count > kMaxFar) count = keep_farthest(count, squared_min, ball.radius * ball.radius);
+  const double min = std::max(0.0, ball.radius - 2 * reach);
+  farthest_.take(squared_, point_count_, min * min, ball.radius * ball.radius);
   far_.count = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const FourPoints& four = points_[far_points_[i] / kLanes];
-    const std::size_t lane = far_points_[i] % kLanes;
-    const double length = std::sqrt(far_squared_[i]);
+  for (std::size_t i = 0; i < farthest_.count(); ++i) {
+    const FourPoints& four = points_[farthest_.point(i) / kLanes];
+    const std::size_t lane = farthest_.point(i) % kLanes;
+    const double length = std::sqrt(farthest_.squared(i));
     far_.add(length, (ball.center - Point(four.x[lane], four.y[lane], four.z[lane])) / length);
   }
-  if (count == 0) far_.add(ball.radius, Vector::Zero());
+  if (farthest_.count() == 0) far_.add(ball.radius, Vector::Zero());
   far_.fill_up();
 }
 

@@ -1,8 +1,8 @@
 #pragma once
-#include <cstdint>
 #include <span>
 #include <vector>
 
+#include "far_points.h"
 #include "orchard/geometry/surface.h"
 
 namespace orchard::detail {
@@ -38,14 +38,10 @@ class [[gnu::visibility("hidden")]] BallFitter {
   FittedBall at(const Point& center) const;
 
  private:
-  static constexpr std::size_t kLanes = 4;
-  // Side by side (a GCC and Clang extension). The alignment is that of code for SSE: see wide.h.
-  using Lanes = double __attribute__((vector_size(32), aligned(16)));
+  static constexpr std::size_t kLanes = FourNumbers::kLanes;
+  using Lanes = FourNumbers::Lanes;
   struct FourPoints {
     Lanes x, y, z;
-  };
-  struct FourNumbers {
-    Lanes numbers;
   };
   struct Cut {  // sd(c) is about value + gradient . (c - at)
     Point at;
@@ -70,14 +66,7 @@ class [[gnu::visibility("hidden")]] BallFitter {
    private:
     Vector gradient(std::size_t i) const;
   };
-  struct Far {
-    double squared;
-    Index point;
-  };
-  static bool farther(const Far& a, const Far& b) {
-    return a.squared > b.squared || (a.squared == b.squared && a.point > b.point);
-  }
-  static constexpr std::size_t kMaxFar = 40;  // farthest points that a step looks at
+  static constexpr std::size_t kMaxFar = FarPoints::kMax;
   static constexpr std::size_t kMaxCuts = 12;
 
   FittedBall fit_here(std::span<const Point> points, const FittedBall& start, int evaluations);
@@ -88,10 +77,6 @@ class [[gnu::visibility("hidden")]] BallFitter {
   double measure(const Point& center);
   void linearise(const FittedBall& ball, double reach);
   void linearise_points(const FittedBall& ball, double reach);
-  std::size_t gather_far(double squared_min);
-  std::size_t count_beyond(std::size_t count, double squared) const;
-  std::size_t keep_farthest(std::size_t count, double squared_min, double squared_max);
-  std::size_t keep_farthest_by_order(std::size_t count);
   Vector best_step(double proximity);
   double predicted_looseness(const Vector& step) const { return far_.max_after(step) + near_.max_after(step); }
 
@@ -100,9 +85,7 @@ class [[gnu::visibility("hidden")]] BallFitter {
   std::size_t point_count_ = 0;
   std::vector<FourPoints> points_;
   std::vector<FourNumbers> squared_, measured_;  // distances of the points from the best centre, from the last one
-  // Points that are far, in their order, and their squared distances: room for all.
-  std::vector<double> far_squared_;
-  std::vector<Index> far_points_;
+  FarPoints farthest_;
   Terms<kMaxFar> far_;
   Terms<kMaxCuts> near_;
 };
