@@ -43,6 +43,7 @@ class TreeBuilder {
     if (samples_surface(options_.method)) start_from(std::move(input));
     make_tree();
     stage("covering", [&] {
+      if (options_.method == TreeMethod::octree) return;  // nothing is open, as require_proof() finds
       const bool grows = options_.method == TreeMethod::merging && options_.closing == MergeClosing::growth;
       build_.cover = grows ? grow_to_cover(build_.tree, surface_, kGrowthFactor, progress_)
                            : cover(build_.tree, surface_, progress_);
