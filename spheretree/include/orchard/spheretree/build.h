@@ -74,7 +74,9 @@ struct SphereTreeBuild {
   Effort effort = Effort::standard;
   std::uint64_t seed = 1;
   Index points = 0;                   // of the surface, that it started from; without those of gap repair
-  std::optional<MedialBuild> medial;  // empty for an octree, annealing, and where options.axis did without
+  // Empty for an octree, annealing, and where options.axis did without. Of the points that a tightened tree is fitted to,
+  // unless it is refined: then points are added to its own.
+  std::optional<MedialBuild> medial;
   Index axis_components = 0;
   SphereTree tree;
   SphereTree octree;  // of the same depth, to compare with: measured for its inaccuracy alone
