@@ -73,9 +73,9 @@ struct SphereTreeBuild {
   TreeMethod method = TreeMethod::tightened;
   Effort effort = Effort::standard;
   std::uint64_t seed = 1;
-  Index points = 0;                   // of the surface, that it started from; without those of gap repair
-  // Empty for an octree, annealing, and where options.axis did without. Of the points that a tightened tree is fitted to,
-  // unless it is refined: then points are added to its own.
+  Index points = 0;  // of the surface, that it started from; without those of gap repair
+  // Empty for an octree, annealing, and where options.axis did without. Of the points that a tightened tree is fitted
+  // to, unless it is refined: then points are added to its own.
   std::optional<MedialBuild> medial;
   Index axis_components = 0;
   SphereTree tree;
