@@ -1,4 +1,5 @@
 #include <fmt/core.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -222,11 +223,13 @@ void build(const BuildCommand& command) {
   result.seconds.insert(result.seconds.begin(), {"reading", seconds_reading});
   bar.clear();
 
-  nlohmann::json report = build_json(surface, options, result, wrap_distance);
+  nlohmann::json report;
+  std::string plot;
+  tbb::parallel_invoke([&] { report = build_json(surface, options, result, wrap_distance); },
+                       [&] { plot = build_plot(result, surface, command.mesh.stem().string()); });
   add_solid_json(solid, report);
   const char* const ending = ending_of(solid);
   report["certified_mesh"] = ending ? nlohmann::json(named(command.mesh, ending)) : nlohmann::json();
-  const std::string plot = build_plot(result, surface, command.mesh.stem().string());
 
   Outputs outputs(command.folder);
   const Stopwatch writing;

@@ -21,6 +21,8 @@ bool path_holds(std::span<const PathBall> balls, Index leaf, const std::array<Po
   return true;
 }
 
+constexpr Index kFew = 256;  // triangles
+
 // Keeps the leaf that held the last triangle whole: in most meshes triangles with numbers near each other lie near each
 // other.
 struct Worker {
@@ -40,7 +42,8 @@ Coverage check(const Surface& surface, std::span<const Index> triangles, std::sp
   for (Index begin = 0; begin < count; begin += slice) {
     report_progress(progress, "certifying", static_cast<double>(begin) / count);
     const Index end = std::min(count, begin + slice);
-    tbb::parallel_for(tbb::blocked_range<Index>(begin, end, 16), [&](const auto& range) {
+    // One at a time where there are few, which are large.
+    tbb::parallel_for(tbb::blocked_range<Index>(begin, end, count < kFew ? 1 : 16), [&](const auto& range) {
       auto& [near, leaf] = workers.local();
       for (Index i = range.begin(); i != range.end(); ++i) {
         auto corners = surface.corners(triangles[i]);

@@ -15,7 +15,7 @@ namespace {
 struct Cell {
   double upper;
   std::array<Vector, 3> corners;
-  Point nearest;  // of the surface, to the middle
+  std::array<Point, 2> known;  // of the surface: nearest to the middle, and to that of a larger cell
 };
 bool less_promising(const Cell& a, const Cell& b) { return a.upper < b.upper; }
 
@@ -26,8 +26,9 @@ constexpr double kFinest = 1e-6;
 
 // Best-first branch and bound. Over a cell with middle direction d the signed distance is at most
 //   sd(p) + |q - p|, since it is 1-Lipschitz, and
-//   |q - y| for any point y of the surface, such as the ones nearest to p and to the sphere's centre,
-// both taken at the farthest point q of the cap that the cell's corners span.
+//   |q - y| for any point y of the surface, such as the ones nearest to p and to the sphere's centre, and at most
+//   sqrt((1 - t) |q - y|^2 + t |q - z|^2) for any two, y and z, and t from 0 to 1,
+// all taken at the farthest point q of the cap that the cell's corners span.
 class Search {
  public:
   Search(const Surface& surface, const Sphere& sphere, const DistanceTolerance& tolerance)
@@ -42,13 +43,13 @@ class Search {
     upper_everywhere_ = everywhere;
     probe_beyond_nearest(center_distance);
     if (everywhere <= best_ + width()) return {best_, everywhere};
-    for (const auto& face : octahedron()) evaluate(face, anchor_);
+    for (const auto& face : octahedron()) evaluate(face, {anchor_, anchor_});
     while (!cells_.empty() && evaluations_ < kMaxEvaluations) {
       if (cells_.front().upper <= best_ + width()) break;
       std::pop_heap(cells_.begin(), cells_.end(), less_promising);
       const Cell cell = cells_.back();
       cells_.pop_back();
-      split(cell.corners, cell.nearest);
+      split(cell.corners, cell.known);
     }
     const double open = cells_.empty() ? 0 : cells_.front().upper;
     return {best_, std::min(everywhere, std::max({best_, dropped_, open}))};
@@ -80,7 +81,7 @@ class Search {
     return faces;
   }
 
-  void split(const std::array<Vector, 3>& c, const Point& known) {
+  void split(const std::array<Vector, 3>& c, const std::array<Point, 2>& known) {
     const Vector ab = (c[0] + c[1]).normalized(), bc = (c[1] + c[2]).normalized(), ca = (c[2] + c[0]).normalized();
     evaluate({c[0], ab, ca}, known);
     evaluate({c[1], bc, ab}, known);
@@ -88,20 +89,24 @@ class Search {
     evaluate({ab, bc, ca}, known);
   }
 
-  // `known`: a point of the surface; often it tells that the cell does not matter.
-  void evaluate(const std::array<Vector, 3>& corners, const Point& known) {
+  // `known`: points of the surface; often they tell that the cell does not matter.
+  void evaluate(const std::array<Vector, 3>& corners, const std::array<Point, 2>& known) {
     const Vector middle = (corners[0] + corners[1] + corners[2]).normalized();
     double chord = 0;
     for (const Vector& corner : corners) chord = std::max(chord, (corner - middle).norm());
-    if (does_not_matter(std::min(farthest(known, middle, chord), upper_everywhere_) * (1 + 1e-12))) return;
+    const double by_known = std::min(
+        {farthest(known[0], middle, chord), farthest_of_both(known[0], known[1], middle, chord), upper_everywhere_});
+    if (does_not_matter(by_known * (1 + 1e-12))) return;
     ++evaluations_;
     ClosestPoint nearest;
     const double value = surface_.signed_distance(sphere_.center + sphere_.radius * middle, nearest);
     best_ = std::max(best_, value);
-    const double upper = std::min({value + sphere_.radius * chord, farthest(nearest.position, middle, chord),
-                                   farthest(anchor_, middle, chord), upper_everywhere_}) *
-                         (1 + 1e-12);
-    if (!does_not_matter(upper)) push({upper, corners, nearest.position});
+    const Point& here = nearest.position;
+    const double upper =
+        std::min({value + sphere_.radius * chord, farthest(here, middle, chord),
+                  farthest_of_both(here, known[0], middle, chord), farthest(anchor_, middle, chord), by_known}) *
+        (1 + 1e-12);
+    if (!does_not_matter(upper)) push({upper, corners, {here, known[0]}});
   }
 
   // A cell that cannot matter is dropped, but its bound counts towards the answer's.
@@ -124,6 +129,19 @@ class Search {
     const detail::HalfAngle cap{sine, std::sqrt((1 - sine) * (1 + sine))};
     const double half_chord = detail::HalfAngle::between(middle, 1, to_y, length).half_chord_with(cap);
     return std::sqrt((r - length) * (r - length) + 4 * r * length * half_chord * half_chord);
+  }
+
+  // A bound on the distance of any point q of the cap from the nearer of two points: the root of a mean of the squared
+  // distances is that of |q - m|^2 + t (1 - t) |y - z|^2 with the mean m of both. Where the surface is equally near on
+  // two sides of the sphere's farthest point, each of the two alone gives a bound that grows with the cap; but a mean
+  // that lies on the line through the cap's middle and the centre gives one that grows with its square.
+  double farthest_of_both(const Point& y, const Point& z, const Vector& middle, double chord) const {
+    const Vector between = z - y, across = between - between.dot(middle) * middle;
+    const double squared = across.squaredNorm();
+    if (!(squared > 0)) return upper_everywhere_;
+    const double part = std::clamp(across.dot(sphere_.center - y) / squared, 0.0, 1.0);
+    const double away = farthest(y + part * between, middle, chord);
+    return std::sqrt(away * away + part * (1 - part) * between.squaredNorm());
   }
 
   const Surface& surface_;

@@ -70,6 +70,7 @@ struct Surface::Data {
   TriangleMesh mesh;
   MeshReport report;
   Box box;
+  BoundingBall ball_kind;
   Sphere ball;
   std::vector<Vector> normals;
   std::vector<double> areas;
@@ -82,6 +83,7 @@ struct Surface::Data {
   Data(TriangleMesh input, BoundingBall kind)
       : mesh(validated(std::move(input))),
         report(check_mesh(mesh)),
+        ball_kind(kind),
         ball(kind == BoundingBall::minimal ? minimal_ball(mesh.vertices) : ritter_ball(mesh.vertices)),
         neighbors(triangle_neighbors(mesh)),
         triangles_around(find_triangles_around(mesh)),
@@ -135,6 +137,7 @@ const TriangleMesh& Surface::mesh() const { return data_->mesh; }
 const MeshReport& Surface::report() const { return data_->report; }
 const Box& Surface::bounding_box() const { return data_->box; }
 const Sphere& Surface::bounding_ball() const { return data_->ball; }
+BoundingBall Surface::ball_kind() const { return data_->ball_kind; }
 const Vector& Surface::normal(Index triangle) const { return data_->normals[triangle]; }
 double Surface::area(Index triangle) const { return data_->areas[triangle]; }
 const std::array<Index, 3>& Surface::neighbors(Index triangle) const { return data_->neighbors[triangle]; }

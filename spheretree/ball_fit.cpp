@@ -1,9 +1,7 @@
 #include "ball_fit.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 #include "wide.h"
@@ -166,31 +164,16 @@ double BallFitter::measure(const Point& center) {
 }
 
 void BallFitter::linearise_points(const FittedBall& ball, double reach) {
-  const double min = std::max(0.0, ball.radius - 2 * reach), squared_min = min * min;
-  if (farthest_.size() < point_count_) farthest_.resize(point_count_);
-  std::size_t count = 0;
-  for (std::size_t b = 0; b < squared_.size(); ++b) {
-    const Lanes& four = squared_[b].numbers;
-    if (std::max(std::max(four[0], four[1]), std::max(four[2], four[3])) < squared_min) continue;
-    const std::size_t end = std::min(kLanes, point_count_ - kLanes * b);
-    for (std::size_t k = 0; k < end; ++k) {  // without a branch: what is not far is written over
-      farthest_[count] = {std::bit_cast<std::uint64_t>(four[k]), static_cast<Index>(kLanes * b + k)};
-      count += static_cast<std::size_t>((four[k] >= squared_min) & (four[k] > 0));
-    }
-  }
-  std::span<Far> farthest(farthest_.data(), count);
-  if (count > kMaxFar) {
-    std::nth_element(farthest.begin(), farthest.begin() + kMaxFar, farthest.end(), farther);
-    farthest = farthest.first(kMaxFar);
-  }
+  const double min = std::max(0.0, ball.radius - 2 * reach);
+  farthest_.take(squared_, point_count_, min * min, ball.radius * ball.radius);
   far_.count = 0;
-  for (const auto& [bits, i] : farthest) {
-    const FourPoints& four = points_[i / kLanes];
-    const std::size_t lane = i % kLanes;
-    const double length = std::sqrt(std::bit_cast<double>(bits));
+  for (std::size_t i = 0; i < farthest_.count(); ++i) {
+    const FourPoints& four = points_[farthest_.point(i) / kLanes];
+    const std::size_t lane = farthest_.point(i) % kLanes;
+    const double length = std::sqrt(farthest_.squared(i));
     far_.add(length, (ball.center - Point(four.x[lane], four.y[lane], four.z[lane])) / length);
   }
-  if (farthest.empty()) far_.add(ball.radius, Vector::Zero());
+  if (farthest_.count() == 0) far_.add(ball.radius, Vector::Zero());
   far_.fill_up();
 }
 

@@ -1,8 +1,8 @@
 #pragma once
-#include <cstdint>
 #include <span>
 #include <vector>
 
+#include "far_points.h"
 #include "orchard/geometry/surface.h"
 
 namespace orchard::detail {
@@ -38,14 +38,10 @@ class [[gnu::visibility("hidden")]] BallFitter {
   FittedBall at(const Point& center) const;
 
  private:
-  static constexpr std::size_t kLanes = 4;
-  // Side by side (a GCC and Clang extension). The alignment is that of code for SSE: see wide.h.
-  using Lanes = double __attribute__((vector_size(32), aligned(16)));
+  static constexpr std::size_t kLanes = FourNumbers::kLanes;
+  using Lanes = FourNumbers::Lanes;
   struct FourPoints {
     Lanes x, y, z;
-  };
-  struct FourNumbers {
-    Lanes numbers;
   };
   struct Cut {  // sd(c) is about value + gradient . (c - at)
     Point at;
@@ -70,15 +66,7 @@ class [[gnu::visibility("hidden")]] BallFitter {
    private:
     Vector gradient(std::size_t i) const;
   };
-  // A point by its squared distance, a number above 0, whose bits are in the same order.
-  struct Far {
-    std::uint64_t squared;
-    Index point;
-  };
-  static bool farther(const Far& a, const Far& b) {  // without branches, which nobody could predict
-    return (a.squared > b.squared) | ((a.squared == b.squared) & (a.point > b.point));
-  }
-  static constexpr std::size_t kMaxFar = 40;  // farthest points that a step looks at
+  static constexpr std::size_t kMaxFar = FarPoints::kMax;
   static constexpr std::size_t kMaxCuts = 12;
 
   FittedBall fit_here(std::span<const Point> points, const FittedBall& start, int evaluations);
@@ -97,7 +85,7 @@ class [[gnu::visibility("hidden")]] BallFitter {
   std::size_t point_count_ = 0;
   std::vector<FourPoints> points_;
   std::vector<FourNumbers> squared_, measured_;  // distances of the points from the best centre, from the last one
-  std::vector<Far> farthest_;                    // room for all points
+  FarPoints farthest_;
   Terms<kMaxFar> far_;
   Terms<kMaxCuts> near_;
 };

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include "canonical_frame.h"
 #include "orchard/geometry/error.h"
 #include "orchard/spheretree/measure.h"
 #include "orchard/spheretree/octree.h"
 #include "orchard/spheretree/proven.h"
+#include "tightened/tightened_in_frame.h"
 
 namespace orchard {
 namespace {
@@ -19,20 +21,29 @@ TightenOptions tightening_options(const SphereTreeOptions& o) {
   return {o.depth, o.branching, o.spheres, o.effort, o.objective, o.refinement, o.seed};
 }
 
+// Trees are built in the surface's frame, so that they do not depend on where it lies and how large it is: all but
+// merged ones, which begin with the given surface's medial axis.
 class TreeBuilder {
  public:
   TreeBuilder(const Surface& surface, const SphereTreeOptions& options, const Progress& progress)
-      : surface_(surface), options_(options), progress_(progress) {
+      : given_(surface),
+        framed_(surface),
+        surface_(in_frame(options) ? framed_.surface() : surface),
+        options_(options),
+        progress_(progress) {
+    if (in_frame(options)) options_.refinement = framed_.in(options.refinement);
     build_.method = options.method;
     build_.effort = options.effort;
     build_.seed = options.seed;
   }
 
   SphereTreeBuild run(MedialBuildInput input) {
-    stage("octree to compare with", [&] { build_.octree = octree(surface_, {.depth = options_.depth}, progress_); });
+    stage("octree to compare with",
+          [&] { build_.octree = octree(framed_.surface(), {.depth = options_.depth}, progress_); });
     if (samples_surface(options_.method)) start_from(std::move(input));
     make_tree();
     stage("covering", [&] {
+      if (options_.method == TreeMethod::octree) return;  // nothing is open, as require_proof() finds
       const bool grows = options_.method == TreeMethod::merging && options_.closing == MergeClosing::growth;
       build_.cover = grows ? grow_to_cover(build_.tree, surface_, kGrowthFactor, progress_)
                            : cover(build_.tree, surface_, progress_);
@@ -40,9 +51,11 @@ class TreeBuilder {
     stage("redundant spheres",
           [&] { build_.redundancy = remove_redundant(build_.tree, surface_, options_.redundancy, progress_); });
     if (options_.descent > 0) stage("random descent", [&] { descend(); });
+    if (in_frame(options_)) framed_.take_out(build_.tree);
+    framed_.take_out(build_.octree);
     stage("measuring", [&] {
-      measure(build_.tree, surface_, progress_);
-      measure_inaccuracy(build_.octree, surface_, progress_, build_.tree);
+      measure(build_.tree, given_, progress_);
+      measure_inaccuracy(build_.octree, given_, progress_, build_.tree);
     });
     stage("packing and verifying", [&] { require_proof(); });
     return std::move(build_);
@@ -54,6 +67,8 @@ class TreeBuilder {
     time_stage(build_.seconds, name, std::forward<Function>(function));
   }
 
+  static bool in_frame(const SphereTreeOptions& options) { return options.method != TreeMethod::merging; }
+
   // Points of the surface, and the axis unless the tree does without.
   void start_from(MedialBuildInput input) {
     MedialBuildOptions medial = options_.medial;
@@ -62,28 +77,48 @@ class TreeBuilder {
       medial.sampling.edge_points = samples / 5;
       medial.sampling.face_points = samples - samples / 5;
     }
-    if (options_.method == TreeMethod::tightened && !options_.axis && !input.mesh)
-      take_points(medial.sampling, std::move(input));
-    else
-      make_axis(medial, std::move(input));
+    if (options_.method == TreeMethod::merging) return make_axis(medial, std::move(input));
+    const bool imports = input.mesh.has_value();
+    if (!imports) take_points(medial, input);
+    if (imports || options_.axis) make_axis(medial, std::move(input));
+    if (imports) sampling_ = framed_.in(build_.medial->sampling);
   }
 
-  void take_points(const SamplingOptions& sampling, MedialBuildInput input) {
-    if (!surface_.solid())
-      throw InputError("a tightened tree needs a solid: " + surface_.report().faults() + "; repair the mesh first");
+  // Those of the input, or else new ones, which become the axis' as well: but not if it is to add to them.
+  void take_points(const MedialBuildOptions& options, MedialBuildInput& input) {
+    if (!given_.solid())
+      throw InputError("a tightened tree needs a solid: " + given_.report().faults() + "; repair the mesh first");
     stage("surface points", [&] {
-      sampling_ = input.sampling  ? std::move(*input.sampling)
-                  : input.diagram ? std::move(input.diagram->sampling)
-                                  : sample_surface(surface_, sampling, progress_);
+      if (const SurfaceSampling* given = points_of(input)) {
+        validate(*given, given_);
+        sampling_ = framed_.in(*given);
+      } else {
+        sampling_ = sample_surface(surface_, options.sampling, progress_);
+        if (options_.axis && !options.refine) input.sampling = framed_.out(sampling_);
+      }
     });
     build_.points = sampling_.size();
   }
 
+  static const SurfaceSampling* points_of(const MedialBuildInput& input) {
+    if (input.sampling) return &*input.sampling;
+    return input.diagram ? &input.diagram->sampling : nullptr;
+  }
+
   void make_axis(const MedialBuildOptions& options, MedialBuildInput input) {
-    build_.medial = build_medial_axis(surface_, options, progress_, std::move(input));
+    build_.medial = build_medial_axis(given_, options, progress_, std::move(input));
     build_.points = build_.medial->points;
-    build_.seconds.insert(build_.seconds.end(), build_.medial->seconds.begin(), build_.medial->seconds.end());
+    for (const auto& [name, seconds] : build_.medial->seconds) add_seconds(name, seconds);
     connected_components(build_.medial->axis, build_.axis_components);
+  }
+
+  void add_seconds(const std::string& name, double seconds) {
+    const auto same = [&](const auto& stage) { return stage.first == name; };
+    const auto stage = std::find_if(build_.seconds.begin(), build_.seconds.end(), same);
+    if (stage == build_.seconds.end())
+      build_.seconds.emplace_back(name, seconds);
+    else
+      stage->second += seconds;
   }
 
   template <class Build, class Report>
@@ -112,8 +147,7 @@ class TreeBuilder {
         break;
       case TreeMethod::tightened:
         stage("tightening", [&] {
-          const SurfaceSampling& points = build_.medial ? build_.medial->sampling : sampling_;
-          keep(tightened_tree(surface_, points, tightening_options(o), progress_), build_.tightening);
+          keep(detail::tightened_in_frame(surface_, sampling_, tightening_options(o), progress_), build_.tightening);
         });
         break;
     }
@@ -124,9 +158,15 @@ class TreeBuilder {
     build_.redundancy.removed += remove_redundant(build_.tree, surface_, options_.redundancy, progress_).removed;
   }
 
-  // What is returned has passed verify().
+  // What is returned has passed verify(). Very far from the origin the given surface's last digits may be too coarse
+  // for a tree that was closed in the frame.
   void require_proof() {
-    ProvenTree proven = pack_proven(build_.tree, surface_, progress_);
+    ProvenTree proven = pack_proven(build_.tree, given_, progress_);
+    if (proven.proof.triangles_uncovered > 0 && in_frame(options_)) {
+      cover(build_.tree, given_, progress_);
+      measure(build_.tree, given_, progress_);
+      proven = pack_proven(build_.tree, given_, progress_);
+    }
     const Verification& proof = proven.proof;
     if (!proof.ok())
       throw Error("the packed tree is not proven to be conservative: " + std::to_string(proof.triangles_uncovered) +
@@ -137,10 +177,12 @@ class TreeBuilder {
     build_.bounds_weakened = static_cast<Index>(proven.weakened.size());
   }
 
-  const Surface& surface_;
-  const SphereTreeOptions& options_;
+  const Surface& given_;
+  const detail::FramedSurface framed_;
+  const Surface& surface_;  // that the tree is built on
+  SphereTreeOptions options_;
   const Progress& progress_;
-  SurfaceSampling sampling_;  // where there is no axis
+  SurfaceSampling sampling_;  // in the frame
   SphereTreeBuild build_;
 };
 

@@ -1,5 +1,7 @@
 #include "orchard/spheretree/outside_volume.h"
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -136,8 +138,7 @@ double left_of(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::
   return turned ? -area : area;
 }
 
-ByRay<Crossing> crossings(const Surface& surface, const Rays& rays) {
-  ByRay<Crossing> found(rays.size());
+void find_crossings(const Surface& surface, const Rays& rays, ByRay<Crossing>& found) {
   for (Index t = 0; t < surface.mesh().triangles.size(); ++t) {
     const auto corners = surface.corners(t);
     const std::array<Eigen::Vector2d, 3> flat{rays.across(corners[0]), rays.across(corners[1]),
@@ -155,11 +156,9 @@ ByRay<Crossing> crossings(const Surface& surface, const Rays& rays) {
     });
   }
   found.sort([](const Crossing& x, const Crossing& y) { return x.at < y.at; });
-  return found;
 }
 
-ByRay<Interval> chords(std::span<const Sphere> balls, const Rays& rays) {
-  ByRay<Interval> found(rays.size());
+void find_chords(std::span<const Sphere> balls, const Rays& rays, ByRay<Interval>& found) {
   for (const Sphere& ball : balls) {
     const Eigen::Vector2d center = rays.across(ball.center), reach = Eigen::Vector2d::Constant(ball.radius);
     rays.for_each_near(center - reach, center + reach, [&](Index ray) {
@@ -170,7 +169,6 @@ ByRay<Interval> chords(std::span<const Sphere> balls, const Rays& rays) {
     });
   }
   found.sort([](const Interval& x, const Interval& y) { return x.begin < y.begin; });
-  return found;
 }
 
 double length_inside(std::span<const Crossing> crossings, double begin, double end) {
@@ -205,8 +203,10 @@ double outside_volume(const Surface& surface, std::span<const Sphere> balls, std
     box.extend(Point(ball.center + Vector::Constant(ball.radius)));
   }
   const Rays rays(box, count);
-  const auto through_surface = crossings(surface, rays);
-  const auto through_balls = chords(balls, rays);
+  ByRay<Crossing> through_surface(rays.size());
+  ByRay<Interval> through_balls(rays.size());
+  tbb::parallel_invoke([&] { find_crossings(surface, rays, through_surface); },
+                       [&] { find_chords(balls, rays, through_balls); });
   double sum = 0;
   for (std::size_t ray = 0; ray < rays.size(); ++ray) sum += length_outside(through_balls[ray], through_surface[ray]);
   return rays.area() * sum / static_cast<double>(rays.size());

@@ -12,6 +12,8 @@ namespace orchard::detail {
 namespace {
 
 constexpr int kProbes = 14;  // outward from the middle of an arc, each twice as far as the one before
+// What is known of distances by other distances may be wrong by a few roundings.
+constexpr double kRoundings = 1 + 1e-6;
 // Uncovered regions below this part of the last growth are left to it.
 constexpr double kLeftToGrowth = 0.4;
 
@@ -21,10 +23,11 @@ struct ArcGroup {
   Box box;  // of the corners
 };
 
-// Most groups are told apart by their boxes.
+// Most groups are told apart by their boxes, and mostly by one side.
 bool bounds_same(const ArcGroup& group, const UncoveredArc& arc, double near) {
+  const double limit = near * (1 + 1e-9);
   const auto apart = [&](const Point& end) {
-    return group.box.squaredExteriorDistance(end) > near * near * (1 + 1e-9);
+    return ((group.box.min() - end).array() > limit).any() || ((end - group.box.max()).array() > limit).any();
   };
   if (apart(arc.begin) && apart(arc.end)) return false;
   return std::any_of(group.corners.begin(), group.corners.end(),
@@ -80,8 +83,11 @@ class Prober {
     out -= out.dot(normal_) * normal_;
     const double length = out.norm();
     if (!(length > 0)) return;
+    // The distance grows by no more than the way.
+    const double here = distance_bound(arc);
     double step = step_;
-    for (int probe = 0; probe < kProbes; ++probe, step *= 2) try_point(arc.middle + out * (step / length), region);
+    for (int probe = 0; probe < kProbes; ++probe, step *= 2)
+      if ((here + step) * kRoundings > region.distance) try_point(arc.middle + out * (step / length), region);
   }
 
  private:
@@ -99,6 +105,15 @@ class Prober {
     for (Index root = 0; root < roots_ && min > limit; ++root)
       descend(root, point, -std::numeric_limits<double>::infinity(), limit, min);
     return min;
+  }
+
+  // What path_distance() at the middle of an arc does not exceed: that of the path that ends there, if one does.
+  double distance_bound(const UncoveredArc& arc) const {
+    if (!balls_[arc.ball].leaf) return std::numeric_limits<double>::infinity();
+    double bound = 0;
+    for (Index i = arc.ball; i != kNone; i = balls_[i].parent)
+      bound = std::max(bound, (arc.middle - balls_[i].center).norm() - balls_[i].radius);
+    return bound;
   }
 
   double excess(Index ball, const Point& point) const {

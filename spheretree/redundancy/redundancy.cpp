@@ -1,8 +1,13 @@
 #include "orchard/spheretree/redundancy.h"
 
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <atomic>
 #include <iterator>
 #include <numeric>
+#include <utility>
 
 #include "orchard/covering/path_forest.h"
 
@@ -11,13 +16,34 @@ namespace {
 
 // A point this far outside all paths, in R, is uncovered, whatever the rounding.
 constexpr double kBeyondDoubt = 1e-9;
+constexpr std::size_t kTogether = 4;  // triangles that are looked at by one thread
+
+using Triangles = std::vector<std::vector<Index>>;
+
+// For each node, the triangles that touch every ball on its path.
+Triangles touching_paths(const SphereTree& tree, const Surface& surface) {
+  Triangles touching(tree.nodes.size());
+  tbb::parallel_for(std::size_t{0}, tree.nodes.size(), [&](std::size_t i) {
+    const Sphere& ball = tree.nodes[i].sphere;
+    surface.triangles_near({ball.center, ball.radius * (1 + 1e-9)}, touching[i]);
+  });
+  std::vector<Index> near;
+  for (Index i = 1; i < tree.nodes.size(); ++i) {
+    near.swap(touching[i]);
+    touching[i].clear();
+    const auto& above = touching[tree.nodes[i].parent];
+    std::set_intersection(above.begin(), above.end(), near.begin(), near.end(), std::back_inserter(touching[i]));
+  }
+  return touching;
+}
 
 // Takes nodes out as long as the path rule stays certified. Only triangles that a path region of a removed leaf touches
 // can become uncovered.
 class Remover {
  public:
-  Remover(const SphereTree& tree, const Surface& surface) : tree_(tree), surface_(surface), forest_(path_balls(tree)) {
-    list_triangles();
+  // touching: as touching_paths() has it.
+  Remover(const SphereTree& tree, const Surface& surface, Triangles touching)
+      : tree_(tree), surface_(surface), forest_(path_balls(tree)), touching_(std::move(touching)) {
     leaves_below_.assign(tree.nodes.size(), 0);
     for (Index i = static_cast<Index>(tree.nodes.size()); i-- > 0;) {
       if (tree.nodes[i].child_count == 0) leaves_below_[i] = 1;
@@ -41,9 +67,10 @@ class Remover {
     return true;
   }
 
-  // The tree of what is left.
-  SphereTree rest() const {
+  // The tree of what is left, and what touches its paths.
+  SphereTree rest(Triangles& touching) {
     SphereTree rest;
+    touching.clear();
     rest.branching = tree_.branching;
     std::vector<Index> place(tree_.nodes.size(), kNone);
     for (Index i = 0; i < tree_.nodes.size(); ++i) {
@@ -58,26 +85,12 @@ class Remover {
         if (parent.child_count++ == 0) parent.first_child = place[i];
       }
       rest.nodes.push_back(node);
+      touching.push_back(std::move(touching_[i]));
     }
     return rest;
   }
 
  private:
-  void list_triangles() {
-    touching_.resize(tree_.nodes.size());
-    std::vector<Index> near;
-    for (Index i = 0; i < tree_.nodes.size(); ++i) {
-      const SphereNode& node = tree_.nodes[i];
-      surface_.triangles_near({node.sphere.center, node.sphere.radius * (1 + 1e-9)}, near);
-      if (i == 0) {
-        touching_[0] = near;
-      } else {
-        const auto& above = touching_[node.parent];
-        std::set_intersection(above.begin(), above.end(), near.begin(), near.end(), std::back_inserter(touching_[i]));
-      }
-    }
-  }
-
   std::vector<Index> leaves_of(Index node) const {
     std::vector<Index> leaves, open{node};
     while (!open.empty()) {
@@ -110,34 +123,37 @@ class Remover {
     for (Index leaf : leaves) triangles.insert(triangles.end(), touching_[leaf].begin(), touching_[leaf].end());
     std::sort(triangles.begin(), triangles.end());
     triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
-    for (Index triangle : triangles) {
-      const auto corners = surface_.corners(triangle);
-      forest_.gather(corners, near_);
-      if (!triangle_covered(corners, near_.balls)) return false;
-    }
-    return true;
+    std::atomic<bool> covered = true;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, triangles.size(), kTogether), [&](const auto& range) {
+      NearBalls& near = near_.local();
+      for (std::size_t i = range.begin(); i != range.end() && covered; ++i) {
+        const auto corners = surface_.corners(triangles[i]);
+        forest_.gather(corners, near);
+        if (!triangle_covered(corners, near.balls)) covered = false;
+      }
+    });
+    return covered;
   }
 
   const SphereTree& tree_;
   const Surface& surface_;
   PathForest forest_;
-  std::vector<Index> leaves_below_;           // that are still there
-  std::vector<std::vector<Index>> touching_;  // triangles that touch every ball on a node's path
-  NearBalls near_;
+  std::vector<Index> leaves_below_;  // that are still there
+  Triangles touching_;
+  tbb::enumerable_thread_specific<NearBalls> near_;
 };
 
 // The nodes of a level that are still there, loosest first.
 std::vector<Index> loosest_first(const SphereTree& tree, const Surface& surface, Index level, const Remover& remover) {
   std::vector<Index> nodes;
+  for (Index i = 0; i < tree.nodes.size(); ++i)
+    if (tree.nodes[i].level == level && !remover.gone(i)) nodes.push_back(i);
   std::vector<double> looseness(tree.nodes.size(), 0);
-  for (Index i = 0; i < tree.nodes.size(); ++i) {
-    const SphereNode& node = tree.nodes[i];
-    if (node.level != level || remover.gone(i)) continue;
-    const double out =
-        surface.solid() ? surface.signed_distance(node.sphere.center) : surface.distance(node.sphere.center);
-    looseness[i] = node.sphere.radius + out;
-    nodes.push_back(i);
-  }
+  tbb::parallel_for(std::size_t{0}, nodes.size(), [&](std::size_t k) {
+    const Sphere& ball = tree.nodes[nodes[k]].sphere;
+    looseness[nodes[k]] =
+        ball.radius + (surface.solid() ? surface.signed_distance(ball.center) : surface.distance(ball.center));
+  });
   std::stable_sort(nodes.begin(), nodes.end(), [&](Index a, Index b) { return looseness[a] > looseness[b]; });
   return nodes;
 }
@@ -165,9 +181,10 @@ RedundancyReport remove_redundant(SphereTree& tree, const Surface& surface, Sele
   RedundancyReport report;
   const Index depth = tree.depth();
   const auto before = static_cast<Index>(tree.nodes.size());
+  Triangles touching = touching_paths(tree, surface);
   for (Index level = 1; level <= depth; ++level) {
     report_progress(progress, "removing redundant spheres", static_cast<double>(level - 1) / depth);
-    Remover remover(tree, surface);
+    Remover remover(tree, surface, std::move(touching));
     if (selection == Selection::exhaustive) {
       for (Index node : loosest_first(tree, surface, level, remover)) remover.remove(node);
     } else {
@@ -178,7 +195,7 @@ RedundancyReport remove_redundant(SphereTree& tree, const Surface& surface, Sele
       for (Index node : selected)
         if (!remover.remove(node)) ++report.vetoed;
     }
-    tree = remover.rest();
+    tree = remover.rest(touching);
   }
   report.removed = before - static_cast<Index>(tree.nodes.size());
   return report;

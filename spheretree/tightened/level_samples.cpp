@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "canonical_frame.h"
+
 namespace orchard::detail {
 namespace {
 
@@ -41,7 +43,7 @@ std::vector<Index> without_repair(const SurfaceSampling& sampling) {
 
 }  // namespace
 
-Samples surface_samples(const Surface& surface, const SurfaceSampling& sampling, const CanonicalFrame& frame) {
+Samples surface_samples(const Surface& surface, const SurfaceSampling& sampling) {
   const std::vector<Index> sampled = without_repair(sampling);
   const auto count = static_cast<Index>(sampled.size());
   Samples samples;
@@ -52,8 +54,7 @@ Samples surface_samples(const Surface& surface, const SurfaceSampling& sampling,
     // Edges' points are evenly spaced, without relaxation: they are known to the last digits.
     const bool exact = sampling.origins[from] == PointOrigin::edge;
     const Point& point = sampling.points[from];
-    const Point about = exact ? frame.in(point) : surface.closest(frame.roughly_in(point)).position;
-    samples.points[p] = CanonicalFrame::on_lattice(about);
+    samples.points[p] = on_fine_lattice(exact ? point : surface.closest(on_coarse_lattice(point)).position);
     const ClosestPoint on = surface.closest(samples.points[p]);
     samples.starts[p] = touching_center(surface, samples.points[p], surface.pseudonormal(on.triangle, on.feature));
   });

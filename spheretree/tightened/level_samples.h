@@ -1,5 +1,4 @@
 #pragma once
-#include "canonical_frame.h"
 #include "orchard/geometry/sampling.h"
 #include "partial_tree.h"
 
@@ -13,9 +12,9 @@ struct Samples {
 
 // The surface points but for those that gap repair added, which come out otherwise with the last digits of the others:
 // each with the centre of the largest ball in the solid that touches it; and the mesh's corners if they are not too
-// many. `surface` is the one in the frame. Relaxed points are taken roughly and put back on it, so that the same come
-// out whatever the frame in which they were sampled.
-Samples surface_samples(const Surface& surface, const SurfaceSampling& sampling, const CanonicalFrame& frame);
+// many. `surface` is one in its frame (canonical_frame.h). Relaxed points are taken roughly and put back on it, so that
+// the same come out where they were sampled in another frame.
+Samples surface_samples(const Surface& surface, const SurfaceSampling& sampling);
 
 // About so many of them, or a few more: every k-th, without those that a leaf holds.
 Samples samples_for(const Samples& all, const PartialTree& partial, Index enough);

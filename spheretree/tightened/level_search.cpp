@@ -39,7 +39,8 @@ void LevelSearch::run(LevelBalls& balls, Index trials, LevelCover* cover, const 
   for (Index done = 0; done < trials; done += kBatch) {
     report_progress(progress, "searching", static_cast<double>(done) / trials);
     want();
-    tbb::parallel_for(Index{0}, kBatch, [&](Index i) { batch[i] = propose(balls, trials_ + i, cover); });
+    tbb::parallel_for(
+        Index{0}, kBatch, [&](Index i) { batch[i] = propose(balls, trials_ + i, cover); }, tbb::simple_partitioner());
     trials_ += kBatch;
     apply(batch, balls, cover);
   }

@@ -7,6 +7,7 @@
 #include "level_samples.h"
 #include "orchard/geometry/error.h"
 #include "orchard/spheretree/measure.h"
+#include "tightened_in_frame.h"
 #include "tightener.h"
 
 namespace orchard {
@@ -23,17 +24,6 @@ detail::Work work_for(Effort effort) {
   }
   return {1, 6, 0, 24, {2, 1}};
 }
-
-// The mesh in the frame, where the search is.
-struct Framed {
-  explicit Framed(const Surface& given) : frame(given.bounding_box()), surface(frame.in(given.mesh())) {
-    if (surface.solid()) return;
-    frame = detail::CanonicalFrame::without_lattice(given.bounding_box());
-    surface = Surface(frame.in(given.mesh()));
-  }
-  detail::CanonicalFrame frame;
-  Surface surface;
-};
 
 }  // namespace
 
@@ -57,25 +47,30 @@ TightenBuild tightened_tree(const Surface& surface, const SurfaceSampling& sampl
                             const Progress& progress) {
   require_sizes(options);
   validate(sampling, surface);
-  const Framed framed(surface);
-  const detail::Samples samples = detail::surface_samples(framed.surface, sampling, framed.frame);
-  if (samples.size() == 0) throw InputError("a tightened tree needs surface points");
-  const Sphere root = framed.frame.in(surface.bounding_ball());
+  const detail::FramedSurface framed(surface);
   TightenOptions own = options;
-  own.refinement = framed.frame.in(options.refinement);
+  own.refinement = framed.in(options.refinement);
+  TightenBuild build = detail::tightened_in_frame(framed.surface(), framed.in(sampling), own, progress);
+  framed.take_out(build.tree);
+  return build;
+}
+
+TightenBuild detail::tightened_in_frame(const Surface& surface, const SurfaceSampling& sampling,
+                                        const TightenOptions& options, const Progress& progress) {
+  const Samples samples = surface_samples(surface, sampling);
+  if (samples.size() == 0) throw InputError("a tightened tree needs surface points");
+  TightenOptions own = options;
   const auto build = [&](Effort effort) {
     own.effort = effort;
-    return detail::Tightener(framed.surface, samples, root, own, work_for(effort), progress).run();
+    return Tightener(surface, samples, surface.bounding_ball(), own, work_for(effort), progress).run();
   };
   TightenBuild best = build(options.effort);
   if (options.effort == Effort::high) {
     TightenBuild standard = build(Effort::standard);
-    measure(best.tree, framed.surface);
-    measure(standard.tree, framed.surface);
+    measure(best.tree, surface);
+    measure(standard.tree, surface);
     if (overall_inaccuracy(standard.tree) < overall_inaccuracy(best.tree)) best = std::move(standard);
   }
-  for (SphereNode& node : best.tree.nodes)
-    node = {framed.frame.out(node.sphere), node.parent, node.first_child, node.child_count, node.level};
   return best;
 }
 

@@ -1,11 +1,16 @@
 #include "tightener.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <deque>
+#include <exception>
 #include <numeric>
+#include <thread>
 
 #include "level_finish.h"
 #include "orchard/covering/inaccuracy.h"
@@ -136,17 +141,15 @@ bool Tightener::build_level(Index level, std::vector<TightenReport::Level>& repo
   const Index starts = level <= std::size(work_.starts) ? work_.starts[level - 1] : 1;
   std::vector<std::vector<LevelBall>> from(starts);
   if (level == 1) from = promising_starts(level_options, starts);
-  std::optional<Candidate> best;
+  std::vector<Candidate> all = candidates(level_options, std::move(from), [&](std::string_view, double fraction) {
+    return !progress_ || progress_("tightening", (level - 1 + fraction) / options_.depth);
+  });
   double search = 0, closing = 0;
-  for (Index start = 0; start < from.size(); ++start) {
-    level_options.seed = seed_of(options_.seed, start);
-    const double begin = (start + 0.0) / starts, share = 1.0 / starts;
-    Candidate next = candidate(level_options, std::move(from[start]), [&](std::string_view, double fraction) {
-      return !progress_ || progress_("tightening", (level - 1 + begin + share * fraction) / options_.depth);
-    });
-    search += next.report.seconds_search;
-    closing += next.report.seconds_closing;
-    if (!best || next.looseness < best->looseness) best.emplace(std::move(next));
+  auto best = all.begin();
+  for (auto next = all.begin(); next != all.end(); ++next) {
+    search += next->report.seconds_search;
+    closing += next->report.seconds_closing;
+    if (next->looseness < best->looseness) best = next;
   }
   reports.push_back(best->report);
   reports.back().seconds_search = search;
@@ -190,16 +193,53 @@ std::vector<std::vector<LevelBall>> Tightener::promising_starts(LevelOptions opt
   return best;
 }
 
-// One solution of a level. All of them are to be judged by the first one's unit.
-Tightener::Candidate Tightener::candidate(LevelOptions& options, std::vector<LevelBall> from,
-                                          const Progress& progress) {
-  Candidate result{partial_, 0, {}, {}};
-  result.partial.add_level();
+// Solutions of a level, one from each start, at the same time. All are judged by the first one's unit. Those that come
+// to run on the thread that called this say how far they are, and all are stopped by that.
+std::vector<Tightener::Candidate> Tightener::candidates(LevelOptions options, std::vector<std::vector<LevelBall>> from,
+                                                        const Progress& progress) {
+  Candidate empty{partial_, 0, {}, {}};
+  empty.partial.add_level();
+  std::vector<Candidate> results(from.size(), empty);
+  const Samples samples = samples_for(samples_, partial_, enough_samples(options.balls));
+  std::deque<LevelSolver> solvers;
+  for (Index start = 0; start < from.size(); ++start) {
+    options.seed = seed_of(options_.seed, start);
+    solvers.emplace_back(surface_, samples, empty.partial.paths(), options, std::move(from[start]));
+    options.cost.unit = solvers.front().unit();
+  }
+  std::atomic<bool> stopped = false;
+  const std::thread::id caller = std::this_thread::get_id();
+  double reported = 0;
+  const auto watched = [&](Index start) -> Progress {
+    return [&, start](std::string_view stage, double fraction) {
+      if (stopped || std::this_thread::get_id() != caller) return !stopped;
+      reported = std::max(reported, (start + fraction) / static_cast<double>(solvers.size()));
+      return !progress || progress(stage, reported);
+    };
+  };
+  // Nothing is thrown in a task: that would cut short what the others do, who would not know.
+  std::exception_ptr failure;  // the first; the others were stopped by it
+  const auto solve = [&](Index start) {
+    try {
+      search_and_finish(solvers[start], options, watched(start), results[start]);
+    } catch (...) {
+      if (!stopped.exchange(true)) failure = std::current_exception();
+    }
+  };
+  tbb::task_group others;
+  for (Index start = 1; start < from.size(); ++start) others.run([&solve, start] { solve(start); });
+  solve(0);
+  others.wait();
+  if (failure) std::rethrow_exception(failure);
+  if (results.size() > 1)
+    for (Candidate& result : results) result.looseness = looseness(surface_, result.partial.last());
+  return results;
+}
+
+void Tightener::search_and_finish(LevelSolver& solver, const LevelOptions& options, const Progress& progress,
+                                  Candidate& result) const {
   const auto start = std::chrono::steady_clock::now();
   const Index trials = trials_for(options.balls, work_);
-  LevelSolver solver(surface_, samples_for(samples_, partial_, enough_samples(options.balls)), result.partial.paths(),
-                     options, std::move(from));
-  options.cost.unit = solver.unit();
   solver.tighten();
   solver.search(trials, [&](std::string_view stage, double fraction) { return progress(stage, 0.4 * fraction); });
   solver.tighten();
@@ -214,12 +254,10 @@ Tightener::Candidate Tightener::candidate(LevelOptions& options, std::vector<Lev
                        static_cast<Index>(closed_trials * static_cast<double>(solver.balls().size())),
                        [&](std::string_view stage, double fraction) { return progress(stage, 0.4 + 0.6 * fraction); }};
   finish_level(surface_, solver, result.partial, finish, result.report);
-  result.looseness = looseness(surface_, result.partial.last());
   for (const LevelBall& ball : solver.balls()) result.center_distances.push_back(ball.center_distance);
   result.report.balls = static_cast<Index>(solver.balls().size());
   result.report.seconds_search = std::chrono::duration<double>(middle - start).count();
   result.report.seconds_closing = std::chrono::duration<double>(std::chrono::steady_clock::now() - middle).count();
-  return result;
 }
 
 }  // namespace orchard::detail

@@ -36,7 +36,10 @@ class Tightener {
   bool build_level(Index level, std::vector<TightenReport::Level>& reports);
   void take(Candidate best);
   std::vector<std::vector<LevelBall>> promising_starts(LevelOptions options, Index wanted) const;
-  Candidate candidate(LevelOptions& options, std::vector<LevelBall> start, const Progress& progress);
+  std::vector<Candidate> candidates(LevelOptions options, std::vector<std::vector<LevelBall>> from,
+                                    const Progress& progress);
+  void search_and_finish(LevelSolver& solver, const LevelOptions& options, const Progress& progress,
+                         Candidate& result) const;
 
   const Surface& surface_;
   const Samples& samples_;

@@ -4,6 +4,8 @@
 #include <tbb/global_control.h>
 
 #include <cmath>
+#include <string_view>
+#include <thread>
 
 #include "orchard/geometry/error.h"
 #include "orchard/spheretree/cover.h"
@@ -286,6 +288,36 @@ TEST(TightenedTree, IsTheSameWhereEvenThePointsAreSampledInAnotherFrame) {
       const double radius = factor * tree.nodes[i].sphere.radius;
       EXPECT_NEAR(other.nodes[i].sphere.radius, radius, 1e-9 * radius) << factor;
     }
+  }
+}
+
+// Starts of the first level are searched side by side.
+TEST(TightenedTree, ReportsProgressOnTheCallersThreadAndNeverBack) {
+  const Surface surface(u_shape(0.3));
+  const SurfaceSampling points = points_of(surface, 1000);
+  const std::thread::id caller = std::this_thread::get_id();
+  double last = 0;
+  tightened_tree(surface, points, {.depth = 2, .branching = 4}, [&](std::string_view, double fraction) {
+    EXPECT_EQ(std::this_thread::get_id(), caller);
+    EXPECT_GE(fraction, last);
+    EXPECT_LE(fraction, 1);
+    last = fraction;
+    return true;
+  });
+  EXPECT_GT(last, 0.5);
+}
+
+TEST(TightenedTree, StopsWheneverItIsCancelled) {
+  const Surface surface(u_shape(0.3));
+  const SurfaceSampling points = points_of(surface, 1000);
+  for (const double at : {0.05, 0.2, 0.45, 0.7}) {
+    bool reached = false;
+    const auto until = [&](std::string_view, double fraction) {
+      EXPECT_FALSE(reached);
+      reached = fraction >= at;
+      return !reached;
+    };
+    EXPECT_THROW(tightened_tree(surface, points, {.depth = 2, .branching = 4}, until), Cancelled) << at;
   }
 }
 

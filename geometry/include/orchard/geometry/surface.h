@@ -39,6 +39,7 @@ class Surface {
   bool solid() const { return report().solid(); }
   const Box& bounding_box() const;
   const Sphere& bounding_ball() const;  // holds every vertex
+  BoundingBall ball_kind() const;
   double bounding_radius() const { return bounding_ball().radius; }
 
   std::array<Point, 3> corners(Index triangle) const;

@@ -73,8 +73,10 @@ struct SphereTreeBuild {
   TreeMethod method = TreeMethod::tightened;
   Effort effort = Effort::standard;
   std::uint64_t seed = 1;
-  Index points = 0;                   // of the surface, that it started from; without those of gap repair
-  std::optional<MedialBuild> medial;  // empty for an octree, annealing, and where options.axis did without
+  Index points = 0;  // of the surface, that it started from; without those of gap repair
+  // Empty for an octree, annealing, and where options.axis did without. Of the points that a tightened tree is fitted
+  // to, unless it is refined: then points are added to its own.
+  std::optional<MedialBuild> medial;
   Index axis_components = 0;
   SphereTree tree;
   SphereTree octree;  // of the same depth, to compare with: measured for its inaccuracy alone
@@ -92,8 +94,10 @@ struct SphereTreeBuild {
 
 // Builds a certified tree of a surface: medial axis, tree, covering, removal of redundant spheres, bounds, packing,
 // verification. The result is conservative, and the same for the same surface, options and input whatever the number of
-// threads. Throws InputError if the surface or an option does not allow it, and Error if the packed tree fails its
-// certificate. Three levels take some seconds; see docs/benchmarks.md.
+// threads. A mesh that is scaled or moved gets the same tree but for the last digits, unless it is merged or a corner
+// is as near to the border between two lattice points (spheretree/canonical_frame.h) as its digits reach; scaled by a
+// power of two, the same but for the scale. Throws InputError if the surface or an option does not allow it, and Error
+// if the packed tree fails its certificate. Three levels take some seconds; see docs/benchmarks.md.
 SphereTreeBuild build_sphere_tree(const Surface& surface, const SphereTreeOptions& options = {},
                                   const Progress& progress = {}, MedialBuildInput input = {});
 

@@ -62,10 +62,10 @@ void require_sizes(const TightenOptions& options);
 // search goes on with nothing uncovered. A level of more than 1000 balls is searched no longer than one of 1000. There
 // should be 20 surface points or more for each ball of the last level; those that gap repair added are left out. The
 // result is conservative and, since work is counted and not timed, the same on any number of threads. The
-// search runs on the mesh as it is in a frame of its own (tightened/canonical_frame.h), so that a mesh that is scaled
-// or moved gets the same tree but for the last digits, unless a surface point is as near to the border between two
-// lattice points as its digits reach. Throws InputError as require_sizes() does, and where there are no
-// points; Error as validate() of a sampling does.
+// search runs on the mesh as it is in a frame of its own (spheretree/canonical_frame.h), so that with the same points a
+// mesh that is scaled or moved gets the same tree but for the last digits, unless a corner or a point is as near to the
+// border between two lattice points as its digits reach. Throws InputError as require_sizes() does, and where there are
+// no points; Error as validate() of a sampling does.
 TightenBuild tightened_tree(const Surface& surface, const SurfaceSampling& sampling, const TightenOptions& options = {},
                             const Progress& progress = {});
 
