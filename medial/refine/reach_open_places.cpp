@@ -1,14 +1,19 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <functional>
 #include <limits>
+#include <queue>
 #include <utility>
 #include <vector>
 
 #include "../quality/reconstruction.h"
 #include "extend_sheets.h"
-#include "join_fins.h"
+#include "growing_borders.h"
+#include "point_grid.h"
 #include "sharp_ends.h"
 #include "sheet_extension.h"
+#include "split.h"
 
 namespace orchard::detail {
 namespace {
@@ -16,18 +21,39 @@ namespace {
 class OpenPlaceReacher {
  public:
   OpenPlaceReacher(const Surface& surface, BallComplex& complex, BallSolver& solver,
-                   const Reconstruction& reconstruction, double left, const BorderOptions& options)
+                   const Reconstruction& reconstruction, double left, const BorderOptions& options,
+                   const SplitOptions& dividing)
       : sheets_(surface, complex, options),
+        borders_(sheets_, kBeside * options.spacing),
         edge_numbers_(complex.edge_numbers()),
         solver_(solver),
         edges_(surface, options.sharp_angle),
         reconstruction_(reconstruction),
-        left_(left) {}
+        left_(left),
+        dividing_(dividing) {}
 
+  // From each place that is reached on to the nearest ones, so that what stands out along a ridge becomes one sheet.
   Index run(std::span<const UncoveredPlace> places) {
+    const double beside = kBeside * sheets_.options.spacing;
+    PointGrid grid(beside);
+    for (Index i = 0; i < places.size(); ++i) grid.add(places[i].position, i);
+    std::vector<std::uint8_t> done(places.size(), 0);
+    using Next = std::pair<double, Index>;
+    std::priority_queue<Next, std::vector<Next>, std::greater<>> next;
     Index reached = 0;
-    for (const UncoveredPlace& place : places) reached += reach(place) ? 1 : 0;
-    join_fins(sheets_, solver_, fins_);
+    for (Index first = 0; first < places.size(); ++first) {
+      next.emplace(0, first);
+      while (!next.empty()) {
+        const Index i = next.top().second;
+        next.pop();
+        if (std::exchange(done[i], 1) != 0 || !reach(places[i])) continue;
+        ++reached;
+        grid.visit_near(places[i].position, [&](Index k) {
+          const double apart = (places[k].position - places[i].position).norm();
+          if (apart <= beside && done[k] == 0) next.emplace(apart, k);
+        });
+      }
+    }
     sheets_.triangles.finish();
     return reached;
   }
@@ -38,6 +64,7 @@ class OpenPlaceReacher {
   static constexpr int kSteps = 20;          // of bisection, and of shrinking
   static constexpr int kAttempts = 4;        // each from half as far in as the last
   static constexpr int kProbed = 4;          // parts of a side, of the balls between an edge and a new ball
+  static constexpr double kBeside = 8;       // spacings, between what is reached for and a border that it grows from
   static constexpr double kAt = 1e-9;        // bounding radii: what rounding puts beside a vertex or an edge
 
   bool reach(const UncoveredPlace& place) {
@@ -48,7 +75,7 @@ class OpenPlaceReacher {
     ClosestPoint on_edge = ExactBall::nowhere();
     const ExactBall ball =
         edges_.nearest(place.position, left_, on_edge) ? ball_on_edge(on_edge) : ball_at(place.position, foot, left_);
-    if (attach(ball, candidates)) return true;
+    if (attach_beside(ball) || attach(ball, candidates)) return true;
     // Where no triangle leads all the way, one may lead half of it, or one from farther back.
     const ExactBall half = ball_at(place.position, foot, place.value / 2);
     const std::vector<Index> around = edges_around(reconstruction_.corners_of(nearest.cell));
@@ -71,10 +98,33 @@ class OpenPlaceReacher {
       if (!is_inside(a, b, ball)) continue;
       const Index v = vertex == kNone ? sheets_.triangles.add_vertex(ball) : vertex;
       if (!sheets_.triangles.add(a, b, v)) continue;
-      if (vertex == kNone) fins_.push_back({v, {a, b}});
+      borders_.add(a, b, v);
       vertex = v;
     }
     return vertex != kNone;
+  }
+
+  // Beside what is there: one triangle from the border edge that lets the borders grow by the least. From farther in,
+  // each place would get a spike of its own, with a border twice as long as its way.
+  bool attach_beside(const ExactBall& ball) {
+    if (ball.count == 0) return false;
+    for (const auto& [a, b] : borders_.near(ball.center)) {
+      if (!may_grow(a, b, ball)) continue;
+      const Index v = sheets_.triangles.add_vertex(ball);
+      if (!sheets_.triangles.add(a, b, v)) continue;
+      borders_.add(a, b, v);
+      return true;
+    }
+    return false;
+  }
+
+  // Whether a triangle from a border edge, its nearer end first, is one that will be right once it is divided; over
+  // sharp edges it goes along these.
+  bool may_grow(Index a, Index b, const ExactBall& ball) {
+    const ExactBall &p = sheets_.complex.balls[a], &q = sheets_.complex.balls[b];
+    if (p.radius == 0 && q.radius == 0) return false;
+    if (p.radius == 0 && ball.radius == 0 && !edges_.goes_between(p.center, ball.center)) return false;
+    return is_inside(a, b, ball) && becomes_linear(sheets_.surface, p, q, ball, dividing_);
   }
 
   // The centre of the largest ball on the way from a place to the centre of its nearest ball that leaves the place open
@@ -178,20 +228,21 @@ class OpenPlaceReacher {
   }
 
   SheetExtension sheets_;
+  GrowingBorders borders_;
   const EdgeNumbers edge_numbers_;  // of the edges as they were
   BallSolver& solver_;
   SharpEdges edges_;
-  std::vector<Fin> fins_;
   const Reconstruction& reconstruction_;
   const double left_;  // mesh units: what a new ball leaves open of its place
+  const SplitOptions& dividing_;
 };
 
 }  // namespace
 
 Index reach_open_places(const Surface& surface, BallComplex& complex, BallSolver& solver,
                         const Reconstruction& reconstruction, std::span<const UncoveredPlace> places, double left,
-                        const BorderOptions& options) {
-  return OpenPlaceReacher(surface, complex, solver, reconstruction, left, options).run(places);
+                        const BorderOptions& options, const SplitOptions& dividing) {
+  return OpenPlaceReacher(surface, complex, solver, reconstruction, left, options, dividing).run(places);
 }
 
 }  // namespace orchard::detail

@@ -32,7 +32,7 @@ constexpr double kMerging = 0.25;
 constexpr int kBorderPasses = 3;      // of filling notches and reaching edges: the last ones find next to nothing
 constexpr double kMinLength = 1e-3;   // diagonals: shorter edges are not divided
 constexpr std::size_t kEnough = 24;   // seeds of a vertex: coalesced ones have hundreds
-constexpr double kOpen = 1.7;         // of the border loss: places left open by more are reached for
+constexpr double kOpen = 1.6;         // of the border loss: places left open by more are reached for
 constexpr double kResolution = 0.1;   // spacings, of looking for these
 constexpr double kDetail = 0.15;      // of what is left open: places open by this more are not missed
 constexpr double kDentWidth = 0.5;    // of what is left open: narrower dents are missed
@@ -221,13 +221,15 @@ void Refiner::mend_borders() {
   report_.edge_vertices += follow_edges(surface_, complex_, border);
 }
 
+SplitOptions Refiner::split_options() const {
+  return {.tolerance = options_.tolerance * diagonal_,
+          .merging = kMerging * level_,
+          .min_length = kMinLength * diagonal_,
+          .max_rounds = options_.max_rounds};
+}
+
 void Refiner::divide() {
-  const SplitReport split = split_nonlinear(surface_, complex_,
-                                            {.tolerance = options_.tolerance * diagonal_,
-                                             .merging = kMerging * level_,
-                                             .min_length = kMinLength * diagonal_,
-                                             .max_rounds = options_.max_rounds},
-                                            split_errors_, progress_);
+  const SplitReport split = split_nonlinear(surface_, complex_, split_options(), split_errors_, progress_);
   report_.divided += split.divided;
   report_.undivided = split.undivided;
 }
@@ -240,7 +242,8 @@ double Refiner::left_open() const {
 
 Index Refiner::reach_for(const Reconstruction& reconstruction, const std::vector<UncoveredPlace>& places,
                          BallSolver& solver) {
-  return reach_open_places(surface_, complex_, solver, reconstruction, places, left_open() / kOpen, border_options());
+  return reach_open_places(surface_, complex_, solver, reconstruction, places, left_open() / kOpen, border_options(),
+                           split_options());
 }
 
 // Where balls leave the surface open by more than borders may, then where dents between them are deeper; what is added

@@ -37,6 +37,7 @@ class Refiner {
   std::span<const Index> corners_of(Index face) const;
   bool folded(Index face, BallSolver& solver) const;
   BorderOptions border_options() const;
+  SplitOptions split_options() const;
 
   void make_complex();
   void seeds_of(Index vertex, const std::vector<Index>& face_of_middle, std::vector<ClosestPoint>& seeds) const;
