@@ -20,13 +20,18 @@ void GrowingBorders::add(Index a, Index b, Index c) {
   for (const auto& edge : {std::array{a, b}, std::array{b, c}, std::array{a, c}}) add_edge(edge);
 }
 
+bool GrowingBorders::has(const std::array<Index, 2>& edge) const {
+  const auto at = triangles_at_.find(key(edge));
+  return at != triangles_at_.end() && at->second == 1;
+}
+
 std::vector<std::array<Index, 2>> GrowingBorders::near(const Point& place) const {
   std::vector<std::tuple<double, Index, Index>> found;
   ends_.visit_near(place, [&](Index i) {
     auto [a, b] = edges_[i];
     const auto way = [&](Index v) { return (sheets_.complex.balls[v].center - place).norm(); };
     if (way(b) < way(a)) std::swap(a, b);
-    if (way(a) > reach_ || triangles_at_.at(key(edges_[i])) != 1) return;
+    if (way(a) > reach_ || !has(edges_[i])) return;
     const double side = (sheets_.complex.balls[a].center - sheets_.complex.balls[b].center).norm();
     found.emplace_back(way(a) + way(b) - side, a, b);
   });

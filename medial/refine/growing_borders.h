@@ -19,6 +19,9 @@ class GrowingBorders {
   // A triangle that has been added to the sheets.
   void add(Index a, Index b, Index c);
 
+  // Whether an edge has just one triangle.
+  bool has(const std::array<Index, 2>& edge) const;
+
   // The edges with one triangle and an end within reach of a place, the nearer end first: those before others from
   // which a triangle to the place makes the borders longer by less.
   std::vector<std::array<Index, 2>> near(const Point& place) const;

@@ -97,25 +97,36 @@ class OpenPlaceReacher {
       if (vertex != kNone && sheets_.at.triangles_at[e].size() != 1) break;
       if (!is_inside(a, b, ball)) continue;
       const Index v = vertex == kNone ? sheets_.triangles.add_vertex(ball) : vertex;
-      if (!sheets_.triangles.add(a, b, v)) continue;
-      borders_.add(a, b, v);
+      if (!add({a, b}, v)) continue;
       vertex = v;
     }
     return vertex != kNone;
   }
 
-  // Beside what is there: one triangle from the border edge that lets the borders grow by the least. From farther in,
-  // each place would get a spike of its own, with a border twice as long as its way.
+  // Beside what is there: a triangle from the border edge that lets the borders grow by the least, and what closes the
+  // corners that it makes with others. From farther in, each place would get a spike of its own, with a border twice
+  // as long as its way.
   bool attach_beside(const ExactBall& ball) {
     if (ball.count == 0) return false;
-    for (const auto& [a, b] : borders_.near(ball.center)) {
-      if (!may_grow(a, b, ball)) continue;
-      const Index v = sheets_.triangles.add_vertex(ball);
-      if (!sheets_.triangles.add(a, b, v)) continue;
-      borders_.add(a, b, v);
-      return true;
+    const std::vector<std::array<Index, 2>> near = borders_.near(ball.center);
+    const auto grows = [&](const auto& edge) { return may_grow(edge[0], edge[1], ball); };
+    const auto first = std::find_if(near.begin(), near.end(), grows);
+    if (first == near.end()) return false;
+    const Index v = sheets_.triangles.add_vertex(ball);
+    add(*first, v);
+    const auto closes = [&](const std::array<Index, 2>& edge) {
+      const auto& [a, b] = edge;
+      return borders_.has(edge) && (borders_.has({a, v}) || borders_.has({b, v})) && grows(edge);
+    };
+    for (auto next = first; next != near.end(); next = std::find_if(near.begin(), near.end(), closes)) {
+      if (next != first && !add(*next, v)) break;
     }
-    return false;
+    return true;
+  }
+  bool add(const std::array<Index, 2>& edge, Index v) {
+    if (!sheets_.triangles.add(edge[0], edge[1], v)) return false;
+    borders_.add(edge[0], edge[1], v);
+    return true;
   }
 
   // Whether a triangle from a border edge, its nearer end first, is one that will be right once it is divided; over

@@ -83,12 +83,20 @@ void Refiner::refine(FoundBalls* found) {
 }
 
 RefinedAxis Refiner::finish() {
+  // First what the diagram leaves degenerate, so that what it covers alone is reached for again.
+  drop_degenerate_cells();
   divide();
   reach();
-  report_.degenerate = drop_degenerate(complex_, kCoincident * diagonal_);
+  drop_degenerate_cells();
   spread_flat(surface_, complex_, kMerging * level_);
   report_progress(progress_, kStage, 1);
   return result();
+}
+
+// What is left of a flat triangle may hang on the rest by one vertex.
+void Refiner::drop_degenerate_cells() {
+  report_.degenerate += drop_degenerate(complex_, kCoincident * diagonal_);
+  report_.small_pieces += drop_small_pieces(complex_);
 }
 
 BallSolver Refiner::solver() const { return {surface_, kMerging * level_}; }
