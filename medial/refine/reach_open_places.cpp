@@ -9,6 +9,7 @@
 
 #include "../quality/reconstruction.h"
 #include "extend_sheets.h"
+#include "flat_triangle.h"
 #include "growing_borders.h"
 #include "point_grid.h"
 #include "sharp_ends.h"
@@ -221,9 +222,10 @@ class OpenPlaceReacher {
     return (place - a - t * along).norm();
   }
 
-  // Whether the balls between an edge and a new one protrude by little.
+  // Whether there are balls between an edge and a new one, and they protrude by little.
   bool is_inside(Index a, Index b, const ExactBall& ball) const {
     const ExactBall &p = sheets_.complex.balls[a], &q = sheets_.complex.balls[b];
+    if (is_flat_triangle(p.center, q.center, ball.center)) return false;  // what has no area goes at last
     const auto protrudes = [&](double u, double v, double w) {
       const double radius = u * p.radius + v * q.radius + w * ball.radius;
       return radius + sheets_.surface.signed_distance(u * p.center + v * q.center + w * ball.center) >

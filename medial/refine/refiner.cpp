@@ -36,6 +36,7 @@ constexpr double kOpen = 1.6;         // of the border loss: places left open by
 constexpr double kResolution = 0.1;   // spacings, of looking for these
 constexpr double kDetail = 0.15;      // of what is left open: places open by this more are not missed
 constexpr double kDentWidth = 0.5;    // of what is left open: narrower dents are missed
+constexpr int kReachPasses = 3;       // of reaching for what dropped pieces leave open: one does for most meshes
 constexpr int kDentRounds = 3;        // of looking for these, once nothing is open: some stay where no ball fits
 constexpr double kApart = 0.5;        // spacings, between two that are reached for at once
 constexpr double kCoincident = 1e-6;  // diagonals: vertices that are nearer are one
@@ -83,20 +84,23 @@ void Refiner::refine(FoundBalls* found) {
 }
 
 RefinedAxis Refiner::finish() {
-  // First what the diagram leaves degenerate, so that what it covers alone is reached for again.
+  // First what the diagram leaves degenerate, and again as long as pieces go that may cover something alone.
   drop_degenerate_cells();
   divide();
   reach();
-  drop_degenerate_cells();
+  for (int pass = 1; drop_degenerate_cells() && pass < kReachPasses; ++pass) reach();
   spread_flat(surface_, complex_, kMerging * level_);
   report_progress(progress_, kStage, 1);
   return result();
 }
 
-// What is left of a flat triangle may hang on the rest by one vertex.
-void Refiner::drop_degenerate_cells() {
+// What is left of flat triangles may hang on the rest by one vertex. Returns whether such pieces went.
+bool Refiner::drop_degenerate_cells() {
   report_.degenerate += drop_degenerate(complex_, kCoincident * diagonal_);
-  report_.small_pieces += drop_small_pieces(complex_);
+  split_errors_ = {};  // of vertices that have other numbers now
+  const Index pieces = drop_small_pieces(complex_);
+  report_.small_pieces += pieces;
+  return pieces > 0;
 }
 
 BallSolver Refiner::solver() const { return {surface_, kMerging * level_}; }

@@ -44,7 +44,7 @@ class Refiner {
   void find_balls(FoundBalls* found);
   void drop_folded();
   void mend_borders();
-  void drop_degenerate_cells();
+  bool drop_degenerate_cells();
   void divide();
   void reach();
   Index reach_for(const Reconstruction& reconstruction, const std::vector<UncoveredPlace>& places, BallSolver& solver);
