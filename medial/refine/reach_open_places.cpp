@@ -104,9 +104,9 @@ class OpenPlaceReacher {
     return vertex != kNone;
   }
 
-  // Beside what is there: a triangle from the border edge that lets the borders grow by the least, and what closes the
-  // corners that it makes with others. From farther in, each place would get a spike of its own, with a border twice
-  // as long as its way.
+  // Beside what is there: a triangle from the border edge that lets the borders grow by the least, and one for each of
+  // its free sides that closes a corner with another. From farther in, each place would get a spike of its own, with a
+  // border twice as long as its way.
   bool attach_beside(const ExactBall& ball) {
     if (ball.count == 0) return false;
     const std::vector<std::array<Index, 2>> near = borders_.near(ball.center);
@@ -119,8 +119,9 @@ class OpenPlaceReacher {
       const auto& [a, b] = edge;
       return borders_.has(edge) && (borders_.has({a, v}) || borders_.has({b, v})) && grows(edge);
     };
-    for (auto next = first; next != near.end(); next = std::find_if(near.begin(), near.end(), closes)) {
-      if (next != first && !add(*next, v)) break;
+    for (int side = 0; side < 2; ++side) {
+      const auto next = std::find_if(near.begin(), near.end(), closes);
+      if (next == near.end() || !add(*next, v)) break;
     }
     return true;
   }
