@@ -146,7 +146,7 @@ std::vector<TuningFlag> refining_flags() {
                  no_refining),
       idle_where(
           whole("reach-rounds", "9", 0, 100,
-                "Times that sheets reach for what they leave open by more than 1.7 border losses: 0 leaves out blunt "
+                "Times that sheets reach for what they leave open by more than 1.65 border losses: 0 leaves out blunt "
                 "edges and ridges that no point shows",
                 [](T& t, double x) { t.refinement.reach_rounds = static_cast<int>(x); }),
           no_refining),

@@ -1,14 +1,20 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <functional>
 #include <limits>
+#include <queue>
 #include <utility>
 #include <vector>
 
 #include "../quality/reconstruction.h"
 #include "extend_sheets.h"
-#include "join_fins.h"
+#include "flat_triangle.h"
+#include "growing_borders.h"
+#include "point_grid.h"
 #include "sharp_ends.h"
 #include "sheet_extension.h"
+#include "split.h"
 
 namespace orchard::detail {
 namespace {
@@ -16,18 +22,39 @@ namespace {
 class OpenPlaceReacher {
  public:
   OpenPlaceReacher(const Surface& surface, BallComplex& complex, BallSolver& solver,
-                   const Reconstruction& reconstruction, double left, const BorderOptions& options)
+                   const Reconstruction& reconstruction, double left, const BorderOptions& options,
+                   const SplitOptions& dividing)
       : sheets_(surface, complex, options),
+        borders_(sheets_, kBeside * options.spacing),
         edge_numbers_(complex.edge_numbers()),
         solver_(solver),
         edges_(surface, options.sharp_angle),
         reconstruction_(reconstruction),
-        left_(left) {}
+        left_(left),
+        dividing_(dividing) {}
 
+  // From each place that is reached on to the nearest ones, so that what stands out along a ridge becomes one sheet.
   Index run(std::span<const UncoveredPlace> places) {
+    const double beside = kBeside * sheets_.options.spacing;
+    PointGrid grid(beside);
+    for (Index i = 0; i < places.size(); ++i) grid.add(places[i].position, i);
+    std::vector<std::uint8_t> done(places.size(), 0);
+    using Next = std::pair<double, Index>;
+    std::priority_queue<Next, std::vector<Next>, std::greater<>> next;
     Index reached = 0;
-    for (const UncoveredPlace& place : places) reached += reach(place) ? 1 : 0;
-    join_fins(sheets_, solver_, fins_);
+    for (Index first = 0; first < places.size(); ++first) {
+      next.emplace(0, first);
+      while (!next.empty()) {
+        const Index i = next.top().second;
+        next.pop();
+        if (std::exchange(done[i], 1) != 0 || !reach(places[i])) continue;
+        ++reached;
+        grid.visit_near(places[i].position, [&](Index k) {
+          const double apart = (places[k].position - places[i].position).norm();
+          if (apart <= beside && done[k] == 0) next.emplace(apart, k);
+        });
+      }
+    }
     sheets_.triangles.finish();
     return reached;
   }
@@ -38,6 +65,7 @@ class OpenPlaceReacher {
   static constexpr int kSteps = 20;          // of bisection, and of shrinking
   static constexpr int kAttempts = 4;        // each from half as far in as the last
   static constexpr int kProbed = 4;          // parts of a side, of the balls between an edge and a new ball
+  static constexpr double kBeside = 8;       // spacings, between what is reached for and a border that it grows from
   static constexpr double kAt = 1e-9;        // bounding radii: what rounding puts beside a vertex or an edge
 
   bool reach(const UncoveredPlace& place) {
@@ -48,7 +76,7 @@ class OpenPlaceReacher {
     ClosestPoint on_edge = ExactBall::nowhere();
     const ExactBall ball =
         edges_.nearest(place.position, left_, on_edge) ? ball_on_edge(on_edge) : ball_at(place.position, foot, left_);
-    if (attach(ball, candidates)) return true;
+    if (attach_beside(ball) || attach(ball, candidates)) return true;
     // Where no triangle leads all the way, one may lead half of it, or one from farther back.
     const ExactBall half = ball_at(place.position, foot, place.value / 2);
     const std::vector<Index> around = edges_around(reconstruction_.corners_of(nearest.cell));
@@ -70,11 +98,46 @@ class OpenPlaceReacher {
       if (vertex != kNone && sheets_.at.triangles_at[e].size() != 1) break;
       if (!is_inside(a, b, ball)) continue;
       const Index v = vertex == kNone ? sheets_.triangles.add_vertex(ball) : vertex;
-      if (!sheets_.triangles.add(a, b, v)) continue;
-      if (vertex == kNone) fins_.push_back({v, {a, b}});
+      if (!add({a, b}, v)) continue;
       vertex = v;
     }
     return vertex != kNone;
+  }
+
+  // Beside what is there: a triangle from the border edge that lets the borders grow by the least, and one for each of
+  // its free sides that closes a corner with another. From farther in, each place would get a spike of its own, with a
+  // border twice as long as its way.
+  bool attach_beside(const ExactBall& ball) {
+    if (ball.count == 0) return false;
+    const std::vector<std::array<Index, 2>> near = borders_.near(ball.center);
+    const auto grows = [&](const auto& edge) { return may_grow(edge[0], edge[1], ball); };
+    const auto first = std::find_if(near.begin(), near.end(), grows);
+    if (first == near.end()) return false;
+    const Index v = sheets_.triangles.add_vertex(ball);
+    add(*first, v);
+    const auto closes = [&](const std::array<Index, 2>& edge) {
+      const auto& [a, b] = edge;
+      return borders_.has(edge) && (borders_.has({a, v}) || borders_.has({b, v})) && grows(edge);
+    };
+    for (int side = 0; side < 2; ++side) {
+      const auto next = std::find_if(near.begin(), near.end(), closes);
+      if (next == near.end() || !add(*next, v)) break;
+    }
+    return true;
+  }
+  bool add(const std::array<Index, 2>& edge, Index v) {
+    if (!sheets_.triangles.add(edge[0], edge[1], v)) return false;
+    borders_.add(edge[0], edge[1], v);
+    return true;
+  }
+
+  // Whether a triangle from a border edge, its nearer end first, is one that will be right once it is divided; over
+  // sharp edges it goes along these.
+  bool may_grow(Index a, Index b, const ExactBall& ball) {
+    const ExactBall &p = sheets_.complex.balls[a], &q = sheets_.complex.balls[b];
+    if (p.radius == 0 && q.radius == 0) return false;
+    if (p.radius == 0 && ball.radius == 0 && !edges_.goes_between(p.center, ball.center)) return false;
+    return is_inside(a, b, ball) && becomes_linear(sheets_.surface, p, q, ball, dividing_);
   }
 
   // The centre of the largest ball on the way from a place to the centre of its nearest ball that leaves the place open
@@ -160,9 +223,10 @@ class OpenPlaceReacher {
     return (place - a - t * along).norm();
   }
 
-  // Whether the balls between an edge and a new one protrude by little.
+  // Whether there are balls between an edge and a new one, and they protrude by little.
   bool is_inside(Index a, Index b, const ExactBall& ball) const {
     const ExactBall &p = sheets_.complex.balls[a], &q = sheets_.complex.balls[b];
+    if (is_flat_triangle(p.center, q.center, ball.center)) return false;  // what has no area goes at last
     const auto protrudes = [&](double u, double v, double w) {
       const double radius = u * p.radius + v * q.radius + w * ball.radius;
       return radius + sheets_.surface.signed_distance(u * p.center + v * q.center + w * ball.center) >
@@ -178,20 +242,21 @@ class OpenPlaceReacher {
   }
 
   SheetExtension sheets_;
+  GrowingBorders borders_;
   const EdgeNumbers edge_numbers_;  // of the edges as they were
   BallSolver& solver_;
   SharpEdges edges_;
-  std::vector<Fin> fins_;
   const Reconstruction& reconstruction_;
   const double left_;  // mesh units: what a new ball leaves open of its place
+  const SplitOptions& dividing_;
 };
 
 }  // namespace
 
 Index reach_open_places(const Surface& surface, BallComplex& complex, BallSolver& solver,
                         const Reconstruction& reconstruction, std::span<const UncoveredPlace> places, double left,
-                        const BorderOptions& options) {
-  return OpenPlaceReacher(surface, complex, solver, reconstruction, left, options).run(places);
+                        const BorderOptions& options, const SplitOptions& dividing) {
+  return OpenPlaceReacher(surface, complex, solver, reconstruction, left, options, dividing).run(places);
 }
 
 }  // namespace orchard::detail

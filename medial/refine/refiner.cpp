@@ -32,10 +32,11 @@ constexpr double kMerging = 0.25;
 constexpr int kBorderPasses = 3;      // of filling notches and reaching edges: the last ones find next to nothing
 constexpr double kMinLength = 1e-3;   // diagonals: shorter edges are not divided
 constexpr std::size_t kEnough = 24;   // seeds of a vertex: coalesced ones have hundreds
-constexpr double kOpen = 1.7;         // of the border loss: places left open by more are reached for
+constexpr double kOpen = 1.65;        // of the border loss: places left open by more are reached for
 constexpr double kResolution = 0.1;   // spacings, of looking for these
 constexpr double kDetail = 0.15;      // of what is left open: places open by this more are not missed
 constexpr double kDentWidth = 0.5;    // of what is left open: narrower dents are missed
+constexpr int kReachPasses = 3;       // of reaching for what dropped pieces leave open: one does for most meshes
 constexpr int kDentRounds = 3;        // of looking for these, once nothing is open: some stay where no ball fits
 constexpr double kApart = 0.5;        // spacings, between two that are reached for at once
 constexpr double kCoincident = 1e-6;  // diagonals: vertices that are nearer are one
@@ -83,12 +84,23 @@ void Refiner::refine(FoundBalls* found) {
 }
 
 RefinedAxis Refiner::finish() {
+  // First what the diagram leaves degenerate, and again as long as pieces go that may cover something alone.
+  drop_degenerate_cells();
   divide();
   reach();
-  report_.degenerate = drop_degenerate(complex_, kCoincident * diagonal_);
+  for (int pass = 1; drop_degenerate_cells() && pass < kReachPasses; ++pass) reach();
   spread_flat(surface_, complex_, kMerging * level_);
   report_progress(progress_, kStage, 1);
   return result();
+}
+
+// What is left of flat triangles may hang on the rest by one vertex. Returns whether such pieces went.
+bool Refiner::drop_degenerate_cells() {
+  report_.degenerate += drop_degenerate(complex_, kCoincident * diagonal_);
+  split_errors_ = {};  // of vertices that have other numbers now
+  const Index pieces = drop_small_pieces(complex_);
+  report_.small_pieces += pieces;
+  return pieces > 0;
 }
 
 BallSolver Refiner::solver() const { return {surface_, kMerging * level_}; }
@@ -221,13 +233,15 @@ void Refiner::mend_borders() {
   report_.edge_vertices += follow_edges(surface_, complex_, border);
 }
 
+SplitOptions Refiner::split_options() const {
+  return {.tolerance = options_.tolerance * diagonal_,
+          .merging = kMerging * level_,
+          .min_length = kMinLength * diagonal_,
+          .max_rounds = options_.max_rounds};
+}
+
 void Refiner::divide() {
-  const SplitReport split = split_nonlinear(surface_, complex_,
-                                            {.tolerance = options_.tolerance * diagonal_,
-                                             .merging = kMerging * level_,
-                                             .min_length = kMinLength * diagonal_,
-                                             .max_rounds = options_.max_rounds},
-                                            split_errors_, progress_);
+  const SplitReport split = split_nonlinear(surface_, complex_, split_options(), split_errors_, progress_);
   report_.divided += split.divided;
   report_.undivided = split.undivided;
 }
@@ -240,7 +254,8 @@ double Refiner::left_open() const {
 
 Index Refiner::reach_for(const Reconstruction& reconstruction, const std::vector<UncoveredPlace>& places,
                          BallSolver& solver) {
-  return reach_open_places(surface_, complex_, solver, reconstruction, places, left_open() / kOpen, border_options());
+  return reach_open_places(surface_, complex_, solver, reconstruction, places, left_open() / kOpen, border_options(),
+                           split_options());
 }
 
 // Where balls leave the surface open by more than borders may, then where dents between them are deeper; what is added

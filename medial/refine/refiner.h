@@ -37,12 +37,14 @@ class Refiner {
   std::span<const Index> corners_of(Index face) const;
   bool folded(Index face, BallSolver& solver) const;
   BorderOptions border_options() const;
+  SplitOptions split_options() const;
 
   void make_complex();
   void seeds_of(Index vertex, const std::vector<Index>& face_of_middle, std::vector<ClosestPoint>& seeds) const;
   void find_balls(FoundBalls* found);
   void drop_folded();
   void mend_borders();
+  bool drop_degenerate_cells();
   void divide();
   void reach();
   Index reach_for(const Reconstruction& reconstruction, const std::vector<UncoveredPlace>& places, BallSolver& solver);

@@ -58,15 +58,22 @@ class PieceDropper {
     }
   }
 
-  // How far each piece with one joint reaches from there.
+  // How far each piece with one joint reaches from there, and its largest radius.
   void measure() {
     reach_.assign(complex_.edges.size(), 0);
+    radius_.assign(complex_.edges.size(), 0);
     for (Index e = 0; e < complex_.edges.size(); ++e) {
       const Index p = piece(e);
       if (joints_[p] != 1) continue;
-      for (const Index v : complex_.edges[e])
+      for (const Index v : complex_.edges[e]) {
         reach_[p] = std::max(reach_[p], (complex_.balls[v].center - complex_.balls[joint_[p]].center).norm());
+        radius_[p] = std::max(radius_[p], complex_.balls[v].radius);
+      }
     }
+  }
+
+  bool is_small(Index p) const {
+    return joints_[p] == 1 && (reach_[p] <= kPieceReach * complex_.balls[joint_[p]].radius || radius_[p] == 0);
   }
 
   Doomed doomed() {
@@ -74,7 +81,7 @@ class PieceDropper {
                   .vertices = std::vector<std::uint8_t>(complex_.size(), 0)};
     for (Index e = 0; e < complex_.edges.size(); ++e) {
       const Index p = piece(e);
-      if (joints_[p] != 1 || reach_[p] > kPieceReach * complex_.balls[joint_[p]].radius) continue;
+      if (!is_small(p)) continue;
       doomed.edges[e] = 1;
       for (const Index v : complex_.edges[e]) {
         if (v != joint_[p]) doomed.vertices[v] = 1;
@@ -88,8 +95,8 @@ class PieceDropper {
   BallComplex& complex_;
   const CellIncidence at_;
   DisjointSets piece_of_edge_;
-  std::vector<Index> joint_, joints_;  // of each piece: the last of its joints, how many
-  std::vector<double> reach_;          // of each piece, mesh units
+  std::vector<Index> joint_, joints_;   // of each piece: the last of its joints, how many
+  std::vector<double> reach_, radius_;  // of each piece, mesh units
 };
 
 }  // namespace

@@ -4,8 +4,9 @@
 namespace orchard::detail {
 
 // Takes away spikes and flakes: chains of edges without triangles that end freely, and pieces of triangles, that hang
-// on the rest by one vertex and reach no farther from it than `kPieceReach` times its radius; but for what the topology
-// needs. Pieces that are left by that hang on nothing stay. Returns how many cells went. O(n log n).
+// on the rest by one vertex and reach no farther from it than `kPieceReach` times its radius, or have no ball of radius
+// above 0; but for what the topology needs. Pieces that are left by that hang on nothing stay. Returns how many cells
+// went. O(n log n).
 Index drop_small_pieces(BallComplex& complex);
 inline constexpr double kPieceReach = 2;
 

@@ -182,4 +182,14 @@ SplitReport split_nonlinear(const Surface& surface, BallComplex& complex, const 
   return report;
 }
 
+bool becomes_linear(const Surface& surface, const ExactBall& a, const ExactBall& b, const ExactBall& c,
+                    const SplitOptions& options) {
+  BallComplex alone;
+  alone.balls = {a, b, c};
+  alone.triangles = {{0, 1, 2}};
+  alone.complete();
+  SplitErrors errors;
+  return split_nonlinear(surface, alone, options, errors, {}).undivided == 0;
+}
+
 }  // namespace orchard::detail

@@ -37,4 +37,8 @@ struct SplitErrors {
 SplitReport split_nonlinear(const Surface& surface, BallComplex& complex, const SplitOptions& options,
                             SplitErrors& known, const Progress& progress);
 
+// Whether a triangle alone, divided like that, has no error beyond the tolerance left: its balls are all of one sheet.
+bool becomes_linear(const Surface& surface, const ExactBall& a, const ExactBall& b, const ExactBall& c,
+                    const SplitOptions& options);
+
 }  // namespace orchard::detail

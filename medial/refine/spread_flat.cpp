@@ -25,8 +25,8 @@ std::array<Index, 3> longest_first(const BallComplex& complex, const std::array<
 }
 
 bool has_no_plane(const BallComplex& complex, const std::array<Index, 3>& corners) {
-  const auto [a, b, c] = longest_first(complex, corners);
-  return is_flat(complex.balls[a].center, complex.balls[b].center, complex.balls[c].center);
+  const auto center = [&](std::size_t i) { return complex.balls[corners[i]].center; };
+  return is_flat_triangle(center(0), center(1), center(2));
 }
 
 class FlatSpreader {

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "hanging_pieces.h"
 #include "known_axes.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/outside_solid.h"
@@ -212,6 +213,17 @@ TEST(RefineAxis, SheetsOfABarThinnerThanThePointsSpacingAreNotTorn) {
       // Torn into strips they had more than twice as much.
       EXPECT_GT(length, 0.95 * edges);
       EXPECT_LT(length, 1.7 * edges);
+    }
+  }
+}
+
+TEST(RefineAxis, NoPieceHangsByOneVertexWithinItsReach) {
+  for (const Solid& solid : solids()) {
+    const Surface surface(solid.mesh);
+    for (std::uint64_t seed = 1; seed <= test::more(); ++seed) {
+      SCOPED_TRACE(solid.name + (" " + std::to_string(seed)));
+      const MedialBuild build = build_medial_axis(surface, options_for(500, test::first_seed() + seed));
+      EXPECT_EQ(test::hanging_pieces(medial_mesh(build.axis), 2), 0u);
     }
   }
 }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "hanging_pieces.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/repair.h"
@@ -26,6 +27,7 @@ namespace fs = std::filesystem;
 const fs::path kModels = ORCHARD_SHARED_MODELS;
 constexpr std::size_t kFewTriangles = 8000;     // up to which a model's contacts are judged by brute force
 constexpr std::size_t kMaxTriangles = 100'000;  // larger ones take minutes at each number of points
+constexpr double kPieceReach = 2;               // radii: pieces that hang by one vertex reach farther
 constexpr Index kJudged = 2000;                 // balls of a model, evenly chosen
 
 // Returns how many balls were looked at. Every radius is the distance to the surface, of exact and inexact balls alike.
@@ -71,7 +73,9 @@ TEST(SharedSolids, KeepTheirTopologyWhenTheirAxisIsRefined) {
       options.sampling.seed = test::first_seed() + 1;
       options.refine.emplace();
       const MedialBuild build = build_medial_axis(surface, options);
-      EXPECT_EQ(topology(medial_mesh(build.axis)), solid_topology(surface));
+      const MedialMesh mesh_of_axis = medial_mesh(build.axis);
+      EXPECT_EQ(topology(mesh_of_axis), solid_topology(surface));
+      EXPECT_EQ(test::hanging_pieces(mesh_of_axis, kPieceReach), 0u);
       if (surface.mesh().triangles.size() <= kFewTriangles) balls += judge_balls(surface, build.axis);
       ++built;
     }
