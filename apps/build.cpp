@@ -59,13 +59,15 @@ bool is_given(const BuildCommand& command, const std::string& option) {
   return std::find(command.given.begin(), command.given.end(), option) != command.given.end();
 }
 
+bool draws_axis(const BuildCommand& command) { return command.views || command.picture || command.page; }
+
 // Whether anything tells of the medial axis, which a tightened tree could do without, or is to.
 bool shows_axis(const BuildCommand& command) {
   const auto tunes = [&](const TuningFlag& flag) {
     return flag.step != TuningStep::points && is_given(command, flag.name);
   };
   const std::vector<TuningFlag>& flags = tuning_flags();
-  return command.views || command.picture || command.page || command.output.json || !command.source.diagram.empty() ||
+  return draws_axis(command) || command.output.json || !command.source.diagram.empty() ||
          std::any_of(flags.begin(), flags.end(), tunes);
 }
 
@@ -73,7 +75,8 @@ bool shows_axis(const BuildCommand& command) {
 SphereTreeOptions tree_options(const BuildCommand& command) {
   SphereTreeOptions options = command.options;
   MedialTuning tuning = command.tuning;
-  tuning.refine = false;
+  // A tightened tree does without, so that its axis is the one to look at. Others are built from the raw one.
+  tuning.refine = command.options.method == TreeMethod::tightened && command.source.axis.empty() && draws_axis(command);
   options.samples_by_need = command.seconds && !tuning.samples;  // the efforts need different numbers
   if (!tuning.samples) tuning.samples = samples_needed(options);
   options.medial = build_options(tuning);

@@ -17,7 +17,7 @@ struct MedialTuning {
   std::optional<double> cluster_degrees;
   double prune_degrees = 0, segment_degrees = 60;
   bool keep_topology = true;
-  bool refine = true;          // for orchard medial; trees have no use for it yet
+  bool refine = true;          // trees are built without, but for what is shown beside them
   RefineOptions refinement;    // if so
   MedialBuildOptions options;  // the rest of it
 };

@@ -18,11 +18,11 @@ detail::Work work_for(Effort effort) {
     case Effort::low:
       return {0.25, 2, 0, 8, {1, 1}};
     case Effort::standard:
-      return {1, 6, 0, 24, {2, 1}};
+      return {1, 6, 0, 48, {2, 1}};
     case Effort::high:
       return {3, 10, 12, 96, {6, 2}};
   }
-  return {1, 6, 0, 24, {2, 1}};
+  return {1, 6, 0, 48, {2, 1}};
 }
 
 }  // namespace
