@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "cavity.h"
+#include "certificate_four.h"
 #include "four_tetrahedra.h"
 #include "line_sum.h"
 #include "orchard/geometry/random.h"
@@ -38,9 +39,6 @@ constexpr double kTold = 1.0 / 64;
 // What a facet may take off, where the bounds are too much for all: of what all of them may, this part for each vertex.
 constexpr double kShares = 64;
 
-// The angle by which the normal of a facet may be off before it is found with more digits.
-constexpr double kBlurred = 0x1p-44;
-
 // Vertices that are held against all points one by one; where there are more, exact signs are cheaper.
 constexpr std::size_t kMaxSuspects = 512, kOfDent = 4;
 
@@ -48,9 +46,7 @@ constexpr std::size_t kMaxSuspects = 512, kOfDent = 4;
 constexpr Index kBlock = 1u << 14, kHullBlock = 1u << 10;
 constexpr std::size_t kWorthThreads = 2;
 
-// Vertices that are looked at together, while the points of the next ones are fetched into the cache; where there are
-// no more points than that, they all are there.
-constexpr Index kBatch = 64;
+// Where there are no more points than that, they all are in the cache.
 constexpr std::size_t kCached = 1u << 13;
 
 // Of mending and looking at what is new.
@@ -62,77 +58,6 @@ constexpr std::size_t kMaxDoubts = 16, kMaxDoubtsOneIn = 64;
 // Rays that are tried: one that meets an edge of the hull tells nothing, but its digits are random.
 constexpr std::uint64_t kRays = 4, kRayStream = 0x5ca1u;
 constexpr double kAside = 0x1p-10;
-
-// The facet between a vertex and its neighbour `slot`, and the point that this one has instead of a shared one.
-struct Facet {
-  Index v, u;
-  unsigned slot;
-  Index across;
-};
-
-// Four times the spheres on both sides of a facet, a corner of each, and the facet's own.
-struct FourSteps {
-  std::array<const VoronoiVertex*, 4> from, to;
-  std::array<const Point*, 4> from_corner, to_corner, a, b, c;
-};
-
-#if defined(__GNUC__) && defined(__x86_64__)
-ORCHARD_AVX2 void load_spheres(const std::array<const VoronoiVertex*, 4>& v, FourVectors& center,
-                               __m256d& squared_radius) {
-  center = {_mm256_load_pd(v[0]->center.data()), _mm256_load_pd(v[1]->center.data()),
-            _mm256_load_pd(v[2]->center.data())};
-  squared_radius = _mm256_load_pd(v[3]->center.data());  // the radius is behind it
-  transpose(center.x, center.y, center.z, squared_radius);
-}
-// As Certifier::near_power().
-ORCHARD_AVX2 __m256d near_powers(const FourVectors& q, const FourVectors& center, const FourVectors& corner) {
-  const FourVectors from_corner = q - corner, to_center = center - corner;
-  const FourVectors rest{all_four(2) * to_center.x - from_corner.x, all_four(2) * to_center.y - from_corner.y,
-                         all_four(2) * to_center.z - from_corner.z};
-  return dot(from_corner, rest);
-}
-#endif
-
-// A bit for each of four facets across which doubles do not show that nothing is lost.
-#if defined(__GNUC__) && defined(__x86_64__)
-[[gnu::target("avx2")]] unsigned doubtful_of_four(const Workspace& workspace, const Facet* facets) {
-  const auto& [a, b, c, d] = *reinterpret_cast<const std::array<Facet, 4>*>(facets);
-  const std::array<Index, 4> v{a.v, b.v, c.v, d.v}, u{a.u, b.u, c.u, d.u};
-  const Point* const points = workspace.points.data();
-  const FourVectors across = load_four({points + a.across, points + b.across, points + c.across, points + d.across});
-  return ~workspace.agree_four(v, u, across) & 0xf;
-}
-
-// As Certifier::normal() and intrusion_added(), in the same order of operations, by the corners of four facets;
-// infinite where a normal calls for more digits.
-[[gnu::target("avx2")]] std::array<double, 4> added_by_four(const FourSteps& steps, double diameter) {
-  const FourVectors a = load_four(steps.a), ab = load_four(steps.b) - a, ac = load_four(steps.c) - a;
-  FourVectors normal = cross(ab, ac);
-  const __m256d size = length(normal), blur = all_four(8 * kRounding) * length(ab) * length(ac) / size;
-  normal = {normal.x / size, normal.y / size, normal.z / size};
-  FourVectors from{}, to{};
-  __m256d from_squared{}, to_squared{};
-  load_spheres(steps.from, from, from_squared);
-  load_spheres(steps.to, to, to_squared);
-  const FourVectors step = to - from;
-  const __m256d zero = _mm256_setzero_pd(), two = all_four(2), far = all_four(diameter);
-  const __m256d radius = _mm256_sqrt_pd(from_squared), reach = _mm256_min_pd(far, two * radius);
-  const __m256d along = dot(normal, step);
-  const FourVectors aside{step.x - along * normal.x, step.y - along * normal.y, step.z - along * normal.z};
-  const __m256d sideways = length(aside) + (two * blur + all_four(8 * kRounding)) * length(step);
-  const __m256d lost = near_powers(a, from, load_four(steps.from_corner)) -
-                       near_powers(a, to, load_four(steps.to_corner)) +
-                       all_four(16 * kRounding) * (radius + _mm256_sqrt_pd(to_squared) + far) * far;
-  const __m256d added = (_mm256_max_pd(zero, lost) + two * reach * (_mm256_max_pd(zero, -along) + sideways)) / radius;
-  std::array<double, 4> result;
-  _mm256_storeu_pd(result.data(), _mm256_blendv_pd(all_four(std::numeric_limits<double>::infinity()), added,
-                                                   _mm256_cmp_pd(blur, all_four(kBlurred), _CMP_LT_OQ)));
-  return result;
-}
-#else
-unsigned doubtful_of_four(const Workspace&, const Facet*) { return 0xf; }
-std::array<double, 4> added_by_four(const FourSteps&, double) { return {}; }
-#endif
 
 // The edge of the hull between the facets of a vertex at infinity and of its neighbour `slot`.
 struct HullEdge {
@@ -155,70 +80,6 @@ struct Look {
   bool has_center = false;
   Vector center;
 };
-
-// Vertices of a batch, listed without branches.
-class BatchList {
- public:
-  std::span<const Index> items() const { return {items_.data(), count_}; }
-  void push_if(Index v, bool condition) {
-    items_[count_] = v;
-    count_ += condition;
-  }
-  // With the place of the first. The last one again for those that the last four lack.
-  template <class Take>
-  void for_each_four(const Take& take) const {
-    for (std::size_t first = 0; first < count_; first += 4) {
-      std::array<Index, 4> four;
-      for (std::size_t lane = 0; lane < 4; ++lane) four[lane] = items_[std::min(first + lane, count_ - 1)];
-      take(first, four);
-    }
-  }
-
- private:
-  std::array<Index, kBatch + 1> items_;
-  std::size_t count_ = 0;
-};
-
-// The same of the vertices of such a list, and their radii.
-struct BatchLooks {
-  std::array<double, kBatch + 4> negative, negative_bound, radius, apart;
-};
-
-// What is seen of four spheres: how far they are from those of their forming points, at most, and what that bounds the
-// error of a power by.
-struct FourSeen {
-  std::array<double, 4> apart, power_bound;
-};
-
-#if defined(__GNUC__) && defined(__x86_64__)
-// As Certifier::from_told_sphere(), with their radii; `far` is what is told of those that share a sphere.
-[[gnu::target("avx2")]] void told_of_four(const Workspace& workspace, const std::array<Index, 4>& v, double far,
-                                          double* radius, double* apart) {
-  const Workspace::FourSpheres spheres = workspace.spheres(v);
-  _mm256_storeu_pd(radius, spheres.radius);
-  const __m256d told = _mm256_blendv_pd(spheres.power_bound / spheres.radius, all_four(far), spheres.shared);
-  _mm256_storeu_pd(apart, workspace.exact() ? _mm256_setzero_pd() : told);
-}
-
-// As Certifier::apart_by() and Workspace::own_power_bound(), by how far the centres are off.
-[[gnu::target("avx2")]] FourSeen apart_of_four(const Workspace& workspace, const std::array<Index, 4>& v,
-                                               const std::array<double, 4>& offs, const std::array<double, 4>& radii,
-                                               double diameter) {
-  const __m256d off = _mm256_loadu_pd(offs.data()), radius = _mm256_loadu_pd(radii.data());
-  const __m256d times = _mm256_min_pd(all_four(diameter) / (all_four(0.75) * radius), all_four(2));
-  const __m256d is_near = _mm256_cmp_pd(off, radius / all_four(8), _CMP_LE_OQ);
-  FourSeen seen;
-  _mm256_storeu_pd(seen.apart.data(), _mm256_blendv_pd(all_four(diameter), off * (all_four(4) * times), is_near));
-  _mm256_storeu_pd(seen.power_bound.data(), workspace.own_power_bounds(v, off));
-  return seen;
-}
-#else
-void told_of_four(const Workspace&, const std::array<Index, 4>&, double, double*, double*) {}
-FourSeen apart_of_four(const Workspace&, const std::array<Index, 4>&, const std::array<double, 4>&,
-                       const std::array<double, 4>&, double) {
-  return {};
-}
-#endif
 
 // What the facet of three points takes off, where that is more than its share.
 struct Loss {
@@ -329,47 +190,54 @@ class Certifier {
   }
   bool look_at_each_oriented() {
     const auto count = static_cast<Index>(workspace_.vertices.size());
-    return look_in_blocks((count + kBatch - 1) / kBatch, kBlock / kBatch, [&](Certifier& part, Index batch) {
-      const Index begin = batch * kBatch, end = std::min(count, begin + kBatch);
-      if (workspace_.points.size() > kCached)
-        for (Index v = end; v < std::min(count, end + kBatch); ++v)
-          for (const Index point : workspace_.vertices[v].forming_points)
-            __builtin_prefetch(workspace_.points.data() + point);
-      if (first_new_ == 0 && can_take_four()) return part.are_all_oriented(begin, end);
-      for (Index v = begin; v < end; ++v)
-        if (!workspace_.is_free(v) && is_new(v) && !part.is_oriented(v)) return false;
-      return true;
-    });
+    return look_in_blocks((count + kCertificateBatch - 1) / kCertificateBatch, kBlock / kCertificateBatch,
+                          [&](Certifier& part, Index batch) {
+                            const Index begin = batch * kCertificateBatch,
+                                        end = std::min(count, begin + kCertificateBatch);
+                            if (workspace_.points.size() > kCached)
+                              for (Index v = end; v < std::min(count, end + kCertificateBatch); ++v)
+                                for (const Index point : workspace_.vertices[v].forming_points)
+                                  __builtin_prefetch(workspace_.points.data() + point);
+                            if (first_new_ == 0 && can_take_four()) return part.are_all_oriented(begin, end);
+                            for (Index v = begin; v < end; ++v)
+                              if (!workspace_.is_free(v) && is_new(v) && !part.is_oriented(v)) return false;
+                            return true;
+                          });
   }
   // Those of the hull aside.
   bool look_at_each_facet() {
     const auto count = static_cast<Index>(workspace_.vertices.size());
-    return look_in_blocks((count + kBatch - 1) / kBatch, kBlock / kBatch, [&](Certifier& part, Index batch) {
-      const Index begin = batch * kBatch, end = std::min(count, begin + kBatch);
-      if (first_new_ == 0) return part.are_all_facets_good(begin, end);
-      for (Index v = begin; v < end; ++v)
-        if (!workspace_.is_free(v) && is_new(v) && !workspace_.at_infinity(v) && !part.are_facets_good(v)) return false;
-      return true;
-    });
+    return look_in_blocks(
+        (count + kCertificateBatch - 1) / kCertificateBatch, kBlock / kCertificateBatch,
+        [&](Certifier& part, Index batch) {
+          const Index begin = batch * kCertificateBatch, end = std::min(count, begin + kCertificateBatch);
+          if (first_new_ == 0) return part.are_all_facets_good(begin, end);
+          for (Index v = begin; v < end; ++v)
+            if (!workspace_.is_free(v) && is_new(v) && !workspace_.at_infinity(v) && !part.are_facets_good(v))
+              return false;
+          return true;
+        });
   }
   // The edges between the facets of vertices at infinity, ascending, that are seen from there.
   bool look_at_edges(const std::vector<Index>& hull) {
     const auto count = static_cast<Index>(hull.size());
-    return look_in_blocks((count + kBatch - 1) / kBatch, kHullBlock / kBatch, [&](Certifier& part, Index batch) {
-      // Listed first, so that the vertices across are in the cache when they are asked for.
-      std::array<HullEdge, std::size_t{3} * kBatch> edges;
-      std::size_t listed = 0;
-      for (Index i = batch * kBatch; i < std::min(count, (batch + 1) * kBatch); ++i)
-        for (unsigned slot = 0; slot < 3; ++slot) {
-          const Index v = hull[i], u = workspace_.vertices[v].neighbors[slot];
-          __builtin_prefetch(workspace_.vertices.data() + u);
-          edges[listed] = {v, u, slot};
-          listed += (u > v) | !is_new(u);
-        }
-      return std::all_of(edges.begin(), edges.begin() + listed, [&part](const HullEdge& edge) {
-        return part.is_hull_convex(edge.v, edge.slot) || part.doubt(edge.v, edge.u);
-      });
-    });
+    return look_in_blocks((count + kCertificateBatch - 1) / kCertificateBatch, kHullBlock / kCertificateBatch,
+                          [&](Certifier& part, Index batch) {
+                            // Listed first, so that the vertices across are in the cache when they are asked for.
+                            std::array<HullEdge, std::size_t{3} * kCertificateBatch> edges;
+                            std::size_t listed = 0;
+                            for (Index i = batch * kCertificateBatch;
+                                 i < std::min(count, (batch + 1) * kCertificateBatch); ++i)
+                              for (unsigned slot = 0; slot < 3; ++slot) {
+                                const Index v = hull[i], u = workspace_.vertices[v].neighbors[slot];
+                                __builtin_prefetch(workspace_.vertices.data() + u);
+                                edges[listed] = {v, u, slot};
+                                listed += (u > v) | !is_new(u);
+                              }
+                            return std::all_of(edges.begin(), edges.begin() + listed, [&part](const HullEdge& edge) {
+                              return part.is_hull_convex(edge.v, edge.slot) || part.doubt(edge.v, edge.u);
+                            });
+                          });
   }
   // good(part, i) for all i below the count, until one is not; by several threads where there are many. Nothing changes
   // on the way but a vertex that is looked at itself.
@@ -682,7 +550,7 @@ class Certifier {
   // are in the cache when their distances are asked for.
   bool are_all_facets_good(Index begin, Index end) {
     std::size_t listed = 0, count = 0;
-    std::array<Facet, std::size_t{4} * kBatch + 4> facets;
+    std::array<Facet, std::size_t{4} * kCertificateBatch + 4> facets;
     for (Index v = begin; v < end; ++v)
       for (unsigned i = 0; i < 4; ++i) {
         const Index u = workspace_.vertices[v].neighbors[i];
