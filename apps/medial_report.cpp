@@ -43,6 +43,7 @@ json to_json(const RefineReport& report) {
           {"folded_triangles", report.folded_triangles},
           {"border_cuts", report.border_cuts},
           {"spike_and_flake_cells_removed", report.small_pieces},
+          {"doubled_triangles_removed", report.doubled},
           {"notches_filled", report.notches},
           {"open_places_reached", report.reached_places},
           {"vertices_on_sharp_edges", report.edge_vertices},
@@ -123,9 +124,9 @@ void print(const MedialBuild& build) {
   if (refinement.vertices == 0) return;
   fmt::print(
       "refining: {} folded triangles and what borders lose less than cut off, {} cells of spikes and flakes, {} "
-      "notches filled, {} open places reached, {} edges divided",
-      refinement.folded_triangles, refinement.small_pieces, refinement.notches, refinement.reached_places,
-      refinement.divided);
+      "triangles of doubled sheets, {} notches filled, {} open places reached, {} edges divided",
+      refinement.folded_triangles, refinement.small_pieces, refinement.doubled, refinement.notches,
+      refinement.reached_places, refinement.divided);
   if (refinement.undivided > 0) fmt::print(", {} still beyond the tolerance", refinement.undivided);
   fmt::print("; borders {:.1f} diagonals long\n", refinement.border_length);
 }

@@ -60,82 +60,59 @@ class Collapse {
  public:
   Collapse(BallComplex& complex, const Doomed& doomed, const std::vector<double>& value)
       : complex_(complex), doomed_(doomed), value_(value), at_(complex.edges, complex.triangles, complex.size()) {
-    vertex_alive_.assign(complex.balls.size(), 1);
-    edge_alive_.assign(complex.edges.size(), 1);
-    triangle_alive_.assign(complex.triangles.size(), 1);
+    alive_.vertices.assign(complex.balls.size(), 1);
+    alive_.edges.assign(complex.edges.size(), 1);
+    alive_.triangles.assign(complex.triangles.size(), 1);
   }
 
   void run() {
-    for (Index e = 0; e < edge_alive_.size(); ++e) offer(e);
+    for (Index e = 0; e < alive_.edges.size(); ++e) offer(e);
     while (!queue_.empty()) {
       const Index edge = std::get<1>(queue_.top());
       queue_.pop();
-      if (edge_alive_[edge]) take(edge);
+      if (alive_.edges[edge]) take(edge);
     }
-    write_back();
+    keep_alive(complex_, alive_);
   }
 
  private:
   bool has_triangle(Index edge) const {
     const auto row = at_.triangles_at[edge];
-    return std::any_of(row.begin(), row.end(), [&](Index t) { return triangle_alive_[t] != 0; });
+    return std::any_of(row.begin(), row.end(), [&](Index t) { return alive_.triangles[t] != 0; });
   }
   Index free_end(Index edge) const {
     if (has_triangle(edge)) return kNone;
     for (const Index v : complex_.edges[edge]) {
-      if (doomed_.vertices[v] && only(at_.edges_at[v], edge_alive_) == edge) return v;
+      if (doomed_.vertices[v] && only(at_.edges_at[v], alive_.edges) == edge) return v;
     }
     return kNone;
   }
   void offer(Index edge) {
-    if (!edge_alive_[edge] || !doomed_.edges[edge]) return;
-    if (only(at_.triangles_at[edge], triangle_alive_) == kNone && free_end(edge) == kNone) return;
+    if (!alive_.edges[edge] || !doomed_.edges[edge]) return;
+    if (only(at_.triangles_at[edge], alive_.triangles) == kNone && free_end(edge) == kNone) return;
     const auto& [a, b] = complex_.edges[edge];
     queue_.emplace(std::min(value_[a], value_[b]), edge);
   }
   void take(Index edge) {
-    const Index triangle = only(at_.triangles_at[edge], triangle_alive_);
+    const Index triangle = only(at_.triangles_at[edge], alive_.triangles);
     if (triangle != kNone) {
-      edge_alive_[edge] = triangle_alive_[triangle] = 0;
+      alive_.edges[edge] = alive_.triangles[triangle] = 0;
       for (const Index side : at_.sides[triangle]) offer(side);
     } else {
       const Index end = free_end(edge);
       if (end == kNone) return;
-      edge_alive_[edge] = vertex_alive_[end] = 0;
+      alive_.edges[edge] = alive_.vertices[end] = 0;
     }
     for (const Index v : complex_.edges[edge]) {
       for (const Index other : at_.edges_at[v]) offer(other);
     }
   }
 
-  void write_back() {
-    std::vector<Index> number(vertex_alive_.size(), kNone);
-    Index count = 0;
-    for (Index v = 0; v < number.size(); ++v) {
-      if (!vertex_alive_[v]) continue;
-      number[v] = count;
-      complex_.balls[count++] = complex_.balls[v];
-    }
-    complex_.balls.resize(count);
-    const auto keep = [&](auto& cells, const std::vector<std::uint8_t>& alive) {
-      std::size_t kept = 0;
-      for (std::size_t i = 0; i < cells.size(); ++i) {
-        if (!alive[i]) continue;
-        cells[kept] = cells[i];
-        for (Index& v : cells[kept]) v = number[v];
-        ++kept;
-      }
-      cells.resize(kept);
-    };
-    keep(complex_.edges, edge_alive_);
-    keep(complex_.triangles, triangle_alive_);
-  }
-
   BallComplex& complex_;
   const Doomed& doomed_;
   const std::vector<double>& value_;
   const CellIncidence at_;
-  std::vector<std::uint8_t> vertex_alive_, edge_alive_, triangle_alive_;
+  Alive alive_;
   std::priority_queue<std::pair<double, Index>, std::vector<std::pair<double, Index>>, std::greater<>> queue_;
 };
 
@@ -185,6 +162,29 @@ void subdivide(BallComplex& complex, const std::vector<Index>& cut) {
   insert_cells(edges, kept, std::move(halves), std::move(pieces));
   complex.triangles = std::move(kept);
   complex.edges = std::move(edges);
+}
+
+void keep_alive(BallComplex& complex, const Alive& alive) {
+  std::vector<Index> number(alive.vertices.size(), kNone);
+  Index count = 0;
+  for (Index v = 0; v < number.size(); ++v) {
+    if (!alive.vertices[v]) continue;
+    number[v] = count;
+    complex.balls[count++] = complex.balls[v];
+  }
+  complex.balls.resize(count);
+  const auto keep = [&](auto& cells, const std::vector<std::uint8_t>& stays) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (!stays[i]) continue;
+      cells[kept] = cells[i];
+      for (Index& v : cells[kept]) v = number[v];
+      ++kept;
+    }
+    cells.resize(kept);
+  };
+  keep(complex.edges, alive.edges);
+  keep(complex.triangles, alive.triangles);
 }
 
 void collapse(BallComplex& complex, const Doomed& doomed, const std::vector<double>& value_of_vertex) {

@@ -26,6 +26,14 @@ struct BallComplex {
 // that divides edge e, which is in `complex.balls` already, or kNone. O(n) and O(log n) for each cut.
 void subdivide(BallComplex& complex, const std::vector<Index>& cut);
 
+// Which cells of a complex stay, by their numbers.
+struct Alive {
+  std::vector<std::uint8_t> vertices, edges, triangles;
+};
+
+// Takes all other cells away; what stays must have its corners and sides. The order stays. O(n).
+void keep_alive(BallComplex& complex, const Alive& alive);
+
 // What may be taken away, by edges and vertices; a triangle may go if one of its edges may. Nothing else does.
 struct Doomed {
   std::vector<std::uint8_t> edges, vertices;

@@ -14,6 +14,7 @@
 #include "cut_at_level.h"
 #include "dents_below.h"
 #include "drop_degenerate.h"
+#include "drop_doubled.h"
 #include "extend_sheets.h"
 #include "orchard/geometry/angle.h"
 #include "orchard/geometry/error.h"
@@ -39,6 +40,7 @@ constexpr double kDentWidth = 0.5;    // of what is left open: narrower dents ar
 constexpr int kReachPasses = 3;       // of reaching for what dropped pieces leave open: one does for most meshes
 constexpr int kDentRounds = 3;        // of looking for these, once nothing is open: some stay where no ball fits
 constexpr double kApart = 0.5;        // spacings, between two that are reached for at once
+constexpr double kShorter = 0.5;      // spacings, by which the borders become shorter where a doubled sheet goes
 constexpr double kCoincident = 1e-6;  // diagonals: vertices that are nearer are one
 
 void check(const RefineOptions& options) {
@@ -86,6 +88,7 @@ void Refiner::refine(FoundBalls* found) {
 RefinedAxis Refiner::finish() {
   // First what the diagram leaves degenerate, and again as long as pieces go that may cover something alone.
   drop_degenerate_cells();
+  drop_doubled_sheets();
   divide();
   reach();
   for (int pass = 1; drop_degenerate_cells() && pass < kReachPasses; ++pass) reach();
@@ -101,6 +104,12 @@ bool Refiner::drop_degenerate_cells() {
   const Index pieces = drop_small_pieces(complex_);
   report_.small_pieces += pieces;
   return pieces > 0;
+}
+
+// Before anything is divided: what is taken away needs no dividing, and what it covered alone is reached for.
+void Refiner::drop_doubled_sheets() {
+  report_.doubled = drop_doubled(complex_, options_.tolerance * diagonal_, kShorter * border_options().spacing);
+  report_.small_pieces += drop_small_pieces(complex_);
 }
 
 BallSolver Refiner::solver() const { return {surface_, kMerging * level_}; }

@@ -32,6 +32,7 @@ struct RefineReport {
   Index folded_triangles = 0;  // taken away: their two points have one contact
   Index border_cuts = 0;       // edges cut where the loss passes border_loss
   Index small_pieces = 0;      // edges and triangles of spikes and flakes, taken away
+  Index doubled = 0;           // triangles of sheets that double others, taken away
   Index notches = 0;           // triangles that fill notches of borders, and what is open along sharp edges
   Index edge_vertices = 0;     // vertices of radius 0 on sharp edges
   Index reached_places = 0;    // of the surface, left open by more than borders may
