@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -27,6 +28,9 @@ class DegenerateCells {
 
  private:
   Point center(Index v) const { return mesh_.ball(v).head<3>(); }
+  bool is_near(Index a, Index b) const {
+    return std::abs(mesh_.ball(a)[0] - mesh_.ball(b)[0]) <= apart_ && apart(a, b) <= apart_;
+  }
   double apart(Index a, Index b) const { return (mesh_.ball(a) - mesh_.ball(b)).head<3>().norm(); }
 
   // What stays of two: what ends on the surface, then what is exact, then what has more contacts.
@@ -44,7 +48,7 @@ class DegenerateCells {
       while (merged && mesh_.alive(v)) {
         merged = false;
         for (const Index other : mesh_.neighbors(v)) {
-          if (other < v || apart(v, other) > apart_ || !mesh_.may_contract(v, other)) continue;
+          if (other < v || !is_near(v, other) || !mesh_.may_contract(v, other)) continue;
           const auto [kept, gone] = stays(v, other) ? std::pair(v, other) : std::pair(other, v);
           mesh_.contract(kept, gone, mesh_.ball(kept));
           merged = true;
@@ -58,16 +62,16 @@ class DegenerateCells {
   // False if there is nothing to divide.
   bool divide_flat() {
     bool divided = false;
-    for (const auto& corners : mesh_.maximal_cells()) {
+    for (const auto& corners : mesh_.triangles()) {
       auto [a, b, c] = corners;
-      if (a == b || a == c || b == c || !is_triangle(a, b, c)) continue;
+      if (!is_flat_triangle(center(a), center(b), center(c)) || !is_triangle(a, b, c)) continue;
       // The longest edge is ab.
       if (apart(b, c) > apart(a, b) && apart(b, c) >= apart(a, c)) {
         std::swap(a, c);
       } else if (apart(a, c) > apart(a, b)) {
         std::swap(b, c);
       }
-      if (is_flat(center(a), center(b), center(c)) && divide_at(a, b, c)) divided = true;
+      if (divide_at(a, b, c)) divided = true;
     }
     return divided;
   }
@@ -97,7 +101,6 @@ class DegenerateCells {
     MedialMesh mesh = mesh_.mesh();
     complex_.edges = std::move(mesh.edges);
     complex_.triangles = std::move(mesh.triangles);
-    complex_.complete();
   }
 
   BallComplex& complex_;

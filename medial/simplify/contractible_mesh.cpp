@@ -226,11 +226,17 @@ MedialMesh ContractibleMesh::mesh() const {
   return mesh;
 }
 
-std::vector<ContractibleMesh::Triangle> ContractibleMesh::maximal_cells() const {
-  std::vector<Triangle> cells;
+std::vector<ContractibleMesh::Triangle> ContractibleMesh::triangles() const {
+  std::vector<Triangle> triangles;
+  triangles.reserve(triangles_.size());
   for (Index t = 0; t < triangles_.size(); ++t) {
-    if (triangle_alive_[t]) cells.push_back(triangles_[t]);
+    if (triangle_alive_[t]) triangles.push_back(triangles_[t]);
   }
+  return triangles;
+}
+
+std::vector<ContractibleMesh::Triangle> ContractibleMesh::maximal_cells() const {
+  std::vector<Triangle> cells = triangles();
   for (Index v = 0; v < size(); ++v) {
     for (const Index other : neighbors_[v]) {
       if (v < other && count_triangles_at(v, other) == 0) cells.push_back({v, other, v});

@@ -62,6 +62,8 @@ class ContractibleMesh {
 
   // The living cells, vertices numbered anew in their order.
   MedialMesh mesh() const;
+  // The living triangles.
+  std::vector<Triangle> triangles() const;
   // For each of its cells that no larger one holds, its corners by the numbers here; missing ones repeat the first.
   std::vector<Triangle> maximal_cells() const;
 
