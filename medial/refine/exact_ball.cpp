@@ -17,15 +17,28 @@ constexpr double kEqual = 1e-11;    // bounding radii: distances that are the sa
 constexpr double kTouching = 1e-9;  // of a distance to a contact: what rounding may put between it and the surface
 constexpr double kRank = 0.03;      // of the widest contacts: normals that differ by less do not say where to go
 
-using Balls = std::initializer_list<const ExactBall*>;
+using Balls = std::initializer_list<PartOfBall>;
 
 double nearest_contact(const Point& place, Balls balls) {
   double squared = std::numeric_limits<double>::infinity();
-  for (const ExactBall* ball : balls) {
+  for (const auto& [ball, part] : balls) {
     for (const ClosestPoint& contact : ball->touching())
       squared = std::min(squared, (contact.position - place).squaredNorm());
   }
   return (1 + kTouching) * std::sqrt(squared);
+}
+
+// Whether the ball of this radius holds nothing of the surface for certain, being inside: that |x|^2 - distance(x)^2 is
+// a convex function bounds the distance from below, and a place in one of the balls is inside.
+bool is_surely_empty(const Point& place, double radius, Balls balls) {
+  double squared = 0;
+  bool inside = false;
+  for (const auto& [ball, part] : balls) {
+    const double apart = (ball->center - place).squaredNorm(), own = ball->radius * ball->radius;
+    squared += part * (own - apart);
+    inside = inside || apart < own;
+  }
+  return inside && (1 - kTouching) * squared >= radius * radius;
 }
 
 // For which a with loss(radius, a) = loss the ends of unit vectors at this angle are so far apart, squared: 4 sin^2(a /
@@ -50,6 +63,7 @@ double ball_error(const Surface& surface, const Point& center, double radius, do
 double ball_error(const Surface& surface, const Point& center, double radius, double reach, Balls between,
                   double fine) {
   const double contact = nearest_contact(center, between), inner = radius - fine;
+  if (contact < radius + fine && inner > 0 && is_surely_empty(center, inner, between)) return 0;
   if (contact < radius + fine && inner > reach && surface.closest_within(center, inner).triangle == kNone) return 0;
   const double distance = closest_from(surface, center, contact).distance;
   if (distance <= reach && !surface.inside(center)) return radius + distance;
@@ -205,7 +219,7 @@ ExactBall BallSolver::between(const ExactBall& a, const ExactBall& b, double t) 
   contacts_.clear();
   for (const ClosestPoint& contact : a.touching()) contacts_.push_back({contact, 1});
   for (const ClosestPoint& contact : b.touching()) contacts_.push_back({contact, 2});
-  contacts_.push_back({closest_from(surface_, start, nearest_contact(start, {&a, &b}))});
+  contacts_.push_back({closest_from(surface_, start, nearest_contact(start, {{&a, 1 - t}, {&b, t}}))});
   merge(start);
   std::stable_partition(contacts_.begin(), contacts_.end(), [](const Held& contact) { return contact.of == 3; });
   const auto common = static_cast<std::size_t>(

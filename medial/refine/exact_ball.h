@@ -31,10 +31,17 @@ struct ExactBall {
 // How far an interpolated ball protrudes from the solid or falls short of its surface. Somewhere within `reach` of its
 // centre the solid is, so only a centre that is as near to the surface can be outside.
 double ball_error(const Surface& surface, const Point& center, double radius, double reach);
-// The same of one between these balls: the surface is no farther than their contacts, which saves looking for it. What
-// is at most `fine` may come out as 0: that nothing is nearer than this is found sooner than what is nearest.
+// A ball, and its part in one that is interpolated.
+struct PartOfBall {
+  const ExactBall* ball;
+  double part;  // they sum up to 1
+};
+// The same of one between these balls, whose radii are the distances to the surface: it is no farther than their
+// contacts, and no nearer than a concave function says that is known at their centres (squared distances from a set,
+// less those from the origin, are one: the least of linear functions), which mostly saves looking for it. What is at
+// most `fine` may come out as 0.
 double ball_error(const Surface& surface, const Point& center, double radius, double reach,
-                  std::initializer_list<const ExactBall*> between, double fine);
+                  std::initializer_list<PartOfBall> between, double fine);
 
 // Finds the ball of the medial axis that is nearest to a given one, by Newton's method: the contacts are held, the
 // centre moves as little as makes their distances equal, and what comes nearer than they do becomes a contact, too.

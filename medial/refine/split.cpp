@@ -119,7 +119,7 @@ class Splitter {
     if (reach <= options_.tolerance) return 0;
     const auto error_at = [&](double t, double fine) {
       return ball_error(surface_, (1 - t) * a.center + t * b.center, (1 - t) * a.radius + t * b.radius, length(edge),
-                        {&a, &b}, fine);
+                        {{&a, 1 - t}, {&b, t}}, fine);
     };
     const int parts = parts_of(length(edge));
     const double small = kSmall * options_.tolerance;
@@ -136,7 +136,8 @@ class Splitter {
     const auto error_at = [&](double u, double v) {
       const double w = 1 - u - v;
       return ball_error(surface_, u * a.center + v * b.center + w * c.center,
-                        u * a.radius + v * b.radius + w * c.radius, longest, {&a, &b, &c}, options_.tolerance);
+                        u * a.radius + v * b.radius + w * c.radius, longest, {{&a, u}, {&b, v}, {&c, w}},
+                        options_.tolerance);
     };
     const int parts = parts_of(longest);
     double worst = error_at(1.0 / 3, 1.0 / 3);
