@@ -40,13 +40,17 @@ struct Dent {
 std::vector<Dent> dents_seen_from(std::span<const Sphere> balls, const Surface& surface,
                                   const Reconstruction& reconstruction, double min_depth);
 
+// What saves queries where it is of all vertices, or of the middles of all triangles.
+struct KnownDepths {
+  std::span<const BallDepth> vertices, triangles;
+};
+
 // How far the reconstruction reaches out of the solid at most: that is attained. `upper` bounds how far any ball
 // reaches beyond the place of the surface that is nearest to its centre, which is no less than what protrudes, and more
 // where a ball closes a crevice and ends in the solid again. Cells are halved until that is within the larger of
 // `accuracy` and 2 % above what was attained, or until `max_cells` were looked at. Parallel, and the same for any
 // number of threads.
-// `depths` saves a query for each triangle if it has those of the middles of all of them.
-SearchedMax max_protrusion(const Surface& surface, const MedialMesh& mesh, std::span<const BallDepth> depths,
-                           double known, double accuracy, Index max_cells);
+SearchedMax max_protrusion(const Surface& surface, const MedialMesh& mesh, const KnownDepths& depths, double known,
+                           double accuracy, Index max_cells);
 
 }  // namespace orchard::detail

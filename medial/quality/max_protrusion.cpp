@@ -24,21 +24,27 @@ constexpr double kRounding = 1e-12;   // of the coordinates: more than a bound i
 struct Cell {
   std::array<Sphere, 3> balls;
   const BallDepth* depth = nullptr;  // of the middle, where it is known
+  std::array<const BallDepth*, 3> corner_depths{};
   double bound = std::numeric_limits<double>::infinity();
 };
 
-// `depths`: of the middles of all triangles, or of some others, which are not used.
-std::vector<Cell> cells_of(const MedialMesh& mesh, std::span<const BallDepth> depths) {
+std::vector<Cell> cells_of(const MedialMesh& mesh, const KnownDepths& known) {
+  const bool of_vertices = known.vertices.size() == mesh.size();
   const CellIncidence at(mesh.edges, mesh.triangles, mesh.size());
   std::vector<Cell> cells;
   const auto add = [&](Index a, Index b, Index c) {
     Cell cell;
     const std::array<Index, 3> corners{a, b, c};
-    for (std::size_t k = 0; k < 3; ++k) cell.balls[k] = {mesh.centers[corners[k]], mesh.radii[corners[k]]};
+    for (std::size_t k = 0; k < 3; ++k) {
+      cell.balls[k] = {mesh.centers[corners[k]], mesh.radii[corners[k]]};
+      if (of_vertices) cell.corner_depths[k] = &known.vertices[corners[k]];
+    }
     cells.push_back(cell);
   };
   for (const auto& [a, b, c] : mesh.triangles) add(a, b, c);
-  for (std::size_t t = 0; t < cells.size() && depths.size() == cells.size(); ++t) cells[t].depth = &depths[t];
+  if (known.triangles.size() == cells.size()) {
+    for (std::size_t t = 0; t < cells.size(); ++t) cells[t].depth = &known.triangles[t];
+  }
   for (const Index e : at.bare_edges()) add(mesh.edges[e][0], mesh.edges[e][1], mesh.edges[e][1]);
   for (const Index v : at.lone_vertices()) add(v, v, v);
   return cells;
@@ -54,7 +60,24 @@ std::array<Cell, 2> halves_of(const Cell& cell) {
   }
   const Sphere &a = cell.balls[longest], &b = cell.balls[(longest + 1) % 3], &c = cell.balls[(longest + 2) % 3];
   const Sphere middle{0.5 * (a.center + b.center), 0.5 * (a.radius + b.radius)};
-  return {Cell{{a, middle, c}, nullptr, cell.bound}, Cell{{middle, b, c}, nullptr, cell.bound}};
+  return {Cell{{a, middle, c}, nullptr, {}, cell.bound}, Cell{{middle, b, c}, nullptr, {}, cell.bound}};
+}
+
+// An upper bound on r - distance over a cell: |x|^2 - distance^2 is a convex function, so the squared distance is no
+// less than what is interpolated of it on the corners less their squared distances from x, so interpolated, which is a
+// third of the longest side's square at most. Infinity where no distances are known, or that says nothing.
+double bound_by_corners(const Cell& cell) {
+  constexpr double kUnknown = std::numeric_limits<double>::infinity();
+  double least = kUnknown, over = -kUnknown, side = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!cell.corner_depths[k]) return kUnknown;
+    const double distance = cell.corner_depths[k]->nearest.distance;
+    least = std::min(least, distance);
+    over = std::max(over, cell.balls[k].radius - distance);
+    side = std::max(side, (cell.balls[k].center - cell.balls[(k + 1) % 3].center).squaredNorm());
+  }
+  const double below = least * least - side / 3;
+  return below > 0 ? over + side / 3 / (least + std::sqrt(below)) : kUnknown;
 }
 
 class ProtrusionSearch {
@@ -124,6 +147,8 @@ class ProtrusionSearch {
       const BallReach attained = reach_of(surface_, middle, middle_depth);
       if (attained.beyond > found.max) found = {attained.beyond, 0, attained.farthest, middle};
     }
+    if (reach < -depth) bound = std::min(bound, bound_by_corners(cell) + rounding_);
+    if (bound <= enough()) return bound;
     if (reach < -depth) bound = std::min(bound, surface_.max_reach(cell.balls, middle.center, known) + rounding_);
     return bound;
   }
@@ -137,8 +162,8 @@ class ProtrusionSearch {
 
 }  // namespace
 
-SearchedMax max_protrusion(const Surface& surface, const MedialMesh& mesh, std::span<const BallDepth> depths,
-                           double known, double accuracy, Index max_cells) {
+SearchedMax max_protrusion(const Surface& surface, const MedialMesh& mesh, const KnownDepths& depths, double known,
+                           double accuracy, Index max_cells) {
   return ProtrusionSearch(surface, known, accuracy, max_cells).run(cells_of(mesh, depths));
 }
 

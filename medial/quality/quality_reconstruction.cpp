@@ -177,8 +177,9 @@ void measure_reconstruction(const Surface& surface, const MedialMesh& mesh, std:
     return worst_protrusions(surface, balls.all, depths, protruding, count, apart, negligible);
   };
   for (const WorstPlace& place : worst_protruding(1)) quality.protrusion.max = place.value;
-  const SearchedMax beyond = max_protrusion(surface, mesh, of_triangles, quality.protrusion.max,
-                                            kProtrusionAccuracy * quality.diagonal, options.search);
+  const SearchedMax beyond =
+      max_protrusion(surface, mesh, {depths.first(balls.vertices), of_triangles}, quality.protrusion.max,
+                     kProtrusionAccuracy * quality.diagonal, options.search);
   if (beyond.max > std::max(negligible, quality.protrusion.max)) {
     protruding.push_back({WorstKind::protrusion, beyond.max, beyond.place, Vector::Zero(), beyond.ball});
     quality.protrusion.max = beyond.max;

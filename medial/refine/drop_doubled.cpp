@@ -14,6 +14,8 @@
 namespace orchard::detail {
 namespace {
 
+constexpr double kAhead = 3;  // gains, by which borders may become longer before they become shorter
+
 class DoubledDropper {
  public:
   DoubledDropper(BallComplex& complex, double apart, double gain)
@@ -64,7 +66,7 @@ class DoubledDropper {
     return count;
   }
   bool is_border(Index e) const { return alive_.edges[e] != 0 && triangles_at(e) == 1; }
-  // Mesh units: what the borders gain by the loss of a triangle.
+  // Mesh units: by how much the borders are longer without a triangle.
   double longer_without(Index t) const {
     double longer = 0;
     for (const Index side : at_.sides[t]) {
@@ -75,7 +77,7 @@ class DoubledDropper {
   }
 
   // From one border edge on takes those triangles first that make the borders shortest, unless they become longer by
-  // `gain`; what does not pay in the end comes back, and is not tried again from other edges.
+  // too much; what does not pay in the end comes back, and is not tried again from other edges.
   Index drop_from(Index border_edge) {
     std::vector<Taken> taken;
     using Next = std::pair<double, Index>;  // by how much the borders will be longer, border edge
@@ -95,7 +97,7 @@ class DoubledDropper {
         offer(e);  // its neighbours have changed
         continue;
       }
-      if (border + longer > shortest + gain_) break;
+      if (border + longer > shortest + kAhead * gain_) break;
       if (!take(t, taken)) continue;
       border = taken.back().border = border + longer;
       if (border < shortest) {

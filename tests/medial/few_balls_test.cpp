@@ -172,10 +172,14 @@ TEST(FewBalls, DoNotRunAwayOnTheShip) {
   MedialBuildOptions options;
   options.refine = RefineOptions{};
   const MedialMesh axis = medial_mesh(build_medial_axis(surface, options).axis);
-  const SimplifiedMedialMesh result = simplify_medial_mesh(surface, axis, {.vertices = 100});
-  EXPECT_LE(result.mesh.size(), 100u);
-  EXPECT_LT(result.report.hausdorff.max, 0.02);
-  EXPECT_EQ(topology(result.mesh), topology(axis));
+  // One ball that stands for too much makes the largest distance jump by a percent from count to count.
+  for (const Index vertices : {80u, 100u, 120u}) {
+    const SimplifiedMedialMesh result = simplify_medial_mesh(surface, axis, {.vertices = vertices});
+    EXPECT_LE(result.mesh.size(), vertices);
+    EXPECT_LT(result.report.hausdorff.max, 0.03);
+    EXPECT_LT(result.report.hausdorff.mean, 0.003);
+    EXPECT_EQ(topology(result.mesh), topology(axis));
+  }
 }
 
 }  // namespace

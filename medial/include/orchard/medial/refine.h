@@ -56,8 +56,9 @@ struct RefinedAxis {
 // where their borders lose border_loss; spikes and flakes go that hang on the rest by one vertex and reach no farther
 // from it than twice its radius, but for what the topology needs; notches between the teeth of their borders are
 // filled, those that end at sharp convex edges are extended onto these, and what is open between such ends on one edge
-// is filled; what is interpolated too coarsely is divided, with exact balls for new vertices; where the surface is then
-// left open by more than 1.7 border_loss and reach_detail, or balls leave a dent that is a tenth deeper, triangles
+// is filled; sheets and spikes go whose balls lie in others up to the tolerance, where the borders become shorter by
+// that; what is interpolated too coarsely is divided, with exact balls for new vertices; where the surface is then
+// left open by more than 1.65 border_loss and reach_detail, or balls leave a dent that is a tenth deeper, triangles
 // reach for it from the nearest edges; and at last vertices at one place are merged, and triangles without area taken
 // away, or given some by moving a vertex along its sheet. All by divisions, collapses, free extensions and contractions
 // under the link condition, so the topology is that of `axis`.
