@@ -49,6 +49,9 @@ constexpr std::size_t kWorthThreads = 2;
 // Where there are no more points than that, they all are in the cache.
 constexpr std::size_t kCached = 1u << 13;
 
+// How many vertices ahead of the one whose facets are looked at those across are fetched into the cache.
+constexpr Index kFacetsAhead = 32;
+
 // Of mending and looking at what is new.
 constexpr int kRounds = 24;
 
@@ -545,42 +548,50 @@ class Certifier {
     return (workspace_.at_infinity(v) ? is_hull_convex(v, i) : do_spheres_agree(v, i, u)) || doubt(v, u);
   }
 
-  // The same facets of some vertices, those of the hull aside, where all are new. Waiting for memory and mispredicted
-  // branches would be most of the time, so all facets are listed first, without branches, then the points across, which
-  // are in the cache when their distances are asked for.
+  // The same facets of some vertices, those of the hull aside, where all are new. Doubles settle nearly all of them, so
+  // those that they do not are listed first, without branches.
   bool are_all_facets_good(Index begin, Index end) {
-    std::size_t listed = 0, count = 0;
+    std::size_t count = 0;
     std::array<Facet, std::size_t{4} * kCertificateBatch + 4> facets;
-    for (Index v = begin; v < end; ++v)
-      for (unsigned i = 0; i < 4; ++i) {
+    const auto last = static_cast<Index>(workspace_.vertices.size() - 1);
+    for (Index v = begin; v < end; ++v) {
+      fetch_around(std::min(v + kFacetsAhead, last));
+      if (workspace_.is_free(v) || workspace_.at_infinity(v)) continue;
+      unsigned doubtful = can_place_four() ? doubtful_around(workspace_, v) : facets_seen_from(v);
+      for (; doubtful != 0; doubtful &= doubtful - 1) {
+        const auto i = static_cast<unsigned>(std::countr_zero(doubtful));
         const Index u = workspace_.vertices[v].neighbors[i];
-        __builtin_prefetch(workspace_.vertices.data() + u);
-        facets[listed] = {v, u, i, 0};
-        listed += (u > v) & (u != kNone);
+        facets[count] = {v, u, i, workspace_.vertices[u].forming_points[slot_of(u, v)]};
+        count += facets[count].across != kInfinitePoint;
       }
-    for (std::size_t f = 0; f < listed; ++f) {
-      const auto [v, u, i, none] = facets[f];
-      const VoronoiVertex& next = workspace_.vertices[u];
-      const Index across = next.forming_points[index_of(next.neighbors, v)];
-      __builtin_prefetch(workspace_.points.data() + across);
-      facets[count] = {v, u, i, across};
-      const auto& corners = workspace_.vertices[v].forming_points;
-      count += std::size_t{across != kInfinitePoint} & std::size_t{corners[i] != kInfinitePoint} &
-               std::size_t{corners[3] != kInfinitePoint};
     }
+    return are_doubtful_facets_good(facets.data(), count);
+  }
+  // Inlined by force: a compiler may take what only fetches for a function without effect, and leave it out.
+  [[gnu::always_inline]] void fetch_around(Index v) const {
+    const VoronoiVertex& vertex = workspace_.vertices[v];
+    for (const Index u : vertex.neighbors) workspace_.prefetch(u != kNone ? std::max(u, v) : v);
+    if (workspace_.points.size() <= kCached) return;
+    for (const Index p : vertex.forming_points) __builtin_prefetch(workspace_.points.data() + p);
+  }
+  // A bit for each.
+  unsigned facets_seen_from(Index v) const {
+    unsigned seen = 0;
+    for (unsigned i = 0; i < 4; ++i) seen |= unsigned{workspace_.vertices[v].neighbors[i] > v} << i;
+    return seen;
+  }
+  // With room for three more.
+  bool are_doubtful_facets_good(Facet* facets, std::size_t count) {
     for (std::size_t f = 0; f < count; f += 4) {
       const std::size_t lanes = std::min<std::size_t>(count - f, 4);
-      std::fill(facets.begin() + f + lanes, facets.begin() + f + 4, facets[f]);
-      unsigned doubtful = can_place_four() ? doubtful_of_four(workspace_, &facets[f]) : 0xf;
-      doubtful &= (1u << lanes) - 1;
+      std::fill(facets + f + lanes, facets + f + 4, facets[f]);
       std::array<double, 4> added;
       added.fill(std::numeric_limits<double>::infinity());
-      if ((doubtful & (doubtful - 1)) != 0 && can_place_four() && !workspace_.exact()) added = added_across(&facets[f]);
-      for (; doubtful != 0; doubtful &= doubtful - 1) {
-        const auto lane = static_cast<unsigned>(std::countr_zero(doubtful));
+      if (lanes > 1 && can_place_four() && !workspace_.exact()) added = added_across(facets + f);
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
         const auto [v, u, i, across] = facets[f + lane];
         const bool apart = workspace_.power(v, workspace_.points[across]) < -workspace_.power_bound(v);
-        if (apart && !workspace_.shares_sphere(v) && !workspace_.shares_sphere(u)) continue;
+        if (apart && are_own_spheres(v, u)) continue;
         if (added[lane] <= share_ && !is_same_sphere(v, u)) {
           const bool are_apart_after_all = are_own_spheres(v, u) && are_apart(v, i, u, workspace_.points[across]);
           if (!are_apart_after_all) found_.intrusion += added[lane];

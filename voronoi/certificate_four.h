@@ -27,8 +27,9 @@ struct FourSteps {
   std::array<const Point*, 4> from_corner, to_corner, a, b, c;
 };
 
-// A bit for each of four facets across which doubles do not show that nothing is lost.
-unsigned doubtful_of_four(const Workspace& workspace, const Facet* facets);
+// A bit for each facet between a finite vertex and a neighbour of a higher number across which doubles do not show that
+// nothing is lost; and for some of those whose neighbours are at infinity.
+unsigned doubtful_around(const Workspace& workspace, Index v);
 
 // As Certifier::normal() and intrusion_added(), in the same order of operations, by the corners of four facets;
 // infinite where a normal calls for more digits.
