@@ -115,9 +115,26 @@ struct Findings {
   }
 };
 
+// Which points form vertices. Noted by several threads at once, without branches: infinity, and what free vertices have
+// in the place of points, wrap around to the first place.
+class FormingPoints {
+ public:
+  explicit FormingPoints(std::size_t points) : forms_(points + 1, 0) {}
+  void note(const VoronoiVertex& vertex) {
+    static_assert(static_cast<Index>(kInfinitePoint + 1) == 0 && kNone == kInfinitePoint);
+    for (const Index point : vertex.forming_points)
+      std::atomic_ref(forms_[static_cast<Index>(point + 1)]).store(1, std::memory_order_relaxed);
+  }
+  bool has(Index point) const { return forms_[point + 1] != 0; }
+  std::size_t count() const { return static_cast<std::size_t>(std::count(forms_.begin() + 1, forms_.end(), 1)); }
+
+ private:
+  std::vector<std::uint8_t> forms_;  // by point
+};
+
 class Certifier {
  public:
-  Certifier(Workspace& workspace, const std::vector<std::uint8_t>& forming, Index first_new, Mender* mender,
+  Certifier(Workspace& workspace, FormingPoints& forming, Index first_new, Mender* mender,
             const std::function<void(double)>& report)
       : workspace_(workspace),
         forming_(forming),
@@ -149,7 +166,9 @@ class Certifier {
         looks_at_changed_(whole.looks_at_changed_),
         report_(whole.report_) {}
 
-  Certificate run() {
+  // `points`: how many form vertices if none was lost.
+  Certificate run(std::size_t points) {
+    points_ = points;
     if (!look_at_all()) return {};
     if (found_.intrusion > max_sum_ && (!look_closer() || found_.intrusion > max_sum_)) return {};
     if (mended_ && !is_tetrahedron(found_.fattest)) find_fattest();
@@ -174,7 +193,8 @@ class Certifier {
   // All that is new; and where facets are in doubt, what they are mended by.
   bool look_at_all() {
     found_.hull.clear();
-    if (!look_at_each_oriented() || !look_at_each_facet() || !look_at_edges(found_.hull)) return false;
+    if (!look_at_each_oriented() || forming_.count() != points_ || !look_at_each_facet() || !look_at_edges(found_.hull))
+      return false;
     std::stable_sort(found_.doubts.begin(), found_.doubts.end(),
                      [](const Doubt& a, const Doubt& b) { return a.vertex < b.vertex; });
     for (int round = 0; !found_.doubts.empty(); ++round) {
@@ -201,6 +221,7 @@ class Certifier {
                               for (Index v = end; v < std::min(count, end + kCertificateBatch); ++v)
                                 for (const Index point : workspace_.vertices[v].forming_points)
                                   __builtin_prefetch(workspace_.points.data() + point);
+                            for (Index v = begin; v < end; ++v) forming_.note(workspace_.vertices[v]);
                             if (first_new_ == 0 && can_take_four()) return part.are_all_oriented(begin, end);
                             for (Index v = begin; v < end; ++v)
                               if (!workspace_.is_free(v) && is_new(v) && !part.is_oriented(v)) return false;
@@ -796,7 +817,7 @@ class Certifier {
         tbb::blocked_range<Index>(0, count, kBlock), 0.0,
         [&](const auto& range, double max) {
           for (Index i = range.begin(); i < range.end(); ++i) {
-            if (!forming_[i]) continue;
+            if (!forming_.has(i)) continue;
             const Point& p = workspace_.points[i];
             const Vector from_p0 = p - p0;
             const double by_center = 2 * center.dot(from_p0) - from_p0.squaredNorm();
@@ -850,11 +871,12 @@ class Certifier {
   }
 
   Workspace& workspace_;
-  const std::vector<std::uint8_t>& forming_;
+  FormingPoints& forming_;
   Box box_;
   Index first_new_;
   double diameter_ = 0, max_ = 0, max_sum_ = 0, share_ = 0, small_share_ = 0;
   Findings found_;
+  std::size_t points_ = 0;
   std::vector<Index> hull_points_;
   std::vector<Index> changed_;  // by mending, since the hull was looked at
   Mender* mender_;
@@ -866,32 +888,19 @@ class Certifier {
 
 }  // namespace
 
-namespace {
-
-// By point: whether any vertex has it.
-std::vector<std::uint8_t> forming_points(const Workspace& workspace) {
-  std::vector<std::uint8_t> forming(workspace.points.size(), 0);
+std::size_t count_forming(const Workspace& workspace) {
+  FormingPoints forming(workspace.points.size());
   const auto count = static_cast<Index>(workspace.vertices.size());
   tbb::parallel_for(tbb::blocked_range<Index>(0, count, kBlock), [&](const auto& range) {
-    for (Index v = range.begin(); v < range.end(); ++v)
-      for (const Index point : workspace.vertices[v].forming_points)
-        if (point != kInfinitePoint) std::atomic_ref(forming[point]).store(1, std::memory_order_relaxed);
+    for (Index v = range.begin(); v < range.end(); ++v) forming.note(workspace.vertices[v]);
   });
-  return forming;
+  return forming.count();
 }
-std::size_t count(const std::vector<std::uint8_t>& forming) {
-  return static_cast<std::size_t>(std::count(forming.begin(), forming.end(), 1));
-}
-
-}  // namespace
-
-std::size_t count_forming(const Workspace& workspace) { return count(forming_points(workspace)); }
 
 Certificate certify(Workspace& workspace, std::size_t points, Index first_new, Mender* mender,
                     const std::function<void(double)>& report) {
-  const std::vector<std::uint8_t> forming = forming_points(workspace);
-  if (count(forming) != points) return {};
-  return Certifier(workspace, forming, first_new, mender, report).run();
+  FormingPoints forming(workspace.points.size());
+  return Certifier(workspace, forming, first_new, mender, report).run(points);
 }
 
 }  // namespace orchard::detail
