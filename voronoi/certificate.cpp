@@ -49,9 +49,6 @@ constexpr std::size_t kWorthThreads = 2;
 // Where there are no more points than that, they all are in the cache.
 constexpr std::size_t kCached = 1u << 13;
 
-// How many vertices ahead of the one whose facets are looked at those across are fetched into the cache.
-constexpr Index kFacetsAhead = 32;
-
 // Of mending and looking at what is new.
 constexpr int kRounds = 24;
 
@@ -569,53 +566,39 @@ class Certifier {
     return (workspace_.at_infinity(v) ? is_hull_convex(v, i) : do_spheres_agree(v, i, u)) || doubt(v, u);
   }
 
-  // The same facets of some vertices, those of the hull aside, where all are new. Doubles settle nearly all of them, so
-  // those that they do not are listed first, without branches.
+  // The same facets of some vertices, those of the hull aside, where all are new. Waiting for memory and mispredicted
+  // branches would be most of the time, so all facets are listed first, without branches. Across each, doubles mostly
+  // show that the sphere there does not hold the vertex's own point, which spares looking for the one across.
   bool are_all_facets_good(Index begin, Index end) {
-    std::size_t count = 0;
+    std::size_t listed = 0, count = 0;
     std::array<Facet, std::size_t{4} * kCertificateBatch + 4> facets;
-    const auto last = static_cast<Index>(workspace_.vertices.size() - 1);
-    for (Index v = begin; v < end; ++v) {
-      fetch_around(std::min(v + kFacetsAhead, last));
-      if (workspace_.is_free(v) || workspace_.at_infinity(v)) continue;
-      unsigned doubtful = can_place_four() ? doubtful_around(workspace_, v) : facets_seen_from(v);
-      for (; doubtful != 0; doubtful &= doubtful - 1) {
-        const auto i = static_cast<unsigned>(std::countr_zero(doubtful));
+    for (Index v = begin; v < end; ++v)
+      for (unsigned i = 0; i < 4; ++i) {
         const Index u = workspace_.vertices[v].neighbors[i];
-        facets[count] = {v, u, i, workspace_.vertices[u].forming_points[slot_of(u, v)]};
-        count += facets[count].across != kInfinitePoint;
+        workspace_.prefetch(u);
+        facets[listed] = {v, u, i, 0};
+        listed += (u > v) & (u != kNone);
       }
+    for (std::size_t f = 0; f < listed; ++f) {
+      const auto [v, u, i, none] = facets[f];
+      facets[count] = {v, u, i, workspace_.vertices[v].forming_points[i]};
+      __builtin_prefetch(workspace_.points.data() + facets[count].opposite);
+      count += std::size_t{!workspace_.at_infinity(v)} & std::size_t{!workspace_.at_infinity(u)};
     }
-    return are_doubtful_facets_good(facets.data(), count);
-  }
-  // Inlined by force: a compiler may take what only fetches for a function without effect, and leave it out.
-  [[gnu::always_inline]] void fetch_around(Index v) const {
-    const VoronoiVertex& vertex = workspace_.vertices[v];
-    for (const Index u : vertex.neighbors) workspace_.prefetch(u != kNone ? std::max(u, v) : v);
-    if (workspace_.points.size() <= kCached) return;
-    for (const Index p : vertex.forming_points) __builtin_prefetch(workspace_.points.data() + p);
-  }
-  // A bit for each.
-  unsigned facets_seen_from(Index v) const {
-    unsigned seen = 0;
-    for (unsigned i = 0; i < 4; ++i) seen |= unsigned{workspace_.vertices[v].neighbors[i] > v} << i;
-    return seen;
-  }
-  // With room for three more.
-  bool are_doubtful_facets_good(Facet* facets, std::size_t count) {
     for (std::size_t f = 0; f < count; f += 4) {
       const std::size_t lanes = std::min<std::size_t>(count - f, 4);
-      std::fill(facets + f + lanes, facets + f + 4, facets[f]);
+      std::fill(facets.begin() + f + lanes, facets.begin() + f + 4, facets[f]);
+      unsigned doubtful = can_place_four() ? doubtful_of_four(workspace_, &facets[f]) : 0xf;
+      doubtful &= (1u << lanes) - 1;
       std::array<double, 4> added;
       added.fill(std::numeric_limits<double>::infinity());
-      if (lanes > 1 && can_place_four() && !workspace_.exact()) added = added_across(facets + f);
-      for (std::size_t lane = 0; lane < lanes; ++lane) {
-        const auto [v, u, i, across] = facets[f + lane];
-        const bool apart = workspace_.power(v, workspace_.points[across]) < -workspace_.power_bound(v);
-        if (apart && are_own_spheres(v, u)) continue;
+      if ((doubtful & (doubtful - 1)) != 0 && can_place_four() && !workspace_.exact()) added = added_across(&facets[f]);
+      for (; doubtful != 0; doubtful &= doubtful - 1) {
+        const auto lane = static_cast<unsigned>(std::countr_zero(doubtful));
+        const auto [v, u, i, opposite] = facets[f + lane];
+        if (are_own_spheres(v, u) && are_apart(v, i, u, corner(u, slot_of(u, v)))) continue;
         if (added[lane] <= share_ && !is_same_sphere(v, u)) {
-          const bool are_apart_after_all = are_own_spheres(v, u) && are_apart(v, i, u, workspace_.points[across]);
-          if (!are_apart_after_all) found_.intrusion += added[lane];
+          found_.intrusion += added[lane];
           continue;
         }
         if (!is_facet_good(v, i, u)) return false;
@@ -627,7 +610,7 @@ class Certifier {
   std::array<double, 4> added_across(const Facet* facets) {
     FourSteps steps;
     for (unsigned lane = 0; lane < 4; ++lane) {
-      const auto& [v, u, i, across] = facets[lane];
+      const auto& [v, u, i, opposite] = facets[lane];
       workspace_.settle(v);
       workspace_.settle(u);
       const auto& [a, b, c] = Cavity::kOthers[i];

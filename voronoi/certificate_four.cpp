@@ -27,19 +27,13 @@ ORCHARD_AVX2 __m256d near_powers(const FourVectors& q, const FourVectors& center
 
 }  // namespace
 
-// Across facets that are seen from the other side the vertex itself stands for its neighbour, which spares the cache.
-[[gnu::target("avx2")]] unsigned doubtful_around(const Workspace& workspace, Index v) {
-  const VoronoiVertex& vertex = workspace.vertices[v];
-  const auto& [a, b, c, d] = vertex.forming_points;
+[[gnu::target("avx2")]] unsigned doubtful_of_four(const Workspace& workspace, const Facet* facets) {
+  const auto& [a, b, c, d] = *reinterpret_cast<const std::array<Facet, 4>*>(facets);
+  const std::array<Index, 4> v{a.v, b.v, c.v, d.v}, u{a.u, b.u, c.u, d.u};
   const Point* const points = workspace.points.data();
-  const FourVectors corners = load_four({points + a, points + b, points + c, points + d});
-  std::array<Index, 4> u;
-  unsigned seen = 0;
-  for (unsigned i = 0; i < 4; ++i) {
-    u[i] = std::max(v, vertex.neighbors[i]);
-    seen |= unsigned{vertex.neighbors[i] > v} << i;
-  }
-  return seen & ~workspace.agree_around(v, u, corners);
+  const FourVectors opposite =
+      load_four({points + a.opposite, points + b.opposite, points + c.opposite, points + d.opposite});
+  return ~workspace.agree_four(u, v, opposite) & 0xf;
 }
 
 [[gnu::target("avx2")]] std::array<double, 4> added_by_four(const FourSteps& steps, double diameter) {
@@ -89,7 +83,7 @@ ORCHARD_AVX2 __m256d near_powers(const FourVectors& q, const FourVectors& center
 
 #else
 
-unsigned doubtful_around(const Workspace&, Index) { return 0xf; }
+unsigned doubtful_of_four(const Workspace&, const Facet*) { return 0xf; }
 std::array<double, 4> added_by_four(const FourSteps&, double) { return {}; }
 void told_of_four(const Workspace&, const std::array<Index, 4>&, double, double*, double*) {}
 FourSeen apart_of_four(const Workspace&, const std::array<Index, 4>&, const std::array<double, 4>&,

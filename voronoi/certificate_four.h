@@ -14,11 +14,11 @@ inline constexpr Index kCertificateBatch = 64;
 // The angle by which the normal of a facet may be off before it is found with more digits.
 inline constexpr double kBlurred = 0x1p-44;
 
-// The facet between a vertex and its neighbour `slot`, and the point that this one has instead of a shared one.
+// The facet between a vertex and its neighbour `slot`, and the point that the vertex has instead of a shared one.
 struct Facet {
   Index v, u;
   unsigned slot;
-  Index across;
+  Index opposite;
 };
 
 // Four times the spheres on both sides of a facet, a corner of each, and the facet's own.
@@ -27,9 +27,8 @@ struct FourSteps {
   std::array<const Point*, 4> from_corner, to_corner, a, b, c;
 };
 
-// A bit for each facet between a finite vertex and a neighbour of a higher number across which doubles do not show that
-// nothing is lost; and for some of those whose neighbours are at infinity.
-unsigned doubtful_around(const Workspace& workspace, Index v);
+// A bit for each of four facets across which doubles do not show that nothing is lost.
+unsigned doubtful_of_four(const Workspace& workspace, const Facet* facets);
 
 // As Certifier::normal() and intrusion_added(), in the same order of operations, by the corners of four facets;
 // infinite where a normal calls for more digits.

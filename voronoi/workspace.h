@@ -109,9 +109,10 @@ class Workspace {
     unsigned far, near, input;
   };
   ORCHARD_AVX2 FourTests test_four(const std::array<Index, 4>& v, const FourVectors& q, double doubtful_input) const;
-  // A bit for each of four vertices u that has its own sphere, as v has, which certainly does not hold its point q; or
-  // that has the very sphere of v.
-  ORCHARD_AVX2 unsigned agree_around(Index v, const std::array<Index, 4>& u, const FourVectors& q) const;
+  // A bit for each of four pairs of vertices whose spheres are their own ones and that of the first certainly does not
+  // hold q, or which have the same one.
+  ORCHARD_AVX2 unsigned agree_four(const std::array<Index, 4>& v, const std::array<Index, 4>& u,
+                                   const FourVectors& q) const;
   // Of four finite vertices; a mask where the sphere is a neighbour's, or may be.
   struct FourSpheres {
     __m256d radius, power_bound, shared;

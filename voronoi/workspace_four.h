@@ -23,24 +23,24 @@ ORCHARD_AVX2 __m256d Workspace::bounds(__m256i states) const {
                           _mm256_castsi256_pd(_mm256_cmpgt_epi64(error, _mm256_set1_epi64x(kNotSettled - 1))));
 }
 
-ORCHARD_AVX2 unsigned Workspace::agree_around(Index v, const std::array<Index, 4>& u, const FourVectors& q) const {
-  const auto load = [&](Index w) { return vertices[w].center.data(); };  // the radius is behind it
-  FourVectors center{_mm256_load_pd(load(u[0])), _mm256_load_pd(load(u[1])), _mm256_load_pd(load(u[2]))};
-  __m256d radius = _mm256_load_pd(load(u[3]));
+ORCHARD_AVX2 unsigned Workspace::agree_four(const std::array<Index, 4>& v, const std::array<Index, 4>& u,
+                                            const FourVectors& q) const {
+  FourVectors center;
+  __m256d radius, *const rows[] = {&center.x, &center.y, &center.z, &radius};
+  unsigned same = 0;
+  for (unsigned i = 0; i < 4; ++i) {
+    *rows[i] = _mm256_load_pd(vertices[v[i]].center.data());
+    const __m256d other = _mm256_load_pd(vertices[u[i]].center.data());
+    const bool equal = (lanes_of(_mm256_cmp_pd(*rows[i], other, _CMP_EQ_OQ)) & 7u) == 7u;
+    same |= static_cast<unsigned>(equal & settled(u[i])) << i;
+  }
   transpose(center.x, center.y, center.z, radius);
-  const Point& own = vertices[v].center;
-  const unsigned same = lanes_of(_mm256_and_pd(_mm256_and_pd(_mm256_cmp_pd(center.x, all_four(own.x()), _CMP_EQ_OQ),
-                                                             _mm256_cmp_pd(center.y, all_four(own.y()), _CMP_EQ_OQ)),
-                                               _mm256_cmp_pd(center.z, all_four(own.z()), _CMP_EQ_OQ)));
   const FourVectors from_q = center - q;
-  const __m256i state = states(u);
-  const __m256d power = radius - dot(from_q, from_q), bound = bounds(state);
-  const unsigned far = lanes_of(_mm256_cmp_pd(power, -bound, _CMP_LT_OQ));
-  const unsigned is_settled =
-      lanes_of(_mm256_cmp_pd(bound, all_four(std::numeric_limits<double>::infinity()), _CMP_LT_OQ));
-  const unsigned own_spheres =
-      shares_sphere(v) ? 0 : lanes_equal(_mm256_and_si256(state, _mm256_set1_epi64x(kShared)), 0);
-  return (far & own_spheres) | (exact_ ? 0 : same & is_settled);
+  const __m256i state = states(v);
+  const __m256d power = radius - dot(from_q, from_q);
+  const unsigned far = lanes_of(_mm256_cmp_pd(power, -bounds(state), _CMP_LT_OQ));
+  const __m256i shared = _mm256_and_si256(_mm256_or_si256(state, states(u)), _mm256_set1_epi64x(kShared));
+  return (far & lanes_equal(shared, 0)) | (exact_ ? 0 : same);
 }
 
 ORCHARD_AVX2 Workspace::FourSpheres Workspace::spheres(const std::array<Index, 4>& v) const {
