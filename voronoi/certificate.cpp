@@ -36,6 +36,10 @@ constexpr double kGiven = 1.0 / 4;
 // more, its own is found.
 constexpr double kTold = 1.0 / 64;
 
+// Where the bound tells more than so many times that, a sphere is mostly off as far as cheaper looks than at its own
+// centre can tell.
+constexpr double kHopelesslyTold = 0x1p11;
+
 // What a facet may take off, where the bounds are too much for all: of what all of them may, this part for each vertex.
 constexpr double kShares = 64;
 
@@ -398,7 +402,7 @@ class Certifier {
     return seen;
   }
   bool has_to_be_seen(Index v, const Look& seen) const {
-    return seen.apart > kTold * max_ && !workspace_.shares_sphere(v);
+    return seen.apart > kTold * max_ && seen.apart < kHopelesslyTold * kTold * max_ && !workspace_.shares_sphere(v);
   }
   bool is_oriented(Index v, const Look& seen) {
     const Determinant& det = seen.negative;
@@ -455,12 +459,13 @@ class Certifier {
     return corners;
   }
   void see_four_spheres(const BatchList& list, BatchLooks& seen) {
-    const double enough = kTold * max_;
+    const double enough = kTold * max_, hopeless = kHopelesslyTold * enough;
     BatchList far;  // places in the list
     for (Index at = 0; at < list.items().size(); ++at) {
-      const bool is_told = seen.apart[at] <= enough, is_positive = seen.negative[at] < -seen.negative_bound[at],
+      const bool is_open = (seen.apart[at] > enough) & (seen.apart[at] < hopeless),
+                 is_positive = seen.negative[at] < -seen.negative_bound[at],
                  shares = workspace_.shares_sphere(list.items()[at]);
-      far.push_if(at, !is_told & is_positive & !shares);
+      far.push_if(at, is_open & is_positive & !shares);
     }
     far.for_each_four([&](std::size_t, const std::array<Index, 4>& four) {
       std::array<Index, 4> v;
