@@ -8,8 +8,8 @@ namespace orchard::detail {
 namespace {
 
 // How many deleted vertices ahead of the one whose neighbours are looked at memory is fetched into the cache. Where
-// there are no more points than that, it is there.
-constexpr std::size_t kFetchAhead = 4, kAllInCache = 1u << 13;
+// there are no more points or vertices than that, they are there.
+constexpr std::size_t kFetchAhead = 3, kPointsInCache = 1u << 13, kVerticesInCache = 1u << 16;
 
 }  // namespace
 
@@ -38,6 +38,7 @@ bool Cavity::leave_territory(Index blocker) {
 [[gnu::always_inline]] inline void Cavity::fetch_around(Index v) const {
   const VoronoiVertex& vertex = workspace_.vertices[v];
   for (const Index u : vertex.neighbors) workspace_.prefetch(u);
+  if (local_of_.size() <= kPointsInCache) return;
   for (const Index p : vertex.forming_points) {
     __builtin_prefetch(workspace_.points.data() + p);
     __builtin_prefetch(local_of_.data() + static_cast<Index>(p + 1));
@@ -49,7 +50,8 @@ inline std::array<Index, 4> Cavity::neighbors_of_deleted(std::size_t i) {
   deleted_.ensure_room();
   seen_.ensure_room();
   boundary_.ensure_room();
-  if (local_of_.size() > kAllInCache) fetch_around(deleted_.items()[std::min(i + kFetchAhead, deleted_.size() - 1)]);
+  if (workspace_.vertices.size() > kVerticesInCache)
+    fetch_around(deleted_.items()[std::min(i + kFetchAhead, deleted_.size() - 1)]);
   return workspace_.vertices[deleted_.items()[i]].neighbors;
 }
 
@@ -114,7 +116,7 @@ bool Cavity::delete_nearer_one_by_one(std::size_t first) {
 [[gnu::target("avx2")]] bool Cavity::delete_nearer_by_four(std::size_t first) {
   const FourVectors q{all_four(position_.x()), all_four(position_.y()), all_four(position_.z())};
   const double doubtful_input = workspace_.doubtful_input();
-  const bool whole = territory_.whole(), fetches = local_of_.size() > kAllInCache;
+  const bool whole = territory_.whole(), fetches = workspace_.vertices.size() > kVerticesInCache;
   bool certain = true;
   Index blocker = kNone;
   std::size_t room = 2 * (deleted_.size() + seen_.size() + boundary_.size()) + 64;

@@ -36,6 +36,10 @@ constexpr double kGiven = 1.0 / 4;
 // more, its own is found.
 constexpr double kTold = 1.0 / 64;
 
+// Where the bound tells more than so many times that, a sphere is mostly off as far as cheaper looks than at its own
+// centre can tell.
+constexpr double kHopelesslyTold = 0x1p11;
+
 // What a facet may take off, where the bounds are too much for all: of what all of them may, this part for each vertex.
 constexpr double kShares = 64;
 
@@ -112,9 +116,26 @@ struct Findings {
   }
 };
 
+// Which points form vertices. Noted by several threads at once, without branches: infinity, and what free vertices have
+// in the place of points, wrap around to the first place.
+class FormingPoints {
+ public:
+  explicit FormingPoints(std::size_t points) : forms_(points + 1, 0) {}
+  void note(const VoronoiVertex& vertex) {
+    static_assert(static_cast<Index>(kInfinitePoint + 1) == 0 && kNone == kInfinitePoint);
+    for (const Index point : vertex.forming_points)
+      std::atomic_ref(forms_[static_cast<Index>(point + 1)]).store(1, std::memory_order_relaxed);
+  }
+  bool has(Index point) const { return forms_[point + 1] != 0; }
+  std::size_t count() const { return static_cast<std::size_t>(std::count(forms_.begin() + 1, forms_.end(), 1)); }
+
+ private:
+  std::vector<std::uint8_t> forms_;  // by point
+};
+
 class Certifier {
  public:
-  Certifier(Workspace& workspace, const std::vector<std::uint8_t>& forming, Index first_new, Mender* mender,
+  Certifier(Workspace& workspace, FormingPoints& forming, Index first_new, Mender* mender,
             const std::function<void(double)>& report)
       : workspace_(workspace),
         forming_(forming),
@@ -146,7 +167,9 @@ class Certifier {
         looks_at_changed_(whole.looks_at_changed_),
         report_(whole.report_) {}
 
-  Certificate run() {
+  // `points`: how many form vertices if none was lost.
+  Certificate run(std::size_t points) {
+    points_ = points;
     if (!look_at_all()) return {};
     if (found_.intrusion > max_sum_ && (!look_closer() || found_.intrusion > max_sum_)) return {};
     if (mended_ && !is_tetrahedron(found_.fattest)) find_fattest();
@@ -171,7 +194,8 @@ class Certifier {
   // All that is new; and where facets are in doubt, what they are mended by.
   bool look_at_all() {
     found_.hull.clear();
-    if (!look_at_each_oriented() || !look_at_each_facet() || !look_at_edges(found_.hull)) return false;
+    if (!look_at_each_oriented() || forming_.count() != points_ || !look_at_each_facet() || !look_at_edges(found_.hull))
+      return false;
     std::stable_sort(found_.doubts.begin(), found_.doubts.end(),
                      [](const Doubt& a, const Doubt& b) { return a.vertex < b.vertex; });
     for (int round = 0; !found_.doubts.empty(); ++round) {
@@ -198,6 +222,7 @@ class Certifier {
                               for (Index v = end; v < std::min(count, end + kCertificateBatch); ++v)
                                 for (const Index point : workspace_.vertices[v].forming_points)
                                   __builtin_prefetch(workspace_.points.data() + point);
+                            for (Index v = begin; v < end; ++v) forming_.note(workspace_.vertices[v]);
                             if (first_new_ == 0 && can_take_four()) return part.are_all_oriented(begin, end);
                             for (Index v = begin; v < end; ++v)
                               if (!workspace_.is_free(v) && is_new(v) && !part.is_oriented(v)) return false;
@@ -377,7 +402,7 @@ class Certifier {
     return seen;
   }
   bool has_to_be_seen(Index v, const Look& seen) const {
-    return seen.apart > kTold * max_ && !workspace_.shares_sphere(v);
+    return seen.apart > kTold * max_ && seen.apart < kHopelesslyTold * kTold * max_ && !workspace_.shares_sphere(v);
   }
   bool is_oriented(Index v, const Look& seen) {
     const Determinant& det = seen.negative;
@@ -434,12 +459,13 @@ class Certifier {
     return corners;
   }
   void see_four_spheres(const BatchList& list, BatchLooks& seen) {
-    const double enough = kTold * max_;
+    const double enough = kTold * max_, hopeless = kHopelesslyTold * enough;
     BatchList far;  // places in the list
     for (Index at = 0; at < list.items().size(); ++at) {
-      const bool is_told = seen.apart[at] <= enough, is_positive = seen.negative[at] < -seen.negative_bound[at],
+      const bool is_open = (seen.apart[at] > enough) & (seen.apart[at] < hopeless),
+                 is_positive = seen.negative[at] < -seen.negative_bound[at],
                  shares = workspace_.shares_sphere(list.items()[at]);
-      far.push_if(at, !is_told & is_positive & !shares);
+      far.push_if(at, is_open & is_positive & !shares);
     }
     far.for_each_four([&](std::size_t, const std::array<Index, 4>& four) {
       std::array<Index, 4> v;
@@ -546,27 +572,23 @@ class Certifier {
   }
 
   // The same facets of some vertices, those of the hull aside, where all are new. Waiting for memory and mispredicted
-  // branches would be most of the time, so all facets are listed first, without branches, then the points across, which
-  // are in the cache when their distances are asked for.
+  // branches would be most of the time, so all facets are listed first, without branches. Across each, doubles mostly
+  // show that the sphere there does not hold the vertex's own point, which spares looking for the one across.
   bool are_all_facets_good(Index begin, Index end) {
     std::size_t listed = 0, count = 0;
     std::array<Facet, std::size_t{4} * kCertificateBatch + 4> facets;
     for (Index v = begin; v < end; ++v)
       for (unsigned i = 0; i < 4; ++i) {
         const Index u = workspace_.vertices[v].neighbors[i];
-        __builtin_prefetch(workspace_.vertices.data() + u);
+        workspace_.prefetch(u);
         facets[listed] = {v, u, i, 0};
         listed += (u > v) & (u != kNone);
       }
     for (std::size_t f = 0; f < listed; ++f) {
       const auto [v, u, i, none] = facets[f];
-      const VoronoiVertex& next = workspace_.vertices[u];
-      const Index across = next.forming_points[index_of(next.neighbors, v)];
-      __builtin_prefetch(workspace_.points.data() + across);
-      facets[count] = {v, u, i, across};
-      const auto& corners = workspace_.vertices[v].forming_points;
-      count += std::size_t{across != kInfinitePoint} & std::size_t{corners[i] != kInfinitePoint} &
-               std::size_t{corners[3] != kInfinitePoint};
+      facets[count] = {v, u, i, workspace_.vertices[v].forming_points[i]};
+      __builtin_prefetch(workspace_.points.data() + facets[count].opposite);
+      count += std::size_t{!workspace_.at_infinity(v)} & std::size_t{!workspace_.at_infinity(u)};
     }
     for (std::size_t f = 0; f < count; f += 4) {
       const std::size_t lanes = std::min<std::size_t>(count - f, 4);
@@ -578,12 +600,10 @@ class Certifier {
       if ((doubtful & (doubtful - 1)) != 0 && can_place_four() && !workspace_.exact()) added = added_across(&facets[f]);
       for (; doubtful != 0; doubtful &= doubtful - 1) {
         const auto lane = static_cast<unsigned>(std::countr_zero(doubtful));
-        const auto [v, u, i, across] = facets[f + lane];
-        const bool apart = workspace_.power(v, workspace_.points[across]) < -workspace_.power_bound(v);
-        if (apart && !workspace_.shares_sphere(v) && !workspace_.shares_sphere(u)) continue;
+        const auto [v, u, i, opposite] = facets[f + lane];
+        if (are_own_spheres(v, u) && are_apart(v, i, u, corner(u, slot_of(u, v)))) continue;
         if (added[lane] <= share_ && !is_same_sphere(v, u)) {
-          const bool are_apart_after_all = are_own_spheres(v, u) && are_apart(v, i, u, workspace_.points[across]);
-          if (!are_apart_after_all) found_.intrusion += added[lane];
+          found_.intrusion += added[lane];
           continue;
         }
         if (!is_facet_good(v, i, u)) return false;
@@ -595,7 +615,7 @@ class Certifier {
   std::array<double, 4> added_across(const Facet* facets) {
     FourSteps steps;
     for (unsigned lane = 0; lane < 4; ++lane) {
-      const auto& [v, u, i, across] = facets[lane];
+      const auto& [v, u, i, opposite] = facets[lane];
       workspace_.settle(v);
       workspace_.settle(u);
       const auto& [a, b, c] = Cavity::kOthers[i];
@@ -785,7 +805,7 @@ class Certifier {
         tbb::blocked_range<Index>(0, count, kBlock), 0.0,
         [&](const auto& range, double max) {
           for (Index i = range.begin(); i < range.end(); ++i) {
-            if (!forming_[i]) continue;
+            if (!forming_.has(i)) continue;
             const Point& p = workspace_.points[i];
             const Vector from_p0 = p - p0;
             const double by_center = 2 * center.dot(from_p0) - from_p0.squaredNorm();
@@ -839,11 +859,12 @@ class Certifier {
   }
 
   Workspace& workspace_;
-  const std::vector<std::uint8_t>& forming_;
+  FormingPoints& forming_;
   Box box_;
   Index first_new_;
   double diameter_ = 0, max_ = 0, max_sum_ = 0, share_ = 0, small_share_ = 0;
   Findings found_;
+  std::size_t points_ = 0;
   std::vector<Index> hull_points_;
   std::vector<Index> changed_;  // by mending, since the hull was looked at
   Mender* mender_;
@@ -855,32 +876,19 @@ class Certifier {
 
 }  // namespace
 
-namespace {
-
-// By point: whether any vertex has it.
-std::vector<std::uint8_t> forming_points(const Workspace& workspace) {
-  std::vector<std::uint8_t> forming(workspace.points.size(), 0);
+std::size_t count_forming(const Workspace& workspace) {
+  FormingPoints forming(workspace.points.size());
   const auto count = static_cast<Index>(workspace.vertices.size());
   tbb::parallel_for(tbb::blocked_range<Index>(0, count, kBlock), [&](const auto& range) {
-    for (Index v = range.begin(); v < range.end(); ++v)
-      for (const Index point : workspace.vertices[v].forming_points)
-        if (point != kInfinitePoint) std::atomic_ref(forming[point]).store(1, std::memory_order_relaxed);
+    for (Index v = range.begin(); v < range.end(); ++v) forming.note(workspace.vertices[v]);
   });
-  return forming;
+  return forming.count();
 }
-std::size_t count(const std::vector<std::uint8_t>& forming) {
-  return static_cast<std::size_t>(std::count(forming.begin(), forming.end(), 1));
-}
-
-}  // namespace
-
-std::size_t count_forming(const Workspace& workspace) { return count(forming_points(workspace)); }
 
 Certificate certify(Workspace& workspace, std::size_t points, Index first_new, Mender* mender,
                     const std::function<void(double)>& report) {
-  const std::vector<std::uint8_t> forming = forming_points(workspace);
-  if (count(forming) != points) return {};
-  return Certifier(workspace, forming, first_new, mender, report).run();
+  FormingPoints forming(workspace.points.size());
+  return Certifier(workspace, forming, first_new, mender, report).run(points);
 }
 
 }  // namespace orchard::detail

@@ -31,8 +31,9 @@ ORCHARD_AVX2 __m256d near_powers(const FourVectors& q, const FourVectors& center
   const auto& [a, b, c, d] = *reinterpret_cast<const std::array<Facet, 4>*>(facets);
   const std::array<Index, 4> v{a.v, b.v, c.v, d.v}, u{a.u, b.u, c.u, d.u};
   const Point* const points = workspace.points.data();
-  const FourVectors across = load_four({points + a.across, points + b.across, points + c.across, points + d.across});
-  return ~workspace.agree_four(v, u, across) & 0xf;
+  const FourVectors opposite =
+      load_four({points + a.opposite, points + b.opposite, points + c.opposite, points + d.opposite});
+  return ~workspace.agree_four(u, v, opposite) & 0xf;
 }
 
 [[gnu::target("avx2")]] std::array<double, 4> added_by_four(const FourSteps& steps, double diameter) {

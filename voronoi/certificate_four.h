@@ -14,11 +14,11 @@ inline constexpr Index kCertificateBatch = 64;
 // The angle by which the normal of a facet may be off before it is found with more digits.
 inline constexpr double kBlurred = 0x1p-44;
 
-// The facet between a vertex and its neighbour `slot`, and the point that this one has instead of a shared one.
+// The facet between a vertex and its neighbour `slot`, and the point that the vertex has instead of a shared one.
 struct Facet {
   Index v, u;
   unsigned slot;
-  Index across;
+  Index opposite;
 };
 
 // Four times the spheres on both sides of a facet, a corner of each, and the facet's own.

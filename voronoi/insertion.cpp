@@ -96,7 +96,7 @@ bool Inserter::insert_deferred() {
 
 bool Inserter::insert_anyhow(Index point) {
   const Point q = workspace_.points[point];
-  return insert_by_value(point, q, true) || insert_sparsely(point, q);
+  return insert_by_value(point, locate(q), q, true) || insert_sparsely(point, q);
 }
 
 bool Inserter::too_doubtful() const {
@@ -106,12 +106,12 @@ bool Inserter::too_doubtful() const {
 
 bool Inserter::insert_now(Index point) {
   const Point q = workspace_.points[point];
-  Index start = locate(q);
+  const Index start = locate(q);
   cavity_.begin(point);
   if (search_ == Search::bowyer) return insert_bowyer(start, q);
   if (search_ == Search::highest_first) {
     if (insert_directly(start, q)) return true;
-    if (!workspace_.exact()) return insert_with_doubts(point, q);
+    if (!workspace_.exact()) return insert_with_doubts(point, start, q);
     cavity_.begin(point);
   }
   insert_constrained(start, q);
@@ -156,15 +156,14 @@ bool Inserter::insert_directly(Index start, const Point& q) {
 
 // Where leaving the doubtful vertices alone gave no ball: exact signs settle the doubts, or else the constrained search
 // decides, as long as it overrules no sign that is certain.
-bool Inserter::insert_with_doubts(Index point, const Point& q) {
+bool Inserter::insert_with_doubts(Index point, Index start, const Point& q) {
   if (too_doubtful()) return false;
-  return insert_exactly(point, q) || insert_by_value(point, q, false);
+  return insert_exactly(point, q) || insert_by_value(point, start, q, false);
 }
 
 // By the constrained search if all new vertices are oriented positively. Where nothing else helps it may overrule signs
 // that seem certain; the certificate judges then.
-bool Inserter::insert_by_value(Index point, const Point& q, bool may_overrule) {
-  const Index start = locate(q);
+bool Inserter::insert_by_value(Index point, Index start, const Point& q, bool may_overrule) {
   cavity_.begin(point);
   search_highest_first(start, q);
   if (!may_overrule && !respects_certain_signs(q)) return false;

@@ -69,7 +69,7 @@ class Inserter {
   };
 
   bool insert_now(Index point);
-  bool insert_by_value(Index point, const Point& q, bool may_overrule);
+  bool insert_by_value(Index point, Index start, const Point& q, bool may_overrule);
   bool insert_sparsely(Index point, const Point& q);
   void insert_constrained(Index start, const Point& q);
   bool too_doubtful() const;
@@ -85,7 +85,7 @@ class Inserter {
   Index highest_of_all(const Point& q) const;
   Index climb(Index v, const Point& q) const;
   bool insert_directly(Index start, const Point& q);
-  bool insert_with_doubts(Index point, const Point& q);
+  bool insert_with_doubts(Index point, Index start, const Point& q);
   bool insert_exactly(Index point, const Point& q);
   bool respects_certain_signs(const Point& q) const;
   void search_highest_first(Index start, const Point& q);

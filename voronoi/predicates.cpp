@@ -137,6 +137,18 @@ bool is_exact_in_doubles(int bits, double extent, const Point& q, const Points&.
 constexpr int kVolumeBits = 16;  // 6 products of three differences: below 2^51
 constexpr int kSphereBits = 9;   // 72 products of five: below 2^52
 
+// Whether four points, seen along an axis, are two points at most: then they are in one plane, exactly, however many
+// digits they have. So are many of those in rings or rows along an axis.
+bool are_two_along_axis(const Point& q, const Point& a, const Point& b, const Point& c) {
+  // A bit for each axis along which the points are one.
+  const auto one = [](const Point& u, const Point& v) {
+    const unsigned x = u.x() == v.x(), y = u.y() == v.y(), z = u.z() == v.z();
+    return (y & z) | (x & z) << 1 | (x & y) << 2;
+  };
+  const unsigned qa = one(q, a), qb = one(q, b), qc = one(q, c), ab = one(a, b), ac = one(a, c), bc = one(b, c);
+  return ((qa & bc) | (qb & ac) | (qc & ab) | (qa & qb) | (qa & qc) | (qb & qc) | (ab & ac)) != 0;
+}
+
 template <class... Vectors>
 double largest_coordinate(const Vectors&... vectors) {
   return std::max({vectors.cwiseAbs().maxCoeff()...});
@@ -231,6 +243,7 @@ Sign volume_sign(const Point& q, const Point& a, const Point& b, const Point& c,
     // Every product of the determinant has a factor 0, as where all four points share a coordinate.
     if (fast.bound == 0) return Sign::uncertain;
     if (is_exact_in_doubles(kVolumeBits, largest_coordinate(qa, qb, qc), q, a, b, c)) return sign_of(fast.value, 0);
+    if (are_two_along_axis(q, a, b, c)) return Sign::uncertain;
   }
   const Sign sharp = sign_of(kFused ? fused_volume(q, a, b, c) : sharp_volume(twofold_vectors(q, a, b, c)).high,
                              fast.bound * kSharper + indifferent);

@@ -79,6 +79,27 @@ TEST(Predicates, HaveTheSignsOfExactArithmeticWhereDoublesAreJustExact) {
   EXPECT_GT(zero, 1000) << "the points are not awkward enough";
 }
 
+// Coordinates of many digits, of which few are different, so that most fours have some in common; and one that is off
+// by the last digit.
+TEST(VolumeSign, IsThatOfExactArithmeticForPointsThatShareCoordinates) {
+  int zero = 0, shaken = 0;
+  for (std::uint64_t trial = 0; trial < 20000; ++trial) {
+    Random random(1, 14, trial);
+    std::array<Point, 3> values;
+    for (Point& value : values) value = {random.uniform(), random.uniform(), random.uniform()};
+    std::array<Point, 4> p;
+    for (Point& q : p)
+      for (unsigned axis = 0; axis < 3; ++axis) q[axis] = values[random.below(2 + trial % 2)][axis];
+    if (trial % 3 == 0) p[trial % 4][trial / 3 % 3] *= 1 + std::numeric_limits<double>::epsilon();
+    const auto volume = CGAL::orientation(cgal(p[0]), cgal(p[1]), cgal(p[2]), cgal(p[3]));
+    ASSERT_EQ(static_cast<int>(volume_sign(p[0], p[1], p[2], p[3])), static_cast<int>(volume));
+    zero += volume == CGAL::ZERO;
+    shaken += volume != CGAL::ZERO && trial % 3 == 0;
+  }
+  EXPECT_GT(zero, 5000);
+  EXPECT_GT(shaken, 1000);
+}
+
 TEST(VolumeSign, IsUncertainWhereTheVolumeIsNotFartherFromZeroThanAsked) {
   // Four points of a line but for 2^-36: the volume, -2^-72, is far below the rounding of the products.
   const Point p(0, 0, 0), a(1, 1, 1), b(2, 2, 2 + 0x1p-36), c(3, 3 + 0x1p-36, 3);
