@@ -34,6 +34,9 @@ inline std::size_t lanes_for(std::size_t count) noexcept { return (count + 7) & 
 // By coordinate, so that the loops over bodies become vector instructions.
 struct BoxBlock {
   std::array<std::array<std::uint32_t, kBlock>, 3> lower, upper;
+  // Of all boxes that were made together:
+  QuantumBox around;         // what includes them
+  std::uint32_t more_cells;  // bits of how many cells they take along an axis beyond one
 
   QuantumBox get(std::size_t i) const noexcept {
     return {{lower[0][i], lower[1][i], lower[2][i]}, {upper[0][i], upper[1][i], upper[2][i]}};
@@ -70,12 +73,11 @@ class Lattice {
  private:
   template <typename Kind>
   struct Validity;
-  template <typename Kind>
-  void make_four(const Motion* motions, const double* durations, BoxBlock& boxes, std::size_t first,
+  template <typename Kind, typename Row>
+  void make_some(const Row& row, const double* durations, BoxBlock& boxes, std::size_t first,
                  Validity<Kind>& valid) const noexcept;
   template <typename Kind>
   bool make_all(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes) const noexcept;
-  bool boxes_plain(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes) const noexcept;
   bool boxes_vectors(std::span<const Motion> motions, std::span<const double> durations,
                      BoxBlock& boxes) const noexcept;
 
