@@ -47,6 +47,7 @@ class OverlapList {
 
  private:
   void sort(std::vector<BodyPair>& pairs, std::size_t slots);
+  void sort_by_digits(std::vector<BodyPair>& pairs);
   void forget_marked();
   void clear_marks() noexcept;
   void keep_changes();
@@ -59,6 +60,7 @@ class OverlapList {
   BodyIndex first_marked_ = kNoIndex, last_marked_ = 0;
   bool anew_ = false, refuses_ = false;
   std::vector<std::uint32_t> begins_, ends_;  // by body, while many pairs are sorted
+  std::vector<BodyPair> by_digit_;            // while some are
 };
 
 }  // namespace orchard::runtime::detail
