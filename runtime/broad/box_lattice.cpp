@@ -25,6 +25,7 @@ struct MotionColumns {
 // How many bodies are worked on together, and their numbers; row(i) points to the i-th one's motion.
 struct PlainMotions {
   static constexpr std::size_t kLanes = 4;
+  static constexpr bool kClips = true;  // boxes to the lattice; others tell that some do not lie in it
   using Numbers = Plain<double, kLanes>;
   using Mask = Numbers::Mask;
   using Columns = MotionColumns<Numbers>;
@@ -59,6 +60,7 @@ struct PlainMotions {
 #ifdef ORCHARD_VECTORS
 struct VectorMotions : VectorDoubles {
   static constexpr std::size_t kLanes = 4;
+  static constexpr bool kClips = false;
   using Columns = MotionColumns<Numbers>;
   ORCHARD_INLINE static Mask within(const Numbers& first, const Numbers& a, const Numbers& b,
                                     const Numbers& last) noexcept {
@@ -89,12 +91,10 @@ struct VectorMotions : VectorDoubles {
 // Eight bodies, whose comparisons are bits.
 struct EightMotions {
   static constexpr std::size_t kLanes = 8;
+  static constexpr bool kClips = false;
   using Numbers __attribute__((vector_size(64))) = double;
   using Columns = MotionColumns<Numbers>;
   using Mask = std::uint8_t;
-  ORCHARD_INLINE static Numbers choose(Mask mask, const Numbers& a, const Numbers& b) noexcept {
-    return __builtin_ia32_blendmpd_512_mask(b, a, mask);
-  }
   ORCHARD_INLINE static Numbers least(const Numbers& a, const Numbers& b) noexcept {  // a of two that do not compare
     return __builtin_ia32_minpd512_mask(b, a, a, kAll, kRounding);
   }
@@ -260,13 +260,14 @@ ORCHARD_INLINE void Lattice::make_some(const Row& row, const double* durations, 
   const typename Kind::Columns of = Kind::columns(row);
   const Numbers time = load<Numbers>(*reinterpret_cast<const std::array<double, Kind::kLanes>*>(durations));
   const Numbers per_length = all(per_length_), zero = all(0), last = all(kLastQuantum);
-  const Numbers wide = time * (of.drift + time * of.acceleration * all(0.5)) * per_length;
+  const Numbers per_speed = time * per_length, half = time * all(0.5);
+  const Numbers wide = per_speed * (of.drift + half * of.acceleration);
   const Numbers radius = of.radius * per_length + all(margin_);
   std::array<Numbers, 3> lower, upper;
   typename Kind::Mask inside = valid.inside;
   for (std::size_t d = 0; d < 3; ++d) {
     const Numbers begin = all(kMiddle) + (of.position[d] - all(origin_[d])) * per_length;
-    const Numbers way = (of.velocity[d] - all(velocity_[d])) * time * per_length;
+    const Numbers way = (of.velocity[d] - all(velocity_[d])) * per_speed;
     lower[d] = begin + Kind::least(zero, way - wide) - radius;
     upper[d] = begin + Kind::most(zero, way + wide) + radius;
   }
@@ -275,8 +276,10 @@ ORCHARD_INLINE void Lattice::make_some(const Row& row, const double* durations, 
     inside = d == 0 ? within : inside & within;
   }
   for (std::size_t d = 0; d < 3; ++d) {
-    Kind::truncate(Kind::choose(inside, lower[d], zero), &boxes.lower[d][first]);
-    Kind::truncate(Kind::choose(inside, upper[d], last), &boxes.upper[d][first]);
+    if constexpr (Kind::kClips)
+      lower[d] = Kind::choose(inside, lower[d], zero), upper[d] = Kind::choose(inside, upper[d], last);
+    Kind::truncate(lower[d], &boxes.lower[d][first]);
+    Kind::truncate(upper[d], &boxes.upper[d][first]);
   }
   const auto square = [](const Numbers& x) ORCHARD_INLINE_LAMBDA { return x * x; };
   valid.inside = valid.inside & inside;
@@ -305,6 +308,9 @@ ORCHARD_INLINE bool Lattice::make_all(std::span<const Motion> motions, std::span
     for (std::size_t k = 0; k < kLanes; ++k) some[k] = durations[std::min(k, count - 1)];
     const auto row = [&](std::size_t k) ORCHARD_INLINE_LAMBDA { return &motions[std::min(k, count - 1)]; };
     make_some<Kind>(row, some.data(), boxes, 0, valid);
+  }
+  if constexpr (!Kind::kClips) {
+    if (!Kind::all(valid.inside)) return make_all<PlainMotions>(motions, durations, boxes);  // which clips
   }
   count == kBlock ? tell_extent(boxes, kBlock) : tell_extent(boxes, count);
   return valid.all();

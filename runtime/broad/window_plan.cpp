@@ -115,14 +115,18 @@ Spread spread_evenly(std::span<const Vec3> sample, std::size_t bodies) {
   if (n > 0) spread.middle = sample[0];
   if (n < 2) return spread;
   Vec3 lower{}, upper{};
-  std::array<double, MotionMeans::kPlaces> sorted;
+  std::array<double, MotionMeans::kPlaces> sorted;  // as far as is needed
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < n; ++i) sorted[i] = sample[i][axis];
-    std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n));
-    lower[axis] = sorted[n / 8];
-    upper[axis] = sorted[n - 1 - n / 8];
-    spread.extent[axis] = sorted[n - 1] - sorted[0];
-    spread.middle[axis] = (sorted[0] + sorted[n - 1]) / 2;
+    const auto at = [&](std::size_t i) { return sorted.begin() + static_cast<std::ptrdiff_t>(i); };
+    const std::size_t low = n / 8, high = n - 1 - low;
+    std::nth_element(at(0), at(low), at(n));
+    if (low < high) std::nth_element(at(low + 1), at(high), at(n));
+    const double first = *std::min_element(at(0), at(low + 1)), last = *std::max_element(at(high), at(n));
+    lower[axis] = sorted[low];
+    upper[axis] = sorted[high];
+    spread.extent[axis] = last - first;
+    spread.middle[axis] = (first + last) / 2;
   }
   double inside = 0;
   for (const Vec3& p : sample.first(n)) {

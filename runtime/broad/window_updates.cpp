@@ -66,7 +66,11 @@ bool WindowUpdates::place(Block& block, std::span<const BodyIndex> bodies) {
   bool same = set_ends(block, bodies, motions);
   if (!make_boxes(block, motions, same)) return false;
 
-  parts_.windows.set(bodies, block.from, std::span(block.ends).first(bodies.size()));
+  if (same && block.ends[0] != kNeverStep) {
+    parts_.windows.set_alike(bodies, block.from, block.ends[0]);
+  } else {
+    parts_.windows.set(bodies, block.from, std::span(block.ends).first(bodies.size()));
+  }
   parts_.overlaps.mark_updated(bodies);
   const bool notes_spheres = parts_.pairs.notes_spheres();
   for (std::size_t i = 0; notes_spheres && i < bodies.size(); ++i) {
