@@ -123,7 +123,7 @@ class SweptGrid {
   void insert_large(Insertion& insertion, const Batch& batch);
   struct Coded;
   struct AxisBits {  // of a block's bodies, a bit each: which take two cells along an axis, and which more along some
-    std::uint32_t x, y, z, many;
+    std::uint64_t x, y, z, many;
   };
   void code(Coded& coded, std::span<const BodyIndex> bodies, const BoxBlock& block) const noexcept;
   static AxisBits bits_of(const Numbers& axes, std::size_t count) noexcept;

@@ -80,7 +80,7 @@ ORCHARD_INLINE void SweptGrid::encode_all(Batch& batch, std::span<const BodyInde
   batch.larges = 0;
   batch.count = batch.end = count;
   const AxisBits bits = bits_of(coded.axes, count);
-  for (std::uint32_t rest = bits.many; rest != 0; rest &= rest - 1) {
+  for (std::uint64_t rest = bits.many; rest != 0; rest &= rest - 1) {
     batch.large[batch.larges++] = coded.ids[static_cast<std::size_t>(std::countr_zero(rest))];
   }
   add_corners(batch, coded, bits);
@@ -99,18 +99,18 @@ ORCHARD_INLINE SweptGrid::AxisBits SweptGrid::bits_of(const Numbers& axes, std::
   for (std::size_t i = 0; i < lanes_for(count); i += 8) {
     const __m128i eight = _mm_packs_epi32(four(i), four(i + 4)), bytes = _mm_packs_epi16(eight, eight);
     const auto which = [&](int bit) ORCHARD_INLINE_LAMBDA {
-      return static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_slli_epi16(bytes, 7 - bit)) & 0xff) << i;
+      return static_cast<std::uint64_t>(_mm_movemask_epi8(_mm_slli_epi16(bytes, 7 - bit)) & 0xff) << i;
     };
     bits.x |= which(0), bits.y |= which(1), bits.z |= which(2), bits.many |= which(3);
   }
 #else
   for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t taken = axes[i];
+    const std::uint64_t taken = axes[i];
     bits.x |= (taken & 1) << i, bits.y |= (taken >> 1 & 1) << i, bits.z |= (taken >> 2 & 1) << i;
     bits.many |= (taken >> 3) << i;
   }
 #endif
-  const std::uint32_t there = count < kBlock ? (1u << count) - 1 : ~0u;
+  const std::uint64_t there = count < kBlock ? (std::uint64_t{1} << count) - 1 : ~std::uint64_t{0};
   bits.many &= there;
   bits.x &= there & ~bits.many, bits.y &= there & ~bits.many, bits.z &= there & ~bits.many;
   return bits;
@@ -118,10 +118,10 @@ ORCHARD_INLINE SweptGrid::AxisBits SweptGrid::bits_of(const Numbers& axes, std::
 
 // The other cells of bodies that take two along some axes, by these: mostly it is one axis.
 ORCHARD_INLINE void SweptGrid::add_corners(Batch& batch, const Coded& coded, const AxisBits& bits) const noexcept {
-  const std::uint32_t xy = bits.x & bits.y, xz = bits.x & bits.z, yz = bits.y & bits.z;
+  const std::uint64_t xy = bits.x & bits.y, xz = bits.x & bits.z, yz = bits.y & bits.z;
   std::size_t end = batch.end;
   const std::uint32_t mask = mask_;
-  const auto add = [&](std::uint32_t corner, std::uint32_t taken) ORCHARD_INLINE_LAMBDA {
+  const auto add = [&](std::uint32_t corner, std::uint64_t taken) ORCHARD_INLINE_LAMBDA {
     const std::uint32_t line = Corners::line(corner, factors_), fields = Corners::fields(corner);
     for (; taken != 0; taken &= taken - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(taken));
