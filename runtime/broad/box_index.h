@@ -16,6 +16,7 @@ class BoxIndex {
   void make_room(std::size_t slots) { grow(places_, slots); }
   void make_room_for_boxes(std::size_t slots);
   bool few() const noexcept { return few_; }
+  std::size_t at_once() const noexcept { return few_ ? BoxList::kAtOnce : kBlock; }  // bodies that insert() takes
   bool outgrown(std::size_t slots) const noexcept { return few_ && slots > BoxList::kMaxBodies; }
   const void* at(BodyIndex body) const noexcept { return &places_[body]; }  // to load it ahead
 

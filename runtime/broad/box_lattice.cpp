@@ -291,7 +291,7 @@ ORCHARD_INLINE void Lattice::make_some(const Row& row, const double* durations, 
 // The last ones with copies of the very last one, or with some before it once more.
 template <typename Kind>
 ORCHARD_INLINE bool Lattice::make_all(std::span<const Motion> motions, std::span<const double> durations,
-                                      BoxBlock& boxes) const noexcept {
+                                      BoxBlock& boxes, bool extent) const noexcept {
   constexpr std::size_t kLanes = Kind::kLanes;
   Validity<Kind> valid;
   const std::size_t count = std::min(motions.size(), kBlock);
@@ -310,16 +310,17 @@ ORCHARD_INLINE bool Lattice::make_all(std::span<const Motion> motions, std::span
     make_some<Kind>(row, some.data(), boxes, 0, valid);
   }
   if constexpr (!Kind::kClips) {
-    if (!Kind::all(valid.inside)) return make_all<PlainMotions>(motions, durations, boxes);  // which clips
+    if (!Kind::all(valid.inside)) return make_all<PlainMotions>(motions, durations, boxes, extent);  // which clips
   }
-  count == kBlock ? tell_extent(boxes, kBlock) : tell_extent(boxes, count);
+  if (extent) count == kBlock ? tell_extent(boxes, kBlock) : tell_extent(boxes, count);
   return valid.all();
 }
 
-bool Lattice::boxes_vectors(std::span<const Motion> motions, std::span<const double> durations,
-                            BoxBlock& boxes) const noexcept {
+bool Lattice::boxes_vectors(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes,
+                            bool extent) const noexcept {
   bool good = false;
-  const auto make = [&]<typename Kind>() ORCHARD_INLINE_LAMBDA { good = make_all<Kind>(motions, durations, boxes); };
+  const auto make = [&]<typename Kind>()
+                        ORCHARD_INLINE_LAMBDA { good = make_all<Kind>(motions, durations, boxes, extent); };
 #if defined(ORCHARD_VECTORS) && defined(ORCHARD_MACHINES)
 #ifdef ORCHARD_AVX512_NAMES
   if (machine() == Machine::avx512) {
@@ -338,9 +339,10 @@ bool Lattice::boxes_vectors(std::span<const Motion> motions, std::span<const dou
   return good;
 }
 
-bool Lattice::boxes(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes,
+bool Lattice::boxes(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes, bool extent,
                     bool vectors) const noexcept {
-  return vectors ? boxes_vectors(motions, durations, boxes) : make_all<PlainMotions>(motions, durations, boxes);
+  return vectors ? boxes_vectors(motions, durations, boxes, extent)
+                 : make_all<PlainMotions>(motions, durations, boxes, extent);
 }
 
 }  // namespace orchard::runtime::detail

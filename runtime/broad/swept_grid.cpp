@@ -231,51 +231,50 @@ void SweptGrid::insert_large(Insertion& insertion, const Batch& batch) {
   }
 }
 
-// block null: the last ones get in.
-void SweptGrid::advance(Insertion& insertion, Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock* block) {
-  Batch &next = queue.batches_[1 - queue.current_], &waiting = queue.batches_[queue.current_];
-  if (block != nullptr) {
-    encode(next, bodies, *block, insertion.vectors);
-    for (std::size_t i = 0; i < next.end; ++i) prefetch(&lines_[next.lines[i]]);  // they are all over memory
+template <typename Use>
+void SweptGrid::for_each_part(std::span<const BodyIndex> bodies, const BoxBlock& block, const Use& use) {
+  for (std::size_t first = 0; first < bodies.size(); first += kBatch) {
+    use(Some{bodies.subspan(first, std::min(kBatch, bodies.size() - first)), block, first});
   }
-  insert_batch(insertion, waiting);
-  if (block != nullptr) {
-    queue.current_ = 1 - queue.current_;
-  } else {
-    waiting.count = waiting.end = waiting.larges = 0;
-  }
-}
-
-void SweptGrid::run(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock* block,
-                    std::span<const QuantumBox> boxes, bool vectors, std::vector<BodyPair>& pairs) {
-  Insertion insertion(boxes, vectors, pairs, counts_);
-  advance(insertion, queue, bodies, block);
-  insertion.hand_over();
 }
 
 void SweptGrid::insert(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock& block,
                        std::span<const QuantumBox> boxes, bool vectors, std::vector<BodyPair>& pairs) {
-  run(queue, bodies, &block, boxes, vectors, pairs);
+  Insertion insertion(boxes, vectors, pairs, counts_);
+  for_each_part(bodies, block, [&](const Some& some) {
+    Batch &next = queue.batches_[1 - queue.current_], &waiting = queue.batches_[queue.current_];
+    encode(next, some, vectors);
+    for (std::size_t i = 0; i < next.end; ++i) prefetch(&lines_[next.lines[i]]);  // they are all over memory
+    insert_batch(insertion, waiting);
+    queue.current_ = 1 - queue.current_;
+  });
+  insertion.hand_over();
 }
 
 void SweptGrid::finish(Queue& queue, std::span<const QuantumBox> boxes, bool vectors, std::vector<BodyPair>& pairs) {
-  run(queue, {}, nullptr, boxes, vectors, pairs);
+  Insertion insertion(boxes, vectors, pairs, counts_);
+  Batch& waiting = queue.batches_[queue.current_];
+  insert_batch(insertion, waiting);
+  waiting.count = waiting.end = waiting.larges = 0;
+  insertion.hand_over();
 }
 
 void SweptGrid::scatter(std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const QuantumBox> boxes,
                         bool vectors, VisitsByPart& visits) const {
   Batch batch;
-  encode(batch, bodies, block, vectors);
-  for (Visits& part : visits) part.make_room(batch.end);
-  for (std::size_t k = 0; k < batch.end; ++k) {
-    visits[part_of(batch.lines[k])].add({batch.entries[k], batch.lines[k], batch.steps[k]});
-  }
   std::array<Visit, kMaxVisits> rest;
-  for (std::size_t i = 0; i < batch.larges; ++i) {
-    const Visit* const end = many_visits_of(batch.large[i], boxes[batch.large[i]], rest.data());
-    for (Visits& part : visits) part.make_room(kMaxVisits);
-    for (const Visit* visit = rest.data(); visit != end; ++visit) visits[part_of(visit->line)].add(*visit);
-  }
+  for_each_part(bodies, block, [&](const Some& some) {
+    encode(batch, some, vectors);
+    for (Visits& part : visits) part.make_room(batch.end);
+    for (std::size_t k = 0; k < batch.end; ++k) {
+      visits[part_of(batch.lines[k])].add({batch.entries[k], batch.lines[k], batch.steps[k]});
+    }
+    for (std::size_t i = 0; i < batch.larges; ++i) {
+      const Visit* const end = many_visits_of(batch.large[i], boxes[batch.large[i]], rest.data());
+      for (Visits& part : visits) part.make_room(kMaxVisits);
+      for (const Visit* visit = rest.data(); visit != end; ++visit) visits[part_of(visit->line)].add(*visit);
+    }
+  });
 }
 
 void SweptGrid::insert_visits(Insertion& insertion, std::span<const Visit> visits) {

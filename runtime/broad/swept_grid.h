@@ -105,14 +105,21 @@ class SweptGrid {
   static constexpr std::size_t kMaxVisits = kMaxCellsPerAxis * kMaxCellsPerAxis * kMaxCellsPerAxis - 1;  // a body's
   struct Insertion;
   using Cell = std::array<std::uint32_t, 3>;
-  using Numbers = std::array<std::uint32_t, kBlock>;
+  static constexpr std::size_t kBatch = 64;  // bodies
+  using Numbers = std::array<std::uint32_t, kBatch>;
   struct Batch;
   std::uint32_t line_of(const Cell& cell) const noexcept {
     return (cell[0] * factors_[0] + cell[1] * factors_[1] + cell[2] * factors_[2]) & mask_;
   }
-  void encode(Batch& batch, std::span<const BodyIndex> bodies, const BoxBlock& block, bool vectors) const noexcept;
-  void encode_all(Batch& batch, std::span<const BodyIndex> bodies, const BoxBlock& block) const noexcept;
-  void advance(Insertion& insertion, Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock* block);
+  struct Some {  // of a block's bodies: at most kBatch of them, the first of which has the box `first`
+    std::span<const BodyIndex> bodies;
+    const BoxBlock& block;
+    std::size_t first;
+  };
+  template <typename Use>
+  static void for_each_part(std::span<const BodyIndex> bodies, const BoxBlock& block, const Use& use);
+  void encode(Batch& batch, const Some& some, bool vectors) const noexcept;
+  void encode_all(Batch& batch, const Some& some) const noexcept;
   struct PutOff;
   template <typename Kind, typename Line, typename Entry, typename Query>
   void put_all(PutOff& put_off, std::size_t count, const Line& line_at, const Entry& entry_at,
@@ -125,12 +132,10 @@ class SweptGrid {
   struct AxisBits {  // of a block's bodies, a bit each: which take two cells along an axis, and which more along some
     std::uint64_t x, y, z, many;
   };
-  void code(Coded& coded, std::span<const BodyIndex> bodies, const BoxBlock& block) const noexcept;
+  void code(Coded& coded, const Some& some) const noexcept;
   static AxisBits bits_of(const Numbers& axes, std::size_t count) noexcept;
   void add_corners(Batch& batch, const Coded& coded, const AxisBits& bits) const noexcept;
   Visit* many_visits_of(BodyIndex body, const QuantumBox& box, Visit* visits) const noexcept;
-  void run(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock* block, std::span<const QuantumBox> boxes,
-           bool vectors, std::vector<BodyPair>& pairs);
   template <typename Kind>
   void insert_beyond(Insertion& insertion, const Visit& visit);
   void report(Insertion& insertion, const CellLine& line, std::uint64_t hits, BodyIndex body, Steps steps);
@@ -162,13 +167,13 @@ class SweptGrid {
 // The visits of a block's bodies: one of each to its first cell, then those to the other cells of bodies that take two
 // along some axes. Bodies that take more are named.
 struct SweptGrid::Batch {
-  static constexpr std::size_t kMaxVisits = 8 * kBlock;
+  static constexpr std::size_t kMaxVisits = 8 * kBatch;
   template <typename T>
   using ByVisit = std::array<T, kMaxVisits>;
   ByVisit<std::uint64_t> entries, queries;
   ByVisit<std::uint32_t> lines;
   ByVisit<Steps> steps;
-  std::array<BodyIndex, kBlock> large;         // bodies that take more than two cells along an axis
+  std::array<BodyIndex, kBatch> large;         // bodies that take more than two cells along an axis
   std::size_t count = 0, end = 0, larges = 0;  // bodies, visits, and of the former those
 };
 

@@ -40,17 +40,17 @@ struct SweptGrid::Coded {
 };
 
 // A loop without branches that depend on the data.
-ORCHARD_INLINE void SweptGrid::code(Coded& coded, std::span<const BodyIndex> bodies,
-                                    const BoxBlock& block) const noexcept {
-  const std::size_t count = std::min(bodies.size(), kBlock);  // GCC does not know that there are no more
+ORCHARD_INLINE void SweptGrid::code(Coded& coded, const Some& some) const noexcept {
+  const std::size_t count = std::min(some.bodies.size(), kBatch);  // GCC does not know that there are no more
   const std::size_t lanes = lanes_for(count);
-  for (std::size_t i = 0; i < count; ++i) coded.ids[i] = bodies[i];
+  const BoxBlock& block = some.block;
+  for (std::size_t i = 0; i < count; ++i) coded.ids[i] = some.bodies[i];
   for (std::size_t i = count; i < lanes; ++i) coded.ids[i] = 0;
   const std::uint32_t factor_y = factors_[1], factor_z = factors_[2];  // the first one is 1
   for (std::size_t i = 0; i < lanes; ++i) {
     std::uint32_t from = 0, below = 0, beyond = 0, line = 0, axes = 0;
     for (std::uint32_t d = 0; d < 3; ++d) {
-      const std::uint32_t lower = block.lower[d][i], upper = block.upper[d][i];
+      const std::uint32_t lower = block.lower[d][some.first + i], upper = block.upper[d][some.first + i];
       const std::uint32_t cell = lower >> kQuantumBits, more = (upper >> kQuantumBits) - cell;
       const std::uint32_t two = (more | more >> 1) & 1;
       from |= (lower >> kCoarser & kLastInEntry) << kFieldBits * d;
@@ -64,12 +64,11 @@ ORCHARD_INLINE void SweptGrid::code(Coded& coded, std::span<const BodyIndex> bod
   }
 }
 
-ORCHARD_INLINE void SweptGrid::encode_all(Batch& batch, std::span<const BodyIndex> bodies,
-                                          const BoxBlock& block) const noexcept {
+ORCHARD_INLINE void SweptGrid::encode_all(Batch& batch, const Some& some) const noexcept {
   const std::uint32_t mask = mask_;
   Coded coded;
-  code(coded, bodies, block);
-  const std::size_t count = std::min(bodies.size(), kBlock), lanes = lanes_for(count);
+  code(coded, some);
+  const std::size_t count = std::min(some.bodies.size(), kBatch), lanes = lanes_for(count);
   for (std::size_t i = 0; i < lanes; ++i) {
     const std::uint64_t from = coded.from[i], below = coded.below[i] & ~coded.beyond[i];
     batch.entries[i] = entry_of(from, below) | std::uint64_t{coded.ids[i]} << kIdShift;
@@ -110,7 +109,7 @@ ORCHARD_INLINE SweptGrid::AxisBits SweptGrid::bits_of(const Numbers& axes, std::
     bits.many |= (taken >> 3) << i;
   }
 #endif
-  const std::uint64_t there = count < kBlock ? (std::uint64_t{1} << count) - 1 : ~std::uint64_t{0};
+  const std::uint64_t there = count < kBatch ? (std::uint64_t{1} << count) - 1 : ~std::uint64_t{0};
   bits.many &= there;
   bits.x &= there & ~bits.many, bits.y &= there & ~bits.many, bits.z &= there & ~bits.many;
   return bits;
@@ -138,9 +137,8 @@ ORCHARD_INLINE void SweptGrid::add_corners(Batch& batch, const Coded& coded, con
   batch.end = end;
 }
 
-void SweptGrid::encode(Batch& batch, std::span<const BodyIndex> bodies, const BoxBlock& block,
-                       bool vectors) const noexcept {
-  const auto work = [&]() ORCHARD_INLINE_LAMBDA { encode_all(batch, bodies, block); };
+void SweptGrid::encode(Batch& batch, const Some& some, bool vectors) const noexcept {
+  const auto work = [&]() ORCHARD_INLINE_LAMBDA { encode_all(batch, some); };
   vectors ? per_machine(work) : work();
 }
 
