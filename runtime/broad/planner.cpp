@@ -135,8 +135,8 @@ bool Planner::survey(Step now, BudgetTracker& tracker) {
 // Of the bodies, so that both steps take the same time: of the near pairs only those among them are found ahead, and
 // what is done once, with code and grid that have left the cache, is done then.
 double Planner::share_ahead() const noexcept {
-  constexpr double kUpdate = 30, kNearPair = 80;  // nanoseconds of one machine
-  constexpr double kOnce = 1250, kOncePerBody = 3.5, kMostOfThem = 1000, kLeastShare = 0.1;
+  constexpr double kUpdate = 15, kNearPair = 50;  // nanoseconds of one machine
+  constexpr double kOnce = 600, kOncePerBody = 4, kMostOfThem = 1000, kLeastShare = 0.1;
   const double bodies = static_cast<double>(std::max<std::size_t>(1, pool_.size()));
   const double once = kOnce + kOncePerBody * std::min(bodies, kMostOfThem);
   const double pairs = kNearPair * plan_.pairs_per_body;
