@@ -3,21 +3,7 @@
 namespace orchard::runtime::detail {
 namespace {
 
-constexpr std::size_t kFour = 4;  // all boxes of which are made, even if there is one body: whatever is in the others
 static_assert((kMaxCellsPerAxis & (kMaxCellsPerAxis - 1)) == 0);
-
-// Whether the boxes fit into the grid. Mostly all do: what is more than fits shows in a sum of bits.
-bool all_cells_fit(const BoxBlock& boxes, std::size_t count) noexcept {
-  std::array<std::uint32_t, kFour> cells{};
-  for (std::size_t d = 0; d < 3; ++d) {
-    for (std::size_t i = 0; i < count; i += kFour) {
-      for (std::size_t k = 0; k < kFour; ++k) {
-        cells[k] |= (boxes.upper[d][i + k] >> kQuantumBits) - (boxes.lower[d][i + k] >> kQuantumBits);
-      }
-    }
-  }
-  return (cells[0] | cells[1] | cells[2] | cells[3]) < kMaxCellsPerAxis;
-}
 
 bool cells_fit(const QuantumBox& box) noexcept {
   bool fit = true;
@@ -110,8 +96,8 @@ bool BoxIndex::note(std::span<const BodyIndex> bodies, const BoxBlock& boxes) no
   for (const BodyIndex body : bodies) places_[body] = Place::inside;
   if (few_) return true;
   boxes.store(bodies, boxes_);
-  if (all_cells_fit(boxes, bodies.size())) {
-    note_extent(boxes, bodies.size(), extent_);
+  if (all_fit(boxes)) {
+    extent_.include(boxes.around);
     return true;
   }
   bool fit = true;
@@ -128,30 +114,14 @@ bool BoxIndex::note_again(BodyIndex body, const QuantumBox& box) noexcept {
   return fits;
 }
 
-bool BoxIndex::all_fit(const BoxBlock& boxes, std::size_t count) noexcept { return all_cells_fit(boxes, count); }
+bool BoxIndex::all_fit(const BoxBlock& boxes) noexcept { return boxes.more_cells < kMaxCellsPerAxis; }
 
 bool BoxIndex::fits(const QuantumBox& box) noexcept { return cells_fit(box); }
 
 void BoxIndex::note_fitting(std::span<const BodyIndex> bodies, const BoxBlock& boxes, QuantumBox& extent) noexcept {
   boxes.store(bodies, boxes_);
   for (const BodyIndex body : bodies) places_[body] = Place::inside;
-  note_extent(boxes, bodies.size(), extent);
-}
-
-// Mostly none of them lies outside. By fours, whose boxes are all made: those after the last body are somewhere in the
-// world. Quanta are below 2^31: what is outside shows in the highest bit of a difference.
-void BoxIndex::note_extent(const BoxBlock& boxes, std::size_t count, QuantumBox& extent) noexcept {
-  std::array<std::uint32_t, kFour> outside{};
-  for (std::size_t d = 0; d < 3; ++d) {
-    const std::uint32_t lower = extent.lower[d], upper = extent.upper[d];
-    for (std::size_t i = 0; i < count; i += kFour) {
-      for (std::size_t k = 0; k < kFour; ++k) {
-        outside[k] |= (boxes.lower[d][i + k] - lower) | (upper - boxes.upper[d][i + k]);
-      }
-    }
-  }
-  if ((outside[0] | outside[1] | outside[2] | outside[3]) >> 31 == 0) return;
-  for (std::size_t i = 0; i < count; ++i) extent.include(boxes.get(i));
+  extent.include(boxes.around);
 }
 
 void BoxIndex::insert(Queue& queue, std::span<const BodyIndex> bodies, BoxBlock& boxes, std::vector<BodyPair>& pairs) {

@@ -16,6 +16,7 @@ class BoxIndex {
   void make_room(std::size_t slots) { grow(places_, slots); }
   void make_room_for_boxes(std::size_t slots);
   bool few() const noexcept { return few_; }
+  std::size_t at_once() const noexcept { return few_ ? BoxList::kAtOnce : kBlock; }  // bodies that insert() takes
   bool outgrown(std::size_t slots) const noexcept { return few_ && slots > BoxList::kMaxBodies; }
   const void* at(BodyIndex body) const noexcept { return &places_[body]; }  // to load it ahead
 
@@ -42,7 +43,7 @@ class BoxIndex {
   // used meanwhile:
   // Only while none is oversized: of these the grid knows nothing.
   bool shares() const noexcept { return !few_ && oversized_.empty(); }
-  static bool all_fit(const BoxBlock& boxes, std::size_t count) noexcept;
+  static bool all_fit(const BoxBlock& boxes) noexcept;
   static bool fits(const QuantumBox& box) noexcept;
   // takes note of boxes that fit, and has `extent` include them;
   void note_fitting(std::span<const BodyIndex> bodies, const BoxBlock& boxes, QuantumBox& extent) noexcept;
@@ -73,7 +74,6 @@ class BoxIndex {
   enum class Place : std::uint8_t { nowhere, inside, oversized };
   static constexpr QuantumBox kNothing = {{kLastQuantum, kLastQuantum, kLastQuantum}, {0, 0, 0}};
 
-  static void note_extent(const BoxBlock& boxes, std::size_t count, QuantumBox& extent) noexcept;
   void meet_oversized(std::span<const BodyIndex> bodies, std::vector<BodyPair>& pairs);
   struct GridRay;
   void append_in_cells(const QuantumBox& box, std::vector<BodyIndex>& bodies) const;

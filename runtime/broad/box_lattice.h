@@ -27,13 +27,16 @@ struct QuantumBox {
 inline constexpr std::uint32_t kQuantumBits = 6, kQuanta = 1u << kQuantumBits;
 inline constexpr std::uint32_t kLastQuantum = 0x7fffffffu;
 
-inline constexpr std::size_t kBlock = 32;  // bodies that are worked on together
+inline constexpr std::size_t kBlock = 128;  // bodies that are worked on together, at most
 // Loops over a block go on to a multiple of eight: whole vectors.
 inline std::size_t lanes_for(std::size_t count) noexcept { return (count + 7) & ~std::size_t{7}; }
 
 // By coordinate, so that the loops over bodies become vector instructions.
 struct BoxBlock {
   std::array<std::array<std::uint32_t, kBlock>, 3> lower, upper;
+  // Of all boxes that were made together, if it is wanted:
+  QuantumBox around;         // what includes them
+  std::uint32_t more_cells;  // bits of how many cells they take along an axis beyond one
 
   QuantumBox get(std::size_t i) const noexcept {
     return {{lower[0][i], lower[1][i], lower[2][i]}, {upper[0][i], upper[1][i], upper[2][i]}};
@@ -64,20 +67,21 @@ class Lattice {
   double quanta(double length) const noexcept { return length * per_length_; }
   // Box i holds body i's sphere for durations[i] seconds from its motion's time; at most kBlock of them. False if a
   // motion may not be valid, which costs next to nothing to tell here; its expiry is not looked at.
-  bool boxes(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes,
+  // extent: what is told of all boxes together is wanted.
+  bool boxes(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes, bool extent,
              bool vectors) const noexcept;
 
  private:
   template <typename Kind>
   struct Validity;
-  template <typename Kind>
-  void make_four(const Motion* motions, const double* durations, BoxBlock& boxes, std::size_t first,
+  template <typename Kind, typename Row>
+  void make_some(const Row& row, const double* durations, BoxBlock& boxes, std::size_t first,
                  Validity<Kind>& valid) const noexcept;
   template <typename Kind>
-  bool make_all(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes) const noexcept;
-  bool boxes_plain(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes) const noexcept;
-  bool boxes_vectors(std::span<const Motion> motions, std::span<const double> durations,
-                     BoxBlock& boxes) const noexcept;
+  bool make_all(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes,
+                bool extent) const noexcept;
+  bool boxes_vectors(std::span<const Motion> motions, std::span<const double> durations, BoxBlock& boxes,
+                     bool extent) const noexcept;
 
   Vec3 first_{}, origin_{};  // where it was made, and where it is
   Vec3 velocity_{};

@@ -175,7 +175,7 @@ void BoxList::append_meeting(const QuantumBox& box, std::vector<BodyIndex>& bodi
 }
 
 ORCHARD_INLINE void BoxList::make_coarse(const BoxBlock& block, std::size_t count, Group& group) const noexcept {
-  const std::size_t lanes = count > kBlock / 2 ? kBlock : count;  // of one body vectors would be most of the work
+  const std::size_t lanes = count > kAtOnce / 2 ? kAtOnce : count;  // of one body vectors would be most of the work
   for (std::size_t d = 0; d < 3; ++d) {
     const std::uint32_t from = first_[d], last = kLastCoarse;
     const unsigned shift = shift_;

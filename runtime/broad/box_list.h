@@ -9,6 +9,7 @@ namespace orchard::runtime::detail {
 class BoxList {
  public:
   static constexpr std::size_t kMaxBodies = 192;
+  static constexpr std::size_t kAtOnce = 32;  // that insert() takes at most: of so few, room for more would be much
 
   void reset(std::size_t slots);  // empties the list; bodies are below
   void grow(std::size_t slots);   // keeps what is in it

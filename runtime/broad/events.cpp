@@ -79,10 +79,13 @@ void Events::collect_due(Step now) {
     due_.push_back(entries_[i]);
   }
   const auto load = [&](BodyIndex body) { prefetch(&windows_[body]); };
+  std::size_t count = due_.size();
+  due_.resize(count + changes_.size());
   changes_.take(load, [&](BodyIndex body) {
     note_cancelled(body, now);
-    due_.push_back(body);
+    due_[count++] = body;
   });
+  due_.resize(count);
 }
 
 // After a step by sorting: all windows were of one step.

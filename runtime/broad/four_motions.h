@@ -29,11 +29,11 @@ struct VectorDoubles {
     std::memcpy(&result, from, sizeof result);
     return result;
   }
-  // Four numbers, from the one at `first` on, of each of four motions that are `stride` apart, transposed.
-  ORCHARD_INLINE static std::array<Numbers, 4> transposed(const Motion* m, std::size_t first,
-                                                          std::size_t stride = 1) noexcept {
+  // Four numbers, from the one at `first` on, of each of four motions, transposed; which(i) points to the i-th one.
+  template <typename Which>
+  ORCHARD_INLINE static std::array<Numbers, 4> transposed(const Which& which, std::size_t first) noexcept {
     const auto row = [&](std::size_t i)
-                         ORCHARD_INLINE_LAMBDA { return at(reinterpret_cast<const double*>(m + i * stride) + first); };
+                         ORCHARD_INLINE_LAMBDA { return at(reinterpret_cast<const double*>(which(i)) + first); };
     const Numbers a = row(0), b = row(1), c = row(2), d = row(3);
     const Numbers ab02 = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab13 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
     const Numbers cd02 = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd13 = __builtin_shufflevector(c, d, 1, 5, 3, 7);

@@ -16,6 +16,8 @@ double half_space_contact(const Motion& a, const Motion& b, double slack) noexce
   if (!(length > 0)) return 0;
   const Vec3 d = (1 / length) * a.half_space;
 
+  const double gap = dot(b.position - a.position, d) - a.radius - b.radius - slack;
+  if (!(gap > 0)) return 0;
   // How much of b's acceleration can point along -d, given its own half-space.
   double share = 1;
   const double other = std::sqrt(dot(b.half_space, b.half_space));
@@ -24,7 +26,6 @@ double half_space_contact(const Motion& a, const Motion& b, double slack) noexce
     if (cosine < 0) share = std::sqrt(std::max(0.0, 1 - cosine * cosine));
     share = std::min(1.0, share + 1e-7);  // the root of a rounding error
   }
-  const double gap = dot(b.position - a.position, d) - a.radius - b.radius - slack;
   const double slope = dot(b.velocity - a.velocity, d) - a.drift - b.drift;
   return detail::first_closing(gap, slope, share * b.acceleration);
 }

@@ -93,7 +93,7 @@ struct WideCompare {
   using Words __attribute__((vector_size(64))) = std::uint64_t;
   ORCHARD_INLINE static std::uint64_t meeting(const CellLine& line, std::uint64_t query) noexcept {
     const Words sum = query + load<Words>(line);
-#if defined(__x86_64__) && !defined(__clang__)
+#ifdef ORCHARD_AVX512_NAMES
     using Signed __attribute__((vector_size(64))) = long long;
     const Words guards = Words{} + kGuards;
     return __builtin_ia32_ptestnmq512(reinterpret_cast<Signed>(sum), reinterpret_cast<Signed>(guards), kEntriesMask);

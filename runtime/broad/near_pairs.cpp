@@ -1,7 +1,6 @@
 #include "near_pairs.h"
 
 #include "horn.h"
-#include "pair_times.h"
 
 namespace orchard::runtime::detail {
 namespace {
@@ -173,8 +172,8 @@ void NearPairs::settle_all(Step now, std::span<PairEvent> events, std::span<Moti
 }
 
 void NearPairs::test(Step now, std::span<PairEvent> events) {
-  motions_.resize(kBlock);
-  std::array<BodyIndex, kBlock> bodies;
+  motions_.resize(2 * kTestsAtOnce);
+  std::array<BodyIndex, 2 * kTestsAtOnce> bodies;
   while (!events.empty()) {
     const std::size_t count = std::min(kTestsAtOnce, events.size());
     for (std::size_t i = 0; i < count; ++i) {
@@ -252,8 +251,8 @@ void NearPairs::test_near(Step now, std::span<const BodyPair> pairs, Outcome& ou
   }
   outcome.compared += compared;
   outcome.settled += pairs.size() - tests.size();
-  outcome.motions.resize(kBlock);
-  std::array<BodyIndex, kBlock> bodies;
+  outcome.motions.resize(2 * kTestsAtOnce);
+  std::array<BodyIndex, 2 * kTestsAtOnce> bodies;
   for (std::size_t done = 0; done < tests.size();) {
     const auto some = std::span(tests).subspan(done, std::min(kTestsAtOnce, tests.size() - done));
     done += some.size();

@@ -2,6 +2,7 @@
 #include "box_index.h"
 #include "changes.h"
 #include "overlap_list.h"
+#include "pair_times.h"
 #include "windows.h"
 
 namespace orchard::runtime::detail {
@@ -25,7 +26,7 @@ class Refusals {
 // which they can.
 class NearPairs {
  public:
-  static constexpr std::size_t kTestsAtOnce = kBlock / 2;
+  static constexpr std::size_t kTestsAtOnce = kPairsAtOnce;
 
   NearPairs(BodyPool& pool, const BroadPhaseOptions& options, Windows& windows, TimingWheel& wheel,
             OverlapList& overlaps, Refusals& refusals)

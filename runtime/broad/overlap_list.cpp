@@ -5,33 +5,40 @@ namespace {
 
 constexpr std::size_t kFewPairs = 64;
 
-// Looks pairs up that come in ascending order, in steps that double from where the last one was.
+// In the same order.
+std::uint64_t key_of(const BodyPair& pair) noexcept { return std::uint64_t{pair.a} << 32 | pair.b; }
+
+// Looks pairs up that come in ascending order, in steps that double from where the last one was, and then without
+// branches: nobody can tell how far it is.
 class Finder {
  public:
   explicit Finder(const std::vector<BodyPair>& sorted)
-      : begin_(sorted.begin()), next_(sorted.begin()), end_(sorted.end()) {}
+      : begin_(sorted.data()), next_(begin_), end_(begin_ + sorted.size()) {}
   bool has(const BodyPair& pair) {
-    std::ptrdiff_t step = 1;
-    auto first = next_;
-    while (end_ - first > step && first[step] < pair) first += step, step *= 2;
-    const auto last = end_ - first > step ? first + step + 1 : end_;
-    next_ = std::lower_bound(first, last, pair);
+    constexpr std::ptrdiff_t kCounted = 8;
+    const std::uint64_t key = key_of(pair);
+    const BodyPair* first = next_;
+    std::ptrdiff_t range = kCounted;  // it, or what follows its place, is among so many, or the next one
+    while (end_ - first > range && key_of(first[range - 1]) < key) first += range, range *= 2;
+    range = std::min(range, end_ - first);
+    for (; range > kCounted; range -= range / 2) first += key_of(first[range / 2 - 1]) < key ? range / 2 : 0;
+    std::ptrdiff_t less = 0;
+    for (std::ptrdiff_t i = 0; i < range; ++i) less += key_of(first[i]) < key;
+    next_ = first + less;
     return next_ != end_ && *next_ == pair;
   }
   std::uint32_t place() const { return static_cast<std::uint32_t>(next_ - begin_); }  // it has, or would have, there
 
  private:
-  std::vector<BodyPair>::const_iterator begin_, next_, end_;
+  const BodyPair *begin_, *next_, *end_;
 };
 
 }  // namespace
 
 // By the first body into buckets, within the vector; in each by the second one: there are few.
 void OverlapList::sort(std::vector<BodyPair>& pairs, std::size_t slots) {
-  if (pairs.size() < kFewPairs || 8 * pairs.size() < slots) {
-    std::sort(pairs.begin(), pairs.end());
-    return;
-  }
+  if (pairs.size() < kFewPairs) return std::sort(pairs.begin(), pairs.end());
+  if (8 * pairs.size() < slots) return sort_by_digits(pairs);
   begins_.assign(slots + 1, 0);
   for (const BodyPair& pair : pairs) ++begins_[pair.a + 1];
   for (std::size_t body = 0; body < slots; ++body) begins_[body + 1] += begins_[body];
@@ -44,6 +51,24 @@ void OverlapList::sort(std::vector<BodyPair>& pairs, std::size_t slots) {
     }
     const auto begin = pairs.begin() + begins_[body], last = pairs.begin() + begins_[body + 1];
     if (last - begin > 1) std::sort(begin, last);
+  }
+}
+
+// From the lowest digit on; those that all have in common are left out.
+void OverlapList::sort_by_digits(std::vector<BodyPair>& pairs) {
+  constexpr unsigned kDigitBits = 8, kDigits = 64 / kDigitBits;
+  constexpr std::uint64_t kLast = (1u << kDigitBits) - 1;
+  std::uint64_t differ = 0;
+  for (const BodyPair& pair : pairs) differ |= key_of(pair) ^ key_of(pairs.front());
+  for (unsigned digit = 0; digit < kDigits; ++digit) {
+    const unsigned at = digit * kDigitBits;
+    if ((differ >> at & kLast) == 0) continue;
+    std::array<std::uint32_t, kLast + 2> begins{};
+    for (const BodyPair& pair : pairs) ++begins[(key_of(pair) >> at & kLast) + 1];
+    for (std::size_t i = 1; i < begins.size(); ++i) begins[i] += begins[i - 1];
+    by_digit_.resize(pairs.size());
+    for (const BodyPair& pair : pairs) by_digit_[begins[key_of(pair) >> at & kLast]++] = pair;
+    std::swap(pairs, by_digit_);
   }
 }
 
@@ -142,7 +167,7 @@ void OverlapList::update(std::size_t slots) {
   } else if (!added_.empty() || !dropped_.empty()) {
     sort(added_, slots);
     added_.erase(std::unique(added_.begin(), added_.end()), added_.end());
-    std::sort(dropped_.begin(), dropped_.end());
+    sort(dropped_, slots);
     dropped_.erase(std::unique(dropped_.begin(), dropped_.end()), dropped_.end());
     keep_changes();
     if (!dropped_.empty()) remove_dropped();
@@ -163,7 +188,7 @@ void OverlapList::clear() noexcept {
 
 std::size_t OverlapList::memory_bytes() const noexcept {
   return bytes_of(pairs_) + bytes_of(added_) + bytes_of(dropped_) + bytes_of(marks_) + bytes_of(begins_) +
-         bytes_of(ends_) + bytes_of(added_places_) + bytes_of(dropped_places_);
+         bytes_of(ends_) + bytes_of(by_digit_) + bytes_of(added_places_) + bytes_of(dropped_places_);
 }
 
 }  // namespace orchard::runtime::detail

@@ -25,7 +25,14 @@ class OverlapList {
     refuses_ = refuses_ || what == kRefused;
   }
   void mark_updated(std::span<const BodyIndex> bodies) noexcept {
-    for (std::size_t i = 0; !anew_ && i < bodies.size(); ++i) mark(bodies[i], kUpdated);
+    if (anew_) return;
+    std::uint8_t* const marks = marks_.data();
+    BodyIndex first = first_marked_, last = last_marked_;
+    for (const BodyIndex body : bodies) {
+      marks[body] |= kUpdated;
+      first = std::min(first, body), last = std::max(last, body);
+    }
+    first_marked_ = first, last_marked_ = last;
   }
   // The list is these from now on, in any order, each once; what was said of the step under way is void.
   void assign(std::span<const BodyPair> pairs, std::size_t slots);
@@ -47,6 +54,7 @@ class OverlapList {
 
  private:
   void sort(std::vector<BodyPair>& pairs, std::size_t slots);
+  void sort_by_digits(std::vector<BodyPair>& pairs);
   void forget_marked();
   void clear_marks() noexcept;
   void keep_changes();
@@ -59,6 +67,7 @@ class OverlapList {
   BodyIndex first_marked_ = kNoIndex, last_marked_ = 0;
   bool anew_ = false, refuses_ = false;
   std::vector<std::uint32_t> begins_, ends_;  // by body, while many pairs are sorted
+  std::vector<BodyPair> by_digit_;            // while some are
 };
 
 }  // namespace orchard::runtime::detail

@@ -31,8 +31,9 @@ struct FourMotions {
 };
 
 ORCHARD_INLINE FourMotions every_other(const Motion* m) noexcept {
-  const auto first = Kind::transposed(m, kPositionAndVelocity, 2), second = Kind::transposed(m, kVelocityAndRadius, 2),
-             third = Kind::transposed(m, kDriftAndHalfSpace, 2);
+  const auto which = [m](std::size_t i) ORCHARD_INLINE_LAMBDA { return m + 2 * i; };
+  const auto first = Kind::transposed(which, kPositionAndVelocity),
+             second = Kind::transposed(which, kVelocityAndRadius), third = Kind::transposed(which, kDriftAndHalfSpace);
   return {{first[0], first[1], first[2]},
           {first[3], second[0], second[1]},
           {third[1], third[2], third[3]},

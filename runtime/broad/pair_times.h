@@ -3,7 +3,7 @@
 
 namespace orchard::runtime::detail {
 
-inline constexpr std::size_t kPairsAtOnce = kBlock / 2;
+inline constexpr std::size_t kPairsAtOnce = 16;
 
 struct PairTimes {
   std::array<bool, kPairsAtOnce> touching;  // spheres_touch()

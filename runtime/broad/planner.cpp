@@ -133,16 +133,21 @@ bool Planner::survey(Step now, BudgetTracker& tracker) {
 }
 
 // Of the bodies, so that both steps take the same time: of the near pairs only those among them are found ahead, and
-// what is done once, with code and grid that have left the cache, is done then.
+// what is done once, with code and grid that have left the cache, is done then. Of few bodies that is much of it.
 double Planner::share_ahead() const noexcept {
-  constexpr double kUpdate = 30, kNearPair = 80;  // nanoseconds of one machine
-  constexpr double kOnce = 1250, kOncePerBody = 3.5, kMostOfThem = 1000, kLeastShare = 0.1;
-  const double bodies = static_cast<double>(std::max<std::size_t>(1, pool_.size()));
-  const double once = kOnce + kOncePerBody * std::min(bodies, kMostOfThem);
-  const double pairs = kNearPair * plan_.pairs_per_body;
+  struct Costs {                                    // nanoseconds of one machine
+    double update, near_pair, once, once_per_body;  // the last one of a thousand at most
+  };
+  constexpr Costs kFew = {15, 50, 600, 4}, kMany = {30, 80, 1250, 3.5};
+  constexpr std::size_t kMostOfFew = 4096;
+  constexpr double kMostOnce = 1000, kLeastShare = 0.1;
+  const Costs& costs = pool_.size() <= kMostOfFew ? kFew : kMany;
+  const double update = costs.update, bodies = static_cast<double>(std::max<std::size_t>(1, pool_.size()));
+  const double once = costs.once + costs.once_per_body * std::min(bodies, kMostOnce);
+  const double pairs = costs.near_pair * plan_.pairs_per_body;
   const double share =
-      pairs < 1 ? 0.5 : (std::sqrt(kUpdate * kUpdate + 2 * pairs * (kUpdate + pairs)) - kUpdate) / (2 * pairs);
-  return std::max(kLeastShare, share - once / (2 * kUpdate * bodies));
+      pairs < 1 ? 0.5 : (std::sqrt(update * update + 2 * pairs * (update + pairs)) - update) / (2 * pairs);
+  return std::max(kLeastShare, share - once / (2 * update * bodies));
 }
 
 }  // namespace orchard::runtime::detail

@@ -4,27 +4,11 @@
 #include <bit>
 #include <cstring>
 
+#include "cell_entry.h"
 #include "line_compare.h"
 
 namespace orchard::runtime::detail {
 namespace {
-
-constexpr std::uint32_t kEntryBits = 5, kFieldBits = kEntryBits + 1;
-constexpr std::uint32_t kCoarser = kQuantumBits - kEntryBits;  // bits of a quantum that are left out of entries
-constexpr std::uint32_t kLastInEntry = (1u << kEntryBits) - 1;
-static_assert(kIdShift == 6 * kFieldBits);
-static_assert(kMaxBodies < (1u << (64 - kIdShift)));
-
-// A box clipped to a cell, in three fields each: how far it begins from the cell's lower end, and ends from its upper
-// end. As a query these change places: two boxes meet if of each axis one's way to its begin and the other's from its
-// end make less than a cell together.
-ORCHARD_INLINE std::uint64_t entry_of(std::uint32_t from, std::uint32_t below) noexcept {
-  return std::uint64_t{below} << 3 * kFieldBits | from;
-}
-ORCHARD_INLINE std::uint64_t query_from(std::uint64_t entry) noexcept {
-  constexpr std::uint64_t field = (std::uint64_t{1} << 3 * kFieldBits) - 1;
-  return (entry & field) << 3 * kFieldBits | (entry >> 3 * kFieldBits & field);
-}
 
 // A body's box, and one of its cells. Quanta are below 2^31: the difference of two that are apart is negative.
 #ifdef ORCHARD_VECTORS
@@ -91,6 +75,30 @@ class BoxInCell {
 };
 #endif
 
+// False, and it stays as it is, if it is full. Without a branch: what has no room is written where the counters are,
+// which are written again.
+ORCHARD_INLINE bool put(CellLine& line, std::uint64_t entry) noexcept {
+  constexpr std::size_t kRoom = std::tuple_size_v<decltype(line.entries)>;
+  constexpr int kCountAt = std::endian::native == std::endian::little ? 0 : 32;  // among the counters' bits
+  static_assert(offsetof(CellLine, count) == sizeof line.entries &&
+                offsetof(CellLine, overflow) == offsetof(CellLine, count) + 4);
+  auto* const bytes = reinterpret_cast<unsigned char*>(&line);
+  std::uint64_t counters;
+  std::memcpy(&counters, bytes + sizeof line.entries, sizeof counters);
+  const std::uint32_t count = static_cast<std::uint32_t>(counters >> kCountAt);
+  const std::uint64_t room = count < kRoom ? 1 : 0;
+  std::memcpy(bytes + std::size_t{count} * sizeof entry, &entry, sizeof entry);
+  counters += room << kCountAt;
+  std::memcpy(bytes + sizeof line.entries, &counters, sizeof counters);
+  return room != 0;
+}
+
+// work.template operator()<Kind>() for the comparison that suits the machine, or the portable one.
+template <typename Work>
+void with_compare(bool vectors, const Work& work) {
+  vectors ? with_best_compare(work) : work.template operator()<PlainCompare>();
+}
+
 }  // namespace
 
 // What is found waits on the stack for room in the vector.
@@ -98,14 +106,14 @@ struct SweptGrid::Insertion {
   static constexpr std::size_t kFound = 256;
 
   std::span<const QuantumBox> boxes;
+  bool vectors;
   std::vector<BodyPair>& pairs;
   GridCounts& counts;
   std::array<BodyPair, kFound> found;
   std::size_t count = 0;
-  CellLine nowhere;  // for what has no room where it belongs
 
-  Insertion(std::span<const QuantumBox> all, std::vector<BodyPair>& to, GridCounts& of) noexcept
-      : boxes(all), pairs(to), counts(of) {}
+  Insertion(std::span<const QuantumBox> all, bool by_vectors, std::vector<BodyPair>& to, GridCounts& of) noexcept
+      : boxes(all), vectors(by_vectors), pairs(to), counts(of) {}
   void hand_over() {
     if (count == 0) return;
     pairs.insert(pairs.end(), found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
@@ -131,7 +139,8 @@ void SweptGrid::report(Insertion& insertion, const CellLine& line, std::uint64_t
 
 // Where the line is full: in those that it overflows to.
 template <typename Kind>
-ORCHARD_INLINE void SweptGrid::insert_beyond(Insertion& insertion, const Visit& visit, std::uint64_t query) {
+ORCHARD_INLINE void SweptGrid::insert_beyond(Insertion& insertion, const Visit& visit) {
+  const std::uint64_t query = query_from(visit.entry);
   CellLine* line = &lines_[visit.line];
   Overflow& overflow = overflow_[part_of(visit.line)];
   while (line->overflow != 0) {
@@ -147,263 +156,151 @@ ORCHARD_INLINE void SweptGrid::insert_beyond(Insertion& insertion, const Visit& 
   }
 }
 
-// Loops without branches that depend on the data.
-ORCHARD_INLINE void SweptGrid::encode(Batch& batch, std::span<const BodyIndex> bodies,
-                                      const BoxBlock& block) const noexcept {
-  const std::size_t lanes = lanes_for(bodies.size());
-  Numbers all_from{}, all_below{}, all_line{}, axes{}, ids;
-  std::uint32_t any = 0;
-  batch.count = std::min(bodies.size(), kBlock);  // GCC does not know that there are no more
-  for (std::size_t i = 0; i < batch.count; ++i) ids[i] = bodies[i];
-  for (std::size_t i = batch.count; i < lanes; ++i) ids[i] = 0;
-  for (std::uint32_t d = 0; d < 3; ++d) {
-    const std::uint32_t field = kFieldBits * d, factor = factors_[d];
-    std::array<std::uint64_t, kBlock> change;
-    for (std::size_t i = 0; i < lanes; ++i) {
-      const std::uint32_t lower = block.lower[d][i], upper = block.upper[d][i];
-      const std::uint32_t cell = lower >> kQuantumBits, last = upper >> kQuantumBits;
-      const std::uint32_t from = (lower >> kCoarser & kLastInEntry) << field,
-                          below = (~upper >> kCoarser & kLastInEntry) << field;
-      all_from[i] |= from;
-      all_below[i] |= last > cell ? 0 : below;
-      all_line[i] += cell * factor;
-      axes[i] |= (last > cell ? 1u : 0u) << d | (last > cell + 1 ? 8u : 0u);
-      change[i] = entry_of(from, below);
-    }
-    batch.change[d] = change;
-  }
-  for (std::size_t i = 0; i < lanes; ++i) {
-    batch.entries[i] = entry_of(all_from[i], all_below[i]) | std::uint64_t{ids[i]} << kIdShift;
-    batch.queries[i] = entry_of(all_below[i], all_from[i]);
-  }
-  for (std::size_t i = 0; i < lanes; ++i) batch.lines[i] = all_line[i] & mask_;
-  for (std::size_t i = 0; i < lanes; ++i) batch.steps[i] = 0;
-  for (std::size_t i = 0; i < lanes; ++i) any |= axes[i];
-  batch.larges = 0;
-  batch.end = batch.count;
-  if ((any & 8) != 0) {
-    for (std::size_t i = 0; i < batch.count; ++i) {
-      batch.large[batch.larges] = ids[i];
-      batch.larges += axes[i] >> 3;
-      axes[i] = axes[i] >= 8 ? 0 : axes[i];
-    }
-  }
-  if (any != 0) add_corners(batch, axes);
-}
+// What is put off until the rest of some visits is in: those that meet others, and those that find their line full.
+struct SweptGrid::PutOff {
+  static constexpr unsigned kHitsAt = 16;  // bits, above the visit's number
 
-// As bits. The numbers are small.
-ORCHARD_INLINE std::uint32_t SweptGrid::which_are_not_0(const Numbers& numbers, std::size_t lanes) noexcept {
-  std::uint32_t bits = 0;
-#if defined(ORCHARD_VECTORS) && defined(__SSE2__)
-  using Four __attribute__((vector_size(16))) = std::uint32_t;
-  for (std::size_t i = 0; i < lanes; i += 4) {
-    Four four;
-    std::memcpy(&four, &numbers[i], sizeof four);
-    bits |= static_cast<std::uint32_t>(_mm_movemask_ps(reinterpret_cast<__m128>(-four))) << i;
-  }
-#else
-  for (std::size_t i = 0; i < lanes; ++i) bits |= (numbers[i] != 0 ? 1u : 0u) << i;
-#endif
-  return bits;
-}
+  std::array<std::uint32_t, Batch::kMaxVisits + 1> meeting;  // what does not count is written, too
+  std::array<std::uint16_t, Batch::kMaxVisits + 1> full;
+  std::size_t meetings, fulls;
+};
 
-// The other cells of bodies that take two along some axes: mostly it is one axis.
-ORCHARD_INLINE void SweptGrid::add_corners(Batch& batch, const Numbers& axes) const noexcept {
-  std::uint32_t several = which_are_not_0(axes, lanes_for(batch.count));
-  if (batch.count < kBlock) several &= (1u << batch.count) - 1;
-  std::size_t end = batch.end;
-  for (; several != 0; several &= several - 1) {
-    const auto i = static_cast<std::size_t>(std::countr_zero(several));
-    const std::uint32_t taken = axes[i];
-    const auto add = [&](std::uint32_t corner) ORCHARD_INLINE_LAMBDA {  // which counts if it is taken
-      std::uint64_t entry = batch.entries[i];
-      std::uint32_t line = batch.lines[i], steps = 0;
-      for (std::uint32_t d = 0; d < 3; ++d) {
-        if ((corner >> d & 1) == 0) continue;
-        entry ^= batch.change[d][i];
-        line += factors_[d];
-        steps |= 1u << 2 * d;
-      }
-      batch.entries[end] = entry;
-      batch.queries[end] = query_from(entry);
-      batch.lines[end] = line & mask_;
-      batch.steps[end] = static_cast<Steps>(steps);
-      end += (corner & ~taken) == 0;
-    };
-    add(1), add(2), add(4);
-    if ((taken & (taken - 1)) != 0) add(3), add(5), add(6), add(7);
-  }
-  batch.end = end;
-}
-
-// At most Batch::kMaxVisits of them. What meets others, and what finds its line full, is put off until the rest is in:
-// without branches, as in dense worlds nobody can tell. Entries stay where they are meanwhile.
-template <typename Kind, typename Line, typename Entry, typename Query, typename Of>
-ORCHARD_INLINE void SweptGrid::insert_visits(Insertion& insertion, std::size_t count, const Line& line_at,
-                                             const Entry& entry_at, const Query& query_at, const Of& visit_at) {
-  std::array<std::uint16_t, Batch::kMaxVisits + 1> meeting, full;
-  std::array<std::uint8_t, Batch::kMaxVisits + 1> hits;
+// Without branches, as in dense worlds nobody can tell.
+template <typename Kind, typename Line, typename Entry, typename Query>
+ORCHARD_INLINE void SweptGrid::put_all(PutOff& put_off, std::size_t count, const Line& line_at, const Entry& entry_at,
+                                       const Query& query_at) noexcept {
   std::size_t meetings = 0, fulls = 0;
   CellLine* const lines = lines_.data();
-  CellLine& nowhere = insertion.nowhere;
   for (std::size_t k = 0; k < count; ++k) {
     CellLine& line = lines[line_at(k)];
     // Nothing is written before all seven entries have been read together: that would have to wait for the small
     // writes.
     const std::uint64_t met = Kind::meeting(line, query_at(k));
-    const std::uint32_t filled = line.count;
-    const bool room = filled < line.entries.size();
-    *(room ? line.entries.data() + filled : nowhere.entries.data()) = entry_at(k);
-    (room ? line : nowhere).count = filled + 1;
-    hits[meetings] = static_cast<std::uint8_t>(met);
-    meeting[meetings] = static_cast<std::uint16_t>(k);
+    const bool room = put(line, entry_at(k));
+    put_off.meeting[meetings] = static_cast<std::uint32_t>(k | met << PutOff::kHitsAt);
     meetings += met != 0;
-    full[fulls] = static_cast<std::uint16_t>(k);
+    put_off.full[fulls] = static_cast<std::uint16_t>(k);
     fulls += !room;
   }
-  for (std::size_t i = 0; i < meetings; ++i) {
-    const Visit visit = visit_at(meeting[i]);
-    report(insertion, lines[visit.line], hits[i], static_cast<BodyIndex>(visit.entry >> kIdShift), visit.steps);
+  put_off.meetings = meetings;
+  put_off.fulls = fulls;
+}
+
+// Entries stay where they are meanwhile.
+template <typename Of>
+void SweptGrid::finish_visits(Insertion& insertion, const PutOff& put_off, std::size_t count, const Of& visit_at) {
+  for (std::size_t i = 0; i < put_off.meetings; ++i) {
+    const Visit visit = visit_at(put_off.meeting[i] & ((1u << PutOff::kHitsAt) - 1));
+    report(insertion, lines_[visit.line], put_off.meeting[i] >> PutOff::kHitsAt,
+           static_cast<BodyIndex>(visit.entry >> kIdShift), visit.steps);
   }
-  for (std::size_t i = 0; i < fulls; ++i) insert_beyond<Kind>(insertion, visit_at(full[i]), query_at(full[i]));
+  if (put_off.fulls > 0) {
+    with_compare(insertion.vectors, [&]<typename Kind>() ORCHARD_INLINE_LAMBDA {
+      for (std::size_t i = 0; i < put_off.fulls; ++i) insert_beyond<Kind>(insertion, visit_at(put_off.full[i]));
+    });
+  }
   insertion.counts.entries += count;
   insertion.counts.lines_read += count;
 }
 
-template <typename Kind>
-ORCHARD_INLINE void SweptGrid::insert_batch(Insertion& insertion, const Batch& batch) {
-  const std::uint32_t* const lines = batch.lines.data();
-  const std::uint64_t *const entries = batch.entries.data(), *const queries = batch.queries.data();
-  const auto line_at = [=](std::size_t k) ORCHARD_INLINE_LAMBDA { return lines[k]; };
-  const auto entry_at = [=](std::size_t k) ORCHARD_INLINE_LAMBDA { return entries[k]; };
-  const auto query_at = [=](std::size_t k) ORCHARD_INLINE_LAMBDA { return queries[k]; };
-  const auto visit_at = [&](std::size_t k) ORCHARD_INLINE_LAMBDA {
+void SweptGrid::insert_batch(Insertion& insertion, const Batch& batch) {
+  PutOff put_off;
+  with_compare(insertion.vectors, [&]<typename Kind>() ORCHARD_INLINE_LAMBDA {
+    const std::uint32_t* const lines = batch.lines.data();
+    const std::uint64_t *const entries = batch.entries.data(), *const queries = batch.queries.data();
+    const auto line_at = [=](std::size_t k) ORCHARD_INLINE_LAMBDA { return lines[k]; };
+    const auto entry_at = [=](std::size_t k) ORCHARD_INLINE_LAMBDA { return entries[k]; };
+    const auto query_at = [=](std::size_t k) ORCHARD_INLINE_LAMBDA { return queries[k]; };
+    put_all<Kind>(put_off, batch.end, line_at, entry_at, query_at);
+  });
+  finish_visits(insertion, put_off, batch.end, [&](std::size_t k) {
     return Visit{batch.entries[k], batch.lines[k], batch.steps[k]};
-  };
-  insert_visits<Kind>(insertion, batch.end, line_at, entry_at, query_at, visit_at);
+  });
   insertion.counts.bodies += batch.count;
-  if (batch.larges > 0) insert_large<Kind>(insertion, batch);
+  if (batch.larges > 0) insert_large(insertion, batch);
 }
 
 // In all cells but the first one.
-template <typename Kind>
-ORCHARD_INLINE void SweptGrid::insert_large(Insertion& insertion, const Batch& batch) {
+void SweptGrid::insert_large(Insertion& insertion, const Batch& batch) {
   std::array<Visit, kMaxVisits> visits;
   for (std::size_t i = 0; i < batch.larges; ++i) {
     const BodyIndex body = batch.large[i];
     const Visit* const end = many_visits_of(body, insertion.boxes[body], visits.data());
     for (const Visit* visit = visits.data(); visit != end; ++visit) prefetch(&lines_[visit->line]);
-    insert_visits<Kind>(insertion, std::span(visits.data(), end));
+    insert_visits(insertion, std::span(visits.data(), end));
   }
 }
 
-SweptGrid::Visit* SweptGrid::many_visits_of(BodyIndex body, const QuantumBox& box, Visit* visits) const noexcept {
-  Cell first, count;
-  for (std::size_t d = 0; d < 3; ++d) {
-    first[d] = box.lower[d] >> kQuantumBits;
-    count[d] = (box.upper[d] >> kQuantumBits) - first[d] + 1;
+template <typename Use>
+void SweptGrid::for_each_part(std::span<const BodyIndex> bodies, const BoxBlock& block, const Use& use) {
+  for (std::size_t first = 0; first < bodies.size(); first += kBatch) {
+    use(Some{bodies.subspan(first, std::min(kBatch, bodies.size() - first)), block, first});
   }
-  Cell steps;
-  for (steps[2] = 0; steps[2] < count[2]; ++steps[2]) {
-    for (steps[1] = 0; steps[1] < count[1]; ++steps[1]) {
-      for (steps[0] = steps[1] == 0 && steps[2] == 0; steps[0] < count[0]; ++steps[0]) {
-        const Cell cell = {first[0] + steps[0], first[1] + steps[1], first[2] + steps[2]};
-        std::uint32_t from = 0, below = 0;
-        for (std::uint32_t i = 0; i < 3; ++i) {
-          const std::uint32_t begin = cell[i] << kQuantumBits, end = begin + (kQuanta - 1);
-          from |= (box.lower[i] > begin ? (box.lower[i] - begin) >> kCoarser : 0) << kFieldBits * i;
-          below |= (box.upper[i] < end ? (end - box.upper[i]) >> kCoarser : 0) << kFieldBits * i;
-        }
-        *visits++ = {entry_of(from, below) | std::uint64_t{body} << kIdShift, line_of(cell),
-                     static_cast<Steps>(steps[0] | steps[1] << 2 | steps[2] << 4)};
-      }
-    }
-  }
-  return visits;
-}
-
-// block null: the last ones get in.
-template <typename Kind>
-ORCHARD_INLINE void SweptGrid::advance(Insertion& insertion, Queue& queue, std::span<const BodyIndex> bodies,
-                                       const BoxBlock* block) {
-  Batch &next = queue.batches_[1 - queue.current_], &waiting = queue.batches_[queue.current_];
-  if (block != nullptr) {
-    encode(next, bodies, *block);
-    for (std::size_t i = 0; i < next.end; ++i) prefetch(&lines_[next.lines[i]]);  // they are all over memory
-  }
-  insert_batch<Kind>(insertion, waiting);
-  if (block != nullptr) {
-    queue.current_ = 1 - queue.current_;
-  } else {
-    waiting.count = waiting.end = waiting.larges = 0;
-  }
-}
-
-void SweptGrid::run(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock* block,
-                    std::span<const QuantumBox> boxes, bool vectors, std::vector<BodyPair>& pairs) {
-  Insertion insertion(boxes, pairs, counts_);
-  if (vectors) {
-    with_best_compare([&]<typename Kind>() ORCHARD_INLINE_LAMBDA { advance<Kind>(insertion, queue, bodies, block); });
-  } else {
-    advance<PlainCompare>(insertion, queue, bodies, block);
-  }
-  insertion.hand_over();
 }
 
 void SweptGrid::insert(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock& block,
                        std::span<const QuantumBox> boxes, bool vectors, std::vector<BodyPair>& pairs) {
-  run(queue, bodies, &block, boxes, vectors, pairs);
+  Insertion insertion(boxes, vectors, pairs, counts_);
+  for_each_part(bodies, block, [&](const Some& some) {
+    Batch &next = queue.batches_[1 - queue.current_], &waiting = queue.batches_[queue.current_];
+    encode(next, some, vectors);
+    for (std::size_t i = 0; i < next.end; ++i) prefetch(&lines_[next.lines[i]]);  // they are all over memory
+    insert_batch(insertion, waiting);
+    queue.current_ = 1 - queue.current_;
+  });
+  insertion.hand_over();
 }
 
 void SweptGrid::finish(Queue& queue, std::span<const QuantumBox> boxes, bool vectors, std::vector<BodyPair>& pairs) {
-  run(queue, {}, nullptr, boxes, vectors, pairs);
-}
-
-ORCHARD_INLINE void SweptGrid::scatter_block(std::span<const BodyIndex> bodies, const BoxBlock& block,
-                                             std::span<const QuantumBox> boxes, VisitsByPart& visits) const {
-  Batch batch;
-  encode(batch, bodies, block);
-  for (Visits& part : visits) part.make_room(batch.end);
-  for (std::size_t k = 0; k < batch.end; ++k) {
-    visits[part_of(batch.lines[k])].add({batch.entries[k], batch.lines[k], batch.steps[k]});
-  }
-  std::array<Visit, kMaxVisits> rest;
-  for (std::size_t i = 0; i < batch.larges; ++i) {
-    const Visit* const end = many_visits_of(batch.large[i], boxes[batch.large[i]], rest.data());
-    for (Visits& part : visits) part.make_room(kMaxVisits);
-    for (const Visit* visit = rest.data(); visit != end; ++visit) visits[part_of(visit->line)].add(*visit);
-  }
+  Insertion insertion(boxes, vectors, pairs, counts_);
+  Batch& waiting = queue.batches_[queue.current_];
+  insert_batch(insertion, waiting);
+  waiting.count = waiting.end = waiting.larges = 0;
+  insertion.hand_over();
 }
 
 void SweptGrid::scatter(std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const QuantumBox> boxes,
                         bool vectors, VisitsByPart& visits) const {
-  if (!vectors) return scatter_block(bodies, block, boxes, visits);
-  per_machine([&]() ORCHARD_INLINE_LAMBDA { scatter_block(bodies, block, boxes, visits); });
+  Batch batch;
+  std::array<Visit, kMaxVisits> rest;
+  for_each_part(bodies, block, [&](const Some& some) {
+    encode(batch, some, vectors);
+    for (Visits& part : visits) part.make_room(batch.end);
+    for (std::size_t k = 0; k < batch.end; ++k) {
+      visits[part_of(batch.lines[k])].add({batch.entries[k], batch.lines[k], batch.steps[k]});
+    }
+    for (std::size_t i = 0; i < batch.larges; ++i) {
+      const Visit* const end = many_visits_of(batch.large[i], boxes[batch.large[i]], rest.data());
+      for (Visits& part : visits) part.make_room(kMaxVisits);
+      for (const Visit* visit = rest.data(); visit != end; ++visit) visits[part_of(visit->line)].add(*visit);
+    }
+  });
 }
 
-template <typename Kind>
-ORCHARD_INLINE void SweptGrid::insert_visits(Insertion& insertion, std::span<const Visit> visits) {
+void SweptGrid::insert_visits(Insertion& insertion, std::span<const Visit> visits) {
   constexpr std::size_t kAhead = 32;
+  PutOff put_off;
   for (; !visits.empty(); visits = visits.subspan(std::min(visits.size(), Batch::kMaxVisits))) {
-    const auto line_at = [&](std::size_t k) ORCHARD_INLINE_LAMBDA {
-      if (k + kAhead < visits.size()) prefetch(&lines_[visits[k + kAhead].line]);
-      return visits[k].line;
-    };
-    const auto entry_at = [&](std::size_t k) ORCHARD_INLINE_LAMBDA { return visits[k].entry; };
-    const auto query_at = [&](std::size_t k) ORCHARD_INLINE_LAMBDA { return query_from(visits[k].entry); };
-    const auto visit_at = [&](std::size_t k) ORCHARD_INLINE_LAMBDA { return visits[k]; };
-    insert_visits<Kind>(insertion, std::min(visits.size(), Batch::kMaxVisits), line_at, entry_at, query_at, visit_at);
+    const std::size_t count = std::min(visits.size(), Batch::kMaxVisits);
+    with_compare(insertion.vectors, [&]<typename Kind>() ORCHARD_INLINE_LAMBDA {
+      const Visit* const all = visits.data();
+      const std::size_t size = visits.size();
+      const auto line_at = [&](std::size_t k) ORCHARD_INLINE_LAMBDA {
+        if (k + kAhead < size) prefetch(&lines_[all[k + kAhead].line]);
+        return all[k].line;
+      };
+      const auto entry_at = [&](std::size_t k) ORCHARD_INLINE_LAMBDA { return all[k].entry; };
+      const auto query_at = [&](std::size_t k) ORCHARD_INLINE_LAMBDA { return query_from(all[k].entry); };
+      put_all<Kind>(put_off, count, line_at, entry_at, query_at);
+    });
+    finish_visits(insertion, put_off, count, [&](std::size_t k) { return visits[k]; });
   }
 }
 
 void SweptGrid::insert_part(std::span<const Visit> visits, std::span<const QuantumBox> boxes, bool vectors,
                             std::vector<BodyPair>& pairs, GridCounts& counts) {
-  Insertion insertion(boxes, pairs, counts);
-  if (vectors) {
-    with_best_compare([&]<typename Kind>() ORCHARD_INLINE_LAMBDA { insert_visits<Kind>(insertion, visits); });
-  } else {
-    insert_visits<PlainCompare>(insertion, visits);
-  }
+  Insertion insertion(boxes, vectors, pairs, counts);
+  insert_visits(insertion, visits);
   insertion.hand_over();
 }
 

@@ -105,32 +105,40 @@ class SweptGrid {
   static constexpr std::size_t kMaxVisits = kMaxCellsPerAxis * kMaxCellsPerAxis * kMaxCellsPerAxis - 1;  // a body's
   struct Insertion;
   using Cell = std::array<std::uint32_t, 3>;
-  using Numbers = std::array<std::uint32_t, kBlock>;
+  static constexpr std::size_t kBatch = 64;  // bodies
+  using Numbers = std::array<std::uint32_t, kBatch>;
   struct Batch;
   std::uint32_t line_of(const Cell& cell) const noexcept {
     return (cell[0] * factors_[0] + cell[1] * factors_[1] + cell[2] * factors_[2]) & mask_;
   }
-  void encode(Batch& batch, std::span<const BodyIndex> bodies, const BoxBlock& block) const noexcept;
-  template <typename Kind>
-  void advance(Insertion& insertion, Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock* block);
-  template <typename Kind, typename Line, typename Entry, typename Query, typename Of>
-  void insert_visits(Insertion& insertion, std::size_t count, const Line& line_at, const Entry& entry_at,
-                     const Query& query_at, const Of& visit_at);
-  template <typename Kind>
+  struct Some {  // of a block's bodies: at most kBatch of them, the first of which has the box `first`
+    std::span<const BodyIndex> bodies;
+    const BoxBlock& block;
+    std::size_t first;
+  };
+  template <typename Use>
+  static void for_each_part(std::span<const BodyIndex> bodies, const BoxBlock& block, const Use& use);
+  void encode(Batch& batch, const Some& some, bool vectors) const noexcept;
+  void encode_all(Batch& batch, const Some& some) const noexcept;
+  struct PutOff;
+  template <typename Kind, typename Line, typename Entry, typename Query>
+  void put_all(PutOff& put_off, std::size_t count, const Line& line_at, const Entry& entry_at,
+               const Query& query_at) noexcept;
+  template <typename Of>
+  void finish_visits(Insertion& insertion, const PutOff& put_off, std::size_t count, const Of& visit_at);
   void insert_batch(Insertion& insertion, const Batch& batch);
-  template <typename Kind>
   void insert_large(Insertion& insertion, const Batch& batch);
-  static std::uint32_t which_are_not_0(const Numbers& numbers, std::size_t lanes) noexcept;
-  void add_corners(Batch& batch, const Numbers& axes) const noexcept;
+  struct Coded;
+  struct AxisBits {  // of a block's bodies, a bit each: which take two cells along an axis, and which more along some
+    std::uint64_t x, y, z, many;
+  };
+  void code(Coded& coded, const Some& some) const noexcept;
+  static AxisBits bits_of(const Numbers& axes, std::size_t count) noexcept;
+  void add_corners(Batch& batch, const Coded& coded, const AxisBits& bits) const noexcept;
   Visit* many_visits_of(BodyIndex body, const QuantumBox& box, Visit* visits) const noexcept;
-  void run(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock* block, std::span<const QuantumBox> boxes,
-           bool vectors, std::vector<BodyPair>& pairs);
   template <typename Kind>
-  void insert_beyond(Insertion& insertion, const Visit& visit, std::uint64_t query);
+  void insert_beyond(Insertion& insertion, const Visit& visit);
   void report(Insertion& insertion, const CellLine& line, std::uint64_t hits, BodyIndex body, Steps steps);
-  void scatter_block(std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const QuantumBox> boxes,
-                     VisitsByPart& visits) const;
-  template <typename Kind>
   void insert_visits(Insertion& insertion, std::span<const Visit> visits);
   struct Overflow {
     std::vector<CellLine> lines;
@@ -159,15 +167,14 @@ class SweptGrid {
 // The visits of a block's bodies: one of each to its first cell, then those to the other cells of bodies that take two
 // along some axes. Bodies that take more are named.
 struct SweptGrid::Batch {
-  static constexpr std::size_t kMaxVisits = 8 * kBlock;
+  static constexpr std::size_t kMaxVisits = 8 * kBatch;
   template <typename T>
-  using ByVisit = std::array<T, kMaxVisits + 1>;  // what does not count is written, too
+  using ByVisit = std::array<T, kMaxVisits>;
   ByVisit<std::uint64_t> entries, queries;
   ByVisit<std::uint32_t> lines;
   ByVisit<Steps> steps;
-  std::array<std::array<std::uint64_t, kBlock>, 3> change;  // of an entry, to the next cell along an axis
-  std::array<BodyIndex, kBlock> large;                      // bodies that take more than two cells along an axis
-  std::size_t count = 0, end = 0, larges = 0;               // bodies, visits, and of the former those
+  std::array<BodyIndex, kBatch> large;         // bodies that take more than two cells along an axis
+  std::size_t count = 0, end = 0, larges = 0;  // bodies, visits, and of the former those
 };
 
 class SweptGrid::Removals {

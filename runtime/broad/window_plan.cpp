@@ -14,7 +14,10 @@ constexpr std::array<double, 4> kCellPerSpacing = {1, 2.6, 1.65, 1.45};
 constexpr double kMostCellPerSpacing = 1.7;
 constexpr double kLinesPerVolume = 1.9;  // a ball fills 52 % of its box
 constexpr double kMostLines = 0.5;       // for each body
-constexpr double kMostCells = 0x1p23;    // along the world, as a sample shows it: a quarter of the lattice's
+// More of them where boxes take several cells each, so that fewer lines overflow: as many as a core's cache holds well,
+// and not where pairs take much memory as it is.
+constexpr double kLinesPerCell = 0.9, kCellsAsEver = 1.2, kLinesInCache = 11000, kManyPairs = 1;
+constexpr double kMostCells = 0x1p23;  // along the world, as a sample shows it: a quarter of the lattice's
 // Of the distances from the bodies of a sample to the next in it, half of the points of so many dimensions, spread
 // evenly one in each unit of space, have another one nearer than this.
 constexpr std::array<double, 3> kNearest = {0.347, 0.470, 0.549};
@@ -112,14 +115,18 @@ Spread spread_evenly(std::span<const Vec3> sample, std::size_t bodies) {
   if (n > 0) spread.middle = sample[0];
   if (n < 2) return spread;
   Vec3 lower{}, upper{};
-  std::array<double, MotionMeans::kPlaces> sorted;
+  std::array<double, MotionMeans::kPlaces> sorted;  // as far as is needed
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < n; ++i) sorted[i] = sample[i][axis];
-    std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n));
-    lower[axis] = sorted[n / 8];
-    upper[axis] = sorted[n - 1 - n / 8];
-    spread.extent[axis] = sorted[n - 1] - sorted[0];
-    spread.middle[axis] = (sorted[0] + sorted[n - 1]) / 2;
+    const auto at = [&](std::size_t i) { return sorted.begin() + static_cast<std::ptrdiff_t>(i); };
+    const std::size_t low = n / 8, high = n - 1 - low;
+    std::nth_element(at(0), at(low), at(n));
+    if (low < high) std::nth_element(at(low + 1), at(high), at(n));
+    const double first = *std::min_element(at(0), at(low + 1)), last = *std::max_element(at(high), at(n));
+    lower[axis] = sorted[low];
+    upper[axis] = sorted[high];
+    spread.extent[axis] = last - first;
+    spread.middle[axis] = (first + last) / 2;
   }
   double inside = 0;
   for (const Vec3& p : sample.first(n)) {
@@ -194,7 +201,9 @@ WindowPlan plan_window(const MotionMeans& means, std::size_t bodies, const Sprea
                         lasting(static_cast<double>(window), cancelled);
     if (cost >= (window > best.window ? least * kWorthLonger : least)) return;
     least = cost;
-    const double lines = std::min(kMostLines, kLinesPerVolume / per_line) * static_cast<double>(bodies);
+    const double as_ever = std::min(kMostLines, kLinesPerVolume / per_line) * static_cast<double>(bodies);
+    const double more = pairs < kManyPairs ? kLinesPerCell * (cells - kCellsAsEver) * static_cast<double>(bodies) : 0;
+    const double lines = std::max(as_ever, std::min(more, kLinesInCache));
     best = {cell, window, static_cast<std::size_t>(lines) + 1, pairs, cell > longest};
   };
   if (fixed_window > 0) {

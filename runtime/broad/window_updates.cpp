@@ -54,7 +54,7 @@ bool WindowUpdates::make_boxes(Block& block, std::span<const Motion> motions, bo
   const auto no_expiry = [](const Motion& motion) { return std::isnan(motion.expiry); };
   bool valid = same_ends || std::none_of(motions.begin(), motions.end(), no_expiry);
   const auto durations = std::span(block.durations).first(motions.size());
-  valid = block.lattice.boxes(motions, durations, block.boxes, options_.vectors) && valid;
+  valid = block.lattice.boxes(motions, durations, block.boxes, !parts_.boxes.few(), options_.vectors) && valid;
   const auto is_one = [](const Motion& motion) { return is_valid(motion); };
   return valid || std::all_of(motions.begin(), motions.end(), is_one);
 }
@@ -66,7 +66,11 @@ bool WindowUpdates::place(Block& block, std::span<const BodyIndex> bodies) {
   bool same = set_ends(block, bodies, motions);
   if (!make_boxes(block, motions, same)) return false;
 
-  parts_.windows.set(bodies, block.from, std::span(block.ends).first(bodies.size()));
+  if (same && block.ends[0] != kNeverStep) {
+    parts_.windows.set_alike(bodies, block.from, block.ends[0]);
+  } else {
+    parts_.windows.set(bodies, block.from, std::span(block.ends).first(bodies.size()));
+  }
   parts_.overlaps.mark_updated(bodies);
   const bool notes_spheres = parts_.pairs.notes_spheres();
   for (std::size_t i = 0; notes_spheres && i < bodies.size(); ++i) {
@@ -106,7 +110,7 @@ void WindowUpdates::shrink(Block& block, BodyIndex body, std::size_t i) {
     window.end = block.from + steps;
     window.length = static_cast<std::uint8_t>(steps);
     const double duration = parts_.pool.clock.seconds_between(block.now, window.end - 1);
-    block.lattice.boxes({&motions_[i], 1}, {&duration, 1}, box, options_.vectors);
+    block.lattice.boxes({&motions_[i], 1}, {&duration, 1}, box, false, options_.vectors);
     fits = parts_.boxes.note_again(body, box.get(0));
     block.boxes.set(i, box.get(0));
   }
@@ -132,7 +136,7 @@ std::size_t WindowUpdates::known_at(Step from, std::span<BodyIndex> bodies, std:
 }
 
 bool WindowUpdates::know_mostly(Step now, Step from, std::span<BodyIndex> bodies) {
-  motions_.resize(std::max(kBlock, bodies.size()));
+  make_room_for_motions(bodies.size());
   parts_.pool.ask(now, bodies, std::span(motions_).first(bodies.size()));
   return 2 * known_at(from, bodies, motions_) >= bodies.size();
 }
@@ -155,14 +159,15 @@ std::size_t WindowUpdates::refuse_invalid(std::span<BodyIndex> bodies) {
 }
 
 std::span<const Motion> WindowUpdates::ask_valid(Step now, std::span<BodyIndex>& bodies) {
-  motions_.resize(kBlock);
+  make_room_for_motions(bodies.size());
   parts_.pool.ask(now, bodies, std::span(motions_).first(bodies.size()));
   bodies = bodies.first(refuse_invalid(bodies));
   return std::span(motions_).first(bodies.size());
 }
 
 void WindowUpdates::find(Step now, Step from, std::span<const BodyIndex> bodies, bool tested) {
-  motions_.resize(kBlock);
+  const std::size_t at_once = std::min(parts_.boxes.at_once(), bodies.size());
+  make_room_for_motions(at_once);
   near_.clear();
   Block update;
   update.now = now;
@@ -171,8 +176,9 @@ void WindowUpdates::find(Step now, Step from, std::span<const BodyIndex> bodies,
   BoxIndex::Queue queue;
   std::array<BodyIndex, kBlock> known;
   for (std::size_t done = 0; done < bodies.size();) {
-    auto block = bodies.subspan(done, std::min(kBlock, bodies.size() - done));
-    parts_.pool.load_ahead(bodies.subspan(done + block.size(), std::min(kBlock, bodies.size() - done - block.size())));
+    auto block = bodies.subspan(done, std::min(at_once, bodies.size() - done));
+    const auto next = bodies.subspan(done + block.size());
+    parts_.pool.load_ahead(next.first(std::min(at_once, next.size())));
     parts_.pool.ask(now, block, std::span(motions_).first(block.size()));
     done += block.size();
     if (from > now) {

@@ -40,6 +40,9 @@ class WindowUpdates {
 
  private:
   struct Block;
+  void make_room_for_motions(std::size_t count) {
+    if (motions_.size() < count) motions_.resize(count);
+  }
   void find(Step now, Step from, std::span<const BodyIndex> bodies, bool tested);
   void test_near(Step now);
   std::size_t known_at(Step from, std::span<BodyIndex> bodies, std::span<Motion> motions) const noexcept;

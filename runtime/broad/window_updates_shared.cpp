@@ -107,7 +107,7 @@ void WindowUpdates::place_shared(Chunk& chunk, Block& block, std::span<BodyIndex
   for (bool fit = false; !fit && count > 0;) {
     same = set_ends(block, bodies.first(count), motions.first(count));
     const bool valid = make_boxes(block, motions.first(count), same);
-    fit = valid && BoxIndex::all_fit(block.boxes, count);
+    fit = valid && BoxIndex::all_fit(block.boxes);
     if (!valid) {
       leave_unless([&](std::size_t i) { return is_valid(motions[i]); });
     } else if (!fit) {

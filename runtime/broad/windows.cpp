@@ -42,17 +42,15 @@ Step Windows::end_of(Step from, BodyIndex body, const Motion& motion, LastEnd& l
 
 // Its bounds have ended before their time. Now and then that says nothing of the next ones, which may hold for as long
 // as any. Only where bounds last for no more than a step again and again a long window is of no use.
-bool Windows::note_cancelled(BodyIndex body, Step now) noexcept {
+void Windows::note_lasting(BodyIndex body, Step now) noexcept {
   Window& window = windows_[body];
-  if (window.length == 0 || window.end < 0) return false;
   const Step lasted = window.end == kNeverStep
                           ? static_cast<std::uint16_t>(static_cast<std::uint16_t>(now) - window.began)
                           : now - (window.end - window.length);
   if (lasted > 1) window.rely_longer();
-  if (lasted < 0 || lasted > 1) return true;
+  if (lasted < 0 || lasted > 1) return;
   window.lasting = window.lasting > kLastsAsEver - kPatience ? window.lasting - 1 : 1;
   any_short_ = any_short_ || window.lasting == 1;
-  return true;
 }
 
 // The majority's vote, if there is one: what differs is paired off.

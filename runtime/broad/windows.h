@@ -50,17 +50,19 @@ class Windows {
   bool any_short() const noexcept { return any_short_; }
   bool may_never_end() const noexcept { return !all_end_; }
   void set(BodyIndex body, Step from, Step end) noexcept {
-    Window& window = windows_[body];
-    window.end = end;
-    window.updated = round_;
-    window.began = static_cast<std::uint16_t>(from);
-    window.length = end != kNeverStep       ? static_cast<std::uint8_t>(end - from)
-                    : pool_.is_static(body) ? std::uint8_t{0}
-                                            : kLastsAsEver;
+    const std::uint8_t length = end != kNeverStep       ? static_cast<std::uint8_t>(end - from)
+                                : pool_.is_static(body) ? std::uint8_t{0}
+                                                        : kLastsAsEver;
+    set(windows_[body], from, end, length, round_);
   }
-
   void set(std::span<const BodyIndex> bodies, Step from, std::span<const Step> ends) noexcept {
     for (std::size_t i = 0; i < bodies.size(); ++i) set(bodies[i], from, ends[i]);
+  }
+  void set_alike(std::span<const BodyIndex> bodies, Step from, Step end) noexcept {  // which is not never
+    Window* const windows = windows_.data();
+    const auto length = static_cast<std::uint8_t>(end - from);
+    const Round round = round_;
+    for (const BodyIndex body : bodies) set(windows[body], from, end, length, round);
   }
 
   bool valid(const PairEvent& event) const noexcept {
@@ -77,7 +79,12 @@ class Windows {
     const Step end = windows_[body].end;
     return end == kUpdateDue ? now + kLongestWindow : end;
   }
-  bool note_cancelled(BodyIndex body, Step now) noexcept;  // false if it had no bounds yet
+  bool note_cancelled(BodyIndex body, Step now) noexcept {  // false if it had no bounds yet
+    const Window& window = windows_[body];
+    if (window.length == 0 || window.end < 0) return false;
+    note_lasting(body, now);
+    return true;
+  }
 
   // The step at which the most windows end, if these are many.
   void vote(Step end, std::size_t bodies) noexcept;
@@ -86,6 +93,14 @@ class Windows {
   std::size_t memory_bytes() const noexcept { return bytes_of(windows_); }
 
  private:
+  static void set(Window& window, Step from, Step end, std::uint8_t length, Round round) noexcept {
+    window.end = end;
+    window.updated = round;
+    window.began = static_cast<std::uint16_t>(from);
+    window.length = length;
+  }
+  void note_lasting(BodyIndex body, Step now) noexcept;
+
   const BodyPool& pool_;
   const Step fixed_;
   std::vector<Window> windows_;  // by body
