@@ -121,7 +121,7 @@ class Splitter {
       return ball_error(surface_, (1 - t) * a.center + t * b.center, (1 - t) * a.radius + t * b.radius, length(edge),
                         {{&a, 1 - t}, {&b, t}}, fine);
     };
-    const int parts = parts_of(length(edge));
+    const int parts = parts_of(length(edge), (a.radius + b.radius) / 2);
     const double small = kSmall * options_.tolerance;
     double worst = error_at(0.5, small);
     if (parts == kMinParts && worst < small) return worst;  // nor is it much at the quarters
@@ -139,7 +139,7 @@ class Splitter {
                         u * a.radius + v * b.radius + w * c.radius, longest, {{&a, u}, {&b, v}, {&c, w}},
                         options_.tolerance);
     };
-    const int parts = parts_of(longest);
+    const int parts = parts_of(longest, (a.radius + b.radius + c.radius) / 3);
     double worst = error_at(1.0 / 3, 1.0 / 3);
     if (parts == kMinParts) return worst;
     for (int i = 1; i + 1 < parts; ++i) {
@@ -148,9 +148,11 @@ class Splitter {
     }
     return worst;
   }
-  // Into how many parts a cell is cut by the places where it is looked at.
-  int parts_of(double length) const {
-    return std::clamp(static_cast<int>(std::ceil(length / (kPart * options_.tolerance))), kMinParts, kMaxParts);
+  // Into how many parts a cell is cut by the places where it is looked at. Between two that are h apart on an edge,
+  // where distances are d, these may be less by h^2 / (8 d), about: another tolerance.
+  int parts_of(double length, double radius) const {
+    const double part = std::min(kPart * options_.tolerance, std::sqrt(8 * options_.tolerance * radius));
+    return std::clamp(static_cast<int>(std::ceil(length / part)), kMinParts, kMaxParts);
   }
 
   static constexpr double kPart = 10;  // tolerances
