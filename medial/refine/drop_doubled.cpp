@@ -14,8 +14,7 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kOnEdge = 1e-3;  // of `apart`, beside balls of radius 0
-constexpr double kAhead = 3;      // gains, by which borders may become longer before they become shorter
+constexpr double kAhead = 3;  // gains, by which borders may become longer before they become shorter
 
 class DoubledDropper {
  public:
@@ -200,7 +199,7 @@ class DoubledDropper {
   // Another triangle that is there, in one of whose balls a ball lies, up to `apart`.
   Index holder_of(const Sphere& ball) const {
     Index holder = kNone;
-    const double most = ball.radius > 0 ? apart_ - ball.radius : kOnEdge * apart_;
+    const double most = apart_ - ball.radius;
     tree_.min(
         ball.center, most,
         [&](Index t, const SupportTree::Item& balls, double least) {
