@@ -15,6 +15,7 @@
 #include "dents_below.h"
 #include "drop_degenerate.h"
 #include "drop_doubled.h"
+#include "drop_flakes.h"
 #include "extend_sheets.h"
 #include "orchard/geometry/angle.h"
 #include "orchard/geometry/error.h"
@@ -109,6 +110,7 @@ bool Refiner::drop_degenerate_cells() {
 // Before anything is divided: what is taken away needs no dividing, and what it covered alone is reached for.
 void Refiner::drop_doubled_sheets() {
   report_.doubled = drop_doubled(complex_, options_.tolerance * diagonal_, kShorter * border_options().spacing);
+  report_.small_pieces += drop_flakes(complex_);
   report_.small_pieces += drop_small_pieces(complex_);
 }
 

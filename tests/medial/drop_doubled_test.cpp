@@ -1,4 +1,4 @@
-// Sheets that double others go, and nothing else does.
+// Sheets that double others go, and flakes, and nothing else does.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 #include "orchard/medial/topology.h"
 #include "quality/reconstruction.h"
 #include "refine/drop_doubled.h"
+#include "refine/drop_flakes.h"
 #include "support/effort.h"
 
 namespace orchard {
@@ -148,6 +149,46 @@ TEST(DropDoubled, ChangesNoTopologyAndLeavesNothingOpenByMore) {
     // Between the places that are looked at balls may lie a little farther out.
     EXPECT_LE(most_outside(before, after, random), 1.3 * kApart);
   }
+}
+
+// A triangle that stands on an inner edge of a sheet with balls of radius 1.
+detail::BallComplex sheet_with_fin(double height) {
+  Sheets sheets;
+  sheets.add(4, 1, 0, 1);
+  const Index a = 6 * 5 + 1, b = 6 * 5 + 2;  // of the seventh column
+  sheets.complex.triangles.push_back({a, b, sheets.complex.size()});
+  const Point middle = 0.5 * (sheets.complex.balls[a].center + sheets.complex.balls[b].center);
+  sheets.complex.balls.push_back(ball_of(middle + Vector(0, 0, height), 0.5));
+  sheets.complex.complete();
+  return std::move(sheets.complex);
+}
+
+TEST(DropFlakes, TakesWhatOneEdgeJoinsAndIsSmall) {
+  detail::BallComplex complex = sheet_with_fin(1.5);
+  const std::size_t triangles = complex.triangles.size();
+  EXPECT_EQ(detail::drop_flakes(complex), 1u);
+  EXPECT_EQ(complex.triangles.size(), triangles - 1);
+  EXPECT_EQ(topology(complex.mesh()), (Topology{1, 0, 0}));
+  for (const auto& edge : complex.edges) {
+    const auto has = [&](const auto& t) {
+      return std::count(t.begin(), t.end(), edge[0]) + std::count(t.begin(), t.end(), edge[1]) == 2;
+    };
+    EXPECT_TRUE(std::any_of(complex.triangles.begin(), complex.triangles.end(), has)) << "an edge was left bare";
+  }
+  EXPECT_EQ(detail::drop_flakes(complex), 0u);
+}
+
+TEST(DropFlakes, LeavesWhatIsLargeOrCloses) {
+  detail::BallComplex large = sheet_with_fin(2.5);
+  EXPECT_EQ(detail::drop_flakes(large), 0u);
+  // Three more triangles close the fin to a hollow tetrahedron, whose base is the sheet's.
+  detail::BallComplex hollow = sheet_with_fin(1.5);
+  const Index a = 6 * 5 + 1, b = 6 * 5 + 2, c = 7 * 5 + 1, top = hollow.size() - 1;
+  hollow.triangles.push_back({a, c, top});
+  hollow.triangles.push_back({b, c, top});
+  hollow.complete();
+  ASSERT_EQ(topology(hollow.mesh()), (Topology{1, 0, 1}));
+  EXPECT_EQ(detail::drop_flakes(hollow), 0u);
 }
 
 }  // namespace

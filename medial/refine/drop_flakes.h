@@ -1,0 +1,11 @@
+#pragma once
+#include "ball_complex.h"
+
+namespace orchard::detail {
+
+// Takes away flakes: sheets that one edge joins to the rest, at which others meet, and that reach no farther from its
+// ends than kPieceReach times the larger one's radius; but for what the topology needs. Returns how many triangles
+// went. O(n log n).
+Index drop_flakes(BallComplex& complex);
+
+}  // namespace orchard::detail
