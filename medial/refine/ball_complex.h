@@ -36,6 +36,9 @@ void keep_alive(BallComplex& complex, const Alive& alive);
 
 // What may be taken away, by edges and vertices; a triangle may go if one of its edges may. Nothing else does.
 struct Doomed {
+  // Nothing yet.
+  explicit Doomed(const BallComplex& complex) : edges(complex.edges.size(), 0), vertices(complex.balls.size(), 0) {}
+
   std::vector<std::uint8_t> edges, vertices;
 };
 

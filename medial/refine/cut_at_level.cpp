@@ -86,8 +86,7 @@ class LevelCut {
 
   void drop_below() {
     std::vector<double> value(complex_.size());
-    Doomed doomed{.edges = std::vector<std::uint8_t>(complex_.edges.size(), 0),
-                  .vertices = std::vector<std::uint8_t>(complex_.size(), 0)};
+    Doomed doomed(complex_);
     for (Index v = 0; v < complex_.size(); ++v) {
       value[v] = scaled(complex_.balls[v], level_);
       doomed.vertices[v] = value[v] < 0.5 ? 1 : 0;

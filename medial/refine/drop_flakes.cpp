@@ -64,8 +64,7 @@ class FlakeDropper {
   }
 
   Doomed doomed() {
-    Doomed doomed{.edges = std::vector<std::uint8_t>(complex_.edges.size(), 0),
-                  .vertices = std::vector<std::uint8_t>(complex_.size(), 0)};
+    Doomed doomed(complex_);
     for (Index t = 0; t < complex_.triangles.size(); ++t) {
       const Index s = sheet(t);
       if (!is_small(s)) continue;

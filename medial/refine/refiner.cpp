@@ -89,7 +89,7 @@ void Refiner::refine(FoundBalls* found) {
 RefinedAxis Refiner::finish() {
   // First what the diagram leaves degenerate, and again as long as pieces go that may cover something alone.
   drop_degenerate_cells();
-  drop_doubled_sheets();
+  drop_doubled_and_flakes();
   divide();
   reach();
   for (int pass = 1; drop_degenerate_cells() && pass < kReachPasses; ++pass) reach();
@@ -108,7 +108,7 @@ bool Refiner::drop_degenerate_cells() {
 }
 
 // Before anything is divided: what is taken away needs no dividing, and what it covered alone is reached for.
-void Refiner::drop_doubled_sheets() {
+void Refiner::drop_doubled_and_flakes() {
   report_.doubled = drop_doubled(complex_, options_.tolerance * diagonal_, kShorter * border_options().spacing);
   report_.small_pieces += drop_flakes(complex_);
   report_.small_pieces += drop_small_pieces(complex_);
@@ -198,8 +198,9 @@ void Refiner::drop_folded() {
   });
   // Edges go with all of their triangles, vertices with all of their edges; those without triangles stay.
   std::vector<std::uint8_t> has(complex_.edges.size(), 0);
-  Doomed doomed{.edges = std::vector<std::uint8_t>(complex_.edges.size(), 1),
-                .vertices = std::vector<std::uint8_t>(complex_.size(), 1)};
+  Doomed doomed(complex_);
+  std::fill(doomed.edges.begin(), doomed.edges.end(), std::uint8_t{1});
+  std::fill(doomed.vertices.begin(), doomed.vertices.end(), std::uint8_t{1});
   const EdgeNumbers edge = complex_.edge_numbers();
   for (Index t = 0; t < complex_.triangles.size(); ++t) {
     const auto& [a, b, c] = complex_.triangles[t];

@@ -45,7 +45,7 @@ class Refiner {
   void drop_folded();
   void mend_borders();
   bool drop_degenerate_cells();
-  void drop_doubled_sheets();
+  void drop_doubled_and_flakes();
   void divide();
   void reach();
   Index reach_for(const Reconstruction& reconstruction, const std::vector<UncoveredPlace>& places, BallSolver& solver);

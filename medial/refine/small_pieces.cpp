@@ -77,8 +77,7 @@ class PieceDropper {
   }
 
   Doomed doomed() {
-    Doomed doomed{.edges = std::vector<std::uint8_t>(complex_.edges.size(), 0),
-                  .vertices = std::vector<std::uint8_t>(complex_.size(), 0)};
+    Doomed doomed(complex_);
     for (Index e = 0; e < complex_.edges.size(); ++e) {
       const Index p = piece(e);
       if (!is_small(p)) continue;
