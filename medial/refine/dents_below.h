@@ -17,6 +17,8 @@ class DentsBelow {
 
   // The deepest first; no two within `apart` of each other. As UncoveredSearch::find().
   std::vector<UncoveredPlace> find(const Reconstruction& reconstruction, double apart);
+  // As UncoveredSearch::look_again().
+  void look_again(std::span<const Sphere> spheres) { below_.look_again(spheres); }
 
  private:
   UncoveredPlace bottom_below(const UncoveredPlace& place, const Point& above,

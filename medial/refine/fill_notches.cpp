@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <numbers>
 #include <queue>
@@ -13,11 +14,14 @@ namespace {
 
 class NotchFiller {
  public:
-  NotchFiller(const Surface& surface, BallComplex& complex, BallSolver& solver, const BorderOptions& options)
+  NotchFiller(const Surface& surface, BallComplex& complex, BallSolver& solver, const BorderOptions& options,
+              const SplitOptions& dividing, const NotchLimits& limits)
       : surface_(surface),
         complex_(complex),
         solver_(solver),
         options_(options),
+        dividing_(dividing),
+        limits_(limits),
         borders_(find_borders(complex)),
         extension_(complex) {}
 
@@ -32,33 +36,42 @@ class NotchFiller {
   }
 
  private:
-  static constexpr double kMaxOuter = 150 * std::numbers::pi / 180;  // wider ones are no notch
-  static constexpr double kMaxLength = 4;  // spacings: the third side of a triangle that fills a notch
-  static constexpr double kNear = 0.3;     // of that side: how far the axis may be from its middle
+  static constexpr double kNear = 0.3;  // of the third side: how far the axis may be from its middle
 
   double outer_angle(Index v) const { return 2 * std::numbers::pi - borders_.inner[v]; }
   void offer(Index v) {
-    if (borders_.next[v][0] != kNone && outer_angle(v) < kMaxOuter) queue_.emplace(outer_angle(v), v);
+    if (borders_.next[v][0] != kNone && outer_angle(v) < limits_.max_angle) queue_.emplace(outer_angle(v), v);
   }
   bool fits(Index v, Index a, Index b) {
-    const ExactBall &p = complex_.balls[a], &q = complex_.balls[b];
+    const ExactBall &p = complex_.balls[a], &q = complex_.balls[b], &third = complex_.balls[v];
     const double length = (p.center - q.center).norm();
-    if (a == b || extension_.joined(a, b) || length > kMaxLength * options_.spacing || !p.exact || !q.exact)
-      return false;
-    // What sees each other over the notch, not back over the sheet.
-    if (angle_at(complex_, v, a, b) > kMaxOuter + 0.2) return false;
-    // Slack: what is a little off is divided later.
-    const ExactBall& third = complex_.balls[v];
-    const Point centroid = (p.center + q.center + third.center) / 3;
+    if (a == b || extension_.joined(a, b) || length > limits_.max_length * options_.spacing) return false;
+    // What sees each other over the notch, not back over the sheet or over a fold.
+    const double seen = angle_at(complex_, v, a, b);
+    if (seen > limits_.max_angle || std::abs(seen - outer_angle(v)) > limits_.max_bend) return false;
+    const ExactBall middle = solver_.between(p, q, 0.5);
+    if (middle.loss < limits_.min_loss * options_.level) return false;
+    if ((middle.center - 0.5 * (p.center + q.center)).norm() > kNear * length) return false;
+    const bool exact = p.exact && q.exact && middle.exact;
+    if (exact && !is_nearly_linear(p, q, third)) return false;
+    return limits_.on_trial ? becomes_right(p, q, third, exact) : exact;
+  }
+  bool becomes_right(const ExactBall& p, const ExactBall& q, const ExactBall& third, bool divided) const {
+    SplitOptions dividing = dividing_;
+    if (!divided) dividing.max_rounds = 0;
+    return may_end(p) && may_end(q) && becomes_linear(surface_, p, q, third, dividing);
+  }
+  // Slack: what is a little off is divided later, at balls between exact ones.
+  bool is_nearly_linear(const ExactBall& p, const ExactBall& q, const ExactBall& third) const {
+    const double length = (p.center - q.center).norm();
     const auto off = [&](const Point& center, double radius) {
       return ball_error(surface_, center, radius, length) > kBorderSlack * options_.tolerance;
     };
-    if (off(centroid, (p.radius + q.radius + third.radius) / 3)) return false;
-    if (off((p.center + q.center) / 2, (p.radius + q.radius) / 2)) return false;
-    const ExactBall middle = solver_.between(p, q, 0.5);
-    return middle.exact && middle.loss >= options_.level / 2 &&
-           (middle.center - 0.5 * (p.center + q.center)).norm() <= kNear * length;
+    return !off((p.center + q.center + third.center) / 3, (p.radius + q.radius + third.radius) / 3) &&
+           !off((p.center + q.center) / 2, (p.radius + q.radius) / 2);
   }
+  // Not what is on a face of the surface.
+  static bool may_end(const ExactBall& ball) { return ball.exact || ball.radius > 0; }
   void fill(Index v) {
     const auto [a, b] = borders_.next[v];
     if (!fits(v, a, b) || !extension_.add(v, a, b)) return;
@@ -76,6 +89,8 @@ class NotchFiller {
   BallComplex& complex_;
   BallSolver& solver_;
   const BorderOptions& options_;
+  const SplitOptions& dividing_;
+  const NotchLimits& limits_;
   Borders borders_;
   FreeExtension extension_;
   std::priority_queue<std::pair<double, Index>, std::vector<std::pair<double, Index>>, std::greater<>> queue_;
@@ -83,8 +98,9 @@ class NotchFiller {
 
 }  // namespace
 
-Index fill_notches(const Surface& surface, BallComplex& complex, BallSolver& solver, const BorderOptions& options) {
-  return NotchFiller(surface, complex, solver, options).run();
+Index fill_notches(const Surface& surface, BallComplex& complex, BallSolver& solver, const BorderOptions& options,
+                   const SplitOptions& dividing, const NotchLimits& limits) {
+  return NotchFiller(surface, complex, solver, options, dividing, limits).run();
 }
 
 }  // namespace orchard::detail

@@ -226,7 +226,9 @@ class OpenPlaceReacher {
   // Whether there are balls between an edge and a new one, and they protrude by little.
   bool is_inside(Index a, Index b, const ExactBall& ball) const {
     const ExactBall &p = sheets_.complex.balls[a], &q = sheets_.complex.balls[b];
-    if (is_flat_triangle(p.center, q.center, ball.center)) return false;  // what has no area goes at last
+    // What has no area, or no balls, goes at last.
+    if (is_flat_triangle(p.center, q.center, ball.center) || std::max({p.radius, q.radius, ball.radius}) == 0)
+      return false;
     const auto protrudes = [&](double u, double v, double w) {
       const double radius = u * p.radius + v * q.radius + w * ball.radius;
       return radius + sheets_.surface.signed_distance(u * p.center + v * q.center + w * ball.center) >

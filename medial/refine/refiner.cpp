@@ -31,17 +31,25 @@ constexpr const char* kStage = "refining the axis";
 // Contacts merge where the ball between them would lose this much of what a border may lose: fine enough to see on
 // which side of the level a vertex is.
 constexpr double kMerging = 0.25;
-constexpr int kBorderPasses = 3;      // of filling notches and reaching edges: the last ones find next to nothing
-constexpr double kMinLength = 1e-3;   // diagonals: shorter edges are not divided
-constexpr std::size_t kEnough = 24;   // seeds of a vertex: coalesced ones have hundreds
-constexpr double kOpen = 1.65;        // of the border loss: places left open by more are reached for
-constexpr double kResolution = 0.1;   // spacings, of looking for these
-constexpr double kDetail = 0.15;      // of what is left open: places open by this more are not missed
-constexpr double kDentWidth = 0.5;    // of what is left open: narrower dents are missed
-constexpr int kReachPasses = 3;       // of reaching for what dropped pieces leave open: one does for most meshes
-constexpr int kDentRounds = 3;        // of looking for these, once nothing is open: some stay where no ball fits
-constexpr double kApart = 0.5;        // spacings, between two that are reached for at once
-constexpr double kShorter = 0.5;      // spacings, by which the borders become shorter where a doubled sheet goes
+constexpr int kBorderPasses = 3;     // of filling notches and reaching edges: the last ones find next to nothing
+constexpr double kMinLength = 1e-3;  // diagonals: shorter edges are not divided
+constexpr std::size_t kEnough = 24;  // seeds of a vertex: coalesced ones have hundreds
+constexpr double kOpen = 1.65;       // of the border loss: places left open by more are reached for
+constexpr double kResolution = 0.1;  // spacings, of looking for these
+constexpr double kDetail = 0.15;     // of what is left open: places open by this more are not missed
+constexpr double kDentWidth = 0.5;   // of what is left open: narrower dents are missed
+constexpr int kReachPasses = 3;      // of reaching for what dropped pieces leave open: one does for most meshes
+constexpr int kDentRounds = 3;       // of looking for these, once nothing is open: some stay where no ball fits
+constexpr double kApart = 0.5;       // spacings, between two that are reached for at once
+constexpr double kShorter = 0.5;     // spacings, by which the borders become shorter where a doubled sheet goes
+constexpr double kDegree = std::numbers::pi / 180;
+// Of borders as the diagram leaves them, and as they grow.
+constexpr NotchLimits kNotches{
+    .max_angle = 150 * kDegree, .max_bend = 180 * kDegree, .max_length = 4, .min_loss = 0.5, .on_trial = false};
+// Of borders where they go in steps from one facet of the surface to the next; over wide angles, since what is in
+// between has a ball that would lose less, but still something.
+constexpr NotchLimits kSteps{
+    .max_angle = 176 * kDegree, .max_bend = 60 * kDegree, .max_length = 6, .min_loss = 0.2, .on_trial = true};
 constexpr double kCoincident = 1e-6;  // diagonals: vertices that are nearer are one
 
 void check(const RefineOptions& options) {
@@ -55,6 +63,16 @@ void check(const RefineOptions& options) {
   if (!(options.reach_detail >= 0 && std::isfinite(options.reach_detail)))
     throw InputError("detail that is reached for: a finite number, not negative");
   if (options.reach_rounds < 0) throw InputError("rounds of reaching for open places: not negative");
+}
+
+// Where balls are of which others were taken away, by their numbers before; kNone for those.
+std::vector<Index> numbers_of(const std::vector<ExactBall>& before, const std::vector<ExactBall>& left) {
+  std::vector<Index> number(before.size(), kNone);
+  Index next = 0;
+  for (std::size_t v = 0; v < before.size() && next < left.size(); ++v) {
+    if (before[v].center == left[next].center && before[v].radius == left[next].radius) number[v] = next++;
+  }
+  return number;
 }
 
 }  // namespace
@@ -87,23 +105,25 @@ void Refiner::refine(FoundBalls* found) {
 }
 
 RefinedAxis Refiner::finish() {
-  // First what the diagram leaves degenerate, and again as long as pieces go that may cover something alone.
-  drop_degenerate_cells();
+  std::vector<Sphere> around;
+  drop_degenerate_cells(around);
   drop_doubled_and_flakes();
+  smooth_borders();
   divide();
   reach();
-  for (int pass = 1; drop_degenerate_cells() && pass < kReachPasses; ++pass) reach();
   spread_flat(surface_, complex_, kMerging * level_);
   report_progress(progress_, kStage, 1);
   return result();
 }
 
-// What is left of flat triangles may hang on the rest by one vertex. Returns whether such pieces went.
-bool Refiner::drop_degenerate_cells() {
+// What is left of flat triangles may hang on the rest by one vertex. Returns whether such pieces went, and adds spheres
+// around them.
+bool Refiner::drop_degenerate_cells(std::vector<Sphere>& around) {
+  const std::vector<ExactBall> before = complex_.balls;
   report_.degenerate += drop_degenerate(complex_, kCoincident * diagonal_);
-  split_errors_ = {};  // of vertices that have other numbers now
-  const Index pieces = drop_small_pieces(complex_);
+  const Index pieces = drop_small_pieces(complex_, &around);
   report_.small_pieces += pieces;
+  split_errors_.renumber(numbers_of(before, complex_.balls));
   return pieces > 0;
 }
 
@@ -112,6 +132,12 @@ void Refiner::drop_doubled_and_flakes() {
   report_.doubled = drop_doubled(complex_, options_.tolerance * diagonal_, kShorter * border_options().spacing);
   report_.small_pieces += drop_flakes(complex_);
   report_.small_pieces += drop_small_pieces(complex_);
+}
+
+// Between one facet of the surface and the next, what sheets lose jumps, and their borders go in steps.
+void Refiner::smooth_borders() {
+  BallSolver solver = this->solver();
+  report_.notches += fill_notches(surface_, complex_, solver, border_options(), split_options(), kSteps);
 }
 
 BallSolver Refiner::solver() const { return {surface_, kMerging * level_}; }
@@ -232,7 +258,7 @@ void Refiner::mend_borders() {
   const BorderOptions border = border_options();
   BallSolver solver = this->solver();
   for (int pass = 0; pass < kBorderPasses; ++pass) {
-    const Index notches = fill_notches(surface_, complex_, solver, border);
+    const Index notches = fill_notches(surface_, complex_, solver, border, split_options(), kNotches);
     const Index seams = extend_to_seams(surface_, complex_, border);
     Index reached = extend_to_edges(surface_, complex_, border);
     reached += follow_edges(surface_, complex_, border);
@@ -270,14 +296,26 @@ Index Refiner::reach_for(const Reconstruction& reconstruction, const std::vector
                            split_options());
 }
 
+// Again as long as degenerate cells leave pieces that go and may have covered something alone.
+void Refiner::reach() {
+  const double spacing = border_options().spacing, limit = left_open();
+  UncoveredSearch open(surface_, limit, kResolution * spacing, kDetail * limit);
+  DentsBelow dents(surface_, limit, kDentWidth * limit);
+  std::vector<Sphere> around;
+  for (int pass = 0; pass < kReachPasses; ++pass) {
+    reach(open, dents);
+    around.clear();
+    if (!drop_degenerate_cells(around)) break;
+    open.look_again(around);
+    dents.look_again(around);
+  }
+}
+
 // Where balls leave the surface open by more than borders may, then where dents between them are deeper; what is added
 // is divided, too.
-void Refiner::reach() {
-  if (options_.reach_rounds == 0) return;
+void Refiner::reach(UncoveredSearch& open, DentsBelow& dents) {
   const BorderOptions border = border_options();
-  const double limit = left_open(), resolution = kResolution * border.spacing, apart = kApart * border.spacing;
-  UncoveredSearch open(surface_, limit, resolution, kDetail * limit);
-  DentsBelow dents(surface_, limit, kDentWidth * limit);
+  const double apart = kApart * border.spacing;
   BallSolver solver = this->solver();
   Reconstruction reconstruction(complex_.mesh());
   int dent_rounds = 0;
@@ -288,7 +326,7 @@ void Refiner::reach() {
       reached = reach_for(reconstruction, dents.find(reconstruction, apart), solver);
     if (reached == 0) break;
     report_.reached_places += reached;
-    report_.notches += fill_notches(surface_, complex_, solver, border);
+    report_.notches += fill_notches(surface_, complex_, solver, border, split_options(), kNotches);
     report_.notches += fill_along_edges(surface_, complex_, border);
     report_.edge_vertices += follow_edges(surface_, complex_, border);
     divide();

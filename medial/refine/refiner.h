@@ -5,6 +5,7 @@
 
 #include "ball_complex.h"
 #include "borders.h"
+#include "dents_below.h"
 #include "found_balls.h"
 #include "orchard/medial/refine.h"
 #include "split.h"
@@ -44,10 +45,12 @@ class Refiner {
   void find_balls(FoundBalls* found);
   void drop_folded();
   void mend_borders();
-  bool drop_degenerate_cells();
+  bool drop_degenerate_cells(std::vector<Sphere>& around);
   void drop_doubled_and_flakes();
+  void smooth_borders();
   void divide();
   void reach();
+  void reach(UncoveredSearch& open, DentsBelow& dents);
   Index reach_for(const Reconstruction& reconstruction, const std::vector<UncoveredPlace>& places, BallSolver& solver);
   RefinedAxis result();
 

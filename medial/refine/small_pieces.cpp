@@ -16,10 +16,11 @@ class PieceDropper {
         at_(complex.edges, complex.triangles, complex.size()),
         piece_of_edge_(complex.edges.size()) {}
 
-  Index run() {
+  Index run(std::vector<Sphere>* around) {
     find_pieces();
     find_joints();
     measure();
+    if (around) add_spheres(*around);
     const std::size_t before = complex_.edges.size() + complex_.triangles.size();
     collapse(complex_, doomed(), std::vector<double>(complex_.size(), 0));
     return static_cast<Index>(before - complex_.edges.size() - complex_.triangles.size());
@@ -76,6 +77,14 @@ class PieceDropper {
     return joints_[p] == 1 && (reach_[p] <= kPieceReach * complex_.balls[joint_[p]].radius || radius_[p] == 0);
   }
 
+  void add_spheres(std::vector<Sphere>& around) {
+    for (Index e = 0; e < complex_.edges.size(); ++e) {
+      if (piece(e) != e || !is_small(e)) continue;
+      const ExactBall& ball = complex_.balls[joint_[e]];
+      around.push_back({.center = ball.center, .radius = reach_[e] + std::max(radius_[e], ball.radius)});
+    }
+  }
+
   Doomed doomed() {
     Doomed doomed(complex_);
     for (Index e = 0; e < complex_.edges.size(); ++e) {
@@ -100,9 +109,9 @@ class PieceDropper {
 
 }  // namespace
 
-Index drop_small_pieces(BallComplex& complex) {
+Index drop_small_pieces(BallComplex& complex, std::vector<Sphere>* around) {
   Index dropped = 0;
-  while (const Index now = PieceDropper(complex).run()) dropped += now;
+  while (const Index now = PieceDropper(complex).run(around)) dropped += now;
   return dropped;
 }
 

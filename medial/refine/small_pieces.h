@@ -1,4 +1,6 @@
 #pragma once
+#include <vector>
+
 #include "ball_complex.h"
 
 namespace orchard::detail {
@@ -6,8 +8,8 @@ namespace orchard::detail {
 // Takes away spikes and flakes: chains of edges without triangles that end freely, and pieces of triangles, that hang
 // on the rest by one vertex and reach no farther from it than `kPieceReach` times its radius, or have no ball of radius
 // above 0; but for what the topology needs. Pieces that are left by that hang on nothing stay. Returns how many cells
-// went. O(n log n).
-Index drop_small_pieces(BallComplex& complex);
+// went. O(n log n). Adds spheres to `around`, if given, that hold all balls of these.
+Index drop_small_pieces(BallComplex& complex, std::vector<Sphere>* around = nullptr);
 inline constexpr double kPieceReach = 2;
 
 }  // namespace orchard::detail

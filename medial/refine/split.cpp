@@ -31,6 +31,20 @@ void measure(CellErrors<Cell>& known, const std::vector<Cell>& now, Measure&& of
   known.errors = std::move(found);
 }
 
+template <class Cell>
+void renumber_cells(CellErrors<Cell>& known, const std::vector<Index>& number) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < known.cells.size(); ++i) {
+    Cell cell = known.cells[i];
+    for (Index& v : cell) v = number[v];
+    if (std::find(cell.begin(), cell.end(), kNone) != cell.end()) continue;
+    known.cells[kept] = cell;
+    known.errors[kept++] = known.errors[i];
+  }
+  known.cells.resize(kept);
+  known.errors.resize(kept);
+}
+
 class Splitter {
  public:
   Splitter(const Surface& surface, BallComplex& complex, const SplitOptions& options, SplitErrors& known)
@@ -167,6 +181,11 @@ class Splitter {
 };
 
 }  // namespace
+
+void SplitErrors::renumber(const std::vector<Index>& number) {
+  renumber_cells(edges, number);
+  renumber_cells(triangles, number);
+}
 
 SplitReport split_nonlinear(const Surface& surface, BallComplex& complex, const SplitOptions& options,
                             SplitErrors& known, const Progress& progress) {

@@ -26,6 +26,9 @@ struct CellErrors {
 
 // What dividing a complex found out, for the next time: as long as its vertices keep their numbers and balls.
 struct SplitErrors {
+  // For vertices that have other numbers now, in the same order, or none (kNone): cells with such are forgotten.
+  void renumber(const std::vector<Index>& number);
+
   CellErrors<std::array<Index, 2>> edges;
   CellErrors<std::array<Index, 3>> triangles;
 };

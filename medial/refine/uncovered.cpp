@@ -56,7 +56,8 @@ UncoveredSearch::UncoveredSearch(const Surface& surface, std::vector<Corners> pa
       resolution_(resolution),
       detail_(resolution),
       depth_(depth),
-      parts_(std::move(parts)) {}
+      given_(std::move(parts)),
+      parts_(given_) {}
 
 UncoveredSearch::UncoveredSearch(const Surface& surface, double limit, double resolution, double detail)
     : surface_(surface),
@@ -64,7 +65,8 @@ UncoveredSearch::UncoveredSearch(const Surface& surface, double limit, double re
       resolution_(resolution),
       detail_(std::min(detail, resolution)),
       depth_(0),
-      parts_(all_corners(surface)) {}
+      given_(all_corners(surface)),
+      parts_(given_) {}
 
 // How near a cell is to be to a place so that what reaches that far from there is likely to be covered by it.
 double UncoveredSearch::enough(double reach) const {
@@ -127,15 +129,28 @@ UncoveredSearch::Block UncoveredSearch::look_at_all(const Reconstruction& recons
 std::vector<UncoveredPlace> UncoveredSearch::find(const Reconstruction& reconstruction, double apart) {
   Block found = look_at_all(reconstruction, parts_);
   std::vector<UncoveredPlace> all = std::move(found.places);
-  if (first_) {
+  if (with_corners_) {
     // Of parts that are too small to be divided only the middles were looked at; corners of the surface stand out.
     const Block corners = look_at_all(reconstruction, corners_of(found.not_covered));
     all.insert(all.end(), corners.places.begin(), corners.places.end());
     found.open.insert(found.open.end(), corners.open.begin(), corners.open.end());
-    first_ = false;
+    with_corners_ = false;
   }
   parts_ = std::move(found.open);
   return worst_apart(std::move(all), apart, surface_.bounding_box());
+}
+
+void UncoveredSearch::look_again(std::span<const Sphere> spheres) {
+  for (const Corners& part : given_) {
+    Box box;
+    for (const Point& corner : part) box.extend(corner);
+    const auto touches = [&](const Sphere& sphere) {
+      const double reach = sphere.radius + limit_;
+      return box.squaredExteriorDistance(sphere.center) <= reach * reach;
+    };
+    if (std::any_of(spheres.begin(), spheres.end(), touches)) parts_.push_back(part);
+  }
+  with_corners_ = true;
 }
 
 std::vector<UncoveredPlace> worst_apart(std::vector<UncoveredPlace> all, double apart, const Box& box) {

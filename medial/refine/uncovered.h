@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <span>
 #include <vector>
 
 #include "../quality/reconstruction.h"
@@ -32,6 +33,8 @@ class UncoveredSearch {
   // have been open then are looked at. Parallel, deterministic: a query for every few triangles, and some for each part
   // that is open.
   std::vector<UncoveredPlace> find(const Reconstruction& reconstruction, double apart);
+  // Where balls in these spheres are no longer there, the next find() looks again. O(s n).
+  void look_again(std::span<const Sphere> spheres);
 
  private:
   double enough(double reach) const;
@@ -41,8 +44,9 @@ class UncoveredSearch {
 
   const Surface& surface_;
   const double limit_, resolution_, detail_, depth_;
+  const std::vector<std::array<Point, 3>> given_;
   std::vector<std::array<Point, 3>> parts_;  // triangles, or points: three times the same
-  bool first_ = true;                        // the parts are those that were given
+  bool with_corners_ = true;                 // whether there may be given parts among these
 };
 
 }  // namespace orchard::detail

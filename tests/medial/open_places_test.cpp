@@ -17,9 +17,11 @@
 #include "quality/reconstruction.h"
 #include "refine/dents_below.h"
 #include "refine/drop_degenerate.h"
+#include "refine/split.h"
 #include "refine/spread_flat.h"
 #include "refine/uncovered.h"
 #include "support/effort.h"
+#include "support/shapes.h"
 
 namespace orchard {
 namespace {
@@ -74,6 +76,44 @@ TEST(UncoveredSearch, FindsTheCornersThatASphereInABoxLeavesOpen) {
   // The middles of edges are open by .41.
   EXPECT_EQ(detail::UncoveredSearch(box, 0.4, 0.01, 0.01).find(sphere, 0.9).size(), 20u);
   EXPECT_TRUE(detail::UncoveredSearch(box, 0.74, 0.01, 0.01).find(sphere, 0.5).empty());
+}
+
+TEST(UncoveredSearch, LooksAgainOnlyWhereItIsToldThatBallsAreGone) {
+  const Surface box(test::known_box({2, 2, 2}).solid);
+  const Point middle = 0.5 * (box.bounding_box().min() + box.bounding_box().max());
+  const Point low = box.bounding_box().min(), high = box.bounding_box().max();
+  MedialMesh balls{.centers = {middle, low, high}, .radii = {1, 0.5, 0.5}, .edges = {}, .triangles = {}};
+  detail::UncoveredSearch search(box, 0.6, 0.01, 0.01);
+  EXPECT_EQ(search.find(detail::Reconstruction(balls), 0.5).size(), 6u);
+  balls.centers.resize(2);
+  balls.radii.resize(2);
+  EXPECT_EQ(search.find(detail::Reconstruction(balls), 0.5).size(), 6u);
+  search.look_again(std::vector<Sphere>{{high, 0.5}});
+  EXPECT_EQ(search.find(detail::Reconstruction(balls), 0.5).size(), 7u);
+  EXPECT_EQ(search.find(detail::Reconstruction(balls), 0.5).size(), 7u);
+}
+
+TEST(SplitErrors, ForgetCellsWhoseVerticesAreGone) {
+  detail::SplitErrors errors;
+  errors.edges = {.cells = {{0, 1}, {1, 2}, {2, 3}}, .errors = {1, 2, 3}};
+  errors.triangles = {.cells = {{0, 1, 2}, {1, 2, 3}}, .errors = {4, -5}};
+  errors.renumber({kNone, 0, 1, 2});
+  EXPECT_EQ(errors.edges.cells, (std::vector<std::array<Index, 2>>{{0, 1}, {1, 2}}));
+  EXPECT_EQ(errors.edges.errors, (std::vector<double>{2, 3}));
+  EXPECT_EQ(errors.triangles.cells, (std::vector<std::array<Index, 3>>{{0, 1, 2}}));
+  EXPECT_EQ(errors.triangles.errors, (std::vector<double>{-5}));
+}
+
+// Its axis is a disk. From facet to facet what the sheet loses jumps, so that its border would go in steps.
+TEST(RefineAxis, TheBorderOfAFlatEllipsoidIsHardlyLongerThanItsCircle) {
+  TriangleMesh mesh = test::icosphere(4);
+  for (Point& vertex : mesh.vertices) vertex.z() *= 0.3;
+  const Surface surface(mesh);
+  const double circle = 2 * std::numbers::pi * (1 - 0.3 * 0.3);
+  for (std::uint64_t seed = 1; seed <= 2 * test::more(); ++seed) {
+    const MedialBuild build = build_medial_axis(surface, reaching(2000, test::first_seed() + seed));
+    EXPECT_LT(build.refinement.border_length * diagonal(surface), 1.04 * circle);
+  }
 }
 
 TEST(DentsBelow, FindsTheDeepPlacesThatASphereInABoxLeavesBelowCorners) {
