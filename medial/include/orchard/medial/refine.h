@@ -57,12 +57,12 @@ struct RefinedAxis {
 // from it than twice its radius, but for what the topology needs; notches between the teeth of their borders are
 // filled, those that end at sharp convex edges are extended onto these, and what is open between such ends on one edge
 // is filled; sheets and spikes go whose balls lie in others up to the tolerance, where the borders become shorter by
-// that, and flakes that one edge joins to others, before anything is reached for; what is interpolated too coarsely is
-// divided, with exact balls for new vertices; where the surface is then left open by more than 1.65 border_loss and
-// reach_detail, or balls leave a dent that is a tenth deeper, triangles reach for it from the nearest edges; and at
-// last vertices at one place are merged, and triangles without area taken away, or given some by moving a vertex along
-// its sheet. All by divisions, collapses, free extensions and contractions under the link condition, so the topology is
-// that of `axis`.
+// that, and flakes that one edge joins to others, before anything is reached for; the steps of borders from one facet
+// of the surface to the next are filled; what is interpolated too coarsely is divided, with exact balls for new
+// vertices; where the surface is then left open by more than 1.65 border_loss and reach_detail, or balls leave a dent
+// that is a tenth deeper, triangles reach for it from the nearest edges; and at last vertices at one place are merged,
+// and triangles without area taken away, or given some by moving a vertex along its sheet. All by divisions, collapses,
+// free extensions and contractions under the link condition, so the topology is that of `axis`.
 //
 // Vertices have the radius that is the distance of their centre to the surface, up to rounding. Deterministic;
 // parallel. O(n log n) for n vertices, and some nearest-point queries each. `sampling` has the points of `axis`. Throws
