@@ -17,13 +17,14 @@ class FlakeDropper {
         at_(complex.edges, complex.triangles, complex.size()),
         sheet_of_triangle_(complex.triangles.size()) {}
 
-  Index run() {
+  Index run(std::vector<Sphere>* around) {
     for (Index e = 0; e < complex_.edges.size(); ++e) {
       const auto triangles = at_.triangles_at[e];
       if (triangles.size() == 2) sheet_of_triangle_.unite(triangles[0], triangles[1]);
     }
     find_joints();
     measure();
+    if (around) add_spheres(*around);
     const std::size_t before = complex_.triangles.size();
     collapse(complex_, doomed(), std::vector<double>(complex_.size(), 0));
     return static_cast<Index>(before - complex_.triangles.size());
@@ -43,9 +44,10 @@ class FlakeDropper {
     }
   }
 
-  // How far each sheet with one joint reaches from the nearer end of that.
+  // How far each sheet with one joint reaches from the nearer end of that, and its largest radius.
   void measure() {
     reach_.assign(complex_.triangles.size(), 0);
+    radius_.assign(complex_.triangles.size(), 0);
     for (Index t = 0; t < complex_.triangles.size(); ++t) {
       const Index s = sheet(t);
       if (joints_[s] != 1) continue;
@@ -53,6 +55,7 @@ class FlakeDropper {
       for (const Index v : complex_.triangles[t]) {
         const auto way = [&](Index end) { return (complex_.balls[v].center - complex_.balls[end].center).norm(); };
         reach_[s] = std::max(reach_[s], std::min(way(a), way(b)));
+        radius_[s] = std::max(radius_[s], complex_.balls[v].radius);
       }
     }
   }
@@ -61,6 +64,15 @@ class FlakeDropper {
     if (joints_[s] != 1) return false;
     const auto& [a, b] = complex_.edges[joint_[s]];
     return reach_[s] <= kPieceReach * std::max(complex_.balls[a].radius, complex_.balls[b].radius);
+  }
+
+  void add_spheres(std::vector<Sphere>& around) {
+    for (Index t = 0; t < complex_.triangles.size(); ++t) {
+      if (sheet(t) != t || !is_small(t)) continue;
+      const auto& [a, b] = complex_.edges[joint_[t]];
+      for (const Index end : {a, b})
+        around.push_back({.center = complex_.balls[end].center, .radius = reach_[t] + radius_[t]});
+    }
   }
 
   Doomed doomed() {
@@ -84,12 +96,12 @@ class FlakeDropper {
   BallComplex& complex_;
   const CellIncidence at_;
   DisjointSets sheet_of_triangle_;
-  std::vector<Index> joint_, joints_;  // of each sheet: the last of its joints, how many
-  std::vector<double> reach_;          // of each sheet, mesh units
+  std::vector<Index> joint_, joints_;   // of each sheet: the last of its joints, how many
+  std::vector<double> reach_, radius_;  // of each sheet, mesh units
 };
 
 }  // namespace
 
-Index drop_flakes(BallComplex& complex) { return FlakeDropper(complex).run(); }
+Index drop_flakes(BallComplex& complex, std::vector<Sphere>* around) { return FlakeDropper(complex).run(around); }
 
 }  // namespace orchard::detail

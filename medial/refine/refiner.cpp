@@ -106,7 +106,7 @@ void Refiner::refine(FoundBalls* found) {
 
 RefinedAxis Refiner::finish() {
   std::vector<Sphere> around;
-  drop_degenerate_cells(around);
+  drop_degenerate_cells(false, around);
   drop_doubled_and_flakes();
   smooth_borders();
   divide();
@@ -116,12 +116,13 @@ RefinedAxis Refiner::finish() {
   return result();
 }
 
-// What is left of flat triangles may hang on the rest by one vertex. Returns whether such pieces went, and adds spheres
-// around them.
-bool Refiner::drop_degenerate_cells(std::vector<Sphere>& around) {
+// What is left of flat triangles may hang on the rest by one vertex. Returns whether such pieces went, or flakes, and
+// adds spheres around them.
+bool Refiner::drop_degenerate_cells(bool and_flakes, std::vector<Sphere>& around) {
   const std::vector<ExactBall> before = complex_.balls;
   report_.degenerate += drop_degenerate(complex_, kCoincident * diagonal_);
-  const Index pieces = drop_small_pieces(complex_, &around);
+  Index pieces = and_flakes ? drop_flakes(complex_, &around) : 0;
+  pieces += drop_small_pieces(complex_, &around);
   report_.small_pieces += pieces;
   split_errors_.renumber(numbers_of(before, complex_.balls));
   return pieces > 0;
@@ -296,7 +297,7 @@ Index Refiner::reach_for(const Reconstruction& reconstruction, const std::vector
                            split_options());
 }
 
-// Again as long as degenerate cells leave pieces that go and may have covered something alone.
+// Again as long as pieces go that may have covered something alone; flakes that come again at last stay.
 void Refiner::reach() {
   const double spacing = border_options().spacing, limit = left_open();
   UncoveredSearch open(surface_, limit, kResolution * spacing, kDetail * limit);
@@ -305,7 +306,7 @@ void Refiner::reach() {
   for (int pass = 0; pass < kReachPasses; ++pass) {
     reach(open, dents);
     around.clear();
-    if (!drop_degenerate_cells(around)) break;
+    if (!drop_degenerate_cells(pass + 1 < kReachPasses, around)) break;
     open.look_again(around);
     dents.look_again(around);
   }

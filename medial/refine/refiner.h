@@ -45,7 +45,7 @@ class Refiner {
   void find_balls(FoundBalls* found);
   void drop_folded();
   void mend_borders();
-  bool drop_degenerate_cells(std::vector<Sphere>& around);
+  bool drop_degenerate_cells(bool and_flakes, std::vector<Sphere>& around);
   void drop_doubled_and_flakes();
   void smooth_borders();
   void divide();
