@@ -3,7 +3,6 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <atomic>
@@ -12,11 +11,13 @@
 
 #include "cavity.h"
 #include "certificate_four.h"
+#include "covers_once.h"
+#include "forming_points.h"
 #include "four_tetrahedra.h"
 #include "line_sum.h"
-#include "orchard/geometry/random.h"
 #include "orchard/geometry/tolerance.h"
 #include "parallel_insertion.h"
+#include "suspects.h"
 #include "workspace_four.h"
 
 namespace orchard::detail {
@@ -58,10 +59,6 @@ constexpr int kRounds = 24;
 
 // How many doubts are still local ones, those of all rounds together: more are made anew sooner than mended.
 constexpr std::size_t kMaxDoubts = 16, kMaxDoubtsOneIn = 64;
-
-// Rays that are tried: one that meets an edge of the hull tells nothing, but its digits are random.
-constexpr std::uint64_t kRays = 4, kRayStream = 0x5ca1u;
-constexpr double kAside = 0x1p-10;
 
 // The edge of the hull between the facets of a vertex at infinity and of its neighbour `slot`.
 struct HullEdge {
@@ -116,23 +113,6 @@ struct Findings {
   }
 };
 
-// Which points form vertices. Noted by several threads at once, without branches: infinity, and what free vertices have
-// in the place of points, wrap around to the first place.
-class FormingPoints {
- public:
-  explicit FormingPoints(std::size_t points) : forms_(points + 1, 0) {}
-  void note(const VoronoiVertex& vertex) {
-    static_assert(static_cast<Index>(kInfinitePoint + 1) == 0 && kNone == kInfinitePoint);
-    for (const Index point : vertex.forming_points)
-      std::atomic_ref(forms_[static_cast<Index>(point + 1)]).store(1, std::memory_order_relaxed);
-  }
-  bool has(Index point) const { return forms_[point + 1] != 0; }
-  std::size_t count() const { return static_cast<std::size_t>(std::count(forms_.begin() + 1, forms_.end(), 1)); }
-
- private:
-  std::vector<std::uint8_t> forms_;  // by point
-};
-
 class Certifier {
  public:
   Certifier(Workspace& workspace, FormingPoints& forming, Index first_new, Mender* mender,
@@ -173,7 +153,9 @@ class Certifier {
     if (!look_at_all()) return {};
     if (found_.intrusion > max_sum_ && (!look_closer() || found_.intrusion > max_sum_)) return {};
     if (mended_ && !is_tetrahedron(found_.fattest)) find_fattest();
-    if (found_.fattest == kNone ? !found_.hull.empty() : !covers_once()) return {};
+    if (found_.fattest == kNone ? !found_.hull.empty()
+                                : !covers_once(workspace_, hull_vertices(), found_.fattest, box_))
+      return {};
     if (!are_suspects_innocent()) return {};
     return {true, 2 * (found_.intrusion + found_.given) / diameter_};
   }
@@ -752,7 +734,8 @@ class Certifier {
     std::vector<double> intrusions(found_.suspects.size());
     tbb::parallel_for(std::size_t{0}, intrusions.size(), [&](std::size_t s) {
       const Index v = found_.suspects[s];
-      intrusions[s] = workspace_.at_infinity(v) ? farthest_beyond(v) : deepest_within(v);
+      intrusions[s] = workspace_.at_infinity(v) ? farthest_beyond(workspace_, v, hull_points_, diameter_)
+                                                : deepest_within(workspace_, v, forming_, diameter_);
     });
     return std::all_of(intrusions.begin(), intrusions.end(), [this](double intrusion) { return add(intrusion); });
   }
@@ -788,76 +771,6 @@ class Certifier {
     for (const auto& block : blocks) hull.insert(hull.end(), block.begin(), block.end());
     return hull;
   }
-  double farthest_beyond(Index v) const {
-    Vector normal;
-    if (!sharp_normal(corner(v, 0), corner(v, 1), corner(v, 2), normal)) return diameter_;
-    double farthest = 0;
-    for (const Index p : hull_points_) farthest = std::max(farthest, normal.dot(workspace_.points[p] - corner(v, 0)));
-    return farthest;
-  }
-  // In terms of a sphere no larger than the points' own.
-  double deepest_within(Index v) const {
-    const Point &p0 = corner(v, 0), &p1 = corner(v, 1), &p2 = corner(v, 2), &p3 = corner(v, 3);
-    Vector center;
-    if (!sharp_circumcenter(p0, p1, p2, p3, center)) return diameter_;
-    const auto count = static_cast<Index>(workspace_.points.size());
-    const double power = tbb::parallel_reduce(
-        tbb::blocked_range<Index>(0, count, kBlock), 0.0,
-        [&](const auto& range, double max) {
-          for (Index i = range.begin(); i < range.end(); ++i) {
-            if (!forming_.has(i)) continue;
-            const Point& p = workspace_.points[i];
-            const Vector from_p0 = p - p0;
-            const double by_center = 2 * center.dot(from_p0) - from_p0.squaredNorm();
-            if (by_center > max && inside_sphere(p, p0, p1, p2, p3) == Sign::positive) max = by_center;
-          }
-          return max;
-        },
-        [](double a, double b) { return std::max(a, b); });
-    return power / std::min(center.norm(), diameter_ / 2);
-  }
-
-  // Whether the middle of the fattest of the tetrahedra looked at is below all facets of the hull, and a ray from there
-  // meets one of them. As all tetrahedra are oriented positively, there are then nowhere two on top of each other, and
-  // the hull goes around them once (see certify()).
-  bool covers_once() {
-    const std::array<Point, 4> inner{corner(found_.fattest, 0), corner(found_.fattest, 1), corner(found_.fattest, 2),
-                                     corner(found_.fattest, 3)};
-    const std::vector<Index> hull = hull_vertices();
-    const Point rounded = (inner[0] + inner[1] + inner[2] + inner[3]) / 4;
-    const auto is_below = [&](const Point& a, const Point& b, const Point& c) {
-      return volume_sign(rounded, a, b, c) == Sign::positive;
-    };
-    // Where all tetrahedra are needles, the fattest may be too thin for the rounded middle to be inside it.
-    const auto is_middle_below = [&](const Point& a, const Point& b, const Point& c) {
-      return volume_sign_of_middle(inner, a, b, c) == Sign::positive;
-    };
-    return is_encircled_once(hull, rounded, is_below) || is_encircled_once(hull, rounded, is_middle_below);
-  }
-
-  // is_below(a, b, c) tells on which side of a triangle a point at or next to `about` is. The rays go along an axis,
-  // nearly, so that most facets are missed by their boxes, and to points with random digits, so that no edge is met.
-  template <class IsBelow>
-  bool is_encircled_once(const std::vector<Index>& hull, const Point& about, const IsBelow& is_below) const {
-    const auto is_below_facet = [&](Index v) { return is_below(corner(v, 0), corner(v, 1), corner(v, 2)); };
-    if (!std::all_of(hull.begin(), hull.end(), is_below_facet)) return false;
-    const Vector next_to =
-        Vector::Constant(8 * kRounding * box_.min().cwiseAbs().cwiseMax(box_.max().cwiseAbs()).maxCoeff());
-    for (std::uint64_t ray = 0; ray < kRays; ++ray) {
-      Random random(0, kRayStream, ray);
-      const auto aside = [&random] { return kAside * (random.uniform() - 0.5); };
-      const Point end = about + 2 * diameter_ * Vector(1, aside(), aside());
-      const Box reached = Box(about - next_to, about + next_to).merged(Box(end.cwiseMin(about), end.cwiseMax(about)));
-      const auto is_met = [&](Index v) {
-        const Point &a = corner(v, 0), &b = corner(v, 1), &c = corner(v, 2);
-        const Box facet(a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c));
-        return facet.intersects(reached) && !is_below(end, c, b) && !is_below(end, a, c) && !is_below(end, b, a);
-      };
-      if (std::count_if(hull.begin(), hull.end(), is_met) == 1) return true;
-    }
-    return false;
-  }
-
   Workspace& workspace_;
   FormingPoints& forming_;
   Box box_;
