@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <optional>
 
 #include "coherent_pair.h"
 #include "front_walk.h"
@@ -50,12 +51,20 @@ struct Coherence {
   const Pose &a, &b;
   TreePair::Memory& memory = pair.memory_;
 
-  bool placed = false;  // the workspace's NarrowPhase is bound and placed for triangles
+  bool placed = false;                // the workspace's NarrowPhase is bound and placed for triangles
+  bool rigid = false;                 // both poses are, once that has been looked at
+  std::optional<Pose> relative = {};  // of b in a's frame, likewise
 
-  bool rigid() const noexcept {  // both, side by side
+  bool find_rigid() noexcept {  // both, side by side
+    if (rigid) return true;
     double places = 0;
     for (std::size_t i = 0; i < 3; ++i) places += std::fabs(a.translation[i]) + std::fabs(b.translation[i]);
-    return std::isfinite(places) && detail::PoseLanes(a, b).rotate();
+    return rigid = std::isfinite(places) && detail::PoseLanes(a, b).rotate();
+  }
+
+  const Pose& find_relative() noexcept {
+    if (!relative) relative.emplace(compose(inverse(a), b));
+    return *relative;
   }
 
   static bool remembers(const TreePair& of) noexcept {
@@ -65,13 +74,12 @@ struct Coherence {
   // Verdicts are made where they stay: copied at once, they would not have left the processor's store queue yet.
   bool recall(Verdict& verdict) noexcept {
     if (!remembers(pair)) return false;
-    if (!rigid()) {
+    if (!find_rigid()) {
       pair.forget();
       return false;
     }
     if (memory.clearance > 0) {
-      const double moved =
-          displacement(pair.b(), memory.relative, compose(inverse(a), b)) + slack(pair.a(), pair.b(), a, b);
+      const double moved = displacement(pair.b(), memory.relative, find_relative()) + slack(pair.a(), pair.b(), a, b);
       const double left = memory.clearance * kMargin - moved;
       if (left > 0) {
         verdict = apart(left * a.scale);
@@ -133,7 +141,7 @@ struct Coherence {
   bool place_for_triangles() noexcept {
     if (placed) return true;
     workspace.narrow.bind(pair.a(), pair.b());
-    placed = PairAccess::has_last_level(workspace.narrow) && rigid() &&
+    placed = PairAccess::has_last_level(workspace.narrow) && find_rigid() &&
              PairAccess::place_for_triangles(workspace.narrow, a, b);
     return placed;
   }
@@ -224,7 +232,7 @@ struct Coherence {
     }
     const bool have_triangles = !pair.a().tree.ball_slabs.empty() && !pair.b().tree.ball_slabs.empty();
     memory.clearance = answer == Answer::no && have_triangles ? workspace.narrow.lower_bound() / a.scale : 0;
-    if (memory.clearance > 0) memory.relative = compose(inverse(a), b);
+    if (memory.clearance > 0) memory.relative = find_relative();
     return workspace.narrow.verdict();
   }
 };

@@ -111,13 +111,18 @@ bool NarrowPhase::test_triangles(const NodePair& pair) noexcept {
   triangle_tests_ += used(lanes) * used(rows);
   const detail::NodeBox lane_box = detail::node_box_at(first_.tree, pair.a);
   const detail::NodeBox row_box = moved_box(pair.b);
-  std::uint64_t left = detail::triangle_candidates({lanes, rows, lane_box, row_box}, placement_);
-  for (; left != 0; left &= left - 1) {
-    const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
-    const std::uint32_t row = bit / kBlockWidth, lane = bit % kBlockWidth;
-    if (test_two(pair.a, lane, pair.b, row)) return true;
-  }
-  return false;
+  struct Leaves {
+    NarrowPhase& self;
+    const NodePair& pair;
+  } context = {*this, pair};
+  const auto any_meets = [](void* of, std::uint32_t row, std::uint32_t left) {
+    const auto& [self, nodes] = *static_cast<Leaves*>(of);
+    for (; left != 0; left &= left - 1) {
+      if (self.test_two(nodes.a, static_cast<std::uint32_t>(std::countr_zero(left)), nodes.b, row)) return true;
+    }
+    return false;
+  };
+  return detail::visit_candidates({lanes, rows, lane_box, row_box}, placement_, any_meets, &context);
 }
 
 // Of the leaves in these ball slabs, these triangles.

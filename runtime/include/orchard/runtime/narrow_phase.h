@@ -188,6 +188,7 @@ class NarrowPhase {
   };
   class BudgetTracker;
 
+  bool bound_to(const PreparedTree& a, const PreparedTree& b) const noexcept;
   void reset_counts() noexcept;
   void find_exact_error(const Pose& first, const Pose& second) noexcept;
   void keep(const Pose& a, const Pose& b) noexcept;
