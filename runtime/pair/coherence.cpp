@@ -20,7 +20,6 @@ using detail::Vec3;
 
 namespace {
 
-constexpr std::size_t kTriangles = 3;  // witnesses that are tried by themselves, before their leaves are
 constexpr std::uint8_t kSearchesBeforeRoots = 4;
 constexpr std::uint8_t kInVain = 4;   // answers of roots that told nothing, before they are asked now and then only
 constexpr double kMargin = 1 - 1e-9;  // the rounding of a few operations
@@ -67,9 +66,7 @@ struct Coherence {
     return *relative;
   }
 
-  static bool remembers(const TreePair& of) noexcept {
-    return of.memory_.clearance > 0 || of.memory_.witness_count > 0;
-  }
+  static bool remembers(const TreePair& of) noexcept { return of.memory_.clearance > 0 || of.memory_.met; }
 
   // Verdicts are made where they stay: copied at once, they would not have left the processor's store queue yet.
   bool recall(Verdict& verdict) noexcept {
@@ -86,7 +83,7 @@ struct Coherence {
         return true;
       }
     }
-    if (memory.witness_count == 0 || !witnesses_meet()) return false;
+    if (!memory.met || !witness_meets()) return false;
     ::new (&verdict) Verdict(workspace.narrow.verdict());
     return true;
   }
@@ -101,7 +98,7 @@ struct Coherence {
 
   // The roots come first, unless they have not decided of late.
   Verdict search(const Budget& budget) noexcept {
-    if (memory.witness_count > 0) return search_after_yes(budget);
+    if (memory.met) return search_after_yes(budget);
     if (pair.front_ != nullptr) return search_front(budget);
     const bool tried = memory.close && memory.wait > 0;
     if (tried && place_narrow()) {
@@ -130,7 +127,7 @@ struct Coherence {
       return remembered();
     }
     Budget rest = budget;
-    if (!leaves_meet(rest.pair_tests)) {
+    if (!leaves_meet(rest.pair_tests) && !near_meet(rest)) {
       if (pair.front_ != nullptr) pair.front_->clear();
       PairAccess::search(narrow, rest);
     }
@@ -175,19 +172,9 @@ struct Coherence {
     return remembered();
   }
 
-  // Whether triangles that met in the last answers still do, by the very test of the last level.
-  bool witnesses_meet() noexcept {
-    if (!place_for_triangles()) return false;
-    const std::size_t count = std::min<std::size_t>(memory.witness_count, kTriangles);
-    for (std::size_t i = 0; i < count; ++i) {
-      const TreePair::Witness witness = memory.witnesses[i];
-      if (!PairAccess::test_two(workspace.narrow, place_of(witness))) continue;
-      std::copy_backward(memory.witnesses.begin(), memory.witnesses.begin() + static_cast<std::ptrdiff_t>(i),
-                         memory.witnesses.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-      memory.witnesses[0] = witness;
-      return true;
-    }
-    return false;
+  // Whether the triangles that met in the last answer still do, by the very test of the last level.
+  bool witness_meets() noexcept {
+    return place_for_triangles() && PairAccess::test_two(workspace.narrow, place_of(memory.witness));
   }
 
   PairAccess::Place place_of(const TreePair::Witness& w) const noexcept {
@@ -197,38 +184,32 @@ struct Coherence {
 
   // The same of the leaves that they are in, which takes from the tests that are left. Precondition: placed.
   bool leaves_meet(std::uint64_t& left) noexcept {
-    for (std::size_t i = 0; i < memory.witness_count; ++i) {
-      const TreePair::Witness& w = memory.witnesses[i];
-      const auto before = memory.witnesses.begin() + static_cast<std::ptrdiff_t>(i);
-      if (std::any_of(memory.witnesses.begin(), before,
-                      [&w](const TreePair::Witness& v) { return v.a == w.a && v.b == w.b; })) {
-        continue;
-      }
-      if (left == 0) return false;
-      constexpr std::uint64_t tests = std::uint64_t{kLeafPairTests} * kTriangleTestCost;
-      PairAccess::add_work(workspace.narrow, tests);
-      left -= std::min(left, tests);
-      const PairAccess::Place place = place_of(w);
-      if (PairAccess::test_leaves(workspace.narrow, place.first, place.second)) return true;
-    }
-    return false;
+    if (left == 0) return false;
+    constexpr std::uint64_t tests = std::uint64_t{kLeafPairTests} * kTriangleTestCost;
+    PairAccess::add_work(workspace.narrow, tests);
+    left -= std::min(left, tests);
+    const PairAccess::Place place = place_of(memory.witness);
+    return PairAccess::test_leaves(workspace.narrow, place.first, place.second);
+  }
+
+  // And of what is beside these in the trees.
+  bool near_meet(Budget& left) noexcept {
+    const PairAccess::Place place = place_of(memory.witness);
+    const std::uint64_t before = workspace.narrow.work();
+    const bool meet = PairAccess::search_near(workspace.narrow, place.first, place.second, left);
+    left.pair_tests -= std::min(left.pair_tests, workspace.narrow.work() - before);
+    return meet;
   }
 
   // The query's verdict.
   Verdict remembered() noexcept {
     const Answer answer = workspace.narrow.answer();
-    if (answer == Answer::yes) {
-      memory.witness_count =
-          static_cast<std::uint8_t>(std::min<std::size_t>(memory.witness_count + 1u, TreePair::kWitnesses));
-      std::copy_backward(memory.witnesses.begin(), memory.witnesses.begin() + memory.witness_count - 1,
-                         memory.witnesses.begin() + memory.witness_count);
+    memory.met = answer == Answer::yes;
+    if (memory.met) {
       const PairAccess::Place& place = PairAccess::meeting(workspace.narrow);
-      memory.witnesses[0] = {place.first, place.second, place.lane_first, place.lane_second};
-      if (PairAccess::exchanged(workspace.narrow)) {
-        memory.witnesses[0] = {place.second, place.first, place.lane_second, place.lane_first};
-      }
-    } else {
-      memory.witness_count = 0;
+      memory.witness = PairAccess::exchanged(workspace.narrow)
+                           ? TreePair::Witness{place.second, place.first, place.lane_second, place.lane_first}
+                           : TreePair::Witness{place.first, place.second, place.lane_first, place.lane_second};
     }
     const bool have_triangles = !pair.a().tree.ball_slabs.empty() && !pair.b().tree.ball_slabs.empty();
     memory.clearance = answer == Answer::no && have_triangles ? workspace.narrow.lower_bound() / a.scale : 0;

@@ -1,3 +1,4 @@
+#include <array>
 #include <bit>
 
 #include "budget_tracker.h"
@@ -97,6 +98,50 @@ bool NarrowPhase::refine_ball_slabs(BudgetTracker& tracker) noexcept {
     push_children(pair, second, second ? b : a, gaps[0]);
     tracker.spend(pair_tests_ - before);
   }
+  return true;
+}
+
+// The pairs of what is in the blocks of two leaves, the nearest ones of those that may meet, in place of the roots.
+void NarrowPhase::start_near(const NodePair& leaves) noexcept {
+  constexpr std::uint32_t most = kBlockWidth;
+  const std::uint32_t block_a = leaves.a / kBlockWidth, block_b = leaves.b / kBlockWidth;
+  BoxGaps firsts, seconds;
+  detail::meeting_boxes(moved_box(leaves.b), first_.tree.ball_slabs[block_a], 1, placement_.box_margin, firsts);
+  std::array<float, most> gaps;
+  stack_size_ = 0;
+  for (std::uint32_t left = firsts.meeting; left != 0; left &= left - 1) {
+    const std::uint32_t a = block_a * kBlockWidth + static_cast<std::uint32_t>(std::countr_zero(left));
+    detail::meeting_boxes(detail::moved_back(detail::node_box_at(first_.tree, a), placement_),
+                          second_.tree.ball_slabs[block_b], placement_.scale, placement_.box_margin, seconds);
+    pair_tests_ += static_cast<std::uint64_t>(std::bit_width(seconds.used));
+    for (std::uint32_t lanes = seconds.meeting; lanes != 0; lanes &= lanes - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+      const NodePair pair = {a, block_b * kBlockWidth + lane};
+      if (pair.a == leaves.a && pair.b == leaves.b) continue;
+      const float gap = seconds.gap[lane];
+      if (stack_size_ == most) {
+        if (gap >= gaps[0]) continue;
+        for (std::size_t i = 1; i < most; ++i) stack_[i - 1] = stack_[i], gaps[i - 1] = gaps[i];
+        --stack_size_;
+      }
+      std::size_t at = stack_size_++;
+      for (; at > 0 && gaps[at - 1] < gap; --at) stack_[at] = stack_[at - 1], gaps[at] = gaps[at - 1];
+      stack_[at] = pair, gaps[at] = gap;
+    }
+  }
+}
+
+bool NarrowPhase::refine_near(std::uint32_t a, std::uint32_t b, const Budget& budget) noexcept {
+  if (budget.pair_tests == 0) return false;
+  BudgetTracker tracker(budget);
+  start_exact();
+  start_near({a, b});
+  const bool ended = refine_ball_slabs(tracker);
+  work_ += tracker.spent();
+  stack_[0] = {0, 0};
+  stack_size_ = 1;
+  if (!ended || triangle_first_ == kNoTriangle) return false;
+  finish(Answer::yes);
   return true;
 }
 
