@@ -153,23 +153,35 @@ struct Coherence {
   // and then, since they may decide again.
   Verdict search_front(const Budget& budget) noexcept {
     NarrowPhase& narrow = workspace.narrow;
-    if (!place_narrow()) {
+    const bool tried = memory.close && memory.wait > 0;
+    if (tried ? !place_narrow() : !has_last_level()) {
       collide(budget);
       return remembered();
     }
+    if (!tried && !ask_roots()) return remembered();
     FrontWalk walk(*pair.front_, narrow);
-    const bool tried = memory.close && memory.wait > 0;
-    if (!tried || !walk.resume()) {
-      narrow.start(a, b);
-      memory.close = !narrow.finished();
-      if (!memory.close) return remembered();
-      PairAccess::place_now(narrow);
-      if (tried || !walk.resume()) walk.begin();
-      memory.wait = kSearchesBeforeRoots;
+    if (!walk.resume()) {
+      if (tried && !ask_roots()) return remembered();
+      walk.begin();
     }
     --memory.wait;
     walk.run(budget);
     return remembered();
+  }
+
+  bool has_last_level() noexcept {
+    workspace.narrow.bind(pair.a(), pair.b());
+    return PairAccess::has_last_level(workspace.narrow);
+  }
+
+  // Whether they leave something to be looked at, and the workspace's NarrowPhase is placed for that.
+  bool ask_roots() noexcept {
+    NarrowPhase& narrow = workspace.narrow;
+    narrow.start(a, b);
+    memory.close = !narrow.finished();
+    memory.wait = kSearchesBeforeRoots;
+    if (memory.close) PairAccess::place_now(narrow);
+    return memory.close;
   }
 
   // Whether the triangles that met in the last answer still do, by the very test of the last level.
