@@ -216,26 +216,31 @@ void FrontWalk::expand(const NodePair& pair, bool open_second) noexcept {
                      margin, axes);
   }
   tracker_->spend(static_cast<std::uint64_t>(std::bit_width(axes.used)));
-  const std::size_t begin = stack_size_;
-  std::uint32_t order[kBlockWidth], count = 0;
-  for (std::uint32_t left = axes.used; left != 0; left &= left - 1) {
+  // Places as NarrowPhase finds them.
+  std::uint32_t nodes[kBlockWidth], place[kBlockWidth], count = 0;
+  float gap[kBlockWidth];
+  const float sign = open_second ? 1.0f : -1.0f;
+  for (std::uint32_t left = axes.used & ~axes.meeting; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-    const std::uint32_t node = block * kBlockWidth + lane;
-    if ((axes.meeting >> lane & 1) == 0) {  // vectors point from the single one to the eight
-      const float sign = open_second ? 1.0f : -1.0f;
-      add(open_second ? pair.a : node, open_second ? node : pair.b, axes.gap[lane],
-          {sign * axes.ux[lane], sign * axes.uy[lane], sign * axes.uz[lane]});
-      continue;
+    const std::uint32_t node = block * kBlockWidth + lane;  // vectors point from the single one to the eight
+    add(open_second ? pair.a : node, open_second ? node : pair.b, axes.gap[lane],
+        {sign * axes.ux[lane], sign * axes.uy[lane], sign * axes.uz[lane]});
+  }
+  for (std::uint32_t left = axes.meeting; left != 0; left &= left - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+    const float own = axes.gap[lane];
+    std::uint32_t before = count;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t deeper = gap[i] < own;
+      place[i] += deeper;
+      before -= deeper;
     }
-    std::uint32_t at = count++;
-    for (; at > 0 && axes.gap[order[at - 1]] < axes.gap[lane]; --at) order[at] = order[at - 1];
-    order[at] = lane;
+    place[count] = before, gap[count] = own, nodes[count++] = block * kBlockWidth + lane;
   }
-  stack_size_ = begin;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t node = block * kBlockWidth + order[i];
-    stack_[stack_size_++] = open_second ? NodePair{pair.a, node} : NodePair{node, pair.b};
+    stack_[stack_size_ + place[i]] = open_second ? NodePair{pair.a, nodes[i]} : NodePair{nodes[i], pair.b};
   }
+  stack_size_ += count;
 }
 
 void FrontWalk::add(std::uint32_t a, std::uint32_t b, float gap, const Axis& u) noexcept {
