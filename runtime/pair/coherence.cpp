@@ -66,7 +66,9 @@ struct Coherence {
     return *relative;
   }
 
-  static bool remembers(const TreePair& of) noexcept { return of.memory_.clearance > 0 || of.memory_.met; }
+  static bool remembers(const TreePair& of) noexcept {
+    return of.memory_.clearance > 0 || of.memory_.witness_count > 0;
+  }
 
   // Verdicts are made where they stay: copied at once, they would not have left the processor's store queue yet.
   bool recall(Verdict& verdict) noexcept {
@@ -83,7 +85,7 @@ struct Coherence {
         return true;
       }
     }
-    if (!memory.met || !witness_meets()) return false;
+    if (memory.witness_count == 0 || !place_for_triangles() || !witness_meets(0)) return false;
     ::new (&verdict) Verdict(workspace.narrow.verdict());
     return true;
   }
@@ -98,7 +100,7 @@ struct Coherence {
 
   // The roots come first, unless they have not decided of late.
   Verdict search(const Budget& budget) noexcept {
-    if (memory.met) return search_after_yes(budget);
+    if (memory.witness_count > 0) return search_after_yes(budget);
     if (pair.front_ != nullptr) return search_front(budget);
     const bool tried = memory.close && memory.wait > 0;
     if (tried && place_narrow()) {
@@ -127,7 +129,7 @@ struct Coherence {
       return remembered();
     }
     Budget rest = budget;
-    if (!leaves_meet(rest.pair_tests) && !near_meet(rest)) {
+    if (!leaves_meet(rest.pair_tests) && !older_meet() && !near_meet(rest)) {
       if (pair.front_ != nullptr) pair.front_->clear();
       PairAccess::search(narrow, rest);
     }
@@ -184,9 +186,17 @@ struct Coherence {
     return memory.close;
   }
 
-  // Whether the triangles that met in the last answer still do, by the very test of the last level.
-  bool witness_meets() noexcept {
-    return place_for_triangles() && PairAccess::test_two(workspace.narrow, place_of(memory.witness));
+  // Whether triangles that have met still do, by the very test of the last level. Precondition: placed for that.
+  bool witness_meets(std::size_t i) noexcept {
+    return PairAccess::test_two(workspace.narrow, place_of(memory.witnesses[i]));
+  }
+
+  // Those that have not met for longer: bodies that go to and fro come back to them.
+  bool older_meet() noexcept {
+    for (std::size_t i = 1; i < memory.witness_count; ++i) {
+      if (witness_meets(i)) return true;
+    }
+    return false;
   }
 
   PairAccess::Place place_of(const TreePair::Witness& w) const noexcept {
@@ -200,14 +210,14 @@ struct Coherence {
     constexpr std::uint64_t tests = std::uint64_t{kLeafPairTests} * kTriangleTestCost;
     PairAccess::add_work(workspace.narrow, tests);
     left -= std::min(left, tests);
-    const PairAccess::Place place = place_of(memory.witness);
+    const PairAccess::Place place = place_of(memory.witnesses[0]);
     return PairAccess::test_leaves(workspace.narrow, place.first, place.second);
   }
 
   // And of what is beside these in the trees. Left out where time is short: what it takes is not told by the tests.
   bool near_meet(Budget& left) noexcept {
     if (left.time != Budget{}.time) return false;
-    const PairAccess::Place place = place_of(memory.witness);
+    const PairAccess::Place place = place_of(memory.witnesses[0]);
     const std::uint64_t before = workspace.narrow.work();
     const bool meet = PairAccess::search_near(workspace.narrow, place.first, place.second, left);
     left.pair_tests -= std::min(left.pair_tests, workspace.narrow.work() - before);
@@ -217,12 +227,17 @@ struct Coherence {
   // The query's verdict.
   Verdict remembered() noexcept {
     const Answer answer = workspace.narrow.answer();
-    memory.met = answer == Answer::yes;
-    if (memory.met) {
+    if (answer == Answer::yes) {
+      const std::size_t kept = std::min<std::size_t>(memory.witness_count, TreePair::kWitnesses - 1);
+      std::copy_backward(memory.witnesses.begin(), memory.witnesses.begin() + static_cast<std::ptrdiff_t>(kept),
+                         memory.witnesses.begin() + static_cast<std::ptrdiff_t>(kept) + 1);
+      memory.witness_count = static_cast<std::uint8_t>(kept + 1);
       const PairAccess::Place& place = PairAccess::meeting(workspace.narrow);
-      memory.witness = PairAccess::exchanged(workspace.narrow)
-                           ? TreePair::Witness{place.second, place.first, place.lane_second, place.lane_first}
-                           : TreePair::Witness{place.first, place.second, place.lane_first, place.lane_second};
+      memory.witnesses[0] = PairAccess::exchanged(workspace.narrow)
+                                ? TreePair::Witness{place.second, place.first, place.lane_second, place.lane_first}
+                                : TreePair::Witness{place.first, place.second, place.lane_first, place.lane_second};
+    } else {
+      memory.witness_count = 0;
     }
     const bool have_triangles = !pair.a().tree.ball_slabs.empty() && !pair.b().tree.ball_slabs.empty();
     memory.clearance = answer == Answer::no && have_triangles ? workspace.narrow.lower_bound() / a.scale : 0;

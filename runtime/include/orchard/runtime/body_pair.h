@@ -44,15 +44,16 @@ class TreePair {
 
  private:
   friend struct Coherence;
+  static constexpr std::size_t kWitnesses = 2;
   struct Witness {  // triangles that met: ball slabs of leaves of both trees, and which of these
     std::uint32_t a, b;
     std::uint8_t lane_a, lane_b;
   };
   struct Memory {
-    Pose relative;             // of b in a's frame, when `clearance` was certified
-    double clearance = 0;      // in a's units; 0: none
-    Witness witness;           // of the last answer, if that was "yes"
-    bool met = false;          // it was
+    Pose relative;                              // of b in a's frame, when `clearance` was certified
+    double clearance = 0;                       // in a's units; 0: none
+    std::array<Witness, kWitnesses> witnesses;  // in the answers since the last "no", the last ones first
+    std::uint8_t witness_count = 0;
     std::uint8_t wait = 0;     // searches until the roots are asked first
     std::uint8_t in_vain = 0;  // times that the roots were asked and told nothing, in a row
     bool close = false;        // the roots did not decide the last search
