@@ -125,8 +125,9 @@ void print_ways(Bodies& bodies, const Motion& motion, const std::vector<double>&
   for (std::size_t i = 0; i < motion.queries.size(); ++i) {
     if (motion.first[i]) pair.forget();
     const Query& q = motion.queries[i];
-    const auto known = CoherentPair::recall(bodies.workspace, pair, q.a, q.b);
-    const Verdict verdict = known ? *known : CoherentPair::search(bodies.workspace, pair, q.a, q.b);
+    Verdict verdict;
+    const bool known = CoherentPair::recall(bodies.workspace, pair, q.a, q.b, verdict);
+    if (!known) verdict = CoherentPair::search(bodies.workspace, pair, q.a, q.b);
     const std::size_t way = (verdict.answer == Answer::yes ? 2u : 0u) + (known ? 0u : 1u);
     ++count[way];
     time[way] += times[i];

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <optional>
 
 #include "coherent_pair.h"
 #include "front_walk.h"
@@ -19,7 +20,6 @@ using detail::Vec3;
 
 namespace {
 
-constexpr std::size_t kTriangles = 3;  // witnesses that are tried by themselves, before their leaves are
 constexpr std::uint8_t kSearchesBeforeRoots = 4;
 constexpr std::uint8_t kInVain = 4;   // answers of roots that told nothing, before they are asked now and then only
 constexpr double kMargin = 1 - 1e-9;  // the rounding of a few operations
@@ -50,12 +50,20 @@ struct Coherence {
   const Pose &a, &b;
   TreePair::Memory& memory = pair.memory_;
 
-  bool placed = false;  // the workspace's NarrowPhase is bound and placed for triangles
+  bool placed = false;                // the workspace's NarrowPhase is bound and placed for triangles
+  bool rigid = false;                 // both poses are, once that has been looked at
+  std::optional<Pose> relative = {};  // of b in a's frame, likewise
 
-  bool rigid() const noexcept {  // both, side by side
+  bool find_rigid() noexcept {  // both, side by side
+    if (rigid) return true;
     double places = 0;
     for (std::size_t i = 0; i < 3; ++i) places += std::fabs(a.translation[i]) + std::fabs(b.translation[i]);
-    return std::isfinite(places) && detail::PoseLanes(a, b).rotate();
+    return rigid = std::isfinite(places) && detail::PoseLanes(a, b).rotate();
+  }
+
+  const Pose& find_relative() noexcept {
+    if (!relative) relative.emplace(compose(inverse(a), b));
+    return *relative;
   }
 
   static bool remembers(const TreePair& of) noexcept {
@@ -65,20 +73,19 @@ struct Coherence {
   // Verdicts are made where they stay: copied at once, they would not have left the processor's store queue yet.
   bool recall(Verdict& verdict) noexcept {
     if (!remembers(pair)) return false;
-    if (!rigid()) {
+    if (!find_rigid()) {
       pair.forget();
       return false;
     }
     if (memory.clearance > 0) {
-      const double moved =
-          displacement(pair.b(), memory.relative, compose(inverse(a), b)) + slack(pair.a(), pair.b(), a, b);
+      const double moved = displacement(pair.b(), memory.relative, find_relative()) + slack(pair.a(), pair.b(), a, b);
       const double left = memory.clearance * kMargin - moved;
       if (left > 0) {
         verdict = apart(left * a.scale);
         return true;
       }
     }
-    if (memory.witness_count == 0 || !witnesses_meet()) return false;
+    if (memory.witness_count == 0 || !place_for_triangles() || !witness_meets(0)) return false;
     ::new (&verdict) Verdict(workspace.narrow.verdict());
     return true;
   }
@@ -122,7 +129,7 @@ struct Coherence {
       return remembered();
     }
     Budget rest = budget;
-    if (!leaves_meet(rest.pair_tests)) {
+    if (!leaves_meet(rest.pair_tests) && !older_meet() && !near_meet(rest)) {
       if (pair.front_ != nullptr) pair.front_->clear();
       PairAccess::search(narrow, rest);
     }
@@ -133,7 +140,7 @@ struct Coherence {
   bool place_for_triangles() noexcept {
     if (placed) return true;
     workspace.narrow.bind(pair.a(), pair.b());
-    placed = PairAccess::has_last_level(workspace.narrow) && rigid() &&
+    placed = PairAccess::has_last_level(workspace.narrow) && find_rigid() &&
              PairAccess::place_for_triangles(workspace.narrow, a, b);
     return placed;
   }
@@ -148,36 +155,46 @@ struct Coherence {
   // and then, since they may decide again.
   Verdict search_front(const Budget& budget) noexcept {
     NarrowPhase& narrow = workspace.narrow;
-    if (!place_narrow()) {
+    const bool tried = memory.close && memory.wait > 0;
+    if (tried ? !place_narrow() : !has_last_level()) {
       collide(budget);
       return remembered();
     }
+    if (!tried && !ask_roots()) return remembered();
     FrontWalk walk(*pair.front_, narrow);
-    const bool tried = memory.close && memory.wait > 0;
-    if (!tried || !walk.resume()) {
-      narrow.start(a, b);
-      memory.close = !narrow.finished();
-      if (!memory.close) return remembered();
-      PairAccess::place_now(narrow);
-      if (tried || !walk.resume()) walk.begin();
-      memory.wait = kSearchesBeforeRoots;
+    if (!walk.resume()) {
+      if (tried && !ask_roots()) return remembered();
+      walk.begin();
     }
     --memory.wait;
     walk.run(budget);
     return remembered();
   }
 
-  // Whether triangles that met in the last answers still do, by the very test of the last level.
-  bool witnesses_meet() noexcept {
-    if (!place_for_triangles()) return false;
-    const std::size_t count = std::min<std::size_t>(memory.witness_count, kTriangles);
-    for (std::size_t i = 0; i < count; ++i) {
-      const TreePair::Witness witness = memory.witnesses[i];
-      if (!PairAccess::test_two(workspace.narrow, place_of(witness))) continue;
-      std::copy_backward(memory.witnesses.begin(), memory.witnesses.begin() + static_cast<std::ptrdiff_t>(i),
-                         memory.witnesses.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-      memory.witnesses[0] = witness;
-      return true;
+  bool has_last_level() noexcept {
+    workspace.narrow.bind(pair.a(), pair.b());
+    return PairAccess::has_last_level(workspace.narrow);
+  }
+
+  // Whether they leave something to be looked at, and the workspace's NarrowPhase is placed for that.
+  bool ask_roots() noexcept {
+    NarrowPhase& narrow = workspace.narrow;
+    narrow.start(a, b);
+    memory.close = !narrow.finished();
+    memory.wait = kSearchesBeforeRoots;
+    if (memory.close) PairAccess::place_now(narrow);
+    return memory.close;
+  }
+
+  // Whether triangles that have met still do, by the very test of the last level. Precondition: placed for that.
+  bool witness_meets(std::size_t i) noexcept {
+    return PairAccess::test_two(workspace.narrow, place_of(memory.witnesses[i]));
+  }
+
+  // Those that have not met for longer: bodies that go to and fro come back to them.
+  bool older_meet() noexcept {
+    for (std::size_t i = 1; i < memory.witness_count; ++i) {
+      if (witness_meets(i)) return true;
     }
     return false;
   }
@@ -189,42 +206,42 @@ struct Coherence {
 
   // The same of the leaves that they are in, which takes from the tests that are left. Precondition: placed.
   bool leaves_meet(std::uint64_t& left) noexcept {
-    for (std::size_t i = 0; i < memory.witness_count; ++i) {
-      const TreePair::Witness& w = memory.witnesses[i];
-      const auto before = memory.witnesses.begin() + static_cast<std::ptrdiff_t>(i);
-      if (std::any_of(memory.witnesses.begin(), before,
-                      [&w](const TreePair::Witness& v) { return v.a == w.a && v.b == w.b; })) {
-        continue;
-      }
-      if (left == 0) return false;
-      constexpr std::uint64_t tests = std::uint64_t{kLeafPairTests} * kTriangleTestCost;
-      PairAccess::add_work(workspace.narrow, tests);
-      left -= std::min(left, tests);
-      const PairAccess::Place place = place_of(w);
-      if (PairAccess::test_leaves(workspace.narrow, place.first, place.second)) return true;
-    }
-    return false;
+    if (left == 0) return false;
+    constexpr std::uint64_t tests = std::uint64_t{kLeafPairTests} * kTriangleTestCost;
+    PairAccess::add_work(workspace.narrow, tests);
+    left -= std::min(left, tests);
+    const PairAccess::Place place = place_of(memory.witnesses[0]);
+    return PairAccess::test_leaves(workspace.narrow, place.first, place.second);
+  }
+
+  // And of what is beside these in the trees. Left out where time is short: what it takes is not told by the tests.
+  bool near_meet(Budget& left) noexcept {
+    if (left.time != Budget{}.time) return false;
+    const PairAccess::Place place = place_of(memory.witnesses[0]);
+    const std::uint64_t before = workspace.narrow.work();
+    const bool meet = PairAccess::search_near(workspace.narrow, place.first, place.second, left);
+    left.pair_tests -= std::min(left.pair_tests, workspace.narrow.work() - before);
+    return meet;
   }
 
   // The query's verdict.
   Verdict remembered() noexcept {
     const Answer answer = workspace.narrow.answer();
     if (answer == Answer::yes) {
-      memory.witness_count =
-          static_cast<std::uint8_t>(std::min<std::size_t>(memory.witness_count + 1u, TreePair::kWitnesses));
-      std::copy_backward(memory.witnesses.begin(), memory.witnesses.begin() + memory.witness_count - 1,
-                         memory.witnesses.begin() + memory.witness_count);
+      const std::size_t kept = std::min<std::size_t>(memory.witness_count, TreePair::kWitnesses - 1);
+      std::copy_backward(memory.witnesses.begin(), memory.witnesses.begin() + static_cast<std::ptrdiff_t>(kept),
+                         memory.witnesses.begin() + static_cast<std::ptrdiff_t>(kept) + 1);
+      memory.witness_count = static_cast<std::uint8_t>(kept + 1);
       const PairAccess::Place& place = PairAccess::meeting(workspace.narrow);
-      memory.witnesses[0] = {place.first, place.second, place.lane_first, place.lane_second};
-      if (PairAccess::exchanged(workspace.narrow)) {
-        memory.witnesses[0] = {place.second, place.first, place.lane_second, place.lane_first};
-      }
+      memory.witnesses[0] = PairAccess::exchanged(workspace.narrow)
+                                ? TreePair::Witness{place.second, place.first, place.lane_second, place.lane_first}
+                                : TreePair::Witness{place.first, place.second, place.lane_first, place.lane_second};
     } else {
       memory.witness_count = 0;
     }
     const bool have_triangles = !pair.a().tree.ball_slabs.empty() && !pair.b().tree.ball_slabs.empty();
     memory.clearance = answer == Answer::no && have_triangles ? workspace.narrow.lower_bound() / a.scale : 0;
-    if (memory.clearance > 0) memory.relative = compose(inverse(a), b);
+    if (memory.clearance > 0) memory.relative = find_relative();
     return workspace.narrow.verdict();
   }
 };

@@ -91,6 +91,7 @@ void DistanceQuery::begin(const Pose& a, const Pose& b, double limit) noexcept {
     // Beyond the limit by what the bounds lose to rounding when they are reported, so that "farther" is certain.
     const double error = pair_.exact_error_, scale = pair_.first_pose_.scale;
     limit_ = (limit + 2 * error) / scale * (1 + 4 * kRounding);
+    reach_ = float_above(limit_);
     enough_ = std::max(0.0, (limit - error) / scale * (1 - 4 * kRounding));
   }
   find_cut();
@@ -161,8 +162,8 @@ bool DistanceQuery::surely_near(const BallSlabPair& pair) noexcept {
 void DistanceQuery::expand(const BallSlabPair& pair, std::uint32_t block, bool second) noexcept {
   const TreeView &first = pair_.first_.tree, &other = pair_.second_.tree;
   const detail::Placement& placement = pair_.placement_;
-  const bool limited = limit_ < double{kCoordinateLimit};
-  const float reach = limited ? float_above(limit_) : 0, margin = placement.box_margin + reach;
+  if (limit_ < double{kCoordinateLimit}) return expand_within(pair, block, second);
+  const float margin = placement.box_margin;
   detail::BoxGaps gaps;
   if (second) {
     detail::box_gaps(detail::moved_back(detail::node_box_at(first, pair.a), placement), other.ball_slabs[block],
@@ -171,12 +172,10 @@ void DistanceQuery::expand(const BallSlabPair& pair, std::uint32_t block, bool s
     detail::box_gaps(pair_.moved_box(pair.b), first.ball_slabs[block], 1, margin, gaps);
   }
   const std::size_t begin = stack_size_;
-  if (limited && gaps.meeting != gaps.used) min_lower_ = std::min(min_lower_, limit_);
-  for (std::uint32_t left = limited ? gaps.meeting : gaps.used; left != 0; left &= left - 1) {
+  for (std::uint32_t left = gaps.used; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
     // Overlapping boxes keep their depth for the order: the deepest first.
-    const float sum = gaps.gap[lane] + reach, gap = limited ? sum - std::fabs(sum) * kSumRounding : sum;
-    const float lower = pair.lower > 0 ? std::max(gap, pair.lower) : gap;
+    const float gap = gaps.gap[lane], lower = pair.lower > 0 ? std::max(gap, pair.lower) : gap;
     if (!may_be_nearer(std::max(0.0, double{lower}))) {
       min_lower_ = std::min(min_lower_, std::max(0.0, double{lower}));
       continue;
@@ -186,6 +185,39 @@ void DistanceQuery::expand(const BallSlabPair& pair, std::uint32_t block, bool s
     const std::uint32_t node = block * kBlockWidth + lane;
     stack_[at] = second ? BallSlabPair{lower, pair.a, node} : BallSlabPair{lower, node, pair.b};
   }
+}
+
+// The same where there is a limit: those that may be within it, with their places found as in NarrowPhase.
+void DistanceQuery::expand_within(const BallSlabPair& pair, std::uint32_t block, bool second) noexcept {
+  const TreeView &first = pair_.first_.tree, &other = pair_.second_.tree;
+  const detail::Placement& placement = pair_.placement_;
+  const float margin = placement.box_margin + reach_;
+  detail::BoxGaps gaps;
+  if (second) {
+    detail::meeting_boxes(detail::moved_back(detail::node_box_at(first, pair.a), placement), other.ball_slabs[block],
+                          placement.scale, margin, gaps);
+  } else {
+    detail::meeting_boxes(pair_.moved_box(pair.b), first.ball_slabs[block], 1, margin, gaps);
+  }
+  if (gaps.meeting != gaps.used) min_lower_ = std::min(min_lower_, limit_);
+  BallSlabPair found[kBlockWidth];
+  std::uint32_t place[kBlockWidth], count = 0;
+  for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+    const float sum = gaps.gap[lane] + reach_, gap = sum - std::fabs(sum) * kSumRounding;
+    const float lower = pair.lower > 0 ? std::max(gap, pair.lower) : gap;
+    std::uint32_t before = count;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t nearer = found[i].lower < lower;
+      place[i] += nearer;
+      before -= nearer;
+    }
+    const std::uint32_t node = block * kBlockWidth + lane;
+    place[count] = before;
+    found[count++] = second ? BallSlabPair{lower, pair.a, node} : BallSlabPair{lower, node, pair.b};
+  }
+  for (std::uint32_t i = 0; i < count; ++i) stack_[stack_size_ + place[i]] = found[i];
+  stack_size_ += count;
 }
 
 // The nearest ones first: each found makes fewer of the others worth a test.
@@ -233,13 +265,22 @@ void DistanceQuery::find_within(const BallSlabPair& pair, const TriangleBlock& l
   near.margin = float_above((double{near.margin} + limit_) * (1 + 1e-6));
   const detail::NodeBox lane_box = detail::node_box_at(pair_.first_.tree, pair.a);
   const detail::NodeBox row_box = pair_.moved_box(pair.b);
-  std::uint64_t left = detail::triangle_candidates({lanes, rows, lane_box, row_box}, near);
   min_lower_ = std::min(min_lower_, limit_);
-  for (; left != 0 && nearest_ > enough_; left &= left - 1) {
-    const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
-    compare_triangles(lanes, bit % kBlockWidth, rows, bit / kBlockWidth, true);
+  struct Leaves {
+    DistanceQuery& self;
+    const TriangleBlock &lanes, &rows;
+  } context = {*this, lanes, rows};
+  const auto near_enough = [](void* of, std::uint32_t row, std::uint32_t left) {
+    const auto& [self, lane_block, row_block] = *static_cast<Leaves*>(of);
+    for (; left != 0; left &= left - 1) {
+      self.compare_triangles(lane_block, static_cast<std::uint32_t>(std::countr_zero(left)), row_block, row, true);
+      if (self.nearest_ <= self.enough_) return true;
+    }
+    return false;
+  };
+  if (detail::visit_candidates({lanes, rows, lane_box, row_box}, near, near_enough, &context)) {
+    min_lower_ = std::min(min_lower_, std::max(0.0, double{pair.lower}));
   }
-  if (left != 0) min_lower_ = std::min(min_lower_, std::max(0.0, double{pair.lower}));
 }
 
 void DistanceQuery::compare_triangles(const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows,

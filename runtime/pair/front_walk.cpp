@@ -48,7 +48,7 @@ void FrontWalk::run(const Budget& budget) noexcept {
   PairAccess::add_work(narrow_, tracker.spent());
   if (outcome != Outcome::apart) return;
   const double scale = PairAccess::first_pose(narrow_).scale;
-  const double least = std::min(front_.rest_, double{detail::least_gap(front_.blocks_.data(), block_count())});
+  const double least = std::min(front_.rest_, double{least_});
   PairAccess::say_no(narrow_, std::max(0.0, least * scale * (1 - 1e-12) - PairAccess::exact_error(narrow_)));
 }
 
@@ -68,6 +68,7 @@ void FrontWalk::begin() noexcept {
   if (front_.crowded_ && enough_ > 0) far_ = kFarSteps * enough_;
   leaf_count_ = node_count_ = 0;
   add(0, 0, kUnknown, {1, 0, 0});
+  least_ = std::numeric_limits<float>::infinity();
   see_to(0);
 }
 
@@ -101,12 +102,13 @@ bool FrontWalk::advance() noexcept {
   shift.swing = static_cast<float>(swing * (1 + 1e-6));
   shift.error = static_cast<float>(error * (1 + 1e-6));
   front_.relative_ = relative_;
-  std::array<std::uint8_t, PairFront::kBlocks> open;
-  detail::close_gaps(shift, front_.blocks_.data(), block_count(), open.data());
-  const std::uint32_t count = block_count();
-  for (std::uint32_t block = 0; block < count; ++block) {
-    for (std::uint32_t left = open[block]; left != 0; left &= left - 1) {
-      see_to(block * kBlockWidth + static_cast<std::uint32_t>(std::countr_zero(left)));
+  constexpr std::uint32_t word = 64;
+  std::array<std::uint64_t, PairFront::kRoom / word> open;
+  least_ = detail::close_gaps(shift, front_.blocks_.data(), block_count(), open.data());
+  const std::uint32_t count = block_count() * kBlockWidth;
+  for (std::uint32_t from = 0; from < count; from += word) {
+    for (std::uint64_t left = open[from / word]; left != 0; left &= left - 1) {
+      see_to(from + static_cast<std::uint32_t>(std::countr_zero(left)));
     }
   }
   return leaf_count_ + node_count_ <= kMostOpen;
@@ -121,6 +123,7 @@ FrontWalk::Outcome FrontWalk::settle_leaves() noexcept {
     const std::array<float, 3> last = axis.u;
     if (leaves_meet({block.a[lane], block.b[lane]}, &last, axis)) return Outcome::meeting;
     block.gap[lane] = axis.gap;
+    note(axis.gap);
     block.ux[lane] = axis.u[0], block.uy[lane] = axis.u[1], block.uz[lane] = axis.u[2];
   }
   return Outcome::apart;
@@ -154,6 +157,7 @@ FrontWalk::Outcome FrontWalk::settle_nodes() noexcept {
       detail::FrontBlock& block = front_.blocks_[slot / kBlockWidth];
       if ((axes.meeting >> i & 1) == 0) {
         block.gap[lane] = axes.gap[i];
+        note(axes.gap[i]);
         block.ux[lane] = axes.ux[i], block.uy[lane] = axes.uy[i], block.uz[lane] = axes.uz[i];
         continue;
       }
@@ -212,26 +216,31 @@ void FrontWalk::expand(const NodePair& pair, bool open_second) noexcept {
                      margin, axes);
   }
   tracker_->spend(static_cast<std::uint64_t>(std::bit_width(axes.used)));
-  const std::size_t begin = stack_size_;
-  std::uint32_t order[kBlockWidth], count = 0;
-  for (std::uint32_t left = axes.used; left != 0; left &= left - 1) {
+  // Places as NarrowPhase finds them.
+  std::uint32_t nodes[kBlockWidth], place[kBlockWidth], count = 0;
+  float gap[kBlockWidth];
+  const float sign = open_second ? 1.0f : -1.0f;
+  for (std::uint32_t left = axes.used & ~axes.meeting; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-    const std::uint32_t node = block * kBlockWidth + lane;
-    if ((axes.meeting >> lane & 1) == 0) {  // vectors point from the single one to the eight
-      const float sign = open_second ? 1.0f : -1.0f;
-      add(open_second ? pair.a : node, open_second ? node : pair.b, axes.gap[lane],
-          {sign * axes.ux[lane], sign * axes.uy[lane], sign * axes.uz[lane]});
-      continue;
+    const std::uint32_t node = block * kBlockWidth + lane;  // vectors point from the single one to the eight
+    add(open_second ? pair.a : node, open_second ? node : pair.b, axes.gap[lane],
+        {sign * axes.ux[lane], sign * axes.uy[lane], sign * axes.uz[lane]});
+  }
+  for (std::uint32_t left = axes.meeting; left != 0; left &= left - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+    const float own = axes.gap[lane];
+    std::uint32_t before = count;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t deeper = gap[i] < own;
+      place[i] += deeper;
+      before -= deeper;
     }
-    std::uint32_t at = count++;
-    for (; at > 0 && axes.gap[order[at - 1]] < axes.gap[lane]; --at) order[at] = order[at - 1];
-    order[at] = lane;
+    place[count] = before, gap[count] = own, nodes[count++] = block * kBlockWidth + lane;
   }
-  stack_size_ = begin;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t node = block * kBlockWidth + order[i];
-    stack_[stack_size_++] = open_second ? NodePair{pair.a, node} : NodePair{node, pair.b};
+    stack_[stack_size_ + place[i]] = open_second ? NodePair{pair.a, nodes[i]} : NodePair{nodes[i], pair.b};
   }
+  stack_size_ += count;
 }
 
 void FrontWalk::add(std::uint32_t a, std::uint32_t b, float gap, const Axis& u) noexcept {
@@ -257,6 +266,7 @@ void FrontWalk::add(std::uint32_t a, std::uint32_t b, float gap, const Axis& u) 
   block.x[lane] = of.x[at], block.y[lane] = of.y[at], block.z[lane] = of.z[at], block.radius[lane] = of.radius[at];
   block.ux[lane] = u[0], block.uy[lane] = u[1], block.uz[lane] = u[2];
   block.gap[lane] = gap;
+  note(gap);
   block.a[lane] = a, block.b[lane] = b;
 }
 

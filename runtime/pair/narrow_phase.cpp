@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <new>
+#include <type_traits>
 
 #include "tree/node_box.h"
 #include "tree/tree_nodes.h"
@@ -141,13 +142,23 @@ NarrowPhase::NarrowPhase(const TreeView& a, const TreeView& b, std::size_t room)
   reserve(std::max(room, std::size_t{1}));
 }
 
+// Whether that is so already: bodies of one shape follow each other often, and to copy costs more than to compare.
+bool NarrowPhase::bound_to(const PreparedTree& a, const PreparedTree& b) const noexcept {
+  static_assert(std::is_trivially_copyable_v<PreparedTree>);
+  if (ordered_by_pose_ && arguments_exchanged_) return false;  // as the last poses had it
+  const Side &of_a = arguments_exchanged_ ? second_ : first_, &of_b = arguments_exchanged_ ? first_ : second_;
+  return a.fingerprint != 0 && std::memcmp(&of_a, &a, sizeof a) == 0 && std::memcmp(&of_b, &b, sizeof b) == 0;
+}
+
 bool NarrowPhase::bind(const PreparedTree& a, const PreparedTree& b) noexcept {
-  ordered_by_pose_ = a.fingerprint == b.fingerprint;
-  one_tree_ = ordered_by_pose_ && same_place(a.tree, b.tree);
-  arguments_exchanged_ = !ordered_by_pose_ && compare(a.tree, b.tree) > 0;
-  first_ = arguments_exchanged_ ? b : a;
-  second_ = arguments_exchanged_ ? a : b;
-  for (std::size_t i = 0; i < 3; ++i) roots_[i] = {first_.root[i], second_.root[i]};
+  if (!bound_to(a, b)) {
+    ordered_by_pose_ = a.fingerprint == b.fingerprint;
+    one_tree_ = ordered_by_pose_ && same_place(a.tree, b.tree);
+    arguments_exchanged_ = !ordered_by_pose_ && compare(a.tree, b.tree) > 0;
+    first_ = arguments_exchanged_ ? b : a;
+    second_ = arguments_exchanged_ ? a : b;
+    for (std::size_t i = 0; i < 3; ++i) roots_[i] = {first_.root[i], second_.root[i]};
+  }
   finished_ = true;
   refused_ = true;
   roots_pending_ = exact_started_ = placed_ = false;

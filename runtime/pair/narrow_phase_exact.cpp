@@ -1,3 +1,4 @@
+#include <array>
 #include <bit>
 
 #include "budget_tracker.h"
@@ -57,17 +58,24 @@ inline bool NarrowPhase::find_children(const NodePair& pair, std::uint32_t a, st
 inline void NarrowPhase::push_children(const NodePair& pair, bool second, std::uint32_t block,
                                        const BoxGaps& gaps) noexcept {
   pair_tests_ += static_cast<std::uint64_t>(std::bit_width(gaps.used));
-  std::uint32_t order[kBlockWidth], count = 0;
+  // Each one's place by comparing all: sorting them takes branches that nothing foresees.
+  std::uint32_t nodes[kBlockWidth], place[kBlockWidth], count = 0;
+  float gap[kBlockWidth];
   for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-    std::uint32_t at = count++;
-    for (; at > 0 && gaps.gap[order[at - 1]] < gaps.gap[lane]; --at) order[at] = order[at - 1];
-    order[at] = lane;
+    const float own = gaps.gap[lane];
+    std::uint32_t before = count;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t deeper = gap[i] < own;
+      place[i] += deeper;
+      before -= deeper;
+    }
+    place[count] = before, gap[count] = own, nodes[count++] = block * kBlockWidth + lane;
   }
   for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t node = block * kBlockWidth + order[i];
-    stack_[stack_size_++] = second ? NodePair{pair.a, node} : NodePair{node, pair.b};
+    stack_[stack_size_ + place[i]] = second ? NodePair{pair.a, nodes[i]} : NodePair{nodes[i], pair.b};
   }
+  stack_size_ += count;
 }
 
 // False if interrupted. Ends at the first pair of triangles that meet.
@@ -100,6 +108,50 @@ bool NarrowPhase::refine_ball_slabs(BudgetTracker& tracker) noexcept {
   return true;
 }
 
+// The pairs of what is in the blocks of two leaves, the nearest ones of those that may meet, in place of the roots.
+void NarrowPhase::start_near(const NodePair& leaves) noexcept {
+  constexpr std::uint32_t most = kBlockWidth;
+  const std::uint32_t block_a = leaves.a / kBlockWidth, block_b = leaves.b / kBlockWidth;
+  BoxGaps firsts, seconds;
+  detail::meeting_boxes(moved_box(leaves.b), first_.tree.ball_slabs[block_a], 1, placement_.box_margin, firsts);
+  std::array<float, most> gaps;
+  stack_size_ = 0;
+  for (std::uint32_t left = firsts.meeting; left != 0; left &= left - 1) {
+    const std::uint32_t a = block_a * kBlockWidth + static_cast<std::uint32_t>(std::countr_zero(left));
+    detail::meeting_boxes(detail::moved_back(detail::node_box_at(first_.tree, a), placement_),
+                          second_.tree.ball_slabs[block_b], placement_.scale, placement_.box_margin, seconds);
+    pair_tests_ += static_cast<std::uint64_t>(std::bit_width(seconds.used));
+    for (std::uint32_t lanes = seconds.meeting; lanes != 0; lanes &= lanes - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+      const NodePair pair = {a, block_b * kBlockWidth + lane};
+      if (pair.a == leaves.a && pair.b == leaves.b) continue;
+      const float gap = seconds.gap[lane];
+      if (stack_size_ == most) {
+        if (gap >= gaps[0]) continue;
+        for (std::size_t i = 1; i < most; ++i) stack_[i - 1] = stack_[i], gaps[i - 1] = gaps[i];
+        --stack_size_;
+      }
+      std::size_t at = stack_size_++;
+      for (; at > 0 && gaps[at - 1] < gap; --at) stack_[at] = stack_[at - 1], gaps[at] = gaps[at - 1];
+      stack_[at] = pair, gaps[at] = gap;
+    }
+  }
+}
+
+bool NarrowPhase::refine_near(std::uint32_t a, std::uint32_t b, const Budget& budget) noexcept {
+  if (budget.pair_tests == 0) return false;
+  BudgetTracker tracker(budget);
+  start_exact();
+  start_near({a, b});
+  const bool ended = refine_ball_slabs(tracker);
+  work_ += tracker.spent();
+  stack_[0] = {0, 0};
+  stack_size_ = 1;
+  if (!ended || triangle_first_ == kNoTriangle) return false;
+  finish(Answer::yes);
+  return true;
+}
+
 bool NarrowPhase::test_triangles(const NodePair& pair) noexcept {
   const TriangleBlock& lanes = first_.tree.triangle_blocks[child_of(first_.tree, pair.a) & ~kLeafBit];
   const TriangleBlock& rows = second_.tree.triangle_blocks[child_of(second_.tree, pair.b) & ~kLeafBit];
@@ -111,13 +163,18 @@ bool NarrowPhase::test_triangles(const NodePair& pair) noexcept {
   triangle_tests_ += used(lanes) * used(rows);
   const detail::NodeBox lane_box = detail::node_box_at(first_.tree, pair.a);
   const detail::NodeBox row_box = moved_box(pair.b);
-  std::uint64_t left = detail::triangle_candidates({lanes, rows, lane_box, row_box}, placement_);
-  for (; left != 0; left &= left - 1) {
-    const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
-    const std::uint32_t row = bit / kBlockWidth, lane = bit % kBlockWidth;
-    if (test_two(pair.a, lane, pair.b, row)) return true;
-  }
-  return false;
+  struct Leaves {
+    NarrowPhase& self;
+    const NodePair& pair;
+  } context = {*this, pair};
+  const auto any_meets = [](void* of, std::uint32_t row, std::uint32_t left) {
+    const auto& [self, nodes] = *static_cast<Leaves*>(of);
+    for (; left != 0; left &= left - 1) {
+      if (self.test_two(nodes.a, static_cast<std::uint32_t>(std::countr_zero(left)), nodes.b, row)) return true;
+    }
+    return false;
+  };
+  return detail::visit_candidates({lanes, rows, lane_box, row_box}, placement_, any_meets, &context);
 }
 
 // Of the leaves in these ball slabs, these triangles.

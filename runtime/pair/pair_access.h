@@ -55,6 +55,10 @@ struct PairAccess {
   static bool test_leaves(NarrowPhase& pair, std::uint32_t first, std::uint32_t second) noexcept {
     return say_yes_if(pair, pair.test_triangles({first, second}));
   }
+  // The same of what is beside these leaves in the trees, but for the leaves themselves, as far as the budget goes.
+  static bool search_near(NarrowPhase& pair, std::uint32_t first, std::uint32_t second, const Budget& budget) noexcept {
+    return pair.refine_near(first, second, budget);
+  }
   static bool exact_started(const NarrowPhase& pair) noexcept { return pair.exact_started_; }
   static const Place& meeting(const NarrowPhase& pair) noexcept { return pair.meeting_; }  // after "yes"
   // All of the last level.

@@ -49,24 +49,25 @@ ORCHARD_INLINE std::uint32_t find_near(const Box<Kind>& lane_box, std::uint32_t 
   return used;
 }
 
-template <typename Kind>
-ORCHARD_INLINE std::uint64_t find_candidates(const LeafPair& pair, const Placement& placement) noexcept {
+// Calls take(row, bits of lanes), row by row, until it returns true.
+template <typename Kind, typename Found>
+ORCHARD_INLINE bool each_candidate(const LeafPair& pair, const Placement& placement, Found&& take) noexcept {
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
   using Vectors = typename E::Vectors;
   Vectors lane[3] = {E::corner(pair.lanes, 0), E::corner(pair.lanes, 1), E::corner(pair.lanes, 2)};
   const Floats reach = E::all(placement.margin);
   const std::uint32_t lanes_left = E::kAll & ~Kind::bits(beyond_box<Kind>(lane, pair.row_box, reach));
-  if (lanes_left == 0) return 0;
+  if (lanes_left == 0) return false;
   Vectors row[3] = {E::move(placement, E::corner(pair.rows, 0)), E::move(placement, E::corner(pair.rows, 1)),
                     E::move(placement, E::corner(pair.rows, 2))};
   const std::uint32_t rows_left = E::kAll & ~Kind::bits(beyond_box<Kind>(row, pair.lane_box, reach));
-  if (rows_left == 0) return 0;
+  if (rows_left == 0) return false;
   const Box<Kind> lane_box = box_of<Kind>(lane, reach), row_box = box_of<Kind>(row, E::all(0.0f));
   std::uint32_t near[kBlockWidth];
   const std::uint32_t found =
       find_near<Kind>(lane_box, lanes_left & used_lanes(pair.lanes), row_box, rows_left & used_lanes(pair.rows), near);
-  if (found == 0) return 0;
+  if (found == 0) return false;
 
   const Floats unit = E::all(placement.unit), margin = reach * unit;
   for (std::size_t k = 0; k < 3; ++k) lane[k] = E::times(lane[k], unit), row[k] = E::times(row[k], unit);
@@ -81,14 +82,31 @@ ORCHARD_INLINE std::uint64_t find_candidates(const LeafPair& pair, const Placeme
   store(own_height<Kind>(row_normal, row_edge, margin), row_limit);
   const OneByOne<Kind> normals(row_normal),
       corners[3] = {OneByOne<Kind>(row[0]), OneByOne<Kind>(row[1]), OneByOne<Kind>(row[2])};
-  std::uint64_t result = 0;
   for (std::uint32_t left_rows = found; left_rows != 0; left_rows &= left_rows - 1) {
     const auto r = static_cast<std::uint32_t>(std::countr_zero(left_rows));
     const Vectors p[3] = {corners[0][r], corners[1][r], corners[2][r]};
     const std::uint32_t left = not_apart<Kind>(near[r], planes, p, normals[r], E::all(row_limit[r]), margin);
-    result |= std::uint64_t{left} << (8 * r);
+    if (left != 0 && take(r, left)) return true;
   }
+  return false;
+}
+
+template <typename Kind>
+ORCHARD_INLINE std::uint64_t find_candidates(const LeafPair& pair, const Placement& placement) noexcept {
+  std::uint64_t result = 0;
+  each_candidate<Kind>(pair, placement, [&result](std::uint32_t row, std::uint32_t lanes) ORCHARD_INLINE_LAMBDA {
+    result |= std::uint64_t{lanes} << (kBlockWidth * row);
+    return false;
+  });
   return result;
+}
+
+template <typename Kind>
+ORCHARD_INLINE bool visit_each(const LeafPair& pair, const Placement& placement, CandidateVisit visit,
+                               void* context) noexcept {
+  return each_candidate<Kind>(pair, placement, [=](std::uint32_t row, std::uint32_t lanes) ORCHARD_INLINE_LAMBDA {
+    return visit(context, row, lanes);
+  });
 }
 
 // Axes are normalised in float, so they are longer than 1 by less than 4 u, and a projection of D is off by less than
@@ -192,6 +210,10 @@ void triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows, const 
 std::uint64_t triangle_candidates(const LeafPair& pair, const Placement& placement) noexcept {
   return PerMachine<find_candidates<Widest>, find_candidates<Base>>::call(pair, placement);
 }
+
+bool visit_candidates(const LeafPair& pair, const Placement& placement, CandidateVisit visit, void* context) noexcept {
+  return PerMachine<visit_each<Widest>, visit_each<Base>>::call(pair, placement, visit, context);
+}
 #else
 void triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows, const Placement& placement,
                    const std::array<float, 3>& direction, float reach, TriangleGaps& result) noexcept {
@@ -200,6 +222,15 @@ void triangle_gaps(const TriangleBlock& lanes, const TriangleBlock& rows, const 
 
 std::uint64_t triangle_candidates(const LeafPair& pair, const Placement& placement) noexcept {
   return triangle_candidates_scalar(pair, placement);
+}
+
+bool visit_candidates(const LeafPair& pair, const Placement& placement, CandidateVisit visit, void* context) noexcept {
+  const std::uint64_t found = triangle_candidates_scalar(pair, placement);
+  for (std::uint32_t row = 0; row < kBlockWidth; ++row) {
+    const auto lanes = static_cast<std::uint32_t>(found >> (kBlockWidth * row) & 0xff);
+    if (lanes != 0 && visit(context, row, lanes)) return true;
+  }
+  return false;
 }
 #endif
 

@@ -28,6 +28,11 @@ struct LeafPair {
 std::uint64_t triangle_candidates(const LeafPair& pair, const Placement& placement) noexcept;
 std::uint64_t triangle_candidates_scalar(const LeafPair& pair, const Placement& placement) noexcept;
 
+// The same a row at a time, in order, as far as need be: calls visit(context, row, bits of lanes) for each row that has
+// any, until it returns true, which is returned then.
+using CandidateVisit = bool (*)(void* context, std::uint32_t row, std::uint32_t lanes);
+bool visit_candidates(const LeafPair& pair, const Placement& placement, CandidateVisit visit, void* context) noexcept;
+
 // Certified lower bounds on the distances of triangles, below 0 where none is known; unused rows and lanes hold
 // anything.
 struct TriangleGaps {

@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "box_pair.h"
 #include "eight.h"
@@ -127,31 +128,32 @@ ORCHARD_INLINE LeafAxis find_leaf_axis(const LeafPair& pair, const Placement& pl
 }
 
 template <typename Kind>
-ORCHARD_INLINE void take_from_gaps(const Shift& shift, FrontBlock* blocks, std::uint32_t count,
-                                   std::uint8_t* open) noexcept {
+ORCHARD_INLINE float take_from_gaps(const Shift& shift, FrontBlock* blocks, std::uint32_t count,
+                                    std::uint64_t* open) noexcept {
   using E = Eight<Kind>;
   using Floats = typename E::Floats;
   using Vectors = typename E::Vectors;
   const Floats swing = E::all(shift.swing), error = E::all(shift.error), zero = E::all(0.0f);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    FrontBlock& block = blocks[i];
-    const Vectors c = {load<Floats>(block.x), load<Floats>(block.y), load<Floats>(block.z)};
-    const Vectors u = {load<Floats>(block.ux), load<Floats>(block.uy), load<Floats>(block.uz)};
-    const Vectors turned = E::turn(shift.turn, c);
-    const Vectors way = {turned.x + E::all(shift.by[0]), turned.y + E::all(shift.by[1]),
-                         turned.z + E::all(shift.by[2])};
-    const Floats gap = load<Floats>(block.gap) + E::dot(u, way) - (load<Floats>(block.radius) * swing + error);
-    store(gap, block.gap);
-    open[i] = static_cast<std::uint8_t>(~Kind::bits(zero < gap));
+  const Floats infinite = E::all(std::numeric_limits<float>::infinity());
+  Floats least = infinite;
+  for (std::uint32_t from = 0; from < count; from += kBlockWidth) {
+    std::uint64_t bits = 0;
+    const std::uint32_t end = from + kBlockWidth < count ? from + kBlockWidth : count;
+    for (std::uint32_t i = from; i < end; ++i) {
+      FrontBlock& block = blocks[i];
+      const Vectors c = {load<Floats>(block.x), load<Floats>(block.y), load<Floats>(block.z)};
+      const Vectors u = {load<Floats>(block.ux), load<Floats>(block.uy), load<Floats>(block.uz)};
+      const Vectors turned = E::turn(shift.turn, c);
+      const Vectors way = {turned.x + E::all(shift.by[0]), turned.y + E::all(shift.by[1]),
+                           turned.z + E::all(shift.by[2])};
+      const Floats gap = load<Floats>(block.gap) + E::dot(u, way) - (load<Floats>(block.radius) * swing + error);
+      store(gap, block.gap);
+      const auto apart = zero < gap;
+      least = E::smaller(least, Kind::choose(apart, gap, infinite));
+      bits |= static_cast<std::uint64_t>(static_cast<std::uint8_t>(~Kind::bits(apart))) << (kBlockWidth * (i - from));
+    }
+    open[from / kBlockWidth] = bits;
   }
-}
-
-template <typename Kind>
-ORCHARD_INLINE float find_least_gap(const FrontBlock* blocks, std::uint32_t count) noexcept {
-  using E = Eight<Kind>;
-  using Floats = typename E::Floats;
-  Floats least = load<Floats>(blocks[0].gap);
-  for (std::uint32_t i = 1; i < count; ++i) least = E::smaller(least, load<Floats>(blocks[i].gap));
   return least_of<Kind>(least);
 }
 
@@ -184,18 +186,11 @@ LeafAxis leaf_axis_scalar(const LeafPair& pair, const Placement& placement, cons
   return find_leaf_axis<PlainFloats>(pair, placement, given, enough);
 }
 
-void close_gaps(const Shift& shift, FrontBlock* blocks, std::uint32_t count, std::uint8_t* open) noexcept {
-  PerMachine<take_from_gaps<Widest>, take_from_gaps<Base>>::call(shift, blocks, count, open);
+float close_gaps(const Shift& shift, FrontBlock* blocks, std::uint32_t count, std::uint64_t* open) noexcept {
+  return PerMachine<take_from_gaps<Widest>, take_from_gaps<Base>>::call(shift, blocks, count, open);
 }
-void close_gaps_scalar(const Shift& shift, FrontBlock* blocks, std::uint32_t count, std::uint8_t* open) noexcept {
-  take_from_gaps<PlainFloats>(shift, blocks, count, open);
-}
-
-float least_gap(const FrontBlock* blocks, std::uint32_t count) noexcept {
-  return PerMachine<find_least_gap<Widest>, find_least_gap<Base>>::call(blocks, count);
-}
-float least_gap_scalar(const FrontBlock* blocks, std::uint32_t count) noexcept {
-  return find_least_gap<PlainFloats>(blocks, count);
+float close_gaps_scalar(const Shift& shift, FrontBlock* blocks, std::uint32_t count, std::uint64_t* open) noexcept {
+  return take_from_gaps<PlainFloats>(shift, blocks, count, open);
 }
 
 }  // namespace orchard::runtime::detail

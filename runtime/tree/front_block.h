@@ -40,10 +40,9 @@ struct Shift {
   std::array<float, 3> by;
   float swing, error;
 };
-// Takes from each gap how much the two come closer along its vector at most; open[i]: bits of the lanes of blocks[i]
-// that have no gap left.
-void close_gaps(const Shift& shift, FrontBlock* blocks, std::uint32_t count, std::uint8_t* open) noexcept;
-float least_gap(const FrontBlock* blocks, std::uint32_t count) noexcept;  // of `count` > 0 blocks
+// Takes from each gap how much the two come closer along its vector at most. Bit 8 * (i % 8) + lane of open[i / 8]: no
+// gap is left to that lane of blocks[i]. Returns the least of those that are left, infinite if there is none.
+float close_gaps(const Shift& shift, FrontBlock* blocks, std::uint32_t count, std::uint64_t* open) noexcept;
 
 // The same, one number at a time, for the tests.
 void box_axes_scalar(const NodeBox& single, const BallSlabBlock& lanes, const Placement* placement, float margin,
@@ -52,7 +51,6 @@ void box_pair_axes_scalar(const BallSlabBlock& firsts, const BallSlabBlock& seco
                           float margin, BoxAxes& result) noexcept;
 LeafAxis leaf_axis_scalar(const LeafPair& pair, const Placement& placement, const std::array<float, 3>* given,
                           float enough) noexcept;
-void close_gaps_scalar(const Shift& shift, FrontBlock* blocks, std::uint32_t count, std::uint8_t* open) noexcept;
-float least_gap_scalar(const FrontBlock* blocks, std::uint32_t count) noexcept;
+float close_gaps_scalar(const Shift& shift, FrontBlock* blocks, std::uint32_t count, std::uint64_t* open) noexcept;
 
 }  // namespace orchard::runtime::detail

@@ -164,6 +164,26 @@ TEST(CloserThan, IsUnsureOfWhatItCannotKnow) {
   }
 }
 
+// Copies of a tree change places with their poses, which a workspace that is asked about them again does not keep.
+TEST(TreePair, AnswersAsAnewWhereTheWorkspaceHasItsTreesAlready) {
+  const auto all = bodies();
+  const auto copies = bodies();
+  const auto trees = prepared(all), others = prepared(copies);
+  Workspace kept;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    const Case c = random_case(all, seed);
+    const PreparedTree& other = seed % 2 == 0 ? others[c.a] : trees[c.b];
+    const TreePair pairs[] = {{trees[c.a], other}, {trees[c.a], other}, {other, trees[c.a]}};
+    const Pose poses[][2] = {{c.at_a, c.at_b}, {c.at_b, c.at_a}, {c.at_a, c.at_b}};
+    for (std::size_t i = 0; i < 3; ++i) {
+      Workspace fresh;
+      ASSERT_TRUE(same_verdict(collide(kept, pairs[i], poses[i][0], poses[i][1]),
+                               collide(fresh, pairs[i], poses[i][0], poses[i][1])))
+          << seed << " " << i;
+    }
+  }
+}
+
 // A body that wanders in and out of contact, now slowly, now in leaps.
 TEST(Coherent, GivesTheAnswersOfFreshQueriesForLessWork) {
   const auto all = bodies();

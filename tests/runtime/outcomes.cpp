@@ -2,6 +2,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstdio>
+#include <memory>
 
 #include "bodies.h"
 #include "orchard/runtime/contacts.h"
@@ -20,9 +21,12 @@ class Digest {
   void add(std::uint64_t word) { state_ = (state_ ^ word) * 0x9e3779b97f4a7c15u, state_ ^= state_ >> 29; }
   void add(double number) { add(std::bit_cast<std::uint64_t>(number)); }
   void add(const NarrowPhase& query) {
-    const Verdict v = query.verdict();
+    add(query.verdict());
+    add(query.pair_tests()), add(query.triangle_tests());
+  }
+  void add(const Verdict& v) {
     add(static_cast<std::uint64_t>(v.answer));
-    add(v.separation_bound), add(v.lower_bound), add(v.work), add(query.pair_tests()), add(query.triangle_tests());
+    add(v.separation_bound), add(v.lower_bound), add(v.work);
     for (std::size_t i = 0; i < 3; ++i) add(v.contact.center[i]), add(v.contact.normal[i]);
     add(v.contact.radius), add(std::uint64_t{v.contact.triangle_a}), add(std::uint64_t{v.contact.triangle_b});
   }
@@ -32,11 +36,25 @@ class Digest {
   std::uint64_t state_ = 1;
 };
 
+// A small motion from some poses on, asked coherently.
+void add_motion(Digest& digest, Workspace& workspace, TreePair pair, PairFront* front, const Pose& a, Pose b,
+                double step) {
+  pair.use(front);
+  const Pose turn = *pose_from_quaternion({1, 0.01, -0.005, 0.008}, {0, 0, 0});
+  for (int i = 0; i < 12; ++i) {
+    digest.add(collide_coherently(workspace, pair, a, b));
+    b.rotation = compose(turn, b).rotation;
+    if (const auto rigid = made_rigid(b)) b = *rigid;
+    b.translation[0] += step, b.translation[2] -= step / 2;
+  }
+}
+
 }  // namespace
 
 int main() {
   const auto all = bodies();
   Workspace workspace;
+  const auto front = std::make_unique<PairFront>();
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t j = i; j < all.size(); ++j) {
       const PackedSphereTree &a = all[i].tree, &b = all[j].tree;
@@ -63,6 +81,13 @@ int main() {
         distance.start(pose_a, pose_b);
         distance.refine();
         digest.add(distance.lower()), digest.add(distance.upper()), digest.add(distance.work());
+        const double size = a.bounding_radius + b.bounding_radius;
+        digest.add(
+            static_cast<std::uint64_t>(closer_than(workspace, pair, pose_a, pose_b, draw.uniform(0, 0.1) * size)));
+        digest.add(workspace.distance.upper()), digest.add(workspace.distance.work());
+        for (PairFront* kept : {static_cast<PairFront*>(nullptr), front.get()}) {
+          add_motion(digest, workspace, pair, kept, pose_a, pose_b, 0.004 * size);
+        }
         const Manifold manifold = contacts(workspace, pair, pose_a, pose_b);
         digest.add(manifold.depth), digest.add(manifold.normal[0]), digest.add(std::uint64_t{manifold.count});
         Travel still, moving;

@@ -120,6 +120,34 @@ TEST(SupportMap, CoversEveryPointInEveryDirection) {
   EXPECT_LT(worst, 0.1);
 }
 
+// What visit_candidates() gives until it has been told so many times that a row was found.
+std::uint64_t visited(const LeafPair& pair, const Placement& placement, std::uint32_t enough) {
+  struct Seen {
+    std::uint64_t found = 0;
+    std::uint32_t left;
+  } seen{.left = enough};
+  const bool ended = visit_candidates(
+      pair, placement,
+      [](void* context, std::uint32_t row, std::uint32_t lanes) {
+        Seen& s = *static_cast<Seen*>(context);
+        s.found |= std::uint64_t{lanes} << (kBlockWidth * row);
+        return --s.left == 0;
+      },
+      &seen);
+  EXPECT_EQ(ended, seen.left == 0);
+  return seen.found;
+}
+
+std::uint64_t first_rows(std::uint64_t found, std::uint32_t count) {  // of those that have any
+  std::uint64_t result = 0;
+  for (std::uint32_t row = 0; row < kBlockWidth && count > 0; ++row) {
+    const std::uint64_t lanes = found & std::uint64_t{0xff} << (kBlockWidth * row);
+    result |= lanes;
+    count -= lanes != 0;
+  }
+  return result;
+}
+
 TEST(TriangleBlock, KeepsEveryPairThatMeetsAndGivesTheSameWithoutVectors) {
   int kept = 0, dropped = 0, meeting = 0;
   for (std::uint64_t seed = 0; seed < 8000; ++seed) {
@@ -134,7 +162,12 @@ TEST(TriangleBlock, KeepsEveryPairThatMeetsAndGivesTheSameWithoutVectors) {
                   row_box = moved(node_box_at(b.ball_slabs[0], 0), placement);
     const LeafPair pair{lanes, rows, lane_box, row_box};
     const std::uint64_t found = triangle_candidates_scalar(pair, placement);
-    on_every_machine([&] { ASSERT_EQ(triangle_candidates(pair, placement), found) << seed; });
+    on_every_machine([&] {
+      ASSERT_EQ(triangle_candidates(pair, placement), found) << seed;
+      ASSERT_EQ(visited(pair, placement, kBlockWidth), found) << seed;
+      const auto rows_seen = static_cast<std::uint32_t>(1 + seed % 3);
+      ASSERT_EQ(visited(pair, placement, rows_seen), first_rows(found, rows_seen)) << seed;
+    });
     if (HasFatalFailure()) return;
     for (std::uint32_t r = 0; r < kBlockWidth; ++r) {
       for (std::uint32_t l = 0; l < kBlockWidth; ++l) {

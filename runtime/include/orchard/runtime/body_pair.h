@@ -44,7 +44,7 @@ class TreePair {
 
  private:
   friend struct Coherence;
-  static constexpr std::size_t kWitnesses = 6;
+  static constexpr std::size_t kWitnesses = 2;
   struct Witness {  // triangles that met: ball slabs of leaves of both trees, and which of these
     std::uint32_t a, b;
     std::uint8_t lane_a, lane_b;

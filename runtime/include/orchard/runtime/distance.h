@@ -65,6 +65,7 @@ class DistanceQuery {
   bool surely_near(const BallSlabPair& pair) noexcept;
   bool may_be_nearer(double lower) const noexcept;
   void expand(const BallSlabPair& pair, std::uint32_t block, bool second) noexcept;
+  void expand_within(const BallSlabPair& pair, std::uint32_t block, bool second) noexcept;
   void compare_leaves(const BallSlabPair& pair) noexcept;
   void find_within(const BallSlabPair& pair, const TriangleBlock& lanes, const TriangleBlock& rows) noexcept;
   void compare_triangles(const TriangleBlock& lanes, std::uint32_t lane, const TriangleBlock& rows, std::uint32_t row,
@@ -78,6 +79,7 @@ class DistanceQuery {
   std::size_t stack_room_ = 0;
   Tolerance tolerance_;
   double limit_ = std::numeric_limits<double>::infinity();  // what is farther is left out
+  float reach_ = std::numeric_limits<float>::infinity();    // it, rounded up
   double cut_ = std::numeric_limits<double>::infinity();    // from nearest_ and limit_, with the tolerance
   bool below_nearest_ = false;                              // what is as far is not looked at, either
   double enough_ = 0;                                       // so near: nothing nearer is looked for

@@ -188,6 +188,7 @@ class NarrowPhase {
   };
   class BudgetTracker;
 
+  bool bound_to(const PreparedTree& a, const PreparedTree& b) const noexcept;
   void reset_counts() noexcept;
   void find_exact_error(const Pose& first, const Pose& second) noexcept;
   void keep(const Pose& a, const Pose& b) noexcept;
@@ -209,6 +210,8 @@ class NarrowPhase {
   void give_up_spheres() noexcept;
   void start_exact() noexcept;
   bool refine_ball_slabs(BudgetTracker& tracker) noexcept;
+  void start_near(const NodePair& leaves) noexcept;
+  bool refine_near(std::uint32_t a, std::uint32_t b, const Budget& budget) noexcept;
   bool find_children(const NodePair& pair, std::uint32_t a, std::uint32_t b, detail::BoxGaps& gaps) noexcept;
   void push_children(const NodePair& pair, bool second, std::uint32_t block, const detail::BoxGaps& gaps) noexcept;
   detail::NodeBox moved_box(std::uint32_t node) const noexcept;  // of the second tree, in the first one's frame
