@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "../vector_support.h"
 #include "promise_check.h"
 
 namespace orchard::runtime::detail {
@@ -249,8 +250,9 @@ void give_back(std::vector<T>& v) noexcept {
   std::vector<T>().swap(v);
 }
 
-// Starts loading what will be written soon.
-inline void prefetch(const void* where) noexcept {
+// Starts loading what will be written soon. Part of its caller at once: GCC takes it for a function without effects,
+// and leaves out what calls are left when it has found that.
+ORCHARD_INLINE void prefetch(const void* where) noexcept {
 #ifdef __GNUC__
   __builtin_prefetch(where, 1);
 #else
@@ -258,7 +260,7 @@ inline void prefetch(const void* where) noexcept {
 #endif
 }
 
-inline void prefetch_to_read(const void* where) noexcept {
+ORCHARD_INLINE void prefetch_to_read(const void* where) noexcept {
 #ifdef __GNUC__
   __builtin_prefetch(where, 0);
 #else
@@ -268,7 +270,7 @@ inline void prefetch_to_read(const void* where) noexcept {
 
 // All lines of an object.
 template <typename T>
-void prefetch_all(const T& object) noexcept {
+ORCHARD_INLINE void prefetch_all(const T& object) noexcept {
   constexpr std::size_t kLine = 64;
   const char* const begin = reinterpret_cast<const char*>(&object);
   for (std::size_t at = 0; at < sizeof(T); at += kLine) prefetch(begin + at);
