@@ -83,7 +83,7 @@ class BoxIndex {
 
   const bool vectors_;
   std::vector<Place> places_;      // by body
-  std::vector<QuantumBox> boxes_;  // of those in the grid
+  UnsetVector<QuantumBox> boxes_;  // of those in the grid
   std::vector<BodyIndex> oversized_;
   bool any_oversized_ = false;  // since it was made anew
   bool few_ = true;

@@ -18,11 +18,12 @@ inline constexpr std::uint32_t kMaxCellsPerAxis = 4;  // that a body's box may t
 // are compared with another box in one go: per coordinate a guard bit above the 5 catches the carry of an addition.
 inline constexpr std::uint64_t kGuards = 0x820820820u;  // bit 5 of each of six fields; an entry that meets nothing
 struct alignas(64) CellLine {
-  std::array<std::uint64_t, 7> entries = {kGuards, kGuards, kGuards, kGuards, kGuards, kGuards, kGuards};
-  std::uint32_t count = 0;     // entries; the others are kGuards
-  std::uint32_t overflow = 0;  // 1 + the index of the line with more entries; 0: none. A line that has one is full
+  std::array<std::uint64_t, 7> entries;
+  std::uint32_t count;     // entries; the others are kGuards
+  std::uint32_t overflow;  // 1 + the index of the line with more entries; 0: none. A line that has one is full
 };
 static_assert(sizeof(CellLine) == 64);
+inline constexpr CellLine kEmptyLine = {{kGuards, kGuards, kGuards, kGuards, kGuards, kGuards, kGuards}, 0, 0};
 inline constexpr std::uint32_t kIdShift = 36;  // of the body in an entry, above its box
 
 struct GridCounts {
@@ -156,7 +157,7 @@ class SweptGrid {
   static void remove_from(CellLine& line, BodyIndex body, Overflow& more) noexcept;
   static void free_last(CellLine& line, Overflow& more) noexcept;
 
-  std::vector<CellLine> lines_;
+  UnsetVector<CellLine> lines_;
   std::array<Overflow, kParts> overflow_;
   std::uint32_t mask_ = 0;
   unsigned part_shift_ = 0;

@@ -78,10 +78,14 @@ void SweptGrid::reset(std::size_t lines, const Executor& executor) {
   for (Overflow& more : overflow_) more.lines.clear(), more.free = 0;
   const std::size_t wanted = std::size_t{1} << bits;
   if (lines_.capacity() > 4 * wanted) give_back(lines_);
-  if (wanted < kMinToShare || lines_.size() != wanted) return lines_.assign(wanted, CellLine{});
+  if (lines_.size() != wanted) {
+    lines_.clear();  // what is there need not move
+    lines_.resize(wanted);
+  }
+  if (wanted < kMinToShare) return std::fill(lines_.begin(), lines_.end(), kEmptyLine);
   auto clear = [&](std::size_t part) {
     const std::size_t size = wanted / kParts;
-    std::fill_n(lines_.begin() + static_cast<std::ptrdiff_t>(part * size), size, CellLine{});
+    std::fill_n(lines_.begin() + static_cast<std::ptrdiff_t>(part * size), size, kEmptyLine);
   };
   run_jobs(executor, kParts, clear);
 }
@@ -105,7 +109,7 @@ void SweptGrid::append(CellLine& first, std::uint64_t entry, Overflow& overflow)
     std::uint32_t more = overflow.free;
     if (more != 0) {
       overflow.free = lines[more - 1].overflow;
-      lines[more - 1] = CellLine{};
+      lines[more - 1] = kEmptyLine;
       line->overflow = more;
       line = &lines[more - 1];
     } else {
@@ -115,6 +119,7 @@ void SweptGrid::append(CellLine& first, std::uint64_t entry, Overflow& overflow)
       more = static_cast<std::uint32_t>(lines.size());
       (inner ? lines[index] : first).overflow = more;
       line = &lines.back();
+      *line = kEmptyLine;
     }
   }
   line->entries[line->count++] = entry;
