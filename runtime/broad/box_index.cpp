@@ -23,11 +23,12 @@ void BoxIndex::make_room_for_boxes(std::size_t slots) {
   }
 }
 
-void BoxIndex::make_anew(std::size_t slots, std::size_t lines, const Executor& executor) {
+void BoxIndex::make_anew(std::size_t slots, std::size_t lines) {
   std::fill(places_.begin(), places_.end(), Place::nowhere);
   oversized_.clear();
   any_oversized_ = false;
   extent_ = kNothing;
+  in_order_ = true;
   few_ = lines > 0 && slots <= BoxList::kMaxBodies;
   if (few_) {
     list_.reset(slots);
@@ -38,9 +39,15 @@ void BoxIndex::make_anew(std::size_t slots, std::size_t lines, const Executor& e
     grid_.release();
     give_back(boxes_);
   } else {
-    grid_.reset(lines, executor);
+    grid_.begin_reset(lines);
+    in_order_ = false;
     grow(boxes_, slots);
   }
+}
+
+void BoxIndex::empty(const Executor& executor) {
+  if (!in_order_) grid_.empty_parts(executor);
+  in_order_ = true;
 }
 
 void BoxIndex::set_lattice(const Vec3& origin, const Vec3& velocity, double cell_size, double slack, double time_step,

@@ -21,7 +21,9 @@ class BoxIndex {
   const void* at(BodyIndex body) const noexcept { return &places_[body]; }  // to load it ahead
 
   // Empties it, and makes it for so many slots, or lines. `lines` 0: for none, until it is made anew.
-  void make_anew(std::size_t slots, std::size_t lines, const Executor& executor);
+  // The grid is in order from empty() on, or once jobs have emptied each part, and nothing else happens before.
+  void make_anew(std::size_t slots, std::size_t lines);
+  void empty(const Executor& executor);  // nothing if it is in order
   // The lattice of all boxes from now on; it moves at `velocity`.
   void set_lattice(const Vec3& origin, const Vec3& velocity, double cell_size, double slack, double time_step,
                    Step now) noexcept;
@@ -50,6 +52,9 @@ class BoxIndex {
   void scatter(std::span<const BodyIndex> bodies, const BoxBlock& boxes, SweptGrid::VisitsByPart& visits) const {
     grid_.scatter(bodies, boxes, boxes_, vectors_, visits);
   }
+  bool in_order() const noexcept { return in_order_; }
+  void empty_part(std::size_t part) noexcept { grid_.empty_part(part); }
+  void all_parts_emptied() noexcept { in_order_ = true; }
   void insert_part(std::span<const SweptGrid::Visit> visits, std::vector<BodyPair>& pairs, GridCounts& counts) {
     grid_.insert_part(visits, boxes_, vectors_, pairs, counts);
   }
@@ -86,7 +91,7 @@ class BoxIndex {
   UnsetVector<QuantumBox> boxes_;  // of those in the grid
   std::vector<BodyIndex> oversized_;
   bool any_oversized_ = false;  // since it was made anew
-  bool few_ = true;
+  bool few_ = true, in_order_ = true;
   BoxList list_;
   SweptGrid grid_;
   QuantumBox extent_ = kNothing;  // around all boxes that are in the grid, or have been since it was made anew

@@ -66,6 +66,11 @@ class SweptGrid {
 
   // Empties the grid. At least `lines` lines, rounded up to a power of two.
   void reset(std::size_t lines, const Executor& executor);
+  // The same in two steps: the lines are there, but in memory as it is, until each part has been emptied. Nothing else
+  // happens to the part before that.
+  void begin_reset(std::size_t lines);
+  void empty_part(std::size_t part) noexcept;
+  void empty_parts(const Executor& executor);
   void release();  // its memory, too
 
   // Adds bodies[i] with block's box i, at most kBlock of them, and appends the pairs whose boxes meet, of each body in

@@ -67,9 +67,7 @@ std::array<std::uint32_t, 3> line_factors(unsigned bits) noexcept {
   return {1, kLineFactors[bits - kMinLineBits][0], kLineFactors[bits - kMinLineBits][1]};
 }
 
-// All lines are written in order: those that have not been used for long come faster this way than one by one later.
-void SweptGrid::reset(std::size_t lines, const Executor& executor) {
-  constexpr std::size_t kMinToShare = std::size_t{1} << 14;  // that are worth waking other threads for
+void SweptGrid::begin_reset(std::size_t lines) {
   const auto nearest = static_cast<std::size_t>(std::max(1.0, 0.7 * static_cast<double>(lines)));
   const unsigned bits = std::clamp(static_cast<unsigned>(std::bit_width(nearest)), kMinLineBits, kMaxLineBits);
   mask_ = (1u << bits) - 1;
@@ -82,12 +80,24 @@ void SweptGrid::reset(std::size_t lines, const Executor& executor) {
     lines_.clear();  // what is there need not move
     lines_.resize(wanted);
   }
-  if (wanted < kMinToShare) return std::fill(lines_.begin(), lines_.end(), kEmptyLine);
-  auto clear = [&](std::size_t part) {
-    const std::size_t size = wanted / kParts;
-    std::fill_n(lines_.begin() + static_cast<std::ptrdiff_t>(part * size), size, kEmptyLine);
-  };
-  run_jobs(executor, kParts, clear);
+}
+
+// All lines are written in order: those that have not been used for long come faster this way than one by one later.
+void SweptGrid::empty_part(std::size_t part) noexcept {
+  const std::size_t size = lines_.size() / kParts;
+  std::fill_n(lines_.begin() + static_cast<std::ptrdiff_t>(part * size), size, kEmptyLine);
+}
+
+void SweptGrid::empty_parts(const Executor& executor) {
+  constexpr std::size_t kMinToShare = std::size_t{1} << 14;  // lines that are worth waking other threads for
+  if (lines_.size() < kMinToShare) return std::fill(lines_.begin(), lines_.end(), kEmptyLine);
+  auto empty = [&](std::size_t part) { empty_part(part); };
+  run_jobs(executor, kParts, empty);
+}
+
+void SweptGrid::reset(std::size_t lines, const Executor& executor) {
+  begin_reset(lines);
+  empty_parts(executor);
 }
 
 void SweptGrid::release() {

@@ -171,6 +171,7 @@ void WindowUpdates::find_in_part(Step now, std::size_t index) {
   GridPart& part = shared_->parts[index];
   part.near.clear();
   part.counts = {};
+  if (!parts_.boxes.in_order()) parts_.boxes.empty_part(index);  // in the cache where it is used at once
   for (const Chunk& chunk : shared_->chunks)
     parts_.boxes.insert_part(chunk.visits[index].visits(), part.near, part.counts);
   const BodyPool& pool = parts_.pool;
@@ -197,6 +198,7 @@ void WindowUpdates::update_wave(Step now, Step from, std::span<const BodyIndex> 
     if (i > 0) return find_in_part(now, i - 1);
     for (Chunk& chunk : shared_->chunks) fold(chunk);
   });
+  parts_.boxes.all_parts_emptied();
   for (GridPart& part : shared_->parts) {
     parts_.boxes.count(part.counts);
     if (parts_.pool.asks_user_filter()) {  // it is asked by one thread
@@ -209,9 +211,12 @@ void WindowUpdates::update_wave(Step now, Step from, std::span<const BodyIndex> 
 }
 
 void WindowUpdates::update_all(Step now, Step from, std::span<const BodyIndex> bodies) {
-  const bool many =
-      bodies.size() >= options_.min_bodies_for_jobs && parts_.boxes.shares() && parts_.pool.promises() == nullptr;
-  if (!many) return update(now, from, bodies);
+  const bool many = !bodies.empty() && bodies.size() >= options_.min_bodies_for_jobs && parts_.boxes.shares() &&
+                    parts_.pool.promises() == nullptr;
+  if (!many) {
+    parts_.boxes.empty(options_.executor);
+    return update(now, from, bodies);
+  }
   if (!shared_) shared_ = std::make_unique<Shared>();
   near_.clear();
   shared_->rest.clear();
