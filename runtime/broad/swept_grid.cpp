@@ -265,10 +265,17 @@ void SweptGrid::scatter(std::span<const BodyIndex> bodies, const BoxBlock& block
   std::array<Visit, kMaxVisits> rest;
   for_each_part(bodies, block, [&](const Some& some) {
     encode(batch, some, vectors);
-    for (Visits& part : visits) part.make_room(batch.end);
-    for (std::size_t k = 0; k < batch.end; ++k) {
-      visits[part_of(batch.lines[k])].add({batch.entries[k], batch.lines[k], batch.steps[k]});
+    std::array<Visit*, kParts> ends;  // by themselves: what is written might be the vectors
+    for (std::size_t i = 0; i < kParts; ++i) {
+      visits[i].make_room(batch.end);
+      ends[i] = visits[i].end();
     }
+    const unsigned shift = part_shift_;
+    for (std::size_t k = 0; k < batch.end; ++k) {
+      Visit*& end = ends[batch.lines[k] >> shift];
+      *end++ = {batch.entries[k], batch.lines[k], batch.steps[k]};
+    }
+    for (std::size_t i = 0; i < kParts; ++i) visits[i].end_at(ends[i]);
     for (std::size_t i = 0; i < batch.larges; ++i) {
       const Visit* const end = many_visits_of(batch.large[i], boxes[batch.large[i]], rest.data());
       for (Visits& part : visits) part.make_room(kMaxVisits);

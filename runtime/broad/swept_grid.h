@@ -55,6 +55,8 @@ class SweptGrid {
       if (all_.size() < end_ + more) all_.resize(end_ + end_ / 8 + more);
     }
     void add(const Visit& visit) noexcept { all_[end_++] = visit; }  // there is room
+    Visit* end() noexcept { return all_.data() + end_; }             // the same, by where they are written,
+    void end_at(const Visit* end) noexcept { end_ = static_cast<std::size_t>(end - all_.data()); }  // and how far
     std::span<const Visit> visits() const noexcept { return std::span(all_).first(end_); }
     std::size_t memory_bytes() const noexcept { return bytes_of(all_); }
 
