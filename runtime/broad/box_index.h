@@ -34,9 +34,9 @@ class BoxIndex {
   void take_away(BodyIndex body) noexcept;
   void take_away(std::span<const BodyIndex> bodies) noexcept;
   // Takes note of bodies' boxes, which insert() puts where they belong; false if some do not fit into the grid.
-  bool note(std::span<const BodyIndex> bodies, const BoxBlock& boxes) noexcept;
+  bool note(std::span<const BodyIndex> bodies, const BoxBlock& boxes);
   bool fits(BodyIndex body) const noexcept { return few_ || places_[body] == Place::inside; }
-  bool note_again(BodyIndex body, const QuantumBox& box) noexcept;  // of one that does not fit: another box for it
+  bool note_again(BodyIndex body, const QuantumBox& box);  // of one that does not fit: another box for it
   // `boxes` are those that were noted, or noted again. Appends the pairs whose boxes meet, of each and all before.
   void insert(Queue& queue, std::span<const BodyIndex> bodies, BoxBlock& boxes, std::vector<BodyPair>& pairs);
   void finish(Queue& queue, std::vector<BodyPair>& pairs);
@@ -72,7 +72,8 @@ class BoxIndex {
   bool along(Step now, const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
              PortionVisitor& visitor) const;
   std::size_t memory_bytes() const noexcept {
-    return bytes_of(places_) + bytes_of(boxes_) + bytes_of(oversized_) + list_.memory_bytes() + grid_.memory_bytes();
+    return bytes_of(places_) + bytes_of(boxes_) + bytes_of(oversized_) + bytes_of(noted_) + list_.memory_bytes() +
+           grid_.memory_bytes();
   }
 
  private:
@@ -87,10 +88,14 @@ class BoxIndex {
   std::size_t fewest_cells() const noexcept;  // that are worth reading rather than all boxes
 
   const bool vectors_;
-  std::vector<Place> places_;      // by body
-  UnsetVector<QuantumBox> boxes_;  // of those in the grid
-  std::vector<BodyIndex> oversized_;
-  bool any_oversized_ = false;  // since it was made anew
+  std::vector<Place> places_;     // by body
+  UnsetVector<NarrowBox> boxes_;  // of those in the grid
+  struct Oversized {
+    BodyIndex body;
+    QuantumBox box;
+  };
+  std::vector<Oversized> oversized_, noted_;  // the latter are to be inserted
+  bool any_oversized_ = false;                // since it was made anew
   bool few_ = true, in_order_ = true;
   BoxList list_;
   SweptGrid grid_;

@@ -13,6 +13,7 @@ inline constexpr unsigned kMinLineBits = 6, kMaxLineBits = 28;
 std::array<std::uint32_t, 3> line_factors(unsigned bits) noexcept;  // the first one is 1
 
 inline constexpr std::uint32_t kMaxCellsPerAxis = 4;  // that a body's box may take; the grid has at least as many
+static_assert(kMaxCellsPerAxis * kQuanta <= 256);     // the lengths of a narrow box are bytes
 
 // Seven boxes clipped to a cell, quantised to 5 bits a coordinate, with their bodies' ids: one cache line. All seven
 // are compared with another box in one go: per coordinate a guard bit above the 5 catches the carry of an addition.
@@ -78,14 +79,14 @@ class SweptGrid {
   // Adds bodies[i] with block's box i, at most kBlock of them, and appends the pairs whose boxes meet, of each body in
   // the grid with every other. `boxes` is by body and has the new ones, too. No box takes more than kMaxCellsPerAxis
   // cells along an axis. Only finish() makes sure that all pairs have been found.
-  void insert(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const QuantumBox> boxes,
+  void insert(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const NarrowBox> boxes,
               bool vectors, std::vector<BodyPair>& pairs);
-  void finish(Queue& queue, std::span<const QuantumBox> boxes, bool vectors, std::vector<BodyPair>& pairs);
+  void finish(Queue& queue, std::span<const NarrowBox> boxes, bool vectors, std::vector<BodyPair>& pairs);
   // The same in two steps, for many bodies: the visits that block's bodies make, at any number of threads, appended;
-  void scatter(std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const QuantumBox> boxes,
-               bool vectors, VisitsByPart& visits) const;
+  void scatter(std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const NarrowBox> boxes, bool vectors,
+               VisitsByPart& visits) const;
   // and visits to one part, in the order in which they are to be made, at one thread for each part at most.
-  void insert_part(std::span<const Visit> visits, std::span<const QuantumBox> boxes, bool vectors,
+  void insert_part(std::span<const Visit> visits, std::span<const NarrowBox> boxes, bool vectors,
                    std::vector<BodyPair>& pairs, GridCounts& counts);
   void count(const GridCounts& counts) noexcept;  // of such an insertion
   class Removals;                                 // of a few bodies at a time

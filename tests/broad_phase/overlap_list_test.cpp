@@ -69,18 +69,20 @@ TEST(SweptGrid, SpreadsWorldsOfAnyShapeEvenly) {
     SweptGrid grid;
     grid.reset(kBodies / 2, {});
     SweptGrid::Queue queue;
-    std::vector<QuantumBox> boxes(kBodies);
+    std::vector<NarrowBox> boxes(kBodies);
     std::vector<BodyPair> pairs;
     for (BodyIndex begin = 0; begin < kBodies; begin += kBlock) {
       BoxBlock block;
       std::array<BodyIndex, kBlock> ids;
       for (std::size_t i = 0; i < kBlock; ++i) {
         ids[i] = begin + static_cast<BodyIndex>(i);
+        QuantumBox box{};
         for (std::size_t d = 0; d < 3; ++d) {
           const auto lower = static_cast<std::uint32_t>((1000 + draw.uniform(0, cells[d])) * kQuanta);
-          boxes[ids[i]].lower[d] = lower, boxes[ids[i]].upper[d] = lower + kQuanta / 4;
+          box.lower[d] = lower, box.upper[d] = lower + kQuanta / 4;
         }
-        block.set(i, boxes[ids[i]]);
+        boxes[ids[i]] = NarrowBox(box);
+        block.set(i, box);
       }
       grid.insert(queue, ids, block, boxes, true, pairs);
     }
