@@ -36,6 +36,7 @@ class BoxInCell {
   using Signed __attribute__((vector_size(16))) = std::int32_t;
   using Halves __attribute__((vector_size(16))) = std::uint64_t;
   using Bytes __attribute__((vector_size(16))) = std::uint8_t;
+  using Shorts __attribute__((vector_size(16))) = std::uint16_t;
   static constexpr auto kSteps = [] {  // along each axis
     std::array<std::array<std::uint32_t, 4>, 64> all{};
     for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = {i & 3, i >> 2 & 3, i >> 4, 0};
@@ -46,10 +47,10 @@ class BoxInCell {
     Numbers all;
     std::memcpy(&all, &box, sizeof all);
     lower = all & Numbers{~0u, ~0u, ~0u, 0};
-    const auto bytes = reinterpret_cast<Bytes>(all);
-    constexpr int kZero = 16;  // of the other vector
-    const Bytes lengths = __builtin_shufflevector(bytes, Bytes{}, 12, kZero, kZero, kZero, 13, kZero, kZero, kZero, 14,
-                                                  kZero, kZero, kZero, kZero, kZero, kZero, kZero);
+    // The last four bytes, each as a number, by what is one instruction each; the fourth one is 0.
+    const Shorts shorts = reinterpret_cast<Shorts>(__builtin_shufflevector(
+        reinterpret_cast<Bytes>(all), Bytes{}, 8, 16, 9, 17, 10, 18, 11, 19, 12, 20, 13, 21, 14, 22, 15, 23));
+    const Shorts lengths = __builtin_shufflevector(shorts, Shorts{}, 4, 8, 5, 9, 6, 10, 7, 11);
     upper = lower + reinterpret_cast<Numbers>(lengths);
   }
 
