@@ -3,7 +3,12 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <memory>
+#include <new>
+#include <type_traits>
+#include <utility>
 
+#include "../vector_support.h"
 #include "promise_check.h"
 
 namespace orchard::runtime::detail {
@@ -95,10 +100,34 @@ class BudgetTracker {
   bool late_ = false;
 };
 
+// Leaves what a vector grows by as it is in memory: for what is written before it is read, by jobs. So it is one pass,
+// and pages that have never been used are shared between the jobs' threads.
+template <typename T>
+struct UnsetAllocator : std::allocator<T> {
+  template <typename U>
+  struct rebind {
+    using other = UnsetAllocator<U>;
+  };
+  UnsetAllocator() noexcept = default;
+  template <typename U>
+  UnsetAllocator(const UnsetAllocator<U>&) noexcept {}
+  template <typename U, typename... Arguments>
+  void construct(U* place, Arguments&&... arguments) {
+    if constexpr (sizeof...(Arguments) == 0) {
+      static_assert(std::is_trivially_default_constructible_v<U>);
+      ::new (static_cast<void*>(place)) U;
+    } else {
+      ::new (static_cast<void*>(place)) U(std::forward<Arguments>(arguments)...);
+    }
+  }
+};
+template <typename T>
+using UnsetVector = std::vector<T, UnsetAllocator<T>>;
+
 // Of a vector that grows one by one, by an eighth at a time: twice the room would be half the memory. What comes all at
 // once gets the room that it takes.
-template <typename T>
-void make_room(std::vector<T>& v, std::size_t size) {
+template <typename T, typename Allocator>
+void make_room(std::vector<T, Allocator>& v, std::size_t size) {
   constexpr std::size_t kMinRoom = 32;
   if (v.capacity() < size) v.reserve(std::max({kMinRoom, size, v.capacity() + v.capacity() / 8}));
 }
@@ -107,8 +136,8 @@ void append(std::vector<T>& v, const T& value) {
   if (v.size() == v.capacity()) v.reserve(std::max<std::size_t>(64, v.size() + v.size() / 16));
   v.push_back(value);
 }
-template <typename T>
-void grow(std::vector<T>& v, std::size_t size) {
+template <typename T, typename Allocator>
+void grow(std::vector<T, Allocator>& v, std::size_t size) {
   if (v.size() >= size) return;
   make_room(v, size);
   v.resize(size);
@@ -244,13 +273,14 @@ class UndoUnlessDone {
 };
 
 // Empties a vector and gives its memory back, which assigning {} does not.
-template <typename T>
-void give_back(std::vector<T>& v) noexcept {
-  std::vector<T>().swap(v);
+template <typename T, typename Allocator>
+void give_back(std::vector<T, Allocator>& v) noexcept {
+  std::vector<T, Allocator>().swap(v);
 }
 
-// Starts loading what will be written soon.
-inline void prefetch(const void* where) noexcept {
+// Starts loading what will be written soon. Part of its caller at once: GCC takes it for a function without effects,
+// and leaves out what calls are left when it has found that.
+ORCHARD_INLINE void prefetch(const void* where) noexcept {
 #ifdef __GNUC__
   __builtin_prefetch(where, 1);
 #else
@@ -258,7 +288,7 @@ inline void prefetch(const void* where) noexcept {
 #endif
 }
 
-inline void prefetch_to_read(const void* where) noexcept {
+ORCHARD_INLINE void prefetch_to_read(const void* where) noexcept {
 #ifdef __GNUC__
   __builtin_prefetch(where, 0);
 #else
@@ -268,14 +298,14 @@ inline void prefetch_to_read(const void* where) noexcept {
 
 // All lines of an object.
 template <typename T>
-void prefetch_all(const T& object) noexcept {
+ORCHARD_INLINE void prefetch_all(const T& object) noexcept {
   constexpr std::size_t kLine = 64;
   const char* const begin = reinterpret_cast<const char*>(&object);
   for (std::size_t at = 0; at < sizeof(T); at += kLine) prefetch(begin + at);
 }
 
-template <typename T>
-std::size_t bytes_of(const std::vector<T>& v) noexcept {
+template <typename T, typename Allocator>
+std::size_t bytes_of(const std::vector<T, Allocator>& v) noexcept {
   return v.capacity() * sizeof(T);
 }
 

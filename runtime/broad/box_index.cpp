@@ -13,6 +13,11 @@ bool cells_fit(const QuantumBox& box) noexcept {
   return fit;
 }
 
+template <typename All>
+void forget_oversized(All& all, BodyIndex body) noexcept {
+  std::erase_if(all, [body](const auto& large) { return large.body == body; });
+}
+
 }  // namespace
 
 void BoxIndex::make_room_for_boxes(std::size_t slots) {
@@ -23,11 +28,13 @@ void BoxIndex::make_room_for_boxes(std::size_t slots) {
   }
 }
 
-void BoxIndex::make_anew(std::size_t slots, std::size_t lines, const Executor& executor) {
+void BoxIndex::make_anew(std::size_t slots, std::size_t lines) {
   std::fill(places_.begin(), places_.end(), Place::nowhere);
   oversized_.clear();
+  noted_.clear();
   any_oversized_ = false;
   extent_ = kNothing;
+  in_order_ = true;
   few_ = lines > 0 && slots <= BoxList::kMaxBodies;
   if (few_) {
     list_.reset(slots);
@@ -38,9 +45,15 @@ void BoxIndex::make_anew(std::size_t slots, std::size_t lines, const Executor& e
     grid_.release();
     give_back(boxes_);
   } else {
-    grid_.reset(lines, executor);
+    grid_.begin_reset(lines);
+    in_order_ = false;
     grow(boxes_, slots);
   }
+}
+
+void BoxIndex::empty(const Executor& executor) {
+  if (!in_order_) grid_.empty_parts(executor);
+  in_order_ = true;
 }
 
 void BoxIndex::set_lattice(const Vec3& origin, const Vec3& velocity, double cell_size, double slack, double time_step,
@@ -60,10 +73,10 @@ void BoxIndex::take_away(BodyIndex body) noexcept {
   if (places_[body] == Place::inside && few_) list_.remove(body);
   if (places_[body] == Place::inside && !few_) {
     SweptGrid::Removals removals;
-    grid_.prepare_removal(body, boxes_[body], removals);
+    grid_.prepare_removal(body, boxes_[body].whole(), removals);
     grid_.remove(removals, vectors_);
   }
-  if (places_[body] == Place::oversized) std::erase(oversized_, body);
+  if (places_[body] == Place::oversized) forget_oversized(oversized_, body);
   places_[body] = Place::nowhere;
 }
 
@@ -80,8 +93,9 @@ void BoxIndex::take_away(std::span<const BodyIndex> bodies) noexcept {
     for (std::size_t i = begin; i < end; ++i) {
       const BodyIndex body = bodies[i];
       if (i + kAtOnce < bodies.size()) prefetch(&boxes_[bodies[i + kAtOnce]]);
-      if (places_[body] == Place::oversized) std::erase(oversized_, body);
-      if (places_[body] == Place::inside) grid_.prepare_removal(body, boxes_[body], removals[begin / kAtOnce % 2]);
+      if (places_[body] == Place::oversized) forget_oversized(oversized_, body);
+      if (places_[body] == Place::inside)
+        grid_.prepare_removal(body, boxes_[body].whole(), removals[begin / kAtOnce % 2]);
       places_[body] = Place::nowhere;
     }
   };
@@ -92,7 +106,7 @@ void BoxIndex::take_away(std::span<const BodyIndex> bodies) noexcept {
   }
 }
 
-bool BoxIndex::note(std::span<const BodyIndex> bodies, const BoxBlock& boxes) noexcept {
+bool BoxIndex::note(std::span<const BodyIndex> bodies, const BoxBlock& boxes) {
   for (const BodyIndex body : bodies) places_[body] = Place::inside;
   if (few_) return true;
   boxes.store(bodies, boxes_);
@@ -101,13 +115,22 @@ bool BoxIndex::note(std::span<const BodyIndex> bodies, const BoxBlock& boxes) no
     return true;
   }
   bool fit = true;
-  for (const BodyIndex body : bodies) fit = note_again(body, boxes_[body]) && fit;
+  for (std::size_t i = 0; i < bodies.size(); ++i) fit = note_again(bodies[i], boxes.get(i)) && fit;
   return fit;
 }
 
-bool BoxIndex::note_again(BodyIndex body, const QuantumBox& box) noexcept {
+bool BoxIndex::note_again(BodyIndex body, const QuantumBox& box) {
   const bool fits = cells_fit(box);
-  boxes_[body] = box;
+  const auto is_it = [body](const Oversized& large) { return large.body == body; };
+  const auto noted = std::find_if(noted_.begin(), noted_.end(), is_it);
+  if (fits) {
+    if (noted != noted_.end()) noted_.erase(noted);
+  } else if (noted != noted_.end()) {
+    noted->box = box;
+  } else {
+    noted_.push_back({body, box});
+  }
+  boxes_[body] = NarrowBox(box);
   places_[body] = fits ? Place::inside : Place::oversized;
   any_oversized_ = any_oversized_ || !fits;
   if (fits) extent_.include(box);
@@ -132,7 +155,7 @@ void BoxIndex::insert(Queue& queue, std::span<const BodyIndex> bodies, BoxBlock&
   std::size_t count = 0;
   for (const BodyIndex body : bodies) {
     if (oversized(body)) continue;
-    boxes.set(count, boxes_[body]);
+    boxes.set(count, boxes_[body].whole());
     in_grid[count++] = body;
   }
   grid_.insert(queue, std::span(in_grid).first(count), boxes, boxes_, vectors_, pairs);
@@ -145,21 +168,21 @@ void BoxIndex::finish(Queue& queue, std::vector<BodyPair>& pairs) {
 
 // Bodies as large as several cells are compared with everything: (their number) x (the number of all) per window.
 void BoxIndex::meet_oversized(std::span<const BodyIndex> bodies, std::vector<BodyPair>& pairs) {
-  const auto compare = [&](BodyIndex body, BodyIndex other) {
-    if (boxes_[other].meets(boxes_[body])) pairs.push_back({std::min(body, other), std::max(body, other)});
+  const auto compare = [&](BodyIndex body, const QuantumBox& box, BodyIndex other, const QuantumBox& with) {
+    if (with.meets(box)) pairs.push_back({std::min(body, other), std::max(body, other)});
   };
   for (const BodyIndex body : bodies) {
     if (places_[body] != Place::inside) continue;
-    for (const BodyIndex large : oversized_) compare(body, large);
+    for (const Oversized& large : oversized_) compare(body, boxes_[body].whole(), large.body, large.box);
   }
-  for (const BodyIndex body : bodies) {
-    if (places_[body] != Place::oversized) continue;
+  for (const Oversized& noted : noted_) {
     for (BodyIndex other = 0; other < places_.size(); ++other) {
-      if (places_[other] == Place::inside) compare(body, other);
+      if (places_[other] == Place::inside) compare(noted.body, noted.box, other, boxes_[other].whole());
     }
-    for (const BodyIndex large : oversized_) compare(body, large);
-    oversized_.push_back(body);
+    for (const Oversized& large : oversized_) compare(noted.body, noted.box, large.body, large.box);
+    oversized_.push_back(noted);
   }
+  noted_.clear();
 }
 
 }  // namespace orchard::runtime::detail

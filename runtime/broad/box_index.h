@@ -21,7 +21,9 @@ class BoxIndex {
   const void* at(BodyIndex body) const noexcept { return &places_[body]; }  // to load it ahead
 
   // Empties it, and makes it for so many slots, or lines. `lines` 0: for none, until it is made anew.
-  void make_anew(std::size_t slots, std::size_t lines, const Executor& executor);
+  // The grid is in order from empty() on, or once jobs have emptied each part, and nothing else happens before.
+  void make_anew(std::size_t slots, std::size_t lines);
+  void empty(const Executor& executor);  // nothing if it is in order
   // The lattice of all boxes from now on; it moves at `velocity`.
   void set_lattice(const Vec3& origin, const Vec3& velocity, double cell_size, double slack, double time_step,
                    Step now) noexcept;
@@ -32,9 +34,9 @@ class BoxIndex {
   void take_away(BodyIndex body) noexcept;
   void take_away(std::span<const BodyIndex> bodies) noexcept;
   // Takes note of bodies' boxes, which insert() puts where they belong; false if some do not fit into the grid.
-  bool note(std::span<const BodyIndex> bodies, const BoxBlock& boxes) noexcept;
+  bool note(std::span<const BodyIndex> bodies, const BoxBlock& boxes);
   bool fits(BodyIndex body) const noexcept { return few_ || places_[body] == Place::inside; }
-  bool note_again(BodyIndex body, const QuantumBox& box) noexcept;  // of one that does not fit: another box for it
+  bool note_again(BodyIndex body, const QuantumBox& box);  // of one that does not fit: another box for it
   // `boxes` are those that were noted, or noted again. Appends the pairs whose boxes meet, of each and all before.
   void insert(Queue& queue, std::span<const BodyIndex> bodies, BoxBlock& boxes, std::vector<BodyPair>& pairs);
   void finish(Queue& queue, std::vector<BodyPair>& pairs);
@@ -50,6 +52,9 @@ class BoxIndex {
   void scatter(std::span<const BodyIndex> bodies, const BoxBlock& boxes, SweptGrid::VisitsByPart& visits) const {
     grid_.scatter(bodies, boxes, boxes_, vectors_, visits);
   }
+  bool in_order() const noexcept { return in_order_; }
+  void empty_part(std::size_t part) noexcept { grid_.empty_part(part); }
+  void all_parts_emptied() noexcept { in_order_ = true; }
   void insert_part(std::span<const SweptGrid::Visit> visits, std::vector<BodyPair>& pairs, GridCounts& counts) {
     grid_.insert_part(visits, boxes_, vectors_, pairs, counts);
   }
@@ -67,7 +72,8 @@ class BoxIndex {
   bool along(Step now, const Vec3& origin, const Vec3& way, double length, std::vector<BodyIndex>& portion,
              PortionVisitor& visitor) const;
   std::size_t memory_bytes() const noexcept {
-    return bytes_of(places_) + bytes_of(boxes_) + bytes_of(oversized_) + list_.memory_bytes() + grid_.memory_bytes();
+    return bytes_of(places_) + bytes_of(boxes_) + bytes_of(oversized_) + bytes_of(noted_) + list_.memory_bytes() +
+           grid_.memory_bytes();
   }
 
  private:
@@ -82,11 +88,15 @@ class BoxIndex {
   std::size_t fewest_cells() const noexcept;  // that are worth reading rather than all boxes
 
   const bool vectors_;
-  std::vector<Place> places_;      // by body
-  std::vector<QuantumBox> boxes_;  // of those in the grid
-  std::vector<BodyIndex> oversized_;
-  bool any_oversized_ = false;  // since it was made anew
-  bool few_ = true;
+  std::vector<Place> places_;     // by body
+  UnsetVector<NarrowBox> boxes_;  // of those in the grid
+  struct Oversized {
+    BodyIndex body;
+    QuantumBox box;
+  };
+  std::vector<Oversized> oversized_, noted_;  // the latter are to be inserted
+  bool any_oversized_ = false;                // since it was made anew
+  bool few_ = true, in_order_ = true;
   BoxList list_;
   SweptGrid grid_;
   QuantumBox extent_ = kNothing;  // around all boxes that are in the grid, or have been since it was made anew

@@ -112,9 +112,9 @@ Near BoxIndex::near_box(Step now, const Vec3& lower, const Vec3& upper, std::vec
     append_in_cells(inside, bodies);
   }
   bool whole = inside.lower == extent_.lower && inside.upper == extent_.upper;
-  for (const BodyIndex body : oversized_) {
-    const bool meets = boxes_[body].meets(box);
-    if (meets) bodies.push_back(body);
+  for (const Oversized& large : oversized_) {
+    const bool meets = large.box.meets(box);
+    if (meets) bodies.push_back(large.body);
     whole = whole && meets;
   }
   return whole ? Near::all : Near::some;
@@ -161,8 +161,8 @@ bool BoxIndex::along(Step now, const Vec3& origin, const Vec3& way, double lengt
     if (!(std::fabs(ray.origin[d]) <= kFarOrigin)) return false;
     if (std::fabs(way[d]) > std::fabs(way[ray.axis])) ray.axis = d;
   }
-  for (const BodyIndex body : oversized_) {
-    if (ray.meets(boxes_[body])) portion.push_back(body);
+  for (const Oversized& large : oversized_) {
+    if (ray.meets(large.box)) portion.push_back(large.body);
   }
   const bool any = extent_.lower[0] <= extent_.upper[0];
   if (any) ray.clip(extent_);
@@ -172,7 +172,7 @@ bool BoxIndex::along(Step now, const Vec3& origin, const Vec3& way, double lengt
       if (!walk_slabs(lattice, ray, portion, visitor)) return true;
     } else {
       for (BodyIndex body = 0; body < places_.size(); ++body) {
-        if (places_[body] == Place::inside && ray.meets(boxes_[body])) portion.push_back(body);
+        if (places_[body] == Place::inside && ray.meets(boxes_[body].whole())) portion.push_back(body);
       }
     }
   }

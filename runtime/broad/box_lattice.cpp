@@ -200,6 +200,34 @@ void BoxBlock::store(std::span<const std::uint32_t> places, std::span<QuantumBox
   for (; i < places.size(); ++i) to[places[i]] = get(i);
 }
 
+void BoxBlock::store(std::span<const std::uint32_t> places, std::span<NarrowBox> to) const noexcept {
+  std::size_t i = 0;
+#ifdef ORCHARD_VECTORS
+  using Four __attribute__((vector_size(16))) = std::uint32_t;
+  const auto at = [&](const std::array<std::uint32_t, kBlock>& from) {
+    Four result;
+    std::memcpy(&result, &from[i], sizeof result);
+    return result;
+  };
+  const auto put = [&](std::size_t k, const Four& box) {
+    static_assert(sizeof(NarrowBox) == sizeof box);
+    std::memcpy(&to[places[i + k]], &box, sizeof box);
+  };
+  for (; i + 4 <= places.size(); i += 4) {
+    const Four x = at(lower[0]), y = at(lower[1]), z = at(lower[2]);
+    const Four lengths = (at(upper[0]) - x) | (at(upper[1]) - y) << 8 | (at(upper[2]) - z) << 16;
+    const Four first = __builtin_shufflevector(x, y, 0, 4, 1, 5), second = __builtin_shufflevector(x, y, 2, 6, 3, 7),
+               rest = __builtin_shufflevector(z, lengths, 0, 4, 1, 5),
+               more_rest = __builtin_shufflevector(z, lengths, 2, 6, 3, 7);
+    put(0, __builtin_shufflevector(first, rest, 0, 1, 4, 5));
+    put(1, __builtin_shufflevector(first, rest, 2, 3, 6, 7));
+    put(2, __builtin_shufflevector(second, more_rest, 0, 1, 4, 5));
+    put(3, __builtin_shufflevector(second, more_rest, 2, 3, 6, 7));
+  }
+#endif
+  for (; i < places.size(); ++i) to[places[i]] = NarrowBox(get(i));
+}
+
 Lattice::Lattice(const Vec3& origin, const Vec3& velocity, double cell_size, double slack) noexcept
     : first_(origin), velocity_(velocity), per_length_(kQuanta / cell_size), slack_(slack) {
   move_to(0);

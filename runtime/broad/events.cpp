@@ -154,7 +154,7 @@ void Events::place_all_anew() {
   sorting_ = false;
   wheel_.clear_bodies();
   windows_.begin_anew();
-  boxes_.make_anew(pool_.slots(), planner_.plan().lines, options_.executor);
+  boxes_.make_anew(pool_.slots(), planner_.plan().lines);
   all_are_due();
 }
 
@@ -214,6 +214,7 @@ unsigned Events::step_within(Step now, BudgetTracker& tracker) {
   if (anew) {
     if (!replan(now, tracker)) return pool_.next_class(0);
     place_all_anew();
+    boxes_.empty(options_.executor);
     budgeted_.postpone(due_);
     due_.clear();
     common_expiry_ = kNeverStep;
@@ -234,7 +235,7 @@ void Events::begin_sorting() {
   wheel_.clear();
   pairs_.forget_all();
   pairs_.release_spheres();
-  boxes_.make_anew(pool_.slots(), 0, options_.executor);
+  boxes_.make_anew(pool_.slots(), 0);
   boxes_.begin_counts();
 }
 

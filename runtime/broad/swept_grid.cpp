@@ -14,23 +14,18 @@ namespace {
 #ifdef ORCHARD_VECTORS
 class BoxInCell {
  public:
-  // In the fourth places there are numbers such that nothing is apart there, nor elsewhere.
-  ORCHARD_INLINE BoxInCell(const QuantumBox& box, std::uint8_t steps) noexcept {
-    constexpr std::uint32_t kAway = kLastQuantum;
-    Numbers first, last;
-    read(box, first, last);
-    lower_ = __builtin_shufflevector(first, Numbers{kAway}, 0, 1, 2, 4);
-    upper_ = __builtin_shufflevector(last, Numbers{kAway}, 1, 2, 3, 4);
+  // In the fourth places there are zeros: nothing is apart there, nor elsewhere.
+  ORCHARD_INLINE BoxInCell(const NarrowBox& box, std::uint8_t steps) noexcept {
+    read(box, lower_, upper_);
     cell_ = (lower_ >> kQuantumBits) + load<Numbers>(kSteps[steps]);
-    lower_last_ = __builtin_shufflevector(lower_, Numbers{}, 4, 0, 1, 2);
   }
   // Whether the other box meets it, and the lower corner of what they have in common lies in the cell.
-  ORCHARD_INLINE bool meets_here(const QuantumBox& other) const noexcept {
-    Numbers first, last;
-    read(other, first, last);
-    const Numbers apart = (upper_ - first) | (last - lower_last_);
-    const auto larger = reinterpret_cast<Signed>(lower_) > reinterpret_cast<Signed>(first);
-    const Numbers corner = larger ? lower_ : first;
+  ORCHARD_INLINE bool meets_here(const NarrowBox& other) const noexcept {
+    Numbers lower, upper;
+    read(other, lower, upper);
+    const Numbers apart = (upper_ - lower) | (upper - lower_);
+    const auto larger = reinterpret_cast<Signed>(lower_) > reinterpret_cast<Signed>(lower);
+    const Numbers corner = larger ? lower_ : lower;
     const Numbers wrong = (apart & 0x80000000u) | ((corner >> kQuantumBits) ^ cell_);
     const auto halves = reinterpret_cast<Halves>(wrong);
     return (halves[0] | halves[1]) == 0;
@@ -40,27 +35,35 @@ class BoxInCell {
   using Numbers __attribute__((vector_size(16))) = std::uint32_t;
   using Signed __attribute__((vector_size(16))) = std::int32_t;
   using Halves __attribute__((vector_size(16))) = std::uint64_t;
+  using Bytes __attribute__((vector_size(16))) = std::uint8_t;
+  using Shorts __attribute__((vector_size(16))) = std::uint16_t;
   static constexpr auto kSteps = [] {  // along each axis
     std::array<std::array<std::uint32_t, 4>, 64> all{};
     for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = {i & 3, i >> 2 & 3, i >> 4, 0};
     return all;
   }();
-  // lower[0], [1], [2], upper[0] and lower[2], upper[0], [1], [2]
-  ORCHARD_INLINE static void read(const QuantumBox& box, Numbers& first, Numbers& last) noexcept {
-    static_assert(offsetof(QuantumBox, upper) == 12 && sizeof(QuantumBox) == 24);
-    std::memcpy(&first, &box, sizeof first);
-    std::memcpy(&last, reinterpret_cast<const char*>(&box) + 8, sizeof last);
+  ORCHARD_INLINE static void read(const NarrowBox& box, Numbers& lower, Numbers& upper) noexcept {
+    static_assert(offsetof(NarrowBox, lengths) == 12 && sizeof(NarrowBox) == sizeof lower);
+    Numbers all;
+    std::memcpy(&all, &box, sizeof all);
+    lower = all & Numbers{~0u, ~0u, ~0u, 0};
+    // The last four bytes, each as a number, by what is one instruction each; the fourth one is 0.
+    const Shorts shorts = reinterpret_cast<Shorts>(__builtin_shufflevector(
+        reinterpret_cast<Bytes>(all), Bytes{}, 8, 16, 9, 17, 10, 18, 11, 19, 12, 20, 13, 21, 14, 22, 15, 23));
+    const Shorts lengths = __builtin_shufflevector(shorts, Shorts{}, 4, 8, 5, 9, 6, 10, 7, 11);
+    upper = lower + reinterpret_cast<Numbers>(lengths);
   }
 
-  Numbers lower_, upper_, cell_, lower_last_;
+  Numbers lower_, upper_, cell_;
 };
 #else
 class BoxInCell {
  public:
-  BoxInCell(const QuantumBox& box, std::uint8_t steps) noexcept : box_(box) {
+  BoxInCell(const NarrowBox& box, std::uint8_t steps) noexcept : box_(box.whole()) {
     for (std::uint32_t d = 0; d < 3; ++d) cell_[d] = (box.lower[d] >> kQuantumBits) + (steps >> 2 * d & 3u);
   }
-  bool meets_here(const QuantumBox& other) const noexcept {
+  bool meets_here(const NarrowBox& narrow) const noexcept {
+    const QuantumBox other = narrow.whole();
     std::uint32_t apart = 0, elsewhere = 0;
     for (std::size_t d = 0; d < 3; ++d) {
       apart |= (other.upper[d] - box_.lower[d]) | (box_.upper[d] - other.lower[d]);
@@ -105,14 +108,14 @@ void with_compare(bool vectors, const Work& work) {
 struct SweptGrid::Insertion {
   static constexpr std::size_t kFound = 256;
 
-  std::span<const QuantumBox> boxes;
+  std::span<const NarrowBox> boxes;
   bool vectors;
   std::vector<BodyPair>& pairs;
   GridCounts& counts;
   std::array<BodyPair, kFound> found;
   std::size_t count = 0;
 
-  Insertion(std::span<const QuantumBox> all, bool by_vectors, std::vector<BodyPair>& to, GridCounts& of) noexcept
+  Insertion(std::span<const NarrowBox> all, bool by_vectors, std::vector<BodyPair>& to, GridCounts& of) noexcept
       : boxes(all), vectors(by_vectors), pairs(to), counts(of) {}
   void hand_over() {
     if (count == 0) return;
@@ -225,7 +228,7 @@ void SweptGrid::insert_large(Insertion& insertion, const Batch& batch) {
   std::array<Visit, kMaxVisits> visits;
   for (std::size_t i = 0; i < batch.larges; ++i) {
     const BodyIndex body = batch.large[i];
-    const Visit* const end = many_visits_of(body, insertion.boxes[body], visits.data());
+    const Visit* const end = many_visits_of(body, insertion.boxes[body].whole(), visits.data());
     for (const Visit* visit = visits.data(); visit != end; ++visit) prefetch(&lines_[visit->line]);
     insert_visits(insertion, std::span(visits.data(), end));
   }
@@ -239,7 +242,7 @@ void SweptGrid::for_each_part(std::span<const BodyIndex> bodies, const BoxBlock&
 }
 
 void SweptGrid::insert(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock& block,
-                       std::span<const QuantumBox> boxes, bool vectors, std::vector<BodyPair>& pairs) {
+                       std::span<const NarrowBox> boxes, bool vectors, std::vector<BodyPair>& pairs) {
   Insertion insertion(boxes, vectors, pairs, counts_);
   for_each_part(bodies, block, [&](const Some& some) {
     Batch &next = queue.batches_[1 - queue.current_], &waiting = queue.batches_[queue.current_];
@@ -251,7 +254,7 @@ void SweptGrid::insert(Queue& queue, std::span<const BodyIndex> bodies, const Bo
   insertion.hand_over();
 }
 
-void SweptGrid::finish(Queue& queue, std::span<const QuantumBox> boxes, bool vectors, std::vector<BodyPair>& pairs) {
+void SweptGrid::finish(Queue& queue, std::span<const NarrowBox> boxes, bool vectors, std::vector<BodyPair>& pairs) {
   Insertion insertion(boxes, vectors, pairs, counts_);
   Batch& waiting = queue.batches_[queue.current_];
   insert_batch(insertion, waiting);
@@ -259,18 +262,25 @@ void SweptGrid::finish(Queue& queue, std::span<const QuantumBox> boxes, bool vec
   insertion.hand_over();
 }
 
-void SweptGrid::scatter(std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const QuantumBox> boxes,
+void SweptGrid::scatter(std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const NarrowBox> boxes,
                         bool vectors, VisitsByPart& visits) const {
   Batch batch;
   std::array<Visit, kMaxVisits> rest;
   for_each_part(bodies, block, [&](const Some& some) {
     encode(batch, some, vectors);
-    for (Visits& part : visits) part.make_room(batch.end);
-    for (std::size_t k = 0; k < batch.end; ++k) {
-      visits[part_of(batch.lines[k])].add({batch.entries[k], batch.lines[k], batch.steps[k]});
+    std::array<Visit*, kParts> ends;  // by themselves: what is written might be the vectors
+    for (std::size_t i = 0; i < kParts; ++i) {
+      visits[i].make_room(batch.end);
+      ends[i] = visits[i].end();
     }
+    const unsigned shift = part_shift_;
+    for (std::size_t k = 0; k < batch.end; ++k) {
+      Visit*& end = ends[batch.lines[k] >> shift];
+      *end++ = {batch.entries[k], batch.lines[k], batch.steps[k]};
+    }
+    for (std::size_t i = 0; i < kParts; ++i) visits[i].end_at(ends[i]);
     for (std::size_t i = 0; i < batch.larges; ++i) {
-      const Visit* const end = many_visits_of(batch.large[i], boxes[batch.large[i]], rest.data());
+      const Visit* const end = many_visits_of(batch.large[i], boxes[batch.large[i]].whole(), rest.data());
       for (Visits& part : visits) part.make_room(kMaxVisits);
       for (const Visit* visit = rest.data(); visit != end; ++visit) visits[part_of(visit->line)].add(*visit);
     }
@@ -297,7 +307,7 @@ void SweptGrid::insert_visits(Insertion& insertion, std::span<const Visit> visit
   }
 }
 
-void SweptGrid::insert_part(std::span<const Visit> visits, std::span<const QuantumBox> boxes, bool vectors,
+void SweptGrid::insert_part(std::span<const Visit> visits, std::span<const NarrowBox> boxes, bool vectors,
                             std::vector<BodyPair>& pairs, GridCounts& counts) {
   Insertion insertion(boxes, vectors, pairs, counts);
   insert_visits(insertion, visits);

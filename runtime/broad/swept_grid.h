@@ -13,16 +13,18 @@ inline constexpr unsigned kMinLineBits = 6, kMaxLineBits = 28;
 std::array<std::uint32_t, 3> line_factors(unsigned bits) noexcept;  // the first one is 1
 
 inline constexpr std::uint32_t kMaxCellsPerAxis = 4;  // that a body's box may take; the grid has at least as many
+static_assert(kMaxCellsPerAxis * kQuanta <= 256);     // the lengths of a narrow box are bytes
 
 // Seven boxes clipped to a cell, quantised to 5 bits a coordinate, with their bodies' ids: one cache line. All seven
 // are compared with another box in one go: per coordinate a guard bit above the 5 catches the carry of an addition.
 inline constexpr std::uint64_t kGuards = 0x820820820u;  // bit 5 of each of six fields; an entry that meets nothing
 struct alignas(64) CellLine {
-  std::array<std::uint64_t, 7> entries = {kGuards, kGuards, kGuards, kGuards, kGuards, kGuards, kGuards};
-  std::uint32_t count = 0;     // entries; the others are kGuards
-  std::uint32_t overflow = 0;  // 1 + the index of the line with more entries; 0: none. A line that has one is full
+  std::array<std::uint64_t, 7> entries;
+  std::uint32_t count;     // entries; the others are kGuards
+  std::uint32_t overflow;  // 1 + the index of the line with more entries; 0: none. A line that has one is full
 };
 static_assert(sizeof(CellLine) == 64);
+inline constexpr CellLine kEmptyLine = {{kGuards, kGuards, kGuards, kGuards, kGuards, kGuards, kGuards}, 0, 0};
 inline constexpr std::uint32_t kIdShift = 36;  // of the body in an entry, above its box
 
 struct GridCounts {
@@ -54,6 +56,8 @@ class SweptGrid {
       if (all_.size() < end_ + more) all_.resize(end_ + end_ / 8 + more);
     }
     void add(const Visit& visit) noexcept { all_[end_++] = visit; }  // there is room
+    Visit* end() noexcept { return all_.data() + end_; }             // the same, by where they are written,
+    void end_at(const Visit* end) noexcept { end_ = static_cast<std::size_t>(end - all_.data()); }  // and how far
     std::span<const Visit> visits() const noexcept { return std::span(all_).first(end_); }
     std::size_t memory_bytes() const noexcept { return bytes_of(all_); }
 
@@ -65,19 +69,24 @@ class SweptGrid {
 
   // Empties the grid. At least `lines` lines, rounded up to a power of two.
   void reset(std::size_t lines, const Executor& executor);
+  // The same in two steps: the lines are there, but in memory as it is, until each part has been emptied. Nothing else
+  // happens to the part before that.
+  void begin_reset(std::size_t lines);
+  void empty_part(std::size_t part) noexcept;
+  void empty_parts(const Executor& executor);
   void release();  // its memory, too
 
   // Adds bodies[i] with block's box i, at most kBlock of them, and appends the pairs whose boxes meet, of each body in
   // the grid with every other. `boxes` is by body and has the new ones, too. No box takes more than kMaxCellsPerAxis
   // cells along an axis. Only finish() makes sure that all pairs have been found.
-  void insert(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const QuantumBox> boxes,
+  void insert(Queue& queue, std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const NarrowBox> boxes,
               bool vectors, std::vector<BodyPair>& pairs);
-  void finish(Queue& queue, std::span<const QuantumBox> boxes, bool vectors, std::vector<BodyPair>& pairs);
+  void finish(Queue& queue, std::span<const NarrowBox> boxes, bool vectors, std::vector<BodyPair>& pairs);
   // The same in two steps, for many bodies: the visits that block's bodies make, at any number of threads, appended;
-  void scatter(std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const QuantumBox> boxes,
-               bool vectors, VisitsByPart& visits) const;
+  void scatter(std::span<const BodyIndex> bodies, const BoxBlock& block, std::span<const NarrowBox> boxes, bool vectors,
+               VisitsByPart& visits) const;
   // and visits to one part, in the order in which they are to be made, at one thread for each part at most.
-  void insert_part(std::span<const Visit> visits, std::span<const QuantumBox> boxes, bool vectors,
+  void insert_part(std::span<const Visit> visits, std::span<const NarrowBox> boxes, bool vectors,
                    std::vector<BodyPair>& pairs, GridCounts& counts);
   void count(const GridCounts& counts) noexcept;  // of such an insertion
   class Removals;                                 // of a few bodies at a time
@@ -156,7 +165,7 @@ class SweptGrid {
   static void remove_from(CellLine& line, BodyIndex body, Overflow& more) noexcept;
   static void free_last(CellLine& line, Overflow& more) noexcept;
 
-  std::vector<CellLine> lines_;
+  UnsetVector<CellLine> lines_;
   std::array<Overflow, kParts> overflow_;
   std::uint32_t mask_ = 0;
   unsigned part_shift_ = 0;

@@ -67,9 +67,7 @@ std::array<std::uint32_t, 3> line_factors(unsigned bits) noexcept {
   return {1, kLineFactors[bits - kMinLineBits][0], kLineFactors[bits - kMinLineBits][1]};
 }
 
-// All lines are written in order: those that have not been used for long come faster this way than one by one later.
-void SweptGrid::reset(std::size_t lines, const Executor& executor) {
-  constexpr std::size_t kMinToShare = std::size_t{1} << 14;  // that are worth waking other threads for
+void SweptGrid::begin_reset(std::size_t lines) {
   const auto nearest = static_cast<std::size_t>(std::max(1.0, 0.7 * static_cast<double>(lines)));
   const unsigned bits = std::clamp(static_cast<unsigned>(std::bit_width(nearest)), kMinLineBits, kMaxLineBits);
   mask_ = (1u << bits) - 1;
@@ -78,12 +76,28 @@ void SweptGrid::reset(std::size_t lines, const Executor& executor) {
   for (Overflow& more : overflow_) more.lines.clear(), more.free = 0;
   const std::size_t wanted = std::size_t{1} << bits;
   if (lines_.capacity() > 4 * wanted) give_back(lines_);
-  if (wanted < kMinToShare || lines_.size() != wanted) return lines_.assign(wanted, CellLine{});
-  auto clear = [&](std::size_t part) {
-    const std::size_t size = wanted / kParts;
-    std::fill_n(lines_.begin() + static_cast<std::ptrdiff_t>(part * size), size, CellLine{});
-  };
-  run_jobs(executor, kParts, clear);
+  if (lines_.size() != wanted) {
+    lines_.clear();  // what is there need not move
+    lines_.resize(wanted);
+  }
+}
+
+// All lines are written in order: those that have not been used for long come faster this way than one by one later.
+void SweptGrid::empty_part(std::size_t part) noexcept {
+  const std::size_t size = lines_.size() / kParts;
+  std::fill_n(lines_.begin() + static_cast<std::ptrdiff_t>(part * size), size, kEmptyLine);
+}
+
+void SweptGrid::empty_parts(const Executor& executor) {
+  constexpr std::size_t kMinToShare = std::size_t{1} << 14;  // lines that are worth waking other threads for
+  if (lines_.size() < kMinToShare) return std::fill(lines_.begin(), lines_.end(), kEmptyLine);
+  auto empty = [&](std::size_t part) { empty_part(part); };
+  run_jobs(executor, kParts, empty);
+}
+
+void SweptGrid::reset(std::size_t lines, const Executor& executor) {
+  begin_reset(lines);
+  empty_parts(executor);
 }
 
 void SweptGrid::release() {
@@ -105,7 +119,7 @@ void SweptGrid::append(CellLine& first, std::uint64_t entry, Overflow& overflow)
     std::uint32_t more = overflow.free;
     if (more != 0) {
       overflow.free = lines[more - 1].overflow;
-      lines[more - 1] = CellLine{};
+      lines[more - 1] = kEmptyLine;
       line->overflow = more;
       line = &lines[more - 1];
     } else {
@@ -115,6 +129,7 @@ void SweptGrid::append(CellLine& first, std::uint64_t entry, Overflow& overflow)
       more = static_cast<std::uint32_t>(lines.size());
       (inner ? lines[index] : first).overflow = more;
       line = &lines.back();
+      *line = kEmptyLine;
     }
   }
   line->entries[line->count++] = entry;

@@ -33,6 +33,10 @@ struct WindowUpdates::Chunk {
   BodyPool::Answers answers;
   std::uint64_t asked;
 
+  void note_run(Step end, std::size_t bodies) {
+    if (runs.empty() || runs.back().end != end) runs.push_back({end, 0});
+    runs.back().bodies += bodies;
+  }
   void clear() noexcept {
     for (auto& part : visits) part.clear();
     placed.clear(), runs.clear(), unknown.clear(), rest.clear(), sampled.clear();
@@ -115,14 +119,19 @@ void WindowUpdates::place_shared(Chunk& chunk, Block& block, std::span<BodyIndex
     }
   }
   bodies = bodies.first(count);
-  parts_.windows.set(bodies, block.from, std::span(block.ends).first(count));
+  const bool alike = same && count > 0 && block.ends[0] != kNeverStep;
+  if (alike) {
+    parts_.windows.set_alike(bodies, block.from, block.ends[0]);
+  } else {
+    parts_.windows.set(bodies, block.from, std::span(block.ends).first(count));
+  }
   for (std::size_t i = 0; parts_.pairs.notes_spheres() && i < count; ++i) {
     parts_.pairs.note_sphere(bodies[i], motions[i], block.lattice, block.durations[i]);
   }
-  for (std::size_t i = 0; i < count; ++i) {
-    const bool runs_on = !chunk.runs.empty() && chunk.runs.back().end == block.ends[i];
-    if (!runs_on) chunk.runs.push_back({block.ends[i], 0});
-    ++chunk.runs.back().bodies;
+  for (std::size_t i = 0; i < count;) {
+    const std::size_t more = alike ? count : 1;
+    chunk.note_run(block.ends[i], more);
+    i += more;
   }
   if (count > 0 && chunk.placed.size() >= kSampledEvery * chunk.sampled.size()) chunk.sampled.push_back(motions[0]);
   chunk.placed.insert(chunk.placed.end(), bodies.begin(), bodies.end());
@@ -171,6 +180,7 @@ void WindowUpdates::find_in_part(Step now, std::size_t index) {
   GridPart& part = shared_->parts[index];
   part.near.clear();
   part.counts = {};
+  if (!parts_.boxes.in_order()) parts_.boxes.empty_part(index);  // in the cache where it is used at once
   for (const Chunk& chunk : shared_->chunks)
     parts_.boxes.insert_part(chunk.visits[index].visits(), part.near, part.counts);
   const BodyPool& pool = parts_.pool;
@@ -197,6 +207,7 @@ void WindowUpdates::update_wave(Step now, Step from, std::span<const BodyIndex> 
     if (i > 0) return find_in_part(now, i - 1);
     for (Chunk& chunk : shared_->chunks) fold(chunk);
   });
+  parts_.boxes.all_parts_emptied();
   for (GridPart& part : shared_->parts) {
     parts_.boxes.count(part.counts);
     if (parts_.pool.asks_user_filter()) {  // it is asked by one thread
@@ -209,9 +220,12 @@ void WindowUpdates::update_wave(Step now, Step from, std::span<const BodyIndex> 
 }
 
 void WindowUpdates::update_all(Step now, Step from, std::span<const BodyIndex> bodies) {
-  const bool many =
-      bodies.size() >= options_.min_bodies_for_jobs && parts_.boxes.shares() && parts_.pool.promises() == nullptr;
-  if (!many) return update(now, from, bodies);
+  const bool many = !bodies.empty() && bodies.size() >= options_.min_bodies_for_jobs && parts_.boxes.shares() &&
+                    parts_.pool.promises() == nullptr;
+  if (!many) {
+    parts_.boxes.empty(options_.executor);
+    return update(now, from, bodies);
+  }
   if (!shared_) shared_ = std::make_unique<Shared>();
   near_.clear();
   shared_->rest.clear();

@@ -60,6 +60,32 @@ TEST(Rounds, AreComparedAcrossTheEndOfTheirNumbers) {
   EXPECT_FALSE(is_later(last - 3, PairEvent({0, 1}, last + 2).created));
 }
 
+// One by one and four at once.
+TEST(NarrowBox, IsTheWholeBoxUpToFourCells) {
+  test::Draw draw(2);
+  BoxBlock block;
+  std::array<BodyIndex, kBlock> ids;
+  std::array<QuantumBox, kBlock> boxes;
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    ids[i] = static_cast<BodyIndex>(kBlock - 1 - i);
+    for (std::size_t d = 0; d < 3; ++d) {
+      const auto lower = static_cast<std::uint32_t>(draw.uniform(0, kLastQuantum - 300.0));
+      const std::uint32_t longest = kMaxCellsPerAxis * kQuanta - 1 - lower % kQuanta;
+      boxes[i].lower[d] = lower;
+      boxes[i].upper[d] = lower + (i % 2 == 0 ? longest : static_cast<std::uint32_t>(draw.uniform(0, longest)));
+    }
+    block.set(i, boxes[i]);
+  }
+  for (const std::size_t count : {kBlock, kBlock - 1, std::size_t{3}}) {
+    std::vector<NarrowBox> narrow(kBlock);
+    block.store(std::span(ids).first(count), narrow);
+    for (std::size_t i = 0; i < count; ++i) {
+      EXPECT_EQ(narrow[ids[i]].whole().lower, boxes[i].lower);
+      EXPECT_EQ(narrow[ids[i]].whole().upper, boxes[i].upper);
+    }
+  }
+}
+
 // As many lines are read for each entry, however long and thin the world is: a rebuild takes time in proportion.
 TEST(SweptGrid, SpreadsWorldsOfAnyShapeEvenly) {
   constexpr std::size_t kBodies = 320 * kBlock;
@@ -69,18 +95,20 @@ TEST(SweptGrid, SpreadsWorldsOfAnyShapeEvenly) {
     SweptGrid grid;
     grid.reset(kBodies / 2, {});
     SweptGrid::Queue queue;
-    std::vector<QuantumBox> boxes(kBodies);
+    std::vector<NarrowBox> boxes(kBodies);
     std::vector<BodyPair> pairs;
     for (BodyIndex begin = 0; begin < kBodies; begin += kBlock) {
       BoxBlock block;
       std::array<BodyIndex, kBlock> ids;
       for (std::size_t i = 0; i < kBlock; ++i) {
         ids[i] = begin + static_cast<BodyIndex>(i);
+        QuantumBox box{};
         for (std::size_t d = 0; d < 3; ++d) {
           const auto lower = static_cast<std::uint32_t>((1000 + draw.uniform(0, cells[d])) * kQuanta);
-          boxes[ids[i]].lower[d] = lower, boxes[ids[i]].upper[d] = lower + kQuanta / 4;
+          box.lower[d] = lower, box.upper[d] = lower + kQuanta / 4;
         }
-        block.set(i, boxes[ids[i]]);
+        boxes[ids[i]] = NarrowBox(box);
+        block.set(i, box);
       }
       grid.insert(queue, ids, block, boxes, true, pairs);
     }
