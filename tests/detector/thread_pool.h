@@ -1,5 +1,6 @@
 #pragma once
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
@@ -9,7 +10,8 @@
 
 namespace orchard::runtime::test {
 
-// A pool as an application might have one. The caller's thread works, too.
+// A pool as an application might have one: the caller's thread works, too, and threads without work look for some for a
+// while before they sleep, since waking them takes as long as a small round of jobs.
 class ThreadPool {
  public:
   explicit ThreadPool(std::size_t threads) {
@@ -29,37 +31,48 @@ class ThreadPool {
   Executor executor() { return {&ThreadPool::run, this, threads_.size() + 1}; }
 
  private:
+  static constexpr std::chrono::microseconds kAwake{50};
+
   static void run(void* context, std::size_t count, Executor::Job job, void* data) {
     auto* const pool = static_cast<ThreadPool*>(context);
+    pool->job_ = job, pool->data_ = data, pool->count_ = count;
+    pool->next_ = 0;
+    pool->busy_ = pool->threads_.size();
     {
       const std::lock_guard lock(pool->mutex_);
-      pool->job_ = job, pool->data_ = data, pool->count_ = count;
-      pool->next_ = 0;
-      pool->busy_ = pool->threads_.size();
       ++pool->round_;
     }
     pool->wake_.notify_all();
     pool->work();
-    std::unique_lock lock(pool->mutex_);
-    pool->done_.wait(lock, [pool] { return pool->busy_ == 0; });
+    pool->wait_until(pool->done_, [pool] { return pool->busy_ == 0; });
   }
 
   void work() {
     for (std::size_t i = next_++; i < count_; i = next_++) job_(data_, i);
   }
 
+  // What makes it true is followed by a notification, under the mutex or after it was free.
+  template <class Condition>
+  void wait_until(std::condition_variable& notified, const Condition& condition) {
+    const auto end = std::chrono::steady_clock::now() + kAwake;
+    do {
+      if (condition()) return;
+      std::this_thread::yield();
+    } while (std::chrono::steady_clock::now() < end);
+    std::unique_lock lock(mutex_);
+    notified.wait(lock, condition);
+  }
+
   void wait_for_work() {
     std::uint64_t seen = 0;
     for (;;) {
-      {
-        std::unique_lock lock(mutex_);
-        wake_.wait(lock, [&] { return stopping_ || round_ != seen; });
-        if (stopping_) return;
-        seen = round_;
-      }
+      wait_until(wake_, [&] { return stopping_ || round_ != seen; });
+      if (stopping_) return;
+      seen = round_;
       work();
+      if (--busy_ > 0) continue;
       const std::lock_guard lock(mutex_);
-      if (--busy_ == 0) done_.notify_one();
+      done_.notify_one();
     }
   }
 
@@ -68,10 +81,10 @@ class ThreadPool {
   std::vector<std::thread> threads_;
   Executor::Job job_ = nullptr;
   void* data_ = nullptr;
-  std::size_t count_ = 0, busy_ = 0;
-  std::atomic<std::size_t> next_{0};
-  std::uint64_t round_ = 0;
-  bool stopping_ = false;
+  std::size_t count_ = 0;
+  std::atomic<std::size_t> next_{0}, busy_{0};
+  std::atomic<std::uint64_t> round_{0};
+  std::atomic<bool> stopping_{false};
 };
 
 }  // namespace orchard::runtime::test
