@@ -13,7 +13,7 @@ namespace orchard::runtime::detail {
 namespace {
 
 constexpr std::size_t kChunks = 8;         // in a wave
-constexpr std::size_t kMaxChunk = 4096;    // bodies
+constexpr std::size_t kMaxWave = 32768;    // bodies; waves are as large as each other, so that none is a rest
 constexpr std::size_t kSampledEvery = 64;  // of which one says how bodies move: there are enough
 
 }  // namespace
@@ -229,8 +229,10 @@ void WindowUpdates::update_all(Step now, Step from, std::span<const BodyIndex> b
   if (!shared_) shared_ = std::make_unique<Shared>();
   near_.clear();
   shared_->rest.clear();
-  for (std::size_t done = 0; done < bodies.size(); done += kChunks * kMaxChunk) {
-    update_wave(now, from, bodies.subspan(done, std::min(kChunks * kMaxChunk, bodies.size() - done)));
+  const std::size_t waves = (bodies.size() + kMaxWave - 1) / kMaxWave;
+  const std::size_t size = (bodies.size() + waves - 1) / waves;
+  for (std::size_t done = 0; done < bodies.size(); done += size) {
+    update_wave(now, from, bodies.subspan(done, std::min(size, bodies.size() - done)));
   }
   if (!shared_->rest.empty()) update(now, from, shared_->rest);
 }
