@@ -69,9 +69,10 @@ class FlakeDropper {
   void add_spheres(std::vector<Sphere>& around) {
     for (Index t = 0; t < complex_.triangles.size(); ++t) {
       if (sheet(t) != t || !is_small(t)) continue;
+      // One sphere: what is between balls near one end and near the other need not be in either's.
       const auto& [a, b] = complex_.edges[joint_[t]];
-      for (const Index end : {a, b})
-        around.push_back({.center = complex_.balls[end].center, .radius = reach_[t] + radius_[t]});
+      const double length = (complex_.balls[a].center - complex_.balls[b].center).norm();
+      around.push_back({.center = complex_.balls[a].center, .radius = length + reach_[t] + radius_[t]});
     }
   }
 

@@ -6,6 +6,7 @@
 #include <new>
 
 #include "budget_tracker.h"
+#include "least_last.h"
 #include "tree/ball_slab_block.h"
 #include "tree/node_box.h"
 #include "triangle_distance.h"
@@ -187,7 +188,7 @@ void DistanceQuery::expand(const BallSlabPair& pair, std::uint32_t block, bool s
   }
 }
 
-// The same where there is a limit: those that may be within it, with their places found as in NarrowPhase.
+// The same where there is a limit: those that may be within it, the nearest last.
 void DistanceQuery::expand_within(const BallSlabPair& pair, std::uint32_t block, bool second) noexcept {
   const TreeView &first = pair_.first_.tree, &other = pair_.second_.tree;
   const detail::Placement& placement = pair_.placement_;
@@ -201,23 +202,17 @@ void DistanceQuery::expand_within(const BallSlabPair& pair, std::uint32_t block,
   }
   if (gaps.meeting != gaps.used) min_lower_ = std::min(min_lower_, limit_);
   BallSlabPair found[kBlockWidth];
-  std::uint32_t place[kBlockWidth], count = 0;
+  detail::LeastLast order;
   for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
     const float sum = gaps.gap[lane] + reach_, gap = sum - std::fabs(sum) * kSumRounding;
     const float lower = pair.lower > 0 ? std::max(gap, pair.lower) : gap;
-    std::uint32_t before = count;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const std::uint32_t nearer = found[i].lower < lower;
-      place[i] += nearer;
-      before -= nearer;
-    }
     const std::uint32_t node = block * kBlockWidth + lane;
-    place[count] = before;
-    found[count++] = second ? BallSlabPair{lower, pair.a, node} : BallSlabPair{lower, node, pair.b};
+    found[order.count] = second ? BallSlabPair{lower, pair.a, node} : BallSlabPair{lower, node, pair.b};
+    order.add(lower);
   }
-  for (std::uint32_t i = 0; i < count; ++i) stack_[stack_size_ + place[i]] = found[i];
-  stack_size_ += count;
+  for (std::uint32_t i = 0; i < order.count; ++i) stack_[stack_size_ + order.place[i]] = found[i];
+  stack_size_ += order.count;
 }
 
 // The nearest ones first: each found makes fewer of the others worth a test.

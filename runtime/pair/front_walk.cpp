@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "least_last.h"
 #include "vector_functions.h"
 
 // Rounding of gaps that close. A gap was certified, rounding included, for the second body as the double pose placed it
@@ -216,9 +217,6 @@ void FrontWalk::expand(const NodePair& pair, bool open_second) noexcept {
                      margin, axes);
   }
   tracker_->spend(static_cast<std::uint64_t>(std::bit_width(axes.used)));
-  // Places as NarrowPhase finds them.
-  std::uint32_t nodes[kBlockWidth], place[kBlockWidth], count = 0;
-  float gap[kBlockWidth];
   const float sign = open_second ? 1.0f : -1.0f;
   for (std::uint32_t left = axes.used & ~axes.meeting; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
@@ -226,21 +224,17 @@ void FrontWalk::expand(const NodePair& pair, bool open_second) noexcept {
     add(open_second ? pair.a : node, open_second ? node : pair.b, axes.gap[lane],
         {sign * axes.ux[lane], sign * axes.uy[lane], sign * axes.uz[lane]});
   }
+  std::uint32_t nodes[kBlockWidth];
+  detail::LeastLast order;
   for (std::uint32_t left = axes.meeting; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-    const float own = axes.gap[lane];
-    std::uint32_t before = count;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const std::uint32_t deeper = gap[i] < own;
-      place[i] += deeper;
-      before -= deeper;
-    }
-    place[count] = before, gap[count] = own, nodes[count++] = block * kBlockWidth + lane;
+    nodes[order.count] = block * kBlockWidth + lane;
+    order.add(axes.gap[lane]);
   }
-  for (std::uint32_t i = 0; i < count; ++i) {
-    stack_[stack_size_ + place[i]] = open_second ? NodePair{pair.a, nodes[i]} : NodePair{nodes[i], pair.b};
+  for (std::uint32_t i = 0; i < order.count; ++i) {
+    stack_[stack_size_ + order.place[i]] = open_second ? NodePair{pair.a, nodes[i]} : NodePair{nodes[i], pair.b};
   }
-  stack_size_ += count;
+  stack_size_ += order.count;
 }
 
 void FrontWalk::add(std::uint32_t a, std::uint32_t b, float gap, const Axis& u) noexcept {

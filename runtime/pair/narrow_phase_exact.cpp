@@ -2,6 +2,7 @@
 #include <bit>
 
 #include "budget_tracker.h"
+#include "least_last.h"
 #include "orchard/runtime/narrow_phase.h"
 #include "tree/ball_slab_block.h"
 #include "tree/node_box.h"
@@ -58,24 +59,17 @@ inline bool NarrowPhase::find_children(const NodePair& pair, std::uint32_t a, st
 inline void NarrowPhase::push_children(const NodePair& pair, bool second, std::uint32_t block,
                                        const BoxGaps& gaps) noexcept {
   pair_tests_ += static_cast<std::uint64_t>(std::bit_width(gaps.used));
-  // Each one's place by comparing all: sorting them takes branches that nothing foresees.
-  std::uint32_t nodes[kBlockWidth], place[kBlockWidth], count = 0;
-  float gap[kBlockWidth];
+  std::uint32_t nodes[kBlockWidth];
+  detail::LeastLast order;
   for (std::uint32_t left = gaps.meeting; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-    const float own = gaps.gap[lane];
-    std::uint32_t before = count;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const std::uint32_t deeper = gap[i] < own;
-      place[i] += deeper;
-      before -= deeper;
-    }
-    place[count] = before, gap[count] = own, nodes[count++] = block * kBlockWidth + lane;
+    nodes[order.count] = block * kBlockWidth + lane;
+    order.add(gaps.gap[lane]);
   }
-  for (std::uint32_t i = 0; i < count; ++i) {
-    stack_[stack_size_ + place[i]] = second ? NodePair{pair.a, nodes[i]} : NodePair{nodes[i], pair.b};
+  for (std::uint32_t i = 0; i < order.count; ++i) {
+    stack_[stack_size_ + order.place[i]] = second ? NodePair{pair.a, nodes[i]} : NodePair{nodes[i], pair.b};
   }
-  stack_size_ += count;
+  stack_size_ += order.count;
 }
 
 // False if interrupted. Ends at the first pair of triangles that meet.
