@@ -2,7 +2,8 @@
 include(GNUInstallDirs)
 
 # The flags that orchard's own code must compile cleanly with. The same bytes out on every machine: nothing is fused into
-# one rounding (-ffp-contract=off; MSVC does not unless it is told to), nothing is kept in wider registers (x87).
+# one rounding (-ffp-contract=off; MSVC does not unless it is told to), nothing is kept in wider registers (x87). Nobody
+# reads errno after a square root: without it (-fno-math-errno) loops with roots are compiled to vectors, to the same bits.
 add_library(orchard_flags INTERFACE)
 target_compile_features(orchard_flags INTERFACE cxx_std_20)
 if(CMAKE_CXX_COMPILER_FRONTEND_VARIANT STREQUAL "MSVC" OR MSVC)
@@ -14,7 +15,7 @@ if(CMAKE_CXX_COMPILER_FRONTEND_VARIANT STREQUAL "MSVC" OR MSVC)
   set(orchard_werror /WX)
 else()
   target_compile_options(orchard_flags INTERFACE
-    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -ffp-contract=off)
+    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -ffp-contract=off -fno-math-errno)
   if(CMAKE_SIZEOF_VOID_P EQUAL 4 AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(i.86|x86|x86_64|AMD64)$")
     target_compile_options(orchard_flags INTERFACE -msse2 -mfpmath=sse)
   endif()

@@ -10,7 +10,7 @@ namespace orchard::detail {
 namespace {
 
 // Large balls need few samples for each to be judged by.
-constexpr Index kEnoughSamplesPerBall = 64, kFewestSamples = 4000;
+constexpr Index kEnoughSamplesPerBall = 64, kFewestSamples = 2000;
 constexpr int kShrinks = 12;             // of the ball that touches the surface in a sample
 constexpr double kEmpty = 1 - 1e-3;      // a ball whose centre is as far from the surface, in radii, touches it
 constexpr double kSmallestStart = 0.01;  // radius of such a ball, in R

@@ -11,7 +11,8 @@ namespace orchard::detail {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kRounds = 2, kRoundsOfFew = 3;  // of sharing out
+constexpr float kBarred = std::numeric_limits<float>::infinity();  // what a ball may not own gets it no less loose
+constexpr int kRounds = 2, kRoundsOfFew = 3;                       // of sharing out
 constexpr int kFirstEvaluations = 5, kLastEvaluations = 12;
 constexpr double kWantedShare = 0.7;  // of trials that begin where the caller wants; the others at any loose ball
 constexpr double kMoveShare = 0.35;   // of trials that move a cheap ball to a dear place
@@ -34,26 +35,29 @@ Random after(Index draws, Random random) {
   return random;
 }
 
-// What a trial's ball is offered: the samples that were given up, and how loose the balls so far would get by each.
+// What a trial's ball is offered: the samples that were given up, and how loose the balls so far would get by each. In
+// single precision: which of two balls gets as good as equally loose by a sample does not matter.
 struct Offered {
   std::size_t count;
-  const double *x, *y, *z;
-  const double* barred;  // 0, or infinity for samples that the ball may not own
-  double *min, *owner;   // the least looseness, and the ball (whole numbers, as wide as the rest)
+  const float *x, *y, *z;
+  const float* barred;  // 0, or infinity for samples that the ball may not own
+  float *min, *owner;   // the least looseness, and the ball (whole numbers, as wide as the rest)
 };
 
 // Gives the ball the samples that it gets less loose by than the balls so far; looseness as looseness_with() has it.
 inline void divide(const FittedBall& ball, Index number, const Offered& to) {
-  const double cx = ball.center.x(), cy = ball.center.y(), cz = ball.center.z(), distance = ball.center_distance;
-  const double* __restrict x = to.x, * __restrict y = to.y, * __restrict z = to.z, * __restrict barred = to.barred;
-  double* __restrict min = to.min, * __restrict owner = to.owner;
+  const auto cx = static_cast<float>(ball.center.x()), cy = static_cast<float>(ball.center.y()),
+             cz = static_cast<float>(ball.center.z()), distance = static_cast<float>(ball.center_distance);
+  const auto own = static_cast<float>(number);
+  const float* __restrict x = to.x, * __restrict y = to.y, * __restrict z = to.z, * __restrict barred = to.barred;
+  float* __restrict min = to.min, * __restrict owner = to.owner;
   for (std::size_t k = 0; k < to.count; ++k) {
-    const double dx = x[k] - cx, dy = y[k] - cy, dz = z[k] - cz;
-    const double loose = std::sqrt(dx * dx + (dy * dy + dz * dz)) + distance + barred[k];
-    const double old = min[k], owned = owner[k];  // both are read in any case, so that the loop has no branch
+    const float dx = x[k] - cx, dy = y[k] - cy, dz = z[k] - cz;
+    const float loose = std::sqrt(dx * dx + (dy * dy + dz * dz)) + distance + barred[k];
+    const float old = min[k], owned = owner[k];  // both are read in any case, so that the loop has no branch
     const bool less = loose < old;
     min[k] = less ? loose : old;
-    owner[k] = less ? number : owned;
+    owner[k] = less ? own : owned;
   }
 }
 
@@ -218,38 +222,38 @@ class Proposal {
     for (auto* numbers : {&x_, &y_, &z_, &min_, &owner_}) numbers->resize(count);
     for (Eigen::Index k = 0; k < count; ++k) {
       const Point& p = samples_.points[freed_[static_cast<std::size_t>(k)]];
-      x_[k] = p.x(), y_[k] = p.y(), z_[k] = p.z();
+      x_[k] = static_cast<float>(p.x()), y_[k] = static_cast<float>(p.y()), z_[k] = static_cast<float>(p.z());
     }
   }
 
   // For each sample given up, 0 if it lies in a path region, else infinity.
-  const Eigen::ArrayXd& barred(Index path_region) {
+  const Eigen::ArrayXf& barred(Index path_region) {
     const auto known =
         std::find_if(barred_.begin(), barred_.end(), [&](const auto& b) { return b.first == path_region; });
     if (known != barred_.end()) return known->second;
-    Eigen::ArrayXd& bars = barred_.emplace_back(path_region, Eigen::ArrayXd(x_.size())).second;
+    Eigen::ArrayXf& bars = barred_.emplace_back(path_region, Eigen::ArrayXf(x_.size())).second;
     for (Eigen::Index k = 0; k < bars.size(); ++k)
-      bars[k] = regions_.holds_sample(path_region, freed_[static_cast<std::size_t>(k)]) ? 0 : kInfinity;
+      bars[k] = regions_.holds_sample(path_region, freed_[static_cast<std::size_t>(k)]) ? 0 : kBarred;
     return bars;
   }
 
   // Has each sample go to the ball that gets least loose by it.
   bool divide_freed() {
-    min_.setConstant(kInfinity);
+    min_.setConstant(kBarred);
     for (Index i = 0; i < trial_.balls.size(); ++i) {
       const LevelBall& ball = trial_.balls[i];
-      const double* bars = barred(ball.path_region).data();
+      const float* bars = barred(ball.path_region).data();
       (wide() ? divide_wide : divide)(
           ball, i, {freed_.size(), x_.data(), y_.data(), z_.data(), bars, min_.data(), owner_.data()});
     }
-    if (!(min_ < kInfinity).all()) return false;
+    if (!(min_ < kBarred).all()) return false;
     for (auto& list : trial_.needs) list.clear();
     looseness_.assign(trial_.balls.size(), -kInfinity);
     for (std::size_t k = 0; k < freed_.size(); ++k) {
       const auto at = static_cast<Eigen::Index>(k);
       const auto owner = static_cast<std::size_t>(owner_[at]);
       trial_.needs[owner].push_back(samples_.points[freed_[k]]);
-      looseness_[owner] = std::max(looseness_[owner], min_[at]);
+      looseness_[owner] = std::max(looseness_[owner], static_cast<double>(min_[at]));
     }
     return true;
   }
@@ -263,9 +267,9 @@ class Proposal {
   LevelTrial trial_;
   BallFitter fitter_;
   std::vector<Index> freed_;                              // samples that only the chosen balls hold
-  Eigen::ArrayXd x_, y_, z_;                              // where they are
-  std::vector<std::pair<Index, Eigen::ArrayXd>> barred_;  // by path region
-  Eigen::ArrayXd min_, owner_;                            // as in Offered
+  Eigen::ArrayXf x_, y_, z_;                              // where they are
+  std::vector<std::pair<Index, Eigen::ArrayXf>> barred_;  // by path region
+  Eigen::ArrayXf min_, owner_;                            // as in Offered
   std::vector<double> looseness_;                         // of the trial's balls, with what each owns
 };
 

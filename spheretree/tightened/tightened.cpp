@@ -16,13 +16,13 @@ namespace {
 detail::Work work_for(Effort effort) {
   switch (effort) {
     case Effort::low:
-      return {0.25, 2, 0, 8, {1, 1}};
+      return {0.25, 4, 0, 8, {1, 1}};
     case Effort::standard:
-      return {1, 6, 0, 48, {2, 1}};
+      return {0.7, 14, 0, 48, {6, 1}};
     case Effort::high:
-      return {3, 10, 12, 96, {6, 2}};
+      return {3, 24, 12, 96, {12, 2}};
   }
-  return {1, 6, 0, 48, {2, 1}};
+  return {0.7, 14, 0, 48, {6, 1}};
 }
 
 }  // namespace

@@ -26,12 +26,17 @@ constexpr Index kSamplesPerBall = 8;
 constexpr double kWorthALevel = 1.5;
 // The search in closed levels looks at every triangle in reach: of fine meshes it gets less.
 constexpr double kFewTriangles = 4000;
-constexpr int kTighteningRounds = 4;   // of closing a level, after those that search
+constexpr int kTighteningRounds = 8;   // of closing a level, after those that search
 constexpr double kSearchShare = 0.15;  // of the trials, in each searching round
+// Levels of so few balls have hundreds of samples for each, which hide little: a part of the searching rounds will do.
+constexpr Index kFewBalls = 16;
+constexpr double kShareForFewBalls = 0.25;
 
 // The starts of a first level are tried on so many samples, and with so many trials for each ball.
 constexpr Index kExploringSamples = 800, kExploringTrials = 8;
-constexpr Index kExploredBalls = 800;  // in all starts together, at most: with many balls, one start is like another
+// In all starts together that are tried, and that are carried through, at most: with many balls, one start is like
+// another. Two are carried through where as many are tried.
+constexpr Index kExploredBalls = 800, kCarriedBalls = 48;
 
 constexpr double kLogOfPlaces =
     18;  // binary, of the places on the last level of a tree whose nodes all had so many children
@@ -52,6 +57,24 @@ Index trials_for(Index balls, const Work& work) {
   return static_cast<Index>(search_share(balls) * work.trials * (300 + 9.0 * balls));
 }
 
+int searching_rounds(Index balls, const Work& work) {
+  return static_cast<int>((balls <= kFewBalls ? kShareForFewBalls : search_share(balls)) * work.searching_rounds);
+}
+
+// How many starts of the first level are tried on few samples.
+Index tried_starts(Index balls, const Work& work) {
+  return std::clamp<Index>(kExploredBalls / std::max<Index>(1, balls), 1, work.explored);
+}
+
+// How many starts of a level are carried through.
+Index carried_starts(Index level, Index balls, const Work& work) {
+  if (level > std::size(work.starts)) return 1;
+  const Index starts = work.starts[level - 1];
+  if (level > 1) return starts;
+  const Index worthwhile = std::max<Index>(2, kCarriedBalls / std::max<Index>(1, balls));
+  return std::min({starts, worthwhile, tried_starts(balls, work)});
+}
+
 // As many as it is worth. Yet the text format has room for as many below every node: it is to stay small.
 Index max_children(const TightenOptions& options) {
   if (!options.spheres.empty()) return kMaxFanOut;
@@ -59,14 +82,14 @@ Index max_children(const TightenOptions& options) {
   return std::max(2 * options.branching, std::min(kMaxFanOut, roomy));
 }
 
-// High powers at the top: what is loose there is loose all the way down. The more trials, the lower the sum, at the
-// cost of the largest ball unless the cap is lower too.
-LevelCost cost_for(Objective objective, Index level, Index depth, Effort effort) {
+// High powers at the top: what is loose there is loose all the way down. Low ones below keep the mean low; the cap, the
+// largest ball, and the size, the volume.
+LevelCost cost_for(Objective objective, Index level, Index depth) {
   switch (objective) {
     case Objective::balanced:
-      if (level == 1) return {.power = 8};
-      if (level < depth) return {.power = 3, .cap = effort == Effort::high ? 1.6 : 2.0};
-      return {.power = 2, .cap = 2.5};
+      if (level == 1) return {.power = 8, .size_power = 0.3};
+      if (level < depth) return {.power = 1.8, .cap = 1.9, .size_power = 0.4};
+      return {.power = 1.2, .cap = 2.4, .size_power = 0.7};
     case Objective::maximum:
       return {.power = 10};
     case Objective::mean:
@@ -139,11 +162,11 @@ bool Tightener::build_level(Index level, std::vector<TightenReport::Level>& repo
   LevelOptions level_options;
   level_options.balls = static_cast<Index>(wanted);
   level_options.max_children = level == 1 ? level_options.balls : max_children(options_);
-  level_options.cost = cost_for(options_.objective, level, options_.depth, options_.effort);
+  level_options.cost = cost_for(options_.objective, level, options_.depth);
   level_options.level = level;
   level_options.seed = options_.seed;
 
-  const Index starts = level <= std::size(work_.starts) ? work_.starts[level - 1] : 1;
+  const Index starts = carried_starts(level, level_options.balls, work_);
   std::vector<std::vector<LevelBall>> from(starts);
   if (level == 1) from = promising_starts(level_options, starts);
   std::vector<Candidate> all = candidates(level_options, std::move(from), [&](std::string_view, double fraction) {
@@ -173,7 +196,7 @@ void Tightener::take(Candidate best) {
 
 // Many starts, each searched a little on few samples; the tightest of them.
 std::vector<std::vector<LevelBall>> Tightener::promising_starts(LevelOptions options, Index wanted) const {
-  const Index tried = std::min(work_.explored, kExploredBalls / std::max<Index>(1, options.balls));
+  const Index tried = tried_starts(options.balls, work_);
   if (tried <= wanted) return std::vector<std::vector<LevelBall>>(wanted);
   PartialTree partial = partial_;
   partial.add_level();
@@ -252,7 +275,7 @@ void Tightener::search_and_finish(LevelSolver& solver, const LevelOptions& optio
   const double fineness = static_cast<double>(surface_.mesh().triangles.size()) / kFewTriangles;
   const double share = search_share(options.balls);
   const double closed_trials = share * work_.closed_trials / std::max(1.0, fineness);
-  FinishOptions finish{static_cast<int>(share * work_.searching_rounds),
+  FinishOptions finish{searching_rounds(options.balls, work_),
                        share < kTighteningShare ? 0 : kTighteningRounds,
                        share < kTightenedTwiceShare ? 1 : 2,
                        static_cast<Index>(kSearchShare * trials),

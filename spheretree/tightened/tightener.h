@@ -15,7 +15,7 @@ struct Work {
   int searching_rounds;  // of closing a level: those in which the search goes on
   double closed_trials;  // for each ball of a level, of the search in closed levels
   Index explored;        // starts of the first level that are tried on a few samples, if it has few balls
-  Index starts[2];       // of the first level, of the second, that are carried through
+  Index starts[2];       // of the first level, if it has few balls, and of the second, that are carried through
 };
 
 // Builds a tree level by level, each on the balls of the one above.
