@@ -13,7 +13,7 @@ enum class Effort { low, standard, high };
 // What is to be low on every level: the largest inaccuracy, the mean one, the volume outside the object, or a balance.
 // Each is a sum over the level of powers of the inaccuracy: `maximum` has a high power, `mean` a low one, `volume` has
 // a power of the radius as well, and `balanced` a high power at the top and low ones below, where they rise steeply
-// beyond two or three times the mean.
+// beyond about twice the mean, and a small power of the radius.
 enum class Objective { balanced, maximum, mean, volume };
 
 inline constexpr Index kMaxBranching = 1024;
