@@ -117,6 +117,9 @@ class Cavity {
   // Deletes all vertices, connected with the first, whose sign is certainly positive. True if no sign was in doubt and
   // the territory was not left.
   bool delete_nearer(Index start);
+  // The same whatever the territory, as long as the new point sees all of the boundary: false where it was found on the
+  // way that it does not, and nothing but end() is to be called then. `certain`: whether no sign was in doubt.
+  bool delete_nearer_in_sight(Index start, bool& certain);
   // Deletes a vertex whatever may come of it.
   void delete_vertex(Index v) {
     workspace_.set_mark(v, Mark::deleted);
@@ -209,9 +212,11 @@ class Cavity {
   void place_spheres(std::size_t first, std::size_t end, FourQualities& qualities);
   bool place_vertex(std::size_t f, bool has_sphere, const PlacedQuality& placed);
   bool leave_territory(Index blocker);
-  bool delete_nearer_around(std::size_t first);
-  bool delete_nearer_one_by_one(std::size_t first);
-  bool delete_nearer_by_four(std::size_t first);
+  bool is_turned_away(Index v, unsigned i) const;
+  // Around those of the deleted vertices from the first to the end.
+  bool delete_nearer_around(std::size_t first, std::size_t end);
+  bool delete_nearer_one_by_one(std::size_t first, std::size_t end);
+  bool delete_nearer_by_four(std::size_t first, std::size_t end);
   bool is_nearer_after_all(Index u, bool& certain);
   unsigned nearer_after_all(const std::array<Index, 4>& u, unsigned which, bool& certain);
   // The infinite point, being the highest number, wraps around to the first place.
