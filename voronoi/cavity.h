@@ -154,7 +154,7 @@ class Cavity {
   // Joins the new vertices with each other; false unless the boundary is closed, with two facets on each edge and the
   // number of facets that a sphere has.
   bool link_vertices();
-  // Whether the boundary is one piece and no point but the new one lies within. After link_vertices.
+  // Whether the boundary is one piece and no point but the new one lies within. After place_vertices and link_vertices.
   bool is_ball();
   // Whether no new vertex is moved, farther than does harm, by the new point's being in the sphere of an undeleted
   // neighbour. That a doubtful vertex was kept is magnified where the new point is low above the facet. After
@@ -181,13 +181,13 @@ class Cavity {
   template <unsigned kPoints, unsigned kStride>
   struct LinkTable {
     static constexpr unsigned kFacetBits = std::bit_width(2 * kPoints - 1);
-    static constexpr std::uint32_t kFacetMask = (1u << kFacetBits) - 1;
-    std::vector<std::uint32_t> entries;
-    std::uint32_t round = 0;
+    static constexpr unsigned kFacetMask = (1u << kFacetBits) - 1;
+    std::vector<std::uint16_t> entries;
+    unsigned round = 0;
 
     // The next round, in the place where it is kept.
-    std::uint32_t begin() {
-      if (entries.empty() || ++round >> (32 - kFacetBits) != 0) {
+    unsigned begin() {
+      if (entries.empty() || ++round >> (16 - kFacetBits) != 0) {
         entries.assign(std::size_t{kPoints} * kStride, 0);
         round = 1;
       }
@@ -237,6 +237,7 @@ class Cavity {
   Index new_point_ = kNone;
   Point position_ = Point::Zero();
   Placing worst_ = Placing::good;
+  bool visible_ = false;            // all facets
   List deleted_, seen_, boundary_;  // boundary: 4 * deleted vertex + the neighbour across
   bool is_boundary_noted_ = false;  // by delete_nearer(), and nothing was deleted since
   bool undoubted_ = false;          // and no sign was in doubt, nor is the new point on the sphere of what is kept
