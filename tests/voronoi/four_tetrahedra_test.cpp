@@ -63,7 +63,7 @@ TEST(FourTetrahedra, AreLookedAtWithTheSameBitsAsOneByOne) {
       centers[i] = &center[i];
       for (unsigned k = 0; k < 4; ++k) four[k][i] = &corners[i][k];
     }
-    const std::array<double, 4> off = off_four_circumcenters(centers, four);
+    const FourOffCenters off = off_four_circumcenters(centers, four);
     std::array<Vector, 4> sharp;
     const unsigned found = four_sharp_circumcenters(four, sharp);
     const FourVolumes volumes = four_volumes(four);
