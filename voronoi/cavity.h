@@ -194,7 +194,7 @@ class Cavity {
       return round << kFacetBits;
     }
   };
-  static constexpr unsigned kFewPoints = 64, kManyPoints = 256;
+  static constexpr unsigned kFewPoints = 64, kManyPoints = 512;
 
   // The number of a local point, a new one if it has none yet; without branches, after local_points_.ensure_room().
   Index local(Index point) {

@@ -496,14 +496,19 @@ class Certifier {
   }
   bool are_listed_oriented(const BatchList& list, const BatchLooks& seen) {
     BatchList rest;  // places in the list
+    double given = 0, max_volume = found_.max_volume;
+    Index fattest = found_.fattest;
     for (Index at = 0; at < list.items().size(); ++at) {
       const bool is_positive = seen.negative[at] < -seen.negative_bound[at], is_near = seen.apart[at] <= kTold * max_;
-      const bool good = is_positive & is_near;
+      const bool good = is_positive & is_near, is_fatter = good & (-seen.negative[at] > max_volume);
       rest.push_if(at, !good);
-      if (!good) continue;
-      note_volume(list.items()[at], seen.negative[at]);
-      found_.given = std::max(found_.given, seen.apart[at]);
+      given = std::max(given, good ? seen.apart[at] : 0);
+      max_volume = is_fatter ? -seen.negative[at] : max_volume;
+      fattest = is_fatter ? list.items()[at] : fattest;
     }
+    found_.given = std::max(found_.given, given);
+    found_.max_volume = max_volume;
+    found_.fattest = fattest;
     bool good = true;
     rest.for_each_four([&](std::size_t first, const std::array<Index, 4>& four) {
       std::array<Index, 4> v;
