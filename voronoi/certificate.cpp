@@ -59,6 +59,9 @@ constexpr int kRounds = 24;
 // How many doubts are still local ones, those of all rounds together: more are made anew sooner than mended.
 constexpr std::size_t kMaxDoubts = 16, kMaxDoubtsOneIn = 64;
 
+// Facets that mending may look at, for each point and beside those: what takes more is made anew sooner.
+constexpr std::size_t kMendingForEach = 4, kMending = 1u << 16;
+
 // The edge of the hull between the facets of a vertex at infinity and of its neighbour `slot`.
 struct HullEdge {
   Index v, u;
@@ -187,7 +190,8 @@ class Certifier {
       const std::vector<Doubt> doubts = std::exchange(found_.doubts, {});
       const std::vector<Index> changed = mender_->mend(doubts, round);
       changed_.insert(changed_.end(), changed.begin(), changed.end());
-      if (!look_at_changed(changed)) return false;
+      if (!look_at_changed(changed) || mender_->work() > kMending + kMendingForEach * workspace_.points.size())
+        return false;
       looks_at_changed_ = false;
       if (found_.doubts.empty() && !look_at_hull()) return false;
     }
@@ -552,8 +556,8 @@ class Certifier {
   }
   // The same by how far its forming points are off its sphere: often a much better bound, which is noted then.
   double from_seen_sphere(Index v) {
-    return note_off(v, off_circumcenter(workspace_.vertices[v].center, corner(v, 3), corner(v, 0), corner(v, 1),
-                                        corner(v, 2)));
+    return note_off(
+        v, off_circumcenter(workspace_.vertices[v].center, corner(v, 3), corner(v, 0), corner(v, 1), corner(v, 2)));
   }
   double note_off(Index v, const OffCenter& seen) {
     const double apart = apart_by(seen.off, std::sqrt(workspace_.vertices[v].radius));
@@ -562,8 +566,8 @@ class Certifier {
   }
   // The same with more digits, and where it is too far, after a step to its own sphere, if that is near enough.
   double from_moved_sphere(Index v) {
-    const OffCenter seen = sharply_off_circumcenter(workspace_.vertices[v].center, corner(v, 3), corner(v, 0),
-                                                    corner(v, 1), corner(v, 2));
+    const OffCenter seen =
+        sharply_off_circumcenter(workspace_.vertices[v].center, corner(v, 3), corner(v, 0), corner(v, 1), corner(v, 2));
     const double before = note_off(v, seen);
     if (before <= kTold * max_) return before;
     const Point center = workspace_.vertices[v].center - seen.step;
