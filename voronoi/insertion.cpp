@@ -82,6 +82,7 @@ bool Inserter::insert_deferred() {
   while (!deferred_.empty()) {
     const std::size_t before = deferred_.size();
     const std::size_t inserted = std::erase_if(deferred_, [this](Index point) { return insert_now(point); });
+    if (is_lost()) return false;
     const bool many = before > kManyDeferred;
     if (inserted > (many ? before / kWorthRepeating : 0)) continue;
     // One goes in whatever it overrules, and others may fit then; of many, each is tried only once more.
