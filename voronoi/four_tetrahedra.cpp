@@ -137,8 +137,7 @@ ORCHARD_FUSED FourOffCenters off_centers(const std::array<const Point*, 4>& cent
   const FourVectors first = a - q, middle = b - q, last = c - b;
   const FourVectors from_q = center - q, from_a = center - a, from_b = center - b, from_c = center - c;
   FourVectors power{dot(first, from_q + from_a), dot(middle, from_q + from_b), dot(last, from_b + from_c)};
-  if constexpr (kSharp)
-    power = {sharp_powers(center, a, q), sharp_powers(center, b, q), sharp_powers(center, c, b)};
+  if constexpr (kSharp) power = {sharp_powers(center, a, q), sharp_powers(center, b, q), sharp_powers(center, c, b)};
   const __m256d squared_radius =
       _mm256_max_pd(_mm256_max_pd(squared(from_q), squared(from_a)), _mm256_max_pd(squared(from_b), squared(from_c)));
   const __m256d ff = squared(first), mm = squared(middle), ll = squared(last);

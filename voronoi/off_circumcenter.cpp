@@ -36,9 +36,9 @@ OffCenter off_center(const Point& center, const Point& q, const Point& p1, const
   if (with_c < std::min(with_a, with_b)) std::swap(a, c);
   const Vector first = a - q, middle = b - q, last = c - b;
   const Vector from_q = center - q, from_a = center - a, from_b = center - b, from_c = center - c;
-  const Vector power =
-      kSharp ? Vector(sharp_power(center, a, q), sharp_power(center, b, q), sharp_power(center, c, b))
-             : Vector(first.dot(from_q + from_a), middle.dot(from_q + from_b), last.dot(from_b + from_c));
+  const Vector power = kSharp
+                           ? Vector(sharp_power(center, a, q), sharp_power(center, b, q), sharp_power(center, c, b))
+                           : Vector(first.dot(from_q + from_a), middle.dot(from_q + from_b), last.dot(from_b + from_c));
   const double squared_radius = std::max(std::max(from_q.squaredNorm(), from_a.squaredNorm()),
                                          std::max(from_b.squaredNorm(), from_c.squaredNorm()));
   const double ff = first.squaredNorm(), mm = middle.squaredNorm(), ll = last.squaredNorm();
@@ -51,8 +51,8 @@ OffCenter off_center(const Point& center, const Point& q, const Point& p1, const
   const double length = sum.norm(), error = 16 * kRounding * (power.cwiseAbs().dot(products) + powers_error);
   const double of_volume = volume6.bound / std::abs(volume6.value) + 8 * kRounding;
   constexpr double kNone = std::numeric_limits<double>::infinity();
-  return {divisor > 0 ? (length + error) / divisor : kNone, divisor > 0 ? (error + length * of_volume) / divisor : kNone,
-          sum * (0.5 / volume6.value)};
+  return {divisor > 0 ? (length + error) / divisor : kNone,
+          divisor > 0 ? (error + length * of_volume) / divisor : kNone, sum * (0.5 / volume6.value)};
 }
 
 // With the fused operation as one instruction instead of a call.
