@@ -384,7 +384,7 @@ class Certifier {
     seen.apart = from_told_sphere(v);
     const double enough = kTold * max_;
     const bool can_be_seen = seen.negative.sign() == Sign::negative && !workspace_.shares_sphere(v);
-    if (can_be_seen && seen.apart > enough && seen.apart < kHopelesslyTold * enough)
+    if (can_be_seen && seen.apart > enough && seen.apart <= kHopelesslyTold * enough)
       seen.apart = std::min(seen.apart, from_seen_sphere(v));
     if (can_be_seen && seen.apart > enough) seen.apart = std::min(seen.apart, from_moved_sphere(v));
     if (seen.apart > enough) seen.has_center = own_center(v, seen.center);
@@ -466,12 +466,12 @@ class Certifier {
             });
   }
   // see(vertices, their places in the list, their centers) for four of those at once that are too far from their own
-  // spheres as far as was seen, but less than that far.
+  // spheres as far as was seen, but no more than that far.
   template <class See>
   void see_far(const BatchList& list, const BatchLooks& seen, double hopeless, const See& see) {
     BatchList far;  // places in the list
     for (Index at = 0; at < list.items().size(); ++at) {
-      const bool is_open = (seen.apart[at] > kTold * max_) & (seen.apart[at] < hopeless),
+      const bool is_open = (seen.apart[at] > kTold * max_) & (seen.apart[at] <= hopeless),
                  is_positive = seen.negative[at] < -seen.negative_bound[at],
                  shares = workspace_.shares_sphere(list.items()[at]);
       far.push_if(at, is_open & is_positive & !shares);
