@@ -171,7 +171,7 @@ bool Cavity::place_vertices() {
       worst_ = std::max(worst_, facets_[first + lane].placing);
     }
   }
-  return visible;
+  return visible_ = visible;
 }
 
 inline void Cavity::note_forming_points(std::size_t f) {
@@ -226,24 +226,24 @@ bool Cavity::link_vertices() {
 template <unsigned kPoints, unsigned kStride>
 bool Cavity::link_by(LinkTable<kPoints, kStride>& links) {
   using Table = LinkTable<kPoints, kStride>;
-  const std::uint32_t round = links.begin();
-  std::uint32_t* const table = links.entries.data();
+  const unsigned round = links.begin();
+  std::uint16_t* const table = links.entries.data();
   bool good = true;
-  for (std::uint32_t f = 0; f < facets_.size(); ++f) {
+  for (unsigned f = 0; f < facets_.size(); ++f) {
     const auto& [a, b, c] = facets_[f].local;
     for (const Index edge : {b * kStride + c, c * kStride + a, a * kStride + b}) {
       good &= (table[edge] ^ round) > Table::kFacetMask;  // no other facet has it in this direction
-      table[edge] = round | f;
+      table[edge] = static_cast<std::uint16_t>(round | f);
     }
   }
-  for (std::uint32_t f = 0; f < facets_.size(); ++f) {
+  for (unsigned f = 0; f < facets_.size(); ++f) {
     const Facet& facet = facets_[f];
     const auto& [a, b, c] = facet.local;
     const auto& other = kOthers[facet.slot];
     auto& neighbors = fresh_[f].neighbors;
     neighbors[facet.slot] = f;
-    const std::uint32_t across_a = table[c * kStride + b] ^ round, across_b = table[a * kStride + c] ^ round,
-                        across_c = table[b * kStride + a] ^ round;
+    const unsigned across_a = table[c * kStride + b] ^ round, across_b = table[a * kStride + c] ^ round,
+                   across_c = table[b * kStride + a] ^ round;
     good &= (across_a | across_b | across_c) <= Table::kFacetMask;
     neighbors[other[0]] = across_a & Table::kFacetMask;
     neighbors[other[1]] = across_b & Table::kFacetMask;
@@ -298,12 +298,19 @@ bool Cavity::link_by_lists() {
 // Without branches: on grids nearly every point comes here.
 bool Cavity::is_ball() {
   bool loses_point = false;
-  for (Index v : deleted_.items())
-    for (Index point : workspace_.vertices[v].forming_points)
-      loses_point |= (known_local(point) == kNone) & (point != new_point_);
+  const Index known_new = std::exchange(known_local(new_point_), Index{0});  // that is not lost
+  for (const Index v : deleted_.items()) {
+    const auto& [a, b, c, d] = workspace_.vertices[v].forming_points;
+    loses_point |=
+        (known_local(a) == kNone) | (known_local(b) == kNone) | (known_local(c) == kNone) | (known_local(d) == kNone);
+  }
+  known_local(new_point_) = known_new;
   if (loses_point) return false;
   // Two facets on each edge and the right number of facets for one sphere: several pieces, or a piece with a handle,
-  // would have to touch themselves in points to get there, so one piece is a sphere that does not.
+  // would have to touch themselves in points to get there, so one piece is a sphere that does not. And where the new
+  // point sees every facet, a piece fills its view once at least, and all of them together once, for tetrahedra do not
+  // overlap: so there is one. That says nothing of facets at infinity.
+  if (visible_ && known_local(kInfinitePoint) == kNone) return true;
   return facets_.size() <= 64 ? is_one_small_piece() : is_one_piece();
 }
 

@@ -117,6 +117,9 @@ class Cavity {
   // Deletes all vertices, connected with the first, whose sign is certainly positive. True if no sign was in doubt and
   // the territory was not left.
   bool delete_nearer(Index start);
+  // The same whatever the territory, as long as the new point sees all of the boundary: false where it was found on the
+  // way that it does not, and nothing but end() is to be called then. `certain`: whether no sign was in doubt.
+  bool delete_nearer_in_sight(Index start, bool& certain);
   // Deletes a vertex whatever may come of it.
   void delete_vertex(Index v) {
     workspace_.set_mark(v, Mark::deleted);
@@ -151,7 +154,7 @@ class Cavity {
   // Joins the new vertices with each other; false unless the boundary is closed, with two facets on each edge and the
   // number of facets that a sphere has.
   bool link_vertices();
-  // Whether the boundary is one piece and no point but the new one lies within. After link_vertices.
+  // Whether the boundary is one piece and no point but the new one lies within. After place_vertices and link_vertices.
   bool is_ball();
   // Whether no new vertex is moved, farther than does harm, by the new point's being in the sphere of an undeleted
   // neighbour. That a doubtful vertex was kept is magnified where the new point is low above the facet. After
@@ -178,20 +181,20 @@ class Cavity {
   template <unsigned kPoints, unsigned kStride>
   struct LinkTable {
     static constexpr unsigned kFacetBits = std::bit_width(2 * kPoints - 1);
-    static constexpr std::uint32_t kFacetMask = (1u << kFacetBits) - 1;
-    std::vector<std::uint32_t> entries;
-    std::uint32_t round = 0;
+    static constexpr unsigned kFacetMask = (1u << kFacetBits) - 1;
+    std::vector<std::uint16_t> entries;
+    unsigned round = 0;
 
     // The next round, in the place where it is kept.
-    std::uint32_t begin() {
-      if (entries.empty() || ++round >> (32 - kFacetBits) != 0) {
+    unsigned begin() {
+      if (entries.empty() || ++round >> (16 - kFacetBits) != 0) {
         entries.assign(std::size_t{kPoints} * kStride, 0);
         round = 1;
       }
       return round << kFacetBits;
     }
   };
-  static constexpr unsigned kFewPoints = 64, kManyPoints = 256;
+  static constexpr unsigned kFewPoints = 64, kManyPoints = 512;
 
   // The number of a local point, a new one if it has none yet; without branches, after local_points_.ensure_room().
   Index local(Index point) {
@@ -209,9 +212,11 @@ class Cavity {
   void place_spheres(std::size_t first, std::size_t end, FourQualities& qualities);
   bool place_vertex(std::size_t f, bool has_sphere, const PlacedQuality& placed);
   bool leave_territory(Index blocker);
-  bool delete_nearer_around(std::size_t first);
-  bool delete_nearer_one_by_one(std::size_t first);
-  bool delete_nearer_by_four(std::size_t first);
+  bool is_turned_away(Index v, unsigned i) const;
+  // Around those of the deleted vertices from the first to the end.
+  bool delete_nearer_around(std::size_t first, std::size_t end);
+  bool delete_nearer_one_by_one(std::size_t first, std::size_t end);
+  bool delete_nearer_by_four(std::size_t first, std::size_t end);
   bool is_nearer_after_all(Index u, bool& certain);
   unsigned nearer_after_all(const std::array<Index, 4>& u, unsigned which, bool& certain);
   // The infinite point, being the highest number, wraps around to the first place.
@@ -232,6 +237,7 @@ class Cavity {
   Index new_point_ = kNone;
   Point position_ = Point::Zero();
   Placing worst_ = Placing::good;
+  bool visible_ = false;            // all facets
   List deleted_, seen_, boundary_;  // boundary: 4 * deleted vertex + the neighbour across
   bool is_boundary_noted_ = false;  // by delete_nearer(), and nothing was deleted since
   bool undoubted_ = false;          // and no sign was in doubt, nor is the new point on the sphere of what is kept

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "cavity.h"
 #include "workspace_four.h"
@@ -11,20 +12,56 @@ namespace {
 // there are no more points or vertices than that, they are there.
 constexpr std::size_t kFetchAhead = 3, kPointsInCache = 1u << 13, kVerticesInCache = 1u << 16;
 
+// Deleted vertices after which delete_nearer_in_sight() looks at the boundary for the first time; then after twice as
+// many each time.
+constexpr std::size_t kFirstLook = 16;
+
+// To the end of the search.
+constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+
 }  // namespace
 
 bool Cavity::delete_nearer(Index start) {
   if (!territory_.owns(start)) return leave_territory(start);
   delete_vertex(start);
   undoubted_ = true;
-  const bool certain = delete_nearer_around(0);
+  const bool certain = delete_nearer_around(0, kAll);
   is_boundary_noted_ = true;
   undoubted_ = undoubted_ && certain;
   return certain;
 }
 
-bool Cavity::delete_nearer_around(std::size_t first) {
-  return can_place_four() ? delete_nearer_by_four(first) : delete_nearer_one_by_one(first);
+// What the search has kept it keeps, so that a facet of the boundary that is not visible will not be. Those that are
+// nearly seen from the side are left to place_vertices().
+bool Cavity::delete_nearer_in_sight(Index start, bool& certain) {
+  delete_vertex(start);
+  undoubted_ = certain = true;
+  std::size_t looked_around = 0, looked_at = 0;
+  for (std::size_t step = kFirstLook; looked_around < deleted_.size(); step *= 2) {
+    const std::size_t end = looked_around + step;
+    certain &= delete_nearer_around(looked_around, end);
+    looked_around = std::min(end, deleted_.size());
+    if (looked_around == deleted_.size()) break;
+    for (; looked_at < boundary_.size(); ++looked_at) {
+      const Index facet = boundary_.items()[looked_at];
+      if (is_turned_away(facet / 4, facet % 4)) return false;
+    }
+  }
+  is_boundary_noted_ = true;
+  undoubted_ = undoubted_ && certain;
+  return true;
+}
+
+// As side_of_facet() where that is certainly negative, as far as doubles tell.
+bool Cavity::is_turned_away(Index v, unsigned i) const {
+  const auto& [a, b, c] = kOthers[i];
+  const auto& corner = workspace_.vertices[v].forming_points;
+  const auto from_new = [&](unsigned k) -> Vector { return workspace_.points[corner[k]] - position_; };
+  return corner[c] != kInfinitePoint && volume(from_new(a), from_new(b), from_new(c)).sign() == Sign::negative;
+}
+
+bool Cavity::delete_nearer_around(std::size_t first, std::size_t end) {
+  return can_place_four() ? delete_nearer_by_four(first, end) : delete_nearer_one_by_one(first, end);
 }
 
 bool Cavity::leave_territory(Index blocker) {
@@ -80,11 +117,11 @@ unsigned Cavity::nearer_after_all(const std::array<Index, 4>& u, unsigned which,
   return nearer;
 }
 
-bool Cavity::delete_nearer_one_by_one(std::size_t first) {
+bool Cavity::delete_nearer_one_by_one(std::size_t first, std::size_t end) {
   const Point q = position_;
   const double doubtful_input = workspace_.doubtful_input();
   bool certain = true;
-  for (std::size_t i = first; i < deleted_.size(); ++i) {
+  for (std::size_t i = first; i < std::min(deleted_.size(), end); ++i) {
     const Index v = deleted_.items()[i];
     const std::array<Index, 4> neighbors = neighbors_of_deleted(i);
     for (unsigned slot = 0; slot < 4; ++slot) {
@@ -113,7 +150,7 @@ bool Cavity::delete_nearer_one_by_one(std::size_t first) {
 // side its sign falls, is as good as random. So every neighbour is tested, and what has been seen is masked out.
 // And the lists are in variables of their own, for what is in memory has to come back from there each time.
 #if defined(__GNUC__) && defined(__x86_64__)
-[[gnu::target("avx2")]] bool Cavity::delete_nearer_by_four(std::size_t first) {
+[[gnu::target("avx2")]] bool Cavity::delete_nearer_by_four(std::size_t first, std::size_t end) {
   const FourVectors q{all_four(position_.x()), all_four(position_.y()), all_four(position_.z())};
   const double doubtful_input = workspace_.doubtful_input();
   const bool whole = territory_.whole(), fetches = workspace_.vertices.size() > kVerticesInCache;
@@ -122,7 +159,7 @@ bool Cavity::delete_nearer_one_by_one(std::size_t first) {
   std::size_t room = 2 * (deleted_.size() + seen_.size() + boundary_.size()) + 64;
   List::Open deleted = deleted_.open(deleted_.size(), room), seen = seen_.open(seen_.size(), room),
              boundary = boundary_.open(boundary_.size(), room);
-  for (std::size_t i = first; i < deleted.count; ++i) {
+  for (std::size_t i = first; i < std::min(deleted.count, end); ++i) {
     if (const std::size_t listed = deleted.count + seen.count + boundary.count; listed + 4 > room) {
       room = 2 * listed;
       deleted = deleted_.open(deleted.count, room);
@@ -162,7 +199,7 @@ bool Cavity::delete_nearer_one_by_one(std::size_t first) {
   return blocker == kNone ? certain : leave_territory(blocker);
 }
 #else
-bool Cavity::delete_nearer_by_four(std::size_t first) { return delete_nearer_one_by_one(first); }
+bool Cavity::delete_nearer_by_four(std::size_t first, std::size_t end) { return delete_nearer_one_by_one(first, end); }
 #endif
 
 bool Cavity::widen() {
@@ -174,7 +211,7 @@ bool Cavity::widen() {
     if (!territory_.owns(facet.outside)) return leave_territory(facet.outside);
     delete_vertex(facet.outside);
   }
-  delete_nearer_around(before);
+  delete_nearer_around(before, kAll);
   return deleted_.size() > before;
 }
 

@@ -37,8 +37,7 @@ constexpr double kGiven = 1.0 / 4;
 // more, its own is found.
 constexpr double kTold = 1.0 / 64;
 
-// Where the bound tells more than so many times that, a sphere is mostly off as far as cheaper looks than at its own
-// centre can tell.
+// Where the bound tells more than so many times that, a sphere is mostly off as far as the cheapest look can tell.
 constexpr double kHopelesslyTold = 0x1p11;
 
 // What a facet may take off, where the bounds are too much for all: of what all of them may, this part for each vertex.
@@ -59,6 +58,9 @@ constexpr int kRounds = 24;
 
 // How many doubts are still local ones, those of all rounds together: more are made anew sooner than mended.
 constexpr std::size_t kMaxDoubts = 16, kMaxDoubtsOneIn = 64;
+
+// Facets that mending may look at, for each point and beside those: what takes more is made anew sooner.
+constexpr std::size_t kMendingForEach = 4, kMending = 1u << 16;
 
 // The edge of the hull between the facets of a vertex at infinity and of its neighbour `slot`.
 struct HullEdge {
@@ -188,7 +190,8 @@ class Certifier {
       const std::vector<Doubt> doubts = std::exchange(found_.doubts, {});
       const std::vector<Index> changed = mender_->mend(doubts, round);
       changed_.insert(changed_.end(), changed.begin(), changed.end());
-      if (!look_at_changed(changed)) return false;
+      if (!look_at_changed(changed) || mender_->work() > kMending + kMendingForEach * workspace_.points.size())
+        return false;
       looks_at_changed_ = false;
       if (found_.doubts.empty() && !look_at_hull()) return false;
     }
@@ -379,12 +382,13 @@ class Certifier {
     if (seen.negative.sign() == Sign::positive) return seen;
     workspace_.settle(v);
     seen.apart = from_told_sphere(v);
-    if (has_to_be_seen(v, seen)) seen.apart = std::min(seen.apart, from_seen_sphere(v));
-    if (seen.apart > kTold * max_) seen.has_center = own_center(v, seen.center);
+    const double enough = kTold * max_;
+    const bool can_be_seen = seen.negative.sign() == Sign::negative && !workspace_.shares_sphere(v);
+    if (can_be_seen && seen.apart > enough && seen.apart <= kHopelesslyTold * enough)
+      seen.apart = std::min(seen.apart, from_seen_sphere(v));
+    if (can_be_seen && seen.apart > enough) seen.apart = std::min(seen.apart, from_moved_sphere(v));
+    if (seen.apart > enough) seen.has_center = own_center(v, seen.center);
     return seen;
-  }
-  bool has_to_be_seen(Index v, const Look& seen) const {
-    return seen.apart > kTold * max_ && seen.apart < kHopelesslyTold * kTold * max_ && !workspace_.shares_sphere(v);
   }
   bool is_oriented(Index v, const Look& seen) {
     const Determinant& det = seen.negative;
@@ -440,11 +444,34 @@ class Certifier {
       for (unsigned lane = 0; lane < 4; ++lane) corners[i][lane] = &corner(four[lane], i);
     return corners;
   }
+  // As from_seen_sphere(), then from_moved_sphere().
   void see_four_spheres(const BatchList& list, BatchLooks& seen) {
-    const double enough = kTold * max_, hopeless = kHopelesslyTold * enough;
+    const double enough = kTold * max_;
+    see_far(list, seen, kHopelesslyTold * enough,
+            [&](const std::array<Index, 4>& v, const std::array<Index, 4>& at, const auto& centers) {
+              const FourOffCenters off = off_four_circumcenters(centers, tetrahedra(v));
+              note_four(v, at, apart_of_four(workspace_, v, off, diameter_), seen);
+            });
+    see_far(list, seen, std::numeric_limits<double>::infinity(),
+            [&](const std::array<Index, 4>& v, const std::array<Index, 4>& at, const auto& centers) {
+              const FourOffCenters off = sharply_off_four_circumcenters(centers, tetrahedra(v));
+              if (note_four(v, at, apart_of_four(workspace_, v, off, diameter_), seen)) return;
+              const FourMoved moved = moved_four(workspace_, v, off, diameter_);
+              for (unsigned lane = 0; lane < 4; ++lane) {
+                if (seen.apart[at[lane]] <= enough || !(moved.apart[lane] <= enough)) continue;
+                workspace_.place_by_bound(v[lane], Point(moved.x[lane], moved.y[lane], moved.z[lane]),
+                                          moved.squared_radius[lane], moved.power_bound[lane]);
+                seen.apart[at[lane]] = moved.apart[lane];
+              }
+            });
+  }
+  // see(vertices, their places in the list, their centers) for four of those at once that are too far from their own
+  // spheres as far as was seen, but no more than that far.
+  template <class See>
+  void see_far(const BatchList& list, const BatchLooks& seen, double hopeless, const See& see) {
     BatchList far;  // places in the list
     for (Index at = 0; at < list.items().size(); ++at) {
-      const bool is_open = (seen.apart[at] > enough) & (seen.apart[at] < hopeless),
+      const bool is_open = (seen.apart[at] > kTold * max_) & (seen.apart[at] <= hopeless),
                  is_positive = seen.negative[at] < -seen.negative_bound[at],
                  shares = workspace_.shares_sphere(list.items()[at]);
       far.push_if(at, is_open & is_positive & !shares);
@@ -452,30 +479,40 @@ class Certifier {
     far.for_each_four([&](std::size_t, const std::array<Index, 4>& four) {
       std::array<Index, 4> v;
       std::array<const Point*, 4> centers;
-      std::array<double, 4> radius;
       for (unsigned lane = 0; lane < 4; ++lane) {
         v[lane] = list.items()[four[lane]];
         centers[lane] = &workspace_.vertices[v[lane]].center;
-        radius[lane] = seen.radius[four[lane]];
       }
-      const FourSeen found =
-          apart_of_four(workspace_, v, off_four_circumcenters(centers, tetrahedra(v)), radius, diameter_);
-      for (unsigned lane = 0; lane < 4; ++lane) {
-        if (found.apart[lane] <= enough) workspace_.note_bound(v[lane], found.power_bound[lane]);
-        seen.apart[four[lane]] = std::min(seen.apart[four[lane]], found.apart[lane]);
-      }
+      see(v, four, centers);
     });
+  }
+  // Whether all are near enough now.
+  bool note_four(const std::array<Index, 4>& v, const std::array<Index, 4>& at, const FourSeen& found,
+                 BatchLooks& seen) {
+    bool all_near = true;
+    for (unsigned lane = 0; lane < 4; ++lane) {
+      const bool is_near = found.apart[lane] <= kTold * max_;
+      if (is_near) workspace_.note_bound(v[lane], found.power_bound[lane]);
+      seen.apart[at[lane]] = std::min(seen.apart[at[lane]], found.apart[lane]);
+      all_near &= is_near;
+    }
+    return all_near;
   }
   bool are_listed_oriented(const BatchList& list, const BatchLooks& seen) {
     BatchList rest;  // places in the list
+    double given = 0, max_volume = found_.max_volume;
+    Index fattest = found_.fattest;
     for (Index at = 0; at < list.items().size(); ++at) {
       const bool is_positive = seen.negative[at] < -seen.negative_bound[at], is_near = seen.apart[at] <= kTold * max_;
-      const bool good = is_positive & is_near;
+      const bool good = is_positive & is_near, is_fatter = good & (-seen.negative[at] > max_volume);
       rest.push_if(at, !good);
-      if (!good) continue;
-      note_volume(list.items()[at], seen.negative[at]);
-      found_.given = std::max(found_.given, seen.apart[at]);
+      given = std::max(given, good ? seen.apart[at] : 0);
+      max_volume = is_fatter ? -seen.negative[at] : max_volume;
+      fattest = is_fatter ? list.items()[at] : fattest;
     }
+    found_.given = std::max(found_.given, given);
+    found_.max_volume = max_volume;
+    found_.fattest = fattest;
     bool good = true;
     rest.for_each_four([&](std::size_t first, const std::array<Index, 4>& four) {
       std::array<Index, 4> v;
@@ -519,17 +556,32 @@ class Certifier {
   }
   // The same by how far its forming points are off its sphere: often a much better bound, which is noted then.
   double from_seen_sphere(Index v) {
-    return apart_by(
-        v, off_circumcenter(workspace_.vertices[v].center, corner(v, 3), corner(v, 0), corner(v, 1), corner(v, 2)),
-        std::sqrt(workspace_.vertices[v].radius));
+    return note_off(
+        v, off_circumcenter(workspace_.vertices[v].center, corner(v, 3), corner(v, 0), corner(v, 1), corner(v, 2)));
+  }
+  double note_off(Index v, const OffCenter& seen) {
+    const double apart = apart_by(seen.off, std::sqrt(workspace_.vertices[v].radius));
+    if (apart <= kTold * max_) workspace_.note_own_center(v, seen.off);
+    return apart;
+  }
+  // The same with more digits, and where it is too far, after a step to its own sphere, if that is near enough.
+  double from_moved_sphere(Index v) {
+    const OffCenter seen =
+        sharply_off_circumcenter(workspace_.vertices[v].center, corner(v, 3), corner(v, 0), corner(v, 1), corner(v, 2));
+    const double before = note_off(v, seen);
+    if (before <= kTold * max_) return before;
+    const Point center = workspace_.vertices[v].center - seen.step;
+    const double squared_radius = (center - corner(v, 0)).squaredNorm();
+    const double rest = seen.rest + 2 * kRounding * center.lpNorm<1>();
+    const double apart = apart_by(rest, std::sqrt(squared_radius));
+    if (!(apart <= kTold * max_)) return before;
+    workspace_.place_by_bound(v, center, squared_radius, Workspace::own_power_bound(center, squared_radius, rest));
+    return apart;
   }
   // By how far the centre is off, at most: as in from_sphere(), the radius of the own sphere being three quarters of
   // this at least.
-  double apart_by(Index v, double off, double radius) {
-    if (!(off <= radius / 8)) return diameter_;
-    const double apart = off * (4 * std::min(2.0, diameter_ / (0.75 * radius)));
-    if (apart <= kTold * max_) workspace_.note_own_center(v, off);
-    return apart;
+  double apart_by(double off, double radius) const {
+    return off <= radius / 8 ? off * (4 * std::min(2.0, diameter_ / (0.75 * radius))) : diameter_;
   }
   bool own_center(Index v, Vector& center) const {
     return sharp_circumcenter(corner(v, 0), corner(v, 1), corner(v, 2), corner(v, 3), center);

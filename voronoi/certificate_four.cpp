@@ -25,6 +25,21 @@ ORCHARD_AVX2 __m256d near_powers(const FourVectors& q, const FourVectors& center
   return dot(from_corner, rest);
 }
 
+// As Certifier::apart_by().
+ORCHARD_AVX2 __m256d apart_by(__m256d off, __m256d radius, double diameter) {
+  const __m256d times = _mm256_min_pd(all_four(diameter) / (all_four(0.75) * radius), all_four(2));
+  const __m256d is_near = _mm256_cmp_pd(off, radius / all_four(8), _CMP_LE_OQ);
+  return _mm256_blendv_pd(all_four(diameter), off * (all_four(4) * times), is_near);
+}
+
+ORCHARD_AVX2 FourVectors load_own_spheres(const Workspace& workspace, const std::array<Index, 4>& v,
+                                          __m256d& squared_radius) {
+  const VoronoiVertex* const vertices = workspace.vertices.data();
+  FourVectors center{};
+  load_spheres({vertices + v[0], vertices + v[1], vertices + v[2], vertices + v[3]}, center, squared_radius);
+  return center;
+}
+
 }  // namespace
 
 [[gnu::target("avx2")]] unsigned doubtful_of_four(const Workspace& workspace, const Facet* facets) {
@@ -70,15 +85,36 @@ ORCHARD_AVX2 __m256d near_powers(const FourVectors& q, const FourVectors& center
 }
 
 [[gnu::target("avx2")]] FourSeen apart_of_four(const Workspace& workspace, const std::array<Index, 4>& v,
-                                               const std::array<double, 4>& offs, const std::array<double, 4>& radii,
-                                               double diameter) {
-  const __m256d off = _mm256_loadu_pd(offs.data()), radius = _mm256_loadu_pd(radii.data());
-  const __m256d times = _mm256_min_pd(all_four(diameter) / (all_four(0.75) * radius), all_four(2));
-  const __m256d is_near = _mm256_cmp_pd(off, radius / all_four(8), _CMP_LE_OQ);
+                                               const FourOffCenters& off, double diameter) {
+  __m256d squared_radius{};
+  const FourVectors center = load_own_spheres(workspace, v, squared_radius);
+  const __m256d off_center = _mm256_loadu_pd(off.off.data()), radius = _mm256_sqrt_pd(squared_radius);
   FourSeen seen;
-  _mm256_storeu_pd(seen.apart.data(), _mm256_blendv_pd(all_four(diameter), off * (all_four(4) * times), is_near));
-  _mm256_storeu_pd(seen.power_bound.data(), workspace.own_power_bounds(v, off));
+  _mm256_storeu_pd(seen.apart.data(), apart_by(off_center, radius, diameter));
+  _mm256_storeu_pd(seen.power_bound.data(), Workspace::own_power_bounds(center, squared_radius, radius, off_center));
   return seen;
+}
+
+[[gnu::target("avx2")]] FourMoved moved_four(const Workspace& workspace, const std::array<Index, 4>& v,
+                                             const FourOffCenters& off, double diameter) {
+  __m256d squared_radius{};
+  const FourVectors from = load_own_spheres(workspace, v, squared_radius);
+  const FourVectors step{_mm256_loadu_pd(off.x.data()), _mm256_loadu_pd(off.y.data()), _mm256_loadu_pd(off.z.data())};
+  const FourVectors center = from - step;
+  std::array<const Point*, 4> corners;
+  for (unsigned i = 0; i < 4; ++i) corners[i] = &workspace.points[workspace.vertices[v[i]].forming_points[0]];
+  squared_radius = squared(center - load_four(corners));
+  const __m256d sum = absolute(center.x) + absolute(center.y) + absolute(center.z);
+  const __m256d rest = _mm256_loadu_pd(off.rest.data()) + all_four(2 * kRounding) * sum;
+  const __m256d radius = _mm256_sqrt_pd(squared_radius);
+  FourMoved moved;
+  _mm256_storeu_pd(moved.apart.data(), apart_by(rest, radius, diameter));
+  _mm256_storeu_pd(moved.power_bound.data(), Workspace::own_power_bounds(center, squared_radius, radius, rest));
+  _mm256_storeu_pd(moved.x.data(), center.x);
+  _mm256_storeu_pd(moved.y.data(), center.y);
+  _mm256_storeu_pd(moved.z.data(), center.z);
+  _mm256_storeu_pd(moved.squared_radius.data(), squared_radius);
+  return moved;
 }
 
 #else
@@ -86,10 +122,8 @@ ORCHARD_AVX2 __m256d near_powers(const FourVectors& q, const FourVectors& center
 unsigned doubtful_of_four(const Workspace&, const Facet*) { return 0xf; }
 std::array<double, 4> added_by_four(const FourSteps&, double) { return {}; }
 void told_of_four(const Workspace&, const std::array<Index, 4>&, double, double*, double*) {}
-FourSeen apart_of_four(const Workspace&, const std::array<Index, 4>&, const std::array<double, 4>&,
-                       const std::array<double, 4>&, double) {
-  return {};
-}
+FourSeen apart_of_four(const Workspace&, const std::array<Index, 4>&, const FourOffCenters&, double) { return {}; }
+FourMoved moved_four(const Workspace&, const std::array<Index, 4>&, const FourOffCenters&, double) { return {}; }
 
 #endif
 

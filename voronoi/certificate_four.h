@@ -3,6 +3,7 @@
 #include <array>
 #include <span>
 
+#include "four_tetrahedra.h"
 #include "workspace.h"
 
 // What the certificate looks at four at a time, with the same bits as one by one. Only where the machine has AVX2.
@@ -63,16 +64,22 @@ struct BatchLooks {
 };
 
 // What is seen of four spheres: how far they are from those of their forming points, at most, and what that bounds the
-// error of a power by.
+// error of a power by. And the same of the spheres a step nearer to these.
 struct FourSeen {
   std::array<double, 4> apart, power_bound;
+};
+struct FourMoved : FourSeen {
+  std::array<double, 4> x, y, z, squared_radius;
 };
 
 // As Certifier::from_told_sphere(), with their radii; `far` is what is told of those that share a sphere.
 void told_of_four(const Workspace& workspace, const std::array<Index, 4>& v, double far, double* radius, double* apart);
 
 // As Certifier::apart_by() and Workspace::own_power_bound(), by how far the centres are off.
-FourSeen apart_of_four(const Workspace& workspace, const std::array<Index, 4>& v, const std::array<double, 4>& offs,
-                       const std::array<double, 4>& radii, double diameter);
+FourSeen apart_of_four(const Workspace& workspace, const std::array<Index, 4>& v, const FourOffCenters& off,
+                       double diameter);
+// As Certifier::moved().
+FourMoved moved_four(const Workspace& workspace, const std::array<Index, 4>& v, const FourOffCenters& off,
+                     double diameter);
 
 }  // namespace orchard::detail

@@ -75,6 +75,10 @@ ORCHARD_FUSED FourTwofolds dot(const FourSharpVectors& a, const FourSharpVectors
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
+ORCHARD_FUSED FourSharpVectors operator+(const FourSharpVectors& a, const FourSharpVectors& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
 // The second where the mask is set.
 ORCHARD_FUSED FourVectors choose(const FourVectors& a, const FourVectors& b, __m256d mask) {
   return {_mm256_blendv_pd(a.x, b.x, mask), _mm256_blendv_pd(a.y, b.y, mask), _mm256_blendv_pd(a.z, b.z, mask)};
@@ -114,6 +118,51 @@ ORCHARD_FUSED __m256d sharp_inside_spheres(const FourSharpVectors& a, const Four
   return (first + second).high;
 }
 
+// The difference of the powers of two points.
+ORCHARD_FUSED __m256d sharp_powers(const FourVectors& center, const FourVectors& p, const FourVectors& q) {
+  return dot(differences(p, q), differences(center, q) + differences(center, p)).high;
+}
+
+// As off_circumcenter(), in the same order of operations.
+template <bool kSharp>
+ORCHARD_FUSED FourOffCenters off_centers(const std::array<const Point*, 4>& centers, const FourTetrahedra& tetrahedra) {
+  const FourVectors q = load_four(tetrahedra[3]), p1 = load_four(tetrahedra[0]), p2 = load_four(tetrahedra[1]),
+                    p3 = load_four(tetrahedra[2]), center = load_four(centers);
+  const __m256d with_a = squared(p1 - q) * squared(p3 - p2), with_b = squared(p2 - q) * squared(p1 - p3),
+                with_c = squared(p3 - q) * squared(p2 - p1);
+  const __m256d is_b = _mm256_cmp_pd(with_b, with_a, _CMP_LT_OQ);
+  const __m256d is_c = _mm256_cmp_pd(with_c, _mm256_min_pd(with_a, with_b), _CMP_LT_OQ);
+  const FourVectors a_or_b = choose(p1, p2, is_b);
+  const FourVectors a = choose(a_or_b, p3, is_c), b = choose(p2, p1, is_b), c = choose(p3, a_or_b, is_c);
+  const FourVectors first = a - q, middle = b - q, last = c - b;
+  const FourVectors from_q = center - q, from_a = center - a, from_b = center - b, from_c = center - c;
+  FourVectors power{dot(first, from_q + from_a), dot(middle, from_q + from_b), dot(last, from_b + from_c)};
+  if constexpr (kSharp) power = {sharp_powers(center, a, q), sharp_powers(center, b, q), sharp_powers(center, c, b)};
+  const __m256d squared_radius =
+      _mm256_max_pd(_mm256_max_pd(squared(from_q), squared(from_a)), _mm256_max_pd(squared(from_b), squared(from_c)));
+  const __m256d ff = squared(first), mm = squared(middle), ll = squared(last);
+  const FourVectors ml = cross(middle, last), lf = cross(last, first), fm = cross(first, middle);
+  const FourVectors sum{power.x * ml.x + power.y * lf.x + power.z * fm.x,
+                        power.x * ml.y + power.y * lf.y + power.z * fm.y,
+                        power.x * ml.z + power.y * lf.z + power.z * fm.z};
+  const FourVectors products{all_four(0.5) * (mm + ll), all_four(0.5) * (ll + ff), all_four(0.5) * (ff + mm)};
+  const __m256d powers_error = all_four(kSharp ? 3 * kSharper : 3) * _mm256_sqrt_pd(ff * mm * ll * squared_radius);
+  const FourDeterminants volume6 = volumes(first, middle, last);
+  const __m256d divisor = all_four(2) * (absolute(volume6.value) - volume6.bound);
+  const __m256d size = length(sum), error = all_four(16 * kRounding) * (dot(absolute(power), products) + powers_error);
+  const __m256d of_volume = volume6.bound / absolute(volume6.value) + all_four(8 * kRounding);
+  const __m256d infinite = all_four(std::numeric_limits<double>::infinity()),
+                is_told = _mm256_cmp_pd(divisor, _mm256_setzero_pd(), _CMP_GT_OQ),
+                per_volume = all_four(0.5) / volume6.value;
+  FourOffCenters result;
+  _mm256_storeu_pd(result.off.data(), _mm256_blendv_pd(infinite, (size + error) / divisor, is_told));
+  _mm256_storeu_pd(result.rest.data(), _mm256_blendv_pd(infinite, (error + size * of_volume) / divisor, is_told));
+  _mm256_storeu_pd(result.x.data(), sum.x * per_volume);
+  _mm256_storeu_pd(result.y.data(), sum.y * per_volume);
+  _mm256_storeu_pd(result.z.data(), sum.z * per_volume);
+  return result;
+}
+
 #undef ORCHARD_FUSED
 
 const bool kFourSharpLanes = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
@@ -150,37 +199,13 @@ bool can_take_four() { return kFourSharpLanes; }
   return signs;
 }
 
-// As off_circumcenter(), in the same order of operations.
-[[gnu::target("avx2,fma")]] std::array<double, 4> off_four_circumcenters(const std::array<const Point*, 4>& centers,
-                                                                         const FourTetrahedra& tetrahedra) {
-  const FourVectors q = load_four(tetrahedra[3]), p1 = load_four(tetrahedra[0]), p2 = load_four(tetrahedra[1]),
-                    p3 = load_four(tetrahedra[2]), center = load_four(centers);
-  const __m256d with_a = squared(p1 - q) * squared(p3 - p2), with_b = squared(p2 - q) * squared(p1 - p3),
-                with_c = squared(p3 - q) * squared(p2 - p1);
-  const __m256d is_b = _mm256_cmp_pd(with_b, with_a, _CMP_LT_OQ);
-  const __m256d is_c = _mm256_cmp_pd(with_c, _mm256_min_pd(with_a, with_b), _CMP_LT_OQ);
-  const FourVectors a_or_b = choose(p1, p2, is_b);
-  const FourVectors a = choose(a_or_b, p3, is_c), b = choose(p2, p1, is_b), c = choose(p3, a_or_b, is_c);
-  const FourVectors first = a - q, middle = b - q, last = c - b;
-  const FourVectors from_q = center - q, from_a = center - a, from_b = center - b, from_c = center - c;
-  const FourVectors power{dot(first, from_q + from_a), dot(middle, from_q + from_b), dot(last, from_b + from_c)};
-  const __m256d squared_radius =
-      _mm256_max_pd(_mm256_max_pd(squared(from_q), squared(from_a)), _mm256_max_pd(squared(from_b), squared(from_c)));
-  const __m256d ff = squared(first), mm = squared(middle), ll = squared(last);
-  const FourVectors ml = cross(middle, last), lf = cross(last, first), fm = cross(first, middle);
-  const FourVectors sum{power.x * ml.x + power.y * lf.x + power.z * fm.x,
-                        power.x * ml.y + power.y * lf.y + power.z * fm.y,
-                        power.x * ml.z + power.y * lf.z + power.z * fm.z};
-  const FourVectors products{all_four(0.5) * (mm + ll), all_four(0.5) * (ll + ff), all_four(0.5) * (ff + mm)};
-  const __m256d powers_error = all_four(3) * _mm256_sqrt_pd(ff * mm * ll * squared_radius);
-  const FourDeterminants volume6 = volumes(first, middle, last);
-  const __m256d divisor = all_four(2) * (absolute(volume6.value) - volume6.bound);
-  const __m256d off =
-      (length(sum) + all_four(16 * kRounding) * (dot(absolute(power), products) + powers_error)) / divisor;
-  std::array<double, 4> result;
-  _mm256_storeu_pd(result.data(), _mm256_blendv_pd(all_four(std::numeric_limits<double>::infinity()), off,
-                                                   _mm256_cmp_pd(divisor, _mm256_setzero_pd(), _CMP_GT_OQ)));
-  return result;
+[[gnu::target("avx2,fma")]] FourOffCenters off_four_circumcenters(const std::array<const Point*, 4>& centers,
+                                                                  const FourTetrahedra& tetrahedra) {
+  return off_centers<false>(centers, tetrahedra);
+}
+[[gnu::target("avx2,fma")]] FourOffCenters sharply_off_four_circumcenters(const std::array<const Point*, 4>& centers,
+                                                                          const FourTetrahedra& tetrahedra) {
+  return off_centers<true>(centers, tetrahedra);
 }
 
 // As SharpCenter in predicates.cpp, in the same order of operations.
@@ -210,7 +235,8 @@ bool can_take_four() { return kFourSharpLanes; }
 bool can_take_four() { return false; }
 FourVolumes four_volumes(const FourTetrahedra&) { return {}; }
 std::array<Sign, 4> four_inside_spheres(const Point&, const FourTetrahedra&) { return {}; }
-std::array<double, 4> off_four_circumcenters(const std::array<const Point*, 4>&, const FourTetrahedra&) { return {}; }
+FourOffCenters off_four_circumcenters(const std::array<const Point*, 4>&, const FourTetrahedra&) { return {}; }
+FourOffCenters sharply_off_four_circumcenters(const std::array<const Point*, 4>&, const FourTetrahedra&) { return {}; }
 unsigned four_sharp_circumcenters(const FourTetrahedra&, std::array<Vector, 4>&) { return 0; }
 #endif
 

@@ -82,6 +82,7 @@ bool Inserter::insert_deferred() {
   while (!deferred_.empty()) {
     const std::size_t before = deferred_.size();
     const std::size_t inserted = std::erase_if(deferred_, [this](Index point) { return insert_now(point); });
+    if (is_lost()) return false;
     const bool many = before > kManyDeferred;
     if (inserted > (many ? before / kWorthRepeating : 0)) continue;
     // One goes in whatever it overrules, and others may fit then; of many, each is tried only once more.
@@ -202,8 +203,8 @@ bool Inserter::insert_exactly(Index point, const Point& q) {
   workspace_.set_exact(true);
   const Index start = locate(q);
   cavity_.begin(point);
-  bool good = workspace_.sign(start, q) == Sign::positive;
-  const bool certain = good && cavity_.delete_nearer(start);
+  bool certain = false;
+  bool good = workspace_.sign(start, q) == Sign::positive && cavity_.delete_nearer_in_sight(start, certain);
   if (good) cavity_.note_facets();
   good = good && cavity_.place_vertices() && cavity_.worst_placing() <= Placing::thin && cavity_.link_vertices() &&
          (certain || cavity_.is_ball());
@@ -219,7 +220,7 @@ bool Inserter::respects_certain_signs(const Point& q) const {
   for (const Index v : cavity_.deleted()) {
     if (workspace_.sign(v, q) == Sign::negative) return false;
     for (const Index u : workspace_.vertices[v].neighbors)
-      if (workspace_.mark(u) != Mark::deleted && workspace_.sign(u, q) == Sign::positive) return false;
+      if (workspace_.mark(u) == Mark::wanted) return false;
   }
   return true;
 }

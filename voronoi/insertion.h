@@ -42,7 +42,8 @@ class Inserter {
   // it was, where too many do: then the input is near to degenerate, but not so near that rounding could be the
   // reason. To be done again with exact signs from the start. Bowyer's search returns false where its premises fail.
   bool insert(Index point);
-  // To be called at the end; false, as above, if there are points that do not fit even now.
+  // To be called at the end; false, as above, if there are points that do not fit even now, or if it takes too long to
+  // find that out.
   bool insert_deferred();
   // Between enter() and leave(): where vertices may be replaced, by several threads that have an inserter each. The
   // walk to the first point starts from the first of `starts`, and where a walk leads nowhere, it is made again from
@@ -83,6 +84,7 @@ class Inserter {
   Index step_by_orientation(Index v, const Point& q) const;
   Index walk_by_orientation(Index v, const Point& q) const;
   Index highest_of_all(const Point& q) const;
+  bool is_lost() const;
   Index climb(Index v, const Point& q) const;
   bool insert_directly(Index start, const Point& q);
   bool insert_with_doubts(Index point, Index start, const Point& q);
@@ -111,6 +113,7 @@ class Inserter {
   Index last_ = 0;  // where the walk to the next point starts
   std::vector<Candidate> queue_;
   std::vector<Index> deferred_;
+  mutable std::size_t searched_ = 0;  // vertices, by highest_of_all()
 };
 
 }  // namespace orchard::detail

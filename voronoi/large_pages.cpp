@@ -14,9 +14,8 @@ namespace orchard::detail {
 namespace {
 
 constexpr std::uintptr_t kPage = 4096, kLargePage = std::uintptr_t{1} << 21;
-constexpr std::uintptr_t kWorth = 2 * kLargePage;  // less may lie on one of them, most of which would stay empty
-constexpr int kMaxSlow = 2;                        // large pages that may be slow before small ones take over
-constexpr double kSlow = 1e-3;                     // longer than small pages in its place would take, in seconds
+constexpr int kMaxSlow = 2;     // large pages that may be slow before small ones take over
+constexpr double kSlow = 1e-3;  // longer than small pages in its place would take, in seconds
 
 double seconds_of_thread() {
   timespec time{};
@@ -39,7 +38,6 @@ void use_large_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::size_t 
 #ifdef MADV_HUGEPAGE
   const auto first = reinterpret_cast<std::uintptr_t>(begin);
   const std::uintptr_t from = (first + kPage - 1) & ~(kPage - 1), to = (first + bytes) & ~(kPage - 1);
-  if (to < from + kWorth) return;
   int slow = 0;
   for (std::uintptr_t page = (from + kLargePage - 1) & ~(kLargePage - 1); page + kLargePage <= to; page += kLargePage)
     if (!maps_quickly(page) && ++slow == kMaxSlow) return;

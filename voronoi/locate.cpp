@@ -7,6 +7,10 @@ namespace {
 
 constexpr std::size_t kNearby = 64;  // vertices in doubt that are searched before all others are
 
+// How many vertices may be searched, in terms of all that there are and beside that: rarely is one found that way, and
+// to make all anew with exact signs takes less time then.
+constexpr std::size_t kMaxSearches = 8, kMaxSearched = 1u << 20;
+
 // Steps of a walk that may have been led astray by what it must not read: a few times the way through a million points.
 constexpr std::size_t kPatience = 1024;
 
@@ -21,7 +25,7 @@ Index Inserter::locate(const Point& q) const {
 }
 
 // Breadth-first from where the walk ended, through vertices in doubt; all vertices if that finds none that is certainly
-// nearer to q.
+// nearer to q, as long as that is worth while.
 Index Inserter::highest_nearby(Index v, const Point& q) const {
   std::vector<Index> reached{v};
   for (std::size_t i = 0; i < reached.size() && i < kNearby; ++i)
@@ -31,7 +35,7 @@ Index Inserter::highest_nearby(Index v, const Point& q) const {
       if (sign == Sign::positive) return u;
       if (sign == Sign::uncertain || i == 0) reached.push_back(u);
     }
-  return highest_of_all(q);
+  return is_lost() ? v : highest_of_all(q);
 }
 
 Index Inserter::walk(const Point& q) const {
@@ -107,15 +111,21 @@ Index Inserter::walk_by_orientation(Index v, const Point& q) const {
   return v;
 }
 
+bool Inserter::is_lost() const {
+  return !workspace_.exact() && searched_ > kMaxSearched + kMaxSearches * workspace_.vertices.size();
+}
+
 Index Inserter::highest_of_all(const Point& q) const {
+  searched_ += workspace_.vertices.size();
   Index best = kNone;
   double best_value = 0;
   Sign best_sign = Sign::negative;
   for (Index v = 0; v < workspace_.vertices.size(); ++v) {
     if (workspace_.is_free(v)) continue;
     const Sign sign = workspace_.sign(v, q);
+    if (best != kNone && sign < best_sign) continue;
     const double value = workspace_.value(v, q);
-    if (best != kNone && (sign < best_sign || (sign == best_sign && !(value > best_value)))) continue;
+    if (best != kNone && sign == best_sign && !(value > best_value)) continue;
     best = v;
     best_value = value;
     best_sign = sign;

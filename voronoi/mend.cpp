@@ -105,6 +105,7 @@ bool Mender::grow(Index point, const Point& q) {
     }
     cavity_.note_facets();
     cavity_.place_vertices();
+    work_ += cavity_.facets().size();
     for (const Cavity::Facet& facet : cavity_.facets()) {
       if (workspace_.mark(facet.outside) == Mark::deleted || is_facet_good(facet, q)) continue;
       if (intrusion(facet.outside, q) < -workspace_.harmless_intrusion()) return false;
@@ -120,11 +121,25 @@ bool Mender::is_facet_good(const Cavity::Facet& facet, const Point& q) const {
   const auto& corner = workspace_.vertices[facet.inside].forming_points;
   const Index beyond = workspace_.vertices[facet.outside].forming_points[facet.back];
   const auto& [a, b, c] = Cavity::kOthers[facet.slot];
-  if (corner[c] == kInfinitePoint || beyond == kInfinitePoint) return true;
+  if (corner[c] == kInfinitePoint) return !is_folded(facet, q);
+  if (beyond == kInfinitePoint) return true;
   const auto& points = workspace_.points;
   Vector center;
   return sharp_circumcenter(q, points[corner[a]], points[corner[b]], points[corner[c]], center) &&
          intrusion_in(center, points[beyond] - q) <= harmless_;
+}
+
+// Whether the hull's facet of the new point at the edge to an undeleted one, in whose plane the point is as far as does
+// harm, would lie on top of this one, upside down.
+bool Mender::is_folded(const Cavity::Facet& facet, const Point& q) const {
+  const VoronoiVertex& outside = workspace_.vertices[facet.outside];
+  const auto& corner = workspace_.vertices[facet.inside].forming_points;
+  const auto& [a, b, c] = Cavity::kOthers[facet.slot];
+  const auto& points = workspace_.points;
+  const double height = outside.center.dot(q - points[outside.forming_points[0]]);
+  Vector normal;
+  return std::abs(height) < workspace_.harmless_intrusion() &&
+         sharp_normal(q, points[corner[a]], points[corner[b]], normal) && normal.dot(outside.center) < 0;
 }
 
 }  // namespace orchard::detail

@@ -24,6 +24,8 @@ class Mender {
   // The vertices that are new, those whose spheres have become their own, and those of doubts that could not be mended;
   // some may be free again. Each round is stricter than the last, lest one insertion undo another.
   std::vector<Index> mend(std::span<const Doubt> doubts, int round);
+  // Facets that were looked at so far, each as often as it was: the time that mending has taken.
+  std::size_t work() const { return work_; }
 
  private:
   unsigned slot_of(Index v, Index neighbor) const;
@@ -34,11 +36,12 @@ class Mender {
   bool insert_again(Index v, Index u);
   bool grow(Index point, const Point& q);
   bool is_facet_good(const Cavity::Facet& facet, const Point& q) const;
+  bool is_folded(const Cavity::Facet& facet, const Point& q) const;
 
   Workspace& workspace_;
   Cavity cavity_;
   double harmless_ = 0;
-  std::size_t max_deleted_ = 0;
+  std::size_t max_deleted_ = 0, work_ = 0;
   std::vector<Index> changed_;
 };
 

@@ -57,8 +57,15 @@ Sign inside_sphere(const Point& q, const Point& a, const Point& b, const Point& 
 bool sharp_circumcenter(const Point& q, const Point& a, const Point& b, const Point& c, Vector& center);
 
 // How far a point is, at most, from the circumcentre of q, a, b and c, as far as doubles tell: much sooner told than
-// the circumcentre is found. Infinite where the sign of the volume is in doubt.
-double off_circumcenter(const Point& center, const Point& q, const Point& a, const Point& b, const Point& c);
+// the circumcentre is found. Less the step, it would be `rest` from there at most, but for the rounding of this
+// difference. Both are infinite where the sign of the volume is in doubt.
+struct OffCenter {
+  double off, rest;
+  Vector step;
+};
+OffCenter off_circumcenter(const Point& center, const Point& q, const Point& a, const Point& b, const Point& c);
+// The same with what rounds most with more digits: then nearly nothing is left after the step.
+OffCenter sharply_off_circumcenter(const Point& center, const Point& q, const Point& a, const Point& b, const Point& c);
 
 // The unit normal of the triangle q, a, b, to a few roundings. False if they are collinear.
 bool sharp_normal(const Point& q, const Point& a, const Point& b, Vector& normal);

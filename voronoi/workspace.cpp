@@ -98,16 +98,16 @@ void Workspace::place_sharply(Index v, const Vector& center) {
   const Point& origin = points[vertex.forming_points[0]];
   vertex.center = origin + center;
   vertex.radius = (vertex.center - origin).squaredNorm();
-  set_error_class(v, error_class(rounding_of_power(vertex)), false, state_[v] & 3u);
+  set_error_class(v, error_class(rounding_of_power(vertex.center, vertex.radius)), false, state_[v] & 3u);
 }
 
-double Workspace::own_power_bound(const VoronoiVertex& vertex, double off) const {
-  return 4 * off * std::sqrt(vertex.radius) + rounding_of_power(vertex);
+double Workspace::own_power_bound(const Point& center, double squared_radius, double off) {
+  return 4 * off * std::sqrt(squared_radius) + rounding_of_power(center, squared_radius);
 }
 
 // Of one whose centre is right but for some roundings.
-double Workspace::rounding_of_power(const VoronoiVertex& vertex) const {
-  return 64 * kRounding * (vertex.radius + std::sqrt(vertex.radius) * vertex.center.lpNorm<1>());
+double Workspace::rounding_of_power(const Point& center, double squared_radius) {
+  return 64 * kRounding * (squared_radius + std::sqrt(squared_radius) * center.lpNorm<1>());
 }
 
 // Whether the centre that it has is that of its forming points, as far as doubles can tell.

@@ -118,7 +118,9 @@ class Workspace {
     __m256d radius, power_bound, shared;
   };
   ORCHARD_AVX2 FourSpheres spheres(const std::array<Index, 4>& v) const;
-  ORCHARD_AVX2 __m256d own_power_bounds(const std::array<Index, 4>& v, __m256d off) const;
+  // As own_power_bound(), by the radii and their squares, in the same order of operations.
+  ORCHARD_AVX2 static __m256d own_power_bounds(const FourVectors& center, __m256d squared_radius, __m256d radius,
+                                               __m256d off);
 #endif
   // Whether its sphere is a neighbour's, or may be.
   bool shares_sphere(Index v) const { return (state_[v] & kShared) != 0; }
@@ -194,9 +196,17 @@ class Workspace {
   // Gives a finite vertex the sphere of its forming points, to some roundings, if they have one.
   void place_sharply(Index v);
   void place_sharply(Index v, const Vector& center);  // which is relative to its first point
+  // The same with this sphere, by which the error of a power is no more than the bound.
+  void place_by_bound(Index v, const Point& center, double squared_radius, double bound) {
+    vertices[v].center = center;
+    vertices[v].radius = squared_radius;
+    set_error_class(v, error_class(bound), false, state_[v] & 3u);
+  }
   // Leaves it where it is, with the bound that follows from how far, at most, it is off that centre.
-  void note_own_center(Index v, double off) { note_bound(v, own_power_bound(vertices[v], off)); }
-  double own_power_bound(const VoronoiVertex& vertex, double off) const;
+  void note_own_center(Index v, double off) {
+    note_bound(v, own_power_bound(vertices[v].center, vertices[v].radius, off));
+  }
+  static double own_power_bound(const Point& center, double squared_radius, double off);
   void note_bound(Index v, double bound) {
     if (bound < power_bound(v)) set_error_class(v, error_class(bound), false, state_[v] & 3u);
   }
@@ -249,7 +259,7 @@ class Workspace {
   bool has_own_center(Index v) const;
   Placing place_again(Index v, VoronoiVertex& placed, std::uint8_t& error) const;
   double residual(const VoronoiVertex& vertex) const;
-  double rounding_of_power(const VoronoiVertex& vertex) const;
+  static double rounding_of_power(const Point& center, double squared_radius);
 
   static constexpr unsigned kShared = 1u << 8;
   std::vector<std::uint16_t> state_;                 // mark, error class above, kShared

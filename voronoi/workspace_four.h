@@ -51,13 +51,8 @@ ORCHARD_AVX2 Workspace::FourSpheres Workspace::spheres(const std::array<Index, 4
           _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(state, shared), shared))};
 }
 
-// As own_power_bound(), in the same order of operations.
-ORCHARD_AVX2 __m256d Workspace::own_power_bounds(const std::array<Index, 4>& v, __m256d off) const {
-  const auto load = [&](Index u) { return vertices[u].center.data(); };  // the radius is behind it
-  FourVectors center{_mm256_load_pd(load(v[0])), _mm256_load_pd(load(v[1])), _mm256_load_pd(load(v[2]))};
-  __m256d squared_radius = _mm256_load_pd(load(v[3]));
-  transpose(center.x, center.y, center.z, squared_radius);
-  const __m256d radius = _mm256_sqrt_pd(squared_radius);
+ORCHARD_AVX2 __m256d Workspace::own_power_bounds(const FourVectors& center, __m256d squared_radius, __m256d radius,
+                                                 __m256d off) {
   const __m256d sum = absolute(center.x) + absolute(center.y) + absolute(center.z);
   return all_four(4) * off * radius + all_four(64 * kRounding) * (squared_radius + radius * sum);
 }

@@ -16,6 +16,14 @@ namespace {
 
 bool equal_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
+bool are_equal(const FourOffCenters& four, unsigned i, const OffCenter& one) {
+  // A step of what has no volume is none.
+  return equal_bits(four.off[i], one.off) && equal_bits(four.rest[i], one.rest) &&
+         (one.off == std::numeric_limits<double>::infinity() ||
+          (equal_bits(four.x[i], one.step.x()) && equal_bits(four.y[i], one.step.y()) &&
+           equal_bits(four.z[i], one.step.z())));
+}
+
 // Of any size, some of them nearly or exactly flat, some with few digits, so that products are exact.
 std::array<Point, 4> random_tetrahedron(std::mt19937_64& random) {
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -63,7 +71,8 @@ TEST(FourTetrahedra, AreLookedAtWithTheSameBitsAsOneByOne) {
       centers[i] = &center[i];
       for (unsigned k = 0; k < 4; ++k) four[k][i] = &corners[i][k];
     }
-    const std::array<double, 4> off = off_four_circumcenters(centers, four);
+    const FourOffCenters off = off_four_circumcenters(centers, four),
+                         sharply_off = sharply_off_four_circumcenters(centers, four);
     std::array<Vector, 4> sharp;
     const unsigned found = four_sharp_circumcenters(four, sharp);
     const FourVolumes volumes = four_volumes(four);
@@ -71,8 +80,9 @@ TEST(FourTetrahedra, AreLookedAtWithTheSameBitsAsOneByOne) {
       const auto& [a, b, c, d] = corners[i];
       const Determinant one = volume(a - d, b - d, c - d);
       ASSERT_TRUE(equal_bits(volumes.value[i], one.value) && equal_bits(volumes.bound[i], one.bound));
-      ASSERT_TRUE(equal_bits(off[i], off_circumcenter(center[i], d, a, b, c)));
-      ++(off[i] < std::numeric_limits<double>::infinity() ? finite : infinite);
+      ASSERT_TRUE(are_equal(off, i, off_circumcenter(center[i], d, a, b, c)));
+      ASSERT_TRUE(are_equal(sharply_off, i, sharply_off_circumcenter(center[i], d, a, b, c)));
+      ++(off.off[i] < std::numeric_limits<double>::infinity() ? finite : infinite);
       Vector alone;
       const bool is_found = sharp_circumcenter(a, b, c, d, alone);
       if (((found >> i) & 1u) == 0) {

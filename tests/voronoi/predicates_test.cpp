@@ -163,7 +163,7 @@ TEST(OffCircumcenter, BoundsTheDistanceByAFewRoundingsOfShortEdges) {
     const double edges = (p[1] - p[0]).norm() * (p[2] - p[0]).norm() * (p[3] - p[2]).norm();
     const double rounding = 256 * kRounding * edges * relative.center.norm() / std::abs(relative.volume6);
     for (const auto& [first, second] : {std::array{1, 2}, std::array{2, 1}, std::array{2, 3}, std::array{3, 1}}) {
-      const double off = off_circumcenter(center, p[0], p[first], p[second], p[6 - first - second]);
+      const double off = off_circumcenter(center, p[0], p[first], p[second], p[6 - first - second]).off;
       ASSERT_GE(off * slack, distance) << trial;
       if (!(rounding < 0x1p-20)) continue;
       ASSERT_LE(off, 2 * distance + rounding) << trial;
@@ -173,9 +173,46 @@ TEST(OffCircumcenter, BoundsTheDistanceByAFewRoundingsOfShortEdges) {
   EXPECT_GT(trusted, 2 * trials);
 }
 
+// The same needles: what is left after the step is bounded too, and with more digits that is next to nothing.
+TEST(OffCircumcenter, TellsAStepToTheCircumcenter) {
+  int near = 0;
+  const int trials = 2000 * static_cast<int>(test::more());
+  for (int trial = 0; trial < trials; ++trial) {
+    Random random(2, 13, test::first_seed() + static_cast<std::uint64_t>(trial));
+    const double s = random.uniform(), t = random.uniform(), step = std::pow(10, -6 * random.uniform());
+    const auto on_curve = [](double at) { return Point(0.25 + at, at * at, at * at * at - 0.5); };
+    const std::array<Point, 4> p{on_curve(s), on_curve(s + step), on_curve(t), on_curve(t + step)};
+    const RelativeCenter relative =
+        circumcenter(LengthedVector(p[1] - p[0]), LengthedVector(p[2] - p[0]), LengthedVector(p[3] - p[0]));
+    if (!relative.reliable()) continue;
+    const double radius = relative.center.norm();
+    Point center = p[0] + relative.center;
+    if (trial % 2 == 0) center.y() += radius * std::pow(10, -4 - 12 * random.uniform());
+    const double distance = exact_distance(center, p), slack = 1 + 0x1p-48;
+    const auto left = [&](const OffCenter& seen) {
+      const Point moved = center - seen.step;
+      return std::pair(exact_distance(moved, p), seen.rest + 2 * kRounding * moved.lpNorm<1>());
+    };
+    const OffCenter seen = off_circumcenter(center, p[0], p[1], p[2], p[3]),
+                    sharp = sharply_off_circumcenter(center, p[0], p[1], p[2], p[3]);
+    ASSERT_GE(sharp.off * slack, distance) << trial;
+    for (const OffCenter& each : {seen, sharp}) {
+      if (each.off == std::numeric_limits<double>::infinity()) continue;
+      const auto [apart, bound] = left(each);
+      ASSERT_LE(apart, bound * slack) << trial;
+    }
+    near += sharp.rest <= 0x1p-20 * sharp.off + 0x1p-46 * radius;
+  }
+  EXPECT_GT(near, trials / 2);
+}
+
 TEST(OffCircumcenter, IsInfiniteWhereTheVolumeIsInDoubt) {
   const Point q(0, 0, 0), a(1, 0, 0), b(0, 1, 0), c(1, 1, 0);
-  EXPECT_EQ(off_circumcenter(Point(0.5, 0.5, 0), q, a, b, c), std::numeric_limits<double>::infinity());
+  for (const OffCenter& seen :
+       {off_circumcenter(Point(0.5, 0.5, 0), q, a, b, c), sharply_off_circumcenter(Point(0.5, 0.5, 0), q, a, b, c)}) {
+    EXPECT_EQ(seen.off, std::numeric_limits<double>::infinity());
+    EXPECT_EQ(seen.rest, std::numeric_limits<double>::infinity());
+  }
 }
 
 }  // namespace
