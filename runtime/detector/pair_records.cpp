@@ -43,6 +43,32 @@ std::size_t RecordTable::common(std::span<const BodyPair> a, std::span<const Bod
   return i;
 }
 
+// Before anything is done about it: then it is known what will be needed from memory.
+void RecordTable::compare(std::span<const BodyPair> pairs) {
+  changes_.clear(), partings_.clear();
+  std::size_t old = 0, now = 0;
+  while (now < pairs.size() || old < pairs_.size()) {
+    const std::size_t run = common(pairs.subspan(now), std::span(pairs_).subspan(old));
+    old += run, now += run;
+    const std::size_t old_then = old, now_then = now;
+    for (; old < pairs_.size() && (now == pairs.size() || pairs_[old] < pairs[now]); ++old) {
+      partings_.push_back(static_cast<std::uint32_t>(old));
+    }
+    while (now < pairs.size() && (old == pairs_.size() || pairs[now] < pairs_[old])) ++now;
+    const auto count = [](std::size_t n) { return static_cast<std::uint32_t>(n); };
+    changes_.push_back({count(run), count(old - old_then), count(now - now_then)});
+  }
+}
+
+// What partings_[i] and some after it need.
+void RecordTable::prefetch_parting(std::size_t i) const noexcept {
+  constexpr std::size_t kKnown = 16, kRecord = 8;  // pairs ahead
+  if (i + kKnown < partings_.size()) prefetch_known(partings_[i + kKnown]);
+  if (i + kRecord >= partings_.size()) return;
+  const std::size_t place = partings_[i + kRecord];
+  if (is_held(place)) prefetch_all(*place_of(known(place).record));
+}
+
 void RecordTable::keep(std::size_t from, std::size_t count) {
   const auto some = [&](const auto& of) { return std::span(of).subspan(from, count); };
   const auto append_some = [](auto& to, const auto& more) { to.insert(to.end(), more.begin(), more.end()); };

@@ -94,11 +94,17 @@ class RecordTable {
   void match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone, Generations&& generations);
   std::size_t memory_bytes() const noexcept {
     return pieces_.size() * sizeof(Piece) + bytes_of(pieces_) + bytes_of(free_) + bytes_of(known_) +
-           bytes_of(free_slots_) + bytes_of(pairs_) + bytes_of(slots_) + bytes_of(next_pairs_) + bytes_of(next_slots_);
+           bytes_of(free_slots_) + bytes_of(pairs_) + bytes_of(slots_) + bytes_of(next_pairs_) + bytes_of(next_slots_) +
+           bytes_of(kept_places_) + bytes_of(changes_) + bytes_of(partings_);
   }
 
  private:
+  struct Change {  // so many pairs are as they were, then so many are no more, and so many new
+    std::uint32_t alike, parted, fresh;
+  };
   static std::size_t common(std::span<const BodyPair> a, std::span<const BodyPair> b) noexcept;
+  void compare(std::span<const BodyPair> pairs);
+  void prefetch_parting(std::size_t i) const noexcept;
   void keep(std::size_t from, std::size_t count);
   void add(const BodyPair& pair, std::uint32_t generations);
   void leave(std::size_t place) noexcept;
@@ -121,13 +127,15 @@ class RecordTable {
   static constexpr std::uint32_t kBusy = 0x80000000u, kHeld = 0x40000000u, kSlot = kHeld - 1;
   std::vector<std::uint32_t> slots_, next_slots_;  // of known_, and flags
   std::vector<std::uint32_t> kept_places_;
+  std::vector<Change> changes_;          // in match()
+  std::vector<std::uint32_t> partings_;  // places, in all of these
 };
 
 template <typename Doubted, typename IsSame, typename Gone, typename Generations>
 void RecordTable::match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone,
                         Generations&& generations) {
+  compare(pairs);
   next_pairs_.clear(), next_slots_.clear(), kept_places_.clear();
-  std::size_t old = 0, now = 0;
   const auto look_at = [&](std::size_t place) {
     if (same(known(place))) return keep(place, 1);
     if (is_held(place)) gone(known(place));  // of a body that is no more: it cannot stay
@@ -148,17 +156,16 @@ void RecordTable::match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSa
     kept_places_.push_back(static_cast<std::uint32_t>(next_pairs_.size()));
     keep(place, 1);
   };
-  while (now < pairs.size()) {
-    const std::size_t run = common(pairs.subspan(now), std::span(pairs_).subspan(old));
-    take_over(old, old + run);
-    old += run, now += run;
-    if (now == pairs.size()) break;
-    for (; old < pairs_.size() && pairs_[old] < pairs[now]; ++old) part(old);
-    for (; now < pairs.size() && (old == pairs_.size() || pairs[now] < pairs_[old]); ++now) {
-      add(pairs[now], generations(pairs[now]));
+  std::size_t old = 0, now = 0, gone_by = 0;
+  for (const Change& change : changes_) {
+    take_over(old, old + change.alike);
+    old += change.alike, now += change.alike;
+    for (std::uint32_t i = 0; i < change.parted; ++i) {
+      prefetch_parting(gone_by++);
+      part(old++);
     }
+    for (std::uint32_t i = 0; i < change.fresh; ++i, ++now) add(pairs[now], generations(pairs[now]));
   }
-  for (; old < pairs_.size(); ++old) part(old);
   pairs_.swap(next_pairs_), slots_.swap(next_slots_);
 }
 
