@@ -101,12 +101,12 @@ class BodyTable {
   const BodyState& state(BodyIndex body) const noexcept { return bodies_[body].state; }
   const Pose& before(BodyIndex body) const noexcept { return before_[body]; }
   // For loops over pairs, whose bodies are anywhere: first the one, some pairs later the other.
-  void prefetch_body(BodyIndex body) const noexcept {
+  ORCHARD_INLINE void prefetch_body(BodyIndex body) const noexcept {
     prefetch(&bodies_[body]);
     prefetch_whereabouts(body);
     prefetch_all(bodies_[body].state.pose);
   }
-  void prefetch_whereabouts(BodyIndex body) const noexcept {  // nothing, of a half-space
+  ORCHARD_INLINE void prefetch_whereabouts(BodyIndex body) const noexcept {  // nothing, of a half-space
     if (body < whereabouts_.size()) prefetch(&whereabouts_[body]);
   }
   const Whereabouts& whereabouts(BodyIndex body) const noexcept { return whereabouts_[body]; }

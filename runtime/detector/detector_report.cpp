@@ -14,6 +14,14 @@ constexpr std::size_t kPerJob = 512;  // records
 
 }  // namespace
 
+// For a loop over `active`: what the next ones need is on its way from memory.
+ORCHARD_INLINE void Detector::State::prefetch_active(std::size_t i, std::size_t end) const noexcept {
+  constexpr std::size_t kKnown = 12, kRecord = 8, kBodies = 6;  // places ahead
+  if (i + kKnown < end) records.prefetch_known(active[i + kKnown]);
+  if (i + kRecord < end) detail::prefetch_all(records[records.known(active[i + kRecord]).record]);
+  if (i + kBodies < end) places.prefetch_bodies(records.pair(active[i + kBodies]));
+}
+
 void Detector::State::describe(const Record& record, Step step, PairChange change, PairEvent& event) const noexcept {
   event = PairEvent{};
   event.change = change;
@@ -144,14 +152,6 @@ void Detector::State::conclude(std::size_t i, Record& record, Tally& tally) noex
   const bool busy = record.touching || record.waited > 0;
   records.tell(active[i], busy, busy || record.large);
   if (record.allowed) keep_clearance(records.known(active[i]), record);
-}
-
-// For a loop over `active`: what the next ones need is on its way from memory.
-void Detector::State::prefetch_active(std::size_t i, std::size_t end) const noexcept {
-  constexpr std::size_t kKnown = 12, kRecord = 8, kBodies = 6;  // places ahead
-  if (i + kKnown < end) records.prefetch_known(active[i + kKnown]);
-  if (i + kRecord < end) detail::prefetch_all(records[records.known(active[i + kRecord]).record]);
-  if (i + kBodies < end) places.prefetch_bodies(records.pair(active[i + kBodies]));
 }
 
 void Detector::State::tally(std::size_t job, Tally& tally) noexcept {

@@ -87,7 +87,7 @@ struct Detector::State {
   std::size_t first_of_job(std::size_t job) const noexcept { return active_count * job / job_count; }
   void ask_filter();
   void conclude(std::size_t i, detail::Record& record, Tally& tally) noexcept;
-  void prefetch_active(std::size_t i, std::size_t end) const noexcept;
+  ORCHARD_INLINE void prefetch_active(std::size_t i, std::size_t end) const noexcept;
   void tally(std::size_t job, Tally& tally) noexcept;
   void tally_all();
   std::uint64_t answer_one_by_one(Step step);

@@ -60,15 +60,6 @@ void RecordTable::compare(std::span<const BodyPair> pairs) {
   }
 }
 
-// What partings_[i] and some after it need.
-void RecordTable::prefetch_parting(std::size_t i) const noexcept {
-  constexpr std::size_t kKnown = 16, kRecord = 8;  // pairs ahead
-  if (i + kKnown < partings_.size()) prefetch_known(partings_[i + kKnown]);
-  if (i + kRecord >= partings_.size()) return;
-  const std::size_t place = partings_[i + kRecord];
-  if (is_held(place)) prefetch_all(*place_of(known(place).record));
-}
-
 void RecordTable::keep(std::size_t from, std::size_t count) {
   const auto some = [&](const auto& of) { return std::span(of).subspan(from, count); };
   const auto append_some = [](auto& to, const auto& more) { to.insert(to.end(), more.begin(), more.end()); };

@@ -78,7 +78,7 @@ class RecordTable {
   void tell(std::size_t place, bool busy, bool held) noexcept {
     slots_[place] = (slots_[place] & kSlot) | (busy ? kBusy : 0) | (held ? kHeld : 0);
   }
-  void prefetch_known(std::size_t place) const noexcept { prefetch(&known(place)); }
+  ORCHARD_INLINE void prefetch_known(std::size_t place) const noexcept { prefetch(&known(place)); }
 
   Record& operator[](std::uint32_t record) noexcept { return *place_of(record); }
   const Record& operator[](std::uint32_t record) const noexcept { return *place_of(record); }
@@ -104,7 +104,7 @@ class RecordTable {
   };
   static std::size_t common(std::span<const BodyPair> a, std::span<const BodyPair> b) noexcept;
   void compare(std::span<const BodyPair> pairs);
-  void prefetch_parting(std::size_t i) const noexcept;
+  ORCHARD_INLINE void prefetch_parting(std::size_t i) const noexcept;
   void keep(std::size_t from, std::size_t count);
   void add(const BodyPair& pair, std::uint32_t generations);
   void leave(std::size_t place) noexcept;
@@ -130,6 +130,15 @@ class RecordTable {
   std::vector<Change> changes_;          // in match()
   std::vector<std::uint32_t> partings_;  // places, in all of these
 };
+
+// What partings_[i] and some after it need.
+ORCHARD_INLINE void RecordTable::prefetch_parting(std::size_t i) const noexcept {
+  constexpr std::size_t kKnown = 16, kRecord = 8;  // pairs ahead
+  if (i + kKnown < partings_.size()) prefetch_known(partings_[i + kKnown]);
+  if (i + kRecord >= partings_.size()) return;
+  const std::size_t place = partings_[i + kRecord];
+  if (is_held(place)) prefetch_all(*place_of(known(place).record));
+}
 
 template <typename Doubted, typename IsSame, typename Gone, typename Generations>
 void RecordTable::match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone,

@@ -38,7 +38,7 @@ class Places {
   void place_sphere(BodyIndex body, std::uint32_t part, PlacedPart& placed) const noexcept;
   // At the step before `now`; only of bodies that have been asked for then, or rest since before.
   void place_before(BodyIndex body, std::uint32_t part, Step now, PlacedPart& placed) const noexcept;
-  void prefetch_bodies(const BodyPair& pair) const noexcept {
+  ORCHARD_INLINE void prefetch_bodies(const BodyPair& pair) const noexcept {
     bodies_->prefetch_body(pair.a);
     if (!is_half_space(pair.b)) bodies_->prefetch_body(pair.b);
   }
