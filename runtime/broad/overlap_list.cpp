@@ -9,17 +9,18 @@ constexpr std::size_t kFewPairs = 64;
 std::uint64_t key_of(const BodyPair& pair) noexcept { return std::uint64_t{pair.a} << 32 | pair.b; }
 
 // Looks pairs up that come in ascending order, in steps that double from where the last one was, and then without
-// branches: nobody can tell how far it is.
+// branches: nobody can tell how far it is. Where it cannot be far the steps stay as they are, so that memory sees where
+// they lead.
 class Finder {
  public:
-  explicit Finder(const std::vector<BodyPair>& sorted)
-      : begin_(sorted.data()), next_(begin_), end_(begin_ + sorted.size()) {}
+  Finder(const std::vector<BodyPair>& sorted, std::size_t lookups)
+      : begin_(sorted.data()), next_(begin_), end_(begin_ + sorted.size()), near_(sorted.size() < kNear * lookups) {}
   bool has(const BodyPair& pair) {
     constexpr std::ptrdiff_t kCounted = 8;
     const std::uint64_t key = key_of(pair);
     const BodyPair* first = next_;
     std::ptrdiff_t range = kCounted;  // it, or what follows its place, is among so many, or the next one
-    while (end_ - first > range && key_of(first[range - 1]) < key) first += range, range *= 2;
+    while (end_ - first > range && key_of(first[range - 1]) < key) first += range, range = near_ ? range : 2 * range;
     range = std::min(range, end_ - first);
     for (; range > kCounted; range -= range / 2) first += key_of(first[range / 2 - 1]) < key ? range / 2 : 0;
     std::ptrdiff_t less = 0;
@@ -30,7 +31,9 @@ class Finder {
   std::uint32_t place() const { return static_cast<std::uint32_t>(next_ - begin_); }  // it has, or would have, there
 
  private:
+  static constexpr std::size_t kNear = 256;  // pairs from one to the next, in the mean
   const BodyPair *begin_, *next_, *end_;
+  bool near_;
 };
 
 }  // namespace
@@ -38,7 +41,7 @@ class Finder {
 // By the first body into buckets, within the vector; in each by the second one: there are few.
 void OverlapList::sort(std::vector<BodyPair>& pairs, std::size_t slots) {
   if (pairs.size() < kFewPairs) return std::sort(pairs.begin(), pairs.end());
-  if (8 * pairs.size() < slots) return sort_by_digits(pairs);
+  if (2 * pairs.size() < slots) return sort_by_digits(pairs);
   begins_.assign(slots + 1, 0);
   for (const BodyPair& pair : pairs) ++begins_[pair.a + 1];
   for (std::size_t body = 0; body < slots; ++body) begins_[body + 1] += begins_[body];
@@ -111,7 +114,7 @@ void OverlapList::begin_anew() noexcept {
 
 // Both sorted. Leaves what is added and not in the list, and what is dropped and in it, and says where.
 void OverlapList::keep_changes() {
-  Finder touching(added_), in_list(pairs_), in_list_too(pairs_);
+  Finder touching(added_, dropped_.size()), in_list(pairs_, dropped_.size()), in_list_too(pairs_, added_.size());
   const auto keep = [](std::vector<BodyPair>& pairs, std::vector<std::uint32_t>& places, const Finder& finder,
                        const auto& counts) {
     places.clear();
