@@ -133,7 +133,7 @@ struct Detector::State {
 
   // Of the step under way; kept for their memory.
   std::vector<BodyIndex> due, involved, everyone, refused, broken;
-  std::vector<Step> involved_at;  // by body: 1 more than the last step at which it was in a pair
+  std::vector<std::uint8_t> is_involved;  // by body, while `involved` is made
   std::vector<BodyPair> plane_pairs, kept_pairs, body_pairs, all_pairs;
   std::span<const BodyPair> pairs;    // all of them; the broad phase's own where there are no others
   std::vector<std::uint32_t> active;  // places in `records` that have to be looked at: active_count of them

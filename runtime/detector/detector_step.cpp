@@ -187,17 +187,18 @@ void Detector::State::gather(Step step, const Advance& now) {
   pairs = merged(now.pairs, kept_pairs, body_pairs);
   pairs = merged(pairs, plane_pairs, all_pairs);
   involved.clear();
-  detail::grow(involved_at, bodies.slots());
+  detail::grow(is_involved, bodies.slots());
   const auto involve = [&](BodyIndex body) {
-    if (involved_at[body] == step + 1) return;
-    involved_at[body] = step + 1;
+    if (is_involved[body] != 0) return;
     involved.push_back(body);
+    is_involved[body] = 1;
   };
   BodyIndex last = kNoIndex;
   for (const BodyPair& pair : pairs) {
     if (pair.a != last) involve(last = pair.a);
     if (!is_half_space(pair.b)) involve(pair.b);
   }
+  for (const BodyIndex body : involved) is_involved[body] = 0;
   bodies.ask(step, clock.time(step), involved, options.executor);
   for (const BodyIndex body : involved) {
     if (!bodies[body].rigid) refused.push_back(body);
