@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "half_spaces.h"
 #include "simple_pair.h"
 
@@ -7,10 +9,14 @@ namespace orchard::runtime::detail {
 // What is asked at one step about two parts, or a part and a half-space.
 struct PlacedPart {
   const Shape* shape = nullptr;  // null: a half-space
-  Pose pose{};
-  Vec3 center{};  // of the part's sphere, in the world
+  Vec3 center{};                 // of the part's sphere, in the world
   double reach = 0;
   bool rigid = true;
+
+  const Pose& pose() const noexcept { return there != nullptr ? *there : *own; }
+  void move_to(const Pose& pose) noexcept { there = nullptr, own = pose; }
+  const Pose* there = nullptr;  // most are where their body is: that is not copied
+  std::optional<Pose> own = {};
 };
 
 struct PartPair {

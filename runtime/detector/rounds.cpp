@@ -65,8 +65,8 @@ void Rounds::answer_coherently(std::uint32_t index, Record& record, Step now,
   if (apart <= reach || verdict.answer != Answer::no) {
     const double bound = apart <= reach ? apart + pair.a.reach + pair.b.reach : verdict.separation_bound;
     const bool tries = slow || record.touching;
-    if (!tries || !CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose, pair.b.pose, verdict)) {
-      ::new (&verdict) Verdict(CoherentPair::search(scratch.workspace, record.trees, pair.a.pose, pair.b.pose));
+    if (!tries || !CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), verdict)) {
+      ::new (&verdict) Verdict(CoherentPair::search(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose()));
       if (slow && verdict.answer == Answer::no) note_search(index, record, verdict.work, scratch);
     }
     scratch.work += kPairWork + verdict.work;
