@@ -100,8 +100,10 @@ class BodyTable {
   BodyState& state(BodyIndex body) noexcept { return bodies_[body].state; }
   const BodyState& state(BodyIndex body) const noexcept { return bodies_[body].state; }
   const Pose& before(BodyIndex body) const noexcept { return before_[body]; }
-  // For loops over pairs, whose bodies are anywhere: first the one, some pairs later the other.
+  // For loops over pairs, whose bodies are anywhere; nothing where there are so few that a core's cache has them.
   ORCHARD_INLINE void prefetch_body(BodyIndex body) const noexcept {
+    constexpr std::size_t kInCache = 2048;
+    if (bodies_.size() <= kInCache) return;
     prefetch(&bodies_[body]);
     prefetch_whereabouts(body);
     prefetch_all(bodies_[body].state.pose);

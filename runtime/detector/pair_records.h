@@ -89,9 +89,10 @@ class RecordTable {
 
   // The known ones are these from now on, which ascend. Asks same(pair, known) about those that have been for which
   // doubted(pair) holds; the others are. Calls gone(known) for each that is not among them, or not the same, and keeps
-  // the former if that says true; generations(pair) for each that is new.
-  template <typename Doubted, typename IsSame, typename Gone, typename Generations>
-  void match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone, Generations&& generations);
+  // the former if that says true; generations(pair) for each that is new, and load(pair) some pairs ahead.
+  template <typename Doubted, typename IsSame, typename Gone, typename Generations, typename Load>
+  void match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone, Generations&& generations,
+             Load&& load);
   std::size_t memory_bytes() const noexcept {
     return pieces_.size() * sizeof(Piece) + bytes_of(pieces_) + bytes_of(free_) + bytes_of(known_) +
            bytes_of(free_slots_) + bytes_of(pairs_) + bytes_of(slots_) + bytes_of(next_pairs_) + bytes_of(next_slots_) +
@@ -140,9 +141,10 @@ ORCHARD_INLINE void RecordTable::prefetch_parting(std::size_t i) const noexcept 
   if (is_held(place)) prefetch_all(*place_of(known(place).record));
 }
 
-template <typename Doubted, typename IsSame, typename Gone, typename Generations>
+template <typename Doubted, typename IsSame, typename Gone, typename Generations, typename Load>
 void RecordTable::match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone,
-                        Generations&& generations) {
+                        Generations&& generations, Load&& load) {
+  constexpr std::size_t kFreshAhead = 8;
   compare(pairs);
   next_pairs_.clear(), next_slots_.clear(), kept_places_.clear();
   const auto look_at = [&](std::size_t place) {
@@ -173,7 +175,10 @@ void RecordTable::match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSa
       prefetch_parting(gone_by++);
       part(old++);
     }
-    for (std::uint32_t i = 0; i < change.fresh; ++i, ++now) add(pairs[now], generations(pairs[now]));
+    for (std::uint32_t i = 0; i < change.fresh; ++i, ++now) {
+      if (now + kFreshAhead < pairs.size()) load(pairs[now + kFreshAhead]);
+      add(pairs[now], generations(pairs[now]));
+    }
   }
   pairs_.swap(next_pairs_), slots_.swap(next_slots_);
 }
