@@ -19,10 +19,10 @@ class Changes {
   bool empty() const noexcept { return changed_.empty(); }
   std::size_t size() const noexcept { return changed_.size(); }  // at most
   // All of them leave, as they came. For whoever knows that no body has been forgotten.
-  void take_all(std::vector<BodyIndex>& bodies) noexcept {
-    bodies.clear();
-    bodies.swap(changed_);
+  void take_all(std::vector<BodyIndex>& bodies) {
+    bodies.assign(changed_.begin(), changed_.end());
     std::fill(pending_.begin(), pending_.end(), std::uint8_t{0});
+    changed_.clear();
     if (changed_.capacity() > kKept) give_back(changed_);
   }
   void append_to(std::vector<BodyIndex>& bodies) const {

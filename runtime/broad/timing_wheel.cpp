@@ -83,7 +83,7 @@ void TimingWheel::add(const PairEvent& event, Step step) {
   Bucket& bucket = buckets_[index];
   if (bucket.in_first == kEventsInPart) add_part(bucket);
   parts_[bucket.events].events[bucket.in_first++] = event;
-  bucket.meetings += event.parting == 0;
+  if (event.parting == 0) ++bucket.meetings;
   mark(index);
 }
 

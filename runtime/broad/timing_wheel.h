@@ -62,8 +62,8 @@ class TimingWheel {
   static_assert(sizeof(Events) == 64);
   struct Bucket {
     std::uint32_t bodies = kNone, events = kNone;
-    std::uint32_t in_first = kEventsInPart;  // events in the first part; as if full where there is none
-    std::uint32_t meetings = 0;              // events of pairs that do not overlap yet
+    std::uint32_t in_first : 4 = kEventsInPart;  // events in the first part; as if full where there is none
+    std::uint32_t meetings : 28 = 0;             // events of pairs that do not overlap yet
   };
 
   template <typename Use>
