@@ -23,15 +23,15 @@ ORCHARD_INLINE void Detector::State::prefetch_active(std::size_t i, std::size_t 
 }
 
 void Detector::State::describe(const Record& record, Step step, PairChange change, PairEvent& event) const noexcept {
-  event = PairEvent{};
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   event.change = change;
   event.a = record.a, event.b = record.b;
   event.part_a = record.part_a, event.part_b = record.part_b;
   event.time = clock.time(step);
   event.verdict = record.verdict;
-  if (!record.impact) return;
-  event.impact_from = clock.time(step) + (record.impact_from - 1) * clock.time_step;
-  event.impact_to = clock.time(step) + (record.impact_to - 1) * clock.time_step;
+  const auto at = [&](double share) { return clock.time(step) + (share - 1) * clock.time_step; };
+  event.impact_from = record.impact ? at(record.impact_from) : kNone;
+  event.impact_to = record.impact ? at(record.impact_to) : kNone;
 }
 
 // Neither has moved since the last certain answer.

@@ -69,6 +69,14 @@ double sphere_gap(const PartPair& pair) noexcept {
   return std::isfinite(gap) ? gap : 0;
 }
 
+// Mostly the squares tell: a gap that is computed as more than 0 has a square of its way that is larger.
+bool spheres_part(const PartPair& pair) noexcept {
+  if (pair.b.shape == nullptr) return sphere_gap(pair) > 0;
+  const Vec3 way = pair.b.center - pair.a.center;
+  const double reach = pair.a.reach + pair.b.reach;
+  return !(dot(way, way) < reach * reach) && sphere_gap(pair) > 0;
+}
+
 Verdict unasked(const PartPair& pair) noexcept {
   Verdict verdict;
   const double gap = sphere_gap(pair);

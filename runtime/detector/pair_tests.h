@@ -60,6 +60,7 @@ class Places {
 
 // How far apart the spheres around the two are, at least; at most 0 where they may overlap.
 double sphere_gap(const PartPair& pair) noexcept;
+bool spheres_part(const PartPair& pair) noexcept;  // whether it is more than 0
 // What is known of two parts that nothing was asked about.
 Verdict unasked(const PartPair& pair) noexcept;
 
