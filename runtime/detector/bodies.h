@@ -116,6 +116,8 @@ class BodyTable {
   bool any_disturbed() const noexcept { return any_disturbed_.load(std::memory_order_relaxed); }
   bool disturbed(BodyIndex body) const noexcept { return disturbed_[body] != 0; }
   void forget_disturbed() noexcept;
+  // Whether no answer so far was anything but rigid.
+  bool all_rigid() const noexcept { return !any_flawed_.load(std::memory_order_relaxed); }
   // Who calls for what ask() does not see: another pose of a body at rest, another place of a part, other triangles.
   void moved(BodyIndex body, const Pose& before) noexcept;
   void part_moved(BodyIndex body, std::size_t part, const PartPlace& before, const Shape& shape) noexcept;
@@ -141,7 +143,7 @@ class BodyTable {
   bool keeps_before_ = false;
   std::vector<Whereabouts> whereabouts_;
   std::vector<std::uint8_t> disturbed_;
-  std::atomic<bool> any_disturbed_ = false;  // set by jobs
+  std::atomic<bool> any_disturbed_ = false, any_flawed_ = false;  // set by jobs
   std::vector<BodyIndex> asking_;
   std::vector<BodyState> answers_;
 };

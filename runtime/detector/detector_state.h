@@ -55,6 +55,7 @@ struct Detector::State {
   std::chrono::nanoseconds time_for_broad(const detail::StepBudget& budget) const noexcept;
   bool still_there(const detail::RecordTable::Known& known) const noexcept;
   void gather(Step step, const Advance& now);
+  void ask_involved(Step step);
   void match(Step step, Frame& frame);
   std::size_t find_near(std::size_t begin, std::size_t end, std::uint32_t* near) noexcept;
   void find_active();
@@ -117,6 +118,8 @@ struct Detector::State {
 
   Step answered = -1;      // up to which steps have been answered
   bool all_asked = false;  // everybody's state is that of the step that the broad phase is at
+  Step all_asked_at = detail::kNotAsked;
+  Step involved_at = detail::kNotAsked;  // the step of `involved`
   std::size_t count = 0;
   bool failed = false;          // out of memory
   bool any_continuous = false;  // bodies, ever

@@ -186,6 +186,15 @@ void Detector::State::gather(Step step, const Advance& now) {
   }
   pairs = merged(now.pairs, kept_pairs, body_pairs);
   pairs = merged(pairs, plane_pairs, all_pairs);
+  ask_involved(step);
+}
+
+// Those that are in pairs. Where everybody has been asked and nobody is to be refused, who they are only matters for
+// what is done at the next steps.
+void Detector::State::ask_involved(Step step) {
+  constexpr Step kKept = 16;
+  if (all_asked_at == step && bodies.all_rigid() && step < involved_at + kKept) return;
+  involved_at = step;
   involved.clear();
   detail::grow(is_involved, bodies.slots());
   const auto involve = [&](BodyIndex body) {
