@@ -4,7 +4,7 @@ namespace orchard::runtime::detail {
 namespace {
 
 constexpr std::size_t kFewPairs = 64;
-constexpr std::size_t kManyPairs = 16;  // for each body
+constexpr std::size_t kPairsWithRoom = 16;  // for each body
 
 // In the same order.
 std::uint64_t key_of(const BodyPair& pair) noexcept { return std::uint64_t{pair.a} << 32 | pair.b; }
@@ -42,7 +42,7 @@ class Finder {
 void OverlapList::sort(std::vector<BodyPair>& pairs, std::size_t slots, std::vector<BodyPair>& room) {
   if (pairs.size() < kFewPairs) return std::sort(pairs.begin(), pairs.end());
   if (2 * pairs.size() < slots) return sort_by_digits(pairs);
-  if (pairs.size() > kManyPairs * slots) return sort_in_place(pairs, slots);
+  if (pairs.size() > kPairsWithRoom * slots) return sort_in_place(pairs, slots);
   room.resize(pairs.size());
   sort_by_body(pairs, room, slots, &BodyPair::b);
   sort_by_body(room, pairs, slots, &BodyPair::a);
@@ -96,7 +96,7 @@ void OverlapList::sort_by_digits(std::vector<BodyPair>& pairs) {
 void OverlapList::assign(std::span<const BodyPair> pairs, std::size_t slots) {
   clear();
   pairs_.resize(pairs.size());
-  if (pairs.size() > kManyPairs * slots) {
+  if (pairs.size() > kPairsWithRoom * slots) {
     std::copy(pairs.begin(), pairs.end(), pairs_.begin());
     return sort_in_place(pairs_, slots);
   }
