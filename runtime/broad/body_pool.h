@@ -203,7 +203,7 @@ class BodyPool {
   };
   void ask(Step step, std::span<const BodyIndex> bodies, std::span<Motion> motions, Answers& answers) const;
   // Starts loading what ask() will need soon, where it is known to be too much for the cache.
-  void load_ahead(std::span<const BodyIndex> bodies) const noexcept {
+  ORCHARD_INLINE void load_ahead(std::span<const BodyIndex> bodies) const noexcept {
     if (arrays_ != nullptr && slots() > kMaxInCache) load(bodies);
   }
   void count_asked(std::uint64_t motions) noexcept { asked_ += motions; }

@@ -18,6 +18,13 @@ class Changes {
   const std::uint8_t* at(BodyIndex body) const noexcept { return &pending_[body]; }  // to load it ahead
   bool empty() const noexcept { return changed_.empty(); }
   std::size_t size() const noexcept { return changed_.size(); }  // at most
+  // All of them leave, as they came. For whoever knows that no body has been forgotten.
+  void take_all(std::vector<BodyIndex>& bodies) {
+    bodies.assign(changed_.begin(), changed_.end());
+    std::fill(pending_.begin(), pending_.end(), std::uint8_t{0});
+    changed_.clear();
+    if (changed_.capacity() > kKept) give_back(changed_);
+  }
   void append_to(std::vector<BodyIndex>& bodies) const {
     for (const BodyIndex body : changed_) {
       if (pending_[body]) bodies.push_back(body);
@@ -26,7 +33,6 @@ class Changes {
   // Each leaves, and is used; load(body) is called some bodies ahead.
   template <typename Load, typename Use>
   void take(const Load& load, const Use& use) {
-    constexpr std::size_t kKept = 1024;  // room for as many stays allocated, not what adding all bodies took
     constexpr std::size_t kAhead = 16;
     for (std::size_t i = 0; i < changed_.size(); ++i) {
       if (i + kAhead < changed_.size()) load(changed_[i + kAhead]);
@@ -41,6 +47,8 @@ class Changes {
   std::size_t memory_bytes() const noexcept { return bytes_of(pending_) + bytes_of(changed_); }
 
  private:
+  static constexpr std::size_t kKept = 1024;  // room for as many stays allocated, not what adding all bodies took
+
   std::vector<std::uint8_t> pending_;  // by body
   std::vector<BodyIndex> changed_;
 };

@@ -66,6 +66,8 @@ void Events::note_cancelled(BodyIndex body, Step now) {
 
 void Events::collect_due(Step now) {
   constexpr std::size_t kAhead = 16;
+  // Then all bodies are new, each is noted at least once, and none has had a window.
+  if (first_ && changes_.size() == pool_.size()) return changes_.take_all(due_);
   make_room(due_, changes_.size());
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     if (i + kAhead < entries_.size()) {
@@ -106,6 +108,7 @@ void Events::collect_all(Step now) {
 
 // What has not been updated for this step yet is in due_ already; the rest changed since, or was added.
 void Events::complete_due(Step now) {
+  if (changes_.empty() && pool_.size() == pool_.slots()) return;  // nor is anybody gone
   std::erase_if(due_, [&](BodyIndex body) { return !pool_.alive(body) || changes_.has(body); });
   const auto load = [&](BodyIndex body) { prefetch(&windows_[body]); };
   changes_.take(load, [&](BodyIndex body) {
@@ -307,6 +310,7 @@ void Events::begin(Step now) {
   if (prepared_) return complete_due(now);
   due_.clear();
   sorting_ ? collect_all(now) : collect_due(now);
+  first_ = false;
 }
 
 StepReport Events::step(Step now, BudgetTracker& tracker) {

@@ -73,6 +73,7 @@ class Events final : public Method {
   BudgetedWork budgeted_;
   SortedSpheres sorted_;
 
+  bool first_ = true;                  // no step has been done
   bool sorting_ = false;               // the last step was done by sorting: there are no boxes, and all bodies are due
   Step sorts_from_ = kNeverStep / -2;  // at steps before, nothing is sorted
   Step interrupted_at_ = kNeverStep / -2;  // by a budget

@@ -4,22 +4,24 @@ namespace orchard::runtime::detail {
 namespace {
 
 constexpr std::size_t kFewPairs = 64;
+constexpr std::size_t kPairsWithRoom = 16;  // for each body
 
 // In the same order.
 std::uint64_t key_of(const BodyPair& pair) noexcept { return std::uint64_t{pair.a} << 32 | pair.b; }
 
 // Looks pairs up that come in ascending order, in steps that double from where the last one was, and then without
-// branches: nobody can tell how far it is.
+// branches: nobody can tell how far it is. Where it cannot be far the steps stay as they are, so that memory sees where
+// they lead.
 class Finder {
  public:
-  explicit Finder(const std::vector<BodyPair>& sorted)
-      : begin_(sorted.data()), next_(begin_), end_(begin_ + sorted.size()) {}
+  Finder(const std::vector<BodyPair>& sorted, std::size_t lookups)
+      : begin_(sorted.data()), next_(begin_), end_(begin_ + sorted.size()), near_(sorted.size() < kNear * lookups) {}
   bool has(const BodyPair& pair) {
     constexpr std::ptrdiff_t kCounted = 8;
     const std::uint64_t key = key_of(pair);
     const BodyPair* first = next_;
     std::ptrdiff_t range = kCounted;  // it, or what follows its place, is among so many, or the next one
-    while (end_ - first > range && key_of(first[range - 1]) < key) first += range, range *= 2;
+    while (end_ - first > range && key_of(first[range - 1]) < key) first += range, range = near_ ? range : 2 * range;
     range = std::min(range, end_ - first);
     for (; range > kCounted; range -= range / 2) first += key_of(first[range / 2 - 1]) < key ? range / 2 : 0;
     std::ptrdiff_t less = 0;
@@ -30,15 +32,34 @@ class Finder {
   std::uint32_t place() const { return static_cast<std::uint32_t>(next_ - begin_); }  // it has, or would have, there
 
  private:
+  static constexpr std::size_t kNear = 256;  // pairs from one to the next, in the mean
   const BodyPair *begin_, *next_, *end_;
+  bool near_;
 };
 
 }  // namespace
 
-// By the first body into buckets, within the vector; in each by the second one: there are few.
-void OverlapList::sort(std::vector<BodyPair>& pairs, std::size_t slots) {
+void OverlapList::sort(std::vector<BodyPair>& pairs, std::size_t slots, std::vector<BodyPair>& room) {
   if (pairs.size() < kFewPairs) return std::sort(pairs.begin(), pairs.end());
-  if (8 * pairs.size() < slots) return sort_by_digits(pairs);
+  if (2 * pairs.size() < slots) return sort_by_digits(pairs);
+  if (pairs.size() > kPairsWithRoom * slots) return sort_in_place(pairs, slots);
+  room.resize(pairs.size());
+  sort_by_body(pairs, room, slots, &BodyPair::b);
+  sort_by_body(room, pairs, slots, &BodyPair::a);
+}
+
+// Those of one body stay in the order in which they come.
+void OverlapList::sort_by_body(std::span<const BodyPair> from, std::span<BodyPair> to, std::size_t slots,
+                               BodyIndex BodyPair::*body) {
+  begins_.assign(slots + 2, 0);
+  for (const BodyPair& pair : from) ++begins_[pair.*body + 2];
+  for (std::size_t i = 1; i <= slots; ++i) begins_[i + 1] += begins_[i];
+  for (const BodyPair& pair : from) to[begins_[pair.*body + 1]++] = pair;
+}
+
+// Where room for as many more would be too much: by the first body into buckets, within the vector, in each by the
+// second one.
+void OverlapList::sort_in_place(std::vector<BodyPair>& pairs, std::size_t slots) {
   begins_.assign(slots + 1, 0);
   for (const BodyPair& pair : pairs) ++begins_[pair.a + 1];
   for (std::size_t body = 0; body < slots; ++body) begins_[body + 1] += begins_[body];
@@ -72,18 +93,17 @@ void OverlapList::sort_by_digits(std::vector<BodyPair>& pairs) {
   }
 }
 
-// By the first body, and in each row by the second one.
 void OverlapList::assign(std::span<const BodyPair> pairs, std::size_t slots) {
   clear();
-  begins_.assign(slots + 2, 0);
-  for (const BodyPair& pair : pairs) ++begins_[pair.a + 2];
-  for (std::size_t body = 1; body <= slots; ++body) begins_[body + 1] += begins_[body];
   pairs_.resize(pairs.size());
-  for (const BodyPair& pair : pairs) pairs_[begins_[pair.a + 1]++] = pair;
-  for (std::size_t body = 0; body < slots; ++body) {
-    const auto begin = pairs_.begin() + begins_[body], end = pairs_.begin() + begins_[body + 1];
-    if (end - begin > 1) std::sort(begin, end);
+  if (pairs.size() > kPairsWithRoom * slots) {
+    std::copy(pairs.begin(), pairs.end(), pairs_.begin());
+    return sort_in_place(pairs_, slots);
   }
+  added_.resize(pairs.size());
+  sort_by_body(pairs, added_, slots, &BodyPair::b);
+  sort_by_body(added_, pairs_, slots, &BodyPair::a);
+  added_.clear();
 }
 
 void OverlapList::clear_marks() noexcept {
@@ -111,7 +131,7 @@ void OverlapList::begin_anew() noexcept {
 
 // Both sorted. Leaves what is added and not in the list, and what is dropped and in it, and says where.
 void OverlapList::keep_changes() {
-  Finder touching(added_), in_list(pairs_), in_list_too(pairs_);
+  Finder touching(added_, dropped_.size()), in_list(pairs_, dropped_.size()), in_list_too(pairs_, added_.size());
   const auto keep = [](std::vector<BodyPair>& pairs, std::vector<std::uint32_t>& places, const Finder& finder,
                        const auto& counts) {
     places.clear();
@@ -162,12 +182,12 @@ void OverlapList::update(std::size_t slots) {
     clear_marks();
   }
   if (anew_) {
-    sort(pairs_, slots);
+    sort(pairs_, slots, added_);  // where nothing is
     pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
   } else if (!added_.empty() || !dropped_.empty()) {
-    sort(added_, slots);
+    sort(added_, slots, by_digit_);
     added_.erase(std::unique(added_.begin(), added_.end()), added_.end());
-    sort(dropped_, slots);
+    sort(dropped_, slots, by_digit_);
     dropped_.erase(std::unique(dropped_.begin(), dropped_.end()), dropped_.end());
     keep_changes();
     if (!dropped_.empty()) remove_dropped();

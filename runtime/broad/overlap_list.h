@@ -53,7 +53,10 @@ class OverlapList {
   std::size_t memory_bytes() const noexcept;
 
  private:
-  void sort(std::vector<BodyPair>& pairs, std::size_t slots);
+  void sort(std::vector<BodyPair>& pairs, std::size_t slots, std::vector<BodyPair>& room);
+  void sort_by_body(std::span<const BodyPair> from, std::span<BodyPair> to, std::size_t slots,
+                    BodyIndex BodyPair::*body);
+  void sort_in_place(std::vector<BodyPair>& pairs, std::size_t slots);
   void sort_by_digits(std::vector<BodyPair>& pairs);
   void forget_marked();
   void clear_marks() noexcept;
@@ -67,7 +70,7 @@ class OverlapList {
   BodyIndex first_marked_ = kNoIndex, last_marked_ = 0;
   bool anew_ = false, refuses_ = false;
   std::vector<std::uint32_t> begins_, ends_;  // by body, while many pairs are sorted
-  std::vector<BodyPair> by_digit_;            // while some are
+  std::vector<BodyPair> by_digit_;            // while some are; changes
 };
 
 }  // namespace orchard::runtime::detail

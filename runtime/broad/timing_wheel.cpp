@@ -52,7 +52,7 @@ void TimingWheel::clear_bodies() noexcept {
 }
 
 void TimingWheel::clear_events() noexcept {
-  for_each_busy([](Bucket& bucket) { bucket.events = kNone, bucket.in_first = kEventsInPart; });
+  for_each_busy([](Bucket& bucket) { bucket.events = kNone, bucket.in_first = kEventsInPart, bucket.meetings = 0; });
   parts_.clear();
   free_part_ = kNone;
 }
@@ -83,6 +83,7 @@ void TimingWheel::add(const PairEvent& event, Step step) {
   Bucket& bucket = buckets_[index];
   if (bucket.in_first == kEventsInPart) add_part(bucket);
   parts_[bucket.events].events[bucket.in_first++] = event;
+  if (event.parting == 0) ++bucket.meetings;
   mark(index);
 }
 
@@ -126,16 +127,6 @@ std::size_t TimingWheel::bodies_due(Step step) const noexcept {
     } else {
       for (const BodyIndex body : ids) count += body != kNoIndex;
     }
-  }
-  return count;
-}
-
-std::size_t TimingWheel::events_due(Step step) const noexcept {
-  std::size_t count = 0;
-  const Bucket& bucket = buckets_[bucket_of(step)];
-  std::uint32_t here = bucket.in_first;
-  for (std::uint32_t part = bucket.events; part != kNone; part = parts_[part].next, here = kEventsInPart) {
-    for (std::uint32_t i = 0; i < here; ++i) count += parts_[part].events[i].parting == 0;
   }
   return count;
 }

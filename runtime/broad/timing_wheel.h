@@ -37,9 +37,11 @@ class TimingWheel {
 
   // Moves everything due at the step to the ends of the vectors.
   void take(Step step, std::vector<BodyIndex>& bodies, std::vector<PairEvent>& events);
-  // How much take() would give, void entries included. O(of that).
-  std::size_t bodies_due(Step step) const noexcept;
-  std::size_t events_due(Step step) const noexcept;  // of pairs that do not overlap yet
+  // How much take() would give, void entries included.
+  std::size_t bodies_due(Step step) const noexcept;   // O(of that)
+  std::size_t events_due(Step step) const noexcept {  // of pairs that do not overlap yet
+    return buckets_[bucket_of(step)].meetings;
+  }
   // The first step after `now` that may have something; kNeverStep if there is none.
   Step next_after(Step now) const noexcept;
   std::size_t memory_bytes() const noexcept;
@@ -60,7 +62,8 @@ class TimingWheel {
   static_assert(sizeof(Events) == 64);
   struct Bucket {
     std::uint32_t bodies = kNone, events = kNone;
-    std::uint32_t in_first = kEventsInPart;  // events in the first part; as if full where there is none
+    std::uint32_t in_first : 4 = kEventsInPart;  // events in the first part; as if full where there is none
+    std::uint32_t meetings : 28 = 0;             // events of pairs that do not overlap yet
   };
 
   template <typename Use>

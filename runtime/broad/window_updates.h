@@ -62,6 +62,7 @@ class WindowUpdates {
   void place_shared(Chunk& chunk, Block& block, std::span<BodyIndex> bodies, std::span<Motion> motions) const;
   void fold(Chunk& chunk);
   void find_in_part(Step now, std::size_t index);
+  bool are_many(std::size_t bodies) const noexcept;
   void update_wave(Step now, Step from, std::span<const BodyIndex> bodies);
   template <typename Job>
   void run_all(std::size_t count, const Job& job);

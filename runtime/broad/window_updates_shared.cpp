@@ -219,9 +219,19 @@ void WindowUpdates::update_wave(Step now, Step from, std::span<const BodyIndex> 
   }
 }
 
+// Whether jobs are worth it: what they have to do is told by the bodies, and by the pairs that are near, of which so
+// many make up for a body. A thread that is alone takes a little longer with jobs unless there are many of either.
+bool WindowUpdates::are_many(std::size_t bodies) const noexcept {
+  constexpr std::size_t kFewer = 4;
+  constexpr double kPairsOfBody = 48;
+  const std::size_t least = options_.min_bodies_for_jobs;
+  const double pairs = parts_.planner.plan().pairs_per_body;
+  const double work = static_cast<double>(bodies) * (1 + pairs / kPairsOfBody);
+  return bodies > 0 && bodies >= least / kFewer && work >= static_cast<double>(least);
+}
+
 void WindowUpdates::update_all(Step now, Step from, std::span<const BodyIndex> bodies) {
-  const bool many = !bodies.empty() && bodies.size() >= options_.min_bodies_for_jobs && parts_.boxes.shares() &&
-                    parts_.pool.promises() == nullptr;
+  const bool many = are_many(bodies.size()) && parts_.boxes.shares() && parts_.pool.promises() == nullptr;
   if (!many) {
     parts_.boxes.empty(options_.executor);
     return update(now, from, bodies);

@@ -163,6 +163,7 @@ void BodyTable::take_answer(Step step, BodyIndex index, const BodyState& answer)
   if (!same) body.moved = step;
   state = answer;
   body.rigid = is_rigid(state.pose);
+  if (!body.rigid) any_flawed_.store(true, std::memory_order_relaxed);
   if (!same) moved(index, before);
   if (!body.asleep) return;
   body.frozen = true;

@@ -100,13 +100,15 @@ class BodyTable {
   BodyState& state(BodyIndex body) noexcept { return bodies_[body].state; }
   const BodyState& state(BodyIndex body) const noexcept { return bodies_[body].state; }
   const Pose& before(BodyIndex body) const noexcept { return before_[body]; }
-  // For loops over pairs, whose bodies are anywhere: first the one, some pairs later the other.
-  void prefetch_body(BodyIndex body) const noexcept {
+  // For loops over pairs, whose bodies are anywhere; nothing where there are so few that a core's cache has them.
+  ORCHARD_INLINE void prefetch_body(BodyIndex body) const noexcept {
+    constexpr std::size_t kInCache = 2048;
+    if (bodies_.size() <= kInCache) return;
     prefetch(&bodies_[body]);
     prefetch_whereabouts(body);
     prefetch_all(bodies_[body].state.pose);
   }
-  void prefetch_whereabouts(BodyIndex body) const noexcept {  // nothing, of a half-space
+  ORCHARD_INLINE void prefetch_whereabouts(BodyIndex body) const noexcept {  // nothing, of a half-space
     if (body < whereabouts_.size()) prefetch(&whereabouts_[body]);
   }
   const Whereabouts& whereabouts(BodyIndex body) const noexcept { return whereabouts_[body]; }
@@ -114,6 +116,8 @@ class BodyTable {
   bool any_disturbed() const noexcept { return any_disturbed_.load(std::memory_order_relaxed); }
   bool disturbed(BodyIndex body) const noexcept { return disturbed_[body] != 0; }
   void forget_disturbed() noexcept;
+  // Whether no answer so far was anything but rigid.
+  bool all_rigid() const noexcept { return !any_flawed_.load(std::memory_order_relaxed); }
   // Who calls for what ask() does not see: another pose of a body at rest, another place of a part, other triangles.
   void moved(BodyIndex body, const Pose& before) noexcept;
   void part_moved(BodyIndex body, std::size_t part, const PartPlace& before, const Shape& shape) noexcept;
@@ -139,7 +143,7 @@ class BodyTable {
   bool keeps_before_ = false;
   std::vector<Whereabouts> whereabouts_;
   std::vector<std::uint8_t> disturbed_;
-  std::atomic<bool> any_disturbed_ = false;  // set by jobs
+  std::atomic<bool> any_disturbed_ = false, any_flawed_ = false;  // set by jobs
   std::vector<BodyIndex> asking_;
   std::vector<BodyState> answers_;
 };

@@ -360,8 +360,8 @@ std::size_t Detector::memory_bytes() const noexcept {
   return sizeof(State) + (s.kept_states ? s.kept_states->memory_bytes() : 0) + s.shapes.memory_bytes() +
          s.bodies.memory_bytes() + s.halves.memory_bytes() + s.broad.memory_bytes() + s.monitor.memory_bytes() +
          s.records.memory_bytes() + s.queries.memory_bytes() + s.fronts.memory_bytes() + s.rounds.memory_bytes() +
-         bytes(s.due, s.involved, s.involved_at, s.active, s.active_of_job, s.everyone, s.refused, s.broken,
-               s.plane_pairs, s.pairs, s.kept_pairs, s.body_pairs, s.open, s.events, s.ended, s.marks, s.tallies);
+         bytes(s.due, s.involved, s.is_involved, s.active, s.active_of_job, s.everyone, s.refused, s.broken,
+               s.plane_pairs, s.kept_pairs, s.body_pairs, s.all_pairs, s.open, s.events, s.ended, s.marks, s.tallies);
 }
 
 }  // namespace orchard::runtime

@@ -7,6 +7,8 @@
 namespace orchard::runtime {
 namespace {
 
+constexpr std::uint32_t kNoRecordYet = 0x80000000u;  // beyond all places
+
 constexpr double kRoundingOfGaps = 1e3;  // in units of Whereabouts::slack
 
 // Whether the spheres of their only parts are apart; as sphere_gap() says, or not quite. No branches: nobody foresees
@@ -48,7 +50,7 @@ bool Detector::State::sphere_above(const BodyPair& pair) const noexcept {
 }
 
 // Those of records.pair(begin .. end - 1) that their spheres do not tell apart, nor what is known of them, or whose
-// records would be changed by that.
+// records would be changed by that. Plus kNoRecordYet where there is none.
 std::size_t Detector::State::find_near(std::size_t begin, std::size_t end, std::uint32_t* near) noexcept {
   constexpr std::size_t kPairsAhead = 24;
   std::size_t found = 0, count_near = 0;
@@ -69,7 +71,7 @@ std::size_t Detector::State::find_near(std::size_t begin, std::size_t end, std::
     auto& known = records.known(near[i]);
     if (known.clearance.distance > 0 && clear(known)) continue;
     known.clearance.distance = 0;
-    near[count_near++] = near[i];
+    near[count_near++] = near[i] | (known.record == detail::kNoRecord ? kNoRecordYet : 0);
   }
   return count_near;
 }
@@ -89,11 +91,11 @@ void Detector::State::find_active() {
   auto kept = records.kept().begin();
   for (std::size_t job = 0; job < jobs; ++job) {
     for (std::size_t i = 0; i < active_of_job[job]; ++i) {
-      const std::uint32_t place = active[job * kPerJob + i];
+      const std::uint32_t found = active[job * kPerJob + i], place = found & ~kNoRecordYet;
       while (kept != records.kept().end() && *kept < place) ++kept;
       if (kept != records.kept().end() && *kept == place) continue;
       active[active_count++] = place;
-      if (records.known(place).record == detail::kNoRecord) records.take(place);
+      if (found != place) records.take(place);
     }
   }
 }
@@ -155,7 +157,8 @@ void Detector::State::match(Step step, Frame& frame) {
     ++fresh_pairs;
     return generations(pair);
   };
-  records.match(pairs, doubted, same, gone, fresh);
+  const auto load = [this](const BodyPair& pair) ORCHARD_INLINE_LAMBDA { bodies.prefetch_whereabouts(pair.b); };
+  records.match(pairs, doubted, same, gone, fresh, load);
   parted_pairs = known_pairs + fresh_pairs + records.kept().size() - records.size();
   bodies.forget_disturbed();
   find_active();

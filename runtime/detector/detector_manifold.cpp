@@ -19,8 +19,8 @@ Manifold Detector::State::manifold(const PairEvent& event, const ContactOptions&
   if (half) pair.half = places.half_space(event.b.index);
   Workspace& workspace = queries.scratch(0).workspace;
   if (!pair.simple()) {
-    result =
-        contacts(workspace, TreePair(pair.a.shape->prepared, pair.b.shape->prepared), pair.a.pose, pair.b.pose, with);
+    result = contacts(workspace, TreePair(pair.a.shape->prepared, pair.b.shape->prepared), pair.a.pose(), pair.b.pose(),
+                      with);
     if (result.answer == Answer::yes) return result;
   }
   std::uint64_t work = 0;
@@ -31,9 +31,9 @@ Manifold Detector::State::manifold(const PairEvent& event, const ContactOptions&
   result.points[0] = {verdict.contact.center, verdict.contact.triangle_a, verdict.contact.triangle_b};
   result.normal = verdict.contact.normal;
   if (half) {
-    result.depth = detail::half_space_depth(*pair.a.shape, pair.a.pose, pair.half);
+    result.depth = detail::half_space_depth(*pair.a.shape, pair.a.pose(), pair.half);
   } else if (pair.simple()) {
-    result.depth = detail::simple_depth(*pair.a.shape, pair.a.pose, *pair.b.shape, pair.b.pose);
+    result.depth = detail::simple_depth(*pair.a.shape, pair.a.pose(), *pair.b.shape, pair.b.pose());
   } else {  // one wholly inside a box
     result.complete = false;
   }

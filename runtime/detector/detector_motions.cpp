@@ -35,6 +35,7 @@ void Detector::State::ask_all(Step step) {
   }
   bodies.ask(step, clock.time(step), everyone, options.executor);
   all_asked = true;
+  all_asked_at = step;
 }
 
 // 4.4: before the broad phase relies on anything at this step, everybody's state is compared with what it relies on.

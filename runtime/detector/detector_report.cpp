@@ -14,16 +14,24 @@ constexpr std::size_t kPerJob = 512;  // records
 
 }  // namespace
 
+// For a loop over `active`: what the next ones need is on its way from memory.
+ORCHARD_INLINE void Detector::State::prefetch_active(std::size_t i, std::size_t end) const noexcept {
+  constexpr std::size_t kKnown = 12, kRecord = 8, kBodies = 6;  // places ahead
+  if (i + kKnown < end) records.prefetch_known(active[i + kKnown]);
+  if (i + kRecord < end) detail::prefetch_all(records[records.known(active[i + kRecord]).record]);
+  if (i + kBodies < end) places.prefetch_bodies(records.pair(active[i + kBodies]));
+}
+
 void Detector::State::describe(const Record& record, Step step, PairChange change, PairEvent& event) const noexcept {
-  event = PairEvent{};
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   event.change = change;
   event.a = record.a, event.b = record.b;
   event.part_a = record.part_a, event.part_b = record.part_b;
   event.time = clock.time(step);
   event.verdict = record.verdict;
-  if (!record.impact) return;
-  event.impact_from = clock.time(step) + (record.impact_from - 1) * clock.time_step;
-  event.impact_to = clock.time(step) + (record.impact_to - 1) * clock.time_step;
+  const auto at = [&](double share) { return clock.time(step) + (share - 1) * clock.time_step; };
+  event.impact_from = record.impact ? at(record.impact_from) : kNone;
+  event.impact_to = record.impact ? at(record.impact_to) : kNone;
 }
 
 // Neither has moved since the last certain answer.
@@ -144,14 +152,6 @@ void Detector::State::conclude(std::size_t i, Record& record, Tally& tally) noex
   const bool busy = record.touching || record.waited > 0;
   records.tell(active[i], busy, busy || record.large);
   if (record.allowed) keep_clearance(records.known(active[i]), record);
-}
-
-// For a loop over `active`: what the next ones need is on its way from memory.
-void Detector::State::prefetch_active(std::size_t i, std::size_t end) const noexcept {
-  constexpr std::size_t kKnown = 12, kRecord = 8, kBodies = 6;  // places ahead
-  if (i + kKnown < end) records.prefetch_known(active[i + kKnown]);
-  if (i + kRecord < end) detail::prefetch_all(records[records.known(active[i + kRecord]).record]);
-  if (i + kBodies < end) places.prefetch_bodies(records.pair(active[i + kBodies]));
 }
 
 void Detector::State::tally(std::size_t job, Tally& tally) noexcept {

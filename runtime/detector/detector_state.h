@@ -55,6 +55,7 @@ struct Detector::State {
   std::chrono::nanoseconds time_for_broad(const detail::StepBudget& budget) const noexcept;
   bool still_there(const detail::RecordTable::Known& known) const noexcept;
   void gather(Step step, const Advance& now);
+  void ask_involved(Step step);
   void match(Step step, Frame& frame);
   std::size_t find_near(std::size_t begin, std::size_t end, std::uint32_t* near) noexcept;
   void find_active();
@@ -87,7 +88,7 @@ struct Detector::State {
   std::size_t first_of_job(std::size_t job) const noexcept { return active_count * job / job_count; }
   void ask_filter();
   void conclude(std::size_t i, detail::Record& record, Tally& tally) noexcept;
-  void prefetch_active(std::size_t i, std::size_t end) const noexcept;
+  ORCHARD_INLINE void prefetch_active(std::size_t i, std::size_t end) const noexcept;
   void tally(std::size_t job, Tally& tally) noexcept;
   void tally_all();
   std::uint64_t answer_one_by_one(Step step);
@@ -117,6 +118,8 @@ struct Detector::State {
 
   Step answered = -1;      // up to which steps have been answered
   bool all_asked = false;  // everybody's state is that of the step that the broad phase is at
+  Step all_asked_at = detail::kNotAsked;
+  Step involved_at = detail::kNotAsked;  // the step of `involved`
   std::size_t count = 0;
   bool failed = false;          // out of memory
   bool any_continuous = false;  // bodies, ever
@@ -133,8 +136,9 @@ struct Detector::State {
 
   // Of the step under way; kept for their memory.
   std::vector<BodyIndex> due, involved, everyone, refused, broken;
-  std::vector<Step> involved_at;  // by body: 1 more than the last step at which it was in a pair
-  std::vector<BodyPair> plane_pairs, pairs, kept_pairs, body_pairs;
+  std::vector<std::uint8_t> is_involved;  // by body, while `involved` is made
+  std::vector<BodyPair> plane_pairs, kept_pairs, body_pairs, all_pairs;
+  std::span<const BodyPair> pairs;    // all of them; the broad phase's own where there are no others
   std::vector<std::uint32_t> active;  // places in `records` that have to be looked at: active_count of them
   std::vector<std::size_t> active_of_job;
   std::size_t active_count = 0;

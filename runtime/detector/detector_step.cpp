@@ -22,10 +22,13 @@ constexpr double kMaxGrowthOfPair = 20, kMaxGrowthOfBroad = 5000;  // ns
 
 double nanoseconds(std::chrono::nanoseconds time) noexcept { return static_cast<double>(time.count()); }
 
-// Of ascending ones, `more` mostly being none or few.
-void merge_into(std::span<const BodyPair> some, std::span<const BodyPair> more, std::vector<BodyPair>& all) {
+// Of ascending ones, `more` mostly being none or few. In `all`, if there are any.
+std::span<const BodyPair> merged(std::span<const BodyPair> some, std::span<const BodyPair> more,
+                                 std::vector<BodyPair>& all) {
+  if (more.empty()) return some;
   all.resize(some.size() + more.size());
   std::merge(some.begin(), some.end(), more.begin(), more.end(), all.begin());
+  return all;
 }
 
 void learn_time(double& mean, double value, double max_growth) noexcept {
@@ -181,19 +184,30 @@ void Detector::State::gather(Step step, const Advance& now) {
     bodies.ask(step, clock.time(step), involved);
     std::erase_if(kept_pairs, [&](const BodyPair& pair) { return bodies.surely_apart(pair, clock.time_step); });
   }
-  merge_into(now.pairs, kept_pairs, body_pairs);
-  merge_into(body_pairs, plane_pairs, pairs);
+  pairs = merged(now.pairs, kept_pairs, body_pairs);
+  pairs = merged(pairs, plane_pairs, all_pairs);
+  ask_involved(step);
+}
+
+// Those that are in pairs. Where everybody has been asked and nobody is to be refused, who they are only matters for
+// what is done at the next steps.
+void Detector::State::ask_involved(Step step) {
+  constexpr Step kKept = 16;
+  if (all_asked_at == step && bodies.all_rigid() && step < involved_at + kKept) return;
+  involved_at = step;
   involved.clear();
-  detail::grow(involved_at, bodies.slots());
+  detail::grow(is_involved, bodies.slots());
   const auto involve = [&](BodyIndex body) {
-    if (involved_at[body] == step + 1) return;
-    involved_at[body] = step + 1;
+    if (is_involved[body] != 0) return;
     involved.push_back(body);
+    is_involved[body] = 1;
   };
+  BodyIndex last = kNoIndex;
   for (const BodyPair& pair : pairs) {
-    involve(pair.a);
+    if (pair.a != last) involve(last = pair.a);
     if (!is_half_space(pair.b)) involve(pair.b);
   }
+  for (const BodyIndex body : involved) is_involved[body] = 0;
   bodies.ask(step, clock.time(step), involved, options.executor);
   for (const BodyIndex body : involved) {
     if (!bodies[body].rigid) refused.push_back(body);

@@ -78,7 +78,7 @@ class RecordTable {
   void tell(std::size_t place, bool busy, bool held) noexcept {
     slots_[place] = (slots_[place] & kSlot) | (busy ? kBusy : 0) | (held ? kHeld : 0);
   }
-  void prefetch_known(std::size_t place) const noexcept { prefetch(&known(place)); }
+  ORCHARD_INLINE void prefetch_known(std::size_t place) const noexcept { prefetch(&known(place)); }
 
   Record& operator[](std::uint32_t record) noexcept { return *place_of(record); }
   const Record& operator[](std::uint32_t record) const noexcept { return *place_of(record); }
@@ -89,16 +89,23 @@ class RecordTable {
 
   // The known ones are these from now on, which ascend. Asks same(pair, known) about those that have been for which
   // doubted(pair) holds; the others are. Calls gone(known) for each that is not among them, or not the same, and keeps
-  // the former if that says true; generations(pair) for each that is new.
-  template <typename Doubted, typename IsSame, typename Gone, typename Generations>
-  void match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone, Generations&& generations);
+  // the former if that says true; generations(pair) for each that is new, and load(pair) some pairs ahead.
+  template <typename Doubted, typename IsSame, typename Gone, typename Generations, typename Load>
+  void match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone, Generations&& generations,
+             Load&& load);
   std::size_t memory_bytes() const noexcept {
     return pieces_.size() * sizeof(Piece) + bytes_of(pieces_) + bytes_of(free_) + bytes_of(known_) +
-           bytes_of(free_slots_) + bytes_of(pairs_) + bytes_of(slots_) + bytes_of(next_pairs_) + bytes_of(next_slots_);
+           bytes_of(free_slots_) + bytes_of(pairs_) + bytes_of(slots_) + bytes_of(next_pairs_) + bytes_of(next_slots_) +
+           bytes_of(kept_places_) + bytes_of(changes_) + bytes_of(partings_);
   }
 
  private:
+  struct Change {  // so many pairs are as they were, then so many are no more, and so many new
+    std::uint32_t alike, parted, fresh;
+  };
   static std::size_t common(std::span<const BodyPair> a, std::span<const BodyPair> b) noexcept;
+  void compare(std::span<const BodyPair> pairs);
+  ORCHARD_INLINE void prefetch_parting(std::size_t i) const noexcept;
   void keep(std::size_t from, std::size_t count);
   void add(const BodyPair& pair, std::uint32_t generations);
   void leave(std::size_t place) noexcept;
@@ -121,13 +128,25 @@ class RecordTable {
   static constexpr std::uint32_t kBusy = 0x80000000u, kHeld = 0x40000000u, kSlot = kHeld - 1;
   std::vector<std::uint32_t> slots_, next_slots_;  // of known_, and flags
   std::vector<std::uint32_t> kept_places_;
+  std::vector<Change> changes_;          // in match()
+  std::vector<std::uint32_t> partings_;  // places, in all of these
 };
 
-template <typename Doubted, typename IsSame, typename Gone, typename Generations>
+// What partings_[i] and some after it need.
+ORCHARD_INLINE void RecordTable::prefetch_parting(std::size_t i) const noexcept {
+  constexpr std::size_t kKnown = 16, kRecord = 8;  // pairs ahead
+  if (i + kKnown < partings_.size()) prefetch_known(partings_[i + kKnown]);
+  if (i + kRecord >= partings_.size()) return;
+  const std::size_t place = partings_[i + kRecord];
+  if (is_held(place)) prefetch_all(*place_of(known(place).record));
+}
+
+template <typename Doubted, typename IsSame, typename Gone, typename Generations, typename Load>
 void RecordTable::match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSame&& same, Gone&& gone,
-                        Generations&& generations) {
+                        Generations&& generations, Load&& load) {
+  constexpr std::size_t kFreshAhead = 8;
+  compare(pairs);
   next_pairs_.clear(), next_slots_.clear(), kept_places_.clear();
-  std::size_t old = 0, now = 0;
   const auto look_at = [&](std::size_t place) {
     if (same(known(place))) return keep(place, 1);
     if (is_held(place)) gone(known(place));  // of a body that is no more: it cannot stay
@@ -148,17 +167,19 @@ void RecordTable::match(std::span<const BodyPair> pairs, Doubted&& doubted, IsSa
     kept_places_.push_back(static_cast<std::uint32_t>(next_pairs_.size()));
     keep(place, 1);
   };
-  while (now < pairs.size()) {
-    const std::size_t run = common(pairs.subspan(now), std::span(pairs_).subspan(old));
-    take_over(old, old + run);
-    old += run, now += run;
-    if (now == pairs.size()) break;
-    for (; old < pairs_.size() && pairs_[old] < pairs[now]; ++old) part(old);
-    for (; now < pairs.size() && (old == pairs_.size() || pairs[now] < pairs_[old]); ++now) {
+  std::size_t old = 0, now = 0, gone_by = 0;
+  for (const Change& change : changes_) {
+    take_over(old, old + change.alike);
+    old += change.alike, now += change.alike;
+    for (std::uint32_t i = 0; i < change.parted; ++i) {
+      prefetch_parting(gone_by++);
+      part(old++);
+    }
+    for (std::uint32_t i = 0; i < change.fresh; ++i, ++now) {
+      if (now + kFreshAhead < pairs.size()) load(pairs[now + kFreshAhead]);
       add(pairs[now], generations(pairs[now]));
     }
   }
-  for (; old < pairs_.size(); ++old) part(old);
   pairs_.swap(next_pairs_), slots_.swap(next_slots_);
 }
 

@@ -5,7 +5,8 @@ namespace orchard::runtime::detail {
 void Places::place_at(const Pose& pose, bool rigid, ShapeId shape, const PartPlace& part,
                       PlacedPart& placed_part) const noexcept {
   placed_part.shape = &(*shapes_)[shape];
-  placed_part.pose = part.at_origin || !rigid ? pose : placed(pose, part.local);
+  placed_part.there = &pose;
+  if (!part.at_origin && rigid) placed_part.move_to(placed(pose, part.local));
   placed_part.rigid = rigid;
   placed_part.center = transform(pose, part.center);
   placed_part.reach = part.reach * pose.scale;
@@ -17,7 +18,7 @@ void Places::place(BodyIndex body, std::uint32_t part, PlacedPart& placed_part) 
     const Whereabouts& where = bodies_->whereabouts(body);
     if (of.one && of.at_origin && where.reach < std::numeric_limits<double>::infinity()) {
       placed_part.shape = &(*shapes_)[of.shape];
-      placed_part.pose = bodies_->state(body).pose;
+      placed_part.there = &bodies_->state(body).pose;
       placed_part.rigid = true;
       placed_part.center = where.middle;
       placed_part.reach = where.reach;
@@ -68,6 +69,14 @@ double sphere_gap(const PartPair& pair) noexcept {
   return std::isfinite(gap) ? gap : 0;
 }
 
+// Mostly the squares tell: a gap that is computed as more than 0 has a square of its way that is larger.
+bool spheres_part(const PartPair& pair) noexcept {
+  if (pair.b.shape == nullptr) return sphere_gap(pair) > 0;
+  const Vec3 way = pair.b.center - pair.a.center;
+  const double reach = pair.a.reach + pair.b.reach;
+  return !(dot(way, way) < reach * reach) && sphere_gap(pair) > 0;
+}
+
 Verdict unasked(const PartPair& pair) noexcept {
   Verdict verdict;
   const double gap = sphere_gap(pair);
@@ -91,7 +100,7 @@ Verdict unasked(const PartPair& pair) noexcept {
 void make_solid(Verdict& verdict, const PartPair& pair) noexcept {
   const bool solid = pair.a.shape->kind == ShapeKind::box || pair.b.shape->kind == ShapeKind::box;
   if (solid && verdict.answer == Answer::no &&
-      inside_box(*pair.a.shape, pair.a.pose, *pair.b.shape, pair.b.pose, verdict.contact)) {
+      inside_box(*pair.a.shape, pair.a.pose(), *pair.b.shape, pair.b.pose(), verdict.contact)) {
     verdict.answer = Answer::yes;
     verdict.separation_bound = verdict.lower_bound = 0;
   }
@@ -107,11 +116,11 @@ Verdict answer_exactly(NarrowPhase& narrow, const PartPair& pair, std::uint64_t&
   if (!pair.a.rigid || (pair.b.shape != nullptr && !pair.b.rigid)) return unknown_verdict();
   if (pair.simple()) {
     work += kSimplePairWork;
-    return pair.b.shape == nullptr ? test_half_space(*pair.a.shape, pair.a.pose, pair.half)
-                                   : test_simple(*pair.a.shape, pair.a.pose, *pair.b.shape, pair.b.pose, guess);
+    return pair.b.shape == nullptr ? test_half_space(*pair.a.shape, pair.a.pose(), pair.half)
+                                   : test_simple(*pair.a.shape, pair.a.pose(), *pair.b.shape, pair.b.pose(), guess);
   }
   narrow.bind(pair.a.shape->prepared, pair.b.shape->prepared);
-  narrow.start(pair.a.pose, pair.b.pose);
+  narrow.start(pair.a.pose(), pair.b.pose());
   const bool limited = most != std::numeric_limits<std::uint64_t>::max();
   work += kPairWork;
   if (!limited) {

@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "half_spaces.h"
 #include "simple_pair.h"
 
@@ -7,10 +9,14 @@ namespace orchard::runtime::detail {
 // What is asked at one step about two parts, or a part and a half-space.
 struct PlacedPart {
   const Shape* shape = nullptr;  // null: a half-space
-  Pose pose{};
-  Vec3 center{};  // of the part's sphere, in the world
+  Vec3 center{};                 // of the part's sphere, in the world
   double reach = 0;
   bool rigid = true;
+
+  const Pose& pose() const noexcept { return there != nullptr ? *there : *own; }
+  void move_to(const Pose& pose) noexcept { there = nullptr, own = pose; }
+  const Pose* there = nullptr;  // most are where their body is: that is not copied
+  std::optional<Pose> own = {};
 };
 
 struct PartPair {
@@ -38,7 +44,7 @@ class Places {
   void place_sphere(BodyIndex body, std::uint32_t part, PlacedPart& placed) const noexcept;
   // At the step before `now`; only of bodies that have been asked for then, or rest since before.
   void place_before(BodyIndex body, std::uint32_t part, Step now, PlacedPart& placed) const noexcept;
-  void prefetch_bodies(const BodyPair& pair) const noexcept {
+  ORCHARD_INLINE void prefetch_bodies(const BodyPair& pair) const noexcept {
     bodies_->prefetch_body(pair.a);
     if (!is_half_space(pair.b)) bodies_->prefetch_body(pair.b);
   }
@@ -54,6 +60,7 @@ class Places {
 
 // How far apart the spheres around the two are, at least; at most 0 where they may overlap.
 double sphere_gap(const PartPair& pair) noexcept;
+bool spheres_part(const PartPair& pair) noexcept;  // whether it is more than 0
 // What is known of two parts that nothing was asked about.
 Verdict unasked(const PartPair& pair) noexcept;
 

@@ -65,8 +65,8 @@ void Rounds::answer_coherently(std::uint32_t index, Record& record, Step now,
   if (apart <= reach || verdict.answer != Answer::no) {
     const double bound = apart <= reach ? apart + pair.a.reach + pair.b.reach : verdict.separation_bound;
     const bool tries = slow || record.touching;
-    if (!tries || !CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose, pair.b.pose, verdict)) {
-      ::new (&verdict) Verdict(CoherentPair::search(scratch.workspace, record.trees, pair.a.pose, pair.b.pose));
+    if (!tries || !CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), verdict)) {
+      ::new (&verdict) Verdict(CoherentPair::search(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose()));
       if (slow && verdict.answer == Answer::no) note_search(index, record, verdict.work, scratch);
     }
     scratch.work += kPairWork + verdict.work;
@@ -86,7 +86,7 @@ void Rounds::answer_two_parts(Record& record, Step now, QueryPool::Scratch& scra
   const std::uint64_t before = scratch.work++;
   record.part_a = record.part_b = 0;
   record.impact = false;
-  if (sphere_gap(pair) > 0) {
+  if (spheres_part(pair)) {
     verdict = unasked(pair);
   } else {
     ::new (&verdict) Verdict(answer_exactly(scratch.workspace.narrow, pair, scratch.work, kNoLimit, guess));
@@ -113,11 +113,11 @@ void Rounds::answer(std::uint32_t index, Record& record, Step now, QueryPool::Sc
     places_->place(record.pair.a, i, pair.a);
     for (std::uint32_t j = 0; j < parts_b && record.verdict.answer != Answer::yes; ++j) {
       places_->place(record.pair.b, j, pair.b);
-      const double gap = sphere_gap(pair);
+      const bool part = spheres_part(pair);
       ++scratch.work;
       const std::uint32_t guess = i == last_a && j == last_b ? nearest_triangle(last, pair) : kNoTriangle;
       const Verdict verdict =
-          gap > 0 ? unasked(pair) : answer_exactly(scratch.workspace.narrow, pair, scratch.work, kNoLimit, guess);
+          part ? unasked(pair) : answer_exactly(scratch.workspace.narrow, pair, scratch.work, kNoLimit, guess);
       take_in(record, verdict, i, j);
       known = known && verdict.answer != Answer::maybe;
     }

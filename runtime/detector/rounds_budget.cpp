@@ -84,12 +84,12 @@ void Rounds::begin_one(Task& task, Record& record, QueryPool::Scratch& scratch) 
   }
   place(record, task.part_a, task.part_b, pair);
   Verdict known;
-  if (remembers && CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose, pair.b.pose, known)) {
+  if (remembers && CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), known)) {
     task.verdict = solid_verdict(known, pair);
     task.done = true;
   } else {
     narrow.bind(pair.a.shape->prepared, pair.b.shape->prepared);
-    narrow.start(pair.a.pose, pair.b.pose);
+    narrow.start(pair.a.pose(), pair.b.pose());
     task.verdict = verdict_of(narrow, pair);
     task.done = narrow.finished();
     record.roots_wait = task.done ? 0 : kSearchesBeforeRoots;
@@ -105,11 +105,11 @@ void Rounds::decide(Task& task, Record& record, std::uint64_t most, QueryPool::S
   NarrowPhase& narrow = scratch.workspace.narrow;
   Verdict verdict;
   if (task.slow) {
-    verdict = CoherentPair::search(scratch.workspace, record.trees, pair.a.pose, pair.b.pose, {most});
+    verdict = CoherentPair::search(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), {most});
     if (verdict.answer != Answer::yes) note_search(task.record, record, verdict.work, scratch);
   } else {
     narrow.bind(pair.a.shape->prepared, pair.b.shape->prepared);
-    verdict = collide(narrow, pair.a.pose, pair.b.pose, {most});
+    verdict = collide(narrow, pair.a.pose(), pair.b.pose(), {most});
   }
   task.work = verdict.work;
   task.done = verdict.answer != Answer::maybe || narrow.finished();
@@ -199,7 +199,7 @@ void Rounds::refine_one(Task& task, const Record& record, std::uint64_t slice,
   NarrowPhase& query = *task.query;
   if (!task.started) {
     query.bind(pair.a.shape->prepared, pair.b.shape->prepared);
-    query.start(pair.a.pose, pair.b.pose);
+    query.start(pair.a.pose(), pair.b.pose());
     task.started = true;
   }
   const double bound = task.verdict.separation_bound;

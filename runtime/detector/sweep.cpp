@@ -18,7 +18,7 @@ Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
 }
 
 double margin_of(const PlacedPart& part) noexcept {
-  return part.shape->kind == ShapeKind::round ? part.shape->radius * part.pose.scale : 0;
+  return part.shape->kind == ShapeKind::round ? part.shape->radius * part.pose().scale : 0;
 }
 
 // No point of the part moves faster.
@@ -27,11 +27,11 @@ double speed_of(const Travel& travel, double reach) noexcept {
 }
 
 bool can_travel(const PlacedPart& from, const PlacedPart& to) noexcept {
-  return from.rigid && to.rigid && is_rigid(from.pose) && is_rigid(to.pose) && from.pose.scale == to.pose.scale;
+  return from.rigid && to.rigid && is_rigid(from.pose()) && is_rigid(to.pose()) && from.pose().scale == to.pose().scale;
 }
 
 Travel travel_of(const PlacedPart& from, const PlacedPart& to) noexcept {
-  return travel_between(from.pose, to.pose, from.shape->center);
+  return travel_between(from.pose(), to.pose(), from.shape->center);
 }
 
 // Two shapes that have, or are around, trees.
@@ -88,7 +88,7 @@ class PairSweep {
 
   void touch(const Impact& impact) noexcept {
     PartPair now = from_;
-    now.a.pose = a_.at(impact.t1), now.b.pose = b_.at(impact.t1);
+    now.a.move_to(a_.at(impact.t1)), now.b.move_to(b_.at(impact.t1));
     result_.answer = Answer::yes;
     result_.to = impact.t1;
     result_.verdict = work_ < most_ ? answer_exactly(workspace_.narrow, now, work_, most_) : unknown_verdict();
@@ -130,9 +130,9 @@ Swept sweep_to_half_space(Workspace& workspace, const PartPair& from, const Part
   double time = 0;
   bool certain = true;
   for (int step = 0; step < kMaxSteps && work < most; ++step) {
-    now.a.pose = travel.at(time);
+    now.a.move_to(travel.at(time));
     work += kSimplePairWork;
-    const double gap = half_space_distance(*now.a.shape, now.a.pose, now.half);
+    const double gap = half_space_distance(*now.a.shape, now.a.pose(), now.half);
     if (gap <= near) {
       const Verdict verdict = answer_exactly(workspace.narrow, now, work, most);
       if (verdict.answer == Answer::yes) {

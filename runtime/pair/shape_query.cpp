@@ -56,13 +56,14 @@ double winding_angle(const TreeView& tree, const Vec3& point) noexcept {
 }
 
 // The surface point nearest to a segment within `limit`, or the first one found, if `any` will do; `guess` is looked at
-// first, and is enough where it meets the segment. `beyond`: see NearestToSegment.
-SurfacePoint search_outward(const TreeView& tree, const Pose& pose, const Vec3& p, const Vec3& q, double limit,
-                            bool any, std::uint32_t guess = kNoTriangle, double* beyond = nullptr) noexcept {
+// first, and is enough where it meets the segment. `beyond`: see NearestToSegment. `rigid`: whether the pose is.
+SurfacePoint search_outward(const TreeView& tree, const Pose& pose, bool rigid, const Vec3& p, const Vec3& q,
+                            double limit, bool any, std::uint32_t guess = kNoTriangle,
+                            double* beyond = nullptr) noexcept {
   SurfacePoint best;
   if (tree.ball_slabs.empty()) return best;
   const SurfacePoint unknown{0, {}, kNoTriangle};
-  if (!is_rigid(pose) || std::isnan(limit)) return unknown;
+  if (!rigid || std::isnan(limit)) return unknown;
   const Frame frame(tree, pose);
   const Vec3 from = frame.enter(p), to = frame.enter(q);
   if (!within_reach(from) || !within_reach(to)) return unknown;
@@ -120,14 +121,14 @@ bool can_ask(const TreeView& tree, const Pose& pose, const std::array<double, 3>
 
 SurfacePoint nearest_point_to_segment(const TreeView& tree, const Pose& pose, const std::array<double, 3>& p,
                                       const std::array<double, 3>& q, double limit) noexcept {
-  return search_outward(tree, pose, p, q, limit, false);
+  return search_outward(tree, pose, is_rigid(pose), p, q, limit, false);
 }
 
 detail::NearestToSegment detail::nearest_to_segment(const TreeView& tree, const Pose& pose,
                                                     const std::array<double, 3>& p, const std::array<double, 3>& q,
                                                     double limit, std::uint32_t guess) noexcept {
   NearestToSegment result;
-  result.point = search_outward(tree, pose, p, q, limit, false, guess, &result.beyond);
+  result.point = search_outward(tree, pose, true, p, q, limit, false, guess, &result.beyond);
   return result;
 }
 
@@ -138,7 +139,7 @@ SurfacePoint nearest_point(const TreeView& tree, const Pose& pose, const std::ar
 
 Answer touches_capsule(const TreeView& tree, const Pose& pose, const std::array<double, 3>& p,
                        const std::array<double, 3>& q, double radius) noexcept {
-  const SurfacePoint found = search_outward(tree, pose, p, q, radius, true);
+  const SurfacePoint found = search_outward(tree, pose, is_rigid(pose), p, q, radius, true);
   if (found.triangle != kNoTriangle) return Answer::yes;
   return found.distance == 0 ? Answer::maybe : Answer::no;
 }

@@ -66,7 +66,7 @@ TEST(RecordTable, RemembersOfEachPairWhatAMapWould) {
             EXPECT_EQ(known.clearance.changes, model[known.pair].mark);
             return lasts(known.pair);
           },
-          generation_of);
+          generation_of, [](const BodyPair&) {});
       ASSERT_EQ(gone, gone_expected);
       ASSERT_EQ(table.size(), expected.size());
       ASSERT_EQ(table.kept().size(), kept.size());

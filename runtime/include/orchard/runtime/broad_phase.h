@@ -107,8 +107,9 @@ struct BroadPhaseOptions {
   // is called by several jobs at once then, each about its own bodies, and throws nothing. Steps within a budget, and
   // `validate`, take no part.
   Executor executor{};
-  // Of so many bodies and more. Reports are the same with any; fewer than some thousand are not worth waking a thread
-  // for, and a thread that is alone takes a tenth longer with jobs where all fits into its cache.
+  // Of so many bodies and more, or a quarter of them where enough pairs are near. Reports are the same with any; fewer
+  // than some thousand are not worth waking a thread for, and a thread that is alone takes a tenth longer with jobs
+  // where all fits into its cache.
   std::size_t min_bodies_for_jobs = 16384;
 };
 
