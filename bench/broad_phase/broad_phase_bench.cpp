@@ -217,28 +217,30 @@ int budgets(std::size_t bodies) {
 // By the wall's clock, of each step the fastest run.
 int threads(std::size_t most) {
   bool right = true;
-  std::printf("| bodies | density | no executor, ms | 1 thread | 2 threads | worst later step, ms | on 2 threads |\n");
-  std::printf("|---|---|---|---|---|---|---|\n");
+  std::printf("| bodies | density | no executor, ms | 1 thread | 2 threads | 2 threads, awake for 2 ms | ");
+  std::printf("worst later step, ms | on 2 threads | awake |\n|---|---|---|---|---|---|---|---|---|\n");
   for (std::size_t n = 10000; n <= most; n *= 10) {
     for (const double density : {1.0, 10.0}) {
       const SceneShape shape{.bodies = n, .density = density};
       const int runs = n <= 100000 ? 15 : 2, steps = n <= 100000 ? kSteps : 120;
-      orchard::runtime::test::ThreadPool one(1), two(2);
+      orchard::runtime::test::ThreadPool one(1), two(2), awake(2, std::chrono::milliseconds(2));
       const auto with = [](const orchard::runtime::Executor& executor) {
         BroadPhaseOptions options;
         options.executor = executor;
         return ours(options);
       };
-      const auto results =
-          measure_in_turn(shape, runs, steps, {ours({}), with(one.executor()), with(two.executor())}, true);
-      const Result &none = results[0], &shared = results[2];
+      const auto results = measure_in_turn(
+          shape, runs, steps, {ours({}), with(one.executor()), with(two.executor()), with(awake.executor())}, true);
+      const Result& none = results[0];
       std::printf("| %zu | %.0f | %.3f | ", n, density, 1e3 * none.total());
-      for (const Result& result : {results[1], results[2]}) {
+      for (const Result& result : {results[1], results[2], results[3]}) {
         right = same("with threads", result, none) && right;
         std::printf("%.3f: %.2f times as fast | ", 1e3 * result.total(), none.total() / result.total());
       }
-      std::printf("%.3f | %.3f: %.2f times |\n", 1e3 * none.worst(1), 1e3 * shared.worst(1),
-                  none.worst(1) / shared.worst(1));
+      std::printf("%.3f |", 1e3 * none.worst(1));
+      for (const Result& result : {results[2], results[3]})
+        std::printf(" %.3f: %.2f times |", 1e3 * result.worst(1), none.worst(1) / result.worst(1));
+      std::printf("\n");
       std::fflush(stdout);
     }
   }

@@ -14,7 +14,10 @@ namespace orchard::runtime::test {
 // while before they sleep, since waking them takes as long as a small round of jobs.
 class ThreadPool {
  public:
-  explicit ThreadPool(std::size_t threads) {
+  using Duration = std::chrono::microseconds;
+
+  // awake: how long threads look for work before they sleep.
+  explicit ThreadPool(std::size_t threads, Duration awake = Duration(50)) : awake_(awake) {
     for (std::size_t i = 1; i < threads; ++i) threads_.emplace_back([this] { wait_for_work(); });
   }
   ~ThreadPool() {
@@ -31,8 +34,6 @@ class ThreadPool {
   Executor executor() { return {&ThreadPool::run, this, threads_.size() + 1}; }
 
  private:
-  static constexpr std::chrono::microseconds kAwake{50};
-
   static void run(void* context, std::size_t count, Executor::Job job, void* data) {
     auto* const pool = static_cast<ThreadPool*>(context);
     pool->job_ = job, pool->data_ = data, pool->count_ = count;
@@ -54,7 +55,7 @@ class ThreadPool {
   // What makes it true is followed by a notification, under the mutex or after it was free.
   template <class Condition>
   void wait_until(std::condition_variable& notified, const Condition& condition) {
-    const auto end = std::chrono::steady_clock::now() + kAwake;
+    const auto end = std::chrono::steady_clock::now() + awake_;
     do {
       if (condition()) return;
       std::this_thread::yield();
@@ -76,6 +77,7 @@ class ThreadPool {
     }
   }
 
+  const Duration awake_;
   std::mutex mutex_;
   std::condition_variable wake_, done_;
   std::vector<std::thread> threads_;
