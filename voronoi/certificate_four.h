@@ -78,7 +78,7 @@ void told_of_four(const Workspace& workspace, const std::array<Index, 4>& v, dou
 // As Certifier::apart_by() and Workspace::own_power_bound(), by how far the centres are off.
 FourSeen apart_of_four(const Workspace& workspace, const std::array<Index, 4>& v, const FourOffCenters& off,
                        double diameter);
-// As Certifier::moved().
+// As Certifier::from_moved_sphere().
 FourMoved moved_four(const Workspace& workspace, const std::array<Index, 4>& v, const FourOffCenters& off,
                      double diameter);
 

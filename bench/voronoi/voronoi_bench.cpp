@@ -138,9 +138,8 @@ void with_voronoi_vertices(const char* name, const test::Points& points) {
                       }));
   }
   std::printf(
-      "%-20s %7zu points: orchard %.4f s, CGAL's triangulation %.4f s, with the circumcentre of each finite cell %.4f "
-      "s, "
-      "ratio to that %.2f\n",
+      "%-20s %7zu points: orchard %.4f s, CGAL's triangulation %.4f s, "
+      "with the circumcentre of each finite cell %.4f s, ratio to that %.2f\n",
       name, points.size(), ours, bare, placed, placed / ours);
   std::fflush(stdout);
 }

@@ -144,16 +144,20 @@ double exact_distance(const Point& center, const std::array<Point, 4>& p) {
   return std::sqrt(CGAL::to_double(CGAL::squared_distance(own, exact(center))));
 }
 
-// Needles next to each other on the curve (t, t^2, t^3), off the origin, as thin as a millionth or less, and centres
-// that are off by a few roundings or by much more.
+// Between two short edges of the curve (t, t^2, t^3), off the origin, as thin as a millionth or less.
+std::array<Point, 4> needle(Random& random) {
+  const double s = random.uniform(), t = random.uniform(), step = std::pow(10, -6 * random.uniform());
+  const auto on_curve = [](double at) { return Point(0.25 + at, at * at, at * at * at - 0.5); };
+  return {on_curve(s), on_curve(s + step), on_curve(t), on_curve(t + step)};
+}
+
+// With centres that are off by a few roundings or by much more.
 TEST(OffCircumcenter, BoundsTheDistanceByAFewRoundingsOfShortEdges) {
   int trusted = 0;
   const int trials = 2000 * static_cast<int>(test::more());
   for (int trial = 0; trial < trials; ++trial) {
     Random random(1, 13, test::first_seed() + static_cast<std::uint64_t>(trial));
-    const double s = random.uniform(), t = random.uniform(), step = std::pow(10, -6 * random.uniform());
-    const auto on_curve = [](double at) { return Point(0.25 + at, at * at, at * at * at - 0.5); };
-    std::array<Point, 4> p{on_curve(s), on_curve(s + step), on_curve(t), on_curve(t + step)};
+    std::array<Point, 4> p = needle(random);
     const RelativeCenter relative =
         circumcenter(LengthedVector(p[1] - p[0]), LengthedVector(p[2] - p[0]), LengthedVector(p[3] - p[0]));
     if (!relative.reliable()) continue;
@@ -179,9 +183,7 @@ TEST(OffCircumcenter, TellsAStepToTheCircumcenter) {
   const int trials = 2000 * static_cast<int>(test::more());
   for (int trial = 0; trial < trials; ++trial) {
     Random random(2, 13, test::first_seed() + static_cast<std::uint64_t>(trial));
-    const double s = random.uniform(), t = random.uniform(), step = std::pow(10, -6 * random.uniform());
-    const auto on_curve = [](double at) { return Point(0.25 + at, at * at, at * at * at - 0.5); };
-    const std::array<Point, 4> p{on_curve(s), on_curve(s + step), on_curve(t), on_curve(t + step)};
+    const std::array<Point, 4> p = needle(random);
     const RelativeCenter relative =
         circumcenter(LengthedVector(p[1] - p[0]), LengthedVector(p[2] - p[0]), LengthedVector(p[3] - p[0]));
     if (!relative.reliable()) continue;
