@@ -14,6 +14,7 @@ namespace orchard {
 namespace {
 
 constexpr int kMaxRounds = 60;
+constexpr double kMarginGrowth = 2;  // from one round to the next
 
 // What one path should take in: points of an uncovered region. The path region then holds their convex hull as well.
 using Points = std::vector<Point>;
@@ -112,12 +113,12 @@ double take_in(Grower& grower, const detail::UncoveredRegion& uncovered) {
 
 }  // namespace
 
-CoverReport cover(SphereTree& tree, const Surface& surface, const Progress& progress) {
+CoverReport cover(SphereTree& tree, const Surface& surface, const Progress& progress, double first_margin) {
   const double radius = surface.bounding_radius();
   CoverReport report;
   std::vector<Index> triangles;
   for (Index i = 0; i < surface.mesh().triangles.size(); ++i) triangles.push_back(i);
-  double margin = tolerance::kCoverMargin * radius;
+  double margin = first_margin * radius;
   for (; report.rounds < kMaxRounds; ++report.rounds) {
     report_progress(progress, "covering", static_cast<double>(report.rounds) / kMaxRounds);
     const Coverage coverage = surface_coverage(surface, triangles, path_balls(tree));
@@ -137,7 +138,7 @@ CoverReport cover(SphereTree& tree, const Surface& surface, const Progress& prog
       for (const Point& corner : surface.corners(uncovered.triangle)) take({{}, corner, 0});
     }
     // What is uncovered shrinks with every round; a slowly widening margin puts an end to the last of it.
-    margin *= 1.5;
+    margin *= kMarginGrowth;
   }
   throw Error("cover: " + std::to_string(triangles.size()) + " triangles are still uncovered after " +
               std::to_string(kMaxRounds) + " rounds");

@@ -86,16 +86,23 @@ void LevelCover::gather(const std::array<Point, 3>& corners, const Sphere& where
 
 // Balls that meet it, in path regions that may.
 std::vector<Index> LevelCover::others_near(Index ball) const {
-  const Sphere& sphere = balls_[ball].sphere;
   std::vector<Index> others;
-  for (Index r = 0; r < path_ends_.size(); ++r) {
-    if (path_ends_[r] == kNone) continue;
-    const PathBall& end = upper_.balls()[path_ends_[r]];
-    if (apart({end.center, end.radius}, sphere.center, sphere.radius)) continue;
-    for (Index b : balls_in_[r])
+  find_others_near(ball, upper_.roots(), others);
+  return others;
+}
+
+// Of those below some balls of the tree above.
+void LevelCover::find_others_near(Index ball, std::span<const Index> upper, std::vector<Index>& others) const {
+  const Sphere& sphere = balls_[ball].sphere;
+  for (Index node : upper) {
+    const PathBall& above = upper_.balls()[node];
+    if (apart({above.center, above.radius}, sphere.center, sphere.radius)) continue;
+    find_others_near(ball, upper_.children(node), others);
+    const Index path_region = region_at_[node];
+    if (path_region == kNone) continue;
+    for (Index b : balls_in_[path_region])
       if (b != ball && !apart(balls_[b].sphere, sphere.center, sphere.radius)) others.push_back(b);
   }
-  return others;
 }
 
 bool LevelCover::path_holds(Index path_region, const Box& box) const {

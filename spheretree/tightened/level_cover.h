@@ -56,6 +56,7 @@ class LevelCover {
  private:
   void gather(const std::array<Point, 3>& corners, const Sphere& where, const Change& change, NearBalls& near) const;
   std::vector<Index> others_near(Index ball) const;
+  void find_others_near(Index ball, std::span<const Index> upper, std::vector<Index>& others) const;
   bool path_holds(Index path_region, const Box& box) const;
 
   const Surface& surface_;

@@ -12,7 +12,8 @@ namespace orchard::detail {
 namespace {
 
 constexpr int kTakingRounds = 8;  // of taking uncovered regions in, after those that search and those that only tighten
-constexpr int kClosedRounds = 4;  // of the search that never uncovers anything
+constexpr double kFirstMargin = 0.5;  // of the last growth: what is left to be grown over is no smaller
+constexpr int kClosedRounds = 4;      // of the search that never uncovers anything
 
 class Finish {
  public:
@@ -54,7 +55,7 @@ class Finish {
     for (LevelNode& node : partial_.last()) node.sphere.radius += 0.5 * kLastGrowth * radius_;
     std::vector<std::vector<Index>> places;
     SphereTree closed = partial_.tree(places);
-    report.grown = cover(closed, surface_, {}).max_growth;
+    report.grown = cover(closed, surface_, {}, kFirstMargin * kLastGrowth).max_growth;
     partial_.take_spheres(closed, places);
   }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "canonical_frame.h"
+#include "path_regions.h"
 
 namespace orchard::detail {
 namespace {
@@ -71,9 +72,10 @@ Index enough_samples(Index balls) { return std::max<Index>(kFewestSamples, kEnou
 
 Samples samples_for(const Samples& all, const PartialTree& partial, Index enough) {
   const Index stride = std::max<Index>(1, all.size() / enough);
+  const PathRegions leaves({}, partial.leaf_paths());
   Samples chosen;
   for (Index s = 0; s < all.size(); s += stride) {
-    if (partial.in_leaf(all.points[s])) continue;
+    if (!leaves.regions_around(all.points[s]).empty()) continue;
     chosen.points.push_back(all.points[s]);
     chosen.starts.push_back(all.starts[s]);
   }

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "orchard/geometry/random.h"
@@ -44,6 +45,12 @@ class LargestFirst {
   const std::vector<double>& now_;
   std::vector<Entry> heap_;
 };
+
+// Whether a ball with such a centre gets less loose than `least` by a point at a distance with this square.
+bool is_below(double least, double squared, double center_distance) {
+  const double room = least - center_distance;
+  return room > 0 && squared < room * room;
+}
 
 // While this runs, a ball's samples are those that it owns: every sample has one owner. A radius below 0 marks a ball
 // that owns none.
@@ -89,8 +96,11 @@ class LevelStart {
       static_cast<FittedBall&>(ball) = fitter.at(samples_.starts[next]);
       ball.path_region = region_for_seed(ball, next);
       if (ball.path_region != kNone) {
-        for (Index s : regions_.samples_in(ball.path_region))
-          min[s] = std::min(min[s], ball.looseness_with(samples_.points[s]));
+        const std::vector<Index>& samples = regions_.samples_in(ball.path_region);
+        regions_.places_in(ball.path_region).each_squared_distance(ball.center, [&](std::size_t k, double squared) {
+          double& least = min[samples[k]];
+          if (is_below(least, squared, ball.center_distance)) least = std::sqrt(squared) + ball.center_distance;
+        });
         ++children_[ball.path_region];
         balls_.push_back(ball);
       }
@@ -113,8 +123,7 @@ class LevelStart {
   }
 
   void lloyd_round() {
-    for (LevelBall& ball : balls_)
-      if (ball.samples.empty() && ball.radius < 0) move_to_loosest(ball);
+    move_unused();
     assign(owners());
     tbb::enumerable_thread_specific<BallFitter> fitters([&] { return BallFitter(surface_); });
     tbb::parallel_for(std::size_t{0}, balls_.size(), [&](std::size_t b) {
@@ -127,10 +136,22 @@ class LevelStart {
     });
   }
 
-  // Has an unused ball take its share of what the loosest one holds.
-  void move_to_loosest(LevelBall& unused) {
-    const auto looser = [](const LevelBall& a, const LevelBall& b) { return a.looseness() < b.looseness(); };
-    const LevelBall& loosest = *std::max_element(balls_.begin(), balls_.end(), looser);
+  // Has each unused ball take its share of what one of the loosest holds.
+  void move_unused() {
+    std::vector<Index> unused, used;
+    for (Index b = 0; b < balls_.size(); ++b) {
+      const bool is_unused = balls_[b].samples.empty() && balls_[b].radius < 0;
+      (is_unused ? unused : used).push_back(b);
+    }
+    const auto count = static_cast<std::ptrdiff_t>(std::min(unused.size(), used.size()));
+    std::partial_sort(used.begin(), used.begin() + count, used.end(), [&](Index a, Index b) {
+      const double of_a = balls_[a].looseness(), of_b = balls_[b].looseness();
+      return of_a > of_b || (of_a == of_b && a < b);
+    });
+    for (std::ptrdiff_t k = 0; k < count; ++k) share(balls_[used[k]], balls_[unused[k]]);
+  }
+
+  void share(const LevelBall& loosest, LevelBall& unused) {
     if (loosest.samples.empty() || children_[loosest.path_region] >= options_.max_children) return;
     const Index far = *std::max_element(loosest.samples.begin(), loosest.samples.end(), [&](Index a, Index b) {
       return (samples_.points[a] - loosest.center).squaredNorm() < (samples_.points[b] - loosest.center).squaredNorm();
@@ -144,16 +165,28 @@ class LevelStart {
 
   // The ball that gets least loose by each sample; kNone if no ball lies in a path region of it.
   std::vector<Index> owners() const {
-    std::vector<std::vector<Index>> balls_in(regions_.size());
-    for (Index b = 0; b < balls_.size(); ++b) balls_in[balls_[b].path_region].push_back(b);
+    struct RegionBalls {
+      std::vector<Index> balls;
+      Coordinates centers;
+      std::vector<double> center_distances;
+    };
+    std::vector<RegionBalls> balls_in(regions_.size());
+    for (Index b = 0; b < balls_.size(); ++b) {
+      RegionBalls& in = balls_in[balls_[b].path_region];
+      in.balls.push_back(b);
+      in.centers.push_back(balls_[b].center);
+      in.center_distances.push_back(balls_[b].center_distance);
+    }
     std::vector<Index> owner(samples_.size(), kNone);
     tbb::parallel_for(Index{0}, samples_.size(), [&](Index s) {
       double min = kInfinity;
-      for (Index r : regions_.regions_of(s))
-        for (Index b : balls_in[r]) {
-          const double loose = balls_[b].looseness_with(samples_.points[s]);
-          if (loose < min) min = loose, owner[s] = b;
-        }
+      for (Index r : regions_.regions_of(s)) {
+        const auto& [balls, centers, center_distances] = balls_in[r];
+        centers.each_squared_distance(samples_.points[s], [&](std::size_t k, double squared) {
+          if (is_below(min, squared, center_distances[k]))
+            min = std::sqrt(squared) + center_distances[k], owner[s] = balls[k];
+        });
+      }
     });
     return owner;
   }

@@ -36,17 +36,12 @@ std::vector<Sphere> PartialTree::path(std::size_t level, Index node) const {
   return balls;
 }
 
-bool PartialTree::in_leaf(const Point& point) const {
-  const auto inside = [&](const Sphere& ball) {
-    return (point - ball.center).squaredNorm() <= ball.radius * ball.radius;
-  };
+std::vector<std::vector<Sphere>> PartialTree::leaf_paths() const {
+  std::vector<std::vector<Sphere>> result;
   for (std::size_t level = 0; level < levels_.size(); ++level)
-    for (Index i = 0; i < levels_[level].size(); ++i) {
-      if (!levels_[level][i].leaf || !inside(levels_[level][i].sphere)) continue;
-      const std::vector<Sphere> balls = path(level, i);
-      if (std::all_of(balls.begin(), balls.end(), inside)) return true;
-    }
-  return false;
+    for (Index i = 0; i < levels_[level].size(); ++i)
+      if (levels_[level][i].leaf) result.push_back(path(level, i));
+  return result;
 }
 
 std::vector<std::vector<char>> PartialTree::kept() const {

@@ -29,7 +29,8 @@ class PartialTree {
   std::span<const Index> parents() const { return parents_; }
   // The balls from the root to each of them, without half of their last growth.
   std::vector<std::vector<Sphere>> paths() const;
-  bool in_leaf(const Point& point) const;
+  // The same of the nodes that are leaves already.
+  std::vector<std::vector<Sphere>> leaf_paths() const;
 
   // A node above the last level that got no children, and was to have some, holds nothing that others do not: it is
   // left out.

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "wide.h"
-
 namespace orchard::detail {
 namespace {
 
@@ -14,28 +12,6 @@ constexpr double kInQuestion = 1 + 1e-9;
 // Sides of a grid's cells, in mean radii of the balls: a point is then asked about few of them.
 constexpr double kCellSide = 1;
 constexpr double kMostCells = 64;  // along the grid's longest side
-
-// So many samples are measured side by side.
-constexpr std::size_t kBlock = 128;
-
-// Points by their coordinates, and how far they are from a center.
-struct Measured {
-  const double *x, *y, *z;
-  std::size_t count;  // kBlock at most
-  double* squared;
-};
-
-inline void measure_block(const Measured& block, const Point& center) {
-  const double cx = center.x(), cy = center.y(), cz = center.z();
-  const double* __restrict x = block.x, * __restrict y = block.y, * __restrict z = block.z;
-  double* __restrict squared = block.squared;
-  for (std::size_t k = 0; k < block.count; ++k) {
-    const double dx = x[k] - cx, dy = y[k] - cy, dz = z[k] - cz;
-    squared[k] = dx * dx + (dy * dy + dz * dz);
-  }
-}
-
-ORCHARD_FOR_AVX2 void measure_block_wide(const Measured& block, const Point& center) { measure_block(block, center); }
 
 }  // namespace
 
@@ -52,19 +28,18 @@ void PathRegions::append_samples(Index path_region, Index first, const Point& ce
                                  std::vector<Index>& samples) const {
   const std::vector<Index>& all = samples_in_[path_region];
   const Coordinates& at = places_in_[path_region];
-  const auto measure = wide() ? measure_block_wide : measure_block;
-  double squared[kBlock];
-  Index within[kBlock];
+  double squared[Coordinates::kBlock];
+  Index within[Coordinates::kBlock];
   auto begin = static_cast<std::size_t>(std::lower_bound(all.begin(), all.end(), first) - all.begin());
-  for (; begin < all.size(); begin += kBlock) {
-    const std::size_t end = std::min(kBlock, all.size() - begin);
-    measure({at.x.data() + begin, at.y.data() + begin, at.z.data() + begin, end, squared}, center);
+  while (begin < all.size()) {
+    const std::size_t measured = at.measure_block(begin, center, squared);
     std::size_t count = 0;
-    for (std::size_t k = 0; k < end; ++k) {  // without a branch: what is too far is written over
+    for (std::size_t k = 0; k < measured; ++k) {  // without a branch: what is too far is written over
       within[count] = all[begin + k];
       count += static_cast<std::size_t>(squared[k] <= squared_radius);
     }
     samples.insert(samples.end(), within, within + count);
+    begin += measured;
   }
 }
 
@@ -126,9 +101,7 @@ std::vector<Index> PathRegions::regions_around(const Point& point) const {
 void PathRegions::append(const Point& point, const Point& start, std::vector<Index> regions) {
   for (Index r : regions) {
     samples_in_[r].push_back(samples_.size());
-    places_in_[r].x.push_back(point.x());
-    places_in_[r].y.push_back(point.y());
-    places_in_[r].z.push_back(point.z());
+    places_in_[r].push_back(point);
   }
   samples_.points.push_back(point);
   samples_.starts.push_back(start);

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "coordinates.h"
 #include "level_samples.h"
 
 namespace orchard::detail {
@@ -19,6 +20,7 @@ class PathRegions {
   Index size() const { return static_cast<Index>(paths_.size()); }
   const Samples& samples() const { return samples_; }
   const std::vector<Index>& samples_in(Index path_region) const { return samples_in_[path_region]; }  // ascending
+  const Coordinates& places_in(Index path_region) const { return places_in_[path_region]; }           // of these
   const std::vector<Index>& regions_of(Index sample) const { return regions_of_[sample]; }            // ascending
   // Appends those of the path region's samples, from number `first` on, whose squared distance from the center is at
   // most so much.
@@ -37,9 +39,6 @@ class PathRegions {
   Cell cell_at(const Point& point) const;  // the nearest one of a point outside
   Index place_of(const Cell& cell) const { return cell[0] + cells_[0] * (cell[1] + cells_[1] * cell[2]); }
   void append(const Point& point, const Point& start, std::vector<Index> regions);
-  struct Coordinates {
-    std::vector<double> x, y, z;
-  };
 
   std::vector<std::vector<Sphere>> paths_;
   // A grid around the last balls of the paths, and which of these meet each cell, ascending.

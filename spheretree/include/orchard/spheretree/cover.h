@@ -1,5 +1,6 @@
 #pragma once
 #include "orchard/geometry/progress.h"
+#include "orchard/geometry/tolerance.h"
 #include "orchard/spheretree/tree.h"
 
 namespace orchard {
@@ -12,8 +13,11 @@ struct CoverReport {
 
 // Makes a tree conservative by the path rule: finds what the boundary lemma cannot certify, and grows the balls of the
 // path that needs to grow least, until every triangle is certified. Balls only grow, about their centres. Throws Error
-// if something is still uncovered after a fixed number of rounds. Source: dissertation 6.3.2, with less growth.
-CoverReport cover(SphereTree& tree, const Surface& surface, const Progress& progress = {});
+// if something is still uncovered after a fixed number of rounds. Balls that grow get `first_margin` of R more than
+// they need, and twice as much in every round: a larger one takes fewer rounds, and is worth it where what is uncovered
+// is known to be deeper. Source: dissertation 6.3.2, with less growth.
+CoverReport cover(SphereTree& tree, const Surface& surface, const Progress& progress = {},
+                  double first_margin = tolerance::kCoverMargin);
 
 // Makes a tree conservative as dissertation 6.3.2 has it: in every round, the spheres that have an uncovered boundary
 // in some triangle grow by the factor; where a triangle has no such boundary, the nearest leaf and the spheres above it
