@@ -62,10 +62,11 @@ void LevelSearch::want() {
   }
 }
 
-LevelTrial LevelSearch::propose(const LevelBalls& balls, std::uint64_t number, const LevelCover* cover) const {
-  LevelTrial trial = propose_trial(surface_, balls, objective_, wanted_, Random(seed_, 200 + level_, number));
+LevelTrial LevelSearch::propose(const LevelBalls& balls, std::uint64_t number, const LevelCover* cover) {
+  TrialScratch& scratch = scratches_.local();
+  LevelTrial trial = propose_trial(balls, objective_, wanted_, Random(seed_, 200 + level_, number), scratch);
   if (trial.balls.empty()) return trial;
-  if (cover != nullptr && !close_trial(surface_, balls, objective_, *cover, trial)) trial.balls.clear();
+  if (cover != nullptr && !close_trial(surface_, balls, objective_, *cover, trial, scratch.fitter)) trial.balls.clear();
   for (LevelBall& ball : trial.balls) balls.find_samples(ball);
   return trial;
 }

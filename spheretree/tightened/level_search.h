@@ -1,4 +1,6 @@
 #pragma once
+#include <tbb/enumerable_thread_specific.h>
+
 #include <cstdint>
 
 #include "level_balls.h"
@@ -9,12 +11,16 @@
 
 namespace orchard::detail {
 
+class [[gnu::visibility("hidden")]] LevelSearch;  // as BallFitter is
+
 // Large-neighbourhood search for balls with a low objective. Trials run in batches, each on the balls as they were
 // before the batch, and are applied in order, so the result does not depend on threads.
 class LevelSearch {
  public:
   LevelSearch(const Surface& surface, const LevelObjective& objective, std::uint64_t seed, Index level)
-      : surface_(surface), objective_(objective), seed_(seed), level_(level) {}
+      : surface_(surface), objective_(objective), seed_(seed), level_(level), scratches_([&surface] {
+          return TrialScratch(surface);
+        }) {}
 
   // No sample is lost.
   void run(LevelBalls& balls, Index trials, const Progress& progress);
@@ -26,7 +32,7 @@ class LevelSearch {
   void run(LevelBalls& balls, Index trials, LevelCover* cover, const Progress& progress);
   void find_costs(const LevelBalls& balls);
   void want();
-  LevelTrial propose(const LevelBalls& balls, std::uint64_t number, const LevelCover* cover) const;
+  LevelTrial propose(const LevelBalls& balls, std::uint64_t number, const LevelCover* cover);
   void apply(std::vector<LevelTrial>& batch, LevelBalls& balls, LevelCover* cover);
 
   const Surface& surface_;
@@ -37,6 +43,7 @@ class LevelSearch {
   std::vector<Index> failures_;  // trials that began at each ball since it was last changed by one
   std::vector<double> costs_;    // of the balls
   std::vector<double> wanted_;   // as propose_trial() takes it
+  tbb::enumerable_thread_specific<TrialScratch> scratches_;
 };
 
 }  // namespace orchard::detail

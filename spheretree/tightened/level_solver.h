@@ -8,6 +8,8 @@
 
 namespace orchard::detail {
 
+class [[gnu::visibility("hidden")]] LevelSolver;  // as BallFitter is
+
 // The balls of one level of a tree, all at once: each lies in a path region, the common part of the balls on a path of
 // the levels above, and answers for samples in it. Which path region is open, so that the load balances itself.
 // The work is done by parts, each in a file of its own: path_regions and level_balls keep the samples and the balls,

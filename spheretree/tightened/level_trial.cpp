@@ -65,15 +65,16 @@ ORCHARD_FOR_AVX2 void divide_wide(const FittedBall& ball, Index number, const Of
 
 class Proposal {
  public:
-  Proposal(const Surface& surface, const LevelBalls& balls, const LevelObjective& objective,
-           std::span<const double> wanted, Random random)
+  Proposal(const LevelBalls& balls, const LevelObjective& objective, std::span<const double> wanted, Random random,
+           TrialScratch& scratch)
       : balls_(balls),
         regions_(balls.regions()),
         samples_(regions_.samples()),
         objective_(objective),
         wanted_(wanted),
         random_(random),
-        fitter_(surface) {}
+        scratch_(scratch),
+        fitter_(scratch.fitter) {}
 
   LevelTrial run() {
     choose();
@@ -218,42 +219,41 @@ class Proposal {
   }
 
   void gather_freed() {
-    const auto count = static_cast<Eigen::Index>(freed_.size());
-    for (auto* numbers : {&x_, &y_, &z_, &min_, &owner_}) numbers->resize(count);
-    for (Eigen::Index k = 0; k < count; ++k) {
-      const Point& p = samples_.points[freed_[static_cast<std::size_t>(k)]];
-      x_[k] = static_cast<float>(p.x()), y_[k] = static_cast<float>(p.y()), z_[k] = static_cast<float>(p.z());
+    auto& [fitter, x, y, z, min, owner] = scratch_;
+    for (auto* numbers : {&x, &y, &z, &min, &owner}) numbers->resize(freed_.size());
+    for (std::size_t k = 0; k < freed_.size(); ++k) {
+      const Point& p = samples_.points[freed_[k]];
+      x[k] = static_cast<float>(p.x()), y[k] = static_cast<float>(p.y()), z[k] = static_cast<float>(p.z());
     }
   }
 
   // For each sample given up, 0 if it lies in a path region, else infinity.
-  const Eigen::ArrayXf& barred(Index path_region) {
+  const std::vector<float>& barred(Index path_region) {
     const auto known =
         std::find_if(barred_.begin(), barred_.end(), [&](const auto& b) { return b.first == path_region; });
     if (known != barred_.end()) return known->second;
-    Eigen::ArrayXf& bars = barred_.emplace_back(path_region, Eigen::ArrayXf(x_.size())).second;
-    for (Eigen::Index k = 0; k < bars.size(); ++k)
-      bars[k] = regions_.holds_sample(path_region, freed_[static_cast<std::size_t>(k)]) ? 0 : kBarred;
+    std::vector<float>& bars = barred_.emplace_back(path_region, std::vector<float>(freed_.size())).second;
+    for (std::size_t k = 0; k < bars.size(); ++k) bars[k] = regions_.holds_sample(path_region, freed_[k]) ? 0 : kBarred;
     return bars;
   }
 
   // Has each sample go to the ball that gets least loose by it.
   bool divide_freed() {
-    min_.setConstant(kBarred);
+    auto& [fitter, x, y, z, min, owners] = scratch_;
+    std::fill(min.begin(), min.end(), kBarred);
     for (Index i = 0; i < trial_.balls.size(); ++i) {
       const LevelBall& ball = trial_.balls[i];
       const float* bars = barred(ball.path_region).data();
-      (wide() ? divide_wide : divide)(
-          ball, i, {freed_.size(), x_.data(), y_.data(), z_.data(), bars, min_.data(), owner_.data()});
+      (wide() ? divide_wide : divide)(ball, i,
+                                      {freed_.size(), x.data(), y.data(), z.data(), bars, min.data(), owners.data()});
     }
-    if (!(min_ < kBarred).all()) return false;
+    if (std::any_of(min.begin(), min.end(), [](float loose) { return !(loose < kBarred); })) return false;
     for (auto& list : trial_.needs) list.clear();
     looseness_.assign(trial_.balls.size(), -kInfinity);
     for (std::size_t k = 0; k < freed_.size(); ++k) {
-      const auto at = static_cast<Eigen::Index>(k);
-      const auto owner = static_cast<std::size_t>(owner_[at]);
+      const auto owner = static_cast<std::size_t>(owners[k]);
       trial_.needs[owner].push_back(samples_.points[freed_[k]]);
-      looseness_[owner] = std::max(looseness_[owner], static_cast<double>(min_[at]));
+      looseness_[owner] = std::max(looseness_[owner], static_cast<double>(min[k]));
     }
     return true;
   }
@@ -265,19 +265,18 @@ class Proposal {
   const std::span<const double> wanted_;
   Random random_;
   LevelTrial trial_;
-  BallFitter fitter_;
-  std::vector<Index> freed_;                              // samples that only the chosen balls hold
-  Eigen::ArrayXf x_, y_, z_;                              // where they are
-  std::vector<std::pair<Index, Eigen::ArrayXf>> barred_;  // by path region
-  Eigen::ArrayXf min_, owner_;                            // as in Offered
-  std::vector<double> looseness_;                         // of the trial's balls, with what each owns
+  TrialScratch& scratch_;
+  BallFitter& fitter_;
+  std::vector<Index> freed_;                                  // samples that only the chosen balls hold
+  std::vector<std::pair<Index, std::vector<float>>> barred_;  // by path region
+  std::vector<double> looseness_;                             // of the trial's balls, with what each owns
 };
 
 }  // namespace
 
-LevelTrial propose_trial(const Surface& surface, const LevelBalls& balls, const LevelObjective& objective,
-                         std::span<const double> wanted, Random random) {
-  return Proposal(surface, balls, objective, wanted, random).run();
+LevelTrial propose_trial(const LevelBalls& balls, const LevelObjective& objective, std::span<const double> wanted,
+                         Random random, TrialScratch& scratch) {
+  return Proposal(balls, objective, wanted, random, scratch).run();
 }
 
 }  // namespace orchard::detail

@@ -24,13 +24,13 @@ Sphere around(const LevelBalls& all, std::span<const Index> some) {
 class TrialCloser {
  public:
   TrialCloser(const Surface& surface, const LevelBalls& balls, const LevelObjective& objective, const LevelCover& cover,
-              LevelTrial& trial)
+              LevelTrial& trial, BallFitter& fitter)
       : objective_(objective),
         cover_(cover),
         trial_(trial),
         radius_(surface.bounding_radius()),
         margin_(tolerance::kCoverMargin * radius_),
-        fitter_(surface),
+        fitter_(fitter),
         added_(trial.balls.size()) {
     const std::span<const Index> chosen(trial.chosen);
     const std::size_t here = trial.moved == kNone ? chosen.size() : trial.moved;
@@ -110,7 +110,7 @@ class TrialCloser {
   const LevelCover& cover_;
   LevelTrial& trial_;
   const double radius_, margin_;
-  BallFitter fitter_;
+  BallFitter& fitter_;
   std::vector<PlacedBall> added_;  // the trial's balls, as the cover takes them
   std::vector<Sphere> where_;      // what may be open
   std::vector<Index> resting_;     // triangles in which it may
@@ -121,8 +121,8 @@ class TrialCloser {
 }  // namespace
 
 bool close_trial(const Surface& surface, const LevelBalls& balls, const LevelObjective& objective,
-                 const LevelCover& cover, LevelTrial& trial) {
-  TrialCloser closer(surface, balls, objective, cover, trial);
+                 const LevelCover& cover, LevelTrial& trial, BallFitter& fitter) {
+  TrialCloser closer(surface, balls, objective, cover, trial, fitter);
   if (!closer.close()) return false;
   closer.refit();
   return closer.worthwhile() && closer.covered();

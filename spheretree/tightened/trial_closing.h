@@ -9,6 +9,6 @@ namespace orchard::detail {
 // nevertheless: its cost would not stay below trial.max_cost, or something stays open. `cover` holds the same balls as
 // `balls`.
 bool close_trial(const Surface& surface, const LevelBalls& balls, const LevelObjective& objective,
-                 const LevelCover& cover, LevelTrial& trial);
+                 const LevelCover& cover, LevelTrial& trial, BallFitter& fitter);
 
 }  // namespace orchard::detail
