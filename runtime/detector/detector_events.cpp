@@ -26,19 +26,23 @@ using detail::Body;
 using detail::is_half_space;
 using detail::Record;
 
-// Of two bodies as they are, with what their middles may be off by in place of a distance.
-detail::Clearance Detector::State::clearance_now(const BodyPair& pair) const noexcept {
+detail::Standing Detector::State::standing(const BodyPair& pair) const noexcept {
   const detail::Whereabouts& a = bodies.whereabouts(pair.a);
   if (is_half_space(pair.b)) return {a.slack, -1.0 * a.middle, a.turned, a.changes};
   const detail::Whereabouts& b = bodies.whereabouts(pair.b);
   return {a.slack + b.slack, b.middle - a.middle, a.turned + b.turned, a.changes + b.changes};
 }
 
-// Whether they are as far apart as at the last certain "no", but for less than what was between them then.
+// Whether they have come closer since the last certain "no" by less than what was between them then: in the direction
+// in which that was, if it is known; else in any.
 bool Detector::State::clear(const detail::RecordTable::Known& known) const noexcept {
-  const detail::Clearance now = clearance_now(known.pair), &then = known.clearance;
-  const double left = then.distance * (1 - 1e-9) - now.distance - (now.turned - then.turned);
-  const Vec3 moved = now.way - then.way;
+  const detail::Standing now = standing(known.pair);
+  const detail::Clearance& then = known.clearance;
+  const double turned = (now.turned - then.turned) * (1 + detail::kRoundedToFloat);
+  const double left = then.distance * (1 - 1e-9) - now.slack - turned;
+  const Vec3 moved = now.way - Vec3{then.way[0], then.way[1], then.way[2]};
+  const Vec3 along = {then.along[0], then.along[1], then.along[2]};
+  if (dot(along, along) > 0) return now.changes == then.changes && left + dot(along, moved) > 0;
   return now.changes == then.changes && left > 0 && dot(moved, moved) < left * left * (1 - 1e-9);
 }
 

@@ -66,7 +66,7 @@ struct Detector::State {
   bool allowed(detail::Record& record);
   void learn(std::uint64_t work) noexcept;
   void report(Step step, Frame& frame);
-  detail::Clearance clearance_now(const BodyPair& pair) const noexcept;
+  detail::Standing standing(const BodyPair& pair) const noexcept;
   bool clear(const detail::RecordTable::Known& known) const noexcept;
   bool sphere_above(const BodyPair& pair) const noexcept;
   void keep_clearance(detail::RecordTable::Known& known, const detail::Record& record) const noexcept;

@@ -196,7 +196,8 @@ class NarrowPhase {
   Answer refuse(const Pose& a, const Pose& b) noexcept;
   struct Probe;
   bool probe_below(NodePair pair, std::uint32_t levels, Probe& probe) noexcept;
-  double hulls_gap(const Pose& first, const Pose& second, const std::array<double, 3>& way) const noexcept;
+  double hulls_gap(const Pose& first, const Pose& second, const std::array<double, 3>& way,
+                   std::array<double, 3>& u) const noexcept;
   Pose relative_pose() const noexcept;
   void place() noexcept;
   bool has_triangles() const noexcept { return !first_.tree.ball_slabs.empty() && !second_.tree.ball_slabs.empty(); }
@@ -269,6 +270,7 @@ class NarrowPhase {
   double separation_bound_ = std::numeric_limits<double>::infinity();
   double lower_bound_ = 0;
   double pruned_gap_ = std::numeric_limits<double>::infinity();
+  std::array<double, 3> apart_along_{};  // from the first one to the second one, where the roots decided; in the world
 };
 
 }  // namespace orchard::runtime
