@@ -51,7 +51,7 @@ void NarrowPhase::reset_counts() noexcept {
 }
 
 void NarrowPhase::find_exact_error(const Pose& first, const Pose& second) noexcept {
-  exact_error_ = (first.scale * first_.error + second.scale * second_.error) +
+  exact_error_ = (first.scale * first_->error + second.scale * second_->error) +
                  1e-14 * (sum_of_sizes(first.translation) + sum_of_sizes(second.translation)) + kMinError;
 }
 
@@ -73,9 +73,9 @@ Answer NarrowPhase::start(const Pose& a, const Pose& b) noexcept {
     return first.scale * of_first + second.scale * of_second;
   };
   find_exact_error(first, second);
-  const double radii = sum(first_.radius, second_.radius);
-  separation_bound_ = detail::pair_bound(distance + exact_error_, radii, sum(first_.reach, second_.reach),
-                                         sum(first_.depth, second_.depth));
+  const double radii = sum(first_->radius, second_->radius);
+  separation_bound_ = detail::pair_bound(distance + exact_error_, radii, sum(first_->reach, second_->reach),
+                                         sum(first_->depth, second_->depth));
   const double ball_gap = distance - radii - exact_error_;
   double gap = ball_gap;
   Vec3 along = way;
@@ -85,7 +85,7 @@ Answer NarrowPhase::start(const Pose& a, const Pose& b) noexcept {
       const Vec3 direction = turned_back(pose, u);
       return pose.scale * (detail::reach_along(side.tree.supports, direction) - dot(direction, side.middle));
     };
-    gap = square - (reach(first_, first, way) + reach(second_, second, opposite(way)));
+    gap = square - (reach(*first_, first, way) + reach(*second_, second, opposite(way)));
     if (!(gap > 0)) gap = hulls_gap(first, second, way, along);
     gap = gap / distance * (1 - detail::kStretch) - detail::kStretch * distance - exact_error_;
   }
@@ -101,7 +101,7 @@ Answer NarrowPhase::start(const Pose& a, const Pose& b) noexcept {
   if (!std::isfinite(ball_gap) || !in_range()) return refuse(a, b);
   answer_ = Answer::maybe;
   roots_pending_ = true;
-  finished_ = detail::is_leaf(first_.tree, 0) && detail::is_leaf(second_.tree, 0) && !has_last_level();
+  finished_ = detail::is_leaf(first_->tree, 0) && detail::is_leaf(second_->tree, 0) && !has_last_level();
   return answer_;
 }
 
@@ -137,6 +137,7 @@ void NarrowPhase::order_copies(const Pose& a, const Pose& b) noexcept {
   if (before(b, a) == arguments_exchanged_) return;
   arguments_exchanged_ = !arguments_exchanged_;
   std::swap(first_, second_);
+  std::swap(prints_[0], prints_[1]);
   for (auto& pair : roots_) std::swap(pair[0], pair[1]);
 }
 
@@ -154,7 +155,7 @@ double NarrowPhase::hulls_gap(const Pose& first, const Pose& second, const Vec3&
   };
   double best = -std::numeric_limits<double>::infinity();
   for (int turn = 0; turn < kRootDirections; ++turn) {
-    const detail::Support p = support_of(first_, first, u), q = support_of(second_, second, opposite(u));
+    const detail::Support p = support_of(*first_, first, u), q = support_of(*second_, second, opposite(u));
     const double gap = dot(u, way) - (p.most + q.most);
     if (gap > 0) return gap;
     if (gap <= best) break;

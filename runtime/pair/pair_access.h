@@ -13,6 +13,11 @@ struct PairAccess {
   using BudgetTracker = NarrowPhase::BudgetTracker;
   using NodePair = NarrowPhase::NodePair;
 
+  // NarrowPhase::bind() where the prepared trees outlive what is asked until the next one: nothing is copied.
+  static bool bind(NarrowPhase& pair, const PreparedTree& a, const PreparedTree& b) noexcept {
+    return pair.bind_where(a, b);
+  }
+
   // Prepares for queries in the first tree's frame, whatever the roots say. False where nothing can be said.
   static bool place(NarrowPhase& pair, const Pose& a, const Pose& b) noexcept {
     pair.start(a, b);
@@ -38,8 +43,8 @@ struct PairAccess {
   // After that, or after start() that has left the bodies to deeper levels.
   static void place_now(NarrowPhase& pair) noexcept { pair.place(); }
   // Precondition of what follows: place() gave true.
-  static const PreparedTree& first(const NarrowPhase& pair) noexcept { return pair.first_; }
-  static const PreparedTree& second(const NarrowPhase& pair) noexcept { return pair.second_; }
+  static const PreparedTree& first(const NarrowPhase& pair) noexcept { return *pair.first_; }
+  static const PreparedTree& second(const NarrowPhase& pair) noexcept { return *pair.second_; }
   static const Pose& first_pose(const NarrowPhase& pair) noexcept { return pair.first_pose_; }
   static const Pose& second_pose(const NarrowPhase& pair) noexcept { return pair.second_pose_; }
   static const Pose& relative(const NarrowPhase& pair) noexcept { return pair.relative_; }
