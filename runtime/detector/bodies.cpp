@@ -13,6 +13,21 @@ StateSource states_of(const std::vector<BodyState>& values) {
 }
 
 namespace detail {
+namespace {
+
+// In floats a coordinate is off by 2^-24 of itself, a difference by that of both and 2^-24 of itself, a square of a way
+// or of a sum of radii by less than 2^-21 of itself.
+NearSphere near_sphere_of(const Whereabouts& where) noexcept {
+  constexpr double kMost = 1e30;  // whose squares no float holds: nothing is told then
+  const Vec3& m = where.middle;
+  const double size = std::fabs(m[0]) + std::fabs(m[1]) + std::fabs(m[2]);
+  const double radius = (where.reach + kRoundingOfGaps * where.slack + 0x1p-23 * size) * (1 + 0x1p-18);
+  if (!(size + radius < kMost)) return {};
+  const auto rounded = [](double value) { return static_cast<float>(value); };
+  return {rounded(m[0]), rounded(m[1]), rounded(m[2]), rounded(radius)};
+}
+
+}  // namespace
 
 bool set_local(PartPlace& part, const Shape& shape, const Pose& local) noexcept {
   if (!is_rigid(local)) return false;
@@ -34,6 +49,7 @@ Body& BodyTable::take_in(BodyId id, std::size_t count) {
   grow(bodies_, slots);
   grow(before_, slots);
   grow(whereabouts_, slots);
+  grow(near_spheres_, slots);
   grow(disturbed_, slots);
   disturb(id.index);
   whereabouts_[id.index].generation = id.generation;
@@ -95,6 +111,7 @@ void BodyTable::moved(BodyIndex index, const Pose& before) noexcept {
   where.slack = 1e-14 * size;
   const bool tells = body.one && body.rigid && !(body.continuous_speed > 0);
   where.reach = tells ? reach * now.scale : std::numeric_limits<double>::infinity();
+  near_spheres_[index] = near_sphere_of(where);
   const double change = pose_change(before, now);
   add_turn(index, change == 0 ? 0 : (change + 4 * kRigidTolerance * (now.scale + before.scale)) * reach);
   if (!body.rigid || !std::isfinite(size)) disturb(index);
@@ -199,7 +216,7 @@ bool BodyTable::surely_apart(const BodyPair& pair, double time_step) const noexc
 
 std::size_t BodyTable::memory_bytes() const noexcept {
   std::size_t bytes = bytes_of(bodies_) + bytes_of(before_) + bytes_of(asking_) + bytes_of(answers_) +
-                      bytes_of(whereabouts_) + bytes_of(disturbed_);
+                      bytes_of(whereabouts_) + bytes_of(near_spheres_) + bytes_of(disturbed_);
   for (const Body& body : bodies_) bytes += bytes_of(body.parts) + bytes_of(body.parts_before);
   return bytes;
 }

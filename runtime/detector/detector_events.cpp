@@ -9,15 +9,19 @@ namespace {
 
 constexpr std::uint32_t kNoRecordYet = 0x80000000u;  // beyond all places
 
-constexpr double kRoundingOfGaps = 1e3;  // in units of Whereabouts::slack
-
 // Whether the spheres of their only parts are apart; as sphere_gap() says, or not quite. No branches: nobody foresees
 // them.
 bool spheres_apart(const detail::Whereabouts& a, const detail::Whereabouts& b) noexcept {
   const Vec3 way = b.middle - a.middle;
-  const double reach = (a.reach + b.reach) + kRoundingOfGaps * (a.slack + b.slack), square = dot(way, way);
+  const double reach = (a.reach + b.reach) + detail::kRoundingOfGaps * (a.slack + b.slack), square = dot(way, way);
   return static_cast<int>(square > reach * reach * (1 + 1e-14)) &
          static_cast<int>(square <= std::numeric_limits<double>::max());
+}
+
+// Then they are so for spheres_apart(), too.
+bool near_spheres_apart(const detail::NearSphere& a, const detail::NearSphere& b) noexcept {
+  const float x = b.x - a.x, y = b.y - a.y, z = b.z - a.z, reach = a.radius + b.radius;
+  return x * x + y * y + z * z > reach * reach;
 }
 
 }  // namespace
@@ -50,7 +54,7 @@ bool Detector::State::sphere_above(const BodyPair& pair) const noexcept {
   const detail::Whereabouts& a = bodies.whereabouts(pair.a);
   const detail::HalfSpace& half = places.half_space(pair.b);
   const double height = dot(half.normal, a.middle) - half.offset - a.reach;
-  return height > kRoundingOfGaps * (a.slack + 1e-14 * std::fabs(half.offset)) && std::isfinite(height);
+  return height > detail::kRoundingOfGaps * (a.slack + 1e-14 * std::fabs(half.offset)) && std::isfinite(height);
 }
 
 // Those of records.pair(begin .. end - 1) that their spheres do not tell apart, nor what is known of them, or whose
@@ -60,11 +64,11 @@ std::size_t Detector::State::find_near(std::size_t begin, std::size_t end, std::
   std::size_t found = 0, count_near = 0;
   for (std::size_t place = begin; place < end;) {
     const BodyIndex first = records.pair(place).a;
-    const detail::Whereabouts a = bodies.whereabouts(first);
+    const detail::NearSphere a = bodies.near_sphere(first);
     for (; place < end && records.pair(place).a == first; ++place) {
-      if (place + kPairsAhead < end) bodies.prefetch_whereabouts(records.pair(place + kPairsAhead).b);
+      if (place + kPairsAhead < end) bodies.prefetch_near_sphere(records.pair(place + kPairsAhead).b);
       const BodyPair& pair = records.pair(place);
-      const bool apart = is_half_space(pair.b) ? sphere_above(pair) : spheres_apart(a, bodies.whereabouts(pair.b));
+      const bool apart = !is_half_space(pair.b) && near_spheres_apart(a, bodies.near_sphere(pair.b));
       near[found] = static_cast<std::uint32_t>(place);
       found += static_cast<std::size_t>(records.busy(place)) | static_cast<std::size_t>(!apart);
     }
@@ -72,6 +76,12 @@ std::size_t Detector::State::find_near(std::size_t begin, std::size_t end, std::
   constexpr std::size_t kAhead = 8;
   for (std::size_t i = 0; i < found; ++i) {
     if (i + kAhead < found) records.prefetch_known(near[i + kAhead]);
+    if (i + kAhead < found) bodies.prefetch_whereabouts(records.pair(near[i + kAhead]).b);
+    const BodyPair& pair = records.pair(near[i]);
+    if (!records.busy(near[i]) &&
+        (is_half_space(pair.b) ? sphere_above(pair)
+                               : spheres_apart(bodies.whereabouts(pair.a), bodies.whereabouts(pair.b))))
+      continue;
     auto& known = records.known(near[i]);
     if (known.clearance.distance > 0 && clear(known)) continue;
     known.clearance.distance = 0;

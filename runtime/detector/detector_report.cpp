@@ -121,9 +121,9 @@ void Detector::State::keep_clearance(detail::RecordTable::Known& known, const Re
     return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
   };
   kept.along = {};
-  const double reach = is_half_space(known.pair.b) ? std::numeric_limits<double>::infinity()
-                                                   : bodies.whereabouts(known.pair.a).reach +
-                                                         bodies.whereabouts(known.pair.b).reach;
+  const double reach = is_half_space(known.pair.b)
+                           ? std::numeric_limits<double>::infinity()
+                           : bodies.whereabouts(known.pair.a).reach + bodies.whereabouts(known.pair.b).reach;
   if (dot(record.along, record.along) > 0 && std::isfinite(reach)) {
     kept.along = rounded(record.along);
     distance -= detail::kRoundedToFloat * (way + reach);  // no two of their points are farther from each other

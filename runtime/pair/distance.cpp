@@ -52,9 +52,9 @@ bool DistanceQuery::bind(const PreparedTree& a, const PreparedTree& b) noexcept 
 }
 
 bool DistanceQuery::make_room() noexcept {
-  const std::size_t deepest =
-      std::size_t{kBlockWidth} * (pair_.first_->tree.triangle_tree_depth + pair_.second_->tree.triangle_tree_depth + 1) +
-      1;
+  const std::size_t deepest = std::size_t{kBlockWidth} * (pair_.first_->tree.triangle_tree_depth +
+                                                          pair_.second_->tree.triangle_tree_depth + 1) +
+                              1;
   if (!pair_.has_triangles() || deepest <= stack_room_) return true;
   stack_.reset(new (std::nothrow) BallSlabPair[deepest]);
   stack_room_ = stack_ ? deepest : 0;

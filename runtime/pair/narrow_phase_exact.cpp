@@ -47,8 +47,8 @@ inline bool NarrowPhase::find_children(const NodePair& pair, std::uint32_t a, st
   const bool second =
       (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && of_a.radius[lane_a] < of_b.radius[lane_b] * placement_.scale);
   if (second) {
-    detail::meeting_boxes(detail::moved_back(detail::node_box_at(of_a, lane_a), placement_), second_->tree.ball_slabs[b],
-                          placement_.scale, placement_.box_margin, gaps);
+    detail::meeting_boxes(detail::moved_back(detail::node_box_at(of_a, lane_a), placement_),
+                          second_->tree.ball_slabs[b], placement_.scale, placement_.box_margin, gaps);
   } else {
     detail::meeting_boxes(moved_box(pair.b), first_->tree.ball_slabs[a], 1, placement_.box_margin, gaps);
   }

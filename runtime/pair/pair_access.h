@@ -74,8 +74,8 @@ struct PairAccess {
     pair.finish(Answer::no);
     pair.lower_bound_ = lower;
   }
-  // After a "no" of the roots: the direction from a to b along which the bodies are lower_bound() apart, of length 1 but
-  // for rounding. Else 0.
+  // After a "no" of the roots: the direction from a to b along which the bodies are lower_bound() apart, of length 1
+  // but for rounding. Else 0.
   static std::array<double, 3> apart_along(const NarrowPhase& pair) noexcept {
     const auto& u = pair.apart_along_;
     return pair.arguments_exchanged_ ? std::array<double, 3>{-u[0], -u[1], -u[2]} : u;
