@@ -57,22 +57,33 @@ bool Detector::State::sphere_above(const BodyPair& pair) const noexcept {
   return height > detail::kRoundingOfGaps * (a.slack + 1e-14 * std::fabs(half.offset)) && std::isfinite(height);
 }
 
+// Those of records.pair(begin .. end - 1) that their spheres in floats do not tell apart, and those whose records would
+// be changed by that.
+std::size_t Detector::State::find_near_spheres(std::size_t begin, std::size_t end, std::uint32_t* near) const noexcept {
+  constexpr std::size_t kAhead = 24;
+  const BodyPair* const pairs_of = &records.pair(0);
+  std::size_t found = 0;
+  for (std::size_t place = begin; place < end;) {
+    const BodyIndex first = pairs_of[place].a;
+    const detail::NearSphere a = bodies.near_sphere(first);
+    const auto look_at = [&](BodyIndex second) ORCHARD_INLINE_LAMBDA {
+      const bool apart = !is_half_space(second) && near_spheres_apart(a, bodies.near_sphere(second));
+      near[found] = static_cast<std::uint32_t>(place);
+      found += static_cast<std::size_t>(records.busy(place)) | static_cast<std::size_t>(!apart);
+    };
+    for (; place + kAhead < end && pairs_of[place].a == first; ++place) {
+      bodies.prefetch_near_sphere(pairs_of[place + kAhead].b);
+      look_at(pairs_of[place].b);
+    }
+    for (; place < end && pairs_of[place].a == first; ++place) look_at(pairs_of[place].b);
+  }
+  return found;
+}
+
 // Those of records.pair(begin .. end - 1) that their spheres do not tell apart, nor what is known of them, or whose
 // records would be changed by that. Plus kNoRecordYet where there is none.
 std::size_t Detector::State::find_near(std::size_t begin, std::size_t end, std::uint32_t* near) noexcept {
-  constexpr std::size_t kPairsAhead = 24;
-  std::size_t found = 0, count_near = 0;
-  for (std::size_t place = begin; place < end;) {
-    const BodyIndex first = records.pair(place).a;
-    const detail::NearSphere a = bodies.near_sphere(first);
-    for (; place < end && records.pair(place).a == first; ++place) {
-      if (place + kPairsAhead < end) bodies.prefetch_near_sphere(records.pair(place + kPairsAhead).b);
-      const BodyPair& pair = records.pair(place);
-      const bool apart = !is_half_space(pair.b) && near_spheres_apart(a, bodies.near_sphere(pair.b));
-      near[found] = static_cast<std::uint32_t>(place);
-      found += static_cast<std::size_t>(records.busy(place)) | static_cast<std::size_t>(!apart);
-    }
-  }
+  std::size_t found = find_near_spheres(begin, end, near), count_near = 0;
   constexpr std::size_t kAhead = 8;
   for (std::size_t i = 0; i < found; ++i) {
     if (i + kAhead < found) records.prefetch_known(near[i + kAhead]);
