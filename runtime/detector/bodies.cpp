@@ -129,6 +129,15 @@ void BodyTable::part_moved(BodyIndex index, std::size_t part, const PartPlace& b
 
 void BodyTable::leave(BodyIndex body) noexcept { bodies_[body].id = kNoBody; }
 
+namespace {
+
+void mark_asked(Body& body, Step step) noexcept {
+  body.known_before = body.asked;
+  body.asked = step;
+}
+
+}  // namespace
+
 void BodyTable::ask(Step step, double time, std::span<const BodyIndex> bodies, const Executor& executor) {
   asking_.clear();
   constexpr std::size_t kAhead = 8;
@@ -140,10 +149,24 @@ void BodyTable::ask(Step step, double time, std::span<const BodyIndex> bodies, c
     const BodyIndex index = bodies[i];
     Body& body = bodies_[index];
     if (body.asked == step || body.is_static || body.frozen) continue;
-    body.known_before = body.asked;
-    body.asked = step;
+    mark_asked(body, step);
     asking_.push_back(index);
   }
+  ask_source(step, time, executor);
+}
+
+// Nobody comes up twice, so that each is marked where his answer is taken.
+void BodyTable::ask_everyone(Step step, double time, const Executor& executor) {
+  asking_.clear();
+  for (BodyIndex i = 0; i < bodies_.size(); ++i) {
+    const Body& body = bodies_[i];
+    if (body.id != kNoBody && !body.is_static && !body.frozen) asking_.push_back(i);
+  }
+  ask_source(step, time, executor);
+}
+
+// For asking_.
+void BodyTable::ask_source(Step step, double time, const Executor& executor) {
   if (asking_.empty()) return;
   // A thread that is alone takes answers while they are in its cache.
   constexpr std::size_t kAlone = 256;
@@ -174,6 +197,7 @@ void BodyTable::take_answers(Step step, std::span<const BodyIndex> bodies, const
 void BodyTable::take_answer(Step step, BodyIndex index, const BodyState& answer) noexcept {
   Body& body = bodies_[index];
   BodyState& state = bodies_[index].state;
+  if (body.asked != step) mark_asked(body, step);
   const Pose before = state.pose;
   if (keeps_before_) before_[index] = before;
   const bool same = body.moved >= 0 && before == answer.pose;

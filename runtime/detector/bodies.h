@@ -139,6 +139,7 @@ class BodyTable {
   // Makes all their states those of the step; a body may come up twice. What follows from many answers is worked out by
   // jobs of `executor`.
   void ask(Step step, double time, std::span<const BodyIndex> bodies, const Executor& executor = {});
+  void ask_everyone(Step step, double time, const Executor& executor);
   // As the broad phase wants it. Not valid if the state is not.
   Motion motion_of(BodyIndex body, double time_step) const noexcept;
   // Whether the spheres of motion_of() do not touch, where both states are known.
@@ -148,6 +149,7 @@ class BodyTable {
  private:
   void add_turn(BodyIndex body, double way) noexcept;
   void disturb(BodyIndex body) noexcept;
+  void ask_source(Step step, double time, const Executor& executor);
   void take_answers(Step step, std::span<const BodyIndex> bodies, const Executor& executor);
   void take_answer(Step step, BodyIndex index, const BodyState& answer) noexcept;
   StateSource source_;

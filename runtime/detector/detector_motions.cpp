@@ -29,11 +29,7 @@ void Detector::State::ask_all(Step step) {
   all_asked = false;
   const bool many = involved.size() >= kMinBodies && 2 * involved.size() >= bodies.slots();
   if (!many || options.watch || options.promised) return;
-  everyone.clear();
-  for (BodyIndex i = 0; i < bodies.slots(); ++i) {
-    if (bodies[i].id != kNoBody) everyone.push_back(i);
-  }
-  bodies.ask(step, clock.time(step), everyone, options.executor);
+  bodies.ask_everyone(step, clock.time(step), options.executor);
   all_asked = true;
   all_asked_at = step;
 }
