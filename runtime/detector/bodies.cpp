@@ -13,6 +13,21 @@ StateSource states_of(const std::vector<BodyState>& values) {
 }
 
 namespace detail {
+namespace {
+
+// In floats a coordinate is off by 2^-24 of itself, a difference by that of both and 2^-24 of itself, a square of a way
+// or of a sum of radii by less than 2^-21 of itself.
+NearSphere near_sphere_of(const Whereabouts& where) noexcept {
+  constexpr double kMost = 1e30;  // whose squares no float holds: nothing is told then
+  const Vec3& m = where.middle;
+  const double size = std::fabs(m[0]) + std::fabs(m[1]) + std::fabs(m[2]);
+  const double radius = (where.reach + kRoundingOfGaps * where.slack + 0x1p-23 * size) * (1 + 0x1p-18);
+  if (!(size + radius < kMost)) return {};
+  const auto rounded = [](double value) { return static_cast<float>(value); };
+  return {rounded(m[0]), rounded(m[1]), rounded(m[2]), rounded(radius)};
+}
+
+}  // namespace
 
 bool set_local(PartPlace& part, const Shape& shape, const Pose& local) noexcept {
   if (!is_rigid(local)) return false;
@@ -34,6 +49,7 @@ Body& BodyTable::take_in(BodyId id, std::size_t count) {
   grow(bodies_, slots);
   grow(before_, slots);
   grow(whereabouts_, slots);
+  grow(near_spheres_, slots);
   grow(disturbed_, slots);
   disturb(id.index);
   whereabouts_[id.index].generation = id.generation;
@@ -95,6 +111,7 @@ void BodyTable::moved(BodyIndex index, const Pose& before) noexcept {
   where.slack = 1e-14 * size;
   const bool tells = body.one && body.rigid && !(body.continuous_speed > 0);
   where.reach = tells ? reach * now.scale : std::numeric_limits<double>::infinity();
+  near_spheres_[index] = near_sphere_of(where);
   const double change = pose_change(before, now);
   add_turn(index, change == 0 ? 0 : (change + 4 * kRigidTolerance * (now.scale + before.scale)) * reach);
   if (!body.rigid || !std::isfinite(size)) disturb(index);
@@ -112,6 +129,15 @@ void BodyTable::part_moved(BodyIndex index, std::size_t part, const PartPlace& b
 
 void BodyTable::leave(BodyIndex body) noexcept { bodies_[body].id = kNoBody; }
 
+namespace {
+
+void mark_asked(Body& body, Step step) noexcept {
+  body.known_before = body.asked;
+  body.asked = step;
+}
+
+}  // namespace
+
 void BodyTable::ask(Step step, double time, std::span<const BodyIndex> bodies, const Executor& executor) {
   asking_.clear();
   constexpr std::size_t kAhead = 8;
@@ -123,10 +149,24 @@ void BodyTable::ask(Step step, double time, std::span<const BodyIndex> bodies, c
     const BodyIndex index = bodies[i];
     Body& body = bodies_[index];
     if (body.asked == step || body.is_static || body.frozen) continue;
-    body.known_before = body.asked;
-    body.asked = step;
+    mark_asked(body, step);
     asking_.push_back(index);
   }
+  ask_source(step, time, executor);
+}
+
+// Nobody comes up twice, so that each is marked where his answer is taken.
+void BodyTable::ask_everyone(Step step, double time, const Executor& executor) {
+  asking_.clear();
+  for (BodyIndex i = 0; i < bodies_.size(); ++i) {
+    const Body& body = bodies_[i];
+    if (body.id != kNoBody && !body.is_static && !body.frozen) asking_.push_back(i);
+  }
+  ask_source(step, time, executor);
+}
+
+// For asking_.
+void BodyTable::ask_source(Step step, double time, const Executor& executor) {
   if (asking_.empty()) return;
   // A thread that is alone takes answers while they are in its cache.
   constexpr std::size_t kAlone = 256;
@@ -157,6 +197,7 @@ void BodyTable::take_answers(Step step, std::span<const BodyIndex> bodies, const
 void BodyTable::take_answer(Step step, BodyIndex index, const BodyState& answer) noexcept {
   Body& body = bodies_[index];
   BodyState& state = bodies_[index].state;
+  if (body.asked != step) mark_asked(body, step);
   const Pose before = state.pose;
   if (keeps_before_) before_[index] = before;
   const bool same = body.moved >= 0 && before == answer.pose;
@@ -199,7 +240,7 @@ bool BodyTable::surely_apart(const BodyPair& pair, double time_step) const noexc
 
 std::size_t BodyTable::memory_bytes() const noexcept {
   std::size_t bytes = bytes_of(bodies_) + bytes_of(before_) + bytes_of(asking_) + bytes_of(answers_) +
-                      bytes_of(whereabouts_) + bytes_of(disturbed_);
+                      bytes_of(whereabouts_) + bytes_of(near_spheres_) + bytes_of(disturbed_);
   for (const Body& body : bodies_) bytes += bytes_of(body.parts) + bytes_of(body.parts_before);
   return bytes;
 }

@@ -64,6 +64,9 @@ struct alignas(64) Body {
   std::vector<PartBefore> parts_before;  // of each part; empty until one moves
 };
 
+// What a gap between spheres may be rounded by, in units of Whereabouts::slack.
+inline constexpr double kRoundingOfGaps = 1e3;
+
 // What tells whether a body may have come closer to another one, and nothing else: it is looked at for each pair of a
 // step. Points of the body are where `middle` is, but for what they have turned about it.
 struct alignas(64) Whereabouts {
@@ -74,6 +77,12 @@ struct alignas(64) Whereabouts {
   double turned = 0;             // the way of any point about the middle up to now, at most, from step to step
   std::uint32_t changes = 0;     // since what was known before says nothing of now
   std::uint32_t generation = 0;  // of the body that has the index
+};
+
+// Its sphere in floats, enlarged by more than what that rounds, so that four of them fit in a line of memory. Two that
+// do not touch are apart by Whereabouts, too.
+struct NearSphere {
+  float x = 0, y = 0, z = 0, radius = std::numeric_limits<float>::infinity();
 };
 
 // The parts of `body`, ready for the broad phase: a sphere around all of them, around the body's origin.
@@ -112,6 +121,10 @@ class BodyTable {
     if (body < whereabouts_.size()) prefetch(&whereabouts_[body]);
   }
   const Whereabouts& whereabouts(BodyIndex body) const noexcept { return whereabouts_[body]; }
+  const NearSphere& near_sphere(BodyIndex body) const noexcept { return near_spheres_[body]; }
+  ORCHARD_INLINE void prefetch_near_sphere(BodyIndex body) const noexcept {  // nothing, of a half-space
+    if (body < near_spheres_.size()) prefetch(&near_spheres_[body]);
+  }
   // Whether Whereabouts::changes of any body, or of this one, have grown since forget_disturbed().
   bool any_disturbed() const noexcept { return any_disturbed_.load(std::memory_order_relaxed); }
   bool disturbed(BodyIndex body) const noexcept { return disturbed_[body] != 0; }
@@ -126,6 +139,7 @@ class BodyTable {
   // Makes all their states those of the step; a body may come up twice. What follows from many answers is worked out by
   // jobs of `executor`.
   void ask(Step step, double time, std::span<const BodyIndex> bodies, const Executor& executor = {});
+  void ask_everyone(Step step, double time, const Executor& executor);
   // As the broad phase wants it. Not valid if the state is not.
   Motion motion_of(BodyIndex body, double time_step) const noexcept;
   // Whether the spheres of motion_of() do not touch, where both states are known.
@@ -135,6 +149,7 @@ class BodyTable {
  private:
   void add_turn(BodyIndex body, double way) noexcept;
   void disturb(BodyIndex body) noexcept;
+  void ask_source(Step step, double time, const Executor& executor);
   void take_answers(Step step, std::span<const BodyIndex> bodies, const Executor& executor);
   void take_answer(Step step, BodyIndex index, const BodyState& answer) noexcept;
   StateSource source_;
@@ -142,6 +157,7 @@ class BodyTable {
   std::vector<Pose> before_;  // at the step asked before
   bool keeps_before_ = false;
   std::vector<Whereabouts> whereabouts_;
+  std::vector<NearSphere> near_spheres_;
   std::vector<std::uint8_t> disturbed_;
   std::atomic<bool> any_disturbed_ = false, any_flawed_ = false;  // set by jobs
   std::vector<BodyIndex> asking_;

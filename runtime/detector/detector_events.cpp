@@ -9,15 +9,19 @@ namespace {
 
 constexpr std::uint32_t kNoRecordYet = 0x80000000u;  // beyond all places
 
-constexpr double kRoundingOfGaps = 1e3;  // in units of Whereabouts::slack
-
 // Whether the spheres of their only parts are apart; as sphere_gap() says, or not quite. No branches: nobody foresees
 // them.
 bool spheres_apart(const detail::Whereabouts& a, const detail::Whereabouts& b) noexcept {
   const Vec3 way = b.middle - a.middle;
-  const double reach = (a.reach + b.reach) + kRoundingOfGaps * (a.slack + b.slack), square = dot(way, way);
+  const double reach = (a.reach + b.reach) + detail::kRoundingOfGaps * (a.slack + b.slack), square = dot(way, way);
   return static_cast<int>(square > reach * reach * (1 + 1e-14)) &
          static_cast<int>(square <= std::numeric_limits<double>::max());
+}
+
+// Then they are so for spheres_apart(), too.
+bool near_spheres_apart(const detail::NearSphere& a, const detail::NearSphere& b) noexcept {
+  const float x = b.x - a.x, y = b.y - a.y, z = b.z - a.z, reach = a.radius + b.radius;
+  return x * x + y * y + z * z > reach * reach;
 }
 
 }  // namespace
@@ -26,19 +30,23 @@ using detail::Body;
 using detail::is_half_space;
 using detail::Record;
 
-// Of two bodies as they are, with what their middles may be off by in place of a distance.
-detail::Clearance Detector::State::clearance_now(const BodyPair& pair) const noexcept {
+detail::Standing Detector::State::standing(const BodyPair& pair) const noexcept {
   const detail::Whereabouts& a = bodies.whereabouts(pair.a);
   if (is_half_space(pair.b)) return {a.slack, -1.0 * a.middle, a.turned, a.changes};
   const detail::Whereabouts& b = bodies.whereabouts(pair.b);
   return {a.slack + b.slack, b.middle - a.middle, a.turned + b.turned, a.changes + b.changes};
 }
 
-// Whether they are as far apart as at the last certain "no", but for less than what was between them then.
+// Whether they have come closer since the last certain "no" by less than what was between them then: in the direction
+// in which that was, if it is known; else in any.
 bool Detector::State::clear(const detail::RecordTable::Known& known) const noexcept {
-  const detail::Clearance now = clearance_now(known.pair), &then = known.clearance;
-  const double left = then.distance * (1 - 1e-9) - now.distance - (now.turned - then.turned);
-  const Vec3 moved = now.way - then.way;
+  const detail::Standing now = standing(known.pair);
+  const detail::Clearance& then = known.clearance;
+  const double turned = (now.turned - then.turned) * (1 + detail::kRoundedToFloat);
+  const double left = then.distance * (1 - 1e-9) - now.slack - turned;
+  const Vec3 moved = now.way - Vec3{then.way[0], then.way[1], then.way[2]};
+  const Vec3 along = {then.along[0], then.along[1], then.along[2]};
+  if (dot(along, along) > 0) return now.changes == then.changes && left + dot(along, moved) > 0;
   return now.changes == then.changes && left > 0 && dot(moved, moved) < left * left * (1 - 1e-9);
 }
 
@@ -46,28 +54,45 @@ bool Detector::State::sphere_above(const BodyPair& pair) const noexcept {
   const detail::Whereabouts& a = bodies.whereabouts(pair.a);
   const detail::HalfSpace& half = places.half_space(pair.b);
   const double height = dot(half.normal, a.middle) - half.offset - a.reach;
-  return height > kRoundingOfGaps * (a.slack + 1e-14 * std::fabs(half.offset)) && std::isfinite(height);
+  return height > detail::kRoundingOfGaps * (a.slack + 1e-14 * std::fabs(half.offset)) && std::isfinite(height);
+}
+
+// Those of records.pair(begin .. end - 1) that their spheres in floats do not tell apart, and those whose records would
+// be changed by that.
+std::size_t Detector::State::find_near_spheres(std::size_t begin, std::size_t end, std::uint32_t* near) const noexcept {
+  constexpr std::size_t kAhead = 24;
+  const BodyPair* const pairs_of = &records.pair(0);
+  std::size_t found = 0;
+  for (std::size_t place = begin; place < end;) {
+    const BodyIndex first = pairs_of[place].a;
+    const detail::NearSphere a = bodies.near_sphere(first);
+    const auto look_at = [&](BodyIndex second) ORCHARD_INLINE_LAMBDA {
+      const bool apart = !is_half_space(second) && near_spheres_apart(a, bodies.near_sphere(second));
+      near[found] = static_cast<std::uint32_t>(place);
+      found += static_cast<std::size_t>(records.busy(place)) | static_cast<std::size_t>(!apart);
+    };
+    for (; place + kAhead < end && pairs_of[place].a == first; ++place) {
+      bodies.prefetch_near_sphere(pairs_of[place + kAhead].b);
+      look_at(pairs_of[place].b);
+    }
+    for (; place < end && pairs_of[place].a == first; ++place) look_at(pairs_of[place].b);
+  }
+  return found;
 }
 
 // Those of records.pair(begin .. end - 1) that their spheres do not tell apart, nor what is known of them, or whose
 // records would be changed by that. Plus kNoRecordYet where there is none.
 std::size_t Detector::State::find_near(std::size_t begin, std::size_t end, std::uint32_t* near) noexcept {
-  constexpr std::size_t kPairsAhead = 24;
-  std::size_t found = 0, count_near = 0;
-  for (std::size_t place = begin; place < end;) {
-    const BodyIndex first = records.pair(place).a;
-    const detail::Whereabouts a = bodies.whereabouts(first);
-    for (; place < end && records.pair(place).a == first; ++place) {
-      if (place + kPairsAhead < end) bodies.prefetch_whereabouts(records.pair(place + kPairsAhead).b);
-      const BodyPair& pair = records.pair(place);
-      const bool apart = is_half_space(pair.b) ? sphere_above(pair) : spheres_apart(a, bodies.whereabouts(pair.b));
-      near[found] = static_cast<std::uint32_t>(place);
-      found += static_cast<std::size_t>(records.busy(place)) | static_cast<std::size_t>(!apart);
-    }
-  }
+  std::size_t found = find_near_spheres(begin, end, near), count_near = 0;
   constexpr std::size_t kAhead = 8;
   for (std::size_t i = 0; i < found; ++i) {
     if (i + kAhead < found) records.prefetch_known(near[i + kAhead]);
+    if (i + kAhead < found) bodies.prefetch_whereabouts(records.pair(near[i + kAhead]).b);
+    const BodyPair& pair = records.pair(near[i]);
+    if (!records.busy(near[i]) &&
+        (is_half_space(pair.b) ? sphere_above(pair)
+                               : spheres_apart(bodies.whereabouts(pair.a), bodies.whereabouts(pair.b))))
+      continue;
     auto& known = records.known(near[i]);
     if (known.clearance.distance > 0 && clear(known)) continue;
     known.clearance.distance = 0;

@@ -25,15 +25,11 @@ void Detector::State::motions(double time, std::span<const BodyIndex> asked, std
 // So that the broad phase's jobs may run at once. Where most bodies were in pairs at the last step, nearly everybody is
 // asked about this one anyway.
 void Detector::State::ask_all(Step step) {
-  constexpr std::size_t kMinBodies = 1024;
+  constexpr std::size_t kMinBodies = 256;
   all_asked = false;
   const bool many = involved.size() >= kMinBodies && 2 * involved.size() >= bodies.slots();
-  if (!many || options.executor.run == nullptr || options.watch || options.promised) return;
-  everyone.clear();
-  for (BodyIndex i = 0; i < bodies.slots(); ++i) {
-    if (bodies[i].id != kNoBody) everyone.push_back(i);
-  }
-  bodies.ask(step, clock.time(step), everyone, options.executor);
+  if (!many || options.watch || options.promised) return;
+  bodies.ask_everyone(step, clock.time(step), options.executor);
   all_asked = true;
   all_asked_at = step;
 }

@@ -6,6 +6,7 @@
 namespace orchard::runtime {
 
 using detail::Body;
+using detail::is_half_space;
 using detail::Record;
 
 namespace {
@@ -112,8 +113,24 @@ void Detector::State::keep_clearance(detail::RecordTable::Known& known, const Re
   const bool lasts = record.verdict.answer == Answer::no && !record.touching && !(a.continuous_speed > 0) &&
                      !(b.continuous_speed > 0) && a.rigid && b.rigid && std::isfinite(record.verdict.lower_bound);
   if (!lasts) return;
-  known.clearance = clearance_now(known.pair);
-  known.clearance.distance = std::max(0.0, record.verdict.lower_bound - known.clearance.distance);
+  const detail::Standing now = standing(known.pair);
+  const double way = detail::length(now.way);
+  double distance = record.verdict.lower_bound - now.slack - detail::kRoundedToFloat * way;
+  detail::Clearance& kept = known.clearance;
+  const auto rounded = [](const Vec3& v) -> detail::Clearance::Floats {
+    return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+  };
+  kept.along = {};
+  const double reach = is_half_space(known.pair.b)
+                           ? std::numeric_limits<double>::infinity()
+                           : bodies.whereabouts(known.pair.a).reach + bodies.whereabouts(known.pair.b).reach;
+  if (dot(record.along, record.along) > 0 && std::isfinite(reach)) {
+    kept.along = rounded(record.along);
+    distance -= detail::kRoundedToFloat * (way + reach);  // no two of their points are farther from each other
+  }
+  kept.distance = distance > 0 ? distance : 0;
+  kept.way = rounded(now.way);
+  kept.turned = now.turned, kept.changes = now.changes;
 }
 
 // What the answer makes of the pair, and which event that is.
@@ -152,6 +169,7 @@ void Detector::State::conclude(std::size_t i, Record& record, Tally& tally) noex
   const bool busy = record.touching || record.waited > 0;
   records.tell(active[i], busy, busy || record.large);
   if (record.allowed) keep_clearance(records.known(active[i]), record);
+  record.along = {};
 }
 
 void Detector::State::tally(std::size_t job, Tally& tally) noexcept {

@@ -57,6 +57,7 @@ struct Detector::State {
   void gather(Step step, const Advance& now);
   void ask_involved(Step step);
   void match(Step step, Frame& frame);
+  std::size_t find_near_spheres(std::size_t begin, std::size_t end, std::uint32_t* near) const noexcept;
   std::size_t find_near(std::size_t begin, std::size_t end, std::uint32_t* near) noexcept;
   void find_active();
   detail::Record& record_of(detail::RecordTable::Known& known) noexcept;
@@ -66,7 +67,7 @@ struct Detector::State {
   bool allowed(detail::Record& record);
   void learn(std::uint64_t work) noexcept;
   void report(Step step, Frame& frame);
-  detail::Clearance clearance_now(const BodyPair& pair) const noexcept;
+  detail::Standing standing(const BodyPair& pair) const noexcept;
   bool clear(const detail::RecordTable::Known& known) const noexcept;
   bool sphere_above(const BodyPair& pair) const noexcept;
   void keep_clearance(detail::RecordTable::Known& known, const detail::Record& record) const noexcept;

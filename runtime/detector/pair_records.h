@@ -39,16 +39,31 @@ struct Record {
   Verdict verdict;
   Vec3 apart_by{};     // from centre to centre,
   Step apart_at = -1;  // at that step
+  Vec3 along{};        // of the answer of the step under way, if that is "no": Clearance::along
   double impact_from = 0, impact_to = 0;
   TreePair trees;
 };
 
-// A certain "no" that lasts: the two are `distance` apart, at least, as long as their middles are this way from each
-// other and they have turned so far; see Whereabouts.
-struct Clearance {
-  double distance = 0;  // 0: none
+// How two bodies are to each other at some step: their middles are this way from each other, but for `slack`, and they
+// have turned so far; see Whereabouts.
+struct Standing {
+  double slack = 0;
   Vec3 way{};
   double turned = 0;
+  std::uint32_t changes = 0;
+};
+
+// Of a vector rounded to floats, in its length, and of a unit vector besides, which is one to within half of that.
+inline constexpr double kRoundedToFloat = 4e-7;
+
+// A certain "no" that lasts: the two were `distance` apart, at least, when they stood like that. What their places are
+// rounded by to floats has been taken from it.
+struct Clearance {
+  using Floats = std::array<float, 3>;
+  double distance = 0;  // 0: none
+  double turned = 0;
+  Floats way{};
+  Floats along{};  // the direction from the first one to the second one in which they were that far apart, or 0
   std::uint32_t changes = 0;
 };
 

@@ -1,5 +1,7 @@
 #include "pair_tests.h"
 
+#include "pair/pair_access.h"
+
 namespace orchard::runtime::detail {
 
 void Places::place_at(const Pose& pose, bool rigid, ShapeId shape, const PartPlace& part,
@@ -119,7 +121,7 @@ Verdict answer_exactly(NarrowPhase& narrow, const PartPair& pair, std::uint64_t&
     return pair.b.shape == nullptr ? test_half_space(*pair.a.shape, pair.a.pose(), pair.half)
                                    : test_simple(*pair.a.shape, pair.a.pose(), *pair.b.shape, pair.b.pose(), guess);
   }
-  narrow.bind(pair.a.shape->prepared, pair.b.shape->prepared);
+  PairAccess::bind(narrow, pair.a.shape->prepared, pair.b.shape->prepared);
   narrow.start(pair.a.pose(), pair.b.pose());
   const bool limited = most != std::numeric_limits<std::uint64_t>::max();
   work += kPairWork;

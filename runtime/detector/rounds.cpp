@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "pair/coherent_pair.h"
+#include "pair/pair_access.h"
 
 namespace orchard::runtime::detail {
 namespace {
@@ -68,6 +69,7 @@ void Rounds::answer_coherently(std::uint32_t index, Record& record, Step now,
     if (!tries || !CoherentPair::recall(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), verdict)) {
       ::new (&verdict) Verdict(CoherentPair::search(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose()));
       if (slow && verdict.answer == Answer::no) note_search(index, record, verdict.work, scratch);
+      record.along = PairAccess::apart_along(scratch.workspace.narrow);
     }
     scratch.work += kPairWork + verdict.work;
     if (verdict.answer == Answer::no) make_solid(verdict, pair);

@@ -2,6 +2,7 @@
 #include <array>
 
 #include "pair/coherent_pair.h"
+#include "pair/pair_access.h"
 #include "rounds.h"
 
 // Within a budget: by class of importance, and there in the order of who has waited longest. At the same time
@@ -88,7 +89,7 @@ void Rounds::begin_one(Task& task, Record& record, QueryPool::Scratch& scratch) 
     task.verdict = solid_verdict(known, pair);
     task.done = true;
   } else {
-    narrow.bind(pair.a.shape->prepared, pair.b.shape->prepared);
+    PairAccess::bind(narrow, pair.a.shape->prepared, pair.b.shape->prepared);
     narrow.start(pair.a.pose(), pair.b.pose());
     task.verdict = verdict_of(narrow, pair);
     task.done = narrow.finished();
@@ -108,7 +109,7 @@ void Rounds::decide(Task& task, Record& record, std::uint64_t most, QueryPool::S
     verdict = CoherentPair::search(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose(), {most});
     if (verdict.answer != Answer::yes) note_search(task.record, record, verdict.work, scratch);
   } else {
-    narrow.bind(pair.a.shape->prepared, pair.b.shape->prepared);
+    PairAccess::bind(narrow, pair.a.shape->prepared, pair.b.shape->prepared);
     verdict = collide(narrow, pair.a.pose(), pair.b.pose(), {most});
   }
   task.work = verdict.work;
@@ -198,7 +199,7 @@ void Rounds::refine_one(Task& task, const Record& record, std::uint64_t slice,
   place(record, task.part_a, task.part_b, pair);
   NarrowPhase& query = *task.query;
   if (!task.started) {
-    query.bind(pair.a.shape->prepared, pair.b.shape->prepared);
+    PairAccess::bind(query, pair.a.shape->prepared, pair.b.shape->prepared);
     query.start(pair.a.pose(), pair.b.pose());
     task.started = true;
   }

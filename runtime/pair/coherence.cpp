@@ -117,7 +117,7 @@ struct Coherence {
 
   void collide(const Budget& budget) noexcept {
     NarrowPhase& narrow = workspace.narrow;
-    narrow.bind(pair.a(), pair.b());
+    PairAccess::bind(narrow, pair.a(), pair.b());
     answer_exactly(narrow, a, b, budget);
   }
 
@@ -139,7 +139,7 @@ struct Coherence {
 
   bool place_for_triangles() noexcept {
     if (placed) return true;
-    workspace.narrow.bind(pair.a(), pair.b());
+    PairAccess::bind(workspace.narrow, pair.a(), pair.b());
     placed = PairAccess::has_last_level(workspace.narrow) && find_rigid() &&
              PairAccess::place_for_triangles(workspace.narrow, a, b);
     return placed;
@@ -172,7 +172,7 @@ struct Coherence {
   }
 
   bool has_last_level() noexcept {
-    workspace.narrow.bind(pair.a(), pair.b());
+    PairAccess::bind(workspace.narrow, pair.a(), pair.b());
     return PairAccess::has_last_level(workspace.narrow);
   }
 

@@ -52,9 +52,9 @@ bool DistanceQuery::bind(const PreparedTree& a, const PreparedTree& b) noexcept 
 }
 
 bool DistanceQuery::make_room() noexcept {
-  const std::size_t deepest =
-      std::size_t{kBlockWidth} * (pair_.first_.tree.triangle_tree_depth + pair_.second_.tree.triangle_tree_depth + 1) +
-      1;
+  const std::size_t deepest = std::size_t{kBlockWidth} * (pair_.first_->tree.triangle_tree_depth +
+                                                          pair_.second_->tree.triangle_tree_depth + 1) +
+                              1;
   if (!pair_.has_triangles() || deepest <= stack_room_) return true;
   stack_.reset(new (std::nothrow) BallSlabPair[deepest]);
   stack_room_ = stack_ ? deepest : 0;
@@ -111,7 +111,7 @@ bool DistanceQuery::may_be_nearer(double lower) const noexcept { return below_ne
 void DistanceQuery::refine(const Budget& budget) noexcept {
   if (finished_ || budget.pair_tests == 0) return;
   NarrowPhase::BudgetTracker tracker(budget);
-  const TreeView &first = pair_.first_.tree, &second = pair_.second_.tree;
+  const TreeView &first = pair_.first_->tree, &second = pair_.second_->tree;
   while (stack_size_ > 0 && nearest_ > enough_ && !tracker.exhausted()) {
     const BallSlabPair pair = stack_[--stack_size_];
     if (!may_be_nearer(double{pair.lower})) {
@@ -144,10 +144,10 @@ void DistanceQuery::leave_the_rest() noexcept {
 
 // Every ball slab holds triangles, so two are no farther apart than the farthest points of their ball slabs.
 bool DistanceQuery::surely_near(const BallSlabPair& pair) noexcept {
-  const double radii = double{radius_of(pair_.first_.tree, pair.a)} +
-                       double{radius_of(pair_.second_.tree, pair.b)} * double{pair_.placement_.scale};
+  const double radii = double{radius_of(pair_.first_->tree, pair.a)} +
+                       double{radius_of(pair_.second_->tree, pair.b)} * double{pair_.placement_.scale};
   if (radii > enough_) return false;
-  const detail::NodeBox p = detail::node_box_at(pair_.first_.tree, pair.a);
+  const detail::NodeBox p = detail::node_box_at(pair_.first_->tree, pair.a);
   const detail::NodeBox q = pair_.moved_box(pair.b);
   const double x = double{q.center[0]} - double{p.center[0]}, y = double{q.center[1]} - double{p.center[1]},
                z = double{q.center[2]} - double{p.center[2]};
@@ -161,7 +161,7 @@ bool DistanceQuery::surely_near(const BallSlabPair& pair) noexcept {
 
 // In place of a pair, those of its children that may be nearer than the best, the nearest last.
 void DistanceQuery::expand(const BallSlabPair& pair, std::uint32_t block, bool second) noexcept {
-  const TreeView &first = pair_.first_.tree, &other = pair_.second_.tree;
+  const TreeView &first = pair_.first_->tree, &other = pair_.second_->tree;
   const detail::Placement& placement = pair_.placement_;
   if (limit_ < double{kCoordinateLimit}) return expand_within(pair, block, second);
   const float margin = placement.box_margin;
@@ -190,7 +190,7 @@ void DistanceQuery::expand(const BallSlabPair& pair, std::uint32_t block, bool s
 
 // The same where there is a limit: those that may be within it, the nearest last.
 void DistanceQuery::expand_within(const BallSlabPair& pair, std::uint32_t block, bool second) noexcept {
-  const TreeView &first = pair_.first_.tree, &other = pair_.second_.tree;
+  const TreeView &first = pair_.first_->tree, &other = pair_.second_->tree;
   const detail::Placement& placement = pair_.placement_;
   const float margin = placement.box_margin + reach_;
   detail::BoxGaps gaps;
@@ -217,7 +217,7 @@ void DistanceQuery::expand_within(const BallSlabPair& pair, std::uint32_t block,
 
 // The nearest ones first: each found makes fewer of the others worth a test.
 void DistanceQuery::compare_leaves(const BallSlabPair& pair) noexcept {
-  const TreeView &first = pair_.first_.tree, &second = pair_.second_.tree;
+  const TreeView &first = pair_.first_->tree, &second = pair_.second_->tree;
   const TriangleBlock& lanes = first.triangle_blocks[child_of(first, pair.a) & ~kLeafBit];
   const TriangleBlock& rows = second.triangle_blocks[child_of(second, pair.b) & ~kLeafBit];
   const float radii = radius_of(first, pair.a) + radius_of(second, pair.b) * pair_.placement_.scale;
@@ -258,7 +258,7 @@ void DistanceQuery::find_within(const BallSlabPair& pair, const TriangleBlock& l
                                 const TriangleBlock& rows) noexcept {
   detail::Placement near = pair_.placement_;
   near.margin = float_above((double{near.margin} + limit_) * (1 + 1e-6));
-  const detail::NodeBox lane_box = detail::node_box_at(pair_.first_.tree, pair.a);
+  const detail::NodeBox lane_box = detail::node_box_at(pair_.first_->tree, pair.a);
   const detail::NodeBox row_box = pair_.moved_box(pair.b);
   min_lower_ = std::min(min_lower_, limit_);
   struct Leaves {
@@ -312,7 +312,7 @@ DistanceQuery::Points DistanceQuery::points() const noexcept {
   Points result;
   if (triangle_first_ == kNoTriangle) return result;
   const auto world = [this](std::array<double, 3> point) {
-    for (std::size_t i = 0; i < 3; ++i) point[i] += pair_.first_.tree.origin[i];
+    for (std::size_t i = 0; i < 3; ++i) point[i] += pair_.first_->tree.origin[i];
     return transform(pair_.first_pose_, point);
   };
   result = {world(on_first_), world(on_second_), triangle_first_, triangle_second_};

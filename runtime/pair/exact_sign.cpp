@@ -2,19 +2,11 @@
 
 #include <cfloat>
 #include <cmath>
-#include <cstddef>
 
 static_assert(FLT_EVAL_METHOD == 0, "the error-free transformations below need plain double arithmetic");
 
 namespace orchard::runtime::detail {
 namespace {
-
-constexpr double kUnit = 0x1p-53;  // relative rounding error of one operation
-
-// Plain evaluation: every difference, product and sum has relative error kUnit and no term passes through more than
-// eight of them, so the determinant is off by at most 8.1 kUnit times the sum of the terms' sizes (the permanent),
-// which is itself computed to 8.1 kUnit. Twice that leaves room.
-constexpr double kPlainError = 16 * kUnit;
 
 // With pairs of doubles a step's relative error is at most 2^-102, and there are fewer than 30 of them.
 constexpr double kPairError = 0x1p-96;
@@ -124,7 +116,7 @@ int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) noex
   const double permanent = std::fabs(ux) * (std::fabs(yz) + std::fabs(zy)) +
                            std::fabs(uy) * (std::fabs(zx) + std::fabs(xz)) +
                            std::fabs(uz) * (std::fabs(xy) + std::fabs(yx));
-  if (std::fabs(determinant) > kPlainError * permanent) return sign(determinant);
+  if (std::fabs(determinant) > kPlainDeterminantError * permanent) return sign(determinant);
   return close_orientation(a, b, c, d, permanent);
 }
 
@@ -132,7 +124,7 @@ int orientation(const Vec3& a, const Vec3& b, const Vec3& c, std::size_t axis) n
   const std::size_t x = (axis + 1) % 3, y = (axis + 2) % 3;
   const double left = (a[x] - c[x]) * (b[y] - c[y]), right = (a[y] - c[y]) * (b[x] - c[x]);
   const double determinant = left - right;
-  if (std::fabs(determinant) > kPlainError * (std::fabs(left) + std::fabs(right))) return sign(determinant);
+  if (std::fabs(determinant) > kPlainDeterminantError * (std::fabs(left) + std::fabs(right))) return sign(determinant);
   ExactSum exact;
   exact.add_product(difference(a[x], c[x]), difference(b[y], c[y]), 1.0);
   exact.add_product(difference(a[y], c[y]), difference(b[x], c[x]), -1.0);

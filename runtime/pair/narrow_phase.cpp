@@ -146,19 +146,48 @@ NarrowPhase::NarrowPhase(const TreeView& a, const TreeView& b, std::size_t room)
 bool NarrowPhase::bound_to(const PreparedTree& a, const PreparedTree& b) const noexcept {
   static_assert(std::is_trivially_copyable_v<PreparedTree>);
   if (ordered_by_pose_ && arguments_exchanged_) return false;  // as the last poses had it
-  const Side &of_a = arguments_exchanged_ ? second_ : first_, &of_b = arguments_exchanged_ ? first_ : second_;
+  if (!first_.owns() || !second_.owns()) return false;         // nobody knows whether those are still there
+  const Side &of_a = arguments_exchanged_ ? *second_ : *first_, &of_b = arguments_exchanged_ ? *first_ : *second_;
   return a.fingerprint != 0 && std::memcmp(&of_a, &a, sizeof a) == 0 && std::memcmp(&of_b, &b, sizeof b) == 0;
+}
+
+// The same without a look at what was bound before.
+bool NarrowPhase::bound_where(const PreparedTree& a, const PreparedTree& b) const noexcept {
+  if (ordered_by_pose_ && arguments_exchanged_) return false;
+  const std::size_t of_a = arguments_exchanged_ ? 1 : 0;
+  const BoundSide &side_a = of_a == 0 ? first_ : second_, &side_b = of_a == 0 ? second_ : first_;
+  return a.fingerprint != 0 && side_a.refers_to(a) && side_b.refers_to(b) && prints_[of_a] == a.fingerprint &&
+         prints_[1 - of_a] == b.fingerprint;
+}
+
+void NarrowPhase::order(const PreparedTree& a, const PreparedTree& b) noexcept {
+  ordered_by_pose_ = a.fingerprint == b.fingerprint;
+  one_tree_ = ordered_by_pose_ && same_place(a.tree, b.tree);
+  arguments_exchanged_ = !ordered_by_pose_ && compare(a.tree, b.tree) > 0;
+  const Side &first = arguments_exchanged_ ? b : a, &second = arguments_exchanged_ ? a : b;
+  for (std::size_t i = 0; i < 3; ++i) roots_[i] = {first.root[i], second.root[i]};
+  prints_ = {first.fingerprint, second.fingerprint};
 }
 
 bool NarrowPhase::bind(const PreparedTree& a, const PreparedTree& b) noexcept {
   if (!bound_to(a, b)) {
-    ordered_by_pose_ = a.fingerprint == b.fingerprint;
-    one_tree_ = ordered_by_pose_ && same_place(a.tree, b.tree);
-    arguments_exchanged_ = !ordered_by_pose_ && compare(a.tree, b.tree) > 0;
-    first_ = arguments_exchanged_ ? b : a;
-    second_ = arguments_exchanged_ ? a : b;
-    for (std::size_t i = 0; i < 3; ++i) roots_[i] = {first_.root[i], second_.root[i]};
+    order(a, b);
+    const bool exchanged = arguments_exchanged_;
+    first_.copy(exchanged ? b : a), second_.copy(exchanged ? a : b);
   }
+  return begin_anew();
+}
+
+bool NarrowPhase::bind_where(const PreparedTree& a, const PreparedTree& b) noexcept {
+  if (!bound_where(a, b)) {
+    order(a, b);
+    first_.refer_to(arguments_exchanged_ ? b : a), second_.refer_to(arguments_exchanged_ ? a : b);
+  }
+  return begin_anew();
+}
+
+// Nothing is known of what is bound now. False if there is no memory for its stack.
+bool NarrowPhase::begin_anew() noexcept {
   finished_ = true;
   refused_ = true;
   roots_pending_ = exact_started_ = placed_ = false;
@@ -170,7 +199,7 @@ bool NarrowPhase::bind(const PreparedTree& a, const PreparedTree& b) noexcept {
   // Two expanded pairs leave up to eight each in their place, one level deeper in one of the trees; what lies below
   // them is no deeper than they were, so that no depth ever has more than these.
   const std::size_t deepest =
-      2 * std::size_t{kBlockWidth} * (a.tree.triangle_tree_depth + b.tree.triangle_tree_depth + 1) + 1;
+      2 * std::size_t{kBlockWidth} * (first_->tree.triangle_tree_depth + second_->tree.triangle_tree_depth + 1) + 1;
   if (!has_triangles() || deepest <= stack_room_) return true;
   stack_.reset(new (std::nothrow) NodePair[deepest]);
   stack_room_ = stack_ ? deepest : 0;
@@ -194,14 +223,14 @@ Pose NarrowPhase::relative_pose() const noexcept {
   const auto settled = [](double value, double least) { return std::fabs(value) < least ? 0.0 : value; };
   Pose relative;
   relative.scale = second.scale * shrink;
-  auto offset = transform(second, second_.tree.origin);
+  auto offset = transform(second, second_->tree.origin);
   for (std::size_t i = 0; i < 3; ++i) offset[i] -= first.translation[i];
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       relative.rotation[3 * i + j] = settled(r[i] * q[j] + r[3 + i] * q[3 + j] + r[6 + i] * q[6 + j], 0x1p-60);
     }
     relative.translation[i] = settled(
-        (r[i] * offset[0] + r[3 + i] * offset[1] + r[6 + i] * offset[2]) * shrink - first_.tree.origin[i], 0x1p-305);
+        (r[i] * offset[0] + r[3 + i] * offset[1] + r[6 + i] * offset[2]) * shrink - first_->tree.origin[i], 0x1p-305);
   }
   return relative;
 }
@@ -218,9 +247,9 @@ void NarrowPhase::place() noexcept {
   }
   for (std::size_t i = 0; i < 3; ++i) placement_.translation[i] = static_cast<float>(relative_.translation[i]);
   placement_.scale = static_cast<float>(scale);
-  const double distance = length(relative_.translation), second_extent = second_.extent * scale;
+  const double distance = length(relative_.translation), second_extent = second_->extent * scale;
   const double sigma = exact_error_ * shrink + kFloatUnit * (10 * second_extent + 6 * distance);
-  const double size = distance + first_.extent + second_extent;
+  const double size = distance + first_->extent + second_extent;
   const auto rounded_up = [](double value) {
     return static_cast<float>(std::max(value, kMinSlack) * (1 + 2 * kFloatUnit));
   };
@@ -240,11 +269,11 @@ void NarrowPhase::place() noexcept {
 bool NarrowPhase::in_range() const noexcept {
   const double relative = second_pose_.scale / first_pose_.scale;
   if (!(relative >= 1 / kMaxRelativeScale && relative <= kMaxRelativeScale)) return false;
-  double size = second_.extent * second_pose_.scale + exact_error_;
+  double size = second_->extent * second_pose_.scale + exact_error_;
   for (std::size_t i = 0; i < 3; ++i) {
     size += std::fabs(second_pose_.translation[i] - first_pose_.translation[i]) +
-            std::fabs(second_.tree.origin[i]) * second_pose_.scale +
-            std::fabs(first_.tree.origin[i]) * first_pose_.scale;
+            std::fabs(second_->tree.origin[i]) * second_pose_.scale +
+            std::fabs(first_->tree.origin[i]) * first_pose_.scale;
   }
   return size <= 4 * double{kCoordinateLimit} * first_pose_.scale;
 }
@@ -255,7 +284,7 @@ void NarrowPhase::finish(Answer answer) noexcept {
   roots_pending_ = false;
   if (answer == Answer::no && !exact_started_) lower_bound_ = pruned_gap_ * (1 - detail::kStretch);
   if (answer == Answer::yes) {
-    const double error = first_.tree.vertex_error + second_.tree.vertex_error * relative_.scale;
+    const double error = first_->tree.vertex_error + second_->tree.vertex_error * relative_.scale;
     separation_bound_ = std::min(separation_bound_, error * first_pose_.scale * (1 + detail::kStretch));
   }
 }
@@ -272,7 +301,7 @@ Contact NarrowPhase::contact() const noexcept {
   }
   // A "yes" whose triangles say nothing about a direction has that of the spheres.
   if (answer_ != Answer::yes || !(length(normal) > 0)) add_ball(contact, normal);
-  for (std::size_t i = 0; i < 3; ++i) contact.center[i] += first_.tree.origin[i];
+  for (std::size_t i = 0; i < 3; ++i) contact.center[i] += first_->tree.origin[i];
   if (exchanged_) {
     for (double& component : normal) component = 0 - component;
   }
@@ -286,16 +315,16 @@ Contact NarrowPhase::contact() const noexcept {
 // other.
 void NarrowPhase::add_ball(Contact& contact, std::array<double, 3>& normal) const noexcept {
   const auto [a, b] = best_.pair;
-  const auto p = detail::center_of(first_.tree, a);
+  const auto p = detail::center_of(first_->tree, a);
   const Pose relative = placed_ ? relative_ : relative_pose();
-  const auto q = transform(relative, detail::center_of(second_.tree, b));
+  const auto q = transform(relative, detail::center_of(second_->tree, b));
   const std::array<double, 3> way = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
   const double distance = length(way);
   normal = {1, 0, 0};
   for (std::size_t i = 0; i < 3 && distance > 0; ++i) normal[i] = way[i] / distance;
   if (answer_ == Answer::yes) return;
-  const double ra = detail::block_of(first_.tree, a).radius[a % kBlockWidth];
-  const double rb = detail::block_of(second_.tree, b).radius[b % kBlockWidth] * relative.scale;
+  const double ra = detail::block_of(first_->tree, a).radius[a % kBlockWidth];
+  const double rb = detail::block_of(second_->tree, b).radius[b % kBlockWidth] * relative.scale;
   // The smallest ball around the common part of two balls: one of them if it is less than half cut off, otherwise the
   // ball on the circle in which the spheres cut each other, `at` away from p.
   const double at = distance > 0 ? (distance * distance + ra * ra - rb * rb) / (2 * distance) : 0;
@@ -322,8 +351,8 @@ std::array<double, 3> NarrowPhase::triangle_normal() const noexcept {
     for (double& component : n) component = size > 0 ? component / size : 0;
     return n;
   };
-  const auto of_first = normal_of(detail::points_of(first_.tree, triangle_first_));
-  const auto of_second = rotate(relative_, normal_of(detail::points_of(second_.tree, triangle_second_)));
+  const auto of_first = normal_of(detail::points_of(first_->tree, triangle_first_));
+  const auto of_second = rotate(relative_, normal_of(detail::points_of(second_->tree, triangle_second_)));
   std::array<double, 3> way{};
   for (std::size_t i = 0; i < 3; ++i) way[i] = of_first[i] - of_second[i];
   const double size = length(way);

@@ -37,20 +37,20 @@ void NarrowPhase::start_exact() noexcept {
 }
 
 detail::NodeBox NarrowPhase::moved_box(std::uint32_t node) const noexcept {
-  return detail::moved(detail::node_box_at(second_.tree, node), placement_);
+  return detail::moved(detail::node_box_at(second_->tree, node), placement_);
 }
 
 // The larger node's children against the other node, in the children's frame. True if they are the second tree's.
 inline bool NarrowPhase::find_children(const NodePair& pair, std::uint32_t a, std::uint32_t b, BoxGaps& gaps) noexcept {
-  const BallSlabBlock &of_a = block_of(first_.tree, pair.a), &of_b = block_of(second_.tree, pair.b);
+  const BallSlabBlock &of_a = block_of(first_->tree, pair.a), &of_b = block_of(second_->tree, pair.b);
   const std::uint32_t lane_a = pair.a % kBlockWidth, lane_b = pair.b % kBlockWidth;
   const bool second =
       (a & kLeafBit) != 0 || ((b & kLeafBit) == 0 && of_a.radius[lane_a] < of_b.radius[lane_b] * placement_.scale);
   if (second) {
-    detail::meeting_boxes(detail::moved_back(detail::node_box_at(of_a, lane_a), placement_), second_.tree.ball_slabs[b],
-                          placement_.scale, placement_.box_margin, gaps);
+    detail::meeting_boxes(detail::moved_back(detail::node_box_at(of_a, lane_a), placement_),
+                          second_->tree.ball_slabs[b], placement_.scale, placement_.box_margin, gaps);
   } else {
-    detail::meeting_boxes(moved_box(pair.b), first_.tree.ball_slabs[a], 1, placement_.box_margin, gaps);
+    detail::meeting_boxes(moved_box(pair.b), first_->tree.ball_slabs[a], 1, placement_.box_margin, gaps);
   }
   return second;
 }
@@ -77,7 +77,7 @@ bool NarrowPhase::refine_ball_slabs(BudgetTracker& tracker) noexcept {
   while (stack_size_ > 0) {
     if (tracker.exhausted()) return false;
     const NodePair pair = stack_[--stack_size_];
-    const std::uint32_t a = child_of(first_.tree, pair.a), b = child_of(second_.tree, pair.b);
+    const std::uint32_t a = child_of(first_->tree, pair.a), b = child_of(second_->tree, pair.b);
     if (a & b & kLeafBit) {
       const std::uint64_t before = triangle_tests_;
       const bool meet = test_triangles(pair);
@@ -85,14 +85,14 @@ bool NarrowPhase::refine_ball_slabs(BudgetTracker& tracker) noexcept {
       if (meet) return true;
       continue;
     }
-    const bool two = stack_size_ > 0 && (child_of(first_.tree, stack_[stack_size_ - 1].a) &
-                                         child_of(second_.tree, stack_[stack_size_ - 1].b) & kLeafBit) == 0;
+    const bool two = stack_size_ > 0 && (child_of(first_->tree, stack_[stack_size_ - 1].a) &
+                                         child_of(second_->tree, stack_[stack_size_ - 1].b) & kLeafBit) == 0;
     const std::uint64_t before = pair_tests_;
     BoxGaps gaps[2];
     const bool second = find_children(pair, a, b, gaps[0]);
     if (two) {
       const NodePair other = stack_[--stack_size_];
-      const std::uint32_t oa = child_of(first_.tree, other.a), ob = child_of(second_.tree, other.b);
+      const std::uint32_t oa = child_of(first_->tree, other.a), ob = child_of(second_->tree, other.b);
       const bool other_second = find_children(other, oa, ob, gaps[1]);
       push_children(other, other_second, other_second ? ob : oa, gaps[1]);
     }
@@ -107,13 +107,13 @@ void NarrowPhase::start_near(const NodePair& leaves) noexcept {
   constexpr std::uint32_t most = kBlockWidth;
   const std::uint32_t block_a = leaves.a / kBlockWidth, block_b = leaves.b / kBlockWidth;
   BoxGaps firsts, seconds;
-  detail::meeting_boxes(moved_box(leaves.b), first_.tree.ball_slabs[block_a], 1, placement_.box_margin, firsts);
+  detail::meeting_boxes(moved_box(leaves.b), first_->tree.ball_slabs[block_a], 1, placement_.box_margin, firsts);
   std::array<float, most> gaps;
   stack_size_ = 0;
   for (std::uint32_t left = firsts.meeting; left != 0; left &= left - 1) {
     const std::uint32_t a = block_a * kBlockWidth + static_cast<std::uint32_t>(std::countr_zero(left));
-    detail::meeting_boxes(detail::moved_back(detail::node_box_at(first_.tree, a), placement_),
-                          second_.tree.ball_slabs[block_b], placement_.scale, placement_.box_margin, seconds);
+    detail::meeting_boxes(detail::moved_back(detail::node_box_at(first_->tree, a), placement_),
+                          second_->tree.ball_slabs[block_b], placement_.scale, placement_.box_margin, seconds);
     pair_tests_ += static_cast<std::uint64_t>(std::bit_width(seconds.used));
     for (std::uint32_t lanes = seconds.meeting; lanes != 0; lanes &= lanes - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
@@ -147,15 +147,15 @@ bool NarrowPhase::refine_near(std::uint32_t a, std::uint32_t b, const Budget& bu
 }
 
 bool NarrowPhase::test_triangles(const NodePair& pair) noexcept {
-  const TriangleBlock& lanes = first_.tree.triangle_blocks[child_of(first_.tree, pair.a) & ~kLeafBit];
-  const TriangleBlock& rows = second_.tree.triangle_blocks[child_of(second_.tree, pair.b) & ~kLeafBit];
+  const TriangleBlock& lanes = first_->tree.triangle_blocks[child_of(first_->tree, pair.a) & ~kLeafBit];
+  const TriangleBlock& rows = second_->tree.triangle_blocks[child_of(second_->tree, pair.b) & ~kLeafBit];
   const auto used = [](const TriangleBlock& block) {
     std::uint64_t count = 0;
     for (const std::uint32_t t : block.triangle) count += t != kNoTriangle;
     return count;
   };
   triangle_tests_ += used(lanes) * used(rows);
-  const detail::NodeBox lane_box = detail::node_box_at(first_.tree, pair.a);
+  const detail::NodeBox lane_box = detail::node_box_at(first_->tree, pair.a);
   const detail::NodeBox row_box = moved_box(pair.b);
   struct Leaves {
     NarrowPhase& self;
@@ -173,8 +173,8 @@ bool NarrowPhase::test_triangles(const NodePair& pair) noexcept {
 
 // Of the leaves in these ball slabs, these triangles.
 bool NarrowPhase::test_two(std::uint32_t a, std::uint32_t lane, std::uint32_t b, std::uint32_t row) noexcept {
-  const TriangleBlock& lanes = first_.tree.triangle_blocks[child_of(first_.tree, a) & ~kLeafBit];
-  const TriangleBlock& rows = second_.tree.triangle_blocks[child_of(second_.tree, b) & ~kLeafBit];
+  const TriangleBlock& lanes = first_->tree.triangle_blocks[child_of(first_->tree, a) & ~kLeafBit];
+  const TriangleBlock& rows = second_->tree.triangle_blocks[child_of(second_->tree, b) & ~kLeafBit];
   if (!detail::triangles_intersect(detail::points_of(lanes, lane), detail::moved_points_of(rows, row, relative_),
                                    &witness_)) {
     return false;

@@ -57,7 +57,7 @@ Answer NarrowPhase::refine_level(const Budget& budget) noexcept {
     place();
     roots_pending_ = false;
     if (!inner_.room_for(1) || !leaves_.room_for(1)) return give_up_spheres(), answer_;
-    (is_leaf(first_.tree, 0) && is_leaf(second_.tree, 0) ? leaves_ : inner_).push({0, 0});
+    (is_leaf(first_->tree, 0) && is_leaf(second_->tree, 0) ? leaves_ : inner_).push({0, 0});
     start_level();
     settled_leaves_ = leaves_.size();
   }
@@ -89,8 +89,8 @@ bool NarrowPhase::refine_spheres(BudgetTracker& tracker) noexcept {
   for (; cursor_.pair < inner_.size(); ++cursor_.pair, cursor_.outer = 0) {
     const auto [a, b] = inner_[cursor_.pair];
     // The lanes are the children of b, the rows those of a, or a itself; if b is a leaf, a's children are the lanes.
-    const bool lanes_are_second = !is_leaf(second_.tree, b);
-    const Side &row_side = lanes_are_second ? first_ : second_, &lane_side = lanes_are_second ? second_ : first_;
+    const bool lanes_are_second = !is_leaf(second_->tree, b);
+    const Side &row_side = lanes_are_second ? *first_ : *second_, &lane_side = lanes_are_second ? *second_ : *first_;
     const Group rows = group_of(row_side.tree, row_side.bits, lanes_are_second ? a : b);
     const Group lanes = group_of(lane_side.tree, lane_side.bits, lanes_are_second ? b : a);
     for (; cursor_.outer < lanes.count; cursor_.outer += kBlockWidth, cursor_.inner = 0) {
@@ -132,7 +132,7 @@ void NarrowPhase::collect(std::uint32_t row, std::uint32_t lane, const BlockHits
 }
 
 void NarrowPhase::improve(NodePair pair, double square, bool leaves) noexcept {
-  const SiblingBlock &p = block_of(first_.tree, pair.a), &q = block_of(second_.tree, pair.b);
+  const SiblingBlock &p = block_of(first_->tree, pair.a), &q = block_of(second_->tree, pair.b);
   const std::uint32_t i = pair.a % kBlockWidth, j = pair.b % kBlockWidth;
   const double slack = placement_.slack;
   const double scale = relative_.scale;
@@ -186,7 +186,7 @@ Answer NarrowPhase::probe(std::uint32_t level) noexcept {
   place();
   Probe probe{};
   probe.seen.min_excess.fill(kNoExcess);
-  const bool leaves = is_leaf(first_.tree, 0) && is_leaf(second_.tree, 0);
+  const bool leaves = is_leaf(first_->tree, 0) && is_leaf(second_->tree, 0);
   if (leaves || level == 0) return answer_;
   level_best_ = {};
   if (probe_below({0, 0}, std::min(level, kMaxProbedLevels), probe)) {
@@ -202,8 +202,8 @@ Answer NarrowPhase::probe(std::uint32_t level) noexcept {
 
 // The pair's children, the deepest overlap first. True once two nodes meet that are that many levels down, or leaves.
 bool NarrowPhase::probe_below(NodePair pair, std::uint32_t levels, Probe& probe) noexcept {
-  const bool lanes_are_second = !is_leaf(second_.tree, pair.b);
-  const Side &row_side = lanes_are_second ? first_ : second_, &lane_side = lanes_are_second ? second_ : first_;
+  const bool lanes_are_second = !is_leaf(second_->tree, pair.b);
+  const Side &row_side = lanes_are_second ? *first_ : *second_, &lane_side = lanes_are_second ? *second_ : *first_;
   const Group rows = group_of(row_side.tree, row_side.bits, lanes_are_second ? pair.a : pair.b);
   const Group lanes = group_of(lane_side.tree, lane_side.bits, lanes_are_second ? pair.b : pair.a);
   BlockHits hits;

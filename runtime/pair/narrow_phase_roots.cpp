@@ -47,10 +47,11 @@ void NarrowPhase::reset_counts() noexcept {
   triangle_tests_ = work_ = 0;
   lower_bound_ = 0;
   out_of_room_ = exact_started_ = refused_ = false;
+  apart_along_ = {};
 }
 
 void NarrowPhase::find_exact_error(const Pose& first, const Pose& second) noexcept {
-  exact_error_ = (first.scale * first_.error + second.scale * second_.error) +
+  exact_error_ = (first.scale * first_->error + second.scale * second_->error) +
                  1e-14 * (sum_of_sizes(first.translation) + sum_of_sizes(second.translation)) + kMinError;
 }
 
@@ -72,19 +73,20 @@ Answer NarrowPhase::start(const Pose& a, const Pose& b) noexcept {
     return first.scale * of_first + second.scale * of_second;
   };
   find_exact_error(first, second);
-  const double radii = sum(first_.radius, second_.radius);
-  separation_bound_ = detail::pair_bound(distance + exact_error_, radii, sum(first_.reach, second_.reach),
-                                         sum(first_.depth, second_.depth));
+  const double radii = sum(first_->radius, second_->radius);
+  separation_bound_ = detail::pair_bound(distance + exact_error_, radii, sum(first_->reach, second_->reach),
+                                         sum(first_->depth, second_->depth));
   const double ball_gap = distance - radii - exact_error_;
   double gap = ball_gap;
+  Vec3 along = way;
   if (gap <= 0 && square > 0 && has_triangles()) {
     // How far the bodies' convex hulls are apart, at least: along the line through the roots' centres first.
     const auto reach = [](const Side& side, const Pose& pose, const Vec3& u) {
       const Vec3 direction = turned_back(pose, u);
       return pose.scale * (detail::reach_along(side.tree.supports, direction) - dot(direction, side.middle));
     };
-    gap = square - (reach(first_, first, way) + reach(second_, second, opposite(way)));
-    if (!(gap > 0)) gap = hulls_gap(first, second, way);
+    gap = square - (reach(*first_, first, way) + reach(*second_, second, opposite(way)));
+    if (!(gap > 0)) gap = hulls_gap(first, second, way, along);
     gap = gap / distance * (1 - detail::kStretch) - detail::kStretch * distance - exact_error_;
   }
   if (gap > 0 && std::isfinite(gap)) {
@@ -92,13 +94,14 @@ Answer NarrowPhase::start(const Pose& a, const Pose& b) noexcept {
     finished_ = true;
     roots_pending_ = false;
     lower_bound_ = gap * (1 - detail::kStretch);
+    for (std::size_t i = 0; i < 3; ++i) apart_along_[i] = along[i] / distance;
     return answer_;
   }
   keep(a, b);
   if (!std::isfinite(ball_gap) || !in_range()) return refuse(a, b);
   answer_ = Answer::maybe;
   roots_pending_ = true;
-  finished_ = detail::is_leaf(first_.tree, 0) && detail::is_leaf(second_.tree, 0) && !has_last_level();
+  finished_ = detail::is_leaf(first_->tree, 0) && detail::is_leaf(second_->tree, 0) && !has_last_level();
   return answer_;
 }
 
@@ -134,24 +137,25 @@ void NarrowPhase::order_copies(const Pose& a, const Pose& b) noexcept {
   if (before(b, a) == arguments_exchanged_) return;
   arguments_exchanged_ = !arguments_exchanged_;
   std::swap(first_, second_);
+  std::swap(prints_[0], prints_[1]);
   for (auto& pair : roots_) std::swap(pair[0], pair[1]);
 }
 
 // Along directions that what is in the way suggests (Chung and Wang 1996), as long as these get better. Times the
-// distance of the roots' centres: reaches are proportional to the direction's length, and reflecting keeps it.
-double NarrowPhase::hulls_gap(const Pose& first, const Pose& second, const Vec3& way) const noexcept {
-  const auto support_of = [](const Side& side, const Pose& pose, const Vec3& u) {
-    const Vec3 direction = turned_back(pose, u);
+// distance of the roots' centres: reaches are proportional to the direction's length, and reflecting keeps it. `u`: the
+// way at first, and the direction of a gap at last.
+double NarrowPhase::hulls_gap(const Pose& first, const Pose& second, const Vec3& way, Vec3& u) const noexcept {
+  const auto support_of = [](const Side& side, const Pose& pose, const Vec3& v) {
+    const Vec3 direction = turned_back(pose, v);
     detail::Support support = detail::support_along(side.tree.supports, direction);
     support.most = pose.scale * (support.most - dot(direction, side.middle));
     support.point = rotate(pose, minus(support.point, side.middle));
     for (double& component : support.point) component *= pose.scale;
     return support;  // from the root's centre, in the world
   };
-  Vec3 u = way;
   double best = -std::numeric_limits<double>::infinity();
   for (int turn = 0; turn < kRootDirections; ++turn) {
-    const detail::Support p = support_of(first_, first, u), q = support_of(second_, second, opposite(u));
+    const detail::Support p = support_of(*first_, first, u), q = support_of(*second_, second, opposite(u));
     const double gap = dot(u, way) - (p.most + q.most);
     if (gap > 0) return gap;
     if (gap <= best) break;

@@ -13,6 +13,11 @@ struct PairAccess {
   using BudgetTracker = NarrowPhase::BudgetTracker;
   using NodePair = NarrowPhase::NodePair;
 
+  // NarrowPhase::bind() where the prepared trees outlive what is asked until the next one: nothing is copied.
+  static bool bind(NarrowPhase& pair, const PreparedTree& a, const PreparedTree& b) noexcept {
+    return pair.bind_where(a, b);
+  }
+
   // Prepares for queries in the first tree's frame, whatever the roots say. False where nothing can be said.
   static bool place(NarrowPhase& pair, const Pose& a, const Pose& b) noexcept {
     pair.start(a, b);
@@ -38,8 +43,8 @@ struct PairAccess {
   // After that, or after start() that has left the bodies to deeper levels.
   static void place_now(NarrowPhase& pair) noexcept { pair.place(); }
   // Precondition of what follows: place() gave true.
-  static const PreparedTree& first(const NarrowPhase& pair) noexcept { return pair.first_; }
-  static const PreparedTree& second(const NarrowPhase& pair) noexcept { return pair.second_; }
+  static const PreparedTree& first(const NarrowPhase& pair) noexcept { return *pair.first_; }
+  static const PreparedTree& second(const NarrowPhase& pair) noexcept { return *pair.second_; }
   static const Pose& first_pose(const NarrowPhase& pair) noexcept { return pair.first_pose_; }
   static const Pose& second_pose(const NarrowPhase& pair) noexcept { return pair.second_pose_; }
   static const Pose& relative(const NarrowPhase& pair) noexcept { return pair.relative_; }
@@ -68,6 +73,12 @@ struct PairAccess {
     pair.exact_started_ = true;
     pair.finish(Answer::no);
     pair.lower_bound_ = lower;
+  }
+  // After a "no" of the roots: the direction from a to b along which the bodies are lower_bound() apart, of length 1
+  // but for rounding. Else 0.
+  static std::array<double, 3> apart_along(const NarrowPhase& pair) noexcept {
+    const auto& u = pair.apart_along_;
+    return pair.arguments_exchanged_ ? std::array<double, 3>{-u[0], -u[1], -u[2]} : u;
   }
   static void add_work(NarrowPhase& pair, std::uint64_t work) noexcept { pair.work_ += work; }
   static bool has_last_level(const NarrowPhase& pair) noexcept { return pair.has_last_level(); }

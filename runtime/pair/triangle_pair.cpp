@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
 #include "vector_functions.h"
 
@@ -100,9 +99,10 @@ bool coplanar_meet(const Vec3& p, const Vec3& q, const TrianglePoints& t, Vec3* 
 bool edge_meets(const Vec3& p, const Vec3& q, int side_p, int side_q, const TrianglePoints& t, Vec3* witness) noexcept {
   if (side_p * side_q > 0) return false;
   if (side_p == 0 && side_q == 0) return coplanar_meet(p, q, t, witness);
-  const int first = orientation(p, q, t[0], t[1]), second = orientation(p, q, t[1], t[2]);
+  const SegmentOrientation around(p, q, t);
+  const int first = around(0, 1), second = around(1, 2);
   if (first * second < 0) return false;
-  const int third = orientation(p, q, t[2], t[0]);
+  const int third = around(2, 0);
   if (first * third < 0 || second * third < 0) return false;
   if (witness) *witness = crossing_point(p, q, t);
   return true;
@@ -111,9 +111,8 @@ bool edge_meets(const Vec3& p, const Vec3& q, int side_p, int side_q, const Tria
 using Sides = std::array<int, 3>;
 
 Sides sides(const TrianglePoints& plane, const TrianglePoints& of) noexcept {
-  Sides result{};
-  for (std::size_t i = 0; i < 3; ++i) result[i] = orientation(plane[0], plane[1], plane[2], of[i]);
-  return result;
+  const PlaneOrientation side(plane);
+  return {side(of[0]), side(of[1]), side(of[2])};
 }
 
 bool on_one_side(const Sides& s) noexcept { return s[0] * s[1] > 0 && s[0] * s[2] > 0; }

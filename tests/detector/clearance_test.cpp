@@ -149,6 +149,33 @@ TEST(Clearances, HideNoContactAndInventNone) {
   EXPECT_LT(static_cast<double>(work), 0.8 * static_cast<double>(without));
 }
 
+// Rings above each other, flat and nearer than their motion of a few steps, slide by: along the direction in which they
+// are apart nothing moves.
+TEST(Clearances, LastWhileBodiesSlideAlongEachOther) {
+  const PackedSphereTree ring = test::build_tree(test::torus(12, 6, 0.75, 0.25));
+  std::vector<BodyState> states(2);
+  Detector detector(states_of(states), {.time_step = kStep});
+  const ShapeId shape = detector.add_shape(ring);
+  for (BodyState& state : states) state.expiry = 0;
+  const BodyId lower = detector.add_body({{shape, {}}}), upper = detector.add_body({{shape, {}}});
+  constexpr int kSteps = 30;
+  int searched = 0;
+  for (int step = 0; step < kSteps; ++step) {
+    states[upper.index].pose.translation = {0.03 * step, 0.01 * step, 0.6};
+    const Frame frame = detector.step(step * kStep);
+    ASSERT_EQ(frame.pairs, 1u) << step;
+    ASSERT_EQ(frame.certain, 1u) << step;
+    ASSERT_TRUE(frame.events.empty()) << step;
+    searched += frame.work > frame.motions_asked * kMotionWork;
+  }
+  EXPECT_EQ(searched, 1);
+  states[upper.index].pose.translation[2] = 0.3;
+  const Frame frame = detector.step(kSteps * kStep);
+  ASSERT_EQ(frame.events.size(), 1u);
+  EXPECT_EQ(frame.events[0].change, PairChange::begin);
+  EXPECT_EQ(frame.events[0].a, lower);
+}
+
 // A front changes what a search costs, not what it finds.
 TEST(Fronts, OfTheDetectorsPoolChangeNoEvent) {
   const test::Scene scene = test::chain(60, 60, 7 + orchard::test::first_seed());

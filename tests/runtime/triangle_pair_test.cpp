@@ -161,6 +161,35 @@ TEST(ExactSign, SeesTheLastBitOfCoordinatesOfAnySize) {
   }
 }
 
+// In a plane, next to it, and anywhere.
+TEST(ExactSign, IsTheSameForManyPointsAtOnce) {
+  std::size_t ties = 0, others = 0;
+  for (std::uint64_t seed = 0; seed < 20000; ++seed) {
+    Draw draw(seed);
+    const std::size_t x = draw.bits() % 3, y = (x + 1 + draw.bits() % 2) % 3, z = 3 - x - y;
+    std::array<Vec3, 5> p{};
+    for (Vec3& v : p) v[x] = short_number(draw), v[y] = 3 * v[x], v[z] = short_number(draw);
+    Vec3& moved = p[draw.bits() % 5];
+    if (seed % 3 == 1) moved[y] = std::nextafter(moved[y], draw.bits() % 2 == 0 ? 1e30 : -1e30);
+    if (seed % 3 == 2) moved[y] = short_number(draw);
+    const std::array<Vec3, 3> points = {p[0], p[1], p[2]};
+    const PlaneOrientation side(points);
+    const SegmentOrientation around(p[3], p[4], points);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t j = (i + 1) % 3;
+      ASSERT_EQ(around(i, j), orientation(p[3], p[4], points[i], points[j])) << seed;
+      ASSERT_EQ(around(j, i), orientation(p[3], p[4], points[j], points[i])) << seed;
+    }
+    for (const std::size_t i : {3u, 4u}) {
+      const int expected = orientation(p[0], p[1], p[2], p[i]);
+      ASSERT_EQ(side(p[i]), expected) << seed;
+      (expected == 0 ? ties : others) += 1;
+    }
+  }
+  EXPECT_GT(ties, 10000u);
+  EXPECT_GT(others, 10000u);
+}
+
 TEST(ExactSign, DecidesTurnsInEveryProjection) {
   for (std::uint64_t seed = 0; seed < 20000; ++seed) {
     Draw draw(seed);

@@ -66,7 +66,7 @@ class TreePair {
 static_assert(sizeof(TreePair) <= 256);
 
 // What queries work with: belongs to one thread at a time. After collide() its `narrow` is the query that was answered
-// or interrupted, to be looked at or refined further, until the next call.
+// or interrupted, to be looked at or refined further, until the next call: as long as the pair's prepared trees exist.
 class Workspace {
  public:
   // `room`: meeting pairs of spheres per level, 24 bytes each, for queries that go level by level; see NarrowPhase.

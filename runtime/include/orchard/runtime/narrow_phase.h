@@ -162,6 +162,27 @@ class NarrowPhase {
   friend class DistanceQuery;
   friend struct PairAccess;  // the other queries of runtime/pair
   using Side = PreparedTree;
+  class BoundSide {  // in the caller's place, or a copy
+   public:
+    BoundSide() noexcept = default;
+    BoundSide(const BoundSide& other) noexcept : own_(other.own_), at_(other.owns() ? &own_ : other.at_) {}
+    BoundSide& operator=(const BoundSide& other) noexcept {
+      if (this == &other) return *this;
+      own_ = other.own_;
+      at_ = other.owns() ? &own_ : other.at_;
+      return *this;
+    }
+    void copy(const Side& side) noexcept { own_ = side, at_ = &own_; }
+    void refer_to(const Side& side) noexcept { at_ = &side; }
+    bool owns() const noexcept { return at_ == &own_; }
+    bool refers_to(const Side& side) const noexcept { return at_ == &side; }
+    const Side& operator*() const noexcept { return *at_; }
+    const Side* operator->() const noexcept { return at_; }
+
+   private:
+    Side own_;
+    const Side* at_ = &own_;
+  };
   struct NodePair {  // of the two trees of spheres, or of triangles
     std::uint32_t a, b;
   };
@@ -189,6 +210,11 @@ class NarrowPhase {
   class BudgetTracker;
 
   bool bound_to(const PreparedTree& a, const PreparedTree& b) const noexcept;
+  bool bound_where(const PreparedTree& a, const PreparedTree& b) const noexcept;
+  // As bind(), without copies: the prepared trees outlive what is asked until the next bind.
+  bool bind_where(const PreparedTree& a, const PreparedTree& b) noexcept;
+  void order(const PreparedTree& a, const PreparedTree& b) noexcept;
+  bool begin_anew() noexcept;
   void reset_counts() noexcept;
   void find_exact_error(const Pose& first, const Pose& second) noexcept;
   void keep(const Pose& a, const Pose& b) noexcept;
@@ -196,10 +222,11 @@ class NarrowPhase {
   Answer refuse(const Pose& a, const Pose& b) noexcept;
   struct Probe;
   bool probe_below(NodePair pair, std::uint32_t levels, Probe& probe) noexcept;
-  double hulls_gap(const Pose& first, const Pose& second, const std::array<double, 3>& way) const noexcept;
+  double hulls_gap(const Pose& first, const Pose& second, const std::array<double, 3>& way,
+                   std::array<double, 3>& u) const noexcept;
   Pose relative_pose() const noexcept;
   void place() noexcept;
-  bool has_triangles() const noexcept { return !first_.tree.ball_slabs.empty() && !second_.tree.ball_slabs.empty(); }
+  bool has_triangles() const noexcept { return !first_->tree.ball_slabs.empty() && !second_->tree.ball_slabs.empty(); }
   bool has_last_level() const noexcept { return has_triangles() && stack_; }  // memory for its stack, too
   bool in_range() const noexcept;
   void finish(Answer answer) noexcept;
@@ -229,7 +256,8 @@ class NarrowPhase {
   void finish_sphere_level() noexcept;
 
   // The pair in a fixed order that does not depend on the order of the arguments: exchanged_ tells.
-  Side first_, second_;
+  BoundSide first_, second_;
+  std::array<std::uint64_t, 2> prints_{};         // their fingerprints, when they were bound where they are
   std::array<std::array<double, 2>, 3> roots_{};  // of both, coordinate by coordinate
   bool ordered_by_pose_ = false;                  // equal trees
   bool one_tree_ = false;                         // in the same place, too
@@ -269,6 +297,7 @@ class NarrowPhase {
   double separation_bound_ = std::numeric_limits<double>::infinity();
   double lower_bound_ = 0;
   double pruned_gap_ = std::numeric_limits<double>::infinity();
+  std::array<double, 3> apart_along_{};  // from the first one to the second one, where the roots decided; in the world
 };
 
 }  // namespace orchard::runtime
