@@ -79,7 +79,8 @@ void Rounds::begin_one(Task& task, Record& record, QueryPool::Scratch& scratch) 
   }
   task.work = kPairWork;
   const bool remembers = task.slow && CoherentPair::remembers(record.trees);
-  if (!remembers && record.roots_wait > 0) {
+  // Of bodies of several parts, whose tasks may run at once, all have their roots asked.
+  if (record.coherent && !remembers && record.roots_wait > 0) {
     --record.roots_wait;
     return;
   }
@@ -93,7 +94,7 @@ void Rounds::begin_one(Task& task, Record& record, QueryPool::Scratch& scratch) 
     narrow.start(pair.a.pose(), pair.b.pose());
     task.verdict = verdict_of(narrow, pair);
     task.done = narrow.finished();
-    record.roots_wait = task.done ? 0 : kSearchesBeforeRoots;
+    if (record.coherent) record.roots_wait = task.done ? 0 : kSearchesBeforeRoots;
   }
   task.verdict.separation_bound = std::min(task.verdict.separation_bound, bound);
   task.verdict.work = task.work;

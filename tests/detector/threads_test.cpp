@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "orchard/runtime/batch.h"
@@ -30,6 +31,23 @@ TEST(Threads, GiveTheSameFramesWhateverTheirNumber) {
             << scene.name << " with " << threads << " threads";
       }
     }
+  }
+}
+
+// The parts of one pair are tasks that run at once: what one of them finds is nothing that another may go by.
+TEST(Threads, GiveTheSameFramesOfArticulatedBodiesWithinABudget) {
+  const test::Scene scene = test::robot_arm(60, 200, 1'000'000'007 + orchard::test::first_seed());
+  std::vector<double> serial;
+  for (const std::size_t threads : {0u, 2u, 2u, 3u}) {
+    test::ThreadPool pool(std::max<std::size_t>(threads, 1));
+    DetectorOptions options;
+    if (threads > 0) options.executor = pool.executor();
+    test::SceneRun run(scene, options);
+    std::vector<double> all;
+    for (int step = 0; step < scene.steps; ++step) test::append(all, run.step(step, {.work = 5000}));
+    if (threads == 0) serial = all;
+    ASSERT_EQ(all.size(), serial.size());
+    ASSERT_EQ(std::memcmp(all.data(), serial.data(), all.size() * sizeof(double)), 0) << threads << " threads";
   }
 }
 
