@@ -16,6 +16,7 @@
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/tolerance.h"
 #include "parallel_insertion.h"
+#include "patch.h"
 
 namespace orchard::detail {
 namespace {
@@ -197,7 +198,8 @@ Outcome insert_all(Workspace& workspace, Search search, std::string_view stage, 
       return Outcome::failed;
     }
   }
-  if (!inserter.insert_deferred()) return Outcome::failed;
+  Patch patch(workspace);
+  if (!inserter.insert_deferred(workspace.exact() ? nullptr : &patch)) return Outcome::failed;
   counts = inserter.counts();
   return Outcome::done;
 }

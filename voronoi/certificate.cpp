@@ -56,6 +56,9 @@ constexpr std::size_t kCached = 1u << 13;
 // Of mending and looking at what is new.
 constexpr int kRounds = 24;
 
+// Times that the hull as a whole is looked at, each after what was wrong there has been made anew.
+constexpr int kHullRounds = 4;
+
 // How many doubts are still local ones, those of all rounds together: more are made anew sooner than mended.
 constexpr std::size_t kMaxDoubts = 16, kMaxDoubtsOneIn = 64;
 
@@ -153,13 +156,21 @@ class Certifier {
   Certificate run(std::size_t points) {
     points_ = points;
     if (!look_at_all()) return {};
-    if (found_.intrusion > max_sum_ && (!look_closer() || found_.intrusion > max_sum_)) return {};
-    if (mended_ && !is_tetrahedron(found_.fattest)) find_fattest();
-    if (found_.fattest == kNone ? !found_.hull.empty()
-                                : !covers_once(workspace_, hull_vertices(), found_.fattest, box_))
-      return {};
-    if (!are_suspects_innocent()) return {};
-    return {true, 2 * (found_.intrusion + found_.given) / diameter_};
+    for (int round = 0; round < kHullRounds; ++round) {
+      if (found_.intrusion > max_sum_ && (!look_closer() || found_.intrusion > max_sum_)) return {};
+      if (mended_ && !is_tetrahedron(found_.fattest)) find_fattest();
+      std::vector<Index> wrong;
+      if (found_.fattest == kNone ? !found_.hull.empty()
+                                  : !covers_once(workspace_, hull_vertices(), found_.fattest, box_)) {
+        if (found_.fattest != kNone) wrong = facets_above(workspace_, hull_vertices(), found_.fattest);
+        if (wrong.empty()) return {};
+      } else {
+        wrong = guilty_suspects();
+        if (wrong.empty()) return {true, 2 * (found_.intrusion + found_.given) / diameter_};
+      }
+      if (!patch(wrong)) return {};
+    }
+    return {};
   }
 
  private:
@@ -180,22 +191,34 @@ class Certifier {
     found_.hull.clear();
     if (!look_at_each_oriented() || forming_.count() != points_ || !look_at_each_facet() || !look_at_edges(found_.hull))
       return false;
+    return mend_doubts();
+  }
+  bool mend_doubts() {
     std::stable_sort(found_.doubts.begin(), found_.doubts.end(),
                      [](const Doubt& a, const Doubt& b) { return a.vertex < b.vertex; });
     for (int round = 0; !found_.doubts.empty(); ++round) {
       doubtful_ += found_.doubts.size();
       if (round == kRounds || doubtful_ > kMaxDoubts + workspace_.vertices.size() / kMaxDoubtsOneIn) return false;
-      mended_ = true;
-      looks_at_changed_ = true;
       const std::vector<Doubt> doubts = std::exchange(found_.doubts, {});
-      const std::vector<Index> changed = mender_->mend(doubts, round);
-      changed_.insert(changed_.end(), changed.begin(), changed.end());
-      if (!look_at_changed(changed) || mender_->work() > kMending + kMendingForEach * workspace_.points.size())
+      if (!look_at_mended(mender_->mend(doubts, round)) ||
+          mender_->work() > kMending + kMendingForEach * workspace_.points.size())
         return false;
-      looks_at_changed_ = false;
-      if (found_.doubts.empty() && !look_at_hull()) return false;
     }
     return true;
+  }
+  bool look_at_mended(const std::vector<Index>& changed) {
+    mended_ = true;
+    changed_.insert(changed_.end(), changed.begin(), changed.end());
+    looks_at_changed_ = true;
+    if (!look_at_changed(changed)) return false;
+    looks_at_changed_ = false;
+    return !found_.doubts.empty() || look_at_hull();
+  }
+  // What the hull as a whole shows to be wrong, and what is in doubt around it then.
+  bool patch(const std::vector<Index>& wrong) {
+    if (mender_ == nullptr) return false;
+    const std::vector<Index> changed = mender_->patch(wrong);
+    return !changed.empty() && look_at_mended(changed) && mend_doubts();
   }
   bool look_at_each_oriented() {
     const auto count = static_cast<Index>(workspace_.vertices.size());
@@ -779,19 +802,35 @@ class Certifier {
 
   // All points, against the planes and the spheres at edges of the hull so short or facets so thin that bounds from
   // next to them, carried across the whole set, say nothing.
-  bool are_suspects_innocent() {
-    if (found_.suspects.empty()) return true;
+  // Those that are not innocent, with a vertex of the point that shows it for each.
+  std::vector<Index> guilty_suspects() {
+    if (found_.suspects.empty()) return {};
     note_hull_points();
-    sort_unique(found_.suspects);
-    std::vector<double> intrusions(found_.suspects.size());
-    tbb::parallel_for(std::size_t{0}, intrusions.size(), [&](std::size_t s) {
-      const Index v = found_.suspects[s];
-      intrusions[s] = workspace_.at_infinity(v) ? farthest_beyond(workspace_, v, hull_points_, diameter_)
-                                                : deepest_within(workspace_, v, forming_, diameter_);
+    std::vector<Index> suspects = found_.suspects;
+    sort_unique(suspects);
+    std::vector<Intruder> intruders(suspects.size());
+    tbb::parallel_for(std::size_t{0}, intruders.size(), [&](std::size_t s) {
+      const Index v = suspects[s];
+      intruders[s] = workspace_.at_infinity(v) ? farthest_beyond(workspace_, v, hull_points_, diameter_)
+                                               : deepest_within(workspace_, v, forming_, diameter_);
     });
-    return std::all_of(intrusions.begin(), intrusions.end(), [this](double intrusion) { return add(intrusion); });
+    std::vector<Index> guilty, points;
+    for (std::size_t s = 0; s < suspects.size(); ++s) {
+      if (add(intruders[s].depth)) continue;
+      guilty.push_back(suspects[s]);
+      if (intruders[s].point != kNone) points.push_back(intruders[s].point);
+    }
+    add_vertex_of_each(points, guilty);
+    return guilty;
+  }
+  void add_vertex_of_each(std::vector<Index>& points, std::vector<Index>& vertices) const {
+    sort_unique(points);
+    for (Index v = 0; v < workspace_.vertices.size() && !points.empty(); ++v)
+      for (const Index point : workspace_.vertices[v].forming_points)
+        if (std::erase(points, point) > 0) vertices.push_back(v);
   }
   void note_hull_points() {
+    hull_points_.clear();
     for (const Index v : hull_vertices()) {
       const auto& corner = workspace_.vertices[v].forming_points;
       hull_points_.insert(hull_points_.end(), corner.begin(), corner.begin() + 3);

@@ -19,6 +19,12 @@ std::array<Point, 3> facet_of(const Workspace& workspace, Index v) {
   return {workspace.points[corner[0]], workspace.points[corner[1]], workspace.points[corner[2]]};
 }
 
+std::array<Point, 4> corners_of(const Workspace& workspace, Index v) {
+  const auto& corner = workspace.vertices[v].forming_points;
+  return {workspace.points[corner[0]], workspace.points[corner[1]], workspace.points[corner[2]],
+          workspace.points[corner[3]]};
+}
+
 // is_below(a, b, c) tells on which side of a triangle a point at or next to `about` is. The rays go along an axis,
 // nearly, so that most facets are missed by their boxes, and to points with random digits, so that no edge is met.
 template <class IsBelow>
@@ -50,9 +56,7 @@ bool is_encircled_once(const Workspace& workspace, std::span<const Index> hull, 
 }  // namespace
 
 bool covers_once(const Workspace& workspace, std::span<const Index> hull, Index tetrahedron, const Box& box) {
-  const auto& corner = workspace.vertices[tetrahedron].forming_points;
-  const std::array<Point, 4> inner{workspace.points[corner[0]], workspace.points[corner[1]],
-                                   workspace.points[corner[2]], workspace.points[corner[3]]};
+  const std::array<Point, 4> inner = corners_of(workspace, tetrahedron);
   const Point rounded = (inner[0] + inner[1] + inner[2] + inner[3]) / 4;
   const auto is_below = [&](const Point& a, const Point& b, const Point& c) {
     return volume_sign(rounded, a, b, c) == Sign::positive;
@@ -63,6 +67,16 @@ bool covers_once(const Workspace& workspace, std::span<const Index> hull, Index 
   };
   return is_encircled_once(workspace, hull, rounded, box, is_below) ||
          is_encircled_once(workspace, hull, rounded, box, is_middle_below);
+}
+
+std::vector<Index> facets_above(const Workspace& workspace, std::span<const Index> hull, Index tetrahedron) {
+  const std::array<Point, 4> inner = corners_of(workspace, tetrahedron);
+  std::vector<Index> above;
+  for (const Index v : hull) {
+    const auto [a, b, c] = facet_of(workspace, v);
+    if (volume_sign_of_middle(inner, a, b, c) != Sign::positive) above.push_back(v);
+  }
+  return above;
 }
 
 }  // namespace orchard::detail

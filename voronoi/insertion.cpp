@@ -6,6 +6,7 @@
 #include <cassert>
 
 #include "orchard/geometry/error.h"
+#include "patch.h"
 
 namespace orchard::detail {
 namespace {
@@ -78,20 +79,37 @@ bool Inserter::insert(Index point) {
   return true;
 }
 
-bool Inserter::insert_deferred() {
+bool Inserter::insert_deferred(Patch* patch) {
   while (!deferred_.empty()) {
     const std::size_t before = deferred_.size();
     const std::size_t inserted = std::erase_if(deferred_, [this](Index point) { return insert_now(point); });
-    if (is_lost()) return false;
+    if (is_lost()) return insert_by_patch(patch);
     const bool many = before > kManyDeferred;
     if (inserted > (many ? before / kWorthRepeating : 0)) continue;
+    if (many && insert_by_patch(patch)) return true;
     // One goes in whatever it overrules, and others may fit then; of many, each is tried only once more.
     for (std::size_t left = many ? deferred_.size() : 1; left > 0; --left) {
       const Index point = deferred_.back();
-      if (!(many && insert_now(point)) && !insert_anyhow(point)) return false;
+      if (!(many && insert_now(point)) && !insert_anyhow(point)) return insert_by_patch(patch);
       deferred_.pop_back();
     }
   }
+  return true;
+}
+
+// All that are deferred, together.
+bool Inserter::insert_by_patch(Patch* patch) {
+  if (patch == nullptr || deferred_.empty()) return deferred_.empty();
+  std::vector<Index> starts;
+  for (const Index point : deferred_) {
+    const Point q = workspace_.points[point];
+    starts.push_back(walk_by_orientation(locate(q), q));
+  }
+  cavity_.end();
+  if (!patch->replace(starts, 0, deferred_)) return false;
+  counts_.exact += deferred_.size();
+  deferred_.clear();
+  start_anywhere();
   return true;
 }
 

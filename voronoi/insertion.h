@@ -9,6 +9,8 @@
 
 namespace orchard::detail {
 
+class Patch;
+
 // How the vertices that a new point deletes are found.
 enum class Search : std::uint8_t {
   bowyer,           // all that are nearer to the new point, and failing where that is not a ball
@@ -43,8 +45,9 @@ class Inserter {
   // reason. To be done again with exact signs from the start. Bowyer's search returns false where its premises fail.
   bool insert(Index point);
   // To be called at the end; false, as above, if there are points that do not fit even now, or if it takes too long to
-  // find that out.
-  bool insert_deferred();
+  // find that out. With a patch, points that do not fit by themselves go in by it, for a certificate that looks at all
+  // vertices.
+  bool insert_deferred(Patch* patch = nullptr);
   // Between enter() and leave(): where vertices may be replaced, by several threads that have an inserter each. The
   // walk to the first point starts from the first of `starts`, and where a walk leads nowhere, it is made again from
   // the one nearest to the point. They must be owned, and live until then.
@@ -74,6 +77,7 @@ class Inserter {
   bool insert_sparsely(Index point, const Point& q);
   void insert_constrained(Index start, const Point& q);
   bool too_doubtful() const;
+  bool insert_by_patch(Patch* patch);
   bool insert_anyhow(Index point);
   Index locate(const Point& q) const;
   Index nearest_start(const Point& q) const;

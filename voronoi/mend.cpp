@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace orchard::detail {
 namespace {
@@ -10,6 +11,8 @@ namespace {
 // first rounds, a point may have that many by itself.
 constexpr std::size_t kMaxDeleted = 256, kMaxDeletedOfFew = 2048, kFewDoubts = 16;
 constexpr int kFirstRounds = 8;
+constexpr int kPatient = 2;   // rounds before what insertions do not mend is made anew
+constexpr int kHopeless = 8;  // rounds before nothing is inserted any more, and more around it is made anew each time
 constexpr int kStricter = 2;  // bits that a round takes off the intrusion that does no harm
 
 // How deep a point is in a sphere through the origin, both relative to it.
@@ -24,17 +27,30 @@ std::vector<Index> Mender::mend(std::span<const Doubt> doubts, int round) {
   harmless_ = std::ldexp(workspace_.harmless_intrusion(), -kStricter * round);
   max_deleted_ = doubts.size() <= kFewDoubts && round < kFirstRounds ? kMaxDeletedOfFew : kMaxDeleted;
   workspace_.set_exact(true);
+  std::vector<Index> left;
   for (const auto& [v, u] : doubts) {
     if (workspace_.is_free(v) || workspace_.is_free(u) || slot_of(v, u) == 4) continue;  // gone with another doubt
     sharpen(v);
     sharpen(u);
-    if (!insert_again(v, u) && !insert_again(u, v)) changed_.insert(changed_.end(), {v, u});
+    if (round >= kHopeless || (!insert_again(v, u) && !insert_again(u, v))) left.insert(left.end(), {v, u});
   }
   cavity_.end();
   workspace_.set_exact(false);
+  changed_.insert(changed_.end(), left.begin(), left.end());
+  if (round >= kPatient) {
+    const std::vector<Index> patched = patch(std::move(left), std::max(round - kHopeless, 0));
+    changed_.insert(changed_.end(), patched.begin(), patched.end());
+  }
   std::sort(changed_.begin(), changed_.end());
   changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
   return changed_;
+}
+
+std::vector<Index> Mender::patch(std::vector<Index> vertices, int layers) {
+  std::erase_if(vertices, [this](Index v) { return workspace_.is_free(v); });
+  if (vertices.empty() || !may_patch_) return {};
+  may_patch_ = patch_.replace(vertices, layers);
+  return may_patch_ ? patch_.created() : std::vector<Index>();
 }
 
 unsigned Mender::slot_of(Index v, Index neighbor) const {

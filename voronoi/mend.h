@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "cavity.h"
+#include "patch.h"
 #include "workspace.h"
 
 namespace orchard::detail {
@@ -19,11 +20,14 @@ struct Doubt {
 // beyond its facet. Whether all is well then is for the certificate to say.
 class Mender {
  public:
-  explicit Mender(Workspace& workspace) : workspace_(workspace), cavity_(workspace) {}
+  explicit Mender(Workspace& workspace) : workspace_(workspace), cavity_(workspace), patch_(workspace) {}
 
   // The vertices that are new, those whose spheres have become their own, and those of doubts that could not be mended;
   // some may be free again. Each round is stricter than the last, lest one insertion undo another.
   std::vector<Index> mend(std::span<const Doubt> doubts, int round);
+  // Makes these vertices, which may be free, anew with exact signs, with so many layers around them, and others that
+  // have to go with them (see Patch). The new ones; none where that takes too many.
+  std::vector<Index> patch(std::vector<Index> vertices, int layers = 0);
   // Facets that were looked at so far, each as often as it was: the time that mending has taken.
   std::size_t work() const { return work_; }
 
@@ -40,6 +44,8 @@ class Mender {
 
   Workspace& workspace_;
   Cavity cavity_;
+  Patch patch_;
+  bool may_patch_ = true;  // as long as none took too many vertices
   double harmless_ = 0;
   std::size_t max_deleted_ = 0, work_ = 0;
   std::vector<Index> changed_;

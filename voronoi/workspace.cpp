@@ -62,6 +62,14 @@ void Workspace::set_scale(const Box& box, double rounding) {
   bounds_[kUnknownError] = bounds_[kNotSettled] = std::numeric_limits<double>::infinity();
 }
 
+void Workspace::take_scale(const Workspace& other) {
+  noise_ = other.noise_;
+  good_center_ = other.good_center_;
+  squared_scale_ = other.squared_scale_;
+  per_min_bound_ = other.per_min_bound_;
+  bounds_ = other.bounds_;
+}
+
 void Workspace::adopt(std::span<const VoronoiVertex> finished, const Frame& frame, std::size_t more) {
   clear();
   reserve(finished.size() + more, finished.size());

@@ -51,6 +51,8 @@ class Workspace {
   // on it, or else half of the signs there would be certain and half in doubt.
   void set_scale(const Box& box, double rounding);
   static constexpr double kInputNoise = 4;
+  // The same as those of another one.
+  void take_scale(const Workspace& other);
   // Whether the input's noise is too near to what counts as harm for doubts to be settled by it.
   bool too_noisy() const { return noise_ > kMaxNoise * scale(); }
   // From now on signs are exact, as if the input had no noise: slower, and slivers appear where rounding has put points

@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <limits>
 #include <numbers>
 #include <numeric>
 
 #include "orchard/geometry/error.h"
+#include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/random.h"
+#include "orchard/geometry/sampling.h"
 #include "orchard/geometry/tolerance.h"
 #include "orchard/voronoi/exact.h"
 #include "orchard/voronoi/quality.h"
@@ -100,6 +103,16 @@ TEST(HighestFirstVoronoi, MeetsContradictionsWhereTheyAreAndDoesNotStartAnew) {
       }
   }
   EXPECT_GT(coplanar, 0u) << "else it shows nothing";
+}
+
+// Twenty points fit nowhere in this sample until a part of the diagram, with much of a flat side, is made anew.
+TEST(HighestFirstVoronoi, IsMadeAnewOnlyWherePointsFitNowhere) {
+  const Surface lamp(read_mesh(std::filesystem::path(ORCHARD_DATA_DIR) / "lamp.obj"));
+  const auto points = sample_surface(lamp, {.face_points = 80000, .edge_points = 20000, .seed = 2}).points;
+  const auto [diagram, report] = highest_first_voronoi(points);
+  EXPECT_FALSE(report.exact_signs) << "all made anew for the sake of a few";
+  EXPECT_LT(report.certified_intrusion, tolerance::kVoronoiIntrusion * static_cast<double>(points.size()) / 512);
+  EXPECT_NO_THROW(validate(diagram));
 }
 
 TEST(HighestFirstVoronoi, IsMendedWhereRoundingLeavesSpheresOpen) {
