@@ -106,7 +106,7 @@ bool Patch::insert_points(std::span<const Index> additional) {
   const std::size_t known = points_.size();
   const auto note = [this](Index point) {
     if (point == kInfinitePoint || exact_of_[point] != kNone) return;
-    exact_of_[point] = 0;  // for now
+    exact_of_[point] = 0;  // noted; its number follows below, once they are in order
     points_.push_back(point);
   };
   for (const Index point : additional) note(point);

@@ -13,42 +13,37 @@
 namespace orchard::runtime {
 namespace {
 
+// What a scene's frames say, with so many threads; 0: without an executor.
+std::vector<double> frames_of(const test::Scene& scene, std::uint64_t work, std::size_t threads) {
+  test::ThreadPool pool(std::max<std::size_t>(threads, 1));
+  DetectorOptions options;
+  if (threads > 0) options.executor = pool.executor();
+  test::SceneRun run(scene, options);
+  std::vector<double> all;
+  for (int step = 0; step < scene.steps; ++step) test::append(all, run.step(step, {.work = work}));
+  return all;
+}
+
+void expect_same_frames(const test::Scene& scene, std::uint64_t work) {
+  const std::vector<double> serial = frames_of(scene, work, 0);
+  for (const std::size_t threads : {1u, 2u, 3u}) {
+    const std::vector<double> all = frames_of(scene, work, threads);
+    ASSERT_EQ(all.size(), serial.size()) << scene.name;
+    ASSERT_EQ(std::memcmp(all.data(), serial.data(), all.size() * sizeof(double)), 0)
+        << scene.name << " with " << threads << " threads";
+  }
+}
+
 TEST(Threads, GiveTheSameFramesWhateverTheirNumber) {
   const bool more = orchard::test::more() > 1;
   for (const test::Scene& scene : test::every_scene(more ? 60 : 24, more ? 200 : 12, 1 + orchard::test::first_seed())) {
-    for (const std::uint64_t work : {FrameBudget{}.work, std::uint64_t{5000}}) {
-      std::vector<double> serial;
-      for (const std::size_t threads : {0u, 1u, 2u, 3u}) {
-        test::ThreadPool pool(std::max<std::size_t>(threads, 1));
-        DetectorOptions options;
-        if (threads > 0) options.executor = pool.executor();
-        test::SceneRun run(scene, options);
-        std::vector<double> all;
-        for (int step = 0; step < scene.steps; ++step) test::append(all, run.step(step, {.work = work}));
-        if (threads == 0) serial = all;
-        ASSERT_EQ(all.size(), serial.size()) << scene.name;
-        ASSERT_EQ(std::memcmp(all.data(), serial.data(), all.size() * sizeof(double)), 0)
-            << scene.name << " with " << threads << " threads";
-      }
-    }
+    for (const std::uint64_t work : {FrameBudget{}.work, std::uint64_t{5000}}) expect_same_frames(scene, work);
   }
 }
 
 // The parts of one pair are tasks that run at once: what one of them finds is nothing that another may go by.
 TEST(Threads, GiveTheSameFramesOfArticulatedBodiesWithinABudget) {
-  const test::Scene scene = test::robot_arm(60, 200, 1'000'000'007 + orchard::test::first_seed());
-  std::vector<double> serial;
-  for (const std::size_t threads : {0u, 2u, 2u, 3u}) {
-    test::ThreadPool pool(std::max<std::size_t>(threads, 1));
-    DetectorOptions options;
-    if (threads > 0) options.executor = pool.executor();
-    test::SceneRun run(scene, options);
-    std::vector<double> all;
-    for (int step = 0; step < scene.steps; ++step) test::append(all, run.step(step, {.work = 5000}));
-    if (threads == 0) serial = all;
-    ASSERT_EQ(all.size(), serial.size());
-    ASSERT_EQ(std::memcmp(all.data(), serial.data(), all.size() * sizeof(double)), 0) << threads << " threads";
-  }
+  expect_same_frames(test::robot_arm(60, 200, 1'000'000'007 + orchard::test::first_seed()), 5000);
 }
 
 // So many that the broad phase's jobs run at once, too: at the step at which all promises expire.
