@@ -24,6 +24,13 @@ namespace {
 constexpr Index kSlice = 1u << 14;  // points or vertices that a thread looks at at once
 constexpr double kInsertion = 0.8;  // its part of the time; the rest is the certificate's
 
+// Sets of so many points are tried with one in so many of them first, in the order of insertion, a random sample.
+constexpr std::size_t kTried = 1u << 12, kTriedOneIn = 8;
+
+// From this part of insertions on that lie on spheres of others, a set is a lattice or the like: exact signs would take
+// several times as long there, and what rounding does to it is mended.
+constexpr double kLattice = 0.25;
+
 }  // namespace
 
 Box checked_box(std::span<const Point> points) {
@@ -156,12 +163,33 @@ class Room {
 };
 
 // The point before which those from `begin` on are inserted next. The last rounds of insertion_order(), where they are
-// large, are for many threads, each when all before it are in.
-Index end_of_stage(std::size_t begin, std::size_t count) {
-  std::size_t end = count;
+// large, are for many threads, each when all before it are in. The first one is at most the sample that is tried.
+Index end_of_stage(std::size_t begin, std::size_t count, std::size_t sample) {
+  std::size_t end = begin < sample ? sample : count;
   if (count >= large_set())
     while (end / 8 > begin && end >= large_set() / 4) end /= 8;
   return static_cast<Index>(end);
+}
+
+bool is_lattice(const InsertionCounts& counts) {
+  return static_cast<double>(counts.settled) >= kLattice * static_cast<double>(counts.inserted());
+}
+
+// Whether insertions so far left doubts that signs of doubles do not settle, and others likely to come.
+bool has_doubts(const Inserter& inserter) {
+  return (inserter.counts().constrained > 0 || inserter.has_deferred()) && !is_lattice(inserter.counts());
+}
+
+// Whether the signs of doubles will do for a set of which a sample has been inserted. Where points crowd on planes that
+// are not along the axes, as in dense samples of flat or cylindrical faces, what rounding does to them cannot be mended
+// one by one, and to find that out at the end takes as long as exact signs from the start, which take hardly longer
+// there.
+bool doubles_will_do(Workspace& workspace, const Inserter& inserter) {
+  if (has_doubts(inserter)) return false;
+  if (is_lattice(inserter.counts())) return true;
+  constexpr std::size_t kFirst = 4;  // that the inserter started with
+  const Certificate certificate = certify(workspace, inserter.counts().inserted() + kFirst);
+  return certificate.holds && certificate.suspects == 0;
 }
 
 // All points of the workspace in order. If it fails, `at` is the point and `reason` the inserter's.
@@ -178,20 +206,27 @@ Outcome insert_all(Workspace& workspace, Search search, std::string_view stage, 
   const auto report = [&](std::size_t inserted) {
     report_progress(progress, stage, kInsertion * static_cast<double>(inserted) / static_cast<double>(count));
   };
+  const bool highest_first = search == Search::highest_first, is_tried = highest_first && count >= kTried;
+  const std::size_t sample = is_tried && !workspace.exact() ? count / kTriedOneIn : 0;
   std::vector<Index> stage_points;
   for (Index begin = 0, end = 0; begin < count; begin = end) {
-    end = search == Search::highest_first ? end_of_stage(begin, count) : static_cast<Index>(count);
+    if (begin > 0 && begin == sample && !doubles_will_do(workspace, inserter)) return Outcome::failed;
+    end = highest_first ? end_of_stage(begin, count, sample) : static_cast<Index>(count);
     stage_points.clear();
     for (Index i = begin; i < end; ++i)
       if (std::find(first.begin(), first.end(), i) == first.end()) stage_points.push_back(i);
-    if (begin > 0) {
+    const bool in_regions = begin > 0 && count >= large_set();
+    if (in_regions) {
       room.make(begin);
       insert_in_regions(workspace, inserter, stage_points, end, report);
     }
     std::size_t inserted = end - stage_points.size();
     for (const Index i : stage_points) {
-      if (begin == 0) room.make(i);
-      if (++inserted % step == 0) report(inserted);
+      if (!in_regions) room.make(i);
+      if (++inserted % step == 0) {
+        report(inserted);
+        if (begin < sample && has_doubts(inserter)) return Outcome::failed;
+      }
       if (inserter.insert(i)) continue;
       at = i;
       reason = inserter.failure();
@@ -201,6 +236,7 @@ Outcome insert_all(Workspace& workspace, Search search, std::string_view stage, 
   Patch patch(workspace);
   if (!inserter.insert_deferred(workspace.exact() ? nullptr : &patch)) return Outcome::failed;
   counts = inserter.counts();
+  if (workspace.exact()) workspace.place_thin_vertices();
   return Outcome::done;
 }
 

@@ -311,7 +311,16 @@ bool Cavity::is_ball() {
   // point sees every facet, a piece fills its view once at least, and all of them together once, for tetrahedra do not
   // overlap: so there is one. That says nothing of facets at infinity.
   if (visible_ && known_local(kInfinitePoint) == kNone) return true;
+  if (!are_local_points_on_boundary()) return false;
   return facets_.size() <= 64 ? is_one_small_piece() : is_one_piece();
+}
+
+// A point that was on the boundary before more was deleted may be within by now.
+bool Cavity::are_local_points_on_boundary() {
+  reached_.assign(local_points_.size(), false);
+  for (const Facet& facet : facets_)
+    for (const Index point : facet.local) reached_[point] = true;
+  return std::find(reached_.begin(), reached_.end(), false) == reached_.end();
 }
 
 // From one facet to its neighbours and on, each a bit; two at a time, lest each waits for the last.
@@ -389,11 +398,16 @@ Index Cavity::place_flat_vertices() {
       ++coplanar;
       continue;
     }
+    // With exact signs, such vertices are many, and most are soon deleted again: a place that is good enough to walk by
+    // will do until the end.
+    const bool exact = workspace_.exact();
+    if (exact && facet.placing == Placing::thin) continue;
+    const auto circumcenter = exact ? rough_circumcenter : sharp_circumcenter;
     Vector relative;
-    if (sharp_circumcenter(position_, corner(0), corner(1), corner(2), relative)) {
+    if (circumcenter(position_, corner(0), corner(1), corner(2), relative)) {
       vertex.center = position_ + relative;
     } else if (facet.placing == Placing::failed) {
-      ++coplanar;
+      coplanar += !exact;
       // The undeleted neighbour's place; if that is at infinity, far away in its direction.
       const bool bounded = outside.forming_points[3] != kInfinitePoint;
       vertex.center = bounded ? outside.center : Point(position_ + workspace_.far() * outside.center);

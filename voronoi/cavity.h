@@ -205,6 +205,7 @@ class Cavity {
     return known;
   }
   void note_boundary();
+  bool are_local_points_on_boundary();
   bool is_one_small_piece() const;
   bool is_one_piece();
   void measure_local_points();
@@ -245,7 +246,7 @@ class Cavity {
   std::vector<Index> slots_, queue_;
   std::vector<Facet> facets_;
   std::vector<VoronoiVertex> fresh_;      // of each facet; neighbours are facets until replace(), itself for outside
-  std::vector<std::uint8_t> reached_;     // by facet
+  std::vector<std::uint8_t> reached_;     // by facet or local point
   std::vector<LengthedVector> from_new_;  // from the new point to each local one
   std::vector<Index> local_of_;           // of the infinite point and each other: into local_points_ or kNone
   EdgeTable edges_;

@@ -166,7 +166,8 @@ class Certifier {
         if (wrong.empty()) return {};
       } else {
         wrong = guilty_suspects();
-        if (wrong.empty()) return {true, 2 * (found_.intrusion + found_.given) / diameter_};
+        if (wrong.empty() && mended_ && !has_all_points()) return {};
+        if (wrong.empty()) return {true, 2 * (found_.intrusion + found_.given) / diameter_, found_.suspects.size()};
       }
       if (!patch(wrong)) return {};
     }
@@ -186,6 +187,8 @@ class Certifier {
     return first_new_ == 0 || from(p[0]) || from(p[1]) || from(p[2]) || from(p[3]);
   }
 
+  // After mending: a lost point would lie in a sphere that no facet tells of.
+  bool has_all_points() const { return count_forming(workspace_) == points_; }
   // All that is new; and where facets are in doubt, what they are mended by.
   bool look_at_all() {
     found_.hull.clear();

@@ -9,8 +9,9 @@ namespace orchard::detail {
 // What a look at a whole diagram proves of it.
 struct Certificate {
   bool holds = false;
-  double intrusion =
-      0;  // over the bounding radius: no point lies deeper in a vertex's sphere or farther beyond the hull
+  // Over the bounding radius: no point lies deeper in a vertex's sphere or farther beyond the hull.
+  double intrusion = 0;
+  std::size_t suspects = 0;  // vertices that had to be held against all points one by one
 };
 
 // Delaunay's lemma, with a margin: if all vertices are oriented positively, the hull is convex, and the sphere of no

@@ -56,6 +56,7 @@ bool insert_into_copy(Workspace& workspace, const Insertion& insertion, bool exa
   for (const Index point : insertion.order)
     if (!inserter.insert(point)) return false;
   if (!inserter.insert_deferred()) return false;
+  if (exact) workspace.place_thin_vertices();
   detail::Mender mender(workspace);
   const detail::Certificate certificate =
       detail::certify(workspace, before + insertion.order.size(), insertion.first_new, &mender);

@@ -60,6 +60,7 @@ class Inserter {
   // To be called when others have been at work.
   void start_anywhere();
   const InsertionCounts& counts() const { return counts_; }
+  bool has_deferred() const { return !deferred_.empty(); }
   void add(const InsertionCounts& counts) { counts_ += counts; }
   const char* failure() const { return failure_; }  // why insert() returned false
 

@@ -285,11 +285,25 @@ Sign inside_sphere(const Point& q, const Point& a, const Point& b, const Point& 
   return exact_inside_sphere(q, a, b, c, d);
 }
 
-bool sharp_circumcenter(const Point& q, const Point& a, const Point& b, const Point& c, Vector& center) {
+namespace {
+
+// By twice the digits of doubles. Whether the volume is more than so many times its error.
+bool twofold_circumcenter(double times, const Point& q, const Point& a, const Point& b, const Point& c,
+                          Vector& center) {
   const RoundedCenter sharp = kFused ? fused_center(q, a, b, c) : rounded_center(q, a, b, c);
-  if (std::abs(sharp.volume6) > kDivisible * kSharper * volume(a - q, b - q, c - q).bound) {
-    center = sharp.center;
-  } else {
+  center = sharp.center;
+  return std::abs(sharp.volume6) > times * kSharper * volume(a - q, b - q, c - q).bound;
+}
+
+}  // namespace
+
+bool rough_circumcenter(const Point& q, const Point& a, const Point& b, const Point& c, Vector& center) {
+  constexpr double kRough = 0x1p7;
+  return twofold_circumcenter(kRough, q, a, b, c, center) && center.allFinite();
+}
+
+bool sharp_circumcenter(const Point& q, const Point& a, const Point& b, const Point& c, Vector& center) {
+  if (!twofold_circumcenter(kDivisible, q, a, b, c, center)) {
     const auto exact = SharpCenter<ExactInteger>::of(integer_vectors(q, a, b, c));
     if (exact.volume6 == 0) return false;
     const int unit = common_unit({&q, &a, &b, &c}) - 1;  // twice six times the volume

@@ -13,6 +13,8 @@
 namespace orchard::detail {
 namespace {
 
+constexpr Index kSlice = 1u << 12;  // vertices that a thread looks at at once
+
 void move_infinity_last(VoronoiVertex& vertex) {
   auto& corner = vertex.forming_points;
   vertex.radius = std::numeric_limits<double>::quiet_NaN();
@@ -107,6 +109,17 @@ void Workspace::place_sharply(Index v, const Vector& center) {
   vertex.center = origin + center;
   vertex.radius = (vertex.center - origin).squaredNorm();
   set_error_class(v, error_class(rounding_of_power(vertex.center, vertex.radius)), false, state_[v] & 3u);
+}
+
+void Workspace::place_thin_vertices() {
+  // That of a center that is as good as doubles make it where they do, at most.
+  constexpr double kBound = 4 * RelativeCenter::kCenterError * kSharpCondition;
+  tbb::parallel_for(tbb::blocked_range<Index>(0, static_cast<Index>(vertices.size()), kSlice), [&](const auto& range) {
+    for (Index v = range.begin(); v < range.end(); ++v) {
+      const bool is_made = !is_free(v) && !at_infinity(v) && settled(v);
+      if (is_made && power_bound(v) >= kBound * vertices[v].radius) place_sharply(v);
+    }
+  });
 }
 
 double Workspace::own_power_bound(const Point& center, double squared_radius, double off) {

@@ -105,14 +105,25 @@ TEST(HighestFirstVoronoi, MeetsContradictionsWhereTheyAreAndDoesNotStartAnew) {
   EXPECT_GT(coplanar, 0u) << "else it shows nothing";
 }
 
-// Twenty points fit nowhere in this sample until a part of the diagram, with much of a flat side, is made anew.
-TEST(HighestFirstVoronoi, IsMadeAnewOnlyWherePointsFitNowhere) {
+// Points crowd on flat sides that rounding has bent: what fits nowhere in the end, and hulls that are not convex, are
+// foreseen by a sample of an eighth of the points, so that little is done in vain. `undone`: how much of the work, at
+// most, was begun once more.
+TEST(HighestFirstVoronoi, TakesExactSignsSoonWhereASampleIsInDoubt) {
   const Surface lamp(read_mesh(std::filesystem::path(ORCHARD_DATA_DIR) / "lamp.obj"));
-  const auto points = sample_surface(lamp, {.face_points = 80000, .edge_points = 20000, .seed = 2}).points;
-  const auto [diagram, report] = highest_first_voronoi(points);
-  EXPECT_FALSE(report.exact_signs) << "all made anew for the sake of a few";
-  EXPECT_LT(report.certified_intrusion, tolerance::kVoronoiIntrusion * static_cast<double>(points.size()) / 512);
-  EXPECT_NO_THROW(validate(diagram));
+  for (const Index count : {20000u, 100000u}) {
+    const auto points =
+        sample_surface(lamp, {.face_points = count / 5 * 4, .edge_points = count / 5, .seed = 2}).points;
+    double last = 0, undone = 0;
+    const auto [diagram, report] = highest_first_voronoi(points, [&](std::string_view, double part) {
+      undone = std::max(undone, last - part);
+      last = part;
+      return true;
+    });
+    EXPECT_LT(undone, 0.2) << count;
+    EXPECT_TRUE(report.certified_intrusion == 0 || !report.exact_signs) << count;
+    EXPECT_LT(report.certified_intrusion, tolerance::kVoronoiIntrusion * static_cast<double>(points.size()) / 512);
+    EXPECT_NO_THROW(validate(diagram));
+  }
 }
 
 TEST(HighestFirstVoronoi, IsMendedWhereRoundingLeavesSpheresOpen) {

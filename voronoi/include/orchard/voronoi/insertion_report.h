@@ -15,7 +15,8 @@ struct InsertionReport {
   std::uint64_t settled_insertions = 0;      // some vertex was marginal: leaving all such gave a consistent cell
   std::uint64_t exact_insertions = 0;        // the same, after exact arithmetic had settled doubts
   std::uint64_t constrained_insertions = 0;  // the search under the five constraints decided
-  bool exact_signs = false;  // all insertions were made with exact signs: too many needed them, or it was too wrong
+  // All insertions were made with exact signs: a sample was in doubt, too many needed them, or it was too wrong.
+  bool exact_signs = false;
   double certified_intrusion =
       0;  // over the bounding radius: no point lies deeper in a sphere or farther beyond the hull
   std::uint64_t coplanar_centers = 0;            // circumcentres approximated by a neighbour's position
