@@ -209,6 +209,9 @@ int main(int argc, char** argv) {
     set("turned cone rings", n,
         [&] { return test::turned(test::cone_ring_points(static_cast<int>(n) / 100, 100), 1); });
   }
+  for (const std::size_t n : {100000u, 400000u})  // whose flat faces are dense
+    for (const char* model : {"lamp", "ship"})
+      set(model, n, [&] { return model_points(data + "/" + model + ".obj", n); });
   for (const int k : {20, 40}) {
     const auto n = static_cast<std::size_t>(k * k * k);
     set("grid", n, [&] { return test::grid_points(k); });
