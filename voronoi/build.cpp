@@ -32,7 +32,7 @@ constexpr std::size_t kTried = 1u << 12, kTriedOneIn = 8;
 constexpr double kLattice = 0.25;
 
 // Of how many points of a sample one vertex may have to be held against all points one by one.
-constexpr std::size_t kSuspectsOneIn = 1u << 12;
+constexpr std::size_t kSuspectsOneIn = 1u << 9;
 
 }  // namespace
 
