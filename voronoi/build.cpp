@@ -209,8 +209,8 @@ Outcome insert_all(Workspace& workspace, Search search, std::string_view stage, 
   const auto report = [&](std::size_t inserted) {
     report_progress(progress, stage, kInsertion * static_cast<double>(inserted) / static_cast<double>(count));
   };
-  const bool highest_first = search == Search::highest_first, is_tried = highest_first && count >= kTried;
-  const std::size_t sample = is_tried && !workspace.exact() ? count / kTriedOneIn : 0;
+  const bool highest_first = search == Search::highest_first, is_tried = highest_first && !workspace.exact();
+  const std::size_t sample = is_tried && count >= kTried ? count / kTriedOneIn : 0;
   std::vector<Index> stage_points;
   for (Index begin = 0, end = 0; begin < count; begin = end) {
     if (begin > 0 && begin == sample && !doubles_will_do(workspace, inserter)) return Outcome::failed;
@@ -239,7 +239,7 @@ Outcome insert_all(Workspace& workspace, Search search, std::string_view stage, 
   Patch patch(workspace);
   if (!inserter.insert_deferred(workspace.exact() ? nullptr : &patch)) return Outcome::failed;
   counts = inserter.counts();
-  if (workspace.exact()) workspace.place_thin_vertices();
+  if (workspace.exact()) counts.coplanar += workspace.place_thin_vertices();
   return Outcome::done;
 }
 

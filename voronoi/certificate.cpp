@@ -166,7 +166,7 @@ class Certifier {
         if (wrong.empty()) return {};
       } else {
         wrong = guilty_suspects();
-        if (wrong.empty() && mended_ && !has_all_points()) return {};
+        if (wrong.empty() && mended_ && !has_all_points()) break;
         if (wrong.empty()) return {true, 2 * (found_.intrusion + found_.given) / diameter_, found_.suspects.size()};
       }
       if (!patch(wrong)) return {};

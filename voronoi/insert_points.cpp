@@ -56,12 +56,13 @@ bool insert_into_copy(Workspace& workspace, const Insertion& insertion, bool exa
   for (const Index point : insertion.order)
     if (!inserter.insert(point)) return false;
   if (!inserter.insert_deferred()) return false;
-  if (exact) workspace.place_thin_vertices();
+  const std::size_t approximate = exact ? workspace.place_thin_vertices() : 0;
   detail::Mender mender(workspace);
   const detail::Certificate certificate =
       detail::certify(workspace, before + insertion.order.size(), insertion.first_new, &mender);
   if (!certificate.holds) return false;
   add_counts(inserter.counts(), report);
+  report.coplanar_centers += approximate;
   report.exact_signs = exact;
   report.certified_intrusion = certificate.intrusion;
   return true;

@@ -232,6 +232,14 @@ RoundedCenter fused_center(const Point&, const Point&, const Point&, const Point
 constexpr bool kFused = false;
 #endif
 
+// By twice the digits of doubles. Whether the volume is more than so many times its error.
+bool twofold_circumcenter(double times, const Point& q, const Point& a, const Point& b, const Point& c,
+                          Vector& center) {
+  const RoundedCenter sharp = kFused ? fused_center(q, a, b, c) : rounded_center(q, a, b, c);
+  center = sharp.center;
+  return std::abs(sharp.volume6) > times * kSharper * volume(a - q, b - q, c - q).bound;
+}
+
 }  // namespace
 
 Sign volume_sign(const Point& q, const Point& a, const Point& b, const Point& c, double indifferent) {
@@ -284,18 +292,6 @@ Sign inside_sphere(const Point& q, const Point& a, const Point& b, const Point& 
   if (sharp != Sign::uncertain) return sharp;
   return exact_inside_sphere(q, a, b, c, d);
 }
-
-namespace {
-
-// By twice the digits of doubles. Whether the volume is more than so many times its error.
-bool twofold_circumcenter(double times, const Point& q, const Point& a, const Point& b, const Point& c,
-                          Vector& center) {
-  const RoundedCenter sharp = kFused ? fused_center(q, a, b, c) : rounded_center(q, a, b, c);
-  center = sharp.center;
-  return std::abs(sharp.volume6) > times * kSharper * volume(a - q, b - q, c - q).bound;
-}
-
-}  // namespace
 
 bool rough_circumcenter(const Point& q, const Point& a, const Point& b, const Point& c, Vector& center) {
   constexpr double kRough = 0x1p7;

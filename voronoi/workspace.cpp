@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <utility>
 
@@ -97,10 +98,12 @@ Placing Workspace::place_again(Index v, VoronoiVertex& placed, std::uint8_t& err
                         : place(placed, error, origin, a, b, LengthedVector(points[corner[3]] - origin));
 }
 
-void Workspace::place_sharply(Index v) {
+bool Workspace::place_sharply(Index v) {
   const auto corner = [&](unsigned i) -> const Point& { return points[vertices[v].forming_points[i]]; };
   Vector center;
-  if (sharp_circumcenter(corner(0), corner(1), corner(2), corner(3), center)) place_sharply(v, center);
+  if (!sharp_circumcenter(corner(0), corner(1), corner(2), corner(3), center)) return false;
+  place_sharply(v, center);
+  return true;
 }
 
 void Workspace::place_sharply(Index v, const Vector& center) {
@@ -111,15 +114,17 @@ void Workspace::place_sharply(Index v, const Vector& center) {
   set_error_class(v, error_class(rounding_of_power(vertex.center, vertex.radius)), false, state_[v] & 3u);
 }
 
-void Workspace::place_thin_vertices() {
-  // That of a center that is as good as doubles make it where they do, at most.
+std::size_t Workspace::place_thin_vertices() {
+  // Of the power, over the squared radius: at least that where the condition is kSharpCondition or worse.
   constexpr double kBound = 4 * RelativeCenter::kCenterError * kSharpCondition;
+  std::atomic<std::size_t> approximate = 0;
   tbb::parallel_for(tbb::blocked_range<Index>(0, static_cast<Index>(vertices.size()), kSlice), [&](const auto& range) {
     for (Index v = range.begin(); v < range.end(); ++v) {
       const bool is_made = !is_free(v) && !at_infinity(v) && settled(v);
-      if (is_made && power_bound(v) >= kBound * vertices[v].radius) place_sharply(v);
+      if (is_made && power_bound(v) >= kBound * vertices[v].radius && !place_sharply(v)) ++approximate;
     }
   });
+  return approximate;
 }
 
 double Workspace::own_power_bound(const Point& center, double squared_radius, double off) {

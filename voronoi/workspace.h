@@ -195,11 +195,12 @@ class Workspace {
     if (!settled(v)) [[unlikely]]
       find_error_class(v);
   }
-  // Gives a finite vertex the sphere of its forming points, to some roundings, if they have one.
-  void place_sharply(Index v);
-  // The same for all that were made with exact signs and whose centres call for sharper arithmetic than they got then.
-  void place_thin_vertices();
+  // Gives a finite vertex the sphere of its forming points, to some roundings; false if they have none.
+  bool place_sharply(Index v);
   void place_sharply(Index v, const Vector& center);  // which is relative to its first point
+  // The same for all that were made with exact signs and whose centres call for sharper arithmetic than they got then.
+  // The number of those that keep an approximate place.
+  std::size_t place_thin_vertices();
   // The same with this sphere, by which the error of a power is no more than the bound.
   void place_by_bound(Index v, const Point& center, double squared_radius, double bound) {
     vertices[v].center = center;
