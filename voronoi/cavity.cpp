@@ -301,8 +301,9 @@ bool Cavity::is_ball() {
   const Index known_new = std::exchange(known_local(new_point_), Index{0});  // that is not lost
   for (const Index v : deleted_.items()) {
     const auto& [a, b, c, d] = workspace_.vertices[v].forming_points;
-    loses_point |=
-        (known_local(a) == kNone) | (known_local(b) == kNone) | (known_local(c) == kNone) | (known_local(d) == kNone);
+    const bool loses_a = known_local(a) == kNone, loses_b = known_local(b) == kNone, loses_c = known_local(c) == kNone,
+               loses_d = known_local(d) == kNone;
+    loses_point |= loses_a | loses_b | loses_c | loses_d;
   }
   known_local(new_point_) = known_new;
   if (loses_point) return false;

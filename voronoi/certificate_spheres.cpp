@@ -125,10 +125,10 @@ template <class See>
 void Certifier::see_far(const BatchList& list, const BatchLooks& seen, double hopeless, const See& see) {
   BatchList far;  // places in the list
   for (Index at = 0; at < list.items().size(); ++at) {
-    const bool is_open = (seen.apart[at] > kTold * max_) & (seen.apart[at] <= hopeless),
+    const bool is_far = seen.apart[at] > kTold * max_, is_hopeless = !(seen.apart[at] <= hopeless),
                is_positive = seen.negative[at] < -seen.negative_bound[at],
                shares = workspace_.shares_sphere(list.items()[at]);
-    far.push_if(at, is_open & is_positive & !shares);
+    far.push_if(at, is_far & !is_hopeless & is_positive & !shares);
   }
   far.for_each_four([&](std::size_t, const std::array<Index, 4>& four) {
     std::array<Index, 4> v;
