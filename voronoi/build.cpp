@@ -31,8 +31,9 @@ constexpr std::size_t kTried = 1u << 12, kTriedOneIn = 8;
 // several times as long there, and what rounding does to it is mended.
 constexpr double kLattice = 0.25;
 
-// Of how many points of a sample one vertex may have to be held against all points one by one.
-constexpr std::size_t kSuspectsOneIn = 1u << 9;
+// Of how many points of a sample one vertex may have to be held against all points one by one: many where no insertion
+// was in doubt, few where one was.
+constexpr std::size_t kSuspectsOneIn = 1u << 7, kSuspectsOneInDoubts = 1u << 12;
 
 }  // namespace
 
@@ -188,11 +189,13 @@ bool has_doubts(const Inserter& inserter) {
 // one by one, and to find that out at the end takes as long as exact signs from the start, which take hardly longer
 // there.
 bool doubles_will_do(Workspace& workspace, const Inserter& inserter) {
+  const InsertionCounts& counts = inserter.counts();
   if (has_doubts(inserter)) return false;
-  if (is_lattice(inserter.counts())) return true;
+  if (is_lattice(counts)) return true;
   constexpr std::size_t kFirst = 4;  // that the inserter started with
-  const Certificate certificate = certify(workspace, inserter.counts().inserted() + kFirst);
-  return certificate.holds && certificate.suspects * kSuspectsOneIn <= inserter.counts().inserted();
+  const Certificate certificate = certify(workspace, counts.inserted() + kFirst);
+  const std::size_t one_in = counts.certified == counts.inserted() ? kSuspectsOneIn : kSuspectsOneInDoubts;
+  return certificate.holds && certificate.suspects * one_in <= counts.inserted();
 }
 
 // All points of the workspace in order. If it fails, `at` is the point and `reason` the inserter's.

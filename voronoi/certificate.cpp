@@ -110,12 +110,16 @@ bool Certifier::look_at_all() {
 }
 
 bool Certifier::mend_doubts() {
+  std::size_t last = 0;
   std::stable_sort(found_.doubts.begin(), found_.doubts.end(),
                    [](const Doubt& a, const Doubt& b) { return a.vertex < b.vertex; });
   for (int round = 0; !found_.doubts.empty(); ++round) {
     doubtful_ += found_.doubts.size();
-    if (round == kRounds || doubtful_ > kMaxDoubts + workspace_.vertices.size() / kMaxDoubtsOneIn) return false;
+    const bool is_stuck = round > 0 && !mender_->may_patch() && found_.doubts.size() >= last;
+    if (is_stuck || round == kRounds || doubtful_ > kMaxDoubts + workspace_.vertices.size() / kMaxDoubtsOneIn)
+      return false;
     const std::vector<Doubt> doubts = std::exchange(found_.doubts, {});
+    last = doubts.size();
     if (!look_at_mended(mender_->mend(doubts, round)) ||
         mender_->work() > kMending + kMendingForEach * workspace_.points.size())
       return false;
@@ -315,13 +319,14 @@ void Certifier::find_fattest() {
 std::vector<Index> Certifier::guilty_suspects() {
   if (found_.suspects.empty()) return {};
   note_hull_points();
+  const PointBlocks blocks(workspace_.points);
   std::vector<Index> suspects = found_.suspects;
   sort_unique(suspects);
   std::vector<Intruder> intruders(suspects.size());
   tbb::parallel_for(std::size_t{0}, intruders.size(), [&](std::size_t s) {
     const Index v = suspects[s];
     intruders[s] = workspace_.at_infinity(v) ? farthest_beyond(workspace_, v, hull_points_, diameter_)
-                                             : deepest_within(workspace_, v, forming_, diameter_);
+                                             : blocks.deepest_within(workspace_, v, forming_, diameter_);
   });
   std::vector<Index> guilty, points;
   for (std::size_t s = 0; s < suspects.size(); ++s) {

@@ -28,6 +28,8 @@ class Mender {
   // Makes these vertices, which may be free, anew with exact signs, with so many layers around them, and others that
   // have to go with them (see Patch). The new ones; none where that takes too many.
   std::vector<Index> patch(std::vector<Index> vertices, int layers = 0);
+  // Whether none took too many: where one did, what insertions do not mend stays in doubt.
+  bool may_patch() const { return may_patch_; }
   // Facets that were looked at so far, each as often as it was: the time that mending has taken.
   std::size_t work() const { return work_; }
 
@@ -45,7 +47,7 @@ class Mender {
   Workspace& workspace_;
   Cavity cavity_;
   Patch patch_;
-  bool may_patch_ = true;  // as long as none took too many vertices
+  bool may_patch_ = true;
   double harmless_ = 0;
   std::size_t max_deleted_ = 0, work_ = 0;
   std::vector<Index> changed_;

@@ -1,5 +1,6 @@
 #pragma once
 #include <span>
+#include <vector>
 
 #include "forming_points.h"
 #include "workspace.h"
@@ -17,9 +18,20 @@ struct Intruder {
 // points, and no point, where the facet is too thin to tell. O(n).
 Intruder farthest_beyond(const Workspace& workspace, Index vertex, std::span<const Index> points, double diameter);
 
-// How deep the deepest of the points that form vertices lies in the sphere of a vertex's forming points, in terms of a
-// sphere no larger than the points' own; `diameter`, and no point, where the vertex is too flat to tell. O(n);
-// parallel.
-Intruder deepest_within(const Workspace& workspace, Index vertex, const FormingPoints& forming, double diameter);
+// Boxes around so many points each, in the order of insertion, in which neighbours in it are neighbours in space: few
+// of them reach into a sphere that is empty, or nearly.
+class PointBlocks {
+ public:
+  explicit PointBlocks(std::span<const Point> points);
+
+  // How deep the deepest of the points that form vertices lies in the sphere of a vertex's forming points, in terms of
+  // a sphere no larger than the points' own; `diameter`, and no point, where the vertex is too flat to tell. O(n) at
+  // most, mostly less.
+  Intruder deepest_within(const Workspace& workspace, Index vertex, const FormingPoints& forming,
+                          double diameter) const;
+
+ private:
+  std::vector<Box> boxes_;
+};
 
 }  // namespace orchard::detail
