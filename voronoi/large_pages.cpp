@@ -14,8 +14,8 @@ namespace orchard::detail {
 namespace {
 
 constexpr std::uintptr_t kPage = 4096, kLargePage = std::uintptr_t{1} << 21;
-constexpr int kMaxSlow = 2;     // large pages that may be slow before small ones take over
-constexpr double kSlow = 1e-3;  // longer than small pages in its place would take, in seconds
+constexpr std::uintptr_t kTried = 16;  // small pages that tell how long those of a large page would take
+constexpr int kMaxSlow = 2;            // large pages that may take longer before small ones take over
 
 double seconds_of_thread() {
   timespec time{};
@@ -23,12 +23,18 @@ double seconds_of_thread() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-// Whether the system maps a large page in no more time than that.
-bool maps_quickly(std::uintptr_t page) {
+// How long writing to some pages takes that are not mapped yet.
+double seconds_to_map(std::uintptr_t begin, std::uintptr_t end) {
+  const double start = seconds_of_thread();
+  for (std::uintptr_t page = begin; page < end; page += kPage) *reinterpret_cast<volatile char*>(page) = 0;
+  return seconds_of_thread() - start;
+}
+
+double seconds_to_map_large(std::uintptr_t page) {
   const double start = seconds_of_thread();
   madvise(reinterpret_cast<void*>(page), kLargePage, MADV_HUGEPAGE);
   *reinterpret_cast<volatile char*>(page) = 0;
-  return seconds_of_thread() - start <= kSlow;
+  return seconds_of_thread() - start;
 }
 
 }  // namespace
@@ -37,10 +43,13 @@ bool maps_quickly(std::uintptr_t page) {
 void use_large_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::size_t bytes) {
 #ifdef MADV_HUGEPAGE
   const auto first = reinterpret_cast<std::uintptr_t>(begin);
-  const std::uintptr_t from = (first + kPage - 1) & ~(kPage - 1), to = (first + bytes) & ~(kPage - 1);
+  const std::uintptr_t from = (first + kPage - 1) & ~(kPage - 1), to = (first + bytes) & ~(kPage - 1),
+                       from_large = (from + kTried * kPage + kLargePage - 1) & ~(kLargePage - 1);
+  if (from_large + kLargePage > to) return;
+  const double small = seconds_to_map(from_large - kTried * kPage, from_large) * (kLargePage / (kTried * kPage));
   int slow = 0;
-  for (std::uintptr_t page = (from + kLargePage - 1) & ~(kLargePage - 1); page + kLargePage <= to; page += kLargePage)
-    if (!maps_quickly(page) && ++slow == kMaxSlow) return;
+  for (std::uintptr_t page = from_large; page + kLargePage <= to; page += kLargePage)
+    if (seconds_to_map_large(page) > small && ++slow == kMaxSlow) return;
 #endif
 }
 
