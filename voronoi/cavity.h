@@ -9,11 +9,12 @@
 #include "four_vectors.h"
 #include "placed_sphere.h"
 #include "territory.h"
+#include "vectors.h"
 #include "workspace.h"
 
 namespace orchard::detail {
 
-#if defined(__GNUC__) && defined(__x86_64__)
+#ifdef ORCHARD_FOUR_LANES
 // For each set of four items the bytes of those first that are in it.
 struct alignas(16) OrderOfBytes : std::array<std::uint8_t, 16> {};
 inline constexpr std::array<OrderOfBytes, 16> kFirstOfFour = [] {
@@ -60,7 +61,7 @@ class Cavity {
     struct Open {
       Index* items;
       std::size_t count;
-#if defined(__GNUC__) && defined(__x86_64__)
+#ifdef ORCHARD_FOUR_LANES
       // Those of four items that have a bit set, where there is room for four.
       ORCHARD_AVX2 void push_four(__m128i four, unsigned bits) {
         const auto* const order = reinterpret_cast<const __m128i*>(kFirstOfFour[bits].data());

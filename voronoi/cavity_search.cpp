@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "cavity.h"
+#include "vectors.h"
 #include "workspace_four.h"
 
 namespace orchard::detail {
@@ -149,7 +150,7 @@ bool Cavity::delete_nearer_one_by_one(std::size_t first, std::size_t end) {
 // The time goes into mispredicted branches here if one is not careful: whether a neighbour has been seen, and on which
 // side its sign falls, is as good as random. So every neighbour is tested, and what has been seen is masked out.
 // And the lists are in variables of their own, for what is in memory has to come back from there each time.
-#if defined(__GNUC__) && defined(__x86_64__)
+#ifdef ORCHARD_FOUR_LANES
 [[gnu::target("avx2")]] bool Cavity::delete_nearer_by_four(std::size_t first, std::size_t end) {
   const FourVectors q{all_four(position_.x()), all_four(position_.y()), all_four(position_.z())};
   const double doubtful_input = workspace_.doubtful_input();

@@ -2,11 +2,12 @@
 
 #include <limits>
 
+#include "vectors.h"
 #include "workspace_four.h"
 
 namespace orchard::detail {
 
-#if defined(__GNUC__) && defined(__x86_64__)
+#ifdef ORCHARD_FOUR_LANES
 
 namespace {
 

@@ -4,10 +4,11 @@
 
 #include "four_vectors.h"
 #include "twofold.h"
+#include "vectors.h"
 
 namespace orchard::detail {
 
-#if defined(__GNUC__) && defined(__x86_64__)
+#ifdef ORCHARD_FOUR_LANES
 namespace {
 
 #define ORCHARD_FUSED [[gnu::target("avx2,fma"), gnu::always_inline]] inline

@@ -1,11 +1,14 @@
 #pragma once
-#if defined(__GNUC__) && defined(__x86_64__)
+#include "vectors.h"
+
+#ifdef ORCHARD_FOUR_LANES
 #include <immintrin.h>
 
 #include <array>
 #include <cstdint>
 
 #include "orchard/geometry/mesh.h"
+#include "vectors.h"
 
 // Four vectors at once, for functions that are compiled for AVX2 and chosen when the program runs. The operations are
 // in the order of Eigen's, so that all bits are the same. Everything is inlined: functions for several machines do not

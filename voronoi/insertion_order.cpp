@@ -11,6 +11,7 @@
 
 #include "large_pages.h"
 #include "orchard/geometry/random.h"
+#include "vectors.h"
 
 namespace orchard::detail {
 namespace {
@@ -52,7 +53,7 @@ std::uint64_t hilbert(std::array<std::uint32_t, 3> x) {
 constexpr std::size_t kEight = 8;
 using EightCells = std::array<std::array<std::uint32_t, kEight>, 3>;
 
-#if defined(__GNUC__) && defined(__x86_64__)
+#ifdef ORCHARD_FOUR_LANES
 [[gnu::target("avx2")]] std::array<std::uint64_t, kEight> eight_hilberts(const EightCells& cells) {
   using Lanes [[gnu::vector_size(4 * kEight)]] = std::uint32_t;
   Lanes x[3];

@@ -5,6 +5,7 @@
 
 #include "predicates.h"
 #include "twofold.h"
+#include "vectors.h"
 
 namespace orchard::detail {
 
@@ -56,7 +57,7 @@ OffCenter off_center(const Point& center, const Point& q, const Point& p1, const
 }
 
 // With the fused operation as one instruction instead of a call.
-#if defined(__GNUC__) && defined(__x86_64__)
+#ifdef ORCHARD_FOUR_LANES
 [[gnu::target("fma"), gnu::flatten]] OffCenter fused_off_center(const Point& center, const Point& q, const Point& a,
                                                                 const Point& b, const Point& c) {
   return off_center<true>(center, q, a, b, c);

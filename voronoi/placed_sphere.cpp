@@ -3,10 +3,11 @@
 #include <cstddef>
 
 #include "four_vectors.h"
+#include "vectors.h"
 
 namespace orchard::detail {
 
-#if defined(__GNUC__) && defined(__x86_64__)
+#ifdef ORCHARD_FOUR_LANES
 namespace {
 
 // Center and radius of a vertex, and vector and square of a point, are four doubles side by side.

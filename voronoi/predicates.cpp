@@ -9,6 +9,7 @@
 #include "exact_integer.h"
 #include "short_integer.h"
 #include "twofold.h"
+#include "vectors.h"
 
 namespace orchard::detail {
 namespace {
@@ -211,7 +212,7 @@ Sign exact_inside_sphere(const Point& q, const Point& a, const Point& b, const P
 
 // The same products and sums with the fused operation as one instruction instead of a call: the same results, twice as
 // fast.
-#if defined(__GNUC__) && defined(__x86_64__)
+#ifdef ORCHARD_FOUR_LANES
 [[gnu::target("fma"), gnu::flatten]] double fused_inside_sphere(const Point& q, const Point& a, const Point& b,
                                                                 const Point& c, const Point& d) {
   return sharp_inside_sphere(twofold_vectors(q, a, b, c, d)).high;

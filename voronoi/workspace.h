@@ -12,6 +12,7 @@
 #include "orchard/voronoi/diagram.h"
 #include "placed_sphere.h"
 #include "predicates.h"
+#include "vectors.h"
 
 namespace orchard::detail {
 
@@ -101,7 +102,7 @@ class Workspace {
   // Below this many squared radii of its own, the bound of a vertex at a place leaves the doubt in the input: its signs
   // are uncertain then wherever the bound does not tell. 0 with exact signs.
   double doubtful_input() const { return exact_ ? 0 : good_center_; }
-#if defined(__GNUC__) && defined(__x86_64__)
+#ifdef ORCHARD_FOUR_LANES
   // What power() and power_bound() tell of four vertices, and their marks: a bit for each. far or near, where the bound
   // tells; where it does not, input: the bound is below so many squared radii.
   struct FourTests {
@@ -247,7 +248,7 @@ class Workspace {
   void reserve(std::size_t count, std::size_t used);
 
  private:
-#if defined(__GNUC__) && defined(__x86_64__)
+#ifdef ORCHARD_FOUR_LANES
   ORCHARD_AVX2 __m256i states(const std::array<Index, 4>& v) const;
   ORCHARD_AVX2 __m256d bounds(__m256i states) const;
 #endif

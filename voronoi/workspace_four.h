@@ -4,12 +4,13 @@
 #include <cstdint>
 #include <limits>
 
+#include "vectors.h"
 #include "workspace.h"
 
 // What a workspace tells of four vertices at once.
 namespace orchard::detail {
 
-#if defined(__GNUC__) && defined(__x86_64__)
+#ifdef ORCHARD_FOUR_LANES
 ORCHARD_AVX2 __m256i Workspace::states(const std::array<Index, 4>& v) const {
   return _mm256_set_epi64x(state_[v[3]], state_[v[2]], state_[v[1]], state_[v[0]]);
 }

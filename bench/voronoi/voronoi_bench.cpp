@@ -2,8 +2,8 @@
 // processor time (the best of several), their ratio, growth from the set of a tenth of the size, how the insertions
 // were decided, the certificate's part of the time, the inaccuracy, and bytes a point at the peak. Then the moment
 // curve beside CGAL with places for its Voronoi vertices, insertion into a diagram, and the metric on 100,000 points.
-// All by one thread. voronoi_bench [largest number of points] [part of a set's name, or insert_points, or growth: two
-// sets alone, of 50,000 to 5,000,000 points] [folder of the models]
+// All by one thread. voronoi_bench [largest number of points] [part of a set's name, or insert_points, or sets: all of
+// them and nothing else, or growth: two sets alone, of 50,000 to 5,000,000 points] [folder of the models]
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <tbb/global_control.h>
@@ -190,6 +190,8 @@ int main(int argc, char** argv) {
     }
     return 0;
   }
+  const bool only_sets = std::string(part) == "sets";
+  if (only_sets) part = "";
   const auto set = [&](const std::string& name, std::size_t n, const std::function<test::Points()>& make) {
     if (n <= max && name.find(part) != std::string::npos) table.add(name, make());
   };
@@ -235,6 +237,7 @@ int main(int argc, char** argv) {
     set("moment curve", n, [&] { return bench::moment_curve_points(n); });
     set("skew lines", n, [&] { return bench::skew_line_points(n, 1); });
   }
+  if (only_sets) return 0;
   const auto holds_part = [&](const char* name) { return std::string(name).find(part) != std::string::npos; };
   if (holds_part("moment curve")) {
     std::printf("\nBeside CGAL with its Voronoi vertices\n");
