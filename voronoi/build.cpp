@@ -31,8 +31,8 @@ constexpr std::size_t kTried = 1u << 12, kTriedOneIn = 8;
 // several times as long there, and what rounding does to it is mended.
 constexpr double kLattice = 0.25;
 
-// Of how many points of a sample one vertex may have to be held against all points one by one: many where no insertion
-// was in doubt, few where one was.
+// Of how many points of a sample one vertex may have to be held against all points: many where no insertion was in
+// doubt, few where one was.
 constexpr std::size_t kSuspectsOneIn = 1u << 7, kSuspectsOneInDoubts = 1u << 12;
 
 }  // namespace

@@ -115,6 +115,7 @@ bool Certifier::mend_doubts() {
                    [](const Doubt& a, const Doubt& b) { return a.vertex < b.vertex; });
   for (int round = 0; !found_.doubts.empty(); ++round) {
     doubtful_ += found_.doubts.size();
+    // Insertions alone mend no more, and parts were too large.
     const bool is_stuck = round > 0 && !mender_->may_patch() && found_.doubts.size() >= last;
     if (is_stuck || round == kRounds || doubtful_ > kMaxDoubts + workspace_.vertices.size() / kMaxDoubtsOneIn)
       return false;

@@ -27,7 +27,7 @@ class Certifier {
   static constexpr double kFacet = 1.0 / 64;
   // The part of the intrusion that may lie between the sphere that a vertex was given and its own.
   static constexpr double kGiven = 1.0 / 4;
-  // Vertices that are held against all points one by one; where there are more, exact signs are cheaper.
+  // Vertices that are held against all points; where there are more, exact signs are cheaper.
   static constexpr std::size_t kMaxSuspects = 4096, kOfDent = 4;
 
   // The edge of the hull between the facets of a vertex at infinity and of its neighbour `slot`.

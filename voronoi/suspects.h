@@ -18,8 +18,8 @@ struct Intruder {
 // points, and no point, where the facet is too thin to tell. O(n).
 Intruder farthest_beyond(const Workspace& workspace, Index vertex, std::span<const Index> points, double diameter);
 
-// Boxes around so many points each, in the order of insertion, in which neighbours in it are neighbours in space: few
-// of them reach into a sphere that is empty, or nearly.
+// Blocks of points that follow each other in the order of insertion, in which most are neighbours in space, with a box
+// around each: a sphere that is empty, or nearly, reaches into few of them. For the points of one workspace.
 class PointBlocks {
  public:
   explicit PointBlocks(std::span<const Point> points);
