@@ -142,7 +142,8 @@ Verdict of_rounds(const Round& a, const Round& b) noexcept {
 
 // The normal from the box to the round shape.
 Verdict of_box(const Shape& box, const Pose& pose, const Round& round) noexcept {
-  const NearestOfBox near = nearest_of_box(box.p, in_box(pose, round.p), in_box(pose, round.q));
+  const Pose back = inverse(pose);
+  const NearestOfBox near = nearest_of_box(box.p, transform(back, round.p), transform(back, round.q));
   const double distance = near.distance * pose.scale;
   if (!std::isfinite(distance)) return unknown_verdict();
   if (distance > round.radius) return no_with(distance - round.radius);

@@ -84,7 +84,8 @@ SurfacePoint search_outward(const TreeView& tree, const Pose& pose, bool rigid, 
     best = {least * pose.scale, near.on_b, triangle};
     return !any;
   };
-  if (guess < tree.triangles.size()) {
+  const bool guessed = guess < tree.triangles.size();
+  if (guessed) {
     compare(points_of(tree, guess), guess, true);
     if (best.triangle == guess && least == 0) {
       best.point = frame.leave(best.point);
@@ -96,7 +97,8 @@ SurfacePoint search_outward(const TreeView& tree, const Pose& pose, bool rigid, 
     const float others = walk_outward(
         tree, shape_of(tree, segment), [&] { return least; },
         [&](const TriangleBlock& block, std::uint32_t lane, bool may_meet) {
-          return compare(points_of(block, lane), block.triangle[lane], may_meet);
+          const std::uint32_t triangle = block.triangle[lane];
+          return (guessed && triangle == guess) || compare(points_of(block, lane), triangle, may_meet);
         });
     rest = std::min(rest, double{others});
   } else {
