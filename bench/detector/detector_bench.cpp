@@ -81,15 +81,20 @@ class OrchardFrames {
     for (std::size_t i = 0; i < ids_.size(); ++i) {
       const bool there = scene_.bodies[i].birth <= step && step < scene_.bodies[i].death;
       if (there && ids_[i] == runtime::kNoBody) {
-        const runtime::BodyPart part{shapes_[scene_.bodies[i].parts[0]], {}};
+        parts_.clear();
+        for (std::size_t k = 0; k < scene_.bodies[i].parts.size(); ++k) {
+          parts_.push_back({shapes_[scene_.bodies[i].parts[k]], scene_.local(step, i, k)});
+        }
         ids_[i] = scene_.bodies[i].is_static
-                      ? detector_->add_static({part}, scene_.poses[static_cast<std::size_t>(step)][i])
-                      : detector_->add_body({part}, scene_.bodies[i].options);
+                      ? detector_->add_static(parts_, scene_.poses[static_cast<std::size_t>(step)][i])
+                      : detector_->add_body(parts_, scene_.bodies[i].options);
         values_[ids_[i].index] = state_of(i);
       } else if (!there && ids_[i] != runtime::kNoBody) {
         detector_->remove(ids_[i]);
         ids_[i] = runtime::kNoBody;
       }
+      const std::size_t joints = there ? scene_.joints(i) : 0;
+      for (std::size_t k = 0; k < joints; ++k) detector_->set_local(ids_[i], k, scene_.local(step, i, k));
     }
     const runtime::Frame frame = detector_->step(now, budget);
     processor = processor_ms() - before;
@@ -102,6 +107,7 @@ class OrchardFrames {
   std::vector<runtime::BodyState> values_;
   std::vector<runtime::BodyId> ids_;
   std::vector<runtime::ShapeId> shapes_;
+  std::vector<runtime::BodyPart> parts_;
   std::unique_ptr<runtime::Detector> detector_;
 };
 
@@ -150,8 +156,8 @@ void for_scenes(const Wanted& wanted, Visit&& visit) {
   using namespace runtime::test;
   for (const auto& [name, make, seed] :
        {Maker{"flight", flight, 1}, Maker{"falling pile", falling_pile, 2}, Maker{"asteroid field", asteroid_field, 3},
-        Maker{"bouncing box", bouncing_box, 5}, Maker{"conveyor", conveyor, 6}, Maker{"clusters", clusters, 7},
-        Maker{"chain", chain, 1}}) {
+        Maker{"robot arm", robot_arm, 4}, Maker{"machines", machines, 8}, Maker{"bouncing box", bouncing_box, 5},
+        Maker{"conveyor", conveyor, 6}, Maker{"clusters", clusters, 7}, Maker{"chain", chain, 1}}) {
     if (wanted.scene == "all" || wanted.scene == name) visit(make(wanted.bodies, wanted.steps, seed));
   }
 }

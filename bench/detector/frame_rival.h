@@ -14,7 +14,8 @@ class FrameRival {
   virtual std::size_t step(int step) = 0;  // how many pairs touch
 };
 
-// Of scenes without articulated bodies. Null where the library is not installed.
+// A part of a body is an object of its own; parts of one body are never tested, nor are static bodies against each
+// other. Null where the library is not installed.
 std::unique_ptr<FrameRival> fcl_frames_double(const runtime::test::Scene& scene);
 std::unique_ptr<FrameRival> fcl_frames_float(const runtime::test::Scene& scene);
 std::unique_ptr<FrameRival> bullet_frames(const runtime::test::Scene& scene);

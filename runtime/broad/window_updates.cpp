@@ -7,6 +7,15 @@ namespace {
 
 constexpr std::size_t kNearAtOnce = 512;  // near pairs that are tested together
 
+// By a quarter at most, along each axis.
+bool hardly_longer(const QuantumBox& box, const QuantumBox& than) noexcept {
+  const auto length = [](const QuantumBox& of, std::size_t d) { return std::uint64_t{of.upper[d]} - of.lower[d]; };
+  for (std::size_t d = 0; d < 3; ++d) {
+    if (4 * length(box, d) > 5 * length(than, d)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 // True if all windows end at the same step.
@@ -100,20 +109,29 @@ bool WindowUpdates::note_boxes(Block& block, std::span<const BodyIndex> bodies) 
   return false;
 }
 
-// Faster than the others: update it again sooner, until its box takes few enough cells.
+// Faster than the others: update it again sooner, until its box takes few enough cells. One that is too large for that
+// is not updated sooner than its motion is worth.
 void WindowUpdates::shrink(Block& block, BodyIndex body, std::size_t i) {
   Window& window = parts_.windows[body];
   Step steps = window.end == kNeverStep ? 1 : window.end - block.from;
-  BoxBlock box;
-  for (bool fits = false; steps > 1 && !fits;) {
-    steps = (steps + 1) / 2;
-    window.end = block.from + steps;
-    window.length = static_cast<std::uint8_t>(steps);
-    const double duration = parts_.pool.clock.seconds_between(block.now, window.end - 1);
+  if (steps <= 1) return;
+  const auto box_for = [&](Step wanted) {
+    const double duration = parts_.pool.clock.seconds_between(block.now, block.from + wanted - 1);
+    BoxBlock box;
     block.lattice.boxes({&motions_[i], 1}, {&duration, 1}, box, false, options_.vectors);
-    fits = parts_.boxes.note_again(body, box.get(0));
-    block.boxes.set(i, box.get(0));
+    return box.get(0);
+  };
+  const QuantumBox least = box_for(1);
+  const bool large = !BoxIndex::fits(least);
+  QuantumBox box = block.boxes.get(i);
+  while (steps > 1 && !(large ? hardly_longer(box, least) : BoxIndex::fits(box))) {
+    steps = (steps + 1) / 2;
+    box = box_for(steps);
   }
+  window.end = block.from + steps;
+  window.length = static_cast<std::uint8_t>(steps);
+  parts_.boxes.note_again(body, box);
+  block.boxes.set(i, box);
 }
 
 // Moves those whose new bounds are known up to `from`, with their motions, to the front; returns how many.

@@ -56,13 +56,21 @@ Body& BodyTable::take_in(BodyId id, std::size_t count) {
   make_room(asking_, slots);  // for asking everyone
   Body& body = bodies_[id.index];
   body.parts.clear();
-  body.parts.reserve(count);  // nothing throws from here on
+  body.parts.reserve(count);
+  const std::size_t several = count > 1 ? count : 0;
+  body.part_spheres.assign(several, PlacedSphere{});
+  body.near_part_spheres.assign(several, NearSphere{});  // nothing throws from here on
   std::vector<PartRecord> parts = std::move(body.parts);
   std::vector<PartBefore> parts_before = std::move(body.parts_before);
+  std::vector<PlacedSphere> part_spheres = std::move(body.part_spheres);
+  std::vector<NearSphere> near_part_spheres = std::move(body.near_part_spheres);
   body = Body{};
   body.parts = std::move(parts);
   body.parts_before = std::move(parts_before);
   body.parts_before.clear();
+  body.part_spheres = std::move(part_spheres);
+  body.near_part_spheres = std::move(near_part_spheres);
+  any_parts_ = any_parts_ || count > 1;
   body.id = id;
   return body;
 }
@@ -100,8 +108,26 @@ void BodyTable::add_turn(BodyIndex body, double way) noexcept {
   disturb(body);
 }
 
+// Its spheres, where it has several.
+void BodyTable::place_parts(Body& body) noexcept {
+  const Pose& pose = body.state.pose;
+  const Vec3& t = pose.translation;
+  for (std::size_t i = 0; i < body.part_spheres.size(); ++i) {
+    const PartRecord& part = body.parts[i];
+    PlacedSphere& sphere = body.part_spheres[i];
+    sphere = {transform(pose, part.center), part.reach * pose.scale};
+    double size = length(part.center) * pose.scale + sphere.reach;
+    for (std::size_t k = 0; k < 3; ++k) size += std::fabs(t[k]) + std::fabs(sphere.center[k]);
+    Whereabouts where;
+    where.middle = sphere.center;
+    where.slack = 1e-14 * size;
+    if (body.rigid && !(body.continuous_speed > 0)) where.reach = sphere.reach;
+    body.near_part_spheres[i] = near_sphere_of(where);
+  }
+}
+
 void BodyTable::moved(BodyIndex index, const Pose& before) noexcept {
-  const Body& body = bodies_[index];
+  Body& body = bodies_[index];
   const Pose& now = bodies_[index].state.pose;
   Whereabouts& where = whereabouts_[index];
   const double reach = body.one ? body.first_reach : body.reach;
@@ -112,6 +138,7 @@ void BodyTable::moved(BodyIndex index, const Pose& before) noexcept {
   const bool tells = body.one && body.rigid && !(body.continuous_speed > 0);
   where.reach = tells ? reach * now.scale : std::numeric_limits<double>::infinity();
   near_spheres_[index] = near_sphere_of(where);
+  place_parts(body);
   const double change = pose_change(before, now);
   add_turn(index, change == 0 ? 0 : (change + 4 * kRigidTolerance * (now.scale + before.scale)) * reach);
   if (!body.rigid || !std::isfinite(size)) disturb(index);
@@ -241,7 +268,9 @@ bool BodyTable::surely_apart(const BodyPair& pair, double time_step) const noexc
 std::size_t BodyTable::memory_bytes() const noexcept {
   std::size_t bytes = bytes_of(bodies_) + bytes_of(before_) + bytes_of(asking_) + bytes_of(answers_) +
                       bytes_of(whereabouts_) + bytes_of(near_spheres_) + bytes_of(disturbed_);
-  for (const Body& body : bodies_) bytes += bytes_of(body.parts) + bytes_of(body.parts_before);
+  for (const Body& body : bodies_)
+    bytes += bytes_of(body.parts) + bytes_of(body.parts_before) + bytes_of(body.part_spheres) +
+             bytes_of(body.near_part_spheres);
   return bytes;
 }
 

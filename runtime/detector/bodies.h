@@ -30,6 +30,17 @@ struct PartBefore {
   Step until = kNotAsked;
 };
 
+// A sphere in floats, enlarged by more than what that rounds, so that four of them fit in a line of memory. Two that do
+// not touch are apart by Whereabouts, too.
+struct NearSphere {
+  float x = 0, y = 0, z = 0, radius = std::numeric_limits<float>::infinity();
+};
+
+struct PlacedSphere {  // in the world
+  Vec3 center{};
+  double reach = std::numeric_limits<double>::infinity();  // until it is known where
+};
+
 // By lines of memory: what each pair asks about, what a new pose does, and the rest.
 struct alignas(64) Body {
   BodyId id = kNoBody;  // kNoBody: no body has this index now
@@ -62,6 +73,9 @@ struct alignas(64) Body {
   Vec3 first_center{};                   // of the first part's sphere,
   double first_reach = 0;                // and its radius
   std::vector<PartBefore> parts_before;  // of each part; empty until one moves
+  // Around each part, if there are several, at the pose that is known.
+  std::vector<PlacedSphere> part_spheres;
+  std::vector<NearSphere> near_part_spheres;
 };
 
 // What a gap between spheres may be rounded by, in units of Whereabouts::slack.
@@ -77,12 +91,6 @@ struct alignas(64) Whereabouts {
   double turned = 0;             // the way of any point about the middle up to now, at most, from step to step
   std::uint32_t changes = 0;     // since what was known before says nothing of now
   std::uint32_t generation = 0;  // of the body that has the index
-};
-
-// Its sphere in floats, enlarged by more than what that rounds, so that four of them fit in a line of memory. Two that
-// do not touch are apart by Whereabouts, too.
-struct NearSphere {
-  float x = 0, y = 0, z = 0, radius = std::numeric_limits<float>::infinity();
 };
 
 // The parts of `body`, ready for the broad phase: a sphere around all of them, around the body's origin.
@@ -122,6 +130,13 @@ class BodyTable {
   }
   const Whereabouts& whereabouts(BodyIndex body) const noexcept { return whereabouts_[body]; }
   const NearSphere& near_sphere(BodyIndex body) const noexcept { return near_spheres_[body]; }
+  // Whether any body ever had several parts, and whether one of these two has.
+  bool any_parts() const noexcept { return any_parts_; }
+  bool either_has_parts(const BodyPair& pair) const noexcept { return !bodies_[pair.a].one || !bodies_[pair.b].one; }
+  // Of its parts; that of a body of one part is its own.
+  std::span<const NearSphere> near_part_spheres(BodyIndex body) const noexcept {
+    return bodies_[body].one ? std::span(&near_spheres_[body], 1) : std::span(bodies_[body].near_part_spheres);
+  }
   ORCHARD_INLINE void prefetch_near_sphere(BodyIndex body) const noexcept {  // nothing, of a half-space
     if (body < near_spheres_.size()) prefetch(&near_spheres_[body]);
   }
@@ -147,6 +162,7 @@ class BodyTable {
   std::size_t memory_bytes() const noexcept;
 
  private:
+  void place_parts(Body& body) noexcept;
   void add_turn(BodyIndex body, double way) noexcept;
   void disturb(BodyIndex body) noexcept;
   void ask_source(Step step, double time, const Executor& executor);
@@ -155,7 +171,7 @@ class BodyTable {
   StateSource source_;
   std::vector<Body> bodies_;
   std::vector<Pose> before_;  // at the step asked before
-  bool keeps_before_ = false;
+  bool keeps_before_ = false, any_parts_ = false;
   std::vector<Whereabouts> whereabouts_;
   std::vector<NearSphere> near_spheres_;
   std::vector<std::uint8_t> disturbed_;

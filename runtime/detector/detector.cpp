@@ -14,6 +14,9 @@ using detail::PartRecord;
 
 namespace {
 
+// Of a body whose parts go farther out than ever: so that it need not be told of each step on the way.
+constexpr double kStretchAhead = 1 + 0x1p-4;
+
 bool is_valid_option(const DetectorOptions& options) noexcept {
   return options.steps_to_end >= 1 &&
          is_valid(BroadPhaseOptions{options.time_step, options.start, 0, true, options.position_slack});
@@ -268,7 +271,7 @@ bool Detector::set_local(BodyId body, std::size_t part, const Pose& local) {
   s.changed(*found);
   const double reach = detail::reach_of(found->parts);
   if (reach <= found->reach) return true;
-  found->reach = reach;
+  found->reach = kStretchAhead * reach;
   found->stretched = s.answered;
   if (found->is_static) return s.or_fail([&] { return s.broad.move_static(body, s.place_of(*found)); });
   s.update_again(*found);

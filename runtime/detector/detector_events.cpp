@@ -24,6 +24,16 @@ bool near_spheres_apart(const detail::NearSphere& a, const detail::NearSphere& b
   return x * x + y * y + z * z > reach * reach;
 }
 
+// Whether each part of the one is apart from each of the other.
+bool parts_apart(std::span<const detail::NearSphere> a, std::span<const detail::NearSphere> b) noexcept {
+  for (const detail::NearSphere& q : b) {
+    for (const detail::NearSphere& p : a) {
+      if (!near_spheres_apart(p, q)) return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 using detail::Body;
@@ -58,7 +68,8 @@ bool Detector::State::sphere_above(const BodyPair& pair) const noexcept {
 }
 
 // Those of records.pair(begin .. end - 1) that their spheres in floats do not tell apart, and those whose records would
-// be changed by that.
+// be changed by that. Of bodies with several parts each part's sphere is looked at, if there are such bodies.
+template <bool kParts>
 std::size_t Detector::State::find_near_spheres(std::size_t begin, std::size_t end, std::uint32_t* near) const noexcept {
   constexpr std::size_t kAhead = 24;
   const BodyPair* const pairs_of = &records.pair(0);
@@ -67,7 +78,11 @@ std::size_t Detector::State::find_near_spheres(std::size_t begin, std::size_t en
     const BodyIndex first = pairs_of[place].a;
     const detail::NearSphere a = bodies.near_sphere(first);
     const auto look_at = [&](BodyIndex second) ORCHARD_INLINE_LAMBDA {
-      const bool apart = !is_half_space(second) && near_spheres_apart(a, bodies.near_sphere(second));
+      bool apart = !is_half_space(second) && near_spheres_apart(a, bodies.near_sphere(second));
+      if constexpr (kParts) {
+        apart = apart || (!is_half_space(second) && bodies.either_has_parts({first, second}) &&
+                          parts_apart(bodies.near_part_spheres(first), bodies.near_part_spheres(second)));
+      }
       near[found] = static_cast<std::uint32_t>(place);
       found += static_cast<std::size_t>(records.busy(place)) | static_cast<std::size_t>(!apart);
     };
@@ -83,7 +98,9 @@ std::size_t Detector::State::find_near_spheres(std::size_t begin, std::size_t en
 // Those of records.pair(begin .. end - 1) that their spheres do not tell apart, nor what is known of them, or whose
 // records would be changed by that. Plus kNoRecordYet where there is none.
 std::size_t Detector::State::find_near(std::size_t begin, std::size_t end, std::uint32_t* near) noexcept {
-  std::size_t found = find_near_spheres(begin, end, near), count_near = 0;
+  std::size_t found = bodies.any_parts() ? find_near_spheres<true>(begin, end, near)
+                                         : find_near_spheres<false>(begin, end, near),
+              count_near = 0;
   constexpr std::size_t kAhead = 8;
   for (std::size_t i = 0; i < found; ++i) {
     if (i + kAhead < found) records.prefetch_known(near[i + kAhead]);

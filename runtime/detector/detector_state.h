@@ -57,6 +57,7 @@ struct Detector::State {
   void gather(Step step, const Advance& now);
   void ask_involved(Step step);
   void match(Step step, Frame& frame);
+  template <bool kParts>
   std::size_t find_near_spheres(std::size_t begin, std::size_t end, std::uint32_t* near) const noexcept;
   std::size_t find_near(std::size_t begin, std::size_t end, std::uint32_t* near) noexcept;
   void find_active();

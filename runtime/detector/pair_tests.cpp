@@ -42,8 +42,10 @@ void Places::place_sphere(BodyIndex body, std::uint32_t part, PlacedPart& placed
   const Pose& pose = bodies_->state(body).pose;
   placed_part.shape = &(*shapes_)[record.shape];
   placed_part.rigid = of.rigid;
-  placed_part.center = transform(pose, record.center);
-  placed_part.reach = record.reach * pose.scale;
+  const PlacedSphere sphere =
+      of.one ? PlacedSphere{transform(pose, record.center), record.reach * pose.scale} : of.part_spheres[part];
+  placed_part.center = sphere.center;
+  placed_part.reach = sphere.reach;
 }
 
 void Places::place_before(BodyIndex body, std::uint32_t part, Step now, PlacedPart& placed_part) const noexcept {

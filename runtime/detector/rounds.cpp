@@ -103,23 +103,36 @@ void Rounds::answer(std::uint32_t index, Record& record, Step now, QueryPool::Sc
   if (places_->parts(record.pair.a) == 1 && places_->parts(record.pair.b) == 1) {
     return answer_two_parts(record, now, scratch);
   }
+  answer_parts(record, now, scratch);
+}
+
+// Bodies of several parts: most of these are told apart by their spheres, before anybody needs to know how they are
+// turned.
+void Rounds::answer_parts(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept {
   const Verdict last = record.verdict;
   const std::uint32_t last_a = record.part_a, last_b = record.part_b;
   forget_answer(record);
   PartPair pair;
   const std::uint32_t parts_a = places_->parts(record.pair.a), parts_b = places_->parts(record.pair.b);
-  if (pair.b.shape == nullptr && is_half_space(record.pair.b)) pair.half = places_->half_space(record.pair.b);
+  if (is_half_space(record.pair.b)) pair.half = places_->half_space(record.pair.b);
   const std::uint64_t before = scratch.work;
   bool known = true;
+  if (parts_b == 1) places_->place(record.pair.b, 0, pair.b);
   for (std::uint32_t i = 0; i < parts_a && record.verdict.answer != Answer::yes; ++i) {
-    places_->place(record.pair.a, i, pair.a);
+    places_->place_sphere(record.pair.a, i, pair.a);
+    bool placed = false;
     for (std::uint32_t j = 0; j < parts_b && record.verdict.answer != Answer::yes; ++j) {
-      places_->place(record.pair.b, j, pair.b);
-      const bool part = spheres_part(pair);
+      if (parts_b > 1) places_->place_sphere(record.pair.b, j, pair.b);
       ++scratch.work;
+      if (spheres_part(pair)) {
+        take_in(record, unasked(pair), i, j);
+        continue;
+      }
+      if (!placed) places_->place(record.pair.a, i, pair.a);
+      placed = true;
+      if (parts_b > 1) places_->place(record.pair.b, j, pair.b);
       const std::uint32_t guess = i == last_a && j == last_b ? nearest_triangle(last, pair) : kNoTriangle;
-      const Verdict verdict =
-          part ? unasked(pair) : answer_exactly(scratch.workspace.narrow, pair, scratch.work, kNoLimit, guess);
+      const Verdict verdict = answer_exactly(scratch.workspace.narrow, pair, scratch.work, kNoLimit, guess);
       take_in(record, verdict, i, j);
       known = known && verdict.answer != Answer::maybe;
     }

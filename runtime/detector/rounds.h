@@ -57,6 +57,7 @@ class Rounds {
                           QueryPool::Scratch& scratch) noexcept;
   void answer_coherently(std::uint32_t index, Record& record, Step now, QueryPool::Scratch& scratch) const noexcept;
   void answer_two_parts(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept;
+  void answer_parts(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept;
   void sweep_one(Record& record, Step now, QueryPool::Scratch& scratch, std::uint64_t most) const noexcept;
   void make_tasks(RecordTable& records, std::span<const std::uint32_t> open, Step now);
   void sort_tasks(const RecordTable& records);

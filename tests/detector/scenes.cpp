@@ -282,6 +282,53 @@ Scene robot_arm(std::size_t obstacles, int steps, std::uint64_t seed) {
   return scene;
 }
 
+// Bodies of several sizes that bounce in a box, of one to four parts, which all but every third one moves about itself.
+Scene machines(std::size_t bodies, int steps, std::uint64_t seed) {
+  Scene scene;
+  scene.name = "machines", scene.steps = steps;
+  Draw draw(seed);
+  scene.shapes = mixed_shapes();
+  PenaltySolver solver;
+  solver.damping = 0;
+  const double wall = 1.3 * std::cbrt(static_cast<double>(bodies)) + 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    Vec3 normal{};
+    normal[axis] = 1;
+    solver.planes.push_back({normal, -wall});
+    solver.planes.push_back({-1.0 * normal, -wall});
+  }
+  struct Joint {
+    Vec3 place, axis;
+    double turn, scale;
+  };
+  std::vector<std::vector<Joint>> joints(bodies);
+  for (std::size_t i = 0; i < bodies; ++i) {
+    Ball ball = random_ball(draw, wall - 1, 6);
+    ball.scale = draw.uniform(0.4, 1.1);
+    solver.balls.push_back(ball);
+    SceneBody& body = scene.bodies.emplace_back();
+    for (std::size_t k = 0; k < 1 + i % 4; ++k) {
+      body.parts.push_back((i + k) % scene.shapes.size());
+      joints[i].push_back({draw.uniform(0.2, 1.2) * Vec3(draw.direction()), draw.direction(), draw.uniform(-4, 4),
+                           draw.uniform(0.3, 0.8)});
+    }
+  }
+  record(scene, solver);
+  for (int step = 0; step < steps; ++step) {
+    auto& locals = scene.locals.emplace_back(bodies);
+    for (std::size_t i = 0; i < bodies; ++i) {
+      for (const Joint& joint : joints[i]) {
+        const double half = i % 3 == 0 ? joint.turn : joint.turn * step * scene.dt, s = std::sin(half);
+        const Vec3& u = joint.axis;
+        Pose local = *pose_from_quaternion({std::cos(half), s * u[0], s * u[1], s * u[2]}, joint.place);
+        local.scale = joint.scale;
+        locals[i].push_back(local);
+      }
+    }
+  }
+  return scene;
+}
+
 Scene bouncing_box(std::size_t bodies, int steps, std::uint64_t seed) {
   Scene scene;
   scene.name = "bouncing box", scene.steps = steps;
@@ -397,6 +444,7 @@ std::vector<Scene> every_scene(std::size_t bodies, int steps, std::uint64_t seed
   scenes.push_back(falling_pile(bodies, steps, seed + 1));
   scenes.push_back(asteroid_field(bodies, steps, seed + 2));
   scenes.push_back(robot_arm(bodies, steps, seed + 3));
+  scenes.push_back(machines(bodies, steps, seed + 7));
   scenes.push_back(bouncing_box(bodies, steps, seed + 4));
   scenes.push_back(conveyor(bodies, steps, seed + 5));
   scenes.push_back(clusters(bodies, steps, seed + 6));

@@ -39,6 +39,8 @@ struct Scene {
   std::vector<std::vector<Pose>> poses;                // [step][body]
   std::vector<std::vector<std::vector<Pose>>> locals;  // [step][body][part], of articulated bodies; else empty
 
+  // Parts of the body that move in its frame.
+  std::size_t joints(std::size_t body) const { return locals.empty() ? 0 : locals[0][body].size(); }
   Pose local(int step, std::size_t body, std::size_t part) const {
     return locals.empty() || locals[static_cast<std::size_t>(step)][body].empty()
                ? Pose{}
@@ -58,6 +60,7 @@ Scene flight(std::size_t bodies, int steps, std::uint64_t seed);
 Scene falling_pile(std::size_t bodies, int steps, std::uint64_t seed);
 Scene asteroid_field(std::size_t bodies, int steps, std::uint64_t seed);
 Scene robot_arm(std::size_t obstacles, int steps, std::uint64_t seed);
+Scene machines(std::size_t bodies, int steps, std::uint64_t seed);
 Scene bouncing_box(std::size_t bodies, int steps, std::uint64_t seed);
 Scene conveyor(std::size_t bodies, int steps, std::uint64_t seed);
 Scene clusters(std::size_t bodies, int steps, std::uint64_t seed);
