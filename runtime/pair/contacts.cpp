@@ -53,17 +53,21 @@ std::size_t find_cuts(const PlacedPair& pair, Workspace::Scratch& scratch) noexc
   return found;
 }
 
-// From the triangles that meet: what the second surface faces, on the whole, to leave the first one.
+// From the triangles that meet: what the second surface faces, on the whole, to leave the first one. Nothing where
+// normals cancel out but for their rounding.
 Vec3 facing(std::span<const Cut> cuts, double least) noexcept {
+  constexpr double kLeastFacing = 1e-6;  // of all weights
   Vec3 sum{};
+  double weights = 0;
   for (const Cut& cut : cuts) {
     const auto normal = [](const detail::TrianglePoints& t) {
       return unit(cross(minus(t[1], t[0]), minus(t[2], t[0])));
     };
     const double weight = length(minus(cut.q, cut.p)) + least;
     sum = along(along(sum, normal(cut.first), weight), normal(cut.second), -weight);
+    weights += weight;
   }
-  return unit(sum);
+  return length(sum) > kLeastFacing * weights ? unit(sum) : Vec3{};
 }
 
 // Across the plane that the curves of contact lie in, nearly: the direction in which they extend least.

@@ -76,6 +76,11 @@ class ExactSum {
   }
 
   int sign() const noexcept { return size_ == 0 ? 0 : detail::sign(parts_[size_ - 1]); }
+  double value() const noexcept {
+    double sum = 0;
+    for (std::size_t i = 0; i < size_; ++i) sum += parts_[i];
+    return sum;
+  }
 
  private:
   std::array<double, 192> parts_;  // six triple products of pairs, four doubles for each of their eight terms
@@ -88,36 +93,58 @@ PairVector difference(const Vec3& a, const Vec3& b) noexcept {
   return {difference(a[0], b[0]), difference(a[1], b[1]), difference(a[2], b[2])};
 }
 
-int close_orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, double permanent) noexcept {
-  const PairVector u = difference(a, d), v = difference(b, d), w = difference(c, d);
+Pair close_determinant(const PairVector& u, const PairVector& v, const PairVector& w) noexcept {
   Pair sum = {0, 0};
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
     sum = add(sum, multiply(u[i], add(multiply(v[j], w[k]), negate(multiply(v[k], w[j])))));
   }
-  if (std::fabs(sum.high) > kPairError * permanent) return sign(sum.high);
+  return sum;
+}
+
+ExactSum exact_determinant(const PairVector& u, const PairVector& v, const PairVector& w) noexcept {
   ExactSum exact;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
     exact.add_product(v[j], w[k], u[i]);
     exact.add_product(v[k], w[j], negate(u[i]));
   }
-  return exact.sign();
+  return exact;
 }
+
+// In plain double, and the sum of its terms' sizes.
+struct PlainDeterminant {
+  double value, permanent;
+  PlainDeterminant(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) noexcept {
+    const double ux = a[0] - d[0], uy = a[1] - d[1], uz = a[2] - d[2];
+    const double vx = b[0] - d[0], vy = b[1] - d[1], vz = b[2] - d[2];
+    const double wx = c[0] - d[0], wy = c[1] - d[1], wz = c[2] - d[2];
+    const double yz = vy * wz, zy = vz * wy, zx = vz * wx, xz = vx * wz, xy = vx * wy, yx = vy * wx;
+    value = ux * (yz - zy) + uy * (zx - xz) + uz * (xy - yx);
+    permanent = std::fabs(ux) * (std::fabs(yz) + std::fabs(zy)) + std::fabs(uy) * (std::fabs(zx) + std::fabs(xz)) +
+                std::fabs(uz) * (std::fabs(xy) + std::fabs(yx));
+  }
+};
 
 }  // namespace
 
 int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) noexcept {
-  const double ux = a[0] - d[0], uy = a[1] - d[1], uz = a[2] - d[2];
-  const double vx = b[0] - d[0], vy = b[1] - d[1], vz = b[2] - d[2];
-  const double wx = c[0] - d[0], wy = c[1] - d[1], wz = c[2] - d[2];
-  const double yz = vy * wz, zy = vz * wy, zx = vz * wx, xz = vx * wz, xy = vx * wy, yx = vy * wx;
-  const double determinant = ux * (yz - zy) + uy * (zx - xz) + uz * (xy - yx);
-  const double permanent = std::fabs(ux) * (std::fabs(yz) + std::fabs(zy)) +
-                           std::fabs(uy) * (std::fabs(zx) + std::fabs(xz)) +
-                           std::fabs(uz) * (std::fabs(xy) + std::fabs(yx));
-  if (std::fabs(determinant) > kPlainDeterminantError * permanent) return sign(determinant);
-  return close_orientation(a, b, c, d, permanent);
+  const PlainDeterminant plain(a, b, c, d);
+  if (std::fabs(plain.value) > kPlainDeterminantError * plain.permanent) return sign(plain.value);
+  const PairVector u = difference(a, d), v = difference(b, d), w = difference(c, d);
+  const Pair close = close_determinant(u, v, w);
+  if (std::fabs(close.high) > kPairError * plain.permanent) return sign(close.high);
+  return exact_determinant(u, v, w).sign();
+}
+
+double volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) noexcept {
+  constexpr double kPlain = 0x1p-9, kClose = 0x1p-56;  // of the permanent: beyond these the error is small enough
+  const PlainDeterminant plain(a, b, c, d);
+  if (std::fabs(plain.value) > kPlain * plain.permanent) return plain.value;
+  const PairVector u = difference(a, d), v = difference(b, d), w = difference(c, d);
+  const Pair close = close_determinant(u, v, w);
+  if (std::fabs(close.high) > kClose * plain.permanent) return close.high;
+  return exact_determinant(u, v, w).value();
 }
 
 int orientation(const Vec3& a, const Vec3& b, const Vec3& c, std::size_t axis) noexcept {

@@ -14,7 +14,10 @@ using Vec3 = std::array<double, 3>;
 // coplanar.
 int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) noexcept;
 
-// The same in the plane that remains when `axis` is dropped: > 0 if a, b, c turn counterclockwise, 0 if collinear.
+// Its determinant, six times the volume, right to 2^-40 of itself.
+double volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) noexcept;
+
+// The sign in the plane that remains when `axis` is dropped: > 0 if a, b, c turn counterclockwise, 0 if collinear.
 int orientation(const Vec3& a, const Vec3& b, const Vec3& c, std::size_t axis) noexcept;
 
 // Plain evaluation: every difference, product and sum has a relative error of a unit, 2^-53, and no term passes through

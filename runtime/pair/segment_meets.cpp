@@ -17,10 +17,14 @@ constexpr double kLeast = 0x1p-900;
 
 bool within_range(double ab, double abc) noexcept { return less_of(ab, abc) > kLeast && more_of(ab, abc) < 1 / kLeast; }
 
-// Of a segment's ends over a triangle's plane, times twice its area; `clear` where their signs are certain.
+// Heights whose sum is larger than this part of a b c tell a place on the segment to 2^-40 of its length.
+constexpr double kTells = kPlainError * 0x1p40;
+
+// Of a segment's ends over a triangle's plane, times twice its area; `clear` where their signs are certain, `tell`
+// where they say where it passes.
 struct Heights {
   double from, to;
-  bool clear;
+  bool clear, tell;
   Heights(const Vec3& begin, const Vec3& end, const TrianglePoints& t) noexcept {
     const Vec3 edge = minus(t[1], t[0]), other = minus(t[2], t[0]), normal = cross(edge, other);
     const Vec3 back = minus(begin, t[0]), ahead = minus(end, t[0]);
@@ -29,6 +33,7 @@ struct Heights {
                  abc = ab * more_of(largest_size(back), largest_size(ahead));
     const bool certain = less_of(std::fabs(from), std::fabs(to)) > kPlainError * abc, ordinary = within_range(ab, abc);
     clear = certain & ordinary;
+    tell = clear & (std::fabs(from) + std::fabs(to) > kTells * abc);
   }
   bool differ() const noexcept { return (from > 0) != (to > 0); }
 };
@@ -36,6 +41,10 @@ struct Heights {
 Vec3 crossing(const Vec3& from, const Vec3& way, double height_from, double height_to) noexcept {
   const double hp = std::fabs(height_from), hq = std::fabs(height_to);
   return along(from, way, hp + hq > 0 ? less_of(hp / (hp + hq), 1) : 0);
+}
+
+Vec3 crossing_exactly(const Vec3& from, const Vec3& to, const TrianglePoints& t) noexcept {
+  return crossing(from, minus(to, from), volume(t[0], t[1], t[2], from), volume(t[0], t[1], t[2], to));
 }
 
 // The first point of a segment that it has in common with a triangle in whose plane it runs, or which is flat: its
@@ -70,8 +79,7 @@ bool meets_exactly(const Vec3& from, const Vec3& to, const TrianglePoints& t, Ve
   if (a * b < 0) return false;
   const int c = orientation(from, to, t[2], t[0]);
   if (a * c < 0 || b * c < 0) return false;
-  const Vec3 normal = cross(minus(t[1], t[0]), minus(t[2], t[0]));
-  common = crossing(from, minus(to, from), dot(normal, minus(from, t[0])), dot(normal, minus(to, t[0])));
+  common = crossing_exactly(from, to, t);
   return true;
 }
 
@@ -81,7 +89,7 @@ bool segment_passes(const Vec3& from, const Vec3& to, const TrianglePoints& t, V
   const Heights heights(from, to, t);
   if (!heights.clear) return meets_exactly(from, to, t, common);
   if (!heights.differ()) return false;
-  common = crossing(from, minus(to, from), heights.from, heights.to);
+  common = heights.tell ? crossing(from, minus(to, from), heights.from, heights.to) : crossing_exactly(from, to, t);
   return true;
 }
 
@@ -97,7 +105,7 @@ bool segment_meets(const Vec3& from, const Vec3& to, const TrianglePoints& t, Ve
   if (heights.clear && within_range(far * far, size)) {
     if ((least < -error) & (most > error)) return false;
     if ((least > error) | (most < -error)) {
-      common = crossing(from, way, heights.from, heights.to);
+      common = heights.tell ? crossing(from, way, heights.from, heights.to) : crossing_exactly(from, to, t);
       return true;
     }
   }

@@ -5,12 +5,14 @@
 #include <cstddef>
 #include <limits>
 
+#include "triangle_distance.h"
 #include "vector_functions.h"
 
 namespace orchard::runtime::detail {
 namespace {
 
 constexpr double kNear = 1e-10;       // of the triangles' size: closer is touching
+constexpr double kOn = 1e-12;         // the same, for what is said to be common to both
 constexpr double kInclusive = 1e-12;  // of products of two lengths: what counts as on an edge
 
 double square(const Vec3& v) noexcept { return dot(v, v); }
@@ -44,14 +46,9 @@ class Ends {
   std::size_t count_ = 0;
 };
 
-// Whether a point of the triangle's plane is in it; `slack` is a length.
-bool holds(const TrianglePoints& t, const Vec3& normal, const Vec3& p, double slack) noexcept {
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3 edge = minus(t[(i + 1) % 3], t[i]);
-    const Vec3 inward = cross(normal, edge);
-    if (dot(inward, minus(p, t[i])) < -slack * std::sqrt(square(inward))) return false;
-  }
-  return true;
+// Beyond a sharp corner a point may be close to the lines of both edges, and far from the triangle.
+bool holds(const TrianglePoints& t, const Vec3& p, double slack) noexcept {
+  return nearest_points(p, t).distance <= slack;
 }
 
 // Where the edges of one cross the plane of the other, in it.
@@ -62,10 +59,10 @@ void add_crossings(const TrianglePoints& edges, const TrianglePoints& t, double 
   for (std::size_t i = 0; i < 3; ++i) height[i] = dot(normal, minus(edges[i], t[0]));
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3;
-    if (std::fabs(height[i]) <= slack && holds(t, normal, edges[i], slack)) ends.add(edges[i]);
+    if (std::fabs(height[i]) <= slack && holds(t, edges[i], slack)) ends.add(edges[i]);
     if ((height[i] > slack && height[j] < -slack) || (height[i] < -slack && height[j] > slack)) {
       const Vec3 x = along(edges[i], minus(edges[j], edges[i]), height[i] / (height[i] - height[j]));
-      if (holds(t, normal, x, slack)) ends.add(x);
+      if (holds(t, x, slack)) ends.add(x);
     }
   }
 }
@@ -111,7 +108,7 @@ struct Best {
 template <typename Offer>
 void covered_corners(const Flat& p, const Flat& q, Offer&& offer) noexcept {
   const double ux = p.x[1] - p.x[0], uy = p.y[1] - p.y[0], vx = p.x[2] - p.x[0], vy = p.y[2] - p.y[0];
-  const double area = ux * vy - uy * vx, size = std::fabs(ux * vy) + std::fabs(uy * vx);
+  const double area = ux * vy - uy * vx, size = std::sqrt((ux * ux + uy * uy) * (vx * vx + vy * vy));
   if (!(std::fabs(area) > kInclusive * size)) return;
   for (std::size_t k = 0; k < 3; ++k) {
     const double wx = q.x[k] - p.x[0], wy = q.y[k] - p.y[0];
@@ -129,7 +126,7 @@ void crossing_edges(const Flat& a, const Flat& b, Best& best) noexcept {
       const std::size_t j2 = (j + 1) % 3;
       const double vx = b.x[j2] - b.x[j], vy = b.y[j2] - b.y[j], wx = b.x[j] - a.x[i], wy = b.y[j] - a.y[i];
       const double det = ux * vy - uy * vx;
-      if (!(std::fabs(det) > kInclusive * (std::fabs(ux * vy) + std::fabs(uy * vx)))) continue;
+      if (!(std::fabs(det) > kInclusive * std::sqrt((ux * ux + uy * uy) * (vx * vx + vy * vy)))) continue;
       const double s = (wx * vy - wy * vx) / det, t = (wx * uy - wy * ux) / det;
       if (s < -kInclusive || s > 1 + kInclusive || t < -kInclusive || t > 1 + kInclusive) continue;
       best.offer(a.z[i] + s * (a.z[i2] - a.z[i]) - (b.z[j] + t * (b.z[j2] - b.z[j])), 3, i, j);
@@ -178,7 +175,7 @@ Way::Way(const Vec3& direction) noexcept : u(unit_or_zero(direction)) {
 }
 
 Segment3 common_segment(const TrianglePoints& a, const TrianglePoints& b, const Vec3& witness) noexcept {
-  const double slack = kNear * size_of(a, b);
+  const double slack = kOn * size_of(a, b);
   Ends ends;
   add_crossings(a, b, slack, ends);
   add_crossings(b, a, slack, ends);

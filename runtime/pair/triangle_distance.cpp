@@ -114,7 +114,8 @@ struct Near {
     return along(edge.from, edge.way, unit(dot(minus(point, edge.from), edge.way), edge.square));
   }
   // Where points project into a triangle; beside it an edge is nearer. `put`: the points, their feet, their distances'
-  // squares, and whether there is one that is nearer.
+  // squares, and whether there is one that is nearer. Feet are made of the corners, so that they are in the triangle
+  // even where it is a needle, whose normal is mostly rounding.
   template <typename Put>
   ORCHARD_INLINE void face(const Three& point, const TrianglePoints& t, const TrianglePoints& edge,
                            Put&& put) noexcept {
@@ -122,11 +123,12 @@ struct Near {
     const double size = detail::dot(n, n);
     if (!(size > 0)) return;
     const Three normal = all(n);
-    const auto beside = [&](std::size_t i) ORCHARD_INLINE_LAMBDA {
-      return dot(cross(all(edge[i]), minus(point, all(t[i]))), normal) < Kind::all(0);
-    };
-    const auto inside = Kind::none_of(beside(0), beside(1), beside(2));
-    const Three on = along(point, normal, dot(minus(all(t[0]), point), normal) / Kind::all(size));
+    const auto area = [&](std::size_t i)
+                          ORCHARD_INLINE_LAMBDA { return dot(cross(all(edge[i]), minus(point, all(t[i]))), normal); };
+    const Numbers zero = Kind::all(0), first = area(1), second = area(2), third = area(0);  // opposite of the corners
+    const Numbers sum = first + second + third;
+    const auto inside = Kind::none_of(first < zero, second < zero, third < zero) & (zero < sum);
+    const Three on = along(along(all(t[0]), all(edge[0]), second / sum), all(edge[2]), -(third / sum));
     const Three d = minus(on, point);
     put(on, dot(d, d), inside & (dot(d, d) < square));
   }

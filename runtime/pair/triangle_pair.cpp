@@ -16,11 +16,11 @@ Vec3 between(const Vec3& a, const Vec3& b, double t) noexcept {
 }
 double ratio(double part, double whole) noexcept { return whole > 0 ? std::clamp(part / whole, 0.0, 1.0) : 0.0; }
 
-// ---- Witnesses: plain double arithmetic, only ever used after the exact tests said yes.
+// ---- Witnesses: only ever used after the exact tests said yes.
 
+// In planes that nearly are one, plain heights would be rounding and nothing else, and so would be the place.
 Vec3 crossing_point(const Vec3& p, const Vec3& q, const TrianglePoints& t) noexcept {
-  const Vec3 normal = cross(minus(t[1], t[0]), minus(t[2], t[0]));
-  const double hp = std::fabs(dot(normal, minus(p, t[0]))), hq = std::fabs(dot(normal, minus(q, t[0])));
+  const double hp = std::fabs(volume(t[0], t[1], t[2], p)), hq = std::fabs(volume(t[0], t[1], t[2], q));
   return between(p, q, ratio(hp, hp + hq));
 }
 
