@@ -27,7 +27,7 @@ class BoxList {
  private:
   static constexpr std::size_t kGroup = 64;
   static constexpr std::uint8_t kLastCoarse = 0x7f, kHighBit = 0x80;
-  // Meets nothing: its lower ends lie above, and its upper ends below, all others.
+  // Meets nothing but what covers all quanta, since its lower ends lie above its upper ends.
   static constexpr QuantumBox kNowhere = {{kLastQuantum, kLastQuantum, kLastQuantum}, {0, 0, 0}};
   struct CoarseBox {
     std::array<std::uint8_t, 3> lower, upper;

@@ -36,13 +36,13 @@ PromiseExcess promise_excess(const Motion& promise, double promise_time, const M
   return excess;
 }
 
-bool keeps_promise(const Motion& promise, double promise_time, double now, const Vec3& position,
-                   const Vec3* velocity) noexcept {
+bool keeps_promise(const Motion& promise, double promise_time, double now, const Vec3& position, const Vec3* velocity,
+                   double position_slack) noexcept {
   if (!(now > promise_time)) return true;
   Motion given = promise;
   given.position = position;
   if (velocity != nullptr) given.velocity = *velocity;
-  return promise_excess(promise, promise_time, given, now).none();
+  return promise_excess(promise, promise_time, given, now, position_slack).none();
 }
 
 }  // namespace orchard::runtime

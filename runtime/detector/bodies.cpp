@@ -22,9 +22,10 @@ NearSphere near_sphere_of(const Whereabouts& where) noexcept {
   const Vec3& m = where.middle;
   const double size = std::fabs(m[0]) + std::fabs(m[1]) + std::fabs(m[2]);
   const double radius = (where.reach + kRoundingOfGaps * where.slack + 0x1p-23 * size) * (1 + 0x1p-18);
+  constexpr double kLeast = 1e-17;  // whose square floats hold with all digits
   if (!(size + radius < kMost)) return {};
   const auto rounded = [](double value) { return static_cast<float>(value); };
-  return {rounded(m[0]), rounded(m[1]), rounded(m[2]), rounded(radius)};
+  return {rounded(m[0]), rounded(m[1]), rounded(m[2]), rounded(std::max(radius, kLeast))};
 }
 
 }  // namespace

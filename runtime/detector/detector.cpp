@@ -51,6 +51,7 @@ Detector::State::State(StateSource source, const DetectorOptions& wanted)
       broad([this](double time, std::span<const BodyIndex> asked,
                    std::span<Motion> answers) { motions(time, asked, answers); },
             broad_options(wanted, {run_for_broad, this, 1})),
+      monitor({.position_slack = wanted.position_slack}),
       fronts(wanted.max_fronts),
       rounds(places, queries, options.executor, wanted.max_unfinished, fronts) {}
 
@@ -141,17 +142,23 @@ BodyId Detector::add_body(std::span<const BodyPart> parts, const BodyOptions& op
     if (id == kNoBody) return id;
     s.take_in(id, parts, options);
     if (s.kept_states) s.kept_states->put(id.index, s.last_time(), {});
-    if (s.options.watch) s.monitor.forget(id.index);
+    if (s.options.watch) s.monitor.begin(id.index);
     s.halves.update_again(id.index);
     return id;
   });
+}
+
+// It has rested up to the last step: where it was then is known.
+void Detector::State::stir(Body& body) noexcept {
+  if (body.frozen) body.asked = std::max(body.asked, answered);
+  body.frozen = false;
 }
 
 Motion Detector::State::place_of(const Body& body) const noexcept {
   Motion place;
   const Pose& pose = bodies.state(body.id.index).pose;
   place.position = pose.translation;
-  place.radius = body.reach * pose.scale;
+  place.radius = body.reach * pose.scale + body.continuous_speed * clock.time_step;
   return place;
 }
 
@@ -178,14 +185,21 @@ BodyId Detector::add_static(std::span<const BodyPart> parts, const Pose& pose, c
 
 BodyId Detector::add_half_space(const Vec3& normal, double offset, const BodyOptions& options) {
   State& s = *state_;
-  const double size = detail::length(normal);
-  if (!s.valid || s.failed || !(size > 0) || !std::isfinite(size) || !(std::fabs(offset / size) <= kMaxNumber))
+  // By a power of two to about 1, so that no square of the normal's components is lost.
+  const double largest = std::max({std::fabs(normal[0]), std::fabs(normal[1]), std::fabs(normal[2])});
+  if (!s.valid || s.failed || !are_valid(options) || !(largest > 0) || !std::isfinite(normal[0]) ||
+      !std::isfinite(normal[1]) || !std::isfinite(normal[2])) {
     return kNoBody;
+  }
+  const int power = -std::ilogb(largest);
+  const Vec3 scaled = {std::ldexp(normal[0], power), std::ldexp(normal[1], power), std::ldexp(normal[2], power)};
+  const double size = detail::length(scaled), height = std::ldexp(offset, power) / size;
+  if (!(std::fabs(height) <= kMaxNumber)) return kNoBody;
   Body body;
   body.group = options.group, body.mask = options.mask;
   body.importance = options.importance;
   return s.or_fail([&] {
-    const BodyIndex index = s.halves.add({(1 / size) * normal, offset / size}, body);
+    const BodyIndex index = s.halves.add({(1 / size) * scaled, height}, body);
     s.halves.body(index).moved = s.answered + 1;
     s.halves.update_all(s.bodies.slots());
     ++s.count;
@@ -262,19 +276,26 @@ bool Detector::set_local(BodyId body, std::size_t part, const Pose& local) {
   detail::PartPlace place;
   if (!detail::set_local(place, s.shapes[record.shape], local)) return false;
   found->parts_before.resize(found->parts.size());
-  detail::PartBefore& before = found->parts_before[part];
-  if (before.until != s.answered) before = {record, s.answered};
   const detail::PartPlace place_before = record;
   static_cast<detail::PartPlace&>(record) = place;
+  const double reach = detail::reach_of(found->parts), reach_before = found->reach;
+  const bool stretches = reach > reach_before;
+  if (stretches) found->reach = kStretchAhead * reach;
+  // What is too large is told before anything has changed.
+  if (!(found->reach <= kMaxNumber) ||
+      (stretches && found->is_static && !s.or_fail([&] { return s.broad.move_static(body, s.place_of(*found)); }))) {
+    static_cast<detail::PartPlace&>(record) = place_before;
+    found->reach = reach_before;
+    return false;
+  }
+  detail::PartBefore& before = found->parts_before[part];
+  if (before.until != s.answered) before = {place_before, s.answered};
   s.bodies.parts_changed(body.index);
   s.bodies.part_moved(body.index, part, place_before, s.shapes[record.shape]);
   s.changed(*found);
-  const double reach = detail::reach_of(found->parts);
-  if (reach <= found->reach) return true;
-  found->reach = kStretchAhead * reach;
+  if (!stretches) return true;
   found->stretched = s.answered;
-  if (found->is_static) return s.or_fail([&] { return s.broad.move_static(body, s.place_of(*found)); });
-  s.update_again(*found);
+  if (!found->is_static) s.update_again(*found);
   return true;
 }
 
@@ -310,7 +331,8 @@ bool Detector::wake(BodyId body) {
   Body* found = state_->find(body);
   if (found == nullptr || found->is_static) return false;
   if (!found->asleep) return true;
-  found->asleep = found->frozen = false;
+  state_->stir(*found);
+  found->asleep = false;
   state_->update_again(*found);
   return true;
 }
@@ -322,6 +344,7 @@ bool Detector::asleep(BodyId body) const noexcept {
 bool Detector::shape_changed(ShapeId shape) {
   State& s = *state_;
   if (!s.shapes.contains(shape)) return false;
+  s.shapes.changed(shape);
   for (BodyIndex i = 0; i < s.bodies.slots(); ++i) {
     Body& body = s.bodies[i];
     const auto uses = [shape](const PartRecord& part) { return part.shape == shape; };

@@ -166,11 +166,13 @@ bool Detector::State::parts(const detail::RecordTable::Known& known, Step step) 
   Record& record = records[known.record];
   // What the filters exclude is no pair of the broad phase's any more.
   const bool there = contains(record.a) && contains(record.b) && allowed(record);
+  const bool jumped = there && record.jumps != places.body(record.pair.a).jumps + places.body(record.pair.b).jumps;
   record.impact = false;
+  record.answered = -1;
   record.verdict = Verdict{};
   record.verdict.answer = there ? Answer::no : Answer::maybe;
   record.verdict.separation_bound = std::numeric_limits<double>::infinity();
-  if (there && record.touching && ++record.nos < options.steps_to_end) {
+  if (there && !jumped && record.touching && ++record.nos < options.steps_to_end) {
     describe(record, step, PairChange::stay, ended.emplace_back());
     return true;
   }

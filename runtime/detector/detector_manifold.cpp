@@ -33,7 +33,7 @@ Manifold Detector::State::manifold(const PairEvent& event, const ContactOptions&
   if (half) {
     result.depth = detail::half_space_depth(*pair.a.shape, pair.a.pose(), pair.half);
   } else if (pair.simple()) {
-    result.depth = detail::simple_depth(*pair.a.shape, pair.a.pose(), *pair.b.shape, pair.b.pose());
+    result.depth = detail::simple_depth(*pair.a.shape, pair.a.pose(), *pair.b.shape, pair.b.pose(), result.normal);
   } else {  // one wholly inside a box
     result.complete = false;
   }

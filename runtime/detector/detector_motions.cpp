@@ -5,16 +5,21 @@ namespace orchard::runtime {
 
 using detail::Body;
 
+// What the source says, or what the monitor makes of it.
+Motion Detector::State::promise_of(BodyIndex index, double time) const {
+  const Motion motion = bodies.motion_of(index, clock.time_step);
+  const Body& body = bodies[index];
+  const bool suggests = options.watch && body.suggest && !body.frozen && motion.radius >= 0;
+  return suggests ? monitor.suggest(index, time, motion.radius) : motion;
+}
+
 // For the broad phase. Whoever watches has asked for everybody by now.
 void Detector::State::motions(double time, std::span<const BodyIndex> asked, std::span<Motion> answers) {
   if (!all_asked) bodies.ask(std::llround((time - clock.start) / clock.time_step), time, asked, options.executor);
   for (std::size_t i = 0; i < asked.size(); ++i) {
-    answers[i] = bodies.motion_of(asked[i], clock.time_step);
+    answers[i] = promise_of(asked[i], time);
     if (!options.watch) continue;
     Body& body = bodies[asked[i]];
-    if (body.suggest && !body.frozen && answers[i].radius >= 0) {
-      answers[i] = monitor.suggest(asked[i], time, answers[i].radius);
-    }
     body.told_radius = answers[i].radius;
     monitor.promised(asked[i], time, answers[i]);
   }

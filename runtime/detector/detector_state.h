@@ -37,6 +37,8 @@ struct Detector::State {
   void update_again(detail::Body& body);  // its promise holds no longer
   void changed(detail::Body& body) noexcept { body.moved = answered + 1; }
   Motion place_of(const detail::Body& body) const noexcept;  // of a static one
+  void stir(detail::Body& body) noexcept;                    // what sleeps
+  Motion promise_of(BodyIndex body, double time) const;      // what is relied on
 
   static void run_for_broad(void* context, std::size_t count, Executor::Job job, void* data);
 
@@ -138,6 +140,7 @@ struct Detector::State {
 
   // Of the step under way; kept for their memory.
   std::vector<BodyIndex> due, involved, everyone, refused, broken;
+  std::vector<Motion> due_motions;
   std::vector<std::uint8_t> is_involved;  // by body, while `involved` is made
   std::vector<BodyPair> plane_pairs, kept_pairs, body_pairs, all_pairs;
   std::span<const BodyPair> pairs;    // all of them; the broad phase's own where there are no others

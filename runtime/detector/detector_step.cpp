@@ -168,7 +168,9 @@ void Detector::State::gather(Step step, const Advance& now) {
   halves.due(step, due);
   if (!due.empty()) {
     bodies.ask(step, clock.time(step), due, options.executor);
-    halves.update_windows(step, clock, due, bodies, clock.time_step, options.position_slack, plane_pairs);
+    due_motions.clear();
+    for (const BodyIndex body : due) due_motions.push_back(promise_of(body, clock.time(step)));
+    halves.update_windows(step, clock, due, bodies, due_motions, clock.time_step, options.position_slack, plane_pairs);
   }
   if (now.incomplete_from != kNoClass) {
     auto reported = now.pairs.begin();

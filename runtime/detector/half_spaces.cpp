@@ -75,10 +75,13 @@ void HalfSpaces::due(Step now, std::vector<BodyIndex>& bodies) const {
 }
 
 void HalfSpaces::update_windows(Step now, const Clock& clock, std::span<const BodyIndex> bodies, const BodyTable& table,
-                                double time_step, double slack, std::vector<BodyPair>& pairs) {
-  for (const BodyIndex body : bodies) {
-    Motion motion = table.motion_of(body, time_step);
-    motion.radius += slack;
+                                std::span<const Motion> motions, double time_step, double slack,
+                                std::vector<BodyPair>& pairs) {
+  slack_ = slack;
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    const BodyIndex body = bodies[k];
+    Motion motion = motions[k];
+    motion.radius += 2 * slack;  // where it is, and where it was promised to be
     promises_[body] = {clock.time(now), motion};
     if (!is_valid(motion)) {
       due_[body] = now + 1;
@@ -108,7 +111,7 @@ void HalfSpaces::update_windows(Step now, const Clock& clock, std::span<const Bo
 bool HalfSpaces::promise_kept(BodyIndex body, double time, const Motion& now) const noexcept {
   if (alive_ == 0 || body >= due_.size() || due_[body] <= 0 || due_[body] == kNeverStep) return true;
   const Promise& promise = promises_[body];
-  return keeps_promise(promise.motion, promise.time, time, now.position, nullptr) &&
+  return keeps_promise(promise.motion, promise.time, time, now.position, nullptr, slack_) &&
          now.radius <= promise.motion.radius;
 }
 

@@ -25,10 +25,10 @@ class HalfSpaces {
 
   // The bodies due at `now` or before.
   void due(Step now, std::vector<BodyIndex>& bodies) const;
-  // For each of these, whose states are known: its pairs, in ascending order of half-spaces, and when it is due again.
-  // `slack`: see BroadPhaseOptions::position_slack.
+  // For each of these, of whom `motions` are relied on: its pairs, in ascending order of half-spaces, and when it is
+  // due again. `slack`: see BroadPhaseOptions::position_slack.
   void update_windows(Step now, const Clock& clock, std::span<const BodyIndex> bodies, const BodyTable& table,
-                      double time_step, double slack, std::vector<BodyPair>& pairs);
+                      std::span<const Motion> motions, double time_step, double slack, std::vector<BodyPair>& pairs);
   // Whether the promise that the body's next update relies on is kept by where it is now.
   bool promise_kept(BodyIndex body, double time, const Motion& now) const noexcept;
   std::size_t memory_bytes() const noexcept;
@@ -47,6 +47,7 @@ class HalfSpaces {
   std::vector<Step> due_;          // by body
   std::vector<Promise> promises_;  // by body
   std::size_t alive_ = 0;
+  double slack_ = 0;
   Step next_ = kNeverStep;
 };
 

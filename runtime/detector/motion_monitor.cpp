@@ -69,7 +69,8 @@ bool MotionMonitor::observe(BodyIndex body, double time, const Vec3& position, c
     t.horizon = std::min(t.horizon * kFasterHorizon, options_.longest_horizon);
     t.kept_since = time;
   }
-  if (!t.promise || keeps_promise(t.motion, t.promise_time, time, position, velocity)) return true;
+  if (!t.promise || keeps_promise(t.motion, t.promise_time, time, position, velocity, options_.position_slack))
+    return true;
   count_broken(body);
   return false;
 }
@@ -136,6 +137,8 @@ Motion MotionMonitor::suggest(BodyIndex body, double time, double radius) const 
 }
 
 void MotionMonitor::cancelled(BodyIndex body) { track(body).promise = false; }
+
+void MotionMonitor::begin(BodyIndex body) { track(body) = Track{}; }
 
 void MotionMonitor::forget(BodyIndex body) {
   Track& t = track(body);

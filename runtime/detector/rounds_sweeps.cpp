@@ -21,14 +21,21 @@ void Rounds::sweep_one(Record& record, Step now, QueryPool::Scratch& scratch, st
   if (half) from.half = to.half = places_->half_space(record.pair.b);
   Swept first;
   first.from = first.to = 2;
+  double earliest = 2;
   for (std::uint32_t i = 0; i < places_->parts(record.pair.a); ++i) {
     places_->place_before(record.pair.a, i, now, from.a);
     places_->place(record.pair.a, i, to.a);
     for (std::uint32_t j = 0; j < places_->parts(record.pair.b); ++j) {
       places_->place_before(record.pair.b, j, now, from.b);
       places_->place(record.pair.b, j, to.b);
-      const Swept swept = sweep(scratch.workspace, from, to, most, scratch.work);
+      Swept swept;
+      if (scratch.work < most) {
+        swept = sweep(scratch.workspace, from, to, most, scratch.work);
+      } else {
+        swept.answer = Answer::maybe;  // nobody has looked
+      }
       if (swept.answer == Answer::no) continue;
+      earliest = std::min(earliest, swept.from);
       const bool better = swept.answer != first.answer ? swept.answer > first.answer : swept.from < first.from;
       if (!better) continue;
       first = swept;
@@ -37,7 +44,7 @@ void Rounds::sweep_one(Record& record, Step now, QueryPool::Scratch& scratch, st
   }
   if (first.answer == Answer::no) return;
   record.impact = true;
-  record.impact_from = first.from;
+  record.impact_from = earliest;
   record.impact_to = first.answer == Answer::yes ? first.to : std::numeric_limits<double>::quiet_NaN();
   if (record.verdict.answer == Answer::yes) return;
   if (first.answer == Answer::yes) {

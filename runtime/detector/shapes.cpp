@@ -41,7 +41,7 @@ PackedSphereTree box_tree(const Vec3& half) {
 }
 
 // One vertex of each piece whose triangles share vertices, in the order of vertices.
-std::vector<Vec3> pieces_of(const TreeView& tree) {
+std::vector<std::uint32_t> pieces_of(const TreeView& tree) {
   std::vector<std::uint32_t> parent(tree.vertices.size());
   std::iota(parent.begin(), parent.end(), 0u);
   const auto root = [&](std::uint32_t v) {
@@ -56,13 +56,19 @@ std::vector<Vec3> pieces_of(const TreeView& tree) {
       parent[std::max(p, q)] = std::min(p, q);
     }
   }
-  std::vector<Vec3> pieces;
+  std::vector<std::uint32_t> pieces;
   for (std::uint32_t v = 0; v < parent.size(); ++v) {
-    if (!used[v] || root(v) != v) continue;
-    const auto& at = tree.vertices[v];
-    pieces.emplace_back(double{at[0]} + tree.origin[0], double{at[1]} + tree.origin[1], double{at[2]} + tree.origin[2]);
+    if (used[v] && root(v) == v) pieces.push_back(v);
   }
   return pieces;
+}
+
+// Precondition: there is room for all of them.
+void place_pieces(Shape& shape) noexcept {
+  for (std::size_t i = 0; i < shape.pieces.size(); ++i) {
+    const auto& at = shape.tree.vertices[shape.piece_vertices[i]];
+    for (std::size_t d = 0; d < 3; ++d) shape.pieces[i][d] = double{at[d]} + shape.tree.origin[d];
+  }
 }
 
 bool is_coordinate(double x) noexcept { return std::fabs(x) <= double{kCoordinateLimit}; }
@@ -99,7 +105,13 @@ void ShapeTable::describe(const TreeView& tree, Shape& shape) {
   // What is stored may be rounded away from the mesh, and the tree's ball holds both.
   shape.reach = double{root.radius[0]} + tree.vertex_error;
   shape.reach += 1e-15 * (shape.reach + length(shape.center));
-  shape.pieces = pieces_of(tree);
+  shape.piece_vertices = pieces_of(tree);
+  shape.pieces.resize(shape.piece_vertices.size());
+  place_pieces(shape);
+}
+
+void ShapeTable::changed(ShapeId shape) noexcept {
+  if (!shapes_[shape].piece_vertices.empty()) place_pieces(shapes_[shape]);
 }
 
 ShapeId ShapeTable::add_round(const Vec3& p, const Vec3& q, double radius) {

@@ -23,7 +23,8 @@ struct Shape {
   double radius = 0;         // of round shapes
   Vec3 center{};             // of a sphere around the shape,
   double reach = 0;          // and its radius
-  std::vector<Vec3> pieces;  // of a tree: a vertex of each connected piece of its surface
+  std::vector<Vec3> pieces;  // of a tree: a vertex of each connected piece of its surface,
+  std::vector<std::uint32_t> piece_vertices;  // and which these are
   bool has_tree() const noexcept { return kind != ShapeKind::round; }
 };
 
@@ -37,6 +38,7 @@ class ShapeTable {
 
   bool contains(ShapeId shape) const noexcept { return shape < shapes_.size(); }
   const Shape& operator[](ShapeId shape) const noexcept { return shapes_[shape]; }
+  void changed(ShapeId shape) noexcept;  // the places of its tree's vertices
   std::size_t memory_bytes() const noexcept;
 
  private:

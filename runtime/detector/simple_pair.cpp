@@ -76,10 +76,29 @@ struct NearestOfBox {  // in the box's frame at scale 1
   double distance = 0;
 };
 
+// The first place of the segment from p to q in a solid box, as a part of it, or beyond 1.
+double enters_box(const Vec3& half, const Vec3& p, const Vec3& q) noexcept {
+  double from = 0, to = 1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double way = q[i] - p[i];
+    if (way == 0) {
+      if (std::fabs(p[i]) > half[i]) return kInfinity;
+      continue;
+    }
+    const double one = (-half[i] - p[i]) / way, other = (half[i] - p[i]) / way;
+    from = std::max(from, std::min(one, other)), to = std::min(to, std::max(one, other));
+  }
+  return from <= to ? from : kInfinity;
+}
+
 // Of a solid box and the segment from p to q. The square of the distance along the segment is convex, and quadratic
 // between the places where a coordinate enters or leaves the box.
 NearestOfBox nearest_of_box(const Vec3& half, const Vec3& p, const Vec3& q) noexcept {
   const Vec3 way = q - p;
+  if (const double inside = enters_box(half, p, q); inside <= 1) {
+    const Vec3 at = point_of(p, q, inside);
+    return {at, at, 0};
+  }
   const auto slope = [&](double t, double& square) {  // half of it; `square`: how fast it grows
     double sum = square = 0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -128,12 +147,21 @@ Verdict no_with(double gap) noexcept {
   return verdict;
 }
 
+// A gap less what computing it may have added.
+Verdict no_with(double gap, double size) noexcept {
+  Verdict verdict = no_with(gap);
+  verdict.lower_bound = std::max(0.0, gap - kSimpleRounding * size);
+  return verdict;
+}
+
 Verdict of_rounds(const Round& a, const Round& b) noexcept {
   const Nearest near = nearest_of_segments(a.p, a.q, b.p, b.q);
   const Vec3 way = near.on_b - near.on_a;
   const double distance = length(way);
   if (!std::isfinite(distance)) return unknown_verdict();
-  if (distance > a.radius + b.radius) return no_with(distance - a.radius - b.radius);
+  if (distance > a.radius + b.radius) {
+    return no_with(distance - a.radius - b.radius, length(near.on_a) + length(near.on_b) + distance);
+  }
   const Vec3 normal = unit(way, {0, 0, 1});
   // In the middle of what both have in common along the way.
   const double from = std::max(0.0, distance - b.radius), to = std::min(distance, a.radius);
@@ -146,7 +174,9 @@ Verdict of_box(const Shape& box, const Pose& pose, const Round& round) noexcept 
   const NearestOfBox near = nearest_of_box(box.p, transform(back, round.p), transform(back, round.q));
   const double distance = near.distance * pose.scale;
   if (!std::isfinite(distance)) return unknown_verdict();
-  if (distance > round.radius) return no_with(distance - round.radius);
+  if (distance > round.radius) {
+    return no_with(distance - round.radius, length(round.p) + length(round.q) + length(Vec3(pose.translation)));
+  }
   const Vec3 at = transform(pose, near.on_box);
   if (distance > 0) return yes_at(at, rotate(pose, unit(near.on_segment - near.on_box, {0, 0, 1})));
   return yes_at(at, way_out(box, pose, at));
@@ -210,20 +240,32 @@ bool inside_box(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& 
   return false;
 }
 
-// Of round shapes along the way between their cores; of a tree and a round shape up to the nearest point.
-double simple_depth(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) noexcept {
-  if (!a.has_tree() && !b.has_tree()) {
-    const Round p(a, pose_a), q(b, pose_b);
-    const Nearest near = nearest_of_segments(p.p, p.q, q.p, q.q);
-    return std::max(0.0, p.radius + q.radius - length(near.on_b - near.on_a));
+namespace {
+
+// How far the shape reaches along a unit vector.
+double top_along(const Shape& shape, const Pose& pose, const Vec3& n) noexcept {
+  if (shape.has_tree()) return -deepest_point(shape.tree, pose, -1.0 * n, 0).distance;
+  const Round round(shape, pose);
+  return std::max(dot(n, round.p), dot(n, round.q)) + round.radius;
+}
+
+}  // namespace
+
+// Where their extents along the normal are free of each other, both are; from there the second one is taken back for as
+// long as they stay so.
+double simple_depth(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
+                    const Vec3& normal) noexcept {
+  constexpr int kHalvings = 40;
+  const double most = std::max(0.0, top_along(a, pose_a, normal) + top_along(b, pose_b, -1.0 * normal));
+  if (!a.has_tree() && !b.has_tree()) return most;
+  double touching = 0, free = most;
+  for (int i = 0; i < kHalvings && free > 0; ++i) {
+    const double at = 0.5 * (touching + free);
+    Pose moved = pose_b;
+    moved.translation = Vec3(pose_b.translation) + at * normal;
+    (test_simple(a, pose_a, b, moved, kNoTriangle).answer == Answer::no ? free : touching) = at;
   }
-  const bool first = a.has_tree();
-  const Shape& tree = first ? a : b;
-  const Pose& pose = first ? pose_a : pose_b;
-  const Round round(first ? b : a, first ? pose_b : pose_a);
-  const SurfacePoint near = nearest_point_to_segment(tree.tree, pose, round.p, round.q);
-  const bool within = tree.kind == ShapeKind::box && holds(tree, pose, round.p);
-  return std::max(0.0, round.radius + (within ? near.distance : -near.distance));
+  return free;
 }
 
 double simple_distance(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) noexcept {

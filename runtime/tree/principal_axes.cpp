@@ -31,7 +31,11 @@ std::array<Vec3, 3> axes_of(const std::array<double, 6>& m) noexcept {
     }
   }
   std::array<std::size_t, 3> order = {0, 1, 2};
-  std::stable_sort(order.begin(), order.end(), [&a](std::size_t i, std::size_t j) { return a[i][i] > a[j][j]; });
+  // In place, unlike std::stable_sort().
+  for (std::size_t i = 1; i < 3; ++i) {
+    for (std::size_t k = i; k > 0 && a[order[k]][order[k]] > a[order[k - 1]][order[k - 1]]; --k)
+      std::swap(order[k], order[k - 1]);
+  }
   return {v[order[0]], v[order[1]], v[order[2]]};
 }
 

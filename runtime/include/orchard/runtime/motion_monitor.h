@@ -12,6 +12,7 @@ struct MonitorOptions {
   double window = 0.5;  // seconds: "lately". > 0
   double min_horizon = 0.02, longest_horizon = 1;  // seconds until a suggested promise expires
   double min_acceleration = 0;                     // no suggested M is smaller
+  double position_slack = 0;                       // as BroadPhaseOptions has it: what positions may be off by
 };
 
 // Watches bodies' motions (dissertation 4.4): whether the bounds that were promised hold, and which ones could be
@@ -46,7 +47,8 @@ class MotionMonitor {
   Motion suggest(BodyIndex body, double time, double radius) const;
 
   void cancelled(BodyIndex body);     // by the application: nothing is promised any more
-  void forget(BodyIndex body);        // a teleport, or another body with this index: nothing is known. Counts are kept
+  void forget(BodyIndex body);        // a teleport: nothing is known. Counts are kept
+  void begin(BodyIndex body);         // another body with this index: nothing is known, and nothing counted of it
   void count_broken(BodyIndex body);  // a promise of another kind: the present one is void, too
   std::uint64_t broken() const noexcept { return broken_; }
   std::uint64_t broken(BodyIndex body) const noexcept { return body < tracks_.size() ? tracks_[body].broken : 0; }

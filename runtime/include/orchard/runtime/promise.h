@@ -25,7 +25,7 @@ PromiseExcess promise_excess(const Motion& promise, double promise_time, const M
 // Whether a body that is at `position` now, with `velocity` unless that is null, has kept what was promised at
 // `promise_time`: the same of the position and the velocity, whose drift is that of the promise. True once the promise
 // has expired.
-bool keeps_promise(const Motion& promise, double promise_time, double now, const Vec3& position,
-                   const Vec3* velocity) noexcept;
+bool keeps_promise(const Motion& promise, double promise_time, double now, const Vec3& position, const Vec3* velocity,
+                   double position_slack = 0) noexcept;
 
 }  // namespace orchard::runtime
