@@ -111,7 +111,8 @@ ORCHARD_INLINE RayStart start_of(const Frame& frame, const Ball& ball, const Vec
   start.speed = length(start.step);
   const bool moves = start.speed > 0;
   start.slowness = (moves ? 1.0 : 0.0) / (moves ? start.speed : 1.0);
-  const double reach = reach_beyond(ball, frame.bounding_radius, start.from) * start.slowness;
+  // So many steps that short coordinates stay exact: a ray in a triangle's plane is to end in it.
+  const double reach = power_above(reach_beyond(ball, frame.bounding_radius, start.from) * start.slowness);
   start.end = moves ? less_of(steps, reach) : 0.0;
   start.to = settled(along(start.from, start.step, start.end));
   Vec3 unit = along({0, 0, 0}, start.step, start.slowness);

@@ -1,5 +1,7 @@
 #pragma once
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "exact_sign.h"
 
@@ -18,6 +20,12 @@ inline Vec3 along(const Vec3& a, const Vec3& d, double t) noexcept {
 
 // As std::min and std::max, but by value: an instruction each, where those can become branches that nobody predicts.
 // Where one is not a number, both give the first one.
+// The least power of two that is no less than a number above 0.
+inline double power_above(double x) noexcept {
+  constexpr std::uint64_t kMantissa = (std::uint64_t{1} << 52) - 1;
+  return std::bit_cast<double>((std::bit_cast<std::uint64_t>(x) + kMantissa) & ~kMantissa);
+}
+
 inline double less_of(double a, double b) noexcept { return b < a ? b : a; }
 inline double more_of(double a, double b) noexcept { return b > a ? b : a; }
 inline double largest_size(const Vec3& v) noexcept {
