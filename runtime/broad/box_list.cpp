@@ -217,7 +217,8 @@ ORCHARD_INLINE void BoxList::insert_all(std::span<const BodyIndex> bodies, const
       continue;
     const QuantumBox box = block.get(i);
     const auto compare = [&](BodyIndex other, const QuantumBox& with) {
-      if (with.lower[0] <= with.upper[0] && with.meets(box)) pairs.push_back({std::min(bodies[i], other), std::max(bodies[i], other)});
+      const bool exists = with.lower[0] <= with.upper[0];
+      if (exists && with.meets(box)) pairs.push_back({std::min(bodies[i], other), std::max(bodies[i], other)});
     };
     for (std::size_t g = 0; g < groups; ++g) {
       for_each_hit(std::bit_cast<Words>(Lanes::meeting(groups_[g], lower, upper)), [&](std::size_t k) {

@@ -109,22 +109,19 @@ void BodyTable::add_turn(BodyIndex body, double way) noexcept {
   disturb(body);
 }
 
-// Its spheres, where it has several.
-void BodyTable::place_parts(Body& body) noexcept {
+// Its sphere, where there are several.
+void BodyTable::place_part(Body& body, std::size_t part) noexcept {
   const Pose& pose = body.state.pose;
-  const Vec3& t = pose.translation;
-  for (std::size_t i = 0; i < body.part_spheres.size(); ++i) {
-    const PartRecord& part = body.parts[i];
-    PlacedSphere& sphere = body.part_spheres[i];
-    sphere = {transform(pose, part.center), part.reach * pose.scale};
-    double size = length(part.center) * pose.scale + sphere.reach;
-    for (std::size_t k = 0; k < 3; ++k) size += std::fabs(t[k]) + std::fabs(sphere.center[k]);
-    Whereabouts where;
-    where.middle = sphere.center;
-    where.slack = 1e-14 * size;
-    if (body.rigid && !(body.continuous_speed > 0)) where.reach = sphere.reach;
-    body.near_part_spheres[i] = near_sphere_of(where);
-  }
+  const PartRecord& record = body.parts[part];
+  PlacedSphere& sphere = body.part_spheres[part];
+  sphere = {transform(pose, record.center), record.reach * pose.scale};
+  double size = length(record.center) * pose.scale + sphere.reach;
+  for (std::size_t k = 0; k < 3; ++k) size += std::fabs(pose.translation[k]) + std::fabs(sphere.center[k]);
+  Whereabouts where;
+  where.middle = sphere.center;
+  where.slack = 1e-14 * size;
+  if (body.rigid && !(body.continuous_speed > 0)) where.reach = sphere.reach;
+  body.near_part_spheres[part] = near_sphere_of(where);
 }
 
 void BodyTable::moved(BodyIndex index, const Pose& before) noexcept {
@@ -139,7 +136,7 @@ void BodyTable::moved(BodyIndex index, const Pose& before) noexcept {
   const bool tells = body.one && body.rigid && !(body.continuous_speed > 0);
   where.reach = tells ? reach * now.scale : std::numeric_limits<double>::infinity();
   near_spheres_[index] = near_sphere_of(where);
-  place_parts(body);
+  for (std::size_t part = 0; part < body.part_spheres.size(); ++part) place_part(body, part);
   const double change = pose_change(before, now);
   add_turn(index, change == 0 ? 0 : (change + 4 * kRigidTolerance * (now.scale + before.scale)) * reach);
   if (!body.rigid || !std::isfinite(size)) disturb(index);
@@ -152,7 +149,8 @@ void BodyTable::part_moved(BodyIndex index, std::size_t part, const PartPlace& b
   const double way =
       length(now.center - before.center) + (pose_change(before.local, now.local) + rounding) * shape.reach;
   add_turn(index, way * pose.scale);
-  moved(index, pose);
+  if (bodies_[index].one) return moved(index, pose);
+  place_part(bodies_[index], part);  // its origin is where it was
 }
 
 void BodyTable::leave(BodyIndex body) noexcept { bodies_[body].id = kNoBody; }

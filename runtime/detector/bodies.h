@@ -162,7 +162,7 @@ class BodyTable {
   std::size_t memory_bytes() const noexcept;
 
  private:
-  void place_parts(Body& body) noexcept;
+  void place_part(Body& body, std::size_t part) noexcept;
   void add_turn(BodyIndex body, double way) noexcept;
   void disturb(BodyIndex body) noexcept;
   void ask_source(Step step, double time, const Executor& executor);
