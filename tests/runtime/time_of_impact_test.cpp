@@ -77,7 +77,8 @@ TEST(TimeOfImpact, IsTheClosedFormOfFallingAndTurningBoxes) {
   Travel falling_ground = straight({}, {3, -7, -5});
   Travel with_it = turning;
   with_it.velocity = {3, -7, -5};
-  EXPECT_NEAR(time_of_impact(workspace, TreePair(ground, bar), falling_ground, with_it, fine).t0, turn.t0, fine.tolerance);
+  EXPECT_NEAR(time_of_impact(workspace, TreePair(ground, bar), falling_ground, with_it, fine).t0, turn.t0,
+              fine.tolerance);
   // A helix about an axis through a point off the bar.
   Travel screw = turning;
   screw.center = {-2, 0, 0};
