@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "detector_state.h"
+#include "pair/vector_functions.h"
 
 namespace orchard::runtime {
 
@@ -185,21 +186,14 @@ BodyId Detector::add_static(std::span<const BodyPart> parts, const Pose& pose, c
 
 BodyId Detector::add_half_space(const Vec3& normal, double offset, const BodyOptions& options) {
   State& s = *state_;
-  // By a power of two to about 1, so that no square of the normal's components is lost.
-  const double largest = std::max({std::fabs(normal[0]), std::fabs(normal[1]), std::fabs(normal[2])});
-  if (!s.valid || s.failed || !are_valid(options) || !(largest > 0) || !std::isfinite(normal[0]) ||
-      !std::isfinite(normal[1]) || !std::isfinite(normal[2])) {
-    return kNoBody;
-  }
-  const int power = -std::ilogb(largest);
-  const Vec3 scaled = {std::ldexp(normal[0], power), std::ldexp(normal[1], power), std::ldexp(normal[2], power)};
-  const double size = detail::length(scaled), height = std::ldexp(offset, power) / size;
-  if (!(std::fabs(height) <= kMaxNumber)) return kNoBody;
+  const detail::ScaledVector scaled(normal);
+  const double size = detail::length(Vec3(scaled.value)), height = std::ldexp(offset, scaled.power) / size;
+  if (!s.valid || s.failed || !are_valid(options) || !(size > 0) || !(std::fabs(height) <= kMaxNumber)) return kNoBody;
   Body body;
   body.group = options.group, body.mask = options.mask;
   body.importance = options.importance;
   return s.or_fail([&] {
-    const BodyIndex index = s.halves.add({(1 / size) * scaled, height}, body);
+    const BodyIndex index = s.halves.add({(1 / size) * Vec3(scaled.value), height}, body);
     s.halves.body(index).moved = s.answered + 1;
     s.halves.update_all(s.bodies.slots());
     ++s.count;

@@ -98,17 +98,13 @@ SurfacePoint deepest_point(const TreeView& tree, const Pose& pose, const std::ar
   SurfacePoint best;
   if (tree.ball_slabs.empty()) return best;
   const SurfacePoint unknown{-std::numeric_limits<double>::infinity(), {}, kNoTriangle};
-  // By a power of two to about 1, so that no square of the normal's components is lost.
-  const double largest = std::max({std::fabs(normal[0]), std::fabs(normal[1]), std::fabs(normal[2])});
-  if (!is_rigid(pose) || !(largest > 0) || !std::isfinite(offset)) return unknown;
-  if (!std::isfinite(normal[0]) || !std::isfinite(normal[1]) || !std::isfinite(normal[2])) return unknown;
-  const int power = -std::ilogb(largest);
-  const Vec3 scaled = {std::ldexp(normal[0], power), std::ldexp(normal[1], power), std::ldexp(normal[2], power)};
-  const double size = length(scaled), height_of_plane = std::ldexp(offset, power);
+  const ScaledVector scaled(normal);
+  const double size = length(scaled.value), height_of_plane = std::ldexp(offset, scaled.power);
+  if (!is_rigid(pose) || !(size > 0) || !std::isfinite(offset)) return unknown;
   const Frame frame(tree, pose);
   Pose turn = frame.back;
   turn.translation = {};
-  const Vec3 n = rotate(turn, along({0, 0, 0}, scaled, 1 / size));
+  const Vec3 n = rotate(turn, along({0, 0, 0}, scaled.value, 1 / size));
   struct Entry {
     double lower;
     std::uint32_t child;
@@ -148,7 +144,7 @@ SurfacePoint deepest_point(const TreeView& tree, const Pose& pose, const std::ar
     }
   }
   best.point = frame.leave(deepest);
-  best.distance = (detail::dot(scaled, best.point) - height_of_plane) / size;
+  best.distance = (detail::dot(scaled.value, best.point) - height_of_plane) / size;
   return best;
 }
 

@@ -20,6 +20,22 @@ inline Vec3 along(const Vec3& a, const Vec3& d, double t) noexcept {
 
 // As std::min and std::max, but by value: an instruction each, where those can become branches that nobody predicts.
 // Where one is not a number, both give the first one.
+// A vector by a power of two to about 1, so that no square of its components is lost; 0 of what has no direction.
+struct ScaledVector {
+  Vec3 value{};
+  int power = 0;
+  explicit ScaledVector(const Vec3& v) noexcept {
+    double largest = 0;
+    for (const double x : v) {
+      if (!std::isfinite(x)) return;
+      largest = std::fabs(x) > largest ? std::fabs(x) : largest;
+    }
+    if (largest == 0) return;
+    power = -std::ilogb(largest);
+    for (std::size_t i = 0; i < 3; ++i) value[i] = std::ldexp(v[i], power);
+  }
+};
+
 // The least power of two that is no less than a number above 0.
 inline double power_above(double x) noexcept {
   constexpr std::uint64_t kMantissa = (std::uint64_t{1} << 52) - 1;

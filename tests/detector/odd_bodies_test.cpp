@@ -76,13 +76,20 @@ TEST(OddBodies, AreMetOnTheWayInTheStepInWhichTheyWake) {
   }
 }
 
+struct TwoThatTouch {
+  std::vector<BodyState> states{BodyState{}, BodyState{.pose = at(0.5)}};
+  Detector world{states_of(states), {.time_step = kStep, .steps_to_end = 3}};
+  BodyId first;
+  TwoThatTouch() {
+    const ShapeId ball = world.add_sphere(1);
+    first = world.add_body({{ball}});
+    world.add_body({{ball}});
+  }
+};
+
 TEST(OddBodies, TouchNoMoreOnceTeleportedHoweverLongATouchLasts) {
-  std::vector<BodyState> states(2);
-  states[1].pose = at(0.5);
-  Detector world(states_of(states), {.time_step = kStep, .steps_to_end = 3});
-  const ShapeId ball = world.add_sphere(1);
-  const BodyId first = world.add_body({{ball}});
-  world.add_body({{ball}});
+  TwoThatTouch two;
+  auto& [states, world, first] = two;
   ASSERT_EQ(world.step(0).events.size(), 1u);
   world.teleport(first);
   states[0].pose = at(100);
@@ -92,12 +99,8 @@ TEST(OddBodies, TouchNoMoreOnceTeleportedHoweverLongATouchLasts) {
 }
 
 TEST(OddBodies, TouchAgainOnceTheirStatesAreValidAgain) {
-  std::vector<BodyState> states(2);
-  states[1].pose = at(0.5);
-  Detector world(states_of(states), {.time_step = kStep, .steps_to_end = 3});
-  const ShapeId ball = world.add_sphere(1);
-  const BodyId first = world.add_body({{ball}});
-  world.add_body({{ball}});
+  TwoThatTouch two;
+  auto& [states, world, first] = two;
   world.step(0);
   states[0].velocity = {kNan, 0, 0};
   world.cancel(first);

@@ -129,6 +129,16 @@ void record(Scene& scene, PenaltySolver& solver) {
   scene.planes = solver.planes;
 }
 
+// A cube around the origin, whose sides are that far from it.
+void add_walls(PenaltySolver& solver, double wall) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    Vec3 normal{};
+    normal[axis] = 1;
+    solver.planes.push_back({normal, -wall});
+    solver.planes.push_back({-1.0 * normal, -wall});
+  }
+}
+
 Ball random_ball(Draw& draw, double around, double speed) {
   Ball ball;
   ball.place = {draw.uniform(-around, around), draw.uniform(-around, around), draw.uniform(-around, around)};
@@ -291,12 +301,7 @@ Scene machines(std::size_t bodies, int steps, std::uint64_t seed) {
   PenaltySolver solver;
   solver.damping = 0;
   const double wall = 1.3 * std::cbrt(static_cast<double>(bodies)) + 1;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    Vec3 normal{};
-    normal[axis] = 1;
-    solver.planes.push_back({normal, -wall});
-    solver.planes.push_back({-1.0 * normal, -wall});
-  }
+  add_walls(solver, wall);
   struct Joint {
     Vec3 place, axis;
     double turn, scale;
@@ -338,12 +343,7 @@ Scene bouncing_box(std::size_t bodies, int steps, std::uint64_t seed) {
   PenaltySolver solver;
   solver.damping = 0;
   const double wall = 1.1 * std::cbrt(static_cast<double>(bodies)) + 1;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    Vec3 normal{};
-    normal[axis] = 1;
-    solver.planes.push_back({normal, -wall});
-    solver.planes.push_back({-1.0 * normal, -wall});
-  }
+  add_walls(solver, wall);
   for (std::size_t i = 0; i < bodies; ++i) solver.balls.push_back(random_ball(draw, wall - 1, 6));
   record(scene, solver);
   return scene;
