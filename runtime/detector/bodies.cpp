@@ -35,14 +35,39 @@ bool set_local(PartPlace& part, const Shape& shape, const Pose& local) noexcept 
   part.local = local;
   part.at_origin = local == Pose{};
   part.center = transform(local, shape.center);
+  part.off = length(part.center);
   part.reach = shape.reach * local.scale;
-  return std::isfinite(part.reach + length(part.center));
+  return std::isfinite(part.reach + part.off);
 }
+
+// Rotations are rotations to kRigidTolerance only.
+double reach_of(const PartPlace& part) noexcept { return (part.off + part.reach) * (1 + 1e-11); }
 
 double reach_of(std::span<const PartRecord> parts) noexcept {
   double reach = 0;
-  for (const PartRecord& part : parts) reach = std::max(reach, length(part.center) + part.reach);
-  return reach * (1 + 1e-11);  // rotations are rotations to kRigidTolerance only
+  for (const PartRecord& part : parts) reach = std::max(reach, reach_of(part));
+  return reach;
+}
+
+// Around the middle of a box around the parts' spheres.
+void find_middle(Body& body) noexcept {
+  constexpr double kWorthIt = 0.97;  // of the radius around the origin
+  Vec3 low = body.parts[0].center, high = low;
+  for (const PartRecord& part : body.parts) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], part.center[i] - part.reach);
+      high[i] = std::max(high[i], part.center[i] + part.reach);
+    }
+  }
+  const Vec3 middle = body.parts.size() == 1 ? body.parts[0].center : 0.5 * (low + high);
+  double reach = 0;
+  for (const PartRecord& part : body.parts) reach = std::max(reach, length(part.center - middle) + part.reach);
+  // As in reach_of(); the middle itself is off by what rotations are.
+  reach = reach * (1 + 1e-11) + 4 * kRigidTolerance * length(middle);
+  if (!(reach < kWorthIt * body.reach)) return;
+  body.middle = middle;
+  body.middle_reach = reach;
+  body.off_middle = length(middle) * (1 + 1e-11);
 }
 
 Body& BodyTable::take_in(BodyId id, std::size_t count) {
@@ -115,13 +140,18 @@ void BodyTable::place_part(Body& body, std::size_t part) noexcept {
   const PartRecord& record = body.parts[part];
   PlacedSphere& sphere = body.part_spheres[part];
   sphere = {transform(pose, record.center), record.reach * pose.scale};
-  double size = length(record.center) * pose.scale + sphere.reach;
+  double size = record.off * pose.scale + sphere.reach;
   for (std::size_t k = 0; k < 3; ++k) size += std::fabs(pose.translation[k]) + std::fabs(sphere.center[k]);
   Whereabouts where;
   where.middle = sphere.center;
   where.slack = 1e-14 * size;
   if (body.rigid && !(body.continuous_speed > 0)) where.reach = sphere.reach;
   body.near_part_spheres[part] = near_sphere_of(where);
+}
+
+void BodyTable::place_parts(Body& body) noexcept {
+  for (std::size_t part = 0; part < body.part_spheres.size(); ++part) place_part(body, part);
+  body.parts_moved = false;
 }
 
 void BodyTable::moved(BodyIndex index, const Pose& before) noexcept {
@@ -136,21 +166,24 @@ void BodyTable::moved(BodyIndex index, const Pose& before) noexcept {
   const bool tells = body.one && body.rigid && !(body.continuous_speed > 0);
   where.reach = tells ? reach * now.scale : std::numeric_limits<double>::infinity();
   near_spheres_[index] = near_sphere_of(where);
-  for (std::size_t part = 0; part < body.part_spheres.size(); ++part) place_part(body, part);
+  place_parts(body);
   const double change = pose_change(before, now);
   add_turn(index, change == 0 ? 0 : (change + 4 * kRigidTolerance * (now.scale + before.scale)) * reach);
   if (!body.rigid || !std::isfinite(size)) disturb(index);
 }
 
-void BodyTable::part_moved(BodyIndex index, std::size_t part, const PartPlace& before, const Shape& shape) noexcept {
-  const Pose& pose = bodies_[index].state.pose;
-  const PartPlace& now = bodies_[index].parts[part];
-  const double rounding = 4 * kRigidTolerance * (now.local.scale + before.local.scale);
-  const double way =
-      length(now.center - before.center) + (pose_change(before.local, now.local) + rounding) * shape.reach;
-  add_turn(index, way * pose.scale);
-  if (bodies_[index].one) return moved(index, pose);
-  place_part(bodies_[index], part);  // its origin is where it was
+// Whoever is asked at each step is placed then.
+void BodyTable::move_part(BodyIndex index, std::size_t part, const PartPlace& to, const Shape& shape) noexcept {
+  Body& body = bodies_[index];
+  PartRecord& now = body.parts[part];
+  const double rounding = 4 * kRigidTolerance * (now.local.scale + to.local.scale);
+  const double way = length(to.center - now.center) + (pose_change(now.local, to.local) + rounding) * shape.reach;
+  add_turn(index, way * body.state.pose.scale);
+  static_cast<PartPlace&>(now) = to;
+  if (part == 0) parts_changed(index);
+  if (body.one) return moved(index, body.state.pose);  // several ones have the body's origin as their middle
+  body.parts_moved = true;
+  if (body.is_static || body.frozen) place_parts(body);
 }
 
 void BodyTable::leave(BodyIndex body) noexcept { bodies_[body].id = kNoBody; }
@@ -231,15 +264,20 @@ void BodyTable::take_answer(Step step, BodyIndex index, const BodyState& answer)
   state = answer;
   body.rigid = is_rigid(state.pose);
   if (!body.rigid) any_flawed_.store(true, std::memory_order_relaxed);
-  if (!same) moved(index, before);
+  if (!same) {
+    moved(index, before);
+  } else if (body.parts_moved) {
+    place_parts(body);
+  }
   if (!body.asleep) return;
   body.frozen = true;
   state.velocity = state.half_space = {};
-  state.acceleration = state.drift = 0;
+  state.acceleration = state.drift = state.angular_speed = 0;
   state.expiry = std::numeric_limits<double>::infinity();
 }
 
-Motion BodyTable::motion_of(BodyIndex index, double time_step) const noexcept {
+// The middle goes as the origin does, but for what it turns about that.
+Motion BodyTable::motion_of(BodyIndex index, double time_step, bool by_middle) const noexcept {
   const Body& body = bodies_[index];
   const BodyState& state = bodies_[index].state;
   Motion motion;
@@ -250,18 +288,20 @@ Motion BodyTable::motion_of(BodyIndex index, double time_step) const noexcept {
   motion.drift = state.drift;
   motion.half_space = state.half_space;
   motion.expiry = state.expiry;
-  if (!body.rigid) motion.radius = -1;  // refused
+  if (by_middle) {
+    motion.position = transform(state.pose, body.middle);
+    motion.radius = body.middle_reach * state.pose.scale;
+    motion.drift += state.angular_speed * body.off_middle * state.pose.scale;
+  }
+  if (!body.rigid || !(state.angular_speed >= 0)) motion.radius = -1;  // refused
   return motion;
 }
 
 bool BodyTable::surely_apart(const BodyPair& pair, double time_step) const noexcept {
-  const Body &a = bodies_[pair.a], &b = bodies_[pair.b];
-  const Pose &at_a = bodies_[pair.a].state.pose, &at_b = bodies_[pair.b].state.pose;
-  const double reach =
-      a.reach * at_a.scale + b.reach * at_b.scale + (a.continuous_speed + b.continuous_speed) * time_step;
-  const Vec3 way = Vec3(at_b.translation) - Vec3(at_a.translation);
-  const double square = dot(way, way);
-  return a.rigid && b.rigid && std::isfinite(square) && square > reach * reach;
+  const Motion a = motion_of(pair.a, time_step), b = motion_of(pair.b, time_step);
+  const Vec3 way = b.position - a.position;
+  const double reach = a.radius + b.radius, square = dot(way, way);
+  return a.radius >= 0 && b.radius >= 0 && std::isfinite(square) && square > reach * reach;
 }
 
 std::size_t BodyTable::memory_bytes() const noexcept {

@@ -17,6 +17,7 @@ struct PartPlace {
   bool at_origin = true;  // `local` changes nothing
   Pose local{};
   Vec3 center{};     // of a sphere around it,
+  double off = 0;    // which is so far from the origin,
   double reach = 0;  // and its radius
 };
 
@@ -64,11 +65,19 @@ struct alignas(64) Body {
   BodyState state;  // as known last
 
   double min_reach = 0;           // as the application gave it
-  double reach = 0;               // what the broad phase has been told of, at scale 1
+  double reach = 0;               // around its origin: what the broad phase has been told of, at scale 1
   double told_radius = -1;        // of the sphere that the broad phase relies on; below 0: none yet
   Step asked = kNotAsked;         // the step that `state` is of
   Step known_before = kNotAsked;  // the step that `before` is of
   std::vector<PartRecord> parts;
+
+  // A sphere around the parts in the body's frame, where they stay as they are and it is smaller than that around the
+  // origin; else its radius is infinite.
+  Vec3 middle{};
+  double middle_reach = std::numeric_limits<double>::infinity();
+  double off_middle = 0;        // from the origin to the middle
+  bool told_by_middle = false;  // what the broad phase relies on
+  bool parts_moved = false;     // since their spheres were placed
 
   Vec3 first_center{};                   // of the first part's sphere,
   double first_reach = 0;                // and its radius
@@ -76,6 +85,8 @@ struct alignas(64) Body {
   // Around each part, if there are several, at the pose that is known.
   std::vector<PlacedSphere> part_spheres;
   std::vector<NearSphere> near_part_spheres;
+
+  bool has_middle() const noexcept { return middle_reach < reach; }
 };
 
 // What a gap between spheres may be rounded by, in units of Whereabouts::slack.
@@ -95,6 +106,9 @@ struct alignas(64) Whereabouts {
 
 // The parts of `body`, ready for the broad phase: a sphere around all of them, around the body's origin.
 double reach_of(std::span<const PartRecord> parts) noexcept;
+double reach_of(const PartPlace& part) noexcept;
+void find_middle(Body& body) noexcept;
+inline void forget_middle(Body& body) noexcept { body.middle_reach = std::numeric_limits<double>::infinity(); }
 bool set_local(PartPlace& part, const Shape& shape, const Pose& local) noexcept;  // false: not rigid
 
 // Which bodies there are and, per step, where: asked for at most once a step. Indices are the broad phase's.
@@ -148,7 +162,7 @@ class BodyTable {
   bool all_rigid() const noexcept { return !any_flawed_.load(std::memory_order_relaxed); }
   // Who calls for what ask() does not see: another pose of a body at rest, another place of a part, other triangles.
   void moved(BodyIndex body, const Pose& before) noexcept;
-  void part_moved(BodyIndex body, std::size_t part, const PartPlace& before, const Shape& shape) noexcept;
+  void move_part(BodyIndex body, std::size_t part, const PartPlace& to, const Shape& shape) noexcept;
   void deformed(BodyIndex body) noexcept { disturb(body); }
 
   // Makes all their states those of the step; a body may come up twice. What follows from many answers is worked out by
@@ -156,13 +170,24 @@ class BodyTable {
   void ask(Step step, double time, std::span<const BodyIndex> bodies, const Executor& executor = {});
   void ask_everyone(Step step, double time, const Executor& executor);
   // As the broad phase wants it. Not valid if the state is not.
-  Motion motion_of(BodyIndex body, double time_step) const noexcept;
+  Motion motion_of(BodyIndex body, double time_step) const noexcept {
+    return motion_of(body, time_step, goes_by_middle(body, time_step));
+  }
+  Motion motion_of(BodyIndex body, double time_step, bool by_middle) const noexcept;
+  // Whether that is the motion of Body::middle: it turns too slowly to get far from there in some steps.
+  bool goes_by_middle(BodyIndex index, double time_step) const noexcept {
+    constexpr double kSteps = 8;
+    const Body& body = bodies_[index];
+    return body.has_middle() &&
+           kSteps * time_step * body.state.angular_speed * body.off_middle <= body.reach - body.middle_reach;
+  }
   // Whether the spheres of motion_of() do not touch, where both states are known.
   bool surely_apart(const BodyPair& pair, double time_step) const noexcept;
   std::size_t memory_bytes() const noexcept;
 
  private:
-  void place_part(Body& body, std::size_t part) noexcept;
+  static void place_part(Body& body, std::size_t part) noexcept;
+  static void place_parts(Body& body) noexcept;
   void add_turn(BodyIndex body, double way) noexcept;
   void disturb(BodyIndex body) noexcept;
   void ask_source(Step step, double time, const Executor& executor);

@@ -67,7 +67,7 @@ void Detector::State::run_for_broad(void* context, std::size_t count, Executor::
 Detector::Detector(StateSource source, const DetectorOptions& options)
     : state_(std::make_unique<State>(std::move(source), options)) {}
 Detector::Detector(const DetectorOptions& options) {
-  auto kept = std::make_unique<detail::KeptStates>();
+  auto kept = std::make_unique<detail::KeptStates>(!options.watch);
   const auto fill = [states = kept.get()](double time, std::span<const BodyIndex> bodies,
                                           std::span<BodyState> answers) { states->fill(time, bodies, answers); };
   state_ = std::make_unique<State>(fill, options);
@@ -118,9 +118,10 @@ Body& Detector::State::take_in(BodyId id, std::span<const BodyPart> parts, const
   body.importance = with.importance;
   body.suggest = with.suggest && options.watch;
   body.continuous_speed = with.continuous_speed;
-  if (with.continuous_speed > 0) {
+  if (with.continuous_speed > 0 && !any_continuous) {
     any_continuous = true;
     bodies.keep_before();
+    go_by_origins();
   }
   body.min_reach = with.reach;
   for (const BodyPart& part : parts) {
@@ -130,9 +131,20 @@ Body& Detector::State::take_in(BodyId id, std::span<const BodyPart> parts, const
   }
   bodies.parts_changed(id.index);
   body.reach = std::max(body.min_reach, detail::reach_of(body.parts));
+  if (!any_continuous && !body.suggest && !(with.reach > 0)) detail::find_middle(body);
   changed(body);
   body.moved = -1;
   return body;
+}
+
+// A sweep goes by what origins do between steps, and not by middles.
+void Detector::State::go_by_origins() {
+  for (BodyIndex i = 0; i < bodies.slots(); ++i) {
+    Body& body = bodies[i];
+    if (body.id == kNoBody || body.is_static || !body.has_middle()) continue;
+    detail::forget_middle(body);
+    update_again(body);
+  }
 }
 
 BodyId Detector::add_body(std::span<const BodyPart> parts, const BodyOptions& options) {
@@ -156,10 +168,8 @@ void Detector::State::stir(Body& body) noexcept {
 }
 
 Motion Detector::State::place_of(const Body& body) const noexcept {
-  Motion place;
-  const Pose& pose = bodies.state(body.id.index).pose;
-  place.position = pose.translation;
-  place.radius = body.reach * pose.scale + body.continuous_speed * clock.time_step;
+  Motion place = bodies.motion_of(body.id.index, clock.time_step, body.has_middle());
+  place.drift = 0;
   return place;
 }
 
@@ -266,30 +276,28 @@ bool Detector::set_local(BodyId body, std::size_t part, const Pose& local) {
   State& s = *state_;
   Body* found = s.find(body);
   if (found == nullptr || part >= found->parts.size()) return false;
-  detail::PartRecord& record = found->parts[part];
+  const detail::PartRecord& record = found->parts[part];
   detail::PartPlace place;
   if (!detail::set_local(place, s.shapes[record.shape], local)) return false;
-  found->parts_before.resize(found->parts.size());
-  const detail::PartPlace place_before = record;
-  static_cast<detail::PartPlace&>(record) = place;
-  const double reach = detail::reach_of(found->parts), reach_before = found->reach;
-  const bool stretches = reach > reach_before;
+  const double reach = detail::reach_of(place), reach_before = found->reach, middle_before = found->middle_reach;
+  const bool stretches = reach > reach_before, grows = stretches || found->has_middle();
   if (stretches) found->reach = kStretchAhead * reach;
+  detail::forget_middle(*found);
   // What is too large is told before anything has changed.
   if (!(found->reach <= kMaxNumber) ||
-      (stretches && found->is_static && !s.or_fail([&] { return s.broad.move_static(body, s.place_of(*found)); }))) {
-    static_cast<detail::PartPlace&>(record) = place_before;
-    found->reach = reach_before;
+      (grows && found->is_static && !s.or_fail([&] { return s.broad.move_static(body, s.place_of(*found)); }))) {
+    found->reach = reach_before, found->middle_reach = middle_before;
     return false;
   }
-  detail::PartBefore& before = found->parts_before[part];
-  if (before.until != s.answered) before = {place_before, s.answered};
-  s.bodies.parts_changed(body.index);
-  s.bodies.part_moved(body.index, part, place_before, s.shapes[record.shape]);
+  if (s.any_continuous) {
+    found->parts_before.resize(found->parts.size());
+    detail::PartBefore& before = found->parts_before[part];
+    if (before.until != s.answered) before = {record, s.answered};
+  }
+  s.bodies.move_part(body.index, part, place, s.shapes[record.shape]);
   s.changed(*found);
-  if (!stretches) return true;
-  found->stretched = s.answered;
-  if (!found->is_static) s.update_again(*found);
+  if (stretches) found->stretched = s.answered;
+  if (grows && !found->is_static) s.update_again(*found);
   return true;
 }
 

@@ -1,4 +1,6 @@
 #include <array>
+#include <cmath>
+#include <limits>
 #include <new>
 
 #include "guarded.h"
@@ -30,8 +32,9 @@ rt::BodyOptions options_of(const orchard_body_options& from) noexcept {
 }
 
 rt::BodyState state_of(const orchard_body_state& from) noexcept {
-  return {pose_of(from.pose), vector_of(from.velocity),   from.acceleration,
-          from.drift,         vector_of(from.half_space), from.expiry};
+  const double angular_speed = from.turns_promised != 0 ? from.angular_speed : std::numeric_limits<double>::infinity();
+  return {pose_of(from.pose),          vector_of(from.velocity), from.acceleration, from.drift,
+          vector_of(from.half_space), from.expiry,              angular_speed};
 }
 
 orchard_body_state state_of(const rt::BodyState& from) noexcept {
@@ -42,6 +45,8 @@ orchard_body_state state_of(const rt::BodyState& from) noexcept {
   std::copy(from.velocity.begin(), from.velocity.end(), result.velocity);
   std::copy(from.half_space.begin(), from.half_space.end(), result.half_space);
   result.acceleration = from.acceleration, result.drift = from.drift, result.expiry = from.expiry;
+  result.turns_promised = std::isfinite(from.angular_speed) ? 1 : 0;
+  result.angular_speed = result.turns_promised != 0 ? from.angular_speed : 0;
   return result;
 }
 

@@ -21,6 +21,7 @@ void Detector::State::motions(double time, std::span<const BodyIndex> asked, std
     if (!options.watch) continue;
     Body& body = bodies[asked[i]];
     body.told_radius = answers[i].radius;
+    body.told_by_middle = bodies.goes_by_middle(asked[i], clock.time_step);
     monitor.promised(asked[i], time, answers[i]);
   }
   if (!options.promised) return;
@@ -49,7 +50,7 @@ void Detector::State::watch(Step step) {
   bodies.ask(step, time, everyone, options.executor);
   for (const BodyIndex i : everyone) {
     Body& body = bodies[i];
-    const Motion motion = bodies.motion_of(i, clock.time_step);
+    const Motion motion = bodies.motion_of(i, clock.time_step, body.has_middle() && body.told_by_middle);
     if (!is_valid(motion)) continue;  // refused soon
     const bool given = !body.suggest || dot(motion.velocity, motion.velocity) > 0;
     bool kept =
@@ -66,10 +67,12 @@ void Detector::State::watch(Step step) {
 
 // Besides the monitor's promise: what half-spaces rely on, the size, and the speed of what is continuous.
 bool Detector::State::keeps_more(const Body& body, Step step, const Motion& motion) const noexcept {
-  if (!halves.promise_kept(body.id.index, clock.time(step), motion)) return false;
+  const BodyIndex index = body.id.index;
+  const bool by_middle = body.has_middle() && halves.goes_by_middle(index);
+  if (!halves.promise_kept(index, clock.time(step), bodies.motion_of(index, clock.time_step, by_middle))) return false;
   if (body.told_radius >= 0 && motion.radius > body.told_radius) return false;
   if (!(body.continuous_speed > 0) || body.known_before != step - 1) return true;
-  const Vec3 way = motion.position - Vec3(bodies.before(body.id.index).translation);
+  const Vec3 way = motion.position - Vec3(bodies.before(index).translation);
   return detail::length(way) <= body.continuous_speed * clock.time_step * (1 + 1e-9);
 }
 

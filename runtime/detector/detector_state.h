@@ -35,6 +35,7 @@ struct Detector::State {
   }
   detail::Body* find(BodyId body) noexcept;
   void update_again(detail::Body& body);  // its promise holds no longer
+  void go_by_origins();
   void changed(detail::Body& body) noexcept { body.moved = answered + 1; }
   Motion place_of(const detail::Body& body) const noexcept;  // of a static one
   void stir(detail::Body& body) noexcept;                    // what sleeps

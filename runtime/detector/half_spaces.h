@@ -31,6 +31,8 @@ class HalfSpaces {
                       std::span<const Motion> motions, double time_step, double slack, std::vector<BodyPair>& pairs);
   // Whether the promise that the body's next update relies on is kept by where it is now.
   bool promise_kept(BodyIndex body, double time, const Motion& now) const noexcept;
+  // Whether that is about the body's middle: see BodyTable::goes_by_middle().
+  bool goes_by_middle(BodyIndex body) const noexcept { return body < promises_.size() && promises_[body].by_middle; }
   std::size_t memory_bytes() const noexcept;
 
  private:
@@ -42,6 +44,7 @@ class HalfSpaces {
   struct Promise {
     double time = 0;
     Motion motion;
+    bool by_middle = false;
   };
   std::vector<Plane> planes_;
   std::vector<Step> due_;          // by body

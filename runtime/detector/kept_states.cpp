@@ -17,8 +17,12 @@ BodyState KeptStates::at(double time, BodyIndex body) const noexcept {
   return state;
 }
 
+// None of them turns until another state is told, which cancels what was promised.
 void KeptStates::fill(double time, std::span<const BodyIndex> bodies, std::span<BodyState> states) const noexcept {
-  for (std::size_t i = 0; i < bodies.size(); ++i) states[i] = at(time, bodies[i]);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    states[i] = at(time, bodies[i]);
+    if (cancels_) states[i].angular_speed = 0;
+  }
 }
 
 }  // namespace detail
@@ -33,7 +37,7 @@ bool is_valid_state(const BodyState& state) noexcept {
   motion.drift = state.drift;
   motion.half_space = state.half_space;
   motion.expiry = state.expiry;
-  return is_rigid(state.pose) && is_valid(motion);
+  return is_rigid(state.pose) && is_valid(motion) && state.angular_speed >= 0;
 }
 
 }  // namespace

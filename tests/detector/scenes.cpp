@@ -10,17 +10,38 @@ namespace {
 
 double length(const Vec3& v) { return std::sqrt(dot(v, v)); }
 
+// By which angle the one is turned from the other, at least.
+double turned(const std::array<double, 9>& from, const std::array<double, 9>& to) {
+  double square = 0;
+  for (std::size_t i = 0; i < 9; ++i) square += (to[i] - from[i]) * (to[i] - from[i]);
+  const double chord = std::sqrt(square / 2) * (1 + 1e-9) + 1e-12;  // what a unit vector moves at most
+  return chord >= 2 ? std::acos(-1.0) : 2 * std::asin(chord / 2);
+}
+
 // A ball that stands for a body, and turns at a constant rate.
 struct Ball {
   Vec3 place{}, velocity{}, axis{0, 0, 1};
   double spin = 0, angle = 0, radius = 1, scale = 1;
+  std::array<double, 4> attitude = {1, 0, 0, 0};  // before it turned by `angle`
   bool fixed = false;
 
   Pose pose() const {
-    const double half = angle / 2, s = std::sin(half);
-    Pose result = *pose_from_quaternion({std::cos(half), s * axis[0], s * axis[1], s * axis[2]}, place);
+    Pose result = *pose_from_quaternion(quaternion(), place);
     result.scale = scale;
     return result;
+  }
+  void turn(const Vec3& about, double fast) {  // from now on
+    attitude = quaternion();
+    axis = about, spin = fast, angle = 0;
+  }
+
+ private:
+  std::array<double, 4> quaternion() const {
+    const double half = angle / 2, s = std::sin(half), w = std::cos(half);
+    const Vec3 v = s * axis, u = {attitude[1], attitude[2], attitude[3]};
+    const Vec3 across = {v[1] * u[2] - v[2] * u[1], v[2] * u[0] - v[0] * u[2], v[0] * u[1] - v[1] * u[0]};
+    const Vec3 product = w * u + attitude[0] * v + across;
+    return {w * attitude[0] - dot(v, u), product[0], product[1], product[2]};
   }
 };
 
@@ -174,6 +195,7 @@ BodyState Scene::state_backwards(int step, double time, std::size_t body, int ho
 
 // Steps go by `way` up to `end`.
 BodyState Scene::promised(int step, int way, int end, std::size_t body, int horizon) const {
+  const auto rotation = [&](int k) { return poses[static_cast<std::size_t>(k)][body].rotation; };
   const auto place = [&](int k) { return Vec3(poses[static_cast<std::size_t>(k)][body].translation); };
   BodyState state;
   state.pose = poses[static_cast<std::size_t>(step)][body];
@@ -185,6 +207,12 @@ BodyState Scene::promised(int step, int way, int end, std::size_t body, int hori
     const int at = step + k * way;
     const Vec3 change = place(at + 1) - 2.0 * place(at) + place(at - 1);
     state.acceleration = std::max(state.acceleration, length(change) / (dt * dt) * (1 + 1e-9) + 1e-9);
+  }
+  // An angle that is larger than its chord, and the sum of such ones at least the whole way.
+  state.angular_speed = 0;
+  for (int k = 0; k < std::min(horizon, std::abs(end - step)); ++k) {
+    const int at = step + k * way;
+    state.angular_speed = std::max(state.angular_speed, turned(rotation(at), rotation(at + way)) / dt);
   }
   return state;
 }
@@ -204,7 +232,10 @@ Scene flight(std::size_t bodies, int steps, std::uint64_t seed) {
     auto& poses = scene.poses.emplace_back();
     for (Ball& ball : solver.balls) {
       poses.push_back(ball.pose());
-      if (step % 40 == 0) ball.axis = draw.direction(), ball.spin = draw.uniform(-4, 4);
+      if (step % 40 == 0) {
+        const Vec3 axis = draw.direction();
+        ball.turn(axis, draw.uniform(-4, 4));
+      }
       const Vec3 forward = rotate(ball.pose(), {1, 0, 0});
       ball.velocity = ball.velocity + (0.05 * forward) - (0.002 * ball.place);
     }

@@ -43,6 +43,9 @@ struct BodyState {
   double drift = 0;
   Vec3 half_space{};
   double expiry = std::numeric_limits<double>::infinity();
+  // At most, until the promise expires, in radians per second. Worth telling of bodies whose origin is not in their
+  // middle: who promises nothing (infinity) may turn any way, and so reaches as far as his farthest point everywhere.
+  double angular_speed = std::numeric_limits<double>::infinity();
 };
 
 // Fills states[i] with what is known of bodies[i] at `time`, the time of a step. It throws nothing. Called from within

@@ -25,6 +25,8 @@ typedef struct orchard_body_state {
   double drift;
   double half_space[3]; /* d; zero: none */
   double expiry;        /* may be INFINITY */
+  int turns_promised;   /* 0: nothing is promised of how fast it turns; else at most */
+  double angular_speed; /* this, in radians per second */
 } orchard_body_state;
 
 typedef struct orchard_part {
