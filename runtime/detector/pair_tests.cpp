@@ -10,8 +10,7 @@ void Places::place_at(const Pose& pose, bool rigid, ShapeId shape, const PartPla
   placed_part.there = &pose;
   if (!part.at_origin && rigid) placed_part.move_to(placed(pose, part.local));
   placed_part.rigid = rigid;
-  placed_part.center = transform(pose, part.center);
-  placed_part.reach = part.reach * pose.scale;
+  placed_part.be_in(transform(pose, part.center), part.reach * pose.scale);
 }
 
 void Places::place(BodyIndex body, std::uint32_t part, PlacedPart& placed_part) const noexcept {
@@ -22,8 +21,7 @@ void Places::place(BodyIndex body, std::uint32_t part, PlacedPart& placed_part) 
       placed_part.shape = &(*shapes_)[of.shape];
       placed_part.there = &bodies_->state(body).pose;
       placed_part.rigid = true;
-      placed_part.center = where.middle;
-      placed_part.reach = where.reach;
+      placed_part.be_in(where.middle, where.reach);
       return;
     }
     const PartRecord& record = of.parts[part];
@@ -44,8 +42,7 @@ void Places::place_sphere(BodyIndex body, std::uint32_t part, PlacedPart& placed
   placed_part.rigid = of.rigid;
   const PlacedSphere sphere =
       of.one ? PlacedSphere{transform(pose, record.center), record.reach * pose.scale} : of.part_spheres[part];
-  placed_part.center = sphere.center;
-  placed_part.reach = sphere.reach;
+  placed_part.be_in(sphere.center, sphere.reach);
 }
 
 void Places::place_before(BodyIndex body, std::uint32_t part, Step now, PlacedPart& placed_part) const noexcept {
@@ -62,40 +59,66 @@ void Places::place_before(BodyIndex body, std::uint32_t part, Step now, PlacedPa
   place_at(pose, is_rigid(pose), record.shape, place, placed_part);
 }
 
-double sphere_gap(const PartPair& pair) noexcept {
-  constexpr double kRounding = 1e-11;  // of rotations that are rotations to kRigidTolerance, and of coordinates
-  if (pair.b.shape == nullptr) {
-    const double height = dot(pair.half.normal, pair.a.center) - pair.half.offset;
-    return height - pair.a.reach - kRounding * (std::fabs(pair.half.offset) + length(pair.a.center) + pair.a.reach);
-  }
-  const double size = length(pair.a.center) + length(pair.b.center) + pair.a.reach + pair.b.reach;
-  const double gap = length(pair.b.center - pair.a.center) - pair.a.reach - pair.b.reach - kRounding * size;
-  return std::isfinite(gap) ? gap : 0;
+namespace {
+
+constexpr double kRounding = 1e-11;  // of rotations that are rotations to kRigidTolerance, and of coordinates
+
+}  // namespace
+
+SphereGap sphere_gap(const PartPair& pair) noexcept {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const bool half = pair.b.shape == nullptr;
+  const double apart = half ? dot(pair.half.normal, pair.a.center) - pair.half.offset
+                            : length(pair.b.center - pair.a.center);
+  const double reach = pair.a.reach + (half ? 0 : pair.b.reach);
+  const double size = pair.a.size + (half ? std::fabs(pair.half.offset) : pair.b.size);
+  const double least = apart - reach - kRounding * size, most = std::max(0.0, apart) + reach;
+  return {std::isfinite(least) ? least : 0, most >= 0 ? most : kInfinity};  // each solid is somewhere in its sphere
 }
 
 // Mostly the squares tell: a gap that is computed as more than 0 has a square of its way that is larger.
 bool spheres_part(const PartPair& pair) noexcept {
-  if (pair.b.shape == nullptr) return sphere_gap(pair) > 0;
+  if (pair.b.shape == nullptr) return sphere_gap(pair).least > 0;
   const Vec3 way = pair.b.center - pair.a.center;
   const double reach = pair.a.reach + pair.b.reach;
-  return !(dot(way, way) < reach * reach) && sphere_gap(pair) > 0;
+  return !(dot(way, way) < reach * reach) && sphere_gap(pair).least > 0;
 }
 
-Verdict unasked(const PartPair& pair) noexcept {
+double Places::bounds_gap(BodyIndex body, std::uint32_t part, const PlacedPart& sphere) const noexcept {
+  const Body& of = (*bodies_)[body];
+  const PartRecord& record = of.parts[part];
+  if (!of.rigid) return 0;
+  double scale = 1, size = sphere.size;
+  Vec3 at = sphere.center;
+  const auto enter = [&](const Pose& frame) {  // `at` in its coordinates
+    const Vec3 way = at - Vec3(frame.translation);
+    const auto& r = frame.rotation;
+    const double shrink = 1 / frame.scale;
+    for (std::size_t i = 0; i < 3; ++i) {
+      size += scale * std::fabs(frame.translation[i]);
+      at[i] = shrink * (r[i] * way[0] + r[3 + i] * way[1] + r[6 + i] * way[2]);
+    }
+    scale *= frame.scale;
+  };
+  enter(bodies_->state(body).pose);
+  if (!record.at_origin) enter(record.local);
+  const Shape& shape = (*shapes_)[record.shape];
+  size += scale * (length(shape.center) + shape.reach);
+  const double gap = scale * distance_to_bounds(shape, at) - sphere.reach - kRounding * size;
+  return std::isfinite(gap) ? gap : 0;
+}
+
+Verdict unasked(const PartPair& pair) noexcept { return unasked(pair, sphere_gap(pair)); }
+
+Verdict unasked(const PartPair& pair, const SphereGap& gap) noexcept {
   Verdict verdict;
-  const double gap = sphere_gap(pair);
-  verdict.answer = gap > 0 ? Answer::no : Answer::maybe;
-  verdict.lower_bound = std::max(0.0, gap);
-  const bool half = pair.b.shape == nullptr;
-  // Each solid is somewhere in its sphere.
-  const double apart = half ? std::max(0.0, dot(pair.half.normal, pair.a.center) - pair.half.offset)
-                            : length(pair.b.center - pair.a.center);
-  verdict.separation_bound = apart + pair.a.reach + (half ? 0 : pair.b.reach);
-  if (!(verdict.separation_bound >= 0)) verdict.separation_bound = std::numeric_limits<double>::infinity();
+  verdict.answer = gap.least > 0 ? Answer::no : Answer::maybe;
+  verdict.lower_bound = std::max(0.0, gap.least);
+  verdict.separation_bound = gap.most;
   if (verdict.answer == Answer::no) return verdict;
   verdict.contact.center = pair.a.center;
   verdict.contact.radius = pair.a.reach;
-  const Vec3 way = half ? -1.0 * pair.half.normal : pair.b.center - pair.a.center;
+  const Vec3 way = pair.b.shape == nullptr ? -1.0 * pair.half.normal : pair.b.center - pair.a.center;
   const double size = length(way);
   verdict.contact.normal = size > 0 ? (1 / size) * way : Vec3{0, 0, 1};
   return verdict;

@@ -11,8 +11,13 @@ struct PlacedPart {
   const Shape* shape = nullptr;  // null: a half-space
   Vec3 center{};                 // of the part's sphere, in the world
   double reach = 0;
+  double size = 0;  // no point of it is farther from the origin
   bool rigid = true;
 
+  void be_in(const Vec3& middle, double radius) noexcept {
+    center = middle, reach = radius;
+    size = std::fabs(middle[0]) + std::fabs(middle[1]) + std::fabs(middle[2]) + radius;
+  }
   const Pose& pose() const noexcept { return there != nullptr ? *there : *own; }
   void move_to(const Pose& pose) noexcept { there = nullptr, own = pose; }
   const Pose* there = nullptr;  // most are where their body is: that is not copied
@@ -42,6 +47,8 @@ class Places {
   void place(BodyIndex body, std::uint32_t part, PlacedPart& placed) const noexcept;
   // All but the pose: enough for spheres, and a third of the time.
   void place_sphere(BodyIndex body, std::uint32_t part, PlacedPart& placed) const noexcept;
+  // How far the box or the capsule that the part's shape is in is from a sphere, at least; else at most 0.
+  double bounds_gap(BodyIndex body, std::uint32_t part, const PlacedPart& sphere) const noexcept;
   // At the step before `now`; only of bodies that have been asked for then, or rest since before.
   void place_before(BodyIndex body, std::uint32_t part, Step now, PlacedPart& placed) const noexcept;
   ORCHARD_INLINE void prefetch_bodies(const BodyPair& pair) const noexcept {
@@ -58,11 +65,15 @@ class Places {
   const HalfSpaces* halves_;
 };
 
-// How far apart the spheres around the two are, at least; at most 0 where they may overlap.
-double sphere_gap(const PartPair& pair) noexcept;
-bool spheres_part(const PartPair& pair) noexcept;  // whether it is more than 0
+struct SphereGap {
+  double least;  // how far apart the spheres around the two are, at least; at most 0 where they may overlap
+  double most;   // and what is in them, at most
+};
+SphereGap sphere_gap(const PartPair& pair) noexcept;
+bool spheres_part(const PartPair& pair) noexcept;  // whether the least gap is more than 0
 // What is known of two parts that nothing was asked about.
 Verdict unasked(const PartPair& pair) noexcept;
+Verdict unasked(const PartPair& pair, const SphereGap& gap) noexcept;
 
 // A triangle of the tree that a simple shape was nearest to, as its last answer says: where looking for it begins.
 std::uint32_t nearest_triangle(const Verdict& verdict, const PartPair& pair) noexcept;

@@ -34,6 +34,24 @@ void take_in(Record& record, const Verdict& verdict, std::uint32_t part_a, std::
   record.verdict.work = work;
 }
 
+namespace {
+
+// take_in() of what unasked() says of two parts that are apart, without that.
+void take_in_apart(Record& record, const PartPair& pair, const SphereGap& gap, double least, std::uint32_t part_a,
+                   std::uint32_t part_b) noexcept {
+  const double lower = std::min(record.verdict.lower_bound, least);
+  if (record.verdict.answer == Answer::no && gap.most < record.verdict.separation_bound) {
+    const std::uint64_t work = record.verdict.work;
+    record.verdict = unasked(pair, {least, gap.most});
+    record.verdict.work = work;
+    record.part_a = part_a, record.part_b = part_b;
+  }
+  record.verdict.separation_bound = std::min(record.verdict.separation_bound, gap.most);
+  record.verdict.lower_bound = lower;
+}
+
+}  // namespace
+
 void Rounds::place(const Record& record, std::uint32_t part_a, std::uint32_t part_b, PartPair& pair) const noexcept {
   places_->place(record.pair.a, part_a, pair.a);
   places_->place(record.pair.b, part_b, pair.b);
@@ -106,6 +124,14 @@ void Rounds::answer(std::uint32_t index, Record& record, Step now, QueryPool::Sc
   answer_parts(record, now, scratch);
 }
 
+// Of two parts whose spheres overlap: long ones fill little of theirs.
+double Rounds::bounds_gap(const Record& record, std::uint32_t part_a, std::uint32_t part_b,
+                          const PartPair& pair) const noexcept {
+  if (pair.b.shape == nullptr) return 0;
+  const double gap = places_->bounds_gap(record.pair.a, part_a, pair.b);
+  return gap > 0 ? gap : places_->bounds_gap(record.pair.b, part_b, pair.a);
+}
+
 // Bodies of several parts: most of these are told apart by their spheres, before anybody needs to know how they are
 // turned.
 void Rounds::answer_parts(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept {
@@ -124,8 +150,10 @@ void Rounds::answer_parts(Record& record, Step now, QueryPool::Scratch& scratch)
     for (std::uint32_t j = 0; j < parts_b && record.verdict.answer != Answer::yes; ++j) {
       if (parts_b > 1) places_->place_sphere(record.pair.b, j, pair.b);
       ++scratch.work;
-      if (spheres_part(pair)) {
-        take_in(record, unasked(pair), i, j);
+      const SphereGap gap = sphere_gap(pair);
+      const double least = gap.least > 0 ? gap.least : bounds_gap(record, i, j, pair);
+      if (least > 0) {
+        take_in_apart(record, pair, gap, least, i, j);
         continue;
       }
       if (!placed) places_->place(record.pair.a, i, pair.a);

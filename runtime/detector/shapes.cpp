@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "orchard/runtime/shape_trees.h"
+#include "pair/support_box.h"
 
 namespace orchard::runtime::detail {
 namespace {
@@ -105,6 +106,8 @@ void ShapeTable::describe(const TreeView& tree, Shape& shape) {
   // What is stored may be rounded away from the mesh, and the tree's ball holds both.
   shape.reach = double{root.radius[0]} + tree.vertex_error;
   shape.reach += 1e-15 * (shape.reach + length(shape.center));
+  const SupportBox box = support_box(tree);
+  shape.box_low = box.low, shape.box_high = box.high;
   shape.piece_vertices = pieces_of(tree);
   shape.pieces.resize(shape.piece_vertices.size());
   place_pieces(shape);
@@ -135,8 +138,23 @@ ShapeId ShapeTable::add_box(const Vec3& half_lengths) {
   shape.own = box_tree(half_lengths);
   for (std::size_t i = 0; i < 3; ++i) shape.p[i] = double{shape.own.vertices[7][i]};
   shape.reach = shape.own.bounding_radius;
+  shape.box_low = -1.0 * shape.p, shape.box_high = shape.p;
   shape.pieces = {shape.p};
   return add(std::move(shape));
+}
+
+double distance_to_bounds(const Shape& shape, const Vec3& point) noexcept {
+  Vec3 beyond{};
+  if (shape.kind == ShapeKind::round) {
+    const Vec3 way = shape.q - shape.p, from = point - shape.p;
+    const double square = dot(way, way);
+    const double share = square > 0 ? std::clamp(dot(from, way) / square, 0.0, 1.0) : 0.0;
+    return length(from - share * way) - shape.radius;
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    beyond[i] = std::max({0.0, shape.box_low[i] - point[i], point[i] - shape.box_high[i]});
+  }
+  return length(beyond);
 }
 
 std::size_t ShapeTable::memory_bytes() const noexcept {

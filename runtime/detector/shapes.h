@@ -23,6 +23,7 @@ struct Shape {
   double radius = 0;         // of round shapes
   Vec3 center{};             // of a sphere around the shape,
   double reach = 0;          // and its radius
+  Vec3 box_low{}, box_high{};  // of a box around the triangles, by the shape's axes; not of round shapes
   std::vector<Vec3> pieces;  // of a tree: a vertex of each connected piece of its surface,
   std::vector<std::uint32_t> piece_vertices;  // and which these are
   bool has_tree() const noexcept { return kind != ShapeKind::round; }
@@ -46,6 +47,9 @@ class ShapeTable {
   ShapeId add(Shape&& shape);
   std::deque<Shape> shapes_;
 };
+
+// How far a point in the shape's frame is from the box around it, or from the segment of a round shape less its radius.
+double distance_to_bounds(const Shape& shape, const Vec3& point) noexcept;
 
 // Everything with normal . point <= offset; the normal is a unit vector.
 struct HalfSpace {
