@@ -27,6 +27,7 @@ class BulletFrames final : public FrameRival {
       const std::size_t first = parts_.size();
       for (std::size_t k = 0; k < scene.bodies[i].parts.size(); ++k) {
         Part& part = parts_.emplace_back(Part{i, k, std::make_unique<btCollisionObject>()});
+        part.stays = stays(scene.bodies[i]);
         const std::size_t shape = scene.bodies[i].parts[k];
         const double scale = scene.poses[0][i].scale * scene.local(0, i, k).scale;
         auto& made = shapes_[{shape, scale}];
@@ -56,7 +57,10 @@ class BulletFrames final : public FrameRival {
   std::string name() const override { return "Bullet"; }
 
   std::size_t step(int step) override {
-    for (Part& part : parts_) move(part, step);
+    for (Part& part : parts_) {
+      if (part.in && part.stays) continue;
+      move(part, step);
+    }
     world_.performDiscreteCollisionDetection();
     std::set<std::pair<int, int>> touching;  // a pair of bodies may have several manifolds
     for (int k = 0; k < dispatcher_.getNumManifolds(); ++k) {
@@ -73,7 +77,7 @@ class BulletFrames final : public FrameRival {
   struct Part {
     std::size_t body, part;
     std::unique_ptr<btCollisionObject> object;
-    bool in = false;
+    bool in = false, stays = false;
   };
 
   void add(btCollisionObject& object, bool is_static) {

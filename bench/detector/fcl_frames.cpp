@@ -34,6 +34,7 @@ class FclFrames final : public FrameRival {
         if (!made) made = shape_of(scene.shapes[key.first], S(key.second), offsets_[key]);
         Part& part = parts_.emplace_back(Part{i, k, key, std::make_unique<fcl::CollisionObject<S>>(made)});
         part.object->setUserData(reinterpret_cast<void*>(i));
+        part.stays = stays(scene.bodies[i]);
       }
       several_ = several_ || scene.bodies[i].parts.size() > 1;
     }
@@ -47,7 +48,10 @@ class FclFrames final : public FrameRival {
   std::string name() const override { return sizeof(S) == sizeof(float) ? "FCL float" : "FCL double"; }
 
   std::size_t step(int step) override {
-    for (Part& part : parts_) move(part, step);
+    for (Part& part : parts_) {
+      if (part.in && part.stays) continue;
+      move(part, step);
+    }
     if (!set_up_) moving_.setup(), static_.setup(), set_up_ = true;
     moving_.update();
     count_ = 0;
@@ -80,7 +84,7 @@ class FclFrames final : public FrameRival {
     std::size_t body, part;
     std::pair<std::size_t, double> shape;  // and its scale
     std::unique_ptr<fcl::CollisionObject<S>> object;
-    bool in = false;
+    bool in = false, stays = false;
   };
 
   // What is static has a tree of its own, and stays as it is.

@@ -7,6 +7,12 @@
 // Other libraries' whole frames: all bodies are moved, then all pairs that touch are found and counted.
 namespace orchard::bench {
 
+// After the first step nobody has to look at it: it stays where it is, for good.
+inline bool stays(const runtime::test::SceneBody& body) {
+  const runtime::test::SceneBody always;
+  return body.is_static && body.birth == always.birth && body.death == always.death;
+}
+
 class FrameRival {
  public:
   virtual ~FrameRival() = default;
