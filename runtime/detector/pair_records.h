@@ -26,6 +26,7 @@ struct Record {
   bool allowed = false;
   bool touching = false;
   bool coherent = false;  // one tree each: `trees` knows what the last answer was
+  bool met = false;       // of several parts, part_a and part_b have met, and are trees: `trees` knows where
   bool large = false;     // trees, so that a front may be of use
   bool impact = false;
   bool swept = false;   // at the step before both poses were known: a sweep may start there

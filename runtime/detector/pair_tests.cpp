@@ -108,6 +108,13 @@ double Places::bounds_gap(BodyIndex body, std::uint32_t part, const PlacedPart& 
   return std::isfinite(gap) ? gap : 0;
 }
 
+double Places::bounds_gap(const BodyPair& pair, std::uint32_t part_a, std::uint32_t part_b,
+                          const PartPair& placed) const noexcept {
+  if (placed.b.shape == nullptr) return 0;
+  const double gap = bounds_gap(pair.a, part_a, placed.b);
+  return gap > 0 ? gap : bounds_gap(pair.b, part_b, placed.a);
+}
+
 Verdict unasked(const PartPair& pair) noexcept { return unasked(pair, sphere_gap(pair)); }
 
 Verdict unasked(const PartPair& pair, const SphereGap& gap) noexcept {

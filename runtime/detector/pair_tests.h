@@ -47,8 +47,10 @@ class Places {
   void place(BodyIndex body, std::uint32_t part, PlacedPart& placed) const noexcept;
   // All but the pose: enough for spheres, and a third of the time.
   void place_sphere(BodyIndex body, std::uint32_t part, PlacedPart& placed) const noexcept;
-  // How far the box or the capsule that the part's shape is in is from a sphere, at least; else at most 0.
-  double bounds_gap(BodyIndex body, std::uint32_t part, const PlacedPart& sphere) const noexcept;
+  // How far two parts are apart at least by the box or the capsule that each one's shape is in, and the other one's
+  // sphere: long shapes fill little of theirs. Else at most 0.
+  double bounds_gap(const BodyPair& pair, std::uint32_t part_a, std::uint32_t part_b,
+                    const PartPair& placed) const noexcept;
   // At the step before `now`; only of bodies that have been asked for then, or rest since before.
   void place_before(BodyIndex body, std::uint32_t part, Step now, PlacedPart& placed) const noexcept;
   ORCHARD_INLINE void prefetch_bodies(const BodyPair& pair) const noexcept {
@@ -59,6 +61,7 @@ class Places {
   const BodyTable& bodies() const noexcept { return *bodies_; }
 
  private:
+  double bounds_gap(BodyIndex body, std::uint32_t part, const PlacedPart& sphere) const noexcept;
   void place_at(const Pose& pose, bool rigid, ShapeId shape, const PartPlace& part, PlacedPart& placed) const noexcept;
   const ShapeTable* shapes_;
   const BodyTable* bodies_;

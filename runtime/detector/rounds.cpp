@@ -124,34 +124,65 @@ void Rounds::answer(std::uint32_t index, Record& record, Step now, QueryPool::Sc
   answer_parts(record, now, scratch);
 }
 
-// Of two parts whose spheres overlap: long ones fill little of theirs.
-double Rounds::bounds_gap(const Record& record, std::uint32_t part_a, std::uint32_t part_b,
-                          const PartPair& pair) const noexcept {
-  if (pair.b.shape == nullptr) return 0;
-  const double gap = places_->bounds_gap(record.pair.a, part_a, pair.b);
-  return gap > 0 ? gap : places_->bounds_gap(record.pair.b, part_b, pair.a);
+// Two parts that touched at the step before. Where others of these shapes have met is no more than a guess.
+Verdict Rounds::answer_again(Record& record, const Verdict& last, const PartPair& pair,
+                             QueryPool::Scratch& scratch) noexcept {
+  const bool known = record.met && !pair.simple() && pair.a.rigid && pair.b.rigid &&
+                     &record.trees.a() == &pair.a.shape->prepared && &record.trees.b() == &pair.b.shape->prepared;
+  if (!known) {
+    return answer_exactly(scratch.workspace.narrow, pair, scratch.work, kNoLimit, nearest_triangle(last, pair));
+  }
+  const Pose &a = pair.a.pose(), &b = pair.b.pose();
+  Verdict verdict;
+  if (!CoherentPair::recall(scratch.workspace, record.trees, a, b, verdict)) {
+    verdict = CoherentPair::search(scratch.workspace, record.trees, a, b);
+  }
+  scratch.work += kPairWork + verdict.work;
+  make_solid(verdict, pair);
+  return verdict;
 }
 
-// Bodies of several parts: most of these are told apart by their spheres, before anybody needs to know how they are
-// turned.
+// Of two parts of bodies, what is new.
+Verdict Rounds::answer_anew(Record& record, const PartPair& pair, QueryPool::Scratch& scratch) noexcept {
+  const Verdict verdict = answer_exactly(scratch.workspace.narrow, pair, scratch.work);
+  record.met = verdict.answer == Answer::yes && !pair.simple();
+  if (!record.met) return verdict;
+  record.trees = TreePair(pair.a.shape->prepared, pair.b.shape->prepared);
+  CoherentPair::remember(scratch.workspace, record.trees, pair.a.pose(), pair.b.pose());
+  return verdict;
+}
+
+// Bodies of several parts: those that touched mostly still do, and then nobody else is asked. Most of the others are
+// told apart by their spheres, before anybody needs to know how they are turned.
 void Rounds::answer_parts(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept {
+  const bool touched = record.verdict.answer == Answer::yes;
   const Verdict last = record.verdict;
   const std::uint32_t last_a = record.part_a, last_b = record.part_b;
   forget_answer(record);
   PartPair pair;
   const std::uint32_t parts_a = places_->parts(record.pair.a), parts_b = places_->parts(record.pair.b);
-  if (is_half_space(record.pair.b)) pair.half = places_->half_space(record.pair.b);
   const std::uint64_t before = scratch.work;
   bool known = true;
+  const auto take = [&](const Verdict& verdict, std::uint32_t i, std::uint32_t j) {
+    take_in(record, verdict, i, j);
+    known = known && verdict.answer != Answer::maybe;
+  };
+  if (is_half_space(record.pair.b)) pair.half = places_->half_space(record.pair.b);
+  if (touched) {
+    place(record, last_a, last_b, pair);
+    ++scratch.work;
+    take(answer_again(record, last, pair, scratch), last_a, last_b);
+  }
   if (parts_b == 1) places_->place(record.pair.b, 0, pair.b);
   for (std::uint32_t i = 0; i < parts_a && record.verdict.answer != Answer::yes; ++i) {
     places_->place_sphere(record.pair.a, i, pair.a);
     bool placed = false;
     for (std::uint32_t j = 0; j < parts_b && record.verdict.answer != Answer::yes; ++j) {
+      if (touched && i == last_a && j == last_b) continue;
       if (parts_b > 1) places_->place_sphere(record.pair.b, j, pair.b);
       ++scratch.work;
       const SphereGap gap = sphere_gap(pair);
-      const double least = gap.least > 0 ? gap.least : bounds_gap(record, i, j, pair);
+      const double least = gap.least > 0 ? gap.least : places_->bounds_gap(record.pair, i, j, pair);
       if (least > 0) {
         take_in_apart(record, pair, gap, least, i, j);
         continue;
@@ -159,10 +190,7 @@ void Rounds::answer_parts(Record& record, Step now, QueryPool::Scratch& scratch)
       if (!placed) places_->place(record.pair.a, i, pair.a);
       placed = true;
       if (parts_b > 1) places_->place(record.pair.b, j, pair.b);
-      const std::uint32_t guess = i == last_a && j == last_b ? nearest_triangle(last, pair) : kNoTriangle;
-      const Verdict verdict = answer_exactly(scratch.workspace.narrow, pair, scratch.work, kNoLimit, guess);
-      take_in(record, verdict, i, j);
-      known = known && verdict.answer != Answer::maybe;
+      take(answer_anew(record, pair, scratch), i, j);
     }
   }
   if (record.verdict.answer == Answer::maybe) known = false;

@@ -53,8 +53,9 @@ class Rounds {
   };
   static bool is_slow(Record& record, const PartPair& pair, Step now) noexcept;
   void place(const Record& record, std::uint32_t part_a, std::uint32_t part_b, PartPair& pair) const noexcept;
-  double bounds_gap(const Record& record, std::uint32_t part_a, std::uint32_t part_b,
-                    const PartPair& pair) const noexcept;
+  static Verdict answer_again(Record& record, const Verdict& last, const PartPair& pair,
+                              QueryPool::Scratch& scratch) noexcept;
+  static Verdict answer_anew(Record& record, const PartPair& pair, QueryPool::Scratch& scratch) noexcept;
   static void note_search(std::uint32_t index, Record& record, std::uint64_t work,
                           QueryPool::Scratch& scratch) noexcept;
   void answer_coherently(std::uint32_t index, Record& record, Step now, QueryPool::Scratch& scratch) const noexcept;

@@ -258,6 +258,10 @@ Verdict CoherentPair::search(Workspace& workspace, TreePair& pair, const Pose& a
   return Coherence{workspace, pair, a, b}.search(budget);
 }
 
+void CoherentPair::remember(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept {
+  Coherence{workspace, pair, a, b}.remembered();
+}
+
 Verdict collide_coherently(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept {
   Coherence coherence{workspace, pair, a, b};
   Verdict known;

@@ -14,6 +14,8 @@ struct CoherentPair {
   // which it exceeds by less than one pair of leaves; Verdict::work is all of the search's.
   static Verdict search(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b,
                         const Budget& budget = {}) noexcept;
+  // That the workspace's NarrowPhase, bound to this very pair, has just answered for these poses.
+  static void remember(Workspace& workspace, TreePair& pair, const Pose& a, const Pose& b) noexcept;
 };
 
 }  // namespace orchard::runtime
