@@ -10,6 +10,7 @@
 
 #include "tree/node_box.h"
 #include "tree/tree_nodes.h"
+#include "vector_functions.h"
 
 // Rounding. Let c be the true place of a centre of the second tree in the first one's frame, c' the one computed in
 // float, a a centre of the first tree, u = 2^-24, E1 and E2 the trees' extents, T the relative translation.
@@ -256,10 +257,10 @@ void NarrowPhase::place() noexcept {
   placement_.slack = rounded_up(sigma + 8 * kFloatUnit * size);
   placement_.margin = rounded_up(2 * sigma + 96 * kFloatUnit * size);
   placement_.box_margin = rounded_up(2 * sigma + 192 * kFloatUnit * size);
-  const int exponent = 1 + std::ilogb(std::max(size, kMinSize));
+  const int exponent = 1 + detail::exponent_of(std::max(size, kMinSize));
   detail::find_rows(placement_);
-  placement_.unit = static_cast<float>(std::ldexp(1, -exponent));
-  placement_.whole = static_cast<float>(std::ldexp(1, exponent));
+  placement_.unit = static_cast<float>(detail::scaled(1, -exponent));
+  placement_.whole = static_cast<float>(detail::scaled(1, exponent));
 }
 
 // Whether floats can hold the square of every distance in the pair's frame, and doubles the exact level's products.

@@ -9,15 +9,6 @@
 // Rays in a body's frame, and how they go through its triangles.
 namespace orchard::runtime::detail {
 
-// As std::ilogb and std::ldexp, which the sizes that occur need no call for.
-inline int exponent_of(double value) noexcept {  // of a finite value above 0
-  const int power = static_cast<int>(std::bit_cast<std::uint64_t>(value) >> 52) - 1023;
-  return power > -1023 ? power : std::ilogb(value);
-}
-inline double scaled(double value, int power) noexcept {
-  if (power < -1000 || power > 1000) return std::ldexp(value, power);
-  return value * std::bit_cast<double>(static_cast<std::uint64_t>(1023 + power) << 52);
-}
 inline double one_norm(const Vec3& v) noexcept { return std::fabs(v[0]) + std::fabs(v[1]) + std::fabs(v[2]); }
 
 // A ray's direction by a vector of about one unit, so that those of every length are as good as unit vectors.

@@ -7,6 +7,7 @@
 
 #include "orchard/runtime/shape_query.h"
 #include "tree/ball_slab_block.h"
+#include "tree/eight.h"
 #include "tree/node_box.h"
 #include "tree/point_block.h"
 #include "tree/segment_block.h"
@@ -148,9 +149,29 @@ inline FloatShape shape_of(const TreeView& tree, const Segment& s) noexcept {
   p.scale = 1;
   p.margin = f(std::max(128 * unit * size, 1e-15) * (1 + 4 * unit));
   p.box_margin = f(std::max(256 * unit * size, 1e-15) * (1 + 4 * unit));
-  const int exponent = 1 + std::ilogb(std::max(size, 1e-18));
-  p.unit = f(std::ldexp(1, -exponent)), p.whole = f(std::ldexp(1, exponent));
+  const int exponent = 1 + exponent_of(std::max(size, 1e-18));
+  p.unit = f(scaled(1, -exponent)), p.whole = f(scaled(1, exponent));
   return shape;
+}
+
+// Which of eight distances are no more than `limit`, as bits, and the least of the others.
+struct Within {
+  std::uint32_t lanes;
+  float beyond;
+};
+ORCHARD_INLINE Within within(const Eight<Base>::Floats& distance, double limit) noexcept {
+  using E = Eight<Base>;
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  auto most = static_cast<float>(limit);
+  if (double{most} > limit) most = std::nextafter(most, -kInfinity);  // no float is between them
+  const auto outside = E::all(most) < distance;
+  return {~Base::bits(outside), least_of<Base>(Base::choose(outside, distance, E::all(kInfinity)))};
+}
+
+inline std::uint32_t lanes_in_use(const TriangleBlock& block) noexcept {
+  std::uint32_t count = 0;
+  for (const std::uint32_t triangle : block.triangle) count += triangle != kNoTriangle;
+  return (1u << count) - 1;
 }
 
 // Calls visit(triangle block, lane, whether it may meet the segment) for the triangles that may be within limit() of
@@ -182,15 +203,9 @@ float walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit,
       } else {
         segment_gaps(shape.from, shape.to, block, shape.placement, row);
       }
-      std::uint32_t left = 0;
-      for (std::uint32_t lane = 0; lane < kBlockWidth; ++lane) {
-        if (block.triangle[lane] == kNoTriangle) break;
-        if (double{row[lane]} > limit()) {
-          leave_out(row[lane]);
-        } else {
-          left |= 1u << lane;
-        }
-      }
+      const Within some = within(load<Eight<Base>::Floats>(row), limit());
+      leave_out(some.beyond);  // lanes without a triangle repeat the first one
+      std::uint32_t left = some.lanes & lanes_in_use(block);
       while (left != 0) {
         auto nearest = static_cast<std::uint32_t>(std::countr_zero(left));
         for (std::uint32_t rest = left & (left - 1); rest != 0; rest &= rest - 1) {
@@ -208,13 +223,14 @@ float walk_outward(const TreeView& tree, const FloatShape& shape, Limit&& limit,
     }
     const BallSlabBlock& block = tree.ball_slabs[entry.child];
     box_gaps(shape.box, block, 1, shape.placement.box_margin, gaps);
+    using E = Eight<Base>;
+    const auto used = E::all(0.0f) <= load<E::Floats>(block.radius);
+    const auto far = E::all(std::numeric_limits<float>::infinity());
+    const Within some = within(Base::choose(used, load<E::Floats>(gaps.gap), far), limit());
+    leave_out(some.beyond);
     const std::size_t begin = size;
-    for (std::uint32_t left = gaps.used; left != 0; left &= left - 1) {
+    for (std::uint32_t left = some.lanes & gaps.used; left != 0; left &= left - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-      if (double{gaps.gap[lane]} > limit()) {
-        leave_out(gaps.gap[lane]);
-        continue;
-      }
       std::size_t place = size++;
       for (; place > begin && stack[place - 1].gap < gaps.gap[lane]; --place) stack[place] = stack[place - 1];
       stack[place] = {gaps.gap[lane], block.child[lane]};
