@@ -163,6 +163,14 @@ TEST(CDetector, KeepsStatesWhereThereIsNoSource) {
   EXPECT_EQ(orchard_detector_step(detector, 0.11, kNoLimit).events, 2u);  // stays, and ends
   EXPECT_EQ(orchard_detector_state(detector, a).velocity[1], 100);
   EXPECT_NEAR(orchard_detector_state(detector, b).pose.translation[0], -1, 1e-12);
+  EXPECT_EQ(orchard_default_state().turns_promised, 0);
+  state.turns_promised = 1;
+  state.angular_speed = 2;
+  EXPECT_EQ(orchard_detector_set_state(detector, a, &state), 1);
+  EXPECT_EQ(orchard_detector_state(detector, a).turns_promised, 1);
+  EXPECT_EQ(orchard_detector_state(detector, a).angular_speed, 2);
+  state.angular_speed = -2;
+  EXPECT_EQ(orchard_detector_set_state(detector, a, &state), 0);
   EXPECT_EQ(orchard_detector_moves(detector, a), 1);
   EXPECT_EQ(orchard_detector_moves(detector, still), 0);
   orchard_detector_free(detector);
