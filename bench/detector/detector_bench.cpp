@@ -214,9 +214,23 @@ void frames(const Wanted& wanted) {
   });
 }
 
+// What a round of jobs without work takes, in microseconds, when the threads look for work: half of them take less.
+double empty_round(runtime::Executor executor) {
+  std::vector<double> times(1001);
+  for (double& time : times) {
+    const auto begin = Clock::now();
+    executor.run(executor.context, 2, [](void*, std::size_t) {}, nullptr);
+    time = 1e3 * milliseconds(Clock::now() - begin);
+  }
+  std::nth_element(times.begin(), times.begin() + 500, times.end());
+  return times[500];
+}
+
 void threads(const Wanted& wanted) {
+  constexpr runtime::test::ThreadPool::Duration kAwake(500);  // as in an engine, whose frames are full of jobs
+  runtime::test::ThreadPool pool(2, kAwake);
+  std::printf("An empty round of jobs takes %.1f us.\n\n", empty_round(pool.executor()));
   std::printf("| scene | bodies | ms a frame | with 2 threads |\n|---|---|---|---|\n");
-  runtime::test::ThreadPool pool(2);
   for_scenes(wanted, [&](const Scene& scene) {
     double one = 1e300, two = 1e300;
     for (int round = 0; round < 3; ++round) {

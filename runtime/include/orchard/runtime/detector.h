@@ -44,7 +44,8 @@ struct BodyState {
   Vec3 half_space{};
   double expiry = std::numeric_limits<double>::infinity();
   // At most, until the promise expires, in radians per second. Worth telling of bodies whose origin is not in their
-  // middle: who promises nothing (infinity) may turn any way, and so reaches as far as his farthest point everywhere.
+  // middle: one of which nothing is promised (infinity) may soon have its farthest point on any side of its origin.
+  // Not negative.
   double angular_speed = std::numeric_limits<double>::infinity();
 };
 
@@ -74,7 +75,8 @@ struct BodyOptions {
   bool suggest = false;
 };
 
-// What the broad phase relies on from `time` on, until it asks for the body again: for whoever wants to look at it.
+// What the broad phase relies on from `time` on, until it asks for the body again: for whoever wants to look at it. Of
+// the body's origin, or where BodyState::angular_speed allows it, of its middle.
 using PromiseListener = std::function<void(double time, BodyIndex body, const Motion& promise)>;
 
 struct DetectorOptions {
