@@ -219,7 +219,8 @@ double empty_round(runtime::Executor executor) {
   std::vector<double> times(1001);
   for (double& time : times) {
     const auto begin = Clock::now();
-    executor.run(executor.context, 2, [](void*, std::size_t) {}, nullptr);
+    executor.run(
+        executor.context, 2, [](void*, std::size_t) {}, nullptr);
     time = 1e3 * milliseconds(Clock::now() - begin);
   }
   std::nth_element(times.begin(), times.begin() + 500, times.end());

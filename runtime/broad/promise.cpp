@@ -21,7 +21,10 @@ PromiseExcess promise_excess(const Motion& promise, double promise_time, const M
   if (!(seconds >= 0) || time > promise.expiry) return excess;
   const double reach = promise.drift * seconds + promise.acceleration * seconds * seconds / 2;
   const Vec3 foreseen = promise.position + seconds * promise.velocity, off = given.position - foreseen;
-  const double slack = kMotionSlack * (length(given.position) + length(foreseen) + reach) + 2 * position_slack;
+  // Of all that has been added up: a body on its way through the world's origin is not more exact there.
+  const double coordinates =
+      length(given.position) + length(promise.position) + seconds * length(promise.velocity) + reach;
+  const double slack = kMotionSlack * coordinates + 2 * position_slack;
   const double size = length(promise.half_space);
   const Vec3 side = size > 0 ? (1 / size) * promise.half_space : Vec3{};
   excess.position = above(length(off), reach + slack);

@@ -40,6 +40,17 @@ bool set_local(PartPlace& part, const Shape& shape, const Pose& local) noexcept 
   return std::isfinite(part.reach + part.off);
 }
 
+bool is_valid(const BodyState& state) noexcept {
+  Motion motion;
+  motion.position = state.pose.translation;
+  motion.velocity = state.velocity;
+  motion.acceleration = state.acceleration;
+  motion.drift = state.drift;
+  motion.half_space = state.half_space;
+  motion.expiry = state.expiry;
+  return is_rigid(state.pose) && runtime::is_valid(motion) && state.angular_speed >= 0;
+}
+
 // Rotations are rotations to kRigidTolerance only.
 double reach_of(const PartPlace& part) noexcept { return (part.off + part.reach) * (1 + 1e-11); }
 
@@ -145,7 +156,7 @@ void BodyTable::place_part(Body& body, std::size_t part) noexcept {
   Whereabouts where;
   where.middle = sphere.center;
   where.slack = 1e-14 * size;
-  if (body.rigid && !(body.continuous_speed > 0)) where.reach = sphere.reach;
+  if (body.valid && !(body.continuous_speed > 0)) where.reach = sphere.reach;
   body.near_part_spheres[part] = near_sphere_of(where);
 }
 
@@ -163,13 +174,13 @@ void BodyTable::moved(BodyIndex index, const Pose& before) noexcept {
   double size = reach * now.scale;
   for (std::size_t i = 0; i < 3; ++i) size += std::fabs(now.translation[i]) + std::fabs(where.middle[i]);
   where.slack = 1e-14 * size;
-  const bool tells = body.one && body.rigid && !(body.continuous_speed > 0);
+  const bool tells = body.one && body.valid && !(body.continuous_speed > 0);
   where.reach = tells ? reach * now.scale : std::numeric_limits<double>::infinity();
   near_spheres_[index] = near_sphere_of(where);
   place_parts(body);
   const double change = pose_change(before, now);
   add_turn(index, change == 0 ? 0 : (change + 4 * kRigidTolerance * (now.scale + before.scale)) * reach);
-  if (!body.rigid || !std::isfinite(size)) disturb(index);
+  if (!body.valid || !std::isfinite(size)) disturb(index);
 }
 
 // Whoever is asked at each step is placed then.
@@ -259,11 +270,12 @@ void BodyTable::take_answer(Step step, BodyIndex index, const BodyState& answer)
   if (body.asked != step) mark_asked(body, step);
   const Pose before = state.pose;
   if (keeps_before_) before_[index] = before;
-  const bool same = body.moved >= 0 && before == answer.pose;
+  const bool valid = is_valid(answer);
+  const bool same = body.moved >= 0 && before == answer.pose && body.valid == valid;
   if (!same) body.moved = step;
   state = answer;
-  body.rigid = is_rigid(state.pose);
-  if (!body.rigid) any_flawed_.store(true, std::memory_order_relaxed);
+  body.valid = valid;
+  if (!valid) any_flawed_.store(true, std::memory_order_relaxed);
   if (!same) {
     moved(index, before);
   } else if (body.parts_moved) {
@@ -291,9 +303,11 @@ Motion BodyTable::motion_of(BodyIndex index, double time_step, bool by_middle) c
   if (by_middle) {
     motion.position = transform(state.pose, body.middle);
     motion.radius = body.middle_reach * state.pose.scale;
-    motion.drift += state.angular_speed * body.off_middle * state.pose.scale;
+    // And what the middle's place may be off by from step to step, which is much where it is near the world's origin.
+    constexpr double kRounding = 1e-11;  // of the way from the body's origin
+    motion.drift += (state.angular_speed + kRounding / time_step) * body.off_middle * state.pose.scale;
   }
-  if (!body.rigid || !(state.angular_speed >= 0)) motion.radius = -1;  // refused
+  if (!body.valid) motion.radius = -1;  // refused
   return motion;
 }
 

@@ -55,7 +55,7 @@ struct alignas(64) Body {
   bool asleep = false;  // wanted by the application
   bool frozen = false;  // asleep, and its state is known: never asked again
   bool suggest = false;
-  bool rigid = true;           // the pose that is known
+  bool valid = true;           // the state that is known
   bool one = false;            // it has one part,
   bool at_origin = false;      // and that in its own frame
   Step moved = -1;             // the last step at which the pose was another one than at the time asked before
@@ -105,6 +105,8 @@ struct alignas(64) Whereabouts {
 };
 
 // The parts of `body`, ready for the broad phase: a sphere around all of them, around the body's origin.
+// A pose that is rigid, and numbers that BodyState and Motion allow.
+bool is_valid(const BodyState& state) noexcept;
 double reach_of(std::span<const PartRecord> parts) noexcept;
 double reach_of(const PartPlace& part) noexcept;
 void find_middle(Body& body) noexcept;
@@ -158,8 +160,8 @@ class BodyTable {
   bool any_disturbed() const noexcept { return any_disturbed_.load(std::memory_order_relaxed); }
   bool disturbed(BodyIndex body) const noexcept { return disturbed_[body] != 0; }
   void forget_disturbed() noexcept;
-  // Whether no answer so far was anything but rigid.
-  bool all_rigid() const noexcept { return !any_flawed_.load(std::memory_order_relaxed); }
+  // Whether no answer so far was anything but valid.
+  bool all_valid() const noexcept { return !any_flawed_.load(std::memory_order_relaxed); }
   // Who calls for what ask() does not see: another pose of a body at rest, another place of a part, other triangles.
   void moved(BodyIndex body, const Pose& before) noexcept;
   void move_part(BodyIndex body, std::size_t part, const PartPlace& to, const Shape& shape) noexcept;

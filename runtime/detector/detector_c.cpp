@@ -33,8 +33,9 @@ rt::BodyOptions options_of(const orchard_body_options& from) noexcept {
 
 rt::BodyState state_of(const orchard_body_state& from) noexcept {
   const double angular_speed = from.turns_promised != 0 ? from.angular_speed : std::numeric_limits<double>::infinity();
-  return {pose_of(from.pose),          vector_of(from.velocity), from.acceleration, from.drift,
-          vector_of(from.half_space), from.expiry,              angular_speed};
+  return {pose_of(from.pose), vector_of(from.velocity),   from.acceleration,
+          from.drift,         vector_of(from.half_space), from.expiry,
+          angular_speed};
 }
 
 orchard_body_state state_of(const rt::BodyState& from) noexcept {

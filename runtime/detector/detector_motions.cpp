@@ -50,8 +50,12 @@ void Detector::State::watch(Step step) {
   bodies.ask(step, time, everyone, options.executor);
   for (const BodyIndex i : everyone) {
     Body& body = bodies[i];
+    if (!is_valid(bodies.motion_of(i, clock.time_step))) {  // what it has promised holds no longer: it is refused
+      if (body.told_radius >= 0) update_again(body);
+      continue;
+    }
+    // Of what the promise was about, whatever this state promises.
     const Motion motion = bodies.motion_of(i, clock.time_step, body.has_middle() && body.told_by_middle);
-    if (!is_valid(motion)) continue;  // refused soon
     const bool given = !body.suggest || dot(motion.velocity, motion.velocity) > 0;
     bool kept =
         given ? monitor.observe(i, time, motion.position, motion.velocity) : monitor.observe(i, time, motion.position);

@@ -111,7 +111,7 @@ void Detector::State::open_records(Step step) {
 void Detector::State::keep_clearance(detail::RecordTable::Known& known, const Record& record) const noexcept {
   const Body &a = places.body(record.pair.a), &b = places.body(record.pair.b);
   const bool lasts = record.verdict.answer == Answer::no && !record.touching && !(a.continuous_speed > 0) &&
-                     !(b.continuous_speed > 0) && a.rigid && b.rigid && std::isfinite(record.verdict.lower_bound);
+                     !(b.continuous_speed > 0) && a.valid && b.valid && std::isfinite(record.verdict.lower_bound);
   if (!lasts) return;
   const detail::Standing now = standing(known.pair);
   const double way = detail::length(now.way);

@@ -195,7 +195,7 @@ void Detector::State::gather(Step step, const Advance& now) {
 // what is done at the next steps.
 void Detector::State::ask_involved(Step step) {
   constexpr Step kKept = 16;
-  if (all_asked_at == step && bodies.all_rigid() && step < involved_at + kKept) return;
+  if (all_asked_at == step && bodies.all_valid() && step < involved_at + kKept) return;
   involved_at = step;
   involved.clear();
   detail::grow(is_involved, bodies.slots());
@@ -212,7 +212,7 @@ void Detector::State::ask_involved(Step step) {
   for (const BodyIndex body : involved) is_involved[body] = 0;
   bodies.ask(step, clock.time(step), involved, options.executor);
   for (const BodyIndex body : involved) {
-    if (!bodies[body].rigid) refused.push_back(body);
+    if (!bodies[body].valid) refused.push_back(body);
   }
 }
 

@@ -27,21 +27,6 @@ void KeptStates::fill(double time, std::span<const BodyIndex> bodies, std::span<
 
 }  // namespace detail
 
-namespace {
-
-bool is_valid_state(const BodyState& state) noexcept {
-  Motion motion;
-  motion.position = state.pose.translation;
-  motion.velocity = state.velocity;
-  motion.acceleration = state.acceleration;
-  motion.drift = state.drift;
-  motion.half_space = state.half_space;
-  motion.expiry = state.expiry;
-  return is_rigid(state.pose) && is_valid(motion) && state.angular_speed >= 0;
-}
-
-}  // namespace
-
 double Detector::State::last_time() const noexcept { return clock.time(std::max<Step>(answered, 0)); }
 
 // What sleeps is at rest.
@@ -51,7 +36,7 @@ void Detector::State::keep(const detail::Body& body, BodyState state) {
 }
 
 BodyId Detector::add_body(ShapeId shape, const BodyState& state, const BodyOptions& options) {
-  if (!state_->kept_states || !is_valid_state(state)) return kNoBody;
+  if (!state_->kept_states || !detail::is_valid(state)) return kNoBody;
   const BodyId id = add_body({{shape}}, options);
   if (id != kNoBody) set_state(id, state);
   return id;
@@ -60,7 +45,7 @@ BodyId Detector::add_body(ShapeId shape, const BodyState& state, const BodyOptio
 bool Detector::set_state(BodyId body, const BodyState& state) {
   State& s = *state_;
   detail::Body* found = s.find(body);
-  if (found == nullptr || !s.kept_states || !moves(body) || !is_valid_state(state)) return false;
+  if (found == nullptr || !s.kept_states || !moves(body) || !detail::is_valid(state)) return false;
   s.stir(*found);
   return s.or_fail([&] {
     s.keep(*found, state);

@@ -25,7 +25,7 @@ void Places::place(BodyIndex body, std::uint32_t part, PlacedPart& placed_part) 
       return;
     }
     const PartRecord& record = of.parts[part];
-    return place_at(bodies_->state(body).pose, of.rigid, record.shape, record, placed_part);
+    return place_at(bodies_->state(body).pose, of.valid, record.shape, record, placed_part);
   }
   placed_part.shape = nullptr;
 }
@@ -39,7 +39,7 @@ void Places::place_sphere(BodyIndex body, std::uint32_t part, PlacedPart& placed
   const PartRecord& record = of.parts[part];
   const Pose& pose = bodies_->state(body).pose;
   placed_part.shape = &(*shapes_)[record.shape];
-  placed_part.rigid = of.rigid;
+  placed_part.rigid = of.valid;
   const PlacedSphere sphere =
       of.one ? PlacedSphere{transform(pose, record.center), record.reach * pose.scale} : of.part_spheres[part];
   placed_part.be_in(sphere.center, sphere.reach);
@@ -68,8 +68,8 @@ constexpr double kRounding = 1e-11;  // of rotations that are rotations to kRigi
 SphereGap sphere_gap(const PartPair& pair) noexcept {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const bool half = pair.b.shape == nullptr;
-  const double apart = half ? dot(pair.half.normal, pair.a.center) - pair.half.offset
-                            : length(pair.b.center - pair.a.center);
+  const double apart =
+      half ? dot(pair.half.normal, pair.a.center) - pair.half.offset : length(pair.b.center - pair.a.center);
   const double reach = pair.a.reach + (half ? 0 : pair.b.reach);
   const double size = pair.a.size + (half ? std::fabs(pair.half.offset) : pair.b.size);
   const double least = apart - reach - kRounding * size, most = std::max(0.0, apart) + reach;
@@ -87,7 +87,7 @@ bool spheres_part(const PartPair& pair) noexcept {
 double Places::bounds_gap(BodyIndex body, std::uint32_t part, const PlacedPart& sphere) const noexcept {
   const Body& of = (*bodies_)[body];
   const PartRecord& record = of.parts[part];
-  if (!of.rigid) return 0;
+  if (!of.valid) return 0;
   double scale = 1, size = sphere.size;
   Vec3 at = sphere.center;
   const auto enter = [&](const Pose& frame) {  // `at` in its coordinates

@@ -16,15 +16,15 @@ enum class ShapeKind : std::uint8_t {
 
 struct Shape {
   ShapeKind kind = ShapeKind::tree;
-  PackedSphereTree own;      // what `tree` views, if it is that of a box, of a round shape's segment, or of a file
-  TreeView tree;             // the surface; of a round shape the segment, for sweeps
-  PreparedTree prepared;     // the same
-  Vec3 p{}, q{};             // of a box: p is half of its lengths
-  double radius = 0;         // of round shapes
-  Vec3 center{};             // of a sphere around the shape,
-  double reach = 0;          // and its radius
+  PackedSphereTree own;        // what `tree` views, if it is that of a box, of a round shape's segment, or of a file
+  TreeView tree;               // the surface; of a round shape the segment, for sweeps
+  PreparedTree prepared;       // the same
+  Vec3 p{}, q{};               // of a box: p is half of its lengths
+  double radius = 0;           // of round shapes
+  Vec3 center{};               // of a sphere around the shape,
+  double reach = 0;            // and its radius
   Vec3 box_low{}, box_high{};  // of a box around the triangles, by the shape's axes; not of round shapes
-  std::vector<Vec3> pieces;  // of a tree: a vertex of each connected piece of its surface,
+  std::vector<Vec3> pieces;    // of a tree: a vertex of each connected piece of its surface,
   std::vector<std::uint32_t> piece_vertices;  // and which these are
   bool has_tree() const noexcept { return kind != ShapeKind::round; }
 };
