@@ -183,7 +183,11 @@ class BodyPool {
   bool filters_pairs() const noexcept { return any_static() || !filters_.empty() || pair_filter_; }
   bool may_pair(const BodyPair& pair) const {
     if (any_static() && is_static(pair.a) && is_static(pair.b)) return false;
-    if (!filters_.empty() && !runtime::may_pair(filters_[pair.a], filters_[pair.b])) return false;
+    if (!filters_.empty()) {
+      const BodyFilter &a = filters_[pair.a], &b = filters_[pair.b];
+      if (!runtime::may_pair(a, b)) return false;
+      if ((a.ignores_static && is_static(pair.b)) || (b.ignores_static && is_static(pair.a))) return false;
+    }
     return !pair_filter_ || pair_filter_(id_of(pair.a), id_of(pair.b));
   }
   std::uint8_t importance(BodyIndex body) const noexcept { return importance_[body]; }

@@ -47,7 +47,8 @@ orchard_motion motion_in_c(const rt::Motion& from) noexcept {
 }
 
 rt::BodyFilter filter_of(const orchard_body_filter* from) noexcept {
-  return from == nullptr ? rt::BodyFilter{} : rt::BodyFilter{from->category, from->mask, from->group};
+  return from == nullptr ? rt::BodyFilter{}
+                         : rt::BodyFilter{from->category, from->mask, from->group, from->ignores_static != 0};
 }
 rt::QueryFilter filter_of(const orchard_query_filter* from) noexcept {
   return from == nullptr ? rt::QueryFilter{} : rt::QueryFilter{from->category, from->mask};
@@ -133,7 +134,7 @@ extern "C" {
 orchard_motion orchard_default_motion(void) { return motion_in_c(rt::Motion{}); }
 orchard_body_filter orchard_default_filter(void) {
   const rt::BodyFilter filter;
-  return {filter.category, filter.mask, filter.group};
+  return {filter.category, filter.mask, filter.group, filter.ignores_static ? 1 : 0};
 }
 orchard_broad_phase_options orchard_default_broad_phase(void) {
   const rt::BroadPhaseOptions options;

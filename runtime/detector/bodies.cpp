@@ -150,9 +150,9 @@ void BodyTable::place_part(Body& body, std::size_t part) noexcept {
   const Pose& pose = body.state.pose;
   const PartRecord& record = body.parts[part];
   PlacedSphere& sphere = body.part_spheres[part];
-  sphere = {transform(pose, record.center), record.reach * pose.scale};
-  double size = record.off * pose.scale + sphere.reach;
-  for (std::size_t k = 0; k < 3; ++k) size += std::fabs(pose.translation[k]) + std::fabs(sphere.center[k]);
+  sphere = PlacedSphere(transform(pose, record.center), record.reach * pose.scale);
+  double size = record.off * pose.scale + sphere.size;
+  for (std::size_t k = 0; k < 3; ++k) size += std::fabs(pose.translation[k]);
   Whereabouts where;
   where.middle = sphere.center;
   where.slack = 1e-14 * size;
@@ -163,6 +163,16 @@ void BodyTable::place_part(Body& body, std::size_t part) noexcept {
 void BodyTable::place_parts(Body& body) noexcept {
   for (std::size_t part = 0; part < body.part_spheres.size(); ++part) place_part(body, part);
   body.parts_moved = false;
+}
+
+NearSphere BodyTable::sphere_around(BodyIndex index) const noexcept {
+  const Body& body = bodies_[index];
+  const Pose& pose = body.state.pose;
+  Whereabouts where;
+  where.middle = body.has_middle() ? transform(pose, body.middle) : Vec3(pose.translation);
+  where.slack = whereabouts_[index].slack;
+  where.reach = std::min(body.reach, body.middle_reach) * pose.scale;
+  return near_sphere_of(where);
 }
 
 void BodyTable::moved(BodyIndex index, const Pose& before) noexcept {

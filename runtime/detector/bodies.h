@@ -16,9 +16,9 @@ inline constexpr Step kNotAsked = -2;  // not the step before any step
 struct PartPlace {
   bool at_origin = true;  // `local` changes nothing
   Pose local{};
-  Vec3 center{};     // of a sphere around it,
-  double off = 0;    // which is so far from the origin,
-  double reach = 0;  // and its radius
+  runtime::Vec3 center{};  // of a sphere around it,
+  double off = 0;          // which is so far from the origin,
+  double reach = 0;        // and its radius
 };
 
 struct PartRecord : PartPlace {
@@ -38,8 +38,15 @@ struct NearSphere {
 };
 
 struct PlacedSphere {  // in the world
-  Vec3 center{};
+  runtime::Vec3 center{};
   double reach = std::numeric_limits<double>::infinity();  // until it is known where
+  double size = std::numeric_limits<double>::infinity();   // no point of it is farther from the origin
+
+  PlacedSphere() = default;
+  PlacedSphere(const runtime::Vec3& middle, double radius) noexcept
+      : center(middle),
+        reach(radius),
+        size(std::fabs(middle[0]) + std::fabs(middle[1]) + std::fabs(middle[2]) + radius) {}
 };
 
 // By lines of memory: what each pair asks about, what a new pose does, and the rest.
@@ -58,6 +65,7 @@ struct alignas(64) Body {
   bool valid = true;           // the state that is known
   bool one = false;            // it has one part,
   bool at_origin = false;      // and that in its own frame
+  bool by_parts = false;       // its pairs with static bodies are found by a PartSearch
   Step moved = -1;             // the last step at which the pose was another one than at the time asked before
   Step stretched = kNotAsked;  // the step after which parts went farther out than ever before
   double continuous_speed = 0;
@@ -73,13 +81,13 @@ struct alignas(64) Body {
 
   // A sphere around the parts in the body's frame, where they stay as they are and it is smaller than that around the
   // origin; else its radius is infinite.
-  Vec3 middle{};
+  runtime::Vec3 middle{};
   double middle_reach = std::numeric_limits<double>::infinity();
   double off_middle = 0;        // from the origin to the middle
   bool told_by_middle = false;  // what the broad phase relies on
   bool parts_moved = false;     // since their spheres were placed
 
-  Vec3 first_center{};                   // of the first part's sphere,
+  runtime::Vec3 first_center{};          // of the first part's sphere,
   double first_reach = 0;                // and its radius
   std::vector<PartBefore> parts_before;  // of each part; empty until one moves
   // Around each part, if there are several, at the pose that is known.
@@ -95,7 +103,7 @@ inline constexpr double kRoundingOfGaps = 1e3;
 // What tells whether a body may have come closer to another one, and nothing else: it is looked at for each pair of a
 // step. Points of the body are where `middle` is, but for what they have turned about it.
 struct alignas(64) Whereabouts {
-  Vec3 middle{};     // in the world; of its only part, or its origin
+  runtime::Vec3 middle{};  // in the world; of its only part, or its origin
   double slack = 0;  // what `middle` may be off by, and a thousandth of what the rounding of a gap between spheres may
   // Of its only part's sphere; infinite where that tells nothing.
   double reach = std::numeric_limits<double>::infinity();
@@ -153,6 +161,7 @@ class BodyTable {
   std::span<const NearSphere> near_part_spheres(BodyIndex body) const noexcept {
     return bodies_[body].one ? std::span(&near_spheres_[body], 1) : std::span(bodies_[body].near_part_spheres);
   }
+  NearSphere sphere_around(BodyIndex body) const noexcept;                   // all of its parts
   ORCHARD_INLINE void prefetch_near_sphere(BodyIndex body) const noexcept {  // nothing, of a half-space
     if (body < near_spheres_.size()) prefetch(&near_spheres_[body]);
   }

@@ -28,8 +28,6 @@ bool are_valid(const BodyOptions& options) noexcept {
          options.reach <= kMaxNumber;
 }
 
-BodyFilter filter_of(std::uint32_t group, std::uint32_t mask) noexcept { return {group, mask, 0}; }
-
 BroadPhaseOptions broad_options(const DetectorOptions& options, const Executor& executor) noexcept {
   constexpr std::size_t kMinBodies = 4096;  // fewer than elsewhere: answers leave little in the caches anyway
   BroadPhaseOptions result;
@@ -115,6 +113,7 @@ Body& Detector::State::take_in(BodyId id, std::span<const BodyPart> parts, const
   Body& body = bodies.take_in(id, parts.size());
   ++count;
   body.group = with.group, body.mask = with.mask;
+  filters_pairs = filters_pairs || broad_filter(body) != BodyFilter{};
   body.importance = with.importance;
   body.suggest = with.suggest && options.watch;
   body.continuous_speed = with.continuous_speed;
@@ -137,8 +136,9 @@ Body& Detector::State::take_in(BodyId id, std::span<const BodyPart> parts, const
   return body;
 }
 
-// A sweep goes by what origins do between steps, and not by middles.
+// A sweep goes by what origins do between steps, and not by middles, nor by where parts are at a step.
 void Detector::State::go_by_origins() {
+  while (part_search.any()) search_by_parts(part_search.bodies().front(), false);
   for (BodyIndex i = 0; i < bodies.slots(); ++i) {
     Body& body = bodies[i];
     if (body.id == kNoBody || body.is_static || !body.has_middle()) continue;
@@ -151,7 +151,7 @@ BodyId Detector::add_body(std::span<const BodyPart> parts, const BodyOptions& op
   State& s = *state_;
   if (!s.acceptable(parts) || !are_valid(options) || !s.bodies.has_source()) return kNoBody;
   return s.or_fail([&] {
-    const BodyId id = s.broad.add(options.importance, filter_of(options.group, options.mask));
+    const BodyId id = s.broad.add(options.importance, {options.group, options.mask});
     if (id == kNoBody) return id;
     s.take_in(id, parts, options);
     if (s.kept_states) s.kept_states->put(id.index, s.last_time(), {});
@@ -159,6 +159,10 @@ BodyId Detector::add_body(std::span<const BodyPart> parts, const BodyOptions& op
     s.halves.update_again(id.index);
     return id;
   });
+}
+
+BodyFilter Detector::State::broad_filter(const Body& body) noexcept {
+  return {body.group, body.mask, 0, body.by_parts};
 }
 
 // It has rested up to the last step: where it was then is known.
@@ -180,7 +184,7 @@ BodyId Detector::add_static(std::span<const BodyPart> parts, const Pose& pose, c
   somewhere.position = pose.translation;
   if (!is_valid(somewhere)) return kNoBody;
   return s.or_fail([&] {
-    const BodyId id = s.broad.add_static(somewhere, options.importance, filter_of(options.group, options.mask));
+    const BodyId id = s.broad.add_static(somewhere, options.importance, {options.group, options.mask});
     if (id == kNoBody) return id;
     Body& body = s.take_in(id, parts, options);
     body.is_static = true;
@@ -188,7 +192,11 @@ BodyId Detector::add_static(std::span<const BodyPart> parts, const Pose& pose, c
     s.bodies.state(id.index).pose = pose;
     s.bodies.moved(id.index, pose);
     s.halves.forget(id.index);
-    if (s.broad.move_static(id, s.place_of(body))) return id;
+    if (s.broad.move_static(id, s.place_of(body))) {
+      s.any_static = true;
+      s.part_search.static_changed(id.index, s.bodies);
+      return id;
+    }
     remove(id);  // too large
     return kNoBody;
   });
@@ -231,6 +239,8 @@ bool Detector::remove(BodyId body) {
   if (!s.contains(body)) return false;
   --s.count;
   if (is_half_space(body.index)) return s.halves.remove(body.index);
+  if (s.bodies[body.index].by_parts) s.part_search.end(body.index);
+  if (s.bodies[body.index].is_static) s.part_search.static_gone(body.index);
   s.bodies.leave(body.index);
   return s.or_fail([&] {
     s.halves.forget(body.index);
@@ -269,7 +279,10 @@ bool Detector::move_static(BodyId body, const Pose& pose) {
   }
   s.bodies.moved(body.index, before);
   s.changed(*found);
-  return true;
+  return s.or_fail([&] {
+    s.part_search.static_changed(body.index, s.bodies);
+    return true;
+  });
 }
 
 bool Detector::set_local(BodyId body, std::size_t part, const Pose& local) {
@@ -298,7 +311,11 @@ bool Detector::set_local(BodyId body, std::size_t part, const Pose& local) {
   s.changed(*found);
   if (stretches) found->stretched = s.answered;
   if (grows && !found->is_static) s.update_again(*found);
-  return true;
+  if (!found->is_static) return true;
+  return s.or_fail([&] {
+    s.part_search.static_changed(body.index, s.bodies);
+    return true;
+  });
 }
 
 bool Detector::set_importance(BodyId body, std::uint8_t importance) {
@@ -313,8 +330,9 @@ bool Detector::set_groups(BodyId body, std::uint32_t group, std::uint32_t mask) 
   if (found == nullptr) return false;
   found->group = group, found->mask = mask;
   ++found->filters;
+  state_->filters_pairs = true;
   if (is_half_space(body.index)) return true;
-  return state_->or_fail([&] { return state_->broad.set_filter(body, filter_of(group, mask)); });
+  return state_->or_fail([&] { return state_->broad.set_filter(body, State::broad_filter(*found)); });
 }
 
 bool Detector::sleep(BodyId body) {
@@ -387,9 +405,11 @@ std::size_t Detector::memory_bytes() const noexcept {
   const auto bytes = [](const auto&... v) { return (detail::bytes_of(v) + ...); };
   return sizeof(State) + (s.kept_states ? s.kept_states->memory_bytes() : 0) + s.shapes.memory_bytes() +
          s.bodies.memory_bytes() + s.halves.memory_bytes() + s.broad.memory_bytes() + s.monitor.memory_bytes() +
-         s.records.memory_bytes() + s.queries.memory_bytes() + s.fronts.memory_bytes() + s.rounds.memory_bytes() +
+         s.records.memory_bytes() + s.part_search.memory_bytes() + s.queries.memory_bytes() + s.fronts.memory_bytes() +
+         s.rounds.memory_bytes() +
          bytes(s.due, s.involved, s.is_involved, s.active, s.active_of_job, s.everyone, s.refused, s.broken,
-               s.plane_pairs, s.kept_pairs, s.body_pairs, s.all_pairs, s.open, s.events, s.ended, s.marks, s.tallies);
+               s.plane_pairs, s.kept_pairs, s.part_pairs, s.body_pairs, s.more_pairs, s.all_pairs, s.static_pairs,
+               s.searches_to_change, s.open, s.events, s.ended, s.marks, s.tallies);
 }
 
 }  // namespace orchard::runtime

@@ -2,6 +2,7 @@
 #include "kept_states.h"
 #include "orchard/runtime/detector.h"
 #include "orchard/runtime/motion_monitor.h"
+#include "part_search.h"
 #include "rounds.h"
 
 namespace orchard::runtime {
@@ -38,10 +39,18 @@ struct Detector::State {
   void go_by_origins();
   void changed(detail::Body& body) noexcept { body.moved = answered + 1; }
   Motion place_of(const detail::Body& body) const noexcept;  // of a static one
-  void stir(detail::Body& body) noexcept;                    // what sleeps
-  Motion promise_of(BodyIndex body, double time) const;      // what is relied on
+  static BodyFilter broad_filter(const detail::Body& body) noexcept;
+  void stir(detail::Body& body) noexcept;                // what sleeps
+  Motion promise_of(BodyIndex body, double time) const;  // what is relied on
 
   static void run_for_broad(void* context, std::size_t count, Executor::Job job, void* data);
+
+  // detector_parts.cpp
+  bool found_by_parts(const BodyPair& pair) const noexcept;
+  void keep_part_pairs(BodyIndex body);
+  void find_part_pairs(Step step);
+  void search_by_parts(BodyIndex body, bool wanted);
+  void choose_part_searches(Step step);
 
   // kept_states.cpp
   double last_time() const noexcept;  // that of the last step, or of the first one
@@ -120,14 +129,18 @@ struct Detector::State {
   detail::FrontPool fronts;
   std::size_t large_pairs = 0;  // among the records
   detail::Rounds rounds;
+  detail::PartSearch part_search;
 
   Step answered = -1;      // up to which steps have been answered
   bool all_asked = false;  // everybody's state is that of the step that the broad phase is at
   Step all_asked_at = detail::kNotAsked;
   Step involved_at = detail::kNotAsked;  // the step of `involved`
+  Step choose_parts_at = 0;              // who is searched by parts
   std::size_t count = 0;
   bool failed = false;          // out of memory
   bool any_continuous = false;  // bodies, ever
+  bool any_static = false;      // bodies, ever
+  bool filters_pairs = false;   // any body, ever: by its group and mask
   bool any_jumped = false;      // bodies, since the last step that was answered
   bool interrupted = false;     // the broad phase, at the step before
   // For foresee(), smoothed: of what the timing wheel has as meeting, the share that overlaps; of the pairs that
@@ -142,8 +155,10 @@ struct Detector::State {
   // Of the step under way; kept for their memory.
   std::vector<BodyIndex> due, involved, everyone, refused, broken;
   std::vector<Motion> due_motions;
-  std::vector<std::uint8_t> is_involved;  // by body, while `involved` is made
-  std::vector<BodyPair> plane_pairs, kept_pairs, body_pairs, all_pairs;
+  std::vector<std::uint8_t> is_involved;    // by body, while `involved` is made
+  std::vector<std::uint32_t> static_pairs;  // by body, in choose_part_searches()
+  std::vector<BodyIndex> searches_to_change;
+  std::vector<BodyPair> plane_pairs, kept_pairs, part_pairs, body_pairs, more_pairs, all_pairs;
   std::span<const BodyPair> pairs;    // all of them; the broad phase's own where there are no others
   std::vector<std::uint32_t> active;  // places in `records` that have to be looked at: active_count of them
   std::vector<std::size_t> active_of_job;

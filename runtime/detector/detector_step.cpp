@@ -26,6 +26,7 @@ double nanoseconds(std::chrono::nanoseconds time) noexcept { return static_cast<
 std::span<const BodyPair> merged(std::span<const BodyPair> some, std::span<const BodyPair> more,
                                  std::vector<BodyPair>& all) {
   if (more.empty()) return some;
+  if (some.empty()) return more;
   all.resize(some.size() + more.size());
   std::merge(some.begin(), some.end(), more.begin(), more.end(), all.begin());
   return all;
@@ -92,7 +93,7 @@ void Detector::State::run(double time, const FrameBudget& given, Frame& frame) {
   frame.motions_asked = broad.motions_asked() - asked_before;
   frame.work = budget.spent();
   frame.time = clock.time(std::max<Step>(answered, 0));
-  const Step next = records.empty() ? halves.next() : answered + 1;
+  const Step next = records.empty() && !part_search.any() ? halves.next() : answered + 1;
   frame.next_time =
       options.watch ? clock.time(answered + 1)
                     : std::min(broad.next_time(), next >= kNeverStep - 1 ? std::numeric_limits<double>::infinity()
@@ -105,8 +106,9 @@ void Detector::State::run(double time, const FrameBudget& given, Frame& frame) {
 // The steps up to `last` that have anything. `end`: the last step of this call, among which the budget is shared.
 void Detector::State::run_to(Step last, Step end, StepBudget& budget, Frame& frame) {
   while (answered < last) {
-    // What overlapped at the step before may be apart at the next; half-spaces are not the broad phase's.
-    const bool under_way = !records.empty();
+    // What overlapped at the step before may be apart at the next; half-spaces are not the broad phase's, nor is what
+    // is found by parts.
+    const bool under_way = !records.empty() || part_search.any();
     const Step stop = std::min(last, under_way ? answered + 1 : std::max(answered + 1, halves.next()));
     const double time = clock.time(stop);
     const std::uint64_t before = broad.motions_asked();
@@ -160,8 +162,8 @@ bool Detector::State::still_there(const detail::RecordTable::Known& known) const
          known.generations == generation(known.pair.a) + generation(known.pair.b);
 }
 
-// The pairs of the step, in ascending order: the broad phase's, those with half-spaces, and those known before that an
-// interrupted broad phase may have left out.
+// The pairs of the step, in ascending order: the broad phase's, those with half-spaces, those found by parts, and those
+// known before that an interrupted broad phase may have left out.
 void Detector::State::gather(Step step, const Advance& now) {
   plane_pairs.clear(), kept_pairs.clear();
   due.clear();
@@ -176,7 +178,7 @@ void Detector::State::gather(Step step, const Advance& now) {
     auto reported = now.pairs.begin();
     for (std::size_t place = 0; place < records.size(); ++place) {
       const BodyPair& pair = records.pair(place);
-      if (is_half_space(pair.b)) continue;
+      if (is_half_space(pair.b) || found_by_parts(pair)) continue;
       while (reported != now.pairs.end() && *reported < pair) ++reported;
       if (reported != now.pairs.end() && *reported == pair) continue;
       if (still_there(records.known(place))) kept_pairs.push_back(pair);
@@ -186,7 +188,9 @@ void Detector::State::gather(Step step, const Advance& now) {
     bodies.ask(step, clock.time(step), involved);
     std::erase_if(kept_pairs, [&](const BodyPair& pair) { return bodies.surely_apart(pair, clock.time_step); });
   }
+  find_part_pairs(step);
   pairs = merged(now.pairs, kept_pairs, body_pairs);
+  pairs = merged(pairs, part_pairs, more_pairs);
   pairs = merged(pairs, plane_pairs, all_pairs);
   ask_involved(step);
 }
@@ -249,6 +253,7 @@ void Detector::State::answer(Step step, const Advance& now, StepBudget& budget, 
     learn(budget.spent() - before);
     report(step, frame);
   }
+  choose_part_searches(step);
   ++frame.steps;
 }
 

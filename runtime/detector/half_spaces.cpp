@@ -47,31 +47,53 @@ bool HalfSpaces::remove(BodyIndex index) noexcept {
   return true;
 }
 
-void HalfSpaces::update_again(BodyIndex body) {
-  grow(due_, std::size_t{body} + 1);
+void HalfSpaces::make_room(std::size_t bodies) {
+  grow(due_, bodies);
   grow(promises_, due_.size());
-  due_[body] = 0;
+  while (moving_places_.size() < due_.size()) append(moving_places_, kNoIndex);
+  detail::make_room(moving_, due_.size());
+}
+
+// Most bodies may be static: they cost a step nothing.
+void HalfSpaces::set_due(BodyIndex body, Step due) {
+  due_[body] = due;
+  std::uint32_t& place = moving_places_[body];
+  const bool moves = due != kNeverStep;
+  if (moves == (place != kNoIndex)) return;
+  if (moves) {
+    place = static_cast<std::uint32_t>(moving_.size());
+    moving_.push_back(body);
+  } else {
+    moving_[place] = moving_.back();
+    moving_places_[moving_.back()] = place;
+    moving_.pop_back();
+    place = kNoIndex;
+  }
+}
+
+void HalfSpaces::update_again(BodyIndex body) {
+  make_room(std::size_t{body} + 1);
+  set_due(body, 0);
   if (alive_ > 0) next_ = 0;
 }
 
 void HalfSpaces::update_all(std::size_t bodies) {
-  grow(due_, bodies);
-  grow(promises_, due_.size());
-  for (Step& due : due_) due = due == kNeverStep ? due : 0;
+  make_room(bodies);
+  for (const BodyIndex body : moving_) due_[body] = 0;
   next_ = 0;
 }
 
 void HalfSpaces::forget(BodyIndex body) {
-  grow(due_, std::size_t{body} + 1);
-  grow(promises_, due_.size());
-  due_[body] = kNeverStep;
+  make_room(std::size_t{body} + 1);
+  set_due(body, kNeverStep);
 }
 
 void HalfSpaces::due(Step now, std::vector<BodyIndex>& bodies) const {
   if (alive_ == 0 || next_ > now) return;
-  for (std::size_t body = 0; body < due_.size(); ++body) {
-    if (due_[body] <= now) bodies.push_back(static_cast<BodyIndex>(body));
+  for (const BodyIndex body : moving_) {
+    if (due_[body] <= now) bodies.push_back(body);
   }
+  if (!std::is_sorted(bodies.begin(), bodies.end())) std::sort(bodies.begin(), bodies.end());
 }
 
 void HalfSpaces::update_windows(Step now, const Clock& clock, std::span<const BodyIndex> bodies, const BodyTable& table,
@@ -84,7 +106,7 @@ void HalfSpaces::update_windows(Step now, const Clock& clock, std::span<const Bo
     motion.radius += 2 * slack;  // where it is, and where it was promised to be
     promises_[body] = {clock.time(now), motion, table.goes_by_middle(body, time_step)};
     if (!is_valid(motion)) {
-      due_[body] = now + 1;
+      set_due(body, now + 1);
       continue;
     }
     double seconds = std::numeric_limits<double>::infinity();
@@ -102,10 +124,10 @@ void HalfSpaces::update_windows(Step now, const Clock& clock, std::span<const Bo
     const Step known = last >= kNeverStep - 1 ? kNeverStep - 1 : std::max(now, last) + 1;
     const Step free = clock.steps_before(std::min(seconds, 1e12 * time_step), now);
     const Step safe = now + std::max<Step>(1, free);
-    due_[body] = meets ? now + 1 : std::min(known, safe);
+    set_due(body, meets ? now + 1 : std::min(known, safe));
   }
   next_ = kNeverStep;
-  for (const Step due : due_) next_ = std::min(next_, due);
+  for (const BodyIndex body : moving_) next_ = std::min(next_, due_[body]);
 }
 
 bool HalfSpaces::promise_kept(BodyIndex body, double time, const Motion& now) const noexcept {
@@ -116,7 +138,7 @@ bool HalfSpaces::promise_kept(BodyIndex body, double time, const Motion& now) co
 }
 
 std::size_t HalfSpaces::memory_bytes() const noexcept {
-  return bytes_of(planes_) + bytes_of(due_) + bytes_of(promises_);
+  return bytes_of(planes_) + bytes_of(due_) + bytes_of(promises_) + bytes_of(moving_) + bytes_of(moving_places_);
 }
 
 }  // namespace orchard::runtime::detail

@@ -23,7 +23,7 @@ class HalfSpaces {
   void forget(BodyIndex body);                  // it is gone, or does not move
   Step next() const noexcept { return next_; }  // at which any body is due
 
-  // The bodies due at `now` or before.
+  // The bodies due at `now` or before, in ascending order.
   void due(Step now, std::vector<BodyIndex>& bodies) const;
   // For each of these, of whom `motions` are relied on: its pairs, in ascending order of half-spaces, and when it is
   // due again. `slack`: see BroadPhaseOptions::position_slack.
@@ -46,9 +46,13 @@ class HalfSpaces {
     Motion motion;
     bool by_middle = false;
   };
+  void make_room(std::size_t bodies);
+  void set_due(BodyIndex body, Step due);
   std::vector<Plane> planes_;
-  std::vector<Step> due_;          // by body
-  std::vector<Promise> promises_;  // by body
+  std::vector<Step> due_;                     // by body
+  std::vector<BodyIndex> moving_;             // bodies that are due at some step,
+  std::vector<std::uint32_t> moving_places_;  // and by body where in there, or kNoIndex
+  std::vector<Promise> promises_;             // by body
   std::size_t alive_ = 0;
   double slack_ = 0;
   Step next_ = kNeverStep;

@@ -38,9 +38,9 @@ struct Record {
   Step answered = -1;              // the step of `verdict`, if that is certain
   std::uint32_t part_a = 0, part_b = 0;
   Verdict verdict;
-  Vec3 apart_by{};     // from centre to centre,
-  Step apart_at = -1;  // at that step
-  Vec3 along{};        // of the answer of the step under way, if that is "no": Clearance::along
+  runtime::Vec3 apart_by{};  // from centre to centre,
+  Step apart_at = -1;        // at that step
+  runtime::Vec3 along{};     // of the answer of the step under way, if that is "no": Clearance::along
   double impact_from = 0, impact_to = 0;
   TreePair trees;
 };
@@ -49,7 +49,7 @@ struct Record {
 // have turned so far; see Whereabouts.
 struct Standing {
   double slack = 0;
-  Vec3 way{};
+  runtime::Vec3 way{};
   double turned = 0;
   std::uint32_t changes = 0;
 };

@@ -10,7 +10,7 @@ void Places::place_at(const Pose& pose, bool rigid, ShapeId shape, const PartPla
   placed_part.there = &pose;
   if (!part.at_origin && rigid) placed_part.move_to(placed(pose, part.local));
   placed_part.rigid = rigid;
-  placed_part.be_in(transform(pose, part.center), part.reach * pose.scale);
+  placed_part.be_in({transform(pose, part.center), part.reach * pose.scale});
 }
 
 void Places::place(BodyIndex body, std::uint32_t part, PlacedPart& placed_part) const noexcept {
@@ -21,7 +21,7 @@ void Places::place(BodyIndex body, std::uint32_t part, PlacedPart& placed_part) 
       placed_part.shape = &(*shapes_)[of.shape];
       placed_part.there = &bodies_->state(body).pose;
       placed_part.rigid = true;
-      placed_part.be_in(where.middle, where.reach);
+      placed_part.be_in({where.middle, where.reach});
       return;
     }
     const PartRecord& record = of.parts[part];
@@ -37,12 +37,9 @@ void Places::place_sphere(BodyIndex body, std::uint32_t part, PlacedPart& placed
   }
   const Body& of = (*bodies_)[body];
   const PartRecord& record = of.parts[part];
-  const Pose& pose = bodies_->state(body).pose;
   placed_part.shape = &(*shapes_)[record.shape];
   placed_part.rigid = of.valid;
-  const PlacedSphere sphere =
-      of.one ? PlacedSphere{transform(pose, record.center), record.reach * pose.scale} : of.part_spheres[part];
-  placed_part.be_in(sphere.center, sphere.reach);
+  placed_part.be_in(sphere(body, part));
 }
 
 void Places::place_before(BodyIndex body, std::uint32_t part, Step now, PlacedPart& placed_part) const noexcept {
@@ -65,17 +62,6 @@ constexpr double kRounding = 1e-11;  // of rotations that are rotations to kRigi
 
 }  // namespace
 
-SphereGap sphere_gap(const PartPair& pair) noexcept {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const bool half = pair.b.shape == nullptr;
-  const double apart =
-      half ? dot(pair.half.normal, pair.a.center) - pair.half.offset : length(pair.b.center - pair.a.center);
-  const double reach = pair.a.reach + (half ? 0 : pair.b.reach);
-  const double size = pair.a.size + (half ? std::fabs(pair.half.offset) : pair.b.size);
-  const double least = apart - reach - kRounding * size, most = std::max(0.0, apart) + reach;
-  return {std::isfinite(least) ? least : 0, most >= 0 ? most : kInfinity};  // each solid is somewhere in its sphere
-}
-
 // Mostly the squares tell: a gap that is computed as more than 0 has a square of its way that is larger.
 bool spheres_part(const PartPair& pair) noexcept {
   if (pair.b.shape == nullptr) return sphere_gap(pair).least > 0;
@@ -84,7 +70,7 @@ bool spheres_part(const PartPair& pair) noexcept {
   return !(dot(way, way) < reach * reach) && sphere_gap(pair).least > 0;
 }
 
-double Places::bounds_gap(BodyIndex body, std::uint32_t part, const PlacedPart& sphere) const noexcept {
+double Places::bounds_gap(BodyIndex body, std::uint32_t part, const PlacedSphere& sphere) const noexcept {
   const Body& of = (*bodies_)[body];
   const PartRecord& record = of.parts[part];
   if (!of.valid) return 0;
@@ -108,11 +94,10 @@ double Places::bounds_gap(BodyIndex body, std::uint32_t part, const PlacedPart& 
   return std::isfinite(gap) ? gap : 0;
 }
 
-double Places::bounds_gap(const BodyPair& pair, std::uint32_t part_a, std::uint32_t part_b,
-                          const PartPair& placed) const noexcept {
-  if (placed.b.shape == nullptr) return 0;
-  const double gap = bounds_gap(pair.a, part_a, placed.b);
-  return gap > 0 ? gap : bounds_gap(pair.b, part_b, placed.a);
+double Places::bounds_gap(const BodyPair& pair, std::uint32_t part_a, std::uint32_t part_b, const PlacedSphere& a,
+                          const PlacedSphere& b) const noexcept {
+  const double gap = bounds_gap(pair.a, part_a, b);
+  return gap > 0 ? gap : bounds_gap(pair.b, part_b, a);
 }
 
 Verdict unasked(const PartPair& pair) noexcept { return unasked(pair, sphere_gap(pair)); }

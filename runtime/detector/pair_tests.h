@@ -7,17 +7,12 @@
 namespace orchard::runtime::detail {
 
 // What is asked at one step about two parts, or a part and a half-space.
-struct PlacedPart {
+struct PlacedPart : PlacedSphere {
   const Shape* shape = nullptr;  // null: a half-space
-  Vec3 center{};                 // of the part's sphere, in the world
-  double reach = 0;
-  double size = 0;  // no point of it is farther from the origin
   bool rigid = true;
 
-  void be_in(const Vec3& middle, double radius) noexcept {
-    center = middle, reach = radius;
-    size = std::fabs(middle[0]) + std::fabs(middle[1]) + std::fabs(middle[2]) + radius;
-  }
+  PlacedPart() noexcept : PlacedSphere({}, 0) {}
+  void be_in(const PlacedSphere& sphere) noexcept { static_cast<PlacedSphere&>(*this) = sphere; }
   const Pose& pose() const noexcept { return there != nullptr ? *there : *own; }
   void move_to(const Pose& pose) noexcept { there = nullptr, own = pose; }
   const Pose* there = nullptr;  // most are where their body is: that is not copied
@@ -47,10 +42,16 @@ class Places {
   void place(BodyIndex body, std::uint32_t part, PlacedPart& placed) const noexcept;
   // All but the pose: enough for spheres, and a third of the time.
   void place_sphere(BodyIndex body, std::uint32_t part, PlacedPart& placed) const noexcept;
+  PlacedSphere sphere(BodyIndex body, std::uint32_t part) const noexcept {  // not of a half-space
+    const Body& of = (*bodies_)[body];
+    if (!of.one) return of.part_spheres[part];
+    const Pose& pose = of.state.pose;
+    return {transform(pose, of.first_center), of.first_reach * pose.scale};
+  }
   // How far two parts are apart at least by the box or the capsule that each one's shape is in, and the other one's
   // sphere: long shapes fill little of theirs. Else at most 0.
-  double bounds_gap(const BodyPair& pair, std::uint32_t part_a, std::uint32_t part_b,
-                    const PartPair& placed) const noexcept;
+  double bounds_gap(const BodyPair& pair, std::uint32_t part_a, std::uint32_t part_b, const PlacedSphere& a,
+                    const PlacedSphere& b) const noexcept;
   // At the step before `now`; only of bodies that have been asked for then, or rest since before.
   void place_before(BodyIndex body, std::uint32_t part, Step now, PlacedPart& placed) const noexcept;
   ORCHARD_INLINE void prefetch_bodies(const BodyPair& pair) const noexcept {
@@ -61,7 +62,7 @@ class Places {
   const BodyTable& bodies() const noexcept { return *bodies_; }
 
  private:
-  double bounds_gap(BodyIndex body, std::uint32_t part, const PlacedPart& sphere) const noexcept;
+  double bounds_gap(BodyIndex body, std::uint32_t part, const PlacedSphere& sphere) const noexcept;
   void place_at(const Pose& pose, bool rigid, ShapeId shape, const PartPlace& part, PlacedPart& placed) const noexcept;
   const ShapeTable* shapes_;
   const BodyTable* bodies_;
@@ -72,7 +73,22 @@ struct SphereGap {
   double least;  // how far apart the spheres around the two are, at least; at most 0 where they may overlap
   double most;   // and what is in them, at most
 };
-SphereGap sphere_gap(const PartPair& pair) noexcept;
+// `apart`: of the spheres' centres, or of a's from a half-space; `reach`, `size`: of both.
+inline SphereGap sphere_gap(double apart, double reach, double size) noexcept {
+  constexpr double kRounding = 1e-11;  // of rotations that are rotations to kRigidTolerance, and of coordinates
+  const double least = apart - reach - kRounding * size, most = std::max(0.0, apart) + reach;
+  // Each solid is somewhere in its sphere.
+  return {std::isfinite(least) ? least : 0, most >= 0 ? most : std::numeric_limits<double>::infinity()};
+}
+inline SphereGap sphere_gap(const PlacedSphere& a, const PlacedSphere& b) noexcept {
+  return sphere_gap(length(b.center - a.center), a.reach + b.reach, a.size + b.size);
+}
+inline SphereGap sphere_gap(const PlacedSphere& a, const HalfSpace& half) noexcept {
+  return sphere_gap(dot(half.normal, a.center) - half.offset, a.reach, a.size + std::fabs(half.offset));
+}
+inline SphereGap sphere_gap(const PartPair& pair) noexcept {
+  return pair.b.shape == nullptr ? sphere_gap(pair.a, pair.half) : sphere_gap(pair.a, pair.b);
+}
 bool spheres_part(const PartPair& pair) noexcept;  // whether the least gap is more than 0
 // What is known of two parts that nothing was asked about.
 Verdict unasked(const PartPair& pair) noexcept;

@@ -34,23 +34,33 @@ void take_in(Record& record, const Verdict& verdict, std::uint32_t part_a, std::
   record.verdict.work = work;
 }
 
-namespace {
+// Of parts that are apart by their bounds: how far at least, and the two of whom it is known best how far at most.
+struct PartsApart {
+  SphereGap gap{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  std::uint32_t part_a = 0, part_b = 0;
 
-// take_in() of what unasked() says of two parts that are apart, without that.
-void take_in_apart(Record& record, const PartPair& pair, const SphereGap& gap, double least, std::uint32_t part_a,
-                   std::uint32_t part_b) noexcept {
-  const double lower = std::min(record.verdict.lower_bound, least);
-  if (record.verdict.answer == Answer::no && gap.most < record.verdict.separation_bound) {
-    const std::uint64_t work = record.verdict.work;
-    record.verdict = unasked(pair, {least, gap.most});
-    record.verdict.work = work;
-    record.part_a = part_a, record.part_b = part_b;
+  void note(const SphereGap& of, std::uint32_t i, std::uint32_t j) noexcept {
+    gap.least = std::min(gap.least, of.least);
+    if (!(of.most < gap.most)) return;
+    gap.most = of.most;
+    part_a = i, part_b = j;
   }
-  record.verdict.separation_bound = std::min(record.verdict.separation_bound, gap.most);
+};
+
+// take_in() of what unasked() says of them.
+void Rounds::take_in_apart(Record& record, const PartsApart& apart, PartPair& pair) const noexcept {
+  const double lower = std::min(record.verdict.lower_bound, apart.gap.least);
+  if (record.verdict.answer == Answer::no && apart.gap.most < record.verdict.separation_bound) {
+    const std::uint64_t work = record.verdict.work;
+    places_->place_sphere(record.pair.a, apart.part_a, pair.a);
+    places_->place_sphere(record.pair.b, apart.part_b, pair.b);
+    record.verdict = unasked(pair, apart.gap);
+    record.verdict.work = work;
+    record.part_a = apart.part_a, record.part_b = apart.part_b;
+  }
+  record.verdict.separation_bound = std::min(record.verdict.separation_bound, apart.gap.most);
   record.verdict.lower_bound = lower;
 }
-
-}  // namespace
 
 void Rounds::place(const Record& record, std::uint32_t part_a, std::uint32_t part_b, PartPair& pair) const noexcept {
   places_->place(record.pair.a, part_a, pair.a);
@@ -167,32 +177,37 @@ void Rounds::answer_parts(Record& record, Step now, QueryPool::Scratch& scratch)
     take_in(record, verdict, i, j);
     known = known && verdict.answer != Answer::maybe;
   };
-  if (is_half_space(record.pair.b)) pair.half = places_->half_space(record.pair.b);
+  const bool half = is_half_space(record.pair.b);
+  if (half) pair.half = places_->half_space(record.pair.b);
   if (touched) {
     place(record, last_a, last_b, pair);
     ++scratch.work;
     take(answer_again(record, last, pair, scratch), last_a, last_b);
   }
-  if (parts_b == 1) places_->place(record.pair.b, 0, pair.b);
+  PartsApart apart;
+  PlacedSphere b = half || parts_b > 1 ? PlacedSphere{} : places_->sphere(record.pair.b, 0);
+  bool placed_b = false;
   for (std::uint32_t i = 0; i < parts_a && record.verdict.answer != Answer::yes; ++i) {
-    places_->place_sphere(record.pair.a, i, pair.a);
-    bool placed = false;
+    const PlacedSphere a = places_->sphere(record.pair.a, i);
+    bool placed_a = false;
     for (std::uint32_t j = 0; j < parts_b && record.verdict.answer != Answer::yes; ++j) {
       if (touched && i == last_a && j == last_b) continue;
-      if (parts_b > 1) places_->place_sphere(record.pair.b, j, pair.b);
+      if (parts_b > 1) b = places_->sphere(record.pair.b, j);
       ++scratch.work;
-      const SphereGap gap = sphere_gap(pair);
-      const double least = gap.least > 0 ? gap.least : places_->bounds_gap(record.pair, i, j, pair);
-      if (least > 0) {
-        take_in_apart(record, pair, gap, least, i, j);
+      SphereGap gap = half ? sphere_gap(a, pair.half) : sphere_gap(a, b);
+      if (!(gap.least > 0) && !half) gap.least = places_->bounds_gap(record.pair, i, j, a, b);
+      if (gap.least > 0) {
+        apart.note(gap, i, j);
         continue;
       }
-      if (!placed) places_->place(record.pair.a, i, pair.a);
-      placed = true;
-      if (parts_b > 1) places_->place(record.pair.b, j, pair.b);
+      if (!placed_a) places_->place(record.pair.a, i, pair.a);
+      if (!placed_b) places_->place(record.pair.b, j, pair.b);
+      placed_a = true, placed_b = parts_b == 1;
       take(answer_anew(record, pair, scratch), i, j);
     }
   }
+  if (record.verdict.answer != Answer::yes && apart.gap.least < std::numeric_limits<double>::infinity())
+    take_in_apart(record, apart, pair);
   if (record.verdict.answer == Answer::maybe) known = false;
   if (known || record.verdict.answer == Answer::yes) record.answered = now;
   record.verdict.work = scratch.work - before;

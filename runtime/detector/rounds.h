@@ -10,6 +10,8 @@ namespace orchard::runtime::detail {
 void forget_answer(Record& record) noexcept;
 void take_in(Record& record, const Verdict& verdict, std::uint32_t part_a, std::uint32_t part_b) noexcept;
 
+struct PartsApart;
+
 // Answers records at one step.
 class Rounds {
  public:
@@ -60,6 +62,7 @@ class Rounds {
                           QueryPool::Scratch& scratch) noexcept;
   void answer_coherently(std::uint32_t index, Record& record, Step now, QueryPool::Scratch& scratch) const noexcept;
   void answer_two_parts(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept;
+  void take_in_apart(Record& record, const PartsApart& apart, PartPair& pair) const noexcept;
   void answer_parts(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept;
   void sweep_one(Record& record, Step now, QueryPool::Scratch& scratch, std::uint64_t most) const noexcept;
   void make_tasks(RecordTable& records, std::span<const std::uint32_t> open, Step now);

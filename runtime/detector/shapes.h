@@ -16,15 +16,15 @@ enum class ShapeKind : std::uint8_t {
 
 struct Shape {
   ShapeKind kind = ShapeKind::tree;
-  PackedSphereTree own;        // what `tree` views, if it is that of a box, of a round shape's segment, or of a file
-  TreeView tree;               // the surface; of a round shape the segment, for sweeps
-  PreparedTree prepared;       // the same
-  Vec3 p{}, q{};               // of a box: p is half of its lengths
-  double radius = 0;           // of round shapes
-  Vec3 center{};               // of a sphere around the shape,
-  double reach = 0;            // and its radius
-  Vec3 box_low{}, box_high{};  // of a box around the triangles, by the shape's axes; not of round shapes
-  std::vector<Vec3> pieces;    // of a tree: a vertex of each connected piece of its surface,
+  PackedSphereTree own;    // what `tree` views, if it is that of a box, of a round shape's segment, or of a file
+  TreeView tree;           // the surface; of a round shape the segment, for sweeps
+  PreparedTree prepared;   // the same
+  runtime::Vec3 p{}, q{};  // of a box: p is half of its lengths
+  double radius = 0;       // of round shapes
+  runtime::Vec3 center{};  // of a sphere around the shape,
+  double reach = 0;        // and its radius
+  runtime::Vec3 box_low{}, box_high{};        // of a box around the triangles, by the shape's axes; not of round shapes
+  std::vector<runtime::Vec3> pieces;          // of a tree: a vertex of each connected piece of its surface,
   std::vector<std::uint32_t> piece_vertices;  // and which these are
   bool has_tree() const noexcept { return kind != ShapeKind::round; }
 };
@@ -34,8 +34,8 @@ class ShapeTable {
  public:
   ShapeId add_tree(const TreeView& tree);
   ShapeId add_tree(PackedSphereTree&& tree);
-  ShapeId add_round(const Vec3& p, const Vec3& q, double radius);
-  ShapeId add_box(const Vec3& half_lengths);
+  ShapeId add_round(const runtime::Vec3& p, const runtime::Vec3& q, double radius);
+  ShapeId add_box(const runtime::Vec3& half_lengths);
 
   bool contains(ShapeId shape) const noexcept { return shape < shapes_.size(); }
   const Shape& operator[](ShapeId shape) const noexcept { return shapes_[shape]; }
@@ -49,15 +49,15 @@ class ShapeTable {
 };
 
 // How far a point in the shape's frame is from the box around it, or from the segment of a round shape less its radius.
-double distance_to_bounds(const Shape& shape, const Vec3& point) noexcept;
+double distance_to_bounds(const Shape& shape, const runtime::Vec3& point) noexcept;
 
 // Everything with normal . point <= offset; the normal is a unit vector.
 struct HalfSpace {
-  Vec3 normal{1, 0, 0};
+  runtime::Vec3 normal{1, 0, 0};
   double offset = 0;
 };
 
-inline double length(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
+inline double length(const runtime::Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
 
 // `local` in `body`: each may be off by kRigidTolerance, and together by more. What is not rigid stays so.
 Pose placed(const Pose& body, const Pose& local) noexcept;

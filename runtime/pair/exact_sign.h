@@ -8,6 +8,7 @@
 // The usual case costs one evaluation in double; close ones are repeated with twice the digits, ties in full.
 namespace orchard::runtime::detail {
 
+// Headers that mean runtime::Vec3 say so where this one may be seen as well.
 using Vec3 = std::array<double, 3>;
 
 // > 0 if a, b, c appear counterclockwise when seen from the side of their plane away from d, 0 if all four are

@@ -48,7 +48,7 @@ class Twins {
       : in_cpp_(bodies.source()), queries_(in_cpp_), in_c_(made(from_bodies, &bodies, orchard_default_broad_phase())) {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       const auto rank = static_cast<std::uint8_t>(i % 3);
-      const orchard_body_filter filter{1, 0xffffffffu, i % 4 == 0 ? -1 : 0};
+      const orchard_body_filter filter{1, 0xffffffffu, i % 4 == 0 ? -1 : 0, 0};
       const BodyId id = in_cpp_.add(rank, {filter.category, filter.mask, filter.group});
       const orchard_body body = orchard_broad_phase_add(in_c_.get(), rank, &filter);
       EXPECT_TRUE(body.index == id.index && body.generation == id.generation);
@@ -189,7 +189,7 @@ TEST(CBroadPhase, TakesChangesAndTellsOfBrokenPromises) {
   ASSERT_EQ(now.pair_count, 3u);
   EXPECT_EQ(now.pairs[4], 1u);
   EXPECT_EQ(now.pairs[5], 2u);
-  const orchard_body_filter apart{1, 0xffffffffu, -1};
+  const orchard_body_filter apart{1, 0xffffffffu, -1, 0};
   EXPECT_EQ(orchard_broad_phase_set_filter(w, a, &apart), 1);
   EXPECT_EQ(orchard_broad_phase_set_filter(w, b, &apart), 1);
   EXPECT_EQ(orchard_broad_phase_advance(w, kStep, nullptr).pair_count, 2u);
@@ -218,6 +218,11 @@ TEST(CBroadPhase, TakesChangesAndTellsOfBrokenPromises) {
   EXPECT_EQ(orchard_broad_phase_remove(w, b), 1);
   EXPECT_EQ(orchard_broad_phase_advance(w, 5 * kStep, nullptr).pair_count, 0u);
   EXPECT_EQ(orchard_broad_phase_size(w), 2u);
+  EXPECT_EQ(orchard_broad_phase_move_static(w, wall, &values[2]), 1);
+  EXPECT_EQ(orchard_broad_phase_advance(w, 6 * kStep, nullptr).pair_count, 1u);
+  const orchard_body_filter ignoring{1, 0xffffffffu, 0, 1};
+  EXPECT_EQ(orchard_broad_phase_set_filter(w, a, &ignoring), 1);
+  EXPECT_EQ(orchard_broad_phase_advance(w, 7 * kStep, nullptr).pair_count, 0u);
   EXPECT_GT(orchard_broad_phase_memory_bytes(w), sizeof(orchard_motion));
   for (const orchard_body none : {b, orchard_body{ORCHARD_NO_BODY, 0}, orchard_body{0, 0}, orchard_body{77, 1}}) {
     EXPECT_EQ(orchard_broad_phase_remove(w, none), 0);
@@ -310,7 +315,7 @@ TEST(CBroadPhase, LetsNoExceptionOut) {
       failed = failed || !there;
       if (added % 50 != 49 || !there) continue;
       const orchard_body body = orchard_broad_phase_body(world.get(), added - 1);
-      const orchard_body_filter filter{2, 0xffffffffu, 0};
+      const orchard_body_filter filter{2, 0xffffffffu, 0, 0};
       for (int tries = 0; tries < 2 && orchard_broad_phase_set_filter(world.get(), body, &filter) == 0; ++tries) {
         failed = true;
       }

@@ -67,6 +67,24 @@ TEST(BodyFilters, LetABodyOfSeveralSpheresSleep) {
   EXPECT_EQ(awake.world.advance(0).pairs.size(), 15u);
 }
 
+TEST(BodyFilters, LeaveStaticBodiesOut) {
+  for (const test::AnyMethod method : test::kMethods) {
+    std::vector<Motion> values(3);
+    for (Motion& motion : values) motion.radius = 1;
+    BroadPhase world = test::make_broad_phase(values_of(values), {.method = method, .common = {.time_step = kStep}});
+    const BodyId a = world.add();
+    world.add();
+    world.add_static(values[2], 0, {.ignores_static = true});  // no static one has pairs with static ones anyway
+    EXPECT_EQ(world.advance(0).pairs.size(), 3u);
+    EXPECT_TRUE(world.set_filter(a, {.ignores_static = true}));
+    const Advance now = world.advance(kStep);
+    const BodyPair expected[] = {{0, 1}, {1, 2}};
+    EXPECT_TRUE(std::equal(now.pairs.begin(), now.pairs.end(), std::begin(expected), std::end(expected)));
+    EXPECT_TRUE(world.set_filter(a, {}));
+    EXPECT_EQ(world.advance(2 * kStep).pairs.size(), 3u);
+  }
+}
+
 // 300 bodies of three spheres that cross each other's paths: what is asked for is what two bodies near each other need,
 // next to nothing beside what the parts would cost each other.
 TEST(BodyFilters, ExcludedPairsCostNothingAtLaterSteps) {

@@ -49,7 +49,8 @@ class Sequence {
   BodyFilter random_filter() {
     if (!filtered_ || chance(0.3)) return {};
     const auto bits = [&] { return chance(0.1) ? 0 : static_cast<std::uint32_t>(draw_.bits()); };
-    return {bits() & 7, chance(0.5) ? bits() : 0xffffffffu, static_cast<std::int32_t>(draw_.bits() % 9) - 4};
+    return {bits() & 7, chance(0.5) ? bits() : 0xffffffffu, static_cast<std::int32_t>(draw_.bits() % 9) - 4,
+            chance(0.2)};
   }
 
   // Every third pair is none, or every fourth, or all are some.
@@ -251,9 +252,10 @@ class Sequence {
 
   bool touch(BodyIndex i, BodyIndex j) const {
     const auto takes_part = [&](BodyIndex k) { return known_[k].alive && known_[k].valid; };
-    return takes_part(i) && takes_part(j) && !(known_[i].fixed && known_[j].fixed) &&
-           may_pair(known_[i].filter, known_[j].filter) && (excluded_ == 0 || (i + j) % excluded_ != 0) &&
-           spheres_touch(values_[i], values_[j]);
+    const auto ignores = [&](BodyIndex k, BodyIndex l) { return known_[k].filter.ignores_static && known_[l].fixed; };
+    return takes_part(i) && takes_part(j) && !(known_[i].fixed && known_[j].fixed) && !ignores(i, j) &&
+           !ignores(j, i) && may_pair(known_[i].filter, known_[j].filter) &&
+           (excluded_ == 0 || (i + j) % excluded_ != 0) && spheres_touch(values_[i], values_[j]);
   }
 
   test::Draw draw_;

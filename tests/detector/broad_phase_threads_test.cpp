@@ -62,7 +62,7 @@ struct World {
 
 BodyFilter filter_of(const World& world, BodyIndex body) {
   if (!world.filters) return {};
-  return {.category = 1u << body % 3, .mask = body % 5 == 0 ? 3u : 7u};
+  return {.category = 1u << body % 3, .mask = body % 5 == 0 ? 3u : 7u, .ignores_static = body % 11 == 0};
 }
 bool user_allows(BodyIndex a, BodyIndex b) { return (a + b) % 4 != 0; }
 bool is_static(const World& world, BodyIndex body) { return world.statics && body % 7 == 0; }
@@ -117,6 +117,9 @@ std::vector<BodyPair> by_sweep(const Crowd& crowd, const World& world, double ti
       if (!spheres_touch(balls[i].motion, balls[k].motion)) continue;
       if (is_static(world, a) && is_static(world, b)) continue;
       if (!may_pair(filter_of(world, a), filter_of(world, b))) continue;
+      if ((filter_of(world, a).ignores_static && is_static(world, b)) ||
+          (filter_of(world, b).ignores_static && is_static(world, a)))
+        continue;
       if (world.user_filter && !user_allows(a, b)) continue;
       pairs.push_back({a, b});
     }

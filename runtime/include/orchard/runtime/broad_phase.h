@@ -37,9 +37,11 @@ struct BodyFilter {
   std::uint32_t category = 1;        // bits: what the body is
   std::uint32_t mask = 0xffffffffu;  // bits: the categories it has pairs with
   std::int32_t group = 0;
+  bool ignores_static = false;  // it has no pairs with static bodies
   friend bool operator==(const BodyFilter&, const BodyFilter&) = default;
 };
 
+// Of two bodies of which none is static, or that do not ignore these.
 constexpr bool may_pair(const BodyFilter& a, const BodyFilter& b) noexcept {
   if (a.group == b.group && a.group != 0) return a.group > 0;
   return (a.mask & b.category) != 0 && (b.mask & a.category) != 0;

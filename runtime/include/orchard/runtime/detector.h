@@ -182,9 +182,10 @@ struct StepLoad {
 // Which bodies touch, at every step, within a budget, always with a bound.
 //
 // At each step every pair of bodies whose spheres overlap, that groups, masks and the filter allow, is answered from
-// the poses of that step: yes, no, or maybe with bounds. Bodies of several parts touch iff two of their parts do; the
-// parts of one body are never a pair, nor are two static bodies. Trees are their surfaces, as for NarrowPhase; the
-// simple shapes (sphere, capsule, box, half-space) are solid.
+// the poses of that step: yes, no, or maybe with bounds. Bodies of several parts touch iff two of their parts do; where
+// many static bodies are in reach of one, the spheres that have to overlap are its parts'. The parts of one body are
+// never a pair, nor are two static bodies. Trees are their surfaces, as for NarrowPhase; the simple shapes (sphere,
+// capsule, box, half-space) are solid.
 //
 // Refinement (7.3): by class of importance, and within a class those first that have waited longest for a certain
 // answer. All pairs begin with what tells most of them at next to no cost: spheres, roots, what the last step found.

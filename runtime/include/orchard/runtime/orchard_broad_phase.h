@@ -33,10 +33,12 @@ typedef struct orchard_motion {
 } orchard_motion;
 
 /* Two bodies may be a pair if each one's mask has a bit of the other's category; of two with the same group, unless it
- * is 0: always if it is positive, never if it is negative. */
+ * is 0: always if it is positive, never if it is negative. If ignores_static is not 0, it has no pairs with static
+ * bodies. */
 typedef struct orchard_body_filter {
   uint32_t category, mask;
   int32_t group;
+  int ignores_static;
 } orchard_body_filter;
 
 /* Fills motions[i] with that of bodies[i] (indices) at `time`. */
