@@ -133,6 +133,8 @@ class Factory {
   Factory(std::uint64_t seed, bool watch, bool filters)
       : draw_(seed), filters_(filters), world_(states_of(states_), {.time_step = kStep, .watch = watch}) {
     states_.resize(1000);
+    if (seed % 5 > 2) unit_ = std::pow(10, draw_.uniform(-3, 4));
+    if (seed % 5 == 4) middle_ = unit_ * draw_.uniform(0, 1000) * Vec3(draw_.direction());
     shapes_ = add_shapes(world_);
     const auto arms = static_cast<std::size_t>(draw_.uniform(1, 4));
     for (std::size_t i = 0; i < arms; ++i) add_arm();
@@ -168,6 +170,12 @@ class Factory {
   std::uint64_t pairs = 0;
 
  private:
+  // What is around 0 there is here.
+  Pose placed(Pose pose) const {
+    pose.translation = middle_ + unit_ * Vec3(pose.translation);
+    pose.scale *= unit_;
+    return pose;
+  }
   void add(Thing thing) {
     BodyOptions options;
     if (filters_ && draw_.uniform(0, 1) < 0.3) thing.group = 2;
@@ -181,7 +189,7 @@ class Factory {
   ShapeId any_shape() { return shapes_[static_cast<std::size_t>(draw_.uniform(0, 5))]; }
   void add_arm() {
     Thing arm;
-    arm.pose = draw_.pose(draw_.uniform(0, 6));
+    arm.pose = placed(draw_.pose(draw_.uniform(0, 6)));
     for (int k = static_cast<int>(draw_.uniform(2, 6)); k > 0; --k) arm.parts.push_back({any_shape(), {}});
     for (BodyPart& part : arm.parts) part.local = draw_.pose(draw_.uniform(0, 5));
     add(arm);
@@ -189,7 +197,7 @@ class Factory {
   Pose static_pose() {
     Pose pose = draw_.pose(draw_.uniform(0, 8));
     pose.scale = draw_.uniform(0, 1) < 0.05 ? 10 : draw_.uniform(0.2, 1.5);
-    return pose;
+    return placed(pose);
   }
   void add_static() {
     Thing thing;
@@ -212,7 +220,7 @@ class Factory {
       }
       if (world_.asleep(thing.id)) continue;
       states_[thing.id.index].expiry = time;
-      thing.pose.translation = Vec3(thing.pose.translation) + 0.05 * Vec3(draw_.direction());
+      thing.pose.translation = Vec3(thing.pose.translation) + 0.05 * unit_ * Vec3(draw_.direction());
       states_[thing.id.index].pose = thing.pose;
     }
   }
@@ -240,7 +248,7 @@ class Factory {
         thing.parts[part].local = draw_.pose(draw_.uniform(0, 3));
         ASSERT_TRUE(world_.set_local(thing.id, part, thing.parts[part].local));
       } else if (what < 4) {
-        thing.pose = draw_.pose(draw_.uniform(0, draw_.uniform(0, 1) < 0.2 ? 100 : 6));
+        thing.pose = placed(draw_.pose(draw_.uniform(0, draw_.uniform(0, 1) < 0.2 ? 100 : 6)));
         states_[thing.id.index].pose = thing.pose;
         world_.wake(thing.id);
         ASSERT_TRUE(world_.teleport(thing.id));
@@ -253,10 +261,10 @@ class Factory {
   }
   void add_bullet() {
     Thing bullet;
-    bullet.pose = draw_.pose(5);
+    bullet.pose = placed(draw_.pose(5));
     bullet.parts = {{shapes_[4], {}}};
     BodyOptions options;
-    options.continuous_speed = 100;
+    options.continuous_speed = 100 * unit_;
     bullet.id = world_.add_body(bullet.parts, options);
     ASSERT_NE(bullet.id, kNoBody);
     states_[bullet.id.index].pose = bullet.pose;
@@ -280,6 +288,8 @@ class Factory {
 
   Draw draw_;
   bool filters_, any_bullet_ = false;
+  double unit_ = 1;
+  Vec3 middle_{};
   std::vector<BodyState> states_;
   Detector world_;
   std::vector<ShapeId> shapes_;
