@@ -21,7 +21,7 @@ BodyState KeptStates::at(double time, BodyIndex body) const noexcept {
 void KeptStates::fill(double time, std::span<const BodyIndex> bodies, std::span<BodyState> states) const noexcept {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     states[i] = at(time, bodies[i]);
-    if (cancels_) states[i].angular_speed = 0;
+    if (put_cancels_) states[i].angular_speed = 0;
   }
 }
 

@@ -9,7 +9,8 @@ namespace orchard::runtime::detail {
 // Of an application that leaves its bodies' states to the detector: each goes straight on from when it was told.
 class KeptStates {
  public:
-  explicit KeptStates(bool cancels) noexcept : cancels_(cancels) {}
+  // put_cancels: what was promised of a body holds until put(), and no longer.
+  explicit KeptStates(bool put_cancels) noexcept : put_cancels_(put_cancels) {}
   void put(BodyIndex body, double time, const BodyState& state);
   BodyState at(double time, BodyIndex body) const noexcept;
   void fill(double time, std::span<const BodyIndex> bodies, std::span<BodyState> states) const noexcept;
@@ -21,7 +22,7 @@ class KeptStates {
     double time = 0;
   };
   std::vector<Told> told_;  // by BodyIndex
-  bool cancels_;            // put() is followed by a new promise
+  bool put_cancels_;
 };
 
 }  // namespace orchard::runtime::detail

@@ -144,13 +144,8 @@ ShapeId ShapeTable::add_box(const Vec3& half_lengths) {
 }
 
 double distance_to_bounds(const Shape& shape, const Vec3& point) noexcept {
+  if (shape.kind == ShapeKind::round) return length(point - nearest_of_segment(shape.p, shape.q, point)) - shape.radius;
   Vec3 beyond{};
-  if (shape.kind == ShapeKind::round) {
-    const Vec3 way = shape.q - shape.p, from = point - shape.p;
-    const double square = dot(way, way);
-    const double share = square > 0 ? std::clamp(dot(from, way) / square, 0.0, 1.0) : 0.0;
-    return length(from - share * way) - shape.radius;
-  }
   for (std::size_t i = 0; i < 3; ++i) {
     beyond[i] = std::max({0.0, shape.box_low[i] - point[i], point[i] - shape.box_high[i]});
   }

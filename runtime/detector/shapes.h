@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <deque>
 #include <memory>
 #include <vector>
@@ -58,6 +59,13 @@ struct HalfSpace {
 };
 
 inline double length(const runtime::Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
+
+inline runtime::Vec3 nearest_of_segment(const runtime::Vec3& p, const runtime::Vec3& q,
+                                        const runtime::Vec3& to) noexcept {
+  const runtime::Vec3 d = q - p;
+  const double square = dot(d, d);
+  return square > 0 ? p + std::clamp(dot(to - p, d) / square, 0.0, 1.0) * d : p;
+}
 
 // `local` in `body`: each may be off by kRigidTolerance, and together by more. What is not rigid stays so.
 Pose placed(const Pose& body, const Pose& local) noexcept;

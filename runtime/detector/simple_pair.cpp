@@ -20,12 +20,6 @@ struct Round {  // in the world
 
 Vec3 point_of(const Vec3& p, const Vec3& q, double share) noexcept { return p + share * (q - p); }
 
-Vec3 nearest_of_segment(const Vec3& p, const Vec3& q, const Vec3& to) noexcept {
-  const Vec3 d = q - p;
-  const double square = dot(d, d);
-  return square > 0 ? point_of(p, q, std::clamp(dot(to - p, d) / square, 0.0, 1.0)) : p;
-}
-
 struct Nearest {
   Vec3 on_a, on_b;
 };
