@@ -34,6 +34,8 @@ void take_in(Record& record, const Verdict& verdict, std::uint32_t part_a, std::
   record.verdict.work = work;
 }
 
+namespace {
+
 // Of parts that are apart by their bounds: how far at least, and the two of whom it is known best how far at most.
 struct PartsApart {
   SphereGap gap{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
@@ -47,20 +49,23 @@ struct PartsApart {
   }
 };
 
-// take_in() of what unasked() says of them.
-void Rounds::take_in_apart(Record& record, const PartsApart& apart, PartPair& pair) const noexcept {
-  const double lower = std::min(record.verdict.lower_bound, apart.gap.least);
-  if (record.verdict.answer == Answer::no && apart.gap.most < record.verdict.separation_bound) {
-    const std::uint64_t work = record.verdict.work;
-    places_->place_sphere(record.pair.a, apart.part_a, pair.a);
-    places_->place_sphere(record.pair.b, apart.part_b, pair.b);
-    record.verdict = unasked(pair, apart.gap);
-    record.verdict.work = work;
+// As take_in() of what unasked() would say of them.
+void take_in_apart(Record& record, const PartsApart& apart) noexcept {
+  Verdict& verdict = record.verdict;
+  if (verdict.answer == Answer::no && apart.gap.most < verdict.separation_bound) {
+    const double lower = verdict.lower_bound;
+    const std::uint64_t work = verdict.work;
+    verdict = Verdict{};
+    verdict.answer = Answer::no;
+    verdict.separation_bound = apart.gap.most, verdict.lower_bound = lower;
+    verdict.work = work;
     record.part_a = apart.part_a, record.part_b = apart.part_b;
   }
-  record.verdict.separation_bound = std::min(record.verdict.separation_bound, apart.gap.most);
-  record.verdict.lower_bound = lower;
+  verdict.separation_bound = std::min(verdict.separation_bound, apart.gap.most);
+  verdict.lower_bound = std::min(verdict.lower_bound, apart.gap.least);
 }
+
+}  // namespace
 
 void Rounds::place(const Record& record, std::uint32_t part_a, std::uint32_t part_b, PartPair& pair) const noexcept {
   places_->place(record.pair.a, part_a, pair.a);
@@ -134,14 +139,13 @@ void Rounds::answer(std::uint32_t index, Record& record, Step now, QueryPool::Sc
   answer_parts(record, now, scratch);
 }
 
-// Two parts that touched at the step before. Where others of these shapes have met is no more than a guess.
-Verdict Rounds::answer_again(Record& record, const Verdict& last, const PartPair& pair,
+// Two parts that touched at the step before, where a triangle `guess` may have been nearest. Where others of these
+// shapes have met is no more than a guess.
+Verdict Rounds::answer_again(Record& record, std::uint32_t guess, const PartPair& pair,
                              QueryPool::Scratch& scratch) noexcept {
   const bool known = record.met && !pair.simple() && pair.a.rigid && pair.b.rigid &&
                      &record.trees.a() == &pair.a.shape->prepared && &record.trees.b() == &pair.b.shape->prepared;
-  if (!known) {
-    return answer_exactly(scratch.workspace.narrow, pair, scratch.work, kNoLimit, nearest_triangle(last, pair));
-  }
+  if (!known) return answer_exactly(scratch.workspace.narrow, pair, scratch.work, kNoLimit, guess);
   const Pose &a = pair.a.pose(), &b = pair.b.pose();
   Verdict verdict;
   if (!CoherentPair::recall(scratch.workspace, record.trees, a, b, verdict)) {
@@ -162,54 +166,64 @@ Verdict Rounds::answer_anew(Record& record, const PartPair& pair, QueryPool::Scr
   return verdict;
 }
 
-// Bodies of several parts: those that touched mostly still do, and then nobody else is asked. Most of the others are
-// told apart by their spheres, before anybody needs to know how they are turned.
-void Rounds::answer_parts(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept {
-  const bool touched = record.verdict.answer == Answer::yes;
-  const Verdict last = record.verdict;
-  const std::uint32_t last_a = record.part_a, last_b = record.part_b;
-  forget_answer(record);
-  PartPair pair;
-  const std::uint32_t parts_a = places_->parts(record.pair.a), parts_b = places_->parts(record.pair.b);
-  const std::uint64_t before = scratch.work;
-  bool known = true;
-  const auto take = [&](const Verdict& verdict, std::uint32_t i, std::uint32_t j) {
-    take_in(record, verdict, i, j);
-    known = known && verdict.answer != Answer::maybe;
-  };
-  const bool half = is_half_space(record.pair.b);
-  if (half) pair.half = places_->half_space(record.pair.b);
-  if (touched) {
-    place(record, last_a, last_b, pair);
-    ++scratch.work;
-    take(answer_again(record, last, pair, scratch), last_a, last_b);
-  }
+// Parts of bodies that are not `but`, until two touch: most are told apart by their spheres, before anybody needs to
+// know how they are turned. Whether all answers are certain.
+bool Rounds::answer_others(Record& record, const PartIndices& but, PartPair& pair,
+                           QueryPool::Scratch& scratch) const noexcept {
+  const BodyPair& bodies = record.pair;
+  const std::uint32_t parts_a = places_->parts(bodies.a), parts_b = places_->parts(bodies.b);
+  const bool half = is_half_space(bodies.b);
+  bool certain = true, placed_b = false;
   PartsApart apart;
-  PlacedSphere b = half || parts_b > 1 ? PlacedSphere{} : places_->sphere(record.pair.b, 0);
-  bool placed_b = false;
+  PlacedSphere b = half || parts_b > 1 ? PlacedSphere{} : places_->sphere(bodies.b, 0);
   for (std::uint32_t i = 0; i < parts_a && record.verdict.answer != Answer::yes; ++i) {
-    const PlacedSphere a = places_->sphere(record.pair.a, i);
+    const PlacedSphere a = places_->sphere(bodies.a, i);
     bool placed_a = false;
     for (std::uint32_t j = 0; j < parts_b && record.verdict.answer != Answer::yes; ++j) {
-      if (touched && i == last_a && j == last_b) continue;
-      if (parts_b > 1) b = places_->sphere(record.pair.b, j);
+      if (i == but.a && j == but.b) continue;
+      if (parts_b > 1) b = places_->sphere(bodies.b, j);
       ++scratch.work;
       SphereGap gap = half ? sphere_gap(a, pair.half) : sphere_gap(a, b);
-      if (!(gap.least > 0) && !half) gap.least = places_->bounds_gap(record.pair, i, j, a, b);
+      if (!(gap.least > 0) && !half) gap.least = places_->bounds_gap(bodies, i, j, a, b);
       if (gap.least > 0) {
         apart.note(gap, i, j);
         continue;
       }
-      if (!placed_a) places_->place(record.pair.a, i, pair.a);
-      if (!placed_b) places_->place(record.pair.b, j, pair.b);
+      if (!placed_a) places_->place(bodies.a, i, pair.a);
+      if (!placed_b) places_->place(bodies.b, j, pair.b);
       placed_a = true, placed_b = parts_b == 1;
-      take(answer_anew(record, pair, scratch), i, j);
+      const Verdict verdict = answer_anew(record, pair, scratch);
+      take_in(record, verdict, i, j);
+      certain = certain && verdict.answer != Answer::maybe;
     }
   }
   if (record.verdict.answer != Answer::yes && apart.gap.least < std::numeric_limits<double>::infinity())
-    take_in_apart(record, apart, pair);
-  if (record.verdict.answer == Answer::maybe) known = false;
-  if (known || record.verdict.answer == Answer::yes) record.answered = now;
+    take_in_apart(record, apart);
+  return certain;
+}
+
+// Bodies of several parts: those that touched mostly still do, and then nobody else is asked.
+void Rounds::answer_parts(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept {
+  const std::uint64_t before = scratch.work;
+  PartPair pair;
+  if (is_half_space(record.pair.b)) pair.half = places_->half_space(record.pair.b);
+  PartIndices touched;
+  std::uint32_t guess = kNoTriangle;
+  if (record.verdict.answer == Answer::yes) {
+    touched = {record.part_a, record.part_b};
+    place(record, touched.a, touched.b, pair);
+    guess = nearest_triangle(record.verdict, pair);
+  }
+  forget_answer(record);
+  bool certain = true;
+  if (touched.a != kNoPart) {
+    ++scratch.work;
+    const Verdict verdict = answer_again(record, guess, pair, scratch);
+    take_in(record, verdict, touched.a, touched.b);
+    certain = verdict.answer != Answer::maybe;
+  }
+  certain = answer_others(record, touched, pair, scratch) && certain && record.verdict.answer != Answer::maybe;
+  if (certain || record.verdict.answer == Answer::yes) record.answered = now;
   record.verdict.work = scratch.work - before;
 }
 

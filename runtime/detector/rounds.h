@@ -10,8 +10,6 @@ namespace orchard::runtime::detail {
 void forget_answer(Record& record) noexcept;
 void take_in(Record& record, const Verdict& verdict, std::uint32_t part_a, std::uint32_t part_b) noexcept;
 
-struct PartsApart;
-
 // Answers records at one step.
 class Rounds {
  public:
@@ -55,14 +53,19 @@ class Rounds {
   };
   static bool is_slow(Record& record, const PartPair& pair, Step now) noexcept;
   void place(const Record& record, std::uint32_t part_a, std::uint32_t part_b, PartPair& pair) const noexcept;
-  static Verdict answer_again(Record& record, const Verdict& last, const PartPair& pair,
+  static Verdict answer_again(Record& record, std::uint32_t guess, const PartPair& pair,
                               QueryPool::Scratch& scratch) noexcept;
   static Verdict answer_anew(Record& record, const PartPair& pair, QueryPool::Scratch& scratch) noexcept;
   static void note_search(std::uint32_t index, Record& record, std::uint64_t work,
                           QueryPool::Scratch& scratch) noexcept;
   void answer_coherently(std::uint32_t index, Record& record, Step now, QueryPool::Scratch& scratch) const noexcept;
   void answer_two_parts(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept;
-  void take_in_apart(Record& record, const PartsApart& apart, PartPair& pair) const noexcept;
+  static constexpr std::uint32_t kNoPart = 0xffffffffu;
+  struct PartIndices {
+    std::uint32_t a = kNoPart, b = kNoPart;
+  };
+  bool answer_others(Record& record, const PartIndices& but, PartPair& pair,
+                     QueryPool::Scratch& scratch) const noexcept;
   void answer_parts(Record& record, Step now, QueryPool::Scratch& scratch) const noexcept;
   void sweep_one(Record& record, Step now, QueryPool::Scratch& scratch, std::uint64_t most) const noexcept;
   void make_tasks(RecordTable& records, std::span<const std::uint32_t> open, Step now);
