@@ -10,9 +10,10 @@ using detail::is_half_space;
 
 namespace {
 
-// What a pair of spheres costs a step in the broad phase and after it is about an eighth of what a part costs here.
-constexpr std::size_t kWorthIt = 8, kNoLonger = 4;  // static bodies in the sphere around all parts, for each part
-constexpr detail::Step kSteps = 16;                 // from one choice to the next
+// Static bodies in the sphere around all parts, for each part. What keeping a pair of such spheres costs a step in the
+// broad phase and after it is a thirtieth or so of what a part costs here, where it is crowded.
+constexpr std::size_t kWorthIt = 40, kNoLonger = 20;
+constexpr detail::Step kSteps = 16;  // from one choice to the next
 
 bool is_with_static(const detail::BodyTable& bodies, const BodyPair& pair) noexcept {
   return (bodies[pair.a].by_parts && bodies[pair.b].is_static) || (bodies[pair.b].by_parts && bodies[pair.a].is_static);

@@ -138,7 +138,7 @@ class Factory {
     shapes_ = add_shapes(world_);
     const auto arms = static_cast<std::size_t>(draw_.uniform(1, 4));
     for (std::size_t i = 0; i < arms; ++i) add_arm();
-    for (int k = static_cast<int>(draw_.uniform(30, 150)); k > 0; --k) add_static();
+    for (int k = static_cast<int>(draw_.uniform(30, 350)); k > 0; --k) add_static();
     if (!filters_) return;
     world_.set_filter([this](BodyId a, BodyId b) { return !excluded(a, b); });
   }
@@ -190,7 +190,7 @@ class Factory {
   void add_arm() {
     Thing arm;
     arm.pose = placed(draw_.pose(draw_.uniform(0, 6)));
-    for (int k = static_cast<int>(draw_.uniform(2, 6)); k > 0; --k) arm.parts.push_back({any_shape(), {}});
+    for (int k = static_cast<int>(draw_.uniform(2, 5)); k > 0; --k) arm.parts.push_back({any_shape(), {}});
     for (BodyPart& part : arm.parts) part.local = draw_.pose(draw_.uniform(0, 5));
     add(arm);
   }
