@@ -153,7 +153,7 @@ void add_verify(CLI::App& app, Request& request) {
       "Exit code 1 if anything is not proven; each violation is named.\n"
       "Example:\n  orchard verify out/lamp/lamp.orchard data/lamp.obj");
   command.callback([&request] {
-    request.run = [&request] { request.exit_code = orchard::apps::verify(request.verify) ? 0 : kFailed; };
+    request.run = [&request] { request.exit_code = orchard::apps::verify(request.verify) ? kSucceeded : kFailed; };
   });
 }
 

@@ -3,11 +3,10 @@
 #include <functional>
 
 #include "commands.h"
+#include "exit_code.h"
 
 // What the user may write after the program's name.
 namespace orchard::apps {
-
-inline constexpr int kFailed = 1, kBadInput = 2;  // exit codes
 
 // What the user asked for, once parsed.
 struct Request {
@@ -25,7 +24,7 @@ struct Request {
   SimulateCommand simulate;
   int threads = 0;  // 0: as many as the machine has
   std::function<void()> run;
-  int exit_code = 0;
+  int exit_code = kSucceeded;  // set by a command whose result is not what was asked for
 };
 
 // Every command with its options; parsing one sets request.run.

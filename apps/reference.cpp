@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "command_list.h"
+#include "exit_code.h"
 #include "text.h"
 
 namespace orchard::apps {
@@ -36,6 +37,12 @@ std::vector<std::string> examples(const CommandEntry& command) {
   return lines;
 }
 
+std::string exit_code_table() {
+  std::string text = "\n## Exit codes\n\n| Code | Meaning |\n|---:|---|\n";
+  for (const ExitCodeRow& row : exit_codes()) text += fmt::format("| {} | {} |\n", int{row.code}, cell(row.meaning));
+  return text;
+}
+
 std::string roff(const std::string& text) {
   std::string result = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
   if (result.starts_with(".") || result.starts_with("'")) result = "\\&" + result;
@@ -48,7 +55,8 @@ std::string markdown_reference(const CLI::App& app) {
   std::string text =
       "# All commands and options\n\nMade by `orchard reference markdown`, from what `orchard COMMAND --help` says; a "
       "test "
-      "compares the two.\n";
+      "compares the two.\n" +
+      exit_code_table();
   for (const CommandEntry& command : command_list(app)) {
     text += fmt::format("\n## {0} {1}\n\n{2}.\n\n```text\n{3}\n```\n\n| Option | Value | |\n|---|---|---|\n",
                         app.get_name(), command.name, command.help, synopsis(app.get_name(), command));
@@ -81,9 +89,10 @@ std::string manual_page(const CLI::App& app, const std::string& version) {
     }
     for (const std::string& line : examples(command)) text += ".PP\n.RS\n.B " + roff(line) + "\n.RE\n";
   }
-  return text +
-         ".SH EXIT STATUS\n0 if all went well, 1 if something failed or is not proven, 2 for bad input, 130 after "
-         "Ctrl\\-C.\n.SH FILES\nThe formats are described in FORMATS.md of the documentation.\n";
+  text += ".SH EXIT STATUS\n";
+  for (const ExitCodeRow& row : exit_codes())
+    text += fmt::format(".TP\n.B {}\n{}.\n", int{row.code}, roff(row.meaning));
+  return text + ".SH FILES\nThe formats are described in FORMATS.md of the documentation.\n";
 }
 
 }  // namespace orchard::apps

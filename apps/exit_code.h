@@ -1,0 +1,25 @@
+#pragma once
+#include <span>
+
+namespace orchard::apps {
+
+// What the program's exit code says. Scripts rely on the numbers: a meaning keeps its number for ever.
+enum ExitCode : int {
+  kSucceeded = 0,
+  kFailed = 1,          // any other failure; `verify` did not prove everything
+  kBadInput = 2,        // an InputError or a mistake on the command line
+  kAuditOpen = 3,       // reserved
+  kTooThin = 4,         // reserved: a measured thickness is below --fail-below
+  kPromiseNotKept = 5,  // everything is written, and the result lacks a property that the command promises
+  kInterrupted = 130,   // 128 + SIGINT; interrupt.h ends with 128 + the number of any other signal
+};
+
+struct ExitCodeRow {
+  ExitCode code;
+  const char* meaning;  // for users, as a sentence without its full stop
+};
+
+// One row for each code in ascending order: the table of the reference page and of the manual page.
+std::span<const ExitCodeRow> exit_codes();
+
+}  // namespace orchard::apps
