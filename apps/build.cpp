@@ -22,6 +22,7 @@
 #include "orchard/spheretree/tree_io.h"
 #include "outputs.h"
 #include "picture.h"
+#include "promises.h"
 #include "report.h"
 #include "sphere_lists.h"
 
@@ -200,9 +201,25 @@ void print_cost(const BuildCommand& command, const SphereTreeOptions& options, c
   std::fflush(stdout);
 }
 
+// For people: what was built, where it is, and `last_lines`.
+void print_result(const BuildCommand& command, const SolidMesh& solid, const SphereTreeOptions& options,
+                  const SphereTreeBuild& result, const Outputs& outputs, const std::vector<std::string>& last_lines) {
+  const Surface& surface = solid.surface;
+  fmt::print("{}: {} triangles in {} clusters (flat parts), bounding radius {:.6g}\n", command.mesh.string(),
+             surface.mesh().triangles.size(), surface.clusters().count(), surface.bounding_radius());
+  print_build(result, surface.bounding_radius(), solid.wrap ? solid.wrap->distance() : 0);
+  if (const Index depth = result.tree.depth(); depth < options.depth && options.method == TreeMethod::tightened)
+    fmt::print("{} of {} levels: for the next one nothing is left to refine, or there are too few --samples\n", depth,
+               options.depth);
+  outputs.print();
+  for (const std::string& line : last_lines) {
+    if (!line.empty()) fmt::print("{}\n", line);
+  }
+}
+
 }  // namespace
 
-void build(const BuildCommand& command) {
+ExitCode build(const BuildCommand& command) {
   check(command);
   const bool talk = !command.output.quiet && !command.output.json;
   const Stopwatch reading;
@@ -219,7 +236,7 @@ void build(const BuildCommand& command) {
   const BuildCost cost = cost_of(command, options, surface);
   if (talk) print_cost(command, options, cost);
   if (command.cost && command.output.json) fmt::print("{}\n", to_json(cost).dump(2));
-  if (command.cost) return;
+  if (command.cost) return kSucceeded;
   SphereTreeBuild result = command.seconds
                                ? build_sphere_tree_within(*command.seconds, surface, options, bar.callback(), own.input)
                                : build_sphere_tree(surface, options, bar.callback(), std::move(own.input));
@@ -232,6 +249,9 @@ void build(const BuildCommand& command) {
                        [&] { plot = build_plot(result, surface, command.mesh.stem().string()); });
   add_solid_json(solid, report);
   const char* const ending = ending_of(solid);
+  const Broken broken = apps::broken(result, options);
+  const std::string last_line = in_one_line(broken);
+  report["promise"] = {{"kept", broken.none()}, {"broken", broken.what}};
   report["certified_mesh"] = ending ? nlohmann::json(named(command.mesh, ending)) : nlohmann::json();
 
   Outputs outputs(command.folder);
@@ -251,16 +271,9 @@ void build(const BuildCommand& command) {
   outputs.commit();
 
   if (command.output.json) fmt::print("{}\n", report.dump(2));
-  if (!talk) return;
-  fmt::print("{}: {} triangles in {} clusters (flat parts), bounding radius {:.6g}\n", command.mesh.string(),
-             surface.mesh().triangles.size(), surface.clusters().count(), surface.bounding_radius());
-  print_build(result, surface.bounding_radius(), wrap_distance);
-  if (const Index depth = result.tree.depth(); depth < options.depth && options.method == TreeMethod::tightened)
-    fmt::print("{} of {} levels: for the next one nothing is left to refine, or there are too few --samples\n", depth,
-               options.depth);
-  outputs.print();
-  fmt::print("{}\n", certified);
-  if (!doubts.empty()) fmt::print("{}\n", doubts);
+  if (talk) print_result(command, solid, options, result, outputs, {certified, doubts});
+  if (!last_line.empty()) fmt::print(stderr, "orchard: {}: {}\n", command.mesh.string(), last_line);
+  return exit_code(broken, command.accept);
 }
 
 }  // namespace orchard::apps

@@ -30,6 +30,11 @@ void add_output_flags(CLI::App& command, Output& output) {
   command.add_flag("--json", output.json, "Print a JSON report instead of a table, --quiet or not");
 }
 
+void add_accept(CLI::App& command, bool& accept) {
+  command.add_flag("--accept", accept,
+                   "Exit with 0 although the result lacks something that was promised: it is said all the same");
+}
+
 void add_mesh_options(CLI::App& command, MeshOptions& options) {
   auto* strict =
       command.add_flag("--strict", options.strict, "Refuse a mesh that is no closed manifold instead of repairing it");
@@ -117,13 +122,14 @@ void add_build(CLI::App& app, Request& request) {
   command.add_option("--up", build.up, "The mesh's axis that points up in the picture and in ParaView")
       ->check(CLI::IsMember({"x", "y", "z"}))
       ->capture_default_str();
+  add_accept(command, build.accept);
   add_output_flags(command, build.output);
   command.footer("Example:\n  orchard build data/lamp.obj -o out/lamp --picture");
   command.callback([&request, &command] {
     request.build.given = given_of(command);
     SphereTreeOptions& options = request.build.options;
     if (!options.spheres.empty()) options.depth = static_cast<Index>(options.spheres.size());
-    request.run = [&request] { orchard::apps::build(request.build); };
+    request.run = [&request] { request.exit_code = orchard::apps::build(request.build); };
   });
 }
 
@@ -353,6 +359,7 @@ void add_medial(CLI::App& app, Request& request) {
   command.add_option("--threads", request.threads, "Threads at most; the result does not depend on it")
       ->check(CLI::Range(1, 1024));
   command.add_flag("!--no-views", medial.views, "Write no files for ParaView");
+  add_accept(command, medial.accept);
   add_output_flags(command, medial.output);
   command.footer(
       "Examples:\n  orchard medial data/lamp.obj -o out/lamp --report\n"
@@ -362,7 +369,7 @@ void add_medial(CLI::App& app, Request& request) {
       "  orchard medial data/lamp.obj -o out/lamp --sweep samples=1000,4000,16000 --sweep prune=0,20,40");
   command.callback([&request, &command] {
     request.medial.given = given_of(command);
-    request.run = [&request] { orchard::apps::medial(request.medial); };
+    request.run = [&request] { request.exit_code = orchard::apps::medial(request.medial); };
   });
 }
 

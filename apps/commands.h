@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "axis_source.h"
+#include "exit_code.h"
 #include "load_solid.h"
 #include "medial_tuning.h"
 #include "orchard/spheretree/build.h"
@@ -35,9 +36,10 @@ struct BuildCommand {
   std::optional<Index> export_level;  // of the urdf; the last one
   std::string up = "y";               // the mesh's axis that points up in the picture
   std::vector<std::string> given;     // the options on the command line, by their long names, without dashes
+  bool accept = false;                // a promise that is not kept does not change the exit code
   Output output;
 };
-void build(const BuildCommand& command);
+ExitCode build(const BuildCommand& command);
 
 struct CollideCommand {
   std::filesystem::path a, b;
@@ -106,10 +108,11 @@ struct MedialCommand {
   std::optional<SphereTreeOptions> tree;  // of a sweep: the tree to build from each axis
   bool views = true;                      // ParaView files, where the program was built with them
   std::vector<std::string> given;         // the options on the command line, as of BuildCommand
+  bool accept = false;                    // as of BuildCommand
   Output output;
 };
 bool given(const MedialCommand& command, const char* option);  // on the command line
-void medial(const MedialCommand& command);
+ExitCode medial(const MedialCommand& command);
 
 struct CompareCommand {
   std::filesystem::path mesh;

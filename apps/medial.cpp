@@ -20,6 +20,7 @@
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/outside_solid.h"
 #include "outputs.h"
+#include "promises.h"
 #include "report.h"
 
 namespace orchard::apps {
@@ -165,8 +166,18 @@ void judge_file(const MedialCommand& command, const SolidMesh& solid, const std:
   finish(command, named(command.axis, "-quality.json"), report, outputs);
 }
 
+// What the command promised beside what it made; the line that says so comes last.
+Broken broken_promises(const MedialCommand& command, const SolidMesh& solid, const MedialBuild& build,
+                       const MedialFindings& findings, const FewBalls& few) {
+  Broken result = broken(build.promise);
+  if (!build.promise.keeps_topology()) result.remedy = topology_cause(solid, build, findings);
+  const bool promised = build.promise.promise.topology && build.promise.keeps_topology();
+  result.add(broken(few, few_balls_options(command), promised ? findings.wanted : findings.found));
+  return result;
+}
+
 // `inner`: the solid itself where `solid` is the space around it, else none.
-void build_axis(const MedialCommand& command, const SolidMesh& solid, const Surface* inner,
+ExitCode build_axis(const MedialCommand& command, const SolidMesh& solid, const Surface* inner,
                 const std::vector<AxisFile>& beside, const Progress& progress, ProgressBar& bar) {
   const Surface& surface = solid.surface;
   const bool talk = !command.output.quiet && !command.output.json;
@@ -183,19 +194,23 @@ void build_axis(const MedialCommand& command, const SolidMesh& solid, const Surf
   bar.clear();
 
   const Topology found = topology(mesh), wanted = solid_topology(surface);
-  const std::string warning = medial_warning(solid, build,
-                                             {.found = found,
-                                              .wanted = wanted,
-                                              .mended = options.repair_gaps,
-                                              .own_points = !command.source.points.empty(),
-                                              .own_diagram = !command.source.diagram.empty()});
+  const MedialFindings findings{.found = found,
+                                .wanted = wanted,
+                                .mended = options.repair_gaps,
+                                .own_points = !command.source.points.empty(),
+                                .own_diagram = !command.source.diagram.empty()};
+  const std::string warning = medial_warning(solid, build, findings);
+  const Broken broken = broken_promises(command, solid, build, findings, few);
+  const std::string last_line = in_one_line(broken);
   json report{{"mesh", mesh_json(surface)},
               {"build", to_json(build)},
               {"topology", to_json(found)},
               {"topology_of_solid", to_json(wanted)},
+              {"promise", to_json(build.promise)},
               {"structure", to_json(segments, skeleton)}};
   if (!command.source.points.empty()) report["points_moved_at_most"] = own.max_moved;
   if (!warning.empty()) report["warning"] = warning;
+  report["promise"]["broken"] = broken.what;
   add_solid_json(solid, report);
   if (talk) {
     fmt::print("{}: {} triangles\n", command.mesh.string(), surface.mesh().triangles.size());
@@ -221,7 +236,8 @@ void build_axis(const MedialCommand& command, const SolidMesh& solid, const Surf
     report_quality(command, solid, judged, beside, report, progress, bar);
   }
   Outputs outputs(command.folder);
-  write_file(outputs.add(named(command.mesh, ".ma"), "the axis for medial-mesh programs"), to_ma(mesh));
+  write_file(outputs.add(named(command.mesh, ".ma"), "the axis for medial-mesh programs"),
+             to_ma(mesh) + (last_line.empty() ? "" : "# " + last_line + "\n"));
   write_file(outputs.add(named(command.mesh, ".graphml"), "its skeleton graph"), to_graphml(skeleton, build.axis));
   write_few_balls(command, few, report, outputs);
   write_views(command,
@@ -235,7 +251,10 @@ void build_axis(const MedialCommand& command, const SolidMesh& solid, const Surf
               outputs);
   write_picture(command, surface, mesh, &build.sampling, worst, named(command.mesh, "-medial.png"), outputs);
   finish(command, named(command.mesh, "-medial.json"), report, outputs);
-  if (!warning.empty()) fmt::print(stderr, "orchard: warning: {}: {}\n", command.mesh.string(), warning);
+  if (!warning.empty() && build.promise.keeps_topology())
+    fmt::print(stderr, "orchard: warning: {}: {}\n", command.mesh.string(), warning);
+  if (!last_line.empty()) fmt::print(stderr, "orchard: {}: {}\n", command.mesh.string(), last_line);
+  return exit_code(broken, command.accept);
 }
 
 }  // namespace
@@ -276,7 +295,7 @@ MedialJudgement judge_beside(const MedialCommand& command, const Surface& surfac
   return judgement;
 }
 
-void medial(const MedialCommand& command) {
+ExitCode medial(const MedialCommand& command) {
   check(command);
   const std::vector<AxisFile> beside = read_axes(command.beside);
   const std::optional<MedialMesh> axis = command.axis.empty() ? std::nullopt : std::optional(read_ma(command.axis));
@@ -301,8 +320,9 @@ void medial(const MedialCommand& command) {
     sweep_medial(command, wanted.surface, bar.callback());
     bar.clear();
   } else {
-    build_axis(command, wanted, outside ? &solid.surface : nullptr, beside, bar.callback(), bar);
+    return build_axis(command, wanted, outside ? &solid.surface : nullptr, beside, bar.callback(), bar);
   }
+  return kSucceeded;
 }
 
 }  // namespace orchard::apps

@@ -21,11 +21,6 @@ constexpr Index kCurve[] = {5000, 2000, 1000, 500, 200, 100, 50, 20, 10, 5, 2, 1
 
 bool simplifies(const MedialCommand& command) { return command.few_vertices > 0 || command.few_error > 0; }
 
-SimplifyOptions options_of(const MedialCommand& command) {
-  return {
-      .vertices = command.few_vertices, .error = command.few_error / 100, .seed = command.tuning.options.sampling.seed};
-}
-
 std::string model_of(const MedialCommand& command) {
   return (command.axis.empty() ? command.mesh : command.axis).string();
 }
@@ -104,6 +99,11 @@ bool given(const MedialCommand& command, const char* option) {
   return std::find(command.given.begin(), command.given.end(), option) != command.given.end();
 }
 
+SimplifyOptions few_balls_options(const MedialCommand& command) {
+  return {
+      .vertices = command.few_vertices, .error = command.few_error / 100, .seed = command.tuning.options.sampling.seed};
+}
+
 std::vector<std::string> few_balls_names(const MedialCommand& command) {
   std::vector<std::string> names;
   const auto add = [&](const char* ending) { names.push_back(named(model_of(command), ending)); };
@@ -145,11 +145,11 @@ FewBalls make_few_balls(const MedialCommand& command, const Surface& surface, co
     std::copy_if(std::begin(kCurve), std::end(kCurve), std::back_inserter(counts),
                  [&](Index count) { return count <= axis.size(); });
     time_stage(few.seconds, "curve",
-               [&] { few.curve = simplify_to_each(surface, axis, counts, options_of(command), progress); });
+               [&] { few.curve = simplify_to_each(surface, axis, counts, few_balls_options(command), progress); });
   }
   if (simplifies(command)) {
     time_stage(few.seconds, "simplifying",
-               [&] { few.simplified = simplify_medial_mesh(surface, axis, options_of(command), progress); });
+               [&] { few.simplified = simplify_medial_mesh(surface, axis, few_balls_options(command), progress); });
   }
   if (!command.envelope.empty()) {
     const EnvelopeOptions options{.cell = command.envelope_cell / 100};

@@ -27,6 +27,9 @@ std::vector<std::string> few_balls_names(const MedialCommand& command);
 // Throws InputError if the options contradict each other, or the envelope's file cannot be written.
 void check_few_balls(const MedialCommand& command, const std::vector<std::filesystem::path>& inputs);
 
+// What the command asks of the axis in few balls.
+SimplifyOptions few_balls_options(const MedialCommand& command);
+
 FewBalls make_few_balls(const MedialCommand& command, const Surface& surface, const MedialMesh& axis,
                         const Progress& progress);
 // Into the report and the folder, and for people unless the command is quiet.

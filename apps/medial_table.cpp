@@ -11,6 +11,8 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kNotDefined = "not defined";
+constexpr double kLoose = 2;         // times what was found: a proven bound above that says little
+constexpr double kNegligible = 0.01;  // % of the diagonal: bounds below that are good enough in any case
 constexpr std::size_t kNarrowest = 12, kWidest = 28;  // of a column
 
 // Long names keep their ends, which tell files apart.
@@ -44,6 +46,26 @@ void print_topologies(const std::vector<JudgedAxis>& axes, const std::vector<std
     fmt::print(" {:>{}}", three(quality.found) + (quality.found == quality.wanted ? " right" : " WRONG"), widths[i]);
   }
   fmt::print("  the solid has {}\n", three(axes.front().judgement.quality.wanted));
+}
+
+// A proven bound and what was found, as fractions of the diagonal.
+struct Bound {
+  const char* of;
+  double found, upper;
+};
+
+// Says of proven bounds that are far above what was found why they are: a reader takes them for the error otherwise.
+void print_loose_bounds(const JudgedAxis& axis) {
+  const MedialQuality& quality = axis.judgement.quality;
+  const double reach = std::max(quality.protrusion.max, quality.coverage.max);
+  for (const Bound& bound : {Bound{"coverage error", quality.coverage.max, quality.coverage_upper},
+                             Bound{"protrusion", quality.protrusion.max, quality.protrusion_upper},
+                             Bound{"dents", std::max(reach, quality.hausdorff.max), quality.dent_upper}}) {
+    if (100 * bound.upper <= std::max(kLoose * 100 * bound.found, kNegligible)) continue;
+    fmt::print("  {}: the bound on {} is {:.3g} times what was found; the search ended before it could prove less{}\n",
+               fitted(axis.name), bound.of, bound.found > 0 ? bound.upper / bound.found : INFINITY,
+               std::string_view(bound.of) == "protrusion" ? ", or a ball closes a crevice" : "");
+  }
 }
 
 }  // namespace
@@ -83,6 +105,7 @@ void print_table(const std::vector<JudgedAxis>& axes, const std::vector<std::str
       fmt::print(" {:>{}}", cell(measure.get(axes[i].judgement), measure), widths[i]);
     fmt::print("{}{}\n", *measure.unit == '\0' ? "" : "  ", measure.unit);
   }
+  for (const JudgedAxis& axis : axes) print_loose_bounds(axis);
 }
 
 json to_json(const std::vector<ReportedPlace>& places) {

@@ -9,12 +9,14 @@ std::string counted(std::int64_t count, const char* one, const char* many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
+}  // namespace
+
 std::string in_words(const Topology& topology) {
   return counted(topology.components, "component", "components") + ", " + counted(topology.loops, "loop", "loops") +
          ", " + counted(topology.cavities, "cavity", "cavities");
 }
 
-std::string cause(const SolidMesh& solid, const MedialBuild& build, const MedialFindings& findings) {
+std::string topology_cause(const SolidMesh& solid, const MedialBuild& build, const MedialFindings& findings) {
   const std::size_t cuts = solid.self_intersections.value_or(0);
   if (cuts > 0) {
     std::string text =
@@ -36,8 +38,6 @@ std::string cause(const SolidMesh& solid, const MedialBuild& build, const Medial
   return "give " + more + (solid.wrap ? "" : ", or --wrap");
 }
 
-}  // namespace
-
 std::string medial_warning(const SolidMesh& solid, const MedialBuild& build, const MedialFindings& findings) {
   std::string what;
   if (findings.found != findings.wanted) {
@@ -50,7 +50,7 @@ std::string medial_warning(const SolidMesh& solid, const MedialBuild& build, con
   } else {
     return {};
   }
-  return what + ": " + cause(solid, build, findings);
+  return what + ": " + topology_cause(solid, build, findings);
 }
 
 }  // namespace orchard::apps

@@ -14,6 +14,12 @@ struct MedialFindings {
   bool own_diagram = false;  // the diagram is, in which no gap can be mended
 };
 
+// A topology as a part of a sentence: "1 component, 2 loops, 0 cavities".
+std::string in_words(const Topology& topology);
+
+// Why an axis may have another topology than its solid, and what to do about it.
+std::string topology_cause(const SolidMesh& solid, const MedialBuild& build, const MedialFindings& findings);
+
 // What is wrong with an axis that was built, why, and what to do about it, in a line that names nothing that cannot
 // help or has been done; empty if nothing is wrong: another topology than the solid's, or parts left out to keep it.
 std::string medial_warning(const SolidMesh& solid, const MedialBuild& build, const MedialFindings& findings);

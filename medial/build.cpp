@@ -38,6 +38,7 @@ class MedialBuilder {
     }
     make_axis();
     if (options_.refine) refine(rounds);
+    if (options_.check_promise) check_promise();
     return std::move(build_);
   }
 
@@ -98,6 +99,13 @@ class MedialBuilder {
   void finish_axis() {
     build_.unpruned_vertices = build_.axis.size();
     stage("pruning", [&] { build_.axis = prune(build_.axis, options_.prune); });
+  }
+
+  void check_promise() {
+    stage("promise", [&] {
+      const AxisPromise promise = axis_promise(surface_, options_, build_.sampling.size());
+      build_.promise = orchard::check_promise(surface_, medial_mesh(build_.axis), promise, progress_);
+    });
   }
 
   // Before sheets reach for places left open, such places become points in so many rounds.
@@ -162,6 +170,16 @@ MedialBuild build_medial_axis(const Surface& surface, const MedialBuildOptions& 
   if (input.sampling.has_value() + input.diagram.has_value() + input.mesh.has_value() > 1)
     throw InputError("a medial axis is built from own points, an own diagram or an own axis, not from several");
   return MedialBuilder(surface, options, progress).run(std::move(input));
+}
+
+AxisPromise axis_promise(const Surface& surface, const MedialBuildOptions& options, Index points) {
+  AxisPromise promise{.open = {}, .protrusion = {}, .topology = options.axis.keep_topology};
+  if (!options.refine) return promise;
+  const RefineOptions& refine = *options.refine;
+  promise.protrusion = 2 * refine.tolerance;
+  const bool prunes = options.prune.angle > 0 || options.prune.scale > 1;
+  if (refine.reach_rounds > 0 && !prunes) promise.open = detail::left_open(surface, refine, points) + refine.tolerance;
+  return promise;
 }
 
 std::vector<int> repair_passes(const MedialBuild& build) {

@@ -66,18 +66,25 @@ std::array<Cell, 2> halves_of(const Cell& cell) {
 // An upper bound on r - distance over a cell: |x|^2 - distance^2 is a convex function, so the squared distance is no
 // less than what is interpolated of it on the corners less their squared distances from x, so interpolated, which is a
 // third of the longest side's square at most. Infinity where no distances are known, or that says nothing.
-double bound_by_corners(const Cell& cell) {
+struct CornerBound {
+  double bound = std::numeric_limits<double>::infinity();
+  bool inside = false;  // the balls around the corners prove that all centres are in the solid
+};
+CornerBound bound_by_corners(const Cell& cell) {
   constexpr double kUnknown = std::numeric_limits<double>::infinity();
   double least = kUnknown, over = -kUnknown, side = 0;
+  bool inside = true;
   for (std::size_t k = 0; k < 3; ++k) {
-    if (!cell.corner_depths[k]) return kUnknown;
+    if (!cell.corner_depths[k]) return {};
+    inside = inside && !cell.corner_depths[k]->outside();
     const double distance = cell.corner_depths[k]->nearest.distance;
     least = std::min(least, distance);
     over = std::max(over, cell.balls[k].radius - distance);
     side = std::max(side, (cell.balls[k].center - cell.balls[(k + 1) % 3].center).squaredNorm());
   }
   const double below = least * least - side / 3;
-  return below > 0 ? over + side / 3 / (least + std::sqrt(below)) : kUnknown;
+  if (!(below > 0)) return {};
+  return {over + side / 3 / (least + std::sqrt(below)), inside && side < least * least};
 }
 
 class ProtrusionSearch {
@@ -131,6 +138,8 @@ class ProtrusionSearch {
   // distance to each triangle is convex, so no less than its tangent at the middle says, which is linear as r is: what
   // that leaves is largest at a corner. Where balls touch flat faces the tangents are exact.
   double bound_of(const Cell& cell, double known, SearchedMax& found) const {
+    const CornerBound by_corners = bound_by_corners(cell);
+    if (by_corners.inside && by_corners.bound + rounding_ <= known) return by_corners.bound + rounding_;
     const auto& [a, b, c] = cell.balls;
     const Sphere middle{(a.center + b.center + c.center) / 3, (a.radius + b.radius + c.radius) / 3};
     const BallDepth middle_depth = cell.depth ? *cell.depth : depth_of(surface_, middle);
@@ -147,7 +156,7 @@ class ProtrusionSearch {
       const BallReach attained = reach_of(surface_, middle, middle_depth);
       if (attained.beyond > found.max) found = {attained.beyond, 0, attained.farthest, middle};
     }
-    if (reach < -depth) bound = std::min(bound, bound_by_corners(cell) + rounding_);
+    if (reach < -depth) bound = std::min(bound, by_corners.bound + rounding_);
     if (bound <= enough()) return bound;
     if (reach < -depth) bound = std::min(bound, surface_.max_reach(cell.balls, middle.center, known) + rounding_);
     return bound;

@@ -32,6 +32,8 @@ struct BallDepth {
   double signed_distance = 0;  // negative inside
   ClosestPoint nearest;        // of the surface
   bool outside() const { return signed_distance > 0; }
+  // By more than rounding: a centre on a sharp edge may be on either side.
+  bool outside_by(double negligible) const { return signed_distance > negligible; }
 };
 BallDepth depth_of(const Surface& surface, const Sphere& ball);
 std::vector<BallDepth> depths_of(const Surface& surface, std::span<const Sphere> balls);

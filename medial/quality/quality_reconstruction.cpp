@@ -12,6 +12,7 @@ namespace orchard::detail {
 namespace {
 
 constexpr double kArrived = 1e-6;  // of the diagonal: a march ends this near to the boundary
+constexpr double kOnSurface = 1e-9;  // of the diagonal: centres that are no farther outside are on the surface
 constexpr int kMaxSteps = 50;
 constexpr std::size_t kBlock = 64;                                  // samples that one task takes, one after the other
 constexpr double kProtrusionAccuracy = 1e-5, kDentAccuracy = 1e-4;  // diagonals: to which maxima are searched
@@ -104,9 +105,10 @@ SurfaceReach reach_at(const Surface& surface, const Reconstruction& reconstructi
   return reach;
 }
 
-double fraction_outside(std::span<const BallDepth> depths) {
+double fraction_outside(std::span<const BallDepth> depths, double negligible) {
   if (depths.empty()) return 0;
-  const auto outside = std::count_if(depths.begin(), depths.end(), [](const BallDepth& d) { return d.outside(); });
+  const auto outside =
+      std::count_if(depths.begin(), depths.end(), [&](const BallDepth& d) { return d.outside_by(negligible); });
   return static_cast<double>(outside) / static_cast<double>(depths.size());
 }
 
@@ -168,10 +170,11 @@ void measure_reconstruction(const Surface& surface, const MedialMesh& mesh, std:
   }
   quality.coverage.max = open.max;
   quality.coverage_upper = open.upper;
-  quality.outside_vertices = fraction_outside(depths.first(balls.vertices));
-  quality.outside_edges = fraction_outside(depths.subspan(balls.vertices, balls.edges));
+  const double on_surface = kOnSurface * quality.diagonal;
+  quality.outside_vertices = fraction_outside(depths.first(balls.vertices), on_surface);
+  quality.outside_edges = fraction_outside(depths.subspan(balls.vertices, balls.edges), on_surface);
   const std::span<const BallDepth> of_triangles = depths.subspan(balls.vertices + balls.edges);
-  quality.outside_triangles = fraction_outside(of_triangles);
+  quality.outside_triangles = fraction_outside(of_triangles, on_surface);
   const double apart = options.places_apart * quality.diagonal;
   const auto worst_protruding = [&](Index count) {
     return worst_protrusions(surface, balls.all, depths, protruding, count, apart, negligible);

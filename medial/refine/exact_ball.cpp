@@ -187,14 +187,20 @@ ExactBall BallSolver::solve(const Point& start, std::span<const ClosestPoint> se
   merge(start);
   if (contacts_.size() >= 2) {
     ExactBall ball = solve_held(start);
-    if (ball.exact) return ball;
+    if (ball.exact && stays_inside(start, ball)) return ball;
   }
   // Seldom needed, and dear: the nearest place of all.
   contacts_.clear();
   for (const ClosestPoint& seed : seeds) contacts_.push_back({seed});
   contacts_.push_back({surface_.closest(start)});
   merge(start);
-  return solve_held(start);
+  const ExactBall ball = solve_held(start);
+  return !ball.exact || stays_inside(start, ball) ? ball : at(start);
+}
+
+// A place of the solid that is in the ball sees its centre without meeting the surface.
+bool BallSolver::stays_inside(const Point& start, const ExactBall& ball) const {
+  return (ball.center - start).norm() < ball.radius || surface_.inside(ball.center);
 }
 
 ExactBall BallSolver::at(const Point& place) {

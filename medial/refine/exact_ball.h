@@ -51,7 +51,8 @@ class BallSolver {
   // Two contacts are one where a ball between them would lose less than `merging`, in mesh units.
   BallSolver(const Surface& surface, double merging) : surface_(surface), merging_(merging), downhill_(surface) {}
 
-  // From `start`, with contacts downhill from `seeds`, which are places on the surface.
+  // From `start`, a place of the solid, with contacts downhill from `seeds`, which are places on the surface. The ball
+  // is in the solid: where none is found, it is the largest one around `start`.
   ExactBall solve(const Point& start, std::span<const ClosestPoint> seeds);
   // From the place that divides the centres of two balls as `t` to 1 - t. The contacts that both have are held, so that
   // what lies between two balls of a seam is one of the seam; where they share less than two, the nearest are. What
@@ -73,6 +74,7 @@ class BallSolver {
   };
   ExactBall solve_held(const Point& start);
   ExactBall on_surface(const Point& place) const;
+  bool stays_inside(const Point& start, const ExactBall& ball) const;
   void merge(const Point& center);
   bool add_violator(const Point& center, double radius);
   bool step(Point& center);

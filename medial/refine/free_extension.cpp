@@ -29,6 +29,16 @@ bool FreeExtension::add(Index a, Index b, Index c) {
   return true;
 }
 
+bool FreeExtension::add_edge(Index from, Index to) {
+  if (from == to || !is_unused(to)) return false;
+  new_edges_.insert(key(from, to));
+  for (const Index v : {from, to}) {
+    if (v >= first_new_) used_[v - first_new_] = 1;
+  }
+  added_edges_.push_back({from, to});
+  return true;
+}
+
 void FreeExtension::add_strip(Index a, Index b, Index x, Index y) {
   if (x == y) {
     add(a, b, x);
@@ -50,13 +60,17 @@ Index FreeExtension::finish() {
     number[i] = size++;
   }
   complex_.balls.resize(size);
-  for (auto& corners : added_) {
-    for (Index& v : corners) {
-      if (v >= first_new_) v = number[v - first_new_];
+  const auto renumber = [&](auto& cells) {
+    for (auto& corners : cells) {
+      for (Index& v : corners) {
+        if (v >= first_new_) v = number[v - first_new_];
+      }
     }
-  }
-  insert_cells(complex_.edges, complex_.triangles, {}, added_);
-  return static_cast<Index>(added_.size());
+  };
+  renumber(added_);
+  renumber(added_edges_);
+  insert_cells(complex_.edges, complex_.triangles, added_edges_, added_);
+  return static_cast<Index>(added_.size() + added_edges_.size());
 }
 
 }  // namespace orchard::detail

@@ -6,8 +6,8 @@
 
 namespace orchard::detail {
 
-// Adds triangles to a complete complex that change no topology: those that meet it in one edge, their third vertex
-// being new, or in two edges. What is added could be collapsed again from its free edges on.
+// Adds cells to a complete complex that change no topology: triangles that meet it in one edge, their third vertex being
+// new, or in two edges; and edges to new vertices. What is added could be collapsed again from its free ends on.
 class FreeExtension {
  public:
   explicit FreeExtension(BallComplex& complex) : complex_(complex), first_new_(complex.size()) {}
@@ -17,10 +17,12 @@ class FreeExtension {
   Index add_vertex(const ExactBall& ball);
   // False, and nothing is added, if that would change the topology.
   bool add(Index a, Index b, Index c);
+  // The edge from a vertex to a new one that nothing has yet: a curve goes on. False if there is such.
+  bool add_edge(Index from, Index to);
   // The strip between the edge ab and the edge xy: two triangles along the shorter diagonal, or what of them is free;
   // one triangle if x is y.
   void add_strip(Index a, Index b, Index x, Index y);
-  // Completes the complex. Returns how many triangles were added.
+  // Completes the complex. Returns how many triangles and edges without triangles were added.
   Index finish();
 
  private:
@@ -32,6 +34,7 @@ class FreeExtension {
   const Index first_new_;
   std::vector<std::uint8_t> used_;  // of the new vertices
   std::vector<std::array<Index, 3>> added_;
+  std::vector<std::array<Index, 2>> added_edges_;  // of curves
   std::unordered_set<std::uint64_t> new_edges_;  // asked only whether it holds a pair
 };
 

@@ -76,6 +76,8 @@ class OpenPlaceReacher {
     ClosestPoint on_edge = ExactBall::nowhere();
     const ExactBall ball =
         edges_.nearest(place.position, left_, on_edge) ? ball_on_edge(on_edge) : ball_at(place.position, foot, left_);
+    const Index end = end_of_curve(reconstruction_.corners_of(nearest.cell), foot);
+    if (end != kNone && attach_to_curve(ball, end)) return true;
     if (attach_beside(ball) || attach(ball, candidates)) return true;
     // Where no triangle leads all the way, one may lead half of it, or one from farther back.
     const ExactBall half = ball_at(place.position, foot, place.value / 2);
@@ -102,6 +104,33 @@ class OpenPlaceReacher {
       vertex = v;
     }
     return vertex != kNone;
+  }
+
+  // The free end of a curve at which the foot of a place is, as below the tip of a cone; kNone if it is not at one, or
+  // the curve went on from there.
+  Index end_of_curve(const std::array<Index, 3>& cell, const Point& foot) const {
+    if (cell[1] != cell[2]) return kNone;
+    const double at = kAt * sheets_.surface.bounding_radius();
+    for (const Index v : cell) {
+      if ((sheets_.complex.balls[v].center - foot).norm() > at || sheets_.at.edges_at[v].size() > 1) continue;
+      return std::find(continued_.begin(), continued_.end(), v) == continued_.end() ? v : kNone;
+    }
+    return kNone;
+  }
+
+  // An edge from a curve's end to the ball, which is where the curve goes on: no triangle has an area there.
+  bool attach_to_curve(const ExactBall& ball, Index end) {
+    if (ball.count == 0) return false;
+    const ExactBall& last = sheets_.complex.balls[end];
+    for (int i = 1; i < kProbed; ++i) {
+      const double t = static_cast<double>(i) / kProbed;
+      const double radius = (1 - t) * last.radius + t * ball.radius;
+      const Point center = (1 - t) * last.center + t * ball.center;
+      if (radius + sheets_.surface.signed_distance(center) > kBorderSlack * sheets_.options.tolerance) return false;
+    }
+    if (!sheets_.triangles.add_edge(end, sheets_.triangles.add_vertex(ball))) return false;
+    continued_.push_back(end);
+    return true;
   }
 
   // Beside what is there: a triangle from the border edge that lets the borders grow by the least, and one for each of
@@ -250,6 +279,7 @@ class OpenPlaceReacher {
   SharpEdges edges_;
   const Reconstruction& reconstruction_;
   const double left_;  // mesh units: what a new ball leaves open of its place
+  std::vector<Index> continued_;  // ends of curves that an edge was added to
   const SplitOptions& dividing_;
 };
 

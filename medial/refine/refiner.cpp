@@ -77,6 +77,11 @@ std::vector<Index> numbers_of(const std::vector<ExactBall>& before, const std::v
 
 }  // namespace
 
+double left_open(const Surface& surface, const RefineOptions& options, Index points) {
+  const double squared_spacing = surface.report().area / points / surface.bounding_box().diagonal().squaredNorm();
+  return std::max(kOpen * std::max(options.border_loss, options.tolerance), options.reach_detail * squared_spacing);
+}
+
 Refiner::Refiner(const Surface& surface, const SurfaceSampling& sampling, const MedialAxis& axis,
                  const RefineOptions& options, const Progress& progress)
     : surface_(surface),
@@ -85,7 +90,8 @@ Refiner::Refiner(const Surface& surface, const SurfaceSampling& sampling, const 
       options_(options),
       progress_(progress),
       diagonal_(surface.bounding_box().diagonal().norm()),
-      level_(std::max(options.border_loss, std::numeric_limits<double>::min()) * diagonal_) {
+      level_(std::max(options.border_loss, std::numeric_limits<double>::min()) * diagonal_),
+      guard_(sampling.points, left_open()) {
   check(options);
 }
 
@@ -97,10 +103,10 @@ void Refiner::refine(FoundBalls* found) {
   report_progress(progress_, kStage, 0.25);
   drop_folded();
   report_.border_cuts = cut_at_level(surface_, complex_, level_, kMerging * level_);
-  report_.small_pieces = drop_small_pieces(complex_);
+  report_.small_pieces = drop_small_pieces(complex_, &guard_);
   report_progress(progress_, kStage, 0.45);
   mend_borders();
-  report_.small_pieces += drop_small_pieces(complex_);
+  report_.small_pieces += drop_small_pieces(complex_, &guard_);
   report_progress(progress_, kStage, 0.6);
 }
 
@@ -121,8 +127,8 @@ RefinedAxis Refiner::finish() {
 bool Refiner::drop_degenerate_cells(bool and_flakes, std::vector<Sphere>& around) {
   const std::vector<ExactBall> before = complex_.balls;
   report_.degenerate += drop_degenerate(complex_, kCoincident * diagonal_);
-  Index pieces = and_flakes ? drop_flakes(complex_, &around) : 0;
-  pieces += drop_small_pieces(complex_, &around);
+  Index pieces = and_flakes ? drop_flakes(complex_, &guard_, &around) : 0;
+  pieces += drop_small_pieces(complex_, &guard_, &around);
   report_.small_pieces += pieces;
   split_errors_.renumber(numbers_of(before, complex_.balls));
   return pieces > 0;
@@ -131,8 +137,8 @@ bool Refiner::drop_degenerate_cells(bool and_flakes, std::vector<Sphere>& around
 // Before anything is divided: what is taken away needs no dividing, and what it covered alone is reached for.
 void Refiner::drop_doubled_and_flakes() {
   report_.doubled = drop_doubled(complex_, options_.tolerance * diagonal_, kShorter * border_options().spacing);
-  report_.small_pieces += drop_flakes(complex_);
-  report_.small_pieces += drop_small_pieces(complex_);
+  report_.small_pieces += drop_flakes(complex_, &guard_);
+  report_.small_pieces += drop_small_pieces(complex_, &guard_);
 }
 
 // Between one facet of the surface and the next, what sheets lose jumps, and their borders go in steps.
@@ -285,11 +291,7 @@ void Refiner::divide() {
   report_.undivided = split.undivided;
 }
 
-double Refiner::left_open() const {
-  const BorderOptions border = border_options();
-  return std::max(kOpen * std::max(level_, border.tolerance),
-                  options_.reach_detail * border.spacing * border.spacing / diagonal_);
-}
+double Refiner::left_open() const { return detail::left_open(surface_, options_, sampling_.size()) * diagonal_; }
 
 Index Refiner::reach_for(const Reconstruction& reconstruction, const std::vector<UncoveredPlace>& places,
                          BallSolver& solver) {

@@ -5,6 +5,7 @@
 
 #include "ball_complex.h"
 #include "borders.h"
+#include "cover_guard.h"
 #include "dents_below.h"
 #include "found_balls.h"
 #include "orchard/medial/refine.h"
@@ -12,6 +13,10 @@
 #include "uncovered.h"
 
 namespace orchard::detail {
+
+// Diagonals: places of the surface that a refined axis leaves open by less are not reached for. `points`: how many the
+// axis was built from.
+double left_open(const Surface& surface, const RefineOptions& options, Index points);
 
 // The steps of refine_axis(), for who looks at what the first ones make before the last ones run. What is given by
 // reference must outlive it, unchanged. The surface must be a solid.
@@ -61,6 +66,7 @@ class Refiner {
   const Progress& progress_;
   const double diagonal_, level_;  // mesh units
   BallComplex complex_;
+  const CoverGuard guard_;  // of the surface points, against all that is taken away
   SplitErrors split_errors_;
   std::vector<Index> face_of_triangle_;  // of the axis as it came
   RefineReport report_;

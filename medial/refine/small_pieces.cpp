@@ -16,10 +16,11 @@ class PieceDropper {
         at_(complex.edges, complex.triangles, complex.size()),
         piece_of_edge_(complex.edges.size()) {}
 
-  Index run(std::vector<Sphere>* around) {
+  Index run(const CoverGuard* guard, std::vector<Sphere>* around) {
     find_pieces();
     find_joints();
     measure();
+    choose(guard);
     if (around) add_spheres(*around);
     const std::size_t before = complex_.edges.size() + complex_.triangles.size();
     collapse(complex_, doomed(), std::vector<double>(complex_.size(), 0));
@@ -77,9 +78,22 @@ class PieceDropper {
     return joints_[p] == 1 && (reach_[p] <= kPieceReach * complex_.balls[joint_[p]].radius || radius_[p] == 0);
   }
 
+  // The small ones, but for those that cover something alone.
+  void choose(const CoverGuard* guard) {
+    goes_.assign(complex_.edges.size(), kNone);
+    for (Index e = 0; e < complex_.edges.size(); ++e) {
+      if (is_small(piece(e))) goes_[e] = piece(e);
+    }
+    if (!guard) return;
+    const std::vector<std::uint8_t> needed = guard->needed(complex_, goes_);
+    for (Index& p : goes_) {
+      if (p != kNone && needed[p] != 0) p = kNone;
+    }
+  }
+
   void add_spheres(std::vector<Sphere>& around) {
     for (Index e = 0; e < complex_.edges.size(); ++e) {
-      if (piece(e) != e || !is_small(e)) continue;
+      if (piece(e) != e || goes_[e] == kNone) continue;
       const ExactBall& ball = complex_.balls[joint_[e]];
       around.push_back({.center = ball.center, .radius = reach_[e] + std::max(radius_[e], ball.radius)});
     }
@@ -88,8 +102,8 @@ class PieceDropper {
   Doomed doomed() {
     Doomed doomed(complex_);
     for (Index e = 0; e < complex_.edges.size(); ++e) {
-      const Index p = piece(e);
-      if (!is_small(p)) continue;
+      const Index p = goes_[e];
+      if (p == kNone) continue;
       doomed.edges[e] = 1;
       for (const Index v : complex_.edges[e]) {
         if (v != joint_[p]) doomed.vertices[v] = 1;
@@ -103,15 +117,16 @@ class PieceDropper {
   BallComplex& complex_;
   const CellIncidence at_;
   DisjointSets piece_of_edge_;
+  std::vector<Index> goes_;             // of each edge: its piece, if that is to go
   std::vector<Index> joint_, joints_;   // of each piece: the last of its joints, how many
   std::vector<double> reach_, radius_;  // of each piece, mesh units
 };
 
 }  // namespace
 
-Index drop_small_pieces(BallComplex& complex, std::vector<Sphere>* around) {
+Index drop_small_pieces(BallComplex& complex, const CoverGuard* guard, std::vector<Sphere>* around) {
   Index dropped = 0;
-  while (const Index now = PieceDropper(complex).run(around)) dropped += now;
+  while (const Index now = PieceDropper(complex).run(guard, around)) dropped += now;
   return dropped;
 }
 

@@ -48,7 +48,11 @@ void renumber_cells(CellErrors<Cell>& known, const std::vector<Index>& number) {
 class Splitter {
  public:
   Splitter(const Surface& surface, BallComplex& complex, const SplitOptions& options, SplitErrors& known)
-      : surface_(surface), complex_(complex), options_(options), known_(known) {}
+      : surface_(surface),
+        complex_(complex),
+        options_(options),
+        known_(known),
+        cuts_itself_(!surface.self_intersections().empty()) {}
 
   // What was beyond the tolerance when dividing ended is not divided another time: its error becomes a negative one.
   void give_up_what_is_left() {
@@ -88,8 +92,9 @@ class Splitter {
   // Returns how many edges were divided.
   Index divide(const std::vector<double>& error) {
     std::vector<Index> chosen, cut(complex_.edges.size(), kNone);
+    const std::vector<std::uint8_t> never = find_never_linear(error);
     for (Index e = 0; e < error.size(); ++e) {
-      if (error[e] <= options_.tolerance || length(complex_.edges[e]) <= options_.min_length) continue;
+      if (error[e] <= options_.tolerance || length(complex_.edges[e]) <= options_.min_length || never[e]) continue;
       cut[e] = complex_.size() + static_cast<Index>(chosen.size());
       chosen.push_back(e);
     }
@@ -115,6 +120,26 @@ class Splitter {
     const double apart = (a.center - b.center).norm();
     if ((exact.center - straight).norm() <= kMaxAside * apart || !surface_.inside(straight)) return exact;
     return solver.at(straight);
+  }
+
+  // Where the surface cuts itself, parts of it lie inside the solid. Distances fall to 0 at such a wall, so an edge
+  // through one has balls that are too large however often it is divided.
+  std::vector<std::uint8_t> find_never_linear(const std::vector<double>& error) const {
+    std::vector<std::uint8_t> never(error.size(), 0);
+    if (!cuts_itself_) return never;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, error.size(), 128), [&](const auto& range) {
+      std::vector<Index> walls;
+      for (std::size_t e = range.begin(); e != range.end(); ++e) {
+        if (error[e] <= options_.tolerance) continue;
+        const auto& [a, b] = complex_.edges[e];
+        if (!(complex_.balls[a].radius > 0) || !(complex_.balls[b].radius > 0)) continue;
+        const Point &from = complex_.balls[a].center, &to = complex_.balls[b].center;
+        walls.clear();
+        surface_.triangles_overlapping({from, to, to}, walls);
+        never[e] = walls.empty() ? 0 : 1;
+      }
+    });
+    return never;
   }
 
   double length(const std::array<Index, 2>& edge) const {
@@ -177,6 +202,7 @@ class Splitter {
   BallComplex& complex_;
   const SplitOptions& options_;
   SplitErrors& known_;
+  const bool cuts_itself_;
   std::vector<std::uint8_t> given_up_;  // edges that were left, or the longest of triangles that were
 };
 

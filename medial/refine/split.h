@@ -35,7 +35,8 @@ struct SplitErrors {
 
 // Divides edges until the balls that are interpolated on edges and triangles neither protrude nor fall short by more
 // than the tolerance: they are looked at at the quarters of edges and the middles of triangles, and every ten
-// tolerances of long ones, or closer where they are thin. A triangle's error counts for its longest edge. New vertices
+// tolerances of long ones, or closer where they are thin. A triangle's error counts for its longest edge. Edges
+// through a wall of a surface that cuts itself are not divided: no division makes them linear. New vertices
 // are exact where that is possible; what `known` has as left by an earlier call is left again. Deterministic; parallel.
 SplitReport split_nonlinear(const Surface& surface, BallComplex& complex, const SplitOptions& options,
                             SplitErrors& known, const Progress& progress);

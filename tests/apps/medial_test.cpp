@@ -408,11 +408,21 @@ TEST(Medial, WarnsInOneLineOfAMeshThatCutsItselfAndNamesTheWayOut) {
   const std::string mesh = here.add("crossed.obj", crossed_boxes()), out = (here / "out").string();
   const std::vector<std::string> arguments{"medial", mesh, "-o", out, "--samples", "600", "--no-views", "--quiet"};
   const Finished run = here.run(arguments);
-  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.exit_code, 5) << run.err;
   EXPECT_TRUE(test::is_one_line_error(run.err)) << run.err;
+  EXPECT_NE(run.err.find("promise not kept"), std::string::npos) << run.err;
   EXPECT_NE(run.err.find("cut or touch each other"), std::string::npos) << run.err;
   EXPECT_NE(run.err.find("--wrap"), std::string::npos) << run.err;
-  EXPECT_TRUE(json::parse(here.files("out").at("crossed-medial.json")).contains("warning"));
+  const json broken = json::parse(here.files("out").at("crossed-medial.json"));
+  EXPECT_TRUE(broken.contains("warning"));
+  EXPECT_FALSE(broken["promise"]["kept"].get<bool>());
+  EXPECT_FALSE(broken["promise"]["broken"].empty());
+  EXPECT_NE(here.files("out").at("crossed.ma").find("# promise not kept: "), std::string::npos) << "the file is marked";
+  std::vector<std::string> accepted = arguments;
+  accepted.push_back("--accept");
+  const Finished as_it_is = here.run(accepted);
+  EXPECT_EQ(as_it_is.exit_code, 0);
+  EXPECT_EQ(as_it_is.err, run.err) << "it is said all the same";
 
   std::vector<std::string> wrapped = arguments;
   wrapped.push_back("--wrap");

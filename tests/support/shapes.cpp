@@ -41,6 +41,34 @@ void subdivide(TriangleMesh& mesh) {
 
 }  // namespace
 
+TriangleMesh turned(const std::vector<std::array<double, 2>>& profile, int around) {
+  TriangleMesh mesh;
+  const auto vertex = [&](const Point& place) {
+    mesh.vertices.push_back(place);
+    return static_cast<Index>(mesh.vertices.size() - 1);
+  };
+  std::vector<std::vector<Index>> rings;
+  const auto add_ring = [&](double radius, double height) {
+    std::vector<Index>& ring = rings.emplace_back();
+    for (int k = 0; k < (radius > 0 ? around : 1); ++k) {
+      const double angle = 2 * std::numbers::pi * k / around;
+      ring.push_back(vertex({radius * std::cos(angle), radius * std::sin(angle), height}));
+    }
+  };
+  if (profile.front()[0] > 0) add_ring(0, profile.front()[1]);
+  for (const auto& [radius, height] : profile) add_ring(radius, height);
+  if (profile.back()[0] > 0) add_ring(0, profile.back()[1]);
+  for (std::size_t i = 0; i + 1 < rings.size(); ++i) {
+    const std::vector<Index>&low = rings[i], &high = rings[i + 1];
+    for (std::size_t k = 0; k < static_cast<std::size_t>(around); ++k) {
+      const auto at = [&](const std::vector<Index>& ring, std::size_t j) { return ring[j % ring.size()]; };
+      if (low.size() > 1) mesh.triangles.push_back({at(low, k), at(low, k + 1), at(high, k + 1)});
+      if (high.size() > 1) mesh.triangles.push_back({at(low, k), at(high, k + 1), at(high, k)});
+    }
+  }
+  return mesh;
+}
+
 TriangleMesh prism(const std::vector<std::array<double, 2>>& polygon, const std::vector<Triangle>& caps,
                    double height) {
   const Index n = static_cast<Index>(polygon.size());

@@ -19,6 +19,9 @@ TriangleMesh open_box();             // a box without its top: not closed
 // Over a counter-clockwise polygon in the plane z = 0, whose caps are triangulated as given.
 TriangleMesh prism(const std::vector<std::array<double, 2>>& polygon, const std::vector<std::array<Index, 3>>& caps,
                    double height = 1);
+// Turned around z, `around` facets to a turn, from (radius, height) to (radius, height), upward; a first or last radius
+// of 0 is an apex, any other one gets a flat end.
+TriangleMesh turned(const std::vector<std::array<double, 2>>& profile, int around);
 TriangleMesh joined(std::initializer_list<TriangleMesh> parts);  // one mesh of all, nothing welded
 TriangleMesh soup(const TriangleMesh& mesh);                     // each triangle with vertices of its own: not closed
 TriangleMesh transformed(TriangleMesh mesh, double scale, const Vector& offset);

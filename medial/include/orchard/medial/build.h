@@ -9,6 +9,7 @@
 #include "orchard/medial/axis.h"
 #include "orchard/medial/gap_crossing.h"
 #include "orchard/medial/import_axis.h"
+#include "orchard/medial/promise.h"
 #include "orchard/medial/prune.h"
 #include "orchard/medial/refine.h"
 #include "orchard/voronoi/algorithms.h"
@@ -30,6 +31,8 @@ struct MedialBuildOptions {
   // for them (RefineOptions) down to three border losses or less: nearly as good, and faster. Not with own points, nor
   // with an own diagram.
   int open_rounds = 1;
+  // Compare the finished axis with axis_promise(). Costs about as much as one of the rounds that look for open places.
+  bool check_promise = true;
 };
 
 // A diagram that the caller made, and where its points lie on the surface; the points of both are the same.
@@ -55,6 +58,7 @@ struct MedialBuild {
   Index unpruned_vertices = 0;
   MedialAxis axis;                              // refined, if that was asked for
   RefineReport refinement;                      // zeros, if not
+  PromiseCheck promise;                         // what was promised, and whether it holds; if that was asked for
   Index open_places = 0;                        // points added where a refined axis left the surface open
   Index balls_refused = 0, balls_adjusted = 0;  // of an imported axis, see ImportedAxis
   double ball_adjustment = 0;
@@ -66,6 +70,16 @@ struct MedialBuild {
 // an option is out of range, or if `input` has more than one of its values.
 MedialBuild build_medial_axis(const Surface& surface, const MedialBuildOptions& options = {},
                               const Progress& progress = {}, MedialBuildInput input = {});
+
+// What build_medial_axis() promises of an axis that it builds, and does not import. By `options`:
+// - a refined axis leaves no place of the surface open by more than 1.65 times the larger of border_loss and tolerance,
+//   or what so few points can show (RefineOptions::reach_detail) if that is more, and once the tolerance on top, unless
+//   reach_rounds is 0 or pruning is asked for;
+// - it sticks out of the solid by twice the tolerance at most: interpolated balls are held to the tolerance at places
+//   between which they may be off by another one;
+// - axis.keep_topology promises the topology of the solid, refined or not.
+// `points`: how many surface points it was built from.
+AxisPromise axis_promise(const Surface& surface, const MedialBuildOptions& options, Index points);
 
 // The pass of gap repair that added each surface point, from 1 on, counted in the last round; 0 for points that the
 // sampling had. -1 is unknown: for what earlier rounds added, at open places and by gap repair, and for all that was

@@ -75,7 +75,7 @@ struct MedialQuality {
   double dent_upper = 0;  // proven: no place of the reconstruction's boundary is deeper in the solid
   Spread radius_error;    // |radius - distance to the surface| of vertices, over D
   Spread centredness;     // |distance to the second contact - radius| of vertices, over the radius
-  double outside_vertices = 0, outside_edges = 0, outside_triangles = 0;  // fractions
+  double outside_vertices = 0, outside_edges = 0, outside_triangles = 0;  // fractions; by more than 1e-9 D
   Topology found, wanted;                                                 // of the medial mesh; of the solid
   Economy economy;
   Index balls = 0;           // vertices of the medial mesh

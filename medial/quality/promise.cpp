@@ -1,0 +1,50 @@
+#include "orchard/medial/promise.h"
+
+#include <vector>
+
+#include "boundary_reach.h"
+#include "orchard/geometry/error.h"
+#include "quality_parts.h"
+
+namespace orchard {
+namespace {
+
+constexpr const char* kStage = "checking what was promised";
+constexpr double kAccuracy = 1e-5;     // diagonals: to which the largest values are searched
+constexpr double kKnown = 0.97;         // of the limit: what is proven is up to 2 % more, and no more than the limit
+constexpr Index kMaxCells = 2'000'000;  // that the search for what sticks out looks at
+
+}  // namespace
+
+PromiseCheck check_promise(const Surface& surface, const MedialMesh& mesh, const AxisPromise& promise,
+                           const Progress& progress) {
+  if (!surface.solid()) throw InputError("a medial axis is compared with a solid: " + surface.report().faults());
+  validate(mesh);
+  report_progress(progress, kStage, 0);
+  PromiseCheck check{.promise = promise, .found = topology(mesh), .wanted = solid_topology(surface)};
+  const double diagonal = surface.bounding_box().diagonal().norm(), accuracy = kAccuracy * diagonal;
+  if (promise.open) {
+    const double limit = *promise.open * diagonal;
+    const double known = limit - accuracy;  // so that what is proven is no more than the limit
+    const detail::MaxOverTriangles open = detail::max_coverage(
+        surface, detail::Reconstruction(mesh), {.max = known, .upper = known, .place = Point::Zero()}, diagonal);
+    if (open.max > limit) check.open = open.max / diagonal;
+    check.open_upper = open.upper / diagonal;
+  }
+  report_progress(progress, kStage, 0.5);
+  if (promise.protrusion) {
+    const double limit = *promise.protrusion * diagonal;
+    std::vector<Sphere> balls;
+    balls.reserve(mesh.size());
+    for (Index v = 0; v < mesh.size(); ++v) balls.push_back({mesh.centers[v], mesh.radii[v]});
+    const std::vector<detail::BallDepth> depths = detail::depths_of(surface, balls);
+    const detail::SearchedMax beyond = detail::max_protrusion(surface, mesh, {.vertices = depths, .triangles = {}},
+                                                              kKnown * limit, accuracy, kMaxCells);
+    if (beyond.max > limit) check.protrusion = beyond.max / diagonal;
+    check.protrusion_upper = beyond.upper / diagonal;
+  }
+  report_progress(progress, kStage, 1);
+  return check;
+}
+
+}  // namespace orchard

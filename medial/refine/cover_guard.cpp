@@ -1,0 +1,90 @@
+#include "cover_guard.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "../quality/reconstruction.h"
+
+namespace orchard::detail {
+namespace {
+
+// Some of the cells of a complex, as a mesh of their own: vertices that none of them has would count as balls.
+class Part {
+ public:
+  explicit Part(const BallComplex& complex) : complex_(complex), number_(complex.size(), kNone) {}
+
+  void add(const std::array<Index, 2>& edge) { mesh_.edges.push_back({number(edge[0]), number(edge[1])}); }
+  void add(const std::array<Index, 3>& t) { mesh_.triangles.push_back({number(t[0]), number(t[1]), number(t[2])}); }
+  void add(Index vertex) { number(vertex); }
+
+  // Once all cells are there.
+  const MedialMesh& finish() {
+    for (auto& edge : mesh_.edges) std::sort(edge.begin(), edge.end());
+    for (auto& triangle : mesh_.triangles) std::sort(triangle.begin(), triangle.end());
+    complete(mesh_);
+    return mesh_;
+  }
+  Index vertex_of_complex(Index v) const { return vertices_[v]; }
+
+ private:
+  Index number(Index v) {
+    if (number_[v] != kNone) return number_[v];
+    vertices_.push_back(v);
+    mesh_.centers.push_back(complex_.balls[v].center);
+    mesh_.radii.push_back(complex_.balls[v].radius);
+    return number_[v] = static_cast<Index>(vertices_.size() - 1);
+  }
+
+  const BallComplex& complex_;
+  std::vector<Index> number_, vertices_;
+  MedialMesh mesh_;
+};
+
+Index piece_of(const std::array<Index, 3>& t, const EdgeNumbers& edge, const std::vector<Index>& piece_of_edge) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Index a = t[k], b = t[(k + 1) % 3];
+    if (a == b) continue;
+    if (const Index piece = piece_of_edge[edge(a, b)]; piece != kNone) return piece;
+  }
+  return kNone;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> CoverGuard::needed(const BallComplex& complex,
+                                             const std::vector<Index>& piece_of_edge) const {
+  std::vector<std::uint8_t> needed(std::max(complex.edges.size(), complex.triangles.size()), 0);
+  if (std::all_of(piece_of_edge.begin(), piece_of_edge.end(), [](Index piece) { return piece == kNone; }))
+    return needed;
+  Part stays(complex), goes(complex);
+  const EdgeNumbers edge = complex.edge_numbers();
+  for (Index e = 0; e < complex.edges.size(); ++e) (piece_of_edge[e] == kNone ? stays : goes).add(complex.edges[e]);
+  for (const auto& t : complex.triangles) (piece_of(t, edge, piece_of_edge) == kNone ? stays : goes).add(t);
+  std::vector<std::uint8_t> has_edge(complex.size(), 0);
+  for (const auto& [a, b] : complex.edges) has_edge[a] = has_edge[b] = 1;
+  for (Index v = 0; v < complex.size(); ++v) {
+    if (!has_edge[v]) stays.add(v);
+  }
+  const MedialMesh& rest = stays.finish();
+  if (rest.size() == 0) return std::vector<std::uint8_t>(needed.size(), 1);
+  const Reconstruction without(rest), pieces(goes.finish());
+  std::vector<Index> piece_at(places_.size(), kNone);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places_.size(), 128), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      if (without.nearest(places_[i], limit_).distance <= limit_) continue;
+      const Reconstruction::Nearest nearest = pieces.nearest(places_[i]);
+      if (nearest.distance > limit_) continue;
+      std::array<Index, 3> corners = pieces.corners_of(nearest.cell);
+      for (Index& v : corners) v = goes.vertex_of_complex(v);
+      piece_at[i] = piece_of(corners, edge, piece_of_edge);
+    }
+  });
+  for (const Index piece : piece_at) {
+    if (piece != kNone) needed[piece] = 1;
+  }
+  return needed;
+}
+
+}  // namespace orchard::detail
