@@ -178,7 +178,7 @@ Broken broken_promises(const MedialCommand& command, const SolidMesh& solid, con
 
 // `inner`: the solid itself where `solid` is the space around it, else none.
 ExitCode build_axis(const MedialCommand& command, const SolidMesh& solid, const Surface* inner,
-                const std::vector<AxisFile>& beside, const Progress& progress, ProgressBar& bar) {
+                    const std::vector<AxisFile>& beside, const Progress& progress, ProgressBar& bar) {
   const Surface& surface = solid.surface;
   const bool talk = !command.output.quiet && !command.output.json;
   const MedialBuildOptions options = build_options(command.tuning);
@@ -202,12 +202,9 @@ ExitCode build_axis(const MedialCommand& command, const SolidMesh& solid, const 
   const std::string warning = medial_warning(solid, build, findings);
   const Broken broken = broken_promises(command, solid, build, findings, few);
   const std::string last_line = in_one_line(broken);
-  json report{{"mesh", mesh_json(surface)},
-              {"build", to_json(build)},
-              {"topology", to_json(found)},
-              {"topology_of_solid", to_json(wanted)},
-              {"promise", to_json(build.promise)},
-              {"structure", to_json(segments, skeleton)}};
+  json report{{"mesh", mesh_json(surface)},        {"build", to_json(build)},
+              {"topology", to_json(found)},        {"topology_of_solid", to_json(wanted)},
+              {"promise", to_json(build.promise)}, {"structure", to_json(segments, skeleton)}};
   if (!command.source.points.empty()) report["points_moved_at_most"] = own.max_moved;
   if (!warning.empty()) report["warning"] = warning;
   report["promise"]["broken"] = broken.what;

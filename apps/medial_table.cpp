@@ -11,7 +11,7 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kNotDefined = "not defined";
-constexpr double kLoose = 2;         // times what was found: a proven bound above that says little
+constexpr double kLoose = 2;          // times what was found: a proven bound above that says little
 constexpr double kNegligible = 0.01;  // % of the diagonal: bounds below that are good enough in any case
 constexpr std::size_t kNarrowest = 12, kWidest = 28;  // of a column
 

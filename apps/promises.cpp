@@ -16,7 +16,8 @@ std::string percent(double share) { return fmt::format("{:.3g} % of the diagonal
 
 json limited(const std::optional<double>& promised, double found, double upper) {
   if (!promised) return nullptr;
-  return {{"promised", 100 * *promised}, {"found_above", found > 0 ? json(100 * found) : json()}, {"upper", 100 * upper}};
+  return {
+      {"promised", 100 * *promised}, {"found_above", found > 0 ? json(100 * found) : json()}, {"upper", 100 * upper}};
 }
 
 }  // namespace
@@ -29,8 +30,7 @@ void Broken::add(const Broken& others) {
 Broken broken(const PromiseCheck& check) {
   Broken result;
   if (!check.keeps_topology())
-    result.what.push_back(
-        fmt::format("the axis has {}, the solid {}", in_words(check.found), in_words(check.wanted)));
+    result.what.push_back(fmt::format("the axis has {}, the solid {}", in_words(check.found), in_words(check.wanted)));
   if (!check.keeps_open())
     result.what.push_back(fmt::format("the surface is left open by {}, where at most {} was promised",
                                       percent(check.open), percent(*check.promise.open)));

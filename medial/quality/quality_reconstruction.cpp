@@ -11,7 +11,7 @@
 namespace orchard::detail {
 namespace {
 
-constexpr double kArrived = 1e-6;  // of the diagonal: a march ends this near to the boundary
+constexpr double kArrived = 1e-6;    // of the diagonal: a march ends this near to the boundary
 constexpr double kOnSurface = 1e-9;  // of the diagonal: centres that are no farther outside are on the surface
 constexpr int kMaxSteps = 50;
 constexpr std::size_t kBlock = 64;                                  // samples that one task takes, one after the other

@@ -6,9 +6,9 @@
 
 namespace orchard::detail {
 
-// Keeps places of the surface in reach of an axis that is being cleaned. Every single removal may be harmless, while all
-// of them together eat a whole axis: a cylinder's two cones first, for each hangs on the rest by one vertex, then the
-// curve between them, from its ends. The guard asks after the same places each time, so that losses add up.
+// Keeps places of the surface in reach of an axis that is being cleaned. Every single removal may be harmless, while
+// all of them together eat a whole axis: a cylinder's two cones first, for each hangs on the rest by one vertex, then
+// the curve between them, from its ends. The guard asks after the same places each time, so that losses add up.
 class CoverGuard {
  public:
   // `limit` (mesh units): how far from the axis's balls a place may be. The places must outlive the guard.

@@ -6,8 +6,8 @@
 
 namespace orchard::detail {
 
-// Adds cells to a complete complex that change no topology: triangles that meet it in one edge, their third vertex being
-// new, or in two edges; and edges to new vertices. What is added could be collapsed again from its free ends on.
+// Adds cells to a complete complex that change no topology: triangles that meet it in one edge, their third vertex
+// being new, or in two edges; and edges to new vertices. What is added could be collapsed again from its free ends on.
 class FreeExtension {
  public:
   explicit FreeExtension(BallComplex& complex) : complex_(complex), first_new_(complex.size()) {}
@@ -35,7 +35,7 @@ class FreeExtension {
   std::vector<std::uint8_t> used_;  // of the new vertices
   std::vector<std::array<Index, 3>> added_;
   std::vector<std::array<Index, 2>> added_edges_;  // of curves
-  std::unordered_set<std::uint64_t> new_edges_;  // asked only whether it holds a pair
+  std::unordered_set<std::uint64_t> new_edges_;    // asked only whether it holds a pair
 };
 
 }  // namespace orchard::detail

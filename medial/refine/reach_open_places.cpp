@@ -278,7 +278,7 @@ class OpenPlaceReacher {
   BallSolver& solver_;
   SharpEdges edges_;
   const Reconstruction& reconstruction_;
-  const double left_;  // mesh units: what a new ball leaves open of its place
+  const double left_;             // mesh units: what a new ball leaves open of its place
   std::vector<Index> continued_;  // ends of curves that an edge was added to
   const SplitOptions& dividing_;
 };

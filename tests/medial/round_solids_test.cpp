@@ -77,7 +77,8 @@ double distance_to_balls(const Point& query, const MedialMesh& mesh) {
     }
   }
   for (const auto& [a, b, c] : mesh.triangles) {
-    ball((mesh.centers[a] + mesh.centers[b] + mesh.centers[c]) / 3, (mesh.radii[a] + mesh.radii[b] + mesh.radii[c]) / 3);
+    ball((mesh.centers[a] + mesh.centers[b] + mesh.centers[c]) / 3,
+         (mesh.radii[a] + mesh.radii[b] + mesh.radii[c]) / 3);
   }
   return least;
 }
