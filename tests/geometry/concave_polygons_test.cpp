@@ -28,7 +28,7 @@ struct Outline {
 
 double turn(const Point& a, const Point& b, const Point& c) { return (b - a).cross(c - a).z(); }
 
-bool cross(const Point& a, const Point& b, const Point& c, const Point& d) {
+bool crosses(const Point& a, const Point& b, const Point& c, const Point& d) {
   return turn(a, b, c) * turn(a, b, d) < 0 && turn(c, d, a) * turn(c, d, b) < 0;
 }
 
@@ -44,7 +44,7 @@ Outline random_outline(Random& random, std::size_t count) {
     crossing = false;
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t k = i + 2; k < count; ++k)
-        if (cross(at(i), at(i + 1), at(k), at(k + 1))) {
+        if (crosses(at(i), at(i + 1), at(k), at(k + 1))) {
           std::reverse(outline.corners.begin() + static_cast<std::ptrdiff_t>(i) + 1,
                        outline.corners.begin() + static_cast<std::ptrdiff_t>(k) + 1);
           crossing = true;
@@ -87,7 +87,7 @@ Outline keyhole(Random& random) {
         for (std::size_t i = 0; i < loop.size(); ++i) {
           const Index c = loop[i], d = loop[(i + 1) % loop.size()];
           if (a != c && a != d && b != c && b != d &&
-              cross(outline.places[a], outline.places[b], outline.places[c], outline.places[d]))
+              crosses(outline.places[a], outline.places[b], outline.places[c], outline.places[d]))
             return true;
         }
         return false;
@@ -211,7 +211,7 @@ TEST(ConcavePolygons, MayRepeatACorner) {
 // The faces of a prism over an outline, as text of the three formats; the outline's file lines come first.
 std::string rows(const Outline& outline, Index first) {
   std::string text;
-  const auto corner = [&](Index corner) { text += " " + std::to_string(corner + first); };
+  const auto corner = [&](Index c) { text += " " + std::to_string(c + first); };
   const Index n = static_cast<Index>(outline.places.size());
   const auto start = [&](std::size_t count) { text += first == 1 ? "f" : std::to_string(count); };
   start(outline.corners.size());

@@ -48,13 +48,13 @@ struct Text {
   }
 };
 
-struct Case {
+struct FormatCase {
   const char* name;
   std::string text;
   TriangleMesh (*read)(std::string_view, const std::string&, MeshReadReport&);
 };
 
-std::vector<Case> in_each_format(const Text& text) {
+std::vector<FormatCase> in_each_format(const Text& text) {
   return {{"mesh.obj", text.obj(), read_obj}, {"mesh.ply", text.ply(), read_ply}, {"mesh.off", text.off(), read_off}};
 }
 
