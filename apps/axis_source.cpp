@@ -52,7 +52,9 @@ std::vector<std::filesystem::path> AxisSource::files() const {
 OwnInput read_axis_source(const AxisSource& source, const Surface& surface) {
   OwnInput own;
   if (!source.points.empty()) {
-    PlacedPoints placed = on_surface(read_points_or_mesh(source.points).vertices, surface);
+    MeshReading read = read_points_or_mesh_and_report(source.points);
+    own.reading = std::move(read.report);
+    PlacedPoints placed = on_surface(std::move(read.mesh.vertices), surface);
     if (placed.sampling.size() < 4) throw InputError(source.points.string() + ": four points at least are needed");
     own.max_moved = placed.max_moved;
     own.input.sampling = std::move(placed.sampling);

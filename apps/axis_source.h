@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "orchard/geometry/mesh_io.h"
 #include "orchard/medial/build.h"
 
 namespace orchard::apps {
@@ -18,7 +19,8 @@ struct AxisSource {
 // What a source holds.
 struct OwnInput {
   MedialBuildInput input;
-  double max_moved = 0;  // by how much points were moved onto the surface, in mesh units
+  double max_moved = 0;         // by how much points were moved onto the surface, in mesh units
+  MeshReadReport reading = {};  // of the file of points
 };
 
 // Points are moved to the nearest place of the surface; those of a diagram must be there. Throws InputError, which

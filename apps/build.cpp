@@ -23,6 +23,7 @@
 #include "outputs.h"
 #include "picture.h"
 #include "promises.h"
+#include "reading_report.h"
 #include "report.h"
 #include "sphere_lists.h"
 
@@ -230,9 +231,11 @@ ExitCode build(const BuildCommand& command) {
   bar.clear();
   const double wrap_distance = solid.wrap ? solid.wrap->distance() : 0;
   if (talk) print_solid(command.mesh, solid);
+  print_hole_warning(command.mesh, solid.repair, solid.repair_distance, surface.bounding_radius());
 
   const SphereTreeOptions options = tree_options(command);
   OwnInput own = read_axis_source(command.source, surface);
+  if (talk) print_reading(command.source.points, own.reading);
   const BuildCost cost = cost_of(command, options, surface);
   if (talk) print_cost(command, options, cost);
   if (command.cost && command.output.json) fmt::print("{}\n", to_json(cost).dump(2));

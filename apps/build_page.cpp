@@ -92,18 +92,21 @@ std::string timings(const json& seconds) {
   return "<table>\n" + rows + row({"in all", fmt::format("{:.2f} s", total), ""}, "td") + "</table>\n";
 }
 
-std::string repairs(const json& report) {
+std::string list_of(const json& lines) {
   std::string text;
+  for (const json& line : lines) text += "<li>" + xml_escaped(line.get<std::string>()) + "</li>\n";
+  return text.empty() ? text : "<ul>\n" + text + "</ul>\n";
+}
+
+std::string repairs(const json& report) {
+  std::string text = list_of(report["reading"]["lines"]);
   if (report.contains("wrap")) {
-    text = fmt::format("<p>The tree was built on a wrap; no point of it is farther than {} from the mesh.</p>\n",
-                       number(report["wrap_distance"]));
+    text += fmt::format("<p>The tree was built on a wrap; no point of it is farther than {} from the mesh.</p>\n",
+                        number(report["wrap_distance"]));
   } else if (report.contains("repair") && !report["repair"]["lines"].empty()) {
-    text = "<ul>\n";
-    for (const json& line : report["repair"]["lines"])
-      text += "<li>" + xml_escaped(line.get<std::string>()) + "</li>\n";
-    text += "</ul>\n";
+    text += list_of(report["repair"]["lines"]);
   } else {
-    text = "<p>None: the mesh is a solid as it is.</p>\n";
+    text += "<p>None: the mesh is a solid as it is.</p>\n";
   }
   if (report.contains("self_intersections") && report["self_intersections"].is_number() &&
       report["self_intersections"] > 0)

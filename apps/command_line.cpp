@@ -10,6 +10,7 @@
 #include "a_number.h"
 #include "command_list.h"
 #include "list_option.h"
+#include "orchard/geometry/tolerance.h"
 #include "tree_options.h"
 
 namespace orchard::apps {
@@ -35,6 +36,15 @@ void add_accept(CLI::App& command, bool& accept) {
                    "Exit with 0 although the result lacks something that was promised: it is said all the same");
 }
 
+CLI::Option* add_join(CLI::App& command, std::optional<double>& join) {
+  return command
+      .add_option(
+          "--join", join,
+          fmt::format("Corners of open edges up to this far apart are one, in bounding radii; 0: none (default: {:g})",
+                      tolerance::kJoin))
+      ->check(ANumber(CLI::Range(0.0, kMaxJoin)));
+}
+
 void add_mesh_options(CLI::App& command, MeshOptions& options) {
   auto* strict =
       command.add_flag("--strict", options.strict, "Refuse a mesh that is no closed manifold instead of repairing it");
@@ -58,6 +68,7 @@ void add_mesh_options(CLI::App& command, MeshOptions& options) {
       ->check(ANumber(CLI::Range(0.0, 2.0)))
       ->excludes(strict)
       ->excludes(wrap);
+  add_join(command, options.join)->excludes(strict)->excludes(wrap);
   command
       .add_option_function<std::string>(
           "--root-ball",
@@ -152,6 +163,7 @@ void add_verify(CLI::App& app, Request& request) {
   command.add_option("tree", verify.tree, "An .orchard file, or an .sph file of any system in the mesh's frame")
       ->required();
   command.add_option("mesh", verify.mesh, "The mesh that it was built for")->required();
+  add_join(command, verify.join);
   command.add_flag("--bbox-centre", verify.box_centered,
                    "The .sph file's origin is the centre of the mesh's bounding box, as some systems write it");
   add_output_flags(command, verify.output);
@@ -205,6 +217,7 @@ void add_sampling_options(CLI::App& command, SampleCommand& sample) {
   command.add_option("--crease-angle", sample.crease_degrees, "Degrees from which a curved mesh has an edge [28.6]")
       ->check(ANumber(CLI::Range(0.0, 180.0)));
   command.add_option("--seed", sample.seed, "Seed of the random points")->capture_default_str();
+  add_join(command, sample.join);
 }
 
 void add_sample(CLI::App& app, Request& request) {
@@ -377,6 +390,7 @@ void add_inspect(CLI::App& app, Request& request) {
   CLI::App& command = *app.add_subcommand("inspect", "Say what a mesh or tree file holds and what is wrong with it");
   InspectCommand& inspect = request.inspect;
   command.add_option("file", inspect.file, "A mesh (.obj, .ply, .stl, .off) or a tree (.orchard, .sph)")->required();
+  add_join(command, inspect.join);
   command.add_flag("--full", inspect.full, "Look for self-intersections in a mesh of more than 500,000 triangles too");
   add_output_flags(command, inspect.output);
   command.footer("Example:\n  orchard inspect data/lamp.obj");

@@ -50,7 +50,8 @@ void collide(const CollideCommand& command);
 
 struct VerifyCommand {
   std::filesystem::path tree, mesh;
-  bool box_centered = false;  // a text tree around the centre of the mesh's bounding box
+  std::optional<double> join;  // as in MeshOptions; so below
+  bool box_centered = false;   // a text tree around the centre of the mesh's bounding box
   Output output;
 };
 bool verify(const VerifyCommand& command);  // false: something is not proven
@@ -59,6 +60,7 @@ struct SampleCommand {
   std::filesystem::path mesh, folder;
   Index samples = 5000;               // in all
   std::optional<Index> edge_samples;  // of them on edges; a fifth unless it is given
+  std::optional<double> join;
   int iterations = SamplingOptions{}.iterations;
   std::uint64_t seed = 1;
   Relaxation relaxation = Relaxation::automatic;
@@ -149,6 +151,7 @@ void simulate(const SimulateCommand& command);
 
 struct InspectCommand {
   std::filesystem::path file;
+  std::optional<double> join;
   bool full = false;  // count self-intersections of large meshes too
   Output output;
 };

@@ -14,6 +14,7 @@
 #include "orchard/geometry/error.h"
 #include "orchard/spheretree/outside_volume.h"
 #include "outputs.h"
+#include "reading_report.h"
 #include "sphere_lists.h"
 #include "svg_plot.h"
 
@@ -166,6 +167,7 @@ void compare(const CompareCommand& command) {
   const SolidMesh solid = load_solid(command.mesh, command.reading, bar.callback());
   bar.clear();
   if (!command.output.quiet && !command.output.json) print_solid(command.mesh, solid);
+  print_hole_warning(command.mesh, solid.repair, solid.repair_distance, solid.surface.bounding_radius());
   const Surface& surface = solid.surface;
   const double radius = surface.bounding_radius();
   std::vector<Compared> all;

@@ -11,6 +11,7 @@
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/runtime/tree_file.h"
 #include "orchard/spheretree/tree_io.h"
+#include "reading_report.h"
 #include "report.h"
 
 namespace orchard::apps {
@@ -100,10 +101,12 @@ json inspect_sph(const std::filesystem::path& file) {
 }
 
 json inspect_mesh(const InspectCommand& command) {
-  const Surface surface(read_mesh(command.file));
+  auto [read, reading] = read_mesh_and_report(command.file);
+  const Surface surface(std::move(read));
   const MeshDetails details = mesh_details(surface.mesh(), surface.report());
   json report = mesh_json(surface);
   report["kind"] = "mesh";
+  report["reading"] = reading_json(reading);
   report["faults"] = surface.report().faults();
   report["unused_vertices"] = surface.report().unused_vertices;
   report["inside_out_components"] = surface.report().inside_out_components;
@@ -114,10 +117,14 @@ json inspect_mesh(const InspectCommand& command) {
   if (command.full || surface.mesh().triangles.size() <= kMaxForSelfIntersections)
     report["self_intersections"] = surface.self_intersections().size();
   TriangleMesh mesh = surface.mesh();
-  const MeshRepairReport repair = repair_mesh(mesh);
+  const MeshRepairReport repair = repair_mesh(mesh, repair_options(command.join));
+  const MeshReport repaired = check_mesh(mesh);
   RepairDistance distance;
   if (repair.solid && repair.changed()) distance = repair_distance(surface.mesh(), Surface(std::move(mesh)));
   report["repair"] = to_json(repair, distance, surface.bounding_radius());
+  report["repair"]["vertices"] = repaired.vertices;
+  report["repair"]["triangles"] = repaired.triangles;
+  report["repair"]["volume"] = repaired.volume;
   report["repair"]["solid"] = repair.solid;
   report["repair"]["faults"] = repair.faults;
   report["repair"]["holes_left_in_words"] = holes_left(repair);
@@ -144,8 +151,9 @@ void print_verdict(const json& report) {
   const json& repair = report["repair"];
   for (const json& line : repair["lines"]) fmt::print("repair: {}\n", line.get<std::string>());
   if (repair["solid"].get<bool>() && !repair["lines"].empty())
-    fmt::print("repair makes a solid of it: {}\n",
-               in_words(distance_of(repair), report["bounding_ball"][3].get<double>()));
+    fmt::print("repair makes a solid of it: {}; {} vertices, {} triangles, volume {:.8g}\n",
+               in_words(distance_of(repair), report["bounding_ball"][3].get<double>()), repair["vertices"].get<Index>(),
+               repair["triangles"].get<Index>(), repair["volume"].get<double>());
   if (!repair["solid"].get<bool>())
     fmt::print(
         "no closed manifold, even after repair: {}{}; \"orchard build --wrap\" builds on a closed skin around it\n",
@@ -164,8 +172,10 @@ void print_levels(const json& levels) {
 
 void print(const std::filesystem::path& file, const json& report) {
   fmt::print("{}: {}\n", file.string(), report["kind"].get<std::string>());
+  if (report.contains("reading"))
+    for (const json& line : report["reading"]["lines"]) fmt::print("{}: {}\n", file.string(), line.get<std::string>());
   for (const auto& [key, value] : report.items()) {
-    if (key == "kind" || key == "levels" || key == "faults" || key == "repair") continue;
+    if (key == "kind" || key == "levels" || key == "faults" || key == "repair" || key == "reading") continue;
     fmt::print("  {:24} {}\n", key, value.dump());
   }
   if (report.contains("levels")) print_levels(report["levels"]);
@@ -179,6 +189,8 @@ void inspect(const InspectCommand& command) {
   const std::string extension = lower_extension(command.file);
   if (command.full && (extension == ".orchard" || extension == ".sph"))
     throw InputError("--full has no effect on a tree; it is for meshes");
+  if (command.join && (extension == ".orchard" || extension == ".sph"))
+    throw InputError("--join has no effect on a tree; it is for meshes");
   const json report = extension == ".orchard" ? inspect_packed(command.file)
                       : extension == ".sph"   ? inspect_sph(command.file)
                                               : inspect_mesh(command);
@@ -187,6 +199,8 @@ void inspect(const InspectCommand& command) {
   } else if (!command.output.quiet) {
     print(command.file, report);
   }
+  if (report.contains("repair") && report["repair"]["warning"].is_string())
+    print_warning(command.file, report["repair"]["warning"]);
 }
 
 }  // namespace orchard::apps

@@ -8,6 +8,7 @@
 #include "finite_number.h"
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
+#include "reading_report.h"
 
 namespace orchard::apps {
 namespace {
@@ -28,6 +29,7 @@ SolidMesh strict(const std::string& name, TriangleMesh mesh, BoundingBall ball) 
     throw InputError(name + ": not a closed, consistently oriented manifold: " + surface.report().faults() +
                      "; without --strict, orchard repairs what is safe to repair");
   return {.surface = std::move(surface),
+          .reading = {},
           .repair = {.solid = true},
           .repair_distance = {},
           .wrap = {},
@@ -37,6 +39,7 @@ SolidMesh strict(const std::string& name, TriangleMesh mesh, BoundingBall ball) 
 SolidMesh wrapped(TriangleMesh mesh, const WrapOptions& options, BoundingBall ball, const Progress& progress) {
   report_progress(progress, "wrap", 0);
   SolidMesh solid{.surface = Surface(wrap_mesh(mesh, options), ball),
+                  .reading = {},
                   .repair = {.solid = true},
                   .repair_distance = {},
                   .wrap = {},
@@ -54,7 +57,7 @@ std::string with_note_on_numbers(const std::string& faults) {
 }
 
 RepairMeshOptions repair_options(const MeshOptions& options) {
-  RepairMeshOptions repair;
+  RepairMeshOptions repair = apps::repair_options(options.join);
   if (options.fill_holes) {
     repair.max_hole_diameter = *options.fill_holes;
     repair.max_hole_edges = std::numeric_limits<Index>::max();
@@ -71,6 +74,7 @@ SolidMesh repaired(const std::string& name, TriangleMesh mesh, const MeshOptions
     throw InputError(name + ": no closed manifold, even after repair: " + with_note_on_numbers(repair.faults) +
                      holes_left(repair, limits) + "; --wrap builds on a closed skin around it instead");
   SolidMesh solid{.surface = Surface(std::move(mesh), ball),
+                  .reading = {},
                   .repair = std::move(repair),
                   .repair_distance = {},
                   .wrap = {},
@@ -82,6 +86,12 @@ SolidMesh repaired(const std::string& name, TriangleMesh mesh, const MeshOptions
 json bounds(const SurfaceDistance& distance) { return {distance.lower, distance.upper}; }
 
 }  // namespace
+
+RepairMeshOptions repair_options(std::optional<double> join) {
+  RepairMeshOptions repair;
+  if (join) repair.join_distance = *join;
+  return repair;
+}
 
 std::string holes_left(const MeshRepairReport& repair, const RepairMeshOptions& limits) {
   if (repair.holes_left == 0) return {};
@@ -101,11 +111,14 @@ std::string holes_left(const MeshRepairReport& repair, const RepairMeshOptions& 
 SolidMesh load_solid(const std::filesystem::path& file, const MeshOptions& options, const Progress& progress) {
   WrapOptions wrap{.alpha = options.wrap_alpha};
   if (!options.wrap.empty()) wrap.offset = parse_offset(options.wrap);
-  TriangleMesh mesh = read_mesh(file);
+  auto [mesh, reading] = read_mesh_and_report(file);
   const std::string name = file.string();
+  if (options.strict) require_complete(name, reading);
   if (!options.wrap.empty()) {
     try {
-      return wrapped(std::move(mesh), wrap, options.ball, progress);
+      SolidMesh solid = wrapped(std::move(mesh), wrap, options.ball, progress);
+      solid.reading = std::move(reading);
+      return solid;
     } catch (const InputError& error) {
       throw InputError(name + ": " + error.what());
     }
@@ -114,17 +127,20 @@ SolidMesh load_solid(const std::filesystem::path& file, const MeshOptions& optio
       options.strict ? strict(name, std::move(mesh), options.ball) : repaired(name, std::move(mesh), options, progress);
   if (solid.surface.mesh().triangles.size() <= kMaxForSelfIntersections)
     solid.self_intersections = solid.surface.self_intersections().size();
+  solid.reading = std::move(reading);
   return solid;
 }
 
-RepairedMesh read_repaired(const std::filesystem::path& file) {
-  TriangleMesh mesh = read_mesh(file);
+RepairedMesh read_repaired(const std::filesystem::path& file, std::optional<double> join) {
+  auto [mesh, reading] = read_mesh_and_report(file);
   TriangleMesh copy = mesh;
-  MeshRepairReport repair = repair_mesh(copy);
-  if (!repair.solid) return {.mesh = std::move(mesh), .repair = {.faults = repair.faults}, .distance = {}};
+  MeshRepairReport repair = repair_mesh(copy, repair_options(join));
+  if (!repair.solid)
+    return {
+        .mesh = std::move(mesh), .reading = std::move(reading), .repair = {.faults = repair.faults}, .distance = {}};
   RepairDistance distance;
   if (repair.changed()) distance = repair_distance(mesh, Surface(copy));
-  return {.mesh = std::move(copy), .repair = std::move(repair), .distance = distance};
+  return {.mesh = std::move(copy), .reading = std::move(reading), .repair = std::move(repair), .distance = distance};
 }
 
 void print_repair(const std::filesystem::path& file, const MeshRepairReport& repair, const RepairDistance& distance,
@@ -134,6 +150,7 @@ void print_repair(const std::filesystem::path& file, const MeshRepairReport& rep
 }
 
 void print_solid(const std::filesystem::path& file, const SolidMesh& solid) {
+  print_reading(file, solid.reading);
   print_repair(file, solid.repair, solid.repair_distance, solid.surface.bounding_radius());
   if (solid.self_intersections.value_or(0) > 0)
     fmt::print(
@@ -169,6 +186,9 @@ std::string certificate(const SolidMesh& solid, const std::filesystem::path& wri
 
 json to_json(const MeshRepairReport& repair, const RepairDistance& distance, double bounding_radius) {
   json report{{"vertices_welded", repair.vertices_welded},
+              {"vertices_joined", repair.vertices_joined},
+              {"max_join", repair.max_join},
+              {"max_join_over_radius", repair.max_join / bounding_radius},
               {"unused_vertices_dropped", repair.unused_vertices_dropped},
               {"degenerate_dropped", repair.degenerate_dropped},
               {"neighbors_split", repair.neighbors_split},
@@ -176,6 +196,8 @@ json to_json(const MeshRepairReport& repair, const RepairDistance& distance, dou
               {"flipped", repair.flipped},
               {"edges_cut", repair.edges_cut},
               {"vertices_split", repair.vertices_split},
+              {"cracks_closed", repair.cracks_closed},
+              {"cracks_triangles", repair.cracks_triangles},
               {"holes_filled", repair.holes_filled},
               {"triangles_added", repair.triangles_added},
               {"max_hole", repair.max_hole},
@@ -183,10 +205,13 @@ json to_json(const MeshRepairReport& repair, const RepairDistance& distance, dou
               {"cavities_turned_inward", repair.cavities_turned_inward},
               {"lines", repair.lines()}};
   add_json(distance, bounding_radius, report);
+  const std::string warning = hole_warning(repair, distance, bounding_radius);
+  report["warning"] = warning.empty() ? json() : json(warning);
   return report;
 }
 
 void add_solid_json(const SolidMesh& solid, json& report) {
+  report["reading"] = reading_json(solid.reading);
   if (!solid.wrap) {
     report["repair"] = to_json(solid.repair, solid.repair_distance, solid.surface.bounding_radius());
     report["self_intersections"] = solid.self_intersections ? json(*solid.self_intersections) : json();

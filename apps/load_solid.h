@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "orchard/geometry/mesh_io.h"
 #include "orchard/geometry/progress.h"
 #include "orchard/geometry/repair.h"
 #include "orchard/geometry/surface.h"
@@ -18,10 +19,12 @@ struct MeshOptions {
   bool strict = false;  // as it is or not at all
   std::string wrap;     // not empty: build on a wrap that lies this far outside, a number of WrapOptions::offset
   double wrap_alpha = WrapOptions{}.alpha;
+  std::optional<double> join;        // corners up to this far apart, in bounding radii; else as repair.h says
   std::optional<double> fill_holes;  // up to this width, in bounding radii, whatever their edges; else as repair.h says
   BoundingBall ball = BoundingBall::minimal;
 };
 inline const std::string kDefaultWrap = "0.002";
+inline constexpr double kMaxJoin = 0.01;  // of MeshOptions::join: beyond it, corners that are meant are near enough
 
 struct WrapResult {
   WrapOptions options;
@@ -32,6 +35,7 @@ struct WrapResult {
 
 struct SolidMesh {
   Surface surface;
+  MeshReadReport reading;
   MeshRepairReport repair;         // nothing done if wrapped
   RepairDistance repair_distance;  // likewise
   std::optional<WrapResult> wrap;  // then `surface` is the wrap
@@ -48,13 +52,17 @@ SolidMesh load_solid(const std::filesystem::path& file, const MeshOptions& optio
 
 struct RepairedMesh {
   TriangleMesh mesh;
+  MeshReadReport reading;
   MeshRepairReport repair;
   RepairDistance distance;
 };
 
-// For commands that take any triangles: the mesh that load_solid() gives without options, or as it is in the file if
-// that cannot be repaired; then nothing was done.
-RepairedMesh read_repaired(const std::filesystem::path& file);
+// For commands that take any triangles: the mesh that load_solid() gives with no other option than `join`, or as it is
+// in the file if that cannot be repaired; then nothing was done.
+RepairedMesh read_repaired(const std::filesystem::path& file, std::optional<double> join);
+
+// What repair_mesh() is asked for.
+RepairMeshOptions repair_options(std::optional<double> join);
 
 // What to say of holes that were too large to fill, and how to have them filled; empty if there are none.
 std::string holes_left(const MeshRepairReport& repair, const RepairMeshOptions& limits = {});
@@ -67,7 +75,7 @@ void print_solid(const std::filesystem::path& file, const SolidMesh& solid);
 // build ends with.
 std::string certificate(const SolidMesh& solid, const std::filesystem::path& written);
 nlohmann::json to_json(const MeshRepairReport& repair, const RepairDistance& distance, double bounding_radius);
-// Sets "repair" and "self_intersections", or "wrap" and "wrap_distance".
+// Sets "reading", and "repair" and "self_intersections", or "wrap" and "wrap_distance".
 void add_solid_json(const SolidMesh& solid, nlohmann::json& report);
 
 }  // namespace orchard::apps

@@ -21,6 +21,7 @@
 #include "orchard/geometry/outside_solid.h"
 #include "outputs.h"
 #include "promises.h"
+#include "reading_report.h"
 #include "report.h"
 
 namespace orchard::apps {
@@ -183,6 +184,7 @@ ExitCode build_axis(const MedialCommand& command, const SolidMesh& solid, const 
   const bool talk = !command.output.quiet && !command.output.json;
   const MedialBuildOptions options = build_options(command.tuning);
   OwnInput own = read_axis_source(command.source, surface);
+  if (talk) print_reading(command.source.points, own.reading);
   if (inner != nullptr) own.input.sampling = sample_outside(*inner, surface, options.sampling, progress);
   const MedialBuild build = build_medial_axis(surface, options, progress, std::move(own.input));
   const MedialMesh mesh = medial_mesh(build.axis);
@@ -300,9 +302,11 @@ ExitCode medial(const MedialCommand& command) {
   const SolidMesh solid = load_solid(command.mesh, command.reading, bar.callback());
   bar.clear();
   if (!command.output.quiet && !command.output.json) print_solid(command.mesh, solid);
+  print_hole_warning(command.mesh, solid.repair, solid.repair_distance, solid.surface.bounding_radius());
   std::optional<SolidMesh> outside;
   if (command.outside) {
     outside = SolidMesh{.surface = Surface(outside_solid(solid.surface, command.outside_radius)),
+                        .reading = solid.reading,
                         .repair = {},
                         .repair_distance = {},
                         .wrap = {},

@@ -11,6 +11,7 @@
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/sampling.h"
 #include "outputs.h"
+#include "reading_report.h"
 #include "xyz.h"
 
 #ifdef ORCHARD_HAS_VIZ
@@ -70,9 +71,13 @@ void sample(const SampleCommand& command) {
   check_sampling(command);
   check_outputs(command.folder, std::array{xyz, points, mesh}, std::array{command.mesh});
   const bool talk = !command.output.quiet && !command.output.json;
-  RepairedMesh read = read_repaired(command.mesh);
+  RepairedMesh read = read_repaired(command.mesh, command.join);
   const Surface surface(std::move(read.mesh));
-  if (talk) print_repair(command.mesh, read.repair, read.distance, surface.bounding_radius());
+  if (talk) {
+    print_reading(command.mesh, read.reading);
+    print_repair(command.mesh, read.repair, read.distance, surface.bounding_radius());
+  }
+  print_hole_warning(command.mesh, read.repair, read.distance, surface.bounding_radius());
   SamplingOptions options = sampling_options(command, surface);
 
   ProgressBar bar(talk);
@@ -102,6 +107,7 @@ void sample(const SampleCommand& command) {
               {"iterations", command.iterations},
               {"seed", command.seed},
               {"evenness", std::move(evenness_json)},
+              {"reading", reading_json(read.reading)},
               {"repair", to_json(read.repair, read.distance, surface.bounding_radius())},
               {"seconds", seconds}};
   if (command.output.json) fmt::print("{}\n", report.dump(2));

@@ -16,6 +16,7 @@
 #include "orchard/runtime/tree_file.h"
 #include "orchard/spheretree/tree_io.h"
 #include "outputs.h"
+#include "reading_report.h"
 
 namespace orchard::apps {
 namespace {
@@ -43,6 +44,7 @@ const char* name(Violation::Kind kind) {
 // built on.
 struct Subject {
   Surface surface;
+  MeshReadReport reading = {};
   MeshRepairReport repair = {};  // of the mesh, where it is verified against that
   RepairDistance repair_distance = {};
   fs::path wrap = {};  // empty: the mesh itself
@@ -90,9 +92,11 @@ bool built_on(const fs::path& wrap, const VerifyCommand& command, const Tree& tr
 }
 
 Subject subject_of(const VerifyCommand& command, const Tree& tree, const Progress& progress) {
-  RepairedMesh read = read_repaired(command.mesh);
-  Subject subject{
-      .surface = Surface(std::move(read.mesh)), .repair = std::move(read.repair), .repair_distance = read.distance};
+  RepairedMesh read = read_repaired(command.mesh, command.join);
+  Subject subject{.surface = Surface(std::move(read.mesh)),
+                  .reading = std::move(read.reading),
+                  .repair = std::move(read.repair),
+                  .repair_distance = read.distance};
   const fs::path wrap = command.tree.parent_path() / named(command.tree, kWrapEnding);
   if (!built_on(wrap, command, tree, subject.surface.mesh())) return subject;
   Surface skin(read_mesh(wrap));
@@ -142,6 +146,7 @@ json to_json(const Verification& result, const Subject& subject) {
     report["wrap"] = {{"file", subject.wrap.string()},
                       {"wrap_to_mesh_over_radius", subject.wrap_to_mesh.upper / radius},
                       {"mesh_to_wrap_over_radius", subject.mesh_to_wrap.upper / radius}};
+  report["reading"] = reading_json(subject.reading);
   if (subject.repair.changed()) report["repair"] = to_json(subject.repair, subject.repair_distance, radius);
   return report;
 }
@@ -174,8 +179,9 @@ void print_uncovered(const Verification& result, const Surface& surface) {
       depth.upper / radius);
 }
 
-void print(const Verification& result, const Subject& subject, double seconds) {
+void print(const fs::path& mesh, const Verification& result, const Subject& subject, double seconds) {
   const double radius = subject.surface.bounding_radius();
+  print_reading(mesh, subject.reading);
   print_violations(result);
   print_uncovered(result, subject.surface);
   if (!subject.wrap.empty())
@@ -213,10 +219,11 @@ bool verify(const VerifyCommand& command) {
   const Verification result = verify_tree(subject, tree, command.box_centered, bar.callback());
   const double seconds = watch.seconds();
   bar.clear();
+  print_hole_warning(command.mesh, subject.repair, subject.repair_distance, subject.surface.bounding_radius());
   if (command.output.json) {
     fmt::print("{}\n", to_json(result, subject).dump(2));
   } else if (!command.output.quiet) {
-    print(result, subject, seconds);
+    print(command.mesh, result, subject, seconds);
   }
   return result.ok();
 }

@@ -10,6 +10,7 @@
 #include "orchard/geometry/mesh_io.h"
 #include "outputs.h"
 #include "picture.h"
+#include "reading_report.h"
 #include "sphere_lists.h"
 
 #ifdef ORCHARD_HAS_VIZ
@@ -67,7 +68,7 @@ std::string lower_extension(const std::filesystem::path& file) {
   return extension;
 }
 
-void add(const std::filesystem::path& file, Scene& scene) {
+void add(const std::filesystem::path& file, Scene& scene, bool talk) {
   const std::string extension = lower_extension(file), name = file.filename().string();
   if (extension == ".orchard" || extension == ".sph") {
     scene.trees.push_back({name, *read_spheres(file).tree});
@@ -76,7 +77,8 @@ void add(const std::filesystem::path& file, Scene& scene) {
   } else if (extension == ".vor") {
     scene.diagrams.push_back({name, read_vor(file)});
   } else {
-    TriangleMesh mesh = read_points_or_mesh(file);
+    auto [mesh, reading] = read_points_or_mesh_and_report(file);
+    if (talk) print_reading(file, reading);
     if (mesh.triangles.empty()) {
       scene.points.push_back({name, std::move(mesh.vertices)});
     } else {
@@ -112,7 +114,7 @@ void view(const ViewCommand& command) {
   Scene scene;
   scene.levels = command.levels;
   scene.opacity = command.opacity;
-  for (const std::filesystem::path& file : command.files) add(file, scene);
+  for (const std::filesystem::path& file : command.files) add(file, scene, !command.quiet);
   check_levels(scene);
 
   const Writing writing;

@@ -15,6 +15,7 @@
 #include "orchard/voronoi/diagram_io.h"
 #include "orchard/voronoi/quality.h"
 #include "outputs.h"
+#include "reading_report.h"
 #include "xyz.h"
 
 #ifdef ORCHARD_HAS_VIZ
@@ -28,6 +29,7 @@ using nlohmann::json;
 
 struct Input {
   std::vector<Point> points;
+  MeshReadReport reading;
   // Of a mesh, whose surface the points are on.
   std::optional<MeshRepairReport> repair;
   RepairDistance distance;
@@ -36,7 +38,8 @@ struct Input {
 
 Input read_input(const VoronoiCommand& command, const Progress& progress) {
   Input input;
-  TriangleMesh mesh = read_points_or_mesh(command.input);
+  auto [mesh, reading] = read_points_or_mesh_and_report(command.input);
+  input.reading = std::move(reading);
   if (mesh.triangles.empty()) {
     for (const std::string& option : command.sampling_given)
       if (option != "seed")
@@ -45,7 +48,7 @@ Input read_input(const VoronoiCommand& command, const Progress& progress) {
     input.points = std::move(mesh.vertices);
     return input;
   }
-  RepairedMesh read = read_repaired(command.input);
+  RepairedMesh read = read_repaired(command.input, command.sampling.join);
   const Surface surface(std::move(read.mesh));
   input.points = sample_surface(surface, sampling_options(command.sampling, surface), progress).points;
   input.repair = std::move(read.repair);
@@ -241,7 +244,9 @@ void voronoi(const VoronoiCommand& command) {
   check_cells(command, input);
   const std::vector<Run> runs = run_all(command, input.points, bar.callback());
   bar.clear();
+  if (talk) print_reading(command.input, input.reading);
   if (talk && input.repair) print_repair(command.input, *input.repair, input.distance, input.bounding_radius);
+  if (input.repair) print_hole_warning(command.input, *input.repair, input.distance, input.bounding_radius);
   if (talk) print(command, input, runs);
   std::optional<Outputs> outputs;
   if (!command.folder.empty()) {
@@ -250,7 +255,8 @@ void voronoi(const VoronoiCommand& command) {
     if (talk) outputs->print();
   }
   if (!command.output.json) return;
-  json report{{"points", input.points.size()}, {"sampled", input.repair.has_value()}};
+  json report{
+      {"points", input.points.size()}, {"sampled", input.repair.has_value()}, {"reading", reading_json(input.reading)}};
   if (input.repair) report["repair"] = to_json(*input.repair, input.distance, input.bounding_radius);
   for (const Run& run : runs) report["algorithms"].push_back(to_json(run));
   fmt::print("{}\n", report.dump(2));

@@ -3,21 +3,53 @@
 #include <string_view>
 
 #include "orchard/geometry/mesh.h"
+#include "orchard/geometry/mesh_io.h"
 
 namespace orchard {
 
-// The readers behind read_mesh(), on a file's bytes. `name` is what messages call the file. Any bytes will do: the
-// result passes validate(), or InputError names the line or byte, the fault and, where there is one, the remedy. Time
-// and memory grow linearly with the bytes (read_stl: n log n).
-TriangleMesh read_obj(std::string_view bytes, const std::string& name);
-TriangleMesh read_ply(std::string_view bytes, const std::string& name);
-TriangleMesh read_stl(std::string_view bytes, const std::string& name);  // welds identical corners
-TriangleMesh read_off(std::string_view bytes, const std::string& name);
+// The readers behind read_mesh(), on a file's bytes. `name` is what messages call the file; `report` receives what is
+// left out. Any bytes will do: the result passes validate(), or InputError names the line or byte, the fault and, where
+// there is one, the remedy. Time and memory grow linearly with the bytes (read_stl and polygons: n log n).
+TriangleMesh read_obj(std::string_view bytes, const std::string& name, MeshReadReport& report);
+TriangleMesh read_ply(std::string_view bytes, const std::string& name, MeshReadReport& report);
+// Welds identical corners.
+TriangleMesh read_stl(std::string_view bytes, const std::string& name, MeshReadReport& report);
+TriangleMesh read_off(std::string_view bytes, const std::string& name, MeshReadReport& report);
 
 // The readers behind read_points_or_mesh(). The same, but a file without faces gives its vertices alone; only one
 // without either is refused. .xyz has no faces.
-TriangleMesh read_obj_or_points(std::string_view bytes, const std::string& name);
-TriangleMesh read_ply_or_points(std::string_view bytes, const std::string& name);
-TriangleMesh read_xyz(std::string_view bytes, const std::string& name);
+TriangleMesh read_obj_or_points(std::string_view bytes, const std::string& name, MeshReadReport& report);
+TriangleMesh read_ply_or_points(std::string_view bytes, const std::string& name, MeshReadReport& report);
+TriangleMesh read_xyz(std::string_view bytes, const std::string& name, MeshReadReport& report);
+
+// The same, for the mesh alone.
+inline TriangleMesh read_obj(std::string_view bytes, const std::string& name) {
+  MeshReadReport report;
+  return read_obj(bytes, name, report);
+}
+inline TriangleMesh read_ply(std::string_view bytes, const std::string& name) {
+  MeshReadReport report;
+  return read_ply(bytes, name, report);
+}
+inline TriangleMesh read_stl(std::string_view bytes, const std::string& name) {
+  MeshReadReport report;
+  return read_stl(bytes, name, report);
+}
+inline TriangleMesh read_off(std::string_view bytes, const std::string& name) {
+  MeshReadReport report;
+  return read_off(bytes, name, report);
+}
+inline TriangleMesh read_obj_or_points(std::string_view bytes, const std::string& name) {
+  MeshReadReport report;
+  return read_obj_or_points(bytes, name, report);
+}
+inline TriangleMesh read_ply_or_points(std::string_view bytes, const std::string& name) {
+  MeshReadReport report;
+  return read_ply_or_points(bytes, name, report);
+}
+inline TriangleMesh read_xyz(std::string_view bytes, const std::string& name) {
+  MeshReadReport report;
+  return read_xyz(bytes, name, report);
+}
 
 }  // namespace orchard

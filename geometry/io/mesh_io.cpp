@@ -39,7 +39,7 @@ std::string lower_case_extension(const std::filesystem::path& file) {
   return extension;
 }
 
-using Reader = TriangleMesh (*)(std::string_view, const std::string&);
+using Reader = TriangleMesh (*)(std::string_view, const std::string&, MeshReadReport&);
 
 Reader reader_for(const std::filesystem::path& file) {
   const std::string extension = lower_case_extension(file);
@@ -95,20 +95,29 @@ class TextBuffer {
 
 }  // namespace
 
-TriangleMesh read_mesh(const std::filesystem::path& file) {
+MeshReading read_mesh_and_report(const std::filesystem::path& file) {
   const Reader reader = reader_for(file);
-  TriangleMesh mesh = reader(read_bytes(file), file.string());
+  MeshReading reading;
+  reading.mesh = reader(read_bytes(file), file.string(), reading.report);
   try {
-    require_usable_size(mesh);
+    require_usable_size(reading.mesh);
   } catch (const InputError& error) {
     throw InputError(file.string() + ": " + error.what());
   }
-  return mesh;
+  return reading;
+}
+
+TriangleMesh read_mesh(const std::filesystem::path& file) { return read_mesh_and_report(file).mesh; }
+
+MeshReading read_points_or_mesh_and_report(const std::filesystem::path& file) {
+  const Reader reader = point_reader_for(file);
+  MeshReading reading;
+  reading.mesh = reader(read_bytes(file), file.string(), reading.report);
+  return reading;
 }
 
 TriangleMesh read_points_or_mesh(const std::filesystem::path& file) {
-  const Reader reader = point_reader_for(file);
-  return reader(read_bytes(file), file.string());
+  return read_points_or_mesh_and_report(file).mesh;
 }
 
 void write_obj(const std::filesystem::path& file, const TriangleMesh& mesh) {

@@ -3,6 +3,7 @@
 #include <CGAL/Simple_cartesian.h>
 
 #include <locale>
+#include <span>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "orchard/geometry/error.h"
 #include "polygons.h"
 #include "soup_guards.h"
+#include "text_scan.h"
+#include "vertex_faults.h"
 
 namespace orchard {
 namespace {
@@ -20,21 +23,24 @@ struct Soup {
   std::vector<std::vector<std::size_t>> polygons;
 };
 
-TriangleMesh to_mesh(const Soup& soup, const std::string& name) {
+std::vector<Point> vertices_of(const Soup& soup, const std::string& name) {
   if (soup.points.size() >= kNone) throw InputError(name + ": too many vertices for 32-bit indices");
-  TriangleMesh mesh;
-  mesh.vertices.reserve(soup.points.size());
-  for (const auto& point : soup.points) mesh.vertices.emplace_back(point.x(), point.y(), point.z());
+  std::vector<Point> vertices;
+  vertices.reserve(soup.points.size());
+  for (const auto& point : soup.points) vertices.emplace_back(point.x(), point.y(), point.z());
+  return vertices;
+}
+
+// face_at: byte of each polygon in the file; empty if they are triangles.
+FaceCollector faces_of(const Soup& soup, std::span<const std::size_t> face_at) {
   FaceCollector faces;
   std::vector<Index> corners;
-  for (const auto& polygon : soup.polygons) {
+  for (std::size_t i = 0; i < soup.polygons.size(); ++i) {
     corners.clear();
-    for (const std::size_t corner : polygon) corners.push_back(static_cast<Index>(corner));
-    faces.add(corners);
+    for (const std::size_t corner : soup.polygons[i]) corners.push_back(static_cast<Index>(corner));
+    faces.add(corners, i < face_at.size() ? face_at[i] : 0);
   }
-  if (faces.empty()) throw InputError(name + ": no faces in this file");
-  mesh.triangles = std::move(faces).finish(mesh.vertices);
-  return mesh;
+  return faces;
 }
 
 std::istringstream stream_of(std::string bytes) {
@@ -45,18 +51,31 @@ std::istringstream stream_of(std::string bytes) {
 
 }  // namespace
 
-TriangleMesh read_stl(std::string_view bytes, const std::string& name) {
+TriangleMesh read_stl(std::string_view bytes, const std::string& name, MeshReadReport& report) {
   Soup soup;
-  std::istringstream stream = stream_of(checked_stl(bytes, name));
+  std::istringstream stream = stream_of(checked_stl(bytes, name, report));
   if (!CGAL::IO::read_STL(stream, soup.points, soup.polygons)) throw InputError(name + ": not a readable STL file");
-  return to_mesh(soup, name);
+  FaceCollector faces = faces_of(soup, {});
+  if (faces.empty()) throw InputError(name + ": no faces in this file");
+  TriangleMesh mesh{vertices_of(soup, name), {}};
+  mesh.triangles = std::move(faces).finish(mesh.vertices).triangles;
+  return mesh;
 }
 
-TriangleMesh read_off(std::string_view bytes, const std::string& name) {
+TriangleMesh read_off(std::string_view bytes, const std::string& name, MeshReadReport& report) {
   Soup soup;
-  std::istringstream stream = stream_of(checked_off(bytes, name));
+  CheckedOff checked = checked_off(bytes, name, report);
+  std::istringstream stream = stream_of(std::move(checked.bytes));
   if (!CGAL::IO::read_OFF(stream, soup.points, soup.polygons)) throw InputError(name + ": not a readable OFF file");
-  return to_mesh(soup, name);
+  FaceCollector faces = faces_of(soup, checked.face_at);
+  TriangleMesh mesh{vertices_of(soup, name), {}};
+  const auto place = [&](std::size_t at) { return line_place(bytes, at); };
+  checked.vertex_faults.settle(
+      mesh.vertices, faces,
+      [&](std::size_t at) { fail_at_line(name, bytes, at, "vertex needs three finite numbers, since a face uses it"); },
+      place, report);
+  mesh.triangles = split_faces(std::move(faces), mesh.vertices, place, report);
+  return mesh;
 }
 
 }  // namespace orchard

@@ -6,6 +6,7 @@
 #include "mesh_formats.h"
 #include "polygons.h"
 #include "text_scan.h"
+#include "vertex_faults.h"
 
 namespace orchard {
 namespace {
@@ -13,8 +14,8 @@ namespace {
 // One pass over the bytes. Lines are counted only when there is something to complain about.
 class ObjReader {
  public:
-  ObjReader(std::string_view bytes, const std::string& name)
-      : bytes_(bytes), name_(name), at_(bytes.data()), end_(bytes.data() + bytes.size()) {}
+  ObjReader(std::string_view bytes, const std::string& name, MeshReadReport& report)
+      : bytes_(bytes), name_(name), report_(report), at_(bytes.data()), end_(bytes.data() + bytes.size()) {}
 
   TriangleMesh read(bool needs_faces) {
     if (const void* zero = bytes_.empty() ? nullptr : std::memchr(bytes_.data(), 0, bytes_.size())) {
@@ -32,9 +33,18 @@ class ObjReader {
       throw InputError(name_ + ": no vertices (lines that begin with \"v\") in " + std::to_string(bytes_.size()) +
                        " bytes of OBJ");
     if (needs_faces && faces_.empty())
-      throw InputError(name_ + ": no faces (lines that begin with \"f\") in " + std::to_string(bytes_.size()) +
-                       " bytes of OBJ");
-    mesh_.triangles = std::move(faces_).finish(mesh_.vertices);
+      throw InputError(name_ + ": no faces (lines that begin with \"f\" and name three corners or more) in " +
+                       std::to_string(bytes_.size()) + " bytes of OBJ");
+    const auto place = [&](std::size_t at) { return line_place(bytes_, at); };
+    vertex_faults_.settle(
+        mesh_.vertices, faces_,
+        [&](std::size_t at) {
+          fail(bytes_.data() + at, "vertex coordinate " + token(bytes_.data() + at) +
+                                       " is not a finite number, and a face uses the vertex");
+        },
+        place, report_);
+    if (mesh_.vertices.empty()) throw InputError(name_ + ": no vertices with finite coordinates in this OBJ file");
+    mesh_.triangles = split_faces(std::move(faces_), mesh_.vertices, place, report_);
     return std::move(mesh_);
   }
 
@@ -100,12 +110,17 @@ class ObjReader {
 
   void read_vertex(const char* statement) {
     Point& vertex = mesh_.vertices.emplace_back();
+    bool finite = true;
     for (int i = 0; i < 3; ++i) {
       skip_blanks();
       if (at_statement_end()) fail(statement, "vertex has " + std::to_string(i) + " coordinates; it needs 3");
       const char* number = at_;
-      if (!scan_double(at_, end_, vertex[i]) || !at_token_end() || !std::isfinite(vertex[i])) {
-        fail(number, "vertex coordinate " + token(number) + " is not a finite number");
+      if (!scan_any_double(at_, end_, vertex[i]) || !at_token_end()) {
+        fail(number, "vertex coordinate " + token(number) + " is not a number");
+      }
+      if (!std::isfinite(vertex[i]) && finite) {
+        vertex_faults_.add(static_cast<Index>(mesh_.vertices.size() - 1), offset(number));
+        finite = false;
       }
     }
     if (mesh_.vertices.size() >= kNone) fail(statement, "too many vertices for 32-bit indices");
@@ -119,14 +134,15 @@ class ObjReader {
       highest = std::max(highest, corners_.back());
     }
     if (corners_.size() < 3) {
-      fail(statement, "face has " + std::to_string(corners_.size()) + " corners; it needs at least 3");
+      if (report_.faces_skipped.count++ == 0) report_.faces_skipped.first = line_place(bytes_, offset(statement));
+      return;
     }
     // A later face is worth remembering only if it names a higher vertex.
     if (highest >= mesh_.vertices.size() &&
         (forward_references_.empty() || highest > forward_references_.back().vertex)) {
       forward_references_.push_back({statement, highest});
     }
-    faces_.add(corners_);
+    faces_.add(corners_, offset(statement));
   }
 
   // v, v/vt, v//vn or v/vt/vn. Texture and normal indices must be integers, but nobody looks them up.
@@ -153,20 +169,24 @@ class ObjReader {
 
   std::string_view bytes_;
   const std::string& name_;
+  MeshReadReport& report_;
   const char* at_;
   const char* end_;
   TriangleMesh mesh_;
   FaceCollector faces_;
+  VertexFaults vertex_faults_;
   std::vector<Index> corners_;
   std::vector<ForwardReference> forward_references_;  // ascending by vertex
 };
 
 }  // namespace
 
-TriangleMesh read_obj(std::string_view bytes, const std::string& name) { return ObjReader(bytes, name).read(true); }
+TriangleMesh read_obj(std::string_view bytes, const std::string& name, MeshReadReport& report) {
+  return ObjReader(bytes, name, report).read(true);
+}
 
-TriangleMesh read_obj_or_points(std::string_view bytes, const std::string& name) {
-  return ObjReader(bytes, name).read(false);
+TriangleMesh read_obj_or_points(std::string_view bytes, const std::string& name, MeshReadReport& report) {
+  return ObjReader(bytes, name, report).read(false);
 }
 
 }  // namespace orchard

@@ -9,6 +9,7 @@
 #include "ply_header.h"
 #include "polygons.h"
 #include "text_scan.h"
+#include "vertex_faults.h"
 
 namespace orchard {
 namespace {
@@ -16,8 +17,8 @@ namespace {
 template <typename Body>
 class PlyReader {
  public:
-  PlyReader(const PlyHeader& header, std::string_view bytes, const std::string& name, Body body)
-      : header_(header), bytes_(bytes), name_(name), body_(body) {}
+  PlyReader(const PlyHeader& header, std::string_view bytes, const std::string& name, Body body, MeshReadReport& report)
+      : header_(header), bytes_(bytes), name_(name), body_(body), report_(report) {}
 
   TriangleMesh read(bool needs_faces) {
     for (const PlyElement& element : header_.elements) {
@@ -26,7 +27,15 @@ class PlyReader {
     for (const PlyElement& element : header_.elements) read_element(element);
     if (needs_faces && faces_.empty()) throw InputError(name_ + ": no faces in this PLY file");
     if (mesh_.vertices.empty()) throw InputError(name_ + ": no vertices in this PLY file");
-    mesh_.triangles = std::move(faces_).finish(mesh_.vertices);
+    const auto place = [&](std::size_t at) { return body_.place(at); };
+    vertex_faults_.settle(
+        mesh_.vertices, faces_,
+        [&](std::size_t at) {
+          body_.fail(at, "a vertex coordinate that is not a finite number, and a face uses the vertex");
+        },
+        place, report_);
+    if (mesh_.vertices.empty()) throw InputError(name_ + ": no vertices with finite coordinates in this PLY file");
+    mesh_.triangles = split_faces(std::move(faces_), mesh_.vertices, place, report_);
     return std::move(mesh_);
   }
 
@@ -77,6 +86,7 @@ class PlyReader {
     if (element.rows >= kNone) fail_in_header(element, "has too many rows for 32-bit indices");
     mesh_.vertices.resize(element.rows);
     for (Point& vertex : mesh_.vertices) {
+      bool finite = true;
       for (std::size_t i = 0; i < axes.size(); ++i) {
         const PlyProperty& property = element.properties[i];
         if (axes[i] < 0) {
@@ -85,7 +95,9 @@ class PlyReader {
         }
         const std::size_t start = body_.position();
         vertex[axes[i]] = body_.number(property.type);
-        if (!std::isfinite(vertex[axes[i]])) body_.fail(start, "a vertex coordinate that is not a finite number");
+        if (std::isfinite(vertex[axes[i]]) || !finite) continue;
+        vertex_faults_.add(static_cast<Index>(&vertex - mesh_.vertices.data()), start);
+        finite = false;
       }
     }
   }
@@ -106,13 +118,17 @@ class PlyReader {
   void read_face(const PlyProperty& property) {
     const std::size_t start = body_.position();
     const std::uint64_t length = list_length(property);
-    if (length < 3) body_.fail(start, "a face of " + std::to_string(length) + " corners; it needs at least 3");
+    if (length < 3) {
+      body_.skip(property.type, length);
+      if (report_.faces_skipped.count++ == 0) report_.faces_skipped.first = body_.place(start);
+      return;
+    }
     corners_.clear();
     for (std::uint64_t i = 0; i < length; ++i) {
       const std::size_t at = body_.position();
       corners_.push_back(corner(at, body_.integer(property.type), "face"));
     }
-    faces_.add(corners_);
+    faces_.add(corners_, start);
   }
 
   // Strips of triangles one after another, each ended by -1 or by the list. Every corner after the second makes a
@@ -152,9 +168,11 @@ class PlyReader {
   std::string_view bytes_;
   const std::string& name_;
   Body body_;
+  MeshReadReport& report_;
   std::uint64_t vertex_count_ = 0;
   TriangleMesh mesh_;
   FaceCollector faces_;
+  VertexFaults vertex_faults_;
   std::vector<Index> corners_;
 };
 
@@ -162,19 +180,23 @@ class PlyReader {
 
 namespace {
 
-TriangleMesh read(std::string_view bytes, const std::string& name, bool needs_faces) {
+TriangleMesh read(std::string_view bytes, const std::string& name, bool needs_faces, MeshReadReport& report) {
   const PlyHeader header = read_ply_header(bytes, name);
   if (header.encoding == PlyEncoding::ascii) {
-    return PlyReader(header, bytes, name, AsciiBody(bytes, header.body, name)).read(needs_faces);
+    return PlyReader(header, bytes, name, AsciiBody(bytes, header.body, name), report).read(needs_faces);
   }
   const std::endian order = header.encoding == PlyEncoding::little_endian ? std::endian::little : std::endian::big;
-  return PlyReader(header, bytes, name, BinaryBody(bytes, header.body, order, name)).read(needs_faces);
+  return PlyReader(header, bytes, name, BinaryBody(bytes, header.body, order, name), report).read(needs_faces);
 }
 
 }  // namespace
 
-TriangleMesh read_ply(std::string_view bytes, const std::string& name) { return read(bytes, name, true); }
+TriangleMesh read_ply(std::string_view bytes, const std::string& name, MeshReadReport& report) {
+  return read(bytes, name, true, report);
+}
 
-TriangleMesh read_ply_or_points(std::string_view bytes, const std::string& name) { return read(bytes, name, false); }
+TriangleMesh read_ply_or_points(std::string_view bytes, const std::string& name, MeshReadReport& report) {
+  return read(bytes, name, false, report);
+}
 
 }  // namespace orchard

@@ -32,10 +32,12 @@ class AsciiBody {
   [[noreturn]] void fail(std::size_t position, const std::string& fault) const {
     fail_at_line(name_, bytes_, position, fault);
   }
+  // For a report.
+  std::string place(std::size_t position) const { return line_place(bytes_, position); }
   double number(PlyType) {
     const char* token = next_token();
     double value = 0;
-    if (!scan_double(at_, end_, value) || !at_token_end()) fail_not_a_number(token);
+    if (!scan_any_double(at_, end_, value) || !at_token_end()) fail_not_a_number(token);
     return value;
   }
   std::int64_t integer(PlyType) {
@@ -96,6 +98,7 @@ class BinaryBody {
   std::size_t remaining() const { return bytes_.size() - at_; }
   std::size_t position() const { return at_; }
   [[noreturn]] void fail(std::size_t position, const std::string& fault) const { fail_at_byte(name_, position, fault); }
+  static std::string place(std::size_t position) { return "byte " + std::to_string(position); }
   double number(PlyType type) {
     return visit<double>(type, [](auto value) { return static_cast<double>(value); });
   }

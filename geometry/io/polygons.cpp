@@ -1,6 +1,8 @@
 #include "polygons.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "orchard/geometry/error.h"
@@ -10,6 +12,10 @@ namespace {
 
 // How much better another corner must be before it replaces the first: above rounding, below any bend worth minding.
 constexpr double kClearlyBetter = 1e-6;
+// Radians by which the angles of a fan around one corner may exceed a whole turn: a few roundings.
+constexpr double kWholeTurn = 2 * std::numbers::pi + 1e-9;
+// The part of the square of a polygon's length that its width times its length exceeds unless it lies on a line.
+constexpr double kOnLine = 1e-12;
 
 // A face's corners in space.
 class Polygon {
@@ -36,46 +42,103 @@ double agreement(const Polygon& polygon, const Vector& normal, std::size_t apex,
   return worst;
 }
 
-// The corner whose fan agrees best with Newell's normal of the polygon.
-std::size_t best_apex(const Polygon& polygon, std::size_t trials) {
-  Vector normal = Vector::Zero();
+// Newell's: twice the polygon's area along its best plane's normal.
+Vector area_of(const Polygon& polygon) {
+  Vector area = Vector::Zero();
   for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
-    normal += (polygon[i] - polygon[0]).cross(polygon[i + 1] - polygon[0]);
+    area += (polygon[i] - polygon[0]).cross(polygon[i + 1] - polygon[0]);
   }
-  const double length = normal.norm();
-  if (!(length > 0)) return 0;
-  normal /= length;
-  std::size_t best = 0;
-  double best_agreement = agreement(polygon, normal, 0, -1);
+  return area;
+}
+
+struct Fan {
+  std::size_t apex = 0;
+  double agreement = 0;  // 0 if the polygon has no normal
+};
+
+// The corner whose fan agrees best with the normal.
+Fan best_fan(const Polygon& polygon, const Vector& normal, std::size_t trials) {
+  Fan best{.apex = 0, .agreement = agreement(polygon, normal, 0, -1)};
   for (std::size_t apex = 1; apex < std::min(polygon.size(), trials); ++apex) {
-    if (best_agreement > 1 - kClearlyBetter) break;
-    const double candidate = agreement(polygon, normal, apex, best_agreement);
-    if (candidate > best_agreement + kClearlyBetter) best = apex, best_agreement = candidate;
+    if (best.agreement > 1 - kClearlyBetter) break;
+    const double candidate = agreement(polygon, normal, apex, best.agreement);
+    if (candidate > best.agreement + kClearlyBetter) best = {.apex = apex, .agreement = candidate};
   }
   return best;
 }
 
+// Whether a fan whose triangles all face the right way covers no place twice: its angles make up less than a turn.
+bool within_a_turn(const Polygon& polygon, std::size_t apex) {
+  double angle = 0;
+  for (std::size_t i = 1; i + 1 < polygon.size() && polygon.size() > 4; ++i) {
+    const Vector a = polygon[apex + i] - polygon[apex], b = polygon[apex + i + 1] - polygon[apex];
+    angle += std::atan2(a.cross(b).norm(), a.dot(b));
+  }
+  return angle <= kWholeTurn;
+}
+
+// Corners on a line, or in one place, enclose nothing that could overlap.
+bool lies_on_line(const Polygon& polygon) {
+  Vector axis = Vector::Zero();
+  for (std::size_t i = 1; i < polygon.size(); ++i)
+    if (const Vector to = polygon[i] - polygon[0]; to.squaredNorm() > axis.squaredNorm()) axis = to;
+  double widest = 0;
+  for (std::size_t i = 1; i < polygon.size(); ++i)
+    widest = std::max(widest, axis.cross(polygon[i] - polygon[0]).norm());
+  return !(widest > kOnLine * axis.squaredNorm());
+}
+
+std::vector<Index> without_repetitions(std::span<const Index> corners) {
+  std::vector<Index> kept;
+  for (const Index corner : corners)
+    if (kept.empty() || kept.back() != corner) kept.push_back(corner);
+  while (kept.size() > 1 && kept.back() == kept.front()) kept.pop_back();
+  return kept;
+}
+
 }  // namespace
 
-void FaceCollector::add(std::span<const Index> corners) {
+void FaceCollector::add(std::span<const Index> corners, std::size_t at) {
   if (corners.size() > kNone / 3 - triangles_.size())
     throw InputError("the file has too many triangles for 32-bit indices");
-  if (corners.size() > 3) faces_.push_back({triangles_.size(), static_cast<Index>(corners.size())});
+  if (corners.size() > 3) faces_.push_back({triangles_.size(), static_cast<Index>(corners.size()), at});
   for (std::size_t i = 1; i + 1 < corners.size(); ++i) triangles_.push_back({corners[0], corners[i], corners[i + 1]});
 }
 
-std::vector<std::array<Index, 3>> FaceCollector::finish(std::span<const Point> vertices) && {
+FaceCollector::Split FaceCollector::finish(std::span<const Point> vertices) && {
+  Split split;
   std::vector<Index> corners;
-  for (const auto& [first, count] : faces_) {
+  bool fewer = false;
+  for (const auto& [first, count, at] : faces_) {
     corners.assign({triangles_[first][0], triangles_[first][1]});
     corners.reserve(count);
     for (std::size_t i = 0; i + 2 < count; ++i) corners.push_back(triangles_[first + i][2]);
-    const std::size_t apex = best_apex(Polygon(corners, vertices), kTrials);
+    const Polygon polygon(corners, vertices);
+    const Vector area = area_of(polygon), normal = area.normalized();
+    const bool has_normal = area.norm() > 0 && normal.allFinite();
+    const Fan fan = has_normal ? best_fan(polygon, normal, kTrials) : Fan{};
+    if (!(fan.agreement > 0 && within_a_turn(polygon, fan.apex))) {
+      const std::vector<Index> distinct = without_repetitions(corners);
+      const bool flat = lies_on_line(polygon) || distinct.size() < 3;
+      const auto cut = has_normal && !flat ? triangulate_polygon(distinct, vertices, normal) : std::nullopt;
+      if (cut && cut->size() <= count - 2) {
+        std::fill_n(triangles_.begin() + static_cast<std::ptrdiff_t>(first), count - 2,
+                    std::array{kNone, kNone, kNone});
+        std::copy(cut->begin(), cut->end(), triangles_.begin() + static_cast<std::ptrdiff_t>(first));
+        fewer |= cut->size() < count - 2;
+        split.triangulated += distinct.size() > 3 ? 1 : 0;
+        continue;
+      }
+      if (!flat && split.overlapping++ == 0) split.first_overlapping = at;
+    }
     for (std::size_t i = 0; i + 2 < count; ++i) {
-      triangles_[first + i] = {corners[apex], corners[(apex + i + 1) % count], corners[(apex + i + 2) % count]};
+      triangles_[first + i] = {corners[fan.apex], corners[(fan.apex + i + 1) % count],
+                               corners[(fan.apex + i + 2) % count]};
     }
   }
-  return std::move(triangles_);
+  if (fewer) std::erase_if(triangles_, [](const std::array<Index, 3>& t) { return t[0] == kNone; });
+  split.triangles = std::move(triangles_);
+  return split;
 }
 
 }  // namespace orchard

@@ -13,6 +13,10 @@ std::size_t line_number(std::string_view bytes, std::size_t offset) {
   return line;
 }
 
+std::string line_place(std::string_view bytes, std::size_t offset) {
+  return "line " + std::to_string(line_number(bytes, offset));
+}
+
 std::string in_quotes(std::string_view text) {
   constexpr std::size_t kLength = 24;
   std::string result = "\"";

@@ -16,6 +16,9 @@ inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c ==
 // Number of the line, counted from 1, that `offset` lies on. Lines end with \n, \r\n or \r.
 std::size_t line_number(std::string_view bytes, std::size_t offset);
 
+// The same for a report: "line 7".
+std::string line_place(std::string_view bytes, std::size_t offset);
+
 // `text` cut to a length and to characters that are fit for a message, in quotes.
 std::string in_quotes(std::string_view text);
 
@@ -38,6 +41,19 @@ inline bool scan_double(const char*& at, const char* end, double& value) {
   } else if (error != std::errc()) {
     return false;
   }
+  at = stop;
+  return true;
+}
+
+// The same, but a number that is too large for a double is read as infinite.
+inline bool scan_any_double(const char*& at, const char* end, double& value) {
+  if (scan_double(at, end, value)) return true;
+  const char* first = at;
+  if (first != end && *first == '+' && first + 1 != end && first[1] != '-') ++first;
+  double unused = 0;
+  const auto [stop, error] = std::from_chars(first, end, unused);
+  if (error != std::errc::result_out_of_range) return false;
+  value = *first == '-' ? -HUGE_VAL : HUGE_VAL;
   at = stop;
   return true;
 }

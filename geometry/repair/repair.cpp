@@ -3,6 +3,7 @@
 #include <charconv>
 
 #include "orchard/geometry/mesh_check.h"
+#include "orchard/geometry/min_ball.h"
 #include "repair_steps.h"
 
 namespace orchard {
@@ -13,16 +14,28 @@ std::string in_digits(double value) {
   return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, 3).ptr};
 }
 
+double radius_of_used(const TriangleMesh& mesh) {
+  std::vector<bool> used(mesh.vertices.size(), false);
+  for (const auto& corners : mesh.triangles)
+    for (const Index vertex : corners) used[vertex] = true;
+  std::vector<Point> points;
+  for (std::size_t v = 0; v < used.size(); ++v)
+    if (used[v]) points.push_back(mesh.vertices[v]);
+  return ritter_ball(points).radius;
+}
+
 void close(TriangleMesh& mesh, const RepairMeshOptions& options, MeshRepairReport& report) {
+  const double radius = radius_of_used(mesh);
   detail::weld_vertices(mesh, report);
+  detail::join_vertices(mesh, options.join_distance * radius, radius, report);
   detail::drop_degenerate(mesh, report);
   detail::drop_duplicates(mesh, report);
   if (mesh.triangles.empty()) return;
   detail::orient_components(mesh, report);
   // Before cutting, because holes that touch at a vertex are two; after it, because a cut can open one.
-  detail::fill_holes(mesh, options, report);
+  detail::fill_holes(mesh, options, radius, report);
   detail::cut_apart(mesh, report);
-  detail::fill_holes(mesh, options, report);
+  detail::fill_holes(mesh, options, radius, report);
   // The hole between an edge and its two halves is a triangle without area.
   detail::drop_degenerate(mesh, report);
   const MeshReport check = check_mesh(mesh);
@@ -58,6 +71,9 @@ std::vector<std::string> MeshRepairReport::lines() const {
     if (count > 0) lines.push_back(verb + " " + std::to_string(count) + " " + (count == 1 ? one : many) + rest);
   };
   say(vertices_welded, "welded", "vertex", "vertices", " to another in the same place");
+  say(vertices_joined, "joined", "vertex", "vertices",
+      vertices_joined == 1 ? " to another " + in_digits(max_join) + " away"
+                           : " to others no farther than " + in_digits(max_join) + " away");
   say(unused_vertices_dropped, "dropped", "vertex", "vertices", " that no triangle uses");
   say(degenerate_dropped, "dropped", "triangle", "triangles", " without area");
   say(neighbors_split, "split", "triangle", "triangles", " at a vertex that lay on an edge");
@@ -65,6 +81,9 @@ std::vector<std::string> MeshRepairReport::lines() const {
   say(flipped, "turned", "triangle", "triangles", " round to agree with the neighbours");
   say(edges_cut, "cut", "edge", "edges", " where more than two triangles met");
   say(vertices_split, "split", "vertex", "vertices", " where parts of the surface touched");
+  say(cracks_closed, "closed", "crack", "cracks",
+      " with " + std::to_string(cracks_triangles) + (cracks_triangles == 1 ? " triangle" : " triangles") +
+          ", no wider than corners are joined over");
   say(holes_filled, "filled", "hole", "holes",
       " with " + std::to_string(triangles_added) + (triangles_added == 1 ? " triangle" : " triangles") +
           (holes_filled == 1 ? ", " : ", the largest ") + in_digits(max_hole) + " across");

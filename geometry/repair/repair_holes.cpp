@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "half_edges.h"
-#include "orchard/geometry/min_ball.h"
 #include "repair_steps.h"
 
 namespace orchard::detail {
@@ -93,12 +92,8 @@ Extent extent(std::span<const Point> points) {
 
 class HoleFiller {
  public:
-  HoleFiller(TriangleMesh& mesh, const RepairMeshOptions& options, MeshRepairReport& report)
-      : mesh_(mesh),
-        options_(options),
-        report_(report),
-        radius_(ritter_ball(mesh.vertices).radius),
-        uses_(sorted_edge_uses(mesh)) {}
+  HoleFiller(TriangleMesh& mesh, const RepairMeshOptions& options, double radius, MeshRepairReport& report)
+      : mesh_(mesh), options_(options), report_(report), radius_(radius), uses_(sorted_edge_uses(mesh)) {}
 
   void run() {
     const BoundaryLoops boundary(mesh_, uses_);
@@ -121,6 +116,11 @@ class HoleFiller {
     auto cap = triangles_over(loop, polyline);
     if (cap.empty() || !fits(loop, cap)) cap = fan_over(loop, polyline);
     mesh_.triangles.insert(mesh_.triangles.end(), cap.begin(), cap.end());
+    if (width <= options_.join_distance * radius_) {
+      ++report_.cracks_closed;
+      report_.cracks_triangles += static_cast<Index>(cap.size());
+      return;
+    }
     ++report_.holes_filled;
     report_.triangles_added += static_cast<Index>(cap.size());
     report_.max_hole = std::max(report_.max_hole, diameter);
@@ -198,8 +198,8 @@ class HoleFiller {
 
 }  // namespace
 
-void fill_holes(TriangleMesh& mesh, const RepairMeshOptions& options, MeshRepairReport& report) {
-  HoleFiller(mesh, options, report).run();
+void fill_holes(TriangleMesh& mesh, const RepairMeshOptions& options, double radius, MeshRepairReport& report) {
+  HoleFiller(mesh, options, radius, report).run();
 }
 
 }  // namespace orchard::detail

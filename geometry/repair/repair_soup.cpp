@@ -220,8 +220,8 @@ void drop_unused_vertices(TriangleMesh& mesh, MeshRepairReport& report) {
     number[v] = used++;
   }
   const Index dropped = static_cast<Index>(number.size()) - used;
-  // A welded vertex is out of use too, and is counted there.
-  report.unused_vertices_dropped = dropped - std::min(dropped, report.vertices_welded);
+  // A welded or joined vertex is out of use too, and is counted there.
+  report.unused_vertices_dropped = dropped - std::min(dropped, report.vertices_welded + report.vertices_joined);
   mesh.vertices.resize(used);
   for (Triangle& t : mesh.triangles)
     for (Index& vertex : t) vertex = number[vertex];

@@ -16,12 +16,16 @@ void drop_duplicates(TriangleMesh& mesh, MeshRepairReport& report);
 void drop_degenerate(TriangleMesh& mesh, MeshRepairReport& report);
 void drop_unused_vertices(TriangleMesh& mesh, MeshRepairReport& report);
 
+// repair_join.cpp: joins corners of open edges up to `distance` apart; `radius` is the bounding radius.
+void join_vertices(TriangleMesh& mesh, double distance, double radius, MeshRepairReport& report);
+
 // repair_manifold.cpp: how triangles hang together.
 void orient_components(TriangleMesh& mesh, MeshRepairReport& report);
 void cut_apart(TriangleMesh& mesh, MeshRepairReport& report);
 
-// repair_holes.cpp: any triangles; those around a hole must agree.
-void fill_holes(TriangleMesh& mesh, const RepairMeshOptions& options, MeshRepairReport& report);
+// repair_holes.cpp: any triangles; those around a hole must agree. `radius` is the
+// bounding radius.
+void fill_holes(TriangleMesh& mesh, const RepairMeshOptions& options, double radius, MeshRepairReport& report);
 
 // repair_cgal.cpp: triangles over a closed polyline, which name its points and all turn the same way; empty if there is
 // no way to do it.

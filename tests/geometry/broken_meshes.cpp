@@ -98,7 +98,7 @@ std::vector<BrokenMesh> broken_triangles() {
        joined({unit_box(), unit_box()}),
        1,
        {.unused_vertices_dropped = 8, .duplicates_dropped = 12}},
-      {"a vertex near an edge", box_with_t_junction(1e-5), 1, {.holes_filled = 1, .triangles_added = 1}},
+      {"a vertex near an edge", box_with_t_junction(1e-5), 1, {.cracks_closed = 1, .cracks_triangles = 1}},
       {"a triangle off a bag",
        without(soup(ball), 3),
        ball_volume,
@@ -112,7 +112,7 @@ std::vector<BrokenMesh> broken_triangles() {
       {"a vertex on an edge",
        box_with_t_junction(),
        1,
-       {.degenerate_dropped = 1, .neighbors_split = 1, .holes_filled = 1, .triangles_added = 1}},
+       {.degenerate_dropped = 1, .neighbors_split = 1, .cracks_closed = 1, .cracks_triangles = 1}},
       {"a hole", without(ball, 17), ball_volume, {.holes_filled = 1, .triangles_added = 1}},
       {"unused vertices", unused, 1, {.unused_vertices_dropped = 1}},
   };

@@ -173,7 +173,7 @@ TEST(ReadPly, NamesTheLineAndTheFaultOfAsciiFiles) {
       {replaced(good, "list uchar int", "int"), {"line 7", "no list"}},
       {replaced(good, "element vertex", "property int early\nelement vertex"), {"line 3", "before the first element"}},
       {header("ascii") + "0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n", {"line 11", "not a finite number"}},
-      {header("ascii") + "0 0 0\n1 0 0\n0 1e999 0\n3 0 1 2\n", {"line 12", "\"1e999\" is not a number"}},
+      {header("ascii") + "0 0 0\n1 0 0\n0 1e999 0\n3 0 1 2\n", {"line 12", "not a finite number"}},
       {header("ascii") + "0 0 0\n1 zero 0\n0 1 0\n3 0 1 2\n", {"line 11", "\"zero\" is not a number"}},
       {header("ascii") + "0 0 0\n1 0 0\n", {"line 12", "ends early"}},
       {three, {"line 13", "ends early"}},
@@ -181,7 +181,7 @@ TEST(ReadPly, NamesTheLineAndTheFaultOfAsciiFiles) {
       {three + "3 0 1 3\n", {"line 13", "vertex 3", "3 vertices"}},
       {three + "3 0 1 -1\n", {"line 13", "vertex -1"}},
       {three + "3 0 1 1.5\n", {"line 13", "not an integer"}},
-      {three + "2 0 1\n", {"line 13", "2 corners"}},
+      {three + "2 0 1\n", {"no faces"}},
       {three + "-3 0 1 2\n", {"line 13", "-3 items"}},
       {three + "9999 0 1 2\n", {"line 13", "9999 items"}},
       {header("ascii", "3", "0") + kPoints, {"no faces"}},
@@ -207,7 +207,7 @@ TEST(ReadPly, NamesTheByteAndTheFaultOfBinaryFiles) {
   EXPECT_NO_THROW(read(good));
   test::expect_input_error([&] { read(file(NAN, 3, 1)); }, {byte(16), "not a finite number"});
   test::expect_input_error([&] { read(file(-INFINITY, 3, 1)); }, {byte(16), "not a finite number"});
-  test::expect_input_error([&] { read(file(1, 2, 1)); }, {byte(36), "2 corners"});
+  test::expect_input_error([&] { read(file(1, 2, 1)); }, {"no faces"});
   test::expect_input_error([&] { read(file(1, 4, 1)); }, {byte(36), "4 items"});
   test::expect_input_error([&] { read(file(1, 3, 3)); }, {byte(41), "vertex 3"});
   test::expect_input_error([&] { read(file(1, 3, -1)); }, {byte(41), "vertex -1"});

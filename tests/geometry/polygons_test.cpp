@@ -17,7 +17,7 @@ Triangles split(const std::vector<Point>& polygon) {
   std::iota(corners.begin(), corners.end(), Index{0});
   FaceCollector faces;
   faces.add(corners);
-  return std::move(faces).finish(polygon);
+  return std::move(faces).finish(polygon).triangles;
 }
 
 // The smallest z of the triangles' normals, times twice their areas.

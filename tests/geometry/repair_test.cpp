@@ -51,6 +51,8 @@ TEST(RepairMesh, MakesASolidOfWhatHasOneMeaning) {
 
 constexpr std::pair<const char*, Index MeshRepairReport::*> kCounts[] = {
     {"vertices welded", &MeshRepairReport::vertices_welded},
+    {"vertices joined", &MeshRepairReport::vertices_joined},
+    {"cracks closed", &MeshRepairReport::cracks_closed},
     {"unused vertices dropped", &MeshRepairReport::unused_vertices_dropped},
     {"degenerate dropped", &MeshRepairReport::degenerate_dropped},
     {"neighbors split", &MeshRepairReport::neighbors_split},

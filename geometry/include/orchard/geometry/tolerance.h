@@ -12,6 +12,19 @@ inline constexpr double kCoplanarAngle = 1e-4;
 // is nothing but the rounding of the cross product, about 5e-16.
 inline constexpr double kNoArea = 1e-15;
 
+// Corners of open edges that lie no farther apart than this are one corner: a program that writes each facet by itself
+// writes the same place in different roundings, which differ by 1e-16 of the coordinates in doubles, by 1e-7 in floats
+// (binary STL) and by up to 1e-5 in each coordinate in six digits. Nothing that is meant in a mesh is as small, and
+// what is nearest is joined first.
+inline constexpr double kJoin = 5e-5;
+
+// Corners that are nearer than this differ by the rounding of doubles alone, whichever of them are nearest.
+inline constexpr double kRounding = 1e-14;
+
+// A filled hole that moves the surface by more than this is worth a warning: as much as the spheres of a first level
+// are off, and more than a scan's gaps are deep.
+inline constexpr double kFarFill = 0.02;
+
 // A closed surface that encloses less than this times its area times R is flat: above the rounding of the sum over a
 // hundred million triangles, below any solid's wall.
 inline constexpr double kNoVolume = 1e-12;

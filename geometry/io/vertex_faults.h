@@ -1,0 +1,39 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "orchard/geometry/mesh.h"
+#include "orchard/geometry/mesh_io.h"
+#include "polygons.h"
+
+namespace orchard {
+
+// Vertices with a coordinate that is not a finite number. They are a fault of the file only if a face uses them.
+class VertexFaults {
+ public:
+  // `at`: byte of the file where the coordinate is.
+  void add(Index vertex, std::size_t at) { faults_.push_back({vertex, at}); }
+  // Calls `fail` with the byte of the first one that a face uses. The others keep their numbers and get the place of a
+  // vertex that is used, so that they are in nobody's way; without faces they are erased. `place` names a byte for the
+  // report. Call it before the faces are split.
+  void settle(std::vector<Point>& vertices, const FaceCollector& faces, const std::function<void(std::size_t)>& fail,
+              const std::function<std::string(std::size_t)>& place, MeshReadReport& report) const;
+
+ private:
+  struct Fault {
+    Index vertex;
+    std::size_t at;
+  };
+  std::vector<Fault> faults_;  // ascending
+};
+
+// FaceCollector::finish(), with its counts added to the report; `place` names a byte.
+std::vector<std::array<Index, 3>> split_faces(FaceCollector&& faces, std::span<const Point> vertices,
+                                              const std::function<std::string(std::size_t)>& place,
+                                              MeshReadReport& report);
+
+}  // namespace orchard
