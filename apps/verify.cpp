@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -206,6 +207,7 @@ bool verify(const VerifyCommand& command) {
     throw InputError("--bbox-centre has no effect on an .orchard file; it is for .sph files");
   check_input(command.tree);
   check_input(command.mesh);
+  const Provenance provenance = provenance_of(command.output.run, std::array{command.tree, command.mesh});
   ProgressBar bar(!command.output.quiet && !command.output.json);
   Tree tree = read_tree(command.tree);
   const Subject subject = subject_of(command, tree, bar.callback());
@@ -214,7 +216,9 @@ bool verify(const VerifyCommand& command) {
   const double seconds = watch.seconds();
   bar.clear();
   if (command.output.json) {
-    fmt::print("{}\n", to_json(result, subject).dump(2));
+    json report = to_json(result, subject);
+    report["provenance"] = to_json(provenance);
+    fmt::print("{}\n", report.dump(2));
   } else if (!command.output.quiet) {
     print(result, subject, seconds);
   }
