@@ -37,17 +37,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr int kPlotsInARowOfThePage = 2;  // three would be too small to read
+
 std::string_view as_text(const std::vector<std::byte>& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 // Every name that the command may write to.
 std::vector<std::string> names_of(const BuildCommand& command) {
-  std::vector<std::string> endings{".orchard",   ".sph",        ".json",          "-levels.svg", "-build.vtm",
-                                   "-build.pvd", "-build.pvsm", "-build-view.py", ".png",        "-report.html"};
+  std::vector<std::string> endings{".orchard",    ".sph",           "-levels.svg", "-build.vtm",  "-build.pvd",
+                                   "-build.pvsm", "-build-view.py", ".png",        "-report.html"};
   for (const std::string& format : command.exports) endings.push_back(format == "urdf" ? ".urdf" : "-spheres.json");
   endings.emplace_back(command.reading.wrap.empty() ? kRepairedEnding : kWrapEnding);
-  for (const char* view : {"mesh", "points", "medial-vertices", "medial-edges", "medial-faces"})
+  for (const char* view : {"mesh", "points", "medial-vertices", "medial-edges", "medial-faces", "medial-contacts"})
     endings.push_back("-build-" + std::string(view) + ".vtp");
   for (Index level = 0; level <= command.options.depth; ++level)
     endings.push_back("-build-level-" + std::to_string(level) + ".vtp");
@@ -87,8 +89,8 @@ SphereTreeOptions tree_options(const BuildCommand& command) {
   return options;
 }
 
-// What can be refused before anything is built.
-void check(const BuildCommand& command) {
+// What can be refused before anything is built; then where the files go.
+Destination check(const BuildCommand& command) {
   check_input(command.mesh);
   if (command.export_level) {
     const auto& exports = command.exports;
@@ -106,11 +108,24 @@ void check(const BuildCommand& command) {
   require_sizes(command.options);
   tree_options(command);  // whether the numbers fit together
   for (const fs::path& file : inputs) check_input(file);
-  inputs.push_back(command.mesh);
-  check_outputs(command.folder, names_of(command), inputs);
+  inputs.insert(inputs.begin(), command.mesh);
+  Destination destination{.folder = command.folder,
+                          .report = named(command.mesh, ".json"),
+                          .provenance = provenance_of(command.output.run, inputs),
+                          .force = command.output.force};
+  check_outputs(destination, names_of(command), inputs);
+  return destination;
 }
 
-void write_trees(const BuildCommand& command, const SphereTreeBuild& result, Outputs& outputs) {
+// For other programs: a list, whose first level says where it comes from.
+std::string spheres_json(const SphereLists& lists, const Provenance& provenance) {
+  nlohmann::json levels = to_json(lists);
+  levels.front()["provenance"] = decisive_json(provenance);
+  return levels.dump(1) + "\n";
+}
+
+void write_trees(const BuildCommand& command, const Provenance& provenance, const SphereTreeBuild& result,
+                 Outputs& outputs) {
   const auto write = [&](const char* ending, std::string_view bytes, const char* what) {
     write_file(outputs.add(named(command.mesh, ending), what), bytes);
   };
@@ -118,7 +133,7 @@ void write_trees(const BuildCommand& command, const SphereTreeBuild& result, Out
   write(".sph", to_sph(result.tree), "the sphere-tree as text");
   const SphereLists lists = levels_of(result.tree);
   for (const std::string& format : command.exports) {
-    if (format == "json") write("-spheres.json", to_json(lists).dump(1) + "\n", "the spheres of each level");
+    if (format == "json") write("-spheres.json", spheres_json(lists, provenance), "the spheres of each level");
     if (format == "urdf")
       write(".urdf", to_urdf(lists, command.export_level.value_or(result.tree.depth()), command.mesh.stem().string()),
             "a level's spheres as a link's collision geometry");
@@ -221,7 +236,7 @@ void print_result(const BuildCommand& command, const SolidMesh& solid, const Sph
 }  // namespace
 
 ExitCode build(const BuildCommand& command) {
-  check(command);
+  const Destination destination = check(command);
   const bool talk = !command.output.quiet && !command.output.json;
   const Stopwatch reading;
   ProgressBar bar(talk);
@@ -238,7 +253,11 @@ ExitCode build(const BuildCommand& command) {
   if (talk) print_reading(command.source.points, own.reading);
   const BuildCost cost = cost_of(command, options, surface);
   if (talk) print_cost(command, options, cost);
-  if (command.cost && command.output.json) fmt::print("{}\n", to_json(cost).dump(2));
+  if (command.cost && command.output.json) {
+    nlohmann::json estimate = to_json(cost);
+    estimate["provenance"] = to_json(destination.provenance);
+    fmt::print("{}\n", estimate.dump(2));
+  }
   if (command.cost) return kSucceeded;
   SphereTreeBuild result = command.seconds
                                ? build_sphere_tree_within(*command.seconds, surface, options, bar.callback(), own.input)
@@ -247,9 +266,9 @@ ExitCode build(const BuildCommand& command) {
   bar.clear();
 
   nlohmann::json report;
-  std::string plot;
+  std::vector<plot::Plot> plots;
   tbb::parallel_invoke([&] { report = build_json(surface, options, result, wrap_distance); },
-                       [&] { plot = build_plot(result, surface, command.mesh.stem().string()); });
+                       [&] { plots = build_plots(result, surface, command.mesh.stem().string()); });
   add_solid_json(solid, report);
   const char* const ending = ending_of(solid);
   const Broken broken = apps::broken(result, options);
@@ -257,19 +276,27 @@ ExitCode build(const BuildCommand& command) {
   report["promise"] = {{"kept", broken.none()}, {"broken", broken.what}};
   report["certified_mesh"] = ending ? nlohmann::json(named(command.mesh, ending)) : nlohmann::json();
 
-  Outputs outputs(command.folder);
+  Outputs outputs(destination);
   const Stopwatch writing;
-  write_trees(command, result, outputs);
+  write_trees(command, destination.provenance, result, outputs);
   write_solid(command, solid, outputs);
   const std::string picture = write_views(command, surface, result, outputs);
-  write_file(outputs.add(named(command.mesh, "-levels.svg"), "this report as a plot"), plot);
+  write_file(outputs.add(named(command.mesh, "-levels.svg"), "this report as a plot"),
+             plot::to_svg(plots, static_cast<int>(std::min<std::size_t>(3, plots.size()))));
   result.seconds.emplace_back("writing", writing.seconds());
   report["seconds"]["writing"] = writing.seconds();
-  write_file(outputs.add(named(command.mesh, ".json"), "this report as JSON"), report.dump(2) + "\n");
+  outputs.add_report(report, "this report as JSON");
   const std::string certified = certificate(solid, outputs.place_of(named(command.mesh, ending ? ending : "")));
   const std::string doubts = build_doubts(solid, result);
   if (command.page)
-    write_page(command, {command.mesh.stem().string(), command.command_line, certified, doubts, report, plot, {}},
+    write_page(command,
+               {command.mesh.stem().string(),
+                command.output.run.typed,
+                certified,
+                doubts,
+                report,
+                plot::to_svg(plots, kPlotsInARowOfThePage),
+                {}},
                picture, outputs);
   outputs.commit();
 

@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdint>
 
+#include "orchard/geometry/base64.h"
 #include "orchard/geometry/xml_escaped.h"
 
 namespace orchard::apps {
@@ -25,18 +24,6 @@ th { font-weight: 600; color: #5a6678; } th:first-child, td:first-child { text-a
 .bar { display: inline-block; height: .8em; background: #4e79a7; border-radius: 2px; }
 img, svg { max-width: 100%; height: auto; } dt { font-weight: 600; } .note { color: #5a6678; }
 )";
-
-std::string base64(const std::string& bytes) {
-  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t three = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      three = three << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? kDigits[three >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
 
 std::string number(const json& value) {
   if (value.is_null()) return "-";

@@ -4,7 +4,6 @@
 
 #include "orchard/spheretree/outside_volume.h"
 #include "sphere_lists.h"
-#include "svg_plot.h"
 
 namespace orchard::apps {
 namespace {
@@ -82,12 +81,12 @@ plot::Plot histogram(const SphereTree& tree, Index level, double radius) {
 
 }  // namespace
 
-std::string build_plot(const SphereTreeBuild& result, const Surface& surface, const std::string& title) {
+std::vector<plot::Plot> build_plots(const SphereTreeBuild& result, const Surface& surface, const std::string& title) {
   std::vector<plot::Plot> plots{inaccuracies(result, surface.bounding_radius(), title)};
   if (surface.solid()) plots.push_back(outside_volumes(result, surface));
   for (Index level = 1; level <= result.tree.depth(); ++level)
     plots.push_back(histogram(result.tree, level, surface.bounding_radius()));
-  return plot::to_svg(plots, static_cast<int>(std::min<std::size_t>(3, plots.size())));
+  return plots;
 }
 
 }  // namespace orchard::apps

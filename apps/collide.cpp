@@ -116,13 +116,14 @@ void print(const json& levels) {
 void collide(const CollideCommand& command) {
   check_input(command.a);
   check_input(command.b);
+  const Provenance provenance = provenance_of(command.output.run, std::array{command.a, command.b});
   const runtime::PackedSphereTree a = load_tree(command.a), b = load_tree(command.b);
   const runtime::Pose pose_a = parse_pose(command.pose_a, "--pose-a"), pose_b = parse_pose(command.pose, "--pose");
   constexpr std::size_t room = 1u << 20;  // meeting pairs a level: plenty, 25 MB
   runtime::NarrowPhase narrow(a, b, room);
   const json levels = run(narrow, pose_a, pose_b);
   if (command.output.json) {
-    const json report{{"answer", name(narrow.answer())}, {"levels", levels}};
+    const json report{{"answer", name(narrow.answer())}, {"levels", levels}, {"provenance", to_json(provenance)}};
     fmt::print("{}\n", report.dump(2));
     return;
   }

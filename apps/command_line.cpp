@@ -45,6 +45,11 @@ CLI::Option* add_join(CLI::App& command, std::optional<double>& join) {
       ->check(ANumber(CLI::Range(0.0, kMaxJoin)));
 }
 
+CLI::Option* add_force(CLI::App& command, Output& output) {
+  return command.add_flag("--force", output.force,
+                          "Replace the files of another input of the same name; without it the command refuses to");
+}
+
 void add_mesh_options(CLI::App& command, MeshOptions& options) {
   auto* strict =
       command.add_flag("--strict", options.strict, "Refuse a mesh that is no closed manifold instead of repairing it");
@@ -134,9 +139,11 @@ void add_build(CLI::App& app, Request& request) {
       ->check(CLI::IsMember({"x", "y", "z"}))
       ->capture_default_str();
   add_accept(command, build.accept);
+  add_force(command, build.output);
   add_output_flags(command, build.output);
   command.footer("Example:\n  orchard build data/lamp.obj -o out/lamp --picture");
   command.callback([&request, &command] {
+    request.build.output.run = invocation_of(command, request.typed);
     request.build.given = given_of(command);
     SphereTreeOptions& options = request.build.options;
     if (!options.spheres.empty()) options.depth = static_cast<Index>(options.spheres.size());
@@ -154,7 +161,10 @@ void add_collide(CLI::App& app, Request& request) {
   add_output_flags(command, collide.output);
   command.get_option("--quiet")->description("Print the answer alone");
   command.footer("Example:\n  orchard collide out/lamp/lamp.orchard out/ship/ship.orchard --pose \"4 0 0 1 0 0 0\"");
-  command.callback([&request] { request.run = [&request] { orchard::apps::collide(request.collide); }; });
+  command.callback([&request, &command] {
+    request.collide.output.run = invocation_of(command, request.typed);
+    request.run = [&request] { orchard::apps::collide(request.collide); };
+  });
 }
 
 void add_verify(CLI::App& app, Request& request) {
@@ -170,7 +180,8 @@ void add_verify(CLI::App& app, Request& request) {
   command.footer(
       "Exit code 1 if anything is not proven; each violation is named.\n"
       "Example:\n  orchard verify out/lamp/lamp.orchard data/lamp.obj");
-  command.callback([&request] {
+  command.callback([&request, &command] {
+    request.verify.output.run = invocation_of(command, request.typed);
     request.run = [&request] { request.exit_code = orchard::apps::verify(request.verify) ? kSucceeded : kFailed; };
   });
 }
@@ -188,7 +199,10 @@ void add_compare(CLI::App& app, Request& request) {
   add_mesh_options(command, compare.reading);
   add_output_flags(command, compare.output);
   command.footer("Example:\n  orchard compare data/lamp.obj out/lamp/lamp.orchard other.sph --plot out/lamp.svg");
-  command.callback([&request] { request.run = [&request] { orchard::apps::compare(request.compare); }; });
+  command.callback([&request, &command] {
+    request.compare.output.run = invocation_of(command, request.typed);
+    request.run = [&request] { orchard::apps::compare(request.compare); };
+  });
 }
 
 Relaxation relaxation_named(const std::string& name) {
@@ -229,9 +243,13 @@ void add_sample(CLI::App& app, Request& request) {
   command.add_option("--threads", request.threads, "Threads at most; the result does not depend on it")
       ->check(CLI::Range(1, 1024));
   command.add_flag("!--no-views", sample.views, "Write no files for ParaView");
+  add_force(command, sample.output);
   add_output_flags(command, sample.output);
   command.footer("Example:\n  orchard sample data/lamp.obj -o out/lamp --samples 20000");
-  command.callback([&request] { request.run = [&request] { orchard::apps::sample(request.sample); }; });
+  command.callback([&request, &command] {
+    request.sample.output.run = invocation_of(command, request.typed);
+    request.run = [&request] { orchard::apps::sample(request.sample); };
+  });
 }
 
 void add_voronoi(CLI::App& app, Request& request) {
@@ -262,9 +280,11 @@ void add_voronoi(CLI::App& app, Request& request) {
   const std::vector<const CLI::Option*> sampling(all.begin() + others, all.end());
   command.add_option("--threads", request.threads, "Threads at most; the result does not depend on it")
       ->check(CLI::Range(1, 1024));
+  add_force(command, voronoi.output)->needs(folder);
   add_output_flags(command, voronoi.output);
   command.footer("Example:\n  orchard voronoi data/faucet.obj --compare -o out/faucet");
-  command.callback([&request, sampling] {
+  command.callback([&request, &command, sampling] {
+    request.voronoi.output.run = invocation_of(command, request.typed);
     request.voronoi.sampling_given = given_of(sampling);
     request.run = [&request] { orchard::apps::voronoi(request.voronoi); };
   });
@@ -373,6 +393,7 @@ void add_medial(CLI::App& app, Request& request) {
       ->check(CLI::Range(1, 1024));
   command.add_flag("!--no-views", medial.views, "Write no files for ParaView");
   add_accept(command, medial.accept);
+  add_force(command, medial.output);
   add_output_flags(command, medial.output);
   command.footer(
       "Examples:\n  orchard medial data/lamp.obj -o out/lamp --report\n"
@@ -381,6 +402,7 @@ void add_medial(CLI::App& app, Request& request) {
       "  orchard medial data/lamp.obj -o out/lamp --vertices 200 --envelope out/lamp/envelope.obj\n"
       "  orchard medial data/lamp.obj -o out/lamp --sweep samples=1000,4000,16000 --sweep prune=0,20,40");
   command.callback([&request, &command] {
+    request.medial.output.run = invocation_of(command, request.typed);
     request.medial.given = given_of(command);
     request.run = [&request] { request.exit_code = orchard::apps::medial(request.medial); };
   });
@@ -394,7 +416,10 @@ void add_inspect(CLI::App& app, Request& request) {
   command.add_flag("--full", inspect.full, "Look for self-intersections in a mesh of more than 500,000 triangles too");
   add_output_flags(command, inspect.output);
   command.footer("Example:\n  orchard inspect data/lamp.obj");
-  command.callback([&request] { request.run = [&request] { orchard::apps::inspect(request.inspect); }; });
+  command.callback([&request, &command] {
+    request.inspect.output.run = invocation_of(command, request.typed);
+    request.run = [&request] { orchard::apps::inspect(request.inspect); };
+  });
 }
 
 void add_view(CLI::App& app, Request& request) {
@@ -426,7 +451,10 @@ void add_view(CLI::App& app, Request& request) {
   command.footer(
       "Examples:\n  orchard view out/lamp/lamp.orchard data/lamp.obj -o out/lamp/view.png --level 1,2,3\n"
       "  orchard view out/lamp/lamp.orchard --window");
-  command.callback([&request] { request.run = [&request] { orchard::apps::view(request.view); }; });
+  command.callback([&request, &command] {
+    request.view.run = invocation_of(command, request.typed);
+    request.run = [&request] { orchard::apps::view(request.view); };
+  });
 }
 
 void add_completion(CLI::App& app, Request& request) {
@@ -469,7 +497,10 @@ void add_profile(CLI::App& app, Request& request) {
   command.add_option("--csv", profile.csv, "Write every pose, and what each level said, to this .csv file");
   add_output_flags(command, profile.output);
   command.footer("Example:\n  orchard profile out/lamp/lamp.orchard --plot out/profile.svg");
-  command.callback([&request] { request.run = [&request] { orchard::apps::profile(request.profile); }; });
+  command.callback([&request, &command] {
+    request.profile.output.run = invocation_of(command, request.typed);
+    request.run = [&request] { orchard::apps::profile(request.profile); };
+  });
 }
 
 void add_simulate(CLI::App& app, Request& request) {
@@ -495,11 +526,15 @@ void add_simulate(CLI::App& app, Request& request) {
       ->excludes(replay);
   auto* folder = command.add_option("-o,--output", simulate.folder, "Folder for the traces, and the run for ParaView");
   command.add_flag("!--no-views", simulate.views, "Write no files for ParaView")->needs(folder);
+  add_force(command, simulate.output)->needs(folder);
   add_output_flags(command, simulate.output);
   command.footer(
       "Examples:\n  orchard simulate flight --tree out/lamp/lamp.orchard --frames 400 --budget 20000 -o out/flight\n"
       "  orchard simulate pile --budget 2ms --record pile.txt\n  orchard simulate pile --replay pile.txt");
-  command.callback([&request] { request.run = [&request] { orchard::apps::simulate(request.simulate); }; });
+  command.callback([&request, &command] {
+    request.simulate.output.run = invocation_of(command, request.typed);
+    request.run = [&request] { orchard::apps::simulate(request.simulate); };
+  });
 }
 
 // An empty word, as a script's unset variable leaves one, is never what anybody means, nor the same as no option at

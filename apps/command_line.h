@@ -22,7 +22,8 @@ struct Request {
   std::string shell, format;  // of completion and reference
   ProfileCommand profile;
   SimulateCommand simulate;
-  int threads = 0;  // 0: as many as the machine has
+  std::string typed;  // the whole command line
+  int threads = 0;    // 0: as many as the machine has
   std::function<void()> run;
   int exit_code = kSucceeded;  // set by a command whose result is not what was asked for
 };

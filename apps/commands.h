@@ -10,6 +10,7 @@
 #include "medial_tuning.h"
 #include "orchard/spheretree/build.h"
 #include "orchard/voronoi/algorithms.h"
+#include "provenance.h"
 
 // The commands of the program, one file each: parse (main.cpp), call, report. They throw; main() turns that into an
 // exit code and one line on stderr.
@@ -18,6 +19,8 @@ namespace orchard::apps {
 struct Output {
   bool quiet = false;  // no progress, no table
   bool json = false;   // a JSON report on stdout instead of a table; no progress
+  bool force = false;  // replace the files of another input
+  Invocation run;      // what the report says of how it was made
 };
 
 struct BuildCommand {
@@ -31,7 +34,6 @@ struct BuildCommand {
   bool picture = false;               // a .png as well
   bool page = false;                  // an .html page with pictures, tables and plots
   bool cost = false;                  // say what it will cost, and build nothing
-  std::string command_line;           // for the page
   std::vector<std::string> exports;   // sph (always written), json, urdf
   std::optional<Index> export_level;  // of the urdf; the last one
   std::string up = "y";               // the mesh's axis that points up in the picture
@@ -165,6 +167,7 @@ struct ViewCommand {
   std::string up = "y";
   double opacity = 0.16;  // of meshes beside other things
   bool window = false, quiet = false;
+  Invocation run;  // which the picture says
 };
 void view(const ViewCommand& command);
 

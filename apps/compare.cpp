@@ -16,6 +16,7 @@
 #include "outputs.h"
 #include "reading_report.h"
 #include "sphere_lists.h"
+#include "stamp.h"
 #include "svg_plot.h"
 
 namespace orchard::apps {
@@ -163,6 +164,9 @@ std::string chart(const std::vector<Compared>& all, const std::string& title, do
 
 void compare(const CompareCommand& command) {
   const std::vector<SphereLists> lists = check_and_read(command);
+  std::vector<std::filesystem::path> inputs = command.trees;
+  inputs.insert(inputs.begin(), command.mesh);
+  const Provenance provenance = provenance_of(command.output.run, inputs);
   ProgressBar bar(!command.output.quiet && !command.output.json);
   const SolidMesh solid = load_solid(command.mesh, command.reading, bar.callback());
   bar.clear();
@@ -175,11 +179,13 @@ void compare(const CompareCommand& command) {
   bar.clear();
   if (!command.plot.empty()) {
     const Writing writing;
-    write_file(command.plot, chart(all, command.mesh.stem().string(), radius));
+    write_file(command.plot,
+               stamped(chart(all, command.mesh.stem().string(), radius), "plot.svg", line_of(provenance)));
   }
   if (command.output.json) {
     json report = to_json(all, radius);
     add_solid_json(solid, report);
+    report["provenance"] = to_json(provenance);
     fmt::print("{}\n", report.dump(2));
   } else if (!command.output.quiet) {
     print(all, surface.mesh().triangles.size(), radius);

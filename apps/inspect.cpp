@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 
@@ -186,15 +187,17 @@ void print(const std::filesystem::path& file, const json& report) {
 
 void inspect(const InspectCommand& command) {
   check_input(command.file);
+  const Provenance provenance = provenance_of(command.output.run, std::array{command.file});
   const std::string extension = lower_extension(command.file);
   if (command.full && (extension == ".orchard" || extension == ".sph"))
     throw InputError("--full has no effect on a tree; it is for meshes");
   if (command.join && (extension == ".orchard" || extension == ".sph"))
     throw InputError("--join has no effect on a tree; it is for meshes");
-  const json report = extension == ".orchard" ? inspect_packed(command.file)
+  json report = extension == ".orchard" ? inspect_packed(command.file)
                       : extension == ".sph"   ? inspect_sph(command.file)
                                               : inspect_mesh(command);
   if (command.output.json) {
+    report["provenance"] = to_json(provenance);
     fmt::print("{}\n", report.dump(2));
   } else if (!command.output.quiet) {
     print(command.file, report);

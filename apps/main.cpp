@@ -54,8 +54,8 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", ORCHARD_VERSION);
   app.footer("Example:\n  orchard build data/lamp.obj -o out/lamp\n\"orchard COMMAND --help\" explains a command.");
   Request request;
-  request.build.command_line = app.get_name();
-  for (int i = 1; i < argc; ++i) request.build.command_line += std::string(" ") + argv[i];
+  request.typed = app.get_name();
+  for (int i = 1; i < argc; ++i) request.typed += std::string(" ") + argv[i];
   add_commands(app, request);
   if (const std::string fault = unknown_word(app, argc, argv); !fault.empty()) return fail(kBadInput, fault);
   try {

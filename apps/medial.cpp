@@ -43,11 +43,11 @@ std::vector<std::string> names_of(const MedialCommand& command) {
   if (!command.sweep.empty()) return sweep_names(command);
   std::vector<std::string> names = few_balls_names(command);
   if (!command.axis.empty()) {
-    for (const char* ending : {"-quality.json", "-quality.png"}) names.push_back(named(command.axis, ending));
+    names.push_back(named(command.axis, "-quality.png"));
     return names;
   }
   for (const std::string& name : view_names(command.mesh)) names.push_back(name);
-  for (const char* ending : {".ma", ".graphml", "-medial.json"}) names.push_back(named(command.mesh, ending));
+  for (const char* ending : {".ma", ".graphml"}) names.push_back(named(command.mesh, ending));
   return names;
 }
 
@@ -61,8 +61,14 @@ void check_side(const MedialCommand& command) {
   }
 }
 
-// What can be refused before anything is built.
-void check(const MedialCommand& command) {
+// By which a later run knows whose the files are; they are named for the axis where one is judged.
+std::string report_name(const MedialCommand& command) {
+  if (!command.axis.empty()) return named(command.axis, "-quality.json");
+  return named(command.mesh, command.sweep.empty() ? "-medial.json" : "-sweep.json");
+}
+
+// What can be refused before anything is built; then where the files go.
+Destination check(const MedialCommand& command) {
   std::vector<fs::path> inputs = command.source.files();
   if (!command.axis.empty()) inputs.push_back(command.axis);
   if (inputs.size() > 1) throw InputError("--axis, --diagram and --points exclude each other");
@@ -73,14 +79,19 @@ void check(const MedialCommand& command) {
   refuse_idle_options(command);
   check_sweep(command);  // without a sweep, that of the one combination that there is
   inputs.insert(inputs.end(), command.beside.begin(), command.beside.end());
-  inputs.push_back(command.mesh);
+  inputs.insert(command.axis.empty() ? inputs.begin() : inputs.begin() + 1, command.mesh);
   for (const fs::path& file : inputs) check_input(file);
-  check_outputs(command.folder, names_of(command), inputs);
-  check_few_balls(command, inputs);
+  Destination destination{.folder = command.folder,
+                          .report = report_name(command),
+                          .provenance = provenance_of(command.output.run, inputs),
+                          .force = command.output.force};
+  check_outputs(destination, names_of(command), inputs);
+  check_few_balls(command, destination, inputs);
+  return destination;
 }
 
-void finish(const MedialCommand& command, const std::string& report_name, const json& report, Outputs& outputs) {
-  write_file(outputs.add(report_name, "this report as JSON"), report.dump(2) + "\n");
+void finish(const MedialCommand& command, json& report, Outputs& outputs) {
+  outputs.add_report(report, "this report as JSON");
   outputs.commit();
   if (command.output.json) fmt::print("{}\n", report.dump(2));
   if (!command.output.quiet && !command.output.json) outputs.print();
@@ -141,8 +152,9 @@ void report_quality(const MedialCommand& command, const SolidMesh& solid, const 
   for (const auto& [stage, time] : seconds) fmt::print("  {:<18} {:>8.2f} s\n", stage, time);
 }
 
-void judge_file(const MedialCommand& command, const SolidMesh& solid, const std::vector<AxisFile>& beside,
-                const MedialMesh& mesh, const Progress& progress, ProgressBar& bar) {
+void judge_file(const MedialCommand& command, const Destination& destination, const SolidMesh& solid,
+                const std::vector<AxisFile>& beside, const MedialMesh& mesh, const Progress& progress,
+                ProgressBar& bar) {
   const bool talk = !command.output.quiet && !command.output.json;
   MedialJudgement judgement;
   time_stage(judgement.seconds, "quality",
@@ -160,11 +172,11 @@ void judge_file(const MedialCommand& command, const SolidMesh& solid, const std:
   }
   const FewBalls few = make_few_balls(command, solid.surface, mesh, progress);
   report_quality(command, solid, judged, beside, report, progress, bar);
-  Outputs outputs(command.folder);
-  write_few_balls(command, few, report, outputs);
+  Outputs outputs(destination);
+  write_few_balls(command, destination.provenance, few, report, outputs);
   write_picture(command, solid.surface, mesh, nullptr, judged.judgement.quality.worst,
                 named(command.axis, "-quality.png"), outputs);
-  finish(command, named(command.axis, "-quality.json"), report, outputs);
+  finish(command, report, outputs);
 }
 
 // What the command promised beside what it made; the line that says so comes last.
@@ -178,8 +190,9 @@ Broken broken_promises(const MedialCommand& command, const SolidMesh& solid, con
 }
 
 // `inner`: the solid itself where `solid` is the space around it, else none.
-ExitCode build_axis(const MedialCommand& command, const SolidMesh& solid, const Surface* inner,
-                    const std::vector<AxisFile>& beside, const Progress& progress, ProgressBar& bar) {
+ExitCode build_axis(const MedialCommand& command, const Destination& destination, const SolidMesh& solid,
+                    const Surface* inner, const std::vector<AxisFile>& beside, const Progress& progress,
+                    ProgressBar& bar) {
   const Surface& surface = solid.surface;
   const bool talk = !command.output.quiet && !command.output.json;
   const MedialBuildOptions options = build_options(command.tuning);
@@ -234,11 +247,11 @@ ExitCode build_axis(const MedialCommand& command, const SolidMesh& solid, const 
                         .name = "this axis"};
     report_quality(command, solid, judged, beside, report, progress, bar);
   }
-  Outputs outputs(command.folder);
+  Outputs outputs(destination);
   write_file(outputs.add(named(command.mesh, ".ma"), "the axis for medial-mesh programs"),
              to_ma(mesh) + (last_line.empty() ? "" : "# " + last_line + "\n"));
   write_file(outputs.add(named(command.mesh, ".graphml"), "its skeleton graph"), to_graphml(skeleton, build.axis));
-  write_few_balls(command, few, report, outputs);
+  write_few_balls(command, destination.provenance, few, report, outputs);
   write_views(command,
               {.surface = surface,
                .build = build,
@@ -249,7 +262,7 @@ ExitCode build_axis(const MedialCommand& command, const SolidMesh& solid, const 
                .worst = worst},
               outputs);
   write_picture(command, surface, mesh, &build.sampling, worst, named(command.mesh, "-medial.png"), outputs);
-  finish(command, named(command.mesh, "-medial.json"), report, outputs);
+  finish(command, report, outputs);
   if (!warning.empty() && build.promise.keeps_topology())
     fmt::print(stderr, "orchard: warning: {}: {}\n", command.mesh.string(), warning);
   if (!last_line.empty()) fmt::print(stderr, "orchard: {}: {}\n", command.mesh.string(), last_line);
@@ -295,7 +308,7 @@ MedialJudgement judge_beside(const MedialCommand& command, const Surface& surfac
 }
 
 ExitCode medial(const MedialCommand& command) {
-  check(command);
+  const Destination destination = check(command);
   const std::vector<AxisFile> beside = read_axes(command.beside);
   const std::optional<MedialMesh> axis = command.axis.empty() ? std::nullopt : std::optional(read_ma(command.axis));
   ProgressBar bar(!command.output.quiet && !command.output.json);
@@ -316,12 +329,12 @@ ExitCode medial(const MedialCommand& command) {
   }
   const SolidMesh& wanted = outside ? *outside : solid;
   if (axis) {
-    judge_file(command, wanted, beside, *axis, bar.callback(), bar);
+    judge_file(command, destination, wanted, beside, *axis, bar.callback(), bar);
   } else if (!command.sweep.empty()) {
-    sweep_medial(command, wanted.surface, bar.callback());
+    sweep_medial(command, destination, wanted.surface, bar.callback());
     bar.clear();
   } else {
-    return build_axis(command, wanted, outside ? &solid.surface : nullptr, beside, bar.callback(), bar);
+    return build_axis(command, destination, wanted, outside ? &solid.surface : nullptr, beside, bar.callback(), bar);
   }
   return kSucceeded;
 }

@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "medial_measures.h"
 #include "orchard/medial/build.h"
+#include "outputs.h"
 
 // The parts of `orchard medial`.
 namespace orchard::apps {
@@ -28,10 +29,11 @@ std::vector<std::string> swept_flags(const MedialCommand& command);
 // The tuning of every combination of the values of command.sweep, its last one's fastest; without a sweep, that of the
 // command. Throws InputError if one cannot be read.
 std::vector<MedialTuning> tunings_of(const MedialCommand& command);
-// The files of a sweep.
+// The files of a sweep, but for its report.
 std::vector<std::string> sweep_names(const MedialCommand& command);
 // Every combination of the values of command.sweep, each judged: MODEL-sweep.csv, in the order of the combinations, and
-// a plot for each metric; printed with the best by command.best first.
-void sweep_medial(const MedialCommand& command, const Surface& surface, const Progress& progress);
+// a plot for each metric; in the report and printed with the best by command.best first.
+void sweep_medial(const MedialCommand& command, const Destination& destination, const Surface& surface,
+                  const Progress& progress);
 
 }  // namespace orchard::apps

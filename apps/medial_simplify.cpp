@@ -9,6 +9,7 @@
 #include "orchard/geometry/error.h"
 #include "orchard/geometry/mesh_io.h"
 #include "orchard/medial/medial_mesh_formats.h"
+#include "stamp.h"
 #include "svg_plot.h"
 
 namespace orchard::apps {
@@ -116,7 +117,8 @@ std::vector<std::string> few_balls_names(const MedialCommand& command) {
   return names;
 }
 
-void check_few_balls(const MedialCommand& command, const std::vector<std::filesystem::path>& inputs) {
+void check_few_balls(const MedialCommand& command, const Destination& destination,
+                     const std::vector<std::filesystem::path>& inputs) {
   if (!command.sweep.empty()) {
     for (const char* option : {"vertices", "error", "curve", "envelope"}) {
       if (given(command, option)) throw InputError(fmt::format("--{} has no effect with --sweep", option));
@@ -130,7 +132,7 @@ void check_few_balls(const MedialCommand& command, const std::vector<std::filesy
     const std::filesystem::path folder = command.envelope.parent_path();
     if (std::filesystem::weakly_canonical(folder) == std::filesystem::weakly_canonical(command.folder)) {
       const std::vector<std::string> names{command.envelope.filename().string()};
-      check_outputs(command.folder, names, inputs);
+      check_outputs(destination, names, inputs);
     } else {
       check_output(command.envelope, inputs);
     }
@@ -159,7 +161,8 @@ FewBalls make_few_balls(const MedialCommand& command, const Surface& surface, co
   return few;
 }
 
-void write_few_balls(const MedialCommand& command, const FewBalls& few, json& report, Outputs& outputs) {
+void write_few_balls(const MedialCommand& command, const Provenance& provenance, const FewBalls& few, json& report,
+                     Outputs& outputs) {
   const auto name = [&](const char* ending) { return named(model_of(command), ending); };
   if (few.simplified) {
     const MedialMesh& mesh = few.simplified->mesh;
@@ -181,6 +184,7 @@ void write_few_balls(const MedialCommand& command, const FewBalls& few, json& re
   if (few.envelope) {
     const auto& [mesh, lost] = *few.envelope;
     write_obj(command.envelope, mesh);
+    stamp(command.envelope, line_of(provenance));
     report["envelope"] = {
         {"vertices", mesh.vertices.size()}, {"triangles", mesh.triangles.size()}, {"balls_lost", lost}};
   }

@@ -25,7 +25,8 @@ struct FewBalls {
 // Every name that it may have in the folder.
 std::vector<std::string> few_balls_names(const MedialCommand& command);
 // Throws InputError if the options contradict each other, or the envelope's file cannot be written.
-void check_few_balls(const MedialCommand& command, const std::vector<std::filesystem::path>& inputs);
+void check_few_balls(const MedialCommand& command, const Destination& destination,
+                     const std::vector<std::filesystem::path>& inputs);
 
 // What the command asks of the axis in few balls.
 SimplifyOptions few_balls_options(const MedialCommand& command);
@@ -33,6 +34,7 @@ SimplifyOptions few_balls_options(const MedialCommand& command);
 FewBalls make_few_balls(const MedialCommand& command, const Surface& surface, const MedialMesh& axis,
                         const Progress& progress);
 // Into the report and the folder, and for people unless the command is quiet.
-void write_few_balls(const MedialCommand& command, const FewBalls& few, nlohmann::json& report, Outputs& outputs);
+void write_few_balls(const MedialCommand& command, const Provenance& provenance, const FewBalls& few,
+                     nlohmann::json& report, Outputs& outputs);
 
 }  // namespace orchard::apps

@@ -67,6 +67,21 @@ std::string to_csv(const std::vector<Dimension>& dimensions, const std::vector<C
   return text;
 }
 
+nlohmann::json to_json(const std::vector<Dimension>& dimensions, const std::vector<Column>& columns,
+                       const std::vector<Run>& runs) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const Run& run : runs) {
+    nlohmann::json row;
+    for (std::size_t d = 0; d < dimensions.size(); ++d)
+      row[dimensions[d].flag->name] = dimensions[d].values[run.choice[d]];
+    for (std::size_t m = 0; m < run.metrics.size(); ++m) {
+      row[columns[m].name] = std::isfinite(run.metrics[m]) ? nlohmann::json(run.metrics[m]) : nlohmann::json();
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
 // The first dimension runs along x; each combination of the others is a line.
 plot::Plot plot_of(std::size_t metric, const Column& column, const std::string& model,
                    const std::vector<Dimension>& dimensions, const std::vector<Run>& runs) {
@@ -222,7 +237,8 @@ std::vector<std::string> sweep_names(const MedialCommand& command) {
   return names;
 }
 
-void sweep_medial(const MedialCommand& command, const Surface& surface, const Progress& progress) {
+void sweep_medial(const MedialCommand& command, const Destination& destination, const Surface& surface,
+                  const Progress& progress) {
   const std::vector<Dimension> dimensions = dimensions_of(command);
   std::vector<Run> runs;
   std::vector<std::size_t> choice(dimensions.size(), 0);
@@ -242,33 +258,23 @@ void sweep_medial(const MedialCommand& command, const Surface& surface, const Pr
 
   const std::vector<Column> columns = columns_of(command);
   const std::string csv = to_csv(dimensions, columns, runs);
-  Outputs outputs(command.folder);
+  Outputs outputs(destination);
   write_file(outputs.add(csv_name(command)), csv);
   const std::string model = command.mesh.stem().string();
   for (std::size_t m = 0; m < columns.size(); ++m)
     write_file(outputs.add(plot_name(command, columns[m])),
                plot::to_svg({plot_of(m, columns[m], model, dimensions, runs)}));
-  outputs.commit();
   const std::size_t best = best_column(command, columns);
   runs = best_first(std::move(runs), best, column_of(columns, "topology_right"));
-  if (command.output.json) {
-    nlohmann::json rows = nlohmann::json::array();
-    for (const Run& run : runs) {
-      nlohmann::json row;
-      for (std::size_t d = 0; d < dimensions.size(); ++d)
-        row[dimensions[d].flag->name] = dimensions[d].values[run.choice[d]];
-      for (std::size_t m = 0; m < run.metrics.size(); ++m) {
-        row[columns[m].name] = std::isfinite(run.metrics[m]) ? nlohmann::json(run.metrics[m]) : nlohmann::json();
-      }
-      rows.push_back(std::move(row));
-    }
-    fmt::print("{}\n", nlohmann::json{{"best_by", columns[best].name}, {"runs", rows}}.dump(2));
-    return;
-  }
-  if (command.output.quiet) return;
+  nlohmann::json report{{"best_by", columns[best].name}, {"runs", to_json(dimensions, columns, runs)}};
+  outputs.add_report(report);
+  outputs.commit();
+  if (command.output.json) fmt::print("{}\n", report.dump(2));
+  if (command.output.quiet || command.output.json) return;
   print_rows(dimensions, columns, best, runs);
   fmt::print("  {}  ({} runs with all measures, and a plot for each beside it)\n",
              outputs.place_of(csv_name(command)).string(), runs.size());
+  outputs.print();
 }
 
 }  // namespace orchard::apps

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "interrupt.h"
 #include "picture.h"
@@ -90,8 +91,8 @@ MedialErrors medial_errors(const Surface& surface, const MedialBuild& build, con
 std::vector<std::string> view_names(const std::filesystem::path& model) {
   std::vector<std::string> names;
   for (const char* ending : {"-medial.vtu", "-medial.vtm", "-medial-vertices.vtp", "-medial-edges.vtp",
-                             "-medial-faces.vtp", "-medial-mesh.vtp", "-medial-points.vtp", "-medial-thickness.vtp",
-                             "-medial-skeleton.vtp", "-medial-worst.vtp", "-medial.png"})
+                             "-medial-faces.vtp", "-medial-contacts.vtp", "-medial-mesh.vtp", "-medial-points.vtp",
+                             "-medial-thickness.vtp", "-medial-skeleton.vtp", "-medial-worst.vtp", "-medial.png"})
     names.push_back(named(model, ending));
   return names;
 }
@@ -152,8 +153,9 @@ void write_views(const MedialCommand& command, const MedialViews& views, Outputs
     of_points = arrays_of(views.errors->points);
     of_mesh = arrays_of(views.errors->mesh);
   }
-  const std::vector<int> passes = repair_passes(views.build);
-  of_points.push_back({"repair_pass", {passes.begin(), passes.end()}});
+  ViewArray& passes = of_points.emplace_back(ViewArray{.name = "repair_pass", .values = {}});
+  for (const int pass : repair_passes(views.build))  // of which pass a point is may not be known
+    passes.values.push_back(pass < 0 ? std::numeric_limits<double>::quiet_NaN() : pass);
   const MedialAxis& axis = views.build.axis;
   write_medial_grid(add(".vtu", "", "the axis with radius, angle, segment, component; open it in ParaView"), axis,
                     views.segments, of_vertices, of_faces);
@@ -163,6 +165,7 @@ void write_views(const MedialCommand& command, const MedialViews& views, Outputs
   add("-vertices.vtp", "medial vertices");
   add("-edges.vtp", "medial edges");
   add("-faces.vtp", "medial faces", "its faces; edges and vertices likewise");
+  add("-contacts.vtp", "", "the contacts that its forming points count");
   write_medial_axis(outputs.staged(named(command.mesh, "-medial")), axis, of_vertices, of_faces);
   write_thickness(add("-thickness.vtp", "", "the mesh with its local thickness"), views.surface,
                   medial_radii_at_surface(views.surface, views.mesh), of_mesh);

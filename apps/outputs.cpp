@@ -8,7 +8,9 @@
 #include <cerrno>
 #include <system_error>
 
+#include "orchard/geometry/atomic_file.h"
 #include "orchard/geometry/error.h"
+#include "stamp.h"
 
 namespace orchard::apps {
 namespace {
@@ -59,11 +61,26 @@ void check_file(const fs::path& file, std::span<const fs::path> inputs) {
     throw InputError(file.string() + ": cannot be written: " + reason(errno) + "; remove it or choose another place");
 }
 
+// What the report that is there says, if the files may be replaced.
+std::optional<RecordedRun> check_owner(const Destination& destination) {
+  const fs::path report = destination.folder / destination.report;
+  std::optional<RecordedRun> recorded = read_recorded(report);
+  if (recorded && !destination.force && is_of_another_input(*recorded, destination.provenance))
+    throw InputError(
+        fmt::format("{}: it and the files beside it are those of {}, and the input is {}; choose another folder with "
+                    "-o, or replace "
+                    "them with --force",
+                    report.string(), recorded->input.string(), destination.provenance.inputs.front().path.string()));
+  return recorded;
+}
+
 }  // namespace
 
 std::string named(const fs::path& model, const std::string& ending) { return model.stem().string() + ending; }
 
-void check_outputs(const fs::path& folder, std::span<const std::string> names, std::span<const fs::path> inputs) {
+void check_outputs(const Destination& destination, std::span<const std::string> names,
+                   std::span<const fs::path> inputs) {
+  const fs::path& folder = destination.folder;
   if (folder.empty()) throw InputError("-o: the folder's name is empty; \".\" is the one that you are in");
   const Writing writing;
   std::error_code error;
@@ -78,6 +95,8 @@ void check_outputs(const fs::path& folder, std::span<const std::string> names, s
   if (probe.empty())
     throw InputError(folder.string() + ": cannot be written to: " + reason(number) + "; choose another folder with -o");
   for (const std::string& name : names) check_file(folder / name, inputs);
+  check_file(folder / destination.report, inputs);
+  check_owner(destination);
 }
 
 void check_output(const fs::path& file, std::span<const fs::path> inputs) {
@@ -90,14 +109,15 @@ void check_output(const fs::path& file, std::span<const fs::path> inputs) {
   check_file(file, inputs);
 }
 
-Outputs::Outputs(fs::path folder) : folder_(std::move(folder)) {
+Outputs::Outputs(Destination destination) : destination_(std::move(destination)) {
+  const fs::path& folder = destination_.folder;
   std::error_code error;
-  made_ = make_folders(folder_, error);
-  if (!error) staging_ = make_staging(folder_);
+  made_ = make_folders(folder, error);
+  if (!error) staging_ = make_staging(folder);
   if (!staging_.empty()) return;
   const std::string why = error ? error.message() : reason(errno);
   remove_folders(made_);
-  throw Error(folder_.string() + ": cannot be written to: " + why);
+  throw Error(folder.string() + ": cannot be written to: " + why);
 }
 
 Outputs::~Outputs() {
@@ -112,24 +132,35 @@ fs::path Outputs::add(const std::string& name, const std::string& what) {
   return staging_ / name;
 }
 
+void Outputs::add_report(nlohmann::json& report, const std::string& what) {
+  report["provenance"] = to_json(destination_.provenance);
+  write_file(add(destination_.report, what), report.dump(2) + "\n");
+}
+
 void Outputs::commit() {
   throw_if_interrupted();
+  const fs::path& folder = destination_.folder;
+  replaced_ = check_owner(destination_);
+  const std::string line = line_of(destination_.provenance);
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(staging_)) names.push_back(entry.path().filename().string());
   std::sort(names.begin(), names.end());
-  // Renaming fails halfway only if someone changes the folder meanwhile.
-  for (const std::string& name : names) check_file(folder_ / name, {});
+  for (const std::string& name : names) stamp(staging_ / name, line);
+  // Renaming fails halfway only if another program changes the folder meanwhile.
+  for (const std::string& name : names) check_file(folder / name, {});
   for (const std::string& name : names) {
     std::error_code error;
-    fs::rename(staging_ / name, folder_ / name, error);
-    if (error) throw Error((folder_ / name).string() + ": cannot be replaced: " + error.message());
+    fs::rename(staging_ / name, folder / name, error);
+    if (error) throw Error((folder / name).string() + ": cannot be replaced: " + error.message());
   }
   fs::remove(staging_);
 }
 
 void Outputs::print() const {
   for (const auto& [name, what] : files_)
-    if (!what.empty()) fmt::print("  {}  ({})\n", (folder_ / name).string(), what);
+    if (!what.empty()) fmt::print("  {}  ({})\n", place_of(name).string(), what);
+  if (replaced_ && replaced_->command_line != destination_.provenance.run.command_line)
+    fmt::print("they replace those of: {}\n", replaced_->command_line);
 }
 
 }  // namespace orchard::apps

@@ -16,6 +16,7 @@
 #include "orchard/runtime/narrow_phase.h"
 #include "outputs.h"
 #include "profile_poses.h"
+#include "stamp.h"
 #include "svg_plot.h"
 
 namespace orchard::apps {
@@ -274,6 +275,7 @@ void profile(const ProfileCommand& command) {
   const std::vector<std::filesystem::path> inputs{command.a, second};
   for (const auto* file : {&command.plot, &command.csv})
     if (!file->empty()) check_output(*file, inputs);
+  const Provenance provenance = provenance_of(command.output.run, inputs);
   const runtime::PackedSphereTree a = load_tree(command.a), b = load_tree(second);
   if (a.triangles.empty() || b.triangles.empty())
     throw InputError(fmt::format("{}: has no triangles, so nothing tells which poses touch; build it anew",
@@ -297,10 +299,14 @@ void profile(const ProfileCommand& command) {
   report["b"] = second.string();
   report["flights"] = command.flights;
   report["seed"] = command.seed;
+  report["provenance"] = to_json(provenance);
   {
     const Writing writing;
-    if (!command.plot.empty()) write_file(command.plot, chart(report, command.a.filename().string()));
-    if (!command.csv.empty()) write_file(command.csv, table(poses, profiles, radius));
+    // Whatever ending the user's names have.
+    const std::string line = line_of(provenance);
+    if (!command.plot.empty())
+      write_file(command.plot, stamped(chart(report, command.a.filename().string()), "plot.svg", line));
+    if (!command.csv.empty()) write_file(command.csv, stamped(table(poses, profiles, radius), "table.csv", line));
   }
   if (command.output.json) {
     fmt::print("{}\n", report.dump(2));

@@ -69,7 +69,11 @@ void sample(const SampleCommand& command) {
                     mesh = named(command.mesh, "-sample-mesh.vtp");
   check_input(command.mesh);
   check_sampling(command);
-  check_outputs(command.folder, std::array{xyz, points, mesh}, std::array{command.mesh});
+  const Destination destination{.folder = command.folder,
+                                .report = named(command.mesh, "-sample.json"),
+                                .provenance = provenance_of(command.output.run, std::array{command.mesh}),
+                                .force = command.output.force};
+  check_outputs(destination, std::array{xyz, points, mesh}, std::array{command.mesh});
   const bool talk = !command.output.quiet && !command.output.json;
   RepairedMesh read = read_repaired(command.mesh, command.join);
   const Surface surface(std::move(read.mesh));
@@ -91,7 +95,7 @@ void sample(const SampleCommand& command) {
   json evenness_json{{"before", to_json(evenness(unrelaxed, surface))},
                      {"after", to_json(evenness(sampling, surface))}};
 
-  Outputs outputs(command.folder);
+  Outputs outputs(destination);
   write_file(outputs.add(xyz, "a point a line"), to_xyz(sampling.points));
 #ifdef ORCHARD_HAS_VIZ
   if (command.views) {
@@ -99,7 +103,6 @@ void sample(const SampleCommand& command) {
     write_mesh(outputs.add(mesh), surface);
   }
 #endif
-  outputs.commit();
   const auto edge_points = std::count(sampling.origins.begin(), sampling.origins.end(), PointOrigin::edge);
   json report{{"points", sampling.size()},
               {"edge_points", edge_points},
@@ -110,6 +113,8 @@ void sample(const SampleCommand& command) {
               {"reading", reading_json(read.reading)},
               {"repair", to_json(read.repair, read.distance, surface.bounding_radius())},
               {"seconds", seconds}};
+  outputs.add_report(report, "this report as JSON");
+  outputs.commit();
   if (command.output.json) fmt::print("{}\n", report.dump(2));
   if (!talk) return;
   print(command, report);

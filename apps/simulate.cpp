@@ -202,7 +202,12 @@ void simulate(const SimulateCommand& asked) {
     if (!file->empty()) inputs.push_back(*file);
   if (!command.tree.empty()) check_input(command.tree);
   if (!command.record.empty()) check_output(command.record, inputs);
-  if (!command.folder.empty()) check_outputs(command.folder, names_of(command, frames), inputs);
+  Destination destination{.folder = command.folder,
+                          .report = command.scene + "-run.json",
+                          .provenance = provenance_of(command.output.run, inputs),
+                          .force = command.output.force};
+  if (replay) destination.provenance.run.seed = command.seed;  // the recorded one
+  if (!command.folder.empty()) check_outputs(destination, names_of(command, frames), inputs);
   const runtime::PackedSphereTree tree = command.tree.empty() ? ship_tree() : load_tree(command.tree);
   const std::vector<simulation::Shape> shapes{simulation::shape_of(tree)};
   if (replay && replay->shape != simulation::checksum(tree))
@@ -210,7 +215,7 @@ void simulate(const SimulateCommand& asked) {
 
   Simulation simulation(command.scene, shapes, command.bodies, command.seed, replay ? &*replay : nullptr);
   std::optional<Outputs> outputs;
-  if (!command.folder.empty()) outputs.emplace(command.folder);
+  if (!command.folder.empty()) outputs.emplace(destination);
   Run run(command, simulation, outputs ? &*outputs : nullptr);
   ProgressBar bar(!command.output.quiet && !command.output.json);
   const Progress progress = bar.callback();
@@ -220,13 +225,17 @@ void simulate(const SimulateCommand& asked) {
   }
   bar.clear();
   run.write_traces();
-  if (outputs) outputs->commit();
+  json report = report_of(command, simulation, run.frames());
+  report["provenance"] = to_json(destination.provenance);
+  if (outputs) {
+    outputs->add_report(report, "this report as JSON");
+    outputs->commit();
+  }
   if (!command.record.empty()) {
     std::optional<Writing> writing;
     if (!outputs) writing.emplace();  // they are of that kind themselves
     write_file(command.record, simulation::to_text(simulation.recording()));
   }
-  const json report = report_of(command, simulation, run.frames());
   if (command.output.json) {
     fmt::print("{}\n", report.dump(2));
   } else if (!command.output.quiet) {

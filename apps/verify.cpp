@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -212,6 +213,7 @@ bool verify(const VerifyCommand& command) {
     throw InputError("--bbox-centre has no effect on an .orchard file; it is for .sph files");
   check_input(command.tree);
   check_input(command.mesh);
+  const Provenance provenance = provenance_of(command.output.run, std::array{command.tree, command.mesh});
   ProgressBar bar(!command.output.quiet && !command.output.json);
   Tree tree = read_tree(command.tree);
   const Subject subject = subject_of(command, tree, bar.callback());
@@ -221,7 +223,9 @@ bool verify(const VerifyCommand& command) {
   bar.clear();
   print_hole_warning(command.mesh, subject.repair, subject.repair_distance, subject.surface.bounding_radius());
   if (command.output.json) {
-    fmt::print("{}\n", to_json(result, subject).dump(2));
+    json report = to_json(result, subject);
+    report["provenance"] = to_json(provenance);
+    fmt::print("{}\n", report.dump(2));
   } else if (!command.output.quiet) {
     print(command.mesh, result, subject, seconds);
   }

@@ -12,6 +12,7 @@
 #include "picture.h"
 #include "reading_report.h"
 #include "sphere_lists.h"
+#include "stamp.h"
 
 #ifdef ORCHARD_HAS_VIZ
 #include <numbers>
@@ -98,6 +99,12 @@ void check_levels(const Scene& scene) {
       throw InputError(fmt::format("--level {}: the deepest level there is is {}; the root is 0", level, depth));
 }
 
+// The smallest time if there is no such file.
+std::filesystem::file_time_type written_at(const std::filesystem::path& file) {
+  std::error_code ignored;
+  return std::filesystem::last_write_time(file, ignored);
+}
+
 }  // namespace
 
 void view(const ViewCommand& command) {
@@ -110,6 +117,7 @@ void view(const ViewCommand& command) {
     throw InputError((command.window ? "no window can be opened: " : "no picture can be made: ") + missing);
   for (const std::filesystem::path& file : command.files) check_input(file);
   if (!command.picture.empty()) check_output(command.picture, command.files);
+  const Provenance provenance = provenance_of(command.run, command.files);
 
   Scene scene;
   scene.levels = command.levels;
@@ -118,10 +126,14 @@ void view(const ViewCommand& command) {
   check_levels(scene);
 
   const Writing writing;
+  const auto before = written_at(command.picture);
   if (command.window) picture.title = "orchard: " + command.files.front().filename().string();
   const PictureStatus status =
       command.window ? show_view(command.picture, scene, picture) : draw_view(command.picture, scene, picture);
   throw_if_interrupted();
+  // A window leaves a picture only if the user saved one; an older one stays as it is.
+  if (status && !command.picture.empty() && written_at(command.picture) != before)
+    stamp(command.picture, line_of(provenance));
   if (!status)
     throw Error(std::string(command.window ? "no window was opened: " : "no picture was made: ") + status.reason);
   if (!command.window && !command.quiet) fmt::print("  {}\n", command.picture.string());

@@ -207,11 +207,10 @@ void write(const VoronoiCommand& command, const Input& input, const std::vector<
                         view);
   }
 #endif
-  outputs.commit();
 }
 
-// What can be refused before anything is built.
-void check(const VoronoiCommand& command) {
+// What can be refused before anything is built; then where the files go, if anywhere.
+Destination check(const VoronoiCommand& command) {
 #ifndef ORCHARD_HAS_VIZ
   if (!command.cells.empty() || !command.box.empty())
     throw InputError("--cells and --box have no effect: this program was built without VTK, which writes the cells");
@@ -220,12 +219,17 @@ void check(const VoronoiCommand& command) {
     throw InputError("--box needs x y z of its lower corner, then of its upper one, with room between them");
   check_input(command.input);
   check_sampling(command.sampling);
-  if (command.folder.empty()) return;
+  Destination destination{.folder = command.folder,
+                          .report = named(command.input, "-voronoi.json"),
+                          .provenance = provenance_of(command.output.run, std::array{command.input}),
+                          .force = command.output.force};
+  if (command.folder.empty()) return destination;
   std::vector<std::string> names{points_name(command)};
   for (const VoronoiAlgorithm algorithm : kVoronoiAlgorithms)
     if (command.compare || algorithm == command.algorithm)
       for (const char* extension : {".vor", ".vtu"}) names.push_back(diagram_name(command, algorithm, extension));
-  check_outputs(command.folder, names, std::array{command.input});
+  check_outputs(destination, names, std::array{command.input});
+  return destination;
 }
 
 void check_cells(const VoronoiCommand& command, const Input& input) {
@@ -237,7 +241,7 @@ void check_cells(const VoronoiCommand& command, const Input& input) {
 }  // namespace
 
 void voronoi(const VoronoiCommand& command) {
-  check(command);
+  const Destination destination = check(command);
   const bool talk = !command.output.quiet && !command.output.json;
   ProgressBar bar(talk);
   const Input input = read_input(command, bar.callback());
@@ -248,18 +252,19 @@ void voronoi(const VoronoiCommand& command) {
   if (talk && input.repair) print_repair(command.input, *input.repair, input.distance, input.bounding_radius);
   if (input.repair) print_hole_warning(command.input, *input.repair, input.distance, input.bounding_radius);
   if (talk) print(command, input, runs);
-  std::optional<Outputs> outputs;
-  if (!command.folder.empty()) {
-    outputs.emplace(command.folder);
-    write(command, input, runs, *outputs);
-    if (talk) outputs->print();
-  }
-  if (!command.output.json) return;
   json report{
       {"points", input.points.size()}, {"sampled", input.repair.has_value()}, {"reading", reading_json(input.reading)}};
   if (input.repair) report["repair"] = to_json(*input.repair, input.distance, input.bounding_radius);
   for (const Run& run : runs) report["algorithms"].push_back(to_json(run));
-  fmt::print("{}\n", report.dump(2));
+  report["provenance"] = to_json(destination.provenance);
+  if (!command.folder.empty()) {
+    Outputs outputs(destination);
+    write(command, input, runs, outputs);
+    outputs.add_report(report, "this report as JSON");
+    outputs.commit();
+    if (talk) outputs.print();
+  }
+  if (command.output.json) fmt::print("{}\n", report.dump(2));
 }
 
 }  // namespace orchard::apps

@@ -69,7 +69,7 @@ void add_dents(Panel& panel, const Worst& dents) {
 Panel coverage_panel(vtkPolyData* mesh, vtkPolyData* points, vtkPolyData* places, double size, double line_width) {
   Panel panel{make_renderer(size), "surface left uncovered", {}};
   const vtkIdType count = points->GetNumberOfPoints();
-  vtkDataArray* coverage = require_array(points->GetCellData(), "coverage", count);
+  vtkDataArray* coverage = require_array(points->GetPointData(), "coverage", count);
   const double max = coverage->GetRange()[1];
   const auto colors = error_colors(max);
   vtkNew<vtkPolyData> dots;

@@ -20,7 +20,7 @@ struct Cell {
   std::vector<Index> corners;
   Index segment = kNone, point_a = kNone, point_b = kNone;
   bool wall = false;
-  double angle = -1;
+  double angle = kNoValue;
 };
 
 void add_faces(const Rows& faces, const std::vector<std::array<Index, 2>>& points, const std::vector<Index>& segments,
@@ -113,7 +113,7 @@ void write_medial_grid(const std::filesystem::path& vtu, const MedialAxis& axis,
   add_all(grid->GetPointData(), of_vertices, axis.centers.size());
   for (const ViewArray& array : of_faces) {
     add_doubles(grid->GetCellData(), array.name.c_str(), cells.size(),
-                [&](std::size_t i) { return i < array.values.size() ? array.values[i] : -1; });
+                [&](std::size_t i) { return i < array.values.size() ? array.values[i] : kNoValue; });
   }
   write_with<vtkXMLUnstructuredGridWriter>(vtu, grid.GetPointer());
 }

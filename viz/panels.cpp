@@ -27,7 +27,7 @@ Panel mesh_panel(vtkPolyData* mesh, double size, double line_width) {
 
 Panel points_panel(vtkPolyData* mesh, vtkPolyData* points, double size) {
   Panel panel{make_renderer(size), "surface points", {}};
-  vtkDataArray* origins = require_array(points->GetCellData(), "origin", points->GetNumberOfPoints());
+  vtkDataArray* origins = require_array(points->GetPointData(), "origin", points->GetNumberOfPoints());
   std::array<vtkIdType, 3> counts{};
   const auto origin_of = [&](vtkIdType i) { return std::clamp(static_cast<int>(origins->GetComponent(i, 0)), 0, 2); };
   for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i) ++counts.at(static_cast<std::size_t>(origin_of(i)));

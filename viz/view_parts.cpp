@@ -136,10 +136,16 @@ vtkSmartPointer<vtkActor> in_one_color(vtkPolyData* spheres, const Color& color)
 
 // How far from the solid the spheres of a level reach at most, as far as the file knows.
 std::string reach(vtkPolyData* spheres) {
-  const double error = require_array(spheres->GetPointData(), "error", spheres->GetNumberOfPoints())->GetRange()[1];
-  if (!std::isfinite(error) || error <= 0) return {};
+  vtkDataArray* errors = require_array(spheres->GetPointData(), "error", spheres->GetNumberOfPoints());
+  double max = 0;
+  for (vtkIdType i = 0; i < errors->GetNumberOfTuples(); ++i) {
+    const double error = errors->GetComponent(i, 0);
+    if (!std::isfinite(error)) return {};  // of this one nothing is known
+    max = std::max(max, error);
+  }
+  if (max <= 0) return {};
   char text[64];
-  std::snprintf(text, sizeof text, ", at most %.3g outside", error);
+  std::snprintf(text, sizeof text, ", at most %.3g outside", max);
   return text;
 }
 

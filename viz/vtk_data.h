@@ -11,7 +11,9 @@
 #include <vtkXMLPolyDataWriter.h>
 #include <vtkXMLWriter.h>
 
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <span>
 #include <string>
 
@@ -22,6 +24,10 @@
 
 // What the writers share: values into VTK's containers, and those into files.
 namespace orchard::detail {
+
+// No value, in arrays of numbers: colour scales leave it out, where -1 or infinity would spoil them.
+inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
+inline double finite_or_no_value(double value) { return std::isfinite(value) ? value : kNoValue; }
 
 inline int as_int(Index index) { return index == kNone ? -1 : static_cast<int>(index); }
 

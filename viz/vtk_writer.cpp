@@ -41,6 +41,15 @@ vtkSmartPointer<vtkPolyData> medial_points(const MedialAxis& axis, const ViewArr
   return data;
 }
 
+vtkSmartPointer<vtkPolyData> contacts_of(const MedialAxis& axis) {
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  const std::size_t count = axis.points.size();
+  set_points(data, count, [&](std::size_t i) { return axis.points[i]; });
+  set_vertex_cells(data);
+  add_ints(data->GetPointData(), "origin", count, [&](std::size_t i) { return static_cast<int>(axis.origins[i]); });
+  return data;
+}
+
 vtkSmartPointer<vtkPolyData> with_topology_of(vtkPolyData* points) {
   auto data = vtkSmartPointer<vtkPolyData>::New();
   data->SetPoints(points->GetPoints());
@@ -75,9 +84,9 @@ void write_points(const std::filesystem::path& vtp, const SurfaceSampling& sampl
   const std::size_t count = sampling.points.size();
   set_points(data, count, [&](std::size_t i) { return sampling.points[i]; });
   set_vertex_cells(data);
-  add_ints(data->GetCellData(), "origin", count, [&](std::size_t i) { return static_cast<int>(sampling.origins[i]); });
-  add_ints(data->GetCellData(), "triangle", count, [&](std::size_t i) { return as_int(sampling.triangles[i]); });
-  add_all(data->GetCellData(), more, count);
+  add_ints(data->GetPointData(), "origin", count, [&](std::size_t i) { return static_cast<int>(sampling.origins[i]); });
+  add_ints(data->GetPointData(), "triangle", count, [&](std::size_t i) { return as_int(sampling.triangles[i]); });
+  add_all(data->GetPointData(), more, count);
   write(vtp, data);
 }
 
@@ -116,6 +125,7 @@ void write_medial_axis(const std::filesystem::path& prefix, const MedialAxis& ax
   });
   add_all(faces->GetCellData(), of_faces, count);
   write(with_ending(prefix, "-faces.vtp"), faces);
+  write(with_ending(prefix, "-contacts.vtp"), contacts_of(axis));
 }
 
 void write_tree_level(const std::filesystem::path& vtp, const SphereTree& tree, Index level) {
@@ -132,8 +142,9 @@ void write_tree_level(const std::filesystem::path& vtp, const SphereTree& tree, 
   set_vertex_cells(data);
   vtkPointData* arrays = data->GetPointData();
   add_doubles(arrays, "radius", shown.size(), [&](std::size_t i) { return node(i).sphere.radius; });
-  add_doubles(arrays, "error", shown.size(), [&](std::size_t i) { return node(i).distance_bound; });
-  add_doubles(arrays, "inaccuracy", shown.size(), [&](std::size_t i) { return node(i).inaccuracy; });
+  add_doubles(arrays, "error", shown.size(), [&](std::size_t i) { return finite_or_no_value(node(i).distance_bound); });
+  add_doubles(arrays, "inaccuracy", shown.size(),
+              [&](std::size_t i) { return finite_or_no_value(node(i).inaccuracy); });
   add_ints(arrays, "level", shown.size(), [&](std::size_t i) { return as_int(node(i).level); });
   add_ints(arrays, "node", shown.size(), [&](std::size_t i) { return static_cast<int>(shown[i]); });
   add_ints(arrays, "parent", shown.size(), [&](std::size_t i) { return as_int(node(i).parent); });

@@ -377,6 +377,7 @@ std::string to_svg(const std::vector<Plot>& plots, int columns) {
   if (common) top += draw_common_legend(drawn, plots.front(), top, kWidth * max_in_row);
   std::ostringstream out;
   out << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << kWidth * max_in_row << "\" height=\"" << top
+      << "\" viewBox=\"0 0 " << kWidth * max_in_row << ' ' << top
       << "\" font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
       << drawn.str() << "</svg>\n";
   return out.str();

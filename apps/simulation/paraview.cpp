@@ -2,7 +2,11 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <sstream>
+#include <vector>
+
+#include "orchard/geometry/base64.h"
 
 namespace orchard::simulation {
 namespace {
@@ -31,6 +35,25 @@ class Array {
 
  private:
   std::ostringstream values_;
+};
+
+// Numbers with gaps: NaN, which ParaView does not read as text, so that they are written as base64.
+class NumbersWithGaps {
+ public:
+  explicit NumbersWithGaps(const char* name) : name_(name) {}
+  void add(double value) { values_.push_back(std::isfinite(value) ? value : std::nan("")); }
+  std::string text() const {
+    std::string bytes(sizeof(std::uint32_t) + values_.size() * sizeof(double), '\0');
+    const auto size = static_cast<std::uint32_t>(values_.size() * sizeof(double));
+    std::memcpy(bytes.data(), &size, sizeof size);
+    if (size > 0) std::memcpy(bytes.data() + sizeof size, values_.data(), size);
+    return std::string("<DataArray type=\"Float64\" Name=\"") + name_ + "\" format=\"binary\">\n" + base64(bytes) +
+           "\n</DataArray>\n";
+  }
+
+ private:
+  const char* name_;
+  std::vector<double> values_;
 };
 
 std::string dataset(std::size_t points, const std::string& coordinates, const std::string& point_data,
@@ -75,9 +98,9 @@ std::string bodies_vtp(const Simulation& simulation) {
       answers[body] = std::max(answers[body], static_cast<int>(pair.verdict.answer) + 1);
   Array points("Points", "Float64", 3), lines("connectivity", "Int64"), line_ends("offsets", "Int64"),
       polygons("connectivity", "Int64"), polygon_ends("offsets", "Int64");
-  // Of lines first, then of triangles; what is not said of one is -1 there.
-  Array body("body", "Int32"), answer("answer", "Int32"), level("level", "Int32"), bound("separation_bound", "Float64"),
-      work("work", "Int64");
+  // Of lines first, then of triangles; what is not said of one is -1 there, and NaN as a bound.
+  Array body("body", "Int32"), answer("answer", "Int32"), level("level", "Int32"), work("work", "Int64");
+  NumbersWithGaps bound("separation_bound");
   std::size_t count = 0, line_count = 0, polygon_count = 0;
   for (const PairOutcome& pair : simulation.pairs()) {
     points.add(world.bodies[pair.a].position);
@@ -89,7 +112,7 @@ std::string bodies_vtp(const Simulation& simulation) {
     body.add(-1);
     answer.add(static_cast<int>(pair.verdict.answer) + 1);
     level.add(pair.verdict.level);
-    bound.add(std::isfinite(pair.verdict.separation_bound) ? pair.verdict.separation_bound : -1.0);
+    bound.add(pair.verdict.separation_bound);
     work.add(pair.verdict.work);
   }
   for (std::uint32_t i = 0; i < world.bodies.size(); ++i) {
@@ -105,7 +128,7 @@ std::string bodies_vtp(const Simulation& simulation) {
       body.add(i);
       answer.add(answers[i]);
       level.add(-1);
-      bound.add(-1);
+      bound.add(std::nan(""));
       work.add(-1);
     }
     count += shape.tree.vertices.size();

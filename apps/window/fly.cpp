@@ -2,7 +2,12 @@
 //   [--bounds] [--frames N] [--screenshot FILE.png]
 // Keys: arrows steer, w and s open and close the throttle, 0 to 9 show a level's spheres, n none, b the space-time
 // bounds, space pauses, q ends. With --frames it ends by itself, and with --screenshot writes the last picture.
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
 #include <vtkCallbackCommand.h>
+#include <vtkNew.h>
+#include <vtkRenderWindow.h>
 #include <vtkRenderWindowInteractor.h>
 
 #include <algorithm>
@@ -137,6 +142,27 @@ void fly(const Request& request, const runtime::PackedSphereTree& tree) {
   if (!request.screenshot.empty()) view.write_png(request.screenshot);
 }
 
+// Why no window can be opened, in words; empty if one can. VTK ends the program where there is no display, or one that
+// does not draw, so that a copy of it tries first.
+std::string window_missing() {
+  const char* const display = std::getenv("DISPLAY");
+  if (display == nullptr || *display == '\0') return "DISPLAY is not set: there is no screen to show it on";
+  const pid_t child = fork();
+  if (child == 0) {
+    const int nowhere = open("/dev/null", O_WRONLY);
+    dup2(nowhere, STDOUT_FILENO);
+    dup2(nowhere, STDERR_FILENO);
+    vtkNew<vtkRenderWindow> window;
+    window->SetShowWindow(false);
+    window->SetSize(8, 8);
+    window->Render();
+    _exit(0);
+  }
+  int status = 0;
+  if (child > 0 && waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
+  return std::string("nothing can be drawn on the display ") + display;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -151,6 +177,10 @@ int main(int argc, char** argv) {
   if (const auto status = runtime::load_file(request.tree.c_str(), tree); status != runtime::LoadStatus::ok) {
     std::fprintf(stderr, "orchard-fly: %s: %s\n", request.tree.c_str(), runtime::message(status));
     return 2;
+  }
+  if (const std::string missing = window_missing(); !missing.empty()) {
+    std::fprintf(stderr, "orchard-fly: no window was opened: %s\n", missing.c_str());
+    return 1;
   }
   fly(request, tree);
   return 0;

@@ -9,6 +9,7 @@
 namespace orchard::detail {
 namespace {
 
+constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 constexpr double kPrecision = 1e-3;  // of the distance to the second contact
 constexpr double kLikely = 1.02;     // times the radius: where the second contact of a medial ball is, and room
 constexpr double kTinyBall = 1e-6;   // of the diagonal: its contacts are rounding
@@ -81,11 +82,11 @@ double second_contact_distance(const Surface& surface, const Point& center, cons
 
 double off_centre(const Surface& surface, const Sphere& ball, const ClosestPoint& first, double contact_angle,
                   double diagonal) {
-  if (!(ball.radius > kTinyBall * diagonal) || !(first.distance > 0)) return -1;
+  if (!(ball.radius > kTinyBall * diagonal) || !(first.distance > 0)) return kUndefined;
   const Vector direction = (first.position - ball.center) / first.distance;
   const double second = second_contact_distance(surface, ball.center, direction, contact_angle,
                                                 kLikely * std::max(ball.radius, first.distance));
-  return std::isfinite(second) ? std::abs(second - ball.radius) / ball.radius : -1;
+  return std::isfinite(second) ? std::abs(second - ball.radius) / ball.radius : kUndefined;
 }
 
 void measure_contacts(const Surface& surface, std::span<const Sphere> balls, std::span<const BallDepth> depths,
@@ -97,13 +98,13 @@ void measure_contacts(const Surface& surface, std::span<const Sphere> balls, std
   quality.radius_error = spread_of(radius_error);
 
   const std::size_t chosen = std::min<std::size_t>(balls.size(), options.contact_cells);
-  std::vector<double> off(chosen, -1);
+  std::vector<double> off(chosen, kUndefined);
   tbb::parallel_for(std::size_t{0}, chosen, [&](std::size_t k) {
     const std::size_t i = k * balls.size() / chosen;
     off[k] = off_centre(surface, balls[i], depths[i].nearest, options.contact_angle, quality.diagonal);
   });
-  std::erase(off, -1.0);
-  quality.centredness = spread_of(off);
+  std::erase_if(off, [](double value) { return std::isnan(value); });
+  quality.centredness = off.empty() ? Spread{.max = kUndefined, .mean = kUndefined} : spread_of(off);
 }
 
 }  // namespace orchard::detail

@@ -120,6 +120,8 @@ MaxOverTriangles max_coverage(const Surface& surface, const Reconstruction& reco
 }
 
 Spread inner_coverage(const MedialMesh& mesh, std::span<const SurfaceReach> reaches, double diagonal) {
+  constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+  if (mesh.edges.empty() && mesh.triangles.empty()) return {.max = kUndefined, .mean = kUndefined};
   std::vector<double> inner(reaches.size());
   TriangleMesh borders = borders_of(mesh);
   if (borders.triangles.empty()) {

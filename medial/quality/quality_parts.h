@@ -81,7 +81,7 @@ Spread inner_coverage(const MedialMesh& mesh, std::span<const SurfaceReach> reac
 // The `count` worst of `places`, whichever their order, no two within `apart` of each other.
 std::vector<WorstPlace> worst_of(std::vector<WorstPlace> places, Index count, double apart);
 // quality_contacts.cpp
-// |distance to the second contact - radius| over the radius; -1 if the ball has none, or is a point. `first`: the
+// |distance to the second contact - radius| over the radius; NaN if the ball has none, or is a point. `first`: the
 // surface's place nearest to the centre.
 double off_centre(const Surface& surface, const Sphere& ball, const ClosestPoint& first, double contact_angle,
                   double diagonal);

@@ -72,10 +72,12 @@ TEST(Values, ListsTakeBlanksAroundItemsAndComeAgain) {
     arguments.insert(arguments.end(), {ball, "-o", (here / "out").string()});  // not of the list before them
     const Finished run = here.run(arguments);
     EXPECT_EQ(run.exit_code, 0) << run.err;
-    return run.out;
+    json report = json::parse(run.out);
+    report.erase("provenance");
+    return report;
   };
-  const std::string plain = cost({"8,64,300"});
-  EXPECT_EQ(json::parse(plain).at("spheres"), 1 + 8 + 64 + 300);
+  const json plain = cost({"8,64,300"});
+  EXPECT_EQ(plain.at("spheres"), 1 + 8 + 64 + 300);
   EXPECT_EQ(cost({"8, 64 ,300"}), plain);
   EXPECT_EQ(cost({"8", "64,300"}), plain);
 }

@@ -168,6 +168,13 @@ std::vector<std::string> quick_build(const std::string& mesh, const std::string&
   return arguments;
 }
 
+std::string without_provenance(const std::string& text) {
+  const std::size_t line = text.find("\n# orchard {");
+  if (line == std::string::npos || text.find('\n', line + 1) + 1 != text.size())
+    throw std::runtime_error("the last line does not say where the file comes from");
+  return text.substr(0, line + 1);
+}
+
 bool is_one_line_error(const std::string& err) {
   return err.starts_with("orchard: ") && err.ends_with('\n') && std::count(err.begin(), err.end(), '\n') == 1;
 }

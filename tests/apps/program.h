@@ -67,6 +67,9 @@ class Running {
 // Waits until there is such a file, half a minute at most; whether there is.
 bool appears(const std::filesystem::path& file);
 
+// A table or medial mesh without the line, which must be the last one, that says where it comes from.
+std::string without_provenance(const std::string& text);
+
 // One line "orchard: ..." and nothing else.
 bool is_one_line_error(const std::string& err);
 

@@ -32,6 +32,19 @@ TEST(Plots, OfTheSameSeriesShareOneLegend) {
   EXPECT_EQ(times(">octree</text>", svg), 1U);
 }
 
+// Without it a page that is narrower cuts the picture off instead of scaling it.
+TEST(Plots, HaveAViewBoxOfTheirSize) {
+  for (const int columns : {1, 2, 3}) {
+    const std::string svg = to_svg(std::vector<Plot>(5, two_lines("octree")), columns),
+                      root = svg.substr(0, svg.find('>'));
+    const auto value = [&](const std::string& name) {
+      const std::size_t begin = root.find(' ' + name + "=\"") + name.size() + 3;
+      return root.substr(begin, root.find('"', begin) - begin);
+    };
+    EXPECT_EQ(value("viewBox"), "0 0 " + value("width") + " " + value("height")) << root;
+  }
+}
+
 TEST(Plots, OfOtherSeriesHaveALegendEach) {
   const std::string svg = to_svg({two_lines("octree"), two_lines("merging")}, 2);
   EXPECT_EQ(times(">tightened</text>", svg), 2U);

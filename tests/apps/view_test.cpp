@@ -178,6 +178,8 @@ TEST(Build, WritesAPageThatNeedsNothingElse) {
   for (const char* part : {"<h1>a&amp;b</h1>", "filled 1 hole", "conservative: every point of the repaired mesh",
                            "<svg", "<h2>Time</h2>", "<h2>Options</h2>", "octree", "inaccuracy"})
     EXPECT_NE(page.find(part), std::string::npos) << part;
+  for (std::size_t svg = page.find("<svg"); svg != std::string::npos; svg = page.find("<svg", svg + 1))
+    EXPECT_LT(page.find("viewBox=\"0 0 ", svg), page.find('>', svg)) << "it would be cut off";
   for (const char* outside : {"src=\"http", "href=", "<script", "<link"})
     EXPECT_EQ(page.find(outside), std::string::npos) << outside;
   EXPECT_FALSE(here.files("out").contains("a&b.png")) << "nobody asked for the picture by itself";

@@ -123,7 +123,9 @@ TEST(Voronoi, WritesTheSameFilesOnAnyNumberOfThreads) {
     const Finished run = here.run(arguments);
     EXPECT_EQ(run.exit_code, 0) << run.err;
     EXPECT_EQ(run.out + run.err, "");
-    return here.files("out");
+    auto written = here.files("out");
+    written.erase("torus-voronoi.json");  // holds times
+    return written;
   };
   const auto one = files("1");
   EXPECT_TRUE(one.contains("torus-voronoi.xyz"));

@@ -4,13 +4,22 @@
 set -euo pipefail
 fly=$1 writer=$2 folder=$3
 
+rm -rf "$folder"
+mkdir -p "$folder"
+"$writer" "$folder/torus.orchard"
+refuses_without_display() { # refuses_without_display VARIABLE..: one line, as "orchard view --window" has it
+  local status=0
+  env "$@" "$fly" "$folder/torus.orchard" flight --frames 1 2> "$folder/errors.txt" || status=$?
+  [ "$status" -eq 1 ] && [ "$(wc -l < "$folder/errors.txt")" -eq 1 ] && grep -q 'no window was opened' "$folder/errors.txt" ||
+    { cat "$folder/errors.txt"; echo "without a display it ends with $status"; exit 1; }
+}
+refuses_without_display -u DISPLAY
+refuses_without_display DISPLAY=:64999
+
 if ! command -v xvfb-run > /dev/null || ! command -v Xvfb > /dev/null; then
   echo "skipped: the window needs a display, and there is no Xvfb (package xvfb) to give it one"
   exit 77
 fi
-rm -rf "$folder"
-mkdir -p "$folder"
-"$writer" "$folder/torus.orchard"
 shoot() { # shoot NAME OPTIONS..
   xvfb-run -a -s '-screen 0 1280x1024x24' "$fly" "$folder/torus.orchard" flight --frames 4 --screenshot "$folder/$1.png" "${@:2}"
 }

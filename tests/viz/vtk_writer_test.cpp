@@ -17,6 +17,7 @@
 #include <vtkXMLPolyDataReader.h>
 
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "values.h"
@@ -96,8 +97,8 @@ TEST(WritePoints, KeepsOriginAndTriangleOfEveryPoint) {
   write_points(folder / "points.vtp", sampling);
   const auto data = read(folder / "points.vtp");
   EXPECT_EQ(points_of(data), sampling.points);
-  const auto origins = values(data->GetCellData(), "origin");
-  const auto triangles = values(data->GetCellData(), "triangle");
+  const auto origins = values(data->GetPointData(), "origin");
+  const auto triangles = values(data->GetPointData(), "triangle");
   ASSERT_EQ(data->GetNumberOfVerts(), sampling.size());
   ASSERT_EQ(origins.size(), sampling.size());
   ASSERT_EQ(triangles.size(), sampling.size());
@@ -123,6 +124,9 @@ TEST(WriteMedialAxis, MakesThreeFilesThatNumberTheVerticesAlike) {
     EXPECT_NE(component[0], component[3]);
   }
   EXPECT_EQ(read(folder / "axis-vertices.vtp")->GetNumberOfVerts(), 4);
+  const auto contacts = read(folder / "axis-contacts.vtp");
+  EXPECT_EQ(points_of(contacts), axis.points);
+  EXPECT_EQ(values(contacts->GetPointData(), "origin"), (std::vector<double>{0, 2}));
 }
 
 TEST(WriteMedialAxis, HasALinePerPairOfNeighboursAndAPolygonPerFace) {
@@ -188,6 +192,18 @@ TEST(WriteTreeLevel, CarriesTheFiguresOfEachNode) {
       const Index child_of_root = standing_for(tree, index, 1);
       EXPECT_EQ(values(arrays, "branch")[i], child_of_root - tree.nodes[0].first_child);
     }
+  }
+}
+
+TEST(WriteTreeLevel, SaysNaNForWhatIsNotKnown) {
+  const TestFolder folder;
+  SphereTree tree = test::random_tree(1, 1);
+  tree.nodes[1].distance_bound = tree.nodes[1].inaccuracy = std::numeric_limits<double>::infinity();
+  write_tree_level(folder / "level.vtp", tree, 1);
+  for (const char* name : {"error", "inaccuracy"}) {
+    const auto all = values(read(folder / "level.vtp")->GetPointData(), name);
+    EXPECT_TRUE(std::isnan(all.front())) << name;
+    for (std::size_t i = 1; i < all.size(); ++i) EXPECT_TRUE(std::isfinite(all[i])) << name;
   }
 }
 

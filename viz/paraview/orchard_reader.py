@@ -1,21 +1,32 @@
 """A ParaView plugin that opens orchard's own files: sphere-trees (.orchard, .sph), medial meshes (.ma) and Voronoi
-diagrams (.vor). Load it with Tools > Manage Plugins > Load New, or by pvbatch: LoadPlugin("orchard_reader.py"). Formats:
-docs/FORMATS.md. Needs numpy, which ParaView brings.
+diagrams (.vor). Formats: docs/FORMATS.md. Needs numpy, which ParaView brings.
+
+Load it with "paraview --script=orchard_reader.py", as a macro (Macros > Import New Macro), or in a script of pvbatch with
+runpy.run_path("orchard_reader.py", run_name="__main__"). Tools > Manage Plugins > Load New and LoadPlugin() work as well,
+but not in the ParaView of Debian 12, which says "invalid ELF header": its own support for plugins in Python asks for a
+function that Python 3.11 does not have any more. As a script, this file provides that function first.
 """
+import inspect
+import os
+
+if not hasattr(inspect, "getargspec"):
+    inspect.getargspec = inspect.getfullargspec
+
 import numpy
 from paraview.util.vtkAlgorithm import VTKPythonAlgorithmBase, smdomain, smhint, smproperty, smproxy
 from paraview.vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
-MAGIC, VERSION, BLOCK_BYTES, LEAF = b"\x89ORCH\r\n\x1a", 3, 224, 0x80000000
+MAGIC, VERSION, BLOCK_BYTES, LEAF = b"\x89ORCH\r\n\x1a", 4, 224, 0x80000000
 
 
 class Tree:
-    """Nodes in breadth-first order: centers (n x 3), radii, errors (infinite: not known), levels, parents, leaves."""
+    """Nodes in breadth-first order: centers (n x 3), radii, errors (NaN: not known), levels, parents, leaves."""
 
     def __init__(self, centers, radii, errors, levels, parents, leaves):
-        self.centers, self.radii, self.errors = centers, radii, errors
+        # Infinity, as files have it, would make one colour of all others.
+        self.centers, self.radii, self.errors = centers, radii, numpy.where(numpy.isfinite(errors), errors, numpy.nan)
         self.levels, self.parents, self.leaves = levels, parents, leaves
 
     def branches(self):
@@ -338,3 +349,8 @@ class OrchardVoronoiReader(Reader):
         output.SetLines(cells_of(edges, 2))
         add(output.GetPointData(), "radius", radii)
         return 1
+
+
+if __name__ == "__main__":
+    from paraview import simple
+    simple.LoadPlugin(os.path.abspath(__file__), remote=False, ns=globals())

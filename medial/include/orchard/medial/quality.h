@@ -67,14 +67,16 @@ struct MedialQuality {
   Spread hausdorff;     // two-sided distance between the surface and the reconstruction's boundary, over D
   Spread coverage;      // distance from the surface to the reconstruction, over D; the maximum searched, 1e-5 D low
   double coverage_upper = 0;  // proven, up to rounding: no place of the surface is farther from the reconstruction
-  Spread inner_coverage;      // of coverage, what is not at the borders of sheets, where what is pruned is missing
-  Spread protrusion;          // distance of the reconstruction outside the solid, over D
+  // Of coverage, what is not at the borders of sheets, where what is pruned is missing. NaN if the mesh has neither
+  // edges nor triangles: then every ball is a border.
+  Spread inner_coverage;
+  Spread protrusion;  // distance of the reconstruction outside the solid, over D
   // Proven, up to rounding: no ball reaches farther beyond the place of the surface that is nearest to its centre. More
   // than what protrudes where a ball closes a crevice.
   double protrusion_upper = 0;
   double dent_upper = 0;  // proven: no place of the reconstruction's boundary is deeper in the solid
   Spread radius_error;    // |radius - distance to the surface| of vertices, over D
-  Spread centredness;     // |distance to the second contact - radius| of vertices, over the radius
+  Spread centredness;     // |distance to the second contact - radius| of vertices, over the radius; NaN without any
   double outside_vertices = 0, outside_edges = 0, outside_triangles = 0;  // fractions; by more than 1e-9 D
   Topology found, wanted;                                                 // of the medial mesh; of the solid
   Economy economy;
@@ -91,7 +93,7 @@ MedialQuality medial_quality(const Surface& surface, const MedialMesh& mesh, con
 // What is wrong with single balls of an axis: lengths over the diagonal of the surface's bounding box.
 struct BallErrors {
   std::vector<double> radius_error, protrusion;
-  std::vector<double> centredness;  // over the radius; -1 where there is none: no second contact, or next to no radius
+  std::vector<double> centredness;  // over the radius; NaN where there is no second contact or next to no radius
 };
 // By the definitions of medial_quality(), of each ball; no centredness, which takes longest, if options.contact_cells
 // is 0. Parallel. Throws InputError unless surface.solid().

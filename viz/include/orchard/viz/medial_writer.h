@@ -15,8 +15,9 @@ namespace orchard {
 // Point arrays: radius; contact_angle (the widest at which two forming points are seen, radians); component; segment;
 // added (1 if gap repair added a forming point); forming_points (four of them, -1 for none); forming_count. Cell
 // arrays: segment; sheet (1, else a curve) and trunk (1, else a branch) of the segment; wall (1 for walls);
-// contact_angle (at which the two points are seen, -1 for lines); point_a, point_b (-1 for lines); added; component.
-// Also what `of_vertices` has, and `of_faces`: one value for each face, then for each wall; lines get -1.
+// contact_angle (at which the two points are seen, NaN for lines); point_a, point_b (-1 for lines); added; component.
+// Also what `of_vertices` has, and `of_faces`: one value for each face, then for each wall; lines get NaN. Points are
+// numbered as in the contacts of write_medial_axis().
 void write_medial_grid(const std::filesystem::path& vtu, const MedialAxis& axis, const MedialSegments& segments,
                        const ViewArrays& of_vertices = {}, const ViewArrays& of_faces = {});
 

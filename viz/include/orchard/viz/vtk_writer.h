@@ -10,9 +10,9 @@
 #include "orchard/spheretree/tree.h"
 
 // The values of the pipeline as ParaView opens them: XML PolyData (.vtp), zlib-compressed, coordinates and lengths as
-// doubles in mesh units, indices as 32-bit integers with -1 for kNone. The same bytes for the same value. Files appear
-// as a whole or not at all; every function throws Error if its file cannot be written, and the file's folder must
-// exist.
+// doubles in mesh units, with NaN where there is no value, indices as 32-bit integers with -1 for kNone. The same bytes
+// for the same value. Files appear as a whole or not at all; every function throws Error if its file cannot be written,
+// and the file's folder must exist.
 namespace orchard {
 
 // Values of one's own beside the arrays that a file has anyhow: one for each point, vertex or face.
@@ -25,27 +25,30 @@ using ViewArrays = std::vector<ViewArray>;
 // Triangles; cell array `cluster`. Field data `bounding_radius`: what tolerances and figures are fractions of.
 void write_mesh(const std::filesystem::path& vtp, const Surface& surface);
 
-// One vertex per surface point; cell arrays `origin` (0 face, 1 edge, 2 repair) and `triangle`, and `more` of each.
+// One vertex per surface point; point arrays `origin` (0 face, 1 edge, 2 repair) and `triangle`, and `more` of each.
 void write_points(const std::filesystem::path& vtp, const SurfaceSampling& sampling, const ViewArrays& more = {});
 
 // A name that several files begin with: "out/lamp-build" and "-mesh.vtp" make "out/lamp-build-mesh.vtp".
 std::filesystem::path with_ending(const std::filesystem::path& prefix, const std::string& ending);
 
-// Three files, each of which can be shown alone; vertices are numbered alike in all of them and carry the point arrays
+// Four files. The first three can each be shown alone; vertices are numbered alike in them and carry the point arrays
 // `radius`, `contact_angle` (contact_angles(), radians), `component` and `valence` (number of neighbours), and what
 // `of_vertices` has.
 //   PREFIX-vertices.vtp  the medial vertices
 //   PREFIX-edges.vtp     a line per pair of neighbours
-//   PREFIX-faces.vtp     the faces; cell arrays `point_a`, `point_b`: the two surface points that a face separates, and
+//   PREFIX-faces.vtp     the faces; cell arrays `point_a`, `point_b`: the two contacts that a face separates, and
 //                        `contact_angle`: separation_angle(), in radians, as in write_medial_grid(). Small angles
 //                        belong to sheets that run into shallow edges and noise: a threshold clears the view. And what
 //                        `of_faces` has, one value for each face and then for each wall, which is not drawn.
+//   PREFIX-contacts.vtp  MedialAxis::points, one vertex each: what `point_a`, `point_b` and the `forming_points` of
+//                        write_medial_grid() count; point array `origin` as in write_points(). Those of a raw axis are
+//                        its surface points, those of a refined one where its balls touch the surface.
 void write_medial_axis(const std::filesystem::path& prefix, const MedialAxis& axis, const ViewArrays& of_vertices = {},
                        const ViewArrays& of_faces = {});
 
 // The spheres of one level as points, for glyphs scaled by `radius`: the nodes of that level and, flagged `carried`,
 // the leaves above it, which stand in for the children they do not have. Point arrays:
-//   radius, error (distance_bound), inaccuracy   lengths, as measure() left them
+//   radius, error (distance_bound), inaccuracy   lengths, as measure() left them; NaN if infinite, which is unknown
 //   level, node, parent                          of the node; indices into SphereTree::nodes
 //   branch                                       the child of the root that the node descends from, counted from 0; -1
 //                                                for the root itself
