@@ -1,16 +1,20 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
+#include <vector>
 
 #include "commands.h"
 #include "input_file.h"
 #include "load_tree.h"
 #include "orchard/geometry/error.h"
 #include "orchard/runtime/narrow_phase.h"
+#include "orchard/runtime/shape_query.h"
 
 namespace orchard::apps {
 namespace {
@@ -92,6 +96,61 @@ json run(runtime::NarrowPhase& narrow, const runtime::Pose& a, const runtime::Po
   return levels;
 }
 
+// One vertex of each connected piece of the surface, in the tree's frame.
+std::vector<std::array<double, 3>> pieces_of(const runtime::PackedSphereTree& tree) {
+  std::vector<std::uint32_t> parent(tree.vertices.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto root = [&](std::uint32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const auto& triangle : tree.triangles) {
+    for (const std::uint32_t v : triangle) parent[root(v)] = root(triangle[0]);
+  }
+  std::vector<bool> seen(parent.size());
+  std::vector<std::array<double, 3>> pieces;
+  for (const auto& triangle : tree.triangles) {
+    const std::uint32_t piece = root(triangle[0]);
+    if (seen[piece]) continue;
+    seen[piece] = true;
+    const auto& vertex = tree.vertices[triangle[0]];
+    pieces.push_back({vertex[0] + tree.origin[0], vertex[1] + tree.origin[1], vertex[2] + tree.origin[2]});
+  }
+  return pieces;
+}
+
+struct Placed {
+  const char* name;
+  const runtime::PackedSphereTree& tree;
+  runtime::Pose pose;
+};
+
+// Surfaces that do not touch leave each piece of one either wholly inside the other solid or wholly outside of it, so
+// one vertex of each piece decides.
+void add_inside(json& inside, const Placed& outer, const Placed& inner) {
+  if (outer.tree.triangles.empty()) return;
+  const auto pieces = pieces_of(inner.tree);
+  const auto within =
+      static_cast<std::size_t>(std::count_if(pieces.begin(), pieces.end(), [&](const std::array<double, 3>& vertex) {
+        return runtime::contains(outer.tree, outer.pose, transform(inner.pose, vertex));
+      }));
+  if (within == 0) return;
+  inside.push_back({{"inner", inner.name}, {"outer", outer.name}, {"pieces", within}, {"of", pieces.size()}});
+}
+
+void print_inside(const json& inside) {
+  for (const json& one : inside) {
+    const auto pieces = one["pieces"].get<std::size_t>(), all = one["of"].get<std::size_t>();
+    const auto inner = one["inner"].get<std::string>(), outer = one["outer"].get<std::string>();
+    if (pieces == all) {
+      fmt::print("{} lies inside {}: their surfaces do not touch, their solids overlap\n", inner, outer);
+    } else {
+      fmt::print("{} of the {} pieces of {} {} inside {}: the surfaces do not touch, the solids overlap\n", pieces, all,
+                 inner, pieces == 1 ? "lies" : "lie", outer);
+    }
+  }
+}
+
 void print_contact(const runtime::Contact& contact, bool exact) {
   fmt::print("{} at ({:.6g}, {:.6g}, {:.6g})", exact ? "triangles meet" : "nearest spheres meet", contact.center[0],
              contact.center[1], contact.center[2]);
@@ -122,8 +181,14 @@ void collide(const CollideCommand& command) {
   constexpr std::size_t room = 1u << 20;  // meeting pairs a level: plenty, 25 MB
   runtime::NarrowPhase narrow(a, b, room);
   const json levels = run(narrow, pose_a, pose_b);
+  json inside = json::array();
+  if (narrow.answer() == Answer::no) {
+    add_inside(inside, {"a", a, pose_a}, {"b", b, pose_b});
+    add_inside(inside, {"b", b, pose_b}, {"a", a, pose_a});
+  }
   if (command.output.json) {
-    const json report{{"answer", name(narrow.answer())}, {"levels", levels}, {"provenance", to_json(provenance)}};
+    const json report{
+        {"answer", name(narrow.answer())}, {"inside", inside}, {"levels", levels}, {"provenance", to_json(provenance)}};
     fmt::print("{}\n", report.dump(2));
     return;
   }
@@ -133,6 +198,7 @@ void collide(const CollideCommand& command) {
   }
   print(levels);
   if (narrow.answer() != Answer::no) print_contact(narrow.contact(), narrow.answer() == Answer::yes);
+  print_inside(inside);
 }
 
 }  // namespace orchard::apps

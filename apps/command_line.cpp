@@ -160,7 +160,13 @@ void add_collide(CLI::App& app, Request& request) {
   command.add_option("--pose-a", collide.pose_a, "Where a is, in the same form (default: where it was built)");
   add_output_flags(command, collide.output);
   command.get_option("--quiet")->description("Print the answer alone");
-  command.footer("Example:\n  orchard collide out/lamp/lamp.orchard out/ship/ship.orchard --pose \"4 0 0 1 0 0 0\"");
+  command.footer(
+      "The answer is about the surfaces, and so are lower bounds. A body that lies wholly inside the other one does "
+      "not\n"
+      "touch it: the answer is \"no\", and a line of its own (\"inside\" in JSON) says so. \"Separation at most\" "
+      "bounds the\n"
+      "distance between the solids.\n"
+      "Example:\n  orchard collide out/lamp/lamp.orchard out/ship/ship.orchard --pose \"4 0 0 1 0 0 0\"");
   command.callback([&request, &command] {
     request.collide.output.run = invocation_of(command, request.typed);
     request.run = [&request] { orchard::apps::collide(request.collide); };

@@ -194,8 +194,8 @@ void inspect(const InspectCommand& command) {
   if (command.join && (extension == ".orchard" || extension == ".sph"))
     throw InputError("--join has no effect on a tree; it is for meshes");
   json report = extension == ".orchard" ? inspect_packed(command.file)
-                      : extension == ".sph"   ? inspect_sph(command.file)
-                                              : inspect_mesh(command);
+                : extension == ".sph"   ? inspect_sph(command.file)
+                                        : inspect_mesh(command);
   if (command.output.json) {
     report["provenance"] = to_json(provenance);
     fmt::print("{}\n", report.dump(2));

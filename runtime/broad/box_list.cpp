@@ -176,6 +176,8 @@ void BoxList::append_meeting(const QuantumBox& box, std::vector<BodyIndex>& bodi
 
 ORCHARD_INLINE void BoxList::make_coarse(const BoxBlock& block, std::size_t count, Group& group) const noexcept {
   const std::size_t lanes = count > kAtOnce / 2 ? kAtOnce : count;  // of one body vectors would be most of the work
+  // Those of the group that have no body are compared with the others, and meet none.
+  for (std::size_t d = 0; d < 3 && count > 1; ++d) group.lower[d].fill(kLastCoarse), group.upper[d].fill(kHighBit);
   for (std::size_t d = 0; d < 3; ++d) {
     const std::uint32_t from = first_[d], last = kLastCoarse;
     const unsigned shift = shift_;
@@ -185,6 +187,7 @@ ORCHARD_INLINE void BoxList::make_coarse(const BoxBlock& block, std::size_t coun
       group.lower[d][i] = static_cast<std::uint8_t>(std::min(lower, last));
       group.upper[d][i] = static_cast<std::uint8_t>(std::min(upper, last) | kHighBit);
     }
+    for (std::size_t i = count; i < lanes; ++i) group.lower[d][i] = kLastCoarse, group.upper[d][i] = kHighBit;
   }
 }
 

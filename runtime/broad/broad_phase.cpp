@@ -12,7 +12,9 @@ using detail::Step;
 
 MotionSource values_of(const std::vector<Motion>& values) {
   return [&values](double, std::span<const BodyIndex> bodies, std::span<Motion> motions) {
-    for (std::size_t i = 0; i < bodies.size(); ++i) motions[i] = values[bodies[i]];
+    Motion none;  // refused
+    none.radius = -1;
+    for (std::size_t i = 0; i < bodies.size(); ++i) motions[i] = bodies[i] < values.size() ? values[bodies[i]] : none;
   };
 }
 
@@ -79,8 +81,10 @@ void BroadPhase::validate_up_to(Step step) {
   state_->pool.ask_all(step);
 }
 
+bool BroadPhase::may_change() const noexcept { return valid() && !state_->busy; }
+
 Advance BroadPhase::process(double t_now, const WorkBudget* budget) {
-  if (!(std::fabs(t_now) <= max_time_)) {
+  if (!(std::fabs(t_now) <= max_time_) || state_->busy) {
     Advance refused{next_time_, {}};
     refused.time_refused = true;
     return refused;
@@ -91,6 +95,7 @@ Advance BroadPhase::process(double t_now, const WorkBudget* budget) {
     next_time_ = wake_time_ = std::numeric_limits<double>::infinity();
   };
   detail::UndoUnlessDone fails(fail);
+  const Busy busy(*state_);
   const Advance report = process_steps(t_now, budget);
   fails.done();
   return report;
@@ -145,15 +150,15 @@ BodyId BroadPhase::take_in(std::uint8_t importance, const BodyFilter& filter, co
 }
 
 BodyId BroadPhase::add(std::uint8_t importance, const BodyFilter& filter) {
-  return valid() && state_->pool.has_source() ? take_in(importance, filter, nullptr) : kNoBody;
+  return may_change() && state_->pool.has_source() ? take_in(importance, filter, nullptr) : kNoBody;
 }
 
 BodyId BroadPhase::add_static(const Motion& place, std::uint8_t importance, const BodyFilter& filter) {
-  return valid() && is_valid(place) ? take_in(importance, filter, &place) : kNoBody;
+  return may_change() && is_valid(place) ? take_in(importance, filter, &place) : kNoBody;
 }
 
 bool BroadPhase::remove(BodyId body) {
-  if (!contains(body)) return false;
+  if (!may_change() || !contains(body)) return false;
   state_->pool.make_room_to_remove(body.index);
   state_->method->removed(body.index);
   state_->pool.remove(body.index);
@@ -161,7 +166,7 @@ bool BroadPhase::remove(BodyId body) {
 }
 
 bool BroadPhase::cancel(BodyId body) {
-  if (!contains(body)) return false;
+  if (!may_change() || !contains(body)) return false;
   state_->method->changed(body.index);
   state_->pool.forget_promise(body.index);
   wake_for_change();
@@ -169,14 +174,14 @@ bool BroadPhase::cancel(BodyId body) {
 }
 
 bool BroadPhase::move_static(BodyId body, const Motion& place) {
-  if (!contains(body) || !state_->pool.is_static(body.index) || !is_valid(place)) return false;
+  if (!may_change() || !contains(body) || !state_->pool.is_static(body.index) || !is_valid(place)) return false;
   cancel(body);
   state_->pool.move_static(body.index, place);
   return true;
 }
 
 bool BroadPhase::set_importance(BodyId body, std::uint8_t importance) {
-  if (!contains(body)) return false;
+  if (!may_change() || !contains(body)) return false;
   detail::BodyPool& pool = state_->pool;
   const std::uint8_t before = pool.importance(body.index);
   const auto undo = [&] { pool.set_importance(body.index, before); };
@@ -189,7 +194,7 @@ bool BroadPhase::set_importance(BodyId body, std::uint8_t importance) {
 
 // A window update finds all near pairs anew, and those found before become void.
 bool BroadPhase::set_filter(BodyId body, const BodyFilter& filter) {
-  if (!contains(body)) return false;
+  if (!may_change() || !contains(body)) return false;
   detail::BodyPool& pool = state_->pool;
   if (pool.filter(body.index) == filter) return true;
   pool.make_room_for_filters();
@@ -204,7 +209,7 @@ BodyFilter BroadPhase::filter_of(BodyId body) const noexcept {
 }
 
 void BroadPhase::set_pair_filter(PairFilter filter) {
-  if (!valid()) return;
+  if (!may_change()) return;
   detail::BodyPool& pool = state_->pool;
   for (BodyIndex body = 0; body < pool.slots(); ++body) {
     if (pool.alive(body)) state_->method->changed(body);
@@ -213,9 +218,25 @@ void BroadPhase::set_pair_filter(PairFilter filter) {
   pool.set_pair_filter(std::move(filter));
 }
 
+// What was due at the steps in between is void once each body has been asked for again.
+std::uint64_t BroadPhase::skip_to(double t) {
+  if (!may_change() || !(std::fabs(t) <= max_time_)) return 0;
+  const Step from = step_reported() + 1, to = state_->pool.clock.step_at(t);
+  if (to <= from || state_->next >= to) return 0;
+  detail::BodyPool& pool = state_->pool;
+  for (BodyIndex body = 0; body < pool.slots(); ++body) {
+    if (pool.alive(body)) state_->method->changed(body);
+  }
+  state_->method->skip();
+  state_->next = pool.size() > 0 ? to : kNeverStep;
+  state_->woken = true;  // what changes from now on takes part at that step, too
+  note_next_step();
+  return static_cast<std::uint64_t>(to - from);
+}
+
 std::size_t BroadPhase::foresee(double time, std::span<StepsAhead> steps) const noexcept {
   for (StepsAhead& step : steps) step = {};
-  if (!(std::fabs(time) <= max_time_)) return 0;
+  if (!(std::fabs(time) <= max_time_) || state_->busy) return 0;
   return state_->method->foresee(state_->pool.clock.step_at(time), steps);
 }
 

@@ -155,6 +155,8 @@ orchard_broad_phase* orchard_broad_phase_new(orchard_motion_source source, void*
                                              const orchard_broad_phase_options* with) {
   return guarded(
       [&] {
+        const orchard_broad_phase_options defaults = orchard_default_broad_phase();
+        if (with == nullptr) with = &defaults;
         rt::BroadPhaseOptions options;
         options.time_step = with->time_step, options.start = with->start;
         options.window = with->window, options.vectors = with->vectors != 0;
@@ -233,6 +235,9 @@ orchard_advance orchard_broad_phase_advance(orchard_broad_phase* world, double t
   return result;
 }
 
+uint64_t orchard_broad_phase_skip_to(orchard_broad_phase* world, double t) {
+  return guarded([&]() -> uint64_t { return world->world.skip_to(t); }, []() -> uint64_t { return 0; });
+}
 size_t orchard_broad_phase_foresee(const orchard_broad_phase* world, double time, size_t count, size_t* updates,
                                    size_t* meetings, size_t* overlaps) {
   std::array<rt::StepsAhead, 254> steps;

@@ -98,7 +98,8 @@ std::int64_t BodyQueries::step() const noexcept { return std::max<detail::Step>(
 double BodyQueries::time() const noexcept { return world_->state_->pool.clock.time(step()); }
 
 bool BodyQueries::begin(bool valid) {
-  refused_ = !valid || !world_->valid();
+  refused_ = !valid || !world_->may_change();
+  if (world_->state_->busy) return false;  // this may be the object whose query is under way
   candidates_.clear(), found_.clear(), hits_.clear(), near_.clear();
   if (refused_) return false;
   detail::grow(seen_, world_->state_->pool.slots());
@@ -129,7 +130,11 @@ void BodyQueries::use_motions(std::span<const BodyIndex> bodies, const QueryFilt
   motions_.resize(kAskedAtOnce);
   while (!rest.empty()) {
     const std::size_t count = std::min(kAskedAtOnce, rest.size());
-    world_->state_->pool.ask(now, rest.first(count), std::span(motions_).first(count));
+    {
+      const BroadPhase::Busy busy(*world_->state_);
+      world_->state_->pool.ask(now, rest.first(count), std::span(motions_).first(count));
+    }
+    refused_ = false;  // what the source has asked of this object was
     for (std::size_t i = 0; i < count; ++i) {
       if (is_valid(motions_[i])) use(rest[i], motions_[i]);
     }

@@ -26,6 +26,7 @@ class Events final : public Method {
   void removed(BodyIndex body) override;
   void reclassified(BodyIndex body) override { budgeted_.reclassified(body); }
   StepReport step(Step now, BudgetTracker& tracker) override;
+  void skip() noexcept override { prepared_ = false, common_expiry_ = kNeverStep; }
   std::size_t memory_bytes() const noexcept override;
   std::size_t foresee(Step now, std::span<StepsAhead> steps) const noexcept override;
   Near near_box(Step now, const Vec3& lower, const Vec3& upper, std::vector<BodyIndex>& bodies) const override;

@@ -36,6 +36,8 @@ class Method {
   virtual void removed(BodyIndex body) = 0;
   virtual void reclassified(BodyIndex body) = 0;  // the body pool has its new importance
   virtual StepReport step(Step now, BudgetTracker& tracker) = 0;
+  // Steps are left out before the next one; every body has been changed().
+  virtual void skip() noexcept {}
   virtual std::size_t memory_bytes() const noexcept = 0;
   // Adds what is due at the steps after `now`, one after the other; returns for how many it knows.
   virtual std::size_t foresee(Step now, std::span<StepsAhead> steps) const noexcept {

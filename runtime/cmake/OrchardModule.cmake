@@ -77,7 +77,7 @@ function(orchard_precompile_once target name)
     set(empty ${PROJECT_BINARY_DIR}/${owner}.cpp)
     file(CONFIGURE OUTPUT ${empty} CONTENT "")
     add_library(${owner} OBJECT ${empty})
-    set_target_properties(${owner} PROPERTIES POSITION_INDEPENDENT_CODE ${ARG_PIC})
+    set_target_properties(${owner} PROPERTIES POSITION_INDEPENDENT_CODE ${ARG_PIC} CXX_STANDARD 20)
     target_compile_options(${owner} PRIVATE ${ARG_OPTIONS})
     target_link_libraries(${owner} PRIVATE orchard_flags ${ARG_LINK})
     target_precompile_headers(${owner} PRIVATE ${ARG_HEADERS})
@@ -124,6 +124,8 @@ function(orchard_add_module name)
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})  # "room/header.h"
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE $<BUILD_INTERFACE:orchard_flags> ${ARG_PRIVATE})
+  # As C++20 whatever the project around it asks for: see packed_tree.h.
+  set_target_properties(${target} PROPERTIES CXX_STANDARD 20 CXX_STANDARD_REQUIRED ON)
   if(name MATCHES "^(runtime|broad_phase_methods)$")  # file by file, so that a game links no more than it uses
     orchard_precompile_once(${target} runtime PIC HEADERS ${ORCHARD_STANDARD_HEADERS})
     if((ORCHARD_SANITIZE OR ORCHARD_SANITIZE_THREADS) AND name STREQUAL "runtime")  # where nobody links it but its tests

@@ -8,7 +8,9 @@ namespace orchard::runtime {
 
 StateSource states_of(const std::vector<BodyState>& values) {
   return [&values](double, std::span<const BodyIndex> bodies, std::span<BodyState> states) {
-    for (std::size_t i = 0; i < bodies.size(); ++i) states[i] = values[bodies[i]];
+    BodyState none;  // refused
+    none.pose.rotation = {};
+    for (std::size_t i = 0; i < bodies.size(); ++i) states[i] = bodies[i] < values.size() ? values[bodies[i]] : none;
   };
 }
 

@@ -75,6 +75,7 @@ struct alignas(64) Body {
   double min_reach = 0;           // as the application gave it
   double reach = 0;               // around its origin: what the broad phase has been told of, at scale 1
   double told_radius = -1;        // of the sphere that the broad phase relies on; below 0: none yet
+  Step since = 0;                 // the first step that it takes part in
   Step asked = kNotAsked;         // the step that `state` is of
   Step known_before = kNotAsked;  // the step that `before` is of
   std::vector<PartRecord> parts;

@@ -19,7 +19,7 @@ namespace {
 constexpr double kStretchAhead = 1 + 0x1p-4;
 
 bool is_valid_option(const DetectorOptions& options) noexcept {
-  return options.steps_to_end >= 1 &&
+  return options.steps_to_end >= 1 && options.max_events >= 1 &&
          is_valid(BroadPhaseOptions{options.time_step, options.start, 0, true, options.position_slack});
 }
 
@@ -43,6 +43,7 @@ BroadPhaseOptions broad_options(const DetectorOptions& options, const Executor& 
 
 Detector::State::State(StateSource source, const DetectorOptions& wanted)
     : options(wanted),
+      watches(wanted.watch.value_or(true)),
       valid(is_valid_option(wanted)),
       clock{valid ? wanted.start : 0, valid ? wanted.time_step : 1},
       bodies(std::move(source)),
@@ -65,10 +66,12 @@ void Detector::State::run_for_broad(void* context, std::size_t count, Executor::
 Detector::Detector(StateSource source, const DetectorOptions& options)
     : state_(std::make_unique<State>(std::move(source), options)) {}
 Detector::Detector(const DetectorOptions& options) {
-  auto kept = std::make_unique<detail::KeptStates>(!options.watch);
+  auto kept = std::make_unique<detail::KeptStates>(!options.watch.value_or(false));
   const auto fill = [states = kept.get()](double time, std::span<const BodyIndex> bodies,
                                           std::span<BodyState> answers) { states->fill(time, bodies, answers); };
-  state_ = std::make_unique<State>(fill, options);
+  DetectorOptions with = options;
+  with.watch = options.watch.value_or(false);
+  state_ = std::make_unique<State>(fill, with);
   state_->kept_states = std::move(kept);
 }
 Detector::Detector(Detector&&) noexcept = default;
@@ -85,28 +88,37 @@ ShapeId counted(std::size_t& count, ShapeId shape) noexcept {
 }  // namespace
 
 ShapeId Detector::add_shape(const TreeView& tree) {
+  if (state_->stepping) return kNoShape;
   return counted(state_->shape_count, state_->shapes.add_tree(tree));
 }
 ShapeId Detector::load_shape(const char* path, LoadStatus* status) {
   PackedSphereTree tree;
   const LoadStatus loaded = load_file(path, tree);
   if (status != nullptr) *status = loaded;
-  return loaded == LoadStatus::ok ? counted(state_->shape_count, state_->shapes.add_tree(std::move(tree))) : kNoShape;
+  return loaded == LoadStatus::ok && !state_->stepping
+             ? counted(state_->shape_count, state_->shapes.add_tree(std::move(tree)))
+             : kNoShape;
 }
 ShapeId Detector::add_sphere(double radius, const Vec3& center) { return add_capsule(center, center, radius); }
 ShapeId Detector::add_capsule(const Vec3& p, const Vec3& q, double radius) {
+  if (state_->stepping) return kNoShape;
   return counted(state_->shape_count, state_->shapes.add_round(p, q, radius));
 }
 ShapeId Detector::add_box(const Vec3& half_lengths) {
+  if (state_->stepping) return kNoShape;
   return counted(state_->shape_count, state_->shapes.add_box(half_lengths));
 }
 
 bool Detector::State::acceptable(std::span<const BodyPart> parts) const noexcept {
-  if (!valid || failed || parts.empty()) return false;
+  if (!valid || failed || stepping || parts.empty()) return false;
   return std::all_of(parts.begin(), parts.end(), [this](const BodyPart& part) {
     PartRecord trial;
     return shapes.contains(part.shape) && detail::set_local(trial, shapes[part.shape], part.local);
   });
+}
+
+bool Detector::State::acceptable(const BodyOptions& with) const noexcept {
+  return are_valid(with) && (watches || !with.suggest);
 }
 
 Body& Detector::State::take_in(BodyId id, std::span<const BodyPart> parts, const BodyOptions& with) {
@@ -115,7 +127,7 @@ Body& Detector::State::take_in(BodyId id, std::span<const BodyPart> parts, const
   body.group = with.group, body.mask = with.mask;
   filters_pairs = filters_pairs || broad_filter(body) != BodyFilter{};
   body.importance = with.importance;
-  body.suggest = with.suggest && options.watch;
+  body.suggest = with.suggest;
   body.continuous_speed = with.continuous_speed;
   if (with.continuous_speed > 0 && !any_continuous) {
     any_continuous = true;
@@ -129,6 +141,7 @@ Body& Detector::State::take_in(BodyId id, std::span<const BodyPart> parts, const
     detail::set_local(taken, shapes[part.shape], part.local);
   }
   bodies.parts_changed(id.index);
+  body.since = answered + 1;
   body.reach = std::max(body.min_reach, detail::reach_of(body.parts));
   if (!any_continuous && !body.suggest && !(with.reach > 0)) detail::find_middle(body);
   changed(body);
@@ -149,13 +162,13 @@ void Detector::State::go_by_origins() {
 
 BodyId Detector::add_body(std::span<const BodyPart> parts, const BodyOptions& options) {
   State& s = *state_;
-  if (!s.acceptable(parts) || !are_valid(options) || !s.bodies.has_source()) return kNoBody;
+  if (!s.acceptable(parts) || !s.acceptable(options) || !s.bodies.has_source()) return kNoBody;
   return s.or_fail([&] {
     const BodyId id = s.broad.add(options.importance, {options.group, options.mask});
     if (id == kNoBody) return id;
     s.take_in(id, parts, options);
     if (s.kept_states) s.kept_states->put(id.index, s.last_time(), {});
-    if (s.options.watch) s.monitor.begin(id.index);
+    if (s.watches) s.monitor.begin(id.index);
     s.halves.update_again(id.index);
     return id;
   });
@@ -206,10 +219,12 @@ BodyId Detector::add_half_space(const Vec3& normal, double offset, const BodyOpt
   State& s = *state_;
   const detail::ScaledVector scaled(normal);
   const double size = detail::length(Vec3(scaled.value)), height = std::ldexp(offset, scaled.power) / size;
-  if (!s.valid || s.failed || !are_valid(options) || !(size > 0) || !(std::fabs(height) <= kMaxNumber)) return kNoBody;
+  if (!s.valid || s.failed || s.stepping || !are_valid(options) || !(size > 0) || !(std::fabs(height) <= kMaxNumber))
+    return kNoBody;
   Body body;
   body.group = options.group, body.mask = options.mask;
   body.importance = options.importance;
+  body.since = s.answered + 1;
   return s.or_fail([&] {
     const BodyIndex index = s.halves.add({(1 / size) * Vec3(scaled.value), height}, body);
     s.halves.body(index).moved = s.answered + 1;
@@ -219,8 +234,9 @@ BodyId Detector::add_half_space(const Vec3& normal, double offset, const BodyOpt
   });
 }
 
+// To change it.
 Body* Detector::State::find(BodyId body) noexcept {
-  if (!contains(body)) return nullptr;
+  if (stepping || !contains(body)) return nullptr;
   return is_half_space(body.index) ? &halves.body(body.index) : &bodies[body.index];
 }
 
@@ -228,7 +244,7 @@ void Detector::State::update_again(Body& body) {
   if (is_half_space(body.id.index)) return;
   body.told_radius = -1;
   or_fail([&] {
-    if (options.watch) monitor.cancelled(body.id.index);
+    if (watches) monitor.cancelled(body.id.index);
     if (!body.is_static) halves.update_again(body.id.index);
     return broad.cancel(body.id);
   });
@@ -236,7 +252,7 @@ void Detector::State::update_again(Body& body) {
 
 bool Detector::remove(BodyId body) {
   State& s = *state_;
-  if (!s.contains(body)) return false;
+  if (s.find(body) == nullptr) return false;
   --s.count;
   if (is_half_space(body.index)) return s.halves.remove(body.index);
   if (s.bodies[body.index].by_parts) s.part_search.end(body.index);
@@ -363,7 +379,7 @@ bool Detector::asleep(BodyId body) const noexcept {
 
 bool Detector::shape_changed(ShapeId shape) {
   State& s = *state_;
-  if (!s.shapes.contains(shape)) return false;
+  if (s.stepping || !s.shapes.contains(shape)) return false;
   s.shapes.changed(shape);
   for (BodyIndex i = 0; i < s.bodies.slots(); ++i) {
     Body& body = s.bodies[i];
@@ -379,6 +395,7 @@ bool Detector::shape_changed(ShapeId shape) {
 
 void Detector::set_filter(PairFilter filter) {
   State& s = *state_;
+  if (s.stepping) return;
   ++s.filter_version;
   s.or_fail([&] {
     s.filter = filter;
@@ -387,7 +404,9 @@ void Detector::set_filter(PairFilter filter) {
   });
 }
 
-void Detector::set_executor(const Executor& executor) noexcept { state_->options.executor = executor; }
+void Detector::set_executor(const Executor& executor) noexcept {
+  if (!state_->stepping) state_->options.executor = executor;
+}
 bool Detector::contains(BodyId body) const noexcept { return state_->contains(body); }
 double Detector::reach(ShapeId shape) const noexcept {
   const detail::ShapeTable& shapes = state_->shapes;

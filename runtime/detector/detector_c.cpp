@@ -27,8 +27,9 @@ rt::Vec3 vector_of(const double* v) noexcept { return {v[0], v[1], v[2]}; }
 rt::BodyId id_of(orchard_body body) noexcept { return {body.index, body.generation}; }
 orchard_body body_of(rt::BodyId id) noexcept { return {id.index, id.generation}; }
 
-rt::BodyOptions options_of(const orchard_body_options& from) noexcept {
-  return {from.importance, from.group, from.mask, from.continuous_speed, from.reach, from.suggest != 0};
+rt::BodyOptions options_of(const orchard_body_options* from) noexcept {
+  if (from == nullptr) return {};
+  return {from->importance, from->group, from->mask, from->continuous_speed, from->reach, from->suggest != 0};
 }
 
 rt::BodyState state_of(const orchard_body_state& from) noexcept {
@@ -71,6 +72,23 @@ Result guarded(Result otherwise, Make&& make) noexcept {
   return rt::detail::guarded([&]() -> Result { return make(); }, [&]() -> Result { return otherwise; });
 }
 
+orchard_frame step(orchard_detector& detector, double time, const rt::FrameBudget& budget) {
+  const rt::Frame& frame = detector.frame = detector.detector->step(time, budget);
+  orchard_frame result{};
+  result.time = frame.time, result.next_time = frame.next_time;
+  result.steps = frame.steps;
+  result.events = frame.events.size();
+  result.pairs = frame.pairs, result.certain = frame.certain;
+  result.work = frame.work, result.motions_asked = frame.motions_asked;
+  result.worst_bound = frame.worst_bound;
+  result.incomplete_from = frame.incomplete_from;
+  result.left_over = frame.left_over;
+  result.refused = frame.refused.size(), result.broken = frame.broken.size();
+  result.time_refused = frame.time_refused, result.out_of_memory = frame.out_of_memory;
+  result.steps_left = frame.steps_left, result.skipped = frame.skipped;
+  return result;
+}
+
 constexpr orchard_body kNobody = {ORCHARD_NO_BODY, 0};
 
 }  // namespace
@@ -86,13 +104,14 @@ orchard_detector_options orchard_default_detector(void) {
   return {options.time_step,
           options.start,
           options.position_slack,
-          0,
+          -1,
           options.steps_to_end,
           options.max_unfinished,
           nullptr,
           nullptr,
           1,
-          options.max_fronts};
+          options.max_fronts,
+          options.max_events};
 }
 
 orchard_detector* orchard_detector_new(orchard_state_source source, void* context,
@@ -101,12 +120,15 @@ orchard_detector* orchard_detector_new(orchard_state_source source, void* contex
     auto made = std::make_unique<orchard_detector>();
     made->source = source;
     made->context = context;
+    const orchard_detector_options defaults = orchard_default_detector();
+    if (with == nullptr) with = &defaults;
     rt::DetectorOptions options;
     options.time_step = with->time_step, options.start = with->start, options.position_slack = with->position_slack;
-    options.watch = with->watch != 0;
+    if (with->watch >= 0) options.watch = with->watch != 0;
     options.steps_to_end = with->steps_to_end;
     options.max_unfinished = with->max_unfinished;
     options.max_fronts = with->max_fronts;
+    if (with->max_events > 0) options.max_events = with->max_events;
     options.executor = {with->run, with->run_context, with->concurrency};
     orchard_detector* const self = made.get();
     if (source == nullptr) {
@@ -146,7 +168,7 @@ orchard_shape orchard_detector_add_box(orchard_detector* detector, const double 
 orchard_body orchard_detector_add_body(orchard_detector* detector, const orchard_part* parts, size_t count,
                                        const orchard_body_options* options) {
   return guarded(kNobody, [&] {
-    return body_of(detector->detector->add_body(parts_of(*detector, parts, count), options_of(*options)));
+    return body_of(detector->detector->add_body(parts_of(*detector, parts, count), options_of(options)));
   });
 }
 
@@ -154,14 +176,14 @@ orchard_body orchard_detector_add_static(orchard_detector* detector, const orcha
                                          const orchard_pose* pose, const orchard_body_options* options) {
   return guarded(kNobody, [&] {
     return body_of(
-        detector->detector->add_static(parts_of(*detector, parts, count), pose_of(*pose), options_of(*options)));
+        detector->detector->add_static(parts_of(*detector, parts, count), pose_of(*pose), options_of(options)));
   });
 }
 
 orchard_body orchard_detector_add_half_space(orchard_detector* detector, const double normal[3], double offset,
                                              const orchard_body_options* options) {
   return guarded(kNobody, [&] {
-    return body_of(detector->detector->add_half_space(vector_of(normal), offset, options_of(*options)));
+    return body_of(detector->detector->add_half_space(vector_of(normal), offset, options_of(options)));
   });
 }
 
@@ -220,20 +242,12 @@ int orchard_detector_moves(const orchard_detector* detector, orchard_body body) 
 }
 
 orchard_frame orchard_detector_step(orchard_detector* detector, double time, orchard_budget budget) {
-  const rt::Frame& frame = detector->frame =
-      detector->detector->step(time, {budget.tests, rt::detail::time_of(budget.nanoseconds)});
-  orchard_frame result{};
-  result.time = frame.time, result.next_time = frame.next_time;
-  result.steps = frame.steps;
-  result.events = frame.events.size();
-  result.pairs = frame.pairs, result.certain = frame.certain;
-  result.work = frame.work, result.motions_asked = frame.motions_asked;
-  result.worst_bound = frame.worst_bound;
-  result.incomplete_from = frame.incomplete_from;
-  result.left_over = frame.left_over;
-  result.refused = frame.refused.size(), result.broken = frame.broken.size();
-  result.time_refused = frame.time_refused, result.out_of_memory = frame.out_of_memory;
-  return result;
+  return step(*detector, time, {budget.tests, rt::detail::time_of(budget.nanoseconds)});
+}
+orchard_frame orchard_detector_step_latest(orchard_detector* detector, double time, orchard_budget budget) {
+  rt::FrameBudget latest{budget.tests, rt::detail::time_of(budget.nanoseconds)};
+  latest.latest_only = true;
+  return step(*detector, time, latest);
 }
 
 orchard_pair_event orchard_detector_event(const orchard_detector* detector, size_t index) {

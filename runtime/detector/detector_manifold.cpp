@@ -41,7 +41,7 @@ Manifold Detector::State::manifold(const PairEvent& event, const ContactOptions&
 }
 
 Manifold Detector::manifold(const PairEvent& event, const ContactOptions& options) noexcept {
-  return state_->manifold(event, options);
+  return state_->stepping ? Manifold{} : state_->manifold(event, options);
 }
 
 }  // namespace orchard::runtime

@@ -9,7 +9,7 @@ using detail::Body;
 Motion Detector::State::promise_of(BodyIndex index, double time) const {
   const Motion motion = bodies.motion_of(index, clock.time_step);
   const Body& body = bodies[index];
-  const bool suggests = options.watch && body.suggest && !body.frozen && motion.radius >= 0;
+  const bool suggests = watches && body.suggest && !body.frozen && motion.radius >= 0;
   return suggests ? monitor.suggest(index, time, motion.radius) : motion;
 }
 
@@ -18,7 +18,7 @@ void Detector::State::motions(double time, std::span<const BodyIndex> asked, std
   if (!all_asked) bodies.ask(std::llround((time - clock.start) / clock.time_step), time, asked, options.executor);
   for (std::size_t i = 0; i < asked.size(); ++i) {
     answers[i] = promise_of(asked[i], time);
-    if (!options.watch) continue;
+    if (!watches) continue;
     Body& body = bodies[asked[i]];
     body.told_radius = answers[i].radius;
     body.told_by_middle = bodies.goes_by_middle(asked[i], clock.time_step);
@@ -34,7 +34,7 @@ void Detector::State::ask_all(Step step) {
   constexpr std::size_t kMinBodies = 256;
   all_asked = false;
   const bool many = involved.size() >= kMinBodies && 2 * involved.size() >= bodies.slots();
-  if (!many || options.watch || options.promised) return;
+  if (!many || watches || options.promised) return;
   bodies.ask_everyone(step, clock.time(step), options.executor);
   all_asked = true;
   all_asked_at = step;

@@ -53,9 +53,10 @@ bool Detector::State::opens(Record& record, Step step, bool& over) noexcept {
   };
   record.swept = continuous && record.jumps == jumps && known_before(a) && known_before(b);
   // As spheres reach as far as a step leads, who was not asked for at the step before had nothing near then: unless
-  // the broad phase could not tell, or its parts go farther now.
+  // the broad phase could not tell, or its parts go farther now. Nothing was between it and a body that is new.
   const bool sphere_fell_short = interrupted || a.stretched == step - 1 || b.stretched == step - 1;
-  record.unseen = continuous && record.jumps == jumps && !record.swept && sphere_fell_short;
+  const bool both_before = std::max(a.since, b.since) < step;
+  record.unseen = continuous && record.jumps == jumps && !record.swept && sphere_fell_short && both_before;
   over = record.jumps != jumps && record.touching;
   if (over) record.answered = -1;
   record.jumps = jumps;

@@ -55,10 +55,13 @@ struct Detector::State {
   // kept_states.cpp
   double last_time() const noexcept;  // that of the last step, or of the first one
   void keep(const detail::Body& body, BodyState state);
+  bool acceptable(const BodyOptions& with) const noexcept;
 
   // detector_step.cpp
   void run(double time, const FrameBudget& budget, Frame& frame);
   void run_to(Step last, Step end, detail::StepBudget& budget, Frame& frame);
+  void leave_out_before(Step end, Frame& frame);
+  bool full() const noexcept { return event_count >= options.max_events; }
   void watch(Step step);
   void ask_all(Step step);
   bool keeps_more(const detail::Body& body, Step step, const Motion& motion) const noexcept;
@@ -112,6 +115,8 @@ struct Detector::State {
   void note_refused(std::span<const BodyIndex> more);
 
   DetectorOptions options;
+  bool watches;
+  bool stepping = false;  // step() is under way, from within which the application's functions are called
   bool valid;
   detail::Clock clock;
   detail::ShapeTable shapes;

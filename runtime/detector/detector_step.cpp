@@ -42,15 +42,17 @@ void learn_time(double& mean, double value, double max_growth) noexcept {
 Frame Detector::step(double time, const FrameBudget& budget) noexcept {
   State& s = *state_;
   Frame frame;
-  frame.time_refused = !s.valid || !(std::fabs(time) <= kMaxSteps * s.clock.time_step);
+  frame.time_refused = s.stepping || !s.valid || !(std::fabs(time) <= kMaxSteps * s.clock.time_step);
   frame.out_of_memory = s.failed;
   if (frame.time_refused || s.failed) return frame;
+  s.stepping = true;
   detail::guarded([&] { s.run(time, budget, frame); },  // sources and filters throw nothing
                   [&] {
                     s.failed = true;
                     frame = Frame{};
                     frame.out_of_memory = true;
                   });
+  s.stepping = false;
   return frame;
 }
 
@@ -61,7 +63,7 @@ std::size_t Detector::foresee(std::span<StepLoad> loads) const noexcept {
   std::array<StepsAhead, kMaxAhead> ahead;
   const std::size_t wanted = std::min(loads.size(), kMaxAhead);
   const double now = s.clock.time(s.answered);
-  const std::size_t known = s.valid ? s.broad.foresee(now, std::span(ahead).first(wanted)) : 0;
+  const std::size_t known = s.valid && !s.stepping ? s.broad.foresee(now, std::span(ahead).first(wanted)) : 0;
   double pairs = static_cast<double>(s.records.size());
   for (std::size_t i = 0; i < known; ++i) {
     pairs += s.share_of_meetings * static_cast<double>(ahead[i].meetings);
@@ -82,30 +84,38 @@ void Detector::State::run(double time, const FrameBudget& given, Frame& frame) {
   StepBudget budget(given);
   const Step end = std::max<Step>(-1, clock.step_at(time));
   const std::uint64_t asked_before = broad.motions_asked();
-  if (options.watch) {
-    while (answered < end) {
-      watch(answered + 1);
-      run_to(answered + 1, end, budget, frame);
-    }
-  } else {
-    run_to(end, end, budget, frame);
+  if (given.latest_only) leave_out_before(end, frame);
+  while (watches && answered < end && !full()) {
+    watch(answered + 1);
+    run_to(answered + 1, end, budget, frame);
   }
+  if (!watches) run_to(end, end, budget, frame);
+  frame.steps_left = static_cast<std::uint64_t>(std::max<Step>(0, end - answered));
   frame.motions_asked = broad.motions_asked() - asked_before;
   frame.work = budget.spent();
   frame.time = clock.time(std::max<Step>(answered, 0));
   const Step next = records.empty() && !part_search.any() ? halves.next() : answered + 1;
   frame.next_time =
-      options.watch ? clock.time(answered + 1)
-                    : std::min(broad.next_time(), next >= kNeverStep - 1 ? std::numeric_limits<double>::infinity()
-                                                                         : clock.time(std::max(next, answered + 1)));
+      watches || frame.steps_left > 0
+          ? clock.time(answered + 1)
+          : std::min(broad.next_time(), next >= kNeverStep - 1 ? std::numeric_limits<double>::infinity()
+                                                               : clock.time(std::max(next, answered + 1)));
   std::sort(refused.begin(), refused.end());
   refused.erase(std::unique(refused.begin(), refused.end()), refused.end());
   frame.events = std::span(events).first(event_count), frame.refused = refused, frame.broken = broken;
 }
 
+// Nothing was asked for at the steps that are left out, so that no sweep of a continuous body begins there.
+void Detector::State::leave_out_before(Step end, Frame& frame) {
+  if (end <= answered + 1) return;
+  frame.skipped = static_cast<std::uint64_t>(end - 1 - answered);
+  broad.skip_to(clock.time(end));
+  answered = end - 1;
+}
+
 // The steps up to `last` that have anything. `end`: the last step of this call, among which the budget is shared.
 void Detector::State::run_to(Step last, Step end, StepBudget& budget, Frame& frame) {
-  while (answered < last) {
+  while (answered < last && !full()) {
     // What overlapped at the step before may be apart at the next; half-spaces are not the broad phase's, nor is what
     // is found by parts.
     const bool under_way = !records.empty() || part_search.any();

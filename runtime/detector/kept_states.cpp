@@ -49,7 +49,7 @@ bool Detector::set_state(BodyId body, const BodyState& state) {
   s.stir(*found);
   return s.or_fail([&] {
     s.keep(*found, state);
-    if (!s.options.watch || found->asleep) s.update_again(*found);
+    if (!s.watches || found->asleep) s.update_again(*found);
     return true;
   });
 }

@@ -9,12 +9,26 @@
 namespace orchard::runtime::detail {
 namespace {
 
-// Just above half of the diagonal: twelve triangles between the corners of a box, in one node.
+// The least float that is not smaller.
+float float_above(double x) noexcept {
+  const auto nearest = static_cast<float>(x);
+  return double{nearest} < x ? std::nextafter(nearest, std::numeric_limits<float>::infinity()) : nearest;
+}
+
+// Just above half of the diagonal: twelve triangles between the corners of a box, in one node. The corners are rounded
+// outward, so that what does not touch the triangles, or lies at a distance from them, does so of the box.
 PackedSphereTree box_tree(const Vec3& half) {
   PackedSphereTree tree;
+  std::array<float, 3> rounded{};
+  Vec3 beyond{};
+  for (unsigned i = 0; i < 3; ++i) {
+    rounded[i] = float_above(half[i]);
+    beyond[i] = double{rounded[i]} - half[i];
+  }
+  tree.vertex_error = length(beyond) * (1 + 1e-12);
   for (unsigned corner = 0; corner < 8; ++corner) {
     std::array<float, 3> vertex{};
-    for (unsigned i = 0; i < 3; ++i) vertex[i] = static_cast<float>(corner >> i & 1 ? half[i] : -half[i]);
+    for (unsigned i = 0; i < 3; ++i) vertex[i] = corner >> i & 1 ? rounded[i] : -rounded[i];
     tree.vertices.push_back(vertex);
   }
   for (std::uint32_t axis = 0; axis < 3; ++axis) {
@@ -136,9 +150,10 @@ ShapeId ShapeTable::add_box(const Vec3& half_lengths) {
   Shape shape;
   shape.kind = ShapeKind::box;
   shape.own = box_tree(half_lengths);
-  for (std::size_t i = 0; i < 3; ++i) shape.p[i] = double{shape.own.vertices[7][i]};
+  shape.p = half_lengths;
   shape.reach = shape.own.bounding_radius;
-  shape.box_low = -1.0 * shape.p, shape.box_high = shape.p;
+  for (std::size_t i = 0; i < 3; ++i) shape.box_high[i] = double{shape.own.vertices[7][i]};
+  shape.box_low = -1.0 * shape.box_high;
   shape.pieces = {shape.p};
   return add(std::move(shape));
 }

@@ -20,7 +20,7 @@ struct Shape {
   PackedSphereTree own;    // what `tree` views, if it is that of a box, of a round shape's segment, or of a file
   TreeView tree;           // the surface; of a round shape the segment, for sweeps
   PreparedTree prepared;   // the same
-  runtime::Vec3 p{}, q{};  // of a box: p is half of its lengths
+  runtime::Vec3 p{}, q{};  // of a box: p is half of its lengths, which its tree has rounded up to floats
   double radius = 0;       // of round shapes
   runtime::Vec3 center{};  // of a sphere around the shape,
   double reach = 0;        // and its radius

@@ -17,8 +17,10 @@ Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
+// The tree of a segment has its ends rounded to floats.
 double margin_of(const PlacedPart& part) noexcept {
-  return part.shape->kind == ShapeKind::round ? part.shape->radius * part.pose().scale : 0;
+  const Shape& shape = *part.shape;
+  return shape.kind == ShapeKind::round ? (shape.radius + shape.tree.vertex_error) * part.pose().scale : 0;
 }
 
 // No point of the part moves faster.

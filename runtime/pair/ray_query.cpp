@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "exact_sign.h"
 #include "orchard/runtime/ray_index.h"
 #include "orchard/runtime/shape_query.h"
 #include "ray_walk.h"
@@ -20,6 +21,24 @@ struct detail::RayIndexAccess {
 
 namespace {
 
+// Up to where a ray goes.
+struct RayEnd {
+  const Direction& direction;
+  double longest;
+
+  // Whether a ray that meets the triangle's plane, or the triangle, after `at` steps gets as far: as it is told how
+  // far that is, or exactly.
+  bool reaches(const RayStart& ray, const TrianglePoints& t, double at) const noexcept {
+    constexpr double kExact = 1 - 0x1p-48, kPlace = 0x1p-38;  // kPlace: of the whole way, what a place may be off by
+    if (at <= ray.end * kExact || direction.along(at) <= longest) return true;
+    if (at > ray.end + kPlace * (ray.steps_to(ray.to) + one_norm(ray.from) * ray.slowness)) return false;
+    const Vec3 last = settled(along(ray.from, ray.step, ray.end));
+    const int begins = orientation(t[0], t[1], t[2], ray.from), ends = orientation(t[0], t[1], t[2], last);
+    Vec3 common{};
+    return begins == 0 && ends == 0 ? segment_meets(ray.from, last, t, common) : begins * ends <= 0;
+  }
+};
+
 // The nearest triangle so far.
 struct Nearest {
   double steps = std::numeric_limits<double>::infinity();
@@ -28,12 +47,13 @@ struct Nearest {
 
   // Whether the triangle is nearer; of equally near ones the first in the tree's own order. `sure`: that the line runs
   // through it.
-  bool offer(const RayStart& ray, const TrianglePoints& t, std::uint32_t number, bool sure) noexcept {
+  bool offer(const RayStart& ray, const RayEnd& limit, const TrianglePoints& t, std::uint32_t number,
+             bool sure) noexcept {
     Vec3 common{};
     if (!(sure ? segment_passes(ray.from, ray.to, t, common) : segment_meets(ray.from, ray.to, t, common)))
       return false;
-    const double at = less_of(more_of(ray.steps_to(common), 0), ray.end);
-    if (at > steps || (at == steps && number > triangle)) return false;
+    const double at = more_of(ray.steps_to(common), 0);
+    if (at > steps || (at == steps && number > triangle) || !limit.reaches(ray, t, at)) return false;
     steps = at, point = common, triangle = number;
     return true;
   }
@@ -117,18 +137,19 @@ class Caster {
       return RayHit{0, ray.origin, kNoTriangle};
     }
     if (ray.longest < 0 || start.line.misses) return std::nullopt;
-    const Nearest nearest = start.line.in_float ? nearest_along(start) : nearest_of_all(start);
+    const RayEnd limit{direction, ray.longest};
+    const Nearest nearest = start.line.in_float ? nearest_along(start, limit) : nearest_of_all(start, limit);
     if (nearest.triangle == kNoTriangle) return std::nullopt;
     return RayHit{less_of(direction.along(nearest.steps), ray.longest), frame_.leave(nearest.point), nearest.triangle};
   }
 
-  Nearest nearest_along(const RayStart& ray) const noexcept {
+  Nearest nearest_along(const RayStart& ray, const RayEnd& limit) const noexcept {
     Nearest nearest;
     triangles_.along(ray.line, [&](const RayLeaf& leaf, float end) {
       for (std::uint32_t left = leaf.some; left != 0; left &= left - 1) {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
         const bool sure = (leaf.sure >> lane & 1) != 0;
-        if (!nearest.offer(ray, points_of(*leaf.block, lane), leaf.block->triangle[lane], sure)) continue;
+        if (!nearest.offer(ray, limit, points_of(*leaf.block, lane), leaf.block->triangle[lane], sure)) continue;
         const double rounding = kRounding * (one_norm(ray.from) + frame_.bounding_radius);
         const double s = nearest.steps * ray.speed;
         const float behind = static_cast<float>(s + rounding - ray.line.at) + ray.line.ray.margin;
@@ -139,12 +160,12 @@ class Caster {
     return nearest;
   }
 
-  Nearest nearest_of_all(const RayStart& ray) const noexcept {  // where floats do not reach
+  Nearest nearest_of_all(const RayStart& ray, const RayEnd& limit) const noexcept {  // where floats do not reach
     Nearest nearest;
     const Segment whole(ray.from, ray.to);
     triangles_.near(whole, frame_.rounding(whole), [&](const TriangleBlock& block) {
       return each_triangle(block, [&](const TrianglePoints& t, std::uint32_t triangle) {
-        nearest.offer(ray, t, triangle, false);
+        nearest.offer(ray, limit, t, triangle, false);
         return true;
       });
     });

@@ -81,8 +81,8 @@ inline Line line_of(const Ball& ball, const Vec3& from, const Vec3& way, double 
   return line;
 }
 
-// A ray in the body's frame: the segment from `from` to `to`, its first `end` steps, which ends beyond everything if
-// the ray does not end before.
+// A ray in the body's frame: the segment from `from` to `to`, which ends beyond everything, so that where the ray ends
+// does not bend it. It has `end` steps at most.
 struct RayStart {
   Vec3 from{}, to{}, step{};
   double speed = 0, slowness = 0;  // the step's length, and 1 over it or 0
@@ -105,7 +105,7 @@ ORCHARD_INLINE RayStart start_of(const Frame& frame, const Ball& ball, const Vec
   // So many steps that short coordinates stay exact: a ray in a triangle's plane is to end in it.
   const double reach = power_above(reach_beyond(ball, frame.bounding_radius, start.from) * start.slowness);
   start.end = moves ? less_of(steps, reach) : 0.0;
-  start.to = settled(along(start.from, start.step, start.end));
+  start.to = settled(along(start.from, start.step, moves ? reach : 0.0));
   Vec3 unit = along({0, 0, 0}, start.step, start.slowness);
   unit[0] = moves ? unit[0] : 1.0;
   start.line = line_of(ball, start.from, unit, start.end * start.speed);

@@ -196,9 +196,17 @@ const char* support_fault(const TreeView& tree) noexcept {
   return nullptr;
 }
 
+template <typename Block>
+bool is_aligned(std::span<const Block> blocks) noexcept {
+  return reinterpret_cast<std::uintptr_t>(blocks.data()) % alignof(Block) == 0;
+}
+
 }  // namespace
 
 const char* structure_fault(const TreeView& tree) noexcept {
+  // What allocated them did not see to it: a file that was read to any place, or a compiler's std::vector.
+  if (!is_aligned(tree.blocks) || !is_aligned(tree.ball_slabs) || !is_aligned(tree.triangle_blocks))
+    return "blocks do not lie at multiples of 32 bytes in memory";
   for (const double coordinate : tree.origin) {
     if (!(std::fabs(coordinate) <= double{kCoordinateLimit})) return "the origin is not finite or out of range";
   }

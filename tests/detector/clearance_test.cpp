@@ -77,7 +77,8 @@ class Crowd {
  private:
   std::unique_ptr<Detector> make(std::vector<BodyState>& states, double start) {
     for (BodyState& state : states) state.expiry = 0;
-    auto detector = std::make_unique<Detector>(states_of(states), DetectorOptions{.time_step = kStep, .start = start});
+    auto detector = std::make_unique<Detector>(states_of(states),
+                                               DetectorOptions{.time_step = kStep, .start = start, .watch = false});
     detector->add_shape(torus_);
     detector->add_shape(spikes_);
     detector->add_box({0.6, 0.5, 0.4});
@@ -154,7 +155,7 @@ TEST(Clearances, HideNoContactAndInventNone) {
 TEST(Clearances, LastWhileBodiesSlideAlongEachOther) {
   const PackedSphereTree ring = test::build_tree(test::torus(12, 6, 0.75, 0.25));
   std::vector<BodyState> states(2);
-  Detector detector(states_of(states), {.time_step = kStep});
+  Detector detector(states_of(states), {.time_step = kStep, .watch = false});
   const ShapeId shape = detector.add_shape(ring);
   for (BodyState& state : states) state.expiry = 0;
   const BodyId lower = detector.add_body({{shape, {}}}), upper = detector.add_body({{shape, {}}});

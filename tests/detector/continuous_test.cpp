@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "orchard/runtime/detector.h"
 #include "support.h"
@@ -21,7 +22,7 @@ struct Shot {
 std::vector<PairEvent> shoot(const PackedSphereTree& target, const Pose& target_pose, double radius, const Vec3& from,
                              const Vec3& to, double speed, bool half_space = false) {
   std::vector<BodyState> states(4);
-  Detector detector(states_of(states), {.time_step = kStep});
+  Detector detector(states_of(states), {.time_step = kStep, .watch = false});
   const ShapeId bullet = detector.add_sphere(radius), tree = detector.add_shape(target);
   const BodyId id = detector.add_body({{bullet, {}}}, {.continuous_speed = speed});
   if (half_space) {
@@ -105,7 +106,7 @@ TEST(Continuous, TreesThatTurnAreSweptAsWell) {
   const PackedSphereTree blade = test::build_tree(test::box({-2, -0.05, -0.05}, {2, 0.05, 0.05}));
   const PackedSphereTree post = test::build_tree(test::box({-0.1, -0.1, -1}, {0.1, 0.1, 1}));
   std::vector<BodyState> states(2);
-  Detector detector(states_of(states), {.time_step = kStep});
+  Detector detector(states_of(states), {.time_step = kStep, .watch = false});
   const ShapeId shape = detector.add_shape(blade);
   const BodyId id = detector.add_body({{shape, {}}}, {.continuous_speed = 1});
   detector.add_static({{detector.add_shape(post), {}}}, {.translation = {1.5, 0, 0}});
@@ -143,7 +144,7 @@ TEST(Continuous, JointsThatMoveBetweenTwoStepsAreSweptLikeBodies) {
     const Pose from = any_pose(), to = any_pose();
     const auto events_of = [&](bool by_joint, double speed) {
       std::vector<BodyState> states(2);
-      Detector detector(states_of(states), {.time_step = kStep});
+      Detector detector(states_of(states), {.time_step = kStep, .watch = false});
       const BodyId id = detector.add_body({{detector.add_shape(blade), {}}}, {.continuous_speed = speed, .reach = 5});
       detector.add_static({{detector.add_shape(post), {}}}, {});
       states[id.index].expiry = 0;
@@ -182,7 +183,7 @@ TEST(Continuous, APartThatIsStretchedIntoTheUnknownIsPossible) {
     for (std::size_t i = 0; i < bodies.size(); ++i) states[i] = BodyState{};
     ++asked;
   };
-  Detector detector(at_rest, {.time_step = kStep});
+  Detector detector(at_rest, {.time_step = kStep, .watch = false});
   const BodyId id = detector.add_body({{detector.add_sphere(0.1), {}}}, {.continuous_speed = 1});
   detector.add_static({{detector.add_sphere(0.5), {}}}, {.translation = {0, 0, 3}});
   int step = 0;
@@ -197,7 +198,7 @@ TEST(Continuous, APartThatIsStretchedIntoTheUnknownIsPossible) {
 TEST(Continuous, ABudgetIsKeptAndWhatItLeavesOpenIsPossible) {
   const PackedSphereTree wall = test::build_tree(test::torus(30, 16, 1, 0.3));
   std::vector<BodyState> states(40);
-  Detector detector(states_of(states), {.time_step = kStep});
+  Detector detector(states_of(states), {.time_step = kStep, .watch = false});
   const ShapeId shape = detector.add_shape(wall);
   detector.add_static({{shape, {}}}, {});
   std::vector<BodyId> ids(20);
@@ -217,6 +218,39 @@ TEST(Continuous, ABudgetIsKeptAndWhatItLeavesOpenIsPossible) {
     }
   }
   EXPECT_GT(possible, 0u);
+}
+
+// Nothing was between a bullet and a body that has come since the step before, whatever its parts do: the answer is
+// that of this step.
+TEST(Continuous, ABodyThatIsNewNearABulletIsAnsweredForAtOnce) {
+  std::size_t touches = 0;
+  for (std::uint64_t i = 0; i < 100 * orchard::test::more(); ++i) {
+    test::Draw draw(orchard::test::first_seed() + i);
+    Detector world({.time_step = kStep, .watch = false});
+    const ShapeId ball = world.add_sphere(0.5);
+    std::vector<std::pair<BodyId, double>> all;  // and where its ball is on the x axis
+    const auto add = [&](double x, double off) {
+      const BodyId id = world.add_body(ball, {.pose = {.translation = {x, 0, 0}}}, {.continuous_speed = 100});
+      world.set_local(id, 0, {.translation = {off, 0, 0}});
+      all.emplace_back(id, x + off);
+    };
+    for (int step = 0; step < 6; ++step) {
+      add(draw.uniform(-4, 4), draw.uniform(-3, 3));
+      std::set<std::pair<BodyIndex, BodyIndex>> found, truth;
+      for (const PairEvent& event : world.step(step * kStep).events) {
+        ASSERT_NE(event.change, PairChange::possible) << i << " " << step;
+        found.insert({event.a.index, event.b.index});
+      }
+      for (const auto& [a, x] : all) {
+        for (const auto& [b, y] : all) {
+          if (a.index < b.index && std::fabs(x - y) <= 1) truth.insert({a.index, b.index});
+        }
+      }
+      ASSERT_EQ(found, truth) << i << " " << step;
+      touches += truth.size();
+    }
+  }
+  EXPECT_GT(touches, 100u);
 }
 
 }  // namespace

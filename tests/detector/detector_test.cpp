@@ -24,6 +24,7 @@ struct World {
   explicit World(const DetectorOptions& options = {}) : detector(make(options)) {}
   Detector make(DetectorOptions options) {
     options.time_step = kStep;
+    options.watch = options.watch.value_or(false);
     for (BodyState& state : states) state.expiry = 0;  // asked for at every step
     return Detector(states_of(states), options);
   }
@@ -466,7 +467,7 @@ TEST(Detector, SleepsWhileNothingCanTouch) {
           states[i].acceleration = 0.1;
         }
       },
-      {.time_step = kStep});
+      {.time_step = kStep, .watch = false});
   const ShapeId ball = detector.add_sphere(1);
   for (int i = 0; i < 10; ++i) detector.add_body({{ball, {}}});
   detector.add_half_space({0, 0, 1}, 0);
@@ -543,7 +544,7 @@ TEST(DetectorLoad, IsForeseenFromTheEventsOfTheBroadPhase) {
           for (std::size_t k = 0; k < 3; ++k) given[i].pose.translation[k] += time * given[i].velocity[k];
         }
       },
-      {.time_step = kStep});
+      {.time_step = kStep, .watch = false});
   const PackedSphereTree tree = test::build_tree(test::torus(12, 6, 0.75, 0.25));
   const ShapeId torus = detector.add_shape(tree);
   for (int i = 0; i < kPairs; ++i) {

@@ -38,7 +38,7 @@ TEST(OddBodies, AreNeverPairsOfThemselvesOrOfWhatIsGone) {
         [&](double, std::span<const BodyIndex> bodies, std::span<BodyState> answers) {
           for (std::size_t i = 0; i < bodies.size(); ++i) asked.insert(bodies[i]), answers[i] = states[bodies[i]];
         },
-        {.time_step = kStep});
+        {.time_step = kStep, .watch = false});
     const ShapeId ball = world.add_sphere(1);
     std::array<BodyId, 3> ids{};
     for (BodyId& id : ids) id = world.add_body({{ball}});
@@ -54,7 +54,7 @@ TEST(OddBodies, AreNeverPairsOfThemselvesOrOfWhatIsGone) {
 
 TEST(OddBodies, AreMetOnTheWayInTheStepInWhichTheyWake) {
   for (const int who : {0, 1, 2, 3}) {  // nobody sleeps, the bullet, the wall, the bullet until its state is set
-    Detector world({.time_step = kStep});
+    Detector world({.time_step = kStep, .watch = false});
     const ShapeId ball = world.add_sphere(0.05), plate = world.add_box({0.01, 1, 1});
     const BodyId bullet = world.add_body(ball, BodyState{.pose = at(-0.3)}, {.continuous_speed = 100});
     const BodyId wall = world.add_body(plate, BodyState{});
@@ -78,7 +78,7 @@ TEST(OddBodies, AreMetOnTheWayInTheStepInWhichTheyWake) {
 
 struct TwoThatTouch {
   std::vector<BodyState> states{BodyState{}, BodyState{.pose = at(0.5)}};
-  Detector world{states_of(states), {.time_step = kStep, .steps_to_end = 3}};
+  Detector world{states_of(states), {.time_step = kStep, .watch = false, .steps_to_end = 3}};
   BodyId first;
   TwoThatTouch() {
     const ShapeId ball = world.add_sphere(1);
@@ -118,7 +118,7 @@ TEST(OddBodies, AreSolidWhereverFlexibleTreesHaveGone) {
   const std::vector<std::array<std::uint32_t, 3>> triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
   const PackedSphereTree tree = triangles_tree(rest, triangles);
   FlexibleTree flexible(tree, 3.0);
-  Detector world({.time_step = kStep});
+  Detector world({.time_step = kStep, .watch = false});
   const ShapeId bag = world.add_shape(flexible.view()), box = world.add_box({.5, .5, .5});
   world.add_body(bag, BodyState{});
   world.add_body(box, BodyState{.pose = at(1)});
@@ -171,7 +171,7 @@ TEST(OddBodies, KeepWhatIsSuggestedForThemAboveAHalfSpace) {
 }
 
 TEST(OddBodies, AreLeftAloneByWhatIsRefused) {
-  Detector world({.time_step = kStep});
+  Detector world({.time_step = kStep, .watch = false});
   const ShapeId ball = world.add_sphere(1);
   const BodyId fixed = world.add_static({{ball}, {ball}}, at(0));
   const BodyId free = world.add_body(ball, BodyState{.pose = at(50)});
@@ -191,7 +191,7 @@ TEST(OddBodies, AreLeftAloneByWhatIsRefused) {
 TEST(OddBodies, AreSweptWhicheverOfTwoIsContinuous) {
   std::vector<BodyState> states(1);
   states[0].pose = at(-0.4), states[0].velocity = {60, 0, 0};
-  Detector world(states_of(states), {.time_step = kStep});
+  Detector world(states_of(states), {.time_step = kStep, .watch = false});
   world.add_body({{world.add_sphere(0.05)}});
   world.add_static({{world.add_box({0.01, 1, 1})}}, at(0), {.continuous_speed = 100});
   world.step(0);
@@ -201,7 +201,7 @@ TEST(OddBodies, AreSweptWhicheverOfTwoIsContinuous) {
 
 TEST(OddBodies, AreMissedNeitherForTheirSizeNorForANormals) {
   for (const double unit : {1e-10, 1e-20, 1e-23}) {
-    Detector world({.time_step = kStep});
+    Detector world({.time_step = kStep, .watch = false});
     const ShapeId ball = world.add_sphere(1.95 * unit);
     world.add_body(ball, BodyState{});
     world.add_body(ball, BodyState{.pose = at(2.6 * unit, 2.6 * unit)});
@@ -209,7 +209,7 @@ TEST(OddBodies, AreMissedNeitherForTheirSizeNorForANormals) {
   }
   for (const double size : {1.0, 1e-160, 3e-162, 1e-170, 1e160}) {
     for (const double height : {0.96, 0.998, 1.003, 1.04}) {
-      Detector world({.time_step = kStep});
+      Detector world({.time_step = kStep, .watch = false});
       world.add_body(world.add_sphere(1), BodyState{.pose = at(100 + height)});
       ASSERT_NE(world.add_half_space({size, 0, 0}, 100 * size), kNoBody) << size;
       EXPECT_EQ(world.step(0).events.size(), height < 1 ? 1u : 0u) << size << ' ' << height;
@@ -223,7 +223,7 @@ TEST(OddBodies, OfNoThicknessMeetTheBoxesThatTheyPierce) {
     const Vec3 way = draw.direction();
     const Vec3 middle = draw.uniform(0, 0.35) * Vec3(draw.direction());
     for (const double radius : {0.0, 1e-17, 1e-12}) {
-      Detector world({.time_step = kStep});
+      Detector world({.time_step = kStep, .watch = false});
       const ShapeId line = world.add_capsule(middle - 2.0 * way, middle + 2.0 * way, radius);
       const ShapeId box = world.add_box({0.5, 0.5, i % 4 == 0 ? 0 : 0.5});
       if (i % 4 == 0 && std::fabs(way[2]) < 0.9) continue;  // else it may pass beside what is flat
@@ -251,18 +251,18 @@ TEST(OddBodies, TouchNoMoreOnceMovedByTheirDepth) {
         moved.translation = Vec3(place.translation) + depth * normal;
         world.add_body(world.add_capsule({-0.4, 0, 0}, {0.3, 0, 0}, 0.2), BodyState{.pose = moved});
       };
-      Detector world({.time_step = kStep});
+      Detector world({.time_step = kStep, .watch = false});
       world_of(world, 0, {});
       const Frame frame = world.step(0);
       if (frame.events.empty()) continue;
       const Manifold manifold = world.manifold(frame.events[0]);
       if (manifold.count == 0) continue;
       ++asked;
-      Detector apart({.time_step = kStep});
+      Detector apart({.time_step = kStep, .watch = false});
       world_of(apart, manifold.depth + 1e-9, manifold.normal);
       EXPECT_TRUE(apart.step(0).events.empty()) << i << ' ' << kind << ' ' << manifold.depth;
       if (manifold.depth < 1e-6) continue;
-      Detector still({.time_step = kStep});
+      Detector still({.time_step = kStep, .watch = false});
       world_of(still, manifold.depth - 1e-7, manifold.normal);
       EXPECT_EQ(still.step(0).events.size(), 1u) << i << ' ' << kind << ' ' << manifold.depth;
     }
@@ -286,7 +286,7 @@ TEST(OddBodies, OfManyPartsStayWithinABudget) {
   for (const int parts : {4, 8, 32}) {
     std::vector<BodyState> states(1);
     states[0].pose = at(-0.3), states[0].drift = 1000;
-    Detector world(states_of(states), {.time_step = 1});
+    Detector world(states_of(states), {.time_step = 1, .watch = false});
     const ShapeId ball = world.add_sphere(0.05), plate = world.add_box({0.01, .3, .3});
     std::vector<BodyPart> balls, plates;
     for (int i = 0; i < parts; ++i) balls.push_back({ball, at(0, .001 * i)}), plates.push_back({plate, at(0.001 * i)});

@@ -106,7 +106,7 @@ std::vector<ShapeId> add_shapes(Detector& world) {
 Touching judge(const std::vector<Thing>& things) {
   std::vector<BodyState> states;
   std::vector<std::size_t> owner;
-  Detector own(states_of(states), {.time_step = kStep});
+  Detector own(states_of(states), {.time_step = kStep, .watch = false});
   add_shapes(own);
   for (std::size_t i = 0; i < things.size(); ++i) {
     if (things[i].id == kNoBody) continue;
@@ -313,7 +313,7 @@ TEST(PartSearch, TellsWhoTouchesAmongManyStaticBodiesWhileAllChanges) {
 // 400 static bodies in a ring that an arm can reach, which only its two ends are near.
 struct Ring {
   std::vector<BodyState> states{1};
-  Detector world{states_of(states), {.time_step = kStep}};
+  Detector world{states_of(states), {.time_step = kStep, .watch = false}};
   BodyId arm;
   int steps = 0;
   static constexpr std::size_t kStatics = 400;

@@ -134,7 +134,7 @@ struct Met {
 Met sweep(const Form& a, const Way& way_a, const Form& b, const Way& way_b, const FrameBudget& budget = {}) {
   std::vector<BodyState> states(2);
   for (BodyState& state : states) state.expiry = 0;
-  Detector detector(states_of(states), {.time_step = kStep});
+  Detector detector(states_of(states), {.time_step = kStep, .watch = false});
   const double speed = 1.01 *
                        (length(way_a.velocity) + length(way_b.velocity) + way_a.angle * length(way_a.center) * 4 +
                         way_b.angle * length(way_b.center) * 4) /
@@ -269,7 +269,7 @@ TEST(Sweeps, FindTheFirstCornerOnAHalfSpace) {
     for (int i = 0; i <= 20'000 && first > 1; ++i) first = height(i / 20'000.0) <= 0 ? i / 20'000.0 : 2;
     std::vector<BodyState> states(1);
     states[0].expiry = 0;
-    Detector detector(states_of(states), {.time_step = kStep});
+    Detector detector(states_of(states), {.time_step = kStep, .watch = false});
     detector.add_body({{detector.add_box(half), {}}}, {.continuous_speed = 1e3});
     detector.add_half_space({0, 0, 1}, 0);
     states[0].pose = way.at(0);
@@ -309,7 +309,7 @@ TEST(Sweeps, AreNotSilentAboutWhatAnInterruptedStepHasNotSeen) {
   const PackedSphereTree wall = test::build_tree(test::box({-5, -5, -0.001}, {5, 5, 0.001}));
   std::vector<BodyState> states(101);
   for (BodyState& state : states) state.expiry = 0;
-  Detector detector(states_of(states), {.time_step = kStep});
+  Detector detector(states_of(states), {.time_step = kStep, .watch = false});
   const BodyId id = detector.add_static({{detector.add_shape(wall), {}}}, {});
   const ShapeId ball = detector.add_sphere(0.01);
   for (int i = 0; i < 100; ++i) detector.add_body({{ball, {}}}, {.continuous_speed = 110});
@@ -335,7 +335,7 @@ TEST(Sweeps, SeeTheLastStepBeforeSleep) {
   const PackedSphereTree wall = test::build_tree(test::box({-5, -5, -0.001}, {5, 5, 0.001}));
   std::vector<BodyState> states(2);
   for (BodyState& state : states) state.expiry = 0;
-  Detector detector(states_of(states), {.time_step = kStep});
+  Detector detector(states_of(states), {.time_step = kStep, .watch = false});
   detector.add_static({{detector.add_shape(wall), {}}}, {});
   const BodyId bullet = detector.add_body({{detector.add_sphere(0.01), {}}}, {.continuous_speed = 200});
   states[bullet.index].pose.translation = {0, 0, 1};

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <cstring>
+
 #include "allocation.h"
 #include "orchard/runtime/collide.h"
 #include "orchard/runtime/distance.h"
@@ -24,6 +27,28 @@ TEST(Memory, IsNotAllocatedByAQuery) {
   query.refine_exactly();
   EXPECT_EQ(query.answer(), Answer::yes);
   EXPECT_EQ(allocations, before);
+}
+
+// As where a compiler's std::vector does not respect what a type asks for.
+TEST(Memory, ThatIsNotAlignedIsAFault) {
+  const auto tree = build_tree(torus(16, 8, 1, 0.3));
+  const auto moved = [](const auto& blocks, std::vector<std::byte>& room) {
+    using Block = std::remove_cvref_t<decltype(blocks[0])>;
+    room.resize((blocks.size() + 2) * sizeof(Block));
+    const auto at = reinterpret_cast<std::uintptr_t>(room.data());
+    std::byte* const odd = room.data() + (alignof(Block) - at % alignof(Block)) + 16;
+    std::memcpy(odd, blocks.data(), blocks.size() * sizeof(Block));
+    return std::span(reinterpret_cast<const Block*>(odd), blocks.size());
+  };
+  std::vector<std::byte> room;
+  TreeView spheres(tree), slabs(tree), triangles(tree);
+  EXPECT_EQ(structure_fault(spheres), nullptr);
+  spheres.blocks = moved(tree.blocks, room);
+  EXPECT_NE(structure_fault(spheres), nullptr);
+  slabs.ball_slabs = moved(tree.ball_slabs, room);
+  EXPECT_NE(structure_fault(slabs), nullptr);
+  triangles.triangle_blocks = moved(tree.triangle_blocks, room);
+  EXPECT_NE(structure_fault(triangles), nullptr);
 }
 
 TEST(Memory, WithoutRoomForALevelTheTrianglesDecide) {

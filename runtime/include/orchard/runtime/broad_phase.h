@@ -49,7 +49,8 @@ constexpr bool may_pair(const BodyFilter& a, const BodyFilter& b) noexcept {
 
 // The application's own: false, and the two are no pair. Asked about bodies that may_pair() allows, a.index < b.index,
 // whenever they are found near each other, and when that is tested again: it has to answer alike until it is set
-// anew. Called from within advance() (a Detector's: step()) only; it calls neither.
+// anew. Called from within advance() (a Detector's: step()) only. What it asks of the same object is refused: see
+// MotionSource.
 using PairFilter = std::function<bool(BodyId a, BodyId b)>;
 
 struct BodyPair {
@@ -60,10 +61,15 @@ struct BodyPair {
 // Fills motions[i] with what is known of bodies[i] at `time`, the time of a step. A body may come up twice.
 // A motion that is not valid (NaN, infinite, a negative radius, ..: see is_valid() in motion.h) is refused: the body is
 // in no pair, is asked again at the next step, and is named in Advance::refused.
+// While a source, a filter or a listener runs, the broad phase that called it refuses every change and every call of
+// advance(), and its queries have no answer: they return what they return for a body that does not exist, and
+// Advance::time_refused or BodyQueries::refused() is true. Destroying or moving the broad phase there is an error.
 using MotionSource = std::function<void(double time, std::span<const BodyIndex> bodies, std::span<Motion> motions)>;
 
 // For an application that keeps all motions as values, by BodyIndex, as of the time it calls advance() with. It calls
-// advance() at every step then, which costs nothing while the broad phase sleeps. `values` outlives the broad phase.
+// advance() at every step then, which costs nothing while the broad phase sleeps. `values` outlives the broad phase and
+// is longer than any index of a body that moves: static bodies have indices of the same kind, so bodies that were added
+// after them need values beyond theirs. A body without a value is refused: see Advance::refused.
 MotionSource values_of(const std::vector<Motion>& values);
 
 // What an application knows of its bodies, by BodyIndex, that keeps it in floats, array by array, as of the time of
@@ -148,8 +154,9 @@ struct Advance {
   // Bodies whose motions were not valid at one of the steps that this call processed: they were in no pair there. In
   // ascending order; valid as long as the pairs.
   std::span<const BodyIndex> refused{};
-  bool time_refused = false;  // t_now is NaN, infinite or too far away (kMaxSteps): nothing was done
-  std::uint64_t work = 0;     // of the last step processed within a budget, in its units
+  // Nothing was done: t_now is NaN, infinite or too far away (kMaxSteps), or the call came from a callback.
+  bool time_refused = false;
+  std::uint64_t work = 0;  // of the last step processed within a budget, in its units
 };
 
 // What the broad phase already knows of a step to come (8.2: the load, predicted).
@@ -238,6 +245,11 @@ class BroadPhase {
     return {next_time_, {}};
   }
 
+  // Leaves out the steps before the last one that is not after t, which becomes the next one that is processed: for an
+  // application that was paused. Costs an update of every body's window at that step, however long the pause. Does
+  // nothing, and returns 0, if nothing is due in between; else returns how many steps are left out.
+  std::uint64_t skip_to(double t);
+
   // steps[i] becomes what is due at the i-th step after `time`, up to which steps have been processed. What has been
   // cancelled since is not in it, what has become void is: an estimate. Returns how many are known, at most 254; 0 for
   // other methods than the default one. O(what is due).
@@ -253,6 +265,8 @@ class BroadPhase {
  private:
   struct State;
   friend class BodyQueries;  // broad_queries.h
+  class Busy;
+  bool may_change() const noexcept;
   friend BroadPhase detail::make_broad_phase(MotionSource source, const BroadPhaseOptions& options,
                                              const detail::MakeMethod& make);
   BroadPhase(MotionSource source, const BroadPhaseOptions& options, const detail::MakeMethod& make,

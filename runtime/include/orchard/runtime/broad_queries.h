@@ -39,7 +39,7 @@ struct NearBody {
 //
 // What is refused has no answer, and refused() is true: numbers that are not finite or above kMaxNumber (a ray may
 // be infinitely long), a direction of 0, a negative radius or length, a box whose lower corner is above its upper one,
-// anything asked of a broad phase that is not valid().
+// anything asked of a broad phase that is not valid(), or from one of its callbacks.
 //
 // Spans and their order are valid until the object's next query. It keeps its memory: nothing is allocated once warm.
 // Any number of objects may ask the same broad phase, one at a time, and not while it advances. Throws std::bad_alloc

@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -35,7 +36,9 @@ struct BodyPart {
 };
 
 // What the application knows of a body at the time of a step. The promise is about the body's origin, pose.translation:
-// see Motion in motion.h, whose fields these are. The scale stays what it is until the promise expires.
+// see Motion in motion.h, whose fields these are. The scale stays what it is until the promise expires. A state with a
+// pose and a velocity and nothing else promises that the body flies straight on for ever. DetectorOptions::watch, which
+// is on by default where a source gives the states, finds at every step what has not kept its promise.
 struct BodyState {
   Pose pose{};
   Vec3 velocity{};
@@ -50,11 +53,15 @@ struct BodyState {
 };
 
 // Fills states[i] with what is known of bodies[i] at `time`, the time of a step. It throws nothing. Called from within
-// step() only, in the thread that called this.
+// step() only, in the thread that called this. While a source, a filter or a listener runs, the detector that called it
+// refuses every change and every call of step(), manifold() and foresee(): they return what they return for a body that
+// does not exist, and Frame::time_refused is true. Destroying or moving the detector there is an error.
 using StateSource = std::function<void(double time, std::span<const BodyIndex> bodies, std::span<BodyState> states)>;
 
-// For an application that keeps all states as values, by BodyIndex, as of the time it calls step() with. The vector is
-// larger than any index of a body that moves.
+// For an application that keeps all states as values, by BodyIndex, as of the time it calls step() with. The vector
+// outlives the detector and is longer than any index of a body that moves: static bodies have indices of the same kind,
+// so bodies that were added after them need values beyond theirs. A body without a value is in no pair: see
+// Frame::refused.
 StateSource states_of(const std::vector<BodyState>& values);
 
 struct BodyOptions {
@@ -71,7 +78,7 @@ struct BodyOptions {
   // whenever an articulated body stretches. 0: as far as the parts reach.
   double reach = 0;
   // The source gives poses, and a velocity if it has one: acceleration, drift, half-space and expiry are suggested by
-  // the motion monitor. Needs DetectorOptions::watch.
+  // the motion monitor. add_body() refuses it where DetectorOptions::watch is off, since a guess has to be checked.
   bool suggest = false;
 };
 
@@ -83,14 +90,19 @@ struct DetectorOptions {
   double time_step = 0.01;    // dt_d, see BroadPhaseOptions; > 0. Usually a frame
   double start = 0;           // the time of step 0
   double position_slack = 0;  // see BroadPhaseOptions
-  // Every moving body's state is asked for at every step and compared with what was promised (4.4). A promise that does
-  // not hold is cancelled in time for this very step, counted, and named in Frame::broken: nothing is missed. Without
-  // it a body is only asked for when something depends on it, and the application has to cancel().
-  bool watch = false;
+  // Whether every moving body's state is asked for at every step and compared with what was promised (4.4). A promise
+  // that does not hold is then cancelled in time for this very step, counted, and named in Frame::broken: nothing is
+  // missed. Without it a body is only asked for when something depends on it, which costs less (docs/detector.md), and
+  // contacts are missed in silence unless every promise is kept or cancel() is called. Empty: on with a state source,
+  // off where the detector keeps the states, as set_state() cancels what it changes.
+  std::optional<bool> watch{};
   // An "end" comes after so many steps in a row with a certain "no"; at least 1. What trembles at contact may use more.
   std::uint32_t steps_to_end = 1;
   // Pairs of trees that may be gone on with after a first piece at once; what exceeds it is reported as possible.
   std::size_t max_unfinished = 4096;
+  // A call of step() ends early after the step with which it has so many events or more, so that its memory does not
+  // grow with the length of a pause: see Frame::steps_left. At least 1.
+  std::size_t max_events = std::size_t{1} << 18;
   // Pairs of large trees that stay close, and are expensive to search each time, get a front each (PairFront, 43 KB):
   // so many at most, made as such pairs come near each other. 0: none.
   std::size_t max_fronts = 64;
@@ -123,6 +135,10 @@ struct FrameBudget {
   // Not null: the step ends where that of another run did, Frame::cut, in place of `time`. After the same calls with
   // the same states, the frame is that run's. A replayed call answers one step at most, and no executor took part.
   const StepCut* replay = nullptr;
+  // Only the last step up to the time given to step() is answered, for after a pause. The steps before it are left out:
+  // their number is Frame::skipped, what only happened there is not reported, and no sweep of a continuous body leads
+  // across them. What touched before and touches now stays, what touches no more ends.
+  bool latest_only = false;
 };
 inline constexpr std::uint64_t kMotionWork = 16;
 inline constexpr std::uint64_t kPairWork = 16;
@@ -150,9 +166,13 @@ struct PairEvent {
 
 // What step() found. The spans are valid until the next call of a member that is not const.
 struct Frame {
-  double time = 0;                      // of the last step that was answered
-  double next_time = 0;                 // nothing can begin or end before: no need to call earlier
-  std::uint32_t steps = 0;              // answered in this call
+  double time = 0;          // of the last step that was answered
+  double next_time = 0;     // nothing can begin or end before: no need to call earlier
+  std::uint32_t steps = 0;  // answered in this call
+  // Up to the time given: not 0 if DetectorOptions::max_events ended the call, and another one with the same time goes
+  // on.
+  std::uint64_t steps_left = 0;
+  std::uint64_t skipped = 0;            // steps left out: FrameBudget::latest_only
   std::span<const PairEvent> events;    // by time, then by pair
   std::uint64_t pairs = 0;              // of bodies that may touch, whose spheres overlapped, over the steps
   std::uint64_t certain = 0;            // of these, with a certain answer
@@ -166,7 +186,7 @@ struct Frame {
   // in pairs that are possible.
   std::span<const BodyIndex> refused;
   std::span<const BodyIndex> broken;  // promises that did not hold; cancelled (watch)
-  bool time_refused = false;          // see Advance: nothing was done
+  bool time_refused = false;          // see Advance: nothing was done, or step() was called from within itself
   // There was not enough memory for what this step needs. The detector answers nothing from then on: make another one.
   bool out_of_memory = false;
 };
@@ -218,7 +238,8 @@ class Detector {
   ShapeId add_box(const Vec3& half_lengths);                         // around the origin, along the axes
 
   // Bodies. What changes between two steps takes part from the next one. kNoBody if a part's shape is none or its pose
-  // not rigid, if there are no parts, if there are kMaxBodies, or the options are not valid.
+  // not rigid, if there are no parts, if there are kMaxBodies, or the options are not valid, `suggest` without `watch`
+  // among them.
   BodyId add_body(std::span<const BodyPart> parts, const BodyOptions& options = {});
   BodyId add_body(std::initializer_list<BodyPart> parts, const BodyOptions& options = {}) {
     return add_body(std::span(parts.begin(), parts.size()), options);
@@ -270,8 +291,9 @@ class Detector {
   bool valid() const noexcept;        // the options are
 
   // Answers the steps up to `time` that may have something, in order; what the budget has left is shared evenly among
-  // them. Call it once per frame, never with a smaller time. A long time ahead takes a long time: see BroadPhase, and
-  // with `watch` every step is looked at.
+  // them. Call it once per frame, never with a smaller time. A long time ahead takes a long time, as every step with a
+  // pair, and with `watch` every step, is looked at, within any budget: FrameBudget::latest_only answers the last one
+  // alone.
   Frame step(double time, const FrameBudget& budget = {}) noexcept;
 
   // Where the parts of an event of the last step touch, at up to four points, and how they come apart; as contacts()

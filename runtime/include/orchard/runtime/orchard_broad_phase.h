@@ -2,8 +2,9 @@
  * broad_queries.h, which say more.
  *
  * Link orchard::runtime and the C++ standard library. No function throws or exits; the application's callbacks must not
- * either (no exception, no longjmp), and call no function of the same broad phase. Pointers must not be null unless it
- * says so. A broad phase belongs to one thread at a time. Lengths in the world's unit, times in seconds. */
+ * either (no exception, no longjmp), and what they ask of the same broad phase is refused. Pointers must not be null
+ * unless it says so; null options are the default ones. A broad phase belongs to one thread at a time. Lengths in the
+ * world's unit, times in seconds. */
 #ifndef ORCHARD_RUNTIME_ORCHARD_BROAD_PHASE_H
 #define ORCHARD_RUNTIME_ORCHARD_BROAD_PHASE_H
 
@@ -41,7 +42,7 @@ typedef struct orchard_body_filter {
   int ignores_static;
 } orchard_body_filter;
 
-/* Fills motions[i] with that of bodies[i] (indices) at `time`. */
+/* Fills motions[i] with that of bodies[i] (indices) at `time`. Static bodies have indices of the same kind. */
 typedef void (*orchard_motion_source)(void* context, double time, const uint32_t* bodies, size_t count,
                                       orchard_motion* motions);
 /* 0: the two are no pair. a.index < b.index. */
@@ -126,6 +127,9 @@ typedef struct orchard_advance {
  * none. */
 orchard_advance orchard_broad_phase_advance(orchard_broad_phase* world, double t_now,
                                             const orchard_work_budget* budget);
+/* Leaves out the steps before the last one that is not after t, for after a pause. Returns how many; 0 if nothing is
+ * due in between, or without memory. */
+uint64_t orchard_broad_phase_skip_to(orchard_broad_phase* world, double t);
 /* What is due at the `count` steps after `time`: fills the arrays (each may be null), and returns how many are known.
  */
 size_t orchard_broad_phase_foresee(const orchard_broad_phase* world, double time, size_t count, size_t* updates,

@@ -1,7 +1,8 @@
 /* The detector for programs in C and for languages that call C: a thin cover of detector.h, which says more.
  *
  * Link orchard::runtime and the C++ standard library. No function throws or exits; the application's callbacks must not
- * either (no exception, no longjmp). Pointers must not be null unless it says so. A detector belongs to one thread at a
+ * either (no exception, no longjmp); what they ask of the same detector is refused: no change, no step, no event.
+ * Pointers must not be null unless it says so; null options are the default ones. A detector belongs to one thread at a
  * time; trees outlive it. Lengths in the world's unit, times in seconds. */
 #ifndef ORCHARD_RUNTIME_ORCHARD_DETECTOR_H
 #define ORCHARD_RUNTIME_ORCHARD_DETECTOR_H
@@ -39,10 +40,10 @@ typedef struct orchard_body_options {
   uint32_t group, mask;    /* two may touch if each one's mask has a bit of the other's group */
   double continuous_speed; /* 0: not continuous */
   double reach;            /* 0: as far as the parts reach */
-  int suggest;             /* needs orchard_detector_options.watch */
+  int suggest;             /* needs orchard_detector_options.watch: without it the body is refused */
 } orchard_body_options;
 
-/* Fills states[i] with that of bodies[i] (indices) at `time`. */
+/* Fills states[i] with that of bodies[i] (indices) at `time`. Static bodies have indices of the same kind. */
 typedef void (*orchard_state_source)(void* context, double time, const uint32_t* bodies, size_t count,
                                      orchard_body_state* states);
 
@@ -51,6 +52,8 @@ typedef void (*orchard_run_jobs)(void* context, size_t count, void (*job)(void* 
 
 typedef struct orchard_detector_options {
   double time_step, start, position_slack;
+  /* Whether every moving body is compared at every step with what was promised of it; 0: it is not, and contacts are
+   * missed in silence where a promise is not kept; below 0: with a state source only, the default. */
   int watch;
   uint32_t steps_to_end;
   size_t max_unfinished;
@@ -58,6 +61,7 @@ typedef struct orchard_detector_options {
   void* run_context;
   size_t concurrency;
   size_t max_fronts; /* 43 KB each, for pairs of large trees that stay close */
+  size_t max_events; /* a step's call ends early once it has so many; 0: the default. See orchard_frame.steps_left */
 } orchard_detector_options;
 
 typedef enum orchard_pair_change {
@@ -85,6 +89,8 @@ typedef struct orchard_frame {
   unsigned incomplete_from; /* 256: the broad phase was not interrupted */
   size_t left_over, refused, broken;
   int time_refused, out_of_memory;
+  uint64_t steps_left; /* not 0: max_events ended the call, and another one with the same time goes on */
+  uint64_t skipped;    /* steps that orchard_detector_step_latest() left out */
 } orchard_frame;
 
 orchard_body_options orchard_default_body(void);
@@ -133,6 +139,8 @@ orchard_body_state orchard_detector_state(const orchard_detector* detector, orch
 int orchard_detector_moves(const orchard_detector* detector, orchard_body body); /* neither static nor a half-space */
 
 orchard_frame orchard_detector_step(orchard_detector* detector, double time, orchard_budget budget);
+/* Answers the last step up to `time` alone and leaves out those before it, for after a pause. */
+orchard_frame orchard_detector_step_latest(orchard_detector* detector, double time, orchard_budget budget);
 /* Of the last step; index < events. */
 orchard_pair_event orchard_detector_event(const orchard_detector* detector, size_t index);
 uint32_t orchard_detector_refused(const orchard_detector* detector, size_t index);

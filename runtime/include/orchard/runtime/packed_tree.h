@@ -6,6 +6,14 @@
 #include <span>
 #include <vector>
 
+// Blocks, and what queries keep, are aligned to 32 bytes. Where clang before 15 compiles C++23, std::vector of GCC's
+// library does not respect that, and the first vector instruction would end the program.
+#if defined(__clang__) && defined(__GLIBCXX__) && !defined(__apple_build_version__)
+#if __clang_major__ < 15 && __cplusplus > 202002L
+#error "clang before 15 gives std::vector of GCC's library no alignment as C++23: compile what uses orchard as C++20"
+#endif
+#endif
+
 namespace orchard::runtime {
 
 inline constexpr std::uint32_t kBlockWidth = 8;
@@ -165,9 +173,9 @@ void index_triangles(PackedSphereTree& tree);
 
 // What is wrong with a tree's structure, or nullptr: indices in range, children after their parent, no block shared,
 // coordinates up to kCoordinateLimit, lengths four times that, radii >= 0, a tree of triangles if there are triangles,
-// of which it repeats the corners exactly. Everything a query relies on to stay in bounds. `error` and `depth` may be
-// +infinity: unknown, and then a bound on separation that needs them is infinite. O(nodes + triangles), allocates
-// nothing.
+// of which it repeats the corners exactly, blocks at addresses that their types allow. Everything a query relies on to
+// stay in bounds. `error` and `depth` may be +infinity: unknown, and then a bound on separation that needs them is
+// infinite. O(nodes + triangles), allocates nothing.
 const char* structure_fault(const TreeView& tree) noexcept;
 
 // Upper bound on |centre| + radius over the nodes and on |vertex|, relative to the origin: the rounding of a query is a

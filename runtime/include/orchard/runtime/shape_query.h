@@ -51,7 +51,8 @@ struct RayHit {
 };
 
 // The first triangle that origin + t * direction, 0 <= t <= longest, meets; direction of any length. Watertight: edges
-// belong to both neighbours, decided exactly.
+// belong to both neighbours, decided exactly. The line does not depend on `longest`: a hit that a ray without an end
+// has at `along` comes, the same bit for bit, with every `longest` >= `along`.
 std::optional<RayHit> cast_ray(const TreeView& tree, const Pose& pose, const std::array<double, 3>& origin,
                                const std::array<double, 3>& direction,
                                double longest = std::numeric_limits<double>::infinity()) noexcept;
