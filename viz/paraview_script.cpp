@@ -19,7 +19,16 @@ import sys
 
 from paraview import simple
 
-FOLDER = os.path.dirname(os.path.abspath(__file__))
+
+def own_path():
+    """Where this file is. ParaView's window does not say it to the script that it was started with."""
+    if "__file__" in globals():
+        return os.path.abspath(__file__)
+    with open("/proc/self/cmdline", encoding="utf-8", errors="surrogateescape") as words:
+        return os.path.abspath(words.read().partition("\0--script")[2][1:].partition("\0")[0])
+
+
+FOLDER = os.path.dirname(own_path())
 
 
 def arguments():
@@ -88,7 +97,7 @@ def main():
     if options.output:
         simple.SaveScreenshot(options.output, view, ImageResolution=options.size)
     elif os.path.basename(sys.executable or sys.argv[0]).startswith("pvbatch"):
-        print("name a picture: pvbatch", os.path.basename(__file__), "-o picture.png")
+        print("name a picture: pvbatch", os.path.basename(own_path()), "-o picture.png")
 
 
 main()

@@ -1,7 +1,7 @@
 """A ParaView plugin that opens orchard's own files: sphere-trees (.orchard, .sph), medial meshes (.ma) and Voronoi
 diagrams (.vor). Formats: docs/FORMATS.md. Needs numpy, which ParaView brings.
 
-Load it with "paraview --script=orchard_reader.py", as a macro (Macros > Import New Macro), or in a script of pvbatch with
+Load it with "paraview --script=orchard_reader.py", or in the Python shell and in scripts of pvbatch with
 runpy.run_path("orchard_reader.py", run_name="__main__"). Tools > Manage Plugins > Load New and LoadPlugin() work as well,
 but not in the ParaView of Debian 12, which says "invalid ELF header": its own support for plugins in Python asks for a
 function that Python 3.11 does not have any more. As a script, this file provides that function first.
@@ -351,6 +351,14 @@ class OrchardVoronoiReader(Reader):
         return 1
 
 
+def own_path():
+    """Where this file is. ParaView's window does not say it to the script that it was started with."""
+    if "__file__" in globals():
+        return os.path.abspath(__file__)
+    with open("/proc/self/cmdline", encoding="utf-8", errors="surrogateescape") as words:
+        return os.path.abspath(words.read().partition("\0--script")[2][1:].partition("\0")[0])
+
+
 if __name__ == "__main__":
     from paraview import simple
-    simple.LoadPlugin(os.path.abspath(__file__), remote=False, ns=globals())
+    simple.LoadPlugin(own_path(), remote=False, ns=globals())
