@@ -118,5 +118,26 @@ TEST(RoundSolids, OfRandomProfilesHaveAnAxisThatReachesAllOfTheirSurface) {
   for (std::uint64_t i = 0; i < 4 * test::more(); ++i) expect_whole_axis(random_solid(test::first_seed() + i), 1500);
 }
 
+// A ball of noise: with few points, what Newton's method finds from a vertex may be a ball on the other side.
+TriangleMesh noisy_ball(int subdivisions, double noise, std::uint64_t seed) {
+  TriangleMesh mesh = test::icosphere(subdivisions);
+  for (Index v = 0; v < mesh.vertices.size(); ++v)
+    mesh.vertices[v] *= 1 + noise * (2 * Random(seed, 0x6e6f697365, v).uniform() - 1);
+  return mesh;
+}
+
+TEST(RoundSolids, OfNoiseHaveNoBallOutside) {
+  for (std::uint64_t i = 0; i < 2 * test::more(); ++i) {
+    const std::uint64_t seed = test::first_seed() + i;
+    SCOPED_TRACE(seed);
+    const Surface surface(noisy_ball(3, 0.03, seed));
+    ASSERT_TRUE(surface.solid());
+    const MedialBuild build = build_medial_axis(
+        surface, {.sampling = {.face_points = 160, .edge_points = 40, .seed = seed}, .refine = RefineOptions{}});
+    for (Index v = 0; v < build.axis.size(); ++v)
+      ASSERT_LT(build.axis.centers[v].norm() + build.axis.radii[v], 1.03 + 1e-9) << "vertex " << v;
+  }
+}
+
 }  // namespace
 }  // namespace orchard
