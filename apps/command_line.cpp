@@ -161,11 +161,9 @@ void add_collide(CLI::App& app, Request& request) {
   add_output_flags(command, collide.output);
   command.get_option("--quiet")->description("Print the answer alone");
   command.footer(
-      "The answer is about the surfaces, and so are lower bounds. A body that lies wholly inside the other one does "
-      "not\n"
-      "touch it: the answer is \"no\", and a line of its own (\"inside\" in JSON) says so. \"Separation at most\" "
-      "bounds the\n"
-      "distance between the solids.\n"
+      "The answer is about the surfaces, and so are lower bounds. A body that lies wholly inside the other one does\n"
+      "not touch it: the answer is \"no\", and a line of its own (\"inside\" in JSON) says so. \"Separation at most\"\n"
+      "bounds the distance between the solids.\n"
       "Example:\n  orchard collide out/lamp/lamp.orchard out/ship/ship.orchard --pose \"4 0 0 1 0 0 0\"");
   command.callback([&request, &command] {
     request.collide.output.run = invocation_of(command, request.typed);
