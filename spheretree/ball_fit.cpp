@@ -117,6 +117,7 @@ ClosestPoint BallFitter::closest(const Point& center) const {
 
 // Within the distance of a centre whose side is known, the side is the same: that spares the question.
 BallFitter::Cut BallFitter::cut_at(const Point& center) const {
+  if (measure_ == BallMeasure::radius) return {center, 0, Vector::Zero()};
   ClosestPoint nearest;
   double center_distance = 0;
   const bool same_side = !cuts_.empty() && (center - cuts_.back().at).norm() < 0.999 * std::abs(cuts_.back().value);

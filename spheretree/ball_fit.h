@@ -7,8 +7,14 @@
 
 namespace orchard::detail {
 
-// A ball with the signed distance of its centre. Its looseness, radius + center_distance, bounds Hubbard's inaccuracy
-// from above, equals it where the object is convex, and is never negative for a ball that holds a point of the surface.
+// What a ball is fitted by. Its reach, radius + signed distance of the centre, bounds the inaccuracy wherever the solid
+// is. It is far above it for a ball that holds much surface on all sides of its centre, as of a lattice or of many
+// parts: there the smallest ball is mostly the tightest.
+enum class BallMeasure { reach, radius };
+
+// A ball with the signed distance of its centre, or 0 for it if balls are measured by their radius. Its looseness,
+// radius + center_distance, bounds Hubbard's inaccuracy from above, equals it where the object is convex, and is never
+// negative for a ball that holds a point of the surface.
 struct FittedBall {
   Point center = Point::Zero();
   double radius = 0;
@@ -26,7 +32,8 @@ struct FittedBall {
 // Hidden: what a shared library could replace is not inlined.
 class [[gnu::visibility("hidden")]] BallFitter {
  public:
-  explicit BallFitter(const Surface& surface) : surface_(surface) {}
+  explicit BallFitter(const Surface& surface, BallMeasure measure = BallMeasure::reach)
+      : surface_(surface), measure_(measure) {}
 
   // The ball holds all points. Precondition: there is one. At most `evaluations` queries of the signed distance. A
   // start whose slope is known must have the distance that belongs to it.
@@ -81,6 +88,7 @@ class [[gnu::visibility("hidden")]] BallFitter {
   double predicted_looseness(const Vector& step) const { return far_.max_after(step) + near_.max_after(step); }
 
   const Surface& surface_;
+  const BallMeasure measure_;
   std::vector<Cut> cuts_;
   std::size_t point_count_ = 0;
   std::vector<FourPoints> points_;

@@ -15,8 +15,8 @@ constexpr std::uint64_t kNaming = 0x9e3779b97f4a7c15;  // odd, with bits all ove
 
 }  // namespace
 
-LevelBalls::LevelBalls(PathRegions regions, std::vector<LevelBall> balls, Index max_children)
-    : regions_(std::move(regions)), balls_(std::move(balls)), max_children_(max_children) {
+LevelBalls::LevelBalls(PathRegions regions, std::vector<LevelBall> balls, Index max_children, BallMeasure measure)
+    : regions_(std::move(regions)), balls_(std::move(balls)), max_children_(max_children), measure_(measure) {
   places_.resize(size());
   for (Index b = 0; b < size(); ++b) {
     place(b);

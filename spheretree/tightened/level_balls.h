@@ -20,13 +20,15 @@ struct LevelBall : FittedBall {
 // numbers. Const functions may run in parallel.
 class LevelBalls {
  public:
-  // Finds the samples of the balls. max_children: of balls in a path region.
-  LevelBalls(PathRegions regions, std::vector<LevelBall> balls, Index max_children);
+  // Finds the samples of the balls. max_children: of balls in a path region. measure: what the balls are fitted by.
+  LevelBalls(PathRegions regions, std::vector<LevelBall> balls, Index max_children,
+             BallMeasure measure = BallMeasure::reach);
 
   const PathRegions& regions() const { return regions_; }
   const std::vector<LevelBall>& all() const { return balls_; }
   const LevelBall& operator[](Index ball) const { return balls_[ball]; }
   const BallPlaces& places() const { return places_; }
+  BallMeasure measure() const { return measure_; }
   Index size() const { return static_cast<Index>(balls_.size()); }
 
   void find_samples(LevelBall& ball) const;
@@ -60,6 +62,7 @@ class LevelBalls {
   std::vector<LevelBall> balls_;
   BallPlaces places_;
   Index max_children_;
+  BallMeasure measure_;
   std::vector<Index> holders_;   // how many balls hold each sample
   std::vector<Index> children_;  // how many balls lie in each path region
 };

@@ -95,7 +95,8 @@ void fit_again(const Surface& surface, std::vector<std::vector<Point>>& taken, L
     tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {
       std::vector<Point>& points = taken[batch[i]];
       balls.append_held_alone(batch[i], points);
-      fitted[i] = balls.fitted(batch[i], BallFitter(surface).fit(points, balls[batch[i]], kTakerEvaluations));
+      fitted[i] =
+          balls.fitted(batch[i], BallFitter(surface, balls.measure()).fit(points, balls[batch[i]], kTakerEvaluations));
     });
     for (std::size_t i = 0; i < batch.size(); ++i) balls.replace(batch[i], std::move(fitted[i]));
   }

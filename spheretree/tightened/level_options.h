@@ -9,6 +9,7 @@ struct LevelOptions {
   Index balls = 8;          // at most
   Index max_children = 16;  // balls in a path region at most
   LevelCost cost;
+  BallMeasure measure = BallMeasure::reach;
   std::uint64_t seed = 1;
   Index level = 1;  // for the random numbers
 };

@@ -17,9 +17,10 @@ class [[gnu::visibility("hidden")]] LevelSearch;  // as BallFitter is
 // before the batch, and are applied in order, so the result does not depend on threads.
 class LevelSearch {
  public:
-  LevelSearch(const Surface& surface, const LevelObjective& objective, std::uint64_t seed, Index level)
-      : surface_(surface), objective_(objective), seed_(seed), level_(level), scratches_([&surface] {
-          return TrialScratch(surface);
+  LevelSearch(const Surface& surface, const LevelObjective& objective, BallMeasure measure, std::uint64_t seed,
+              Index level)
+      : surface_(surface), objective_(objective), seed_(seed), level_(level), scratches_([&surface, measure] {
+          return TrialScratch(surface, measure);
         }) {}
 
   // No sample is lost.

@@ -10,7 +10,7 @@ LevelBalls started(const Surface& surface, PathRegions regions, const LevelOptio
                    std::vector<LevelBall> start) {
   std::vector<LevelBall> balls = start.empty() ? seeded_balls(surface, regions, options)
                                                : relaxed_balls(surface, regions, options, std::move(start));
-  return {std::move(regions), std::move(balls), options.max_children};
+  return {std::move(regions), std::move(balls), options.max_children, options.measure};
 }
 
 }  // namespace
@@ -20,7 +20,7 @@ LevelSolver::LevelSolver(const Surface& surface, const Samples& samples, std::ve
     : surface_(surface),
       balls_(started(surface, PathRegions(samples, std::move(paths)), options, std::move(start))),
       objective_(options.cost, balls_.all(), surface.bounding_radius()),
-      search_(surface, objective_, options.seed, options.level) {}
+      search_(surface, objective_, options.measure, options.seed, options.level) {}
 
 void LevelSolver::search(Index trials, const Progress& progress) { search_.run(balls_, trials, progress); }
 

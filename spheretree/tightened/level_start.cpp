@@ -87,7 +87,7 @@ class LevelStart {
   }
 
   void seed() {
-    const BallFitter fitter(surface_);
+    const BallFitter fitter(surface_, options_.measure);
     std::vector<double> min(samples_.size(), kInfinity);
     LargestFirst by_min(min);
     Index next = static_cast<Index>(Random(options_.seed, 100 + options_.level).below(samples_.size()));
@@ -125,7 +125,7 @@ class LevelStart {
   void lloyd_round() {
     move_unused();
     assign(owners());
-    tbb::enumerable_thread_specific<BallFitter> fitters([&] { return BallFitter(surface_); });
+    tbb::enumerable_thread_specific<BallFitter> fitters([&] { return BallFitter(surface_, options_.measure); });
     tbb::parallel_for(std::size_t{0}, balls_.size(), [&](std::size_t b) {
       LevelBall& ball = balls_[b];
       ball.radius = -1;
@@ -159,7 +159,7 @@ class LevelStart {
     --children_[unused.path_region];
     ++children_[loosest.path_region];
     unused.path_region = loosest.path_region;
-    static_cast<FittedBall&>(unused) = BallFitter(surface_).at(samples_.starts[far]);
+    static_cast<FittedBall&>(unused) = BallFitter(surface_, options_.measure).at(samples_.starts[far]);
     unused.radius = -1;
   }
 

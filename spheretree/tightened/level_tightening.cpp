@@ -14,7 +14,7 @@ constexpr int kSampleEvaluations = 14, kSurfaceEvaluations = 10;
 
 // What a thread works in, kept from one ball to the next for the room that its lists have.
 struct Worker {
-  explicit Worker(const Surface& surface) : fitter(surface) {}
+  Worker(const Surface& surface, BallMeasure measure) : fitter(surface, measure) {}
   BallFitter fitter;
   LevelCover::Scratch scratch;
   std::vector<Index> near;
@@ -54,7 +54,7 @@ void tighten_to_samples(const Surface& surface, LevelBalls& balls) {
     std::optional<LevelBall> tighter;
     std::uint64_t samples = 0;
   };
-  tbb::enumerable_thread_specific<BallFitter> fitters([&surface] { return BallFitter(surface); });
+  tbb::enumerable_thread_specific<BallFitter> fitters([&] { return BallFitter(surface, balls.measure()); });
   std::vector<Index> order = balls.loosest_first();
   while (!order.empty()) {
     const std::vector<Index> batch = balls.take_apart(order);
@@ -75,7 +75,7 @@ void tighten_to_samples(const Surface& surface, LevelBalls& balls) {
 }
 
 void tighten_to_surface(const Surface& surface, LevelBalls& balls, LevelCover& cover) {
-  tbb::enumerable_thread_specific<Worker> workers([&surface] { return Worker(surface); });
+  tbb::enumerable_thread_specific<Worker> workers([&] { return Worker(surface, balls.measure()); });
   std::vector<Index> order = balls.loosest_first();
   while (!order.empty()) {
     const std::vector<Index> batch = balls.take_apart(order);

@@ -21,7 +21,7 @@ struct [[gnu::visibility("hidden")]] TrialScratch;  // as BallFitter is
 
 // What trials are worked out in, kept from one to the next for the room that its lists have: one per thread.
 struct TrialScratch {
-  explicit TrialScratch(const Surface& surface) : fitter(surface) {}
+  TrialScratch(const Surface& surface, BallMeasure measure) : fitter(surface, measure) {}
   BallFitter fitter;
   std::vector<float> x, y, z;     // of the samples that were given up
   std::vector<float> min, owner;  // how loose the trial's balls get by each at least, and which does

@@ -28,7 +28,8 @@ std::vector<Sphere> PartialTree::path(std::size_t level, Index node) const {
   std::vector<Sphere> balls;
   for (;; --level) {
     const LevelNode& n = levels_[level][node];
-    balls.push_back({n.sphere.center, n.sphere.radius - (level == 0 ? 0 : kLastGrowth / 2 * radius_)});
+    const double room = level == 0 ? 0 : n.grown ? kLastGrowth : tolerance::kCoverMargin;
+    balls.push_back({n.sphere.center, n.sphere.radius - room / 2 * radius_});
     if (level == 0) break;
     node = n.parent;
   }

@@ -11,6 +11,7 @@ struct LevelNode {
   Sphere sphere;
   Index parent = kNone;  // on the level above
   bool leaf = false;     // needs no children
+  bool grown = true;     // by the last growth (uncovered_regions.h)
 };
 using Level = std::vector<LevelNode>;
 
@@ -27,7 +28,8 @@ class PartialTree {
 
   // Nodes of the level above the last that need children; the path regions of these are what balls may lie in.
   std::span<const Index> parents() const { return parents_; }
-  // The balls from the root to each of them, without half of their last growth.
+  // The balls from the root to each of them, without half of their last growth, or of what they leave around the
+  // surface.
   std::vector<std::vector<Sphere>> paths() const;
   // The same of the nodes that are leaves already.
   std::vector<std::vector<Sphere>> leaf_paths() const;

@@ -10,10 +10,12 @@
 #include <deque>
 #include <exception>
 #include <numeric>
+#include <optional>
 #include <thread>
 
 #include "level_finish.h"
 #include "orchard/covering/inaccuracy.h"
+#include "orchard/geometry/tolerance.h"
 #include "orchard/spheretree/outside_volume.h"
 
 namespace orchard::detail {
@@ -33,7 +35,7 @@ constexpr Index kFewBalls = 16;
 constexpr double kShareForFewBalls = 0.25;
 
 // The starts of a first level are tried on so many samples, and with so many trials for each ball.
-constexpr Index kExploringSamples = 800, kExploringTrials = 8;
+constexpr Index kExploringSamples = 800, kExploringPerBall = 32, kExploringTrials = 8;
 // In all starts together that are tried, and that are carried through, at most: with many balls, one start is like
 // another. Two are carried through where as many are tried.
 constexpr Index kExploredBalls = 800, kCarriedBalls = 48;
@@ -49,6 +51,11 @@ constexpr double kTighteningShare = 0.5;
 constexpr double kTightenedTwiceShare = 0.1;  // below it, a closed level is tightened once, not twice
 
 constexpr std::uint64_t kComparingRays = 4000;  // for the outside volume of what is compared
+constexpr Index kStartsForMaximum = 2;          // carried through with that objective, too, of the first level
+// Levels whose figures differ by less, in R, are as tight as each other: they are not known any better.
+constexpr double kSameTightness = tolerance::kInaccuracy;
+// Where the balls' mean reach is so many times their mean inaccuracy, other measures may fit them better.
+constexpr double kFarAbove = 1.25;
 
 // Of a full search, that a level of so many balls gets.
 double search_share(Index balls) { return std::min(1.0, kFullySearchedBalls / std::max<Index>(1, balls)); }
@@ -119,16 +126,18 @@ double looseness(const LevelSolver& solver) {
   return mean_times_max(values) * volume;
 }
 
-// Times the outside volume: all three figures count alike.
-double looseness(const Surface& surface, const Level& level) {
-  std::vector<double> values(level.size());
-  tbb::parallel_for(std::size_t{0}, level.size(), [&](std::size_t i) {
-    values[i] = inaccuracy(surface, level[i].sphere, {1e-3, 1e-2}).upper;
-  });
-  std::vector<Sphere> spheres;
-  for (const LevelNode& node : level) spheres.push_back(node.sphere);
-  const double outside = outside_volume(surface, spheres, kComparingRays);
-  return mean_times_max(values) * outside;
+// Whether the tree goes on everywhere down to its depth.
+bool is_whole(const Refinement& refinement) { return refinement.error <= 0 && refinement.regions.empty(); }
+
+std::vector<Index> spheres_by_level(const TightenOptions& options) {
+  if (!options.spheres.empty()) return options.spheres;
+  std::vector<Index> spheres;
+  double max = 1;
+  for (Index level = 1; level <= options.depth; ++level) {
+    max = std::min(max * options.branching, 1e9);
+    spheres.push_back(static_cast<Index>(max));
+  }
+  return spheres;
 }
 
 }  // namespace
@@ -140,7 +149,12 @@ Tightener::Tightener(const Surface& surface, const Samples& samples, const Spher
       options_(options),
       work_(work),
       progress_(progress),
-      partial_(root, surface.bounding_radius()) {}
+      spheres_(spheres_by_level(options)),
+      root_(root),
+      octree_(surface, spheres_),
+      partial_(root, surface.bounding_radius()) {
+  inaccuracies_ = inaccuracies(surface, partial_.last());
+}
 
 TightenBuild Tightener::run() {
   TightenReport report;
@@ -151,47 +165,193 @@ TightenBuild Tightener::run() {
   return {std::move(tree), std::move(report)};
 }
 
-bool Tightener::build_level(Index level, std::vector<TightenReport::Level>& reports) {
+LevelOptions Tightener::options_for(Index level, Index balls) const {
+  LevelOptions options;
+  options.balls = balls;
+  options.max_children = level == 1 ? balls : max_children(options_);
+  options.cost = cost_for(options_.objective, level, options_.depth);
+  options.level = level;
+  options.seed = options_.seed;
+  return options;
+}
+
+// What the next level is built with; nothing if there is no next level.
+std::optional<LevelOptions> Tightener::next_level(Index level) const {
   const auto refined = static_cast<double>(
       std::count_if(partial_.last().begin(), partial_.last().end(), [](const LevelNode& node) { return !node.leaf; }));
   const std::size_t max = samples_.size() / kSamplesPerBall;
   const double allowed = options_.spheres.empty() ? options_.branching * refined : options_.spheres[level - 1];
   const double wanted = std::min(static_cast<double>(max), allowed);
-  if (refined == 0 || (wanted <= refined && level > 1)) return false;
-  if (wanted < allowed && wanted < kWorthALevel * refined) return false;
-  LevelOptions level_options;
-  level_options.balls = static_cast<Index>(wanted);
-  level_options.max_children = level == 1 ? level_options.balls : max_children(options_);
-  level_options.cost = cost_for(options_.objective, level, options_.depth);
-  level_options.level = level;
-  level_options.seed = options_.seed;
+  if (refined == 0 || (wanted <= refined && level > 1)) return {};
+  if (wanted < allowed && wanted < kWorthALevel * refined) return {};
+  return options_for(level, static_cast<Index>(wanted));
+}
 
-  const Index starts = carried_starts(level, level_options.balls, work_);
-  std::vector<std::vector<LevelBall>> from(starts);
-  if (level == 1) from = promising_starts(level_options, starts);
-  std::vector<Candidate> all = candidates(level_options, std::move(from), [&](std::string_view, double fraction) {
-    return !progress_ || progress_("tightening", (level - 1 + fraction) / options_.depth);
-  });
-  double search = 0, closing = 0;
-  auto best = all.begin();
-  for (auto next = all.begin(); next != all.end(); ++next) {
-    search += next->report.seconds_search;
-    closing += next->report.seconds_closing;
-    if (next->looseness < best->looseness) best = next;
+bool Tightener::build_level(Index level, std::vector<TightenReport::Level>& reports) {
+  const std::optional<LevelOptions> options = next_level(level);
+  if (!options) return false;
+  std::vector<Candidate> all;
+  add_candidates(usual_starts(*options), all);
+  const auto keeps = [&] { return tightest(all).excess <= 0; };
+  if (!keeps() || (level == 1 && !tightest(all).measures_well)) add_other_candidates(*options, all);
+  if (!keeps()) {
+    if (level > octree_levels_ + 1) {
+      partial_ = octree_.levels({root_, surface_.bounding_radius()}, level - 1);
+      inaccuracies_ = inaccuracies(surface_, partial_.last());
+      octree_levels_ = level - 1;
+      all.clear();
+      add_other_candidates(next_level(level).value_or(*options), all);
+    }
+    all.push_back(octree_level(level));
+    judge(all.back(), options->balls, true);
   }
-  reports.push_back(best->report);
-  reports.back().seconds_search = search;
-  reports.back().seconds_closing = closing;
-  take(std::move(*best));
+  Candidate& best = tightest(all);
+  if (&best == &all.back() && best.is_octree) octree_levels_ = level;
+  reports.push_back(best.report);
+  reports.back().seconds_search = reports.back().seconds_closing = 0;
+  for (const Candidate& candidate : all) {
+    reports.back().seconds_search += candidate.report.seconds_search;
+    reports.back().seconds_closing += candidate.report.seconds_closing;
+  }
+  take(std::move(best));
   return true;
 }
 
+// Of those that keep the rule; of none does, the one that breaks it least.
+Tightener::Candidate& Tightener::tightest(std::vector<Candidate>& all) {
+  return *std::min_element(all.begin(), all.end(), [](const Candidate& one, const Candidate& other) {
+    if ((one.excess <= 0) != (other.excess <= 0)) return one.excess <= 0;
+    return one.excess <= 0 ? one.looseness < other.looseness : one.excess < other.excess;
+  });
+}
+
+void Tightener::add_candidates(std::vector<Start> starts, std::vector<Candidate>& all) {
+  const LevelOptions options = starts[0].options;
+  std::vector<Candidate> more = candidates(std::move(starts), [&](std::string_view, double fraction) {
+    return !progress_ || progress_("tightening", (options.level - 1 + fraction) / options_.depth);
+  });
+  const bool compared = more.size() > 1 || !all.empty();
+  for (Candidate& candidate : more) {
+    judge(candidate, options.balls, compared);
+    all.push_back(std::move(candidate));
+  }
+}
+
+// The first level is small: all of them. Of the others, until one keeps the rule.
+void Tightener::add_other_candidates(const LevelOptions& options, std::vector<Candidate>& all) {
+  std::vector<Start> starts = other_starts(options);
+  if (options.level == 1) return add_candidates(std::move(starts), all);
+  for (Start& start : starts) {
+    add_candidates({std::move(start)}, all);
+    if (tightest(all).excess <= 0) return;
+  }
+}
+
+// A ball that is looser than its parent gives way to a ball like that, which holds whatever it is to hold.
+void Tightener::cap(Candidate& candidate) const {
+  for (std::size_t i = 0; i < candidate.inaccuracies.size(); ++i) {
+    LevelNode& node = candidate.partial.last()[i];
+    if (candidate.inaccuracies[i] <= inaccuracies_[node.parent]) continue;
+    node.sphere = partial_.last()[node.parent].sphere;
+    candidate.inaccuracies[i] = inaccuracies_[node.parent];
+    candidate.center_distances[i] = surface_.signed_distance(node.sphere.center);
+  }
+}
+
+// By how much a level with this tightness is looser than it may be, as a part of R; not above 0: it is not.
+double Tightener::excess(const LevelTightness& level, Index balls) {
+  if (!is_whole(options_.refinement)) return 0;
+  const LevelTightness above = tightness(inaccuracies_), octree = octree_.bound(balls);
+  const double mean = level.mean - std::min(above.mean, octree.mean), max = level.max - std::min(above.max, octree.max);
+  return std::max(mean, max) / surface_.bounding_radius() - kSameTightness;
+}
+
+// The balls' reach bounds their inaccuracy: mostly that is enough to know that the rule is kept.
+void Tightener::judge(Candidate& candidate, Index balls, bool by_looseness) {
+  const Level& level = candidate.partial.last();
+  std::vector<double> reach(level.size());
+  for (std::size_t i = 0; i < level.size(); ++i) {
+    reach[i] = std::max(0.0, level[i].sphere.radius + candidate.center_distances[i]);
+  }
+  candidate.excess = excess(tightness(reach), balls);
+  if (candidate.excess > 0) {
+    candidate.inaccuracies = inaccuracies(surface_, level);
+    candidate.excess = excess(tightness(candidate.inaccuracies), balls);
+    if (candidate.excess > 0) {
+      cap(candidate);
+      candidate.excess = excess(tightness(candidate.inaccuracies), balls);
+    }
+  }
+  if (!by_looseness && candidate.inaccuracies.empty()) return;
+  // Roughly: all starts are compared by the same numbers.
+  std::vector<double> values(level.size());
+  tbb::parallel_for(std::size_t{0}, level.size(), [&](std::size_t i) {
+    values[i] = inaccuracy(surface_, level[i].sphere, {1e-3, 1e-2}).upper;
+  });
+  candidate.measures_well = tightness(reach).mean <= kFarAbove * tightness(values).mean;
+  if (getenv("TW"))
+    fprintf(stderr, "level of %zu: mean %.4f max %.4f reach %.4f excess %.5f\n", level.size(), tightness(values).mean,
+            tightness(values).max, tightness(reach).mean, candidate.excess);
+  std::vector<Sphere> spheres;
+  for (const LevelNode& node : level) spheres.push_back(node.sphere);
+  candidate.looseness = mean_times_max(values) * outside_volume(surface_, spheres, kComparingRays);
+}
+
 void Tightener::take(Candidate best) {
+  inaccuracies_ =
+      best.inaccuracies.empty() ? inaccuracies(surface_, best.partial.last()) : std::move(best.inaccuracies);
   partial_ = std::move(best.partial);
   for (std::size_t i = 0; i < partial_.last().size(); ++i) {
     LevelNode& node = partial_.last()[i];
     node.leaf = node.sphere.radius + best.center_distances[i] <= options_.refinement.allowed(node.sphere);
   }
+}
+
+// From different seeds; of the first level some with another objective, too, which is now and then the better way to
+// the one that counts.
+std::vector<Tightener::Start> Tightener::usual_starts(const LevelOptions& options) const {
+  const Index count = carried_starts(options.level, options.balls, work_);
+  std::vector<std::vector<LevelBall>> from(count);
+  if (options.level == 1) from = promising_starts(options, count);
+  std::vector<Start> starts;
+  for (Index i = 0; i < count; ++i) {
+    starts.push_back({options, from[i]});
+    starts.back().options.seed = seed_of(options_.seed, i);
+  }
+  if (options.level > 1 || options_.objective != Objective::balanced) return starts;
+  for (Index i = 0; i < std::min(count, kStartsForMaximum); ++i) {
+    starts.push_back(starts[i]);
+    starts.back().options.cost = cost_for(Objective::maximum, options.level, options_.depth);
+    starts.back().kind = 1;
+  }
+  return starts;
+}
+
+// By both measures and for the maximum, from the octree and from seeds.
+std::vector<Tightener::Start> Tightener::other_starts(const LevelOptions& options) const {
+  PartialTree partial = partial_;
+  partial.add_level();
+  const PathRegions regions(samples_for(samples_, partial_, enough_samples(options.balls)), partial.paths());
+  const std::vector<LevelBall> cubes = octree_.start(regions, options.balls, options.max_children);
+  LevelOptions by_maximum = options;
+  by_maximum.cost = cost_for(Objective::maximum, options.level, options_.depth);
+  LevelOptions by_radius = options, by_max_radius = by_maximum;
+  by_radius.measure = by_max_radius.measure = BallMeasure::radius;
+  std::vector<Start> starts{{options, cubes, 0}, {by_maximum, {}, 1}, {by_radius, cubes, 2}, {by_max_radius, cubes, 3}};
+  if (options.level > 1) return starts;
+  for (const std::vector<LevelBall>& balls : promising_starts(by_maximum, 2)) starts.push_back({by_maximum, balls, 1});
+  starts.push_back({by_radius, promising_starts(by_radius, 1)[0], 2});
+  return starts;
+}
+
+// The octree's own, as it is.
+Tightener::Candidate Tightener::octree_level(Index level) const {
+  Candidate candidate{octree_.levels({root_, surface_.bounding_radius()}, level)};
+  for (const LevelNode& node : candidate.partial.last())
+    candidate.center_distances.push_back(surface_.signed_distance(node.sphere.center));
+  candidate.report.balls = static_cast<Index>(candidate.partial.last().size());
+  candidate.is_octree = true;
+  return candidate;
 }
 
 // Many starts, each searched a little on few samples; the tightest of them.
@@ -200,12 +360,12 @@ std::vector<std::vector<LevelBall>> Tightener::promising_starts(LevelOptions opt
   if (tried <= wanted) return std::vector<std::vector<LevelBall>>(wanted);
   PartialTree partial = partial_;
   partial.add_level();
-  const Samples few = samples_for(samples_, partial, kExploringSamples);
-  struct Start {
+  const Samples few = samples_for(samples_, partial, std::max(kExploringSamples, kExploringPerBall * options.balls));
+  struct Tried {
     std::vector<LevelBall> balls;
     double looseness = 0;
   };
-  std::vector<Start> starts(tried);
+  std::vector<Tried> starts(tried);
   tbb::parallel_for(Index{0}, tried, [&](Index i) {
     LevelOptions own = options;
     own.seed = seed_of(options.seed, i);
@@ -215,25 +375,24 @@ std::vector<std::vector<LevelBall>> Tightener::promising_starts(LevelOptions opt
     starts[i] = {solver.balls(), looseness(solver)};
   });
   std::stable_sort(starts.begin(), starts.end(),
-                   [](const Start& a, const Start& b) { return a.looseness < b.looseness; });
+                   [](const Tried& a, const Tried& b) { return a.looseness < b.looseness; });
   std::vector<std::vector<LevelBall>> best;
   for (Index i = 0; i < wanted; ++i) best.push_back(std::move(starts[i].balls));
   return best;
 }
 
-// Solutions of a level, one from each start, at the same time. All are judged by the first one's unit. Those that come
-// to run on the thread that called this say how far they are, and all are stopped by that.
-std::vector<Tightener::Candidate> Tightener::candidates(LevelOptions options, std::vector<std::vector<LevelBall>> from,
-                                                        const Progress& progress) {
-  Candidate empty{partial_, 0, {}, {}};
+// Solutions of a level, one from each start, at the same time. Those of a kind are judged by the first one's unit.
+// Those that come to run on the thread that called this say how far they are, and all are stopped by that.
+std::vector<Tightener::Candidate> Tightener::candidates(std::vector<Start> starts, const Progress& progress) const {
+  Candidate empty{partial_};
   empty.partial.add_level();
-  std::vector<Candidate> results(from.size(), empty);
-  const Samples samples = samples_for(samples_, partial_, enough_samples(options.balls));
+  std::vector<Candidate> results(starts.size(), empty);
+  const Samples samples = samples_for(samples_, partial_, enough_samples(starts[0].options.balls));
   std::deque<LevelSolver> solvers;
-  for (Index start = 0; start < from.size(); ++start) {
-    options.seed = seed_of(options_.seed, start);
-    solvers.emplace_back(surface_, samples, empty.partial.paths(), options, std::move(from[start]));
-    options.cost.unit = solvers.front().unit();
+  for (Start& start : starts) {
+    const auto like = std::find_if(starts.begin(), starts.end(), [&](const Start& s) { return s.kind == start.kind; });
+    if (&*like != &start) start.options.cost.unit = solvers[static_cast<std::size_t>(like - starts.begin())].unit();
+    solvers.emplace_back(surface_, samples, empty.partial.paths(), start.options, std::move(start.balls));
   }
   std::atomic<bool> stopped = false;
   const std::thread::id caller = std::this_thread::get_id();
@@ -249,18 +408,16 @@ std::vector<Tightener::Candidate> Tightener::candidates(LevelOptions options, st
   std::exception_ptr failure;  // the first; the others were stopped by it
   const auto solve = [&](Index start) {
     try {
-      search_and_finish(solvers[start], options, watched(start), results[start]);
+      search_and_finish(solvers[start], starts[start].options, watched(start), results[start]);
     } catch (...) {
       if (!stopped.exchange(true)) failure = std::current_exception();
     }
   };
   tbb::task_group others;
-  for (Index start = 1; start < from.size(); ++start) others.run([&solve, start] { solve(start); });
+  for (Index start = 1; start < starts.size(); ++start) others.run([&solve, start] { solve(start); });
   solve(0);
   others.wait();
   if (failure) std::rethrow_exception(failure);
-  if (results.size() > 1)
-    for (Candidate& result : results) result.looseness = looseness(surface_, result.partial.last());
   return results;
 }
 
@@ -282,7 +439,9 @@ void Tightener::search_and_finish(LevelSolver& solver, const LevelOptions& optio
                        static_cast<Index>(closed_trials * static_cast<double>(solver.balls().size())),
                        [&](std::string_view stage, double fraction) { return progress(stage, 0.4 + 0.6 * fraction); }};
   finish_level(surface_, solver, result.partial, finish, result.report);
-  for (const LevelBall& ball : solver.balls()) result.center_distances.push_back(ball.center_distance);
+  const bool is_known = options.measure == BallMeasure::reach;
+  for (const LevelBall& ball : solver.balls())
+    result.center_distances.push_back(is_known ? ball.center_distance : surface_.signed_distance(ball.center));
   result.report.balls = static_cast<Index>(solver.balls().size());
   result.report.seconds_search = std::chrono::duration<double>(middle - start).count();
   result.report.seconds_closing = std::chrono::duration<double>(std::chrono::steady_clock::now() - middle).count();

@@ -2,6 +2,7 @@
 #include <optional>
 #include <vector>
 
+#include "level_reference.h"
 #include "level_samples.h"
 #include "level_solver.h"
 #include "orchard/spheretree/tightened.h"
@@ -18,7 +19,13 @@ struct Work {
   Index starts[2];       // of the first level, if it has few balls, and of the second, that are carried through
 };
 
-// Builds a tree level by level, each on the balls of the one above.
+// Builds a tree level by level, each on the balls of the one above. Of each level the best of several covers is kept,
+// and there is one rule for all of them: no level is looser, in the mean or the maximum of the inaccuracy, than the one
+// above it, nor than any level of the octree for which it has the spheres. Of those that keep to it, the one with the
+// lowest product of mean, maximum and outside volume is taken. Starts are the usual ones; where these break the rule,
+// or where the balls' reach that they are fitted by is far from the inaccuracy, those of other measures and of the
+// octree, too; and where all break it, the levels above are replaced by the octree's own, which leaves room for its
+// next one.
 class Tightener {
  public:
   // Keeps references to all but the root. Samples as surface_samples() gives them.
@@ -27,26 +34,52 @@ class Tightener {
   TightenBuild run();
 
  private:
+  // What a level's balls are searched from, and how; those with the same number have the same unit of cost.
+  struct Start {
+    LevelOptions options;
+    std::vector<LevelBall> balls;  // none: seeded ones
+    int kind = 0;
+  };
+  // A level that covers the surface.
   struct Candidate {
     PartialTree partial;
-    double looseness;                      // what candidates are compared by
-    std::vector<double> center_distances;  // signed distances of the last level's centres
-    TightenReport::Level report;
+    double looseness = 0;                    // what candidates are compared by
+    double excess = 0;                       // over what the level may have, as a part of that; <= 0: it keeps to it
+    bool is_octree = false;                  // as octree_level() makes it
+    bool measures_well = true;               // whether the balls' reach is about their inaccuracy
+    std::vector<double> center_distances{};  // signed distances of the last level's centres
+    std::vector<double> inaccuracies{};      // of the last level's balls, in mesh units; none: not measured
+    TightenReport::Level report{};
   };
   bool build_level(Index level, std::vector<TightenReport::Level>& reports);
+  std::optional<LevelOptions> next_level(Index level) const;
+  LevelOptions options_for(Index level, Index balls) const;
+  void add_candidates(std::vector<Start> starts, std::vector<Candidate>& all);
+  void add_other_candidates(const LevelOptions& options, std::vector<Candidate>& all);
+  static Candidate& tightest(std::vector<Candidate>& all);
+  void cap(Candidate& candidate) const;
+  double excess(const LevelTightness& level, Index balls);
   void take(Candidate best);
+  std::vector<Start> usual_starts(const LevelOptions& options) const;
+  std::vector<Start> other_starts(const LevelOptions& options) const;
   std::vector<std::vector<LevelBall>> promising_starts(LevelOptions options, Index wanted) const;
-  std::vector<Candidate> candidates(LevelOptions options, std::vector<std::vector<LevelBall>> from,
-                                    const Progress& progress);
+  std::vector<Candidate> candidates(std::vector<Start> starts, const Progress& progress) const;
+  Candidate octree_level(Index level) const;
   void search_and_finish(LevelSolver& solver, const LevelOptions& options, const Progress& progress,
                          Candidate& result) const;
+  void judge(Candidate& candidate, Index balls, bool by_looseness);
 
   const Surface& surface_;
   const Samples& samples_;
   const TightenOptions& options_;
   const Work work_;
   const Progress& progress_;
+  std::vector<Index> spheres_;  // that each level may have
+  Sphere root_;
+  OctreeReference octree_;
   PartialTree partial_;
+  Index octree_levels_ = 0;           // of partial_, which are the octree's own
+  std::vector<double> inaccuracies_;  // of the last level's balls, in mesh units
 };
 
 }  // namespace orchard::detail
