@@ -15,6 +15,8 @@ namespace {
 
 constexpr int kMaxRounds = 60;
 constexpr double kMarginGrowth = 2;  // from one round to the next
+constexpr int kKeepingRounds = 30;   // in which balls that are not to grow do not
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // What one path should take in: points of an uncovered region. The path region then holds their convex hull as well.
 using Points = std::vector<Point>;
@@ -23,12 +25,14 @@ using Points = std::vector<Point>;
 // of a large ball near the root costs as much looseness on its level as a per cent of a leaf does on its own.
 class Grower {
  public:
-  Grower(SphereTree& tree, double margin) : tree_(tree), margin_(margin) {}
+  // Balls of levels above `first_level` are not to grow: what they hold is enough.
+  Grower(SphereTree& tree, double margin, Index first_level)
+      : tree_(tree), margin_(margin), first_level_(first_level) {}
 
   // The first of those that cost least. None costs more than the path that is cheapest at every step: most others are
-  // told by that.
+  // told by that. Infinite if there is no path that holds them.
   double cost_of_best_path(const Points& points) {
-    best_cost_ = std::nextafter(cost_of_greedy_path(points), std::numeric_limits<double>::infinity());
+    best_cost_ = std::nextafter(cost_of_greedy_path(points), kInfinity);
     best_leaf_ = kNone;
     descend(0, 0, points);
     return best_cost_;
@@ -38,6 +42,7 @@ class Grower {
   double grow_best_path(const Points& points) {
     double max = 0;
     for (Index node = best_leaf_; node != kNone; node = tree_.nodes[node].parent) {
+      if (tree_.nodes[node].level < first_level_) break;
       double& radius = tree_.nodes[node].sphere.radius;
       const double wanted = reach(node, points) + margin_;
       if (reach(node, points) <= radius - margin_ / 2) continue;
@@ -57,6 +62,7 @@ class Grower {
 
   double cost_with(Index index, double cost_above, const Points& points) const {
     const double radius = tree_.nodes[index].sphere.radius;
+    if (tree_.nodes[index].level < first_level_) return reach(index, points) > radius ? kInfinity : cost_above;
     return cost_above + std::max(0.0, reach(index, points) + margin_ - radius) / radius;
   }
 
@@ -64,7 +70,7 @@ class Grower {
     double cost = cost_with(0, 0, points);
     for (Index index = 0; tree_.nodes[index].child_count > 0;) {
       const SphereNode& node = tree_.nodes[index];
-      double least = std::numeric_limits<double>::infinity();
+      double least = kInfinity;
       for (Index child = node.first_child; child < node.first_child + node.child_count; ++child) {
         const double with_child = cost_with(child, cost, points);
         if (with_child < least || child == node.first_child) least = with_child, index = child;
@@ -89,6 +95,7 @@ class Grower {
 
   SphereTree& tree_;
   const double margin_;
+  const Index first_level_;
   double best_cost_ = 0;
   Index best_leaf_ = kNone;
 };
@@ -102,18 +109,20 @@ double take_in(Grower& grower, const detail::UncoveredRegion& uncovered) {
   double apart = 0;
   for (const Point& point : all) apart = std::max(apart, grower.cost_of_best_path({point}));
   double max = 0;
-  if (together <= 4 * apart) {
+  if (together <= 4 * apart && together < kInfinity) {
     grower.cost_of_best_path(all);
     return grower.grow_best_path(all);
   }
   for (const Point& point : all)
-    if (grower.cost_of_best_path({point}) > 0) max = std::max(max, grower.grow_best_path({point}));
+    if (const double cost = grower.cost_of_best_path({point}); cost > 0 && cost < kInfinity)
+      max = std::max(max, grower.grow_best_path({point}));
   return max;
 }
 
 }  // namespace
 
-CoverReport cover(SphereTree& tree, const Surface& surface, const Progress& progress, double first_margin) {
+CoverReport cover(SphereTree& tree, const Surface& surface, const Progress& progress, double first_margin,
+                  Index first_level) {
   const double radius = surface.bounding_radius();
   CoverReport report;
   std::vector<Index> triangles;
@@ -126,7 +135,7 @@ CoverReport cover(SphereTree& tree, const Surface& surface, const Progress& prog
     if (report.rounds == 0) report.triangles_uncovered = static_cast<Index>(coverage.uncovered.size());
     // Balls only grow, so what is covered stays covered.
     triangles.clear();
-    Grower grower(tree, margin);
+    Grower grower(tree, margin, report.rounds < kKeepingRounds ? first_level : 0);
     const auto take = [&](const detail::UncoveredRegion& region) {
       report.max_growth = std::max(report.max_growth, take_in(grower, region) / radius);
     };
@@ -149,7 +158,7 @@ namespace {
 // The leaf whose path needs to grow least to hold the point.
 Index nearest_leaf(const SphereTree& tree, const Point& point) {
   Index best = kNone;
-  double min = std::numeric_limits<double>::infinity();
+  double min = kInfinity;
   for (Index leaf = 0; leaf < tree.nodes.size(); ++leaf) {
     if (tree.nodes[leaf].child_count > 0) continue;
     double outside = 0;

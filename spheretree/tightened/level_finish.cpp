@@ -55,7 +55,8 @@ class Finish {
     for (LevelNode& node : partial_.last()) node.sphere.radius += 0.5 * kLastGrowth * radius_;
     std::vector<std::vector<Index>> places;
     SphereTree closed = partial_.tree(places);
-    report.grown = cover(closed, surface_, {}, kFirstMargin * kLastGrowth).max_growth;
+    const Index first = options_.keep_above ? static_cast<Index>(partial_.size() - 1) : 0;
+    report.grown = cover(closed, surface_, {}, kFirstMargin * kLastGrowth, first).max_growth;
     partial_.take_spheres(closed, places);
   }
 

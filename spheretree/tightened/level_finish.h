@@ -12,6 +12,7 @@ struct FinishOptions {
   int tightenings = 2;        // of the closed level
   Index search_trials = 0;    // in each of the searching rounds
   Index closed_trials = 0;    // afterwards, of the search that never uncovers anything
+  bool keep_above = false;    // whether the levels above are not to grow
   Progress progress;          // called with a fraction of the finish
 };
 

@@ -24,6 +24,7 @@ class PartialTree {
   std::size_t size() const { return levels_.size(); }
   Level& last() { return levels_.back(); }
   const Level& last() const { return levels_.back(); }
+  std::span<const Level> levels() const { return levels_; }
   void add_level();
 
   // Nodes of the level above the last that need children; the path regions of these are what balls may lie in.

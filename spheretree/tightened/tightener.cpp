@@ -56,6 +56,8 @@ constexpr Index kStartsForMaximum = 2;          // carried through with that obj
 constexpr double kSameTightness = tolerance::kInaccuracy;
 // Where the balls' mean reach is so many times their mean inaccuracy, other measures may fit them better.
 constexpr double kFarAbove = 1.25;
+// Levels that are tighter than they must be by less than this part of R are kept from growing any more.
+constexpr double kCloseCall = 0.002;
 
 // Of a full search, that a level of so many balls gets.
 double search_share(Index balls) { return std::min(1.0, kFullySearchedBalls / std::max<Index>(1, balls)); }
@@ -172,6 +174,7 @@ LevelOptions Tightener::options_for(Index level, Index balls) const {
   options.cost = cost_for(options_.objective, level, options_.depth);
   options.level = level;
   options.seed = options_.seed;
+  options.keep_above = *std::max_element(excesses_.begin(), excesses_.end()) > -kCloseCall;
   return options;
 }
 
@@ -199,6 +202,7 @@ bool Tightener::build_level(Index level, std::vector<TightenReport::Level>& repo
       partial_ = octree_.levels({root_, surface_.bounding_radius()}, level - 1);
       inaccuracies_ = inaccuracies(surface_, partial_.last());
       octree_levels_ = level - 1;
+      std::fill(excesses_.begin() + 1, excesses_.end(), 0.0);
       all.clear();
       add_other_candidates(next_level(level).value_or(*options), all);
     }
@@ -266,6 +270,19 @@ double Tightener::excess(const LevelTightness& level, Index balls) {
   return std::max(mean, max) / surface_.bounding_radius() - kSameTightness;
 }
 
+// The same of the levels above it, whose balls may have grown.
+double Tightener::excess_above(const Candidate& candidate) const {
+  double excess = -1;
+  for (std::size_t l = 0; l + 1 < candidate.partial.size(); ++l) {
+    double grown = 0;
+    const Level &before = partial_.levels()[l], &after = candidate.partial.levels()[l];
+    for (std::size_t i = 0; i < before.size(); ++i)
+      grown = std::max(grown, after[i].sphere.radius - before[i].sphere.radius);
+    excess = std::max(excess, excesses_[l] + grown / surface_.bounding_radius());
+  }
+  return excess;
+}
+
 // The balls' reach bounds their inaccuracy: mostly that is enough to know that the rule is kept.
 void Tightener::judge(Candidate& candidate, Index balls, bool by_looseness) {
   const Level& level = candidate.partial.last();
@@ -282,6 +299,7 @@ void Tightener::judge(Candidate& candidate, Index balls, bool by_looseness) {
       candidate.excess = excess(tightness(candidate.inaccuracies), balls);
     }
   }
+  candidate.excess = std::max(candidate.excess, excess_above(candidate));
   if (!by_looseness && candidate.inaccuracies.empty()) return;
   // Roughly: all starts are compared by the same numbers.
   std::vector<double> values(level.size());
@@ -301,6 +319,7 @@ void Tightener::take(Candidate best) {
   inaccuracies_ =
       best.inaccuracies.empty() ? inaccuracies(surface_, best.partial.last()) : std::move(best.inaccuracies);
   partial_ = std::move(best.partial);
+  excesses_.push_back(best.excess);
   for (std::size_t i = 0; i < partial_.last().size(); ++i) {
     LevelNode& node = partial_.last()[i];
     node.leaf = node.sphere.radius + best.center_distances[i] <= options_.refinement.allowed(node.sphere);
@@ -333,11 +352,12 @@ std::vector<Tightener::Start> Tightener::other_starts(const LevelOptions& option
   partial.add_level();
   const PathRegions regions(samples_for(samples_, partial_, enough_samples(options.balls)), partial.paths());
   const std::vector<LevelBall> cubes = octree_.start(regions, options.balls, options.max_children);
-  LevelOptions by_maximum = options;
+  LevelOptions usual = options, by_maximum = options;
+  usual.keep_above = by_maximum.keep_above = true;
   by_maximum.cost = cost_for(Objective::maximum, options.level, options_.depth);
   LevelOptions by_radius = options, by_max_radius = by_maximum;
   by_radius.measure = by_max_radius.measure = BallMeasure::radius;
-  std::vector<Start> starts{{options, cubes, 0}, {by_maximum, {}, 1}, {by_radius, cubes, 2}, {by_max_radius, cubes, 3}};
+  std::vector<Start> starts{{usual, cubes, 0}, {by_maximum, {}, 1}, {by_radius, cubes, 2}, {by_max_radius, cubes, 3}};
   if (options.level > 1) return starts;
   for (const std::vector<LevelBall>& balls : promising_starts(by_maximum, 2)) starts.push_back({by_maximum, balls, 1});
   starts.push_back({by_radius, promising_starts(by_radius, 1)[0], 2});
@@ -437,6 +457,7 @@ void Tightener::search_and_finish(LevelSolver& solver, const LevelOptions& optio
                        share < kTightenedTwiceShare ? 1 : 2,
                        static_cast<Index>(kSearchShare * trials),
                        static_cast<Index>(closed_trials * static_cast<double>(solver.balls().size())),
+                       options.keep_above,
                        [&](std::string_view stage, double fraction) { return progress(stage, 0.4 + 0.6 * fraction); }};
   finish_level(surface_, solver, result.partial, finish, result.report);
   const bool is_known = options.measure == BallMeasure::reach;

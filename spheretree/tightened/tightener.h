@@ -59,6 +59,7 @@ class Tightener {
   static Candidate& tightest(std::vector<Candidate>& all);
   void cap(Candidate& candidate) const;
   double excess(const LevelTightness& level, Index balls);
+  double excess_above(const Candidate& candidate) const;
   void take(Candidate best);
   std::vector<Start> usual_starts(const LevelOptions& options) const;
   std::vector<Start> other_starts(const LevelOptions& options) const;
@@ -79,6 +80,7 @@ class Tightener {
   OctreeReference octree_;
   PartialTree partial_;
   Index octree_levels_ = 0;           // of partial_, which are the octree's own
+  std::vector<double> excesses_{-1};  // of the levels so far
   std::vector<double> inaccuracies_;  // of the last level's balls, in mesh units
 };
 

@@ -15,9 +15,10 @@ struct CoverReport {
 // path that needs to grow least, until every triangle is certified. Balls only grow, about their centres. Throws Error
 // if something is still uncovered after a fixed number of rounds. Balls that grow get `first_margin` of R more than
 // they need, and twice as much in every round: a larger one takes fewer rounds, and is worth it where what is uncovered
-// is known to be deeper. Source: dissertation 6.3.2, with less growth.
+// is known to be deeper. Balls of levels above `first_level` do not grow unless half of the rounds did not do without:
+// for trees that were conservative down to the level before. Source: dissertation 6.3.2, with less growth.
 CoverReport cover(SphereTree& tree, const Surface& surface, const Progress& progress = {},
-                  double first_margin = tolerance::kCoverMargin);
+                  double first_margin = tolerance::kCoverMargin, Index first_level = 0);
 
 // Makes a tree conservative as dissertation 6.3.2 has it: in every round, the spheres that have an uncovered boundary
 // in some triangle grow by the factor; where a triangle has no such boundary, the nearest leaf and the spheres above it
