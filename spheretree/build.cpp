@@ -6,6 +6,7 @@
 
 #include "canonical_frame.h"
 #include "orchard/geometry/error.h"
+#include "orchard/geometry/tolerance.h"
 #include "orchard/spheretree/measure.h"
 #include "orchard/spheretree/octree.h"
 #include "orchard/spheretree/proven.h"
@@ -48,6 +49,7 @@ class TreeBuilder {
       build_.cover = grows ? grow_to_cover(build_.tree, surface_, kGrowthFactor, progress_)
                            : cover(build_.tree, surface_, progress_);
     });
+    const SphereTree whole = build_.tree;
     stage("redundant spheres",
           [&] { build_.redundancy = remove_redundant(build_.tree, surface_, options_.redundancy, progress_); });
     if (options_.descent > 0) stage("random descent", [&] { descend(); });
@@ -56,6 +58,7 @@ class TreeBuilder {
     stage("measuring", [&] {
       measure(build_.tree, given_, progress_);
       measure_inaccuracy(build_.octree, given_, progress_, build_.tree);
+      if (is_loosened()) put_back(whole);
     });
     stage("packing and verifying", [&] { require_proof(); });
     return std::move(build_);
@@ -158,6 +161,25 @@ class TreeBuilder {
     build_.redundancy.removed += remove_redundant(build_.tree, surface_, options_.redundancy, progress_).removed;
   }
 
+  // Whether a level has become looser in the mean than the octree's: by tight spheres that were redundant.
+  bool is_loosened() const {
+    if (options_.method != TreeMethod::tightened || options_.descent > 0 || build_.redundancy.removed == 0 ||
+        options_.refinement.error > 0 || !options_.refinement.regions.empty())
+      return false;
+    const auto levels = level_figures(build_.tree, given_.bounding_radius());
+    const auto octree = level_figures(build_.octree, given_.bounding_radius());
+    for (std::size_t i = 1; i < std::min(levels.size(), octree.size()); ++i)
+      if (levels[i].mean_inaccuracy > octree[i].mean_inaccuracy + tolerance::kInaccuracy) return true;
+    return false;
+  }
+
+  void put_back(const SphereTree& whole) {
+    build_.tree = whole;
+    framed_.take_out(build_.tree);
+    measure(build_.tree, given_, progress_);
+    build_.redundancy = {};
+  }
+
   // What is returned has passed verify(). Very far from the origin the given surface's last digits may be too coarse
   // for a tree that was closed in the frame.
   void require_proof() {
@@ -226,8 +248,7 @@ Index samples_needed(const SphereTreeOptions& options) {
   if (options.method != TreeMethod::tightened) return 5000;
   const double leaves = options.spheres.empty() ? std::pow(static_cast<double>(options.branching), options.depth)
                                                 : static_cast<double>(options.spheres.back());
-  const double min = options.effort == Effort::high ? 20'000 : 10'000;
-  return static_cast<Index>(std::clamp(kSamplesPerLeaf * leaves, min, 200'000.0));
+  return static_cast<Index>(std::clamp(kSamplesPerLeaf * leaves, 10'000.0, 200'000.0));
 }
 
 void require_sizes(const SphereTreeOptions& options) {

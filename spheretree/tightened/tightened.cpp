@@ -1,5 +1,6 @@
 #include "orchard/spheretree/tightened.h"
 
+#include <array>
 #include <string>
 #include <utility>
 
@@ -7,6 +8,8 @@
 #include "level_samples.h"
 #include "orchard/geometry/error.h"
 #include "orchard/spheretree/measure.h"
+#include "orchard/spheretree/outside_volume.h"
+#include "orchard/spheretree/redundancy.h"
 #include "tightened_in_frame.h"
 #include "tightener.h"
 
@@ -23,6 +26,30 @@ detail::Work work_for(Effort effort) {
       return {3, 24, 12, 96, {12, 2}};
   }
   return {0.7, 14, 0, 48, {6, 1}};
+}
+
+// What a tree is compared by, for each level: mean and largest inaccuracy, and the volume outside.
+std::vector<std::array<double, 3>> figures(SphereTree tree, const Surface& surface) {
+  remove_redundant(tree, surface);
+  measure_inaccuracy(tree, surface);
+  std::vector<std::array<double, 3>> figures;
+  Index level = 0;
+  for (const LevelFigures& of_level : level_figures(tree, 1)) {
+    std::vector<Sphere> spheres;  // with those of leaves above
+    for (const SphereNode& node : tree.nodes)
+      if (node.level == level || (node.level < level && node.child_count == 0)) spheres.push_back(node.sphere);
+    figures.push_back({of_level.mean_inaccuracy, of_level.max_inaccuracy, outside_volume(surface, spheres)});
+    ++level;
+  }
+  return figures;
+}
+
+bool is_looser(const std::vector<std::array<double, 3>>& one, const std::vector<std::array<double, 3>>& other) {
+  if (one.size() != other.size()) return one.size() < other.size();
+  for (std::size_t level = 0; level < one.size(); ++level)
+    for (std::size_t i = 0; i < 3; ++i)
+      if (one[level][i] > other[level][i]) return true;
+  return false;
 }
 
 }  // namespace
@@ -60,18 +87,15 @@ TightenBuild detail::tightened_in_frame(const Surface& surface, const SurfaceSam
   const Samples samples = surface_samples(surface, sampling);
   if (samples.size() == 0) throw InputError("a tightened tree needs surface points");
   TightenOptions own = options;
-  const auto build = [&](Effort effort) {
-    own.effort = effort;
-    return Tightener(surface, samples, surface.bounding_ball(), own, work_for(effort), progress).run();
-  };
-  TightenBuild best = build(options.effort);
-  if (options.effort == Effort::high) {
-    TightenBuild standard = build(Effort::standard);
-    measure(best.tree, surface);
-    measure(standard.tree, surface);
-    if (overall_inaccuracy(standard.tree) < overall_inaccuracy(best.tree)) best = std::move(standard);
-  }
-  return best;
+  if (options.effort != Effort::high)
+    return Tightener(surface, samples, surface.bounding_ball(), own, work_for(options.effort), progress).run();
+  own.effort = Effort::standard;
+  Tightener standard(surface, samples, surface.bounding_ball(), own, work_for(Effort::standard), progress);
+  TightenBuild usual = standard.run();
+  own.effort = Effort::high;
+  TightenBuild best =
+      Tightener(surface, samples, surface.bounding_ball(), own, work_for(Effort::high), progress).run_beside(standard);
+  return is_looser(figures(best.tree, surface), figures(usual.tree, surface)) ? usual : best;
 }
 
 }  // namespace orchard

@@ -158,13 +158,36 @@ Tightener::Tightener(const Surface& surface, const Samples& samples, const Spher
   inaccuracies_ = inaccuracies(surface, partial_.last());
 }
 
-TightenBuild Tightener::run() {
-  TightenReport report;
-  for (Index level = 1; level <= options_.depth; ++level)
-    if (!build_level(level, report.levels)) break;
+TightenBuild Tightener::run() { return run(nullptr); }
+
+TightenBuild Tightener::run_beside(const Tightener& other) { return run(&other); }
+
+TightenBuild Tightener::run(const Tightener* other) {
+  for (Index level = 1; level <= options_.depth; ++level) {
+    if (!build_level(level)) break;
+    if (other != nullptr && level <= other->states_.size() && is_looser_than(other->states_[level - 1])) {
+      const State& state = other->states_[level - 1];
+      partial_ = state.partial;
+      excesses_ = state.excesses;
+      inaccuracies_ = state.inaccuracies;
+      octree_levels_ = state.octree_levels;
+    }
+    states_.push_back({partial_, excesses_, inaccuracies_, octree_levels_});
+  }
   SphereTree tree = partial_.tree();
   tree.branching = std::max(tree.branching, options_.branching);
-  return {std::move(tree), std::move(report)};
+  return {std::move(tree), report_};
+}
+
+bool Tightener::is_looser_than(const State& other) const {
+  const LevelTightness here = tightness(inaccuracies_), there = tightness(other.inaccuracies);
+  if (here.mean > there.mean || here.max > there.max) return true;
+  const auto outside = [&](const Level& level) {
+    std::vector<Sphere> spheres;
+    for (const LevelNode& node : level) spheres.push_back(node.sphere);
+    return outside_volume(surface_, spheres);
+  };
+  return outside(partial_.last()) > outside(other.partial.last());
 }
 
 LevelOptions Tightener::options_for(Index level, Index balls) const {
@@ -190,7 +213,7 @@ std::optional<LevelOptions> Tightener::next_level(Index level) const {
   return options_for(level, static_cast<Index>(wanted));
 }
 
-bool Tightener::build_level(Index level, std::vector<TightenReport::Level>& reports) {
+bool Tightener::build_level(Index level) {
   const std::optional<LevelOptions> options = next_level(level);
   if (!options) return false;
   std::vector<Candidate> all;
@@ -211,11 +234,11 @@ bool Tightener::build_level(Index level, std::vector<TightenReport::Level>& repo
   }
   Candidate& best = tightest(all);
   if (&best == &all.back() && best.is_octree) octree_levels_ = level;
-  reports.push_back(best.report);
-  reports.back().seconds_search = reports.back().seconds_closing = 0;
+  TightenReport::Level& report = report_.levels.emplace_back(best.report);
+  report.seconds_search = report.seconds_closing = 0;
   for (const Candidate& candidate : all) {
-    reports.back().seconds_search += candidate.report.seconds_search;
-    reports.back().seconds_closing += candidate.report.seconds_closing;
+    report.seconds_search += candidate.report.seconds_search;
+    report.seconds_closing += candidate.report.seconds_closing;
   }
   take(std::move(best));
   return true;

@@ -32,8 +32,18 @@ class Tightener {
   Tightener(const Surface& surface, const Samples& samples, const Sphere& root, const TightenOptions& options,
             const Work& work, const Progress& progress);
   TightenBuild run();
+  // The same, with what another one made of the same surface with less work: where a level comes out looser than its
+  // level there in any figure, its levels down to that one are taken in place of these.
+  TightenBuild run_beside(const Tightener& other);
 
  private:
+  // The levels so far.
+  struct State {
+    PartialTree partial;
+    std::vector<double> excesses;      // of the levels
+    std::vector<double> inaccuracies;  // of the last level's balls, in mesh units
+    Index octree_levels;               // of the levels, which are the octree's own
+  };
   // What a level's balls are searched from, and how; those with the same number have the same unit of cost.
   struct Start {
     LevelOptions options;
@@ -51,7 +61,9 @@ class Tightener {
     std::vector<double> inaccuracies{};      // of the last level's balls, in mesh units; none: not measured
     TightenReport::Level report{};
   };
-  bool build_level(Index level, std::vector<TightenReport::Level>& reports);
+  TightenBuild run(const Tightener* other);
+  bool build_level(Index level);
+  bool is_looser_than(const State& other) const;
   std::optional<LevelOptions> next_level(Index level) const;
   LevelOptions options_for(Index level, Index balls) const;
   void add_candidates(std::vector<Start> starts, std::vector<Candidate>& all);
@@ -79,6 +91,8 @@ class Tightener {
   Sphere root_;
   OctreeReference octree_;
   PartialTree partial_;
+  TightenReport report_;
+  std::vector<State> states_;         // after each level
   Index octree_levels_ = 0;           // of partial_, which are the octree's own
   std::vector<double> excesses_{-1};  // of the levels so far
   std::vector<double> inaccuracies_;  // of the last level's balls, in mesh units

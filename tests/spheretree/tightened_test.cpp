@@ -11,6 +11,7 @@
 #include "orchard/spheretree/cover.h"
 #include "orchard/spheretree/measure.h"
 #include "orchard/spheretree/merging.h"
+#include "orchard/spheretree/octree.h"
 #include "orchard/spheretree/outside_volume.h"
 #include "orchard/spheretree/redundancy.h"
 #include "support.h"
@@ -325,6 +326,50 @@ TEST(TightenedTree, StopsWhenCancelled) {
   const Surface surface(torus(24, 12));
   const SurfaceSampling points = points_of(surface);
   EXPECT_THROW(tightened_tree(surface, points, {}, [](std::string_view, double) { return false; }), Cancelled);
+}
+
+// Boxes on a lattice: balls that hold many reach far beyond their inaccuracy.
+TriangleMesh lattice_of_parts(int n) {
+  TriangleMesh mesh;
+  for (int i = 0; i < n * n * n; ++i) {
+    const Point at(i % n, (i / n) % n, i / (n * n));
+    const TriangleMesh part = box(at, at + Vector::Constant(0.4));
+    const auto first = static_cast<Index>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
+    for (const auto& [a, b, c] : part.triangles) mesh.triangles.push_back({first + a, first + b, first + c});
+  }
+  return mesh;
+}
+
+TEST(TightenedTree, HasNoLevelLooserThanTheOctreesOrThanTheOneAbove) {
+  const Surface surface(lattice_of_parts(4));
+  SphereTree tree = tightened_tree(surface, points_of(surface, 2000), {.depth = 2}).tree;
+  SphereTree cubes = octree(surface, {.depth = 2});
+  expect_conservative(tree, surface, "lattice");
+  measure(tree, surface);
+  measure(cubes, surface);
+  const auto levels = level_figures(tree, surface.bounding_radius());
+  const auto octrees = level_figures(cubes, surface.bounding_radius());
+  constexpr double kSame = 2e-4;
+  for (std::size_t level = 1; level < levels.size(); ++level) {
+    for (const LevelFigures& other : {levels[level - 1], octrees[level]}) {
+      EXPECT_LE(levels[level].mean_inaccuracy, other.mean_inaccuracy + kSame) << level;
+      EXPECT_LE(levels[level].max_inaccuracy, other.max_inaccuracy + kSame) << level;
+    }
+  }
+}
+
+TEST(TightenedTree, GivesEachOfManyPartsASphereOfItsOwn) {
+  const Surface surface(lattice_of_parts(5));
+  const double of_part = 0.2 * (std::sqrt(3.0) - 1) / surface.bounding_radius();
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    SphereTree tree =
+        tightened_tree(surface, points_of(surface, 4000), {.depth = 1, .spheres = {125}, .seed = seed}).tree;
+    measure(tree, surface);
+    const LevelFigures level = level_figures(tree, surface.bounding_radius()).back();
+    EXPECT_EQ(level.spheres, 125) << seed;
+    EXPECT_LE(level.max_inaccuracy, 1.01 * of_part) << seed;
+  }
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 
 namespace orchard {
 
-// How long to search: about 1 : 2 : 11 in time. What high effort builds is compared with what standard effort builds,
-// by overall_inaccuracy(), and the tighter one of the two is kept.
+// How long to search: about 1 : 2 : 11 in time. High effort builds what standard effort builds first, and keeps each
+// level of its own only if that is not looser in the mean, the maximum or the outside volume.
 enum class Effort { low, standard, high };
 
 // What is to be low on every level: the largest inaccuracy, the mean one, the volume outside the object, or a balance.
@@ -59,13 +59,15 @@ void require_sizes(const TightenOptions& options);
 // surface points, so that max |p - c| + sd(c) is small over the centre c, improved by Lloyd's iteration and large-
 // neighbourhood search, and closed with the boundary lemma: each uncovered region is given to the ball that it costs
 // least, until there is none. Then each ball is fitted again to exactly what it alone holds, and at high effort the
-// search goes on with nothing uncovered. A level of more than 1000 balls is searched no longer than one of 1000. There
-// should be 20 surface points or more for each ball of the last level; those that gap repair added are left out. The
-// result is conservative and, since work is counted and not timed, the same on any number of threads. The
-// search runs on the mesh as it is in a frame of its own (spheretree/canonical_frame.h), so that with the same points a
-// mesh that is scaled or moved gets the same tree but for the last digits, unless a corner or a point is as near to the
-// border between two lattice points as its digits reach. Throws InputError as require_sizes() does, and where there are
-// no points; Error as validate() of a sampling does.
+// search goes on with nothing uncovered. No level is looser than the one above it or than the octree's levels with as
+// many spheres or fewer, in the mean or the maximum by more than 1e-4 R, unless the tree is refined in parts only. A
+// level of more than 1000 balls is searched no longer than one of 1000. There should be 20 surface points or more for
+// each ball of the last level; those that gap repair added are left out. The result is conservative and, since work is
+// counted and not timed, the same on any number of threads. The search runs on the mesh as it is in a frame of its own
+// (spheretree/canonical_frame.h), so that with the same points a mesh that is scaled or moved gets the same tree but
+// for the last digits, unless a corner or a point is as near to the border between two lattice points as its digits
+// reach. Throws InputError as require_sizes() does, and where there are no points; Error as validate() of a sampling
+// does.
 TightenBuild tightened_tree(const Surface& surface, const SurfaceSampling& sampling, const TightenOptions& options = {},
                             const Progress& progress = {});
 
